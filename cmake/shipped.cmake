@@ -6,6 +6,7 @@ function(ship_texts function header folder)
   file(GLOB others CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${folder}/*.toml)
   list(TRANSFORM others REPLACE "^.*/|[.]toml$" "")
   list(REMOVE_ITEM others ${ARGN})
+  string(REGEX REPLACE "/.*" "" topic ${header})
   set(entries "")
   foreach(name IN LISTS ARGN others)
     set(file ${PROJECT_SOURCE_DIR}/${folder}/${name}.toml)
@@ -17,15 +18,15 @@ function(ship_texts function header folder)
 "// Made by cmake/shipped.cmake.
 #include \"@header@\"
 
-namespace riffler {
+namespace riffler::@topic@ {
 
-std::span<const ShippedText> @function@() {
-  static constexpr ShippedText kTexts[] = {
+std::span<const base::ShippedText> @function@() {
+  static constexpr base::ShippedText kTexts[] = {
 @entries@  };
   return kTexts;
 }
 
-}  // namespace riffler
+}  // namespace riffler::@topic@
 ")
   set(shipped_sources ${shipped_sources} ${PROJECT_BINARY_DIR}/${function}.cpp PARENT_SCOPE)
 endfunction()

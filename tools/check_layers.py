@@ -1,9 +1,9 @@
 """Checks who includes whom: a native topic uses only those above it in RIFFLER_TOPICS, a folder of a topic only those
 that FOLDERS names, no file leads back to itself, the core touches neither Python nor what it is judged by, and the
 pen's C files touch nothing but each other. A source includes its own header first, which shows that the header stands
-alone. A public header (native/include/riffler) includes public headers, the standard library and GLM only. No type is
-defined twice in one namespace (cpp_types.py). The add-on's rules are in addon_layers.py. Prints every line that breaks
-a rule and exits 1."""
+alone. A public header (native/include/riffler) includes public headers, the standard library and GLM only. What a
+topic's files declare is in the topic's namespace, and no type is defined twice in one namespace (cpp_types.py). The
+add-on's rules are in addon_layers.py. Prints every line that breaks a rule and exits 1."""
 
 from __future__ import annotations
 
@@ -16,6 +16,10 @@ import addon_layers
 import cpp_types
 from shell import ROOT, StepError, main
 
+# All that a topic's file may say in riffler itself: what others call its types.
+GIVEN_TO_ALL = re.compile(r"\s*(?:using \w+::\w+|namespace \w+ = \w+::\w+)\s*$")
+# What a topic's file may say outside of every namespace: macros, types of C libraries, specialisations for std.
+OUTSIDE = re.compile(r"\s*$|\s*[A-Z][A-Z_]*\(.*\)\s*$|\s*struct [a-z_]+_\s*$|\s*template <>\s*struct std::", re.S)
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 # Folders beside the topics, and which topics and other such folders they may include. The reference must not share code
 # with what it judges; `None` is every topic.
@@ -196,6 +200,24 @@ def public_problems(root: Path) -> list[str]:
     return problems
 
 
+def namespace_problems(root: Path) -> list[str]:
+    problems = []
+    for topic in [*topics(root), "reference"]:
+        for path in sorted([*(root / "native" / topic).rglob("*.?pp"), *(root / PUBLIC / topic).rglob("*.?pp")]):
+            for spaces, head, _ in cpp_types.statements(path.read_text()):
+                space = "::".join(filter(None, spaces))
+                if space == "riffler":
+                    right = "" not in spaces and GIVEN_TO_ALL.match(head)
+                elif not space:
+                    right = not spaces and OUTSIDE.match(head)
+                else:
+                    right = f"{space}::".startswith(f"riffler::{topic}::")
+                if not right:
+                    said = " ".join(head.split())[:60]
+                    problems.append(f"{path.relative_to(root)}: outside of namespace riffler::{topic}: {said}")
+    return problems
+
+
 def type_problems(root: Path) -> list[str]:
     return [
         f"{name} is defined twice: {', '.join(places)}"
@@ -212,6 +234,7 @@ CHECKS = [
     device_problems,
     header_problems,
     public_problems,
+    namespace_problems,
     type_problems,
     addon_layers.problems,
 ]

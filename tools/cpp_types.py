@@ -1,5 +1,5 @@
-"""Which types the C++ sources define at the scope of a namespace, and where. Reads text, not a compiler's tree: the
-sources are formatted by clang-format, and no macro of theirs opens a scope, but for Highway's HWY_NAMESPACE."""
+"""What the C++ sources say at the scope of a namespace, and which types they define there. Reads text, not a compiler's
+tree: the sources are formatted by clang-format, and no macro of theirs opens a scope, but for Highway's HWY_NAMESPACE."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ TYPE = re.compile(
 ALIAS = re.compile(r"\s*using\s+(\w+)\s*=")
 
 
-def defined(text: str) -> Iterator[tuple[str, str]]:
-    """Namespace and name of each type and alias that `text` defines outside of unnamed namespaces, classes and
-    functions. Specialisations of templates are no new types."""
+def statements(text: str) -> Iterator[tuple[list[str], str, str]]:
+    """Each statement, and each head of a block, outside of classes and functions: the names of the namespaces around it
+    ("" for unnamed ones), its text, and `;` or `{`. Heads of namespaces are left out."""
     code = NO_CODE.sub(" ", text)
     scopes: list[str | None] = []  # of each open brace the namespace; None where it is no namespace
     start = 0
@@ -37,21 +37,25 @@ def defined(text: str) -> Iterator[tuple[str, str]]:
             continue
         head = code[start:at]
         start = at + 1
-        space = None if None in scopes or "" in scopes else "::".join(s for s in scopes if s)
-        head_of_type = TEMPLATE.sub("", head)
         if char == "}":
             if scopes:
                 scopes.pop()
-        elif char == ";":
-            if space is not None and (match := ALIAS.match(head_of_type)):
-                yield space, match[1]
-        elif match := NAMESPACE.match(head):
+        elif char == "{" and (match := NAMESPACE.match(head)):
             scopes.append(match[1] or "")
         else:
-            match = TYPE.match(head_of_type)
-            scopes.append(None)
-            if space is not None and match and "::" not in match[1]:
-                yield space, match[1]
+            if None not in scopes:
+                yield [scope for scope in scopes if scope is not None], head, char
+            if char == "{":
+                scopes.append(None)
+
+
+def defined(text: str) -> Iterator[tuple[str, str]]:
+    """Namespace and name of each type and alias that `text` defines outside of unnamed namespaces, classes and
+    functions. Specialisations of templates are no new types."""
+    for spaces, head, char in statements(text):
+        match = (ALIAS if char == ";" else TYPE).match(TEMPLATE.sub("", head))
+        if match and "" not in spaces and "::" not in match[1]:
+            yield "::".join(spaces), match[1]
 
 
 def definitions(folder: Path) -> dict[str, list[str]]:

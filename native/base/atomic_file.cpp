@@ -14,7 +14,7 @@
 #include <system_error>
 #include <utility>
 
-namespace riffler {
+namespace riffler::base {
 
 namespace {
 
@@ -202,4 +202,4 @@ void clear_drafts(const fs::path& path) noexcept try {
 } catch (...) {  // no memory: another time
 }
 
-}  // namespace riffler
+}  // namespace riffler::base

@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-namespace riffler {
+namespace riffler::base {
 
 /// Writes a file that takes the place of `path` when `commit` is called, and leaves nothing where it is not. A link is
 /// followed, to a file that is not there yet as well; a file that is there keeps its permissions, and its owner and
@@ -51,4 +51,4 @@ std::filesystem::path draft_prefix(const std::filesystem::path& path);
 /// Removes drafts of `path`, files and folders, that nobody has locked: processes that were killed left them.
 void clear_drafts(const std::filesystem::path& path) noexcept;
 
-}  // namespace riffler
+}  // namespace riffler::base

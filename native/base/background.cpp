@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace riffler {
+namespace riffler::base {
 
 Background::Background(Work work) : thread_([this, w = std::move(work)]() mutable { run(std::move(w)); }) {}
 
@@ -49,4 +49,4 @@ void Background::check() const {
   if (error_) std::rethrow_exception(error_);
 }
 
-}  // namespace riffler
+}  // namespace riffler::base

@@ -11,7 +11,7 @@
 #include "base/own_thread.hpp"
 #include "riffler/base/progress.hpp"
 
-namespace riffler {
+namespace riffler::base {
 
 /// Runs `work` at once, on a new thread. Any thread may ask about it; cancelling works wherever `work` reports, and
 /// what `work` holds is destroyed on that thread as soon as it has ended. In a process that was forked meanwhile the
@@ -50,4 +50,4 @@ class Background {
   OwnThread thread_;  // the last: it uses all others
 };
 
-}  // namespace riffler
+}  // namespace riffler::base

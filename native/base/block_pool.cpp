@@ -5,7 +5,7 @@
 #include <atomic>
 #include <bit>
 
-namespace riffler {
+namespace riffler::base {
 
 namespace {
 
@@ -157,4 +157,4 @@ std::uint64_t blocks_from_system() {
   return asked;
 }
 
-}  // namespace riffler
+}  // namespace riffler::base

@@ -4,7 +4,7 @@
 
 #include <cstdlib>
 
-namespace riffler {
+namespace riffler::base {
 
 namespace {
 constexpr std::size_t kHugePage = std::size_t{2} << 20;
@@ -23,4 +23,4 @@ void free_bulk(void* memory) noexcept {
   std::free(memory);
 }
 
-}  // namespace riffler
+}  // namespace riffler::base

@@ -14,7 +14,7 @@
 #include <type_traits>
 #include <vector>
 
-namespace riffler {
+namespace riffler::base {
 
 static_assert(std::endian::native == std::endian::little, "numbers are copied as they stand in memory");
 
@@ -88,4 +88,9 @@ class ByteReader {
   ByteView bytes_;
 };
 
+}  // namespace riffler::base
+
+namespace riffler {
+using base::Bytes;
+using base::ByteView;
 }  // namespace riffler

@@ -7,7 +7,7 @@
 
 #include "base/io.hpp"
 
-namespace riffler {
+namespace riffler::base {
 
 namespace {
 
@@ -112,4 +112,4 @@ DescriptionText find_description(const DescriptionCatalog& shelf, std::string_vi
                               ", or the path of a .toml file that describes your " + shelf.kind);
 }
 
-}  // namespace riffler
+}  // namespace riffler::base

@@ -8,7 +8,7 @@
 #include "base/atomic_file.hpp"
 #include "riffler/base/error.hpp"
 
-namespace riffler {
+namespace riffler::base {
 
 namespace fs = std::filesystem;
 
@@ -43,4 +43,4 @@ void write_file(const fs::path& path, std::string_view text) {
   write_file(path, std::span(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
 }
 
-}  // namespace riffler
+}  // namespace riffler::base

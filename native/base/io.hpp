@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace riffler {
+namespace riffler::base {
 
 /// FormatError for a folder, a pipe or a device: what comes out of those may never end.
 void check_regular(const std::filesystem::path& path);
@@ -20,4 +20,4 @@ std::vector<std::uint8_t> read_file(const std::filesystem::path& path);
 void write_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
 void write_file(const std::filesystem::path& path, std::string_view text);
 
-}  // namespace riffler
+}  // namespace riffler::base

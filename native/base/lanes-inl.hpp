@@ -1,28 +1,25 @@
 // Vectors of doubles for the kernels: as many lanes as the instruction set has, at most eight. Included once for every
 // instruction set (Highway's foreach_target), hence the unusual guard. Only operations that IEEE 754 rounds correctly
 // are used and none is fused (options.cmake), so every instruction set gives the same bits.
-#if defined(RIFFLER_GEOM_LANES_INL_HPP) == defined(HWY_TARGET_TOGGLE)
-#ifdef RIFFLER_GEOM_LANES_INL_HPP
-#undef RIFFLER_GEOM_LANES_INL_HPP
+#if defined(RIFFLER_BASE_LANES_INL_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef RIFFLER_BASE_LANES_INL_HPP
+#undef RIFFLER_BASE_LANES_INL_HPP
 #else
-#define RIFFLER_GEOM_LANES_INL_HPP
+#define RIFFLER_BASE_LANES_INL_HPP
 #endif
 
 #include <hwy/highway.h>
 
-#include <limits>
-
 #include "base/lanes.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace riffler::HWY_NAMESPACE {
+namespace riffler::base::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 using Lanes = hn::CappedTag<double, kLanes>;
 using V = hn::Vec<Lanes>;
 using M = hn::Mask<Lanes>;
 constexpr Lanes kD;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 HWY_INLINE int lanes() {
   return static_cast<int>(hn::Lanes(kD));
@@ -88,7 +85,7 @@ HWY_INLINE M from_bits(unsigned b) {
   return hn::LoadMaskBits(kD, in);
 }
 
-}  // namespace riffler::HWY_NAMESPACE
+}  // namespace riffler::base::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-namespace riffler {
+namespace riffler::base {
 
 /// The finaliser of MurmurHash3.
 inline std::uint64_t mix_bits(std::uint64_t x) {
@@ -12,4 +12,4 @@ inline std::uint64_t mix_bits(std::uint64_t x) {
   return x ^ x >> 33;
 }
 
-}  // namespace riffler
+}  // namespace riffler::base

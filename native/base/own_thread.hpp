@@ -10,7 +10,7 @@
 #include <thread>
 #include <utility>
 
-namespace riffler {
+namespace riffler::base {
 
 /// The process in which it was made. A process that was forked from that one has copies of its objects, but none of
 /// its threads: to wait for one there would never end, nor would a lock that one held be freed.
@@ -79,4 +79,4 @@ inline double thread_seconds() noexcept {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
-}  // namespace riffler
+}  // namespace riffler::base

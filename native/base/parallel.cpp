@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-namespace riffler {
+namespace riffler::base {
 
 namespace {
 
@@ -141,4 +141,4 @@ SerialScope::~SerialScope() {
   busy = before_;
 }
 
-}  // namespace riffler
+}  // namespace riffler::base

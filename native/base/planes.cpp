@@ -11,7 +11,7 @@
 
 #include "riffler/base/error.hpp"
 
-namespace riffler {
+namespace riffler::base {
 
 namespace {
 
@@ -189,4 +189,4 @@ void PlaneReader::finish() const {
   if (at_ != bytes_.size()) fail("the chunk has bytes after its last plane");
 }
 
-}  // namespace riffler
+}  // namespace riffler::base

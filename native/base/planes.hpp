@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace riffler {
+namespace riffler::base {
 
 /// Writes little-endian numbers and columns to the end of a byte vector. One per thread; reuses its buffers.
 ///
@@ -73,4 +73,4 @@ class PlaneReader {
 /// Deflate shrinks nothing by more than this factor (zlib technical details: "Maximum Compression Factor", 1030.3).
 inline constexpr std::size_t kMaxDeflated = 1032;
 
-}  // namespace riffler
+}  // namespace riffler::base

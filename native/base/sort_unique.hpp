@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace riffler {
+namespace riffler::base {
 
 /// Sorts a list and drops what stands in it again.
 template <class T>
@@ -13,4 +13,4 @@ void sort_unique(std::vector<T>& list) {
   list.erase(std::unique(list.begin(), list.end()), list.end());
 }
 
-}  // namespace riffler
+}  // namespace riffler::base

@@ -5,7 +5,7 @@
 
 #include "riffler/base/error.hpp"
 
-namespace riffler {
+namespace riffler::base {
 
 namespace {
 
@@ -128,4 +128,4 @@ glm::dvec2 TomlReader::growing_pair(const toml::node& node, std::string_view key
   return out;
 }
 
-}  // namespace riffler
+}  // namespace riffler::base

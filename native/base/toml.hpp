@@ -2,14 +2,14 @@
 // includes toml++, which must be set up alike wherever it is.
 #pragma once
 
-namespace riffler {
+namespace riffler::base {
 
 /// toml++ asserts that a key begins like one, and damaged text shows that it need not.
 struct NoTomlKey {};
 
-}  // namespace riffler
+}  // namespace riffler::base
 
-#define TOML_ASSERT(condition) ((condition) ? static_cast<void>(0) : throw riffler::NoTomlKey())
+#define TOML_ASSERT(condition) ((condition) ? static_cast<void>(0) : throw riffler::base::NoTomlKey())
 // In builds with assertions some are in functions that may not throw; those guard toml++ against itself.
 #pragma GCC diagnostic push
 #ifndef __clang__
@@ -24,7 +24,7 @@ struct NoTomlKey {};
 #include <string_view>
 #include <vector>
 
-namespace riffler {
+namespace riffler::base {
 
 /// To be derived from by what reads one kind of file. All of it throws FormatError naming file, line and what was
 /// expected there; `key` stands in messages. `file` must outlive the reader.
@@ -61,4 +61,4 @@ class TomlReader {
   toml::table root_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::base

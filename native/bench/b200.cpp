@@ -19,10 +19,10 @@ int main(int argc, char** argv) {
     const bench::NamedCutter ball = bench::named_cutters().front();
     Volume volume = Volume::block({{Vec3(0.0), bench::kBlock}, std::strtod(argv[1], nullptr), argv[2]});
     const bench::Stopwatch carving;
-    carve(volume, ball.tool, bench::path(ball.centre_height, false), {});
+    sweep::carve(volume, ball.tool, bench::path(ball.centre_height, false), {});
     const double carve_s = carving.wall();
     const bench::Stopwatch meshing;
-    const Mesh mesh = to_mesh(volume);
+    const Mesh mesh = marching::to_mesh(volume);
     std::printf("{\"carve_s\": %.9g, \"mesh_s\": %.9g, \"triangles\": %zu, \"peak_bytes\": %.0f}\n", carve_s,
                 meshing.wall(), mesh.triangles.size(), bench::peak_bytes());
   } catch (const std::exception& e) {

@@ -68,7 +68,7 @@ struct Scene {
   }
 };
 
-std::vector<Ask> ours(const Collider& collider, const Assembly& assembly, double build_s) {
+std::vector<Ask> ours(const collide::Collider& collider, const collide::Assembly& assembly, double build_s) {
   const auto query = [&](const Pose& pose) { return collider.query(assembly, pose).depth; };
   const auto clearance = [&](const Pose& pose) { return collider.clearance(assembly, pose); };
   return {{"Riffler", "depth, force and torque", query, build_s}, {"Riffler", "signed distance", clearance, build_s}};
@@ -86,8 +86,8 @@ std::vector<Timed> timed(const std::vector<Ask>& asks, const std::vector<Pose>& 
       for (std::size_t a = 0; a < asks.size(); ++a) {
         const std::size_t to = std::min({poses.size(), from + kBlock, static_cast<std::size_t>(asks[a].most)});
         for (std::size_t k = from; k < to; ++k) {
-          const double start = thread_seconds(), answer = asks[a].call(poses[k]);
-          all[a][k].push_back(thread_seconds() - start);
+          const double start = base::thread_seconds(), answer = asks[a].call(poses[k]);
+          all[a][k].push_back(base::thread_seconds() - start);
           if (r == 0) out[a].answers.push_back(answer);
         }
       }
@@ -108,10 +108,10 @@ std::vector<reference::Corners> corners_of(const Mesh& mesh) {
 std::string contact_times(const ContactOptions& options, const std::vector<Rival>& rivals) {
   const Scene scene(options);
   const Mesh tool_mesh = turned(scene.tool, 36);
-  const double start = thread_seconds();
-  const Collider collider(scene.part);
-  const double build_s = thread_seconds() - start;
-  const Assembly assembly(scene.tool);
+  const double start = base::thread_seconds();
+  const collide::Collider collider(scene.part);
+  const double build_s = base::thread_seconds() - start;
+  const collide::Assembly assembly(scene.tool);
   std::vector<Ask> asks = ours(collider, assembly, build_s);
   for (const Rival& rival : rivals)
     for (Ask& ask : rival({scene.part, scene.tool, tool_mesh})) asks.push_back(std::move(ask));
@@ -119,8 +119,8 @@ std::string contact_times(const ContactOptions& options, const std::vector<Rival
 
   double colliding = 0, holder = 0;
   for (const Pose& pose : scene.poses)
-    if (const Collider::Nearest at = collider.nearest(assembly, pose); at.distance < 0)
-      colliding += 1, holder += at.touch == Touch::Holder;
+    if (const collide::Collider::Nearest at = collider.nearest(assembly, pose); at.distance < 0)
+      colliding += 1, holder += at.touch == collide::Touch::Holder;
   std::vector<std::string> rows;
   for (std::size_t a = 0; a < asks.size(); ++a)
     rows.push_back(Json()
@@ -141,17 +141,17 @@ std::string contact_times(const ContactOptions& options, const std::vector<Rival
 
 std::string contact_budgets(const ContactOptions& options, const std::vector<double>& budgets) {
   const Scene scene(options);
-  const Collider collider(scene.part);
-  const Assembly assembly(scene.tool);
+  const collide::Collider collider(scene.part);
+  const collide::Assembly assembly(scene.tool);
   std::vector<double> exact;
   for (const Pose& pose : scene.poses) exact.push_back(std::max(0.0, -collider.clearance(assembly, pose)));
   std::vector<std::string> rows;
   for (const double budget : budgets) {
     std::vector<double> seconds, missed, bounds, checked;
     for (std::size_t k = 0; k < scene.poses.size(); ++k) {
-      const double start = thread_seconds();
-      const Contact contact = collider.query(assembly, scene.poses[k], budget);
-      seconds.push_back(thread_seconds() - start);
+      const double start = base::thread_seconds();
+      const collide::Contact contact = collider.query(assembly, scene.poses[k], budget);
+      seconds.push_back(base::thread_seconds() - start);
       missed.push_back(exact[k] - contact.depth);
       bounds.push_back(contact.missed_depth_bound), checked.push_back(contact.checked);
     }
@@ -168,8 +168,8 @@ std::string contact_budgets(const ContactOptions& options, const std::vector<dou
 
 std::string contact_errors(const ContactOptions& options, std::size_t points, int brackets, double gap) {
   const Scene scene(options);
-  const Collider collider(scene.part);
-  const Assembly assembly(scene.tool);
+  const collide::Collider collider(scene.part);
+  const collide::Assembly assembly(scene.tool);
   const reference::AssemblyDistance tool(scene.tool);
   const std::vector<reference::Corners> corners = corners_of(scene.part);
   const reference::SpreadPoints spread = reference::spread_points(corners, points);
@@ -201,13 +201,13 @@ std::string contact_slide(int steps) {
   part.vertices = {{-20, -20, 0}, {0, -20, 0}, {0, 20, 0}, {-20, 20, 0}, {0, -20, -20}, {0, 20, -20}};
   part.triangles = {{0, 1, 2}, {0, 2, 3}, {1, 4, 5}, {1, 5, 2}};
   const Tool ball = cutters::ball(2 * kRadius, 30);
-  const Collider collider(part);
-  const Assembly assembly(ball);
+  const collide::Collider collider(part);
+  const collide::Assembly assembly(ball);
   const reference::AssemblyDistance tool(ball);
   std::vector<double> x, fx, fz, depth, rx, rz;
   for (int k = 0; k <= steps; ++k) {
     const Pose pose{{-3 + 6.0 * k / steps, 0.1, -kDeep}, {0, 0, 1}};
-    const Contact contact = collider.query(assembly, pose);
+    const collide::Contact contact = collider.query(assembly, pose);
     x.push_back(pose.tip.x), depth.push_back(contact.depth);
     fx.push_back(contact.force.x), fz.push_back(contact.force.z);
     // Midpoint rule over plane and wall within reach of the ball.

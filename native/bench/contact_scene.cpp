@@ -20,9 +20,9 @@ double height(double x, double y) {
 }
 
 /// Points of the outline from the axis round to the axis.
-std::vector<Vec2> corners_of(const Outline& outline, int segments) {
+std::vector<Vec2> corners_of(const tool::Outline& outline, int segments) {
   std::vector<Vec2> out;
-  for (const OutlineEdge& e : outline.edges()) {
+  for (const tool::OutlineEdge& e : outline.edges()) {
     if (out.empty()) out.push_back(e.from);
     int steps = 1;
     double from = 0, sweep = 0;
@@ -90,7 +90,7 @@ std::vector<Pose> contact_poses(const Mesh& sheet, int squares, int count, std::
 }
 
 Mesh turned(const Tool& tool, int segments) {
-  const std::vector<Vec2> corners = corners_of(Outline(tool), segments);
+  const std::vector<Vec2> corners = corners_of(tool::Outline(tool), segments);
   Mesh out;
   const auto on_axis = [](const Vec2& c) { return !(c.x > 0); };
   std::vector<int> first;  // vertex of each corner

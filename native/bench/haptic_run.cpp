@@ -23,13 +23,13 @@ const Vec3 kLeaning = glm::normalize(Vec3(0.1, 0.05, 1));
 struct HapticScene {
   Tool tool;
   std::unique_ptr<Volume> stock;
-  std::unique_ptr<MoveCarver> carver;
-  std::unique_ptr<Collider> collider;
+  std::unique_ptr<sweep::MoveCarver> carver;
+  std::unique_ptr<collide::Collider> collider;
   std::function<Pose(double)> grip;  // of s
 
   void add_stock(const Box3& box, double pitch, double constant) {
     stock = std::make_unique<Volume>(Volume::block({box, pitch, "z"}));
-    carver = std::make_unique<MoveCarver>(*stock, tool, MoveCarver::Options{0.01, constant});
+    carver = std::make_unique<sweep::MoveCarver>(*stock, tool, sweep::MoveCarver::Options{0.01, constant});
   }
 };
 
@@ -73,7 +73,7 @@ HapticScene trace(double pitch, bool fixture) {
   const Mesh part = valleys(kSquares);
   std::vector<Volume> fixtures;
   if (fixture) fixtures.push_back(Volume::block({{{20, 30, 55}, {80, 40, 75}}, pitch, "z"}));
-  s.collider = std::make_unique<Collider>(part, std::move(fixtures));
+  s.collider = std::make_unique<collide::Collider>(part, std::move(fixtures));
   s.grip = [part](double t) {
     const double x = 20 + 50 * t, y = 55 + 3 * std::sin(5 * t);
     return Pose{{x, y, valley_height(part, kSquares, x, y) - 1}, kLeaning};
@@ -94,12 +94,12 @@ HapticScene scene_of(const HapticOptions& o) {
 
 HapticRun haptic_run(const HapticOptions& o) {
   if (o.period < 1) throw std::invalid_argument("period must be at least 1");
-  require_positive(o.speed, "speed");
+  base::require_positive(o.speed, "speed");
   HapticScene scene = scene_of(o);
-  SculptSettings settings;
+  haptics::SculptSettings settings;
   settings.parts = o.parts, settings.queries = o.queries, settings.memory = o.memory, settings.budget = o.budget;
   settings.most.linear *= o.period, settings.most.angular = std::min(1.0, settings.most.angular * o.period);
-  SculptStep step(settings, scene.tool, scene.carver.get(), scene.collider.get());
+  haptics::SculptStep step(settings, scene.tool, scene.carver.get(), scene.collider.get());
   step.place(scene.grip(0));
   InterpolatedWrench line(o.period * kTick);
   HapticRun out;
@@ -109,10 +109,10 @@ HapticRun haptic_run(const HapticOptions& o) {
     if (k % o.period == 0) {
       const double dt = o.period * kTick;
       const Pose before = scene.grip(k * kTick - dt);
-      const PoseError way = pose_error(grip, before);
-      const double start = thread_seconds();
-      const SculptStep::Result r = step.step(grip, {1 / dt * way.translation, 1 / dt * way.rotation}, dt);
-      out.seconds.push_back(thread_seconds() - start);
+      const haptics::PoseError way = haptics::pose_error(grip, before);
+      const double start = base::thread_seconds();
+      const haptics::SculptStep::Result r = step.step(grip, {1 / dt * way.translation, 1 / dt * way.rotation}, dt);
+      out.seconds.push_back(base::thread_seconds() - start);
       line.computed(r.on_grip);
       out.removed += r.removed, out.held += r.held, out.touching += step.contact().depth > 0;
       if (o.period == 1) out.force.push_back(r.on_grip.force);

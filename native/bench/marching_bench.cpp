@@ -11,7 +11,7 @@
 #include "riffler/sweep/carve.hpp"
 #include "riffler/tool/cutters.hpp"
 
-namespace riffler {
+namespace riffler::bench {
 namespace {
 
 using bench::centre;
@@ -116,4 +116,4 @@ BENCHMARK(whole)->ArgsProduct({{500, 250, 100}, {3, 1}})->Unit(benchmark::kMilli
 BENCHMARK(follow)->ArgsProduct({{500, 250, 100}, {3, 1}})->Unit(benchmark::kMicrosecond)->UseRealTime();
 
 }  // namespace
-}  // namespace riffler
+}  // namespace riffler::bench

@@ -109,7 +109,7 @@ double MeshDistance::operator()(const Vec3& p) const {
 
 std::vector<double> MeshDistance::operator()(std::span<const Vec3> points) const {
   std::vector<double> out(points.size());
-  parallel_for(points.size(), 256, [&](std::size_t begin, std::size_t end) {
+  base::parallel_for(points.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) out[n] = (*this)(points[n]);
   });
   return out;

@@ -19,17 +19,17 @@ constexpr double kSteepest = 0.44721359549995793;
 constexpr int kPoints = 12;  // a ray
 
 struct Ray {
-  const Grid* grid;
+  const dexel::Grid* grid;
   int i, j;
 };
 
 bool cut(const Ray& r) {
-  const std::span<const Span> spans = r.grid->ray(r.i, r.j);
+  const std::span<const dexel::Span> spans = r.grid->ray(r.i, r.j);
   const Box3& box = r.grid->box();
   return spans.size() != 1 || spans[0].near != box.lower.z || spans[0].far != box.upper.z;
 }
 
-std::vector<Ray> chosen(const Grid& grid, int count, std::mt19937_64& random) {
+std::vector<Ray> chosen(const dexel::Grid& grid, int count, std::mt19937_64& random) {
   std::vector<Ray> all, out;
   for (int i = 0; i < grid.nu(); ++i)
     for (int j = 0; j < grid.nv(); ++j)
@@ -53,13 +53,13 @@ class Comparison {
 
   SweepErrors run() {
     const Box3& box = ray_.grid->box();
-    const std::span<const Span> spans = ray_.grid->ray(ray_.i, ray_.j);
-    for (const Span& s : spans) {
+    const std::span<const dexel::Span> spans = ray_.grid->ray(ray_.i, ray_.j);
+    for (const dexel::Span& s : spans) {
       if (s.near > box.lower.z) out_.ends.push_back(end(s.near));
       if (s.far < box.upper.z) out_.ends.push_back(end(s.far));
     }
     double before = box.lower.z;
-    for (const Span& s : spans) {  // the middle of every span and gap, however thin
+    for (const dexel::Span& s : spans) {  // the middle of every span and gap, however thin
       if (s.near > before) point((before + s.near) / 2);
       point((s.near + s.far) / 2);
       before = s.far;
@@ -74,7 +74,7 @@ class Comparison {
 
   void point(double s) {
     bool solid = false;
-    for (const Span& span : ray_.grid->ray(ray_.i, ray_.j)) solid = solid || (s >= span.near && s <= span.far);
+    for (const dexel::Span& span : ray_.grid->ray(ray_.i, ray_.j)) solid = solid || (s >= span.near && s <= span.far);
     const Vec3 p = on_ray(s);
     const SweptPath::Near near = path_.near(p, reach_);
     ++out_.points;
@@ -135,13 +135,13 @@ SweepErrors sweep_errors(const Volume& volume, const Tool& tool, std::span<const
                          int rays, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::vector<Ray> sample;
-  for (const Grid& grid : volume.grids()) {
+  for (const dexel::Grid& grid : volume.grids()) {
     const std::vector<Ray> some = chosen(grid, rays, random);
     sample.insert(sample.end(), some.begin(), some.end());
   }
   const SweptPath path(tool.profile(), poses);
   std::vector<SweepErrors> parts(sample.size());
-  parallel_for(sample.size(), 1, [&](std::size_t begin, std::size_t end) {
+  base::parallel_for(sample.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) parts[k] = Comparison(sample[k], path, tolerance).run();
   });
   SweepErrors out;

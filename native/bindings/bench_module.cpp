@@ -11,7 +11,7 @@
 #include "stress/mesh_run.hpp"
 #include "stress/sculpting_run.hpp"
 
-namespace riffler {
+namespace riffler::bindings {
 
 namespace {
 
@@ -205,10 +205,11 @@ the hand ``gained`` at most and that were ``given`` in all, N ``greatest``, and 
 
 }  // namespace
 
-}  // namespace riffler
+}  // namespace riffler::bindings
 
 PYBIND11_MODULE(_bench, m) {
-  riffler::translate_errors(riffler::py::module_::import("riffler._core"));  // whose classes are now known, too
-  riffler::bind(m);
-  riffler::refuse_objects_without_init(m);
+  riffler::bindings::translate_errors(
+      riffler::bindings::py::module_::import("riffler._core"));  // whose classes are now known, too
+  riffler::bindings::bind(m);
+  riffler::bindings::refuse_objects_without_init(m);
 }

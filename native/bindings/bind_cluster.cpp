@@ -6,7 +6,7 @@
 #include "verify/remote.hpp"
 #include "verify/verify_plan.hpp"
 
-namespace riffler {
+namespace riffler::bindings {
 
 namespace {
 
@@ -22,7 +22,7 @@ std::span<const std::uint8_t> to_span(const py::bytes& bytes) {
 
 class SharedPlan : Guarded {
  public:
-  SharedPlan(VerifyArguments arguments, const Progress& progress) : plan_(std::move(arguments), progress) {}
+  SharedPlan(verify::VerifyArguments arguments, const Progress& progress) : plan_(std::move(arguments), progress) {}
 
   /// f(plan) without the GIL.
   template <class F>
@@ -33,14 +33,15 @@ class SharedPlan : Guarded {
   }
 
  private:
-  VerifyPlan plan_;
+  verify::VerifyPlan plan_;
 };
 
-py::list add(SharedPlan& self, const Program& chunk, const py::object& progress) {
+py::list add(SharedPlan& self, const nc::Program& chunk, const py::object& progress) {
   const Progress listener = to_progress(progress);
-  std::vector<VerifyPlan::Share> shares = self.run([&](VerifyPlan& plan) { return plan.add(chunk, listener); });
+  std::vector<verify::VerifyPlan::Share> shares =
+      self.run([&](verify::VerifyPlan& plan) { return plan.add(chunk, listener); });
   py::list out;
-  for (VerifyPlan::Share& share : shares) {
+  for (verify::VerifyPlan::Share& share : shares) {
     out.append(py::make_tuple(share.slab, share.moves, to_python(share.packet)));
     share.packet = {};
   }
@@ -48,16 +49,16 @@ py::list add(SharedPlan& self, const Program& chunk, const py::object& progress)
 }
 
 void bind_worker(py::module_& m) {
-  py::class_<SlabWorker>(m, "SlabWorker", "Simulates slabs of a VerifyPlan: made from its ``context``.")
+  py::class_<verify::SlabWorker>(m, "SlabWorker", "Simulates slabs of a VerifyPlan: made from its ``context``.")
       .def(py::init([](const py::bytes& context) {
              const std::span<const std::uint8_t> bytes = to_span(context);
              const NoGil release;
-             return std::make_unique<SlabWorker>(bytes);
+             return std::make_unique<verify::SlabWorker>(bytes);
            }),
            py::arg("context"))
       .def(
           "run",
-          [](const SlabWorker& self, const py::bytes& task, const std::vector<py::bytes>& moves) {
+          [](const verify::SlabWorker& self, const py::bytes& task, const std::vector<py::bytes>& moves) {
             const std::span<const std::uint8_t> slab = to_span(task);
             std::vector<std::span<const std::uint8_t>> packets;
             for (const py::bytes& packet : moves) packets.push_back(to_span(packet));
@@ -84,19 +85,19 @@ void bind_cluster(py::module_& m) {
            "List of (slab, number of moves, bytes) of the chunk: what can touch each slab.")
       .def(
           "context",
-          [](SharedPlan& self) { return to_python(self.run([](VerifyPlan& plan) { return plan.context(); })); },
+          [](SharedPlan& self) { return to_python(self.run([](verify::VerifyPlan& plan) { return plan.context(); })); },
           "What SlabWorker is made of, after the last chunk.")
       .def(
           "task",
           [](SharedPlan& self, std::size_t slab) {
-            return to_python(self.run([&](VerifyPlan& plan) { return plan.task(slab); }));
+            return to_python(self.run([&](verify::VerifyPlan& plan) { return plan.task(slab); }));
           },
           py::arg("slab"), "The slab as it stands.")
       .def(
           "accept",
           [](SharedPlan& self, std::size_t slab, const py::bytes& result, bool last) {
             const std::span<const std::uint8_t> bytes = to_span(result);
-            self.run([&](VerifyPlan& plan) { plan.accept(slab, bytes, last); });
+            self.run([&](verify::VerifyPlan& plan) { plan.accept(slab, bytes, last); });
           },
           py::arg("slab"), py::arg("result"), py::arg("last"),
           "A result of SlabWorker.run; ``last``: the slab has no more moves. FormatError for damaged bytes.")
@@ -104,9 +105,9 @@ void bind_cluster(py::module_& m) {
           "finish",
           [](SharedPlan& self, const py::object& progress) {
             const Progress listener = to_progress(progress);
-            return share(self.run([&](VerifyPlan& plan) { return plan.finish(listener); }));
+            return share(self.run([&](verify::VerifyPlan& plan) { return plan.finish(listener); }));
           },
           py::arg("progress") = py::none(), "The VerifyReport, once all slabs are there.");
 }
 
-}  // namespace riffler
+}  // namespace riffler::bindings

@@ -10,12 +10,12 @@
 #include "riffler/collide/collider.hpp"
 #include "riffler/haptics/material.hpp"
 
-namespace riffler {
+namespace riffler::bindings {
 
 namespace {
 
-bool same(const std::vector<Frustum>& a, const std::vector<Frustum>& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Frustum& f, const Frustum& g) {
+bool same(const std::vector<tool::Frustum>& a, const std::vector<tool::Frustum>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const tool::Frustum& f, const tool::Frustum& g) {
     return f.z0 == g.z0 && f.r0 == g.r0 && f.z1 == g.z1 && f.r1 == g.r1;
   });
 }
@@ -23,27 +23,28 @@ bool same(const std::vector<Frustum>& a, const std::vector<Frustum>& b) {
 /// Of the same shape, whatever they are called.
 bool same(const Tool& a, const Tool& b) {
   const auto &s = a.profile().segments(), &t = b.profile().segments();
-  return std::equal(
-             s.begin(), s.end(), t.begin(), t.end(),
-             [](const ProfileSegment& p, const ProfileSegment& q) { return p.to == q.to && p.centre == q.centre; }) &&
+  return std::equal(s.begin(), s.end(), t.begin(), t.end(),
+                    [](const tool::ProfileSegment& p, const tool::ProfileSegment& q) {
+                      return p.to == q.to && p.centre == q.centre;
+                    }) &&
          same(a.shank(), b.shank()) && same(a.holder(), b.holder());
 }
 
 /// The tool ready for contact: those asked for last are kept, for all colliders.
-std::shared_ptr<const Assembly> prepared(const Tool& tool) {
+std::shared_ptr<const collide::Assembly> prepared(const Tool& tool) {
   constexpr std::size_t kMax = 8;
   static std::mutex mutex;
-  static std::vector<std::shared_ptr<const Assembly>> kept;
+  static std::vector<std::shared_ptr<const collide::Assembly>> kept;
   const std::lock_guard lock(mutex);
   for (const auto& a : kept)
     if (same(a->tool(), tool)) return a;
   if (kept.size() == kMax) kept.erase(kept.begin());
-  return kept.emplace_back(std::make_shared<const Assembly>(tool));
+  return kept.emplace_back(std::make_shared<const collide::Assembly>(tool));
 }
 
 /// A number or a Material.
 double to_stiffness(const py::handle& object) {
-  if (py::isinstance<Material>(object)) return py::cast<const Material&>(object).stiffness;
+  if (py::isinstance<haptics::Material>(object)) return py::cast<const haptics::Material&>(object).stiffness;
   try {
     return py::cast<double>(object);
   } catch (const py::cast_error&) {
@@ -51,11 +52,11 @@ double to_stiffness(const py::handle& object) {
   }
 }
 
-using ColliderPtr = std::shared_ptr<Collider>;
+using ColliderPtr = std::shared_ptr<collide::Collider>;
 
-Collider::Settings settings_of(const std::optional<double>& spacing, double stiffness, double holder_stiffness,
-                               const py::object& fixture_stiffness) {
-  Collider::Settings settings;
+collide::Collider::Settings settings_of(const std::optional<double>& spacing, double stiffness, double holder_stiffness,
+                                        const py::object& fixture_stiffness) {
+  collide::Collider::Settings settings;
   if (spacing && !(*spacing > 0)) throw py::value_error("spacing must be positive");
   if (spacing) settings.spacing = *spacing;
   settings.stiffness = stiffness, settings.holder_stiffness = holder_stiffness;
@@ -77,9 +78,9 @@ auto made(const std::shared_ptr<Mesh>& part, const std::vector<SharedVolume*>& f
   const auto work =
       [part, volumes = std::move(volumes),
        settings = settings_of(spacing, stiffness, holder_stiffness, fixture_stiffness)](const Progress& listener) {
-        report(listener, 0);
-        auto collider = std::make_shared<Collider>(*part, volumes, settings);
-        report(listener, 1);
+        base::report(listener, 0);
+        auto collider = std::make_shared<collide::Collider>(*part, volumes, settings);
+        base::report(listener, 1);
         return collider;
       };
   return long_call(progress, work, Identity());
@@ -104,71 +105,73 @@ Pose one_pose(const Doubles& array) {
   if (array.ndim() != 1 || array.shape(0) != 6) throw py::value_error("pose must be 6 numbers: tip xyz, unit axis xyz");
   const double* p = array.data();
   const Pose pose{{p[0], p[1], p[2]}, {p[3], p[4], p[5]}};
-  if (!finite(pose.tip) || !finite(pose.axis)) throw py::value_error("pose: not finite");
+  if (!geom::finite(pose.tip) || !geom::finite(pose.axis)) throw py::value_error("pose: not finite");
   if (!(std::abs(glm::length(pose.axis) - 1) <= 1e-6)) throw py::value_error("pose: the axis is not a unit vector");
   return pose;
 }
 
-Contact query(const Collider& self, const Tool& tool, const Doubles& array, const std::optional<double>& budget_us) {
+collide::Contact query(const collide::Collider& self, const Tool& tool, const Doubles& array,
+                       const std::optional<double>& budget_us) {
   const Pose pose = one_pose(array);
   if (budget_us && !(*budget_us >= 0)) throw py::value_error("budget_us must not be negative");
-  const std::shared_ptr<const Assembly> assembly = prepared(tool);
+  const std::shared_ptr<const collide::Assembly> assembly = prepared(tool);
   const NoGil release;
   return self.query(*assembly, pose, budget_us ? std::optional(1e-6 * *budget_us) : std::nullopt);
 }
 
-std::vector<double> clearances(const Collider& self, const Tool& tool, const Doubles& array) {
+std::vector<double> clearances(const collide::Collider& self, const Tool& tool, const Doubles& array) {
   const std::vector<Pose> poses = checked_poses(array);
-  const std::shared_ptr<const Assembly> assembly = prepared(tool);
+  const std::shared_ptr<const collide::Assembly> assembly = prepared(tool);
   std::vector<double> out(poses.size());
   const NoGil release;
-  parallel_for(poses.size(), 64, [&](std::size_t begin, std::size_t end) {
+  base::parallel_for(poses.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) out[i] = self.clearance(*assembly, poses[i]);
   });
   return out;
 }
 
-py::tuple nearest(const Collider& self, const Tool& tool, const Doubles& array) {
+py::tuple nearest(const collide::Collider& self, const Tool& tool, const Doubles& array) {
   const Pose pose = one_pose(array);
-  const std::shared_ptr<const Assembly> assembly = prepared(tool);
-  const Collider::Nearest at = [&] {
+  const std::shared_ptr<const collide::Assembly> assembly = prepared(tool);
+  const collide::Collider::Nearest at = [&] {
     const NoGil release;
     return self.nearest(*assembly, pose);
   }();
   return py::make_tuple(at.distance, from_vec3(at.point), name_of(at.touch));
 }
 
-std::string describe(const Collider& self) {
-  const Collider& c = self;
+std::string describe(const collide::Collider& self) {
+  const collide::Collider& c = self;
   return "<riffler.Collider: " + std::to_string(c.triangles()) + " triangles, " + std::to_string(c.points()) +
          " points " + py::cast<std::string>(py::str(py::float_(c.spacing()))) + " mm apart, " +
          std::to_string(c.fixtures()) + " fixtures>";
 }
 
 void bind_contact(py::module_& m) {
-  py::class_<Contact>(m, "Contact", "What a tool meets at a pose: forces act on the tool, in the part's frame.")
+  py::class_<collide::Contact>(m, "Contact",
+                               "What a tool meets at a pose: forces act on the tool, in the part's frame.")
       .def_property_readonly(
-          "force", [](const Contact& c) { return from_vec3(c.force); }, "N, (3,): out of what is touched.")
+          "force", [](const collide::Contact& c) { return from_vec3(c.force); }, "N, (3,): out of what is touched.")
       .def_property_readonly(
-          "torque", [](const Contact& c) { return from_vec3(c.torque); }, "N·mm, (3,), about the tip.")
-      .def_readonly("depth", &Contact::depth, "mm; 0 where nothing is touched.")
-      .def_readonly("checked", &Contact::checked,
+          "torque", [](const collide::Contact& c) { return from_vec3(c.torque); }, "N·mm, (3,), about the tip.")
+      .def_readonly("depth", &collide::Contact::depth, "mm; 0 where nothing is touched.")
+      .def_readonly("checked", &collide::Contact::checked,
                     "Share of the candidate triangles that was looked at; 1 without a budget.")
-      .def_readonly("missed_depth_bound", &Contact::missed_depth_bound,
+      .def_readonly("missed_depth_bound", &collide::Contact::missed_depth_bound,
                     "mm: the true depth is at most depth + missed_depth_bound.")
       .def_property_readonly(
-          "points", [](const Contact& c) { return from_vec3s(c.points); },
+          "points", [](const collide::Contact& c) { return from_vec3s(c.points); },
           "(k, 3) mm: the deepest point, then the sample points and pieces of fixtures that are in the tool.")
       .def_property_readonly(
           "parts",
-          [](const Contact& c) {
+          [](const collide::Contact& c) {
             py::list names;
-            for (const Touch t : c.touches) names.append(name_of(t));
+            for (const collide::Touch t : c.touches) names.append(name_of(t));
             return names;
           },
           "What touches at each point: \"cutter\", \"shank\", \"holder\", or \"fixture\" where it is one that is "
           "touched.")
-      .def("__repr__", [](const Contact& c) {
+      .def("__repr__", [](const collide::Contact& c) {
         return "<riffler.Contact: depth " + py::cast<std::string>(py::str(py::float_(c.depth))) + " mm, force " +
                py::cast<std::string>(py::str(py::float_(glm::length(c.force)))) + " N, " +
                std::to_string(c.points.size()) + " points>";
@@ -177,15 +180,16 @@ void bind_contact(py::module_& m) {
 
 }  // namespace
 
-const char* name_of(Touch touch) {
+const char* name_of(collide::Touch touch) {
   constexpr const char* kNames[] = {"cutter", "shank", "holder", "fixture"};
   return kNames[static_cast<int>(touch)];
 }
 
 void bind_collide(py::module_& m) {
   bind_contact(m);
-  py::class_<Collider, std::shared_ptr<Collider>>(m, "Collider",
-                                                  R"(A part and its fixtures, against which tools are held; immutable.
+  py::class_<collide::Collider, std::shared_ptr<collide::Collider>>(
+      m, "Collider",
+      R"(A part and its fixtures, against which tools are held; immutable.
 
 ``part`` is a Mesh, ``fixtures`` are Volumes, each of its own pitch; empty ones are ignored. ``spacing`` (mm) is
 that of the points on the part that forces are summed over, by default √(area / 100 000). The stiffnesses
@@ -205,7 +209,7 @@ and at the end only.)")
 only bounded: see ``checked`` and ``missed_depth_bound``.)")
       .def(
           "clearance",
-          [](const Collider& self, const Tool& tool, const Doubles& poses) {
+          [](const collide::Collider& self, const Tool& tool, const Doubles& poses) {
             return take<double>(clearances(self, tool, poses));
           },
           py::arg("tool"), py::arg("poses"),
@@ -216,8 +220,8 @@ and holder, negative where they overlap. Fixtures do not count. On all threads.)
           R"((distance, point, part) for one pose, over part and fixtures: mm, (3,) mm on part or fixture, and what of the
 tool it is next to, or "fixture".)")
       .def_property_readonly(
-          "spacing", [](const Collider& self) { return self.spacing(); }, "Of the points on the part, mm.")
+          "spacing", [](const collide::Collider& self) { return self.spacing(); }, "Of the points on the part, mm.")
       .def("__repr__", &describe);
 }
 
-}  // namespace riffler
+}  // namespace riffler::bindings

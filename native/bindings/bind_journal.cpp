@@ -9,22 +9,22 @@
 #include "riffler/session/journal_file.hpp"
 #include "riffler/session/replay.hpp"
 
-namespace riffler {
+namespace riffler::bindings {
 
 namespace {
 
-using SharedJournal = std::shared_ptr<Journal>;
+using SharedJournal = std::shared_ptr<session::Journal>;
 
 /// Syncing waits for the disk without the GIL.
-struct SharedWriter : JournalWriter, Guarded {
-  using JournalWriter::JournalWriter;
+struct SharedWriter : session::JournalWriter, Guarded {
+  using session::JournalWriter::JournalWriter;
 };
 
 /// Held while a journal is written to: nothing for one in memory, which never releases the GIL.
 OneCaller only_caller(SharedWriter& writer) {
   return {writer, "the journal"};
 }
-std::monostate only_caller(const Journal&) {
+std::monostate only_caller(const session::Journal&) {
   return {};
 }
 
@@ -33,7 +33,7 @@ struct StrokeView {
   SharedJournal journal;
   std::size_t index;
 
-  const JournalStroke& get() const {
+  const session::JournalStroke& get() const {
     if (index >= journal->strokes().size()) throw py::index_error("the stroke was taken back");
     return journal->strokes()[index];
   }
@@ -61,14 +61,14 @@ std::vector<Wrench> to_forces(const py::object& forces, std::size_t rows) {
   std::vector<Wrench> out(rows);
   const double* p = array.data();
   for (Wrench& wrench : out)
-    for (int k = 0; k < kCoordinates; ++k) wrench[k] = *p++;
+    for (int k = 0; k < haptics::kCoordinates; ++k) wrench[k] = *p++;
   return out;
 }
 
 /// A stroke without its name and tool.
-JournalStroke to_rows(const Doubles& poses, const py::object& times, const py::object& forces,
-                      const py::object& removed) {
-  JournalStroke out;
+session::JournalStroke to_rows(const Doubles& poses, const py::object& times, const py::object& forces,
+                               const py::object& removed) {
+  session::JournalStroke out;
   out.poses = to_poses(poses, "poses");
   const std::size_t rows = out.poses.size();
   out.times = to_column(times, "times", rows);
@@ -77,16 +77,16 @@ JournalStroke to_rows(const Doubles& poses, const py::object& times, const py::o
   return out;
 }
 
-JournalStock to_stock(const py::object& lower, const py::object& upper, double pitch, const std::string& directions,
-                      const std::string& snapshot, const std::string& mask) {
+session::JournalStock to_stock(const py::object& lower, const py::object& upper, double pitch,
+                               const std::string& directions, const std::string& snapshot, const std::string& mask) {
   return {{to_vec3(lower, "lower"), to_vec3(upper, "upper")}, pitch, directions, snapshot, mask};
 }
 
-constexpr const char* kModes[kStrokeModes] = {"remove", "add", "mask", "unmask", "soften", "beside", "build"};
+constexpr const char* kModes[session::kStrokeModes] = {"remove", "add", "mask", "unmask", "soften", "beside", "build"};
 
-StrokeMode to_stroke_mode(const std::string& name) {
-  for (std::uint32_t k = 0; k < kStrokeModes; ++k)
-    if (name == kModes[k]) return static_cast<StrokeMode>(k);
+session::StrokeMode to_stroke_mode(const std::string& name) {
+  for (std::uint32_t k = 0; k < session::kStrokeModes; ++k)
+    if (name == kModes[k]) return static_cast<session::StrokeMode>(k);
   throw py::value_error(R"(mode must be "remove", "add", "mask", "unmask", "soften", "beside" or "build")");
 }
 
@@ -94,15 +94,15 @@ py::object json() {
   return py::module_::import("json");
 }
 
-py::dict tools(const Journal& journal) {
+py::dict tools(const session::Journal& journal) {
   py::dict out;
   for (const auto& [number, text] : journal.tools()) out[py::int_(number)] = json().attr("loads")(text);
   return out;
 }
 
-py::object stock(const Journal& journal) {
+py::object stock(const session::Journal& journal) {
   if (!journal.stock()) return py::none();
-  const JournalStock& s = *journal.stock();
+  const session::JournalStock& s = *journal.stock();
   py::dict out;
   out["lower"] = from_vec3(s.box.lower);
   out["upper"] = from_vec3(s.box.upper);
@@ -113,7 +113,7 @@ py::object stock(const Journal& journal) {
   return out;
 }
 
-py::dict notes(const Journal& journal) {
+py::dict notes(const session::Journal& journal) {
   py::dict out;
   for (const auto& [key, value] : journal.notes()) out[py::str(key)] = value;
   return out;
@@ -130,7 +130,7 @@ py::array_t<double> poses(const StrokeView& stroke) {
   return take<double>(std::vector<Pose>(stroke.get().poses), 6);
 }
 
-std::map<int, Tool> tools_of(const Journal& journal) {
+std::map<int, Tool> tools_of(const session::Journal& journal) {
   std::map<int, Tool> out;
   const py::object from_dict = py::type::of<Tool>().attr("from_dict");
   for (const auto& [number, text] : journal.tools())
@@ -138,18 +138,18 @@ std::map<int, Tool> tools_of(const Journal& journal) {
   return out;
 }
 
-Program program(const Journal& journal, const std::optional<double>& feed, double spindle,
-                const std::optional<double>& safe_height, double clearance) {
+nc::Program program(const session::Journal& journal, const std::optional<double>& feed, double spindle,
+                    const std::optional<double>& safe_height, double clearance) {
   return to_program(journal, tools_of(journal), {feed, spindle, {safe_height, clearance, {}}});
 }
 
-auto replayed(const Journal& journal, const std::optional<std::filesystem::path>& folder, const py::object& progress,
-              bool with_mask) {
+auto replayed(const session::Journal& journal, const std::optional<std::filesystem::path>& folder,
+              const py::object& progress, bool with_mask) {
   // another thread may go on recording
   const auto work = [copy = journal, tools = tools_of(journal), folder](const Progress& listener) {
     return replay_all(copy, tools, folder.value_or(""), listener);
   };
-  return long_call(progress, work, [with_mask](Replayed&& found) -> py::object {
+  return long_call(progress, work, [with_mask](session::Replayed&& found) -> py::object {
     py::object volume = py::cast(std::make_shared<SharedVolume>(std::move(found.volume)));
     if (!with_mask) return volume;
     py::object mask = py::none();
@@ -199,7 +199,7 @@ void add_records(Class& c) {
           [](T& self, int tool, const Doubles& poses, const py::object& times, double tolerance,
              const std::string& name, const py::object& forces, const py::object& removed, const std::string& mode,
              double strength) {
-            JournalStroke stroke = to_rows(poses, times, forces, removed);
+            session::JournalStroke stroke = to_rows(poses, times, forces, removed);
             stroke.tool = tool, stroke.tolerance = tolerance, stroke.name = name, stroke.mode = to_stroke_mode(mode);
             stroke.strength = strength;
             [[maybe_unused]] const auto only = only_caller(self);
@@ -218,7 +218,7 @@ was put on, or cut beside a mask, by ``carve``, each carve has to be a stroke.)"
           "extend_stroke",
           [](T& self, const Doubles& poses, const py::object& times, const py::object& forces,
              const py::object& removed) {
-            const JournalStroke more = to_rows(poses, times, forces, removed);
+            const session::JournalStroke more = to_rows(poses, times, forces, removed);
             [[maybe_unused]] const auto only = only_caller(self);
             self.extend_stroke(more.rows());
           },
@@ -285,7 +285,8 @@ void bind_journal(py::module_& m) {
           "strength", [](const StrokeView& s) { return s.get().strength; }, "0 to 1, of one that softens.")
       .def("__len__", [](const StrokeView& s) { return s.get().poses.size(); });
 
-  py::class_<Journal, SharedJournal> journal(m, "Journal", R"(What a session did: stock, tools, strokes as poses, notes.
+  py::class_<session::Journal, SharedJournal> journal(m, "Journal",
+                                                      R"(What a session did: stock, tools, strokes as poses, notes.
 
 Replaying the strokes on the stock gives the session again. Files end in .rjournal.)");
   journal.def(py::init<>())
@@ -294,15 +295,15 @@ Replaying the strokes on the stock gives the session again. Files end in .rjourn
           [](const std::filesystem::path& path, const py::object& progress) {
             const Progress listener = to_progress(progress);
             const NoGil release;
-            return read_journal(path, listener);
+            return session::read_journal(path, listener);
           },
           py::arg("path"), py::kw_only(), py::arg("progress") = py::none(),
           R"(Reads a file. One that a crash has cut gives all whole records, and ``cut_at`` says where it was cut; a
 damaged record that others follow is a FormatError naming the byte.)")
       .def(
           "write",
-          [](const Journal& self, const std::filesystem::path& path) {
-            const Journal copy = self;  // another thread may go on recording
+          [](const session::Journal& self, const std::filesystem::path& path) {
+            const session::Journal copy = self;  // another thread may go on recording
             const NoGil release;
             write_journal(copy, path);
           },
@@ -311,7 +312,7 @@ damaged record that others follow is a FormatError naming the byte.)")
       .def_property_readonly("tools", &tools, "dict: number to the tool's dict.")
       .def_property_readonly("strokes", &strokes, "list of JournalStroke: those that count.")
       .def_property_readonly("notes", &notes, "dict of strings; of a key given twice the later value.")
-      .def_readonly("cut_at", &Journal::cut_at, "Byte at which the file had been cut, or None.")
+      .def_readonly("cut_at", &session::Journal::cut_at, "Byte at which the file had been cut, or None.")
       .def("program", &program, py::arg("feed") = py::none(), py::arg("spindle") = 0.0, py::kw_only(),
            py::arg("safe_height") = py::none(), py::arg("clearance") = 10.0,
            R"(The strokes as a Program, each one cut as in Program.from_cl. ``feed`` in mm/min; None: from the times,
@@ -323,7 +324,7 @@ them.)")
           R"(The Volume that the strokes leave of the stock, to the bit as the session left it: a block, or the snapshot
 in ``folder``. A row that stands where the row before stood is no move; a stroke that never moves cuts where it stands
 if it has two rows or more. ``with_mask``: a tuple of it and the Volume of what is protected, or None.)")
-      .def("__repr__", [](const Journal& self) {
+      .def("__repr__", [](const session::Journal& self) {
         const std::size_t n = self.strokes().size();
         return "<riffler.Journal: " + std::to_string(n) + (n == 1 ? " stroke>" : " strokes>");
       });
@@ -336,8 +337,8 @@ system before the call returns. ``keep=False`` holds no strokes in memory, so th
 long sessions. Context manager.)");
   writer
       .def(py::init([](const std::filesystem::path& path, bool keep) {
-             return std::make_unique<SharedWriter>(path,
-                                                   keep ? JournalWriter::Keep::Everything : JournalWriter::Keep::Rules);
+             return std::make_unique<SharedWriter>(
+                 path, keep ? session::JournalWriter::Keep::Everything : session::JournalWriter::Keep::Rules);
            }),
            py::arg("path"), py::kw_only(), py::arg("keep") = true)
       .def(
@@ -350,11 +351,11 @@ long sessions. Context manager.)");
           "Waits until the disk has it.")
       .def("close", &close, "Ends writing; calls after it raise RuntimeError.")
       .def_property_readonly(
-          "journal", [](const SharedWriter& self) { return std::make_shared<Journal>(self.journal()); },
+          "journal", [](const SharedWriter& self) { return std::make_shared<session::Journal>(self.journal()); },
           "A copy of everything in the file.")
       .def("__enter__", [](py::object self) { return self; })
       .def("__exit__", [](SharedWriter& self, const py::args&) { close(self); });
   add_records(writer);
 }
 
-}  // namespace riffler
+}  // namespace riffler::bindings

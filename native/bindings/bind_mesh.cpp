@@ -15,14 +15,14 @@
 #include "riffler/mesh/orient.hpp"
 #include "riffler/mesh/smooth.hpp"
 
-namespace riffler {
+namespace riffler::bindings {
 
 namespace {
 
 using MeshPtr = std::shared_ptr<Mesh>;
 /// A read-only view of a vector that `owner` keeps; a Mesh never changes once Python has it.
 template <class T, class V>
-py::array view(const BulkVector<V>& values, py::handle owner) {
+py::array view(const base::BulkVector<V>& values, py::handle owner) {
   const std::array<py::ssize_t, 2> shape{static_cast<py::ssize_t>(values.size()), 3};
   py::array array(py::dtype::of<T>(), shape, values.data(), owner);
   array.attr("flags").attr("writeable") = false;
@@ -34,7 +34,7 @@ bool is_empty(const py::array& array) {
   return array.ndim() == 1 && array.shape(0) == 0;
 }
 
-Vertices to_vertices(const py::object& object) {
+mesh::Vertices to_vertices(const py::object& object) {
   Doubles array = Doubles::ensure(object);
   if (!array) {
     PyErr_Clear();
@@ -42,12 +42,12 @@ Vertices to_vertices(const py::object& object) {
   }
   if (is_empty(array)) return {};
   const std::size_t n = check_rows(array, 3, "vertices");
-  Vertices vertices(n);
+  mesh::Vertices vertices(n);
   if (n > 0) std::memcpy(vertices.data(), array.data(), n * sizeof(Vec3));
   return vertices;
 }
 
-Triangles to_triangles(const py::object& object) {
+mesh::Triangles to_triangles(const py::object& object) {
   const py::array given = py::array::ensure(object);
   if (!given) {
     PyErr_Clear();
@@ -62,7 +62,7 @@ Triangles to_triangles(const py::object& object) {
     throw py::value_error("triangles must be integers, not " + py::str(given.dtype()).cast<std::string>());
   // What does not fit 64 bits becomes negative there, and so is out of range as well.
   const auto array = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>::ensure(given);
-  Triangles triangles(static_cast<std::size_t>(array.shape(0)));
+  mesh::Triangles triangles(static_cast<std::size_t>(array.shape(0)));
   const std::int64_t* p = array.data();
   for (std::size_t t = 0; t < triangles.size(); ++t)
     for (int k = 0; k < 3; ++k, ++p) {
@@ -84,7 +84,7 @@ MeshPtr make(const py::object& vertices, const py::object& triangles) {
 MeshPtr read_3mf(const std::filesystem::path& path) {
   const py::tuple found = py::module_::import("riffler.threemf").attr("read")(path);
   const MeshPtr mesh = make(found[0], found[1]);
-  Welder<Vec3> welder(mesh->vertices.size());
+  mesh::Welder<Vec3> welder(mesh->vertices.size());
   std::vector<int> places(mesh->vertices.size());
   welder.add(mesh->vertices, places.data());
   mesh->vertices.assign(welder.points().begin(), welder.points().end());
@@ -93,14 +93,14 @@ MeshPtr read_3mf(const std::filesystem::path& path) {
 }
 
 bool is_3mf(const std::filesystem::path& path) {
-  return equal_ignoring_case(path.extension().string(), ".3mf");
+  return mesh::equal_ignoring_case(path.extension().string(), ".3mf");
 }
 
 MeshPtr read(const std::filesystem::path& path, const py::object& progress) {
   if (is_3mf(path)) return read_3mf(path);
   const Progress listener = to_progress(progress);
   const NoGil no_gil;
-  return std::make_shared<Mesh>(read_mesh(path, listener));
+  return std::make_shared<Mesh>(mesh::read_mesh(path, listener));
 }
 
 auto write(const MeshPtr& mesh, const std::filesystem::path& path, const py::object& progress) {
@@ -117,7 +117,7 @@ auto write(const MeshPtr& mesh, const std::filesystem::path& path, const py::obj
 }
 
 py::dict audit_dict(const Mesh& mesh, const py::object& progress) {
-  Audit a;
+  mesh::Audit a;
   {
     const Progress listener = to_progress(progress);
     const NoGil no_gil;
@@ -144,7 +144,7 @@ std::optional<std::size_t> to_count(const std::optional<std::int64_t>& triangles
 
 auto decimated(const MeshPtr& mesh, std::optional<std::int64_t> triangles, std::optional<double> tolerance,
                const py::object& progress) {
-  const DecimateLimits limits{to_count(triangles), tolerance};
+  const mesh::DecimateLimits limits{to_count(triangles), tolerance};
   const auto work = [=](const Progress& listener) { return std::make_shared<Mesh>(decimate(*mesh, limits, listener)); };
   return long_call(progress, work, Identity());
 }
@@ -163,11 +163,11 @@ auto deviation_array(const MeshPtr& mesh, const MeshPtr& other, bool with_sign, 
 }
 
 MeshPtr oriented_mesh(const MeshPtr& mesh, std::optional<py::dict> report, bool hollow) {
-  Orientation found;
+  mesh::Orientation found;
   std::optional<Mesh> better;
   {
     const NoGil no_gil;
-    better = oriented(*mesh, found, hollow ? Hollow::Kept : Hollow::Turned);
+    better = oriented(*mesh, found, hollow ? mesh::Hollow::Kept : mesh::Hollow::Turned);
   }
   if (report) {
     py::dict& d = *report;
@@ -209,8 +209,8 @@ lib3mf, which tells no progress), whole or not at all.)");
   mesh.def_property_readonly(
       "triangles", [](const py::object& self) { return view<std::int32_t>(self.cast<const Mesh&>().triangles, self); },
       "(k, 3) int32, read-only, no copy.");
-  mesh.def_property_readonly("volume", &volume, py::call_guard<NoGil>(), "mm³, signed; of a closed mesh.");
-  mesh.def_property_readonly("area", &area, py::call_guard<NoGil>(), "mm².");
+  mesh.def_property_readonly("volume", &mesh::volume, py::call_guard<NoGil>(), "mm³, signed; of a closed mesh.");
+  mesh.def_property_readonly("area", &mesh::area, py::call_guard<NoGil>(), "mm².");
   mesh.def_property_readonly(
       "bounds", &bounds_array,
       "(2, 3) float64, lower and upper corner of the triangles' box. ValueError without triangles.");
@@ -228,7 +228,7 @@ each other, or until the first of both. Closed and two-manifold where this one i
 vertices are some of the old ones, or where that fits better new ones between them.)");
   mesh.def(
       "smooth", &smoothed, "iterations"_a = 10, "tolerance"_a = py::none(), py::kw_only(),
-      "feature_angle"_a = kFeatureAngle, "progress"_a = py::none(),
+      "feature_angle"_a = mesh::kFeatureAngle, "progress"_a = py::none(),
       R"(A smoother mesh of the same triangles (Taubin) and the same volume; no vertex moves farther than `tolerance`
 (mm) in all. Edges whose sides turn by more than `feature_angle` (rad) stay sharp, and corners stay where they are, as
 do vertices on borders.)");
@@ -259,4 +259,4 @@ whole; ``left_out``, repeated triangles that tear the surface open, which name o
                  }));
 }
 
-}  // namespace riffler
+}  // namespace riffler::bindings

@@ -8,19 +8,19 @@
 #include "marching/patch_edges.hpp"
 #include "riffler/marching/mesher.hpp"
 
-namespace riffler {
+namespace riffler::bindings {
 
 namespace {
 
 struct SharedMesher : Guarded {
-  explicit SharedMesher(Mesher m) : mesher(std::move(m)) {}
-  Mesher mesher;
-  PickStats stats;  // under the GIL
+  explicit SharedMesher(marching::Mesher m) : mesher(std::move(m)) {}
+  marching::Mesher mesher;
+  marching::PickStats stats;  // under the GIL
 };
 
 struct SharedSurface {
-  FrozenSurface surface;
-  PickStats stats;  // under the GIL
+  marching::FrozenSurface surface;
+  marching::PickStats stats;  // under the GIL
 };
 
 /// Held through every call.
@@ -36,7 +36,7 @@ std::unique_ptr<SharedMesher> make(SharedVolume& volume, const py::object& calla
   const Progress progress = to_progress(callable);
   const Volume state = state_of(volume);
   const NoGil release;
-  return std::make_unique<SharedMesher>(Mesher(state, progress));
+  return std::make_unique<SharedMesher>(marching::Mesher(state, progress));
 }
 
 py::list to_list(const std::vector<std::size_t>& numbers) {
@@ -49,9 +49,9 @@ using BrickOrBricks = std::variant<std::size_t, std::vector<std::size_t>>;
 
 py::tuple patch(SharedMesher& self, const BrickOrBricks& bricks, bool with_edges, const std::optional<double>& sharp) {
   if (sharp && !(*sharp >= 0 && *sharp <= kPi)) throw std::invalid_argument("normals: the angle must be 0 to pi rad");
-  MeshPatch patch;
-  PatchEdges edges;
-  BulkVector<Vec3f> normals;
+  marching::MeshPatch patch;
+  marching::PatchEdges edges;
+  base::BulkVector<Vec3f> normals;
   {
     const NoGil release;
     const auto held = lock(self);
@@ -71,21 +71,21 @@ py::tuple patch(SharedMesher& self, const BrickOrBricks& bricks, bool with_edges
   return py::tuple(out);
 }
 
-using Hits = std::vector<std::optional<SurfaceHit>>;
+using Hits = std::vector<std::optional<marching::SurfaceHit>>;
 
-py::object from_hit(const std::optional<SurfaceHit>& hit) {
+py::object from_hit(const std::optional<marching::SurfaceHit>& hit) {
   if (!hit) return py::none();
   return py::make_tuple(hit->distance, from_vec3(hit->point), from_vec3(hit->normal), hit->brick);
 }
 
 py::tuple from_hits(const Hits& hits) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  const SurfaceHit nothing{std::numeric_limits<double>::infinity(), Vec3(kNone), Vec3(kNone), 0};
+  const marching::SurfaceHit nothing{std::numeric_limits<double>::infinity(), Vec3(kNone), Vec3(kNone), 0};
   std::vector<double> distances;
   std::vector<Vec3> points, normals;
   std::vector<std::int64_t> bricks;
-  for (const std::optional<SurfaceHit>& found : hits) {
-    const SurfaceHit& hit = found ? *found : nothing;
+  for (const std::optional<marching::SurfaceHit>& found : hits) {
+    const marching::SurfaceHit& hit = found ? *found : nothing;
     distances.push_back(hit.distance), points.push_back(hit.point), normals.push_back(hit.normal);
     bricks.push_back(found ? static_cast<std::int64_t>(hit.brick) : -1);
   }
@@ -93,14 +93,14 @@ py::tuple from_hits(const Hits& hits) {
                         take<std::int64_t>(std::move(bricks)));
 }
 
-void add(PickStats& sum, const PickStats& s) {
+void add(marching::PickStats& sum, const marching::PickStats& s) {
   sum.rays += s.rays, sum.bricks_visited += s.bricks_visited, sum.bricks_prepared += s.bricks_prepared;
   sum.triangles_tested += s.triangles_tested;
 }
 
 /// One ray, or one a row: `hits_of(origins, directions, stats)` is called without the GIL.
 template <class HitsOf>
-py::object pick(const Doubles& origin, const Doubles& direction, PickStats& sum, HitsOf&& hits_of) {
+py::object pick(const Doubles& origin, const Doubles& direction, marching::PickStats& sum, HitsOf&& hits_of) {
   const bool one = origin.ndim() == 1;
   const auto rows = [&](const Doubles& array, const char* name) {
     return one ? std::vector<Vec3>{to_vec3(array, name)} : to_vec3s(array, name);
@@ -112,7 +112,7 @@ py::object pick(const Doubles& origin, const Doubles& direction, PickStats& sum,
   for (std::size_t n = 0; n < directions.size(); ++n)
     if (directions[n] == Vec3(0))
       throw py::value_error(one ? "direction: zero" : "direction, row " + std::to_string(n) + ": zero");
-  PickStats stats;
+  marching::PickStats stats;
   const Hits hits = [&] {
     const NoGil release;
     return hits_of(origins, directions, stats);
@@ -123,34 +123,36 @@ py::object pick(const Doubles& origin, const Doubles& direction, PickStats& sum,
 
 template <class Pickable>
 Hits hits_of(Pickable& surface, const std::vector<Vec3>& origins, const std::vector<Vec3>& directions,
-             PickStats& stats) {
+             marching::PickStats& stats) {
   Hits hits;
   for (std::size_t n = 0; n < origins.size(); ++n) hits.push_back(surface.pick(origins[n], directions[n], stats));
   return hits;
 }
 
 py::object pick_live(SharedMesher& self, const Doubles& origin, const Doubles& direction) {
-  return pick(origin, direction, self.stats, [&](const auto& origins, const auto& directions, PickStats& stats) {
-    const auto held = lock(self);
-    return hits_of(self.mesher, origins, directions, stats);
-  });
+  return pick(origin, direction, self.stats,
+              [&](const auto& origins, const auto& directions, marching::PickStats& stats) {
+                const auto held = lock(self);
+                return hits_of(self.mesher, origins, directions, stats);
+              });
 }
 
 py::object pick_frozen(SharedSurface& self, const Doubles& origin, const Doubles& direction) {
-  return pick(origin, direction, self.stats, [&](const auto& origins, const auto& directions, PickStats& stats) {
-    return hits_of(self.surface, origins, directions, stats);
-  });
+  return pick(origin, direction, self.stats,
+              [&](const auto& origins, const auto& directions, marching::PickStats& stats) {
+                return hits_of(self.surface, origins, directions, stats);
+              });
 }
 
-py::dict stats(PickStats& sum) {
+py::dict stats(marching::PickStats& sum) {
   using namespace py::literals;
-  const PickStats s = std::exchange(sum, {});
+  const marching::PickStats s = std::exchange(sum, {});
   return py::dict("rays"_a = s.rays, "bricks_visited"_a = s.bricks_visited, "bricks_prepared"_a = s.bricks_prepared,
                   "triangles_tested"_a = s.triangles_tested);
 }
 
 std::unique_ptr<SharedSurface> freeze(SharedMesher& self) {
-  PickStats stats;
+  marching::PickStats stats;
   auto out = [&] {
     const NoGil release;
     const auto held = lock(self);
@@ -251,4 +253,4 @@ last call is shared; the first call looks at all triangles.)")
       .def_property_readonly("triangles", [](SharedMesher& self) { return (lock(self), self.mesher.triangles()); });
 }
 
-}  // namespace riffler
+}  // namespace riffler::bindings

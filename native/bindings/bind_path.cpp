@@ -8,12 +8,12 @@
 #include "riffler/plan/cc_frame.hpp"
 #include "riffler/plan/orientation.hpp"
 
-namespace riffler {
+namespace riffler::bindings {
 
 namespace {
 
 using Pairs = std::vector<std::array<Vec3, 2>>;
-using Path = std::shared_ptr<PencilPath>;
+using Path = std::shared_ptr<plan::PencilPath>;
 
 static_assert(sizeof(std::array<Vec3, 2>) == 6 * sizeof(double));
 
@@ -39,20 +39,20 @@ Pairs to_pairs(const Doubles& array, std::size_t n, const char* name) {
 
 Path make(double radius, const Doubles& centres, const Doubles& contacts, const Doubles& normals, bool closed) {
   if (!std::isfinite(radius) || !(radius > 0)) throw py::value_error("radius must be positive and finite");
-  auto out = std::make_shared<PencilPath>();
+  auto out = std::make_shared<plan::PencilPath>();
   out->radius = radius, out->closed = closed;
   out->centres = to_vec3s(centres, "centres");
   const std::size_t n = out->size();
   if (n == 0) throw py::value_error("centres: at least one is needed");
   out->contacts = to_pairs(contacts, n, "contacts"), out->normals = to_pairs(normals, n, "normals");
   for (std::size_t k = 0; k < n; ++k)
-    for (Vec3& normal : out->normals[k]) normal = unit_axis(normal, "normals, row " + std::to_string(k));
+    for (Vec3& normal : out->normals[k]) normal = plan::unit_axis(normal, "normals, row " + std::to_string(k));
   return out;
 }
 
-OrientationKeys to_keys(const py::object& object) {
+plan::OrientationKeys to_keys(const py::object& object) {
   if (!py::isinstance<py::dict>(object)) throw py::value_error("keys must be a dict: index to axis");
-  OrientationKeys out;
+  plan::OrientationKeys out;
   for (const auto& [key, value] : py::cast<py::dict>(object)) {
     const std::string name = "keys, point " + py::cast<std::string>(py::str(key));
     const auto index = py::reinterpret_steal<py::object>(PyNumber_Index(key.ptr()));
@@ -67,33 +67,33 @@ OrientationKeys to_keys(const py::object& object) {
   return out;
 }
 
-py::dict from_keys(const PencilPath& path) {
+py::dict from_keys(const plan::PencilPath& path) {
   py::dict out;
   for (const auto& [k, axis] : path.keys) out[py::int_(k)] = from_vec3(axis);
   return out;
 }
 
-Path orient(const PencilPath& path, const py::object& keys, const std::string& interpolation, const py::object& limit,
-            bool project) {
-  return std::make_shared<PencilPath>(
-      oriented(path, to_keys(keys), interpolation_named(interpolation), to_axis_limit(limit, project)));
+Path orient(const plan::PencilPath& path, const py::object& keys, const std::string& interpolation,
+            const py::object& limit, bool project) {
+  return std::make_shared<plan::PencilPath>(
+      oriented(path, to_keys(keys), plan::interpolation_named(interpolation), to_axis_limit(limit, project)));
 }
 
-py::dict from_picked(const Picked& p) {
+py::dict from_picked(const plan::Picked& p) {
   using namespace py::literals;
   return py::dict("index"_a = p.index, "side"_a = p.side, "distance"_a = p.distance, "point"_a = from_vec3(p.point),
                   "normal"_a = from_vec3(p.normal));
 }
 
 /// (n, 3, 3): rows x, y, z.
-py::array_t<double> frames(const PencilPath& path) {
-  std::vector<CcFrame> out;
+py::array_t<double> frames(const plan::PencilPath& path) {
+  std::vector<plan::CcFrame> out;
   for (std::size_t k = 0; k < path.size(); ++k) out.push_back(frame_at(path, k));
   return take<double>(std::move(out), 9)
       .reshape({static_cast<py::ssize_t>(path.size()), py::ssize_t{3}, py::ssize_t{3}});
 }
 
-CcFrame frame_of(const PencilPath& path, std::size_t index) {
+plan::CcFrame frame_of(const plan::PencilPath& path, std::size_t index) {
   if (index >= path.size())
     throw py::value_error("point " + std::to_string(index) + ": the path has " + std::to_string(path.size()) +
                           " points");
@@ -102,40 +102,40 @@ CcFrame frame_of(const PencilPath& path, std::size_t index) {
 
 }  // namespace
 
-std::optional<AxisLimit> to_axis_limit(const py::object& object, bool project) {
+std::optional<plan::AxisLimit> to_axis_limit(const py::object& object, bool project) {
   if (object.is_none()) return {};
   if (!py::isinstance<py::sequence>(object) || py::len(object) != 2)
     throw py::value_error("limit must be (axis, angle)");
   const auto pair = py::cast<py::sequence>(object);
   try {
-    return AxisLimit{to_vec3(pair[0], "limit"), py::cast<double>(pair[1]), project};
+    return plan::AxisLimit{to_vec3(pair[0], "limit"), py::cast<double>(pair[1]), project};
   } catch (const py::cast_error&) {
     throw py::value_error("limit: the angle must be a number");
   }
 }
 
 void bind_path(py::module_& m) {
-  py::class_<PencilPath, Path>(
+  py::class_<plan::PencilPath, Path>(
       m, "PencilPath",
       R"(A curve of ball centres along a part, with what the ball touches at each. See riffler.plan. Immutable.)")
       .def(py::init(&make), py::arg("radius"), py::arg("centres"), py::arg("contacts"), py::arg("normals"),
            py::arg("closed") = false,
            R"(centres (n, 3), contacts (n, 2, 3) mm and normals (n, 2, 3), unit, out of the material.)")
-      .def_readonly("radius", &PencilPath::radius, "Of the ball, mm.")
-      .def_readonly("closed", &PencilPath::closed, "A loop: its last point is joined to its first.")
-      .def_property_readonly("length", &PencilPath::length, "mm, of the closing edge too.")
+      .def_readonly("radius", &plan::PencilPath::radius, "Of the ball, mm.")
+      .def_readonly("closed", &plan::PencilPath::closed, "A loop: its last point is joined to its first.")
+      .def_property_readonly("length", &plan::PencilPath::length, "mm, of the closing edge too.")
       .def_property_readonly(
-          "centres", [](const PencilPath& p) { return from_vec3s(p.centres); }, "(n, 3) mm")
+          "centres", [](const plan::PencilPath& p) { return from_vec3s(p.centres); }, "(n, 3) mm")
       .def_property_readonly(
-          "contacts", [](const PencilPath& p) { return from_pairs(p.contacts); }, "(n, 2, 3) mm")
+          "contacts", [](const plan::PencilPath& p) { return from_pairs(p.contacts); }, "(n, 2, 3) mm")
       .def_property_readonly(
-          "normals", [](const PencilPath& p) { return from_pairs(p.normals); },
+          "normals", [](const plan::PencilPath& p) { return from_pairs(p.normals); },
           "(n, 2, 3): unit normals of the part at the contacts, out of the material.")
       .def_property_readonly(
-          "axes", [](const PencilPath& p) { return from_vec3s(p.axes); },
+          "axes", [](const plan::PencilPath& p) { return from_vec3s(p.axes); },
           "(n, 3): unit tool axes, tip to spindle; (0, 3) until the path is oriented.")
       .def_property_readonly("keys", &from_keys, "dict: index to axis, of what the axes were interpolated from.")
-      .def_readonly("interpolation", &PencilPath::interpolation, "How; empty until the path is oriented.")
+      .def_readonly("interpolation", &plan::PencilPath::interpolation, "How; empty until the path is oriented.")
       .def_property_readonly("frames", &frames, R"((n, 3, 3): the rows x, y, z of the frame at every point.
 
 x is the feed, z halves the angle between the directions from the contacts to the ball's centre, y = z × x.)")
@@ -153,15 +153,16 @@ naming the first point, or is moved onto the cone with ``project=True``. ValueEr
 outside the path, not a unit vector, or opposite to the key before it.)")
       .def(
           "with_axes",
-          [](const PencilPath& p, const Doubles& axes, const py::object& keys, const std::string& interpolation) {
-            return std::make_shared<PencilPath>(with_axes(p, to_vec3s(axes, "axes"), to_keys(keys), interpolation));
+          [](const plan::PencilPath& p, const Doubles& axes, const py::object& keys, const std::string& interpolation) {
+            return std::make_shared<plan::PencilPath>(
+                with_axes(p, to_vec3s(axes, "axes"), to_keys(keys), interpolation));
           },
           py::arg("axes"), py::arg("keys") = py::dict(), py::arg("interpolation") = "",
           "A new path with these axes (n, 3), which came about elsewhere; keys and interpolation are kept beside them.")
       .def(
           "axis",
-          [](const PencilPath& p, std::size_t index, double inclination, double tilt) {
-            require_angle(inclination, "inclination"), require_angle(tilt, "tilt");
+          [](const plan::PencilPath& p, std::size_t index, double inclination, double tilt) {
+            base::require_angle(inclination, "inclination"), base::require_angle(tilt, "tilt");
             return from_vec3(axis_of(frame_of(p, index), {inclination, tilt}));
           },
           py::arg("index"), py::arg("inclination"), py::arg("tilt"),
@@ -169,14 +170,14 @@ outside the path, not a unit vector, or opposite to the key before it.)")
           "cos(tilt) (sin(inclination) x + cos(inclination) z) + sin(tilt) y.")
       .def(
           "lean",
-          [](const PencilPath& p, std::size_t index, const py::object& axis) {
-            const Lean lean = lean_of(frame_of(p, index), unit_axis(to_vec3(axis, "axis"), "axis"));
+          [](const plan::PencilPath& p, std::size_t index, const py::object& axis) {
+            const plan::Lean lean = lean_of(frame_of(p, index), plan::unit_axis(to_vec3(axis, "axis"), "axis"));
             return py::make_tuple(lean.inclination, lean.tilt);
           },
           py::arg("index"), py::arg("axis"), "(inclination, tilt) of an axis at a point, rad: the inverse of ``axis``.")
       .def(
           "nearest",
-          [](const PencilPath& p, const py::object& point, const py::object& direction) {
+          [](const plan::PencilPath& p, const py::object& point, const py::object& direction) {
             const Vec3 at = to_vec3(point, "point");
             return from_picked(direction.is_none() ? nearest_contact(p, at)
                                                    : nearest_contact(p, at, to_vec3(direction, "direction")));
@@ -187,11 +188,13 @@ outside the path, not a unit vector, or opposite to the key before it.)")
 A dict: ``index`` of the path's point, ``side`` (0 or 1) of its two contacts, ``distance`` mm, ``point``, ``normal``.)")
       .def(
           "divided",
-          [](const PencilPath& path, double step) { return std::make_shared<PencilPath>(divided(path, step)); },
+          [](const plan::PencilPath& path, double step) {
+            return std::make_shared<plan::PencilPath>(divided(path, step));
+          },
           py::arg("step"),
           "With further points, evenly between two that are more than ``step`` mm apart (a straight valley has only "
           "its ends), so that keys can be set there. Without axes.")
-      .def("__len__", &PencilPath::size);
+      .def("__len__", &plan::PencilPath::size);
 }
 
-}  // namespace riffler
+}  // namespace riffler::bindings

@@ -10,7 +10,7 @@
 #include "riffler/pen/arms/motors.hpp"
 #include "riffler/pen/capability.hpp"
 
-namespace riffler {
+namespace riffler::bindings {
 
 namespace {
 
@@ -32,8 +32,8 @@ Row row_of(const std::array<Vec3, 2>& pair) {
   return {pair[0].x, pair[0].y, pair[0].z, pair[1].x, pair[1].y, pair[1].z};
 }
 
-std::vector<EncoderCounts> to_counts(const Doubles& array) {
-  std::vector<EncoderCounts> out(check_rows(array, kPenChannels, "counts"));
+std::vector<pen::EncoderCounts> to_counts(const Doubles& array) {
+  std::vector<pen::EncoderCounts> out(check_rows(array, pen::kPenChannels, "counts"));
   const double* p = array.data();
   for (std::size_t row = 0; row < out.size(); ++row)
     for (std::int32_t& count : out[row]) {
@@ -45,10 +45,10 @@ std::vector<EncoderCounts> to_counts(const Doubles& array) {
   return out;
 }
 
-std::vector<JointAngles> to_joints(const Doubles& array, const char* name) {
-  std::vector<JointAngles> out(check_rows(array, 6, name));
+std::vector<pen::JointAngles> to_joints(const Doubles& array, const char* name) {
+  std::vector<pen::JointAngles> out(check_rows(array, 6, name));
   const double* p = array.data();
-  for (JointAngles& row : out) row = {vector_at(p), vector_at(p + 3)}, p += 6;
+  for (pen::JointAngles& row : out) row = {vector_at(p), vector_at(p + 3)}, p += 6;
   return out;
 }
 
@@ -75,62 +75,63 @@ std::vector<Row> rows_of(const std::vector<In>& in, const F& row) {
   return out;
 }
 
-py::array_t<double> forward(const PenKinematics& pen, const Doubles& counts) {
+py::array_t<double> forward(const pen::PenKinematics& pen, const Doubles& counts) {
   return shaped(rows_of(to_counts(counts),
-                        [&](const EncoderCounts& raw) {
+                        [&](const pen::EncoderCounts& raw) {
                           const Pose pose = pen.posture(raw).pose;
                           return row_of({pose.tip, pose.axis});
                         }),
                 {6});
 }
 
-py::array_t<double> joints(const PenKinematics& pen, const Doubles& counts) {
-  return shaped(rows_of(to_counts(counts), [&](const EncoderCounts& raw) { return row_of(pen.angles(raw)); }), {6});
+py::array_t<double> joints(const pen::PenKinematics& pen, const Doubles& counts) {
+  return shaped(rows_of(to_counts(counts), [&](const pen::EncoderCounts& raw) { return row_of(pen.angles(raw)); }),
+                {6});
 }
 
-py::array_t<std::int32_t> counts_of(const PenKinematics& pen, const Doubles& angles) {
-  std::vector<EncoderCounts> out;
-  for (const JointAngles& row : to_joints(angles, "joints")) out.push_back(pen.counts(row));
-  return take<std::int32_t>(std::move(out), kPenChannels);
+py::array_t<std::int32_t> counts_of(const pen::PenKinematics& pen, const Doubles& angles) {
+  std::vector<pen::EncoderCounts> out;
+  for (const pen::JointAngles& row : to_joints(angles, "joints")) out.push_back(pen.counts(row));
+  return take<std::int32_t>(std::move(out), pen::kPenChannels);
 }
 
-PenKinematics homed(const PenKinematics& pen, const Doubles& counts, std::int32_t probe) {
-  const std::vector<EncoderCounts> rows = to_counts(counts);
+pen::PenKinematics homed(const pen::PenKinematics& pen, const Doubles& counts, std::int32_t probe) {
+  const std::vector<pen::EncoderCounts> rows = to_counts(counts);
   if (rows.size() != 1) throw py::value_error("counts must have one row: what the counters read at home");
-  PenKinematics out = pen;
+  pen::PenKinematics out = pen;
   out.home_at(rows[0], probe);
   return out;
 }
 
-py::array_t<double> ends(const PenKinematics& pen, const Doubles& counts) {
+py::array_t<double> ends(const pen::PenKinematics& pen, const Doubles& counts) {
   return shaped(rows_of(to_counts(counts),
-                        [&](const EncoderCounts& raw) {
-                          const PenPosture posture = pen.posture(raw);
+                        [&](const pen::EncoderCounts& raw) {
+                          const pen::PenPosture posture = pen.posture(raw);
                           return row_of({posture.arms[0].end, posture.arms[1].end});
                         }),
                 {2, 3});
 }
 
-py::array_t<double> jacobian(const PenKinematics& pen, const Doubles& counts) {
-  const std::vector<EncoderCounts> rows = to_counts(counts);
+py::array_t<double> jacobian(const pen::PenKinematics& pen, const Doubles& counts) {
+  const std::vector<pen::EncoderCounts> rows = to_counts(counts);
   py::array_t<double> out({static_cast<py::ssize_t>(rows.size()), py::ssize_t{2}, py::ssize_t{3}, py::ssize_t{3}});
   double* p = out.mutable_data();
-  for (const EncoderCounts& raw : rows)
-    for (const ArmPosture& arm : pen.posture(raw).arms)
+  for (const pen::EncoderCounts& raw : rows)
+    for (const pen::ArmPosture& arm : pen.posture(raw).arms)
       for (int row = 0; row < 3; ++row)
         for (int joint = 0; joint < 3; ++joint) *p++ = arm.jacobian[joint][row];
   return out;
 }
 
-py::array_t<double> stretch(const PenKinematics& pen, const Doubles& counts) {
+py::array_t<double> stretch(const pen::PenKinematics& pen, const Doubles& counts) {
   std::vector<double> out;
-  for (const EncoderCounts& raw : to_counts(counts)) out.push_back(check_grip(pen, pen.posture(raw)).stretch);
+  for (const pen::EncoderCounts& raw : to_counts(counts)) out.push_back(check_grip(pen, pen.posture(raw)).stretch);
   return take<double>(std::move(out));
 }
 
-py::array_t<double> noticed(const PenKinematics& pen, const Doubles& counts) {
+py::array_t<double> noticed(const pen::PenKinematics& pen, const Doubles& counts) {
   return shaped(rows_of(to_counts(counts),
-                        [&](const EncoderCounts& raw) {
+                        [&](const pen::EncoderCounts& raw) {
                           const auto found = noticed_counts(pen, pen.posture(raw));
                           Row row{};
                           for (std::size_t k = 0; k < row.size(); ++k) row[k] = std::max(found[k].few, found[k].many);
@@ -139,35 +140,35 @@ py::array_t<double> noticed(const PenKinematics& pen, const Doubles& counts) {
                 {6});
 }
 
-const char* name_of(ReachResult reach) {
+const char* name_of(pen::ReachResult reach) {
   switch (reach) {
-    case ReachResult::Reached:
+    case pen::ReachResult::Reached:
       return "reached";
-    case ReachResult::TooFar:
+    case pen::ReachResult::TooFar:
       return "too far";
-    case ReachResult::TooNear:
+    case pen::ReachResult::TooNear:
       return "too near";
-    case ReachResult::OnAxis:
+    case pen::ReachResult::OnAxis:
       return "on axis";
-    case ReachResult::Limits:
+    case pen::ReachResult::Limits:
       return "limits";
     default:
       return "not finite";
   }
 }
 
-py::tuple inverse(const PenKinematics& pen, const Doubles& poses) {
+py::tuple inverse(const pen::PenKinematics& pen, const Doubles& poses) {
   std::vector<Row> angles;
   py::list reach;
   for (const Pose& pose : to_poses(poses, "poses")) {
-    const PenInverse found = pen.inverse(pose);
+    const pen::PenInverse found = pen.inverse(pose);
     angles.push_back(row_of(found.angles));
     reach.append(py::make_tuple(name_of(found.reach[0]), name_of(found.reach[1])));
   }
   return py::make_tuple(shaped(std::move(angles), {6}), reach);
 }
 
-py::tuple split(const PenKinematics&, const Doubles& wrenches, const Doubles& apart) {
+py::tuple split(const pen::PenKinematics&, const Doubles& wrenches, const Doubles& apart) {
   const std::vector<Wrench> rows = to_wrenches(wrenches);
   const std::vector<Vec3> between = to_vec3s(apart, "apart");
   if (between.size() != rows.size())
@@ -176,14 +177,14 @@ py::tuple split(const PenKinematics&, const Doubles& wrenches, const Doubles& ap
   std::vector<Row> forces;
   std::vector<Vec3> missing;
   for (std::size_t k = 0; k < rows.size(); ++k) {
-    const WrenchSplit one = split_wrench(rows[k], between[k]);
+    const pen::WrenchSplit one = pen::split_wrench(rows[k], between[k]);
     forces.push_back(row_of(one.forces)), missing.push_back(one.missing);
   }
   return py::make_tuple(shaped(std::move(forces), {2, 3}), from_vec3s(missing));
 }
 
-py::tuple efforts(const PenKinematics& pen, const Doubles& counts, const Doubles& wrenches, const Doubles& at) {
-  const std::vector<EncoderCounts> rows = to_counts(counts);
+py::tuple efforts(const pen::PenKinematics& pen, const Doubles& counts, const Doubles& wrenches, const Doubles& at) {
+  const std::vector<pen::EncoderCounts> rows = to_counts(counts);
   const std::vector<Wrench> wanted = to_wrenches(wrenches);
   const std::vector<Vec3> points = to_vec3s(at, "at");
   check_same(wanted.size(), rows.size(), "wrenches");
@@ -191,50 +192,51 @@ py::tuple efforts(const PenKinematics& pen, const Doubles& counts, const Doubles
   std::vector<Row> torques;
   std::vector<Vec3> missing;
   for (std::size_t k = 0; k < rows.size(); ++k) {
-    const PenEffort effort = pen_effort(pen, pen.posture(rows[k]), wanted[k], points[k]);
+    const pen::PenEffort effort = pen_effort(pen, pen.posture(rows[k]), wanted[k], points[k]);
     torques.push_back(row_of(effort.torques)), missing.push_back(effort.missing);
   }
   return py::make_tuple(shaped(std::move(torques), {6}), from_vec3s(missing));
 }
 
 template <class F>
-py::tuple commands(const PenKinematics& pen, const Doubles& torques, const F& command) {
-  std::vector<std::array<std::int16_t, kPenChannels>> values;
+py::tuple commands(const pen::PenKinematics& pen, const Doubles& torques, const F& command) {
+  std::vector<std::array<std::int16_t, pen::kPenChannels>> values;
   std::vector<double> scales;
-  for (const JointAngles& row : to_joints(torques, "torques")) {
-    const MotorCommands one = command(motor_torques(pen.geometry(), row));
+  for (const pen::JointAngles& row : to_joints(torques, "torques")) {
+    const pen::MotorCommands one = command(motor_torques(pen.geometry(), row));
     values.push_back(one.values), scales.push_back(one.scale);
   }
-  return py::make_tuple(take<std::int16_t>(std::move(values), kPenChannels), take<double>(std::move(scales)));
+  return py::make_tuple(take<std::int16_t>(std::move(values), pen::kPenChannels), take<double>(std::move(scales)));
 }
 
-py::tuple currents(const PenKinematics& pen, const Doubles& torques) {
-  return commands(pen, torques, [&](const MotorTorques& motors) { return motor_currents(pen.geometry(), motors); });
+py::tuple currents(const pen::PenKinematics& pen, const Doubles& torques) {
+  return commands(pen, torques,
+                  [&](const pen::MotorTorques& motors) { return motor_currents(pen.geometry(), motors); });
 }
 
-py::tuple steps(const PenKinematics& pen, const Doubles& torques) {
-  const std::optional<Converter>& converter = pen.geometry().converter;
+py::tuple steps(const pen::PenKinematics& pen, const Doubles& torques) {
+  const std::optional<pen::Converter>& converter = pen.geometry().converter;
   if (!converter) throw py::value_error("pen " + pen.geometry().name + " has no [converter]");
   return commands(pen, torques,
-                  [&](const MotorTorques& motors) { return converter_steps(pen.geometry(), *converter, motors); });
+                  [&](const pen::MotorTorques& motors) { return converter_steps(pen.geometry(), *converter, motors); });
 }
 
-py::dict diagnose(const PenKinematics& pen, const Doubles& counts) {
-  GripDiagnosis diagnosis(pen);
-  for (const EncoderCounts& raw : to_counts(counts)) diagnosis.add(pen.posture(raw));
-  const GripVerdict verdict = diagnosis.verdict();
+py::dict diagnose(const pen::PenKinematics& pen, const Doubles& counts) {
+  pen::GripDiagnosis diagnosis(pen);
+  for (const pen::EncoderCounts& raw : to_counts(counts)) diagnosis.add(pen.posture(raw));
+  const pen::GripVerdict verdict = diagnosis.verdict();
   constexpr const char* kFaults[] = {"none", "channel", "several", "unclear"};
   py::dict out("fault"_a = kFaults[static_cast<std::size_t>(verdict.fault)], "postures"_a = diagnosis.postures());
-  if (verdict.fault == GripFault::Channel)
+  if (verdict.fault == pen::GripFault::Channel)
     out["channel"] = verdict.channel, out["counts"] = verdict.counts, out["left"] = verdict.left;
   return out;
 }
 
-py::dict capability(const PenKinematics& pen) {
-  const DeviceCapability device = pen_capability(pen.geometry());
+py::dict capability(const pen::PenKinematics& pen) {
+  const pen::DeviceCapability device = pen_capability(pen.geometry());
   py::dict axes;
-  for (std::size_t k = 0; k < kCoordinates; ++k) {
-    const CoordinateCapability& c = device.coordinates[k];
+  for (std::size_t k = 0; k < haptics::kCoordinates; ++k) {
+    const pen::CoordinateCapability& c = device.coordinates[k];
     constexpr const char* kSensing[] = {"none", "position", "rate"};
     axes[py::str(std::string(1, "xyzabc"[k]))] =
         py::dict("sensing"_a = kSensing[static_cast<std::size_t>(c.sensing)], "pushes"_a = c.pushes, "low"_a = c.low,
@@ -243,10 +245,10 @@ py::dict capability(const PenKinematics& pen) {
   return py::dict("name"_a = device.name, "text"_a = capability_text(device), "axes"_a = axes);
 }
 
-py::list channels(const PenKinematics& pen) {
+py::list channels(const pen::PenKinematics& pen) {
   py::list out;
-  for (const PenChannel& c : pen.geometry().channels)
-    out.append(py::dict("name"_a = std::string(c.arm == Arm::R ? "R" : "L") + std::to_string(c.joint + 1),
+  for (const pen::PenChannel& c : pen.geometry().channels)
+    out.append(py::dict("name"_a = std::string(c.arm == pen::Arm::R ? "R" : "L") + std::to_string(c.joint + 1),
                         "steps"_a = c.steps, "ratio"_a = c.ratio, "sign"_a = c.sign, "home"_a = c.home, "low"_a = c.low,
                         "high"_a = c.high, "torque_constant"_a = c.torque_constant, "peak_current"_a = c.peak_current,
                         "continuous_current"_a = c.continuous_current, "coulomb"_a = c.coulomb, "viscous"_a = c.viscous,
@@ -254,8 +256,8 @@ py::list channels(const PenKinematics& pen) {
   return out;
 }
 
-py::dict limits(const PenKinematics& pen) {
-  const PenGeometry& g = pen.geometry();
+py::dict limits(const pen::PenKinematics& pen) {
+  const pen::PenGeometry& g = pen.geometry();
   return py::dict("lower"_a = from_vec3(g.workspace.lower), "upper"_a = from_vec3(g.workspace.upper),
                   "elbow"_a = py::make_tuple(g.elbow_low, g.elbow_high), "force"_a = g.force, "torque"_a = g.torque,
                   "speed"_a = g.speed, "turn_rate"_a = g.turn_rate);
@@ -263,40 +265,42 @@ py::dict limits(const PenKinematics& pen) {
 
 py::dict pen_list() {
   py::dict out;
-  for (const DescriptionEntry& entry : pens()) out[py::str(entry.name)] = entry.description;
+  for (const base::DescriptionEntry& entry : pen::pens()) out[py::str(entry.name)] = entry.description;
   return out;
 }
 
 }  // namespace
 
 void bind_pen(py::module_& m) {
-  py::class_<PenKinematics>(m, "PenGeometry",
-                            R"(A pen: its lengths, gears, encoders, motors and limits, and how it moves.
+  py::class_<pen::PenKinematics>(m, "PenGeometry",
+                                 R"(A pen: its lengths, gears, encoders, motors and limits, and how it moves.
 
 Two arms, R and L, hold the two ends of a grip. Counts are the six counters in the device's own order (``channels``);
 joints are θ1 θ2 θ3 of R, then of L, in rad. Poses are the grip's pivot and the unit axis along it, away from the tool's
 tip. Arrays have one row per moment.)")
       .def_static(
-          "load", [](const std::string& name) { return PenKinematics(load_pen(name)); }, "name"_a,
+          "load", [](const std::string& name) { return pen::PenKinematics(pen::load_pen(name)); }, "name"_a,
           "A pen of ``riffler.pen.names()``, or one that a ``.toml`` file describes. FormatError names the file's "
           "line; "
           "ValueError the pens there are.")
       .def_property_readonly(
-          "name", [](const PenKinematics& p) { return p.geometry().name; }, "Its file's name.")
+          "name", [](const pen::PenKinematics& p) { return p.geometry().name; }, "Its file's name.")
       .def_property_readonly(
-          "description", [](const PenKinematics& p) { return p.geometry().description; }, "What its file says of it.")
+          "description", [](const pen::PenKinematics& p) { return p.geometry().description; },
+          "What its file says of it.")
       .def_property_readonly(
-          "grip_length", [](const PenKinematics& p) { return p.geometry().grip_length; }, "mm, between the arms' ends.")
+          "grip_length", [](const pen::PenKinematics& p) { return p.geometry().grip_length; },
+          "mm, between the arms' ends.")
       .def_property_readonly(
-          "grip_tolerance", [](const PenKinematics& p) { return p.geometry().grip_tolerance; },
+          "grip_tolerance", [](const pen::PenKinematics& p) { return p.geometry().grip_tolerance; },
           "mm: a larger |stretch| is a lost count or a bad homing.")
       .def_property_readonly("channels", &channels, "The six motors with their encoders, dicts in the device's order.")
       .def_property_readonly("limits", &limits, "Workspace, elbow, force, torque, speeds: a dict; mm, rad, s, N.")
       .def_property_readonly(
           "home",
-          [](const PenKinematics& p) {
-            std::vector<EncoderCounts> one{p.counts(p.home_angles())};
-            return take<std::int32_t>(std::move(one)).reshape({static_cast<py::ssize_t>(kPenChannels)});
+          [](const pen::PenKinematics& p) {
+            std::vector<pen::EncoderCounts> one{p.counts(p.home_angles())};
+            return take<std::int32_t>(std::move(one)).reshape({static_cast<py::ssize_t>(pen::kPenChannels)});
           },
           "(6,) int32: what the counters read in the home posture.")
       .def("forward", &forward, "counts"_a, "(n, 6) poses of (n, 6) counts: (2.3) and (2.4).")
@@ -305,7 +309,7 @@ tip. Arrays have one row per moment.)")
       .def("homed", &homed, "counts"_a, "probe"_a = 0, R"(The same pen, homed by its readings instead of presets.
 
 ``counts``: (1, 6), what the counters read in the home posture, and ``probe`` what the seventh does. Counters may wrap.)")
-      .def("probe_angle", &PenKinematics::probe_angle, "count"_a,
+      .def("probe_angle", &pen::PenKinematics::probe_angle, "count"_a,
            "rad: the grip's rotation about the pose's axis, turns added up, of the seventh counter.")
       .def("ends", &ends, "counts"_a, "(n, 2, 3) mm: ends of R and of L in the arms' frame, (2.1) and (2.2).")
       .def("jacobian", &jacobian, "counts"_a,
@@ -342,4 +346,4 @@ stay unexplained), "several" (bad homing, or another pen) or "unclear" (move the
   m.def("_pens", &pen_list);
 }
 
-}  // namespace riffler
+}  // namespace riffler::bindings

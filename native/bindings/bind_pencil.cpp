@@ -6,20 +6,20 @@
 #include "riffler/plan/pencil.hpp"
 #include "riffler/tool/tool.hpp"
 
-namespace riffler {
+namespace riffler::bindings {
 
 namespace {
 
-py::dict to_dict(const PencilStats& s) {
+py::dict to_dict(const plan::PencilStats& s) {
   using namespace py::literals;
   return py::dict("balls"_a = s.balls, "entered"_a = s.entered, "starts"_a = s.starts, "stuck"_a = s.stuck,
                   "faceting"_a = s.faceting, "edges"_a = s.edges, "traces"_a = s.traces, "steps"_a = s.steps,
                   "cut"_a = s.cut);
 }
 
-py::dict to_dict(PencilResult&& result) {
+py::dict to_dict(plan::PencilResult&& result) {
   py::list paths;
-  for (PencilPath& path : result.paths) paths.append(std::make_shared<PencilPath>(std::move(path)));
+  for (plan::PencilPath& path : result.paths) paths.append(std::make_shared<plan::PencilPath>(std::move(path)));
   py::list ends;
   for (const auto& [first, last] : result.ends) ends.append(py::make_tuple(first, last));
   using namespace py::literals;
@@ -33,26 +33,26 @@ py::dict to_dict(PencilResult&& result) {
 }  // namespace
 
 void bind_pencil(py::module_& m) {
-  m.def("stepover_of_scallop", &stepover_of_scallop, py::arg("radius"), py::arg("height"));
-  m.def("tip_ball_radius", &tip_ball_radius, py::arg("tool"), py::arg("name"),
+  m.def("stepover_of_scallop", &plan::stepover_of_scallop, py::arg("radius"), py::arg("height"));
+  m.def("tip_ball_radius", &plan::tip_ball_radius, py::arg("tool"), py::arg("name"),
         "Radius (mm) of the ball at the tip of ``tool``; ValueError naming the argument ``name`` where there is none.");
   m.def(
       "pencil",
       [](const std::shared_ptr<Mesh>& part, const Tool& tool, double tolerance, std::optional<double> bitangency_angle,
          double minimum_length, int passes, std::optional<double> stepover, double overthickness,
          const py::object& progress) {
-        PencilOptions options;
+        plan::PencilOptions options;
         options.tolerance = tolerance, options.bitangency_angle = bitangency_angle;
         options.minimum_length = minimum_length, options.passes = passes, options.stepover = stepover;
         options.overthickness = overthickness;
-        const auto work = [part, radius = tip_ball_radius(tool, "tool"), options](const Progress& listener) {
+        const auto work = [part, radius = plan::tip_ball_radius(tool, "tool"), options](const Progress& listener) {
           return pencil(*part, radius, options, listener);
         };
-        return long_call(progress, work, [](PencilResult&& found) { return to_dict(std::move(found)); });
+        return long_call(progress, work, [](plan::PencilResult&& found) { return to_dict(std::move(found)); });
       },
       py::arg("part").none(false), py::arg("tool"), py::kw_only(), py::arg("tolerance"), py::arg("bitangency_angle"),
       py::arg("minimum_length"), py::arg("passes"), py::arg("stepover"), py::arg("overthickness"), py::arg("progress"),
       "For riffler.plan.pencil.");
 }
 
-}  // namespace riffler
+}  // namespace riffler::bindings

@@ -11,13 +11,13 @@
 #include "riffler/plan/least_tilt.hpp"
 #include "riffler/plan/lift.hpp"
 
-namespace riffler {
+namespace riffler::bindings {
 
 namespace {
 
 using namespace py::literals;
-using Path = std::shared_ptr<PencilPath>;
-using Obstacle = std::shared_ptr<Collider>;
+using Path = std::shared_ptr<plan::PencilPath>;
+using Obstacle = std::shared_ptr<collide::Collider>;
 
 std::vector<Vec3> to_vec3s(const Doubles& array, const char* name) {
   const std::size_t n = check_rows(array, 3, name);
@@ -29,7 +29,8 @@ std::vector<Vec3> to_vec3s(const Doubles& array, const char* name) {
 std::vector<Vec3> to_units(const Doubles& array, const char* name, std::size_t n) {
   std::vector<Vec3> out = to_vec3s(array, name);
   if (out.size() != n) throw py::value_error(std::string(name) + " must have " + std::to_string(n) + " rows");
-  for (std::size_t i = 0; i < n; ++i) out[i] = unit_axis(out[i], std::string(name) + ", row " + std::to_string(i));
+  for (std::size_t i = 0; i < n; ++i)
+    out[i] = plan::unit_axis(out[i], std::string(name) + ", row " + std::to_string(i));
   return out;
 }
 
@@ -37,7 +38,7 @@ std::vector<Vec3> to_units(const Doubles& array, const char* name, std::size_t n
 std::vector<Pose> to_unit_poses(const Doubles& array) {
   std::vector<Pose> out = to_poses(array, "poses");
   for (std::size_t i = 0; i < out.size(); ++i)
-    out[i].axis = unit_axis(out[i].axis, "poses, row " + std::to_string(i) + ": the axis");
+    out[i].axis = plan::unit_axis(out[i].axis, "poses, row " + std::to_string(i) + ": the axis");
   return out;
 }
 
@@ -48,7 +49,7 @@ py::array_t<double> contact_locations(const Tool& tool, const Doubles& contacts,
   std::vector<Vec3> feed(at.size(), Vec3(0));
   if (!feeds.is_none()) feed = to_vec3s(py::cast<Doubles>(feeds), "feeds");
   if (feed.size() != at.size()) throw py::value_error("feeds must have " + std::to_string(at.size()) + " rows");
-  const CutterSupport cutter(tool);
+  const plan::CutterSupport cutter(tool);
   std::vector<Pose> out;
   for (std::size_t i = 0; i < at.size(); ++i) {
     try {
@@ -60,33 +61,33 @@ py::array_t<double> contact_locations(const Tool& tool, const Doubles& contacts,
   return take<double>(std::move(out), 6);
 }
 
-py::list names_of(const std::vector<Touch>& touches) {
+py::list names_of(const std::vector<collide::Touch>& touches) {
   py::list out;
-  for (const Touch t : touches) out.append(name_of(t));
+  for (const collide::Touch t : touches) out.append(name_of(t));
   return out;
 }
 
-py::dict lift_all(const Tool& tool, const Doubles& array, const Collider& collider, double clearance, double tolerance,
-                  double max_lift, int max_evaluations, const py::object& callable) {
+py::dict lift_all(const Tool& tool, const Doubles& array, const collide::Collider& collider, double clearance,
+                  double tolerance, double max_lift, int max_evaluations, const py::object& callable) {
   const std::vector<Pose> poses = to_unit_poses(array);
-  const LiftRule rule{clearance, tolerance, max_lift, max_evaluations};
+  const plan::LiftRule rule{clearance, tolerance, max_lift, max_evaluations};
   validate(rule);
-  std::vector<Lift> lifts(poses.size());
+  std::vector<plan::Lift> lifts(poses.size());
   {
     const Progress progress = to_progress(callable);
     const NoGil release;
-    const Assembly assembly(tool);
+    const collide::Assembly assembly(tool);
     const auto body = [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) lifts[i] = lift(collider, assembly, poses[i], rule);
     };
-    parallel_for(poses.size(), 1, body, progress);
+    base::parallel_for(poses.size(), 1, body, progress);
   }
   std::vector<double> height, before, after;
   std::vector<std::uint8_t> free;
   std::vector<int> evaluations;
   std::vector<Vec3> points;
-  std::vector<Touch> touches;
-  for (const Lift& l : lifts) {
+  std::vector<collide::Touch> touches;
+  for (const plan::Lift& l : lifts) {
     height.push_back(l.height), before.push_back(l.before), after.push_back(l.clearance);
     free.push_back(l.free), evaluations.push_back(l.evaluations), points.push_back(l.point), touches.push_back(l.touch);
   }
@@ -99,31 +100,31 @@ py::dict lift_all(const Tool& tool, const Doubles& array, const Collider& collid
 py::tuple drop_all(const Tool& tool, const Doubles& array, const Mesh& part, const py::object& axis,
                    const py::object& callable) {
   const std::vector<Vec3> points = to_vec3s(array, "points");
-  const Vec3 up = unit_axis(to_vec3(axis, "axis"), "axis");
+  const Vec3 up = plan::unit_axis(to_vec3(axis, "axis"), "axis");
   std::vector<double> heights(points.size(), std::numeric_limits<double>::quiet_NaN());
   std::vector<Vec3> contacts(points.size(), Vec3(std::numeric_limits<double>::quiet_NaN()));
   {
     const Progress progress = to_progress(callable);
     const NoGil release;
-    const std::vector<DropCutter::Landing> landings = DropCutter(part, tool, up)(points, progress);
+    const std::vector<plan::DropCutter::Landing> landings = plan::DropCutter(part, tool, up)(points, progress);
     for (std::size_t i = 0; i < landings.size(); ++i)
       if (landings[i].touches) heights[i] = landings[i].height, contacts[i] = landings[i].point;
   }
   return py::make_tuple(take<double>(std::move(heights)), from_vec3s(contacts));
 }
 
-py::dict from_locations(const CutterLocations& found) {
+py::dict from_locations(const plan::CutterLocations& found) {
   std::vector<Pose> poses;
   std::vector<std::int64_t> points;
   std::vector<double> lift, before, clearance;
-  std::vector<Touch> touches;
-  for (const LocationRow& row : found.rows) {
+  std::vector<collide::Touch> touches;
+  for (const plan::LocationRow& row : found.rows) {
     poses.push_back(row.pose), points.push_back(row.point), lift.push_back(row.lift), before.push_back(row.before);
     clearance.push_back(row.clearance), touches.push_back(row.touch);
   }
   py::list blocked, unsafe;
-  for (const BlockedPoint& b : found.blocked) blocked.append(py::make_tuple(b.point, b.reason));
-  for (const UnsafeWay& u : found.unsafe) unsafe.append(py::make_tuple(u.row, u.clearance, u.bound, u.reason));
+  for (const plan::BlockedPoint& b : found.blocked) blocked.append(py::make_tuple(b.point, b.reason));
+  for (const plan::UnsafeWay& u : found.unsafe) unsafe.append(py::make_tuple(u.row, u.clearance, u.bound, u.reason));
   return py::dict("cl"_a = take<double>(std::move(poses), 6), "points"_a = take<std::int64_t>(std::move(points)),
                   "lift"_a = take<double>(std::move(lift)), "before"_a = take<double>(std::move(before)),
                   "clearance"_a = take<double>(std::move(clearance)), "pieces"_a = names_of(touches),
@@ -135,10 +136,10 @@ py::dict from_locations(const CutterLocations& found) {
 template <class From>
 auto locate(const std::shared_ptr<From>& from, const Tool& tool, const Obstacle& collider, double clearance,
             double tolerance, double max_lift, int max_inserted, const py::object& progress) {
-  LocationRule rule;
+  plan::LocationRule rule;
   rule.clearance = clearance, rule.tolerance = tolerance, rule.max_lift = max_lift, rule.max_inserted = max_inserted;
   const auto work = [=](const Progress& listener) {
-    return cutter_locations(*from, Assembly(tool), *collider, rule, listener);
+    return cutter_locations(*from, collide::Assembly(tool), *collider, rule, listener);
   };
   return long_call(progress, work, &from_locations);
 }
@@ -149,14 +150,14 @@ auto locate_poses(const Doubles& poses, const Tool& tool, const Obstacle& collid
   return locate(from, tool, collider, clearance, tolerance, max_lift, max_inserted, progress);
 }
 
-MapRule to_rule(const std::vector<double>& inclinations, const std::vector<double>& tilts, double clearance,
-                double tolerance, const py::object& limit) {
+plan::MapRule to_rule(const std::vector<double>& inclinations, const std::vector<double>& tilts, double clearance,
+                      double tolerance, const py::object& limit) {
   return {inclinations, tilts, clearance, tolerance, to_axis_limit(limit)};
 }
 
-py::dict from_map(const OrientationMap& map) {
+py::dict from_map(const plan::OrientationMap& map) {
   std::vector<std::uint8_t> states;
-  for (const OrientationMap::State s : map.state) states.push_back(static_cast<std::uint8_t>(s));
+  for (const plan::OrientationMap::State s : map.state) states.push_back(static_cast<std::uint8_t>(s));
   const std::optional<std::size_t> least = map.least_tilt();
   return py::dict("axes"_a = from_vec3s(map.axes), "clearance"_a = take<double>(std::vector<double>(map.clearance)),
                   "state"_a = take<std::uint8_t>(std::move(states)), "pieces"_a = names_of(map.touch),
@@ -164,23 +165,23 @@ py::dict from_map(const OrientationMap& map) {
                   "reason"_a = map.why_none());
 }
 
-py::list from_maps(const std::vector<OrientationMap>& found) {
+py::list from_maps(const std::vector<plan::OrientationMap>& found) {
   py::list out;
-  for (const OrientationMap& map : found) out.append(from_map(map));
+  for (const plan::OrientationMap& map : found) out.append(from_map(map));
   return out;
 }
 
 auto maps(const Path& path, const std::vector<std::size_t>& points, const Tool& tool, const Obstacle& collider,
           const std::vector<double>& inclinations, const std::vector<double>& tilts, double clearance, double tolerance,
           const py::object& limit, const py::object& progress) {
-  const MapRule rule = to_rule(inclinations, tilts, clearance, tolerance, limit);
+  const plan::MapRule rule = to_rule(inclinations, tilts, clearance, tolerance, limit);
   const auto work = [=](const Progress& listener) {
-    return orientation_maps(*path, points, Assembly(tool), *collider, rule, listener);
+    return orientation_maps(*path, points, collide::Assembly(tool), *collider, rule, listener);
   };
   return long_call(progress, work, &from_maps);
 }
 
-py::dict from_answer(TiltAnswer&& found) {
+py::dict from_answer(plan::TiltAnswer&& found) {
   return py::dict("found"_a = found.found, "axes"_a = from_vec3s(found.axes),
                   "angles"_a = take<double>(std::move(found.angles)), "cost"_a = found.cost, "point"_a = found.point,
                   "reason"_a = found.reason);
@@ -189,9 +190,9 @@ py::dict from_answer(TiltAnswer&& found) {
 auto choose(const Path& path, const Tool& tool, const Obstacle& collider, const std::vector<double>& inclinations,
             const std::vector<double>& tilts, double clearance, double tolerance, const py::object& limit,
             double max_change, double smoothness, const py::object& progress) {
-  const TiltRule rule{to_rule(inclinations, tilts, clearance, tolerance, limit), max_change, smoothness};
+  const plan::TiltRule rule{to_rule(inclinations, tilts, clearance, tolerance, limit), max_change, smoothness};
   const auto work = [=](const Progress& listener) {
-    return least_tilt(*path, Assembly(tool), *collider, rule, listener);
+    return least_tilt(*path, collide::Assembly(tool), *collider, rule, listener);
   };
   return long_call(progress, work, &from_answer);
 }
@@ -214,4 +215,4 @@ void bind_plan(py::module_& m) {
         "progress"_a);
 }
 
-}  // namespace riffler
+}  // namespace riffler::bindings

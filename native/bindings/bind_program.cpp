@@ -18,7 +18,7 @@
 #include "riffler/nc/write/writer.hpp"
 #include "verify/motion_check.hpp"
 
-namespace riffler {
+namespace riffler::bindings {
 
 namespace {
 
@@ -41,9 +41,9 @@ std::vector<double> to_column(const py::handle& object, std::size_t rows, const 
 }
 
 int to_int(double value, const std::string& name, std::size_t row) {
-  if (!(value >= 0 && value <= kMaxNumber && value == std::floor(value)))
+  if (!(value >= 0 && value <= nc::kMaxNumber && value == std::floor(value)))
     throw py::value_error(name + ", row " + std::to_string(row) + ": must be a whole number from 0 to " +
-                          std::to_string(kMaxNumber));
+                          std::to_string(nc::kMaxNumber));
   return static_cast<int>(value);
 }
 
@@ -61,8 +61,8 @@ std::map<int, Tool> to_tools(const py::object& object) {
   return out;
 }
 
-Provenance to_provenance(const py::object& object) {
-  Provenance out;
+nc::Provenance to_provenance(const py::object& object) {
+  nc::Provenance out;
   if (object.is_none()) return out;
   if (!py::isinstance<py::dict>(object)) throw py::value_error("provenance must be a dict of strings");
   for (const auto& [key, value] : py::cast<py::dict>(object))
@@ -87,7 +87,7 @@ std::map<std::size_t, Via> to_vias(const py::object& object, std::size_t rows) {
   return out;
 }
 
-py::dict vias_of(const Program& program) {
+py::dict vias_of(const nc::Program& program) {
   py::dict out;
   for (const auto& [row, via] : program.via()) {
     py::array_t<double> poses({static_cast<py::ssize_t>(via->size()), py::ssize_t{6}});
@@ -97,10 +97,10 @@ py::dict vias_of(const Program& program) {
   return out;
 }
 
-Program make_program(const Doubles& poses, const py::object& feed, const py::object& rapid, const py::object& tool,
-                     const py::object& line, const py::object& spindle, const py::object& tools,
-                     const py::object& provenance, const std::vector<Note>& notes, const py::object& at_machine,
-                     const py::object& via) {
+nc::Program make_program(const Doubles& poses, const py::object& feed, const py::object& rapid, const py::object& tool,
+                         const py::object& line, const py::object& spindle, const py::object& tools,
+                         const py::object& provenance, const std::vector<nc::Note>& notes, const py::object& at_machine,
+                         const py::object& via) {
   const std::vector<Pose> rows = to_poses(poses, "poses");
   const std::size_t n = rows.size();
   const auto column = [&](const py::object& object, const char* name) { return to_column(object, n, name); };
@@ -108,7 +108,7 @@ Program make_program(const Doubles& poses, const py::object& feed, const py::obj
                             numbers = column(tool, "tool"), lines = column(line, "line"),
                             speeds = column(spindle, "spindle"), away = column(at_machine, "at_machine");
   const std::map<std::size_t, Via> ways = to_vias(via, n);
-  Program program;
+  nc::Program program;
   program.reserve(n);
   for (std::size_t row = 0; row < n; ++row)
     program.append({rows[row], feeds[row], speeds[row], to_int(numbers[row], "tool", row),
@@ -155,37 +155,37 @@ py::object for_path(const py::object& object, std::size_t k, std::size_t paths, 
   return list[k];
 }
 
-Program from_cl(const py::iterable& cl, const py::object& tools, const py::object& feed, const py::object& spindle,
-                const std::optional<double>& safe_height, double clearance, const py::object& occupied,
-                const py::object& provenance, const std::shared_ptr<Collider>& collider,
-                const std::optional<double>& retract, const py::object& direction, const std::optional<double>& lead_in,
-                double contact_tolerance) {
+nc::Program from_cl(const py::iterable& cl, const py::object& tools, const py::object& feed, const py::object& spindle,
+                    const std::optional<double>& safe_height, double clearance, const py::object& occupied,
+                    const py::object& provenance, const std::shared_ptr<collide::Collider>& collider,
+                    const std::optional<double>& retract, const py::object& direction,
+                    const std::optional<double>& lead_in, double contact_tolerance) {
   std::vector<py::object> arrays;
   for (const py::handle& array : cl) arrays.push_back(py::reinterpret_borrow<py::object>(array));
   std::map<int, Tool> by_number;
   const std::vector<int> numbers = number_tools(tools, arrays.size(), by_number);
-  std::vector<CutterPath> paths;
+  std::vector<nc::CutterPath> paths;
   for (std::size_t k = 0; k < arrays.size(); ++k) {
     const std::string name = "cl[" + std::to_string(k) + "]";
-    CutterPath path;
+    nc::CutterPath path;
     path.poses = to_poses(to_doubles(arrays[k], name), name.c_str());
     path.feed = to_column(for_path(feed, k, arrays.size(), "feed"), path.poses.size(), "feed", false);
     path.spindle = to_column(for_path(spindle, k, arrays.size(), "spindle"), 1, "spindle")[0];
     path.tool = numbers[k];
     paths.push_back(std::move(path));
   }
-  Clearance room{safe_height, clearance, {}};
+  nc::Clearance room{safe_height, clearance, {}};
   if (!occupied.is_none()) {
     const auto box = py::cast<std::pair<py::object, py::object>>(occupied);
     room.occupied = {to_vec3(box.first, "occupied lower"), to_vec3(box.second, "occupied upper")};
   }
-  LinkRule links{collider.get(), contact_tolerance, retract, {}, lead_in};
+  nc::LinkRule links{collider.get(), contact_tolerance, retract, {}, lead_in};
   if (!direction.is_none()) links.direction = to_vec3(direction, "direction");
   if (!collider && (links.retract || links.direction))
     throw py::value_error("retract and direction choose among ways that are checked: they need a collider");
-  const Provenance origin = to_provenance(provenance);
+  const nc::Provenance origin = to_provenance(provenance);
   const NoGil release;
-  Program program = program_from_paths(paths, std::move(by_number), room, links);
+  nc::Program program = program_from_paths(paths, std::move(by_number), room, links);
   program.provenance = origin;
   return program;
 }
@@ -203,26 +203,26 @@ py::array view(const py::object& self, const std::vector<V>& column, py::ssize_t
 static_assert(sizeof(Pose) == 6 * sizeof(double));
 
 template <class V>
-auto column_getter(const std::vector<V>& (Program::*column)() const) {
-  return [column](const py::object& self) { return view<V>(self, (py::cast<const Program&>(self).*column)()); };
+auto column_getter(const std::vector<V>& (nc::Program::*column)() const) {
+  return [column](const py::object& self) { return view<V>(self, (py::cast<const nc::Program&>(self).*column)()); };
 }
 
 py::array poses(const py::object& self) {
-  return view<double>(self, py::cast<const Program&>(self).poses(), 6);
+  return view<double>(self, py::cast<const nc::Program&>(self).poses(), 6);
 }
 
 py::list cuts(const py::object& self) {
   py::list out;
-  const auto& given = py::cast<const Program&>(self);
+  const auto& given = py::cast<const nc::Program&>(self);
   const py::object whole = given.via().empty() ? self : py::cast(followed(given));
   const py::array all = poses(whole);
-  for (const ToolRun& run : py::cast<const Program&>(whole).runs())
+  for (const nc::ToolRun& run : py::cast<const nc::Program&>(whole).runs())
     out.append(py::make_tuple(
         run.tool, all[py::slice(static_cast<py::ssize_t>(run.begin), static_cast<py::ssize_t>(run.end), 1)]));
   return out;
 }
 
-py::dict tools_of(const Program& program) {
+py::dict tools_of(const nc::Program& program) {
   py::dict out;
   for (const auto& [number, tool] : program.tools) out[py::int_(number)] = tool;
   return out;
@@ -230,15 +230,15 @@ py::dict tools_of(const Program& program) {
 
 py::dict machine_list() {
   py::dict out;
-  for (const DescriptionEntry& entry : machines()) out[py::str(entry.name)] = entry.description;
+  for (const base::DescriptionEntry& entry : nc::machines()) out[py::str(entry.name)] = entry.description;
   return out;
 }
 
-py::object value_of(const OptionValue& value) {
+py::object value_of(const nc::OptionValue& value) {
   return std::visit([](const auto& v) -> py::object { return py::cast(v); }, value);
 }
 
-const char* name_of(OptionFact::Kind kind) {
+const char* name_of(nc::OptionFact::Kind kind) {
   static constexpr const char* kNames[] = {"number", "positive", "numbers", "range", "flag", "word", "path"};
   return kNames[static_cast<std::size_t>(kind)];
 }
@@ -246,8 +246,8 @@ const char* name_of(OptionFact::Kind kind) {
 py::list option_list(const std::string& machine, const py::object& options) {
   using namespace py::literals;
   py::list out;
-  for (const MachineOption& option : machine_options(machine, to_options(options))) {
-    const OptionFact& fact = option.fact;
+  for (const nc::MachineOption& option : nc::machine_options(machine, to_options(options))) {
+    const nc::OptionFact& fact = option.fact;
     out.append(py::dict("name"_a = fact.name, "kind"_a = name_of(fact.kind), "count"_a = fact.most,
                         "unit"_a = option.unit, "words"_a = fact.words,
                         "value"_a = fact.value ? value_of(*fact.value) : py::object(py::none()),
@@ -257,43 +257,43 @@ py::list option_list(const std::string& machine, const py::object& options) {
 }
 
 struct SharedStream : Guarded {
-  explicit SharedStream(NcStream&& s) : stream(std::move(s)) {}
-  NcStream stream;
+  explicit SharedStream(nc::NcStream&& s) : stream(std::move(s)) {}
+  nc::NcStream stream;
 };
 
-py::dict to_dict(const WriteReport& report) {
+py::dict to_dict(const nc::WriteReport& report) {
   using namespace py::literals;
   py::list passages;
-  for (const PolePassage& p : report.passages)
+  for (const nc::PolePassage& p : report.passages)
     passages.append(py::dict("first_row"_a = p.first, "last_row"_a = p.last, "tool_degrees"_a = p.tool,
                              "rotary_degrees"_a = p.rotary, "slowed"_a = p.slowed));
   return py::dict("blocks"_a = report.blocks, "slowed_blocks"_a = report.slowed, "rewinds"_a = report.rewinds,
                   "pole_passages"_a = passages);
 }
 
-py::dict write(const Program& self, const std::filesystem::path& path, const std::string& post, double tolerance,
-               double axis_tolerance, const py::object& options, const std::shared_ptr<Collider>& collider,
+py::dict write(const nc::Program& self, const std::filesystem::path& path, const std::string& post, double tolerance,
+               double axis_tolerance, const py::object& options, const std::shared_ptr<collide::Collider>& collider,
                SharedVolume* stock, double contact_tolerance) {
-  const WriteOptions how{post, tolerance, axis_tolerance, to_options(options), collider || stock};
+  const nc::WriteOptions how{post, tolerance, axis_tolerance, to_options(options), collider || stock};
   std::optional<Volume> material;
   if (stock) material = Reading(*stock).volume.snapshot();
-  WriteReport report;
+  nc::WriteReport report;
   {
     const NoGil release;
-    report = write_nc(self, path, how, [&](const WriteReport& written) {
-      if (collider) refuse_collisions(self, written.motion, *collider, contact_tolerance);
-      if (material) refuse_strikes(self, written.motion, *material, std::max(tolerance, 0.01));
+    report = write_nc(self, path, how, [&](const nc::WriteReport& written) {
+      if (collider) verify::refuse_collisions(self, written.motion, *collider, contact_tolerance);
+      if (material) verify::refuse_strikes(self, written.motion, *material, std::max(tolerance, 0.01));
     });
   }
   return to_dict(report);
 }
 
-Program edited_transform(const Program& program, const py::object& matrix) {
+nc::Program edited_transform(const nc::Program& program, const py::object& matrix) {
   const auto [turn, shift] = to_affine(matrix, "matrix");
   return transformed(program, turn, shift);
 }
 
-std::string repr(const Program& program) {
+std::string repr(const nc::Program& program) {
   std::string text = "<riffler.Program: " + std::to_string(program.size()) + " rows, ";
   const std::size_t runs = program.runs().size();
   return text + std::to_string(runs) + (runs == 1 ? " tool run>" : " tool runs>");
@@ -319,8 +319,8 @@ std::vector<double> to_pairs(const py::dict& dict, const std::string& name) {
 
 }  // namespace
 
-Options to_options(const py::object& object) {
-  Options out;
+nc::Options to_options(const py::object& object) {
+  nc::Options out;
   if (object.is_none()) return out;
   if (!py::isinstance<py::dict>(object)) throw py::value_error("options must be a dict");
   for (const auto& [key, value] : py::cast<py::dict>(object)) {
@@ -359,15 +359,15 @@ given, None where there is none then; ``needed``: it must be given, with these `
 file, the others are of many; ``about``: one sentence.
 ValueError for a machine that is not known, and for options that are wrong.)");
 
-  py::class_<Note>(m, "Note", "What a reader of NC code assumed or passed over.")
+  py::class_<nc::Note>(m, "Note", "What a reader of NC code assumed or passed over.")
       .def_readonly(
-          "kind", &Note::kind,
+          "kind", &nc::Note::kind,
           "\"skipped\", \"coordinates\" (what follows may be elsewhere), \"work offset\", \"units\", "
           "\"machine position\", "
           "\"rapid\", \"motion\", \"start\", \"tool length\", \"cutter compensation\", \"user code\" or \"end\".")
-      .def_readonly("line", &Note::line, "Of the source, from 1.")
-      .def_readonly("message", &Note::message)
-      .def("__repr__", [](const Note& n) {
+      .def_readonly("line", &nc::Note::line, "Of the source, from 1.")
+      .def_readonly("message", &nc::Note::message)
+      .def("__repr__", [](const nc::Note& n) {
         return "<riffler.Note: line " + std::to_string(n.line) + ", " + n.kind + ": " + n.message + ">";
       });
 
@@ -375,7 +375,7 @@ ValueError for a machine that is not known, and for options that are wrong.)");
       .def("__iter__", [](const py::object& self) { return self; })
       .def("__next__", [](SharedStream& self) {
         const OneCaller only(self, "the stream");
-        Program program;
+        nc::Program program;
         bool more;
         {
           const NoGil release;
@@ -385,8 +385,8 @@ ValueError for a machine that is not known, and for options that are wrong.)");
         return program;
       });
 
-  py::class_<Program, std::shared_ptr<Program>>(m, "Program",
-                                                R"(Where the tool goes, how fast and with which tool; immutable.
+  py::class_<nc::Program, std::shared_ptr<nc::Program>>(m, "Program",
+                                                        R"(Where the tool goes, how fast and with which tool; immutable.
 
 One row per move end. Between two rows the tip moves on a line and the axis on the great circle at constant rate, by way
 of the poses in ``via`` where there are any.
@@ -394,7 +394,7 @@ of the poses in ``via`` where there are any.
 comment of the NC code repeats. Lengths in mm, feed in mm/min at the tip, spindle in rev/min.)")
       .def(py::init(&make_program), py::arg("poses"), py::arg("feed"), py::arg("rapid") = false, py::arg("tool") = 1,
            py::arg("line") = 0, py::arg("spindle") = 0.0, py::arg("tools") = py::none(),
-           py::arg("provenance") = py::none(), py::arg_v("notes", std::vector<Note>(), "[]"),
+           py::arg("provenance") = py::none(), py::arg_v("notes", std::vector<nc::Note>(), "[]"),
            py::arg("at_machine") = false, py::arg("via") = py::none(),
            R"(From columns: poses (n, 6), everything else one value for all rows or (n,).
 
@@ -424,7 +424,7 @@ as cuts touch the part. ValueError names the path, the row, the place and the re
           "read",
           [](const std::filesystem::path& path, const std::string& machine, const py::object& options,
              const py::object& progress) {
-            const ReadOptions how{machine, to_options(options), to_progress(progress)};
+            const nc::ReadOptions how{machine, to_options(options), to_progress(progress)};
             const NoGil release;
             return read_nc(path, how);
           },
@@ -448,8 +448,8 @@ programmed. FormatError names file, line and block; nothing that is not understo
           [](const std::filesystem::path& path, const std::string& machine, const py::object& options, double rows) {
             if (!(rows >= 2 && rows <= 1e9)) throw py::value_error("rows must be 2 to 1e9");
             return std::make_unique<SharedStream>(
-                NcStream(path, ReadOptions{machine, to_options(options), to_progress(py::none())},
-                         static_cast<std::size_t>(rows)));
+                nc::NcStream(path, nc::ReadOptions{machine, to_options(options), to_progress(py::none())},
+                             static_cast<std::size_t>(rows)));
           },
           py::arg("path"), py::arg("machine") = "tcp", py::arg("options") = py::none(), py::arg("rows") = 65536,
           R"(Reads as ``read`` does, in memory that does not grow with the file: an iterator of programs of at most ``rows``
@@ -480,30 +480,30 @@ the material because a limit asks to turn an axis back; ``pole_passages``, near 
 ``first_row``, ``last_row``, ``tool_degrees``, ``rotary_degrees`` and ``slowed`` (the worst block's time by what its feed
 would take).)")
       .def_property_readonly("poses", &poses, "(n, 6): tip xyz, unit axis xyz (tip to spindle). Read-only view.")
-      .def_property_readonly("feed", column_getter(&Program::feed), "(n,) mm/min at the tip; 0 for rapids.")
+      .def_property_readonly("feed", column_getter(&nc::Program::feed), "(n,) mm/min at the tip; 0 for rapids.")
       .def_property_readonly(
-          "rapid", [](const py::object& self) { return view<bool>(self, py::cast<const Program&>(self).rapid()); },
+          "rapid", [](const py::object& self) { return view<bool>(self, py::cast<const nc::Program&>(self).rapid()); },
           "(n,) bool.")
       .def_property_readonly(
           "at_machine",
-          [](const py::object& self) { return view<bool>(self, py::cast<const Program&>(self).at_machine()); },
+          [](const py::object& self) { return view<bool>(self, py::cast<const nc::Program&>(self).at_machine()); },
           "(n,) bool: rows that end at a position of the machine (G28, G30, G53) whose place in the part is not known. "
           "Their pose is that of the row before; the motions there and from there are neither cut nor compared.")
-      .def_property_readonly("tool", column_getter(&Program::tool), "(n,) int32 tool numbers; 0: none.")
-      .def_property_readonly("line", column_getter(&Program::line), "(n,) int32 source lines from 1; 0: no source.")
-      .def_property_readonly("spindle", column_getter(&Program::spindle),
+      .def_property_readonly("tool", column_getter(&nc::Program::tool), "(n,) int32 tool numbers; 0: none.")
+      .def_property_readonly("line", column_getter(&nc::Program::line), "(n,) int32 source lines from 1; 0: no source.")
+      .def_property_readonly("spindle", column_getter(&nc::Program::spindle),
                              "(n,) rev/min; negative counter-clockwise, 0 stopped.")
       .def_property_readonly("tools", &tools_of, "dict: number to Tool, of the tools whose shape is known.")
       .def_property_readonly(
           "provenance",
-          [](const Program& self) {
+          [](const nc::Program& self) {
             py::dict out;
             for (const auto& [key, value] : self.provenance) out[py::str(key)] = value;
             return out;
           },
           "dict of strings.")
       .def_property_readonly(
-          "notes", [](const Program& self) { return self.notes; },
+          "notes", [](const nc::Program& self) { return self.notes; },
           "What the reader assumed or passed over: a list of Note. Programs that are made of numbers have none.")
       .def_property_readonly(
           "via", &vias_of,
@@ -511,30 +511,30 @@ would take).)")
           "than the "
           "great circle: by more than 0.002 rad, in programs that were read without ``axis_tolerance``.")
       .def(
-          "followed", [](const Program& self) { return followed(self); },
+          "followed", [](const nc::Program& self) { return followed(self); },
           "With the poses of ``via`` as rows of their own: between its rows the tool moves as the machine moves it.")
-      .def("trimmed", &trimmed, py::arg("first"), py::arg("last"),
+      .def("trimmed", &nc::trimmed, py::arg("first"), py::arg("last"),
            "Rows [first, last) as a program. The first of them is a rapid; an approach is yours to put before it.")
       .def("transformed", &edited_transform, py::arg("matrix"),
            "In another clamping: ``matrix`` (4, 4) turns and moves (mm) the part, without scale or mirror.")
-      .def("retimed", &scale_feeds, py::arg("factor"), "Feeds times ``factor``; rapids as they are.")
+      .def("retimed", &nc::scale_feeds, py::arg("factor"), "Feeds times ``factor``; rapids as they are.")
       .def_static(
           "joined",
-          [](const std::vector<std::reference_wrapper<const Program>>& programs) {
-            std::vector<const Program*> all;
-            for (const Program& program : programs) all.push_back(&program);
+          [](const std::vector<std::reference_wrapper<const nc::Program>>& programs) {
+            std::vector<const nc::Program*> all;
+            for (const nc::Program& program : programs) all.push_back(&program);
             return joined(all);
           },
           py::arg("programs"), "One after the other. ValueError where one number stands for tools of two shapes.")
-      .def("retooled", &renumber_tools, py::arg("numbers"),
+      .def("retooled", &nc::renumber_tools, py::arg("numbers"),
            "Tool numbers by a dict old: new; those that are not in it stay. ValueError where two shapes would share "
            "one.")
       .def("cuts", &cuts,
            "For replay: a list of (tool number, poses (k, 6)), one per run of rows in the part with one tool, rapids "
            "and the "
            "poses of ``via`` included.")
-      .def("__len__", &Program::size)
+      .def("__len__", &nc::Program::size)
       .def("__repr__", &repr);
 }
 
-}  // namespace riffler
+}  // namespace riffler::bindings

@@ -3,7 +3,7 @@
 #include "bindings/bindings.hpp"
 #include "riffler/nc/program_file.hpp"
 
-namespace riffler {
+namespace riffler::bindings {
 
 namespace {
 
@@ -13,7 +13,7 @@ ByteView view_of(const py::bytes& bytes) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 
-py::bytes bytes_of(const Program& program) {
+py::bytes bytes_of(const nc::Program& program) {
   std::vector<std::uint8_t> bytes;
   {
     const NoGil release;
@@ -22,28 +22,28 @@ py::bytes bytes_of(const Program& program) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-Program program_of(const py::bytes& bytes) {
+nc::Program program_of(const py::bytes& bytes) {
   const ByteView view = view_of(bytes);
   const NoGil release;
-  return parse_program(view, "program");
+  return nc::parse_program(view, "program");
 }
 
-void save(const Program& program, const std::filesystem::path& path, const py::object& progress) {
+void save(const nc::Program& program, const std::filesystem::path& path, const py::object& progress) {
   const Progress listener = to_progress(progress);
   const NoGil release;
   save_program(program, path, listener);
 }
 
-Program load(const std::filesystem::path& path, const py::object& progress) {
+nc::Program load(const std::filesystem::path& path, const py::object& progress) {
   const Progress listener = to_progress(progress);
   const NoGil release;
-  return load_program(path, listener);
+  return nc::load_program(path, listener);
 }
 
 }  // namespace
 
 void bind_program_file(py::module_& m) {
-  auto program = py::reinterpret_borrow<py::class_<Program, std::shared_ptr<Program>>>(m.attr("Program"));
+  auto program = py::reinterpret_borrow<py::class_<nc::Program, std::shared_ptr<nc::Program>>>(m.attr("Program"));
   program
       .def("save", &save, py::arg("path"), py::arg("progress") = py::none(),
            R"(Writes a .rprog file, whole or not at all: everything to the bit, which NC code cannot keep.
@@ -56,4 +56,4 @@ The same program gives the same bytes.)")
       .def(py::pickle(&bytes_of, &program_of));
 }
 
-}  // namespace riffler
+}  // namespace riffler::bindings

@@ -10,35 +10,35 @@
 #include "riffler/session/journal_sink.hpp"
 #include "riffler/session/session.hpp"
 
-namespace riffler {
+namespace riffler::bindings {
 
 namespace {
 
 using namespace py::literals;
 /// Rows of the ticks of a frame, as arrays.
 struct FrameView {
-  SessionFrame frame;
-  SculptTick last;  // the newest that there was
+  session::SessionFrame frame;
+  session::SculptTick last;  // the newest that there was
 
   template <class Get>
   py::array_t<double> column(const Get& get) const {
     std::vector<double> out;
     out.reserve(frame.ticks.size());
-    for (const SculptTick& tick : frame.ticks) out.push_back(get(tick));
+    for (const session::SculptTick& tick : frame.ticks) out.push_back(get(tick));
     return take<double>(std::move(out));
   }
   template <class Get>
   py::array_t<double> poses(const Get& get) const {
     std::vector<Pose> out;
     out.reserve(frame.ticks.size());
-    for (const SculptTick& tick : frame.ticks) out.push_back(get(tick));
+    for (const session::SculptTick& tick : frame.ticks) out.push_back(get(tick));
     return take<double>(std::move(out), 6);
   }
   template <class Get>
   py::array_t<double> wrenches(const Get& get) const {
     std::vector<Wrench> out;
     out.reserve(frame.ticks.size());
-    for (const SculptTick& tick : frame.ticks) out.push_back(get(tick));
+    for (const session::SculptTick& tick : frame.ticks) out.push_back(get(tick));
     return take<double>(std::move(out), 6);
   }
 };
@@ -46,18 +46,18 @@ struct FrameView {
 /// A session with what it uses, which Python may have let go.
 struct SharedSession : Guarded {
   std::shared_ptr<SharedVolume> volume;
-  std::shared_ptr<Pen> pen;
+  std::shared_ptr<pen::Pen> pen;
   py::object collider;
   Tool tool;
-  MoveCarver::Options carving;
-  CarveMode mode;
+  sweep::MoveCarver::Options carving;
+  sweep::CarveMode mode;
   std::optional<Volume> mask{};
-  std::shared_ptr<JournalSink> sink;
-  std::unique_ptr<Session> session;
-  SculptTick last{};
+  std::shared_ptr<session::JournalSink> sink;
+  std::unique_ptr<session::Session> session;
+  session::SculptTick last{};
 
-  SharedSession(std::shared_ptr<SharedVolume> v, std::shared_ptr<Pen> p, py::object c, const Tool& t,
-                const SessionSettings& settings)
+  SharedSession(std::shared_ptr<SharedVolume> v, std::shared_ptr<pen::Pen> p, py::object c, const Tool& t,
+                const session::SessionSettings& settings)
       : volume(std::move(v)),
         pen(std::move(p)),
         collider(std::move(c)),
@@ -107,11 +107,11 @@ std::optional<Pose> to_pose(const py::object& at) {
 }
 
 struct Options {
-  SessionSettings settings;
+  session::SessionSettings settings;
 
   void read(const py::kwargs& given) {
-    SculptLoopSettings& loop = settings.loop;
-    CouplingSettings& coupling = loop.sculpt.coupling;
+    session::SculptLoopSettings& loop = settings.loop;
+    haptics::CouplingSettings& coupling = loop.sculpt.coupling;
     const auto number = [](const char* name, double& to) { return std::pair<const char*, double*>(name, &to); };
     const std::pair<const char*, double*> numbers[] = {
         number("stiffness", coupling.stiffness),
@@ -147,9 +147,9 @@ struct Options {
   }
 
   void read_other(const std::string& name, const py::object& value) {
-    SculptLoopSettings& loop = settings.loop;
+    session::SculptLoopSettings& loop = settings.loop;
     if (name == "material") {
-      const Material& material = py::cast<const Material&>(value);
+      const haptics::Material& material = py::cast<const haptics::Material&>(value);
       material.validate("the stock");
       loop.carving.removal_constant = material.removal_constant, loop.sculpt.damping = material.damping;
     } else if (name == "at") {
@@ -172,37 +172,37 @@ struct Options {
   }
 };
 
-CarveMode to_mode(const std::string& mode) {
-  if (mode == "remove") return CarveMode::Remove;
-  if (mode == "add") return CarveMode::Add;
+sweep::CarveMode to_mode(const std::string& mode) {
+  if (mode == "remove") return sweep::CarveMode::Remove;
+  if (mode == "add") return sweep::CarveMode::Add;
   throw py::value_error("mode must be \"remove\" or \"add\", not \"" + mode + '"');
 }
 
 std::unique_ptr<SharedSession> make(const std::shared_ptr<SharedVolume>& volume, const Tool& tool,
-                                    std::shared_ptr<Pen> pen, const py::object& obstacles, SharedVolume* protect,
+                                    std::shared_ptr<pen::Pen> pen, const py::object& obstacles, SharedVolume* protect,
                                     const std::string& mode, const py::kwargs& given) {
   if (!volume) throw py::type_error("volume: None");
-  if (!pen) pen = std::make_shared<PointerPen>(PointerPen::Kind::Mouse);
+  if (!pen) pen = std::make_shared<pen::PointerPen>(pen::PointerPen::Kind::Mouse);
   Options options;
   options.settings.loop.passivity = pen->passivity();
   if (pen->capability().has_force()) options.settings.loop.sculpt.budget = 4e-4;
   options.read(given);
   options.settings.mode = to_mode(mode);
   // Python's collider is immutable, and kept by the object.
-  const Collider* collider = obstacles.is_none() ? nullptr : py::cast<const Collider*>(obstacles);
+  const collide::Collider* collider = obstacles.is_none() ? nullptr : py::cast<const collide::Collider*>(obstacles);
   auto out = std::make_unique<SharedSession>(volume, pen, obstacles, tool, options.settings);
   const Volume state = Reading(*volume).volume.snapshot();
   if (protect) out->mask = Reading(*protect).volume.snapshot();
-  out->session = std::make_unique<Session>(state, tool, std::move(pen),
-                                           std::shared_ptr<const Collider>(std::shared_ptr<void>(), collider),
-                                           options.settings, out->mask ? &*out->mask : nullptr);
+  out->session = std::make_unique<session::Session>(
+      state, tool, std::move(pen), std::shared_ptr<const collide::Collider>(std::shared_ptr<void>(), collider),
+      options.settings, out->mask ? &*out->mask : nullptr);
   return out;
 }
 
 /// Of all its strokes.
-StrokeMode stroke_mode(const SharedSession& self) {
-  if (self.mode == CarveMode::Add) return StrokeMode::Build;
-  return self.mask ? StrokeMode::Beside : StrokeMode::Remove;
+session::StrokeMode stroke_mode(const SharedSession& self) {
+  if (self.mode == sweep::CarveMode::Add) return session::StrokeMode::Build;
+  return self.mask ? session::StrokeMode::Beside : session::StrokeMode::Remove;
 }
 
 /// Stock and tool stand at the journal's beginning; every stroke follows as it is made.
@@ -219,21 +219,21 @@ void record(SharedSession& self, const std::filesystem::path& path, const py::di
       throw py::value_error(p.filename().string() + " is there already: take another name, or move it away");
   save(use.volume, snapshot);
   if (self.mask) save(*self.mask, mask);
-  auto writer = std::make_unique<JournalWriter>(path, JournalWriter::Keep::Rules);
-  const Frame& frame = use.volume.frame();
+  auto writer = std::make_unique<session::JournalWriter>(path, session::JournalWriter::Keep::Rules);
+  const dexel::Frame& frame = use.volume.frame();
   for (const auto& [key, value] : notes) writer->add_note(py::cast<std::string>(key), py::cast<std::string>(value));
   writer->set_stock({frame.box, frame.pitch, frame.directions, snapshot.filename().string(),
                      self.mask ? mask.filename().string() : ""});
   writer->add_tool(1, tool_json(py::cast(self.tool)));
   writer->sync();
-  JournalStreamOptions options;
+  session::JournalStreamOptions options;
   options.mode = stroke_mode(self);
-  auto sink = std::make_shared<JournalSink>(std::move(writer), 1, self.carving.tolerance, options);
+  auto sink = std::make_shared<session::JournalSink>(std::move(writer), 1, self.carving.tolerance, options);
   self.session->record(sink);
   self.sink = std::move(sink);
 }
 
-FrameView view(SharedSession& self, SessionFrame&& frame) {
+FrameView view(SharedSession& self, session::SessionFrame&& frame) {
   if (!frame.ticks.empty()) self.last = frame.ticks.back();
   return {std::move(frame), self.last};
 }
@@ -261,21 +261,21 @@ FrameView stop(SharedSession& self) {
   return out;
 }
 
-template <std::size_t (Session::*Go)(Volume&)>
+template <std::size_t (session::Session::*Go)(Volume&)>
 std::size_t go(SharedSession& self) {
   const NoGil release;
   const Using use(self);
   return (self.session.get()->*Go)(use.volume);
 }
 
-SculptLoop& running(SharedSession& self) {
+session::SculptLoop& running(SharedSession& self) {
   if (!self.session->running()) throw std::runtime_error("the session does not run");
   return *self.session->loop();
 }
 
 void bind_frame(py::module_& m) {
   using F = FrameView;
-  using T = SculptTick;
+  using T = session::SculptTick;
   py::class_<F>(m, "SessionFrame", R"(What happened between two calls of Session.frame: one row for each step.
 
 Forces and torques act on the hand, about the grip's point, in the device's frame; those on the tool act on it, about its
@@ -343,7 +343,8 @@ tip, in the part's.)")
       .def_property_readonly(
           "cause",
           [](const F& f) {
-            return f.last.cause == Cause::None ? py::object(py::none()) : py::object(py::str(sentence(f.last.cause)));
+            return f.last.cause == haptics::Cause::None ? py::object(py::none())
+                                                        : py::object(py::str(sentence(f.last.cause)));
           },
           "Why the force was taken away and what to do, or None.")
       .def_property_readonly(
@@ -360,21 +361,22 @@ tip, in the part's.)")
 }
 
 void bind_material(py::module_& m) {
-  const Material usual;
-  py::class_<Material>(m, "Material", "What a stock or a fixture is made of, as far as a hand can feel it.")
+  const haptics::Material usual;
+  py::class_<haptics::Material>(m, "Material", "What a stock or a fixture is made of, as far as a hand can feel it.")
       .def(py::init([](double stiffness, double removal_constant, double damping, double density) {
-             const Material material{stiffness, removal_constant, damping, density};
+             const haptics::Material material{stiffness, removal_constant, damping, density};
              material.validate("the material");
              return material;
            }),
            py::kw_only(), "stiffness"_a = usual.stiffness, "removal_constant"_a = usual.removal_constant,
            "damping"_a = usual.damping, "density"_a = usual.density)
-      .def_readonly("stiffness", &Material::stiffness,
+      .def_readonly("stiffness", &haptics::Material::stiffness,
                     "Of its surface, N per mm of depth and mm²; of a fixture N per mm³ in the tool.")
-      .def_readonly("removal_constant", &Material::removal_constant, "N·s/mm³: force for volume removed per second.")
-      .def_readonly("damping", &Material::damping, "N·s/mm on a cutter in the cut.")
-      .def_readonly("density", &Material::density, "g/cm³.")
-      .def("mass", &Material::mass, "volume"_a, "g of so many mm³.");
+      .def_readonly("removal_constant", &haptics::Material::removal_constant,
+                    "N·s/mm³: force for volume removed per second.")
+      .def_readonly("damping", &haptics::Material::damping, "N·s/mm on a cutter in the cut.")
+      .def_readonly("density", &haptics::Material::density, "g/cm³.")
+      .def("mass", &haptics::Material::mass, "volume"_a, "g of so many mm³.");
 }
 
 }  // namespace
@@ -416,27 +418,29 @@ Waits for the next step, 3 ms at most.)")
 cut. Before ``start``; a new file, with the stock beside it (``NAME-stock.rvol``), and what is protected
 (``NAME-mask.rvol``). What is in it survives a crash but for the last second at most, and is replayed by
 ``Session.replay``.)")
-      .def("undo", &go<&Session::undo>, R"(The last stroke did not happen, or the last few if they ended between two
+      .def("undo", &go<&session::Session::undo>,
+           R"(The last stroke did not happen, or the last few if they ended between two
 frames. How many that were; 0: there is none. RuntimeError in the middle of a stroke.)")
-      .def("redo", &go<&Session::redo>, "And happened, unless another was begun since.")
+      .def("redo", &go<&session::Session::redo>, "And happened, unless another was begun since.")
       .def(
           "reset", [](SharedSession& s) { running(s).reset(); },
           "Clears a trip that does not heal by itself: the frame's ``cause`` says what it was.")
       .def(
           "set_workspace",
           [](SharedSession& s, double scale, const py::object& turn, std::uint32_t dead_man, std::uint32_t clutch) {
-            const WorkspaceSettings settings{scale, to_turn(turn), clutch, dead_man};
-            SculptLoop& loop = running(s);
+            const haptics::WorkspaceSettings settings{scale, to_turn(turn), clutch, dead_man};
+            session::SculptLoop& loop = running(s);
             const NoGil release;
             loop.set_workspace(settings);
           },
-          py::kw_only(), "scale"_a = 1.0, "turn"_a = py::none(), "dead_man_mask"_a = WorkspaceSettings().dead_man_mask,
-          "clutch_mask"_a = WorkspaceSettings().clutch_mask,
+          py::kw_only(), "scale"_a = 1.0, "turn"_a = py::none(),
+          "dead_man_mask"_a = haptics::WorkspaceSettings().dead_man_mask,
+          "clutch_mask"_a = haptics::WorkspaceSettings().clutch_mask,
           "Another scale, view or buttons from the next step on. The tool does not jump.")
       .def_static(
           "replay",
           [](const std::filesystem::path& path, const py::object& progress) {
-            const py::object journal = py::type::of<Journal>().attr("read")(path);
+            const py::object journal = py::type::of<session::Journal>().attr("read")(path);
             return journal.attr("replay")(path.parent_path(), progress);
           },
           "path"_a, "progress"_a = py::none(),
@@ -451,7 +455,7 @@ frames. How many that were; 0: there is none. RuntimeError in the middle of a st
           [](SharedSession& s) {
             py::list out;
             if (!s.session->loop()) return out;
-            std::array<Trip, TripLog::kCapacity> trips{};
+            std::array<haptics::Trip, haptics::TripLog::kCapacity> trips{};
             std::uint64_t from = 0;
             const std::size_t n = s.session->loop()->trips().read(from, trips);
             for (std::size_t k = 0; k < n; ++k)
@@ -483,4 +487,4 @@ frames. How many that were; 0: there is none. RuntimeError in the middle of a st
       .def("__exit__", [](const py::object& self, const py::args&) { self.attr("stop")(); });
 }
 
-}  // namespace riffler
+}  // namespace riffler::bindings

@@ -5,7 +5,7 @@
 #include "bindings/shared_volume.hpp"
 #include "riffler/dexel/smooth/smooth_dabs.hpp"
 
-namespace riffler {
+namespace riffler::bindings {
 
 namespace {
 
@@ -17,10 +17,10 @@ std::vector<Vec3> to_centres(Doubles array) {
   return to_vec3s(array, "centres");
 }
 
-SmoothResult smooth_brush(SharedVolume& self, const Doubles& centres, double radius, double strength,
-                          SharedVolume* protect, const py::object& progress) {
+dexel::SmoothResult smooth_brush(SharedVolume& self, const Doubles& centres, double radius, double strength,
+                                 SharedVolume* protect, const py::object& progress) {
   const std::vector<Vec3> dabs = to_centres(centres);
-  SmoothOptions options{radius, strength, nullptr, to_progress(progress)};
+  dexel::SmoothOptions options{radius, strength, nullptr, to_progress(progress)};
   std::optional<Volume> kept;  // which may be `self`
   if (protect) options.protect = &kept.emplace(Reading(*protect).volume.snapshot());
   Writing writing(self);
@@ -31,17 +31,18 @@ SmoothResult smooth_brush(SharedVolume& self, const Doubles& centres, double rad
 }  // namespace
 
 void bind_smooth_dabs(py::module_& m) {
-  py::class_<SmoothResult>(m, "Softened", "What each dab of a smooth brush did; arrays with one number per dab.")
+  py::class_<dexel::SmoothResult>(m, "Softened", "What each dab of a smooth brush did; arrays with one number per dab.")
       .def_property_readonly(
-          "removed", [](const SmoothResult& s) { return take<double>(std::vector<double>(s.removed)); },
+          "removed", [](const dexel::SmoothResult& s) { return take<double>(std::vector<double>(s.removed)); },
           "(n,) mm³ taken away.")
       .def_property_readonly(
-          "added", [](const SmoothResult& s) { return take<double>(std::vector<double>(s.added)); }, "(n,) mm³ put on.")
-      .def("__len__", [](const SmoothResult& s) { return s.removed.size(); });
+          "added", [](const dexel::SmoothResult& s) { return take<double>(std::vector<double>(s.added)); },
+          "(n,) mm³ put on.")
+      .def("__len__", [](const dexel::SmoothResult& s) { return s.removed.size(); });
 
   py::reinterpret_borrow<VolumeClass>(m.attr("Volume"))
       .def("soften", &smooth_brush, py::arg("centres"), py::arg("radius"),
-           py::arg("strength") = SmoothOptions{}.strength, py::arg("protect") = py::none(),
+           py::arg("strength") = dexel::SmoothOptions{}.strength, py::arg("protect") = py::none(),
            py::arg("progress") = py::none(),
            R"(Smooths the surface by dabs of a round brush at ``centres`` (n, 3) or (3,), one after the other.
 
@@ -55,4 +56,4 @@ upper, pitch and directions; what lies in it stays as it is, material and air. `
 share; returning False cancels, raises Cancelled and leaves the volume as it was.)");
 }
 
-}  // namespace riffler
+}  // namespace riffler::bindings

@@ -5,7 +5,7 @@
 #include "riffler/plan/engrave.hpp"
 #include "riffler/plan/swarf.hpp"
 
-namespace riffler {
+namespace riffler::bindings {
 
 namespace {
 
@@ -19,25 +19,25 @@ std::vector<std::vector<Vec3>> to_curves(const py::sequence& sequence) {
   return curves;
 }
 
-py::list engraved(const Mesh& part, const py::sequence& sequence, const Tool& tool, const EngraveOptions& options,
+py::list engraved(const Mesh& part, const py::sequence& sequence, const Tool& tool, const plan::EngraveOptions& options,
                   const py::object& callable) {
   const std::vector<std::vector<Vec3>> curves = to_curves(sequence);
   const Progress progress = to_progress(callable);
-  std::vector<Engraved> found;
+  std::vector<plan::Engraved> found;
   {
     const NoGil release;
     found = engrave(part, curves, tool, options, progress);
   }
   py::list out;
-  for (const Engraved& e : found)
+  for (const plan::Engraved& e : found)
     out.append(py::make_tuple(from_poses(e.poses), from_vec3s(e.contacts), from_vec3s(e.normals)));
   return out;
 }
 
-py::dict cut_with_flank(const PencilPath& path, const Mesh& part, const Tool& tool, const SwarfOptions& options,
-                        const py::object& callable) {
+py::dict cut_with_flank(const plan::PencilPath& path, const Mesh& part, const Tool& tool,
+                        const plan::SwarfOptions& options, const py::object& callable) {
   const Progress progress = to_progress(callable);
-  Swarf found;
+  plan::Swarf found;
   {
     const NoGil release;
     found = swarf(path, part, tool, options, progress);
@@ -45,7 +45,7 @@ py::dict cut_with_flank(const PencilPath& path, const Mesh& part, const Tool& to
   py::list fits;
   for (const auto& [first, last] : found.fits) fits.append(py::make_tuple(first, last));
   using namespace py::literals;
-  return py::dict("path"_a = std::make_shared<PencilPath>(std::move(found.path)),
+  return py::dict("path"_a = std::make_shared<plan::PencilPath>(std::move(found.path)),
                   "height"_a = take<double>(std::move(found.height)), "error"_a = take<double>(std::move(found.error)),
                   "fits"_a = fits);
 }
@@ -64,11 +64,11 @@ void bind_strategies(py::module_& m) {
       "For riffler.plan.engrave.");
   m.def(
       "swarf",
-      [](const PencilPath& path, const Mesh& part, const Tool& tool, int side, std::optional<double> height,
+      [](const plan::PencilPath& path, const Mesh& part, const Tool& tool, int side, std::optional<double> height,
          double tolerance,
          const py::object& progress) { return cut_with_flank(path, part, tool, {side, height, tolerance}, progress); },
       py::arg("path"), py::arg("part"), py::arg("tool"), py::kw_only(), py::arg("side"), py::arg("height"),
       py::arg("tolerance"), py::arg("progress"), "For riffler.plan.swarf.");
 }
 
-}  // namespace riffler
+}  // namespace riffler::bindings

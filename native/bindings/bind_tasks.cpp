@@ -2,25 +2,25 @@
 #include "bindings/task.hpp"
 #include "riffler/base/parallel.hpp"
 
-namespace riffler {
+namespace riffler::bindings {
 
 namespace {
 
 /// Of all tasks there are, under the GIL.
-std::vector<std::weak_ptr<Background>>& running() {
-  static std::vector<std::weak_ptr<Background>> all;
+std::vector<std::weak_ptr<base::Background>>& running() {
+  static std::vector<std::weak_ptr<base::Background>> all;
   return all;
 }
 
-void remember(const std::shared_ptr<Background>& background) {
-  std::erase_if(running(), [](const std::weak_ptr<Background>& b) { return b.expired(); });
+void remember(const std::shared_ptr<base::Background>& background) {
+  std::erase_if(running(), [](const std::weak_ptr<base::Background>& b) { return b.expired(); });
   running().push_back(background);
 }
 
 /// Before the interpreter goes: a thread that ran on while the process takes itself apart would use what is gone.
 void end_all() {
-  std::vector<std::shared_ptr<Background>> all;
-  for (const std::weak_ptr<Background>& b : running())
+  std::vector<std::shared_ptr<base::Background>> all;
+  for (const std::weak_ptr<base::Background>& b : running())
     if (auto held = b.lock()) all.push_back(std::move(held));
   for (const auto& b : all) b->cancel();
   const NoGil release;
@@ -29,8 +29,8 @@ void end_all() {
 
 }  // namespace
 
-Task::Task(Background::Work work, std::function<py::object()> convert)
-    : background_(std::make_shared<Background>(std::move(work))) {
+Task::Task(base::Background::Work work, std::function<py::object()> convert)
+    : background_(std::make_shared<base::Background>(std::move(work))) {
   stages_.push_back([convert = std::move(convert)](const py::object&) { return convert(); });
   remember(background_);
 }
@@ -76,7 +76,7 @@ nothing. A Task that nobody holds any more is cancelled and waited for; so are a
            "What the call returns, the same object each time; waits for it, other threads go on. Raises what the call "
            "raises, Cancelled after ``cancel``. Ctrl-C ends the waiting, not the call.")
       .def("__repr__", [](const Task& t) {
-        const Background& b = t.background();
+        const base::Background& b = t.background();
         const int percent = static_cast<int>(100 * b.share());
         return std::string("<riffler.Task: ") + (b.done() ? "done" : std::to_string(percent) + " %") + ">";
       });
@@ -90,16 +90,16 @@ nothing. A Task that nobody holds any more is cancelled and waited for; so are a
       py::arg("found"), py::arg("convert"), "convert(found); of a Task, that it will be done by its result().");
   py::module_::import("atexit").attr("register")(py::cpp_function(&end_all));
 
-  m.def("threads", &thread_count,
+  m.def("threads", &base::thread_count,
         "Threads that a parallel call uses: what set_threads() says, else RIFFLER_THREADS where that is set, else as "
         "many "
         "as the process may run on.");
   m.def(
-      "set_threads", [](std::optional<int> n) { set_thread_count(n); }, py::arg("n"),
+      "set_threads", [](std::optional<int> n) { base::set_thread_count(n); }, py::arg("n"),
       R"(Says how many threads parallel calls use from now on, in all of the process; those that run keep theirs.
 
 ``n``: 1 to 256, or None: RIFFLER_THREADS decides again, or the CPU affinity. Results are the same bytes for any number.
 ValueError for others.)");
 }
 
-}  // namespace riffler
+}  // namespace riffler::bindings

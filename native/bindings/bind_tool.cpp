@@ -8,7 +8,7 @@
 #include "riffler/tool/cutters.hpp"
 #include "riffler/tool/outline.hpp"
 
-namespace riffler {
+namespace riffler::bindings {
 
 namespace {
 
@@ -36,28 +36,28 @@ std::vector<std::vector<double>> rows(const py::object& object, const char* name
   return out;
 }
 
-std::vector<Frustum> to_frusta(const py::object& object, const char* name) {
-  std::vector<Frustum> out;
+std::vector<tool::Frustum> to_frusta(const py::object& object, const char* name) {
+  std::vector<tool::Frustum> out;
   for (const auto& r : rows(object, name, 4, 4)) out.push_back({r[0], r[1], r[2], r[3]});
   return out;
 }
 
-std::vector<ProfileSegment> to_segments(const py::object& object) {
-  std::vector<ProfileSegment> out;
+std::vector<tool::ProfileSegment> to_segments(const py::object& object) {
+  std::vector<tool::ProfileSegment> out;
   for (const auto& r : rows(object, "segments", 2, 4))
     out.push_back({{r[0], r[1]}, r.size() == 4 ? std::optional<Vec2>(Vec2(r[2], r[3])) : std::nullopt});
   return out;
 }
 
-py::list from_frusta(const std::vector<Frustum>& pieces) {
+py::list from_frusta(const std::vector<tool::Frustum>& pieces) {
   py::list out;
-  for (const Frustum& f : pieces) out.append(py::make_tuple(f.z0, f.r0, f.z1, f.r1));
+  for (const tool::Frustum& f : pieces) out.append(py::make_tuple(f.z0, f.r0, f.z1, f.r1));
   return out;
 }
 
-py::list from_segments(const Profile& profile) {
+py::list from_segments(const tool::Profile& profile) {
   py::list out;
-  for (const ProfileSegment& s : profile.segments())
+  for (const tool::ProfileSegment& s : profile.segments())
     out.append(s.centre ? py::make_tuple(s.to.x, s.to.y, s.centre->x, s.centre->y) : py::make_tuple(s.to.x, s.to.y));
   return out;
 }
@@ -77,7 +77,8 @@ py::dict to_dict(const Tool& tool) {
 /// "ball, flat, … or profile"
 std::string kinds() {
   std::string out;
-  for (const CutterShape& shape : cutter_shapes()) out += (out.empty() ? "" : ", ") + std::string(shape.name);
+  for (const tool::CutterShape& shape : tool::cutter_shapes())
+    out += (out.empty() ? "" : ", ") + std::string(shape.name);
   return out + " or profile";
 }
 
@@ -89,13 +90,13 @@ Tool from_dict(const py::dict& d) {
   const auto get = [&](const char* key) { return number(object(key), std::string("tool: ") + key); };
   const auto cutter = [&](const std::string& kind) -> Tool {
     if (kind == "profile") return cutters::profile(to_segments(object("segments")), get("length"));
-    const CutterShape* shape = find_cutter_shape(kind);
+    const tool::CutterShape* shape = tool::find_cutter_shape(kind);
     if (!shape) throw py::value_error("tool: kind must be " + kinds() + ", not \"" + kind + "\"");
     std::vector<double> sizes;
-    for (const CutterSize& size : shape->sizes)
-      sizes.push_back(size.unit != SizeUnit::Flag ? get(size.name)
-                      : d.contains(size.name)     ? py::cast<bool>(d[size.name])
-                                                  : 0.0);
+    for (const tool::CutterSize& size : shape->sizes)
+      sizes.push_back(size.unit != tool::SizeUnit::Flag ? get(size.name)
+                      : d.contains(size.name)           ? py::cast<bool>(d[size.name])
+                                                        : 0.0);
     return make_cutter(*shape, sizes);
   };
   const py::object kind = object("kind");
@@ -113,13 +114,13 @@ py::list outline(const Tool& tool, double tolerance) {
   constexpr const char* kNames[] = {"cutter", "shank", "holder"};
   py::list out;
   std::vector<Vec2> line;
-  Part part{};
+  tool::Part part{};
   const auto flush = [&] {
     if (!line.empty()) out.append(py::make_tuple(kNames[static_cast<int>(part)], take<double>(std::move(line), 2)));
     line.clear();
   };
-  const Outline whole(tool);
-  for (const OutlineEdge& edge : whole.edges()) {
+  const tool::Outline whole(tool);
+  for (const tool::OutlineEdge& edge : whole.edges()) {
     if (!line.empty() && (edge.part != part || edge.from != line.back())) flush();
     const std::vector<Vec2> points = polyline(edge, tolerance);
     line.insert(line.end(), points.begin() + (line.empty() ? 0 : 1), points.end());
@@ -129,22 +130,22 @@ py::list outline(const Tool& tool, double tolerance) {
   return out;
 }
 
-const char* unit_of(const CutterSize& size) {
+const char* unit_of(const tool::CutterSize& size) {
   constexpr const char* kUnits[] = {"mm", "rad", "bool"};
   return kUnits[static_cast<int>(size.unit)];
 }
 
-std::variant<bool, double> initial(const CutterSize& size) {
-  if (size.unit == SizeUnit::Flag) return size.initial != 0;
+std::variant<bool, double> initial(const tool::CutterSize& size) {
+  if (size.unit == tool::SizeUnit::Flag) return size.initial != 0;
   return size.initial;
 }
 
-std::string docstring(const CutterShape& shape) {
+std::string docstring(const tool::CutterShape& shape) {
   std::string out = std::string(shape.description) + ".\n";
-  for (const CutterSize& size : shape.sizes) {
+  for (const tool::CutterSize& size : shape.sizes) {
     std::string text = size.description;
     text[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(text[0])));
-    out += std::string("\n- ``") + size.name + "``: " + text + (size.unit == SizeUnit::Angle ? ", in rad" : "");
+    out += std::string("\n- ``") + size.name + "``: " + text + (size.unit == tool::SizeUnit::Angle ? ", in rad" : "");
   }
   return out;
 }
@@ -154,7 +155,7 @@ using Each = T;
 
 /// Tool.<shape>(sizes): numbers, then flags, which are false by default.
 template <std::size_t... number, std::size_t... flag>
-void bind_shape(py::class_<Tool>& tool, const CutterShape& shape, std::index_sequence<number...>,
+void bind_shape(py::class_<Tool>& tool, const tool::CutterShape& shape, std::index_sequence<number...>,
                 std::index_sequence<flag...>) {
   tool.def_static(
       shape.name,
@@ -167,10 +168,10 @@ void bind_shape(py::class_<Tool>& tool, const CutterShape& shape, std::index_seq
 
 /// Tool.<shape>, which has `count` numbers or more.
 template <std::size_t count = 2>
-void bind_any_shape(py::class_<Tool>& tool, const CutterShape& shape) {
+void bind_any_shape(py::class_<Tool>& tool, const tool::CutterShape& shape) {
   constexpr std::size_t kMaxNumbers = 8;
   std::size_t numbers = 0;
-  while (numbers < shape.sizes.size() && shape.sizes[numbers].unit != SizeUnit::Flag) ++numbers;
+  while (numbers < shape.sizes.size() && shape.sizes[numbers].unit != tool::SizeUnit::Flag) ++numbers;
   const std::size_t flags = shape.sizes.size() - numbers;
   if constexpr (count <= kMaxNumbers) {
     if (numbers != count) return bind_any_shape<count + 1>(tool, shape);
@@ -181,26 +182,29 @@ void bind_any_shape(py::class_<Tool>& tool, const CutterShape& shape) {
 }
 
 void bind_shapes(py::module_& m) {
-  py::class_<CutterSize>(m, "ToolSize", "One size of a cutter shape. It means the same in every shape that has it.")
-      .def_readonly("name", &CutterSize::name, "The argument's name, and the key in a tool's dict.")
+  py::class_<tool::CutterSize>(m, "ToolSize",
+                               "One size of a cutter shape. It means the same in every shape that has it.")
+      .def_readonly("name", &tool::CutterSize::name, "The argument's name, and the key in a tool's dict.")
       .def_property_readonly("unit", &unit_of, "\"mm\", \"rad\" or \"bool\".")
-      .def_readonly("label", &CutterSize::label, "Short name for a form.")
-      .def_readonly("description", &CutterSize::description, "One phrase for a form's tooltip.")
-      .def_readonly("low", &CutterSize::low, "Smallest value that a form should offer.")
-      .def_readonly("high", &CutterSize::high, "Largest value that a form should offer.")
+      .def_readonly("label", &tool::CutterSize::label, "Short name for a form.")
+      .def_readonly("description", &tool::CutterSize::description, "One phrase for a form's tooltip.")
+      .def_readonly("low", &tool::CutterSize::low, "Smallest value that a form should offer.")
+      .def_readonly("high", &tool::CutterSize::high, "Largest value that a form should offer.")
       .def_property_readonly("default", &initial, "First value of a form; suits a cutter of 6 mm.")
       .def_property_readonly(
-          "largest", [](const CutterSize& s) { return s.largest > 0 ? std::optional(s.largest) : std::nullopt; },
+          "largest", [](const tool::CutterSize& s) { return s.largest > 0 ? std::optional(s.largest) : std::nullopt; },
           "Largest multiple of the diameter that a form should offer, or None.")
-      .def("__repr__", [](const CutterSize& s) { return "<riffler.ToolSize " + std::string(s.name) + ">"; });
-  py::class_<CutterShape>(m, "ToolShape", "A named cutter shape, one row of Tool.shapes().")
-      .def_readonly("name", &CutterShape::name, "The kind of its tools, and the function of Tool that makes them.")
-      .def_readonly("label", &CutterShape::label, "Short name for a form.")
-      .def_readonly("description", &CutterShape::description, "One phrase for a form's tooltip.")
+      .def("__repr__", [](const tool::CutterSize& s) { return "<riffler.ToolSize " + std::string(s.name) + ">"; });
+  py::class_<tool::CutterShape>(m, "ToolShape", "A named cutter shape, one row of Tool.shapes().")
+      .def_readonly("name", &tool::CutterShape::name,
+                    "The kind of its tools, and the function of Tool that makes them.")
+      .def_readonly("label", &tool::CutterShape::label, "Short name for a form.")
+      .def_readonly("description", &tool::CutterShape::description, "One phrase for a form's tooltip.")
       .def_property_readonly(
-          "sizes", [](const CutterShape& s) { return std::vector<CutterSize>(s.sizes.begin(), s.sizes.end()); },
+          "sizes",
+          [](const tool::CutterShape& s) { return std::vector<tool::CutterSize>(s.sizes.begin(), s.sizes.end()); },
           "In the order of the function's arguments; one is \"diameter\", one \"length\".")
-      .def("__repr__", [](const CutterShape& s) { return "<riffler.ToolShape " + std::string(s.name) + ">"; });
+      .def("__repr__", [](const tool::CutterShape& s) { return "<riffler.ToolShape " + std::string(s.name) + ">"; });
 }
 
 }  // namespace
@@ -211,9 +215,10 @@ void bind_tool(py::module_& m) {
 
 Heights are measured from the tip towards the spindle, lengths in mm, angles in rad. ``length`` includes the
 rounded or conical end. Sizes that are not positive or do not fit raise ValueError naming the size.)");
-  for (const CutterShape& shape : cutter_shapes()) bind_any_shape(tool, shape);
+  for (const tool::CutterShape& shape : tool::cutter_shapes()) bind_any_shape(tool, shape);
   tool.def_static(
-          "shapes", [] { return std::vector<CutterShape>(cutter_shapes().begin(), cutter_shapes().end()); },
+          "shapes",
+          [] { return std::vector<tool::CutterShape>(tool::cutter_shapes().begin(), tool::cutter_shapes().end()); },
           R"(The named cutter shapes with their sizes, for forms: those that have a function here but ``profile``.)")
       .def_static(
           "profile",
@@ -258,4 +263,4 @@ stays within ``tolerance`` of it. What lies inside of another piece is left out.
       .def(py::pickle([](const Tool& t) { return to_dict(t); }, [](const py::dict& d) { return from_dict(d); }));
 }
 
-}  // namespace riffler
+}  // namespace riffler::bindings

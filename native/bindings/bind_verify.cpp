@@ -8,29 +8,30 @@
 #include "riffler/verify/verification.hpp"
 #include "verify/slab_run.hpp"
 
-namespace riffler {
+namespace riffler::bindings {
 
 namespace {
 
 struct SharedVerification : Guarded {
-  SharedVerification(VerifyArguments arguments, const Progress& progress)
+  SharedVerification(verify::VerifyArguments arguments, const Progress& progress)
       : verification(std::move(arguments), progress) {}
-  Verification verification;
+  verify::Verification verification;
 };
 
 }  // namespace
 
-std::shared_ptr<SharedReport> share(VerifyReport&& report) {
+std::shared_ptr<SharedReport> share(verify::VerifyReport&& report) {
   return std::make_shared<SharedReport>(std::move(report));
 }
 
 namespace {
 
 /// Chunk by chunk; of how many there are nothing is known, so progress is that of each.
-VerifyReport run_stream(SlabRun& run, const py::iterable& chunks, const Progress& progress) {
+verify::VerifyReport run_stream(verify::SlabRun& run, const py::iterable& chunks, const Progress& progress) {
   for (const py::handle& item : chunks) {
-    if (!py::isinstance<Program>(item)) throw py::value_error("program must be a Program or an iterable of Programs");
-    const Program& chunk = py::cast<const Program&>(item);
+    if (!py::isinstance<nc::Program>(item))
+      throw py::value_error("program must be a Program or an iterable of Programs");
+    const nc::Program& chunk = py::cast<const nc::Program&>(item);
     const NoGil release;
     run.feed(chunk, progress);
   }
@@ -38,21 +39,22 @@ VerifyReport run_stream(SlabRun& run, const py::iterable& chunks, const Progress
   return run.finish(progress);
 }
 
-VerifyReport run_whole(SlabRun& run, const Program& program, const Progress& progress) {
-  run.feed(program, part(progress, 0, 0.9));
-  return run.finish(part(progress, 0.9, 1));
+verify::VerifyReport run_whole(verify::SlabRun& run, const nc::Program& program, const Progress& progress) {
+  run.feed(program, base::part(progress, 0, 0.9));
+  return run.finish(base::part(progress, 0.9, 1));
 }
 
 /// The engine, in the first tenth of the progress.
-std::unique_ptr<SlabRun> make_run(const GivenArguments& given, const Progress& progress) {
-  return std::make_unique<SlabRun>(to_arguments(given, part(progress, 0, 0.05)), part(progress, 0.05, 0.1));
+std::unique_ptr<verify::SlabRun> make_run(const GivenArguments& given, const Progress& progress) {
+  return std::make_unique<verify::SlabRun>(to_arguments(given, base::part(progress, 0, 0.05)),
+                                           base::part(progress, 0.05, 0.1));
 }
 
 auto verify(const py::object& program, GivenArguments given, const py::object& progress) {
-  if (py::isinstance<Program>(program)) {
+  if (py::isinstance<nc::Program>(program)) {
     const auto work = [given = std::move(given),
-                       whole = py::cast<std::shared_ptr<Program>>(program)](const Progress& listener) {
-      return run_whole(*make_run(given, listener), *whole, part(listener, 0.1, 1));
+                       whole = py::cast<std::shared_ptr<nc::Program>>(program)](const Progress& listener) {
+      return run_whole(*make_run(given, listener), *whole, base::part(listener, 0.1, 1));
     };
     return long_call(progress, work, &share);
   }
@@ -60,16 +62,17 @@ auto verify(const py::object& program, GivenArguments given, const py::object& p
     throw py::value_error("program must be a Program or an iterable of Programs");
   if (is_task_request(progress)) throw py::value_error("program must be a Program for a Task, which runs no Python");
   const Progress listener = to_progress(progress);
-  std::unique_ptr<SlabRun> run;
+  std::unique_ptr<verify::SlabRun> run;
   {
     const NoGil release;
     run = make_run(given, listener);
   }
-  VerifyReport report = run_stream(*run, py::reinterpret_borrow<py::iterable>(program), part(listener, 0.1, 1));
+  verify::VerifyReport report =
+      run_stream(*run, py::reinterpret_borrow<py::iterable>(program), base::part(listener, 0.1, 1));
   return ValueOrTask<std::shared_ptr<SharedReport>>(py::cast(share(std::move(report))));
 }
 
-auto run(const std::shared_ptr<SharedVerification>& self, const std::shared_ptr<Program>& program,
+auto run(const std::shared_ptr<SharedVerification>& self, const std::shared_ptr<nc::Program>& program,
          const py::object& progress) {
   const auto work = [self, program](const Progress& listener) {
     const OneCaller only(*self, "the verification");
@@ -78,12 +81,12 @@ auto run(const std::shared_ptr<SharedVerification>& self, const std::shared_ptr<
   return long_call(progress, work, &share);
 }
 
-py::object made_deviation(const VerifyReport& report) {
+py::object made_deviation(const verify::VerifyReport& report) {
   const Progress listener = to_progress(py::none());
   std::pair<Mesh, std::vector<double>> found;
   {
     const NoGil release;
-    found = deviation_of(report.volume, *report.part, listener);
+    found = verify::deviation_of(report.volume, *report.part, listener);
   }
   return py::make_tuple(std::make_shared<Mesh>(std::move(found.first)), take<double>(std::move(found.second)));
 }
@@ -98,7 +101,7 @@ py::object made_part_map(SharedReport& self) {
   std::vector<double> found;
   {
     const NoGil release;
-    found = part_map_of(*left, *self.report.part);
+    found = verify::part_map_of(*left, *self.report.part);
   }
   return take<double>(std::move(found));
 }
@@ -109,25 +112,25 @@ py::object part_map(SharedReport& self) {
 }
 
 py::array_t<double> rate(const SharedReport& self) {
-  const VerifyReport& r = self.report;
+  const verify::VerifyReport& r = self.report;
   std::vector<double> out(r.removed.size());
   for (std::size_t row = 0; row < out.size(); ++row)
     out[row] = r.seconds[row] > 0 ? 60 * r.removed[row] / r.seconds[row] : 0;
   return take<double>(std::move(out));
 }
 
-double total_time(const VerifyReport& report) {
+double total_time(const verify::VerifyReport& report) {
   double sum = 0;
   for (const double s : report.seconds) sum += s;
   return sum;
 }
 
-const char* member_name(const Finding& f) {
+const char* member_name(const verify::Finding& f) {
   static constexpr const char* names[] = {"cutter", "shank", "holder", "beyond"};
   return names[static_cast<int>(f.member)];
 }
 
-py::dict to_dict(const Finding& f) {
+py::dict to_dict(const verify::Finding& f) {
   py::dict d;
   d["kind"] = name_of(f.kind), d["row"] = f.row, d["last_row"] = f.last_row, d["line"] = f.line;
   d["last_line"] = f.last_line, d["tool"] = f.tool, d["value"] = f.value, d["unit"] = f.unit();
@@ -140,7 +143,7 @@ py::dict to_dict(const Finding& f) {
   return d;
 }
 
-py::dict to_dict(const VerifyStats& s) {
+py::dict to_dict(const verify::VerifyStats& s) {
   py::dict d;
   d["moves"] = s.moves, d["slabs"] = s.slabs, d["slabs_kept"] = s.slabs_kept;
   d["snapshots_used"] = s.snapshots_used, d["probes"] = s.probes, d["probed_moves"] = s.probed_moves;
@@ -149,10 +152,10 @@ py::dict to_dict(const VerifyStats& s) {
 }
 
 py::dict to_dict(const SharedReport& self) {
-  const VerifyReport& r = self.report;
+  const verify::VerifyReport& r = self.report;
   py::dict d;
   py::list findings;
-  for (const Finding& f : r.findings) findings.append(to_dict(f));
+  for (const verify::Finding& f : r.findings) findings.append(to_dict(f));
   d["passed"] = r.passed(), d["findings"] = findings, d["not_checked"] = r.not_checked;
   d["rows"] = r.removed.size(), d["time"] = total_time(r), d["volume"] = r.volume.volume();
   double sum = 0;
@@ -163,32 +166,34 @@ py::dict to_dict(const SharedReport& self) {
 }
 
 void bind_report(py::module_& m) {
-  py::class_<Finding>(m, "Finding", "One fault: neighbouring rows of a program with the same kind, tool and fixture.")
+  py::class_<verify::Finding>(m, "Finding",
+                              "One fault: neighbouring rows of a program with the same kind, tool and fixture.")
       .def_property_readonly(
-          "kind", [](const Finding& f) { return name_of(f.kind); },
+          "kind", [](const verify::Finding& f) { return name_of(f.kind); },
           R"("rapid", "holder", "shank", "fixture", "gouge", "rest", "spindle" (a feed move into material with a spindle
 that stands), "machine" (the machine cannot hold the row) or "unknown" (it could not be checked).)")
-      .def_readonly("row", &Finding::row, "First row; the move that ends there.")
-      .def_readonly("last_row", &Finding::last_row)
-      .def_readonly("line", &Finding::line, "Source line of the first row from 1; 0: no source.")
-      .def_readonly("last_line", &Finding::last_line)
-      .def_readonly("tool", &Finding::tool, "Tool number.")
+      .def_readonly("row", &verify::Finding::row, "First row; the move that ends there.")
+      .def_readonly("last_row", &verify::Finding::last_row)
+      .def_readonly("line", &verify::Finding::line, "Source line of the first row from 1; 0: no source.")
+      .def_readonly("last_line", &verify::Finding::last_line)
+      .def_readonly("tool", &verify::Finding::tool, "Tool number.")
       .def_property_readonly("member", &member_name,
                              "What of the tool it was: cutter, shank, holder, or beyond where its description ends.")
       .def_property_readonly(
-          "fixture", [](const Finding& f) { return f.fixture < 0 ? std::optional<int>() : f.fixture; },
+          "fixture", [](const verify::Finding& f) { return f.fixture < 0 ? std::optional<int>() : f.fixture; },
           "Which of the fixtures it was, from 0, or None.")
       .def_readonly(
-          "value", &Finding::value,
+          "value", &verify::Finding::value,
           R"(How much, in ``unit``. rapid, spindle: mm³ that all rows took. holder, shank, fixture, unknown: mm³ in
 the way of the worst row (where a slab of the stock has been hit 256 times, only one further hit in sixteen is measured).
 gouge, rest: mm under or over the part's surface.)")
-      .def_property_readonly("unit", &Finding::unit)
+      .def_property_readonly("unit", &verify::Finding::unit)
       .def_property_readonly(
-          "point", [](const Finding& f) { return from_vec3(f.point); }, "(3,) mm: the worst place, part coordinates.")
-      .def_readonly("message", &Finding::message, "One sentence: what happened and what to do.")
-      .def("to_dict", [](const Finding& f) { return to_dict(f); })
-      .def("__repr__", [](const Finding& f) {
+          "point", [](const verify::Finding& f) { return from_vec3(f.point); },
+          "(3,) mm: the worst place, part coordinates.")
+      .def_readonly("message", &verify::Finding::message, "One sentence: what happened and what to do.")
+      .def("to_dict", [](const verify::Finding& f) { return to_dict(f); })
+      .def("__repr__", [](const verify::Finding& f) {
         return "<riffler.Finding " + std::string(name_of(f.kind)) + ", rows " + std::to_string(f.row) + " to " +
                std::to_string(f.last_row) + ": " + f.message + ">";
       });
@@ -281,4 +286,4 @@ are. The report is that of a fresh run, bit for bit.)");
                    "The VerifyReport of a Program. After an error or Cancelled this is as it was before the call.");
 }
 
-}  // namespace riffler
+}  // namespace riffler::bindings

@@ -10,7 +10,7 @@
 #include "riffler/marching/to_mesh.hpp"
 #include "riffler/sweep/carve.hpp"
 
-namespace riffler {
+namespace riffler::bindings {
 
 namespace {
 
@@ -21,7 +21,7 @@ struct Snapshot {
 
 std::shared_ptr<SharedVolume> block(const py::object& lower, const py::object& upper, double pitch,
                                     const std::string& directions) {
-  const Frame frame{{to_vec3(lower, "lower"), to_vec3(upper, "upper")}, pitch, directions};
+  const dexel::Frame frame{{to_vec3(lower, "lower"), to_vec3(upper, "upper")}, pitch, directions};
   return share(Volume::block(frame));
 }
 
@@ -39,7 +39,7 @@ Box3 box_around(const Mesh& mesh, const py::object& lower, const py::object& upp
   return box;
 }
 
-void fill(py::dict& d, const MeshReport& r) {
+void fill(py::dict& d, const dexel::MeshReport& r) {
   d["triangles"] = r.triangles, d["degenerate"] = r.degenerate, d["duplicates"] = r.duplicates;
   d["open_edges"] = r.open_edges, d["nonmanifold_edges"] = r.nonmanifold_edges;
   d["inconsistent_edges"] = r.inconsistent_edges, d["openings"] = r.openings;
@@ -53,14 +53,14 @@ auto volume_from_mesh(const std::shared_ptr<Mesh>& mesh, double pitch, const std
                       std::optional<py::dict> report) {
   struct Made {
     std::shared_ptr<SharedVolume> volume;
-    MeshReport report;
+    dexel::MeshReport report;
     Lost lost;
   };
-  const Frame frame{box_around(*mesh, lower, upper), pitch, directions};
+  const dexel::Frame frame{box_around(*mesh, lower, upper), pitch, directions};
   const auto work = [mesh, frame, reports = report.has_value()](const Progress& listener) {
     Made out;
-    MissedMaterial missed;
-    Volume volume = from_mesh(*mesh, frame, listener, reports ? &out.report : nullptr, &missed);
+    dexel::MissedMaterial missed;
+    Volume volume = dexel::from_mesh(*mesh, frame, listener, reports ? &out.report : nullptr, &missed);
     out.lost = lost_in(volume, missed);
     out.volume = share(std::move(volume));
     return out;
@@ -75,7 +75,7 @@ auto volume_from_mesh(const std::shared_ptr<Mesh>& mesh, double pitch, const std
 auto volume_to_mesh(SharedVolume& self, const py::object& progress, std::optional<py::dict> report) {
   using Made = std::pair<std::shared_ptr<Mesh>, Lost>;
   const auto work = [state = Reading(self).volume.snapshot()](const Progress& listener) {
-    Made out{std::make_shared<Mesh>(to_mesh(state, listener)), {}};
+    Made out{std::make_shared<Mesh>(marching::to_mesh(state, listener)), {}};
     out.second = lost_by_meshing(state, out.first->triangles.size());
     return out;
   };
@@ -85,9 +85,9 @@ auto volume_to_mesh(SharedVolume& self, const py::object& progress, std::optiona
   });
 }
 
-const Grid& grid_of(const Volume& volume, const std::string& direction) {
-  const std::vector<Axis> axes = parse_directions(direction);
-  const Grid* grid = axes.size() == 1 ? volume.grid(axes[0]) : nullptr;
+const dexel::Grid& grid_of(const Volume& volume, const std::string& direction) {
+  const std::vector<Axis> axes = dexel::parse_directions(direction);
+  const dexel::Grid* grid = axes.size() == 1 ? volume.grid(axes[0]) : nullptr;
   if (!grid)
     throw py::value_error("direction must be one of the volume's own, \"" + volume.frame().directions + "\", not \"" +
                           direction + "\"");
@@ -96,34 +96,34 @@ const Grid& grid_of(const Volume& volume, const std::string& direction) {
 
 /// Calls f(i, j) for every ray in C order.
 template <class F>
-void for_each_ray(const Grid& grid, const F& f) {
+void for_each_ray(const dexel::Grid& grid, const F& f) {
   for (int i = 0; i < grid.nu(); ++i)
     for (int j = 0; j < grid.nv(); ++j) f(i, j);
 }
 
 py::tuple intervals(SharedVolume& self, const std::string& direction) {
   const Reading reading(self);
-  const Grid& grid = grid_of(reading.volume, direction);
+  const dexel::Grid& grid = grid_of(reading.volume, direction);
   py::array_t<std::uint32_t> counts({grid.nu(), grid.nv()});
   py::array_t<double> spans({static_cast<py::ssize_t>(grid.span_count()), py::ssize_t{2}});
   std::uint32_t* count = counts.mutable_data();
   double* out = spans.mutable_data();
   for_each_ray(grid, [&](int i, int j) {
-    const std::span<const Span> ray = grid.ray(i, j);
+    const std::span<const dexel::Span> ray = grid.ray(i, j);
     *count++ = static_cast<std::uint32_t>(ray.size());
-    for (const Span& s : ray) *out++ = s.near, *out++ = s.far;
+    for (const dexel::Span& s : ray) *out++ = s.near, *out++ = s.far;
   });
   return py::make_tuple(counts, spans);
 }
 
 py::array_t<double> normals(SharedVolume& self, const std::string& direction) {
   const Reading reading(self);
-  const Grid& grid = grid_of(reading.volume, direction);
+  const dexel::Grid& grid = grid_of(reading.volume, direction);
   if (!grid.has_normals()) throw py::value_error("a volume of one direction stores no normals");
   py::array_t<double> out({static_cast<py::ssize_t>(grid.span_count()), py::ssize_t{2}, py::ssize_t{3}});
   double* p = out.mutable_data();
   for_each_ray(grid, [&](int i, int j) {
-    for (const SpanNormals& n : grid.ray_normals(i, j))
+    for (const dexel::SpanNormals& n : grid.ray_normals(i, j))
       for (const Vec3& v : {n.near.unpack(), n.far.unpack()})
         for (int k = 0; k < 3; ++k) *p++ = v[k];
   });
@@ -139,27 +139,28 @@ std::vector<double> to_times(const py::object& dt, std::size_t moves) {
   return {array.data(), array.data() + moves};
 }
 
-CarveMode to_mode(const std::string& mode) {
-  if (mode == "remove") return CarveMode::Remove;
-  if (mode == "add") return CarveMode::Add;
+sweep::CarveMode to_mode(const std::string& mode) {
+  if (mode == "remove") return sweep::CarveMode::Remove;
+  if (mode == "add") return sweep::CarveMode::Add;
   throw py::value_error("mode must be \"remove\" or \"add\", not \"" + mode + "\"");
 }
 
-Cut carve_poses(SharedVolume& self, const Tool& tool, const Doubles& poses, double tolerance, const py::object& dt,
-                double removal_constant, const py::object& progress, const std::string& mode, SharedVolume* protect) {
+sweep::Cut carve_poses(SharedVolume& self, const Tool& tool, const Doubles& poses, double tolerance,
+                       const py::object& dt, double removal_constant, const py::object& progress,
+                       const std::string& mode, SharedVolume* protect) {
   const std::vector<Pose> path = to_poses(poses, "poses");
-  CarveOptions options{tolerance,        to_times(dt, path.empty() ? 0 : path.size() - 1),
-                       removal_constant, to_progress(progress),
-                       to_mode(mode),    nullptr};
+  sweep::CarveOptions options{tolerance,        to_times(dt, path.empty() ? 0 : path.size() - 1),
+                              removal_constant, to_progress(progress),
+                              to_mode(mode),    nullptr};
   std::optional<Volume> kept;  // which may be `self`
   if (protect) options.protect = &kept.emplace(Reading(*protect).volume.snapshot());
   Writing writing(self);
   const NoGil release;
-  return carve(writing.volume, tool, path, options);
+  return sweep::carve(writing.volume, tool, path, options);
 }
 
 /// v.subtract(w) and its like: changes v and returns it.
-auto boolean(Boolean op) {
+auto boolean(dexel::Boolean op) {
   return [op](const std::shared_ptr<SharedVolume>& self, SharedVolume& other, const py::object& progress) {
     const Progress listener = to_progress(progress);
     const Volume operand = Reading(other).volume.snapshot();  // which may be `self`
@@ -181,7 +182,7 @@ auto save_volume(SharedVolume& self, const std::filesystem::path& path, const py
 std::shared_ptr<SharedVolume> load_volume(const std::filesystem::path& path, const py::object& progress) {
   const Progress listener = to_progress(progress);
   const NoGil release;
-  return share(load(path, listener));
+  return share(dexel::load(path, listener));
 }
 
 auto volume_to_bytes(SharedVolume& self, const py::object& progress) {
@@ -198,12 +199,12 @@ std::shared_ptr<SharedVolume> volume_from_bytes(const py::buffer& data, const st
   const std::span bytes(static_cast<const std::uint8_t*>(info.ptr),
                         static_cast<std::size_t>(info.size * info.itemsize));
   const NoGil release;
-  return share(from_bytes(bytes, name));
+  return share(dexel::from_bytes(bytes, name));
 }
 
 py::dict stats(SharedVolume& self) {
   Writing writing(self);
-  const Stats s = writing.volume.take_stats();
+  const dexel::Stats s = writing.volume.take_stats();
   py::dict d;
   d["moves"] = s.moves, d["steps"] = s.steps, d["tiles_visited"] = s.tiles_visited;
   d["tiles_changed"] = s.tiles_changed, d["rays_tested"] = s.rays_tested, d["hits"] = s.hits,
@@ -216,22 +217,23 @@ std::string describe(SharedVolume& self) {
   const Reading reading(self);
   const Volume& v = reading.volume;
   std::string rays;
-  for (const Grid& g : v.grids())
+  for (const dexel::Grid& g : v.grids())
     rays += (rays.empty() ? "" : " + ") + std::to_string(g.nu()) + " × " + std::to_string(g.nv());
   return "<riffler.Volume \"" + v.frame().directions + "\", pitch " +
          py::cast<std::string>(py::str(py::float_(v.frame().pitch))) + " mm, " + rays + " rays>";
 }
 
 void bind_cut(py::module_& m) {
-  py::class_<Cut>(m, "Cut", "What each move of a carve took away; arrays with one row per move.")
+  py::class_<sweep::Cut>(m, "Cut", "What each move of a carve took away; arrays with one row per move.")
       .def_property_readonly(
-          "removed", [](const Cut& c) { return take<double>(std::vector<double>(c.removed)); }, "(n,) mm³.")
+          "removed", [](const sweep::Cut& c) { return take<double>(std::vector<double>(c.removed)); }, "(n,) mm³.")
       .def_property_readonly(
-          "force", [](const Cut& c) { return from_vec3s(c.force); },
+          "force", [](const sweep::Cut& c) { return from_vec3s(c.force); },
           "(n, 3) N on the tool, against its motion; zeros unless dt was given.")
       .def_property_readonly(
-          "torque", [](const Cut& c) { return from_vec3s(c.torque); }, "(n, 3) N·mm about the tip at the move's end.")
-      .def("__len__", [](const Cut& c) { return c.removed.size(); });
+          "torque", [](const sweep::Cut& c) { return from_vec3s(c.torque); },
+          "(n, 3) N·mm about the tip at the move's end.")
+      .def("__len__", [](const sweep::Cut& c) { return c.removed.size(); });
 }
 
 }  // namespace
@@ -289,7 +291,7 @@ UserWarning.)")
           "rays",
           [](SharedVolume& v) {
             std::size_t n = 0;
-            for (const Grid& g : v.volume.grids()) n += static_cast<std::size_t>(g.nu()) * g.nv();
+            for (const dexel::Grid& g : v.volume.grids()) n += static_cast<std::size_t>(g.nu()) * g.nv();
             return n;
           },
           "Number of rays, all directions.")
@@ -298,7 +300,7 @@ UserWarning.)")
       .def("normals", &normals, py::arg("direction"),
            "(spans, 2, 3): unit normals at the ends of the spans of ``intervals``; tri-dexel volumes only.")
       .def("carve", &carve_poses, py::arg("tool"), py::arg("poses"), py::arg("tolerance") = 0.01,
-           py::arg("dt") = py::none(), py::arg("removal_constant") = CarveOptions{}.removal_constant,
+           py::arg("dt") = py::none(), py::arg("removal_constant") = sweep::CarveOptions{}.removal_constant,
            py::arg("progress") = py::none(), py::arg("mode") = "remove", py::arg("protect") = py::none(),
            R"(Takes away what the cutter sweeps along ``poses`` (n, 6): tip xyz, unit axis xyz; n - 1 moves.
 
@@ -321,12 +323,12 @@ is, material and air. ValueError if its grid is another.)")
       .def("__copy__", [](SharedVolume& v) { return share(Reading(v).volume.snapshot()); })
       .def("__deepcopy__", [](SharedVolume& v, const py::dict&) { return share(Reading(v).volume.snapshot()); })
       .def(
-          "subtract", boolean(Boolean::Subtract), py::arg("other"), py::arg("progress") = py::none(),
+          "subtract", boolean(dexel::Boolean::Subtract), py::arg("other"), py::arg("progress") = py::none(),
           "Takes the other volume's material away, in place; returns this volume. ValueError unless both have the same "
           "lower, upper, pitch and directions.")
-      .def("add", boolean(Boolean::Add), py::arg("other"), py::arg("progress") = py::none(),
+      .def("add", boolean(dexel::Boolean::Add), py::arg("other"), py::arg("progress") = py::none(),
            "Adds the other volume's material, in place; see subtract.")
-      .def("intersect", boolean(Boolean::Intersect), py::arg("other"), py::arg("progress") = py::none(),
+      .def("intersect", boolean(dexel::Boolean::Intersect), py::arg("other"), py::arg("progress") = py::none(),
            "Keeps what both volumes have, in place; see subtract.")
       .def("save", &save_volume, py::arg("path"), py::arg("progress") = py::none(),
            "Writes a .rvol file, whole or not at all. Equal volumes are equal files.")
@@ -346,4 +348,4 @@ there is more than crumbs, otherwise empty. Without a report that sentence is a 
   bind_volume_edits(volume);
 }
 
-}  // namespace riffler
+}  // namespace riffler::bindings

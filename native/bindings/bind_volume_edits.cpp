@@ -9,7 +9,7 @@
 #include "riffler/dexel/quadrics.hpp"
 #include "riffler/marching/to_mesh.hpp"
 
-namespace riffler {
+namespace riffler::bindings {
 
 namespace {
 
@@ -25,8 +25,8 @@ Box3 box_or(const Box3& own, const py::object& lower, const py::object& upper) {
 
 auto sphere_volume(const py::object& centre, double radius, double pitch, const std::string& directions,
                    const py::object& lower, const py::object& upper, const py::object& progress) {
-  const Sphere solid{to_vec3(centre, "centre"), radius};
-  const Frame frame{box_or(bounds(solid), lower, upper), pitch, directions};
+  const dexel::Sphere solid{to_vec3(centre, "centre"), radius};
+  const dexel::Frame frame{box_or(bounds(solid), lower, upper), pitch, directions};
   const auto work = [solid, frame](const Progress& listener) { return share(sphere(solid, frame, listener)); };
   return long_call(progress, work, Identity());
 }
@@ -34,8 +34,8 @@ auto sphere_volume(const py::object& centre, double radius, double pitch, const 
 auto cylinder_volume(const py::object& centre, double radius, double height, double pitch,
                      const std::string& directions, const py::object& axis, const py::object& lower,
                      const py::object& upper, const py::object& progress) {
-  const Cylinder solid{to_vec3(centre, "centre"), radius, height, to_vec3(axis, "axis")};
-  const Frame frame{box_or(bounds(solid), lower, upper), pitch, directions};
+  const dexel::Cylinder solid{to_vec3(centre, "centre"), radius, height, to_vec3(axis, "axis")};
+  const dexel::Frame frame{box_or(bounds(solid), lower, upper), pitch, directions};
   const auto work = [solid, frame](const Progress& listener) { return share(cylinder(solid, frame, listener)); };
   return long_call(progress, work, Identity());
 }
@@ -84,13 +84,13 @@ py::array_t<bool> contains_points(SharedVolume& self, const Doubles& points) {
 auto resampled(SharedVolume& self, double pitch, const std::optional<std::string>& directions, const py::object& lower,
                const py::object& upper, const py::object& progress) {
   const Volume state = Reading(self).volume.snapshot();
-  const Frame& old = state.frame();
-  const Frame frame{box_or(old.box, lower, upper), pitch, directions.value_or(old.directions)};
+  const dexel::Frame& old = state.frame();
+  const dexel::Frame frame{box_or(old.box, lower, upper), pitch, directions.value_or(old.directions)};
   const auto work = [state, fresh = Volume(frame)](const Progress& listener) {
     if (fresh.frame() == state.frame()) return share(state.snapshot());
-    const Mesh mesh = to_mesh(state, part(listener, 0, 0.5));
+    const Mesh mesh = marching::to_mesh(state, base::part(listener, 0, 0.5));
     if (mesh.empty()) return share(fresh.snapshot());
-    return share(from_mesh(mesh, fresh.frame(), part(listener, 0.5, 1)));
+    return share(dexel::from_mesh(mesh, fresh.frame(), base::part(listener, 0.5, 1)));
   };
   return long_call(progress, work, Identity());
 }
@@ -145,4 +145,4 @@ Material outside of the new box is left out. What is resampled is the mesh of ``
 detail back. A volume with the same pitch, directions and box is a copy, bit for bit.)");
 }
 
-}  // namespace riffler
+}  // namespace riffler::bindings

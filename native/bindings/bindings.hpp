@@ -17,7 +17,7 @@
 #include "riffler/geom/vec.hpp"
 #include "riffler/plan/orientation.hpp"
 
-namespace riffler {
+namespace riffler::bindings {
 
 namespace py = pybind11;
 
@@ -75,10 +75,10 @@ py::array_t<double> from_poses(const std::vector<Pose>& poses);
 std::string tool_json(const py::object& tool);
 
 /// "cutter", "shank", "holder" or "fixture".
-const char* name_of(Touch touch);
+const char* name_of(collide::Touch touch);
 
 /// (axis, angle), or None: no limit.
-std::optional<AxisLimit> to_axis_limit(const py::object& object, bool project = false);
+std::optional<plan::AxisLimit> to_axis_limit(const py::object& object, bool project = false);
 
 /// Hands a vector's storage to numpy without a copy; shape (rows, columns), or (rows,) for columns = 0.
 template <class T, class V, class A>
@@ -97,6 +97,6 @@ py::array_t<T> take(std::vector<V, A>&& values, std::size_t columns = 0) {
 Progress to_progress(const py::object& callable);
 
 /// Of machines and posts, from a dict or None: numbers, lists of them, bools, texts.
-Options to_options(const py::object& object);
+nc::Options to_options(const py::object& object);
 
-}  // namespace riffler
+}  // namespace riffler::bindings

@@ -5,7 +5,7 @@
 #include "bindings/bindings.hpp"
 #include "riffler/base/check.hpp"
 
-namespace riffler {
+namespace riffler::bindings {
 
 std::size_t check_rows(const Doubles& array, std::size_t columns, const char* name) {
   if (array.ndim() != 2 || static_cast<std::size_t>(array.shape(1)) != columns) {
@@ -32,9 +32,9 @@ Vec3 to_vec3(const py::object& object, const char* name) {
   if (!array || array.ndim() != 1 || array.shape(0) != 3)
     throw py::value_error(std::string(name) + " must be three numbers");
   const Vec3 v{array.at(0), array.at(1), array.at(2)};
-  if (!finite(v))
-    throw py::value_error(std::string(name) + " must be finite, not (" + in_figures(v.x) + ", " + in_figures(v.y) +
-                          ", " + in_figures(v.z) + ")");
+  if (!geom::finite(v))
+    throw py::value_error(std::string(name) + " must be finite, not (" + base::in_figures(v.x) + ", " +
+                          base::in_figures(v.y) + ", " + base::in_figures(v.z) + ")");
   return v;
 }
 
@@ -108,4 +108,4 @@ Progress to_progress(const py::object& callable) {
   };
 }
 
-}  // namespace riffler
+}  // namespace riffler::bindings

@@ -9,7 +9,7 @@
 #include "riffler/base/error.hpp"
 #include "riffler/pen/hid/open_error.hpp"
 
-namespace riffler {
+namespace riffler::bindings {
 
 namespace {
 
@@ -68,7 +68,7 @@ void translate(std::exception_ptr p) {
     set(format_error, e.what());
   } catch (const Cancelled& e) {
     set(cancelled, e.what());
-  } catch (const OpenError& e) {
+  } catch (const pen::OpenError& e) {
     set(py::module_::import("riffler._core").attr("PenError"), e.what());
   } catch (const std::exception& e) {
     PyObject* const kind = kind_of(e);
@@ -106,4 +106,4 @@ void refuse_objects_without_init(const py::module_& m) {
   }
 }
 
-}  // namespace riffler
+}  // namespace riffler::bindings

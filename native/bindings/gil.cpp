@@ -2,7 +2,7 @@
 
 #include <unistd.h>
 
-namespace riffler {
+namespace riffler::bindings {
 
 namespace {
 
@@ -31,4 +31,4 @@ WithGil::WithGil() {
   }
 }
 
-}  // namespace riffler
+}  // namespace riffler::bindings

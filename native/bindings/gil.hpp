@@ -3,7 +3,7 @@
 
 #include <Python.h>
 
-namespace riffler {
+namespace riffler::bindings {
 
 /// Releases Python's lock for its life. While Python ends, a daemon thread never gets the lock again: Python
 /// before 3.14 ends such a thread by unwinding it, which no destructor survives. Here it waits for the end of the
@@ -31,4 +31,4 @@ class WithGil {
   PyGILState_STATE state_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::bindings

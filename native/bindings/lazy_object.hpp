@@ -8,7 +8,7 @@
 
 #include "bindings/bindings.hpp"
 
-namespace riffler {
+namespace riffler::bindings {
 
 /// Made once, by one thread; others wait for it without Python's lock, which its maker may need, and Ctrl-C ends the
 /// waiting. After an error the next caller tries again.
@@ -52,4 +52,4 @@ class LazyObject {
   py::object made_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::bindings

@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <stdexcept>
 
-namespace riffler {
+namespace riffler::bindings {
 
 namespace {
 
@@ -25,9 +25,9 @@ std::string where(const Lost& lost) {
 Lost thin_in(const Volume& volume) {
   Lost out;
   out.of = volume.volume(), out.used = volume.frame().pitch;
-  ThinMaterial thin;
+  marching::ThinMaterial thin;
   try {
-    thin = thin_material(volume);
+    thin = marching::thin_material(volume);
   } catch (const std::invalid_argument&) {
     return out;  // too far from the origin for a mesh, which to_mesh says
   }
@@ -45,7 +45,7 @@ py::tuple corner(const Vec3& p) {
 
 }  // namespace
 
-Lost lost_in(const Volume& volume, const MissedMaterial& missed) {
+Lost lost_in(const Volume& volume, const dexel::MissedMaterial& missed) {
   Lost out = thin_in(volume);
   if (!(missed.volume > out.volume)) return out;
   out.volume = missed.volume, out.pitch = missed.pitch, out.box = missed.box;
@@ -80,4 +80,4 @@ void tell(const Lost& lost, std::optional<py::dict>& report) {
     d["lost_box"] = py::make_tuple(corner(lost.box.lower), corner(lost.box.upper));
 }
 
-}  // namespace riffler
+}  // namespace riffler::bindings

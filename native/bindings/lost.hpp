@@ -5,7 +5,7 @@
 #include "riffler/dexel/from_mesh/mesh_report.hpp"
 #include "riffler/marching/thin.hpp"
 
-namespace riffler {
+namespace riffler::bindings {
 
 struct Lost {
   double volume = 0, of = 0;  ///< mm³: lost, and of how much
@@ -16,11 +16,11 @@ struct Lost {
 };
 
 /// Of a volume that was made of a mesh: what its rays miss, or what its own mesh will lack.
-Lost lost_in(const Volume& volume, const MissedMaterial& missed);
+Lost lost_in(const Volume& volume, const dexel::MissedMaterial& missed);
 /// Of a volume whose mesh has so many triangles.
 Lost lost_by_meshing(const Volume& volume, std::size_t triangles);
 
 /// Puts `lost`, `lost_box`, `lost_pitch` and `lost_note` into a report; without one the note becomes a Python warning.
 void tell(const Lost& lost, std::optional<py::dict>& report);
 
-}  // namespace riffler
+}  // namespace riffler::bindings

@@ -9,26 +9,26 @@ PYBIND11_MODULE(_core, m) {
 #else
   m.attr("__compiler__") = "GCC " __VERSION__;
 #endif
-  bind_errors(m);
-  bind_tasks(m);
-  bind_files(m);
-  bind_mesh(m);
-  bind_tool(m);
-  bind_volume(m);
-  bind_smooth_dabs(m);
-  bind_mesher(m);
-  bind_collide(m);
-  bind_program(m);
-  bind_program_file(m);
-  bind_verify(m);
-  bind_cluster(m);
-  bind_pen(m);
-  bind_pen_device(m);
-  bind_journal(m);
-  bind_session(m);
-  bind_path(m);
-  bind_pencil(m);
-  bind_strategies(m);
-  bind_plan(m);
-  refuse_objects_without_init(m);
+  bindings::bind_errors(m);
+  bindings::bind_tasks(m);
+  bindings::bind_files(m);
+  bindings::bind_mesh(m);
+  bindings::bind_tool(m);
+  bindings::bind_volume(m);
+  bindings::bind_smooth_dabs(m);
+  bindings::bind_mesher(m);
+  bindings::bind_collide(m);
+  bindings::bind_program(m);
+  bindings::bind_program_file(m);
+  bindings::bind_verify(m);
+  bindings::bind_cluster(m);
+  bindings::bind_pen(m);
+  bindings::bind_pen_device(m);
+  bindings::bind_journal(m);
+  bindings::bind_session(m);
+  bindings::bind_path(m);
+  bindings::bind_pencil(m);
+  bindings::bind_strategies(m);
+  bindings::bind_plan(m);
+  bindings::refuse_objects_without_init(m);
 }

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace riffler {
+namespace riffler::bindings {
 
 /// What an object inherits whose calls change it without Python's lock.
 struct Guarded {
@@ -25,4 +25,4 @@ class OneCaller {
   std::unique_lock<std::mutex> held_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::bindings

@@ -6,14 +6,14 @@
 #include "bindings/lazy_object.hpp"
 #include "riffler/verify/report.hpp"
 
-namespace riffler {
+namespace riffler::bindings {
 
 /// A report as Python holds it. The maps take as long as the meshes are large, so they are made when first asked for.
 struct SharedReport {
-  explicit SharedReport(VerifyReport&& r) : report(std::move(r)) {}
-  const VerifyReport report;
+  explicit SharedReport(verify::VerifyReport&& r) : report(std::move(r)) {}
+  const verify::VerifyReport report;
   LazyObject deviation, part_map;
 };
-std::shared_ptr<SharedReport> share(VerifyReport&& report);
+std::shared_ptr<SharedReport> share(verify::VerifyReport&& report);
 
-}  // namespace riffler
+}  // namespace riffler::bindings

@@ -7,7 +7,7 @@
 
 #include "riffler/dexel/volume.hpp"
 
-namespace riffler {
+namespace riffler::bindings {
 
 /// Long calls release the GIL, so another Python thread may come to the same volume: it gets a clear error, never a
 /// torn volume, and never waits while it holds the GIL that the first thread's progress callback needs.
@@ -39,4 +39,4 @@ class Writing {
   std::unique_lock<std::shared_mutex> lock_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::bindings

@@ -11,19 +11,19 @@
 #include "base/background.hpp"
 #include "bindings/bindings.hpp"
 
-namespace riffler {
+namespace riffler::bindings {
 
 /// riffler.Task. All members are called with the GIL.
 class Task {
  public:
   /// `work` runs at once and touches no Python; `convert` makes Python's result of what it left.
-  Task(Background::Work work, std::function<py::object()> convert);
+  Task(base::Background::Work work, std::function<py::object()> convert);
   Task(const Task&) = delete;
   Task& operator=(const Task&) = delete;
   /// Cancels, and waits without the GIL.
   ~Task();
 
-  const Background& background() const { return *background_; }
+  const base::Background& background() const { return *background_; }
   void cancel() { background_->cancel(); }
   /// `more` is applied to what `result` would have given.
   void then(const py::object& more) {
@@ -35,7 +35,7 @@ class Task {
  private:
   using Stage = std::function<py::object(const py::object&)>;
 
-  std::shared_ptr<Background> background_;
+  std::shared_ptr<base::Background> background_;
   std::vector<Stage> stages_;  // the conversions that are still to be made
   py::object found_;           // null until the first of them is made
 };
@@ -95,9 +95,9 @@ struct Identity {
   }
 };
 
-}  // namespace riffler
+}  // namespace riffler::bindings
 
 template <class T>
-struct pybind11::detail::handle_type_name<riffler::ValueOrTask<T>> {
+struct pybind11::detail::handle_type_name<riffler::bindings::ValueOrTask<T>> {
   static constexpr auto name = make_caster<T>::name;
 };

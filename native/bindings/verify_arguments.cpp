@@ -7,7 +7,7 @@
 #include "riffler/dexel/from_mesh/from_mesh.hpp"
 #include "riffler/nc/read/reader.hpp"
 
-namespace riffler {
+namespace riffler::bindings {
 
 namespace {
 
@@ -58,7 +58,7 @@ std::vector<Volume> to_volumes(const std::vector<Fixture>& fixtures, double pitc
     try {
       validate(mesh);
       const auto n = static_cast<double>(fixtures.size()), done = static_cast<double>(k);
-      out.push_back(from_mesh(mesh, {bounds(mesh), pitch, "z"}, part(progress, done / n, (done + 1) / n)));
+      out.push_back(dexel::from_mesh(mesh, {bounds(mesh), pitch, "z"}, base::part(progress, done / n, (done + 1) / n)));
     } catch (const std::invalid_argument& error) {
       throw std::invalid_argument(fixture_name(k) + ": " + error.what());
     }
@@ -67,13 +67,13 @@ std::vector<Volume> to_volumes(const std::vector<Fixture>& fixtures, double pitc
 }
 
 /// None where none is given, with nothing that belongs to one.
-std::optional<MachineChoice> to_machine(const GivenMachine& given) {
+std::optional<verify::MachineChoice> to_machine(const GivenMachine& given) {
   if (!given.name) {
     if (!given.options.is_none()) throw py::value_error("machine_options: there is no machine");
     if (!given.frame.is_none()) throw py::value_error("machine_frame: there is no machine");
     return std::nullopt;
   }
-  MachineChoice machine{*given.name, without_reading(to_options(given.options))};
+  verify::MachineChoice machine{*given.name, nc::without_reading(to_options(given.options))};
   if (!given.frame.is_none()) std::tie(machine.turn, machine.shift) = to_affine(given.frame, "machine_frame");
   return machine;
 }
@@ -81,7 +81,7 @@ std::optional<MachineChoice> to_machine(const GivenMachine& given) {
 }  // namespace
 
 GivenArguments to_given(SharedVolume& stock, const py::object& part, const py::object& fixtures,
-                        const py::object& tools, VerifyOptions options, const GivenMachine& machine) {
+                        const py::object& tools, verify::VerifyOptions options, const GivenMachine& machine) {
   options.machine = to_machine(machine);
   std::shared_ptr<const Mesh> mesh;
   if (!part.is_none()) {
@@ -92,10 +92,10 @@ GivenArguments to_given(SharedVolume& stock, const py::object& part, const py::o
   return {{Reading(stock).volume.snapshot(), std::move(mesh), {}, to_tools(tools), std::move(options)}, std::move(all)};
 }
 
-VerifyArguments to_arguments(const GivenArguments& given, const Progress& progress) {
-  VerifyArguments out = given.others;
+verify::VerifyArguments to_arguments(const GivenArguments& given, const Progress& progress) {
+  verify::VerifyArguments out = given.others;
   out.fixtures = to_volumes(given.fixtures, out.stock.frame().pitch, progress);
   return out;
 }
 
-}  // namespace riffler
+}  // namespace riffler::bindings

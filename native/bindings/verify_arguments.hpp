@@ -11,11 +11,11 @@
 #include "bindings/shared_volume.hpp"
 #include "verify/scene.hpp"
 
-namespace riffler {
+namespace riffler::bindings {
 
 /// VerifyArguments as Python gives them: fixtures may be meshes.
 struct GivenArguments {
-  VerifyArguments others;
+  verify::VerifyArguments others;
   std::vector<std::variant<Volume, std::shared_ptr<const Mesh>>> fixtures;
 };
 
@@ -28,17 +28,17 @@ struct GivenMachine {
 
 /// ValueError naming the one that is wrong. `options` has no machine yet.
 GivenArguments to_given(SharedVolume& stock, const py::object& part, const py::object& fixtures,
-                        const py::object& tools, VerifyOptions options, const GivenMachine& machine);
+                        const py::object& tools, verify::VerifyOptions options, const GivenMachine& machine);
 
 /// Without the GIL. Meshes become volumes at the stock's pitch. std::invalid_argument naming the fixture.
-VerifyArguments to_arguments(const GivenArguments& given, const Progress& progress);
+verify::VerifyArguments to_arguments(const GivenArguments& given, const Progress& progress);
 
 /// T(arguments, progress). Called with the GIL, which it releases.
 template <class T>
 std::unique_ptr<T> make_of(const GivenArguments& given, const py::object& progress) {
   const Progress listener = to_progress(progress);
   const NoGil release;
-  return std::make_unique<T>(to_arguments(given, part(listener, 0, 0.5)), part(listener, 0.5, 1));
+  return std::make_unique<T>(to_arguments(given, base::part(listener, 0, 0.5)), base::part(listener, 0.5, 1));
 }
 
 /// A function of Python whose last arguments are those of riffler.verify: calls f(first…, given, progress).
@@ -65,4 +65,4 @@ void define_with_arguments(const Define& define) {
          py::arg("progress") = py::none());
 }
 
-}  // namespace riffler
+}  // namespace riffler::bindings

@@ -6,7 +6,7 @@
 #include "bindings/bindings.hpp"
 #include "bindings/shared_volume.hpp"
 
-namespace riffler {
+namespace riffler::bindings {
 
 using VolumeClass = py::class_<SharedVolume, std::shared_ptr<SharedVolume>>;
 
@@ -17,4 +17,4 @@ inline std::shared_ptr<SharedVolume> share(Volume&& v) {
 /// Methods that change a volume as a whole, or ask what it holds.
 void bind_volume_edits(VolumeClass& volume);
 
-}  // namespace riffler
+}  // namespace riffler::bindings

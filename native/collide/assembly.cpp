@@ -7,7 +7,7 @@
 #include "collide/outline_lanes.hpp"
 #include "collide/outline_runs.hpp"
 
-namespace riffler {
+namespace riffler::collide {
 
 struct Assembly::Forms {
   OutlineRuns runs;
@@ -24,7 +24,7 @@ struct Assembly::Deepest {
 namespace {
 
 /// Steps to ever smaller distances, until they are of rounding size.
-Vec2 sink(const Outline& outline, Vec2 p, double step) {
+Vec2 sink(const tool::Outline& outline, Vec2 p, double step) {
   const auto value = [&](const Vec2& q) { return outline.nearest(std::abs(q.x), q.y).distance; };
   double least = value(p);
   for (; step > 1e-13 * (1 + std::abs(p.y)); step *= 0.7)
@@ -36,7 +36,7 @@ Vec2 sink(const Outline& outline, Vec2 p, double step) {
   return {std::abs(p.x), p.y};
 }
 
-std::vector<Vec2> find_deepest(const Outline& outline, double width) {
+std::vector<Vec2> find_deepest(const tool::Outline& outline, double width) {
   // A grid over the half-plane; from each of its points that none of its neighbours is below, downhill.
   constexpr int kAcross = 24, kAlong = 192;
   const double low = outline.edges().front().from.y, high = outline.edges().back().to.y;
@@ -59,7 +59,7 @@ std::vector<Vec2> find_deepest(const Outline& outline, double width) {
   return out;
 }
 
-double widest(const OutlineEdge& e) {
+double widest(const tool::OutlineEdge& e) {
   return std::max({e.from.x, e.to.x, e.centre ? e.centre->x + e.bulge : 0});
 }
 
@@ -72,7 +72,7 @@ Assembly::Assembly(const Tool& tool)
       reach_(0),
       max_radius_(0),
       deepest_(std::make_shared<Deepest>()) {
-  for (const OutlineEdge& e : outline_.edges()) {
+  for (const tool::OutlineEdge& e : outline_.edges()) {
     reach_ = std::max({reach_, glm::length(e.from), glm::length(e.to)});
     max_radius_ = std::max(max_radius_, widest(e));
     if (e.centre) reach_ = std::max(reach_, glm::length(*e.centre) + std::abs(e.bulge));
@@ -92,7 +92,7 @@ const std::vector<LaneEdge>& Assembly::lane_edges() const {
   return forms_->lane_edges;
 }
 
-Part Assembly::part_at(double z) const {
+tool::Part Assembly::part_at(double z) const {
   for (const HeightBand& s : stretches_)
     if (z <= s.high) return s.part;
   return stretches_.back().part;
@@ -103,4 +103,4 @@ const std::vector<Vec2>& Assembly::deepest() const {
   return deepest_->places;
 }
 
-}  // namespace riffler
+}  // namespace riffler::collide

@@ -11,7 +11,9 @@
 #include "collide/outline-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace riffler::HWY_NAMESPACE {
+namespace riffler::collide::HWY_NAMESPACE {
+
+using namespace base::HWY_NAMESPACE;
 
 namespace {
 
@@ -86,7 +88,7 @@ HWY_INLINE void add_rectangle(V t, V p, V q, V per_p, V& share, V& rise) {
 void Shares(std::span<const LaneEdge> outline, const ToolFrame& frame, const SphereGroup& spheres,
             const BoxGroup& boxes, BoxShares& out) {
   const V root = set(0.57735026918962576);  // of ⅓: the places of Gauss's rule
-  for (int k = 0; k < kLanes; k += lanes()) {
+  for (int k = 0; k < base::kLanes; k += lanes()) {
     const Centres at(frame, spheres, k);
     Slopes slopes(at);
     for (const LaneEdge& e : outline) slopes.look(e);
@@ -116,12 +118,12 @@ void Shares(std::span<const LaneEdge> outline, const ToolFrame& frame, const Sph
   }
 }
 
-}  // namespace riffler::HWY_NAMESPACE
+}  // namespace riffler::collide::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 
-namespace riffler {
+namespace riffler::collide {
 
 HWY_EXPORT(Shares);
 
@@ -130,6 +132,6 @@ void box_shares(std::span<const LaneEdge> outline, const ToolFrame& frame, const
   HWY_DYNAMIC_DISPATCH(Shares)(outline, frame, spheres, boxes, out);
 }
 
-}  // namespace riffler
+}  // namespace riffler::collide
 
 #endif

@@ -7,20 +7,20 @@
 #include "collide/sphere_tree.hpp"
 #include "collide/tool_frame.hpp"
 
-namespace riffler {
+namespace riffler::collide {
 
 /// Half the sides of boxes along the part's directions, mm, and the volume of material in each, mm³. Their middles are
 /// those of the spheres round them.
 struct alignas(64) BoxGroup {
-  double half[3][kLanes]{}, volume[kLanes]{};
+  double half[3][base::kLanes]{}, volume[base::kLanes]{};
 };
 
 /// What of each box is in the tool.
 struct BoxShares {
-  double distance[kLanes];   ///< of its middle, mm
-  double share[kLanes];      ///< of its volume
-  double rise[kLanes];       ///< by which the share grows where the tool comes nearer, 1/mm
-  double normal[3][kLanes];  ///< of the tool there, along the part's directions
+  double distance[base::kLanes];   ///< of its middle, mm
+  double share[base::kLanes];      ///< of its volume
+  double rise[base::kLanes];       ///< by which the share grows where the tool comes nearer, 1/mm
+  double normal[3][base::kLanes];  ///< of the tool there, along the part's directions
 };
 
 /// The tool is to a box what its tangent plane is: the half-space at the distance of the box's middle, square to the
@@ -30,4 +30,4 @@ struct BoxShares {
 void box_shares(std::span<const LaneEdge> outline, const ToolFrame& frame, const SphereGroup& spheres,
                 const BoxGroup& boxes, BoxShares& out);
 
-}  // namespace riffler
+}  // namespace riffler::collide

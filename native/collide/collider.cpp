@@ -15,7 +15,7 @@
 #include "riffler/mesh/decimate/decimate.hpp"
 #include "riffler/mesh/orient.hpp"
 
-namespace riffler {
+namespace riffler::collide {
 
 namespace {
 
@@ -40,7 +40,7 @@ Mesh mesh_of(const Volume& volume, std::size_t index) {
   try {
     // Faces in few triangles, as many are equally near to a tool's side that lies along them. A tolerance below what
     // the mesh of a carved volume is off by itself cannot be proven, and the attempt takes tens of seconds.
-    return decimate(to_mesh(volume), {{}, 1e-2 * volume.frame().pitch});
+    return decimate(marching::to_mesh(volume), {{}, 1e-2 * volume.frame().pitch});
   } catch (const std::invalid_argument& e) {
     throw std::invalid_argument("fixtures, volume " + std::to_string(index) + ": " + e.what());
   }
@@ -60,7 +60,7 @@ struct Collider::Data {
   mutable std::optional<WindingNumber> winding;
 
   Data(const Mesh& mesh, const Settings& s)
-      : part(mesh), points(part, s.spacing), settings(s), box(riffler::bounds(mesh)) {}
+      : part(mesh), points(part, s.spacing), settings(s), box(mesh::bounds(mesh)) {}
 
   NearestSearch::Found search(const Assembly& assembly, const ToolFrame& frame, bool all, Deadline deadline,
                               Counts& counts, double enough = kNone, double loose = 0) const;
@@ -71,11 +71,11 @@ Collider::Collider(const Mesh& part, std::vector<Volume> fixtures, const Setting
   validate(part);
   if (part.empty()) throw std::invalid_argument("part: a mesh without triangles");
   std::optional<Mesh> storage;
-  data_ = std::make_unique<Data>(as_solid(part, storage, Hollow::Kept), settings);
+  data_ = std::make_unique<Data>(as_solid(part, storage, mesh::Hollow::Kept), settings);
   data_->fixtures.reserve(fixtures.size());
   for (std::size_t i = 0; i < fixtures.size(); ++i)
     if (const Mesh m = mesh_of(fixtures[i], i); !m.empty()) {
-      data_->box.add(riffler::bounds(m));
+      data_->box.add(mesh::bounds(m));
       data_->fixtures.emplace_back(fixtures[i], m, kBoxes * data_->points.spacing());
       data_->stiffness.push_back(settings.stiffness_of_each.empty() ? settings.fixture_stiffness
                                                                     : settings.stiffness_of_each[i]);
@@ -201,4 +201,4 @@ std::size_t Collider::fixtures() const {
   return data_->fixtures.size();
 }
 
-}  // namespace riffler
+}  // namespace riffler::collide

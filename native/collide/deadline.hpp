@@ -4,7 +4,7 @@
 #include <chrono>
 #include <optional>
 
-namespace riffler {
+namespace riffler::collide {
 
 /// When to stop, by the monotonic clock, which is read rarely. Without a time there is no end.
 class Deadline {
@@ -21,4 +21,4 @@ class Deadline {
   bool passed_ = false;
 };
 
-}  // namespace riffler
+}  // namespace riffler::collide

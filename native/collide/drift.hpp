@@ -6,7 +6,7 @@
 
 #include "collide/tool_frame.hpp"
 
-namespace riffler {
+namespace riffler::collide {
 
 /// Points of the part in a frame that moves with the tool, within half a stretch of a motion from its middle. There a
 /// point q from the tip goes the way ± (way + turn × q) but for second_order(q).
@@ -51,4 +51,4 @@ struct Drift {
   }
 };
 
-}  // namespace riffler
+}  // namespace riffler::collide

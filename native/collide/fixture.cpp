@@ -6,7 +6,7 @@
 #include "collide/box_lanes.hpp"
 #include "riffler/base/block_pool.hpp"
 
-namespace riffler {
+namespace riffler::collide {
 
 namespace {
 
@@ -132,12 +132,12 @@ class FixtureSum {
   }
 
   void look(const SphereGroup& spheres, const BoxGroup& boxes, double weight, Deadline& deadline, Counts& counts) {
-    counts.boxes += kLanes;
+    counts.boxes += base::kLanes;
     BoxShares at;
     box_shares(assembly_.lane_edges(), frame_, spheres, boxes, at);
     const bool late = deadline.passed();
     Push sum;
-    for (int k = 0; k < kLanes; ++k) {
+    for (int k = 0; k < base::kLanes; ++k) {
       if (!(at.distance[k] < spheres.radius[k])) continue;
       const Vec3 middle = spheres.sphere(k).centre, half(boxes.half[0][k], boxes.half[1][k], boxes.half[2][k]);
       double rest = weight;
@@ -177,18 +177,18 @@ class FixtureSum {
     const SphereGroup& spheres = tree.group(n.group);
     const BoxGroup& boxes = boxes_.boxes(n.group);
     if (tree.holds_items(n.group)) return look(spheres, boxes, n.weight, deadline, counts);
-    double distance[kLanes];
+    double distance[base::kLanes];
     centre_distances(assembly_.lane_edges(), frame_, spheres, distance);
-    counts.nodes += kLanes;
+    counts.nodes += base::kLanes;
     const bool late = deadline.passed();
     Push sum;
-    for (int k = 0; k < kLanes; ++k) {
+    for (int k = 0; k < base::kLanes; ++k) {
       const BoundingSphere s = spheres.sphere(k);
       if (!(distance[k] < s.radius)) continue;
       const double whole = late ? std::clamp(0.5 - 0.5 * distance[k] / s.radius, 0.0, 1.0) : together(s, distance[k]);
       sum.add(s.centre - frame_.tip, n.weight * whole * boxes.volume[k]);
       if (!late && whole < 1)
-        nodes_.push_back({kLanes * n.group + 1 + static_cast<std::size_t>(k), n.weight * (1 - whole)});
+        nodes_.push_back({base::kLanes * n.group + 1 + static_cast<std::size_t>(k), n.weight * (1 - whole)});
     }
     push(sum);
   }
@@ -199,8 +199,8 @@ class FixtureSum {
   double stiffness_;
   Contact& contact_;
   double widest_;  // half of a box
-  BlockVector<Node> nodes_;
-  BlockVector<Piece> pieces_;
+  base::BlockVector<Node> nodes_;
+  base::BlockVector<Piece> pieces_;
 };
 
 }  // namespace
@@ -212,7 +212,7 @@ Fixture::Fixture(const Volume& volume, const Mesh& mesh, double spacing)
 }
 
 bool Fixture::holds(const Vec3& p) const {
-  const Closest::Hit hit = sides_(p);
+  const mesh::Closest::Hit hit = sides_(p);
   return sides_.signed_distance(p, hit) < 0;
 }
 
@@ -225,4 +225,4 @@ void Fixture::add_force(const Assembly& assembly, const ToolFrame& frame, double
   if (boxes_.size() > 0) FixtureSum(assembly, frame, boxes_, stiffness, contact).run(deadline, counts);
 }
 
-}  // namespace riffler
+}  // namespace riffler::collide

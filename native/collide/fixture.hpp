@@ -12,7 +12,7 @@
 #include "riffler/collide/contact.hpp"
 #include "riffler/dexel/volume.hpp"
 
-namespace riffler {
+namespace riffler::collide {
 
 /// Its shape is that of its mesh (marching/to_mesh.hpp says what that keeps), and its inside counts.
 class Fixture {
@@ -36,8 +36,8 @@ class Fixture {
  private:
   MaterialBoxes boxes_;
   Surface surface_;
-  Closest sides_;
+  mesh::Closest sides_;
   BoundingSphere whole_;  // round all of it
 };
 
-}  // namespace riffler
+}  // namespace riffler::collide

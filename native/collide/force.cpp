@@ -6,7 +6,7 @@
 #include "collide/outline_lanes.hpp"
 #include "riffler/base/block_pool.hpp"
 
-namespace riffler {
+namespace riffler::collide {
 
 namespace {
 
@@ -21,7 +21,7 @@ class ForceSum {
         widest_(0.5 * coarse * points.spacing()),
         contact_(contact) {
     for (const Assembly::HeightBand& s : assembly.stretches())
-      if (s.part == Part::Cutter) cutter_top_ = s.high;
+      if (s.part == tool::Part::Cutter) cutter_top_ = s.high;
   }
 
   void run(Deadline& deadline, Counts& counts) {
@@ -32,7 +32,7 @@ class ForceSum {
       if (deadline.passed())
         add(n.parent, n.child, n.distance, n.weight);
       else
-        open(kLanes * n.parent + 1 + static_cast<std::size_t>(n.child), n.weight, counts);
+        open(base::kLanes * n.parent + 1 + static_cast<std::size_t>(n.child), n.weight, counts);
     }
   }
 
@@ -74,11 +74,11 @@ class ForceSum {
   void open(std::size_t group, double weight, Counts& counts) {
     const SphereTree& tree = points_.tree();
     const SphereGroup& spheres = tree.group(group);
-    double distance[kLanes];
+    double distance[base::kLanes];
     centre_distances(assembly_.lane_edges(), frame_, spheres, distance);
     const bool items = tree.holds_items(group);
-    (items ? counts.points : counts.nodes) += kLanes;
-    for (int k = 0; k < kLanes; ++k) {
+    (items ? counts.points : counts.nodes) += base::kLanes;
+    for (int k = 0; k < base::kLanes; ++k) {
       if (!(distance[k] < spheres.radius[k])) continue;
       if (items) {
         add(group, k, distance[k], weight);
@@ -96,7 +96,7 @@ class ForceSum {
   Stiffness stiffness_;
   double widest_, cutter_top_ = 0;
   Contact& contact_;
-  BlockVector<Node> stack_;
+  base::BlockVector<Node> stack_;
 };
 
 }  // namespace
@@ -106,4 +106,4 @@ void add_force(const Assembly& assembly, const ToolFrame& frame, const SamplePoi
   if (points.size() > 0) ForceSum(assembly, frame, points, stiffness, coarse, contact).run(deadline, counts);
 }
 
-}  // namespace riffler
+}  // namespace riffler::collide

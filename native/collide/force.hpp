@@ -7,7 +7,7 @@
 #include "riffler/collide/assembly.hpp"
 #include "riffler/collide/contact.hpp"
 
-namespace riffler {
+namespace riffler::collide {
 
 /// k of (4.7), N per mm of depth and mm² of surface. Tracing is weak, collision strong (4.4.3).
 struct Stiffness {
@@ -21,4 +21,4 @@ struct Stiffness {
 void add_force(const Assembly& assembly, const ToolFrame& frame, const SamplePoints& points, const Stiffness& stiffness,
                double coarse, Deadline& deadline, Contact& contact, Counts& counts);
 
-}  // namespace riffler
+}  // namespace riffler::collide

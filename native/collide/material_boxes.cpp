@@ -6,7 +6,7 @@
 
 #include "riffler/base/parallel.hpp"
 
-namespace riffler {
+namespace riffler::collide {
 
 namespace {
 
@@ -17,7 +17,7 @@ constexpr int kSide = 8;  // cells of a brick
 /// Some cells, in the grid's cyclic frame.
 class MaterialBoxes::Brick {
  public:
-  Brick(const Grid& grid, int rays, double spacing) : grid_(grid), rays_(rays), spacing_(spacing) {}
+  Brick(const dexel::Grid& grid, int rays, double spacing) : grid_(grid), rays_(rays), spacing_(spacing) {}
 
   /// Cells (u, v, w) to (u, v, w) + 8 of the grid's.
   void read(int u, int v, int w) {
@@ -25,7 +25,7 @@ class MaterialBoxes::Brick {
     const double h = grid_.pitch(), bottom = grid_.box().lower.z + w * spacing_, top = bottom + kSide * spacing_;
     for (int i = u * rays_; i < std::min((u + kSide) * rays_, grid_.nu()); ++i)
       for (int j = v * rays_; j < std::min((v + kSide) * rays_, grid_.nv()); ++j)
-        for (const Span& s : grid_.ray(i, j)) {
+        for (const dexel::Span& s : grid_.ray(i, j)) {
           if (s.far <= bottom || s.near >= top) continue;
           const auto layer = [&](double z) { return std::clamp(int((z - bottom) / spacing_), 0, kSide - 1); };
           for (int m = layer(s.near); m <= layer(s.far); ++m) {
@@ -70,7 +70,7 @@ class MaterialBoxes::Brick {
     for (int k = 0; k < 8; ++k) gather(at + half * Vec3i(k >> 2, (k >> 1) & 1, k & 1), half, out);
   }
 
-  const Grid& grid_;
+  const dexel::Grid& grid_;
   int rays_;
   double spacing_, full_ = 0;
   std::array<Cell, kSide * kSide * kSide> cells_;
@@ -82,14 +82,14 @@ double MaterialBoxes::cell_of(const Volume& volume, double spacing) {
 }
 
 std::vector<MaterialBoxes::Piece> MaterialBoxes::pieces_of(const Volume& volume, double spacing) {
-  const Grid& grid = volume.reference();
+  const dexel::Grid& grid = volume.reference();
   // More rays than there are make one cell of them all.
   const int rays = static_cast<int>(std::min(std::round(spacing / grid.pitch()), 1.0 + std::max(grid.nu(), grid.nv())));
   const auto bricks = [](double cells) { return static_cast<std::size_t>(std::ceil(cells / kSide)); };
   const std::size_t nu = bricks(std::ceil(double(grid.nu()) / rays)), nv = bricks(std::ceil(double(grid.nv()) / rays)),
                     nw = bricks(std::ceil(grid.box().size().z / spacing));
   std::vector<std::vector<Piece>> found(nu * nv);
-  parallel_for(nu * nv, 1, [&](std::size_t column, std::size_t) {
+  base::parallel_for(nu * nv, 1, [&](std::size_t column, std::size_t) {
     Brick brick(grid, rays, spacing);
     for (std::size_t w = 0; w < nw; ++w) {
       brick.read(kSide * static_cast<int>(column / nv), kSide * static_cast<int>(column % nv),
@@ -128,9 +128,10 @@ MaterialBoxes::MaterialBoxes(const std::vector<Piece>& pieces, double spacing)
              }}) {
   boxes_.resize(tree_.groups());
   for (std::size_t g = tree_.groups(); g-- > 0;)
-    for (int k = 0; k < kLanes; ++k) {
+    for (int k = 0; k < base::kLanes; ++k) {
       if (!tree_.holds_items(g)) {
-        for (const double v : boxes_[kLanes * g + 1 + static_cast<std::size_t>(k)].volume) boxes_[g].volume[k] += v;
+        for (const double v : boxes_[base::kLanes * g + 1 + static_cast<std::size_t>(k)].volume)
+          boxes_[g].volume[k] += v;
       } else if (tree_.group(g).radius[k] >= 0) {
         const Piece& piece = pieces[tree_.order()[tree_.first_item(g) + static_cast<std::size_t>(k)]];
         for (int i = 0; i < 3; ++i) boxes_[g].half[i][k] = 0.5 * piece.box.size()[i];
@@ -139,4 +140,4 @@ MaterialBoxes::MaterialBoxes(const std::vector<Piece>& pieces, double spacing)
     }
 }
 
-}  // namespace riffler
+}  // namespace riffler::collide

@@ -7,7 +7,7 @@
 #include "collide/sphere_tree.hpp"
 #include "riffler/dexel/volume.hpp"
 
-namespace riffler {
+namespace riffler::collide {
 
 /// Cells of k × k rays, as long as they are wide, k such that this is nearest to the wanted spacing. A cell's box goes
 /// round all material in it, square rays included, and is as dense as that fills it; where cells are full, up to 8³ of
@@ -40,4 +40,4 @@ class MaterialBoxes {
   std::vector<BoxGroup> boxes_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::collide

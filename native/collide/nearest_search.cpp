@@ -4,7 +4,7 @@
 
 #include "collide/outline_lanes.hpp"
 
-namespace riffler {
+namespace riffler::collide {
 
 NearestSearch::NearestSearch(const Assembly& assembly, const ToolFrame& frame)
     : assembly_(assembly), frame_(frame), triangles_(assembly.runs()), slack_(0) {
@@ -20,19 +20,19 @@ void NearestSearch::push(const Entry& e) {
 void NearestSearch::open(const Surface& surface, const Entry& e, Counts& counts) {
   const SphereTree& tree = surface.tree();
   const SphereGroup& spheres = tree.group(e.index);
-  double distance[kLanes], low[kLanes];
+  double distance[base::kLanes], low[base::kLanes];
   centre_distances(assembly_.lane_edges(), frame_, spheres, distance);
-  counts.nodes += kLanes;
+  counts.nodes += base::kLanes;
   // Every sphere has a point of the surface in it.
-  for (int k = 0; k < kLanes; ++k) limit_ = std::min(limit_, distance[k] + std::abs(spheres.radius[k]));
+  for (int k = 0; k < base::kLanes; ++k) limit_ = std::min(limit_, distance[k] + std::abs(spheres.radius[k]));
   const bool items = tree.holds_items(e.index);
-  const std::size_t first = items ? tree.first_item(e.index) : kLanes * e.index + 1;
+  const std::size_t first = items ? tree.first_item(e.index) : base::kLanes * e.index + 1;
   if (items)
     triangle_bounds(assembly_.runs(), assembly_.lane_edges(), frame_, spheres, &surface.corners(first), nullptr,
                     distance, low);
   else
-    for (int k = 0; k < kLanes; ++k) low[k] = distance[k] - spheres.radius[k];
-  for (int k = 0; k < kLanes; ++k)
+    for (int k = 0; k < base::kLanes; ++k) low[k] = distance[k] - spheres.radius[k];
+  for (int k = 0; k < base::kLanes; ++k)
     if (spheres.radius[k] >= 0)
       push({low[k], static_cast<std::uint32_t>(first + k), e.surface, items ? Entry::Triangle : Entry::Group});
 }
@@ -62,7 +62,7 @@ NearestSearch::Found NearestSearch::operator()(std::span<const Surface* const> s
   double size = glm::length(frame_.tip);
   for (std::size_t s = 0; s < surfaces.size(); ++s) {
     const SphereGroup& root = surfaces[s]->tree().group(0);
-    for (int k = 0; k < kLanes; ++k)
+    for (int k = 0; k < base::kLanes; ++k)
       if (root.radius[k] >= 0) size = std::max(size, glm::length(root.sphere(k).centre) + root.radius[k]);
     heap_.push_back({-std::numeric_limits<double>::infinity(), 0, static_cast<std::uint16_t>(s), Entry::Group});
   }
@@ -92,4 +92,4 @@ NearestSearch::Found NearestSearch::operator()(std::span<const Surface* const> s
   return found;
 }
 
-}  // namespace riffler
+}  // namespace riffler::collide

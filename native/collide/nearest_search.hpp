@@ -9,7 +9,7 @@
 #include "riffler/collide/assembly.hpp"
 #include "riffler/collide/contact.hpp"
 
-namespace riffler {
+namespace riffler::collide {
 
 /// Nodes and triangles in the order of their lower bounds f(centre) − radius, f being the tool's signed distance, which
 /// never changes by more than one moves. So nothing is opened whose bound is above the result.
@@ -54,8 +54,8 @@ class NearestSearch {
   const ToolFrame& frame_;
   TriangleSearch triangles_;
   double limit_ = std::numeric_limits<double>::infinity(), enough_ = -limit_, slack_, loose_ = 0;
-  BlockVector<Entry> heap_;
+  base::BlockVector<Entry> heap_;
   std::size_t best_surface_ = 0;
 };
 
-}  // namespace riffler
+}  // namespace riffler::collide

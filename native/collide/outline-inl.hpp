@@ -9,9 +9,12 @@
 
 #include "base/lanes-inl.hpp"
 #include "collide/outline_lanes.hpp"
+#include "geom/math.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace riffler::HWY_NAMESPACE {
+namespace riffler::collide::HWY_NAMESPACE {
+
+using namespace base::HWY_NAMESPACE;
 
 namespace {
 
@@ -79,7 +82,7 @@ struct Points {
 
 }  // namespace
 
-}  // namespace riffler::HWY_NAMESPACE
+}  // namespace riffler::collide::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

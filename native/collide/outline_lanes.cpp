@@ -11,7 +11,9 @@
 #include "collide/outline-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace riffler::HWY_NAMESPACE {
+namespace riffler::collide::HWY_NAMESPACE {
+
+using namespace base::HWY_NAMESPACE;
 
 namespace {
 
@@ -213,7 +215,7 @@ class RunBound {
 
 void CentreDistances(std::span<const LaneEdge> outline, const ToolFrame& frame, const SphereGroup& spheres,
                      double* distance) {
-  for (int k = 0; k < kLanes; k += lanes()) {
+  for (int k = 0; k < base::kLanes; k += lanes()) {
     const Centres at(frame, spheres, k);
     Points points(at.rho, at.z);
     for (const LaneEdge& e : outline) e.arc ? points.add_arc(e) : points.add_line(e);
@@ -225,7 +227,7 @@ void TriangleBounds(const OutlineRuns& runs, std::span<const LaneEdge> outline, 
                     const SphereGroup& spheres, const Corners* triangles, const Drift* drift, const double* distance,
                     double* low) {
   const Drifts drifts(drift ? *drift : Drift());
-  for (int k = 0; k < kLanes; k += lanes()) {
+  for (int k = 0; k < base::kLanes; k += lanes()) {
     const Centres at(frame, spheres, k);
     const RunBound runs_at(frame, at, triangles, spheres, k, hn::LoadU(kD, distance + k), drift ? &drifts : nullptr);
     V bound = set(kInfinity);
@@ -235,17 +237,17 @@ void TriangleBounds(const OutlineRuns& runs, std::span<const LaneEdge> outline, 
   }
 }
 
-}  // namespace riffler::HWY_NAMESPACE
+}  // namespace riffler::collide::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 
-namespace riffler {
+namespace riffler::collide {
 
 HWY_EXPORT(CentreDistances);
 HWY_EXPORT(TriangleBounds);
 
-LaneEdge::LaneEdge(const OutlineEdge& e)
+LaneEdge::LaneEdge(const tool::OutlineEdge& e)
     : from{e.from.x, e.from.y},
       to{e.to.x, e.to.y},
       way{e.to.x - e.from.x, e.to.y - e.from.y},
@@ -277,6 +279,6 @@ void triangle_bounds(const OutlineRuns& runs, std::span<const LaneEdge> outline,
   HWY_DYNAMIC_DISPATCH(TriangleBounds)(runs, outline, frame, spheres, triangles, drift, distance, low);
 }
 
-}  // namespace riffler
+}  // namespace riffler::collide
 
 #endif

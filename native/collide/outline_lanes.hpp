@@ -11,7 +11,7 @@
 #include "collide/triangle_search.hpp"
 #include "riffler/tool/outline.hpp"
 
-namespace riffler {
+namespace riffler::collide {
 
 /// An edge of an outline with what its distances need.
 struct LaneEdge {
@@ -21,7 +21,7 @@ struct LaneEdge {
   double radius, side;                        // of an arc; side: 1 bulges, −1 is a hollow
   bool arc, rises;
 
-  explicit LaneEdge(const OutlineEdge& e);
+  explicit LaneEdge(const tool::OutlineEdge& e);
 };
 
 /// distance[k] = that of the centre of sphere k, mm, negative inside: Outline::nearest to rounding.
@@ -37,4 +37,4 @@ void triangle_bounds(const OutlineRuns& runs, std::span<const LaneEdge> outline,
                      const SphereGroup& spheres, const Corners* triangles, const Drift* drift, const double* distance,
                      double* low);
 
-}  // namespace riffler
+}  // namespace riffler::collide

@@ -6,7 +6,7 @@
 
 #include "geom/math.hpp"
 
-namespace riffler {
+namespace riffler::collide {
 
 namespace {
 
@@ -15,18 +15,18 @@ double area(const Vec2& a, const Vec2& b) {
 }
 
 /// Direction of the way along an edge at one of its points.
-Vec2 tangent(const OutlineEdge& e, const Vec2& p) {
+Vec2 tangent(const tool::OutlineEdge& e, const Vec2& p) {
   if (!e.centre) return glm::normalize(e.to - e.from);
   const Vec2 out = (p - *e.centre) / e.bulge;
   return {-out.y, out.x};
 }
 
-bool hollow(const OutlineEdge& e) {
+bool hollow(const tool::OutlineEdge& e) {
   return e.centre && e.bulge < 0;
 }
 
 /// Whether the outline turns towards the solid, or not at all, from one edge to the next.
-bool goes_on(const OutlineEdge& a, const OutlineEdge& b) {
+bool goes_on(const tool::OutlineEdge& a, const tool::OutlineEdge& b) {
   return a.to == b.from && !hollow(a) && !hollow(b) && area(tangent(a, a.to), tangent(b, b.from)) >= -1e-12;
 }
 
@@ -38,7 +38,7 @@ struct OutlineRuns::Foot {
   double distance = kInfinity;
   bool at_end = false;
   double margin = -1;  // from the normals at the edge's ends that are not on the axis; −1 for a foot at an end
-  const OutlineEdge* edge = nullptr;
+  const tool::OutlineEdge* edge = nullptr;
 
   /// Of the depth at a point inside.
   Slope depth(const Vec2& p) const {
@@ -49,9 +49,9 @@ struct OutlineRuns::Foot {
   }
 };
 
-OutlineRuns::OutlineRuns(std::vector<OutlineEdge> edges) : edges_(std::move(edges)) {
+OutlineRuns::OutlineRuns(std::vector<tool::OutlineEdge> edges) : edges_(std::move(edges)) {
   for (std::size_t i = 0; i < edges_.size(); ++i) {
-    const OutlineEdge& e = edges_[i];
+    const tool::OutlineEdge& e = edges_[i];
     outermost_.push_back(all_behind(e));
     const Vec2 start = tangent(e, e.from), end = tangent(e, e.to);
     if (i == 0 || !goes_on(edges_[i - 1], e))
@@ -62,17 +62,17 @@ OutlineRuns::OutlineRuns(std::vector<OutlineEdge> edges) : edges_(std::move(edge
   }
 }
 
-bool OutlineRuns::all_behind(const OutlineEdge& e) const {
+bool OutlineRuns::all_behind(const tool::OutlineEdge& e) const {
   if (e.centre) return false;
   const Vec2 way = tangent(e, e.from), normal(way.y, -way.x);
-  return std::all_of(edges_.begin(), edges_.end(), [&](const OutlineEdge& o) {
+  return std::all_of(edges_.begin(), edges_.end(), [&](const tool::OutlineEdge& o) {
     const double most = std::max(glm::dot(o.from - e.from, normal), glm::dot(o.to - e.from, normal));
     const double bulge = o.centre && o.bulge > 0 ? glm::dot(*o.centre - e.from, normal) + o.bulge : most;
     return std::max(most, bulge) <= 0;
   });
 }
 
-OutlineRuns::Foot OutlineRuns::foot_on(const OutlineEdge& e, const Vec2& p) const {
+OutlineRuns::Foot OutlineRuns::foot_on(const tool::OutlineEdge& e, const Vec2& p) const {
   Foot f;
   f.edge = &e;
   if (e.centre) {
@@ -110,7 +110,7 @@ OutlineRuns::Foot OutlineRuns::foot_on(const OutlineEdge& e, const Vec2& p) cons
 bool OutlineRuns::holds(const Run& run, const Vec2& p) const {
   if (p.y < run.lower.point.y || p.y > run.upper.point.y) return false;
   for (std::size_t i = run.first; i < run.last; ++i) {
-    const OutlineEdge& e = edges_[i];
+    const tool::OutlineEdge& e = edges_[i];
     if (e.from.y < e.to.y && e.from.y <= p.y && p.y <= e.to.y) return p.x <= radius_at(e, p.y);
   }
   return false;
@@ -198,4 +198,4 @@ OutlineRuns::At OutlineRuns::at(const Vec2& p, RunAt* runs) const {
   return out;
 }
 
-}  // namespace riffler
+}  // namespace riffler::collide

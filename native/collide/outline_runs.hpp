@@ -22,11 +22,11 @@
 
 #include "riffler/tool/outline.hpp"
 
-namespace riffler {
+namespace riffler::collide {
 
 class OutlineRuns {
  public:
-  explicit OutlineRuns(std::vector<OutlineEdge> edges);
+  explicit OutlineRuns(std::vector<tool::OutlineEdge> edges);
 
   /// Signed distance at a point and in which direction it grows.
   struct Slope {
@@ -49,7 +49,7 @@ class OutlineRuns {
   /// Signed distance from the whole tool.
   struct At : Slope {
     Vec2 foot;
-    Part part;
+    tool::Part part;
     std::size_t run;
     double margin;  ///< all points nearer to p than this have their feet on the edge that p's foot is on; −1: at an end
     bool outermost;  ///< that edge is straight, and all of the tool is on one side of it
@@ -94,13 +94,13 @@ class OutlineRuns {
 
   double reach_at(const Run& run, const Slope& closed, const Vec2& foot) const;
   bool holds(const Run& run, const Vec2& p) const;
-  Foot foot_on(const OutlineEdge& e, const Vec2& p) const;
+  Foot foot_on(const tool::OutlineEdge& e, const Vec2& p) const;
   void look(const Run& run, const Vec2& p, RunAt& out, Foot& nearest, Foot& second) const;
-  bool all_behind(const OutlineEdge& e) const;
+  bool all_behind(const tool::OutlineEdge& e) const;
 
-  std::vector<OutlineEdge> edges_;
+  std::vector<tool::OutlineEdge> edges_;
   std::vector<char> outermost_;  // of the edges
   std::vector<Run> runs_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::collide

@@ -7,7 +7,7 @@
 #include "riffler/base/check.hpp"
 #include "riffler/base/parallel.hpp"
 
-namespace riffler {
+namespace riffler::collide {
 
 namespace {
 
@@ -37,7 +37,7 @@ void split(const Corners& t, double most, const Visit& visit) {
 
 double chosen_spacing(const Surface& surface, double spacing) {
   constexpr double kChosen = 1e5, kMax = 5e7;
-  require_not_negative(spacing, "spacing", "must not be negative or not finite");
+  base::require_not_negative(spacing, "spacing", "must not be negative or not finite");
   const double area = area_of(surface);
   if (spacing == 0) return area > 0 ? std::sqrt(area / kChosen) : 1;
   if (area / (spacing * spacing) > kMax)
@@ -67,22 +67,22 @@ SamplePoints::SamplePoints(std::vector<Piece> pieces, double spacing)
              }}) {
   areas_.resize(tree_.groups());
   for (std::size_t g = tree_.groups(); g-- > 0;)
-    for (int k = 0; k < kLanes; ++k) {
+    for (int k = 0; k < base::kLanes; ++k) {
       if (tree_.holds_items(g)) {
         if (tree_.group(g).radius[k] >= 0) areas_[g].area[k] = pieces[tree_.order()[tree_.first_item(g) + k]].area;
       } else {
-        for (const Vec3& a : areas_[kLanes * g + 1 + k].area) areas_[g].area[k] += a;
+        for (const Vec3& a : areas_[base::kLanes * g + 1 + k].area) areas_[g].area[k] += a;
       }
     }
 }
 
 void SamplePoints::gather(const Surface& surface, std::size_t group, double spacing, std::vector<Piece>& out) {
   const SphereTree& tree = surface.tree();
-  for (int k = 0; k < kLanes; ++k) {
+  for (int k = 0; k < base::kLanes; ++k) {
     const double radius = tree.group(group).radius[k];
     if (radius < 0) continue;
     const bool item = tree.holds_items(group);
-    const std::size_t child = item ? tree.first_item(group) + k : kLanes * group + 1 + k;
+    const std::size_t child = item ? tree.first_item(group) + k : base::kLanes * group + 1 + k;
     if (item) {
       split(surface.corners(child), 2 * spacing, [&](const Corners& t) {
         const Vec3 a = area_of(t);
@@ -114,4 +114,4 @@ std::vector<SamplePoints::Piece> SamplePoints::pieces_of(const Surface& surface,
   return out;
 }
 
-}  // namespace riffler
+}  // namespace riffler::collide

@@ -5,7 +5,7 @@
 
 #include "collide/surface.hpp"
 
-namespace riffler {
+namespace riffler::collide {
 
 /// About `spacing` apart: large triangles are split, dense small ones gathered. A piece stands for its area vector (out
 /// of the material) at its centroid, and so does every node of the tree over them: a coarser set of points.
@@ -13,7 +13,7 @@ class SamplePoints {
  public:
   /// The area vectors of the eight children of a node, mm².
   struct AreaGroup {
-    Vec3 area[kLanes]{};
+    Vec3 area[base::kLanes]{};
   };
   /// A spacing of 0 is chosen: its square is a hundred-thousandth of the area. std::invalid_argument for one that is
   /// negative, not finite, or so small that there would be more than 50 million.
@@ -41,4 +41,4 @@ class SamplePoints {
 /// What a spacing of 0 stands for.
 double chosen_spacing(const Surface& surface, double spacing);
 
-}  // namespace riffler
+}  // namespace riffler::collide

@@ -7,7 +7,7 @@
 #include "geom/median_tree.hpp"
 #include "riffler/base/parallel.hpp"
 
-namespace riffler {
+namespace riffler::collide {
 
 namespace {
 
@@ -26,7 +26,7 @@ Vec3 middle_of_box(const SphereTree::Items& items, std::span<const std::uint32_t
 }  // namespace
 
 SphereGroup::SphereGroup() {
-  for (int k = 0; k < kLanes; ++k) put(k, {Vec3(0), -std::numeric_limits<double>::infinity()});
+  for (int k = 0; k < base::kLanes; ++k) put(k, {Vec3(0), -std::numeric_limits<double>::infinity()});
 }
 
 BoundingSphere round_triangle(const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -49,7 +49,7 @@ BoundingSphere round_triangle(const Vec3& a, const Vec3& b, const Vec3& c) {
 SphereTree::SphereTree(const Items& items) : order_(items.count) {
   std::iota(order_.begin(), order_.end(), 0U);
   std::size_t leaves = 1;
-  while (items.count > kLanes * leaves) first_leaf_ += leaves, leaves *= kLanes, ++levels_;
+  while (items.count > base::kLanes * leaves) first_leaf_ += leaves, leaves *= base::kLanes, ++levels_;
   groups_.resize(first_leaf_ + leaves);
   sort(items);
   bound(items);
@@ -57,31 +57,31 @@ SphereTree::SphereTree(const Items& items) : order_(items.count) {
 
 std::size_t SphereTree::first_under(std::size_t g) const {
   std::size_t level = 0, begin = 0, wide = 1;
-  while (g >= begin + wide) begin += wide, wide *= kLanes, ++level;
+  while (g >= begin + wide) begin += wide, wide *= base::kLanes, ++level;
   return first(level, g - begin);
 }
 
 std::size_t SphereTree::under(std::size_t g) const {
   std::size_t level = 0, begin = 0, wide = 1;
-  while (g >= begin + wide) begin += wide, wide *= kLanes, ++level;
+  while (g >= begin + wide) begin += wide, wide *= base::kLanes, ++level;
   return first(level, g - begin + 1) - first(level, g - begin);
 }
 
 void SphereTree::sort(const Items& items) {
   const std::size_t n = order_.size();
   std::vector<Vec3> centres(n);
-  parallel_for(n, 1 << 14, [&](std::size_t begin, std::size_t end) {
+  base::parallel_for(n, 1 << 14, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Box3 box = items.box(i);
       centres[i] = 0.5 * (box.lower + box.upper);
     }
   });
-  sort_by_medians(order_, 3 * levels_, centres);  // eight children are three halvings
+  geom::sort_by_medians(order_, 3 * levels_, centres);  // eight children are three halvings
 }
 
 void SphereTree::bound(const Items& items) {
   const std::size_t leaves = groups_.size() - first_leaf_;
-  parallel_for(leaves, 1 << 10, [&](std::size_t begin, std::size_t end) {
+  base::parallel_for(leaves, 1 << 10, [&](std::size_t begin, std::size_t end) {
     for (std::size_t leaf = begin; leaf < end; ++leaf) {
       const std::size_t from = first(levels_, leaf), to = first(levels_, leaf + 1);
       std::sort(order_.begin() + static_cast<std::ptrdiff_t>(from), order_.begin() + static_cast<std::ptrdiff_t>(to));
@@ -94,18 +94,19 @@ void SphereTree::bound(const Items& items) {
   });
   std::size_t begin = 0, wide = 1;
   for (std::size_t level = 1; level <= levels_; ++level) {
-    parallel_for(wide * kLanes, 64, [&](std::size_t from, std::size_t to) {
+    base::parallel_for(wide * base::kLanes, 64, [&](std::size_t from, std::size_t to) {
       for (std::size_t place = from; place < to; ++place) {
         const std::size_t low = first(level, place);
         const std::span<const std::uint32_t> some(order_.data() + low, first(level, place + 1) - low);
         const Vec3 centre = items.centre ? items.centre(some) : middle_of_box(items, some);
         double radius = 0;
         for (const std::uint32_t i : some) radius = std::max(radius, items.reach(i, centre));
-        groups_[begin + place / kLanes].put(static_cast<int>(place % kLanes), {centre, grown(radius, centre)});
+        groups_[begin + place / base::kLanes].put(static_cast<int>(place % base::kLanes),
+                                                  {centre, grown(radius, centre)});
       }
     });
-    begin += wide, wide *= kLanes;
+    begin += wide, wide *= base::kLanes;
   }
 }
 
-}  // namespace riffler
+}  // namespace riffler::collide

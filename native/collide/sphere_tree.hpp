@@ -9,7 +9,7 @@
 #include "base/lanes.hpp"
 #include "riffler/geom/vec.hpp"
 
-namespace riffler {
+namespace riffler::collide {
 
 struct BoundingSphere {
   Vec3 centre{0};
@@ -18,7 +18,7 @@ struct BoundingSphere {
 
 /// Eight spheres side by side, of the children of one node. Those of an empty place have the radius −∞.
 struct alignas(64) SphereGroup {
-  double x[kLanes], y[kLanes], z[kLanes], radius[kLanes];
+  double x[base::kLanes], y[base::kLanes], z[base::kLanes], radius[base::kLanes];
 
   SphereGroup();
   void put(int k, const BoundingSphere& s) {
@@ -69,4 +69,4 @@ class SphereTree {
 /// The smallest sphere round a triangle, also one without area.
 BoundingSphere round_triangle(const Vec3& a, const Vec3& b, const Vec3& c);
 
-}  // namespace riffler
+}  // namespace riffler::collide

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace riffler {
+namespace riffler::collide {
 
 std::vector<Corners> Surface::corners_of(const Mesh& mesh) {
   std::vector<Corners> out(mesh.triangles.size());
@@ -25,9 +25,9 @@ Surface::Surface(const std::vector<Corners>& corners)
                const Corners& c = corners[t];
                return std::max({glm::length(c.a - p), glm::length(c.b - p), glm::length(c.c - p)});
              }}) {
-  corners_.reserve(corners.size() + kLanes);
+  corners_.reserve(corners.size() + base::kLanes);
   for (const std::uint32_t t : tree_.order()) corners_.push_back(corners[t]);
-  corners_.resize(corners.size() + kLanes, {Vec3(0), Vec3(0), Vec3(0)});
+  corners_.resize(corners.size() + base::kLanes, {Vec3(0), Vec3(0), Vec3(0)});
 }
 
-}  // namespace riffler
+}  // namespace riffler::collide

@@ -7,7 +7,7 @@
 #include "collide/triangle_search.hpp"
 #include "riffler/mesh/mesh.hpp"
 
-namespace riffler {
+namespace riffler::collide {
 
 class Surface {
  public:
@@ -26,4 +26,4 @@ class Surface {
   std::vector<Corners> corners_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::collide

@@ -8,7 +8,7 @@
 #include "geom/math.hpp"
 #include "riffler/base/parallel.hpp"
 
-namespace riffler {
+namespace riffler::collide {
 
 namespace {
 
@@ -60,10 +60,10 @@ bool SweptSearch::halve(const Surface& surface, Entry e) {
 }
 
 void SweptSearch::look_again(const Surface& surface, Entry& e) {
-  const SphereGroup& siblings = surface.tree().group((e.index - 1) / kLanes);
-  const int k = static_cast<int>((e.index - 1) % kLanes);
+  const SphereGroup& siblings = surface.tree().group((e.index - 1) / base::kLanes);
+  const int k = static_cast<int>((e.index - 1) % base::kLanes);
   const MoveInterval& s = stretches_[e.stretch];
-  double distance[kLanes];
+  double distance[base::kLanes];
   centre_distances(assembly_.lane_edges(), s.frame, siblings, distance);
   ++out_.evaluations;
   e.distance = distance[k];
@@ -91,14 +91,14 @@ void SweptSearch::open(const Surface& surface, const Entry& e) {
   const SphereTree& tree = surface.tree();
   const SphereGroup& spheres = tree.group(e.index);
   const MoveInterval& s = stretches_[e.stretch];
-  double distance[kLanes], low[kLanes];
+  double distance[base::kLanes], low[base::kLanes];
   centre_distances(assembly_.lane_edges(), s.frame, spheres, distance);
   const bool items = tree.holds_items(e.index);
-  const std::size_t first = items ? tree.first_item(e.index) : kLanes * e.index + 1;
+  const std::size_t first = items ? tree.first_item(e.index) : base::kLanes * e.index + 1;
   if (items)
     triangle_bounds(assembly_.runs(), assembly_.lane_edges(), s.frame, spheres, &surface.corners(first), &s.drift,
                     distance, low);
-  for (int k = 0; k < kLanes; ++k) {
+  for (int k = 0; k < base::kLanes; ++k) {
     const double radius = spheres.radius[k];
     if (radius < 0) continue;
     const double drifts = s.drift.nearer(glm::length(spheres.sphere(k).centre - s.frame.tip) + radius);
@@ -138,7 +138,7 @@ Swept SweptSearch::operator()(std::span<const Surface* const> surfaces) {
     heap_.pop_back();
     const Surface& surface = *surfaces[e.surface];
     if (is_better_halved(e) && halve(surface, e)) continue;
-    if (++out_.evaluations % kLooksAReport == 0) still_wanted();
+    if (++out_.evaluations % kLooksAReport == 0) base::still_wanted();
     e.kind == Entry::Group ? open(surface, e) : test(surface, e);
   }
   if (!heap_.empty()) out_.bound = std::min(out_.bound, heap_.front().low);
@@ -149,4 +149,4 @@ Swept SweptSearch::operator()(std::span<const Surface* const> surfaces) {
   return out_;
 }
 
-}  // namespace riffler
+}  // namespace riffler::collide

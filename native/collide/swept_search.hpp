@@ -12,7 +12,7 @@
 #include "riffler/collide/swept.hpp"
 #include "riffler/geom/pose.hpp"
 
-namespace riffler {
+namespace riffler::collide {
 
 /// Branch and bound over the part and over time at once: what is far from all of the motion is dismissed for all of it,
 /// and only what the tool passes close to is looked at in ever shorter stretches. Over a stretch the distance of a
@@ -61,4 +61,4 @@ class SweptSearch {
   Swept out_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::collide

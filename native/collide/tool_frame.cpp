@@ -2,10 +2,10 @@
 
 #include <stdexcept>
 
-namespace riffler {
+namespace riffler::collide {
 
 ToolFrame::ToolFrame(const Pose& pose) : tip(pose.tip), u(0), v(0), axis(pose.axis) {
-  if (!finite(tip)) throw std::invalid_argument("pose: the tip is not finite");
+  if (!geom::finite(tip)) throw std::invalid_argument("pose: the tip is not finite");
   const double length = glm::length(axis);
   if (!(std::abs(length - 1) <= 1e-6)) throw std::invalid_argument("pose: the axis is not a unit vector");
   axis /= length;
@@ -15,4 +15,4 @@ ToolFrame::ToolFrame(const Pose& pose) : tip(pose.tip), u(0), v(0), axis(pose.ax
   v = {b, sign + axis.y * axis.y * a, -axis.y};
 }
 
-}  // namespace riffler
+}  // namespace riffler::collide

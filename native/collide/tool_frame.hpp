@@ -3,7 +3,7 @@
 
 #include "riffler/geom/pose.hpp"
 
-namespace riffler {
+namespace riffler::collide {
 
 /// A right-handed frame with its origin in the tip and its third direction along the axis. Subtracting the tip first
 /// keeps what is small near the tool small, wherever the part stands.
@@ -23,4 +23,4 @@ struct ToolFrame {
   Vec3 turned(const Vec3& d) const { return d.x * u + d.y * v + d.z * axis; }
 };
 
-}  // namespace riffler
+}  // namespace riffler::collide

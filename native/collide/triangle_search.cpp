@@ -7,7 +7,7 @@
 
 #include "geom/math.hpp"
 
-namespace riffler {
+namespace riffler::collide {
 
 namespace {
 
@@ -282,4 +282,4 @@ void TriangleSearch::search(const Corners& t, double low_of_all, Deadline& deadl
   }
 }
 
-}  // namespace riffler
+}  // namespace riffler::collide

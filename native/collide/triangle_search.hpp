@@ -10,7 +10,7 @@
 #include "riffler/base/block_pool.hpp"
 #include "riffler/geom/vec.hpp"
 
-namespace riffler {
+namespace riffler::collide {
 
 /// In the tool's frame.
 struct Corners {
@@ -25,7 +25,7 @@ class TriangleSearch {
   struct Least {
     double distance = std::numeric_limits<double>::infinity();
     Vec3 point{0};  ///< in the tool's frame
-    Part part = Part::Cutter;
+    tool::Part part = tool::Part::Cutter;
   };
 
   /// Refers to `runs`.
@@ -90,13 +90,13 @@ class TriangleSearch {
   double drift_of(const Vec3& p) const { return drift_ ? drift_->most(glm::length(p)) : 0; }
 
   const OutlineRuns& runs_;
-  const Drift* drift_ = nullptr;        // that bounds are to allow for
-  BlockVector<OutlineRuns::RunAt> at_;  // of the last look
+  const Drift* drift_ = nullptr;              // that bounds are to allow for
+  base::BlockVector<OutlineRuns::RunAt> at_;  // of the last look
   Least least_;
-  BlockVector<Cell> heap_;
+  base::BlockVector<Cell> heap_;
   std::size_t cells_ = 0;
   double loose_ = 0;
   double left_ = std::numeric_limits<double>::infinity(), enough_ = -left_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::collide

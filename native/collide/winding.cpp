@@ -4,7 +4,7 @@
 
 #include "geom/math.hpp"
 
-namespace riffler {
+namespace riffler::collide {
 
 namespace {
 
@@ -29,7 +29,7 @@ void WindingNumber::Dipole::add(const Vec3& more, const Vec3& place, double by) 
 WindingNumber::WindingNumber(const Surface& surface) : surface_(surface), dipoles_(surface.tree().groups()) {
   const SphereTree& tree = surface.tree();
   for (std::size_t g = tree.groups(); g-- > 0;)
-    for (int k = 0; k < kLanes; ++k) {
+    for (int k = 0; k < base::kLanes; ++k) {
       Dipole& d = dipoles_[g][k];
       if (tree.group(g).radius[k] < 0) continue;
       if (tree.holds_items(g)) {
@@ -37,7 +37,7 @@ WindingNumber::WindingNumber(const Surface& surface) : surface_(surface), dipole
         const Vec3 area = 0.5 * glm::cross(t.b - t.a, t.c - t.a);
         d.add(area, (t.a + t.b + t.c) / 3.0, glm::length(area));
       } else {
-        for (const Dipole& below : dipoles_[kLanes * g + 1 + static_cast<std::size_t>(k)])
+        for (const Dipole& below : dipoles_[base::kLanes * g + 1 + static_cast<std::size_t>(k)])
           d.add(below.area, below.middle, below.size);
       }
     }
@@ -51,7 +51,7 @@ double WindingNumber::operator()(const Vec3& p) const {
     const std::size_t g = open.back();
     open.pop_back();
     const bool items = tree.holds_items(g);
-    for (int k = 0; k < kLanes; ++k) {
+    for (int k = 0; k < base::kLanes; ++k) {
       const BoundingSphere s = tree.group(g).sphere(k);
       if (s.radius < 0) continue;
       const Dipole& d = dipoles_[g][k];
@@ -62,11 +62,11 @@ double WindingNumber::operator()(const Vec3& p) const {
       } else if (items) {
         near += half_angle(surface_.corners(tree.first_item(g) + static_cast<std::size_t>(k)), p);
       } else {
-        open.push_back(kLanes * g + 1 + static_cast<std::size_t>(k));
+        open.push_back(base::kLanes * g + 1 + static_cast<std::size_t>(k));
       }
     }
   }
   return (near + 0.5 * far) / (2 * kPi);
 }
 
-}  // namespace riffler
+}  // namespace riffler::collide

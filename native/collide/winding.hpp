@@ -6,7 +6,7 @@
 
 #include "collide/surface.hpp"
 
-namespace riffler {
+namespace riffler::collide {
 
 /// Generalized winding number (Jacobson, Kavan and Sorkine-Hornung, ACM TOG 32(4) (2013) 33): 1 inside of a closed
 /// surface whose normals point outwards, 0 outside, in between near openings. Triangles that are far off are taken
@@ -27,7 +27,7 @@ class WindingNumber {
   };
 
   const Surface& surface_;
-  std::vector<std::array<Dipole, kLanes>> dipoles_;  // of the tree's groups
+  std::vector<std::array<Dipole, base::kLanes>> dipoles_;  // of the tree's groups
 };
 
-}  // namespace riffler
+}  // namespace riffler::collide

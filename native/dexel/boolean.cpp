@@ -15,7 +15,7 @@
 #include "dexel/joiner.hpp"
 #include "riffler/base/parallel.hpp"
 
-namespace riffler {
+namespace riffler::dexel {
 
 namespace {
 
@@ -211,7 +211,7 @@ void apply(Boolean op, Volume& a, const Volume& b, const Progress& progress) {
   }
 
   constexpr std::size_t grain = 16;
-  parallel_for(
+  base::parallel_for(
       jobs.size(), grain,
       [&](std::size_t begin, std::size_t end) {
         TileBuilder builder(a.grids().front().has_normals());
@@ -237,4 +237,4 @@ void apply(Boolean op, Volume& a, const Volume& b, const Progress& progress) {
   if (stats.tiles_changed > 0) a.touch();
 }
 
-}  // namespace riffler
+}  // namespace riffler::dexel

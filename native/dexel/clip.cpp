@@ -9,7 +9,7 @@
 #include "riffler/base/parallel.hpp"
 #include "riffler/dexel/boolean.hpp"
 
-namespace riffler {
+namespace riffler::dexel {
 
 namespace {
 
@@ -42,18 +42,18 @@ void fill(Grid& grid, std::size_t tile, const HalfSpace& half) {
 }  // namespace
 
 void clip(Volume& volume, const Vec3& point, const Vec3& normal, const Progress& progress) {
-  require(finite(point), "point", "must be finite");
+  base::require(geom::finite(point), "point", "must be finite");
   const double length = glm::length(normal);
-  if (!finite(normal) || !(length > 0) || !std::isfinite(length))
+  if (!geom::finite(normal) || !(length > 0) || !std::isfinite(length))
     throw std::invalid_argument("normal must be finite and not of length 0");
   Volume behind(volume.frame());
   for (Grid& grid : behind.grids()) {
     const HalfSpace half{grid, to_local(grid.axis(), point), to_local(grid.axis(), normal / length)};
-    parallel_for(grid.tile_count(), 4, [&](std::size_t begin, std::size_t end) {
+    base::parallel_for(grid.tile_count(), 4, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) fill(grid, t, half);
     });
   }
   apply(Boolean::Intersect, volume, behind, progress);
 }
 
-}  // namespace riffler
+}  // namespace riffler::dexel

@@ -5,7 +5,7 @@
 
 #include "riffler/base/parallel.hpp"
 
-namespace riffler {
+namespace riffler::dexel {
 
 namespace {
 
@@ -25,7 +25,7 @@ std::vector<char> contains(const Volume& volume, std::span<const Vec3> points) {
   const std::size_t needed = volume.grids().size() / 2 + 1;
   const Box3& box = volume.frame().box;
   std::vector<char> out(points.size());
-  parallel_for(points.size(), 4096, [&](std::size_t begin, std::size_t end) {
+  base::parallel_for(points.size(), 4096, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const Vec3& p = points[k];
       if (!glm::all(glm::greaterThanEqual(p, box.lower)) || !glm::all(glm::lessThanEqual(p, box.upper))) continue;
@@ -37,4 +37,4 @@ std::vector<char> contains(const Volume& volume, std::span<const Vec3> points) {
   return out;
 }
 
-}  // namespace riffler
+}  // namespace riffler::dexel

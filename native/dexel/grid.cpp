@@ -4,7 +4,7 @@
 #include <cmath>
 #include <unordered_set>
 
-namespace riffler {
+namespace riffler::dexel {
 
 int ray_count(double extent, double pitch) {
   return std::max(1, static_cast<int>(std::lround(extent / pitch)));
@@ -35,7 +35,7 @@ Grid::Grid(Axis axis, const Box3& box, double pitch, bool with_normals)
   last_u_ = last_width(box_.size().x, nu_, pitch), last_v_ = last_width(box_.size().y, nv_, pitch);
   tiles_u_ = (nu_ + kTileSide - 1) / kTileSide;
   tiles_v_ = (nv_ + kTileSide - 1) / kTileSide;
-  const std::shared_ptr<const Tile> empty = make_shared_block<Tile>();
+  const std::shared_ptr<const Tile> empty = base::make_shared_block<Tile>();
   tiles_.assign(static_cast<std::size_t>(tiles_u_) * tiles_v_, empty);
 }
 
@@ -97,4 +97,4 @@ std::size_t Grid::nbytes() const {
   return bytes;
 }
 
-}  // namespace riffler
+}  // namespace riffler::dexel

@@ -12,7 +12,7 @@
 #include "riffler/base/check.hpp"
 #include "riffler/base/parallel.hpp"
 
-namespace riffler {
+namespace riffler::dexel {
 
 namespace {
 
@@ -88,7 +88,7 @@ void move_rays(const Grid& from, Grid& to, int du, int dv, const Progress& progr
       places.emplace_back(to.tile_index(u, v), at->second);
     }
   std::vector<std::shared_ptr<const Tile>> made(work.size());
-  parallel_for(
+  base::parallel_for(
       work.size(), 16,
       [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k)
@@ -101,8 +101,8 @@ void move_rays(const Grid& from, Grid& to, int du, int dv, const Progress& progr
 }  // namespace
 
 Frame grown(const Frame& frame, const Box3& wanted) {
-  require(finite(wanted.lower), "lower", "must be finite");
-  require(finite(wanted.upper), "upper", "must be finite");
+  base::require(geom::finite(wanted.lower), "lower", "must be finite");
+  base::require(geom::finite(wanted.upper), "upper", "must be finite");
   if (wanted.empty()) throw std::invalid_argument("lower must not be above upper");
   Frame out = frame;
   const double h = frame.pitch;
@@ -128,9 +128,9 @@ Volume grown(const Volume& volume, const Box3& wanted, const Progress& progress)
     Grid& grid = out.grids()[g];
     const Vec3 local = to_local(grid.axis(), moved);
     move_rays(volume.grids()[g], grid, static_cast<int>(std::lround(local.x)), static_cast<int>(std::lround(local.y)),
-              part(progress, static_cast<double>(g) * share, static_cast<double>(g + 1) * share));
+              base::part(progress, static_cast<double>(g) * share, static_cast<double>(g + 1) * share));
   }
   return out;
 }
 
-}  // namespace riffler
+}  // namespace riffler::dexel

@@ -3,7 +3,7 @@
 
 #include "riffler/dexel/tile.hpp"
 
-namespace riffler {
+namespace riffler::dexel {
 
 /// Spans and gaps thinner than this part of the pitch vanish.
 inline constexpr double kSliver = 1e-9;
@@ -32,4 +32,4 @@ class Joiner {
   SpanNormals normals_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::dexel

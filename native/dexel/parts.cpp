@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace riffler {
+namespace riffler::dexel {
 
 namespace {
 
@@ -174,7 +174,7 @@ std::vector<Volume> split(const Volume& volume, const std::vector<Numbers>& numb
         });
       }
     }
-    report(progress, 0.6 + 0.4 * static_cast<double>(g + 1) / static_cast<double>(volume.grids().size()));
+    base::report(progress, 0.6 + 0.4 * static_cast<double>(g + 1) / static_cast<double>(volume.grids().size()));
   }
   return out;
 }
@@ -190,9 +190,9 @@ std::vector<Volume> parts(const Volume& volume, double least, const Progress& pr
   for (std::size_t g = 0; g < numbers.size(); ++g) {
     join_neighbours(volume.grids()[g], numbers[g], sets);
     if (g != reference) join_across(volume.grids()[g], numbers[g], volume.reference(), numbers[reference], sets);
-    report(progress, 0.6 * static_cast<double>(g + 1) / static_cast<double>(numbers.size()));
+    base::report(progress, 0.6 * static_cast<double>(g + 1) / static_cast<double>(numbers.size()));
   }
   return split(volume, numbers, number_pieces(volume, numbers, sets, least), progress);
 }
 
-}  // namespace riffler
+}  // namespace riffler::dexel

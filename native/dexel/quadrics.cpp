@@ -14,7 +14,7 @@
 #include "riffler/base/parallel.hpp"
 #include "riffler/geom/interval.hpp"
 
-namespace riffler {
+namespace riffler::dexel {
 
 namespace {
 
@@ -51,7 +51,7 @@ class SphereRays {
 /// Unit length, also where squares of the components would overflow or vanish. Throws for none.
 Vec3 checked_axis(const Vec3& axis) {
   const double most = std::max({std::abs(axis.x), std::abs(axis.y), std::abs(axis.z)});
-  if (!finite(axis) || !(most > 0)) throw std::invalid_argument("axis must be finite and not of length 0");
+  if (!geom::finite(axis) || !(most > 0)) throw std::invalid_argument("axis must be finite and not of length 0");
   return glm::normalize(axis / most);
 }
 
@@ -149,12 +149,12 @@ Volume made(const char* name, const Solid& solid, double inner, const Frame& fra
   for (std::size_t g = 0; g < volume.grids().size(); ++g) {
     Grid& grid = volume.grids()[g];
     const Rays rays(solid, grid.axis());
-    parallel_for(
+    base::parallel_for(
         grid.tile_count(), 4,
         [&](std::size_t begin, std::size_t end) {
           for (std::size_t t = begin; t < end; ++t) fill(grid, t, rays);
         },
-        part(progress, static_cast<double>(g) * share, static_cast<double>(g + 1) * share));
+        base::part(progress, static_cast<double>(g) * share, static_cast<double>(g + 1) * share));
     if (grid.span_count() > 0 || !holds(frame, around)) continue;
     std::ostringstream text;
     text << "no ray meets the " << name << ", which is small for a pitch of " << frame.pitch
@@ -165,10 +165,10 @@ Volume made(const char* name, const Solid& solid, double inner, const Frame& fra
 }
 
 Box3 checked_box(const Vec3& centre, const Vec3& reach, const char* name) {
-  require(finite(centre), "centre", "must be finite");
+  base::require(geom::finite(centre), "centre", "must be finite");
   const Box3 box{centre - reach, centre + reach};
   for (int k = 0; k < 3; ++k)
-    if (!finite(box.lower) || !finite(box.upper) || !(box.lower[k] < box.upper[k]))
+    if (!geom::finite(box.lower) || !geom::finite(box.upper) || !(box.lower[k] < box.upper[k]))
       throw std::invalid_argument(std::string("the ") + name +
                                   " is too small or too large for its centre's coordinates: doubles cannot hold both");
   return box;
@@ -177,12 +177,12 @@ Box3 checked_box(const Vec3& centre, const Vec3& reach, const char* name) {
 }  // namespace
 
 Box3 bounds(const Sphere& solid) {
-  require_length(solid.radius, "radius");
+  base::require_length(solid.radius, "radius");
   return checked_box(solid.centre, Vec3(solid.radius), "sphere");
 }
 
 Box3 bounds(const Cylinder& solid) {
-  require_length(solid.radius, "radius"), require_length(solid.height, "height");
+  base::require_length(solid.radius, "radius"), base::require_length(solid.height, "height");
   const Vec3 a = glm::abs(checked_axis(solid.axis));
   const Vec3 disc(std::hypot(a.y, a.z), std::hypot(a.z, a.x), std::hypot(a.x, a.y));
   return checked_box(solid.centre, 0.5 * solid.height * a + solid.radius * disc, "cylinder");
@@ -196,4 +196,4 @@ Volume cylinder(const Cylinder& solid, const Frame& frame, const Progress& progr
   return made<CylinderRays>("cylinder", solid, std::min(solid.radius, 0.5 * solid.height), frame, progress);
 }
 
-}  // namespace riffler
+}  // namespace riffler::dexel

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace riffler {
+namespace riffler::dexel {
 
 namespace {
 double sign(double x) {
@@ -37,4 +37,4 @@ Vec3 PackedNormal::unpack() const {
   return n / glm::length(n);
 }
 
-}  // namespace riffler
+}  // namespace riffler::dexel

@@ -4,7 +4,7 @@
 #include <atomic>
 #include <numeric>
 
-namespace riffler {
+namespace riffler::dexel {
 
 const RayOffsets::Array& RayOffsets::none() {
   static const Array offsets{};
@@ -26,7 +26,7 @@ RayOffsets::RayOffsets(const Array& offsets) {
       first_ = common->data();
       return;
     }
-  own_ = make_shared_block<const Array>(offsets);
+  own_ = base::make_shared_block<const Array>(offsets);
   first_ = own_->data();
 }
 
@@ -53,10 +53,10 @@ std::shared_ptr<Tile> TileBuilder::finish() {
   while (rays_ < kTileRays) next_ray();
   tile_.offset = RayOffsets(offset_);
   // The copy's vectors are exactly as long as their content; the builder keeps its capacity for the next tile.
-  auto tile = make_shared_block<Tile>(tile_);
+  auto tile = base::make_shared_block<Tile>(tile_);
   tile->revision = next_revision();
   clear();
   return tile;
 }
 
-}  // namespace riffler
+}  // namespace riffler::dexel

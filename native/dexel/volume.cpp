@@ -11,7 +11,7 @@
 
 #include "riffler/base/check.hpp"
 
-namespace riffler {
+namespace riffler::dexel {
 
 double available_memory() {
   std::ifstream info("/proc/meminfo");
@@ -26,7 +26,7 @@ double available_memory() {
 namespace {
 
 std::string sides(const Vec3& size) {
-  return in_figures(size.x) + " × " + in_figures(size.y) + " × " + in_figures(size.z) + " mm";
+  return base::in_figures(size.x) + " × " + base::in_figures(size.y) + " × " + base::in_figures(size.z) + " mm";
 }
 
 /// 7280000000000 → "7.3 TB".
@@ -49,13 +49,15 @@ void check_box(const Box3& box) {
     const double lower = box.lower[k], upper = box.upper[k];
     const std::string along = std::string(" along ") + names[k];
     for (const auto& [name, x] : {std::pair{"lower", lower}, std::pair{"upper", upper}})
-      if (!std::isfinite(x)) throw std::invalid_argument(name + (" must be finite, not " + in_figures(x)) + along);
+      if (!std::isfinite(x))
+        throw std::invalid_argument(name + (" must be finite, not " + base::in_figures(x)) + along);
     if (!(lower < upper))
-      throw std::invalid_argument("lower must be less than upper;" + along + " they are " + in_figures(lower) +
-                                  " and " + in_figures(upper) + " mm");
-    if (!(upper - lower <= kMaxBox))
-      throw std::invalid_argument("the box is " + in_figures(upper - lower) + " mm long" + along + ", and may be " +
-                                  in_figures(kMaxBox) + " mm at most: give its size in millimetres");
+      throw std::invalid_argument("lower must be less than upper;" + along + " they are " + base::in_figures(lower) +
+                                  " and " + base::in_figures(upper) + " mm");
+    if (!(upper - lower <= base::kMaxBox))
+      throw std::invalid_argument("the box is " + base::in_figures(upper - lower) + " mm long" + along +
+                                  ", and may be " + base::in_figures(base::kMaxBox) +
+                                  " mm at most: give its size in millimetres");
   }
 }
 
@@ -64,18 +66,18 @@ void check(const Frame& frame) {
   check_box(frame.box);
   const double pitch = frame.pitch;
   if (!std::isfinite(pitch) || !(pitch > 0))
-    throw std::invalid_argument("pitch must be a positive length in mm, not " + in_figures(pitch));
+    throw std::invalid_argument("pitch must be a positive length in mm, not " + base::in_figures(pitch));
   const Vec3 size = frame.box.size();
   if (pitch > longest(size))
-    throw std::invalid_argument("pitch " + in_figures(pitch) + " mm is longer than every side of the box, " +
+    throw std::invalid_argument("pitch " + base::in_figures(pitch) + " mm is longer than every side of the box, " +
                                 sides(size) + ": take a finer pitch");
   if (longest(glm::max(glm::abs(frame.box.lower), glm::abs(frame.box.upper))) > 1e15 * pitch)
-    throw std::invalid_argument("pitch " + in_figures(pitch) +
+    throw std::invalid_argument("pitch " + base::in_figures(pitch) +
                                 " mm is too fine for coordinates as large as the box's, whose rays would coincide: " +
                                 "take a coarser pitch, or move the box to the origin");
   const double bytes = estimated_bytes(frame), free = available_memory();
   if (bytes > free || longest(size) > 1e9 * pitch)
-    throw std::invalid_argument("pitch " + in_figures(pitch) + " mm needs " + in_bytes(bytes) +
+    throw std::invalid_argument("pitch " + base::in_figures(pitch) + " mm needs " + in_bytes(bytes) +
                                 " for the rays of this box, " + sides(size) + ", and " + in_bytes(free) +
                                 " are free: take a coarser pitch or a smaller box");
 }
@@ -137,4 +139,4 @@ void Volume::restore(const Volume& snapshot) {
   revision_ = snapshot.revision_;
 }
 
-}  // namespace riffler
+}  // namespace riffler::dexel

@@ -19,15 +19,15 @@ void repair_pieces(Bytes& bytes, std::size_t header, std::size_t head, std::size
   if (bytes.size() < header) return;
   for (std::size_t at = header; at + head <= bytes.size();) {
     const std::size_t rest = bytes.size() - at - head;
-    const auto length = get<std::uint64_t>(bytes, at + length_at);
+    const auto length = base::get<std::uint64_t>(bytes, at + length_at);
     if (length > rest) set(bytes, at + length_at, static_cast<std::uint64_t>(rest));
     const std::size_t size = length > rest ? rest : static_cast<std::size_t>(length);
     const ByteView all(bytes);
-    set(bytes, at + head - 4, checksum(all.subspan(at, head - 4), all.subspan(at + head, size)));
+    set(bytes, at + head - 4, base::checksum(all.subspan(at, head - 4), all.subspan(at + head, size)));
     at += head + size;
   }
   set(bytes, 16, static_cast<std::uint64_t>(bytes.size()));
-  set(bytes, header - 4, checksum(ByteView(bytes).first(header - 4)));
+  set(bytes, header - 4, base::checksum(ByteView(bytes).first(header - 4)));
 }
 
 }  // namespace
@@ -43,22 +43,22 @@ void repair_program(Bytes& bytes) {
 void repair_journal(Bytes& bytes) {
   constexpr std::size_t kHeader = 16, kHead = 16, kTail = 4;
   if (bytes.size() < kHeader) return;
-  set(bytes, 12, checksum(ByteView(bytes).first(12)));
+  set(bytes, 12, base::checksum(ByteView(bytes).first(12)));
   for (std::size_t at = kHeader; at + kHead + kTail <= bytes.size();) {
     const std::size_t rest = bytes.size() - at - kHead - kTail;
-    const auto length = get<std::uint32_t>(bytes, at + 8);
+    const auto length = base::get<std::uint32_t>(bytes, at + 8);
     const std::size_t size = length > rest ? rest : length;
     set(bytes, at + 8, static_cast<std::uint32_t>(size));
     const ByteView all(bytes);
-    set(bytes, at + 12, checksum(all.subspan(at, 12)));
-    set(bytes, at + kHead + size, checksum(all.subspan(at + kHead, size)));
+    set(bytes, at + 12, base::checksum(all.subspan(at, 12)));
+    set(bytes, at + kHead + size, base::checksum(all.subspan(at + kHead, size)));
     at += kHead + size + kTail;
   }
 }
 
 void repair_packet(Bytes& bytes) {
   if (bytes.size() < 8) return;
-  set(bytes, bytes.size() - 4, checksum(ByteView(bytes).first(bytes.size() - 4)));
+  set(bytes, bytes.size() - 4, base::checksum(ByteView(bytes).first(bytes.size() - 4)));
 }
 
 }  // namespace riffler::fuzz

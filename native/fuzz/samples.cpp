@@ -27,13 +27,13 @@ Mesh tetrahedron(double size) {
 
 Volume carved(const char* directions) {
   Volume volume = Volume::block({{{0, 0, 0}, {6, 5, 3}}, 0.5, directions});
-  carve(volume, cutters::ball(2, 20), std::vector<Pose>{{{1, 1, 2}, kUp}, {{5, 4, 1.5}, kUp}});
+  sweep::carve(volume, cutters::ball(2, 20), std::vector<Pose>{{{1, 1, 2}, kUp}, {{5, 4, 1.5}, kUp}});
   return volume;
 }
 
-Samples texts(std::span<const ShippedText> all) {
+Samples texts(std::span<const base::ShippedText> all) {
   Samples out;
-  for (const ShippedText& one : all) out.emplace_back(one.toml.begin(), one.toml.end());
+  for (const base::ShippedText& one : all) out.emplace_back(one.toml.begin(), one.toml.end());
   return out;
 }
 
@@ -56,49 +56,49 @@ Samples volume_samples() {
 }
 
 Samples program_samples() {
-  Program program;
+  nc::Program program;
   for (int k = 0; k < 5; ++k)
     program.append({{{k * 1.5, 2.0 - k, 3}, kUp}, k == 0 ? 0.0 : 600.0, 9000, 1, k + 1, k == 0});
   program.provenance = {{"source", "part.ngc"}};
   program.tools.emplace(1, cutters::fillet(6, 1, 30));
-  return {to_bytes(program), to_bytes(Program())};
+  return {to_bytes(program), to_bytes(nc::Program())};
 }
 
 Samples journal_samples() {
-  Journal journal;
+  session::Journal journal;
   journal.add_note("by", "a sample");
   journal.set_stock({{{0, 0, 0}, {6, 5, 3}}, 0.5, "z", "", ""});
   journal.add_tool(1, R"({"kind": "ball", "diameter": 2, "length": 20})");
-  JournalStroke stroke;
+  session::JournalStroke stroke;
   stroke.tool = 1, stroke.tolerance = 0.01, stroke.name = "first";
   stroke.poses = {{{1, 1, 2}, kUp}, {{5, 4, 1.5}, kUp}};
   stroke.times = {0, 0.5};
   journal.add_stroke(stroke);
   journal.undo(1);
-  return {to_bytes(journal), to_bytes(Journal())};
+  return {to_bytes(journal), to_bytes(session::Journal())};
 }
 
 Samples packet_samples() {
   const Volume volume = carved("z");
-  const Slab slab = slabs_of(volume).front();
-  SlabContext context;
+  const verify::Slab slab = verify::slabs_of(volume).front();
+  verify::SlabContext context;
   context.frames = {volume.frame()};
   context.tools = {cutters::ball(2, 20)};
   context.reach = 20, context.tolerance = 0.01, context.gouge_tolerance = 0.05, context.top = 10;
   context.part = std::make_shared<Mesh>(tetrahedron(2));
-  const SlabTask task{-1, slab, true, 3, tiles_of(volume.grids()[0], slab), {}};
-  SlabResult result{tiles_of(volume.grids()[0], slab), {}, {}};
+  const verify::SlabTask task{-1, slab, true, 3, tiles_of(volume.grids()[0], slab), {}};
+  verify::SlabResult result{tiles_of(volume.grids()[0], slab), {}, {}};
   result.report.removed = {{1, 0.5}};
-  result.report.events = {{Kind::Rapid, Member::Cutter, -1, 4, 2, 3, Vec3(0)}};
+  result.report.events = {{verify::Kind::Rapid, verify::Member::Cutter, -1, 4, 2, 3, Vec3(0)}};
   return {to_packet(context), to_packet(task), to_packet(result)};
 }
 
 Samples machine_samples() {
-  return texts(shipped_machines());
+  return texts(nc::shipped_machines());
 }
 
 Samples pen_samples() {
-  return texts(shipped_pens());
+  return texts(pen::shipped_pens());
 }
 
 }  // namespace riffler::fuzz

@@ -41,9 +41,9 @@ void reading(const Read& read) {
   }
 }
 
-void check(const Program& p) {
+void check(const nc::Program& p) {
   for (std::size_t row = 0; row < p.size(); ++row) {
-    require(finite(p.poses()[row].tip), "a tip that is not finite");
+    require(geom::finite(p.poses()[row].tip), "a tip that is not finite");
     require(std::abs(glm::length(p.poses()[row].axis) - 1) < 1e-9, "an axis that is not of unit length");
     require(std::isfinite(p.feed()[row]) && p.feed()[row] >= 0, "a feed that is none");
     require(std::isfinite(p.spindle()[row]), "a spindle speed that is none");
@@ -53,7 +53,7 @@ void check(const Program& p) {
 /// Coarse chords and few turns: what is asked for in one block, kilometres of arcs, is not what is looked for.
 void nc(View bytes, const char* machine, bool skips) {
   reading([&] {
-    ReadOptions options{machine, {{"chord_tolerance", 0.1}}};
+    nc::ReadOptions options{machine, {{"chord_tolerance", 0.1}}};
     if (options.machine != "apt") options.options["max_turns"] = 1000.0;
     if (options.machine != "apt" && !options.machine.starts_with("sinumerik")) {
       options.options["cutter_compensation"] = std::string("offset");
@@ -76,32 +76,32 @@ void mesh(View bytes) {
 
 void program(View bytes) {
   reading([&] {
-    const Program read = parse_program(bytes, "fuzz");
+    const nc::Program read = nc::parse_program(bytes, "fuzz");
     check(read);
-    require(parse_program(to_bytes(read), "fuzz").size() == read.size(), "a program that does not come back");
+    require(nc::parse_program(to_bytes(read), "fuzz").size() == read.size(), "a program that does not come back");
   });
 }
 
 void volume(View bytes) {
   reading([&] {
-    const Volume read = from_bytes(bytes, "fuzz");
-    require(to_bytes(from_bytes(to_bytes(read), "fuzz")) == to_bytes(read), "a volume that does not come back");
+    const Volume read = dexel::from_bytes(bytes, "fuzz");
+    require(to_bytes(dexel::from_bytes(to_bytes(read), "fuzz")) == to_bytes(read), "a volume that does not come back");
   });
 }
 
 void journal(View bytes) {
   reading([&] {
-    const Journal read = parse_journal(bytes, "fuzz");
-    const Journal again = parse_journal(to_bytes(read), "fuzz");
+    const session::Journal read = session::parse_journal(bytes, "fuzz");
+    const session::Journal again = session::parse_journal(to_bytes(read), "fuzz");
     require(again.strokes().size() == read.strokes().size(), "a journal that does not come back");
   });
 }
 
 void machine(View bytes) {
-  reading([&] { machine_summary(text_of(bytes), "fuzz"); });
+  reading([&] { nc::machine_summary(text_of(bytes), "fuzz"); });
   reading([&] {
     try {
-      OptionReader options({}, "machine fuzz");
+      nc::OptionReader options({}, "machine fuzz");
       describe_machine(text_of(bytes), "fuzz", "fuzz", options);
     } catch (const std::invalid_argument&) {  // an option that has to be given
     }
@@ -109,13 +109,13 @@ void machine(View bytes) {
 }
 
 void pen(View bytes) {
-  reading([&] { pen_summary(text_of(bytes), "fuzz"); });
-  reading([&] { describe_pen(text_of(bytes), "fuzz", "fuzz"); });
+  reading([&] { pen::pen_summary(text_of(bytes), "fuzz"); });
+  reading([&] { pen::describe_pen(text_of(bytes), "fuzz", "fuzz"); });
 }
 
 void hid(View bytes) {
   try {
-    parse_descriptor(bytes);
+    pen::parse_descriptor(bytes);
   } catch (const std::invalid_argument&) {
   }
 }
@@ -131,11 +131,11 @@ void packet(const Read& read) {
 }
 
 void packets(View bytes) {
-  packet([&] { context_of(bytes); });
-  packet([&] { task_of(bytes); });
-  packet([&] { result_of(bytes); });
+  packet([&] { verify::context_of(bytes); });
+  packet([&] { verify::task_of(bytes); });
+  packet([&] { verify::result_of(bytes); });
   packet([&] {
-    SlabMoves moves;
+    verify::SlabMoves moves;
     add_moves(bytes, moves);
   });
 }
@@ -150,9 +150,9 @@ const Target kTargets[] = {
     {"heidenhain", [](View b) { nc(b, "heidenhain", b.size() % 2 == 1); }, &nothing, nullptr},
     {"sinumerik", [](View b) { nc(b, "sinumerik", b.size() % 2 == 1); }, &nothing, nullptr},
     {"apt", [](View b) { nc(b, "apt", b.size() % 2 == 1); }, &nothing, nullptr},
-    {"stl", &mesh<&from_stl>, &stl_samples, nullptr},
-    {"obj", &mesh<&from_obj>, &obj_samples, nullptr},
-    {"ply", &mesh<&from_ply>, &ply_samples, nullptr},
+    {"stl", &mesh<&mesh::from_stl>, &stl_samples, nullptr},
+    {"obj", &mesh<&mesh::from_obj>, &obj_samples, nullptr},
+    {"ply", &mesh<&mesh::from_ply>, &ply_samples, nullptr},
     {"rvol", &volume, &volume_samples, &repair_volume},
     {"rprog", &program, &program_samples, &repair_program},
     {"rjournal", &journal, &journal_samples, &repair_journal},

@@ -5,7 +5,7 @@
 
 #include "riffler/geom/vec.hpp"
 
-namespace riffler {
+namespace riffler::geom {
 
 /// As v, with length 1, or 0 where it has none.
 inline Vec3 unit_or_zero(const Vec3& v) {
@@ -18,4 +18,4 @@ inline double angle_between(const Vec3& a, const Vec3& b) {
   return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
 }
 
-}  // namespace riffler
+}  // namespace riffler::geom

@@ -3,7 +3,7 @@
 
 #include "riffler/geom/vec.hpp"
 
-namespace riffler {
+namespace riffler::geom {
 
 /// `x` rounded to float32. Use this, not a cast to float and back: GCC 12.2 at -O2 takes two neighbouring casts
 /// double → float → double that pass through memory, as those of a GLM vector do, for no change at all (a fault of its
@@ -16,4 +16,4 @@ inline Vec3 to_float32(const Vec3& v) {
   return {to_float32(v.x), to_float32(v.y), to_float32(v.z)};
 }
 
-}  // namespace riffler
+}  // namespace riffler::geom

@@ -7,7 +7,7 @@
 
 #include "riffler/geom/vec.hpp"
 
-namespace riffler {
+namespace riffler::geom {
 
 inline constexpr double kPi = std::numbers::pi;
 inline constexpr double kTwoPi = 2 * kPi;     ///< rad of a whole turn
@@ -31,4 +31,12 @@ inline Vec3 any_perpendicular(const Vec3& v) {
   return glm::normalize(glm::cross(v, std::abs(v.x) < 0.6 ? Vec3(1, 0, 0) : Vec3(0, 1, 0)));
 }
 
+}  // namespace riffler::geom
+
+namespace riffler {
+using geom::kDegree;
+using geom::kInfinity;
+using geom::kPi;
+using geom::kRadian;
+using geom::kTwoPi;
 }  // namespace riffler

@@ -8,7 +8,7 @@
 #include "riffler/base/parallel.hpp"
 #include "riffler/geom/vec.hpp"
 
-namespace riffler {
+namespace riffler::geom {
 
 /// Place of the first item of node `node` of a level, which has 2^level nodes.
 inline std::size_t first_item(std::size_t items, std::size_t level, std::size_t node) {
@@ -29,7 +29,7 @@ void sort_by_medians(std::vector<Index>& order, std::size_t levels, const Axis& 
     return order.begin() + static_cast<std::ptrdiff_t>(first_item(order.size(), level, node));
   };
   for (std::size_t level = 0; level < levels; ++level)
-    parallel_for(std::size_t{1} << level, 1, [&](std::size_t node, std::size_t) {
+    base::parallel_for(std::size_t{1} << level, 1, [&](std::size_t node, std::size_t) {
       const auto begin = at(level, node), end = at(level, node + 1);
       const int side = axis(begin, end);
       std::nth_element(begin, at(level + 1, 2 * node + 1), end, [&](Index i, Index j) {
@@ -55,7 +55,7 @@ template <class LeafBox>
 std::vector<Box3> boxes_of_tree(std::size_t levels, const LeafBox& leaf_box) {
   const std::size_t leaves = std::size_t{1} << levels;
   std::vector<Box3> boxes(2 * leaves - 1);
-  parallel_for(leaves, 1 << 12, [&](std::size_t from, std::size_t to) {
+  base::parallel_for(leaves, 1 << 12, [&](std::size_t from, std::size_t to) {
     for (std::size_t k = from; k < to; ++k) boxes[leaves - 1 + k] = leaf_box(k);
   });
   for (std::size_t i = leaves - 1; i-- > 0;) {
@@ -65,4 +65,4 @@ std::vector<Box3> boxes_of_tree(std::size_t levels, const LeafBox& leaf_box) {
   return boxes;
 }
 
-}  // namespace riffler
+}  // namespace riffler::geom

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace riffler {
+namespace riffler::geom {
 
 Motion::Motion(const Pose& from, const Pose& to) : from_(from), to_(to), angle_(0), rotation_(0), side_(0) {
   const Vec3 cross = glm::cross(from.axis, to.axis);
@@ -24,4 +24,4 @@ Vec3 Motion::axis(double t) const {
   return std::cos(t * angle_) * from_.axis + std::sin(t * angle_) * side_;
 }
 
-}  // namespace riffler
+}  // namespace riffler::geom

@@ -4,7 +4,7 @@
 
 #include "geom/math.hpp"
 
-namespace riffler {
+namespace riffler::haptics {
 
 namespace {
 
@@ -35,7 +35,7 @@ void Balance::add_damper(const Damper& d, const Twist& moving) {
   pull_ = pull_ + Wrench{force, glm::cross(d.arm, force) + d.angular * moving.angular};
 }
 
-void Balance::add_contact(const Wrench& wrench, const ContactStiffness& stiffness) {
+void Balance::add_contact(const Wrench& wrench, const collide::ContactStiffness& stiffness) {
   for (std::size_t k = 0; k < 6; ++k)
     for (std::size_t l = 0; l < 6; ++l) matrix_[k][l] += stiffness[k][l];
   pull_ = pull_ + wrench;
@@ -43,7 +43,7 @@ void Balance::add_contact(const Wrench& wrench, const ContactStiffness& stiffnes
 
 Twist Balance::solve() const {
   // Three translations and the two turns square to the axis: basis · coordinates.
-  const Vec3 u = any_perpendicular(axis_), v = glm::cross(axis_, u);
+  const Vec3 u = geom::any_perpendicular(axis_), v = glm::cross(axis_, u);
   double basis[6][kFree]{};
   for (std::size_t i = 0; i < 3; ++i) {
     basis[i][i] = 1;
@@ -79,4 +79,4 @@ Twist Balance::solve() const {
   return finite(out) ? out : Twist{};
 }
 
-}  // namespace riffler
+}  // namespace riffler::haptics

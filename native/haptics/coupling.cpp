@@ -8,7 +8,7 @@
 #include "geom/math.hpp"
 #include "riffler/haptics/settings.hpp"
 
-namespace riffler {
+namespace riffler::haptics {
 
 namespace {
 
@@ -66,13 +66,13 @@ Vec3 along(const Vec3& v, double length, double x) {
 }  // namespace
 
 void CouplingSettings::validate() const {
-  require_not_negative(stiffness, "stiffness");
-  require_not_negative(damping, "damping");
-  require_not_negative(turn_stiffness, "turn_stiffness");
-  require_not_negative(turn_damping, "turn_damping");
-  require_positive(max_stretch, "max_stretch");
-  require_positive(max_turn, "max_turn");
-  require_between(max_turn, 0, kPi / 2, "max_turn");
+  base::require_not_negative(stiffness, "stiffness");
+  base::require_not_negative(damping, "damping");
+  base::require_not_negative(turn_stiffness, "turn_stiffness");
+  base::require_not_negative(turn_damping, "turn_damping");
+  base::require_positive(max_stretch, "max_stretch");
+  base::require_positive(max_turn, "max_turn");
+  base::require_between(max_turn, 0, kPi / 2, "max_turn");
 }
 
 double CouplingSettings::capacity(double longest) const {
@@ -101,4 +101,4 @@ CouplingWrenches couple(const CouplingSettings& settings, const PoseError& stret
   return {-on_tool, on_tool, settings.stiffness * pull.energy + settings.turn_stiffness * turn.energy};
 }
 
-}  // namespace riffler
+}  // namespace riffler::haptics

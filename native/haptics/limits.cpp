@@ -5,7 +5,7 @@
 
 #include "riffler/base/check.hpp"
 
-namespace riffler {
+namespace riffler::haptics {
 
 namespace {
 
@@ -24,7 +24,7 @@ double ramp_down(double speed, double full, double none) {
 void LimitSettings::validate() const {
   require_not_negative(wrench, "wrench");
   require_not_negative(rate, "rate");
-  require_not_negative(power, "power");
+  base::require_not_negative(power, "power");
   require_not_negative(full_speed, "full_speed");
   require_positive(no_force_at, "no_force_at");
   if (no_force_at.linear <= full_speed.linear)
@@ -75,4 +75,4 @@ Wrench limited(const LimitSettings& s, const Capability& device, const Wrench& p
   return r.power * w;
 }
 
-}  // namespace riffler
+}  // namespace riffler::haptics

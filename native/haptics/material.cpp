@@ -2,13 +2,13 @@
 
 #include "riffler/haptics/settings.hpp"
 
-namespace riffler {
+namespace riffler::haptics {
 
 void Material::validate(const std::string& what) const {
-  require_not_negative(stiffness, what + ": stiffness");
-  require_not_negative(removal_constant, what + ": removal_constant");
-  require_not_negative(damping, what + ": damping");
-  require_positive(density, what + ": density");
+  base::require_not_negative(stiffness, what + ": stiffness");
+  base::require_not_negative(removal_constant, what + ": removal_constant");
+  base::require_not_negative(damping, what + ": damping");
+  base::require_positive(density, what + ": density");
 }
 
-}  // namespace riffler
+}  // namespace riffler::haptics

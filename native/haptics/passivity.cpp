@@ -5,19 +5,19 @@
 
 #include "riffler/base/check.hpp"
 
-namespace riffler {
+namespace riffler::haptics {
 
 void PassivitySettings::validate() const {
-  require_positive(period, "period");
-  require_between(jitter, 0, period, "jitter");
-  require_between(latency, 0, 8 * period, "latency");
+  base::require_positive(period, "period");
+  base::require_between(jitter, 0, period, "jitter");
+  base::require_between(latency, 0, 8 * period, "latency");
   require_not_negative(acceleration, "acceleration");
   require_not_negative(resolution, "resolution");
   require_not_negative(max_damping, "max_damping");
   require_not_negative(device_damping, "device_damping");
   require_not_negative(device_friction, "device_friction");
-  require_not_negative(reserve, "reserve");
-  require_not_negative(storage, "storage");
+  base::require_not_negative(reserve, "reserve");
+  base::require_not_negative(storage, "storage");
   if (storage < reserve) throw std::invalid_argument("storage must be at least reserve");
 }
 
@@ -124,4 +124,4 @@ Wrench Passivity::control(const Wrench& wanted, const Capability& device) {
   return out;
 }
 
-}  // namespace riffler
+}  // namespace riffler::haptics

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace riffler {
+namespace riffler::haptics {
 
 double memory_for(double pitch) {
   return std::max(0.02, pitch / 3);
@@ -50,4 +50,4 @@ void Resistance::learn(const Twist& way, const Wrench& wrench, double dt, double
   turning_.add(twist * reach * dt, std::max(slid, swung), memory_);
 }
 
-}  // namespace riffler
+}  // namespace riffler::haptics

@@ -6,16 +6,16 @@
 #include "geom/directions.hpp"
 #include "riffler/base/check.hpp"
 
-namespace riffler {
+namespace riffler::haptics {
 
 void SafetySettings::validate() const {
-  require_positive(ramp, "ramp");
-  require_positive(fresh, "fresh");
-  require_positive(fade, "fade");
-  require_not_negative(rest, "rest");
+  base::require_positive(ramp, "ramp");
+  base::require_positive(fresh, "fresh");
+  base::require_positive(fade, "fade");
+  base::require_not_negative(rest, "rest");
   require_positive(overspeed, "overspeed");
   require_positive(jump, "jump");
-  require_positive(redundancy, "redundancy");
+  base::require_positive(redundancy, "redundancy");
   require_positive(wrench_ceiling, "wrench_ceiling");
 }
 
@@ -30,8 +30,8 @@ double Safety::freshness(const Observation& now) const {
 /// The first check that fails, in the order of Cause.
 Safety::Finding Safety::check(const Observation& now) const {
   if (!(now.dt >= 0) || std::isinf(now.dt)) return {Cause::BadTime, now.dt};
-  if (!finite(now.pose.tip) || !finite(now.pose.axis) || !finite(now.twist) || !std::isfinite(now.redundancy) ||
-      !std::isfinite(now.age))
+  if (!geom::finite(now.pose.tip) || !geom::finite(now.pose.axis) || !finite(now.twist) ||
+      !std::isfinite(now.redundancy) || !std::isfinite(now.age))
     return {Cause::NotFinite, 0};
   if (now.device_fault)
     return {now.device_late ? Cause::DeviceLate : Cause::DeviceFault, static_cast<double>(now.device_fault)};
@@ -47,7 +47,7 @@ Safety::Finding Safety::check(const Observation& now) const {
 Safety::Finding Safety::check_motion(const Observation& now) const {
   if (placed_) {
     // After a late tick the hand may have gone further, but not at a speed that the next check refuses.
-    const double way = glm::length(now.pose.tip - last_.tip), turn = angle_between(now.pose.axis, last_.axis);
+    const double way = glm::length(now.pose.tip - last_.tip), turn = geom::angle_between(now.pose.axis, last_.axis);
     if (way > settings_.jump.linear + settings_.overspeed.linear * now.dt) return {Cause::Jump, way};
     if (turn > settings_.jump.angular + settings_.overspeed.angular * now.dt) return {Cause::Jump, turn};
   }
@@ -66,7 +66,7 @@ ForceState Safety::observe(const Observation& now) {
     return state_;
   }
   const Finding finding = check(now);
-  if (finite(now.pose.tip) && finite(now.pose.axis)) last_ = now.pose, placed_ = now.homed;
+  if (geom::finite(now.pose.tip) && geom::finite(now.pose.axis)) last_ = now.pose, placed_ = now.homed;
   if (finding.cause != Cause::None) {
     trip(finding);
     return state_;
@@ -142,4 +142,4 @@ SafeWrench Safety::release(const Wrench& wanted) {
   return SafeWrench(gain_ * wanted, gain_);
 }
 
-}  // namespace riffler
+}  // namespace riffler::haptics

@@ -6,7 +6,7 @@
 
 #include "riffler/base/check.hpp"
 
-namespace riffler {
+namespace riffler::haptics {
 
 namespace {
 
@@ -44,10 +44,10 @@ Twist within(const Twist& way, const Bounds& most) {
 }
 
 bool usable(const Pose& p) {
-  return finite(p.tip) && std::abs(glm::length(p.axis) - 1) < 1e-6;
+  return geom::finite(p.tip) && std::abs(glm::length(p.axis) - 1) < 1e-6;
 }
 
-Wrench times(const ContactStiffness& k, const Twist& way) {
+Wrench times(const collide::ContactStiffness& k, const Twist& way) {
   Wrench out;
   for (int i = 0; i < 6; ++i)
     for (int j = 0; j < 6; ++j) out[i] += k[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] * way[j];
@@ -58,18 +58,18 @@ Wrench times(const ContactStiffness& k, const Twist& way) {
 
 void SculptSettings::validate() const {
   coupling.validate();
-  require_positive(coupling.stiffness, "coupling.stiffness");
-  require_positive(coupling.turn_stiffness, "coupling.turn_stiffness");
-  if (memory) require_positive(*memory, "memory");
-  require_not_negative(damping, "damping");
-  require_between(parts, 1, 64, "parts");
-  require_between(queries, 1, 64, "queries");
-  require_not_negative(settled, "settled");
-  require_positive(most.linear, "most.linear");
-  require_between(most.angular, 0, 1, "most.angular");
+  base::require_positive(coupling.stiffness, "coupling.stiffness");
+  base::require_positive(coupling.turn_stiffness, "coupling.turn_stiffness");
+  if (memory) base::require_positive(*memory, "memory");
+  base::require_not_negative(damping, "damping");
+  base::require_between(parts, 1, 64, "parts");
+  base::require_between(queries, 1, 64, "queries");
+  base::require_not_negative(settled, "settled");
+  base::require_positive(most.linear, "most.linear");
+  base::require_between(most.angular, 0, 1, "most.angular");
   require_positive(rest, "rest");
-  require_positive(missed, "missed");
-  if (budget) require_not_negative(*budget, "budget");
+  base::require_positive(missed, "missed");
+  if (budget) base::require_not_negative(*budget, "budget");
 }
 
 /// One part of a step.
@@ -81,7 +81,8 @@ struct SculptStep::Part {
   std::optional<double> budget;  // for queries
 };
 
-SculptStep::SculptStep(const SculptSettings& settings, const Tool& tool, MoveCarver* stock, const Collider* obstacles)
+SculptStep::SculptStep(const SculptSettings& settings, const Tool& tool, sweep::MoveCarver* stock,
+                       const collide::Collider* obstacles)
     : settings_(settings),
       assembly_(tool),
       cutting_reach_(std::max(tool.length(), 0.5 * tool.diameter())),
@@ -185,7 +186,7 @@ void SculptStep::cut(const Pose& to, const Twist& way, double dt, Result& result
   // A tool that stands has cut there before: what a journal replays is poses that differ.
   if (!stock_ || (to.tip == tool_.tip && to.axis == tool_.axis)) return;
   const Clock::time_point start = Clock::now();
-  const MoveCarver::Taken taken = stock_->move(tool_, to, dt);
+  const sweep::MoveCarver::Taken taken = stock_->move(tool_, to, dt);
   if (settings_.budget) cut_seconds_ = seconds_since(start);
   ++result.cuts;
   result.removed += taken.removed;
@@ -240,4 +241,4 @@ SculptStep::Result SculptStep::step(const Pose& grip, const Twist& twist, double
   return result;
 }
 
-}  // namespace riffler
+}  // namespace riffler::haptics

@@ -1,6 +1,6 @@
 #include "riffler/haptics/states.hpp"
 
-namespace riffler {
+namespace riffler::haptics {
 
 ForceState next(ForceState state, ForceEvent event) {
   using S = ForceState;
@@ -94,4 +94,4 @@ const char* sentence(Cause cause) {
   return "";
 }
 
-}  // namespace riffler
+}  // namespace riffler::haptics

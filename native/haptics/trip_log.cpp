@@ -1,6 +1,6 @@
 #include "riffler/haptics/trip_log.hpp"
 
-namespace riffler {
+namespace riffler::haptics {
 
 void TripLog::add(const Trip& trip) {
   const std::uint64_t number = count_.load(std::memory_order_relaxed);
@@ -17,4 +17,4 @@ std::size_t TripLog::read(std::uint64_t& from, std::span<Trip> out) const {
   return copied;
 }
 
-}  // namespace riffler
+}  // namespace riffler::haptics

@@ -5,7 +5,7 @@
 #include "riffler/haptics/coupling.hpp"
 #include "riffler/haptics/settings.hpp"
 
-namespace riffler {
+namespace riffler::haptics {
 
 namespace {
 
@@ -21,7 +21,7 @@ Mat3 rotation(const Vec3& turn) {
 }  // namespace
 
 void WorkspaceSettings::validate() const {
-  require_positive(scale, "scale");
+  base::require_positive(scale, "scale");
   const Mat3 square = glm::transpose(turn) * turn - Mat3(1);
   double off = 0;
   for (int i = 0; i < 3; ++i) off += glm::length(square[i]);
@@ -57,7 +57,7 @@ void Workspace::pair_here() {
 }
 
 Pose Workspace::target(const Pose& grip, std::uint32_t buttons) {
-  if (!finite(grip.tip) || !(std::abs(glm::length(grip.axis) - 1) < 1e-6)) return target_;
+  if (!geom::finite(grip.tip) || !(std::abs(glm::length(grip.axis) - 1) < 1e-6)) return target_;
   const bool clutch = (buttons & settings_.clutch_mask) != 0;
   grip_ = grip;
   // While it is pressed the pair goes along; the tick in which it is let go is still of it.
@@ -79,4 +79,4 @@ Wrench Workspace::to_grip(const Wrench& w) const {
   return {settings_.scale * (back * w.force), back * (glm::transpose(aslant_) * w.torque)};
 }
 
-}  // namespace riffler
+}  // namespace riffler::haptics

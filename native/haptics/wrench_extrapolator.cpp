@@ -5,7 +5,7 @@
 
 #include "riffler/base/check.hpp"
 
-namespace riffler {
+namespace riffler::haptics {
 
 namespace {
 
@@ -21,8 +21,8 @@ Wrench within(const Wrench& w, const Bounds& bounds, double times = 1) {
 }  // namespace
 
 void WrenchExtrapolatorSettings::validate() const {
-  require_not_negative(ahead, "ahead");
-  require_positive(fade, "fade");
+  base::require_not_negative(ahead, "ahead");
+  base::require_positive(fade, "fade");
   require_not_negative(rate, "rate");
   require_not_negative(most, "most");
   if (ahead > fade) throw std::invalid_argument("ahead must be at most fade");
@@ -62,4 +62,4 @@ Wrench WrenchExtrapolator::missed(double dt) {
   return towards(gain * within(last_ + gone * slope_, settings_.most), dt);
 }
 
-}  // namespace riffler
+}  // namespace riffler::haptics

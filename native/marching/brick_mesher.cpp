@@ -263,7 +263,7 @@ class Linker {
 
 void link_bricks(Surface& surface, const std::vector<std::size_t>& bricks) {
   const CaseTable& table = case_table();
-  parallel_for(bricks.size(), 4, [&](std::size_t begin, std::size_t end) {
+  base::parallel_for(bricks.size(), 4, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
       const Vec3i at = surface.bricks.place(bricks[n]);
       const Neighbourhood signs(surface.bricks, at);
@@ -286,7 +286,7 @@ void link_bricks(Surface& surface, const std::vector<std::size_t>& bricks) {
 }
 
 void mesh_bricks(Surface& surface, const std::vector<std::size_t>& bricks, const Progress& progress) {
-  parallel_for(
+  base::parallel_for(
       bricks.size(), 8,
       [&](std::size_t begin, std::size_t end) {
         BrickMesher mesher(surface);

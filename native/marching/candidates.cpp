@@ -82,13 +82,13 @@ void choose_candidates(Surface& surface, const std::vector<VertexChoice*>& open,
   const Surroundings around(surface, cells);
   for (const VertexChoice* s : known) surface.mesh.vertices[s->at.vertex] = s->safe;
   for (std::size_t g = 0; g < open_groups.size(); ++g) {
-    report(progress, static_cast<double>(g) / open_groups.size());
-    parallel_for(open_groups[g].size(), 256, [&](std::size_t begin, std::size_t end) {
+    base::report(progress, static_cast<double>(g) / open_groups.size());
+    base::parallel_for(open_groups[g].size(), 256, [&](std::size_t begin, std::size_t end) {
       for (std::size_t n = begin; n < end; ++n) advance(surface, around, *open_groups[g][n]);
     });
     for (const VertexChoice* s : known_groups[g]) surface.mesh.vertices[s->at.vertex] = s->chosen;
   }
-  parallel_for(around.quads().size(), 1024, [&](std::size_t begin, std::size_t end) {
+  base::parallel_for(around.quads().size(), 1024, [&](std::size_t begin, std::size_t end) {
     HitFinder finder = surface.hits;
     for (std::size_t n = begin; n < end; ++n) surface.split(around.quads()[n], finder);
   });

@@ -10,20 +10,22 @@ namespace {
 /// One end of a span.
 struct End {
   double place;
-  PackedNormal normal;
+  dexel::PackedNormal normal;
   bool operator==(const End&) const = default;
 };
 
-End end_of(const Tile& tile, int ray, std::size_t n) {
-  const Span& span = tile.ray(ray)[n / 2];
+End end_of(const dexel::Tile& tile, int ray, std::size_t n) {
+  const dexel::Span& span = tile.ray(ray)[n / 2];
   const auto normals = tile.ray_normals(ray);
   const bool far = n % 2;
-  const PackedNormal normal = normals.empty() ? PackedNormal{} : far ? normals[n / 2].far : normals[n / 2].near;
+  const dexel::PackedNormal normal = normals.empty() ? dexel::PackedNormal{}
+                                     : far           ? normals[n / 2].far
+                                                     : normals[n / 2].near;
   return {far ? span.far : span.near, normal};
 }
 
 /// Where two states of a ray differ: from the first to the last end that is not in both; empty if they are the same.
-Interval difference(const Tile& a, const Tile& b, int ray) {
+Interval difference(const dexel::Tile& a, const dexel::Tile& b, int ray) {
   const std::size_t na = 2 * a.ray(ray).size(), nb = 2 * b.ray(ray).size();
   std::size_t first = 0, last = 0;
   while (first < na && first < nb && end_of(a, ray, first) == end_of(b, ray, first)) ++first;
@@ -90,15 +92,16 @@ Changes changes_between(const Volume& before, const Volume& after, const Lattice
   Changes changes(bricks.size());
   Marker marker(lattice, bricks, changes);
   for (std::size_t g = 0; g < after.grids().size(); ++g) {
-    const Grid &a = before.grids()[g], &b = after.grids()[g];
+    const dexel::Grid &a = before.grids()[g], &b = after.grids()[g];
     // A grid of one direction stands along the lattice's third axis.
     const int axis = after.grids().size() == 3 ? static_cast<int>(b.axis()) : 2;
     for (std::size_t t = 0; t < b.tile_count(); ++t) {
       if (a.shared_tile(t) == b.shared_tile(t)) continue;
-      const int u = static_cast<int>(t) / b.tiles_v() * kTileSide, v = static_cast<int>(t) % b.tiles_v() * kTileSide;
-      for (int r = 0; r < kTileRays; ++r)
+      const int u = static_cast<int>(t) / b.tiles_v() * dexel::kTileSide,
+                v = static_cast<int>(t) % b.tiles_v() * dexel::kTileSide;
+      for (int r = 0; r < dexel::kTileRays; ++r)
         if (const Interval part = difference(a.tile(t), b.tile(t), r); !part.empty())
-          marker.mark_ray(axis, u + r / kTileSide, v + r % kTileSide, part);
+          marker.mark_ray(axis, u + r / dexel::kTileSide, v + r % dexel::kTileSide, part);
     }
   }
   std::sort(changes.sign_bricks.begin(), changes.sign_bricks.end());

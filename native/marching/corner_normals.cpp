@@ -32,7 +32,7 @@ std::vector<std::size_t> beside(const Bricks& all, std::span<const std::size_t> 
             if (const std::size_t m = all.index(i, j, k); !std::binary_search(own.begin(), own.end(), m))
               out.push_back(m);
   }
-  sort_unique(out);
+  base::sort_unique(out);
   return out;
 }
 
@@ -112,8 +112,8 @@ Corners corners_of(const Vec3& a, const Vec3& b, const Vec3& c) {
 
 }  // namespace
 
-BulkVector<Vec3f> corner_normals(const MeshState& state, std::span<const std::size_t> bricks, const MeshPatch& patch,
-                                 double sharp) {
+base::BulkVector<Vec3f> corner_normals(const MeshState& state, std::span<const std::size_t> bricks,
+                                       const MeshPatch& patch, double sharp) {
   struct Outside {
     Vec3i triangle;
     std::array<std::int64_t, 3> vertex;
@@ -156,7 +156,7 @@ BulkVector<Vec3f> corner_normals(const MeshState& state, std::span<const std::si
     for (int c = 0; c < 3; ++c)
       if (o.vertex[c] >= 0) fans.add(static_cast<std::size_t>(o.vertex[c]), {corners.normal, corners.angle[c]});
   }
-  BulkVector<Vec3f> out;
+  base::BulkVector<Vec3f> out;
   out.resize(3 * patch.triangles.size());
   const double least = std::cos(sharp);
   for (std::size_t t = 0; t < patch.triangles.size(); ++t)

@@ -47,7 +47,7 @@ class Facets {
     void add(const Box& b) { lower = glm::min(lower, b.lower), upper = glm::max(upper, b.upper); }
   };
 
-  BlockVector<Corners> quads_;
+  base::BlockVector<Corners> quads_;
   std::vector<Box> runs_, groups_;
 };
 

@@ -69,7 +69,7 @@ struct Folds {
   std::vector<CellVertex> ends;
   std::vector<std::size_t> seen;
 
-  void tidy() { sort_unique(ends), sort_unique(seen); }
+  void tidy() { base::sort_unique(ends), base::sort_unique(seen); }
 };
 
 /// The corners of one of a quad's triangles.
@@ -108,7 +108,7 @@ std::vector<CellVertex> folded_vertices(const Surface& surface, const std::vecto
   constexpr std::size_t chunk = 1024;
   const bool note = !region.bricks.empty();
   std::vector<Folds> parts((quads.size() + chunk - 1) / chunk);
-  parallel_for(quads.size(), chunk, [&](std::size_t begin, std::size_t end) {
+  base::parallel_for(quads.size(), chunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t q = begin; q < end; ++q) look_at(surface, quads[q], whole, note, parts[begin / chunk]);
     parts[begin / chunk].tidy();
   });
@@ -192,7 +192,7 @@ void unfold(Surface& surface, const std::vector<QuadRef>& quads, Region& region,
   // end; there are many where a fold runs along a sheet whose sides coincide.
   double share = 0.04;
   for (int round = 0; !moved.empty(); ++round, share = std::min(1.0, 2 * share)) {
-    report(progress, round / (round + 8.0));
+    base::report(progress, round / (round + 8.0));
     bool any = share < 1;
     for (const CellVertex& v : moved) any |= pull(surface, v, share, region);
     if (!any) break;

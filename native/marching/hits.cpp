@@ -12,16 +12,16 @@ namespace {
 // point of its ray, by half a pitch where it is nearest to it and by half a pitch more where the box ends.
 constexpr double kReach = 0.5, kReachOfFloor = 1;
 
-double place_of(const Span& s, bool far) {
+double place_of(const dexel::Span& s, bool far) {
   return far ? s.far : s.near;
 }
 
 /// The end of one kind nearest to [low, high], within `reach` of it; of several inside, the one next to the edge's
 /// inside end: the low one for far ends. −1 if there is none.
-int nearest_end(std::span<const Span> spans, double low, double high, double reach, bool far) {
+int nearest_end(std::span<const dexel::Span> spans, double low, double high, double reach, bool far) {
   const int n = static_cast<int>(spans.size());
   int above = 0;  // first end ≥ low (far), or > high (near)
-  const auto before = [&](const Span& s) { return far ? s.far < low : s.near <= high; };
+  const auto before = [&](const dexel::Span& s) { return far ? s.far < low : s.near <= high; };
   if (n > 8)
     above = static_cast<int>(std::partition_point(spans.begin(), spans.end(), before) - spans.begin());
   else
@@ -50,22 +50,22 @@ HitFinder::HitFinder(const Volume& volume, const Lattice& lattice)
 }
 
 Hit HitFinder::operator()(const LatticeEdge& edge) {
-  const Grid* const grid = grids_[edge.axis];
+  const dexel::Grid* const grid = grids_[edge.axis];
   if (!grid) return axis_hit(0.5, edge, false);
   // Indices of the ray in its grid's cyclic frame. (A grid of one direction stands along the lattice's third axis.)
   const int place[5] = {edge.i, edge.j, edge.k, edge.i, edge.j};
   const int u = place[edge.axis + 1] - 1, v = place[edge.axis + 2] - 1;
-  const Tile& tile = grid->tile(grid->tile_index(u / kTileSide, v / kTileSide));
-  const int ray = Grid::ray_index(u, v);
-  const std::span<const Span> spans = tile.ray(ray);
+  const dexel::Tile& tile = grid->tile(grid->tile_index(u / dexel::kTileSide, v / dexel::kTileSide));
+  const int ray = dexel::Grid::ray_index(u, v);
+  const std::span<const dexel::Span> spans = tile.ray(ray);
   const double low = lattice_->at(edge.axis, place[edge.axis]), high = lattice_->at(edge.axis, place[edge.axis] + 1),
                h = lattice_->pitch();
   const int n = nearest_end(spans, low, high, (grid->has_normals() ? kReach : kReachOfFloor) * h, !edge.rising);
   if (n < 0) return axis_hit(0.5, edge, true);
   const double t = (place_of(spans[n], !edge.rising) - low) / h;
   if (!grid->has_normals()) return axis_hit(std::clamp(t, -kReach, 1 + kReach), edge, false);
-  const SpanNormals& normals = tile.ray_normals(ray)[n];
-  const PackedNormal packed = edge.rising ? normals.near : normals.far;
+  const dexel::SpanNormals& normals = tile.ray_normals(ray)[n];
+  const dexel::PackedNormal packed = edge.rising ? normals.near : normals.far;
   if (packed != last_packed_) last_packed_ = packed, last_ = packed.unpack();  // flat faces have one for all
   const double along = (&last_.x)[edge.axis];
   if ((edge.rising ? -along : along) <= 0) return axis_hit(std::clamp(t, 0.0, 1.0), edge, true);

@@ -31,9 +31,9 @@ class HitFinder {
 
  private:
   const Lattice* lattice_;
-  std::array<const Grid*, 3> grids_;  // null: no rays along that axis
-  PackedNormal last_packed_{};
-  Vec3 last_ = PackedNormal{}.unpack();
+  std::array<const dexel::Grid*, 3> grids_;  // null: no rays along that axis
+  dexel::PackedNormal last_packed_{};
+  Vec3 last_ = dexel::PackedNormal{}.unpack();
 };
 
 }  // namespace riffler::marching

@@ -27,7 +27,7 @@ Lattice::Lattice(const Volume& volume) : axis_(volume.reference().axis()), pitch
   double reach = 0;
   for (int a = 0; a < 3; ++a) {
     reach = std::max({reach, std::abs(box.lower[a]), std::abs(box.upper[a])});
-    rays_[a] = ray_count(box.size()[a], pitch_);
+    rays_[a] = dexel::ray_count(box.size()[a], pitch_);
     origin_[a] = box.lower[a];
     // A lone ray may stand outside a box that is thinner than half a pitch. Its plane is moved to the middle of the
     // box (tri-dexel, or along the rays, where nothing stands there), so that both faces lie on the lattice's edges.

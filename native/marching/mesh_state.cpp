@@ -40,21 +40,21 @@ std::vector<std::size_t> MeshState::active_bricks() const {
 
 void MeshState::build(const Progress& progress) {
   vertices_ = {}, quads_ = {};
-  read_signs(reader_, bricks, part(progress, 0, 0.2));
-  parallel_for(
+  read_signs(reader_, bricks, base::part(progress, 0, 0.2));
+  base::parallel_for(
       bricks.size(), 8,
       [&](std::size_t begin, std::size_t end) {
         for (std::size_t n = begin; n < end; ++n) bricks.set_active(n, counted(bricks, n));
       },
-      part(progress, 0.2, 0.3));
+      base::part(progress, 0.2, 0.3));
   const std::vector<std::size_t> all = active_bricks();
   for (const std::size_t n : all) give_place(*bricks.active(n));
   give_room();
-  mesh_bricks(surface, all, part(progress, 0.3, 0.9));
-  choose_candidates(surface, undecided(surface, all), {}, part(progress, 0.9, 0.94));
+  mesh_bricks(surface, all, base::part(progress, 0.3, 0.9));
+  choose_candidates(surface, undecided(surface, all), {}, base::part(progress, 0.9, 0.94));
   Region everywhere;
-  unfold(surface, quads_to_look_at(all), everywhere, part(progress, 0.94, 1));
-  report(progress, 1);
+  unfold(surface, quads_to_look_at(all), everywhere, base::part(progress, 0.94, 1));
+  base::report(progress, 1);
 }
 
 /// Quads that may have folded, and those round vertices that could choose their place.
@@ -88,7 +88,7 @@ void MeshState::give_room() {
 Mesh MeshState::take() {
   Mesh mesh = std::move(surface.mesh);
   if (lattice.axis() == Axis::Z) return mesh;
-  parallel_for(mesh.vertices.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
+  base::parallel_for(mesh.vertices.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) mesh.vertices[n] = to_world(lattice.axis(), mesh.vertices[n]);
   });
   return mesh;
@@ -103,8 +103,8 @@ Mesh MeshState::compact() const {
   }
   Mesh mesh;
   mesh.vertices.resize(vertex.back()), mesh.triangles.resize(2 * quad.back());
-  BulkVector<std::int32_t> number(surface.mesh.vertices.size());
-  parallel_for(all.size(), 8, [&](std::size_t begin, std::size_t end) {
+  base::BulkVector<std::int32_t> number(surface.mesh.vertices.size());
+  base::parallel_for(all.size(), 8, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
       const ActiveBrick& brick = *bricks.active(all[n]);
       for (std::size_t v = 0; v < brick.vertices(); ++v) {
@@ -113,7 +113,7 @@ Mesh MeshState::compact() const {
       }
     }
   });
-  parallel_for(all.size(), 8, [&](std::size_t begin, std::size_t end) {
+  base::parallel_for(all.size(), 8, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
       const ActiveBrick& brick = *bricks.active(all[n]);
       for (std::size_t t = 0; t < 2 * brick.edges(); ++t) {
@@ -145,7 +145,7 @@ std::vector<std::size_t> MeshState::update(const Volume& now) {
     if (!changes.empty()) changed = mesh_again(changes);
   }
   broken_ = false;
-  sort_unique(changed);
+  base::sort_unique(changed);
   for (const std::size_t n : changed) facets[n].reset();
   return changed;
 }
@@ -176,12 +176,12 @@ std::vector<std::size_t> MeshState::mesh_again(const Changes& changes) {
     unsettled.push_back(std::move(was));
     fresh.push_back(n);
   }
-  sort_unique(fresh);
+  base::sort_unique(fresh);
   choose_again(fresh, unsettled);
   std::vector<std::size_t> others = unfold_again(fresh);
   for (const BrickSnapshot& u : unsettled)
     if (moved(u)) others.push_back(u.brick);
-  sort_unique(others);
+  base::sort_unique(others);
   others = around(others, 0, 1);
   changed.insert(changed.end(), others.begin(), others.end());
   return changed;
@@ -194,7 +194,7 @@ void MeshState::follow(const Volume& now) {
 }
 
 void MeshState::read_signs_again(const std::vector<std::size_t>& changed) {
-  parallel_for(changed.size(), 4, [&](std::size_t begin, std::size_t end) {
+  base::parallel_for(changed.size(), 4, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
       const Vec3i at = bricks.place(changed[n]);
       reader_.read(bricks, at.x, at.y, at.z, at.z);
@@ -226,7 +226,7 @@ std::vector<std::size_t> MeshState::around(const std::vector<std::size_t>& list,
         for (int c = from; c <= to; ++c)
           if (bricks.active(at.x + a, at.y + b, at.z + c)) out.push_back(bricks.index(at.x + a, at.y + b, at.z + c));
   }
-  sort_unique(out);
+  base::sort_unique(out);
   return out;
 }
 
@@ -290,7 +290,7 @@ std::vector<std::size_t> MeshState::unfold_again(const std::vector<std::size_t>&
     unfold(surface, quads_to_look_at(around(bricks_in, -1, 1)), region, {});
     if (region.missing.empty()) return without(bricks_in, fresh);
     bricks_in.insert(bricks_in.end(), region.missing.begin(), region.missing.end());
-    sort_unique(bricks_in);
+    base::sort_unique(bricks_in);
   }
 }
 

@@ -7,9 +7,7 @@
 #include "riffler/base/parallel.hpp"
 #include "riffler/marching/to_mesh.hpp"
 
-namespace riffler {
-
-using namespace marching;
+namespace riffler::marching {
 
 namespace {
 
@@ -58,7 +56,7 @@ MeshPatch Mesher::patch(std::span<const std::size_t> bricks) const {
   return patch_of(*state_, bricks);
 }
 
-BulkVector<Vec3f> Mesher::corner_normals(const MeshPatch& patch, double sharp) const {
+base::BulkVector<Vec3f> Mesher::corner_normals(const MeshPatch& patch, double sharp) const {
   state_->check_whole();
   return marching::corner_normals(*state_, patch.bricks, patch, sharp);
 }
@@ -82,7 +80,7 @@ FrozenSurface Mesher::freeze(PickStats& stats) {
   std::vector<std::size_t> missing;
   for (std::size_t n = 0; n < state_->bricks.size(); ++n)
     if (lacks_facets(*state_, n)) missing.push_back(n);
-  parallel_for(missing.size(), 8, [&](std::size_t begin, std::size_t end) {
+  base::parallel_for(missing.size(), 8, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) prepare(*state_, missing[n]);
   });
   stats.bricks_prepared += missing.size();
@@ -93,4 +91,4 @@ Mesh to_mesh(const Volume& volume, const Progress& progress) {
   return MeshState(volume, false, progress).take();
 }
 
-}  // namespace riffler
+}  // namespace riffler::marching

@@ -74,7 +74,7 @@ MeshPatch patch_of(const MeshState& state, std::span<const std::size_t> bricks) 
     for (std::size_t t = 0; t < 2 * active[b]->edges(); ++t, ++next)
       number(from[t].x, next->x), number(from[t].y, next->y), number(from[t].z, next->z);
   }
-  sort_unique(foreign);
+  base::sort_unique(foreign);
   for (std::int32_t* const corner : open)
     *corner = static_cast<std::int32_t>(out.own) +
               static_cast<std::int32_t>(std::lower_bound(foreign.begin(), foreign.end(), *corner) - foreign.begin());

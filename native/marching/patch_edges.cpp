@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 
-namespace riffler {
+namespace riffler::marching {
 
 PatchEdges edges_of(const MeshPatch& patch) {
   struct Link {
@@ -34,4 +34,4 @@ PatchEdges edges_of(const MeshPatch& patch) {
   return out;
 }
 
-}  // namespace riffler
+}  // namespace riffler::marching

@@ -3,16 +3,16 @@
 
 #include "riffler/marching/patch.hpp"
 
-namespace riffler {
+namespace riffler::marching {
 
 using Vec2i = glm::ivec2;
 
 /// Every edge once, in the order in which the triangles' corners come upon them, from corner k to corner k + 1.
 struct PatchEdges {
-  BulkVector<Vec2i> vertices;
-  Triangles of_corner;  ///< (triangles, 3): the edge between corners k and k + 1 (mod 3)
+  base::BulkVector<Vec2i> vertices;
+  mesh::Triangles of_corner;  ///< (triangles, 3): the edge between corners k and k + 1 (mod 3)
 };
 
 PatchEdges edges_of(const MeshPatch& patch);
 
-}  // namespace riffler
+}  // namespace riffler::marching

@@ -5,13 +5,13 @@
 #include "marching/facets.hpp"
 #include "marching/first_hit.hpp"
 
-namespace riffler {
+namespace riffler::marching {
 
-FrozenSurface::FrozenSurface(const marching::Lattice& lattice, Bricks bricks)
-    : lattice_(std::make_shared<const marching::Lattice>(lattice)), bricks_(std::move(bricks)) {}
+FrozenSurface::FrozenSurface(const Lattice& lattice, Bricks bricks)
+    : lattice_(std::make_shared<const Lattice>(lattice)), bricks_(std::move(bricks)) {}
 
 std::optional<SurfaceHit> FrozenSurface::pick(const Vec3& origin, const Vec3& direction, PickStats& stats) const {
-  return marching::first_hit(*lattice_, origin, direction, [&](std::size_t n) { return bricks_[n].get(); }, stats);
+  return first_hit(*lattice_, origin, direction, [&](std::size_t n) { return bricks_[n].get(); }, stats);
 }
 
 std::size_t FrozenSurface::triangles() const {
@@ -26,4 +26,4 @@ std::size_t FrozenSurface::nbytes() const {
   return sum;
 }
 
-}  // namespace riffler
+}  // namespace riffler::marching

@@ -50,7 +50,7 @@ void add_quads(const Surface& surface, const Vec3i& cell, std::uint8_t mark, std
           const LatticeEdge edge{axis, i, j, cell.z + b, !(here >> b & 1)};
           const std::uint32_t quad = bricks.quad_of(edge);
           const auto c = surface.corners(quad);
-          const BulkVector<std::uint8_t>& m = surface.marks;
+          const base::BulkVector<std::uint8_t>& m = surface.marks;
           if (mark == kAnyMark || (m[c[0]] | m[c[1]] | m[c[2]] | m[c[3]]) & mark) out.push_back({quad, edge});
         }
       }
@@ -62,14 +62,14 @@ void add_quads(const Surface& surface, const Vec3i& cell, std::uint8_t mark, std
 std::vector<QuadRef> quads_near(const Surface& surface, const std::vector<Vec3i>& cells, std::uint8_t mark) {
   constexpr std::size_t chunk = 1024;
   std::vector<std::vector<QuadRef>> parts((cells.size() + chunk - 1) / chunk);
-  parallel_for(cells.size(), chunk, [&](std::size_t begin, std::size_t end) {
+  base::parallel_for(cells.size(), chunk, [&](std::size_t begin, std::size_t end) {
     std::vector<QuadRef>& found = parts[begin / chunk];
     for (std::size_t n = begin; n < end; ++n) add_quads(surface, cells[n], mark, found);
-    sort_unique(found);
+    base::sort_unique(found);
   });
   std::vector<QuadRef> all;
   for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
-  if (parts.size() > 1) sort_unique(all);
+  if (parts.size() > 1) base::sort_unique(all);
   return all;
 }
 

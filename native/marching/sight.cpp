@@ -6,10 +6,10 @@
 namespace riffler::marching {
 
 Sight::Sight(const Vec3& origin, const Vec3& direction, double far) : origin_(origin) {
-  if (!finite(origin)) throw std::invalid_argument("origin: not finite");
+  if (!geom::finite(origin)) throw std::invalid_argument("origin: not finite");
   const Vec3 size = glm::abs(direction);
   const double most = std::max({size.x, size.y, size.z});
-  if (!finite(direction) || !(most > 0)) throw std::invalid_argument("direction: not finite or zero");
+  if (!geom::finite(direction) || !(most > 0)) throw std::invalid_argument("direction: not finite or zero");
   direction_ = glm::normalize(direction / most);  // its square may be too large or too small for a double
   k_ = size.x == most ? 0 : size.y == most ? 1 : 2;
   i_ = (k_ + 1) % 3, j_ = (k_ + 2) % 3;

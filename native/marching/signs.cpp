@@ -38,15 +38,17 @@ struct RayRange {
 
 /// visit(u, v, spans) for the rays u × v of a grid, tile by tile.
 template <class Visit>
-void for_rays(const Grid& grid, const RayRange& us, const RayRange& vs, Visit&& visit) {
-  for (int a = us.first / kTileSide; a <= us.last / kTileSide; ++a)
-    for (int b = vs.first / kTileSide; b <= vs.last / kTileSide; ++b) {
-      const Tile& tile = grid.tile(grid.tile_index(a, b));
+void for_rays(const dexel::Grid& grid, const RayRange& us, const RayRange& vs, Visit&& visit) {
+  for (int a = us.first / dexel::kTileSide; a <= us.last / dexel::kTileSide; ++a)
+    for (int b = vs.first / dexel::kTileSide; b <= vs.last / dexel::kTileSide; ++b) {
+      const dexel::Tile& tile = grid.tile(grid.tile_index(a, b));
       if (tile.spans.empty()) continue;
-      const int u0 = std::max(us.first, a * kTileSide), u1 = std::min(us.last, a * kTileSide + kTileSide - 1);
-      const int v0 = std::max(vs.first, b * kTileSide), v1 = std::min(vs.last, b * kTileSide + kTileSide - 1);
+      const int u0 = std::max(us.first, a * dexel::kTileSide),
+                u1 = std::min(us.last, a * dexel::kTileSide + dexel::kTileSide - 1);
+      const int v0 = std::max(vs.first, b * dexel::kTileSide),
+                v1 = std::min(vs.last, b * dexel::kTileSide + dexel::kTileSide - 1);
       for (int u = u0; u <= u1; ++u)
-        for (int v = v0; v <= v1; ++v) visit(u, v, tile.ray(Grid::ray_index(u, v)));
+        for (int v = v0; v <= v1; ++v) visit(u, v, tile.ray(dexel::Grid::ray_index(u, v)));
     }
 }
 
@@ -60,13 +62,13 @@ void SignReader::follow(const Volume& volume) {
   if (volume.grids().size() != 3) return;
   x_ = volume.grid(Axis::X), y_ = volume.grid(Axis::Y);
   extents_.resize(y_->tile_count());
-  parallel_for(extents_.size(), 16, [&](std::size_t begin, std::size_t end) {
+  base::parallel_for(extents_.size(), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
-      const Tile& tile = y_->tile(t);
+      const dexel::Tile& tile = y_->tile(t);
       TileExtent& e = extents_[t];
       if (e.revision == tile.revision) continue;
       e = {lattice_.points(1), -1, 0, lattice_.points(1), tile.revision};
-      for (const Span& s : tile.spans) {
+      for (const dexel::Span& s : tile.spans) {
         const PointRange range = points_y_(s);
         if (range.first > range.last) {
           e.core_last = -1;
@@ -103,9 +105,9 @@ void SignReader::read(Bricks& bricks, int a, int b, int c0, int c1) const {
 void SignReader::read_reference(int a, int b, int c0, int c1, Rows& rows) const {
   for (SignRows& r : rows) r.fill(0);
   const RayRange is(a * kBrickSide, lattice_.rays(0)), js(b * kBrickSide, lattice_.rays(1));
-  for_rays(*reference_, is, js, [&](int i, int j, std::span<const Span> spans) {
+  for_rays(*reference_, is, js, [&](int i, int j, std::span<const dexel::Span> spans) {
     const int row = ((i + 1) & 31) * kBrickSide + ((j + 1) & 31);
-    for (const Span& s : spans) {
+    for (const dexel::Span& s : spans) {
       const PointRange range = y_ ? points_z_(s) : points_z_.or_nearest(s);
       if (range.first > range.last) continue;
       const int low = range.first >> 5, high = range.last >> 5;
@@ -121,8 +123,8 @@ bool SignReader::agree(const Vec3i& brick, bool inside) const {
   const RayRange is(brick.x * kBrickSide, lattice_.rays(0)), ks(brick.z * kBrickSide, lattice_.rays(2));
   const int first = std::max(brick.y * kBrickSide, 1),
             last = std::min(brick.y * kBrickSide + kBrickSide - 1, lattice_.rays(1));
-  for (int u = ks.first / kTileSide; u <= ks.last / kTileSide; ++u)
-    for (int v = is.first / kTileSide; v <= is.last / kTileSide; ++v) {
+  for (int u = ks.first / dexel::kTileSide; u <= ks.last / dexel::kTileSide; ++u)
+    for (int v = is.first / dexel::kTileSide; v <= is.last / dexel::kTileSide; ++v) {
       const TileExtent& e = extents_[y_->tile_index(u, v)];
       if (inside ? e.core_first > first || e.core_last < last : e.hull_first <= last && e.hull_last >= first)
         return false;
@@ -134,9 +136,9 @@ void SignReader::read_y(const Vec3i& brick, SignRows& rows) const {
   rows.fill(0);
   const RayRange is(brick.x * kBrickSide, lattice_.rays(0)), ks(brick.z * kBrickSide, lattice_.rays(2));
   const int base = brick.y * kBrickSide;
-  for_rays(*y_, ks, is, [&](int k, int i, std::span<const Span> spans) {
+  for_rays(*y_, ks, is, [&](int k, int i, std::span<const dexel::Span> spans) {
     std::uint32_t bits = 0;
-    for (const Span& s : spans) bits |= bits_of(points_y_(s), base);
+    for (const dexel::Span& s : spans) bits |= bits_of(points_y_(s), base);
     rows[((i + 1) & 31) * kBrickSide + ((k + 1) & 31)] = bits;
   });
   for (int i = 0; i < kBrickSide; ++i) transpose(rows.data() + i * kBrickSide);
@@ -155,7 +157,7 @@ void SignReader::vote(const Vec3i& brick, const SignRows& y, SignRows& z) const 
 }
 
 bool SignReader::along_x(int i, int j, int k) const {
-  for (const Span& s : x_->ray(j - 1, k - 1)) {
+  for (const dexel::Span& s : x_->ray(j - 1, k - 1)) {
     const PointRange range = points_x_(s);
     if (range.first <= i && i <= range.last) return true;
   }
@@ -163,7 +165,7 @@ bool SignReader::along_x(int i, int j, int k) const {
 }
 
 void read_signs(const SignReader& reader, Bricks& bricks, const Progress& progress) {
-  parallel_for(
+  base::parallel_for(
       static_cast<std::size_t>(bricks.count(0)) * bricks.count(1), 1,
       [&](std::size_t begin, std::size_t end) {
         for (std::size_t n = begin; n < end; ++n)

@@ -24,12 +24,12 @@ class PointsOfSpan {
   PointsOfSpan(const Lattice& lattice, int axis)
       : zero_(lattice.at(axis, 0)), per_pitch_(1 / lattice.pitch()), last_(lattice.rays(axis)) {}
 
-  PointRange operator()(const Span& s) const {
+  PointRange operator()(const dexel::Span& s) const {
     const double near = (s.near - zero_) * per_pitch_, far = (s.far - zero_) * per_pitch_;
     return {above(near + kMargin), below(far - kMargin)};
   }
   /// A floor thinner than the pitch stays closed: a span that misses every point takes the nearest.
-  PointRange or_nearest(const Span& s) const {
+  PointRange or_nearest(const dexel::Span& s) const {
     const PointRange range = (*this)(s);
     if (range.first <= range.last) return range;
     const int nearest = above(((s.near - zero_) + (s.far - zero_)) * per_pitch_ / 2 - 0.5);
@@ -77,7 +77,7 @@ class SignReader {
   bool along_x(int i, int j, int k) const;
 
   const Lattice& lattice_;
-  const Grid *reference_ = nullptr, *x_ = nullptr, *y_ = nullptr;
+  const dexel::Grid *reference_ = nullptr, *x_ = nullptr, *y_ = nullptr;
   PointsOfSpan points_x_, points_y_, points_z_;
   std::vector<TileExtent> extents_;  // of the tiles of y
 };

@@ -30,7 +30,7 @@ struct Surface {
   /// Quad n stands in triangles 2n and 2n + 1, as (c0, c1, c2), (c0, c2, c3) or as (c0, c1, c3), (c1, c2, c3); its
   /// corners are counter-clockwise round the edge seen from outside.
   Mesh mesh;
-  BulkVector<std::uint8_t> marks;  // of each vertex
+  base::BulkVector<std::uint8_t> marks;  // of each vertex
 
   Surface(const Volume& volume, const Lattice& on, Bricks& of)
       : lattice(on), bricks(of), hits(volume, on), grid(on), mesh{}, marks{} {}

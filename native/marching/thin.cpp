@@ -9,18 +9,16 @@
 #include "marching/signs.hpp"
 #include "riffler/base/parallel.hpp"
 
-namespace riffler {
+namespace riffler::marching {
 
 namespace {
 
-using namespace marching;
-
 /// The axis of the world that a grid's rays run along.
-int along(const Grid& grid) {
+int along(const dexel::Grid& grid) {
   return static_cast<int>(grid.axis());
 }
 
-bool misses(const PointsOfSpan& points, const Span& s) {
+bool misses(const PointsOfSpan& points, const dexel::Span& s) {
   const PointRange range = points(s);
   return range.first > range.last;
 }
@@ -28,22 +26,22 @@ bool misses(const PointsOfSpan& points, const Span& s) {
 /// A span without a lattice point, on ray (i, j).
 struct Miss {
   int i, j;
-  Span span;
+  dexel::Span span;
 };
 
 /// Those of one direction, tile by tile.
-std::vector<Miss> missing(const Grid& grid, const PointsOfSpan& points) {
+std::vector<Miss> missing(const dexel::Grid& grid, const PointsOfSpan& points) {
   std::vector<std::vector<Miss>> tiles(grid.tile_count());
-  parallel_for(tiles.size(), 16, [&](std::size_t begin, std::size_t end) {
+  base::parallel_for(tiles.size(), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
-      const Tile& tile = grid.tile(t);
-      if (std::none_of(tile.spans.begin(), tile.spans.end(), [&](const Span& s) { return misses(points, s); }))
+      const dexel::Tile& tile = grid.tile(t);
+      if (std::none_of(tile.spans.begin(), tile.spans.end(), [&](const dexel::Span& s) { return misses(points, s); }))
         continue;
-      const int i0 = static_cast<int>(t) / grid.tiles_v() * kTileSide,
-                j0 = static_cast<int>(t) % grid.tiles_v() * kTileSide;
-      for (int r = 0; r < kTileRays; ++r)
-        for (const Span& s : tile.ray(r))
-          if (misses(points, s)) tiles[t].push_back({i0 + r / kTileSide, j0 + r % kTileSide, s});
+      const int i0 = static_cast<int>(t) / grid.tiles_v() * dexel::kTileSide,
+                j0 = static_cast<int>(t) % grid.tiles_v() * dexel::kTileSide;
+      for (int r = 0; r < dexel::kTileRays; ++r)
+        for (const dexel::Span& s : tile.ray(r))
+          if (misses(points, s)) tiles[t].push_back({i0 + r / dexel::kTileSide, j0 + r % dexel::kTileSide, s});
     }
   });
   std::vector<Miss> out;
@@ -53,7 +51,7 @@ std::vector<Miss> missing(const Grid& grid, const PointsOfSpan& points) {
 
 /// Calls visit(i, j) for the rays around one, until it returns true; whether it did.
 template <class Visit>
-bool any_around(const Grid& grid, const Miss& m, const Visit& visit) {
+bool any_around(const dexel::Grid& grid, const Miss& m, const Visit& visit) {
   for (int i = std::max(0, m.i - 1); i <= std::min(grid.nu() - 1, m.i + 1); ++i)
     for (int j = std::max(0, m.j - 1); j <= std::min(grid.nv() - 1, m.j + 1); ++j)
       if ((i != m.i || j != m.j) && visit(i, j)) return true;
@@ -61,9 +59,9 @@ bool any_around(const Grid& grid, const Miss& m, const Visit& visit) {
 }
 
 /// Whether a ray beside it holds a lattice point in the same material: then the mesh reaches there, or nearly.
-bool is_edge(const Grid& grid, const PointsOfSpan& points, const Miss& m) {
+bool is_edge(const dexel::Grid& grid, const PointsOfSpan& points, const Miss& m) {
   return any_around(grid, m, [&](int i, int j) {
-    for (const Span& s : grid.ray(i, j))
+    for (const dexel::Span& s : grid.ray(i, j))
       if (s.near <= m.span.far && s.far >= m.span.near && !misses(points, s)) return true;
     return false;
   });
@@ -82,7 +80,7 @@ double kept_by(std::vector<std::pair<double, double>> lengths, double total) {
 }
 
 /// What one direction sees.
-ThinMaterial seen_by(const Grid& grid, const PointsOfSpan& points) {
+ThinMaterial seen_by(const dexel::Grid& grid, const PointsOfSpan& points) {
   const std::vector<Miss> found = missing(grid, points);
   ThinMaterial out;
   std::vector<std::size_t> lost;  // places of the rays
@@ -114,11 +112,11 @@ ThinMaterial thin_material(const Volume& volume) {
   ThinMaterial out;
   if (volume.grids().size() != 3) return out;
   const Lattice lattice(volume);
-  for (const Grid& grid : volume.grids()) {
+  for (const dexel::Grid& grid : volume.grids()) {
     const ThinMaterial seen = seen_by(grid, PointsOfSpan(lattice, along(grid)));
     if (seen.volume > out.volume) out = seen;
   }
   return out;
 }
 
-}  // namespace riffler
+}  // namespace riffler::marching

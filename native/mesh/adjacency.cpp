@@ -5,7 +5,7 @@
 
 #include "riffler/base/parallel.hpp"
 
-namespace riffler {
+namespace riffler::mesh {
 
 EdgeTable::EdgeTable(const Mesh& mesh) : begin_(mesh.vertices.size() + 2, 0) {
   if (mesh.triangles.size() > 0x7fffffff / 3) throw std::invalid_argument("triangles: more than can be indexed");
@@ -25,7 +25,7 @@ EdgeTable::EdgeTable(const Mesh& mesh) : begin_(mesh.vertices.size() + 2, 0) {
   for_each_half([&](int a, int b, std::uint32_t half) {
     uses_[begin_[static_cast<std::size_t>(std::min(a, b)) + 1]++] = {std::max(a, b), 2 * half + (a > b ? 1U : 0U)};
   });
-  parallel_for(mesh.vertices.size(), 1 << 14, [&](std::size_t first, std::size_t last) {
+  base::parallel_for(mesh.vertices.size(), 1 << 14, [&](std::size_t first, std::size_t last) {
     for (std::size_t v = first; v < last; ++v)
       std::sort(uses_.begin() + begin_[v], uses_.begin() + begin_[v + 1],
                 [](const Use& a, const Use& b) { return a.upper != b.upper ? a.upper < b.upper : a.code < b.code; });
@@ -33,7 +33,7 @@ EdgeTable::EdgeTable(const Mesh& mesh) : begin_(mesh.vertices.size() + 2, 0) {
 }
 
 void EdgeTable::for_each_edge(const std::function<void(int, std::span<const Use>)>& visit) const {
-  parallel_for(begin_.size() - 2, 1 << 13, [&](std::size_t first, std::size_t last) {
+  base::parallel_for(begin_.size() - 2, 1 << 13, [&](std::size_t first, std::size_t last) {
     for (std::size_t v = first; v < last; ++v)
       for (std::size_t i = begin_[v], j; i < begin_[v + 1]; i = j) {
         for (j = i + 1; j < begin_[v + 1] && uses_[j].upper == uses_[i].upper; ++j) {
@@ -67,4 +67,4 @@ Adjacency::Adjacency(const Mesh& mesh, const EdgeTable& edges) : across_(3 * mes
   });
 }
 
-}  // namespace riffler
+}  // namespace riffler::mesh

@@ -8,7 +8,7 @@
 
 #include "riffler/mesh/mesh.hpp"
 
-namespace riffler {
+namespace riffler::mesh {
 
 /// Half-edge 3 t + k runs from corner k of triangle t to corner k + 1 (mod 3).
 inline int triangle_of(int half) {
@@ -79,4 +79,4 @@ class Adjacency {
   std::vector<int> across_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::mesh

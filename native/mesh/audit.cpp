@@ -10,7 +10,7 @@
 #include "mesh/near_points.hpp"
 #include "riffler/base/parallel.hpp"
 
-namespace riffler {
+namespace riffler::mesh {
 
 namespace {
 
@@ -21,7 +21,7 @@ constexpr std::size_t kAuditGrain = 1 << 14;
 template <class Test>
 std::size_t count_if(std::size_t n, const Test& test) {
   Count total{0};
-  parallel_for(n, kAuditGrain, [&](std::size_t begin, std::size_t end) {
+  base::parallel_for(n, kAuditGrain, [&](std::size_t begin, std::size_t end) {
     std::size_t count = 0;
     for (std::size_t i = begin; i < end; ++i) count += test(static_cast<int>(i)) ? 1 : 0;
     total += count;
@@ -126,9 +126,9 @@ Audit audit(const Mesh& mesh, const Progress& progress) {
   Audit result;
   result.volume = volume(mesh);
   const EdgeTable edges(mesh);
-  report(progress, 0.3);
+  base::report(progress, 0.3);
   const Adjacency adjacency(mesh, edges);
-  report(progress, 0.4);
+  base::report(progress, 0.4);
 
   Count bad{0}, twice{0};
   std::mutex mutex;
@@ -144,27 +144,27 @@ Audit audit(const Mesh& mesh, const Progress& progress) {
   });
   result.nonmanifold_edges = bad;
   result.duplicates = twice;
-  report(progress, 0.5);
+  base::report(progress, 0.5);
 
   const std::size_t halves = 3 * mesh.triangles.size();
   result.open_edges = count_if(halves, [&](int half) { return adjacency.is_open(half); });
   // Rounding may have moved vertices apart that were one.
   if (result.open_edges > 0)
-    if (const std::optional<Mesh> joined = join_near(mesh)) return audit(*joined, part(progress, 0.5, 1));
+    if (const std::optional<Mesh> joined = join_near(mesh)) return audit(*joined, base::part(progress, 0.5, 1));
   result.folds = count_if(halves, [&](int half) {
     const int twin = adjacency.twin(half);
     return twin > half && is_fold(mesh, half, twin);
   });
-  report(progress, 0.7);
+  base::report(progress, 0.7);
   result.degenerate = count_if(mesh.triangles.size(), [&](int t) {
     const Vec3i& v = mesh.triangles[t];
     return repeats_a_vertex(v) || cross_of(mesh, v) == Vec3(0);
   });
   const Fans fans(mesh, adjacency);
   result.nonmanifold_vertices = count_if(mesh.vertices.size(), [&](int v) { return !fans.is_single(v); });
-  report(progress, 0.9);
+  base::report(progress, 0.9);
   result.components = count_components(mesh, adjacency, crowded);
   return result;
 }
 
-}  // namespace riffler
+}  // namespace riffler::mesh

@@ -12,20 +12,20 @@
 #include "riffler/base/parallel.hpp"
 #include "riffler/mesh/orient.hpp"
 
-namespace riffler {
+namespace riffler::mesh {
 
 namespace {
 
 constexpr std::size_t kLeaf = 4;
 
 double square_to_box(const Vec3& p, const Box3& box) {
-  return squared_length(glm::max(Vec3(0), glm::max(box.lower - p, p - box.upper)));
+  return geom::squared_length(glm::max(Vec3(0), glm::max(box.lower - p, p - box.upper)));
 }
 
 /// Nearest point of a segment: 0 inside, 1 at a, 2 at b.
 std::pair<Vec3, int> closest_on_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
   const Vec3 ab = b - a;
-  const double along = glm::dot(p - a, ab), length2 = squared_length(ab);
+  const double along = glm::dot(p - a, ab), length2 = geom::squared_length(ab);
   if (!(along > 0)) return {a, 1};
   if (along >= length2) return {b, 2};
   return {a + (along / length2) * ab, 0};
@@ -35,7 +35,7 @@ std::pair<Vec3, int> closest_on_segment(const Vec3& p, const Vec3& a, const Vec3
 
 OnTriangle closest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 normal = glm::cross(b - a, c - a);
-  const double length2 = squared_length(normal);
+  const double length2 = geom::squared_length(normal);
   const std::array<Vec3, 4> corner{a, b, c, a};
   bool within[3], all = length2 > 0;
   for (int k = 0; k < 3; ++k) {
@@ -53,7 +53,7 @@ OnTriangle closest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, cons
   for (int k = 0; k < 3; ++k) {
     if (within[k]) continue;
     const auto [q, where] = closest_on_segment(p, corner[k], corner[k + 1]);
-    if (const double d2 = squared_length(p - q); d2 < best2) best2 = d2, best = {q, kParts[k][where]};
+    if (const double d2 = geom::squared_length(p - q); d2 < best2) best2 = d2, best = {q, kParts[k][where]};
   }
   return best;
 }
@@ -62,7 +62,7 @@ Closest::Closest(const Mesh& mesh, bool with_sides) {
   validate(mesh);
   if (mesh.empty()) throw std::invalid_argument("a mesh without triangles has no nearest point");
   std::vector<Corners> corners(mesh.triangles.size());
-  parallel_for(corners.size(), 1 << 15, [&](std::size_t begin, std::size_t end) {
+  base::parallel_for(corners.size(), 1 << 15, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
       const Vec3i& v = mesh.triangles[t];
       corners[t] = {mesh.vertices[v.x], mesh.vertices[v.y], mesh.vertices[v.z]};
@@ -78,12 +78,12 @@ void Closest::build(const std::vector<Corners>& corners) {
   std::iota(id_.begin(), id_.end(), 0);
   while ((n >> levels_) > kLeaf) ++levels_;
   std::vector<Vec3> centres(n);
-  parallel_for(n, 1 << 15, [&](std::size_t begin, std::size_t end) {
+  base::parallel_for(n, 1 << 15, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) centres[t] = (corners[t].a + corners[t].b + corners[t].c) / 3.0;
   });
-  sort_by_medians(id_, levels_, centres);
+  geom::sort_by_medians(id_, levels_, centres);
   corners_.resize(n), slot_.resize(n);
-  boxes_ = boxes_of_tree(levels_, [&](std::size_t leaf) {
+  boxes_ = geom::boxes_of_tree(levels_, [&](std::size_t leaf) {
     // Ties between equally near triangles go by their order within a leaf, which the sort leaves open.
     std::sort(id_.begin() + static_cast<std::ptrdiff_t>(first(levels_, leaf)),
               id_.begin() + static_cast<std::ptrdiff_t>(first(levels_, leaf + 1)));
@@ -134,7 +134,7 @@ Closest::Hit Closest::nearest(const Vec3& p, double limit, const Keep& keep) con
   descend(p, bound, [&](std::size_t i) {
     if (!keep(corners_[i])) return false;
     const OnTriangle on = closest_on_triangle(p, corners_[i].a, corners_[i].b, corners_[i].c);
-    const double d2 = squared_length(p - on.point);
+    const double d2 = geom::squared_length(p - on.point);
     if (d2 < bound || (d2 == bound && (hit.triangle < 0 || id_[i] < hit.triangle))) {
       bound = d2;
       hit = {on.point, 0, id_[i], on.part};
@@ -184,7 +184,7 @@ void Closest::gather(const Vec3& p, double limit, std::vector<Hit>& hits) const 
     // Most triangles of a leaf at the rim are out by their own box, which costs a tenth of the nearest point.
     if (square_to_box(p, {glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c))}) > bound) return false;
     const OnTriangle on = closest_on_triangle(p, a, b, c);
-    if (const double d2 = squared_length(p - on.point); d2 <= bound)
+    if (const double d2 = geom::squared_length(p - on.point); d2 <= bound)
       hits.push_back({on.point, std::sqrt(d2), id_[i], on.part});
     return false;
   });
@@ -195,7 +195,7 @@ bool Closest::within(const Vec3& p, double limit) const {
   bool found = false;
   descend(p, bound, [&](std::size_t i) {
     const OnTriangle on = closest_on_triangle(p, corners_[i].a, corners_[i].b, corners_[i].c);
-    return found = squared_length(p - on.point) <= bound;
+    return found = geom::squared_length(p - on.point) <= bound;
   });
   return found;
 }
@@ -218,7 +218,7 @@ void Closest::prepare_sides(const Mesh& mesh) {
   for (std::size_t t = 0; t < triangles_.size(); ++t) {
     const Corners& c = corners_[slot_[t]];
     const std::array<Vec3, 3> p{c.a, c.b, c.c};
-    face_normals_[t] = unit_or_zero(glm::cross(c.b - c.a, c.c - c.a));
+    face_normals_[t] = geom::unit_or_zero(glm::cross(c.b - c.a, c.c - c.a));
     for (int k = 0; k < 3; ++k) {
       const Vec3 e = p[(k + 1) % 3] - p[k], f = p[(k + 2) % 3] - p[k];
       const double angle = std::atan2(glm::length(glm::cross(e, f)), glm::dot(e, f));
@@ -248,9 +248,9 @@ std::vector<double> deviation(const Mesh& mesh, const Mesh& other, bool with_sig
   if (other.empty()) throw std::invalid_argument("other: a mesh without triangles has no nearest point");
   std::optional<Mesh> storage;
   const Closest closest(with_sign ? as_solid(other, storage) : other, with_sign);
-  report(progress, 0);
+  base::report(progress, 0);
   std::vector<double> result(mesh.vertices.size());
-  parallel_for(
+  base::parallel_for(
       result.size(), 512,
       [&](std::size_t begin, std::size_t end) {
         int last = -1;
@@ -268,4 +268,4 @@ std::vector<double> deviation(const Mesh& mesh, const Mesh& other, bool with_sig
   return result;
 }
 
-}  // namespace riffler
+}  // namespace riffler::mesh

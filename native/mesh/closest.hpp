@@ -10,7 +10,7 @@
 #include "riffler/geom/vec.hpp"
 #include "riffler/mesh/mesh.hpp"
 
-namespace riffler {
+namespace riffler::mesh {
 
 /// The nearest point of triangle abc to p, also of one without area, and the part of the triangle it lies on.
 struct OnTriangle {
@@ -73,7 +73,7 @@ class Closest {
   template <class Keep>
   Hit nearest(const Vec3& p, double limit, const Keep& keep) const;
   void prepare_sides(const Mesh& mesh);
-  std::size_t first(std::size_t level, std::size_t place) const { return first_item(id_.size(), level, place); }
+  std::size_t first(std::size_t level, std::size_t place) const { return geom::first_item(id_.size(), level, place); }
   template <class Visit>
   void descend(const Vec3& p, double& bound, const Visit& visit) const;
 
@@ -90,4 +90,4 @@ class Closest {
 std::vector<double> deviation(const Mesh& mesh, const Mesh& other, bool with_sign = false,
                               const Progress& progress = {});
 
-}  // namespace riffler
+}  // namespace riffler::mesh

@@ -3,7 +3,7 @@
 
 #include "riffler/geom/vec.hpp"
 
-namespace riffler {
+namespace riffler::mesh {
 
 /// Neighbours may not come nearer to lying on each other than 154°; an audit counts a cosine of -0.99999 as a fold.
 inline constexpr double kFold = -0.9;
@@ -14,4 +14,4 @@ inline bool opposed(const Vec3& a, const Vec3& b) {
   return dot < 0 && dot * dot > kFold * kFold * glm::dot(a, a) * glm::dot(b, b);
 }
 
-}  // namespace riffler
+}  // namespace riffler::mesh

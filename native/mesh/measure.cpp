@@ -4,7 +4,7 @@
 
 #include "riffler/base/parallel.hpp"
 
-namespace riffler {
+namespace riffler::mesh {
 
 Measures measure(const Mesh& mesh) {
   if (mesh.empty()) return {};
@@ -12,7 +12,7 @@ Measures measure(const Mesh& mesh) {
   const std::size_t n = mesh.triangles.size();
   const Vec3 origin = mesh.vertices[mesh.triangles[0].x];
   std::vector<Measures> parts((n + kGrain - 1) / kGrain);
-  parallel_for(n, kGrain, [&](std::size_t begin, std::size_t end) {
+  base::parallel_for(n, kGrain, [&](std::size_t begin, std::size_t end) {
     Measures part;
     for (std::size_t t = begin; t < end; ++t) {
       const Vec3i& v = mesh.triangles[t];
@@ -27,4 +27,4 @@ Measures measure(const Mesh& mesh) {
   return out;
 }
 
-}  // namespace riffler
+}  // namespace riffler::mesh

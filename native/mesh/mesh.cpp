@@ -6,7 +6,7 @@
 
 #include "riffler/base/parallel.hpp"
 
-namespace riffler {
+namespace riffler::mesh {
 
 namespace {
 
@@ -18,7 +18,7 @@ template <class Term>
 double sum_over_triangles(const Mesh& mesh, const Term& term) {
   const std::size_t n = mesh.triangles.size();
   std::vector<double> parts((n + kSumGrain - 1) / kSumGrain, 0.0);
-  parallel_for(n, kSumGrain, [&](std::size_t begin, std::size_t end) {
+  base::parallel_for(n, kSumGrain, [&](std::size_t begin, std::size_t end) {
     double sum = 0;
     for (std::size_t t = begin; t < end; ++t) sum += term(mesh.triangles[t]);
     parts[begin / kSumGrain] = sum;
@@ -38,7 +38,7 @@ void validate(const Mesh& mesh) {
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
     if (!in_range(mesh.vertices[i]))
       throw std::invalid_argument("vertices, row " + std::to_string(i) +
-                                  (finite(mesh.vertices[i]) ? ": beyond 1e30" : ": not finite"));
+                                  (geom::finite(mesh.vertices[i]) ? ": beyond 1e30" : ": not finite"));
   const auto n = static_cast<std::int64_t>(mesh.vertices.size());
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     for (int k = 0; k < 3; ++k)
@@ -73,7 +73,7 @@ double area(const Mesh& mesh) {
 Box3 bounds(const Mesh& mesh) {
   const std::size_t n = mesh.triangles.size();
   std::vector<Box3> parts((n + kSumGrain - 1) / kSumGrain);
-  parallel_for(n, kSumGrain, [&](std::size_t begin, std::size_t end) {
+  base::parallel_for(n, kSumGrain, [&](std::size_t begin, std::size_t end) {
     Box3 box;
     for (std::size_t t = begin; t < end; ++t)
       for (int k = 0; k < 3; ++k) box.add(mesh.vertices[mesh.triangles[t][k]]);
@@ -84,4 +84,4 @@ Box3 bounds(const Mesh& mesh) {
   return box;
 }
 
-}  // namespace riffler
+}  // namespace riffler::mesh

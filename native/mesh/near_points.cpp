@@ -7,7 +7,7 @@
 #include "mesh/adjacency.hpp"
 #include "mesh/weld.hpp"
 
-namespace riffler {
+namespace riffler::mesh {
 
 namespace {
 
@@ -43,8 +43,8 @@ int NearPoints::find_or_add(const Vec3& p) {
 
 std::size_t NearPoints::slot(const Vec3& cell) const {
   const Vec3 c = cell + 0.0;  // −0 becomes 0
-  std::uint64_t h = mix_bits(std::bit_cast<std::uint64_t>(c.x));
-  h = mix_bits(h + std::bit_cast<std::uint64_t>(c.y)), h = mix_bits(h + std::bit_cast<std::uint64_t>(c.z));
+  std::uint64_t h = base::mix_bits(std::bit_cast<std::uint64_t>(c.x));
+  h = base::mix_bits(h + std::bit_cast<std::uint64_t>(c.y)), h = base::mix_bits(h + std::bit_cast<std::uint64_t>(c.z));
   return h & (heads_.size() - 1);
 }
 
@@ -89,4 +89,4 @@ Mesh welded(const Mesh& mesh) {
   return out;
 }
 
-}  // namespace riffler
+}  // namespace riffler::mesh

@@ -8,7 +8,7 @@
 
 #include "riffler/mesh/mesh.hpp"
 
-namespace riffler {
+namespace riffler::mesh {
 
 /// Points in buckets of side `size`, each searched among its neighbours.
 class NearPoints {
@@ -41,4 +41,4 @@ std::optional<Mesh> join_near(const Mesh& mesh);
 /// The mesh with vertices of equal coordinates as one, in the order of their first appearance, and then `join_near`.
 Mesh welded(const Mesh& mesh);
 
-}  // namespace riffler
+}  // namespace riffler::mesh

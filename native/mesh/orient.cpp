@@ -14,7 +14,7 @@
 #include "mesh/shells.hpp"
 #include "riffler/base/parallel.hpp"
 
-namespace riffler {
+namespace riffler::mesh {
 
 namespace {
 
@@ -300,4 +300,4 @@ const Mesh& as_solid(const Mesh& mesh, std::optional<Mesh>& storage, Hollow holl
   return storage ? *storage : mesh;
 }
 
-}  // namespace riffler
+}  // namespace riffler::mesh

@@ -9,7 +9,7 @@
 #include <numeric>
 #include <tuple>
 
-namespace riffler {
+namespace riffler::mesh {
 
 namespace {
 
@@ -245,4 +245,4 @@ std::vector<ShellSide> shell_sides(const Mesh& mesh, std::span<const int> shell,
   return out;
 }
 
-}  // namespace riffler
+}  // namespace riffler::mesh

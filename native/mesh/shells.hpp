@@ -7,7 +7,7 @@
 
 #include "riffler/mesh/mesh.hpp"
 
-namespace riffler {
+namespace riffler::mesh {
 
 struct ShellSide {
   bool turn = false;  ///< it faces the wrong way
@@ -25,4 +25,4 @@ struct ShellSide {
 std::vector<ShellSide> shell_sides(const Mesh& mesh, std::span<const int> shell, std::span<const int> runs,
                                    std::span<const std::uint8_t> open_to_either);
 
-}  // namespace riffler
+}  // namespace riffler::mesh

@@ -12,7 +12,7 @@
 #include "mesh/weld.hpp"
 #include "riffler/base/parallel.hpp"
 
-namespace riffler {
+namespace riffler::mesh {
 
 namespace {
 
@@ -32,7 +32,7 @@ class Neighbours {
     for (int half = 0; half < halves; ++half)
       if (adjacency.twin(half) < 0) fixed[start_of(mesh, half)] = fixed[end_of(mesh, half)] = 1;
     const std::vector<char> sharp = sharp_edges(mesh, adjacency, feature_angle);
-    report(progress, 0.4);
+    base::report(progress, 0.4);
     std::vector<Line> lines(mesh.vertices.size());
     for (int half = 0; half < halves; ++half)
       if (sharp[half]) lines[start_of(mesh, half)].add(end_of(mesh, half));
@@ -45,7 +45,7 @@ class Neighbours {
     for (int half = 0; half < halves; ++half)
       if (draws(half)) ++begin_[start_of(mesh, half) + 1];
     for (std::size_t v = 1; v < begin_.size(); ++v) begin_[v] += begin_[v - 1];
-    report(progress, 0.8);
+    base::report(progress, 0.8);
     other_.resize(begin_.back());
     std::vector<std::size_t> at(begin_.begin(), begin_.end() - 1);
     for (int half = 0; half < halves; ++half)
@@ -81,7 +81,7 @@ class Neighbours {
     };
     const double least = std::cos(angle);
     std::vector<char> sharp(3 * mesh.triangles.size(), 0);
-    parallel_for(sharp.size(), kVertexGrain, [&](std::size_t begin, std::size_t end) {
+    base::parallel_for(sharp.size(), kVertexGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t half = begin; half < end; ++half) {
         const int twin = adjacency.twin(static_cast<int>(half));
         if (twin < 0) continue;
@@ -107,7 +107,7 @@ Vec3 limited(const Vec3& p, const Vec3& home, double limit) {
 /// One step of every vertex towards (factor > 0) or away from the mean of its neighbours.
 void step(const Vertices& from, Vertices& to, const Mesh& mesh, const Neighbours& neighbours, double factor,
           double limit) {
-  parallel_for(from.size(), kVertexGrain, [&](std::size_t begin, std::size_t end) {
+  base::parallel_for(from.size(), kVertexGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       const std::span<const int> others = neighbours.of(v);
       to[v] = from[v];
@@ -126,7 +126,7 @@ void restore_volume(const Mesh& mesh, Vertices& vertices, double limit, const Pr
   const double wanted = volume(mesh);
   Mesh now{vertices, mesh.triangles};
   for (int round = 0; round < kRounds; ++round) {
-    report(progress, static_cast<double>(round) / kRounds);
+    base::report(progress, static_cast<double>(round) / kRounds);
     std::vector<Vec3> slope(vertices.size(), Vec3(0));  // of the volume, times 6
     for (const Vec3i& t : mesh.triangles) {
       const Vec3 &a = now.vertices[t.x], &b = now.vertices[t.y], &c = now.vertices[t.z];
@@ -136,7 +136,7 @@ void restore_volume(const Mesh& mesh, Vertices& vertices, double limit, const Pr
     double sum = 0;
     for (std::size_t v = 0; v < slope.size(); ++v)
       sum += glm::length(slope[v]) / 6 * glm::length(now.vertices[v] - mesh.vertices[v]);
-    report(progress, (round + 0.5) / kRounds);
+    base::report(progress, (round + 0.5) / kRounds);
     const double missing = wanted - volume(now), share = missing / sum;
     // A correction as large as the smoothing itself would be none.
     if (missing == 0 || !(std::abs(share) < 0.5)) break;
@@ -150,7 +150,8 @@ void restore_volume(const Mesh& mesh, Vertices& vertices, double limit, const Pr
 }
 
 Vec3 cross_in_float(const Vertices& vertices, const Vec3i& t) {
-  const Vec3 a = to_float32(vertices[t.x]), b = to_float32(vertices[t.y]), c = to_float32(vertices[t.z]);
+  const Vec3 a = geom::to_float32(vertices[t.x]), b = geom::to_float32(vertices[t.y]),
+             c = geom::to_float32(vertices[t.z]);
   return glm::cross(b - a, c - a);
 }
 
@@ -164,7 +165,7 @@ class Repair {
 
   void run(const Progress& progress) {
     for (int round = 0;; ++round) {
-      const auto hear = [&](double middle) { report(progress, (round + middle) / (round + 2.0)); };
+      const auto hear = [&](double middle) { base::report(progress, (round + middle) / (round + 2.0)); };
       hear(0);
       back_.assign(vertices_.size(), 0);
       mark_triangles();
@@ -184,7 +185,7 @@ class Repair {
 
   void mark_triangles() {
     std::vector<Vec3> now(mesh_.triangles.size());
-    parallel_for(now.size(), kVertexGrain, [&](std::size_t begin, std::size_t end) {
+    base::parallel_for(now.size(), kVertexGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) now[t] = cross_in_float(vertices_, mesh_.triangles[t]);
     });
     for (int t = 0; t < static_cast<int>(now.size()); ++t) {
@@ -200,7 +201,7 @@ class Repair {
     Welder<Vec3> welder(vertices_.size());
     std::vector<int> first;
     for (std::size_t v = 0; v < vertices_.size(); ++v) {
-      const int place = welder.add(to_float32(vertices_[v]));
+      const int place = welder.add(geom::to_float32(vertices_[v]));
       if (place == static_cast<int>(first.size()))
         first.push_back(static_cast<int>(v));
       else
@@ -230,23 +231,23 @@ Mesh smooth(const Mesh& mesh, int iterations, std::optional<double> tolerance, d
     throw std::invalid_argument("feature_angle must be above 0 and at most pi, not " + std::to_string(feature_angle));
   validate(mesh);
   const EdgeTable edges(mesh);
-  report(progress, 0.03);
+  base::report(progress, 0.03);
   const Adjacency adjacency(mesh, edges);
-  const Neighbours neighbours(mesh, adjacency, feature_angle, part(progress, 0.06, 0.1));
+  const Neighbours neighbours(mesh, adjacency, feature_angle, base::part(progress, 0.06, 0.1));
   // A hair less than asked for, so that rounding does not exceed it.
   const double limit = tolerance ? *tolerance * (1 - 1e-12) : std::numeric_limits<double>::infinity();
   Vertices vertices = mesh.vertices, scratch(vertices.size());
   for (int i = 0; i < iterations; ++i) {
-    report(progress, 0.1 + 0.7 * i / iterations);
+    base::report(progress, 0.1 + 0.7 * i / iterations);
     step(vertices, scratch, mesh, neighbours, kShrink, limit);
     step(scratch, vertices, mesh, neighbours, kInflate, limit);
   }
-  report(progress, 0.8);
+  base::report(progress, 0.8);
   if (iterations > 0) {
-    restore_volume(mesh, vertices, limit, part(progress, 0.8, 0.9));
-    Repair(mesh, adjacency, vertices).run(part(progress, 0.9, 1));
+    restore_volume(mesh, vertices, limit, base::part(progress, 0.8, 0.9));
+    Repair(mesh, adjacency, vertices).run(base::part(progress, 0.9, 1));
   }
   return {std::move(vertices), mesh.triangles};
 }
 
-}  // namespace riffler
+}  // namespace riffler::mesh

@@ -5,7 +5,7 @@
 #include "geom/directions.hpp"
 #include "riffler/base/parallel.hpp"
 
-namespace riffler {
+namespace riffler::mesh {
 
 namespace {
 
@@ -28,7 +28,7 @@ struct CornerFans {
 
 double angle_at(const std::array<Vec3, 3>& p, int k) {
   const Vec3 a = p[(k + 1) % 3] - p[k], b = p[(k + 2) % 3] - p[k];
-  return angle_between(a, b);
+  return geom::angle_between(a, b);
 }
 
 }  // namespace
@@ -36,15 +36,15 @@ double angle_at(const std::array<Vec3, 3>& p, int k) {
 SmoothNormals::SmoothNormals(const Mesh& mesh, double crease) : corners_(mesh.triangles.size()) {
   const CornerFans fans(mesh);
   std::vector<Vec3> faces(corners_.size());
-  parallel_for(corners_.size(), kNormalGrain, [&](std::size_t begin, std::size_t end) {
+  base::parallel_for(corners_.size(), kNormalGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
       auto& p = corners_[t].points;
       for (int k = 0; k < 3; ++k) p[k] = mesh.vertices[mesh.triangles[t][k]];
-      faces[t] = unit_or_zero(glm::cross(p[1] - p[0], p[2] - p[0]));
+      faces[t] = geom::unit_or_zero(glm::cross(p[1] - p[0], p[2] - p[0]));
     }
   });
   const double least = std::cos(crease);
-  parallel_for(corners_.size(), kNormalGrain, [&](std::size_t begin, std::size_t end) {
+  base::parallel_for(corners_.size(), kNormalGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t)
       for (int k = 0; k < 3; ++k) {
         const bool flat = faces[t] == Vec3(0);  // has no normal of its own: takes part in all of the fan
@@ -55,7 +55,7 @@ SmoothNormals::SmoothNormals(const Mesh& mesh, double crease) : corners_(mesh.tr
           if (flat || glm::dot(faces[t], faces[other]) >= least)
             sum += angle_at(corners_[other].points, fans.corner[i] % 3) * faces[other];
         }
-        const Vec3 normal = unit_or_zero(sum);
+        const Vec3 normal = geom::unit_or_zero(sum);
         corners_[t].normals[k] = normal == Vec3(0) ? faces[t] : normal;
       }
   });
@@ -71,7 +71,7 @@ Vec3 SmoothNormals::at(int t, const Vec3& p) const {
         area > 0 ? glm::dot(glm::cross(q[(k + 2) % 3] - q[(k + 1) % 3], p - q[(k + 1) % 3]), across) / area : 1.0 / 3;
     sum += std::max(0.0, share) * n[k];
   }
-  return unit_or_zero(sum);
+  return geom::unit_or_zero(sum);
 }
 
-}  // namespace riffler
+}  // namespace riffler::mesh

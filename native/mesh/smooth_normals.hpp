@@ -6,7 +6,7 @@
 
 #include "riffler/mesh/mesh.hpp"
 
-namespace riffler {
+namespace riffler::mesh {
 
 /// Normals at triangles' corners: means of the triangles round the vertex whose normals lie within `crease` of the
 /// triangle's own, weighted by their angles there, so that they do not depend on how a face is cut into triangles
@@ -27,4 +27,4 @@ class SmoothNormals {
   std::vector<Corners> corners_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::mesh

@@ -10,7 +10,7 @@
 
 #include "riffler/geom/vec.hpp"
 
-namespace riffler {
+namespace riffler::mesh {
 
 /// Numbers points in the order of their first appearance; points that compare equal (so -0 is 0) share a number.
 /// V is Vec3 or Vec3f; no coordinate may be NaN.
@@ -99,4 +99,4 @@ class Welder {
   std::size_t mask_ = 0;
 };
 
-}  // namespace riffler
+}  // namespace riffler::mesh

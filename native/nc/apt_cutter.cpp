@@ -5,13 +5,14 @@
 
 #include "geom/math.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 std::optional<Tool> apt_cutter(std::vector<double> v, double unit, const NcPlace& place) {
   if (v.size() != 7) return std::nullopt;
-  const AptCutter apt{v[0] * unit, v[1] * unit, v[2] * unit, v[3] * unit, v[4] * kDegree, v[5] * kDegree, v[6] * unit};
+  const tool::AptCutter apt{v[0] * unit,    v[1] * unit,    v[2] * unit, v[3] * unit,
+                            v[4] * kDegree, v[5] * kDegree, v[6] * unit};
   try {
-    for (const CutterShape& shape : cutter_shapes())
+    for (const tool::CutterShape& shape : tool::cutter_shapes())
       if (shape.from_apt)
         if (const auto sizes = shape.from_apt(apt)) return make_cutter(shape, *sizes);
   } catch (const std::invalid_argument& e) {
@@ -20,11 +21,11 @@ std::optional<Tool> apt_cutter(std::vector<double> v, double unit, const NcPlace
   return std::nullopt;
 }
 
-std::optional<AptCutter> to_apt(const Tool& tool) {
-  const CutterShape* shape = find_cutter_shape(tool.kind());
+std::optional<tool::AptCutter> to_apt(const Tool& tool) {
+  const tool::CutterShape* shape = tool::find_cutter_shape(tool.kind());
   if (!shape || !shape->to_apt) return std::nullopt;
   const auto sizes = sizes_of(tool, *shape);
   return sizes ? std::optional(shape->to_apt(*sizes)) : std::nullopt;
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -7,13 +7,13 @@
 #include "nc/source.hpp"
 #include "riffler/tool/cutters.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 /// The tool of up to seven numbers d, r, e, f, a, b, h (lengths in `unit` mm, angles in degrees). Nothing where no
 /// shape of the table matches, and where the length is missing. FormatError for sizes that make no tool.
 std::optional<Tool> apt_cutter(std::vector<double> numbers, double unit, const NcPlace& place);
 
 /// The statement of a tool, or nothing where seven numbers cannot describe its shape.
-std::optional<AptCutter> to_apt(const Tool& tool);
+std::optional<tool::AptCutter> to_apt(const Tool& tool);
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -9,7 +9,7 @@
 #include "nc/retract_path.hpp"
 #include "riffler/base/parallel.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -87,7 +87,7 @@ std::vector<Ends> ends_of(std::span<const CutterPath> paths, const std::map<int,
     finders.try_emplace(paths[k].tool, *tool, space, rule);
   }
   std::vector<std::string> faults(2 * paths.size());
-  parallel_for(faults.size(), 1, [&](std::size_t begin, std::size_t end) {
+  base::parallel_for(faults.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const CutterPath& path = paths[i / 2];
       const Pose& pose = i % 2 ? path.poses.back() : path.poses.front();
@@ -165,4 +165,4 @@ Program program_from_paths(std::span<const CutterPath> given, std::map<int, Tool
   return program;
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

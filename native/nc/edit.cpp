@@ -11,7 +11,7 @@
 #include "riffler/base/check.hpp"
 #include "riffler/tool/outline.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -35,9 +35,9 @@ Program copied(const Program& program, const Change& change) {
 }
 
 bool same_shape(const Tool& a, const Tool& b) {
-  const Outline left(a), right(b);
+  const tool::Outline left(a), right(b);
   return std::equal(left.edges().begin(), left.edges().end(), right.edges().begin(), right.edges().end(),
-                    [](const OutlineEdge& x, const OutlineEdge& y) {
+                    [](const tool::OutlineEdge& x, const tool::OutlineEdge& y) {
                       return x.from == y.from && x.to == y.to && x.centre == y.centre && x.bulge == y.bulge &&
                              x.part == y.part;
                     });
@@ -64,7 +64,7 @@ Program transformed(const Program& program, const Mat3& turn, const Vec3& shift)
   double off = 0;
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) off = std::max(off, std::abs(square[i][j] - (i == j)));
-  if (!(off < 1e-9) || !(glm::determinant(turn) > 0) || !finite(shift))
+  if (!(off < 1e-9) || !(glm::determinant(turn) > 0) || !geom::finite(shift))
     throw std::invalid_argument("matrix must turn and move only: no scale, no mirror, finite");
   return copied(program, [&](Move& move) {
     const auto turned = [&](const Pose& p) { return Pose{turn * p.tip + shift, glm::normalize(turn * p.axis)}; };
@@ -77,7 +77,7 @@ Program transformed(const Program& program, const Mat3& turn, const Vec3& shift)
 }
 
 Program scale_feeds(const Program& program, double factor) {
-  require_positive(factor, "factor", kPositiveAndFinite);
+  base::require_positive(factor, "factor", base::kPositiveAndFinite);
   return copied(program, [&](Move& move) { move.feed *= factor; });
 }
 
@@ -117,4 +117,4 @@ Program renumber_tools(const Program& program, const std::map<int, int>& numbers
   return out;
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

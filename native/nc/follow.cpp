@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace riffler {
+namespace riffler::nc {
 
 void RowMap::add(std::size_t row, std::size_t count) {
   const std::size_t before = ends_.empty() ? 0 : ends_.back().second;
@@ -55,4 +55,4 @@ void FollowedChunks::taken() {
   map_ = std::move(next_map_), rows_ = next_rows_;
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

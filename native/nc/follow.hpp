@@ -7,7 +7,7 @@
 
 #include "riffler/nc/program.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 /// Which row of a program a row of the followed one belongs to: via poses to the row that they lead to.
 class RowMap {
@@ -42,4 +42,4 @@ class FollowedChunks {
 /// `map`, if given, takes its rows; they are counted from `first_row` on.
 Program followed(const Program& program, RowMap* map = nullptr, std::size_t first_row = 0);
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -4,7 +4,7 @@
 
 #include <cstddef>
 
-namespace riffler {
+namespace riffler::nc {
 
 inline constexpr double kInch = 25.4;  // mm
 
@@ -21,4 +21,4 @@ inline constexpr int kMaxChords = 1'000'000;         // of one block
 inline constexpr double kLinesOfTurn = 100;          // that are read again, on average, in a turn of a loop or call
 inline constexpr std::size_t kMaxRows = 20'000'000;  // of a program that is read at once
 
-}  // namespace riffler
+}  // namespace riffler::nc

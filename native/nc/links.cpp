@@ -7,7 +7,7 @@
 
 #include "geom/math.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -40,19 +40,20 @@ void validate(const LinkRule& rule) {
     throw std::invalid_argument("direction must be a unit vector");
 }
 
-std::string meeting(const Collider& collider, const Assembly& assembly, const Pose& pose) {
+std::string meeting(const collide::Collider& collider, const collide::Assembly& assembly, const Pose& pose) {
   constexpr const char* kNames[] = {"cutter", "shank", "holder"};
-  const Collider::Nearest found = collider.nearest(assembly, pose);
+  const collide::Collider::Nearest found = collider.nearest(assembly, pose);
   const double height = std::max(0.0, glm::dot(found.point - pose.tip, pose.axis));
-  const auto part = found.touch == Touch::Fixture ? static_cast<std::size_t>(assembly.part_at(height))
-                                                  : static_cast<std::size_t>(found.touch);
+  const auto part = found.touch == collide::Touch::Fixture ? static_cast<std::size_t>(assembly.part_at(height))
+                                                           : static_cast<std::size_t>(found.touch);
   char deep[48];
   std::snprintf(deep, sizeof deep, ", %.3g mm deep, at ", std::max(0.0, -found.distance));
-  return std::string("the ") + kNames[part] + " meets " + (found.touch == Touch::Fixture ? "a fixture" : "the part") +
-         deep + at_place(found.point) + " (tip at " + at_place(pose.tip) + ")";
+  return std::string("the ") + kNames[part] + " meets " +
+         (found.touch == collide::Touch::Fixture ? "a fixture" : "the part") + deep + at_place(found.point) +
+         " (tip at " + at_place(pose.tip) + ")";
 }
 
-Pose deepest_pose(const Collider& collider, const Assembly& assembly, const Motion& motion) {
+Pose deepest_pose(const collide::Collider& collider, const collide::Assembly& assembly, const Motion& motion) {
   constexpr int kSamples = 24;
   Pose worst = motion.from();
   double least = collider.nearest(assembly, worst).distance;
@@ -72,8 +73,8 @@ LinkFinder::LinkFinder(const Tool& tool, const ClearanceZone& space, const LinkR
 
 bool LinkFinder::clear(const Pose& from, const Pose& to) const {
   if (!reach_.swept_box(from, to).overlaps(around_)) return true;
-  const Swept found = rule_.collider->sweep(assembly_, Motion(from, to), -rule_.tolerance, kMaxEvaluations);
-  return found.answer == Swept::Answer::Clear;
+  const collide::Swept found = rule_.collider->sweep(assembly_, Motion(from, to), -rule_.tolerance, kMaxEvaluations);
+  return found.answer == collide::Swept::Answer::Clear;
 }
 
 Pose LinkFinder::above(const Pose& pose) const {
@@ -149,4 +150,4 @@ std::string LinkFinder::met(const std::vector<Pose>& way) const {
   return meeting(*rule_.collider, assembly_, worst);
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -9,7 +9,7 @@
 #include "riffler/collide/collider.hpp"
 #include "riffler/nc/link_rule.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 /// The way from a cut to the clearance plane, the axis kept: the last pose lies in it, the cut's own is left out.
 struct Link {
@@ -38,14 +38,14 @@ class LinkFinder {
 
   const ClearanceZone& space_;
   const LinkRule& rule_;
-  Assembly assembly_;
+  collide::Assembly assembly_;
   ToolEnvelope reach_;
   Box3 around_;
 };
 
 /// "the holder meets a fixture, 2.39 mm deep, at [1 2 3]", where `pose` is the worst of a motion.
-std::string meeting(const Collider& collider, const Assembly& assembly, const Pose& pose);
+std::string meeting(const collide::Collider& collider, const collide::Assembly& assembly, const Pose& pose);
 /// The pose of a motion that is deepest in part and fixtures, by samples: for messages.
-Pose deepest_pose(const Collider& collider, const Assembly& assembly, const Motion& motion);
+Pose deepest_pose(const collide::Collider& collider, const collide::Assembly& assembly, const Motion& motion);
 
-}  // namespace riffler
+}  // namespace riffler::nc

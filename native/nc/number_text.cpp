@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdlib>
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -49,4 +49,4 @@ std::string plain(std::string_view text) {
   return out;
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace riffler {
+namespace riffler::nc {
 
 inline constexpr int kLengthDecimals = 5, kAngleDecimals = 6, kFeedDecimals = 6;
 /// No value in print.
@@ -22,4 +22,4 @@ std::string number_text(double value, int decimals = 6);
 /// Text that is safe inside a comment on any control: printable ASCII without brackets, not too long.
 std::string plain(std::string_view text);
 
-}  // namespace riffler
+}  // namespace riffler::nc

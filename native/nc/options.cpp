@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace riffler {
+namespace riffler::nc {
 
 std::optional<OptionValue> OptionReader::take(OptionFact fact) {
   const std::string name = fact.name;
@@ -125,4 +125,4 @@ void OptionReader::done() const {
                               (known.empty() ? "it takes none" : "known: " + known));
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -10,7 +10,7 @@
 #include "riffler/geom/vec.hpp"
 #include "riffler/nc/option_values.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 /// An option that an OptionReader was asked for.
 struct OptionFact {
@@ -81,4 +81,4 @@ class OptionReader {
   std::vector<OptionFact> facts_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -5,7 +5,7 @@
 
 #include "nc/limits.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -16,7 +16,7 @@ namespace {
 }  // namespace
 
 Pose checked_pose(const Pose& pose, std::string_view name, std::size_t row) {
-  if (!finite(pose.tip) || !finite(pose.axis)) fail(name, row, "not finite");
+  if (!geom::finite(pose.tip) || !geom::finite(pose.axis)) fail(name, row, "not finite");
   const double length = glm::length(pose.axis);
   if (!(std::abs(length - 1) < 1e-6)) fail(name, row, "the axis is not a unit vector");
   // A vector that is as close to unit length as doubles allow is kept to the bit.
@@ -75,4 +75,4 @@ std::vector<ToolRun> Program::runs() const {
   return out;
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

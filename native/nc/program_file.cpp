@@ -12,7 +12,7 @@
 #include "riffler/base/error.hpp"
 #include "riffler/base/parallel.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -37,27 +37,27 @@ double number_of(const Program& program, std::size_t row, std::size_t column) {
 Bytes record(std::uint32_t kind, std::size_t number, const Bytes& payload) {
   Bytes out;
   out.reserve(kRecordHeader + payload.size());
-  put(out, kind);
-  put(out, static_cast<std::uint32_t>(number));
-  put(out, static_cast<std::uint64_t>(payload.size()));
-  put(out, checksum(out, payload));
+  base::put(out, kind);
+  base::put(out, static_cast<std::uint32_t>(number));
+  base::put(out, static_cast<std::uint64_t>(payload.size()));
+  base::put(out, base::checksum(out, payload));
   out.insert(out.end(), payload.begin(), payload.end());
   return out;
 }
 
 Bytes notes_record(const Provenance& notes) {
   Bytes out;
-  for (const auto& [key, value] : notes) put_text(out, key), put_text(out, value);
+  for (const auto& [key, value] : notes) base::put_text(out, key), base::put_text(out, value);
   return record(kNotes, notes.size(), out);
 }
 
 void put_count(Bytes& out, std::size_t count) {
-  put(out, static_cast<std::uint32_t>(count));
+  base::put(out, static_cast<std::uint32_t>(count));
 }
 
-void put_pieces(Bytes& out, const std::vector<Frustum>& pieces) {
+void put_pieces(Bytes& out, const std::vector<tool::Frustum>& pieces) {
   put_count(out, pieces.size());
-  for (const Frustum& f : pieces) put(out, std::array{f.z0, f.r0, f.z1, f.r1});
+  for (const tool::Frustum& f : pieces) base::put(out, std::array{f.z0, f.r0, f.z1, f.r1});
 }
 
 constexpr std::string_view kNote = "note:";
@@ -87,15 +87,15 @@ void take_notes(Program& program) {
 
 Bytes tool_record(int number, const Tool& tool) {
   Bytes out;
-  put_text(out, tool.kind());
-  put_text(out, tool.name());
+  base::put_text(out, tool.kind());
+  base::put_text(out, tool.name());
   put_count(out, tool.parameters().size());
-  for (const auto& [name, value] : tool.parameters()) put_text(out, name), put(out, value);
+  for (const auto& [name, value] : tool.parameters()) base::put_text(out, name), base::put(out, value);
   put_count(out, tool.profile().segments().size());
-  for (const ProfileSegment& segment : tool.profile().segments()) {
+  for (const tool::ProfileSegment& segment : tool.profile().segments()) {
     put_count(out, segment.centre.has_value());
-    put(out, std::array{segment.to.x, segment.to.y});
-    if (segment.centre) put(out, std::array{segment.centre->x, segment.centre->y});
+    base::put(out, std::array{segment.to.x, segment.to.y});
+    if (segment.centre) base::put(out, std::array{segment.centre->x, segment.centre->y});
   }
   put_pieces(out, tool.shank());
   put_pieces(out, tool.holder());
@@ -104,7 +104,7 @@ Bytes tool_record(int number, const Tool& tool) {
 
 Bytes rows_record(const Program& program, std::size_t first, std::size_t count) {
   Bytes out;
-  PlaneWriter planes(out);
+  base::PlaneWriter planes(out);
   std::vector<std::uint64_t> doubles(count);
   for (std::size_t column = 0; column < kDoubles; ++column) {
     for (std::size_t k = 0; k < count; ++k)
@@ -126,7 +126,7 @@ Bytes rows_record(const Program& program, std::size_t first, std::size_t count) 
 Bytes via_record(std::size_t row, const std::vector<Pose>& via) {
   Bytes out;
   put_count(out, via.size());
-  for (const Pose& p : via) put(out, std::array{p.tip.x, p.tip.y, p.tip.z, p.axis.x, p.axis.y, p.axis.z});
+  for (const Pose& p : via) base::put(out, std::array{p.tip.x, p.tip.y, p.tip.z, p.axis.x, p.axis.y, p.axis.z});
   return record(kVia, row, out);
 }
 
@@ -174,18 +174,18 @@ class Reader {
     if (bytes_.size() < kMagic.size() || !std::equal(kMagic.begin(), kMagic.end(), bytes_.begin()))
       fail(0, "not a .rprog file (its first eight bytes are others)");
     if (bytes_.size() < kHeader) fail(bytes_.size(), "the file ends within its header");
-    if (get<std::uint32_t>(bytes_, kHeader - 4) != checksum(bytes_.first(kHeader - 4)))
+    if (base::get<std::uint32_t>(bytes_, kHeader - 4) != base::checksum(bytes_.first(kHeader - 4)))
       fail(kHeader - 4, "the header's checksum does not fit");
-    const auto version = get<std::uint32_t>(bytes_, 8);
+    const auto version = base::get<std::uint32_t>(bytes_, 8);
     if (version != kVersion)
       fail(8, "version " + std::to_string(version) + "; this program reads version " + std::to_string(kVersion));
-    const auto length = get<std::uint64_t>(bytes_, 16);
+    const auto length = base::get<std::uint64_t>(bytes_, 16);
     if (bytes_.size() < length)
       fail(bytes_.size(), "the file ends here, but should have " + std::to_string(length) + " bytes");
     if (bytes_.size() > length) fail(length, "there is more after the file's end");
-    tools_ = get<std::uint32_t>(bytes_, 12);
-    rows_ = get<std::uint64_t>(bytes_, 24);
-    notes_ = get<std::uint32_t>(bytes_, 32);
+    tools_ = base::get<std::uint32_t>(bytes_, 12);
+    rows_ = base::get<std::uint64_t>(bytes_, 24);
+    notes_ = base::get<std::uint32_t>(bytes_, 32);
   }
 
   /// In the order in which they must stand; the payloads of rows are looked at later, in parallel.
@@ -195,11 +195,11 @@ class Reader {
     for (std::size_t at = kHeader; at < bytes_.size();) {
       if (bytes_.size() - at < kRecordHeader) fail(at, "the file ends where a record should begin");
       const ByteView head = bytes_.subspan(at);
-      const auto length = get<std::uint64_t>(head, 8);
+      const auto length = base::get<std::uint64_t>(head, 8);
       if (length > head.size() - kRecordHeader) fail(at + 8, "the record is longer than the rest of the file");
-      const Record record{at, get<std::uint32_t>(head, 0), get<std::uint32_t>(head, 4),
+      const Record record{at, base::get<std::uint32_t>(head, 0), base::get<std::uint32_t>(head, 4),
                           head.subspan(kRecordHeader, length)};
-      if (get<std::uint32_t>(head, 16) != checksum(head.first(16), record.payload))
+      if (base::get<std::uint32_t>(head, 16) != base::checksum(head.first(16), record.payload))
         fail(at, "the record's checksum does not fit");
       const bool via = record.kind == kVia && all.size() > tools_ && all.back().kind != kRows;
       if (!via && record.kind != (all.empty() ? kNotes : all.size() <= tools_ ? kTool : kRows))
@@ -220,7 +220,7 @@ class Reader {
   /// What `take` makes of the record's payload; what is wrong with it is at the record.
   template <class Take>
   auto taken(const Record& record, const Take& take) const {
-    ByteReader from(record.payload);
+    base::ByteReader from(record.payload);
     try {
       auto out = take(from);
       from.done();
@@ -232,7 +232,7 @@ class Reader {
 
   Provenance notes(const Record& record) const {
     if (record.number != notes_) fail(record.at + 4, "the header announces another number of notes");
-    return taken(record, [&](ByteReader& from) {
+    return taken(record, [&](base::ByteReader& from) {
       Provenance out;
       for (std::uint32_t k = 0; k < record.number; ++k) {
         std::string key = from.text();
@@ -242,13 +242,13 @@ class Reader {
     });
   }
 
-  static Vec2 take_point(ByteReader& from) {
+  static Vec2 take_point(base::ByteReader& from) {
     const double x = from.number<double>();
     return {x, from.number<double>()};
   }
 
-  static std::vector<Frustum> take_pieces(ByteReader& from) {
-    std::vector<Frustum> out;
+  static std::vector<tool::Frustum> take_pieces(base::ByteReader& from) {
+    std::vector<tool::Frustum> out;
     for (auto count = from.number<std::uint32_t>(); count > 0; --count) {
       const auto numbers = from.number<std::array<double, 4>>();
       out.push_back({numbers[0], numbers[1], numbers[2], numbers[3]});
@@ -256,22 +256,22 @@ class Reader {
     return out;
   }
 
-  static Tool take_tool(ByteReader& from) {
+  static Tool take_tool(base::ByteReader& from) {
     const std::string kind = from.text(), name = from.text();
     std::vector<std::pair<std::string, double>> parameters;
     for (auto count = from.number<std::uint32_t>(); count > 0; --count) {
       std::string key = from.text();
       parameters.emplace_back(std::move(key), from.number<double>());
     }
-    std::vector<ProfileSegment> segments;
+    std::vector<tool::ProfileSegment> segments;
     for (auto count = from.number<std::uint32_t>(); count > 0; --count) {
       const auto centre = from.number<std::uint32_t>();
       if (centre > 1) throw std::invalid_argument("a segment of the profile is neither line nor arc");
-      ProfileSegment segment{take_point(from), {}};
+      tool::ProfileSegment segment{take_point(from), {}};
       if (centre) segment.centre = take_point(from);
       segments.push_back(segment);
     }
-    Tool tool(kind, std::move(parameters), Profile(std::move(segments)));
+    Tool tool(kind, std::move(parameters), tool::Profile(std::move(segments)));
     tool = tool.with_shank(take_pieces(from));
     return tool.with_holder(take_pieces(from)).named(name);
   }
@@ -289,7 +289,7 @@ class Reader {
     for (const Record& record : records) {
       if (record.kind != kVia) break;
       if (record.number <= last || record.number >= rows_) fail(record.at + 4, "no row to lead to, or not in order");
-      vias_.emplace(record.number, taken(record, [&](ByteReader& from) {
+      vias_.emplace(record.number, taken(record, [&](base::ByteReader& from) {
                       auto out = std::make_shared<std::vector<Pose>>();
                       for (auto k = from.number<std::uint32_t>(); k > 0; --k) {
                         const auto n = from.number<std::array<double, 6>>();
@@ -304,7 +304,7 @@ class Reader {
   }
 
   Columns columns(const Record& record) const {
-    PlaneReader planes(record.payload, record.at + kRecordHeader, name_);
+    base::PlaneReader planes(record.payload, record.at + kRecordHeader, name_);
     Columns out;
     for (auto& column : out.doubles) column = planes.column64(record.number);
     out.tool = planes.column32(record.number);
@@ -316,18 +316,18 @@ class Reader {
 
   void add_rows(std::span<const Record> records, Program& program, const Progress& progress) const {
     std::vector<Columns> read(records.size());
-    parallel_for(
+    base::parallel_for(
         records.size(), 1,
         [&](std::size_t begin, std::size_t end) {
           for (std::size_t k = begin; k < end; ++k) read[k] = columns(records[k]);
         },
-        part(progress, 0, 0.8));
+        base::part(progress, 0, 0.8));
     program.reserve(rows_);
     for (std::size_t k = 0; k < records.size(); ++k) {
-      report(progress, 0.8 + 0.2 * static_cast<double>(k) / static_cast<double>(records.size()));
+      base::report(progress, 0.8 + 0.2 * static_cast<double>(k) / static_cast<double>(records.size()));
       add_rows(records[k], read[k], program);
     }
-    report(progress, 1);
+    base::report(progress, 1);
   }
 
   /// As Program::append takes them. It changes nothing that it let into a program before; what it would change was not
@@ -370,7 +370,7 @@ std::vector<std::uint8_t> to_bytes(const Program& program, const Progress& progr
   for (const auto& [row, via] : program.via()) records.push_back(via_record(row, *via));
   const std::size_t before = records.size(), chunks = (program.size() + kChunkRows - 1) / kChunkRows;
   records.resize(before + chunks);
-  parallel_for(
+  base::parallel_for(
       chunks, 1,
       [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
@@ -383,13 +383,13 @@ std::vector<std::uint8_t> to_bytes(const Program& program, const Progress& progr
   for (const Bytes& bytes : records) length += bytes.size();
   Bytes out;
   out.reserve(length);
-  put(out, kMagic);
-  put(out, kVersion);
+  base::put(out, kMagic);
+  base::put(out, kVersion);
   put_count(out, program.tools.size());
-  put(out, length);
-  put(out, static_cast<std::uint64_t>(program.size()));
+  base::put(out, length);
+  base::put(out, static_cast<std::uint64_t>(program.size()));
   put_count(out, noted.size());
-  put(out, checksum(out));
+  base::put(out, base::checksum(out));
   for (const Bytes& bytes : records) out.insert(out.end(), bytes.begin(), bytes.end());
   return out;
 }
@@ -399,11 +399,11 @@ Program parse_program(ByteView bytes, const std::string& name, const Progress& p
 }
 
 void save_program(const Program& program, const std::filesystem::path& path, const Progress& progress) {
-  write_file(path, to_bytes(program, progress));
+  base::write_file(path, to_bytes(program, progress));
 }
 
 Program load_program(const std::filesystem::path& path, const Progress& progress) {
-  return parse_program(read_file(path), path.filename().string(), progress);
+  return parse_program(base::read_file(path), path.filename().string(), progress);
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -17,7 +17,7 @@ ToolEnvelope::ToolEnvelope(const Tool* tool) {
   if (!tool) return;
   length = tool->length(), radius = tool->diameter() / 2;
   for (const auto* pieces : {&tool->shank(), &tool->holder()})
-    for (const Frustum& f : *pieces) {
+    for (const tool::Frustum& f : *pieces) {
       length = std::max(length, f.z1);
       radius = std::max({radius, f.r0, f.r1});
     }
@@ -71,4 +71,4 @@ std::vector<Pose> retract_path(const Pose& pose, const ToolEnvelope& reach, cons
   return way;
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -6,7 +6,7 @@
 #include "riffler/geom/pose.hpp"
 #include "riffler/tool/tool.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 /// The cylinder about the axis that holds a tool; nothing is known of an unknown tool.
 struct ToolEnvelope {
@@ -30,4 +30,4 @@ struct ClearanceZone {
 /// point at safe height.
 std::vector<Pose> retract_path(const Pose& pose, const ToolEnvelope& reach, const ClearanceZone& space);
 
-}  // namespace riffler
+}  // namespace riffler::nc

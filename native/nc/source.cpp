@@ -7,7 +7,7 @@
 #include "base/io.hpp"
 #include "riffler/base/error.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 void NcPlace::fail(const std::string& what) const {
   constexpr std::size_t kShown = 80;
@@ -20,7 +20,7 @@ void NcPlace::fail(const std::string& what) const {
 }
 
 NcSource::NcSource(const std::filesystem::path& path, std::size_t window) : name_(path.filename().string()) {
-  check_regular(path);
+  base::check_regular(path);
   file_.reset(std::fopen(path.c_str(), "rb"));
   if (!file_) throw FormatError(name_, "", std::string("cannot be opened: ") + std::strerror(errno));
   std::error_code unknown;
@@ -72,4 +72,4 @@ void NcSource::go(const Mark& mark) {
   base_ = mark.offset, at_ = 0, window_ = {};
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-namespace riffler {
+namespace riffler::nc {
 
 /// Where the reader is, for messages.
 struct NcPlace {
@@ -63,4 +63,4 @@ class NcSource {
   double size_ = 0;  // bytes
 };
 
-}  // namespace riffler
+}  // namespace riffler::nc

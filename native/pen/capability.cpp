@@ -9,7 +9,7 @@
 #include "pen/arms/wrench_split.hpp"
 #include "riffler/pen/arms/motors.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 
 namespace {
 
@@ -17,7 +17,7 @@ constexpr const char* kLetters = "xyzabc";
 
 std::string letters_of(const DeviceCapability& device, bool (*has)(const CoordinateCapability&)) {
   std::string out;
-  for (std::size_t k = 0; k < kCoordinates; ++k)
+  for (std::size_t k = 0; k < haptics::kCoordinates; ++k)
     if (has(device.coordinates[k])) out += {' ', kLetters[k]};
   return out.empty() ? " nothing" : out;
 }
@@ -74,9 +74,9 @@ std::string capability_text(const DeviceCapability& device) {
   return missing.empty() ? out : out + "; the hand does not feel: " + missing;
 }
 
-Capability pushed(const DeviceCapability& device, const Vec3& axis) noexcept {
-  Capability out;
-  for (std::size_t k = 0; k < kCoordinates; ++k) out.push[k] = device.coordinates[k].pushes;
+haptics::Capability pushed(const DeviceCapability& device, const Vec3& axis) noexcept {
+  haptics::Capability out;
+  for (std::size_t k = 0; k < haptics::kCoordinates; ++k) out.push[k] = device.coordinates[k].pushes;
   if (device.turns == TurnAxes::Device) return out;
   const auto [a, b] = turning_axes(axis);
   out.axes = Mat3(a, b, axis);
@@ -93,10 +93,10 @@ DeviceCapability pen_capability(const PenGeometry& pen) {
   DeviceCapability out;
   out.name = pen.name;
   out.turns = TurnAxes::Grip;
-  for (std::size_t k = 0; k < kCoordinates; ++k) {
+  for (std::size_t k = 0; k < haptics::kCoordinates; ++k) {
     CoordinateCapability& c = out.coordinates[k];
     c.sensing = Sensing::Position;
-    c.pushes = k + 1 < kCoordinates;
+    c.pushes = k + 1 < haptics::kCoordinates;
     Vec3 direction = k == 3 ? a : k == 4 ? b : axis;
     if (k < 3) {
       const int i = static_cast<int>(k);
@@ -119,4 +119,4 @@ DeviceCapability pen_capability(const PenGeometry& pen) {
   return out;
 }
 
-}  // namespace riffler
+}  // namespace riffler::pen

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-namespace riffler {
+namespace riffler::pen {
 
 const char* not_pushed_text(NotPushed reason) noexcept {
   switch (reason) {
@@ -42,4 +42,4 @@ LinkStatus Pen::status() const noexcept {
   return out;
 }
 
-}  // namespace riffler
+}  // namespace riffler::pen

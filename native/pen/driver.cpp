@@ -10,7 +10,7 @@
 #include <thread>
 #include <utility>
 
-namespace riffler {
+namespace riffler::pen {
 namespace {
 
 using Seconds = std::chrono::duration<double>;
@@ -162,4 +162,4 @@ std::string Driver::problem() const {
   return shared_->text;
 }
 
-}  // namespace riffler
+}  // namespace riffler::pen

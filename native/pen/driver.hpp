@@ -8,7 +8,7 @@
 #include "base/own_thread.hpp"
 #include "pen/driver_loop.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 
 class Driver {
  public:
@@ -38,10 +38,10 @@ class Driver {
  private:
   struct Shared;
   std::shared_ptr<Shared> shared_;
-  HomeProcess home_;
+  base::HomeProcess home_;
 };
 
 /// Of the system: std::chrono::steady_clock.
 double steady_seconds() noexcept;
 
-}  // namespace riffler
+}  // namespace riffler::pen

@@ -5,15 +5,15 @@
 
 #include "riffler/base/check.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 
 void DriverSettings::validate() const {
-  require_positive(read_timeout, "read_timeout");
-  require_positive(silence, "silence");
-  require_positive(first_retry, "first_retry");
-  require_positive(longest_retry, "longest_retry");
-  require_positive(poll, "poll");
-  require_positive(most_reads, "most_reads");
+  base::require_positive(read_timeout, "read_timeout");
+  base::require_positive(silence, "silence");
+  base::require_positive(first_retry, "first_retry");
+  base::require_positive(longest_retry, "longest_retry");
+  base::require_positive(poll, "poll");
+  base::require_positive(most_reads, "most_reads");
   if (longest_retry < first_retry) throw std::invalid_argument("longest_retry of the driver is less than first_retry");
 }
 
@@ -102,7 +102,7 @@ bool DriverLoop::drain() noexcept {
 }
 
 /// False where the device is gone.
-bool DriverLoop::put(const SafeWrench& safe, double now) noexcept {
+bool DriverLoop::put(const haptics::SafeWrench& safe, double now) noexcept {
   std::array<std::uint8_t, 65> bytes{};
   status_.wrench = safe.wrench();
   const std::size_t size = model_.push(safe, now, bytes);
@@ -153,4 +153,4 @@ void DriverLoop::look() noexcept {
   }
 }
 
-}  // namespace riffler
+}  // namespace riffler::pen

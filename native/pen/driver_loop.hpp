@@ -13,7 +13,7 @@
 #include "riffler/pen/pen_step.hpp"
 #include "riffler/pen/published.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 
 /// Finds and opens the device again, in another thread.
 class Connector {
@@ -49,7 +49,7 @@ class DriverLoop {
   void open(std::unique_ptr<Transport> transport) noexcept;
   void drive() noexcept;
   bool drain() noexcept;
-  bool put(const SafeWrench& safe, double now) noexcept;
+  bool put(const haptics::SafeWrench& safe, double now) noexcept;
   void release() noexcept;
   void lose(std::uint32_t& count) noexcept;
   void look() noexcept;
@@ -68,4 +68,4 @@ class DriverLoop {
   bool has_stepped_ = false;
 };
 
-}  // namespace riffler
+}  // namespace riffler::pen

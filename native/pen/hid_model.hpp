@@ -13,7 +13,7 @@
 #include "riffler/pen/passivity_settings.hpp"
 #include "riffler/pen/sample.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 
 struct PenGeometry;
 
@@ -33,7 +33,7 @@ class HidModel {
   /// s between its reports; 0 for a device that only speaks while it is touched, whose silence means nothing.
   virtual double period() const noexcept = 0;
   /// What the passivity controller may count on.
-  virtual PassivitySettings passivity() const { return passivity_settings(capability()); }
+  virtual haptics::PassivitySettings passivity() const { return passivity_settings(capability()); }
   /// Its own limits and identity, for people; may be empty.
   virtual std::string about() const { return {}; }
   /// Of a pen of two arms; null for everything else. Does not change.
@@ -57,9 +57,9 @@ class HidModel {
   virtual PenSample sample(double now) noexcept = 0;
   /// The report that pushes with the wrench about the grip's pivot, in the frame of poses; its size. Where the gate is
   /// not open, motors that can be switched off are. 0 for a device that takes no reports. `bytes` holds 65.
-  virtual std::size_t push(const SafeWrench& safe, double now, std::span<std::uint8_t> bytes) noexcept = 0;
+  virtual std::size_t push(const haptics::SafeWrench& safe, double now, std::span<std::uint8_t> bytes) noexcept = 0;
   /// The report after which the device does not push, whatever it was told before.
   virtual std::size_t release(double now, std::span<std::uint8_t> bytes) noexcept = 0;
 };
 
-}  // namespace riffler
+}  // namespace riffler::pen

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace riffler {
+namespace riffler::pen {
 
 namespace {
 
@@ -14,7 +14,7 @@ Vec3 beyond_rounding(const Vec3& missing, const Vec3& asked) {
 
 }  // namespace
 
-SafeWrench HeldPush::step(const PenSample& sample, double now, double dt) noexcept {
+haptics::SafeWrench HeldPush::step(const PenSample& sample, double now, double dt) noexcept {
   const Asked asked = asked_.get();
   const bool fresh = now - asked.time <= kHeld;
   if (dt == 0) safety_.interrupt();
@@ -28,7 +28,7 @@ SafeWrench HeldPush::step(const PenSample& sample, double now, double dt) noexce
                    .dead_man = fresh,
                    .device_fault = sample.fault,
                    .device_late = sample.late});
-  const SafeWrench safe = safety_.release(fresh ? asked.wrench : Wrench{});
+  const haptics::SafeWrench safe = safety_.release(fresh ? asked.wrench : Wrench{});
   state_.store(safety_.state());
   cause_.store(safety_.cause());
   return safe;
@@ -40,7 +40,7 @@ void StepSwitch::set(std::shared_ptr<PenStep> step) {
   begins_ = true;
 }
 
-SafeWrench StepSwitch::step(const PenSample& sample, double now, double dt) noexcept {
+haptics::SafeWrench StepSwitch::step(const PenSample& sample, double now, double dt) noexcept {
   const double since = dt > 0 ? missed_ + dt : dt;
   const std::unique_lock lock(mutex_, std::try_to_lock);
   missed_ = lock ? 0 : since;
@@ -74,11 +74,11 @@ PushAnswer HidPen::push(const Wrench& wrench) noexcept {
   if (link.state != LinkState::Connected) return refused(NotPushed::NotConnected);
   if (!link.sample.powered) return refused(NotPushed::NotPowered);
   if (!link.sample.homed) return refused(NotPushed::NotHomed);
-  if (held_->state() == ForceState::Tripped) return refused(NotPushed::Tripped);
+  if (held_->state() == haptics::ForceState::Tripped) return refused(NotPushed::Tripped);
   const Wrench felt = renderable(pushed(capability(), link.sample.pose.axis), wrench);
   const Wrench missing{beyond_rounding(wrench.force - felt.force, wrench.force),
                        beyond_rounding(wrench.torque - felt.torque, wrench.torque)};
   return {wrench - missing, missing, missing == Wrench{} ? NotPushed::None : NotPushed::NoMotors};
 }
 
-}  // namespace riffler
+}  // namespace riffler::pen

@@ -10,7 +10,7 @@
 #include "riffler/haptics/safety.hpp"
 #include "riffler/pen/device.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 
 /// The step of a device that nobody computes a force for in its own thread: what was last asked for, for 20 ms, through
 /// the gate of all forces (haptics/safety.hpp) with its own settings. Asking is the dead man's switch.
@@ -18,17 +18,17 @@ class HeldPush final : public PenStep {
  public:
   static constexpr double kHeld = 0.02;  // s
 
-  explicit HeldPush(const SafetySettings& settings = {}) : safety_(settings) { safety_.switch_on(); }
+  explicit HeldPush(const haptics::SafetySettings& settings = {}) : safety_(settings) { safety_.switch_on(); }
 
   /// By one thread; `now` of the driver's clock.
   void ask(const Wrench& wrench, double now) noexcept { asked_.set({wrench, now}); }
   /// Clears a trip with the next step. Any thread.
   void reset() noexcept { reset_.store(true); }
-  SafeWrench step(const PenSample& sample, double now, double dt) noexcept override;
+  haptics::SafeWrench step(const PenSample& sample, double now, double dt) noexcept override;
 
   /// As of the last step. Any thread.
-  ForceState state() const noexcept { return state_.load(); }
-  Cause cause() const noexcept { return cause_.load(); }
+  haptics::ForceState state() const noexcept { return state_.load(); }
+  haptics::Cause cause() const noexcept { return cause_.load(); }
 
  private:
   struct Asked {
@@ -36,9 +36,9 @@ class HeldPush final : public PenStep {
     double time = -1e300;
   };
   Published<Asked> asked_;
-  Safety safety_;  // the driver's thread's
-  std::atomic<ForceState> state_{ForceState::Off};
-  std::atomic<Cause> cause_{Cause::None};
+  haptics::Safety safety_;  // the driver's thread's
+  std::atomic<haptics::ForceState> state_{haptics::ForceState::Off};
+  std::atomic<haptics::Cause> cause_{haptics::Cause::None};
   std::atomic<bool> reset_{false};
 };
 
@@ -51,7 +51,7 @@ class StepSwitch final : public PenStep {
 
   /// Not null. The one before is not called after this, and let go by the calling thread.
   void set(std::shared_ptr<PenStep> step);
-  SafeWrench step(const PenSample& sample, double now, double dt) noexcept override;
+  haptics::SafeWrench step(const PenSample& sample, double now, double dt) noexcept override;
 
  private:
   std::mutex mutex_;  // held while a step is called; the driver only tries it
@@ -69,7 +69,7 @@ class HidPen : public Pen {
 
   std::string kind() const override { return kind_; }
   const DeviceCapability& capability() const noexcept override { return model_->capability(); }
-  PassivitySettings passivity() const override { return model_->passivity(); }
+  haptics::PassivitySettings passivity() const override { return model_->passivity(); }
   std::string about() const override { return model_->about(); }
   const PenGeometry* geometry() const noexcept override { return model_->geometry(); }
   PenSample newest() const noexcept override { return status().sample; }
@@ -79,8 +79,10 @@ class HidPen : public Pen {
   bool home() noexcept override { return model_->home(); }
   /// These three are push()'s, whose trips outlast other steps.
   void reset() noexcept override { held_->reset(); }
-  ForceState force_state() const noexcept override { return pushes_ ? held_->state() : ForceState::Off; }
-  Cause cause() const noexcept override { return pushes_ ? held_->cause() : Cause::None; }
+  haptics::ForceState force_state() const noexcept override {
+    return pushes_ ? held_->state() : haptics::ForceState::Off;
+  }
+  haptics::Cause cause() const noexcept override { return pushes_ ? held_->cause() : haptics::Cause::None; }
   LinkStatus status() const noexcept override { return driver_.status(); }
   std::string problem() const override { return driver_.problem(); }
   bool stop() override { return driver_.stop(); }
@@ -94,4 +96,4 @@ class HidPen : public Pen {
   Driver driver_;                   // last: its threads use the others
 };
 
-}  // namespace riffler
+}  // namespace riffler::pen

@@ -1,6 +1,6 @@
 #include "riffler/pen/link_status.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 
 const char* link_text(LinkState state) noexcept {
   switch (state) {
@@ -16,4 +16,4 @@ const char* link_text(LinkState state) noexcept {
   return "connecting";
 }
 
-}  // namespace riffler
+}  // namespace riffler::pen

@@ -8,7 +8,7 @@
 #include "geom/math.hpp"
 #include "riffler/pen/arms/geometry.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 
 namespace {
 
@@ -80,17 +80,17 @@ constexpr double kLatency = 2e-3;
 
 }  // namespace
 
-PassivitySettings passivity_settings(const DeviceCapability& device) {
-  PassivitySettings out;
+haptics::PassivitySettings passivity_settings(const DeviceCapability& device) {
+  haptics::PassivitySettings out;
   out.resolution = {0, 0};
-  for (std::size_t k = 0; k < kCoordinates; ++k) {
+  for (std::size_t k = 0; k < haptics::kCoordinates; ++k) {
     double& said = k < 3 ? out.resolution.linear : out.resolution.angular;
     said = std::max(said, device.coordinates[k].resolution);
   }
   return out;
 }
 
-PassivitySettings passivity_settings(const PenGeometry& pen, const Compensation& share) {
+haptics::PassivitySettings passivity_settings(const PenGeometry& pen, const Compensation& share) {
   double least_damping = std::numeric_limits<double>::infinity(), least_friction = least_damping, sum = 0;
   for (const Arm arm : {Arm::R, Arm::L}) {
     const ArmBounds bounds = bounds_of(pen, arm);
@@ -101,7 +101,7 @@ PassivitySettings passivity_settings(const PenGeometry& pen, const Compensation&
   }
   const double kept = 1 - share.friction, half = 0.5 * pen.grip_length;
   const double damps = kept * least_damping, rubs = kept * least_friction / std::numbers::sqrt3;
-  PassivitySettings out;
+  haptics::PassivitySettings out;
   out.latency = kLatency;
   // The pivot is midway between the ends, the axis along their difference.
   out.resolution = {0.5 * sum, sum / pen.grip_length};
@@ -112,4 +112,4 @@ PassivitySettings passivity_settings(const PenGeometry& pen, const Compensation&
   return out;
 }
 
-}  // namespace riffler
+}  // namespace riffler::pen

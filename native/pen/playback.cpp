@@ -8,7 +8,7 @@
 #include "pen/driver.hpp"
 #include "riffler/base/check.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 namespace {
 
 constexpr double kNotBegun = -std::numeric_limits<double>::infinity();
@@ -24,7 +24,8 @@ void check(const RecordedStroke& stroke, std::size_t number) {
          "a recording is played with one time for each pose");
   for (std::size_t k = 0; k < stroke.times.size(); ++k) {
     if (!std::isfinite(stroke.times[k])) fail(number, k, "a time is not finite");
-    if (!finite(stroke.poses[k].tip) || !finite(stroke.poses[k].axis)) fail(number, k, "a pose is not finite");
+    if (!geom::finite(stroke.poses[k].tip) || !geom::finite(stroke.poses[k].axis))
+      fail(number, k, "a pose is not finite");
     if (std::abs(glm::length(stroke.poses[k].axis) - 1) > 1e-6) fail(number, k, "an axis is not of unit length");
     if (k > 0 && stroke.times[k] < stroke.times[k - 1]) fail(number, k, "times fall");
     if (k > 0 && glm::length(stroke.poses[k].axis + stroke.poses[k - 1].axis) < 1e-9)
@@ -36,7 +37,7 @@ void check(const RecordedStroke& stroke, std::size_t number) {
 
 PlaybackPen::PlaybackPen(std::vector<RecordedStroke> strokes, double speed, std::function<double()> clock)
     : clock_(clock ? std::move(clock) : std::function<double()>(steady_seconds)), speed_(speed), start_(kNotBegun) {
-  require_positive(speed, "speed");
+  base::require_positive(speed, "speed");
   if (strokes.empty()) throw std::invalid_argument("strokes: a recording needs a stroke");
   capability_.name = "recording";
   for (std::size_t k = 0; k < 5; ++k) capability_.coordinates[k].sensing = Sensing::Position;
@@ -90,4 +91,4 @@ LinkStatus PlaybackPen::status() const noexcept {
   return out;
 }
 
-}  // namespace riffler
+}  // namespace riffler::pen

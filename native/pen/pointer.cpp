@@ -7,12 +7,12 @@
 
 #include "geom/math.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 
 void PointerFrame::validate() const {
   const auto fail = [](const char* what) { throw std::invalid_argument(std::string("frame of the pointer: ") + what); };
   constexpr double kSlack = 1e-6;
-  if (!finite(origin)) fail("origin must be finite");
+  if (!geom::finite(origin)) fail("origin must be finite");
   if (!(std::abs(glm::length(right) - 1) < kSlack)) fail("right must be of unit length");
   if (!(std::abs(glm::length(up) - 1) < kSlack)) fail("up must be of unit length");
   if (!(std::abs(glm::dot(right, up)) < kSlack)) fail("right and up must be square to each other");
@@ -57,7 +57,7 @@ bool PointerPen::give(const PointerEvent& event) noexcept {
   pose.tip = frame_.origin + frame_.scale * (event.x * frame_.right + event.y * frame_.up) -
              frame_.depth * std::clamp(event.pressure, 0.0, 1.0) * upright;
   pose.axis = kind_ == Kind::Tablet ? tilted_axis(frame_, event.tilt_x, event.tilt_y) : upright;
-  if (!finite(pose.tip)) return false;
+  if (!geom::finite(pose.tip)) return false;
   last_.velocity = first || dt == 0 ? Vec3(0) : (pose.tip - last_.pose.tip) / dt;
   last_.pose = pose;
   last_.time = event.time;
@@ -68,4 +68,4 @@ bool PointerPen::give(const PointerEvent& event) noexcept {
   return true;
 }
 
-}  // namespace riffler
+}  // namespace riffler::pen

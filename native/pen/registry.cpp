@@ -11,7 +11,7 @@
 #include "pen/models/spacemouse_model.hpp"
 #include "pen/simulated/simulated_device.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 namespace {
 
 bool is_riffler(const HidInfo& info) {
@@ -165,4 +165,4 @@ std::unique_ptr<Pen> open_pen(std::string_view what, const PenOptions& options) 
   return open_path(what, options);
 }
 
-}  // namespace riffler
+}  // namespace riffler::pen

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace riffler {
+namespace riffler::plan {
 
 namespace {
 
@@ -77,10 +77,10 @@ CcFrame frame_at(const PencilPath& path, std::size_t k) {
 }
 
 Vec3 unit_axis(const Vec3& axis, std::string_view what) {
-  if (!finite(axis)) throw std::invalid_argument(std::string(what) + ": not finite");
+  if (!geom::finite(axis)) throw std::invalid_argument(std::string(what) + ": not finite");
   const double length = glm::length(axis);
   if (!(std::abs(length - 1) < 1e-6)) throw std::invalid_argument(std::string(what) + ": not a unit vector");
   return std::abs(length - 1) < 1e-15 ? axis : axis / length;
 }
 
-}  // namespace riffler
+}  // namespace riffler::plan

@@ -6,7 +6,7 @@
 
 #include "riffler/plan/cc_frame.hpp"
 
-namespace riffler {
+namespace riffler::plan {
 
 namespace {
 
@@ -28,7 +28,7 @@ Vec3 touching_point(const CutterSupport& cutter, const Vec3& normal, const Vec3&
 CutterSupport::CutterSupport(const Tool& tool) : top_(tool.length()) {
   Vec2 from{0, 0};
   corners_.push_back(from);
-  for (const ProfileSegment& s : tool.profile().segments()) {
+  for (const tool::ProfileSegment& s : tool.profile().segments()) {
     const bool bulges = s.centre && from.x + s.to.x >= 2 * s.centre->x;
     if (bulges) arcs_.push_back({*s.centre, from, s.to, glm::length(from - *s.centre)});
     if (bulges && arcs_.size() == 1 && corners_.size() == 1 && s.centre->x == 0) ball_radius_ = arcs_[0].radius;
@@ -84,4 +84,4 @@ Pose location_on_path(const CutterSupport& cutter, const PencilPath& path, std::
   return {(b0 * glm::cross(normal[1], line) + b1 * glm::cross(line, normal[0]) + along * line) / square, axis};
 }
 
-}  // namespace riffler
+}  // namespace riffler::plan

@@ -5,7 +5,7 @@
 
 #include "riffler/base/parallel.hpp"
 
-namespace riffler {
+namespace riffler::plan {
 
 namespace {
 
@@ -59,9 +59,9 @@ struct Triangle {
       const double around = cell.reach(middle);
       // Moving the ball by `around` changes its distance from what is above its plane by no more than that.
       const double radius = ball.radius();
-      const Closest::Above above{middle, normal, depth, cosine};
+      const mesh::Closest::Above above{middle, normal, depth, cosine};
       const Vec3 centre = middle + radius * normal;
-      const Closest::Hit hit = ball.part().above(centre, radius + around, above);
+      const mesh::Closest::Hit hit = ball.part().above(centre, radius + around, above);
       ++balls;
       if (hit.triangle < 0) continue;
       const double entered = radius - hit.distance;
@@ -85,7 +85,7 @@ ContactNet contact_net(const Mesh& part, const RollingBall& ball, double spacing
   ContactNet net;
   std::vector<std::vector<Unreached>> points(chunks);
   std::vector<std::size_t> balls(chunks, 0);
-  parallel_for(
+  base::parallel_for(
       n, kGrain,
       [&](std::size_t begin, std::size_t end) {
         for (std::size_t t = begin; t < end; ++t) {
@@ -102,4 +102,4 @@ ContactNet contact_net(const Mesh& part, const RollingBall& ball, double spacing
   return net;
 }
 
-}  // namespace riffler
+}  // namespace riffler::plan

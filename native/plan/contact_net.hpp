@@ -6,7 +6,7 @@
 #include "plan/rolling_ball.hpp"
 #include "riffler/base/progress.hpp"
 
-namespace riffler {
+namespace riffler::plan {
 
 /// A point of the part where a ball that is tangent there enters the part elsewhere.
 struct Unreached {
@@ -29,4 +29,4 @@ struct ContactNet {
 ContactNet contact_net(const Mesh& part, const RollingBall& ball, double spacing, double depth, double angle,
                        const Progress& progress = {});
 
-}  // namespace riffler
+}  // namespace riffler::plan

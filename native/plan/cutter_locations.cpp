@@ -11,7 +11,7 @@
 #include "riffler/plan/contact_location.hpp"
 #include "riffler/plan/lift.hpp"
 
-namespace riffler {
+namespace riffler::plan {
 
 namespace {
 
@@ -36,9 +36,9 @@ std::string why_not_free(const Lift& lift, const LocationRule& rule) {
 }
 
 void check(const LocationRule& rule) {
-  require(std::isfinite(rule.clearance), "clearance", "must be finite");
-  require_tolerance(rule.tolerance);
-  require_not_negative(rule.max_lift, "max_lift", kFiniteAndNotNegative);
+  base::require(std::isfinite(rule.clearance), "clearance", "must be finite");
+  base::require_tolerance(rule.tolerance);
+  base::require_not_negative(rule.max_lift, "max_lift", base::kFiniteAndNotNegative);
   if (rule.max_inserted < 0 || rule.max_inserted > kMaxInserted)
     throw std::invalid_argument("max_inserted must be from 0 to " + std::to_string(kMaxInserted));
   if (rule.max_evaluations < 1) throw std::invalid_argument("max_evaluations must be at least 1");
@@ -46,7 +46,7 @@ void check(const LocationRule& rule) {
 
 class Planner {
  public:
-  Planner(const Assembly& assembly, const Collider& collider, const LocationRule& rule)
+  Planner(const collide::Assembly& assembly, const collide::Collider& collider, const LocationRule& rule)
       : assembly_(assembly), collider_(collider), rule_(rule) {}
 
   /// What became of one pose.
@@ -111,15 +111,16 @@ class Planner {
       return unsafe(std::min(from.clearance, to.clearance), -assembly_.reach(), "opposite axes: no motion joins them");
     const Motion motion(from.pose, to.pose);
     const double wanted = rule_.clearance - rule_.tolerance;
-    const Swept check = collider_.sweep(assembly_, motion, wanted, static_cast<std::size_t>(rule_.max_evaluations));
+    const collide::Swept check =
+        collider_.sweep(assembly_, motion, wanted, static_cast<std::size_t>(rule_.max_evaluations));
     const double least = std::min({check.clearance, from.clearance, to.clearance}),
                  bound = std::min(check.bound, least);
     out.evaluations += check.evaluations;
-    if (check.answer == Swept::Answer::Clear) {
+    if (check.answer == collide::Swept::Answer::Clear) {
       out.least = std::min(out.least, least), out.bound = std::min(out.bound, bound);
       return std::nullopt;
     }
-    if (check.answer == Swept::Answer::Unknown) return unsafe(least, bound, "the evaluations ran out");
+    if (check.answer == collide::Swept::Answer::Unknown) return unsafe(least, bound, "the evaluations ran out");
     if (out.made >= rule_.max_inserted)
       return unsafe(least, bound,
                     std::string(kOf[static_cast<int>(check.touch)]) + ", and no more points may be inserted");
@@ -130,8 +131,8 @@ class Planner {
     return middle.row;
   }
 
-  const Assembly& assembly_;
-  const Collider& collider_;
+  const collide::Assembly& assembly_;
+  const collide::Collider& collider_;
   const LocationRule& rule_;
 };
 
@@ -139,12 +140,12 @@ template <class PoseAt>
 CutterLocations located(std::size_t n, bool closed, const PoseAt& pose_at, const Planner& planner,
                         const Progress& progress) {
   std::vector<Planner::Try> points(n);
-  parallel_for(
+  base::parallel_for(
       n, 1,
       [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) points[k] = planner.try_point(pose_at, k);
       },
-      part(progress, 0, 0.3));
+      base::part(progress, 0, 0.3));
   CutterLocations out;
   out.least_clearance = std::numeric_limits<double>::infinity();
   std::vector<LocationRow> rows;
@@ -157,12 +158,12 @@ CutterLocations located(std::size_t n, bool closed, const PoseAt& pose_at, const
   }
   if (closed && rows.size() > 1) rows.push_back(rows.front());
   std::vector<Planner::Way> ways(rows.empty() ? 0 : rows.size() - 1);
-  parallel_for(
+  base::parallel_for(
       ways.size(), 1,
       [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) ways[k] = planner.way(rows[k], rows[k + 1]);
       },
-      part(progress, 0.3, 1));
+      base::part(progress, 0.3, 1));
   out.bound = out.least_clearance;
   for (std::size_t k = 0; k < rows.size(); ++k) {
     out.rows.push_back(rows[k]);
@@ -178,8 +179,9 @@ CutterLocations located(std::size_t n, bool closed, const PoseAt& pose_at, const
 
 }  // namespace
 
-CutterLocations cutter_locations(const PencilPath& path, const Assembly& assembly, const Collider& collider,
-                                 const LocationRule& rule, const Progress& progress) {
+CutterLocations cutter_locations(const PencilPath& path, const collide::Assembly& assembly,
+                                 const collide::Collider& collider, const LocationRule& rule,
+                                 const Progress& progress) {
   if (path.axes.size() != path.size() || path.axes.empty())
     throw std::invalid_argument("path: has no axes; orient it first");
   check(rule);
@@ -188,12 +190,13 @@ CutterLocations cutter_locations(const PencilPath& path, const Assembly& assembl
   return located(path.size(), path.closed, pose_at, Planner(assembly, collider, rule), progress);
 }
 
-CutterLocations cutter_locations(const std::vector<Pose>& poses, const Assembly& assembly, const Collider& collider,
-                                 const LocationRule& rule, const Progress& progress) {
+CutterLocations cutter_locations(const std::vector<Pose>& poses, const collide::Assembly& assembly,
+                                 const collide::Collider& collider, const LocationRule& rule,
+                                 const Progress& progress) {
   if (poses.empty()) throw std::invalid_argument("path: has no poses");
   check(rule);
   return located(
       poses.size(), false, [&](std::size_t k) { return poses[k]; }, Planner(assembly, collider, rule), progress);
 }
 
-}  // namespace riffler
+}  // namespace riffler::plan

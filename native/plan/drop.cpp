@@ -10,7 +10,7 @@
 #include "riffler/base/parallel.hpp"
 #include "riffler/plan/cc_frame.hpp"
 
-namespace riffler {
+namespace riffler::plan {
 
 namespace {
 
@@ -28,11 +28,11 @@ struct DropCutter::Core {
   };
 
   void build(const std::vector<Triangle>& all);
-  std::size_t first(std::size_t level, std::size_t place) const { return first_item(count_, level, place); }
+  std::size_t first(std::size_t level, std::size_t place) const { return geom::first_item(count_, level, place); }
 
-  Mat3 turn_;                                      // columns: the frame, its z the axis
-  std::vector<std::pair<Part, LowerSide>> sides_;  // of the assembly's pieces
-  std::size_t count_ = 0, levels_ = 0;             // the tree is complete; node i has the children 2 i + 1 and 2 i + 2
+  Mat3 turn_;                                            // columns: the frame, its z the axis
+  std::vector<std::pair<tool::Part, LowerSide>> sides_;  // of the assembly's pieces
+  std::size_t count_ = 0, levels_ = 0;  // the tree is complete; node i has the children 2 i + 1 and 2 i + 2
   std::vector<Box3> boxes_;
   std::vector<Triangle> triangles_;  // in the frame, in the order of the leaves
 };
@@ -43,7 +43,7 @@ DropCutter::Core::Core(const Mesh& mesh, const Tool& tool, const Vec3& axis) {
   // Straight along z nothing is turned: coordinates stay what they are, to the bit.
   const CcFrame frame = axis == Vec3(0, 0, 1) ? CcFrame{} : cc_frame({1, 0, 0}, unit_axis(axis, "axis"));
   turn_ = Mat3(frame.x, frame.y, frame.z);
-  for (const ToolPiece& p : tool.assembly()) sides_.emplace_back(p.part, LowerSide(p.piece));
+  for (const tool::ToolPiece& p : tool.assembly()) sides_.emplace_back(p.part, LowerSide(p.piece));
   std::vector<Triangle> all;
   all.reserve(mesh.triangles.size());
   for (const Vec3i& t : mesh.triangles)
@@ -66,9 +66,9 @@ void DropCutter::Core::build(const std::vector<Triangle>& all) {
     const Vec3 size = box_of(begin, end).size();
     return size.x >= size.y ? 0 : 1;
   };
-  sort_by_medians(order, levels_, axis,
-                  [&](std::size_t t, int side) { return all[t].a[side] + all[t].b[side] + all[t].c[side]; });
-  boxes_ = boxes_of_tree(levels_, [&](std::size_t leaf) {
+  geom::sort_by_medians(order, levels_, axis,
+                        [&](std::size_t t, int side) { return all[t].a[side] + all[t].b[side] + all[t].c[side]; });
+  boxes_ = geom::boxes_of_tree(levels_, [&](std::size_t leaf) {
     const auto at = [&](std::size_t k) { return order.begin() + static_cast<std::ptrdiff_t>(first(levels_, k)); };
     return box_of(at(leaf), at(leaf + 1));
   });
@@ -141,7 +141,7 @@ DropCutter::Landing DropCutter::operator()(const Vec3& p, Stats* stats) const {
 std::vector<DropCutter::Landing> DropCutter::operator()(const std::vector<Vec3>& points,
                                                         const Progress& progress) const {
   std::vector<Landing> out(points.size());
-  parallel_for(
+  base::parallel_for(
       points.size(), 64,
       [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) out[i] = (*this)(points[i]);
@@ -150,4 +150,4 @@ std::vector<DropCutter::Landing> DropCutter::operator()(const std::vector<Vec3>&
   return out;
 }
 
-}  // namespace riffler
+}  // namespace riffler::plan

@@ -14,7 +14,7 @@
 #include "riffler/plan/cc_frame.hpp"
 #include "riffler/plan/contact_location.hpp"
 
-namespace riffler {
+namespace riffler::plan {
 
 namespace {
 
@@ -31,9 +31,9 @@ struct OnPart {
 }
 
 void check(const EngraveOptions& o) {
-  require_tolerance(o.tolerance);
-  require_positive(o.turn, "turn", kPositiveAndFinite);
-  require_positive(o.reach, "reach", kPositiveAndFinite);
+  base::require_tolerance(o.tolerance);
+  base::require_positive(o.turn, "turn", base::kPositiveAndFinite);
+  base::require_positive(o.reach, "reach", base::kPositiveAndFinite);
   if (!(o.crease >= 0 && o.crease <= 3.1416)) bad("crease must lie between 0 and π");
   if (!std::isfinite(o.depth)) bad("depth is not finite");
   if (!(std::abs(o.inclination) < 1.57) || !(std::abs(o.tilt) < 1.57))
@@ -47,7 +47,7 @@ class Sheet {
       : closest_(part), normals_(part, options.crease), options_(options) {}
 
   OnPart under(const Vec3& p) const {
-    const Closest::Hit hit = closest_(p);
+    const mesh::Closest::Hit hit = closest_(p);
     return {hit.point, normals_.at(hit.triangle, hit.point)};
   }
   double distance(const Vec3& p) const { return closest_(p).distance; }
@@ -92,7 +92,7 @@ class Sheet {
   static void append(const OnPart& to, std::vector<OnPart>& out) {
     if (out.size() >= kMaxPoints)
       bad("a curve of more than ten million points: take a larger tolerance or turn, or check the units");
-    if (out.size() % kPointsAReport == 0) still_wanted();
+    if (out.size() % kPointsAReport == 0) base::still_wanted();
     if (to.point != out.back().point || to.normal != out.back().normal) out.push_back(to);
   }
 
@@ -108,12 +108,12 @@ class Sheet {
     // Over a sharp edge no division helps: below the tolerance's size the axis turns at once.
     const double longest = std::max(glm::length(to.point - from.point), glm::length(between.point - from.point));
     if (longest <= options_.tolerance) return false;
-    return angle_between(from.normal, to.normal) > options_.turn ||
-           angle_between(from.normal, between.normal) > options_.turn;
+    return geom::angle_between(from.normal, to.normal) > options_.turn ||
+           geom::angle_between(from.normal, between.normal) > options_.turn;
   }
 
-  Closest closest_;
-  SmoothNormals normals_;
+  mesh::Closest closest_;
+  mesh::SmoothNormals normals_;
   const EngraveOptions& options_;
 };
 
@@ -122,7 +122,7 @@ void check(const std::vector<Vec3>& curve, const std::string& name, const Sheet&
   bool moves = false;
   for (std::size_t k = 0; k < curve.size(); ++k) {
     const std::string point = name + ", point " + std::to_string(k);
-    if (!finite(curve[k])) bad(point + " is not finite");
+    if (!geom::finite(curve[k])) bad(point + " is not finite");
     if (const double d = sheet.distance(curve[k]); d > reach)
       bad(point + " is " + std::to_string(d) + " mm from the part, more than reach");
     moves = moves || curve[k] != curve[0];
@@ -142,11 +142,11 @@ std::vector<Engraved> engrave(const Mesh& part, const std::vector<std::vector<Ve
   validate(part);
   if (part.empty()) bad("a part without triangles");
   std::optional<Mesh> storage;
-  const Sheet sheet(as_solid(part, storage, Hollow::Kept), options);
+  const Sheet sheet(as_solid(part, storage, mesh::Hollow::Kept), options);
   for (std::size_t k = 0; k < curves.size(); ++k) check(curves[k], "curve " + std::to_string(k), sheet, options.reach);
   const CutterSupport cutter(tool);
   std::vector<Engraved> out(curves.size());
-  parallel_for(
+  base::parallel_for(
       curves.size(), 1,
       [&](std::size_t begin, std::size_t end) {
         for (std::size_t c = begin; c < end; ++c) {
@@ -164,4 +164,4 @@ std::vector<Engraved> engrave(const Mesh& part, const std::vector<std::vector<Ve
   return out;
 }
 
-}  // namespace riffler
+}  // namespace riffler::plan

@@ -5,7 +5,7 @@
 
 #include "geom/math.hpp"
 
-namespace riffler {
+namespace riffler::plan {
 
 namespace {
 
@@ -70,7 +70,7 @@ std::optional<Lowest3> lowest_in_order(std::span<const HalfSpace<Vec3>> spaces, 
     if (glm::dot(normal, best.point) >= spaces[i].least - slack) continue;
     // In the plane of the one that is violated, the box's six sides first.
     const Vec3 foot = normal * spaces[i].least;
-    const Vec3 p = any_perpendicular(normal);
+    const Vec3 p = geom::any_perpendicular(normal);
     const Vec3 q = glm::cross(normal, p);
     flat.clear();
     const auto add = [&](const Vec3& along, double least) {
@@ -125,4 +125,4 @@ std::optional<Lowest3> lowest(std::span<const HalfSpace<Vec3>> spaces, const Vec
   return lowest_of_few(spaces, up, reach, slack);
 }
 
-}  // namespace riffler
+}  // namespace riffler::plan

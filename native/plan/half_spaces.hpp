@@ -8,7 +8,7 @@
 
 #include "riffler/geom/vec.hpp"
 
-namespace riffler {
+namespace riffler::plan {
 
 /// The points x with dot(along, x) ≥ least.
 template <class Vector>
@@ -32,4 +32,4 @@ struct Lowest3 {
 };
 std::optional<Lowest3> lowest(std::span<const HalfSpace<Vec3>> spaces, const Vec3& up, double reach, double slack);
 
-}  // namespace riffler
+}  // namespace riffler::plan

@@ -9,7 +9,7 @@
 #include "geom/directions.hpp"
 #include "riffler/base/check.hpp"
 
-namespace riffler {
+namespace riffler::plan {
 
 namespace {
 
@@ -59,7 +59,7 @@ class Chain {
     for (std::size_t j = 0; j < b.axes.size(); ++j) {
       for (std::size_t i = 0; i < a.axes.size(); ++i) {
         if (!(before.cost[i] < out.cost[j]) || glm::dot(a.axes[i], b.axes[j]) < least) continue;
-        const double turn = angle_between(a.axes[i], b.axes[j]);
+        const double turn = geom::angle_between(a.axes[i], b.axes[j]);
         const double cost = before.cost[i] + rule_.smoothness * turn * turn;
         if (turn <= rule_.max_change + 1e-12 && cost < out.cost[j]) out.cost[j] = cost, out.from[j] = i;
       }
@@ -72,7 +72,7 @@ class Chain {
   std::vector<LayerCosts> run(LayerCosts start, std::size_t count) const {
     std::vector<LayerCosts> out{std::move(start)};
     while (out.size() < count && out.back().reached()) {
-      report(progress_, kMapped);
+      base::report(progress_, kMapped);
       out.push_back(next(out.back(), out.size()));
     }
     return out;
@@ -112,8 +112,8 @@ std::vector<std::size_t> best_round(const Chain& chain, std::size_t n) {
 
 void check(const PencilPath& path, const TiltRule& rule) {
   if (path.size() == 0) throw std::invalid_argument("path: has no points");
-  require_positive(rule.max_change, "max_change", kPositiveAndFinite);
-  require_not_negative(rule.smoothness, "smoothness", kFiniteAndNotNegative);
+  base::require_positive(rule.max_change, "max_change", base::kPositiveAndFinite);
+  base::require_not_negative(rule.smoothness, "smoothness", base::kFiniteAndNotNegative);
 }
 
 TiltAnswer none(std::size_t point, std::string reason) {
@@ -124,8 +124,8 @@ TiltAnswer none(std::size_t point, std::string reason) {
 
 }  // namespace
 
-TiltAnswer least_tilt(const PencilPath& path, const Assembly& assembly, const Collider& collider, const TiltRule& rule,
-                      const Progress& progress) {
+TiltAnswer least_tilt(const PencilPath& path, const collide::Assembly& assembly, const collide::Collider& collider,
+                      const TiltRule& rule, const Progress& progress) {
   check(path, rule);
   const std::size_t n = path.size();
   std::vector<std::size_t> points(n);
@@ -133,13 +133,13 @@ TiltAnswer least_tilt(const PencilPath& path, const Assembly& assembly, const Co
   MapRule states = rule.map;
   states.clearances = false;
   const std::vector<OrientationMap> maps =
-      orientation_maps(path, points, assembly, collider, states, part(progress, 0, kMapped));
+      orientation_maps(path, points, assembly, collider, states, base::part(progress, 0, kMapped));
   std::vector<Layer> layers(n);
   for (std::size_t k = 0; k < n; ++k) {
     for (std::size_t i = 0; i < maps[k].axes.size(); ++i)
       if (maps[k].state[i] == OrientationMap::State::Free)
         layers[k].axes.push_back(maps[k].axes[i]),
-            layers[k].angles.push_back(angle_between(maps[k].axes[i], maps[k].frame.z));
+            layers[k].angles.push_back(geom::angle_between(maps[k].axes[i], maps[k].frame.z));
     if (layers[k].axes.empty())
       return none(
           k, "no orientation is free: " + orientation_maps(path, {k}, assembly, collider, rule.map).front().why_none());
@@ -154,7 +154,7 @@ TiltAnswer least_tilt(const PencilPath& path, const Assembly& assembly, const Co
   TiltAnswer out;
   out.found = true;
   const auto turned = [&](const Vec3& a, const Vec3& b) {
-    const double turn = angle_between(a, b);
+    const double turn = geom::angle_between(a, b);
     out.cost += rule.smoothness * turn * turn;
   };
   for (std::size_t k = 0; k < n; ++k) {
@@ -163,8 +163,8 @@ TiltAnswer least_tilt(const PencilPath& path, const Assembly& assembly, const Co
     if (k > 0) turned(out.axes[k - 1], out.axes[k]);
   }
   if (path.closed && n > 1) turned(out.axes.back(), out.axes.front());
-  report(progress, 1);
+  base::report(progress, 1);
   return out;
 }
 
-}  // namespace riffler
+}  // namespace riffler::plan

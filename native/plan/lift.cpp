@@ -9,7 +9,7 @@
 #include "riffler/base/check.hpp"
 #include "riffler/base/parallel.hpp"
 
-namespace riffler {
+namespace riffler::plan {
 
 namespace {
 
@@ -17,7 +17,7 @@ constexpr int kLooksAReport = 16;
 
 class Climb {
  public:
-  Climb(const Collider& collider, const Assembly& assembly, const Pose& pose, const LiftRule& rule)
+  Climb(const collide::Collider& collider, const collide::Assembly& assembly, const Pose& pose, const LiftRule& rule)
       : collider_(collider),
         assembly_(assembly),
         pose_(pose),
@@ -54,7 +54,7 @@ class Climb {
 
   void look(double h) {
     at_ = h;
-    if (out_.evaluations % kLooksAReport == 0) still_wanted();
+    if (out_.evaluations % kLooksAReport == 0) base::still_wanted();
     now_ = collider_.nearest(assembly_, {pose_.tip + h * pose_.axis, pose_.axis});
     if (++out_.evaluations == 1) out_.before = now_.distance;
   }
@@ -82,12 +82,12 @@ class Climb {
     return to;
   }
 
-  const Collider& collider_;
-  const Assembly& assembly_;
+  const collide::Collider& collider_;
+  const collide::Assembly& assembly_;
   const Pose pose_;
   const LiftRule& rule_;
   const OffsetToolColumns columns_;
-  Collider::Nearest now_{};
+  collide::Collider::Nearest now_{};
   double at_ = 0;
   Lift out_;
 };
@@ -95,15 +95,16 @@ class Climb {
 }  // namespace
 
 void validate(const LiftRule& rule) {
-  require(std::isfinite(rule.clearance), "clearance", "must be finite");
-  require_positive(rule.tolerance, "tolerance", kPositiveAndFinite);
-  require_not_negative(rule.max_lift, "max_lift", kFiniteAndNotNegative);
+  base::require(std::isfinite(rule.clearance), "clearance", "must be finite");
+  base::require_positive(rule.tolerance, "tolerance", base::kPositiveAndFinite);
+  base::require_not_negative(rule.max_lift, "max_lift", base::kFiniteAndNotNegative);
   if (rule.max_evaluations < 1) throw std::invalid_argument("max_evaluations must be at least 1");
 }
 
-Lift lift(const Collider& collider, const Assembly& assembly, const Pose& pose, const LiftRule& rule) {
+Lift lift(const collide::Collider& collider, const collide::Assembly& assembly, const Pose& pose,
+          const LiftRule& rule) {
   validate(rule);
   return Climb(collider, assembly, pose, rule).run();
 }
 
-}  // namespace riffler
+}  // namespace riffler::plan

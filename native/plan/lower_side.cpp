@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
-namespace riffler {
+namespace riffler::plan {
 
-LowerSide::LowerSide(const Piece& piece) : bottom_(bottom(piece)), flat_(radius_at(piece, bottom_)), rim_(flat_) {
-  if (const auto* f = std::get_if<Frustum>(&piece)) {
+LowerSide::LowerSide(const tool::Piece& piece) : bottom_(bottom(piece)), flat_(radius_at(piece, bottom_)), rim_(flat_) {
+  if (const auto* f = std::get_if<tool::Frustum>(&piece)) {
     if (f->r1 > f->r0) rim_ = f->r1, cone_ = (f->z1 - f->z0) / (f->r1 - f->r0);
     return;
   }
-  const Round& round = std::get<Round>(piece);
+  const tool::Round& round = std::get<tool::Round>(piece);
   if (!(round.z0 < round.zc)) return;  // only what narrows upwards: its lower end is all that is seen from below
   centre_ = {round.e, round.zc}, arc_ = round.r;
   rim_ = std::max(flat_, round.z1 >= round.zc ? round.e + round.r : radius_at(piece, round.z1));
@@ -101,4 +101,4 @@ void LowerSide::meet(const Vec3& a, const Vec3& b, const Vec3& c, Stop& stop) co
   facet(a, b, c, stop);
 }
 
-}  // namespace riffler
+}  // namespace riffler::plan

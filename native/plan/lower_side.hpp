@@ -5,14 +5,14 @@
 
 #include "riffler/tool/tool.hpp"
 
-namespace riffler {
+namespace riffler::plan {
 
 /// The lower side of a convex piece as a height over the radius: level up to `flat`, from there on a cone or an arc up
 /// to `rim`; a convex function that does not fall. Coming down on a triangle it stops where z − height(ρ), a concave
 /// function of the place, is largest: in the triangle, on an edge, at a corner.
 class LowerSide {
  public:
-  explicit LowerSide(const Piece& piece);
+  explicit LowerSide(const tool::Piece& piece);
 
   double rim() const { return rim_; }
   /// For 0 ≤ ρ ≤ rim.
@@ -41,4 +41,4 @@ class LowerSide {
   double arc_ = 0;  // radius, where it is one
 };
 
-}  // namespace riffler
+}  // namespace riffler::plan

@@ -10,7 +10,7 @@
 #include "riffler/geom/pose.hpp"
 #include "riffler/plan/cc_frame.hpp"
 
-namespace riffler {
+namespace riffler::plan {
 
 namespace {
 
@@ -53,7 +53,7 @@ std::vector<KeySpan> spans_of(const PencilPath& path, const OrientationKeys& key
     out.push_back({last.first, first.first + path.size(), last.second, first.second});
   }
   for (const KeySpan& s : out)
-    if (angle_between(s.first, s.last) > kPi - 1e-6)
+    if (geom::angle_between(s.first, s.last) > kPi - 1e-6)
       refuse(s.to % path.size(), "opposite to the key at point " + std::to_string(s.from));
   return out;
 }
@@ -99,7 +99,7 @@ void apply(const AxisLimit& limit, std::vector<Vec3>& axes) {
   if (!(limit.angle >= 0 && limit.angle < kPi))
     throw std::invalid_argument("limit: the angle must be at least 0 and below pi rad");
   for (std::size_t k = 0; k < axes.size(); ++k) {
-    const double angle = angle_between(axes[k], about);
+    const double angle = geom::angle_between(axes[k], about);
     if (angle <= limit.angle + 1e-12) continue;
     if (!limit.project)
       throw std::invalid_argument("limit, point " + std::to_string(k) + ": the axis is " + std::to_string(angle) +
@@ -121,7 +121,7 @@ const char* name_of(Interpolation rule) {
 }
 
 Vec3 project(const AxisLimit& limit, const Vec3& axis) {
-  if (angle_between(axis, limit.about) <= limit.angle) return axis;
+  if (geom::angle_between(axis, limit.about) <= limit.angle) return axis;
   // Straight opposite, every way onto the cone is as short: cc_frame takes the same one each time.
   return glm::normalize(std::cos(limit.angle) * limit.about + std::sin(limit.angle) * cc_frame(axis, limit.about).x);
 }
@@ -155,4 +155,4 @@ PencilPath with_axes(const PencilPath& path, std::vector<Vec3> axes, const Orien
   return out;
 }
 
-}  // namespace riffler
+}  // namespace riffler::plan

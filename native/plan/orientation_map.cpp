@@ -11,7 +11,7 @@
 #include "riffler/base/parallel.hpp"
 #include "riffler/plan/contact_location.hpp"
 
-namespace riffler {
+namespace riffler::plan {
 
 namespace {
 
@@ -32,14 +32,14 @@ OrientationMap blank(const PencilPath& path, std::size_t k, const MapRule& rule)
     for (const double tilt : rule.tilts) out.axes.push_back(axis_of(out.frame, {inclination, tilt}));
   out.clearance.assign(out.axes.size(), std::numeric_limits<double>::quiet_NaN());
   out.state.assign(out.axes.size(), OrientationMap::State::Beyond);
-  out.touch.assign(out.axes.size(), Touch::Cutter);
+  out.touch.assign(out.axes.size(), collide::Touch::Cutter);
   return out;
 }
 
 void fill(OrientationMap& map, std::size_t i, const PencilPath& path, std::size_t k, const CutterSupport& cutter,
-          const Assembly& assembly, const Collider& collider, const MapRule& rule) {
+          const collide::Assembly& assembly, const collide::Collider& collider, const MapRule& rule) {
   const Vec3& axis = map.axes[i];
-  if (rule.limit && angle_between(axis, rule.limit->about) > rule.limit->angle + 1e-12) return;
+  if (rule.limit && geom::angle_between(axis, rule.limit->about) > rule.limit->angle + 1e-12) return;
   Pose pose;
   try {
     pose = location_on_path(cutter, path, k, axis);
@@ -53,7 +53,7 @@ void fill(OrientationMap& map, std::size_t i, const PencilPath& path, std::size_
     map.state[i] = collider.keeps(assembly, pose, wanted) ? State::Free : State::Blocked;
     return;
   }
-  const Collider::Nearest near = collider.nearest(assembly, pose);
+  const collide::Collider::Nearest near = collider.nearest(assembly, pose);
   map.clearance[i] = near.distance, map.touch[i] = near.touch;
   map.state[i] = near.distance >= wanted ? State::Free : State::Blocked;
 }
@@ -63,8 +63,8 @@ void fill(OrientationMap& map, std::size_t i, const PencilPath& path, std::size_
 void validate(const MapRule& rule) {
   check_angles(rule.inclinations, "inclinations", kPi);
   check_angles(rule.tilts, "tilts", kPi / 2);
-  require(std::isfinite(rule.clearance), "clearance", "must be finite");
-  require_not_negative(rule.tolerance, "tolerance", kFiniteAndNotNegative);
+  base::require(std::isfinite(rule.clearance), "clearance", "must be finite");
+  base::require_not_negative(rule.tolerance, "tolerance", base::kFiniteAndNotNegative);
   if (!rule.limit) return;
   unit_axis(rule.limit->about, "limit");
   if (!(rule.limit->angle >= 0 && rule.limit->angle < kPi))
@@ -76,7 +76,7 @@ std::optional<std::size_t> OrientationMap::least_tilt() const {
   double least = 0;
   for (std::size_t i = 0; i < axes.size(); ++i) {
     if (state[i] != State::Free) continue;
-    const double angle = angle_between(axes[i], frame.z);
+    const double angle = geom::angle_between(axes[i], frame.z);
     if (!best || angle < least) best = i, least = angle;
   }
   return best;
@@ -100,8 +100,8 @@ std::string OrientationMap::why_none() const {
 }
 
 std::vector<OrientationMap> orientation_maps(const PencilPath& path, const std::vector<std::size_t>& points,
-                                             const Assembly& assembly, const Collider& collider, const MapRule& rule,
-                                             const Progress& progress) {
+                                             const collide::Assembly& assembly, const collide::Collider& collider,
+                                             const MapRule& rule, const Progress& progress) {
   validate(rule);
   for (const std::size_t k : points)
     if (k >= path.size())
@@ -110,11 +110,11 @@ std::vector<OrientationMap> orientation_maps(const PencilPath& path, const std::
   const CutterSupport cutter(assembly.tool());
   std::vector<OrientationMap> out;
   for (const std::size_t k : points) {
-    report(progress, 0);
+    base::report(progress, 0);
     out.push_back(blank(path, k, rule));
   }
   const std::size_t wide = rule.inclinations.size() * rule.tilts.size();
-  parallel_for(
+  base::parallel_for(
       points.size() * wide, 16,
       [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
@@ -124,4 +124,4 @@ std::vector<OrientationMap> orientation_maps(const PencilPath& path, const std::
   return out;
 }
 
-}  // namespace riffler
+}  // namespace riffler::plan

@@ -5,7 +5,7 @@
 
 #include "riffler/base/check.hpp"
 
-namespace riffler {
+namespace riffler::plan {
 
 namespace {
 
@@ -17,7 +17,7 @@ struct Touch {
 /// bends it along a wall that is bent.
 std::optional<Touch> laid(const RollingBall& ball, const Vec3& near, const Vec3& away) {
   const double radius = ball.radius();
-  const Closest::Hit hit = ball.part()(near, 2 * radius);
+  const mesh::Closest::Hit hit = ball.part()(near, 2 * radius);
   if (hit.triangle < 0 || !(hit.distance > 0.1 * radius)) return {};
   const Foot foot{hit.point, (near - hit.point) / hit.distance, hit.triangle};
   const auto normal = ball.faced(foot);
@@ -52,7 +52,7 @@ std::optional<Touch> beside(const RollingBall& ball, const Station& s, int side,
 }  // namespace
 
 double stepover_of_scallop(double radius, double height) {
-  require_finite(radius, "radius"), require_finite(height, "scallop");
+  base::require_finite(radius, "radius"), base::require_finite(height, "scallop");
   return 2 * std::sqrt(std::max(0.0, height * (2 * radius - height)));
 }
 
@@ -71,7 +71,7 @@ std::vector<PencilPath> passes_beside(const RollingBall& ball, const Valley& val
       };
       for (std::size_t n = 0; n < valley.stations.size(); ++n) {
         const Station& s = valley.stations[n];
-        if (n % kStationsAReport == 0) report(progress, 0);
+        if (n % kStationsAReport == 0) base::report(progress, 0);
         if (const auto touch = beside(ball, s, side, k * stepover)) {
           pass.centres.push_back(touch->centre);
           pass.contacts.push_back({touch->contact, touch->contact});
@@ -87,4 +87,4 @@ std::vector<PencilPath> passes_beside(const RollingBall& ball, const Valley& val
   return passes;
 }
 
-}  // namespace riffler
+}  // namespace riffler::plan

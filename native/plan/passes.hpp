@@ -7,7 +7,7 @@
 #include "riffler/base/progress.hpp"
 #include "riffler/plan/path.hpp"
 
-namespace riffler {
+namespace riffler::plan {
 
 /// Distance (mm) between passes of a ball on a plane that leave ridges of `height` (mm) between them.
 double stepover_of_scallop(double radius, double height);
@@ -17,4 +17,4 @@ double stepover_of_scallop(double radius, double height);
 std::vector<PencilPath> passes_beside(const RollingBall& ball, const Valley& valley, int count, double stepover,
                                       const Progress& progress = {});
 
-}  // namespace riffler
+}  // namespace riffler::plan

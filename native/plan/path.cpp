@@ -6,7 +6,7 @@
 
 #include "riffler/base/check.hpp"
 
-namespace riffler {
+namespace riffler::plan {
 
 double PencilPath::length() const {
   double sum = 0;
@@ -32,7 +32,7 @@ Vec3 normal_between(const Vec3& a, const Vec3& b, double t) {
 }  // namespace
 
 PencilPath divided(const PencilPath& path, double step) {
-  require_positive(step, "step", kPositiveAndFinite);
+  base::require_positive(step, "step", base::kPositiveAndFinite);
   if (path.length() / step > kMaxPoints) throw std::invalid_argument("step is too short: more than ten million points");
   PencilPath out;
   out.radius = path.radius, out.closed = path.closed;
@@ -55,4 +55,4 @@ PencilPath divided(const PencilPath& path, double step) {
   return out;
 }
 
-}  // namespace riffler
+}  // namespace riffler::plan

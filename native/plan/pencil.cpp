@@ -14,7 +14,7 @@
 #include "riffler/mesh/smooth.hpp"
 #include "riffler/plan/contact_location.hpp"
 
-namespace riffler {
+namespace riffler::plan {
 
 namespace {
 
@@ -80,11 +80,11 @@ class Tracing {
     const std::size_t all = std::max<std::size_t>(1, pending.size());
     while (!pending.empty()) {
       const double done_share = 1 - static_cast<double>(std::min(all, pending.size())) / static_cast<double>(all);
-      report(progress, done_share);
+      base::report(progress, done_share);
       const std::vector<std::size_t> chosen = one_of_each(pending, near_);
       std::vector<Valley> traced(chosen.size());
       std::vector<std::size_t> steps(chosen.size(), 0);
-      parallel_for(
+      base::parallel_for(
           chosen.size(), 1,
           [&](std::size_t i, std::size_t) { traced[i] = tracer_.trace(pending[chosen[i]], steps[i]); },
           progress ? Progress([&](double) { return progress(done_share); }) : Progress());
@@ -185,19 +185,19 @@ Search search(const Mesh& part, const RollingBall& ball, const Scales& scales, c
   ValleyRules rules;
   rules.tolerance = options.tolerance;
   const double gap_angle = bitangency_angle_of_gap(ball.radius(), options.tolerance);
-  rules.jump = std::min(gap_angle, kFeatureAngle);
+  rules.jump = std::min(gap_angle, mesh::kFeatureAngle);
   rules.least_angle = options.bitangency_angle.value_or(gap_angle);
   rules.least_gap = options.bitangency_angle ? 0 : options.tolerance;
   const ContactNet net =
-      contact_net(part, ball, scales.spacing, scales.depth, rules.least_angle, riffler::part(progress, 0, 0.4));
+      contact_net(part, ball, scales.spacing, scales.depth, rules.least_angle, base::part(progress, 0, 0.4));
   const ValleyTracer tracer(ball, rules);
   ValleyStarts starts = valley_starts(tracer, net.points, std::max(2 * scales.spacing, ball.radius() / 6),
-                                      4 * scales.spacing, riffler::part(progress, 0.4, 0.8));
+                                      4 * scales.spacing, base::part(progress, 0.4, 0.8));
   Search out;
   out.areas.assign(part.triangles.size(), 0);
   count(net, starts, out, stats);
   Tracing tracing(ball, tracer, rules, 6 * scales.spacing);
-  out.valleys = tracing.run(std::move(starts.stations), stats, riffler::part(progress, 0.8, 1));
+  out.valleys = tracing.run(std::move(starts.stations), stats, base::part(progress, 0.8, 1));
   return out;
 }
 
@@ -266,14 +266,14 @@ class Additions {
 };
 
 void check(double radius, const PencilOptions& options) {
-  require_positive(radius, "radius", kPositiveAndFinite);
-  require_tolerance(options.tolerance);
+  base::require_positive(radius, "radius", base::kPositiveAndFinite);
+  base::require_tolerance(options.tolerance);
   if (const auto& angle = options.bitangency_angle; angle && !(*angle > 0 && *angle < 3.14159))
     throw std::invalid_argument("bitangency_angle must be between 0 and pi");
-  require_not_negative(options.minimum_length, "minimum_length", "must not be negative, and finite");
-  require_not_negative(options.overthickness, "overthickness", "must not be negative, and finite");
+  base::require_not_negative(options.minimum_length, "minimum_length", "must not be negative, and finite");
+  base::require_not_negative(options.overthickness, "overthickness", "must not be negative, and finite");
   if (options.passes < 1 || options.passes > 1000) throw std::invalid_argument("passes must be from 1 to 1000");
-  if (options.stepover) require_positive(*options.stepover, "stepover", kPositiveAndFinite);
+  if (options.stepover) base::require_positive(*options.stepover, "stepover", base::kPositiveAndFinite);
   if (options.stepover && !(*options.stepover <= kWidestStep * radius))
     throw std::invalid_argument("stepover must be at most ten times the ball's radius");
 }
@@ -299,13 +299,13 @@ void add_rest(const Mesh& part, const RollingBall& ball, const PencilOptions& op
     const Scales scales(part, wide, options.tolerance);
     return search(part, RollingBall(part, wide, scales.touch), scales, options, result.stats, part_of);
   };
-  Search largest = search_with(1, riffler::part(progress, 0, 0.4));
+  Search largest = search_with(1, base::part(progress, 0, 0.4));
   result.reference_area = largest.area, result.reference_areas = std::move(largest.areas);
   Additions additions(ball, valleys);
   if (!additions.any(largest.valleys)) return;
   double done = 0.4;
   for (const double share : kBetween) {
-    additions.add(search_with(share, riffler::part(progress, done, done + 0.3)).valleys);
+    additions.add(search_with(share, base::part(progress, done, done + 0.3)).valleys);
     done += 0.3;
   }
   additions.add(largest.valleys);
@@ -331,23 +331,22 @@ PencilResult pencil(const Mesh& given, double radius, const PencilOptions& optio
   validate(given);
   if (given.empty()) throw std::invalid_argument("part: a mesh without triangles has no valleys");
   std::optional<Mesh> storage;
-  const Mesh& part = as_solid(given, storage, Hollow::Kept);
+  const Mesh& part = as_solid(given, storage, mesh::Hollow::Kept);
   const Scales scales(part, radius, options.tolerance);
   check_sizes(part, radius + options.overthickness, scales.spacing);
   const RollingBall ball(part, radius, scales.touch);
-  report(progress, 0.05);
+  base::report(progress, 0.05);
 
   PencilResult result;
   const double share = options.overthickness > 0 ? 0.3 : 1;
-  Search own = search(part, ball, scales, options, result.stats, riffler::part(progress, 0.05, share));
+  Search own = search(part, ball, scales, options, result.stats, base::part(progress, 0.05, share));
   result.rest_area = own.area, result.rest_areas = std::move(own.areas);
   result.reference_area = result.rest_area, result.reference_areas = result.rest_areas;
-  if (options.overthickness > 0)
-    add_rest(part, ball, options, own.valleys, result, riffler::part(progress, share, 0.95));
+  if (options.overthickness > 0) add_rest(part, ball, options, own.valleys, result, base::part(progress, share, 0.95));
   const double stepover = options.stepover.value_or(stepover_of_scallop(radius, std::min(radius, options.tolerance)));
   for (Valley& valley : own.valleys) {
     const std::vector<PencilPath> passes =
-        passes_beside(ball, valley, options.passes - 1, stepover, riffler::part(progress, 0.95, 1));
+        passes_beside(ball, valley, options.passes - 1, stepover, base::part(progress, 0.95, 1));
     simplify(valley, options.tolerance);
     PencilPath path = path_of(valley, radius);
     for (const ValleyEnd end : valley.ends) result.stats.cut += end == ValleyEnd::Cut ? 1 : 0;
@@ -357,8 +356,8 @@ PencilResult pencil(const Mesh& given, double radius, const PencilOptions& optio
     for (const PencilPath& pass : passes) result.paths.push_back(pass), result.ends.push_back({"pass", "pass"});
   }
   if (result.paths.empty()) result.reason = reason_of(result.stats, options);
-  report(progress, 1);
+  base::report(progress, 1);
   return result;
 }
 
-}  // namespace riffler
+}  // namespace riffler::plan

@@ -5,7 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
-namespace riffler {
+namespace riffler::plan {
 
 namespace {
 
@@ -25,14 +25,14 @@ Picked least(const PencilPath& path, const Square& square) {
 }  // namespace
 
 Picked nearest_contact(const PencilPath& path, const Vec3& p) {
-  if (!finite(p)) throw std::invalid_argument("point: not finite");
+  if (!geom::finite(p)) throw std::invalid_argument("point: not finite");
   return least(path, [&](const Vec3& c) { return glm::dot(c - p, c - p); });
 }
 
 Picked nearest_contact(const PencilPath& path, const Vec3& origin, const Vec3& direction) {
-  if (!finite(origin)) throw std::invalid_argument("origin: not finite");
+  if (!geom::finite(origin)) throw std::invalid_argument("origin: not finite");
   const double length = glm::length(direction);
-  if (!finite(direction) || !(length > 0)) throw std::invalid_argument("direction: not finite or zero");
+  if (!geom::finite(direction) || !(length > 0)) throw std::invalid_argument("direction: not finite or zero");
   const Vec3 way = direction / length;
   return least(path, [&](const Vec3& c) {
     const Vec3 off = c - origin - std::max(0.0, glm::dot(c - origin, way)) * way;
@@ -40,4 +40,4 @@ Picked nearest_contact(const PencilPath& path, const Vec3& origin, const Vec3& d
   });
 }
 
-}  // namespace riffler
+}  // namespace riffler::plan

@@ -3,7 +3,7 @@
 
 #include "riffler/plan/path.hpp"
 
-namespace riffler {
+namespace riffler::plan {
 
 /// A cutter contact point of a path.
 struct Picked {
@@ -20,4 +20,4 @@ Picked nearest_contact(const PencilPath& path, const Vec3& p);
 /// as from the origin.
 Picked nearest_contact(const PencilPath& path, const Vec3& origin, const Vec3& direction);
 
-}  // namespace riffler
+}  // namespace riffler::plan

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace riffler {
+namespace riffler::plan {
 
 namespace {
 
@@ -17,7 +17,7 @@ void add_circle(const Vec2& centre, double r, double rho, std::vector<double>& h
 }  // namespace
 
 void OffsetToolColumns::candidates(double rho, std::vector<double>& heights) const {
-  for (const OutlineEdge& e : outline_->edges()) {
+  for (const tool::OutlineEdge& e : outline_->edges()) {
     const double c = std::abs(c_);
     add_circle(e.from, c, rho, heights), add_circle(e.to, c, rho, heights);
     if (e.centre) {
@@ -54,4 +54,4 @@ OffsetToolColumns::Column OffsetToolColumns::at(double rho, double z) const {
   return out;
 }
 
-}  // namespace riffler
+}  // namespace riffler::plan

@@ -5,7 +5,7 @@
 
 #include "riffler/tool/outline.hpp"
 
-namespace riffler {
+namespace riffler::plan {
 
 /// The tool grown by c (shrunk where c < 0): all points whose signed distance from it is below c. In a column at radius
 /// ρ round the axis it covers some intervals of heights, whose ends are in closed form: an offset edge, a circle round
@@ -13,7 +13,7 @@ namespace riffler {
 class OffsetToolColumns {
  public:
   /// Keeps a pointer to the outline.
-  explicit OffsetToolColumns(const Outline& outline, double c) : outline_(&outline), c_(c) {}
+  explicit OffsetToolColumns(const tool::Outline& outline, double c) : outline_(&outline), c_(c) {}
 
   struct Column {
     bool covered = false;
@@ -26,8 +26,8 @@ class OffsetToolColumns {
   bool covers(double rho, double z) const { return outline_->nearest(rho, z).distance < c_; }
   void candidates(double rho, std::vector<double>& heights) const;
 
-  const Outline* outline_;
+  const tool::Outline* outline_;
   double c_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::plan

@@ -7,7 +7,7 @@
 #include "plan/half_spaces.hpp"
 #include "riffler/mesh/smooth.hpp"
 
-namespace riffler {
+namespace riffler::plan {
 
 namespace {
 
@@ -27,7 +27,7 @@ Frame frame_of(const Vec3& push, const Vec3& across) {
   Frame frame;
   frame.columns = flat ? 2 : 3;
   frame.e[0] = glm::normalize(push);
-  frame.e[2] = flat ? across : any_perpendicular(frame.e[0]);
+  frame.e[2] = flat ? across : geom::any_perpendicular(frame.e[0]);
   frame.e[1] = glm::cross(frame.e[2], frame.e[0]);
   return frame;
 }
@@ -68,13 +68,13 @@ struct BallStep {
   Vec3 move{0};
   std::array<int, 3> active{-1, -1, -1};  // hits
 
-  static std::optional<BallStep> solve(const std::vector<Closest::Hit>& hits, const Vec3& centre, const Frame& frame,
-                                       double radius, double trust, double slack) {
+  static std::optional<BallStep> solve(const std::vector<mesh::Closest::Hit>& hits, const Vec3& centre,
+                                       const Frame& frame, double radius, double trust, double slack) {
     thread_local std::vector<HalfSpace<Vector>> spaces;
     thread_local std::vector<int> order;
     order.clear(), spaces.clear();
     for (std::size_t k = 0; k < hits.size(); ++k) {
-      const Closest::Hit& hit = hits[k];
+      const mesh::Closest::Hit& hit = hits[k];
       if (hit.distance > radius + trust) continue;
       if (!(hit.distance > 1e-9 * radius)) return {};
       spaces.push_back({in_frame<Vector>(frame, (centre - hit.point) / hit.distance), radius - hit.distance});
@@ -107,7 +107,7 @@ RollingBall::Stop press_in(const RollingBall& ball, const Vec3& start, const Rol
   const Vec3 push = how.push - glm::dot(how.push, how.across) * how.across;
   if (!(glm::length(push) > 1e-6)) return Stop::Lost;  // opposite walls push nowhere
   const Frame frame = frame_of(push, how.across);
-  thread_local std::vector<Closest::Hit> hits;
+  thread_local std::vector<mesh::Closest::Hit> hits;
   Vec3 centre = start;
   double trust = std::min(how.trust, how.roam);
   double gathered = -1, moved = 0;  // hits are what was within `gathered` of the ball before it moved
@@ -117,7 +117,7 @@ RollingBall::Stop press_in(const RollingBall& ball, const Vec3& start, const Rol
       hits.clear();
       ball.part().gather(centre, how.radius + gathered, hits);
     } else {
-      for (Closest::Hit& hit : hits) hit = ball.part().on(hit.triangle, centre);
+      for (mesh::Closest::Hit& hit : hits) hit = ball.part().on(hit.triangle, centre);
     }
     const auto step = BallStep<Vector>::solve(hits, centre, frame, how.radius, trust, 0.1 * ball.rounding());
     if (!step) {
@@ -129,7 +129,7 @@ RollingBall::Stop press_in(const RollingBall& ball, const Vec3& start, const Rol
     if (step->held() && length <= ball.rounding()) {
       seat.centre = centre;
       for (int k = 0; k < Vector::length(); ++k) {
-        const Closest::Hit& hit = hits[step->active[k]];
+        const mesh::Closest::Hit& hit = hits[step->active[k]];
         seat.feet[k] = {hit.point, (centre - hit.point) / hit.distance, hit.triangle};
       }
       return Stop::Seated;
@@ -153,7 +153,7 @@ namespace {
 
 /// Whether `u` is one of the directions between those of `normals` that differ by less than a feature.
 bool between(const Vec3& u, const std::vector<Vec3>& normals) {
-  const double mild = std::cos(kFeatureAngle);
+  const double mild = std::cos(mesh::kFeatureAngle);
   const std::size_t n = normals.size();
   const auto side = [&](const Vec3& a, const Vec3& b) {  // sine of the angle of u left of the arc from a to b
     const Vec3 c = glm::cross(a, b);
@@ -184,13 +184,13 @@ bool between(const Vec3& u, const std::vector<Vec3>& normals) {
 std::optional<Vec3> RollingBall::faced(const Foot& foot) const {
   const Vec3& own = normals_[foot.triangle];
   if (glm::dot(own, foot.away) > 0 && glm::length(glm::cross(own, foot.away)) <= kSameWay) return own;
-  thread_local std::vector<Closest::Hit> hits;
+  thread_local std::vector<mesh::Closest::Hit> hits;
   hits.clear();
   closest_.gather(foot.point, touch_, hits);
   std::vector<Vec3> normals;
-  for (const Closest::Hit& hit : hits) {
+  for (const mesh::Closest::Hit& hit : hits) {
     const Vec3& n = normals_[hit.triangle];
-    if (glm::dot(n, foot.away) < std::cos(kFeatureAngle)) continue;
+    if (glm::dot(n, foot.away) < std::cos(mesh::kFeatureAngle)) continue;
     if (std::none_of(normals.begin(), normals.end(), [&](const Vec3& m) { return glm::length(m - n) < 1e-9; }))
       normals.push_back(n);
   }
@@ -205,13 +205,13 @@ std::optional<Vec3> RollingBall::faced(const Foot& foot) const {
 }
 
 std::vector<Foot> RollingBall::feet(const Vec3& centre, double limit) const {
-  std::vector<Closest::Hit> hits;
+  std::vector<mesh::Closest::Hit> hits;
   closest_.gather(centre, limit, hits);
-  std::sort(hits.begin(), hits.end(), [](const Closest::Hit& a, const Closest::Hit& b) {
+  std::sort(hits.begin(), hits.end(), [](const mesh::Closest::Hit& a, const mesh::Closest::Hit& b) {
     return a.distance != b.distance ? a.distance < b.distance : a.triangle < b.triangle;
   });
   std::vector<Foot> feet;
-  for (const Closest::Hit& hit : hits) {
+  for (const mesh::Closest::Hit& hit : hits) {
     const Vec3 away = (centre - hit.point) / hit.distance;
     if (std::none_of(feet.begin(), feet.end(), [&](const Foot& f) { return glm::length(f.away - away) < kSameWay; }))
       feet.push_back({hit.point, away, hit.triangle});
@@ -219,4 +219,4 @@ std::vector<Foot> RollingBall::feet(const Vec3& centre, double limit) const {
   return feet;
 }
 
-}  // namespace riffler
+}  // namespace riffler::plan

@@ -7,7 +7,7 @@
 #include "mesh/closest.hpp"
 #include "riffler/mesh/mesh.hpp"
 
-namespace riffler {
+namespace riffler::plan {
 
 /// Where the ball touches the part.
 struct Foot {
@@ -36,7 +36,7 @@ class RollingBall {
   double radius() const { return radius_; }
   /// Rounding of a centre's coordinates counts as this much, mm.
   double rounding() const { return rounding_; }
-  const Closest& part() const { return closest_; }
+  const mesh::Closest& part() const { return closest_; }
   /// Unit normal of a triangle; 0 for one without area.
   const Vec3& normal(int triangle) const { return normals_[triangle]; }
 
@@ -67,8 +67,8 @@ class RollingBall {
 
  private:
   double radius_, touch_, rounding_;
-  Closest closest_;
+  mesh::Closest closest_;
   std::vector<Vec3> normals_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::plan

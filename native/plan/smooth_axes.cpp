@@ -6,7 +6,7 @@
 #include "geom/math.hpp"
 #include "riffler/geom/pose.hpp"
 
-namespace riffler {
+namespace riffler::plan {
 
 namespace {
 
@@ -67,7 +67,7 @@ Vec3 SmoothAxes::at(double s) const {
   if (u == 0) return axes_[k];
   const Vec3 leaving = along_great_circle(axes_[k], velocities_[k], s - places_[k]);
   const Vec3 arriving = along_great_circle(axes_[k + 1], velocities_[k + 1], s - places_[k + 1]);
-  return glm::normalize(slerp(leaving, arriving, u * u * (3 - 2 * u)));
+  return glm::normalize(geom::slerp(leaving, arriving, u * u * (3 - 2 * u)));
 }
 
-}  // namespace riffler
+}  // namespace riffler::plan

@@ -5,7 +5,7 @@
 
 #include "riffler/geom/vec.hpp"
 
-namespace riffler {
+namespace riffler::plan {
 
 /// Between keys (s_k, a_k), s ascending, the curve blends two great circles: P leaves a_k with the key's velocity w_k,
 /// Q arrives at a_(k+1) with its velocity, and the axis is slerp(P, Q, 3u² − 2u³), u the share of the span: circular
@@ -43,4 +43,4 @@ Vec3 along_great_circle(const Vec3& a, const Vec3& v, double u);
 /// The velocity that leads from `a` to `b` in one unit.
 Vec3 velocity_between(const Vec3& a, const Vec3& b);
 
-}  // namespace riffler
+}  // namespace riffler::plan

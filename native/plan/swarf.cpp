@@ -13,7 +13,7 @@
 #include "riffler/plan/cc_frame.hpp"
 #include "riffler/plan/contact_location.hpp"
 
-namespace riffler {
+namespace riffler::plan {
 
 namespace {
 
@@ -38,7 +38,7 @@ Flank flank_of(const Tool& tool, double radius) {
     throw std::invalid_argument("tool: swarf cuts need a cutter whose ball end has the radius of the path");
   const auto& segments = tool.profile().segments();
   Vec2 from{0, 0};
-  for (const ProfileSegment& s : segments) {
+  for (const tool::ProfileSegment& s : segments) {
     if (!s.centre && s.to.y > from.y && from.y > 0) {
       const Vec2 way = glm::normalize(s.to - from);
       return {radius, way.x, s.to.y - radius};
@@ -104,7 +104,7 @@ class Wall {
     const double most = options_.height.value_or(flank_.length), step = most / std::ceil(4 * most / flank_.radius);
     double foot = 0;
     for (int k = 1; k * step < most * (1 + 1e-12); ++k) {
-      const Closest::Hit hit = closest_(centre + k * step * up, 2 * flank_.at(k * step));
+      const mesh::Closest::Hit hit = closest_(centre + k * step * up, 2 * flank_.at(k * step));
       if (hit.triangle < 0) break;
       const double before = foot;
       foot = std::max(foot, glm::dot(hit.point - centre, up));
@@ -117,7 +117,7 @@ class Wall {
   Fit fit(const Vec3& centre, const Vec3& way, double height, double lean) const {
     Vec3 top = centre + height * way;
     for (int i = 0; i < 4; ++i) {
-      const Closest::Hit hit = closest_(top);
+      const mesh::Closest::Hit hit = closest_(top);
       if (!(hit.distance > 0)) return {way, height, kInfinity, kInfinity};
       top += (flank_.at(height) - hit.distance) * ((top - hit.point) / hit.distance);
     }
@@ -131,14 +131,14 @@ class Wall {
     return {axis, height, error, std::sqrt(error * error + leaning * leaning)};
   }
 
-  Closest closest_;
+  mesh::Closest closest_;
   Flank flank_;
   const SwarfOptions& options_;
 };
 
 void check(const PencilPath& path, const SwarfOptions& options) {
   if (options.side != 0 && options.side != 1) throw std::invalid_argument("side must be 0 or 1");
-  require_tolerance(options.tolerance);
+  base::require_tolerance(options.tolerance);
   if (path.size() < 2) throw std::invalid_argument("path has fewer than two points");
 }
 
@@ -154,7 +154,7 @@ Swarf swarf(const PencilPath& path, const Mesh& part, const Tool& tool, const Sw
   const Wall wall(part, flank, options);
   Swarf out{path, std::vector<double>(path.size()), std::vector<double>(path.size()), {}};
   out.path.axes.resize(path.size()), out.path.keys.clear(), out.path.interpolation.clear();
-  parallel_for(
+  base::parallel_for(
       path.size(), 16,
       [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
@@ -171,4 +171,4 @@ Swarf swarf(const PencilPath& path, const Mesh& part, const Tool& tool, const Sw
   return out;
 }
 
-}  // namespace riffler
+}  // namespace riffler::plan

@@ -5,7 +5,7 @@
 
 #include "riffler/base/parallel.hpp"
 
-namespace riffler {
+namespace riffler::plan {
 
 namespace {
 
@@ -81,7 +81,7 @@ ValleyTracer::Found ValleyTracer::start(const Unreached& from, Station& station)
   double radius = full;
   Vec3 other(0);
   for (int round = 0; round < 40; ++round) {
-    const Closest::Hit hit =
+    const mesh::Closest::Hit hit =
         ball_.part().above(from.point + radius * from.normal, radius * (1 - 1e-9), {from.point, from.normal, rise, 1});
     if (hit.triangle < 0) break;
     const Vec3 v = hit.point - from.point;
@@ -210,7 +210,7 @@ ValleyEnd ValleyTracer::follow(const Station& seed, double sign, std::vector<Sta
   Station before = seed, last = seed, next;
   for (std::size_t n = 0; n < kMaxStations; ++n) {
     ++steps;
-    still_wanted();
+    base::still_wanted();
     const Event met = advance(last, sign, step, next);
     if (met != Event::None) {
       event = met, bracket = step, step *= 0.5, calm = 0;
@@ -322,4 +322,4 @@ void simplify(Valley& valley, double tolerance) {
   s.resize(n);
 }
 
-}  // namespace riffler
+}  // namespace riffler::plan

@@ -7,7 +7,7 @@
 #include "plan/contact_net.hpp"
 #include "plan/rolling_ball.hpp"
 
-namespace riffler {
+namespace riffler::plan {
 
 /// What makes a valley.
 struct ValleyRules {
@@ -73,4 +73,4 @@ Valley laid_into(const Valley& valley, const RollingBall& ball);
 /// Drops stations that lie on straight lines between others, centres to `tolerance` / 4 and contacts to `tolerance`.
 void simplify(Valley& valley, double tolerance);
 
-}  // namespace riffler
+}  // namespace riffler::plan

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace riffler {
+namespace riffler::plan {
 
 void ValleyIndex::add(const Valley& valley) {
   const std::vector<Station>& s = valley.stations;
@@ -42,4 +42,4 @@ bool ValleyIndex::covers(const Valley& valley) const {
   return 2 * covered > valley.stations.size();
 }
 
-}  // namespace riffler
+}  // namespace riffler::plan

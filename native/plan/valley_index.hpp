@@ -7,7 +7,7 @@
 
 #include "plan/valley.hpp"
 
-namespace riffler {
+namespace riffler::plan {
 
 /// Places in space, by cubes of one size.
 template <class T>
@@ -62,4 +62,4 @@ class ValleyIndex {
   double near_, turn_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::plan

@@ -6,7 +6,7 @@
 
 #include "riffler/base/parallel.hpp"
 
-namespace riffler {
+namespace riffler::plan {
 
 namespace {
 
@@ -60,7 +60,7 @@ ValleyStarts valley_starts(const ValleyTracer& tracer, const std::vector<Unreach
   const std::size_t n = groups.first.size();
   std::vector<Station> stations(n);
   std::vector<Found> found(n);
-  parallel_for(
+  base::parallel_for(
       n, 16,
       [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) found[i] = tracer.start(points[groups.first[i]], stations[i]);
@@ -80,4 +80,4 @@ ValleyStarts valley_starts(const ValleyTracer& tracer, const std::vector<Unreach
   return starts;
 }
 
-}  // namespace riffler
+}  // namespace riffler::plan

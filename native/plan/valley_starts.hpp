@@ -5,7 +5,7 @@
 
 #include "plan/valley.hpp"
 
-namespace riffler {
+namespace riffler::plan {
 
 struct ValleyStarts {
   std::vector<Station> stations;  ///< on valleys, in the order of the net
@@ -21,4 +21,4 @@ struct ValleyStarts {
 ValleyStarts valley_starts(const ValleyTracer& tracer, const std::vector<Unreached>& points, double cube,
                            double deepest, const Progress& progress = {});
 
-}  // namespace riffler
+}  // namespace riffler::plan

@@ -11,7 +11,7 @@ namespace riffler::reference {
 AssemblyDistance::AssemblyDistance(const Tool& tool) {
   Solid cutter;
   Vec2 from{0, 0};
-  for (const ProfileSegment& s : tool.profile().segments()) {
+  for (const tool::ProfileSegment& s : tool.profile().segments()) {
     Edge e{from, s.to, s.centre};
     // Heights rise along an arc of a profile, so it is wholly on one side of its centre.
     if (s.centre)
@@ -22,8 +22,8 @@ AssemblyDistance::AssemblyDistance(const Tool& tool) {
   cutter.edges.push_back({from, {0, from.y}, {}});
   cutter.convex = convex(cutter.edges);
   solids_.push_back(std::move(cutter));
-  for (const std::vector<Frustum>* frusta : {&tool.shank(), &tool.holder()})
-    for (const Frustum& f : *frusta) {
+  for (const std::vector<tool::Frustum>* frusta : {&tool.shank(), &tool.holder()})
+    for (const tool::Frustum& f : *frusta) {
       const Vec2 low{f.r0, f.z0}, high{f.r1, f.z1};
       solids_.push_back({{{{0, f.z0}, low, {}}, {low, high, {}}, {high, {0, f.z1}, {}}}});
     }

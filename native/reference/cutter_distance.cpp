@@ -74,9 +74,10 @@ CutterDistance::Edge CutterDistance::edge(const Vec2& from, const Vec2& to, cons
   return e;
 }
 
-CutterDistance::CutterDistance(const Profile& profile) : reach_(std::hypot(profile.max_radius(), profile.length())) {
+CutterDistance::CutterDistance(const tool::Profile& profile)
+    : reach_(std::hypot(profile.max_radius(), profile.length())) {
   Vec2 from{0, 0};
-  for (const ProfileSegment& s : profile.segments()) {
+  for (const tool::ProfileSegment& s : profile.segments()) {
     edges_.push_back(edge(from, s.to, s.centre));
     from = s.to;
   }

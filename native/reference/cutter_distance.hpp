@@ -20,7 +20,7 @@ struct Nearest {
 
 class CutterDistance {
  public:
-  explicit CutterDistance(const Profile& profile);
+  explicit CutterDistance(const tool::Profile& profile);
 
   /// rho ≥ 0; without a free radius.
   Nearest nearest(double rho, double z) const;

@@ -70,7 +70,7 @@ std::vector<Entry> entries(std::span<const Corners> triangles, const AssemblyDis
   rounds.reserve(triangles.size());
   for (const Corners& t : triangles) rounds.emplace_back(t);
   std::vector<Entry> out(poses.size());
-  parallel_for(poses.size(), 16, [&](std::size_t begin, std::size_t end) {
+  base::parallel_for(poses.size(), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       Search search(tool, poses[k], gap);
       for (std::size_t t = 0; t < triangles.size(); ++t) search.add(triangles[t], rounds[t]);

@@ -63,7 +63,7 @@ SweptDistance::Node SweptDistance::node(const Vec3& from_start, double t, double
   double lower = at.distance - speed * half;
   if (lower >= best || lower > above) return {t, half, lower};  // left out already
   const Approach approach{
-      velocity,  here.rho > 0 ? here.radial / here.rho : any_perpendicular(here.axis),
+      velocity,  here.rho > 0 ? here.radial / here.rho : geom::any_perpendicular(here.axis),
       here.axis, half,
       speed,     2 * glm::length(bend) + glm::length(turn) * (glm::length(turning) + half * glm::length(bend))};
   lower = std::max(lower, approach.by_slope(cutter_->with_free_radius(here.rho, here.z, at)));

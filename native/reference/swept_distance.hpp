@@ -28,7 +28,7 @@ struct Bracket {
 /// cutter's from below. Unlike samples, however dense, this cannot pass over a minimum.
 class SweptDistance {
  public:
-  SweptDistance(const Profile& profile, const Motion& motion)
+  SweptDistance(const tool::Profile& profile, const Motion& motion)
       : SweptDistance(std::make_shared<const CutterDistance>(profile), motion) {}
   /// Many moves of one cutter share it.
   SweptDistance(std::shared_ptr<const CutterDistance> cutter, const Motion& motion)

@@ -12,7 +12,7 @@ constexpr double kGap = 1e-10;
 
 }  // namespace
 
-SweptPath::SweptPath(const Profile& profile, std::span<const Pose> poses) {
+SweptPath::SweptPath(const tool::Profile& profile, std::span<const Pose> poses) {
   const auto cutter = std::make_shared<const CutterDistance>(profile);
   for (std::size_t k = 0; k + 1 < poses.size(); ++k) moves_.emplace_back(cutter, Motion(poses[k], poses[k + 1]));
 }

@@ -10,7 +10,7 @@ namespace riffler::reference {
 
 class SweptPath {
  public:
-  SweptPath(const Profile& profile, std::span<const Pose> poses);
+  SweptPath(const tool::Profile& profile, std::span<const Pose> poses);
 
   /// The moves that count for points within `reach` of `p`, as long as distances above `reach` need no telling apart.
   /// Every answer is right to 1e-10 mm.

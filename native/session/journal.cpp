@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace riffler {
+namespace riffler::session {
 
 void Journal::set_stock(const JournalStock& stock) {
   rules_.set_stock(stock);
@@ -63,8 +63,8 @@ std::vector<double> feeds(const JournalStroke& stroke, std::size_t index) {
 
 }  // namespace
 
-Program to_program(const Journal& journal, std::map<int, Tool> tools, const JournalProgramOptions& options) {
-  std::vector<CutterPath> paths;
+nc::Program to_program(const Journal& journal, std::map<int, Tool> tools, const JournalProgramOptions& options) {
+  std::vector<nc::CutterPath> paths;
   const std::span<const JournalStroke> strokes = journal.strokes();
   for (std::size_t k = 0; k < strokes.size(); ++k) {
     const JournalStroke& stroke = strokes[k];
@@ -72,11 +72,11 @@ Program to_program(const Journal& journal, std::map<int, Tool> tools, const Jour
     paths.push_back(
         {stroke.poses, options.feed ? std::vector{*options.feed} : feeds(stroke, k), options.spindle, stroke.tool});
   }
-  Clearance clearance = options.clearance;
+  nc::Clearance clearance = options.clearance;
   if (journal.stock()) clearance.occupied.add(journal.stock()->box);
-  Program program = program_from_paths(paths, std::move(tools), clearance);
+  nc::Program program = program_from_paths(paths, std::move(tools), clearance);
   program.provenance = journal.notes();
   return program;
 }
 
-}  // namespace riffler
+}  // namespace riffler::session

@@ -15,7 +15,7 @@
 #include "riffler/base/error.hpp"
 #include "session/journal_records.hpp"
 
-namespace riffler {
+namespace riffler::session {
 
 using namespace journal_format;
 
@@ -24,7 +24,8 @@ Journal parse_journal(View bytes, const std::string& name, const Progress& progr
   Journal journal;
   std::size_t records = 0;
   for (std::size_t at = check_header(bytes, name); at < bytes.size();) {
-    if (records++ % kRecordsAReport == 0) report(progress, static_cast<double>(at) / static_cast<double>(bytes.size()));
+    if (records++ % kRecordsAReport == 0)
+      base::report(progress, static_cast<double>(at) / static_cast<double>(bytes.size()));
     const View rest = bytes.subspan(at);
     const std::optional<Record> record = whole_record(rest);
     const std::string where = "byte " + std::to_string(at);
@@ -44,7 +45,7 @@ Journal parse_journal(View bytes, const std::string& name, const Progress& progr
 }
 
 Journal read_journal(const std::filesystem::path& path, const Progress& progress) {
-  return parse_journal(read_file(path), path.filename().string(), progress);
+  return parse_journal(base::read_file(path), path.filename().string(), progress);
 }
 
 std::vector<std::uint8_t> to_bytes(const Journal& journal) {
@@ -60,7 +61,7 @@ std::vector<std::uint8_t> to_bytes(const Journal& journal) {
 }
 
 void write_journal(const Journal& journal, const std::filesystem::path& path) {
-  write_file(path, to_bytes(journal));
+  base::write_file(path, to_bytes(journal));
 }
 
 // --- Appending ---
@@ -112,7 +113,7 @@ JournalWriter::JournalWriter(const std::filesystem::path& path, Keep keep) : nam
   if (status.st_size == 0) {
     append_to(file.get(), journal_header());
   } else {
-    const Bytes bytes = read_file(path);
+    const Bytes bytes = base::read_file(path);
     journal = parse_journal(bytes, name_);
     size_ = journal.cut_at.value_or(bytes.size());
     if (journal.cut_at && ftruncate(file.get(), static_cast<off_t>(size_)) != 0)
@@ -199,4 +200,4 @@ void JournalWriter::sync() {
   if (fdatasync(fd_) != 0) fail_system(name_, "cannot be flushed to the disk");
 }
 
-}  // namespace riffler
+}  // namespace riffler::session

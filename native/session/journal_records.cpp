@@ -10,7 +10,7 @@
 
 #include "riffler/base/error.hpp"
 
-namespace riffler::journal_format {
+namespace riffler::session::journal_format {
 
 namespace {
 
@@ -96,9 +96,9 @@ void put_rows(Bytes& out, const JournalRows& rows) {
   Bytes packed(size);
   if (compress2(packed.data(), &size, planes.data(), planes.size(), Z_DEFAULT_COMPRESSION) != Z_OK)
     throw std::runtime_error("zlib cannot compress");
-  put(out, static_cast<std::uint64_t>(n));
-  put(out, static_cast<std::uint32_t>(columns.size()) | (forces ? kForces : 0) | (removed ? kRemoved : 0));
-  put(out, static_cast<std::uint64_t>(size));
+  base::put(out, static_cast<std::uint64_t>(n));
+  base::put(out, static_cast<std::uint32_t>(columns.size()) | (forces ? kForces : 0) | (removed ? kRemoved : 0));
+  base::put(out, static_cast<std::uint64_t>(size));
   out.insert(out.end(), packed.begin(), packed.begin() + static_cast<std::ptrdiff_t>(size));
 }
 
@@ -113,7 +113,7 @@ std::vector<Column> known_columns(std::uint32_t code) {
 }
 
 /// Fills the rows of an empty stroke.
-void take_rows(ByteReader& from, JournalStroke& out) {
+void take_rows(base::ByteReader& from, JournalStroke& out) {
   const std::uint64_t n = from.number<std::uint64_t>();
   const std::vector<Column> columns = known_columns(from.number<std::uint32_t>());
   const View packed = from.raw(from.number<std::uint64_t>());
@@ -155,53 +155,53 @@ Bytes record(Kind kind, const Bytes& payload) {
     throw std::invalid_argument("a record of 4 GB or more: extend a stroke piece by piece");
   Bytes out;
   out.reserve(kRecordHeaderSize + payload.size() + kRecordTailSize);
-  put_raw(out, kRecordMagic);
-  put(out, static_cast<std::uint32_t>(kind));
-  put(out, static_cast<std::uint32_t>(payload.size()));
-  put(out, checksum(out));
+  base::put_raw(out, kRecordMagic);
+  base::put(out, static_cast<std::uint32_t>(kind));
+  base::put(out, static_cast<std::uint32_t>(payload.size()));
+  base::put(out, base::checksum(out));
   out.insert(out.end(), payload.begin(), payload.end());
-  put(out, checksum(payload));
+  base::put(out, base::checksum(payload));
   return out;
 }
 
 bool record_header_at(View bytes) {
   return bytes.size() >= kRecordHeaderSize && starts_with(bytes, kRecordMagic) &&
-         get<std::uint32_t>(bytes, 12) == checksum(bytes.first(12));
+         base::get<std::uint32_t>(bytes, 12) == base::checksum(bytes.first(12));
 }
 
 }  // namespace
 
 Bytes journal_header() {
   Bytes out;
-  put_raw(out, kMagic);
-  put(out, kVersion);
-  put(out, checksum(out));
+  base::put_raw(out, kMagic);
+  base::put(out, kVersion);
+  base::put(out, base::checksum(out));
   return out;
 }
 
 Bytes stock_record(const JournalStock& stock) {
   Bytes out;
   for (const Vec3& corner : {stock.box.lower, stock.box.upper})
-    for (int k = 0; k < 3; ++k) put(out, corner[k]);
-  put(out, stock.pitch);
-  put_text(out, stock.directions);
-  put_text(out, stock.snapshot);
+    for (int k = 0; k < 3; ++k) base::put(out, corner[k]);
+  base::put(out, stock.pitch);
+  base::put_text(out, stock.directions);
+  base::put_text(out, stock.snapshot);
   if (stock.mask.empty()) return record(kStock, out);
-  put_text(out, stock.mask);
+  base::put_text(out, stock.mask);
   return record(kMaskedStock, out);
 }
 
 Bytes tool_record(int number, const std::string& json) {
   Bytes out;
-  put(out, static_cast<std::uint32_t>(number));
-  put_text(out, json);
+  base::put(out, static_cast<std::uint32_t>(number));
+  base::put_text(out, json);
   return record(kTool, out);
 }
 
 Bytes note_record(const std::string& key, const std::string& value) {
   Bytes out;
-  put_text(out, key);
-  put_text(out, value);
+  base::put_text(out, key);
+  base::put_text(out, value);
   return record(kNote, out);
 }
 
@@ -209,12 +209,12 @@ Bytes stroke_record(const JournalStroke& stroke) {
   // What only removes has the record that it always had: readers that know no modes read it.
   const bool removes = stroke.mode == StrokeMode::Remove;
   Bytes out;
-  put(out, static_cast<std::uint32_t>(stroke.tool));
-  put(out, stroke.tolerance);
-  put_text(out, stroke.name);
+  base::put(out, static_cast<std::uint32_t>(stroke.tool));
+  base::put(out, stroke.tolerance);
+  base::put_text(out, stroke.name);
   put_rows(out, stroke.rows());
-  if (!removes) put(out, static_cast<std::uint32_t>(stroke.mode));
-  if (stroke.mode == StrokeMode::Soften) put(out, stroke.strength);
+  if (!removes) base::put(out, static_cast<std::uint32_t>(stroke.mode));
+  if (stroke.mode == StrokeMode::Soften) base::put(out, stroke.strength);
   return record(removes ? kStroke : kClayStroke, out);
 }
 
@@ -226,13 +226,13 @@ Bytes more_record(const JournalRows& rows) {
 
 Bytes undo_record(std::size_t n) {
   Bytes out;
-  put(out, static_cast<std::uint64_t>(n));
+  base::put(out, static_cast<std::uint64_t>(n));
   return record(kTakeBack, out);
 }
 
 Bytes redo_record(std::size_t n) {
   Bytes out;
-  put(out, static_cast<std::uint64_t>(n));
+  base::put(out, static_cast<std::uint64_t>(n));
   return record(kBringBack, out);
 }
 
@@ -242,19 +242,19 @@ std::size_t check_header(View bytes, const std::string& name) {
   };
   if (!starts_with(bytes, kMagic)) fail(0, "not a journal: it must begin with RIFFLERJ");
   if (bytes.size() < kHeaderSize) fail(bytes.size(), "the header is cut: expected 16 bytes");
-  if (get<std::uint32_t>(bytes, 12) != checksum(bytes.first(12))) fail(12, "the header is damaged");
-  if (const auto version = get<std::uint32_t>(bytes, 8); version != kVersion)
+  if (base::get<std::uint32_t>(bytes, 12) != base::checksum(bytes.first(12))) fail(12, "the header is damaged");
+  if (const auto version = base::get<std::uint32_t>(bytes, 8); version != kVersion)
     fail(8, "journal version " + std::to_string(version) + ", expected " + std::to_string(kVersion));
   return kHeaderSize;
 }
 
 std::optional<Record> whole_record(View bytes) {
   if (!record_header_at(bytes)) return std::nullopt;
-  const std::size_t size = get<std::uint32_t>(bytes, 8), most = bytes.size() - kRecordHeaderSize;
+  const std::size_t size = base::get<std::uint32_t>(bytes, 8), most = bytes.size() - kRecordHeaderSize;
   if (most < kRecordTailSize || most - kRecordTailSize < size) return std::nullopt;
   const View payload = bytes.subspan(kRecordHeaderSize, size);
-  if (get<std::uint32_t>(bytes, kRecordHeaderSize + size) != checksum(payload)) return std::nullopt;
-  return Record{get<std::uint32_t>(bytes, 4), payload, kRecordHeaderSize + size + kRecordTailSize};
+  if (base::get<std::uint32_t>(bytes, kRecordHeaderSize + size) != base::checksum(payload)) return std::nullopt;
+  return Record{base::get<std::uint32_t>(bytes, 4), payload, kRecordHeaderSize + size + kRecordTailSize};
 }
 
 bool record_follows(View bytes) {
@@ -264,7 +264,7 @@ bool record_follows(View bytes) {
 }
 
 void apply_record(const Record& record, Journal& journal) {
-  ByteReader from(record.payload);
+  base::ByteReader from(record.payload);
   switch (record.kind) {
     case kStock:
     case kMaskedStock: {
@@ -321,4 +321,4 @@ void apply_record(const Record& record, Journal& journal) {
   from.done();
 }
 
-}  // namespace riffler::journal_format
+}  // namespace riffler::session::journal_format

@@ -9,7 +9,7 @@
 #include "base/bytes.hpp"
 #include "riffler/session/journal.hpp"
 
-namespace riffler::journal_format {
+namespace riffler::session::journal_format {
 
 using View = ByteView;
 
@@ -39,4 +39,4 @@ bool record_follows(View bytes);
 /// Adds what the record says. Throws std::invalid_argument where its content is wrong.
 void apply_record(const Record& record, Journal& journal);
 
-}  // namespace riffler::journal_format
+}  // namespace riffler::session::journal_format

@@ -7,7 +7,7 @@
 #include "riffler/base/check.hpp"
 #include "riffler/nc/program.hpp"
 
-namespace riffler {
+namespace riffler::session {
 
 namespace {
 
@@ -27,7 +27,7 @@ void check_length(const char* name, std::size_t size, bool wanted, std::size_t r
 
 /// `last`: the time before the first of these, if there is one.
 void check_values(const JournalRows& rows, const double* last) {
-  for (std::size_t row = 0; row < rows.poses.size(); ++row) checked_pose(rows.poses[row], "poses", row);
+  for (std::size_t row = 0; row < rows.poses.size(); ++row) nc::checked_pose(rows.poses[row], "poses", row);
   for (std::size_t row = 0; row < rows.times.size(); ++row) {
     const double& time = rows.times[row];
     if (!std::isfinite(time)) fail(at("times", row) + "not finite");
@@ -57,7 +57,7 @@ void JournalStroke::append(const JournalRows& rows) {
 
 void JournalRules::set_stock(const JournalStock& stock) {
   if (stock_) fail("the journal has a stock already");
-  if (!finite(stock.box.lower) || !finite(stock.box.upper)) fail("the stock's box must be finite");
+  if (!geom::finite(stock.box.lower) || !geom::finite(stock.box.upper)) fail("the stock's box must be finite");
   for (int k = 0; k < 3; ++k)
     if (!(stock.box.lower[k] < stock.box.upper[k])) fail("the stock's lower must be below its upper");
   if (!(std::isfinite(stock.pitch) && stock.pitch > 0)) fail("pitch must be positive and finite");
@@ -66,7 +66,7 @@ void JournalRules::set_stock(const JournalStock& stock) {
 }
 
 void JournalRules::add_tool(int number, const std::string& json) {
-  if (number < 1 || number > kMaxNumber) fail("tool number must be from 1 to " + std::to_string(kMaxNumber));
+  if (number < 1 || number > nc::kMaxNumber) fail("tool number must be from 1 to " + std::to_string(nc::kMaxNumber));
   const auto it = tools_.find(number);
   if (it != tools_.end() && it->second != json)
     fail("tool " + std::to_string(number) + " is another tool already: take another number");
@@ -76,7 +76,7 @@ void JournalRules::add_tool(int number, const std::string& json) {
 void JournalRules::add_stroke(const JournalStroke& stroke) {
   if (!tools_.contains(stroke.tool))
     fail("tool " + std::to_string(stroke.tool) + " is not in the journal: add it first");
-  require_tolerance(stroke.tolerance);
+  base::require_tolerance(stroke.tolerance);
   if (!(stroke.strength >= 0 && stroke.strength <= 1)) fail("strength must be from 0 to 1");
   if (stroke.poses.empty()) fail("a stroke needs at least one pose");
   const std::size_t rows = stroke.poses.size();
@@ -115,4 +115,4 @@ void JournalRules::redo(std::size_t n) {
   last_.reset();
 }
 
-}  // namespace riffler
+}  // namespace riffler::session

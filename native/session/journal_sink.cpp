@@ -4,7 +4,7 @@
 
 #include "session/journal_stream.hpp"
 
-namespace riffler {
+namespace riffler::session {
 
 struct JournalSink::Core {
   Core(std::unique_ptr<JournalWriter> writer, int tool, double tolerance, const JournalStreamOptions& options)
@@ -84,4 +84,4 @@ bool JournalSink::written(double seconds) const {
   return core_->stream_.written(seconds);
 }
 
-}  // namespace riffler
+}  // namespace riffler::session

@@ -9,7 +9,7 @@
 #include "pen/driver.hpp"
 #include "riffler/base/check.hpp"
 
-namespace riffler {
+namespace riffler::session {
 
 namespace {
 
@@ -26,8 +26,8 @@ void add(JournalStroke& to, const JournalRow& row) {
 void check(const JournalStream::Options& options) {
   if (options.rows < 4) throw std::invalid_argument("rows must be 4 or more");
   constexpr const char* kSeconds = "must be positive, in s";
-  require_positive(options.drain, "drain", kSeconds), require_positive(options.sync, "sync", kSeconds);
-  require_positive(options.retry, "retry", kSeconds);
+  base::require_positive(options.drain, "drain", kSeconds), base::require_positive(options.sync, "sync", kSeconds);
+  base::require_positive(options.retry, "retry", kSeconds);
 }
 
 constexpr double kNever = -std::numeric_limits<double>::infinity();
@@ -238,8 +238,8 @@ std::string JournalStream::problem() const {
 void JournalStream::start() {
   if (keeper_.joinable()) return;
   stopping_ = sync_wanted_ = false;
-  syncer_ = OwnThread([this] { keep_synced(); });
-  keeper_ = OwnThread([this] { keep(); });
+  syncer_ = base::OwnThread([this] { keep_synced(); });
+  keeper_ = base::OwnThread([this] { keep(); });
 }
 
 void JournalStream::keep() {
@@ -247,7 +247,7 @@ void JournalStream::keep() {
   std::unique_lock lock(sleeping_);
   while (!stopping_) {
     lock.unlock();
-    const double now = steady_seconds();
+    const double now = pen::steady_seconds();
     write(now);
     const bool due = sync_due(now);
     lock.lock();
@@ -282,9 +282,9 @@ bool JournalStream::stop() {
     retry_at_ = kNever;
   };
   at_once();
-  const bool written = write(steady_seconds());
+  const bool written = write(pen::steady_seconds());
   at_once();
   return sync() && written;
 }
 
-}  // namespace riffler
+}  // namespace riffler::session

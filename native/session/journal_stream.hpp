@@ -16,7 +16,7 @@
 #include "riffler/session/journal_file.hpp"
 #include "riffler/session/journal_stream_options.hpp"
 
-namespace riffler {
+namespace riffler::session {
 
 /// A row of a stroke as the loop has it: columns as JournalRows.
 struct JournalRow {
@@ -123,10 +123,10 @@ class JournalStream {
   std::string write_problem_, sync_problem_, refusal_;
 
   std::mutex sleeping_;
-  HomeOnly<std::condition_variable> wake_;
-  HomeProcess home_;
+  base::HomeOnly<std::condition_variable> wake_;
+  base::HomeProcess home_;
   bool stopping_ = false, sync_wanted_ = false;
-  OwnThread keeper_, syncer_;
+  base::OwnThread keeper_, syncer_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::session

@@ -7,20 +7,20 @@
 #include "riffler/dexel/boolean.hpp"
 #include "sweep/cut_region.hpp"
 
-namespace riffler {
+namespace riffler::session {
 
-MaskedStock::MaskedStock(const Volume& stock, CarveMode mode, const Volume* protect)
-    : mode_(mode), stock_(stock), masked_stock_(mode == CarveMode::Add ? Volume::block(stock.frame()) : stock) {
+MaskedStock::MaskedStock(const Volume& stock, sweep::CarveMode mode, const Volume* protect)
+    : mode_(mode), stock_(stock), masked_stock_(mode == sweep::CarveMode::Add ? Volume::block(stock.frame()) : stock) {
   if (protect) check_same_grid(stock.frame(), protect->frame(), "protect");
-  if (mode == CarveMode::Add) apply(Boolean::Subtract, masked_stock_, stock);
-  if (protect) apply(Boolean::Subtract, masked_stock_, *protect);
+  if (mode == sweep::CarveMode::Add) apply(dexel::Boolean::Subtract, masked_stock_, stock);
+  if (protect) apply(dexel::Boolean::Subtract, masked_stock_, *protect);
 }
 
 void MaskedStock::show(const Volume& left, std::span<const TileExchange::Place> places, Volume& shown) const {
-  TileBuilder builder(shown.grids().front().has_normals());
+  dexel::TileBuilder builder(shown.grids().front().has_normals());
   bool any = false;
   for (const TileExchange::Place& p : places) {
-    Grid& grid = shown.grids()[p.grid];
+    dexel::Grid& grid = shown.grids()[p.grid];
     const auto& stock = stock_.grids()[p.grid].shared_tile(p.tile);
     const auto& before = masked_stock_.grids()[p.grid].shared_tile(p.tile);
     const auto& rest = left.grids()[p.grid].shared_tile(p.tile);
@@ -42,4 +42,4 @@ Volume MaskedStock::whole(const Volume& left) const {
   return out;
 }
 
-}  // namespace riffler
+}  // namespace riffler::session

@@ -8,7 +8,7 @@
 #include "riffler/session/tile_exchange.hpp"
 #include "riffler/sweep/carve.hpp"
 
-namespace riffler {
+namespace riffler::session {
 
 /// The loop cuts a volume as any other, and knows neither of a mask nor of what is put on: a step costs what it always
 /// costs, and feels what it takes. Whoever shows puts both together, tile by tile: the whole is the stock of the start
@@ -17,9 +17,9 @@ class MaskedStock {
  public:
   /// `mode`: what is cut of it is taken from the stock, or put on. `protect`: a mask, or null. std::invalid_argument
   /// where the mask's frame is another one than the stock's.
-  MaskedStock(const Volume& stock, CarveMode mode, const Volume* protect);
+  MaskedStock(const Volume& stock, sweep::CarveMode mode, const Volume* protect);
 
-  CarveMode mode() const { return mode_; }
+  sweep::CarveMode mode() const { return mode_; }
   const Volume& volume() const { return masked_stock_; }
   /// Makes `shown`, the whole, what it is where `left` is left of volume(): these tiles, which may come twice.
   void show(const Volume& left, std::span<const TileExchange::Place> places, Volume& shown) const;
@@ -27,8 +27,8 @@ class MaskedStock {
   Volume whole(const Volume& left) const;
 
  private:
-  CarveMode mode_;
+  sweep::CarveMode mode_;
   Volume stock_, masked_stock_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::session

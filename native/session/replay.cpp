@@ -8,18 +8,18 @@
 #include "riffler/sweep/carve.hpp"
 #include "session/masked_stock.hpp"
 
-namespace riffler {
+namespace riffler::session {
 
 namespace {
 
 /// A journal from somebody else must not reach for other files than those beside it.
-Volume snapshot_of(const std::string& file, const char* what, const Frame& frame, const std::filesystem::path& folder,
-                   const Progress& progress) {
+Volume snapshot_of(const std::string& file, const char* what, const dexel::Frame& frame,
+                   const std::filesystem::path& folder, const Progress& progress) {
   const std::filesystem::path name = file;
   if (name != name.filename() || name == "." || name == "..")
     throw std::invalid_argument(std::string(what) + "'s snapshot must be a file's name, not \"" + file + "\"");
   if (folder.empty()) throw std::invalid_argument(std::string(what) + " is the snapshot " + file + ": name its folder");
-  Volume volume = load(folder / name, progress);
+  Volume volume = dexel::load(folder / name, progress);
   if (!(volume.frame() == frame))
     throw std::invalid_argument("the snapshot " + file + " has another frame than the journal's stock");
   return volume;
@@ -29,7 +29,7 @@ Volume snapshot_of(const std::string& file, const char* what, const Frame& frame
 Replayed begin(const Journal& journal, const std::filesystem::path& folder, const Progress& progress) {
   if (!journal.stock()) throw std::invalid_argument("the journal has no stock to replay on");
   const JournalStock& stock = *journal.stock();
-  const Frame frame{stock.box, stock.pitch, stock.directions};
+  const dexel::Frame frame{stock.box, stock.pitch, stock.directions};
   Replayed out{
       stock.snapshot.empty() ? Volume::block(frame) : snapshot_of(stock.snapshot, "the stock", frame, folder, progress),
       {}};
@@ -40,7 +40,7 @@ Replayed begin(const Journal& journal, const std::filesystem::path& folder, cons
 void apply_dabs(const JournalStroke& stroke, const Tool& tool, Replayed& to, const Progress& progress) {
   std::vector<Vec3> centres;
   for (const Pose& pose : stroke.poses) centres.push_back(pose.tip);
-  SmoothOptions options;
+  dexel::SmoothOptions options;
   options.radius = 0.5 * tool.diameter();
   options.strength = stroke.strength;
   options.protect = to.mask ? &*to.mask : nullptr;
@@ -55,22 +55,22 @@ struct Run {
 };
 
 /// How such a stroke carves, or nothing for those that carve the volume itself. Without a mask all of it may be cut.
-std::optional<CarveMode> run_mode(const JournalStroke& stroke, const Replayed& to) {
-  if (stroke.mode == StrokeMode::Build) return CarveMode::Add;
-  if (stroke.mode == StrokeMode::Beside && to.mask) return CarveMode::Remove;
+std::optional<sweep::CarveMode> run_mode(const JournalStroke& stroke, const Replayed& to) {
+  if (stroke.mode == StrokeMode::Build) return sweep::CarveMode::Add;
+  if (stroke.mode == StrokeMode::Beside && to.mask) return sweep::CarveMode::Remove;
   return std::nullopt;
 }
 
-void apply_in_run(const JournalStroke& stroke, CarveMode mode, const Tool& tool, const Replayed& to,
+void apply_in_run(const JournalStroke& stroke, sweep::CarveMode mode, const Tool& tool, const Replayed& to,
                   std::optional<Run>& run, const Progress& progress) {
   if (!run) {
     const MaskedStock cuttable(to.volume, mode, to.mask ? &*to.mask : nullptr);
     run.emplace(Run{cuttable, cuttable.volume()});
   }
-  CarveOptions options;
+  sweep::CarveOptions options;
   options.tolerance = stroke.tolerance;
   options.progress = progress;
-  carve(run->left, tool, moves_of(stroke), options);
+  sweep::carve(run->left, tool, moves_of(stroke), options);
 }
 
 /// The volume is what those strokes have left.
@@ -81,18 +81,18 @@ void end_run(Replayed& to, std::optional<Run>& run) {
 
 void apply(const JournalStroke& stroke, const Tool& tool, Replayed& to, std::optional<Run>& run,
            const Progress& progress) {
-  const std::optional<CarveMode> mode = run_mode(stroke, to);
+  const std::optional<sweep::CarveMode> mode = run_mode(stroke, to);
   if (run && mode != run->cuttable.mode()) end_run(to, run);
   if (mode) return apply_in_run(stroke, *mode, tool, to, run, progress);
   if (stroke.mode == StrokeMode::Soften) return apply_dabs(stroke, tool, to, progress);
-  CarveOptions options;
+  sweep::CarveOptions options;
   options.tolerance = stroke.tolerance;
   options.progress = progress;
   const bool masks = stroke.mode == StrokeMode::Mask || stroke.mode == StrokeMode::Unmask;
   if (masks && !to.mask) to.mask.emplace(to.volume.frame());
-  if (stroke.mode == StrokeMode::Add || stroke.mode == StrokeMode::Mask) options.mode = CarveMode::Add;
+  if (stroke.mode == StrokeMode::Add || stroke.mode == StrokeMode::Mask) options.mode = sweep::CarveMode::Add;
   if (!masks && to.mask) options.protect = &*to.mask;
-  carve(masks ? *to.mask : to.volume, tool, moves_of(stroke), options);
+  sweep::carve(masks ? *to.mask : to.volume, tool, moves_of(stroke), options);
 }
 
 }  // namespace
@@ -108,7 +108,7 @@ std::vector<Pose> moves_of(const JournalStroke& stroke) {
 Replayed replay_all(const Journal& journal, const std::map<int, Tool>& tools, const std::filesystem::path& folder,
                     const Progress& progress) {
   constexpr double kStock = 0.05;  // share of the work, for the listener
-  Replayed out = begin(journal, folder, part(progress, 0, kStock));
+  Replayed out = begin(journal, folder, base::part(progress, 0, kStock));
   std::optional<Run> run;
   double rows = 0, done = 0;
   for (const JournalStroke& stroke : journal.strokes()) rows += static_cast<double>(stroke.poses.size());
@@ -121,14 +121,14 @@ Replayed replay_all(const Journal& journal, const std::map<int, Tool>& tools, co
     const double begin = share();
     done += static_cast<double>(stroke.poses.size());
     try {
-      apply(stroke, tool->second, out, run, part(progress, begin, share()));
+      apply(stroke, tool->second, out, run, base::part(progress, begin, share()));
     } catch (const std::invalid_argument& e) {
       throw std::invalid_argument(name + ": " + e.what());
     }
-    report(progress, share());
+    base::report(progress, share());
   }
   end_run(out, run);
-  report(progress, 1);
+  base::report(progress, 1);
   return out;
 }
 
@@ -137,4 +137,4 @@ Volume replay(const Journal& journal, const std::map<int, Tool>& tools, const st
   return replay_all(journal, tools, folder, progress).volume;
 }
 
-}  // namespace riffler
+}  // namespace riffler::session

@@ -11,24 +11,24 @@
 #include "riffler/base/check.hpp"
 #include "riffler/haptics/coupling.hpp"
 
-namespace riffler {
+namespace riffler::session {
 
 namespace {
 
 /// In these the device knows where it is, and its data are of now.
-bool sure(ForceState state) {
-  return state == ForceState::Ready || lets_force_through(state);
+bool sure(haptics::ForceState state) {
+  return state == haptics::ForceState::Ready || lets_force_through(state);
 }
 
 /// The coupling at the tool that the hand feels as `at_hand`: ways are `scale` times as long there, and forces come
 /// back times the scale.
-CouplingSettings at_tool(CouplingSettings at_hand, double scale) {
+haptics::CouplingSettings at_tool(haptics::CouplingSettings at_hand, double scale) {
   at_hand.stiffness /= scale * scale, at_hand.damping /= scale * scale;
   at_hand.max_stretch *= scale;
   return at_hand;
 }
 
-SculptSettings at_tool(SculptSettings settings, double scale) {
+haptics::SculptSettings at_tool(haptics::SculptSettings settings, double scale) {
   settings.coupling = at_tool(settings.coupling, scale);
   return settings;
 }
@@ -37,7 +37,7 @@ SculptSettings at_tool(SculptSettings settings, double scale) {
 
 void SculptLoopSettings::validate() const {
   sculpt.validate();
-  require_tolerance(carving.tolerance);
+  base::require_tolerance(carving.tolerance);
   if (sculpt.parts != 1) throw std::invalid_argument("parts must be 1 in a session: it records a pose for each tick");
   limits.validate();
   passivity.validate();
@@ -48,21 +48,21 @@ void SculptLoopSettings::validate() const {
 
 /// What the hand works on.
 struct SculptLoop::Scene {
-  Scene(const SculptLoopSettings& s, const Volume& stock, const Tool& tool, const Collider* obstacles)
+  Scene(const SculptLoopSettings& s, const Volume& stock, const Tool& tool, const collide::Collider* obstacles)
       : volume(stock),
         carver(volume, tool, s.carving),
         step(at_tool(s.sculpt, s.workspace.scale), tool, &carver, obstacles),
         workspace(s.workspace) {}
 
   Volume volume;
-  MoveCarver carver;
-  SculptStep step;
-  Workspace workspace;
+  sweep::MoveCarver carver;
+  haptics::SculptStep step;
+  haptics::Workspace workspace;
 };
 
 SculptLoop::SculptLoop(const SculptLoopSettings& settings, const Volume& stock, const Tool& tool,
-                       const Collider* obstacles, const DeviceCapability& device, const std::optional<Pose>& start,
-                       StrokeSink* sink)
+                       const collide::Collider* obstacles, const pen::DeviceCapability& device,
+                       const std::optional<Pose>& start, StrokeSink* sink)
     : settings_((settings.validate(), settings)),
       device_(device),
       sink_(sink),
@@ -79,8 +79,8 @@ SculptLoop::SculptLoop(const SculptLoopSettings& settings, const Volume& stock, 
 
 SculptLoop::~SculptLoop() = default;
 
-SafeWrench SculptLoop::step(const PenSample& sample, double now, double dt) noexcept {
-  const double start = thread_seconds();
+haptics::SafeWrench SculptLoop::step(const pen::PenSample& sample, double now, double dt) noexcept {
+  const double start = base::thread_seconds();
   SculptTick tick;
   if (dt > 0) time_ += dt;
   tick.time = time_, tick.dt = dt, tick.grip = sample.pose;
@@ -90,19 +90,20 @@ SafeWrench SculptLoop::step(const PenSample& sample, double now, double dt) noex
     has_grip_ = placed_ = false;
   }
   const std::uint32_t dead_man_mask = dead_man_mask_.load();
-  const ForceState state = safety_.observe({.dt = dt,
-                                            .age = now - sample.time,
-                                            .pose = sample.pose,
-                                            .twist = {sample.velocity, sample.turning},
-                                            .redundancy = sample.stretch,
-                                            .homed = sample.homed,
-                                            .dead_man = dead_man_mask == 0 || (sample.buttons & dead_man_mask) != 0,
-                                            .device_fault = sample.fault,
-                                            .device_late = sample.late});
+  const haptics::ForceState state =
+      safety_.observe({.dt = dt,
+                       .age = now - sample.time,
+                       .pose = sample.pose,
+                       .twist = {sample.velocity, sample.turning},
+                       .redundancy = sample.stretch,
+                       .homed = sample.homed,
+                       .dead_man = dead_man_mask == 0 || (sample.buttons & dead_man_mask) != 0,
+                       .device_fault = sample.fault,
+                       .device_late = sample.late});
   tick.applied = sample.says_applied ? sample.applied : held_;
   if (sure(state)) {
     if (has_grip_) {
-      const PoseError moved = pose_error(sample.pose, last_grip_);
+      const haptics::PoseError moved = haptics::pose_error(sample.pose, last_grip_);
       passivity_.observe(tick.applied, {moved.translation, moved.rotation}, dt);
     }
     last_grip_ = sample.pose, has_grip_ = true;
@@ -110,24 +111,24 @@ SafeWrench SculptLoop::step(const PenSample& sample, double now, double dt) noex
     has_grip_ = false;
   }
   const Wrench wanted = sculpt(sample, dt, tick);
-  const SafeWrench safe = safety_.release(rendered(sample, wanted, dt));
+  const haptics::SafeWrench safe = safety_.release(rendered(sample, wanted, dt));
   held_ = safe.wrench();
   tick.wrench = held_, tick.energy = passivity_.energy();
   tick.state = safety_.state(), tick.cause = safety_.cause();
   if (tick.cutting && sink_) sink_->row(tick.time, tick.tool, tick.wrench, tick.removed);
-  tick.seconds = thread_seconds() - start;
+  tick.seconds = base::thread_seconds() - start;
   if (!ticks_.put(tick)) dropped_ticks_.fetch_add(1, std::memory_order_relaxed);
   return safe;
 }
 
 /// The tool's step, and what the hand shall feel of it.
-Wrench SculptLoop::sculpt(const PenSample& sample, double dt, SculptTick& tick) noexcept {
+Wrench SculptLoop::sculpt(const pen::PenSample& sample, double dt, SculptTick& tick) noexcept {
   tick.from = tick.tool = last_tool_;
   if (dt > 0 && std::isfinite(dt)) owed_ += dt;
   const std::unique_lock lock(mutex_, std::try_to_lock);
   if (!lock) return missed(dt, nullptr, tick);
   Scene& scene = *scene_;
-  const ForceState state = safety_.state();
+  const haptics::ForceState state = safety_.state();
   Wrench out;
   if (!in_stroke_) tell_undo();
   if (!sure(state)) {
@@ -145,7 +146,7 @@ Wrench SculptLoop::sculpt(const PenSample& sample, double dt, SculptTick& tick) 
 }
 
 /// Where the hand is now is where the tool is: no way between is cut.
-void SculptLoop::place(Scene& scene, const PenSample& sample) noexcept {
+void SculptLoop::place(Scene& scene, const pen::PenSample& sample) noexcept {
   end_stroke();
   if (absolute_) last_tool_ = sample.pose;
   scene.step.place(last_tool_), scene.workspace.place(last_tool_);
@@ -153,12 +154,13 @@ void SculptLoop::place(Scene& scene, const PenSample& sample) noexcept {
   owed_ = 0;
 }
 
-Wrench SculptLoop::follow(Scene& scene, const PenSample& sample, double dt, bool cutting, SculptTick& tick) noexcept {
+Wrench SculptLoop::follow(Scene& scene, const pen::PenSample& sample, double dt, bool cutting,
+                          SculptTick& tick) noexcept {
   try {
     const Pose target = scene.workspace.target(sample.pose, sample.buttons);
     const Twist twist = scene.workspace.to_target({sample.velocity, sample.turning});
     tick.from = last_tool_;
-    const SculptStep::Result r = scene.step.step(target, twist, owed_, cutting);
+    const haptics::SculptStep::Result r = scene.step.step(target, twist, owed_, cutting);
     owed_ = 0;
     if (r.cuts > 0 && !scene.carver.replaced().empty()) {
       exchange_.changed(scene.carver.replaced());
@@ -181,8 +183,8 @@ Wrench SculptLoop::missed(double dt, const char* why, SculptTick& tick) noexcept
 }
 
 /// Limits and the controller, in the order of haptics/safety.hpp.
-Wrench SculptLoop::rendered(const PenSample& sample, const Wrench& wanted, double dt) noexcept {
-  const Capability push = pushed(device_, sample.pose.axis);
+Wrench SculptLoop::rendered(const pen::PenSample& sample, const Wrench& wanted, double dt) noexcept {
+  const haptics::Capability push = pushed(device_, sample.pose.axis);
   slewed_ = limited(settings_.limits, push, slewed_, lets_force_through(safety_.state()) ? wanted : Wrench{},
                     {sample.velocity, sample.turning}, dt);
   const Wrench borne = passivity_.control(slewed_, push);
@@ -239,11 +241,11 @@ void SculptLoop::tell_undo() noexcept {
   if (sink_ && strokes > 0) sink_->redo(static_cast<std::size_t>(strokes));
 }
 
-void SculptLoop::set_workspace(const WorkspaceSettings& settings) {
+void SculptLoop::set_workspace(const haptics::WorkspaceSettings& settings) {
   const std::lock_guard lock(mutex_);
   scene_->workspace.set(settings);
   scene_->step.set_coupling(at_tool(settings_.sculpt.coupling, settings.scale));
   dead_man_mask_.store(settings.dead_man_mask);
 }
 
-}  // namespace riffler
+}  // namespace riffler::session

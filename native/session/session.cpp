@@ -14,7 +14,7 @@
 #include "riffler/base/block_pool.hpp"
 #include "session/masked_stock.hpp"
 
-namespace riffler {
+namespace riffler::session {
 
 namespace {
 
@@ -25,12 +25,12 @@ constexpr double kTick = 1e-3;  // s
 constexpr std::size_t kLargestBlock = 1 << 17, kBlocks = 64;
 
 /// To put material on is no work against it: of a force there would be that of milling the air.
-SculptLoopSettings for_mode(SculptLoopSettings settings, CarveMode mode) {
-  if (mode == CarveMode::Add) settings.carving.removal_constant = settings.sculpt.damping = 0;
+SculptLoopSettings for_mode(SculptLoopSettings settings, sweep::CarveMode mode) {
+  if (mode == sweep::CarveMode::Add) settings.carving.removal_constant = settings.sculpt.damping = 0;
   return settings;
 }
 
-SculptLoopSettings for_device(SculptLoopSettings settings, const DeviceCapability& device) {
+SculptLoopSettings for_device(SculptLoopSettings settings, const pen::DeviceCapability& device) {
   if (device.has_force()) return settings;
   // A mouse jumps as it likes: nothing pushes anybody.
   settings.safety.jump = settings.safety.overspeed = {1e9, 1e9};
@@ -42,14 +42,14 @@ SculptLoopSettings for_device(SculptLoopSettings settings, const DeviceCapabilit
 
 void SessionSettings::validate() const {
   loop.validate();
-  if (start && !(finite(start->tip) && std::abs(glm::length(start->axis) - 1) < 1e-6))
+  if (start && !(geom::finite(start->tip) && std::abs(glm::length(start->axis) - 1) < 1e-6))
     throw std::invalid_argument("start must be a finite point and an axis of unit length");
 }
 
 /// Both sides of a session: what the loop cuts, and what is shown.
 struct Session::Core {
-  Core(const Volume& stock, const Tool& tool, std::shared_ptr<Pen> pen, std::shared_ptr<const Collider> obstacles,
-       const SessionSettings& settings, const Volume* protect);
+  Core(const Volume& stock, const Tool& tool, std::shared_ptr<pen::Pen> pen,
+       std::shared_ptr<const collide::Collider> obstacles, const SessionSettings& settings, const Volume* protect);
   ~Core();
 
   void record(std::shared_ptr<StrokeSink> sink);
@@ -79,15 +79,15 @@ struct Session::Core {
 
   SessionSettings settings_;
   Tool tool_;
-  std::shared_ptr<Pen> pen_;
-  std::shared_ptr<const Collider> obstacles_;
+  std::shared_ptr<pen::Pen> pen_;
+  std::shared_ptr<const collide::Collider> obstacles_;
   std::shared_ptr<StrokeSink> sink_;
   std::shared_ptr<SculptLoop> loop_;
   State state_ = State::New;
-  OwnThread poller_;
-  HomeProcess home_;
+  base::OwnThread poller_;
+  base::HomeProcess home_;
   std::atomic<bool> ending_{false};
-  BlockReserve reserve_;
+  base::BlockReserve reserve_;
 
   std::optional<MaskedStock> masked_stock_;  // where that is not the volume itself
   std::optional<Volume> left_;               // of it, as it is shown
@@ -98,8 +98,9 @@ struct Session::Core {
   SessionFrame kept_;                        // for the next
 };
 
-Session::Core::Core(const Volume& stock, const Tool& tool, std::shared_ptr<Pen> pen,
-                    std::shared_ptr<const Collider> obstacles, const SessionSettings& settings, const Volume* protect)
+Session::Core::Core(const Volume& stock, const Tool& tool, std::shared_ptr<pen::Pen> pen,
+                    std::shared_ptr<const collide::Collider> obstacles, const SessionSettings& settings,
+                    const Volume* protect)
     : settings_((settings.validate(), settings)),
       tool_(tool),
       pen_(std::move(pen)),
@@ -107,14 +108,15 @@ Session::Core::Core(const Volume& stock, const Tool& tool, std::shared_ptr<Pen> 
       shown_(stock.revision()) {
   if (!pen_) throw std::invalid_argument("a session needs a device");
   settings_.loop = for_device(for_mode(settings_.loop, settings.mode), pen_->capability());
-  if (protect || settings.mode == CarveMode::Add) left_ = masked_stock_.emplace(stock, settings.mode, protect).volume();
+  if (protect || settings.mode == sweep::CarveMode::Add)
+    left_ = masked_stock_.emplace(stock, settings.mode, protect).volume();
   moments_.push_back({0, stock, left_});
 }
 
 Session::Core::~Core() {
   if (!home_.here()) {  // a thread that is missing here may hold what these would wait for
     static_cast<void>(new std::shared_ptr<SculptLoop>(std::move(loop_)));
-    static_cast<void>(new std::shared_ptr<Pen>(std::move(pen_)));
+    static_cast<void>(new std::shared_ptr<pen::Pen>(std::move(pen_)));
     return;
   }
   Volume nobody = moments_[here_].volume;
@@ -139,7 +141,7 @@ void Session::Core::start() {
   loop_ = std::make_shared<SculptLoop>(settings_.loop, moments_[0].cut(), tool_, obstacles_.get(), pen_->capability(),
                                        start_pose(), sink_.get());
   reserve_.fill(kLargestBlock, kBlocks);
-  if (!pen_->set_step(loop_)) poller_ = OwnThread([this] { poll(); });
+  if (!pen_->set_step(loop_)) poller_ = base::OwnThread([this] { poll(); });
   state_ = State::Running;
 }
 
@@ -147,8 +149,8 @@ void Session::Core::start() {
 void Session::Core::poll() noexcept {
   const auto tick = std::chrono::duration_cast<std::chrono::steady_clock::duration>(Seconds(kTick));
   auto next = std::chrono::steady_clock::now();
-  for (double last = steady_seconds(); !ending_.load();) {
-    const double now = steady_seconds();
+  for (double last = pen::steady_seconds(); !ending_.load();) {
+    const double now = pen::steady_seconds();
     loop_->step(pen_->newest(), pen_->now(), now - std::exchange(last, now));
     next = std::max(next + tick, std::chrono::steady_clock::now());
     std::this_thread::sleep_until(next);
@@ -253,8 +255,9 @@ void Session::Core::note_differences(const Volume& from, const Volume& to) {
         kept_.tiles.push_back({g, static_cast<std::uint32_t>(t)});
 }
 
-Session::Session(const Volume& stock, const Tool& tool, std::shared_ptr<Pen> pen,
-                 std::shared_ptr<const Collider> obstacles, const SessionSettings& settings, const Volume* protect)
+Session::Session(const Volume& stock, const Tool& tool, std::shared_ptr<pen::Pen> pen,
+                 std::shared_ptr<const collide::Collider> obstacles, const SessionSettings& settings,
+                 const Volume* protect)
     : core_(std::make_unique<Core>(stock, tool, std::move(pen), std::move(obstacles), settings, protect)) {}
 
 Session::~Session() = default;
@@ -291,8 +294,8 @@ SculptLoop* Session::loop() noexcept {
   return core_->loop_.get();
 }
 
-Pen& Session::pen() noexcept {
+pen::Pen& Session::pen() noexcept {
   return *core_->pen_;
 }
 
-}  // namespace riffler
+}  // namespace riffler::session

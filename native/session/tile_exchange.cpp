@@ -2,11 +2,11 @@
 
 #include <utility>
 
-namespace riffler {
+namespace riffler::session {
 
 TileExchange::TileExchange(const Volume& volume) {
   std::size_t tiles = 0;
-  for (const Grid& grid : volume.grids()) {
+  for (const dexel::Grid& grid : volume.grids()) {
     first_.push_back(tiles);
     tiles += grid.tile_count();
   }
@@ -53,4 +53,4 @@ bool TileExchange::take(Volume& shown, std::vector<Place>& places, Mark& mark) {
   return true;
 }
 
-}  // namespace riffler
+}  // namespace riffler::session

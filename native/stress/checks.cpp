@@ -16,10 +16,10 @@ Problem say(const Parts&... parts) {
   return out.str();
 }
 
-Problem check_ray(const Grid& grid, const Tile& tile, int r) {
+Problem check_ray(const dexel::Grid& grid, const dexel::Tile& tile, int r) {
   const double lower = grid.box().lower.z, upper = grid.box().upper.z;
   double last = -std::numeric_limits<double>::infinity();
-  for (const Span& s : tile.ray(r)) {
+  for (const dexel::Span& s : tile.ray(r)) {
     if (!std::isfinite(s.near) || !std::isfinite(s.far)) return say("a span is not finite");
     if (!(s.near < s.far)) return say("the span ", s.near, " … ", s.far, " is empty");
     if (!(s.near > last))
@@ -28,21 +28,22 @@ Problem check_ray(const Grid& grid, const Tile& tile, int r) {
     if (s.near < tile.reach.near || s.far > tile.reach.far) return say("the tile's reach does not cover a span");
     last = s.far;
   }
-  for (const SpanNormals& n : tile.ray_normals(r))
-    for (const PackedNormal& packed : {n.near, n.far})
+  for (const dexel::SpanNormals& n : tile.ray_normals(r))
+    for (const dexel::PackedNormal& packed : {n.near, n.far})
       if (!(std::abs(glm::length(packed.unpack()) - 1) < 1e-3)) return say("a normal is not a unit vector");
   return {};
 }
 
-Problem check_tile(const Grid& grid, std::size_t index) {
-  const Tile& tile = grid.tile(index);
-  if (tile.offset[0] != 0 || tile.offset[kTileRays] != tile.spans.size()) return say("offsets do not fit the spans");
+Problem check_tile(const dexel::Grid& grid, std::size_t index) {
+  const dexel::Tile& tile = grid.tile(index);
+  if (tile.offset[0] != 0 || tile.offset[dexel::kTileRays] != tile.spans.size())
+    return say("offsets do not fit the spans");
   if (grid.has_normals() && tile.normals.size() != tile.spans.size()) return say("normals are not as many as spans");
-  const int u = static_cast<int>(index) / grid.tiles_v() * kTileSide,
-            v = static_cast<int>(index) % grid.tiles_v() * kTileSide;
-  for (int r = 0; r < kTileRays; ++r) {
+  const int u = static_cast<int>(index) / grid.tiles_v() * dexel::kTileSide,
+            v = static_cast<int>(index) % grid.tiles_v() * dexel::kTileSide;
+  for (int r = 0; r < dexel::kTileRays; ++r) {
     if (tile.offset[r] > tile.offset[r + 1]) return say("offsets fall");
-    const bool beyond = u + r / kTileSide >= grid.nu() || v + r % kTileSide >= grid.nv();
+    const bool beyond = u + r / dexel::kTileSide >= grid.nu() || v + r % dexel::kTileSide >= grid.nv();
     if (beyond && !tile.ray(r).empty()) return say("a ray beyond the grid has a span");
     if (Problem p = check_ray(grid, tile, r); !p.empty()) return say("ray ", r, " of its tile: ", p);
   }
@@ -50,11 +51,11 @@ Problem check_tile(const Grid& grid, std::size_t index) {
 }
 
 /// Every span of `after` within one of `before`.
-Problem check_subset(const Tile& before, const Tile& after) {
-  for (int r = 0; r < kTileRays; ++r) {
+Problem check_subset(const dexel::Tile& before, const dexel::Tile& after) {
+  for (int r = 0; r < dexel::kTileRays; ++r) {
     const auto old = before.ray(r);
     std::size_t k = 0;
-    for (const Span& s : after.ray(r)) {
+    for (const dexel::Span& s : after.ray(r)) {
       while (k < old.size() && old[k].far < s.far) ++k;
       if (k == old.size() || old[k].near > s.near)
         return say("ray ", r, " of its tile: ", s.near, " … ", s.far, " holds material that was not there");
@@ -67,7 +68,7 @@ Problem check_subset(const Tile& before, const Tile& after) {
 
 Problem check_spans(const Volume& volume, const Volume* before) {
   for (std::size_t g = 0; g < volume.grids().size(); ++g) {
-    const Grid& grid = volume.grids()[g];
+    const dexel::Grid& grid = volume.grids()[g];
     for (std::size_t t = 0; t < grid.tile_count(); ++t) {
       if (before && before->grids()[g].shared_tile(t) == grid.shared_tile(t)) continue;
       Problem p = check_tile(grid, t);
@@ -78,11 +79,11 @@ Problem check_spans(const Volume& volume, const Volume* before) {
   return {};
 }
 
-Problem check_removed(const Volume& before, const Volume& after, const Cut& cut) {
+Problem check_removed(const Volume& before, const Volume& after, const sweep::Cut& cut) {
   double removed = 0;
   for (std::size_t m = 0; m < cut.removed.size(); ++m) {
     if (!std::isfinite(cut.removed[m]) || cut.removed[m] < 0) return say("removed ", cut.removed[m], " mm³");
-    if (!finite(cut.force[m]) || !finite(cut.torque[m])) return say("force or torque is not finite");
+    if (!geom::finite(cut.force[m]) || !geom::finite(cut.torque[m])) return say("force or torque is not finite");
     removed += cut.removed[m];
   }
   for (std::size_t g = 0; g < after.grids().size(); ++g)
@@ -99,7 +100,7 @@ Problem check_removed(const Volume& before, const Volume& after, const Cut& cut)
 Problem check_same_bytes(const Volume& a, const Volume& b) {
   for (std::size_t g = 0; g < a.grids().size(); ++g)
     for (std::size_t t = 0; t < a.grids()[g].tile_count(); ++t) {
-      const Tile &x = a.grids()[g].tile(t), &y = b.grids()[g].tile(t);
+      const dexel::Tile &x = a.grids()[g].tile(t), &y = b.grids()[g].tile(t);
       if (x.offset != y.offset || x.spans != y.spans || x.normals != y.normals)
         return say("direction ", "xyz"[static_cast<int>(a.grids()[g].axis())], ", tile ", t, " differs");
     }
@@ -122,10 +123,10 @@ Allowed allowed_error(const Stage& stage, const Move& move) {
   const double rounding = 3e-9 * (radius + stage.frame.pitch) + 1.5e-14 * most + 3e-11 * way;
   double hollow = 0, apex = 0;
   Vec2 start{0, 0};
-  for (const ProfileSegment& s : stage.tool.profile().segments()) {
+  for (const tool::ProfileSegment& s : stage.tool.profile().segments()) {
     // Two roots fall together where a ray meets the line that a cone's apex sweeps (sweep/straight_part.cpp).
     if (!s.centre && start.x == 0 && s.to.y > start.y) apex = 1e-7 * (s.to.y - start.y);
-    if (s.centre && start.x + s.to.x < 2 * s.centre->x) hollow = Profile::kConcaveTolerance;
+    if (s.centre && start.x + s.to.x < 2 * s.centre->x) hollow = tool::Profile::kConcaveTolerance;
     start = s.to;
   }
   const bool turns = Motion(move.from, move.to).angle() > 0;

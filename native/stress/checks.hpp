@@ -17,7 +17,7 @@ using Problem = std::string;
 Problem check_spans(const Volume& volume, const Volume* before = nullptr);
 
 /// What the move says it removed is what the volume lost, and the volume did not grow.
-Problem check_removed(const Volume& before, const Volume& after, const Cut& cut);
+Problem check_removed(const Volume& before, const Volume& after, const sweep::Cut& cut);
 
 /// The same spans, normals and offsets, tile by tile.
 Problem check_same_bytes(const Volume& a, const Volume& b);

@@ -17,19 +17,19 @@ struct RayName {
   int i, j;
 };
 
-bool inside(std::span<const Span> ray, double s) {
-  return std::any_of(ray.begin(), ray.end(), [s](const Span& x) { return s >= x.near && s <= x.far; });
+bool inside(std::span<const dexel::Span> ray, double s) {
+  return std::any_of(ray.begin(), ray.end(), [s](const dexel::Span& x) { return s >= x.near && s <= x.far; });
 }
 
-bool is_end(std::span<const Span> ray, double s) {
-  return std::any_of(ray.begin(), ray.end(), [s](const Span& x) { return s == x.near || s == x.far; });
+bool is_end(std::span<const dexel::Span> ray, double s) {
+  return std::any_of(ray.begin(), ray.end(), [s](const dexel::Span& x) { return s == x.near || s == x.far; });
 }
 
 /// Up to `count` rays that differ, chosen evenly, and a few that may not.
 std::vector<RayName> choose_rays(Random& random, const Volume& before, const Volume& after, int count) {
   std::vector<RayName> changed, chosen;
   for (std::size_t g = 0; g < after.grids().size(); ++g) {
-    const Grid &a = before.grids()[g], &b = after.grids()[g];
+    const dexel::Grid &a = before.grids()[g], &b = after.grids()[g];
     for (int i = 0; i < b.nu(); ++i)
       for (int j = 0; j < b.nv(); ++j)
         if (!std::ranges::equal(a.ray(i, j), b.ray(i, j))) changed.push_back({g, i, j});
@@ -42,7 +42,7 @@ std::vector<RayName> choose_rays(Random& random, const Volume& before, const Vol
   }
   for (int k = 0; k < 1 + count / 4; ++k) {
     const std::size_t g = random.bits() % after.grids().size();
-    const Grid& grid = after.grids()[g];
+    const dexel::Grid& grid = after.grids()[g];
     const int i = random.below(grid.nu());
     chosen.push_back({g, i, random.below(grid.nv())});
   }
@@ -52,8 +52,8 @@ std::vector<RayName> choose_rays(Random& random, const Volume& before, const Vol
 /// Compares one ray.
 class RayComparison {
  public:
-  RayComparison(const reference::SweptDistance& swept, const Allowed& allowed, const Grid& before, const Grid& after,
-                const RayName& ray, Comparison& out)
+  RayComparison(const reference::SweptDistance& swept, const Allowed& allowed, const dexel::Grid& before,
+                const dexel::Grid& after, const RayName& ray, Comparison& out)
       : swept_(swept),
         allowed_(allowed.error),
         along_rays_(allowed.along_rays),
@@ -64,7 +64,7 @@ class RayComparison {
         out_(out) {}
 
   void run(Random& random) {
-    for (const Span& s : after_)
+    for (const dexel::Span& s : after_)
       for (const bool near : {true, false}) {
         const double end = near ? s.near : s.far;
         if (!is_end(before_, end)) compare_end(end, near);
@@ -84,7 +84,7 @@ class RayComparison {
     const double lower = grid_.box().lower.z, upper = grid_.box().upper.z;
     std::vector<double> out;
     double last = lower;
-    for (const Span& s : after_) {
+    for (const dexel::Span& s : after_) {
       out.push_back((last + s.near) / 2);
       out.push_back((s.near + s.far) / 2);
       for (const double d : {-3.0, 3.0}) out.push_back(s.near + d * allowed_), out.push_back(s.far + d * allowed_);
@@ -138,8 +138,8 @@ class RayComparison {
   const reference::SweptDistance& swept_;
   double allowed_;
   bool along_rays_;
-  const Grid& grid_;
-  std::span<const Span> before_, after_;
+  const dexel::Grid& grid_;
+  std::span<const dexel::Span> before_, after_;
   RayName ray_;
   Comparison& out_;
 };

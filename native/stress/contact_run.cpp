@@ -24,8 +24,8 @@ struct ContactSession {
   ContactScene scene;
   Mesh part;
   Tool tool;
-  Collider collider;
-  Assembly assembly;
+  collide::Collider collider;
+  collide::Assembly assembly;
   reference::AssemblyDistance reference;
   std::vector<reference::Corners> corners;
 
@@ -67,16 +67,17 @@ class PoseCheck {
   }
 
   std::string operator()(bool judged) {
-    const Contact whole = s_.collider.query(s_.assembly, pose_);
-    const Collider::Nearest nearest = s_.collider.nearest(s_.assembly, pose_);
+    const collide::Contact whole = s_.collider.query(s_.assembly, pose_);
+    const collide::Collider::Nearest nearest = s_.collider.nearest(s_.assembly, pose_);
     const double clearance = s_.collider.clearance(s_.assembly, pose_);
     tally_.touching += whole.depth > 0;
     check_shape(whole, "query");
-    if (!std::isfinite(clearance) || !std::isfinite(nearest.distance) || !finite(nearest.point))
+    if (!std::isfinite(clearance) || !std::isfinite(nearest.distance) || !geom::finite(nearest.point))
       say() << "distance " << clearance << ", nearest " << nearest.distance;
     if (nearest.distance > clearance + rounding_)
       say() << "nearest " << nearest.distance << " is further than the part alone, " << clearance;
-    if (nearest.touch != Touch::Fixture && std::abs(s_.reference(nearest.point, pose_) - nearest.distance) > rounding_)
+    if (nearest.touch != collide::Touch::Fixture &&
+        std::abs(s_.reference(nearest.point, pose_) - nearest.distance) > rounding_)
       say() << "nearest " << nearest.distance << " is not that of its point, " << s_.reference(nearest.point, pose_);
     if (std::abs(whole.depth - std::max(0.0, -nearest.distance)) > rounding_)
       say() << "depth " << whole.depth << " at distance " << nearest.distance;
@@ -94,8 +95,8 @@ class PoseCheck {
     return text_;
   }
 
-  void check_shape(const Contact& c, const char* which) {
-    if (!finite(c.force) || !finite(c.torque) || !std::isfinite(c.depth) || c.depth < 0)
+  void check_shape(const collide::Contact& c, const char* which) {
+    if (!geom::finite(c.force) || !geom::finite(c.torque) || !std::isfinite(c.depth) || c.depth < 0)
       say() << which << ": not finite";
     if (c.points.size() != c.touches.size() || c.points.empty() != (c.depth == 0))
       say() << which << ": " << c.points.size() << " points, " << c.touches.size() << " touches, depth " << c.depth;
@@ -106,7 +107,7 @@ class PoseCheck {
 
   void check_budget(double depth) {
     const double budget = s_.random.one_in(8) ? 0 : s_.random.power_of_ten(-7, -4);
-    const Contact some = s_.collider.query(s_.assembly, pose_, budget);
+    const collide::Contact some = s_.collider.query(s_.assembly, pose_, budget);
     check_shape(some, "budget");
     const double missed = depth - some.depth;
     tally_.cut_short += some.missed_depth_bound > 0;

@@ -18,13 +18,13 @@ namespace {
 class Points {
  public:
   explicit Points(const Volume& volume) {
-    const Frame& frame = volume.frame();
-    for (int k = 0; k < 3; ++k) n_[k] = ray_count(frame.box.size()[k], frame.pitch);
+    const dexel::Frame& frame = volume.frame();
+    for (int k = 0; k < 3; ++k) n_[k] = dexel::ray_count(frame.box.size()[k], frame.pitch);
     votes_.assign(static_cast<std::size_t>(n_.x) * n_.y * n_.z, 0);
-    for (const Grid& grid : volume.grids())
+    for (const dexel::Grid& grid : volume.grids())
       for (int i = 0; i < grid.nu(); ++i)
         for (int j = 0; j < grid.nv(); ++j)
-          for (const Span& s : grid.ray(i, j)) vote(grid, i, j, s);
+          for (const dexel::Span& s : grid.ray(i, j)) vote(grid, i, j, s);
     needed_ = volume.grids().size() == 3 ? 2 : 1;
   }
   bool inside(int i, int j, int k) const {
@@ -48,7 +48,7 @@ class Points {
   }
 
  private:
-  void vote(const Grid& grid, int i, int j, const Span& s) {
+  void vote(const dexel::Grid& grid, int i, int j, const dexel::Span& s) {
     const double h = grid.pitch();
     const int last = n_[static_cast<int>(grid.axis())] - 1;
     // Where the box is one ray wide, the plane of points lies in its middle.
@@ -75,7 +75,7 @@ Problem check_volume(const Volume& volume, const Mesh& mesh) {
     // Its walls stand half a pitch from the rays, at the border, too.
     expected = 0;
     for (std::size_t t = 0; t < volume.reference().tile_count(); ++t)
-      for (const Span& s : volume.reference().tile(t).spans) expected += s.length() * h * h;
+      for (const dexel::Span& s : volume.reference().tile(t).spans) expected += s.length() * h * h;
     allowed = static_cast<double>(volume.reference().span_count()) * cube;
   }
   // Vertices lie on a grid of float32, which is coarse far from the origin.
@@ -92,34 +92,34 @@ Problem check_volume(const Volume& volume, const Mesh& mesh) {
 struct Piece {
   std::size_t grid;
   int i, j;
-  Span span;
-  SpanNormals normals;
+  dexel::Span span;
+  dexel::SpanNormals normals;
 };
 
 std::vector<Piece> pieces_of(const Volume& volume) {
   std::vector<Piece> out;
   for (std::size_t g = 0; g < volume.grids().size(); ++g) {
-    const Grid& grid = volume.grids()[g];
+    const dexel::Grid& grid = volume.grids()[g];
     for (int i = 0; i < grid.nu(); ++i)
       for (int j = 0; j < grid.nv(); ++j) {
         const auto spans = grid.ray(i, j);
         const auto normals = grid.ray_normals(i, j);
         for (std::size_t n = 0; n < spans.size(); ++n)
-          out.push_back({g, i, j, spans[n], normals.empty() ? SpanNormals{} : normals[n]});
+          out.push_back({g, i, j, spans[n], normals.empty() ? dexel::SpanNormals{} : normals[n]});
       }
   }
   return out;
 }
 
-Volume built(const Frame& frame, const std::vector<Piece>& pieces) {
+Volume built(const dexel::Frame& frame, const std::vector<Piece>& pieces) {
   Volume volume(frame);
   for (std::size_t g = 0; g < volume.grids().size(); ++g) {
-    Grid& grid = volume.grids()[g];
+    dexel::Grid& grid = volume.grids()[g];
     std::vector<std::vector<const Piece*>> rays(static_cast<std::size_t>(grid.nu()) * grid.nv());
     for (const Piece& p : pieces)
       if (p.grid == g) rays[static_cast<std::size_t>(p.i) * grid.nv() + p.j].push_back(&p);
     for (std::size_t t = 0; t < grid.tile_count(); ++t)
-      grid.fill_tile(t, [&](int i, int j, TileBuilder& builder) {
+      grid.fill_tile(t, [&](int i, int j, dexel::TileBuilder& builder) {
         for (const Piece* p : rays[static_cast<std::size_t>(i) * grid.nv() + j]) builder.add(p->span, p->normals);
       });
   }
@@ -133,7 +133,7 @@ Problem check_mesh(const Volume& volume, bool threads, std::size_t* triangles) {
   Mesh mesh;
   {
     const ThreadCount one("1");
-    mesh = to_mesh(volume);
+    mesh = marching::to_mesh(volume);
   }
   if (triangles) *triangles = mesh.triangles.size();
   const FloatAudit audit = float_audit(mesh);
@@ -145,13 +145,13 @@ Problem check_mesh(const Volume& volume, bool threads, std::size_t* triangles) {
   if (Problem p = check_volume(volume, mesh); !p.empty()) return p;
   if (!threads) return {};
   const ThreadCount four("4");
-  const Mesh again = to_mesh(volume);
+  const Mesh again = marching::to_mesh(volume);
   if (again.vertices != mesh.vertices || again.triangles != mesh.triangles) return "4 threads give another mesh than 1";
   return {};
 }
 
 Volume minimised(const Volume& volume, const std::function<bool(const Volume&)>& fails) {
-  const Frame frame = volume.frame();
+  const dexel::Frame frame = volume.frame();
   std::vector<Piece> pieces = pieces_of(volume);
   // Zeller and Hildebrandt, "Simplifying and Isolating Failure-Inducing Input", 2002, by complements only.
   for (std::size_t chunk = (pieces.size() + 1) / 2; chunk > 0; chunk = chunk > 1 ? (chunk + 1) / 2 : 0) {

@@ -72,10 +72,10 @@ int run_one(const Arguments& arguments) {
   const Problem problem = problem_of(volume);
   std::printf("%s: %s\n", name(mesh_scene(*arguments.volume)), problem.empty() ? "good" : problem.c_str());
   if (!problem.empty()) volume = minimised(volume, [&](const riffler::Volume& v) { return !problem_of(v).empty(); });
-  if (arguments.save) riffler::save(volume, *arguments.save);
+  if (arguments.save) riffler::dexel::save(volume, *arguments.save);
   if (!problem.empty()) {
     std::size_t spans = 0;
-    for (const riffler::Grid& grid : volume.grids()) spans += grid.span_count();
+    for (const riffler::dexel::Grid& grid : volume.grids()) spans += grid.span_count();
     std::printf("%zu spans of it are enough: %s\n", spans, problem_of(volume).c_str());
   }
   return !problem.empty();

@@ -16,7 +16,7 @@ namespace {
 constexpr double kFar = 0x1p21 - 100;
 
 struct Place {
-  Frame frame;
+  dexel::Frame frame;
   Vec3i cells;
   double h;
 };
@@ -39,16 +39,16 @@ Place draw_place(Random& random, int most = 11) {
   }
   const char* directions = random.one_of({"xyz", "xyz", "xyz", "xyz", "z", "z", "x", "y"});
   out.frame = {{lower, lower + size}, out.h, directions};
-  for (int k = 0; k < 3; ++k) out.cells[k] = ray_count(size[k], out.h);
+  for (int k = 0; k < 3; ++k) out.cells[k] = dexel::ray_count(size[k], out.h);
   return out;
 }
 
-Vec3 along(const Grid& grid) {
+Vec3 along(const dexel::Grid& grid) {
   return to_world(grid.axis(), Vec3(0, 0, 1));
 }
 
 /// Turned into spans with near < far and gaps between them; normals along the ray, or anything.
-SolidSpans spans_from(std::vector<double> ends, const Grid& grid, Random* normals) {
+SolidSpans spans_from(std::vector<double> ends, const dexel::Grid& grid, Random* normals) {
   std::sort(ends.begin(), ends.end());
   SolidSpans out;
   for (std::size_t n = 0; n + 1 < ends.size(); n += 2) {
@@ -68,12 +68,12 @@ Volume contradictory(Random& random) {
 
 /// Spans on every ray round the lattice points that are inside; `cut`: share of the way to the next one.
 template <class Inside>
-Volume from_points(const Frame& frame, double cut, const Inside& inside) {
+Volume from_points(const dexel::Frame& frame, double cut, const Inside& inside) {
   Volume volume(frame);
-  fill(volume, [&](const Grid& grid, int i, int j) {
+  fill(volume, [&](const dexel::Grid& grid, int i, int j) {
     const double h = grid.pitch();
     std::vector<double> ends;
-    for (int k = 0; k < ray_count(grid.box().size().z, h); ++k) {
+    for (int k = 0; k < dexel::ray_count(grid.box().size().z, h); ++k) {
       const Vec3 p = to_world(grid.axis(), Vec3(i, j, k));
       if (!inside(static_cast<int>(p.x), static_cast<int>(p.y), static_cast<int>(p.z))) continue;
       const double at = grid.box().lower.z + (k + 0.5) * h;
@@ -108,14 +108,14 @@ Volume one_ulp(Random& random) {
   Volume volume(draw_place(random).frame);
   const bool alike = random.one_in(2);
   const std::uint64_t seed = random.bits();
-  fill(volume, [&](const Grid& grid, int i, int j) {
+  fill(volume, [&](const dexel::Grid& grid, int i, int j) {
     // The same planes on all rays, or others on each.
     Random own(seed, alike ? 0 : static_cast<std::uint64_t>(i), alike ? 0 : static_cast<std::uint64_t>(j));
     const double h = grid.pitch(), low = grid.box().lower.z, high = grid.box().upper.z;
     const auto step = [&](double at) { return own.one_in(3) ? at : std::nextafter(at, own.one_in(2) ? 1e30 : -1e30); };
     std::vector<double> ends{step(low), step(high)};
     for (int n = own.below(4); n > 0; --n) {
-      const double at = low + h / 2 * own.below(2 * ray_count(high - low, h) + 1);
+      const double at = low + h / 2 * own.below(2 * dexel::ray_count(high - low, h) + 1);
       const double cut = own.one_in(3) ? own.uniform(low, high) : step(at);
       ends.push_back(cut), ends.push_back(std::nextafter(cut, 1e30));
     }
@@ -129,7 +129,7 @@ Volume islands(Random& random) {
   const int rare = 2 + random.below(60);
   const bool one_grid = random.one_in(3);
   const auto axis = static_cast<Axis>(random.below(3));
-  fill(volume, [&](const Grid& grid, int, int) -> SolidSpans {
+  fill(volume, [&](const dexel::Grid& grid, int, int) -> SolidSpans {
     if (!random.one_in(rare) || (one_grid && grid.axis() != axis)) return {};
     const double low = grid.box().lower.z, high = grid.box().upper.z;
     if (random.one_in(3)) return spans_from({low, high}, grid, nullptr);
@@ -212,7 +212,8 @@ Volume booleans(Random& random) {
   const Place place = draw_place(random);
   Volume volume = random.one_in(2) ? Volume::block(place.frame) : solids(random, place, any_solid);
   for (int n = 1 + random.below(4); n > 0; --n) {
-    const Boolean op = random.one_of({Boolean::Subtract, Boolean::Subtract, Boolean::Add, Boolean::Intersect});
+    const dexel::Boolean op = random.one_of(
+        {dexel::Boolean::Subtract, dexel::Boolean::Subtract, dexel::Boolean::Add, dexel::Boolean::Intersect});
     apply(op, volume, solid_volume(place.frame, any_solid(random, place)));
   }
   return volume;
@@ -226,16 +227,16 @@ Volume carved(Random& random) {
   std::vector<Move> moves;
   for (int n = 1 + random.below(4); n > 0; --n) {
     moves.push_back(draw_move(random, stage, volume, moves));
-    CarveOptions options;
+    sweep::CarveOptions options;
     options.tolerance = moves.back().tolerance;
-    carve(volume, stage.tool, std::vector<Pose>{moves.back().from, moves.back().to}, options);
+    sweep::carve(volume, stage.tool, std::vector<Pose>{moves.back().from, moves.back().to}, options);
   }
   return volume;
 }
 
 }  // namespace
 
-SolidSpans spans_at_random(Random& random, const Grid& grid, double share, bool normals) {
+SolidSpans spans_at_random(Random& random, const dexel::Grid& grid, double share, bool normals) {
   const double h = grid.pitch(), low = grid.box().lower.z, high = grid.box().upper.z;
   std::vector<double> ends;
   for (int n = random.uniform() < share ? 1 + random.below(4) : 0; n > 0; --n)
@@ -249,7 +250,7 @@ SolidSpans spans_at_random(Random& random, const Grid& grid, double share, bool 
 }
 
 void fill_at_random(Volume& volume, Random& random, double share, bool normals) {
-  fill(volume, [&](const Grid& grid, int, int) { return spans_at_random(random, grid, share, normals); });
+  fill(volume, [&](const dexel::Grid& grid, int, int) { return spans_at_random(random, grid, share, normals); });
 }
 
 const char* name(MeshScene scene) {

@@ -28,7 +28,7 @@ const char* name(MeshScene scene);
 Volume draw_volume(Random& random, MeshScene scene);
 
 /// One ray's spans, with a chance of `share`: ends anywhere, often on lattice planes or faces of the box.
-SolidSpans spans_at_random(Random& random, const Grid& grid, double share, bool normals);
+SolidSpans spans_at_random(Random& random, const dexel::Grid& grid, double share, bool normals);
 /// Spans that know nothing of each other, on a `share` of the rays; normals along them or, where `normals`, anywhere.
 void fill_at_random(Volume& volume, Random& random, double share, bool normals);
 

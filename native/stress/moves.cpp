@@ -35,7 +35,7 @@ class Drawer {
   Vec3 on_a_ray(int k) {
     Vec3 p = (box_.lower + box_.upper) / 2.0;
     for (int a = 1; a < 3; ++a) {
-      const int c = (k + a) % 3, n = ray_count(box_.size()[c], pitch_);
+      const int c = (k + a) % 3, n = dexel::ray_count(box_.size()[c], pitch_);
       p[c] = box_.lower[c] + (random_.below(n) + 0.5) * pitch_;
     }
     return p;
@@ -92,7 +92,7 @@ void Drawer::tangent_to_ray(Pose& from, Pose& to) {
 void Drawer::on_lattice(Pose& from, Pose& to) {
   from.axis = to.axis = random_.along_rays();
   for (int k = 0; k < 3; ++k) {
-    const int n = 2 * ray_count(box_.size()[k], pitch_);
+    const int n = 2 * dexel::ray_count(box_.size()[k], pitch_);
     from.tip[k] = box_.lower[k] + 0.5 * pitch_ * random_.below(n + 1);
     to.tip[k] = from.tip[k] + (random_.one_in(2) ? 0 : 0.5 * pitch_ * (random_.below(17) - 8));
   }
@@ -101,13 +101,13 @@ void Drawer::on_lattice(Pose& from, Pose& to) {
 /// A point where a ray enters or leaves the material, and the direction of the ray.
 Vec3 Drawer::surface_point(int& along) {
   const auto& grids = now_.grids();
-  const Grid& grid = grids[random_.below(static_cast<int>(grids.size()))];
+  const dexel::Grid& grid = grids[random_.below(static_cast<int>(grids.size()))];
   along = static_cast<int>(grid.axis());
   for (int tries = 0; tries < 20; ++tries) {
     const int i = random_.below(grid.nu()), j = random_.below(grid.nv());
     const auto ray = grid.ray(i, j);
     if (ray.empty()) continue;
-    const Span& s = ray[random_.below(static_cast<int>(ray.size()))];
+    const dexel::Span& s = ray[random_.below(static_cast<int>(ray.size()))];
     return to_world(grid.axis(), {grid.u(i), grid.v(j), random_.one_in(2) ? s.near : s.far});
   }
   return {box_.upper.x, box_.upper.y, box_.upper.z};

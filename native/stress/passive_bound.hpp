@@ -1,7 +1,7 @@
 // The stiffest virtual wall that a device renders without giving energy to the hand, whatever the hand does.
 #pragma once
 
-namespace riffler {
+namespace riffler::haptics {
 
 /// A device in one coordinate, or its effective values along a contact's direction. Zero friction, damping or
 /// resolution is allowed. Units: mm, s, N, or rad, s, N·mm.
@@ -24,4 +24,4 @@ struct PassiveStiffness {
 /// std::invalid_argument naming the field. `wall_damping` is B, N·s/mm.
 PassiveStiffness passive_stiffness(const DeviceTraits& device, double wall_damping = 0);
 
-}  // namespace riffler
+}  // namespace riffler::haptics

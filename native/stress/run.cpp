@@ -26,7 +26,7 @@ std::string describe(const Stage& stage, const Move& move) {
       << "\n  stock: " << stage.frame.box.lower << " … " << stage.frame.box.upper << ", pitch " << stage.frame.pitch
       << ", " << stage.frame.directions << "\n  tool: " << stage.tool.kind();
   for (const auto& [key, value] : stage.tool.parameters()) out << ", " << key << " " << value;
-  for (const ProfileSegment& s : stage.tool.profile().segments()) {
+  for (const tool::ProfileSegment& s : stage.tool.profile().segments()) {
     out << "\n    to " << s.to.x << " " << s.to.y;
     if (s.centre) out << " about " << s.centre->x << " " << s.centre->y;
   }
@@ -46,7 +46,7 @@ std::string to_json(const Tool& tool) {
   }
   if (tool.kind() == "profile") {
     const char* between = ", \"segments\": [";
-    for (const ProfileSegment& s : tool.profile().segments()) {
+    for (const tool::ProfileSegment& s : tool.profile().segments()) {
       out << between << '[' << s.to.x << ", " << s.to.y;
       if (s.centre) out << ", " << s.centre->x << ", " << s.centre->y;
       out << ']', between = ", ";
@@ -97,14 +97,14 @@ class CarvingSession {
       poses.push_back(m.from), poses.push_back(m.to);
     }
     if (poses.size() < 2) return {};
-    CarveOptions options = options_for(moves_.front());
+    sweep::CarveOptions options = options_for(moves_.front());
     options.tolerance = std::max(options.tolerance, 0.02 * stage_.tool.profile().max_radius());
     options.dt.assign(poses.size() - 1, 0.001);
     Volume volumes[] = {Volume::block(stage_.frame), Volume::block(stage_.frame)};
-    Cut cuts[2];
+    sweep::Cut cuts[2];
     for (int k = 0; k < 2; ++k) {
       const ThreadCount threads(k == 0 ? "1" : "4");
-      cuts[k] = carve(volumes[k], stage_.tool, poses, options);
+      cuts[k] = sweep::carve(volumes[k], stage_.tool, poses, options);
     }
     if (cuts[0].removed != cuts[1].removed || cuts[0].force != cuts[1].force || cuts[0].torque != cuts[1].torque)
       return "4 threads give other forces or volumes than 1";
@@ -113,8 +113,8 @@ class CarvingSession {
     return p.empty() ? p : "4 threads give other bytes than 1: " + p;
   }
 
-  Journal journal() const {
-    Journal out;
+  session::Journal journal() const {
+    session::Journal out;
     out.set_stock({stage_.frame.box, stage_.frame.pitch, stage_.frame.directions, ""});
     out.add_tool(1, to_json(stage_.tool));
     for (const Move& m : moves_) out.add_stroke({1, m.tolerance, name(m.kind), {m.from, m.to}, {}});
@@ -126,8 +126,8 @@ class CarvingSession {
   int moves() const { return static_cast<int>(moves_.size()); }
 
  private:
-  static CarveOptions options_for(const Move& move) {
-    CarveOptions options;
+  static sweep::CarveOptions options_for(const Move& move) {
+    sweep::CarveOptions options;
     options.tolerance = move.tolerance;
     options.dt = {0.001};
     return options;
@@ -135,7 +135,7 @@ class CarvingSession {
 
   Problem carve_checked(const Move& move) {
     const Volume before = volume_;
-    const Cut cut = carve(volume_, stage_.tool, std::vector<Pose>{move.from, move.to}, options_for(move));
+    const sweep::Cut cut = sweep::carve(volume_, stage_.tool, std::vector<Pose>{move.from, move.to}, options_for(move));
     Problem p = check_spans(volume_, &before);
     if (p.empty()) p = check_removed(before, volume_, cut);
     if (p.empty() && out_of_reach(stage_, move) && (volume_.revision() != before.revision() || cut.removed[0] != 0))
@@ -208,7 +208,7 @@ void run_session(const Options& options, const std::string& cutter, std::uint64_
         {cutter, options.seed, session, s.moves() - 1, s.last().kind, problem + "\n" + describe(s.stage(), s.last())});
 }
 
-Journal session_journal(const Options& options, const std::string& cutter, std::uint64_t session) {
+session::Journal session_journal(const Options& options, const std::string& cutter, std::uint64_t session) {
   CarvingSession s(options, cutter, session, stream_of(cutter));
   Tally tally;
   while (s.moves() < kMovesInSession && s.step(tally).empty()) {

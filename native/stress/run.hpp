@@ -50,7 +50,7 @@ struct Results {
 void run_session(const Options& options, const std::string& cutter, std::uint64_t session, Results& out);
 
 /// Its stock, tool and moves, up to the first failure, one stroke a move.
-Journal session_journal(const Options& options, const std::string& cutter, std::uint64_t session);
+session::Journal session_journal(const Options& options, const std::string& cutter, std::uint64_t session);
 
 /// At least `moves` moves. `progress`, called after every session, may stop the run by returning false.
 Results run(const Options& options, const std::string& cutter, long moves,

@@ -22,7 +22,7 @@ const char* name(Setting setting);
 /// A stock, a cutter for it, and the tolerance that its moves start from.
 struct Stage {
   Setting setting;
-  Frame frame;
+  dexel::Frame frame;
   Tool tool;
   double tolerance;  ///< mm
   double finest;     ///< mm: tolerances above it could not tell a cut from none, since the cutter is so thin

@@ -26,10 +26,10 @@ double resident_mb() {
 }
 
 /// Over ±15 mm of the pen, twice as much of the tool, by frequencies that never meet again; deeper and deeper.
-HandPath wandering(const Pose& home, double seconds) {
+pen::HandPath wandering(const Pose& home, double seconds) {
   return [home, seconds](double t) {
     const double s = std::max(0.0, t - 1);
-    HandWish wish{.pose = home};
+    pen::HandWish wish{.pose = home};
     wish.pose.tip += Vec3(15 * std::sin(0.9 * s), 15 * std::sin(1.13 * s + 1) - 15 * std::sin(1.0),
                           -3 - 5 * s / seconds + 2 * std::sin(2.3 * s));
     const Vec3 lean(0.2 * std::sin(0.7 * s), 0.2 * std::sin(0.41 * s), 0);
@@ -40,23 +40,23 @@ HandPath wandering(const Pose& home, double seconds) {
 }
 
 /// The loop, and what each of its steps asked the system for.
-class Counted final : public PenStep {
+class Counted final : public pen::PenStep {
  public:
-  Counted(SculptLoop& loop, const SculptingOptions& options, SculptingRun& run)
+  Counted(session::SculptLoop& loop, const SculptingOptions& options, SculptingRun& run)
       : loop_(loop), options_(options), run_(run) {}
-  SafeWrench step(const PenSample& sample, double now, double dt) noexcept override {
+  haptics::SafeWrench step(const pen::PenSample& sample, double now, double dt) noexcept override {
     const long calls = options_.allocations();
-    const std::uint64_t blocks = blocks_from_system();
-    const SafeWrench out = loop_.step(sample, now, dt);
+    const std::uint64_t blocks = base::blocks_from_system();
+    const haptics::SafeWrench out = loop_.step(sample, now, dt);
     if (now > options_.warm) {
       run_.allocations += options_.allocations() - calls;
-      run_.from_system += blocks_from_system() - blocks;
+      run_.from_system += base::blocks_from_system() - blocks;
     }
     return out;
   }
 
  private:
-  SculptLoop& loop_;
+  session::SculptLoop& loop_;
   const SculptingOptions& options_;
   SculptingRun& run_;
 };
@@ -67,8 +67,8 @@ struct Contacts {
   double gained = 0, before = 0;
   std::int64_t pushed_us = 0;
 
-  void add(const SimulatedPen& pen) {
-    const PenEnergy energy = pen.arms().energy();
+  void add(const pen::SimulatedPen& pen) {
+    const pen::PenEnergy energy = pen.arms().energy();
     const double net = energy.motors - energy.lost;
     if (pen.pushes()) pushed_us = pen.time_us();
     if (pen.time_us() - pushed_us > 10'000) before = net;
@@ -77,15 +77,15 @@ struct Contacts {
 };
 
 /// The simulated pen is never gone.
-struct NoConnector final : Connector {
+struct NoConnector final : pen::Connector {
   void begin() noexcept override {}
-  Answer poll(std::unique_ptr<Transport>&, OpenProblem&) noexcept override { return Answer::Pending; }
+  Answer poll(std::unique_ptr<pen::Transport>&, pen::OpenProblem&) noexcept override { return Answer::Pending; }
 };
 
 /// Every move once more, by itself, as a journal's replay would.
-class Again final : public StrokeSink {
+class Again final : public session::StrokeSink {
  public:
-  Again(const Volume& stock, const Tool& tool, const MoveCarver::Options& options)
+  Again(const Volume& stock, const Tool& tool, const sweep::MoveCarver::Options& options)
       : volume(stock), carver_(volume, tool, options) {}
   bool room() noexcept override { return true; }
   void begin(double, const Pose& tool) noexcept override { last_ = tool; }
@@ -98,14 +98,14 @@ class Again final : public StrokeSink {
   /// Not in the thread's step.
   void catch_up() {
     for (const auto& [from, to] : moves_)
-      if (!stands(from, to)) carver_.move(from, to, 1e-3);
+      if (!session::stands(from, to)) carver_.move(from, to, 1e-3);
     moves_.clear();
   }
 
   Volume volume;
 
  private:
-  MoveCarver carver_;
+  sweep::MoveCarver carver_;
   Pose last_;
   std::vector<std::pair<Pose, Pose>> moves_ = reserved();
   static std::vector<std::pair<Pose, Pose>> reserved() {
@@ -115,8 +115,8 @@ class Again final : public StrokeSink {
   }
 };
 
-void take_ticks(SculptLoop& loop, const SculptingOptions& options, SculptingRun& run) {
-  for (SculptTick tick; loop.take(tick);) {
+void take_ticks(session::SculptLoop& loop, const SculptingOptions& options, SculptingRun& run) {
+  for (session::SculptTick tick; loop.take(tick);) {
     ++run.steps, run.missed += tick.missed;
     run.removed += tick.removed;
     run.account = std::min(run.account, tick.energy);
@@ -131,35 +131,35 @@ SculptingRun sculpting_run(const SculptingOptions& options) {
   SculptingRun run;
   run.step_seconds.reserve(static_cast<std::size_t>(1100 * options.seconds));
   run.account = 1e300;
-  SimulatedPenSettings simulated;
+  pen::SimulatedPenSettings simulated;
   simulated.cable.jitter_us = options.jitter_us;
-  const Pose home = SimulatedPen(simulated).arms().posture().pose;
-  const auto pen = std::make_shared<SimulatedPen>(simulated, wandering(home, options.seconds));
-  const auto clock = std::make_shared<SimulatedClock>();
-  auto transport = std::make_unique<SimulatedTransport>(pen, clock);
-  RifflerModel model(*transport);
+  const Pose home = pen::SimulatedPen(simulated).arms().posture().pose;
+  const auto pen = std::make_shared<pen::SimulatedPen>(simulated, wandering(home, options.seconds));
+  const auto clock = std::make_shared<pen::SimulatedClock>();
+  auto transport = std::make_unique<pen::SimulatedTransport>(pen, clock);
+  pen::RifflerModel model(*transport);
   model.home();
 
   const Tool ball = cutters::ball(6, 30);
   const Volume stock = Volume::block({kBox, options.pitch, options.directions});
-  SculptLoopSettings settings;
+  session::SculptLoopSettings settings;
   settings.workspace.scale = 2;
   settings.carving.removal_constant = 0.01;
   settings.sculpt.coupling.stiffness = options.stiffness;
   settings.passivity = model.passivity();
   if (!options.controlled) settings.passivity.reserve = settings.passivity.storage = 1e9;
   Again again(stock, ball, settings.carving);
-  SculptLoop loop(settings, stock, ball, nullptr, model.capability(), Pose{{0, 0, 3}, {0, 0, 1}}, &again);
+  session::SculptLoop loop(settings, stock, ball, nullptr, model.capability(), Pose{{0, 0, 3}, {0, 0, 1}}, &again);
   Counted counted(loop, options, run);
   NoConnector connector;
-  DriverLoop driver(model, counted, connector, *clock, std::move(transport));
+  pen::DriverLoop driver(model, counted, connector, *clock, std::move(transport));
   Contacts contacts;
   pen->on_turn = [&] { contacts.add(*pen); };
 
   Volume shown = stock;
-  Mesher mesher(shown);
-  BlockReserve reserve;
-  std::vector<SculptLoop::Place> places;
+  marching::Mesher mesher(shown);
+  base::BlockReserve reserve;
+  std::vector<session::SculptLoop::Place> places;
   double next_look = 0;
   for (int k = 0; clock->now() < options.seconds; ++k) {
     driver.tick();

@@ -110,19 +110,19 @@ inline Mat3 random_turn(Random& random) {
   return Mat3(a, b, glm::cross(a, b));
 }
 
-inline SpanNormals packed(const SolidSpan& c) {
-  return {PackedNormal::pack(c.near_normal), PackedNormal::pack(c.far_normal)};
+inline dexel::SpanNormals packed(const SolidSpan& c) {
+  return {dexel::PackedNormal::pack(c.near_normal), dexel::PackedNormal::pack(c.far_normal)};
 }
 
 /// Fills every grid of a volume: cuts(grid, i, j) gives each ray's, absolute along the ray; what sticks out of the box
 /// is cut off.
-inline void fill(Volume& volume, const std::function<SolidSpans(const Grid&, int, int)>& cuts) {
-  for (Grid& grid : volume.grids())
+inline void fill(Volume& volume, const std::function<SolidSpans(const dexel::Grid&, int, int)>& cuts) {
+  for (dexel::Grid& grid : volume.grids())
     for (std::size_t t = 0; t < grid.tile_count(); ++t)
-      grid.fill_tile(t, [&](int i, int j, TileBuilder& builder) {
+      grid.fill_tile(t, [&](int i, int j, dexel::TileBuilder& builder) {
         for (const SolidSpan& c : cuts(grid, i, j)) {
           // Within the box to the last bit, which a solid's own arithmetic may miss.
-          const Span span{std::max(c.near, grid.box().lower.z), std::min(c.far, grid.box().upper.z)};
+          const dexel::Span span{std::max(c.near, grid.box().lower.z), std::min(c.far, grid.box().upper.z)};
           if (span.near < span.far) builder.add(span, packed(c));
         }
       });
@@ -130,10 +130,10 @@ inline void fill(Volume& volume, const std::function<SolidSpans(const Grid&, int
 }
 
 /// The part of a solid within the volume's box.
-inline Volume solid_volume(const Frame& frame, const Solid& solid) {
+inline Volume solid_volume(const dexel::Frame& frame, const Solid& solid) {
   Volume volume(frame);
   const Solid clipped = meet(solid, box(frame.box.lower, frame.box.upper));
-  fill(volume, [&](const Grid& grid, int i, int j) {
+  fill(volume, [&](const dexel::Grid& grid, int i, int j) {
     const Vec3 p = to_world(grid.axis(), Vec3(grid.u(i), grid.v(j), 0)), d = to_world(grid.axis(), Vec3(0, 0, 1));
     return clipped(p, d);
   });
@@ -141,17 +141,17 @@ inline Volume solid_volume(const Frame& frame, const Solid& solid) {
 }
 
 /// Replaces the rays i0 … i1 × j0 … j1 of a grid.
-inline void change_rays(Grid& grid, int i0, int i1, int j0, int j1, const std::function<SolidSpans()>& cuts) {
-  for (int a = i0 / kTileSide; a <= i1 / kTileSide; ++a)
-    for (int b = j0 / kTileSide; b <= j1 / kTileSide; ++b) {
+inline void change_rays(dexel::Grid& grid, int i0, int i1, int j0, int j1, const std::function<SolidSpans()>& cuts) {
+  for (int a = i0 / dexel::kTileSide; a <= i1 / dexel::kTileSide; ++a)
+    for (int b = j0 / dexel::kTileSide; b <= j1 / dexel::kTileSide; ++b) {
       const auto old = grid.shared_tile(grid.tile_index(a, b));
-      grid.fill_tile(grid.tile_index(a, b), [&](int i, int j, TileBuilder& builder) {
-        const int r = Grid::ray_index(i, j);
+      grid.fill_tile(grid.tile_index(a, b), [&](int i, int j, dexel::TileBuilder& builder) {
+        const int r = dexel::Grid::ray_index(i, j);
         if (i >= i0 && i <= i1 && j >= j0 && j <= j1)
           for (const SolidSpan& c : cuts()) builder.add({c.near, c.far}, packed(c));
         else
           for (std::size_t n = 0; n < old->ray(r).size(); ++n)
-            builder.add(old->ray(r)[n], old->normals.empty() ? SpanNormals{} : old->ray_normals(r)[n]);
+            builder.add(old->ray(r)[n], old->normals.empty() ? dexel::SpanNormals{} : old->ray_normals(r)[n]);
       });
     }
 }

@@ -156,7 +156,7 @@ class Hand {
 }  // namespace
 
 SessionResult press(const WallDevice& device, const SimulatedWall& wall, const Session& session,
-                    const std::optional<PassivitySettings>& settings) {
+                    const std::optional<haptics::PassivitySettings>& settings) {
   const std::size_t n = wall.normal.size();
   WallSimulation simulation(device, session.guide, wall, settings);
   Hand hand(session, wall.normal);
@@ -183,7 +183,7 @@ SessionResult press(const WallDevice& device, const SimulatedWall& wall, const S
     result.delivered = std::max(result.delivered, static_cast<double>(simulation.delivered()));
     result.measured_delivered =
         std::max(result.measured_delivered, static_cast<double>(simulation.measured_delivered()));
-    if (const Passivity* p = simulation.rendered().passivity()) {
+    if (const haptics::Passivity* p = simulation.rendered().passivity()) {
       result.touched += p->kept() < 1 || p->damped() > 0;
       result.least_energy = tick == 0 ? p->energy() : std::min(result.least_energy, p->energy());
     }

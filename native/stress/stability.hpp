@@ -57,6 +57,6 @@ struct SessionResult {
   long unforeseen = 0;   ///< ticks in which the grip accelerated beyond the settings' bound
 };
 SessionResult press(const WallDevice& device, const SimulatedWall& wall, const Session& session,
-                    const std::optional<PassivitySettings>& settings);
+                    const std::optional<haptics::PassivitySettings>& settings);
 
 }  // namespace riffler::stress

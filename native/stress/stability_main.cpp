@@ -39,7 +39,7 @@ void sampling() {
   for (const double b : {2.5e-4, 5e-4, 1e-3, 1.5e-3, 2e-3, 3e-3}) {
     const WallDevice device = wall_device(kMass, b);
     rows.add(R"({"damping": %.9g, "bound": %.9g, "swing": %.9g, "cunning": %.9g})", b,
-             passive_stiffness({kPeriod, b, 0, 0}).least(), swing_boundary(device, {}, {1.0}),
+             haptics::passive_stiffness({kPeriod, b, 0, 0}).least(), swing_boundary(device, {}, {1.0}),
              cunning_boundary(device, 0, {1.0}, {{1.0}}));
   }
 }
@@ -49,7 +49,8 @@ void wall_damping() {
   for (const double wall : {-1.5e-3, -1e-3, -5e-4, 0.0, 5e-4, 1e-3, 1.5e-3}) {
     const WallDevice device = wall_device(kMass, 2e-3);
     rows.add(R"({"wall_damping": %.9g, "bound": %.9g, "cunning": %.9g})", wall,
-             passive_stiffness({kPeriod, 2e-3, 0, 0}, wall).least(), cunning_boundary(device, wall, {1.0}, {{1.0}}));
+             haptics::passive_stiffness({kPeriod, 2e-3, 0, 0}, wall).least(),
+             cunning_boundary(device, wall, {1.0}, {{1.0}}));
   }
 }
 
@@ -59,7 +60,7 @@ void quantisation() {
     const double damping = 2e-3, friction = 0.2;
     const WallDevice device = wall_device(kMass, damping, friction, step);
     rows.add(R"({"step": %.9g, "bound": %.9g, "cunning": %.9g})", step,
-             passive_stiffness({kPeriod, damping, friction, step}).least(),
+             haptics::passive_stiffness({kPeriod, damping, friction, step}).least(),
              cunning_boundary(device, 0, {1.0}, {{step}}));
   }
 }
@@ -77,7 +78,7 @@ void five_coordinates() {
       directions.push_back(d);
     }
     rows.add(R"({"bound": %.9g, "guided": %.9g, "free": %.9g, "cunning": %.9g})",
-             passive_stiffness({kPeriod, scene.damping, 0, 0}).least(),
+             haptics::passive_stiffness({kPeriod, scene.damping, 0, 0}).least(),
              swing_boundary(scene.device, guide(scene.device, scene.easiest), scene.normal),
              swing_boundary(scene.device, {}, scene.normal),
              cunning_boundary(scene.device, 0, scene.normal, directions));
@@ -86,7 +87,7 @@ void five_coordinates() {
 
 /// A hand leans on walls that are soft and walls that are far too hard, which push with 10 N at the most.
 void sessions(const char* name, const WallDevice& device, const Column& normal, double bound, const WallHand& guide,
-              const PassivitySettings& settings) {
+              const haptics::PassivitySettings& settings) {
   Rows rows(name);
   for (const double times : {0.25, 0.5, 0.8, 0.9, 1.0, 1.1, 1.25, 1.5, 2.0, 3.0, 5.0, 8.0, 15.0, 30.0, 60.0, 100.0}) {
     const SimulatedWall wall{normal, times * bound, 0, true, 10};
@@ -108,7 +109,7 @@ void touched(double damping, double friction) {
   for (const double stiffness : {0.5, 1.0, 2.0, 4.0, 8.0}) {
     long ticks[3];
     for (int half = 0; half <= 2; ++half) {
-      PassivitySettings settings;
+      haptics::PassivitySettings settings;
       settings.resolution.linear = step;
       settings.device_damping.linear = 0.5 * half * damping, settings.device_friction.linear = 0.5 * half * friction;
       const SimulatedWall wall{{1.0}, stiffness, 1e-3, true, 10};
@@ -130,7 +131,7 @@ void pen(double damping, double friction) {
                          Place{"arm, about Z, home (70000 counts, 180 mm)", kTurn / 70'000 * 180},
                          Place{"arm, about Z, stretched (70000 counts, 360 mm)", kTurn / 70'000 * 360},
                          Place{"middle of the grip, one joint of six", 0.5 * kTurn / 48'000 * 180}}) {
-    const PassiveStiffness k = passive_stiffness({kPeriod, damping, friction, p.step});
+    const haptics::PassiveStiffness k = haptics::passive_stiffness({kPeriod, damping, friction, p.step});
     rows.add(
         R"({"place": "%s", "step": %.9g, "damping": %.9g, "friction": %.9g, "sampling": %.9g, "quantisation": %.9g})",
         p.name, p.step, damping, friction, k.sampling, k.quantisation);
@@ -172,7 +173,7 @@ int main(int argc, char** argv) {
     pen(damping, friction);
     if (!arguments.pen_only) {
       sampling(), wall_damping(), quantisation(), five_coordinates(), touched(damping, friction);
-      PassivitySettings settings;
+      haptics::PassivitySettings settings;
       settings.jitter = 0;
       settings.acceleration = {9e4, 0}, settings.resolution = {0, 0}, settings.device_damping = {2e-3, 0};
       sessions("one_session", wall_device(kMass, 2e-3), {1.0}, 4, {}, settings);

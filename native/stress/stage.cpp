@@ -13,8 +13,8 @@ constexpr const char* kCutters[] = {"ball",         "flat",   "fillet",         
                                     "free-profile", "barrel", "corner-rounder", "short-ball", "disc"};
 
 /// `segments` blown up by `scale`.
-Tool scaled(std::vector<ProfileSegment> segments, double scale, double length) {
-  for (ProfileSegment& s : segments) {
+Tool scaled(std::vector<tool::ProfileSegment> segments, double scale, double length) {
+  for (tool::ProfileSegment& s : segments) {
     s.to *= scale;
     if (s.centre) *s.centre *= scale;
   }
@@ -22,7 +22,7 @@ Tool scaled(std::vector<ProfileSegment> segments, double scale, double length) {
 }
 
 /// A flank of radius 20 whose centre lies beyond the axis, for a cutter of radius 3.2.
-std::vector<ProfileSegment> barrel() {
+std::vector<tool::ProfileSegment> barrel() {
   const Vec2 from{1, 0}, to{3, 6}, chord = to - from, across = glm::normalize(Vec2(-chord.y, chord.x));
   const Vec2 centre = (from + to) / 2.0 + across * std::sqrt(400 - glm::dot(chord, chord) / 4);
   return {{from, {}}, {to, centre}, {{3.2, 8}, {}}};
@@ -80,7 +80,7 @@ Stage draw_stage(Random& random, const std::string& cutter) {
   }
   const double reach = std::max(1.5 * glm::length(size), 8 * radius);
   Tool tool = draw_cutter(random, cutter, radius, reach);
-  const Frame frame{{lower, lower + size}, pitch, random.one_in(4) ? "z" : "xyz"};
+  const dexel::Frame frame{{lower, lower + size}, pitch, random.one_in(4) ? "z" : "xyz"};
   const double tolerance = radius * random.power_of_ten(-3.5, -1.5), finest = std::min(tool.length(), radius) / 8;
   return {setting, frame, std::move(tool), tolerance, finest};
 }

@@ -48,10 +48,10 @@ WallDevice wall_device(double mass, double damping, double friction, double reso
 }
 
 RenderedWall::RenderedWall(const WallDevice& device, const SimulatedWall& wall,
-                           const std::optional<PassivitySettings>& settings)
+                           const std::optional<haptics::PassivitySettings>& settings)
     : device_(device), wall_(wall), held_(wall.normal.size(), 0.0) {
   if (settings) passivity_.emplace(*settings);
-  for (std::size_t k = wall.normal.size(); k < kCoordinates; ++k) capability_.push[k] = false;
+  for (std::size_t k = wall.normal.size(); k < haptics::kCoordinates; ++k) capability_.push[k] = false;
 }
 
 void RenderedWall::measure(const Column& position) {
@@ -82,7 +82,7 @@ const Column& RenderedWall::sample(const Column& position) {
 }
 
 WallSimulation::WallSimulation(const WallDevice& device, const WallHand& hand, const SimulatedWall& wall,
-                               const std::optional<PassivitySettings>& settings)
+                               const std::optional<haptics::PassivitySettings>& settings)
     : device_(device),
       hand_(hand),
       rendered_(device, wall, settings),

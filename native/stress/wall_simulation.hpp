@@ -36,12 +36,13 @@ struct SimulatedWall {
 /// What runs at samples: encoder, wall, and the passivity controller if there is one.
 class RenderedWall {
  public:
-  RenderedWall(const WallDevice& device, const SimulatedWall& wall, const std::optional<PassivitySettings>& settings);
+  RenderedWall(const WallDevice& device, const SimulatedWall& wall,
+               const std::optional<haptics::PassivitySettings>& settings);
   /// The force to hold from now on, for the true position at this sample.
   const Column& sample(const Column& position);
   const Column& held() const { return held_; }
   const Column& measured() const { return measured_; }
-  const Passivity* passivity() const { return passivity_ ? &*passivity_ : nullptr; }
+  const haptics::Passivity* passivity() const { return passivity_ ? &*passivity_ : nullptr; }
 
  private:
   void measure(const Column& position);
@@ -50,8 +51,8 @@ class RenderedWall {
   SimulatedWall wall_;
   Column measured_, previous_, held_;
   bool first_ = true;
-  std::optional<Passivity> passivity_;
-  Capability capability_;
+  std::optional<haptics::Passivity> passivity_;
+  haptics::Capability capability_;
 };
 
 /// The device let go, or held by a hand that is a spring to the origin, a damper and a force.
@@ -62,7 +63,7 @@ struct WallHand {
 class WallSimulation {
  public:
   WallSimulation(const WallDevice& device, const WallHand& hand, const SimulatedWall& wall,
-                 const std::optional<PassivitySettings>& settings = {});
+                 const std::optional<haptics::PassivitySettings>& settings = {});
   void place(const Column& position, const Column& velocity);
   /// Samples, then goes on by one period with the force held and `hand` (N, N·mm).
   void tick(const Column& hand);

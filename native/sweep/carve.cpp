@@ -10,7 +10,7 @@
 #include "sweep/cut_region.hpp"
 #include "sweep/grid_carver.hpp"
 
-namespace riffler {
+namespace riffler::sweep {
 
 namespace {
 
@@ -21,7 +21,7 @@ std::string row(std::size_t i) {
 /// What a call gives back, one entry per move; asked of the system only where it may matter.
 void check_memory(std::size_t moves) {
   const double bytes = static_cast<double>(moves) * (sizeof(double) + 2 * sizeof(Vec3));
-  if (moves < 1'000'000 || bytes <= available_memory()) return;
+  if (moves < 1'000'000 || bytes <= dexel::available_memory()) return;
   throw std::invalid_argument("poses: the results of " + std::to_string(moves) + " moves need " +
                               std::to_string(static_cast<long long>(bytes / 1e6)) +
                               " MB, more than this machine has free; carve them in several calls");
@@ -32,7 +32,7 @@ void check_memory(std::size_t moves) {
 void check_path(std::span<const Pose> poses) {
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const Pose& p = poses[i];
-    if (!finite(p.tip) || !finite(p.axis)) throw std::invalid_argument(row(i) + "not finite");
+    if (!geom::finite(p.tip) || !geom::finite(p.axis)) throw std::invalid_argument(row(i) + "not finite");
     const double length = glm::length(p.axis);
     if (!(std::abs(length - 1) < 1e-6))
       throw std::invalid_argument(row(i) + "the axis must be a unit vector; its length is " + std::to_string(length));
@@ -45,21 +45,22 @@ void check_path(std::span<const Pose> poses) {
 }
 
 void check_options(const CarveOptions& options, std::size_t moves) {
-  require_tolerance(options.tolerance);
-  require_between(options.removal_constant, 0, kMaxConstant, "removal_constant", "a number", "N·s/mm³, not negative");
+  base::require_tolerance(options.tolerance);
+  base::require_between(options.removal_constant, 0, base::kMaxConstant, "removal_constant", "a number",
+                        "N·s/mm³, not negative");
   if (!options.dt.empty() && options.dt.size() != moves)
     throw std::invalid_argument("dt must have one value per move: " + std::to_string(moves) + ", not " +
                                 std::to_string(options.dt.size()));
   for (std::size_t i = 0; i < options.dt.size(); ++i)
-    if (!(options.dt[i] >= kMinTime && options.dt[i] <= kMaxTime))
-      require_time(options.dt[i], "dt, row " + std::to_string(i) + ":");
+    if (!(options.dt[i] >= base::kMinTime && options.dt[i] <= base::kMaxTime))
+      base::require_time(options.dt[i], "dt, row " + std::to_string(i) + ":");
 }
 
 Cut carve(Volume& volume, const Tool& tool, std::span<const Pose> poses, const CarveOptions& options) {
   const std::size_t moves = poses.empty() ? 0 : poses.size() - 1;
   check_path(poses);
   check_options(options, moves);
-  require_tolerance_for(options.tolerance, std::max(tool.length(), tool.diameter()));
+  base::require_tolerance_for(options.tolerance, std::max(tool.length(), tool.diameter()));
   check_memory(moves);
   Cut cut{std::vector<double>(moves), std::vector<Vec3>(moves, Vec3(0)), std::vector<Vec3>(moves, Vec3(0))};
   const std::vector<ConvexGroup> cutter = convex_groups(tool.cutter());
@@ -67,20 +68,20 @@ Cut carve(Volume& volume, const Tool& tool, std::span<const Pose> poses, const C
   std::optional<CutRegion> region;
   if (options.mode == CarveMode::Add || options.protect) region = CutRegion::of(volume, options.mode, options.protect);
   Rollback rollback;
-  Stats stats;
+  dexel::Stats stats;
   stats.moves = moves;
   const std::size_t grids = volume.grids().size();
   for (std::size_t g = 0; g < grids; ++g) {
-    Grid& grid = volume.grids()[g];
+    dexel::Grid& grid = volume.grids()[g];
     const bool measured = &grid == &volume.reference();
     GridCarver carver = region ? GridCarver(region->grid(g), measured, options, cut)
                                : GridCarver(grid, measured, options, cut, &rollback);
     const auto next = [](std::size_t m) { return m + 1; };
     carver.run(cutter, poses, moves, next, [&](std::size_t done) {
-      report(options.progress, (static_cast<double>(g) + static_cast<double>(done) / static_cast<double>(moves)) /
-                                   static_cast<double>(grids));
+      base::report(options.progress, (static_cast<double>(g) + static_cast<double>(done) / static_cast<double>(moves)) /
+                                         static_cast<double>(grids));
     });
-    report(options.progress, static_cast<double>(g + 1) / static_cast<double>(grids));
+    base::report(options.progress, static_cast<double>(g + 1) / static_cast<double>(grids));
     stats += carver.take_stats();
   }
   if (region ? region->commit(volume) : rollback.commit()) volume.touch();
@@ -88,8 +89,8 @@ Cut carve(Volume& volume, const Tool& tool, std::span<const Pose> poses, const C
   return cut;
 }
 
-std::vector<double> carve_moves(Grid& grid, std::span<const ConvexGroup> cutter, std::span<const Pose> poses,
-                                std::span<const std::uint32_t> ends, double tolerance, Stats& stats) {
+std::vector<double> carve_moves(dexel::Grid& grid, std::span<const ConvexGroup> cutter, std::span<const Pose> poses,
+                                std::span<const std::uint32_t> ends, double tolerance, dexel::Stats& stats) {
   CarveOptions options;
   options.tolerance = tolerance;
   Cut cut{std::vector<double>(ends.size()), std::vector<Vec3>(ends.size()), std::vector<Vec3>(ends.size())};
@@ -100,4 +101,4 @@ std::vector<double> carve_moves(Grid& grid, std::span<const ConvexGroup> cutter,
   return std::move(cut.removed);
 }
 
-}  // namespace riffler
+}  // namespace riffler::sweep

@@ -5,35 +5,35 @@
 #include "riffler/base/parallel.hpp"
 #include "riffler/dexel/boolean.hpp"
 
-namespace riffler {
+namespace riffler::sweep {
 
 namespace {
 
-using TilePtr = std::shared_ptr<const Tile>;
+using TilePtr = std::shared_ptr<const dexel::Tile>;
 
 /// f(k, builder) for k < count, on all threads.
 template <class F>
 void for_each_tile(std::size_t count, bool with_normals, const F& f) {
   constexpr std::size_t grain = 4;
-  parallel_for(count, grain, [&](std::size_t begin, std::size_t end) {
-    TileBuilder builder(with_normals);
+  base::parallel_for(count, grain, [&](std::size_t begin, std::size_t end) {
+    dexel::TileBuilder builder(with_normals);
     for (std::size_t k = begin; k < end; ++k) f(k, builder);
   });
 }
 
 }  // namespace
 
-GridRegion::GridRegion(const Grid& whole, CarveMode mode, const Grid* protect)
+GridRegion::GridRegion(const dexel::Grid& whole, CarveMode mode, const dexel::Grid* protect)
     : whole_(whole), protect_(protect), mode_(mode), cuttable_(whole), before_(whole.tile_count()) {
   if (mode == CarveMode::Add) box_.emplace(whole).fill();
 }
 
 void GridRegion::open(std::span<const std::size_t> tiles) {
-  for_each_tile(tiles.size(), whole_.has_normals(), [&](std::size_t k, TileBuilder& builder) {
+  for_each_tile(tiles.size(), whole_.has_normals(), [&](std::size_t k, dexel::TileBuilder& builder) {
     const std::size_t t = tiles[k];
     TilePtr tile = whole_.shared_tile(t);
-    if (box_) tile = apply(Boolean::Subtract, whole_, t, box_->shared_tile(t), tile, builder);
-    if (protect_) tile = apply(Boolean::Subtract, whole_, t, tile, protect_->shared_tile(t), builder);
+    if (box_) tile = apply(dexel::Boolean::Subtract, whole_, t, box_->shared_tile(t), tile, builder);
+    if (protect_) tile = apply(dexel::Boolean::Subtract, whole_, t, tile, protect_->shared_tile(t), builder);
     cuttable_.set_tile(t, tile);
     before_[t] = std::move(tile);
   });
@@ -46,7 +46,7 @@ std::vector<std::size_t> GridRegion::changed() const {
   return out;
 }
 
-TilePtr GridRegion::composite(std::size_t tile, TileBuilder& builder) const {
+TilePtr GridRegion::composite(std::size_t tile, dexel::TileBuilder& builder) const {
   return composite_tile(mode_, whole_, tile, whole_.shared_tile(tile), before_[tile], cuttable_.shared_tile(tile),
                         builder);
 }
@@ -68,13 +68,13 @@ bool CutRegion::commit(Volume& volume) const {
   std::vector<Change> changes;
   for (std::size_t g = 0; g < grids_.size(); ++g)
     for (const std::size_t t : grids_[g].changed()) changes.push_back({g, t, nullptr});
-  for_each_tile(changes.size(), volume.grids().front().has_normals(), [&](std::size_t k, TileBuilder& builder) {
+  for_each_tile(changes.size(), volume.grids().front().has_normals(), [&](std::size_t k, dexel::TileBuilder& builder) {
     changes[k].after = grids_[changes[k].grid].composite(changes[k].tile, builder);
   });
   // Nothing below throws: the volume changes as a whole or not at all.
   bool any = false;
   for (Change& c : changes) {
-    Grid& grid = volume.grids()[c.grid];
+    dexel::Grid& grid = volume.grids()[c.grid];
     if (c.after == grid.shared_tile(c.tile)) continue;
     grid.set_tile(c.tile, std::move(c.after));
     any = true;
@@ -82,13 +82,13 @@ bool CutRegion::commit(Volume& volume) const {
   return any;
 }
 
-TilePtr composite_tile(CarveMode mode, const Grid& grid, std::size_t tile, const TilePtr& whole, const TilePtr& before,
-                       const TilePtr& rest, TileBuilder& builder) {
+TilePtr composite_tile(CarveMode mode, const dexel::Grid& grid, std::size_t tile, const TilePtr& whole,
+                       const TilePtr& before, const TilePtr& rest, dexel::TileBuilder& builder) {
   if (rest == before) return whole;
   const bool remove = mode == CarveMode::Remove;
   if (remove && before == whole) return rest;  // nothing of it is protected
-  const TilePtr cut = apply(Boolean::Subtract, grid, tile, before, rest, builder);
-  return apply(remove ? Boolean::Subtract : Boolean::Add, grid, tile, whole, cut, builder);
+  const TilePtr cut = apply(dexel::Boolean::Subtract, grid, tile, before, rest, builder);
+  return apply(remove ? dexel::Boolean::Subtract : dexel::Boolean::Add, grid, tile, whole, cut, builder);
 }
 
-}  // namespace riffler
+}  // namespace riffler::sweep

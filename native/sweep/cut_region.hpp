@@ -10,16 +10,16 @@
 #include "riffler/dexel/volume.hpp"
 #include "riffler/sweep/carve_options.hpp"
 
-namespace riffler {
+namespace riffler::sweep {
 
 /// One grid of a CutRegion.
 class GridRegion {
  public:
   /// `protect`: the grid of what must not change, or null.
-  GridRegion(const Grid& whole, CarveMode mode, const Grid* protect);
+  GridRegion(const dexel::Grid& whole, CarveMode mode, const dexel::Grid* protect);
 
   /// Holds what may be cut, in the tiles that were opened.
-  Grid& cuttable() { return cuttable_; }
+  dexel::Grid& cuttable() { return cuttable_; }
   bool opened(std::size_t tile) const { return before_[tile] != nullptr; }
   /// Computes what may be cut of these tiles, none of which was opened before.
   void open(std::span<const std::size_t> tiles);
@@ -27,15 +27,15 @@ class GridRegion {
   /// The tiles of which something was cut since they were opened.
   std::vector<std::size_t> changed() const;
   /// A changed tile of the whole grid as the cut leaves it. `builder` is empty, and is empty again afterwards.
-  std::shared_ptr<const Tile> composite(std::size_t tile, TileBuilder& builder) const;
+  std::shared_ptr<const dexel::Tile> composite(std::size_t tile, dexel::TileBuilder& builder) const;
 
  private:
-  const Grid& whole_;
-  const Grid* protect_;
+  const dexel::Grid& whole_;
+  const dexel::Grid* protect_;
   CarveMode mode_;
-  Grid cuttable_;
-  std::optional<Grid> box_;                          // full of material: air is what the whole lacks of it
-  std::vector<std::shared_ptr<const Tile>> before_;  // as opened; null: not opened
+  dexel::Grid cuttable_;
+  std::optional<dexel::Grid> box_;                          // full of material: air is what the whole lacks of it
+  std::vector<std::shared_ptr<const dexel::Tile>> before_;  // as opened; null: not opened
 };
 
 /// What CarveMode::Add and `protect` cut: the air in a volume's box or its material, less what is protected. The same
@@ -57,9 +57,10 @@ class CutRegion {
 /// One tile of a whole volume after a cut of what may be changed of it. `whole`: the tile before the cut. `before`:
 /// what could be cut of it. `rest`: what the cut left of that. `tile` is its number in `grid`. Returns `whole` itself
 /// where nothing was cut. `builder` is empty, and is empty again afterwards.
-std::shared_ptr<const Tile> composite_tile(CarveMode mode, const Grid& grid, std::size_t tile,
-                                           const std::shared_ptr<const Tile>& whole,
-                                           const std::shared_ptr<const Tile>& before,
-                                           const std::shared_ptr<const Tile>& rest, TileBuilder& builder);
+std::shared_ptr<const dexel::Tile> composite_tile(CarveMode mode, const dexel::Grid& grid, std::size_t tile,
+                                                  const std::shared_ptr<const dexel::Tile>& whole,
+                                                  const std::shared_ptr<const dexel::Tile>& before,
+                                                  const std::shared_ptr<const dexel::Tile>& rest,
+                                                  dexel::TileBuilder& builder);
 
-}  // namespace riffler
+}  // namespace riffler::sweep

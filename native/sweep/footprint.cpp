@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-namespace riffler {
+namespace riffler::sweep {
 
-Footprint::Footprint(std::span<const Piece> pieces, std::initializer_list<Pose> poses, double slack) {
-  for (const Piece& piece : pieces) {
+Footprint::Footprint(std::span<const tool::Piece> pieces, std::initializer_list<Pose> poses, double slack) {
+  for (const tool::Piece& piece : pieces) {
     Hull& hull = hulls_[count_++];
     const double radius = max_radius(piece);
     hull.thickness = radius + slack;
@@ -22,7 +22,7 @@ Footprint::Footprint(std::span<const Piece> pieces, std::initializer_list<Pose> 
         height_.include(p.z - reach), height_.include(p.z + reach);
       };
       if (ball)
-        add(std::get<Round>(piece).zc);
+        add(std::get<tool::Round>(piece).zc);
       else
         add(bottom(piece)), add(top(piece));
     }
@@ -99,4 +99,4 @@ bool Footprint::overlaps(const Box3& box) const {
          columns_.far >= box.lower.y && height_.near <= box.upper.z && height_.far >= box.lower.z;
 }
 
-}  // namespace riffler
+}  // namespace riffler::sweep

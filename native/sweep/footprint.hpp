@@ -10,14 +10,14 @@
 #include "riffler/tool/piece.hpp"
 #include "sweep/convex_group.hpp"
 
-namespace riffler {
+namespace riffler::sweep {
 
 /// Per piece, the convex hull of its axis at some poses, thickened by its largest radius, seen along the rays (third
 /// coordinate of the cyclic frame).
 class Footprint {
  public:
   /// At most two poses. `slack`: how far the motion between them may leave the hull, mm.
-  Footprint(std::span<const Piece> pieces, std::initializer_list<Pose> poses, double slack);
+  Footprint(std::span<const tool::Piece> pieces, std::initializer_list<Pose> poses, double slack);
 
   /// Ranges of u, of v and of the third coordinate (not always tight).
   const Interval& rows() const { return rows_; }
@@ -25,7 +25,7 @@ class Footprint {
   const Interval& height() const { return height_; }
   /// Ranges of v among the rays at each of n ≤ kTileSide u.
   struct Rows {
-    double near[kTileSide], far[kTileSide];
+    double near[dexel::kTileSide], far[dexel::kTileSide];
   };
   void rows(const double* u, int n, Rows& out) const;
   bool overlaps(const Box3& box) const;
@@ -50,4 +50,4 @@ class Footprint {
   Interval rows_, columns_, height_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::sweep

@@ -7,7 +7,7 @@
 
 #include "riffler/base/parallel.hpp"
 
-namespace riffler {
+namespace riffler::sweep {
 
 namespace {
 
@@ -46,7 +46,7 @@ void GridCarver::cut_steps() {
   if (rays < kSerialRays)
     body(0, work_.size());
   else
-    parallel_for(work_.size(), 1, body);
+    base::parallel_for(work_.size(), 1, body);
   for (Work& w : work_) collect(w);
   work_.clear();
 }
@@ -96,7 +96,7 @@ void GridCarver::sort_pairs(std::size_t first, std::size_t last) {
 
 /// Cuts one tile with its steps of the batch.
 void GridCarver::cut_tile(Work& work) const {
-  const Tile& tile = grid_.tile(work.tile);
+  const dexel::Tile& tile = grid_.tile(work.tile);
   if (tile.spans.empty()) return;
   std::optional<TileCutter> cutter;
   for (std::size_t k = work.begin; k < work.end; ++k) {
@@ -121,4 +121,4 @@ void GridCarver::collect(Work& w) {
   grid_.set_tile(w.tile, std::move(w.done.tile));
 }
 
-}  // namespace riffler
+}  // namespace riffler::sweep

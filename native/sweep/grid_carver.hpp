@@ -17,7 +17,7 @@
 #include "sweep/steps.hpp"
 #include "sweep/tile_cutter.hpp"
 
-namespace riffler {
+namespace riffler::sweep {
 
 /// Brings back the tiles that were replaced unless what was begun is committed. Costs what was cut, not what there is.
 class Rollback {
@@ -30,7 +30,7 @@ class Rollback {
     for (auto& [place, tile] : first_) place.first->set_tile(place.second, std::move(tile));
     first_.clear();
   }
-  void keep(Grid& grid, std::size_t tile) { first_.try_emplace({&grid, tile}, grid.shared_tile(tile)); }
+  void keep(dexel::Grid& grid, std::size_t tile) { first_.try_emplace({&grid, tile}, grid.shared_tile(tile)); }
   /// Calls visit(grid, tile) for each that was replaced.
   template <class Visit>
   void each(const Visit& visit) const {
@@ -44,15 +44,15 @@ class Rollback {
   }
 
  private:
-  using Place = std::pair<Grid*, std::size_t>;
-  using Kept = std::pair<const Place, std::shared_ptr<const Tile>>;
-  std::map<Place, std::shared_ptr<const Tile>, std::less<>, BlockAllocator<Kept>> first_;
+  using Place = std::pair<dexel::Grid*, std::size_t>;
+  using Kept = std::pair<const Place, std::shared_ptr<const dexel::Tile>>;
+  std::map<Place, std::shared_ptr<const dexel::Tile>, std::less<>, base::BlockAllocator<Kept>> first_;
 };
 
 class GridCarver {
  public:
   /// `measured`: what is taken counts towards `cut`. `rollback` may be null.
-  GridCarver(Grid& grid, bool measured, const CarveOptions& options, Cut& cut, Rollback* rollback)
+  GridCarver(dexel::Grid& grid, bool measured, const CarveOptions& options, Cut& cut, Rollback* rollback)
       : grid_(grid), measured_(measured), options_(options), cut_(cut), rollback_(rollback) {}
   /// Cuts what may be cut of a region. The region's commit, not the carver, changes the volume.
   GridCarver(GridRegion& region, bool measured, const CarveOptions& options, Cut& cut)
@@ -80,7 +80,7 @@ class GridCarver {
     flush();
   }
 
-  Stats take_stats() { return std::exchange(stats_, {}); }
+  dexel::Stats take_stats() { return std::exchange(stats_, {}); }
 
  private:
   struct Work {  // one tile and its steps in the batch
@@ -98,18 +98,18 @@ class GridCarver {
   void cut_tile(Work& work) const;
   void collect(Work& w);
 
-  Grid& grid_;
+  dexel::Grid& grid_;
   bool measured_;
   const CarveOptions& options_;
   Cut& cut_;
   Rollback* rollback_;
   GridRegion* region_ = nullptr;
   std::deque<Motion> motions_;  // of the batch, in the grid's cyclic frame; steps point to them
-  BlockVector<Step> steps_;
-  BlockVector<std::pair<std::size_t, std::size_t>> pairs_, sorted_;  // (tile, step)
-  BlockVector<std::uint32_t> starts_;
-  BlockVector<Work> work_;
-  Stats stats_;
+  base::BlockVector<Step> steps_;
+  base::BlockVector<std::pair<std::size_t, std::size_t>> pairs_, sorted_;  // (tile, step)
+  base::BlockVector<std::uint32_t> starts_;
+  base::BlockVector<Work> work_;
+  dexel::Stats stats_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::sweep

@@ -12,7 +12,7 @@
 #include "sweep/lanes/turning_lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace riffler::HWY_NAMESPACE {
+namespace riffler::sweep::HWY_NAMESPACE {
 
 void CutStraight(const StraightBody& body, RayWindow& window) {
   cut_straight_lanes(body, window);
@@ -22,14 +22,14 @@ void CutTurning(const TurningBody& body, RayWindow& window) {
   cut_turning_lanes(body, window);
 }
 
-}  // namespace riffler::HWY_NAMESPACE
+}  // namespace riffler::sweep::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 
 #include <stdexcept>
 
-namespace riffler {
+namespace riffler::sweep {
 
 HWY_EXPORT(CutStraight);
 HWY_EXPORT(CutTurning);
@@ -58,6 +58,6 @@ void use_instruction_set(const std::string& name) {
   hwy::GetChosenTarget().Update(hwy::SupportedTargets());
 }
 
-}  // namespace riffler
+}  // namespace riffler::sweep
 
 #endif

@@ -9,7 +9,7 @@
 #include "sweep/straight_part.hpp"
 #include "sweep/turning_part.hpp"
 
-namespace riffler {
+namespace riffler::sweep {
 
 /// Cuts what a straight part sweeps out of the rays of the window.
 void cut_straight(const StraightBody& body, RayWindow& window);
@@ -21,4 +21,4 @@ std::vector<std::string> instruction_sets();
 /// Uses only this one from now on; "" for the best again. Throws std::invalid_argument for one that is not in the list.
 void use_instruction_set(const std::string& name);
 
-}  // namespace riffler
+}  // namespace riffler::sweep

@@ -7,7 +7,7 @@
 #include "riffler/base/check.hpp"
 #include "sweep/grid_carver.hpp"
 
-namespace riffler {
+namespace riffler::sweep {
 
 struct MoveCarver::Core {
   Core(Volume& volume, const Tool& tool, const Options& options);
@@ -27,9 +27,9 @@ MoveCarver::Core::Core(Volume& volume, const Tool& tool, const Options& options)
   options_.tolerance = options.tolerance, options_.removal_constant = options.removal_constant;
   options_.dt = {1};
   check_options(options_, 1);
-  require_tolerance_for(options_.tolerance, std::max(tool.length(), tool.diameter()));
+  base::require_tolerance_for(options_.tolerance, std::max(tool.length(), tool.diameter()));
   carvers_.reserve(volume.grids().size());
-  for (Grid& grid : volume.grids())
+  for (dexel::Grid& grid : volume.grids())
     carvers_.emplace_back(grid, &grid == &volume.reference(), options_, cut_, &rollback_);
 }
 
@@ -39,7 +39,7 @@ MoveCarver::Taken MoveCarver::Core::move(const Pose& from, const Pose& to, doubl
   options_.dt[0] = dt;
   check_options(options_, 1);
   cut_.removed[0] = 0, cut_.force[0] = cut_.torque[0] = Vec3(0);
-  Stats stats;
+  dexel::Stats stats;
   stats.moves = 1;
   replaced_.clear();
   try {
@@ -51,8 +51,8 @@ MoveCarver::Taken MoveCarver::Core::move(const Pose& from, const Pose& to, doubl
     rollback_.undo();
     throw;
   }
-  const Grid* const first = volume_.grids().data();
-  rollback_.each([&](const Grid& grid, std::size_t tile) {
+  const dexel::Grid* const first = volume_.grids().data();
+  rollback_.each([&](const dexel::Grid& grid, std::size_t tile) {
     replaced_.push_back({static_cast<std::uint32_t>(&grid - first), static_cast<std::uint32_t>(tile)});
   });
   if (rollback_.commit()) volume_.touch();
@@ -77,4 +77,4 @@ std::span<const MoveCarver::Place> MoveCarver::replaced() const {
   return core_->replaced_;
 }
 
-}  // namespace riffler
+}  // namespace riffler::sweep

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace riffler {
+namespace riffler::sweep {
 
 namespace {
 /// Of the size: far more than rounding takes from a kernel's hits and than the pieces of a group may differ by where
@@ -42,7 +42,7 @@ QuickReject::QuickReject(const ConvexGroup& group, const Motion& motion, double 
   if (!(poses[0].axis.z > 0 && poses[1].axis.z > 0)) return;
   kind = Kind::Planes;
   double height = std::numeric_limits<double>::infinity();
-  for (const Piece& piece : group.all()) height = std::min(height, bottom(piece));
+  for (const tool::Piece& piece : group.all()) height = std::min(height, bottom(piece));
   const Interval &rows = footprint.rows(), &columns = footprint.columns();
   double beside = 0;  // how far rays are from a foot, across them
   for (int k = 0; k < 2; ++k) {
@@ -64,4 +64,4 @@ void QuickReject::set_plane(int k, const Vec3& at, const Vec3& up) {
   for (int i = 0; i < 3; ++i) foot[k][i] = at[i], normal[k][i] = up[i];
 }
 
-}  // namespace riffler
+}  // namespace riffler::sweep

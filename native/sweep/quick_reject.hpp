@@ -10,7 +10,7 @@
 #include "sweep/straight_part.hpp"
 #include "sweep/turning_part.hpp"
 
-namespace riffler {
+namespace riffler::sweep {
 
 struct QuickReject {
   enum class Kind : unsigned char { None, Ball, BallAndFlank, Planes } kind = Kind::None;
@@ -34,4 +34,4 @@ struct QuickReject {
   void set_plane(int k, const Vec3& at, const Vec3& up);
 };
 
-}  // namespace riffler
+}  // namespace riffler::sweep

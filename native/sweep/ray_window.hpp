@@ -7,7 +7,7 @@
 #include "riffler/dexel/tile.hpp"
 #include "sweep/quick_reject.hpp"
 
-namespace riffler {
+namespace riffler::sweep {
 
 /// What a step takes from one ray: [near, far], and the motion's t at its two ends.
 struct RayCut {
@@ -17,9 +17,9 @@ struct RayCut {
 /// Sums over the pieces of material taken, each weighted by its length and its ray's share of h². Every ray adds to the
 /// slot of its column modulo kLanes, so that the result does not depend on how many rays a kernel handles at once.
 struct alignas(64) RemovedSums {
-  double length[kLanes] = {};
-  double direction[3][kLanes] = {};  ///< Σ length × direction of the force (unit)
-  double moment[3][kLanes] = {};     ///< Σ length × (middle − pivot) × direction
+  double length[base::kLanes] = {};
+  double direction[3][base::kLanes] = {};  ///< Σ length × direction of the force (unit)
+  double moment[3][base::kLanes] = {};     ///< Σ length × (middle − pivot) × direction
 };
 
 /// The tool's motion, for the direction of the force: the velocity of its material point at p and time t is
@@ -34,18 +34,18 @@ struct ForceLaw {
 
 struct RayWindow {
   // The tile (tile_cut.hpp): the only span of every ray, or the hull of several.
-  const Span* rays;
-  Span* opened;               ///< the same for writing, or null: `open` it first
+  const dexel::Span* rays;
+  dexel::Span* opened;        ///< the same for writing, or null: `open` it first
   const std::uint32_t* many;  ///< bit b of row a: the ray holds several spans
-  double u[kTileSide];
-  alignas(64) double v[kTileSide + kLanes];
+  double u[dexel::kTileSide];
+  alignas(64) double v[dexel::kTileSide + base::kLanes];
   bool uneven;  ///< some cells are no squares of the pitch: areas are share_u × share_v squares
-  double share_u[kTileSide];
-  alignas(64) double share_v[kTileSide + kLanes];
+  double share_u[dexel::kTileSide];
+  alignas(64) double share_v[dexel::kTileSide + base::kLanes];
   double thinnest;  ///< mm: what is left thinner vanishes
   // The part that the step may touch: columns [first[a], end[a]) of rows first_row … last_row, at these heights.
   int first_row, last_row;
-  std::uint8_t first[kTileSide], end[kTileSide];
+  std::uint8_t first[dexel::kTileSide], end[dexel::kTileSide];
   double low, high;
   QuickReject look;
   // What is wanted.
@@ -62,4 +62,4 @@ struct RayWindow {
   bool emptied = false;  ///< rays have become empty here
 };
 
-}  // namespace riffler
+}  // namespace riffler::sweep

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace riffler {
+namespace riffler::sweep {
 
 namespace {
 
@@ -19,9 +19,9 @@ constexpr double kStepMargin = 0.01;
 /// Greatest height on the axis at which the piece can meet the box between two poses less than a quarter turn apart.
 /// Where the axis leans out of a face of the box, o · m > 0, that component is a concave function of the time, and the
 /// disc of radius ρ at height ζ stays beyond the face while tip · m + ζ o · m − ρ √(1 − (o · m)²) does.
-double highest_contact(const Piece& piece, const Pose& from, const Pose& to, const Box3& box) {
+double highest_contact(const tool::Piece& piece, const Pose& from, const Pose& to, const Box3& box) {
   double radius = max_radius(piece), slope = 0;
-  if (const auto* f = std::get_if<Frustum>(&piece))
+  if (const auto* f = std::get_if<tool::Frustum>(&piece))
     slope = (f->r1 - f->r0) / (f->z1 - f->z0), radius = f->r0 - slope * f->z0;  // at ζ = 0
   double height = top(piece);
   for (int i = 0; i < 3; ++i)
@@ -36,27 +36,27 @@ double highest_contact(const Piece& piece, const Pose& from, const Pose& to, con
 }
 
 /// What of convex pieces, from the tip upwards, can meet the box between two poses: all below one height.
-ConvexGroup reachable(std::span<const Piece> pieces, double thinnest, const Pose& from, const Pose& to,
+ConvexGroup reachable(std::span<const tool::Piece> pieces, double thinnest, const Pose& from, const Pose& to,
                       const Box3& box) {
   double height = -std::numeric_limits<double>::infinity();
-  for (const Piece& piece : pieces)
+  for (const tool::Piece& piece : pieces)
     if (const double h = highest_contact(piece, from, to, box); h > bottom(piece)) height = std::max(height, h);
   // A little more, so that no cut ends at the face itself.
   height += kStepMargin * (pieces.empty() ? 0 : max_radius(pieces.back()));
   ConvexGroup out;
   out.thinnest = thinnest;
-  for (const Piece& piece : pieces) {
+  for (const tool::Piece& piece : pieces) {
     if (height <= bottom(piece)) continue;
-    const auto* f = std::get_if<Frustum>(&piece);
+    const auto* f = std::get_if<tool::Frustum>(&piece);
     const bool cut = f && height < f->z1;
-    out.pieces[out.count++] = cut ? Frustum{f->z0, f->r0, height, radius_at(piece, height)} : piece;
+    out.pieces[out.count++] = cut ? tool::Frustum{f->z0, f->r0, height, radius_at(piece, height)} : piece;
   }
   return out;
 }
 
 double lever_of(const ConvexGroup& group) {
   double lever = 0;
-  for (const Piece& p : group.all())
+  for (const tool::Piece& p : group.all())
     lever = std::max(lever, std::hypot(std::max(std::abs(bottom(p)), std::abs(top(p))), max_radius(p)));
   return lever;
 }
@@ -86,7 +86,7 @@ constexpr double kChordShare = 0.4;
 /// The centre of a ball moves on an arc about the tip: |c″| = zc φ², so n chords leave it by at most zc φ² / (8 n²).
 void ball_chords(const ConvexGroup& group, const Motion& motion, double t0, double t1, std::uint32_t move,
                  const Box3& box, double tolerance, const std::function<void(Step&&)>& sink) {
-  const double centre = std::get<Round>(group.pieces[0]).zc, angle = motion.angle() * (t1 - t0);
+  const double centre = std::get<tool::Round>(group.pieces[0]).zc, angle = motion.angle() * (t1 - t0);
   const int n = std::max(1, static_cast<int>(std::ceil(angle * std::sqrt(centre / (8 * kChordShare * tolerance)))));
   Pose from = motion.at(t0);
   for (int k = 0; k < n; ++k) {
@@ -105,7 +105,7 @@ void turning_parts(const ConvexGroup& whole, const Motion& motion, std::uint32_t
   const Interval times = near_box(whole, motion, box);
   if (times.empty()) return;
   double radius = 0;
-  for (const Piece& p : whole.all()) radius = std::max(radius, max_radius(p));
+  for (const tool::Piece& p : whole.all()) radius = std::max(radius, max_radius(p));
   const double length = times.length(), turn = motion.angle() * length;
   const double radii = length * glm::length(motion.to().tip - motion.from().tip) / (kLongestPart * radius);
   const int n = static_cast<int>(std::ceil(std::max({turn / kWidestPart, std::min(radii, kMaxParts), 1.0})));
@@ -131,11 +131,11 @@ void turning_parts(const ConvexGroup& whole, const Motion& motion, std::uint32_t
 
 }  // namespace
 
-TileBlock tiles_under(const Grid& grid, const Footprint& footprint) {
-  const auto [u0, u1] = ray_indices(footprint.rows(), grid.box().lower.x, grid.pitch(), grid.nu());
-  const auto [v0, v1] = ray_indices(footprint.columns(), grid.box().lower.y, grid.pitch(), grid.nv());
+TileBlock tiles_under(const dexel::Grid& grid, const Footprint& footprint) {
+  const auto [u0, u1] = dexel::ray_indices(footprint.rows(), grid.box().lower.x, grid.pitch(), grid.nu());
+  const auto [v0, v1] = dexel::ray_indices(footprint.columns(), grid.box().lower.y, grid.pitch(), grid.nv());
   if (u0 > u1 || v0 > v1) return {0, -1, 0, -1};
-  return {u0 / kTileSide, u1 / kTileSide, v0 / kTileSide, v1 / kTileSide};
+  return {u0 / dexel::kTileSide, u1 / dexel::kTileSide, v0 / dexel::kTileSide, v1 / dexel::kTileSide};
 }
 
 void for_each_step(std::span<const ConvexGroup> cutter, const Motion& motion, std::uint32_t move, const Box3& box,
@@ -159,4 +159,4 @@ void for_each_step(std::span<const ConvexGroup> cutter, const Motion& motion, st
   }
 }
 
-}  // namespace riffler
+}  // namespace riffler::sweep

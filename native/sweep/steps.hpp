@@ -12,7 +12,7 @@
 #include "sweep/straight_part.hpp"
 #include "sweep/turning_part.hpp"
 
-namespace riffler {
+namespace riffler::sweep {
 
 struct StraightPart {
   ConvexGroup group;
@@ -45,7 +45,7 @@ struct TileBlock {
 };
 
 /// The tiles whose rays pass under a footprint.
-TileBlock tiles_under(const Grid& grid, const Footprint& footprint);
+TileBlock tiles_under(const dexel::Grid& grid, const Footprint& footprint);
 
 /// Calls `sink` for every step of the cutter on `motion` that can touch `box`, in order of t. Poses, box and steps are
 /// in the cyclic frame of one grid; `motion` must outlive the steps. Of a turning ball only the centre's path matters:
@@ -53,4 +53,4 @@ TileBlock tiles_under(const Grid& grid, const Footprint& footprint);
 void for_each_step(std::span<const ConvexGroup> cutter, const Motion& motion, std::uint32_t move, const Box3& box,
                    double tolerance, const std::function<void(Step&&)>& sink);
 
-}  // namespace riffler
+}  // namespace riffler::sweep

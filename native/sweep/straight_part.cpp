@@ -4,11 +4,11 @@
 #include <cmath>
 #include <limits>
 
-namespace riffler {
+namespace riffler::sweep {
 
 namespace {
 
-SweptShape swept_shape(const Piece& piece, bool hidden0, bool hidden1) {
+SweptShape swept_shape(const tool::Piece& piece, bool hidden0, bool hidden1) {
   constexpr double kEverywhere = std::numeric_limits<double>::infinity();
   SweptShape s{shape_of(piece), false, false, -kEverywhere, kEverywhere, 0, 0, {}};
   s.face0 = s.cut0 && !hidden0, s.face1 = s.cut1 && !hidden1;
@@ -56,4 +56,4 @@ StraightBody::StraightBody(const ConvexGroup& group, const Pose& from, const Vec
   }
 }
 
-}  // namespace riffler
+}  // namespace riffler::sweep

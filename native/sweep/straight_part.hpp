@@ -6,7 +6,7 @@
 #include "riffler/geom/pose.hpp"
 #include "sweep/convex_group.hpp"
 
-namespace riffler {
+namespace riffler::sweep {
 
 /// Lines a s + b τ = c of a section, for all c: through the point c per_norm (dt, −ds) in the direction (ds, dt).
 struct SectionLine {
@@ -52,4 +52,4 @@ struct StraightBody {
   double middle;           ///< t in the middle
 };
 
-}  // namespace riffler
+}  // namespace riffler::sweep

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace riffler {
+namespace riffler::sweep {
 
 namespace {
 
@@ -80,4 +80,4 @@ Vec3 swept_normal(std::span<const PieceShape> group, const Motion& motion, const
   return swept * ((glm::dot(swept, aside) < 0 ? -1.0 : 1.0) / length);
 }
 
-}  // namespace riffler
+}  // namespace riffler::sweep

@@ -2,19 +2,19 @@
 
 #include <algorithm>
 
-namespace riffler {
+namespace riffler::sweep {
 
 namespace {
 
 /// Whether the rays of a row hold one span each.
 bool one_each(const std::uint32_t* offset) {
   std::uint32_t other = 0;
-  for (int k = 0; k < kTileSide; ++k) other |= (offset[k + 1] - offset[k]) ^ 1U;
+  for (int k = 0; k < dexel::kTileSide; ++k) other |= (offset[k + 1] - offset[k]) ^ 1U;
   return other == 0;
 }
 
 /// Hull of spans that lie within `before`; often the first few reach its ends.
-Interval hull(std::span<const Span> spans, const Interval& before) {
+Interval hull(std::span<const dexel::Span> spans, const Interval& before) {
   constexpr std::size_t kBlock = 32, kStrands = 4;  // no comparison waits for the one before
   Interval strands[kStrands], out;
   const auto include = [](Interval& to, const Interval& s) {
@@ -37,7 +37,7 @@ TileScratch& scratch_of_thread() {
 
 }  // namespace
 
-TileCut::TileCut(const Tile& tile, bool with_normals, double thinnest)
+TileCut::TileCut(const dexel::Tile& tile, bool with_normals, double thinnest)
     : tile_(tile),
       with_normals_(with_normals),
       packed_(tile.offset.one_each()),
@@ -51,37 +51,37 @@ TileCut::TileCut(const Tile& tile, bool with_normals, double thinnest)
 }
 
 void TileCut::unpack() {
-  fresh_ = make_shared_block<Tile>();
-  fresh_->spans.resize(kTileRays);
-  if (with_normals_) fresh_->normals.resize(kTileRays);
+  fresh_ = base::make_shared_block<dexel::Tile>();
+  fresh_->spans.resize(dexel::kTileRays);
+  if (with_normals_) fresh_->normals.resize(dexel::kTileRays);
   rays_ = fresh_->spans.data(), normals_ = fresh_->normals.data();
-  for (int row = 0; row < kTileRays; row += kTileSide) {
+  for (int row = 0; row < dexel::kTileRays; row += dexel::kTileSide) {
     const std::uint32_t* offset = tile_.offset.data() + row;
-    const Span* spans = tile_.spans.data();
-    const SpanNormals* normals = with_normals_ ? tile_.normals.data() : nullptr;
+    const dexel::Span* spans = tile_.spans.data();
+    const dexel::SpanNormals* normals = with_normals_ ? tile_.normals.data() : nullptr;
     if (one_each(offset)) {
-      std::copy_n(spans + *offset, kTileSide, fresh_->spans.begin() + row);
-      if (with_normals_) std::copy_n(normals + *offset, kTileSide, fresh_->normals.begin() + row);
+      std::copy_n(spans + *offset, dexel::kTileSide, fresh_->spans.begin() + row);
+      if (with_normals_) std::copy_n(normals + *offset, dexel::kTileSide, fresh_->normals.begin() + row);
       continue;
     }
-    for (int b = 0; b < kTileSide; ++b)
+    for (int b = 0; b < dexel::kTileSide; ++b)
       put(row + b, spans + offset[b], with_normals_ ? normals + offset[b] : nullptr, offset[b + 1] - offset[b]);
   }
 }
 
-Span* TileCut::open() {
+dexel::Span* TileCut::open() {
   changed_ = true;
   if (!fresh_) {
-    fresh_ = make_shared_block<Tile>(tile_);
+    fresh_ = base::make_shared_block<dexel::Tile>(tile_);
     rays_ = fresh_->spans.data(), normals_ = fresh_->normals.data();
   }
   return fresh_->spans.data();
 }
 
-void TileCut::put(int r, const Span* spans, const SpanNormals* normals, std::uint32_t n) {
-  std::uint32_t& row = many_[r / kTileSide];
-  const std::uint32_t bit = 1U << (r % kTileSide);
-  fresh_->spans[r] = n ? Span{spans[0].near, spans[n - 1].far} : Span{kNone, -kNone};
+void TileCut::put(int r, const dexel::Span* spans, const dexel::SpanNormals* normals, std::uint32_t n) {
+  std::uint32_t& row = many_[r / dexel::kTileSide];
+  const std::uint32_t bit = 1U << (r % dexel::kTileSide);
+  fresh_->spans[r] = n ? dexel::Span{spans[0].near, spans[n - 1].far} : dexel::Span{kNone, -kNone};
   row = n > 1 ? row | bit : row & ~bit;
   if (n == 1 && with_normals_) fresh_->normals[r] = normals[0];
   if (n == 1) return;
@@ -89,9 +89,9 @@ void TileCut::put(int r, const Span* spans, const SpanNormals* normals, std::uin
   if (n == 0) return;
   TileScratch& at = scratch_;
   if (at.pool.empty()) {
-    at.begin.resize(kTileRays), at.count.resize(kTileRays), at.room.assign(kTileRays, 0);
+    at.begin.resize(dexel::kTileRays), at.count.resize(dexel::kTileRays), at.room.assign(dexel::kTileRays, 0);
     // More than rough tiles have, so that a pen's step seldom has to grow it.
-    at.pool.reserve(16 * kTileRays), at.pool_normals.reserve(with_normals_ ? 16 * kTileRays : 0);
+    at.pool.reserve(16 * dexel::kTileRays), at.pool_normals.reserve(with_normals_ ? 16 * dexel::kTileRays : 0);
   }
   if (n > at.room[r]) {
     // Twice as much for a ray that grows again, so that all its places together are a few times the last.
@@ -111,48 +111,48 @@ void TileCut::store(int r) {
 }
 
 /// No ray holds several spans: drops the empty places.
-void TileCut::pack_single(Tile& tile) const {
-  RayOffsets::Array offset;
+void TileCut::pack_single(dexel::Tile& tile) const {
+  dexel::RayOffsets::Array offset;
   std::uint32_t total = 0;
-  for (int r = 0; r < kTileRays; ++r) {
+  for (int r = 0; r < dexel::kTileRays; ++r) {
     offset[r] = total;
-    const Span span = tile.spans[r];
+    const dexel::Span span = tile.spans[r];
     tile.spans[total] = span;
     if (with_normals_) tile.normals[total] = tile.normals[r];
     total += span.near < span.far;
   }
-  offset[kTileRays] = total;
-  tile.offset = RayOffsets(offset);
+  offset[dexel::kTileRays] = total;
+  tile.offset = dexel::RayOffsets(offset);
   tile.spans.resize(total), tile.spans.shrink_to_fit();
   if (with_normals_) tile.normals.resize(total), tile.normals.shrink_to_fit();
 }
 
-void TileCut::pack_all(Tile& tile) const {
-  RayOffsets::Array offset;
+void TileCut::pack_all(dexel::Tile& tile) const {
+  dexel::RayOffsets::Array offset;
   std::uint32_t total = 0;
-  for (int r = 0; r < kTileRays; ++r) offset[r] = total, total += count(r);
-  offset[kTileRays] = total;
-  BlockVector<Span> spans(total);
-  BlockVector<SpanNormals> normals(with_normals_ ? total : 0);
-  for (int r = 0; r < kTileRays; ++r)
+  for (int r = 0; r < dexel::kTileRays; ++r) offset[r] = total, total += count(r);
+  offset[dexel::kTileRays] = total;
+  base::BlockVector<dexel::Span> spans(total);
+  base::BlockVector<dexel::SpanNormals> normals(with_normals_ ? total : 0);
+  for (int r = 0; r < dexel::kTileRays; ++r)
     for (std::uint32_t k = 0, at = offset[r]; at + k < offset[r + 1]; ++k) {
       spans[at + k] = span(r, k);
       if (with_normals_) normals[at + k] = normal(r, k);
     }
-  tile.offset = RayOffsets(offset);
+  tile.offset = dexel::RayOffsets(offset);
   tile.spans = std::move(spans), tile.normals = std::move(normals);
 }
 
-std::shared_ptr<Tile> TileCut::finish() {
+std::shared_ptr<dexel::Tile> TileCut::finish() {
   if (!changed_) return nullptr;
-  Tile& tile = *fresh_;
+  dexel::Tile& tile = *fresh_;
   if (!scratch_.pool.empty())
     pack_all(tile);
   else if (!packed_)
     pack_single(tile);
   tile.reach = hull(tile.spans, tile_.reach);
-  tile.revision = next_revision();
+  tile.revision = dexel::next_revision();
   return std::move(fresh_);
 }
 
-}  // namespace riffler
+}  // namespace riffler::sweep

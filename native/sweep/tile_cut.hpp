@@ -8,15 +8,15 @@
 #include "riffler/dexel/tile.hpp"
 #include "sweep/ray_window.hpp"
 
-namespace riffler {
+namespace riffler::sweep {
 
 /// What a TileCut writes in while it lives; a thread has one, so that no cut asks for memory that another had.
 struct TileScratch {
-  BlockVector<std::uint32_t> begin, count, room;  // of rays with several spans, in the pool
-  BlockVector<Span> pool;                         // rays that grew lie at the end; their old places are forgotten
-  BlockVector<SpanNormals> pool_normals;
-  BlockVector<Span> kept;
-  BlockVector<SpanNormals> kept_normals;
+  base::BlockVector<std::uint32_t> begin, count, room;  // of rays with several spans, in the pool
+  base::BlockVector<dexel::Span> pool;                  // rays that grew lie at the end; their old places are forgotten
+  base::BlockVector<dexel::SpanNormals> pool_normals;
+  base::BlockVector<dexel::Span> kept;
+  base::BlockVector<dexel::SpanNormals> kept_normals;
 };
 
 /// Every ray has one place: its only span (nearly all rays), or the hull of several, which live in a pool. An empty ray
@@ -25,12 +25,12 @@ struct TileScratch {
 class TileCut {
  public:
   /// Spans left thinner than `thinnest` vanish. `tile` must outlive this. A thread has one of these at a time.
-  TileCut(const Tile& tile, bool with_normals, double thinnest);
+  TileCut(const dexel::Tile& tile, bool with_normals, double thinnest);
 
-  const Span* rays() const { return rays_; }
+  const dexel::Span* rays() const { return rays_; }
   const std::uint32_t* many() const { return many_; }
   /// The places for writing spans that stay single; `emptied` says that some have become empty.
-  Span* open();
+  dexel::Span* open();
   void emptied() { packed_ = false; }
 
   /// Takes [cut.near, cut.far] from ray r. `normal_at(s)` is asked for the normal of a new end at s, if normals are
@@ -38,12 +38,12 @@ class TileCut {
   template <class Normal, class Removed>
   void subtract(int r, const Interval& cut, const Normal& normal_at, const Removed& removed) {
     scratch_.kept.clear(), scratch_.kept_normals.clear();
-    const auto end = [&](double s) { return with_normals_ ? normal_at(s) : PackedNormal{}; };
+    const auto end = [&](double s) { return with_normals_ ? normal_at(s) : dexel::PackedNormal{}; };
     bool any = false;
     const std::uint32_t n = count(r);
     for (std::uint32_t k = 0; k < n; ++k) {
-      const Span s = span(r, k);
-      const SpanNormals old = with_normals_ ? normal(r, k) : SpanNormals{};
+      const dexel::Span s = span(r, k);
+      const dexel::SpanNormals old = with_normals_ ? normal(r, k) : dexel::SpanNormals{};
       if (s.far <= cut.near || s.near >= cut.far) {
         keep(s, old);
         continue;
@@ -58,37 +58,37 @@ class TileCut {
   }
 
   /// The result, packed, with a fresh revision; null if nothing was cut.
-  std::shared_ptr<Tile> finish();
+  std::shared_ptr<dexel::Tile> finish();
 
  private:
   static constexpr double kNone = std::numeric_limits<double>::infinity();
-  bool is_many(int r) const { return many_[r / kTileSide] >> (r % kTileSide) & 1U; }
+  bool is_many(int r) const { return many_[r / dexel::kTileSide] >> (r % dexel::kTileSide) & 1U; }
   std::uint32_t count(int r) const { return is_many(r) ? scratch_.count[r] : (rays_[r].near < rays_[r].far ? 1U : 0U); }
-  const Span& span(int r, std::uint32_t k) const {
+  const dexel::Span& span(int r, std::uint32_t k) const {
     return is_many(r) ? scratch_.pool[scratch_.begin[r] + k] : rays_[r];
   }
-  const SpanNormals& normal(int r, std::uint32_t k) const {
+  const dexel::SpanNormals& normal(int r, std::uint32_t k) const {
     return is_many(r) ? scratch_.pool_normals[scratch_.begin[r] + k] : normals_[r];
   }
-  void keep(const Span& s, const SpanNormals& n) {
+  void keep(const dexel::Span& s, const dexel::SpanNormals& n) {
     scratch_.kept.push_back(s);
     if (with_normals_) scratch_.kept_normals.push_back(n);
   }
-  void put(int r, const Span* spans, const SpanNormals* normals, std::uint32_t n);
+  void put(int r, const dexel::Span* spans, const dexel::SpanNormals* normals, std::uint32_t n);
   void unpack();
   void store(int r);
-  void pack_single(Tile& tile) const;
-  void pack_all(Tile& tile) const;
+  void pack_single(dexel::Tile& tile) const;
+  void pack_all(dexel::Tile& tile) const;
 
-  const Tile& tile_;
+  const dexel::Tile& tile_;
   bool with_normals_, changed_ = false;
   bool packed_;  // every ray holds one span, as tiles have them
   double thinnest_;
-  const Span* rays_;
-  const SpanNormals* normals_;   // of the places
-  std::shared_ptr<Tile> fresh_;  // once it is opened, holds the places
-  std::uint32_t many_[kTileSide];
+  const dexel::Span* rays_;
+  const dexel::SpanNormals* normals_;   // of the places
+  std::shared_ptr<dexel::Tile> fresh_;  // once it is opened, holds the places
+  std::uint32_t many_[dexel::kTileSide];
   TileScratch& scratch_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::sweep

@@ -7,25 +7,25 @@
 #include "sweep/kernels.hpp"
 #include "sweep/swept_normal.hpp"
 
-namespace riffler {
+namespace riffler::sweep {
 
-TileCutter::TileCutter(const Grid& grid, std::size_t tile, bool measured, const CarveOptions& options)
+TileCutter::TileCutter(const dexel::Grid& grid, std::size_t tile, bool measured, const CarveOptions& options)
     : grid_(grid),
       options_(options),
-      first_row_(static_cast<int>(tile) / grid.tiles_v() * kTileSide),
-      first_column_(static_cast<int>(tile) % grid.tiles_v() * kTileSide),
+      first_row_(static_cast<int>(tile) / grid.tiles_v() * dexel::kTileSide),
+      first_column_(static_cast<int>(tile) % grid.tiles_v() * dexel::kTileSide),
       rays_(grid.tile(tile), grid.has_normals(), 1e-9 * grid.pitch()),
       window_{} {
   RayWindow& w = window_;
   w.rays = rays_.rays(), w.many = rays_.many();
-  for (int k = 0; k < kTileSide; ++k) w.u[k] = grid.shifted_u(first_row_ + k);
-  for (int k = 0; k < kTileSide + kLanes; ++k) w.v[k] = grid.shifted_v(first_column_ + k);
-  w.uneven = (first_row_ + kTileSide >= grid.nu() && !grid.even_u()) ||
-             (first_column_ + kTileSide >= grid.nv() && !grid.even_v());
+  for (int k = 0; k < dexel::kTileSide; ++k) w.u[k] = grid.shifted_u(first_row_ + k);
+  for (int k = 0; k < dexel::kTileSide + base::kLanes; ++k) w.v[k] = grid.shifted_v(first_column_ + k);
+  w.uneven = (first_row_ + dexel::kTileSide >= grid.nu() && !grid.even_u()) ||
+             (first_column_ + dexel::kTileSide >= grid.nv() && !grid.even_v());
   std::fill(std::begin(w.share_u), std::end(w.share_u), 1.0),
       std::fill(std::begin(w.share_v), std::end(w.share_v), 1.0);
   if (w.uneven)
-    for (int k = 0; k < kTileSide; ++k) {
+    for (int k = 0; k < dexel::kTileSide; ++k) {
       w.share_u[k] = grid.width_u(std::min(first_row_ + k, grid.nu() - 1)) / grid.pitch();
       w.share_v[k] = grid.width_v(std::min(first_column_ + k, grid.nv() - 1)) / grid.pitch();
     }
@@ -40,16 +40,16 @@ TileCutter::TileCutter(const Grid& grid, std::size_t tile, bool measured, const 
 bool TileCutter::set_window(const Footprint& footprint) {
   RayWindow& w = window_;
   const double h = grid_.pitch();
-  const auto [u0, u1] = ray_indices(footprint.rows(), grid_.box().lower.x, h, grid_.nu());
-  w.first_row = std::max(u0 - first_row_, 0), w.last_row = std::min(u1 - first_row_, kTileSide - 1);
+  const auto [u0, u1] = dexel::ray_indices(footprint.rows(), grid_.box().lower.x, h, grid_.nu());
+  w.first_row = std::max(u0 - first_row_, 0), w.last_row = std::min(u1 - first_row_, dexel::kTileSide - 1);
   const int n = w.last_row - w.first_row + 1;
   if (n <= 0) return false;
   Footprint::Rows rows;
   footprint.rows(w.u + w.first_row, n, rows);
   // As ray_indices, within the tile.
-  const int columns = std::min(grid_.nv() - first_column_, kTileSide);
+  const int columns = std::min(grid_.nv() - first_column_, dexel::kTileSide);
   const double lower = grid_.box().lower.y, before = first_column_, most = columns;
-  std::int32_t first[kTileSide], end[kTileSide], any = 0;
+  std::int32_t first[dexel::kTileSide], end[dexel::kTileSide], any = 0;
   for (int k = 0; k < n; ++k) {
     const double near = (rows.near[k] - lower) / h - 0.5 - before, from = std::min(std::max(near, 0.0), most);
     const double far = (rows.far[k] - lower) / h - 0.5 - before, to = std::min(std::max(far, -1.0), most - 1);
@@ -110,14 +110,14 @@ void TileCutter::open() {
 
 /// What the kernel leaves: rays with several spans, splits, and all cuts of a grid that stores normals.
 void TileCutter::cut_one(int ray, const RayCut& cut) {
-  const int row = ray / kTileSide, column = ray % kTileSide;
+  const int row = ray / dexel::kTileSide, column = ray % dexel::kTileSide;
   const double u = window_.u[row], v = window_.v[column];
-  const int slot = (column - window_.first[row]) % kLanes;
+  const int slot = (column - window_.first[row]) % base::kLanes;
   const auto normal_at = [&](double end) {
     const std::span<const PieceShape> group(shapes_.data(), shape_count_);
     const Vec3 n = swept_normal(group, *motion_, {u, v, end}, end == cut.near ? cut.near_t : cut.far_t);
     // The material's new surface looks into the tool.
-    return PackedNormal::pack(to_world(grid_.axis(), -n));
+    return dexel::PackedNormal::pack(to_world(grid_.axis(), -n));
   };
   const auto removed = [&](double low, double high) {
     if (!window_.measured) return;
@@ -137,7 +137,7 @@ void TileCutter::cut_one(int ray, const RayCut& cut) {
 
 /// (3.18)–(3.24) with k per volume and second.
 void TileCutter::add_share() {
-  const auto total = [](const double* slots) { return std::accumulate(slots, slots + kLanes, 0.0); };
+  const auto total = [](const double* slots) { return std::accumulate(slots, slots + base::kLanes, 0.0); };
   if (result_.shares.empty() || result_.shares.back().move != step_->move)
     result_.shares.push_back({step_->move, 0, Vec3(0), Vec3(0)});
   Share& share = result_.shares.back();
@@ -162,4 +162,4 @@ TileResult TileCutter::finish() {
   return std::move(result_);
 }
 
-}  // namespace riffler
+}  // namespace riffler::sweep

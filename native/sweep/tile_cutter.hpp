@@ -12,7 +12,7 @@
 #include "sweep/steps.hpp"
 #include "sweep/tile_cut.hpp"
 
-namespace riffler {
+namespace riffler::sweep {
 
 /// What one tile contributes to one move, in the grid's frame.
 struct Share {
@@ -22,15 +22,15 @@ struct Share {
 };
 
 struct TileResult {
-  std::shared_ptr<Tile> tile;  ///< the new tile, or null if nothing was cut
-  BlockVector<Share> shares;
-  Stats stats;
+  std::shared_ptr<dexel::Tile> tile;  ///< the new tile, or null if nothing was cut
+  base::BlockVector<Share> shares;
+  dexel::Stats stats;
 };
 
 class TileCutter {
  public:
   /// `measured`: what is taken counts towards Cut::removed.
-  TileCutter(const Grid& grid, std::size_t tile, bool measured, const CarveOptions& options);
+  TileCutter(const dexel::Grid& grid, std::size_t tile, bool measured, const CarveOptions& options);
 
   void cut(const Step& step);
   TileResult finish();
@@ -43,7 +43,7 @@ class TileCutter {
   void cut_one(int ray, const RayCut& cut);
   void add_share();
 
-  const Grid& grid_;
+  const dexel::Grid& grid_;
   const CarveOptions& options_;
   int first_row_, first_column_;  // of the tile, in the grid
   TileCut rays_;
@@ -58,4 +58,4 @@ class TileCutter {
   const Motion* motion_ = nullptr;
 };
 
-}  // namespace riffler
+}  // namespace riffler::sweep

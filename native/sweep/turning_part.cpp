@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-namespace riffler {
+namespace riffler::sweep {
 
 namespace {
 
 /// Ends a Round that reaches into the piece above it where that one begins. Of that one, what is too high to matter is
 /// cut off (steps.cpp), and then the Round must not look out of it.
-void end_at(PieceShape& round, const Piece& above) {
+void end_at(PieceShape& round, const tool::Piece& above) {
   round.z1 = bottom(above), round.r1 = radius_at(above, round.z1), round.ball = false, round.cut1 = true;
 }
 
@@ -53,7 +53,7 @@ TurningBody::TurningBody(const ConvexGroup& group, const Motion& motion, double 
       angle(motion.angle()) {
   double lever = 0;
   for (std::size_t k = 0; k < count; ++k) {
-    const Piece& p = group.pieces[k];
+    const tool::Piece& p = group.pieces[k];
     pieces[k] = shape_of(p);
     if (k > 0 && pieces[k - 1].z1 > pieces[k].z0) end_at(pieces[k - 1], p);
     leans = leans || pieces[k].slope != 0, widest = std::max(widest, max_radius(p));
@@ -77,4 +77,4 @@ TurningBody::TurningBody(const ConvexGroup& group, const Motion& motion, double 
   deepest = std::clamp(static_cast<int>(std::ceil(std::log2(std::max(moved / aside, 1.0)))), 1, 40);
 }
 
-}  // namespace riffler
+}  // namespace riffler::sweep

@@ -6,7 +6,7 @@
 #include "riffler/geom/pose.hpp"
 #include "sweep/convex_group.hpp"
 
-namespace riffler {
+namespace riffler::sweep {
 
 /// A circle about the axis, perhaps thickened: a Round, or an edge (`thick` is 0). The planes that touch the group
 /// there are those whose normal n has turn0 ≤ n · axis ≤ turn1.
@@ -40,4 +40,4 @@ struct TurningBody {
   int deepest;         ///< halvings after which no point moves more than `aside`
 };
 
-}  // namespace riffler
+}  // namespace riffler::sweep

@@ -11,7 +11,7 @@
 #include "geom/math.hpp"
 #include "riffler/base/check.hpp"
 
-namespace riffler {
+namespace riffler::tool {
 
 namespace {
 
@@ -38,9 +38,9 @@ constexpr CutterSize kTipHalfAngle{
 constexpr CutterSize kFlatTip{"flat_tip", SizeUnit::Flag, "Flat tip", "A flat instead of a ball at the tip", 0, 1, 0};
 
 void check(const CutterSize& size, double x) {
-  if (size.unit == SizeUnit::Angle) require(x > 0 && x < kPi / 2, size.name, "must lie between 0 and pi/2 rad");
-  if (size.unit == SizeUnit::Length && size.may_be_zero) require_not_negative(x, size.name);
-  if (size.unit == SizeUnit::Length && !size.may_be_zero) require_length(x, size.name);
+  if (size.unit == SizeUnit::Angle) base::require(x > 0 && x < kPi / 2, size.name, "must lie between 0 and pi/2 rad");
+  if (size.unit == SizeUnit::Length && size.may_be_zero) base::require_not_negative(x, size.name);
+  if (size.unit == SizeUnit::Length && !size.may_be_zero) base::require_length(x, size.name);
 }
 
 // Profiles and CUTTER statements, one shape after the other.
@@ -258,11 +258,11 @@ Tool cone_end(double tip_half_angle, double tip_height, double half_angle, doubl
 }
 
 Tool profile(std::vector<ProfileSegment> segments, double length) {
-  require_length(length, "length");
+  base::require_length(length, "length");
   if (segments.empty()) throw std::invalid_argument("segments must not be empty");
   return {"profile", {{"length", length}}, up_to(std::move(segments), length)};
 }
 
 }  // namespace cutters
 
-}  // namespace riffler
+}  // namespace riffler::tool

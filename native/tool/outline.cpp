@@ -6,7 +6,7 @@
 
 #include "base/sort_unique.hpp"
 
-namespace riffler {
+namespace riffler::tool {
 
 namespace {
 
@@ -71,7 +71,7 @@ std::vector<double> levels(const std::vector<OutlineEdge>& curves) {
         if (low < z && z < high) out.push_back(z);
     }
   }
-  sort_unique(out);
+  base::sort_unique(out);
   return out;
 }
 
@@ -199,4 +199,4 @@ std::vector<Vec2> polyline(const OutlineEdge& edge, double tolerance) {
   return out;
 }
 
-}  // namespace riffler
+}  // namespace riffler::tool

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace riffler {
+namespace riffler::tool {
 
 namespace {
 template <class... F>
@@ -35,4 +35,4 @@ double top(const Piece& piece) {
   return std::visit([](const auto& p) { return p.z1; }, piece);
 }
 
-}  // namespace riffler
+}  // namespace riffler::tool

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace riffler {
+namespace riffler::tool {
 
 namespace {
 
@@ -107,4 +107,4 @@ std::vector<Piece> Profile::pieces() const {
   return out;
 }
 
-}  // namespace riffler
+}  // namespace riffler::tool

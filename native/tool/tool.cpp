@@ -5,7 +5,7 @@
 
 #include "riffler/base/check.hpp"
 
-namespace riffler {
+namespace riffler::tool {
 
 namespace {
 
@@ -60,7 +60,7 @@ Tool Tool::with_holder(const std::vector<Frustum>& pieces) const {
 
 Tool Tool::with_margins(double shank, double holder) const {
   for (const auto& [name, margin] : {std::pair("shank", shank), std::pair("holder", holder)})
-    require_not_negative(margin, name, kFiniteAndNotNegative);
+    base::require_not_negative(margin, name, base::kFiniteAndNotNegative);
   Tool tool = *this;
   for (Frustum& f : tool.shank_) f = grown(f, shank, 0);
   for (Frustum& f : tool.holder_) f = grown(f, holder, holder);
@@ -81,4 +81,4 @@ std::vector<ToolPiece> Tool::assembly() const {
   return all;
 }
 
-}  // namespace riffler
+}  // namespace riffler::tool

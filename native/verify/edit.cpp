@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace riffler {
+namespace riffler::verify {
 
 namespace {
 
@@ -53,4 +53,4 @@ void for_moves_of(const RunRows& program, std::span<const std::int64_t> rows, st
   }
 }
 
-}  // namespace riffler
+}  // namespace riffler::verify

@@ -9,7 +9,7 @@
 #include "riffler/nc/program.hpp"
 #include "verify/moves.hpp"
 
-namespace riffler {
+namespace riffler::verify {
 
 /// What of a program decides what happens to material.
 struct RunRows {
@@ -30,4 +30,4 @@ ProgramEdit edit_between(const RunRows& before, const RunRows& now);
 void for_moves_of(const RunRows& program, std::span<const std::int64_t> rows, std::span<const ToolShapes> shapes,
                   double top, const std::function<void(const Moves&)>& f);
 
-}  // namespace riffler
+}  // namespace riffler::verify

@@ -1,9 +1,9 @@
 #include "verify/event.hpp"
 
-namespace riffler {
+namespace riffler::verify {
 
 bool is_strike(const Event& event) {
   return event.fixture < 0 && event.member != Member::Cutter;
 }
 
-}  // namespace riffler
+}  // namespace riffler::verify

@@ -8,7 +8,7 @@
 #include "riffler/geom/vec.hpp"
 #include "riffler/verify/report.hpp"
 
-namespace riffler {
+namespace riffler::verify {
 
 struct Event {
   Kind kind;
@@ -32,4 +32,4 @@ struct SlabReport {
   std::uint64_t strikes = 0;  ///< of shank, holder and beyond, since the program's start
 };
 
-}  // namespace riffler
+}  // namespace riffler::verify

@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <tuple>
 
-namespace riffler {
+namespace riffler::verify {
 
 namespace {
 
@@ -123,4 +123,4 @@ std::string message_of_unknown(const Finding& f, const Tool& tool) {
                   : "describe the shank and the holder");
 }
 
-}  // namespace riffler
+}  // namespace riffler::verify

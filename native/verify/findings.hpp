@@ -10,7 +10,7 @@
 #include "riffler/verify/report.hpp"
 #include "verify/event.hpp"
 
-namespace riffler {
+namespace riffler::verify {
 
 /// Takes events in stretches of ascending rows.
 class FindingList {
@@ -35,4 +35,4 @@ std::string message_of(const Finding& finding);
 /// The message of a finding of Kind::Unknown, which depends on how far its tool is described.
 std::string message_of_unknown(const Finding& finding, const Tool& tool);
 
-}  // namespace riffler
+}  // namespace riffler::verify

@@ -5,27 +5,28 @@
 
 #include "riffler/dexel/from_mesh/from_mesh.hpp"
 
-namespace riffler {
+namespace riffler::verify {
 
 namespace {
 
 /// Whether the piece [near, far] of a part's span begins at the part's surface and is no longer than the tolerance, so
 /// that none of it is deep. Ends in the box's own faces may be within a part that sticks out of it.
-bool surely_shallow(const Grid& grid, const Span& span, double near, double far, double tolerance) {
+bool surely_shallow(const dexel::Grid& grid, const dexel::Span& span, double near, double far, double tolerance) {
   const bool at_surface =
       (near == span.near && near > grid.box().lower.z) || (far == span.far && far < grid.box().upper.z);
   return at_surface && far - near <= tolerance;
 }
 
 /// The part's material of a tile on the rays that lost some of it deep inside, as far as it was still there before.
-std::shared_ptr<const Tile> deep_rays(const PartSurface& surface, const Grid& grid, const Slab& slab, std::size_t k,
-                                      const Tile& part, const Tile& before, const Tile& after) {
-  std::optional<TileBuilder> builder;
-  for (int r = 0; r < kTileRays; ++r) {
+std::shared_ptr<const dexel::Tile> deep_rays(const PartSurface& surface, const dexel::Grid& grid, const Slab& slab,
+                                             std::size_t k, const dexel::Tile& part, const dexel::Tile& before,
+                                             const dexel::Tile& after) {
+  std::optional<dexel::TileBuilder> builder;
+  for (int r = 0; r < dexel::kTileRays; ++r) {
     bool any = false;
     if (!part.ray(r).empty() && !before.ray(r).empty())
       for_each_loss_on_ray(before.ray(r), after.ray(r), [&](double near, double far) {
-        for (const Span& s : part.ray(r)) {
+        for (const dexel::Span& s : part.ray(r)) {
           const double a = std::max(near, s.near), b = std::min(far, s.far);
           if (any || !(a < b) || surely_shallow(grid, s, a, b, surface.tolerance())) continue;
           any = surface.deep(on_ray(grid, slab, k, r, a), on_ray(grid, slab, k, r, b));
@@ -36,8 +37,8 @@ std::shared_ptr<const Tile> deep_rays(const PartSurface& surface, const Grid& gr
       while (builder->rays() < r) builder->next_ray();
     }
     if (any)
-      for (const Span& s : part.ray(r))
-        for (const Span& b : before.ray(r))
+      for (const dexel::Span& s : part.ray(r))
+        for (const dexel::Span& b : before.ray(r))
           if (std::max(s.near, b.near) < std::min(s.far, b.far))
             builder->add({std::max(s.near, b.near), std::min(s.far, b.far)});
     if (builder) builder->next_ray();
@@ -66,8 +67,8 @@ PartSurface::Deepest deepest_loss(const PartSurface& surface, const Workbench& b
 
 }  // namespace
 
-Target::Target(const Mesh& part, const Frame& frame, double tolerance, const Progress& progress)
-    : volume_(from_mesh(part, frame, progress)), surface_(part, tolerance), bounds_(riffler::bounds(part)) {}
+Target::Target(const Mesh& part, const dexel::Frame& frame, double tolerance, const Progress& progress)
+    : volume_(dexel::from_mesh(part, frame, progress)), surface_(part, tolerance), bounds_(mesh::bounds(part)) {}
 
 PartSurface::PartSurface(const Mesh& part, double tolerance) : closest_(part, true), tolerance_(tolerance) {}
 
@@ -110,11 +111,11 @@ void PartSurface::look_deeper(const Vec3& near, const Vec3& far, Deepest& worst)
 void find_gouges(const PartSurface& surface, const SlabTiles& part, Workbench& bench, const SlabTiles& before,
                  const SlabTiles& after, const Moves& moves, std::span<const std::size_t> cuts,
                  std::vector<Event>& events) {
-  SlabTiles deep(before.size(), make_shared_block<const Tile>());
+  SlabTiles deep(before.size(), base::make_shared_block<const dexel::Tile>());
   bool any = false;
   for (std::size_t k = 0; k < before.size(); ++k) {
     if (before[k] == after[k]) continue;
-    const Tile& tile = *part[k];
+    const dexel::Tile& tile = *part[k];
     if (tile.spans.empty() || tile.reach.cut(before[k]->reach).empty()) continue;
     if (auto spans = deep_rays(surface, bench.grid(), bench.slab(), k, tile, *before[k], *after[k]))
       deep[k] = std::move(spans), any = true;
@@ -132,16 +133,16 @@ void find_gouges(const PartSurface& surface, const SlabTiles& part, Workbench& b
   }
 }
 
-void find_missing(const Target& target, const Grid& grid, const Slab& slab, const SlabTiles& stock,
+void find_missing(const Target& target, const dexel::Grid& grid, const Slab& slab, const SlabTiles& stock,
                   std::vector<Event>& events) {
   const PartSurface& surface = target.surface();
   const SlabTiles part = target.tiles(slab);
   PartSurface::Deepest worst;
   for (std::size_t k = 0; k < stock.size(); ++k) {
-    const Tile& tile = *part[k];
+    const dexel::Tile& tile = *part[k];
     if (tile.spans.empty()) continue;
-    for (int r = 0; r < kTileRays; ++r)
-      for (const Span& s : tile.ray(r))
+    for (int r = 0; r < dexel::kTileRays; ++r)
+      for (const dexel::Span& s : tile.ray(r))
         for_each_loss_on_ray({&s, 1}, stock[k]->ray(r), [&](double near, double far) {
           if (surely_shallow(grid, s, near, far, surface.tolerance())) return;
           const Vec3 a = on_ray(grid, slab, k, r, near), b = on_ray(grid, slab, k, r, far);
@@ -153,4 +154,4 @@ void find_missing(const Target& target, const Grid& grid, const Slab& slab, cons
     events.push_back({Kind::Gouge, Member::Cutter, -1, 0, worst.depth, worst.depth, worst.point});
 }
 
-}  // namespace riffler
+}  // namespace riffler::verify

@@ -7,7 +7,7 @@
 #include "verify/moves.hpp"
 #include "verify/workbench.hpp"
 
-namespace riffler {
+namespace riffler::verify {
 
 /// How deep under the part's surface. Read by several threads at once.
 class PartSurface {
@@ -16,7 +16,7 @@ class PartSurface {
   PartSurface(const Mesh& part, double tolerance);
 
   /// With sides.
-  const Closest& closest() const { return closest_; }
+  const mesh::Closest& closest() const { return closest_; }
   double tolerance() const { return tolerance_; }
 
   /// How deep under the part's surface (to 1 %), mm, and where.
@@ -30,7 +30,7 @@ class PartSurface {
   bool deep(const Vec3& near, const Vec3& far) const;
 
  private:
-  Closest closest_;
+  mesh::Closest closest_;
   double tolerance_;
 };
 
@@ -39,7 +39,7 @@ class Target {
  public:
   /// `frame` is the stock's; `tolerance` as for PartSurface. std::invalid_argument where the mesh is none to make a
   /// volume of.
-  Target(const Mesh& part, const Frame& frame, double tolerance, const Progress& progress = {});
+  Target(const Mesh& part, const dexel::Frame& frame, double tolerance, const Progress& progress = {});
 
   const PartSurface& surface() const { return surface_; }
   const Box3& bounds() const { return bounds_; }
@@ -60,7 +60,7 @@ void find_gouges(const PartSurface& surface, const SlabTiles& part, Workbench& b
                  std::vector<Event>& events);
 
 /// Material of the part that the stock lacks from the start: an event of row 0, or nothing.
-void find_missing(const Target& target, const Grid& grid, const Slab& slab, const SlabTiles& stock,
+void find_missing(const Target& target, const dexel::Grid& grid, const Slab& slab, const SlabTiles& stock,
                   std::vector<Event>& events);
 
-}  // namespace riffler
+}  // namespace riffler::verify

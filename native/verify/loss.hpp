@@ -4,13 +4,13 @@
 #include "riffler/dexel/grid.hpp"
 #include "verify/slab.hpp"
 
-namespace riffler {
+namespace riffler::verify {
 
 /// Calls f(near, far) for every piece of `before` that `after` does not have, upwards.
 template <class F>
-void for_each_loss_on_ray(std::span<const Span> before, std::span<const Span> after, const F& f) {
+void for_each_loss_on_ray(std::span<const dexel::Span> before, std::span<const dexel::Span> after, const F& f) {
   std::size_t next = 0;
-  for (const Span& s : before) {
+  for (const dexel::Span& s : before) {
     double from = s.near;
     while (next < after.size() && after[next].far <= from) ++next;
     for (std::size_t k = next; k < after.size() && after[k].near < s.far; ++k) {
@@ -23,8 +23,8 @@ void for_each_loss_on_ray(std::span<const Span> before, std::span<const Span> af
 
 /// Calls f(ray, near, far) for every such piece, ray by ray.
 template <class F>
-void for_each_loss(const Tile& before, const Tile& after, const F& f) {
-  for (int r = 0; r < kTileRays; ++r)
+void for_each_loss(const dexel::Tile& before, const dexel::Tile& after, const F& f) {
+  for (int r = 0; r < dexel::kTileRays; ++r)
     for_each_loss_on_ray(before.ray(r), after.ray(r), [&](double near, double far) { f(r, near, far); });
 }
 
@@ -36,8 +36,8 @@ struct Loss {
 };
 
 /// World coordinates of a point on a ray of the slab's tile k.
-Vec3 on_ray(const Grid& grid, const Slab& slab, std::size_t k, int ray, double w);
+Vec3 on_ray(const dexel::Grid& grid, const Slab& slab, std::size_t k, int ray, double w);
 
-Loss loss_of(const Grid& grid, const Slab& slab, const SlabTiles& before, const SlabTiles& after);
+Loss loss_of(const dexel::Grid& grid, const Slab& slab, const SlabTiles& before, const SlabTiles& after);
 
-}  // namespace riffler
+}  // namespace riffler::verify

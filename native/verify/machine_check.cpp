@@ -3,18 +3,18 @@
 #include "nc/write/row_check.hpp"
 #include "riffler/nc/edit.hpp"
 
-namespace riffler {
+namespace riffler::verify {
 
-std::optional<Finding> machine_fault(const Program& program, std::int64_t first_row, const MachineChoice& machine) {
-  WriteOptions how;
+std::optional<Finding> machine_fault(const nc::Program& program, std::int64_t first_row, const MachineChoice& machine) {
+  nc::WriteOptions how;
   how.post = machine.name, how.options = machine.options;
-  const RowCheck check(how);
+  const nc::RowCheck check(how);
   const bool moved = machine.turn != Mat3(1) || machine.shift != Vec3(0);
   const auto fault =
       moved ? check.first_fault(transformed(program, machine.turn, machine.shift)) : check.first_fault(program);
   if (!fault) return std::nullopt;
   // What the program lacks is no fault of the machine.
-  if (fault->name() != "poses") throw RowError(*fault);
+  if (fault->name() != "poses") throw nc::RowError(*fault);
   Finding found{};
   found.kind = Kind::Machine;
   const std::size_t row = fault->row();
@@ -26,4 +26,4 @@ std::optional<Finding> machine_fault(const Program& program, std::int64_t first_
   return found;
 }
 
-}  // namespace riffler
+}  // namespace riffler::verify

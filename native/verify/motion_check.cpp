@@ -11,55 +11,56 @@
 #include "riffler/base/parallel.hpp"
 #include "verify/slab_run.hpp"
 
-namespace riffler {
+namespace riffler::verify {
 
 namespace {
 
 constexpr std::size_t kGrain = 32;
 constexpr std::size_t kMaxEvaluations = 200'000;
 
-const Tool& tool_of(const Program& program, std::size_t row) {
+const Tool& tool_of(const nc::Program& program, std::size_t row) {
   const int number = program.tool()[row];
   const auto found = program.tools.find(number);
   if (found == program.tools.end())
-    throw RowError(
+    throw nc::RowError(
         "poses", row,
         "tool " + std::to_string(number) + " has no shape, so its moves cannot be checked: give it in tools");
   return found->second;
 }
 
-const char* kind_of(const MachineStep& step) {
+const char* kind_of(const nc::MachineStep& step) {
   if (step.first) return "coming down to it ";
   return step.rapid ? "on the rapid there " : "on the feed move there ";
 }
 
 }  // namespace
 
-void refuse_collisions(const Program& program, const MachineMotion& motion, const Collider& collider, double tolerance,
-                       std::size_t* swept, const Progress& progress) {
-  require_positive(tolerance, "contact_tolerance", kPositiveAndFinite);
+void refuse_collisions(const nc::Program& program, const nc::MachineMotion& motion, const collide::Collider& collider,
+                       double tolerance, std::size_t* swept, const Progress& progress) {
+  base::require_positive(tolerance, "contact_tolerance", base::kPositiveAndFinite);
   struct Shape {
-    Assembly assembly;
-    ToolEnvelope reach;
+    collide::Assembly assembly;
+    nc::ToolEnvelope reach;
   };
   std::map<int, Shape> shapes;
-  for (const MachineStep& step : motion)
+  for (const nc::MachineStep& step : motion)
     if (const int number = program.tool()[step.row]; shapes.find(number) == shapes.end()) {
       const Tool& tool = tool_of(program, step.row);
-      shapes.emplace(number, Shape{Assembly(tool), ToolEnvelope(&tool)});
+      shapes.emplace(number, Shape{collide::Assembly(tool), nc::ToolEnvelope(&tool)});
     }
   const Box3 around = collider.bounds().grown(tolerance);
   std::atomic<std::size_t> first{motion.size()}, looked{0};
-  parallel_for(
+  base::parallel_for(
       motion.size(), kGrain,
       [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end && k < first; ++k) {
-          const MachineStep& step = motion[k];
+          const nc::MachineStep& step = motion[k];
           const Shape& shape = shapes.at(program.tool()[step.row]);
           if (!shape.reach.swept_box(step.from, step.to).overlaps(around)) continue;
           ++looked;
-          const Swept found = collider.sweep(shape.assembly, Motion(step.from, step.to), -tolerance, kMaxEvaluations);
-          if (found.answer == Swept::Answer::Clear) continue;
+          const collide::Swept found =
+              collider.sweep(shape.assembly, Motion(step.from, step.to), -tolerance, kMaxEvaluations);
+          if (found.answer == collide::Swept::Answer::Clear) continue;
           for (std::size_t known = first; k < known && !first.compare_exchange_weak(known, k);) {
           }
           return;
@@ -68,28 +69,29 @@ void refuse_collisions(const Program& program, const MachineMotion& motion, cons
       progress);
   if (swept) *swept += looked;
   if (first == motion.size()) return;
-  const MachineStep& step = motion[first];
-  const Assembly& assembly = shapes.at(program.tool()[step.row]).assembly;
-  throw RowError("poses", step.row,
-                 kind_of(step) +
-                     meeting(collider, assembly, deepest_pose(collider, assembly, Motion(step.from, step.to))) +
-                     ": make the program with this collider (Program.from_cl), plan with more clearance, or move the "
-                     "fixture");
+  const nc::MachineStep& step = motion[first];
+  const collide::Assembly& assembly = shapes.at(program.tool()[step.row]).assembly;
+  throw nc::RowError(
+      "poses", step.row,
+      kind_of(step) +
+          nc::meeting(collider, assembly, nc::deepest_pose(collider, assembly, Motion(step.from, step.to))) +
+          ": make the program with this collider (Program.from_cl), plan with more clearance, or move the "
+          "fixture");
 }
 
-void refuse_strikes(const Program& program, const MachineMotion& motion, const Volume& stock, double tolerance,
+void refuse_strikes(const nc::Program& program, const nc::MachineMotion& motion, const Volume& stock, double tolerance,
                     const Progress& progress) {
-  Program made;
+  nc::Program made;
   made.reserve(motion.size() + 1);
   made.tools = program.tools;
   constexpr double kFeed = 1000;  // any: times do not count
   std::vector<std::size_t> rows;
-  const auto add = [&](const MachineStep& step, const Pose& pose, bool rapid) {
+  const auto add = [&](const nc::MachineStep& step, const Pose& pose, bool rapid) {
     made.append({pose, rapid ? 0 : kFeed, program.spindle()[step.row], program.tool()[step.row], 0, rapid});
     rows.push_back(step.row);
   };
   const Pose* last = nullptr;
-  for (const MachineStep& step : motion) {
+  for (const nc::MachineStep& step : motion) {
     tool_of(program, step.row);
     if (!last || last->tip != step.from.tip || last->axis != step.from.axis) add(step, step.from, true);
     add(step, step.to, step.rapid);
@@ -97,8 +99,8 @@ void refuse_strikes(const Program& program, const MachineMotion& motion, const V
   }
   VerifyOptions options;
   options.tolerance = tolerance;
-  SlabRun run({.stock = stock.snapshot(), .options = options}, part(progress, 0, 0.2));
-  run.feed(made, part(progress, 0.2, 1));
+  SlabRun run({.stock = stock.snapshot(), .options = options}, base::part(progress, 0, 0.2));
+  run.feed(made, base::part(progress, 0.2, 1));
   const VerifyReport report = run.finish();
   for (const Finding& finding : report.findings) {
     if (finding.kind == Kind::Spindle) continue;
@@ -106,8 +108,8 @@ void refuse_strikes(const Program& program, const MachineMotion& motion, const V
     char place[96];
     std::snprintf(place, sizeof place, " at [%.3f %.3f %.3f]", finding.point.x + 0.0, finding.point.y + 0.0,
                   finding.point.z + 0.0);
-    throw RowError("poses", row, "on the way there" + std::string(place) + " " + finding.message);
+    throw nc::RowError("poses", row, "on the way there" + std::string(place) + " " + finding.message);
   }
 }
 
-}  // namespace riffler
+}  // namespace riffler::verify

@@ -6,18 +6,18 @@
 #include "riffler/nc/machine/machine_motion.hpp"
 #include "riffler/nc/program.hpp"
 
-namespace riffler {
+namespace riffler::verify {
 
 /// Checks every stretch of `motion` with cutter, shank and holder by Collider::sweep, that is, not at samples;
 /// stretches that are far from part and fixtures by their boxes alone. RowError of the first one that enters them by
 /// more than `tolerance` (mm), with what is met, where and what to do; std::invalid_argument for a tool without a
 /// shape. `swept`: added to, how many stretches were not dismissed by their boxes.
-void refuse_collisions(const Program& program, const MachineMotion& motion, const Collider& collider, double tolerance,
-                       std::size_t* swept = nullptr, const Progress& progress = {});
+void refuse_collisions(const nc::Program& program, const nc::MachineMotion& motion, const collide::Collider& collider,
+                       double tolerance, std::size_t* swept = nullptr, const Progress& progress = {});
 
 /// Runs the motion on the stock as verification does: RowError of the first rapid in material and the first place where
 /// shank or holder meet it.
-void refuse_strikes(const Program& program, const MachineMotion& motion, const Volume& stock, double tolerance,
+void refuse_strikes(const nc::Program& program, const nc::MachineMotion& motion, const Volume& stock, double tolerance,
                     const Progress& progress = {});
 
-}  // namespace riffler
+}  // namespace riffler::verify

@@ -4,7 +4,7 @@
 
 #include "riffler/base/parallel.hpp"
 
-namespace riffler {
+namespace riffler::verify {
 
 Moves::Moves(std::span<const Pose> poses, std::uint32_t stride, std::span<const ToolShapes> shapes, double top)
     : poses_(poses), stride_(stride), shapes_(shapes), top_(top) {}
@@ -13,7 +13,7 @@ void Moves::finish() {
   const std::size_t n = size();
   cutter_.resize(n), probes_.resize(n), blocks_.resize((n + kBlock - 1) / kBlock);
   constexpr std::size_t grain = 16;
-  parallel_for(blocks_.size(), grain, [&](std::size_t begin, std::size_t end) {
+  base::parallel_for(blocks_.size(), grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b)
       for (std::size_t i = b * kBlock; i < std::min(n, (b + 1) * kBlock); ++i) {
         if (tool_[i] == kNoTool) continue;
@@ -36,4 +36,4 @@ Moves::Touch Moves::touch(std::size_t i, const Box3& box) const {
   return static_cast<Touch>(out);
 }
 
-}  // namespace riffler
+}  // namespace riffler::verify

@@ -8,7 +8,7 @@
 #include "riffler/geom/pose.hpp"
 #include "verify/shapes.hpp"
 
-namespace riffler {
+namespace riffler::verify {
 
 /// Moves with no tool that could meet anything.
 inline constexpr std::uint32_t kNoTool = ~0U;
@@ -65,4 +65,4 @@ class Moves {
   std::vector<Box3> blocks_;           // of kBlock moves, all of the tool
 };
 
-}  // namespace riffler
+}  // namespace riffler::verify

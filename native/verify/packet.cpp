@@ -1,6 +1,6 @@
 #include "verify/packet.hpp"
 
-namespace riffler {
+namespace riffler::verify {
 
 const char* name_of(PacketKind kind) {
   static constexpr const char* names[] = {"the context of slabs", "a slab", "a slab's moves", "a slab's result"};
@@ -18,7 +18,7 @@ void PacketWriter::put_raw(const void* items, std::size_t n, std::size_t size) {
 }
 
 std::vector<std::uint8_t> PacketWriter::finish() {
-  put(checksum(bytes_));
+  put(base::checksum(bytes_));
   return std::move(bytes_);
 }
 
@@ -26,14 +26,14 @@ PacketReader::PacketReader(std::span<const std::uint8_t> bytes, PacketKind kind)
   constexpr std::size_t least = 2 * sizeof(std::uint32_t);
   if (bytes.size() < least) throw FormatError(name_, "byte " + std::to_string(bytes.size()), "it ends here");
   bytes_ = bytes.first(bytes.size() - sizeof(std::uint32_t));
-  if (riffler::get<std::uint32_t>(bytes, bytes_.size()) != checksum(bytes_))
+  if (base::get<std::uint32_t>(bytes, bytes_.size()) != base::checksum(bytes_))
     throw FormatError(name_, "byte " + std::to_string(bytes_.size()), "the checksum does not fit");
   if (get<std::uint32_t>() != static_cast<std::uint32_t>(kind)) fail("a packet of another kind");
 }
 
 std::size_t PacketReader::count() {
   const auto n = get<std::uint64_t>();
-  if (n / kMaxDeflated > bytes_.size()) fail("more than a packet of this length can hold");
+  if (n / base::kMaxDeflated > bytes_.size()) fail("more than a packet of this length can hold");
   return static_cast<std::size_t>(n);
 }
 
@@ -52,4 +52,4 @@ std::span<const std::uint8_t> PacketReader::take(std::uint64_t n) {
   return out;
 }
 
-}  // namespace riffler
+}  // namespace riffler::verify

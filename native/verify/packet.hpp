@@ -11,7 +11,7 @@
 #include "base/planes.hpp"
 #include "riffler/base/error.hpp"
 
-namespace riffler {
+namespace riffler::verify {
 
 /// What a packet holds; the reader's messages name it.
 enum class PacketKind : std::uint32_t { Context, Task, Moves, Result };
@@ -27,7 +27,7 @@ class PacketWriter {
 
   template <class T>
   void put(const T& value) {
-    riffler::put(bytes_, value);
+    base::put(bytes_, value);
   }
   /// An array: how long it is, then its items.
   template <class T>
@@ -43,7 +43,7 @@ class PacketWriter {
     const std::size_t at = bytes_.size();
     put(std::uint64_t{0});
     {
-      PlaneWriter planes(bytes_);
+      base::PlaneWriter planes(bytes_);
       f(planes);
     }
     const std::uint64_t length = bytes_.size() - at - sizeof length;
@@ -65,7 +65,7 @@ class PacketReader {
 
   template <class T>
   T get() {
-    return riffler::get<T>(take(sizeof(T)), 0);
+    return base::get<T>(take(sizeof(T)), 0);
   }
   template <class T>
   std::vector<T> get_all() {
@@ -83,7 +83,7 @@ class PacketReader {
   void columns(const F& f) {
     const auto length = get<std::uint64_t>();
     const std::size_t start = at_ + sizeof length;
-    PlaneReader planes(take(length), start, name_);
+    base::PlaneReader planes(take(length), start, name_);
     f(planes);
     planes.finish();
   }
@@ -98,4 +98,4 @@ class PacketReader {
   std::size_t at_ = 0;
 };
 
-}  // namespace riffler
+}  // namespace riffler::verify

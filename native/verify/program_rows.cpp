@@ -7,7 +7,7 @@
 #include "riffler/sweep/carve.hpp"
 #include "verify/timing.hpp"
 
-namespace riffler {
+namespace riffler::verify {
 
 void RowChunk::for_moves(std::size_t first, std::span<const ToolShapes> shapes, double top, const Progress& progress,
                          const std::function<void(const Moves&, const Progress&)>& f) const {
@@ -19,16 +19,16 @@ void RowChunk::for_moves(std::size_t first, std::span<const ToolShapes> shapes, 
     for (std::size_t row = begin; row < end; ++row)
       moves.add(first_row + static_cast<std::int64_t>(row), tool[row], program.rapid()[row] != 0);
     moves.finish();
-    f(moves, part(progress, share(begin), share(end)));
+    f(moves, base::part(progress, share(begin), share(end)));
   }
 }
 
-RowChunk ProgramRows::open(const Program& program, Toolset& tools) {
+RowChunk ProgramRows::open(const nc::Program& program, Toolset& tools) {
   if (last_ && (last_->tip != program.poses()[0].tip || last_->axis != program.poses()[0].axis))
     throw std::invalid_argument(
         "program: a chunk must begin with the row at which the one before ended; the one after row " +
         std::to_string(seconds_.size() - 1) + " does not");
-  check_path(program.poses());
+  sweep::check_path(program.poses());
   const std::int64_t first_row = last_ ? static_cast<std::int64_t>(seconds_.size()) - 1 : 0;
   RowChunk chunk{program, first_row, !last_, tools.places(program, first_row)};
   removed_.resize(static_cast<std::size_t>(first_row) + program.size());
@@ -36,7 +36,7 @@ RowChunk ProgramRows::open(const Program& program, Toolset& tools) {
 }
 
 void ProgramRows::close(const RowChunk& chunk, double rapid_feed, const MachineChoice* machine) {
-  const Program& program = chunk.program;
+  const nc::Program& program = chunk.program;
   add_notes(program.notes);
   if (machine)
     if (auto fault = machine_fault(program, chunk.first_row, *machine)) faults_.push_back(std::move(*fault));
@@ -57,8 +57,8 @@ void ProgramRows::close(const RowChunk& chunk, double rapid_feed, const MachineC
   last_ = program.poses().back();
 }
 
-void ProgramRows::add_notes(const std::vector<Note>& notes) {
-  for (const Note& n : notes)
+void ProgramRows::add_notes(const std::vector<nc::Note>& notes) {
+  for (const nc::Note& n : notes)
     if (std::ranges::find(notes_, n) == notes_.end()) notes_.push_back(n);
 }
 
@@ -76,4 +76,4 @@ void ProgramRows::settle() {
   tool_.clear(), line_.clear(), standing_.clear();
 }
 
-}  // namespace riffler
+}  // namespace riffler::verify

@@ -13,14 +13,14 @@
 #include "verify/machine_check.hpp"
 #include "verify/toolset.hpp"
 
-namespace riffler {
+namespace riffler::verify {
 
 /// Moves that are sorted into slabs in one go: memory of some 30 MB, and work enough for many threads.
 inline constexpr std::size_t kMovesAtOnce = 1 << 17;
 
 /// A stretch of a program. Each after the first begins with the row at which the one before ended.
 struct RowChunk {
-  const Program& program;           ///< without via poses
+  const nc::Program& program;       ///< without via poses
   std::int64_t first_row;           ///< number of the chunk's row 0
   bool start;                       ///< whether it is the first one
   std::vector<std::uint32_t> tool;  ///< places of the rows' tools
@@ -37,12 +37,12 @@ class ProgramRows {
  public:
   /// std::invalid_argument where it begins elsewhere than the one before ended, as Toolset::places, or where its poses
   /// make no path; nothing is changed then.
-  RowChunk open(const Program& program, Toolset& tools);
+  RowChunk open(const nc::Program& program, Toolset& tools);
   /// Once its moves are with the slabs. `machine`: on which it is to run, or null.
   void close(const RowChunk& chunk, double rapid_feed, const MachineChoice* machine);
 
   /// Those that are not there yet.
-  void add_notes(const std::vector<Note>& notes);
+  void add_notes(const std::vector<nc::Note>& notes);
 
   /// Rows so far.
   std::size_t size() const { return removed_.size(); }
@@ -63,7 +63,7 @@ class ProgramRows {
   /// What the machine cannot run, one a chunk at most.
   const std::vector<Finding>& faults() const { return faults_; }
   /// Of all chunks; those of a stream repeat what the ones before had.
-  const std::vector<Note>& notes() const { return notes_; }
+  const std::vector<nc::Note>& notes() const { return notes_; }
   /// mm³ and s, one per row.
   std::vector<double> take_removed() { return std::move(removed_); }
   std::vector<double> take_seconds() { return std::move(seconds_); }
@@ -81,7 +81,7 @@ class ProgramRows {
   std::set<std::uint32_t> tools_;
   bool without_tool_ = false;
   std::vector<Finding> faults_;
-  std::vector<Note> notes_;
+  std::vector<nc::Note> notes_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::verify

@@ -11,7 +11,7 @@
 #include "riffler/base/parallel.hpp"
 #include "verify/simulate.hpp"
 
-namespace riffler {
+namespace riffler::verify {
 
 namespace {
 
@@ -32,20 +32,20 @@ SlabWorker::SlabWorker(std::span<const std::uint8_t> context) : context_(context
   if (context_.frames.empty()) throw std::invalid_argument("context: there is no stock");
   for (const Tool& tool : context_.tools)
     shapes_.emplace_back(tool, context_.tolerance, context_.reach, context_.frames[0].pitch);
-  for (const Frame& frame : context_.frames) {
+  for (const dexel::Frame& frame : context_.frames) {
     // Not a Volume: the rays of all of it need not fit into this machine.
-    std::vector<Grid>& grids = grids_.emplace_back();
-    const std::vector<Axis> axes = parse_directions(frame.directions);
+    std::vector<dexel::Grid>& grids = grids_.emplace_back();
+    const std::vector<Axis> axes = dexel::parse_directions(frame.directions);
     for (const Axis axis : axes) grids.emplace_back(axis, frame.box, frame.pitch, axes.size() == 3);
   }
   if (context_.part) surface_.emplace(*context_.part, context_.gouge_tolerance);
 }
 
-const Grid& SlabWorker::grid_of(const SlabTask& task) const {
+const dexel::Grid& SlabWorker::grid_of(const SlabTask& task) const {
   const auto frame = static_cast<std::size_t>(task.fixture + 1);
   if (task.fixture < -1 || frame >= grids_.size() || task.slab.grid >= grids_[frame].size())
     throw std::invalid_argument("task: a slab of another verification");
-  const Grid& grid = grids_[frame][task.slab.grid];
+  const dexel::Grid& grid = grids_[frame][task.slab.grid];
   const Slab& s = task.slab;
   const auto within = [](int a, int b, int end) { return 0 <= a && a < b && b <= end; };
   if (!within(s.u0, s.u1, grid.tiles_u()) || !within(s.v0, s.v1, grid.tiles_v()) || s.tile_count() != task.tiles.size())
@@ -55,9 +55,9 @@ const Grid& SlabWorker::grid_of(const SlabTask& task) const {
 
 std::vector<std::uint8_t> SlabWorker::run(std::span<const std::uint8_t> task,
                                           std::span<const std::span<const std::uint8_t>> moves) const {
-  const SerialScope alone;  // how many slabs run at once is the cluster's to say
+  const base::SerialScope alone;  // how many slabs run at once is the cluster's to say
   SlabTask at = task_of(task);
-  const Grid& grid = grid_of(at);
+  const dexel::Grid& grid = grid_of(at);
   const bool judged = surface_ && at.fixture < 0;
   if (std::ranges::count(at.tiles, nullptr) > 0 || std::ranges::count(at.part, nullptr) > 0 ||
       at.part.size() != (judged ? at.tiles.size() : 0))
@@ -82,4 +82,4 @@ std::vector<std::uint8_t> SlabWorker::run(std::span<const std::uint8_t> task,
   return to_packet(result);
 }
 
-}  // namespace riffler
+}  // namespace riffler::verify

@@ -5,7 +5,7 @@
 
 #include "verify/slab_packets.hpp"
 
-namespace riffler {
+namespace riffler::verify {
 
 /// Simulates slabs whose material arrives with them; of the stock, the fixtures and the part's volume nothing is made
 /// but rays without material. Calls may run on several threads at once, each of them on one.
@@ -21,12 +21,12 @@ class SlabWorker {
                                 std::span<const std::span<const std::uint8_t>> moves) const;
 
  private:
-  const Grid& grid_of(const SlabTask& task) const;
+  const dexel::Grid& grid_of(const SlabTask& task) const;
 
   SlabContext context_;
   std::vector<ToolShapes> shapes_;
-  std::vector<std::vector<Grid>> grids_;  // of the frames; empty
+  std::vector<std::vector<dexel::Grid>> grids_;  // of the frames; empty
   std::optional<PartSurface> surface_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::verify

@@ -6,7 +6,7 @@
 #include "mesh/closest.hpp"
 #include "riffler/marching/to_mesh.hpp"
 
-namespace riffler {
+namespace riffler::verify {
 
 const char* name_of(Kind kind) {
   static constexpr const char* names[] = {"rapid", "holder",  "shank",   "fixture", "gouge",
@@ -20,17 +20,17 @@ VerifyStats& VerifyStats::operator+=(const VerifyStats& o) {
   return *this;
 }
 
-void add_notes(VerifyReport& report, const std::vector<Note>& notes) {
-  for (const Note& n : notes) {
+void add_notes(VerifyReport& report, const std::vector<nc::Note>& notes) {
+  for (const nc::Note& n : notes) {
     report.not_checked.push_back("line " + std::to_string(n.line) + ": " + n.message);
     report.uncertain = report.uncertain || n.kind == "coordinates" || n.kind == "work offset";
   }
 }
 
 std::pair<Mesh, std::vector<double>> deviation_of(const Volume& left, const Mesh& part, const Progress& progress) {
-  Mesh mesh = to_mesh(left, riffler::part(progress, 0, 0.5));
+  Mesh mesh = marching::to_mesh(left, base::part(progress, 0, 0.5));
   std::vector<double> distance;
-  if (!mesh.empty()) distance = deviation(mesh, part, true, riffler::part(progress, 0.5, 1));
+  if (!mesh.empty()) distance = deviation(mesh, part, true, base::part(progress, 0.5, 1));
   return {std::move(mesh), std::move(distance)};
 }
 
@@ -41,4 +41,4 @@ std::vector<double> part_map_of(const Mesh& left, const Mesh& part, const Progre
   return distance;
 }
 
-}  // namespace riffler
+}  // namespace riffler::verify

@@ -9,16 +9,16 @@
 #include "riffler/base/parallel.hpp"
 #include "riffler/mesh/orient.hpp"
 
-namespace riffler {
+namespace riffler::verify {
 
 namespace {
 
 VerifyArguments checked(VerifyArguments given) {
   const VerifyOptions& options = given.options;
-  require_tolerance(options.tolerance);
-  require_tolerance(options.gouge_tolerance, "gouge_tolerance");
-  if (options.rest_tolerance) require_tolerance(*options.rest_tolerance, "rest_tolerance");
-  require_between(options.rapid_feed, kMinFeed, kMaxFeed, "rapid_feed", "a positive feed", "mm/min");
+  base::require_tolerance(options.tolerance);
+  base::require_tolerance(options.gouge_tolerance, "gouge_tolerance");
+  if (options.rest_tolerance) base::require_tolerance(*options.rest_tolerance, "rest_tolerance");
+  base::require_between(options.rapid_feed, nc::kMinFeed, nc::kMaxFeed, "rapid_feed", "a positive feed", "mm/min");
   return given;
 }
 
@@ -40,12 +40,12 @@ std::shared_ptr<const Mesh> solid_of(std::shared_ptr<const Mesh> part) {
   } catch (const std::invalid_argument& error) {
     throw std::invalid_argument(std::string("part_mesh: ") + error.what());
   }
-  Orientation found;
+  mesh::Orientation found;
   std::optional<Mesh> turned = oriented(*part, found);
   return turned ? std::make_shared<const Mesh>(*std::move(turned)) : part;
 }
 
-std::unique_ptr<const Target> target_of(const Mesh& part, const Frame& frame, double tolerance,
+std::unique_ptr<const Target> target_of(const Mesh& part, const dexel::Frame& frame, double tolerance,
                                         const Progress& progress) {
   try {
     return std::make_unique<Target>(part, frame, tolerance, progress);
@@ -71,7 +71,7 @@ VerifyScene::VerifyScene(VerifyArguments arguments, const Progress& progress)
 
 void VerifyScene::add_jobs(const Volume& volume, std::int32_t fixture) {
   for (const Slab& slab : slabs_of(volume)) {
-    const Grid& grid = volume.grids()[slab.grid];
+    const dexel::Grid& grid = volume.grids()[slab.grid];
     const bool probed = &grid == &volume.reference();
     if (fixture >= 0 && !probed) continue;
     jobs_.push_back({fixture, slab, probed, material_box(grid, slab, tiles_of(grid, slab))});
@@ -80,10 +80,10 @@ void VerifyScene::add_jobs(const Volume& volume, std::int32_t fixture) {
 
 void VerifyScene::find_missing_material() {
   std::vector<std::vector<Event>> found(jobs_.size());
-  parallel_for(jobs_.size(), 1, [&](std::size_t k, std::size_t) {
+  base::parallel_for(jobs_.size(), 1, [&](std::size_t k, std::size_t) {
     const SlabJob& job = jobs_[k];
     if (job.fixture >= 0) return;
-    const Grid& grid = grid_of(job);
+    const dexel::Grid& grid = grid_of(job);
     find_missing(*target_, grid, job.slab, tiles_of(grid, job.slab), found[k]);
   });
   for (const std::vector<Event>& events : found) missing_.insert(missing_.end(), events.begin(), events.end());
@@ -108,7 +108,7 @@ SlabTiles VerifyScene::part_in(const SlabJob& job) const {
   return target_ && job.fixture < 0 ? target_->tiles(job.slab) : SlabTiles();
 }
 
-const Grid& VerifyScene::grid_of(const SlabJob& job) const {
+const dexel::Grid& VerifyScene::grid_of(const SlabJob& job) const {
   const Volume& volume = job.fixture < 0 ? stock() : fixtures()[static_cast<std::size_t>(job.fixture)];
   return volume.grids()[job.slab.grid];
 }
@@ -117,7 +117,7 @@ void VerifyScene::simulate(const Moves& moves, std::vector<SlabState>& slabs, bo
                            const Progress& progress) const {
   std::vector<VerifyStats> counts(jobs_.size());
   const std::int64_t row = moves.row(0);
-  parallel_for(
+  base::parallel_for(
       jobs_.size(), 1,
       [&](std::size_t k, std::size_t) {
         const SlabJob& job = jobs_[k];
@@ -130,10 +130,10 @@ void VerifyScene::simulate(const Moves& moves, std::vector<SlabState>& slabs, bo
                               options().tolerance, surface,  part_in(job)};
         SlabSaved saved;
         if (keep) saved = [&](std::int64_t at, const SlabTiles& tiles) { slab.save(at, tiles); };
-        riffler::simulate(place, moves, first, slab.tiles, slab.report, counts[k], saved);
+        verify::simulate(place, moves, first, slab.tiles, slab.report, counts[k], saved);
       },
       progress);
   for (const VerifyStats& c : counts) stats += c;
 }
 
-}  // namespace riffler
+}  // namespace riffler::verify

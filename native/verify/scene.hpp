@@ -9,7 +9,7 @@
 #include "verify/slab_job.hpp"
 #include "verify/toolset.hpp"
 
-namespace riffler {
+namespace riffler::verify {
 
 /// Several runs, one after the other, may share one: only its toolset changes, which learns the tools of programs.
 class VerifyScene {
@@ -39,7 +39,7 @@ class VerifyScene {
   std::vector<SlabState> fresh() const;
   /// What there is of the part in a slab; empty without a part, and for fixtures.
   SlabTiles part_in(const SlabJob& job) const;
-  const Grid& grid_of(const SlabJob& job) const;
+  const dexel::Grid& grid_of(const SlabJob& job) const;
   /// Runs the moves on every slab, from where each of them stands. `keep`: whether slabs keep snapshots.
   void simulate(const Moves& moves, std::vector<SlabState>& slabs, bool keep, VerifyStats& stats,
                 const Progress& progress) const;
@@ -56,4 +56,4 @@ class VerifyScene {
   std::vector<Event> missing_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::verify

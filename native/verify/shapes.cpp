@@ -3,16 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
-namespace riffler {
+namespace riffler::verify {
 
 namespace {
 
-Rod rod_round(const Piece& piece) {
+Rod rod_round(const tool::Piece& piece) {
   return {bottom(piece), top(piece), max_radius(piece)};
 }
 
 /// Smaller by `by` on all sides, but never by more than a quarter.
-Frustum shrunk(const Frustum& f, double by) {
+tool::Frustum shrunk(const tool::Frustum& f, double by) {
   const double ends = std::min(by, (f.z1 - f.z0) / 4), slope = (f.r1 - f.r0) / (f.z1 - f.z0);
   const double side = std::min(by * std::sqrt(1 + slope * slope), std::max(f.r0, f.r1) / 4);
   const auto radius = [&](double z) { return std::max(0.0, f.r0 + slope * (z - f.z0) - side); };
@@ -20,14 +20,15 @@ Frustum shrunk(const Frustum& f, double by) {
 }
 
 /// Convex by itself: pieces may overlap or leave gaps in any order.
-ConvexGroup alone(const Frustum& f) {
-  const Piece piece = f;
-  return convex_groups(std::span(&piece, 1)).front();
+sweep::ConvexGroup alone(const tool::Frustum& f) {
+  const tool::Piece piece = f;
+  return sweep::convex_groups(std::span(&piece, 1)).front();
 }
 
-Probe probe_of(Member member, const std::vector<Frustum>& pieces, double tolerance) {
+Probe probe_of(Member member, const std::vector<tool::Frustum>& pieces, double tolerance) {
   Probe probe{member, {}, {}};
-  for (const Frustum& f : pieces) probe.real.push_back(alone(f)), probe.small.push_back(alone(shrunk(f, tolerance)));
+  for (const tool::Frustum& f : pieces)
+    probe.real.push_back(alone(f)), probe.small.push_back(alone(shrunk(f, tolerance)));
   return probe;
 }
 
@@ -69,18 +70,19 @@ Box3 Rod::swept(const Pose& from, const Pose& to, double top) const {
 }
 
 ToolShapes::ToolShapes(const Tool& tool, double tolerance, double reach, double pitch)
-    : cutter(convex_groups(tool.cutter())) {
-  for (const Piece& piece : tool.cutter()) cutter_rod.add(rod_round(piece));
+    : cutter(sweep::convex_groups(tool.cutter())) {
+  for (const tool::Piece& piece : tool.cutter()) cutter_rod.add(rod_round(piece));
   if (!tool.shank().empty()) probes.push_back(probe_of(Member::Shank, tool.shank(), tolerance));
   if (!tool.holder().empty()) probes.push_back(probe_of(Member::Holder, tool.holder(), tolerance));
   whole_rod = cutter_rod;
-  for (const std::vector<Frustum>* pieces : {&tool.shank(), &tool.holder()})
-    for (const Frustum& f : *pieces) probe_rods.push_back(rod_round(f)), whole_rod.add(rod_round(f));
+  for (const std::vector<tool::Frustum>* pieces : {&tool.shank(), &tool.holder()})
+    for (const tool::Frustum& f : *pieces) probe_rods.push_back(rod_round(f)), whole_rod.add(rod_round(f));
   // Wider by a pitch: a wall that the cutter has just made stands beside it too, and nobody knows what passes it.
-  const Frustum beyond{whole_rod.high, whole_rod.radius + pitch, whole_rod.high + reach, whole_rod.radius + pitch};
+  const tool::Frustum beyond{whole_rod.high, whole_rod.radius + pitch, whole_rod.high + reach,
+                             whole_rod.radius + pitch};
   probes.push_back(probe_of(Member::Beyond, {beyond}, tolerance));
   probe_rods.push_back(rod_round(beyond)), whole_rod.add(rod_round(beyond));
   for (const Probe& probe : probes) small.insert(small.end(), probe.small.begin(), probe.small.end());
 }
 
-}  // namespace riffler
+}  // namespace riffler::verify

@@ -10,7 +10,7 @@
 #include "riffler/verify/report.hpp"
 #include "sweep/convex_group.hpp"
 
-namespace riffler {
+namespace riffler::verify {
 
 /// A cylinder round some of a tool's pieces: heights on the axis and radius, mm.
 struct Rod {
@@ -24,19 +24,19 @@ struct Rod {
 /// What must not touch material.
 struct Probe {
   Member member;
-  std::vector<ConvexGroup> real;   ///< each piece by itself: their union is the probe
-  std::vector<ConvexGroup> small;  ///< the same, smaller by the tolerance on all sides: a touch is none yet
+  std::vector<sweep::ConvexGroup> real;   ///< each piece by itself: their union is the probe
+  std::vector<sweep::ConvexGroup> small;  ///< the same, smaller by the tolerance on all sides: a touch is none yet
 };
 
 struct ToolShapes {
   /// `reach` (mm): beyond its description the tool is taken to go on so far, a pitch wider than the widest of it.
   ToolShapes(const Tool& tool, double tolerance, double reach, double pitch);
 
-  std::vector<ConvexGroup> cutter;
-  std::vector<Probe> probes;       ///< shank, holder, beyond: those that there are
-  std::vector<ConvexGroup> small;  ///< of all probes
+  std::vector<sweep::ConvexGroup> cutter;
+  std::vector<Probe> probes;              ///< shank, holder, beyond: those that there are
+  std::vector<sweep::ConvexGroup> small;  ///< of all probes
   Rod cutter_rod, whole_rod;
   std::vector<Rod> probe_rods;  ///< of every piece of the probes
 };
 
-}  // namespace riffler
+}  // namespace riffler::verify

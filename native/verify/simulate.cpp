@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 
-namespace riffler {
+namespace riffler::verify {
 
 namespace {
 
@@ -102,12 +102,12 @@ void StockSimulation::pass(Batch batch) {
 }
 
 bool StockSimulation::near_material(std::size_t move) const {
-  const Grid& grid = bench_.grid();
+  const dexel::Grid& grid = bench_.grid();
   const Slab& slab = bench_.slab();
   for (const Rod& rod : moves_.shapes(move).probe_rods) {
     const Box3 box = to_local(grid.axis(), moves_.swept(rod, move));
     const auto tile = [&](double at, double lower, int low, int high) {
-      return static_cast<int>(std::clamp(std::floor((at - lower) / (grid.pitch() * kTileSide)),
+      return static_cast<int>(std::clamp(std::floor((at - lower) / (grid.pitch() * dexel::kTileSide)),
                                          static_cast<double>(low), static_cast<double>(high)));
     };
     const double half = 0.5001 * grid.pitch();
@@ -117,7 +117,7 @@ bool StockSimulation::near_material(std::size_t move) const {
               v1 = tile(box.upper.y + half, grid.box().lower.y, slab.v0, slab.v1 - 1);
     for (int u = u0; u <= u1; ++u)
       for (int v = v0; v <= v1; ++v) {
-        const Tile& t = *state_[static_cast<std::size_t>((u - slab.u0) * (slab.v1 - slab.v0) + v - slab.v0)];
+        const dexel::Tile& t = *state_[static_cast<std::size_t>((u - slab.u0) * (slab.v1 - slab.v0) + v - slab.v0)];
         if (!t.spans.empty() && t.reach.near < box.upper.z && t.reach.far > box.lower.z) return true;
       }
   }
@@ -274,7 +274,7 @@ class FixtureProbe {
 
   void find(std::size_t i) {
     const ToolShapes& tool = moves_.shapes(i);
-    const auto look = [&](Kind kind, Member member, std::span<const ConvexGroup> shape) {
+    const auto look = [&](Kind kind, Member member, std::span<const sweep::ConvexGroup> shape) {
       const Loss loss =
           loss_of(bench_.grid(), bench_.slab(), state_, bench_.after(state_, shape, moves_.from(i), moves_.to(i)));
       if (!(loss.longest > (member == Member::Cutter ? place_.tolerance : 0))) return false;
@@ -308,4 +308,4 @@ void simulate(const SlabPlace& place, const Moves& moves, std::size_t first, Sla
     FixtureProbe(place, moves, tiles, report, stats).run(first);
 }
 
-}  // namespace riffler
+}  // namespace riffler::verify

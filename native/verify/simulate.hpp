@@ -8,11 +8,11 @@
 #include "verify/moves.hpp"
 #include "verify/workbench.hpp"
 
-namespace riffler {
+namespace riffler::verify {
 
 /// A slab of the stock or of a fixture, and what its simulation goes by.
 struct SlabPlace {
-  const Grid& grid;  ///< for its rays; its tiles are not used
+  const dexel::Grid& grid;  ///< for its rays; its tiles are not used
   Slab slab;
   std::int32_t fixture = -1;  ///< number of the fixture; −1: the stock
   /// Whether this is the grid that shank and holder are tried on, and that volumes are taken from.
@@ -31,4 +31,4 @@ using SlabSaved = std::function<void(std::int64_t row, const SlabTiles& tiles)>;
 void simulate(const SlabPlace& place, const Moves& moves, std::size_t first, SlabTiles& tiles, SlabReport& report,
               VerifyStats& stats, const SlabSaved& saved = {});
 
-}  // namespace riffler
+}  // namespace riffler::verify

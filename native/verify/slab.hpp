@@ -7,7 +7,7 @@
 
 #include "riffler/dexel/volume.hpp"
 
-namespace riffler {
+namespace riffler::verify {
 
 /// Tiles [u0, u1) × [v0, v1) of one of a volume's grids.
 struct Slab {
@@ -16,7 +16,7 @@ struct Slab {
 
   std::size_t tile_count() const { return static_cast<std::size_t>(u1 - u0) * static_cast<std::size_t>(v1 - v0); }
   /// Place in the grid's tiles of the slab's tile k.
-  std::size_t place(const Grid& g, std::size_t k) const {
+  std::size_t place(const dexel::Grid& g, std::size_t k) const {
     const auto wide = static_cast<std::size_t>(v1 - v0);
     return g.tile_index(u0 + static_cast<int>(k / wide), v0 + static_cast<int>(k % wide));
   }
@@ -26,12 +26,12 @@ struct Slab {
 std::vector<Slab> slabs_of(const Volume& volume);
 
 /// A slab's state: pointers to its tiles. A copy is a snapshot.
-using SlabTiles = std::vector<std::shared_ptr<const Tile>>;
+using SlabTiles = std::vector<std::shared_ptr<const dexel::Tile>>;
 
-SlabTiles tiles_of(const Grid& grid, const Slab& slab);
-void put_tiles(Grid& grid, const Slab& slab, const SlabTiles& tiles);
+SlabTiles tiles_of(const dexel::Grid& grid, const Slab& slab);
+void put_tiles(dexel::Grid& grid, const Slab& slab, const SlabTiles& tiles);
 
 /// Box of what a slab holds, world frame: its rays by half a pitch, its spans exactly. Empty without material.
-Box3 material_box(const Grid& grid, const Slab& slab, const SlabTiles& tiles);
+Box3 material_box(const dexel::Grid& grid, const Slab& slab, const SlabTiles& tiles);
 
-}  // namespace riffler
+}  // namespace riffler::verify

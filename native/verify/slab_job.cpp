@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace riffler {
+namespace riffler::verify {
 
 void SlabState::save(std::int64_t row, const SlabTiles& now) {
   if (++since < spacing) return;
@@ -33,4 +33,4 @@ void SlabState::renumber(std::int64_t from, std::int64_t shift) {
   for (SlabSnapshot& s : snapshots) s.row += s.row >= from ? shift : 0;
 }
 
-}  // namespace riffler
+}  // namespace riffler::verify

@@ -7,7 +7,7 @@
 
 #include "verify/simulate.hpp"
 
-namespace riffler {
+namespace riffler::verify {
 
 /// A slab of the stock, or of a fixture.
 struct SlabJob {
@@ -41,4 +41,4 @@ struct SlabState {
   void renumber(std::int64_t from, std::int64_t shift);
 };
 
-}  // namespace riffler
+}  // namespace riffler::verify

@@ -5,7 +5,7 @@
 
 #include "verify/tile_packets.hpp"
 
-namespace riffler {
+namespace riffler::verify {
 
 namespace {
 
@@ -28,24 +28,24 @@ Vec3 get_vec3(PacketReader& in) {
   return v;
 }
 
-void put(PacketWriter& out, const std::vector<Frustum>& pieces) {
+void put(PacketWriter& out, const std::vector<tool::Frustum>& pieces) {
   out.put(static_cast<std::uint64_t>(pieces.size()));
-  for (const Frustum& f : pieces)
+  for (const tool::Frustum& f : pieces)
     for (const double value : {f.z0, f.r0, f.z1, f.r1}) out.put(value);
 }
 
-std::vector<Frustum> get_frusta(PacketReader& in) {
-  std::vector<Frustum> pieces(in.count());
-  for (Frustum& f : pieces)
+std::vector<tool::Frustum> get_frusta(PacketReader& in) {
+  std::vector<tool::Frustum> pieces(in.count());
+  for (tool::Frustum& f : pieces)
     for (double* value : {&f.z0, &f.r0, &f.z1, &f.r1}) *value = in.get<double>();
   return pieces;
 }
 
 /// Of a tool what decides where it cuts and touches.
 void put(PacketWriter& out, const Tool& tool) {
-  const std::vector<ProfileSegment>& segments = tool.profile().segments();
+  const std::vector<tool::ProfileSegment>& segments = tool.profile().segments();
   out.put(static_cast<std::uint64_t>(segments.size()));
-  for (const ProfileSegment& s : segments) {
+  for (const tool::ProfileSegment& s : segments) {
     const Vec2 centre = s.centre.value_or(Vec2(0));
     out.put(static_cast<std::uint8_t>(s.centre.has_value()));
     for (const double value : {s.to.x, s.to.y, centre.x, centre.y}) out.put(value);
@@ -54,15 +54,15 @@ void put(PacketWriter& out, const Tool& tool) {
 }
 
 Tool get_tool(PacketReader& in) {
-  std::vector<ProfileSegment> segments(in.count());
-  for (ProfileSegment& s : segments) {
+  std::vector<tool::ProfileSegment> segments(in.count());
+  for (tool::ProfileSegment& s : segments) {
     const bool arc = in.get<std::uint8_t>() != 0;
     Vec2 centre;
     for (double* value : {&s.to.x, &s.to.y, &centre.x, &centre.y}) *value = in.get<double>();
     if (arc) s.centre = centre;
   }
-  const Tool cutter("profile", {}, Profile(std::move(segments)));
-  const std::vector<Frustum> shank = get_frusta(in), holder = get_frusta(in);
+  const Tool cutter("profile", {}, tool::Profile(std::move(segments)));
+  const std::vector<tool::Frustum> shank = get_frusta(in), holder = get_frusta(in);
   const Tool with_shank = shank.empty() ? cutter : cutter.with_shank(shank);
   return holder.empty() ? with_shank : with_shank.with_holder(holder);
 }
@@ -89,7 +89,7 @@ Mesh get_mesh(PacketReader& in) {
 std::vector<std::uint8_t> to_packet(const SlabContext& context) {
   PacketWriter out(PacketKind::Context);
   out.put(static_cast<std::uint64_t>(context.frames.size()));
-  for (const Frame& frame : context.frames) {
+  for (const dexel::Frame& frame : context.frames) {
     put(out, frame.box.lower), put(out, frame.box.upper), put(out, frame.directions);
     out.put(frame.pitch);
   }
@@ -105,7 +105,7 @@ SlabContext context_of(std::span<const std::uint8_t> packet) {
   PacketReader in(packet, PacketKind::Context);
   SlabContext context;
   context.frames.resize(in.count());
-  for (Frame& frame : context.frames) {
+  for (dexel::Frame& frame : context.frames) {
     frame.box.lower = get_vec3(in), frame.box.upper = get_vec3(in), frame.directions = get_text(in);
     frame.pitch = in.get<double>();
   }
@@ -166,7 +166,7 @@ std::vector<std::uint8_t> to_packet(const Moves& moves, std::span<const std::uin
   PacketWriter out(PacketKind::Moves);
   out.put(static_cast<std::uint64_t>(chosen.size()));
   out.put(static_cast<std::uint64_t>(poses.size()));
-  out.columns([&](PlaneWriter& planes) {
+  out.columns([&](base::PlaneWriter& planes) {
     planes.column(rows), planes.column(keys);
     std::vector<std::uint64_t> column(poses.size());
     for (Vec3 Pose::* half : {&Pose::tip, &Pose::axis})
@@ -185,7 +185,7 @@ void add_moves(std::span<const std::uint8_t> packet, SlabMoves& moves) {
   std::vector<std::uint64_t> rows;
   std::vector<std::uint32_t> keys;
   std::vector<Pose> poses(m);
-  in.columns([&](PlaneReader& planes) {
+  in.columns([&](base::PlaneReader& planes) {
     rows = planes.column64(n), keys = planes.column32(n);
     for (Vec3 Pose::* half : {&Pose::tip, &Pose::axis})
       for (double Vec3::* component : kComponents) {
@@ -235,7 +235,7 @@ std::vector<std::uint8_t> to_packet(const SlabResult& result) {
   PacketWriter out(PacketKind::Result);
   put_tiles(out, result.tiles);
   out.put(static_cast<std::uint64_t>(result.report.removed.size()));
-  out.columns([&](PlaneWriter& planes) {
+  out.columns([&](base::PlaneWriter& planes) {
     std::vector<std::uint64_t> rows, values;
     for (const auto& [row, taken] : result.report.removed) {
       rows.push_back(static_cast<std::uint64_t>(row));
@@ -255,7 +255,7 @@ SlabResult result_of(std::span<const std::uint8_t> packet) {
   SlabResult result;
   result.tiles = get_tiles(in);
   const std::size_t n = in.count();
-  in.columns([&](PlaneReader& planes) {
+  in.columns([&](base::PlaneReader& planes) {
     const std::vector<std::uint64_t> rows = planes.column64(n), values = planes.column64(n);
     for (std::size_t k = 0; k < n; ++k)
       result.report.removed.emplace_back(static_cast<std::int64_t>(rows[k]), std::bit_cast<double>(values[k]));
@@ -267,4 +267,4 @@ SlabResult result_of(std::span<const std::uint8_t> packet) {
   return result;
 }
 
-}  // namespace riffler
+}  // namespace riffler::verify

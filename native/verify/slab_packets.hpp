@@ -7,14 +7,14 @@
 #include "verify/packet.hpp"
 #include "verify/slab_job.hpp"
 
-namespace riffler {
+namespace riffler::verify {
 
 /// What all slabs share. Made once on each machine.
 struct SlabContext {
-  std::vector<Frame> frames;  ///< of the stock, then of the fixtures
-  std::vector<Tool> tools;    ///< in the order of their places
-  double reach = 0;           ///< mm: as for ToolShapes
-  double tolerance = 0;       ///< mm
+  std::vector<dexel::Frame> frames;  ///< of the stock, then of the fixtures
+  std::vector<Tool> tools;           ///< in the order of their places
+  double reach = 0;                  ///< mm: as for ToolShapes
+  double tolerance = 0;              ///< mm
   double gouge_tolerance = 0;
   double top = 0;                    ///< mm: as for Moves
   std::shared_ptr<const Mesh> part;  ///< or null
@@ -55,4 +55,4 @@ struct SlabResult {
 std::vector<std::uint8_t> to_packet(const SlabResult& result);
 SlabResult result_of(std::span<const std::uint8_t> packet);
 
-}  // namespace riffler
+}  // namespace riffler::verify

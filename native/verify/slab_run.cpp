@@ -4,12 +4,12 @@
 
 #include "verify/rest.hpp"
 
-namespace riffler {
+namespace riffler::verify {
 
 namespace {
 
 /// A report on a followed program, as one on the program that it was made of.
-void count_original_rows(VerifyReport& report, const RowMap& map) {
+void count_original_rows(VerifyReport& report, const nc::RowMap& map) {
   if (map.empty()) return;
   const auto original = [&](std::int64_t row) {
     return static_cast<std::int64_t>(map.original(static_cast<std::size_t>(row)));
@@ -34,7 +34,7 @@ SlabRun::SlabRun(VerifyArguments arguments, const Progress& progress)
 
 SlabRun::SlabRun(std::shared_ptr<VerifyScene> scene) : scene_(std::move(scene)), slabs_(scene_->fresh()) {}
 
-void SlabRun::feed(const Program& given, const Progress& progress) {
+void SlabRun::feed(const nc::Program& given, const Progress& progress) {
   const auto here = [&](const RowChunk& chunk, const Progress& work) {
     chunk.for_moves(1, scene_->tools().shapes(), scene_->top(), work, [&](const Moves& moves, const Progress& share) {
       scene_->simulate(moves, slabs_, false, stats_, share);
@@ -46,9 +46,9 @@ void SlabRun::feed(const Program& given, const Progress& progress) {
   for (SlabState& slab : slabs_) slab.report.events.clear();
 }
 
-void SlabRun::feed_by(const Feeder& feeder, const Program& given, const Progress& progress) {
+void SlabRun::feed_by(const Feeder& feeder, const nc::Program& given, const Progress& progress) {
   if (given.empty()) return rows_.add_notes(given.notes);
-  const Program& program = followed_.follow(given);
+  const nc::Program& program = followed_.follow(given);
   const RowChunk chunk = rows_.open(program, scene_->tools());
   feeder(chunk, progress);
   const VerifyOptions& options = scene_->options();
@@ -107,4 +107,4 @@ void SlabRun::note_unchecked(VerifyReport& report) const {
   if (rows_.without_tool()) out.emplace_back("rapids before a tool is called: nothing is in the spindle yet");
 }
 
-}  // namespace riffler
+}  // namespace riffler::verify

@@ -15,7 +15,7 @@
 #include "verify/program_rows.hpp"
 #include "verify/scene.hpp"
 
-namespace riffler {
+namespace riffler::verify {
 
 /// One run of a program, which comes in chunks, each of which begins with the row at which the one before ended. Keeps
 /// 16 bytes a row, and nothing of the chunks.
@@ -28,14 +28,14 @@ class SlabRun {
   /// Simulates a chunk here. Throws std::invalid_argument naming number, row and line of a tool without a shape, a row
   /// whose axis is exactly opposite to the one before, or where a chunk begins elsewhere than the one before ended.
   /// After an error in it, or Cancelled, this cannot be used any more.
-  void feed(const Program& chunk, const Progress& progress = {});
+  void feed(const nc::Program& chunk, const Progress& progress = {});
   /// What the rows of all chunks did.
   VerifyReport finish(const Progress& progress = {});
 
   /// Brings the moves of a chunk to the slabs.
   using Feeder = std::function<void(const RowChunk& chunk, const Progress& progress)>;
   /// Leaves the slabs of a chunk to `feeder`, which changes slabs() and stats(), now or up to finish(). Throws as feed.
-  void feed_by(const Feeder& feeder, const Program& chunk, const Progress& progress = {});
+  void feed_by(const Feeder& feeder, const nc::Program& chunk, const Progress& progress = {});
   /// Adds to the rows what a slab took, which it forgets. Slabs come in their order, as rounding wants it.
   void take_removed(SlabState& slab);
 
@@ -55,7 +55,7 @@ class SlabRun {
   ProgramRows rows_;
   FindingList findings_;
   VerifyStats stats_;
-  FollowedChunks followed_;
+  nc::FollowedChunks followed_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::verify

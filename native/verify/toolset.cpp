@@ -6,18 +6,18 @@
 
 #include "riffler/base/check.hpp"
 
-namespace riffler {
+namespace riffler::verify {
 
 namespace {
 
-bool same(const Frustum& a, const Frustum& b) {
+bool same(const tool::Frustum& a, const tool::Frustum& b) {
   return a.z0 == b.z0 && a.r0 == b.r0 && a.z1 == b.z1 && a.r1 == b.r1;
 }
 
-bool same(const Piece& a, const Piece& b) {
+bool same(const tool::Piece& a, const tool::Piece& b) {
   if (a.index() != b.index()) return false;
-  if (const auto* f = std::get_if<Frustum>(&a)) return same(*f, std::get<Frustum>(b));
-  const Round &r = std::get<Round>(a), &s = std::get<Round>(b);
+  if (const auto* f = std::get_if<tool::Frustum>(&a)) return same(*f, std::get<tool::Frustum>(b));
+  const tool::Round &r = std::get<tool::Round>(a), &s = std::get<tool::Round>(b);
   return r.e == s.e && r.zc == s.zc && r.r == s.r && r.z0 == s.z0 && r.z1 == s.z1;
 }
 
@@ -26,7 +26,7 @@ bool all_same(const std::vector<T>& a, const std::vector<T>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const T& x, const T& y) { return same(x, y); });
 }
 
-std::string where(const Program& program, std::size_t row, std::int64_t first_row) {
+std::string where(const nc::Program& program, std::size_t row, std::int64_t first_row) {
   const std::int32_t line = program.line()[row];
   return "row " + std::to_string(first_row + static_cast<std::int64_t>(row)) +
          (line > 0 ? ", line " + std::to_string(line) : "");
@@ -41,7 +41,7 @@ bool same_shape(const Tool& a, const Tool& b) {
 Toolset::Toolset(std::map<int, Tool> own, double tolerance, double reach, double pitch)
     : own_(std::move(own)), tolerance_(tolerance), reach_(reach), pitch_(pitch) {}
 
-std::vector<std::uint32_t> Toolset::places(const Program& program, std::int64_t first_row) {
+std::vector<std::uint32_t> Toolset::places(const nc::Program& program, std::int64_t first_row) {
   std::vector<std::uint32_t> out(program.size(), kNoTool);
   std::map<int, std::uint32_t> known;
   for (std::size_t row = 1; row < program.size(); ++row) {
@@ -71,7 +71,7 @@ std::vector<std::uint32_t> Toolset::places(const Program& program, std::int64_t 
 std::uint32_t Toolset::place(int number, const Tool& tool) {
   for (std::size_t k = 0; k < tools_.size(); ++k)
     if (numbers_[k] == number && same_shape(tools_[k], tool)) return static_cast<std::uint32_t>(k);
-  require_tolerance_for(tolerance_, std::max(tool.length(), tool.diameter()));
+  base::require_tolerance_for(tolerance_, std::max(tool.length(), tool.diameter()));
   numbers_.push_back(number), tools_.push_back(tool);
   shapes_.emplace_back(tool, tolerance_, reach_, pitch_);
   return static_cast<std::uint32_t>(shapes_.size() - 1);
@@ -92,4 +92,4 @@ std::vector<std::string> Toolset::not_described(const std::set<std::uint32_t>& p
   return out;
 }
 
-}  // namespace riffler
+}  // namespace riffler::verify

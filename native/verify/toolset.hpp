@@ -9,7 +9,7 @@
 #include "riffler/nc/program.hpp"
 #include "verify/moves.hpp"
 
-namespace riffler {
+namespace riffler::verify {
 
 /// Whether two tools cut and touch alike.
 bool same_shape(const Tool& a, const Tool& b);
@@ -22,7 +22,7 @@ class Toolset {
   /// Place of each row's tool in shapes(), kNoTool before a first tool is called and where no motion in the part ends.
   /// std::invalid_argument naming number, row and line of a number without a shape; rapids before the first call
   /// (number 0) need none. `first_row` is the number of the program's row 0.
-  std::vector<std::uint32_t> places(const Program& program, std::int64_t first_row);
+  std::vector<std::uint32_t> places(const nc::Program& program, std::int64_t first_row);
 
   const std::vector<ToolShapes>& shapes() const { return shapes_; }
   /// The tools at those places.
@@ -43,4 +43,4 @@ class Toolset {
   std::vector<ToolShapes> shapes_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::verify

@@ -8,7 +8,7 @@
 #include "verify/edit.hpp"
 #include "verify/slab_run.hpp"
 
-namespace riffler {
+namespace riffler::verify {
 
 namespace {
 
@@ -50,7 +50,7 @@ std::vector<SlabState> Verification::Core::resume(const RunRows& rows, VerifySta
   const ProgramEdit edit = edit_between(memory_->rows, rows);
   std::vector<std::int64_t> first(jobs.size(), std::numeric_limits<std::int64_t>::max());
   const auto look = [&](const Moves& moves) {
-    parallel_for(jobs.size(), 1, [&](std::size_t k, std::size_t) {
+    base::parallel_for(jobs.size(), 1, [&](std::size_t k, std::size_t) {
       const SlabJob& job = jobs[k];
       if (job.material.empty()) return;
       moves.for_each(0, job.material, [&](std::size_t i, Moves::Touch touch) {
@@ -75,7 +75,7 @@ std::vector<SlabState> Verification::Core::resume(const RunRows& rows, VerifySta
   return slabs;
 }
 
-VerifyReport Verification::Core::run(const Program& program, const Progress& progress) {
+VerifyReport Verification::Core::run(const nc::Program& program, const Progress& progress) {
   SlabRun run(scene_);
   RunRows rows;
   const auto what_differs = [&](const RowChunk& chunk, const Progress& work) {
@@ -88,8 +88,8 @@ VerifyReport Verification::Core::run(const Program& program, const Progress& pro
                     });
   };
   if (program.empty()) run.slabs() = resume(rows, run.stats());
-  run.feed_by(what_differs, program, part(progress, 0, scene_->options().rest_tolerance ? 0.8 : 1));
-  VerifyReport report = run.finish(part(progress, 0.8, 1));
+  run.feed_by(what_differs, program, base::part(progress, 0, scene_->options().rest_tolerance ? 0.8 : 1));
+  VerifyReport report = run.finish(base::part(progress, 0.8, 1));
   memory_ = Memory{std::move(rows), std::move(run.slabs())};
   return report;
 }
@@ -101,8 +101,8 @@ Verification::~Verification() = default;
 Verification::Verification(Verification&&) noexcept = default;
 Verification& Verification::operator=(Verification&&) noexcept = default;
 
-VerifyReport Verification::run(const Program& program, const Progress& progress) {
+VerifyReport Verification::run(const nc::Program& program, const Progress& progress) {
   return core_->run(program, progress);
 }
 
-}  // namespace riffler
+}  // namespace riffler::verify

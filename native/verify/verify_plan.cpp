@@ -6,12 +6,12 @@
 
 #include "riffler/base/parallel.hpp"
 
-namespace riffler {
+namespace riffler::verify {
 
 VerifyPlan::VerifyPlan(VerifyArguments arguments, const Progress& progress)
     : run_(std::move(arguments), progress), open_(run_.slabs().size(), 0) {}
 
-std::vector<VerifyPlan::Share> VerifyPlan::add(const Program& program, const Progress& progress) {
+std::vector<VerifyPlan::Share> VerifyPlan::add(const nc::Program& program, const Progress& progress) {
   std::vector<Share> shares;
   const auto packets = [&](const RowChunk& chunk, const Progress& work) {
     const VerifyScene& scene = run_.scene();
@@ -30,7 +30,7 @@ std::vector<VerifyPlan::Share> VerifyPlan::shares_of(const Moves& moves, const P
   const std::vector<SlabJob>& jobs = run_.scene().jobs();
   std::vector<Share> shares(jobs.size());
   std::vector<std::uint64_t> skipped(jobs.size());
-  parallel_for(
+  base::parallel_for(
       jobs.size(), 1,
       [&](std::size_t k, std::size_t) {
         const SlabJob& job = jobs[k];
@@ -106,4 +106,4 @@ VerifyReport VerifyPlan::finish(const Progress& progress) {
   return run_.finish(progress);
 }
 
-}  // namespace riffler
+}  // namespace riffler::verify

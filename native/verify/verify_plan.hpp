@@ -4,7 +4,7 @@
 #include "verify/slab_packets.hpp"
 #include "verify/slab_run.hpp"
 
-namespace riffler {
+namespace riffler::verify {
 
 /// First the program goes through `add`, chunk by chunk; then every slab that has moves goes to a SlabWorker; then
 /// `finish`. The report is that of SlabRun::feed, bit for bit. Keeps 24 bytes a row (feed moves under a spindle that
@@ -21,7 +21,7 @@ class VerifyPlan {
   };
   /// The chunk's moves, for every slab that they can touch, slabs ascending. Throws as SlabRun::feed. After an error or
   /// Cancelled this cannot be used any more.
-  std::vector<Share> add(const Program& chunk, const Progress& progress = {});
+  std::vector<Share> add(const nc::Program& chunk, const Progress& progress = {});
 
   /// What a SlabWorker is made of, once all chunks are there.
   std::vector<std::uint8_t> context() const;
@@ -45,4 +45,4 @@ class VerifyPlan {
   std::size_t merged_ = 0;          // slabs whose volumes have been added to the rows
 };
 
-}  // namespace riffler
+}  // namespace riffler::verify

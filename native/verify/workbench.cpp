@@ -2,12 +2,12 @@
 
 #include <algorithm>
 
-namespace riffler {
+namespace riffler::verify {
 
 namespace {
 
 /// A grid with the same rays and no material.
-Grid emptied(const Grid& like) {
+dexel::Grid emptied(const dexel::Grid& like) {
   return {like.axis(),
           {to_world(like.axis(), like.box().lower), to_world(like.axis(), like.box().upper)},
           like.pitch(),
@@ -16,11 +16,11 @@ Grid emptied(const Grid& like) {
 
 }  // namespace
 
-Workbench::Workbench(const Grid& like, const Slab& slab, double tolerance)
+Workbench::Workbench(const dexel::Grid& like, const Slab& slab, double tolerance)
     : grid_(emptied(like)), slab_(slab), nothing_(tiles_of(grid_, slab)), tolerance_(tolerance) {}
 
-std::vector<double> Workbench::cut(SlabTiles& tiles, std::span<const ConvexGroup> cutter, std::span<const Pose> poses,
-                                   std::span<const std::uint32_t> ends) {
+std::vector<double> Workbench::cut(SlabTiles& tiles, std::span<const sweep::ConvexGroup> cutter,
+                                   std::span<const Pose> poses, std::span<const std::uint32_t> ends) {
   put_tiles(grid_, slab_, tiles);
   std::vector<double> taken = carve_moves(grid_, cutter, poses, ends, tolerance_, stats_);
   tiles = tiles_of(grid_, slab_);
@@ -28,7 +28,7 @@ std::vector<double> Workbench::cut(SlabTiles& tiles, std::span<const ConvexGroup
   return taken;
 }
 
-bool Workbench::touches(const SlabTiles& tiles, std::span<const ConvexGroup> shape, std::span<const Pose> poses,
+bool Workbench::touches(const SlabTiles& tiles, std::span<const sweep::ConvexGroup> shape, std::span<const Pose> poses,
                         std::span<const std::uint32_t> ends) {
   const auto takes = [&](const SlabTiles& from) {
     SlabTiles copy = from;
@@ -44,7 +44,7 @@ bool Workbench::touches(const SlabTiles& tiles, std::span<const ConvexGroup> sha
   return takes(tiles);
 }
 
-SlabTiles Workbench::after(const SlabTiles& tiles, std::span<const ConvexGroup> shape, const Pose& from,
+SlabTiles Workbench::after(const SlabTiles& tiles, std::span<const sweep::ConvexGroup> shape, const Pose& from,
                            const Pose& to) {
   SlabTiles copy = tiles;
   const Pose poses[] = {from, to};
@@ -53,4 +53,4 @@ SlabTiles Workbench::after(const SlabTiles& tiles, std::span<const ConvexGroup> 
   return copy;
 }
 
-}  // namespace riffler
+}  // namespace riffler::verify

@@ -8,33 +8,33 @@
 #include "sweep/carve_moves.hpp"
 #include "verify/slab.hpp"
 
-namespace riffler {
+namespace riffler::verify {
 
 /// Of one thread. The grid is empty between calls.
 class Workbench {
  public:
   /// `like`: a grid of the volume, for its rays; its tiles are not used.
-  Workbench(const Grid& like, const Slab& slab, double tolerance);
+  Workbench(const dexel::Grid& like, const Slab& slab, double tolerance);
 
-  const Grid& grid() const { return grid_; }
+  const dexel::Grid& grid() const { return grid_; }
   const Slab& slab() const { return slab_; }
 
   /// Cuts `tiles` with moves to poses[ends[k]] from the poses before; returns mm³ per move.
-  std::vector<double> cut(SlabTiles& tiles, std::span<const ConvexGroup> cutter, std::span<const Pose> poses,
+  std::vector<double> cut(SlabTiles& tiles, std::span<const sweep::ConvexGroup> cutter, std::span<const Pose> poses,
                           std::span<const std::uint32_t> ends);
   /// Whether the moves would take anything. The tile where the last answer was yes is asked first.
-  bool touches(const SlabTiles& tiles, std::span<const ConvexGroup> shape, std::span<const Pose> poses,
+  bool touches(const SlabTiles& tiles, std::span<const sweep::ConvexGroup> shape, std::span<const Pose> poses,
                std::span<const std::uint32_t> ends);
   /// What one move would leave.
-  SlabTiles after(const SlabTiles& tiles, std::span<const ConvexGroup> shape, const Pose& from, const Pose& to);
+  SlabTiles after(const SlabTiles& tiles, std::span<const sweep::ConvexGroup> shape, const Pose& from, const Pose& to);
 
  private:
-  Grid grid_;
+  dexel::Grid grid_;
   Slab slab_;
   SlabTiles nothing_;
   double tolerance_;
   std::size_t hint_ = 0;
-  Stats stats_;
+  dexel::Stats stats_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::verify

@@ -69,6 +69,26 @@ def test_a_type_of_two_files_is_refused_and_hidden_ones_are_not(tree):
     assert check_layers.type_problems(tree.root) == []
 
 
+def test_a_topic_keeps_to_its_namespace_and_names_central_types_in_riffler(tree):
+    own = "namespace riffler::base {\nnamespace {\nint hidden();\n}\nstruct Ring {};\n}  // namespace riffler::base\n"
+    tree("base/ring.hpp", own + "\nnamespace riffler {\nusing base::Ring;\n}  // namespace riffler\n")
+    tree("base/kernels.cpp", "HWY_BEFORE_NAMESPACE();\nnamespace riffler::base::HWY_NAMESPACE {\nint cut();\n}\n")
+    tree("base/hash.hpp", "template <>\nstruct std::hash<riffler::base::Ring> {\n  int of;\n};\n")
+    assert check_layers.namespace_problems(tree.root) == []
+    tree("base/more.hpp", "namespace riffler {\nstruct Type {};\nint function();\nnamespace {\nint hidden();\n}\n}\n")
+    tree("base/none.hpp", "int outside();\nnamespace {\nint unnamed();\n}\n")
+    tree("nc/more.hpp", own)
+    assert check_layers.namespace_problems(tree.root) == [
+        "native/base/more.hpp: outside of namespace riffler::base: struct Type",
+        "native/base/more.hpp: outside of namespace riffler::base: int function()",
+        "native/base/more.hpp: outside of namespace riffler::base: int hidden()",
+        "native/base/none.hpp: outside of namespace riffler::base: int outside()",
+        "native/base/none.hpp: outside of namespace riffler::base: int unnamed()",
+        "native/nc/more.hpp: outside of namespace riffler::nc: int hidden()",
+        "native/nc/more.hpp: outside of namespace riffler::nc: struct Ring",
+    ]
+
+
 def test_types_are_found_behind_templates_literals_and_comments():
     text = """
     // struct Comment {};
@@ -96,7 +116,7 @@ def test_types_are_found_behind_templates_literals_and_comments():
 def test_the_core_has_types_and_each_once():
     found = cpp_types.definitions(ROOT / "native")
     assert len(found) > 500
-    assert [path.removeprefix("include/riffler/") for path in found["riffler::Program"]] == ["nc/program.hpp"]
+    assert [path.removeprefix("include/riffler/") for path in found["riffler::nc::Program"]] == ["nc/program.hpp"]
     assert check_layers.type_problems(ROOT) == []
     assert check_layers.circle_problems(ROOT) == []
     assert check_layers.public_problems(ROOT) == []

@@ -19,7 +19,7 @@
 
 #include "base/bytes.hpp"
 
-namespace riffler::rvol {
+namespace riffler::dexel::rvol {
 
 inline constexpr std::array<std::uint8_t, 8> kMagic{0x89, 'R', 'V', 'O', 'L', '\r', '\n', 0x1A};
 inline constexpr std::uint32_t kVersion = 1;
@@ -28,4 +28,4 @@ inline constexpr std::size_t kHeader = 96, kChunkHeader = 24;
 inline constexpr std::size_t kChunkTiles = 64, kChunkSpans = std::size_t{1} << 18;
 inline constexpr std::uint32_t kMap = 0x2070616D, kTiles = 0x656C6974;  // "map ", "tile"
 
-}  // namespace riffler::rvol
+}  // namespace riffler::dexel::rvol

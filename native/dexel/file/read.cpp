@@ -10,7 +10,7 @@
 #include "riffler/base/parallel.hpp"
 #include "riffler/dexel/file/file.hpp"
 
-namespace riffler {
+namespace riffler::dexel {
 
 namespace {
 
@@ -60,33 +60,33 @@ Header Reader::header() const {
   if (bytes_.size() < kMagic.size() || !std::equal(kMagic.begin(), kMagic.end(), bytes_.begin()))
     fail(0, "not a .rvol file (its first eight bytes are others)");
   if (bytes_.size() < kHeader) fail(bytes_.size(), "the file ends within its header");
-  const auto version = get<std::uint32_t>(bytes_, 8);
+  const auto version = base::get<std::uint32_t>(bytes_, 8);
   if (version != kVersion)
     fail(8, "version " + std::to_string(version) + "; this program reads version " + std::to_string(kVersion));
-  if (get<std::uint32_t>(bytes_, kHeader - 4) != checksum(bytes_.first(kHeader - 4)))
+  if (base::get<std::uint32_t>(bytes_, kHeader - 4) != base::checksum(bytes_.first(kHeader - 4)))
     fail(kHeader - 4, "the header's checksum does not fit");
-  const auto length = get<std::uint64_t>(bytes_, 16);
+  const auto length = base::get<std::uint64_t>(bytes_, 16);
   if (bytes_.size() < length)
     fail(bytes_.size(), "the file ends here, but should have " + std::to_string(length) + " bytes");
   if (bytes_.size() > length) fail(length, "there is more after the file's end");
 
   Header header;
-  const auto directions = get<std::array<char, 4>>(bytes_, 12);
+  const auto directions = base::get<std::array<char, 4>>(bytes_, 12);
   header.frame.directions.assign(directions.begin(), std::find(directions.begin(), directions.end(), '\0'));
   for (int k = 0; k < 3; ++k) {
-    header.frame.box.lower[k] = get<double>(bytes_, 24 + 8 * k);
-    header.frame.box.upper[k] = get<double>(bytes_, 48 + 8 * k);
+    header.frame.box.lower[k] = base::get<double>(bytes_, 24 + 8 * k);
+    header.frame.box.upper[k] = base::get<double>(bytes_, 48 + 8 * k);
   }
-  header.frame.pitch = get<double>(bytes_, 72);
-  header.spans = get<std::uint64_t>(bytes_, 80);
-  header.tiles = get<std::uint32_t>(bytes_, 88);
+  header.frame.pitch = base::get<double>(bytes_, 72);
+  header.spans = base::get<std::uint64_t>(bytes_, 80);
+  header.tiles = base::get<std::uint32_t>(bytes_, 88);
   return header;
 }
 
 /// Before anything is allocated: the tiles' map and the spans must be such as this many bytes can hold.
 void Reader::check_affordable(const Header& header) const {
   const Frame& frame = header.frame;
-  const double most = static_cast<double>(kMaxDeflated) * static_cast<double>(bytes_.size());
+  const double most = static_cast<double>(base::kMaxDeflated) * static_cast<double>(bytes_.size());
   double places = 0;
   for (const Axis axis : parse_directions(frame.directions)) {
     const Vec3 size = to_local(axis, frame.box).size() / frame.pitch;
@@ -105,8 +105,10 @@ void Reader::check_affordable(const Header& header) const {
 Chunk Reader::chunk(std::size_t at, std::size_t grid) const {
   if (bytes_.size() - at < kChunkHeader) fail(at, "the file ends where a chunk should begin");
   const auto head = bytes_.subspan(at);
-  Chunk chunk{grid, get<std::uint32_t>(head, 0), get<std::uint32_t>(head, 4), get<std::uint32_t>(head, 8), at, {}};
-  const auto length = get<std::uint64_t>(head, 12);
+  Chunk chunk{
+      grid, base::get<std::uint32_t>(head, 0), base::get<std::uint32_t>(head, 4), base::get<std::uint32_t>(head, 8), at,
+      {}};
+  const auto length = base::get<std::uint64_t>(head, 12);
   if (length > head.size() - kChunkHeader) fail(at + 12, "the chunk is longer than the rest of the file");
   chunk.payload = head.subspan(kChunkHeader, length);
   return chunk;
@@ -118,7 +120,7 @@ std::vector<Chunk> Reader::chunks(std::size_t grids, const Header& header) const
   std::size_t at = kHeader, maps = 0;
   std::uint64_t spans = 0, tiles = 0;
   while (at < bytes_.size()) {
-    const auto kind = bytes_.size() - at < kChunkHeader ? 0 : get<std::uint32_t>(bytes_, at);
+    const auto kind = bytes_.size() - at < kChunkHeader ? 0 : base::get<std::uint32_t>(bytes_, at);
     if (kind == kMap) ++maps;
     if (maps == 0 || maps > grids) fail(at, "a chunk that belongs to no grid");
     all.push_back(chunk(at, maps - 1));
@@ -141,7 +143,7 @@ std::vector<std::uint32_t> Reader::map(const Chunk& chunk, const Grid& grid) con
   if (chunk.items != grid.tile_count() || chunk.spans != 0)
     fail(chunk.at + 4, "the map has " + std::to_string(chunk.items) + " places, the grid " +
                            std::to_string(grid.tile_count()) + " tiles");
-  PlaneReader in(chunk.payload, chunk.at + kChunkHeader, name_);
+  base::PlaneReader in(chunk.payload, chunk.at + kChunkHeader, name_);
   std::vector<std::uint32_t> places = in.column32(chunk.items);
   in.finish();
   std::uint32_t most = 0;
@@ -153,7 +155,7 @@ std::vector<std::uint32_t> Reader::map(const Chunk& chunk, const Grid& grid) con
 }
 
 std::vector<TilePtr> Reader::tiles(const Chunk& chunk, const Grid& grid) const {
-  PlaneReader in(chunk.payload, chunk.at + kChunkHeader, name_);
+  base::PlaneReader in(chunk.payload, chunk.at + kChunkHeader, name_);
   const std::vector<std::uint32_t> counts = in.column32(std::size_t{chunk.items} * kTileRays);
   std::uint64_t sum = 0;
   for (const std::uint32_t count : counts) sum += count;
@@ -224,12 +226,13 @@ Volume Reader::run(const Progress& progress) const {
 
   std::vector<std::vector<std::uint32_t>> maps(grids.size());
   std::vector<std::vector<TilePtr>> read(all.size());
-  parallel_for(
+  base::parallel_for(
       all.size(), 1,
       [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
           const Chunk& chunk = all[k];
-          if (get<std::uint32_t>(bytes_, chunk.at + 20) != checksum(bytes_.subspan(chunk.at, 20), chunk.payload))
+          if (base::get<std::uint32_t>(bytes_, chunk.at + 20) !=
+              base::checksum(bytes_.subspan(chunk.at, 20), chunk.payload))
             fail(chunk.at, "the chunk's checksum does not fit");
           if (chunk.kind == kMap)
             maps[chunk.grid] = map(chunk, grids[chunk.grid]);
@@ -260,7 +263,7 @@ Volume from_bytes(std::span<const std::uint8_t> bytes, const std::string& name, 
 }
 
 Volume load(const std::filesystem::path& path, const Progress& progress) {
-  return from_bytes(read_file(path), path.filename().string(), progress);
+  return from_bytes(base::read_file(path), path.filename().string(), progress);
 }
 
-}  // namespace riffler
+}  // namespace riffler::dexel

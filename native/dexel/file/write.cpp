@@ -8,7 +8,7 @@
 #include "riffler/base/parallel.hpp"
 #include "riffler/dexel/file/file.hpp"
 
-namespace riffler {
+namespace riffler::dexel {
 
 namespace {
 
@@ -25,7 +25,8 @@ std::uint64_t content_hash(const Tile& tile) {
   const auto bytes = [](const auto& items) {
     return std::span(reinterpret_cast<const std::uint8_t*>(items.data()), items.size() * sizeof items[0]);
   };
-  return (std::uint64_t{checksum(bytes(tile.offset))} << 32) + checksum(bytes(tile.spans), bytes(tile.normals));
+  return (std::uint64_t{base::checksum(bytes(tile.offset))} << 32) +
+         base::checksum(bytes(tile.spans), bytes(tile.normals));
 }
 
 bool same_content(const Tile& a, const Tile& b) {
@@ -44,7 +45,7 @@ StoredTiles without_repetition(const Grid& grid) {
     at[t] = found->second;
   }
   std::vector<std::uint64_t> hashes(distinct.size());
-  parallel_for(distinct.size(), 64, [&](std::size_t begin, std::size_t end) {
+  base::parallel_for(distinct.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) hashes[k] = content_hash(*distinct[k]);
   });
 
@@ -88,7 +89,7 @@ std::vector<Plan> plan_chunks(const std::vector<StoredTiles>& grids) {
   return plans;
 }
 
-void write_tiles(PlaneWriter& out, std::span<const TilePtr> tiles, std::size_t spans, bool with_normals) {
+void write_tiles(base::PlaneWriter& out, std::span<const TilePtr> tiles, std::size_t spans, bool with_normals) {
   std::vector<std::uint32_t> counts;
   counts.reserve(tiles.size() * kTileRays);
   for (const TilePtr& tile : tiles)
@@ -118,11 +119,11 @@ void write_tiles(PlaneWriter& out, std::span<const TilePtr> tiles, std::size_t s
 
 Bytes write_chunk(const Plan& plan, const StoredTiles& tiles, bool with_normals) {
   Bytes chunk;
-  put(chunk, plan.kind);
-  put(chunk, static_cast<std::uint32_t>(plan.end - plan.begin));
-  put(chunk, static_cast<std::uint32_t>(plan.spans));
+  base::put(chunk, plan.kind);
+  base::put(chunk, static_cast<std::uint32_t>(plan.end - plan.begin));
+  base::put(chunk, static_cast<std::uint32_t>(plan.spans));
   chunk.resize(kChunkHeader);
-  PlaneWriter out(chunk);
+  base::PlaneWriter out(chunk);
   if (plan.kind == kMap)
     out.column(tiles.places);
   else
@@ -130,25 +131,25 @@ Bytes write_chunk(const Plan& plan, const StoredTiles& tiles, bool with_normals)
   const std::uint64_t length = chunk.size() - kChunkHeader;
   std::memcpy(chunk.data() + 12, &length, sizeof length);
   const std::span whole(chunk);
-  const std::uint32_t crc = checksum(whole.first(20), whole.subspan(kChunkHeader));
+  const std::uint32_t crc = base::checksum(whole.first(20), whole.subspan(kChunkHeader));
   std::memcpy(chunk.data() + 20, &crc, sizeof crc);
   return chunk;
 }
 
 Bytes write_header(const Frame& frame, std::uint64_t length, std::uint64_t spans, std::uint32_t tiles) {
   Bytes header;
-  put(header, kMagic);
-  put(header, kVersion);
+  base::put(header, kMagic);
+  base::put(header, kVersion);
   std::array<char, 4> directions{};
   std::copy(frame.directions.begin(), frame.directions.end(), directions.begin());
-  put(header, directions);
-  put(header, length);
+  base::put(header, directions);
+  base::put(header, length);
   for (const Vec3& corner : {frame.box.lower, frame.box.upper})
-    for (int k = 0; k < 3; ++k) put(header, corner[k]);
-  put(header, frame.pitch);
-  put(header, spans);
-  put(header, tiles);
-  put(header, checksum(header));
+    for (int k = 0; k < 3; ++k) base::put(header, corner[k]);
+  base::put(header, frame.pitch);
+  base::put(header, spans);
+  base::put(header, tiles);
+  base::put(header, base::checksum(header));
   return header;
 }
 
@@ -159,7 +160,7 @@ std::vector<std::uint8_t> to_bytes(const Volume& volume, const Progress& progres
   for (const Grid& grid : volume.grids()) tiles.push_back(without_repetition(grid));
   const std::vector<Plan> plans = plan_chunks(tiles);
   std::vector<Bytes> chunks(plans.size());
-  parallel_for(
+  base::parallel_for(
       plans.size(), 1,
       [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k)
@@ -182,7 +183,7 @@ std::vector<std::uint8_t> to_bytes(const Volume& volume, const Progress& progres
 }
 
 void save(const Volume& volume, const std::filesystem::path& path, const Progress& progress) {
-  write_file(path, to_bytes(volume, progress));
+  base::write_file(path, to_bytes(volume, progress));
 }
 
-}  // namespace riffler
+}  // namespace riffler::dexel

@@ -10,7 +10,7 @@
 #include "mesh/near_points.hpp"
 #include "mesh/weld.hpp"
 
-namespace riffler {
+namespace riffler::dexel {
 
 namespace {
 
@@ -25,8 +25,8 @@ class Pairing {
   explicit Pairing(std::size_t vertices) : sums_(vertices, 0) {}
 
   void add(int from, int to) {
-    if (from < to) sums_[from] += mix_bits(static_cast<std::uint64_t>(to) + 1);
-    if (to < from) sums_[to] -= mix_bits(static_cast<std::uint64_t>(from) + 1);
+    if (from < to) sums_[from] += base::mix_bits(static_cast<std::uint64_t>(to) + 1);
+    if (to < from) sums_[to] -= base::mix_bits(static_cast<std::uint64_t>(from) + 1);
   }
   bool paired(int from, int to) const { return sums_[std::min(from, to)] == 0; }
   bool all_paired() const {
@@ -55,7 +55,7 @@ Seams weld_seams(const Mesh& mesh, std::vector<HalfEdge> edges) {
   for (const HalfEdge& e : edges) number[e.from] = number[e.to] = 0;
   for (std::size_t k = 0; k < number.size(); ++k)
     if (number[k] == 0) ends.push_back(static_cast<int>(k));
-  Welder<Vec3> welder(ends.size());
+  mesh::Welder<Vec3> welder(ends.size());
   for (const int k : ends) {
     number[k] = welder.add(mesh.vertices[k]);
     if (number[k] == static_cast<int>(out.first.size()))
@@ -153,8 +153,8 @@ Boundary find_boundary(const Mesh& mesh) {
 std::optional<Mesh> join_cracks(const Mesh& mesh, const Boundary& boundary, double tolerance) {
   std::vector<int> rim;
   for (const std::vector<int>& loop : boundary.loops) rim.insert(rim.end(), loop.begin(), loop.end());
-  sort_unique(rim);
-  NearPoints near(tolerance, rim.size());
+  base::sort_unique(rim);
+  mesh::NearPoints near(tolerance, rim.size());
   std::vector<std::pair<int, Vec3>> moved;
   for (const int k : rim)
     if (const Vec3 p = near[near.find_or_add(mesh.vertices[k])]; p != mesh.vertices[k]) moved.emplace_back(k, p);
@@ -165,4 +165,4 @@ std::optional<Mesh> join_cracks(const Mesh& mesh, const Boundary& boundary, doub
   return joined;
 }
 
-}  // namespace riffler
+}  // namespace riffler::dexel

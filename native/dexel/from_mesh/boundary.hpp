@@ -7,7 +7,7 @@
 
 #include "riffler/mesh/mesh.hpp"
 
-namespace riffler {
+namespace riffler::dexel {
 
 struct Boundary {
   /// Closed walks: walk k visits the vertices loops[k][0], loops[k][1], … and returns to the first. Every directed edge
@@ -29,4 +29,4 @@ Boundary find_boundary(const Mesh& mesh);
 /// Nothing where no vertex moves.
 std::optional<Mesh> join_cracks(const Mesh& mesh, const Boundary& boundary, double tolerance);
 
-}  // namespace riffler
+}  // namespace riffler::dexel

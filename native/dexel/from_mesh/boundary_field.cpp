@@ -7,7 +7,7 @@
 
 #include "geom/math.hpp"
 
-namespace riffler {
+namespace riffler::dexel {
 
 namespace {
 
@@ -235,4 +235,4 @@ void Descent::flush(Batch& batch) {
   re_ = re * scale, im_ = im * scale;
 }
 
-}  // namespace riffler
+}  // namespace riffler::dexel

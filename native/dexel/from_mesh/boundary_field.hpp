@@ -9,7 +9,7 @@
 #include "dexel/from_mesh/local_expansion.hpp"
 #include "riffler/geom/vec.hpp"
 
-namespace riffler {
+namespace riffler::dexel {
 
 /// Distance of p from the segment ab.
 double segment_distance(const Vec3& p, const Vec3& a, const Vec3& b);
@@ -143,4 +143,4 @@ class Descent {
   double surfaces_ = 0;     // sum of the dipoles' K at the centre
 };
 
-}  // namespace riffler
+}  // namespace riffler::dexel

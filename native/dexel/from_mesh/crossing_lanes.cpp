@@ -13,7 +13,9 @@
 #include <algorithm>
 
 HWY_BEFORE_NAMESPACE();
-namespace riffler::HWY_NAMESPACE {
+namespace riffler::dexel::HWY_NAMESPACE {
+
+using namespace base::HWY_NAMESPACE;
 
 namespace {
 
@@ -193,12 +195,12 @@ void FindCrossings(std::span<const Vec3i> corners, std::span<const std::uint32_t
   }
 }
 
-}  // namespace riffler::HWY_NAMESPACE
+}  // namespace riffler::dexel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 
-namespace riffler {
+namespace riffler::dexel {
 
 HWY_EXPORT(FindCrossings);
 
@@ -207,6 +209,6 @@ void find_crossings(std::span<const Vec3i> corners, std::span<const std::uint32_
   HWY_DYNAMIC_DISPATCH(FindCrossings)(corners, triangles, projection, first, last, out);
 }
 
-}  // namespace riffler
+}  // namespace riffler::dexel
 
 #endif

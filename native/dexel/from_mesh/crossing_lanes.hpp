@@ -8,11 +8,11 @@
 
 #include "dexel/from_mesh/crossings.hpp"
 
-namespace riffler {
+namespace riffler::dexel {
 
 /// Appends the crossings of some triangles with rows first ≤ row < last to `out`, in an order that depends on the
 /// registers' width.
 void find_crossings(std::span<const Vec3i> corners, std::span<const std::uint32_t> triangles,
                     const Projection& projection, int first, int last, BandCrossings& out);
 
-}  // namespace riffler
+}  // namespace riffler::dexel

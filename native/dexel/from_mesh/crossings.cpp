@@ -8,7 +8,7 @@
 #include "riffler/base/bulk.hpp"
 #include "riffler/base/parallel.hpp"
 
-namespace riffler {
+namespace riffler::dexel {
 
 namespace {
 
@@ -61,7 +61,7 @@ Projection::Projection(const Mesh& mesh, const Grid& grid) : nu_(grid.nu()), nv_
   // The last rays may stand on the box's side, or, a lone one, beyond it. They are taken for what is within.
   const Aside aside_u(grid.box().size().x / pitch, nu_, lattice_), aside_v(grid.box().size().y / pitch, nv_, lattice_);
   vertices_.resize(mesh.vertices.size());
-  parallel_for(vertices_.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
+  base::parallel_for(vertices_.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
     // Adding and taking away 1.5 · 2^52 rounds to integers, faster than a library call.
     constexpr double kRound = 6755399441055744.0;
     for (std::size_t k = begin; k < end; ++k) {
@@ -91,8 +91,8 @@ Bands::Bands(const Mesh& mesh, const Projection& projection, int rows_per_band) 
   struct Reach {
     std::int32_t first, count;
   };
-  BulkVector<Reach> reaches(n);
-  parallel_for(n, grain, [&](std::size_t begin, std::size_t end) {
+  base::BulkVector<Reach> reaches(n);
+  base::parallel_for(n, grain, [&](std::size_t begin, std::size_t end) {
     constexpr std::size_t kAhead = 16;
     std::size_t* place = places.data() + begin / grain * bands;
     for (std::size_t t = begin; t < end; ++t) {
@@ -115,7 +115,7 @@ Bands::Bands(const Mesh& mesh, const Projection& projection, int rows_per_band) 
   }
   begin_[bands] = total;
   triangles_.resize(total);
-  parallel_for(n, grain, [&](std::size_t begin, std::size_t end) {
+  base::parallel_for(n, grain, [&](std::size_t begin, std::size_t end) {
     std::size_t* place = places.data() + begin / grain * bands;
     for (std::size_t t = begin; t < end; ++t)
       for (int k = 0; k < reaches[t].count; ++k)
@@ -163,4 +163,4 @@ void sort_by_column(const BandCrossings& crossings, std::size_t columns, std::ve
   }
 }
 
-}  // namespace riffler
+}  // namespace riffler::dexel

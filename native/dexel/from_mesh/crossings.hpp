@@ -12,7 +12,7 @@
 #include "riffler/dexel/grid.hpp"
 #include "riffler/mesh/mesh.hpp"
 
-namespace riffler {
+namespace riffler::dexel {
 
 /// One signed crossing of a column, by rising coordinate: +1 enters (the triangle faces down the ray), −1 leaves.
 struct Crossing {
@@ -51,8 +51,8 @@ class BandCrossings {
  private:
   void grow(std::size_t more);
 
-  BulkVector<double> z_;
-  BulkVector<std::int64_t> names_;
+  base::BulkVector<double> z_;
+  base::BulkVector<std::int64_t> names_;
   std::size_t size_ = 0;
 };
 
@@ -73,7 +73,7 @@ class Projection {
   int nv() const { return nv_; }
   double slack() const { return slack_; }
   const Vertex& vertex(int index) const { return vertices_[index]; }
-  const BulkVector<Vertex>& vertices() const { return vertices_; }
+  const base::BulkVector<Vertex>& vertices() const { return vertices_; }
   void prefetch(const Vec3i& corners) const {
     for (int k = 0; k < 3; ++k) __builtin_prefetch(&vertices_[corners[k]]);
   }
@@ -99,7 +99,7 @@ class Projection {
   int nu_, nv_;
   double lattice_;  // lattice points per cell, a power of two
   double slack_;    // more than the rounding error of an edge's v at a row, cells
-  BulkVector<Vertex> vertices_;
+  base::BulkVector<Vertex> vertices_;
 };
 
 /// Triangles by bands of rows: those that may cross a column with a row in band k, in the order of the mesh.
@@ -116,7 +116,7 @@ class Bands {
  private:
   int rows_;
   std::vector<std::size_t> begin_;
-  BulkVector<std::uint32_t> triangles_;
+  base::BulkVector<std::uint32_t> triangles_;
 };
 
 /// Crossings of a band sorted by column, within one by z, and then by source. `begin` has one entry more than there are
@@ -124,4 +124,4 @@ class Bands {
 void sort_by_column(const BandCrossings& crossings, std::size_t columns, std::vector<Crossing>& sorted,
                     std::vector<std::uint32_t>& begin);
 
-}  // namespace riffler
+}  // namespace riffler::dexel

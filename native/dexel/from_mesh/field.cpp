@@ -5,7 +5,7 @@
 
 #include "geom/math.hpp"
 
-namespace riffler {
+namespace riffler::dexel {
 
 void Field::fill(const BoundaryPieces& pieces, const Surroundings& around) {
   around_ = &around, rays_ = 0;
@@ -29,4 +29,4 @@ void Field::fill(const BoundaryPieces& pieces, const Surroundings& around) {
   });
 }
 
-}  // namespace riffler
+}  // namespace riffler::dexel

@@ -18,7 +18,7 @@
 #include "dexel/from_mesh/field_points.hpp"
 #include "riffler/geom/vec.hpp"
 
-namespace riffler {
+namespace riffler::dexel {
 
 /// K near one place. Lengths in cells, z along the column.
 class Field {
@@ -45,4 +45,4 @@ class Field {
   std::vector<PathPoint> path_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::dexel

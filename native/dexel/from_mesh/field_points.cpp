@@ -14,7 +14,9 @@
 #include <limits>
 
 HWY_BEFORE_NAMESPACE();
-namespace riffler::HWY_NAMESPACE {
+namespace riffler::dexel::HWY_NAMESPACE {
+
+using namespace base::HWY_NAMESPACE;
 
 namespace {
 
@@ -255,12 +257,12 @@ void FieldVariation(std::span<const PathPoint> path, const FieldPoints& points, 
   }
 }
 
-}  // namespace riffler::HWY_NAMESPACE
+}  // namespace riffler::dexel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 
-namespace riffler {
+namespace riffler::dexel {
 
 HWY_EXPORT(EvaluateField);
 HWY_EXPORT(FieldVariation);
@@ -275,6 +277,6 @@ void field_variation(std::span<const PathPoint> path, const FieldPoints& points,
   HWY_DYNAMIC_DISPATCH(FieldVariation)(path, points, slope, curvature, variation);
 }
 
-}  // namespace riffler
+}  // namespace riffler::dexel
 
 #endif

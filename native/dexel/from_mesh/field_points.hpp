@@ -6,10 +6,10 @@
 #include "base/lanes.hpp"
 #include "dexel/from_mesh/local_expansion.hpp"
 
-namespace riffler {
+namespace riffler::dexel {
 
 /// Points that are evaluated together.
-inline constexpr int kPoints = kLanes;
+inline constexpr int kPoints = base::kLanes;
 
 /// One point of the polylines that are near. Lengths in cells.
 struct PathPoint {
@@ -45,4 +45,4 @@ void evaluate_field(std::span<const PathPoint> path, const LocalExpansion& far, 
 void field_variation(std::span<const PathPoint> path, const FieldPoints& points, const double* slope, double curvature,
                      double* variation);
 
-}  // namespace riffler
+}  // namespace riffler::dexel

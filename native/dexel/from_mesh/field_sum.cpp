@@ -13,20 +13,22 @@
 
 #ifndef RIFFLER_SOURCE_LANES
 #define RIFFLER_SOURCE_LANES
-namespace riffler {
+namespace riffler::dexel {
 /// A SourceSum for every lane.
 struct SourceLanes {
   double c_re[SourceSum::kTerms][kSourceLanes], c_im[SourceSum::kTerms][kSourceLanes];
   double re[kSourceLanes], im[kSourceLanes], dipoles[kSourceLanes];
 };
-}  // namespace riffler
+}  // namespace riffler::dexel
 #endif
 
 // Only operations that IEEE 754 rounds correctly are used and none is fused, and a source's lane is the same whatever
 // the width of the registers, so every instruction set gives the same bits.
 
 HWY_BEFORE_NAMESPACE();
-namespace riffler::HWY_NAMESPACE {
+namespace riffler::dexel::HWY_NAMESPACE {
+
+using namespace base::HWY_NAMESPACE;
 
 namespace {
 
@@ -146,12 +148,12 @@ void SumSources(const SourceArrays& in, SourceLanes& out) {
   }
 }
 
-}  // namespace riffler::HWY_NAMESPACE
+}  // namespace riffler::dexel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 
-namespace riffler {
+namespace riffler::dexel {
 
 HWY_EXPORT(SumSources);
 
@@ -172,6 +174,6 @@ SourceSum sum_sources(const SourceArrays& in) {
   return out;
 }
 
-}  // namespace riffler
+}  // namespace riffler::dexel
 
 #endif

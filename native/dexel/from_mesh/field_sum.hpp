@@ -5,9 +5,9 @@
 
 #include "base/lanes.hpp"
 
-namespace riffler {
+namespace riffler::dexel {
 
-inline constexpr std::size_t kSourceLanes = kLanes;
+inline constexpr std::size_t kSourceLanes = base::kLanes;
 
 /// What is far from the origin, n a multiple of kSourceLanes:
 /// - edges from a to a + e, w = a × e;
@@ -36,4 +36,4 @@ struct SourceSum {
 
 SourceSum sum_sources(const SourceArrays& in);
 
-}  // namespace riffler
+}  // namespace riffler::dexel

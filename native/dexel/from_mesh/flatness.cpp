@@ -1,6 +1,6 @@
 #include "dexel/from_mesh/flatness.hpp"
 
-namespace riffler {
+namespace riffler::dexel {
 
 namespace {
 
@@ -42,4 +42,4 @@ bool is_flat(const Mesh& mesh, double tolerance) {
   return are_flat(mesh, stride, 16 * tolerance) && are_flat(mesh, 1, tolerance);
 }
 
-}  // namespace riffler
+}  // namespace riffler::dexel

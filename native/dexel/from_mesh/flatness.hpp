@@ -3,9 +3,9 @@
 
 #include "riffler/mesh/mesh.hpp"
 
-namespace riffler {
+namespace riffler::dexel {
 
 /// Whether all vertices that triangles use lie within `tolerance` (mm) of one plane.
 bool is_flat(const Mesh& mesh, double tolerance);
 
-}  // namespace riffler
+}  // namespace riffler::dexel

@@ -16,7 +16,7 @@
 #include "riffler/base/parallel.hpp"
 #include "riffler/mesh/measure.hpp"
 
-namespace riffler {
+namespace riffler::dexel {
 
 namespace {
 
@@ -106,7 +106,7 @@ int Filler::rows_per_band() const {
 
 void Filler::run(const Progress& progress) {
   std::vector<ColumnTally> tallies(static_cast<std::size_t>(grid_.tiles_u()));
-  parallel_for(
+  base::parallel_for(
       static_cast<std::size_t>(grid_.tiles_u()), 1,
       [&](std::size_t begin, std::size_t end) {
         Scratch scratch;
@@ -312,8 +312,8 @@ bool fill(Volume& result, const Mesh& mesh, const std::vector<std::vector<int>>&
   double done = 0;
   for (Grid& grid : result.grids()) {
     const double middle = done + (loops.empty() ? 0.1 : 0.7) / grids;
-    Filler filler(mesh, loops, grid, part(progress, done, middle), findings);
-    filler.run(part(progress, middle, done += 1 / grids));
+    Filler filler(mesh, loops, grid, base::part(progress, done, middle), findings);
+    filler.run(base::part(progress, middle, done += 1 / grids));
     stats.triangles_tested += filler.triangles_tested();
     negative |= filler.negative();
   }
@@ -368,7 +368,7 @@ MissedMaterial missed_by_rays(const Volume& result, const Mesh& mesh, const Box3
 }
 
 /// What the shells that were turned enclose, mm of rays in all grids.
-double turned_lengths(const Orientation& orientation, const Volume& volume) {
+double turned_lengths(const mesh::Orientation& orientation, const Volume& volume) {
   const double pitch = volume.frame().pitch;
   return orientation.turned_volume / (pitch * pitch) * static_cast<double>(volume.grids().size());
 }
@@ -378,7 +378,7 @@ void conclude(const SolidMesh& solid, const MeshFindings& findings, double insid
   const ColumnTally& t = findings.tally;
   report.inside_out = inside_out, report.overlap = findings.share(t.overlap);
   if (t.rays > 0) report.doubtful_rays = static_cast<double>(t.doubtful) / static_cast<double>(t.rays);
-  const Orientation& o = solid.orientation();
+  const mesh::Orientation& o = solid.orientation();
   report.turned = o.turned, report.left_out = o.left_out, report.one_sided = o.one_sided;
   report.flipped_shells = o.turned_shells;
   if (t.inside_out > 0) report.flipped_shells += count_shells(solid.mesh(), findings.flipped);
@@ -391,13 +391,13 @@ Volume from_mesh(const Mesh& mesh, const Frame& frame, const Progress& progress,
   validate(mesh);
   if (mesh.empty()) throw std::invalid_argument("the mesh has no triangles, so it has no volume");
   Volume result(frame);
-  riffler::report(progress, 0);
+  base::report(progress, 0);
   if (report) {
     *report = {};
     count_defects(mesh, *report);
-    riffler::report(progress, kCounted);
+    base::report(progress, kCounted);
   }
-  const Progress rest = part(progress, report ? kCounted : 0, 1);
+  const Progress rest = base::part(progress, report ? kCounted : 0, 1);
   const auto [box, enclosed] = measure(mesh);
   SolidMesh solid(mesh);
   // Coordinates may have been rounded to single precision on their way here.
@@ -413,7 +413,7 @@ Volume from_mesh(const Mesh& mesh, const Frame& frame, const Progress& progress,
     inside_out = findings.share(findings.tally.inside_out);
     findings = MeshFindings(solid.mesh());
     result = Volume(frame);
-    fill(result, solid.mesh(), solid.loops(), part(progress, 0.999, 1), report ? &findings : nullptr);
+    fill(result, solid.mesh(), solid.loops(), base::part(progress, 0.999, 1), report ? &findings : nullptr);
   }
   if (!(most_volume(result) > 1e-6 * std::pow(most(box.size()), 3)) && !has_volume(solid.mesh(), solid.loops(), box))
     throw std::invalid_argument("the mesh has no volume: its surface encloses nothing");
@@ -421,8 +421,8 @@ Volume from_mesh(const Mesh& mesh, const Frame& frame, const Progress& progress,
   if (missed) *missed = {};
   if (missed && solid.loops().empty())
     *missed = missed_by_rays(result, solid.mesh(), box, &solid.mesh() == &mesh ? enclosed : volume(solid.mesh()));
-  riffler::report(progress, 1);
+  base::report(progress, 1);
   return result;
 }
 
-}  // namespace riffler
+}  // namespace riffler::dexel

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <iterator>
 
-namespace riffler {
+namespace riffler::dexel {
 
 void LocalExpansion::shift(const Vec3& d) {
   // Horner's scheme for each variable in turn.
@@ -115,4 +115,4 @@ double LocalExpansion::curvature_along(const Vec3& half) const {
   return sum;
 }
 
-}  // namespace riffler
+}  // namespace riffler::dexel

@@ -6,7 +6,7 @@
 #include "dexel/from_mesh/field_sum.hpp"
 #include "riffler/geom/vec.hpp"
 
-namespace riffler {
+namespace riffler::dexel {
 
 /// Taylor polynomial of degree kDegree about a centre; r below is relative to the centre.
 class LocalExpansion {
@@ -39,4 +39,4 @@ class LocalExpansion {
   std::array<std::array<double, kSide>, kRows> rows_{};
 };
 
-}  // namespace riffler
+}  // namespace riffler::dexel

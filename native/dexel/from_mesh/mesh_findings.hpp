@@ -7,7 +7,7 @@
 
 #include "riffler/mesh/mesh.hpp"
 
-namespace riffler {
+namespace riffler::dexel {
 
 /// What the winding numbers of columns tell about a mesh.
 struct ColumnTally {
@@ -32,4 +32,4 @@ struct MeshFindings {
   double share(double length) const { return tally.inside > 0 ? std::min(1.0, length / tally.inside) : 0; }
 };
 
-}  // namespace riffler
+}  // namespace riffler::dexel

@@ -6,7 +6,7 @@
 #include "mesh/near_points.hpp"
 #include "riffler/base/parallel.hpp"
 
-namespace riffler {
+namespace riffler::dexel {
 
 namespace {
 
@@ -14,12 +14,12 @@ using Count = std::atomic<std::size_t>;
 
 bool is_degenerate(const Mesh& mesh, const Vec3i& t) {
   const Vec3& a = mesh.vertices[t.x];
-  return repeats_a_vertex(t) || glm::cross(mesh.vertices[t.y] - a, mesh.vertices[t.z] - a) == Vec3(0);
+  return mesh::repeats_a_vertex(t) || glm::cross(mesh.vertices[t.y] - a, mesh.vertices[t.z] - a) == Vec3(0);
 }
 
 void count_edges(const Mesh& mesh, MeshReport& report) {
   Count open{0}, crowded{0}, same_way{0}, duplicates{0};
-  EdgeTable(mesh).for_each_edge([&](int, std::span<const EdgeTable::Use> uses) {
+  mesh::EdgeTable(mesh).for_each_edge([&](int, std::span<const mesh::EdgeTable::Use> uses) {
     if (uses.size() == 1) ++open;
     if (uses.size() >= 3) ++crowded;
     if (uses.size() == 2 && uses[0].reversed() == uses[1].reversed()) ++same_way;
@@ -34,7 +34,7 @@ void count_edges(const Mesh& mesh, MeshReport& report) {
 void count_defects(const Mesh& mesh, MeshReport& report) {
   report.triangles = mesh.triangles.size();
   Count degenerate{0};
-  parallel_for(mesh.triangles.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
+  base::parallel_for(mesh.triangles.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
     std::size_t count = 0;
     for (std::size_t t = begin; t < end; ++t) count += is_degenerate(mesh, mesh.triangles[t]);
     degenerate += count;
@@ -49,7 +49,7 @@ std::size_t count_shells(const Mesh& mesh, const std::vector<std::uint8_t>& mark
   const Mesh joined = welded(mesh);
   // Around each edge from one of its triangles to the next.
   std::vector<int> next(3 * joined.triangles.size(), -1);
-  EdgeTable(joined).for_each_edge([&](int, std::span<const EdgeTable::Use> uses) {
+  mesh::EdgeTable(joined).for_each_edge([&](int, std::span<const mesh::EdgeTable::Use> uses) {
     for (std::size_t k = 0; k < uses.size(); ++k) next[uses[k].half()] = uses[(k + 1) % uses.size()].half();
   });
   std::vector<bool> seen(marks.size(), false);
@@ -65,13 +65,13 @@ std::size_t count_shells(const Mesh& mesh, const std::vector<std::uint8_t>& mark
       pending.pop_back();
       for (int k = 0; k < 3; ++k) {
         const int across = next[3 * at + k];
-        if (across < 0 || seen[triangle_of(across)]) continue;
-        seen[triangle_of(across)] = true;
-        pending.push_back(triangle_of(across));
+        if (across < 0 || seen[mesh::triangle_of(across)]) continue;
+        seen[mesh::triangle_of(across)] = true;
+        pending.push_back(mesh::triangle_of(across));
       }
     }
   }
   return shells;
 }
 
-}  // namespace riffler
+}  // namespace riffler::dexel

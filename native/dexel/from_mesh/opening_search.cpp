@@ -4,7 +4,7 @@
 
 #include "geom/math.hpp"
 
-namespace riffler {
+namespace riffler::dexel {
 
 namespace {
 
@@ -208,4 +208,4 @@ void OpeningSearch::normals() {
   complete_ = out_.size();
 }
 
-}  // namespace riffler
+}  // namespace riffler::dexel

@@ -15,7 +15,7 @@
 #include "dexel/from_mesh/passage.hpp"
 #include "riffler/dexel/grid.hpp"
 
-namespace riffler {
+namespace riffler::dexel {
 
 /// Searches blocks of columns for passages. Lengths in cells.
 class OpeningSearch {
@@ -167,4 +167,4 @@ class OpeningSearch {
   std::size_t complete_ = 0;  // passages that have their normals
 };
 
-}  // namespace riffler
+}  // namespace riffler::dexel

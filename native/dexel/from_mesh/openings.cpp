@@ -12,7 +12,7 @@
 #include "geom/math.hpp"
 #include "riffler/base/parallel.hpp"
 
-namespace riffler {
+namespace riffler::dexel {
 
 namespace {
 
@@ -37,7 +37,7 @@ std::vector<Passage> sorted(std::vector<std::vector<Passage>> found, int rows) {
     for (const Passage& p : part) all[end[p.row]++] = p;
     part = {};
   }
-  parallel_for(static_cast<std::size_t>(rows), 16, [&](std::size_t first, std::size_t last) {
+  base::parallel_for(static_cast<std::size_t>(rows), 16, [&](std::size_t first, std::size_t last) {
     for (std::size_t row = first; row < last; ++row)
       std::sort(all.begin() + begin[row], all.begin() + end[row], [](const Passage& a, const Passage& b) {
         return std::tie(a.column, a.z, a.sign) < std::tie(b.column, b.z, b.sign);
@@ -87,7 +87,7 @@ std::vector<Passage> find_passages(const Mesh& mesh, const std::vector<std::vect
   bool divisible = true;
   for (double begin = 0; divisible && tasks.size() < kTasks && !tasks.empty(); begin += 0.02) {
     divisible = false;
-    parallel_for(
+    base::parallel_for(
         tasks.size(), 1,
         [&](std::size_t k, std::size_t) {
           Task& task = tasks[k];
@@ -98,7 +98,7 @@ std::vector<Passage> find_passages(const Mesh& mesh, const std::vector<std::vect
             task.parts.push_back({b, t, around, {}, {}});
           });
         },
-        part(progress, begin, begin + 0.02));
+        base::part(progress, begin, begin + 0.02));
     std::vector<Task> next;
     for (Task& task : tasks)
       for (Task& inner : task.parts) {
@@ -107,12 +107,12 @@ std::vector<Passage> find_passages(const Mesh& mesh, const std::vector<std::vect
       }
     tasks = std::move(next);
   }
-  parallel_for(
+  base::parallel_for(
       tasks.size(), 1,
       [&](std::size_t k, std::size_t) {
         OpeningSearch(pieces, rounded, grid, tasks[k].found).block(tasks[k].block, tasks[k].tangent, *tasks[k].within);
       },
-      part(progress, 0.3, 1));
+      base::part(progress, 0.3, 1));
   std::vector<std::vector<Passage>> found;
   for (Task& task : tasks) found.push_back(std::move(task.found));
   std::vector<Passage> passages = sorted(std::move(found), grid.nu());
@@ -149,4 +149,4 @@ double boundary_winding(const std::vector<std::vector<int>>& loops, const Projec
   return sum / (2 * kPi);
 }
 
-}  // namespace riffler
+}  // namespace riffler::dexel

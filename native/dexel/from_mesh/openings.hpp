@@ -10,7 +10,7 @@
 #include "riffler/dexel/grid.hpp"
 #include "riffler/mesh/mesh.hpp"
 
-namespace riffler {
+namespace riffler::dexel {
 
 /// All passages of the grid's columns, sorted by row, column and z. `loops` is the mesh's boundary.
 std::vector<Passage> find_passages(const Mesh& mesh, const std::vector<std::vector<int>>& loops,
@@ -21,4 +21,4 @@ std::vector<Passage> find_passages(const Mesh& mesh, const std::vector<std::vect
 double boundary_winding(const std::vector<std::vector<int>>& loops, const Projection& projection, double pitch, int row,
                         int column, double z);
 
-}  // namespace riffler
+}  // namespace riffler::dexel

@@ -5,7 +5,7 @@
 
 #include "riffler/dexel/span.hpp"
 
-namespace riffler {
+namespace riffler::dexel {
 
 /// A column's passage through an opening. With w = n + K and n an integer, |w| > ½ exactly where n plus K rounded to an
 /// integer is not zero. Rounded K changes by `sign` at z, so a passage is one more signed crossing, and all crossings
@@ -17,4 +17,4 @@ struct Passage {
   PackedNormal normal;  ///< against K's gradient, out of what lies where K is greater; only for grids with normals
 };
 
-}  // namespace riffler
+}  // namespace riffler::dexel

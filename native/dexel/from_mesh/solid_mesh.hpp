@@ -8,7 +8,7 @@
 #include "dexel/from_mesh/boundary.hpp"
 #include "riffler/mesh/orient.hpp"
 
-namespace riffler {
+namespace riffler::dexel {
 
 /// A mesh on its way to a volume: as it was given, or repaired.
 class SolidMesh {
@@ -20,7 +20,7 @@ class SolidMesh {
 
   const Mesh& mesh() const { return *used_; }
   const std::vector<std::vector<int>>& loops() const { return boundary_.loops; }
-  const Orientation& orientation() const { return orientation_; }
+  const mesh::Orientation& orientation() const { return orientation_; }
 
   /// Returns whether triangles were turned.
   bool orient() {
@@ -34,7 +34,7 @@ class SolidMesh {
 
   void join_cracks(double tolerance) {
     if (boundary_.empty()) return;
-    if (std::optional<Mesh> better = riffler::join_cracks(*used_, boundary_, tolerance)) take(*std::move(better));
+    if (std::optional<Mesh> better = dexel::join_cracks(*used_, boundary_, tolerance)) take(*std::move(better));
   }
 
  private:
@@ -47,8 +47,8 @@ class SolidMesh {
   Mesh storage_;
   const Mesh* used_;
   Boundary boundary_;
-  Orientation orientation_;
+  mesh::Orientation orientation_;
   bool asked_ = false;
 };
 
-}  // namespace riffler
+}  // namespace riffler::dexel

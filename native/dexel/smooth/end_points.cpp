@@ -2,7 +2,7 @@
 
 #include <numeric>
 
-namespace riffler {
+namespace riffler::dexel {
 
 namespace {
 
@@ -73,4 +73,4 @@ Columns::Columns(Axis axis, std::vector<Vec3> places, double side) : axis_(axis)
   for (const std::uint32_t k : order_) along_.push_back(places[k].z);
 }
 
-}  // namespace riffler
+}  // namespace riffler::dexel

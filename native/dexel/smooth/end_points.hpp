@@ -8,7 +8,7 @@
 
 #include "riffler/dexel/volume.hpp"
 
-namespace riffler {
+namespace riffler::dexel {
 
 /// Where material ends: world frame.
 struct EndPoint {
@@ -62,4 +62,4 @@ class Columns {
   std::vector<double> along_;  // w of each point in `order_`
 };
 
-}  // namespace riffler
+}  // namespace riffler::dexel

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-namespace riffler {
+namespace riffler::dexel {
 
 namespace {
 
@@ -160,4 +160,4 @@ FieldValue MovedField::operator()(double w, bool inside) {
   return !mine.right || (theirs.now.value > mine.now.value) == inside ? theirs.now : mine.now;
 }
 
-}  // namespace riffler
+}  // namespace riffler::dexel

@@ -7,7 +7,7 @@
 #include "dexel/smooth/end_points.hpp"
 #include "dexel/smooth/relax.hpp"
 
-namespace riffler {
+namespace riffler::dexel {
 
 /// A value that is negative in the material, and the direction in which it grows.
 struct FieldValue {
@@ -53,4 +53,4 @@ class MovedField {
   std::vector<double> square_;       // of the distance from the place asked for
 };
 
-}  // namespace riffler
+}  // namespace riffler::dexel

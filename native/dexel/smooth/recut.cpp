@@ -2,7 +2,7 @@
 
 #include "dexel/joiner.hpp"
 
-namespace riffler {
+namespace riffler::dexel {
 
 namespace {
 
@@ -148,4 +148,4 @@ void Recutter::push(double w, const Vec3& normal) {
   ends_.push_back({w, PackedNormal::pack(to_world(grid_.axis(), n))});
 }
 
-}  // namespace riffler
+}  // namespace riffler::dexel

@@ -9,7 +9,7 @@
 #include "riffler/dexel/grid.hpp"
 #include "riffler/dexel/stats.hpp"
 
-namespace riffler {
+namespace riffler::dexel {
 
 class Recutter {
  public:
@@ -45,4 +45,4 @@ class Recutter {
   std::uint64_t values_ = 0;
 };
 
-}  // namespace riffler
+}  // namespace riffler::dexel

@@ -5,7 +5,7 @@
 #include "dexel/joiner.hpp"
 #include "riffler/base/parallel.hpp"
 
-namespace riffler {
+namespace riffler::dexel {
 
 double Brush::share(const Vec3& p) const {
   const Vec3 r = p - centre;
@@ -99,7 +99,7 @@ std::vector<MovedPoint> relax(const std::vector<EndPoint>& unsorted, double pitc
   const std::vector<EndPoint> points = sorted(unsorted, columns);
   std::vector<MovedPoint> out(points.size());
   constexpr std::size_t grain = 64;
-  parallel_for(
+  base::parallel_for(
       points.size(), grain,
       [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
@@ -121,4 +121,4 @@ std::vector<MovedPoint> relax(const std::vector<EndPoint>& unsorted, double pitc
   return out;
 }
 
-}  // namespace riffler
+}  // namespace riffler::dexel

@@ -6,7 +6,7 @@
 #include "dexel/smooth/end_points.hpp"
 #include "riffler/base/progress.hpp"
 
-namespace riffler {
+namespace riffler::dexel {
 
 /// A point of the surface before and after; world frame, unit normals out of the material.
 struct MovedPoint {
@@ -50,4 +50,4 @@ inline double same_sheet(double cosine) {
 std::vector<MovedPoint> relax(const std::vector<EndPoint>& points, double pitch, const Brush& brush,
                               const Progress& progress = {});
 
-}  // namespace riffler
+}  // namespace riffler::dexel

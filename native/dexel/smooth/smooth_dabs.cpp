@@ -14,7 +14,7 @@
 #include "riffler/base/parallel.hpp"
 #include "riffler/dexel/boolean.hpp"
 
-namespace riffler {
+namespace riffler::dexel {
 
 namespace {
 
@@ -26,8 +26,8 @@ void check(const Volume& volume, std::span<const Vec3> centres, const SmoothOpti
         "soften needs a volume of directions \"xyz\", whose ends have normals; this one has \"" +
         volume.frame().directions + "\"");
   for (std::size_t i = 0; i < centres.size(); ++i)
-    if (!finite(centres[i])) throw std::invalid_argument("centres, row " + std::to_string(i) + ": not finite");
-  require_length(options.radius, "radius");
+    if (!geom::finite(centres[i])) throw std::invalid_argument("centres, row " + std::to_string(i) + ": not finite");
+  base::require_length(options.radius, "radius");
   if (!(options.strength >= 0 && options.strength <= 1)) throw std::invalid_argument("strength must be from 0 to 1");
   if (options.protect) check_same_grid(volume.frame(), options.protect->frame(), "protect");
 }
@@ -132,16 +132,16 @@ bool apply_dab(Volume& volume, const Vec3& centre, const SmoothOptions& options,
                double& removed, double& added) {
   Stats stats;
   stats.moves = 1;
-  const Dab dab(volume, centre, options, part(progress, 0, 0.3));
+  const Dab dab(volume, centre, options, base::part(progress, 0, 0.3));
   std::vector<Touched> tiles;
   if (dab.moves()) tiles = touched_tiles(volume, centre, options.radius + 3 * volume.frame().pitch);
   constexpr std::size_t grain = 1;
-  parallel_for(
+  base::parallel_for(
       tiles.size(), grain,
       [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) dab.run(tiles[k]);
       },
-      part(progress, 0.3, 1));
+      base::part(progress, 0.3, 1));
   const double area = volume.frame().pitch * volume.frame().pitch;
   for (const Touched& t : tiles) {
     stats += t.stats;
@@ -166,13 +166,13 @@ SmoothResult smooth_dabs(Volume& volume, std::span<const Vec3> centres, const Sm
   bool changed = false;
   for (std::size_t k = 0; k < centres.size(); ++k) {
     const double n = static_cast<double>(centres.size()), done = static_cast<double>(k);
-    const Progress share = part(options.progress, done / n, (done + 1) / n);
+    const Progress share = base::part(options.progress, done / n, (done + 1) / n);
     changed |= apply_dab(work, centres[k], options, share, out.removed[k], out.added[k]);
-    report(options.progress, (done + 1) / n);
+    base::report(options.progress, (done + 1) / n);
   }
   if (changed) work.touch();
   volume = std::move(work);
   return out;
 }
 
-}  // namespace riffler
+}  // namespace riffler::dexel

@@ -5,7 +5,7 @@
 
 #include "mesh/fold.hpp"
 
-namespace riffler {
+namespace riffler::mesh {
 
 namespace {
 
@@ -23,7 +23,8 @@ constexpr int kMaxSpokes = 512;
 
 bool turned(const Vec3& was, const Vec3& is) {
   const double dot = glm::dot(was, is);
-  return was != Vec3(0) && (dot < 0 || dot * dot < kTurn * kTurn * squared_length(was) * squared_length(is));
+  return was != Vec3(0) &&
+         (dot < 0 || dot * dot < kTurn * kTurn * geom::squared_length(was) * geom::squared_length(is));
 }
 
 }  // namespace
@@ -107,7 +108,8 @@ void Collapse::add_spoke(HalfedgeHandle spoke) {
 /// The face to the left of `spoke`, which is (apex, a, b).
 void Collapse::add_face(HalfedgeHandle spoke, const Vec3& apex, const Vec3& a, const Vec3& b) {
   const Vec3 cross = glm::cross(a - apex, b - apex);
-  const double longest = std::max({squared_length(a - apex), squared_length(b - a), squared_length(apex - b)});
+  const double longest =
+      std::max({geom::squared_length(a - apex), geom::squared_length(b - a), geom::squared_length(apex - b)});
   faces_.push_back({mesh_.face_handle(spoke), mesh_.next_halfedge_handle(spoke), cross, Vec3(0), longest});
 }
 
@@ -157,8 +159,8 @@ bool Collapse::keeps_shape() {
     const Vec3 a = ring(i) - new_, b = ring(i + 1) - new_;
     face.new_cross = glm::cross(a, b);
     if (turned(face.old_cross, face.new_cross)) return false;
-    const double longest = std::max({squared_length(a), squared_length(b), squared_length(b - a)}),
-                 area = squared_length(face.new_cross);
+    const double longest = std::max({geom::squared_length(a), geom::squared_length(b), geom::squared_length(b - a)}),
+                 area = geom::squared_length(face.new_cross);
     if (area > kThin * kThin * longest * longest) continue;
     // A mesh with slivers may keep them, but not get worse ones.
     double worst = 1;
@@ -232,4 +234,4 @@ void Collapse::close_side(HalfedgeHandle kept, HalfedgeHandle gone) {
   mesh_.status(mesh_.edge_handle(gone)).set_deleted(true);
 }
 
-}  // namespace riffler
+}  // namespace riffler::mesh

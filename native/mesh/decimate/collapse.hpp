@@ -7,7 +7,7 @@
 #include "mesh/decimate/half_edge.hpp"
 #include "riffler/geom/vec.hpp"
 
-namespace riffler {
+namespace riffler::mesh {
 
 /// The two ends of an edge become one vertex. prepare gathers what changes and decides; the rest describes the last
 /// prepared one.
@@ -100,4 +100,4 @@ class Collapse {
   int first_ = 0, last_ = -1, target_ = 0, lost_ = 0;
 };
 
-}  // namespace riffler
+}  // namespace riffler::mesh

@@ -20,7 +20,7 @@
 #include "mesh/decimate/tolerance_check.hpp"
 #include "riffler/base/parallel.hpp"
 
-namespace riffler {
+namespace riffler::mesh {
 
 namespace {
 
@@ -40,7 +40,7 @@ void check_limits(const DecimateLimits& limits) {
 /// What is left of the tolerance for the rounded surface, so that the unrounded one keeps to it.
 double left_after_rounding(double tolerance, const Mesh& mesh) {
   double largest = 0;
-  for (const Vec3& v : mesh.vertices) largest = std::max(largest, glm::length(to_float32(v) - v));
+  for (const Vec3& v : mesh.vertices) largest = std::max(largest, glm::length(geom::to_float32(v) - v));
   return std::max(0.0, tolerance - 2 * largest);
 }
 
@@ -168,7 +168,7 @@ class Decimation {
     Worker worker(surface_);
     worker.fill();
     while (left_ > target_ && worker.queue().first() <= EdgeQueue::kLast) {
-      report(progress_, share());
+      base::report(progress_, share());
       worker.run(EdgeQueue::kLast, std::min<std::size_t>(512, left_ - target_), nullptr);
       left_ -= std::min(left_, worker.lost());
     }
@@ -180,7 +180,7 @@ class Decimation {
   }
   template <class Body>
   void for_each(std::size_t n, const Body& body) {
-    parallel_for(n, 1, [&](std::size_t i, std::size_t) { body(i); }, as_it_is());
+    base::parallel_for(n, 1, [&](std::size_t i, std::size_t) { body(i); }, as_it_is());
   }
   /// For what brings the share no further.
   Progress as_it_is() const {
@@ -198,7 +198,7 @@ class Decimation {
 /// twice as wide each time: in the end everything stays.
 void keep(const HalfEdges& half_edges, std::vector<int> far, int attempt, std::vector<int>& kept) {
   kept.insert(kept.end(), far.begin(), far.end());
-  sort_unique(kept);
+  base::sort_unique(kept);
   std::vector<char> stays(half_edges.source.size(), 0);
   for (const int v : kept) stays[v] = 1;
   std::vector<int> belt;
@@ -214,7 +214,7 @@ void keep(const HalfEdges& half_edges, std::vector<int> far, int attempt, std::v
     for (const int v : belt) stays[v] = 1;
     kept.insert(kept.end(), belt.begin(), belt.end());
   }
-  sort_unique(kept);
+  base::sort_unique(kept);
 }
 
 }  // namespace
@@ -228,9 +228,9 @@ Mesh decimate(const Mesh& mesh, const DecimateLimits& limits, const Progress& pr
   // The coordinates that a binary STL will hold, about the box's centre: what has area and does not fold here does not
   // in the file either, and quadrics keep their digits far from the origin.
   const Box3 box = bounds(mesh);
-  const Vec3 centre = to_float32(0.5 * box.lower + 0.5 * box.upper);
+  const Vec3 centre = geom::to_float32(0.5 * box.lower + 0.5 * box.upper);
   Mesh local = mesh;
-  for (Vec3& v : local.vertices) v = to_float32(v) - centre;
+  for (Vec3& v : local.vertices) v = geom::to_float32(v) - centre;
   const Vec3 corner = glm::max(glm::abs(box.lower), glm::abs(box.upper));
   const double largest = std::max({corner.x, corner.y, corner.z}), reach = separation_reach(largest);
   double tolerance = limits.tolerance ? left_after_rounding(*limits.tolerance, mesh) : 0;
@@ -243,14 +243,14 @@ Mesh decimate(const Mesh& mesh, const DecimateLimits& limits, const Progress& pr
   for (int attempt = 0;; ++attempt) {
     // Most often the first attempt is the last: what could follow gets a tenth of what is left.
     const double end = limits.tolerance ? done + 0.9 * (1 - done) : 1, proof = limits.tolerance ? 0.2 : 0;
-    const Progress loop = part(progress, done, end - proof * (end - done));
-    const Progress proving = part(progress, end - proof * (end - done), end);
-    HalfEdges half_edges(local, part(loop, 0, 0.1));
+    const Progress loop = base::part(progress, done, end - proof * (end - done));
+    const Progress proving = base::part(progress, end - proof * (end - done), end);
+    HalfEdges half_edges(local, base::part(loop, 0, 0.1));
     for (const int v : kept) half_edges.mesh.status(VertexHandle(v)).set_locked(true);
     const double grain = may_move ? std::ldexp(largest, -24) : std::numeric_limits<double>::infinity();
-    EdgeCosts costs(half_edges, centre, grain, part(loop, 0.1, 0.18));
+    EdgeCosts costs(half_edges, centre, grain, base::part(loop, 0.1, 0.18));
     std::optional<Traces> traces;
-    if (limits.tolerance) traces.emplace(half_edges, part(loop, 0.18, 0.2));
+    if (limits.tolerance) traces.emplace(half_edges, base::part(loop, 0.18, 0.2));
     const Surface surface{half_edges, costs, traces ? &*traces : nullptr, tolerance};
     Decimation(surface, target, loop).run();
     std::vector<int> far;
@@ -263,4 +263,4 @@ Mesh decimate(const Mesh& mesh, const DecimateLimits& limits, const Progress& pr
   }
 }
 
-}  // namespace riffler
+}  // namespace riffler::mesh

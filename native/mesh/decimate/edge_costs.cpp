@@ -7,7 +7,7 @@
 #include "geom/float32.hpp"
 #include "riffler/base/parallel.hpp"
 
-namespace riffler {
+namespace riffler::mesh {
 
 namespace {
 
@@ -38,7 +38,7 @@ EdgeCosts::EdgeCosts(const HalfEdges& half_edges, const Vec3& centre, double gra
       kind_(mesh_.n_vertices(), Free),
       quadric_(mesh_.n_vertices()),
       cost_(mesh_.n_edges()) {
-  parallel_for(
+  base::parallel_for(
       mesh_.n_vertices(), 1 << 13,
       [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
@@ -48,13 +48,13 @@ EdgeCosts::EdgeCosts(const HalfEdges& half_edges, const Vec3& centre, double gra
           add_faces_of(v);
         }
       },
-      part(progress, 0, 0.5));
-  parallel_for(
+      base::part(progress, 0, 0.5));
+  base::parallel_for(
       mesh_.n_edges(), 1 << 14,
       [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) refresh(EdgeHandle(static_cast<int>(i)));
       },
-      part(progress, 0.5, 1));
+      base::part(progress, 0.5, 1));
 }
 
 void EdgeCosts::add_faces_of(VertexHandle v) {
@@ -144,9 +144,9 @@ CollapseTarget EdgeCosts::free_place(HalfedgeHandle half, bool rounded) const {
   // What float32 cannot tell from an end is that end: planes, and edges of planes, keep their vertices to the last bit.
   if (!(at_end - std::max(0.0, at_lowest) > noise_ * weight) || !(square_d <= 4 * square)) return best;
   best.point = middle + d;
-  if (rounded) best.point = to_float32(best.point + centre_) - centre_;
+  if (rounded) best.point = geom::to_float32(best.point + centre_) - centre_;
   best.between = true, best.cost = scale * std::max(0.0, at_lowest) + extra;
   return best;
 }
 
-}  // namespace riffler
+}  // namespace riffler::mesh

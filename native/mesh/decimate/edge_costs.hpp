@@ -7,7 +7,7 @@
 #include "mesh/decimate/quadric.hpp"
 #include "riffler/base/progress.hpp"
 
-namespace riffler {
+namespace riffler::mesh {
 
 /// The vertex at which `half` starts goes, the one where it ends is then at `point`.
 struct CollapseTarget {
@@ -49,4 +49,4 @@ class EdgeCosts {
   std::vector<float> cost_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::mesh

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace riffler {
+namespace riffler::mesh {
 
 /// A queue of buckets, eight for each factor of two: the order within 9 % of a cost is that in which edges came. That
 /// is as good for the mesh as an exact order, and needs no heap. What was pushed cannot be taken back: whoever pops an
@@ -49,4 +49,4 @@ class EdgeQueue {
   int first_ = 0;
 };
 
-}  // namespace riffler
+}  // namespace riffler::mesh

@@ -5,7 +5,7 @@
 #include "mesh/decimate/separate.hpp"
 #include "riffler/base/parallel.hpp"
 
-namespace riffler {
+namespace riffler::mesh {
 
 namespace {
 
@@ -34,9 +34,9 @@ void number_fans(const Mesh& mesh, const Adjacency& adjacency, std::vector<int>&
 }  // namespace
 
 HalfEdges::HalfEdges(const Mesh& from, const Progress& progress) : adjacency(from) {
-  report(progress, 0.3);
+  base::report(progress, 0.3);
   number_fans(from, adjacency, corner, source);
-  report(progress, 0.5);
+  base::report(progress, 0.5);
   const int halves = static_cast<int>(corner.size());
   std::vector<int> copies(from.vertices.size(), 0);
   for (const int v : source) ++copies[v];
@@ -54,9 +54,9 @@ HalfEdges::HalfEdges(const Mesh& from, const Progress& progress) : adjacency(fro
       ++edges;
     }
   }
-  report(progress, 0.6);
+  base::report(progress, 0.6);
   mesh.resize(source.size(), static_cast<std::size_t>(edges), static_cast<std::size_t>(faces));
-  parallel_for(source.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
+  base::parallel_for(source.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       const VertexHandle vertex(static_cast<int>(v));
       mesh.set_point(vertex, to_openmesh(from.vertices[source[v]]));
@@ -64,7 +64,7 @@ HalfEdges::HalfEdges(const Mesh& from, const Progress& progress) : adjacency(fro
     }
   });
 
-  report(progress, 0.8);
+  base::report(progress, 0.8);
   const auto end_corner = [&](int half) { return corner[next_half(half)]; };
   OpenMesh::FaceHandle face(-1);
   for (int half = 0; half < halves; ++half) {
@@ -120,4 +120,4 @@ Mesh HalfEdges::to_mesh(const Mesh& from, const Mesh& start, const Vec3& centre)
   return result;
 }
 
-}  // namespace riffler
+}  // namespace riffler::mesh

@@ -8,7 +8,7 @@
 #include "riffler/base/progress.hpp"
 #include "riffler/mesh/mesh.hpp"
 
-namespace riffler {
+namespace riffler::mesh {
 
 struct HalfEdgeTraits : OpenMesh::DefaultTraits {
   using Point = OpenMesh::Vec3d;
@@ -44,4 +44,4 @@ struct HalfEdges {
   Mesh to_mesh(const Mesh& from, const Mesh& start, const Vec3& centre) const;
 };
 
-}  // namespace riffler
+}  // namespace riffler::mesh

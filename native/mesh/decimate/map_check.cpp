@@ -5,7 +5,7 @@
 #include "base/sort_unique.hpp"
 #include "riffler/base/parallel.hpp"
 
-namespace riffler {
+namespace riffler::mesh {
 
 namespace {
 
@@ -90,7 +90,7 @@ Mesh mesh_of(const std::vector<std::array<Vec3, 3>>& triangles) {
 template <class Points, class Neighbours>
 std::vector<int> grown(std::vector<int> seeds, std::size_t n, const std::vector<std::array<Vec3, 3>>& place,
                        double reach, const Points& points, const Neighbours& for_each_neighbour) {
-  sort_unique(seeds);
+  base::sort_unique(seeds);
   std::vector<char> seen(n, 0);
   for (const int t : seeds) seen[t] = 1;
   const Closest closest(mesh_of(place));
@@ -120,11 +120,11 @@ MapCheck::MapCheck(const Traces& traces, double tolerance)
       sheets_(mesh_.n_faces()) {}
 
 std::vector<int> MapCheck::far_vertices(const Progress& progress) {
-  map_all(part(progress, 0, 0.8));
+  map_all(base::part(progress, 0, 0.8));
   std::vector<int> result;
-  check_holes(result, part(progress, 0.8, 0.9));
-  check_faces(result, part(progress, 0.9, 1));
-  sort_unique(result);
+  check_holes(result, base::part(progress, 0.8, 0.9));
+  check_faces(result, base::part(progress, 0.9, 1));
+  base::sort_unique(result);
   return result;
 }
 
@@ -149,7 +149,7 @@ void MapCheck::map_all(const Progress& progress) {
       }
     }
   };
-  parallel_for(hole_.size(), 1 << 12, map_part, progress);
+  base::parallel_for(hole_.size(), 1 << 12, map_part, progress);
   for (std::size_t t = 0; t < hole_.size(); ++t)
     if (hole_[t]) holes_.push_back(static_cast<int>(t));
 }
@@ -214,10 +214,10 @@ std::vector<char> MapCheck::near(const std::vector<Corners>& place, const std::v
     for (std::size_t i = begin; i < end; ++i) {
       int pieces = kMaxPieces;
       result[i] = triangle_near(closest, place[i][0], place[i][1], place[i][2], -1, kNearDepth, pieces);
-      still_wanted();
+      base::still_wanted();
     }
   };
-  parallel_for(place.size(), 64, look, progress);
+  base::parallel_for(place.size(), 64, look, progress);
   return result;
 }
 
@@ -240,12 +240,12 @@ void MapCheck::check_holes(std::vector<int>& far, const Progress& progress) cons
 /// Faces that may not be covered, against the old surface. Where one is far off, what was near its corners stays, and
 /// what went to it.
 void MapCheck::check_faces(std::vector<int>& far, const Progress& progress) const {
-  report(progress, 0);
+  base::report(progress, 0);
   std::vector<Doubt> doubt = doubts();
   // Large pieces along the rims first: hardly any is far off, and needs to be told from what is covered there.
   for (const double smallest : {kCoarse * tolerance_, tolerance_}) {
     const double begin = smallest > tolerance_ ? 0.2 : 0.6;
-    const std::vector<char> is_near = faces_near(doubt, smallest, part(progress, begin, begin + 0.4));
+    const std::vector<char> is_near = faces_near(doubt, smallest, base::part(progress, begin, begin + 0.4));
     std::size_t left = 0;
     for (std::size_t i = 0; i < doubt.size(); ++i)
       if (!is_near[i]) std::swap(doubt[left++], doubt[i]);
@@ -277,10 +277,10 @@ std::vector<char> MapCheck::faces_near(const std::vector<Doubt>& doubt, double s
       const Corners whole = map_.points_of(doubt[i].face);
       if (!add_uncovered(doubt[i], doubt[i].rim, whole, smallest, kNearDepth, left, pieces[i]))
         pieces[i].clear(), result[i] = 0;
-      still_wanted();
+      base::still_wanted();
     }
   };
-  parallel_for(doubt.size(), 16, divide, part(progress, 0, 0.5));
+  base::parallel_for(doubt.size(), 16, divide, base::part(progress, 0, 0.5));
   std::vector<Corners> place, surface;
   std::vector<std::size_t> whose;
   std::vector<int> seeds = holes_;
@@ -292,7 +292,7 @@ std::vector<char> MapCheck::faces_near(const std::vector<Doubt>& doubt, double s
   }
   if (place.empty()) return result;
   for (const int t : old_triangles_near(place, std::move(seeds))) surface.push_back(old_points(t));
-  const std::vector<char> is_near = near(place, surface, part(progress, 0.5, 1));
+  const std::vector<char> is_near = near(place, surface, base::part(progress, 0.5, 1));
   for (std::size_t i = 0; i < place.size(); ++i)
     if (!is_near[i]) result[whose[i]] = 0;
   return result;
@@ -351,4 +351,4 @@ bool MapCheck::triangle_near(const Closest& closest, const Vec3& a, const Vec3& 
   return ab >= bc && ab >= ca ? halves(a, b, c) : bc >= ca ? halves(b, c, a) : halves(c, a, b);
 }
 
-}  // namespace riffler
+}  // namespace riffler::mesh

@@ -9,7 +9,7 @@
 #include "mesh/decimate/surface_map.hpp"
 #include "riffler/base/progress.hpp"
 
-namespace riffler {
+namespace riffler::mesh {
 
 /// Asks whether old and new surface are near each other everywhere, by a map from the old one onto the new.
 ///
@@ -64,4 +64,4 @@ class MapCheck {
   std::vector<std::atomic<int>> sheets_;  // over the midst of a new face
 };
 
-}  // namespace riffler
+}  // namespace riffler::mesh

@@ -5,7 +5,7 @@
 
 #include "riffler/base/parallel.hpp"
 
-namespace riffler {
+namespace riffler::mesh {
 
 namespace {
 
@@ -34,12 +34,12 @@ Patches::Patches(const HalfEdgeMesh& mesh, int frame, std::size_t vertices_of_on
     if (!mesh.status(v).deleted() && mesh.halfedge_handle(v).is_valid()) order_.push_back(v.idx());
   int levels = 0;
   while ((order_.size() >> levels) > vertices_of_one) ++levels;
-  split(mesh, frame, levels, part(progress, 0, 0.8));
-  report(progress, 0.8);
-  parallel_for(size(), 1, [&](std::size_t patch, std::size_t) {
+  split(mesh, frame, levels, base::part(progress, 0, 0.8));
+  base::report(progress, 0.8);
+  base::parallel_for(size(), 1, [&](std::size_t patch, std::size_t) {
     for_each_vertex(patch, [&](VertexHandle v) { patch_[v.idx()] = static_cast<int>(patch); });
   });
-  parallel_for(size(), 1, [&](std::size_t patch, std::size_t) {
+  base::parallel_for(size(), 1, [&](std::size_t patch, std::size_t) {
     for_each_vertex(patch, [&](VertexHandle v) {
       const HalfedgeHandle start = mesh.halfedge_handle(v);
       HalfedgeHandle spoke = start;
@@ -57,7 +57,7 @@ Patches::Patches(const HalfEdgeMesh& mesh, int frame, std::size_t vertices_of_on
 void Patches::split(const HalfEdgeMesh& mesh, int frame, int levels, const Progress& progress) {
   const std::array<Vec3, 3> axes = axes_of(frame);
   std::vector<Place> places(order_.size());
-  parallel_for(places.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
+  base::parallel_for(places.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3 p = to_vec3(mesh.point(VertexHandle(order_[i])));
       for (int k = 0; k < 3; ++k) places[i].at[k] = static_cast<float>(glm::dot(p, axes[k]));
@@ -66,8 +66,8 @@ void Patches::split(const HalfEdgeMesh& mesh, int frame, int levels, const Progr
   });
   const auto first = [&](std::size_t place, int level) { return (place * places.size()) >> level; };
   for (int level = 0; level < levels; ++level) {
-    report(progress, static_cast<double>(level) / levels);
-    parallel_for(std::size_t{1} << level, 1, [&](std::size_t place, std::size_t) {
+    base::report(progress, static_cast<double>(level) / levels);
+    base::parallel_for(std::size_t{1} << level, 1, [&](std::size_t place, std::size_t) {
       const auto begin = places.begin() + static_cast<std::ptrdiff_t>(first(place, level));
       const auto middle = places.begin() + static_cast<std::ptrdiff_t>(first(2 * place + 1, level + 1));
       const auto end = places.begin() + static_cast<std::ptrdiff_t>(first(place + 1, level));
@@ -84,7 +84,7 @@ void Patches::split(const HalfEdgeMesh& mesh, int frame, int levels, const Progr
   }
   begin_.clear();
   for (std::size_t place = 0; place <= std::size_t{1} << levels; ++place) begin_.push_back(first(place, levels));
-  parallel_for(size(), 1, [&](std::size_t patch, std::size_t) {
+  base::parallel_for(size(), 1, [&](std::size_t patch, std::size_t) {
     const auto begin = places.begin() + static_cast<std::ptrdiff_t>(begin_[patch]);
     const auto end = places.begin() + static_cast<std::ptrdiff_t>(begin_[patch + 1]);
     // nth_element leaves the order within a patch open.
@@ -93,4 +93,4 @@ void Patches::split(const HalfEdgeMesh& mesh, int frame, int levels, const Progr
   });
 }
 
-}  // namespace riffler
+}  // namespace riffler::mesh

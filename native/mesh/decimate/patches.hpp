@@ -6,7 +6,7 @@
 #include "mesh/decimate/half_edge.hpp"
 #include "riffler/base/progress.hpp"
 
-namespace riffler {
+namespace riffler::mesh {
 
 /// Splits the vertices into boxes of equal numbers. `inner` are vertices all of whose neighbours are in their own
 /// patch: what is done to them and between them touches nothing that another patch reads or writes.
@@ -32,4 +32,4 @@ class Patches {
   std::vector<char> inner_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::mesh

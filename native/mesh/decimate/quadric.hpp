@@ -3,7 +3,7 @@
 
 #include "riffler/geom/vec.hpp"
 
-namespace riffler {
+namespace riffler::mesh {
 
 /// Sum of the squared distances from planes, each times its area, mm⁴ (Garland & Heckbert, SIGGRAPH 97, section 5).
 struct Quadric {
@@ -52,4 +52,4 @@ struct Quadric {
   }
 };
 
-}  // namespace riffler
+}  // namespace riffler::mesh

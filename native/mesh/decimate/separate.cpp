@@ -10,7 +10,7 @@
 #include "geom/float32.hpp"
 #include "mesh/weld.hpp"
 
-namespace riffler {
+namespace riffler::mesh {
 
 namespace {
 
@@ -47,7 +47,7 @@ bool keeps_sides(const Mesh& mesh, std::span<const int> fan, int v, const Vec3& 
   for (const int triangle : fan) {
     const Vec3i& t = mesh.triangles[triangle];
     std::array<Vec3, 3> old, now;
-    for (int k = 0; k < 3; ++k) old[k] = mesh.vertices[t[k]], now[k] = to_float32(t[k] == v ? p : old[k]);
+    for (int k = 0; k < 3; ++k) old[k] = mesh.vertices[t[k]], now[k] = geom::to_float32(t[k] == v ? p : old[k]);
     if (!(glm::dot(glm::cross(old[1] - old[0], old[2] - old[0]), glm::cross(now[1] - now[0], now[2] - now[0])) > 0))
       return false;
   }
@@ -64,7 +64,7 @@ void separate(Mesh& mesh, const std::vector<char>& movable) {
   Welder<Vec3> taken(mesh.vertices.size());
   const auto is_free = [&](const Vec3& p) {
     const std::size_t before = taken.points().size();
-    return taken.add(to_float32(p)) == static_cast<int>(before);
+    return taken.add(geom::to_float32(p)) == static_cast<int>(before);
   };
   for (std::size_t v = 0; v < movable.size(); ++v)
     if (!movable[v]) is_free(mesh.vertices[v]);
@@ -89,4 +89,4 @@ void separate(Mesh& mesh, const std::vector<char>& movable) {
   }
 }
 
-}  // namespace riffler
+}  // namespace riffler::mesh

@@ -5,7 +5,7 @@
 
 #include "mesh/closest.hpp"
 
-namespace riffler {
+namespace riffler::mesh {
 
 namespace {
 
@@ -336,4 +336,4 @@ bool SurfaceMap::map_onto_three(const std::array<Spot, 3>& corner, const std::ar
   return true;
 }
 
-}  // namespace riffler
+}  // namespace riffler::mesh

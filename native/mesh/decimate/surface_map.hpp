@@ -8,7 +8,7 @@
 
 #include "mesh/decimate/tolerance_check.hpp"
 
-namespace riffler {
+namespace riffler::mesh {
 
 /// A continuous map from the surface before a decimation to the one after it that moves no point farther than the
 /// tolerance, with holes where none was found. Nothing is taken from the checks of the single collapses but where to
@@ -86,4 +86,4 @@ class SurfaceMap {
   std::vector<Spot> spot_;                   // of an old vertex
 };
 
-}  // namespace riffler
+}  // namespace riffler::mesh

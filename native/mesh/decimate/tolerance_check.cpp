@@ -6,7 +6,7 @@
 
 #include "mesh/closest.hpp"
 
-namespace riffler {
+namespace riffler::mesh {
 
 namespace {
 
@@ -41,12 +41,12 @@ Traces::Traces(const HalfEdges& from, const Progress& progress)
       in_face(from.mesh.n_faces(), -1),
       on_border(from.mesh.n_edges(), -1),
       flat(from.mesh.n_faces()) {
-  report(progress, 0.4);
+  base::report(progress, 0.4);
   for (std::size_t v = 0; v < old.size(); ++v)
     old[v] = {to_vec3(from.mesh.point(VertexHandle(static_cast<int>(v)))), -1};
   for (std::size_t half = 0; half < from.corner.size(); ++half)
     if (const int v = from.corner[half]; v >= 0) anchor[v] = {old[v].point, static_cast<int>(half), true};
-  report(progress, 0.7);
+  base::report(progress, 0.7);
   std::size_t face = 0;  // faces are the triangles that were not left out
   for (std::size_t half = 0; half < from.corner.size(); half += 3) {
     if (from.corner[half] < 0) continue;
@@ -332,4 +332,4 @@ void ToleranceCheck::commit(const Collapse& c) {
   }
 }
 
-}  // namespace riffler
+}  // namespace riffler::mesh

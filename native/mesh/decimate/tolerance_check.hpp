@@ -6,7 +6,7 @@
 #include "mesh/decimate/collapse.hpp"
 #include "riffler/base/progress.hpp"
 
-namespace riffler {
+namespace riffler::mesh {
 
 /// What is known of the way from the new surface to the old one; the checks of all patches share it.
 ///
@@ -103,4 +103,4 @@ class ToleranceCheck {
   Vec3 normal_{0};
 };
 
-}  // namespace riffler
+}  // namespace riffler::mesh

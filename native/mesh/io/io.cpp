@@ -10,7 +10,7 @@
 #include "mesh/io/scan.hpp"
 #include "mesh/io/stl.hpp"
 
-namespace riffler {
+namespace riffler::mesh {
 
 namespace {
 
@@ -29,7 +29,7 @@ void put_ply(const Mesh& mesh, const PutBytes& put) {
 }
 
 Mesh stl(std::span<const std::uint8_t> bytes, const std::string& name, const Progress& progress) {
-  report(progress, 0);
+  base::report(progress, 0);
   return from_stl(bytes, name);
 }
 
@@ -48,18 +48,18 @@ const Format& format_of(const std::filesystem::path& path) {
 
 Mesh read_mesh(const std::filesystem::path& path, const Progress& progress) {
   const Format& format = format_of(path);
-  return format.from(read_file(path), path.filename().string(), progress);
+  return format.from(base::read_file(path), path.filename().string(), progress);
 }
 
 void write_mesh(const Mesh& mesh, const std::filesystem::path& path, const Progress& progress) {
   const Format& format = format_of(path);
-  report(progress, 0);
-  AtomicFileWriter file(path);
+  base::report(progress, 0);
+  base::AtomicFileWriter file(path);
   format.put(mesh, [&](std::span<const std::uint8_t> bytes, double share) {
     file.write(bytes);
-    report(progress, share);
+    base::report(progress, share);
   });
   file.commit();
 }
 
-}  // namespace riffler
+}  // namespace riffler::mesh

@@ -9,7 +9,7 @@
 #include "mesh/weld.hpp"
 #include "riffler/base/error.hpp"
 
-namespace riffler {
+namespace riffler::mesh {
 
 namespace {
 
@@ -28,7 +28,7 @@ class ObjReader {
   Mesh read() {
     for (std::size_t n = 0; !scan_.at_end(); scan_.next_line(), ++n) {
       if (n % kStatementsAReport == 0)
-        report(progress_, static_cast<double>(scan_.offset()) / static_cast<double>(size_));
+        base::report(progress_, static_cast<double>(scan_.offset()) / static_cast<double>(size_));
       statement();
     }
     if (mesh_.triangles.empty()) scan_.fail("zero faces");
@@ -164,4 +164,4 @@ std::vector<std::uint8_t> to_obj(const Mesh& mesh) {
   return bytes;
 }
 
-}  // namespace riffler
+}  // namespace riffler::mesh

@@ -9,7 +9,7 @@
 #include "riffler/base/progress.hpp"
 #include "riffler/mesh/mesh.hpp"
 
-namespace riffler {
+namespace riffler::mesh {
 
 /// The mesh in an OBJ file's bytes; `name` stands in messages. Reads v and f (v, v/vt, v//vn, v/vt/vn, negative
 /// indices, polygons as fans, lines continued by '\'); other statements of the format are passed over. Equal vertices
@@ -22,4 +22,4 @@ Mesh from_obj(std::span<const std::uint8_t> bytes, const std::string& name, cons
 /// OBJ with coordinates that read back to the same doubles. std::invalid_argument where `validate` throws.
 std::vector<std::uint8_t> to_obj(const Mesh& mesh);
 
-}  // namespace riffler
+}  // namespace riffler::mesh

@@ -15,7 +15,7 @@
 #include "mesh/weld.hpp"
 #include "riffler/base/error.hpp"
 
-namespace riffler {
+namespace riffler::mesh {
 
 namespace {
 
@@ -307,7 +307,7 @@ class BodyReader {
   /// The share is that of the element at hand.
   void listen(std::size_t row, const Element& element) const {
     constexpr std::size_t kRowsAReport = 1 << 14;
-    if (row % kRowsAReport == 0) report(progress_, static_cast<double>(row) / static_cast<double>(element.count));
+    if (row % kRowsAReport == 0) base::report(progress_, static_cast<double>(row) / static_cast<double>(element.count));
   }
 
   int corner(const Property& p) {
@@ -337,7 +337,8 @@ class BodyReader {
 };
 
 bool exact_in_float(const Mesh& mesh) {
-  return std::all_of(mesh.vertices.begin(), mesh.vertices.end(), [](const Vec3& v) { return to_float32(v) == v; });
+  return std::all_of(mesh.vertices.begin(), mesh.vertices.end(),
+                     [](const Vec3& v) { return geom::to_float32(v) == v; });
 }
 
 template <class T>
@@ -388,4 +389,4 @@ std::vector<std::uint8_t> to_ply(const Mesh& mesh) {
   return bytes;
 }
 
-}  // namespace riffler
+}  // namespace riffler::mesh

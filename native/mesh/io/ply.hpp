@@ -9,7 +9,7 @@
 #include "riffler/base/progress.hpp"
 #include "riffler/mesh/mesh.hpp"
 
-namespace riffler {
+namespace riffler::mesh {
 
 /// The mesh in a PLY file's bytes (ascii, binary_little_endian, binary_big_endian); `name` stands in messages. Needs an
 /// element "vertex" with x, y, z and after it an element "face" with a list vertex_indices or vertex_index; polygons
@@ -24,4 +24,4 @@ Mesh from_ply(std::span<const std::uint8_t> bytes, const std::string& name, cons
 /// std::invalid_argument where `validate` throws.
 std::vector<std::uint8_t> to_ply(const Mesh& mesh);
 
-}  // namespace riffler
+}  // namespace riffler::mesh

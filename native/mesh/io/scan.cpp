@@ -7,7 +7,7 @@
 
 #include "riffler/base/error.hpp"
 
-namespace riffler {
+namespace riffler::mesh {
 
 namespace {
 
@@ -134,4 +134,4 @@ void Scanner::fail_expected(const std::string& expected, std::string_view found)
   fail("expected " + expected + ", found " + (found.empty() ? "the end of the line" : in_quotes(found)));
 }
 
-}  // namespace riffler
+}  // namespace riffler::mesh

@@ -9,7 +9,7 @@
 
 #include "riffler/geom/vec.hpp"
 
-namespace riffler {
+namespace riffler::mesh {
 
 /// The number that `token` spells in full, a leading '+' allowed; what is too small for a double is 0. Nothing for
 /// anything else, among it NaN and infinity.
@@ -57,4 +57,4 @@ class Scanner {
   std::size_t at_ = 0, line_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::mesh

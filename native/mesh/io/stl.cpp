@@ -14,7 +14,7 @@
 #include "riffler/base/error.hpp"
 #include "riffler/base/parallel.hpp"
 
-namespace riffler {
+namespace riffler::mesh {
 
 namespace {
 
@@ -36,7 +36,7 @@ Mesh to_mesh(const Welder<Vec3f>& welder, Triangles&& triangles) {
 void check_coordinates(std::span<const std::uint8_t> bytes, std::size_t count, const std::string& name) {
   constexpr std::size_t kGrain = 1 << 15;
   std::vector<std::size_t> bad((count + kGrain - 1) / kGrain, 0);
-  parallel_for(count, kGrain, [&](std::size_t begin, std::size_t end) {
+  base::parallel_for(count, kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t)
       for (std::size_t k = 0; k < 9; ++k) {
         const std::size_t at = kStart + t * kRecord + 12 + 4 * k;
@@ -117,7 +117,7 @@ bool looks_like_ascii(std::span<const std::uint8_t> bytes) {
 
 std::array<float, 12> record(const Mesh& mesh, const Vec3i& t) {
   std::array<Vec3, 4> rows;  // normal, corners
-  for (int k = 0; k < 3; ++k) rows[k + 1] = to_float32(mesh.vertices[t[k]]);
+  for (int k = 0; k < 3; ++k) rows[k + 1] = geom::to_float32(mesh.vertices[t[k]]);
   const Vec3 normal = glm::cross(rows[2] - rows[1], rows[3] - rows[1]);
   const double length = glm::length(normal);
   rows[0] = length > 0 && std::isfinite(length) ? normal / length : Vec3(0);
@@ -157,7 +157,7 @@ void put_stl(const Mesh& mesh, const PutBytes& put) {
   std::vector<std::uint8_t> bytes(kRecord * std::min(count, kPiece), 0);  // attributes stay 0
   for (std::size_t at = 0; at < count; at += kPiece) {
     const std::size_t some = std::min(kPiece, count - at);
-    parallel_for(some, 1 << 13, [&](std::size_t begin, std::size_t end) {
+    base::parallel_for(some, 1 << 13, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) {
         const std::array<float, 12> values = record(mesh, mesh.triangles[at + t]);
         std::memcpy(&bytes[t * kRecord], values.data(), 48);
@@ -175,4 +175,4 @@ std::vector<std::uint8_t> to_stl(const Mesh& mesh) {
   return bytes;
 }
 
-}  // namespace riffler
+}  // namespace riffler::mesh

@@ -9,7 +9,7 @@
 
 #include "riffler/mesh/mesh.hpp"
 
-namespace riffler {
+namespace riffler::mesh {
 
 /// The mesh in an STL file's bytes; `name` stands in messages. Binary where the size fits the count at byte 80,
 /// whatever the header says; ASCII where it starts with "solid" otherwise. Coordinates are float32; equal ones (-0 is
@@ -28,4 +28,4 @@ using PutBytes = std::function<void(std::span<const std::uint8_t> bytes, double 
 /// The same bytes, piece after piece: a large file is written from a few MB that stay in the cache.
 void put_stl(const Mesh& mesh, const PutBytes& put);
 
-}  // namespace riffler
+}  // namespace riffler::mesh

@@ -8,15 +8,15 @@
 #include "base/toml.hpp"
 #include "nc/machine/post_options.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
 constexpr double kMaxRotary = 3600;  // deg/min, where nothing else is said: ten turns a minute
 
-class Describer : TomlReader {
+class Describer : base::TomlReader {
  public:
-  Describer(std::string_view text, const std::string& file) : TomlReader(text, file) {}
+  Describer(std::string_view text, const std::string& file) : base::TomlReader(text, file) {}
 
   std::string summary() { return text(root(), "description"); }
 
@@ -192,4 +192,4 @@ std::string machine_summary(std::string_view toml, const std::string& file) {
   return Describer(toml, file).summary();
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

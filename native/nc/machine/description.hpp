@@ -7,7 +7,7 @@
 #include "nc/machine/machine.hpp"
 #include "nc/options.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 /// A description as its file has it, with the options that its user gave: those that the file declares under [options],
 /// and of every machine `tcp` (what X Y Z mean), `direction` (where the file says which way its tables turn),
@@ -20,4 +20,4 @@ MachineDescription describe_machine(std::string_view toml, const std::string& fi
 /// Its line for lists. FormatError as above.
 std::string machine_summary(std::string_view toml, const std::string& file);
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -5,7 +5,7 @@
 
 #include "nc/machine/machines.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -65,4 +65,4 @@ void check_header(NcSource& source, const Machine& machine) {
   source.go(start);
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

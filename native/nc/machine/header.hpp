@@ -6,7 +6,7 @@
 #include "nc/machine/machine.hpp"
 #include "nc/source.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 /// "Riffler 0.1.0, post NAME": the first comment.
 std::string header_line(const Machine& machine);
@@ -16,4 +16,4 @@ std::string header_line(const Machine& machine);
 /// source stands at its start before and after.
 void check_header(NcSource& source, const Machine& machine);
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -10,7 +10,7 @@
 #include "geom/math.hpp"
 #include "nc/number_text.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -19,7 +19,7 @@ const Vec3 kSpindle(0, 0, 1);
 constexpr double kSingle = 1e-6;
 
 Vec3 turned_about(const Vec3& p, const RotaryAxis& axis, double angle) {
-  return axis.point + rotate_about(p - axis.point, axis.direction, angle);
+  return axis.point + geom::rotate_about(p - axis.point, axis.direction, angle);
 }
 
 std::string show(const Vec3& v) {
@@ -47,7 +47,7 @@ Machine::Machine(MachineDescription description) : description_(std::move(descri
     if (a.letter < 'A' || a.letter > 'C') refuse("a rotary axis must be A, B or C");
     if (letters_.find(a.letter) != letters_.npos) refuse("two axes have one letter");
     if (!(std::abs(glm::length(a.direction) - 1) < 1e-9)) refuse("an axis direction must be a unit vector");
-    if (!finite(a.point)) refuse("a point on an axis is not finite");
+    if (!geom::finite(a.point)) refuse("a point on an axis is not finite");
     letters_ += a.letter, index_.push_back(joint_index(a.letter));
     // A table turns the part, so seen from the part the tool turns the other way.
     seen_.push_back(a.carries_part ? -a.direction : a.direction);
@@ -80,7 +80,7 @@ Machine::Turns Machine::turns(const Joints& joints) const {
 
 Vec3 Machine::axis_at(const Turns& t) const {
   Vec3 axis = kSpindle;
-  for (std::size_t k = seen_.size(); k-- > 0;) axis = rotate_about(axis, seen_[k], t[k]);
+  for (std::size_t k = seen_.size(); k-- > 0;) axis = geom::rotate_about(axis, seen_[k], t[k]);
   return axis;
 }
 
@@ -136,9 +136,9 @@ Machine::Turns Machine::angles(const Vec3& axis, int branch, const Turns& near, 
   }
   if (std::asin(std::min(1.0, glm::length(glm::cross(two_.first, axis)))) <= free) {
     // The free axis stays; the other one takes what the axis has in the plane that this gives it.
-    const Turns out{near[0], angle_about(two_.second, kSpindle, rotate_about(axis, two_.first, -near[0]))};
+    const Turns out{near[0], angle_about(two_.second, kSpindle, geom::rotate_about(axis, two_.first, -near[0]))};
     // A pole can lie where no angle of the other one brings the axis.
-    if (angle_between(axis_at(out), axis) > 2 * free + kSingle) cannot_reach();
+    if (geom::angle_between(axis_at(out), axis) > 2 * free + kSingle) cannot_reach();
     return out;
   }
   const auto found = two_.angles(kSpindle, axis, branch);
@@ -180,4 +180,4 @@ std::string Machine::meaning() const {
   return index_.empty() ? out + "; the tool stands upright" : out;
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -13,7 +13,7 @@
 #include "nc/machine/two_rotations.hpp"
 #include "riffler/geom/pose.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 /// The values of the axis words X Y Z A B C of a block: mm and degrees.
 using Joints = std::array<double, 6>;
@@ -128,4 +128,4 @@ class Machine {
   TwoRotations two_{};
 };
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -5,23 +5,23 @@
 #include "nc/machine/description.hpp"
 #include "nc/machine/shipped_machines.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
-DescriptionCatalog shelf() {
+base::DescriptionCatalog shelf() {
   return {"machine", "RIFFLER_MACHINES", "machines", shipped_machines(), machine_summary};
 }
 
 }  // namespace
 
-std::vector<DescriptionEntry> machines() {
+std::vector<base::DescriptionEntry> machines() {
   return list_descriptions(shelf());
 }
 
 std::string machines_with(char axis, std::string_view language) {
   std::string out;
-  for (const DescriptionEntry& entry : machines()) {
+  for (const base::DescriptionEntry& entry : machines()) {
     OptionReader options({{"tcp", true}}, entry.name);  // with which no pivot is asked for
     try {
       const std::unique_ptr<Machine> machine = make_machine(entry.name, options);
@@ -35,13 +35,13 @@ std::string machines_with(char axis, std::string_view language) {
 }
 
 std::unique_ptr<Machine> make_machine(std::string_view name, OptionReader& options) {
-  const DescriptionText found = find_description(shelf(), name, options.owner());
+  const base::DescriptionText found = find_description(shelf(), name, options.owner());
   return std::make_unique<Machine>(describe_machine(found.toml, found.file, found.name, options));
 }
 
 std::string machines_of_language(std::string_view language) {
   std::string out;
-  for (const DescriptionEntry& entry : machines()) {
+  for (const base::DescriptionEntry& entry : machines()) {
     try {
       OptionReader none({{"tcp", true}}, entry.name);
       if (make_machine(entry.name, none)->control().language == language) out += (out.empty() ? "" : ", ") + entry.name;
@@ -52,4 +52,4 @@ std::string machines_of_language(std::string_view language) {
   return out;
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -8,10 +8,10 @@
 #include "nc/options.hpp"
 #include "riffler/nc/machine/machine_list.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 /// `name` is one of machines(), or the path of a .toml file. Options that the machine does not take stay in `options`.
 /// Throws std::invalid_argument that lists the known ones, and what describe_machine throws.
 std::unique_ptr<Machine> make_machine(std::string_view name, OptionReader& options);
 
-}  // namespace riffler
+}  // namespace riffler::nc

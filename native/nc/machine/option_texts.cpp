@@ -6,7 +6,7 @@
 #include "nc/machine/machines.hpp"
 #include "nc/machine/post_options.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -76,4 +76,4 @@ std::vector<MachineOption> machine_options(std::string_view name, Options option
   return out;
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

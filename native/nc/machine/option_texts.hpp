@@ -7,7 +7,7 @@
 
 #include "nc/options.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 /// An option of a machine, or of the code that is written for it.
 struct MachineOption {
@@ -20,4 +20,4 @@ struct MachineOption {
 /// them. Throws what make_machine throws, but for options that are missing.
 std::vector<MachineOption> machine_options(std::string_view name, Options options = {});
 
-}  // namespace riffler
+}  // namespace riffler::nc

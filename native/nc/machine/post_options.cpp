@@ -5,7 +5,7 @@
 
 #include "nc/limits.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -34,4 +34,4 @@ PostOptions take_post_options(OptionReader& options, const std::string& coolant)
   return out;
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -8,7 +8,7 @@
 
 #include "nc/options.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 /// The languages that a machine's control may read. `make_<language>` in nc/write/post_<language>.cpp makes the post of
 /// each: a new language is a word here, its post and a machine's file.
@@ -36,4 +36,4 @@ struct PostOptions {
 /// `coolant`: what the machine's file says, where the option is not given.
 PostOptions take_post_options(OptionReader& options, const std::string& coolant = "off");
 
-}  // namespace riffler
+}  // namespace riffler::nc

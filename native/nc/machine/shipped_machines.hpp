@@ -5,9 +5,9 @@
 
 #include "riffler/base/descriptions.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 /// In the order in which a list shows them.
-std::span<const ShippedText> shipped_machines();
+std::span<const base::ShippedText> shipped_machines();
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace riffler {
+namespace riffler::nc {
 
 double angle_about(const Vec3& k, const Vec3& from, const Vec3& to) {
   const Vec3 side = glm::cross(k, from);
@@ -26,4 +26,4 @@ std::optional<TwoRotations::Angles> TwoRotations::angles(const Vec3& from, const
   return Angles{angle_about(first, z, to), angle_about(second, from, z)};
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

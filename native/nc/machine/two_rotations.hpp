@@ -5,7 +5,7 @@
 
 #include "riffler/geom/vec.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 /// The angle (rad, −π to π) by which `from` is turned about k to point like `to`, seen along k. 0 where either lies on
 /// k.
@@ -24,4 +24,4 @@ struct TwoRotations {
   std::optional<Angles> angles(const Vec3& from, const Vec3& to, int branch) const;
 };
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -8,7 +8,7 @@
 #include "nc/limits.hpp"
 #include "nc/read/drill_cycle.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -96,4 +96,4 @@ void apt_cycle_moves(const AptCycle& cycle, const Pose& point, const std::functi
   if (!cycle.feeds_out || cycle.retract != cycle.clearance) go(cycle.retract, true);
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

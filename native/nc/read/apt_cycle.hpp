@@ -7,7 +7,7 @@
 #include "nc/read/apt_lexer.hpp"
 #include "riffler/geom/pose.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 /// Lengths in mm from the programmed point along the tool's axis.
 struct AptCycle {
@@ -29,4 +29,4 @@ std::optional<AptCycle> apt_cycle(const AptStatement& statement, const AptLexer&
 /// Calls `move(pose, rapid)` for every move of the cycle at `point`.
 void apt_cycle_moves(const AptCycle& cycle, const Pose& point, const std::function<void(const Pose&, bool)>& move);
 
-}  // namespace riffler
+}  // namespace riffler::nc

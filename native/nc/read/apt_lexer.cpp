@@ -6,7 +6,7 @@
 
 #include "nc/read/cursor.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -87,4 +87,4 @@ std::optional<double> AptLexer::number(std::string_view word) const {
   return value;
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -8,7 +8,7 @@
 
 #include "nc/source.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 /// MAJOR/minor,…: the words upper case without blanks; `text` as it stands, for statements that are text.
 struct AptStatement {
@@ -39,4 +39,4 @@ class AptLexer {
   NcPlace& place_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::nc

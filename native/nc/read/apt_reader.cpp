@@ -18,7 +18,7 @@
 #include "nc/read/arc.hpp"
 #include "nc/read/tool_diameters.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -42,7 +42,7 @@ class AptReader {
 
   Program run() {
     for (std::uint64_t n = 0; lexer_.next(s_) && s_.major != "FINI"; ++n) {
-      if (n % kStatementsAReport == 0) report(progress_, lexer_.share());
+      if (n % kStatementsAReport == 0) base::report(progress_, lexer_.share());
       const std::string shown = s_.major + (s_.text.empty() ? "" : "/" + s_.text);
       place_.line = s_.line, place_.text = shown;
       execute();
@@ -410,4 +410,4 @@ Program parse_apt(std::string_view text, const std::string& file, const ReadOpti
   return AptReader(text, file, options).run();
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -7,11 +7,11 @@
 #include "riffler/nc/program.hpp"
 #include "riffler/nc/read/read_options.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 /// GOTO, FROM and GODLTA with or without a tool axis, CIRCLE before a GOTO (counter-clockwise about its axis), RAPID
 /// for the next move, UNITS, MULTAX, TLAXIS, FEDRAT, SPINDL, LOADTL, CUTTER; what moves nothing is passed over.
 /// FormatError naming the line for everything else. Options: "chord_tolerance" and "unknown", as of parse_nc.
 Program parse_apt(std::string_view text, const std::string& file, const ReadOptions& options = {});
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -31,4 +31,4 @@ bool apt_moves(std::string_view major) {
   return std::ranges::find(kMoving, major) != std::end(kMoving);
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

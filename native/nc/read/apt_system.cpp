@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace riffler {
+namespace riffler::nc {
 
 void AptSystem::use(const Vec3& origin, const Vec3& x, const Vec3& y, const NcPlace& place) {
   if (!(std::abs(glm::dot(x, y)) < 1e-3)) place.fail("MSYS whose axes are not at right angles");
@@ -14,4 +14,4 @@ void AptSystem::use(const Vec3& origin, const Vec3& x, const Vec3& y, const NcPl
   shift_ = glm::transpose(first_->axes) * (origin - first_->origin);
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -6,7 +6,7 @@
 #include "nc/source.hpp"
 #include "riffler/geom/vec.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 /// Points are kept in the first system; until another one comes they stay what they are, to the bit.
 class AptSystem {
@@ -31,4 +31,4 @@ class AptSystem {
   bool moved_ = false;
 };
 
-}  // namespace riffler
+}  // namespace riffler::nc

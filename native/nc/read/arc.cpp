@@ -8,7 +8,7 @@
 #include "geom/math.hpp"
 #include "nc/limits.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -99,4 +99,4 @@ Arc tangent_arc(const Vec2& from, const Vec2& to, const Vec2& direction, double 
   return arc_about(from, to, from + radius * left, radius < 0, miss);
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

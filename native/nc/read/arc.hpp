@@ -3,7 +3,7 @@
 
 #include "riffler/geom/vec.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 /// From `centre` + r0 at `start` (rad) through `sweep` (rad, > 0 counter-clockwise) to radius r1: where the two ends
 /// lie on slightly different circles the radius changes evenly.
@@ -34,4 +34,4 @@ Arc arc_of_radius(const Vec2& from, const Vec2& to, double radius, bool clockwis
 /// straight ahead or behind.
 Arc tangent_arc(const Vec2& from, const Vec2& to, const Vec2& direction, double miss = kArcMiss);
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -8,7 +8,7 @@
 #include "nc/limits.hpp"
 #include "nc/read/expression.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace fs = std::filesystem;
 
@@ -53,7 +53,7 @@ void NcControlFlow::count_line() {
   else if (++again_ > kLinesOfTurn * max_turns_)
     place_.fail("an endless loop? Its turns read more lines than option max_turns allows, " +
                 std::to_string(static_cast<int>(kLinesOfTurn)) + " each");
-  if (++lines_ % kLinesAReport == 0) report(progress_, program_.source->share());
+  if (++lines_ % kLinesAReport == 0) base::report(progress_, program_.source->share());
 }
 
 bool NcControlFlow::next(std::string_view& line) {
@@ -339,4 +339,4 @@ void NcControlFlow::loop(const std::string& label, NcKeyword keyword, NcCursor& 
   }
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -16,7 +16,7 @@
 #include "nc/source.hpp"
 #include "riffler/base/progress.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 class NcControlFlow {
  public:
@@ -101,4 +101,4 @@ class NcControlFlow {
   NcSource::Mark line_mark_;  // of the line that advance() gave last
 };
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <cstdio>
 
-namespace riffler {
+namespace riffler::nc {
 
 char NcCursor::skip_comment() {
   if (*at_ == ';') {
@@ -102,4 +102,4 @@ std::string NcCursor::name() {
   fail("a name that is not closed by >");
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

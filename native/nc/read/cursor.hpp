@@ -6,7 +6,7 @@
 
 #include "nc/source.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 class NcCursor {
  public:
@@ -58,4 +58,4 @@ class NcCursor {
   const NcPlace& place_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::nc

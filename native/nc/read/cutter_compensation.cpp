@@ -9,7 +9,7 @@
 #include "nc/limits.hpp"
 #include "nc/number_text.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -310,4 +310,4 @@ void CutterCompensation::fail_fit(const Element& element, const std::string& wha
               "options {'cutter_compensation': 'ignore'}");
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

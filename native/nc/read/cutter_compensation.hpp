@@ -13,7 +13,7 @@
 #include "nc/read/rows.hpp"
 #include "nc/source.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 /// The side of the contour on which the tool is, seen in the direction of the feed.
 enum class CutterSide : std::int8_t { Left = 1, Right = -1 };
@@ -115,4 +115,4 @@ class CutterCompensation {
   std::optional<Element> pending_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -1,6 +1,6 @@
 #include "nc/read/drill_cycle.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -53,4 +53,4 @@ void drill(const DrillCycle& cycle, const NcPlace& place, const std::function<vo
   }
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

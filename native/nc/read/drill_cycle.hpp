@@ -7,7 +7,7 @@
 #include "nc/source.hpp"
 #include "riffler/geom/vec.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 /// Heights along the drilling axis, mm.
 struct DrillCycle {
@@ -38,4 +38,4 @@ bool is_tapping_cycle(int code);
 /// Calls `move(height, rapid)` for every move from R on. FormatError where the cycle has more pecks than can be held.
 void drill(const DrillCycle& cycle, const NcPlace& place, const std::function<void(double, bool)>& move);
 
-}  // namespace riffler
+}  // namespace riffler::nc

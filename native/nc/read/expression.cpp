@@ -9,7 +9,7 @@
 
 #include "geom/math.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -244,4 +244,4 @@ void nc_assignment(NcCursor& cursor, NcParameters& parameters, const NcPlace& pl
     parameters.assign(std::get<std::string>(key), value, place);
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

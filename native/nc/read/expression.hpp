@@ -4,7 +4,7 @@
 #include "nc/read/cursor.hpp"
 #include "nc/read/parameters.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 /// The value that comes next: a number, #parameter, function or [expression], after a sign or none. `what` is the
 /// letter of its word, for messages. FormatError for what is malformed or has no finite value.
@@ -17,4 +17,4 @@ double nc_value(NcCursor& cursor, const NcParameters& parameters, const NcPlace&
 /// Takes what follows "#" up to its "=": a number or a name, and the value, which it assigns (NcParameters::assign).
 void nc_assignment(NcCursor& cursor, NcParameters& parameters, const NcPlace& place);
 
-}  // namespace riffler
+}  // namespace riffler::nc

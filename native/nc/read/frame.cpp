@@ -4,7 +4,7 @@
 
 #include "geom/math.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 Vec2 turned_in_plane(const Vec2& v, double degrees) {
   if (degrees == 0) return v;
@@ -30,4 +30,4 @@ Joints NcFrame::to_program(const Joints& machine) const {
   return out;
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -4,7 +4,7 @@
 
 #include "nc/machine/machine.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 /// Machine position of the tip = turn(program + shift) + origin + tip, the turn about Z by `rotation` degrees; rotary
 /// axes without turn and tip.
@@ -23,4 +23,4 @@ struct NcFrame {
 /// `vector` in the XY plane turned by `degrees`.
 Vec2 turned_in_plane(const Vec2& vector, double degrees);
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -8,7 +8,7 @@
 #include "nc/limits.hpp"
 #include "nc/read/heidenhain_interpreter.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -265,4 +265,4 @@ void HeidenhainInterpreter::cut_corner(const Vec3& to) {
   }
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

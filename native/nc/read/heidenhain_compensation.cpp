@@ -4,7 +4,7 @@
 
 #include "nc/read/heidenhain_interpreter.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -117,4 +117,4 @@ void HeidenhainInterpreter::stay_beside_contour() {
   compensation_->end_leaving();
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

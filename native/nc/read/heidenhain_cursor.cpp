@@ -3,7 +3,7 @@
 #include <charconv>
 #include <cmath>
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -89,4 +89,4 @@ void HeidenhainCursor::fail_unexpected() {
   fail(shown.empty() ? "the block ends too early" : "unexpected '" + shown + "'");
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

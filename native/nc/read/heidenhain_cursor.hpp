@@ -7,7 +7,7 @@
 #include "nc/read/cursor.hpp"
 #include "nc/source.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 /// A block may run over several lines, each with a comment of its own: line ends, "~" and comments are blanks.
 class HeidenhainCursor {
@@ -50,4 +50,4 @@ class HeidenhainCursor {
   const NcPlace& place_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -8,7 +8,7 @@
 
 #include "nc/limits.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -316,4 +316,4 @@ void heidenhain_hole(int number, const HeidenhainCycleSetting& setting, const He
   Hole(setting, values, place, move).run(number);
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -11,7 +11,7 @@
 #include "nc/source.hpp"
 #include "riffler/geom/vec.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 /// A feed in a cycle's parameters that stands for FMAX.
 inline constexpr double kHeidenhainFmax = 99'999.999;
@@ -35,4 +35,4 @@ bool is_heidenhain_hole(int number);
 void heidenhain_hole(int number, const HeidenhainCycleSetting& setting, const HeidenhainValues& values,
                      const NcPlace& place, const std::function<void(const HoleStroke&)>& move);
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -10,7 +10,7 @@
 #include "nc/number_text.hpp"
 #include "nc/read/heidenhain_interpreter.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -253,4 +253,4 @@ void HeidenhainInterpreter::bore() {
   leaving_.reset();
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -6,7 +6,7 @@
 #include "nc/limits.hpp"
 #include "nc/read/heidenhain_interpreter.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -141,4 +141,4 @@ void HeidenhainInterpreter::condition(int number, HeidenhainCursor& cursor) {
   if (holds) jump(name);
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -5,7 +5,7 @@
 #include "geom/math.hpp"
 #include "nc/read/frame.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -56,4 +56,4 @@ Mat3 spatial_turn(const Vec3& angles) {
   return about_z * about_y * about_x;
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -3,7 +3,7 @@
 
 #include "riffler/geom/vec.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 /// Place in the part = shift + turn (plane_shift + rotated p). The part's coordinates are those of the preset.
 struct HeidenhainFrame {
@@ -25,4 +25,4 @@ struct HeidenhainFrame {
 /// Of PLANE SPATIAL and cycle 19: about X, then about Y, then about Z of the coordinates before, deg each.
 Mat3 spatial_turn(const Vec3& angles);
 
-}  // namespace riffler
+}  // namespace riffler::nc

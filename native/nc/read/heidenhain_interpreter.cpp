@@ -12,7 +12,7 @@
 #include "nc/machine/post_options.hpp"
 #include "nc/read/heidenhain_reader.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -31,7 +31,7 @@ HeidenhainInterpreter::HeidenhainInterpreter(std::string_view text, const std::s
     : place_{file, 0, {}}, values_(place_), source_(file), progress_(options.progress) {
   take_options(options);
   NcSource source(text, file);
-  if (check_header_) riffler::check_header(source, rows_->machine());
+  if (check_header_) nc::check_header(source, rows_->machine());
   text_ = std::make_unique<HeidenhainText>(text, place_);
 }
 
@@ -62,7 +62,8 @@ Program HeidenhainInterpreter::run() {
   constexpr std::uint64_t kBlocksAReport = 1024;
   begin_program();
   for (std::uint64_t n = 0; !ended_ && next_ < text_->size(); ++n) {
-    if (n % kBlocksAReport == 0) report(progress_, static_cast<double>(next_) / static_cast<double>(text_->size()));
+    if (n % kBlocksAReport == 0)
+      base::report(progress_, static_cast<double>(next_) / static_cast<double>(text_->size()));
     const HeidenhainBlock& block = (*text_)[next_++];
     if (block.optional && block_delete_) continue;
     execute(block);
@@ -219,4 +220,4 @@ void HeidenhainInterpreter::note(const char* kind, const std::string& message) {
   notes_.add(kind, place_.line, message);
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

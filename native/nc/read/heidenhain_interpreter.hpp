@@ -25,7 +25,7 @@
 #include "nc/read/tool_diameters.hpp"
 #include "riffler/nc/read/read_options.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 class HeidenhainInterpreter {
  public:
@@ -217,4 +217,4 @@ class HeidenhainInterpreter {
   bool position_noted_ = false, start_noted_ = false, away_noted_ = false, compensation_noted_ = false;
 };
 
-}  // namespace riffler
+}  // namespace riffler::nc

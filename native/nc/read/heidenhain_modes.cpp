@@ -7,7 +7,7 @@
 #include "nc/limits.hpp"
 #include "nc/read/heidenhain_interpreter.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -208,4 +208,4 @@ NcRowWords HeidenhainInterpreter::row_words(bool rapid) {
   return {rapid, rapid ? 0 : feed, false, turning_ * speed_, tool_, place_.line};
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

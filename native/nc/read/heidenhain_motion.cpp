@@ -9,7 +9,7 @@
 #include "nc/read/heidenhain_interpreter.hpp"
 #include "nc/read/tool_axis.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 void HeidenhainInterpreter::check_length(const Vec3& at) const {
   for (int k = 0; k < 3; ++k)
@@ -270,4 +270,4 @@ void HeidenhainInterpreter::polar_line(HeidenhainWords& words) {
   end_line(words);
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

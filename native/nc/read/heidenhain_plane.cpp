@@ -11,7 +11,7 @@
 #include "nc/read/heidenhain_interpreter.hpp"
 #include "nc/read/tool_axis.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -231,7 +231,7 @@ bool HeidenhainInterpreter::is_upright() const {
     return true;
   }
   Joints joints = rotary_;
-  if (angle_between(machine.pose(joints).axis, frame_.normal()) > kUpright) return false;
+  if (geom::angle_between(machine.pose(joints).axis, frame_.normal()) > kUpright) return false;
   if (machine.branches() < 2 || glm::length(glm::cross(machine.pole(), frame_.normal())) >= kUpright) return true;
   return is_whole_turn(rotary_[machine.free_joint()] - (*plane_joints_)[machine.free_joint()]);
 }
@@ -255,4 +255,4 @@ void HeidenhainInterpreter::fail_tilted() const {
               "M128, FUNCTION TCPM or PLANE SPATIAL");
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

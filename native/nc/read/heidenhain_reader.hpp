@@ -8,10 +8,10 @@
 #include "riffler/nc/program.hpp"
 #include "riffler/nc/read/read_options.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 /// docs/reading-nc.md says what is read; FormatError naming the line for everything else. Poses are in the coordinates
 /// of the preset, without datum shifts and tilted planes.
 Program parse_heidenhain(std::string_view text, const std::string& file, const ReadOptions& options = {});
 
-}  // namespace riffler
+}  // namespace riffler::nc

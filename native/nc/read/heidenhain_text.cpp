@@ -8,7 +8,7 @@
 #include "nc/limits.hpp"
 #include "nc/read/heidenhain_cursor.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -128,4 +128,4 @@ int HeidenhainText::tool_number(const std::string& name) const {
   return static_cast<int>(std::min<std::ptrdiff_t>(number, kMaxNumber));
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -9,7 +9,7 @@
 
 #include "nc/source.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 /// Whether a text is such a program: BEGIN PGM stands in its first block.
 bool begins_heidenhain(NcSource& source);
@@ -50,4 +50,4 @@ class HeidenhainText {
   int last_tool_ = 0;
 };
 
-}  // namespace riffler
+}  // namespace riffler::nc

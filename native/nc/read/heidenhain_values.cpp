@@ -6,7 +6,7 @@
 #include "geom/math.hpp"
 #include "nc/read/maybe.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -171,4 +171,4 @@ std::optional<double> HeidenhainValues::factor(HeidenhainCursor& cursor, int dep
   return operand(cursor, "a formula");
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -9,7 +9,7 @@
 #include "nc/read/heidenhain_cursor.hpp"
 #include "nc/source.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 /// Parameters Q, QL and QR by number. A parameter may hold a value that only the control knows (FN 18: SYSREAD): it may
 /// be handed on, but not used.
@@ -49,4 +49,4 @@ class HeidenhainValues {
   std::map<int, std::optional<double>> values_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -6,7 +6,7 @@
 
 #include "nc/machine/machine.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -149,4 +149,4 @@ void HeidenhainWords::take_code(HeidenhainCursor& cursor, HeidenhainValues& valu
   if (codes.back() == 103 && cursor.take_if('F')) values.value(cursor, "F");
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -11,7 +11,7 @@
 #include "nc/read/heidenhain_cursor.hpp"
 #include "nc/read/heidenhain_values.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 /// A coordinate as it stands: in the program's unit, or degrees.
 struct HeidenhainCoordinate {
@@ -75,4 +75,4 @@ class HeidenhainWords {
   std::uint8_t kinds_ = 0;
 };
 
-}  // namespace riffler
+}  // namespace riffler::nc

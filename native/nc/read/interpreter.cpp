@@ -9,7 +9,7 @@
 #include "nc/machine/machines.hpp"
 #include "nc/machine/post_options.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 NcInterpreter::NcInterpreter(std::unique_ptr<NcSource> source, const std::filesystem::path& folder,
                              const ReadOptions& options)
@@ -171,4 +171,4 @@ void NcInterpreter::note(const char* kind, const std::string& message) {
   notes_.add(kind, flow_->program_line(), message);
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

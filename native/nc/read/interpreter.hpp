@@ -24,7 +24,7 @@
 #include "nc/source.hpp"
 #include "riffler/nc/read/read_options.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 class NcInterpreter final : private NcPredefined {
  public:
@@ -219,4 +219,4 @@ class NcInterpreter final : private NcPredefined {
   bool started_ = false, percent_ = false, ended_ = false;
 };
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -6,7 +6,7 @@
 #include "nc/limits.hpp"
 #include "nc/read/interpreter.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 void NcInterpreter::make_compensation() {
   compensation_ = std::make_unique<CutterCompensation>(place_, [this](const CentreMove& move) {
@@ -133,4 +133,4 @@ void NcInterpreter::check_not_leaving() const {
   if (compensation_->is_leaving()) place_.fail("the move after G40 is not straight: write G0 or G1 before it");
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -6,7 +6,7 @@
 #include "nc/limits.hpp"
 #include "nc/read/interpreter.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -22,9 +22,9 @@ void NcInterpreter::take_positions(OptionReader& options) {
     if (const auto numbers = options.numbers(name, 3, 6)) given_.positions.emplace_back(first, *numbers);
   };
   for (std::size_t k = 0; k < kOffsetOptions.size(); ++k)
-    take(kOffsetOptions[k], nc_parameter::origin(static_cast<int>(k) + 1));
-  take("g28", nc_parameter::kHome);
-  take("g30", nc_parameter::kSecondHome);
+    take(kOffsetOptions[k], parameter::origin(static_cast<int>(k) + 1));
+  take("g28", parameter::kHome);
+  take("g30", parameter::kSecondHome);
   for (const auto& [first, numbers] : given_.positions)
     for (std::size_t k = 0; k < numbers.size(); ++k)
       if (!(std::abs(numbers[k]) <= (k < 3 ? kMaxLength : kMaxAngle)))
@@ -34,16 +34,16 @@ void NcInterpreter::take_positions(OptionReader& options) {
 void NcInterpreter::use_positions() {
   if (!given_.parameters.empty()) {
     parameters_.load(given_.parameters);
-    modes_.system = std::clamp(static_cast<int>(parameters_.stored(nc_parameter::kSystem)), 1, 9);
+    modes_.system = std::clamp(static_cast<int>(parameters_.stored(parameter::kSystem)), 1, 9);
     for (auto& zeros : zero_) zeros.fill(Zero::Machine);
     for (auto& known : home_known_) known.fill(true);
   }
   for (const auto& [first, numbers] : given_.positions) {
     for (std::size_t k = 0; k < numbers.size(); ++k) parameters_.set(first + static_cast<int>(k), numbers[k]);
     for (int system = 1; system <= 9; ++system)
-      if (first == nc_parameter::origin(system)) zero_[static_cast<std::size_t>(system)].fill(Zero::Machine);
-    if (first == nc_parameter::kHome) home_known_[0].fill(true);
-    if (first == nc_parameter::kSecondHome) home_known_[1].fill(true);
+      if (first == parameter::origin(system)) zero_[static_cast<std::size_t>(system)].fill(Zero::Machine);
+    if (first == parameter::kHome) home_known_[0].fill(true);
+    if (first == parameter::kSecondHome) home_known_[1].fill(true);
   }
 }
 
@@ -51,7 +51,7 @@ void NcInterpreter::use_positions() {
 void NcInterpreter::go_home(int code) {
   const std::size_t which = code == 280 ? 0 : 1;
   refuse_in_compensation(which == 0 ? "G28" : "G30");
-  const int first = which == 0 ? nc_parameter::kHome : nc_parameter::kSecondHome;
+  const int first = which == 0 ? parameter::kHome : parameter::kSecondHome;
   const bool some = words_->has_axes();
   if (some) {
     const auto before = stand_;
@@ -209,4 +209,4 @@ void NcInterpreter::learn_zero(int number, std::size_t joint, bool by_position) 
   zero = Zero::Machine;
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -7,7 +7,7 @@
 #include "nc/machine/machines.hpp"
 #include "nc/read/interpreter.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 void NcInterpreter::units_and_feed_mode() {
   if (const int code = words_->code(NcGroup::Units); code >= 0) {
@@ -246,4 +246,4 @@ void NcInterpreter::stop() {
   compensate(400);
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -8,7 +8,7 @@
 #include "nc/read/drill_cycle.hpp"
 #include "nc/read/interpreter.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -349,4 +349,4 @@ void NcInterpreter::drill_at(int code) {
   }
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -6,9 +6,9 @@
 #include "nc/limits.hpp"
 #include "nc/read/interpreter.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
-using namespace nc_parameter;
+using namespace parameter;
 
 NcFrame NcInterpreter::frame_of_parameters() const {
   NcFrame frame;
@@ -210,4 +210,4 @@ std::optional<double> NcInterpreter::predefined(std::string_view name) const {
   return std::nullopt;
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-namespace riffler {
+namespace riffler::nc {
 
 /// `of` both values; nothing where one of them is not known.
 template <typename Of>
@@ -11,4 +11,4 @@ std::optional<double> both(const std::optional<double>& a, const std::optional<d
   return a && b ? std::optional<double>(of(*a, *b)) : std::nullopt;
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

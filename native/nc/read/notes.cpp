@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -34,4 +34,4 @@ Provenance NoteList::provenance(const std::string& source) const {
   return out;
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -8,7 +8,7 @@
 
 #include "riffler/nc/program.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 class NoteList {
  public:
@@ -23,4 +23,4 @@ class NoteList {
   std::size_t more_skipped_ = 0;
 };
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -5,7 +5,7 @@
 
 #include "nc/read/cursor.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -77,4 +77,4 @@ std::optional<NcOLine> nc_o_line(std::string_view line) {
   return out;
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

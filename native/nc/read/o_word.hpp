@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace riffler {
+namespace riffler::nc {
 
 enum class NcKeyword : std::uint8_t {
   None,
@@ -40,4 +40,4 @@ struct NcOLine {
 /// else in them is judged.
 std::optional<NcOLine> nc_o_line(std::string_view line);
 
-}  // namespace riffler
+}  // namespace riffler::nc

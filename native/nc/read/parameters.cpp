@@ -6,7 +6,7 @@
 
 #include "riffler/base/error.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -107,4 +107,4 @@ void NcParameters::load(const std::filesystem::path& path) {
   }
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

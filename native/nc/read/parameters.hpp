@@ -13,10 +13,10 @@
 
 #include "nc/source.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 /// LinuxCNC's numbers of what the control keeps: X Y Z A B C from each of these on, for systems the rotation too.
-namespace nc_parameter {
+namespace parameter {
 inline constexpr int kHome = 5161, kSecondHome = 5181;  // G28, G30
 inline constexpr int kShifted = 5210, kShift = 5211;    // G92: whether it holds, by what
 inline constexpr int kSystem = 5220;                    // in use: 1 for G54
@@ -26,7 +26,7 @@ constexpr int origin(int system) {
 constexpr int rotation(int system) {
   return 5210 + 20 * system;
 }
-}  // namespace nc_parameter
+}  // namespace parameter
 
 /// The parameters that follow from the control's state: read only.
 class NcPredefined {
@@ -85,4 +85,4 @@ class NcParameters {
   bool value_returned_ = false;
 };
 
-}  // namespace riffler
+}  // namespace riffler::nc

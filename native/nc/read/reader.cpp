@@ -14,7 +14,7 @@
 #include "nc/read/sinumerik_text.hpp"
 #include "riffler/base/error.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -81,7 +81,7 @@ Program parse_whole(std::string_view text, const std::string& file, const ReadOp
 }
 
 Program read_whole(const std::filesystem::path& path, const ReadOptions& options, const std::string& language) {
-  const std::vector<std::uint8_t> bytes = read_file(path);
+  const std::vector<std::uint8_t> bytes = base::read_file(path);
   return parse_whole({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, path.filename().string(), options,
                      language, folder_of(path));
 }
@@ -187,4 +187,4 @@ void NcStream::fill(Program& program) {
   program.provenance = interpreter_->provenance(), program.notes = interpreter_->notes();
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

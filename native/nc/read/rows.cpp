@@ -8,7 +8,7 @@
 #include "nc/limits.hpp"
 #include "nc/number_text.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -241,4 +241,4 @@ Joints NcRows::change_machine(std::unique_ptr<Machine> machine, const Joints& at
   return as_first_ ? at_ : frame_.to_program(first_->to_machine(at_));
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

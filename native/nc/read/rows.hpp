@@ -13,7 +13,7 @@
 #include "nc/source.hpp"
 #include "riffler/nc/program.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 /// What the rows of a block say beside where they are.
 struct NcRowWords {
@@ -104,4 +104,4 @@ class NcRows {
   bool holds_ = false;
 };
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -8,7 +8,7 @@
 #include "nc/limits.hpp"
 #include "nc/read/sinumerik_interpreter.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -161,4 +161,4 @@ void SinumerikInterpreter::arc_through(const SinumerikWords& words) {
   leaving_ = std::cos(sweep) * y - std::sin(sweep) * x;
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

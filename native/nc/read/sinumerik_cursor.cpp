@@ -4,7 +4,7 @@
 #include <cmath>
 #include <system_error>
 
-namespace riffler {
+namespace riffler::nc {
 
 char SinumerikCursor::peek() {
   const std::size_t first = rest_.find_first_not_of(" \t\r");
@@ -116,4 +116,4 @@ void SinumerikCursor::fail_unexpected() {
   fail(shown.empty() ? "the block ends too early" : "unexpected '" + shown + "'");
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -7,7 +7,7 @@
 #include "nc/read/cursor.hpp"
 #include "nc/source.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 /// Brackets hold arguments here, no comments; a comment begins with ";".
 class SinumerikCursor {
@@ -51,4 +51,4 @@ class SinumerikCursor {
   const NcPlace* place_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::nc

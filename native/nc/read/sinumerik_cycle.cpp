@@ -6,7 +6,7 @@
 
 #include "nc/limits.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -264,4 +264,4 @@ void sinumerik_hole(int number, const SinumerikCycleSetting& setting,
   SinumerikHole(number, setting, parameters, place, move).run();
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

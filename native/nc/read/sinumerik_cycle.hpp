@@ -10,7 +10,7 @@
 #include "nc/read/drill_cycle.hpp"
 #include "nc/source.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 /// What a cycle needs beside its parameters.
 struct SinumerikCycleSetting {
@@ -33,4 +33,4 @@ void sinumerik_hole(int number, const SinumerikCycleSetting& setting,
                     const std::vector<std::optional<double>>& parameters, const NcPlace& place,
                     const std::function<void(const HoleStroke&)>& move);
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -8,7 +8,7 @@
 #include "nc/limits.hpp"
 #include "nc/read/sinumerik_interpreter.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -77,7 +77,7 @@ void SinumerikInterpreter::drill(int number, const Arguments& given) {
   if (stand_[u] == Stand::Machine || stand_[v] == Stand::Machine)
     place_.fail("a cycle while " + axes_away() + " is at a position of the machine: move into the part first");
   if (!keeps_tip_ && !is_upright()) fail_tilted();
-  if (plane_[2] == 2 && angle_between(rows_->machine().pose(rotary_).axis, frame_.turn[2]) > kAlong)
+  if (plane_[2] == 2 && geom::angle_between(rows_->machine().pose(rotary_).axis, frame_.turn[2]) > kAlong)
     place_.fail("a drilling cycle whose hole is not along the tool: have the CAM system write its moves");
   if (feed_mode_ == 93) place_.fail("drilling cycles know no inverse time (G93)");
   const double feed = feed_mode_ == 95 ? feed_ * (surface_speed_ ? 0 : speed_) : feed_;
@@ -137,4 +137,4 @@ void SinumerikInterpreter::hole_at(const Vec2& at) {
   drill(modal_cycle_, modal_arguments_);
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -9,7 +9,7 @@
 #include "nc/limits.hpp"
 #include "nc/read/sinumerik_interpreter.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -311,7 +311,7 @@ std::shared_ptr<const SinumerikRoutine> SinumerikInterpreter::find_routine(const
   if (!files_) index_folders();
   const auto file = files_->find(name);
   if (file == files_->end()) return nullptr;
-  const std::vector<std::uint8_t> bytes = read_file(file->second);
+  const std::vector<std::uint8_t> bytes = base::read_file(file->second);
   auto text = std::make_shared<const std::string>(bytes.begin(), bytes.end());
   NcPlace place{file->second.filename().string(), 0, {}};
   std::vector<SinumerikRoutine> all = sinumerik_routines(*text, place);
@@ -340,4 +340,4 @@ void SinumerikInterpreter::index_folders() {
   }
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -3,7 +3,7 @@
 
 #include "riffler/geom/vec.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 /// Place in the part = shift + turn p.
 struct SinumerikFrame {
@@ -18,4 +18,4 @@ struct SinumerikFrame {
   SinumerikFrame with(const SinumerikFrame& inner) const { return {turn * inner.turn, to_part(inner.shift)}; }
 };
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -11,7 +11,7 @@
 #include "nc/machine/post_options.hpp"
 #include "nc/read/sinumerik_reader.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 Program parse_sinumerik(std::string_view text, const std::string& file, const ReadOptions& options,
                         const std::filesystem::path& folder) {
@@ -71,8 +71,8 @@ Program SinumerikInterpreter::run() {
   constexpr std::uint64_t kBlocksAReport = 1024;
   for (std::uint64_t n = 0; step(); ++n) {
     if (n % kBlocksAReport == 0)
-      report(progress_, static_cast<double>(calls_.front().next) /
-                            static_cast<double>(std::max<std::size_t>(calls_.front().routine->blocks.size(), 1)));
+      base::report(progress_, static_cast<double>(calls_.front().next) /
+                                  static_cast<double>(std::max<std::size_t>(calls_.front().routine->blocks.size(), 1)));
     flush();
   }
   rows_->release(true);
@@ -187,4 +187,4 @@ void SinumerikInterpreter::note_once(int key, const char* kind, const std::strin
   if (noted_.insert(key).second) note(kind, message);
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -23,7 +23,7 @@
 #include "nc/read/stand.hpp"
 #include "riffler/nc/read/read_options.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 class SinumerikInterpreter {
  public:
@@ -203,4 +203,4 @@ class SinumerikInterpreter {
   Arguments modal_arguments_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::nc

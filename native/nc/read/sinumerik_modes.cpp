@@ -8,7 +8,7 @@
 #include "nc/read/sinumerik_interpreter.hpp"
 #include "nc/read/tool_diameters.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -241,4 +241,4 @@ void SinumerikInterpreter::select_system(int system) {
   system_ = system;
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

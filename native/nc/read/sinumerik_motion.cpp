@@ -12,7 +12,7 @@
 #include "nc/read/sinumerik_interpreter.hpp"
 #include "nc/read/tool_axis.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -119,7 +119,7 @@ bool SinumerikInterpreter::is_upright() const {
   if (!swivel_joints_)
     return std::all_of(rotary_.begin() + 3, rotary_.end(), [](double angle) { return is_whole_turn(angle); });
   const Vec3 normal = swivel_.turn[2];
-  if (angle_between(machine.pose(rotary_).axis, normal) > kAlongNormal) return false;
+  if (geom::angle_between(machine.pose(rotary_).axis, normal) > kAlongNormal) return false;
   if (machine.branches() < 2 || glm::length(glm::cross(machine.pole(), normal)) >= kAlongNormal) return true;
   return is_whole_turn(rotary_[machine.free_joint()] - (*swivel_joints_)[machine.free_joint()]);
 }
@@ -292,4 +292,4 @@ void SinumerikInterpreter::to_home(const SinumerikWords& words) {
   leave_part({true, 0, false, turning_ * speed_, tool_, calls_.front().line});
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

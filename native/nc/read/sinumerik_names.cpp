@@ -5,7 +5,7 @@
 
 #include "nc/read/sinumerik_interpreter.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -188,4 +188,4 @@ void SinumerikInterpreter::define(SinumerikCursor& cursor) {
   cursor.expect_end();
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -9,7 +9,7 @@
 #include "nc/read/sinumerik_interpreter.hpp"
 #include "nc/read/tool_axis.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -160,4 +160,4 @@ void SinumerikInterpreter::unswivel(bool retracts) {
   leave_part({true, 0, false, turning_ * speed_, tool_, calls_.front().line});
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

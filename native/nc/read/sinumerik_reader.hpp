@@ -9,7 +9,7 @@
 #include "riffler/nc/program.hpp"
 #include "riffler/nc/read/read_options.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 /// docs/reading-nc.md says what is read; FormatError naming the line for everything else. Poses are in the coordinates
 /// of the first work offset that the program moves in, without TRANS, ROT and tilted planes. `folder`: where files of
@@ -17,4 +17,4 @@ namespace riffler {
 Program parse_sinumerik(std::string_view text, const std::string& file, const ReadOptions& options = {},
                         const std::filesystem::path& folder = {});
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -8,7 +8,7 @@
 #include "nc/read/cursor.hpp"
 #include "nc/read/sinumerik_cursor.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -209,4 +209,4 @@ std::vector<SinumerikRoutine> sinumerik_routines(std::string_view text, NcPlace&
   return Routines(text, place).read();
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

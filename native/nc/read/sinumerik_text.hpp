@@ -12,7 +12,7 @@
 
 #include "nc/source.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 /// Whether a text says that it is such a program: its first lines have "%_N_..." or ";$PATH=".
 bool begins_sinumerik(NcSource& source);
@@ -59,4 +59,4 @@ std::vector<SinumerikRoutine> sinumerik_routines(std::string_view text, NcPlace&
 /// "_N_HOLE_SPF", "hole.spf" → "HOLE".
 std::string sinumerik_name(std::string_view name);
 
-}  // namespace riffler
+}  // namespace riffler::nc

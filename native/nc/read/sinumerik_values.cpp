@@ -9,7 +9,7 @@
 #include "nc/limits.hpp"
 #include "nc/read/maybe.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -295,4 +295,4 @@ std::optional<double> SinumerikValues::function(const std::string& name, Sinumer
   return name == "MINVAL" ? std::min(*of[0], *of[1]) : std::max(*of[0], *of[1]);
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

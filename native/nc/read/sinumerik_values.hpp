@@ -11,7 +11,7 @@
 #include "nc/read/sinumerik_cursor.hpp"
 #include "nc/source.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 /// R parameters, and variables that DEF and PROC define, in scopes of subprograms. A value may be one that only the
 /// control knows (system variables, $...): it may be assigned, but not used.
@@ -74,4 +74,4 @@ class SinumerikValues {
   std::vector<Scope> scopes_;                        // of the main program first
 };
 
-}  // namespace riffler
+}  // namespace riffler::nc

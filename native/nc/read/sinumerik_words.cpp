@@ -7,7 +7,7 @@
 #include "nc/limits.hpp"
 #include "nc/machine/machine.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -259,4 +259,4 @@ void SinumerikWords::take_parameter(const std::string& name, SinumerikCursor& cu
   cursor.fail(name + " is not defined: correct it, or DEF REAL " + name + " at the beginning of the program");
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -12,7 +12,7 @@
 #include "nc/read/sinumerik_cursor.hpp"
 #include "nc/read/sinumerik_values.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 /// A coordinate as it stands: in the program's unit, or degrees.
 struct SinumerikCoordinate {
@@ -74,4 +74,4 @@ class SinumerikWords {
   void once(std::optional<double>& to, double value, const std::string& name, SinumerikCursor& cursor);
 };
 
-}  // namespace riffler
+}  // namespace riffler::nc

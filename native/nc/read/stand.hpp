@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-namespace riffler {
+namespace riffler::nc {
 
 /// Of a coordinate of the tip.
 enum class TipStand : std::uint8_t {
@@ -31,4 +31,4 @@ inline std::string axes_of(const TipStands& stands, TipStand stand, std::string_
   return out;
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <optional>
 
-namespace riffler {
+namespace riffler::nc {
 
 Joints joints_holding(const Machine& machine, const Vec3& axis, const Joints& near, double free) {
   constexpr double kBeyond = 1e9;  // more than any way
@@ -23,4 +23,4 @@ bool is_whole_turn(double degrees) {
   return std::abs(nearest_turn(degrees, 0)) < kSameAngle;
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

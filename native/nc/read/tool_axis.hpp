@@ -3,7 +3,7 @@
 
 #include "nc/machine/machine.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 /// The rotary axes that hold `axis` (unit, part coordinates) and are reached from `near` by the shortest way, of those
 /// within the machine's limits where there are any; X Y Z without meaning. `free`: Machine::joints.
@@ -13,4 +13,4 @@ Joints joints_holding(const Machine& machine, const Vec3& axis, const Joints& ne
 /// Whether an angle (deg) is a whole number of turns, but for what printed angles are off.
 bool is_whole_turn(double degrees);
 
-}  // namespace riffler
+}  // namespace riffler::nc

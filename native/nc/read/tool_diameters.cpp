@@ -6,7 +6,7 @@
 #include "nc/limits.hpp"
 #include "nc/number_text.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -74,4 +74,4 @@ std::optional<double> ToolDiameters::of(int number) const {
   return found == of_.end() ? std::nullopt : std::optional(found->second);
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

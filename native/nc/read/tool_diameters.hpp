@@ -8,7 +8,7 @@
 
 #include "nc/options.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 /// How a reader treats cutter radius compensation: G41, G42, RL, RR, CUTCOM.
 enum class CompensationRule : std::uint8_t {
@@ -43,4 +43,4 @@ class ToolDiameters {
   std::map<int, double> of_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::nc

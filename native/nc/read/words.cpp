@@ -7,7 +7,7 @@
 #include "nc/machine/machines.hpp"
 #include "nc/read/expression.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -255,4 +255,4 @@ void NcWords::fail_unused() const {
   place_.fail(std::string(1, letter) + " has no meaning in this block");
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -11,7 +11,7 @@
 #include "nc/read/cursor.hpp"
 #include "nc/read/parameters.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 /// Modal groups, after the NIST RS274/NGC interpreter (NISTIR 6556, table 4) and LinuxCNC: two codes of one group in a
 /// block contradict each other.
@@ -106,4 +106,4 @@ class NcWords {
   std::array<std::int16_t, kGroups> codes_{};
 };
 
-}  // namespace riffler
+}  // namespace riffler::nc

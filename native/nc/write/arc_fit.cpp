@@ -8,7 +8,7 @@
 
 #include "nc/write/arc_through.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -134,11 +134,11 @@ std::vector<FittedPiece> fit_arcs(std::span<const Vec3> points, double tolerance
   if (!(tolerance >= kMinFitTolerance) || !std::isfinite(tolerance))
     throw std::invalid_argument("tolerance must be finite and at least 0.00002 mm");
   for (std::size_t row = 0; row < points.size(); ++row)
-    if (!finite(points[row])) throw std::invalid_argument("points, row " + std::to_string(row) + ": not finite");
+    if (!geom::finite(points[row])) throw std::invalid_argument("points, row " + std::to_string(row) + ": not finite");
   Fitter fitter(points, tolerance);
   std::vector<FittedPiece> pieces = fitter.run();
   if (looked_at) *looked_at += fitter.looked_at;
   return pieces;
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -7,7 +7,7 @@
 
 #include "riffler/geom/vec.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 /// From the end of the piece before, at first from point 0, to point `last`: a line, or an arc of less than half a turn
 /// in a coordinate plane that rises along the plane's normal evenly with the angle (a helix where the ends' heights
@@ -34,4 +34,4 @@ inline constexpr double kMinFitTolerance = 2e-5;
 /// tolerance of less than kMinFitTolerance. `looked_at`: added to, the number of points looked at.
 std::vector<FittedPiece> fit_arcs(std::span<const Vec3> points, double tolerance, std::size_t* looked_at = nullptr);
 
-}  // namespace riffler
+}  // namespace riffler::nc

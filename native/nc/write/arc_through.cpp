@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -219,4 +219,4 @@ PlaneArc nearest_arc(std::span<const Vec3> points, const PlaneArc& found, double
   return fits(points, arc, tolerance, looked_at) ? arc : found;
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -7,7 +7,7 @@
 
 #include "riffler/geom/vec.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 /// Radii (mm) and the sweep (rad) of arcs that controls compute without trouble: from 180° on the centre follows badly
 /// from rounded ends, and a circle of many metres is a straight line to them.
@@ -36,4 +36,4 @@ std::optional<PlaneArc> arc_within(std::span<const Vec3> points, Axis normal, do
 /// better. Chords of an arc give that arc.
 PlaneArc nearest_arc(std::span<const Vec3> points, const PlaneArc& found, double tolerance, std::size_t& looked_at);
 
-}  // namespace riffler
+}  // namespace riffler::nc

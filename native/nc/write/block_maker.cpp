@@ -15,7 +15,7 @@
 #include "nc/write/rotary.hpp"
 #include "nc/write/subdivider.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -88,7 +88,7 @@ class BlockMaker {
     const auto& parts = split(row, splitter, to, w.joints, free);
     slowest_ = 1;
     for (std::size_t k = 0; k < parts.size(); ++k) block(row, parts[k], to, k + 1 == parts.size());
-    if (!free) note_passage(row, angle_between(before_.axis, to.axis) * kRadian, rotary_way(start, w.joints));
+    if (!free) note_passage(row, geom::angle_between(before_.axis, to.axis) * kRadian, rotary_way(start, w.joints));
     before_ = to;
   }
 
@@ -404,4 +404,4 @@ WriteReport make_blocks(const Program& program, const BlockSettings& settings, B
   return BlockMaker(program, settings, sink).run();
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

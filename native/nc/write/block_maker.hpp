@@ -8,7 +8,7 @@
 #include "riffler/nc/program.hpp"
 #include "riffler/nc/write/write_options.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 struct BlockSettings {
   const Machine& machine;
@@ -26,4 +26,4 @@ struct BlockSettings {
 /// that the machine cannot run; the blocks before it have been handed on. WriteReport::blocks stays 0.
 WriteReport make_blocks(const Program& program, const BlockSettings& settings, BlockSink& sink);
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -2,10 +2,9 @@
 #pragma once
 
 #include "nc/machine/machine.hpp"
+#include "tool/tool.hpp"
 
-namespace riffler {
-
-class Tool;
+namespace riffler::nc {
 
 /// One block.
 struct PostBlock {
@@ -41,4 +40,4 @@ class BlockSink {
   virtual void arc(const PostArc& arc) = 0;
 };
 
-}  // namespace riffler
+}  // namespace riffler::nc

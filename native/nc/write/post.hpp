@@ -11,7 +11,7 @@
 #include "nc/machine/post_options.hpp"
 #include "nc/write/block_sink.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 class Post : public BlockSink {
  public:
@@ -49,4 +49,4 @@ std::unique_ptr<Post> make_post(const Machine& machine, PostOptions options);
 RIFFLER_LANGUAGES(RIFFLER_DECLARE_POST)
 #undef RIFFLER_DECLARE_POST
 
-}  // namespace riffler
+}  // namespace riffler::nc

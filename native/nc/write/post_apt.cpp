@@ -8,7 +8,7 @@
 #include "nc/number_text.hpp"
 #include "nc/write/post.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -77,7 +77,7 @@ class Apt final : public Post {
 
   /// A comment where seven numbers cannot describe the shape.
   void cutter(const Tool& tool) {
-    const std::optional<AptCutter> apt = to_apt(tool);
+    const std::optional<tool::AptCutter> apt = to_apt(tool);
     if (!apt) return line("$$ no CUTTER says " + plain(tool.kind()));
     std::string text = "CUTTER/" + number_text(apt->d);
     for (const double number : {apt->r, apt->e, apt->f, apt->a * kRadian, apt->b * kRadian, apt->h})
@@ -95,4 +95,4 @@ std::unique_ptr<Post> make_apt(const Machine& machine, PostOptions options) {
   return std::make_unique<Apt>(machine, std::move(options));
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -7,7 +7,7 @@
 #include "nc/number_text.hpp"
 #include "nc/write/post.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -153,4 +153,4 @@ std::unique_ptr<Post> make_heidenhain(const Machine& machine, PostOptions option
   return std::make_unique<Heidenhain>(machine, std::move(options));
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -8,7 +8,7 @@
 #include "nc/number_text.hpp"
 #include "nc/write/post.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -199,4 +199,4 @@ std::unique_ptr<Post> make_rs274(const Machine& machine, PostOptions options) {
   return std::make_unique<Rs274>(machine, std::move(options));
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -7,7 +7,7 @@
 #include "nc/number_text.hpp"
 #include "nc/write/post.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -163,4 +163,4 @@ std::unique_ptr<Post> make_sinumerik(const Machine& machine, PostOptions options
   return std::make_unique<Sinumerik>(machine, std::move(options));
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

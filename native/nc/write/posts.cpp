@@ -4,7 +4,7 @@
 
 #include "nc/write/post.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -26,4 +26,4 @@ std::unique_ptr<Post> make_post(const Machine& machine, PostOptions options) {
   return at->make(machine, std::move(options));
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -13,7 +13,7 @@
 #include "nc/number_text.hpp"
 #include "nc/write/subdivider.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -42,7 +42,7 @@ double arc_pole_angle(const Vec3& a, const Vec3& b, const Vec3& pole) {
 }
 
 bool opposite(const Pose& a, const Pose& b) {
-  return angle_between(a.axis, b.axis) > kPi - 1e-9;
+  return geom::angle_between(a.axis, b.axis) > kPi - 1e-9;
 }
 
 /// One way to stand at a node, and the best way to have come there.
@@ -424,4 +424,4 @@ std::vector<Waypoint> choose_joints(const Program& program, const Machine& machi
   return Chooser(program, machine, axis_tolerance, free).run();
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -8,7 +8,7 @@
 #include "nc/machine/machine.hpp"
 #include "riffler/nc/program.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 /// Where the axes stand at the end of a row, or on its way.
 struct Waypoint {
@@ -37,4 +37,4 @@ std::vector<bool> free_moves(const Program& program, std::optional<double> safe_
 std::vector<Waypoint> choose_joints(const Program& program, const Machine& machine, double axis_tolerance,
                                     const std::vector<bool>& free);
 
-}  // namespace riffler
+}  // namespace riffler::nc

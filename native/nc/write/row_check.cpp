@@ -7,7 +7,7 @@
 #include "nc/machine/machines.hpp"
 #include "nc/write/block_maker.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -70,4 +70,4 @@ std::optional<RowError> RowCheck::first_fault(const Program& program, BlockSink&
   return std::nullopt;
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

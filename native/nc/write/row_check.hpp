@@ -9,7 +9,7 @@
 #include "riffler/nc/program.hpp"
 #include "riffler/nc/write/write_options.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 /// The one check of writer and verification. Where the axes stand at a row follows from the rows before and after it
 /// (nc/write/rotary.hpp), so rows are checked together.
@@ -20,7 +20,7 @@ class RowCheck {
 
   const Machine& machine() const { return *machine_; }
   /// Writes in the machine's language.
-  std::unique_ptr<Post> make_post() const { return riffler::make_post(*machine_, how_); }
+  std::unique_ptr<Post> make_post() const { return nc::make_post(*machine_, how_); }
 
   /// The first row that the machine cannot run, or nothing. Writes nothing.
   std::optional<RowError> first_fault(const Program& program) const;
@@ -34,4 +34,4 @@ class RowCheck {
   bool joints_ = true, arcs_ = false;  // of BlockSettings
 };
 
-}  // namespace riffler
+}  // namespace riffler::nc

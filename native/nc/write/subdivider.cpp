@@ -8,7 +8,7 @@
 #include "geom/directions.hpp"
 #include "geom/math.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 Joints mix(const Joints& a, const Joints& b, double t) {
   Joints out;
@@ -49,7 +49,7 @@ bool Subdivider::fits(const Motion& motion, const Part& part, bool free) const {
     const double s = i / (kSamples + 1.0), t = part.t0 + s * (part.t1 - part.t0);
     const Pose is = machine_.pose(mix(part.j0, part.j1, s));
     if (glm::length(is.tip - motion.tip(t)) > 0.8 * tolerance_) return false;
-    if (!free && angle_between(is.axis, motion.axis(t)) > 0.8 * axis_tolerance_) return false;
+    if (!free && geom::angle_between(is.axis, motion.axis(t)) > 0.8 * axis_tolerance_) return false;
   }
   return true;
 }
@@ -124,4 +124,4 @@ const std::vector<Joints>& Subdivider::split(const Pose& a, const Joints& ja, co
   return out_;
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -7,7 +7,7 @@
 
 #include "nc/machine/machine.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 /// All axes at the share t of their way from a to b.
 Joints mix(const Joints& a, const Joints& b, double t);
@@ -48,4 +48,4 @@ class Subdivider {
   std::vector<Joints> out_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::nc

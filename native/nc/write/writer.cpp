@@ -7,7 +7,7 @@
 #include "nc/number_text.hpp"
 #include "nc/write/row_check.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 namespace {
 
@@ -50,8 +50,8 @@ WriteReport write_nc(const Program& program, const std::filesystem::path& path, 
   WriteReport report;
   const std::string text = to_nc(program, options, &report);
   if (check) check(report);
-  write_file(path, text);
+  base::write_file(path, text);
   return report;
 }
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace riffler {
+namespace riffler::pen {
 
 ArmPosture arm_posture(const ArmLinks& links, const Vec3& angles) noexcept {
   const double s1 = std::sin(angles.x), c1 = std::cos(angles.x);
@@ -44,4 +44,4 @@ ArmInverse arm_angles(const ArmLinks& links, const Vec3& end) noexcept {
   return inverse;
 }
 
-}  // namespace riffler
+}  // namespace riffler::pen

@@ -2,11 +2,11 @@
 
 #include "riffler/base/check.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 
 void Compensation::validate() const {
-  require_between(gravity, 0, 1, "gravity");
-  require_between(friction, 0, 1, "friction");
+  base::require_between(gravity, 0, 1, "gravity");
+  base::require_between(friction, 0, 1, "friction");
 }
 
 MotorTorques compensation_torques(const PenGeometry& pen, const Compensation& share, const JointAngles& angles,
@@ -19,4 +19,4 @@ MotorTorques compensation_torques(const PenGeometry& pen, const Compensation& sh
   return out;
 }
 
-}  // namespace riffler
+}  // namespace riffler::pen

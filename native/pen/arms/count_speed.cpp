@@ -4,7 +4,7 @@
 
 #include "geom/math.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 
 namespace {
 
@@ -46,4 +46,4 @@ JointAngles CountSpeed::rates() const noexcept {
   return out;
 }
 
-}  // namespace riffler
+}  // namespace riffler::pen

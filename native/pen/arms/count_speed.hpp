@@ -6,7 +6,7 @@
 
 #include "riffler/pen/arms/kinematics.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 
 /// Of each counter, the slope of the longest line through the newest reading and an older one from which no reading
 /// between them is more than a count off: first-order adaptive windowing with end fit (Janabi-Sharifi, Hayward and
@@ -40,4 +40,4 @@ class CountSpeed {
   std::size_t newest_ = 0, size_ = 0;
 };
 
-}  // namespace riffler
+}  // namespace riffler::pen

@@ -9,7 +9,7 @@
 #include "riffler/pen/arms/arm.hpp"
 #include "riffler/pen/arms/kinematics.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 
 namespace {
 
@@ -25,9 +25,9 @@ std::string in_digits(double value) {
   return text;
 }
 
-class PenReader : TomlReader {
+class PenReader : base::TomlReader {
  public:
-  PenReader(std::string_view text, const std::string& file) : TomlReader(text, file) {}
+  PenReader(std::string_view text, const std::string& file) : base::TomlReader(text, file) {}
 
   std::string summary() { return text(root(), "description"); }
 
@@ -276,4 +276,4 @@ std::string pen_summary(std::string_view toml, const std::string& file) {
   return PenReader(toml, file).summary();
 }
 
-}  // namespace riffler
+}  // namespace riffler::pen

@@ -6,7 +6,7 @@
 
 #include "riffler/pen/arms/geometry.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 
 /// Throws FormatError naming `file`, the line and what is expected there: for what is not TOML, a key that is missing,
 /// unknown or of the wrong type, a value that cannot be, and for a pen whose numbers contradict each other: ends that
@@ -16,4 +16,4 @@ PenGeometry describe_pen(std::string_view toml, const std::string& file, const s
 /// Its line for lists. FormatError as above.
 std::string pen_summary(std::string_view toml, const std::string& file);
 
-}  // namespace riffler
+}  // namespace riffler::pen

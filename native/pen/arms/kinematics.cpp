@@ -4,7 +4,7 @@
 
 #include "geom/math.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 
 namespace {
 
@@ -112,7 +112,7 @@ bool PenKinematics::within_limits(Arm arm, const Vec3& angles) const noexcept {
 PenInverse PenKinematics::inverse(const Pose& pose) const noexcept {
   PenInverse out;
   const double length = glm::length(pose.axis);
-  if (!finite(pose.tip) || !std::isfinite(length) || length == 0) return out;
+  if (!geom::finite(pose.tip) || !std::isfinite(length) || length == 0) return out;
   const Vec3 middle = to_base(pose.tip - geometry_.origin);
   const Vec3 half = 0.5 * geometry_.grip_length * towards_ / length * to_base(pose.axis);  // towards L
   for (const Arm arm : {Arm::R, Arm::L}) {
@@ -124,4 +124,4 @@ PenInverse PenKinematics::inverse(const Pose& pose) const noexcept {
   return out;
 }
 
-}  // namespace riffler
+}  // namespace riffler::pen

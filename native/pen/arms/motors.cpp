@@ -5,7 +5,7 @@
 
 #include "pen/arms/wrench_split.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 
 namespace {
 
@@ -48,10 +48,10 @@ JointAngles joint_torques(const PenGeometry& pen, const MotorTorques& motor_torq
   return out;
 }
 
-Actuators pen_actuators(const PenKinematics& pen, const PenPosture& posture) noexcept {
-  Actuators out;
+haptics::Actuators pen_actuators(const PenKinematics& pen, const PenPosture& posture) noexcept {
+  haptics::Actuators out;
   out.count = kPenChannels;
-  for (int k = 0; k < kCoordinates; ++k) {
+  for (int k = 0; k < haptics::kCoordinates; ++k) {
     Wrench unit;
     unit[k] = 1;
     const PenEffort effort = pen_effort(pen, posture, unit, posture.pose.tip);
@@ -106,4 +106,4 @@ MotorTorques friction_torques(const PenGeometry& pen, const JointAngles& rates) 
   return out;
 }
 
-}  // namespace riffler
+}  // namespace riffler::pen

@@ -3,23 +3,23 @@
 #include "pen/arms/description.hpp"
 #include "pen/arms/shipped_pens.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 
 namespace {
 
-DescriptionCatalog shelf() {
+base::DescriptionCatalog shelf() {
   return {"pen", "RIFFLER_PENS", "pens", shipped_pens(), pen_summary};
 }
 
 }  // namespace
 
-std::vector<DescriptionEntry> pens() {
+std::vector<base::DescriptionEntry> pens() {
   return list_descriptions(shelf());
 }
 
 PenGeometry load_pen(std::string_view name) {
-  const DescriptionText found = find_description(shelf(), name, "pen '" + std::string(name) + "'");
+  const base::DescriptionText found = find_description(shelf(), name, "pen '" + std::string(name) + "'");
   return describe_pen(found.toml, found.file, found.name);
 }
 
-}  // namespace riffler
+}  // namespace riffler::pen

@@ -7,14 +7,14 @@
 #include "riffler/base/descriptions.hpp"
 #include "riffler/pen/arms/geometry.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 
 /// All pens, ours first, then every *.toml in the folders of RIFFLER_PENS (apart as in PATH) and in riffler/pens of the
 /// user's folder for settings; of a file that cannot be read the description says why.
-std::vector<DescriptionEntry> pens();
+std::vector<base::DescriptionEntry> pens();
 
 /// `name` is one of pens(), or the path of a .toml file. Throws std::invalid_argument that lists the known ones, and
 /// what describe_pen throws.
 PenGeometry load_pen(std::string_view name);
 
-}  // namespace riffler
+}  // namespace riffler::pen

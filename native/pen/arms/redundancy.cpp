@@ -7,7 +7,7 @@
 
 #include "geom/math.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 
 namespace {
 
@@ -145,4 +145,4 @@ GripVerdict GripDiagnosis::verdict() const noexcept {
   return out;
 }
 
-}  // namespace riffler
+}  // namespace riffler::pen

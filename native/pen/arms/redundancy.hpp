@@ -6,7 +6,7 @@
 
 #include "riffler/pen/arms/kinematics.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 
 struct GripCheck {
   double stretch = 0;  // mm: |r_L − r_R| less the grip's length
@@ -66,4 +66,4 @@ class GripDiagnosis {
   std::size_t size_ = 0;  // ever added
 };
 
-}  // namespace riffler
+}  // namespace riffler::pen

@@ -5,8 +5,8 @@
 
 #include "riffler/base/descriptions.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 
-std::span<const ShippedText> shipped_pens();
+std::span<const base::ShippedText> shipped_pens();
 
-}  // namespace riffler
+}  // namespace riffler::pen

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace riffler {
+namespace riffler::pen {
 
 WrenchSplit split_wrench(const Wrench& wrench, const Vec3& apart) noexcept {
   const double length = glm::length(apart);
@@ -39,4 +39,4 @@ Wrench felt_wrench(const PenKinematics& pen, const PenPosture& posture, const Jo
   return {pen.from_base(in_base.force), pen.from_base(in_base.torque)};
 }
 
-}  // namespace riffler
+}  // namespace riffler::pen

@@ -6,7 +6,7 @@
 #include "riffler/haptics/wrench.hpp"
 #include "riffler/pen/arms/kinematics.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 
 using ArmForces = std::array<Vec3, 2>;  // R, L; N
 
@@ -38,4 +38,4 @@ PenEffort pen_effort(const PenKinematics& pen, const PenPosture& posture, const 
 /// singular, and could bear any force, counts as bearing none.
 Wrench felt_wrench(const PenKinematics& pen, const PenPosture& posture, const JointAngles& torques) noexcept;
 
-}  // namespace riffler
+}  // namespace riffler::pen

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace riffler {
+namespace riffler::pen {
 namespace {
 
 /// Type and tag of a short item (6.2.2.2), as the upper six bits of its first byte.
@@ -134,4 +134,4 @@ HidReports parse_descriptor(std::span<const std::uint8_t> bytes) {
   return Parser().parse(bytes);
 }
 
-}  // namespace riffler
+}  // namespace riffler::pen

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace riffler {
+namespace riffler::pen {
 
 struct HidReports {
   bool numbered = false;  // every report begins with its number
@@ -23,4 +23,4 @@ struct HidReports {
 /// within an item, or has reports that no device can send.
 HidReports parse_descriptor(std::span<const std::uint8_t> bytes);
 
-}  // namespace riffler
+}  // namespace riffler::pen

@@ -14,7 +14,7 @@
 #include "pen/hid/hidapi_mutex.hpp"
 #include "riffler/pen/hid/hid_list.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 namespace {
 
 constexpr char kPlain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789 ._-";
@@ -198,4 +198,4 @@ const char* problem_text(OpenProblem problem) noexcept {
   return "error of the system";
 }
 
-}  // namespace riffler
+}  // namespace riffler::pen

@@ -12,7 +12,7 @@
 
 struct hid_device_;
 
-namespace riffler {
+namespace riffler::pen {
 
 /// Whether others may drive the device at the same time.
 enum class Sharing : unsigned char { Exclusive, Shared };
@@ -49,4 +49,4 @@ std::string udev_rule(const HidInfo& info);
 /// device.
 OpenProblem why_not_open(const HidInfo& info, std::string& text);
 
-}  // namespace riffler
+}  // namespace riffler::pen

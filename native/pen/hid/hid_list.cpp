@@ -11,7 +11,7 @@
 
 #include "pen/hid/hidapi_mutex.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 namespace {
 
 void append_utf8(std::string& out, std::uint32_t c) {
@@ -112,4 +112,4 @@ const HidInfo* find_again(const std::vector<HidInfo>& found, const HidAddress& a
   return first;
 }
 
-}  // namespace riffler
+}  // namespace riffler::pen

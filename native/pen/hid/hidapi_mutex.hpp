@@ -6,7 +6,7 @@
 #include <mutex>
 #include <new>
 
-namespace riffler {
+namespace riffler::pen {
 
 /// Held while one of hid_init, hid_enumerate and hid_open_path is called: they write hidapi's last error, one global
 /// variable, without a lock, and two threads that call them free it twice.
@@ -17,4 +17,4 @@ inline std::mutex& hidapi_mutex() {
   return mutex;
 }
 
-}  // namespace riffler
+}  // namespace riffler::pen

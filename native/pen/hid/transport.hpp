@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-namespace riffler {
+namespace riffler::pen {
 
 /// The longest report of a full-speed device is 64 bytes, 65 with a number; a serial line in between may deliver
 /// several at once.
@@ -34,4 +34,4 @@ class Clock {
   virtual void wait(double seconds) noexcept = 0;
 };
 
-}  // namespace riffler
+}  // namespace riffler::pen

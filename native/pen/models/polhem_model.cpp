@@ -9,7 +9,7 @@
 #include "geom/math.hpp"
 #include "pen/hid/hid_descriptor.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 namespace {
 
 // In both messages: seven numbers of 16 bits, little-endian. To the host: counters a … f, then a flag of the index.
@@ -207,7 +207,7 @@ std::array<std::int16_t, 3> PolhemModel::currents(const Vec3& force) const noexc
   return out;
 }
 
-std::size_t PolhemModel::push(const SafeWrench& safe, double, std::span<std::uint8_t> bytes) noexcept {
+std::size_t PolhemModel::push(const haptics::SafeWrench& safe, double, std::span<std::uint8_t> bytes) noexcept {
   const auto report = bytes.first(output_size_);
   std::fill(report.begin(), report.end(), std::uint8_t{0});
   const auto message = report.subspan(1);
@@ -232,4 +232,4 @@ std::size_t PolhemModel::release(double, std::span<std::uint8_t> bytes) noexcept
   return output_size_;
 }
 
-}  // namespace riffler
+}  // namespace riffler::pen

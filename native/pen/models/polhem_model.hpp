@@ -14,7 +14,7 @@
 #include "pen/hid_model.hpp"
 #include "riffler/pen/hid/hid_list.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 
 /// Three joints in series: A turns the arm about the upright axis, B the upper arm, C the fore arm, both from upright
 /// and each by its own motor on the base, so that C does not turn with B.
@@ -55,7 +55,7 @@ class PolhemModel final : public HidModel {
   Taken take(std::span<const std::uint8_t> bytes, double now) noexcept override;
   PenSample sample(double) noexcept override { return sample_; }
   /// Pushes with the force; there are no motors for torque.
-  std::size_t push(const SafeWrench& safe, double now, std::span<std::uint8_t> bytes) noexcept override;
+  std::size_t push(const haptics::SafeWrench& safe, double now, std::span<std::uint8_t> bytes) noexcept override;
   std::size_t release(double now, std::span<std::uint8_t> bytes) noexcept override;
 
  private:
@@ -76,4 +76,4 @@ class PolhemModel final : public HidModel {
   std::atomic<bool> home_asked_{false};
 };
 
-}  // namespace riffler
+}  // namespace riffler::pen

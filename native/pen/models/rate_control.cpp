@@ -6,7 +6,7 @@
 
 #include "geom/math.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 namespace {
 
 constexpr double kLongestStep = 0.1;
@@ -51,7 +51,7 @@ void RateControl::advance(double now) noexcept {
   time_ = now;
   pose_.tip += dt * velocity_;
   spin_ += dt * glm::dot(turning_, pose_.axis);
-  pose_.axis = glm::normalize(rotate_by(pose_.axis, dt * turning_));
+  pose_.axis = glm::normalize(geom::rotate_by(pose_.axis, dt * turning_));
 }
 
 void RateControl::rest() noexcept {
@@ -59,4 +59,4 @@ void RateControl::rest() noexcept {
   timed_ = false;
 }
 
-}  // namespace riffler
+}  // namespace riffler::pen

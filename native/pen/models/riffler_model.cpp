@@ -9,7 +9,7 @@
 #include "pen/arms/wrench_split.hpp"
 #include "riffler/pen/arms/motors.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 namespace {
 
 /// s by which the pen's clock may differ from ours after a gap, for the pen to have been on power all the time.
@@ -234,7 +234,7 @@ bool RifflerModel::may_enable() const noexcept {
   return on || (last_.state == RIFFLER_PEN_IDLE && (last_.flags & RIFFLER_PEN_FLAG_ARMED) != 0);
 }
 
-std::size_t RifflerModel::push(const SafeWrench& safe, double now, std::span<std::uint8_t> bytes) noexcept {
+std::size_t RifflerModel::push(const haptics::SafeWrench& safe, double now, std::span<std::uint8_t> bytes) noexcept {
   if (!safe.open() || !may_enable()) return send({}, now, bytes);
   riffler_pen_output report{};
   report.enable = 1;
@@ -259,4 +259,4 @@ std::size_t RifflerModel::send(riffler_pen_output report, double now, std::span<
   return RIFFLER_PEN_OUTPUT_SIZE;
 }
 
-}  // namespace riffler
+}  // namespace riffler::pen

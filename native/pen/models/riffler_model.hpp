@@ -10,7 +10,7 @@
 #include "riffler/pen/arms/compensation.hpp"
 #include "riffler/pen/arms/kinematics.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 
 class RifflerModel final : public HidModel {
  public:
@@ -20,7 +20,7 @@ class RifflerModel final : public HidModel {
 
   const DeviceCapability& capability() const noexcept override { return capability_; }
   double period() const noexcept override { return 1e-6 * limits_.period_us; }
-  PassivitySettings passivity() const override { return passivity_settings(geometry_, share_); }
+  haptics::PassivitySettings passivity() const override { return passivity_settings(geometry_, share_); }
   std::string about() const override;
   const PenGeometry* geometry() const noexcept override { return &geometry_; }
   void check(Transport& transport) override;
@@ -35,7 +35,7 @@ class RifflerModel final : public HidModel {
   /// tool that leaves the material does not go through the firmware's ramp at the next touch, and not in any state in
   /// which the pen would not take it. Weight and friction are made up for by the gate's gain, so neither without a
   /// check nor without the ramp. PenSample::applied is without them: they are no part of the wrench.
-  std::size_t push(const SafeWrench& safe, double now, std::span<std::uint8_t> bytes) noexcept override;
+  std::size_t push(const haptics::SafeWrench& safe, double now, std::span<std::uint8_t> bytes) noexcept override;
   std::size_t release(double now, std::span<std::uint8_t> bytes) noexcept override;
 
  private:
@@ -70,4 +70,4 @@ class RifflerModel final : public HidModel {
   std::atomic<bool> home_asked_{false};
 };
 
-}  // namespace riffler
+}  // namespace riffler::pen

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-namespace riffler {
+namespace riffler::pen {
 namespace {
 
 constexpr std::uint16_t kLogitech = 0x046D, k3Dconnexion = 0x256F;
@@ -56,7 +56,7 @@ DeviceCapability rate_capability(const char* name, const RateSettings& settings)
   DeviceCapability out;
   out.name = name;
   out.turns = TurnAxes::Device;
-  for (std::size_t k = 0; k < kCoordinates; ++k) {
+  for (std::size_t k = 0; k < haptics::kCoordinates; ++k) {
     CoordinateCapability& c = out.coordinates[k];
     c.sensing = Sensing::Rate;
     c.high = k < 3 ? settings.speed : settings.turn_rate;
@@ -161,4 +161,4 @@ PenSample SpaceMouseModel::sample(double now) noexcept {
   return sample_;
 }
 
-}  // namespace riffler
+}  // namespace riffler::pen

@@ -7,7 +7,7 @@
 #include "riffler/pen/hid/hid_list.hpp"
 #include "riffler/pen/models/rate_control.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 
 /// What the maker's number stands for; null if it is not a puck.
 const char* spacemouse_name(std::uint16_t vendor, std::uint16_t product) noexcept;
@@ -32,7 +32,7 @@ class SpaceMouseModel final : public HidModel {
   void begin(double now) noexcept override;
   Taken take(std::span<const std::uint8_t> bytes, double now) noexcept override;
   PenSample sample(double now) noexcept override;
-  std::size_t push(const SafeWrench&, double, std::span<std::uint8_t>) noexcept override { return 0; }
+  std::size_t push(const haptics::SafeWrench&, double, std::span<std::uint8_t>) noexcept override { return 0; }
   std::size_t release(double, std::span<std::uint8_t>) noexcept override { return 0; }
 
  private:
@@ -47,4 +47,4 @@ class SpaceMouseModel final : public HidModel {
   PenSample sample_{};
 };
 
-}  // namespace riffler
+}  // namespace riffler::pen

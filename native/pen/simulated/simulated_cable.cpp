@@ -5,19 +5,19 @@
 
 #include "riffler/haptics/settings.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 
 namespace {
 constexpr std::size_t kQueue = 64;  // as hidraw's
 }
 
 void CableSettings::validate() const {
-  require_between(static_cast<double>(latency_us), 0, 1e6, "latency_us");
-  require_between(static_cast<double>(jitter_us), 0, 1e6, "jitter_us");
-  require_between(lost, 0, 1, "lost");
-  require_between(doubled, 0, 1, "doubled");
-  require_between(merged, 0, 1, "merged");
-  require_between(lost_out, 0, 1, "lost_out");
+  base::require_between(static_cast<double>(latency_us), 0, 1e6, "latency_us");
+  base::require_between(static_cast<double>(jitter_us), 0, 1e6, "jitter_us");
+  base::require_between(lost, 0, 1, "lost");
+  base::require_between(doubled, 0, 1, "doubled");
+  base::require_between(merged, 0, 1, "merged");
+  base::require_between(lost_out, 0, 1, "lost_out");
 }
 
 SimulatedCable::SimulatedCable(const CableSettings& settings) : settings_(settings), random_(settings.seed) {
@@ -101,4 +101,4 @@ void SimulatedCable::clear() {
   waiting_.clear(), held_.clear(), arrivals_.clear(), written_.clear(), taken_.clear();
 }
 
-}  // namespace riffler
+}  // namespace riffler::pen

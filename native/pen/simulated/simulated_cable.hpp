@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-namespace riffler {
+namespace riffler::pen {
 
 /// Shares are of reports, 0 to 1, drawn one by one from a generator with the seed: the same every time.
 struct CableSettings {
@@ -71,4 +71,4 @@ class SimulatedCable {
   std::deque<Report> written_, taken_;  // by the host; of them, those that are at the pen
 };
 
-}  // namespace riffler
+}  // namespace riffler::pen

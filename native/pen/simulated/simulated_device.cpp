@@ -11,7 +11,7 @@
 #include "pen/simulated/simulated_transport.hpp"
 #include "riffler/base/check.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 
 /// What the hand was told, and what it does by itself.
 struct SimulatedDevice::Hand {
@@ -78,10 +78,10 @@ SimulatedDevice::SimulatedDevice(std::shared_ptr<Hand> hand, std::shared_ptr<Los
 void SimulatedDevice::aim(const HandWish& wish) {
   HandWish checked = wish;
   const double length = glm::length(wish.pose.axis);
-  if (!finite(wish.pose.tip)) throw std::invalid_argument("pose: the point must be finite");
+  if (!geom::finite(wish.pose.tip)) throw std::invalid_argument("pose: the point must be finite");
   if (!std::isfinite(length) || length == 0) throw std::invalid_argument("pose: the axis must be finite, not zero");
-  require(std::isfinite(wish.spin), "spin", "must be finite");
-  require_between(wish.grip, 0, 1, "grip");
+  base::require(std::isfinite(wish.spin), "spin", "must be finite");
+  base::require_between(wish.grip, 0, 1, "grip");
   checked.pose.axis /= length;
   hand_->told.set({checked, false});
 }
@@ -95,4 +95,4 @@ void SimulatedDevice::lose(std::size_t channel, std::int32_t counts) {
   losses_->told[channel].store(counts, std::memory_order_relaxed);
 }
 
-}  // namespace riffler
+}  // namespace riffler::pen

@@ -8,7 +8,7 @@
 #include "pen/simulated/stall_tolerant_clock.hpp"
 #include "riffler/pen/arms/compensation.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 
 inline constexpr const char* kSimulatedKind = "simulated";
 inline constexpr const char* kSimulatedWhat = "Riffler's pen without hardware, moved by a hand of its own";
@@ -45,4 +45,4 @@ class SimulatedDevice final : public HidPen {
   std::shared_ptr<StallTolerantClock> clock_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::pen

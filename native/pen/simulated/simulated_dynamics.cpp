@@ -6,7 +6,7 @@
 
 #include "pen/arms/wrench_split.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 
 namespace {
 
@@ -166,7 +166,7 @@ void PenDynamics::hold(const PenLoad& load) {
 /// Of inertia, and of half the damping for `time` with a load.
 PenDynamics::Mobility PenDynamics::mobility(const Reach& reach, const PenLoad* load, double time) const {
   const double share = load ? time / 2 : 0;
-  const Bounds damping = load ? load->damping : Bounds{0, 0};
+  const haptics::Bounds damping = load ? load->damping : haptics::Bounds{0, 0};
   const double mass = grip_mass_ + held_mass_ + share * damping.linear;
   const double turning = (grip_inertia_ + held_inertia_ + share * damping.angular) / (reach.length * reach.length);
   std::array<JointVector, kJoints> matrix;
@@ -212,8 +212,9 @@ Wrench PenDynamics::hand(const PenLoad& load) const {
   const Pose& is = posture_.pose;
   const Vec3 force = load.stiffness.linear * (load.aim.tip - is.tip);
   const Vec3 torque = load.stiffness.angular * turn_between(is.axis, load.aim.axis);
-  return load.wrench + Wrench{clamp_length(force, load.strength.linear) + load.damping.linear * load.drift.linear,
-                              clamp_length(torque, load.strength.angular) + load.damping.angular * load.drift.angular};
+  return load.wrench +
+         Wrench{geom::clamp_length(force, load.strength.linear) + load.damping.linear * load.drift.linear,
+                geom::clamp_length(torque, load.strength.angular) + load.damping.angular * load.drift.angular};
 }
 
 JointVector PenDynamics::pushed(const Reach& reach, const Wrench& wrench) const {
@@ -345,4 +346,4 @@ void PenDynamics::drift(double time) {
   for (std::size_t k = 0; k < kJoints; ++k) entry(rates_, k) = v[k];
 }
 
-}  // namespace riffler
+}  // namespace riffler::pen

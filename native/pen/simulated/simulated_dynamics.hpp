@@ -16,7 +16,7 @@
 #include "riffler/pen/arms/kinematics.hpp"
 #include "riffler/pen/arms/motors.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 
 /// The rotation vector that brings one unit vector to the other by the shortest way; none for opposite ones.
 Vec3 turn_between(const Vec3& from, const Vec3& to) noexcept;
@@ -29,9 +29,9 @@ struct PenLoad {
   bool brake = false;     ///< windings shorted
   Wrench wrench{};
   /// A spring that draws the grip to `aim`, and gives way beyond its strength: N/mm, N·mm/rad; N, N·mm.
-  Bounds stiffness{0, 0}, strength{0, 0};
+  haptics::Bounds stiffness{0, 0}, strength{0, 0};
   Pose aim{};
-  Bounds damping{0, 0};  ///< N·s/mm, N·mm·s/rad: against motion other than `drift`
+  haptics::Bounds damping{0, 0};  ///< N·s/mm, N·mm·s/rad: against motion other than `drift`
   Twist drift{};
   double mass = 0, inertia = 0;  ///< kg, kg·mm² square to the grip: of what holds it
   double borne = 0;              ///< share of the pen's weight that somebody bears, 0 to 1
@@ -88,4 +88,4 @@ class PenDynamics {
   PenEnergy account_{};
 };
 
-}  // namespace riffler
+}  // namespace riffler::pen

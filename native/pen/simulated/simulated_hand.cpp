@@ -8,7 +8,7 @@
 #include "geom/math.hpp"
 #include "riffler/base/check.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 
 namespace {
 
@@ -29,17 +29,17 @@ std::pair<Vec3, Vec3> square_to(const Vec3& axis) {
 }  // namespace
 
 void HandSettings::validate() const {
-  require_between(mass, 0, 100, "mass");
-  require_between(inertia, 0, 1e6, "inertia");
-  require_between(stiffness.linear, 0, 10, "stiffness.linear");
-  require_between(stiffness.angular, 0, 1e5, "stiffness.angular");
-  require_between(damping.linear, 0, 1, "damping.linear");
-  require_between(damping.angular, 0, 1e4, "damping.angular");
+  base::require_between(mass, 0, 100, "mass");
+  base::require_between(inertia, 0, 1e6, "inertia");
+  base::require_between(stiffness.linear, 0, 10, "stiffness.linear");
+  base::require_between(stiffness.angular, 0, 1e5, "stiffness.angular");
+  base::require_between(damping.linear, 0, 1, "damping.linear");
+  base::require_between(damping.angular, 0, 1e4, "damping.angular");
   require_not_negative(strength, "strength");
   require_positive(haste, "haste");
-  require_not_negative(tremor, "tremor");
-  require_not_negative(tremor_frequency, "tremor_frequency");
-  require_between(carries, 0, 1, "carries");
+  base::require_not_negative(tremor, "tremor");
+  base::require_not_negative(tremor_frequency, "tremor_frequency");
+  base::require_between(carries, 0, 1, "carries");
 }
 
 HandPath hand_on_a_curve(const Pose& home) {
@@ -82,8 +82,8 @@ Vec3 SimulatedHand::tremor(double seconds) const {
 
 /// The aim goes towards the wish at the hand's haste; its twist on the way.
 Twist SimulatedHand::aim(double dt) {
-  const Vec3 way = clamp_length(wish_.pose.tip - aim_.tip, settings_.haste.linear * dt);
-  const Vec3 turn = clamp_length(turn_between(aim_.axis, wish_.pose.axis), settings_.haste.angular * dt);
+  const Vec3 way = geom::clamp_length(wish_.pose.tip - aim_.tip, settings_.haste.linear * dt);
+  const Vec3 turn = geom::clamp_length(turn_between(aim_.axis, wish_.pose.axis), settings_.haste.angular * dt);
   aim_.tip += way;
   aim_.axis = turned(aim_.axis, turn);
   return dt > 0 ? Twist{way / dt, turn / dt} : Twist{};
@@ -106,4 +106,4 @@ void SimulatedHand::hold(const PenDynamics& pen, double seconds, double dt, PenL
   load.borne = grip * settings_.carries;
 }
 
-}  // namespace riffler
+}  // namespace riffler::pen

@@ -8,19 +8,19 @@
 
 #include "pen/simulated/simulated_dynamics.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 
 /// At full grip; a looser grip has that share of all of it. Assumed, of the size that measurements at a pen's grip
 /// have.
 struct HandSettings {
-  double mass = 0.03, inertia = 20;  ///< kg, kg·mm²: of fingers that move with the grip
-  Bounds stiffness{0.5, 1000};       ///< N/mm, N·mm/rad
-  Bounds damping{5e-3, 10};          ///< N·s/mm, N·mm·s/rad
-  Bounds strength{10, 400};          ///< N, N·mm: of the spring, which gives way beyond
-  Bounds haste{300, 5};              ///< mm/s, rad/s: at which the hand's aim follows what is wanted, at most
-  double tremor = 0.02;              ///< mm, amplitude along each axis
-  double tremor_frequency = 9;       ///< Hz
-  double carries = 1;                ///< share of the pen's weight that the hand bears without sagging
+  double mass = 0.03, inertia = 20;      ///< kg, kg·mm²: of fingers that move with the grip
+  haptics::Bounds stiffness{0.5, 1000};  ///< N/mm, N·mm/rad
+  haptics::Bounds damping{5e-3, 10};     ///< N·s/mm, N·mm·s/rad
+  haptics::Bounds strength{10, 400};     ///< N, N·mm: of the spring, which gives way beyond
+  haptics::Bounds haste{300, 5};         ///< mm/s, rad/s: at which the hand's aim follows what is wanted, at most
+  double tremor = 0.02;                  ///< mm, amplitude along each axis
+  double tremor_frequency = 9;           ///< Hz
+  double carries = 1;                    ///< share of the pen's weight that the hand bears without sagging
 
   /// std::invalid_argument naming the field.
   void validate() const;
@@ -64,4 +64,4 @@ class SimulatedHand {
   Pose aim_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::pen

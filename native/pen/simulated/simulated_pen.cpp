@@ -7,7 +7,7 @@
 
 #include "pen/arms/pens.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 
 namespace {
 
@@ -140,4 +140,4 @@ void SimulatedPen::advance(std::int64_t until_us) {
   }
 }
 
-}  // namespace riffler
+}  // namespace riffler::pen

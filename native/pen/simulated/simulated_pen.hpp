@@ -10,7 +10,7 @@
 #include "pen/simulated/simulated_cable.hpp"
 #include "pen/simulated/simulated_hand.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 
 struct SimulatedPenSettings {
   PenGeometry geometry;         ///< the pen as it is; the firmware only knows its name
@@ -83,4 +83,4 @@ class SimulatedPen {
   bool plugged_ = true;
 };
 
-}  // namespace riffler
+}  // namespace riffler::pen

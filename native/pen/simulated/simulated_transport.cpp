@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-namespace riffler {
+namespace riffler::pen {
 
 namespace {
 
@@ -55,4 +55,4 @@ std::span<const std::uint8_t> SimulatedTransport::descriptor() const noexcept {
   return {riffler_pen_descriptor, riffler_pen_descriptor_size};
 }
 
-}  // namespace riffler
+}  // namespace riffler::pen

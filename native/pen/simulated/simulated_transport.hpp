@@ -6,7 +6,7 @@
 #include "pen/hid/transport.hpp"
 #include "pen/simulated/simulated_pen.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 
 /// Virtual time, in whole µs: as fast as the machine computes, and the same from run to run.
 class SimulatedClock final : public Clock {
@@ -39,4 +39,4 @@ class SimulatedTransport final : public Transport {
   double start_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::pen

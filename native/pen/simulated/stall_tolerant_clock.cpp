@@ -7,7 +7,7 @@
 
 #include "pen/driver.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 
 StallTolerantClock::StallTolerantClock(double most)
     : StallTolerantClock(most, {steady_seconds, [](double seconds) {
@@ -30,4 +30,4 @@ double StallTolerantClock::pass(double most) noexcept {
   return last();
 }
 
-}  // namespace riffler
+}  // namespace riffler::pen

@@ -6,7 +6,7 @@
 
 #include "pen/hid/transport.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 
 /// The system's seconds, but no more than `most` from one look to the next beside what was waited for. Where the thread
 /// that looks is kept from running, the rest of that time has not been: everything goes on more slowly, nothing is
@@ -37,4 +37,4 @@ class StallTolerantClock final : public Clock {
   std::atomic<double> time_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::pen

@@ -14,7 +14,9 @@
 #include "sweep/lanes/separating_plane_lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace riffler::HWY_NAMESPACE {
+namespace riffler::sweep::HWY_NAMESPACE {
+
+using namespace base::HWY_NAMESPACE;
 
 /// A supporting plane seen along the rays: height over it of the ray's point s, h0 + h1 s, and how that changes, its
 /// rate g0 + g1 s and half of its acceleration k0 + k1 s.
@@ -57,7 +59,7 @@ class Certificate {
     // window, and what the tip moves.
     const auto farthest = [](double low, double high, double from) { return std::max(high - from, from - low); };
     const double x = farthest(w.u[w.first_row], w.u[w.last_row], b_.start.tip[0]);
-    const double y = farthest(w.v[0], w.v[kTileSide - 1], b_.start.tip[1]);
+    const double y = farthest(w.v[0], w.v[dexel::kTileSide - 1], b_.start.tip[1]);
     const double z = farthest(w.low - b_.origin, w.high - b_.origin, b_.start.tip[2]);
     const double away = std::sqrt(x * x + y * y + z * z) + b_.speed * (b_.t1 - b_.t0);
     bend_ = (b_.pull * away + b_.drift) / 6;
@@ -160,7 +162,7 @@ class Certificate {
   double bend_;
 };
 
-}  // namespace riffler::HWY_NAMESPACE
+}  // namespace riffler::sweep::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

@@ -11,7 +11,9 @@
 #include "sweep/lanes/lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace riffler::HWY_NAMESPACE {
+namespace riffler::sweep::HWY_NAMESPACE {
+
+using namespace base::HWY_NAMESPACE;
 
 /// A group of neighbouring rays of one row.
 struct Group {
@@ -29,11 +31,12 @@ struct SectionRays {
 
 /// Looks up the group's material. The last rays of a tile may be fewer than lanes.
 HWY_INLINE void load_material(const RayWindow& w, Group& g) {
-  static_assert(sizeof(Span) == 2 * sizeof(double));
-  const Span* rays = w.rays + g.ray;
-  Span last[kLanes];
-  if (g.ray + lanes() > kTileRays) {
-    for (int k = 0; k < lanes(); ++k) last[k] = g.ray + k < kTileRays ? rays[k] : Span{kInfinity, -kInfinity};
+  static_assert(sizeof(dexel::Span) == 2 * sizeof(double));
+  const dexel::Span* rays = w.rays + g.ray;
+  dexel::Span last[base::kLanes];
+  if (g.ray + lanes() > dexel::kTileRays) {
+    for (int k = 0; k < lanes(); ++k)
+      last[k] = g.ray + k < dexel::kTileRays ? rays[k] : dexel::Span{kInfinity, -kInfinity};
     rays = last;
   }
   const double* ends = &rays->near;
@@ -48,16 +51,16 @@ HWY_INLINE void load_material(const RayWindow& w, Group& g) {
 
 HWY_INLINE void store_material(RayWindow& w, int ray, V near, V far) {
   if (!w.opened) w.open(w.self);
-  Span* rays = w.opened + ray;
-  if (ray + lanes() <= kTileRays) return hn::StoreInterleaved2(near, far, kD, &rays->near);
-  Span last[kLanes];
+  dexel::Span* rays = w.opened + ray;
+  if (ray + lanes() <= dexel::kTileRays) return hn::StoreInterleaved2(near, far, kD, &rays->near);
+  dexel::Span last[base::kLanes];
   hn::StoreInterleaved2(near, far, kD, &last->near);
-  for (int k = 0; ray + k < kTileRays; ++k) rays[k] = last[k];
+  for (int k = 0; ray + k < dexel::kTileRays; ++k) rays[k] = last[k];
 }
 
 HWY_INLINE Group group_at(const RayWindow& w, int row, int column) {
-  Group g{row * kTileSide + column,
-          (column - w.first[row]) % kLanes,
+  Group g{row * dexel::kTileSide + column,
+          (column - w.first[row]) % base::kLanes,
           hn::LoadU(kD, w.v + column),
           zero(),
           zero(),
@@ -123,7 +126,7 @@ HWY_INLINE int find_groups(RayWindow& w, const Under& under, Candidate* out) {
 /// Calls body(u, group) for all groups that the step may touch.
 template <class Body>
 HWY_INLINE void for_groups(RayWindow& w, const Body& body) {
-  Candidate found[kTileRays];
+  Candidate found[dexel::kTileRays];
   int n = 0;
   switch (w.look.kind) {
     case QuickReject::Kind::None:
@@ -140,8 +143,8 @@ HWY_INLINE void for_groups(RayWindow& w, const Body& body) {
       break;
   }
   for (int k = 0; k < n; ++k) {
-    const int row = found[k].ray / kTileSide;
-    Group g = group_at(w, row, found[k].ray % kTileSide);
+    const int row = found[k].ray / dexel::kTileSide;
+    Group g = group_at(w, row, found[k].ray % dexel::kTileSide);
     g.active = from_bits(found[k].active);
     body(w.u[row], g);
   }
@@ -191,7 +194,7 @@ HWY_INLINE void subtract(RayWindow& w, double u, const Group& g, M mask, RayInte
   w.changed += hn::CountTrue(kD, touched);
   const V thinnest = set(w.thinnest);
   const M below = hn::Gt(hn::Sub(cut.near, g.near), thinnest), above = hn::Gt(hn::Sub(g.far, cut.far), thinnest);
-  const int a = g.ray / kTileSide, b = g.ray % kTileSide;
+  const int a = g.ray / dexel::kTileSide, b = g.ray % dexel::kTileSide;
   const M many = from_bits((w.many[a] >> b) & ((1U << lanes()) - 1));
   const M simple = w.in_place ? without(without(touched, many), both(below, above)) : no_lane();
   const V low = pick(below, cut.near, g.near), high = pick(above, cut.far, g.far);
@@ -222,7 +225,7 @@ HWY_INLINE void subtract(RayWindow& w, double u, const Group& g, M mask, RayInte
   }
   const unsigned rest = bits(without(touched, simple));
   if (!rest) return;
-  double near[kLanes], far[kLanes], tn[kLanes], tf[kLanes];
+  double near[base::kLanes], far[base::kLanes], tn[base::kLanes], tf[base::kLanes];
   hn::StoreU(cut.near, kD, near), hn::StoreU(cut.far, kD, far), hn::StoreU(t_near, kD, tn), hn::StoreU(t_far, kD, tf);
   for (unsigned m = rest; m; m &= m - 1) {
     const int k = std::countr_zero(m);
@@ -230,7 +233,7 @@ HWY_INLINE void subtract(RayWindow& w, double u, const Group& g, M mask, RayInte
   }
 }
 
-}  // namespace riffler::HWY_NAMESPACE
+}  // namespace riffler::sweep::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

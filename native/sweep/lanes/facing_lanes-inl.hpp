@@ -10,7 +10,9 @@
 #include "sweep/lanes/pose_lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace riffler::HWY_NAMESPACE {
+namespace riffler::sweep::HWY_NAMESPACE {
+
+using namespace base::HWY_NAMESPACE;
 
 /// A unit normal, out of the group, and the point's height over the plane with that normal that touches the group.
 struct Facing {
@@ -59,7 +61,7 @@ HWY_INLINE Facing facing(const TurningBody& body, const Pose& pose, V at) {
   return {less(scaled(r, hn::Mul(out, per)), hn::Neg(hn::Mul(hn::Mul(up, known), per)), o), height};
 }
 
-}  // namespace riffler::HWY_NAMESPACE
+}  // namespace riffler::sweep::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

@@ -9,7 +9,9 @@
 #include "sweep/lanes/pose_lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace riffler::HWY_NAMESPACE {
+namespace riffler::sweep::HWY_NAMESPACE {
+
+using namespace base::HWY_NAMESPACE;
 
 class HitLanes : private AxisView {
  public:
@@ -140,7 +142,7 @@ class HitLanes : private AxisView {
   RayIntervals out_;
 };
 
-}  // namespace riffler::HWY_NAMESPACE
+}  // namespace riffler::sweep::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

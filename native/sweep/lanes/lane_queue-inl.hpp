@@ -14,7 +14,9 @@
 #include "sweep/lanes/lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace riffler::HWY_NAMESPACE {
+namespace riffler::sweep::HWY_NAMESPACE {
+
+using namespace base::HWY_NAMESPACE;
 
 /// Items, each of one lane of an Item; its fields are what the function `each(item, f)` calls f with.
 template <class Item, int kMax>
@@ -26,7 +28,7 @@ class LaneQueue {
   /// Adds the lanes of `mask`.
   void add(M mask, Item& item) {
     // Not by Compress: what it becomes takes some processors a hundred cycles.
-    std::int64_t places[kLanes] = {};
+    std::int64_t places[base::kLanes] = {};
     int added = 0;
     for (unsigned m = bits(mask); m; m &= m - 1) places[added++] = std::countr_zero(m);
     const auto order = hn::SetTableIndices(kD, places);
@@ -40,7 +42,7 @@ class LaneQueue {
     unsigned wanted = bits(idle);
     while (std::popcount(wanted) > count_) wanted &= wanted - 1;
     count_ -= std::popcount(wanted);
-    std::int64_t rank[kLanes];
+    std::int64_t rank[base::kLanes];
     for (int k = 0; k < lanes(); ++k) rank[k] = std::popcount(wanted & ((1U << k) - 1));
     const auto order = hn::SetTableIndices(kD, rank);
     const M filled = from_bits(wanted);
@@ -50,7 +52,7 @@ class LaneQueue {
   }
 
  private:
-  static constexpr int kRoom = kMax + kLanes;
+  static constexpr int kRoom = kMax + base::kLanes;
   static constexpr std::size_t kFields = sizeof(Item) / sizeof(V);
   double at_[kFields][kRoom];
   int count_ = 0;
@@ -87,7 +89,7 @@ class LaneStack {
   int top_ = 0;
 };
 
-}  // namespace riffler::HWY_NAMESPACE
+}  // namespace riffler::sweep::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

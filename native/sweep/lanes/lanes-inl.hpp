@@ -7,10 +7,13 @@
 #endif
 
 #include "base/lanes-inl.hpp"
+#include "geom/math.hpp"
 #include "sweep/ray_window.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace riffler::HWY_NAMESPACE {
+namespace riffler::sweep::HWY_NAMESPACE {
+
+using namespace base::HWY_NAMESPACE;
 
 /// A stretch of each ray; empty where near > far.
 struct RayIntervals {
@@ -61,7 +64,7 @@ HWY_INLINE RayIntervals slab(V at, double slope, double height) {
   return slab_by(at, std::abs(slope) < 1e-200 ? 0 : 1 / slope, height);
 }
 
-}  // namespace riffler::HWY_NAMESPACE
+}  // namespace riffler::sweep::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

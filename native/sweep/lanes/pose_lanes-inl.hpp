@@ -10,7 +10,9 @@
 #include "sweep/turning_part.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace riffler::HWY_NAMESPACE {
+namespace riffler::sweep::HWY_NAMESPACE {
+
+using namespace base::HWY_NAMESPACE;
 
 /// The tool's axis, and the way from its tip to the rays' points at s = 0.
 struct Pose {
@@ -74,7 +76,7 @@ class AxisView {
   V z_, a_, b1_, c_, per_oz_;
 };
 
-}  // namespace riffler::HWY_NAMESPACE
+}  // namespace riffler::sweep::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

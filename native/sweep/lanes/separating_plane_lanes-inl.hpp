@@ -9,7 +9,9 @@
 #include "sweep/lanes/pose_lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace riffler::HWY_NAMESPACE {
+namespace riffler::sweep::HWY_NAMESPACE {
+
+using namespace base::HWY_NAMESPACE;
 
 class SeparatingPlaneLanes : private AxisView {
  public:
@@ -218,7 +220,7 @@ class SeparatingPlaneLanes : private AxisView {
   }
 };
 
-}  // namespace riffler::HWY_NAMESPACE
+}  // namespace riffler::sweep::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

@@ -11,7 +11,9 @@
 #include "sweep/straight_part.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace riffler::HWY_NAMESPACE {
+namespace riffler::sweep::HWY_NAMESPACE {
+
+using namespace base::HWY_NAMESPACE;
 
 /// One group of rays and the section of the body with each of them. kWays: whether to keep account of the way at which
 /// the ends are.
@@ -274,7 +276,7 @@ inline void cut_straight_lanes(const StraightBody& body, RayWindow& w) {
     cut_straight_with<true>(body, w);
 }
 
-}  // namespace riffler::HWY_NAMESPACE
+}  // namespace riffler::sweep::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

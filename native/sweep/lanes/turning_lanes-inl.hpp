@@ -20,7 +20,9 @@
 #include "sweep/lanes/lane_queue-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace riffler::HWY_NAMESPACE {
+namespace riffler::sweep::HWY_NAMESPACE {
+
+using namespace base::HWY_NAMESPACE;
 
 /// A ray in each lane.
 struct Ray {
@@ -233,7 +235,7 @@ class TurningLanes {
   void finish(const Ray& ray, const Found& found, M mask) {
     each_cut(ray, found, mask, [&](int place, const RayCut& cut) {
       near_[place] = cut.near, far_[place] = cut.far, t_near_[place] = cut.near_t, t_far_[place] = cut.far_t;
-      taken_[place / kTileSide] |= 1U << (place % kTileSide);
+      taken_[place / dexel::kTileSide] |= 1U << (place % dexel::kTileSide);
     });
   }
 
@@ -249,7 +251,7 @@ class TurningLanes {
   void each_cut(const Ray& ray, const Found& found, M mask, const F& f) const {
     unsigned m = bits(both(mask, hn::Lt(found.at.near, found.at.far)));
     if (!m) return;
-    double place[kLanes], near[kLanes], far[kLanes], t_near[kLanes], t_far[kLanes];
+    double place[base::kLanes], near[base::kLanes], far[base::kLanes], t_near[base::kLanes], t_far[base::kLanes];
     hn::StoreU(ray.place, kD, place);
     hn::StoreU(hn::Add(found.at.near, set(b_.origin)), kD, near), hn::StoreU(found.t_near, kD, t_near);
     hn::StoreU(hn::Add(found.at.far, set(b_.origin)), kD, far), hn::StoreU(found.t_far, kD, t_far);
@@ -273,9 +275,9 @@ class TurningLanes {
       for (int b = w_.first[a]; b < w_.end[a]; b += lanes()) {
         const unsigned taken = (taken_[a] >> b) & ((1U << lanes()) - 1);
         if (!taken) continue;
-        const int ray = a * kTileSide + b;
+        const int ray = a * dexel::kTileSide + b;
         const M mask = from_bits(taken);
-        Group g{ray, (b - w_.first[a]) % kLanes, hn::LoadU(kD, w_.v + b), zero(), zero(), mask};
+        Group g{ray, (b - w_.first[a]) % base::kLanes, hn::LoadU(kD, w_.v + b), zero(), zero(), mask};
         load_material(w_, g);
         // The other lanes' places were never written, and no number times zero need be zero.
         const auto load = [&](const double* from) { return hn::IfThenElseZero(mask, hn::LoadU(kD, from + ray)); };
@@ -288,18 +290,19 @@ class TurningLanes {
   const TurningBody& b_;
   RayWindow& w_;
   Certificate certificate_;
-  LaneQueue<Ray, 2 * kLanes> reached_;
-  LaneQueue<Open, 16 * kLanes> open_;
+  LaneQueue<Ray, 2 * base::kLanes> reached_;
+  LaneQueue<Open, 16 * base::kLanes> open_;
   LaneStack<Sample, kMaxPending> pending_;
   // Of the tile's rays: which lose something, and what.
-  std::uint32_t taken_[kTileSide] = {};
-  double near_[kTileRays + kLanes], far_[kTileRays + kLanes], t_near_[kTileRays + kLanes], t_far_[kTileRays + kLanes];
+  std::uint32_t taken_[dexel::kTileSide] = {};
+  double near_[dexel::kTileRays + base::kLanes], far_[dexel::kTileRays + base::kLanes],
+      t_near_[dexel::kTileRays + base::kLanes], t_far_[dexel::kTileRays + base::kLanes];
   struct Cut {
     int ray;
     std::size_t number;
     RayCut cut;
   };
-  BlockVector<Cut> earlier_;  // of rays that are met more than once
+  base::BlockVector<Cut> earlier_;  // of rays that are met more than once
 };
 
 inline void cut_turning_lanes(const TurningBody& body, RayWindow& window) {
@@ -307,7 +310,7 @@ inline void cut_turning_lanes(const TurningBody& body, RayWindow& window) {
   lanes.cut();
 }
 
-}  // namespace riffler::HWY_NAMESPACE
+}  // namespace riffler::sweep::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

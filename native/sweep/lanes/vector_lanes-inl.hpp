@@ -9,7 +9,9 @@
 #include "sweep/lanes/lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace riffler::HWY_NAMESPACE {
+namespace riffler::sweep::HWY_NAMESPACE {
+
+using namespace base::HWY_NAMESPACE;
 
 struct V3 {
   V x, y, z;
@@ -45,7 +47,7 @@ HWY_INLINE V3 unit(const V3& a) {
   return choose(good, scaled(a, scale), {set(1), zero(), zero()});
 }
 
-}  // namespace riffler::HWY_NAMESPACE
+}  // namespace riffler::sweep::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #endif

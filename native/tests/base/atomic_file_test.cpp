@@ -17,7 +17,7 @@
 #include "riffler/base/error.hpp"
 #include "support/file_limit.hpp"
 
-namespace riffler::atomic_file_test {
+namespace riffler::base::atomic_file_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -174,4 +174,4 @@ TEST_F(AtomicFile, NamesAsLongAsTheSystemAllowsAreWritten) {
 }
 
 }  // namespace
-}  // namespace riffler::atomic_file_test
+}  // namespace riffler::base::atomic_file_test

@@ -10,7 +10,7 @@
 
 #include "riffler/base/parallel.hpp"
 
-namespace riffler::background_test {
+namespace riffler::base::background_test {
 namespace {
 
 using std::chrono::milliseconds;
@@ -131,4 +131,4 @@ TEST(Background, AThousandStartedAndDroppedOrCancelledAtAnyTime) {
 }
 
 }  // namespace
-}  // namespace riffler::background_test
+}  // namespace riffler::base::background_test

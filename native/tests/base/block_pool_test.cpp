@@ -9,7 +9,7 @@
 
 #include "stress/random.hpp"
 
-namespace riffler::block_pool_test {
+namespace riffler::base::block_pool_test {
 namespace {
 
 TEST(BlockPool, GivesFreedBlocksAgainAndCountsWhatTheSystemGave) {
@@ -92,4 +92,4 @@ TEST(BlockPool, KeepsNoMoreReadyThanItsShare) {
 }
 
 }  // namespace
-}  // namespace riffler::block_pool_test
+}  // namespace riffler::base::block_pool_test

@@ -8,7 +8,7 @@
 
 #include "support/error_of.hpp"
 
-namespace riffler::check_test {
+namespace riffler::base::check_test {
 namespace {
 
 TEST(Numbers, AreRefusedByNameWithTheirRange) {
@@ -27,4 +27,4 @@ TEST(Numbers, AreRefusedByNameWithTheirRange) {
 }
 
 }  // namespace
-}  // namespace riffler::check_test
+}  // namespace riffler::base::check_test

@@ -7,7 +7,7 @@
 #include <thread>
 #include <vector>
 
-namespace riffler::parallel_test {
+namespace riffler::base::parallel_test {
 namespace {
 
 TEST(Parallel, ACallWithinACallStaysOnItsThread) {
@@ -80,4 +80,4 @@ TEST(Parallel, ALongBodyHearsThatItsCallIsNotWantedAnyMore) {
 }
 
 }  // namespace
-}  // namespace riffler::parallel_test
+}  // namespace riffler::base::parallel_test

@@ -9,7 +9,7 @@
 #include "mesh/shapes.hpp"
 #include "stress/random.hpp"
 
-namespace riffler::mesh_distance_test {
+namespace riffler::bench::mesh_distance_test {
 namespace {
 
 double by_every_triangle(const Vec3& p, const Mesh& mesh) {
@@ -22,7 +22,7 @@ double by_every_triangle(const Vec3& p, const Mesh& mesh) {
 TEST(MeshDistance, IsThatOfTheNearestTriangle) {
   stress::Random random(5);
   for (const double thin : {1.0, 1e-3, 40.0}) {  // large flat triangles beside short ones, and slivers
-    Mesh mesh = sphere_mesh(1, 3);
+    Mesh mesh = mesh::sphere_mesh(1, 3);
     for (Vec3& v : mesh.vertices) v.z *= thin;
     const int base = static_cast<int>(mesh.vertices.size());
     mesh.vertices.insert(mesh.vertices.end(), {{-30, -30, 3}, {30, -31, 4}, {0, 40, 5}});
@@ -51,4 +51,4 @@ TEST(MeshDistance, OfATriangleIsThatOfItsPlaneItsSidesAndItsCorners) {
 }
 
 }  // namespace
-}  // namespace riffler::mesh_distance_test
+}  // namespace riffler::bench::mesh_distance_test

@@ -9,7 +9,7 @@
 #include "riffler/sweep/carve.hpp"
 #include "riffler/tool/cutters.hpp"
 
-namespace riffler::sweep_error_test {
+namespace riffler::bench::sweep_error_test {
 namespace {
 
 const std::vector<Pose> kTurning{{{8, 10, 6}, glm::normalize(Vec3(-0.3, 0.1, 1))},
@@ -18,9 +18,9 @@ const std::vector<Pose> kTurning{{{8, 10, 6}, glm::normalize(Vec3(-0.3, 0.1, 1))
 
 Volume carved(const Tool& tool, double tolerance) {
   Volume volume = Volume::block({{{0, 0, 0}, {28, 20, 14}}, 0.5, "z"});
-  CarveOptions options;
+  sweep::CarveOptions options;
   options.tolerance = tolerance;
-  carve(volume, tool, kTurning, options);
+  sweep::carve(volume, tool, kTurning, options);
   return volume;
 }
 
@@ -49,7 +49,7 @@ TEST(SweepErrors, SeeACutterThatIsTooSmall) {
 TEST(SweepErrors, SeeAMoveThatIsMissing) {
   const Tool flat = cutters::flat(6, 30);
   Volume volume = Volume::block({{{0, 0, 0}, {28, 20, 14}}, 0.5, "z"});
-  carve(volume, flat, std::span(kTurning).first(2));
+  sweep::carve(volume, flat, std::span(kTurning).first(2));
   EXPECT_GT(bench::sweep_errors(volume, flat, kTurning, 0.01, 200, 1).wrong, 10u);
 }
 
@@ -62,4 +62,4 @@ TEST(CapsuleLoop, RemovesWhatABallEndMillDoes) {
 }
 
 }  // namespace
-}  // namespace riffler::sweep_error_test
+}  // namespace riffler::bench::sweep_error_test

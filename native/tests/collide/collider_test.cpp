@@ -11,7 +11,7 @@
 #include "support/effort.hpp"
 #include "sweep/kernels.hpp"
 
-namespace riffler::collider_test {
+namespace riffler::collide::collider_test {
 namespace {
 
 constexpr auto box = test::box_mesh;
@@ -39,7 +39,7 @@ Pose tilted(const Vec3& tip, Random& random, double most) {
   return {tip, {std::sin(tilt) * std::cos(turn), std::sin(tilt) * std::sin(turn), std::cos(tilt)}};
 }
 
-double distance_at(const Outline& outline, const Pose& pose, const Vec3& p) {
+double distance_at(const tool::Outline& outline, const Pose& pose, const Vec3& p) {
   const Vec3 d = p - pose.tip;
   const double z = glm::dot(d, pose.axis);
   return outline.nearest(glm::length(d - z * pose.axis), z).distance;
@@ -67,7 +67,7 @@ TEST(Collider, ClearanceOfATiltedToolOverAPlaneIsThatOfItsLowestPoint) {
       const Pose pose = tilted({0, 0, 0}, random, 1.5);
       const double rise = pose.axis.z, side = std::sqrt(1 - rise * rise);
       double lowest = 0;
-      for (const OutlineEdge& e : assembly.outline().edges()) {
+      for (const tool::OutlineEdge& e : assembly.outline().edges()) {
         lowest = std::min({lowest, e.from.y * rise - e.from.x * side, e.to.y * rise - e.to.x * side});
         if (!e.centre || e.bulge < 0) continue;
         const Vec2 foot = *e.centre + e.bulge * Vec2(side, -rise);
@@ -180,7 +180,7 @@ TEST(Collider, StiffnessIsTheDerivativeOfForceAndTorque) {
 }
 
 /// ∫ depth n dA by very many points of a fine grid over each triangle.
-Vec3 dense_force(const Mesh& mesh, const Outline& outline, const Pose& pose, int n) {
+Vec3 dense_force(const Mesh& mesh, const tool::Outline& outline, const Pose& pose, int n) {
   Vec3 sum(0);
   for (const Vec3i& t : mesh.triangles) {
     const Vec3 a = mesh.vertices[t.x], b = mesh.vertices[t.y], c = mesh.vertices[t.z];
@@ -354,7 +354,7 @@ TEST(Collider, DegenerateTrianglesAndCoincidentWallsGiveFiniteResults) {
     for (const double x : {0.0, 1.0, 5.0})
       for (const double z : {-1.0, 0.0, 1.0}) {
         const Contact c = collider.query(assembly, {{x, x, z}, {0, 0, 1}});
-        EXPECT_TRUE(finite(c.force) && finite(c.torque) && std::isfinite(c.depth));
+        EXPECT_TRUE(geom::finite(c.force) && geom::finite(c.torque) && std::isfinite(c.depth));
       }
   }
 }
@@ -398,9 +398,9 @@ TEST(Collider, InstructionSetsGiveTheSameBits) {
   const Collider collider(wavy(80, 40));
   const Assembly assembly(held(cutters::fillet(8, 1, 20)));
   std::vector<Contact> first;
-  for (const std::string& name : instruction_sets()) {
+  for (const std::string& name : sweep::instruction_sets()) {
     SCOPED_TRACE(name);
-    use_instruction_set(name);
+    sweep::use_instruction_set(name);
     Random random(11);
     std::vector<Contact> found;
     for (int n = 0; n < 100; ++n)
@@ -413,7 +413,7 @@ TEST(Collider, InstructionSetsGiveTheSameBits) {
       ASSERT_EQ(found[n].points, first[n].points);
     }
   }
-  use_instruction_set("");
+  sweep::use_instruction_set("");
 }
 
 TEST(Collider, ThreadsGetTheSameAnswers) {
@@ -455,4 +455,4 @@ TEST(Collider, RefusesWhatMakesNoSense) {
 }
 
 }  // namespace
-}  // namespace riffler::collider_test
+}  // namespace riffler::collide::collider_test

@@ -10,7 +10,7 @@
 #include "support/effort.hpp"
 #include "sweep/kernels.hpp"
 
-namespace riffler::fixture_test {
+namespace riffler::collide::fixture_test {
 namespace {
 
 using stress::Random;
@@ -171,16 +171,16 @@ TEST(Fixture, IsTheSameForAllInstructionSetsAndFiniteForNeedlesFarAway) {
   const Collider collider = beside({kBlock.lower + far, kBlock.upper + far}, 0.25, 0.3, "xyz");
   const Assembly needle(cutters::taper(0.01, 0.2, 4, 40)), held_ball(held(cutters::ball(6, 8)));
   std::vector<Contact> first;
-  for (const std::string& name : instruction_sets()) {
+  for (const std::string& name : sweep::instruction_sets()) {
     SCOPED_TRACE(name);
-    use_instruction_set(name);
+    sweep::use_instruction_set(name);
     Random random(4);
     std::vector<Contact> found;
     for (int n = 0; n < 40; ++n) {
       const Pose pose =
           leaning(random, far + Vec3(random.uniform(0, 30), random.uniform(0, 20), random.uniform(0, 10)), 1);
       found.push_back(collider.query(n % 2 ? needle : held_ball, pose));
-      EXPECT_TRUE(finite(found.back().force) && finite(found.back().torque));
+      EXPECT_TRUE(geom::finite(found.back().force) && geom::finite(found.back().torque));
       EXPECT_GT(glm::length(found.back().force), 0);
     }
     if (first.empty()) first = found;
@@ -189,8 +189,8 @@ TEST(Fixture, IsTheSameForAllInstructionSetsAndFiniteForNeedlesFarAway) {
       ASSERT_EQ(found[n].stiffness, first[n].stiffness);
     }
   }
-  use_instruction_set("");
+  sweep::use_instruction_set("");
 }
 
 }  // namespace
-}  // namespace riffler::fixture_test
+}  // namespace riffler::collide::fixture_test

@@ -10,7 +10,7 @@
 #include "riffler/collide/collider.hpp"
 #include "stress/random.hpp"
 
-namespace riffler::swept_search_test {
+namespace riffler::collide::swept_search_test {
 namespace {
 
 using Answer = Swept::Answer;
@@ -19,7 +19,7 @@ using stress::Random;
 const Vec3 kUp(0, 0, 1);
 
 TEST(SweptSearch, OfNoMotionIsTheClearance) {
-  const Collider collider(box_mesh({-20, -20, -5}, {20, 20, 0}));
+  const Collider collider(mesh::box_mesh({-20, -20, -5}, {20, 20, 0}));
   const Assembly ball(cutters::ball(6, 20));
   const Motion still({{0, 0, 1}, kUp}, {{0, 0, 1}, kUp});
   EXPECT_EQ(collider.sweep(ball, still, 1, 1000).answer, Answer::Clear);
@@ -30,7 +30,7 @@ TEST(SweptSearch, OfNoMotionIsTheClearance) {
 }
 
 TEST(SweptSearch, FindsAPostThatEndPosesStepOver) {
-  const Collider collider(box_mesh({-0.1, -0.1, -5}, {0.1, 0.1, 5}));
+  const Collider collider(mesh::box_mesh({-0.1, -0.1, -5}, {0.1, 0.1, 5}));
   const Assembly ball(cutters::ball(6, 20));
   const Motion past({{-50, 2.9, 0}, kUp}, {{50, 2.9, 0}, kUp});
   const Swept check = collider.sweep(ball, past, -0.01, 100000);
@@ -43,7 +43,7 @@ TEST(SweptSearch, FindsAPostThatEndPosesStepOver) {
 
 TEST(SweptSearch, LooksAtAHolderThatTurnsWhileTheTipStands) {
   const Tool tool = cutters::ball(6, 20).with_holder({{40, 5, 60, 5}});
-  const Collider collider(box_mesh({30, -2, 30}, {40, 2, 45}));
+  const Collider collider(mesh::box_mesh({30, -2, 30}, {40, 2, 45}));
   const Motion turn({{0, 0, 0}, {0, 0, 1}}, {{0, 0, 0}, {1, 0, 0}});
   EXPECT_EQ(collider.sweep(Assembly(tool), turn, 0, 100000).answer, Answer::Gouges);
   EXPECT_EQ(collider.sweep(Assembly(cutters::ball(6, 20)), turn, 0, 100000).answer, Answer::Clear);
@@ -51,7 +51,7 @@ TEST(SweptSearch, LooksAtAHolderThatTurnsWhileTheTipStands) {
 
 TEST(SweptSearch, SlidesAlongAPlaneAndACornerInAFewLooks) {
   // Looks at poses alone would need one every two tolerances: 2 500 for 50 mm.
-  const Collider corner(both(box_mesh({-60, -30, -5}, {60, 30, 0}), box_mesh({-60, 3, -5}, {60, 30, 30})));
+  const Collider corner(both(mesh::box_mesh({-60, -30, -5}, {60, 30, 0}), mesh::box_mesh({-60, 3, -5}, {60, 30, 30})));
   const Assembly ball(cutters::ball(6, 20));
   const Motion along({{-25, 0, 0}, kUp}, {{25, 0, 0}, kUp});
   const Swept straight = corner.sweep(ball, along, -0.01, 100000);
@@ -64,7 +64,7 @@ TEST(SweptSearch, SlidesAlongAPlaneAndACornerInAFewLooks) {
 
 TEST(SweptSearch, EndsOnTrianglesThatAreAllOnePoint) {
   // Their spheres have no size, which the drift exceeds in any stretch.
-  Mesh points = box_mesh({-30, -30, -20}, {30, 30, -10});
+  Mesh points = mesh::box_mesh({-30, -30, -20}, {30, 30, -10});
   for (const Vec3& p : {Vec3(0, 3.2, 1), Vec3(0, 3.005, 3), Vec3(5, 0, -9)}) {
     const int first = static_cast<int>(points.vertices.size());
     for (int k = 0; k < 200; ++k) {
@@ -84,7 +84,7 @@ TEST(SweptSearch, EndsOnTrianglesThatAreAllOnePoint) {
 }
 
 TEST(SweptSearch, OfALongRapidPastASmallPartTakesFewLooks) {
-  const Collider collider(sphere_mesh(10, 5));
+  const Collider collider(mesh::sphere_mesh(10, 5));
   const Assembly tool(cutters::ball(6, 20).with_holder({{40, 20, 80, 20}}));
   const Swept swept = collider.sweep(tool, Motion({{-2000, 0, 10.5}, kUp}, {{2000, 0, 10.5}, kUp}), 0.4, 100000);
   EXPECT_EQ(swept.answer, Answer::Clear);
@@ -111,7 +111,7 @@ TEST(SweptSearch, IsNeverClearWhereAPoseOfTheMotionIsNearer) {
     SCOPED_TRACE(tool.name());
     const Assembly assembly(tool);
     Random random(++seed);
-    const Mesh mesh = torus_mesh(12, 4, 24, 12);
+    const Mesh mesh = mesh::torus_mesh(12, 4, 24, 12);
     const Collider collider(mesh);
     for (int n = 0; n < 12; ++n) {
       const auto pose = [&] { return Pose{random.uniform(0, 22) * random.direction(), random.direction()}; };
@@ -155,7 +155,7 @@ TEST(SweptSearch, BoundsOfTrianglesInAStretchAreNeverAboveAnyOfItsPoses) {
                            glm::normalize(axis + std::min(1.0, size) * random.uniform(0, 1) * random.direction())});
       const ToolFrame frame(motion.at(0.5));
       const Drift drift(motion, 1, assembly.reach());
-      const OutlineEdge& e = assembly.outline().edges()[n % assembly.outline().edges().size()];
+      const tool::OutlineEdge& e = assembly.outline().edges()[n % assembly.outline().edges().size()];
       const Vec2 p = glm::mix(e.from, e.to, random.uniform());
       const double angle = random.uniform(0, 6.3), wide = random.power_of_ten(-2, 1);
       const Vec3 near =
@@ -164,8 +164,8 @@ TEST(SweptSearch, BoundsOfTrianglesInAStretchAreNeverAboveAnyOfItsPoses) {
       const Corners c{corner(), corner(), corner()};
       SphereGroup group;
       group.put(0, round_triangle(c.a, c.b, c.c));
-      const std::vector<Corners> eight(kLanes, c);
-      double distance[kLanes], low[kLanes];
+      const std::vector<Corners> eight(base::kLanes, c);
+      double distance[base::kLanes], low[base::kLanes];
       centre_distances(assembly.lane_edges(), frame, group, distance);
       triangle_bounds(assembly.runs(), assembly.lane_edges(), frame, group, eight.data(), &drift, distance, low);
       TriangleSearch search(assembly.runs());
@@ -185,4 +185,4 @@ TEST(SweptSearch, BoundsOfTrianglesInAStretchAreNeverAboveAnyOfItsPoses) {
 }
 
 }  // namespace
-}  // namespace riffler::swept_search_test
+}  // namespace riffler::collide::swept_search_test

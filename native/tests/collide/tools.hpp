@@ -5,7 +5,7 @@
 
 #include "riffler/tool/cutters.hpp"
 
-namespace riffler {
+namespace riffler::collide {
 
 inline Tool held(const Tool& cutter) {
   const double l = cutter.length(), r = 0.5 * cutter.diameter();
@@ -29,4 +29,4 @@ inline std::vector<Tool> contact_tools() {
   return out;
 }
 
-}  // namespace riffler
+}  // namespace riffler::collide

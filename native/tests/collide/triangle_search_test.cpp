@@ -10,24 +10,24 @@
 #include "stress/random.hpp"
 #include "support/effort.hpp"
 
-namespace riffler::triangle_search_test {
+namespace riffler::collide::triangle_search_test {
 namespace {
 
 using stress::Random;
 
-double distance_at(const Outline& outline, const Vec3& p) {
+double distance_at(const tool::Outline& outline, const Vec3& p) {
   return outline.nearest(std::hypot(p.x, p.y), p.z).distance;
 }
 
 /// A place on the tool's surface, or in it, and round it.
-Vec3 place_near(const Outline& outline, Random& random) {
-  const OutlineEdge& e = outline.edges()[random.below(static_cast<int>(outline.edges().size()))];
+Vec3 place_near(const tool::Outline& outline, Random& random) {
+  const tool::OutlineEdge& e = outline.edges()[random.below(static_cast<int>(outline.edges().size()))];
   const Vec2 p = glm::mix(e.from, e.to, random.uniform());
   const double angle = random.uniform(0, 6.3), reach = random.power_of_ten(-4, 1);
   return Vec3(p.x * std::cos(angle), p.x * std::sin(angle), p.y) + reach * random.uniform() * random.direction();
 }
 
-Corners triangle_near(const Outline& outline, Random& random) {
+Corners triangle_near(const tool::Outline& outline, Random& random) {
   const Vec3 p = place_near(outline, random);
   const double size = random.power_of_ten(-3, 1.7);
   const auto corner = [&] { return p + size * random.uniform(-1, 1) * random.direction(); };
@@ -61,14 +61,14 @@ Vec3 on(const Corners& t, double s, double u) {
 
 /// By all the ways there are to a triangle, since projecting onto a needle's plane goes wrong.
 double off_triangle(const Vec3& p, const Corners& t) {
-  double least = glm::length(closest_on_triangle(p, t.a, t.b, t.c).point - p);
+  double least = glm::length(mesh::closest_on_triangle(p, t.a, t.b, t.c).point - p);
   for (const auto& [a, b] : {std::pair(t.a, t.b), std::pair(t.b, t.c), std::pair(t.c, t.a)})
-    least = std::min(least, glm::length(closest_on_triangle(p, a, b, b).point - p));
+    least = std::min(least, glm::length(mesh::closest_on_triangle(p, a, b, b).point - p));
   return least;
 }
 
 /// The least distance that many points find, the last of them ever nearer to the best.
-double sampled(const Outline& outline, const Corners& t, Random& random) {
+double sampled(const tool::Outline& outline, const Corners& t, Random& random) {
   Vec2 best{0, 0};
   double least = distance_at(outline, t.a);
   const auto look = [&](double s, double u) {
@@ -91,7 +91,7 @@ TEST(TriangleSearch, FindsWhatIsLeastAndWhereForEveryTool) {
   std::uint64_t seed = 1;
   for (const Tool& tool : contact_tools()) {
     SCOPED_TRACE(tool.name());
-    const Outline outline(tool);
+    const tool::Outline outline(tool);
     const OutlineRuns runs(outline.edges());
     Random random(++seed);
     std::size_t most = 0, all = 0;
@@ -115,7 +115,7 @@ TEST(TriangleSearch, BoundsFromOneLookAreNeverAboveTheLeast) {
   std::uint64_t seed = 100;
   for (const Tool& tool : contact_tools()) {
     SCOPED_TRACE(tool.name());
-    const Outline outline(tool);
+    const tool::Outline outline(tool);
     const OutlineRuns runs(outline.edges());
     Random random(++seed);
     for (int n = 0; n < test::cases(3000); ++n) {
@@ -131,21 +131,21 @@ TEST(OutlineRuns, HaveTheOutlinesDistances) {
   std::uint64_t seed = 200;
   for (const Tool& tool : contact_tools()) {
     SCOPED_TRACE(tool.name());
-    const Outline outline(tool);
+    const tool::Outline outline(tool);
     const OutlineRuns runs(outline.edges());
     std::vector<OutlineRuns::RunAt> of(runs.size());
     Random random(++seed);
     for (int n = 0; n < 5000; ++n) {
       const Vec3 p = place_near(outline, random);
       const double rho = std::hypot(p.x, p.y);
-      const Outline::Nearest expected = outline.nearest(rho, p.z);
+      const tool::Outline::Nearest expected = outline.nearest(rho, p.z);
       ASSERT_NEAR(runs.at({rho, p.z}, of.data()).distance, expected.distance, 1e-12);
     }
   }
 }
 
 /// A triangle that is mostly in a tool: its depth is that of where several of the tool's surfaces are equally near.
-Corners triangle_through(const Outline& outline, Random& random) {
+Corners triangle_through(const tool::Outline& outline, Random& random) {
   const Vec2 top = outline.edges().back().to;
   const Vec3 p(0, 0, random.uniform(0, top.y)), u = random.direction(), v = random.direction();
   return {p + 9.0 * u, p + 9.0 * v, p - 9.0 * u - 9.0 * v};
@@ -154,7 +154,7 @@ Corners triangle_through(const Outline& outline, Random& random) {
 TEST(TriangleSearch, DepthsInHollowsAreTheLeastThoughTheToolGoesOnBehindTheirEnds) {
   // A level disc that closes a hollow is no surface: bounds from it stopped searches up to 1e-4 mm above the least.
   const Tool tool = cutters::profile({{{3, 0}, {}}, {{5, 2}, Vec2(5, 0)}, {{2.5, 10}, {}}}, 20);
-  const Outline outline(tool);
+  const tool::Outline outline(tool);
   const OutlineRuns runs(outline.edges());
   Random random(400);
   for (int n = 0; n < 300; ++n) {
@@ -171,7 +171,7 @@ TEST(TriangleSearch, DepthsInHollowsAreTheLeastThoughTheToolGoesOnBehindTheirEnd
 
 TEST(TriangleSearch, StopsAtTheDeadlineWithABoundThatHolds) {
   const Tool tool = cutters::profile({{{3, 0}, {}}, {{5, 2}, Vec2(5, 0)}, {{2.5, 10}, {}}}, 20);
-  const Outline outline(tool);
+  const tool::Outline outline(tool);
   const OutlineRuns runs(outline.edges());
   Random random(401);
   for (int n = 0; n < 100; ++n) {
@@ -189,11 +189,11 @@ TEST(OutlineRuns, AndOutlineAndLanesDistancesAtTheTipOfABallAreRoundingSmallOnIt
   // There heights on the circle differ by less than rounding, and told by them the foot was the tip, as far off as ρ.
   for (const Tool& tool : {cutters::taper(0.5, 0.2, 8, 40, true), cutters::taper(1, 0.4, 8, 40, true),
                            cutters::ball(6, 30), cutters::ball(0.7, 30), cutters::taper(0.2, 0.2, 2, 8, true)}) {
-    const Outline outline(tool);
+    const tool::Outline outline(tool);
     const OutlineRuns runs(outline.edges());
     const std::vector<LaneEdge> lanes(outline.edges().begin(), outline.edges().end());
     std::vector<OutlineRuns::RunAt> of(runs.size());
-    const OutlineEdge& ball = outline.edges().front();
+    const tool::OutlineEdge& ball = outline.edges().front();
     const double r = ball.bulge;
     if (!(r > 0)) continue;
     Random random(402);
@@ -204,7 +204,7 @@ TEST(OutlineRuns, AndOutlineAndLanesDistancesAtTheTipOfABallAreRoundingSmallOnIt
       EXPECT_NEAR(runs.at(p, of.data()).distance, 0, 1e-14 * (1 + r));
       SphereGroup group;
       group.put(0, {{p.x, 0, p.y}, 0});
-      double distance[kLanes];
+      double distance[base::kLanes];
       centre_distances(lanes, ToolFrame({{0, 0, 0}, {0, 0, 1}}), group, distance);
       EXPECT_NEAR(distance[0], 0, 1e-14 * (1 + r));
     }
@@ -215,16 +215,16 @@ TEST(OutlineLanes, HaveTheOutlinesDistances) {
   std::uint64_t seed = 300;
   for (const Tool& tool : contact_tools()) {
     SCOPED_TRACE(tool.name());
-    const Outline outline(tool);
+    const tool::Outline outline(tool);
     std::vector<LaneEdge> edges(outline.edges().begin(), outline.edges().end());
     Random random(++seed);
     for (int n = 0; n < 1000; ++n) {
       const ToolFrame frame({10.0 * random.direction(), random.direction()});
       SphereGroup group;
-      for (int k = 0; k < kLanes; ++k) group.put(k, {frame.to_part(place_near(outline, random)), 0});
-      double distance[kLanes];
+      for (int k = 0; k < base::kLanes; ++k) group.put(k, {frame.to_part(place_near(outline, random)), 0});
+      double distance[base::kLanes];
       centre_distances(edges, frame, group, distance);
-      for (int k = 0; k < kLanes; ++k)
+      for (int k = 0; k < base::kLanes; ++k)
         ASSERT_NEAR(distance[k], distance_at(outline, frame.to_tool(group.sphere(k).centre)), 1e-12);
     }
   }
@@ -234,12 +234,12 @@ TEST(OutlineLanes, HaveTheOutlinesDistances) {
 struct Group {
   std::vector<Corners> triangles;
   SphereGroup spheres;
-  double distance[kLanes], low[kLanes];
+  double distance[base::kLanes], low[base::kLanes];
 
-  Group(const Outline& outline, const ToolFrame& frame, const std::function<Corners()>& make) {
+  Group(const tool::Outline& outline, const ToolFrame& frame, const std::function<Corners()>& make) {
     const OutlineRuns runs(outline.edges());
     const std::vector<LaneEdge> edges(outline.edges().begin(), outline.edges().end());
-    for (int k = 0; k < kLanes; ++k) {
+    for (int k = 0; k < base::kLanes; ++k) {
       const Corners t = make();
       triangles.push_back({frame.to_part(t.a), frame.to_part(t.b), frame.to_part(t.c)});
       spheres.put(k, round_triangle(triangles[k].a, triangles[k].b, triangles[k].c));
@@ -257,12 +257,12 @@ TEST(OutlineLanes, BoundsOfTrianglesAreNeverAboveTheLeast) {
   std::uint64_t seed = 500;
   for (const Tool& tool : contact_tools()) {
     SCOPED_TRACE(tool.name());
-    const Outline outline(tool);
+    const tool::Outline outline(tool);
     Random random(++seed);
     for (int n = 0; n < test::cases(300); ++n) {
       const ToolFrame frame({10.0 * random.direction(), random.direction()});
       const Group group(outline, frame, [&] { return triangle_near(outline, random); });
-      for (int k = 0; k < kLanes; ++k) {
+      for (int k = 0; k < base::kLanes; ++k) {
         ASSERT_LE(group.low[k], sampled(outline, group.in_tool(k, frame), random) + 1e-9) << n;
         ASSERT_GE(group.low[k], group.distance[k] - group.spheres.radius[k]);
       }
@@ -275,7 +275,7 @@ TEST(OutlineLanes, BoundsOfMostTrianglesOutsideAreOfSecondOrderInTheirSize) {
   std::uint64_t seed = 600;
   for (const Tool& tool : contact_tools()) {
     SCOPED_TRACE(tool.name());
-    const Outline outline(tool);
+    const tool::Outline outline(tool);
     const OutlineRuns runs(outline.edges());
     if (std::any_of(runs.all().begin(), runs.all().end(), [](const auto& run) { return std::isfinite(run.reach); }))
       continue;  // hollows: their balls are of use within them only
@@ -288,7 +288,7 @@ TEST(OutlineLanes, BoundsOfMostTrianglesOutsideAreOfSecondOrderInTheirSize) {
         const auto corner = [&] { return p + 0.02 * random.direction(); };
         return Corners{corner(), corner(), corner()};
       });
-      for (int k = 0; k < kLanes; ++k) {
+      for (int k = 0; k < base::kLanes; ++k) {
         const double radius = group.spheres.radius[k];
         if (group.distance[k] < 1) continue;
         ++looked;
@@ -301,4 +301,4 @@ TEST(OutlineLanes, BoundsOfMostTrianglesOutsideAreOfSecondOrderInTheirSize) {
 }
 
 }  // namespace
-}  // namespace riffler::triangle_search_test
+}  // namespace riffler::collide::triangle_search_test

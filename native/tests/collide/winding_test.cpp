@@ -7,7 +7,7 @@
 #include "mesh/shapes.hpp"
 #include "stress/random.hpp"
 
-namespace riffler::winding_test {
+namespace riffler::collide::winding_test {
 namespace {
 
 /// What of a mesh is below a height.
@@ -19,7 +19,7 @@ Mesh open_above(Mesh mesh, double z) {
 }
 
 TEST(Winding, IsOneInsideOfAClosedSurfaceAndZeroOutside) {
-  const Surface sphere(sphere_mesh(10, 4)), box(box_mesh({0, 0, 0}, {1, 2, 3}));
+  const Surface sphere(mesh::sphere_mesh(10, 4)), box(mesh::box_mesh({0, 0, 0}, {1, 2, 3}));
   EXPECT_NEAR(WindingNumber(sphere)({1, 2, 3}), 1, 1e-2);
   EXPECT_NEAR(WindingNumber(sphere)({9, 9, 9}), 0, 1e-2);
   EXPECT_NEAR(WindingNumber(box)({1e-6, 1e-6, 1e-6}), 1, 1e-9);
@@ -31,7 +31,7 @@ TEST(Winding, IsWithinAHundredthOfTheSumOverAllTriangles) {
   const auto angle = [](const Vec3& a, const Vec3& b) {
     return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
   };
-  for (const Mesh& mesh : {torus_mesh(10, 3, 90, 40), open_above(sphere_mesh(10, 4), 4)}) {
+  for (const Mesh& mesh : {mesh::torus_mesh(10, 3, 90, 40), open_above(mesh::sphere_mesh(10, 4), 4)}) {
     const Surface surface(mesh);
     const WindingNumber winding(surface);
     stress::Random random(3);
@@ -59,11 +59,11 @@ TEST(Winding, OfASquareSeenFromAHalfItsSideAboveItIsASixth) {
 }
 
 TEST(Winding, IsFiniteOnVerticesAndForTrianglesWithoutArea) {
-  Mesh flat = box_mesh({0, 0, 0}, {1, 1, 1});
+  Mesh flat = mesh::box_mesh({0, 0, 0}, {1, 1, 1});
   flat.triangles.emplace_back(0, 0, 1);
   const Surface surface(flat);
   for (const Vec3& v : flat.vertices) EXPECT_TRUE(std::isfinite(WindingNumber(surface)(v)));
 }
 
 }  // namespace
-}  // namespace riffler::winding_test
+}  // namespace riffler::collide::winding_test

@@ -7,7 +7,7 @@
 
 #include "dexel/volumes.hpp"
 
-namespace riffler::boolean_test {
+namespace riffler::dexel::boolean_test {
 namespace {
 
 using namespace test;
@@ -256,4 +256,4 @@ TEST(Boolean, IsTheSameForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace riffler::boolean_test
+}  // namespace riffler::dexel::boolean_test

@@ -15,7 +15,7 @@
 #include "riffler/sweep/carve.hpp"
 #include "riffler/tool/cutters.hpp"
 
-namespace riffler::edits_test {
+namespace riffler::dexel::edits_test {
 namespace {
 
 std::vector<Span> clipped(std::span<const Span> ray, const Vec3& foot, const Vec3& along, const Vec3& p,
@@ -117,8 +117,8 @@ TEST(Contains, AsksTheRayOfTheCell) {
 
 TEST(Contains, OfThreeDirectionsTwoDecide) {
   Volume volume = Volume::block({{{0, 0, 0}, {20, 20, 20}}, 0.5, "xyz"});
-  CarveOptions options;
-  carve(volume, cutters::ball(12, 40), std::vector<Pose>(2, Pose{{10, 10, 4}, {0, 0, 1}}));
+  sweep::CarveOptions options;
+  sweep::carve(volume, cutters::ball(12, 40), std::vector<Pose>(2, Pose{{10, 10, 4}, {0, 0, 1}}));
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> place(0, 20);
   for (int k = 0; k < 5000; ++k) {
@@ -172,7 +172,7 @@ TEST(Parts, AreThoseOfAFloodThroughTheCells) {
     Volume volume = test::random_volume(test::lattice_frame("z"), seed);
     Volume walls = Volume::block(test::lattice_frame("z"));  // in between, so that there are pieces
     for (const double x : {6.0, 13.0})
-      carve(walls, cutters::flat(2, 60), std::vector<Pose>{{{x, -5, -1}, {0, 0, 1}}, {{x, 30, -1}, {0, 0, 1}}});
+      sweep::carve(walls, cutters::flat(2, 60), std::vector<Pose>{{{x, -5, -1}, {0, 0, 1}}, {{x, 30, -1}, {0, 0, 1}}});
     apply(Boolean::Intersect, volume, walls);
     const std::vector<double> expected = flooded(volume);
     ASSERT_GT(expected.size(), 3U);
@@ -195,10 +195,10 @@ TEST(Parts, OfATriDexelVolumeAreTheSamePiecesInAllDirections) {
   Volume volume = Volume::block(frame);
   // A lean cut right through: neither half is a box.
   const Vec3 lean = glm::normalize(Vec3(0, 1, 1));
-  carve(volume, cutters::flat(3, 90),
-        std::vector<Pose>{{Vec3(15, 15, 10) - 40.0 * lean, lean}, {Vec3(15, 15, 10) - 40.0 * lean, lean}});
+  sweep::carve(volume, cutters::flat(3, 90),
+               std::vector<Pose>{{Vec3(15, 15, 10) - 40.0 * lean, lean}, {Vec3(15, 15, 10) - 40.0 * lean, lean}});
   for (const double x : {10.0, 25.0})
-    carve(volume, cutters::flat(3, 90), std::vector<Pose>{{{x, -5, -1}, {0, 0, 1}}, {{x, 40, -1}, {0, 0, 1}}});
+    sweep::carve(volume, cutters::flat(3, 90), std::vector<Pose>{{{x, -5, -1}, {0, 0, 1}}, {{x, 40, -1}, {0, 0, 1}}});
   const std::vector<Volume> found = parts(volume);
   ASSERT_EQ(found.size(), 3U);
   Volume sum(frame);
@@ -238,4 +238,4 @@ TEST(Parts, RefusesDustByItsCount) {
 }
 
 }  // namespace
-}  // namespace riffler::edits_test
+}  // namespace riffler::dexel::edits_test

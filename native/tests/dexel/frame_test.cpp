@@ -9,7 +9,7 @@
 #include "riffler/dexel/volume.hpp"
 #include "support/error_of.hpp"
 
-namespace riffler::frame_test {
+namespace riffler::dexel::frame_test {
 namespace {
 
 std::string said(const Vec3& size, double pitch, const Vec3& lower = Vec3(0.0)) {
@@ -52,4 +52,4 @@ TEST(Frame, AtItsLimitsIsTaken) {
 }
 
 }  // namespace
-}  // namespace riffler::frame_test
+}  // namespace riffler::dexel::frame_test

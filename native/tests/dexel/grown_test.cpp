@@ -10,7 +10,7 @@
 #include "dexel/volumes.hpp"
 #include "geom/math.hpp"
 
-namespace riffler::grown_test {
+namespace riffler::dexel::grown_test {
 namespace {
 
 Box3 with_room(const Volume& volume, const Vec3& below, const Vec3& above) {
@@ -74,4 +74,4 @@ TEST(Grown, RefusesWhatIsNoBoxOrTooLarge) {
 }
 
 }  // namespace
-}  // namespace riffler::grown_test
+}  // namespace riffler::dexel::grown_test

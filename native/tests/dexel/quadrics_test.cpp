@@ -11,7 +11,7 @@
 
 #include "geom/math.hpp"
 
-namespace riffler::quadrics_test {
+namespace riffler::dexel::quadrics_test {
 namespace {
 
 /// mm: by 0.25 · 5e-10 rays stand beside their places, and doubles of 1e5 are 1.5e-11 apart.
@@ -92,4 +92,4 @@ TEST(Quadrics, RefuseNonsense) {
 }
 
 }  // namespace
-}  // namespace riffler::quadrics_test
+}  // namespace riffler::dexel::quadrics_test

@@ -95,8 +95,8 @@ inline double winding_number(const Mesh& m, const Vec3& p) {
   return sum / (2 * kPi);
 }
 
-inline bool inside(const Grid& grid, int i, int j, double z) {
-  for (const Span& s : grid.ray(i, j))
+inline bool inside(const dexel::Grid& grid, int i, int j, double z) {
+  for (const dexel::Span& s : grid.ray(i, j))
     if (z > s.near && z < s.far) return true;
   return false;
 }
@@ -110,14 +110,14 @@ struct Agreement {
 inline Agreement compare(const Mesh& mesh, const Volume& volume, int points, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   Agreement result;
-  for (const Grid& grid : volume.grids()) {
+  for (const dexel::Grid& grid : volume.grids()) {
     std::uniform_real_distribution<double> along(grid.box().lower.z, grid.box().upper.z);
     for (int k = 0; k < points; ++k) {
       const int i = static_cast<int>(random() % grid.nu()), j = static_cast<int>(random() % grid.nv());
       double z = along(random);
       const auto spans = grid.ray(i, j);
       if (k % 2 == 1 && !spans.empty()) {
-        const Span& s = spans[random() % spans.size()];
+        const dexel::Span& s = spans[random() % spans.size()];
         z = (random() % 2 == 0 ? s.near : s.far) + (random() % 2 == 0 ? 1e-2 : -1e-2) * grid.pitch();
       }
       // Off the ray as the half-open rule has it: walls may stand exactly on rays.
@@ -168,7 +168,7 @@ inline Mesh read_model(const std::string& name) {
 }
 
 /// A frame of `cells` along the longest side of the mesh's box, grown by `around` cells.
-inline Frame frame_of(const Mesh& m, int cells, const std::string& directions, double around = 0) {
+inline dexel::Frame frame_of(const Mesh& m, int cells, const std::string& directions, double around = 0) {
   const Box3 b = box_of(m);
   const Vec3 size = b.size();
   const double pitch = std::max({size.x, size.y, size.z}) / cells;

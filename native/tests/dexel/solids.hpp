@@ -41,11 +41,11 @@ struct Piece {
 
 /// A volume of one piece a ray: piece(start, along) in the world frame, cut by the box.
 template <class F>
-Volume solid(const Frame& frame, const F& piece) {
+Volume solid(const dexel::Frame& frame, const F& piece) {
   Volume volume(frame);
-  for (Grid& grid : volume.grids())
+  for (dexel::Grid& grid : volume.grids())
     for (std::size_t t = 0; t < grid.tile_count(); ++t)
-      grid.fill_tile(t, [&](int i, int j, TileBuilder& builder) {
+      grid.fill_tile(t, [&](int i, int j, dexel::TileBuilder& builder) {
         const Vec3 along = to_world(grid.axis(), {0, 0, 1});
         const double w0 = grid.box().lower.z;
         Piece p = piece(to_world(grid.axis(), {grid.u(i), grid.v(j), w0}), along);
@@ -53,13 +53,13 @@ Volume solid(const Frame& frame, const F& piece) {
         p.cut({grid.box().lower.z, grid.box().upper.z}, -along, along);
         if (p.inside.near < p.inside.far)
           builder.add({p.inside.near, p.inside.far},
-                      {PackedNormal::pack(p.near_normal), PackedNormal::pack(p.far_normal)});
+                      {dexel::PackedNormal::pack(p.near_normal), dexel::PackedNormal::pack(p.far_normal)});
       });
   volume.touch();
   return volume;
 }
 
-inline Volume convex(const Frame& frame, const std::vector<HalfSpace>& sides) {
+inline Volume convex(const dexel::Frame& frame, const std::vector<HalfSpace>& sides) {
   return solid(frame, [&](const Vec3& start, const Vec3& along) {
     Piece p;
     for (const HalfSpace& side : sides) p.cut(side, start, along);
@@ -67,7 +67,7 @@ inline Volume convex(const Frame& frame, const std::vector<HalfSpace>& sides) {
   });
 }
 
-inline Volume ball(const Frame& frame, const Vec3& centre, double radius) {
+inline Volume ball(const dexel::Frame& frame, const Vec3& centre, double radius) {
   return solid(frame, [&](const Vec3& start, const Vec3& along) {
     const Vec3 r = start - centre;
     const double b = glm::dot(r, along), d = b * b - glm::dot(r, r) + radius * radius;

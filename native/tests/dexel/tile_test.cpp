@@ -6,7 +6,7 @@
 #include "riffler/sweep/carve.hpp"
 #include "riffler/tool/cutters.hpp"
 
-namespace riffler::tile_test {
+namespace riffler::dexel::tile_test {
 namespace {
 
 /// The first `full` rays hold `spans` each.
@@ -46,11 +46,11 @@ TEST(Tile, ACopyKeepsItsOffsetsWhenTheOriginalIsGone) {
 
 TEST(Tile, RaysThatAreCutButStaySingleTakeSixteenBytes) {
   Volume volume = Volume::block({{{0, 0, 0}, {25.6, 25.6, 10}}, 0.1, "z"});
-  carve(volume, cutters::ball(60, 60), std::vector<Pose>{{{-40, 12, 5}, {0, 0, 1}}, {{70, 12, 5}, {0, 0, 1}}});
+  sweep::carve(volume, cutters::ball(60, 60), std::vector<Pose>{{{-40, 12, 5}, {0, 0, 1}}, {{70, 12, 5}, {0, 0, 1}}});
   const double rays = 256.0 * 256.0;
   EXPECT_EQ(volume.grids()[0].span_count(), rays);
   EXPECT_LT(static_cast<double>(volume.nbytes()) / rays, 16.3);
 }
 
 }  // namespace
-}  // namespace riffler::tile_test
+}  // namespace riffler::dexel::tile_test

@@ -9,7 +9,7 @@
 #include "fuzz/targets.hpp"
 #include "support/checkout.hpp"
 
-namespace riffler::kept_inputs_test {
+namespace riffler::fuzz::kept_inputs_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -51,4 +51,4 @@ std::string name_of(const testing::TestParamInfo<fuzz::Target>& info) {
 INSTANTIATE_TEST_SUITE_P(Fuzz, KeptInputs, testing::ValuesIn(fuzz::targets().begin(), fuzz::targets().end()), name_of);
 
 }  // namespace
-}  // namespace riffler::kept_inputs_test
+}  // namespace riffler::fuzz::kept_inputs_test

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <random>
 
-namespace riffler::float32_test {
+namespace riffler::geom::float32_test {
 namespace {
 
 /// Rounds to 24 significant bits by integer arithmetic on the bits of a double (ties to even); normal numbers only.
@@ -28,4 +28,4 @@ TEST(Float32, RoundsEveryComponent) {
 }
 
 }  // namespace
-}  // namespace riffler::float32_test
+}  // namespace riffler::geom::float32_test

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace riffler::pose_test {
+namespace riffler::geom::pose_test {
 namespace {
 
 TEST(Motion, KeepsTheAxisUnitAndEndsExactlyAtItsEnds) {
@@ -41,4 +41,4 @@ TEST(Motion, VelocityIsTheDerivativeOfMaterialPoints) {
 }
 
 }  // namespace
-}  // namespace riffler::pose_test
+}  // namespace riffler::geom::pose_test

@@ -6,7 +6,7 @@
 #include "stress/random.hpp"
 #include "support/error_of.hpp"
 
-namespace riffler::coupling_test {
+namespace riffler::haptics::coupling_test {
 namespace {
 
 /// Rotation by a rotation vector (Rodrigues).
@@ -166,4 +166,4 @@ TEST(Coupling, SettingsNameTheFieldThatIsWrong) {
 }
 
 }  // namespace
-}  // namespace riffler::coupling_test
+}  // namespace riffler::haptics::coupling_test

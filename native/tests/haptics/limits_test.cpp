@@ -5,7 +5,7 @@
 #include "stress/random.hpp"
 #include "support/error_of.hpp"
 
-namespace riffler::limits_test {
+namespace riffler::haptics::limits_test {
 namespace {
 
 Wrench random_wrench(stress::Random& random, double size) {
@@ -158,4 +158,4 @@ TEST(HapticLimits, SettingsNameTheFieldThatIsWrong) {
 }
 
 }  // namespace
-}  // namespace riffler::limits_test
+}  // namespace riffler::haptics::limits_test

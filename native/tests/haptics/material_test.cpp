@@ -6,7 +6,7 @@
 
 #include "support/error_of.hpp"
 
-namespace riffler::material_test {
+namespace riffler::haptics::material_test {
 namespace {
 
 TEST(Material, NamesWhatAndTheFieldThatIsWrong) {
@@ -27,4 +27,4 @@ TEST(Material, WeighsACubicCentimetreOfWaterOneGram) {
 }
 
 }  // namespace
-}  // namespace riffler::material_test
+}  // namespace riffler::haptics::material_test

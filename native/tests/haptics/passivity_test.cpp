@@ -8,7 +8,7 @@
 #include "support/effort.hpp"
 #include "support/error_of.hpp"
 
-namespace riffler::passivity_test {
+namespace riffler::haptics::passivity_test {
 namespace {
 
 using stress::Column;
@@ -277,4 +277,4 @@ TEST(PassiveBound, IsTheLesserOfSamplingAndQuantisation) {
 }
 
 }  // namespace
-}  // namespace riffler::passivity_test
+}  // namespace riffler::haptics::passivity_test

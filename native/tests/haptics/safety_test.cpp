@@ -8,7 +8,7 @@
 #include "stress/random.hpp"
 #include "support/error_of.hpp"
 
-namespace riffler::safety_test {
+namespace riffler::haptics::safety_test {
 namespace {
 
 const Wrench kPush{{1, 2, 2}, {10, 0, 0}};
@@ -356,7 +356,7 @@ TEST(Safety, WhateverHappensForceMeansThatEveryCheckPassed) {
       ++forces;
       ASSERT_TRUE(lets_force_through(state) && lets_force_through(safety.state()));
       ASSERT_TRUE(finite(w) && finite(wanted) && o.dead_man && o.homed && !o.device_fault && o.dt >= 0);
-      ASSERT_TRUE(finite(o.pose.tip) && finite(o.pose.axis) && finite(o.twist));
+      ASSERT_TRUE(geom::finite(o.pose.tip) && geom::finite(o.pose.axis) && finite(o.twist));
       ASSERT_LT(std::max(o.age, o.dt), s.fresh + s.fade);
       ASSERT_LT(glm::length(o.twist.linear), s.overspeed.linear);
       ASSERT_LT(glm::length(o.twist.angular), s.overspeed.angular);
@@ -367,7 +367,7 @@ TEST(Safety, WhateverHappensForceMeansThatEveryCheckPassed) {
       ASSERT_LE(glm::length(w.force), safety.gain() * 3 + 1e-12);
     }
     // Where it was while off or not homed says nothing.
-    if (finite(o.pose.tip)) last_tip = o.pose.tip, last_known = o.homed && state != ForceState::Off;
+    if (geom::finite(o.pose.tip)) last_tip = o.pose.tip, last_known = o.homed && state != ForceState::Off;
     last_known = last_known && state != ForceState::Off;
     trips += state == ForceState::Tripped;
   }
@@ -389,4 +389,4 @@ TEST(Safety, SettingsNameTheFieldThatIsWrong) {
 }
 
 }  // namespace
-}  // namespace riffler::safety_test
+}  // namespace riffler::haptics::safety_test

@@ -11,7 +11,7 @@
 #include "support/box_mesh.hpp"
 #include "support/error_of.hpp"
 
-namespace riffler::sculpt_step_test {
+namespace riffler::haptics::sculpt_step_test {
 namespace {
 
 constexpr auto box = test::box_mesh;
@@ -42,7 +42,7 @@ void follow(SculptStep& step, int ticks, const Path& path, const Visit& visit) {
 TEST(SculptStep, AFlatCutterFedDownwardsIsResistedByConstantTimesAreaTimesSpeed) {
   for (const double speed : {5.0, 20.0}) {
     Volume volume = block(0.1);
-    MoveCarver carver(volume, cutters::flat(10, 40), {.tolerance = 0.01, .removal_constant = 1e-3});
+    sweep::MoveCarver carver(volume, cutters::flat(10, 40), {.tolerance = 0.01, .removal_constant = 1e-3});
     SculptStep step(springs_only(), cutters::flat(10, 40), &carver, nullptr);
     const auto grip = [&](double t) { return Pose{{20, 20, -speed * t}, kUp}; };
     step.place(grip(0));
@@ -66,7 +66,7 @@ TEST(SculptStep, AFlatCutterFedDownwardsIsResistedByConstantTimesAreaTimesSpeed)
 TEST(SculptStep, ASlotIsResistedEvenlyThoughItsWallMovesByWholeRays) {
   Volume volume = block(0.2);
   const Tool flat = cutters::flat(6, 40);
-  MoveCarver carver(volume, flat, {.tolerance = 0.01, .removal_constant = 2e-3});
+  sweep::MoveCarver carver(volume, flat, {.tolerance = 0.01, .removal_constant = 2e-3});
   SculptSettings settings = springs_only();
   settings.coupling.turn_stiffness = 1e6;
   SculptStep step(settings, flat, &carver, nullptr);
@@ -116,7 +116,7 @@ TEST(SculptStep, ASlotOfChangingDepthIsFeltAsItsClosedFormAtAnyPitchAndSpeed) {
     for (const double speed : {1.0, 0.1}) {
       const double constant = 1e-3 / speed;
       Volume volume = Volume::block({{{0, 12, -6}, {40, 28, 0}}, pitch, "z"});
-      MoveCarver carver(volume, flat, {.tolerance = 0.01, .removal_constant = constant});
+      sweep::MoveCarver carver(volume, flat, {.tolerance = 0.01, .removal_constant = constant});
       SculptSettings settings = springs_only();
       settings.coupling.turn_stiffness = 1e6;
       SculptStep step(settings, flat, &carver, nullptr);
@@ -181,7 +181,7 @@ TEST(SculptStep, ConvergesToTheBalanceThatIsSolvedDenselyAsItsPartsGetSmaller) {
   for (const int parts : {1, 2, 4, 8}) {
     Volume volume = block(0.1);
     const Tool ball = cutters::ball(8, 40);
-    MoveCarver carver(volume, ball, {.tolerance = 1e-3, .removal_constant = 2e-4});
+    sweep::MoveCarver carver(volume, ball, {.tolerance = 1e-3, .removal_constant = 2e-4});
     SculptSettings settings = springs_only();
     settings.parts = parts, settings.memory = 2e-4;  // a grid gives depths exactly
     SculptStep step(settings, ball, &carver, nullptr);
@@ -207,7 +207,7 @@ TEST(SculptStep, APlungedBallIsFeltAsItsClosedFormAtAnyPitch) {
   const Tool ball = cutters::ball(8, 40);
   for (const auto& [pitch, most] : {std::pair(0.4, 0.06), {0.2, 0.04}, {0.1, 0.03}}) {
     Volume volume = block(pitch);
-    MoveCarver carver(volume, ball, {.tolerance = 1e-3, .removal_constant = 2e-4});
+    sweep::MoveCarver carver(volume, ball, {.tolerance = 1e-3, .removal_constant = 2e-4});
     SculptStep step(springs_only(), ball, &carver, nullptr);
     Plunge exact(4, 2e-4, 1);
     step.place({{20, 20, height(0)}, kUp});
@@ -229,7 +229,7 @@ TEST(SculptStep, WhateverResistsTheCouplingsEnergyFallsInEveryStep) {
   const Tool ball = cutters::ball(6, 30);
   for (const double constant : {1e-6, 1e-2, 1.0, 1e4}) {
     Volume volume = block(0.4);
-    MoveCarver carver(volume, ball, {.tolerance = 0.02, .removal_constant = constant});
+    sweep::MoveCarver carver(volume, ball, {.tolerance = 0.02, .removal_constant = constant});
     const SculptSettings settings = springs_only();
     SculptStep step(settings, ball, &carver, nullptr);
     Pose grip{{20, 20, 1}, kUp};
@@ -258,7 +258,7 @@ double cap_force(double radius, double d, double k) {
 TEST(SculptStep, ATracedPlaneHoldsTheToolWhereCouplingAndSurfaceBalance) {
   const Tool ball = cutters::ball(6, 30);
   for (const double stiffness : {0.3, 3.0, 300.0}) {
-    const Collider part(box({-12, -12, -5}, {12, 12, 0}), {}, {.spacing = 0.1, .stiffness = stiffness});
+    const collide::Collider part(box({-12, -12, -5}, {12, 12, 0}), {}, {.spacing = 0.1, .stiffness = stiffness});
     SculptStep step(springs_only(), ball, nullptr, &part);
     step.place({{0, 0, 1}, kUp});
     // Down to −1, then aside: nothing holds it back there.
@@ -274,7 +274,7 @@ TEST(SculptStep, ATracedPlaneHoldsTheToolWhereCouplingAndSurfaceBalance) {
       largest = std::max(largest, glm::length(r.on_grip.force));
       if (k == 200) still = r.on_grip;
       if (k > 200) aside = std::max(aside, std::abs(r.on_grip.force.x));
-      EXPECT_LE(-part.clearance(Assembly(ball), r.tool), r.depth_bound + 1e-9) << k;
+      EXPECT_LE(-part.clearance(collide::Assembly(ball), r.tool), r.depth_bound + 1e-9) << k;
       EXPECT_LE(r.queries, 2);
     });
     EXPECT_NEAR(still.force.z, 1 - low, 5e-3) << stiffness;
@@ -286,7 +286,7 @@ TEST(SculptStep, ATracedPlaneHoldsTheToolWhereCouplingAndSurfaceBalance) {
 
 TEST(SculptStep, ALiftedToolLeavesWhatItTouchedAtOnce) {
   const Tool ball = cutters::ball(6, 30);
-  const Collider part(box({-12, -12, -5}, {12, 12, 0}), {}, {.spacing = 0.1, .stiffness = 10});
+  const collide::Collider part(box({-12, -12, -5}, {12, 12, 0}), {}, {.spacing = 0.1, .stiffness = 10});
   SculptStep step(springs_only(), ball, nullptr, &part);
   step.place({{0, 0, 1}, kUp});
   follow(
@@ -308,7 +308,7 @@ struct Shaken {
   int touched = 0;
 };
 
-Shaken shake(const Tool& tool, const Collider& part) {
+Shaken shake(const Tool& tool, const collide::Collider& part) {
   SculptStep step(springs_only(), tool, nullptr, &part);
   stress::Random random(9);
   Pose grip{{0, 0, 1}, kUp};
@@ -335,7 +335,7 @@ TEST(SculptStep, PartsAndFixturesOfAnyStiffnessAndPitchStayQuietUnderAnyHand) {
   for (const double stiffness : {0.1, 10.0, 1e3})
     for (const double pitch : {0.1, 0.25, 0.5})
       for (const char* directions : {"z", "x"}) {
-        const Collider part(
+        const collide::Collider part(
             box({-20, -20, -5}, {20, 20, 0}), {Volume::block({{{-10, -20, 10}, {10, -14.8, 30}}, pitch, directions})},
             {.spacing = 0.3, .stiffness = stiffness, .holder_stiffness = stiffness, .fixture_stiffness = stiffness});
         const Shaken shaken = shake(tool, part);
@@ -347,7 +347,7 @@ TEST(SculptStep, PartsAndFixturesOfAnyStiffnessAndPitchStayQuietUnderAnyHand) {
 
 TEST(SculptStep, AQueryThatRunsOutOfTimeLeavesTheToolAndTheHandIsPulledBack) {
   const Tool ball = cutters::ball(6, 30);
-  const Collider part(box({-12, -12, -5}, {12, 12, 0}), {}, {.spacing = 0.1});
+  const collide::Collider part(box({-12, -12, -5}, {12, 12, 0}), {}, {.spacing = 0.1});
   SculptSettings settings = springs_only();
   settings.budget = 0, settings.missed = 1e-6;
   SculptStep step(settings, ball, nullptr, &part);
@@ -358,7 +358,7 @@ TEST(SculptStep, AQueryThatRunsOutOfTimeLeavesTheToolAndTheHandIsPulledBack) {
       [&](int k, const SculptStep::Result& r) {
         if (!r.held) return;
         ++held;
-        EXPECT_LE(-part.clearance(Assembly(ball), r.tool), r.depth_bound + 1e-9) << k;
+        EXPECT_LE(-part.clearance(collide::Assembly(ball), r.tool), r.depth_bound + 1e-9) << k;
       });
   EXPECT_GT(held, 0);
 }
@@ -367,8 +367,8 @@ TEST(SculptStep, AQueryThatRunsOutOfTimeLeavesTheToolAndTheHandIsPulledBack) {
 TEST(SculptStep, AToolThatIsHeldAfterASlowCutIsNotHeldForEver) {
   const Tool ball = cutters::ball(30, 60);
   Volume volume = block(0.2, "xyz");
-  MoveCarver carver(volume, ball, {});
-  const Collider part(box({0, 0, -18}, {40, 40, -15.02}), {}, {.spacing = 0.1});
+  sweep::MoveCarver carver(volume, ball, {});
+  const collide::Collider part(box({0, 0, -18}, {40, 40, -15.02}), {}, {.spacing = 0.1});
   SculptSettings settings = springs_only();
   settings.budget = 4e-4, settings.missed = 1e-3;
   SculptStep step(settings, ball, &carver, &part);
@@ -388,8 +388,8 @@ TEST(SculptStep, AsksForNoMemoryOnceItIsWarm) {
   Volume volume = block(0.2);
   std::vector<Volume> fixtures;
   fixtures.push_back(Volume::block({{{0, 0, 14}, {40, 9, 30}}, 0.5, "z"}));
-  const Collider part(box({8, 8, -6}, {32, 32, -3}), std::move(fixtures), {.spacing = 0.1});
-  MoveCarver carver(volume, tool, {});
+  const collide::Collider part(box({8, 8, -6}, {32, 32, -3}), std::move(fixtures), {.spacing = 0.1});
+  sweep::MoveCarver carver(volume, tool, {});
   SculptStep step(springs_only(), tool, &carver, &part);
   const auto grip = [](double t) {
     const double a = 5 * t, tilt = 0.2 * std::sin(3 * t);
@@ -397,7 +397,7 @@ TEST(SculptStep, AsksForNoMemoryOnceItIsWarm) {
                 {std::sin(tilt), 0, std::cos(tilt)}};
   };
   step.place(grip(0));
-  BlockReserve reserve;  // as a session has it, for tiles of sizes that were not there before
+  base::BlockReserve reserve;  // as a session has it, for tiles of sizes that were not there before
   reserve.fill(1 << 15, 64);
   long start = 0;
   int touched = 0;
@@ -414,7 +414,7 @@ TEST(SculptStep, AsksForNoMemoryOnceItIsWarm) {
 TEST(SculptStep, NothingMovesWithoutTimeOrNumbers) {
   Volume volume = block(0.5);
   const Tool ball = cutters::ball(6, 30);
-  MoveCarver carver(volume, ball, {});
+  sweep::MoveCarver carver(volume, ball, {});
   SculptStep step(SculptSettings{}, ball, &carver, nullptr);
   const Pose start{{20, 20, 1}, kUp};
   step.place(start);
@@ -437,7 +437,7 @@ TEST(SculptStep, NothingMovesWithoutTimeOrNumbers) {
 TEST(SculptStep, WhatTheToolIsPlacedInGoesUnfelt) {
   Volume volume = block(0.2);
   const Tool ball = cutters::ball(6, 30);
-  MoveCarver carver(volume, ball, {});
+  sweep::MoveCarver carver(volume, ball, {});
   SculptStep step(springs_only(), ball, &carver, nullptr);
   step.place({{20, 20, -5}, kUp});
   const SculptStep::Result r = step.step({{20, 20, -4.99}, kUp}, {}, kTick);
@@ -462,8 +462,8 @@ TEST(SculptStep, GivesNoEnergyToAnyHandOnceTheControllerStandsBehindIt) {
   for (const double constant : {1e-3, 1.0}) {
     Volume volume = block(0.4);
     const Tool ball = cutters::ball(6, 30);
-    const Collider part(box({8, 8, -6}, {32, 32, -2}), {}, {.spacing = 0.2, .stiffness = 100});
-    MoveCarver carver(volume, ball, {.tolerance = 0.02, .removal_constant = constant});
+    const collide::Collider part(box({8, 8, -6}, {32, 32, -2}), {}, {.spacing = 0.2, .stiffness = 100});
+    sweep::MoveCarver carver(volume, ball, {.tolerance = 0.02, .removal_constant = constant});
     SculptSettings settings;
     settings.coupling.stiffness = 20;
     SculptStep step(settings, ball, &carver, &part);
@@ -490,4 +490,4 @@ TEST(SculptStep, GivesNoEnergyToAnyHandOnceTheControllerStandsBehindIt) {
 }
 
 }  // namespace
-}  // namespace riffler::sculpt_step_test
+}  // namespace riffler::haptics::sculpt_step_test

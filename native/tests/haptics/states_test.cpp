@@ -6,7 +6,7 @@
 #include <set>
 #include <string>
 
-namespace riffler::states_test {
+namespace riffler::haptics::states_test {
 namespace {
 
 using S = ForceState;
@@ -64,4 +64,4 @@ TEST(States, WhereThePoseIsInDoubtTheForceDoesNotComeBackByItself) {
 }
 
 }  // namespace
-}  // namespace riffler::states_test
+}  // namespace riffler::haptics::states_test

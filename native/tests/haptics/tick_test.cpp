@@ -8,7 +8,7 @@
 #include "stress/random.hpp"
 #include "support/allocations.hpp"
 
-namespace riffler::tick_test {
+namespace riffler::haptics::tick_test {
 namespace {
 
 /// A device without motors to speak of, a tool that is held in place, and all that is between.
@@ -151,4 +151,4 @@ TEST(HapticTick, FarFromTheOriginItIsAsNearIt) {
 }
 
 }  // namespace
-}  // namespace riffler::tick_test
+}  // namespace riffler::haptics::tick_test

@@ -6,7 +6,7 @@
 #include <thread>
 #include <vector>
 
-namespace riffler::trip_log_test {
+namespace riffler::haptics::trip_log_test {
 namespace {
 
 Trip numbered(std::uint64_t k) {
@@ -73,4 +73,4 @@ TEST(TripLog, NeverShowsAHalfWrittenTripToAnotherThread) {
 }
 
 }  // namespace
-}  // namespace riffler::trip_log_test
+}  // namespace riffler::haptics::trip_log_test

@@ -6,7 +6,7 @@
 #include "support/allocations.hpp"
 #include "support/error_of.hpp"
 
-namespace riffler::workspace_test {
+namespace riffler::haptics::workspace_test {
 namespace {
 
 const Vec3 kUp(0, 0, 1);
@@ -114,4 +114,4 @@ TEST(Workspace, SettingsNameTheFieldThatIsWrong) {
 }
 
 }  // namespace
-}  // namespace riffler::workspace_test
+}  // namespace riffler::haptics::workspace_test

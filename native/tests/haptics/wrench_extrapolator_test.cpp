@@ -7,7 +7,7 @@
 #include "stress/random.hpp"
 #include "support/error_of.hpp"
 
-namespace riffler::wrench_extrapolator_test {
+namespace riffler::haptics::wrench_extrapolator_test {
 namespace {
 
 TEST(WrenchExtrapolator, PassesOnWhatComesInTime) {
@@ -72,4 +72,4 @@ TEST(WrenchExtrapolator, TicksOfNoTimeAndWrenchesThatAreNoneChangeNothing) {
 }
 
 }  // namespace
-}  // namespace riffler::wrench_extrapolator_test
+}  // namespace riffler::haptics::wrench_extrapolator_test

@@ -27,10 +27,10 @@ namespace {
 using namespace std::chrono_literals;
 
 /// Counts the allocations of the driver's thread, which is the one that steps.
-class CountingStep final : public PenStep {
+class CountingStep final : public pen::PenStep {
  public:
   CountingStep() { safety_.switch_on(); }
-  SafeWrench step(const PenSample&, double, double) noexcept override {
+  haptics::SafeWrench step(const pen::PenSample&, double, double) noexcept override {
     safety_.observe({.dt = 1e-3, .homed = true, .dead_man = true});
     if (++steps_ == 100) before_ = allocations();
     since_ = steps_ > 100 ? allocations() - before_ : 0;
@@ -39,7 +39,7 @@ class CountingStep final : public PenStep {
   std::atomic<long> steps_{0}, since_{-1};
 
  private:
-  Safety safety_{{}};
+  haptics::Safety safety_{{}};
   long before_ = 0;
 };
 
@@ -133,21 +133,21 @@ bool eventually(const std::function<bool()>& what) {
 }
 
 /// A machine that is busy with other things does not make the device go away.
-PenOptions patient() {
-  PenOptions options;
+pen::PenOptions patient() {
+  pen::PenOptions options;
   options.driver.silence = 10;
   return options;
 }
 
-OpenProblem problem_of(const std::function<void()>& call, std::string& text) {
+pen::OpenProblem problem_of(const std::function<void()>& call, std::string& text) {
   try {
     call();
-  } catch (const OpenError& error) {
+  } catch (const pen::OpenError& error) {
     text = error.what();
     return error.problem();
   }
   text.clear();
-  return OpenProblem::None;
+  return pen::OpenProblem::None;
 }
 
 class StockHidapi : public testing::Test {
@@ -158,7 +158,7 @@ class StockHidapi : public testing::Test {
   }
 
   /// Streams 10 000 reports made by `make(1…)` through `pen`, `merged` of them in each packet.
-  void stream(Pen& pen, const std::string& path, const std::function<Bytes(int)>& make, int merged = 1) {
+  void stream(pen::Pen& pen, const std::string& path, const std::function<Bytes(int)>& make, int merged = 1) {
     FarEnd far(*bus, path);
     for (int k = 0; k < 10000; k += merged) {
       Bytes packet;
@@ -169,7 +169,7 @@ class StockHidapi : public testing::Test {
       far.send(packet);
     }
     EXPECT_TRUE(eventually([&] { return pen.status().counts.reports == 10000; }));
-    const LinkCounts counts = pen.status().counts;
+    const pen::LinkCounts counts = pen.status().counts;
     EXPECT_EQ(counts.reports, 10000U);
     EXPECT_EQ(counts.lost, 0U);
     EXPECT_EQ(counts.old, 0U);
@@ -188,7 +188,7 @@ class StockHidapi : public testing::Test {
 TEST_F(StockHidapi, ListsWhatIsPluggedIn) {
   bus->plug(pen_spec());
   bus->plug(puck_spec(true));
-  const std::vector<HidInfo> found = list_hid();
+  const std::vector<pen::HidInfo> found = pen::list_hid();
   ASSERT_EQ(found.size(), 2U);
   EXPECT_EQ(found[0].path, "/dev/hidraw0");
   EXPECT_EQ(found[0].id(), "1209:0001");
@@ -205,14 +205,14 @@ TEST_F(StockHidapi, NamesBeyondAsciiComeThroughInTheCLocale) {
   VirtualSpec spec = puck_spec(false);
   spec.name = "Mäuschen λ";
   bus->plug(spec);
-  const std::vector<HidInfo> found = list_hid();
+  const std::vector<pen::HidInfo> found = pen::list_hid();
   ASSERT_EQ(found.size(), 1U);
   EXPECT_NE(found[0].name.find("Mäuschen λ"), std::string::npos) << found[0].name;
 }
 
 TEST_F(StockHidapi, StreamsAPen) {
   const std::string path = bus->plug(pen_spec());
-  const auto pen = open_pen("riffler-pen", patient());
+  const auto pen = pen::open_pen("riffler-pen", patient());
   EXPECT_EQ(pen->kind(), "riffler-pen");
   EXPECT_TRUE(pen->capability().has_force());
   // 10 000 of the wrap as well: the numbers begin at 60 000.
@@ -229,7 +229,7 @@ TEST_F(StockHidapi, StreamsAPen) {
 TEST_F(StockHidapi, TheDriversThreadAllocatesNothing) {
   const std::string path = bus->plug(pen_spec());
   const auto step = std::make_shared<CountingStep>();
-  const auto pen = open_pen(path, patient());
+  const auto pen = pen::open_pen(path, patient());
   pen->set_step(step);
   pen->home();
   FarEnd far(*bus, path);
@@ -249,13 +249,13 @@ TEST_F(StockHidapi, TheDriversThreadAllocatesNothing) {
 
 TEST_F(StockHidapi, StreamsReportsThatReadsMerge) {
   const std::string path = bus->plug(pen_spec());
-  const auto pen = open_pen("riffler-pen", patient());
+  const auto pen = pen::open_pen("riffler-pen", patient());
   stream(*pen, path, [](int k) { return pen_report(static_cast<std::uint16_t>(k)); }, 10);
 }
 
 TEST_F(StockHidapi, StreamsAPuckOfSplitReports) {
   const std::string path = bus->plug(puck_spec(false));
-  const auto pen = open_pen(path, patient());
+  const auto pen = pen::open_pen(path, patient());
   EXPECT_EQ(pen->kind(), "spacemouse");
   EXPECT_EQ(pen->capability().name, "SpaceMouse Compact");
   stream(*pen, path, [](int k) { return puck_report(static_cast<std::uint8_t>(1 + k % 2), {200, 0, 0}); });
@@ -266,16 +266,16 @@ TEST_F(StockHidapi, StreamsAPuckOfSplitReports) {
 
 TEST_F(StockHidapi, StreamsAPuckOfJoinedReports) {
   const std::string path = bus->plug(puck_spec(true));
-  const auto pen = open_pen(path, patient());
+  const auto pen = pen::open_pen(path, patient());
   stream(*pen, path, [](int k) { return puck_report(1, {0, 0, -(k % 350), 0, 0, 0}); });
 }
 
 TEST_F(StockHidapi, StreamsAPolhemThatIsAskedForByName) {
   const std::string path = bus->plug(polhem_spec());
   std::string text;
-  EXPECT_EQ(problem_of([&] { open_pen(path); }, text), OpenProblem::UnknownDevice);
+  EXPECT_EQ(problem_of([&] { pen::open_pen(path); }, text), pen::OpenProblem::UnknownDevice);
   EXPECT_NE(text.find("\"polhem\""), std::string::npos) << text;
-  const auto pen = open_pen("polhem", patient());
+  const auto pen = pen::open_pen("polhem", patient());
   stream(*pen, path, [](int k) { return polhem_report({k % 100, -(k % 100), 6000, 0, 0, 0, 0}); });
   ASSERT_FALSE(told.empty());
   for (const Bytes& report : told) EXPECT_EQ(report, Bytes(65)) << "not homed: no current";
@@ -283,7 +283,7 @@ TEST_F(StockHidapi, StreamsAPolhemThatIsAskedForByName) {
 
 TEST_F(StockHidapi, ShortReportsAreLeftOut) {
   const std::string path = bus->plug(pen_spec());
-  const auto pen = open_pen(path, patient());
+  const auto pen = pen::open_pen(path, patient());
   FarEnd far(*bus, path);
   Bytes cut = pen_report(2);
   cut.resize(30);
@@ -297,20 +297,20 @@ TEST_F(StockHidapi, ShortReportsAreLeftOut) {
 
 TEST_F(StockHidapi, APenThatIsPluggedOutAndInGoesOn) {
   std::string path = bus->plug(pen_spec());
-  const auto pen = open_pen(path, patient());
+  const auto pen = pen::open_pen(path, patient());
   {
     FarEnd far(*bus, path);
     for (int k = 1; k <= 100; ++k) far.send(pen_report(static_cast<std::uint16_t>(k)));
     ASSERT_TRUE(eventually([&] { return pen->newest().sequence == 100; }));
   }
   bus->unplug(path);
-  EXPECT_TRUE(eventually([&] { return pen->status().state != LinkState::Connected; }));
+  EXPECT_TRUE(eventually([&] { return pen->status().state != pen::LinkState::Connected; }));
   EXPECT_TRUE(eventually([&] { return pen->problem() == "it is not plugged in"; })) << pen->problem();
-  EXPECT_EQ(pen->push({}).reason, NotPushed::NotConnected);
+  EXPECT_EQ(pen->push({}).reason, pen::NotPushed::NotConnected);
   // The kernel gives it another number.
   path = bus->plug(pen_spec());
   EXPECT_EQ(path, "/dev/hidraw1");
-  ASSERT_TRUE(eventually([&] { return pen->status().state == LinkState::Connected; })) << pen->problem();
+  ASSERT_TRUE(eventually([&] { return pen->status().state == pen::LinkState::Connected; })) << pen->problem();
   FarEnd far(*bus, path);
   for (int k = 1; k <= 100; ++k) far.send(pen_report(static_cast<std::uint16_t>(k)));
   EXPECT_TRUE(eventually([&] { return pen->newest().sequence == 200; }));
@@ -321,16 +321,16 @@ TEST_F(StockHidapi, PermissionDeniedNamesTheRule) {
   const std::string path = bus->plug(pen_spec());
   chmod(bus->file(path).c_str(), 0600);
   std::string text;
-  OpenProblem problem = OpenProblem::None;
+  pen::OpenProblem problem = pen::OpenProblem::None;
   // Of this thread only: as somebody who is not root.
   std::thread([&] {
     if (geteuid() == 0)
       setfsuid(65534);
     else
       chmod(bus->file(path).c_str(), 0);
-    problem = problem_of([&] { open_pen("riffler-pen"); }, text);
+    problem = problem_of([&] { pen::open_pen("riffler-pen"); }, text);
   }).join();
-  EXPECT_EQ(problem, OpenProblem::Permission);
+  EXPECT_EQ(problem, pen::OpenProblem::Permission);
   EXPECT_NE(text.find("/etc/udev/rules.d/60-riffler-1209-0001.rules"), std::string::npos) << text;
   EXPECT_NE(
       text.find(R"(ATTRS{idVendor}=="1209", ATTRS{idProduct}=="0001", ATTRS{product}=="Riffler pen", TAG+="uaccess")"),
@@ -344,16 +344,16 @@ TEST_F(StockHidapi, ADeviceThatAnotherProgramDrivesIsBusy) {
   {
     const int other = open(path.c_str(), O_RDWR | O_NONBLOCK);
     ASSERT_EQ(flock(other, LOCK_EX), 0);
-    EXPECT_EQ(problem_of([&] { open_pen(path); }, text), OpenProblem::Busy);
+    EXPECT_EQ(problem_of([&] { pen::open_pen(path); }, text), pen::OpenProblem::Busy);
     EXPECT_NE(text.find("another program drives it"), std::string::npos) << text;
     close(other);
   }
-  const auto pen = open_pen(path, patient());
-  EXPECT_EQ(problem_of([&] { open_pen(path); }, text), OpenProblem::Busy) << "we ourselves";
-  ASSERT_EQ(find_devices().size(), 1U);
-  EXPECT_EQ(find_devices()[0].problem, OpenProblem::Busy);
+  const auto pen = pen::open_pen(path, patient());
+  EXPECT_EQ(problem_of([&] { pen::open_pen(path); }, text), pen::OpenProblem::Busy) << "we ourselves";
+  ASSERT_EQ(pen::find_devices().size(), 1U);
+  EXPECT_EQ(pen::find_devices()[0].problem, pen::OpenProblem::Busy);
   EXPECT_TRUE(pen->stop());
-  EXPECT_EQ(problem_of([&] { open_pen(path); }, text), OpenProblem::None);
+  EXPECT_EQ(problem_of([&] { pen::open_pen(path); }, text), pen::OpenProblem::None);
 }
 
 TEST_F(StockHidapi, APenOfAnotherVersionIsNamed) {
@@ -362,7 +362,7 @@ TEST_F(StockHidapi, APenOfAnotherVersionIsNamed) {
   spec.descriptor.back() = 0xC1;  // and whatever else is new in it
   const std::string path = bus->plug(spec);
   std::string text;
-  EXPECT_EQ(problem_of([&] { open_pen(path); }, text), OpenProblem::OtherVersion);
+  EXPECT_EQ(problem_of([&] { pen::open_pen(path); }, text), pen::OpenProblem::OtherVersion);
   EXPECT_NE(text.find("version 2.0"), std::string::npos) << text;
 }
 
@@ -371,7 +371,7 @@ TEST_F(StockHidapi, ADescriptorThatDiffersIsNamedByItsByte) {
   spec.descriptor[20] ^= 1;
   bus->plug(spec);
   std::string text;
-  EXPECT_EQ(problem_of([&] { open_pen("riffler-pen"); }, text), OpenProblem::WrongDescriptor);
+  EXPECT_EQ(problem_of([&] { pen::open_pen("riffler-pen"); }, text), pen::OpenProblem::WrongDescriptor);
   EXPECT_NE(text.find("at byte 20 "), std::string::npos) << text;
 }
 
@@ -381,19 +381,19 @@ TEST_F(StockHidapi, ADeviceWithTheSameNumbersIsNotAPen) {
   spec.descriptor = teensy_descriptor();
   const std::string path = bus->plug(spec);
   std::string text;
-  EXPECT_EQ(problem_of([&] { open_pen(path); }, text), OpenProblem::UnknownDevice);
+  EXPECT_EQ(problem_of([&] { pen::open_pen(path); }, text), pen::OpenProblem::UnknownDevice);
   EXPECT_NE(text.find("Weather station"), std::string::npos) << text;
-  ASSERT_EQ(find_devices().size(), 1U);
-  EXPECT_EQ(find_devices()[0].family, nullptr);
-  EXPECT_EQ(find_devices()[0].problem, OpenProblem::None);
+  ASSERT_EQ(pen::find_devices().size(), 1U);
+  EXPECT_EQ(pen::find_devices()[0].family, nullptr);
+  EXPECT_EQ(pen::find_devices()[0].problem, pen::OpenProblem::None);
 }
 
 TEST_F(StockHidapi, PathsThatAreNoDevicesSaySo) {
   std::string text;
-  EXPECT_EQ(problem_of([] { open_pen("/dev/hidraw77"); }, text), OpenProblem::NoFile);
+  EXPECT_EQ(problem_of([] { pen::open_pen("/dev/hidraw77"); }, text), pen::OpenProblem::NoFile);
   EXPECT_NE(text.find("/dev/hidraw77: no such device"), std::string::npos) << text;
-  EXPECT_EQ(problem_of([] { open_pen("/dev/null"); }, text), OpenProblem::NotHid) << text;
-  EXPECT_EQ(problem_of([] { open_pen("spacemouse"); }, text), OpenProblem::NoFile);
+  EXPECT_EQ(problem_of([] { pen::open_pen("/dev/null"); }, text), pen::OpenProblem::NotHid) << text;
+  EXPECT_EQ(problem_of([] { pen::open_pen("spacemouse"); }, text), pen::OpenProblem::NoFile);
   EXPECT_EQ(text, "no spacemouse is plugged in");
 }
 
@@ -405,15 +405,15 @@ TEST_F(StockHidapi, FindsEveryDeviceAndSaysWhatItIs) {
   silent.features.clear();
   silent.serial = "8";
   bus->plug(silent);
-  const std::vector<FoundDevice> found = find_devices();
+  const std::vector<pen::FoundDevice> found = pen::find_devices();
   ASSERT_EQ(found.size(), 4U);
-  EXPECT_EQ(found[0].problem, OpenProblem::None) << found[0].text;
+  EXPECT_EQ(found[0].problem, pen::OpenProblem::None) << found[0].text;
   EXPECT_NE(found[0].about.find("1000 reports a second"), std::string::npos) << found[0].about;
   EXPECT_NE(found[0].capability.find("pushes"), std::string::npos) << found[0].capability;
-  EXPECT_EQ(found[1].problem, OpenProblem::None) << found[1].text;
+  EXPECT_EQ(found[1].problem, pen::OpenProblem::None) << found[1].text;
   EXPECT_STREQ(found[2].family->kind, "polhem");
   EXPECT_FALSE(found[2].was_opened);
-  EXPECT_EQ(found[3].problem, OpenProblem::NoAnswer) << found[3].text;
+  EXPECT_EQ(found[3].problem, pen::OpenProblem::NoAnswer) << found[3].text;
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include "stress/solids.hpp"
 #include "support/effort.hpp"
 
-namespace riffler::accuracy_test {
+namespace riffler::marching::accuracy_test {
 namespace {
 
 using namespace stress;
@@ -82,4 +82,4 @@ TEST(ToMeshAccuracy, OfTheEdgesOfBoxesTurnedAtRandom) {
 }
 
 }  // namespace
-}  // namespace riffler::accuracy_test
+}  // namespace riffler::marching::accuracy_test

@@ -12,7 +12,7 @@
 #include "stress/mesh_scenes.hpp"
 #include "support/effort.hpp"
 
-namespace riffler::mesher_test {
+namespace riffler::marching::mesher_test {
 namespace {
 
 using namespace stress;
@@ -82,7 +82,7 @@ TEST(Mesher, FollowsACarvedBlock) {
       };
       Pose from = pose(), to = from;
       to.tip += 2.0 * random.direction();
-      carve(volume, tools[stroke % 3], std::array{from, to});
+      sweep::carve(volume, tools[stroke % 3], std::array{from, to});
       const std::vector<std::size_t> changed = mesher.update(volume);
       const std::string what = std::string(directions) + ", stroke " + std::to_string(stroke);
       expect_same(mesher, volume, what);
@@ -103,7 +103,8 @@ TEST(Mesher, FollowsABarFullOfEdges) {
     const auto nick = [&](double x) {
       const Vec3 axis = random.direction();
       const Vec3 at = Vec3(x, 3.5, 3.5) + random.uniform(2, 4.5) * axis;
-      carve(volume, tools[random.below(3)], std::array{Pose{at, axis}, Pose{at + 0.4 * random.direction(), axis}});
+      sweep::carve(volume, tools[random.below(3)],
+                   std::array{Pose{at, axis}, Pose{at + 0.4 * random.direction(), axis}});
     };
     for (int n = 0; n < 600; ++n) nick(random.uniform(0, 60));
     Mesher mesher(volume);
@@ -132,7 +133,7 @@ TEST(Mesher, FollowsGridsThatContradictEachOther) {
     Volume volume({{lower, lower + size}, h, seed % 3 ? "xyz" : "z"});
     const double share = random.one_in(2) ? random.uniform(0, 0.1) : random.uniform(0, 1);
     const Solid base = turned_box(lower + size / 2.0, size * 0.4, random_turn(random));
-    fill(volume, [&](const Grid& grid, int i, int j) {
+    fill(volume, [&](const dexel::Grid& grid, int i, int j) {
       if (random.uniform() >= share) {
         const Vec3 p = to_world(grid.axis(), Vec3(grid.u(i), grid.v(j), 0));
         return meet(base, box(lower, lower + size))(p, to_world(grid.axis(), Vec3(0, 0, 1)));
@@ -146,7 +147,8 @@ TEST(Mesher, FollowsGridsThatContradictEachOther) {
     for (int step = 0; step < test::cases(8); ++step) {
       const Volume before = volume;
       // One grid's rays in a rectangle become wild, or what they were at first.
-      Grid& grid = volume.grids()[static_cast<std::size_t>(random.below(static_cast<int>(volume.grids().size())))];
+      dexel::Grid& grid =
+          volume.grids()[static_cast<std::size_t>(random.below(static_cast<int>(volume.grids().size())))];
       const int i0 = random.below(grid.nu()), j0 = random.below(grid.nv());
       const int i1 = std::min(grid.nu() - 1, i0 + random.below(13)),
                 j1 = std::min(grid.nv() - 1, j0 + random.below(13));
@@ -185,4 +187,4 @@ TEST(Mesher, FollowsIntoEmptinessAndBack) {
 }
 
 }  // namespace
-}  // namespace riffler::mesher_test
+}  // namespace riffler::marching::mesher_test

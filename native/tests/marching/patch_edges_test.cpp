@@ -9,7 +9,7 @@
 #include "marching/pick_scenes.hpp"
 #include "support/error_of.hpp"
 
-namespace riffler::patch_edges_test {
+namespace riffler::marching::patch_edges_test {
 namespace {
 
 using namespace stress;
@@ -145,4 +145,4 @@ TEST(PatchEdges, OfNothingAreNone) {
 }
 
 }  // namespace
-}  // namespace riffler::patch_edges_test
+}  // namespace riffler::marching::patch_edges_test

@@ -23,7 +23,7 @@ inline void nick(Volume& bar, stress::Random& random) {
   const double x = random.uniform(box.lower.x, box.upper.x);
   const Vec3 tip(x, (box.lower.y + box.upper.y) / 2, box.upper.z - random.uniform(0.5, 1.5));
   const Vec3 axis = glm::normalize(Vec3(random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), 1));
-  carve(bar, cutters::ball(1.5, 20), std::array{Pose{tip, axis}, Pose{tip + 0.7 * random.direction(), axis}});
+  sweep::carve(bar, cutters::ball(1.5, 20), std::array{Pose{tip, axis}, Pose{tip + 0.7 * random.direction(), axis}});
 }
 
 /// A bar through some bricks, nicked.
@@ -45,7 +45,8 @@ inline std::vector<Scene> scenes() {
   const Vec3 lower(7, 0, -5), size(20, 2.5, 2.5);
   Volume wild({{lower, lower + size}, 0.25, "xyz"});
   stress::Random random(11);
-  stress::fill(wild, [&](const Grid& grid, int, int) { return stress::spans_at_random(random, grid, 0.5, true); });
+  stress::fill(wild,
+               [&](const dexel::Grid& grid, int, int) { return stress::spans_at_random(random, grid, 0.5, true); });
   out.push_back({"rays that contradict each other", std::move(wild)});
   return out;
 }

@@ -10,7 +10,7 @@
 #include "riffler/marching/to_mesh.hpp"
 #include "support/error_of.hpp"
 
-namespace riffler::pick_test {
+namespace riffler::marching::pick_test {
 namespace {
 
 using namespace stress;
@@ -71,7 +71,7 @@ class Reference {
   }
 
   const Mesh& mesh_;
-  Closest closest_;
+  mesh::Closest closest_;
   std::vector<Ball> balls_;
 };
 
@@ -348,4 +348,4 @@ TEST(FrozenSurface, StaysWhatTheMesherWas) {
 }
 
 }  // namespace
-}  // namespace riffler::pick_test
+}  // namespace riffler::marching::pick_test

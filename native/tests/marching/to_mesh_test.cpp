@@ -13,12 +13,12 @@
 #include "stress/solids.hpp"
 #include "support/effort.hpp"
 
-namespace riffler::to_mesh_test {
+namespace riffler::marching::to_mesh_test {
 namespace {
 
 using namespace stress;
 
-Frame frame_at(const Vec3& lower, const Vec3& size, double pitch, const char* directions) {
+dexel::Frame frame_at(const Vec3& lower, const Vec3& size, double pitch, const char* directions) {
   return {{lower, lower + size}, pitch, directions};
 }
 
@@ -41,7 +41,7 @@ TEST(ToMesh, HandlesSingleRaysAndIsolatedColumns) {
     }
   Random random(7);
   Volume volume(frame_at(Vec3(0.0), Vec3(5, 5, 5), 0.25, "z"));
-  fill(volume, [&](const Grid&, int, int) {
+  fill(volume, [&](const dexel::Grid&, int, int) {
     return random.one_in(10) ? SolidSpans{{1, random.uniform(1.01, 4), {}, {}}} : SolidSpans{};
   });
   expect_clean(volume, "columns");
@@ -66,7 +66,7 @@ TEST(ToMesh, KeepsABlocksBoxWhereverItsFacesLieBetweenRays) {
   for (const double h : {0.25, 0.3, 1.0 / 3, 0.7})
     for (double extra = -0.5; extra < 0.5; extra += 0.0625) {
       const Vec3 size{(8 + extra) * h, (5 - 0.7 * extra) * h, (11 + 0.4 * extra) * h};
-      const Frame frame = frame_at({-1.1, 20.05, 3}, size, h, "xyz");
+      const dexel::Frame frame = frame_at({-1.1, 20.05, 3}, size, h, "xyz");
       const Mesh mesh = to_mesh(Volume::block(frame));
       EXPECT_TRUE(float_audit(mesh).clean()) << h << ' ' << extra;
       expect_box(box_of(mesh), frame.box, 2e-5);
@@ -79,7 +79,7 @@ TEST(ToMesh, KeepsTheFacesOfASheetThinnerThanThePitch) {
     for (const double thin : {0.01, 0.1, 0.125, 0.2, 0.37}) {
       Vec3 size(3.0);
       size[axis] = thin;
-      const Frame frame = frame_at({1, -2, 0.5}, size, 0.25, "xyz");
+      const dexel::Frame frame = frame_at({1, -2, 0.5}, size, 0.25, "xyz");
       const Mesh mesh = to_mesh(Volume::block(frame));
       EXPECT_TRUE(float_audit(mesh).clean()) << axis << ' ' << thin;
       expect_box(box_of(mesh), frame.box, 2e-5);
@@ -96,7 +96,7 @@ TEST(ToMesh, StaysInTheBoxWhereFlanksOfARidgeWouldMeetAboveIt) {
       for (const double gap : {0.0, 1.0}) {  // two grooves that run into each other
         const Vec3 a = Vec3(10, 8, 9.3) + 2.6 * gap * across, b = Vec3(10, 8, 9.3) + 40.0 * along;
         const Pose poses[] = {{a, up}, {b, up}};
-        carve(volume, engraver, poses);
+        sweep::carve(volume, engraver, poses);
       }
       const Mesh mesh = to_mesh(volume);
       EXPECT_TRUE(float_audit(mesh).clean()) << h << ' ' << turn;
@@ -105,7 +105,7 @@ TEST(ToMesh, StaysInTheBoxWhereFlanksOfARidgeWouldMeetAboveIt) {
 }
 
 TEST(ToMesh, PutsWallsOfOneDirectionHalfAPitchFromTheirRays) {
-  const Frame frame = frame_at({-5, 3, 0}, {10, 6, 3.1}, 0.25, "z");
+  const dexel::Frame frame = frame_at({-5, 3, 0}, {10, 6, 3.1}, 0.25, "z");
   const Mesh mesh = to_mesh(Volume::block(frame));
   expect_box(box_of(mesh), frame.box, 2e-5);
   EXPECT_NEAR(enclosed(mesh), Volume::block(frame).volume(), 1e-2);
@@ -116,7 +116,7 @@ TEST(ToMesh, PutsWallsOfOneDirectionHalfAPitchFromTheirRays) {
 }
 
 TEST(ToMesh, KeepsFloorsThinnerThanThePitchInOneDirection) {
-  const Frame frame = frame_at(Vec3(0.0), {5, 5, 3}, 0.25, "z");
+  const dexel::Frame frame = frame_at(Vec3(0.0), {5, 5, 3}, 0.25, "z");
   for (const double floor : {0.01, 0.06, 0.1, 0.13, 0.24})
     for (const double bottom : {0.0, 0.04, 0.5, 1.3}) {
       const Solid part = subtract(box({-1, -1, bottom}, {9, 9, 9}), box({1, 1, bottom + floor}, {4, 4, 9}));
@@ -148,7 +148,7 @@ TEST(ToMesh, RefusesABoxThatFloat32CannotResolve) {
 
 TEST(ToMesh, IsTheSameForAnyNumberOfThreads) {
   Random random(3);
-  const Frame frame = frame_at(Vec3(0.0), {20, 14, 9}, 0.25, "xyz");
+  const dexel::Frame frame = frame_at(Vec3(0.0), {20, 14, 9}, 0.25, "xyz");
   const Solid part = subtract(turned_box({10, 7, 4}, {8, 6, 3}, random_turn(random)), sphere({8, 8, 6}, 3.3));
   Volume rough(frame_at(Vec3(0.0), {9, 9, 9}, 0.25, "xyz"));
   fill_at_random(rough, random, 0.5, true);
@@ -180,4 +180,4 @@ TEST(ToMesh, ReportsProgressAndStopsWhenAsked) {
 }
 
 }  // namespace
-}  // namespace riffler::to_mesh_test
+}  // namespace riffler::marching::to_mesh_test

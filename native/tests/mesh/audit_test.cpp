@@ -7,7 +7,7 @@
 
 #include "mesh/shapes.hpp"
 
-namespace riffler::audit_test {
+namespace riffler::mesh::audit_test {
 namespace {
 
 const Mesh kBox = box_mesh({0, 0, 0}, {1, 2, 3});
@@ -240,4 +240,4 @@ TEST(Audit, RefusesAnInvalidMesh) {
 }
 
 }  // namespace
-}  // namespace riffler::audit_test
+}  // namespace riffler::mesh::audit_test

@@ -8,7 +8,7 @@
 
 #include "mesh/shapes.hpp"
 
-namespace riffler::closest_test {
+namespace riffler::mesh::closest_test {
 namespace {
 
 double segment_distance(const Vec3& p, const Vec3& a, const Vec3& b) {
@@ -176,4 +176,4 @@ TEST(Closest, RefusesAnEmptyMesh) {
 }
 
 }  // namespace
-}  // namespace riffler::closest_test
+}  // namespace riffler::mesh::closest_test

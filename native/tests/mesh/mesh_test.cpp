@@ -6,7 +6,7 @@
 
 #include "mesh/shapes.hpp"
 
-namespace riffler::mesh_test {
+namespace riffler::mesh::mesh_test {
 namespace {
 
 std::string message_of(const Mesh& mesh) {
@@ -69,4 +69,4 @@ TEST(Mesh, ValidateNamesTheRow) {
 }
 
 }  // namespace
-}  // namespace riffler::mesh_test
+}  // namespace riffler::mesh::mesh_test

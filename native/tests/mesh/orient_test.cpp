@@ -10,7 +10,7 @@
 #include "mesh/solids.hpp"
 #include "riffler/mesh/audit.hpp"
 
-namespace riffler::orient_test {
+namespace riffler::mesh::orient_test {
 namespace {
 
 using shapes::box, shapes::flipped, shapes::joined, shapes::unwelded;
@@ -196,4 +196,4 @@ TEST(Orient, VerticesAFewUlpsApartAreOne) {
 }
 
 }  // namespace
-}  // namespace riffler::orient_test
+}  // namespace riffler::mesh::orient_test

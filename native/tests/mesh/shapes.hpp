@@ -8,7 +8,7 @@
 
 #include "riffler/mesh/mesh.hpp"
 
-namespace riffler {
+namespace riffler::mesh {
 
 /// Closed box with its edges on the axes' directions, 12 triangles.
 inline Mesh box_mesh(const Vec3& lower, const Vec3& upper) {
@@ -91,4 +91,4 @@ inline Mesh moved(Mesh mesh, const Vec3& by) {
   return mesh;
 }
 
-}  // namespace riffler
+}  // namespace riffler::mesh

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace riffler::smooth_normals_test {
+namespace riffler::mesh::smooth_normals_test {
 namespace {
 
 /// A cylinder of radius 10 about z between 0 and 20, open, its n × 1 cells cut along either diagonal.
@@ -61,8 +61,8 @@ TEST(SmoothNormals, ATriangleWithoutAreaTakesThoseOfItsNeighbours) {
   const int flat = static_cast<int>(mesh.triangles.size()) - 2;
   EXPECT_LT(glm::length(normals.at(flat, mesh.vertices[middle]) - Vec3(1, 0, 0)), 0.2);
   const Vec3 nothing = normals.at(flat + 1, mesh.vertices[middle]);
-  EXPECT_TRUE(finite(nothing));
+  EXPECT_TRUE(geom::finite(nothing));
 }
 
 }  // namespace
-}  // namespace riffler::smooth_normals_test
+}  // namespace riffler::mesh::smooth_normals_test

@@ -9,7 +9,7 @@
 #include "mesh/shapes.hpp"
 #include "riffler/mesh/audit.hpp"
 
-namespace riffler::smooth_test {
+namespace riffler::mesh::smooth_test {
 namespace {
 
 Mesh rough_sphere(double height) {
@@ -143,4 +143,4 @@ TEST(Smooth, OddInputs) {
 }
 
 }  // namespace
-}  // namespace riffler::smooth_test
+}  // namespace riffler::mesh::smooth_test

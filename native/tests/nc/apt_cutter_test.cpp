@@ -9,20 +9,20 @@
 #include "geom/math.hpp"
 #include "riffler/base/error.hpp"
 
-namespace riffler::apt_cutter_test {
+namespace riffler::nc::apt_cutter_test {
 namespace {
 
 TEST(AptCutter, TheStatementGivesBackTheCutter) {
   const NcPlace place{};
-  for (const CutterShape& shape : cutter_shapes()) {
+  for (const tool::CutterShape& shape : tool::cutter_shapes()) {
     EXPECT_EQ(shape.to_apt == nullptr, shape.from_apt == nullptr) << shape.name;
     if (!shape.to_apt) continue;
     for (const double scale : {0.01, 1.0, 12.0}) {
       std::vector<double> sizes;
-      for (const CutterSize& size : shape.sizes)
-        sizes.push_back(size.unit == SizeUnit::Length ? scale * size.initial : size.initial);
+      for (const tool::CutterSize& size : shape.sizes)
+        sizes.push_back(size.unit == tool::SizeUnit::Length ? scale * size.initial : size.initial);
       const Tool tool = make_cutter(shape, sizes);
-      const std::optional<AptCutter> apt = to_apt(tool);
+      const std::optional<tool::AptCutter> apt = to_apt(tool);
       ASSERT_TRUE(apt) << shape.name;
       const auto again =
           apt_cutter({apt->d, apt->r, apt->e, apt->f, apt->a / kDegree, apt->b / kDegree, apt->h}, 1, place);
@@ -51,4 +51,4 @@ TEST(AptCutter, StatementsThatMatchNoShapeGiveNone) {
 }
 
 }  // namespace
-}  // namespace riffler::apt_cutter_test
+}  // namespace riffler::nc::apt_cutter_test

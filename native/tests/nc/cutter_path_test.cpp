@@ -5,7 +5,7 @@
 #include <random>
 #include <stdexcept>
 
-namespace riffler::cutter_path_test {
+namespace riffler::nc::cutter_path_test {
 namespace {
 
 const Box3 kStock{{0, 0, 0}, {100, 60, 30}};
@@ -36,7 +36,7 @@ TEST(CutterPath, RapidsKeepOutOfTheStockForAnyAxis) {
   std::mt19937 random(7);
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> unit;
-  const std::map<int, Tool> tools{{1, Tool("flat", {}, Profile({{{3, 0}, {}}, {{3, 40}, {}}}))}};
+  const std::map<int, Tool> tools{{1, Tool("flat", {}, tool::Profile({{{3, 0}, {}}, {{3, 40}, {}}}))}};
   for (int round = 0; round < 300; ++round) {
     std::vector<CutterPath> paths;
     for (int k = 0; k < 3; ++k) {
@@ -89,4 +89,4 @@ TEST(CutterPath, NamesWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace riffler::cutter_path_test
+}  // namespace riffler::nc::cutter_path_test

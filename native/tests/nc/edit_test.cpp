@@ -9,7 +9,7 @@
 #include "riffler/tool/cutters.hpp"
 #include "support/error_of.hpp"
 
-namespace riffler::edit_test {
+namespace riffler::nc::edit_test {
 namespace {
 
 using test::error_of;
@@ -84,4 +84,4 @@ TEST(Edit, RetooledRenamesRowsAndTools) {
 }
 
 }  // namespace
-}  // namespace riffler::edit_test
+}  // namespace riffler::nc::edit_test

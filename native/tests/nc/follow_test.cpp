@@ -11,7 +11,7 @@
 #include "riffler/nc/write/writer.hpp"
 #include "support/nc_reading.hpp"
 
-namespace riffler::follow_test {
+namespace riffler::nc::follow_test {
 namespace {
 
 using test::read_nc_text;
@@ -157,4 +157,4 @@ TEST(Follow, RotaryAxesOfADogLegTurnAtTheirOwnRate) {
 }
 
 }  // namespace
-}  // namespace riffler::follow_test
+}  // namespace riffler::nc::follow_test

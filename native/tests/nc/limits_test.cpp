@@ -15,7 +15,7 @@
 #include "support/nc_blocks.hpp"
 #include "support/tilted.hpp"
 
-namespace riffler::limits_test {
+namespace riffler::nc::limits_test {
 namespace {
 
 const std::vector<double> kOrigin{0, 0, 0};
@@ -405,4 +405,4 @@ TEST(PolePassages, AreReportedWithWhatTheyCost) {
 }
 
 }  // namespace
-}  // namespace riffler::limits_test
+}  // namespace riffler::nc::limits_test

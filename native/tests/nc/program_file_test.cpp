@@ -16,7 +16,7 @@
 #include "stress/random.hpp"
 #include "stress/thread_count.hpp"
 
-namespace riffler::program_file_test {
+namespace riffler::nc::program_file_test {
 namespace {
 
 using File = std::vector<std::uint8_t>;
@@ -34,7 +34,7 @@ Program sample(int rows, std::uint64_t seed = 81) {
   }
   p.tools.emplace(1, cutters::ball(6, 30).with_shank({{30, 3, 40, 4}}).with_holder({{40, 9, 60, 9}, {60, 20, 90, 20}}));
   p.tools.emplace(2, cutters::taper(1, 0.2, 12, 60).named("taper \xC3\xA9"));
-  p.tools.emplace(70, Tool("profile", {}, Profile({{{2, 0}, {}}, {{3, 1}, Vec2{2, 1}}, {{3, 20}, {}}})));
+  p.tools.emplace(70, Tool("profile", {}, tool::Profile({{{2, 0}, {}}, {{3, 1}, Vec2{2, 1}}, {{3, 20}, {}}})));
   p.provenance = {{"part", "Ünal's"}, {"", ""}, {"part", "twice"}};
   return p;
 }
@@ -55,7 +55,7 @@ void expect_same(const Tool& a, const Tool& b) {
   for (const auto pieces : {&Tool::shank, &Tool::holder}) {
     ASSERT_EQ((a.*pieces)().size(), (b.*pieces)().size());
     for (std::size_t k = 0; k < (a.*pieces)().size(); ++k)
-      EXPECT_EQ(std::memcmp(&(a.*pieces)()[k], &(b.*pieces)()[k], sizeof(Frustum)), 0);
+      EXPECT_EQ(std::memcmp(&(a.*pieces)()[k], &(b.*pieces)()[k], sizeof(tool::Frustum)), 0);
   }
 }
 
@@ -237,4 +237,4 @@ TEST(ProgramFile, IsWholeOrNotThere) {
 }
 
 }  // namespace
-}  // namespace riffler::program_file_test
+}  // namespace riffler::nc::program_file_test

@@ -6,7 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
-namespace riffler::program_test {
+namespace riffler::nc::program_test {
 namespace {
 
 std::string error_of(const Program& program, const Move& move) {
@@ -58,4 +58,4 @@ TEST(Program, RunsChangeWithTheTool) {
 }
 
 }  // namespace
-}  // namespace riffler::program_test
+}  // namespace riffler::nc::program_test

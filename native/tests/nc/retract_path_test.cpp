@@ -8,7 +8,7 @@
 #include "riffler/tool/cutters.hpp"
 #include "support/tilted.hpp"
 
-namespace riffler::retract_path_test {
+namespace riffler::nc::retract_path_test {
 namespace {
 
 using test::tilted;
@@ -84,4 +84,4 @@ TEST(WayOut, SweptBoxHoldsTheWholeToolOnItsWay) {
 }
 
 }  // namespace
-}  // namespace riffler::retract_path_test
+}  // namespace riffler::nc::retract_path_test

@@ -9,7 +9,7 @@
 
 #include "riffler/base/error.hpp"
 
-namespace riffler::source_test {
+namespace riffler::nc::source_test {
 namespace {
 
 class NcSourceFile : public testing::Test {
@@ -65,4 +65,4 @@ TEST(NcSource, RefusesWhatIsNoFile) {
 }
 
 }  // namespace
-}  // namespace riffler::source_test
+}  // namespace riffler::nc::source_test

@@ -7,7 +7,7 @@
 #include "riffler/pen/arms/motors.hpp"
 #include "support/pens.hpp"
 
-namespace riffler::capability_test {
+namespace riffler::pen::capability_test {
 namespace {
 
 DeviceCapability three_motors() {
@@ -78,4 +78,4 @@ TEST(Capability, PensLimitsAndResolutionsAreItsOwn) {
 }
 
 }  // namespace
-}  // namespace riffler::capability_test
+}  // namespace riffler::pen::capability_test

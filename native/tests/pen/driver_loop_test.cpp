@@ -11,7 +11,7 @@
 #include "stress/random.hpp"
 #include "support/error_of.hpp"
 
-namespace riffler::driver_loop_test {
+namespace riffler::pen::driver_loop_test {
 namespace {
 
 using test::ConstantPush;
@@ -353,4 +353,4 @@ TEST(DriverLoop, WrongSettingsNameTheField) {
 }
 
 }  // namespace
-}  // namespace riffler::driver_loop_test
+}  // namespace riffler::pen::driver_loop_test

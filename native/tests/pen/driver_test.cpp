@@ -11,7 +11,7 @@
 #include "pen/hid_pen.hpp"
 #include "riffler/pen/published.hpp"
 
-namespace riffler::driver_test {
+namespace riffler::pen::driver_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -64,7 +64,7 @@ class ByteModel final : public HidModel {
     return {static_cast<unsigned>(bytes.size()), 0, 0, 0};
   }
   PenSample sample(double) noexcept override { return sample_; }
-  std::size_t push(const SafeWrench& safe, double, std::span<std::uint8_t> bytes) noexcept override {
+  std::size_t push(const haptics::SafeWrench& safe, double, std::span<std::uint8_t> bytes) noexcept override {
     bytes[0] = safe.wrench().force.x != 0;
     return 1;
   }
@@ -178,8 +178,8 @@ TEST(HeldPush, AJumpTakesItAwayUntilItIsReset) {
   held.sample.pose.tip.x += 50;
   held.run(1);
   EXPECT_EQ(held.force, 0);
-  EXPECT_EQ(held.push.state(), ForceState::Tripped);
-  EXPECT_EQ(held.push.cause(), Cause::Jump);
+  EXPECT_EQ(held.push.state(), haptics::ForceState::Tripped);
+  EXPECT_EQ(held.push.cause(), haptics::Cause::Jump);
   held.run(3000);
   EXPECT_EQ(held.force, 0);
   held.push.reset();
@@ -202,16 +202,16 @@ TEST(HeldPush, AfterAnInterruptionItRampsAgainFromWhereverTheHandIs) {
   held.run(1000);
   held.sample.pose.tip.x += 50;
   held.push.step(held.sample, held.now, 0);
-  EXPECT_EQ(held.push.state(), ForceState::Ramp);
+  EXPECT_EQ(held.push.state(), haptics::ForceState::Ramp);
   held.run(50);
-  EXPECT_EQ(held.push.cause(), Cause::None);
+  EXPECT_EQ(held.push.cause(), haptics::Cause::None);
   EXPECT_LT(held.force, 0.15);
 }
 
 /// A step that knows when it is called, and by how many.
 class WatchedStep final : public PenStep {
  public:
-  SafeWrench step(const PenSample&, double, double dt) noexcept override {
+  haptics::SafeWrench step(const PenSample&, double, double dt) noexcept override {
     if (gone) ++late;
     if (calls++ == 0) first_dt = dt;
     if (calls == 2) second_dt = dt;
@@ -248,7 +248,7 @@ TEST(Driver, WithAnotherStepPushIsRefusedAndWithNoneItPushesAgain) {
   ASSERT_TRUE(pen->set_step(step));
   EXPECT_EQ(pen->push(wrench).reason, NotPushed::NoMotors);
   EXPECT_EQ(pen->push(wrench).missing, wrench);
-  EXPECT_EQ(pen->force_state(), ForceState::Off);
+  EXPECT_EQ(pen->force_state(), haptics::ForceState::Off);
   EXPECT_TRUE(eventually([&] { return step->calls > 3 && pen->status().wrench == Wrench{}; }));
   ASSERT_TRUE(pen->set_step(nullptr));
   EXPECT_EQ(step.use_count(), 1);
@@ -353,4 +353,4 @@ TEST(Published, ReadersNeverSeeAMixture) {
 }
 
 }  // namespace
-}  // namespace riffler::driver_test
+}  // namespace riffler::pen::driver_test

@@ -15,7 +15,7 @@ namespace riffler::test {
 
 using Report = std::vector<std::uint8_t>;
 
-class VirtualClock final : public Clock {
+class VirtualClock final : public pen::Clock {
  public:
   double now() noexcept override { return time; }
   void wait(double seconds) noexcept override { time += seconds; }
@@ -43,7 +43,7 @@ struct FakeDevice {
   void send(double time, Report bytes) { events.push_back({time, std::move(bytes)}); }
 };
 
-class FakeTransport final : public Transport {
+class FakeTransport final : public pen::Transport {
  public:
   explicit FakeTransport(FakeDevice& device) : device_(device) { ++device_.open; }
   ~FakeTransport() override { --device_.open; }
@@ -78,12 +78,12 @@ class FakeTransport final : public Transport {
 };
 
 /// Answers at once, and remembers when it was asked.
-class FakeConnector final : public Connector {
+class FakeConnector final : public pen::Connector {
  public:
   explicit FakeConnector(FakeDevice& device) : device_(device) {}
   void begin() noexcept override { asked.push_back(device_.clock->time); }
-  Answer poll(std::unique_ptr<Transport>& transport, OpenProblem& problem) noexcept override {
-    if (!there) return problem = OpenProblem::NoFile, Answer::Failed;
+  Answer poll(std::unique_ptr<pen::Transport>& transport, pen::OpenProblem& problem) noexcept override {
+    if (!there) return problem = pen::OpenProblem::NoFile, Answer::Failed;
     transport = std::make_unique<FakeTransport>(device_);
     return Answer::Opened;
   }
@@ -153,18 +153,18 @@ class FirmwarePen {
 };
 
 /// What has passed a gate that is wide open.
-inline SafeWrench let_through(const Wrench& wrench) {
-  Safety safety{{.ramp = 1e-4, .rest = 0, .wrench_ceiling = {1e9, 1e9}}};
+inline haptics::SafeWrench let_through(const Wrench& wrench) {
+  haptics::Safety safety{{.ramp = 1e-4, .rest = 0, .wrench_ceiling = {1e9, 1e9}}};
   safety.switch_on();
   safety.observe({.dt = 1e-3, .homed = true, .dead_man = true});
   return safety.release(wrench);
 }
 
 /// A step that always asks for the same, and counts. Its gate opens at once, from the second step on.
-class ConstantPush final : public PenStep {
+class ConstantPush final : public pen::PenStep {
  public:
   ConstantPush() { safety_.switch_on(); }
-  SafeWrench step(const PenSample& sample, double now, double dt) noexcept override {
+  haptics::SafeWrench step(const pen::PenSample& sample, double now, double dt) noexcept override {
     ++steps, last = sample, last_now = now, last_dt = dt;
     safety_.observe({.dt = 1e-3, .homed = true, .dead_man = holds});
     return safety_.release(wrench);
@@ -172,11 +172,11 @@ class ConstantPush final : public PenStep {
   bool holds = true;  // the dead-man switch
   Wrench wrench{};
   int steps = 0;
-  PenSample last{};
+  pen::PenSample last{};
   double last_now = 0, last_dt = 0;
 
  private:
-  Safety safety_{{.ramp = 1e-4, .rest = 0}};
+  haptics::Safety safety_{{.ramp = 1e-4, .rest = 0}};
 };
 
 }  // namespace riffler::test

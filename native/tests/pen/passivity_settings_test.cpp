@@ -12,7 +12,7 @@
 #include "stress/random.hpp"
 #include "support/pens.hpp"
 
-namespace riffler::passivity_settings_test {
+namespace riffler::pen::passivity_settings_test {
 namespace {
 
 /// Angles that limits of joints and elbows allow, each end on its own: the bounds ask for no grip.
@@ -30,7 +30,7 @@ struct Margin {
   double damping = 1e300, friction = 1e300, linear = 0, angular = 0;
 };
 
-Margin least_margin(const PenGeometry& pen, const PassivitySettings& s, int rounds) {
+Margin least_margin(const PenGeometry& pen, const haptics::PassivitySettings& s, int rounds) {
   const PenKinematics kinematics(pen);
   stress::Random random(5);
   Margin out;
@@ -73,7 +73,7 @@ Margin least_margin(const PenGeometry& pen, const PassivitySettings& s, int roun
 
 TEST(PassivitySettings, OfThePenHoldInEveryPostureAndAreNotFarFromTheWorst) {
   const PenGeometry pen = load_pen("riffler");
-  const PassivitySettings s = passivity_settings(pen);
+  const haptics::PassivitySettings s = passivity_settings(pen);
   s.validate();
   const Margin margin = least_margin(pen, s, 200'000);
   EXPECT_GE(margin.damping, 1);
@@ -87,7 +87,7 @@ TEST(PassivitySettings, OfThePenHoldInEveryPostureAndAreNotFarFromTheWorst) {
 
 TEST(PassivitySettings, OfLossesOnlyWhatIsNotMadeUpForIsCredited) {
   const PenGeometry pen = load_pen("riffler");
-  const PassivitySettings all = passivity_settings(pen), some = passivity_settings(pen, {1, 0.7});
+  const haptics::PassivitySettings all = passivity_settings(pen), some = passivity_settings(pen, {1, 0.7});
   EXPECT_NEAR(some.device_damping.linear, 0.3 * all.device_damping.linear, 1e-15);
   EXPECT_NEAR(some.device_friction.angular, 0.3 * all.device_friction.angular, 1e-12);
   EXPECT_EQ(some.resolution.linear, all.resolution.linear);
@@ -100,7 +100,7 @@ TEST(PassivitySettings, WhatIsNotSaidIsNothing) {
   EXPECT_EQ(passivity_settings(pen).device_friction.linear, 0);
   DeviceCapability device;
   device[Coordinate::Y].resolution = 0.1;
-  const PassivitySettings s = passivity_settings(device);
+  const haptics::PassivitySettings s = passivity_settings(device);
   s.validate();
   EXPECT_EQ(s.resolution.linear, 0.1);
   EXPECT_EQ(s.resolution.angular, 0);
@@ -114,4 +114,4 @@ TEST(PassivitySettings, FrictionOfTheShippedPenIsThatAboutTheUprightAxisOfTheStr
 }
 
 }  // namespace
-}  // namespace riffler::passivity_settings_test
+}  // namespace riffler::pen::passivity_settings_test

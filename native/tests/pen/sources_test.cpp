@@ -14,7 +14,7 @@
 #include "support/error_of.hpp"
 #include "support/hid_devices.hpp"
 
-namespace riffler::sources_test {
+namespace riffler::pen::sources_test {
 namespace {
 
 using test::error_of;
@@ -221,4 +221,4 @@ TEST(HidList, TheRuleNamesTheProductWhereItMay) {
 }
 
 }  // namespace
-}  // namespace riffler::sources_test
+}  // namespace riffler::pen::sources_test

@@ -4,7 +4,7 @@
 
 #include "stress/random.hpp"
 
-namespace riffler::cc_frame_test {
+namespace riffler::plan::cc_frame_test {
 namespace {
 
 void expect_frame(const CcFrame& f, const Vec3& normal) {
@@ -77,4 +77,4 @@ TEST(CcFrame, OfAPathHalvesTheWallsAndRunsRoundALoop) {
 }
 
 }  // namespace
-}  // namespace riffler::cc_frame_test
+}  // namespace riffler::plan::cc_frame_test

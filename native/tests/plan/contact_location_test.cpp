@@ -7,7 +7,7 @@
 #include "riffler/plan/cc_frame.hpp"
 #include "stress/random.hpp"
 
-namespace riffler::contact_location_test {
+namespace riffler::plan::contact_location_test {
 namespace {
 
 double distance(const reference::CutterDistance& cutter, const Pose& pose, const Vec3& p) {
@@ -94,7 +94,7 @@ TEST(ContactLocation, LiesAheadInTheFeedWhereTheContactCircleIsFree) {
   // It is the limit of leaning forward, and without any feed it is still one place.
   const Vec3 leaning = glm::normalize(Vec3(0, 1e-6, 1));
   EXPECT_LT(glm::length(location_of_contact(fillet, contact, up, leaning, feed).tip - Vec3(1, -1, 3)), 1e-5);
-  EXPECT_TRUE(finite(location_of_contact(fillet, contact, up, up, {0, 0, 0}).tip));
+  EXPECT_TRUE(geom::finite(location_of_contact(fillet, contact, up, up, {0, 0, 0}).tip));
 }
 
 TEST(ContactLocation, RefusesAnAxisIntoThePart) {
@@ -123,10 +123,10 @@ PencilPath valley(double half_angle, double radius) {
 }
 
 /// Points of a profile, densely, from the angles of its arcs.
-std::vector<Vec2> dense_profile(const Profile& profile) {
+std::vector<Vec2> dense_profile(const tool::Profile& profile) {
   std::vector<Vec2> out{{0, 0}};
   Vec2 from{0, 0};
-  for (const ProfileSegment& s : profile.segments()) {
+  for (const tool::ProfileSegment& s : profile.segments()) {
     for (int i = 1; i <= 4000; ++i) {
       const double t = i / 4000.0;
       if (s.centre) {
@@ -177,4 +177,4 @@ TEST(ContactLocation, OfABallByBothPlanesIsThatOfItsCentre) {
 }
 
 }  // namespace
-}  // namespace riffler::contact_location_test
+}  // namespace riffler::plan::contact_location_test

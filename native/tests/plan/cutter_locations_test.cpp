@@ -10,7 +10,7 @@
 #include "riffler/plan/orientation.hpp"
 #include "riffler/tool/cutters.hpp"
 
-namespace riffler::cutter_locations_test {
+namespace riffler::plan::cutter_locations_test {
 namespace {
 
 const Vec3 kUp(0, 0, 1);
@@ -21,7 +21,7 @@ struct Corner {
   PencilPath path;
 };
 Corner corner(double radius, double height, int points) {
-  Corner out{both(box_mesh({0, -20, -5}, {30, 20, 0}), box_mesh({-10, -20, -5}, {0, 20, height})), {}};
+  Corner out{both(mesh::box_mesh({0, -20, -5}, {30, 20, 0}), mesh::box_mesh({-10, -20, -5}, {0, 20, height})), {}};
   out.path.radius = radius;
   for (int k = 0; k < points; ++k) {
     const double y = -10 + 20.0 * k / (points - 1);
@@ -36,7 +36,8 @@ TEST(CutterLocations, OfAFreeCornerAreTheBallsPath) {
   const Corner c = corner(3, 10, 5);
   const Vec3 axis = glm::normalize(Vec3(0.5, 0, 1));
   const PencilPath path = oriented(c.path, {{0, axis}}, Interpolation::Smooth);
-  const CutterLocations found = cutter_locations(path, Assembly(cutters::ball(6, 30)), Collider(c.part), {});
+  const CutterLocations found =
+      cutter_locations(path, collide::Assembly(cutters::ball(6, 30)), collide::Collider(c.part), {});
   EXPECT_TRUE(found.good());
   ASSERT_EQ(found.rows.size(), 5U);
   for (std::size_t k = 0; k < 5; ++k) {
@@ -53,7 +54,8 @@ TEST(CutterLocations, OfALoopEndWithItsFirstRow) {
   const PencilPath path = oriented(c.path, {{0, kUp}}, Interpolation::Smooth);
   LocationRule rule;
   rule.tolerance = 0.5;
-  const CutterLocations found = cutter_locations(path, Assembly(cutters::ball(6, 30)), Collider(c.part), rule);
+  const CutterLocations found =
+      cutter_locations(path, collide::Assembly(cutters::ball(6, 30)), collide::Collider(c.part), rule);
   ASSERT_EQ(found.rows.size(), 4U);
   EXPECT_EQ(found.rows.back().pose.tip, found.rows.front().pose.tip);
 }
@@ -61,12 +63,12 @@ TEST(CutterLocations, OfALoopEndWithItsFirstRow) {
 TEST(CutterLocations, InsertWhereTheWayBetweenGouges) {
   // A post stands in the corner half way between two points of the path.
   Corner c = corner(3, 10, 2);
-  c.part = both(c.part, box_mesh({2.5, -0.5, -1}, {3.5, 0.5, 2}));
-  const Assembly ball(cutters::ball(6, 30));
+  c.part = both(c.part, mesh::box_mesh({2.5, -0.5, -1}, {3.5, 0.5, 2}));
+  const collide::Assembly ball(cutters::ball(6, 30));
   const PencilPath path = oriented(c.path, {{0, glm::normalize(Vec3(0.5, 0, 1))}}, Interpolation::Smooth);
   LocationRule rule;
   rule.tolerance = 0.2;
-  const Collider collider(c.part);
+  const collide::Collider collider(c.part);
   const CutterLocations found = cutter_locations(path, ball, collider, rule);
   EXPECT_TRUE(found.good());
   EXPECT_GT(found.rows.size(), 3U);
@@ -85,11 +87,12 @@ TEST(CutterLocations, InsertWhereTheWayBetweenGouges) {
 
 TEST(CutterLocations, LeaveOutWhatNoLiftFreesAndSayWhy) {
   const Corner c = corner(3, 10, 3);
-  const Mesh roof = both(c.part, box_mesh({-10, -20, 15}, {30, 20, 20}));
+  const Mesh roof = both(c.part, mesh::box_mesh({-10, -20, 15}, {30, 20, 20}));
   const PencilPath path = oriented(c.path, {{0, kUp}}, Interpolation::Smooth);
   LocationRule rule;
   rule.max_lift = 4;
-  const CutterLocations found = cutter_locations(path, Assembly(cutters::ball(6, 30)), Collider(roof), rule);
+  const CutterLocations found =
+      cutter_locations(path, collide::Assembly(cutters::ball(6, 30)), collide::Collider(roof), rule);
   EXPECT_FALSE(found.good());
   EXPECT_TRUE(found.rows.empty());
   ASSERT_EQ(found.blocked.size(), 3U);
@@ -99,8 +102,8 @@ TEST(CutterLocations, LeaveOutWhatNoLiftFreesAndSayWhy) {
 
 TEST(CutterLocations, RefuseAPathWithoutAxesAndSettingsWithoutMeaning) {
   const Corner c = corner(3, 10, 2);
-  const Collider collider(c.part);
-  const Assembly ball(cutters::ball(6, 30));
+  const collide::Collider collider(c.part);
+  const collide::Assembly ball(cutters::ball(6, 30));
   EXPECT_THROW(cutter_locations(c.path, ball, collider, {}), std::invalid_argument);
   const PencilPath path = oriented(c.path, {{0, kUp}}, Interpolation::Slerp);
   for (const auto& spoil : std::initializer_list<std::function<void(LocationRule&)>>{
@@ -123,7 +126,7 @@ TEST(OrientationMap, InACornerIsTheQuadrantBetweenTheWalls) {
   const Corner c = corner(3, 60, 3);
   const Tool tool = cutters::ball(6, 30);
   const MapRule rule = coarse();
-  const OrientationMap map = orientation_maps(c.path, {1}, Assembly(tool), Collider(c.part), rule)[0];
+  const OrientationMap map = orientation_maps(c.path, {1}, collide::Assembly(tool), collide::Collider(c.part), rule)[0];
   EXPECT_LT(glm::length(map.frame.x - Vec3(0, 1, 0)), 1e-12);
   EXPECT_LT(glm::length(map.frame.z - glm::normalize(Vec3(1, 0, 1))), 1e-12);
   for (std::size_t i = 0; i < map.axes.size(); ++i) {
@@ -145,9 +148,10 @@ TEST(OrientationMap, ComputesNothingBeyondTheMachinesCone) {
   const Corner c = corner(3, 60, 3);
   MapRule rule = coarse();
   rule.limit = AxisLimit{kUp, 0.5};
-  const OrientationMap map = orientation_maps(c.path, {1}, Assembly(cutters::ball(6, 30)), Collider(c.part), rule)[0];
+  const OrientationMap map =
+      orientation_maps(c.path, {1}, collide::Assembly(cutters::ball(6, 30)), collide::Collider(c.part), rule)[0];
   for (std::size_t i = 0; i < map.axes.size(); ++i) {
-    EXPECT_EQ(map.state[i] == OrientationMap::State::Beyond, angle_between(map.axes[i], kUp) > 0.5 + 1e-12);
+    EXPECT_EQ(map.state[i] == OrientationMap::State::Beyond, geom::angle_between(map.axes[i], kUp) > 0.5 + 1e-12);
     EXPECT_EQ(std::isnan(map.clearance[i]), map.state[i] == OrientationMap::State::Beyond);
   }
 }
@@ -155,8 +159,9 @@ TEST(OrientationMap, ComputesNothingBeyondTheMachinesCone) {
 TEST(OrientationMap, SaysWhatIsInTheWayWhereNothingIsFree) {
   const Corner c = corner(3, 10, 3);
   // A lid 5 mm above the floor, and a ball of 6 mm under it.
-  const Mesh lid = both(c.part, box_mesh({-10, -20, 5}, {30, 20, 12}));
-  const OrientationMap map = orientation_maps(c.path, {1}, Assembly(cutters::ball(6, 20)), Collider(lid), coarse())[0];
+  const Mesh lid = both(c.part, mesh::box_mesh({-10, -20, 5}, {30, 20, 12}));
+  const OrientationMap map =
+      orientation_maps(c.path, {1}, collide::Assembly(cutters::ball(6, 20)), collide::Collider(lid), coarse())[0];
   EXPECT_FALSE(map.least_tilt().has_value());
   EXPECT_EQ(map.why_none().find("the cutter enters the part with every axis, at best by "), 0U) << map.why_none();
 }
@@ -167,30 +172,30 @@ TEST(LeastTilt, LeansJustAsFarAsAWallAsks) {
   TiltRule rule;
   rule.map = coarse();
   rule.max_change = 0.7;
-  const Assembly ball(cutters::ball(6, 30));
-  const TiltAnswer answer = least_tilt(c.path, ball, Collider(c.part), rule);
+  const collide::Assembly ball(cutters::ball(6, 30));
+  const TiltAnswer answer = least_tilt(c.path, ball, collide::Collider(c.part), rule);
   ASSERT_TRUE(answer.found) << answer.reason;
   for (const double angle : answer.angles) EXPECT_LT(angle, 1e-12) << "nothing is in the way of the bisector";
   EXPECT_LT(answer.cost, 1e-20);
-  const Mesh post = both(c.part, box_mesh({10, -1, 8}, {40, 1, 40}));
-  const TiltAnswer around = least_tilt(c.path, ball, Collider(post), rule);
+  const Mesh post = both(c.part, mesh::box_mesh({10, -1, 8}, {40, 1, 40}));
+  const TiltAnswer around = least_tilt(c.path, ball, collide::Collider(post), rule);
   ASSERT_TRUE(around.found) << around.reason;
   EXPECT_GT(around.angles[4], 0.1);
   for (std::size_t k = 1; k < around.axes.size(); ++k)
-    EXPECT_LE(angle_between(around.axes[k - 1], around.axes[k]), 0.7 + 1e-9);
+    EXPECT_LE(geom::angle_between(around.axes[k - 1], around.axes[k]), 0.7 + 1e-9);
   PencilPath loop = c.path;
   loop.closed = true;
-  const TiltAnswer round = least_tilt(loop, ball, Collider(post), rule);
+  const TiltAnswer round = least_tilt(loop, ball, collide::Collider(post), rule);
   ASSERT_TRUE(round.found) << round.reason;
-  EXPECT_LE(angle_between(round.axes.front(), round.axes.back()), 0.7 + 1e-9);
+  EXPECT_LE(geom::angle_between(round.axes.front(), round.axes.back()), 0.7 + 1e-9);
 }
 
 TEST(LeastTilt, NamesTheFirstPointWithoutAWay) {
   const Corner c = corner(3, 10, 5);
   TiltRule rule;
   rule.map = coarse();
-  const Mesh lid = both(c.part, box_mesh({-10, -4, 5}, {30, 20, 12}));
-  const TiltAnswer answer = least_tilt(c.path, Assembly(cutters::ball(6, 20)), Collider(lid), rule);
+  const Mesh lid = both(c.part, mesh::box_mesh({-10, -4, 5}, {30, 20, 12}));
+  const TiltAnswer answer = least_tilt(c.path, collide::Assembly(cutters::ball(6, 20)), collide::Collider(lid), rule);
   EXPECT_FALSE(answer.found);
   EXPECT_GT(answer.point, 0U);
   EXPECT_NE(answer.reason.find("no orientation is free"), std::string::npos) << answer.reason;
@@ -201,11 +206,13 @@ TEST(CutterLocations, SillyTolerancesAreRefusedAndLongWaysCanBeStopped) {
   const PencilPath path = oriented(c.path, {{0, glm::normalize(Vec3(-0.6, 0, 1))}}, Interpolation::Smooth);
   LocationRule rule;
   rule.tolerance = 1e-9;
-  EXPECT_THROW(cutter_locations(path, Assembly(cutters::ball(6, 30)), Collider(c.part), rule), std::invalid_argument);
+  EXPECT_THROW(cutter_locations(path, collide::Assembly(cutters::ball(6, 30)), collide::Collider(c.part), rule),
+               std::invalid_argument);
   rule.tolerance = 1e-6;
   rule.max_inserted = 1 << 30;
-  EXPECT_THROW(cutter_locations(path, Assembly(cutters::ball(6, 30)), Collider(c.part), rule), std::invalid_argument);
+  EXPECT_THROW(cutter_locations(path, collide::Assembly(cutters::ball(6, 30)), collide::Collider(c.part), rule),
+               std::invalid_argument);
 }
 
 }  // namespace
-}  // namespace riffler::cutter_locations_test
+}  // namespace riffler::plan::cutter_locations_test

@@ -6,7 +6,7 @@
 
 #include "riffler/tool/cutters.hpp"
 
-namespace riffler {
+namespace riffler::plan {
 
 inline std::vector<Tool> named_cutters() {
   return {cutters::ball(6, 30).named("ball"),
@@ -23,4 +23,4 @@ inline std::vector<Tool> named_cutters() {
           cutters::profile({{{6, 0}, {}}, {{6, 2}, {}}, {{2, 2}, {}}}, 20).named("disc on a neck")};
 }
 
-}  // namespace riffler
+}  // namespace riffler::plan

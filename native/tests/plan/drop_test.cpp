@@ -7,7 +7,7 @@
 #include "reference/cutter_distance.hpp"
 #include "stress/random.hpp"
 
-namespace riffler::drop_test {
+namespace riffler::plan::drop_test {
 namespace {
 
 Mesh triangle(const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -17,7 +17,7 @@ Mesh triangle(const Vec3& a, const Vec3& b, const Vec3& c) {
 }
 
 TEST(Drop, OnAFlatLandsOnIt) {
-  const Mesh plate = box_mesh({-10, -10, 0}, {10, 10, 4});
+  const Mesh plate = mesh::box_mesh({-10, -10, 0}, {10, 10, 4});
   for (const Tool& tool : named_cutters()) {
     const DropCutter drop(plate, tool);
     for (const Vec3& p : {Vec3(0, 0, 0), Vec3(3, -2, 100), Vec3(10, 10, 0)}) {
@@ -29,7 +29,7 @@ TEST(Drop, OnAFlatLandsOnIt) {
 }
 
 TEST(Drop, BesideAnUprightWallLandsOnItsEdge) {
-  const Mesh plate = box_mesh({-10, -10, 0}, {10, 10, 4});
+  const Mesh plate = mesh::box_mesh({-10, -10, 0}, {10, 10, 4});
   const DropCutter ball(plate, cutters::ball(6, 30)), flat(plate, cutters::flat(6, 30));
   EXPECT_NEAR(ball({12, 0, 0}).height, 4 - 3 + std::sqrt(9 - 4), 1e-12);
   EXPECT_NEAR(flat({13, 0, 0}).height, 4, 1e-12) << "touching counts";
@@ -39,9 +39,9 @@ TEST(Drop, BesideAnUprightWallLandsOnItsEdge) {
 
 TEST(Drop, HangsByTheHolderWhereThatComesFirst) {
   const Tool tool = cutters::ball(6, 20).with_holder({{20, 12, 60, 12}});
-  const DropCutter drop(box_mesh({8, -10, 0}, {12, 10, 50}), tool);
+  const DropCutter drop(mesh::box_mesh({8, -10, 0}, {12, 10, 50}), tool);
   EXPECT_NEAR(drop({0, 0, 0}).height, 30, 1e-12);
-  EXPECT_EQ(drop({0, 0, 0}).part, Part::Holder);
+  EXPECT_EQ(drop({0, 0, 0}).part, tool::Part::Holder);
 }
 
 TEST(Drop, OfNeedlesAndTrianglesWithoutAreaIsTheirEdge) {
@@ -86,7 +86,8 @@ TEST(Drop, TouchesAndDoesNotEnterAnyTriangle) {
 
 TEST(Drop, AlongAnyAxisIsThatOfTheTurnedPart) {
   stress::Random random(6);
-  const Mesh hills = sheet_mesh(12, 30, [](double x, double y) { return 2 * std::sin(0.5 * x) * std::cos(0.4 * y); });
+  const Mesh hills =
+      mesh::sheet_mesh(12, 30, [](double x, double y) { return 2 * std::sin(0.5 * x) * std::cos(0.4 * y); });
   for (const Tool& tool : named_cutters()) {
     const Vec3 axis = random.direction(), x = random.square_to(axis);
     const Mat3 turn(x, glm::cross(axis, x), axis);
@@ -101,7 +102,8 @@ TEST(Drop, AlongAnyAxisIsThatOfTheTurnedPart) {
 }
 
 TEST(Drop, LooksOnlyAtWhatIsNearAndIsTheSameInBulk) {
-  const Mesh hills = sheet_mesh(200, 100, [](double x, double y) { return 2 * std::sin(0.5 * x) * std::cos(0.4 * y); });
+  const Mesh hills =
+      mesh::sheet_mesh(200, 100, [](double x, double y) { return 2 * std::sin(0.5 * x) * std::cos(0.4 * y); });
   const DropCutter drop(hills, cutters::ball(6, 30));
   std::vector<Vec3> points;
   for (int n = 0; n < 500; ++n) points.emplace_back(5 + 0.18 * n, 50 + 0.07 * n, 0);
@@ -112,4 +114,4 @@ TEST(Drop, LooksOnlyAtWhatIsNearAndIsTheSameInBulk) {
 }
 
 }  // namespace
-}  // namespace riffler::drop_test
+}  // namespace riffler::plan::drop_test

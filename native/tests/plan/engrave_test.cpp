@@ -8,7 +8,7 @@
 
 #include "riffler/tool/cutters.hpp"
 
-namespace riffler::engrave_test {
+namespace riffler::plan::engrave_test {
 namespace {
 
 Mesh box(double half) {
@@ -121,4 +121,4 @@ TEST(Engrave, BadInputNamesTheCurveAndItsPoint) {
 }
 
 }  // namespace
-}  // namespace riffler::engrave_test
+}  // namespace riffler::plan::engrave_test

@@ -4,7 +4,7 @@
 
 #include "stress/random.hpp"
 
-namespace riffler::half_spaces_test {
+namespace riffler::plan::half_spaces_test {
 namespace {
 
 using Space = HalfSpace<Vec3>;
@@ -81,4 +81,4 @@ TEST(HalfSpaces, WallsThatLeaveNoRoomAreToldApartFromCoincidentOnes) {
 }
 
 }  // namespace
-}  // namespace riffler::half_spaces_test
+}  // namespace riffler::plan::half_spaces_test

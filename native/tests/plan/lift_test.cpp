@@ -10,7 +10,7 @@
 #include "stress/random.hpp"
 #include "support/effort.hpp"
 
-namespace riffler::lift_test {
+namespace riffler::plan::lift_test {
 namespace {
 
 const Vec3 kUp(0, 0, 1);
@@ -21,7 +21,7 @@ TEST(OffsetToolColumns, EndWhereTheDistanceIsTheOneAsked) {
     const Tool tool = cutter.with_shank({{cutter.length(), 3, cutter.length() + 10, 5}})
                           .with_holder({{cutter.length() + 10, 12, cutter.length() + 30, 9}});
     SCOPED_TRACE(tool.name());
-    const Outline outline(tool);
+    const tool::Outline outline(tool);
     for (int n = 0; n < 2000; ++n) {
       const double c = n % 3 ? random.uniform(-0.5, 2) : 0;
       const OffsetToolColumns columns(outline, c);
@@ -40,12 +40,12 @@ TEST(OffsetToolColumns, EndWhereTheDistanceIsTheOneAsked) {
 
 /// From z = 0 down, as large as asked.
 Mesh plate(double size) {
-  return box_mesh({-size, -size, -5}, {size, size, 0});
+  return mesh::box_mesh({-size, -size, -5}, {size, size, 0});
 }
 
 TEST(Lift, IsNothingWhereTheToolIsFreeOrTouches) {
-  const Collider collider(plate(50));
-  const Assembly ball(cutters::ball(6, 30));
+  const collide::Collider collider(plate(50));
+  const collide::Assembly ball(cutters::ball(6, 30));
   for (const double z : {0.0, 1e-9, 4.0}) {
     const Lift l = lift(collider, ball, {{1, 2, z}, kUp}, {});
     EXPECT_TRUE(l.free);
@@ -56,8 +56,8 @@ TEST(Lift, IsNothingWhereTheToolIsFreeOrTouches) {
 }
 
 TEST(Lift, FromAPlateIsTheDepthOverTheCosine) {
-  const Collider collider(plate(50));
-  const Assembly ball(cutters::ball(6, 30));
+  const collide::Collider collider(plate(50));
+  const collide::Assembly ball(cutters::ball(6, 30));
   for (const double angle : {0.0, 0.3, 1.0, 1.4})
     for (const double depth : {1e-4, 0.01, 0.5, 2.0})
       for (const double clearance : {0.0, 0.7, -5e-5}) {
@@ -66,7 +66,7 @@ TEST(Lift, FromAPlateIsTheDepthOverTheCosine) {
         EXPECT_TRUE(l.free);
         EXPECT_NEAR(l.height, (depth + clearance) / std::cos(angle), 1e-5) << angle << " " << depth;
         EXPECT_LT(l.evaluations, 25) << angle << " " << depth << " " << clearance;
-        EXPECT_EQ(l.touch, Touch::Cutter);
+        EXPECT_EQ(l.touch, collide::Touch::Cutter);
       }
 }
 
@@ -74,13 +74,13 @@ TEST(Lift, AlongAnUprightWallIsItsHeightInFewSteps) {
   // The tool's side is 1e-4, 0.01 or 1 mm in a wall whose top is at z = 40; the tip starts at 0.
   for (const double depth : {2e-6, 1e-4, 0.01, 1.0})
     for (const int times : {0, 3}) {
-      const Mesh wall = subdivided(box_mesh({0, -30, -10}, {10, 30, 40}), times);
-      const Collider collider(wall);
-      const Lift l = lift(collider, Assembly(cutters::flat(6, 20)), {{-3 + depth, 0.1, 0}, kUp}, {});
+      const Mesh wall = subdivided(mesh::box_mesh({0, -30, -10}, {10, 30, 40}), times);
+      const collide::Collider collider(wall);
+      const Lift l = lift(collider, collide::Assembly(cutters::flat(6, 20)), {{-3 + depth, 0.1, 0}, kUp}, {});
       EXPECT_TRUE(l.free);
       EXPECT_NEAR(l.height, 40, 1e-6) << depth;
       EXPECT_LT(l.evaluations, 40) << depth << " " << times;
-      const Lift b = lift(collider, Assembly(cutters::ball(6, 20)), {{-3 + depth, 0.1, 0}, kUp}, {});
+      const Lift b = lift(collider, collide::Assembly(cutters::ball(6, 20)), {{-3 + depth, 0.1, 0}, kUp}, {});
       EXPECT_NEAR(b.height, 40 - (3 - std::sqrt(9 - (3 - depth) * (3 - depth))), 1e-5) << depth;
       EXPECT_LT(b.evaluations, 60) << depth << " " << times;
     }
@@ -88,14 +88,14 @@ TEST(Lift, AlongAnUprightWallIsItsHeightInFewSteps) {
 
 TEST(Lift, StopsInTheFirstFreePlaceUnderARoof) {
   // Free between z = 0 and a roof at 12: the flat cutter of length 5, sunk 1 mm, fits between.
-  const Mesh part = both(plate(20), box_mesh({-20, -20, 12}, {20, 20, 15}));
-  const Collider collider(part);
-  const Assembly stub(cutters::flat(6, 5));
+  const Mesh part = both(plate(20), mesh::box_mesh({-20, -20, 12}, {20, 20, 15}));
+  const collide::Collider collider(part);
+  const collide::Assembly stub(cutters::flat(6, 5));
   const Lift l = lift(collider, stub, {{0, 0, -1}, kUp}, {});
   EXPECT_TRUE(l.free);
   EXPECT_NEAR(l.height, 1, 1e-6);
   // 13 mm long it does not fit, and comes out above the roof; not within 10 mm, which is said.
-  const Assembly longer(cutters::flat(6, 13));
+  const collide::Assembly longer(cutters::flat(6, 13));
   const Lift over = lift(collider, longer, {{0, 0, -1}, kUp}, {});
   EXPECT_TRUE(over.free);
   EXPECT_NEAR(over.height, 16, 1e-6);
@@ -106,16 +106,16 @@ TEST(Lift, StopsInTheFirstFreePlaceUnderARoof) {
 
 TEST(Lift, IntoTheMaterialIsNoWayOut) {
   // A cutter of 5 mm under a block 40 mm thick: above its lower face nothing of the surface is near.
-  const Collider collider(both(plate(20), box_mesh({-20, -20, 4}, {20, 20, 44})));
-  const Lift l = lift(collider, Assembly(cutters::flat(6, 5)), {{0, 0, -1}, kUp}, {});
+  const collide::Collider collider(both(plate(20), mesh::box_mesh({-20, -20, 4}, {20, 20, 44})));
+  const Lift l = lift(collider, collide::Assembly(cutters::flat(6, 5)), {{0, 0, -1}, kUp}, {});
   EXPECT_FALSE(l.free);
   EXPECT_TRUE(l.swallowed);
-  EXPECT_TRUE(lift(collider, Assembly(cutters::flat(6, 3)), {{0, 0, -1}, kUp}, {}).free);
+  EXPECT_TRUE(lift(collider, collide::Assembly(cutters::flat(6, 3)), {{0, 0, -1}, kUp}, {}).free);
 }
 
 TEST(Lift, OfAToolThatStandsInTheMaterialIsNotFreeThoughItTouchesNothing) {
-  const Collider block(box_mesh({-20, -20, 0}, {20, 20, 40}));
-  const Lift l = lift(block, Assembly(cutters::flat(6, 5)), {{0, 0, 15}, kUp}, {});
+  const collide::Collider block(mesh::box_mesh({-20, -20, 0}, {20, 20, 40}));
+  const Lift l = lift(block, collide::Assembly(cutters::flat(6, 5)), {{0, 0, 15}, kUp}, {});
   EXPECT_GT(l.before, 0);
   EXPECT_FALSE(l.free);
   EXPECT_TRUE(l.swallowed);
@@ -124,45 +124,47 @@ TEST(Lift, OfAToolThatStandsInTheMaterialIsNotFreeThoughItTouchesNothing) {
 
 TEST(Lift, InABowlThatIsOpenAboveIsFree) {
   // The bowl surrounds the tool on more than half of all sides, but with its normals towards it.
-  Mesh bowl = box_mesh({-20, -20, 0}, {20, 20, 40});
+  Mesh bowl = mesh::box_mesh({-20, -20, 0}, {20, 20, 40});
   std::erase_if(bowl.triangles, [&](const Vec3i& t) {
     return bowl.vertices[t.x].z > 1 && bowl.vertices[t.y].z > 1 && bowl.vertices[t.z].z > 1;
   });
   for (Vec3i& t : bowl.triangles) std::swap(t.y, t.z);
-  const Lift l = lift(Collider(bowl), Assembly(cutters::flat(6, 5)), {{0, 0, 2}, kUp}, {});
+  const Lift l = lift(collide::Collider(bowl), collide::Assembly(cutters::flat(6, 5)), {{0, 0, 2}, kUp}, {});
   EXPECT_TRUE(l.free);
   EXPECT_EQ(l.height, 0);
 }
 
 TEST(Lift, SaysWhichPieceIsInTheWay) {
-  const Mesh wall = box_mesh({10, -30, -10}, {20, 30, 25});
+  const Mesh wall = mesh::box_mesh({10, -30, -10}, {20, 30, 25});
   const Tool tool = cutters::ball(6, 20).with_shank({{20, 3, 30, 3}}).with_holder({{30, 12, 60, 12}});
-  const Lift l = lift(Collider(both(plate(8), wall)), Assembly(tool), {{0, 0, -7}, kUp}, {});
+  const Lift l = lift(collide::Collider(both(plate(8), wall)), collide::Assembly(tool), {{0, 0, -7}, kUp}, {});
   EXPECT_TRUE(l.free);
   EXPECT_NEAR(l.height, 7, 1e-6);
-  EXPECT_EQ(l.touch, Touch::Cutter) << "the holder was free at 25 - 23 = 2 mm";
-  const Lift h = lift(Collider(wall), Assembly(tool), {{0, 0, -7}, kUp}, {});
+  EXPECT_EQ(l.touch, collide::Touch::Cutter) << "the holder was free at 25 - 23 = 2 mm";
+  const Lift h = lift(collide::Collider(wall), collide::Assembly(tool), {{0, 0, -7}, kUp}, {});
   EXPECT_NEAR(h.height, 2, 1e-6);
-  EXPECT_EQ(h.touch, Touch::Holder);
+  EXPECT_EQ(h.touch, collide::Touch::Holder);
   const Volume vise = Volume::block({Box3{{10, -30, -10}, {20, 30, 25}}, 0.5, "z"});
-  const Lift f = lift(Collider(plate(8), {vise}), Assembly(tool), {{0, 0, -1}, kUp}, {});
+  const Lift f = lift(collide::Collider(plate(8), {vise}), collide::Assembly(tool), {{0, 0, -1}, kUp}, {});
   EXPECT_NEAR(f.height, 1, 1e-6);
-  const Lift g = lift(Collider(moved(plate(8), {0, 0, -9}), {vise}), Assembly(tool), {{0, 0, -7}, kUp}, {});
+  const Lift g =
+      lift(collide::Collider(moved(plate(8), {0, 0, -9}), {vise}), collide::Assembly(tool), {{0, 0, -7}, kUp}, {});
   EXPECT_TRUE(g.free);
   EXPECT_NEAR(g.height, 2, 0.3);
-  EXPECT_EQ(g.touch, Touch::Fixture);
+  EXPECT_EQ(g.touch, collide::Touch::Fixture);
 }
 
 /// Of the rolling hills, densely: points against the cutter by the independent reference.
 TEST(Lift, IsTheLeastFreeHeightOfADenseSearch) {
-  const Mesh hills = sheet_mesh(12, 30, [](double x, double y) { return 2 * std::sin(0.5 * x) * std::cos(0.4 * y); });
+  const Mesh hills =
+      mesh::sheet_mesh(12, 30, [](double x, double y) { return 2 * std::sin(0.5 * x) * std::cos(0.4 * y); });
   const Mesh dense = subdivided(hills, 4);
-  const Collider collider(hills);
+  const collide::Collider collider(hills);
   stress::Random random(8);
   for (const Tool& tool : named_cutters()) {
     SCOPED_TRACE(tool.name());
     const reference::CutterDistance reference(tool.profile());
-    const Assembly assembly(tool);
+    const collide::Assembly assembly(tool);
     for (int n = 0; n < test::cases(2); ++n) {
       const Pose pose{{random.uniform(8, 22), random.uniform(8, 22), random.uniform(-3, 0)},
                       glm::normalize(Vec3(random.uniform(-0.6, 0.6), random.uniform(-0.6, 0.6), 1))};
@@ -187,11 +189,11 @@ TEST(Lift, IsTheSameFarFromTheOriginAndFromTrianglesWithoutArea) {
   Mesh part = plate(20);
   part.triangles.emplace_back(4, 4, 5), part.triangles.emplace_back(6, 6, 6);
   const Vec3 far(1e5, -1e5, 1e5), axis = glm::normalize(Vec3(0.3, -0.2, 1));
-  const Collider at_hand(part), away(moved(part, far));
+  const collide::Collider at_hand(part), away(moved(part, far));
   const Pose pose{{1, 2, -1.5}, axis};
   for (const Tool& tool : named_cutters()) {
-    const Lift here = lift(at_hand, Assembly(tool), pose, {}),
-               there = lift(away, Assembly(tool), {pose.tip + far, axis}, {});
+    const Lift here = lift(at_hand, collide::Assembly(tool), pose, {}),
+               there = lift(away, collide::Assembly(tool), {pose.tip + far, axis}, {});
     ASSERT_TRUE(here.free && there.free) << tool.name();
     EXPECT_NEAR(here.height, there.height, 1e-8) << tool.name();
     // Only the plate's top is near: the lift is in closed form by the cutter's lowest point.
@@ -203,8 +205,8 @@ TEST(Lift, IsTheSameFarFromTheOriginAndFromTrianglesWithoutArea) {
 }
 
 TEST(Lift, RefusesSettingsWithoutMeaning) {
-  const Collider collider(plate(5));
-  const Assembly ball(cutters::ball(6, 30));
+  const collide::Collider collider(plate(5));
+  const collide::Assembly ball(cutters::ball(6, 30));
   EXPECT_THROW(lift(collider, ball, {}, {std::nan("")}), std::invalid_argument);
   EXPECT_THROW(lift(collider, ball, {}, {0, 0}), std::invalid_argument);
   EXPECT_THROW(lift(collider, ball, {}, {0, 1e-6, -1}), std::invalid_argument);
@@ -212,4 +214,4 @@ TEST(Lift, RefusesSettingsWithoutMeaning) {
 }
 
 }  // namespace
-}  // namespace riffler::lift_test
+}  // namespace riffler::plan::lift_test

@@ -12,7 +12,7 @@
 #include "riffler/plan/cc_frame.hpp"
 #include "stress/random.hpp"
 
-namespace riffler::orientation_test {
+namespace riffler::plan::orientation_test {
 namespace {
 
 /// Points along x at the given places.
@@ -123,7 +123,7 @@ TEST(Orientation, KeepsToTheMachinesConeOrSaysWhereItLeavesIt) {
   EXPECT_LT(glm::length(kept.axes[2] - leaning(0.5)), 1e-15);
   EXPECT_LT(glm::length(kept.axes[3] - leaning(0.6)), 1e-15);
   EXPECT_NO_THROW(oriented(p, keys, Interpolation::Slerp, AxisLimit{{0, 0, 1}, 1}));
-  EXPECT_NEAR(angle_between(project({{0, 0, 1}, 0.4}, {0, 0, -1}), {0, 0, 1}), 0.4, 1e-15) << "straight opposite";
+  EXPECT_NEAR(geom::angle_between(project({{0, 0, 1}, 0.4}, {0, 0, -1}), {0, 0, 1}), 0.4, 1e-15) << "straight opposite";
   EXPECT_EQ(project({{0, 0, 1}, 0}, leaning(1)), Vec3(0, 0, 1));
 }
 
@@ -176,8 +176,8 @@ double peak_to_slerp(const SmoothAxes& curve, const std::vector<double>& places,
   const double h = (places[k + 1] - places[k]) / n;
   double peak = 0;
   for (int i = 0; i < n; ++i)
-    peak = std::max(peak, angle_between(curve.at(places[k] + i * h), curve.at(places[k] + (i + 1) * h)) / h);
-  return peak / (angle_between(axes[k], axes[k + 1]) / (n * h));
+    peak = std::max(peak, geom::angle_between(curve.at(places[k] + i * h), curve.at(places[k] + (i + 1) * h)) / h);
+  return peak / (geom::angle_between(axes[k], axes[k + 1]) / (n * h));
 }
 
 TEST(SmoothAxes, TurnsAtMostAsFastAsItsHeaderSays) {
@@ -188,11 +188,12 @@ TEST(SmoothAxes, TurnsAtMostAsFastAsItsHeaderSays) {
   for (int n = 0; n < 6000; ++n) {
     const SmoothAxes curve = random_curve(random, n % 2 ? 1.0 : 3.1, 0, places, axes);
     for (std::size_t k = 0; k + 1 < places.size(); ++k)
-      if (angle_between(axes[k], axes[k + 1]) > 1e-3) worst = std::max(worst, peak_to_slerp(curve, places, axes, k));
+      if (geom::angle_between(axes[k], axes[k + 1]) > 1e-3)
+        worst = std::max(worst, peak_to_slerp(curve, places, axes, k));
   }
   EXPECT_LT(worst, 1.7) << "times as fast as slerp in the same span";
   EXPECT_GT(worst, 1.5) << "it does start from standstill";
 }
 
 }  // namespace
-}  // namespace riffler::orientation_test
+}  // namespace riffler::plan::orientation_test

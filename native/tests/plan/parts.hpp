@@ -7,7 +7,7 @@
 #include "geom/math.hpp"
 #include "mesh/shapes.hpp"
 
-namespace riffler {
+namespace riffler::plan {
 
 /// A rotation by `angle` (rad) about `axis`, and then a shift.
 struct PartPlacement {
@@ -104,4 +104,4 @@ inline Mesh cracked(const Mesh& mesh, double by) {
   return out;
 }
 
-}  // namespace riffler
+}  // namespace riffler::plan

@@ -9,7 +9,7 @@
 #include "riffler/base/error.hpp"
 #include "riffler/tool/cutters.hpp"
 
-namespace riffler::pencil_test {
+namespace riffler::plan::pencil_test {
 namespace {
 
 const std::vector<PartPlacement> kPlacements{
@@ -36,10 +36,10 @@ double hausdorff(const PencilPath& path, const Vec3& a, const Vec3& b) {
 
 /// What every path must be: balls that enter nothing, and touch where they say, with the part's normals.
 void expect_rolls(const Mesh& part, const PencilPath& path, double facet) {
-  const Closest closest(part);
+  const mesh::Closest closest(part);
   for (std::size_t k = 0; k < path.size(); ++k) {
     const Vec3& c = path.centres[k];
-    ASSERT_TRUE(finite(c));
+    ASSERT_TRUE(geom::finite(c));
     EXPECT_GE(closest(c).distance, path.radius - 1e-8);
     for (int side = 0; side < 2; ++side) {
       EXPECT_NEAR(glm::length(c - path.contacts[k][side]), path.radius, 1e-8);
@@ -89,7 +89,7 @@ TEST(Pencil, GapsWithinTheToleranceAreFaceting) {
 
 TEST(Pencil, CurvesOfABoxesInsideMeetInItsCorners) {
   for (const PartPlacement& place : kPlacements) {
-    const Mesh part = place(subdivided(inside_out(box_mesh({0, 0, 0}, {50, 40, 30})), 2));
+    const Mesh part = place(subdivided(inside_out(mesh::box_mesh({0, 0, 0}, {50, 40, 30})), 2));
     const PencilResult result = pencil(part, 3);
     ASSERT_EQ(result.paths.size(), 12U);
     std::vector<Vec3> corners;
@@ -115,7 +115,8 @@ TEST(Pencil, CurvesOfABoxesInsideMeetInItsCorners) {
 TEST(Pencil, AroundABossThePathIsOneLoop) {
   const double radius = 3, boss = 10;
   for (const int around : {16, 64, 200}) {
-    const Mesh part = both(box_mesh({-40, -40, -5}, {40, 40, 0}), cylinder_mesh(boss, -1, 20, around));  // not welded
+    const Mesh part =
+        both(mesh::box_mesh({-40, -40, -5}, {40, 40, 0}), cylinder_mesh(boss, -1, 20, around));  // not welded
     const PencilResult result = pencil(part, radius);
     ASSERT_EQ(result.paths.size(), 1U) << around;
     const PencilPath& path = result.paths[0];
@@ -253,14 +254,14 @@ TEST(Pencil, RestInABlendRunsOnTowardsItsCorners) {
   // The ball finds no valley in the blend itself; the larger one would end 5 mm before the walls at both ends.
   const double radius = 3, blend = 3.2, length = 40;
   const Mesh trough = groove(kPi / 2, length, blend, 64);
-  const Mesh part =
-      both(both(trough, box_mesh({-10, -30, -30}, {0, 30, 10})), box_mesh({length, -30, -30}, {length + 10, 30, 10}));
+  const Mesh part = both(both(trough, mesh::box_mesh({-10, -30, -30}, {0, 30, 10})),
+                         mesh::box_mesh({length, -30, -30}, {length + 10, 30, 10}));
   const PencilResult found = pencil(part, radius, {.overthickness = 2});
   const double bottom = -8 + blend * std::sqrt(2.0) - blend + radius;
   double low = length, high = 0;
   for (const PencilPath& path : found.paths)
     for (const Vec3& c : path.centres) {
-      EXPECT_GE(Closest(part)(c).distance, radius - 1e-6);
+      EXPECT_GE(mesh::Closest(part)(c).distance, radius - 1e-6);
       if (std::abs(c.y) < 0.02 && std::abs(c.z - bottom) < 0.02) low = std::min(low, c.x), high = std::max(high, c.x);
     }
   EXPECT_LT(low, radius + 0.6);
@@ -303,7 +304,7 @@ Mesh dovetail() {
     }
     return side > 0 ? inside_out(m) : m;
   };
-  return both(both(wedge(1), wedge(-1)), box_mesh({0, -30, -20}, {40, 30, -10}));
+  return both(both(wedge(1), wedge(-1)), mesh::box_mesh({0, -30, -20}, {40, 30, -10}));
 }
 
 TEST(Pencil, UndercutsCount) {
@@ -322,8 +323,8 @@ TEST(Pencil, UndercutsCount) {
 
 TEST(Pencil, ASlotNarrowerThanTheBallHoldsItOnSharpEdgesOnly) {
   const auto slot = [](double half) {
-    return both(both(box_mesh({0, half, -10}, {40, 30, 0}), box_mesh({0, -30, -10}, {40, -half, 0})),
-                box_mesh({0, -30, -20}, {40, 30, -10}));
+    return both(both(mesh::box_mesh({0, half, -10}, {40, 30, 0}), mesh::box_mesh({0, -30, -10}, {40, -half, 0})),
+                mesh::box_mesh({0, -30, -20}, {40, 30, -10}));
   };
   EXPECT_TRUE(pencil(slot(2), 3).paths.empty());
   EXPECT_FALSE(pencil(slot(2), 3).reason.empty());
@@ -332,8 +333,9 @@ TEST(Pencil, ASlotNarrowerThanTheBallHoldsItOnSharpEdgesOnly) {
 }
 
 TEST(Pencil, ConvexPartsAreDoneWithOneBallForATriangle) {
-  for (const Mesh& part : {box_mesh({0, 0, 0}, {50, 40, 30}), subdivided(box_mesh({0, 0, 0}, {50, 40, 30}), 3),
-                           sphere_mesh(20, 4), cylinder_mesh(5, 0, 30, 200)}) {
+  for (const Mesh& part :
+       {mesh::box_mesh({0, 0, 0}, {50, 40, 30}), subdivided(mesh::box_mesh({0, 0, 0}, {50, 40, 30}), 3),
+        mesh::sphere_mesh(20, 4), cylinder_mesh(5, 0, 30, 200)}) {
     const PencilResult result = pencil(part, 3);
     EXPECT_TRUE(result.paths.empty());
     EXPECT_NE(result.reason.find("reaches every point"), std::string::npos);
@@ -348,7 +350,7 @@ TEST(Pencil, FarFromValleysNoBallsAreTried) {
   EXPECT_LT(static_cast<double>(balls(160)), 4.6 * static_cast<double>(balls(40)));
   Mesh wide = groove(kPi / 2);
   const std::size_t before = pencil(wide, 3).stats.balls;
-  EXPECT_LE(pencil(both(wide, box_mesh({500, 0, 0}, {900, 400, 300})), 3).stats.balls, before + 12);
+  EXPECT_LE(pencil(both(wide, mesh::box_mesh({500, 0, 0}, {900, 400, 300})), 3).stats.balls, before + 12);
 }
 
 TEST(Pencil, CracksDoubledAndDegenerateTrianglesChangeNothing) {
@@ -372,7 +374,7 @@ TEST(Pencil, CracksDoubledAndDegenerateTrianglesChangeNothing) {
 }
 
 TEST(Pencil, RoughSheetsGiveBallsThatEnterNothingWithTheSameBytesOnAnyThreads) {
-  const Mesh part = sheet_mesh(30, 30, [](double x, double y) {
+  const Mesh part = mesh::sheet_mesh(30, 30, [](double x, double y) {
     return 2 * std::sin(0.31 * x + 0.2 * y) * std::cos(0.27 * y - 0.1 * x) + 3 * std::abs(std::sin(0.15 * x));
   });
   std::vector<PencilResult> results;
@@ -430,4 +432,4 @@ TEST(Pencil, ABallThatCannotBeMeantForThePartIsRefused) {
 }
 
 }  // namespace
-}  // namespace riffler::pencil_test
+}  // namespace riffler::plan::pencil_test

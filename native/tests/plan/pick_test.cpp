@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-namespace riffler::pick_test {
+namespace riffler::plan::pick_test {
 namespace {
 
 PencilPath path() {
@@ -47,4 +47,4 @@ TEST(Pick, RefusesNothingToPickAndNoDirection) {
 }
 
 }  // namespace
-}  // namespace riffler::pick_test
+}  // namespace riffler::plan::pick_test

@@ -9,7 +9,7 @@
 #include "mesh/closest.hpp"
 #include "riffler/tool/cutters.hpp"
 
-namespace riffler::swarf_test {
+namespace riffler::plan::swarf_test {
 namespace {
 
 /// A sheet over [0, 1]² in (nu × nv) cells; its normals look along ∂u × ∂v.
@@ -130,7 +130,7 @@ TEST(Swarf, AWallThatBulgesIsNotCutByAStraightFlank) {
   const PencilPath path = ring_path(3, -18 + 33 * std::cos(angle), {std::cos(angle), -std::sin(angle)}, 40);
   const Swarf found = swarf(path, wall, cutters::ball(6, 20));
   EXPECT_TRUE(found.fits.empty());
-  const Closest closest(wall);
+  const mesh::Closest closest(wall);
   for (std::size_t k = 0; k < path.size(); ++k) {
     EXPECT_GT(found.height[k], 11);
     double dense = 0;
@@ -163,4 +163,4 @@ TEST(Swarf, BadInputIsNamed) {
 }
 
 }  // namespace
-}  // namespace riffler::swarf_test
+}  // namespace riffler::plan::swarf_test

@@ -25,7 +25,7 @@ double radius_at(const Tool& tool, double z) {
   if (z >= 0 && z <= 3) out = std::sqrt(std::max(0.0, 9 - (3 - z) * (3 - z)));
   if (z >= 3 && z <= 12) out = 3;
   for (const auto* frusta : {&tool.shank(), &tool.holder()})
-    for (const Frustum& f : *frusta)
+    for (const tool::Frustum& f : *frusta)
       if (z >= f.z0 && z <= f.z1) out = std::max(out, f.r0 + (f.r1 - f.r0) * (z - f.z0) / (f.z1 - f.z0));
   return out;
 }
@@ -66,7 +66,7 @@ TEST(AssemblyDistance, IsExactWhereItIsKnown) {
 
 TEST(AssemblyDistance, KnowsHollowArcs) {
   // From (4, 0) to (7, 3) about (7, 0): a hollow of radius 3.
-  const AssemblyDistance distance(Tool("free", {}, Profile({{{4, 0}, {}}, {{7, 3}, Vec2(7, 0)}, {{7, 10}, {}}})));
+  const AssemblyDistance distance(Tool("free", {}, tool::Profile({{{4, 0}, {}}, {{7, 3}, Vec2(7, 0)}, {{7, 10}, {}}})));
   EXPECT_NEAR(distance.distance(6, 1), 3 - std::sqrt(2.0), 1e-12);
   EXPECT_NEAR(distance.distance(4.5, 2.5), -(std::sqrt(2 * 2.5 * 2.5) - 3), 1e-12);
 }

@@ -24,8 +24,8 @@ Vec3 unit(double x, double y, double z) {
 }
 
 /// A whole ball of radius 3 whose centre is 3 above the tip.
-Profile ball() {
-  return Profile({{{3, 3}, Vec2(0, 3)}, {{0, 6}, Vec2(0, 3)}});
+tool::Profile ball() {
+  return tool::Profile({{{3, 3}, Vec2(0, 3)}, {{0, 6}, Vec2(0, 3)}});
 }
 
 double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
@@ -207,9 +207,9 @@ TEST(CutterDistance, OfAFlatCutterIsThatOfACylinder) {
 }
 
 /// The outline as a polygon of many corners.
-std::vector<Vec2> outline(const Profile& profile, int parts) {
+std::vector<Vec2> outline(const tool::Profile& profile, int parts) {
   std::vector<Vec2> corners{{0, 0}};
-  for (const ProfileSegment& s : profile.segments()) {
+  for (const tool::ProfileSegment& s : profile.segments()) {
     const Vec2 from = corners.back();
     for (int k = 1; k <= parts; ++k) {
       const double t = static_cast<double>(k) / parts;

@@ -39,7 +39,7 @@ TEST(Scenes, AreAllListed) {
 }
 
 TEST(Scenes, HashesTellOneBit) {
-  const Frame frame{{{0, 0, 0}, {4, 4, 4}}, 1, "xyz"};
+  const dexel::Frame frame{{{0, 0, 0}, {4, 4, 4}}, 1, "xyz"};
   const Volume block = Volume::block(frame);
   EXPECT_EQ(hash(block), hash(Volume::block(frame)));
   Volume other = block;

@@ -11,7 +11,7 @@
 #include "support/file_limit.hpp"
 #include "support/temporary_file.hpp"
 
-namespace riffler::journal_disk_test {
+namespace riffler::session::journal_disk_test {
 namespace {
 
 using test::FileLimit;
@@ -28,7 +28,7 @@ TEST(JournalDisk, FullInAnyByteOfARecordLeavesAllRecordsBefore) {
   JournalWriter writer(file.path);
   writer.add_tool(1, "{}");
   writer.add_stroke(stroke(20, 0));
-  const auto whole = read_file(file.path);
+  const auto whole = base::read_file(file.path);
   const std::size_t size = whole.size();
   for (std::size_t more = 0; more < 28; ++more) {
     {
@@ -37,7 +37,7 @@ TEST(JournalDisk, FullInAnyByteOfARecordLeavesAllRecordsBefore) {
       EXPECT_THROW(writer.extend_stroke(stroke(20, 2).rows()), std::runtime_error);
       EXPECT_THROW(writer.undo(), std::runtime_error) << "28 bytes, the shortest";
     }
-    ASSERT_EQ(read_file(file.path), whole) << more;
+    ASSERT_EQ(base::read_file(file.path), whole) << more;
   }
   EXPECT_EQ(writer.journal().strokes().size(), 1U);
   writer.add_stroke(stroke(20, 3));
@@ -87,4 +87,4 @@ TEST(JournalDisk, FullForTheHeaderLeavesAFileThatCanBegin) {
 }
 
 }  // namespace
-}  // namespace riffler::journal_disk_test
+}  // namespace riffler::session::journal_disk_test

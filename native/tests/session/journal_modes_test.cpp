@@ -16,7 +16,7 @@
 #include "support/error_of.hpp"
 #include "support/temporary_file.hpp"
 
-namespace riffler::journal_modes_test {
+namespace riffler::session::journal_modes_test {
 namespace {
 
 using test::error_of;
@@ -58,7 +58,7 @@ struct Clay {
   void smooth_piece(int tool, std::span<const Pose> poses, double strength) {
     std::vector<Vec3> centres;
     for (const Pose& pose : poses) centres.push_back(pose.tip);
-    SmoothOptions options;
+    dexel::SmoothOptions options;
     options.radius = tool == 1 ? 3 : 2.5;
     options.strength = strength;
     options.protect = mask ? &*mask : nullptr;
@@ -66,14 +66,14 @@ struct Clay {
   }
 
   void carve_piece(StrokeMode mode, int tool, std::span<const Pose> poses) {
-    CarveOptions options;
-    if (mode == StrokeMode::Add || mode == StrokeMode::Mask) options.mode = CarveMode::Add;
+    sweep::CarveOptions options;
+    if (mode == StrokeMode::Add || mode == StrokeMode::Mask) options.mode = sweep::CarveMode::Add;
     if (mode == StrokeMode::Mask || mode == StrokeMode::Unmask) {
       if (!mask) mask.emplace(volume.frame());
-      carve(*mask, kTools.at(tool), poses, options);
+      sweep::carve(*mask, kTools.at(tool), poses, options);
     } else {
       if (mask) options.protect = &*mask;
-      carve(volume, kTools.at(tool), poses, options);
+      sweep::carve(volume, kTools.at(tool), poses, options);
     }
   }
 };
@@ -205,10 +205,10 @@ TEST(JournalModes, LeaveToMachinesWhatTheyCanMake) {
   }
   JournalProgramOptions options;
   options.feed = 600;
-  const Program program = to_program(all, kTools, options), removing = to_program(removal, kTools, options);
+  const nc::Program program = to_program(all, kTools, options), removing = to_program(removal, kTools, options);
   EXPECT_GT(removing.size(), 9U);
   EXPECT_EQ(program.size(), removing.size());
 }
 
 }  // namespace
-}  // namespace riffler::journal_modes_test
+}  // namespace riffler::session::journal_modes_test

@@ -19,7 +19,7 @@
 #include "support/file_limit.hpp"
 #include "support/temporary_file.hpp"
 
-namespace riffler::journal_stream_test {
+namespace riffler::session::journal_stream_test {
 namespace {
 
 using test::allocations;
@@ -373,4 +373,4 @@ TEST(JournalStream, LosesLessThanASecondWhenItIsKilled) {
 }
 
 }  // namespace
-}  // namespace riffler::journal_stream_test
+}  // namespace riffler::session::journal_stream_test

@@ -18,7 +18,7 @@
 #include "support/error_of.hpp"
 #include "support/temporary_file.hpp"
 
-namespace riffler::journal_test {
+namespace riffler::session::journal_test {
 namespace {
 
 using test::error_of;
@@ -141,7 +141,7 @@ TEST(Journal, WithoutForcesHasTheBytesOfTheFirstRelease) {
     s.name.clear();
     Journal k = j;
     k.add_stroke(s);
-    return get<std::uint32_t>(to_bytes(k), begin);
+    return base::get<std::uint32_t>(to_bytes(k), begin);
   };
   const std::uint32_t wanted[] = {0x300 + 14, 0x300 + 13, 0x200 + 8, 0x200 + 7, 0x100 + 13, 0x100 + 12, 7, 6};
   std::vector<std::uint32_t> found;
@@ -249,7 +249,7 @@ TEST(Journal, ForgedRecordsAreFormatErrors) {
     try {
       const Journal j = parse_journal(forged, "j");
       ASSERT_EQ(j.strokes().size(), 1U) << "the checksum of the test is right";
-      for (const Pose& pose : j.strokes()[0].poses) ASSERT_TRUE(finite(pose.tip));
+      for (const Pose& pose : j.strokes()[0].poses) ASSERT_TRUE(geom::finite(pose.tip));
       for (const Wrench& wrench : j.strokes()[0].forces) ASSERT_TRUE(finite(wrench));
     } catch (const FormatError& e) {
       ++refused;
@@ -363,9 +363,9 @@ TEST(JournalWriter, BelongsToOneAtATimeAndEndsWithClose) {
 
 TEST(JournalWriter, LeavesAlienFilesAlone) {
   const TemporaryFile file("alien.rjournal");
-  write_file(file.path, std::string_view("my poems, not a journal"));
+  base::write_file(file.path, std::string_view("my poems, not a journal"));
   EXPECT_THROW(JournalWriter writer(file.path), FormatError);
-  EXPECT_EQ(read_file(file.path).size(), 23U);
+  EXPECT_EQ(base::read_file(file.path).size(), 23U);
 }
 
 /// Bytes of memory that the process has in use.
@@ -426,7 +426,7 @@ TEST(JournalProgram, TakesFeedsFromTimes) {
                  {{12, 0, 5}, up},
                  {{13, 0, 5}, up}},
                 {0, 1, 2, 3, 3, 1e9, 1e9 + 0.1}});
-  const Program p = to_program(j, {}, {{}, 5000, {}});
+  const nc::Program p = to_program(j, {}, {{}, 5000, {}});
   ASSERT_EQ(p.size(), 9U);
   const double wanted[] = {0, 600, 600, 600, 600, 1e5, 1, 600, 0};
   for (std::size_t k = 0; k < 9; ++k) EXPECT_NEAR(p.feed()[k], wanted[k], 1e-3) << k;
@@ -451,4 +451,4 @@ TEST(JournalProgram, AsksForAFeedWhereThereIsNone) {
 }
 
 }  // namespace
-}  // namespace riffler::journal_test
+}  // namespace riffler::session::journal_test

@@ -11,7 +11,7 @@
 #include "support/error_of.hpp"
 #include "support/temporary_file.hpp"
 
-namespace riffler::journal_undo_test {
+namespace riffler::session::journal_undo_test {
 namespace {
 
 using test::error_of;
@@ -134,4 +134,4 @@ TEST(JournalUndo, WriterDoesWhatTheJournalDoesWhateverItKeeps) {
 }
 
 }  // namespace
-}  // namespace riffler::journal_undo_test
+}  // namespace riffler::session::journal_undo_test

@@ -19,7 +19,7 @@
 #include "session/sculpt_bench.hpp"
 #include "support/error_of.hpp"
 
-namespace riffler::masked_stock_test {
+namespace riffler::session::masked_stock_test {
 namespace {
 
 const Box3 kBox{{0, 0, 0}, {40, 30, 12}};
@@ -36,16 +36,16 @@ std::vector<Pose> wander(std::mt19937& random, int rows) {
 }
 
 Volume masked(const char* directions) {
-  Volume mask(Frame{kBox, 0.4, directions});
-  CarveOptions add;
-  add.mode = CarveMode::Add;
-  carve(mask, kBall, kMasked, add);
+  Volume mask(dexel::Frame{kBox, 0.4, directions});
+  sweep::CarveOptions add;
+  add.mode = sweep::CarveMode::Add;
+  sweep::carve(mask, kBall, kMasked, add);
   return mask;
 }
 
 /// Its material within the mask.
 Volume within(Volume volume, const Volume& mask) {
-  apply(Boolean::Intersect, volume, mask);
+  apply(dexel::Boolean::Intersect, volume, mask);
   return volume;
 }
 
@@ -54,9 +54,9 @@ const std::vector<Pose> kLowered{{{-15, 15, 7}, {0, 0, 1}}, {{55, 15, 7}, {0, 0,
 const Tool kPlane = cutters::flat(60, 30);
 const std::map<int, Tool> kTools{{1, kBall}, {2, kPlane}};
 
-Volume stock_for(CarveMode mode, const char* directions) {
+Volume stock_for(sweep::CarveMode mode, const char* directions) {
   Volume out = Volume::block({kBox, 0.4, directions});
-  if (mode == CarveMode::Add) carve(out, kPlane, kLowered);
+  if (mode == sweep::CarveMode::Add) sweep::carve(out, kPlane, kLowered);
   return out;
 }
 
@@ -64,9 +64,9 @@ enum class Masked { Yes, No };
 
 /// Cuts move by move, shows now and then, as a session does.
 struct Bench {
-  Bench(const char* directions, CarveMode mode, Masked masks = Masked::Yes)
+  Bench(const char* directions, sweep::CarveMode mode, Masked masks = Masked::Yes)
       : Bench(stock_for(mode, directions), mode, masks) {}
-  Bench(const Volume& begin, CarveMode mode, Masked masks = Masked::Yes)
+  Bench(const Volume& begin, sweep::CarveMode mode, Masked masks = Masked::Yes)
       : stock(begin),
         mask(masked(begin.frame().directions.c_str())),
         cuttable(stock, mode, masks == Masked::Yes ? &mask : nullptr),
@@ -88,7 +88,7 @@ struct Bench {
   Volume stock, mask;
   MaskedStock cuttable;
   Volume left;
-  MoveCarver carver;
+  sweep::MoveCarver carver;
   Volume shown;
 };
 
@@ -96,14 +96,14 @@ struct Bench {
 template <class Test>
 void for_each_kind(const Test& test) {
   for (const char* directions : {"z", "xyz"})
-    for (const CarveMode mode : {CarveMode::Remove, CarveMode::Add}) {
-      SCOPED_TRACE(std::string(directions) + (mode == CarveMode::Add ? ", add" : ", remove"));
+    for (const sweep::CarveMode mode : {sweep::CarveMode::Remove, sweep::CarveMode::Add}) {
+      SCOPED_TRACE(std::string(directions) + (mode == sweep::CarveMode::Add ? ", add" : ", remove"));
       test(directions, mode);
     }
 }
 
-StrokeMode stroke_mode(CarveMode mode) {
-  return mode == CarveMode::Add ? StrokeMode::Build : StrokeMode::Beside;
+StrokeMode stroke_mode(sweep::CarveMode mode) {
+  return mode == sweep::CarveMode::Add ? StrokeMode::Build : StrokeMode::Beside;
 }
 
 JournalStroke stroke_of(StrokeMode mode, const std::vector<Pose>& poses, int tool = 1) {
@@ -111,34 +111,34 @@ JournalStroke stroke_of(StrokeMode mode, const std::vector<Pose>& poses, int too
 }
 
 /// Begins with what a bench does.
-Journal journal(const char* directions, CarveMode mode, Masked masks = Masked::Yes) {
+Journal journal(const char* directions, sweep::CarveMode mode, Masked masks = Masked::Yes) {
   Journal j;
   j.set_stock({kBox, 0.4, directions, ""});
   j.add_tool(1, "{}");
   j.add_tool(2, "{}");
-  if (mode == CarveMode::Add) j.add_stroke(stroke_of(StrokeMode::Remove, kLowered, 2));
+  if (mode == sweep::CarveMode::Add) j.add_stroke(stroke_of(StrokeMode::Remove, kLowered, 2));
   if (masks == Masked::Yes) j.add_stroke(stroke_of(StrokeMode::Mask, kMasked));
   return j;
 }
 
 TEST(MaskedStock, WhatLiesInTheMaskStaysAsItIsToTheBitAndTheRestIsAsACarveBesideItLeavesIt) {
-  for_each_kind([](const char* directions, CarveMode mode) {
+  for_each_kind([](const char* directions, sweep::CarveMode mode) {
     std::mt19937 random(11);
     Bench bench(directions, mode);
     const std::vector<Pose> poses = wander(random, 200);
     bench.stroke(poses, 7);
     EXPECT_TRUE(test::same_spans(within(bench.shown, bench.mask), within(bench.stock, bench.mask)));
-    EXPECT_GT((bench.shown.volume() - bench.stock.volume()) * (mode == CarveMode::Add ? 1 : -1), 20);
+    EXPECT_GT((bench.shown.volume() - bench.stock.volume()) * (mode == sweep::CarveMode::Add ? 1 : -1), 20);
     Volume carved = bench.stock;
-    CarveOptions options;
+    sweep::CarveOptions options;
     options.mode = mode, options.protect = &bench.mask;
-    carve(carved, kBall, poses, options);
+    sweep::carve(carved, kBall, poses, options);
     EXPECT_TRUE(test::same_spans(bench.shown, carved));
   });
 }
 
 TEST(MaskedStock, WhatIsShownDoesNotDependOnHowOftenSomebodyLooks) {
-  for_each_kind([](const char* directions, CarveMode mode) {
+  for_each_kind([](const char* directions, sweep::CarveMode mode) {
     std::mt19937 random(12);
     Bench often(directions, mode), seldom(directions, mode);
     for (int k = 0; k < 4; ++k) {
@@ -151,7 +151,7 @@ TEST(MaskedStock, WhatIsShownDoesNotDependOnHowOftenSomebodyLooks) {
 }
 
 TEST(MaskedStock, AReplayOfItsStrokesHasTheSameBytesHoweverManyCount) {
-  for_each_kind([](const char* directions, CarveMode mode) {
+  for_each_kind([](const char* directions, sweep::CarveMode mode) {
     std::mt19937 random(13);
     Bench bench(directions, mode);
     Journal j = journal(directions, mode);
@@ -173,8 +173,8 @@ TEST(MaskedStock, AReplayOfItsStrokesHasTheSameBytesHoweverManyCount) {
 TEST(MaskedStock, WithoutAMaskTheReplayOfWhatWasPutOnHasTheSameBytesToo) {
   for (const char* directions : {"z", "xyz"}) {
     std::mt19937 random(15);
-    Bench bench(directions, CarveMode::Add, Masked::No);
-    Journal j = journal(directions, CarveMode::Add, Masked::No);
+    Bench bench(directions, sweep::CarveMode::Add, Masked::No);
+    Journal j = journal(directions, sweep::CarveMode::Add, Masked::No);
     for (int k = 0; k < 3; ++k) {
       const std::vector<Pose> poses = wander(random, 80);
       bench.stroke(poses, 11);
@@ -190,10 +190,10 @@ TEST(MaskedStock, WithoutAMaskTheReplayOfWhatWasPutOnHasTheSameBytesToo) {
 TEST(MaskedStock, AStrokeThatGoesDeeperByNextToNothingIsInTheReplay) {
   for (const char* directions : {"z", "xyz"}) {
     std::mt19937 random(17);
-    Bench bench(directions, CarveMode::Add, Masked::No);
+    Bench bench(directions, sweep::CarveMode::Add, Masked::No);
     std::vector<Pose> poses = wander(random, 60);
     for (Pose& pose : poses) pose.axis = {0, 0, 1};
-    Journal built = journal(directions, CarveMode::Add, Masked::No), added = built;
+    Journal built = journal(directions, sweep::CarveMode::Add, Masked::No), added = built;
     for (int k = 0; k < 2; ++k) {
       bench.stroke(poses, 7);
       built.add_stroke(stroke_of(StrokeMode::Build, poses));
@@ -208,9 +208,9 @@ TEST(MaskedStock, AStrokeThatGoesDeeperByNextToNothingIsInTheReplay) {
 TEST(MaskedStock, RunsOfStrokesOfTheTwoModesBeginWithTheWholeThatTheLastOneLeft) {
   for (const char* directions : {"z", "xyz"}) {
     std::mt19937 random(16);
-    Journal j = journal(directions, CarveMode::Add);
-    Volume whole = stock_for(CarveMode::Add, directions);
-    for (const CarveMode mode : {CarveMode::Add, CarveMode::Remove, CarveMode::Add}) {
+    Journal j = journal(directions, sweep::CarveMode::Add);
+    Volume whole = stock_for(sweep::CarveMode::Add, directions);
+    for (const sweep::CarveMode mode : {sweep::CarveMode::Add, sweep::CarveMode::Remove, sweep::CarveMode::Add}) {
       Bench run(whole, mode);
       for (int k = 0; k < 2; ++k) {
         const std::vector<Pose> poses = wander(random, 50);
@@ -225,13 +225,13 @@ TEST(MaskedStock, RunsOfStrokesOfTheTwoModesBeginWithTheWholeThatTheLastOneLeft)
 
 TEST(MaskedStock, StrokesOfOtherKindsBeginWithTheWhole) {
   std::mt19937 random(14);
-  for (const CarveMode mode : {CarveMode::Remove, CarveMode::Add}) {
+  for (const sweep::CarveMode mode : {sweep::CarveMode::Remove, sweep::CarveMode::Add}) {
     Bench bench("xyz", mode);
     const std::vector<Pose> first = wander(random, 40), second = wander(random, 40);
     bench.stroke(first, 5);
-    CarveOptions add;
-    add.mode = CarveMode::Add, add.protect = &bench.mask;
-    carve(bench.shown, kBall, second, add);
+    sweep::CarveOptions add;
+    add.mode = sweep::CarveMode::Add, add.protect = &bench.mask;
+    sweep::carve(bench.shown, kBall, second, add);
     Journal j = journal("xyz", mode);
     j.add_stroke(stroke_of(stroke_mode(mode), first));
     j.add_stroke(stroke_of(StrokeMode::Add, second));
@@ -241,10 +241,10 @@ TEST(MaskedStock, StrokesOfOtherKindsBeginWithTheWhole) {
 
 TEST(MaskedStock, AMaskOnAnotherGridIsRefused) {
   const Volume stock = Volume::block({kBox, 0.4, "z"});
-  const Volume mask(Frame{kBox, 0.5, "z"});
-  for (const CarveMode mode : {CarveMode::Remove, CarveMode::Add})
+  const Volume mask(dexel::Frame{kBox, 0.5, "z"});
+  for (const sweep::CarveMode mode : {sweep::CarveMode::Remove, sweep::CarveMode::Add})
     EXPECT_NE(test::error_of([&] { MaskedStock(stock, mode, &mask); }).find("protect"), std::string::npos);
 }
 
 }  // namespace
-}  // namespace riffler::masked_stock_test
+}  // namespace riffler::session::masked_stock_test

@@ -19,7 +19,7 @@
 #include "support/error_of.hpp"
 #include "support/temporary_file.hpp"
 
-namespace riffler::replay_test {
+namespace riffler::session::replay_test {
 namespace {
 
 using test::error_of;
@@ -64,13 +64,13 @@ TEST(Replay, LeavesTheBytesThatMovesOneByOneLeft) {
     for (int k = 0; k < 8; ++k) {
       const int tool = 1 + k % 2;
       const double tolerance = k % 3 ? 0.01 : 0.05;
-      MoveCarver carver(session, kTools.at(tool), {.tolerance = tolerance});
+      sweep::MoveCarver carver(session, kTools.at(tool), {.tolerance = tolerance});
       const std::vector<Pose> poses = wander(random, 120);
       ASSERT_TRUE(stream.begin(tool, tolerance, {poses[0], time}));
       for (std::size_t row = 1; row < poses.size(); ++row) {
         JournalRow put{poses[row], time += 1e-3};
         if (!stands(poses[row - 1], poses[row])) {
-          const MoveCarver::Taken taken = carver.move(poses[row - 1], poses[row], 1e-3);
+          const sweep::MoveCarver::Taken taken = carver.move(poses[row - 1], poses[row], 1e-3);
           put.force = {-taken.force, -taken.torque}, put.removed = taken.removed;
         }
         removed += put.removed;
@@ -94,8 +94,8 @@ TEST(Replay, LeavesTheBytesThatAHandLeftThroughTheHapticStep) {
   // A hand that rests for half a second, presses, slides and rests again: the spring comes to rest by ever smaller
   // ways.
   Volume session = Volume::block({kBox, 0.4, "xyz"});
-  MoveCarver carver(session, kTools.at(1), {.tolerance = 0.01, .removal_constant = 1e-3});
-  SculptStep step(SculptSettings(), kTools.at(1), &carver, nullptr);
+  sweep::MoveCarver carver(session, kTools.at(1), {.tolerance = 0.01, .removal_constant = 1e-3});
+  haptics::SculptStep step(haptics::SculptSettings(), kTools.at(1), &carver, nullptr);
   const auto grip = [](double t) -> Pose {
     const double s = t < 0.5 ? 0 : std::min(t - 0.5, 1.5);
     return {{8 + 12 * s, 15 + 3 * std::sin(4 * s), 12 - 2 * s}, glm::normalize(Vec3(0.2 * std::sin(3 * s), 0, 1))};
@@ -111,7 +111,7 @@ TEST(Replay, LeavesTheBytesThatAHandLeftThroughTheHapticStep) {
   int standing = 0;
   for (int k = 1; k <= 4000; ++k) {
     const Pose now = grip(1e-3 * k), before = grip(1e-3 * (k - 1));
-    const SculptStep::Result r = step.step(now, {1e3 * (now.tip - before.tip), {}}, 1e-3);
+    const haptics::SculptStep::Result r = step.step(now, {1e3 * (now.tip - before.tip), {}}, 1e-3);
     standing += stands(stroke.poses.back(), r.tool);
     add(r.tool, 1e-3 * k, r.on_grip, r.removed);
   }
@@ -135,7 +135,7 @@ TEST(Replay, TakesRowsThatStandForNoMoves) {
   };
   const auto carved = [&](const std::vector<Pose>& poses) {
     Volume volume = Volume::block({kBox, 0.4, "xyz"});
-    carve(volume, kTools.at(1), poses);
+    sweep::carve(volume, kTools.at(1), poses);
     return volume;
   };
   EXPECT_TRUE(test::same_rays(left({p}), carved({p})));
@@ -210,4 +210,4 @@ TEST(Replay, TellsHowFarItIsAndStops) {
 }
 
 }  // namespace
-}  // namespace riffler::replay_test
+}  // namespace riffler::session::replay_test

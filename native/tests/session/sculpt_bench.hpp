@@ -19,7 +19,7 @@ inline Volume sculpt_stock(double pitch = 0.25, const char* directions = "z") {
 }
 
 /// What a sink was told.
-class RememberingSink final : public StrokeSink {
+class RememberingSink final : public session::StrokeSink {
  public:
   struct Stroke {
     std::vector<Pose> poses;
@@ -43,28 +43,28 @@ class RememberingSink final : public StrokeSink {
 
 /// The same strokes move by move, from the stock on.
 inline Volume carved_again(const Volume& stock, const Tool& tool, const std::vector<RememberingSink::Stroke>& strokes,
-                           const MoveCarver::Options& options = {}) {
+                           const sweep::MoveCarver::Options& options = {}) {
   Volume volume = stock;
-  MoveCarver carver(volume, tool, options);
+  sweep::MoveCarver carver(volume, tool, options);
   for (const auto& stroke : strokes)
     for (std::size_t k = 1; k < stroke.poses.size(); ++k) {
       const Pose &from = stroke.poses[k - 1], &to = stroke.poses[k];
-      if (!stands(from, to)) carver.move(from, to, 1e-3);
+      if (!session::stands(from, to)) carver.move(from, to, 1e-3);
     }
   return volume;
 }
 
 /// Homed; the hand follows `path`, whose poses are the pen's.
 struct SculptBench {
-  SculptBench(HandPath path, const Volume& stock, const Tool& tool, const SculptLoopSettings& settings = {},
-              StrokeSink* sink = nullptr, const Collider* obstacles = nullptr,
-              const Pose& start = {{0, 0, 3}, {0, 0, 1}})
-      : pen(std::make_shared<SimulatedPen>(SimulatedPenSettings(), std::move(path))),
+  SculptBench(pen::HandPath path, const Volume& stock, const Tool& tool,
+              const session::SculptLoopSettings& settings = {}, session::StrokeSink* sink = nullptr,
+              const collide::Collider* obstacles = nullptr, const Pose& start = {{0, 0, 3}, {0, 0, 1}})
+      : pen(std::make_shared<pen::SimulatedPen>(pen::SimulatedPenSettings(), std::move(path))),
         loop(of_this_pen(settings), stock, tool, obstacles, model.capability(), start, sink) {
     model.home();
   }
 
-  SculptLoopSettings of_this_pen(SculptLoopSettings settings) const {
+  session::SculptLoopSettings of_this_pen(session::SculptLoopSettings settings) const {
     settings.passivity = model.passivity();
     return settings;
   }
@@ -76,11 +76,11 @@ struct SculptBench {
     while (clock->now() < end) {
       driver.tick();
       pen->advance(std::llround(1e6 * clock->now()));
-      for (SculptTick tick; loop.take(tick);) visit(tick);
+      for (session::SculptTick tick; loop.take(tick);) visit(tick);
     }
   }
   void run(double seconds) {
-    run(seconds, [](const SculptTick&) {});
+    run(seconds, [](const session::SculptTick&) {});
   }
 
   /// The host does nothing for so long.
@@ -90,25 +90,25 @@ struct SculptBench {
   }
 
   double end = 0;
-  std::shared_ptr<SimulatedPen> pen;
-  std::shared_ptr<SimulatedClock> clock = std::make_shared<SimulatedClock>();
-  std::unique_ptr<Transport> transport = std::make_unique<SimulatedTransport>(pen, clock);
-  RifflerModel model{*transport};
+  std::shared_ptr<pen::SimulatedPen> pen;
+  std::shared_ptr<pen::SimulatedClock> clock = std::make_shared<pen::SimulatedClock>();
+  std::unique_ptr<pen::Transport> transport = std::make_unique<pen::SimulatedTransport>(pen, clock);
+  pen::RifflerModel model{*transport};
   SimulatedConnector connector{pen, clock, model};
-  SculptLoop loop;
-  DriverLoop driver{model, loop, connector, *clock, std::move(transport)};
+  session::SculptLoop loop;
+  pen::DriverLoop driver{model, loop, connector, *clock, std::move(transport)};
 };
 
 inline Pose pen_home() {
-  return SimulatedPen(SimulatedPenSettings()).arms().posture().pose;
+  return pen::SimulatedPen(pen::SimulatedPenSettings()).arms().posture().pose;
 }
 
 /// From a second on the grip circles 3 to 5 mm deeper than it began, and the button is held for two of every three
 /// seconds; the tool leans a little.
-inline HandPath sculpting_hand(double depth = 4, double radius = 10) {
+inline pen::HandPath sculpting_hand(double depth = 4, double radius = 10) {
   return [home = pen_home(), depth, radius](double t) {
     const double s = std::max(0.0, t - 1);
-    HandWish wish{.pose = home};
+    pen::HandWish wish{.pose = home};
     wish.pose.tip += Vec3(radius * std::sin(2 * s), radius * (1 - std::cos(2 * s)),
                           -depth * std::min(1.0, s) - 0.5 * std::sin(5 * s));
     const double lean = 0.15 * std::sin(s);

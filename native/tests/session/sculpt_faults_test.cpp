@@ -17,7 +17,7 @@
 #include "support/file_limit.hpp"
 #include "support/temporary_file.hpp"
 
-namespace riffler::sculpt_faults_test {
+namespace riffler::session::sculpt_faults_test {
 namespace {
 
 using test::SculptBench;
@@ -155,4 +155,4 @@ TEST(SculptFault, AFullDiskEndsTheCutTheForceGoesWithItAndBothComeBackWithRoom) 
 }
 
 }  // namespace
-}  // namespace riffler::sculpt_faults_test
+}  // namespace riffler::session::sculpt_faults_test

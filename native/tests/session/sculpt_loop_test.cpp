@@ -16,7 +16,7 @@
 #include "support/effort.hpp"
 #include "support/error_of.hpp"
 
-namespace riffler::sculpt_loop_test {
+namespace riffler::session::sculpt_loop_test {
 namespace {
 
 using test::kStock;
@@ -159,7 +159,7 @@ TEST(SculptLoop, TheClutchLiftsTheToolOffTheHand) {
   const Pose home = pen_home();
   SculptBench bench(
       [home](double t) {
-        HandWish wish{.pose = home, .buttons = t > 1.5 && t < 2.5 ? 2U : 0U};
+        pen::HandWish wish{.pose = home, .buttons = t > 1.5 && t < 2.5 ? 2U : 0U};
         wish.pose.tip.x += 10 * std::clamp(t - 1, 0.0, 1.0);
         return wish;
       },
@@ -172,16 +172,16 @@ TEST(SculptLoop, TheClutchLiftsTheToolOffTheHand) {
 /// Against a plate the hand feels the coupling's stiffness, whatever the scale.
 TEST(SculptLoop, TheHandFeelsTheSameStiffnessAtEveryScale) {
   const Mesh plate = test::box_mesh({-60, -60, -11}, {60, 60, -1});
-  const Collider obstacles(plate, {}, {.spacing = 0.3, .stiffness = 1e3});
+  const collide::Collider obstacles(plate, {}, {.spacing = 0.3, .stiffness = 1e3});
   for (const double scale : {0.5, 1.0, 4.0}) {
     SculptLoopSettings settings;
     settings.workspace.scale = scale;
-    SculptLoop loop(settings, test::sculpt_stock(1), kBall, &obstacles, pen_capability(load_pen("riffler")),
+    SculptLoop loop(settings, test::sculpt_stock(1), kBall, &obstacles, pen_capability(pen::load_pen("riffler")),
                     Pose{{0, 0, 0}, {0, 0, 1}});
     Wrench out;
     double depth = 0;
     for (int k = 0; k < (test::kSanitized ? 1500 : 3000); ++k) {
-      PenSample sample;
+      pen::PenSample sample;
       depth = 1 / scale + std::min(2.0, 2e-3 * k);  // of which the first part is air
       sample.pose = {{0, 0, -depth}, {0, 0, 1}};
       sample.sequence = static_cast<std::uint64_t>(k) + 1, sample.time = 1e-3 * k, sample.buttons = 1;
@@ -216,9 +216,9 @@ TEST(SculptLoop, AConnectionInAStrokeBeginsAnotherWhereTheHandIsThen) {
   const Volume stock = test::sculpt_stock(0.5);
   for (const std::optional<Pose> start : {std::optional<Pose>(), std::optional(Pose{{-20, 0, -1}, {0, 0, 1}})}) {
     RememberingSink sink;
-    SculptLoop loop({}, stock, kBall, nullptr, pen_capability(load_pen("riffler")), start, &sink);
+    SculptLoop loop({}, stock, kBall, nullptr, pen_capability(pen::load_pen("riffler")), start, &sink);
     for (int k = 0; k < 2000; ++k) {
-      PenSample sample;
+      pen::PenSample sample;
       sample.pose = {{(k < 1000 ? -20 : 10) + 0.005 * k, 0, -1}, {0, 0, 1}};
       sample.sequence = static_cast<std::uint64_t>(k) + 1, sample.time = 1e-3 * k, sample.buttons = 1;
       sample.homed = sample.powered = true;
@@ -237,15 +237,15 @@ TEST(SculptLoop, AConnectionInAStrokeBeginsAnotherWhereTheHandIsThen) {
 
 TEST(SculptLoop, AsksForNoMemoryOnceItIsWarm) {
   const Volume stock = test::sculpt_stock();
-  SculptLoop loop({}, stock, kBall, nullptr, pen_capability(load_pen("riffler")), Pose{{0, 0, 1}, {0, 0, 1}});
+  SculptLoop loop({}, stock, kBall, nullptr, pen_capability(pen::load_pen("riffler")), Pose{{0, 0, 1}, {0, 0, 1}});
   Volume shown = stock;
   std::vector<SculptLoop::Place> places;
-  BlockReserve reserve;
+  base::BlockReserve reserve;
   std::uint64_t count = 0;
   double removed = 0;
   for (int k = 0; k < 3000; ++k) {
     const double t = 1e-3 * k;
-    PenSample sample;
+    pen::PenSample sample;
     sample.pose = {{4 * std::sin(9 * t), 4 * std::cos(9 * t) - 4, -2 * std::min(1.0, t)}, {0, 0, 1}};
     sample.sequence = static_cast<std::uint64_t>(k) + 1, sample.time = t, sample.buttons = 1;
     sample.homed = sample.powered = true;
@@ -267,7 +267,7 @@ TEST(SculptLoop, AsksForNoMemoryOnceItIsWarm) {
 TEST(SculptLoop, StepsThatCannotBeMadeAreHeldOverWithoutAJump) {
   // Somebody holds the lock: as undo does, for much longer than it would.
   const Volume stock = test::sculpt_stock();
-  SculptLoop loop({}, stock, kBall, nullptr, pen_capability(load_pen("riffler")), Pose{{0, 0, 1}, {0, 0, 1}});
+  SculptLoop loop({}, stock, kBall, nullptr, pen_capability(pen::load_pen("riffler")), Pose{{0, 0, 1}, {0, 0, 1}});
   std::atomic<bool> end{false};
   std::thread other([&] {
     while (!end) {
@@ -280,7 +280,7 @@ TEST(SculptLoop, StepsThatCannotBeMadeAreHeldOverWithoutAJump) {
   int missed = 0;
   for (int k = 0; k < 20'000; ++k) {
     const double t = 1e-3 * k;
-    PenSample sample;
+    pen::PenSample sample;
     sample.pose = {{4 * std::sin(9 * t), 0, -2 * std::min(1.0, t)}, {0, 0, 1}};
     sample.velocity = {36 * std::cos(9 * t), 0, t < 1 ? -2 : 0};
     sample.sequence = static_cast<std::uint64_t>(k) + 1, sample.time = t, sample.buttons = 1;
@@ -297,7 +297,7 @@ TEST(SculptLoop, StepsThatCannotBeMadeAreHeldOverWithoutAJump) {
 
 TEST(SculptLoop, BadSettingsAreNamed) {
   const auto make = [](const SculptLoopSettings& s) {
-    SculptLoop(s, test::sculpt_stock(1), kBall, nullptr, pen_capability(load_pen("riffler")), Pose{});
+    SculptLoop(s, test::sculpt_stock(1), kBall, nullptr, pen_capability(pen::load_pen("riffler")), Pose{});
   };
   SculptLoopSettings s;
   s.sculpt.parts = 2;
@@ -310,27 +310,27 @@ TEST(SculptLoop, BadSettingsAreNamed) {
 TEST(SculptLoop, SamplesOfAnyKindLeaveItAlive) {
   const double inf = std::numeric_limits<double>::infinity(), nan = std::nan("");
   const Volume stock = test::sculpt_stock(1);
-  SculptLoop loop({}, stock, kBall, nullptr, pen_capability(load_pen("riffler")), Pose{{0, 0, 1}, {0, 0, 1}});
+  SculptLoop loop({}, stock, kBall, nullptr, pen_capability(pen::load_pen("riffler")), Pose{{0, 0, 1}, {0, 0, 1}});
   double t = 0;
   const double bad[] = {0, 1, -1, 1e300, -1e300, inf, -inf, nan, 1e-300};
   std::uint64_t tick_number = 0;
   for (const double a : bad)
     for (const double b : bad)
       for (const double dt : {1e-3, 0.0, -1.0, nan, inf, 5.0}) {
-        PenSample sample;
+        pen::PenSample sample;
         sample.pose = {{a, b, -1}, {b, 0, a}};
         sample.velocity = {b, a, 0}, sample.turning = {a, a, b}, sample.stretch = b;
         sample.applied = {{a, 0, 0}, {0, b, 0}}, sample.says_applied = true;
         sample.sequence = ++tick_number, sample.time = t, sample.buttons = 1, sample.homed = sample.powered = true;
-        const SafeWrench out = loop.step(sample, t, dt);
-        ASSERT_TRUE(finite(out.wrench()));
+        const haptics::SafeWrench out = loop.step(sample, t, dt);
+        ASSERT_TRUE(haptics::finite(out.wrench()));
         loop.reset();
       }
   // And it works again.
   double removed = 0;
   for (int k = 0; k < 4000; ++k) {
     t = 1e-3 * k;
-    PenSample sample;
+    pen::PenSample sample;
     sample.pose = {{0, 0, -6 * std::min(1.0, t / 3)}, {0, 0, 1}};
     sample.sequence = ++tick_number, sample.time = t, sample.buttons = k > 1000, sample.homed = sample.powered = true;
     if (k == 500) loop.reset();
@@ -341,4 +341,4 @@ TEST(SculptLoop, SamplesOfAnyKindLeaveItAlive) {
 }
 
 }  // namespace
-}  // namespace riffler::sculpt_loop_test
+}  // namespace riffler::session::sculpt_loop_test

@@ -13,7 +13,7 @@
 #include "support/allocations.hpp"
 #include "support/effort.hpp"
 
-namespace riffler::sculpting_stress_test {
+namespace riffler::session::sculpting_stress_test {
 namespace {
 
 void print(const char* what, stress::SculptingRun& run) {
@@ -63,4 +63,4 @@ TEST(Sculpting, ThreeDirectionsAStiffCouplingAndALateCableMakeNoEnergyEither) {
 }
 
 }  // namespace
-}  // namespace riffler::sculpting_stress_test
+}  // namespace riffler::session::sculpting_stress_test

@@ -19,7 +19,7 @@
 #include "support/box_mesh.hpp"
 #include "support/error_of.hpp"
 
-namespace riffler::session_test {
+namespace riffler::session::session_test {
 namespace {
 
 using test::RememberingSink;
@@ -43,8 +43,9 @@ bool soon(const Done& done, double seconds = 10) {
 struct MouseBench {
   explicit MouseBench(SessionSettings settings = {}, std::shared_ptr<StrokeSink> sink = nullptr,
                       const Volume& begin = test::sculpt_stock(0.5),
-                      std::shared_ptr<const Collider> obstacles = nullptr)
-      : stock(begin), pen(std::make_shared<PointerPen>(PointerPen::Kind::Mouse, PointerFrame{.depth = 1})) {
+                      std::shared_ptr<const collide::Collider> obstacles = nullptr)
+      : stock(begin),
+        pen(std::make_shared<pen::PointerPen>(pen::PointerPen::Kind::Mouse, pen::PointerFrame{.depth = 1})) {
     settings.loop.carving.removal_constant = 1e-4;
     pen->give({.x = -40, .time = time});
     session = std::make_unique<Session>(stock, kBall, pen, std::move(obstacles), settings);
@@ -71,7 +72,7 @@ struct MouseBench {
 
   Volume stock, shown = stock;
   double time = 0;
-  std::shared_ptr<PointerPen> pen;
+  std::shared_ptr<pen::PointerPen> pen;
   std::unique_ptr<Session> session;
 };
 
@@ -128,14 +129,14 @@ TEST(Session, UndoAndRedoGoStrokeByStrokeAndTellTheTiles) {
 /// What a session that puts on begins with: the stock's lower half.
 Volume half_a_stock() {
   Volume out = test::sculpt_stock(0.5);
-  carve(out, cutters::flat(100, 40), std::vector<Pose>{{{-60, 0, -3}, {0, 0, 1}}, {{60, 0, -3}, {0, 0, 1}}});
+  sweep::carve(out, cutters::flat(100, 40), std::vector<Pose>{{{-60, 0, -3}, {0, 0, 1}}, {{60, 0, -3}, {0, 0, 1}}});
   return out;
 }
 
 TEST(Session, ThatPutsOnAddsToTheVolumeStrokeByStrokeAndIsUndone) {
   const auto sink = std::make_shared<RememberingSink>();
   SessionSettings settings;
-  settings.mode = CarveMode::Add;
+  settings.mode = sweep::CarveMode::Add;
   MouseBench bench(settings, sink, half_a_stock());
   bench.session->start();
   std::vector<Volume> after{bench.shown};
@@ -153,12 +154,12 @@ TEST(Session, ThatPutsOnAddsToTheVolumeStrokeByStrokeAndIsUndone) {
   EXPECT_TRUE(test::same_spans(bench.shown, after[2]));
   bench.session->stop(bench.shown);
   EXPECT_TRUE(test::same_spans(bench.shown, after[2]));
-  CarveOptions add;
-  add.mode = CarveMode::Add;
+  sweep::CarveOptions add;
+  add.mode = sweep::CarveMode::Add;
   Volume again = bench.stock;
   double put_on = 0;
   for (int k = 0; k < 2; ++k) {
-    carve(again, kBall, sink->strokes[k].poses, add);
+    sweep::carve(again, kBall, sink->strokes[k].poses, add);
     for (const double row : sink->strokes[k].removed) put_on += row;
   }
   EXPECT_NEAR(bench.shown.volume(), again.volume(), 1e-6 * again.volume());
@@ -166,7 +167,7 @@ TEST(Session, ThatPutsOnAddsToTheVolumeStrokeByStrokeAndIsUndone) {
 }
 
 TEST(Session, WhatIsPutOnIsNotFelt) {
-  for (const CarveMode mode : {CarveMode::Remove, CarveMode::Add}) {
+  for (const sweep::CarveMode mode : {sweep::CarveMode::Remove, sweep::CarveMode::Add}) {
     SessionSettings settings;
     settings.mode = mode, settings.loop.sculpt.damping = 0.01;
     MouseBench bench(settings, nullptr, half_a_stock());
@@ -179,7 +180,7 @@ TEST(Session, WhatIsPutOnIsNotFelt) {
     for (const SculptTick& tick : bench.session->stop(bench.shown).ticks)
       force = std::max(force, glm::length(tick.on_tool.force)), changed += tick.removed;
     EXPECT_GT(changed, 50);
-    if (mode == CarveMode::Add)
+    if (mode == sweep::CarveMode::Add)
       EXPECT_EQ(force, 0);
     else
       EXPECT_GT(force, 0);
@@ -188,10 +189,10 @@ TEST(Session, WhatIsPutOnIsNotFelt) {
 
 TEST(Session, ThatPutsOnKeepsTheToolOutOfObstacles) {
   const auto plate =
-      std::make_shared<Collider>(test::box_mesh({-200, -200, -11}, {200, 200, -1}), std::vector<Volume>{},
-                                 Collider::Settings{.spacing = 0.3, .stiffness = 1e3});
+      std::make_shared<collide::Collider>(test::box_mesh({-200, -200, -11}, {200, 200, -1}), std::vector<Volume>{},
+                                          collide::Collider::Settings{.spacing = 0.3, .stiffness = 1e3});
   SessionSettings settings;
-  settings.mode = CarveMode::Add;
+  settings.mode = sweep::CarveMode::Add;
   MouseBench bench(settings, nullptr, half_a_stock(), plate);
   bench.pen->set_frame({.depth = 2});
   bench.session->start();
@@ -206,7 +207,7 @@ TEST(Session, ThatPutsOnKeepsTheToolOutOfObstacles) {
 
 TEST(Session, AMesherThatFollowsTheFramesHasTheMeshOfTheWhole) {
   MouseBench bench;
-  Mesher mesher(bench.shown);
+  marching::Mesher mesher(bench.shown);
   bench.session->start();
   for (int k = 0; k < 3; ++k) {
     bench.stroke(6 * k);
@@ -215,7 +216,7 @@ TEST(Session, AMesherThatFollowsTheFramesHasTheMeshOfTheWhole) {
   }
   bench.session->stop(bench.shown);
   mesher.update(bench.shown);
-  const Mesh followed = mesher.mesh(), whole = Mesher(bench.shown).mesh();
+  const Mesh followed = mesher.mesh(), whole = marching::Mesher(bench.shown).mesh();
   EXPECT_EQ(followed.vertices, whole.vertices);
   EXPECT_EQ(followed.triangles, whole.triangles);
 }
@@ -227,14 +228,14 @@ struct Sculpted {
 
 /// A hand that goes down into the stock and along, for two seconds.
 Sculpted sculpted_by_simulated_pen() {
-  const auto pen = std::shared_ptr<SimulatedDevice>(SimulatedDevice::open());
+  const auto pen = std::shared_ptr<pen::SimulatedDevice>(pen::SimulatedDevice::open());
   const Volume stock = test::sculpt_stock(0.5);
   Volume shown = stock;
   const Pose start{{0, 0, 1}, {0, 0, 1}};
   Session session(stock, kBall, pen, nullptr, {.loop = {}, .start = start});
   session.start();
   EXPECT_TRUE(soon([&] { return pen->newest().homed; }));
-  HandWish wish{.pose = pen->newest().pose, .buttons = 1};
+  pen::HandWish wish{.pose = pen->newest().pose, .buttons = 1};
   Sculpted out;
   for (int k = 0; k < 60; ++k) {
     wish.pose.tip += Vec3(0.1, 0, k < 30 ? -0.1 : 0);
@@ -265,14 +266,14 @@ TEST(Session, ARecordingIsPlayedWhereItWas) {
   std::vector<Pose> poses;
   std::vector<double> times;
   for (int k = 0; k <= 100; ++k) poses.push_back({{-20 + 0.4 * k, 0, -1}, {0, 0, 1}}), times.push_back(5e-3 * k);
-  const auto pen = std::make_shared<PlaybackPen>(std::vector<RecordedStroke>{{poses, times}});
+  const auto pen = std::make_shared<pen::PlaybackPen>(std::vector<pen::RecordedStroke>{{poses, times}});
   const Volume stock = test::sculpt_stock(0.5);
   Volume shown = stock;
   SessionSettings settings;
   settings.loop.carving.removal_constant = 1e-5;
   Session session(stock, kBall, pen, nullptr, settings);
   session.start();
-  EXPECT_TRUE(soon([&] { return pen->status().state == LinkState::Stopped; }));
+  EXPECT_TRUE(soon([&] { return pen->status().state == pen::LinkState::Stopped; }));
   nap(0.05);
   session.stop(shown);
   // A groove of 40 mm by a ball of 6 mm that is 1 mm deep: its two ends are halves of a cap, rounded outward.
@@ -293,7 +294,7 @@ TEST(Session, WhoChangesTheVolumeMeanwhileIsTold) {
 }
 
 TEST(Session, IsStartedAndStoppedAHundredTimesUnderwayOrNot) {
-  const auto pen = std::shared_ptr<SimulatedDevice>(SimulatedDevice::open());
+  const auto pen = std::shared_ptr<pen::SimulatedDevice>(pen::SimulatedDevice::open());
   const Volume stock = test::sculpt_stock(1);
   for (int k = 0; k < 100; ++k) {
     Volume shown = stock;
@@ -306,7 +307,7 @@ TEST(Session, IsStartedAndStoppedAHundredTimesUnderwayOrNot) {
 
 TEST(Session, BadInputIsNamed) {
   const Volume stock = test::sculpt_stock(1);
-  const auto pen = std::make_shared<PointerPen>(PointerPen::Kind::Mouse);
+  const auto pen = std::make_shared<pen::PointerPen>(pen::PointerPen::Kind::Mouse);
   EXPECT_THROW(Session(stock, kBall, nullptr, nullptr, {}), std::invalid_argument);
   EXPECT_THROW(Session(stock, kBall, pen, nullptr, {.loop = {}, .start = Pose{{0, 0, 0}, {0, 0, 2}}}),
                std::invalid_argument);
@@ -321,4 +322,4 @@ TEST(Session, BadInputIsNamed) {
 }
 
 }  // namespace
-}  // namespace riffler::session_test
+}  // namespace riffler::session::session_test

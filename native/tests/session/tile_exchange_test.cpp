@@ -10,7 +10,7 @@
 #include "riffler/base/ring.hpp"
 #include "riffler/tool/cutters.hpp"
 
-namespace riffler::tile_exchange_test {
+namespace riffler::session::tile_exchange_test {
 namespace {
 
 Volume block(const char* directions = "xyz") {
@@ -38,7 +38,7 @@ TEST(TileExchange, HandsOverNothingBeforeItIsAsked) {
 TEST(TileExchange, GathersUntilItIsAskedAndTellsEachTileOnce) {
   Volume cut = block(), shown = cut;
   TileExchange exchange(cut);
-  MoveCarver carver(cut, cutters::ball(10, 30), {});
+  sweep::MoveCarver carver(cut, cutters::ball(10, 30), {});
   for (int k = 0; k < 100; ++k) {
     carver.move({{30 + 0.1 * k, 30, 15}, {0, 0, 1}}, {{30.1 + 0.1 * k, 30, 15}, {0, 0, 1}}, 1e-3);
     exchange.changed(carver.replaced());
@@ -65,7 +65,7 @@ TEST(TileExchange, TwoThreadsNeverSeeHalfOfACut) {
   constexpr int kCuts = 400;
   std::atomic<bool> ended{false};
   std::thread cutter([&] {
-    MoveCarver carver(cut, cutters::flat(40, 30), {});
+    sweep::MoveCarver carver(cut, cutters::flat(40, 30), {});
     for (int k = 0; k < kCuts; ++k) {
       const Pose from{{30, 30, 20 - 0.02 * k}, {0, 0, 1}}, to{{30, 30, 20 - 0.02 * (k + 1)}, {0, 0, 1}};
       carver.move(from, to, 1e-3);
@@ -94,7 +94,7 @@ TEST(TileExchange, TwoThreadsNeverSeeHalfOfACut) {
 }
 
 TEST(Ring, KeepsOrderRefusesWhatItHasNoRoomForAndGoesRound) {
-  Ring<int> ring(3);
+  base::Ring<int> ring(3);
   int value = 0;
   EXPECT_FALSE(ring.take(value));
   for (int round = 0; round < 5; ++round) {
@@ -107,11 +107,11 @@ TEST(Ring, KeepsOrderRefusesWhatItHasNoRoomForAndGoesRound) {
     }
     EXPECT_FALSE(ring.take(value));
   }
-  EXPECT_THROW(Ring<int>(0), std::invalid_argument);
+  EXPECT_THROW(base::Ring<int>(0), std::invalid_argument);
 }
 
 TEST(Ring, TwoThreadsLoseNothing) {
-  Ring<long> ring(64);
+  base::Ring<long> ring(64);
   constexpr long kMany = 200'000;
   std::thread other([&] {
     for (long k = 0; k < kMany;)
@@ -125,4 +125,4 @@ TEST(Ring, TwoThreadsLoseNothing) {
 }
 
 }  // namespace
-}  // namespace riffler::tile_exchange_test
+}  // namespace riffler::session::tile_exchange_test

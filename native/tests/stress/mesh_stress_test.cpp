@@ -31,7 +31,7 @@ TEST(MeshStress, HoldsForVolumesFromTheDegenerateLimits) {
 /// Volumes that a mesher once failed for: the least of each, as riffler_mesh_stress writes them.
 TEST(MeshStress, HoldsForVolumesThatOnceFailed) {
   for (const auto& entry : std::filesystem::directory_iterator(test::checkout() / "native/tests/marching/volumes"))
-    EXPECT_EQ(check_mesh(load(entry.path()), true), "") << entry.path().filename();
+    EXPECT_EQ(check_mesh(dexel::load(entry.path()), true), "") << entry.path().filename();
 }
 
 TEST(MeshStress, DrawsTheSameVolumeAgain) {
@@ -41,10 +41,10 @@ TEST(MeshStress, DrawsTheSameVolumeAgain) {
 
 TEST(MeshStress, FindsTheLeastThatFails) {
   const Volume volume = mesh_volume(3, 0);
-  const Grid& grid = volume.grids().back();
+  const dexel::Grid& grid = volume.grids().back();
   int i = 0, j = 0;
   while (grid.ray(i, j).empty()) ++j == grid.nv() ? j = 0, ++i : i;
-  const Span wanted = grid.ray(i, j).front();
+  const dexel::Span wanted = grid.ray(i, j).front();
   const auto has_it = [&](const Volume& v) {
     const auto spans = v.grids().back().ray(i, j);
     return std::find(spans.begin(), spans.end(), wanted) != spans.end();
@@ -52,7 +52,7 @@ TEST(MeshStress, FindsTheLeastThatFails) {
   const Volume least = minimised(volume, has_it);
   EXPECT_TRUE(has_it(least));
   std::size_t spans = 0;
-  for (const Grid& g : least.grids()) spans += g.span_count();
+  for (const dexel::Grid& g : least.grids()) spans += g.span_count();
   EXPECT_EQ(spans, 1u);
 }
 
@@ -64,7 +64,7 @@ Vec3 on_floats(const Vec3& v) {
 }
 
 FloatAudit audit_of(const std::function<void(Mesh&)>& harm) {
-  Mesh mesh = sphere_mesh(1, 2);
+  Mesh mesh = mesh::sphere_mesh(1, 2);
   for (Vec3& v : mesh.vertices) v = on_floats(v);
   harm(mesh);
   return float_audit(mesh);

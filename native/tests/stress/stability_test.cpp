@@ -43,12 +43,12 @@ TEST(Stability, OneCoordinateSwingsUpAtTheBoundOfColgateAndSchenkel) {
 
 TEST(Stability, ACunningHandGainsFromTheBoundOn) {
   for (const double wall : {-1.5e-3, -5e-4, 0.0, 5e-4, 1.5e-3}) {
-    const double bound = passive_stiffness({1e-3, 2e-3, 0, 0}, wall).least();
+    const double bound = haptics::passive_stiffness({1e-3, 2e-3, 0, 0}, wall).least();
     EXPECT_NEAR(cunning_boundary(wall_device(1.5e-4, 2e-3), wall, {1.0}, {{1.0}}) / bound, 1, 0.03) << wall;
   }
   // With encoder steps, Abbott and Okamura's, from well below to well above the step at which it takes over.
   for (const double step : {0.01, 0.05, 0.2, 0.3}) {
-    const double bound = passive_stiffness({1e-3, 2e-3, 0.2, step}).least();
+    const double bound = haptics::passive_stiffness({1e-3, 2e-3, 0.2, step}).least();
     const WallDevice device = wall_device(1.5e-4, 2e-3, 0.2, step);
     EXPECT_NEAR(cunning_boundary(device, 0, {1.0}, {{step}}) / bound, 1, 0.012) << step;
   }

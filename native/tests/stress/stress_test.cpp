@@ -44,10 +44,10 @@ const Move kStraight{Kind::Straight, {{6, 9, 6}, {0, 0, 1}}, {{14, 10, 7}, {0, 0
 Volume carved(const Move& move, const Vec3& shift = Vec3(0)) {
   const Stage s = stage();
   Volume volume = Volume::block(s.frame);
-  CarveOptions options;
+  sweep::CarveOptions options;
   options.tolerance = move.tolerance;
   const Pose from{move.from.tip + shift, move.from.axis}, to{move.to.tip + shift, move.to.axis};
-  carve(volume, s.tool, std::vector<Pose>{from, to}, options);
+  sweep::carve(volume, s.tool, std::vector<Pose>{from, to}, options);
   return volume;
 }
 
@@ -74,14 +74,14 @@ TEST(StressChecks, TheReferenceFindsACutThatIsOff) {
 }
 
 /// `volume` with the spans of the ray in the middle of its first grid replaced.
-Volume with_ray(const Volume& volume, const std::vector<Span>& spans) {
+Volume with_ray(const Volume& volume, const std::vector<dexel::Span>& spans) {
   Volume out = volume;
-  Grid& grid = out.grids()[0];
-  const int middle = Grid::ray_index(grid.nu() / 2, grid.nv() / 2);
-  TileBuilder builder(grid.has_normals());
-  for (int r = 0; r < kTileRays; ++r) {
+  dexel::Grid& grid = out.grids()[0];
+  const int middle = dexel::Grid::ray_index(grid.nu() / 2, grid.nv() / 2);
+  dexel::TileBuilder builder(grid.has_normals());
+  for (int r = 0; r < dexel::kTileRays; ++r) {
     const auto ray = grid.tile(0).ray(r);
-    for (const Span& s : r == middle ? std::span<const Span>(spans) : ray) builder.add(s);
+    for (const dexel::Span& s : r == middle ? std::span<const dexel::Span>(spans) : ray) builder.add(s);
     builder.next_ray();
   }
   grid.set_tile(0, builder.finish());
@@ -91,7 +91,7 @@ Volume with_ray(const Volume& volume, const std::vector<Span>& spans) {
 
 TEST(StressChecks, TheReferenceFindsASliverLeftBehindAndOneTaken) {
   const Volume after = carved(kTurning);
-  const Grid& grid = after.grids()[0];  // along x
+  const dexel::Grid& grid = after.grids()[0];  // along x
   const auto ray = grid.ray(grid.nu() / 2, grid.nv() / 2);
   ASSERT_EQ(ray.size(), 2U);
   const double inside = (ray[0].far + ray[1].near) / 2;
@@ -107,9 +107,9 @@ TEST(StressChecks, SpansOutOfOrderAreFound) {
   const double nan = std::nan("");
   EXPECT_EQ(check_spans(block), "");
   EXPECT_EQ(check_spans(with_ray(block, {{1, 2}, {3, 4}}), &block), "");
-  const std::vector<std::vector<Span>> wrong{{{1, 1}},         {{2, 1}},   {{3, 4}, {1, 2}},
-                                             {{1, 3}, {2, 4}}, {{-1, 4}},  {{1, 20.000001}},
-                                             {{nan, 2}},       {{1, nan}}, {{1, 2}, {2, 3}}};
+  const std::vector<std::vector<dexel::Span>> wrong{{{1, 1}},         {{2, 1}},   {{3, 4}, {1, 2}},
+                                                    {{1, 3}, {2, 4}}, {{-1, 4}},  {{1, 20.000001}},
+                                                    {{nan, 2}},       {{1, nan}}, {{1, 2}, {2, 3}}};
   for (const auto& spans : wrong) EXPECT_NE(check_spans(with_ray(block, spans)), "") << spans[0].near;
   const Volume less = with_ray(block, {{1, 2}, {3, 4}});
   EXPECT_NE(check_spans(with_ray(block, {{1, 2.5}, {3, 4}}), &less), "");
@@ -118,7 +118,7 @@ TEST(StressChecks, SpansOutOfOrderAreFound) {
 
 TEST(StressChecks, VolumesThatDoNotAddUpAreFound) {
   const Volume block = Volume::block(stage().frame), after = carved(kStraight);
-  Cut cut{{block.volume() - after.volume()}, {Vec3(0)}, {Vec3(0)}};
+  sweep::Cut cut{{block.volume() - after.volume()}, {Vec3(0)}, {Vec3(0)}};
   EXPECT_EQ(check_removed(block, after, cut), "");
   EXPECT_NE(check_removed(after, block, cut), "") << "it grew";
   cut.removed[0] *= 1 + 1e-8;

@@ -39,16 +39,16 @@ inline Bytes teensy_descriptor() {
           0x00, 0x95, 64,   0x09, 0x01, 0x81, 0x02, 0x95, 64,   0x09, 0x02, 0x91, 0x02, 0xC0};
 }
 
-inline HidInfo pen_info() {
-  HidInfo info;
+inline pen::HidInfo pen_info() {
+  pen::HidInfo info;
   info.path = "/dev/hidraw0";
   info.vendor = RIFFLER_PEN_VENDOR_ID, info.product = RIFFLER_PEN_PRODUCT_ID;
   info.name = RIFFLER_PEN_PRODUCT;
   return info;
 }
 
-inline HidInfo puck_info(std::uint16_t vendor = 0x256F, std::uint16_t product = 0xC635) {
-  HidInfo info;
+inline pen::HidInfo puck_info(std::uint16_t vendor = 0x256F, std::uint16_t product = 0xC635) {
+  pen::HidInfo info;
   info.path = "/dev/hidraw1";
   info.vendor = vendor, info.product = product;
   return info;

@@ -8,12 +8,12 @@
 
 namespace riffler::test {
 
-inline Program read_nc_text(const std::string& text, const std::string& machine = "tcp", Options options = {}) {
-  return parse_nc(text, "p.ngc", {machine, std::move(options)});
+inline nc::Program read_nc_text(const std::string& text, const std::string& machine = "tcp", nc::Options options = {}) {
+  return nc::parse_nc(text, "p.ngc", {machine, std::move(options)});
 }
 
 /// What the FormatError says, after the file's name.
-inline std::string nc_error(const std::string& text, const std::string& machine = "tcp", Options options = {}) {
+inline std::string nc_error(const std::string& text, const std::string& machine = "tcp", nc::Options options = {}) {
   try {
     read_nc_text(text, machine, std::move(options));
   } catch (const FormatError& e) {

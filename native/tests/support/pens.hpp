@@ -8,8 +8,8 @@
 namespace riffler::test {
 
 /// The shipped pen, set up aslant and away from the origin.
-inline PenGeometry turned_pen() {
-  PenGeometry pen = load_pen("riffler");
+inline pen::PenGeometry turned_pen() {
+  pen::PenGeometry pen = pen::load_pen("riffler");
   const Vec3 x = glm::normalize(Vec3(1, 2, -2)), z = glm::normalize(glm::cross(x, Vec3(0.3, 1, 0)));
   pen.turn = Mat3(x, glm::cross(z, x), z);
   pen.origin = {40, -500, 120};
@@ -17,8 +17,8 @@ inline PenGeometry turned_pen() {
 }
 
 /// In the workspace, tilted up to 60° from the axis at home.
-inline Pose random_pose(stress::Random& random, const PenGeometry& geometry) {
-  const PenKinematics pen(geometry);
+inline Pose random_pose(stress::Random& random, const pen::PenGeometry& geometry) {
+  const pen::PenKinematics pen(geometry);
   const Vec3 home = pen.posture(pen.home_angles()).pose.axis, size = geometry.workspace.size();
   Vec3 axis;
   do axis = random.direction();

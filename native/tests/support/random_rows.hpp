@@ -16,17 +16,17 @@
 
 namespace riffler::test {
 
-inline WriteOptions on_machine(std::string post, Options options = {}) {
-  WriteOptions how;
+inline nc::WriteOptions on_machine(std::string post, nc::Options options = {}) {
+  nc::WriteOptions how;
   how.post = std::move(post), how.options = std::move(options);
   return how;
 }
 
 /// `options` and what the machine cannot do without: points at 0, lengths of 120 mm.
-inline Options with_needed(const std::string& name, Options options) {
-  OptionReader listing(options, name, true);
+inline nc::Options with_needed(const std::string& name, nc::Options options) {
+  nc::OptionReader listing(options, name, true);
   make_machine(name, listing);
-  for (const OptionFact& fact : listing.facts()) {
+  for (const nc::OptionFact& fact : listing.facts()) {
     if (!fact.needed) continue;
     if (fact.most == 3) options[fact.name] = std::vector<double>{0, 0, 0};
     if (fact.most == 1) options[fact.name] = 120.0;
@@ -36,18 +36,18 @@ inline Options with_needed(const std::string& name, Options options) {
 
 /// Every shipped machine: as it is, with its words the other way round, with limits, and with what posts can be asked
 /// for.
-inline std::vector<WriteOptions> all_machines() {
-  std::vector<WriteOptions> out;
-  for (const ShippedText& text : shipped_machines()) {
+inline std::vector<nc::WriteOptions> all_machines() {
+  std::vector<nc::WriteOptions> out;
+  for (const base::ShippedText& text : nc::shipped_machines()) {
     const std::string name(text.name);
-    OptionReader listing({}, name, true);
+    nc::OptionReader listing({}, name, true);
     const auto machine = make_machine(name, listing);
-    std::vector<Options> words{with_needed(name, {})};
+    std::vector<nc::Options> words{with_needed(name, {})};
     if (machine->control().language == "rs274" && machine->axes().size() > 3)
       words.push_back(with_needed(name, {{"tcp", machine->joint_words()}}));
-    for (const Options& options : words) {
+    for (const nc::Options& options : words) {
       out.push_back(on_machine(name, options));
-      Options limited = options, asked = options;
+      nc::Options limited = options, asked = options;
       for (const char letter : machine->axes().substr(3))
         limited[std::string("limits_") + static_cast<char>(letter + ('a' - 'A'))] = std::vector<double>{-100, 35};
       limited["limits_x"] = std::vector<double>{-60, 60};
@@ -66,15 +66,15 @@ class RandomRows {
  public:
   explicit RandomRows(unsigned seed) : random_(seed) {}
 
-  Program program() {
-    Program p;
+  nc::Program program() {
+    nc::Program p;
     if (chance(0.8)) p.tools.emplace(1, cutters::ball(6, 40).with_holder({{40, 20, 90, 20}}));
     steepest_ = chance(0.4) ? 0 : chance(0.5) ? 30 : 175;
     const bool feeds = !chance(0.08), far = chance(0.1);
-    Move move = first();
+    nc::Move move = first();
     for (int row = 0, rows = 1 + static_cast<int>(number(0, 30)); row < rows; ++row) {
       if (row > 0) next(move, feeds);
-      if (far && !move.at_machine && chance(0.1)) move.pose.tip.x = 3 * kMaxLength;
+      if (far && !move.at_machine && chance(0.1)) move.pose.tip.x = 3 * nc::kMaxLength;
       if (!feeds) move.pose.tip = Vec3(1, 2, 3);
       p.append(move);
       move.at_machine = false, move.via = nullptr;
@@ -87,14 +87,14 @@ class RandomRows {
   bool chance(double share) { return number(0, 1) < share; }
   Vec3 axis() { return chance(0.1) ? Vec3(0, 0, 1) : tilted(number(0, steepest_), number(0, 360)); }
 
-  Move first() {
-    Move move;
+  nc::Move first() {
+    nc::Move move;
     move.pose = {{0, 0, 30}, axis()};
     move.tool = 1, move.spindle = 8000, move.rapid = chance(0.8);
     return move;
   }
 
-  void next(Move& move, bool feeds) {
+  void next(nc::Move& move, bool feeds) {
     if (feeds && chance(0.03)) {
       move.at_machine = true;
       return;

@@ -11,7 +11,7 @@
 #include "riffler/sweep/move_carver.hpp"
 #include "riffler/tool/cutters.hpp"
 
-namespace riffler::carve_test {
+namespace riffler::sweep::carve_test {
 namespace {
 
 struct Named {
@@ -86,7 +86,7 @@ std::vector<Path> turning_paths() {
 /// Every interval end of the carved block and points all along the rays, against the reference. Where the surface is
 /// not nearly parallel to the ray the end is also measured along the ray.
 void expect_carved_right(const Tool& tool, const Path& path, double tolerance, double along_tolerance, double concave) {
-  const Frame frame{{{0, 0, 0}, {20, 19, 14}}, 1.37, "xyz"};
+  const dexel::Frame frame{{{0, 0, 0}, {20, 19, 14}}, 1.37, "xyz"};
   Volume volume = Volume::block(frame);
   const std::vector<Pose> poses{path.from, path.to};
   CarveOptions options;
@@ -96,16 +96,16 @@ void expect_carved_right(const Tool& tool, const Path& path, double tolerance, d
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> share(0, 1);
   const double exact = along_tolerance > 0 ? tolerance : tolerance + concave;
-  for (const Grid& grid : volume.grids()) {
+  for (const dexel::Grid& grid : volume.grids()) {
     const double lower = grid.box().lower.z, upper = grid.box().upper.z;
     for (int i = 0; i < grid.nu(); ++i)
       for (int j = 0; j < grid.nv(); ++j) {
         const auto distance = [&](double s) {  // no closer than the comparisons ask
           return swept.bracket(to_world(grid.axis(), {grid.u(i), grid.v(j), s}), exact / 50, 4 * exact).upper;
         };
-        const std::span<const Span> ray = grid.ray(i, j);
+        const std::span<const dexel::Span> ray = grid.ray(i, j);
         std::vector<double> ends;
-        for (const Span& s : ray) {
+        for (const dexel::Span& s : ray) {
           ASSERT_LT(s.near, s.far);
           if (s.near > lower) ends.push_back(s.near);
           if (s.far < upper) ends.push_back(s.far);
@@ -117,7 +117,7 @@ void expect_carved_right(const Tool& tool, const Path& path, double tolerance, d
         for (int k = 0; k < 3; ++k) {
           const double s = lower + share(random) * (upper - lower);
           const bool solid =
-              std::any_of(ray.begin(), ray.end(), [&](const Span& x) { return s >= x.near && s <= x.far; });
+              std::any_of(ray.begin(), ray.end(), [&](const dexel::Span& x) { return s >= x.near && s <= x.far; });
           const double off = distance(s);
           if (std::abs(off) <= exact) continue;
           ASSERT_EQ(solid, off > 0) << path.name << ": point " << s << " of ray " << i << ", " << j << " is " << off
@@ -131,7 +131,7 @@ TEST(Carve, StraightMovesAreExactForEveryCutter) {
   for (const Named& c : cutters_under_test())
     for (const Path& path : straight_paths()) {
       SCOPED_TRACE(c.name);
-      const double concave = std::string(c.name) == "corner rounder" ? Profile::kConcaveTolerance : 0;
+      const double concave = std::string(c.name) == "corner rounder" ? tool::Profile::kConcaveTolerance : 0;
       expect_carved_right(c.tool, path, 3e-9, 0, concave);
     }
 }
@@ -283,7 +283,7 @@ TEST(Carve, ForceIsOfTheRaysThatAreCutAlone) {
     EXPECT_EQ(fill_stack(never), never);
     const Cut cut = carve(volume, tool, poses, options);
     EXPECT_GT(cut.removed[0], 1);
-    EXPECT_TRUE(finite(cut.force[0]) && finite(cut.torque[0])) << tool.kind();
+    EXPECT_TRUE(geom::finite(cut.force[0]) && geom::finite(cut.torque[0])) << tool.kind();
   }
 }
 
@@ -333,7 +333,7 @@ TEST(Carve, CancellingLeavesTheVolumeAsItWas) {
 
 TEST(Carve, KeepsItsAccuracyFarFromTheOrigin) {
   const Vec3 far{1e5, -1e5, 1e5};
-  const Frame near_frame{{{0, 0, 0}, {20, 20, 10}}, 0.5, "z"};
+  const dexel::Frame near_frame{{{0, 0, 0}, {20, 20, 10}}, 0.5, "z"};
   Volume a = Volume::block(near_frame),
          b = Volume::block({{near_frame.box.lower + far, near_frame.box.upper + far}, 0.5, "z"});
   const std::vector<Pose> poses{{{5, 9, 5}, unit(0.2, 0.1, 1)}, {{15, 11, 6}, unit(0.2, 0.1, 1)}};
@@ -359,7 +359,7 @@ TEST(Carve, NormalsOfNewSurfacesLookIntoTheTool) {
   carve(volume, cutters::ball(8, 30), std::vector<Pose>{pose, pose});
   const Vec3 centre = pose.tip + 4.0 * axis;
   int seen = 0;
-  for (const Grid& grid : volume.grids())
+  for (const dexel::Grid& grid : volume.grids())
     for (int i = 0; i < grid.nu(); ++i)
       for (int j = 0; j < grid.nv(); ++j) {
         const auto ray = grid.ray(i, j);
@@ -403,4 +403,4 @@ TEST(Carve, TolerancesAndTimesThatAskForWorkWithoutEndAreRefused) {
 }
 
 }  // namespace
-}  // namespace riffler::carve_test
+}  // namespace riffler::sweep::carve_test

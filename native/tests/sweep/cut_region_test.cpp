@@ -16,7 +16,7 @@
 #include "riffler/sweep/carve.hpp"
 #include "riffler/tool/cutters.hpp"
 
-namespace riffler::cut_region_test {
+namespace riffler::sweep::cut_region_test {
 namespace {
 
 Vec3 unit(double x, double y, double z) {
@@ -33,16 +33,16 @@ std::vector<Pose> straight_path() {
   return {{{3, 4, 9}, lean}, {{20, 7, 6}, lean}, {{18, 19, 8}, lean}};
 }
 
-bool holds(std::span<const Span> ray, double s) {
-  return std::any_of(ray.begin(), ray.end(), [&](const Span& x) { return s > x.near && s < x.far; });
+bool holds(std::span<const dexel::Span> ray, double s) {
+  return std::any_of(ray.begin(), ray.end(), [&](const dexel::Span& x) { return s > x.near && s < x.far; });
 }
 
 void expect_no_slivers(const Volume& volume) {
-  for (const Grid& grid : volume.grids())
+  for (const dexel::Grid& grid : volume.grids())
     for (int i = 0; i < grid.nu(); ++i)
       for (int j = 0; j < grid.nv(); ++j) {
         double last = -1e300;
-        for (const Span& s : grid.ray(i, j)) {
+        for (const dexel::Span& s : grid.ray(i, j)) {
           ASSERT_LT(s.near, s.far);
           ASSERT_LT(last, s.near);
           ASSERT_GE(s.near, grid.box().lower.z);
@@ -55,7 +55,7 @@ void expect_no_slivers(const Volume& volume) {
 /// Random points of every ray of lattice volumes: what was there, whether it is protected and where the tool went say
 /// what has to be there.
 void expect_right(CarveMode mode, const Tool& tool, bool protecting, const char* directions) {
-  const Frame frame = test::lattice_frame(directions);
+  const dexel::Frame frame = test::lattice_frame(directions);
   const Volume before = test::random_volume(frame, 3), kept = test::random_volume(frame, 4);
   Volume volume = before;
   CarveOptions options;
@@ -69,7 +69,7 @@ void expect_right(CarveMode mode, const Tool& tool, bool protecting, const char*
   std::mt19937_64 random(11);
   std::uniform_real_distribution<double> share(0, 1);
   for (std::size_t g = 0; g < volume.grids().size(); ++g) {
-    const Grid& grid = volume.grids()[g];
+    const dexel::Grid& grid = volume.grids()[g];
     for (int i = 0; i < grid.nu(); ++i)
       for (int j = 0; j < grid.nv(); ++j) {
         const double s = share(random) * test::kCells;
@@ -96,16 +96,16 @@ TEST(CutRegion, HoldsAtEveryPointWhatWasThereWhatIsProtectedAndWhereTheToolWent)
 
 TEST(CutRegion, IsTheUnionWithWhatTheToolTakesFromAFullBlock) {
   for (const char* directions : {"z", "x", "xyz"}) {
-    const Frame frame = test::lattice_frame(directions);
+    const dexel::Frame frame = test::lattice_frame(directions);
     Volume swept = Volume::block(frame), rest = swept;
     carve(rest, cutters::ball(7, 30), straight_path());
-    apply(Boolean::Subtract, swept, rest);
+    apply(dexel::Boolean::Subtract, swept, rest);
     for (const unsigned seed : {1U, 2U, 5U}) {
       Volume volume = test::random_volume(frame, seed), expected = volume;
       CarveOptions options;
       options.mode = CarveMode::Add;
       carve(volume, cutters::ball(7, 30), straight_path(), options);
-      apply(Boolean::Add, expected, swept);
+      apply(dexel::Boolean::Add, expected, swept);
       for (std::size_t g = 0; g < volume.grids().size(); ++g)
         for (std::size_t t = 0; t < volume.grids()[g].tile_count(); ++t) {
           EXPECT_TRUE(volume.grids()[g].tile(t).offset == expected.grids()[g].tile(t).offset);
@@ -116,7 +116,7 @@ TEST(CutRegion, IsTheUnionWithWhatTheToolTakesFromAFullBlock) {
 }
 
 TEST(CutRegion, GivesTheBitsOfCarvingAWholeVolumeOfWhatMayBeCut) {
-  const Frame frame{
+  const dexel::Frame frame{
       {{0, 0, 0}, {60, 50, 24}}, 0.3, "xyz"};  // 7 × 6 tiles seen from above, of which the path passes some
   std::vector<Pose> poses = path();
   for (int k = 0; k < 600; ++k)  // more than one batch
@@ -130,12 +130,12 @@ TEST(CutRegion, GivesTheBitsOfCarvingAWholeVolumeOfWhatMayBeCut) {
     for (const Volume* protect : {static_cast<const Volume*>(nullptr), static_cast<const Volume*>(&mask)}) {
       if (mode == CarveMode::Remove && !protect) continue;  // cuts the volume itself
       Volume cuttable = mode == CarveMode::Add ? Volume::block(frame) : stock;
-      if (mode == CarveMode::Add) apply(Boolean::Subtract, cuttable, stock);
-      if (protect) apply(Boolean::Subtract, cuttable, *protect);
+      if (mode == CarveMode::Add) apply(dexel::Boolean::Subtract, cuttable, stock);
+      if (protect) apply(dexel::Boolean::Subtract, cuttable, *protect);
       Volume cut = cuttable, expected = stock, volume = stock;
       const Cut by_hand = carve(cuttable, cutters::ball(7, 30), poses);
-      apply(Boolean::Subtract, cut, cuttable);
-      apply(mode == CarveMode::Add ? Boolean::Add : Boolean::Subtract, expected, cut);
+      apply(dexel::Boolean::Subtract, cut, cuttable);
+      apply(mode == CarveMode::Add ? dexel::Boolean::Add : dexel::Boolean::Subtract, expected, cut);
       CarveOptions options;
       options.mode = mode, options.protect = protect;
       EXPECT_EQ(carve(volume, cutters::ball(7, 30), poses, options).removed, by_hand.removed);
@@ -152,7 +152,7 @@ TEST(CutRegion, NewWallsLookOutOfTheMaterial) {
   const std::vector<Pose> stay{{centre - Vec3(0, 0, 4), {0, 0, 1}}, {centre - Vec3(0, 0, 4), {0, 0, 1}}};
   carve(volume, cutters::ball(8, 4), stay, options);  // the lower half of a ball
   std::size_t round = 0;
-  for (const Grid& grid : volume.grids())
+  for (const dexel::Grid& grid : volume.grids())
     for (int i = 0; i < grid.nu(); ++i)
       for (int j = 0; j < grid.nv(); ++j) {
         const auto spans = grid.ray(i, j);
@@ -171,7 +171,7 @@ TEST(CutRegion, NewWallsLookOutOfTheMaterial) {
 TEST(CutRegion, SaysOfEachMoveWhatItPutOnOrTook) {
   for (const char* directions : {"z", "xyz", "y"})
     for (const CarveMode mode : {CarveMode::Add, CarveMode::Remove}) {
-      const Frame frame = test::lattice_frame(directions);
+      const dexel::Frame frame = test::lattice_frame(directions);
       Volume volume = test::random_volume(frame, 8);
       const Volume kept = test::random_volume(frame, 9);
       const double before = volume.volume();
@@ -186,7 +186,7 @@ TEST(CutRegion, SaysOfEachMoveWhatItPutOnOrTook) {
 }
 
 TEST(CutRegion, WhatIsProtectedStaysBitForBitAndUntouchedTilesStayShared) {
-  const Frame frame{{{0, 0, 0}, {80, 60, 20}}, 0.5, "xyz"};
+  const dexel::Frame frame{{{0, 0, 0}, {80, 60, 20}}, 0.5, "xyz"};
   const Volume before = Volume::block(frame);
   Volume kept(frame);
   CarveOptions put;
@@ -202,7 +202,7 @@ TEST(CutRegion, WhatIsProtectedStaysBitForBitAndUntouchedTilesStayShared) {
   EXPECT_GT(before.volume() - volume.volume(), 100);
   EXPECT_GT(volume.volume(), all.volume() + 100);
   Volume inside = volume;
-  apply(Boolean::Intersect, inside, kept);
+  apply(dexel::Boolean::Intersect, inside, kept);
   EXPECT_EQ(inside.volume(), kept.volume());
   std::size_t touched = 0;
   for (std::size_t g = 0; g < 3; ++g)
@@ -212,7 +212,7 @@ TEST(CutRegion, WhatIsProtectedStaysBitForBitAndUntouchedTilesStayShared) {
 }
 
 TEST(CutRegion, LeavesEverythingAsItWasWhereNothingChanges) {
-  const Frame frame{{{0, 0, 0}, {40, 40, 12}}, 0.5, "xyz"};
+  const dexel::Frame frame{{{0, 0, 0}, {40, 40, 12}}, 0.5, "xyz"};
   Volume full = Volume::block(frame), empty(frame);
   const Volume all = full;
   const auto was = std::pair(full.revision(), empty.revision());
@@ -244,7 +244,7 @@ TEST(CutRegion, PuttingOnAndTakingTheSameAgainLeavesTheRest) {
 
 TEST(CutRegion, GivesTheSameBytesForAnyNumberOfThreadsFarFromTheOrigin) {
   const Vec3 far{1e5, -1e5, 1e5};
-  const Frame frame{{far, far + Vec3(60, 50, 24)}, 0.3, "xyz"};
+  const dexel::Frame frame{{far, far + Vec3(60, 50, 24)}, 0.3, "xyz"};
   std::vector<Pose> poses = path();
   for (Pose& p : poses) p.tip += far;
   std::vector<Volume> volumes;
@@ -264,7 +264,7 @@ TEST(CutRegion, GivesTheSameBytesForAnyNumberOfThreadsFarFromTheOrigin) {
 }
 
 TEST(CutRegion, NamesAnotherGridAndStopsWithoutATraceWhenCancelled) {
-  const Frame frame = test::lattice_frame("xyz");
+  const dexel::Frame frame = test::lattice_frame("xyz");
   Volume volume = test::random_volume(frame, 1);
   const Volume before = volume, coarse = Volume::block(test::lattice_frame("xyz", 1));
   CarveOptions options;
@@ -282,4 +282,4 @@ TEST(CutRegion, NamesAnotherGridAndStopsWithoutATraceWhenCancelled) {
 }
 
 }  // namespace
-}  // namespace riffler::cut_region_test
+}  // namespace riffler::sweep::cut_region_test

@@ -10,7 +10,7 @@
 #include "support/effort.hpp"
 #include "sweep/kernels.hpp"
 
-namespace riffler::instruction_sets_test {
+namespace riffler::sweep::instruction_sets_test {
 namespace {
 
 struct Result {
@@ -91,4 +91,4 @@ TEST(Kernels, RefuseAnInstructionSetThatIsNotThere) {
 }
 
 }  // namespace
-}  // namespace riffler::instruction_sets_test
+}  // namespace riffler::sweep::instruction_sets_test

@@ -12,7 +12,7 @@
 #include "riffler/tool/cutters.hpp"
 #include "support/allocations.hpp"
 
-namespace riffler::move_carver_test {
+namespace riffler::sweep::move_carver_test {
 namespace {
 
 /// A spiral at cutting depth whose turns overlap, 0.5 mm a step; with `lean`, the axis wobbles.
@@ -48,7 +48,7 @@ TEST(MoveCarver, LeavesAndSaysWhatCarveDoesOfEachMove) {
 /// milliseconds: it looks at a snapshot, and makes memory ready for tiles that are cut for the first time.
 std::uint64_t allocations(Volume& volume, double lean, int moves, int warm) {
   MoveCarver carver(volume, cutters::ball(20, 40), {});
-  BlockReserve reserve;
+  base::BlockReserve reserve;
   std::uint64_t count = 0;
   for (int k = 0; k < moves; ++k) {
     if (k % 50 == 0)
@@ -87,4 +87,4 @@ TEST(MoveCarver, BadInputChangesNothing) {
 }
 
 }  // namespace
-}  // namespace riffler::move_carver_test
+}  // namespace riffler::sweep::move_carver_test

@@ -6,7 +6,7 @@
 #include "riffler/sweep/carve.hpp"
 #include "riffler/tool/cutters.hpp"
 
-namespace riffler::quick_reject_test {
+namespace riffler::sweep::quick_reject_test {
 namespace {
 
 std::vector<Pose> lifted(std::vector<Pose> poses, double by) {
@@ -14,7 +14,7 @@ std::vector<Pose> lifted(std::vector<Pose> poses, double by) {
   return poses;
 }
 
-Stats counted(Volume& volume, const Tool& tool, const std::vector<Pose>& poses) {
+dexel::Stats counted(Volume& volume, const Tool& tool, const std::vector<Pose>& poses) {
   volume.take_stats();
   carve(volume, tool, poses);
   return volume.take_stats();
@@ -26,7 +26,7 @@ TEST(QuickReject, ABallOverItsOwnCutTestsNoRay) {
   const Tool tool = cutters::ball(6, 30);
   for (const double lift : {1e-6, 0.001, 0.1}) {
     Volume volume = Volume::block({{{0, 0, 0}, {20, 20, 8}}, 0.1, "z"});
-    const Stats first = counted(volume, tool, kRamp), again = counted(volume, tool, lifted(kRamp, lift));
+    const dexel::Stats first = counted(volume, tool, kRamp), again = counted(volume, tool, lifted(kRamp, lift));
     EXPECT_GT(first.rays_changed, 5000U);
     EXPECT_EQ(again.rays_changed, 0U) << lift;
     EXPECT_EQ(again.rays_tested, 0U) << lift;
@@ -37,7 +37,7 @@ TEST(QuickReject, ABallBelowItsOwnCutTakesFromEveryRay) {
   const Tool tool = cutters::ball(6, 30);
   Volume volume = Volume::block({{{0, 0, 0}, {20, 20, 8}}, 0.1, "z"});
   for (const double depth : {0.0, 1e-6, 2e-6}) {
-    const Stats stats = counted(volume, tool, lifted(kRamp, -depth));
+    const dexel::Stats stats = counted(volume, tool, lifted(kRamp, -depth));
     EXPECT_GT(stats.rays_changed, 5000U) << depth;
   }
 }
@@ -46,7 +46,7 @@ TEST(QuickReject, OfAShortStepMostRaysThatAreTestedAreCut) {
   const Tool tool = cutters::ball(20, 60);
   Volume volume = Volume::block({{{0, 0, 0}, {60, 40, 30}}, 0.1, "z"});
   std::vector<Pose> poses{{{15, 20, 20}, {0, 0, 1}}};
-  Stats stats;
+  dexel::Stats stats;
   for (int k = 1; k <= 10; ++k) {
     poses.push_back({{15 + 0.5 * k, 20, 20}, {0, 0, 1}});
     stats = counted(volume, tool, {poses[k - 1], poses[k]});
@@ -64,11 +64,11 @@ TEST(QuickReject, AFlatEndThatTurnsAboveItsFloorTestsNoRayOfThat) {
   };
   Volume volume = Volume::block({{{0, 0, 0}, {20, 20, 8}}, 0.1, "z"});
   EXPECT_GT(counted(volume, tool, swing(5)).rays_changed, 2500U);
-  const Stats above = counted(volume, tool, swing(5.05));
+  const dexel::Stats above = counted(volume, tool, swing(5.05));
   EXPECT_LT(above.rays_tested, 600U);  // of about 3000 in its footprint: those at its walls, which lean
-  const Stats below = counted(volume, tool, swing(4.95));
+  const dexel::Stats below = counted(volume, tool, swing(4.95));
   EXPECT_GT(below.rays_changed, 2500U);
 }
 
 }  // namespace
-}  // namespace riffler::quick_reject_test
+}  // namespace riffler::sweep::quick_reject_test

@@ -6,7 +6,7 @@
 #include "riffler/sweep/carve.hpp"
 #include "riffler/tool/cutters.hpp"
 
-namespace riffler::random_moves_test {
+namespace riffler::sweep::random_moves_test {
 namespace {
 
 using Random = std::mt19937_64;
@@ -52,15 +52,15 @@ std::pair<Pose, Pose> any_move(Random& random) {
 
 /// Every end and some points of every ray, against the reference.
 void expect_within(const Volume& volume, const reference::SweptDistance& swept, double tolerance, Random& random) {
-  for (const Grid& grid : volume.grids())
+  for (const dexel::Grid& grid : volume.grids())
     for (int i = 0; i < grid.nu(); ++i)
       for (int j = 0; j < grid.nv(); ++j) {
         const auto distance = [&](double s) {  // no closer than the comparisons ask
           return swept.bracket(to_world(grid.axis(), {grid.u(i), grid.v(j), s}), tolerance / 50, 4 * tolerance).upper;
         };
         const double lower = grid.box().lower.z, upper = grid.box().upper.z;
-        const std::span<const Span> ray = grid.ray(i, j);
-        for (const Span& s : ray)
+        const std::span<const dexel::Span> ray = grid.ray(i, j);
+        for (const dexel::Span& s : ray)
           for (const double end : {s.near, s.far}) {
             if (end <= lower || end >= upper) continue;
             ASSERT_LE(std::abs(distance(end)), tolerance) << i << ", " << j;
@@ -68,7 +68,7 @@ void expect_within(const Volume& volume, const reference::SweptDistance& swept, 
         for (int k = 0; k < 3; ++k) {
           const double s = lower + uniform(random) * (upper - lower), off = distance(s);
           const bool solid =
-              std::any_of(ray.begin(), ray.end(), [&](const Span& x) { return s >= x.near && s <= x.far; });
+              std::any_of(ray.begin(), ray.end(), [&](const dexel::Span& x) { return s >= x.near && s <= x.far; });
           if (std::abs(off) <= tolerance) continue;
           ASSERT_EQ(solid, off > 0) << i << ", " << j << " at " << s;
         }
@@ -111,4 +111,4 @@ TEST(Carve, DiscsThatTurnEdgeOnToTheRaysKeepTheTolerance) {
 }
 
 }  // namespace
-}  // namespace riffler::random_moves_test
+}  // namespace riffler::sweep::random_moves_test

@@ -12,7 +12,7 @@
 #include "sweep/convex_group.hpp"
 #include "sweep/turning_part.hpp"
 
-namespace riffler::steps_test {
+namespace riffler::sweep::steps_test {
 namespace {
 
 TEST(ConvexGroups, NamedCuttersAreOne) {
@@ -39,7 +39,7 @@ TEST(ConvexGroups, OverlapWhereTheToolIsHollowAndStayWithinIt) {
       if (g > 0) {
         EXPECT_LT(bottom(groups[g].pieces[0]), top(groups[g - 1].pieces[groups[g - 1].count - 1]));
       }
-      for (const Piece& piece : groups[g].all())
+      for (const tool::Piece& piece : groups[g].all())
         for (int k = 0; k <= 20; ++k) {
           const double z = bottom(piece) + (top(piece) - bottom(piece)) * k / 20;
           EXPECT_LE(distance.distance(radius_at(piece, z), z), 1e-9) << "height " << z;
@@ -79,10 +79,10 @@ TEST(TurningBody, PlanesTouchTheGroupInEveryDirection) {
       // As far as the tool reaches into the stock, its last piece is cut off.
       for (const double kept : {1.0, 0.4, 0.02}) {
         SCOPED_TRACE(tool.kind() + ", " + std::to_string(kept) + " of the last piece");
-        Piece& last = group.pieces[group.count - 1];
-        if (auto* f = std::get_if<Frustum>(&last)) {
+        tool::Piece& last = group.pieces[group.count - 1];
+        if (auto* f = std::get_if<tool::Frustum>(&last)) {
           const double z = f->z0 + kept * (f->z1 - f->z0);
-          last = Frustum{f->z0, f->r0, z, radius_at(*f, z)};
+          last = tool::Frustum{f->z0, f->r0, z, radius_at(*f, z)};
         }
         const TurningBody body(group, motion, 0, 1, 0.01);
         const std::vector<Vec2> points = outline(body);
@@ -114,7 +114,7 @@ TEST(HollowArcs, HaveNoConesThatAreRounding) {
   for (int k = 1; k <= 2000; ++k) {
     const double r = 0.37 * k;
     const Tool tool = corner_rounder(r);
-    for (const Piece& piece : tool.cutter()) EXPECT_GT(top(piece) - bottom(piece), 1e-9 * r) << r;
+    for (const tool::Piece& piece : tool.cutter()) EXPECT_GT(top(piece) - bottom(piece), 1e-9 * r) << r;
   }
 }
 
@@ -133,10 +133,10 @@ TEST(Carve, AMoveThatComesFromFarAwayIsExactWhereItMatters) {
   const Motion near({Vec3(40, 20, 20) - 300.0 * way, a.axis}, {Vec3(40, 20, 20) + 300.0 * way, a.axis});
   const reference::SweptDistance swept(tool.profile(), near);
   int ends = 0;
-  for (const Grid& grid : volume.grids())
+  for (const dexel::Grid& grid : volume.grids())
     for (int i = 0; i < grid.nu(); ++i)
       for (int j = 0; j < grid.nv(); ++j)
-        for (const Span& s : grid.ray(i, j))
+        for (const dexel::Span& s : grid.ray(i, j))
           for (const double end : {s.near, s.far})
             if (end > grid.box().lower.z && end < grid.box().upper.z) {
               const Vec3 p = to_world(grid.axis(), {grid.shifted_u(i), grid.shifted_v(j), end});
@@ -152,9 +152,9 @@ TEST(Carve, ARayThroughTheLineOfAnApexKeepsItsRidge) {
   Volume volume = Volume::block({{{0, 0, 0}, {100, 60, 30}}, 0.25, "x"});
   carve(volume, tool, std::vector<Pose>{from, to});
   const reference::SweptDistance swept(tool.profile(), Motion(from, to));
-  const Grid& grid = volume.grids()[0];
+  const dexel::Grid& grid = volume.grids()[0];
   for (const auto& [i, j] : {std::pair{99, 96}, {112, 91}})
-    for (const Span& s : grid.ray(i, j))
+    for (const dexel::Span& s : grid.ray(i, j))
       for (const double end : {s.near, s.far})
         if (end > 0 && end < 100) {
           EXPECT_LE(std::abs(swept({end, grid.shifted_u(i), grid.shifted_v(j)})), 1e-7);
@@ -185,11 +185,11 @@ TEST(Carve, APieceThatCannotReachLeavesItsNeighbourBounded) {
   Volume volume = Volume::block({{{0, 0, 0}, {16, 8, 15}}, 0.5, "z"});
   carve(volume, tool, poses);
   const reference::SweptDistance distance(tool.profile(), Motion(poses[0], poses[1]));
-  const Grid& grid = volume.reference();
+  const dexel::Grid& grid = volume.reference();
   int ends = 0;
   for (int i = 0; i < grid.nu(); ++i)
     for (int j = 0; j < grid.nv(); ++j)
-      for (const Span& span : grid.ray(i, j))
+      for (const dexel::Span& span : grid.ray(i, j))
         for (const double s : {span.near, span.far}) {
           if (s == grid.box().lower.z || s == grid.box().upper.z) continue;
           EXPECT_LT(std::abs(distance({grid.u(i), grid.v(j), s})), 1e-8) << i << ", " << j;
@@ -202,7 +202,7 @@ TEST(Carve, ATurningToolThatGrazesARayAllAlongDoesNotCombIt) {
   // Turning about y leaves the disc's reach along y as it is; chords are 5e-5 mm, one after the other for 90 mm.
   const double h = 0.5, beside = 3 - 1e-10;
   Volume volume = Volume::block({{{0, 0, 0}, {100, 8, 4}}, h, "x"});
-  const Grid& grid = volume.grids()[0];
+  const dexel::Grid& grid = volume.grids()[0];
   const double y = to_world(grid.axis(), {grid.shifted_u(8), grid.shifted_v(4), 0}).y;
   const std::vector<Pose> poses{{{5, y - beside, 1}, {0, 0, 1}},
                                 {{95, y - beside, 1}, glm::normalize(Vec3(0.2, 0, 1))}};
@@ -229,7 +229,7 @@ TEST(SweptNormal, IsTheGradientOfTheDistance) {
       options.tolerance = 1e-5;
       carve(volume, tool, poses, options);
       int seen = 0, edges = 0, wrong = 0;
-      for (const Grid& grid : volume.grids())
+      for (const dexel::Grid& grid : volume.grids())
         for (int i = 0; i < grid.nu(); ++i)
           for (int j = 0; j < grid.nv(); ++j) {
             const auto ray = grid.ray(i, j);
@@ -250,7 +250,8 @@ TEST(SweptNormal, IsTheGradientOfTheDistance) {
                   ++edges;
                   continue;
                 }
-                const PackedNormal& packed = near ? grid.ray_normals(i, j)[k].near : grid.ray_normals(i, j)[k].far;
+                const dexel::PackedNormal& packed =
+                    near ? grid.ray_normals(i, j)[k].near : grid.ray_normals(i, j)[k].far;
                 ++seen, wrong += glm::length(packed.unpack() + gradient) > 0.02;
               }
           }
@@ -261,4 +262,4 @@ TEST(SweptNormal, IsTheGradientOfTheDistance) {
 }
 
 }  // namespace
-}  // namespace riffler::steps_test
+}  // namespace riffler::sweep::steps_test

@@ -9,7 +9,7 @@
 
 #include "support/error_of.hpp"
 
-namespace riffler::cutters_test {
+namespace riffler::tool::cutters_test {
 namespace {
 
 /// First values of a form's fields, lengths scaled.
@@ -75,4 +75,4 @@ TEST(Cutters, EverySizeThatIsNoneIsRefusedByName) {
 }
 
 }  // namespace
-}  // namespace riffler::cutters_test
+}  // namespace riffler::tool::cutters_test

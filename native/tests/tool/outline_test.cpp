@@ -8,7 +8,7 @@
 #include "riffler/tool/cutters.hpp"
 #include "stress/random.hpp"
 
-namespace riffler::outline_test {
+namespace riffler::tool::outline_test {
 namespace {
 
 std::vector<Tool> tools() {
@@ -135,4 +135,4 @@ TEST(Outline, WithMarginsHasAllThatIsThatNearToTheHolderAndBesideTheShank) {
 }
 
 }  // namespace
-}  // namespace riffler::outline_test
+}  // namespace riffler::tool::outline_test

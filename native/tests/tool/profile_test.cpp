@@ -9,14 +9,14 @@
 #include "riffler/tool/cutters.hpp"
 #include "support/error_of.hpp"
 
-namespace riffler::profile_test {
+namespace riffler::tool::profile_test {
 namespace {
 
 /// mm³ that a cutter takes out of a block that it is sunk into, tip at 2 mm below the top.
 double sunk(const std::vector<ProfileSegment>& segments) {
   Volume volume = Volume::block({{{-4, -4, -6}, {4, 4, 0}}, 0.05, "z"});
-  const Cut cut =
-      carve(volume, cutters::profile(segments, 20), std::vector<Pose>{{{0, 0, 5}, {0, 0, 1}}, {{0, 0, -2}, {0, 0, 1}}});
+  const sweep::Cut cut = sweep::carve(volume, cutters::profile(segments, 20),
+                                      std::vector<Pose>{{{0, 0, 5}, {0, 0, 1}}, {{0, 0, -2}, {0, 0, 1}}});
   return cut.removed[0];
 }
 
@@ -52,4 +52,4 @@ TEST(Profile, HowFarAnEndMayBeOffItsArcDoesNotGrowWithTheRadius) {
 }
 
 }  // namespace
-}  // namespace riffler::profile_test
+}  // namespace riffler::tool::profile_test

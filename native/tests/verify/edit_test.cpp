@@ -4,7 +4,7 @@
 
 #include "riffler/tool/cutters.hpp"
 
-namespace riffler::edit_test {
+namespace riffler::verify::edit_test {
 namespace {
 
 using Rows = std::vector<std::int64_t>;
@@ -72,4 +72,4 @@ TEST(Edit, MovesOfRowsAreHandedOnInStretches) {
 }
 
 }  // namespace
-}  // namespace riffler::edit_test
+}  // namespace riffler::verify::edit_test

@@ -8,7 +8,7 @@
 
 #include "mesh/shapes.hpp"
 
-namespace riffler::gouge_test {
+namespace riffler::verify::gouge_test {
 namespace {
 
 const Vec3 kLower{0, 0, 0}, kUpper{20, 14, 9};
@@ -26,7 +26,7 @@ double densest(const Vec3& a, const Vec3& b) {
 }
 
 TEST(PartSurface, TheDeepestOfManyPiecesIsThatOfDensePointsToAPercent) {
-  const PartSurface surface(subdivided(box_mesh(kLower, kUpper), 2), 0.05);
+  const PartSurface surface(subdivided(mesh::box_mesh(kLower, kUpper), 2), 0.05);
   std::mt19937 random(3);
   std::uniform_real_distribution<double> share(0, 1);
   for (int k = 0; k < 200; ++k) {
@@ -45,7 +45,7 @@ TEST(PartSurface, TheDeepestOfManyPiecesIsThatOfDensePointsToAPercent) {
 }
 
 TEST(PartSurface, RaysThatEndOnAPlaneAreAsDeepAsItIs) {
-  const PartSurface surface(box_mesh(kLower, kUpper), 0.05);
+  const PartSurface surface(mesh::box_mesh(kLower, kUpper), 0.05);
   PartSurface::Deepest worst;
   for (double x = 6; x <= 14; x += 0.25) surface.look_deeper({x, 7, 9}, {x, 7, 6.5}, worst);
   EXPECT_DOUBLE_EQ(worst.depth, 2.5);
@@ -54,7 +54,7 @@ TEST(PartSurface, RaysThatEndOnAPlaneAreAsDeepAsItIs) {
 }
 
 TEST(PartSurface, OfNoLengthAndOnTheSurface) {
-  const PartSurface surface(box_mesh(kLower, kUpper), 0.05);
+  const PartSurface surface(mesh::box_mesh(kLower, kUpper), 0.05);
   PartSurface::Deepest worst;
   surface.look_deeper({3, 3, 9}, {3, 3, 9}, worst);
   EXPECT_EQ(worst.depth, 0);
@@ -63,4 +63,4 @@ TEST(PartSurface, OfNoLengthAndOnTheSurface) {
 }
 
 }  // namespace
-}  // namespace riffler::gouge_test
+}  // namespace riffler::verify::gouge_test

@@ -4,12 +4,12 @@
 
 #include "stress/random.hpp"
 
-namespace riffler::loss_test {
+namespace riffler::verify::loss_test {
 namespace {
 
 using Pieces = std::vector<std::pair<double, double>>;
 
-Pieces loss(const std::vector<Span>& before, const std::vector<Span>& after) {
+Pieces loss(const std::vector<dexel::Span>& before, const std::vector<dexel::Span>& after) {
   Pieces out;
   for_each_loss_on_ray(before, after, [&](double near, double far) { out.emplace_back(near, far); });
   return out;
@@ -33,7 +33,7 @@ TEST(Loss, RandomRaysLoseWhatACountOfPointsSays) {
   stress::Random random(7);
   for (int round = 0; round < 2000; ++round) {
     bool before[24], after[24];
-    std::vector<Span> spans[2];
+    std::vector<dexel::Span> spans[2];
     for (int i = 0; i < 24; ++i) before[i] = random.one_in(2), after[i] = random.one_in(2);
     for (int which = 0; which < 2; ++which)
       for (int i = 0; i < 24; ++i) {
@@ -52,4 +52,4 @@ TEST(Loss, RandomRaysLoseWhatACountOfPointsSays) {
 }
 
 }  // namespace
-}  // namespace riffler::loss_test
+}  // namespace riffler::verify::loss_test

@@ -7,29 +7,29 @@
 #include "support/effort.hpp"
 #include "support/random_rows.hpp"
 
-namespace riffler::machine_check_test {
+namespace riffler::verify::machine_check_test {
 namespace {
 
-std::optional<RowError> refused_by_writer(const Program& program, const WriteOptions& how) {
+std::optional<nc::RowError> refused_by_writer(const nc::Program& program, const nc::WriteOptions& how) {
   try {
     to_nc(program, how);
     return std::nullopt;
-  } catch (const RowError& e) {
+  } catch (const nc::RowError& e) {
     return e;
   }
 }
 
 TEST(MachineCheck, ReportsWhatTheWriterRefusesAndNothingElse) {
-  const std::vector<WriteOptions> machines = test::all_machines();
+  const std::vector<nc::WriteOptions> machines = test::all_machines();
   test::RandomRows rows(23);
   int found = 0;
   for (int round = 0; round < test::cases(60); ++round) {
-    const Program program = rows.program();
-    for (const WriteOptions& how : machines) {
+    const nc::Program program = rows.program();
+    for (const nc::WriteOptions& how : machines) {
       const auto refused = refused_by_writer(program, how);
       const auto check = [&] { return machine_fault(program, 1000, {how.post, how.options}); };
       if (refused && refused->name() == "feed") {
-        EXPECT_THROW(check(), RowError) << "what the program lacks is no fault of the machine";
+        EXPECT_THROW(check(), nc::RowError) << "what the program lacks is no fault of the machine";
         continue;
       }
       const std::optional<Finding> fault = check();
@@ -48,13 +48,13 @@ TEST(MachineCheck, ReportsWhatTheWriterRefusesAndNothingElse) {
 }
 
 TEST(MachineCheck, LooksAtTheProgramInTheMachinesFrame) {
-  Program p;
+  nc::Program p;
   for (int k = 0; k < 3; ++k) p.append({{{10.0 * k, 0, 0}, {0, 1, 0}}, k ? 500.0 : 0.0, 9000, 1, 0, k == 0});
   MachineChoice machine{"3-axis", {}};
   EXPECT_TRUE(machine_fault(p, 0, machine).has_value()) << "the tool lies on its side";
   machine.turn = Mat3(1, 0, 0, 0, 0, 1, 0, -1, 0);  // y → z
   EXPECT_FALSE(machine_fault(p, 0, machine).has_value());
-  machine.shift = Vec3(0, 0, 2 * kMaxLength);
+  machine.shift = Vec3(0, 0, 2 * nc::kMaxLength);
   const auto far = machine_fault(p, 0, machine);
   ASSERT_TRUE(far.has_value());
   EXPECT_EQ(far->message, "Z is out of range");
@@ -62,4 +62,4 @@ TEST(MachineCheck, LooksAtTheProgramInTheMachinesFrame) {
 }
 
 }  // namespace
-}  // namespace riffler::machine_check_test
+}  // namespace riffler::verify::machine_check_test

@@ -10,34 +10,34 @@
 #include "support/box_mesh.hpp"
 #include "support/error_of.hpp"
 
-namespace riffler::motion_check_test {
+namespace riffler::verify::motion_check_test {
 namespace {
 
 using test::box_mesh;
 using test::error_of;
 
-Program through(const std::vector<Vec3>& tips) {
-  Program p;
+nc::Program through(const std::vector<Vec3>& tips) {
+  nc::Program p;
   for (std::size_t k = 0; k < tips.size(); ++k) p.append({{tips[k], {0, 0, 1}}, k ? 500.0 : 0.0, 9000, 1, 0, k == 0});
   p.tools.emplace(1, cutters::flat(6, 30).with_holder({{30, 20, 60, 20}}));
   return p;
 }
 
-MachineMotion motion_of(const Program& p, const char* post = "3-axis") {
-  WriteOptions how;
+nc::MachineMotion motion_of(const nc::Program& p, const char* post = "3-axis") {
+  nc::WriteOptions how;
   how.post = post, how.motion = true;
-  WriteReport report;
+  nc::WriteReport report;
   to_nc(p, how, &report);
   return report.motion;
 }
 
 TEST(MotionCheck, LooksOnlyAtWhatComesNear) {
-  const Collider collider(box_mesh({0, 0, 0}, {40, 40, 20}));
+  const collide::Collider collider(box_mesh({0, 0, 0}, {40, 40, 20}));
   std::vector<Vec3> far;
   for (int k = 0; k < 500; ++k) far.emplace_back(k, 100, 5);
   far.emplace_back(500, 100, 50);
   for (int k = 0; k < 500; ++k) far.emplace_back(500 - k, 20, 50);
-  Program p = through(far);
+  nc::Program p = through(far);
   std::size_t swept = 0;
   refuse_collisions(p, motion_of(p), collider, 0.05, &swept);
   EXPECT_EQ(swept, 0U) << "nothing comes near";
@@ -48,9 +48,9 @@ TEST(MotionCheck, LooksOnlyAtWhatComesNear) {
 }
 
 TEST(MotionCheck, NamesTheRowWhatIsMetHowDeepAndWhere) {
-  const Collider collider(box_mesh({0, 0, 0}, {40, 40, 20}));
+  const collide::Collider collider(box_mesh({0, 0, 0}, {40, 40, 20}));
   const auto error = [&](const std::vector<Vec3>& tips) {
-    const Program p = through(tips);
+    const nc::Program p = through(tips);
     return error_of([&] { refuse_collisions(p, motion_of(p), collider, 0.05); });
   };
   EXPECT_EQ(error({{20, 20, 60}, {20, 20, 19.96}}), "");
@@ -64,28 +64,28 @@ TEST(MotionCheck, NamesTheRowWhatIsMetHowDeepAndWhere) {
   EXPECT_EQ(error({{-10, 20, 60}, {-10, 20, -10}}), "");
   // To its first row a tool comes down.
   EXPECT_TRUE(error({{20, 20, 10}, {20, 20, 60}}).starts_with("poses, row 0: coming down to it the cutter meets"));
-  Program unknown = through({{20, 20, 60}, {20, 20, 30}});
+  nc::Program unknown = through({{20, 20, 60}, {20, 20, 30}});
   unknown.tools.clear();
   EXPECT_NE(error_of([&] { refuse_collisions(unknown, motion_of(unknown), collider, 0.05); }).find("has no shape"),
             std::string::npos);
 }
 
 TEST(MotionCheck, IsDoneBeforeAFileIsWritten) {
-  const Program p = through({{20, 20, 60}, {20, 20, 10}});
+  const nc::Program p = through({{20, 20, 60}, {20, 20, 10}});
   const auto path = std::filesystem::temp_directory_path() / "riffler_motion_check_test.ngc";
-  WriteOptions how;
+  nc::WriteOptions how;
   how.post = "3-axis", how.motion = true;
-  const Collider collider(box_mesh({0, 0, 0}, {40, 40, 20}));
-  EXPECT_THROW(
-      write_nc(p, path, how, [&](const WriteReport& written) { refuse_collisions(p, written.motion, collider, 0.05); }),
-      RowError);
+  const collide::Collider collider(box_mesh({0, 0, 0}, {40, 40, 20}));
+  EXPECT_THROW(write_nc(p, path, how,
+                        [&](const nc::WriteReport& written) { refuse_collisions(p, written.motion, collider, 0.05); }),
+               nc::RowError);
   EXPECT_FALSE(std::filesystem::exists(path));
 }
 
 TEST(MotionCheck, RunsOnTheStockAsItThenIs) {
   const Volume stock = Volume::block({{{0, 0, 0}, {40, 40, 20}}, 0.5, "z"});
   // A slot in two passes: the second one's rapid goes where the first has cut.
-  Program p;
+  nc::Program p;
   const auto add = [&](const Vec3& tip, bool rapid) {
     p.append({{tip, {0, 0, 1}}, rapid ? 0.0 : 500.0, 9000, 1, 0, rapid});
   };
@@ -100,4 +100,4 @@ TEST(MotionCheck, RunsOnTheStockAsItThenIs) {
 }
 
 }  // namespace
-}  // namespace riffler::motion_check_test
+}  // namespace riffler::verify::motion_check_test

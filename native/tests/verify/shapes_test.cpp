@@ -6,7 +6,7 @@
 #include "stress/random.hpp"
 #include "verify/moves.hpp"
 
-namespace riffler::shapes_test {
+namespace riffler::verify::shapes_test {
 namespace {
 
 Pose random_pose(stress::Random& random) {
@@ -50,7 +50,7 @@ TEST(ToolShapes, ProbesAreSmallerByTheToleranceAndNeverNothing) {
   for (const Probe& probe : shapes.probes) {
     ASSERT_EQ(probe.real.size(), probe.small.size());
     for (std::size_t k = 0; k < probe.real.size(); ++k) {
-      const Piece &real = probe.real[k].pieces[0], &small = probe.small[k].pieces[0];
+      const tool::Piece &real = probe.real[k].pieces[0], &small = probe.small[k].pieces[0];
       EXPECT_LT(bottom(real), bottom(small));
       EXPECT_LT(bottom(small), top(small));
       EXPECT_LT(top(small), top(real));
@@ -85,4 +85,4 @@ TEST(Moves, BlocksOfBoxesLeaveNoMoveOut) {
 }
 
 }  // namespace
-}  // namespace riffler::shapes_test
+}  // namespace riffler::verify::shapes_test

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace riffler::slab_job_test {
+namespace riffler::verify::slab_job_test {
 namespace {
 
 SlabState started() {
@@ -54,4 +54,4 @@ TEST(SlabState, RowsBehindAnEditAreNumberedAnew) {
 }
 
 }  // namespace
-}  // namespace riffler::slab_job_test
+}  // namespace riffler::verify::slab_job_test

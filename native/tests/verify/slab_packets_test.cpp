@@ -7,7 +7,7 @@
 #include "support/effort.hpp"
 #include "verify/toolset.hpp"
 
-namespace riffler::slab_packets_test {
+namespace riffler::verify::slab_packets_test {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
@@ -17,12 +17,13 @@ const Vec3 kUp(0, 0, 1);
 Volume cut_block(const char* directions) {
   Volume volume = Volume::block({{{0, 0, -10}, {20, 14, 0}}, 0.2, directions});
   const Vec3 tilted = glm::normalize(Vec3(0.3, -0.2, 1));
-  carve(volume, cutters::ball(4, 30), std::vector<Pose>{{{1, 2, -2}, kUp}, {{18, 11, -6}, kUp}, {{3, 9, -1}, tilted}});
-  carve(volume, cutters::flat(3, 60), std::vector<Pose>{{{10, 7, -40}, kUp}, {{10, 7, -30}, kUp}});
+  sweep::carve(volume, cutters::ball(4, 30),
+               std::vector<Pose>{{{1, 2, -2}, kUp}, {{18, 11, -6}, kUp}, {{3, 9, -1}, tilted}});
+  sweep::carve(volume, cutters::flat(3, 60), std::vector<Pose>{{{10, 7, -40}, kUp}, {{10, 7, -30}, kUp}});
   return volume;
 }
 
-bool same(const Tile& a, const Tile& b) {
+bool same(const dexel::Tile& a, const dexel::Tile& b) {
   return a.offset == b.offset && a.spans == b.spans && a.normals == b.normals && a.reach == b.reach;
 }
 
@@ -31,7 +32,7 @@ TEST(SlabPackets, TilesArriveAsTheyWere) {
     const Volume volume = cut_block(directions);
     for (const Slab& slab : slabs_of(volume)) {
       SlabTiles tiles = tiles_of(volume.grids()[slab.grid], slab);
-      const SlabTask sent{2, slab, true, 77, tiles, SlabTiles(3, make_shared_block<const Tile>())};
+      const SlabTask sent{2, slab, true, 77, tiles, SlabTiles(3, base::make_shared_block<const dexel::Tile>())};
       const SlabTask came = task_of(to_packet(sent));
       EXPECT_EQ(came.fixture, 2);
       EXPECT_EQ(came.slab.place(volume.grids()[slab.grid], 1), slab.place(volume.grids()[slab.grid], 1));
@@ -140,7 +141,7 @@ TEST(SlabPackets, DamageUnderARightChecksumIsNoCrash) {
     for (const unsigned by : {0x01U, 0x80U, 0xFFU}) {
       Bytes bad = good;
       bad[at] ^= static_cast<std::uint8_t>(by);
-      const std::uint32_t crc = checksum(std::span(bad).first(bad.size() - 4));
+      const std::uint32_t crc = base::checksum(std::span(bad).first(bad.size() - 4));
       std::memcpy(bad.data() + bad.size() - 4, &crc, sizeof crc);
       try {
         task_of(bad);
@@ -152,4 +153,4 @@ TEST(SlabPackets, DamageUnderARightChecksumIsNoCrash) {
 }
 
 }  // namespace
-}  // namespace riffler::slab_packets_test
+}  // namespace riffler::verify::slab_packets_test

@@ -17,7 +17,7 @@
 #include "verify/remote.hpp"
 #include "verify/verify_plan.hpp"
 
-namespace riffler::slab_run_test {
+namespace riffler::verify::slab_run_test {
 namespace {
 
 using test::box_mesh;
@@ -37,13 +37,13 @@ VerifyArguments arguments() {
 
 /// Cuts, gouges, rapids in material, a spindle that stands, holders in material and in the fixture, swings with via
 /// poses, and rows that the machine cannot hold.
-Program mixed(std::size_t rows, unsigned seed) {
+nc::Program mixed(std::size_t rows, unsigned seed) {
   std::mt19937 random(seed);
   const auto number = [&](double from, double to) { return std::uniform_real_distribution<double>(from, to)(random); };
-  Program p;
+  nc::Program p;
   p.tools.emplace(1, cutters::ball(4, 8).with_holder({{8, 6, 30, 6}}));
   p.tools.emplace(2, cutters::flat(6, 5));
-  Move move{{{0, 0, 20}, kUp}, 0, 8000, 1, 1, true};
+  nc::Move move{{{0, 0, 20}, kUp}, 0, 8000, 1, 1, true};
   for (std::size_t row = 0; row < rows; ++row) {
     p.append(move);
     const Pose before = move.pose;
@@ -64,24 +64,24 @@ Program mixed(std::size_t rows, unsigned seed) {
 }
 
 /// Each after the first begins with the row at which the one before ends.
-std::vector<Program> chunks_of(const Program& program, std::size_t rows) {
-  std::vector<Program> out;
+std::vector<nc::Program> chunks_of(const nc::Program& program, std::size_t rows) {
+  std::vector<nc::Program> out;
   for (std::size_t begin = 0; begin == 0 || begin + 1 < program.size(); begin += rows)
     out.push_back(trimmed(program, begin, std::min(program.size(), begin + rows + 1)));
   return out;
 }
 
-VerifyReport fed(const std::vector<Program>& chunks) {
+VerifyReport fed(const std::vector<nc::Program>& chunks) {
   SlabRun run(arguments());
-  for (const Program& chunk : chunks) run.feed(chunk);
+  for (const nc::Program& chunk : chunks) run.feed(chunk);
   return run.finish();
 }
 
 /// Every slab goes to a worker, its packets one or two at a time.
-VerifyReport by_packets(const std::vector<Program>& chunks) {
+VerifyReport by_packets(const std::vector<nc::Program>& chunks) {
   VerifyPlan plan(arguments());
   std::vector<VerifyPlan::Share> shares;
-  for (const Program& chunk : chunks)
+  for (const nc::Program& chunk : chunks)
     for (VerifyPlan::Share& share : plan.add(chunk)) shares.push_back(std::move(share));
   std::ranges::stable_sort(shares, {}, &VerifyPlan::Share::slab);
   const SlabWorker worker(plan.context());
@@ -114,12 +114,12 @@ void expect_same(const VerifyReport& a, const VerifyReport& b) {
 
 class Threads {
  public:
-  explicit Threads(int count) { set_thread_count(count); }
-  ~Threads() { set_thread_count(std::nullopt); }
+  explicit Threads(int count) { base::set_thread_count(count); }
+  ~Threads() { base::set_thread_count(std::nullopt); }
 };
 
 TEST(SlabRun, HasOneReportWhoeverFeedsItOnAnyNumberOfThreads) {
-  const Program program = mixed(220, 3);
+  const nc::Program program = mixed(220, 3);
   const VerifyReport whole = fed({program});
   std::set<Kind> kinds;
   for (const Finding& f : whole.findings) kinds.insert(f.kind);
@@ -142,7 +142,7 @@ void drop_machine(VerifyReport& report) {
 }
 
 TEST(SlabRun, HasOneReportHoweverTheProgramIsSplit) {
-  const Program program = mixed(150, 4);
+  const nc::Program program = mixed(150, 4);
   VerifyReport whole = fed({program});
   drop_machine(whole);
   for (const std::size_t rows : {1U, 7U, 60U}) {
@@ -154,7 +154,7 @@ TEST(SlabRun, HasOneReportHoweverTheProgramIsSplit) {
 }
 
 TEST(SlabRun, PacketsAreTheSameBytesOnAnyNumberOfThreads) {
-  const Program program = mixed(120, 5);
+  const nc::Program program = mixed(120, 5);
   std::vector<std::vector<std::uint8_t>> seen[2];
   for (const int threads : {1, 2}) {
     const Threads some(threads);
@@ -173,25 +173,25 @@ TEST(SlabRun, PacketsAreTheSameBytesOnAnyNumberOfThreads) {
 }
 
 TEST(Verification, AfterEditsReportsWhatAFreshRunReports) {
-  const Program first = mixed(150, 6);
+  const nc::Program first = mixed(150, 6);
   Verification verification(arguments());
   verification.run(first);
-  std::vector<Program> edits{trimmed(first, 0, 100), first, Program(), mixed(90, 7)};
-  Program moved;
+  std::vector<nc::Program> edits{trimmed(first, 0, 100), first, nc::Program(), mixed(90, 7)};
+  nc::Program moved;
   moved.tools = first.tools, moved.notes = first.notes;
   for (std::size_t row = 0; row < first.size(); ++row) {
-    Move move = first[row];
+    nc::Move move = first[row];
     if (row == 77) move.pose.tip.z += 1;
     moved.append(move);
   }
   edits.insert(edits.begin(), moved);
-  for (const Program& edit : edits) expect_same(verification.run(edit), fed({edit}));
+  for (const nc::Program& edit : edits) expect_same(verification.run(edit), fed({edit}));
   EXPECT_EQ(verification.run(edits.back()).stats.moves, 0U) << "nothing differs";
 }
 
 TEST(Verification, AfterAnErrorIsAsItWasBefore) {
-  const Program good = mixed(60, 8);
-  Program bad = good;
+  const nc::Program good = mixed(60, 8);
+  nc::Program bad = good;
   bad.append({{{1, 1, 1}, kUp}, 100, 8000, 9, 61});
   Verification verification(arguments());
   verification.run(good);
@@ -205,7 +205,7 @@ TEST(Verification, AfterAnErrorIsAsItWasBefore) {
 }
 
 TEST(SlabRun, OfNothingLeavesTheStockAndSaysWhatTheReaderPassedOver) {
-  Program nothing;
+  nc::Program nothing;
   nothing.notes = {{"coordinates", 2, "coordinates were passed over"}};
   for (const VerifyReport& report : {fed({}), fed({nothing}), by_packets({nothing})}) {
     EXPECT_TRUE(report.findings.empty() || report.findings.front().kind == Kind::Rest);
@@ -217,7 +217,7 @@ TEST(SlabRun, OfNothingLeavesTheStockAndSaysWhatTheReaderPassedOver) {
 }
 
 TEST(SlabRun, RefusesAChunkThatBeginsElsewhereAndGoesOnAfterIt) {
-  const std::vector<Program> chunks = chunks_of(mixed(40, 10), 20);
+  const std::vector<nc::Program> chunks = chunks_of(mixed(40, 10), 20);
   SlabRun run(arguments());
   run.feed(chunks[0]);
   EXPECT_NE(
@@ -228,4 +228,4 @@ TEST(SlabRun, RefusesAChunkThatBeginsElsewhereAndGoesOnAfterIt) {
 }
 
 }  // namespace
-}  // namespace riffler::slab_run_test
+}  // namespace riffler::verify::slab_run_test

@@ -8,7 +8,7 @@
 #include "riffler/sweep/carve.hpp"
 #include "riffler/tool/cutters.hpp"
 
-namespace riffler::slab_test {
+namespace riffler::verify::slab_test {
 namespace {
 
 Volume block(const char* directions, double pitch = 0.25) {
@@ -24,7 +24,7 @@ TEST(Slab, EveryTileIsInOneSlab) {
         for (std::size_t k = 0; k < slab.tile_count(); ++k)
           EXPECT_TRUE(seen.emplace(slab.grid, slab.place(volume.grids()[slab.grid], k)).second);
       std::size_t tiles = 0;
-      for (const Grid& grid : volume.grids()) tiles += grid.tile_count();
+      for (const dexel::Grid& grid : volume.grids()) tiles += grid.tile_count();
       EXPECT_EQ(seen.size(), tiles);
     }
 }
@@ -37,11 +37,11 @@ TEST(Slab, PartsCarvedByThemselvesAreTheWholeCarvedAtOnce) {
   for (const char* directions : {"z", "xyz"}) {
     const Volume stock = block(directions);
     Volume whole = stock, merged(stock.frame());
-    carve(whole, tool, poses);
+    sweep::carve(whole, tool, poses);
     for (const Slab& slab : slabs_of(stock)) {
       Volume part(stock.frame());
       put_tiles(part.grids()[slab.grid], slab, tiles_of(stock.grids()[slab.grid], slab));
-      carve(part, tool, poses);
+      sweep::carve(part, tool, poses);
       put_tiles(merged.grids()[slab.grid], slab, tiles_of(part.grids()[slab.grid], slab));
     }
     merged.touch();
@@ -53,7 +53,7 @@ TEST(Slab, TheMaterialsBoxCoversEverySpanAndNoMore) {
   for (const char* directions : {"x", "y", "z"}) {
     Volume volume = block(directions);
     for (const Slab& slab : slabs_of(volume)) {
-      const Grid& grid = volume.grids()[slab.grid];
+      const dexel::Grid& grid = volume.grids()[slab.grid];
       const Box3 box = material_box(grid, slab, tiles_of(grid, slab));
       ASSERT_FALSE(box.empty());
       EXPECT_TRUE(box.overlaps(volume.frame().box));
@@ -69,4 +69,4 @@ TEST(Slab, TheMaterialsBoxCoversEverySpanAndNoMore) {
 }
 
 }  // namespace
-}  // namespace riffler::slab_test
+}  // namespace riffler::verify::slab_test

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-namespace riffler {
+namespace riffler::base {
 
 /// A block of at least that many bytes, from those that were freed or from the system; any thread may free it. Nobody
 /// waits for another thread. Throws std::bad_alloc.
@@ -54,4 +54,4 @@ std::shared_ptr<T> make_shared_block(Arguments&&... arguments) {
   return std::allocate_shared<T>(BlockAllocator<T>(), std::forward<Arguments>(arguments)...);
 }
 
-}  // namespace riffler
+}  // namespace riffler::base

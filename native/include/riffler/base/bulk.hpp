@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace riffler {
+namespace riffler::base {
 
 /// Memory for bulk data, in huge pages where the system gives them: a fresh page of 4 kB costs more than the writing.
 void* allocate_bulk(std::size_t bytes);
@@ -40,4 +40,4 @@ struct BulkAllocator {
 template <class T>
 using BulkVector = std::vector<T, BulkAllocator<T>>;
 
-}  // namespace riffler
+}  // namespace riffler::base

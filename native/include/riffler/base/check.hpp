@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-namespace riffler {
+namespace riffler::base {
 
 inline constexpr double kMinTolerance = 1e-8;         // mm: of cutting and planning
 inline constexpr double kMinToleranceOfSize = 1e-10;  // and as a share of the tool's size: doubles have no more to give
@@ -91,4 +91,4 @@ inline void require_angle(double x, std::string_view name) {
   require_between(x, -kMaxTurn, kMaxTurn, name, "an angle", "rad");
 }
 
-}  // namespace riffler
+}  // namespace riffler::base

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace riffler {
+namespace riffler::base {
 
 struct ShippedText {
   std::string_view name, toml;
@@ -41,4 +41,4 @@ std::vector<DescriptionEntry> list_descriptions(const DescriptionCatalog& shelf)
 /// and the known ones, FormatError where the file cannot be read.
 DescriptionText find_description(const DescriptionCatalog& shelf, std::string_view name, const std::string& what);
 
-}  // namespace riffler
+}  // namespace riffler::base

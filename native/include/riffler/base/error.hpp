@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace riffler {
+namespace riffler::base {
 
 /// A file that cannot be read: `file` (base name), `where` ("line 12" or "byte 84") and what was expected there.
 class FormatError : public std::runtime_error {
@@ -19,4 +19,9 @@ class Cancelled : public std::runtime_error {
   Cancelled() : std::runtime_error("cancelled") {}
 };
 
+}  // namespace riffler::base
+
+namespace riffler {
+using base::Cancelled;
+using base::FormatError;
 }  // namespace riffler

@@ -7,7 +7,7 @@
 
 #include "riffler/base/progress.hpp"
 
-namespace riffler {
+namespace riffler::base {
 
 /// Threads a parallel call uses: what set_thread_count said, else RIFFLER_THREADS where it is set, else the process's
 /// CPU affinity; at least 1.
@@ -42,4 +42,4 @@ class SerialScope {
   bool before_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::base

@@ -5,7 +5,7 @@
 
 #include "riffler/base/error.hpp"
 
-namespace riffler {
+namespace riffler::base {
 
 /// Called now and then, always from the thread that made the call, with the finished share in [0, 1].
 /// Returning false cancels: the call throws Cancelled and leaves its object unchanged.
@@ -22,4 +22,8 @@ inline Progress part(const Progress& progress, double begin, double end) {
   return [&progress, begin, end](double share) { return progress(begin + share * (end - begin)); };
 }
 
+}  // namespace riffler::base
+
+namespace riffler {
+using base::Progress;
 }  // namespace riffler

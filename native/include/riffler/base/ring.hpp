@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace riffler {
+namespace riffler::base {
 
 /// One thread puts, one other takes; neither waits for the other, and nothing is allocated after the start (Lamport,
 /// "Proving the correctness of multiprocess programs", IEEE Trans. Software Engineering 3(2), 1977).
@@ -47,4 +47,4 @@ class Ring {
   alignas(64) std::atomic<std::size_t> taken_{0};
 };
 
-}  // namespace riffler
+}  // namespace riffler::base

@@ -7,7 +7,7 @@
 #include <cstring>
 #include <type_traits>
 
-namespace riffler {
+namespace riffler::base {
 
 /// A sequence lock without fences (Boehm, "Can seqlocks get along with programming language memory models?", MSPC
 /// 2012): the words themselves are atomic, so a reader that is overtaken copies a mixture, and notices.
@@ -46,4 +46,4 @@ class SequenceLock {
   std::array<std::atomic<std::uint64_t>, kWords> words_{};
 };
 
-}  // namespace riffler
+}  // namespace riffler::base

@@ -6,7 +6,7 @@
 
 #include "riffler/tool/outline.hpp"
 
-namespace riffler {
+namespace riffler::collide {
 
 struct LaneEdge;
 class OutlineRuns;
@@ -17,7 +17,7 @@ class Assembly {
   explicit Assembly(const Tool& tool);
 
   const Tool& tool() const { return tool_; }
-  const Outline& outline() const { return outline_; }
+  const tool::Outline& outline() const { return outline_; }
   /// Largest distance of any of its points from the tip, mm.
   double reach() const { return reach_; }
 
@@ -26,11 +26,11 @@ class Assembly {
   /// Cutter, shank and holder by their heights: which is the widest there.
   struct HeightBand {
     double low, high;
-    Part part;
+    tool::Part part;
     double radius, bottom, top;  // where it is widest, and at both ends
   };
   const std::vector<HeightBand>& stretches() const { return stretches_; }
-  Part part_at(double z) const;
+  tool::Part part_at(double z) const;
   /// Places on the axis and off it (radius, height) that are deeper than what is round them: at least one of every
   /// connected set of such. Found when first asked for.
   const std::vector<Vec2>& deepest() const;
@@ -41,7 +41,7 @@ class Assembly {
 
  private:
   Tool tool_;
-  Outline outline_;
+  tool::Outline outline_;
   struct Forms;
   std::shared_ptr<const Forms> forms_;
   std::vector<HeightBand> stretches_;
@@ -50,4 +50,4 @@ class Assembly {
   std::shared_ptr<Deepest> deepest_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::collide

@@ -12,7 +12,7 @@
 #include "riffler/geom/pose.hpp"
 #include "riffler/mesh/mesh.hpp"
 
-namespace riffler {
+namespace riffler::collide {
 
 /// Immutable after construction; queries may run on several threads. Poses whose tip is not finite or whose axis is
 /// not of unit length (to 1e-6) are a std::invalid_argument.
@@ -91,4 +91,4 @@ class Collider {
   std::unique_ptr<Data> data_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::collide

@@ -6,7 +6,7 @@
 
 #include "riffler/geom/vec.hpp"
 
-namespace riffler {
+namespace riffler::collide {
 
 /// What of the assembly touches the part, or that it is a fixture which is touched, by whatever piece.
 enum class Touch : unsigned char { Cutter, Shank, Holder, Fixture };
@@ -55,4 +55,4 @@ inline void Contact::resist(const Vec3& arm, const Vec3& direction, double per_m
     for (std::size_t j = 0; j < 6; ++j) stiffness[i][j] += per_mm * w[i] * w[j];
 }
 
-}  // namespace riffler
+}  // namespace riffler::collide

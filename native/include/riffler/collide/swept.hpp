@@ -5,7 +5,7 @@
 
 #include "riffler/collide/contact.hpp"
 
-namespace riffler {
+namespace riffler::collide {
 
 /// Whether a tool that moves between two poses stays clear all along, not at sampled poses only.
 struct Swept {
@@ -21,4 +21,4 @@ struct Swept {
   std::size_t evaluations = 0;  ///< groups of bounds, and triangles looked at by themselves
 };
 
-}  // namespace riffler
+}  // namespace riffler::collide

@@ -7,7 +7,7 @@
 #include "riffler/base/progress.hpp"
 #include "riffler/dexel/volume.hpp"
 
-namespace riffler {
+namespace riffler::dexel {
 
 enum class Boolean { Subtract, Add, Intersect };
 
@@ -24,4 +24,4 @@ void apply(Boolean op, Volume& a, const Volume& b, const Progress& progress = {}
 std::shared_ptr<const Tile> apply(Boolean op, const Grid& grid, std::size_t tile, const std::shared_ptr<const Tile>& a,
                                   const std::shared_ptr<const Tile>& b, TileBuilder& builder);
 
-}  // namespace riffler
+}  // namespace riffler::dexel

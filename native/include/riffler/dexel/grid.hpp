@@ -8,7 +8,7 @@
 #include "riffler/dexel/tile.hpp"
 #include "riffler/geom/vec.hpp"
 
-namespace riffler {
+namespace riffler::dexel {
 
 /// Rays along `axis` in its cyclic frame (u, v, w): ray (i, j) stands at
 /// (lower.u + (i + ½) h, lower.v + (j + ½) h), 0 ≤ i < nu, 0 ≤ j < nv. Copying a grid copies pointers to tiles only.
@@ -95,4 +95,4 @@ int ray_count(double extent, double pitch);
 /// First and last of n rays `pitch` apart whose coordinate lies in `range`.
 std::pair<int, int> ray_indices(const Interval& range, double lower, double pitch, int n);
 
-}  // namespace riffler
+}  // namespace riffler::dexel

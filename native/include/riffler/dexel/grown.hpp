@@ -4,7 +4,7 @@
 #include "riffler/base/progress.hpp"
 #include "riffler/dexel/volume.hpp"
 
-namespace riffler {
+namespace riffler::dexel {
 
 /// The frame with each side moved outward by whole pitches until it lies at or beyond that of `wanted`, to 1e-6 of a
 /// pitch; a side that already does stays. The upper sides may move one pitch more, where the box's size is no whole
@@ -16,4 +16,4 @@ Frame grown(const Frame& frame, const Box3& wanted);
 /// as grown() and, before anything is allocated, as Volume() do.
 Volume grown(const Volume& volume, const Box3& wanted, const Progress& progress = {});
 
-}  // namespace riffler
+}  // namespace riffler::dexel

@@ -6,7 +6,7 @@
 #include "riffler/base/progress.hpp"
 #include "riffler/dexel/volume.hpp"
 
-namespace riffler {
+namespace riffler::dexel {
 
 /// One volume for each piece that hangs together, the largest first, equal ones by where their first ray stands. They
 /// share the volume's frame, and their spans are the volume's, each in one of them.
@@ -19,4 +19,4 @@ std::vector<Volume> parts(const Volume& volume, double least = 0, const Progress
 
 inline constexpr std::size_t kMaxParts = 1000;
 
-}  // namespace riffler
+}  // namespace riffler::dexel

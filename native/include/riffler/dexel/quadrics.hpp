@@ -4,7 +4,7 @@
 #include "riffler/base/progress.hpp"
 #include "riffler/dexel/volume.hpp"
 
-namespace riffler {
+namespace riffler::dexel {
 
 /// mm.
 struct Sphere {
@@ -31,4 +31,4 @@ Box3 bounds(const Cylinder& solid);
 Volume sphere(const Sphere& solid, const Frame& frame, const Progress& progress = {});
 Volume cylinder(const Cylinder& solid, const Frame& frame, const Progress& progress = {});
 
-}  // namespace riffler
+}  // namespace riffler::dexel

@@ -5,7 +5,7 @@
 
 #include "riffler/geom/vec.hpp"
 
-namespace riffler {
+namespace riffler::dexel {
 
 /// Material between two absolute coordinates along the ray (mm): near < far strictly, both finite.
 struct Span {
@@ -31,4 +31,4 @@ struct SpanNormals {
   bool operator==(const SpanNormals&) const = default;
 };
 
-}  // namespace riffler
+}  // namespace riffler::dexel

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-namespace riffler {
+namespace riffler::dexel {
 
 struct Stats {
   std::uint64_t moves = 0;             ///< moves carved
@@ -26,4 +26,4 @@ struct Stats {
   }
 };
 
-}  // namespace riffler
+}  // namespace riffler::dexel

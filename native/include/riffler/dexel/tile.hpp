@@ -11,7 +11,7 @@
 #include "riffler/dexel/span.hpp"
 #include "riffler/geom/interval.hpp"
 
-namespace riffler {
+namespace riffler::dexel {
 
 inline constexpr int kTileSide = 32;
 inline constexpr int kTileRays = kTileSide * kTileSide;
@@ -48,10 +48,10 @@ class RayOffsets {
 /// Rays of a border tile that lie beyond the grid are empty.
 struct Tile {
   RayOffsets offset;
-  BlockVector<Span> spans;
-  BlockVector<SpanNormals> normals;  // as long as `spans`, or empty in a grid that stores none
-  Interval reach;                    // covers every span; may be larger after a cut, never smaller
-  std::uint64_t revision = 0;        // changes whenever the content does
+  base::BlockVector<Span> spans;
+  base::BlockVector<SpanNormals> normals;  // as long as `spans`, or empty in a grid that stores none
+  Interval reach;                          // covers every span; may be larger after a cut, never smaller
+  std::uint64_t revision = 0;              // changes whenever the content does
 
   std::span<const Span> ray(int r) const { return {spans.data() + offset[r], spans.data() + offset[r + 1]}; }
   std::span<const SpanNormals> ray_normals(int r) const {
@@ -94,4 +94,4 @@ class TileBuilder {
   Tile tile_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::dexel

@@ -8,7 +8,7 @@
 #include "riffler/dexel/grid.hpp"
 #include "riffler/dexel/stats.hpp"
 
-namespace riffler {
+namespace riffler::dexel {
 
 /// Box, pitch and directions: what two volumes must share to be combined.
 struct Frame {
@@ -69,4 +69,8 @@ double estimated_bytes(const Frame& frame);
 /// Memory that this machine can still give, bytes; infinity where the system does not say.
 double available_memory();
 
+}  // namespace riffler::dexel
+
+namespace riffler {
+using dexel::Volume;
 }  // namespace riffler

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace riffler {
+namespace riffler::geom {
 
 /// [near, far] along a ray; empty where near > far. The default is empty and joins as the neutral element.
 struct Interval {
@@ -18,4 +18,8 @@ struct Interval {
   bool operator==(const Interval&) const = default;
 };
 
+}  // namespace riffler::geom
+
+namespace riffler {
+using geom::Interval;
 }  // namespace riffler

@@ -3,7 +3,7 @@
 
 #include "riffler/geom/vec.hpp"
 
-namespace riffler {
+namespace riffler::geom {
 
 /// Where a tool stands: its tip (mm) and its unit axis, from the tip towards the spindle.
 struct Pose {
@@ -40,4 +40,9 @@ inline Vec3 slerp(const Vec3& a, const Vec3& b, double u) {
   return Motion({Vec3(0), a}, {Vec3(0), b}).axis(u);
 }
 
+}  // namespace riffler::geom
+
+namespace riffler {
+using geom::Motion;
+using geom::Pose;
 }  // namespace riffler

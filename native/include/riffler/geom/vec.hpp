@@ -5,7 +5,7 @@
 #include <glm/glm.hpp>
 #include <limits>
 
-namespace riffler {
+namespace riffler::geom {
 
 using Vec2 = glm::dvec2;
 using Vec3 = glm::dvec3;
@@ -75,4 +75,14 @@ inline Box3 to_local(Axis axis, const Box3& b) {
   return {to_local(axis, b.lower), to_local(axis, b.upper)};
 }
 
+}  // namespace riffler::geom
+
+namespace riffler {
+using geom::Axis;
+using geom::Box3;
+using geom::Mat3;
+using geom::Vec2;
+using geom::Vec3;
+using geom::Vec3f;
+using geom::Vec3i;
 }  // namespace riffler

@@ -7,7 +7,7 @@
 #include "riffler/haptics/resistance.hpp"
 #include "riffler/haptics/wrench.hpp"
 
-namespace riffler {
+namespace riffler::haptics {
 
 /// Backward Euler: the forces balance at the step's end, where springs have been stretched and dampers moved. Every
 /// spring and damper adds a positive semidefinite matrix, so with one that holds the body the step exists, and whatever
@@ -23,7 +23,7 @@ class Balance {
   /// Against motion relative to a body that moves so; `moving` at the damper's own point.
   void add_damper(const Damper& damper, const Twist& moving = {});
   /// A wrench about the tip that falls by `stiffness` with the displacement.
-  void add_contact(const Wrench& wrench, const ContactStiffness& stiffness);
+  void add_contact(const Wrench& wrench, const collide::ContactStiffness& stiffness);
 
   /// The displacement, about the tip; nothing where nothing holds the body, or with numbers that are not finite.
   Twist solve() const;
@@ -31,8 +31,8 @@ class Balance {
  private:
   Vec3 axis_;
   double dt_;
-  ContactStiffness matrix_{};
+  collide::ContactStiffness matrix_{};
   Wrench pull_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::haptics

@@ -6,7 +6,7 @@
 #include "riffler/geom/pose.hpp"
 #include "riffler/haptics/wrench.hpp"
 
-namespace riffler {
+namespace riffler::haptics {
 
 struct CouplingSettings {
   double stiffness = 1;         ///< N/mm
@@ -50,4 +50,4 @@ struct CouplingWrenches {
 CouplingWrenches couple(const CouplingSettings& settings, const PoseError& stretch, const Twist& device,
                         const Twist& tool);
 
-}  // namespace riffler
+}  // namespace riffler::haptics

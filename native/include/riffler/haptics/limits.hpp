@@ -5,7 +5,7 @@
 #include "riffler/haptics/settings.hpp"
 #include "riffler/haptics/wrench.hpp"
 
-namespace riffler {
+namespace riffler::haptics {
 
 /// Zero in any field is allowed, and lets nothing through.
 struct LimitSettings {
@@ -45,4 +45,4 @@ struct LimitReport {
 Wrench limited(const LimitSettings& settings, const Capability& device, const Wrench& previous, const Wrench& wanted,
                const Twist& grip, double dt, LimitReport* report = nullptr);
 
-}  // namespace riffler
+}  // namespace riffler::haptics

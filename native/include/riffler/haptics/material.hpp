@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace riffler {
+namespace riffler::haptics {
 
 struct Material {
   double stiffness = 1;            ///< of its surface, N per mm of depth and mm²; of a fixture, N per mm³ in the tool
@@ -17,4 +17,4 @@ struct Material {
   double mass(double volume) const { return 1e-3 * density * volume; }
 };
 
-}  // namespace riffler
+}  // namespace riffler::haptics

@@ -19,7 +19,7 @@
 #include "riffler/haptics/settings.hpp"
 #include "riffler/haptics/wrench.hpp"
 
-namespace riffler {
+namespace riffler::haptics {
 
 struct PassivitySettings {
   double period = 1e-3;  ///< s: the hold that is counted on
@@ -82,4 +82,4 @@ class Passivity {
   std::size_t waiting_ = 0;
 };
 
-}  // namespace riffler
+}  // namespace riffler::haptics

@@ -3,7 +3,7 @@
 
 #include "riffler/haptics/wrench.hpp"
 
-namespace riffler {
+namespace riffler::haptics {
 
 /// A damper for the tool's point at `arm` from its tip, and one for turns about that point. Both pull back only.
 struct Damper {
@@ -52,4 +52,4 @@ class Resistance {
   double idle_ = 0;  // mm without a cut
 };
 
-}  // namespace riffler
+}  // namespace riffler::haptics

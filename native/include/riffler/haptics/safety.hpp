@@ -33,7 +33,7 @@
 #include "riffler/haptics/trip_log.hpp"
 #include "riffler/haptics/wrench.hpp"
 
-namespace riffler {
+namespace riffler::haptics {
 
 struct SafetySettings {
   double ramp = 0.5;           ///< s from nothing to all of the force, at the start and after every interruption
@@ -131,4 +131,4 @@ class Safety {
   TripLog log_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::haptics

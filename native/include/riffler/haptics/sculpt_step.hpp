@@ -10,7 +10,7 @@
 #include "riffler/haptics/settings.hpp"
 #include "riffler/sweep/move_carver.hpp"
 
-namespace riffler {
+namespace riffler::haptics {
 
 struct SculptSettings {
   CouplingSettings coupling;
@@ -48,7 +48,8 @@ class SculptStep {
 
   /// Validates the settings. `stock` to cut with this very tool, `obstacles` to stay out of: either may be missing;
   /// both must outlive this.
-  SculptStep(const SculptSettings& settings, const Tool& tool, MoveCarver* stock, const Collider* obstacles);
+  SculptStep(const SculptSettings& settings, const Tool& tool, sweep::MoveCarver* stock,
+             const collide::Collider* obstacles);
 
   /// The tool stands here, and at rest; so does the grip. What of the stock it stands in goes with the next cut,
   /// unfelt.
@@ -64,7 +65,7 @@ class SculptStep {
 
   const Pose& tool() const { return tool_; }
   /// What touched the tool at the last query.
-  const Contact& contact() const { return contact_; }
+  const collide::Contact& contact() const { return contact_; }
   Damper resistance() const { return resistance_.damper(); }
 
  private:
@@ -76,20 +77,20 @@ class SculptStep {
   void cut(const Pose& to, const Twist& way, double dt, Result& result);
 
   SculptSettings settings_;
-  Assembly assembly_;
+  collide::Assembly assembly_;
   double cutting_reach_;
-  MoveCarver* stock_;
-  const Collider* obstacles_;
+  sweep::MoveCarver* stock_;
+  const collide::Collider* obstacles_;
   Resistance resistance_;
   Pose tool_, grip_;
   Twist rate_;  // of the tool, per second
   bool fresh_ = true;
-  Contact contact_;
+  collide::Contact contact_;
   Pose asked_;  // where contact_ is
   bool touching_ = false;
-  ContactStiffness slowing_{};
+  collide::ContactStiffness slowing_{};
   double bound_ = 0;        // of the depth at tool_
   double cut_seconds_ = 0;  // of the last cut, by the clock
 };
 
-}  // namespace riffler
+}  // namespace riffler::haptics

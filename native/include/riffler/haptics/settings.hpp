@@ -5,7 +5,7 @@
 
 #include "riffler/base/check.hpp"
 
-namespace riffler {
+namespace riffler::haptics {
 
 /// A bound on translation and its sister on rotation: they have no common unit.
 struct Bounds {
@@ -16,12 +16,12 @@ struct Bounds {
 
 /// std::invalid_argument naming the one that is not positive and finite: "NAME.linear must be positive".
 inline void require_positive(const Bounds& b, const std::string& name) {
-  require_positive(b.linear, name + ".linear"), require_positive(b.angular, name + ".angular");
+  base::require_positive(b.linear, name + ".linear"), base::require_positive(b.angular, name + ".angular");
 }
 
 /// As require_positive, but zero is allowed: it switches off what is bounded.
 inline void require_not_negative(const Bounds& b, const std::string& name) {
-  require_not_negative(b.linear, name + ".linear"), require_not_negative(b.angular, name + ".angular");
+  base::require_not_negative(b.linear, name + ".linear"), base::require_not_negative(b.angular, name + ".angular");
 }
 
-}  // namespace riffler
+}  // namespace riffler::haptics

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 
-namespace riffler {
+namespace riffler::haptics {
 
 /// Only Ramp, Active and Degraded let a force through.
 enum class ForceState : std::uint8_t {
@@ -62,4 +62,4 @@ const char* name(ForceEvent event);
 /// A sentence for the screen: what happened, and what to do.
 const char* sentence(Cause cause);
 
-}  // namespace riffler
+}  // namespace riffler::haptics

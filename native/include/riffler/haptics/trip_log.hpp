@@ -9,7 +9,7 @@
 #include "riffler/base/sequence_lock.hpp"
 #include "riffler/haptics/states.hpp"
 
-namespace riffler {
+namespace riffler::haptics {
 
 struct Trip {
   double time;       ///< s since the machine was made
@@ -31,8 +31,8 @@ class TripLog {
   std::size_t read(std::uint64_t& from, std::span<Trip> out) const;
 
  private:
-  std::array<SequenceLock<Trip>, kCapacity> slots_{};  // trip n has the ticket 2 n + 2
+  std::array<base::SequenceLock<Trip>, kCapacity> slots_{};  // trip n has the ticket 2 n + 2
   std::atomic<std::uint64_t> count_{0};
 };
 
-}  // namespace riffler
+}  // namespace riffler::haptics

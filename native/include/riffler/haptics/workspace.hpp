@@ -6,7 +6,7 @@
 #include "riffler/geom/pose.hpp"
 #include "riffler/haptics/wrench.hpp"
 
-namespace riffler {
+namespace riffler::haptics {
 
 struct WorkspaceSettings {
   double scale = 1;                 ///< mm of the tool per mm of the grip
@@ -55,4 +55,4 @@ class Workspace {
   bool clutched_ = false, begun_ = false;
 };
 
-}  // namespace riffler
+}  // namespace riffler::haptics

@@ -5,7 +5,7 @@
 
 #include "riffler/geom/vec.hpp"
 
-namespace riffler {
+namespace riffler::haptics {
 
 /// Three translations, then three rotations, along the axes of the part frame.
 inline constexpr int kCoordinates = 6;
@@ -49,10 +49,10 @@ inline Twist moved(const Twist& t, const Vec3& from, const Vec3& to) {
 }
 
 inline bool finite(const Wrench& w) {
-  return finite(w.force) && finite(w.torque);
+  return geom::finite(w.force) && geom::finite(w.torque);
 }
 inline bool finite(const Twist& t) {
-  return finite(t.linear) && finite(t.angular);
+  return geom::finite(t.linear) && geom::finite(t.angular);
 }
 
 /// Which coordinates a device can push: forces along, and torques about, three axes square to each other, which may
@@ -75,4 +75,9 @@ inline Wrench renderable(const Capability& device, const Wrench& w) {
   return out;
 }
 
+}  // namespace riffler::haptics
+
+namespace riffler {
+using haptics::Twist;
+using haptics::Wrench;
 }  // namespace riffler

@@ -4,7 +4,7 @@
 #include "riffler/haptics/settings.hpp"
 #include "riffler/haptics/wrench.hpp"
 
-namespace riffler {
+namespace riffler::haptics {
 
 struct WrenchExtrapolatorSettings {
   double ahead = 2e-3;          ///< s for which the last change goes on after a step, ever slower
@@ -40,4 +40,4 @@ class WrenchExtrapolator {
   bool begun_ = false;
 };
 
-}  // namespace riffler
+}  // namespace riffler::haptics

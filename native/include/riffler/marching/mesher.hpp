@@ -12,11 +12,9 @@
 #include "riffler/marching/pick.hpp"
 #include "riffler/mesh/mesh.hpp"
 
-namespace riffler {
+namespace riffler::marching {
 
-namespace marching {
 struct MeshState;
-}
 
 /// Holds a volume's mesh in bricks, and meshes those again that a change of the volume reached. What it has then is,
 /// bit for bit, what meshing the whole volume would have given.
@@ -45,7 +43,7 @@ class Mesher {
   MeshPatch patch(std::size_t brick) const { return patch(std::span(&brick, 1)); }
   /// Of each corner of a patch's triangles the normal on the whole mesh: the mean of the triangles around its vertex,
   /// in whatever brick, that are within `sharp` (rad) of its own. (3 triangles), unit.
-  BulkVector<Vec3f> corner_normals(const MeshPatch& patch, double sharp) const;
+  base::BulkVector<Vec3f> corner_normals(const MeshPatch& patch, double sharp) const;
   /// The whole mesh: the same as to_mesh of the volume.
   Mesh mesh() const;
   std::size_t triangles() const;
@@ -61,7 +59,7 @@ class Mesher {
   FrozenSurface freeze(PickStats& stats);
 
  private:
-  std::unique_ptr<marching::MeshState> state_;
+  std::unique_ptr<MeshState> state_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::marching

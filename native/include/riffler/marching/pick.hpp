@@ -8,19 +8,17 @@
 #include "riffler/geom/vec.hpp"
 #include "riffler/marching/surface_hit.hpp"
 
-namespace riffler {
+namespace riffler::marching {
 
-namespace marching {
 class Facets;
 class Lattice;
-}  // namespace marching
 
 /// A mesher's surface as it was at one time, to be picked only. Shares with the mesher, and with other surfaces of it,
 /// the bricks that did not change in between; goes on when the mesher has gone. May be read from several threads.
 class FrozenSurface {
  public:
-  using Bricks = std::vector<std::shared_ptr<const marching::Facets>>;  // null for bricks without triangles
-  FrozenSurface(const marching::Lattice& lattice, Bricks bricks);
+  using Bricks = std::vector<std::shared_ptr<const Facets>>;  // null for bricks without triangles
+  FrozenSurface(const Lattice& lattice, Bricks bricks);
 
   /// As Mesher::pick.
   std::optional<SurfaceHit> pick(const Vec3& origin, const Vec3& direction, PickStats& stats) const;
@@ -29,8 +27,8 @@ class FrozenSurface {
   std::size_t nbytes() const;
 
  private:
-  std::shared_ptr<const marching::Lattice> lattice_;
+  std::shared_ptr<const Lattice> lattice_;
   Bricks bricks_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::marching

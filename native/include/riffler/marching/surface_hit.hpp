@@ -6,7 +6,7 @@
 
 #include "riffler/geom/vec.hpp"
 
-namespace riffler {
+namespace riffler::marching {
 
 /// The first point of a surface along a ray.
 struct SurfaceHit {
@@ -24,4 +24,4 @@ struct PickStats {
   std::uint64_t triangles_tested = 0;  ///< (triangle, ray) pairs
 };
 
-}  // namespace riffler
+}  // namespace riffler::marching

@@ -3,7 +3,7 @@
 
 #include "riffler/dexel/volume.hpp"
 
-namespace riffler {
+namespace riffler::marching {
 
 struct ThinMaterial {
   double volume = 0;     ///< mm³
@@ -18,4 +18,4 @@ struct ThinMaterial {
 /// such spans. Nothing for volumes of one direction, whose floors are kept. Costs a look at every span.
 ThinMaterial thin_material(const Volume& volume);
 
-}  // namespace riffler
+}  // namespace riffler::marching

@@ -5,7 +5,7 @@
 #include "riffler/dexel/volume.hpp"
 #include "riffler/mesh/mesh.hpp"
 
-namespace riffler {
+namespace riffler::marching {
 
 /// The surface of the volume's material. Vertices are exact in float32, distinct, and no two triangles fold onto each
 /// other, so a binary STL that is read back and welded is the same closed mesh. The bytes are the same for any number
@@ -18,4 +18,4 @@ namespace riffler {
 /// the pitch is kept, one of its faces off by up to half a pitch; a gap along a ray thinner than that may close.
 Mesh to_mesh(const Volume& volume, const Progress& progress = {});
 
-}  // namespace riffler
+}  // namespace riffler::marching

@@ -6,7 +6,7 @@
 #include "riffler/base/progress.hpp"
 #include "riffler/mesh/mesh.hpp"
 
-namespace riffler {
+namespace riffler::mesh {
 
 /// Counts of defects. All zero but `components` and `volume`: a closed, consistently oriented two-manifold.
 /// Triangles that name a vertex twice are counted as degenerate and otherwise left out, as if they were removed.
@@ -30,4 +30,4 @@ struct Audit {
 /// std::invalid_argument where `validate` throws.
 Audit audit(const Mesh& mesh, const Progress& progress = {});
 
-}  // namespace riffler
+}  // namespace riffler::mesh

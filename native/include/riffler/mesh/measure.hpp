@@ -3,7 +3,7 @@
 
 #include "riffler/mesh/mesh.hpp"
 
-namespace riffler {
+namespace riffler::mesh {
 
 struct Measures {
   Box3 box;           ///< as `bounds`
@@ -13,4 +13,4 @@ struct Measures {
 /// Of the vertices that triangles use.
 Measures measure(const Mesh& mesh);
 
-}  // namespace riffler
+}  // namespace riffler::mesh

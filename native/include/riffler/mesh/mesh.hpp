@@ -4,10 +4,10 @@
 #include "riffler/base/bulk.hpp"
 #include "riffler/geom/vec.hpp"
 
-namespace riffler {
+namespace riffler::mesh {
 
-using Vertices = BulkVector<Vec3>;
-using Triangles = BulkVector<Vec3i>;
+using Vertices = base::BulkVector<Vec3>;
+using Triangles = base::BulkVector<Vec3i>;
 
 /// Vertices (mm) and triangles (vertex indices, counter-clockwise seen from outside the material).
 /// Nothing here is checked: `audit.hpp` says what a mesh is worth, `validate` below whether it can be used at all.
@@ -29,4 +29,8 @@ double area(const Mesh& mesh);
 /// Box of the vertices that triangles use; empty for an empty mesh.
 Box3 bounds(const Mesh& mesh);
 
+}  // namespace riffler::mesh
+
+namespace riffler {
+using mesh::Mesh;
 }  // namespace riffler

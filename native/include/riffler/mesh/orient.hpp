@@ -6,7 +6,7 @@
 
 #include "riffler/mesh/mesh.hpp"
 
-namespace riffler {
+namespace riffler::mesh {
 
 /// What `oriented` found and changed.
 struct Orientation {
@@ -35,4 +35,4 @@ std::optional<Mesh> oriented(const Mesh& mesh, Orientation& found, Hollow hollow
 /// For takers of a solid: `mesh` itself, or what `oriented` made of it, kept in `storage`.
 const Mesh& as_solid(const Mesh& mesh, std::optional<Mesh>& storage, Hollow hollow = Hollow::Turned);
 
-}  // namespace riffler
+}  // namespace riffler::mesh

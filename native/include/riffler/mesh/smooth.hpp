@@ -6,7 +6,7 @@
 #include "riffler/base/progress.hpp"
 #include "riffler/mesh/mesh.hpp"
 
-namespace riffler {
+namespace riffler::mesh {
 
 /// Edges whose triangles' normals differ by more are features, rad.
 inline constexpr double kFeatureAngle = 0.7;
@@ -27,4 +27,4 @@ Mesh smooth(const Mesh& mesh, int iterations, std::optional<double> tolerance, d
 /// With kFeatureAngle.
 Mesh smooth(const Mesh& mesh, int iterations, std::optional<double> tolerance = {}, const Progress& progress = {});
 
-}  // namespace riffler
+}  // namespace riffler::mesh

@@ -9,7 +9,7 @@
 #include "riffler/nc/link_rule.hpp"
 #include "riffler/nc/program.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 /// One cut: a row of cutter locations that become feed moves in order.
 struct CutterPath {
@@ -45,4 +45,4 @@ struct Clearance {
 Program program_from_paths(std::span<const CutterPath> paths, std::map<int, Tool> tools,
                            const Clearance& clearance = {}, const LinkRule& links = {});
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -6,7 +6,7 @@
 
 #include "riffler/nc/program.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 /// Rows [first, last). The first of them is a rapid: the way to it is not the program's any more.
 /// std::invalid_argument where there are no such rows.
@@ -26,4 +26,4 @@ Program joined(std::span<const Program* const> programs);
 /// or that two tools of different shapes would have.
 Program renumber_tools(const Program& program, const std::map<int, int>& numbers);
 
-}  // namespace riffler
+}  // namespace riffler::nc

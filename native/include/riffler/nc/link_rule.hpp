@@ -6,14 +6,14 @@
 #include "riffler/collide/collider.hpp"
 #include "riffler/geom/vec.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 /// What approaches and retracts must keep clear of, and how they go.
 struct LinkRule {
-  const Collider* collider = nullptr;  ///< part and fixtures; null: nothing is looked at
-  double tolerance = 0.02;             ///< mm that the tool may enter them: cuts touch the part
-  std::optional<double> retract;       ///< mm of the first stretch out of a cut; not given: what is clear
-  std::optional<Vec3> direction;       ///< unit, of that stretch; not given: along the tool's axis, or what is clear
+  const collide::Collider* collider = nullptr;  ///< part and fixtures; null: nothing is looked at
+  double tolerance = 0.02;                      ///< mm that the tool may enter them: cuts touch the part
+  std::optional<double> retract;                ///< mm of the first stretch out of a cut; not given: what is clear
+  std::optional<Vec3> direction;  ///< unit, of that stretch; not given: along the tool's axis, or what is clear
   /// mm before a cut that are fed, the way down to there is a rapid; not given: all of it is fed.
   std::optional<double> lead_in;
 };
@@ -21,4 +21,4 @@ struct LinkRule {
 /// Throws std::invalid_argument naming the option.
 void validate(const LinkRule& rule);
 
-}  // namespace riffler
+}  // namespace riffler::nc

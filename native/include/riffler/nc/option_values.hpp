@@ -6,9 +6,9 @@
 #include <variant>
 #include <vector>
 
-namespace riffler {
+namespace riffler::nc {
 
 using OptionValue = std::variant<bool, double, std::string, std::vector<double>>;
 using Options = std::map<std::string, OptionValue>;
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -14,7 +14,7 @@
 #include "riffler/geom/pose.hpp"
 #include "riffler/tool/tool.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 /// What is wrong with one row: "name, row 3: what".
 class RowError : public std::invalid_argument {
@@ -123,4 +123,4 @@ class Program {
 /// axis is not a unit vector within 1e-6.
 Pose checked_pose(const Pose& pose, std::string_view name, std::size_t row);
 
-}  // namespace riffler
+}  // namespace riffler::nc

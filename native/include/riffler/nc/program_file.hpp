@@ -25,7 +25,7 @@
 #include "riffler/base/progress.hpp"
 #include "riffler/nc/program.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 /// The file's bytes, and back: the same bytes for the same program, whatever the number of threads. `name` stands in
 /// messages. FormatError names the byte at which a file is not what it should be (magic, version, checksum, a row that
@@ -37,4 +37,4 @@ Program parse_program(std::span<const std::uint8_t> bytes, const std::string& na
 void save_program(const Program& program, const std::filesystem::path& path, const Progress& progress = {});
 Program load_program(const std::filesystem::path& path, const Progress& progress = {});
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -8,7 +8,7 @@
 
 #include "riffler/haptics/wrench.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 
 struct PenGeometry;
 
@@ -39,7 +39,7 @@ struct CoordinateCapability {
 struct DeviceCapability {
   std::string name;
   TurnAxes turns = TurnAxes::Device;
-  std::array<CoordinateCapability, kCoordinates> coordinates{};
+  std::array<CoordinateCapability, haptics::kCoordinates> coordinates{};
 
   const CoordinateCapability& operator[](Coordinate c) const { return coordinates[static_cast<std::size_t>(c)]; }
   CoordinateCapability& operator[](Coordinate c) { return coordinates[static_cast<std::size_t>(c)]; }
@@ -52,10 +52,10 @@ std::string capability_text(const DeviceCapability& device);
 /// What of a wrench the device has motors for, for renderable(): with the grip's axis (unit, device's frame) for the
 /// third column where turns are about the grip, which then has a torque square to it only where both A and B push, and
 /// forces only where X, Y and Z all do. Whether the motors are strong enough is another matter.
-Capability pushed(const DeviceCapability& device, const Vec3& axis) noexcept;
+haptics::Capability pushed(const DeviceCapability& device, const Vec3& axis) noexcept;
 
 /// Six coordinates sensed, five that push: strengths and resolutions from the motors, gears and encoders, at home, and
 /// within the pen's limits. Its device frame is the arms' base frame.
 DeviceCapability pen_capability(const PenGeometry& pen);
 
-}  // namespace riffler
+}  // namespace riffler::pen

@@ -11,7 +11,7 @@
 #include "riffler/pen/pen_step.hpp"
 #include "riffler/pen/sample.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 
 struct PenGeometry;
 
@@ -43,7 +43,7 @@ class Pen {
   /// Its poses are where the tool shall be, and not where some grip is on a desk.
   virtual bool in_part_frame() const noexcept { return false; }
   /// What the passivity controller of a step may count on. Does not change.
-  virtual PassivitySettings passivity() const { return passivity_settings(capability()); }
+  virtual haptics::PassivitySettings passivity() const { return passivity_settings(capability()); }
   /// Of the device itself, for people.
   virtual std::string about() const { return {}; }
   /// Of a pen of two arms, with the currents that the device allows; null for everything else. Does not change.
@@ -72,8 +72,8 @@ class Pen {
 
   /// What lets push() through: it ramps up from the first call on, and is taken away where a check fails. Trips that do
   /// not heal by themselves are cleared by reset(). Any thread.
-  virtual ForceState force_state() const noexcept { return ForceState::Off; }
-  virtual Cause cause() const noexcept { return Cause::None; }
+  virtual haptics::ForceState force_state() const noexcept { return haptics::ForceState::Off; }
+  virtual haptics::Cause cause() const noexcept { return haptics::Cause::None; }
   virtual void reset() noexcept {}
 
   /// The device stands in its home posture. False where nothing has to be homed.
@@ -86,4 +86,4 @@ class Pen {
   virtual bool stop() { return true; }
 };
 
-}  // namespace riffler
+}  // namespace riffler::pen

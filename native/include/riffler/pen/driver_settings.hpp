@@ -1,7 +1,7 @@
 // How the thread of a device reads it and looks for it again.
 #pragma once
 
-namespace riffler {
+namespace riffler::pen {
 
 struct DriverSettings {
   double read_timeout = 0.01;  ///< s without a report after which the step runs all the same, with an old sample
@@ -15,4 +15,4 @@ struct DriverSettings {
   void validate() const;
 };
 
-}  // namespace riffler
+}  // namespace riffler::pen

@@ -7,7 +7,7 @@
 #include "riffler/pen/hid/open_error.hpp"
 #include "riffler/pen/sample.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 
 enum class LinkState : unsigned char {
   Stopped,     // the device was told not to push, and closed
@@ -41,4 +41,4 @@ struct LinkStatus {
   double retry = 0;  // s from one attempt to the next
 };
 
-}  // namespace riffler
+}  // namespace riffler::pen

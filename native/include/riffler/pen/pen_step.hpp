@@ -4,7 +4,7 @@
 #include "riffler/haptics/safety.hpp"
 #include "riffler/pen/sample.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 
 /// Called once in each tick of an open device; from the driver's thread, so it must not wait or allocate.
 class PenStep {
@@ -13,7 +13,7 @@ class PenStep {
   /// The wrench to push with until the next step. `now` and `dt`, the time since the last step, are the driver's
   /// clock's; sample.time says how old the sample is. The first step after a connection, or with a device that had
   /// another step before, has dt = 0, and no other has.
-  virtual SafeWrench step(const PenSample& sample, double now, double dt) noexcept = 0;
+  virtual haptics::SafeWrench step(const PenSample& sample, double now, double dt) noexcept = 0;
 };
 
-}  // namespace riffler
+}  // namespace riffler::pen

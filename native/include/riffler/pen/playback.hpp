@@ -7,7 +7,7 @@
 
 #include "riffler/pen/device.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 
 /// As journals have them.
 struct RecordedStroke {
@@ -51,4 +51,4 @@ class PlaybackPen final : public Pen {
   mutable std::atomic<double> start_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::pen

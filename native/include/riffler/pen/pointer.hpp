@@ -4,7 +4,7 @@
 #include "riffler/pen/device.hpp"
 #include "riffler/pen/published.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 
 /// Where the pointer's plane lies in the frame of poses, and what its numbers mean there. For a mouse in a view: the
 /// plane of the view through the point that is being worked on.
@@ -57,4 +57,4 @@ class PointerPen final : public Pen {
   Published<PenSample> newest_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::pen

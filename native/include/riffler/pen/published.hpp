@@ -3,7 +3,7 @@
 
 #include "riffler/base/sequence_lock.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 
 template <class T>
 class Published {
@@ -21,7 +21,7 @@ class Published {
   }
 
  private:
-  SequenceLock<T> lock_;
+  base::SequenceLock<T> lock_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::pen

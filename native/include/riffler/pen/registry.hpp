@@ -14,7 +14,7 @@
 #include "riffler/pen/hid/open_error.hpp"
 #include "riffler/pen/models/rate_control.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 
 class HidModel;
 class Transport;
@@ -58,4 +58,4 @@ std::vector<FoundDevice> find_devices();
 /// OpenError; for a kind, of the device that came nearest to opening.
 std::unique_ptr<Pen> open_pen(std::string_view what, const PenOptions& options = {});
 
-}  // namespace riffler
+}  // namespace riffler::pen

@@ -7,7 +7,7 @@
 #include "riffler/geom/pose.hpp"
 #include "riffler/haptics/wrench.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 
 /// Trivially copyable, so that it passes between threads without locks. All of it is zero before the first report.
 struct PenSample {
@@ -33,4 +33,4 @@ struct PenSample {
   bool powered = false;  ///< the device is ready to push
 };
 
-}  // namespace riffler
+}  // namespace riffler::pen

@@ -5,7 +5,7 @@
 
 #include "riffler/plan/path.hpp"
 
-namespace riffler {
+namespace riffler::plan {
 
 /// Right-handed: x the feed direction, z the part's normal, y = z × x, to the left of the feed.
 struct CcFrame {
@@ -40,4 +40,4 @@ CcFrame frame_at(const PencilPath& path, std::size_t k);
 /// `axis` made a unit vector; std::invalid_argument "`what`: …" where it is not finite or not one within 1e-6.
 Vec3 unit_axis(const Vec3& axis, std::string_view what);
 
-}  // namespace riffler
+}  // namespace riffler::plan

@@ -7,7 +7,7 @@
 #include "riffler/plan/path.hpp"
 #include "riffler/tool/tool.hpp"
 
-namespace riffler {
+namespace riffler::plan {
 
 /// The cutter's extreme points in a direction: convex, so exact for what is milled from outside. It is the support of
 /// the profile's convex hull: a hollow arc touches a plane with its ends only, and so it is placed; that the hollow
@@ -48,4 +48,4 @@ Pose location_of_contact(const CutterSupport& cutter, const Vec3& contact, const
 /// the first contact's only. What else it meets is for cutter_locations to lift it out of.
 Pose location_on_path(const CutterSupport& cutter, const PencilPath& path, std::size_t k, const Vec3& axis);
 
-}  // namespace riffler
+}  // namespace riffler::plan

@@ -9,7 +9,7 @@
 #include "riffler/collide/collider.hpp"
 #include "riffler/plan/path.hpp"
 
-namespace riffler {
+namespace riffler::plan {
 
 struct LocationRule {
   double clearance = 0;  ///< wanted over part and fixtures, mm
@@ -24,11 +24,11 @@ struct LocationRule {
 /// One row of the result.
 struct LocationRow {
   Pose pose;
-  std::ptrdiff_t point = -1;    ///< of the path; −1: inserted
-  double lift = 0;              ///< mm along the axis from where the path wants the tool, or the motion had it
-  double before = 0;            ///< clearance there, mm
-  double clearance = 0;         ///< clearance now, mm
-  Touch touch = Touch::Cutter;  ///< what it was lifted off, or is nearest
+  std::ptrdiff_t point = -1;  ///< of the path; −1: inserted
+  double lift = 0;            ///< mm along the axis from where the path wants the tool, or the motion had it
+  double before = 0;          ///< clearance there, mm
+  double clearance = 0;       ///< clearance now, mm
+  collide::Touch touch = collide::Touch::Cutter;  ///< what it was lifted off, or is nearest
 };
 
 /// A point of the path that has no row.
@@ -62,11 +62,13 @@ struct CutterLocations {
 /// that gouges, the pose that does is lifted and becomes a row between them. Orientations are kept as they are. A point
 /// that cannot be freed has no row, but an entry in `blocked`; nothing is made to fit silently. std::invalid_argument
 /// for a path without axes, or naming a setting; parallel over points, then over ways between them.
-CutterLocations cutter_locations(const PencilPath& path, const Assembly& assembly, const Collider& collider,
-                                 const LocationRule& rule, const Progress& progress = {});
+CutterLocations cutter_locations(const PencilPath& path, const collide::Assembly& assembly,
+                                 const collide::Collider& collider, const LocationRule& rule,
+                                 const Progress& progress = {});
 
 /// The same from `poses` with unit axes, which stand for the points of an open path.
-CutterLocations cutter_locations(const std::vector<Pose>& poses, const Assembly& assembly, const Collider& collider,
-                                 const LocationRule& rule, const Progress& progress = {});
+CutterLocations cutter_locations(const std::vector<Pose>& poses, const collide::Assembly& assembly,
+                                 const collide::Collider& collider, const LocationRule& rule,
+                                 const Progress& progress = {});
 
-}  // namespace riffler
+}  // namespace riffler::plan

@@ -9,7 +9,7 @@
 #include "riffler/mesh/mesh.hpp"
 #include "riffler/tool/tool.hpp"
 
-namespace riffler {
+namespace riffler::plan {
 
 /// Over a mesh's triangles, seen along one axis. Exact to rounding for lines and arcs that bulge; a hollow arc is taken
 /// as cones that fill at most Profile::kConcaveTolerance of it less than the whole (tool/profile.hpp).
@@ -20,7 +20,7 @@ class DropCutter {
     bool touches = false;  ///< nothing lies below or above the tool otherwise
     double height = 0;     ///< of the tip along the axis, mm
     Vec3 point{0};         ///< of the part
-    Part part = Part::Cutter;
+    tool::Part part = tool::Part::Cutter;
   };
   struct Stats {
     std::size_t boxes = 0, triangles = 0;  ///< looked at
@@ -41,4 +41,4 @@ class DropCutter {
   std::shared_ptr<const Core> core_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::plan

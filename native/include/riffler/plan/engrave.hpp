@@ -8,7 +8,7 @@
 #include "riffler/mesh/mesh.hpp"
 #include "riffler/tool/tool.hpp"
 
-namespace riffler {
+namespace riffler::plan {
 
 struct EngraveOptions {
   double depth = 0;         ///< below the surface, along its normal, mm; negative stays above it
@@ -35,4 +35,4 @@ struct Engraved {
 std::vector<Engraved> engrave(const Mesh& part, const std::vector<std::vector<Vec3>>& curves, const Tool& tool,
                               const EngraveOptions& options = {}, const Progress& progress = {});
 
-}  // namespace riffler
+}  // namespace riffler::plan

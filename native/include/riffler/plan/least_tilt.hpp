@@ -6,7 +6,7 @@
 
 #include "riffler/plan/orientation_map.hpp"
 
-namespace riffler {
+namespace riffler::plan {
 
 struct TiltRule {
   MapRule map;
@@ -34,7 +34,7 @@ struct TiltAnswer {
 /// the first point is the one that the best round trip in the middle of two laps has, or, if no round closes with it,
 /// the first that one does by ascending cost of the open path; the round is then the best for that start.
 /// What happens between points is for cutter_locations to check.
-TiltAnswer least_tilt(const PencilPath& path, const Assembly& assembly, const Collider& collider, const TiltRule& rule,
-                      const Progress& progress = {});
+TiltAnswer least_tilt(const PencilPath& path, const collide::Assembly& assembly, const collide::Collider& collider,
+                      const TiltRule& rule, const Progress& progress = {});
 
-}  // namespace riffler
+}  // namespace riffler::plan

@@ -3,7 +3,7 @@
 
 #include "riffler/collide/collider.hpp"
 
-namespace riffler {
+namespace riffler::plan {
 
 struct LiftRule {
   /// Wanted over part and fixtures, mm; negative allows that depth, for cuts that are to touch.
@@ -23,8 +23,8 @@ struct Lift {
   double height = 0;     ///< mm along the axis; where it is not free: as far as everything below is known to be blocked
   double before = 0;     ///< clearance at the pose itself, mm
   double clearance = 0;  ///< where it ended, mm
-  Touch touch = Touch::Cutter;  ///< what was in the way last, or is nearest where nothing was
-  Vec3 point{0};                ///< of part or fixture, there
+  collide::Touch touch = collide::Touch::Cutter;  ///< what was in the way last, or is nearest where nothing was
+  Vec3 point{0};                                  ///< of part or fixture, there
   int evaluations = 0;
 };
 
@@ -38,6 +38,6 @@ struct Lift {
 /// that is deepest further up and has been in the tool since here allows the whole way between; such looks ahead
 /// double, or go where steps that shrink by a steady ratio (an edge of the tool is the last to leave) are to end. A
 /// lift that would end within the part's material has no free height. `pose` must have a unit axis.
-Lift lift(const Collider& collider, const Assembly& assembly, const Pose& pose, const LiftRule& rule);
+Lift lift(const collide::Collider& collider, const collide::Assembly& assembly, const Pose& pose, const LiftRule& rule);
 
-}  // namespace riffler
+}  // namespace riffler::plan

@@ -7,7 +7,7 @@
 
 #include "riffler/plan/path.hpp"
 
-namespace riffler {
+namespace riffler::plan {
 
 enum class Interpolation {
   Linear,  ///< (4.4)–(4.5): straight between the two axes by number of points, made unit
@@ -45,4 +45,4 @@ PencilPath oriented(const PencilPath& path, const OrientationKeys& keys, Interpo
 PencilPath with_axes(const PencilPath& path, std::vector<Vec3> axes, const OrientationKeys& keys = {},
                      std::string interpolation = {});
 
-}  // namespace riffler
+}  // namespace riffler::plan

@@ -10,7 +10,7 @@
 #include "riffler/plan/cc_frame.hpp"
 #include "riffler/plan/orientation.hpp"
 
-namespace riffler {
+namespace riffler::plan {
 
 struct MapRule {
   std::vector<double> inclinations, tilts;  ///< rad, ascending; the grid
@@ -35,7 +35,7 @@ struct OrientationMap {
   std::vector<Vec3> axes;
   std::vector<double> clearance;  ///< mm, signed; NaN where beyond or unreachable
   std::vector<State> state;
-  std::vector<Touch> touch;  ///< what is nearest, or deepest
+  std::vector<collide::Touch> touch;  ///< what is nearest, or deepest
 
   /// The free axis nearest to the frame's z, the first of equals; nothing where none is free.
   std::optional<std::size_t> least_tilt() const;
@@ -47,7 +47,7 @@ struct OrientationMap {
 /// std::invalid_argument as by validate, and naming a point that the path has not. Parallel over points and
 /// orientations.
 std::vector<OrientationMap> orientation_maps(const PencilPath& path, const std::vector<std::size_t>& points,
-                                             const Assembly& assembly, const Collider& collider, const MapRule& rule,
-                                             const Progress& progress = {});
+                                             const collide::Assembly& assembly, const collide::Collider& collider,
+                                             const MapRule& rule, const Progress& progress = {});
 
-}  // namespace riffler
+}  // namespace riffler::plan

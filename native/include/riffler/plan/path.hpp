@@ -8,7 +8,7 @@
 
 #include "riffler/geom/vec.hpp"
 
-namespace riffler {
+namespace riffler::plan {
 
 /// A curve of ball centres, with what the ball touches at each. All arrays have one entry per point.
 struct PencilPath {
@@ -31,4 +31,4 @@ struct PencilPath {
 /// positive and finite or would make more than ten million points.
 PencilPath divided(const PencilPath& path, double step);
 
-}  // namespace riffler
+}  // namespace riffler::plan

@@ -13,7 +13,7 @@
 #include "riffler/plan/path.hpp"
 #include "riffler/tool/tool.hpp"
 
-namespace riffler {
+namespace riffler::plan {
 
 struct PencilOptions {
   double tolerance = 0.01;  ///< mm; of the curves, and the gap at a valley's bottom below which it is faceting
@@ -71,4 +71,4 @@ double tip_ball_radius(const Tool& tool, std::string_view name);
 /// for sizes that are not positive and finite.
 PencilResult pencil(const Mesh& part, double radius, const PencilOptions& options = {}, const Progress& progress = {});
 
-}  // namespace riffler
+}  // namespace riffler::plan

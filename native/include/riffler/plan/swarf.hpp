@@ -9,7 +9,7 @@
 #include "riffler/plan/path.hpp"
 #include "riffler/tool/tool.hpp"
 
-namespace riffler {
+namespace riffler::plan {
 
 struct SwarfOptions {
   int side = 0;                  ///< which of the path's contacts is the wall's: 0 or 1
@@ -36,4 +36,4 @@ struct Swarf {
 Swarf swarf(const PencilPath& path, const Mesh& part, const Tool& tool, const SwarfOptions& options = {},
             const Progress& progress = {});
 
-}  // namespace riffler
+}  // namespace riffler::plan

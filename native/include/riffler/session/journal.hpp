@@ -14,7 +14,7 @@
 #include "riffler/nc/program.hpp"
 #include "riffler/session/journal_rules.hpp"
 
-namespace riffler {
+namespace riffler::session {
 
 /// In memory. Strokes keep their order; a tool's number means one tool for good.
 class Journal {
@@ -55,12 +55,12 @@ class Journal {
 struct JournalProgramOptions {
   std::optional<double> feed;  ///< mm/min; without it each row's feed follows from its times
   double spindle = 0;          ///< rev/min
-  Clearance clearance;         ///< the stock's box is added to what is occupied
+  nc::Clearance clearance;     ///< the stock's box is added to what is occupied
 };
 
 /// Each stroke that removes as one cut; what others put on or protect no machine can make. Feeds from times are held
 /// within 1 to 100 000 mm/min; a row whose tip stands still has the feed of the row before. Throws
 /// std::invalid_argument where a stroke has no times, or never moves, and no feed is given.
-Program to_program(const Journal& journal, std::map<int, Tool> tools, const JournalProgramOptions& options = {});
+nc::Program to_program(const Journal& journal, std::map<int, Tool> tools, const JournalProgramOptions& options = {});
 
-}  // namespace riffler
+}  // namespace riffler::session

@@ -19,7 +19,7 @@
 #include "riffler/base/progress.hpp"
 #include "riffler/session/journal.hpp"
 
-namespace riffler {
+namespace riffler::session {
 
 /// `name` stands in messages. FormatError naming the byte: not a journal, another version, a damaged record that others
 /// follow, a record whose content is wrong. What follows the last whole record otherwise is a tail that a crash has
@@ -77,4 +77,4 @@ class JournalWriter {
   bool torn_ = false;       // a piece of a record may follow them
 };
 
-}  // namespace riffler
+}  // namespace riffler::session

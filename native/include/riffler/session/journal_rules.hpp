@@ -13,7 +13,7 @@
 #include "riffler/geom/vec.hpp"
 #include "riffler/haptics/wrench.hpp"
 
-namespace riffler {
+namespace riffler::session {
 
 /// The frame of the stock's volume, and the file of its snapshot where it is not the full block.
 struct JournalStock {
@@ -91,4 +91,4 @@ class JournalRules {
   std::size_t counting_ = 0, taken_ = 0;
 };
 
-}  // namespace riffler
+}  // namespace riffler::session

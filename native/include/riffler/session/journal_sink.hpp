@@ -8,7 +8,7 @@
 #include "riffler/session/journal_stream_options.hpp"
 #include "riffler/session/stroke_sink.hpp"
 
-namespace riffler {
+namespace riffler::session {
 
 class JournalSink final : public StrokeSink {
  public:
@@ -37,4 +37,4 @@ class JournalSink final : public StrokeSink {
   std::unique_ptr<Core> core_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::session

@@ -5,7 +5,7 @@
 
 #include "riffler/session/journal_rules.hpp"
 
-namespace riffler {
+namespace riffler::session {
 
 struct JournalStreamOptions {
   std::size_t rows = 1 << 16;  ///< that may wait, 128 bytes each: 65 s at 1000 Hz
@@ -15,4 +15,4 @@ struct JournalStreamOptions {
   StrokeMode mode = StrokeMode::Remove;  ///< of all strokes
 };
 
-}  // namespace riffler
+}  // namespace riffler::session

@@ -12,7 +12,7 @@
 #include "riffler/session/journal.hpp"
 #include "riffler/tool/tool.hpp"
 
-namespace riffler {
+namespace riffler::session {
 
 /// The path that a stroke's poses mean to `carve`. A row that stands where the row before stood is no move: the tool
 /// has cut there before. Only a stroke that never moves, of two rows or more, is one move: the tool cuts where it
@@ -36,4 +36,4 @@ Replayed replay_all(const Journal& journal, const std::map<int, Tool>& tools, co
 Volume replay(const Journal& journal, const std::map<int, Tool>& tools, const std::filesystem::path& folder = {},
               const Progress& progress = {});
 
-}  // namespace riffler
+}  // namespace riffler::session

@@ -20,16 +20,16 @@
 #include "riffler/session/stroke_sink.hpp"
 #include "riffler/session/tile_exchange.hpp"
 
-namespace riffler {
+namespace riffler::session {
 
 struct SculptLoopSettings {
-  SculptSettings sculpt;  ///< of one part: what is recorded is a pose for each tick
-  MoveCarver::Options carving;
-  LimitSettings limits;
-  PassivitySettings passivity;
-  SafetySettings safety;
-  WrenchExtrapolatorSettings wrench_extrapolator;
-  WorkspaceSettings workspace;
+  haptics::SculptSettings sculpt;  ///< of one part: what is recorded is a pose for each tick
+  sweep::MoveCarver::Options carving;
+  haptics::LimitSettings limits;
+  haptics::PassivitySettings passivity;
+  haptics::SafetySettings safety;
+  haptics::WrenchExtrapolatorSettings wrench_extrapolator;
+  haptics::WorkspaceSettings workspace;
 
   /// std::invalid_argument naming the field.
   void validate() const;
@@ -48,8 +48,8 @@ struct SculptTick {
   double energy = 0;   ///< N·mm: of the account
   double dt = 0;       ///< s since the last
   double seconds = 0;  ///< of processor time
-  ForceState state = ForceState::Off;
-  Cause cause = Cause::None;
+  haptics::ForceState state = haptics::ForceState::Off;
+  haptics::Cause cause = haptics::Cause::None;
   bool cutting = false;           ///< in a stroke
   bool missed = false;            ///< no step was made, and the force was held over
   const char* problem = nullptr;  ///< why nothing was cut though the hand wanted to, or no step was made
@@ -60,7 +60,7 @@ struct SculptTick {
 /// given is computed in each tick from the volume. Where a step could not be made, the force is held over
 /// (WrenchExtrapolator); a step that takes longer than its tick leaves the device with what it had, and the next tick
 /// turns from there at a limited rate.
-class SculptLoop final : public PenStep {
+class SculptLoop final : public pen::PenStep {
  public:
   using Place = TileExchange::Place;
   static constexpr std::size_t kTicks = 4096;  ///< that are held for whoever shows them
@@ -68,12 +68,13 @@ class SculptLoop final : public PenStep {
   /// Validates. `obstacles` and `sink` may be null, and must outlive this. The tool stands at `start` when the hand's
   /// pose is first known, and where it is when that is known again; without a start, where the hand is: then the
   /// device's frame is the part's. std::invalid_argument as MoveCarver.
-  SculptLoop(const SculptLoopSettings& settings, const Volume& stock, const Tool& tool, const Collider* obstacles,
-             const DeviceCapability& device, const std::optional<Pose>& start, StrokeSink* sink = nullptr);
+  SculptLoop(const SculptLoopSettings& settings, const Volume& stock, const Tool& tool,
+             const collide::Collider* obstacles, const pen::DeviceCapability& device, const std::optional<Pose>& start,
+             StrokeSink* sink = nullptr);
   ~SculptLoop() override;
 
   /// By the thread of the device. Allocates nothing once it is warm, and waits for nobody.
-  SafeWrench step(const PenSample& sample, double now, double dt) noexcept override;
+  haptics::SafeWrench step(const pen::PenSample& sample, double now, double dt) noexcept override;
 
   // By the thread that shows. None of these waits for longer than a step takes.
 
@@ -89,35 +90,35 @@ class SculptLoop final : public PenStep {
   /// brought back. False during a stroke, and then nothing is changed.
   bool replace(const Volume& volume, std::int64_t strokes);
   /// The device's frame, scale and switches. std::invalid_argument; then nothing is changed.
-  void set_workspace(const WorkspaceSettings& settings);
+  void set_workspace(const haptics::WorkspaceSettings& settings);
 
   // By any thread.
 
   /// Clears a trip with the next tick.
   void reset() noexcept { reset_.store(true); }
-  const TripLog& trips() const noexcept { return safety_.log(); }
+  const haptics::TripLog& trips() const noexcept { return safety_.log(); }
   /// Nobody steps any more, and the sink has been told everything. Not while the loop is stepped.
   void finish() noexcept;
 
  private:
   struct Scene;
-  Wrench sculpt(const PenSample& sample, double dt, SculptTick& tick) noexcept;
-  void place(Scene& scene, const PenSample& sample) noexcept;
-  Wrench follow(Scene& scene, const PenSample& sample, double dt, bool cutting, SculptTick& tick) noexcept;
+  Wrench sculpt(const pen::PenSample& sample, double dt, SculptTick& tick) noexcept;
+  void place(Scene& scene, const pen::PenSample& sample) noexcept;
+  Wrench follow(Scene& scene, const pen::PenSample& sample, double dt, bool cutting, SculptTick& tick) noexcept;
   Wrench missed(double dt, const char* why, SculptTick& tick) noexcept;
-  Wrench rendered(const PenSample& sample, const Wrench& wanted, double dt) noexcept;
+  Wrench rendered(const pen::PenSample& sample, const Wrench& wanted, double dt) noexcept;
   void begin_stroke(double dt) noexcept;
   void end_stroke() noexcept;
   void tell_undo() noexcept;
 
   SculptLoopSettings settings_;
-  DeviceCapability device_;
+  pen::DeviceCapability device_;
   StrokeSink* sink_;
 
   // The device's thread's.
-  Safety safety_;
-  Passivity passivity_;
-  WrenchExtrapolator wrench_extrapolator_;
+  haptics::Safety safety_;
+  haptics::Passivity passivity_;
+  haptics::WrenchExtrapolator wrench_extrapolator_;
   Wrench slewed_, held_;  // before the controller, and what was released
   Pose last_grip_;
   Pose last_tool_;
@@ -132,10 +133,10 @@ class SculptLoop final : public PenStep {
   bool in_stroke_ = false;
 
   TileExchange exchange_;
-  Ring<SculptTick> ticks_{kTicks};
+  base::Ring<SculptTick> ticks_{kTicks};
   std::atomic<std::uint64_t> dropped_ticks_{0};
   std::atomic<std::uint32_t> dead_man_mask_;
   std::atomic<bool> reset_{false};
 };
 
-}  // namespace riffler
+}  // namespace riffler::session

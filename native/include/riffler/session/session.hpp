@@ -9,7 +9,7 @@
 #include "riffler/pen/device.hpp"
 #include "riffler/session/sculpt_loop.hpp"
 
-namespace riffler {
+namespace riffler::session {
 
 struct SessionSettings {
   SculptLoopSettings loop{};
@@ -20,7 +20,7 @@ struct SessionSettings {
   std::size_t undo = 64;  ///< strokes that can be taken back
   /// Add: the tool puts material on, within the stock's box. Nothing of that is felt, nor is the stock: only obstacles
   /// are.
-  CarveMode mode = CarveMode::Remove;
+  sweep::CarveMode mode = sweep::CarveMode::Remove;
 
   /// std::invalid_argument naming the field.
   void validate() const;
@@ -41,8 +41,9 @@ class Session {
   /// Validates; std::invalid_argument as MoveCarver. A device without force is spared the checks of its motion. What
   /// lies in `protect`, a volume of the stock's frame or null, stays as it is, material and air, and is as air to the
   /// tool.
-  Session(const Volume& stock, const Tool& tool, std::shared_ptr<Pen> pen, std::shared_ptr<const Collider> obstacles,
-          const SessionSettings& settings, const Volume* protect = nullptr);
+  Session(const Volume& stock, const Tool& tool, std::shared_ptr<pen::Pen> pen,
+          std::shared_ptr<const collide::Collider> obstacles, const SessionSettings& settings,
+          const Volume* protect = nullptr);
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
   /// As stop(), but for what was not shown yet.
@@ -72,11 +73,11 @@ class Session {
 
   /// As of SculptLoop. nullptr before start().
   SculptLoop* loop() noexcept;
-  Pen& pen() noexcept;
+  pen::Pen& pen() noexcept;
 
  private:
   struct Core;
   std::unique_ptr<Core> core_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::session

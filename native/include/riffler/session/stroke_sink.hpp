@@ -6,7 +6,7 @@
 #include "riffler/geom/pose.hpp"
 #include "riffler/haptics/wrench.hpp"
 
-namespace riffler {
+namespace riffler::session {
 
 /// Functions are called in the thread of the device: none may wait or allocate.
 class StrokeSink {
@@ -24,4 +24,4 @@ class StrokeSink {
   virtual void redo(std::size_t strokes) noexcept = 0;
 };
 
-}  // namespace riffler
+}  // namespace riffler::session

@@ -9,13 +9,13 @@
 #include "riffler/dexel/volume.hpp"
 #include "riffler/sweep/move_carver.hpp"
 
-namespace riffler {
+namespace riffler::session {
 
 /// Two threads: one cuts, one shows. Neither waits or sees half of a change: what is handed over is the volume between
 /// two cuts, and what it costs is what has changed since the last time. The cutting one allocates nothing.
 class TileExchange {
  public:
-  using Place = MoveCarver::Place;
+  using Place = sweep::MoveCarver::Place;
   /// Of the cutter at the moment of handing over; given on as it is.
   struct Mark {
     std::uint64_t strokes = 0;  ///< that were begun so far
@@ -49,10 +49,10 @@ class TileExchange {
   // In Idle and Full the shower's, in Asked the cutter's.
   struct Handed {
     Place place;
-    std::shared_ptr<const Tile> tile;
+    std::shared_ptr<const dexel::Tile> tile;
   };
   std::vector<Handed> box_;
   Mark mark_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::session

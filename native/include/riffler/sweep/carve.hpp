@@ -8,7 +8,7 @@
 #include "riffler/sweep/carve_options.hpp"
 #include "riffler/tool/tool.hpp"
 
-namespace riffler {
+namespace riffler::sweep {
 
 /// Carves poses.size() − 1 moves with the cutter over its full length; shank and holder never cut. Throws
 /// std::invalid_argument naming the row for poses that are not finite, axes whose length differs from 1 by 1e-6 or
@@ -20,4 +20,4 @@ Cut carve(Volume& volume, const Tool& tool, std::span<const Pose> poses, const C
 void check_path(std::span<const Pose> poses);
 void check_options(const CarveOptions& options, std::size_t moves);
 
-}  // namespace riffler
+}  // namespace riffler::sweep

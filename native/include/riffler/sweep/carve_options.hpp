@@ -6,7 +6,7 @@
 #include "riffler/base/progress.hpp"
 #include "riffler/dexel/volume.hpp"
 
-namespace riffler {
+namespace riffler::sweep {
 
 /// What a tool does where it sweeps: takes material away, or puts it on.
 enum class CarveMode { Remove, Add };
@@ -33,4 +33,4 @@ struct Cut {
   std::vector<Vec3> torque;     ///< N·mm about the tip at the end of the move
 };
 
-}  // namespace riffler
+}  // namespace riffler::sweep

@@ -9,7 +9,7 @@
 #include "riffler/geom/pose.hpp"
 #include "riffler/tool/tool.hpp"
 
-namespace riffler {
+namespace riffler::sweep {
 
 /// Leaves of a volume, bit for bit, what `carve` would leave of each move by itself, and says the same of it. Where
 /// moves stay as large, nothing is asked of the system after the first of them, as long as tiles that are replaced come
@@ -49,4 +49,4 @@ class MoveCarver {
   std::unique_ptr<Core> core_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::sweep

@@ -8,7 +8,7 @@
 
 #include "riffler/tool/tool.hpp"
 
-namespace riffler {
+namespace riffler::tool {
 
 enum class SizeUnit : unsigned char { Length, Angle, Flag };  ///< mm; rad; 0 or 1
 
@@ -68,4 +68,8 @@ Tool profile(std::vector<ProfileSegment> segments, double length);
 
 }  // namespace cutters
 
+}  // namespace riffler::tool
+
+namespace riffler {
+namespace cutters = tool::cutters;
 }  // namespace riffler

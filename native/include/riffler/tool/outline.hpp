@@ -6,7 +6,7 @@
 
 #include "riffler/tool/tool.hpp"
 
-namespace riffler {
+namespace riffler::tool {
 
 /// One step of an outline, upwards or level, with the solid on its left: on the side of the axis.
 struct OutlineEdge {
@@ -49,4 +49,4 @@ class Outline {
 /// The edge as a polyline that stays within `tolerance` mm of it, both ends included.
 std::vector<Vec2> polyline(const OutlineEdge& edge, double tolerance);
 
-}  // namespace riffler
+}  // namespace riffler::tool

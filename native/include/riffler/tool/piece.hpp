@@ -6,7 +6,7 @@
 
 #include "riffler/geom/vec.hpp"
 
-namespace riffler {
+namespace riffler::tool {
 
 /// Cylinder, cone or truncated cone between the heights z0 < z1 (mm from the tip along the axis), with flat ends of
 /// radius r0 and r1 (either may be 0).
@@ -30,4 +30,4 @@ double top(const Piece& piece);
 /// Radius of the piece at height z, which lies between bottom and top.
 double radius_at(const Piece& piece, double z);
 
-}  // namespace riffler
+}  // namespace riffler::tool

@@ -7,7 +7,7 @@
 #include "riffler/geom/vec.hpp"
 #include "riffler/tool/piece.hpp"
 
-namespace riffler {
+namespace riffler::tool {
 
 /// One step of a profile, from the end of the one before to `to` = (radius, height): a straight line, or, where
 /// `centre` is given, an arc about it, the shorter way round.
@@ -40,4 +40,4 @@ class Profile {
   double max_radius_ = 0;
 };
 
-}  // namespace riffler
+}  // namespace riffler::tool

@@ -8,7 +8,7 @@
 #include "riffler/tool/piece.hpp"
 #include "riffler/tool/profile.hpp"
 
-namespace riffler {
+namespace riffler::tool {
 
 /// What part of the assembly a piece belongs to; only the cutter removes material.
 enum class Part : unsigned char { Cutter, Shank, Holder };
@@ -52,4 +52,8 @@ class Tool {
   std::vector<Frustum> shank_, holder_;
 };
 
+}  // namespace riffler::tool
+
+namespace riffler {
+using tool::Tool;
 }  // namespace riffler

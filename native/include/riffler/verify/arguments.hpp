@@ -13,12 +13,12 @@
 #include "riffler/nc/option_values.hpp"
 #include "riffler/tool/tool.hpp"
 
-namespace riffler {
+namespace riffler::verify {
 
 /// What a program is to run on: a name of machines(), or the path of a description, and its options.
 struct MachineChoice {
   std::string name;
-  Options options;
+  nc::Options options;
   /// From the verified coordinates to those that the machine's program is in: p → turn p + shift.
   Mat3 turn{1};
   Vec3 shift{0};
@@ -42,4 +42,4 @@ struct VerifyArguments {
   VerifyOptions options = {};
 };
 
-}  // namespace riffler
+}  // namespace riffler::verify

@@ -13,7 +13,7 @@
 #include "riffler/mesh/mesh.hpp"
 #include "riffler/nc/program.hpp"
 
-namespace riffler {
+namespace riffler::verify {
 
 enum class Kind : unsigned char { Rapid, Holder, Shank, Fixture, Gouge, Rest, Spindle, Machine, Unknown };
 
@@ -72,7 +72,7 @@ struct VerifyReport {
 };
 
 /// What the reader of the program assumed or passed over was not checked.
-void add_notes(VerifyReport& report, const std::vector<Note>& notes);
+void add_notes(VerifyReport& report, const std::vector<nc::Note>& notes);
 
 /// The mesh of what is left and, per vertex, its distance from the part's surface: positive where rest material stands
 /// on it, negative in gouges, mm.
@@ -81,4 +81,4 @@ std::pair<Mesh, std::vector<double>> deviation_of(const Volume& left, const Mesh
 /// is missing; −∞ where nothing is left at all.
 std::vector<double> part_map_of(const Mesh& left, const Mesh& part, const Progress& progress = {});
 
-}  // namespace riffler
+}  // namespace riffler::verify

@@ -8,7 +8,7 @@
 #include "riffler/verify/arguments.hpp"
 #include "riffler/verify/report.hpp"
 
-namespace riffler {
+namespace riffler::verify {
 
 /// Verifies a program. Of the next one that is like it, only what differs is simulated. The report is that of a fresh
 /// run, bit for bit.
@@ -21,11 +21,11 @@ class Verification {
   Verification& operator=(Verification&&) noexcept;
 
   /// Throws as SlabRun::feed. After that, or Cancelled, this is as it was before the call.
-  VerifyReport run(const Program& program, const Progress& progress = {});
+  VerifyReport run(const nc::Program& program, const Progress& progress = {});
 
  private:
   struct Core;
   std::unique_ptr<Core> core_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::verify

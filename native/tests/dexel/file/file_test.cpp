@@ -15,7 +15,7 @@
 #include "riffler/base/error.hpp"
 #include "riffler/dexel/boolean.hpp"
 
-namespace riffler::file_test {
+namespace riffler::dexel::file_test {
 namespace {
 
 using namespace test;
@@ -75,10 +75,10 @@ TEST(Planes, ComeBackWhateverTheNumbers) {
       const std::vector<std::uint32_t> b(a.begin(), a.end());
       const std::vector<std::uint16_t> c(a.begin(), a.end());
       Bytes bytes;
-      PlaneWriter out(bytes);
+      base::PlaneWriter out(bytes);
       out.column(a), out.column(b), out.column(c);
       const std::string name = "x";
-      PlaneReader in(bytes, 0, name);
+      base::PlaneReader in(bytes, 0, name);
       EXPECT_EQ(in.column64(n), a);
       EXPECT_EQ(in.column32(n), b);
       EXPECT_EQ(in.column16(n), c);
@@ -274,9 +274,9 @@ TEST(File, IsWholeOrNotThere) {
   const Volume v = random_volume(lattice_frame("z"), 5);
   save(v, path);
   EXPECT_TRUE(same_rays(load(path), v));
-  const Bytes before = read_file(path);
+  const Bytes before = base::read_file(path);
   EXPECT_THROW(save(Volume::block(lattice_frame("xyz")), path, [](double) { return false; }), Cancelled);
-  EXPECT_EQ(read_file(path), before);
+  EXPECT_EQ(base::read_file(path), before);
   EXPECT_THROW(load(path, [](double) { return false; }), Cancelled);
   EXPECT_THROW(load(folder / "none.rvol"), FormatError);
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 1);
@@ -284,4 +284,4 @@ TEST(File, IsWholeOrNotThere) {
 }
 
 }  // namespace
-}  // namespace riffler::file_test
+}  // namespace riffler::dexel::file_test

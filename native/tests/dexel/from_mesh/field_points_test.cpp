@@ -11,7 +11,7 @@
 
 #include "sweep/kernels.hpp"
 
-namespace riffler::field_points_test {
+namespace riffler::dexel::field_points_test {
 namespace {
 
 struct Sums {
@@ -44,7 +44,7 @@ TEST(FieldPoints, AreTheSameBitsForAllInstructionSets) {
     for (double& c : sources.c_im) c = 1e-3 * normal(random);
     far.add(sources);
     const auto sums = [&](const std::string& instruction_set) {
-      use_instruction_set(instruction_set);
+      sweep::use_instruction_set(instruction_set);
       Sums out;
       evaluate_field(path, far, Vec3(1, 2, 3), points, false, out.some);
       evaluate_field(path, far, Vec3(1, 2, 3), points, true, out.all);
@@ -52,8 +52,8 @@ TEST(FieldPoints, AreTheSameBitsForAllInstructionSets) {
       return out;
     };
     const Sums best = sums("");
-    for (const std::string& name : instruction_sets()) EXPECT_TRUE(sums(name) == best) << name;
-    use_instruction_set("");
+    for (const std::string& name : sweep::instruction_sets()) EXPECT_TRUE(sums(name) == best) << name;
+    sweep::use_instruction_set("");
     // What is asked for is the same however much.
     EXPECT_EQ(std::memcmp(best.some.gz, best.all.gz, sizeof best.all.gz), 0);
     EXPECT_EQ(std::memcmp(best.some.phase, best.all.phase, sizeof best.all.phase), 0);
@@ -61,4 +61,4 @@ TEST(FieldPoints, AreTheSameBitsForAllInstructionSets) {
 }
 
 }  // namespace
-}  // namespace riffler::field_points_test
+}  // namespace riffler::dexel::field_points_test

@@ -9,7 +9,7 @@
 
 #include "sweep/kernels.hpp"
 
-namespace riffler::field_sum_test {
+namespace riffler::dexel::field_sum_test {
 namespace {
 
 TEST(FieldSums, AreTheSameBitsForAllInstructionSets) {
@@ -23,19 +23,19 @@ TEST(FieldSums, AreTheSameBitsForAllInstructionSets) {
     for (double& flag : a[9]) flag = flag > 20;
     for (const bool dipoles : {false, true}) {
       const auto sum = [&](const std::string& instruction_set) {
-        use_instruction_set(instruction_set);
+        sweep::use_instruction_set(instruction_set);
         return sum_sources({a[0].data(), a[1].data(), a[2].data(), a[3].data(), a[4].data(), a[5].data(), a[6].data(),
                             a[7].data(), a[8].data(), a[9].data(), n, dipoles});
       };
       const SourceSum best = sum("");
-      for (const std::string& name : instruction_sets()) {
+      for (const std::string& name : sweep::instruction_sets()) {
         const SourceSum other = sum(name);
         EXPECT_EQ(std::memcmp(&best, &other, sizeof best), 0) << name;
       }
-      use_instruction_set("");
+      sweep::use_instruction_set("");
     }
   }
 }
 
 }  // namespace
-}  // namespace riffler::field_sum_test
+}  // namespace riffler::dexel::field_sum_test

@@ -6,7 +6,7 @@
 #include "dexel/shapes.hpp"
 #include "riffler/dexel/from_mesh/from_mesh.hpp"
 
-namespace riffler::from_mesh_models_test {
+namespace riffler::dexel::from_mesh_models_test {
 namespace {
 
 using namespace shapes;
@@ -65,4 +65,4 @@ INSTANTIATE_TEST_SUITE_P(FromMesh, ClosedModel,
 INSTANTIATE_TEST_SUITE_P(FromMesh, OpenModel, testing::Values("stanford-bunny", "suzanne", "teapot", "spider"));
 
 }  // namespace
-}  // namespace riffler::from_mesh_models_test
+}  // namespace riffler::dexel::from_mesh_models_test

@@ -16,7 +16,7 @@
 #include "riffler/dexel/from_mesh/from_mesh.hpp"
 #include "support/effort.hpp"
 
-namespace riffler::from_mesh_open_test {
+namespace riffler::dexel::from_mesh_open_test {
 namespace {
 
 using namespace shapes;
@@ -303,7 +303,7 @@ TEST(FromOpenMesh, RandomHolesCracksAndSoups) {
     Mesh mesh = sphere({0, 0, 0}, 10, 10);
     mesh = joined(mesh, moved(box({-6, -6, -6}, {6, 6, 6}), rotation({1, 2, round + 0.1}, round), Vec3(4, 3, 2)));
     // Triangles lost, turned round and doubled; one of the box's is always lost, as closed pieces would be mended.
-    Triangles kept;
+    mesh::Triangles kept;
     for (const Vec3i& t : mesh.triangles) {
       const double dice = uniform(random);
       if (dice > 0.9 || &t == &mesh.triangles.back()) continue;
@@ -341,4 +341,4 @@ TEST(FromOpenMesh, PassagesAndCrossingsSumToZero) {
 }
 
 }  // namespace
-}  // namespace riffler::from_mesh_open_test
+}  // namespace riffler::dexel::from_mesh_open_test

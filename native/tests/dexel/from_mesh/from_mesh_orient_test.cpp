@@ -6,7 +6,7 @@
 #include "dexel/shapes.hpp"
 #include "riffler/dexel/from_mesh/from_mesh.hpp"
 
-namespace riffler::from_mesh_orient_test {
+namespace riffler::dexel::from_mesh_orient_test {
 namespace {
 
 using namespace shapes;
@@ -99,4 +99,4 @@ TEST(FromNestedShells, CostGrowsWithTheInput) {
 }
 
 }  // namespace
-}  // namespace riffler::from_mesh_orient_test
+}  // namespace riffler::dexel::from_mesh_orient_test

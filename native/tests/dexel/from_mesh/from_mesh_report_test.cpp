@@ -9,7 +9,7 @@
 #include "geom/math.hpp"
 #include "riffler/dexel/from_mesh/from_mesh.hpp"
 
-namespace riffler::from_mesh_report_test {
+namespace riffler::dexel::from_mesh_report_test {
 namespace {
 
 using namespace shapes;
@@ -283,4 +283,4 @@ TEST(FromOpenMesh, ReportsSmoothlyAndCancelsEverywhere) {
 }
 
 }  // namespace
-}  // namespace riffler::from_mesh_report_test
+}  // namespace riffler::dexel::from_mesh_report_test

@@ -9,7 +9,7 @@
 #include "support/effort.hpp"
 #include "sweep/kernels.hpp"
 
-namespace riffler::from_mesh_test {
+namespace riffler::dexel::from_mesh_test {
 namespace {
 
 using namespace shapes;
@@ -57,11 +57,11 @@ void expect_same_everywhere(const Mesh& mesh, const Frame& frame) {
     EXPECT_TRUE(bytes == first) << threads << " threads";
   }
   unsetenv("RIFFLER_THREADS");
-  for (const std::string& name : instruction_sets()) {
-    use_instruction_set(name);
+  for (const std::string& name : sweep::instruction_sets()) {
+    sweep::use_instruction_set(name);
     EXPECT_TRUE(bytes_of(from_mesh(mesh, frame)) == first) << name;
   }
-  use_instruction_set("");
+  sweep::use_instruction_set("");
 }
 
 TEST(FromMesh, AlignedBoxIsTheBlockAtAnyOffset) {
@@ -291,4 +291,4 @@ TEST(FromMesh, CancelsAndReports) {
 }
 
 }  // namespace
-}  // namespace riffler::from_mesh_test
+}  // namespace riffler::dexel::from_mesh_test

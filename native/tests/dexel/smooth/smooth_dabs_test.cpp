@@ -16,7 +16,7 @@
 #include "riffler/mesh/audit.hpp"
 #include "support/error_of.hpp"
 
-namespace riffler::smooth_dabs_test {
+namespace riffler::dexel::smooth_dabs_test {
 namespace {
 
 using test::HalfSpace;
@@ -57,7 +57,7 @@ void expect_sound(const Volume& volume) {
           last = s.far;
         }
       }
-  const Audit a = audit(to_mesh(volume));
+  const mesh::Audit a = audit(marching::to_mesh(volume));
   EXPECT_TRUE(a.watertight());
   EXPECT_EQ(a.degenerate + a.duplicates + a.folds, 0U);
 }
@@ -241,7 +241,7 @@ TEST(Soften, WearsOffTheRimOfAThinWallAndLeavesNoCrumbs) {
     EXPECT_GT(s.removed[0], 0.05);
     EXPECT_LT(s.added[0], 1e-3);
     expect_sound(wall);
-    EXPECT_EQ(audit(to_mesh(wall)).components, 1U) << "dab " << k;
+    EXPECT_EQ(audit(marching::to_mesh(wall)).components, 1U) << "dab " << k;
   }
 }
 
@@ -392,4 +392,4 @@ TEST(Soften, NamesWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace riffler::smooth_dabs_test
+}  // namespace riffler::dexel::smooth_dabs_test

@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-namespace riffler::collapse_test {
+namespace riffler::mesh::collapse_test {
 namespace {
 
 /// A sheet of n × n squares with bumps, without some of its triangles.
@@ -92,4 +92,4 @@ TEST(Collapse, LeavesWhatThatOfOpenMeshLeavesInsideAndAtBorders) {
 }
 
 }  // namespace
-}  // namespace riffler::collapse_test
+}  // namespace riffler::mesh::collapse_test

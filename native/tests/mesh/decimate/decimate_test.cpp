@@ -17,7 +17,7 @@
 #include "riffler/mesh/audit.hpp"
 #include "support/effort.hpp"
 
-namespace riffler::decimate_test {
+namespace riffler::mesh::decimate_test {
 namespace {
 
 /// Largest distance of points of `from`, dense on each of its triangles, from `to`, by a search that shares no code
@@ -148,7 +148,7 @@ TEST(Decimate, ABoxTurnedAtRandomKeepsItsEdges) {
   const Vec3 x = glm::normalize(Vec3(1, 2, 3)), y = glm::normalize(glm::cross(x, Vec3(0.3, -1, 2)));
   const Mat3 turn(x, y, glm::cross(x, y));
   Mesh mesh = subdivided(box_mesh({0, 0, 0}, {40, 31, 24}), 4);
-  for (Vec3& v : mesh.vertices) v = to_float32(turn * v);
+  for (Vec3& v : mesh.vertices) v = geom::to_float32(turn * v);
   const Mesh result = decimate(mesh, {{}, 0.001});
   EXPECT_EQ(result.triangles.size(), 12U);
   EXPECT_LE(one_way(mesh, result), 0.001);
@@ -200,7 +200,7 @@ TEST(Decimate, VerticesThatMovedAreFloat32) {
   int moved = 0;
   for (const Vec3& v : decimate(mesh, {300, {}}).vertices) {
     if (old.contains({v.x, v.y, v.z})) continue;
-    EXPECT_EQ(v, to_float32(v));
+    EXPECT_EQ(v, geom::to_float32(v));
     ++moved;
   }
   EXPECT_GT(moved, 100);
@@ -246,7 +246,7 @@ TEST(Decimate, VerticesStayDistinctInFloat32) {
     const double c = std::cos(0.1 + 0.03 * turn), s = std::sin(0.1 + 0.03 * turn);
     for (Vec3& v : second.vertices) v = Vec3(c * v.x - s * v.y + 2, s * v.x + c * v.y + 3, v.z + 4);
     Mesh mesh = both(moved(sphere_mesh(100, 3), far), moved(second, far));
-    for (Vec3& v : mesh.vertices) v = to_float32(v);
+    for (Vec3& v : mesh.vertices) v = geom::to_float32(v);
     if (from_stl(to_stl(mesh), "part").vertices.size() < mesh.vertices.size()) continue;
     ++movable;
     expect_sound(decimate(mesh, {600, {}}));
@@ -355,4 +355,4 @@ TEST(Decimate, FansOfManyTrianglesTakeTimeByTheTriangle) {
 }
 
 }  // namespace
-}  // namespace riffler::decimate_test
+}  // namespace riffler::mesh::decimate_test

@@ -11,7 +11,7 @@
 #include "riffler/base/error.hpp"
 #include "riffler/mesh/audit.hpp"
 
-namespace riffler::files_fuzz_test {
+namespace riffler::mesh::files_fuzz_test {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
@@ -125,4 +125,4 @@ TEST(DamagedFiles, AsciiPly) {
 }
 
 }  // namespace
-}  // namespace riffler::files_fuzz_test
+}  // namespace riffler::mesh::files_fuzz_test

@@ -18,7 +18,7 @@
 #include "riffler/mesh/audit.hpp"
 #include "riffler/mesh/io/io.hpp"
 
-namespace riffler::files_test {
+namespace riffler::mesh::files_test {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
@@ -196,7 +196,7 @@ TEST(Stl, RoundTripKeepsFloatsAndRoundsDoubles) {
   ASSERT_EQ(back.triangles.size(), sphere.triangles.size());
   for (std::size_t t = 0; t < back.triangles.size(); ++t)
     for (int k = 0; k < 3; ++k)
-      EXPECT_EQ(back.vertices[back.triangles[t][k]], to_float32(sphere.vertices[sphere.triangles[t][k]]));
+      EXPECT_EQ(back.vertices[back.triangles[t][k]], geom::to_float32(sphere.vertices[sphere.triangles[t][k]]));
   EXPECT_TRUE(audit(back).watertight());
   EXPECT_EQ(to_stl(back), to_stl(sphere));
 }
@@ -329,7 +329,7 @@ TEST(Ply, RoundTripKeepsEveryBit) {
   for (const double radius : {10.0 / 3, 1.0}) {
     Mesh sphere = sphere_mesh(radius, 3);
     if (radius == 1)
-      for (Vec3& v : sphere.vertices) v = to_float32(v);  // then floats suffice
+      for (Vec3& v : sphere.vertices) v = geom::to_float32(v);  // then floats suffice
     const Bytes bytes = to_ply(sphere);
     EXPECT_EQ(std::string(bytes.begin(), bytes.end()).find("property float x") != std::string::npos, radius == 1);
     const Mesh back = from_ply(bytes, "part");
@@ -399,7 +399,7 @@ TEST(Weld, NumbersManyPointsInTheOrderOfTheirFirstAppearance) {
       const int v = mesh.triangles[t][k];
       EXPECT_LE(v, next);
       next = std::max(next, v + 1);
-      EXPECT_EQ(mesh.vertices[v], to_float32(torus.vertices[torus.triangles[t][k]]));
+      EXPECT_EQ(mesh.vertices[v], geom::to_float32(torus.vertices[torus.triangles[t][k]]));
     }
 }
 
@@ -425,4 +425,4 @@ TEST(MeshFiles, ReadingIsHeardOfAndCanBeStopped) {
 }
 
 }  // namespace
-}  // namespace riffler::files_test
+}  // namespace riffler::mesh::files_test

@@ -17,7 +17,7 @@
 #include "riffler/nc/write/writer.hpp"
 #include "support/damaged.hpp"
 
-namespace riffler::description_test {
+namespace riffler::nc::description_test {
 namespace {
 
 constexpr const char* kMill = R"(description = "my mill"
@@ -167,7 +167,7 @@ TEST(Description, AnyDamageIsAMachineOrAnError) {
     const std::string text = test::damaged(good, round, random);
     try {
       const Machine machine(describe(text));
-      EXPECT_TRUE(finite(machine.pose({1, 2, 3, 4, 5, 6}).axis));
+      EXPECT_TRUE(geom::finite(machine.pose({1, 2, 3, 4, 5, 6}).axis));
       ++machines;
     } catch (const FormatError&) {
     } catch (const std::invalid_argument&) {
@@ -219,11 +219,11 @@ class OwnFolder {
 
 TEST(Machines, OfTheUsersOwnAreFoundByNameAndByPath) {
   const OwnFolder own;
-  write_file(own.folder / "mill.toml", std::string_view(kMill));
-  write_file(own.folder / "broken.toml", std::string_view("description = 3"));
-  write_file(own.folder / "tcp.toml", std::string_view(kMill));
+  base::write_file(own.folder / "mill.toml", std::string_view(kMill));
+  base::write_file(own.folder / "broken.toml", std::string_view("description = 3"));
+  base::write_file(own.folder / "tcp.toml", std::string_view(kMill));
   std::map<std::string, std::string> all;
-  for (const DescriptionEntry& m : machines()) all[m.name] = m.description;
+  for (const base::DescriptionEntry& m : machines()) all[m.name] = m.description;
   EXPECT_EQ(all.at("mill"), "my mill");
   EXPECT_EQ(all.at("broken"), "cannot be read: broken.toml, line 1: description must be a text");
   EXPECT_TRUE(all.at("tcp").starts_with("five axes")) << "what comes with Riffler stays";
@@ -238,4 +238,4 @@ TEST(Machines, OfTheUsersOwnAreFoundByNameAndByPath) {
 }
 
 }  // namespace
-}  // namespace riffler::description_test
+}  // namespace riffler::nc::description_test

@@ -8,7 +8,7 @@
 #include "stress/random.hpp"
 #include "support/tilted.hpp"
 
-namespace riffler::machine_test {
+namespace riffler::nc::machine_test {
 namespace {
 
 using test::tilted;
@@ -188,4 +188,4 @@ TEST(Machine, OfOneRotaryAxisHoldsWhatLiesInItsPlane) {
 }
 
 }  // namespace
-}  // namespace riffler::machine_test
+}  // namespace riffler::nc::machine_test

@@ -9,7 +9,7 @@
 #include "riffler/tool/cutters.hpp"
 #include "support/nc_reading.hpp"
 
-namespace riffler::apt_reader_test {
+namespace riffler::nc::apt_reader_test {
 namespace {
 
 Program read(const std::string& text, Options options = {}) {
@@ -200,4 +200,4 @@ TEST(AptReader, DrillsDeepToThePointItself) {
 }
 
 }  // namespace
-}  // namespace riffler::apt_reader_test
+}  // namespace riffler::nc::apt_reader_test

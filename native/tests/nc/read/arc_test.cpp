@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace riffler::arc_test {
+namespace riffler::nc::arc_test {
 namespace {
 
 Vec2 on(double r, double angle) {
@@ -72,4 +72,4 @@ TEST(Arc, ChordsKeepToTheToleranceAndAreNotManyMore) {
 }
 
 }  // namespace
-}  // namespace riffler::arc_test
+}  // namespace riffler::nc::arc_test

@@ -10,7 +10,7 @@
 
 #include "support/nc_reading.hpp"
 
-namespace riffler::control_flow_test {
+namespace riffler::nc::control_flow_test {
 namespace {
 
 using test::nc_error;
@@ -152,4 +152,4 @@ TEST(NcControlFlow, ALongProgramWithoutLoopsHasNoSuchBound) {
 }
 
 }  // namespace
-}  // namespace riffler::control_flow_test
+}  // namespace riffler::nc::control_flow_test

@@ -8,7 +8,7 @@
 
 #include "riffler/base/error.hpp"
 
-namespace riffler::cursor_test {
+namespace riffler::nc::cursor_test {
 namespace {
 
 double number(const std::string& text) {
@@ -62,4 +62,4 @@ TEST(NcPlace, SaysFileLineAndTheBeginOfTheBlock) {
 }
 
 }  // namespace
-}  // namespace riffler::cursor_test
+}  // namespace riffler::nc::cursor_test

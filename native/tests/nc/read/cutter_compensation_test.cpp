@@ -11,7 +11,7 @@
 #include "nc/read/cutter_compensation.hpp"
 #include "support/nc_reading.hpp"
 
-namespace riffler::cutter_compensation_test {
+namespace riffler::nc::cutter_compensation_test {
 namespace {
 
 using test::nc_error;
@@ -348,4 +348,4 @@ TEST(CutterCompensation, OfDamagedProgramsGivesRowsOrAFormatError) {
 }
 
 }  // namespace
-}  // namespace riffler::cutter_compensation_test
+}  // namespace riffler::nc::cutter_compensation_test

@@ -8,7 +8,7 @@
 
 #include "support/nc_reading.hpp"
 
-namespace riffler::drill_cycle_test {
+namespace riffler::nc::drill_cycle_test {
 namespace {
 
 using test::nc_error;
@@ -71,4 +71,4 @@ TEST(NcDrillCycle, MovesAreCountedBeforeThereAreGigabytesOfThem) {
 }
 
 }  // namespace
-}  // namespace riffler::drill_cycle_test
+}  // namespace riffler::nc::drill_cycle_test

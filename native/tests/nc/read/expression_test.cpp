@@ -7,7 +7,7 @@
 
 #include "support/nc_reading.hpp"
 
-namespace riffler::expression_test {
+namespace riffler::nc::expression_test {
 namespace {
 
 using test::nc_error;
@@ -102,4 +102,4 @@ TEST(NcExpression, RefusesWhatHasNoValue) {
 }
 
 }  // namespace
-}  // namespace riffler::expression_test
+}  // namespace riffler::nc::expression_test

@@ -9,7 +9,7 @@
 #include "geom/math.hpp"
 #include "support/nc_reading.hpp"
 
-namespace riffler::heidenhain_arcs_test {
+namespace riffler::nc::heidenhain_arcs_test {
 namespace {
 
 Program read(const std::string& blocks, Options options = {}) {
@@ -173,4 +173,4 @@ TEST(HeidenhainArcs, RefusesWhatIsNoArc) {
 }
 
 }  // namespace
-}  // namespace riffler::heidenhain_arcs_test
+}  // namespace riffler::nc::heidenhain_arcs_test

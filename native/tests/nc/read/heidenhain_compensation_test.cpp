@@ -8,7 +8,7 @@
 
 #include "support/nc_reading.hpp"
 
-namespace riffler::heidenhain_compensation_test {
+namespace riffler::nc::heidenhain_compensation_test {
 namespace {
 
 const Options kOffset{{"cutter_compensation", std::string("offset")}, {"tool_diameters", std::vector<double>{1, 2}}};
@@ -103,4 +103,4 @@ TEST(HeidenhainCompensation, RefusesWhatWouldMoveTheContourOrDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace riffler::heidenhain_compensation_test
+}  // namespace riffler::nc::heidenhain_compensation_test

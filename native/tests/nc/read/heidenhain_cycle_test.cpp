@@ -8,7 +8,7 @@
 #include "geom/math.hpp"
 #include "support/nc_reading.hpp"
 
-namespace riffler::heidenhain_cycle_test {
+namespace riffler::nc::heidenhain_cycle_test {
 namespace {
 
 Program read(const std::string& blocks) {
@@ -170,4 +170,4 @@ TEST(HeidenhainCycle, RefusesWhatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace riffler::heidenhain_cycle_test
+}  // namespace riffler::nc::heidenhain_cycle_test

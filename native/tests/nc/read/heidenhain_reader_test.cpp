@@ -13,7 +13,7 @@
 #include "riffler/tool/cutters.hpp"
 #include "support/nc_reading.hpp"
 
-namespace riffler::heidenhain_reader_test {
+namespace riffler::nc::heidenhain_reader_test {
 namespace {
 
 Program read(const std::string& blocks, Options options = {}, const std::string& machine = "heidenhain") {
@@ -415,4 +415,4 @@ TEST(HeidenhainReader, RefusesWhatItDoesNotRead) {
 }
 
 }  // namespace
-}  // namespace riffler::heidenhain_reader_test
+}  // namespace riffler::nc::heidenhain_reader_test

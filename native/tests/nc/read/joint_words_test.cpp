@@ -9,7 +9,7 @@
 #include "riffler/nc/write/writer.hpp"
 #include "support/nc_blocks.hpp"
 
-namespace riffler::joint_words_test {
+namespace riffler::nc::joint_words_test {
 namespace {
 
 constexpr double kDegree = 3.141592653589793 / 180;
@@ -280,4 +280,4 @@ TEST(JointWords, TheWayOfANewToolIsNotTimed) {
 }
 
 }  // namespace
-}  // namespace riffler::joint_words_test
+}  // namespace riffler::nc::joint_words_test

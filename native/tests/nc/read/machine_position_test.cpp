@@ -11,7 +11,7 @@
 #include "riffler/nc/write/writer.hpp"
 #include "support/nc_reading.hpp"
 
-namespace riffler::machine_position_test {
+namespace riffler::nc::machine_position_test {
 namespace {
 
 using test::nc_error;
@@ -183,7 +183,7 @@ TEST(MachinePositions, AreWrittenAsSafeHeight) {
 TEST(MachinePositions, AreWrittenAsSafeHeightByEveryPost) {
   const Program p =
       read_nc_text("G21 T1 M6 S1000 M3\nG0 X0 Y0 Z40\nG1 Z-5 F200\nX50\nG53 G0 Z0\nG0 X-60 Y40\nZ-5\nG1 X0\n");
-  for (const DescriptionEntry& entry : machines()) {
+  for (const base::DescriptionEntry& entry : machines()) {
     std::string text;
     try {
       text = to_nc(p, for_machine(entry.name));
@@ -274,4 +274,4 @@ TEST(Tapping, FeedsInAndOutWithTheSpindleTurnedBack) {
 }
 
 }  // namespace
-}  // namespace riffler::machine_position_test
+}  // namespace riffler::nc::machine_position_test

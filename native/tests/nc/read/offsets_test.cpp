@@ -12,7 +12,7 @@
 #include "geom/math.hpp"
 #include "support/nc_reading.hpp"
 
-namespace riffler::offsets_test {
+namespace riffler::nc::offsets_test {
 namespace {
 
 using test::nc_error;
@@ -100,4 +100,4 @@ TEST(NcOffsets, AreRefusedWhereTheyMakeNoSense) {
 }
 
 }  // namespace
-}  // namespace riffler::offsets_test
+}  // namespace riffler::nc::offsets_test

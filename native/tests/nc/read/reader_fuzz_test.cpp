@@ -11,7 +11,7 @@
 #include "riffler/nc/write/writer.hpp"
 #include "support/effort.hpp"
 
-namespace riffler::reader_fuzz_test {
+namespace riffler::nc::reader_fuzz_test {
 namespace {
 
 const std::string kSeeds[] = {
@@ -197,7 +197,7 @@ TEST(ReaderFuzz, GivesAValidProgramOrAFormatError) {
     }
     ++read;
     for (std::size_t row = 0; row < p.size(); ++row) {
-      ASSERT_TRUE(finite(p.poses()[row].tip)) << text;
+      ASSERT_TRUE(geom::finite(p.poses()[row].tip)) << text;
       ASSERT_NEAR(glm::length(p.poses()[row].axis), 1, 1e-12) << text;
       ASSERT_TRUE(std::isfinite(p.feed()[row]) && p.feed()[row] >= 0) << text;
       ASSERT_GE(p.line()[row], 1);
@@ -279,4 +279,4 @@ TEST(ReaderFuzz, SurvivesWhatIsDeep) {
 }
 
 }  // namespace
-}  // namespace riffler::reader_fuzz_test
+}  // namespace riffler::nc::reader_fuzz_test

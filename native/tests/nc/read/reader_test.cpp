@@ -14,7 +14,7 @@
 #include "riffler/nc/write/writer.hpp"
 #include "support/nc_blocks.hpp"
 
-namespace riffler::reader_test {
+namespace riffler::nc::reader_test {
 namespace {
 
 Program read(const std::string& text, const std::string& machine = "tcp", Options options = {}) {
@@ -417,4 +417,4 @@ TEST(Reader, ReadsHundredThousandBlocksInLessThanASecond) {
 }
 
 }  // namespace
-}  // namespace riffler::reader_test
+}  // namespace riffler::nc::reader_test

@@ -8,7 +8,7 @@
 
 #include "support/nc_reading.hpp"
 
-namespace riffler::real_programs_test {
+namespace riffler::nc::real_programs_test {
 namespace {
 
 using test::nc_error;
@@ -148,4 +148,4 @@ TEST(RealPrograms, FunctionsOfTheMachineMoveNothing) {
 }
 
 }  // namespace
-}  // namespace riffler::real_programs_test
+}  // namespace riffler::nc::real_programs_test

@@ -12,7 +12,7 @@
 #include "riffler/nc/read/reader.hpp"
 #include "support/nc_reading.hpp"
 
-namespace riffler::sinumerik_arcs_test {
+namespace riffler::nc::sinumerik_arcs_test {
 namespace {
 
 const Options kMetric{{"units", std::string("mm")}};
@@ -219,4 +219,4 @@ TEST(SinumerikReader, ReadsThePathOfRs274) {
 }
 
 }  // namespace
-}  // namespace riffler::sinumerik_arcs_test
+}  // namespace riffler::nc::sinumerik_arcs_test

@@ -10,7 +10,7 @@
 #include "riffler/nc/read/reader.hpp"
 #include "support/nc_reading.hpp"
 
-namespace riffler::sinumerik_flow_test {
+namespace riffler::nc::sinumerik_flow_test {
 namespace {
 
 const Options kMetric{{"units", std::string("mm")}, {"max_turns", 5000.0}};
@@ -137,4 +137,4 @@ TEST(SinumerikFlow, FindsSubprogramsBesideTheFile) {
 }
 
 }  // namespace
-}  // namespace riffler::sinumerik_flow_test
+}  // namespace riffler::nc::sinumerik_flow_test

@@ -13,7 +13,7 @@
 #include "riffler/tool/cutters.hpp"
 #include "support/nc_reading.hpp"
 
-namespace riffler::sinumerik_reader_test {
+namespace riffler::nc::sinumerik_reader_test {
 namespace {
 
 const Options kMetric{{"units", std::string("mm")}};
@@ -277,4 +277,4 @@ TEST(SinumerikReader, ReadsWhatIsWritten) {
 }
 
 }  // namespace
-}  // namespace riffler::sinumerik_reader_test
+}  // namespace riffler::nc::sinumerik_reader_test

@@ -9,7 +9,7 @@
 
 #include "support/nc_reading.hpp"
 
-namespace riffler::stream_test {
+namespace riffler::nc::stream_test {
 namespace {
 
 class NcStreamFile : public testing::Test {
@@ -74,4 +74,4 @@ TEST_F(NcStreamFile, SaysWhatIsWrongWhenItGetsThere) {
 }
 
 }  // namespace
-}  // namespace riffler::stream_test
+}  // namespace riffler::nc::stream_test

@@ -16,7 +16,7 @@
 #include "support/effort.hpp"
 #include "support/error_of.hpp"
 
-namespace riffler::arc_fit_test {
+namespace riffler::nc::arc_fit_test {
 namespace {
 
 using test::error_of;
@@ -438,4 +438,4 @@ TEST(ArcFit, TimeGrowsHardlyFasterThanTheRun) {
 }
 
 }  // namespace
-}  // namespace riffler::arc_fit_test
+}  // namespace riffler::nc::arc_fit_test

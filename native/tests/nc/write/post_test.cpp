@@ -15,7 +15,7 @@
 #include "support/error_of.hpp"
 #include "support/nc_blocks.hpp"
 
-namespace riffler::post_test {
+namespace riffler::nc::post_test {
 namespace {
 
 Program two_tools() {
@@ -261,4 +261,4 @@ TEST(AptPost, SaysEveryRowAsItIs) {
 }
 
 }  // namespace
-}  // namespace riffler::post_test
+}  // namespace riffler::nc::post_test

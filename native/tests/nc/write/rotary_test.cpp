@@ -13,7 +13,7 @@
 #include "support/nc_blocks.hpp"
 #include "support/tilted.hpp"
 
-namespace riffler::rotary_test {
+namespace riffler::nc::rotary_test {
 namespace {
 
 using test::tilted;
@@ -328,4 +328,4 @@ TEST(Subdivider, RefusesWhatTheAxesCannotFollowInsteadOfJumping) {
 }
 
 }  // namespace
-}  // namespace riffler::rotary_test
+}  // namespace riffler::nc::rotary_test

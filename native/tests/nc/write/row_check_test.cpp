@@ -11,7 +11,7 @@
 #include "support/effort.hpp"
 #include "support/random_rows.hpp"
 
-namespace riffler::row_check_test {
+namespace riffler::nc::row_check_test {
 namespace {
 
 using test::on_machine;
@@ -164,4 +164,4 @@ TEST(RowCheck, RefusesMachinesOptionsAndTolerancesAsTheWriterDoes) {
 }
 
 }  // namespace
-}  // namespace riffler::row_check_test
+}  // namespace riffler::nc::row_check_test

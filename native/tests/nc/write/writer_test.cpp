@@ -14,7 +14,7 @@
 #include "riffler/nc/read/reader.hpp"
 #include "support/nc_blocks.hpp"
 
-namespace riffler::writer_test {
+namespace riffler::nc::writer_test {
 namespace {
 
 using test::angle;
@@ -22,7 +22,7 @@ using test::block_ends;
 using test::pose_between;
 
 std::string slurp(const std::filesystem::path& path) {
-  const auto bytes = read_file(path);
+  const auto bytes = base::read_file(path);
   return {bytes.begin(), bytes.end()};
 }
 
@@ -111,7 +111,8 @@ TEST(Writer, KeepsRowsThatDoNotMove) {
 TEST(Writer, WritesWhatControlsExpectAroundTheMoves) {
   Program p = program_from_paths(swaying(3), {});
   p.provenance = {{"part", "shoe (left) \xC3\xA9.stl"}, {"LOGOPEN,x", "y"}};
-  p.tools.emplace(1, Tool("ball", {{"diameter", 6.0}}, Profile({{{3, 3}, Vec2(0, 3)}, {{3, 30}, {}}})).named("B6"));
+  p.tools.emplace(1,
+                  Tool("ball", {{"diameter", 6.0}}, tool::Profile({{{3, 3}, Vec2(0, 3)}, {{3, 30}, {}}})).named("B6"));
   const std::string text = to_nc(p);
   EXPECT_EQ(text, to_nc(p)) << "same program, same bytes";
   for (const char c : text) EXPECT_TRUE(c == '\n' || (c >= ' ' && c <= '~'));
@@ -239,4 +240,4 @@ TEST(Writer, MutationsOfItsTextDoNotPass) {
 }
 
 }  // namespace
-}  // namespace riffler::writer_test
+}  // namespace riffler::nc::writer_test

@@ -9,7 +9,7 @@
 
 #include "stress/random.hpp"
 
-namespace riffler::arm_test {
+namespace riffler::pen::arm_test {
 namespace {
 
 constexpr ArmLinks kRight{80, 150, 180}, kLeft{-80, 180, 180};
@@ -147,12 +147,12 @@ TEST(PenArm, SingularPosturesAreFinite) {
       for (const ArmLinks& links : {kRight, kLeft}) {
         const Vec3 angles(0.7, third + elbow, third);
         const ArmPosture posture = arm_posture(links, angles);
-        EXPECT_TRUE(finite(posture.end));
-        EXPECT_TRUE(finite(joint_torques(posture, {1, 2, 3})));
+        EXPECT_TRUE(geom::finite(posture.end));
+        EXPECT_TRUE(geom::finite(joint_torques(posture, {1, 2, 3})));
         EXPECT_LT(std::abs(arm_dexterity(links, angles)), 1e-15);
-        EXPECT_TRUE(finite(arm_angles(links, posture.end).angles));
+        EXPECT_TRUE(geom::finite(arm_angles(links, posture.end).angles));
       }
 }
 
 }  // namespace
-}  // namespace riffler::arm_test
+}  // namespace riffler::pen::arm_test

@@ -13,7 +13,7 @@
 #include "support/effort.hpp"
 #include "support/error_of.hpp"
 
-namespace riffler::compensation_test {
+namespace riffler::pen::compensation_test {
 namespace {
 
 using test::SimulatedBench;
@@ -165,4 +165,4 @@ TEST(Compensation, WhatWasAppliedIsTheWrenchAlone) {
 }
 
 }  // namespace
-}  // namespace riffler::compensation_test
+}  // namespace riffler::pen::compensation_test

@@ -9,7 +9,7 @@
 
 #include "support/pens.hpp"
 
-namespace riffler::count_speed_test {
+namespace riffler::pen::count_speed_test {
 namespace {
 
 constexpr double kCount = 2 * kPi / 48000;  // rad, of joint 2 of R: channel 0
@@ -86,4 +86,4 @@ TEST(CountSpeed, EachChannelIsItsJoints) {
 }
 
 }  // namespace
-}  // namespace riffler::count_speed_test
+}  // namespace riffler::pen::count_speed_test

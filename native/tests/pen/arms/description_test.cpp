@@ -15,7 +15,7 @@
 #include "riffler/pen/arms/kinematics.hpp"
 #include "support/damaged.hpp"
 
-namespace riffler::pen_description_test {
+namespace riffler::pen::pen_description_test {
 namespace {
 
 std::string shipped() {
@@ -197,7 +197,7 @@ TEST(PenGeometry, AnyDamageIsAPenOrAnError) {
     const std::string text = test::damaged(good, round, random);
     try {
       const PenKinematics pen(describe_pen(text, "pen.toml", "pen"));
-      EXPECT_TRUE(finite(pen.posture(pen.home_angles()).pose.axis));
+      EXPECT_TRUE(geom::finite(pen.posture(pen.home_angles()).pose.axis));
       ++pens;
     } catch (const FormatError&) {
     }
@@ -208,12 +208,12 @@ TEST(PenGeometry, AnyDamageIsAPenOrAnError) {
 TEST(Pens, AreFoundByNameAndByPath) {
   const std::filesystem::path folder = std::filesystem::temp_directory_path() / "riffler-pens-test";
   std::filesystem::create_directories(folder);
-  write_file(folder / "mine.toml", with("length = 30.0", "length = 30.1"));
-  write_file(folder / "broken.toml", std::string_view("description = 3"));
-  write_file(folder / "riffler.toml", std::string_view("description = \"hidden\""));
+  base::write_file(folder / "mine.toml", with("length = 30.0", "length = 30.1"));
+  base::write_file(folder / "broken.toml", std::string_view("description = 3"));
+  base::write_file(folder / "riffler.toml", std::string_view("description = \"hidden\""));
   setenv("RIFFLER_PENS", folder.c_str(), 1);
   std::string list;
-  for (const DescriptionEntry& entry : pens()) list += entry.name + ": " + entry.description + "\n";
+  for (const base::DescriptionEntry& entry : pens()) list += entry.name + ": " + entry.description + "\n";
   EXPECT_NE(list.find("riffler: Pen with two arms"), list.npos) << list;
   EXPECT_NE(list.find("mine: Pen with two arms"), list.npos) << list;
   EXPECT_NE(list.find("broken: cannot be read: broken.toml, line 1: description must be a text"), list.npos) << list;
@@ -234,4 +234,4 @@ TEST(Pens, AreFoundByNameAndByPath) {
 }
 
 }  // namespace
-}  // namespace riffler::pen_description_test
+}  // namespace riffler::pen::pen_description_test

@@ -13,7 +13,7 @@
 #include "pen/arms/pens.hpp"
 #include "support/pens.hpp"
 
-namespace riffler::kinematics_test {
+namespace riffler::pen::kinematics_test {
 namespace {
 
 using test::random_pose;
@@ -169,4 +169,4 @@ TEST(PenKinematics, WhatAHapticStepCallsThrowsNothingAndKeepsNoMemory) {
 }
 
 }  // namespace
-}  // namespace riffler::kinematics_test
+}  // namespace riffler::pen::kinematics_test

@@ -9,7 +9,7 @@
 #include "pen/arms/wrench_split.hpp"
 #include "support/pens.hpp"
 
-namespace riffler::motors_test {
+namespace riffler::pen::motors_test {
 namespace {
 
 TEST(PenMotors, GearsTakeTorqueAsTheyGiveTurns) {
@@ -68,13 +68,13 @@ TEST(PenMotors, ActuatorsRowsAreTheMotorsTorquesOfAnyWrench) {
     const Pose pose = test::random_pose(random, pen.geometry());
     const PenPosture posture = pen.posture(pen.inverse(pose).angles);
     const Wrench wrench{5.0 * random.direction(), 50.0 * random.direction()};
-    const Actuators actuators = pen_actuators(pen, posture);
+    const haptics::Actuators actuators = pen_actuators(pen, posture);
     const PenEffort effort = pen_effort(pen, posture, wrench, posture.pose.tip);
     const MotorTorques torques = motor_torques(pen.geometry(), effort.torques);
     ASSERT_EQ(actuators.count, kPenChannels);
     for (std::size_t i = 0; i < kPenChannels; ++i) {
       double sum = 0;
-      for (int c = 0; c < kCoordinates; ++c) sum += actuators.rows[i][static_cast<std::size_t>(c)] * wrench[c];
+      for (int c = 0; c < haptics::kCoordinates; ++c) sum += actuators.rows[i][static_cast<std::size_t>(c)] * wrench[c];
       EXPECT_NEAR(sum, torques[i], 1e-10);
       EXPECT_EQ(actuators.most[i], 90);
     }
@@ -134,4 +134,4 @@ TEST(PenMotors, FrictionIsMadeUpForAlongTheMotionAndNotAtRest) {
 }
 
 }  // namespace
-}  // namespace riffler::motors_test
+}  // namespace riffler::pen::motors_test

@@ -9,7 +9,7 @@
 
 #include "support/pens.hpp"
 
-namespace riffler::redundancy_test {
+namespace riffler::pen::redundancy_test {
 namespace {
 
 std::vector<EncoderCounts> postures(const PenKinematics& pen, int wanted, std::uint64_t seed) {
@@ -160,4 +160,4 @@ TEST(GripDiagnosis, KeepsTheLastPosturesOnly) {
 }
 
 }  // namespace
-}  // namespace riffler::redundancy_test
+}  // namespace riffler::pen::redundancy_test

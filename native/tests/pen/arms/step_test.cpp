@@ -8,7 +8,7 @@
 #include "support/allocations.hpp"
 #include "support/pens.hpp"
 
-namespace riffler::step_test {
+namespace riffler::pen::step_test {
 namespace {
 
 TEST(PenStep, AsksForNoMemory) {
@@ -48,4 +48,4 @@ TEST(PenStep, AsksForNoMemory) {
 }
 
 }  // namespace
-}  // namespace riffler::step_test
+}  // namespace riffler::pen::step_test

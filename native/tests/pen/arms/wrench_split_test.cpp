@@ -7,7 +7,7 @@
 
 #include "support/pens.hpp"
 
-namespace riffler::wrench_split_test {
+namespace riffler::pen::wrench_split_test {
 namespace {
 
 constexpr double kEps = 0x1p-52;
@@ -75,7 +75,7 @@ TEST(WrenchSplit, ZeroAndTinyGripsAreFinite) {
   EXPECT_EQ(none.missing, wrench.torque);
   EXPECT_EQ(none.forces[0] + none.forces[1], wrench.force);
   const WrenchSplit tiny = split_wrench({wrench.force, 1e-200 * wrench.torque}, {1e-150, 0, 0});
-  EXPECT_TRUE(finite(tiny.forces[0]) && finite(tiny.forces[1]) && finite(tiny.missing));
+  EXPECT_TRUE(geom::finite(tiny.forces[0]) && geom::finite(tiny.forces[1]) && geom::finite(tiny.missing));
 }
 
 TEST(WrenchSplit, EffortDoesTheWorkOfTheWrenchAtItsPoint) {
@@ -133,4 +133,4 @@ TEST(WrenchSplit, WhatTheHandFeelsOfTheEffortIsWhatWasAskedForLessWhatIsMissing)
 }
 
 }  // namespace
-}  // namespace riffler::wrench_split_test
+}  // namespace riffler::pen::wrench_split_test

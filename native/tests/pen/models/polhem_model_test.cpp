@@ -9,7 +9,7 @@
 #include "stress/random.hpp"
 #include "support/hid_devices.hpp"
 
-namespace riffler::polhem_model_test {
+namespace riffler::pen::polhem_model_test {
 namespace {
 
 using test::Bytes;
@@ -170,4 +170,4 @@ TEST(Polhem, AnotherDescriptorIsRefused) {
 }
 
 }  // namespace
-}  // namespace riffler::polhem_model_test
+}  // namespace riffler::pen::polhem_model_test

@@ -13,7 +13,7 @@
 #include "stress/random.hpp"
 #include "support/pens.hpp"
 
-namespace riffler::riffler_model_test {
+namespace riffler::pen::riffler_model_test {
 namespace {
 
 using test::ConstantPush;
@@ -199,7 +199,7 @@ TEST(RifflerModel, AnyBytesAreReportsOrCounted) {
     EXPECT_EQ(taken.reports + taken.old + taken.malformed,
               (bytes.size() + RIFFLER_PEN_INPUT_SIZE - 1) / RIFFLER_PEN_INPUT_SIZE);
     const PenSample sample = d.model.sample(d.clock.time);
-    EXPECT_TRUE(finite(sample.pose.tip) && finite(sample.pose.axis) && finite(sample.velocity));
+    EXPECT_TRUE(geom::finite(sample.pose.tip) && geom::finite(sample.pose.axis) && geom::finite(sample.velocity));
     EXPECT_EQ(d.model.push(test::let_through({{1, 2, 3}, {4, 5, 6}}), d.clock.time, out),
               static_cast<std::size_t>(RIFFLER_PEN_OUTPUT_SIZE));
   }
@@ -264,4 +264,4 @@ TEST(RifflerModel, CommandsAreTakenAfterAnotherHostsNumbers) {
 }
 
 }  // namespace
-}  // namespace riffler::riffler_model_test
+}  // namespace riffler::pen::riffler_model_test

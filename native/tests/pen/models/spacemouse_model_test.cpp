@@ -9,7 +9,7 @@
 #include "stress/random.hpp"
 #include "support/hid_devices.hpp"
 
-namespace riffler::spacemouse_model_test {
+namespace riffler::pen::spacemouse_model_test {
 namespace {
 
 using test::Bytes;
@@ -201,4 +201,4 @@ TEST(RateControl, WrongSettingsAreRefused) {
 }
 
 }  // namespace
-}  // namespace riffler::spacemouse_model_test
+}  // namespace riffler::pen::spacemouse_model_test

@@ -13,12 +13,12 @@
 namespace riffler::test {
 
 /// A law of force behind the gate of all forces, as a session has it.
-class GatedStep final : public PenStep {
+class GatedStep final : public pen::PenStep {
  public:
-  using Law = std::function<Wrench(const PenSample&, double now, double dt)>;
+  using Law = std::function<Wrench(const pen::PenSample&, double now, double dt)>;
 
-  explicit GatedStep(const SafetySettings& settings = {}) : safety(settings) { safety.switch_on(); }
-  SafeWrench step(const PenSample& sample, double now, double dt) noexcept override {
+  explicit GatedStep(const haptics::SafetySettings& settings = {}) : safety(settings) { safety.switch_on(); }
+  haptics::SafeWrench step(const pen::PenSample& sample, double now, double dt) noexcept override {
     ++steps, last = sample;
     safety.observe({.dt = dt,
                     .age = now - sample.time,
@@ -29,31 +29,32 @@ class GatedStep final : public PenStep {
                     .dead_man = holds,
                     .device_fault = sample.fault,
                     .device_late = sample.late});
-    const SafeWrench safe = safety.release(law(sample, now, dt));
+    const haptics::SafeWrench safe = safety.release(law(sample, now, dt));
     // A tick that finds a fault pushes with nothing.
-    if (safety.state() == ForceState::Tripped && !(safe.wrench() == Wrench{})) ++pushed_while_tripped;
+    if (safety.state() == haptics::ForceState::Tripped && !(safe.wrench() == Wrench{})) ++pushed_while_tripped;
     after(safe.wrench());
     return safe;
   }
 
-  Law law = [](const PenSample&, double, double) { return Wrench{}; };
+  Law law = [](const pen::PenSample&, double, double) { return Wrench{}; };
   std::function<void(const Wrench&)> after = [](const Wrench&) {};
-  Safety safety;
+  haptics::Safety safety;
   bool holds = true;  // the dead-man switch
-  PenSample last{};
+  pen::PenSample last{};
   int steps = 0, pushed_while_tripped = 0;
 };
 
-class SimulatedConnector final : public Connector {
+class SimulatedConnector final : public pen::Connector {
  public:
-  SimulatedConnector(std::shared_ptr<SimulatedPen> pen, std::shared_ptr<SimulatedClock> clock, HidModel& model)
+  SimulatedConnector(std::shared_ptr<pen::SimulatedPen> pen, std::shared_ptr<pen::SimulatedClock> clock,
+                     pen::HidModel& model)
       : pen_(std::move(pen)), clock_(std::move(clock)), model_(model) {}
   void begin() noexcept override {}
-  Answer poll(std::unique_ptr<Transport>& transport, OpenProblem& problem) noexcept override {
-    auto found = std::make_unique<SimulatedTransport>(pen_, clock_);
+  Answer poll(std::unique_ptr<pen::Transport>& transport, pen::OpenProblem& problem) noexcept override {
+    auto found = std::make_unique<pen::SimulatedTransport>(pen_, clock_);
     try {
       model_.check(*found);
-    } catch (const OpenError& error) {
+    } catch (const pen::OpenError& error) {
       problem = error.problem();
       return Answer::Failed;
     }
@@ -62,16 +63,18 @@ class SimulatedConnector final : public Connector {
   }
 
  private:
-  std::shared_ptr<SimulatedPen> pen_;
-  std::shared_ptr<SimulatedClock> clock_;
-  HidModel& model_;
+  std::shared_ptr<pen::SimulatedPen> pen_;
+  std::shared_ptr<pen::SimulatedClock> clock_;
+  pen::HidModel& model_;
 };
 
 /// Homed, the gate open, nothing pushed with yet.
 struct SimulatedBench {
-  explicit SimulatedBench(const SimulatedPenSettings& settings = {}, HandPath path = nullptr,
-                          const SafetySettings& safety = {}, const Compensation& compensation = {})
-      : pen(std::make_shared<SimulatedPen>(settings, std::move(path))), step(safety), model(*transport, compensation) {
+  explicit SimulatedBench(const pen::SimulatedPenSettings& settings = {}, pen::HandPath path = nullptr,
+                          const haptics::SafetySettings& safety = {}, const pen::Compensation& compensation = {})
+      : pen(std::make_shared<pen::SimulatedPen>(settings, std::move(path))),
+        step(safety),
+        model(*transport, compensation) {
     home = pen->arms().posture().pose;
     model.home();
   }
@@ -92,13 +95,13 @@ struct SimulatedBench {
   void catch_up() { pen->advance(std::llround(1e6 * clock->now())); }
   double now() const { return clock->now(); }
 
-  std::shared_ptr<SimulatedPen> pen;
-  std::shared_ptr<SimulatedClock> clock = std::make_shared<SimulatedClock>();
+  std::shared_ptr<pen::SimulatedPen> pen;
+  std::shared_ptr<pen::SimulatedClock> clock = std::make_shared<pen::SimulatedClock>();
   GatedStep step;
-  std::unique_ptr<Transport> transport = std::make_unique<SimulatedTransport>(pen, clock);
-  RifflerModel model;
+  std::unique_ptr<pen::Transport> transport = std::make_unique<pen::SimulatedTransport>(pen, clock);
+  pen::RifflerModel model;
   SimulatedConnector connector{pen, clock, model};
-  DriverLoop loop{model, step, connector, *clock, std::move(transport)};
+  pen::DriverLoop loop{model, step, connector, *clock, std::move(transport)};
   Pose home{};
 };
 

@@ -13,7 +13,7 @@
 #include "riffler/pen/registry.hpp"
 #include "support/error_of.hpp"
 
-namespace riffler::simulated_device_test {
+namespace riffler::pen::simulated_device_test {
 namespace {
 
 /// Up to 20 s, for machines that are busy.
@@ -58,7 +58,7 @@ TEST(SimulatedDevice, PushesTheHandAway) {
   pen->aim({.pose = rest});
   // A machine that is late takes the force away for a while: asked for until it is there.
   EXPECT_TRUE(comes_true([&] {
-    if (!heals(pen->cause())) pen->reset();
+    if (!haptics::heals(pen->cause())) pen->reset();
     pen->push({{0, 0, 0.7}, {}});
     return pen->newest().pose.tip.z > rest.tip.z + 0.5;
   }));
@@ -108,4 +108,4 @@ TEST(SimulatedDevice, WishesThatCannotBeAreRefused) {
 }
 
 }  // namespace
-}  // namespace riffler::simulated_device_test
+}  // namespace riffler::pen::simulated_device_test

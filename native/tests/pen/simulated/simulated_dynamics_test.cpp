@@ -8,7 +8,7 @@
 #include "stress/matrix.hpp"
 #include "support/pens.hpp"
 
-namespace riffler::simulated_dynamics_test {
+namespace riffler::pen::simulated_dynamics_test {
 namespace {
 
 PenGeometry without_friction() {
@@ -202,4 +202,4 @@ TEST(SimulatedDynamics, AnUnreachableGripIsRefusedAndStopsEndTheWay) {
 }
 
 }  // namespace
-}  // namespace riffler::simulated_dynamics_test
+}  // namespace riffler::pen::simulated_dynamics_test

@@ -8,7 +8,7 @@
 
 #include "pen/simulated/simulated_trial.hpp"
 
-namespace riffler::simulated_faults_test {
+namespace riffler::pen::simulated_faults_test {
 namespace {
 
 using test::hand_to_and_fro;
@@ -37,7 +37,7 @@ TEST_P(SimulatedBoardFault, TakesTheForceAwayAndItComesBackByTheRamp) {
   t.goes_dead(param.within);
   EXPECT_EQ(t.bench.pen->firmware().fault, param.fault);
   EXPECT_EQ(t.bench.step.last.fault, param.fault);
-  EXPECT_TRUE(t.tripped_by(Cause::DeviceFault));
+  EXPECT_TRUE(t.tripped_by(haptics::Cause::DeviceFault));
   t.mend();
   t.bench.run(0.5);
   EXPECT_EQ(t.current, 0);  // until somebody has looked at it
@@ -71,7 +71,7 @@ TEST(SimulatedFault, ACounterThatJumpsFarIsFoundByTheFirmwareAndThePoseStaysInDo
   // The firmware goes on from the new count; the host sees two ends too far apart, which does not heal by itself.
   t.mend();
   t.bench.run(2);
-  EXPECT_EQ(t.bench.step.safety.state(), ForceState::Tripped);
+  EXPECT_EQ(t.bench.step.safety.state(), haptics::ForceState::Tripped);
   EXPECT_EQ(t.current, 0);
   t.bench.step.safety.reset();
   t.comes_back();
@@ -83,7 +83,7 @@ TEST(SimulatedFault, ACounterThatJumpsALittleIsFoundByTheHost) {
   t.falsify([](riffler_pen_sensors& s) { s.counters[1] += 60; });
   t.goes_dead(kRound);
   EXPECT_EQ(t.bench.pen->firmware().fault_count, 0);
-  EXPECT_EQ(t.cause(), Cause::Redundancy);
+  EXPECT_EQ(t.cause(), haptics::Cause::Redundancy);
   t.mend();
   t.bench.run(1);
   EXPECT_EQ(t.current, 0);  // until somebody says that it is right again
@@ -106,7 +106,7 @@ TEST(SimulatedFault, AFrozenCounterIsFoundAsSoonAsTheGripDoesNotFit) {
   t.bench.run(1);
   ASSERT_GT(misfit, t.injected);
   EXPECT_LE(t.last_pushed, misfit + kRound);
-  EXPECT_TRUE(t.tripped_by(Cause::Redundancy) || t.tripped_by(Cause::DeviceFault));
+  EXPECT_TRUE(t.tripped_by(haptics::Cause::Redundancy) || t.tripped_by(haptics::Cause::DeviceFault));
   t.mend();
   t.bench.run(0.5);
   t.bench.step.safety.reset();
@@ -165,7 +165,7 @@ TEST(SimulatedFault, SwappedArmsAreFoundWhenThePenMovesAndNotPushedOn) {
   ASSERT_GT(misfit, 0.5);
   EXPECT_LT(misfit, 1.5);
   EXPECT_LE(t.last_pushed, misfit + kRound);
-  EXPECT_EQ(t.cause(), Cause::Redundancy);
+  EXPECT_EQ(t.cause(), haptics::Cause::Redundancy);
 }
 
 TEST(SimulatedFault, AGripOfAnotherLengthIsFoundWhenThePenMoves) {
@@ -178,8 +178,8 @@ TEST(SimulatedFault, AGripOfAnotherLengthIsFoundWhenThePenMoves) {
   ASSERT_GT(misfit, 1);
   EXPECT_LT(misfit, 2.5);
   EXPECT_LE(t.last_pushed, misfit + kRound);
-  EXPECT_EQ(t.cause(), Cause::Redundancy);
+  EXPECT_EQ(t.cause(), haptics::Cause::Redundancy);
 }
 
 }  // namespace
-}  // namespace riffler::simulated_faults_test
+}  // namespace riffler::pen::simulated_faults_test

@@ -9,7 +9,7 @@
 #include "pen/simulated/simulated_pen.hpp"
 #include "support/error_of.hpp"
 
-namespace riffler::simulated_hand_test {
+namespace riffler::pen::simulated_hand_test {
 namespace {
 
 PenGeometry frictionless() {
@@ -90,4 +90,4 @@ TEST(SimulatedHand, SettingsThatCannotBeAreRefusedByName) {
 }
 
 }  // namespace
-}  // namespace riffler::simulated_hand_test
+}  // namespace riffler::pen::simulated_hand_test

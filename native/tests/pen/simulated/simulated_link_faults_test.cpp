@@ -8,7 +8,7 @@
 
 #include "pen/simulated/simulated_trial.hpp"
 
-namespace riffler::simulated_link_faults_test {
+namespace riffler::pen::simulated_link_faults_test {
 namespace {
 
 using test::home_pose;
@@ -35,7 +35,7 @@ TEST(SimulatedFault, LateTicksFadeTheForceAndFromTheWatchdogOnTakeItAway) {
       EXPECT_EQ(least, 0);
       EXPECT_LE(t.last_pushed, t.injected + kWatchdog + 2e-3);  // two reports were on the way
       EXPECT_EQ(t.faults, std::set<int>{RIFFLER_PEN_WATCHDOG});
-      EXPECT_TRUE(t.tripped_by(Cause::DeviceLate));  // the pen's word comes before the host's own finding
+      EXPECT_TRUE(t.tripped_by(haptics::Cause::DeviceLate));  // the pen's word comes before the host's own finding
     } else if (late > 0.003) {
       EXPECT_LT(least, t.newtons * (1.01 - (late - 0.003) / 0.017));
       EXPECT_EQ(t.bench.pen->firmware().fault_count, 0);
@@ -55,7 +55,7 @@ TEST(SimulatedFault, AStepThatAlwaysOverrunsPushesWithNothing) {
     return Wrench{{0, 0, t.newtons}, {}};
   };
   t.goes_dead(kWatchdog + 2e-3, 1);
-  EXPECT_TRUE(t.tripped_by(Cause::DeviceLate));
+  EXPECT_TRUE(t.tripped_by(haptics::Cause::DeviceLate));
   t.bench.step.law = [&](const PenSample&, double, double) { return Wrench{{0, 0, t.newtons}, {}}; };
   t.heals_by_itself();
 }
@@ -76,7 +76,7 @@ TEST(SimulatedFault, AProcessorThatStandsStillIsSwitchedOffByTheBoard) {
   t.start();
   t.bench.pen->halt(200'000);
   t.goes_dead(0.0105, 0.19);
-  EXPECT_TRUE(t.tripped_by(Cause::Stale) || t.tripped_by(Cause::LateTick));
+  EXPECT_TRUE(t.tripped_by(haptics::Cause::Stale) || t.tripped_by(haptics::Cause::LateTick));
   t.bench.run(0.05);
   EXPECT_GT(t.bench.pen->firmware().fault_count, 0);  // late step
   t.heals_by_itself();
@@ -99,7 +99,7 @@ TEST(SimulatedFault, AllReportsLostOnTheWayToTheHost) {
   t.start();
   t.bench.pen->cable().set({.lost = 1});
   t.goes_dead(0.020 + kRound, 0.2);
-  EXPECT_TRUE(t.tripped_by(Cause::Stale) || t.tripped_by(Cause::LateTick));
+  EXPECT_TRUE(t.tripped_by(haptics::Cause::Stale) || t.tripped_by(haptics::Cause::LateTick));
   t.bench.run(0.3);  // silent for longer than the driver waits: closed, and looked for
   EXPECT_EQ(t.bench.loop.status().counts.silences, 1U);
   t.bench.pen->cable().set({});
@@ -111,7 +111,7 @@ TEST(SimulatedFault, AllReportsLostOnTheWayToThePen) {
   t.start();
   t.bench.pen->cable().set({.lost_out = 1});
   t.goes_dead(kWatchdog + 2e-3);
-  EXPECT_TRUE(t.tripped_by(Cause::DeviceLate));
+  EXPECT_TRUE(t.tripped_by(haptics::Cause::DeviceLate));
   t.bench.pen->cable().set({});
   t.heals_by_itself();
 }
@@ -197,7 +197,7 @@ TEST(SimulatedFault, AStepThatComputesNoNumberOrTooMuchPushesWithNothing) {
     t.start();
     t.bench.step.law = [&](const PenSample&, double, double) { return Wrench{force, {}}; };
     t.goes_dead(kRound);
-    EXPECT_TRUE(t.tripped_by(Cause::BadWrench) || t.tripped_by(Cause::Excess));
+    EXPECT_TRUE(t.tripped_by(haptics::Cause::BadWrench) || t.tripped_by(haptics::Cause::Excess));
     t.bench.step.law = [&](const PenSample&, double, double) { return Wrench{{0, 0, t.newtons}, {}}; };
     t.bench.step.safety.reset();
     t.comes_back();
@@ -216,4 +216,4 @@ TEST(SimulatedFault, StoppingTheDriverSwitchesTheMotorsOff) {
 }
 
 }  // namespace
-}  // namespace riffler::simulated_link_faults_test
+}  // namespace riffler::pen::simulated_link_faults_test

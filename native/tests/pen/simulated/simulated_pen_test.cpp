@@ -12,7 +12,7 @@
 #include "stress/matrix.hpp"
 #include "support/error_of.hpp"
 
-namespace riffler::simulated_pen_test {
+namespace riffler::pen::simulated_pen_test {
 namespace {
 
 using test::SimulatedBench;
@@ -38,7 +38,7 @@ TEST(SimulatedPen, AThousandReportsASecondAreAnsweredAndPush) {
   EXPECT_EQ(counts.writes, counts.reports + 1);
   EXPECT_EQ(b.pen->firmware().state, RIFFLER_PEN_ACTIVE);
   EXPECT_EQ(b.pen->firmware().link.refused_count, 0);
-  EXPECT_EQ(b.step.safety.state(), ForceState::Active);
+  EXPECT_EQ(b.step.safety.state(), haptics::ForceState::Active);
   // The hand is a spring: it gives way by force over stiffness, but for what friction keeps.
   const double way = b.pen->arms().posture().pose.tip.z - b.home.tip.z;
   EXPECT_GT(way, 1.0);
@@ -257,4 +257,4 @@ TEST(SimulatedPen, RunsFasterThanRealTime) {
 }
 
 }  // namespace
-}  // namespace riffler::simulated_pen_test
+}  // namespace riffler::pen::simulated_pen_test

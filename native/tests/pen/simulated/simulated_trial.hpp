@@ -22,8 +22,8 @@ inline constexpr double kWatchdog = 0.0203;  // s: the firmware's, and a turn of
 // the force away, the answer's frame and a turn, and 4 ms of the firmware's 100 mA/ms.
 inline constexpr double kRound = 0.0075;
 
-inline SimulatedPenSettings with(const std::function<void(SimulatedPenSettings&)>& change) {
-  SimulatedPenSettings settings;
+inline pen::SimulatedPenSettings with(const std::function<void(pen::SimulatedPenSettings&)>& change) {
+  pen::SimulatedPenSettings settings;
   change(settings);
   return settings;
 }
@@ -31,9 +31,9 @@ inline SimulatedPenSettings with(const std::function<void(SimulatedPenSettings&)
 /// A bench that pushes with 0.7 N upward, 350 mA of the 400 from which a joint without a count is a stall, and what
 /// its motors did.
 struct Trial {
-  explicit Trial(HandPath path = nullptr, const SimulatedPenSettings& settings = {})
+  explicit Trial(pen::HandPath path = nullptr, const pen::SimulatedPenSettings& settings = {})
       : bench(settings, std::move(path)) {
-    bench.step.law = [this](const PenSample&, double, double) { return Wrench{{0, 0, newtons}, {}}; };
+    bench.step.law = [this](const pen::PenSample&, double, double) { return Wrench{{0, 0, newtons}, {}}; };
     bench.pen->on_turn = [this] {
       if (bench.pen->firmware().fault != 0) faults.insert(bench.pen->firmware().fault);
       double most = 0;
@@ -51,7 +51,7 @@ struct Trial {
   void start() {
     bench.run(2);
     EXPECT_EQ(bench.pen->firmware().state, RIFFLER_PEN_ACTIVE);
-    EXPECT_EQ(bench.step.safety.state(), ForceState::Active);
+    EXPECT_EQ(bench.step.safety.state(), haptics::ForceState::Active);
     full = 1.15 * current;
     steepest = 0;
     EXPECT_GT(current, 50);
@@ -70,9 +70,9 @@ struct Trial {
     steepest = 0;
     if (!heals(cause())) bench.step.safety.reset();
     bench.run(2.5);
-    EXPECT_EQ(bench.loop.status().state, LinkState::Connected);
+    EXPECT_EQ(bench.loop.status().state, pen::LinkState::Connected);
     EXPECT_EQ(bench.pen->firmware().state, RIFFLER_PEN_ACTIVE);
-    EXPECT_EQ(bench.step.safety.state(), ForceState::Active) << sentence(cause());
+    EXPECT_EQ(bench.step.safety.state(), haptics::ForceState::Active) << sentence(cause());
     EXPECT_GT(current, 0.7 * full);
     EXPECT_LE(steepest, 0.05 * full) << "faster than the ramp";
     EXPECT_EQ(bench.step.pushed_while_tripped, 0);
@@ -80,12 +80,12 @@ struct Trial {
   /// The same, and nobody has to look: somebody was late, and is not any more.
   void heals_by_itself() {
     bench.run(0.1);
-    EXPECT_TRUE(heals(cause())) << sentence(cause());
+    EXPECT_TRUE(haptics::heals(cause())) << sentence(cause());
     comes_back();
   }
-  Cause cause() const { return bench.step.safety.cause(); }
-  bool tripped_by(Cause cause) {
-    std::array<Trip, 64> trips{};
+  haptics::Cause cause() const { return bench.step.safety.cause(); }
+  bool tripped_by(haptics::Cause cause) {
+    std::array<haptics::Trip, 64> trips{};
     std::uint64_t from = 0;
     const std::size_t n = bench.step.safety.log().read(from, trips);
     for (std::size_t k = 0; k < n; ++k)
@@ -101,13 +101,13 @@ struct Trial {
 };
 
 inline Pose home_pose() {
-  return SimulatedPen(SimulatedPenSettings()).arms().posture().pose;
+  return pen::SimulatedPen(pen::SimulatedPenSettings()).arms().posture().pose;
 }
 
 /// Along a line, forth and back, `way` mm a second.
-inline HandPath hand_to_and_fro(const Vec3& direction, double way) {
+inline pen::HandPath hand_to_and_fro(const Vec3& direction, double way) {
   return [home = home_pose(), direction, way](double t) {
-    HandWish wish{.pose = home};
+    pen::HandWish wish{.pose = home};
     wish.pose.tip += way / 3 * std::sin(3 * std::max(0.0, t - 1)) * direction;
     return wish;
   };

@@ -14,7 +14,7 @@
 #include "riffler/pen/passivity_settings.hpp"
 #include "support/effort.hpp"
 
-namespace riffler::simulated_wall_test {
+namespace riffler::pen::simulated_wall_test {
 namespace {
 
 using test::SimulatedBench;
@@ -47,10 +47,10 @@ Touch touch(const Wall& wall) {
   });
   const PenKinematics host(load_pen("riffler"));
   const DeviceCapability device = pen_capability(host.geometry());
-  const LimitSettings limits;
-  PassivitySettings counted = passivity_settings(host.geometry());
+  const haptics::LimitSettings limits;
+  haptics::PassivitySettings counted = passivity_settings(host.geometry());
   counted.latency = wall.latency;
-  Passivity passivity(counted);
+  haptics::Passivity passivity(counted);
   Pose last = home;
   Wrench held, rates;
   Touch out;
@@ -64,8 +64,8 @@ Touch touch(const Wall& wall) {
     out.deepest = std::max(out.deepest, depth);
     Wrench w{{0, 0, std::max(0.0, wall.stiffness * depth)}, {}};
     const PenPosture posture = host.posture(host.inverse(s.pose).angles);
-    const Capability push = pushed(device, s.pose.axis);
-    const Actuators motors = pen_actuators(host, posture);
+    const haptics::Capability push = pushed(device, s.pose.axis);
+    const haptics::Actuators motors = pen_actuators(host, posture);
     w = rates = limited(limits, push, motors, rates, w, {s.velocity, s.turning}, dt);
     if (wall.controlled) w = passivity.control(w, push);
     return magnitude_gain(limits, motors, w) * w;
@@ -129,4 +129,4 @@ TEST(SimulatedPenWall, AnAccountOfWhatWasAskedForIsDeceivedByTheCable) {
 }
 
 }  // namespace
-}  // namespace riffler::simulated_wall_test
+}  // namespace riffler::pen::simulated_wall_test

@@ -10,7 +10,7 @@
 
 #include "pen/simulated/simulated_bench.hpp"
 
-namespace riffler::stall_tolerant_clock_test {
+namespace riffler::pen::stall_tolerant_clock_test {
 namespace {
 
 using test::GatedStep;
@@ -99,4 +99,4 @@ TEST(StallTolerantClock, NoForceIsLostOnAMachineThatIsLate) {
 }
 
 }  // namespace
-}  // namespace riffler::stall_tolerant_clock_test
+}  // namespace riffler::pen::stall_tolerant_clock_test

@@ -10,7 +10,7 @@
 #include "riffler/base/progress.hpp"
 #include "riffler/dexel/volume.hpp"
 
-namespace riffler {
+namespace riffler::dexel {
 
 /// The file's bytes, and back. `name` stands in messages. FormatError names the byte where a file is not what it should
 /// be (magic, version, checksum, order of spans, truncated); memory is checked before it is allocated.
@@ -21,4 +21,4 @@ Volume from_bytes(std::span<const std::uint8_t> bytes, const std::string& name, 
 void save(const Volume& volume, const std::filesystem::path& path, const Progress& progress = {});
 Volume load(const std::filesystem::path& path, const Progress& progress = {});
 
-}  // namespace riffler
+}  // namespace riffler::dexel

@@ -6,7 +6,7 @@
 #include "riffler/dexel/volume.hpp"
 #include "riffler/mesh/mesh.hpp"
 
-namespace riffler {
+namespace riffler::dexel {
 
 /// A volume over frame.box filled with the points whose absolute generalized winding number exceeds ½: spans end at
 /// crossings of the surface, or, in an opening of a broken part, where |w| passes ½. Rays on vertices, edges and walls
@@ -21,4 +21,4 @@ namespace riffler {
 Volume from_mesh(const Mesh& mesh, const Frame& frame, const Progress& progress = {}, MeshReport* report = nullptr,
                  MissedMaterial* missed = nullptr);
 
-}  // namespace riffler
+}  // namespace riffler::dexel

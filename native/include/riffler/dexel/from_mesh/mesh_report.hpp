@@ -7,7 +7,7 @@
 
 #include "riffler/mesh/mesh.hpp"
 
-namespace riffler {
+namespace riffler::dexel {
 
 /// Defects of a mesh and what they mean for the volume made of it. All zero: a closed, consistently oriented surface
 /// that nowhere lies within itself. Vertices with equal coordinates count as one.
@@ -49,4 +49,4 @@ void count_defects(const Mesh& mesh, MeshReport& report);
 /// Pieces connected across edges that have a triangle with `marks` in them.
 std::size_t count_shells(const Mesh& mesh, const std::vector<std::uint8_t>& marks);
 
-}  // namespace riffler
+}  // namespace riffler::dexel

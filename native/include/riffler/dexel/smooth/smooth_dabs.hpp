@@ -7,7 +7,7 @@
 #include "riffler/base/progress.hpp"
 #include "riffler/dexel/volume.hpp"
 
-namespace riffler {
+namespace riffler::dexel {
 
 struct SmoothOptions {
   /// mm, of the brush: what lies beyond it stays as it is.
@@ -32,4 +32,4 @@ struct SmoothResult {
 /// unchanged.
 SmoothResult smooth_dabs(Volume& volume, std::span<const Vec3> centres, const SmoothOptions& options = {});
 
-}  // namespace riffler
+}  // namespace riffler::dexel

@@ -7,7 +7,7 @@
 #include "riffler/base/progress.hpp"
 #include "riffler/mesh/mesh.hpp"
 
-namespace riffler {
+namespace riffler::mesh {
 
 /// Where to stop; at least one is needed. With both, whatever comes first.
 struct DecimateLimits {
@@ -29,4 +29,4 @@ struct DecimateLimits {
 /// std::invalid_argument where `validate` throws, without a limit, or for a tolerance that is negative or not finite.
 Mesh decimate(const Mesh& mesh, const DecimateLimits& limits, const Progress& progress = {});
 
-}  // namespace riffler
+}  // namespace riffler::mesh

@@ -6,7 +6,7 @@
 #include "riffler/base/progress.hpp"
 #include "riffler/mesh/mesh.hpp"
 
-namespace riffler {
+namespace riffler::mesh {
 
 /// Reads .stl, .obj or .ply (any case). FormatError for a bad file, std::invalid_argument for another extension.
 Mesh read_mesh(const std::filesystem::path& path, const Progress& progress = {});
@@ -15,4 +15,4 @@ Mesh read_mesh(const std::filesystem::path& path, const Progress& progress = {})
 /// std::invalid_argument for another extension or where `validate` throws, std::runtime_error where the system refuses.
 void write_mesh(const Mesh& mesh, const std::filesystem::path& path, const Progress& progress = {});
 
-}  // namespace riffler
+}  // namespace riffler::mesh

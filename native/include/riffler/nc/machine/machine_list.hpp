@@ -8,11 +8,11 @@
 
 #include "riffler/base/descriptions.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 /// All machines, ours first, then every *.toml in the folders of RIFFLER_MACHINES (apart as in PATH) and in
 /// riffler/machines of the user's folder for settings; of a file that cannot be read the description says why.
-std::vector<DescriptionEntry> machines();
+std::vector<base::DescriptionEntry> machines();
 
 /// The names of those with an axis of this letter whose control reads `language`, apart by commas.
 std::string machines_with(char axis, std::string_view language = "rs274");
@@ -20,4 +20,4 @@ std::string machines_with(char axis, std::string_view language = "rs274");
 /// The names of machines() whose control reads `language`, apart by commas.
 std::string machines_of_language(std::string_view language);
 
-}  // namespace riffler
+}  // namespace riffler::nc

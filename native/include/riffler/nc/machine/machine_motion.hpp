@@ -6,7 +6,7 @@
 
 #include "riffler/geom/pose.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 /// A stretch of a block that is a Motion: where rotary axes turn, blocks are several.
 struct MachineStep {
@@ -19,4 +19,4 @@ struct MachineStep {
 /// The whole of a program, in its order; rows that do not move are left out.
 using MachineMotion = std::vector<MachineStep>;
 
-}  // namespace riffler
+}  // namespace riffler::nc

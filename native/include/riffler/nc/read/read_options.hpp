@@ -6,7 +6,7 @@
 #include "riffler/base/progress.hpp"
 #include "riffler/nc/option_values.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 struct ReadOptions {
   std::string machine = "tcp";  ///< a name of machines(): what the axis words mean; its control says in which language
@@ -22,4 +22,4 @@ struct ReadOptions {
   Progress progress{};
 };
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -10,7 +10,7 @@
 #include "riffler/nc/program.hpp"
 #include "riffler/nc/read/read_options.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 /// `options` without those of the reader alone: what the same machine takes for other work.
 Options without_reading(Options options);
@@ -46,4 +46,4 @@ class NcStream {
   std::unique_ptr<Move> last_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -8,7 +8,7 @@
 #include "riffler/nc/machine/machine_motion.hpp"
 #include "riffler/nc/option_values.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 struct WriteOptions {
   std::string post = "tcp";         ///< a name of machines(), or the path of a description
@@ -33,4 +33,4 @@ struct WriteReport {
   MachineMotion motion;  ///< where it was asked for
 };
 
-}  // namespace riffler
+}  // namespace riffler::nc

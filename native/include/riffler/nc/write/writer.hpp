@@ -8,7 +8,7 @@
 #include "riffler/nc/program.hpp"
 #include "riffler/nc/write/write_options.hpp"
 
-namespace riffler {
+namespace riffler::nc {
 
 /// The text of the program: every row is the end of a block, with more blocks between two rows where the machine's
 /// axes, moving linearly, would leave the tolerances. The same program gives the same bytes. Throws
@@ -19,4 +19,4 @@ std::string to_nc(const Program& program, const WriteOptions& options = {}, Writ
 WriteReport write_nc(const Program& program, const std::filesystem::path& path, const WriteOptions& options = {},
                      const std::function<void(const WriteReport&)>& check = {});
 
-}  // namespace riffler
+}  // namespace riffler::nc

@@ -6,7 +6,7 @@
 
 #include "riffler/pen/arms/geometry.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 
 struct ArmPosture {
   Vec3 end{0};       // base frame, mm
@@ -45,4 +45,4 @@ struct ArmInverse {
 /// |θ2 − θ3| ≤ π/2. A point beyond the reach gives the angles of the straight or folded arm towards it.
 ArmInverse arm_angles(const ArmLinks& links, const Vec3& end) noexcept;
 
-}  // namespace riffler
+}  // namespace riffler::pen

@@ -4,7 +4,7 @@
 
 #include "riffler/pen/arms/motors.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 
 /// Shares, 0 to 1, of what the pen's description says. Weights and friction that are less than described make a pen
 /// that rises, or that moves on by itself: the default does nothing, and a share is for pens that somebody has
@@ -25,4 +25,4 @@ struct Compensation {
 MotorTorques compensation_torques(const PenGeometry& pen, const Compensation& share, const JointAngles& angles,
                                   const JointAngles& rates) noexcept;
 
-}  // namespace riffler
+}  // namespace riffler::pen

@@ -8,7 +8,7 @@
 
 #include "riffler/geom/vec.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 
 /// The right arm stands at y = +L0, the left one at y = −L0 of the base frame. They index arrays.
 enum class Arm : unsigned char { R = 0, L = 1 };
@@ -74,4 +74,4 @@ struct PenGeometry {
   double friction_speed = 0;             // rad/s at the motor
 };
 
-}  // namespace riffler
+}  // namespace riffler::pen

@@ -10,7 +10,7 @@
 #include "riffler/pen/arms/arm.hpp"
 #include "riffler/pen/arms/geometry.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 
 using EncoderCounts = std::array<std::int32_t, kPenChannels>;  // in the device's order
 using JointAngles = std::array<Vec3, 2>;                       // θ1 θ2 θ3 of R, of L; rad, or rad/s of speeds
@@ -84,4 +84,4 @@ class PenKinematics {
   double towards_ = 1;  // from s_G to the pose's axis
 };
 
-}  // namespace riffler
+}  // namespace riffler::pen

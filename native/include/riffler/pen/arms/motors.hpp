@@ -7,7 +7,7 @@
 #include "riffler/haptics/limits.hpp"
 #include "riffler/pen/arms/kinematics.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 
 using MotorTorques = std::array<double, kPenChannels>;  // N·mm at the motors, in the device's order
 
@@ -18,7 +18,7 @@ JointAngles joint_torques(const PenGeometry& pen, const MotorTorques& motor_torq
 
 /// How a wrench about the grip's pivot, frame of poses, spreads over the motors in this posture, and their peaks: N·mm
 /// at the motors, in the device's order. What limits of the haptic step are kept by.
-Actuators pen_actuators(const PenKinematics& pen, const PenPosture& posture) noexcept;
+haptics::Actuators pen_actuators(const PenKinematics& pen, const PenPosture& posture) noexcept;
 
 /// The largest factor up to 1 with which no motor passes its peak beside what it has already (`first`, within the
 /// peaks); 0 where a torque is not finite.
@@ -46,4 +46,4 @@ JointAngles gravity_torques(const PenGeometry& pen, const JointAngles& angles) n
 /// that noise about standstill is not pushed, and viscous.
 MotorTorques friction_torques(const PenGeometry& pen, const JointAngles& rates) noexcept;
 
-}  // namespace riffler
+}  // namespace riffler::pen

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace riffler {
+namespace riffler::pen {
 
 /// The texts are UTF-8, whatever the process's locale.
 struct HidInfo {
@@ -39,4 +39,4 @@ struct HidAddress {
 /// first. Null if there is none.
 const HidInfo* find_again(const std::vector<HidInfo>& found, const HidAddress& address);
 
-}  // namespace riffler
+}  // namespace riffler::pen

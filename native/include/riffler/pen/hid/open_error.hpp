@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace riffler {
+namespace riffler::pen {
 
 enum class OpenProblem : unsigned char {
   None,
@@ -35,4 +35,4 @@ class OpenError : public std::runtime_error {
   OpenProblem problem_;
 };
 
-}  // namespace riffler
+}  // namespace riffler::pen

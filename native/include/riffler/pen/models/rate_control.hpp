@@ -5,7 +5,7 @@
 
 #include "riffler/geom/pose.hpp"
 
-namespace riffler {
+namespace riffler::pen {
 
 struct RateSettings {
   double bubble = 0.08;           ///< share of the full deflection, of all three directions together, that is rest
@@ -53,4 +53,4 @@ class RateControl {
   bool timed_ = false;
 };
 
-}  // namespace riffler
+}  // namespace riffler::pen
