@@ -19,7 +19,7 @@ from shell import ROOT, StepError, main
 # All that a topic's file may say in riffler itself: what others call its types.
 GIVEN_TO_ALL = re.compile(r"\s*(?:using \w+::\w+|namespace \w+ = \w+::\w+)\s*$")
 # What a topic's file may say outside of every namespace: macros, types of C libraries, specialisations for std.
-OUTSIDE = re.compile(r"\s*$|\s*[A-Z][A-Z_]*\(.*\)\s*$|\s*struct [a-z_]+_\s*$|\s*template <>\s*struct std::", re.S)
+OUTSIDE = re.compile(r"\s*[A-Z][A-Z_]*\(.*\)\s*$|\s*struct [a-z_]+_\s*$|\s*template <>\s*struct std::", re.S)
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 # Folders beside the topics, and which topics and other such folders they may include. The reference must not share code
 # with what it judges; `None` is every topic.
@@ -206,6 +206,8 @@ def namespace_problems(root: Path) -> list[str]:
         for path in sorted([*(root / "native" / topic).rglob("*.?pp"), *(root / PUBLIC / topic).rglob("*.?pp")]):
             for spaces, head, _ in cpp_types.statements(path.read_text()):
                 space = "::".join(filter(None, spaces))
+                if not head.strip():  # what is left of a type or a list in braces
+                    continue
                 if space == "riffler":
                     right = "" not in spaces and GIVEN_TO_ALL.match(head)
                 elif not space:

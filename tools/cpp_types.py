@@ -1,5 +1,6 @@
-"""What the C++ sources say at the scope of a namespace, and which types they define there. Reads text, not a compiler's
-tree: the sources are formatted by clang-format, and no macro of theirs opens a scope, but for Highway's HWY_NAMESPACE."""
+"""What the C++ sources say at the scope of a namespace, and which types they define there. Reads text, not a
+compiler's tree: the sources are formatted by clang-format, and no macro of theirs opens a scope, but for Highway's
+HWY_NAMESPACE."""
 
 from __future__ import annotations
 

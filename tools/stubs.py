@@ -31,7 +31,7 @@ def generate() -> str:
     with tempfile.TemporaryDirectory() as folder:
         # A C++ type in a signature, for want of a binding before it, is an error but for the one that FIXES mends.
         run(sys.executable, "-m", "pybind11_stubgen", "riffler._core", "--output-dir", folder, "--exit-code",
-            "--ignore-invalid-expressions", "riffler::Program")  # fmt: skip
+            "--ignore-invalid-expressions", "riffler::nc::Program")  # fmt: skip
         text = Path(folder, "riffler", "_core.pyi").read_text()
     for pattern, plain in FIXES:
         text = re.sub(pattern, plain, text, flags=re.MULTILINE)
