@@ -58,6 +58,7 @@ def steps(screen):
     yield from screen.picture("21-plan")
     yield from moved_and_back(screen)
     yield from undone(screen)
+    yield from engraved(screen)
     yield from cancelled(screen)
 
 
@@ -95,6 +96,26 @@ def undone(screen):
     screen.key("Z", ctrl=True, shift=True)
     yield lambda: len(plans()) == 1
     assert find.judge(plans()[0]).part == ""
+
+
+def engraved(screen):
+    """A selected curve becomes a path of another plan, drawn as it is to be resolved; Ctrl-Z takes it away."""
+    curve = common.curve("Line", [(5, 10, 8), (55, 10, 8)], mm_per_unit=1.0)
+    find.settings().strategy = "ENGRAVE"
+    with screen.override():
+        common.select(curve)
+        bpy.ops.ed.undo_push(message="Curve")
+        assert bpy.ops.riffler.plan_find("INVOKE_DEFAULT", True, strategy="ENGRAVE") == {"RUNNING_MODAL"}
+    yield lambda: not running()
+    made = plans()[-1]
+    assert len(plans()) == 2 and find.store().plan(made).depths == {0: 0.3}
+    lines = common.part("program.line_view")
+    yield lambda: lines._drawn is not None and set(lines._drawn[1]) == {"keyed"}
+    screen.to_view()
+    screen.key("Z", ctrl=True)
+    yield lambda: len(plans()) == 1
+    bpy.data.objects.remove(bpy.data.objects["Line"])
+    find.settings().strategy = "PENCIL"
 
 
 def ripples(n=300):
