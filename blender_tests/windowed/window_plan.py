@@ -58,8 +58,8 @@ def steps(screen):
     yield from screen.picture("21-plan")
     yield from moved_and_back(screen)
     yield from undone(screen)
-    yield from engraved(screen)
     yield from cancelled(screen)
+    yield from engraved(screen)
 
 
 def make_vise():
@@ -101,7 +101,7 @@ def undone(screen):
 def engraved(screen):
     """A selected curve becomes a path of another plan, drawn as it is to be resolved; Ctrl-Z takes it away."""
     curve = common.curve("Line", [(5, 10, 8), (55, 10, 8)], mm_per_unit=1.0)
-    find.settings().strategy = "ENGRAVE"
+    find.settings().part, find.settings().strategy = plans()[0].riffler.plan.part, "ENGRAVE"
     with screen.override():
         common.select(curve)
         bpy.ops.ed.undo_push(message="Curve")
@@ -114,8 +114,6 @@ def engraved(screen):
     screen.to_view()
     screen.key("Z", ctrl=True)
     yield lambda: len(plans()) == 1
-    bpy.data.objects.remove(bpy.data.objects["Line"])
-    find.settings().strategy = "PENCIL"
 
 
 def ripples(n=300):
