@@ -38,15 +38,18 @@ def _field(parameter):
     return length(parameter.label, default, about, parameter.low, parameter.high)
 
 
-FIELDS = {
-    "strategy": EnumProperty(
+def choice(**how):
+    """The field of the strategy itself."""
+    return EnumProperty(
         name="Strategy",
         items=_entries([(s.id, s.label, s.description) for s in STRATEGIES.values()]),
         default=FIRST.upper(),
         description="How paths are found on the part",
+        **how,
     )
-}
-FIELDS |= {identifier(s, p): _field(p) for s in STRATEGIES.values() for p in s.parameters}
+
+
+FIELDS = {"strategy": choice()} | {identifier(s, p): _field(p) for s in STRATEGIES.values() for p in s.parameters}
 
 
 def chosen(settings):

@@ -59,6 +59,7 @@ def steps(screen):
     yield from moved_and_back(screen)
     yield from undone(screen)
     yield from cancelled(screen)
+    yield from engraved(screen)
 
 
 def make_vise():
@@ -95,6 +96,24 @@ def undone(screen):
     screen.key("Z", ctrl=True, shift=True)
     yield lambda: len(plans()) == 1
     assert find.judge(plans()[0]).part == ""
+
+
+def engraved(screen):
+    """A selected curve becomes a path of another plan, drawn as it is to be resolved; Ctrl-Z takes it away."""
+    curve = common.curve("Line", [(5, 10, 8), (55, 10, 8)], mm_per_unit=1.0)
+    find.settings().part, find.settings().strategy = plans()[0].riffler.plan.part, "ENGRAVE"
+    with screen.override():
+        common.select(curve)
+        bpy.ops.ed.undo_push(message="Curve")
+        assert bpy.ops.riffler.plan_find("INVOKE_DEFAULT", True, strategy="ENGRAVE") == {"RUNNING_MODAL"}
+    yield lambda: not running()
+    made = plans()[-1]
+    assert len(plans()) == 2 and find.store().plan(made).depths == {0: 0.3}
+    lines = common.part("program.line_view")
+    yield lambda: lines._drawn is not None and set(lines._drawn[1]) == {"keyed"}
+    screen.to_view()
+    screen.key("Z", ctrl=True)
+    yield lambda: len(plans()) == 1
 
 
 def ripples(n=300):

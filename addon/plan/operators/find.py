@@ -46,6 +46,7 @@ class RIFFLER_OT_plan_find(LongWork, properties.FindSettings, bpy.types.Operator
     doing = "Finding paths"
     cancelled = "Search cancelled: nothing has changed"
 
+    strategy: strategy_fields.choice(options={"SKIP_SAVE"})  # what is not given is the first, whatever was before
     tool: bpy.props.StringProperty(
         name="Tool", options={"HIDDEN", "SKIP_SAVE"}, description="A tool as JSON; empty: the plan's tool of the scene"
     )
@@ -90,6 +91,7 @@ class RIFFLER_OT_plan_find(LongWork, properties.FindSettings, bpy.types.Operator
         self._part, self._mm = part.name, scene_units.mm_per_unit(context.scene)
         strategy, options = strategy_fields.chosen(self), strategy_fields.options(self)
         given = self._given(context, strategy)
+        strategy.check(self._tool, given)  # said at once, not by the thread
         self._nothing = strategy.nothing
         call = functools.partial(riffler.plan.find, strategy.id, mesh, self._tool, given, name=self._part, **options)
         return TaskJob(ThreadTask(lambda progress: call(progress=progress)))

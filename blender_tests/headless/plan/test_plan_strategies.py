@@ -239,7 +239,7 @@ def test_the_wall_above_a_pencil_path_is_cut_by_the_flank():
     assert len(store().plan(ob).paths[0].keys) == len(path)
     bpy.context.view_layer.objects.active = pencil
     settings().take(riffler.Tool.flat(6, 25).to_dict())
-    common.refused(lambda: bpy.ops.riffler.plan_find(strategy="SWARF"), "ball end has the radius of the path")
+    common.refused(lambda: bpy.ops.riffler.plan_find(strategy="SWARF"), "tool", "ball")
     bpy.ops.riffler.plan_switch(which="NONE")
     common.refused(lambda: bpy.ops.riffler.plan_find(strategy="SWARF"), "There is no pencil path yet")
 

@@ -135,8 +135,11 @@ def test_swarf_without_a_wall_says_why():
 
 def test_swarf_refuses_a_tool_without_the_paths_ball():
     part = step()
-    with pytest.raises(ValueError, match="ball end has the radius of the path"):
-        plan.find("swarf", part, Tool.flat(6, 25), plan.pencil(part, BALL))
+    paths = plan.pencil(part, BALL)
+    with pytest.raises(ValueError, match='tip of a "flat" cutter is none'):
+        plan.find("swarf", part, Tool.flat(6, 25), paths)
+    with pytest.raises(ValueError, match="the paths are those of a ball of 6 mm, not of 4 mm"):
+        plan.find("swarf", part, Tool.ball(4, 25), paths)
 
 
 # ---- engraved paths in a plan

@@ -49,5 +49,7 @@ def find(
     chosen = of(strategy)
     if chosen.needs != "part" and not len(given):
         raise ValueError(f"given: {strategy} needs {chosen.needs}, and there are none")
-    found = chosen.run(part_mesh, tool, given, chosen.options(options), progress)
+    wanted = chosen.options(options)
+    chosen.check(tool, given)
+    found = chosen.run(part_mesh, tool, given, wanted, progress)
     return replace(found, plan=replace(found.plan, part=part_of(part_mesh, name)))

@@ -112,6 +112,9 @@ class Pencil(Strategy):
         Parameter("stepover", "Stepover", "Between two passes, in mm; 0: what leaves ridges of the tolerance", None),
     )
 
+    def check(self, tool, given):
+        _core.tip_ball_radius(tool, "tool")
+
     def run(self, part_mesh, tool, given, options, progress=None):
         paths = pencil(part_mesh, tool, progress=progress, **options)
         return Found(Plan(list(paths), tool, tolerance=options["tolerance"]), reason=getattr(paths, "reason", ""))

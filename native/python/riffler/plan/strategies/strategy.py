@@ -67,6 +67,9 @@ class Strategy(ABC):
         """``given``: the curves, (n, 3) arrays in mm, or the paths. ``options`` has every parameter but those that are
         None. ValueError for bad input, naming it."""
 
+    def check(self, tool: Any, given: Sequence[Any]) -> None:  # noqa: B027
+        """ValueError for a tool that it cannot do with: known at once, before a long run."""
+
     def options(self, given: Mapping[str, Any]) -> dict[str, Any]:
         """All parameters with their defaults, without those that are None. ValueError for unknown ones and for words
         that are none of the choices."""

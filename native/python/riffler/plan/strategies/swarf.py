@@ -72,6 +72,12 @@ class SwarfCuts(Strategy):
         ),
     )
 
+    def check(self, tool, given):
+        radius = _core.tip_ball_radius(tool, "tool")
+        others = [path.radius for path in given if abs(path.radius - radius) > 1e-9 * radius]
+        if others:
+            raise ValueError(f"tool: the paths are those of a ball of {2 * others[0]:g} mm, not of {2 * radius:g} mm")
+
     def run(self, part_mesh, tool, given, options, progress=None):
         options = dict(options)
         sides = {"first": (0,), "second": (1,)}.get(options.pop("side"), (0, 1))
