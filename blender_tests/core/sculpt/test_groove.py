@@ -54,6 +54,9 @@ def off_the_sweep(volume, centres, normals):
     the groove, and of all of it but for the pitch at its rim; the two ends are left out."""
     vertices = np.asarray(volume.to_mesh().vertices, float)
     vertices = vertices[np.abs(vertices[:, 2]) < 5.9]
+    reach = RADIUS + 3 * PITCH  # farther from every centre than this, a vertex is not of the groove
+    near = (vertices > centres.min(axis=0) - reach) & (vertices < centres.max(axis=0) + reach)
+    vertices = vertices[near.all(axis=1)]
     off, lean, along = np.empty((3, len(vertices)))
     for k, v in enumerate(vertices):
         way = v - centres
