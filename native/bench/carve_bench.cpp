@@ -43,13 +43,13 @@ struct Job {
 
 void carve_job(benchmark::State& state, const Job& job) {
   const std::vector<Pose> poses = bench::path(job.cutter.centre_height, job.turning);
-  CarveOptions options;
+  sweep::CarveOptions options;
   options.tolerance = job.tolerance;
   if (job.force) options.dt.assign(bench::kMoves, 0.001);
   const Volume block = Volume::block({{{0, 0, 0}, bench::kBlock}, pitch(state), job.directions});
   for (auto _ : state) {
     Volume volume = block;
-    benchmark::DoNotOptimize(carve(volume, job.cutter.tool, poses, options));
+    benchmark::DoNotOptimize(sweep::carve(volume, job.cutter.tool, poses, options));
   }
   per_move(state);
 }

@@ -42,7 +42,7 @@ Interval capsule(const Vec3& p, const Vec3& d, const Vec3& a, const Vec3& b) {
 }
 
 /// The block's span on one ray less all moves, with normals.
-void cut_ray(const Vec3& p, const Vec3& d, const Span& block, TileBuilder& out) {
+void cut_ray(const Vec3& p, const Vec3& d, const dexel::Span& block, dexel::TileBuilder& out) {
   struct Cut {
     Interval s;
     int move;
@@ -56,23 +56,23 @@ void cut_ray(const Vec3& p, const Vec3& d, const Span& block, TileBuilder& out) 
   const auto inward = [&](double s, int n) {  // out of the material, into the ball
     const Vec3 q = p + s * d, a = centre(n), b = centre(n + 1);
     const double t = std::clamp(glm::dot(q - a, b - a) / glm::dot(b - a, b - a), 0.0, 1.0);
-    return PackedNormal::pack(a + t * (b - a) - q);
+    return dexel::PackedNormal::pack(a + t * (b - a) - q);
   };
   double from = block.near;
-  PackedNormal from_normal = PackedNormal::pack(-d);
+  dexel::PackedNormal from_normal = dexel::PackedNormal::pack(-d);
   for (const Cut& c : cuts) {
     if (c.s.near > from) out.add({from, c.s.near}, {from_normal, inward(c.s.near, c.move)});
     if (c.s.far > from) from = c.s.far, from_normal = inward(from, c.move);
   }
-  if (from < block.far) out.add({from, block.far}, {from_normal, PackedNormal::pack(d)});
+  if (from < block.far) out.add({from, block.far}, {from_normal, dexel::PackedNormal::pack(d)});
 }
 
 Volume carved_block(double pitch, const char* directions) {
   Volume volume = Volume::block({{Vec3(0.0), bench::kBlock}, pitch, directions});
-  for (Grid& grid : volume.grids())
-    parallel_for(grid.tile_count(), 1, [&](std::size_t begin, std::size_t end) {
+  for (dexel::Grid& grid : volume.grids())
+    base::parallel_for(grid.tile_count(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t)
-        grid.fill_tile(t, [&](int i, int j, TileBuilder& builder) {
+        grid.fill_tile(t, [&](int i, int j, dexel::TileBuilder& builder) {
           cut_ray(to_world(grid.axis(), Vec3(grid.u(i), grid.v(j), 0)), to_world(grid.axis(), Vec3(0, 0, 1)),
                   {grid.box().lower.z, grid.box().upper.z}, builder);
         });
@@ -91,7 +91,7 @@ double pitch_of(const benchmark::State& state) {
 void whole(benchmark::State& state) {
   const Volume volume = carved_block(pitch_of(state), directions_of(state));
   std::size_t triangles = 0;
-  for (auto _ : state) triangles = to_mesh(volume).triangles.size();
+  for (auto _ : state) triangles = marching::to_mesh(volume).triangles.size();
   state.counters["triangles"] = static_cast<double>(triangles);
   state.counters["triangles/s"] =
       benchmark::Counter(static_cast<double>(triangles), benchmark::Counter::kIsIterationInvariantRate);
@@ -103,8 +103,8 @@ void follow(benchmark::State& state) {
   Volume cut = volume;
   const Tool tool = cutters::ball(2 * kRadius, 30);
   const Vec3 at = Vec3(50, 15, 30 - 1.5);
-  carve(cut, tool, std::array{Pose{at, {0, 0, 1}}, Pose{at + Vec3(0.5, 0, 0), {0, 0, 1}}});
-  Mesher mesher(volume);
+  sweep::carve(cut, tool, std::array{Pose{at, {0, 0, 1}}, Pose{at + Vec3(0.5, 0, 0), {0, 0, 1}}});
+  marching::Mesher mesher(volume);
   bool there = false;
   std::size_t patches = 0;
   for (auto _ : state) patches = mesher.update((there = !there) ? cut : volume).size();

@@ -13,7 +13,7 @@ struct Assembly::Forms {
   OutlineRuns runs;
   std::vector<LaneEdge> lane_edges;
 
-  explicit Forms(const std::vector<OutlineEdge>& edges) : runs(edges), lane_edges(edges.begin(), edges.end()) {}
+  explicit Forms(const std::vector<tool::OutlineEdge>& edges) : runs(edges), lane_edges(edges.begin(), edges.end()) {}
 };
 
 struct Assembly::Deepest {

@@ -5,6 +5,7 @@
 
 #include "riffler/base/block_pool.hpp"
 #include "riffler/base/check.hpp"
+#include "riffler/sweep/carve.hpp"
 #include "sweep/grid_carver.hpp"
 
 namespace riffler::sweep {
@@ -18,7 +19,7 @@ struct MoveCarver::Core {
   CarveOptions options_;
   Cut cut_;
   Rollback rollback_;
-  BlockVector<Place> replaced_;
+  base::BlockVector<Place> replaced_;
   std::vector<GridCarver> carvers_;
 };
 

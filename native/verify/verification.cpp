@@ -23,7 +23,7 @@ std::size_t done_by_all(const std::vector<SlabState>& slabs, std::size_t rows) {
 
 struct Verification::Core {
   Core(VerifyArguments arguments, const Progress& progress);
-  VerifyReport run(const Program& program, const Progress& progress);
+  VerifyReport run(const nc::Program& program, const Progress& progress);
 
   struct Memory {  // of the run before
     RunRows rows;

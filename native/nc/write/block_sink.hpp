@@ -2,7 +2,7 @@
 #pragma once
 
 #include "nc/machine/machine.hpp"
-#include "tool/tool.hpp"
+#include "riffler/tool/tool.hpp"
 
 namespace riffler::nc {
 

@@ -48,20 +48,6 @@ JointAngles joint_torques(const PenGeometry& pen, const MotorTorques& motor_torq
   return out;
 }
 
-haptics::Actuators pen_actuators(const PenKinematics& pen, const PenPosture& posture) noexcept {
-  haptics::Actuators out;
-  out.count = kPenChannels;
-  for (int k = 0; k < haptics::kCoordinates; ++k) {
-    Wrench unit;
-    unit[k] = 1;
-    const PenEffort effort = pen_effort(pen, posture, unit, posture.pose.tip);
-    const MotorTorques torques = motor_torques(pen.geometry(), effort.torques);
-    for (std::size_t i = 0; i < kPenChannels; ++i) out.rows[i][static_cast<std::size_t>(k)] = torques[i];
-  }
-  for (std::size_t i = 0; i < kPenChannels; ++i) out.most[i] = pen.geometry().channels[i].peak_torque();
-  return out;
-}
-
 MotorCommands motor_currents(const PenGeometry& pen, const MotorTorques& torques, const MotorTorques& first) noexcept {
   MotorCommands out;
   if (!all_finite(torques) || !all_finite(first)) return out;

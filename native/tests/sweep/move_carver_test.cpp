@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "dexel/volumes.hpp"
+#include "riffler/sweep/carve.hpp"
 #include "riffler/tool/cutters.hpp"
 #include "support/allocations.hpp"
 

@@ -61,26 +61,6 @@ TEST(PenMotors, BeyondAPeakAllAreScaledAndTheWrenchKeepsItsDirection) {
   EXPECT_LT(glm::distance(felt.torque, commands.scale * (wrench.torque - missing)), 0.1);
 }
 
-TEST(PenMotors, ActuatorsRowsAreTheMotorsTorquesOfAnyWrench) {
-  const PenKinematics pen(test::turned_pen());
-  stress::Random random(42);
-  for (int k = 0; k < 500; ++k) {
-    const Pose pose = test::random_pose(random, pen.geometry());
-    const PenPosture posture = pen.posture(pen.inverse(pose).angles);
-    const Wrench wrench{5.0 * random.direction(), 50.0 * random.direction()};
-    const haptics::Actuators actuators = pen_actuators(pen, posture);
-    const PenEffort effort = pen_effort(pen, posture, wrench, posture.pose.tip);
-    const MotorTorques torques = motor_torques(pen.geometry(), effort.torques);
-    ASSERT_EQ(actuators.count, kPenChannels);
-    for (std::size_t i = 0; i < kPenChannels; ++i) {
-      double sum = 0;
-      for (int c = 0; c < haptics::kCoordinates; ++c) sum += actuators.rows[i][static_cast<std::size_t>(c)] * wrench[c];
-      EXPECT_NEAR(sum, torques[i], 1e-10);
-      EXPECT_EQ(actuators.most[i], 90);
-    }
-  }
-}
-
 TEST(PenMotors, TorquesThatAreNoNumbersPushNothing) {
   const PenGeometry pen = load_pen("riffler");
   for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {

@@ -63,12 +63,10 @@ Touch touch(const Wall& wall) {
     const double depth = surface - s.pose.tip.z;
     out.deepest = std::max(out.deepest, depth);
     Wrench w{{0, 0, std::max(0.0, wall.stiffness * depth)}, {}};
-    const PenPosture posture = host.posture(host.inverse(s.pose).angles);
     const haptics::Capability push = pushed(device, s.pose.axis);
-    const haptics::Actuators motors = pen_actuators(host, posture);
-    w = rates = limited(limits, push, motors, rates, w, {s.velocity, s.turning}, dt);
+    w = rates = limited(limits, push, rates, w, {s.velocity, s.turning}, dt);
     if (wall.controlled) w = passivity.control(w, push);
-    return magnitude_gain(limits, motors, w) * w;
+    return magnitude_gain(limits, w) * w;
   };
   b.step.after = [&](const Wrench& w) { held = w; };
   double square = 0;

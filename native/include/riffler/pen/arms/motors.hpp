@@ -16,10 +16,6 @@ MotorTorques motor_torques(const PenGeometry& pen, const JointAngles& joint_torq
 /// And back.
 JointAngles joint_torques(const PenGeometry& pen, const MotorTorques& motor_torques) noexcept;
 
-/// How a wrench about the grip's pivot, frame of poses, spreads over the motors in this posture, and their peaks: N·mm
-/// at the motors, in the device's order. What limits of the haptic step are kept by.
-haptics::Actuators pen_actuators(const PenKinematics& pen, const PenPosture& posture) noexcept;
-
 /// The largest factor up to 1 with which no motor passes its peak beside what it has already (`first`, within the
 /// peaks); 0 where a torque is not finite.
 double scale_to_peaks(const PenGeometry& pen, const MotorTorques& torques, const MotorTorques& first = {}) noexcept;
