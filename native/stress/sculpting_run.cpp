@@ -5,6 +5,7 @@
 #include <fstream>
 #include <memory>
 
+#include "pen/driver_loop.hpp"
 #include "pen/models/riffler_model.hpp"
 #include "pen/simulated/simulated_transport.hpp"
 #include "riffler/marching/mesher.hpp"

@@ -8,6 +8,7 @@
 
 #include "riffler/pen/device.hpp"
 #include "riffler/session/sculpt_loop.hpp"
+#include "riffler/sweep/carve_options.hpp"
 
 namespace riffler::session {
 
