@@ -43,8 +43,8 @@ TEST(Scenes, HashesTellOneBit) {
   const Volume block = Volume::block(frame);
   EXPECT_EQ(hash(block), hash(Volume::block(frame)));
   Volume other = block;
-  Grid& grid = other.grids()[2];
-  auto tile = std::make_shared<Tile>(grid.tile(0));
+  dexel::Grid& grid = other.grids()[2];
+  auto tile = std::make_shared<dexel::Tile>(grid.tile(0));
   tile->spans[7].far = std::nextafter(4.0, 0);
   grid.set_tile(0, tile);
   EXPECT_NE(hash(block), hash(other));
