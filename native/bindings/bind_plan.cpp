@@ -204,7 +204,7 @@ void bind_plan(py::module_& m) {
   m.def("lift", &lift_all, "tool"_a, "poses"_a, "collider"_a, py::kw_only(), "clearance"_a, "tolerance"_a, "max_lift"_a,
         "max_evaluations"_a, "progress"_a);
   m.def("drop", &drop_all, "tool"_a, "points"_a, "part"_a, "axis"_a, "progress"_a);
-  m.def("cutter_locations", &locate<PencilPath>, "path"_a.none(false), "tool"_a, "collider"_a.none(false),
+  m.def("cutter_locations", &locate<plan::PencilPath>, "path"_a.none(false), "tool"_a, "collider"_a.none(false),
         py::kw_only(), "clearance"_a, "tolerance"_a, "max_lift"_a, "max_inserted"_a, "progress"_a);
   m.def("cutter_locations", &locate_poses, "path"_a.none(false), "tool"_a, "collider"_a.none(false), py::kw_only(),
         "clearance"_a, "tolerance"_a, "max_lift"_a, "max_inserted"_a, "progress"_a);
