@@ -85,7 +85,7 @@ def test_a_tool_without_a_name_has_its_files(tmp_path):
         (
             "a.toml",
             '[[tools]]\nkind = "ball"\ndiameter = 6\nlength = 9\n[[tools]]\nkind = "ball"\n',
-            r"^a\.toml, line 5: tool: length is missing$",
+            r"^a\.toml, line 5: tool: diameter is missing$",
         ),
         ("a.toml", "tools = 3", r"^a\.toml, line 1: a tool, a table"),
     ],
