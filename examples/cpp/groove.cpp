@@ -31,32 +31,32 @@ void run() {
   // A ball end of Ø6 mm goes from end to end, as deep as its radius. A pose is a tip and an axis from tip to spindle.
   const riffler::Tool ball = riffler::cutters::ball(6, 30);
   const std::vector<riffler::Pose> poses{{{-5, 20, 17}, {0, 0, 1}}, {{65, 20, 17}, {0, 0, 1}}};
-  const riffler::Cut cut = riffler::carve(stock, ball, poses);
+  const riffler::sweep::Cut cut = riffler::sweep::carve(stock, ball, poses);
   std::printf("removed %.3f mm3\n", sum(cut.removed));
 
   // The surface: closed, also after the file's float32.
-  const riffler::Mesh part = riffler::to_mesh(stock);
-  riffler::write_mesh(part, "groove.stl");
+  const riffler::Mesh part = riffler::marching::to_mesh(stock);
+  riffler::mesh::write_mesh(part, "groove.stl");
   std::printf("triangles %zu\n", part.triangles.size());
 
   // A smaller ball comes down into the groove. Where does it stop?
-  const riffler::DropCutter drop(part, riffler::cutters::ball(4, 30));
+  const riffler::plan::DropCutter drop(part, riffler::cutters::ball(4, 30));
   std::printf("rests %.4f mm\n", drop({30, 20, 0}).height);
 
   // The same cut as a program with approach and retract, written as NC code and read again.
-  riffler::CutterPath path;
+  riffler::nc::CutterPath path;
   path.poses = poses, path.feed = {600}, path.spindle = 12000, path.tool = 1;
-  const riffler::Program program = riffler::program_from_paths(std::vector{path}, {{1, ball}});
-  riffler::write_nc(program, "groove.ngc");
-  riffler::Program code = riffler::read_nc("groove.ngc");
+  const riffler::nc::Program program = riffler::nc::program_from_paths(std::vector{path}, {{1, ball}});
+  riffler::nc::write_nc(program, "groove.ngc");
+  riffler::nc::Program code = riffler::nc::read_nc("groove.ngc");
   std::printf("rows %zu\n", code.size());
 
   // What the code cuts out of the block, and whether anything collides or gouges the part.
-  riffler::VerifyArguments arguments{.stock = block};
+  riffler::verify::VerifyArguments arguments{.stock = block};
   arguments.part = std::make_shared<const riffler::Mesh>(part);
   arguments.tools = {{1, ball}};
-  const riffler::VerifyReport report = riffler::Verification(std::move(arguments)).run(code);
-  for (const riffler::Finding& finding : report.findings) std::printf("finding: %s\n", finding.message.c_str());
+  const riffler::verify::VerifyReport report = riffler::verify::Verification(std::move(arguments)).run(code);
+  for (const riffler::verify::Finding& finding : report.findings) std::printf("finding: %s\n", finding.message.c_str());
   std::printf("verified %.3f mm3\n", sum(report.removed));
   std::printf("findings %zu\n", report.findings.size());
 }
