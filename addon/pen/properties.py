@@ -1,17 +1,14 @@
 """Which device the hand holds, how it feels, and what its session is doing."""
 
-import zlib
-
 import bpy
 import riffler
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, StringProperty
 
-from ..blender.fields import length
+from ..blender.fields import length, stored_number
 
 RECORDING = "recording"
-# The numbers are what a .blend keeps: those of a kind stay when another kind is added.
 DEVICES = tuple(
-    (kind, kind.replace("-", " ").capitalize(), what, "NONE", zlib.crc32(kind.encode()) >> 1)
+    (kind, kind.replace("-", " ").capitalize(), what, "NONE", stored_number(kind))
     for kind, what in {**riffler.pen.kinds(), RECORDING: "What a hand did before, at its pace"}.items()
 )
 PREFERRED = "preferred"

@@ -67,8 +67,8 @@ def spot(scene, ob, frame=None):
 
 
 def seen(context):
-    """The spot that handles and maps are for; None also where the path takes no keys, and without an error: drawing
-    has nobody to tell."""
+    """The spot that handles and maps are for. None where there is none, where it cannot be found, and where the path
+    takes no keys: errors are for operators, not for drawing."""
     try:
         found = spot(context.scene, plan_object(context))
     except ValueError:

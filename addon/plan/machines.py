@@ -1,16 +1,14 @@
 """What is set of each machine: a group of fields for each, made from what the core says that the machine takes. A field
 that nobody has set is not given."""
 
-import zlib
-
 import bpy
 import riffler
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProperty, PointerProperty
 
+from ..blender.fields import stored_number
 from .pure import machine_fields
 
-# The numbers are what a .blend keeps: those of a machine stay when another machine is added.
-MACHINES = tuple((m, m, what, "NONE", zlib.crc32(m.encode()) >> 1) for m, what in riffler.machines().items())
+MACHINES = tuple((m, m, what, "NONE", stored_number(m)) for m, what in riffler.machines().items())
 FIRST = {"positive": 1000.0, "range": (-100.0, 100.0)}  # what such a field begins with
 
 

@@ -1,24 +1,17 @@
 """The strategies as fields: one choice, and what each is set to, made from the table that riffler has
 (riffler.plan.STRATEGIES)."""
 
-import zlib
-
-from bpy.props import EnumProperty, FloatProperty, IntProperty
+from bpy.props import EnumProperty, IntProperty
 from riffler.plan import STRATEGIES
 
-from ..blender.fields import length
+from ..blender.fields import angle, length, stored_number
 from ..common import units
 
 FIRST = next(iter(STRATEGIES))  # its fields have no name in front: scripts and files have them since before the others
 
 
-def _number(name):
-    """What a .blend keeps of an entry: it stays where another one is added."""
-    return zlib.crc32(name.encode()) >> 1
-
-
 def _entries(choices):
-    return [(value.upper(), label, about, "NONE", _number(value)) for value, label, about in choices]
+    return [(value.upper(), label, about, "NONE", stored_number(value)) for value, label, about in choices]
 
 
 def identifier(strategy, parameter):
@@ -34,7 +27,7 @@ def _field(parameter):
     if not parameter.unit:
         return IntProperty(default=default, min=int(parameter.low), max=int(parameter.high), **how)
     if parameter.unit == "rad":
-        return FloatProperty(subtype="ANGLE", default=default, min=parameter.low, max=parameter.high, **how)
+        return angle(parameter.label, default, about, parameter.low, parameter.high)
     return length(parameter.label, default, about, parameter.low, parameter.high)
 
 

@@ -3,9 +3,9 @@
 import math
 
 import bpy
-from bpy.props import BoolProperty, EnumProperty, FloatProperty, StringProperty
+from bpy.props import BoolProperty, EnumProperty, StringProperty
 
-from ..blender.fields import length
+from ..blender.fields import angle, length
 from ..common import presets, units
 
 KINDS = tuple((kind, *presets.LABELS[kind]) for kind in presets.SIZES)
@@ -15,14 +15,7 @@ def _field(size):
     if size.unit == "bool":
         return BoolProperty(name=size.label, default=size.default, description=size.description)
     if size.unit == "rad":
-        return FloatProperty(
-            name=size.label,
-            default=size.default,
-            min=size.low,
-            max=size.high,
-            subtype="ANGLE",
-            description=size.description,
-        )
+        return angle(size.label, size.default, size.description, size.low, size.high)
     return length(size.label, size.default, size.description, size.low, size.high)
 
 

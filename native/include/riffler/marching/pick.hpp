@@ -23,7 +23,7 @@ class FrozenSurface {
   /// As Mesher::pick.
   std::optional<SurfaceHit> pick(const Vec3& origin, const Vec3& direction, PickStats& stats) const;
   std::size_t triangles() const;
-  /// Of its triangles, whoever shares them.
+  /// Bytes of its triangles, those shared with others included.
   std::size_t nbytes() const;
 
  private:

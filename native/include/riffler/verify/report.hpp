@@ -20,7 +20,7 @@ enum class Kind : unsigned char { Rapid, Holder, Shank, Fixture, Gouge, Rest, Sp
 /// "rapid", "holder", …
 const char* name_of(Kind kind);
 
-/// Of a tool in the machine. Beyond: where its description has ended and nobody knows what there is.
+/// Part of a tool in the machine. Beyond: above the end of its description.
 enum class Member : unsigned char { Cutter, Shank, Holder, Beyond };
 
 /// Operation counts: what a run did, and what it did not need to do.
