@@ -103,9 +103,7 @@ class RIFFLER_OT_plan_find(LongWork, properties.FindSettings, bpy.types.Operator
             found = given_curves.selected(context, strategy_fields.options(self).get("tolerance", 0.01))
         elif strategy.needs == "paths":
             ob = context.scene.objects[self.replace] if self.replace else plan_store.active(context)
-            plan = plan_store.plan(ob) if ob is not None else None
-            kept = [] if plan is None else sorted({*range(len(plan.paths))} - plan.off - set(plan.depths))
-            found = [plan.paths[k] for k in kept]
+            found = [] if ob is None else plan_store.plan(ob).sources
         if strategy.needs != "part" and not found:
             raise ValueError(local(strategy.missing))
         return found

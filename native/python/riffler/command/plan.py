@@ -118,10 +118,9 @@ def read_given(needs: str, source: Path | None) -> tuple[list, Any]:
     if needs == "curves":
         return curves.read_curves(source), None
     planned = plan.load(source)
-    left = sorted({*range(len(planned.paths))} - planned.off - set(planned.depths))
-    if not left:
+    if not planned.sources:
         raise ValueError(f"{source.name}: every path is off, or has no ball at its walls")
-    return [planned.paths[k] for k in left], planned.tool
+    return planned.sources, planned.tool
 
 
 def summary(found: plan.Found, path: Path, out: Path, source: Path | None) -> dict[str, Any]:

@@ -43,6 +43,11 @@ class Plan:
         """mm that the cutter enters the part by, as ``depths`` say of the paths that are on."""
         return max((depth for k, depth in self.depths.items() if k not in self.off), default=0.0)
 
+    @property
+    def sources(self) -> list:
+        """Paths from which a strategy may start: those that are on and whose poses may be changed."""
+        return [path for k, path in enumerate(self.paths) if k not in self.off and k not in self.depths]
+
 
 def part_of(mesh, name: str) -> dict[str, str]:
     """What a plan keeps of its part: its name and the hash of its vertices and triangles."""
