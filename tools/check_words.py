@@ -1,0 +1,193 @@
+"""Counts words that make the project's text hard to read, in comments, docstrings, messages and documents, and holds
+every file to its count in tools/words_allowed.txt: a count may only shrink.
+
+    tools/check_words.py                   fails where a file has more of them than allowed, or fewer: shrink the list
+    tools/check_words.py --update          shrinks the list; refuses to let it grow
+    tools/check_words.py --show [PATH ...] prints each one: file, line, what to write instead
+
+What to write: name the thing, then say what it does; active voice, present tense, one idea a sentence.
+"""
+
+from __future__ import annotations
+
+import io
+import re
+import subprocess
+import sys
+import tokenize
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from shell import ROOT, StepError, main
+
+ALLOWED = ROOT / "tools" / "words_allowed.txt"
+# What is looked for, and what stands there instead.
+WORDS = {
+    r"(?:^|(?<=[.:!?] ))Of (?!course)": "the subject first: 'Of the moves that …' -> 'Moves that …'",
+    r"\banew\b": "again",
+    r"\b(?:who|what|which|when|where)ever\b": "the component or the user by name",
+    r"\b(?:nobody|somebody)\b": "no caller, no user, another thread …",
+    r"\bwho (?:asks|waits|wants|needs|goes|reads|writes|calls|looks)\b": "the component by name, or 'to …'",
+    r"\b(?:told|untold)\b": "given, passed, reported, known",
+    r"\b(?:is|are|was|were|be|been|not) said\b": "reported, stated",
+    r"\bwhat of\b": "the part that",
+    r"\bas (?:it is|they are)\b": "unchanged",
+    r"\ba shade\b": "slightly",
+    r"\bgo(?:es)? on\b": "continues",
+    r"\bbesides?\b": "next to, compared with, at the same time as, also",
+    r"(?<!same )(?<!one )(?<!two )(?<!all the )(?<!half )(?<!by )\bways?\b(?! out\b)": "path, distance, method …",
+}
+PATTERN = re.compile("|".join(f"({pattern})" for pattern in WORDS), re.MULTILINE)
+ADVICE = tuple(WORDS.values())
+# Texts of others, generated ones, and this list's own files.
+EXEMPT = re.compile(
+    r"^(tools/check_words\.py|tools/tests/test_check_words\.py|third_party/|LICENSE|.*\.pyi$|docs/operators\.md)"
+)
+C_TOKEN = re.compile(r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\'', re.DOTALL)
+FENCE = re.compile(r"^```.*?^```", re.MULTILINE | re.DOTALL)
+
+
+@dataclass(frozen=True)
+class Hit:
+    path: str
+    line: int
+    word: str
+    advice: str
+
+
+def tracked() -> list[str]:
+    """Every file of the project: what git knows, and what is new and not ignored."""
+    done = subprocess.run(
+        ["git", "ls-files", "--cached", "--others", "--exclude-standard"],
+        cwd=ROOT, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    if done.returncode != 0:
+        raise StepError(f"git ls-files failed: {done.stderr.strip()}")
+    return [name for name in done.stdout.splitlines() if (ROOT / name).is_file()]
+
+
+def blank(text: str) -> str:
+    """The same lines without their characters, so that line numbers agree."""
+    return re.sub(r"[^\n]", " ", text)
+
+
+def prose_of_markdown(text: str) -> Iterator[tuple[int, str]]:
+    yield 1, re.sub(r"`[^`\n]*`", lambda m: "`" + " " * (len(m[0]) - 2) + "`", FENCE.sub(lambda m: blank(m[0]), text))
+
+
+def prose_of_c(text: str) -> Iterator[tuple[int, str]]:
+    """Comments, lines of `//` that follow one another as one text, and string literals with a space."""
+    end, start, lines = -1, 0, []
+    for match in C_TOKEN.finditer(text):
+        token = match[0]
+        line = text.count("\n", 0, match.start()) + 1
+        if token.startswith("//"):
+            if lines and line != end + 1:
+                yield start, "\n".join(lines)
+                lines = []
+            start = start if lines else line
+            lines.append(token.lstrip("/!< "))
+            end = line
+        elif token[0] != "'" and (token[0] == "/" or " " in token):
+            yield line, token.strip('"')
+    if lines:
+        yield start, "\n".join(lines)
+
+
+def prose_of_python(text: str) -> Iterator[tuple[int, str]]:
+    """Comments, and string literals with a space, of which docstrings are some."""
+    lines, start, end = [], 0, -1
+    for token in tokenize.generate_tokens(io.StringIO(text).readline):
+        line = token.start[0]
+        if token.type == tokenize.COMMENT:
+            if lines and line != end + 1:
+                yield start, "\n".join(lines)
+                lines = []
+            start = start if lines else line
+            lines.append(token.string.lstrip("# "))
+            end = line
+        elif token.type == tokenize.STRING and " " in token.string:
+            prefix, text = re.match(r"(\w*)(?:\"\"\"|'''|\"|')(.*)", token.string, re.DOTALL).groups()
+            yield line, re.sub(r"\{[^{}]*\}", "{}", text) if "f" in prefix.lower() else text
+    if lines:
+        yield start, "\n".join(lines)
+
+
+PROSE = {".md": prose_of_markdown, ".py": prose_of_python} | dict.fromkeys((".c", ".h", ".cpp", ".hpp"), prose_of_c)
+
+
+def hits_in(path: str, text: str) -> Iterator[Hit]:
+    for first, prose in PROSE[Path(path).suffix](text):
+        # One space for each line break, so that a sentence's start is seen across lines.
+        flat = prose.replace("\n", " ") if not path.endswith(".md") else prose
+        for match in PATTERN.finditer(flat):
+            yield Hit(path, first + prose.count("\n", 0, match.start()), match[0].strip(), ADVICE[match.lastindex - 1])
+
+
+def hits(paths: list[str]) -> list[Hit]:
+    return [hit for path in paths for hit in hits_in(path, (ROOT / path).read_text())]
+
+
+def checked(names: list[str]) -> list[str]:
+    """The files that have prose, of those that the project has, in the named folders."""
+    return sorted(
+        name
+        for name in tracked()
+        if Path(name).suffix in PROSE
+        and not EXEMPT.match(name)
+        and (not names or any(name == n or name.startswith(n.rstrip("/") + "/") for n in names))
+    )
+
+
+def read_allowed() -> dict[str, int]:
+    lines = ALLOWED.read_text().splitlines() if ALLOWED.exists() else []
+    return {path: int(count) for count, path in (line.split(maxsplit=1) for line in lines if line)}
+
+
+def counts(found: list[Hit]) -> dict[str, int]:
+    result: dict[str, int] = {}
+    for hit in found:
+        result[hit.path] = result.get(hit.path, 0) + 1
+    return result
+
+
+def problems(found: list[Hit], allowed: dict[str, int]) -> list[str]:
+    """What the check fails for; a file with more than its count is shown with all its words."""
+    result = []
+    now = counts(found)
+    for path in sorted(now.keys() | allowed.keys()):
+        have, may = now.get(path, 0), allowed.get(path, 0)
+        if have > may:
+            result += [f"{h.path}:{h.line}: {h.word!r}: {h.advice}" for h in found if h.path == path]
+            result.append(f"{path}: {have} words of the list, {may} allowed")
+        elif have < may:
+            result.append(f"{path}: {have} words of the list, {may} allowed: tools/check_words.py --update")
+    return result
+
+
+def update(found: list[Hit], allowed: dict[str, int]) -> None:
+    now = counts(found)
+    if grown := [path for path, count in now.items() if ALLOWED.exists() and count > allowed.get(path, 0)]:
+        raise StepError("the list may only shrink; more words than allowed in " + ", ".join(sorted(grown)))
+    ALLOWED.write_text("".join(f"{count} {path}\n" for path, count in sorted(now.items())))
+
+
+def entry() -> None:
+    match sys.argv[1:]:
+        case ["--show", *names]:
+            for hit in hits(checked(names)):
+                print(f"{hit.path}:{hit.line}: {hit.word!r}: {hit.advice}")
+        case ["--update"]:
+            update(hits(checked([])), read_allowed())
+        case []:
+            found = hits(checked([]))
+            if wrong := problems(found, read_allowed()):
+                raise StepError("\n".join(wrong))
+            print(f"{len(found)} words of the list are left in the project's text")
+        case _:
+            raise StepError("usage: check_words.py [--update | --show [PATH ...]]")
+
+
+if __name__ == "__main__":
+    main(entry)
