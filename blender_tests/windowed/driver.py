@@ -152,6 +152,13 @@ class Screen:
         return self.window.event_simulate(name, "RELEASE", x=x, y=y, **modifiers)
 
 
+def where(generator):
+    """The lines at which a script waits, from the outermost generator to the innermost."""
+    while generator is not None and getattr(generator, "gi_frame", None) is not None:
+        yield f"{Path(generator.gi_code.co_filename).name}:{generator.gi_frame.f_lineno}"
+        generator = generator.gi_yieldfrom
+
+
 class Play:
     def __init__(self, name, steps, screen):
         self.name, self.generator, self.screen = name, steps(screen), screen
@@ -164,7 +171,8 @@ class Play:
                 if self.condition():
                     self.condition = None
                 elif time.perf_counter() - self.since > PATIENCE:
-                    raise AssertionError(f"waited {PATIENCE} s in vain at line {self.generator.gi_frame.f_lineno}")
+                    self.screen.shot("in-vain")
+                    raise AssertionError(f"waited {PATIENCE} s in vain at {' > '.join(where(self.generator))}")
                 else:
                     return 0.05
             wanted = next(self.generator)

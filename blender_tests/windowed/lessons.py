@@ -155,7 +155,8 @@ def found(screen, region, words, share):
             screen.move(x, fitting[0])
             yield 0.1
             return
-    raise AssertionError(f"no button has {words}")
+    screen.shot("no-button")
+    raise AssertionError(f"no button has {words}; there are {sorted(set(there.values()))}")
 
 
 def press(screen, *words, region="UI", share=0.6):

@@ -127,6 +127,8 @@ def from_the_menu(screen):
 
 
 MENU = ("RIGHT_ARROW", "UP_ARROW", "RIGHT_ARROW", "DOWN_ARROW")
+if bpy.app.version >= (4, 1):  # from here on the menu begins with Search, and with nothing chosen
+    MENU = ("DOWN_ARROW", *MENU)
 
 
 def over_another_sculpt(screen):
