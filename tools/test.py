@@ -59,7 +59,7 @@ def blender() -> None:
 
 
 def lint() -> None:
-    """Style, layers, words, and that every header stands alone."""
+    """Style, layers, words, commit messages, and that every header stands alone."""
     run(PYTHON, "-m", "ruff", "check", ".")
     run(PYTHON, "-m", "ruff", "format", "--check", ".")
     sources = [path for folder in ("native", "device", "examples") for path in (ROOT / folder).rglob("*.[chp]*")]
@@ -67,6 +67,7 @@ def lint() -> None:
     run(PYTHON.with_name("clang-format"), "--dry-run", "-Werror", *sources)
     run(PYTHON, "tools/check_layers.py")
     run(PYTHON, "tools/check_words.py")
+    run(PYTHON, "tools/check_commits.py")
     build_preset("release", "all_verify_interface_header_sets")
 
 
