@@ -6,7 +6,7 @@
 
 namespace riffler::geom {
 
-/// [near, far] along a ray; empty where near > far. The default is empty and joins as the neutral element.
+/// [near, far] along a ray; empty if near > far. The default is empty, the neutral element of include().
 struct Interval {
   double near = std::numeric_limits<double>::infinity();
   double far = -std::numeric_limits<double>::infinity();

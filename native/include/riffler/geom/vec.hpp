@@ -1,4 +1,4 @@
-// Vectors, matrices and boxes: GLM in double precision under the names that the rest of the core uses.
+// Vectors, matrices and boxes: GLM in double precision, under the names that the rest of the core uses.
 #pragma once
 
 #include <cmath>
@@ -13,7 +13,7 @@ using Vec3f = glm::vec3;
 using Vec3i = glm::ivec3;
 using Mat3 = glm::dmat3;
 
-/// Axis-aligned box. The default box is empty: `lower > upper`, and adding a point makes it that point.
+/// Axis-aligned box. The default box is empty (`lower > upper`); adding a point to it gives that point.
 struct Box3 {
   Vec3 lower{std::numeric_limits<double>::infinity()};
   Vec3 upper{-std::numeric_limits<double>::infinity()};
@@ -37,13 +37,13 @@ inline double squared_length(const Vec3& v) {
   return glm::dot(v, v);
 }
 
-/// `v`, shortened to `max` where it is longer.
+/// Returns `v`, shortened to length `max` if it is longer.
 inline Vec3 clamp_length(const Vec3& v, double max) {
   const double length = glm::length(v);
   return length > max ? max / length * v : v;
 }
 
-/// The three ray directions. A grid of direction D works in the *cyclic frame* of D: local (u, v, w) with w along the
+/// The three ray directions. A grid of direction D works in the *cyclic frame* of D, local (u, v, w) with w along the
 /// ray: "x" → (y, z, x), "y" → (z, x, y), "z" → (x, y, z). The change of frame is a rotation, so it keeps handedness.
 enum class Axis : unsigned char { X = 0, Y = 1, Z = 2 };
 

@@ -1,4 +1,4 @@
-// A mesh's box and volume in one pass.
+// Computes a mesh's box and volume in one pass.
 #pragma once
 
 #include "riffler/mesh/mesh.hpp"
@@ -6,11 +6,11 @@
 namespace riffler::mesh {
 
 struct Measures {
-  Box3 box;           ///< as `bounds`
-  double volume = 0;  ///< mm³, signed; about one of the vertices, so a little less exact than `volume`
+  Box3 box;           ///< same as `bounds`
+  double volume = 0;  ///< mm³, signed; computed about a vertex, so slightly less exact than `volume`
 };
 
-/// Of the vertices that triangles use.
+/// Box and volume of the vertices that triangles use.
 Measures measure(const Mesh& mesh);
 
 }  // namespace riffler::mesh
