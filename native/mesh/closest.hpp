@@ -53,9 +53,9 @@ class Closest {
   /// The nearest point, if nearer than `limit`, of the triangles that satisfy `plane`. A triangle without area
   /// satisfies any angle.
   Hit above(const Vec3& p, double limit, const Above& plane) const;
-  /// Whether one of these triangles may be nearer than `limit` to a point between p and any p + `ways`. The distance
-  /// from a triangle is convex, so along a displacement it falls no faster than its slope at p: a displacement
-  /// perpendicular to the direction of the triangle brings it no nearer.
+  /// Whether one of these triangles may be nearer than `limit` (mm) to any point between p and p displaced by one of
+  /// these vectors. The distance from a triangle is convex, so along a displacement it falls no faster than its slope
+  /// at p: a displacement perpendicular to the direction of the triangle brings it no nearer.
   bool may_meet(const Vec3& p, double limit, std::span<const Vec3> ways, const Above& plane) const;
   /// The nearest point of triangle `t`.
   Hit on(int t, const Vec3& p) const;

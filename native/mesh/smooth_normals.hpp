@@ -16,8 +16,8 @@ class SmoothNormals {
   /// Does not refer to the mesh afterwards; the mesh must be valid. `crease` in rad.
   SmoothNormals(const Mesh& mesh, double crease);
 
-  /// Unit normal at a point of triangle `t`, interpolated between its corners. A triangle without area has the normal
-  /// of the nearest face with one.
+  /// Unit normal at a point of triangle `t`, interpolated between its corners. A triangle without area takes it from
+  /// the triangles around it.
   Vec3 at(int t, const Vec3& p) const;
 
  private:

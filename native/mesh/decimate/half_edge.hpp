@@ -34,7 +34,7 @@ inline OpenMesh::Vec3d to_openmesh(const Vec3& p) {
 struct HalfEdges {
   HalfEdgeMesh mesh;
   std::vector<int> source;  // vertex here → vertex of the original mesh
-  // These two describe the original mesh, whatever happens to the half-edges:
+  // These two always describe the original mesh, even after collapses:
   Adjacency adjacency;
   std::vector<int> corner;  // vertex here at which each half-edge of `adjacency` starts; -1 for triangles left out
 

@@ -12,7 +12,7 @@
 namespace riffler::mesh {
 
 /// Reads a mesh from an STL file's bytes; `name` appears in messages. The file is binary if its size matches the count
-/// at byte 80, whatever the header contains; otherwise it is ASCII if it starts with "solid". Coordinates are float32.
+/// at byte 80, even if its header starts with "solid"; otherwise such a header means ASCII. Coordinates are float32.
 /// Equal vertices (-0 equals 0) become one, numbered in the order of the file; no triangle is dropped. Normals and
 /// attributes are ignored. Throws FormatError naming the byte or line for a wrong count, a truncated file, zero
 /// triangles, or a vertex that is not finite or beyond 1e30.
