@@ -50,7 +50,7 @@ struct CellCase {
   std::uint8_t code = 0;                              // bit c: corner c is inside
   std::uint8_t cycles = 0;                            // number of vertices of the cell
   std::uint8_t problem = kNoFace;                     // an ambiguous face with both its segments in one cycle
-  std::uint16_t second = 0;                           // entry with that face resolved the other way: one vertex more
+  std::uint16_t second = 0;                           // entry that resolves that face differently: one vertex more
   std::uint16_t crossed = 0;                          // bit e: edge e is crossed
   std::array<std::uint8_t, 12> edge{};                // the crossed edges, cycle by cycle
   std::array<std::uint8_t, 5> begin{};                // cycle c owns edge[begin[c]] … edge[begin[c + 1] − 1]

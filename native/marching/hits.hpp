@@ -11,8 +11,8 @@ namespace riffler::marching {
 /// The topology never depends on hits: signs alone decide which edges are crossed.
 struct alignas(16) Hit {
   /// Position along the edge in pitches, up to half a pitch outside [0, 1] if the ray's own end lies there. A weak hit
-  /// is one that its ray does not really have: there is no end nearby, or the end's normal points the wrong way. Its
-  /// normal is the axis, and its position is stored minus kWeak.
+  /// is one that its ray does not really have: there is no end nearby, or the end's normal points in the wrong
+  /// direction. Its normal is the axis, and its position is stored minus kWeak.
   float place;
   std::array<float, 3> normal;  // unit, out of the material, in the lattice's axes
 

@@ -10,10 +10,10 @@ namespace riffler::mesh {
 
 namespace {
 
-constexpr double kLargest = 1e30;  // beyond it, cubes of coordinates leave double's range
+constexpr double kLargest = 1e30;  // beyond it, cubes of coordinates overflow double
 constexpr std::size_t kSumGrain = 1 << 15;
 
-/// Sum of term(t) over all triangles, grouped by fixed chunks, so that it does not depend on the number of threads.
+/// Sum of term(t) over all triangles, grouped in fixed chunks, so it does not depend on the number of threads.
 template <class Term>
 double sum_over_triangles(const Mesh& mesh, const Term& term) {
   const std::size_t n = mesh.triangles.size();
@@ -32,7 +32,7 @@ double sum_over_triangles(const Mesh& mesh, const Term& term) {
 
 void validate(const Mesh& mesh) {
   const auto in_range = [](const Vec3& v) {
-    // Written so that NaN fails.
+    // in this form, NaN fails
     return std::abs(v.x) <= kLargest && std::abs(v.y) <= kLargest && std::abs(v.z) <= kLargest;
   };
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
@@ -49,7 +49,7 @@ void validate(const Mesh& mesh) {
 
 double volume(const Mesh& mesh) {
   if (mesh.empty()) return 0;
-  // About the centre: far from the origin the tetrahedra to it would be huge and cancel.
+  // About the centre: far from the origin, the tetrahedra to it would be huge and cancel.
   const Box3 box = bounds(mesh);
   const Vec3 centre = box.lower + 0.5 * (box.upper - box.lower);
   return sum_over_triangles(mesh,

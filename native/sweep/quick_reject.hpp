@@ -16,7 +16,7 @@ struct QuickReject {
   enum class Kind : unsigned char { None, Ball, BallAndFlank, Planes } kind = Kind::None;
   /// A ball on a straight path.
   double from[3], way[3];  ///< centre and displacement
-  double per_square;       ///< 1 / |way|², or 0
+  double per_square;       ///< inverse square of the displacement's length, or 0
   double square;           ///< of the radius, with a margin for rounding
   /// Bounds the rest of the tool, above the ball: no part of it is farther out than the ball in directions whose sine
   /// against the axis is at most −lean.

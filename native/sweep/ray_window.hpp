@@ -22,14 +22,14 @@ struct alignas(64) RemovedSums {
   double moment[3][base::kLanes] = {};     ///< Σ length × (middle − pivot) × direction
 };
 
-/// The tool's motion, which gives the direction of the force: at time t, the material point at p has the velocity way +
-/// spin × (p − tip − t way).
+/// The tool's motion, which gives the direction of the force: at time t, the material point at p has the velocity D +
+/// spin × (p − tip − t D), with D the displacement of the tip.
 struct ForceLaw {
   double tip[3], way[3], spin[3];
   double axis[3];   ///< direction used where nothing moves
   double pivot[3];  ///< reference point of the moment
   bool turns;       ///< spin is not zero
-  double speed;     ///< |way|
+  double speed;     ///< length of D
 };
 
 struct RayWindow {

@@ -26,7 +26,7 @@ struct TurningBody {
   bool leans;     ///< whether a piece is a cone
   double widest;  ///< largest radius
   double t0, t1, origin;
-  double tip[3], way[3];    ///< tip(t) = tip + t way, heights from the origin; way is also the velocity
+  double tip[3], way[3];    ///< the tip at t = 0, heights from the origin, and its velocity
   double axis[3], side[3];  ///< axis(t) = cos θ axis + sin θ side, θ = angle (t − middle)
   double middle, angle;
   /// The poses at t0 and t1.

@@ -148,10 +148,10 @@ class StraightLanes {
     add_far(both(far, on_side(p, height(s, way))), s, way);
   }
 
-  /// Height along the axis of the rays' points at s when the tool has moved by `way`.
+  /// Height along the axis of the rays' points at s when the tool has moved this far along its path.
   V height(V s, V way) const { return less(hn::Add(r_.z, hn::Mul(s, set(b_.oz))), way, b_.mo); }
 
-  /// Lanes whose point at s lies in the piece when the tool has moved by `way`.
+  /// Lanes whose point at s lies in the piece when the tool has moved this far along its path.
   M holds(const SweptShape& p, V s, V way) const {
     const V a = hn::Sub(hn::Add(r_.x, hn::Mul(s, set(b_.tilt))), hn::Mul(way, set(b_.m1)));
     const V b = less(r_.y, way, b_.m2), z = height(s, way);
