@@ -18,7 +18,7 @@ std::string row(std::size_t i) {
   return "poses, row " + std::to_string(i) + ": ";
 }
 
-/// What a call gives back, one entry per move; asked of the system only where it may matter.
+/// Checks that the result, one entry per move, fits in memory. Small results skip the system call.
 void check_memory(std::size_t moves) {
   const double bytes = static_cast<double>(moves) * (sizeof(double) + 2 * sizeof(Vec3));
   if (moves < 1'000'000 || bytes <= dexel::available_memory()) return;
@@ -64,7 +64,7 @@ Cut carve(Volume& volume, const Tool& tool, std::span<const Pose> poses, const C
   check_memory(moves);
   Cut cut{std::vector<double>(moves), std::vector<Vec3>(moves, Vec3(0)), std::vector<Vec3>(moves, Vec3(0))};
   const std::vector<ConvexGroup> cutter = convex_groups(tool.cutter());
-  // A plain carve cuts the volume's own tiles, and brings them back where it fails.
+  // A plain carve cuts the volume's own tiles and restores them if it fails.
   std::optional<CutRegion> region;
   if (options.mode == CarveMode::Add || options.protect) region = CutRegion::of(volume, options.mode, options.protect);
   Rollback rollback;

@@ -1,4 +1,4 @@
-// .rvol → volume
+// Reads .rvol files.
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -23,7 +23,7 @@ struct Header {
   std::uint32_t tiles;
 };
 
-/// One chunk as its header describes it; `payload` begins at byte `at` + kChunkHeader of the file.
+/// One chunk as described by its header; `payload` begins at byte `at` + kChunkHeader of the file.
 struct Chunk {
   std::size_t grid;
   std::uint32_t kind, items, spans;
@@ -83,7 +83,7 @@ Header Reader::header() const {
   return header;
 }
 
-/// Before anything is allocated: the tiles' map and the spans must be such as this many bytes can hold.
+/// Checks before any allocation that a file of this length can hold this many tiles and spans.
 void Reader::check_affordable(const Header& header) const {
   const Frame& frame = header.frame;
   const double most = static_cast<double>(base::kMaxDeflated) * static_cast<double>(bytes_.size());
@@ -93,7 +93,7 @@ void Reader::check_affordable(const Header& header) const {
     places += std::ceil(std::max(1.0, std::round(size.x)) / kTileSide) *
               std::ceil(std::max(1.0, std::round(size.y)) / kTileSide);
   }
-  // A place of the map takes four planes, a span sixteen or more, a tile's counts four of 1024 bytes.
+  // An entry of the map takes four planes, a span sixteen or more, a tile's counts four of 1024 bytes.
   if (!(places * 4 <= most)) fail(24, "the box has more tiles than a file of this length can describe");
   const auto spans = static_cast<double>(header.spans), tiles = static_cast<double>(header.tiles);
   if (!(spans * 16 + tiles * 4 * kTileRays <= most))
@@ -114,7 +114,7 @@ Chunk Reader::chunk(std::size_t at, std::size_t grid) const {
   return chunk;
 }
 
-/// Walks over the chunks' headers; their payloads are looked at later, in parallel.
+/// Reads the chunk headers; payloads are read later, in parallel.
 std::vector<Chunk> Reader::chunks(std::size_t grids, const Header& header) const {
   std::vector<Chunk> all;
   std::size_t at = kHeader, maps = 0;
@@ -200,7 +200,7 @@ TilePtr Reader::tile(const Chunk& chunk, const Grid& grid, std::span<const std::
   return builder.finish();
 }
 
-/// Puts the tile there unless it has material on rays that lie beyond the grid.
+/// Stores the tile, unless it has material on rays outside the grid.
 void Reader::place(Grid& grid, std::size_t t, const TilePtr& tile) const {
   const int tu = static_cast<int>(t) / grid.tiles_v(), tv = static_cast<int>(t) % grid.tiles_v();
   const int rows = grid.nu() - tu * kTileSide, columns = grid.nv() - tv * kTileSide;
