@@ -21,7 +21,7 @@ class HomeProcess {
   void check(const char* what) const {
     if (!here())
       throw std::runtime_error(std::string(what) +
-                               " belongs to the process that this one was forked from: make it anew here");
+                               " belongs to the process that this one was forked from: create a new one here");
   }
 
  private:

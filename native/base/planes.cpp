@@ -157,7 +157,7 @@ void PlaneReader::plane(std::size_t n) {
   stream.avail_in = static_cast<uInt>(deflated.size());
   stream.next_out = plane_.data(), stream.avail_out = static_cast<uInt>(n);
   if (inflate(&stream, Z_FINISH) != Z_STREAM_END || stream.avail_in != 0 || stream.avail_out != 0)
-    fail("a plane's deflate data is broken or of another length");
+    fail("a plane's deflate data is broken or has the wrong length");
 }
 
 template <class T>

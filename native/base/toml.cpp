@@ -124,7 +124,7 @@ glm::dvec2 TomlReader::growing_pair(const toml::node& node, std::string_view key
   const toml::array* pair = node.as_array();
   if (!pair || pair->size() != 2) fail(node, std::string(key) + " must be two numbers");
   const glm::dvec2 out(number((*pair)[0], key), number((*pair)[1], key));
-  if (!(out.x < out.y)) fail(node, std::string(key) + " must grow");
+  if (!(out.x < out.y)) fail(node, std::string(key) + " must be in increasing order");
   return out;
 }
 

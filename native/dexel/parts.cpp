@@ -134,7 +134,7 @@ Pieces number_pieces(const Volume& volume, const std::vector<Numbers>& numbers, 
   while (order.size() > 1 && volume_of[order.back()] < least) order.pop_back();
   if (order.size() > kMaxParts)
     throw std::invalid_argument("the volume has " + std::to_string(order.size()) + " pieces, more than " +
-                                std::to_string(kMaxParts) + "; ask for those that are larger, by least (mm³)");
+                                std::to_string(kMaxParts) + "; set least (mm³) to keep only larger ones");
   std::vector<Number> piece(spans, 0);
   for (std::size_t k = 0; k < order.size(); ++k) piece[order[k]] = static_cast<Number>(k);
   Pieces out{order.size(), std::vector<Number>(spans)};

@@ -23,7 +23,7 @@ std::vector<const ActiveBrick*> active_of(const MeshState& state, std::span<cons
   std::vector<std::size_t> sorted(bricks.begin(), bricks.end());
   std::sort(sorted.begin(), sorted.end());
   if (const auto twice = std::adjacent_find(sorted.begin(), sorted.end()); twice != sorted.end())
-    throw std::invalid_argument("bricks: " + std::to_string(*twice) + " is there twice");
+    throw std::invalid_argument("bricks: " + std::to_string(*twice) + " is listed twice");
   if (!sorted.empty() && sorted.back() >= state.bricks.size())
     throw std::out_of_range("there is no brick " + std::to_string(sorted.back()) + ", only " +
                             std::to_string(state.bricks.size()));

@@ -43,8 +43,8 @@ void validate(const Mesh& mesh) {
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     for (int k = 0; k < 3; ++k)
       if (const int v = mesh.triangles[t][k]; v < 0 || v >= n)
-        throw std::invalid_argument("triangles, row " + std::to_string(t) + ": vertex " + std::to_string(v) + " of " +
-                                    std::to_string(n));
+        throw std::invalid_argument("triangles, row " + std::to_string(t) + ": no vertex " + std::to_string(v) +
+                                    ": there are " + std::to_string(n) + ", counted from 0");
 }
 
 double volume(const Mesh& mesh) {

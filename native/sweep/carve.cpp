@@ -39,8 +39,9 @@ void check_path(std::span<const Pose> poses) {
     if (i == 0) continue;
     const Vec3 axis = p.axis / length, before = glm::normalize(poses[i - 1].axis);
     if (glm::dot(before, axis) < 0 && glm::length(glm::cross(before, axis)) < 1e-14)
-      throw std::invalid_argument(row(i) + "the axis is exactly opposite to that of the row before, so the way it " +
-                                  "turns is undefined; put a pose between");
+      throw std::invalid_argument(row(i) +
+                                  "the axis is exactly opposite to that of the row before, so its rotation is " +
+                                  "undefined; put a pose between");
   }
 }
 

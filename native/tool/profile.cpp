@@ -68,12 +68,12 @@ Profile::Profile(std::vector<ProfileSegment> segments) : segments_(std::move(seg
     const ProfileSegment& s = segments_[i];
     if (!std::isfinite(s.to.x) || !std::isfinite(s.to.y)) refuse(i, "its end is not finite");
     if (s.to.x < 0) refuse(i, "its radius is negative");
-    if (std::max(s.to.x, s.to.y) > kLargest) refuse(i, "it is larger than a tool may be, 1e6 mm");
+    if (std::max(s.to.x, s.to.y) > kLargest) refuse(i, "it exceeds the largest size of a tool, 1e6 mm");
     if (s.to.y < from.y) refuse(i, "its height falls; heights go from the tip upwards");
     if (s.centre) {
       if (!std::isfinite(s.centre->x) || !std::isfinite(s.centre->y)) refuse(i, "its centre is not finite");
       if (std::max(std::abs(s.centre->x), std::abs(s.centre->y)) > kLargest)
-        refuse(i, "its centre is farther away than 1e6 mm; where the arc is that flat, a line will do");
+        refuse(i, "its centre is farther away than 1e6 mm; replace so flat an arc by a line");
       check_arc(i, from, s.to, *s.centre);
       if (bulges(from, s.to, *s.centre) && s.centre->y > from.y && s.centre->y < s.to.y)
         max_radius_ = std::max(max_radius_, s.centre->x + glm::length(from - *s.centre));

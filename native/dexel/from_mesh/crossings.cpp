@@ -54,7 +54,7 @@ Projection::Projection(const Mesh& mesh, const Grid& grid) : nu_(grid.nu()), nv_
     reach = std::max(reach, std::abs(x) / pitch + 1);
   const int bits = std::ilogb(reach) + 1;
   if (bits > kCoordinateBits)
-    throw std::invalid_argument("pitch is too fine for a mesh as large as this: its vertices lie 2^50 cells away");
+    throw std::invalid_argument("pitch is too fine for so large a mesh: its vertices lie 2^50 cells or more away");
   lattice_ = std::ldexp(1.0, std::min(kLatticeBits, kCoordinateBits - bits));
   slack_ = std::ldexp(reach, -48);
 

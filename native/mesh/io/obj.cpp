@@ -107,7 +107,7 @@ class ObjReader {
     const auto n = static_cast<std::int64_t>(welded_.size());
     const std::int64_t i = *index < 0 ? n + *index : *index - 1;
     if (*index == 0 || i < 0 || i >= n)
-      scan_.fail("vertex " + std::to_string(*index) + " of " + std::to_string(n) + " so far");
+      scan_.fail("no vertex " + std::to_string(*index) + ": " + std::to_string(n) + " are defined so far");
     return welded_[static_cast<std::size_t>(i)];
   }
 

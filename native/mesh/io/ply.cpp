@@ -313,14 +313,15 @@ class BodyReader {
   int corner(const Property& p) {
     const std::int64_t v = values_.integer(*p.type);
     if (v < 0 || v >= static_cast<std::int64_t>(welded_.size()))
-      values_.fail("vertex " + std::to_string(v) + " of " + std::to_string(welded_.size()) + " (counted from 0)");
+      values_.fail("no vertex " + std::to_string(v) + ": there are " + std::to_string(welded_.size()) +
+                   ", counted from 0");
     return welded_[static_cast<std::size_t>(v)];
   }
 
   std::size_t length(const Property& list) {
     const std::int64_t n = values_.integer(*list.count);
     if (n < 0 || static_cast<std::size_t>(n) > values_.left() / list.type->size)
-      values_.fail("a list of " + std::to_string(n) + " values");
+      values_.fail("a list with " + std::to_string(n) + " values");
     return static_cast<std::size_t>(n);
   }
 

@@ -15,7 +15,7 @@ class Ring {
  public:
   /// A queue for up to `capacity` values. Throws std::invalid_argument if it is 0.
   explicit Ring(std::size_t capacity) : slots_(capacity) {
-    if (capacity == 0) throw std::invalid_argument("a ring must have room");
+    if (capacity == 0) throw std::invalid_argument("a ring's capacity must not be 0");
   }
 
   std::size_t capacity() const noexcept { return slots_.size(); }
