@@ -30,12 +30,12 @@ struct SweptShape : PieceShape {
   SectionLine outline;
 };
 
-/// The swept volume of a convex group on a straight path at constant orientation. It is convex, so a ray meets it in
-/// one interval. In the plane spanned by ray and motion, with coordinates (s along the ray, τ along the path), its
-/// section is { group at τ contains the point } ∩ { 0 ≤ τ ≤ way }, a convex set; [near, far] are its extreme s. The
-/// extremes are taken over *all* hits that lie in the body (the pieces at both ends of the path, their swept faces, the
-/// silhouettes n · V = 0). Every candidate belongs to the body and every part of its boundary has one, so no case
-/// analysis can open or invert an interval (methods: "Tool motion and its swept volume").
+/// The swept volume of a convex group on a straight path of length L at constant orientation. It is convex, so a ray
+/// meets it in one interval. In the plane spanned by ray and motion, with coordinates (s along the ray, τ along the
+/// path), its section is { group at τ contains the point } ∩ { 0 ≤ τ ≤ L }, a convex set; [near, far] are its extreme
+/// s. The extremes are taken over *all* hits that lie in the body (the pieces at both ends of the path, their swept
+/// faces, the silhouettes n · V = 0). Every candidate belongs to the body and every part of its boundary has one, so no
+/// case analysis can open or invert an interval (methods: "Tool motion and its swept volume").
 ///
 /// Frame: the cyclic frame of a grid, with rays along its third axis and s measured from the height of the tip at the
 /// start, so that coordinates far from the origin lose no precision. Three vectors e1, e2, axis with e1 × e2 = axis;

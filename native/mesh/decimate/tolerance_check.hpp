@@ -48,7 +48,7 @@ struct Traces {
   /// Deviation of one face.
   struct Flat {
     float error = 0;  // mm, maximum deviation caused by dropped vertices
-    float edge = 0;   // mm, no longer old edge crosses the face
+    float edge = 0;   // mm, maximum length of the old edges that cross the face
   };
   std::vector<Flat> flat;
 };

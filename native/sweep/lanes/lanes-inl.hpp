@@ -33,8 +33,8 @@ HWY_INLINE RayIntervals common(RayIntervals a, RayIntervals b) {
   return {max(a.near, b.near), min(a.far, b.far)};
 }
 
-/// {s : q2 s² + 2 q1 s + q0 ≤ 0} for one q2 ≥ 0, with a root formula that avoids cancellation. `tangent`: relative
-/// error of q1² by which rounding may have lost a double root.
+/// {s : q2 s² + 2 q1 s + q0 ≤ 0} for one q2 ≥ 0, with a root formula that avoids cancellation. `tangent`: a negative
+/// discriminant counts as a double root up to this fraction of q1², because it may be due to rounding.
 HWY_INLINE RayIntervals at_most_zero(double q2, double per_q2, V q1, V q0, double tangent = 0) {
   const V square = hn::Mul(q1, q1), disc = hn::Sub(square, hn::Mul(set(q2), q0));
   const M real = hn::Ge(disc, hn::Mul(set(-tangent), square));

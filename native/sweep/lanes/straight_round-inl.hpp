@@ -2,7 +2,7 @@
 //
 // The distance D(s, τ) from a point of the section to the disc (for a barrel, to a circle beyond the axis) is convex in
 // both variables, and so is its square F. A point with F = r², ∂F/∂s < 0 and ∂F/∂τ = 0 (or at an end of the path, with
-// the slope pointing outwards) *is* the near end, by whatever method it was found (Karush-Kuhn-Tucker conditions). If a
+// the slope pointing outwards) *is* the near end, no matter how it was found (Karush-Kuhn-Tucker conditions). If a
 // tangent plane of F stays above r² for all heights and path lengths, there is no end. The search tests both conditions
 // at every step. Each step replaces F by a quadratic, which is exact for a ball, and for any Round whose axis is
 // parallel to the ray.

@@ -13,6 +13,7 @@ namespace riffler::base {
 /// Allocates memory for bulk data, in huge pages where the system has them: a first touch of a 4 kB page costs more
 /// than filling it.
 void* allocate_bulk(std::size_t bytes);
+/// Frees memory from allocate_bulk.
 void free_bulk(void* memory) noexcept;
 
 /// Leaves elements that `resize` adds uninitialised: the caller writes them next, often from several threads.

@@ -18,6 +18,7 @@ class Ring {
     if (capacity == 0) throw std::invalid_argument("a ring's capacity must not be 0");
   }
 
+  /// Maximum number of values.
   std::size_t capacity() const noexcept { return slots_.size(); }
   /// Number of values in the queue: a lower bound when the consumer calls it, an upper bound when the producer does.
   std::size_t size() const noexcept {

@@ -19,10 +19,13 @@ class Grid {
 
   Axis axis() const { return axis_; }
   double pitch() const { return pitch_; }
+  /// Number of rays along u and v.
   int nu() const { return nu_; }
   int nv() const { return nv_; }
+  /// Number of tiles along u and v.
   int tiles_u() const { return tiles_u_; }
   int tiles_v() const { return tiles_v_; }
+  /// Whether spans have normals at their ends.
   bool has_normals() const { return with_normals_; }
   /// The box in the cyclic frame: its x, y, z are u, v, w.
   const Box3& box() const { return box_; }
@@ -34,6 +37,7 @@ class Grid {
   double shifted_u(int i) const { return u(i) + 0.7 * kRayShift * pitch_; }
   double shifted_v(int j) const { return v(j) + kRayShift * pitch_; }
 
+  /// Exact position of ray (i, j), mm: the middle of a cell.
   double u(int i) const { return box_.lower.x + (i + 0.5) * pitch_; }
   double v(int j) const { return box_.lower.y + (j + 0.5) * pitch_; }
 
@@ -45,11 +49,14 @@ class Grid {
   double area(int i, int j) const { return width_u(i) * width_v(j); }
   /// Smallest cell area, mm².
   double least_area() const;
+  /// Whether all cells along u or v are one pitch wide.
   bool even_u() const { return last_u_ == pitch_; }
   bool even_v() const { return last_v_ == pitch_; }
 
   std::size_t tile_count() const { return tiles_.size(); }
+  /// Number of the tile in row `tile_u`, column `tile_v` of the tiles.
   std::size_t tile_index(int tile_u, int tile_v) const { return static_cast<std::size_t>(tile_u) * tiles_v_ + tile_v; }
+  /// Tiles by number.
   const Tile& tile(std::size_t index) const { return *tiles_[index]; }
   const std::shared_ptr<const Tile>& shared_tile(std::size_t index) const { return tiles_[index]; }
   void set_tile(std::size_t index, std::shared_ptr<const Tile> tile) { tiles_[index] = std::move(tile); }
@@ -69,12 +76,16 @@ class Grid {
   /// Gives every ray one span through the whole box. Tiles of equal shape share their storage until they are cut.
   void fill();
 
+  /// The spans of ray (i, j), sorted and disjoint.
   std::span<const Span> ray(int i, int j) const { return owner(i, j).ray(ray_index(i, j)); }
+  /// The normals at the ends of these spans; empty if the grid stores none.
   std::span<const SpanNormals> ray_normals(int i, int j) const { return owner(i, j).ray_normals(ray_index(i, j)); }
+  /// Number of ray (i, j) in its tile.
   static int ray_index(int i, int j) { return (i % kTileSide) * kTileSide + j % kTileSide; }
 
   /// Sum of all span lengths × cell areas, mm³. Summed tile by tile, so it does not depend on the number of threads.
   double volume() const;
+  /// Number of spans in all rays.
   std::size_t span_count() const;
   /// Bytes in use; each shared tile counts once.
   std::size_t nbytes() const;

@@ -20,7 +20,9 @@ struct Span {
 struct PackedNormal {
   std::int16_t u = 0, v = 0;
 
+  /// Packs a unit vector.
   static PackedNormal pack(const Vec3& n);
+  /// The unit vector.
   Vec3 unpack() const;
   bool operator==(const PackedNormal&) const = default;
 };

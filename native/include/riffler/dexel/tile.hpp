@@ -24,6 +24,7 @@ class RayOffsets {
 
   /// Offsets of a tile without spans.
   RayOffsets() : first_(none().data()) {}
+  /// Offsets of any tile; shares storage for the two common cases.
   explicit RayOffsets(const Array& offsets);
 
   std::uint32_t operator[](int r) const { return first_[r]; }
@@ -33,6 +34,7 @@ class RayOffsets {
   std::size_t size() const { return kTileRays + 1; }
   const std::uint32_t* begin() const { return first_; }
   const std::uint32_t* end() const { return first_ + size(); }
+  /// Bytes of memory of its own.
   std::size_t nbytes() const { return own_ ? sizeof *own_ : 0; }
   bool operator==(const RayOffsets& o) const;
 
@@ -53,11 +55,13 @@ struct Tile {
   Interval reach;                          // covers every span; after a cut it may be larger than necessary
   std::uint64_t revision = 0;              // changes with the content
 
+  /// Spans, and normals at their ends, of ray r.
   std::span<const Span> ray(int r) const { return {spans.data() + offset[r], spans.data() + offset[r + 1]}; }
   std::span<const SpanNormals> ray_normals(int r) const {
     return normals.empty() ? std::span<const SpanNormals>{}
                            : std::span<const SpanNormals>{normals.data() + offset[r], normals.data() + offset[r + 1]};
   }
+  /// Bytes in use.
   std::size_t nbytes() const;
 };
 
@@ -82,6 +86,7 @@ class TileBuilder {
   }
   /// Ends the current ray.
   void next_ray() { offset_[++rays_] = static_cast<std::uint32_t>(tile_.spans.size()); }
+  /// Number of rays that have ended.
   int rays() const { return rays_; }
   /// Returns the tile, its storage trimmed, with a new revision. The builder is then empty.
   std::shared_ptr<Tile> finish();

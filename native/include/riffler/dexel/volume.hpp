@@ -31,6 +31,7 @@ class Volume {
   static Volume block(const Frame& frame);
 
   const Frame& frame() const { return frame_; }
+  /// One grid per direction, in the order of Frame::directions.
   std::vector<Grid>& grids() { return grids_; }
   const std::vector<Grid>& grids() const { return grids_; }
   /// The grid of one direction, or nullptr.
@@ -40,12 +41,14 @@ class Volume {
 
   /// Volume of the material, mm³.
   double volume() const { return reference().volume(); }
+  /// Bytes in use; each shared tile counts once.
   std::size_t nbytes() const;
   /// Changes with the content; restoring a snapshot restores its revision.
   std::uint64_t revision() const { return revision_; }
   /// Must be called after every change of the content.
   void touch() { revision_ = next_revision(); }
 
+  /// A copy; see above.
   Volume snapshot() const { return *this; }
   /// Throws std::invalid_argument if the snapshot has another frame. The counters are not reset.
   void restore(const Volume& snapshot);

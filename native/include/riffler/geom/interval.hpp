@@ -13,7 +13,9 @@ struct Interval {
 
   bool empty() const { return !(near <= far); }
   double length() const { return empty() ? 0.0 : far - near; }
+  /// Extends the interval to include s.
   void include(double s) { near = std::min(near, s), far = std::max(far, s); }
+  /// The intersection.
   Interval cut(const Interval& o) const { return {std::max(near, o.near), std::min(far, o.far)}; }
   bool operator==(const Interval&) const = default;
 };

@@ -15,10 +15,12 @@ struct Pose {
 /// as functions of one t in [0, 1] (methods: "Conventions"). Accurate for any angle from 0 up to, but not including, π.
 class Motion {
  public:
+  /// Axes must be unit vectors and not exactly opposite.
   Motion(const Pose& from, const Pose& to);
 
   const Pose& from() const { return from_; }
   const Pose& to() const { return to_; }
+  /// Axis, tip and pose at time t in [0, 1].
   Vec3 axis(double t) const;
   Vec3 tip(double t) const { return from_.tip + t * (to_.tip - from_.tip); }
   Pose at(double t) const { return {tip(t), axis(t)}; }

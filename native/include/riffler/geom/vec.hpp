@@ -21,14 +21,17 @@ struct Box3 {
   bool empty() const { return lower.x > upper.x || lower.y > upper.y || lower.z > upper.z; }
   void add(const Vec3& p) { lower = glm::min(lower, p), upper = glm::max(upper, p); }
   void add(const Box3& b) { lower = glm::min(lower, b.lower), upper = glm::max(upper, b.upper); }
+  /// The box with every side moved outward by d.
   Box3 grown(double d) const { return {lower - Vec3(d), upper + Vec3(d)}; }
   Vec3 size() const { return upper - lower; }
+  /// Whether the closed boxes have a common point.
   bool overlaps(const Box3& b) const {
     return lower.x <= b.upper.x && b.lower.x <= upper.x && lower.y <= b.upper.y && b.lower.y <= upper.y &&
            lower.z <= b.upper.z && b.lower.z <= upper.z;
   }
 };
 
+/// Whether all components are finite.
 inline bool finite(const Vec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
@@ -71,6 +74,7 @@ inline Vec3 to_world(Axis axis, const Vec3& p) {
   }
 }
 
+/// The box in the cyclic frame of `axis`.
 inline Box3 to_local(Axis axis, const Box3& b) {
   return {to_local(axis, b.lower), to_local(axis, b.upper)};
 }

@@ -46,6 +46,7 @@ class Mesher {
   base::BulkVector<Vec3f> corner_normals(const MeshPatch& patch, double sharp) const;
   /// The whole mesh: the same as to_mesh of the volume.
   Mesh mesh() const;
+  /// Number of triangles of the whole mesh.
   std::size_t triangles() const;
 
   /// The first surface point along the ray from `origin` (mm) in `direction` (any length but 0), from outside or inside

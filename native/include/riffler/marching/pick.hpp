@@ -18,10 +18,12 @@ class Lattice;
 class FrozenSurface {
  public:
   using Bricks = std::vector<std::shared_ptr<const Facets>>;  // null for bricks without triangles
+  /// `bricks` by number.
   FrozenSurface(const Lattice& lattice, Bricks bricks);
 
   /// Same as Mesher::pick.
   std::optional<SurfaceHit> pick(const Vec3& origin, const Vec3& direction, PickStats& stats) const;
+  /// Number of triangles.
   std::size_t triangles() const;
   /// Bytes of its triangles, including those shared with other surfaces.
   std::size_t nbytes() const;

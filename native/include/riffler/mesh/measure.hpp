@@ -5,6 +5,7 @@
 
 namespace riffler::mesh {
 
+/// Result of `measure`.
 struct Measures {
   Box3 box;           ///< same as `bounds`
   double volume = 0;  ///< mm³, signed; computed about a vertex, so slightly less exact than `volume`

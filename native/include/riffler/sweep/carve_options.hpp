@@ -11,6 +11,7 @@ namespace riffler::sweep {
 /// What a tool does with the material in its swept volume.
 enum class CarveMode { Remove, Add };
 
+/// Options of `carve`.
 struct CarveOptions {
   /// mm. Maximum error of every span end: along its ray from the exact swept surface or, where the ray grazes the
   /// surface, in space. Only a turning ball may cut too deep (by at most the tolerance); all other cuts are too

@@ -35,6 +35,7 @@ class MoveCarver {
   /// Carves one move of duration `dt` (s). Throws std::invalid_argument as `carve` does; the volume is then unchanged.
   Taken move(const Pose& from, const Pose& to, double dt);
 
+  /// Pitch of the volume, mm.
   double pitch() const;
 
   /// Index of a grid, and index of a tile in it.

@@ -27,6 +27,7 @@ double radius_at(const OutlineEdge& e, double z);
 /// inside.
 class Outline {
  public:
+  /// Result of `nearest`.
   struct Nearest {
     double distance;  ///< mm, negative inside
     Vec2 point;       ///< nearest point of the outline
@@ -41,6 +42,7 @@ class Outline {
   const std::vector<OutlineEdge>& edges() const { return edges_; }
   /// The nearest point of the outline to (rho, z), mm; rho ≥ 0.
   Nearest nearest(double rho, double z) const;
+  /// Whether the point (rho, z), mm, is inside the solid; rho ≥ 0.
   bool inside(double rho, double z) const;
 
  private:

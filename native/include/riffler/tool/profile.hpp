@@ -25,6 +25,7 @@ class Profile {
   explicit Profile(std::vector<ProfileSegment> segments);
 
   const std::vector<ProfileSegment>& segments() const { return segments_; }
+  /// Height of the upper end, and largest radius, mm.
   double length() const { return segments_.back().to.y; }
   double max_radius() const { return max_radius_; }
 

@@ -32,12 +32,14 @@ class Tool {
   /// A copy with a wider shank and holder, for keeping them clear of what the cutter touches. Moves the sides out by
   /// this many mm along their normals, and the ends of the holder's pieces along the axis.
   Tool with_margins(double shank, double holder) const;
+  /// A copy with this name.
   Tool named(std::string name) const;
 
   const std::string& name() const { return name_; }
   const std::string& kind() const { return kind_; }
   const std::vector<std::pair<std::string, double>>& parameters() const { return parameters_; }
   const Profile& profile() const { return profile_; }
+  /// Largest diameter of the cutter, and height of its upper end above the tip, mm.
   double diameter() const { return 2 * profile_.max_radius(); }
   double length() const { return profile_.length(); }
 
