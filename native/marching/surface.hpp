@@ -85,12 +85,12 @@ void mesh_bricks(Surface& surface, const std::vector<std::size_t>& bricks, const
 /// there have moved in the mesh.
 void link_bricks(Surface& surface, const std::vector<std::size_t>& bricks);
 
-/// The vertices of some bricks that have a candidate.
+/// The vertices with a candidate in these bricks.
 std::vector<VertexChoice*> undecided(Surface& surface, const std::vector<std::size_t>& bricks);
 
 /// Moves these vertices from their safe places to their candidates, or part of the distance, as long as all quads keep
-/// a valid diagonal, and splits the quads around them again. Vertices in `known` then move, in order, to their earlier
-/// choice.
+/// a valid diagonal, and splits the quads around them again. Vertices in `known` move, in their turn, to the place that
+/// they chose before.
 void choose_candidates(Surface& surface, const std::vector<VertexChoice*>& open,
                        const std::vector<VertexChoice*>& known, const Progress& progress);
 

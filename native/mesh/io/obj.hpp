@@ -17,7 +17,7 @@ namespace riffler::mesh {
 /// fewer than three vertices or with a vertex that is not defined (yet), a vertex that is not finite or beyond 1e30, or
 /// zero faces.
 Mesh from_obj(std::span<const std::uint8_t> bytes, const std::string& name);
-/// Reports `progress` every few thousand lines, at most as the fraction of the file read so far.
+/// Calls `progress` every few thousand statements, with the fraction of the bytes read.
 Mesh from_obj(std::span<const std::uint8_t> bytes, const std::string& name, const Progress& progress);
 
 /// Writes OBJ with coordinates that read back to the same doubles. Throws std::invalid_argument if `validate` does.

@@ -17,7 +17,7 @@ namespace riffler::mesh {
 /// face. Throws FormatError naming the line or byte for a header that is not PLY, wrong counts, extra bytes, an index
 /// out of range, a face with fewer than three vertices, a vertex that is not finite or beyond 1e30, or zero faces.
 Mesh from_ply(std::span<const std::uint8_t> bytes, const std::string& name);
-/// Reports `progress` every few thousand lines, at most as the fraction of the file read so far.
+/// Calls `progress` every few thousand rows, with the fraction of the current element.
 Mesh from_ply(std::span<const std::uint8_t> bytes, const std::string& name, const Progress& progress);
 
 /// Writes binary little-endian PLY. Coordinates are float if that represents all of them exactly, otherwise double.

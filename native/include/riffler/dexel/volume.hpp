@@ -48,7 +48,7 @@ class Volume {
   /// Must be called after every change of the content.
   void touch() { revision_ = next_revision(); }
 
-  /// A copy; see above.
+  /// A copy, which shares the tiles.
   Volume snapshot() const { return *this; }
   /// Throws std::invalid_argument if the snapshot has another frame. The counters are not reset.
   void restore(const Volume& snapshot);
