@@ -49,8 +49,7 @@ class Welder {
  private:
   struct Slot {
     std::int32_t index = -1;
-    std::uint32_t tag =
-        0;  // upper half of the hash: most unequal points differ here, without a comparison of coordinates
+    std::uint32_t tag = 0;  // upper half of the hash, compared before the coordinates
   };
 
   static std::uint64_t hash(const V& p) {

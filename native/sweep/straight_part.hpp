@@ -21,9 +21,8 @@ struct SectionLine {
 struct SweptShape : PieceShape {
   /// A ray through the line that a cone's apex sweeps touches the side in a double root (at_most_zero).
   static constexpr double kTangent = 1e-13;
-  bool face0,
-      face1;  ///< whether its flat face at z0, at z1, exists and is not hidden inside the group, or its rim is an edge
-              ///< of the group
+  /// Whether its flat face at z0 or z1 exists and is not hidden inside the group, or its rim is an edge of the group.
+  bool face0, face1;
   double low, high;       ///< heights between which its side lies, up to rounding
   double floor, ceiling;  ///< heights along the rays between which it stays on the path
   /// n · V = 0 on a Frustum: for F = ρ² − k², ∂F/∂τ = 0 is a line of the section, and F is quadratic on it.

@@ -25,8 +25,7 @@ struct MeshReport {
   std::size_t flipped_shells = 0;      ///< pieces (connected across edges) that face into the material
   double inside_out = 0;               ///< fraction of the volume where the winding number is negative
   double overlap = 0;                  ///< fraction of the volume where the winding number is ≥ 2 or ≤ −2
-  double doubtful_rays =
-      0;  ///< fraction of the rays with material that end in an opening, at |w| = ½, not on the surface
+  double doubtful_rays = 0;            ///< fraction of the rays with material that end in an opening, where |w| = ½
 
   /// Whether there is nothing to report.
   bool clean() const {
