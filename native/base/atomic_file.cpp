@@ -125,8 +125,8 @@ void AtomicFileWriter::open_draft() {
     }
     struct stat status{};
     locked(fd_);
-    if (fstat(fd_, &status) == 0 && status.st_nlink == 0)
-      close(std::exchange(fd_, -1));  // another writer removed the draft before we locked it
+    // Another writer may have removed the draft before it was locked.
+    if (fstat(fd_, &status) == 0 && status.st_nlink == 0) close(std::exchange(fd_, -1));
   }
 }
 

@@ -152,8 +152,7 @@ void PlaneReader::plane(std::size_t n) {
   plane_.resize(n);
   z_stream& stream = inflater_->stream;
   inflateReset(&stream);
-  stream.next_in =
-      const_cast<Bytef*>(deflated.data());  // zlib's old signature lacks the const, but zlib does not write there
+  stream.next_in = const_cast<Bytef*>(deflated.data());  // zlib only reads it; its old signature lacks the const
   stream.avail_in = static_cast<uInt>(deflated.size());
   stream.next_out = plane_.data(), stream.avail_out = static_cast<uInt>(n);
   if (inflate(&stream, Z_FINISH) != Z_STREAM_END || stream.avail_in != 0 || stream.avail_out != 0)

@@ -21,8 +21,8 @@ struct HalfSpace {
   Span behind(int i, int j) const {
     const Vec3 foot(grid.shifted_u(i), grid.shifted_v(j), 0);
     const double low = grid.box().lower.z, high = grid.box().upper.z;
-    const double off = glm::dot(Vec3(foot.x, foot.y, point.z) - point,
-                                normal);  // signed distance from the plane at the height of `point`
+    // Signed distance of the ray from the plane at the height of `point`.
+    const double off = glm::dot(Vec3(foot.x, foot.y, point.z) - point, normal);
     if (normal.z == 0) return off <= 0 ? Span{low, high} : Span{high, low};
     const double crossing = std::clamp(point.z - off / normal.z, low, high);
     return normal.z > 0 ? Span{low, crossing} : Span{crossing, high};

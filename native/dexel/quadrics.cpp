@@ -79,8 +79,8 @@ class CylinderRays {
                    side = lean_ > 0 ? Interval{(-half - middle) / lean_, (half - middle) / lean_} : kAll;
     out.near = centre_.z + std::max(caps.near, side.near);
     out.far = centre_.z + std::min(caps.far, side.far);
-    const Vec3 cap = axis_.z < 0 ? -axis_ : axis_,
-               off = aside * aside_;  // `cap`: outward normal of the cap through which the ray leaves
+    // `cap`: outward normal of the cap through which the ray leaves.
+    const Vec3 cap = axis_.z < 0 ? -axis_ : axis_, off = aside * aside_;
     out.near_normal = caps.near >= side.near ? -cap : (off - half * across_) / radius_;
     out.far_normal = caps.far <= side.far ? cap : (off + half * across_) / radius_;
     return out.near < out.far;

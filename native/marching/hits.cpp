@@ -66,8 +66,8 @@ Hit HitFinder::operator()(const LatticeEdge& edge) {
   if (!grid->has_normals()) return axis_hit(std::clamp(t, -kReach, 1 + kReach), edge, false);
   const dexel::SpanNormals& normals = tile.ray_normals(ray)[n];
   const dexel::PackedNormal packed = edge.rising ? normals.near : normals.far;
-  if (packed != last_packed_)
-    last_packed_ = packed, last_ = packed.unpack();  // a flat face has one normal for all its hits
+  // A flat face has one normal for all its hits.
+  if (packed != last_packed_) last_packed_ = packed, last_ = packed.unpack();
   const double along = (&last_.x)[edge.axis];
   if ((edge.rising ? -along : along) <= 0) return axis_hit(std::clamp(t, 0.0, 1.0), edge, true);
   return {static_cast<float>(t),

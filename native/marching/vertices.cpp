@@ -9,8 +9,7 @@ namespace riffler::marching {
 
 namespace {
 
-constexpr double kBroken =
-    0.05;  // residual, cells, above which hits contradict each other: the vertex stays in its cell
+constexpr double kBroken = 0.05;      // residual, cells, above which hits contradict each other: stay in the cell
 constexpr double kExact = 0.005;      // residual, cells, up to which vertices may go as far as the grid allows
 constexpr double kBent = 0.49;        // cells, how far they may leave their cell if the residual is larger
 constexpr double kOnWall = 1e-6;      // cells; less than this outside is on the wall

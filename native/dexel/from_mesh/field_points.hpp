@@ -25,8 +25,8 @@ struct PathPoint {
 
 struct FieldPoints {
   double x[kPoints], y[kPoints], z[kPoints];
-  double half_x[kPoints], half_y[kPoints],
-      half_z[kPoints];  ///< half sizes of the boxes in which the bounds hold
+  /// Half sizes of the boxes around the points in which the bounds hold.
+  double half_x[kPoints], half_y[kPoints], half_z[kPoints];
 };
 
 struct FieldValues {

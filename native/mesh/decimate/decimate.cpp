@@ -94,8 +94,7 @@ class Worker {
   }
 
  private:
-  static constexpr std::size_t kTries = 1
-                                        << 15;  // number of edges tried before the caller's progress is reported again
+  static constexpr std::size_t kTries = 1 << 15;  // edges tried between two reports of progress
 
   void add(EdgeHandle edge) {
     if (!(costs_[edge] < std::numeric_limits<float>::infinity())) costs_.refresh(edge);
