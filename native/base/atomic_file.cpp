@@ -28,9 +28,9 @@ namespace fs = std::filesystem;
   fail(path, std::string(what) + ": " + std::strerror(errno));
 }
 
-/// Where links lead, to what need not be there.
+/// Resolves links; their target need not exist.
 fs::path followed(const fs::path& path) {
-  constexpr int kMaxLinks = 40;  // as Linux has it
+  constexpr int kMaxLinks = 40;  // the limit of Linux
   fs::path at = path;
   std::error_code error;
   for (int k = 0; fs::is_symlink(fs::symlink_status(at, error)); ++k) {
@@ -41,7 +41,7 @@ fs::path followed(const fs::path& path) {
   return at;
 }
 
-/// Of what is there; nothing where nothing is.
+/// Status of an existing regular file; nothing if there is no file.
 std::optional<struct stat> status_of(const fs::path& path) {
   struct stat status{};
   if (::stat(path.c_str(), &status) != 0) {
@@ -53,15 +53,15 @@ std::optional<struct stat> status_of(const fs::path& path) {
   return status;
 }
 
-/// The permissions and the owner of what is replaced.
+/// Gives the new file the permissions and the owner of the old one.
 void take_over(int fd, const struct stat& old, const fs::path& path) {
   struct stat mine{};
   if (fstat(fd, &mine) != 0) fail_system(path, "cannot be written");
   mode_t mode = old.st_mode & 0777;
   if (mine.st_uid != old.st_uid || mine.st_gid != old.st_gid) {
-    // Only root gives a file away; a group that is one of the process's own can be kept.
+    // Only root can give a file away; a group that the process belongs to can be kept.
     if (fchown(fd, old.st_uid, old.st_gid) != 0 && fchown(fd, static_cast<uid_t>(-1), old.st_gid) != 0)
-      mode &= ~mode_t{070} | (mode & 07) << 3;  // another group gets no more than everybody has
+      mode &= ~mode_t{070} | (mode & 07) << 3;  // a different group gets no more rights than everybody
   }
   if (fchmod(fd, mode) != 0) fail_system(path, "its permissions cannot be kept");
 }
@@ -82,7 +82,7 @@ bool locked(int fd) {
   return flock(fd, LOCK_EX | LOCK_NB) == 0;
 }
 
-/// Gives the file without a name a new one, beside its target.
+/// Gives the nameless file a new name next to its target.
 std::string linked(int fd, const fs::path& target) {
   const std::string open_file = "/proc/self/fd/" + std::to_string(fd);
   while (true) {
@@ -107,7 +107,7 @@ AtomicFileWriter::AtomicFileWriter(const fs::path& path) : target_(followed(path
 
 void AtomicFileWriter::open_draft() {
 #ifdef O_TMPFILE
-  // With a name of its own, as /proc gives one, it can come into the folder later.
+  // Through its name in /proc, the file can be linked into the folder later.
   if (access("/proc/self/fd", X_OK) == 0) fd_ = open(folder_of(target_).c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0666);
 #endif
   if (fd_ >= 0) {
@@ -125,7 +125,8 @@ void AtomicFileWriter::open_draft() {
     }
     struct stat status{};
     locked(fd_);
-    if (fstat(fd_, &status) == 0 && status.st_nlink == 0) close(std::exchange(fd_, -1));  // cleared before the lock
+    // Another writer may have removed the draft before it was locked.
+    if (fstat(fd_, &status) == 0 && status.st_nlink == 0) close(std::exchange(fd_, -1));
   }
 }
 
@@ -143,14 +144,14 @@ void AtomicFileWriter::write(std::span<const std::uint8_t> bytes) {
     bytes = bytes.subspan(static_cast<std::size_t>(n));
   }
 #ifdef __linux__
-  sync_file_range(fd_, 0, 0, SYNC_FILE_RANGE_WRITE);  // begin now what `commit` waits for; a hint, which may be refused
+  sync_file_range(fd_, 0, 0, SYNC_FILE_RANGE_WRITE);  // hint: start now the writing that `commit` waits for
 #endif
 }
 
 void AtomicFileWriter::commit() {
   if (fsync(fd_) != 0) fail_system(target_, "cannot be written");
   if (draft_.empty()) draft_ = linked(fd_, target_);
-  status_of(target_);  // it may have become something else meanwhile
+  status_of(target_);  // it may have changed in the meantime
   if (std::rename(draft_.c_str(), target_.c_str()) != 0) fail_system(target_, "cannot be replaced");
   draft_.clear();
   if (close(std::exchange(fd_, -1)) != 0) fail_system(target_, "cannot be written");
@@ -180,7 +181,7 @@ void replace_file(const fs::path& draft, const fs::path& path) {
 }
 
 fs::path draft_prefix(const fs::path& path) {
-  constexpr std::size_t kLongest = 200;  // of a name, which may have 255 bytes
+  constexpr std::size_t kLongest = 200;  // of a name, whose limit is 255 bytes
   std::string name(1, '.');
   name.append(path.filename().string(), 0, kLongest).append(".riffler-");
   return folder_of(path) / name;
@@ -199,7 +200,7 @@ void clear_drafts(const fs::path& path) noexcept try {
     }
     close(fd);
   }
-} catch (...) {  // no memory: another time
+} catch (...) {  // out of memory: leave the drafts for another time
 }
 
 }  // namespace riffler::base

@@ -1,4 +1,4 @@
-// Files that are whole or not there.
+// Atomic writing of files: a file is complete or absent.
 #pragma once
 
 #include <cstdint>
@@ -8,15 +8,14 @@
 
 namespace riffler::base {
 
-/// Writes a file that takes the place of `path` when `commit` is called, and leaves nothing where it is not. A link is
-/// followed, to a file that is not there yet as well; a file that is there keeps its permissions, and its owner and
-/// group as far as the system lets this process give a file away; a new one gets those of any new file. What is no
-/// regular file (a folder, a pipe, a device) is refused. std::runtime_error with the base name and the system's reason
-/// wherever it cannot be.
+/// Writes a new file that replaces `path` when `commit` is called; without a commit it leaves nothing behind. Follows
+/// links, even to a file that does not exist yet. An existing file keeps its permissions and, if the system lets this
+/// process give files away, its owner and group; a new file gets the usual ones. Refuses everything but regular files
+/// (folders, pipes, devices). Every failure throws std::runtime_error with the base name and the system's reason.
 ///
-/// The draft has no name until it is whole, so that nothing is left of a process that is killed. On file systems
-/// without such files it is called `.NAME.riffler-XXXXXX`, is locked, and goes with the next that is written if it was
-/// left.
+/// The draft has no name until it is complete, so a killed process leaves nothing behind. On file systems without
+/// nameless files it is called `.NAME.riffler-XXXXXX` and locked; the next writer of the same file removes an abandoned
+/// one.
 class AtomicFileWriter {
  public:
   explicit AtomicFileWriter(const std::filesystem::path& path);
@@ -25,30 +24,31 @@ class AtomicFileWriter {
   ~AtomicFileWriter() { discard(); }
 
   void write(std::span<const std::uint8_t> bytes);
-  void commit();  ///< once
+  void commit();  ///< call once
 
-  /// Of the draft; open until commit().
+  /// Descriptor of the draft, open until commit().
   int descriptor() const noexcept { return fd_; }
 
  private:
   void open_draft();
   void discard() noexcept;
 
-  std::filesystem::path target_;  // links followed
-  std::string draft_;             // empty while it has no name
+  std::filesystem::path target_;  // links resolved
+  std::string draft_;             // empty while the draft has no name
   int fd_ = -1;
 };
 
-/// Where `path` leads, links followed, if a file can take its place there; otherwise std::runtime_error as above.
+/// The target of `path` with all links followed, if a file can replace it; otherwise throws std::runtime_error as
+/// above.
 std::filesystem::path replaceable(const std::filesystem::path& path);
 
-/// The file `draft`, on the same file system, takes the place of `path` as above.
+/// Replaces `path` with the file `draft` of the same file system, as above.
 void replace_file(const std::filesystem::path& draft, const std::filesystem::path& path);
 
-/// What the name of a draft of `path` begins with, in the same folder.
+/// Prefix of the names that drafts of `path` have, in the same folder.
 std::filesystem::path draft_prefix(const std::filesystem::path& path);
 
-/// Removes drafts of `path`, files and folders, that nobody has locked: processes that were killed left them.
+/// Removes drafts of `path` (files and folders) that are not locked; killed processes left them behind.
 void clear_drafts(const std::filesystem::path& path) noexcept;
 
 }  // namespace riffler::base

@@ -13,7 +13,7 @@ Background::~Background() {
 }
 
 void Background::run(Work work) {
-  // Only this thread writes the share. A part of the work may say 1, and so may work that then fails.
+  // Only this thread writes the share. A part of the work may report 1, and so may work that fails afterwards.
   const auto listen = [this](double share) {
     constexpr double kNearlyAll = 1 - 1e-9;
     share_.store(std::max(share_.load(std::memory_order_relaxed), std::min(share, kNearlyAll)),

@@ -1,4 +1,4 @@
-// A long call on a thread of its own.
+// Runs a long call on its own thread.
 #pragma once
 
 #include <atomic>
@@ -13,9 +13,9 @@
 
 namespace riffler::base {
 
-/// Runs `work` at once, on a new thread. Any thread may ask about it; cancelling works wherever `work` reports, and
-/// what `work` holds is destroyed on that thread as soon as it has ended. In a process that was forked meanwhile the
-/// work counts as done, and lost.
+/// Starts `work` at once on a new thread. Any thread may query it. Cancelling takes effect when `work` next reports its
+/// progress. Once the work has ended, that thread destroys everything that `work` holds. In a forked process the work
+/// counts as done, and its result is lost.
 class Background {
  public:
   using Work = std::function<void(const Progress&)>;
@@ -23,19 +23,20 @@ class Background {
   explicit Background(Work work);
   Background(const Background&) = delete;
   Background& operator=(const Background&) = delete;
-  /// Cancels and waits.
+  /// Cancels the work and waits for its end.
   ~Background();
 
-  /// Of the work, in [0, 1]; never goes back, and is 1 only where the work came to its end.
+  /// Finished fraction in [0, 1]. Never decreases, and is 1 only if the work ran to its end.
   double share() const { return share_.load(std::memory_order_relaxed); }
-  /// Whether the work has ended, by itself, by an error or cancelled. What it wrote is then visible to who asks.
+  /// Whether the work has ended: completed, failed or cancelled. Once true, everything the work wrote is visible to the
+  /// caller.
   bool done() const { return done_.load(std::memory_order_acquire) || !home_.here(); }
-  /// Asks the work to end with Cancelled; without effect where it has ended. Does not wait.
+  /// Requests that the work end with Cancelled; no effect if it has ended. Does not wait.
   void cancel() { cancelled_.store(true, std::memory_order_relaxed); }
-  /// Waits until the work has ended, at most for `most`; whether it has.
+  /// Waits until the work has ended, for at most `most`. Returns whether it has.
   bool wait(std::chrono::milliseconds most) const;
   void wait() const;
-  /// Throws what the work threw. Only where it is done.
+  /// Rethrows the exception of the work, if any. Call it only after done().
   void check() const;
 
  private:
@@ -47,7 +48,7 @@ class Background {
   HomeOnly<std::condition_variable> ended_;
   HomeProcess home_;
   std::exception_ptr error_;
-  OwnThread thread_;  // the last: it uses all others
+  OwnThread thread_;  // must be last: it uses all other members
 };
 
 }  // namespace riffler::base

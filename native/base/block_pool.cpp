@@ -9,10 +9,10 @@ namespace riffler::base {
 
 namespace {
 
-constexpr int kSmallest = 5, kLargest = 17;  // log2 of bytes: blocks above the largest are the system's
+constexpr int kSmallest = 5, kLargest = 17;                     // log2 of bytes; larger blocks come from the system
 constexpr std::size_t kKept = 2U << 20, kReserved = 32U << 20;  // bytes
 
-/// Classes of size, four to a doubling: what a block has too much is a fifth of it at the most.
+/// Size classes, four per factor of two: a block is at most a fifth larger than requested.
 struct SizeClass {
   std::size_t number, bytes;
 };
@@ -24,8 +24,8 @@ SizeClass size_class(std::size_t bytes) {
   return {4 * (power - kSmallest) + quarter, (std::size_t{1} << power) + ((quarter + 1) << (power - 2))};
 }
 
-/// Blocks of one size that nobody uses. A place is emptied by an exchange, so a block has one taker, and no taker looks
-/// into a block that another has: unlike in a linked stack, none can be gone meanwhile.
+/// Free blocks of one size. An atomic exchange empties a slot, so each block has exactly one taker, and no taker reads
+/// a block that another thread may own; a linked stack could not guarantee that.
 class Shelf {
  public:
   static constexpr std::size_t kPlaces = 256;
@@ -61,7 +61,7 @@ class Shelf {
   std::size_t filled() const { return static_cast<std::size_t>(std::max(0, filled_.load(std::memory_order_relaxed))); }
 
  private:
-  /// Threads begin at different places, so that they seldom meet.
+  /// Threads start at different slots, so that they seldom collide.
   static std::size_t first() {
     static std::atomic<std::size_t> threads{0};
     thread_local const std::size_t mine = 61 * threads++;
@@ -80,7 +80,7 @@ struct Pool {
   std::size_t most() const { return reserves.load(std::memory_order_relaxed) > 0 ? kReserved : kKept; }
 };
 
-/// Never destroyed: volumes of static storage may outlive everything else.
+/// Never destroyed: volumes with static storage may outlive everything else.
 Pool& pool() {
   static Pool& only = *new Pool;
   return only;
@@ -96,7 +96,7 @@ bool keep(Pool& all, const SizeClass& size, void* memory) noexcept {
   return false;
 }
 
-/// To the system, until no more than `count` blocks of that size are left.
+/// Returns blocks to the system until at most `count` blocks of that size are left.
 void give_back(Pool& all, const SizeClass& size, std::size_t count) noexcept {
   Shelf& shelf = all.shelves[size.number];
   while (shelf.filled() > count) {
@@ -141,7 +141,7 @@ void BlockReserve::fill(std::size_t largest, std::size_t count) {
   Pool& all = pool();
   count = std::min(count, Shelf::kPlaces);
   const std::size_t last = std::min(size_class(largest).number + 1, all.shelves.size());
-  // What lies there beyond that makes room.
+  // Free surplus blocks first, to make room.
   for (SizeClass size = size_class(0); size.number < all.shelves.size(); size = size_class(size.bytes + 1))
     give_back(all, size, size.number < last ? count : 0);
   for (SizeClass size = size_class(0); size.number < last; size = size_class(size.bytes + 1))

@@ -15,7 +15,7 @@ void* allocate_bulk(std::size_t bytes) {
   const std::size_t alignment = huge ? kHugePage : 64, size = (bytes + alignment - 1) / alignment * alignment;
   void* const memory = std::aligned_alloc(alignment, size);
   if (!memory) throw std::bad_alloc();
-  if (huge) madvise(memory, size, MADV_HUGEPAGE);  // a wish: nothing is lost where it is not granted
+  if (huge) madvise(memory, size, MADV_HUGEPAGE);  // a hint; the system may ignore it
   return memory;
 }
 

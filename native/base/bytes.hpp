@@ -1,4 +1,4 @@
-// Little-endian numbers and texts in byte vectors: what the binary files are made of.
+// Little-endian numbers and texts in byte vectors, for the binary file formats.
 #pragma once
 
 #include <zlib.h>
@@ -25,7 +25,7 @@ using ByteView = std::span<const std::uint8_t>;
 inline std::uint32_t checksum(ByteView a, ByteView b = {}) {
   uLong crc = 0;
   for (const auto part : {a, b})
-    if (!part.empty()) crc = crc32_z(crc, part.data(), part.size());  // a null pointer would start anew
+    if (!part.empty()) crc = crc32_z(crc, part.data(), part.size());  // a null pointer would reset the checksum
   return static_cast<std::uint32_t>(crc);
 }
 
@@ -46,7 +46,7 @@ inline void put_raw(Bytes& out, std::string_view text) {
   for (const char c : text) out.push_back(static_cast<std::uint8_t>(c));
 }
 
-/// Its length as u32, then the text.
+/// Appends the text's length as u32, then the text.
 inline void put_text(Bytes& out, std::string_view text) {
   if (text.size() > 0xFFFFFFFF) throw std::invalid_argument("a text of 4 GB or more");
   put(out, static_cast<std::uint32_t>(text.size()));
@@ -61,7 +61,7 @@ T get(ByteView bytes, std::size_t at) {
   return value;
 }
 
-/// Takes a record apart; std::invalid_argument where it is shorter or longer than its content.
+/// Parses a record. Throws std::invalid_argument if the record is shorter or longer than its content.
 class ByteReader {
  public:
   explicit ByteReader(ByteView bytes) : bytes_(bytes) {}

@@ -35,7 +35,7 @@ std::string text_of(const fs::path& path) {
   return {bytes.begin(), bytes.end()};
 }
 
-/// The user's files, in the order of their folders and names; of two with one name the first.
+/// The user's files, ordered by folder and name. If two have the same name, the first counts.
 std::vector<fs::path> own_files(const DescriptionCatalog& shelf) {
   std::vector<fs::path> out;
   for (const fs::path& folder : own_folders(shelf)) {

@@ -1,4 +1,4 @@
-// Whole files in and out.
+// Reads and writes whole files.
 #pragma once
 
 #include <cstdint>
@@ -10,13 +10,13 @@
 
 namespace riffler::base {
 
-/// FormatError for a folder, a pipe or a device: what comes out of those may never end.
+/// Throws FormatError for a folder, a pipe or a device, which might never end.
 void check_regular(const std::filesystem::path& path);
 
-/// The file's bytes. FormatError with the base name where it cannot be opened or read.
+/// The file's bytes. Throws FormatError with the base name if the file cannot be opened or read.
 std::vector<std::uint8_t> read_file(const std::filesystem::path& path);
 
-/// By an AtomicFileWriter, so that a file of this name is always whole: the old one or the new one.
+/// Writes with an AtomicFileWriter, so a file of this name is always complete: the old one or the new one.
 void write_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
 void write_file(const std::filesystem::path& path, std::string_view text);
 

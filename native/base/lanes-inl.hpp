@@ -1,6 +1,6 @@
-// Vectors of doubles for the kernels: as many lanes as the instruction set has, at most eight. Included once for every
-// instruction set (Highway's foreach_target), hence the unusual guard. Only operations that IEEE 754 rounds correctly
-// are used and none is fused (options.cmake), so every instruction set gives the same bits.
+// SIMD vectors of doubles for the kernels, with as many lanes as the instruction set offers, at most eight. Included
+// once per instruction set (Highway's foreach_target), hence the unusual guard. The kernels use only operations that
+// IEEE 754 rounds correctly, and none is fused (options.cmake), so every instruction set gives the same bits.
 #if defined(RIFFLER_BASE_LANES_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef RIFFLER_BASE_LANES_INL_HPP
 #undef RIFFLER_BASE_LANES_INL_HPP

@@ -1,10 +1,10 @@
-// How many values a kernel looks at together.
+// Number of values that a kernel handles together.
 #pragma once
 
 namespace riffler::base {
 
-/// Rays, points and triangles are handled in groups of up to this many, the most doubles that a vector holds; arrays
-/// are padded by as much.
+/// Kernels handle rays, points and triangles in groups of up to this many, the largest number of doubles in a vector.
+/// Arrays are padded by as many elements.
 inline constexpr int kLanes = 8;
 
 }  // namespace riffler::base

@@ -1,4 +1,4 @@
-// Bits of a number mixed, for tables and sums that tell numbers apart.
+// Bit mixing for hash tables and checksums.
 #pragma once
 
 #include <cstdint>

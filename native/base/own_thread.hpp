@@ -1,4 +1,4 @@
-// What belongs to the process that made it: threads, what they wait on, and their processor time.
+// Objects that belong to the process that made them: threads, what threads wait on, and processor time.
 #pragma once
 
 #include <unistd.h>
@@ -12,24 +12,24 @@
 
 namespace riffler::base {
 
-/// The process in which it was made. A process that was forked from that one has copies of its objects, but none of
-/// its threads: to wait for one there would never end, nor would a lock that one held be freed.
+/// Remembers the process that made it. A forked process has copies of its parent's objects but none of its threads:
+/// waiting for such a thread would never end, and a lock that it held would never be released.
 class HomeProcess {
  public:
   bool here() const noexcept { return pid_ == getpid(); }
-  /// std::runtime_error in another process; `what` in its message, such as "the session".
+  /// Throws std::runtime_error in another process. `what` names the object in the message, such as "the session".
   void check(const char* what) const {
     if (!here())
       throw std::runtime_error(std::string(what) +
-                               " belongs to the process that this one was forked from: make it anew here");
+                               " belongs to the process that this one was forked from: create a new one here");
   }
 
  private:
   pid_t pid_ = getpid();
 };
 
-/// A T that a forked process forgets instead of destroying its copy: the destructor of a condition variable waits for
-/// the threads that wait there, that of a thread terminates.
+/// A T whose copy in a forked process is not destroyed: the destructor of a condition variable would wait for its
+/// waiting threads, that of a thread would terminate the process.
 template <class T>
 class HomeOnly {
  public:
@@ -53,7 +53,7 @@ class HomeOnly {
   HomeProcess home_;
 };
 
-/// A thread that is joined by its destructor, if not before; a forked process forgets it.
+/// A thread that its destructor joins, if it has not been joined before. A forked process does not join it.
 class OwnThread {
  public:
   OwnThread() = default;
@@ -72,7 +72,7 @@ class OwnThread {
   HomeOnly<std::thread> thread_;
 };
 
-/// Processor time of this thread, s: steps are measured by it, so that other work on the machine does not count.
+/// Processor time of this thread, s. Steps are measured with it, so that other load on the machine does not count.
 inline double thread_seconds() noexcept {
   timespec t{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);

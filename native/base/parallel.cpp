@@ -18,7 +18,7 @@ namespace riffler::base {
 namespace {
 
 constexpr int kMaxThreads = 256;
-std::atomic<int> chosen_count{0};  // 0: nobody has chosen
+std::atomic<int> chosen_count{0};  // 0: not set
 
 }  // namespace
 
@@ -44,14 +44,14 @@ int thread_count() {
 
 namespace {
 
-/// Whether all processors are busy: this thread is one of several that run a parallel_for, or a SerialScope says so.
+/// Whether all processors are busy: this thread runs a parallel_for together with others, or a SerialScope exists.
 thread_local bool busy = false;
 
 struct Job;
-/// Whose body this thread runs; null for none.
+/// The job whose body this thread runs; null for none.
 thread_local Job* running = nullptr;
 
-/// The state that the threads of one parallel_for share.
+/// State shared by the threads of one parallel_for.
 struct Job {
   Job(std::size_t indices, std::size_t grain_size, const std::function<void(std::size_t, std::size_t)>& f,
       const Progress& listener)
@@ -60,15 +60,15 @@ struct Job {
   const std::size_t n, grain;
   const std::function<void(std::size_t, std::size_t)>& body;
   const Progress& progress;
-  Job* const outer = running;  // in one of whose bodies this one was begun
+  Job* const outer = running;  // the job in whose body this one was started
   const std::thread::id caller = std::this_thread::get_id();
   std::atomic<std::size_t> next{0};
   std::atomic<bool> stop{false};
   std::mutex mutex;
   std::exception_ptr error;
-  double told = 0;  // the share; the caller's
+  double told = 0;  // last reported share; caller's thread only
 
-  /// Takes one chunk and runs it; false when none is left.
+  /// Takes one chunk and runs it. Returns false if none is left.
   bool step() {
     if (stop.load(std::memory_order_relaxed)) return false;
     const std::size_t begin = next.fetch_add(grain);
@@ -124,13 +124,13 @@ void parallel_for(std::size_t n, std::size_t grain, const std::function<void(std
   for (std::thread& t : threads) t.join();
   busy = was_busy;
   if (job.error) std::rethrow_exception(job.error);
-  if (!said_all) report(progress, 1);  // the helpers were quicker: this thread may have run nothing at all
+  if (!said_all) report(progress, 1);  // the other threads were faster: this thread may have run no chunk at all
 }
 
 void still_wanted() {
   for (const Job* job = running; job; job = job->outer) {
     if (job->stop.load(std::memory_order_relaxed)) throw Cancelled();
-    // What is done is not told before the body has ended: the share that was told last stays.
+    // The body has not ended, so its work does not count yet: report the last share again.
     if (job->caller == std::this_thread::get_id() && job->progress) report(job->progress, job->told);
   }
 }

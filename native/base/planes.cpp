@@ -29,7 +29,8 @@ T unzigzag(T z) {
   return static_cast<T>(static_cast<T>(z >> 1) ^ static_cast<T>(T{0} - static_cast<T>(z & 1)));
 }
 
-/// Whether deflate would gain less than a few per cent: hardly a byte repeats its neighbour and the histogram is flat.
+/// Whether deflate would save less than a few per cent: hardly any byte repeats its neighbour and the histogram is
+/// flat.
 bool looks_like_noise(std::span<const std::uint8_t> bytes) {
   std::array<std::uint32_t, 256> count{};
   std::size_t repeats = 0;
@@ -39,7 +40,7 @@ bool looks_like_noise(std::span<const std::uint8_t> bytes) {
   }
   const double n = static_cast<double>(bytes.size());
   if (static_cast<double>(repeats) > 0.03 * n) return false;
-  double bits = 0;  // of order-0 entropy, all bytes together
+  double bits = 0;  // order-0 entropy of all bytes together
   for (const std::uint32_t c : count)
     if (c > 0) bits += c * std::log2(n / c);
   return bits > 7.6 * n;
@@ -51,7 +52,7 @@ struct PlaneWriter::Deflater {
   z_stream stream{};
   std::vector<std::uint8_t> buffer;
 
-  // Runs are what planes have; looking for longer matches takes twice the time and gains a few per cent.
+  // Planes consist of runs; searching for longer matches takes twice the time and saves a few per cent.
   Deflater() {
     if (deflateInit2(&stream, 1, Z_DEFLATED, -MAX_WBITS, 8, Z_RLE) != Z_OK) throw std::bad_alloc();
   }
@@ -94,7 +95,7 @@ void PlaneWriter::plane() {
   out_.insert(out_.end(), plane_.begin(), plane_.end());
 }
 
-/// Method, size in four bytes, raw deflate data; false, with nothing written, where that would not be shorter.
+/// Writes method, size in four bytes and raw deflate data. If that is not shorter, writes nothing and returns false.
 bool PlaneWriter::deflate_plane() {
   z_stream& stream = deflater_->stream;
   std::vector<std::uint8_t>& buffer = deflater_->buffer;
@@ -151,11 +152,11 @@ void PlaneReader::plane(std::size_t n) {
   plane_.resize(n);
   z_stream& stream = inflater_->stream;
   inflateReset(&stream);
-  stream.next_in = const_cast<Bytef*>(deflated.data());  // zlib does not write there, its old signature says so only
+  stream.next_in = const_cast<Bytef*>(deflated.data());  // zlib only reads it; its old signature lacks the const
   stream.avail_in = static_cast<uInt>(deflated.size());
   stream.next_out = plane_.data(), stream.avail_out = static_cast<uInt>(n);
   if (inflate(&stream, Z_FINISH) != Z_STREAM_END || stream.avail_in != 0 || stream.avail_out != 0)
-    fail("a plane's deflate data is broken or of another length");
+    fail("a plane's deflate data is broken or has the wrong length");
 }
 
 template <class T>
@@ -164,7 +165,7 @@ std::vector<T> PlaneReader::read(std::size_t n) {
   if (n == 0) return values;
   for (std::size_t p = 0; p < sizeof(T); ++p) {
     plane(n);
-    if (p == 0) values.resize(n);  // the bytes at hand filled a plane: the column is affordable
+    if (p == 0) values.resize(n);  // the available bytes filled one plane, so the column's size is plausible
     for (std::size_t i = 0; i < n; ++i) values[i] = static_cast<T>(values[i] | static_cast<T>(T{plane_[i]} << (8 * p)));
   }
   T last{}, step{};

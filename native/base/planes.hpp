@@ -1,4 +1,4 @@
-// Columns of numbers as compressed byte planes: what .rvol chunks are made of.
+// Columns of numbers as compressed byte planes, the content of .rvol chunks.
 #pragma once
 
 #include <cstdint>
@@ -9,12 +9,12 @@
 
 namespace riffler::base {
 
-/// Writes little-endian numbers and columns to the end of a byte vector. One per thread; reuses its buffers.
+/// Appends little-endian numbers and columns to a byte vector. Use one per thread; it reuses its buffers.
 ///
-/// A column is replaced by its second differences (smooth surfaces leave small numbers), zigzag coded so that small
-/// negative ones have zero high bytes too, and cut into planes of equal byte significance. Each plane is deflated, or
-/// stored where its bytes look like noise: the low mantissa bytes of a cut surface do, and trying costs most of the
-/// time.
+/// Replaces a column by its second differences (small numbers for a smooth surface), zigzag codes them so that small
+/// negative numbers have zero high bytes too, and splits them into planes of equal byte significance. Each plane is
+/// deflated, or stored if its bytes look like noise, as the low mantissa bytes of a cut surface do: trying to deflate
+/// those would take most of the time.
 class PlaneWriter {
  public:
   explicit PlaneWriter(std::vector<std::uint8_t>& out);
@@ -38,11 +38,11 @@ class PlaneWriter {
   std::vector<std::uint8_t> plane_;
 };
 
-/// Reads what PlaneWriter wrote. FormatError names the file and the byte; nothing is allocated that the bytes at hand
-/// could not fill.
+/// Reads what PlaneWriter wrote. Throws FormatError naming file and byte. Allocates no more than the available bytes
+/// can fill.
 class PlaneReader {
  public:
-  /// `start` is where `bytes` begins in the file.
+  /// `start`: offset of `bytes` in the file, for messages.
   PlaneReader(std::span<const std::uint8_t> bytes, std::size_t start, const std::string& name);
   PlaneReader(const PlaneReader&) = delete;
   PlaneReader& operator=(const PlaneReader&) = delete;
@@ -52,7 +52,7 @@ class PlaneReader {
   std::vector<std::uint64_t> column64(std::size_t n);
   std::vector<std::uint32_t> column32(std::size_t n);
   std::vector<std::uint16_t> column16(std::size_t n);
-  /// FormatError unless all bytes were read.
+  /// Throws FormatError unless all bytes have been read.
   void finish() const;
 
  private:
@@ -70,7 +70,7 @@ class PlaneReader {
   std::vector<std::uint8_t> plane_;
 };
 
-/// Deflate shrinks nothing by more than this factor (zlib technical details: "Maximum Compression Factor", 1030.3).
+/// Upper bound on deflate's compression ratio (zlib technical details: "Maximum Compression Factor", 1030.3).
 inline constexpr std::size_t kMaxDeflated = 1032;
 
 }  // namespace riffler::base

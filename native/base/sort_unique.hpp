@@ -1,4 +1,4 @@
-// Lists that name everything once.
+// Lists without duplicates.
 #pragma once
 
 #include <algorithm>
@@ -6,7 +6,7 @@
 
 namespace riffler::base {
 
-/// Sorts a list and drops what stands in it again.
+/// Sorts a list and removes duplicates.
 template <class T>
 void sort_unique(std::vector<T>& list) {
   std::sort(list.begin(), list.end());

@@ -9,7 +9,7 @@ namespace riffler::base {
 
 namespace {
 
-/// The first line up to which the text has a key that does not begin like one.
+/// The number of the first line whose key does not start with a valid character.
 int line_without_key(std::string_view text) {
   int line = 1;
   for (std::size_t end = text.find('\n'); end != text.npos; end = text.find('\n', end + 1), ++line) {
@@ -36,7 +36,7 @@ toml::table TomlReader::parse(std::string_view text) const {
   }
 }
 
-/// Outside comments and strings TOML is ASCII; toml++ 3.3 is undefined for some of what is not.
+/// Outside comments and strings TOML is ASCII; toml++ 3.3 has undefined behaviour for some other input.
 void TomlReader::check_ascii(std::string_view text) const {
   char quote = 0;
   bool comment = false;
@@ -59,7 +59,7 @@ void TomlReader::check_ascii(std::string_view text) const {
 }
 
 void TomlReader::fail(const toml::node& at, const std::string& what) const {
-  // The root of a text without tables has no place of its own.
+  // The root of a text without tables has no source position.
   throw FormatError(file_, "line " + std::to_string(std::max<std::uint32_t>(at.source().begin.line, 1)), what);
 }
 
@@ -124,7 +124,7 @@ glm::dvec2 TomlReader::growing_pair(const toml::node& node, std::string_view key
   const toml::array* pair = node.as_array();
   if (!pair || pair->size() != 2) fail(node, std::string(key) + " must be two numbers");
   const glm::dvec2 out(number((*pair)[0], key), number((*pair)[1], key));
-  if (!(out.x < out.y)) fail(node, std::string(key) + " must grow");
+  if (!(out.x < out.y)) fail(node, std::string(key) + " must be in increasing order");
   return out;
 }
 

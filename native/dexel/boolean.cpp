@@ -1,5 +1,6 @@
-// Every ray is a linear merge of two sorted lists of ends. Work follows the pairs of *distinct* tiles: a block's inner
-// tiles are one shared tile, and what happens to a pair of tiles happens to every place that holds it.
+// Every ray is a linear merge of two sorted lists of ends. The work grows with the number of *distinct* pairs of tiles:
+// the inner tiles of a block are one shared tile, and the result for a pair of tiles applies everywhere that pair
+// occurs.
 #include "riffler/dexel/boolean.hpp"
 
 #include <algorithm>
@@ -21,7 +22,7 @@ namespace {
 
 using TilePtr = std::shared_ptr<const Tile>;
 
-/// The opposite direction, exactly: on the octahedron's unfolded square −n is (−u, −v) folded over to the other half.
+/// The exactly opposite direction: on the octahedron's unfolded square, −n is (−u, −v) folded to the other half.
 PackedNormal opposite(const PackedNormal& n) {
   const int u = n.u, v = n.v;
   const int fu = 32767 - (v < 0 ? -v : v), fv = 32767 - (u < 0 ? -u : u);
@@ -39,7 +40,7 @@ bool inside(Boolean op, bool a, bool b) {
   }
 }
 
-/// The ends of one operand's ray in order: end 2k is the near end of span k, 2k + 1 its far end.
+/// The ends of one operand's ray in order: end 2k is the near end of span k, end 2k + 1 its far end.
 class Ends {
  public:
   Ends(std::span<const Span> spans, std::span<const SpanNormals> normals) : spans_(spans), normals_(normals) {}
@@ -51,13 +52,13 @@ class Ends {
     return next_ % 2 == 0 ? span.near : span.far;
   }
   bool inside() const { return next_ % 2 == 1; }
-  /// Passes all ends at x; true if that changed inside().
+  /// Advances past all ends up to x. Returns whether that changed inside().
   bool pass(double x) {
     const bool before = inside();
     while (!done() && coordinate() <= x) ++next_;
     return inside() != before;
   }
-  /// Normal at the end passed last.
+  /// Normal at the last end passed.
   PackedNormal normal() const {
     if (normals_.empty()) return {};
     const SpanNormals& n = normals_[(next_ - 1) / 2];
@@ -70,7 +71,7 @@ class Ends {
   std::size_t next_ = 0;
 };
 
-/// Where both operands have an end at one place, a's normal stays.
+/// Merges the ends. If both operands have an end at the same place, a's normal stays.
 void merge(Boolean op, Ends a, Ends b, Joiner out) {
   bool was = false;
   while (!a.done() || !b.done()) {
@@ -89,13 +90,13 @@ void merge(Boolean op, Ends a, Ends b, Joiner out) {
   out.flush();
 }
 
-/// What one operation does to one grid: the results of short cuts, and merges for the rest.
+/// Applies one operation to one grid: short cuts where possible, merges otherwise.
 class TileOperation {
  public:
   TileOperation(Boolean op, const Grid& grid)
       : op_(op), grid_(grid), empty_(TileBuilder(grid.has_normals()).finish()) {}
 
-  /// The tile that takes a's place: `a` itself if nothing changes. `rays` is how many of its rays lie on the grid.
+  /// Returns the new tile, or `a` itself if nothing changes. `rays`: number of the tile's rays that lie on the grid.
   TilePtr run(const TilePtr& a, const TilePtr& b, std::size_t rays, TileBuilder& builder) const {
     if (TilePtr known = short_cut(a, b, rays)) return known;
     const double least = kSliver * grid_.pitch();
@@ -108,7 +109,7 @@ class TileOperation {
   }
 
  private:
-  /// The result where it needs no merge, else null.
+  /// The result if it needs no merge, otherwise null.
   TilePtr short_cut(const TilePtr& a, const TilePtr& b, std::size_t rays) const {
     const bool apart = a->spans.empty() || b->spans.empty() || a->reach.cut(b->reach).empty();
     switch (op_) {
@@ -125,13 +126,13 @@ class TileOperation {
     }
   }
 
-  /// Whether the tile's rays on the grid are all one span over the whole box; most tiles that are not fail at once.
+  /// Whether every ray of the tile on the grid is one span over the whole box; most other tiles fail at once.
   bool full(const Tile& tile, std::size_t rays) const {
     const Span whole{grid_.box().lower.z, grid_.box().upper.z};
     if (tile.spans.size() != rays || tile.spans.front() != whole) return false;
     for (const Span& span : tile.spans)
       if (span != whole) return false;
-    return true;  // as many whole spans as rays, and no ray can hold two
+    return true;  // as many full spans as rays, and no ray can hold two
   }
 
   Boolean op_;
@@ -145,8 +146,8 @@ std::size_t rays_on_grid(const Grid& grid, int tu, int tv) {
   return static_cast<std::size_t>(rows) * columns;
 }
 
-/// A pair of tiles that stand at one place or more, how many of their rays lie on the grid there (a border tile and an
-/// inner one may be the same tile), and what becomes of them.
+/// A pair of tiles at one or more places, the number of their rays on the grid there (a border tile and an inner one
+/// may be the same tile), and its result.
 struct Pair {
   TilePtr a, b;
   std::size_t rays;
@@ -162,7 +163,7 @@ struct PairHash {
   }
 };
 
-/// The distinct pairs of two grids and, tile by tile, which one stands there.
+/// The distinct pairs of two grids and, for each tile, the index of its pair.
 struct Pairs {
   std::vector<Pair> pairs;
   std::vector<std::uint32_t> at;

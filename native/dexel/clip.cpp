@@ -1,4 +1,4 @@
-// The half space is a volume of one span a ray, and a clip its intersection with it.
+// The half space is a volume with one span per ray; a clip intersects the volume with it.
 #include "riffler/dexel/clip.hpp"
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace riffler::dexel {
 
 namespace {
 
-/// The part of a ray of `grid` behind the plane, in the grid's frame; empty where it has none.
+/// The part of a ray of `grid` behind the plane, in the grid's frame; may be empty.
 struct HalfSpace {
   const Grid& grid;
   Vec3 point, normal;
@@ -21,7 +21,8 @@ struct HalfSpace {
   Span behind(int i, int j) const {
     const Vec3 foot(grid.shifted_u(i), grid.shifted_v(j), 0);
     const double low = grid.box().lower.z, high = grid.box().upper.z;
-    const double off = glm::dot(Vec3(foot.x, foot.y, point.z) - point, normal);  // of the ray where it passes `point`
+    // Signed distance of the ray from the plane at the height of `point`.
+    const double off = glm::dot(Vec3(foot.x, foot.y, point.z) - point, normal);
     if (normal.z == 0) return off <= 0 ? Span{low, high} : Span{high, low};
     const double crossing = std::clamp(point.z - off / normal.z, low, high);
     return normal.z > 0 ? Span{low, crossing} : Span{crossing, high};

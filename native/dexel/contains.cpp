@@ -9,7 +9,7 @@ namespace riffler::dexel {
 
 namespace {
 
-/// Whether the ray of the cell that the point lies in has material at its height.
+/// Whether the ray of the cell that contains the point has material at its height.
 bool holds(const Grid& grid, const Vec3& p) {
   const Box3& box = grid.box();
   const int i = std::clamp(static_cast<int>((p.x - box.lower.x) / grid.pitch()), 0, grid.nu() - 1),

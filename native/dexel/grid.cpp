@@ -12,7 +12,7 @@ int ray_count(double extent, double pitch) {
 
 namespace {
 
-/// Of n cells along a side; the pitch itself where rounding makes the difference.
+/// Width of the last of n cells along a side; exactly the pitch if only rounding makes the difference.
 double last_width(double extent, int n, double pitch) {
   const double width = extent - (n - 1) * pitch;
   return std::abs(width - pitch) <= 1e-9 * pitch * n ? pitch : width;
@@ -61,7 +61,7 @@ double Grid::least_area() const {
 }
 
 double Grid::volume() const {
-  double sum = 0;  // of lengths, of those at the border as much as their areas are to h²
+  double sum = 0;  // sum of lengths; at the border weighted by cell area / h²
   for (int a = 0; a < tiles_u_; ++a)
     for (int b = 0; b < tiles_v_; ++b) {
       const Tile& tile = *tiles_[tile_index(a, b)];

@@ -1,5 +1,5 @@
-// Tiles change hands as they are where rays move by whole tiles. Otherwise each new tile is put together from up to
-// four old ones, once for every four that meet: a block's inner tiles are one shared tile, and stay one.
+// If rays move by whole tiles, tiles are reused unchanged. Otherwise each new tile is assembled from up to four old
+// ones, once for each distinct combination: the inner tiles of a block are one shared tile and stay one.
 #include "riffler/dexel/grown.hpp"
 
 #include <array>
@@ -16,15 +16,15 @@ namespace riffler::dexel {
 
 namespace {
 
-/// Of a pitch: by so much a box may end short of what is wanted, so that rounding adds no ray.
+/// In pitches: a box may end this much short of the wanted box, so that rounding adds no ray.
 constexpr double kShort = 1e-6;
 
-/// Whole pitches in `d`, mm, upward; none where it is negative.
+/// Number of whole pitches in `d` (mm), rounded up; 0 for negative d.
 double pitches(double d, double pitch) {
   return d > 0 ? std::ceil(d / pitch - kShort) : 0;
 }
 
-/// Tiles that meet in one new tile, by [later in u][later in v]; null for what is beyond the old grid.
+/// The old tiles that meet in one new tile, by [later in u][later in v]; null outside the old grid.
 using Four = std::array<std::shared_ptr<const Tile>, 4>;
 
 /// Moves the rays of a grid by (du, dv) places, both ≥ 0, into a larger one.
@@ -38,7 +38,7 @@ class TileMover {
         rays_v_(dv % kTileSide) {}
 
   bool whole_tiles() const { return rays_u_ == 0 && rays_v_ == 0; }
-  /// What meets in tile (u, v) of the new grid.
+  /// The old tiles that meet in tile (u, v) of the new grid.
   Four meeting(int u, int v) const {
     Four four;
     for (int k = 0; k < 4; ++k) {
@@ -78,7 +78,7 @@ void move_rays(const Grid& from, Grid& to, int du, int dv, const Progress& progr
   const TileMover mover(from, du, dv);
   std::map<Four, std::size_t> known;
   std::vector<Four> work;
-  std::vector<std::pair<std::size_t, std::size_t>> places;  // (tile of the new grid, place in `work`)
+  std::vector<std::pair<std::size_t, std::size_t>> places;  // (tile of the new grid, index in `work`)
   for (int u = du / kTileSide; u < to.tiles_u(); ++u)
     for (int v = dv / kTileSide; v < to.tiles_v(); ++v) {
       const Four four = mover.meeting(u, v);
@@ -110,7 +110,7 @@ Frame grown(const Frame& frame, const Box3& wanted) {
     const double lower = frame.box.lower[k], upper = frame.box.upper[k];
     const double below = pitches(lower - wanted.lower[k], h), above = pitches(wanted.upper[k] - upper, h);
     out.box.lower[k] = lower - below * h, out.box.upper[k] = upper + above * h;
-    // A last cell of half a pitch or less may round to no ray of its own now.
+    // A last cell of half a pitch or less may now round to no ray of its own.
     const double extent = out.box.size()[k];
     if (extent < 1e9 * h && ray_count(extent, h) < ray_count(upper - lower, h) + static_cast<int>(below))
       out.box.upper[k] = upper + (above + 1) * h;

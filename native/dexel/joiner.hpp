@@ -1,14 +1,14 @@
-// How ends along a ray become spans again.
+// Joins ends along a ray into spans.
 #pragma once
 
 #include "riffler/dexel/tile.hpp"
 
 namespace riffler::dexel {
 
-/// Spans and gaps thinner than this part of the pitch vanish.
+/// Spans and gaps thinner than this fraction of the pitch vanish.
 inline constexpr double kSliver = 1e-9;
 
-/// Hands the ends of one ray on as spans: first joins over gaps, then drops slivers.
+/// Converts the ends of one ray to spans: first closes narrow gaps, then drops thin spans.
 class Joiner {
  public:
   Joiner(TileBuilder& out, double least) : out_(out), least_(least) {}

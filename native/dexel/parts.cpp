@@ -15,7 +15,7 @@ namespace {
 using Number = std::uint32_t;
 constexpr Number kNone = ~Number{0};
 
-/// Disjoint sets with the least number of each as its root, so that nothing depends on the order of the joins.
+/// Disjoint sets whose root is their smallest number, so that nothing depends on the order of the joins.
 class Sets {
  public:
   explicit Sets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), Number{0}); }
@@ -77,8 +77,8 @@ Number span_at(const Grid& grid, const Numbers& numbers, int i, int j, double z)
   return numbers(i, j) + static_cast<Number>(std::prev(next) - ray.begin());
 }
 
-/// Joins each span of `grid` to the first span of `reference` that it meets: the others hang together with that one
-/// along it already, unless the two directions disagree.
+/// Joins each span of `grid` to the first span of `reference` that it meets. Other spans that it meets are connected to
+/// that one already, unless the two directions disagree.
 void join_across(const Grid& grid, const Numbers& numbers, const Grid& reference, const Numbers& reference_numbers,
                  Sets& sets) {
   const double h = grid.pitch();
@@ -108,7 +108,7 @@ std::size_t grid_index(const Volume& volume, const Grid& grid) {
   return static_cast<std::size_t>(&grid - volume.grids().data());
 }
 
-/// Pieces in order, and the piece of each span.
+/// The number of pieces, and the piece of each span.
 struct Pieces {
   std::size_t count = 0;
   std::vector<Number> of;
@@ -118,7 +118,7 @@ Pieces number_pieces(const Volume& volume, const std::vector<Numbers>& numbers, 
   const Grid& reference = volume.reference();
   const Numbers& first = numbers[grid_index(volume, reference)];
   const std::size_t spans = numbers.back().end();
-  std::vector<double> volume_of(spans, -1);  // mm³ of the roots that the reference sees
+  std::vector<double> volume_of(spans, -1);  // mm³ of each root that the reference direction sees
   for (int i = 0; i < reference.nu(); ++i)
     for (int j = 0; j < reference.nv(); ++j) {
       Number k = first(i, j);
@@ -134,7 +134,7 @@ Pieces number_pieces(const Volume& volume, const std::vector<Numbers>& numbers, 
   while (order.size() > 1 && volume_of[order.back()] < least) order.pop_back();
   if (order.size() > kMaxParts)
     throw std::invalid_argument("the volume has " + std::to_string(order.size()) + " pieces, more than " +
-                                std::to_string(kMaxParts) + "; ask for those that are larger, by least (mm³)");
+                                std::to_string(kMaxParts) + "; set least (mm³) to keep only larger ones");
   std::vector<Number> piece(spans, 0);
   for (std::size_t k = 0; k < order.size(); ++k) piece[order[k]] = static_cast<Number>(k);
   Pieces out{order.size(), std::vector<Number>(spans)};
@@ -143,7 +143,7 @@ Pieces number_pieces(const Volume& volume, const std::vector<Numbers>& numbers, 
   return out;
 }
 
-/// One volume for each piece: tiles that one piece has alone stay shared with the whole.
+/// Makes one volume per piece. Tiles that belong to one piece alone stay shared with the original.
 std::vector<Volume> split(const Volume& volume, const std::vector<Numbers>& numbers, const Pieces& pieces,
                           const Progress& progress) {
   std::vector<Volume> out(pieces.count, Volume(volume.frame()));

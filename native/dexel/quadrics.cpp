@@ -1,5 +1,5 @@
-// Each ray is cut with the solid in closed form, in the grid's cyclic frame, where rays run along z. Chords are taken
-// from the distance between the ray and the centre or the axis as √((r − d)(r + d)), which loses nothing near tangency.
+// Intersects each ray with the solid in closed form, in the grid's cyclic frame, where rays run along z. Half chords
+// are √((r − d)(r + d)) with d the distance of the ray from centre or axis, which stays accurate near tangency.
 #include "riffler/dexel/quadrics.hpp"
 
 #include <algorithm>
@@ -18,23 +18,23 @@ namespace riffler::dexel {
 
 namespace {
 
-/// Where a ray is in a solid, and the solid's normals there; all in the grid's frame.
+/// The part of a ray inside a solid, and the solid's normals at its ends, in the grid's frame.
 struct Chord {
   double near, far;
   Vec3 near_normal, far_normal;
 };
 
-/// Half of a circle's chord at a distance below the radius from its centre.
+/// Half the length of a circle's chord at a distance from its centre below the radius.
 double half_chord(double radius, double distance) {
   return std::sqrt((radius - distance) * (radius + distance));
 }
 
-/// A sphere as one grid's rays see it.
+/// A sphere in one grid's frame.
 class SphereRays {
  public:
   SphereRays(const Sphere& solid, Axis axis) : centre_(to_local(axis, solid.centre)), radius_(solid.radius) {}
 
-  /// False where the ray misses it.
+  /// Returns false if the ray misses the sphere.
   bool cut(double u, double v, Chord& out) const {
     const double x = u - centre_.x, y = v - centre_.y, d = std::hypot(x, y);
     if (!(d < radius_)) return false;
@@ -48,16 +48,16 @@ class SphereRays {
   double radius_;
 };
 
-/// Unit length, also where squares of the components would overflow or vanish. Throws for none.
+/// Normalises without overflow or underflow of the squared components. Throws for a zero or non-finite vector.
 Vec3 checked_axis(const Vec3& axis) {
   const double most = std::max({std::abs(axis.x), std::abs(axis.y), std::abs(axis.z)});
   if (!geom::finite(axis) || !(most > 0)) throw std::invalid_argument("axis must be finite and not of length 0");
   return glm::normalize(axis / most);
 }
 
-/// A cylinder as one grid's rays see it: along its axis a ray passes the slab between the caps, and across the axis,
-/// seen from its end, a circle. There the ray moves `lean_` along `across_` for each mm of its own, which is 0 where
-/// the two are parallel, and keeps its distance from the axis along `aside_`.
+/// A cylinder in one grid's frame. A ray passes the slab between the caps and, projected along the axis, a circle. In
+/// that projection it moves by `lean_` along `across_` per mm of its length (0 if parallel to the axis), at a constant
+/// distance from the axis along `aside_`.
 class CylinderRays {
  public:
   CylinderRays(const Cylinder& solid, Axis axis)
@@ -69,7 +69,7 @@ class CylinderRays {
         across_(lean_ > 0 ? Vec3(-axis_.z * axis_.x / lean_, -axis_.z * axis_.y / lean_, lean_) : Vec3(0)),
         aside_(lean_ > 0 ? Vec3(-axis_.y / lean_, axis_.x / lean_, 0) : Vec3(0)) {}
 
-  /// False where the ray misses it.
+  /// Returns false if the ray misses the cylinder.
   bool cut(double u, double v, Chord& out) const {
     const Vec3 foot(u - centre_.x, v - centre_.y, 0);
     const double aside = glm::dot(foot, aside_);
@@ -79,7 +79,8 @@ class CylinderRays {
                    side = lean_ > 0 ? Interval{(-half - middle) / lean_, (half - middle) / lean_} : kAll;
     out.near = centre_.z + std::max(caps.near, side.near);
     out.far = centre_.z + std::min(caps.far, side.far);
-    const Vec3 cap = axis_.z < 0 ? -axis_ : axis_, off = aside * aside_;  // `cap`: out of the one where the ray leaves
+    // `cap`: outward normal of the cap through which the ray leaves.
+    const Vec3 cap = axis_.z < 0 ? -axis_ : axis_, off = aside * aside_;
     out.near_normal = caps.near >= side.near ? -cap : (off - half * across_) / radius_;
     out.far_normal = caps.far <= side.far ? cap : (off + half * across_) / radius_;
     return out.near < out.far;
@@ -88,7 +89,7 @@ class CylinderRays {
  private:
   static constexpr Interval kAll{-kInfinity, kInfinity};
 
-  /// Where the ray is between the caps, mm from the centre's height; `along`: its foot's place on the axis.
+  /// The part of the ray between the caps, mm from the centre's height; `along`: its foot's coordinate on the axis.
   Interval between_caps(double along) const {
     if (axis_.z == 0) return std::abs(along) < half_height_ ? kAll : Interval{};
     const double a = (-half_height_ - along) / axis_.z, b = (half_height_ - along) / axis_.z;
@@ -101,8 +102,8 @@ class CylinderRays {
   Vec3 across_, aside_;
 };
 
-/// Where a ray at `place` (mm) is taken to stand, along a side of the box with `rays` rays: the last one may stand on
-/// the box's upper side, or, a lone one, beyond it. As in from_mesh, it is taken for what is within.
+/// Adjusts the coordinate `place` (mm) of a ray along a side of the box with `rays` rays: the last ray may lie on the
+/// box's upper side or, a lone one, beyond it. As in from_mesh, it counts as inside.
 double within(double place, int rays, double lower, double upper, double pitch) {
   const double inner = upper - Grid::kRayShift * pitch;
   return place < inner ? place : rays == 1 ? 0.5 * (lower + upper) : inner;
@@ -132,7 +133,7 @@ void fill(Grid& grid, std::size_t tile, const Rays& rays) {
   });
 }
 
-/// Whether all of a solid lies in the frame's box, to rounding.
+/// Whether the whole solid lies in the frame's box, up to rounding.
 bool holds(const Frame& frame, const Box3& solid) {
   const Box3 box = frame.box.grown(kSliver * frame.pitch);
   for (int k = 0; k < 3; ++k)
@@ -140,7 +141,7 @@ bool holds(const Frame& frame, const Box3& solid) {
   return true;
 }
 
-/// `inner`: radius of a ball about its centre that the solid holds; a lattice that is as fine meets that.
+/// `inner`: radius of a ball inside the solid; a lattice with a pitch this small meets the ball.
 template <class Rays, class Solid>
 Volume made(const char* name, const Solid& solid, double inner, const Frame& frame, const Progress& progress) {
   const Box3 around = bounds(solid);

@@ -1,13 +1,13 @@
-// Rounding to the coordinates that a binary STL holds.
+// Rounding to the float32 coordinates of a binary STL.
 #pragma once
 
 #include "riffler/geom/vec.hpp"
 
 namespace riffler::geom {
 
-/// `x` rounded to float32. Use this, not a cast to float and back: GCC 12.2 at -O2 takes two neighbouring casts
-/// double → float → double that pass through memory, as those of a GLM vector do, for no change at all (a fault of its
-/// straight-line vectoriser). The volatile keeps it from seeing them together.
+/// `x` rounded to float32. Use this instead of casting to float and back: the straight-line vectoriser of GCC 12.2 at
+/// -O2 has a bug that drops two adjacent casts double → float → double through memory, as in a GLM vector. The volatile
+/// variable hides the pair of casts from it.
 inline double to_float32(double x) {
   const volatile float rounded = static_cast<float>(x);
   return static_cast<double>(rounded);

@@ -1,4 +1,4 @@
-// Small mathematics, once for every topic: constants, rotations, perpendiculars.
+// Mathematics shared by all topics: constants, rotations, perpendiculars.
 #pragma once
 
 #include <cmath>
@@ -10,17 +10,17 @@
 namespace riffler::geom {
 
 inline constexpr double kPi = std::numbers::pi;
-inline constexpr double kTwoPi = 2 * kPi;     ///< rad of a whole turn
-inline constexpr double kDegree = kPi / 180;  ///< rad of one degree
-inline constexpr double kRadian = 180 / kPi;  ///< deg of one radian
+inline constexpr double kTwoPi = 2 * kPi;     ///< rad in a full turn
+inline constexpr double kDegree = kPi / 180;  ///< rad in one degree
+inline constexpr double kRadian = 180 / kPi;  ///< degrees in one radian
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// `v` turned by `angle` (rad) about the unit vector `k`, right-handed (Rodrigues).
+/// `v` rotated by `angle` (rad) about the unit vector `k`, right-handed (Rodrigues).
 inline Vec3 rotate_about(const Vec3& v, const Vec3& k, double angle) {
   return std::cos(angle) * v + std::sin(angle) * glm::cross(k, v) + (1 - std::cos(angle)) * glm::dot(k, v) * k;
 }
 
-/// `v` turned by the rotation vector `turn` (rad).
+/// `v` rotated by the rotation vector `turn` (rad).
 inline Vec3 rotate_by(const Vec3& v, const Vec3& turn) {
   const double angle = glm::length(turn);
   return angle == 0 ? v : rotate_about(v, turn / angle, angle);

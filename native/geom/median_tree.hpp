@@ -1,4 +1,4 @@
-// Complete binary trees over items, halved at medians: what trees of boxes and of spheres are built from.
+// Complete binary trees over items, split at medians: the base of the trees of boxes and of spheres.
 #pragma once
 
 #include <algorithm>
@@ -10,19 +10,19 @@
 
 namespace riffler::geom {
 
-/// Place of the first item of node `node` of a level, which has 2^level nodes.
+/// Index of the first item of node `node` on a level, which has 2^level nodes.
 inline std::size_t first_item(std::size_t items, std::size_t level, std::size_t node) {
   return (node * items) >> level;
 }
 
-/// The longest side of a box: 0, 1 or 2.
+/// Axis of the longest side of a box: 0, 1 or 2.
 inline int longest_side(const Vec3& size) {
   return size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
 }
 
-/// Puts numbers of items into the order of the tree's leaves. Every node above the last level is split at the median of
-/// key(item, axis), where axis(begin, end) chooses an axis for its items. Ties are decided by the number: items of a
-/// node are the same whatever nth_element does, and for any number of threads; their order is not.
+/// Sorts item numbers into the order of the tree's leaves. Every node above the last level is split at the median of
+/// key(item, axis), with the axis that axis(begin, end) returns for its items. Item numbers break ties, so each node
+/// holds the same items for any nth_element and any number of threads; the order inside a node may differ.
 template <class Index, class Axis, class Key>
 void sort_by_medians(std::vector<Index>& order, std::size_t levels, const Axis& axis, const Key& key) {
   const auto at = [&](std::size_t level, std::size_t node) {
@@ -39,7 +39,7 @@ void sort_by_medians(std::vector<Index>& order, std::size_t levels, const Axis& 
     });
 }
 
-/// The same by the items' centres, along the longest side of their box.
+/// Same, by the items' centres along the longest side of their box.
 template <class Index>
 void sort_by_medians(std::vector<Index>& order, std::size_t levels, const std::vector<Vec3>& centres) {
   const auto axis = [&](auto begin, auto end) {
@@ -50,7 +50,7 @@ void sort_by_medians(std::vector<Index>& order, std::size_t levels, const std::v
   sort_by_medians(order, levels, axis, [&](Index i, int side) { return centres[static_cast<std::size_t>(i)][side]; });
 }
 
-/// Boxes of all nodes: node i has the children 2 i + 1 and 2 i + 2, and leaf_box(k) is the box of leaf k.
+/// Boxes of all nodes. Node i has the children 2 i + 1 and 2 i + 2; leaf_box(k) is the box of leaf k.
 template <class LeafBox>
 std::vector<Box3> boxes_of_tree(std::size_t levels, const LeafBox& leaf_box) {
   const std::size_t leaves = std::size_t{1} << levels;

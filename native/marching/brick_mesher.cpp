@@ -9,10 +9,10 @@ namespace riffler::marching {
 
 namespace {
 
-/// Whether a triangle of a quad may lie on a neighbour's. Where two triangles with the normals n and −n share an edge,
-/// each looks to its own lattice edge's side, e and f: n·e > 0 and n·f < 0, and the other way round. So one of them is
-/// nearly edge-on to its side, or the other looks away from it. `sides`: bits 2 axis + (looks down) of the edges that
-/// the corners' cycles have.
+/// Whether a triangle of a quad may fold onto a neighbour's. If two triangles with the normals n and −n share an edge,
+/// each faces the side of its own lattice edge, e or f: n·e > 0 and n·f < 0, or vice versa. So one of them is nearly
+/// edge-on to its side, or the other faces away from it. `sides`: bits 2 axis + (faces down) of the edges in the
+/// corners' cycles.
 bool may_fold(const Quad& quad, int diagonal, int sides) {
   constexpr double kEdgeOn = 0.35, kAway = -0.25;
   const auto& c = quad.corner;
@@ -28,7 +28,7 @@ bool may_fold(const Quad& quad, int diagonal, int sides) {
   return false;
 }
 
-/// The numbers of the vertices in a column of cells of a brick or of the layer below it, K ascending.
+/// The vertex numbers in a column of cells of a brick or of the layer below it, K ascending.
 class ColumnNumbers {
  public:
   ColumnNumbers(const Bricks& bricks, const Vec3i& at, int i, int j) : column_{i & 31, j & 31} {
@@ -37,7 +37,7 @@ class ColumnNumbers {
     below_ = bricks.active(a, b, at.z - 1);
     if (here) next_ = static_cast<std::int32_t>(here->vertex(column_[0], column_[1]));
   }
-  /// The first of the next cell.
+  /// The first vertex number of the next cell.
   std::int32_t take(int k, int cycles) {
     if (k < 0) return static_cast<std::int32_t>(below_->vertex_after(column_[0], column_[1])) - cycles;
     next_ += cycles;
@@ -50,8 +50,9 @@ class ColumnNumbers {
   std::int32_t next_ = 0;
 };
 
-/// Vertices and quads of one brick. It sees the cells −1 … 31 along each axis: its own, and the layer below that its
-/// quads need too, whose vertices its neighbours place, by the same code from the same hits.
+/// Makes the vertices and quads of one brick. It processes the cells −1 … 31 along each axis: its own, and the layer
+/// below that its quads also need. The neighbours place the vertices of that layer, with the same code from the same
+/// hits.
 class BrickMesher {
  public:
   explicit BrickMesher(Surface& surface) : surface_(surface), finder_(surface.hits), table_(case_table()) {}
@@ -68,7 +69,7 @@ class BrickMesher {
 
  private:
   static constexpr int kSide = kBrickSide + 2;  // columns −1 … 32 of points
-  // Bits of a Neighbourhood's words: points −1 … 32, and those of them that are the lower ends of cells or edges.
+  // Bits of a Neighbourhood's words: the points −1 … 32, and those that are lower ends of cells or edges.
   static constexpr std::uint64_t kPoints = ((std::uint64_t{1} << 34) - 1) << 1, kLower = kPoints >> 1 & kPoints;
 
   static constexpr std::uint8_t kUneven = 64;
@@ -106,7 +107,7 @@ class BrickMesher {
   }
 
   void place_column(int i, int j, std::uint64_t mixed) {
-    // Edges of a cell that start in its lower layer of points have a cursor each; those of the upper layer come next in
+    // Each edge of a cell that starts in its lower layer of points has a cursor; those of the upper layer come next in
     // the same column.
     static constexpr int lower[8] = {0, 1, 4, 6, 8, 9, 10, 11};
     ColumnNumbers numbers(surface_.bricks, brick_->at, i, j);
@@ -210,25 +211,25 @@ class BrickMesher {
   const CaseTable& table_;
   ActiveBrick* brick_ = nullptr;
   const Neighbourhood* signs_ = nullptr;
-  Vec3i origin_{0};  // the brick's first point
-  // Of the edges of all these cells, by column, axis and K:
+  Vec3i origin_{0};  // first point of the brick
+  // For the edges of all these cells, by column, axis and K:
   std::array<std::array<std::uint64_t, kSide * kSide>, 3> crossed_;
   std::array<std::array<std::uint32_t, kSide * kSide>, 3> start_;
   std::vector<Hit> hits_;
-  std::vector<std::array<std::uint32_t, 4>> corners_;  // of the quads round them, as indices into the two below
+  std::vector<std::array<std::uint32_t, 4>> corners_;  // for the quads around them, as indices into the next two arrays
   std::vector<Vec3> places_;
   std::vector<std::int32_t> numbers_;
-  std::vector<std::uint8_t> sides_;  // that the cycle's edges look to; kUneven where triangles may fold
+  std::vector<std::uint8_t> sides_;  // sides that the cycle's edges face; kUneven if triangles may fold
   Siblings siblings_;
 };
 
-/// Enters new numbers of vertices into the quads of a brick. Until all are entered they stand there negated: which
-/// diagonal a quad has is told by equal numbers, and a new number may be what an old one was.
+/// Writes new vertex numbers into the quads of a brick. Until all are written they are stored negated: equal numbers
+/// identify a quad's diagonal, and a new number may equal an old one.
 class Linker {
  public:
   Linker(Surface& surface, const Vec3i& brick) : surface_(surface), origin_(brick * kBrickSide) {}
 
-  /// The vertex of a cycle, into those of its quads that stand for the brick's own edges.
+  /// Writes the vertex of a cycle into those of its quads that belong to the brick's own edges.
   void link(const Vec3i& cell, const CellCase& entry, int c, std::int32_t number) {
     for (int n = entry.begin[c]; n < entry.begin[c + 1]; ++n) {
       const CellEdge& shape = kEdges[entry.edge[n]];

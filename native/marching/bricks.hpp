@@ -1,7 +1,7 @@
-// The lattice in bricks of 32 × 32 × 32 cells: their signs, and where their quads and vertices stand in the mesh.
+// The lattice in bricks of 32 × 32 × 32 cells: their signs, and the positions of their quads and vertices in the mesh.
 //
-// A brick is meshed by itself, from its rays and the signs around it: small enough for the nearest caches, large
-// enough that the layer of cells it needs of its neighbours does not count.
+// Each brick is meshed by itself, from its rays and the signs around it. It is small enough for the inner caches, and
+// large enough that the layer of cells needed from its neighbours costs little.
 #pragma once
 
 #include <array>
@@ -22,18 +22,18 @@ inline int bricks_along(const Lattice& lattice, int axis) {
   return (lattice.points(axis) + kBrickSide - 1) / kBrickSide;
 }
 
-/// Inside or outside for the lattice points of a brick: bit K of row 32 I + J.
+/// Whether each lattice point of a brick is inside: bit K of row 32 I + J.
 using SignRows = std::array<std::uint32_t, kBrickColumns>;
-/// The sign that all points of a brick have, if they have one.
+/// The common sign of all points of a brick, if there is one.
 std::optional<bool> common_sign(const SignRows& rows);
 
 /// A crossed edge of the lattice, from (i, j, k) along `axis`.
 struct LatticeEdge {
   int axis, i, j, k;
-  bool rising;  // from outside to inside: the material's surface looks down the axis
+  bool rising;  // from outside to inside: the surface normal points down the axis
 };
 
-/// A quad and the edge that it stands for.
+/// A quad and the edge that it belongs to.
 struct QuadRef {
   std::uint32_t quad;
   LatticeEdge edge;
@@ -49,32 +49,32 @@ struct CellVertex {
   bool operator<(const CellVertex& o) const { return vertex < o.vertex; }
 };
 
-/// A vertex that did not simply fall into its cell: the few that later stages look at.
+/// A vertex that later stages have to examine; most vertices simply lie in their cell.
 struct VertexChoice {
   CellVertex at;
-  Vec3 safe;       // whatever the neighbours do, the quads round it have a diagonal here
+  Vec3 safe;       // for any choice of the neighbours, the quads around it have a valid diagonal here
   Vec3 candidate;  // a better place, or `safe`
-  Vec3 anchor;     // where it is pulled to when triangles fold, cell units
-  Vec3 chosen;     // between the two
+  Vec3 anchor;     // target of the pull when triangles fold, cell units
+  Vec3 chosen;     // the choice: between `safe` and `candidate`
   Vec3 fallback;   // while triangles are unfolded: `safe`, pulled
   bool alone;      // no other vertex belongs to its cell
 };
 
-/// A vertex that was moved to unfold triangles, and where it was before.
+/// A vertex that was moved to unfold triangles, and its previous place.
 struct MovedVertex {
   CellVertex at;
   Vec3 before;
 };
 
-/// What a brick that the surface runs through has besides signs. Its edges (one quad stands for each) are those that
-/// start at its points, numbered by column, axis and K; its vertices are those of its cells, numbered by column, K and
+/// Data of a brick that the surface runs through, in addition to its signs. Its edges (one quad each) are those that
+/// start at its points, numbered by column, axis and K. Its vertices are those of its cells, numbered by column, K and
 /// cycle.
 struct ActiveBrick {
-  Vec3i at;                                                // in bricks
-  std::size_t first_edge = 0, first_vertex = 0;            // number in the mesh of its first
-  std::array<std::uint32_t, kBrickSide + 1> plane_edge{};  // before each plane I; the last: all
+  Vec3i at;                                                // position in bricks
+  std::size_t first_edge = 0, first_vertex = 0;            // mesh index of the first quad and vertex
+  std::array<std::uint32_t, kBrickSide + 1> plane_edge{};  // count before each plane I; the last entry: all
   std::array<std::uint32_t, kBrickSide + 1> plane_vertex{};
-  std::array<std::uint16_t, kBrickColumns> column_edge{};  // of its plane, before each column
+  std::array<std::uint16_t, kBrickColumns> column_edge{};  // count within its plane before each column
   std::array<std::uint16_t, kBrickColumns> column_vertex{};
   std::vector<VertexChoice> specials;  // by vertex, ascending
   std::vector<QuadRef> suspects;       // quads that may fold onto a neighbour
@@ -84,7 +84,7 @@ struct ActiveBrick {
   std::size_t vertices() const { return plane_vertex[kBrickSide]; }
   std::size_t edge(int i, int j) const { return first_edge + plane_edge[i] + column_edge[i * kBrickSide + j]; }
   std::size_t vertex(int i, int j) const { return first_vertex + plane_vertex[i] + column_vertex[i * kBrickSide + j]; }
-  /// Number of the first vertex after a column.
+  /// Index after the last vertex of a column.
   std::size_t vertex_after(int i, int j) const {
     return j + 1 < kBrickSide ? vertex(i, j + 1) : first_vertex + plane_vertex[i + 1];
   }
@@ -92,14 +92,14 @@ struct ActiveBrick {
 
 class Bricks {
  public:
-  /// All points outside.
+  /// All points are outside.
   explicit Bricks(const Lattice& lattice);
 
   int count(int axis) const { return count_[axis]; }
   std::size_t size() const { return bricks_.size(); }
   std::size_t index(int a, int b, int c) const { return (static_cast<std::size_t>(a) * count_[1] + b) * count_[2] + c; }
   Vec3i place(std::size_t n) const;
-  /// The brick that owns a cell or a lattice point.
+  /// The brick that owns a cell or lattice point.
   std::size_t index_of(const Vec3i& cell) const {
     return index(cell.x / kBrickSide, cell.y / kBrickSide, cell.z / kBrickSide);
   }
@@ -107,14 +107,14 @@ class Bricks {
     return a >= 0 && b >= 0 && c >= 0 && a < count_[0] && b < count_[1] && c < count_[2];
   }
 
-  /// Signs of a brick; of one beyond the lattice too.
+  /// Signs of a brick, also of one outside the lattice.
   const SignRows& signs(int a, int b, int c) const { return has(a, b, c) ? *bricks_[index(a, b, c)].signs : outside(); }
   /// Bricks without a surface share their signs.
   void set_signs(std::size_t n, const SignRows& rows);
   static const SignRows& outside();
   static const SignRows& inside();
 
-  /// Null where no edge or cell of the brick has both signs.
+  /// Null if no edge or cell of the brick has both signs.
   const ActiveBrick* active(int a, int b, int c) const {
     return has(a, b, c) ? bricks_[index(a, b, c)].active.get() : nullptr;
   }
@@ -124,7 +124,7 @@ class Bricks {
   /// The active brick that owns a cell with both signs, or an edge that starts at such a point.
   ActiveBrick& owner(const Vec3i& cell) { return *bricks_[index_of(cell)].active; }
 
-  /// Sign of a lattice point; of one beyond the lattice too.
+  /// Sign of a lattice point, also of one outside the lattice.
   bool at(int i, int j, int k) const {
     return signs(i >> 5, j >> 5, k >> 5)[(i & 31) * kBrickSide + (j & 31)] >> (k & 31) & 1;
   }
@@ -134,7 +134,7 @@ class Bricks {
     const std::uint64_t here = signs(i >> 5, j >> 5, k >> 5)[row], above = signs(i >> 5, j >> 5, (k >> 5) + 1)[row];
     return (here | above << 32) >> low & 0xffffffff;
   }
-  /// Number of the quad that stands for a crossed edge.
+  /// Number of the quad of a crossed edge.
   std::uint32_t quad_of(const LatticeEdge& edge) const;
 
  private:

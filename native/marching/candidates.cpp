@@ -7,7 +7,7 @@ namespace riffler::marching {
 
 namespace {
 
-/// The quads round the vertices that have a candidate.
+/// The quads around the vertices that have a candidate.
 class Surroundings {
  public:
   Surroundings(const Surface& surface, const std::vector<Vec3i>& cells)
@@ -18,7 +18,7 @@ class Surroundings {
     std::sort(uses_.begin(), uses_.end());
   }
 
-  /// True if every quad round the vertex has a valid diagonal as its corners stand now.
+  /// Whether every quad around the vertex has a valid diagonal with its current corners.
   bool valid(const Surface& surface, std::int32_t vertex) const {
     for (auto u = std::lower_bound(uses_.begin(), uses_.end(), Use{vertex, 0}); u != uses_.end() && (*u)[0] == vertex;
          ++u)
@@ -34,7 +34,7 @@ class Surroundings {
   std::vector<Use> uses_;
 };
 
-/// Moves a vertex from its safe place as far towards its candidate as its quads let it.
+/// Moves a vertex from its safe place as far towards its candidate as its quads allow.
 void advance(Surface& surface, const Surroundings& around, VertexChoice& special) {
   const FloatGrid& grid = surface.grid;
   const Vec3i& cell = special.at.cell;
@@ -42,7 +42,7 @@ void advance(Surface& surface, const Surroundings& around, VertexChoice& special
   const Vec3 from = grid.to_cell(cell, special.safe), to = grid.to_cell(cell, special.candidate);
   for (double share = 1; share > 0; share -= 0.125) {
     const Vec3 part = from + share * (to - from);
-    // On the way out of a cell with other vertices it might stand on one of them.
+    // Between the two places, it might coincide with another vertex of the cell.
     if (!special.alone && FloatGrid::in_cell(part)) break;
     place = share == 1 ? special.candidate : grid.near(cell, part);
     if (around.valid(surface, special.at.vertex)) break;
@@ -72,8 +72,9 @@ std::vector<VertexChoice*> undecided(Surface& surface, const std::vector<std::si
 
 void choose_candidates(Surface& surface, const std::vector<VertexChoice*>& open,
                        const std::vector<VertexChoice*>& known, const Progress& progress) {
-  // Cells whose indices have equal parities share no quad: eight groups, one after the other, whose members do not see
-  // each other. The result depends neither on an order within a group nor on threads, and on near cells only.
+  // Cells whose indices have equal parities share no quad. So the eight groups are processed one after the other, and
+  // members of a group are independent. The result depends neither on the order within a group nor on threads, and only
+  // on nearby cells.
   if (open.empty()) return;
   Groups open_groups, known_groups;
   add_to(open_groups, open), add_to(known_groups, known);

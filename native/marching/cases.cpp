@@ -23,7 +23,7 @@ Face make_face(int f) {
   return face;
 }
 
-/// Sets of edges that segments have joined.
+/// Sets of edges joined by segments.
 struct Cycles {
   std::array<int, 12> parent;
   Cycles() {
@@ -35,7 +35,7 @@ struct Cycles {
   }
   void join(int a, int b) {
     const int x = find(a), y = find(b);
-    if (x != y) parent[x < y ? y : x] = x < y ? x : y;  // the least edge stands for its cycle
+    if (x != y) parent[x < y ? y : x] = x < y ? x : y;  // the smallest edge represents its cycle
   }
 };
 
@@ -49,8 +49,8 @@ bool ambiguous(int code, const Face& face) {
          inside(code, c[0]) != inside(code, c[1]);
 }
 
-/// Joins the crossed edges of one face: the two there are, or, in an ambiguous face, the two round each inside corner
-/// (`flipped`: round each outside corner).
+/// Joins the crossed edges of one face: if there are two, these; in an ambiguous face, the two around each inside
+/// corner (`flipped`: around each outside corner).
 void join_segments(int code, const Face& face, bool flipped, Cycles& cycles) {
   if (ambiguous(code, face)) {
     for (int n = 0; n < 4; ++n)

@@ -1,7 +1,7 @@
-// The sign patterns of a cell and the closed cycles of crossed edges that each has: one vertex a cycle.
+// The sign patterns of a cell, and the closed cycles of crossed edges of each pattern: one vertex per cycle.
 //
-// Dual contouring with one vertex for every sheet of surface in a cell (Nielson, "Dual Marching Cubes", IEEE
-// Visualization 2004), with the cure for the two patterns that would still make an edge of four triangles (Wenger,
+// Dual contouring with one vertex for each sheet of surface in a cell (Nielson, "Dual Marching Cubes", IEEE
+// Visualization 2004), with the fix for the two patterns that would otherwise make an edge with four triangles (Wenger,
 // "Isosurfaces: Geometry, Topology, and Algorithms", 2013, ch. 3).
 #pragma once
 
@@ -16,8 +16,8 @@ struct CellEdge {
   int axis;
   std::array<int, 3> from;  // the lower end, as coordinates 0 or 1
   int low, high;            // corners at the ends
-  int slot;                 // place of this cell among the four round the edge, counter-clockwise seen from +axis
-  int faces;                // bits of the two faces it lies on
+  int slot;                 // position of this cell among the four around the edge, counter-clockwise seen from +axis
+  int faces;                // bits of the two faces that the edge lies on
 };
 
 constexpr CellEdge make_edge(int e) {
@@ -38,8 +38,8 @@ inline constexpr std::array<CellEdge, 12> kEdges = [] {
   return edges;
 }();
 
-/// Which corner of an edge's quad the cell at a slot round the edge has, and which slot a corner. Quads are
-/// counter-clockwise seen from outside, so those of rising edges turn the other way.
+/// Maps a cell's slot around an edge to its corner in the edge's quad, and back. Quads are counter-clockwise seen from
+/// outside, so those of rising edges have the reverse order.
 constexpr int corner_at(int slot, bool rising) {
   return rising ? (4 - slot) & 3 : slot;
 }
@@ -48,13 +48,13 @@ inline constexpr int kNoFace = 7;
 
 struct CellCase {
   std::uint8_t code = 0;                              // bit c: corner c is inside
-  std::uint8_t cycles = 0;                            // vertices of the cell
-  std::uint8_t problem = kNoFace;                     // an ambiguous face that has both its segments in one cycle
-  std::uint16_t second = 0;                           // entry with that face resolved the other way: one vertex more
+  std::uint8_t cycles = 0;                            // number of vertices of the cell
+  std::uint8_t problem = kNoFace;                     // an ambiguous face with both its segments in one cycle
+  std::uint16_t second = 0;                           // entry that resolves that face differently: one vertex more
   std::uint16_t crossed = 0;                          // bit e: edge e is crossed
   std::array<std::uint8_t, 12> edge{};                // the crossed edges, cycle by cycle
   std::array<std::uint8_t, 5> begin{};                // cycle c owns edge[begin[c]] … edge[begin[c + 1] − 1]
-  std::array<std::array<std::uint8_t, 3>, 4> from{};  // sum over a cycle's edges of their lower ends
+  std::array<std::array<std::uint8_t, 3>, 4> from{};  // sum of the lower ends of a cycle's edges
   std::array<std::uint8_t, 4> faces{};                // faces that a cycle's edges lie on
 };
 

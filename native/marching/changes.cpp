@@ -24,7 +24,7 @@ End end_of(const dexel::Tile& tile, int ray, std::size_t n) {
   return {far ? span.far : span.near, normal};
 }
 
-/// Where two states of a ray differ: from the first to the last end that is not in both; empty if they are the same.
+/// The interval between the first and last end that two states of a ray do not share; empty if they are equal.
 Interval difference(const dexel::Tile& a, const dexel::Tile& b, int ray) {
   const std::size_t na = 2 * a.ray(ray).size(), nb = 2 * b.ray(ray).size();
   std::size_t first = 0, last = 0;
@@ -41,15 +41,15 @@ class Marker {
  public:
   Marker(const Lattice& lattice, const Bricks& bricks, Changes& out) : lattice_(lattice), bricks_(bricks), out_(out) {}
 
-  /// The points from `first` to `last`.
+  /// Marks the bricks of the points from `first` to `last`.
   void mark(const Vec3i& first, const Vec3i& last) {
     mark(first, last, out_.signs, out_.sign_bricks);
-    // A vertex depends on the signs of its cell and, for the resolution of an ambiguous face, of the next; a hit on an
-    // end half a pitch beyond its edge. A brick's quads have corners in the layer of cells below it.
+    // A vertex depends on the signs of its cell and, to resolve an ambiguous face, of the next cell; a hit depends on
+    // an end up to half a pitch beyond its edge. A brick's quads have corners in the layer of cells below it.
     mark(first - Vec3i(kReach), last + Vec3i(kReach), out_.meshes, out_.mesh_bricks);
   }
 
-  /// The changed part of a ray (u, v) along a lattice axis.
+  /// Marks the changed part of a ray (u, v) along a lattice axis.
   void mark_ray(int axis, int u, int v, const Interval& part) {
     Vec3i first{0}, last{0};
     first[axis] = point(axis, std::floor((part.near - lattice_.at(axis, 0)) / lattice_.pitch()));
@@ -93,7 +93,7 @@ Changes changes_between(const Volume& before, const Volume& after, const Lattice
   Marker marker(lattice, bricks, changes);
   for (std::size_t g = 0; g < after.grids().size(); ++g) {
     const dexel::Grid &a = before.grids()[g], &b = after.grids()[g];
-    // A grid of one direction stands along the lattice's third axis.
+    // A grid of one direction lies along the lattice's third axis.
     const int axis = after.grids().size() == 3 ? static_cast<int>(b.axis()) : 2;
     for (std::size_t t = 0; t < b.tile_count(); ++t) {
       if (a.shared_tile(t) == b.shared_tile(t)) continue;

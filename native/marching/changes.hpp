@@ -1,4 +1,4 @@
-// Which bricks of a mesh two states of a volume differ in.
+// Finds the bricks of a mesh in which two states of a volume differ.
 #pragma once
 
 #include <vector>
@@ -17,7 +17,7 @@ struct Changes {
   bool empty() const { return mesh_bricks.empty(); }
 };
 
-/// Compares the rays of tiles that the two do not share. Volumes of one frame.
+/// Compares the rays of tiles that the two volumes do not share. Both must have the same frame.
 Changes changes_between(const Volume& before, const Volume& after, const Lattice& lattice, const Bricks& bricks);
 
 }  // namespace riffler::marching

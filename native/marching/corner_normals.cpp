@@ -19,7 +19,7 @@ struct Wedge {
   double angle;
 };
 
-/// Bricks beside some, without them, that have triangles.
+/// The bricks with triangles adjacent to `bricks`, without these.
 std::vector<std::size_t> beside(const Bricks& all, std::span<const std::size_t> bricks) {
   std::vector<std::size_t> out, own(bricks.begin(), bricks.end());
   std::sort(own.begin(), own.end());
@@ -36,7 +36,7 @@ std::vector<std::size_t> beside(const Bricks& all, std::span<const std::size_t> 
   return out;
 }
 
-/// The patch's number of a vertex of the mesh; −1 for one that it does not have.
+/// Maps a vertex number of the mesh to the patch's number, −1 if the patch lacks it.
 class Numbers {
  public:
   Numbers(const MeshState& state, const MeshPatch& patch) : own_(patch.own), foreign_(patch.foreign) {
@@ -47,7 +47,7 @@ class Numbers {
     }
     std::sort(ranges_.begin(), ranges_.end(), [](const Range& a, const Range& b) { return a.first < b.first; });
   }
-  /// Of each of a brick's own vertices, in their order: most are far from the patch, and are not looked for one by one.
+  /// For all of a brick's own vertices, in order: most are far from the patch, so there is no search for each one.
   void of_brick(const ActiveBrick& brick, std::vector<std::int64_t>& out) const {
     out.assign(brick.vertices(), -1);
     const auto first = static_cast<std::int32_t>(brick.first_vertex);
@@ -95,7 +95,7 @@ class Fans {
 };
 
 struct Corners {
-  Vec3 normal{0.0};  // unit, or 0 where the triangle has no area
+  Vec3 normal{0.0};  // unit, or 0 if the triangle has no area
   std::array<double, 3> angle{};
 };
 
@@ -129,7 +129,7 @@ base::BulkVector<Vec3f> corner_normals(const MeshState& state, std::span<const s
     const ActiveBrick& brick = *state.bricks.active(n);
     numbers.of_brick(brick, of_brick);
     const auto number = [&](std::int32_t v) {
-      const std::size_t k = static_cast<std::size_t>(v) - brick.first_vertex;  // large for those before it
+      const std::size_t k = static_cast<std::size_t>(v) - brick.first_vertex;  // large for the vertices before it
       return k < of_brick.size() ? of_brick[k] : numbers.of(v);
     };
     for (std::size_t t = 2 * brick.first_edge; t < 2 * (brick.first_edge + brick.edges()); ++t) {
@@ -142,7 +142,7 @@ base::BulkVector<Vec3f> corner_normals(const MeshState& state, std::span<const s
     }
   }
   fans.reserve();
-  // From the coordinates that patches have: the world's frame, float32.
+  // Uses the coordinates that patches have: world frame, float32.
   std::vector<Vec3> normals;
   normals.reserve(patch.triangles.size());
   const auto place = [&](std::int32_t v) { return Vec3(Vec3f(to_world(state.lattice.axis(), mesh.vertices[v]))); };

@@ -6,12 +6,12 @@ namespace riffler::marching {
 
 namespace {
 
-/// v[axis] for an axis known at run time only; glm's operator branches.
+/// v[axis] for an axis known only at run time; glm's operator branches.
 double component(const Vec3& v, int axis) {
   return (&v.x)[axis];
 }
 
-/// The quad seen along its edge, from outside: two coordinates across, the height along, from corner 0.
+/// The quad seen along its edge, from outside, relative to corner 0: two coordinates across, the height along.
 struct Projection {
   Vec2 p[4];
   double height[4];
@@ -23,7 +23,7 @@ struct Projection {
     p[0] = Vec2(0.0), height[0] = 0;
     for (int n = 1; n < 4; ++n) {
       const Vec3& corner = q.corner[n];
-      // Seen from the other side left and right change places.
+      // Seen from the other side, left and right are swapped.
       p[n] = {q.side * (component(corner, b) - component(origin, b)), component(corner, c) - component(origin, c)};
       height[n] = component(corner, q.axis) - component(origin, q.axis);
     }
@@ -32,7 +32,7 @@ struct Projection {
   }
   static double cross(const Vec2& a, const Vec2& b) { return a.x * b.y - a.y * b.x; }
 
-  /// Height over `o` of the triangle (r, s, t), whose doubled area is given.
+  /// Height at `o` of the triangle (r, s, t), whose doubled area is given.
   double height_at(const Vec2& o, int r, int s, int t, double area) const {
     const double at_s = cross(p[t] - o, p[r] - o), at_t = cross(p[r] - o, p[s] - o);
     return height[r] + ((height[s] - height[r]) * at_s + (height[t] - height[r]) * at_t) / area;
@@ -54,7 +54,7 @@ int choose_diagonal(const Quad& quad, const Vec3& hit, double tie) {
   const Projection s(quad);
   const bool first = s.area012 > 0 && s.area023 > 0, second = s.area123 > 0 && s.area130 > 0;
   if (!first || !second) return first ? 0 : second ? 1 : -1;
-  // Six times the volume between the two surfaces over their area: how far apart they are at most, about.
+  // Six times the volume between the two surfaces, over their area: approximately their maximum distance.
   const double apart = s.height[1] * s.area023 + s.height[3] * s.area012 - s.height[2] * s.area130;
   if (std::abs(apart) > tie * (s.area012 + s.area023)) {
     const int b = (quad.axis + 1) % 3, c = (quad.axis + 2) % 3;

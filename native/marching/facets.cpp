@@ -6,8 +6,8 @@ namespace riffler::marching {
 
 namespace {
 
-/// A triangle of sheared corners: where the ray meets it, if it does; a ray through an edge or a corner meets all that
-/// share it, from whichever side. `u`, `v`, `w`: areas across from a, b, c.
+/// Whether the ray meets a triangle of sheared corners, and where. A ray through an edge or corner meets all triangles
+/// that share it, from either side. `u`, `v`, `w`: areas opposite a, b, c.
 bool meets(const Vec3& a, const Vec3& b, const Vec3& c, double u, double v, double w, double& distance) {
   if ((u < 0 || v < 0 || w < 0) && (u > 0 || v > 0 || w > 0)) return false;
   const double area = u + v + w;
@@ -25,14 +25,14 @@ Facets::Facets(const Surface& surface, const ActiveBrick& brick) {
   for (std::size_t first = 0; first < count; first += kRun) {
     Vec3f lower(std::numeric_limits<float>::infinity()), upper = -lower;
     const auto place = [&](std::int32_t v) {
-      const Vec3f p(mesh.vertices[v]);  // a float holds every place that a vertex may take
+      const Vec3f p(mesh.vertices[v]);  // a float represents every place that a vertex may take
       lower = glm::min(lower, p), upper = glm::max(upper, p);
       return p;
     };
     for (std::size_t n = first; n < std::min(first + kRun, count); ++n) {
       const std::size_t quad = brick.first_edge + n;
       const Vec3i* const t = &mesh.triangles[2 * quad];
-      const int turned = surface.diagonal(quad);  // the corners begin where the diagonal does
+      const int turned = surface.diagonal(quad);  // the corners begin at the diagonal
       const Vec3i &a = t[turned], &b = t[1 - turned];
       quads_.push_back({place(a.x), place(a.y), place(a.z), place(turned ? b.x : b.z)});
     }
@@ -56,7 +56,7 @@ std::uint64_t Facets::look(const Sight& sight, std::size_t brick, Nearest& best)
       return (p[0][a] > 0 && p[1][a] > 0 && p[2][a] > 0 && p[3][a] > 0) ||
              (p[0][a] < 0 && p[1][a] < 0 && p[2][a] < 0 && p[3][a] < 0);
     };
-    if (aside(0) || aside(1)) return;  // most
+    if (aside(0) || aside(1)) return;  // most quads
     const double across = twice_area(p[0], p[2]);
     for (int half = 0; half < 2; ++half) {
       const Vec3 &b = p[half + 1], &c = p[half + 2];

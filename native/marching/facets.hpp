@@ -1,7 +1,7 @@
-// The triangles of one brick, as rays find them.
+// The triangles of one brick, organised for ray queries.
 //
-// Its quads stand in the order of the lattice's columns, so those that follow each other lie close together: boxes
-// round runs of them make a tree without any sorting, in the time that reading the quads takes. A brick that a stroke
+// A brick's quads are stored in the order of the lattice's columns, so consecutive quads are close together: boxes
+// around runs of quads form a tree without sorting, in the time that it takes to read the quads. A brick that a stroke
 // has just changed can be picked at once.
 #pragma once
 
@@ -15,12 +15,12 @@
 
 namespace riffler::marching {
 
-/// The nearest triangle that a ray has met. Of equally near ones, as at an edge that it goes through, that of the
-/// lowest brick, quad and number counts, so that the order in which they are met does not matter.
+/// The nearest triangle that a ray has met. Ties (a ray through an edge) go to the lowest brick, then quad, then
+/// number, so the order of the tests does not matter.
 struct Nearest {
   double distance = std::numeric_limits<double>::infinity();
-  std::size_t brick = 0, triangle = 0;  // 2 × quad of the brick + which
-  Vec3 normal{0};                       // not yet of unit length
+  std::size_t brick = 0, triangle = 0;  // 2 × quad of the brick + triangle of the quad
+  Vec3 normal{0};                       // not normalised
 
   bool after(double d, std::size_t b, std::size_t t) const {
     if (d != distance) return d < distance;
@@ -30,10 +30,10 @@ struct Nearest {
 
 class Facets {
  public:
-  /// Copies the places of the corners: the surface may change.
+  /// Copies the positions of the corners, because the surface may change.
   Facets(const Surface& surface, const ActiveBrick& brick);
 
-  /// Looks at the triangles that may be nearer than `best`, and says how many that were.
+  /// Tests the triangles that may be nearer than `best`, and returns how many were tested.
   std::uint64_t look(const Sight& sight, std::size_t brick, Nearest& best) const;
   std::size_t triangles() const { return 2 * quads_.size(); }
   std::size_t nbytes() const;

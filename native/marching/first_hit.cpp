@@ -12,7 +12,7 @@ namespace {
 // A brick's quads have corners in its cells and in the layer below; a vertex leaves its cell by less than a cell.
 constexpr int kBelow = 2, kAbove = 1;
 
-/// Where the triangles of the bricks from `first` to `last` may be.
+/// Bounding box of all possible triangles of the bricks from `first` to `last`.
 Box3 reach(const Lattice& lattice, const Vec3i& first, const Vec3i& last) {
   Box3 box;
   for (int a = 0; a < 3; ++a) {
@@ -22,7 +22,7 @@ Box3 reach(const Lattice& lattice, const Vec3i& first, const Vec3i& last) {
   return box;
 }
 
-/// The first and last brick along an axis that may have triangles between two coordinates; within the lattice.
+/// The first and last brick along an axis that may have triangles between two coordinates, within the lattice.
 std::pair<int, int> bricks_between(const Lattice& lattice, int axis, double from, double to) {
   const auto brick = [&](double x, int reach) {
     const double place = (x - lattice.at(axis, 0)) / lattice.pitch() + reach;
@@ -42,8 +42,8 @@ std::optional<SurfaceHit> first_hit(const Lattice& lattice, const Vec3& origin, 
   const Sight sight(to_local(lattice.axis(), origin), to_local(lattice.axis(), direction), far);
   Nearest best;
   ++stats.rays;
-  // Layers of bricks across the axis that the ray runs along most: it leaves each soon, through few bricks. Layers
-  // overlap, and so a later one may be nearer than where this one ends.
+  // Visit layers of bricks perpendicular to the ray's main axis: the ray leaves each layer after a few bricks. Layers
+  // overlap, so a hit in the next one may still be nearer than one in this layer.
   const int k = sight.axis(), i = (k + 1) % 3, j = (k + 2) % 3;
   const bool up = sight.direction()[k] > 0;
   for (int layer = 0; layer < count[k]; ++layer) {

@@ -1,4 +1,4 @@
-// The first triangle of a brick's facets that a ray meets.
+// Finds the first triangle of the bricks' facets that a ray meets.
 #pragma once
 
 #include <cstddef>
@@ -12,8 +12,8 @@ namespace riffler::marching {
 
 class Facets;
 
-/// Looks at the bricks that the ray comes through. `facets`: those of a brick by its number, null where it has none;
-/// asked only for bricks whose triangles the ray may meet.
+/// Tests the bricks along the ray. `facets` returns the facets of a brick by its number, null if it has none; it is
+/// called only for bricks whose triangles the ray may meet.
 using FacetsOf = std::function<const Facets*(std::size_t brick)>;
 std::optional<SurfaceHit> first_hit(const Lattice& lattice, const Vec3& origin, const Vec3& direction,
                                     const FacetsOf& facets, PickStats& stats);

@@ -18,8 +18,8 @@ double round_to_class(double x, int rest, int modulus) {
 
 FloatGrid::FloatGrid(const Lattice& lattice)
     : step_(lattice.step()), steps_per_cell_(lattice.pitch() / lattice.step()) {
-  // Less than a cell, by more than `outside` rounds: vertices of cells three apart, whose places are of one class, then
-  // stay apart.
+  // Less than a cell, by more than `outside` rounds. Then vertices of cells three apart, whose places have the same
+  // remainder, stay apart.
   opening_ = std::clamp(1 - 8 / steps_per_cell_, 0.0, 0.95);
   for (int a = 0; a < 3; ++a) {
     box_.lower[a] = lattice.box().lower[a] / step_, box_.upper[a] = lattice.box().upper[a] / step_;
@@ -28,7 +28,7 @@ FloatGrid::FloatGrid(const Lattice& lattice)
       Range& r = range_[a][n];
       r.base = lattice.at(a, n) / step_;
       r.low = std::floor(r.base) + 1, r.high = std::ceil(lattice.at(a, n + 1) / step_) - 1;
-      // A cell that the box ends in keeps to its part in the box, where that has room for all its vertices.
+      // A cell that contains a side of the box uses only its part inside, if that has room for all its vertices.
       if (const double end = std::ceil(box_.lower[a]); end > r.low && end + kRoom < r.high) r.low = end;
       if (const double end = std::floor(box_.upper[a]); end < r.high && end - kRoom > r.low) r.high = end;
       if (a == 0) r.low = 2 * std::ceil(r.low / 2), r.high = 2 * std::floor(r.high / 2);

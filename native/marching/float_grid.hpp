@@ -1,7 +1,7 @@
-// Places that vertices may take: multiples of the float32 step u, chosen so that no two vertices ever share one.
+// Places that vertices may take: multiples of the float32 step u, chosen so that no two vertices coincide.
 //
-// A vertex inside its cell keeps off the cell's walls and has an even x; a vertex outside has an odd x and remainders
-// by 3 that say which cell it came from. Vertices of different cells therefore differ, as do the floats written to a
+// A vertex inside its cell keeps off the cell's walls and has an even x. A vertex outside its cell has an odd x and
+// remainders modulo 3 that identify its cell. So vertices of different cells always differ, and so do the floats in a
 // file.
 #pragma once
 
@@ -23,23 +23,22 @@ class FloatGrid {
  public:
   explicit FloatGrid(const Lattice& lattice);
 
-  /// Nearest place strictly inside cell `cell`, and in the volume's box, to the point `p` (cell units: the cell is [0,
-  /// 1]³).
+  /// Nearest place to `p` (cell units: the cell is [0, 1]³) strictly inside the cell and in the volume's box.
   Vec3 inside(const Vec3i& cell, const Vec3& p) const {
     const Range &x = range_[0][cell.x], &y = range_[1][cell.y], &z = range_[2][cell.z];
     const Vec3 q{2 * round_to_integer((x.base + p.x * steps_per_cell_) / 2),
                  round_to_integer(y.base + p.y * steps_per_cell_), round_to_integer(z.base + p.z * steps_per_cell_)};
     return Vec3{std::clamp(q.x, x.low, x.high), std::clamp(q.y, y.low, y.high), std::clamp(q.z, z.low, z.high)} * step_;
   }
-  /// Nearest place for a vertex outside its cell: at least four steps off each wall whose bit in `opened` (2 axis +
-  /// side) is not set, no limit at the others.
+  /// Nearest place for a vertex outside its cell: at least four steps from each wall whose bit (2 axis + side) in
+  /// `opened` is not set; no limit at the other walls.
   Vec3 outside(const Vec3i& cell, const Vec3& p, int opened) const;
   /// Whether `p`, in cell units, lies in the cell.
   static bool in_cell(const Vec3& p) { return p.x >= 0 && p.x <= 1 && p.y >= 0 && p.y <= 1 && p.z >= 0 && p.z <= 1; }
   /// `inside` or, for a point outside the cell, `outside` without walls.
   Vec3 near(const Vec3i& cell, const Vec3& p) const;
-  /// The place nearest to `v`, which lies inside `cell`, that is not taken: a cell's vertices give way to each other in
-  /// steps along y and z, of which even the smallest cell has three.
+  /// The free place nearest to `v`, which lies inside `cell`. Vertices of one cell avoid each other in steps along y
+  /// and z; even the smallest cell has three of them.
   template <class Taken>
   Vec3 free_place(const Vec3i& cell, const Vec3& v, Taken&& taken) const {
     for (int reach = 0;; ++reach)
@@ -49,11 +48,11 @@ class FloatGrid {
           if (!taken(place)) return place;
         }
   }
-  /// How far vertices may leave their cell, in cells: 0 where the float32 steps are too coarse for it.
+  /// How far vertices may leave their cell, in cells; 0 if the float32 steps are too coarse.
   double opening() const { return opening_; }
   double step() const { return step_; }
-  /// The point of the volume's box nearest to `p`, in cell units: no material lies beyond, wherever tangent planes
-  /// meet.
+  /// The point of the volume's box nearest to `p`, in cell units. There is no material outside the box, even if tangent
+  /// planes meet there.
   Vec3 in_box(const Vec3i& cell, const Vec3& p) const {
     Vec3 out;
     for (int a = 0; a < 3; ++a) {
@@ -69,7 +68,7 @@ class FloatGrid {
 
  private:
   struct Range {
-    double base, low, high;  // lower wall, least and greatest place in the open cell and the box, in steps
+    double base, low, high;  // in steps: lower wall; lowest and highest place in the open cell and the box
   };
   std::array<std::vector<Range>, 3> range_;
   Box3 box_;  // in steps

@@ -11,8 +11,8 @@ namespace riffler::marching {
 
 namespace {
 
-constexpr double kFolded = -0.999985;  // cosine between the normals of two triangles at an edge; 0.3° off a fold
-constexpr int kPatient = 3;            // rounds in which only the ends of a fold are pulled
+constexpr double kFolded = -0.999985;  // cosine between the normals of two triangles at an edge, 0.3° from a fold
+constexpr int kPatient = 3;            // number of rounds in which only the ends of a fold are pulled
 
 Vec3 normal(const Mesh& mesh, const Vec3i& t) {
   const Vec3 &a = mesh.vertices[t.x], &b = mesh.vertices[t.y], &c = mesh.vertices[t.z];
@@ -28,7 +28,7 @@ CellVertex corner(const Surface& surface, const QuadRef& ref, int n) {
   return {surface.corners(ref.quad)[n], corner_cell(ref.edge, n)};
 }
 
-/// Which side of a quad runs from one vertex to the other, either way; −1 if none does.
+/// The side of a quad that connects two vertices, in either direction; −1 if there is none.
 int side_between(const std::array<std::int32_t, 4>& c, std::int32_t a, std::int32_t b) {
   for (int s = 0; s < 4; ++s)
     if ((c[s] == a && c[(s + 1) & 3] == b) || (c[s] == b && c[(s + 1) & 3] == a)) return s;
@@ -40,8 +40,8 @@ struct SideRef {
   int side;
 };
 
-/// What lies beyond the side from corner s to the next: its quad stands for another edge of the face that the two
-/// corners' cells share.
+/// The quad across the side from corner s to the next. It belongs to another edge of the face that the two corners'
+/// cells share.
 SideRef across(const Surface& surface, const QuadRef& ref, int s) {
   const CellVertex a = corner(surface, ref, s), b = corner(surface, ref, (s + 1) & 3);
   const Vec3i origin = glm::max(a.cell, b.cell);
@@ -64,7 +64,7 @@ SideRef across(const Surface& surface, const QuadRef& ref, int s) {
   throw std::logic_error("a quad of the mesh without a neighbour");
 }
 
-/// Vertices that fold, and bricks that were looked at.
+/// Vertices that fold, and the bricks that were examined.
 struct Folds {
   std::vector<CellVertex> ends;
   std::vector<std::size_t> seen;
@@ -72,7 +72,7 @@ struct Folds {
   void tidy() { base::sort_unique(ends), base::sort_unique(seen); }
 };
 
-/// The corners of one of a quad's triangles.
+/// Adds the corners of one of a quad's triangles.
 void add_corners(const Surface& surface, const QuadRef& ref, std::uint32_t triangle, Folds& out) {
   const Vec3i& t = surface.mesh.triangles[triangle];
   for (int n = 0; n < 4; ++n)
@@ -80,8 +80,8 @@ void add_corners(const Surface& surface, const QuadRef& ref, std::uint32_t trian
       out.ends.push_back(v);
 }
 
-/// `whole`: of two triangles that fold, all corners, not only the two that they share. Where the other two lie in one
-/// place it is these that have to part.
+/// `whole`: add all corners of two triangles that fold, not only the two that they share. If the other two corners
+/// coincide, these have to separate.
 void look_at(const Surface& surface, const QuadRef& ref, bool whole, bool note, Folds& out) {
   const auto see = [&](const QuadRef& quad) {
     for (int n = 0; note && n < 4; ++n) out.seen.push_back(surface.bricks.index_of(corner_cell(quad.edge, n)));
@@ -123,7 +123,7 @@ std::vector<CellVertex> folded_vertices(const Surface& surface, const std::vecto
   return std::move(all.ends);
 }
 
-/// Moves a vertex, and remembers where it was first. False if it was there already.
+/// Moves a vertex and records its original place. Returns false if it was there already.
 bool move(Surface& surface, const CellVertex& v, const Vec3& place, Region& region) {
   const std::size_t brick = surface.bricks.index_of(v.cell);
   if (!region.has(brick)) region.missing.push_back(brick);
@@ -141,8 +141,8 @@ bool coincides(const Mesh& mesh, std::int32_t vertex, const Vec3& place) {
   return false;
 }
 
-/// Moves a vertex a share of the way to its anchor; one that stands at its candidate goes towards its safe place first.
-/// False if it stays where it is.
+/// Moves a vertex part of the distance to its anchor; a vertex at its candidate first moves towards its safe place.
+/// Returns false if it does not move.
 bool pull(Surface& surface, const CellVertex& v, double share, Region& region) {
   const Vec3 place = surface.mesh.vertices[v.vertex];
   const FloatGrid& grid = surface.grid;
@@ -150,7 +150,7 @@ bool pull(Surface& surface, const CellVertex& v, double share, Region& region) {
   if (special && place != special->fallback) {
     const Vec3 from = grid.to_cell(v.cell, place), to = grid.to_cell(v.cell, special->fallback);
     const Vec3 part = from + share * (to - from);
-    // Three tries on the way, of which none may be where another vertex of the cell is.
+    // Three tries on the path, none of which may coincide with another vertex of the cell.
     const bool whole = share >= 0.5 || (!special->alone && FloatGrid::in_cell(part));
     return move(surface, v, whole ? special->fallback : grid.near(v.cell, part), region);
   }
@@ -162,8 +162,9 @@ bool pull(Surface& surface, const CellVertex& v, double share, Region& region) {
   return move(surface, v, to, region);
 }
 
-/// Splits the quads round moved vertices anew. Where a neighbour's candidate no longer leaves a diagonal, it goes back
-/// to its safe place too, and joins the moved ones; with safe places alone there always is a diagonal.
+/// Splits the quads around moved vertices again. If a neighbour's candidate no longer allows a valid diagonal, the
+/// neighbour also returns to its safe place and joins the moved ones. With safe places alone there is always a
+/// diagonal.
 void split_again(Surface& surface, std::vector<CellVertex>& moved, std::vector<Vec3i>& cells, Region& region) {
   for (std::size_t done = 0; done < moved.size();) {
     for (; done < moved.size(); ++done) {
@@ -188,8 +189,8 @@ void split_again(Surface& surface, std::vector<CellVertex>& moved, std::vector<V
 
 void unfold(Surface& surface, const std::vector<QuadRef>& quads, Region& region, const Progress& progress) {
   std::vector<CellVertex> moved = folded_vertices(surface, quads, false, region);
-  // The whole way is reached after six rounds. From then on each vertex moves twice at most, so the rounds come to an
-  // end; there are many where a fold runs along a sheet whose sides coincide.
+  // After six rounds vertices reach their anchors. From then on each moves at most twice, so the rounds terminate;
+  // there are many if a fold runs along a sheet whose sides coincide.
   double share = 0.04;
   for (int round = 0; !moved.empty(); ++round, share = std::min(1.0, 2 * share)) {
     base::report(progress, round / (round + 8.0));

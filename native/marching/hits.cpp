@@ -8,16 +8,16 @@ namespace riffler::marching {
 
 namespace {
 
-// How far outside its edge an end may lie, pitches. A floor that one direction alone keeps may lie beyond the last
-// point of its ray, by half a pitch where it is nearest to it and by half a pitch more where the box ends.
+// How far outside its edge an end may lie, in pitches. A floor that only one direction keeps may lie beyond the last
+// point of its ray: half a pitch, and half a pitch more where the box ends.
 constexpr double kReach = 0.5, kReachOfFloor = 1;
 
 double place_of(const dexel::Span& s, bool far) {
   return far ? s.far : s.near;
 }
 
-/// The end of one kind nearest to [low, high], within `reach` of it; of several inside, the one next to the edge's
-/// inside end: the low one for far ends. −1 if there is none.
+/// The end of one kind nearest to [low, high], within `reach` of it. If several are inside, the one nearest to the
+/// edge's inside end, which is the low one for far ends. −1 if there is none.
 int nearest_end(std::span<const dexel::Span> spans, double low, double high, double reach, bool far) {
   const int n = static_cast<int>(spans.size());
   int above = 0;  // first end ≥ low (far), or > high (near)
@@ -52,7 +52,7 @@ HitFinder::HitFinder(const Volume& volume, const Lattice& lattice)
 Hit HitFinder::operator()(const LatticeEdge& edge) {
   const dexel::Grid* const grid = grids_[edge.axis];
   if (!grid) return axis_hit(0.5, edge, false);
-  // Indices of the ray in its grid's cyclic frame. (A grid of one direction stands along the lattice's third axis.)
+  // Indices of the ray in its grid's cyclic frame. (A grid of one direction lies along the lattice's third axis.)
   const int place[5] = {edge.i, edge.j, edge.k, edge.i, edge.j};
   const int u = place[edge.axis + 1] - 1, v = place[edge.axis + 2] - 1;
   const dexel::Tile& tile = grid->tile(grid->tile_index(u / dexel::kTileSide, v / dexel::kTileSide));
@@ -66,7 +66,8 @@ Hit HitFinder::operator()(const LatticeEdge& edge) {
   if (!grid->has_normals()) return axis_hit(std::clamp(t, -kReach, 1 + kReach), edge, false);
   const dexel::SpanNormals& normals = tile.ray_normals(ray)[n];
   const dexel::PackedNormal packed = edge.rising ? normals.near : normals.far;
-  if (packed != last_packed_) last_packed_ = packed, last_ = packed.unpack();  // flat faces have one for all
+  // A flat face has one normal for all its hits.
+  if (packed != last_packed_) last_packed_ = packed, last_ = packed.unpack();
   const double along = (&last_.x)[edge.axis];
   if ((edge.rising ? -along : along) <= 0) return axis_hit(std::clamp(t, 0.0, 1.0), edge, true);
   return {static_cast<float>(t),

@@ -8,11 +8,11 @@
 
 namespace riffler::marching {
 
-/// Topology never depends on hits: signs alone say which edges are crossed.
+/// The topology never depends on hits: signs alone decide which edges are crossed.
 struct alignas(16) Hit {
-  /// Place along the edge in pitches, up to half a pitch outside [0, 1] where the ray's own end lies there. A weak hit
-  /// is one that its ray does not really have: no end near, or an end whose normal looks the wrong way; it has the axis
-  /// as its normal and is stored kWeak lower.
+  /// Position along the edge in pitches, up to half a pitch outside [0, 1] if the ray's own end lies there. A weak hit
+  /// is one that its ray does not really have: there is no end nearby, or the end's normal points in the wrong
+  /// direction. Its normal is the axis, and its position is stored minus kWeak.
   float place;
   std::array<float, 3> normal;  // unit, out of the material, in the lattice's axes
 
@@ -21,9 +21,9 @@ struct alignas(16) Hit {
   double t() const { return weak() ? place + kWeak : place; }
 };
 
-/// Reads hits off the rays. In a volume of one direction the edges across the rays are crossed in the middle, half a
-/// pitch from the ray, with the axis as normal; the ends of its rays have the ray's direction as normal.
-/// For one thread: it remembers the last normal.
+/// Reads hits from the rays. In a volume of one direction, edges across the rays are crossed at their midpoints, half a
+/// pitch from the ray, with the axis as normal; the ends of rays have the ray's direction as normal. Not thread-safe:
+/// caches the last normal.
 class HitFinder {
  public:
   HitFinder(const Volume& volume, const Lattice& lattice);

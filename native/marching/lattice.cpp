@@ -9,7 +9,7 @@ namespace riffler::marching {
 
 namespace {
 
-/// 2²¹ pitches leave a cell more than four float32 steps: room for the parities that keep vertices apart.
+/// At 2²¹ pitches a cell still has more than four float32 steps: enough for the parities that keep vertices apart.
 void check_reach(double reach, double pitch) {
   if (reach < 0x1p21 * pitch) return;
   std::ostringstream text;
@@ -29,11 +29,11 @@ Lattice::Lattice(const Volume& volume) : axis_(volume.reference().axis()), pitch
     reach = std::max({reach, std::abs(box.lower[a]), std::abs(box.upper[a])});
     rays_[a] = dexel::ray_count(box.size()[a], pitch_);
     origin_[a] = box.lower[a];
-    // A lone ray may stand outside a box that is thinner than half a pitch. Its plane is moved to the middle of the
-    // box (tri-dexel, or along the rays, where nothing stands there), so that both faces lie on the lattice's edges.
+    // A lone ray may lie outside a box thinner than half a pitch. Its plane is moved to the middle of the box
+    // (tri-dexel, or along the rays, where no rays lie in it), so that both faces are on the lattice's edges.
     const bool movable = tri_dexel || a == 2;
     if (rays_[a] == 1 && movable) origin_[a] = (box.lower[a] + box.upper[a] - pitch_) / 2;
-    // The walls of one direction stand half a pitch from their rays.
+    // In a volume of one direction, walls lie half a pitch from their rays.
     if (!tri_dexel && a != 2) box_.lower[a] -= pitch_ / 2, box_.upper[a] += pitch_ / 2;
   }
   check_reach(reach, pitch_);

@@ -57,7 +57,7 @@ void MeshState::build(const Progress& progress) {
   base::report(progress, 1);
 }
 
-/// Quads that may have folded, and those round vertices that could choose their place.
+/// Quads that may have folded, and those around vertices that had a choice.
 std::vector<QuadRef> MeshState::quads_to_look_at(const std::vector<std::size_t>& list) {
   std::vector<QuadRef> quads;
   std::vector<Vec3i> cells;
@@ -75,7 +75,7 @@ void MeshState::give_room() {
   if (quads_.end() > std::numeric_limits<std::int32_t>::max() / 2 ||
       vertices_.end() > std::numeric_limits<std::int32_t>::max())
     throw std::invalid_argument("the mesh of this volume would have more than 2^31 triangles; take a coarser pitch");
-  // A growing vector is copied, which a stroke would feel.
+  // Growing a vector copies it, which would delay a stroke.
   const auto resize = [&](auto& vector, std::size_t size) {
     if (size <= vector.size()) return;
     if (room_ && size > vector.capacity()) vector.reserve(2 * size + (std::size_t{1} << 18));
@@ -125,7 +125,7 @@ Mesh MeshState::compact() const {
   return mesh;
 }
 
-// Following a volume
+// Following a volume.
 
 std::vector<std::size_t> MeshState::update(const Volume& now) {
   if (!(now.frame() == volume.frame()))
@@ -140,7 +140,7 @@ std::vector<std::size_t> MeshState::update(const Volume& now) {
     changed.insert(changed.end(), all.begin(), all.end());
   } else {
     const Changes changes = changes_between(volume, now, lattice, bricks);
-    broken_ = true;  // until all is well again
+    broken_ = true;  // until the update succeeds
     follow(now);
     if (!changes.empty()) changed = mesh_again(changes);
   }
@@ -167,7 +167,7 @@ std::vector<std::size_t> MeshState::mesh_again(const Changes& changes) {
   give_room();
   mesh_bricks(surface, fresh, {});
   link_bricks(surface, without(around(changes.mesh_bricks, 0, 1), fresh));
-  // Vertices near these that had a choice, or that were pulled, begin again as well.
+  // Nearby vertices that had a choice or were pulled also start again.
   std::vector<BrickSnapshot> unsettled;
   for (const std::size_t n : around(changes.mesh_bricks, -1, 1)) {
     if (changes.meshes[n]) continue;
@@ -202,7 +202,7 @@ void MeshState::read_signs_again(const std::vector<std::size_t>& changed) {
   });
 }
 
-/// Counts a brick again and gives it a place in the mesh.
+/// Counts a brick's vertices and quads again, and gives it new ranges in the mesh.
 void MeshState::place_again(std::size_t n) {
   if (const ActiveBrick* const old = bricks.active(n)) {
     vertices_.give_back(old->first_vertex, old->vertices());
@@ -216,7 +216,7 @@ void MeshState::give_place(ActiveBrick& brick) {
   brick.first_edge = quads_.take(brick.edges()), brick.first_vertex = vertices_.take(brick.vertices());
 }
 
-/// Active bricks at these or at `from` … `to` of them along each axis; ascending.
+/// The active bricks at offsets `from` … `to` along each axis from these; ascending.
 std::vector<std::size_t> MeshState::around(const std::vector<std::size_t>& list, int from, int to) const {
   std::vector<std::size_t> out;
   for (const std::size_t n : list) {
@@ -230,7 +230,7 @@ std::vector<std::size_t> MeshState::around(const std::vector<std::size_t>& list,
   return out;
 }
 
-/// Puts a brick's vertices to where they were before they could choose, and before they were pulled.
+/// Returns a brick's vertices to their places before they chose and before they were pulled.
 MeshState::BrickSnapshot MeshState::unsettle(std::size_t n) {
   BrickSnapshot out{n, {}, {}};
   const auto note = [&](const CellVertex& v) { out.places.emplace_back(v.vertex, surface.mesh.vertices[v.vertex]); };
@@ -252,8 +252,8 @@ bool MeshState::moved(const BrickSnapshot& was) const {
   return !std::all_of(pulled.begin(), pulled.end(), noted);
 }
 
-/// Candidates of fresh bricks. What those of the next bricks chose does not depend on the change: it is too far away
-/// (a choice reaches eight cells at most, one a group), but their turns come as they did.
+/// Chooses candidates in new bricks. The choices in the next bricks do not depend on the change, because it is too far
+/// away (a choice reaches at most eight cells, one per group), but they are repeated in their turn.
 void MeshState::choose_again(const std::vector<std::size_t>& fresh, const std::vector<BrickSnapshot>& unsettled) {
   const std::vector<std::size_t> ring = without(around(fresh, -1, 1), fresh);
   const std::vector<VertexChoice*> known = undecided(surface, ring);
@@ -268,12 +268,12 @@ void MeshState::choose_again(const std::vector<std::size_t>& fresh, const std::v
   for (const VertexChoice* s : known) cells.push_back(s->at.cell);
   choose_candidates(surface, undecided(surface, fresh), known, {});
   for (const auto& [vertex, place] : pulled) surface.mesh.vertices[vertex] = place;
-  // Fresh quads took their corners for undecided ones, and others lost what their diagonals were chosen for.
+  // New quads treated their corners as undecided, and other quads lost what their diagonals were chosen for.
   for (const BrickSnapshot& u : unsettled) cells.insert(cells.end(), u.pulled.begin(), u.pulled.end());
   for (const QuadRef& ref : quads_near(surface, cells, kAnyMark)) surface.split(ref, surface.hits);
 }
 
-/// Unfolds fresh bricks, and those whose folds are entangled with theirs, which it returns.
+/// Unfolds new bricks, and those whose folds are entangled with theirs. Returns the latter.
 std::vector<std::size_t> MeshState::unfold_again(const std::vector<std::size_t>& fresh) {
   Region region;
   region.bricks.assign(bricks.size(), false);

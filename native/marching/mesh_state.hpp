@@ -1,4 +1,4 @@
-// What a Mesher holds.
+// The state of a Mesher.
 #pragma once
 
 #include <vector>
@@ -12,21 +12,21 @@
 namespace riffler::marching {
 
 struct MeshState {
-  Volume volume;  // as it was meshed: shares its tiles
+  Volume volume;  // as meshed: shares its tiles
   Lattice lattice;
   Bricks bricks;
-  Surface surface;               // places of bricks without a surface hold nothing of meaning
-  FrozenSurface::Bricks facets;  // of those bricks that were asked for and did not change since
+  Surface surface;               // entries of bricks without a surface are meaningless
+  FrozenSurface::Bricks facets;  // of the bricks that were queried and have not changed since
 
-  /// `room`: for bricks that will grow; address space only, until it is used.
+  /// `room`: reserve space for bricks to grow; only address space until it is used.
   MeshState(const Volume& volume, bool room, const Progress& progress);
   std::vector<std::size_t> update(const Volume& now);
-  /// Throws std::runtime_error after an update that threw: what is here then is no mesh.
+  /// Throws std::runtime_error after an update that threw, because the state is then no mesh.
   void check_whole() const;
   std::vector<std::size_t> active_bricks() const;
-  /// The mesh without the places between bricks, in the world frame.
+  /// The mesh without the gaps between bricks, in the world frame.
   Mesh compact() const;
-  /// The same of a state that was never updated, which then is used up.
+  /// Same for a state that was never updated; the state is consumed.
   Mesh take();
 
  private:
@@ -38,8 +38,8 @@ struct MeshState {
   void give_place(ActiveBrick& brick);
   void give_room();
   std::vector<std::size_t> around(const std::vector<std::size_t>& list, int from, int to) const;
-  /// A brick beside changed ones, where its vertices were that had a choice or were pulled, and the cells of the
-  /// pulled.
+  /// A brick next to changed ones: the previous places of its vertices that had a choice or were pulled, and the cells
+  /// of the pulled ones.
   struct BrickSnapshot {
     std::size_t brick;
     std::vector<std::pair<std::int32_t, Vec3>> places;
@@ -54,7 +54,7 @@ struct MeshState {
   SignReader reader_;
   Slots vertices_, quads_;
   bool room_;
-  bool broken_ = false;  // an update threw: build all anew
+  bool broken_ = false;  // an update threw: rebuild everything
 };
 
 }  // namespace riffler::marching

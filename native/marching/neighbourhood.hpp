@@ -1,4 +1,4 @@
-// The signs of a brick and of two layers of points around it, a column in a word.
+// The signs of a brick and of two layers of points around it, one word per column.
 #pragma once
 
 #include <bit>
@@ -8,29 +8,29 @@
 
 namespace riffler::marching {
 
-/// Points and cells are counted from the brick's first, so that −2 … 33 are known along each axis; bit K + 2 of a
-/// column's word is its point K.
+/// Points and cells are counted from the brick's first, so −2 … 33 are valid along each axis; bit K + 2 of a column's
+/// word is its point K.
 class Neighbourhood {
  public:
   static constexpr int kLayers = 2, kSide = kBrickSide + 2 * kLayers;
-  /// Bits of the brick's own points, and the first of them.
+  /// Bits of the brick's own points, and the lowest of them.
   static constexpr std::uint64_t kOwn = std::uint64_t{0xffffffff} << kLayers, kFirstOwn = 1U << kLayers;
 
   Neighbourhood(const Bricks& bricks, const Vec3i& brick);
 
   std::uint64_t column(int i, int j) const { return words_[(i + kLayers) * kSide + j + kLayers]; }
-  /// Edges along an axis that start in a column and change sign.
+  /// Bits of the edges along an axis that start in a column and change sign.
   std::uint64_t crossed(int axis, int i, int j) const {
     const std::uint64_t here = column(i, j);
     return here ^ (axis == 2 ? here >> 1 : axis == 0 ? column(i + 1, j) : column(i, j + 1));
   }
-  /// Cells of a column with both signs among their corners.
+  /// Bits of the cells of a column with both signs among their corners.
   std::uint64_t mixed(int i, int j) const {
     const std::uint64_t a = column(i, j), b = column(i + 1, j), c = column(i, j + 1), d = column(i + 1, j + 1);
     const std::uint64_t any = a | b | c | d, all = a & b & c & d;
     return (any | any >> 1) & ~(all & all >> 1);
   }
-  /// Signs of a cell's corners, as a case's code.
+  /// Signs of a cell's corners, as a case code.
   int code(int i, int j, int k) const {
     const int b = k + kLayers;
     const auto pair = [&](int di, int dj, int c) {
@@ -39,8 +39,8 @@ class Neighbourhood {
     };
     return static_cast<int>(pair(0, 0, 0) | pair(1, 0, 1) | pair(0, 1, 2) | pair(1, 1, 3));
   }
-  /// The entry of a cell. A problem case whose neighbour across the problem face has that face as its problem too takes
-  /// the second entry, and so does the neighbour, by the same rule: signs alone decide, and both alike.
+  /// The table entry of a cell. If the neighbour across a problem face has that face as its problem too, both cells
+  /// take their second entry; the rule depends on signs alone, so both decide the same.
   const CellCase& entry(const CaseTable& table, int i, int j, int k) const {
     const CellCase& first = table[code(i, j, k)];
     if (first.problem == kNoFace) [[likely]]

@@ -11,7 +11,7 @@ namespace riffler::marching {
 
 namespace {
 
-/// Vertices of one brick: what their numbers in the mesh are more than in the patch.
+/// Vertices of one brick, and the offset from their numbers in the mesh to those in the patch.
 struct Own {
   std::int32_t first, end, less;
   bool has(std::int32_t v) const { return v >= first && v < end; }
@@ -23,7 +23,7 @@ std::vector<const ActiveBrick*> active_of(const MeshState& state, std::span<cons
   std::vector<std::size_t> sorted(bricks.begin(), bricks.end());
   std::sort(sorted.begin(), sorted.end());
   if (const auto twice = std::adjacent_find(sorted.begin(), sorted.end()); twice != sorted.end())
-    throw std::invalid_argument("bricks: " + std::to_string(*twice) + " is there twice");
+    throw std::invalid_argument("bricks: " + std::to_string(*twice) + " is listed twice");
   if (!sorted.empty() && sorted.back() >= state.bricks.size())
     throw std::out_of_range("there is no brick " + std::to_string(sorted.back()) + ", only " +
                             std::to_string(state.bricks.size()));
@@ -51,7 +51,7 @@ MeshPatch patch_of(const MeshState& state, std::span<const std::size_t> bricks) 
   std::sort(sorted.begin(), sorted.end());
   const Mesh& mesh = state.surface.mesh;
   out.triangles.resize(triangles);
-  // Corners at other bricks' vertices: where they stand in the patch is known when all have been seen.
+  // Corners at vertices of other bricks: their numbers in the patch are known only when all have been seen.
   std::vector<std::int32_t*> open;
   std::vector<std::int32_t>& foreign = out.foreign;
   Vec3i* next = out.triangles.data();

@@ -11,10 +11,10 @@ PatchEdges edges_of(const MeshPatch& patch) {
   };
   PatchEdges out;
   out.of_corner.resize(patch.triangles.size());
-  // Euler: what has no handles has no more edges than this.
+  // Euler: without handles there are no more edges than this.
   const std::size_t about = patch.vertices.size() + patch.triangles.size();
   out.vertices.reserve(about);
-  // For each vertex a list of its edges to vertices of higher numbers: three as a rule.
+  // For each vertex, a list of its edges to vertices with higher numbers, usually three.
   std::vector<std::int32_t> first(patch.vertices.size(), -1);
   std::vector<Link> links;
   links.reserve(about);

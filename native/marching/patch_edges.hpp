@@ -1,4 +1,4 @@
-// The edges of a patch, as programs that draw it want them.
+// The edges of a patch, for programs that draw it.
 #pragma once
 
 #include "riffler/marching/patch.hpp"
@@ -7,10 +7,10 @@ namespace riffler::marching {
 
 using Vec2i = glm::ivec2;
 
-/// Every edge once, in the order in which the triangles' corners come upon them, from corner k to corner k + 1.
+/// Every edge once, in the order in which the triangles' corners reach it, from corner k to corner k + 1.
 struct PatchEdges {
   base::BulkVector<Vec2i> vertices;
-  mesh::Triangles of_corner;  ///< (triangles, 3): the edge between corners k and k + 1 (mod 3)
+  mesh::Triangles of_corner;  ///< (triangles, 3): edge between corners k and k + 1 (mod 3)
 };
 
 PatchEdges edges_of(const MeshPatch& patch);

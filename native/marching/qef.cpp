@@ -10,14 +10,14 @@ namespace riffler::marching {
 namespace {
 
 constexpr double kGroup = 0.35;
-constexpr double kRound = 0.9;     // share of the way to the tangent planes where it bends tightly
-constexpr double kDamping = 0.01;  // λ of the stepwise solution: directions that no plane fixes stay near the mean
-constexpr double kAnchor = 1e-2;   // weight of the distance to the mean in the box
+constexpr double kRound = 0.9;     // fraction of the distance to the tangent planes where the surface bends tightly
+constexpr double kDamping = 0.01;  // λ of the stepwise solution: directions that no plane constrains stay near the mean
+constexpr double kAnchor = 1e-2;   // weight of the distance to the mean, in the box
 
-/// Whether unit normals fall into two or three groups: within them no normal is further from the next than kGroup of
-/// what lies between the groups. The steps of the shortest tree through all (Prim's) tell.
+/// Whether unit normals form two or three groups: within a group, no normal is farther from the next than kGroup times
+/// the distance between groups. The steps of the minimum spanning tree (Prim's) show it.
 bool in_groups(const Tangents& hits) {
-  std::array<double, 12> away{}, steps{};  // of each normal from the tree; of the tree
+  std::array<double, 12> away{}, steps{};  // distance of each normal from the tree; steps of the tree
   std::array<bool, 12> in{};
   away.fill(std::numeric_limits<double>::infinity());
   for (int last = 0, count = 0; count + 1 < hits.count; ++count) {
@@ -34,7 +34,8 @@ bool in_groups(const Tangents& hits) {
   return steps[1] <= kGroup * steps[0] || steps[2] <= kGroup * steps[1];
 }
 
-/// Solves the rows and columns of a x = r that `free` names, for a symmetric positive definite `a`; x holds the others.
+/// Solves the rows and columns in `free` of a x = r, for a symmetric positive definite `a`; x holds the other
+/// components.
 void solve_free(const Mat3& a, const Vec3& r, int free, Vec3& x) {
   int axis[3], n = 0;
   for (int d = 0; d < 3; ++d)
@@ -76,8 +77,8 @@ Qef::Qef(const Tangents& tangents) : hits_(tangents) {
 
 Vec3 Qef::solve() const {
   if (bend_ != Bend::Sharp) {
-    // On a sphere the tangent planes err by +d²/2R and the mean of the hits by −d²/2R: half way they cancel. Where the
-    // radius is not much more than a cell, triangles cut off more than vertices stick out.
+    // On a sphere the tangent planes err by +d²/2R and the mean of the hits by −d²/2R: half way they cancel. If the
+    // radius is not much larger than a cell, triangles cut off more than vertices stick out.
     const double part = bend_ == Bend::Round ? kRound : 0.5;
     const Vec3 g = glm::normalize(mean_normal_);
     double distance = 0, slope = 0;
@@ -94,8 +95,8 @@ Vec3 Qef::solve() const {
 }
 
 Vec3 Qef::solve_in(const Box3& box) const {
-  // Strictly convex, so the least of the feasible stationary points over all 27 sets of active bounds is the minimum.
-  // (Coordinate descent would slide along a feature and stop early.)
+  // The function is strictly convex, so the smallest of the feasible stationary points over all 27 sets of active
+  // bounds is the minimum. (Coordinate descent would slide along a feature and stop early.)
   const Mat3 a = a_ + Mat3(kAnchor);
   const Vec3 r = b_ + kAnchor * mean_;
   Vec3 best = glm::clamp(mean_, box.lower, box.upper);

@@ -1,4 +1,4 @@
-// Where one vertex goes: the point that fits the tangent planes of a cycle's hits (dual contouring; Ju, Losasso,
+// The position of one vertex: the point that fits the tangent planes of a cycle's hits (dual contouring; Ju, Losasso,
 // Schaefer and Warren, "Dual Contouring of Hermite Data", SIGGRAPH 2002), in cell units.
 #pragma once
 
@@ -8,7 +8,7 @@
 
 namespace riffler::marching {
 
-/// Squared length of the mean of unit normals above which a surface is taken for smooth.
+/// A surface counts as smooth if the squared length of the mean of its unit normals exceeds this.
 inline constexpr double kSmooth = 0.985;
 
 /// The hits of one cycle: points and unit normals.
@@ -17,11 +17,11 @@ struct Tangents {
   std::array<Vec3, 12> point, normal;
 };
 
-/// How the surface bends in a cell, as its hits' normals tell.
+/// How the surface bends in a cell, judged by the normals of the hits.
 enum class Bend {
-  Smooth,  // hardly: they nearly agree
-  Round,   // more tightly than cells can follow: they differ by all sorts of angles
-  Sharp,   // at an edge or a corner: they fall into two or three groups
+  Smooth,  // almost flat: the normals nearly agree
+  Round,   // bends more tightly than cells can resolve: the normals differ by many angles
+  Sharp,   // an edge or corner: the normals form two or three groups
 };
 
 /// Squared distances to the tangent planes: E(x) = xᵀAx − 2bᵀx + const, averaged over the hits.
@@ -30,11 +30,11 @@ class Qef {
   explicit Qef(const Tangents& tangents);
 
   Bend bend() const { return bend_; }
-  /// The fit: the least squares point of an edge or a corner; elsewhere out of the hits' mean along its normal.
+  /// The fit: for an edge or corner, the least squares point; otherwise the point along the normal from the hits' mean.
   Vec3 solve() const;
   /// The least squares point in a box.
   Vec3 solve_in(const Box3& box) const;
-  /// Root mean square distance of x to the tangent planes.
+  /// Root mean square distance of x from the tangent planes.
   double residual(const Vec3& x) const;
 
  private:

@@ -10,7 +10,7 @@ namespace riffler::marching {
 
 Vec3i corner_cell(const LatticeEdge& edge, int n) {
   const int slot = corner_at(n, edge.rising);
-  // The other way round from make_edge: cells below the edge have it on their upper sides.
+  // The reverse of make_edge: cells below the edge have it on their upper sides.
   Vec3i cell{edge.i, edge.j, edge.k};
   if (slot == 3 || slot == 0) --cell[(edge.axis + 1) % 3];
   if (slot == 1 || slot == 0) --cell[(edge.axis + 2) % 3];

@@ -30,13 +30,13 @@ void transpose(std::uint32_t* rows) {
     }
 }
 
-/// The rays that run through the lattice points `base` … `base` + 31: their indices.
+/// Indices of the rays through the lattice points `base` … `base` + 31.
 struct RayRange {
   int first, last;
   RayRange(int base, int rays) : first(std::max(base - 1, 0)), last(std::min(base + kBrickSide - 2, rays - 1)) {}
 };
 
-/// visit(u, v, spans) for the rays u × v of a grid, tile by tile.
+/// Calls visit(u, v, spans) for the rays u × v of a grid, tile by tile.
 template <class Visit>
 void for_rays(const dexel::Grid& grid, const RayRange& us, const RayRange& vs, Visit&& visit) {
   for (int a = us.first / dexel::kTileSide; a <= us.last / dexel::kTileSide; ++a)
@@ -77,7 +77,7 @@ void SignReader::follow(const Volume& volume) {
         e.hull_first = std::min(e.hull_first, range.first), e.hull_last = std::max(e.hull_last, range.last);
         e.core_first = std::max(e.core_first, range.first), e.core_last = std::min(e.core_last, range.last);
       }
-      // A ray with two spans holds less than their common part, and one without any holds nothing.
+      // A ray with two spans contains less than their common part, and one without spans contains nothing.
       if (!tile.offset.one_each()) e.core_last = -1;
     }
   });
@@ -101,7 +101,7 @@ void SignReader::read(Bricks& bricks, int a, int b, int c0, int c1) const {
   }
 }
 
-/// Rays along the columns of a column of bricks.
+/// Reads the rays along the columns of a column of bricks.
 void SignReader::read_reference(int a, int b, int c0, int c1, Rows& rows) const {
   for (SignRows& r : rows) r.fill(0);
   const RayRange is(a * kBrickSide, lattice_.rays(0)), js(b * kBrickSide, lattice_.rays(1));
@@ -118,7 +118,7 @@ void SignReader::read_reference(int a, int b, int c0, int c1, Rows& rows) const 
   });
 }
 
-/// Whether the y rays say of all points of a brick what the z rays say: seen from their tiles alone.
+/// Whether the y rays classify all points of a brick as the z rays do, judged from their tiles alone.
 bool SignReader::agree(const Vec3i& brick, bool inside) const {
   const RayRange is(brick.x * kBrickSide, lattice_.rays(0)), ks(brick.z * kBrickSide, lattice_.rays(2));
   const int first = std::max(brick.y * kBrickSide, 1),
@@ -144,7 +144,7 @@ void SignReader::read_y(const Vec3i& brick, SignRows& rows) const {
   for (int i = 0; i < kBrickSide; ++i) transpose(rows.data() + i * kBrickSide);
 }
 
-/// Where z and y rays agree, that is the majority; where not, the x ray decides.
+/// Where z and y rays agree, they are the majority; elsewhere the x ray decides.
 void SignReader::vote(const Vec3i& brick, const SignRows& y, SignRows& z) const {
   for (int row = 0; row < kBrickColumns; ++row)
     for (std::uint32_t differ = y[row] ^ z[row]; differ; differ &= differ - 1) {

@@ -1,4 +1,4 @@
-// Inside or outside for every point of the lattice, read from the rays.
+// Reads from the rays whether each lattice point is inside or outside.
 #pragma once
 
 #include <algorithm>
@@ -11,13 +11,13 @@
 
 namespace riffler::marching {
 
-/// The lattice points that a span holds: first … last, none where first > last.
+/// The lattice points in a span: first … last, empty if first > last.
 struct PointRange {
   int first, last;
 };
 
-/// Turns spans of the rays along one lattice axis into lattice points: those where near + εh < point < far − εh,
-/// ε = 10⁻³. Planes that lie on lattice planes are then classified alike by all rays, whatever the last bits of their
+/// Converts spans of the rays along one lattice axis to lattice points: those with near + εh < point < far − εh, ε =
+/// 10⁻³. The margin makes all rays classify a plane on a lattice plane the same, regardless of the last bits of their
 /// ends.
 class PointsOfSpan {
  public:
@@ -28,7 +28,7 @@ class PointsOfSpan {
     const double near = (s.near - zero_) * per_pitch_, far = (s.far - zero_) * per_pitch_;
     return {above(near + kMargin), below(far - kMargin)};
   }
-  /// A floor thinner than the pitch stays closed: a span that misses every point takes the nearest.
+  /// Keeps a floor thinner than the pitch closed: a span without a lattice point takes the nearest one.
   PointRange or_nearest(const dexel::Span& s) const {
     const PointRange range = (*this)(s);
     if (range.first <= range.last) return range;
@@ -39,7 +39,7 @@ class PointsOfSpan {
 
  private:
   static constexpr double kMargin = 1e-3;
-  /// The least point > x and the greatest point < x, within the lattice; a span may stick out of the box anywhere.
+  /// The lowest point > x and the highest point < x, within the lattice; spans may extend beyond the box.
   int above(double x) const { return static_cast<int>(std::clamp(x, 0.0, last_ + 1.0)) + 1; }
   int below(double x) const {
     const double clamped = std::clamp(x, 0.0, last_ + 1.0);
@@ -55,17 +55,17 @@ class PointsOfSpan {
 class SignReader {
  public:
   explicit SignReader(const Lattice& lattice);
-  /// Reads from this volume from now on; it must outlive the reading.
+  /// Sets the volume to read from; it must outlive the reading.
   void follow(const Volume& volume);
 
   /// Reads the signs of the bricks (a, b, c0 … c1).
   void read(Bricks& bricks, int a, int b, int c0, int c1) const;
 
  private:
-  /// What the rays of a tile have in common.
+  /// Properties shared by all rays of a tile.
   struct TileExtent {
-    int hull_first, hull_last;  // no ray holds a point outside of these
-    int core_first, core_last;  // every ray holds all of these
+    int hull_first, hull_last;  // no ray contains a point outside this range
+    int core_first, core_last;  // every ray contains all points of this range
     std::uint64_t revision = ~std::uint64_t{0};
   };
   using Rows = std::vector<SignRows>;
@@ -82,7 +82,7 @@ class SignReader {
   std::vector<TileExtent> extents_;  // of the tiles of y
 };
 
-/// Signs of all bricks.
+/// Reads the signs of all bricks.
 void read_signs(const SignReader& reader, Bricks& bricks, const Progress& progress);
 
 }  // namespace riffler::marching

@@ -1,4 +1,4 @@
-// Places in an array that bricks hold, give back and take again.
+// Allocates ranges of an array to bricks, which return and reuse them.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@ namespace riffler::marching {
 
 class Slots {
  public:
-  /// The first free stretch of n places.
+  /// The first free range of n places.
   std::size_t take(std::size_t n) {
     if (n == 0) return 0;
     for (auto f = free_.begin(); f != free_.end(); ++f) {
@@ -34,7 +34,7 @@ class Slots {
         before->second += f->second, free_.erase(f);
   }
 
-  /// After the last place that was ever taken.
+  /// One past the last place ever taken.
   std::size_t end() const { return end_; }
 
  private:

@@ -1,4 +1,4 @@
-// A mesh under construction: what the stages share.
+// A mesh under construction: the state shared by the stages.
 #pragma once
 
 #include <cstdint>
@@ -14,9 +14,9 @@
 namespace riffler::marching {
 
 enum VertexMark : std::uint8_t {
-  kSpecial = 1,    // its brick has a Special for it
-  kCandidate = 2,  // may stand at another place than its safe one
-  kSharp = 4,      // its hits' normals differ: triangles round it may fold
+  kSpecial = 1,    // its brick has a VertexChoice for it
+  kCandidate = 2,  // has a candidate apart from its safe place
+  kSharp = 4,      // its hits' normals differ: triangles around it may fold
   kMoved = 8,      // moved in the last round of `unfold`
   kPulled = 16,    // its brick has a MovedVertex for it
   kAnyMark = 255,  // for quads_near: all quads
@@ -27,8 +27,8 @@ struct Surface {
   Bricks& bricks;
   HitFinder hits;  // each thread takes a copy
   FloatGrid grid;
-  /// Quad n stands in triangles 2n and 2n + 1, as (c0, c1, c2), (c0, c2, c3) or as (c0, c1, c3), (c1, c2, c3); its
-  /// corners are counter-clockwise round the edge seen from outside.
+  /// Quad n is stored in triangles 2n and 2n + 1, as (c0, c1, c2), (c0, c2, c3) or as (c0, c1, c3), (c1, c2, c3). Its
+  /// corners are counter-clockwise around the edge seen from outside.
   Mesh mesh;
   base::BulkVector<std::uint8_t> marks;  // of each vertex
 
@@ -40,7 +40,7 @@ struct Surface {
     if (diagonal(quad) == 0) return {a.x, a.y, a.z, b.z};
     return {a.x, a.y, b.y, a.z};
   }
-  /// Which of a quad's triangles has the side from corner s to the next.
+  /// Index of the quad's triangle that has the side from corner s to the next.
   std::uint32_t triangle_at(std::size_t quad, int s) const {
     const bool first = diagonal(quad) == 0 ? s < 2 : s % 3 == 0;
     return static_cast<std::uint32_t>(2 * quad + (first ? 0 : 1));
@@ -54,56 +54,58 @@ struct Surface {
       a = {c[0], c[1], c[2]}, b = {c[0], c[2], c[3]};
   }
   Quad quad(const QuadRef& ref) const;
-  /// Where an edge's hit lies.
+  /// Position of an edge's hit.
   Vec3 place_of(const LatticeEdge& edge, const Hit& hit) const {
     Vec3 place{lattice.at(0, edge.i), lattice.at(1, edge.j), lattice.at(2, edge.k)};
     (&place.x)[edge.axis] += hit.t() * lattice.pitch();
     return place;
   }
-  /// Writes the quad's two triangles along its best diagonal; false if none is valid.
+  /// Writes the quad's two triangles along its best diagonal. Returns false if no diagonal is valid.
   bool split(const QuadRef& ref, HitFinder& finder);
-  /// The special of a vertex marked kSpecial.
+  /// The choice of a vertex marked kSpecial.
   VertexChoice& special(const CellVertex& v);
 };
 
-/// The cell whose vertex is corner n of the quad that stands for an edge.
+/// The cell whose vertex is corner n of the edge's quad.
 Vec3i corner_cell(const LatticeEdge& edge, int n);
 
-/// Quads of the edges of these cells with a corner that has the mark (kAnyMark: all); ascending.
+/// Quads of these cells' edges with a corner that has the mark (kAnyMark: all quads), ascending.
 std::vector<QuadRef> quads_near(const Surface& surface, const std::vector<Vec3i>& cells, std::uint8_t mark);
 
-/// What a brick has of edges and vertices; null where no cell of it has both signs.
+/// Counts the edges and vertices of a brick; null if none of its cells has both signs.
 std::unique_ptr<ActiveBrick> counted(const Bricks& bricks, std::size_t n);
 
-/// Meshes bricks by themselves: places each vertex and gives every quad a diagonal whose triangles both face outward
-/// (their projections along the edge are positive); of two such the one nearer the hit, else the shorter. Specials with
-/// a candidate stand at their safe place. Bricks must have their places in the mesh.
+/// Meshes bricks independently: places each vertex, and gives every quad a diagonal whose triangles both face outward
+/// (their projections along the edge are positive). If both diagonals qualify, takes the one nearer to the hit, else
+/// the shorter. Vertices with a candidate are put at their safe place. The bricks must already have their ranges in the
+/// mesh.
 void mesh_bricks(Surface& surface, const std::vector<std::size_t>& bricks, const Progress& progress);
 
-/// Enters the numbers of the vertices in the layer of cells below some bricks into their quads again: the bricks there
-/// have other places in the mesh now.
+/// Rewrites, in the quads of these bricks, the vertex numbers of the layer of cells below them, because the bricks
+/// there have moved in the mesh.
 void link_bricks(Surface& surface, const std::vector<std::size_t>& bricks);
 
-/// The specials of some bricks that have a candidate.
+/// The vertices with a candidate in these bricks.
 std::vector<VertexChoice*> undecided(Surface& surface, const std::vector<std::size_t>& bricks);
 
-/// Moves specials from their safe places to their candidates, or part of the way, as long as all quads keep a valid
-/// diagonal, and splits the quads round them again. Those of `known` move to the place they chose before, in turn.
+/// Moves these vertices from their safe places to their candidates, or part of the distance, as long as all quads keep
+/// a valid diagonal, and splits the quads around them again. Vertices in `known` move, in their turn, to the place that
+/// they chose before.
 void choose_candidates(Surface& surface, const std::vector<VertexChoice*>& open,
                        const std::vector<VertexChoice*>& known, const Progress& progress);
 
-/// Bricks that `unfold` may change, by number; all if it is empty.
+/// Bricks that `unfold` may change, by number; empty: all.
 struct Region {
   std::vector<bool> bricks;
-  std::vector<std::size_t> missing;  // those that it would have had to look at as they were before unfolding
+  std::vector<std::size_t> missing;  // bricks that `unfold` would have needed in their state before unfolding
 
   bool has(std::size_t brick) const { return bricks.empty() || bricks[brick]; }
 };
 
-/// Pulls vertices towards the middle of their cells where triangles fold onto each other. `quads` are those to be
-/// looked at first. If `region.missing` is not empty after it, all is to be done again with those bricks in the region.
+/// Pulls vertices towards the middle of their cells where triangles fold onto each other. Starts with `quads`. If
+/// `region.missing` is not empty afterwards, repeat the whole update with those bricks in the region.
 void unfold(Surface& surface, const std::vector<QuadRef>& quads, Region& region, const Progress& progress);
-/// Puts a brick's vertices back to where they were before `unfold`. Returns their cells: the quads round them are to be
+/// Restores a brick's vertices to their places before `unfold`. Returns their cells; the quads around them must be
 /// split again.
 std::vector<Vec3i> undo_unfold(Surface& surface, std::size_t brick);
 

@@ -13,7 +13,7 @@ namespace riffler::marching {
 
 namespace {
 
-/// The axis of the world that a grid's rays run along.
+/// The world axis that a grid's rays run along.
 int along(const dexel::Grid& grid) {
   return static_cast<int>(grid.axis());
 }
@@ -29,7 +29,7 @@ struct Miss {
   dexel::Span span;
 };
 
-/// Those of one direction, tile by tile.
+/// The spans without a lattice point of one direction, tile by tile.
 std::vector<Miss> missing(const dexel::Grid& grid, const PointsOfSpan& points) {
   std::vector<std::vector<Miss>> tiles(grid.tile_count());
   base::parallel_for(tiles.size(), 16, [&](std::size_t begin, std::size_t end) {
@@ -49,7 +49,7 @@ std::vector<Miss> missing(const dexel::Grid& grid, const PointsOfSpan& points) {
   return out;
 }
 
-/// Calls visit(i, j) for the rays around one, until it returns true; whether it did.
+/// Calls visit(i, j) for the rays around a ray until it returns true. Returns whether it did.
 template <class Visit>
 bool any_around(const dexel::Grid& grid, const Miss& m, const Visit& visit) {
   for (int i = std::max(0, m.i - 1); i <= std::min(grid.nu() - 1, m.i + 1); ++i)
@@ -58,7 +58,7 @@ bool any_around(const dexel::Grid& grid, const Miss& m, const Visit& visit) {
   return false;
 }
 
-/// Whether a ray beside it holds a lattice point in the same material: then the mesh reaches there, or nearly.
+/// Whether an adjacent ray has a lattice point in the same material: then the mesh reaches there, or nearly.
 bool is_edge(const dexel::Grid& grid, const PointsOfSpan& points, const Miss& m) {
   return any_around(grid, m, [&](int i, int j) {
     for (const dexel::Span& s : grid.ray(i, j))
@@ -67,7 +67,7 @@ bool is_edge(const dexel::Grid& grid, const PointsOfSpan& points, const Miss& m)
   });
 }
 
-/// A little less than the length that nine tenths of the volume have at least, to two figures.
+/// Slightly less than the length exceeded by nine tenths of the volume, to two figures.
 double kept_by(std::vector<std::pair<double, double>> lengths, double total) {
   std::sort(lengths.begin(), lengths.end());
   double sum = 0, length = 0;
@@ -79,11 +79,11 @@ double kept_by(std::vector<std::pair<double, double>> lengths, double total) {
   return std::floor(0.99 * length / unit) * unit;
 }
 
-/// What one direction sees.
+/// The thin material seen by one direction.
 ThinMaterial seen_by(const dexel::Grid& grid, const PointsOfSpan& points) {
   const std::vector<Miss> found = missing(grid, points);
   ThinMaterial out;
-  std::vector<std::size_t> lost;  // places of the rays
+  std::vector<std::size_t> lost;  // indices of the rays
   const auto place = [&](int i, int j) { return static_cast<std::size_t>(i) * grid.nv() + j; };
   for (const Miss& m : found)
     if (!is_edge(grid, points, m)) lost.push_back(place(m.i, m.j));

@@ -10,10 +10,10 @@ namespace riffler::marching {
 namespace {
 
 constexpr double kBroken = 0.05;      // residual, cells, above which hits contradict each other: stay in the cell
-constexpr double kExact = 0.005;      // residual, cells, up to which vertices may go as far as the grid lets them
-constexpr double kBent = 0.49;        // cells, how far they may leave their cell where it is more
+constexpr double kExact = 0.005;      // residual, cells, up to which vertices may go as far as the grid allows
+constexpr double kBent = 0.49;        // cells, how far they may leave their cell if the residual is larger
 constexpr double kOnWall = 1e-6;      // cells; less than this outside is on the wall
-constexpr double kClearlyOut = 1e-3;  // cells; a bound violated by more …
+constexpr double kClearlyOut = 1e-3;  // cells; a bound violated by more than this …
 constexpr double kInset = 0.02;       // … is moved inwards by this, which keeps quads from folding at the wall
 
 Box3 opened_box(double opening, int opened) {
@@ -29,7 +29,7 @@ bool contains(const Box3& box, const Vec3& p) {
   return glm::all(glm::greaterThanEqual(p, box.lower)) && glm::all(glm::lessThanEqual(p, box.upper));
 }
 
-/// The best place in a box for a fit x that may lie outside it; off the bounds it clearly violates by `inset`.
+/// The best place in a box for a fit x that may lie outside it; clearly violated bounds are moved in by `inset`.
 Vec3 fit_in(const Qef& qef, const Vec3& x, Box3 box, double inset) {
   const Vec3 clamped = glm::clamp(x, box.lower, box.upper), excess = glm::abs(x - clamped);
   if (std::max({excess.x, excess.y, excess.z}) <= kOnWall) return clamped;
@@ -40,13 +40,14 @@ Vec3 fit_in(const Qef& qef, const Vec3& x, Box3 box, double inset) {
   return qef.solve_in(box);
 }
 
-/// A cell's place for `p`: inside, or outside where `opened` lets it. Inside it is safe whatever the neighbours do.
+/// A cell's place for `p`: inside, or outside where `opened` allows it. Inside it is safe for any choice of the
+/// neighbours.
 Vec3 place(const FloatGrid& grid, const Vec3i& cell, const Vec3& p, int opened) {
   const Vec3 in_box = grid.in_box(cell, p);
   return FloatGrid::in_cell(in_box) ? grid.inside(cell, in_box) : grid.outside(cell, in_box, opened);
 }
 
-/// Mean of the edges' middles: it depends on signs only, and siblings' differ.
+/// Mean of the edges' midpoints. It depends on signs only, and siblings have different ones.
 Vec3 anchor_of(const Cycle& cycle) {
   Vec3 sum{0, 0, 0};
   const CellCase& entry = cycle.entry;
@@ -74,7 +75,7 @@ Tangents gather(const Cycle& cycle, bool& weak) {
   return hits;
 }
 
-/// Vertices of one cell (all inside it) that would coincide: the later one gives way.
+/// Keeps vertices of one cell (all inside it) from coinciding: the later one is moved.
 Vec3 apart_from_siblings(const FloatGrid& grid, const Vec3i& cell, const Vec3& v, const std::vector<Vec3>& siblings) {
   return grid.free_place(
       cell, v, [&](const Vec3& place) { return std::find(siblings.begin(), siblings.end(), place) != siblings.end(); });
@@ -93,7 +94,7 @@ Placed place_vertex(const FloatGrid& grid, const Cycle& cycle, const Siblings& s
   const double residual = qef.residual(x);
   const bool stay = siblings.left || weak || residual > kBroken;
   const double opening = stay ? 0 : residual > kExact ? std::min(kBent, grid.opening()) : grid.opening();
-  // Beyond a face that no edge of the cycle lies on, the vertex still keeps to its quadrant round every edge.
+  // Beyond a face without edges of the cycle, the vertex still keeps to its quadrant around every edge.
   const int opened = opening > 0 && alone ? ~cycle.entry.faces[cycle.number] & 63 : 0;
   Placed out;
   out.place = place(grid, cycle.cell, fit_in(qef, x, opened_box(opening, opened), kInset), opened);

@@ -1,4 +1,4 @@
-// Where the vertex of a cycle goes.
+// Places the vertex of a cycle.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 
 namespace riffler::marching {
 
-/// A cycle of a cell: its edges' hits, in the entry's order.
+/// A cycle of a cell, with the hits of its edges in the entry's order.
 struct Cycle {
   Vec3i cell;
   const CellCase& entry;
@@ -24,10 +24,10 @@ struct Cycle {
 struct Placed {
   Vec3 place;
   std::uint8_t marks = 0;
-  Vec3 anchor, other;  // of a special: its anchor and candidate
+  Vec3 anchor, other;  // for a special vertex: its anchor and candidate
 };
 
-/// Sums over the hits of a cycle, in cell units. Floats do: what matters here are means of a few.
+/// Sums over the hits of a cycle, in cell units. Floats are precise enough for means of a few values.
 class CycleSums {
  public:
   void add(int edge, const Hit& hit) {
@@ -35,15 +35,15 @@ class CycleSums {
     for (int a = 0; a < 3; ++a) normal_[a] += hit.normal[a];
   }
 
-  /// True where the surface in the cell is flat or smooth and its vertex falls into the cell: at `x`. `hit(n)` is the
+  /// Returns true if the surface in the cell is flat or smooth and its vertex `x` falls into the cell. `hit(n)` is the
   /// hit of the entry's n-th edge.
   template <class HitAt>
   bool smooth(const CellCase& entry, int c, HitAt&& hit, Vec3& x) const {
-    constexpr double flat = 0.999999;  // |mean normal|²: nothing to gain above it but 10⁻⁴ cells
+    constexpr double flat = 0.999999;  // |mean normal|²: above it, an exact fit gains less than 10⁻⁴ cells
     const double count = entry.begin[c + 1] - entry.begin[c], most = count * count;
     const Vec3 normal(normal_[0], normal_[1], normal_[2]);
     const double agreement = glm::dot(normal, normal);
-    // At most four edges an axis, places from −½ to 1½: only a weak one makes a sum so small.
+    // At most four edges per axis, places from −½ to 1½: only a weak hit makes a sum so small.
     const bool weak = std::min({place_[0], place_[1], place_[2]}) < -Hit::kWeak / 2;
     if (weak || !(agreement > kSmooth * most)) return false;
     const auto& from = entry.from[c];
@@ -70,13 +70,13 @@ class CycleSums {
   float place_[3] = {}, normal_[3] = {};
 };
 
-/// The vertices of a cell so far. No two share a place, so one of them at most may leave the cell.
+/// The previous vertices of the same cell. No two share a place, so at most one may leave the cell.
 struct Siblings {
   std::vector<Vec3> places;
-  bool left = false;  // one has a candidate
+  bool left = false;  // one of them has a candidate
 };
 
-/// The vertex of a cycle that is not `smooth` and alone in its cell.
+/// Places the vertex of a cycle that is not `smooth` and alone in its cell.
 Placed place_vertex(const FloatGrid& grid, const Cycle& cycle, const Siblings& siblings);
 
 }  // namespace riffler::marching

@@ -9,7 +9,8 @@ namespace riffler::mesh {
 
 EdgeTable::EdgeTable(const Mesh& mesh) : begin_(mesh.vertices.size() + 2, 0) {
   if (mesh.triangles.size() > 0x7fffffff / 3) throw std::invalid_argument("triangles: more than can be indexed");
-  // Counting sort by the lower vertex; a vertex is the lower one of three edges on average, so the rest is tiny.
+  // Counting sort by the lower vertex. A vertex is the lower one of three edges on average, so the remaining sort is
+  // tiny.
   const auto for_each_half = [&](const auto& visit) {
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
       const Vec3i& v = mesh.triangles[t];
@@ -21,7 +22,7 @@ EdgeTable::EdgeTable(const Mesh& mesh) : begin_(mesh.vertices.size() + 2, 0) {
   for_each_half([&](int a, int b, std::uint32_t) { ++begin_[static_cast<std::size_t>(std::min(a, b)) + 2]; });
   for (std::size_t v = 2; v < begin_.size(); ++v) begin_[v] += begin_[v - 1];
   uses_.resize(begin_.back());
-  // begin_[v + 1] is where the next use of v goes, and so ends as the end of v and the begin of v + 1.
+  // begin_[v + 1] is the insertion position for v; after the last insertion it is the end of v and the begin of v + 1.
   for_each_half([&](int a, int b, std::uint32_t half) {
     uses_[begin_[static_cast<std::size_t>(std::min(a, b)) + 1]++] = {std::max(a, b), 2 * half + (a > b ? 1U : 0U)};
   });

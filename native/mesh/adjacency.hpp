@@ -1,4 +1,4 @@
-// Which triangles meet at which edge.
+// Finds the triangles that meet at each edge.
 #pragma once
 
 #include <cstdint>
@@ -27,25 +27,25 @@ inline int end_of(const Mesh& mesh, int half) {
   return start_of(mesh, next_half(half));
 }
 
-/// A triangle that names a vertex twice; it has no edges here.
+/// Whether a triangle names a vertex twice. Such a triangle has no edges here.
 inline bool repeats_a_vertex(const Vec3i& t) {
   return t.x == t.y || t.y == t.z || t.z == t.x;
 }
 
-/// The half-edges of a valid mesh sorted by edge.
+/// The half-edges of a valid mesh, sorted by edge.
 class EdgeTable {
  public:
   struct Use {
-    int upper;           // the edge's vertex with the larger index
-    std::uint32_t code;  // 2 × half-edge, + 1 where it runs from the upper to the lower vertex
+    int upper;           // vertex of the edge with the larger index
+    std::uint32_t code;  // 2 × half-edge, + 1 if it runs from the upper to the lower vertex
     int half() const { return static_cast<int>(code >> 1); }
     bool reversed() const { return code & 1; }
   };
 
-  /// std::invalid_argument beyond 715 million triangles.
+  /// Throws std::invalid_argument for more than 715 million triangles.
   explicit EdgeTable(const Mesh& mesh);
 
-  /// Calls visit(lower, uses) once for every edge, in parallel, uses in the order of their half-edges.
+  /// Calls visit(lower, uses) once for every edge, in parallel; `uses` are in the order of their half-edges.
   void for_each_edge(const std::function<void(int lower, std::span<const Use> uses)>& visit) const;
 
  private:
@@ -53,25 +53,25 @@ class EdgeTable {
   std::vector<Use> uses_;
 };
 
-/// Triangles beyond the first with the same vertices, in whatever order, counted at the edge of their two lower ones:
-/// summed over all edges each counts once.
+/// Number of triangles with the same vertices as an earlier one, in any order. Each is counted at the edge of its two
+/// lowest vertices, so the sum over all edges counts it once.
 std::size_t duplicates_at(const Mesh& mesh, std::span<const EdgeTable::Use> uses);
 
-/// What lies across each half-edge.
+/// The triangle across each half-edge.
 class Adjacency {
  public:
   explicit Adjacency(const Mesh& mesh) : Adjacency(mesh, EdgeTable(mesh)) {}
   Adjacency(const Mesh& mesh, const EdgeTable& edges);
 
-  /// The half-edge of the only other triangle at the edge, which runs it the other way; -1 where there is none.
+  /// The half-edge of the only other triangle at the edge, if it runs in the opposite direction; otherwise -1.
   int twin(int half) const { return across_[half] >= 0 ? across_[half] : -1; }
-  /// As twin, but also where the other triangle runs the edge the same way.
+  /// Like twin, but also if the other half-edge runs in the same direction.
   int neighbour(int half) const { return across_[half] <= kSameWay ? kSameWay - across_[half] : twin(half); }
-  /// No other triangle.
+  /// No other triangle shares the edge.
   bool is_open(int half) const { return across_[half] == kOpen; }
-  /// Two or more other triangles.
+  /// Two or more other triangles share the edge.
   bool is_crowded(int half) const { return across_[half] == kCrowded; }
-  /// The other triangle runs the edge the same way.
+  /// The only other triangle runs the edge in the same direction.
   bool is_same_way(int half) const { return across_[half] <= kSameWay; }
 
  private:

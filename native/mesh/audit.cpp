@@ -17,7 +17,7 @@ namespace {
 using Count = std::atomic<std::size_t>;
 constexpr std::size_t kAuditGrain = 1 << 14;
 
-/// Sums over chunks of [0, n), in parallel; counts are integers, so their order does not matter.
+/// Sums over chunks of [0, n), in parallel. Counts are integers, so their order does not matter.
 template <class Test>
 std::size_t count_if(std::size_t n, const Test& test) {
   Count total{0};
@@ -41,7 +41,7 @@ bool is_fold(const Mesh& mesh, int half, int twin) {
   return lengths > 0 && dot < -0.99999 * lengths;
 }
 
-/// The edge at vertex v on the other side of the triangle of `half`, which has v at one of its ends.
+/// The edge at vertex v on the other side of the triangle of `half`; v is one of the ends of `half`.
 int other_edge_at(const Mesh& mesh, int half, int v) {
   return start_of(mesh, half) == v ? previous_half(half) : next_half(half);
 }
@@ -70,7 +70,7 @@ class Fans {
   }
 
  private:
-  /// Triangles beyond the first, over `edge` and on round v.
+  /// Number of triangles visited after the first, crossing `edge` and continuing around v.
   int walk(int v, int edge, bool& closed, bool& crowded) const {
     const int start = triangle_of(edge);
     for (int n = 0;; ++n) {
@@ -87,10 +87,10 @@ class Fans {
 
   const Mesh& mesh_;
   const Adjacency& adjacency_;
-  std::vector<int> first_, valence_;  // a half-edge that starts at the vertex; triangles at it
+  std::vector<int> first_, valence_;  // a half-edge that starts at the vertex; number of triangles at it
 };
 
-/// Disjoint sets with path halving (Tarjan & van Leeuwen 1984); the root is the smallest index.
+/// Disjoint sets with path halving (Tarjan & van Leeuwen 1984). The root is the smallest index.
 class Sets {
  public:
   explicit Sets(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0); }
@@ -132,7 +132,7 @@ Audit audit(const Mesh& mesh, const Progress& progress) {
 
   Count bad{0}, twice{0};
   std::mutex mutex;
-  std::vector<std::pair<int, int>> crowded;  // half-edges at one edge of three or more
+  std::vector<std::pair<int, int>> crowded;  // pairs of half-edges at edges with three or more triangles
   edges.for_each_edge([&](int, std::span<const EdgeTable::Use> uses) {
     if (uses.size() < 2) return;
     if (const std::size_t n = duplicates_at(mesh, uses)) twice += n;
@@ -148,7 +148,7 @@ Audit audit(const Mesh& mesh, const Progress& progress) {
 
   const std::size_t halves = 3 * mesh.triangles.size();
   result.open_edges = count_if(halves, [&](int half) { return adjacency.is_open(half); });
-  // Rounding may have moved vertices apart that were one.
+  // Rounding may have separated equal vertices.
   if (result.open_edges > 0)
     if (const std::optional<Mesh> joined = join_near(mesh)) return audit(*joined, base::part(progress, 0.5, 1));
   result.folds = count_if(halves, [&](int half) {

@@ -22,7 +22,7 @@ double square_to_box(const Vec3& p, const Box3& box) {
   return geom::squared_length(glm::max(Vec3(0), glm::max(box.lower - p, p - box.upper)));
 }
 
-/// Nearest point of a segment: 0 inside, 1 at a, 2 at b.
+/// Nearest point of a segment, and its position: 0 inside, 1 at a, 2 at b.
 std::pair<Vec3, int> closest_on_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
   const Vec3 ab = b - a;
   const double along = glm::dot(p - a, ab), length2 = geom::squared_length(ab);
@@ -47,7 +47,7 @@ OnTriangle closest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, cons
   constexpr Part kParts[3][3] = {{Part::EdgeAB, Part::VertexA, Part::VertexB},
                                  {Part::EdgeBC, Part::VertexB, Part::VertexC},
                                  {Part::EdgeCA, Part::VertexC, Part::VertexA}};
-  // The nearest point lies on an edge that p is beyond.
+  // The nearest point lies on an edge that separates p from the triangle.
   OnTriangle best{a, Part::VertexA};
   double best2 = std::numeric_limits<double>::infinity();
   for (int k = 0; k < 3; ++k) {
@@ -84,7 +84,7 @@ void Closest::build(const std::vector<Corners>& corners) {
   geom::sort_by_medians(id_, levels_, centres);
   corners_.resize(n), slot_.resize(n);
   boxes_ = geom::boxes_of_tree(levels_, [&](std::size_t leaf) {
-    // Ties between equally near triangles go by their order within a leaf, which the sort leaves open.
+    // The order within a leaf decides between equally near triangles, and nth_element does not define it.
     std::sort(id_.begin() + static_cast<std::ptrdiff_t>(first(levels_, leaf)),
               id_.begin() + static_cast<std::ptrdiff_t>(first(levels_, leaf + 1)));
     Box3 box;
@@ -97,8 +97,8 @@ void Closest::build(const std::vector<Corners>& corners) {
   });
 }
 
-/// Calls visit(slot) for triangles whose box is nearer than the square root of `bound`, which visit may lower, near
-/// boxes first, until it returns true.
+/// Calls visit(slot) for triangles whose box is nearer than the square root of `bound`, near boxes first, until visit
+/// returns true. visit may lower `bound`.
 template <class Visit>
 void Closest::descend(const Vec3& p, double& bound, const Visit& visit) const {
   struct Entry {
@@ -181,7 +181,7 @@ void Closest::gather(const Vec3& p, double limit, std::vector<Hit>& hits) const 
   double bound = limit * limit;
   descend(p, bound, [&](std::size_t i) {
     const auto& [a, b, c] = corners_[i];
-    // Most triangles of a leaf at the rim are out by their own box, which costs a tenth of the nearest point.
+    // The box test costs a tenth of the nearest point, and rejects most triangles of a leaf at the rim.
     if (square_to_box(p, {glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c))}) > bound) return false;
     const OnTriangle on = closest_on_triangle(p, a, b, c);
     if (const double d2 = geom::squared_length(p - on.point); d2 <= bound)
@@ -255,8 +255,8 @@ std::vector<double> deviation(const Mesh& mesh, const Mesh& other, bool with_sig
       [&](std::size_t begin, std::size_t end) {
         int last = -1;
         for (std::size_t i = begin; i < end; ++i) {
-          // The previous vertex's triangle bounds the distance from above: most of the tree is out at once. A little
-          // more than the bound, so that this triangle itself is found again.
+          // The distance to the previous vertex's triangle is an upper bound, so most of the tree is skipped. The bound
+          // is slightly enlarged, so that the search finds this triangle again.
           const Vec3& p = mesh.vertices[i];
           const double bound = last < 0 ? std::numeric_limits<double>::infinity() : closest.distance_to(last, p);
           const Closest::Hit hit = closest(p, bound * (1 + 1e-12));

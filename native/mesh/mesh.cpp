@@ -10,10 +10,10 @@ namespace riffler::mesh {
 
 namespace {
 
-constexpr double kLargest = 1e30;  // beyond it, cubes of coordinates leave double's range
+constexpr double kLargest = 1e30;  // beyond it, cubes of coordinates overflow double
 constexpr std::size_t kSumGrain = 1 << 15;
 
-/// Sum of term(t) over all triangles, grouped by fixed chunks, so that it does not depend on the number of threads.
+/// Sum of term(t) over all triangles, grouped in fixed chunks, so it does not depend on the number of threads.
 template <class Term>
 double sum_over_triangles(const Mesh& mesh, const Term& term) {
   const std::size_t n = mesh.triangles.size();
@@ -32,7 +32,7 @@ double sum_over_triangles(const Mesh& mesh, const Term& term) {
 
 void validate(const Mesh& mesh) {
   const auto in_range = [](const Vec3& v) {
-    // Written so that NaN fails.
+    // in this form, NaN fails
     return std::abs(v.x) <= kLargest && std::abs(v.y) <= kLargest && std::abs(v.z) <= kLargest;
   };
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
@@ -43,13 +43,13 @@ void validate(const Mesh& mesh) {
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     for (int k = 0; k < 3; ++k)
       if (const int v = mesh.triangles[t][k]; v < 0 || v >= n)
-        throw std::invalid_argument("triangles, row " + std::to_string(t) + ": vertex " + std::to_string(v) + " of " +
-                                    std::to_string(n));
+        throw std::invalid_argument("triangles, row " + std::to_string(t) + ": no vertex " + std::to_string(v) +
+                                    ": there are " + std::to_string(n) + ", counted from 0");
 }
 
 double volume(const Mesh& mesh) {
   if (mesh.empty()) return 0;
-  // About the centre: far from the origin the tetrahedra to it would be huge and cancel.
+  // About the centre: far from the origin, the tetrahedra to it would be huge and cancel.
   const Box3 box = bounds(mesh);
   const Vec3 centre = box.lower + 0.5 * (box.upper - box.lower);
   return sum_over_triangles(mesh,

@@ -1,4 +1,4 @@
-// Points that are equal but for rounding.
+// Finds points that are equal except for rounding.
 #pragma once
 
 #include <bit>
@@ -10,12 +10,12 @@
 
 namespace riffler::mesh {
 
-/// Points in buckets of side `size`, each searched among its neighbours.
+/// Points in buckets of side `size`; a search looks at the neighbouring buckets.
 class NearPoints {
  public:
   NearPoints(double size, std::size_t points);
 
-  /// The number of the first point within `size` of p; p itself, added, where there is none.
+  /// The number of the first point within `size` of p. If there is none, adds p and returns its number.
   int find_or_add(const Vec3& p);
   const Vec3& operator[](int number) const { return points_[static_cast<std::size_t>(number)].p; }
 
@@ -31,14 +31,14 @@ class NearPoints {
   std::vector<Point> points_;
 };
 
-/// A few ulps of the largest coordinate: by that much rounding moves vertices that were one.
+/// A few ulps of the largest coordinate, mm: the distance by which rounding may separate equal vertices.
 double rounding_of(const Mesh& mesh);
 
-/// The mesh with vertices at its open edges joined that lie within `rounding_of(mesh)` of another one there without
-/// being equal to it; nothing where there are none. Triangles keep their places; some may name a vertex twice.
+/// Joins vertices at open edges that lie within `rounding_of(mesh)` of each other but are not equal. Returns nothing if
+/// there are none. Triangles keep their indices; some may name a vertex twice.
 std::optional<Mesh> join_near(const Mesh& mesh);
 
-/// The mesh with vertices of equal coordinates as one, in the order of their first appearance, and then `join_near`.
+/// Merges vertices with equal coordinates, in the order of their first appearance, then applies `join_near`.
 Mesh welded(const Mesh& mesh);
 
 }  // namespace riffler::mesh

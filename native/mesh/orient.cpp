@@ -18,14 +18,14 @@ namespace riffler::mesh {
 
 namespace {
 
-/// Which triangles are equal, in whatever order they name their vertices.
+/// Groups of triangles with the same vertices, in any order.
 struct Groups {
-  std::vector<int> of;     // each triangle's group; -1 where a vertex is named twice
+  std::vector<int> of;     // each triangle's group; -1 if it names a vertex twice
   std::vector<int> first;  // the first triangle of each group
-  std::vector<int> net;    // as many as run like the first one, less those that run against it
+  std::vector<int> net;    // triangles oriented like the first one, minus those oriented against it
 };
 
-/// A triangle's vertices, the least first and in ascending order, and whether that is an odd permutation.
+/// A triangle's vertices in ascending order, and whether that is an odd permutation.
 std::pair<std::array<int, 3>, bool> sorted(const Vec3i& t) {
   std::array<int, 3> v{t.x, t.y, t.z};
   bool odd = false;
@@ -44,7 +44,8 @@ bool has_crowds(const EdgeTable& edges) {
   return crowded;
 }
 
-/// Equal triangles share edges, which are crowded unless the pair of them is a piece of its own: that stays two.
+/// Groups equal triangles. They share edges, which then have three or more triangles, unless a pair of them is a piece
+/// of its own; such a pair stays two groups.
 Groups group(const Mesh& mesh, bool crowded) {
   const int n = static_cast<int>(mesh.triangles.size());
   Groups out;
@@ -62,7 +63,7 @@ Groups group(const Mesh& mesh, bool crowded) {
   for (int t = 0; t < n; ++t)
     if (!repeats_a_vertex(mesh.triangles[t])) order.emplace_back(sorted(mesh.triangles[t]).first, t);
   std::sort(order.begin(), order.end());
-  std::vector<int> before(mesh.triangles.size(), -1);  // the first of the equal ones
+  std::vector<int> before(mesh.triangles.size(), -1);  // the previous equal triangle
   for (std::size_t k = 1; k < order.size(); ++k)
     if (order[k].first == order[k - 1].first) {
       const int last = order[k - 1].second;
@@ -80,15 +81,15 @@ Groups group(const Mesh& mesh, bool crowded) {
   return out;
 }
 
-/// A piece of the surface, connected across edges of just two triangles.
+/// A piece of the surface, connected across edges that exactly two triangles share.
 struct Piece {
-  int net = 0;                   // of all its triangles, where `agrees`
-  bool agrees = true;            // with itself: all its triangles are there equally often, equally oriented
-  bool one_sided = false;        // its triangles cannot be oriented alike
-  double with = 0, against = 0;  // twice the areas of the triangles that run like the first one, or against it
+  int net = 0;                   // of all its triangles, if `agrees`
+  bool agrees = true;            // all its triangles occur equally often with equal orientation
+  bool one_sided = false;        // its triangles cannot be oriented consistently
+  double with = 0, against = 0;  // twice the areas of the triangles oriented like the first one, and against it
 };
 
-/// One triangle for each group, in pieces.
+/// The pieces, with one triangle per group.
 class Pieces {
  public:
   Pieces(const Mesh& mesh, const Groups& groups) : groups_(groups), turned_(groups.first.size(), 0) {
@@ -104,7 +105,7 @@ class Pieces {
   const Mesh& mesh() const { return mesh_; }
   const std::vector<Piece>& pieces() const { return pieces_; }
   int piece_of(std::size_t group) const { return of_[group]; }
-  /// Whether the group's first triangle runs against the piece's first.
+  /// Whether the group's first triangle is oriented against the piece's first.
   bool turned(std::size_t group) const { return turned_[group]; }
   int net(std::size_t group) const { return turned_[group] ? -groups_.net[group] : groups_.net[group]; }
   bool closed(std::size_t piece) const { return !open_[piece] && !pieces_[piece].one_sided; }
@@ -170,8 +171,8 @@ class Pieces {
   std::vector<std::uint8_t> open_;
 };
 
-/// What becomes of each piece: 0 as it is, otherwise one triangle for each group, +1 like its first one, −1 against it.
-/// A piece that agrees with itself keeps its number of copies.
+/// Decides for each piece: 0 keeps it, otherwise each group becomes one triangle, +1 oriented like its first one, −1
+/// against it. A piece without contradictions keeps its number of copies.
 class Decision {
  public:
   Decision(const Pieces& pieces, Hollow hollow, Orientation& found)
@@ -195,8 +196,8 @@ class Decision {
  private:
   struct Shell {
     std::size_t piece;
-    int given;  // how its triangles are oriented, for the most part
-    bool tie;   // they are oriented half one way, half the other
+    int given;  // orientation of most of its triangles
+    bool tie;   // half of them have each orientation
   };
 
   void turn_shells(const std::vector<int>& shell, Hollow hollow, Orientation& found) {
@@ -231,7 +232,7 @@ Vec3i turned(const Vec3i& t) {
   return {t.x, t.z, t.y};
 }
 
-/// The triangles of `mesh` as decided.
+/// The triangles of `mesh` after the decision.
 Mesh rebuilt(const Mesh& mesh, const Groups& groups, const Pieces& pieces, const Decision& decision, const Mesh& joined,
              Orientation& found) {
   Mesh out;

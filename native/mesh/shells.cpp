@@ -1,5 +1,5 @@
-// Nesting is found with upright rays from a few samples of each shell, binned by their place in x and y, so that
-// triangles meet only the samples below and above them.
+// Finds the nesting with vertical rays from a few samples of each shell. The samples are binned by x and y, so that
+// each triangle is tested only against the samples below and above it.
 #include "mesh/shells.hpp"
 
 #include <algorithm>
@@ -13,14 +13,14 @@ namespace riffler::mesh {
 
 namespace {
 
-/// What rounding may leave of a shell without volume, as a share of its box's.
+/// Volume that rounding may leave of a shell without volume, as a fraction of its box's volume.
 constexpr double kFlat = 1e-12;
 
 struct Extent {
   Box3 box;
-  double volume = 0;             // signed
-  std::array<int, 6> extreme{};  // triangles at the box's sides
-  int middle = 0;                // one more triangle
+  double volume = 0;             // signed, mm³
+  std::array<int, 6> extreme{};  // triangles at the sides of the box
+  int middle = 0;                // index of one more triangle
   std::size_t triangles = 0;
 };
 
@@ -64,8 +64,8 @@ struct Sample {
   int shell;
 };
 
-/// Near corners at which the shell reaches furthest, and somewhere in its middle: places without symmetry, a little
-/// behind the surface.
+/// Samples near the corners of each shell's extreme triangles and inside its middle triangle: points without symmetry,
+/// slightly behind the surface.
 std::vector<Sample> samples(const Mesh& mesh, std::span<const int> runs, const std::vector<Extent>& shells) {
   std::vector<Sample> out;
   for (std::size_t s = 0; s < shells.size(); ++s) {
@@ -81,7 +81,7 @@ std::vector<Sample> samples(const Mesh& mesh, std::span<const int> runs, const s
       const Vec3 across = glm::cross(p[1] - p[0], p[2] - p[0]);
       const double area = glm::length(across);
       if (!(area > 0)) continue;
-      // The corner furthest from the middle of the shell's box counts most.
+      // The corner farthest from the middle of the shell's box has the largest weight.
       const Vec3 centre = 0.5 * (e.box.lower + e.box.upper);
       std::sort(p.begin(), p.end(),
                 [&](const Vec3& a, const Vec3& b) { return glm::length(a - centre) > glm::length(b - centre); });
@@ -93,7 +93,7 @@ std::vector<Sample> samples(const Mesh& mesh, std::span<const int> runs, const s
   return out;
 }
 
-/// Samples by squares of the plane, some two to a square.
+/// Samples in squares of the xy plane, about two per square.
 class Squares {
  public:
   explicit Squares(const std::vector<Sample>& samples) {
@@ -109,7 +109,7 @@ class Squares {
     for (std::size_t k = 0; k < samples.size(); ++k) order_[next[square(samples[k].p)]++] = static_cast<int>(k);
   }
 
-  /// Calls visit(sample) for those in the squares that a box touches.
+  /// Calls visit(sample) for the samples in the squares that a box touches.
   template <class Visit>
   void in(const Box3& box, const Visit& visit) const {
     if (box.upper.x < box_.lower.x || box.lower.x > box_.upper.x || box.upper.y < box_.lower.y ||
@@ -136,24 +136,24 @@ class Squares {
   std::vector<int> order_;
 };
 
-/// Whether q lies left of the line from a to b, seen from above; the same for both triangles of an edge.
+/// Whether q lies left of the line from a to b, seen from above; consistent for both triangles of an edge.
 bool is_left(const Mesh& mesh, int a, int b, const Vec3& q) {
   const bool swap = a > b;
   const Vec3 &from = mesh.vertices[swap ? b : a], &to = mesh.vertices[swap ? a : b];
   return ((to.x - from.x) * (q.y - from.y) - (to.y - from.y) * (q.x - from.x) >= 0) != swap;
 }
 
-/// +1 or −1 where the upright line through q meets the triangle above q, by its orientation.
+/// +1 or −1, by the triangle's orientation, if the vertical line through q meets the triangle above q; otherwise 0.
 int crossing_above(const Mesh& mesh, const Vec3i& t, const Vec3& q) {
   const bool left = is_left(mesh, t.x, t.y, q);
   if (is_left(mesh, t.y, t.z, q) != left || is_left(mesh, t.z, t.x, q) != left) return 0;
   const Vec3& a = mesh.vertices[t.x];
   const Vec3 n = glm::cross(mesh.vertices[t.y] - a, mesh.vertices[t.z] - a);
-  const double height = glm::dot(n, q - a);  // n.z times that of q above the plane
+  const double height = glm::dot(n, q - a);  // n.z times the height of q above the plane
   return left ? (height < 0 ? 1 : 0) : (height > 0 ? -1 : 0);
 }
 
-/// The shells in which each shell lies, those with more volume only.
+/// For each shell, the shells that contain it. Only shells with volume count.
 class Nesting {
  public:
   Nesting(const Mesh& mesh, std::span<const int> shell, std::span<const int> runs, const std::vector<Extent>& shells)
@@ -163,7 +163,7 @@ class Nesting {
     for (const Sample& s : points) ++wanted[s.shell];
     if (points.empty()) return;
     const Squares squares(points);
-    std::vector<std::tuple<int, int, int>> hits;  // shell around, sample, crossings
+    std::vector<std::tuple<int, int, int>> hits;  // containing shell, sample, crossings
     for (std::size_t t = 0; t < shell.size(); ++t) {
       const int s = shell[t];
       if (s < 0 || shells[s].volume == 0) continue;
@@ -179,7 +179,7 @@ class Nesting {
       });
     }
     std::sort(hits.begin(), hits.end());
-    std::vector<std::pair<int, int>> inside;  // inner, outer: once for each sample
+    std::vector<std::pair<int, int>> inside;  // inner, outer: once per sample
     for (std::size_t k = 0; k < hits.size();) {
       const auto [outer, sample, first] = hits[k];
       int sum = 0;
@@ -213,7 +213,7 @@ std::vector<ShellSide> shell_sides(const Mesh& mesh, std::span<const int> shell,
     Extent& e = shells[s];
     const Vec3 size = e.box.size();
     if (std::abs(e.volume) <= kFlat * std::pow(std::max({size.x, size.y, size.z}), 3)) e.volume = 0;
-    out[s].volume = std::abs(e.volume);  // 0 where it has none
+    out[s].volume = std::abs(e.volume);  // 0 without volume
     if (e.volume == 0) continue;
     (open_to_either[s] ? either : e.volume < 0 ? inwards : outwards) = true;
   }
@@ -238,7 +238,7 @@ std::vector<ShellSide> shell_sides(const Mesh& mesh, std::span<const int> shell,
     int side = open_to_either[s] ? -1 : given * (inner < 0 ? 1 : turned[inner]);
     if (side < 0 && material < 1) side = 1;
     final[s] = side;
-    // What lies in a shell without orientation of its own is not turned with it.
+    // Shells inside a shell without orientation of its own are not turned with it.
     turned[s] = open_to_either[s] ? 1 : side * given;
     out[s].turn = side != given;
   }

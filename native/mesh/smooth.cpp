@@ -19,10 +19,10 @@ namespace {
 constexpr std::size_t kVertexGrain = 1 << 13;
 constexpr double kShrink = 0.5, kInflate = -0.51;
 
-// Two edges of a feature that meet at a sharper angle than this make a corner: its cosine.
+// Two feature edges that meet at a sharper angle form a corner; cosine of that angle.
 constexpr double kCorner = -0.5;
 
-/// What every vertex is drawn to: all its neighbours, on a feature line the two along it, nothing if it must stay.
+/// The vertices that pull each vertex: all its neighbours; on a feature line the two along it; none if it must stay.
 class Neighbours {
  public:
   Neighbours(const Mesh& mesh, const Adjacency& adjacency, double feature_angle, const Progress& progress)
@@ -36,8 +36,8 @@ class Neighbours {
     std::vector<Line> lines(mesh.vertices.size());
     for (int half = 0; half < halves; ++half)
       if (sharp[half]) lines[start_of(mesh, half)].add(end_of(mesh, half));
-    // Around a vertex without border every neighbour is the end of just one half-edge. One edge alone is the end of a
-    // line that fades away.
+    // Around a vertex without a border, every neighbour is the end of exactly one half-edge. A single feature edge is
+    // the end of a line that fades away.
     const auto draws = [&](int half) {
       const int v = start_of(mesh, half);
       return !fixed[v] && (lines[v].count < 2 || (lines[v].goes_on(mesh, v) && sharp[half]));
@@ -57,7 +57,7 @@ class Neighbours {
   }
 
  private:
-  /// The sharp edges at a vertex.
+  /// The feature edges at a vertex.
   struct Line {
     int count = 0;
     int ends[2] = {-1, -1};
@@ -97,14 +97,14 @@ class Neighbours {
   std::vector<int> other_;
 };
 
-/// p, or the point of the ball about `home` towards it.
+/// p, or if it is farther than `limit` from `home`, the point at that distance in its direction.
 Vec3 limited(const Vec3& p, const Vec3& home, double limit) {
   const Vec3 moved = p - home;
   const double length = glm::length(moved);
   return length > limit ? home + (limit / length) * moved : p;
 }
 
-/// One step of every vertex towards (factor > 0) or away from the mean of its neighbours.
+/// Moves every vertex towards (factor > 0) or away from the mean of its neighbours.
 void step(const Vertices& from, Vertices& to, const Mesh& mesh, const Neighbours& neighbours, double factor,
           double limit) {
   base::parallel_for(from.size(), kVertexGrain, [&](std::size_t begin, std::size_t end) {
@@ -119,15 +119,15 @@ void step(const Vertices& from, Vertices& to, const Mesh& mesh, const Neighbours
   });
 }
 
-/// Moves every vertex on along its normal, in proportion to how far it has moved, so that the mesh has the volume that
-/// it had. What was smooth, and stayed, stays.
+/// Moves every vertex along its normal, in proportion to how far it has moved already, so that the mesh regains its
+/// volume. Vertices that have not moved stay.
 void restore_volume(const Mesh& mesh, Vertices& vertices, double limit, const Progress& progress) {
-  constexpr int kRounds = 3;  // the first one is exact up to the square of the shift and to what `limit` holds back
+  constexpr int kRounds = 3;  // the first round is exact up to the square of the shift and up to what `limit` prevents
   const double wanted = volume(mesh);
   Mesh now{vertices, mesh.triangles};
   for (int round = 0; round < kRounds; ++round) {
     base::report(progress, static_cast<double>(round) / kRounds);
-    std::vector<Vec3> slope(vertices.size(), Vec3(0));  // of the volume, times 6
+    std::vector<Vec3> slope(vertices.size(), Vec3(0));  // gradient of the volume, times 6
     for (const Vec3i& t : mesh.triangles) {
       const Vec3 &a = now.vertices[t.x], &b = now.vertices[t.y], &c = now.vertices[t.z];
       const Vec3 cross = glm::cross(b - a, c - a);
@@ -138,7 +138,7 @@ void restore_volume(const Mesh& mesh, Vertices& vertices, double limit, const Pr
       sum += glm::length(slope[v]) / 6 * glm::length(now.vertices[v] - mesh.vertices[v]);
     base::report(progress, (round + 0.5) / kRounds);
     const double missing = wanted - volume(now), share = missing / sum;
-    // A correction as large as the smoothing itself would be none.
+    // A correction as large as the smoothing itself would make no sense.
     if (missing == 0 || !(std::abs(share) < 0.5)) break;
     for (std::size_t v = 0; v < slope.size(); ++v) {
       const double length = glm::length(slope[v]), far = glm::length(now.vertices[v] - mesh.vertices[v]);
@@ -155,7 +155,7 @@ Vec3 cross_in_float(const Vertices& vertices, const Vec3i& t) {
   return glm::cross(b - a, c - a);
 }
 
-/// Puts vertices back until nothing is wrong; at the latest everything is back where it was.
+/// Moves vertices back until the mesh has no defect, in the last resort all of them.
 class Repair {
  public:
   Repair(const Mesh& mesh, const Adjacency& adjacency, Vertices& vertices)
@@ -196,7 +196,7 @@ class Repair {
     }
   }
 
-  /// Vertices that moved onto another one.
+  /// Marks vertices that coincide with another one.
   void mark_meeting() {
     Welder<Vec3> welder(vertices_.size());
     std::vector<int> first;
@@ -234,7 +234,7 @@ Mesh smooth(const Mesh& mesh, int iterations, std::optional<double> tolerance, d
   base::report(progress, 0.03);
   const Adjacency adjacency(mesh, edges);
   const Neighbours neighbours(mesh, adjacency, feature_angle, base::part(progress, 0.06, 0.1));
-  // A hair less than asked for, so that rounding does not exceed it.
+  // Slightly less than requested, so that rounding does not exceed it.
   const double limit = tolerance ? *tolerance * (1 - 1e-12) : std::numeric_limits<double>::infinity();
   Vertices vertices = mesh.vertices, scratch(vertices.size());
   for (int i = 0; i < iterations; ++i) {

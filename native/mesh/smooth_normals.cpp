@@ -47,7 +47,7 @@ SmoothNormals::SmoothNormals(const Mesh& mesh, double crease) : corners_(mesh.tr
   base::parallel_for(corners_.size(), kNormalGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t)
       for (int k = 0; k < 3; ++k) {
-        const bool flat = faces[t] == Vec3(0);  // has no normal of its own: takes part in all of the fan
+        const bool flat = faces[t] == Vec3(0);  // without a normal of its own, it takes part in the whole fan
         Vec3 sum{0};
         const int vertex = mesh.triangles[t][k];
         for (std::size_t i = fans.begin[vertex]; i < fans.begin[vertex + 1]; ++i) {

@@ -1,4 +1,4 @@
-// Normals that vary smoothly over a faceted surface, but not over its edges.
+// Normals that vary smoothly over a faceted surface, except across its sharp edges.
 #pragma once
 
 #include <array>
@@ -8,16 +8,16 @@
 
 namespace riffler::mesh {
 
-/// Normals at triangles' corners: means of the triangles round the vertex whose normals lie within `crease` of the
-/// triangle's own, weighted by their angles there, so that they do not depend on how a face is cut into triangles
-/// (Thürmer & Wüthrich, Journal of Graphics Tools 3 (1998) 43).
+/// Normals at the corners of triangles: the mean over the triangles around the vertex whose normals lie within `crease`
+/// of the triangle's own. Each is weighted by its angle at the vertex, so the result does not depend on how a face is
+/// split into triangles (Thürmer & Wüthrich, Journal of Graphics Tools 3 (1998) 43).
 class SmoothNormals {
  public:
-  /// Keeps what it needs of the mesh, which must be valid. `crease` in rad.
+  /// Does not refer to the mesh afterwards; the mesh must be valid. `crease` in rad.
   SmoothNormals(const Mesh& mesh, double crease);
 
-  /// Unit normal at a point of triangle `t`, between those of its corners; that of the nearest face with an area where
-  /// the triangle has none.
+  /// Unit normal at a point of triangle `t`, interpolated between its corners. A triangle without area takes it from
+  /// the triangles around it.
   Vec3 at(int t, const Vec3& p) const;
 
  private:

@@ -1,4 +1,4 @@
-// Equal points get one index.
+// Gives equal points the same index.
 #pragma once
 
 #include <array>
@@ -12,12 +12,12 @@
 
 namespace riffler::mesh {
 
-/// Numbers points in the order of their first appearance; points that compare equal (so -0 is 0) share a number.
-/// V is Vec3 or Vec3f; no coordinate may be NaN.
+/// Numbers points in the order of their first appearance. Points that compare equal share a number, so -0 and 0 do. V
+/// is Vec3 or Vec3f; no coordinate may be NaN.
 template <class V>
 class Welder {
  public:
-  /// `expected`: distinct points, a guess that saves rehashing.
+  /// `expected`: estimated number of distinct points; saves rehashing.
   explicit Welder(std::size_t expected = 0) { rehash(std::bit_ceil(2 * expected + 64)); }
 
   int add(const V& point) {
@@ -26,9 +26,9 @@ class Welder {
     return index;
   }
 
-  /// Appends nothing twice; writes points.size() indices.
+  /// Adds points and writes their points.size() indices.
   void add(std::span<const V> points, int* indices) {
-    // Three passes over a small block hide the two cache misses of a look-up behind each other.
+    // Three passes over a small block overlap the two cache misses of each look-up.
     constexpr std::size_t kBlock = 48;
     std::array<std::uint64_t, kBlock> hashes;
     for (std::size_t begin = 0; begin < points.size(); begin += kBlock) {
@@ -49,7 +49,7 @@ class Welder {
  private:
   struct Slot {
     std::int32_t index = -1;
-    std::uint32_t tag = 0;  // the hash's upper half: unequal points are told apart without a look at them
+    std::uint32_t tag = 0;  // upper half of the hash, compared before the coordinates
   };
 
   static std::uint64_t hash(const V& p) {

@@ -18,7 +18,7 @@ std::string row(std::size_t i) {
   return "poses, row " + std::to_string(i) + ": ";
 }
 
-/// What a call gives back, one entry per move; asked of the system only where it may matter.
+/// Checks that the result, one entry per move, fits in memory. Small results skip the system call.
 void check_memory(std::size_t moves) {
   const double bytes = static_cast<double>(moves) * (sizeof(double) + 2 * sizeof(Vec3));
   if (moves < 1'000'000 || bytes <= dexel::available_memory()) return;
@@ -39,8 +39,9 @@ void check_path(std::span<const Pose> poses) {
     if (i == 0) continue;
     const Vec3 axis = p.axis / length, before = glm::normalize(poses[i - 1].axis);
     if (glm::dot(before, axis) < 0 && glm::length(glm::cross(before, axis)) < 1e-14)
-      throw std::invalid_argument(row(i) + "the axis is exactly opposite to that of the row before, so the way it " +
-                                  "turns is undefined; put a pose between");
+      throw std::invalid_argument(row(i) +
+                                  "the axis is exactly opposite to that of the row before, so its rotation is " +
+                                  "undefined; put a pose between");
   }
 }
 
@@ -64,7 +65,7 @@ Cut carve(Volume& volume, const Tool& tool, std::span<const Pose> poses, const C
   check_memory(moves);
   Cut cut{std::vector<double>(moves), std::vector<Vec3>(moves, Vec3(0)), std::vector<Vec3>(moves, Vec3(0))};
   const std::vector<ConvexGroup> cutter = convex_groups(tool.cutter());
-  // A plain carve cuts the volume's own tiles, and brings them back where it fails.
+  // A plain carve cuts the volume's own tiles and restores them if it fails.
   std::optional<CutRegion> region;
   if (options.mode == CarveMode::Add || options.protect) region = CutRegion::of(volume, options.mode, options.protect);
   Rollback rollback;

@@ -1,4 +1,4 @@
-// Carving of single moves on one grid.
+// Carves single moves on one grid.
 #pragma once
 
 #include <cstdint>
@@ -12,9 +12,10 @@
 
 namespace riffler::sweep {
 
-/// Single moves on one grid, for those who simulate parts of a volume by themselves: move k goes from
-/// poses[ends[k] − 1] to poses[ends[k]]. What is left is, bit for bit, what `carve` leaves of the same moves. Returns
-/// mm³ of this grid's rays per move. The caller has called check_path, and gives the volume a fresh revision.
+/// Carves single moves on one grid, for callers that simulate parts of a volume themselves: move k goes from
+/// poses[ends[k] − 1] to poses[ends[k]]. The resulting grid is bit-identical to `carve` with the same moves. Returns
+/// the volume removed from this grid's rays, mm³ per move. The caller must call check_path before and give the volume a
+/// new revision afterwards.
 std::vector<double> carve_moves(dexel::Grid& grid, std::span<const ConvexGroup> cutter, std::span<const Pose> poses,
                                 std::span<const std::uint32_t> ends, double tolerance, dexel::Stats& stats);
 

@@ -7,7 +7,7 @@ namespace riffler::sweep {
 
 namespace {
 
-/// dr/dz of the piece's profile at one of its ends; infinite where it starts or ends flat.
+/// dr/dz of the piece's profile at one of its ends; infinite if it starts or ends flat.
 double slope_at(const tool::Piece& piece, double z) {
   if (const auto* f = std::get_if<tool::Frustum>(&piece)) return (f->r1 - f->r0) / (f->z1 - f->z0);
   const auto& r = std::get<tool::Round>(piece);
@@ -15,25 +15,25 @@ double slope_at(const tool::Piece& piece, double z) {
   return -d / std::sqrt(std::max(0.0, r.r * r.r - d * d));
 }
 
-/// Whether two pieces, one above the other, make one convex body: same radius where they meet, no hollow there.
+/// Whether two pieces, one above the other, form a convex body: equal radii where they meet, no concave edge there.
 bool convex_together(const tool::Piece& below, const tool::Piece& above) {
   const double z = bottom(above), size = std::max(max_radius(below), max_radius(above));
-  // A ball or torus that is taken whole reaches into the piece above (Profile::pieces).
+  // A complete ball or torus extends into the piece above (Profile::pieces).
   if (z > top(below) + 1e-12 * size || z < bottom(below)) return false;
   if (std::abs(radius_at(below, z) - radius_at(above, z)) > 1e-9 * size) return false;
   return slope_at(below, z) >= slope_at(above, z) - 1e-9;
 }
 
-/// Whether a truncated cone lies within the piece, between heights that the piece has too.
+/// Whether a truncated cone lies inside the piece, at heights that the piece covers.
 bool within(const tool::Frustum& f, const tool::Piece& piece) {
-  // The piece's radius is a concave function of the height, so the ends decide.
+  // The piece's radius is a concave function of the height, so the two ends decide.
   const double slack = 1 + 1e-12;
   return f.r0 >= 0 && f.r1 >= 0 && f.z0 >= bottom(piece) && f.z1 <= top(piece) &&
          f.r0 <= radius_at(piece, f.z0) * slack && f.r1 <= radius_at(piece, f.z1) * slack;
 }
 
-/// Lets one of two groups reach into the other inside of the tool, where it is hollow between them. Their ends on a ray
-/// are found separately, each up to the tolerance, so that what only touched might leave a crumb.
+/// Extends one of two groups into the other, inside the tool, where there is a concave edge between them. Their ends on
+/// a ray are found separately, each up to the tolerance, so groups that only touch might leave a crumb between them.
 void overlap(ConvexGroup& below, ConvexGroup& above) {
   tool::Piece &low = below.pieces[below.count - 1], &high = above.pieces[0];
   for (int k = 1; k <= 8; ++k) {
@@ -46,7 +46,7 @@ void overlap(ConvexGroup& below, ConvexGroup& above) {
       const double z = f->z1 + (top(high) - bottom(high)) / (1 << k);
       const double r = f->r1 + (f->r1 - f->r0) / (f->z1 - f->z0) * (z - f->z1);
       if (within({f->z1, f->r1, z, r}, high)) return void((f->z1 = z, f->r1 = r));
-      // Or by a collar, which keeps a group convex that widens upwards.
+      // Otherwise add a collar, which keeps a group convex that widens upwards.
       const tool::Frustum collar{f->z1, f->r1, z, f->r1};
       if (f->r1 > f->r0 && below.count < ConvexGroup::kMax && within(collar, high)) {
         below.pieces[below.count++] = collar;

@@ -11,7 +11,7 @@ namespace {
 
 using TilePtr = std::shared_ptr<const dexel::Tile>;
 
-/// f(k, builder) for k < count, on all threads.
+/// Calls f(k, builder) for k < count, on all threads.
 template <class F>
 void for_each_tile(std::size_t count, bool with_normals, const F& f) {
   constexpr std::size_t grain = 4;
@@ -86,7 +86,7 @@ TilePtr composite_tile(CarveMode mode, const dexel::Grid& grid, std::size_t tile
                        const TilePtr& before, const TilePtr& rest, dexel::TileBuilder& builder) {
   if (rest == before) return whole;
   const bool remove = mode == CarveMode::Remove;
-  if (remove && before == whole) return rest;  // nothing of it is protected
+  if (remove && before == whole) return rest;  // nothing in the tile is protected
   const TilePtr cut = apply(dexel::Boolean::Subtract, grid, tile, before, rest, builder);
   return apply(remove ? dexel::Boolean::Subtract : dexel::Boolean::Add, grid, tile, whole, cut, builder);
 }

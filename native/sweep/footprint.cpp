@@ -10,7 +10,7 @@ Footprint::Footprint(std::span<const tool::Piece> pieces, std::initializer_list<
     Hull& hull = hulls_[count_++];
     const double radius = max_radius(piece);
     hull.thickness = radius + slack;
-    // Of a whole ball only the centre matters.
+    // For a complete ball only the centre matters.
     const bool ball = whole_ball(piece);
     for (const Pose& pose : poses) {
       const double reach = ball ? hull.thickness : radius * std::hypot(pose.axis.x, pose.axis.y) + slack;
@@ -26,7 +26,7 @@ Footprint::Footprint(std::span<const tool::Piece> pieces, std::initializer_list<
       else
         add(bottom(piece)), add(top(piece));
     }
-    // Seen along an upright axis the flank is where the ball below it is.
+    // Seen along an upright axis, the flank covers the same disc as the ball below it.
     const Hull* below = count_ > 1 ? &hulls_[count_ - 2] : nullptr;
     if (below && below->thickness == hull.thickness && below->corners == hull.corners &&
         std::equal(hull.corner, hull.corner + hull.corners, below->corner))
@@ -38,17 +38,17 @@ Footprint::Footprint(std::span<const tool::Piece> pieces, std::initializer_list<
 
 void Footprint::add_corner(Hull& hull, const Vec2& p) {
   for (int k = 0; k < hull.corners; ++k)
-    if (hull.corner[k] == p) return;  // the other end of an axis along the rays
+    if (hull.corner[k] == p) return;  // the other end of an axis parallel to the rays
   hull.corner[hull.corners++] = p;
 }
 
-/// The hull's edges are among the connections of its corners. Of these, a side beyond which there is another corner is
-/// within the hull.
+/// The hull's edges are among the connections of its corners. A connection with another corner beyond it is inside the
+/// hull.
 void Footprint::add_sides(Hull& hull) {
   for (int i = 0; i < hull.corners; ++i)
     for (int k = i + 1; k < hull.corners; ++k) {
       const Vec2 a = hull.corner[i], b = hull.corner[k], edge = b - a;
-      // A side that stands at one u ends where a corner's disc ends too.
+      // A side at constant u ends where a corner's disc ends too.
       if (edge.x == 0) continue;
       const Vec2 across = Vec2(-edge.y, edge.x) * (hull.thickness / glm::length(edge));
       const double slope = edge.y / edge.x, square = hull.thickness * hull.thickness;
@@ -63,7 +63,7 @@ void Footprint::add_sides(Hull& hull) {
     }
 }
 
-// Loops without branches or calls, which compilers turn into vector instructions.
+// Loops without branches or calls, which compilers vectorise.
 void Footprint::rows(const double* u, int n, Rows& out) const {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   std::fill_n(out.near, n, kInfinity), std::fill_n(out.far, n, -kInfinity);

@@ -1,4 +1,4 @@
-// Which rays a step of a tool can touch, and at which heights.
+// Finds the rays that a step of a tool can touch, and at which heights.
 #pragma once
 
 #include <initializer_list>
@@ -12,18 +12,18 @@
 
 namespace riffler::sweep {
 
-/// Per piece, the convex hull of its axis at some poses, thickened by its largest radius, seen along the rays (third
-/// coordinate of the cyclic frame).
+/// For each piece, the convex hull of its axis at the given poses, thickened by its largest radius and projected along
+/// the rays (third coordinate of the cyclic frame).
 class Footprint {
  public:
-  /// At most two poses. `slack`: how far the motion between them may leave the hull, mm.
+  /// At most two poses. `slack`: distance by which the motion between them may leave the hull, mm.
   Footprint(std::span<const tool::Piece> pieces, std::initializer_list<Pose> poses, double slack);
 
-  /// Ranges of u, of v and of the third coordinate (not always tight).
+  /// Ranges of u, v and the third coordinate (not always tight).
   const Interval& rows() const { return rows_; }
   const Interval& columns() const { return columns_; }
   const Interval& height() const { return height_; }
-  /// Ranges of v among the rays at each of n ≤ kTileSide u.
+  /// Ranges of v among the rays at each of n ≤ kTileSide values of u.
   struct Rows {
     double near[dexel::kTileSide], far[dexel::kTileSide];
   };
@@ -31,8 +31,8 @@ class Footprint {
   bool overlaps(const Box3& box) const;
 
  private:
-  /// Discs of one radius at the corners, and the long sides of the strips between them: v = y + slope (u − x) from
-  /// `from` to `to`.
+  /// The outline: discs of one radius at the corners, and the long sides of the strips between them, v = y + slope (u −
+  /// x) from `from` to `to`.
   struct Side {
     double from, to, x, y, slope;
   };

@@ -11,9 +11,9 @@ namespace riffler::sweep {
 
 namespace {
 
-/// Steps that are cut in one go: enough to fill all threads, few enough to stay in the cache.
+/// Number of steps per batch: enough to occupy all threads, few enough to stay in the cache.
 constexpr std::size_t kBatch = 512;
-/// Rays below which starting threads costs more than it gains.
+/// Number of rays below which starting threads costs more than it gains.
 constexpr double kSerialRays = 1e5;
 
 }  // namespace
@@ -51,7 +51,7 @@ void GridCarver::cut_steps() {
   work_.clear();
 }
 
-/// Computes what may be cut of the batch's tiles, where no batch before has.
+/// Opens the region's tiles of this batch that no earlier batch opened.
 void GridCarver::open_tiles() {
   std::vector<std::size_t> tiles;
   for (const Work& w : work_)
@@ -59,7 +59,7 @@ void GridCarver::open_tiles() {
   region_->open(tiles);
 }
 
-/// Tiles of the batch with the steps that may touch them, both in ascending order.
+/// Lists the batch's tiles with the steps that may touch them, both ascending.
 void GridCarver::assign() {
   pairs_.clear(), work_.clear();
   std::size_t first = std::numeric_limits<std::size_t>::max(), last = 0;
@@ -78,8 +78,8 @@ void GridCarver::assign() {
   }
 }
 
-/// By tiles, all of them from `first` to `last`; steps ascend already. They are counted where they are many for that
-/// range: short moves pass the same few tiles again and again.
+/// Sorts by tile, from `first` to `last`; steps ascend already. Uses a counting sort if there are many pairs for that
+/// range: short moves pass over the same few tiles again and again.
 void GridCarver::sort_pairs(std::size_t first, std::size_t last) {
   if (pairs_.empty()) return;
   if (last - first > 2 * pairs_.size()) {

@@ -1,4 +1,4 @@
-// Cuts one grid with the moves of a tool, batch by batch.
+// Carves one grid with the moves of a tool, in batches.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,8 @@
 
 namespace riffler::sweep {
 
-/// Brings back the tiles that were replaced unless what was begun is committed. Costs what was cut, not what there is.
+/// Restores the replaced tiles unless the carve is committed. Its cost depends on the size of the cut, not on the
+/// volume.
 class Rollback {
  public:
   Rollback() = default;
@@ -31,12 +32,12 @@ class Rollback {
     first_.clear();
   }
   void keep(dexel::Grid& grid, std::size_t tile) { first_.try_emplace({&grid, tile}, grid.shared_tile(tile)); }
-  /// Calls visit(grid, tile) for each that was replaced.
+  /// Calls visit(grid, tile) for each replaced tile.
   template <class Visit>
   void each(const Visit& visit) const {
     for (const auto& [place, tile] : first_) visit(*place.first, place.second);
   }
-  /// The carve ended well. Returns whether anything was replaced.
+  /// Keeps the changes. Returns whether any tile was replaced.
   bool commit() {
     const bool any = !first_.empty();
     first_.clear();
@@ -51,21 +52,21 @@ class Rollback {
 
 class GridCarver {
  public:
-  /// `measured`: what is taken counts towards `cut`. `rollback` may be null.
+  /// `measured`: whether removed material counts towards `cut`. `rollback` may be null.
   GridCarver(dexel::Grid& grid, bool measured, const CarveOptions& options, Cut& cut, Rollback* rollback)
       : grid_(grid), measured_(measured), options_(options), cut_(cut), rollback_(rollback) {}
-  /// Cuts what may be cut of a region. The region's commit, not the carver, changes the volume.
+  /// Cuts the cuttable material of a region. The region's commit changes the volume, not the carver.
   GridCarver(GridRegion& region, bool measured, const CarveOptions& options, Cut& cut)
       : GridCarver(region.cuttable(), measured, options, cut, nullptr) {
     region_ = &region;
   }
 
-  /// Move m of `moves` goes to poses[end(m)] from the pose before it. Holds no more of the program than one batch, so
-  /// its length costs no memory here.
+  /// Move m of `moves` goes to poses[end(m)] from the pose before it. Holds only one batch in memory, regardless of the
+  /// length of the program.
   template <class End, class Done>
   void run(std::span<const ConvexGroup> cutter, std::span<const Pose> poses, std::size_t moves, const End& end,
            const Done& moves_done) {
-    steps_.clear(), motions_.clear();  // of a run that failed
+    steps_.clear(), motions_.clear();  // left over from a run that failed
     Pose from;
     std::size_t last = 0;
     for (std::size_t m = 0; m < moves; ++m) {

@@ -2,7 +2,7 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sweep/kernels.cpp"
-// Clang-format would sort foreach_target.h away from its place.
+// Keep clang-format from sorting foreach_target.h to another place.
 // clang-format off
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>

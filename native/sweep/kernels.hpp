@@ -1,4 +1,5 @@
-// The loops over rays, compiled for several instruction sets; the best that the machine has is chosen at run time.
+// The loops over rays, compiled for several instruction sets; the best one that the machine supports is used at run
+// time.
 #pragma once
 
 #include <cstdint>
@@ -11,14 +12,15 @@
 
 namespace riffler::sweep {
 
-/// Cuts what a straight part sweeps out of the rays of the window.
+/// Removes the swept volume of a straight part from the rays of the window.
 void cut_straight(const StraightBody& body, RayWindow& window);
-/// The same for a turning part.
+/// Same for a turning part.
 void cut_turning(const TurningBody& body, RayWindow& window);
 
-/// Names of the instruction sets that this machine can use, best first.
+/// Names of the instruction sets that this machine supports, best first.
 std::vector<std::string> instruction_sets();
-/// Uses only this one from now on; "" for the best again. Throws std::invalid_argument for one that is not in the list.
+/// Restricts the kernels to one instruction set; "" selects the best again. Throws std::invalid_argument for a name
+/// that is not in the list.
 void use_instruction_set(const std::string& name);
 
 }  // namespace riffler::sweep

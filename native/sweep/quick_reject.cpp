@@ -6,8 +6,8 @@
 namespace riffler::sweep {
 
 namespace {
-/// Of the size: far more than rounding takes from a kernel's hits and than the pieces of a group may differ by where
-/// they meet, far less than it matters.
+/// Relative to the size: far more than the rounding error of a kernel's hits and than the gaps between the pieces of a
+/// group, and far too little to matter.
 constexpr double kMargin = 1e-8;
 }  // namespace
 
@@ -23,13 +23,13 @@ QuickReject::QuickReject(const StraightBody& b) {
     along[i] = b.way * (b.m1 * b.e1[i] + b.m2 * b.e2[i] + b.mo * b.axis[i]);
   }
   if (ball) {
-    // Of a convex group the flank that follows the ball leans downwards most.
+    // In a convex group, the flank next to the ball leans downwards most.
     lean = b.count > 1 ? std::max(next.slope * next.cosine, 0.0) : 0;
     kind = b.count == 1 || (b.tilt == 0 && b.oz > 0 && lean == 0) ? Kind::Ball : Kind::BallAndFlank;
     for (int i = 0; i < 3; ++i) from[i] = start[i], way[i] = along[i], axis[i] = up[i];
     per_square = b.way > 0 ? 1 / (b.way * b.way) : 0;
     square = first.r * first.r + kMargin * first.r * (first.r + b.way);
-  } else if (b.tilt > 0 && b.oz > 0) {  // upright, the end is as low as the footprint is
+  } else if (b.tilt > 0 && b.oz > 0) {  // an upright tool's end is as low as the footprint: no planes
     kind = Kind::Planes;
     set_plane(0, start, up), set_plane(1, start + along, up);
     slack = kMargin * (size + b.way), per_depth = kMargin;
@@ -44,7 +44,7 @@ QuickReject::QuickReject(const ConvexGroup& group, const Motion& motion, double 
   double height = std::numeric_limits<double>::infinity();
   for (const tool::Piece& piece : group.all()) height = std::min(height, bottom(piece));
   const Interval &rows = footprint.rows(), &columns = footprint.columns();
-  double beside = 0;  // how far rays are from a foot, across them
+  double beside = 0;  // largest distance of a ray from a foot, across the rays
   for (int k = 0; k < 2; ++k) {
     const Vec3 p = poses[k].tip + height * poses[k].axis;
     set_plane(k, p, poses[k].axis);
@@ -53,8 +53,8 @@ QuickReject::QuickReject(const ConvexGroup& group, const Motion& motion, double 
     beside = std::max(beside, u + v);
   }
   const double angle = motion.angle() * (t1 - t0), moved = glm::length(poses[1].tip - poses[0].tip);
-  // f(t) = o · (p − tip) − height: |f″| ≤ φ² |p − tip| + 2 φ |V|, so between its ends f passes the greater of them by
-  // at most an eighth of that.
+  // For f(t) = o · (p − tip) − height: |f″| ≤ φ² |p − tip| + 2 φ |V|, so between the ends of the step f exceeds the
+  // greater of its end values by at most an eighth of that.
   per_depth = angle * angle / 8 + kMargin;
   slack =
       angle * moved / 4 + per_depth * (beside + std::abs(height) + std::abs(foot[1][2] - foot[0][2])) + kMargin * moved;

@@ -1,8 +1,8 @@
-// What surely is out of a step's reach, told by a few multiplications a ray.
+// Rejects rays that a step certainly does not reach, with a few multiplications per ray.
 //
-// A tool mostly moves away from what its last step left, and half of the rays under it lose nothing. If the highest
-// point of a ray's material lies outside of a body with a supporting plane that faces downwards between them, then so
-// does all of the ray's material.
+// A tool mostly moves away from what its last step left, so half of the rays under it lose nothing. If a supporting
+// plane of the body that faces downwards separates it from the highest point of a ray's material, it separates all of
+// the ray's material.
 #pragma once
 
 #include "riffler/geom/pose.hpp"
@@ -14,15 +14,15 @@ namespace riffler::sweep {
 
 struct QuickReject {
   enum class Kind : unsigned char { None, Ball, BallAndFlank, Planes } kind = Kind::None;
-  /// A ball on a straight way.
-  double from[3], way[3];  ///< of its centre
-  double per_square;       ///< 1 / |way|², or 0
+  /// A ball on a straight path.
+  double from[3], way[3];  ///< centre and displacement
+  double per_square;       ///< inverse square of the displacement's length, or 0
   double square;           ///< of the radius, with a margin for rounding
-  /// What is above it on the tool: nothing of that is further out than the ball in directions whose sine against the
-  /// axis is at most −lean.
+  /// Bounds the rest of the tool, above the ball: no part of it is farther out than the ball in directions whose sine
+  /// against the axis is at most −lean.
   double axis[3], lean;
-  /// The tool's lower end at both poses, with normals into the tool. A point is below it all the time if its heights
-  /// over both planes are less than −slack − per_depth × its distance from their feet along the rays.
+  /// The tool's lower end at both poses, with normals into the tool. A point stays below it during the step if its
+  /// heights over both planes are less than −slack − per_depth × its distance from their feet along the rays.
   double foot[2][3], normal[2][3];
   double slack, per_depth;
 

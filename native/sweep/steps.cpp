@@ -7,18 +7,18 @@ namespace riffler::sweep {
 
 namespace {
 
-/// rad: a turning move is first cut into parts of at most this angle, so that their footprints stay near the tool.
+/// rad. A turning move is first split into parts of at most this angle, so that their footprints stay near the tool.
 constexpr double kWidestPart = 0.25;
-/// Radii: and the tip moves no farther than this in a part, so that the tool does not pass a ray on both of its sides.
+/// In radii. In one part the tip moves no farther than this, so that the tool does not pass a ray on both sides.
 constexpr double kLongestPart = 1.5;
-/// Parts that a move is cut into for the tip's way alone.
+/// Maximum number of parts due to the tip's path alone.
 constexpr double kMaxParts = 32;
-/// Radii: how far above the highest contact a piece is cut off.
+/// In radii: height above the highest contact at which a piece is truncated.
 constexpr double kStepMargin = 0.01;
 
 /// Greatest height on the axis at which the piece can meet the box between two poses less than a quarter turn apart.
-/// Where the axis leans out of a face of the box, o · m > 0, that component is a concave function of the time, and the
-/// disc of radius ρ at height ζ stays beyond the face while tip · m + ζ o · m − ρ √(1 − (o · m)²) does.
+/// Where the axis leans out of a face of the box with normal m, o · m > 0, that component is a concave function of
+/// time. The disc of radius ρ at height ζ stays beyond the face as long as tip · m + ζ o · m − ρ √(1 − (o · m)²) does.
 double highest_contact(const tool::Piece& piece, const Pose& from, const Pose& to, const Box3& box) {
   double radius = max_radius(piece), slope = 0;
   if (const auto* f = std::get_if<tool::Frustum>(&piece))
@@ -35,13 +35,14 @@ double highest_contact(const tool::Piece& piece, const Pose& from, const Pose& t
   return height;
 }
 
-/// What of convex pieces, from the tip upwards, can meet the box between two poses: all below one height.
+/// The parts of convex pieces, from the tip upwards, that can meet the box between two poses: everything below one
+/// height.
 ConvexGroup reachable(std::span<const tool::Piece> pieces, double thinnest, const Pose& from, const Pose& to,
                       const Box3& box) {
   double height = -std::numeric_limits<double>::infinity();
   for (const tool::Piece& piece : pieces)
     if (const double h = highest_contact(piece, from, to, box); h > bottom(piece)) height = std::max(height, h);
-  // A little more, so that no cut ends at the face itself.
+  // Slightly higher, so that no cut ends at the truncation itself.
   height += kStepMargin * (pieces.empty() ? 0 : max_radius(pieces.back()));
   ConvexGroup out;
   out.thinnest = thinnest;
@@ -61,8 +62,8 @@ double lever_of(const ConvexGroup& group) {
   return lever;
 }
 
-/// The times at which the tip is within the group's reach of the box. What a move does before and after need not be
-/// computed with: 90 km away, a micron is beyond double precision, and a turn is long in the time a passing tool needs.
+/// The times at which the tip is within the group's reach of the box. The rest of the move is skipped: at 90 km, a
+/// micron is beyond double precision, and for a tool that only passes by, the rotation would be divided needlessly.
 Interval near_box(const ConvexGroup& group, const Motion& motion, const Box3& box) {
   const double reach = 1.01 * lever_of(group);
   Interval times{0, 1};
@@ -79,11 +80,11 @@ Interval near_box(const ConvexGroup& group, const Motion& motion, const Box3& bo
   return times;
 }
 
-/// Share of the tolerance by which chords may leave the path of a ball's centre; where the surface is no
-/// steeper against the ray than 2, √5 times that along it.
+/// Fraction of the tolerance by which chords may deviate from the path of a ball's centre. If the surface is no steeper
+/// against the ray than 2, the error along the ray is √5 times that.
 constexpr double kChordShare = 0.4;
 
-/// The centre of a ball moves on an arc about the tip: |c″| = zc φ², so n chords leave it by at most zc φ² / (8 n²).
+/// The centre of a ball moves on an arc about the tip: |c″| = zc φ², so n chords deviate by at most zc φ² / (8 n²).
 void ball_chords(const ConvexGroup& group, const Motion& motion, double t0, double t1, std::uint32_t move,
                  const Box3& box, double tolerance, const std::function<void(Step&&)>& sink) {
   const double centre = std::get<tool::Round>(group.pieces[0]).zc, angle = motion.angle() * (t1 - t0);

@@ -12,9 +12,9 @@ SweptShape swept_shape(const tool::Piece& piece, bool hidden0, bool hidden1) {
   constexpr double kEverywhere = std::numeric_limits<double>::infinity();
   SweptShape s{shape_of(piece), false, false, -kEverywhere, kEverywhere, 0, 0, {}};
   s.face0 = s.cut0 && !hidden0, s.face1 = s.cut1 && !hidden1;
-  // A hit at an end of the side must not get lost to rounding: there the edge's own hits may be tangent.
+  // Rounding must not lose a hit at an end of the side, because the edge's own hits may be tangent there.
   const double slack = 1e-11 * (std::abs(s.z0) + std::abs(s.z1) + std::max(s.r0, s.r1));
-  // Where a ray meets the line that a cone's apex sweeps, two roots fall together and lose half of their digits.
+  // Where a ray meets the line that a cone's apex sweeps, two roots coincide and lose half of their digits.
   const double apex = 1e-7 * (s.z1 - s.z0);
   if (s.cut0) s.low = s.z0 - (s.r0 > 0 ? slack : apex);
   if (s.cut1) s.high = s.z1 + (s.r1 > 0 ? slack : apex);
@@ -44,7 +44,7 @@ StraightBody::StraightBody(const ConvexGroup& group, const Pose& from, const Vec
   m1 = glm::dot(unit, a), m2 = glm::dot(unit, b), mo = glm::dot(unit, o);
   face = SectionLine(oz, -mo, 1e-12);
   const double rise = way * (m1 * tilt + mo * oz);
-  // The rim between two pieces sweeps a surface of its own where it is an edge; one of them looks after it.
+  // The rim between two pieces sweeps a surface of its own if it is an edge; one of the pieces handles it.
   for (std::size_t k = 0; k < count; ++k) {
     SweptShape& s = pieces[k];
     s = swept_shape(group.pieces[k], k > 0 && smooth_together(group.pieces[k - 1], group.pieces[k]), k + 1 < count);

@@ -8,7 +8,7 @@ namespace riffler::sweep {
 
 namespace {
 
-/// The surfaces of a group nearest to a point of its half-plane: (radius, height) of their normals, and how far off.
+/// The two surfaces of a group nearest to a point of its half-plane: their normals (radius, height) and distances.
 struct Nearest {
   Vec2 normal{0, 1}, second{0, 1};
   double off = std::numeric_limits<double>::infinity(), second_off = off;
@@ -22,7 +22,7 @@ struct Nearest {
   }
 };
 
-/// Distance beyond a range, 0 in it.
+/// Distance outside a range, 0 inside it.
 double beyond(double x, double low, double high) {
   return std::max({0.0, low - x, x - high});
 }
@@ -69,8 +69,8 @@ Vec3 swept_normal(std::span<const PieceShape> group, const Motion& motion, const
   const double speed = glm::length(velocity), slide = glm::dot(n, velocity);
   const double rounding = 1e-9;
   if (t <= rounding || t >= 1 - rounding || !(std::abs(slide) > 0)) return n;
-  // Within the move the swept surface is where n · v = 0 (3.1): on an edge, for a normal between those of both sides.
-  // On a smooth side t is near that; what n · v is left is taken out.
+  // During the move the swept surface is where n · v = 0 (3.1); on an edge, for a normal between those of its two
+  // sides. On a smooth side, t is nearly right; remove what remains of n · v.
   const bool edge =
       at.second_off <= at.off + 1e-9 * (rho + std::abs(z)) && slide * glm::dot(in_space(at.second), velocity) < 0;
   if (!edge && std::abs(slide) <= 0.15 * speed) return glm::normalize(n - (slide / (speed * speed)) * velocity);

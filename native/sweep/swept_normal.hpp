@@ -1,4 +1,4 @@
-// Normals of what a convex part of a tool sweeps.
+// Normals of the swept volume of a convex part of a tool.
 #pragma once
 
 #include <span>
@@ -8,8 +8,8 @@
 
 namespace riffler::sweep {
 
-/// Unit normal, out of a convex group, where its sweep along `motion` has its boundary at p at time t; p may be off by
-/// a tolerance. mm, in the frame of the motion.
+/// Unit outward normal of the volume that a convex group sweeps along `motion`, at its boundary point p, which arises
+/// at time t. p may be inaccurate by a tolerance. mm, in the frame of the motion.
 Vec3 swept_normal(std::span<const PieceShape> group, const Motion& motion, const Vec3& p, double t);
 
 }  // namespace riffler::sweep

@@ -6,16 +6,16 @@ namespace riffler::sweep {
 
 namespace {
 
-/// Whether the rays of a row hold one span each.
+/// Whether each ray of a row holds exactly one span.
 bool one_each(const std::uint32_t* offset) {
   std::uint32_t other = 0;
   for (int k = 0; k < dexel::kTileSide; ++k) other |= (offset[k + 1] - offset[k]) ^ 1U;
   return other == 0;
 }
 
-/// Hull of spans that lie within `before`; often the first few reach its ends.
+/// Hull of spans within `before`; often the first few reach its ends.
 Interval hull(std::span<const dexel::Span> spans, const Interval& before) {
-  constexpr std::size_t kBlock = 32, kStrands = 4;  // no comparison waits for the one before
+  constexpr std::size_t kBlock = 32, kStrands = 4;  // independent strands: no comparison waits for the previous one
   Interval strands[kStrands], out;
   const auto include = [](Interval& to, const Interval& s) {
     to.near = s.near < to.near ? s.near : to.near, to.far = s.far > to.far ? s.far : to.far;
@@ -90,11 +90,11 @@ void TileCut::put(int r, const dexel::Span* spans, const dexel::SpanNormals* nor
   TileScratch& at = scratch_;
   if (at.pool.empty()) {
     at.begin.resize(dexel::kTileRays), at.count.resize(dexel::kTileRays), at.room.assign(dexel::kTileRays, 0);
-    // More than rough tiles have, so that a pen's step seldom has to grow it.
+    // More than rough tiles need, so that a pen's step seldom has to grow the pool.
     at.pool.reserve(16 * dexel::kTileRays), at.pool_normals.reserve(with_normals_ ? 16 * dexel::kTileRays : 0);
   }
   if (n > at.room[r]) {
-    // Twice as much for a ray that grows again, so that all its places together are a few times the last.
+    // Twice as much for a ray that grows again, so that all its places together are a few times the last one.
     at.room[r] = at.room[r] > 0 ? 2 * n : n;
     at.begin[r] = static_cast<std::uint32_t>(at.pool.size());
     at.pool.resize(at.pool.size() + at.room[r]);
@@ -110,7 +110,7 @@ void TileCut::store(int r) {
   put(r, scratch_.kept.data(), scratch_.kept_normals.data(), static_cast<std::uint32_t>(scratch_.kept.size()));
 }
 
-/// No ray holds several spans: drops the empty places.
+/// Packs a tile in which no ray holds several spans: drops the empty places.
 void TileCut::pack_single(dexel::Tile& tile) const {
   dexel::RayOffsets::Array offset;
   std::uint32_t total = 0;

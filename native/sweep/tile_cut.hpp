@@ -1,4 +1,4 @@
-// A tile while it is being cut: read where it lies, copied when something of it goes, packed again at the end.
+// A tile during a cut: read in place, copied when the first material goes, packed again at the end.
 #pragma once
 
 #include <limits>
@@ -10,31 +10,31 @@
 
 namespace riffler::sweep {
 
-/// What a TileCut writes in while it lives; a thread has one, so that no cut asks for memory that another had.
+/// Scratch memory of a TileCut. A thread has one, so cuts do not allocate again and again.
 struct TileScratch {
-  base::BlockVector<std::uint32_t> begin, count, room;  // of rays with several spans, in the pool
-  base::BlockVector<dexel::Span> pool;                  // rays that grew lie at the end; their old places are forgotten
+  base::BlockVector<std::uint32_t> begin, count, room;  // for rays with several spans, in the pool
+  base::BlockVector<dexel::Span> pool;                  // rays that grew are at the end; their old places stay unused
   base::BlockVector<dexel::SpanNormals> pool_normals;
   base::BlockVector<dexel::Span> kept;
   base::BlockVector<dexel::SpanNormals> kept_normals;
 };
 
-/// Every ray has one place: its only span (nearly all rays), or the hull of several, which live in a pool. An empty ray
-/// has near > far there, so that no cut touches it. A tile whose rays have one span each is read where it lies, until
-/// something of it is cut: most tiles that a tool passes lose nothing.
+/// Every ray has one place: its only span (nearly all rays), or the hull of several spans, which are in a pool. The
+/// place of an empty ray has near > far, so no cut touches it. A tile with one span in each ray is read in place until
+/// something of it is cut: a tool passes over most tiles without removing anything.
 class TileCut {
  public:
-  /// Spans left thinner than `thinnest` vanish. `tile` must outlive this. A thread has one of these at a time.
+  /// Remaining spans thinner than `thinnest` (mm) vanish. `tile` must outlive the object. One per thread at a time.
   TileCut(const dexel::Tile& tile, bool with_normals, double thinnest);
 
   const dexel::Span* rays() const { return rays_; }
   const std::uint32_t* many() const { return many_; }
-  /// The places for writing spans that stay single; `emptied` says that some have become empty.
+  /// The places, for writing spans that stay single. Call `emptied` if some have become empty.
   dexel::Span* open();
   void emptied() { packed_ = false; }
 
-  /// Takes [cut.near, cut.far] from ray r. `normal_at(s)` is asked for the normal of a new end at s, if normals are
-  /// wanted; `removed(near, far)` is told every piece of material taken.
+  /// Removes [cut.near, cut.far] from ray r. `normal_at(s)` returns the normal of a new end at s, if normals are
+  /// stored; `removed(near, far)` is called for every piece of material removed.
   template <class Normal, class Removed>
   void subtract(int r, const Interval& cut, const Normal& normal_at, const Removed& removed) {
     scratch_.kept.clear(), scratch_.kept_normals.clear();
@@ -57,7 +57,7 @@ class TileCut {
     if (any) store(r);
   }
 
-  /// The result, packed, with a fresh revision; null if nothing was cut.
+  /// The packed result, with a new revision; null if nothing was cut.
   std::shared_ptr<dexel::Tile> finish();
 
  private:
@@ -82,11 +82,11 @@ class TileCut {
 
   const dexel::Tile& tile_;
   bool with_normals_, changed_ = false;
-  bool packed_;  // every ray holds one span, as tiles have them
+  bool packed_;  // every ray holds one span, stored as in a tile
   double thinnest_;
   const dexel::Span* rays_;
-  const dexel::SpanNormals* normals_;   // of the places
-  std::shared_ptr<dexel::Tile> fresh_;  // once it is opened, holds the places
+  const dexel::SpanNormals* normals_;   // at the places
+  std::shared_ptr<dexel::Tile> fresh_;  // after `open`, holds the places
   std::uint32_t many_[dexel::kTileSide];
   TileScratch& scratch_;
 };

@@ -36,7 +36,7 @@ TileCutter::TileCutter(const dexel::Grid& grid, std::size_t tile, bool measured,
   w.open = [](void* self) { static_cast<TileCutter*>(self)->open(); };
 }
 
-/// Rows and columns of the tile in the footprint; false if there are none.
+/// Finds the rows and columns of the tile in the footprint. Returns false if there are none.
 bool TileCutter::set_window(const Footprint& footprint) {
   RayWindow& w = window_;
   const double h = grid_.pitch();
@@ -46,7 +46,7 @@ bool TileCutter::set_window(const Footprint& footprint) {
   if (n <= 0) return false;
   Footprint::Rows rows;
   footprint.rows(w.u + w.first_row, n, rows);
-  // As ray_indices, within the tile.
+  // as ray_indices, within the tile
   const int columns = std::min(grid_.nv() - first_column_, dexel::kTileSide);
   const double lower = grid_.box().lower.y, before = first_column_, most = columns;
   std::int32_t first[dexel::kTileSide], end[dexel::kTileSide], any = 0;
@@ -108,7 +108,7 @@ void TileCutter::open() {
   window_.rays = rays_.rays();
 }
 
-/// What the kernel leaves: rays with several spans, splits, and all cuts of a grid that stores normals.
+/// Makes the cuts that the kernel passes on: rays with several spans, splits, and all cuts of a grid with normals.
 void TileCutter::cut_one(int ray, const RayCut& cut) {
   const int row = ray / dexel::kTileSide, column = ray % dexel::kTileSide;
   const double u = window_.u[row], v = window_.v[column];
@@ -116,7 +116,7 @@ void TileCutter::cut_one(int ray, const RayCut& cut) {
   const auto normal_at = [&](double end) {
     const std::span<const PieceShape> group(shapes_.data(), shape_count_);
     const Vec3 n = swept_normal(group, *motion_, {u, v, end}, end == cut.near ? cut.near_t : cut.far_t);
-    // The material's new surface looks into the tool.
+    // The material's new surface faces the tool.
     return dexel::PackedNormal::pack(to_world(grid_.axis(), -n));
   };
   const auto removed = [&](double low, double high) {

@@ -1,4 +1,4 @@
-// Cuts one tile with one step after the other.
+// Cuts one tile with one step after another.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@
 
 namespace riffler::sweep {
 
-/// What one tile contributes to one move, in the grid's frame.
+/// Contribution of one tile to one move, in the grid's frame.
 struct Share {
   std::uint32_t move;
   double removed = 0;
@@ -22,14 +22,14 @@ struct Share {
 };
 
 struct TileResult {
-  std::shared_ptr<dexel::Tile> tile;  ///< the new tile, or null if nothing was cut
+  std::shared_ptr<dexel::Tile> tile;  ///< the new tile; null if nothing was cut
   base::BlockVector<Share> shares;
   dexel::Stats stats;
 };
 
 class TileCutter {
  public:
-  /// `measured`: what is taken counts towards Cut::removed.
+  /// `measured`: whether removed material counts towards Cut::removed.
   TileCutter(const dexel::Grid& grid, std::size_t tile, bool measured, const CarveOptions& options);
 
   void cut(const Step& step);
@@ -53,7 +53,7 @@ class TileCutter {
   TileResult result_;
   std::uint32_t last_move_ = ~0U;
   const Step* step_ = nullptr;
-  std::array<PieceShape, ConvexGroup::kMax> shapes_;  // of the step, where normals are stored
+  std::array<PieceShape, ConvexGroup::kMax> shapes_;  // of the step, if normals are stored
   std::size_t shape_count_ = 0;
   const Motion* motion_ = nullptr;
 };

@@ -7,8 +7,8 @@ namespace riffler::sweep {
 
 namespace {
 
-/// Ends a Round that reaches into the piece above it where that one begins. Of that one, what is too high to matter is
-/// cut off (steps.cpp), and then the Round must not look out of it.
+/// Truncates a Round that extends into the piece above it where that piece begins. The top of that piece may be cut off
+/// (steps.cpp), and then the Round must not protrude from it.
 void end_at(PieceShape& round, const tool::Piece& above) {
   round.z1 = bottom(above), round.r1 = radius_at(above, round.z1), round.ball = false, round.cut1 = true;
 }
@@ -18,10 +18,10 @@ double turn_at(const PieceShape& s, double z) {
   return s.round ? std::clamp((z - s.zc) / s.r, -1.0, 1.0) : -s.slope * s.cosine;
 }
 
-/// Where planes can touch the group but at flat ends and flanks. Returns how many rims there are.
+/// Finds where planes can touch the group, apart from flat ends and flanks. Returns the number of rims.
 std::size_t find_rims(std::span<const PieceShape> pieces, std::span<Rim> rims) {
   std::size_t count = 0;
-  double turn = -1;  // as far as planes have turned, from the lower end on
+  double turn = -1;  // how far the planes have turned, starting at the lower end
   const auto edge = [&](double radius, double z, double to) {
     if (to > turn + 1e-9) rims[count++] = {radius, z, 0, turn, to};
     turn = std::max(turn, to);
@@ -61,7 +61,7 @@ TurningBody::TurningBody(const ConvexGroup& group, const Motion& motion, double 
   }
   rim_count = find_rims({pieces.data(), count}, rims);
   const Vec3 velocity = motion.to().tip - motion.from().tip, o = motion.axis(middle), first = motion.from().tip;
-  // The rotation vector is square to the axis, so this is a quarter turn ahead of it.
+  // The rotation vector is perpendicular to the axis, so this vector is a quarter turn ahead of the axis.
   const Vec3 ahead = angle > 0 ? glm::cross(motion.rotation(), o) / angle : Vec3(0);
   for (int i = 0; i < 3; ++i) {
     tip[i] = first[i] - (i == 2 ? origin : 0), way[i] = velocity[i];
@@ -70,8 +70,8 @@ TurningBody::TurningBody(const ConvexGroup& group, const Motion& motion, double 
     end.tip[i] = tip[i] + t1 * way[i], end.axis[i] = motion.axis(t1)[i];
   }
   speed = glm::length(velocity), pull = angle * angle * angle, drift = 3 * angle * angle * speed;
-  // √5 · 0.2 + 0.5 < 1: where a surface is no steeper against the ray than 2, both shares together stay below the
-  // tolerance along the ray. A plane may not be behind by more than a small part of the body (docs/methods.md).
+  // √5 · 0.2 + 0.5 < 1: if a surface is no steeper against the ray than 2, both errors together stay below the
+  // tolerance along the ray. A plane may lag behind by only a small fraction of the body's size (docs/methods.md).
   along = 0.5 * tolerance, aside = std::min(0.2 * tolerance, 0.02 * group.thinnest);
   const double moved = (speed + angle * lever) * (t1 - t0);
   deepest = std::clamp(static_cast<int>(std::ceil(std::log2(std::max(moved / aside, 1.0)))), 1, 40);

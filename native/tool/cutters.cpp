@@ -15,25 +15,26 @@ namespace riffler::tool {
 
 namespace {
 
-// Sizes. Ranges are those of a form's field: a cutter may be any size that makes a profile.
+// Sizes. The ranges are those of the form fields; a cutter may have any size that gives a valid profile.
 
 constexpr double kLow = 1e-3, kHigh = 1e5;                                // mm
 constexpr double kLowAngle = 0.1 * kDegree, kHighAngle = 89.9 * kDegree;  // rad
 
 constexpr CutterSize kDiameter{
-    "diameter", SizeUnit::Length, "Diameter", "Of the cylinder above the end, in mm", kLow, kHigh, 6};
+    "diameter", SizeUnit::Length, "Diameter", "Diameter of the cylinder above the end, in mm", kLow, kHigh, 6};
 constexpr CutterSize kLength{"length", SizeUnit::Length, "Length", "Cutting length from the tip, in mm", kLow, kHigh,
                              30};
 constexpr CutterSize kCornerRadius{
-    "corner_radius", SizeUnit::Length, "Corner radius", "Of the rounded edge, in mm", kLow, kHigh, 1, 0.5};
+    "corner_radius", SizeUnit::Length, "Corner radius", "Radius of the rounded edge, in mm", kLow, kHigh, 1, 0.5};
 constexpr CutterSize kTipRadius{
-    "tip_radius", SizeUnit::Length, "Tip radius", "Of the ball or flat at the tip, in mm", 1e-4, kHigh, 0.5, 0, true};
+    "tip_radius", SizeUnit::Length, "Tip radius", "Radius of the ball or flat at the tip, in mm", 1e-4, kHigh, 0.5, 0,
+    true};
 constexpr CutterSize kTipHeight{
-    "tip_height", SizeUnit::Length, "Tip height", "Of the first cone, in mm", kLow, kHigh, 1};
-constexpr CutterSize kHalfAngle{"half_angle", SizeUnit::Angle, "Half angle", "Between the axis and the flank",
+    "tip_height", SizeUnit::Length, "Tip height", "Height of the first cone, in mm", kLow, kHigh, 1};
+constexpr CutterSize kHalfAngle{"half_angle", SizeUnit::Angle, "Half angle", "Angle between the axis and the flank",
                                 kLowAngle,    kHighAngle,      5 * kDegree};
 constexpr CutterSize kTipHalfAngle{
-    "tip_half_angle", SizeUnit::Angle, "Tip half angle", "Between the axis and the first cone",
+    "tip_half_angle", SizeUnit::Angle, "Tip half angle", "Angle between the axis and the first cone",
     kLowAngle,        kHighAngle,      30 * kDegree};
 constexpr CutterSize kFlatTip{"flat_tip", SizeUnit::Flag, "Flat tip", "A flat instead of a ball at the tip", 0, 1, 0};
 
@@ -43,7 +44,7 @@ void check(const CutterSize& size, double x) {
   if (size.unit == SizeUnit::Length && !size.may_be_zero) base::require_length(x, size.name);
 }
 
-// Profiles and CUTTER statements, one shape after the other.
+// Profiles and CUTTER statements of each shape.
 
 ProfileSegment line(double r, double z) {
   return {{r, z}, {}};
@@ -64,12 +65,12 @@ Profile up_to(std::vector<ProfileSegment> segments, double length) {
 
 using Sizes = std::optional<std::vector<double>>;
 
-/// Numbers of APT files are rounded.
+/// Numbers in APT files are rounded.
 bool nearly(double x, double y, const AptCutter& apt) {
   return std::abs(x - y) <= 1e-6 * std::abs(apt.d);
 }
 
-/// The end is flat and the corner touches both it and the flank, which does not narrow upwards.
+/// Whether the end is flat, and the corner is tangent to both the end and a flank that does not narrow upwards.
 bool has_plain_corner(const AptCutter& apt) {
   return nearly(apt.e, apt.d / 2 - apt.r, apt) && nearly(apt.f, apt.r, apt) && apt.a == 0 && apt.d > 0 && apt.r >= 0 &&
          apt.h > 0 && apt.b >= 0;
@@ -128,7 +129,7 @@ Profile taper_profile(double tip_radius, double half_angle, double diameter, dou
 AptCutter taper_to_apt(double tip_radius, double half_angle, double /*diameter*/, double length, bool /*flat_tip*/) {
   return {2 * tip_radius, tip_radius, 0, tip_radius, 0, half_angle, length};
 }
-/// The cone goes to the top, from where the ball ends.
+/// The cone continues from the end of the ball to the top.
 Sizes taper_from_apt(const AptCutter& apt) {
   if (!(has_plain_corner(apt) && has_ball(apt) && apt.b > 0)) return std::nullopt;
   const double top = 2 * (apt.r * std::cos(apt.b) + (apt.h - apt.r * (1 - std::sin(apt.b))) * std::tan(apt.b));

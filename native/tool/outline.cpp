@@ -18,7 +18,7 @@ std::vector<OutlineEdge> curves_of(const Tool& tool) {
   std::vector<OutlineEdge> out;
   Vec2 from{0, 0};
   for (const ProfileSegment& s : tool.profile().segments()) {
-    // Heights rise along an arc of a profile, so it is wholly on one side of its centre.
+    // Heights rise along an arc of a profile, so the arc is entirely on one side of its centre.
     const double side = s.centre && from.x + s.to.x < 2 * s.centre->x ? -1 : 1;
     const double bulge = s.centre ? side * glm::length(from - *s.centre) : 0;
     if (s.to.y > from.y) out.push_back({from, s.to, s.centre, bulge, Part::Cutter});
@@ -75,7 +75,7 @@ std::vector<double> levels(const std::vector<OutlineEdge>& curves) {
   return out;
 }
 
-/// The nearest foot on the edges seen so far.
+/// The nearest foot on the edges examined so far.
 class Search {
  public:
   explicit Search(const Vec2& p) : p_(p) {}
@@ -141,7 +141,7 @@ double radius_at(const OutlineEdge& e, double z) {
 Outline::Outline(const Tool& tool) {
   const std::vector<OutlineEdge> curves = curves_of(tool);
   const std::vector<double> heights = levels(curves);
-  double radius = 0;  // where the outline has come to
+  double radius = 0;  // current radius of the outline
   Part part = Part::Cutter;
   const auto step = [&](double to, double z, Part next) {
     if (to != radius) edges_.push_back({{radius, z}, {to, z}, {}, 0, to > radius ? next : part});
@@ -158,7 +158,7 @@ Outline::Outline(const Tool& tool) {
     } else if (widest == last) {
       edges_.back().to = {radius_at(*widest, high), high};
     } else {
-      // Ends of curves as they were given, so that neighbours meet without a step.
+      // Keep the given end points of curves, so that neighbours meet without a step.
       step(low == widest->from.y ? widest->from.x : radius_at(*widest, low), low, widest->part);
       edges_.push_back(*widest);
       edges_.back().from = {radius, low}, edges_.back().to = {radius_at(*widest, high), high};
@@ -185,7 +185,7 @@ Outline::Nearest Outline::nearest(double rho, double z) const {
 std::vector<Vec2> polyline(const OutlineEdge& edge, double tolerance) {
   std::vector<Vec2> out{edge.from};
   if (edge.centre) {
-    // From the sagitta r (1 − cos(turn / 2)) of a chord.
+    // from the sagitta r (1 − cos(turn / 2)) of a chord
     const Vec2 a = edge.from - *edge.centre, b = edge.to - *edge.centre;
     const double r = std::abs(edge.bulge), turn = std::atan2(a.x * b.y - a.y * b.x, glm::dot(a, b));
     const double most = 4 * std::asin(std::sqrt(std::min(0.5, tolerance / (2 * r))));

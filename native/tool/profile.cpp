@@ -13,8 +13,8 @@ namespace {
   throw std::invalid_argument("profile segment " + std::to_string(segment) + ": " + what);
 }
 
-/// An arc of a profile whose heights do not fall lies wholly on one side of its centre: to the right it bulges out of
-/// the solid (convex), to the left it is a hollow.
+/// An arc of a profile with non-falling heights lies entirely on one side of its centre: on the right it bulges
+/// outwards (convex), on the left it is concave.
 bool bulges(const Vec2& from, const Vec2& to, const Vec2& centre) {
   return from.x + to.x >= 2 * centre.x;
 }
@@ -28,8 +28,8 @@ void check_arc(std::size_t i, const Vec2& from, const Vec2& to, const Vec2& cent
   if (!right && !left) refuse(i, "the arc's height rises and falls; split it at its highest or lowest point");
 }
 
-/// Truncated cones inside a hollow arc: the polygon of tangents lies on the far side of the circle from its centre, so
-/// nothing is cut that the arc would leave.
+/// Adds truncated cones inside a concave arc. The tangent polygon is outside the arc's circle, inside the solid, so the
+/// cones cut nothing that the arc would leave.
 void add_hollow(const Vec2& from, const Vec2& to, const Vec2& centre, std::vector<Piece>& out) {
   const double r = glm::length(from - centre);
   const double start = std::atan2(from.y - centre.y, from.x - centre.x);
@@ -37,7 +37,7 @@ void add_hollow(const Vec2& from, const Vec2& to, const Vec2& centre, std::vecto
   const double widest = 2 * std::acos(r / (r + Profile::kConcaveTolerance));
   const int n = std::max(1, static_cast<int>(std::ceil(std::abs(turn) / widest)));
   const double half = turn / n / 2, far = r / std::cos(half);
-  const double thinnest = 1e-9 * r;  // what rounding leaves of a level tangent is no cone
+  const double thinnest = 1e-9 * r;  // rounding may leave such a thin remainder of a level tangent
   Vec2 last = from;
   for (int k = 0; k <= n; ++k) {
     const double angle = start + (2 * k + 1) * half;
@@ -50,7 +50,7 @@ void add_hollow(const Vec2& from, const Vec2& to, const Vec2& centre, std::vecto
   }
 }
 
-/// Whether the frustum contains all of `round` above round.z1.
+/// Whether the frustum contains the part of `round`'s full shape above round.z1.
 bool contains_rest(const Frustum& f, const Round& round) {
   if (round.e < 0 || std::abs(f.z0 - round.z1) > 1e-12 * round.r || round.zc + round.r > f.z1) return false;
   const double slope = (f.r1 - f.r0) / (f.z1 - f.z0);
@@ -68,12 +68,12 @@ Profile::Profile(std::vector<ProfileSegment> segments) : segments_(std::move(seg
     const ProfileSegment& s = segments_[i];
     if (!std::isfinite(s.to.x) || !std::isfinite(s.to.y)) refuse(i, "its end is not finite");
     if (s.to.x < 0) refuse(i, "its radius is negative");
-    if (std::max(s.to.x, s.to.y) > kLargest) refuse(i, "it is larger than a tool may be, 1e6 mm");
+    if (std::max(s.to.x, s.to.y) > kLargest) refuse(i, "it exceeds the largest size of a tool, 1e6 mm");
     if (s.to.y < from.y) refuse(i, "its height falls; heights go from the tip upwards");
     if (s.centre) {
       if (!std::isfinite(s.centre->x) || !std::isfinite(s.centre->y)) refuse(i, "its centre is not finite");
       if (std::max(std::abs(s.centre->x), std::abs(s.centre->y)) > kLargest)
-        refuse(i, "its centre is farther away than 1e6 mm; where the arc is that flat, a line will do");
+        refuse(i, "its centre is farther away than 1e6 mm; replace so flat an arc by a line");
       check_arc(i, from, s.to, *s.centre);
       if (bulges(from, s.to, *s.centre) && s.centre->y > from.y && s.centre->y < s.to.y)
         max_radius_ = std::max(max_radius_, s.centre->x + glm::length(from - *s.centre));
@@ -99,7 +99,7 @@ std::vector<Piece> Profile::pieces() const {
     }
     from = s.to;
   }
-  // A whole ball or torus is simpler to sweep than a zone of it: where the piece above hides the rest, take it whole.
+  // A complete ball or torus is simpler to sweep than a zone of it: use it if the piece above hides the rest.
   for (std::size_t i = 0; i + 1 < out.size(); ++i)
     if (auto* round = std::get_if<Round>(&out[i]))
       if (const auto* above = std::get_if<Frustum>(&out[i + 1]); above && contains_rest(*above, *round))

@@ -21,7 +21,7 @@ void check_frusta(const std::vector<Frustum>& pieces, const char* what) {
   }
 }
 
-/// A frustum whose side is `side` further out, and whose ends are `ends` further off: its side goes on straight.
+/// A frustum with its side moved out by `side` and its ends by `ends`; the side is extended in a straight line.
 Frustum grown(const Frustum& f, double side, double ends) {
   const double slope = (f.r1 - f.r0) / (f.z1 - f.z0), out = side * std::sqrt(1 + slope * slope);
   return {f.z0 - ends, f.r0 - slope * ends + out, f.z1 + ends, f.r1 + slope * ends + out};

@@ -1,4 +1,4 @@
-// .rvol → volume
+// Reads .rvol files.
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -23,7 +23,7 @@ struct Header {
   std::uint32_t tiles;
 };
 
-/// One chunk as its header describes it; `payload` begins at byte `at` + kChunkHeader of the file.
+/// One chunk as described by its header; `payload` begins at byte `at` + kChunkHeader of the file.
 struct Chunk {
   std::size_t grid;
   std::uint32_t kind, items, spans;
@@ -58,17 +58,17 @@ class Reader {
 
 Header Reader::header() const {
   if (bytes_.size() < kMagic.size() || !std::equal(kMagic.begin(), kMagic.end(), bytes_.begin()))
-    fail(0, "not a .rvol file (its first eight bytes are others)");
+    fail(0, "not a .rvol file (wrong first eight bytes)");
   if (bytes_.size() < kHeader) fail(bytes_.size(), "the file ends within its header");
   const auto version = base::get<std::uint32_t>(bytes_, 8);
   if (version != kVersion)
     fail(8, "version " + std::to_string(version) + "; this program reads version " + std::to_string(kVersion));
   if (base::get<std::uint32_t>(bytes_, kHeader - 4) != base::checksum(bytes_.first(kHeader - 4)))
-    fail(kHeader - 4, "the header's checksum does not fit");
+    fail(kHeader - 4, "the header's checksum does not match");
   const auto length = base::get<std::uint64_t>(bytes_, 16);
   if (bytes_.size() < length)
     fail(bytes_.size(), "the file ends here, but should have " + std::to_string(length) + " bytes");
-  if (bytes_.size() > length) fail(length, "there is more after the file's end");
+  if (bytes_.size() > length) fail(length, "there is data after the file's end");
 
   Header header;
   const auto directions = base::get<std::array<char, 4>>(bytes_, 12);
@@ -83,7 +83,7 @@ Header Reader::header() const {
   return header;
 }
 
-/// Before anything is allocated: the tiles' map and the spans must be such as this many bytes can hold.
+/// Checks before any allocation that a file of this length can hold this many tiles and spans.
 void Reader::check_affordable(const Header& header) const {
   const Frame& frame = header.frame;
   const double most = static_cast<double>(base::kMaxDeflated) * static_cast<double>(bytes_.size());
@@ -93,7 +93,7 @@ void Reader::check_affordable(const Header& header) const {
     places += std::ceil(std::max(1.0, std::round(size.x)) / kTileSide) *
               std::ceil(std::max(1.0, std::round(size.y)) / kTileSide);
   }
-  // A place of the map takes four planes, a span sixteen or more, a tile's counts four of 1024 bytes.
+  // An entry of the map takes four planes, a span sixteen or more, a tile's counts four of 1024 bytes.
   if (!(places * 4 <= most)) fail(24, "the box has more tiles than a file of this length can describe");
   const auto spans = static_cast<double>(header.spans), tiles = static_cast<double>(header.tiles);
   if (!(spans * 16 + tiles * 4 * kTileRays <= most))
@@ -114,7 +114,7 @@ Chunk Reader::chunk(std::size_t at, std::size_t grid) const {
   return chunk;
 }
 
-/// Walks over the chunks' headers; their payloads are looked at later, in parallel.
+/// Reads the chunk headers; payloads are read later, in parallel.
 std::vector<Chunk> Reader::chunks(std::size_t grids, const Header& header) const {
   std::vector<Chunk> all;
   std::size_t at = kHeader, maps = 0;
@@ -135,7 +135,7 @@ std::vector<Chunk> Reader::chunks(std::size_t grids, const Header& header) const
   if (maps != grids) fail(at, "the file ends before its last grid");
   if (spans != header.spans || tiles != header.tiles)
     fail(80, "the header announces " + std::to_string(header.spans) + " spans in " + std::to_string(header.tiles) +
-                 " tiles, the chunks " + std::to_string(spans) + " in " + std::to_string(tiles));
+                 " tiles, the chunks hold " + std::to_string(spans) + " in " + std::to_string(tiles));
   return all;
 }
 
@@ -159,7 +159,7 @@ std::vector<TilePtr> Reader::tiles(const Chunk& chunk, const Grid& grid) const {
   const std::vector<std::uint32_t> counts = in.column32(std::size_t{chunk.items} * kTileRays);
   std::uint64_t sum = 0;
   for (const std::uint32_t count : counts) sum += count;
-  if (sum != chunk.spans) fail(chunk.at + 8, "the rays' spans are not as many as the chunk's");
+  if (sum != chunk.spans) fail(chunk.at + 8, "the rays' span counts do not add up to the chunk's");
   const std::vector<std::uint64_t> near = in.column64(chunk.spans), far = in.column64(chunk.spans);
   std::array<std::vector<std::uint16_t>, 4> normals;
   if (grid.has_normals())
@@ -187,7 +187,7 @@ TilePtr Reader::tile(const Chunk& chunk, const Grid& grid, std::span<const std::
       const Span span{std::bit_cast<double>(near[k]), std::bit_cast<double>(far[k])};
       // NaN fails these comparisons too, and infinities lie outside the box.
       if (!(span.near < span.far && span.near >= lower && span.far <= upper))
-        fail(chunk.at, "a span of the chunk is turned round, empty or outside the box");
+        fail(chunk.at, "a span of the chunk is reversed, empty or outside the box");
       if (s > 0 && !(std::bit_cast<double>(far[k - 1]) < span.near))
         fail(chunk.at, "spans of a ray overlap or are out of order");
       SpanNormals n;
@@ -200,7 +200,7 @@ TilePtr Reader::tile(const Chunk& chunk, const Grid& grid, std::span<const std::
   return builder.finish();
 }
 
-/// Puts the tile there unless it has material on rays that lie beyond the grid.
+/// Stores the tile, unless it has material on rays outside the grid.
 void Reader::place(Grid& grid, std::size_t t, const TilePtr& tile) const {
   const int tu = static_cast<int>(t) / grid.tiles_v(), tv = static_cast<int>(t) % grid.tiles_v();
   const int rows = grid.nu() - tu * kTileSide, columns = grid.nv() - tv * kTileSide;
@@ -233,7 +233,7 @@ Volume Reader::run(const Progress& progress) const {
           const Chunk& chunk = all[k];
           if (base::get<std::uint32_t>(bytes_, chunk.at + 20) !=
               base::checksum(bytes_.subspan(chunk.at, 20), chunk.payload))
-            fail(chunk.at, "the chunk's checksum does not fit");
+            fail(chunk.at, "the chunk's checksum does not match");
           if (chunk.kind == kMap)
             maps[chunk.grid] = map(chunk, grids[chunk.grid]);
           else
@@ -249,7 +249,8 @@ Volume Reader::run(const Progress& progress) const {
     std::uint32_t used = 0;
     for (const std::uint32_t place : maps[g]) used = std::max(used, place);
     if (used != stored[g].size())
-      fail(kHeader, "the map uses " + std::to_string(used) + " tiles, stored are " + std::to_string(stored[g].size()));
+      fail(kHeader,
+           "the map uses " + std::to_string(used) + " tiles, but " + std::to_string(stored[g].size()) + " are stored");
     for (std::size_t t = 0; t < maps[g].size(); ++t)
       if (maps[g][t] > 0) place(grids[g], t, stored[g][maps[g][t] - 1]);
   }

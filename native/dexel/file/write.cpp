@@ -1,4 +1,4 @@
-// Volume → .rvol
+// Writes .rvol files.
 #include <algorithm>
 #include <unordered_map>
 
@@ -15,7 +15,7 @@ namespace {
 using namespace rvol;
 using TilePtr = std::shared_ptr<const Tile>;
 
-/// A grid's tiles without repetition: places[t] is 0 for an empty tile, else 1 + its index in `stored`.
+/// A grid's distinct tiles: places[t] is 0 for an empty tile, otherwise 1 + its index in `stored`.
 struct StoredTiles {
   std::vector<std::uint32_t> places;
   std::vector<TilePtr> stored;
@@ -30,7 +30,7 @@ std::uint64_t content_hash(const Tile& tile) {
 }
 
 bool same_content(const Tile& a, const Tile& b) {
-  // Bits, not values: −0 and 0 are two different files.
+  // Compares bits, not values: −0 and 0 are different in a file.
   return a.offset == b.offset && a.spans.size() == b.spans.size() && a.normals == b.normals &&
          (a.spans.empty() || std::memcmp(a.spans.data(), b.spans.data(), a.spans.size() * sizeof(Span)) == 0);
 }
@@ -66,7 +66,7 @@ StoredTiles without_repetition(const Grid& grid) {
   return result;
 }
 
-/// What one chunk will hold: the map of a grid, or stored tiles begin … end − 1 of it.
+/// Content of one chunk: the map of a grid, or its stored tiles begin … end − 1.
 struct Plan {
   std::size_t grid;
   std::uint32_t kind;

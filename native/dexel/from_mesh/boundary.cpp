@@ -18,8 +18,8 @@ struct HalfEdge {
   int from, to;
 };
 
-/// For each vertex a, a sum over half-edges between it and higher vertices b of ± hash(b): zero where all pairs cancel
-/// (and by chance with probability 2^−64).
+/// For each vertex a, the sum of ± hash(b) over half-edges between a and higher vertices b. It is zero if all pairs
+/// cancel (and by chance with probability 2^−64).
 class Pairing {
  public:
   explicit Pairing(std::size_t vertices) : sums_(vertices, 0) {}
@@ -42,10 +42,10 @@ void for_each_half_edge(const Mesh& mesh, const Visit& visit) {
   for (const Vec3i& t : mesh.triangles) visit(t.x, t.y), visit(t.y, t.z), visit(t.z, t.x);
 }
 
-/// Half-edges, some of which may have no partner, between vertices with different coordinates: they are numbered anew.
+/// Half-edges that may have no partner, between vertices with different coordinates, which get new numbers.
 struct Seams {
   std::vector<HalfEdge> edges;
-  std::vector<int> first;                   // of each number the first vertex of the mesh
+  std::vector<int> first;                   // for each number, the first vertex of the mesh
   std::vector<std::pair<int, int>> others;  // vertices and their numbers
 };
 
@@ -68,7 +68,7 @@ Seams weld_seams(const Mesh& mesh, std::vector<HalfEdge> edges) {
   return out;
 }
 
-/// The half-edges that are left over, sorted by their start, each with its multiplicity.
+/// The unpaired half-edges, sorted by their start, each with its multiplicity.
 std::vector<HalfEdge> leftover(const std::vector<HalfEdge>& all, std::size_t vertices) {
   Pairing pairing(vertices);
   for (const HalfEdge& e : all) pairing.add(e.from, e.to);
@@ -94,13 +94,13 @@ std::vector<HalfEdge> leftover(const std::vector<HalfEdge>& all, std::size_t ver
   return edges;
 }
 
-/// Walks along `edges` until all are used. As many edges enter a vertex as leave it, so a walk only ever ends where it
-/// began; one that comes back to a vertex on its way is cut off there as a loop of its own.
+/// Follows `edges` until all are used. As many edges enter a vertex as leave it, so a walk can only end where it began.
+/// When a walk returns to a vertex on its path, that part is cut off as a loop of its own.
 std::vector<std::vector<int>> walks(const std::vector<HalfEdge>& edges, std::size_t vertices) {
   std::vector<std::size_t> next(vertices + 1, 0);  // the first unused edge of each vertex
   for (const HalfEdge& e : edges) ++next[e.from + 1];
   std::partial_sum(next.begin(), next.end(), next.begin());
-  std::vector<int> place(vertices, -1);  // on the current path
+  std::vector<int> place(vertices, -1);  // position on the current path, −1 if not on it
   std::vector<std::vector<int>> loops;
   std::vector<bool> used(edges.size(), false);
   std::vector<int> path;
@@ -135,7 +135,7 @@ Boundary find_boundary(const Mesh& mesh) {
   Pairing pairing(mesh.vertices.size());
   for_each_half_edge(mesh, [&](int from, int to) { pairing.add(from, to); });
   if (pairing.all_paired()) return {};
-  // What has its partner by index has it with equal coordinates too.
+  // Half-edges paired by index are also paired by coordinates.
   std::vector<HalfEdge> edges;
   for_each_half_edge(mesh, [&](int from, int to) {
     if (!pairing.paired(from, to)) edges.push_back({from, to});

@@ -1,4 +1,4 @@
-// Where the surface of a mesh ends: the directed edges that no neighbour takes back.
+// Finds where the surface of a mesh ends: the directed edges without an opposite neighbour.
 #pragma once
 
 #include <optional>
@@ -10,23 +10,23 @@
 namespace riffler::dexel {
 
 struct Boundary {
-  /// Closed walks: walk k visits the vertices loops[k][0], loops[k][1], … and returns to the first. Every directed edge
-  /// stands as often as triangles run through it that way less those that run against it, so a closed mesh has none,
-  /// and with surfaces that close the walks the mesh is closed. Vertices with equal coordinates count as one.
+  /// Closed loops: loop k visits the vertices loops[k][0], loops[k][1], … and returns to the first. A directed edge
+  /// appears as often as triangles run through it in its direction, minus those in the opposite direction. So a closed
+  /// mesh has no loops, and surfaces that close the loops would close the mesh. Vertices with equal coordinates count
+  /// as one.
   std::vector<std::vector<int>> loops;
-  /// Vertices and the one with their coordinates that stands for them in `loops`, if one does; of those alone at which
-  /// triangles do not fit together by their indices.
+  /// Pairs of a vertex and the vertex with equal coordinates that represents it in `loops`, if any. Only for vertices
+  /// where triangles do not connect by their indices.
   std::vector<std::pair<int, int>> twins;
 
   bool empty() const { return loops.empty(); }
 };
 
-/// O(n) for closed meshes.
+/// Finds the boundary; O(n) for closed meshes.
 Boundary find_boundary(const Mesh& mesh);
 
-/// The mesh with cracks joined: of its boundary's vertices, each that lies within `tolerance` (mm) of one before it
-/// moves there. What rounding tore apart is closed by this, so that no column has to look for its way between the lips.
-/// Nothing where no vertex moves.
+/// Closes cracks: moves each boundary vertex onto an earlier one that lies within `tolerance` (mm). This joins what
+/// rounding tore apart, so no ray has to be classified between the lips of a crack. Returns nothing if no vertex moves.
 std::optional<Mesh> join_cracks(const Mesh& mesh, const Boundary& boundary, double tolerance);
 
 }  // namespace riffler::dexel

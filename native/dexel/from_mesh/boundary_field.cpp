@@ -11,13 +11,13 @@ namespace riffler::dexel {
 
 namespace {
 
-/// Length of an edge in its distances up to which two points of Gauss are enough.
+/// Length of an edge, relative to its distance, up to which two Gauss points are enough.
 constexpr double kShort = 1.0 / 4;
-/// Radii of pieces in distances up to which the ball about them says where they are.
+/// Radius of a piece, relative to its distance, up to which its bounding ball locates it well enough.
 constexpr double kSmall = 0.25;
-/// Loops of so many edges are pieces as a whole.
+/// A loop of up to this many edges is one piece.
 constexpr int kWhole = 8;
-/// What a dipole may leave out of K.
+/// Maximum error of K from replacing a surface by a dipole.
 constexpr double kLeftOut = 2e-6;
 
 }  // namespace
@@ -32,7 +32,7 @@ double segment_distance(const Vec3& p, const Vec3& a, const Vec3& b) {
 BoundaryPieces::BoundaryPieces(const std::vector<std::vector<Vec3>>& loops) {
   for (const std::vector<Vec3>& loop : loops) {
     const int first = static_cast<int>(edges_.size()), start = size(), n = static_cast<int>(loop.size());
-    if (n < 2) continue;  // one point: an edge from it to itself
+    if (n < 2) continue;  // a single point has only an edge to itself
     for (int k = 0; k < n; ++k) {
       edges_.push_back({loop[k], loop[(k + 1) % n]});
       length_ += glm::length(edges_.back().b - edges_.back().a);
@@ -67,7 +67,7 @@ void BoundaryPieces::add_ends(const Piece& piece) {
   ends_.back().area = piece.is_loop() ? 1.5 * piece.surface.area : std::numeric_limits<double>::infinity();
 }
 
-/// Of the edges and the chord that closes them.
+/// The surface between the edges and the chord that closes them.
 BoundaryPieces::Surface BoundaryPieces::span(int first, int last) const {
   Surface out{Vec3(0), 0, 0, 0, Vec3(0), {}};
   Box3 box;
@@ -82,7 +82,7 @@ BoundaryPieces::Surface BoundaryPieces::span(int first, int last) const {
   };
   for (int k = first; k < last; ++k) add(edges_[k].a, edges_[k].b);
   add(edges_[last - 1].b, edges_[first].a);
-  // The centre from which the vector is seen to turn least.
+  // The centre for which the vector's direction varies least.
   const double square = glm::dot(out.vector, out.vector);
   if (square > 1e-6 * out.area * out.area) {
     const Vec3 shift = glm::transpose(moment) * out.vector / square;
@@ -93,7 +93,7 @@ BoundaryPieces::Surface BoundaryPieces::span(int first, int last) const {
   }
   double norm = 0;
   for (int k = 0; k < 3; ++k) norm += glm::dot(moment[k], moment[k]);
-  // What is left out: quadrupole and the second moments, by the third and fourth power of the distance.
+  // The error has a quadrupole and second moments, which fall with the third and fourth power of the distance.
   out.far_enough = std::max({2 * out.radius, std::cbrt(3 * std::sqrt(norm) / (4 * kPi * kLeftOut)),
                              std::sqrt(std::sqrt(3 * out.area * out.radius * out.radius / (4 * kPi * kLeftOut)))});
   return out;
@@ -142,7 +142,7 @@ void Descent::enter(const Surroundings& parent, const Vec3& centre, double radiu
   });
   out.near.clear();
   const double reach = Surroundings::kFar * radius;
-  int begin = 0, end = 0;  // a chain of far edges
+  int begin = 0, end = 0;  // current chain of far edges
   for (const int k : parent.near) {
     const BoundaryPieces::Piece& piece = pieces_[k];
     if (pieces_.distance(piece, centre, reach) < reach) {
@@ -167,7 +167,7 @@ void Descent::add_loop(const BoundaryPieces::Piece& loop) {
   for (const BoundaryPieces::Edge& e : pieces_.edges(loop)) add_edge(e.a, e.b, d);
 }
 
-/// As few chords as are good enough, and what lies between them and the chain.
+/// Adds the chain as few chords, and the surfaces between them and the chain.
 void Descent::add_chain(int first, int last) {
   for (int k = first, level = 0; k < last; k += 1 << level) {
     for (++level;; --level) {
@@ -192,7 +192,7 @@ void Descent::add_dipole(const BoundaryPieces::Surface& surface) {
   push(dipoles_, surface.centre - centre_, Vec3(0), -surface.vector, 0);
 }
 
-/// An edge at the distance or more.
+/// Adds an edge that is at least `distance` away.
 void Descent::add_edge(const Vec3& a, const Vec3& b, double distance) {
   add_source(a - centre_, b - centre_, distance);
 }
@@ -209,7 +209,7 @@ void Descent::add_source(const Vec3& a, const Vec3& b, double distance) {
   push(edges_, a, b - a, glm::cross(a, b), 0);
 }
 
-/// From a to infinity, away from `from`.
+/// Adds a half-line from a to infinity, directed away from `from`.
 void Descent::add_wedge(const Vec3& a, const Vec3& from, double sign) {
   push(edges_, a, -from, sign * glm::cross(a, -from), 1);
 }

@@ -1,4 +1,4 @@
-// K (field.hpp) handed down from large blocks of space to the small ones within them.
+// Passes K (see field.hpp) from large blocks of space down to the smaller blocks inside them.
 #pragma once
 
 #include <algorithm>
@@ -14,44 +14,43 @@ namespace riffler::dexel {
 /// Distance of p from the segment ab.
 double segment_distance(const Vec3& p, const Vec3& a, const Vec3& b);
 
-/// The boundary in pieces: directed edges, and loops of so few of them that they are looked at as a whole. Lengths in
-/// cells.
+/// The boundary in pieces: single directed edges, and short loops that are handled as a whole. Lengths in cells.
 class BoundaryPieces {
  public:
   struct Edge {
     Vec3 a, b;
   };
-  /// The surface between a chain of edges and its chord, or that a loop spans: from `far_enough` on, its vector says it
-  /// all.
+  /// The surface between a chain of edges and its chord, or the surface that a loop spans. From a distance of
+  /// `far_enough`, its area vector describes it sufficiently.
   struct Surface {
-    Vec3 centre;  // of a ball around it
+    Vec3 centre;  // centre of the bounding ball
     double radius, area, far_enough;
     Vec3 vector;
-    Box3 box;  // around it
+    Box3 box;  // bounding box
   };
   struct Piece {
-    int first, last;     // its edges
-    int previous, next;  // pieces before and after; −1 for a loop
+    int first, last;     // range of its edges
+    int previous, next;  // neighbouring pieces; −1 for a loop
     double length;
-    Surface surface;  // of an edge only the ball
+    Surface surface;  // for a single edge, only the ball is set
 
     bool is_loop() const { return next < 0; }
   };
 
-  /// Closed loops of points.
+  /// Takes closed loops of points.
   explicit BoundaryPieces(const std::vector<std::vector<Vec3>>& loops);
 
   int size() const { return static_cast<int>(pieces_.size()); }
   const Piece& operator[](int k) const { return pieces_[k]; }
   std::span<const Edge> edges(const Piece& p) const { return {edges_.data() + p.first, edges_.data() + p.last}; }
-  /// The ends of a piece's edges.
+  /// The end points of a piece's edges.
   std::span<const PathPoint> ends(const Piece& p) const { return {ends_.data() + p.first, ends_.data() + p.last}; }
   double length() const { return length_; }
-  /// Of the 2^level pieces from k on, all of one loop, where 2^level divides their place in it; null where there are
-  /// less.
+  /// The surface for the 2^level pieces from k on, if they are all of one loop and 2^level divides k's position in the
+  /// loop; otherwise null.
   const Surface* surface(int k, int level) const;
 
-  /// A lower bound of the distance of a piece from p: exact for an edge near by.
+  /// A lower bound on the distance of a piece from p; exact for a nearby edge.
   double distance(const Piece& piece, const Vec3& p, double near) const;
 
  private:
@@ -63,35 +62,35 @@ class BoundaryPieces {
   std::vector<Edge> edges_;
   std::vector<PathPoint> ends_;
   std::vector<Piece> pieces_;
-  std::vector<std::vector<Surface>> surfaces_;  // of chains that begin at a piece, by level
+  std::vector<std::vector<Surface>> surfaces_;  // of the chains that begin at each piece, by level
   double length_ = 0;
 };
 
-/// The boundary as it appears from a ball about `centre`: pieces that come near it, and a polynomial for all others.
+/// The boundary as seen from a ball about `centre`: a list of the nearby pieces, and a polynomial for all others.
 ///
-/// An edge ab that does not come near is a closed curve if it goes on to infinity from a and from b, straight away from
-/// the centre. K of such curves is harmonic in the ball. Where a chain of near edges ends, it is closed in the same
-/// way, so that the curves add up to the boundary. In going from a ball to one within it, the directions of those ways
-/// to infinity change; the wedge between old and new is one more such curve.
+/// A far edge ab becomes a closed curve if it is extended from a and from b to infinity, radially away from the centre.
+/// K of such a curve is harmonic in the ball. Each end of a chain of near edges is extended in the same direction, so
+/// that the curves add up to the boundary. A smaller ball inside has other extension directions; the wedge between the
+/// old and the new extension is one more such curve.
 struct Surroundings {
-  /// Distances from the centre beyond which edges are far, in radii. The polynomial is in error by about the 8th power
-  /// of the inverse.
+  /// Edges farther from the centre than this many radii are far. The polynomial's relative error is about the inverse
+  /// to the 8th power.
   static constexpr double kFar = 3;
 
   Vec3 centre{0};
   double radius = 0;
-  std::vector<int> near;  // pieces, ascending
-  LocalExpansion far;     // K of the others, modulo 1
+  std::vector<int> near;  // numbers of the near pieces, ascending
+  LocalExpansion far;     // K of all other pieces, modulo 1
 };
 
-/// A maximal chain of near pieces, near[begin] … near[end − 1]. One that is not open at an end is continued by another,
-/// or is a loop.
+/// A maximal chain of near pieces, near[begin] … near[end − 1]. At an end that is not open, another chain continues it,
+/// or the chain is a loop.
 struct Chain {
   std::size_t begin, end;
   bool open_front, open_back;
 };
 
-/// Calls visit(chain) for the chains of `near`.
+/// Calls visit(chain) for each chain of `near`.
 template <class Visit>
 void for_each_chain(const BoundaryPieces& pieces, const std::vector<int>& near, const Visit& visit) {
   const auto is_near = [&](int k) { return std::binary_search(near.begin(), near.end(), k); };
@@ -106,14 +105,14 @@ void for_each_chain(const BoundaryPieces& pieces, const std::vector<int>& near, 
   }
 }
 
-/// Makes Surroundings; keeps storage between calls.
+/// Computes Surroundings; reuses its storage between calls.
 class Descent {
  public:
   explicit Descent(const BoundaryPieces& pieces) : pieces_(pieces) {}
 
-  /// Those of a ball that is as large as the boundary: all pieces are near.
+  /// Surroundings of a ball that contains the whole boundary: all pieces are near.
   Surroundings root(const Vec3& centre, double radius) const;
-  /// Those of a ball within another's.
+  /// Surroundings of a ball inside the parent's ball.
   void enter(const Surroundings& parent, const Vec3& centre, double radius, Surroundings& out);
 
  private:
@@ -124,7 +123,7 @@ class Descent {
   void add_source(const Vec3& a, const Vec3& b, double distance);
   void add_wedge(const Vec3& a, const Vec3& from, double sign);
 
-  /// Sources of one kind that wait for their sum.
+  /// Sources of one kind that wait to be summed.
   struct Batch {
     static constexpr std::size_t kMax = 64;
 

@@ -2,7 +2,7 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "dexel/from_mesh/crossing_lanes.cpp"
-// Clang-format would sort foreach_target.h away from its place.
+// Keep clang-format from sorting foreach_target.h to another place.
 // clang-format off
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
@@ -36,7 +36,7 @@ HWY_INLINE Corner corner(const Projection& projection, const std::int64_t* index
           at};
 }
 
-/// Swaps where the second has the lower u; `odd` then changes.
+/// Swaps lanes in which the second corner has the lower u, and flips `odd` there.
 HWY_INLINE void order(Corner& low, Corner& high, M& odd) {
   const M swap = hn::Lt(high.u, low.u);
   const auto exchange = [](auto m, auto& a, auto& b) HWY_ATTR {
@@ -48,7 +48,7 @@ HWY_INLINE void order(Corner& low, Corner& high, M& odd) {
   odd = hn::Xor(odd, swap);
 }
 
-/// Edges from lower to higher u, with the two divisions that their places need.
+/// Edges from lower to higher u, with the two quotients that give points on them.
 struct Edge {
   V u, v, z, inverse, slope, rise;
 
@@ -67,7 +67,7 @@ struct Edge {
   HWY_INLINE V z_at(V row) const { return add(z, mul(mul(sub(row, u), inverse), rise)); }
 };
 
-/// Some triangles, one in each lane.
+/// A group of triangles, one per lane.
 class Group {
  public:
   HWY_INLINE Group(const Projection& projection, const Vec3i* corners, const std::uint32_t* triangles,
@@ -88,8 +88,8 @@ class Group {
   }
 
   HWY_INLINE void find(int first, int last, BandCrossings& out) const {
-    // The long edge against the lower short one, then against the upper. Half-open: a row belongs to an edge where
-    // u(low) ≤ row < u(high), so that an edge of constant u never counts.
+    // Intersect the long edge with the lower short one, then with the upper one. The rule is half-open: a row belongs
+    // to an edge if u(low) ≤ row < u(high), so an edge of constant u never counts.
     const Edge whole(low_, high_), lower(low_, middle_), upper(middle_, high_);
     const V end = hn::Min(set(last), hn::Ceil(high_.u)), turn = hn::Ceil(middle_.u);
     for (V row = hn::Max(set(first), hn::Ceil(low_.u));; row = add(row, set(1))) {
@@ -115,7 +115,7 @@ class Group {
  private:
   static constexpr std::size_t kMax = 8;
 
-  /// ⌈v⌉ clamped to [0, nv]; true where rounding may have made it wrong.
+  /// ⌈v⌉ clamped to [0, nv]. Returns the lanes in which rounding may have made it wrong.
   HWY_INLINE M columns(V v, V& ceiling) const {
     const V above = add(hn::Min(hn::Max(v, set(-0.5)), add(nv_, set(0.5))), set(1)), floor = hn::Floor(above);
     const V past = sub(above, floor), slack = set(projection_.slack());
@@ -123,7 +123,7 @@ class Group {
     return hn::Or(hn::Lt(past, slack), hn::Gt(past, sub(set(1), slack)));
   }
 
-  /// What rounding does not tell.
+  /// Decides exactly the lanes in which rounding leaves a doubt.
   HWY_NOINLINE void decide(M unsure, M below, V row, V v_whole, V v_part, V& c_whole, V& c_part) const {
     double rows[kMax], v[2][kMax], c[2][kMax], which[kMax], lower[kMax];
     std::int64_t low[kMax], middle[kMax], high[kMax];
@@ -143,7 +143,7 @@ class Group {
     c_whole = hn::LoadU(kD, c[0]), c_part = hn::LoadU(kD, c[1]);
   }
 
-  /// The columns from `least` to `most`, `most` excluded.
+  /// Emits the columns from `least` up to, but not including, `most`.
   HWY_INLINE void emit(V least, V most, V v, V width, V z, V rise, V offset, M leaves, BandCrossings& out) const {
     const M level = hn::Eq(width, zero());
     const V divisor = hn::IfThenElse(level, set(1), width);
@@ -160,7 +160,7 @@ class Group {
       hn::StoreU(add(z, mul(t, rise)), kD, heights);
       hn::StoreU(hn::Or(hn::ShiftLeft<BandCrossings::kColumnShift>(place), name), kI, names);
       hn::StoreMaskBits(kD, some, bits);
-      // All lanes are written, and the place moves on where one holds something: no jump to foresee.
+      // Writes all lanes and advances past the valid ones: no unpredictable branch.
       const auto [to_z, to_name] = out.room(kMax);
       std::size_t count = 0;
       for (std::size_t k = 0; k < hn::Lanes(kD); ++k) {
@@ -175,7 +175,7 @@ class Group {
   const Projection& projection_;
   V nv_;
   Corner low_, middle_, high_;
-  M odd_, valid_;  // odd: the corners are a mirror image of the triangle's
+  M odd_, valid_;  // odd: the corners are a mirror image of the triangle
   I names_;
 };
 
@@ -183,7 +183,7 @@ class Group {
 
 void FindCrossings(std::span<const Vec3i> corners, std::span<const std::uint32_t> triangles,
                    const Projection& projection, int first, int last, BandCrossings& out) {
-  // Triangles in no order would cost a wait for each of their corners.
+  // Prefetch: triangles in random order would cause a cache miss for each corner.
   constexpr std::size_t kAhead = 16;
   const std::size_t n = triangles.size(), lanes = hn::Lanes(kD);
   for (std::size_t at = 0; at < n; at += lanes) {

@@ -1,4 +1,4 @@
-// Crossings of triangles with the rays of a grid, several triangles at a time in vector lanes, chosen at run time.
+// Intersects triangles with the rays of a grid, several triangles at a time in SIMD lanes selected at run time.
 #pragma once
 
 #include <cstddef>
@@ -10,8 +10,8 @@
 
 namespace riffler::dexel {
 
-/// Appends the crossings of some triangles with rows first ≤ row < last to `out`, in an order that depends on the
-/// registers' width.
+/// Appends to `out` the crossings of these triangles with the rows first ≤ row < last. Their order depends on the width
+/// of the vectors.
 void find_crossings(std::span<const Vec3i> corners, std::span<const std::uint32_t> triangles,
                     const Projection& projection, int first, int last, BandCrossings& out);
 

@@ -12,9 +12,9 @@ namespace riffler::dexel {
 
 namespace {
 
-constexpr int kLatticeBits = 30;         // of one cell, at most
-constexpr std::uint32_t kInserted = 32;  // crossings of a column up to which inserting them sorts fastest
-constexpr int kCoordinateBits = 50;      // of a whole coordinate: products of differences fit 128-bit integers
+constexpr int kLatticeBits = 30;         // per cell, at most
+constexpr std::uint32_t kInserted = 32;  // up to this many crossings of a column, insertion sort is fastest
+constexpr int kCoordinateBits = 50;      // for a whole coordinate, so that products of differences fit 128-bit integers
 __extension__ typedef __int128 Wide;
 
 /// ⌈x⌉ clamped to [0, n].
@@ -25,10 +25,10 @@ int ceiling(double x, int n) {
   return k + (x > k);
 }
 
-/// Where the rays at the upper side of a box stand, `extent` cells wide.
+/// Positions of the rays at the upper side of a box that is `extent` cells wide.
 struct Aside {
-  double ray = 0.5;  // the first one, cells from the box's lower side
-  double side = -1;  // the box's upper side, if a ray stands on it
+  double ray = 0.5;  // the first ray, cells from the box's lower side
+  double side = -1;  // the box's upper side, if a ray lies on it
   double step = 0;
 
   Aside(double extent, int rays, double lattice) : step(1 / lattice) {
@@ -38,7 +38,7 @@ struct Aside {
     else if (std::abs(beyond) < step)
       side = rays - 1;
   }
-  /// A place on that side goes just beyond it.
+  /// Moves a coordinate on that side just beyond it.
   double operator()(double place) const { return place == side ? place + step : place; }
 };
 
@@ -54,15 +54,15 @@ Projection::Projection(const Mesh& mesh, const Grid& grid) : nu_(grid.nu()), nv_
     reach = std::max(reach, std::abs(x) / pitch + 1);
   const int bits = std::ilogb(reach) + 1;
   if (bits > kCoordinateBits)
-    throw std::invalid_argument("pitch is too fine for a mesh as large as this: its vertices lie 2^50 cells away");
+    throw std::invalid_argument("pitch is too fine for so large a mesh: its vertices lie 2^50 cells or more away");
   lattice_ = std::ldexp(1.0, std::min(kLatticeBits, kCoordinateBits - bits));
   slack_ = std::ldexp(reach, -48);
 
-  // The last rays may stand on the box's side, or, a lone one, beyond it. They are taken for what is within.
+  // The last rays may lie on the box's side or, a lone one, beyond it. They count as inside.
   const Aside aside_u(grid.box().size().x / pitch, nu_, lattice_), aside_v(grid.box().size().y / pitch, nv_, lattice_);
   vertices_.resize(mesh.vertices.size());
   base::parallel_for(vertices_.size(), 1 << 16, [&](std::size_t begin, std::size_t end) {
-    // Adding and taking away 1.5 · 2^52 rounds to integers, faster than a library call.
+    // Adding and subtracting 1.5 · 2^52 rounds to integers, faster than a library call.
     constexpr double kRound = 6755399441055744.0;
     for (std::size_t k = begin; k < end; ++k) {
       const Vec3 p = to_local(axis, mesh.vertices[k]);
@@ -83,11 +83,11 @@ bool Projection::beyond(const Vertex& low, const Vertex& high, int row, int colu
 Bands::Bands(const Mesh& mesh, const Projection& projection, int rows_per_band) : rows_(rows_per_band) {
   const std::size_t bands = static_cast<std::size_t>((projection.nu() + rows_ - 1) / rows_);
   const std::size_t n = mesh.triangles.size();
-  // Counted and filled in chunks that do not depend on the number of threads, so the order is the mesh's.
+  // Counts and fills in chunks that do not depend on the number of threads, so the order is the mesh's.
   const std::size_t grain = std::max<std::size_t>(1 << 14, n / 64 + 1), chunks = (n + grain - 1) / grain;
   std::vector<std::size_t> places(chunks * bands, 0);
 
-  // The first band of each triangle and how many there are, found in one go.
+  // First band and number of bands of each triangle, computed once.
   struct Reach {
     std::int32_t first, count;
   };
@@ -135,7 +135,7 @@ void sort_by_column(const BandCrossings& crossings, std::size_t columns, std::ve
   for (std::size_t k = 0; k < n; ++k) ++begin[crossings.column(k) + 1];
   for (std::size_t k = 0; k < columns; ++k) begin[k + 1] += begin[k];
   sorted.resize(n);
-  // Filling moves each begin to its end, which is the next column's begin; shifted back below.
+  // Filling moves each begin to its end, the next column's begin; the loop below shifts them back.
   for (std::size_t k = 0; k < n; ++k) sorted[begin[crossings.column(k)]++] = crossings[k];
   for (std::size_t k = columns; k > 0; --k) begin[k] = begin[k - 1];
   begin[0] = 0;
@@ -144,7 +144,7 @@ void sort_by_column(const BandCrossings& crossings, std::size_t columns, std::ve
   };
   for (std::size_t k = 0; k < columns; ++k) {
     const std::uint32_t from = begin[k], to = begin[k + 1];
-    if (to - from == 2) {  // most columns: without a jump that could not be foreseen
+    if (to - from == 2) {  // most columns; sorted without an unpredictable branch
       const Crossing a = sorted[from], b = sorted[from + 1];
       const bool swap = before(b, a);
       sorted[from + swap] = a, sorted[from + !swap] = b;

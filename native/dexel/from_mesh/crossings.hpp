@@ -1,5 +1,5 @@
-// Where the columns of a grid cross the triangles of a mesh: exact decisions on a lattice, so that a closed mesh is
-// entered as often as it is left on every column, at any alignment.
+// Finds where the rays (columns) of a grid cross the triangles of a mesh. Decisions are exact, on a lattice, so a
+// column enters a closed mesh as often as it leaves it, at any alignment.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 
 namespace riffler::dexel {
 
-/// One signed crossing of a column, by rising coordinate: +1 enters (the triangle faces down the ray), −1 leaves.
+/// One signed crossing of a column in increasing order of z: +1 enters (the triangle faces down the ray), −1 leaves.
 struct Crossing {
   double z;              ///< mm along the ray
   std::uint32_t source;  ///< index of the triangle, or kOpening | index of the opening
@@ -22,10 +22,10 @@ struct Crossing {
 };
 inline constexpr std::uint32_t kOpening = 0x80000000U;
 
-/// Crossings of a band of rows and the columns that they belong to, (row − first row) · nv + column.
+/// Crossings of a band of rows, with their columns, numbered (row − first row) · nv + column.
 class BandCrossings {
  public:
-  /// Where a crossing's sign and its column stand, above its source.
+  /// Bit positions of a crossing's sign and of its column, above its source.
   static constexpr std::int64_t kLeaves = std::int64_t{1} << 32;
   static constexpr int kColumnShift = 33;
 
@@ -41,7 +41,7 @@ class BandCrossings {
   }
   std::uint32_t column(std::size_t k) const { return static_cast<std::uint32_t>(names_[k] >> kColumnShift); }
 
-  /// Where the next crossings are to be written, with room for so many: z and the rest.
+  /// Reserves room for `more` crossings and returns where to write them: their z, and their packed names.
   std::pair<double*, std::int64_t*> room(std::size_t more) {
     if (z_.size() < size_ + more) grow(more);
     return {z_.data() + size_, names_.data() + size_};
@@ -56,9 +56,9 @@ class BandCrossings {
   std::size_t size_ = 0;
 };
 
-/// A mesh in the cyclic frame of a grid, in cells: ray (i, j) stands at the integers u = i, v = j. u and v are rounded
-/// to multiples of 2^−30 (fewer bits only where the mesh is more than 2^20 cells wide), once for each vertex; a mesh
-/// whose vertices are so rounded is as watertight as it was. z stays in mm, unrounded.
+/// A mesh in the cyclic frame of a grid, in units of cells: ray (i, j) is at the integers u = i, v = j. The u and v of
+/// each vertex are rounded once, to multiples of 2^−30 (coarser only if the mesh is more than 2^20 cells wide);
+/// rounding vertices keeps a watertight mesh watertight. z stays in mm, unrounded.
 class Projection {
  public:
   struct Vertex {
@@ -66,7 +66,7 @@ class Projection {
     std::int32_t row, column;  ///< ⌈u⌉ and ⌈v⌉, clamped to [0, nu] and [0, nv]
   };
 
-  /// Throws std::invalid_argument where the mesh reaches more than 2^50 cells from the grid.
+  /// Throws std::invalid_argument if the mesh reaches more than 2^50 cells from the grid.
   Projection(const Mesh& mesh, const Grid& grid);
 
   int nu() const { return nu_; }
@@ -78,8 +78,8 @@ class Projection {
     for (int k = 0; k < 3; ++k) __builtin_prefetch(&vertices_[corners[k]]);
   }
 
-  /// ⌈v*⌉ clamped to [0, nv], where v* is the point at which the edge from `low` to `high` meets u = row, for
-  /// low.row ≤ row < high.row. Exact: it depends on the edge and the row alone, not on the triangle. `v` is near v*.
+  /// ⌈v*⌉ clamped to [0, nv], where v* is the point at which the edge from `low` to `high` meets u = row, for low.row ≤
+  /// row < high.row. Exact: the result depends on the edge and the row alone, not on the triangle. `v` approximates v*.
   int column(const Vertex& low, const Vertex& high, int row, double v) const {
     if (!(v > -0.5)) return 0;
     if (v > nv_ + 0.5) return nv_;
@@ -93,16 +93,16 @@ class Projection {
   }
 
  private:
-  /// v* > column, in integers.
+  /// v* > column, decided in integers.
   bool beyond(const Vertex& low, const Vertex& high, int row, int column) const;
 
   int nu_, nv_;
   double lattice_;  // lattice points per cell, a power of two
-  double slack_;    // more than the rounding error of an edge's v at a row, cells
+  double slack_;    // cells; exceeds the rounding error of an edge's v at a row
   base::BulkVector<Vertex> vertices_;
 };
 
-/// Triangles by bands of rows: those that may cross a column with a row in band k, in the order of the mesh.
+/// Triangles sorted into bands of rows. Each band lists the triangles that may cross its rows, in mesh order.
 class Bands {
  public:
   Bands(const Mesh& mesh, const Projection& projection, int rows_per_band);
@@ -119,8 +119,7 @@ class Bands {
   base::BulkVector<std::uint32_t> triangles_;
 };
 
-/// Crossings of a band sorted by column, within one by z, and then by source. `begin` has one entry more than there are
-/// columns.
+/// Sorts the crossings of a band by column, then z, then source. `begin` has one entry more than there are columns.
 void sort_by_column(const BandCrossings& crossings, std::size_t columns, std::vector<Crossing>& sorted,
                     std::vector<std::uint32_t>& begin);
 

@@ -13,7 +13,7 @@ void Field::fill(const BoundaryPieces& pieces, const Surroundings& around) {
   const auto add = [&](const Vec3& p, bool joined, bool finite) {
     path_.push_back({p.x, p.y, p.z, joined, finite, false, 0, 0, 0});
   };
-  // The second derivatives of a half-line, see field_points.cpp.
+  // For the second derivatives of a half-line see field_points.cpp.
   const double distance = (Surroundings::kFar - 1) * around.radius, endless = 1 / (kPi * distance * distance);
   for_each_chain(pieces, around.near, [&](const Chain& chain) {
     const Vec3& front = pieces.edges(pieces[around.near[chain.begin]]).front().a;

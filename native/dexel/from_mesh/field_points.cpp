@@ -2,7 +2,7 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "dexel/from_mesh/field_points.cpp"
-// Clang-format would sort foreach_target.h away from its place.
+// Keep clang-format from sorting foreach_target.h to another place.
 // clang-format off
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
@@ -20,10 +20,10 @@ using namespace base::HWY_NAMESPACE;
 
 namespace {
 
-/// Distances from an edge count as this at least, so that no power of their inverses overflows.
+/// Minimum distance from an edge, so that no power of its inverse overflows.
 constexpr double kNearest = 1e-60;
 
-/// The argument of x + i y, within some 1e-15; 0 where both are 0.
+/// The argument of x + i y, accurate to about 1e-15; 0 if both are 0.
 HWY_INLINE V argument(V y, V x) {
   // Minimax on |t| ≤ tan(π/8).
   constexpr double kTerms[] = {0.999999999999999,   -0.33333333333225346, 0.19999999979064806, -0.14285712703599635,
@@ -51,13 +51,13 @@ HWY_INLINE Stereographic stereographic(V z, V rr, V length) {
   return {pick(below, rr, add(length, z)), pick(below, sub(length, z), set(1))};
 }
 
-/// A point of the path as the evaluated points see it.
+/// A point of the path relative to the evaluated points.
 struct Seen {
   V x, y, z, rr, square, length;
 };
 HWY_INLINE Seen see(const PathPoint& p, V px, V py, V pz) {
-  // A boundary vertex exactly over or under a point has no direction to its side; any will do, since it enters both its
-  // edges and cancels.
+  // A boundary vertex exactly above or below a point has no horizontal direction. Any direction works, because it
+  // enters both its edges and cancels.
   constexpr double kNone = 1.0 / (1LL << 36);
   Seen s;
   s.x = set(p.x), s.y = set(p.y), s.z = set(p.z);
@@ -74,7 +74,7 @@ HWY_INLINE Seen see(const PathPoint& p, V px, V py, V pz) {
 struct Sums {
   V re, im;  // product of the factors
   V gx, gy, gz;
-  V curvature, piece, closest;  // of the piece: sum, and 1 / distance²
+  V curvature, piece, closest;  // for the current piece: sum, and 1 / distance²
 
   static HWY_INLINE Sums none() { return {set(1), zero(), zero(), zero(), zero(), zero(), zero(), zero()}; }
 
@@ -102,15 +102,15 @@ struct Sums {
     }
   }
 
-  /// |∇(dl × r / |r|³)| ≤ 2 |dl| / |r|³, integrated over the edge or over the whole line. Third derivatives of 1/r, for
-  /// the surface that a loop spans, are at most 6 / r⁴.
+  /// |∇(dl × r / |r|³)| ≤ 2 |dl| / |r|³, integrated over the edge or over the whole line. For the surface that a loop
+  /// spans, third derivatives of 1/r are at most 6 / r⁴.
   HWY_INLINE void bound(const PathPoint& to, const Seen& a, const Seen& b, V half_x, V half_y, V half_z) {
     const V ex = sub(b.x, a.x), ey = sub(b.y, a.y), ez = sub(b.z, a.z);
     const V along = add(add(mul(a.x, ex), mul(a.y, ey)), mul(a.z, ez));
     const V t = hn::Min(hn::Max(mul(along, set(-to.inverse_square)), zero()), set(1));
     const V qx = add(a.x, mul(t, ex)), qy = add(a.y, mul(t, ey)), qz = add(a.z, mul(t, ez));
-    // From the point q of the edge that is nearest to the box's centre, the edge lies behind the plane across q. The
-    // box reaches that far toward it.
+    // Let q be the edge's point nearest to the box's centre. The edge lies behind the plane through q perpendicular to
+    // the line from the centre; the box extends by `reach` towards that plane.
     const V away = hn::Sqrt(add(add(mul(qx, qx), mul(qy, qy)), mul(qz, qz)));
     const V reach = add(add(mul(hn::Abs(qx), half_x), mul(hn::Abs(qy), half_y)), mul(hn::Abs(qz), half_z));
     const V d = sub(away, hn::Div(reach, hn::Max(away, set(kNearest))));
@@ -125,7 +125,7 @@ struct Sums {
 
 constexpr int kSide = LocalExpansion::kDegree + 1;
 
-/// The polynomial by Horner's scheme, z outermost.
+/// Evaluates the polynomial by Horner's scheme, z outermost.
 template <bool kFull>
 HWY_INLINE V far_field(const LocalExpansion& far, V x, V y, V z, V& gx, V& gy, V& gz) {
   V in_z[kSide], by_x[kSide], by_z[kSide];  // in y
@@ -175,7 +175,7 @@ HWY_INLINE void evaluate(std::span<const PathPoint> path, const LocalExpansion& 
           sums.edge<kFull>(path[k - 1], path[k], a, b, s, t);
           if (path[k - 1].finite && path[k].finite) sums.bound(path[k], a, b, half_x, half_y, half_z);
         }
-        // A factor is at most the fourth power of a distance in cells, so that eight stay within range.
+        // A factor is at most the fourth power of a distance in cells, so eight factors stay within range.
         if (k % 8 == 0) sums.rescale();
         a = b, s = t;
       }
@@ -203,16 +203,16 @@ void EvaluateField(std::span<const PathPoint> path, const LocalExpansion& far, c
     evaluate<false>(path, far, centre, points, values);
 }
 
-// One edge's share of K never turns back along a column, for the sign of
-// dK/dz = (a × b)_z (|a| + |b|) / (4π |a| |b| (|a| |b| + a·b)) is that of a constant. So what it changes by is known
-// from the ends, where curvature is no use.
+// One edge's part of K is monotonic along a column, because the sign of dK/dz = (a × b)_z (|a| + |b|) / (4π |a| |b|
+// (|a| |b| + a·b)) is constant. So its change follows from its values at the two ends, where a bound on curvature is no
+// help.
 void FieldVariation(std::span<const PathPoint> path, const FieldPoints& points, const double* slopes, double curvature,
                     double* variation) {
   for (std::size_t at = 0; at < kPoints; at += hn::Lanes(kD)) {
     const V px = hn::LoadU(kD, points.x + at), py = hn::LoadU(kD, points.y + at), pz = hn::LoadU(kD, points.z + at);
     const V half = hn::LoadU(kD, points.half_z + at);
-    V rest = hn::LoadU(kD, slopes + at);  // of the slope
-    V up[2], down[2];                     // below and above
+    V rest = hn::LoadU(kD, slopes + at);  // the part of the slope without the near edges
+    V up[2], down[2];                     // change below and above
     for (const int side : {0, 1}) up[side] = down[side] = zero();
     M vertex = hn::FirstN(kD, 0);
     const V none = zero();
@@ -241,7 +241,7 @@ void FieldVariation(std::span<const PathPoint> path, const FieldPoints& points, 
           const V g = mul(s_end[side].f, t_end[side].f);
           const V x = add(mul(s_end[side].t, t_end[side].t), mul(g, dot)), y = mul(g, cross);
           const V change = argument(sub(mul(y, re), mul(x, im)), add(mul(x, re), mul(y, im)));
-          // On a column through the edge K may turn either way: that is not for rounding to decide.
+          // On a column through the edge, K may rise or fall; rounding must not decide which.
           const M either = hn::Eq(cross, zero());
           const V size = hn::Abs(change);
           up[side] = add(up[side], pick(hn::Or(either, hn::Gt(change, zero())), size, zero()));

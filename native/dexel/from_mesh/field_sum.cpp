@@ -2,7 +2,7 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "dexel/from_mesh/field_sum.cpp"
-// Clang-format would sort foreach_target.h away from its place.
+// Keep clang-format from sorting foreach_target.h to another place.
 // clang-format off
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
@@ -14,7 +14,7 @@
 #ifndef RIFFLER_SOURCE_LANES
 #define RIFFLER_SOURCE_LANES
 namespace riffler::dexel {
-/// A SourceSum for every lane.
+/// A SourceSum per lane.
 struct SourceLanes {
   double c_re[SourceSum::kTerms][kSourceLanes], c_im[SourceSum::kTerms][kSourceLanes];
   double re[kSourceLanes], im[kSourceLanes], dipoles[kSourceLanes];
@@ -22,8 +22,8 @@ struct SourceLanes {
 }  // namespace riffler::dexel
 #endif
 
-// Only operations that IEEE 754 rounds correctly are used and none is fused, and a source's lane is the same whatever
-// the width of the registers, so every instruction set gives the same bits.
+// Uses only operations that IEEE 754 rounds correctly, none fused, and assigns sources to lanes independently of the
+// vector width. So every instruction set gives the same bits.
 
 HWY_BEFORE_NAMESPACE();
 namespace riffler::dexel::HWY_NAMESPACE {
@@ -40,13 +40,13 @@ constexpr int place(int n, int m) {
 }
 constexpr int kPlaces = place(kOrder, kOrder) + 1;
 
-/// Solid harmonics S_n^m, m ≥ 0, that decay: 1 / |r − p| = Σ conj(R_n^m(p)) S_n^m(r) over n and −n ≤ m ≤ n, with S_n^−m
-/// = (−1)^m conj(S_n^m). They are (n − m)! P_n^m(cos θ) e^(imφ) / |r|^(n+1).
+/// Decaying solid harmonics S_n^m, m ≥ 0: 1 / |r − p| = Σ conj(R_n^m(p)) S_n^m(r) over n and −n ≤ m ≤ n, with S_n^−m =
+/// (−1)^m conj(S_n^m). They are (n − m)! P_n^m(cos θ) e^(imφ) / |r|^(n+1).
 struct Harmonics {
   V re[kPlaces], im[kPlaces];
 };
 
-/// Adds the harmonics of r, times g^(n−1). Returns 1 / |r|.
+/// Adds the harmonics of r times g^(n−1). Returns 1 / |r|.
 HWY_INLINE V add_harmonics(V x, V y, V z, V g, Harmonics& sum) {
   const V inverse = hn::Div(set(1), add(add(mul(x, x), mul(y, y)), mul(z, z))), root = hn::Sqrt(inverse);
   const V u = mul(x, inverse), v = mul(y, inverse), w = mul(z, inverse);
@@ -77,8 +77,9 @@ HWY_INLINE V add_harmonics(V x, V y, V z, V g, Harmonics& sum) {
   return root;
 }
 
-/// The factor whose argument is half the solid angle of what an edge from a to b sweeps up the ray, dot = a·b and cross
-/// = (a × b)_z but for their z (field.hpp). Of directions only a positive factor depends on the length.
+/// The factor whose argument is half the solid angle that an edge from a to b sweeps along the ray. dot and cross are
+/// a·b and (a × b)_z without the contributions of z (field.hpp). The length of a direction changes only a positive
+/// factor.
 HWY_INLINE void turn(V az, V aa, V bz, V bb, V dot, V cross, V& re, V& im) {
   const auto project = [](V z, V rr, V& t, V& f) HWY_ATTR {
     const V length = hn::Sqrt(add(rr, mul(z, z)));
@@ -122,7 +123,7 @@ void SumSources(const SourceArrays& in, SourceLanes& out) {
           add_harmonics(add(ax, mul(set(t), ex)), add(ay, mul(set(t), ey)), add(az, mul(set(t), ez)),
                         sub(set(1), mul(endless, set(t))), s);
       }
-      // w · ∇ of S_n^m is −w_z S_{n+1}^m − (w_x − i w_y) S_{n+1}^{m+1} / 2 + (w_x + i w_y) S_{n+1}^{m−1} / 2.
+      // w · ∇ S_n^m = −w_z S_{n+1}^m − (w_x − i w_y) S_{n+1}^{m+1} / 2 + (w_x + i w_y) S_{n+1}^{m−1} / 2.
       const V ux = mul(mul(set(0.5), weight), wx), uy = mul(mul(set(0.5), weight), wy), uz = mul(weight, wz);
       for (int n = 1; n <= kExpansionDegree; ++n) {
         const V part = set(in.dipoles ? 1 : 1.0 / n);

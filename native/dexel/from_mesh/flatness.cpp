@@ -4,7 +4,7 @@ namespace riffler::dexel {
 
 namespace {
 
-/// The vertex of every `stride`-th triangle at which `measure` is greatest.
+/// Among the vertices of every `stride`-th triangle, the one with the greatest `measure`.
 template <class Measure>
 Vec3 farthest(const Mesh& mesh, std::size_t stride, const Measure& measure) {
   double most = -1;
@@ -17,9 +17,9 @@ Vec3 farthest(const Mesh& mesh, std::size_t stride, const Measure& measure) {
   return best;
 }
 
-/// Of every `stride`-th triangle.
+/// Tests every `stride`-th triangle.
 bool are_flat(const Mesh& mesh, std::size_t stride, double tolerance) {
-  // A long segment, the vertex farthest from its line, then the distance of all from that plane.
+  // Find a long segment, then the vertex farthest from its line, then the distances of all vertices from that plane.
   const Vec3 a = mesh.vertices[mesh.triangles[0].x];
   const Vec3 b = farthest(mesh, stride, [&](const Vec3& p) { return glm::length(p - a); });
   if (glm::length(b - a) <= tolerance) return true;
@@ -36,8 +36,8 @@ bool are_flat(const Mesh& mesh, std::size_t stride, double tolerance) {
 
 bool is_flat(const Mesh& mesh, double tolerance) {
   if (mesh.empty()) return true;
-  // Most meshes are far from flat, as some hundred of their triangles show. In planes chosen by other triangles the
-  // distances of the same ones may be a few times smaller.
+  // Most meshes are far from flat, and a few hundred triangles show it. A plane through other triangles may give
+  // distances a few times smaller, hence the factor 16.
   const std::size_t stride = mesh.triangles.size() / 256 + 1;
   return are_flat(mesh, stride, 16 * tolerance) && are_flat(mesh, 1, tolerance);
 }

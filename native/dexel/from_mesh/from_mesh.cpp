@@ -20,20 +20,20 @@ namespace riffler::dexel {
 
 namespace {
 
-/// Spans and gaps this short vanish, cells.
+/// Spans and gaps shorter than this vanish, cells.
 constexpr double kThinnest = 1e-9;
-/// The same next to an opening. Where |w| = ½ is known to some 1e-6 in w, which may be as much as this far away in an
-/// opening of a thousand cells.
+/// Same, next to an opening. |w| = ½ is located to about 1e-6 in w, which in an opening of a thousand cells may
+/// correspond to this distance.
 constexpr double kThinnestOpening = 1e-2;
 
-/// Share of the time that counting a mesh's defects takes.
+/// Fraction of the time spent on counting a mesh's defects.
 constexpr double kCounted = 0.1;
 
-/// The sources of ends at the box's side and of passages that were repaired.
+/// Sources of ends at the box's side, and of repaired passages.
 constexpr std::uint32_t kBox = 0xffffffffU, kRepaired = 0xfffffffeU;
 
-/// A column's span while it is put together: where it begins and ends, and what gives the normals there. A source
-/// faces out of the material where `outward`, otherwise its reverse does.
+/// An end of a column's span under construction: its position, and the source of its normal. If not `outward`, the
+/// normal is reversed.
 struct End {
   double z;
   std::uint32_t source;
@@ -50,9 +50,9 @@ class Filler {
   Filler(const Mesh& mesh, const std::vector<std::vector<int>>& loops, Grid& grid, const Progress& progress,
          MeshFindings* findings);
 
-  /// Entries of triangles in bands: the triangles tested.
+  /// Number of triangles in all bands, which is the number of triangles tested.
   std::size_t triangles_tested() const { return bands_.size(); }
-  /// Whether some column has material where the winding number is negative.
+  /// Whether a column has material where the winding number is negative.
   bool negative() const { return negative_.load(std::memory_order_relaxed); }
   void run(const Progress& progress);
 
@@ -97,7 +97,7 @@ Filler::Filler(const Mesh& mesh, const std::vector<std::vector<int>>& loops, Gri
       bands_(mesh, projection_, rows_per_band()),
       findings_(findings) {}
 
-/// A divisor of the tile's side such that a band's crossings stay in the cache.
+/// A divisor of the tile's side for which a band's crossings stay in the cache.
 int Filler::rows_per_band() const {
   int rows = kTileSide;
   while (rows > 1 && rows * grid_.nv() > 16384) rows /= 2;
@@ -139,7 +139,7 @@ void Filler::tile_row(int tile_u, Scratch& scratch, std::vector<TileBuilder>& bu
         if (findings_ && !crossings.empty()) look(crossings, grid_.area(row, j), tally);
         builder.next_ray();
       }
-      // Rays beyond the grid.
+      // rays outside the grid
       for (int j = nv; j % kTileSide != 0; ++j) builders.back().next_ray();
     }
   }
@@ -161,11 +161,11 @@ void Filler::add_passages(int first, int last, BandCrossings& out) const {
   }
 }
 
-/// Spans where the running sum of the signs is not zero.
+/// Adds spans where the running sum of the signs is not zero.
 void Filler::fill(std::span<const Crossing> crossings, TileBuilder& builder) const {
-  End near{}, far{};  // of the span that waits for the next one: a gap between them may vanish
+  End near{}, far{};  // the last span, not yet emitted: a gap after it may vanish
   bool waiting = false;
-  End from{};  // where the present span began
+  End from{};  // where the current span began
   int sum = 0;
   for (const Crossing& c : crossings) {
     const int before = sum;
@@ -188,7 +188,7 @@ void Filler::fill(std::span<const Crossing> crossings, TileBuilder& builder) con
   if (waiting) emit(near, far, builder);
 }
 
-/// Notes what a column tells about the mesh.
+/// Records what a column shows about the mesh.
 void Filler::look(std::span<const Crossing> crossings, double area, ColumnTally& tally) const {
   const double lower = grid_.box().lower.z, upper = grid_.box().upper.z;
   const double before = tally.inside;
@@ -199,7 +199,7 @@ void Filler::look(std::span<const Crossing> crossings, double area, ColumnTally&
     const bool open = (c.source & kOpening) != 0;
     const int last = std::exchange(sum, sum + c.sign);
     if (last == 0 || sum == 0) doubtful |= open && c.z > lower && c.z < upper;
-    // Negative on one side, nothing on the other: the triangle faces into the material.
+    // Negative on one side and zero on the other: the triangle faces into the material.
     if (!open && std::max(last, sum) == 0)
       std::atomic_ref(findings_->flipped[c.source]).store(1, std::memory_order_relaxed);
     if (sum == 0 || k + 1 == crossings.size()) continue;
@@ -225,7 +225,7 @@ void Filler::emit(End near, End far, TileBuilder& builder) const {
 }
 
 PackedNormal Filler::normal(const End& end) const {
-  Vec3 n(0, 0, 1);  // the box, and passages that were repaired
+  Vec3 n(0, 0, 1);  // for the box, and for repaired passages
   if ((end.source & kOpening) == 0) {
     const Vec3i& t = mesh_.triangles[end.source];
     const Vec3 &a = mesh_.vertices[t.x], &b = mesh_.vertices[t.y], &c = mesh_.vertices[t.z];
@@ -241,9 +241,9 @@ PackedNormal Filler::normal(const End& end) const {
   return PackedNormal::pack((end.outward ? 1 : -1) / length * n);
 }
 
-/// Crossings and passages of a column sum to zero. Where rounding near an edge of the boundary lost or doubled a
-/// passage they do not: then the passages are searched for anew with the winding number itself, between samples at
-/// all places where something was found.
+/// Crossings and passages of a column sum to zero unless rounding near a boundary edge lost or doubled a passage. In
+/// that case, finds the passages again with the winding number itself, sampled between all places where something was
+/// found.
 bool Filler::repair(int row, int column, std::span<const Crossing> crossings, std::vector<Crossing>& out) const {
   int sum = 0;
   for (const Crossing& c : crossings) sum += c.sign;
@@ -264,7 +264,7 @@ bool Filler::repair(int row, int column, std::span<const Crossing> crossings, st
   for (double above = h; above < reach; above *= 2) z = crossings.front().z - above;
   int before = rounded(z);
   step(z, before);
-  // From z to `next`, where it may be that a passage is known.
+  // Handles the interval from z to `next`, which may contain a known passage.
   const auto go = [&](double next, const Crossing* known) {
     if (!(next > z)) return;
     const int after = rounded(next);
@@ -288,7 +288,7 @@ bool Filler::repair(int row, int column, std::span<const Crossing> crossings, st
     const Crossing& c = crossings[k];
     const double last = k + 1 < crossings.size() ? 0.5 * (c.z + crossings[k + 1].z) : c.z + h;
     if ((c.source & kOpening) != 0) {
-      // Its partner may be what was lost: then only beside it does the winding number tell of both.
+      // The lost passage may be its partner: then only the winding number next to it reveals both.
       const double first = k > 0 ? 0.5 * (crossings[k - 1].z + c.z) : c.z - h;
       go(std::max(c.z - aside, first), nullptr);
       go(std::min(c.z + aside, last), &c);
@@ -303,7 +303,7 @@ bool Filler::repair(int row, int column, std::span<const Crossing> crossings, st
   return true;
 }
 
-/// Fills all grids. Returns whether some column has material where the winding number is negative.
+/// Fills all grids. Returns whether a column has material where the winding number is negative.
 bool fill(Volume& result, const Mesh& mesh, const std::vector<std::vector<int>>& loops, const Progress& progress,
           MeshFindings* findings = nullptr) {
   bool negative = false;
@@ -322,7 +322,7 @@ bool fill(Volume& result, const Mesh& mesh, const std::vector<std::vector<int>>&
   return negative;
 }
 
-/// What rounding of the mesh's coordinates may feign, mm³.
+/// Volume that rounding of the mesh's coordinates may suggest, mm³.
 double feigned_volume(const Box3& box) {
   const double size = most(box.size()), far = std::max(most(box.lower), most(box.upper));
   return std::max(1e-13 * size * size * size, 64 * std::ldexp(far, -52) * size * size);
@@ -334,8 +334,8 @@ double most_volume(const Volume& volume) {
   return v;
 }
 
-/// Whether a mesh of which the frame's rays met hardly anything has a volume all the same: a thin wall between rays, or
-/// a part outside of the box.
+/// Whether a mesh that the frame's rays hardly meet has a volume nevertheless: a thin wall between rays, or a part
+/// outside the box.
 bool has_volume(const Mesh& mesh, const std::vector<std::vector<int>>& loops, const Box3& box) {
   const double size = most(box.size()), least = feigned_volume(box);
   if (is_flat(mesh, std::ldexp(size, -22))) return false;
@@ -345,7 +345,7 @@ bool has_volume(const Mesh& mesh, const std::vector<std::vector<int>>& loops, co
   return most_volume(probe) > least;
 }
 
-/// Share of a mesh's volume that rays may miss without a word: walls stand within half a pitch of their places.
+/// Fraction of a mesh's volume that rays may miss without a warning: walls lie up to half a pitch off.
 constexpr double kMissed = 0.1;
 
 bool holds(const Box3& outer, const Box3& inner) {
@@ -354,8 +354,8 @@ bool holds(const Box3& outer, const Box3& inner) {
   return true;
 }
 
-/// What the reference's rays miss of a closed mesh. Where they hold less than the mesh encloses it may also enclose
-/// something more than once, which only a second look tells.
+/// What the reference's rays miss of a closed mesh. If they hold less than the mesh encloses, the mesh may also enclose
+/// some space more than once, which needs a second pass to find out.
 MissedMaterial missed_by_rays(const Volume& result, const Mesh& mesh, const Box3& box, double meant) {
   if (!holds(result.frame().box, box) || !(meant > 0) || result.volume() >= (1 - kMissed) * meant) return {};
   const char axis = "xyz"[static_cast<int>(result.reference().axis())];
@@ -367,7 +367,7 @@ MissedMaterial missed_by_rays(const Volume& result, const Mesh& mesh, const Box3
   return {lost, 2 * meant / area(mesh), box};
 }
 
-/// What the shells that were turned enclose, mm of rays in all grids.
+/// Volume of the turned shells, as mm of rays in all grids.
 double turned_lengths(const mesh::Orientation& orientation, const Volume& volume) {
   const double pitch = volume.frame().pitch;
   return orientation.turned_volume / (pitch * pitch) * static_cast<double>(volume.grids().size());
@@ -400,7 +400,7 @@ Volume from_mesh(const Mesh& mesh, const Frame& frame, const Progress& progress,
   const Progress rest = base::part(progress, report ? kCounted : 0, 1);
   const auto [box, enclosed] = measure(mesh);
   SolidMesh solid(mesh);
-  // Coordinates may have been rounded to single precision on their way here.
+  // Coordinates may have been rounded to single precision before.
   const double rounding =
       std::max(std::ldexp(most(box.size()), -22), std::ldexp(std::max(most(box.lower), most(box.upper)), -24));
   if (!solid.loops().empty() && is_flat(mesh, rounding))

@@ -27,7 +27,7 @@ void LocalExpansion::shift(const Vec3& d) {
 
 namespace {
 
-/// The terms of R_n^m with z^k, k = (n − m) mod 2: those of x^(n−k−j) y^j, real for even j, else imaginary.
+/// The terms of R_n^m with z^k, k = (n − m) mod 2: those of x^(n−k−j) y^j, real for even j, otherwise imaginary.
 struct Harmonic {
   double terms[kExpansionDegree + 1];
 };
@@ -62,7 +62,7 @@ void LocalExpansion::add(const SourceSum& sources) {
       for (int j = 0; j <= degree; ++j)
         more.rows_[row(k, degree - j)][j] += all[t].terms[j] * (j % 2 == 0 ? sources.c_re[t] : sources.c_im[t]);
     }
-  // The others follow from Laplace's equation.
+  // The other terms follow from Laplace's equation.
   for (int k = 2; k <= kDegree; ++k)
     for (int i = 0; i + k <= kDegree; ++i)
       for (int j = 0; i + j + k <= kDegree; ++j)
@@ -85,7 +85,7 @@ double LocalExpansion::deviation(const Vec3& half) const {
   return sum;
 }
 
-// By Taylor's formula with the second derivatives' bounds within ± half: of a term of degree n they sum up to n (n −
+// By Taylor's formula with bounds on the second derivatives within ± half: for a term of degree n they sum to n (n −
 // 1).
 double LocalExpansion::curved(const Vec3& half) const {
   constexpr double kSecond[] = {0, 0, 2. / 8, 6. / 8, 12. / 8, 20. / 8};

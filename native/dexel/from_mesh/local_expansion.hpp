@@ -1,4 +1,4 @@
-// A harmonic function near one place as a polynomial.
+// A harmonic function near one place, as a polynomial.
 #pragma once
 
 #include <array>
@@ -20,22 +20,22 @@ class LocalExpansion {
 
   /// Moves the centre by d.
   void shift(const Vec3& d);
-  /// Adds what sources about the centre give, all but the constant.
+  /// Adds the field of sources about the centre, without the constant term.
   void add(const SourceSum& sources);
 
-  /// Bound of how far the polynomial is from its constant within ± half.
+  /// Bound on the difference between the polynomial and its constant term within ± half.
   double deviation(const Vec3& half) const;
-  /// Within a box of sides `half` (not ± half) that lies within ± half: bound of how far the polynomial is from its
-  /// tangent plane at that box's centre.
+  /// For any box with sides `half` (not ± half) inside ± half: bound on the difference between the polynomial and its
+  /// tangent plane at the box's centre.
   double curved(const Vec3& half) const;
-  /// Bound of the second derivative along z within ± half.
+  /// Bound on the second derivative along z within ± half.
   double curvature_along(const Vec3& half) const;
 
  private:
   static constexpr int kSide = kDegree + 1, kRows = kSide * (kSide + 1) / 2;
   static constexpr int row(int k, int i) { return k * kSide - k * (k - 1) / 2 + i; }
 
-  // rows_[row(k, i)][j] belongs to x^i y^j z^k, i + j + k ≤ kDegree; the rest stays zero.
+  // rows_[row(k, i)][j] belongs to x^i y^j z^k with i + j + k ≤ kDegree; other entries stay zero.
   std::array<std::array<double, kSide>, kRows> rows_{};
 };
 

@@ -1,4 +1,4 @@
-// What filling a volume finds out about its mesh.
+// What filling a volume reveals about its mesh.
 #pragma once
 
 #include <algorithm>
@@ -9,10 +9,10 @@
 
 namespace riffler::dexel {
 
-/// What the winding numbers of columns tell about a mesh.
+/// Sums over the columns, by winding number.
 struct ColumnTally {
-  double inside = 0, overlap = 0, inside_out = 0;  // mm of rays
-  double enclosed = 0;                             // mm³: winding numbers × lengths × areas
+  double inside = 0, overlap = 0, inside_out = 0;  // mm of ray length
+  double enclosed = 0;                             // mm³: winding number × length × cell area
   std::size_t rays = 0, doubtful = 0;
 
   void operator+=(const ColumnTally& o) {
@@ -28,7 +28,7 @@ struct MeshFindings {
   ColumnTally tally;
   std::vector<std::uint8_t> flipped;
 
-  /// Of the rays' lengths within the material, 1 at most.
+  /// `length` as a fraction of the ray length inside the material, at most 1.
   double share(double length) const { return tally.inside > 0 ? std::min(1.0, length / tally.inside) : 0; }
 };
 

@@ -41,13 +41,13 @@ void count_defects(const Mesh& mesh, MeshReport& report) {
   });
   report.degenerate = degenerate;
   count_edges(mesh, report);
-  // Where all edges have their neighbours by index, equal coordinates have nothing to add.
+  // If every edge has its neighbours by index, equal coordinates add nothing.
   if (report.open_edges > 0) count_edges(welded(mesh), report);
 }
 
 std::size_t count_shells(const Mesh& mesh, const std::vector<std::uint8_t>& marks) {
   const Mesh joined = welded(mesh);
-  // Around each edge from one of its triangles to the next.
+  // Link the half-edges around each edge, from one triangle to the next.
   std::vector<int> next(3 * joined.triangles.size(), -1);
   mesh::EdgeTable(joined).for_each_edge([&](int, std::span<const mesh::EdgeTable::Use> uses) {
     for (std::size_t k = 0; k < uses.size(); ++k) next[uses[k].half()] = uses[(k + 1) % uses.size()].half();

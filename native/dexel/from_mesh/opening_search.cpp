@@ -8,19 +8,19 @@ namespace riffler::dexel {
 
 namespace {
 
-constexpr std::size_t kFew = 128;                    // pieces near by that are looked at one by one
-constexpr double kShortest = 1.0 / (1 << 20);        // cells: a piece of a column at an edge is not halved further
-constexpr double kRoot = 1e-9;                       // cells: where the search along a column ends
-constexpr double kLevel = 1e-6, kLevelBound = 2e-3;  // of K: measured and proven deviation from ½ that counts as none
+constexpr std::size_t kFew = 128;                    // number of near pieces up to which each is examined
+constexpr double kShortest = 1.0 / (1 << 20);        // cells; a shorter piece of a column at an edge is not halved
+constexpr double kRoot = 1e-9;                       // cells; accuracy of the search along a column
+constexpr double kLevel = 1e-6, kLevelBound = 2e-3;  // in K: measured and proven deviation from ½ that count as zero
 
-/// Columns and cells of the sides of blocks that are searched column by column: the less of the boundary is near, the
-/// less a column costs beside what it costs to divide a block.
+/// Side, in columns and cells, of blocks that are searched column by column. The fewer boundary pieces are near, the
+/// cheaper is a column compared with dividing a block.
 int leaf_side(const Surroundings& around) {
   const std::size_t near = around.near.size();
   return near <= 32 ? 4 * OpeningSearch::kLeaf : near <= 128 ? 2 * OpeningSearch::kLeaf : OpeningSearch::kLeaf;
 }
 
-/// Takes up to kPoints items from the end of `items`; the points are those of the first where there are less.
+/// Takes up to kPoints items from the end of `items`. If there are fewer, the remaining points repeat the first.
 template <class Item, class At>
 std::size_t take(std::vector<Item>& items, std::array<Item, kPoints>& taken, FieldPoints& points, const At& at) {
   const std::size_t count = std::min<std::size_t>(items.size(), kPoints);
@@ -58,7 +58,7 @@ void OpeningSearch::look(const Block& block, const Surroundings& around) {
   rest_ = 0.5 - kSlack - std::abs(around.far.constant()) - around.far.deviation(block.half());
 }
 
-// A surface is seen under a solid angle of its area over the square of its distance, at most.
+// A surface appears under a solid angle of at most its area over the square of its distance.
 bool OpeningSearch::outshone(const Block& part) const {
   const Vec3 centre = part.centre(), half = part.half();
   double rest = 4 * kPi * rest_;
@@ -88,7 +88,7 @@ void OpeningSearch::leaf(const Block& block, const Tangent& tangent, const Surro
   curved_ = around.far.curvature_along(block.half());
   columns(block, tangent, around.far.curved(block.half()));
   while (!segments_.empty() || !doubts_.empty()) {
-    // Lanes should be full.
+    // Prefer the list that fills the lanes.
     if (segments_.empty() || doubts_.size() >= kPoints)
       doubts();
     else
@@ -146,14 +146,14 @@ void OpeningSearch::doubts() {
     const auto& [piece, phase, slope] = taken[k];
     const double half = points.half_z[k], z = points.z[k];
     if (std::abs(phase) > variation[k] + kSlack * half) continue;
-    // A column in the plane of a flat opening, where K is ½ throughout: either side will do.
+    // A column in the plane of a flat opening, where K is ½ everywhere: either side is correct.
     const bool level = std::abs(phase) + std::abs(slope) * half < kLevel && variation[k] < kLevelBound;
     if (half > kShortest && !level) {
       segments_.push_back({piece.row, piece.column, piece.z0, z});
       segments_.push_back({piece.row, piece.column, z, piece.z1});
       continue;
     }
-    // At an edge the same decisions as for crossings tell on which side of it the column passes.
+    // At an edge, the decisions for crossings also decide on which side of it the column passes.
     const int change = rounded_(piece.row, piece.column, piece.z1) - rounded_(piece.row, piece.column, piece.z0);
     for (int n = 0; n < std::abs(change); ++n) add(piece, z, change > 0);
   }

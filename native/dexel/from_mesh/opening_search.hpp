@@ -1,4 +1,4 @@
-// The search for passages through openings, block by block.
+// Searches for passages through openings, block by block.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace riffler::dexel {
 /// Searches blocks of columns for passages. Lengths in cells.
 class OpeningSearch {
  public:
-  static constexpr int kLeaf = 4;  ///< columns and cells of the sides of blocks that are not divided, at least
+  static constexpr int kLeaf = 4;  ///< blocks with sides of up to this many columns and cells are not divided
 
   /// Columns [i0, i1) × [j0, j1) from z0 to z1, in cells.
   struct Block {
@@ -31,38 +31,39 @@ class OpeningSearch {
     Vec3 half() const { return {0.5 * (i1 - 1 - i0), 0.5 * (j1 - 1 - j0), 0.5 * (z1 - z0)}; }
     bool within(int side) const { return i1 - i0 <= side && j1 - j0 <= side && z1 - z0 <= side; }
   };
-  /// K at a block's centre as a phase, with its gradient there, and a bound of how far K in the block may be from that
-  /// tangent plane: infinity where an edge may pass through.
+  /// K at a block's centre as a phase, its gradient there, and a bound on the difference between K in the block and
+  /// that tangent plane: infinity if an edge may pass through.
   struct Tangent {
     double phase, remainder;
     Vec3 gradient;
   };
 
-  /// K on a column, rounded to an integer, by boundary_winding.
+  /// K on a column, rounded to an integer by boundary_winding.
   using Rounded = std::function<int(int row, int column, double z)>;
 
   OpeningSearch(const BoundaryPieces& pieces, const Rounded& rounded, const Grid& grid, std::vector<Passage>& out)
       : pieces_(pieces), descent_(pieces), rounded_(rounded), grid_(grid), out_(out) {}
 
-  /// Calls body for the parts of a block, whose surroundings are `around`, in which K may pass ½.
+  /// Calls body for the parts of a block in which K may pass ½; `around` are the block's surroundings.
   template <class Body>
   void parts(const Block& block, const Surroundings& around, const Body& body) {
     look(block, around);
     parts(block, around.far.curved(block.half()), body);
   }
 
-  /// The surroundings of a block within those of one that holds it.
+  /// Computes the surroundings of a block from those of an enclosing block.
   void enter(const Block& block, const Surroundings& within, Surroundings& around);
-  /// All passages in a block.
+  /// Finds all passages in a block.
   void block(const Block& block, const Tangent& tangent, const Surroundings& within, std::size_t depth = 0);
 
  private:
-  /// Phases are that much in error (polynomials), with room to spare.
+  /// Bound on the error of a phase (from the polynomials), with a margin.
   static constexpr double kSlack = 1e-4;
 
   static constexpr Tangent kNoTangent{0, std::numeric_limits<double>::infinity(), Vec3(0)};
 
-  /// Calls body for the parts of a block, halved along every side longer than half the longest (and than `side`).
+  /// Calls body for the parts of a block, halved along every side that is longer than half the longest side and than
+  /// `side`.
   template <class Body>
   static void halves(const Block& b, int side, const Body& body) {
     const double longest = std::max({static_cast<double>(b.i1 - b.i0), static_cast<double>(b.j1 - b.j0), b.z1 - b.z0});
@@ -78,7 +79,7 @@ class OpeningSearch {
     part(b.i0, i, j, b.j1, z, b.z1), part(i, b.i1, j, b.j1, z, b.z1);
   }
 
-  /// The same with the present field, `curved` the polynomial's bound for halves of the block.
+  /// Same with the current field; `curved` is the polynomial's bound for halves of the block.
   template <class Body>
   void parts(const Block& block, double curved, const Body& body) {
     std::array<Block, kPoints> parts;
@@ -94,7 +95,7 @@ class OpeningSearch {
     std::array<Tangent, kPoints> tangents;
     for (std::size_t k = 0; k < count; ++k) {
       const Vec3 half = parts[k].half();
-      // The polynomial's bound is for parts of half the size along every axis.
+      // The polynomial's bound holds for parts of half the size along every axis.
       const bool halved = glm::all(glm::lessThanEqual(half, 0.5 * block.half()));
       const double bend = 0.5 * (field_.rays() + values.curvature[k]) * glm::dot(half, half);
       tangents[k] = {
@@ -116,12 +117,12 @@ class OpeningSearch {
     double middle() const { return 0.5 * (z0 + z1); }
     double half() const { return 0.5 * (z1 - z0); }
   };
-  /// One with what is known of K at its middle.
+  /// A piece, and K with its slope at the middle.
   struct Doubt {
     Piece piece;
     double phase, slope;
   };
-  /// One in which K passes ½ once, where a search for that place has got to.
+  /// A piece in which K passes ½ once, with the current position of the search for that place.
   struct Root {
     Piece piece;
     double z;
@@ -129,26 +130,27 @@ class OpeningSearch {
     int steps;
   };
 
-  /// Takes up the surroundings of a block that is about to be divided.
+  /// Loads the surroundings of a block that is about to be divided.
   void look(const Block& block, const Surroundings& around);
-  /// Whether |K| stays below ½ in a part of the block looked at, if only because the loops near by are seen as small.
+  /// Whether |K| stays below ½ in a part of the current block because the nearby loops appear small enough from there.
   bool outshone(const Block& part) const;
   static void set(FieldPoints& points, std::size_t k, const Block& block);
   static void set(FieldPoints& points, std::size_t k, const Piece& piece, double z);
-  /// A block that is searched in its own surroundings to the end.
+  /// Searches a block completely in its own surroundings.
   void leaf(const Block& block, const Tangent& tangent, const Surroundings& around);
-  /// Columns of the leaf's blocks in which K may pass ½, `curved` the polynomial's bound for halves of the block.
+  /// Finds the columns of the leaf's blocks in which K may pass ½; `curved` is the polynomial's bound for halves of the
+  /// block.
   void columns(const Block& block, const Tangent& t, double curved);
-  /// Passages on some pieces. One at an end may be found from both sides.
+  /// Finds passages on several pieces. A passage at the end of a piece may be found from both sides.
   void segments();
-  /// Pieces that second derivatives do not settle.
+  /// Handles pieces that second derivatives do not settle.
   void doubts();
-  /// One evaluation for the roots of phases whose slopes vary by less than half of themselves.
+  /// Evaluates the field once for roots of phases whose slopes vary by less than half their value.
   void roots();
-  /// A step of Newton's method.
+  /// One step of Newton's method.
   void newton(Root root, double phase, double slope);
   void add(const Piece& piece, double z, bool rising);
-  /// Of the passages that have none yet.
+  /// Computes the normals of passages that have none yet.
   void normals();
 
   const BoundaryPieces& pieces_;
@@ -156,15 +158,15 @@ class OpeningSearch {
   const Rounded& rounded_;
   const Grid& grid_;
   std::vector<Passage>& out_;
-  std::deque<Surroundings> levels_;  // of the blocks that enclose the present one
+  std::deque<Surroundings> levels_;  // surroundings of the blocks that enclose the current one
   Field field_;
-  std::vector<const BoundaryPieces::Surface*> loops_;  // near, where there are no other pieces
-  double rest_ = 1;                                    // what they may have of |K| before it may be ½; < 0: unknown
-  double curved_ = 0;                                  // of the polynomial along the leaf's columns
+  std::vector<const BoundaryPieces::Surface*> loops_;  // the near loops, if all near pieces are loops
+  double rest_ = 1;    // how much they may add to |K| before it may reach ½; < 0: unknown
+  double curved_ = 0;  // the polynomial's bound along the leaf's columns
   std::vector<Piece> segments_;
   std::vector<Doubt> doubts_;
   std::vector<Root> roots_;
-  std::size_t complete_ = 0;  // passages that have their normals
+  std::size_t complete_ = 0;  // number of passages that have normals
 };
 
 }  // namespace riffler::dexel

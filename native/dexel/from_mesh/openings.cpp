@@ -16,16 +16,16 @@ namespace riffler::dexel {
 
 namespace {
 
-constexpr std::size_t kTasks = 512;  // blocks into which the grid is cut before each is searched alone
+constexpr std::size_t kTasks = 512;  // number of blocks the grid is divided into before each is searched alone
 
-/// How far above and below the part |w| may still reach ½, cells: |w| is at most area / (4 π d²), and at most
-/// boundary / (4 π d).
+/// Distance above and below the part within which |w| may still reach ½, cells: |w| is at most area / (4 π d²), and at
+/// most boundary / (4 π d).
 double margin(const Mesh& mesh, double pitch, double boundary) {
   const double area_cells = area(mesh) / (pitch * pitch);
   return 1.01 * std::min(std::sqrt(area_cells / (2 * kPi)), boundary / (2 * kPi)) + 1;
 }
 
-/// All passages sorted; one that two blocks found at their common face stands once.
+/// All passages, sorted; a passage that two blocks found at their common face appears once.
 std::vector<Passage> sorted(std::vector<std::vector<Passage>> found, int rows) {
   std::vector<std::size_t> begin(static_cast<std::size_t>(rows) + 1, 0);
   for (const std::vector<Passage>& part : found)
@@ -72,7 +72,7 @@ std::vector<Passage> find_passages(const Mesh& mesh, const std::vector<std::vect
   const OpeningSearch::Rounded rounded = [&](int row, int column, double z) {
     return static_cast<int>(std::lround(boundary_winding(loops, projection, pitch, row, column, base + z * pitch)));
   };
-  // Level by level down to blocks enough for all threads, then each block alone.
+  // Divide level by level until there are enough blocks for all threads, then search each block alone.
   struct Task {
     OpeningSearch::Block block;
     OpeningSearch::Tangent tangent;
@@ -126,7 +126,7 @@ double boundary_winding(const std::vector<std::vector<int>>& loops, const Projec
   for (const std::vector<int>& loop : loops)
     for (std::size_t k = 0; k < loop.size(); ++k) {
       const Projection::Vertex &from = projection.vertex(loop[k]), &to = projection.vertex(loop[(k + 1) % loop.size()]);
-      // The ray stands off the lattice as in Projection, by (ε², ε): so little that no vertex is between.
+      // The ray is shifted off the lattice by (ε², ε), as in Projection: so little that no vertex lies between.
       constexpr double kAside = 1.0 / (1LL << 34), kLess = 1.0 / (1LL << 40);
       const Vec3 a(from.u - row - kLess, from.v - column - kAside, (from.z - z) / pitch);
       const Vec3 b(to.u - row - kLess, to.v - column - kAside, (to.z - z) / pitch);
@@ -139,7 +139,8 @@ double boundary_winding(const std::vector<std::vector<int>>& loops, const Projec
       const bool up = from.u <= to.u;
       const Projection::Vertex &low = up ? from : to, &high = up ? to : from;
       if (re < 0 && low.row <= row && row < high.row) {
-        // Which side of the edge the ray is on decides the branch, as it decides what crosses the column.
+        // The side of the edge on which the ray passes decides the branch, exactly as it decides what crosses the
+        // column.
         const double v = low.v + (row - low.u) / (high.u - low.u) * (high.v - low.v);
         const bool left = column >= projection.column(low, high, row, v);
         im = left == up ? std::abs(im) : -std::abs(im);

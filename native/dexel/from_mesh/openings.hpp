@@ -1,5 +1,5 @@
-// Where columns pass through the openings of a broken part: the surfaces on which its boundary's share K of the winding
-// number (field.hpp) is an odd multiple of ½.
+// Finds where columns pass through the openings of a broken part: the surfaces on which the boundary's part K of the
+// winding number (field.hpp) is an odd multiple of ½.
 #pragma once
 
 #include <vector>
@@ -16,8 +16,8 @@ namespace riffler::dexel {
 std::vector<Passage> find_passages(const Mesh& mesh, const std::vector<std::vector<int>>& loops,
                                    const Projection& projection, const Grid& grid, const Progress& progress = {});
 
-/// K on the column (row, column) at z (mm), edge by edge, with every decision as in Projection: n + K is the winding
-/// number itself. Slow: for columns on which passages and crossings do not sum to zero.
+/// K on the column (row, column) at z (mm), summed edge by edge with the same decisions as Projection makes, so that n
+/// + K is exactly the winding number. Slow: use it for columns whose passages and crossings do not sum to zero.
 double boundary_winding(const std::vector<std::vector<int>>& loops, const Projection& projection, double pitch, int row,
                         int column, double z);
 

@@ -1,4 +1,4 @@
-// A mesh that is to become a volume, repaired as far as that needs.
+// A mesh that becomes a volume, repaired as far as that requires.
 #pragma once
 
 #include <optional>
@@ -10,11 +10,11 @@
 
 namespace riffler::dexel {
 
-/// A mesh on its way to a volume: as it was given, or repaired.
+/// A mesh for conversion to a volume, original or repaired.
 class SolidMesh {
  public:
   explicit SolidMesh(const Mesh& given) : used_(&given), boundary_(find_boundary(given)) {
-    // With all edges paired the winding numbers are whole, and they tell whether a shell faces inwards.
+    // If all edges are paired, winding numbers are integers and show by themselves whether a shell faces inwards.
     if (!boundary_.empty()) orient();
   }
 
@@ -22,7 +22,7 @@ class SolidMesh {
   const std::vector<std::vector<int>>& loops() const { return boundary_.loops; }
   const mesh::Orientation& orientation() const { return orientation_; }
 
-  /// Returns whether triangles were turned.
+  /// Orients the mesh, once. Returns whether triangles were turned.
   bool orient() {
     if (asked_) return false;
     asked_ = true;

@@ -11,7 +11,7 @@ bool holds(std::span<const Span> ray, double w) {
   return after != ray.end() && after->near <= w;
 }
 
-/// Those of one ray, at (u, v) in the cyclic frame of `axis`.
+/// Adds the ends on ray (i, j) within `reach`.
 void add_ends(const Grid& grid, int i, int j, const Interval& reach, const Grid* protect, std::vector<EndPoint>& out) {
   const std::span<const Span> ray = grid.ray(i, j);
   const std::span<const SpanNormals> normals = grid.ray_normals(i, j);

@@ -1,4 +1,4 @@
-// The ends of a tri-dexel volume's spans, taken as points of its surface.
+// The span ends of a tri-dexel volume as points of its surface.
 #pragma once
 
 #include <algorithm>
@@ -10,27 +10,29 @@
 
 namespace riffler::dexel {
 
-/// Where material ends: world frame.
+/// A point where material ends; world frame, mm.
 struct EndPoint {
   Vec3 place;
   Vec3 normal;  ///< unit, out of the material
-  /// mm² / h² of surface that it stands for: the three grids together put |nx| + |ny| + |nz| ends on a h² of surface.
+  /// Area of surface that the point represents, as a multiple of h²: an area h² has |nx| + |ny| + |nz| ends of all
+  /// three grids together.
   double area;
-  bool held;  ///< lies in what is protected
+  bool held;  ///< lies in the protected region
 };
 
-/// All ends within `radius` of `centre`, with `held` as `protect` says, which may be null; in an order that depends on
-/// nothing but the volume.
+/// All span ends within `radius` (mm) of `centre`. `protect` (may be null) defines `held`. Their order depends only on
+/// the volume.
 std::vector<EndPoint> end_points(const Volume& volume, const Vec3& centre, double radius, const Volume* protect);
 
-/// Points by columns of square cells along one axis, for those who look for neighbours again and again.
+/// Points sorted into columns of square cells along one axis, for repeated neighbour searches.
 class Columns {
  public:
-  /// `places`: world frame. `side`: of a cell, mm.
+  /// `places`: world frame. `side`: side of a cell, mm.
   Columns(Axis axis, std::vector<Vec3> places, double side);
 
   Axis axis() const { return axis_; }
-  /// f(first, last) for runs of `order` that together hold all points in `box` (cyclic frame), and others.
+  /// Calls f(first, last) for ranges of `order` that together contain all points in `box` (cyclic frame), and possibly
+  /// others.
   template <class F>
   void for_each_run(const Box3& box, const F& f) const {
     const int u0 = cell(box.lower.x, lower_.x, nu_), u1 = cell(box.upper.x, lower_.x, nu_);
@@ -46,7 +48,7 @@ class Columns {
           f(static_cast<std::size_t>(from - along_.begin()), static_cast<std::size_t>(to - along_.begin()));
       }
   }
-  /// Points, column by column, each from its lowest to its highest.
+  /// Point numbers, column by column, each column from its lowest to its highest point.
   const std::vector<std::uint32_t>& order() const { return order_; }
 
  private:

@@ -6,17 +6,17 @@ namespace riffler::dexel {
 
 namespace {
 
-/// How far the planes of points count, pitches. Every place that a surface passed on its way, and that lies no farther
-/// from a moved point than rays stand apart, has points within it.
+/// Range of a point's plane, in pitches. Every place that the moving surface passed, no farther from a moved point than
+/// rays are apart, has points within this distance.
 constexpr double kFieldReach = 2;
-/// No place of a surface is farther from the ends on its rays, pitches: 0.71 where it lies along two axes.
+/// Maximum distance of a surface point from the ends on its rays, in pitches: 0.71 if the surface lies along two axes.
 constexpr double kWidestGap = 1.2;
-/// How far a surface bends away from the plane of a point within that gap, pitches: by this where its radius is two.
+/// Maximum deviation of the surface from a point's plane within that gap, in pitches, for a radius of curvature of two.
 constexpr double kBend = 0.36;
-/// Of a place that no point is near.
+/// Value at a place without points nearby.
 constexpr double kNowhere = std::numeric_limits<double>::infinity();
 
-/// Puts intervals in order and joins those that touch.
+/// Sorts intervals and joins those that touch.
 void join(std::vector<Interval>& intervals) {
   std::sort(intervals.begin(), intervals.end(), [](const Interval& a, const Interval& b) { return a.near < b.near; });
   std::size_t n = 0;
@@ -29,8 +29,8 @@ void join(std::vector<Interval>& intervals) {
   intervals.resize(n);
 }
 
-/// Weighted sums over points, seen from a place: both the mean of their planes and the plane through their mean, half
-/// and half. Of points on a sphere the one is off outwards by as much as the other is inwards.
+/// Weighted sums over points, relative to a place. The height is the average of two estimates: the mean of the points'
+/// planes, and the plane through their mean. On a sphere their errors are equal and opposite.
 struct Planes {
   double heights = 0;
   Vec3 mean{0}, normals{0};
@@ -45,13 +45,13 @@ struct Planes {
   }
 };
 
-/// What points of one sheet of the surface say of a place whose old state is `inside` or not.
+/// Estimate from the points of one sheet of the surface at a place whose old state is `inside` or not.
 struct Sheet {
   double weights = 0;
   Planes before, after;
 
   struct Opinion {
-    bool right;  // about the old state
+    bool right;  // whether it agrees with the old state
     FieldValue now;
   };
   Opinion opinion(bool inside) const {
@@ -90,13 +90,13 @@ void MovedField::find_changes(double u, double v) {
   join(changes_);
 }
 
-/// Where the ray through (0, 0, w) passes what the surface around a point at q swept: within the gap to the next
-/// points, and of their plane within what they moved, with room for how the surface bends and turns.
+/// The interval of the ray through (0, 0, w) that the surface around a point at q swept: within the gap to the next
+/// points, and as far from their plane as they moved, with a margin for the surface's curvature and rotation.
 Interval MovedField::change_around(const Vec3& q, const Vec3& normal, double way) const {
   const double radius = kWidestGap * pitch_ + way, rest = radius * radius - q.x * q.x - q.y * q.y;
   if (rest <= 0) return {};
   const double half = std::sqrt(rest), thick = kBend * pitch_ + 3 * way;
-  const double at_q = -normal.x * q.x - normal.y * q.y;  // height over the plane beside q
+  const double at_q = -normal.x * q.x - normal.y * q.y;  // height over the plane at the ray
   if (std::abs(normal.z) * half + std::abs(at_q) <= thick) return {q.z - half, q.z + half};
   if (std::abs(at_q) - std::abs(normal.z) * half >= thick) return {};
   const double a = (-thick - at_q) / normal.z, b = (thick - at_q) / normal.z;
@@ -156,7 +156,7 @@ FieldValue MovedField::operator()(double w, bool inside) {
   if (!(other.weights > 0)) return mine.now;
   const Sheet::Opinion theirs = other.opinion(inside);
   if (!theirs.right) return mine.now;
-  // Each of two sheets, the sides of a wall or of a gap, may have passed here.
+  // Each of two sheets, the sides of a wall or gap, may have passed here.
   return !mine.right || (theirs.now.value > mine.now.value) == inside ? theirs.now : mine.now;
 }
 

@@ -1,4 +1,4 @@
-// What material becomes of a ray when points of the surface have moved.
+// The material on a ray after points of the surface have moved.
 #pragma once
 
 #include <span>
@@ -9,27 +9,27 @@
 
 namespace riffler::dexel {
 
-/// A value that is negative in the material, and the direction in which it grows.
+/// A field value, negative in the material, and the direction in which it grows.
 struct FieldValue {
-  double value;  ///< about the distance from the surface, mm
-  Vec3 normal;   ///< unit, cyclic frame of the ray
+  double value;  ///< approximate distance from the surface, mm
+  Vec3 normal;   ///< unit, in the cyclic frame of the ray
 };
 
-/// Moved points seen along one ray after another. The surface they say is that of an implicit moving least squares
+/// Evaluates the moved points along one ray after another. They define a surface by an implicit moving least squares
 /// field of their planes (Shen, O'Brien, Shewchuk, "Interpolating and Approximating Implicit Surfaces from Polygon
-/// Soup", SIGGRAPH 2004; Kolluri, "Provably Good Moving Least Squares", 2008): it passes through the points.
+/// Soup", SIGGRAPH 2004; Kolluri, "Provably Good Moving Least Squares", 2008), which passes through the points.
 ///
-/// Such a field errs beside sharp edges, and a ray knows more: its own spans. So only the *difference* between the
-/// field of the points after and before counts: F = state · |before| + after − before, with the ray's own state, −1 in
-/// the material and 1 beside it. Where nothing has moved, nothing changes, whatever the field makes of it.
+/// Such a field is wrong near sharp edges, while the ray's own spans are exact. So only the *difference* between the
+/// fields after and before the move counts: F = state · |before| + after − before, where state is −1 if the ray is in
+/// the material and 1 outside. Where nothing has moved, nothing changes, even where the field is wrong.
 class MovedField {
  public:
   MovedField(const std::vector<MovedPoint>& points, const Columns& columns, double pitch);
 
-  /// To the ray at (u, v) in the cyclic frame of the columns. Returns where along it the material may have changed:
-  /// disjoint, in order, valid until the next call.
+  /// Selects the ray at (u, v) in the cyclic frame of the columns. Returns the intervals along it in which the material
+  /// may have changed: disjoint, in order, valid until the next call.
   std::span<const Interval> look_along(double u, double v);
-  /// At w within one of these, where the ray's own state is `inside` or not.
+  /// The field at w inside one of these intervals; `inside` is whether the ray itself is in the material at w.
   FieldValue operator()(double w, bool inside);
 
  private:
@@ -45,12 +45,12 @@ class MovedField {
   const std::vector<MovedPoint>& points_;
   const Columns& columns_;
   double pitch_, reach_;
-  double farthest_ = 0;  // way of any point
+  double farthest_ = 0;  // longest displacement of a point, mm
   std::vector<Interval> changes_;
-  std::vector<std::uint32_t> order_;  // points near the ray, as they come along it after the move
+  std::vector<std::uint32_t> order_;  // points near the ray, in their order along it after the move
   std::vector<Near> near_;
-  std::vector<double> off_, along_;  // after: squared distance from the ray, coordinate along it
-  std::vector<double> square_;       // of the distance from the place asked for
+  std::vector<double> off_, along_;  // after the move: squared distance from the ray, coordinate along it
+  std::vector<double> square_;       // squared distance from the queried place
 };
 
 }  // namespace riffler::dexel

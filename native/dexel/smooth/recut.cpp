@@ -6,13 +6,14 @@ namespace riffler::dexel {
 
 namespace {
 
-/// Between two places of a ray where the field is asked for its sign, pitches. What is thinner, and new, is not found.
+/// Spacing of the field samples on a ray, in pitches. A new feature thinner than this is not found.
 constexpr double kSampleStep = 0.5;
-/// As the field is about the distance from the surface, none of that far steps passes it.
+/// The field approximates the distance from the surface, so steps of this fraction of its value do not cross the
+/// surface.
 constexpr double kTrust = 0.7;
-/// How exactly ends are found, pitches.
+/// Accuracy of ends, in pitches.
 constexpr double kEndTolerance = 1e-6;
-/// An end that moves by less stays where it is, to the bit.
+/// An end that would move by less stays bit-identical, pitches.
 constexpr double kStays = 1e-6;
 
 }  // namespace
@@ -50,13 +51,13 @@ std::shared_ptr<const Tile> Recutter::run(std::size_t tile, const Vec3& centre, 
   return changed > 0 ? builder.finish() : before;
 }
 
-/// Makes `ends_` of a ray; false where they are as they were.
+/// Computes `ends_` of a ray. Returns false if they are unchanged.
 bool Recutter::recut(std::span<const Span> ray, std::span<const SpanNormals> normals,
                      std::span<const Interval> changes) {
   old_.clear(), ends_.clear();
   for (std::size_t k = 0; k < ray.size(); ++k)
     old_.push_back({ray[k].near, normals[k].near}), old_.push_back({ray[k].far, normals[k].far});
-  std::size_t next = 0;  // of the old ends
+  std::size_t next = 0;  // index of the next old end
   for (const Interval& c : changes) {
     const Interval change = c.cut({grid_.box().lower.z, grid_.box().upper.z});
     if (!(change.near < change.far)) continue;
@@ -70,7 +71,7 @@ bool Recutter::recut(std::span<const Span> ray, std::span<const SpanNormals> nor
   return ends_ != old_;
 }
 
-/// Ends within `change`, of which old_[first] to old_[last − 1] lie in it. Before and behind it the ray is as it was.
+/// Finds the ends within `change`, which contains old_[first] to old_[last − 1]. The rest of the ray is unchanged.
 void Recutter::follow(const Interval& change, std::size_t first, std::size_t last) {
   place_stops(change, first, last);
   const auto inside = [](double value) { return value < 0; };
@@ -87,7 +88,7 @@ void Recutter::follow(const Interval& change, std::size_t first, std::size_t las
   if (inside(before.value) != (last % 2 == 1)) push(before.w, {0, 0, inside(before.value) ? 1 : -1});
 }
 
-/// No step passes these: the old ends, and the middles between them, so that nothing thin is overlooked that was there.
+/// Places that no step may skip: the old ends and the midpoints between them, so that thin old features are not missed.
 void Recutter::place_stops(const Interval& change, std::size_t first, std::size_t last) {
   stops_.clear();
   for (std::size_t k = first; k < last; ++k) {
@@ -105,12 +106,12 @@ double Recutter::value(double w) {
   return v.value;
 }
 
-/// Puts an end where the field is 0 between a and b, whose signs differ: the Illinois method (Dowell, Jarratt, "A
-/// modified regula falsi method", 1971), with every fourth step a half, as it is slow where the field jumps.
+/// Adds an end where the field is 0 between a and b, whose signs differ: the Illinois method (Dowell, Jarratt, "A
+/// modified regula falsi method", 1971), with a bisection every fourth step, because it is slow where the field jumps.
 void Recutter::cross(Sample a, Sample b) {
   const bool opens = b.value < 0;
   double w = b.w;
-  int kept = 0;  // which end of the bracket the last step left as it was: 1 a, 2 b
+  int kept = 0;  // end of the bracket that the last step kept: 1 a, 2 b
   for (int step = 1; step <= 80 && b.w - a.w > kEndTolerance * pitch_; ++step) {
     const bool halves = step % 4 == 0;
     const double next = halves ? 0.5 * (a.w + b.w) : a.w + (b.w - a.w) * (a.value / (a.value - b.value));
@@ -133,7 +134,7 @@ void Recutter::cross(Sample a, Sample b) {
 
 void Recutter::push(double w, const Vec3& normal) {
   const bool opens = ends_.size() % 2 == 0;
-  // The old end of the same kind that stays, if there is one.
+  // Keep the old end of the same kind if it moves too little.
   const auto near =
       std::partition_point(old_.begin(), old_.end(), [&](const End& e) { return e.w < w - kStays * pitch_; });
   for (auto e = near; e != old_.end() && e->w <= w + kStays * pitch_; ++e)
@@ -141,7 +142,7 @@ void Recutter::push(double w, const Vec3& normal) {
       ends_.push_back(*e);
       return;
     }
-  // Out of the material, also where the ray grazes and the mean of the points' normals leans to the other side.
+  // Points out of the material, even if the ray grazes the surface and the mean normal leans to the other side.
   const double out = opens ? -1 : 1;
   const Vec3 n = glm::normalize(Vec3(normal.x, normal.y, out * std::max(normal.z * out, 1e-4)));
   if (!ends_.empty()) w = std::max(w, ends_.back().w);

@@ -1,4 +1,4 @@
-// Rays of a tile, cut anew where points of the surface have moved.
+// Rebuilds the rays of a tile after points of the surface have moved.
 #pragma once
 
 #include <memory>
@@ -15,8 +15,8 @@ class Recutter {
  public:
   Recutter(const Grid& grid, MovedField& field);
 
-  /// The tile after the move, or the tile itself where nothing changes; rays farther than `radius` from `centre` (world
-  /// frame) are left out.
+  /// The tile after the move, or the tile itself if nothing changes. Skips rays farther than `radius` from `centre`
+  /// (world frame, mm).
   std::shared_ptr<const Tile> run(std::size_t tile, const Vec3& centre, double radius, Stats& stats);
 
  private:
@@ -39,9 +39,9 @@ class Recutter {
   const Grid& grid_;
   MovedField& field_;
   double pitch_;
-  std::vector<End> old_, ends_;  // of one ray, opening and closing in turn
+  std::vector<End> old_, ends_;  // of one ray, alternately opening and closing
   std::vector<double> stops_;
-  Vec3 normal_{0};  // of the value asked for last
+  Vec3 normal_{0};  // of the field value evaluated last
   std::uint64_t values_ = 0;
 };
 

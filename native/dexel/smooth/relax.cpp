@@ -1,5 +1,5 @@
-// Local linear regression (Cleveland 1979) of heights over the plane across the mean normal. Unlike the mean of the
-// neighbours' places it leaves planes as they are at their borders too, where neighbours are on one side.
+// Local linear regression (Cleveland 1979) of heights over the plane perpendicular to the mean normal. Unlike averaging
+// the neighbours' positions, it keeps planes unchanged at their borders too, where all neighbours are on one side.
 #include "dexel/smooth/relax.hpp"
 
 #include "dexel/joiner.hpp"
@@ -41,13 +41,13 @@ struct Plane {
   double height;  // along the normal
 };
 
-/// Heights along the mean normal n over the place across it, height = a + b · place: slope and height of that plane.
+/// Fits height = a + b · place, with heights along the mean normal n and places perpendicular to it.
 Plane fit(const Moments& m, const Vec3& own_normal) {
   const double length = glm::length(m.normal);
   const Vec3 n = length > 1e-6 * m.weight ? m.normal / length : own_normal;
   const Mat3 covariance = m.covariance(), across = Mat3(1) - glm::outerProduct(n, n);
-  // The ridge keeps slopes finite where the neighbours stand in a row. Packed normals are off by up to 5e-5, which the
-  // slope makes good; the ridge leaves 1e-6 of that.
+  // The ridge term keeps slopes finite if the neighbours lie in a row. Packed normals have errors up to 5e-5, which the
+  // slope corrects except for 1e-6 of the error, due to the ridge.
   constexpr double ridge = 1e-7;
   const Mat3 spread = across * covariance * across + ridge * Mat3(1) + glm::outerProduct(n, n);
   const Vec3 slope = across * (glm::inverse(spread) * (across * (covariance * n)));
@@ -56,7 +56,7 @@ Plane fit(const Moments& m, const Vec3& own_normal) {
   return {(n - slope) / steepness, (glm::dot(n, mean) - glm::dot(slope, mean)) / steepness};
 }
 
-/// Points in the order of their columns along z, so that runs of neighbours are runs in memory.
+/// Sorts points by columns along z, so that runs of neighbours are contiguous in memory.
 std::vector<EndPoint> sorted(const std::vector<EndPoint>& points, const Columns& columns) {
   std::vector<EndPoint> out;
   out.reserve(points.size());
@@ -71,7 +71,7 @@ std::vector<Vec3> places(const std::vector<EndPoint>& points) {
   return out;
 }
 
-/// The plane through the neighbours of `p`, relative to it; heights in mm.
+/// The plane through the neighbours of `p`, relative to p; heights in mm.
 Plane plane_around(const EndPoint& p, const std::vector<EndPoint>& points, const Columns& columns, double reach) {
   Moments moments;
   const double inverse = 1 / reach;

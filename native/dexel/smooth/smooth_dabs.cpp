@@ -1,6 +1,6 @@
-// Three stages for each dab: the ends of all spans in the brush are points of the surface (end_points.hpp), these move
-// (relax.hpp), and the rays are cut anew by the surface that the moved points say (moved_field.hpp). One field cuts the
-// three grids, so they agree.
+// Each dab has three stages: the ends of all spans in the brush become points of the surface (end_points.hpp), the
+// points move (relax.hpp), and the rays are rebuilt from the moved points (moved_field.hpp, recut.hpp). One field
+// defines all three grids, so they agree.
 #include "riffler/dexel/smooth/smooth_dabs.hpp"
 
 #include <cmath>
@@ -40,7 +40,7 @@ struct Touched {
   Stats stats;
 };
 
-/// Tiles of rays within `radius` of the centre, of all grids.
+/// The tiles of all grids with rays within `radius` of the centre.
 std::vector<Touched> touched_tiles(const Volume& volume, const Vec3& centre, double radius) {
   std::vector<Touched> out;
   for (std::size_t g = 0; g < volume.grids().size(); ++g) {
@@ -55,7 +55,7 @@ std::vector<Touched> touched_tiles(const Volume& volume, const Vec3& centre, dou
   return out;
 }
 
-/// Lengths along one ray: what only `a` has.
+/// Length of the parts of one ray that only `a` contains.
 double length_without(std::span<const Span> a, std::span<const Span> b) {
   double sum = 0;
   auto other = b.begin();
@@ -75,7 +75,7 @@ class Dab {
  public:
   Dab(const Volume& volume, const Vec3& centre, const SmoothOptions& options, const Progress& progress)
       : volume_(volume), options_(options), pitch_(volume.frame().pitch), centre_(centre) {
-    // Rays change no farther out than a gap between points and a move; the field there looks as far again.
+    // Rays change no farther out than a gap between points plus a move, and the field there needs as much again.
     const double margin = 5 * pitch_;
     points_ = relax(end_points(volume, centre, options.radius + margin, options.protect), pitch_,
                     {centre, options.radius, options.strength}, progress);
@@ -105,7 +105,7 @@ class Dab {
   }
 
  private:
-  /// The old tile with what changed beside what is protected.
+  /// The new tile, with the old material inside the protected region.
   TilePtr without_protected(const Touched& t, const TilePtr& before) const {
     const Grid& grid = volume_.grids()[t.grid];
     TileBuilder builder(true);
@@ -127,7 +127,7 @@ class Dab {
   std::vector<Columns> columns_;
 };
 
-/// What one dab takes and puts on, mm³; true where it changed anything.
+/// Applies one dab and adds the removed and added volumes, mm³. Returns whether anything changed.
 bool apply_dab(Volume& volume, const Vec3& centre, const SmoothOptions& options, const Progress& progress,
                double& removed, double& added) {
   Stats stats;

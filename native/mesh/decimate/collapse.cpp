@@ -13,12 +13,12 @@ using OpenMesh::FaceHandle;
 using OpenMesh::HalfedgeHandle;
 using OpenMesh::VertexHandle;
 
-// A new triangle's normal may differ from that of the one it takes the place of by 78°.
+// Limit of the change of a triangle's normal: cosine of 78°.
 constexpr double kTurn = 0.2;
-// Twice the area over the square of the longest edge.
+// Minimum of twice the area over the square of the longest edge.
 constexpr double kThin = 1e-4;
-// At a vertex: a collapse looks at all of them, and where one fan is all of a mesh, that is its square. The edges round
-// such a fan go first.
+// Maximum number of half-edges at a vertex. A collapse visits all of them, so a mesh that is one large fan would take
+// quadratic time; the edges around such a fan collapse first.
 constexpr int kMaxSpokes = 512;
 
 bool turned(const Vec3& was, const Vec3& is) {
@@ -56,7 +56,7 @@ bool Collapse::has_few_spokes(VertexHandle v) const {
   return false;
 }
 
-/// A vertex of a border stays on its border, two borders do not meet, and no triangle hangs by one vertex.
+/// A border vertex stays on its border, two borders do not meet, and no triangle is left hanging by one vertex.
 bool Collapse::keeps_borders() const {
   const HalfedgeHandle back = mesh_.opposite_halfedge_handle(half_);
   const bool along = mesh_.is_boundary(half_) || mesh_.is_boundary(back);
@@ -72,8 +72,8 @@ bool Collapse::keeps_borders() const {
 }
 
 /// The link condition (Dey, Edelsbrunner, Guha & Nekhayev, Publ. Inst. Math. 66 (1999) 23): the two ends have no common
-/// neighbours but the tips of the edge's triangles. The tetrahedron meets it and would become two triangles back to
-/// back, but these are a fold. (OpenMesh's is_collapse_ok asks the same, but allocates memory on each call.)
+/// neighbours but the tips of the edge's triangles. A tetrahedron satisfies it and would become two triangles back to
+/// back, but the fold test rejects that. (OpenMesh's is_collapse_ok tests the same, but allocates memory on each call.)
 bool Collapse::keeps_manifold() {
   if (between_) return ring_is_simple();
   marked_.clear();
@@ -86,7 +86,7 @@ bool Collapse::keeps_manifold() {
   return common == lost_;
 }
 
-/// Whether all vertices of the ring are different: the link condition where the ring goes round both ends.
+/// Whether all vertices of the ring are different: the link condition if the ring surrounds both ends.
 bool Collapse::ring_is_simple() {
   if (ring_.size() <= 24) {
     for (std::size_t i = 1; i < ring_.size(); ++i)
@@ -105,7 +105,7 @@ void Collapse::add_spoke(HalfedgeHandle spoke) {
   ring_.push_back({spoke, v, to_vec3(mesh_.point(v))});
 }
 
-/// The face to the left of `spoke`, which is (apex, a, b).
+/// Adds the face to the left of `spoke`, which is (apex, a, b).
 void Collapse::add_face(HalfedgeHandle spoke, const Vec3& apex, const Vec3& a, const Vec3& b) {
   const Vec3 cross = glm::cross(a - apex, b - apex);
   const double longest =
@@ -114,7 +114,7 @@ void Collapse::add_face(HalfedgeHandle spoke, const Vec3& apex, const Vec3& a, c
 }
 
 void Collapse::gather_fan() {
-  // OpenMesh keeps the outgoing border half-edge at a border vertex; counter-clockwise it is the last.
+  // OpenMesh stores the outgoing border half-edge at a border vertex, which is the last one counter-clockwise.
   HalfedgeHandle spoke = half_;
   if (border_) spoke = mesh_.opposite_halfedge_handle(mesh_.prev_halfedge_handle(mesh_.halfedge_handle(from_)));
   const HalfedgeHandle start = spoke;
@@ -152,7 +152,7 @@ void Collapse::gather_both_fans() {
   add_face(back, to_point_, from_point_, ring(turn));
 }
 
-/// No new face without area, or turned over.
+/// Whether every new face has area and keeps its side up.
 bool Collapse::keeps_shape() {
   for (int i = first_; i <= last_; ++i) {
     Face& face = faces_[i];
@@ -162,7 +162,7 @@ bool Collapse::keeps_shape() {
     const double longest = std::max({geom::squared_length(a), geom::squared_length(b), geom::squared_length(b - a)}),
                  area = geom::squared_length(face.new_cross);
     if (area > kThin * kThin * longest * longest) continue;
-    // A mesh with slivers may keep them, but not get worse ones.
+    // A mesh with slivers may keep them, but must not get worse ones.
     double worst = 1;
     for (const Face& old : faces_)
       worst = std::min(worst, old.longest > 0 ? glm::length(old.old_cross) / old.longest : 0);
@@ -171,19 +171,19 @@ bool Collapse::keeps_shape() {
   return true;
 }
 
-/// No two neighbours on each other.
+/// Whether no two neighbours fold onto each other.
 bool Collapse::keeps_angles() const {
   for (int i = first_; i <= last_; ++i) {
     if (folds(i, i)) return false;
     if (i > first_ && opposed(faces_[i - 1].new_cross, faces_[i].new_cross)) return false;
   }
   if (between_) return !opposed(faces_[last_].new_cross, faces_[first_].new_cross);
-  // Across the edges that vanishing triangles had in common with what lies beyond them.
+  // Across the edges that vanishing triangles shared with their neighbours.
   if (first_ > 0 && folds(first_, 0)) return false;
   return last_ + 1 >= old_faces() || !folds(last_, last_ + 1);
 }
 
-/// Whether new face i would lie on the face beyond the edge from ring(j) to ring(j + 1).
+/// Whether new face i would fold onto the face beyond the edge from ring(j) to ring(j + 1).
 bool Collapse::folds(int i, int j) const {
   const HalfedgeHandle twin = mesh_.opposite_halfedge_handle(faces_[j].outer);
   if (mesh_.is_boundary(twin)) return false;
@@ -191,8 +191,8 @@ bool Collapse::folds(int i, int j) const {
   return opposed(faces_[i].new_cross, glm::cross(ring(j) - ring(j + 1), tip - ring(j + 1)));
 }
 
-/// This does what OpenMesh's collapse does, without its search for border half-edges at every vertex, which is the
-/// square of a fan's size, and its checked access: together they took longer than all the rest of a collapse.
+/// Does the same as OpenMesh's collapse, without its search for border half-edges at every vertex (quadratic in the
+/// size of a fan) and without its checked access. Together they took longer than the rest of a collapse.
 void Collapse::commit() {
   mesh_.set_point(to_, to_openmesh(new_));
   const HalfedgeHandle back = mesh_.opposite_halfedge_handle(half_);
@@ -205,8 +205,8 @@ void Collapse::commit() {
   const bool left_open = mesh_.is_boundary(half_), right_open = mesh_.is_boundary(back);
   const HalfedgeHandle left = mesh_.next_halfedge_handle(half_), left_gone = mesh_.prev_halfedge_handle(half_);
   const HalfedgeHandle right_gone = mesh_.next_halfedge_handle(back), right = mesh_.prev_halfedge_handle(back);
-  // At a vertex of a border, OpenMesh keeps the half-edge that starts there and is of the border. Where `to` is one,
-  // its own stays, unless that is the edge that goes: then it is the next one round the border.
+  // OpenMesh stores at a border vertex the border half-edge that starts there. If `to` is on the border it keeps its
+  // own half-edge, unless that edge vanishes; then the next one along the border replaces it.
   if (right_open || !to_border_) mesh_.set_halfedge_handle(to_, right_open ? right_gone : left);
   if (left_open) mesh_.set_next_halfedge_handle(left_gone, left);
   if (right_open) mesh_.set_next_halfedge_handle(right, right_gone);
@@ -216,8 +216,8 @@ void Collapse::commit() {
   mesh_.status(from_).set_deleted(true);
 }
 
-/// The face that had the half-edges `kept` and `gone` vanishes: `kept` takes the place of what lay across `gone`, a
-/// face's or the border's.
+/// The face with the half-edges `kept` and `gone` vanishes: `kept` replaces the half-edge across `gone`, in its face or
+/// its border.
 void Collapse::close_side(HalfedgeHandle kept, HalfedgeHandle gone) {
   const HalfedgeHandle across = mesh_.opposite_halfedge_handle(gone);
   const HalfedgeHandle next = mesh_.next_halfedge_handle(across), before = mesh_.prev_halfedge_handle(across);

@@ -1,4 +1,4 @@
-// One edge collapse: what it would change, and whether it may.
+// One edge collapse: its effect on the mesh, and whether it is allowed.
 #pragma once
 
 #include <vector>
@@ -9,23 +9,23 @@
 
 namespace riffler::mesh {
 
-/// The two ends of an edge become one vertex. prepare gathers what changes and decides; the rest describes the last
-/// prepared one.
+/// Merges the two ends of an edge into one vertex. `prepare` collects the affected faces and decides; all other
+/// functions refer to the collapse prepared last.
 ///
-/// `from` goes, `to` stays and may move. The ring are the vertices round what changes, counter-clockwise: the
-/// neighbours of `from`, `to` among them, or where `to` moves, those of both. Old face i has the edge from ring(i) to
-/// ring(i + 1); the faces first … last of them become the new faces (to, ring(i), ring(i + 1)). The other old faces
-/// vanish.
+/// `from` is removed; `to` stays and may move. The ring holds the vertices around the changing faces,
+/// counter-clockwise: the neighbours of `from` (including `to`) or, if `to` moves, the neighbours of both. Old face i
+/// has the edge from ring(i) to ring(i + 1). The old faces first … last become the new faces (to, ring(i), ring(i +
+/// 1)); the other old faces vanish.
 class Collapse {
  public:
   explicit Collapse(HalfEdgeMesh& mesh) : mesh_(mesh) {}
 
-  /// False where the mesh would not stay a manifold, a border would leave its line of vertices, or a triangle would
-  /// turn over, lose its area or fold onto a neighbour.
+  /// Returns false if the mesh would not stay a manifold, a border would leave its line of vertices, or a triangle
+  /// would turn over, lose its area or fold onto a neighbour.
   bool prepare(const CollapseTarget& placement);
   void commit();
 
-  /// Calls visit(half-edge that starts at v) once for each.
+  /// Calls visit(half-edge) for each half-edge that starts at v.
   template <class Visit>
   void for_each_spoke(OpenMesh::VertexHandle v, const Visit& visit) const {
     const OpenMesh::HalfedgeHandle start = mesh_.halfedge_handle(v);
@@ -45,7 +45,7 @@ class Collapse {
   int faces_lost() const { return lost_; }
 
   int ring_size() const { return static_cast<int>(ring_.size()); }
-  /// i may be ring_size(): the ring is closed, unless `from` is on a border.
+  /// i may be ring_size(): the ring is closed unless `from` is on a border.
   const Vec3& ring(int i) const { return ring_[wrap(i)].point; }
   OpenMesh::VertexHandle ring_vertex(int i) const { return ring_[wrap(i)].vertex; }
   /// A half-edge that ends at ring(i); it starts at `from` or `to`.
@@ -54,11 +54,12 @@ class Collapse {
   int old_faces() const { return static_cast<int>(faces_.size()); }
   int first() const { return first_; }
   int last() const { return last_; }
-  /// Twice the area, times the normal, of old and of new face i; the latter is 0 where there is none.
+  /// Cross product of two edges of old or new face i (twice the area times the normal); new_cross is 0 if the face
+  /// vanishes.
   const Vec3& old_cross(int i) const { return faces_[i].old_cross; }
   const Vec3& new_cross(int i) const { return faces_[i].new_cross; }
   bool on_border() const { return border_; }
-  /// The ring's index of `to`, where that does not move.
+  /// Index of `to` in the ring, if `to` does not move.
   int target() const { return target_; }
 
  private:
@@ -69,9 +70,9 @@ class Collapse {
   };
   struct Face {
     OpenMesh::FaceHandle handle;
-    OpenMesh::HalfedgeHandle outer;  // the half-edge that is not at the apex
+    OpenMesh::HalfedgeHandle outer;  // the half-edge opposite the apex
     Vec3 old_cross, new_cross;
-    double longest;  // edge of the old face, squared
+    double longest;  // longest edge of the old face, squared
   };
 
   int wrap(int i) const { return i == ring_size() ? 0 : i; }

@@ -28,7 +28,7 @@ using OpenMesh::EdgeHandle;
 using OpenMesh::HalfedgeHandle;
 using OpenMesh::VertexHandle;
 
-// Fits the cache that a core has to itself.
+// Fits the private cache of a core.
 constexpr std::size_t kPatchVertices = 8192;
 
 void check_limits(const DecimateLimits& limits) {
@@ -37,22 +37,22 @@ void check_limits(const DecimateLimits& limits) {
     throw std::invalid_argument("tolerance must be finite and not negative, not " + std::to_string(*limits.tolerance));
 }
 
-/// What is left of the tolerance for the rounded surface, so that the unrounded one keeps to it.
+/// The tolerance that the rounded surface must keep so that the unrounded one keeps `tolerance`.
 double left_after_rounding(double tolerance, const Mesh& mesh) {
   double largest = 0;
   for (const Vec3& v : mesh.vertices) largest = std::max(largest, glm::length(geom::to_float32(v) - v));
   return std::max(0.0, tolerance - 2 * largest);
 }
 
-/// What all patches have in common.
+/// Data shared by all patches.
 struct Surface {
   HalfEdges& half_edges;
   EdgeCosts& costs;
-  Traces* traces;  // none without a tolerance
+  Traces* traces;  // null without a tolerance
   double tolerance;
 };
 
-/// Collapses edges of one patch, cheapest first.
+/// Collapses the edges of one patch, cheapest first.
 class Worker {
  public:
   explicit Worker(const Surface& surface) : mesh_(surface.half_edges.mesh), costs_(surface.costs), collapse_(mesh_) {
@@ -62,7 +62,7 @@ class Worker {
   EdgeQueue& queue() { return queue_; }
   std::size_t lost() const { return lost_; }
 
-  /// All edges between inner vertices.
+  /// Queues all edges between inner vertices.
   void fill(const Patches& patches, std::size_t patch) {
     patches.for_each_vertex(patch, [&](VertexHandle v) {
       if (!patches.inner(v)) return;
@@ -77,8 +77,8 @@ class Worker {
       if (!mesh_.status(EdgeHandle(e)).deleted()) add(EdgeHandle(e));
   }
 
-  /// Goes on until the next edge's cost is beyond the bucket `last`, or `quota` triangles are gone,
-  /// or for a while.
+  /// Runs until the next edge's cost is beyond the bucket `last`, `quota` triangles are gone, or kTries edges were
+  /// tried.
   void run(int last, std::size_t quota, const Patches* patches) {
     lost_ = 0;
     for (std::size_t tries = 0; lost_ < quota && tries < kTries && queue_.first() <= last; ++tries) {
@@ -94,7 +94,7 @@ class Worker {
   }
 
  private:
-  static constexpr std::size_t kTries = 1 << 15;  // until the caller is heard again
+  static constexpr std::size_t kTries = 1 << 15;  // edges tried between two reports of progress
 
   void add(EdgeHandle edge) {
     if (!(costs_[edge] < std::numeric_limits<float>::infinity())) costs_.refresh(edge);
@@ -143,7 +143,7 @@ class Decimation {
   }
 
  private:
-  /// One partition, until about half of the triangles are gone or there is nothing left to do.
+  /// Works on one partition until about half of the triangles are gone or no edge is left.
   void run_patches(int frame) {
     const Patches patches(surface_.half_edges.mesh, frame, kPatchVertices, as_it_is());
     std::vector<std::unique_ptr<Worker>> workers(patches.size());
@@ -182,7 +182,7 @@ class Decimation {
   void for_each(std::size_t n, const Body& body) {
     base::parallel_for(n, 1, [&](std::size_t i, std::size_t) { body(i); }, as_it_is());
   }
-  /// For what brings the share no further.
+  /// Progress for steps that do not advance the share.
   Progress as_it_is() const {
     return [this, now = share()](double) { return !progress_ || progress_(now); };
   }
@@ -194,8 +194,8 @@ class Decimation {
   const Progress& progress_;
 };
 
-/// Adds `far` to the vertices that stay. Where that has not helped twice, a belt round all of them is added as well,
-/// twice as wide each time: in the end everything stays.
+/// Adds `far` to the vertices that stay. After two attempts without success, also adds a belt around all of them, twice
+/// as wide each time: in the end every vertex stays.
 void keep(const HalfEdges& half_edges, std::vector<int> far, int attempt, std::vector<int>& kept) {
   kept.insert(kept.end(), far.begin(), far.end());
   base::sort_unique(kept);
@@ -225,8 +225,8 @@ Mesh decimate(const Mesh& mesh, const DecimateLimits& limits, const Progress& pr
   const std::size_t target = limits.triangles.value_or(0);
   if (mesh.triangles.size() <= target || mesh.empty()) return mesh;
 
-  // The coordinates that a binary STL will hold, about the box's centre: what has area and does not fold here does not
-  // in the file either, and quadrics keep their digits far from the origin.
+  // Work with the coordinates that a binary STL will hold, relative to the box's centre. Then area and folds are the
+  // same as in the file, and quadrics keep their digits far from the origin.
   const Box3 box = bounds(mesh);
   const Vec3 centre = geom::to_float32(0.5 * box.lower + 0.5 * box.upper);
   Mesh local = mesh;
@@ -234,14 +234,14 @@ Mesh decimate(const Mesh& mesh, const DecimateLimits& limits, const Progress& pr
   const Vec3 corner = glm::max(glm::abs(box.lower), glm::abs(box.upper));
   const double largest = std::max({corner.x, corner.y, corner.z}), reach = separation_reach(largest);
   double tolerance = limits.tolerance ? left_after_rounding(*limits.tolerance, mesh) : 0;
-  // Where float32 is too coarse for the tolerance, vertices stay where they are.
+  // If float32 is too coarse for the tolerance, vertices do not move.
   const bool may_move = !limits.tolerance || tolerance > 16 * reach;
   if (may_move) tolerance -= reach;
 
   std::vector<int> kept;  // vertices that stay because the tolerance could not be proven otherwise
   double done = 0;
   for (int attempt = 0;; ++attempt) {
-    // Most often the first attempt is the last: what could follow gets a tenth of what is left.
+    // The first attempt is usually the last: reserve a tenth of the remaining progress for further ones.
     const double end = limits.tolerance ? done + 0.9 * (1 - done) : 1, proof = limits.tolerance ? 0.2 : 0;
     const Progress loop = base::part(progress, done, end - proof * (end - done));
     const Progress proving = base::part(progress, end - proof * (end - done), end);

@@ -17,14 +17,15 @@ using OpenMesh::VertexHandle;
 
 constexpr float kNever = std::numeric_limits<float>::infinity();
 
-// Among equals, as everywhere in a plane, short edges go first and the triangles stay well shaped.
+// Among edges of equal cost, as in a plane, short ones go first, which keeps triangles well shaped.
 constexpr double kLength = 1e-8;
-// How hard the middle of the edge holds the new vertex where the planes leave it open; relative to their weight.
+// Strength of the pull towards the edge's middle where the planes do not constrain the vertex, relative to their
+// weight.
 constexpr double kHold = 1e-5;
 
-/// Quadrics grow with the area they were summed over, so that large triangles would be spared and small features go
-/// first. Divided by the root of the area the largest distance comes out least: a measurement, between the whole area,
-/// that is the mean squared distance, and none.
+/// Scale from a quadric to a cost. Quadrics grow with the area they were summed over, so unscaled costs would spare
+/// large triangles and collapse small features first. Measured: dividing by the square root of the area gives the
+/// smallest maximum distance, better than dividing by the area (the mean squared distance) or not at all.
 double scale_of(double weight) {
   return weight > 0 ? 1 / static_cast<double>(std::sqrt(static_cast<float>(weight))) : 1;
 }
@@ -64,7 +65,7 @@ void EdgeCosts::add_faces_of(VertexHandle v) {
   HalfedgeHandle spoke = start;
   if (!start.is_valid()) return;
   const auto wall = [&](HalfedgeHandle border) {
-    // A wall through the border, square to the triangle, keeps the border in place.
+    // A wall through the border, perpendicular to the triangle, keeps the border in place.
     const HalfedgeHandle inner = mesh_.opposite_halfedge_handle(border);
     const Vec3 a = to_vec3(mesh_.point(mesh_.from_vertex_handle(inner)));
     const Vec3 b = to_vec3(mesh_.point(mesh_.to_vertex_handle(inner)));
@@ -97,7 +98,7 @@ void EdgeCosts::put_off(EdgeHandle edge) {
   cost_[edge.idx()] = kNever;
 }
 
-/// A vertex on a border keeps to the border's vertices, one that is fixed stays.
+/// A border vertex can only merge into a vertex of its border; a fixed vertex does not move.
 CollapseTarget EdgeCosts::place(EdgeHandle edge, bool rounded) const {
   HalfedgeHandle half = mesh_.halfedge_handle(edge, 0);
   const VertexHandle a = mesh_.from_vertex_handle(half), b = mesh_.to_vertex_handle(half);
@@ -129,19 +130,20 @@ CollapseTarget EdgeCosts::free_place(HalfedgeHandle half, bool rounded) const {
   sum += quadric_[b.idx()];
   const double weight = sum.weight(), scale = scale_of(weight), square = glm::dot(arm, arm);
   const double extra = 16 * kLength * square * square;
-  // Everything from the middle of the edge: E(middle + d) = E(middle) + 2 g d + d A d.
+  // Relative to the middle of the edge: E(middle + d) = E(middle) + 2 g d + d A d.
   const Vec3 g = sum.times(middle) + sum.b;
   const double at_middle = glm::dot(middle, g + sum.b) + sum.c;
   const double slope = 2 * glm::dot(g, arm), at_end = at_middle + glm::dot(arm, sum.times(arm)) - std::abs(slope);
   const bool to_b = slope <= 0;
-  // Rounding may take a sum a little below 0.
+  // Rounding may make a sum slightly negative.
   CollapseTarget best{to_b ? half : mesh_.opposite_halfedge_handle(half), to_b ? q : p, false,
                       scale * std::max(0.0, at_end) + extra};
   if (!(weight > 0)) return best;
   const double hold = kHold * weight;
   const Vec3 d = sum.solved(-g, hold);
   const double square_d = glm::dot(d, d), at_lowest = at_middle + glm::dot(g, d) - hold * square_d;
-  // What float32 cannot tell from an end is that end: planes, and edges of planes, keep their vertices to the last bit.
+  // If float32 cannot distinguish the place from an end, use the end: planes, and their edges, keep their vertices
+  // bit-identical.
   if (!(at_end - std::max(0.0, at_lowest) > noise_ * weight) || !(square_d <= 4 * square)) return best;
   best.point = middle + d;
   if (rounded) best.point = geom::to_float32(best.point + centre_) - centre_;

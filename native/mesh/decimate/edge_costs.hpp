@@ -1,4 +1,4 @@
-// What it costs to make the two ends of an edge one vertex, and where that vertex would be.
+// The cost of an edge collapse and the position of the merged vertex.
 #pragma once
 
 #include <vector>
@@ -9,28 +9,28 @@
 
 namespace riffler::mesh {
 
-/// The vertex at which `half` starts goes, the one where it ends is then at `point`.
+/// Removes the vertex where `half` starts and moves the one where it ends to `point`.
 struct CollapseTarget {
-  OpenMesh::HalfedgeHandle half;  // invalid where the edge has to stay
+  OpenMesh::HalfedgeHandle half;  // invalid if the edge must not collapse
   Vec3 point{0};
-  bool between = false;  // `point` is not that of the end
+  bool between = false;  // `point` differs from both ends
   double cost = 0;
 };
 
-/// Quadrics of all vertices, and the costs of all edges that follow from them.
+/// The quadrics of all vertices, and the edge costs derived from them.
 class EdgeCosts {
  public:
-  /// `centre` was subtracted from the float32 coordinates of a file; `grain` is how far at
-  /// most a number is from the next of these; if infinite, vertices do not move.
+  /// `centre` has been subtracted from the file's float32 coordinates. `grain` is the largest distance from a number to
+  /// the nearest float32 coordinate; if infinite, vertices do not move.
   EdgeCosts(const HalfEdges& half_edges, const Vec3& centre, double grain, const Progress& progress = {});
 
-  /// The cheapest place for the two ends of `edge`: a vertex's, or one that a file can hold.
+  /// The cheapest position for the merged vertex of `edge`: that of a vertex, or a position that a file can store.
   CollapseTarget place(OpenMesh::EdgeHandle edge) const { return place(edge, true); }
-  /// The last cost computed; infinite where the edge has to stay or was put off.
+  /// The last computed cost; infinite if the edge must not collapse or was postponed.
   float operator[](OpenMesh::EdgeHandle edge) const { return cost_[edge.idx()]; }
-  /// Computes the cost of `edge` anew.
+  /// Recomputes the cost of `edge`.
   void refresh(OpenMesh::EdgeHandle edge);
-  /// Until it is computed anew the edge costs infinitely much.
+  /// Postpones the edge: its cost is infinite until refresh().
   void put_off(OpenMesh::EdgeHandle edge);
   void merge(OpenMesh::VertexHandle gone, OpenMesh::VertexHandle into) { quadric_[into.idx()] += quadric_[gone.idx()]; }
 
@@ -44,7 +44,7 @@ class EdgeCosts {
   const HalfEdgeMesh& mesh_;
   Vec3 centre_;
   double noise_;
-  std::vector<Kind> kind_;  // of the vertices
+  std::vector<Kind> kind_;  // of each vertex
   std::vector<Quadric> quadric_;
   std::vector<float> cost_;
 };

@@ -1,4 +1,4 @@
-// Edges by their cost, cheapest first.
+// A priority queue of edges, cheapest first.
 #pragma once
 
 #include <algorithm>
@@ -8,18 +8,18 @@
 
 namespace riffler::mesh {
 
-/// A queue of buckets, eight for each factor of two: the order within 9 % of a cost is that in which edges came. That
-/// is as good for the mesh as an exact order, and needs no heap. What was pushed cannot be taken back: whoever pops an
-/// edge asks whether the cost is still that of the edge.
+/// A bucket queue with eight buckets per factor of two: edges whose costs are within 9 % of each other leave in the
+/// order they came. For the mesh this is as good as an exact order, and it needs no heap. Entries cannot be removed:
+/// after a pop, the caller must check that the entry's cost is still the edge's cost.
 class EdgeQueue {
  public:
   struct Entry {
     int edge;
     float cost;
   };
-  static constexpr int kLast = (255 << 3) - 1;  // the bucket of the largest finite cost
+  static constexpr int kLast = (255 << 3) - 1;  // bucket of the largest finite cost
 
-  /// The costs' leading bits: those of a float that is not negative are in the order of the floats.
+  /// The leading bits of the cost: for non-negative floats, the order of the bits is the order of the values.
   static int bucket_of(float cost) { return static_cast<int>(std::bit_cast<std::uint32_t>(cost) >> 20); }
 
   void push(int edge, float cost) {
@@ -30,12 +30,12 @@ class EdgeQueue {
     first_ = std::min(first_, bucket);
   }
 
-  /// The bucket of the cheapest entry, beyond kLast if there is none.
+  /// Index of the first non-empty bucket; greater than kLast if the queue is empty.
   int first() {
     while (first_ < static_cast<int>(buckets_.size()) && buckets_[first_].empty()) buckets_[first_++].clear();
     return first_ < static_cast<int>(buckets_.size()) ? first_ : kLast + 1;
   }
-  /// Takes the first entry of the bucket that `first` has just named.
+  /// Removes the first entry of the bucket that the last call of `first` returned.
   Entry pop() { return buckets_[first_].entries[buckets_[first_].taken++]; }
 
  private:

@@ -1,4 +1,4 @@
-// OpenMesh makes room for a point by copying one that has no value yet, which GCC sees under the sanitizers' options.
+// OpenMesh grows its point array by copying an uninitialised point, which GCC reports under the sanitizers' options.
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #include "mesh/decimate/half_edge.hpp"
 
@@ -20,7 +20,7 @@ void number_fans(const Mesh& mesh, const Adjacency& adjacency, std::vector<int>&
     if (fan[corner] >= 0 || repeats_a_vertex(mesh.triangles[corner / 3])) continue;
     const int here = static_cast<int>(vertex.size());
     vertex.push_back(start_of(mesh, corner));
-    // Round the vertex one way, and if there is a border, from the start the other way.
+    // Go around the vertex in one direction and, if that reaches a border, from the start in the other.
     int at = corner;
     do {
       fan[at] = here;
@@ -41,8 +41,8 @@ HalfEdges::HalfEdges(const Mesh& from, const Progress& progress) : adjacency(fro
   std::vector<int> copies(from.vertices.size(), 0);
   for (const int v : source) ++copies[v];
 
-  // The connectivity is known, so it is set directly: OpenMesh's add_face would search for it again, and depends on the
-  // order of the faces. Likewise everything gets its room at once: new_edge looks at every property each time.
+  // The connectivity is known, so it is set directly: OpenMesh's add_face would search for it again, with a result that
+  // depends on the order of the faces. Memory is reserved once, because new_edge visits every property each time.
   std::vector<HalfedgeHandle> handle(halves), out_border(source.size());
   int edges = 0, faces = 0;
   for (int half = 0; half < halves; ++half) {
@@ -86,7 +86,7 @@ HalfEdges::HalfEdges(const Mesh& from, const Progress& progress) : adjacency(fro
   }
   for (std::size_t v = 0; v < source.size(); ++v) {
     if (!out_border[v].is_valid()) continue;
-    // OpenMesh wants a border vertex to name its outgoing border half-edge; every fan has just one.
+    // OpenMesh requires a border vertex to store its outgoing border half-edge; every fan has exactly one.
     mesh.set_halfedge_handle(VertexHandle(static_cast<int>(v)), out_border[v]);
     mesh.set_next_halfedge_handle(out_border[v], out_border[mesh.to_vertex_handle(out_border[v]).idx()]);
   }

@@ -1,4 +1,4 @@
-// OpenMesh half-edges of a mesh that need not be a manifold.
+// OpenMesh half-edges for a mesh that need not be a manifold.
 #pragma once
 
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
@@ -27,20 +27,20 @@ inline OpenMesh::Vec3d to_openmesh(const Vec3& p) {
   return {p.x, p.y, p.z};
 }
 
-/// Half-edges, and where their vertices come from. Triangles that name a vertex twice are left out. Triangles are
-/// joined across edges of two that run it in opposite directions; every other edge is a border. A vertex whose
-/// triangles then make several fans stands here once for each, and all its copies and the ends of crowded edges are
-/// locked, so that the copies can be made one vertex again.
+/// Half-edges with the origin of their vertices. Triangles that name a vertex twice are left out. Two triangles are
+/// joined across an edge if they are its only ones and run it in opposite directions; every other edge is a border. A
+/// vertex whose triangles then form several fans has one copy per fan. All copies, and the ends of edges with three or
+/// more triangles, are locked, so that the copies can be merged again.
 struct HalfEdges {
   HalfEdgeMesh mesh;
-  std::vector<int> source;  // vertex here → vertex of the mesh it was made of
-  // Of the mesh as it was, whatever happens to the half-edges:
+  std::vector<int> source;  // vertex here → vertex of the original mesh
+  // These two always describe the original mesh, even after collapses:
   Adjacency adjacency;
-  std::vector<int> corner;  // vertex here at which each half-edge of `adjacency` starts, -1 for triangles left out
+  std::vector<int> corner;  // vertex here at which each half-edge of `adjacency` starts; -1 for triangles left out
 
   explicit HalfEdges(const Mesh& from, const Progress& progress = {});
-  /// Triangles that are not deleted, in their old order, with the vertices that they use, in their old order: as in
-  /// `from` where they are still where they were in `start`, else about `centre`.
+  /// The triangles that are not deleted and the vertices that they use, both in their old order. A vertex that has not
+  /// moved since `start` gets its exact coordinates from `from`; the others are moved back by `centre`.
   Mesh to_mesh(const Mesh& from, const Mesh& start, const Vec3& centre) const;
 };
 

@@ -14,32 +14,33 @@ using OpenMesh::HalfedgeHandle;
 using Image = SurfaceMap::Image;
 using Segment = SurfaceMap::Segment;
 
-/// How often a triangle may be halved where it is looked at piece by piece.
+/// Maximum number of halvings of a triangle that is compared piece by piece.
 constexpr int kNearDepth = 24;
 
-/// And into how many pieces, for a depth of 24 is no bound on work: what needs more counts as far.
+/// Maximum number of its pieces, because a depth of 24 does not limit the work; a triangle that needs more counts as
+/// far.
 constexpr int kMaxPieces = 1 << 12;
 
-/// Pieces of all faces together that are held at a time.
+/// Maximum number of pieces of all faces in memory at a time.
 constexpr std::size_t kMaxHeld = 1 << 22;
 
-/// How many times the tolerance pieces along a rim may measure at first.
+/// Initial size of pieces along a rim, in tolerances.
 constexpr double kCoarse = 32;
 
-/// What the edge from (ax, ay) to (bx, by) adds to the winding number about the origin; nothing is left of an edge that
-/// is run both ways.
+/// Contribution of the edge from (ax, ay) to (bx, by) to the winding number about the origin. Contributions of an edge
+/// in both directions cancel.
 int winding(double ax, double ay, double bx, double by) {
   if (ay <= 0 && 0 < by) return ax * by - bx * ay > 0 ? 1 : 0;
   if (by <= 0 && 0 < ay) return bx * ay - ax * by > 0 ? -1 : 0;
   return 0;
 }
 
-/// A point in the midst of a triangle, on no line that a regular mesh is likely to have.
+/// An interior point of a triangle, unlikely to be on a line of a regular mesh.
 Vec3 probe_of(const std::array<Vec3, 3>& p) {
   return p[0] + 0.3304 * (p[1] - p[0]) + 0.3125 * (p[2] - p[0]);
 }
 
-/// A face seen along the axis that it is most square to, from above that point.
+/// A face seen along the axis closest to its normal, relative to its probe point.
 class View {
  public:
   explicit View(const std::array<Vec3, 3>& p) : probe_(probe_of(p)) {
@@ -47,13 +48,13 @@ class View {
     const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
     x_ = (axis + 1) % 3, y_ = (axis + 2) % 3;
   }
-  /// How often a piece of the map's image lies over that point, with a sign for its orientation.
+  /// How often a piece of the map's image lies over the probe point, signed by its orientation.
   int sheets_over(const SurfaceMap::Image& image) const {
     const Vec3 a = image.a - probe_, b = image.b - probe_, c = image.c - probe_;
     return winding(a[x_], a[y_], b[x_], b[y_]) + winding(b[x_], b[y_], c[x_], c[y_]) +
            winding(c[x_], c[y_], a[x_], a[y_]);
   }
-  /// By how much the winding number about q is larger than that about the point above, if this line has a part in it.
+  /// Contribution of this line to the difference of the winding number about q minus that about the probe point.
   int winding_beyond(const SurfaceMap::Segment& line, const Vec3& q) const {
     const Vec3 way = q - probe_, a = line.a - probe_, b = line.b - probe_;
     const bool a_left = cross(way, a) > 0, b_left = cross(way, b) > 0;
@@ -69,7 +70,7 @@ class View {
   int x_, y_;
 };
 
-/// Whether a line may touch a box; `slack` for rounding.
+/// Whether a line may touch a box; `slack` covers rounding.
 bool touches(const Segment& s, const Vec3& lower, const Vec3& upper, double slack) {
   return glm::all(glm::lessThanEqual(glm::min(s.a, s.b) - slack, upper)) &&
          glm::all(glm::greaterThanEqual(glm::max(s.a, s.b) + slack, lower));
@@ -85,8 +86,8 @@ Mesh mesh_of(const std::vector<std::array<Vec3, 3>>& triangles) {
   return mesh;
 }
 
-/// From `seeds` to neighbours, and on from those that are within `reach` of `place`: the seeds and these, in order.
-/// for_each_neighbour(t, visit) calls visit(neighbour).
+/// Grows from `seeds` to neighbours, and continues from those within `reach` of `place`. Returns the seeds and these,
+/// in order. for_each_neighbour(t, visit) calls visit(neighbour).
 template <class Points, class Neighbours>
 std::vector<int> grown(std::vector<int> seeds, std::size_t n, const std::vector<std::array<Vec3, 3>>& place,
                        double reach, const Points& points, const Neighbours& for_each_neighbour) {
@@ -136,7 +137,7 @@ MapCheck::Corners MapCheck::old_points(int t) const {
 void MapCheck::map_all(const Progress& progress) {
   const auto map_part = [&](std::size_t begin, std::size_t end) {
     std::vector<Image> images;
-    int face = -1;  // whose view is at hand
+    int face = -1;  // face that `view` belongs to
     View view({});
     for (std::size_t t = begin; t < end; ++t) {
       if (!exists(t)) continue;
@@ -154,8 +155,8 @@ void MapCheck::map_all(const Progress& progress) {
     if (hole_[t]) holes_.push_back(static_cast<int>(t));
 }
 
-/// New faces that the map may not cover whole: those that the rims of its holes cross, for there the number of sheets
-/// changes within a face, and those that no sheet covers.
+/// New faces that the map may not cover completely: those crossed by the rims of its holes, because the number of
+/// sheets changes inside them, and those without a sheet.
 std::vector<MapCheck::Doubt> MapCheck::doubts() const {
   std::vector<int> place(sheets_.size(), -1);
   std::vector<Doubt> result;
@@ -182,7 +183,7 @@ std::vector<MapCheck::Doubt> MapCheck::doubts() const {
   return result;
 }
 
-/// Faces of the new surface round `place`, from `seeds` on.
+/// Faces of the new surface around `place`, found from `seeds`.
 std::vector<int> MapCheck::new_faces_near(const std::vector<Corners>& place, std::vector<int> seeds) const {
   return grown(
       std::move(seeds), mesh_.n_faces(), place, tolerance_, [&](int face) { return map_.points_of(face); },
@@ -194,7 +195,7 @@ std::vector<int> MapCheck::new_faces_near(const std::vector<Corners>& place, std
       });
 }
 
-/// Triangles of the old surface round `place`, from `seeds` on.
+/// Triangles of the old surface around `place`, found from `seeds`.
 std::vector<int> MapCheck::old_triangles_near(const std::vector<Corners>& place, std::vector<int> seeds) const {
   return grown(
       std::move(seeds), hole_.size(), place, tolerance_, [&](int t) { return old_points(t); },
@@ -204,7 +205,7 @@ std::vector<int> MapCheck::old_triangles_near(const std::vector<Corners>& place,
       });
 }
 
-/// Whether triangles are near a surface.
+/// For each triangle, whether it is near a surface.
 std::vector<char> MapCheck::near(const std::vector<Corners>& place, const std::vector<Corners>& surface,
                                  const Progress& progress) const {
   std::vector<char> result(place.size(), 0);
@@ -221,7 +222,7 @@ std::vector<char> MapCheck::near(const std::vector<Corners>& place, const std::v
   return result;
 }
 
-/// Holes of the map, against the new surface round them.
+/// Compares the holes of the map with the new surface around them.
 void MapCheck::check_holes(std::vector<int>& far, const Progress& progress) const {
   if (holes_.empty()) return;
   std::vector<Corners> place, surface;
@@ -237,12 +238,12 @@ void MapCheck::check_holes(std::vector<int>& far, const Progress& progress) cons
     for (int k = 0; !is_near[i] && k < 3; ++k) far.push_back(half_edges_.corner[3 * holes_[i] + k]);
 }
 
-/// Faces that may not be covered, against the old surface. Where one is far off, what was near its corners stays, and
-/// what went to it.
+/// Compares faces that may not be covered with the old surface around them. For a face that is too far, adds the old
+/// vertices near its corners, and those that map to it.
 void MapCheck::check_faces(std::vector<int>& far, const Progress& progress) const {
   base::report(progress, 0);
   std::vector<Doubt> doubt = doubts();
-  // Large pieces along the rims first: hardly any is far off, and needs to be told from what is covered there.
+  // Large pieces along the rims first: hardly any of them is too far, which would require separating the covered part.
   for (const double smallest : {kCoarse * tolerance_, tolerance_}) {
     const double begin = smallest > tolerance_ ? 0.2 : 0.6;
     const std::vector<char> is_near = faces_near(doubt, smallest, base::part(progress, begin, begin + 0.4));
@@ -263,7 +264,7 @@ void MapCheck::check_faces(std::vector<int>& far, const Progress& progress) cons
     if (map_.face_of(v) >= 0 && is_far[map_.face_of(v)]) far.push_back(v);
 }
 
-/// Whether what is not covered is near the old surface round it, in pieces along the rims that may be as large as
+/// Whether the uncovered part of each face is near the old surface around it. Pieces along the rims may be as large as
 /// `smallest`.
 std::vector<char> MapCheck::faces_near(const std::vector<Doubt>& doubt, double smallest,
                                        const Progress& progress) const {
@@ -298,13 +299,13 @@ std::vector<char> MapCheck::faces_near(const std::vector<Doubt>& doubt, double s
   return result;
 }
 
-/// Of a part of a face: no rim crosses it and there is a sheet, or it has to be near; or this is so for its halves.
-/// False where that takes more than `left` pieces.
+/// Adds the uncovered parts of a piece of a face to `pieces`. A piece that no rim crosses is covered if there is a
+/// sheet, and otherwise added whole; any other piece is halved. Returns false if that takes more than `left` pieces.
 bool MapCheck::add_uncovered(const Doubt& doubt, const std::vector<Segment>& rim, const Corners& p, double smallest,
                              int depth, int& left, std::vector<Corners>& pieces) const {
   if (left-- <= 0) return false;
   const Vec3 lower = glm::min(p[0], glm::min(p[1], p[2])), upper = glm::max(p[0], glm::max(p[1], p[2]));
-  const double slack = 1e-9 * glm::length(upper - lower);  // segments are in the face but for rounding
+  const double slack = 1e-9 * glm::length(upper - lower);  // segments lie in the face up to rounding
   std::vector<Segment> crossing;
   for (const Segment& s : rim)
     if (touches(s, lower, upper, slack)) crossing.push_back(s);
@@ -312,7 +313,7 @@ bool MapCheck::add_uncovered(const Doubt& doubt, const std::vector<Segment>& rim
     const View view(map_.points_of(doubt.face));
     const Vec3 q = probe_of(p);
     int sheets = sheets_[doubt.face];
-    // Hole half-edges: those of the mapped triangles beside them run the other way.
+    // Half-edges of holes: those of the adjacent mapped triangles run in the opposite direction.
     for (const Segment& s : doubt.rim) sheets -= view.winding_beyond(s, q);
     if (sheets != 0) return true;
   }
@@ -327,15 +328,15 @@ bool MapCheck::add_uncovered(const Doubt& doubt, const std::vector<Segment>& rim
          add_uncovered(doubt, crossing, {half, b, tip}, smallest, depth - 1, left, pieces);
 }
 
-/// Points near one triangle are a convex set; what is not near any one as a whole is halved. `hint` is a triangle
-/// nearby, or -1.
+/// Points near one triangle form a convex set, so a triangle is halved if it is not entirely near one triangle. `hint`
+/// is a nearby triangle, or -1.
 bool MapCheck::triangle_near(const Closest& closest, const Vec3& a, const Vec3& b, const Vec3& c, int hint, int depth,
                              int& pieces) const {
   if (pieces-- <= 0) return false;
   const Vec3 centre = (a + b + c) / 3.0;
   double limit = tolerance_;
   if (hint >= 0) limit = std::min(limit, closest.distance_to(hint, centre));
-  // A little more, so that the hint itself is found again.
+  // slightly enlarged, so that the search finds the hint itself again
   const Closest::Hit hit = closest(centre, limit * (1 + 1e-12));
   if (!(hit.distance <= tolerance_)) return false;
   if (closest.distance_to(hit.triangle, a) <= tolerance_ && closest.distance_to(hit.triangle, b) <= tolerance_ &&

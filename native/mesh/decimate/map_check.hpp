@@ -1,4 +1,4 @@
-// Proof that a decimated surface keeps to its tolerance.
+// Proves that a decimated surface is within its tolerance.
 #pragma once
 
 #include <array>
@@ -11,22 +11,22 @@
 
 namespace riffler::mesh {
 
-/// Asks whether old and new surface are near each other everywhere, by a map from the old one onto the new.
+/// Checks that old and new surface are near each other everywhere, with a map from the old surface to the new one.
 ///
-/// Where there is a map, the old surface is near the new one. The sheets of the map over a point in the midst of each
-/// new face are counted. Their number is the same all over a face, for the map is continuous and takes borders to
-/// borders: where it is not 0 the face is covered, and so near the old surface.
+/// Where the map exists, the old surface is near the new one. To show the converse, the check counts the sheets of the
+/// map over an interior point of each new face. The map is continuous and takes borders to borders, so the number of
+/// sheets is constant over a face: if it is not 0, the map covers the face, and the face is near the old surface.
 ///
-/// Holes of the map are compared with the new surface. Within a face the number of sheets only changes across the rim
-/// of a hole: such faces are divided, the number is followed across the rim, and what has no sheet or lies on the rim
-/// is compared with the old surface.
+/// Holes of the map are compared with the new surface directly. Inside a face, the number of sheets changes only across
+/// the rim of a hole: the check divides such faces, follows the number across the rim, and compares the parts without a
+/// sheet, or on the rim, with the old surface.
 class MapCheck {
  public:
-  /// After the last collapse; `traces` must outlive this.
+  /// Construct after the last collapse; `traces` must outlive the object.
   MapCheck(const Traces& traces, double tolerance);
 
-  /// Old vertices round places that are farther from the other surface than the tolerance, or may be; none where the
-  /// tolerance is kept to.
+  /// Old vertices around places that are, or may be, farther from the other surface than the tolerance. Empty if the
+  /// tolerance holds.
   std::vector<int> far_vertices(const Progress& progress = {});
 
  private:
@@ -35,7 +35,7 @@ class MapCheck {
   struct Doubt {
     int face;
     std::vector<SurfaceMap::Segment> rim;
-    bool known;  // how many sheets lie over its midst
+    bool known;  // the number of sheets over its interior point is known
   };
 
   bool exists(std::size_t t) const { return half_edges_.corner[3 * t] >= 0; }
@@ -59,9 +59,9 @@ class MapCheck {
   const HalfEdgeMesh& mesh_;
   double tolerance_;
   SurfaceMap map_;
-  std::vector<char> hole_;  // of an old triangle: not mapped
+  std::vector<char> hole_;  // for each old triangle: it is not mapped
   std::vector<int> holes_;
-  std::vector<std::atomic<int>> sheets_;  // over the midst of a new face
+  std::vector<std::atomic<int>> sheets_;  // over the interior point of each new face
 };
 
 }  // namespace riffler::mesh

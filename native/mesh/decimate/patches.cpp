@@ -12,7 +12,7 @@ namespace {
 using OpenMesh::HalfedgeHandle;
 using OpenMesh::VertexHandle;
 
-/// Three directions square to each other, other ones for each of five frames.
+/// Three perpendicular directions, different for each of five frames.
 std::array<Vec3, 3> axes_of(int frame) {
   constexpr double kParts[5][3] = {{0, 0, 1}, {1, 2, 2}, {-2, 1, 3}, {3, -1, 1}, {1, 3, -2}};
   const auto& part = kParts[frame % 5];
@@ -53,7 +53,7 @@ Patches::Patches(const HalfEdgeMesh& mesh, int frame, std::size_t vertices_of_on
   });
 }
 
-/// Level by level at the median along the longest side. Ties are decided by the index.
+/// Splits level by level at the median along the longest side. The index breaks ties.
 void Patches::split(const HalfEdgeMesh& mesh, int frame, int levels, const Progress& progress) {
   const std::array<Vec3, 3> axes = axes_of(frame);
   std::vector<Place> places(order_.size());
@@ -87,7 +87,7 @@ void Patches::split(const HalfEdgeMesh& mesh, int frame, int levels, const Progr
   base::parallel_for(size(), 1, [&](std::size_t patch, std::size_t) {
     const auto begin = places.begin() + static_cast<std::ptrdiff_t>(begin_[patch]);
     const auto end = places.begin() + static_cast<std::ptrdiff_t>(begin_[patch + 1]);
-    // nth_element leaves the order within a patch open.
+    // nth_element leaves the order within a patch undefined.
     std::sort(begin, end, [](const Place& a, const Place& b) { return a.vertex < b.vertex; });
     for (auto i = begin; i != end; ++i) order_[static_cast<std::size_t>(i - places.begin())] = i->vertex;
   });

@@ -1,4 +1,4 @@
-// A surface in pieces that can be worked on at the same time.
+// Splits a surface into patches that threads can work on in parallel.
 #pragma once
 
 #include <vector>
@@ -8,16 +8,17 @@
 
 namespace riffler::mesh {
 
-/// Splits the vertices into boxes of equal numbers. `inner` are vertices all of whose neighbours are in their own
-/// patch: what is done to them and between them touches nothing that another patch reads or writes.
+/// Splits the vertices into boxes with equal numbers of vertices. A vertex is `inner` if all its neighbours are in its
+/// own patch: changing inner vertices and the edges between them touches nothing that another patch reads or writes.
 class Patches {
  public:
-  /// `frame` turns the boxes: the seams of two frames only cross. The pieces do not depend on the number of threads.
+  /// `frame` rotates the boxes, so that the seams of two frames only cross. Patches do not depend on the number of
+  /// threads.
   Patches(const HalfEdgeMesh& mesh, int frame, std::size_t vertices_of_one, const Progress& progress = {});
 
   std::size_t size() const { return begin_.size() - 1; }
   bool inner(OpenMesh::VertexHandle v) const { return inner_[v.idx()]; }
-  /// Calls visit(vertex) for all of a patch.
+  /// Calls visit(vertex) for all vertices of a patch.
   template <class Visit>
   void for_each_vertex(std::size_t patch, const Visit& visit) const {
     for (std::size_t i = begin_[patch]; i < begin_[patch + 1]; ++i) visit(OpenMesh::VertexHandle(order_[i]));

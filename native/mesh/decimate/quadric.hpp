@@ -5,7 +5,8 @@
 
 namespace riffler::mesh {
 
-/// Sum of the squared distances from planes, each times its area, mm⁴ (Garland & Heckbert, SIGGRAPH 97, section 5).
+/// Sum of the squared distances from planes, each weighted by its area, mm⁴ (Garland & Heckbert, SIGGRAPH 97, section
+/// 5).
 struct Quadric {
   // xᵀ A x + 2 bᵀ x + c
   double xx = 0, yy = 0, zz = 0, xy = 0, yz = 0, zx = 0;
@@ -37,11 +38,11 @@ struct Quadric {
 
   double operator()(const Vec3& p) const { return glm::dot(p, times(p) + 2.0 * b) + c; }
 
-  /// Sum of the weights.
+  /// Sum of the weights, mm².
   double weight() const { return xx + yy + zz; }
 
-  /// (A + hold I)⁻¹ r, by cofactors. With hold > 0 there is one, and where A leaves a direction open, along a crease or
-  /// in a plane, it has no part in that direction unless r has.
+  /// (A + hold I)⁻¹ r by cofactors. It exists for hold > 0. Where A does not constrain a direction (along a crease or
+  /// in a plane), the result has a component in that direction only if r has.
   Vec3 solved(const Vec3& r, double hold) const {
     const double x = xx + hold, y = yy + hold, z = zz + hold;
     const double cx = y * z - yz * yz, cy = zx * yz - xy * z, cz = xy * yz - y * zx, co = xy * zx - x * yz;

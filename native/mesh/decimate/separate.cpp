@@ -14,7 +14,7 @@ namespace riffler::mesh {
 
 namespace {
 
-constexpr int kSteps = 2;  // of float32, along each axis
+constexpr int kSteps = 2;  // float32 steps along each axis
 
 double stepped(double x, int steps) {
   auto value = static_cast<float>(x);
@@ -42,7 +42,7 @@ class VertexFans {
   std::vector<int> triangles_;
 };
 
-/// Whether all triangles of the fan of v still face where they faced if v is at p.
+/// Whether all triangles of the fan of v keep their sides when v moves to p.
 bool keeps_sides(const Mesh& mesh, std::span<const int> fan, int v, const Vec3& p) {
   for (const int triangle : fan) {
     const Vec3i& t = mesh.triangles[triangle];
@@ -68,7 +68,7 @@ void separate(Mesh& mesh, const std::vector<char>& movable) {
   };
   for (std::size_t v = 0; v < movable.size(); ++v)
     if (!movable[v]) is_free(mesh.vertices[v]);
-  std::optional<VertexFans> fans;  // hardly ever needed
+  std::optional<VertexFans> fans;  // rarely needed
   for (std::size_t v = 0; v < movable.size(); ++v) {
     if (!movable[v] || is_free(mesh.vertices[v])) continue;
     if (!fans) fans.emplace(mesh);

@@ -1,4 +1,4 @@
-// Vertices that would be one in a file.
+// Separates vertices that would coincide in a file.
 #pragma once
 
 #include <vector>
@@ -7,12 +7,11 @@
 
 namespace riffler::mesh {
 
-/// Moves vertices that `movable` marks by a few steps of float32 at most, where they would otherwise be equal to
-/// another vertex in float32. No triangle turns over; where there is no such place the vertex stays. Vertices that are
-/// not movable stay, even if they are equal.
+/// Moves vertices marked in `movable` by a few float32 steps if they would equal another vertex in float32. No triangle
+/// turns over; a vertex without a suitable place stays. Other vertices never move, even if they coincide.
 void separate(Mesh& mesh, const std::vector<char>& movable);
 
-/// How far `separate` moves a vertex at most, where no coordinate is larger than `largest`.
+/// Maximum distance by which `separate` moves a vertex if no coordinate exceeds `largest`, mm.
 double separation_reach(double largest);
 
 }  // namespace riffler::mesh

@@ -14,9 +14,9 @@ using OpenMesh::FaceHandle;
 using OpenMesh::HalfedgeHandle;
 using OpenMesh::VertexHandle;
 
-/// How often a triangle and its edges may be divided.
+/// Maximum number of divisions of a triangle and its edges.
 constexpr int kDepth = 24;
-/// And into how many pieces: a triangle lies over a few faces, and what crumbles is not mapped.
+/// Maximum number of pieces: a triangle usually lies over a few faces; one that needs more is not mapped.
 constexpr std::size_t kMaxImages = 4096;
 
 Vec3 nearest_of_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
@@ -25,12 +25,12 @@ Vec3 nearest_of_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
   return length2 > 0 ? a + std::clamp(glm::dot(p - a, ab) / length2, 0.0, 1.0) * ab : a;
 }
 
-/// Points of the segments a b and c d that are as near to each other as any.
+/// A nearest pair of points of the segments a b and c d.
 std::pair<Vec3, Vec3> nearest_of_segments(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   const Vec3 u = b - a, v = d - c, w = a - c;
   const double uu = glm::dot(u, u), uv = glm::dot(u, v), vv = glm::dot(v, v), uw = glm::dot(u, w), vw = glm::dot(v, w);
   const double det = uu * vv - uv * uv;
-  // On c d as if a b were a line, then the nearest of a b, then back: where the last step ends is the nearest.
+  // Treat a b as a line, clamp on c d, then on a b, then project back: the last point is the nearest.
   const double s = det > 0 ? std::clamp((uv * vw - vv * uw) / det, 0.0, 1.0) : 0;
   const Vec3 q = nearest_of_segment(a + s * u, c, d), p = nearest_of_segment(q, a, b);
   return {p, q};
@@ -66,7 +66,7 @@ void SurfaceMap::take_corners() {
   }
 }
 
-/// Old vertices that are still there, and those that the checks of the collapses have kept account of.
+/// Places the old vertices that still exist, and those that the checks of the collapses have recorded.
 void SurfaceMap::place_vertices() {
   const auto face_beside = [&](HalfedgeHandle half) {
     return mesh_.face_handle(mesh_.is_boundary(half) ? mesh_.opposite_halfedge_handle(half) : half).idx();
@@ -97,7 +97,7 @@ void SurfaceMap::place_vertices() {
   }
 }
 
-/// The rest, from neighbour to neighbour.
+/// Places the others from neighbour to neighbour.
 void SurfaceMap::place_dropped_vertices() {
   const int triangles = static_cast<int>(half_edges_.corner.size() / 3);
   const auto corner = [&](int t, int k) { return half_edges_.corner[3 * t + k]; };
@@ -127,14 +127,14 @@ void SurfaceMap::place_dropped_vertices() {
   }
 }
 
-/// What is left then goes to the nearest point of all.
+/// Places the remaining ones at the nearest point of the whole surface.
 void SurfaceMap::place_others() {
   std::vector<int> others;
   for (std::size_t half = 0; half < half_edges_.corner.size(); ++half)
     if (const int v = half_edges_.corner[half]; v >= 0 && spot_[v].face < 0) others.push_back(v);
   if (others.empty()) return;
   const Closest closest(new_surface());
-  std::vector<int> face;  // of a triangle
+  std::vector<int> face;  // of each triangle of the new surface
   for (const FaceHandle f : mesh_.all_faces())
     if (!mesh_.status(f).deleted()) face.push_back(f.idx());
   for (const int v : others) {
@@ -144,7 +144,7 @@ void SurfaceMap::place_others() {
   }
 }
 
-/// Faces that are left, with all vertices.
+/// The remaining faces, with all vertices.
 Mesh SurfaceMap::new_surface() const {
   Mesh now;
   for (const VertexHandle v : mesh_.all_vertices()) now.vertices.push_back(to_vec3(mesh_.point(v)));
@@ -187,7 +187,7 @@ bool SurfaceMap::is_near(const Spot& spot) const {
   return spot.face >= 0 && glm::length(spot.from - spot.to) <= tolerance_;
 }
 
-/// Walks over the new surface as long as it comes nearer.
+/// Walks over the new surface while the distance decreases.
 SurfaceMap::Spot SurfaceMap::nearest(const Vec3& p, int face) const {
   Spot best{p, p, -1};
   double best2 = std::numeric_limits<double>::infinity();
@@ -209,7 +209,7 @@ SurfaceMap::Spot SurfaceMap::nearest(const Vec3& p, int face) const {
     } while (spoke != start);
   };
   look_at(face);
-  // In a hollow a foot in the midst of a face may be far from what is nearest.
+  // In a hollow, a foot inside a face may be far from the nearest point.
   if (!is_near(best))
     for (const int corner : corners_[face]) look_round(VertexHandle(corner));
   for (int last = -1; best.face != last && part != OnTriangle::Face;) {
@@ -226,8 +226,8 @@ SurfaceMap::Spot SurfaceMap::nearest(const Vec3& p, int face) const {
   return best;
 }
 
-/// A point of the edge from a to b over the face between theirs, where there is just one; otherwise its middle. Depends
-/// on the edge only, not on the triangle whose side it is.
+/// A point of the edge from a to b over the face between theirs, if there is exactly one; otherwise its midpoint.
+/// Depends only on the edge, not on the triangle that it bounds.
 SurfaceMap::Spot SurfaceMap::middle(const Spot& a, const Spot& b) const {
   if (comes_before(b.from, a.from)) return middle(b, a);
   HalfedgeHandle half = mesh_.halfedge_handle(FaceHandle(a.face));
@@ -245,8 +245,8 @@ SurfaceMap::Spot SurfaceMap::middle(const Spot& a, const Spot& b) const {
   return nearest(p, b.face);
 }
 
-/// Of the part of the edge that is over `face`, if it crosses from a's face into that and from that into b's, the
-/// middle.
+/// The midpoint of the part of the edge over `face`, if the edge crosses from a's face into `face` and from there into
+/// b's.
 SurfaceMap::Spot SurfaceMap::between(const Spot& a, const Spot& b, int face) const {
   Vec3 sum(0);
   for (const Spot* end : {&a, &b}) {
@@ -267,7 +267,7 @@ SurfaceMap::Shared SurfaceMap::common_vertices(int f, int g) const {
   return shared;
 }
 
-/// A point between a and b that is near what their faces have in common; the same for b and a.
+/// A point between a and b near the edge or vertex that their faces share; symmetric in a and b.
 std::optional<SurfaceMap::Pair> SurfaceMap::join(const Spot& a, const Spot& b) const {
   if (a.face == b.face) return Pair{a.from, a.to};
   if (comes_before(b.from, a.from)) return join(b, a);

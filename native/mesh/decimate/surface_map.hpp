@@ -1,4 +1,4 @@
-// A map from an old surface onto the new one that moves no point far.
+// A map from an old surface to the new one that moves every point only a little.
 #pragma once
 
 #include <array>
@@ -10,19 +10,20 @@
 
 namespace riffler::mesh {
 
-/// A continuous map from the surface before a decimation to the one after it that moves no point farther than the
-/// tolerance, with holes where none was found. Nothing is taken from the checks of the single collapses but where to
-/// begin.
+/// A continuous map from the surface before a decimation to the one after it. It moves no point farther than the
+/// tolerance, and has holes where no such map was found. It is independent of the checks of single collapses, except
+/// for its starting points.
 ///
-///  - An old vertex goes to a point of a new face; one of a border to a point of the border.
-///  - Along an old edge whose ends go to two faces there must be a point near what these have in common, an edge or a
-///    vertex; otherwise the edge is divided.
-///  - A triangle goes to one face, or to two with their common edge or vertex, or to three round a vertex near a point
-///    of it; otherwise it is divided. Each piece has all its corners near one face, and points near a triangle are a
-///    convex set: so the linear map of the piece moves no point farther than its corners.
+/// Construction:
+///  - An old vertex maps to a point of a new face; a border vertex maps to a point of the border.
+///  - If the ends of an old edge map to two faces, the edge needs a point near the edge or vertex that these faces
+///    share; otherwise the edge is divided.
+///  - A triangle maps to one face, or to two with their common edge or vertex, or to three around a vertex near a
+///    point of the triangle; otherwise it is divided. Each piece has all its corners near one face, and the set of
+///    points near a triangle is convex: so the linear map of the piece moves no point farther than its corners.
 class SurfaceMap {
  public:
-  /// A piece of a new face, that a piece of an old triangle or edge goes to.
+  /// A piece of a new face, the image of a piece of an old triangle or edge.
   struct Image {
     int face;
     Vec3 a, b, c;
@@ -32,30 +33,30 @@ class SurfaceMap {
     Vec3 a, b;
   };
 
-  /// After the last collapse; `traces` must outlive this.
+  /// Construct after the last collapse; `traces` must outlive the object.
   SurfaceMap(const Traces& traces, double tolerance);
 
-  /// What an old triangle goes to; false where it is a hole.
+  /// The image of an old triangle. Returns false if it is a hole.
   bool map_triangle(std::size_t t, std::vector<Image>& images) const;
-  /// What an old half-edge of a triangle that is no hole goes to.
+  /// The image of an old half-edge whose triangle is no hole.
   void map_edge(int half, std::vector<Segment>& segments) const;
 
-  /// The face that an old vertex goes to, -1 where it is far from all.
+  /// The face that an old vertex maps to; -1 if it is far from all faces.
   int face_of(int vertex) const { return spot_[vertex].face; }
-  /// Vertices of a new face, and where they are.
+  /// Vertices of a new face, and their positions.
   const std::array<int, 3>& corners(int face) const { return corners_[face]; }
   std::array<Vec3, 3> points_of(int face) const;
-  /// Faces that are left, with all vertices.
+  /// The remaining faces, with all vertices.
   Mesh new_surface() const;
 
  private:
-  /// A point of the old surface and where it goes.
+  /// A point of the old surface and its image.
   struct Spot {
     Vec3 from, to;
     int face = -1;
   };
-  using Pair = std::pair<Vec3, Vec3>;  // a point, and where it goes
-  /// The corners that two faces have in common.
+  using Pair = std::pair<Vec3, Vec3>;  // a point and its image
+  /// The corners that two faces share.
   struct Shared {
     int count = 0;
     Vec3 point[3];
@@ -82,8 +83,8 @@ class SurfaceMap {
   const HalfEdges& half_edges_;
   const HalfEdgeMesh& mesh_;
   double tolerance_;
-  std::vector<std::array<int, 3>> corners_;  // of a new face
-  std::vector<Spot> spot_;                   // of an old vertex
+  std::vector<std::array<int, 3>> corners_;  // of each new face
+  std::vector<Spot> spot_;                   // of each old vertex
 };
 
 }  // namespace riffler::mesh

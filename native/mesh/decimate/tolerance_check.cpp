@@ -13,10 +13,10 @@ namespace {
 using OpenMesh::HalfedgeHandle;
 using OpenMesh::VertexHandle;
 
-/// The share of the tolerance that flat fans may use up by dropping vertices.
+/// Fraction of the tolerance that flat fans may use by dropping vertices.
 constexpr double kFlatShare = 0.02;
 
-/// The share of an old edge times a change of slope.
+/// Maximum distance per edge length and change of slope.
 constexpr double kBend = 0.25;
 
 struct EdgeSegment {
@@ -63,13 +63,13 @@ bool ToleranceCheck::allow(const Collapse& c) {
     const Traces::Flat& flat = traces_.flat[c.face(i).idx()];
     fan_error_ = std::max<double>(fan_error_, flat.error), fan_edge_ = std::max<double>(fan_edge_, flat.edge);
   }
-  // Once for what was dropped and its fan, once for that fan and the old surface under a trace.
+  // Once for the dropped vertices and their fan, once for that fan and the old surface under a trace.
   limit_ = tolerance_ - 2 * fan_error_;
   if (!(limit_ >= 0) || !(anchor_distance_ <= limit_)) return false;
   find_normal(c);
   find_planes(c);
   if (c.on_border() ? !border_near(c) : !vertices_near(c)) return false;
-  // Old and new fan fill the same part of a slab: no point of one is farther from the other than it is thick.
+  // Old and new fan fill the same part of a slab, so no point of one is farther from the other than its thickness.
   flat_error_ = fan_error_ + std::max(largest_, thickness_);
   flat_ = flat_error_ <= kFlatShare * tolerance_ && !c.on_border();
   if (flat_ || crossings_at_most(c) <= limit_) return true;
@@ -78,8 +78,9 @@ bool ToleranceCheck::allow(const Collapse& c) {
   return true;
 }
 
-/// How far from the new edges the traces cross old edges at most, nearly: an old edge of length l whose ends are d away
-/// from two faces is at most d + l s / 4 away from where they meet with a change of slope s.
+/// An estimate of the largest distance from the new edges to the points where the traces cross old edges. An old edge
+/// of length l whose ends are at distance d from two faces is at most d + l s / 4 away from where these meet with a
+/// change of slope s.
 double ToleranceCheck::crossings_at_most(const Collapse& c) const {
   double least = 1;  // cosine of the angle between neighbours
   const auto look_at = [&](int i, int j) {
@@ -93,8 +94,8 @@ double ToleranceCheck::crossings_at_most(const Collapse& c) const {
   return largest_ + kBend * fan_edge_ * std::sqrt(1 / least - 1);
 }
 
-/// The direction along which the fans are seen best, and how thick a slab across it holds them; infinite where a face
-/// turns away from it.
+/// Finds the direction that sees the fans best, and the thickness of a slab perpendicular to it that contains them;
+/// infinite if a face turns away from it.
 void ToleranceCheck::find_normal(const Collapse& c) {
   normal_ = Vec3(0);
   for (int i = 0; i < c.old_faces(); ++i) normal_ += c.old_cross(i) + c.new_cross(i);
@@ -114,7 +115,7 @@ void ToleranceCheck::find_normal(const Collapse& c) {
       thickness_ = std::numeric_limits<double>::infinity();
 }
 
-/// Walks over the old surface, from the nearer of both anchors, as long as it comes nearer to the new vertex.
+/// Walks over the old surface, from the nearer of the two anchors, while the distance to the new vertex decreases.
 bool ToleranceCheck::find_anchor(const CollapseTarget& place) {
   if (!place.half.is_valid()) return false;
   anchor_ = traces_.anchor[half_edges_.mesh.to_vertex_handle(place.half).idx()], anchor_distance_ = 0;
@@ -146,7 +147,7 @@ bool ToleranceCheck::find_anchor(const CollapseTarget& place) {
          half = half_edges_.adjacency.twin(previous_half(half)))
       look_at(triangle_of(half));
   }
-  // A shade inside of the triangle, so that a plane through the anchor always leaves it over an edge.
+  // slightly inside the triangle, so that a plane through the anchor always leaves it through an edge
   const Vec3 centre = (old_point(3 * face) + old_point(3 * face + 1) + old_point(3 * face + 2)) / 3.0;
   anchor_ = {foot + 1e-3 * (centre - foot), 3 * face, false};
   anchor_distance_ = glm::length(p - anchor_.point);
@@ -165,7 +166,7 @@ void ToleranceCheck::find_planes(const Collapse& c) {
   }
 }
 
-/// The old vertices of the fan, the collapsed ones among them unless they are on a border.
+/// Assigns the old vertices of the fan to new faces, including the collapsed ones unless they are on a border.
 bool ToleranceCheck::vertices_near(const Collapse& c) {
   moves_.clear();
   largest_ = 0;
@@ -184,8 +185,8 @@ bool ToleranceCheck::near_new_face(const Collapse& c, int vertex) {
     return glm::length(p - closest_on_triangle(p, c.new_point(), c.ring(i), c.ring(i + 1)).point);
   };
   const auto left_of_spoke = [&](int i) { return glm::dot(p - anchor_.point, corners_[i].side) >= 0; };
-  // The region is told by the traces, and these by the sides of their planes. What is seen outside of the fan, because
-  // the traces round it belong to other planes, goes to the nearest.
+  // Traces delimit the region, and the sides of their planes identify it. An old vertex that appears outside the fan,
+  // because the traces around it belong to other planes, goes to the nearest face.
   int face = -1;
   double distance = std::numeric_limits<double>::infinity();
   bool left = left_of_spoke(c.first());
@@ -229,20 +230,20 @@ bool ToleranceCheck::has_corner(int half, int vertex) const {
   return false;
 }
 
-/// The trace of the new edge to ring(i).
+/// Checks the trace of the new edge to ring(i).
 bool ToleranceCheck::trace_near(const Collapse& c, int i) const {
   const Traces::Anchor& target = corners_[i].anchor;
   return anchor_.vertex ? leave_vertex(target, c.new_point(), c.ring(i), corners_[i].side)
                         : leave_face(target, c.new_point(), c.ring(i), corners_[i].side);
 }
 
-/// A trace that starts at an old vertex.
+/// Checks a trace that starts at an old vertex.
 bool ToleranceCheck::leave_vertex(const Traces::Anchor& target, const Vec3& from, const Vec3& to,
                                   const Vec3& side) const {
   const Vec3 &start = anchor_.point, way = target.point - start;
   const int target_vertex = target.vertex ? half_edges_.corner[target.half] : -1;
-  // Of the old triangles there, the one through which the plane leaves it forwards: its next vertex is to the right,
-  // the one after to the left. A vertex in the plane counts as left, everywhere.
+  // Finds the old triangle there through which the plane leaves the vertex forwards: its next vertex is on the right,
+  // the one after it on the left. A vertex in the plane counts as left, everywhere.
   const auto is_left = [&](int half) { return glm::dot(old_point(half) - start, side) >= 0; };
   const auto leaves_here = [&](int half) {
     const int p = next_half(half), q = previous_half(half);
@@ -271,7 +272,7 @@ bool ToleranceCheck::leave_vertex(const Traces::Anchor& target, const Vec3& from
   return false;
 }
 
-/// A trace that starts within an old triangle.
+/// Checks a trace that starts inside an old triangle.
 bool ToleranceCheck::leave_face(const Traces::Anchor& target, const Vec3& from, const Vec3& to,
                                 const Vec3& side) const {
   const int first = 3 * triangle_of(anchor_.half);
@@ -283,7 +284,8 @@ bool ToleranceCheck::leave_face(const Traces::Anchor& target, const Vec3& from, 
   return false;
 }
 
-/// Follows a trace out of a triangle over its half-edge `half`, whose start is right of the plane and whose end left.
+/// Follows a trace out of a triangle over its half-edge `half`, whose start is right of the plane and whose end is
+/// left.
 bool ToleranceCheck::follow(int half, const Traces::Anchor& target, const Vec3& from, const Vec3& to,
                             const Vec3& side) const {
   const int target_vertex = target.vertex ? half_edges_.corner[target.half] : -1;
@@ -300,7 +302,7 @@ bool ToleranceCheck::follow(int half, const Traces::Anchor& target, const Vec3& 
     const int tip = half_edges_.corner[previous_half(twin)];
     if (tip == target_vertex || triangle_of(twin) == target_face) return true;
     const Vec3& p = traces_.old[tip].point;
-    // The twin runs from left to right; then comes right → tip, then tip → left.
+    // The twin runs from left to right; the next half-edges are right → tip and tip → left.
     if (const double height = glm::dot(p - anchor_.point, side); height >= 0)
       half = next_half(twin), left = p, left_height = height;
     else
@@ -317,7 +319,7 @@ void ToleranceCheck::commit(const Collapse& c) {
   }
   traces_.anchor[c.to().idx()] = anchor_;
   if (c.on_border()) {
-    // One list of both edges and the vertex between them.
+    // Merges the lists of both edges, with the vertex between them.
     const int gone = c.spoke(c.target()).idx() / 2, kept = other_border(c).idx() / 2;
     int last = c.from().idx();
     traces_.old[last].next = traces_.on_border[gone];

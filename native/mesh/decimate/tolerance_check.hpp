@@ -1,4 +1,4 @@
-// Keeps a surface under decimation within a tolerance of the one it came from.
+// Keeps a surface under decimation within a tolerance of the original.
 #pragma once
 
 #include <vector>
@@ -8,46 +8,47 @@
 
 namespace riffler::mesh {
 
-/// What is known of the way from the new surface to the old one; the checks of all patches share it.
+/// Correspondence between the new surface and the old one, shared by the checks of all patches.
 ///
-/// Every vertex of the new surface has an *anchor*, a point of the old one: at first itself, and where it has moved,
-/// the nearest point found. Every new edge has a *trace* on the old surface: the path between the anchors of its ends
-/// in the plane through both that holds the fan's normal when the edge came to be. The traces cut the old surface into
-/// regions, one for each new triangle. Checked are
-///  - every anchor: it must be near its vertex;
-///  - where a trace crosses an old edge: the point must be near the new edge;
-///  - every old vertex within a region: it must be near the new triangle;
-///  - every old border vertex: it must be near the new border edge in whose stead it was.
-/// A region consists of pieces of old triangles whose corners are such points, and points near a triangle are a convex
-/// set: so the whole region is near its triangle, as long as no two traces cross. On rough surfaces they may, for their
-/// planes lean differently: MapCheck has the last word.
+/// Every vertex of the new surface has an *anchor*, a point of the old one: at first the vertex itself; after a move,
+/// the nearest point found. Every new edge has a *trace* on the old surface: the path between the anchors of its ends,
+/// in the plane through both that contains the fan's normal at the time the edge was made. The traces cut the old
+/// surface into regions, one for each new triangle. The checks are:
+///  - every anchor must be near its vertex;
+///  - where a trace crosses an old edge, the crossing must be near the new edge;
+///  - every old vertex inside a region must be near the new triangle;
+///  - every old border vertex must be near the new border edge that replaces it.
+/// A region consists of pieces of old triangles whose corners are such points, and the set of points near a triangle is
+/// convex. So the whole region is near its triangle, as long as no two traces cross. On rough surfaces they may cross,
+/// because their planes lean differently: MapCheck makes the final decision.
 ///
-/// In planes old vertices would only pile up: where all of a fan is flat they are dropped, and the new triangles
-/// remember by how much they were off.
+/// In planes, lists of old vertices would only grow. If all of a fan is flat, its old vertices are dropped, and the new
+/// triangles record their deviation.
 struct Traces {
   struct Anchor {
     Vec3 point;
-    int half;  // of the old surface: starts at the anchor or, where that is no vertex, bounds its triangle
+    int half;  // half-edge of the old surface that starts at the anchor or, if the anchor is no vertex, bounds its
+               // triangle
     bool vertex;
   };
 
-  /// `half_edges` before the first collapse; must outlive this.
+  /// `half_edges` is the state before the first collapse and must outlive the object.
   explicit Traces(const HalfEdges& half_edges, const Progress& progress = {});
 
   struct OldVertex {
     Vec3 point;
-    int next;  // old vertices of a face or of a border edge are a list; -1 at its end
+    int next;  // next in the linked list of old vertices of a face or border edge; -1 at the end
   };
 
   const HalfEdges& half_edges;
   std::vector<OldVertex> old;
-  std::vector<Anchor> anchor;  // of a vertex
-  std::vector<int> in_face;    // first old vertex of a face
-  std::vector<int> on_border;  // first old vertex of a border edge
-  /// Of a face.
+  std::vector<Anchor> anchor;  // of each vertex
+  std::vector<int> in_face;    // first old vertex of each face
+  std::vector<int> on_border;  // first old vertex of each border edge
+  /// Deviation of one face.
   struct Flat {
-    float error = 0;  // by how much it may be off where vertices were dropped
-    float edge = 0;   // no old edge that crosses it is longer
+    float error = 0;  // mm, maximum deviation caused by dropped vertices
+    float edge = 0;   // mm, maximum length of the old edges that cross the face
   };
   std::vector<Flat> flat;
 };
@@ -57,18 +58,20 @@ class ToleranceCheck {
   ToleranceCheck(Traces& traces, double tolerance)
       : traces_(traces), half_edges_(traces.half_edges), tolerance_(tolerance) {}
 
-  /// Finds where on the old surface a new vertex belongs, before its collapse is prepared; false where that is far.
+  /// Finds the place of a new vertex on the old surface. Call it before the collapse is prepared. Returns false if the
+  /// place is too far.
   bool find_anchor(const CollapseTarget& place);
-  /// Whether the collapse that was prepared then keeps to the tolerance.
+  /// Whether the collapse prepared since then keeps to the tolerance.
   bool allow(const Collapse& collapse);
-  /// Before the collapse that was last allowed is carried out.
+  /// Records the collapse that `allow` accepted last. Call it before carrying the collapse out.
   void commit(const Collapse& collapse);
 
  private:
   struct Move {
     int vertex, face;
   };
-  /// A ring vertex's anchor, and the planes of the traces to it from the new vertex and to the next one of the ring.
+  /// A ring vertex's anchor, and the planes of the traces to it from the new vertex and from it to the next ring
+  /// vertex.
   struct Corner {
     Traces::Anchor anchor;
     Vec3 side, outer_side;
@@ -93,7 +96,7 @@ class ToleranceCheck {
   const HalfEdges& half_edges_;
   double tolerance_;
 
-  // of the collapse under test
+  // State of the collapse under test.
   std::vector<Move> moves_;
   std::vector<Corner> corners_;
   Traces::Anchor anchor_{};  // of the new vertex

@@ -13,7 +13,7 @@ namespace riffler::mesh {
 
 namespace {
 
-/// Statements that carry nothing for a mesh of triangles (Wavefront, Advanced Visualizer manual, appendix B1).
+/// Statements without content for a mesh of triangles (Wavefront, Advanced Visualizer manual, appendix B1).
 constexpr std::array<std::string_view, 41> kPassedOver = {
     "vt",    "vn",    "vp",       "deg",      "bmat", "step",   "cstype", "p",        "l",      "curv",       "curv2",
     "surf",  "parm",  "trim",     "hole",     "scrv", "sp",     "end",    "con",      "g",      "s",          "mg",
@@ -42,7 +42,7 @@ class ObjReader {
     if (word.empty()) return;
     if (word == "v") {
       vertex();
-    } else if (word == "f" || word == "fo") {  // "fo" is the form of version 2
+    } else if (word == "f" || word == "fo") {  // "fo" is the version 2 form
       face();
     } else if (!word.starts_with('#')) {
       if (std::find(kPassedOver.begin(), kPassedOver.end(), word) == kPassedOver.end())
@@ -51,7 +51,7 @@ class ObjReader {
     }
   }
 
-  /// The rest of a statement that may hold anything, a backslash in a name too.
+  /// Skips the rest of a statement, which may contain anything, even a backslash in a name.
   void pass_over() {
     std::string_view last;
     for (;;) {
@@ -62,7 +62,7 @@ class ObjReader {
     }
   }
 
-  /// The next token of this statement: a lone backslash at the end of a line continues it.
+  /// The next token of this statement. A lone backslash at the end of a line continues the statement.
   std::string_view next() {
     for (;;) {
       std::string_view word = scan_.token_in_line();
@@ -107,11 +107,11 @@ class ObjReader {
     const auto n = static_cast<std::int64_t>(welded_.size());
     const std::int64_t i = *index < 0 ? n + *index : *index - 1;
     if (*index == 0 || i < 0 || i >= n)
-      scan_.fail("vertex " + std::to_string(*index) + " of " + std::to_string(n) + " so far");
+      scan_.fail("no vertex " + std::to_string(*index) + ": " + std::to_string(n) + " are defined so far");
     return welded_[static_cast<std::size_t>(i)];
   }
 
-  /// vt, /vn or vt/vn.
+  /// Checks the rest of an index: vt, /vn or vt/vn.
   void check_rest(std::string_view word, std::string_view rest) {
     const std::size_t slash = rest.find('/');
     const std::string_view vt = rest.substr(0, slash);

@@ -1,4 +1,4 @@
-// Wavefront OBJ: geometry in and out.
+// Reads and writes Wavefront OBJ geometry.
 #pragma once
 
 #include <cstdint>
@@ -11,15 +11,16 @@
 
 namespace riffler::mesh {
 
-/// The mesh in an OBJ file's bytes; `name` stands in messages. Reads v and f (v, v/vt, v//vn, v/vt/vn, negative
-/// indices, polygons as fans, lines continued by '\'); other statements of the format are passed over. Equal vertices
-/// become one; vertices without a face stay. FormatError naming the line for an unknown statement, a face with fewer
-/// than three vertices or one that is not there (yet), a vertex that is not finite or beyond 1e30; also for zero faces.
+/// Reads a mesh from an OBJ file's bytes; `name` appears in messages. Understands v and f (v, v/vt, v//vn, v/vt/vn,
+/// negative indices, polygons as fans, lines continued by '\'); skips the format's other statements. Merges equal
+/// vertices; keeps vertices without a face. Throws FormatError naming the line for an unknown statement, a face with
+/// fewer than three vertices or with a vertex that is not defined (yet), a vertex that is not finite or beyond 1e30, or
+/// zero faces.
 Mesh from_obj(std::span<const std::uint8_t> bytes, const std::string& name);
-/// `progress` hears of every few thousand lines; its share is of no more than the part at hand.
+/// Calls `progress` every few thousand statements, with the fraction of the bytes read.
 Mesh from_obj(std::span<const std::uint8_t> bytes, const std::string& name, const Progress& progress);
 
-/// OBJ with coordinates that read back to the same doubles. std::invalid_argument where `validate` throws.
+/// Writes OBJ with coordinates that read back to the same doubles. Throws std::invalid_argument if `validate` does.
 std::vector<std::uint8_t> to_obj(const Mesh& mesh);
 
 }  // namespace riffler::mesh

@@ -35,7 +35,7 @@ constexpr Type kTypes[] = {{"char", "int8", 1, Type::Signed},   {"uchar", "uint8
 struct Property {
   std::string name;
   const Type* type = nullptr;
-  const Type* count = nullptr;  // of a list; null for a single value
+  const Type* count = nullptr;  // count type of a list; null for a single value
 };
 
 struct Element {
@@ -43,7 +43,7 @@ struct Element {
   std::size_t count = 0;
   std::vector<Property> properties;
 
-  /// Bytes of a row at the least: lists empty.
+  /// Minimum size of a row in bytes: with empty lists.
   std::size_t least() const {
     std::size_t size = 0;
     for (const Property& p : properties) size += p.count ? p.count->size : p.type->size;
@@ -114,7 +114,7 @@ class HeaderReader {
   void element() {
     Element element;
     element.name = scan_.token_in_line();
-    // Files have two or three; this many are looked at again and again without being slow.
+    // Files have two or three elements; the search below is linear, and this many are still fast.
     constexpr std::size_t kMaxElements = 1000;
     if (header_.elements.size() == kMaxElements) scan_.fail("more than 1000 elements");
     for (const Element& other : header_.elements)
@@ -166,7 +166,7 @@ class TextValues {
     return *value;
   }
   void skip(const Type&) { scan_.skip_number("a number"); }
-  /// Throws where so many rows cannot be there.
+  /// Throws if the file cannot hold this many rows.
   void check_rows(const Element&) const {}
   void check_end() {
     if (const std::string_view word = scan_.token(); !word.empty()) scan_.fail_expected("the end of the file", word);
@@ -252,7 +252,7 @@ class BodyReader {
 
  private:
   void vertices(const Element& element) {
-    // slot[p]: which coordinate property p is, -1 for none.
+    // slot[p]: coordinate index of property p, -1 for none
     std::vector<int> slot;
     unsigned found = 0;
     for (const Property& p : element.properties) {
@@ -304,7 +304,7 @@ class BodyReader {
     }
   }
 
-  /// The share is that of the element at hand.
+  /// Reports progress as the fraction of the current element.
   void listen(std::size_t row, const Element& element) const {
     constexpr std::size_t kRowsAReport = 1 << 14;
     if (row % kRowsAReport == 0) base::report(progress_, static_cast<double>(row) / static_cast<double>(element.count));
@@ -313,14 +313,15 @@ class BodyReader {
   int corner(const Property& p) {
     const std::int64_t v = values_.integer(*p.type);
     if (v < 0 || v >= static_cast<std::int64_t>(welded_.size()))
-      values_.fail("vertex " + std::to_string(v) + " of " + std::to_string(welded_.size()) + " (counted from 0)");
+      values_.fail("no vertex " + std::to_string(v) + ": there are " + std::to_string(welded_.size()) +
+                   ", counted from 0");
     return welded_[static_cast<std::size_t>(v)];
   }
 
   std::size_t length(const Property& list) {
     const std::int64_t n = values_.integer(*list.count);
     if (n < 0 || static_cast<std::size_t>(n) > values_.left() / list.type->size)
-      values_.fail("a list of " + std::to_string(n) + " values");
+      values_.fail("a list with " + std::to_string(n) + " values");
     return static_cast<std::size_t>(n);
   }
 

@@ -30,8 +30,8 @@ std::optional<double> to_number(std::string_view token) {
   const auto [end, code] = std::from_chars(token.data(), token.data() + token.size(), value);
   if (end != token.data() + token.size()) return {};
   if (code == std::errc::result_out_of_range) {
-    // Too small is 0, too large is no number. from_chars does not tell which it was; the exponent's sign does, or, for
-    // a number without one, whether it begins with 0.
+    // A value too small gives 0; one too large is no number. from_chars does not distinguish them. The exponent's sign
+    // does or, without an exponent, whether the number starts with 0.
     const std::size_t e = token.find_first_of("eE");
     const bool small = e != token.npos ? token.substr(e + 1).starts_with('-') : token.find_first_of("123456789") > 1;
     return small ? std::optional(0.0) : std::nullopt;
@@ -118,7 +118,7 @@ Vec3 Scanner::vertex() {
   Vec3 v;
   for (int k = 0; k < 3; ++k) {
     v[k] = number("a finite coordinate");
-    // As it will be held: the float32 next to 1e30 is larger.
+    // The limit also applies after rounding: the float32 next to 1e30 is larger.
     if (!(std::abs(v[k]) <= 1e30 && std::abs(static_cast<double>(static_cast<float>(v[k]))) <= 1e30))
       fail("a vertex's coordinate is beyond 1e30");
   }

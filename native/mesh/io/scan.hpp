@@ -1,4 +1,4 @@
-// Tokens and numbers of text files, with the line for messages.
+// Splits text files into tokens and numbers, with line numbers for messages.
 #pragma once
 
 #include <cstdint>
@@ -11,37 +11,37 @@
 
 namespace riffler::mesh {
 
-/// The number that `token` spells in full, a leading '+' allowed; what is too small for a double is 0. Nothing for
-/// anything else, among it NaN and infinity.
+/// The number that the whole of `token` spells; a leading '+' is allowed, and a value too small for a double gives 0.
+/// Nothing for any other token, including NaN and infinity.
 std::optional<double> to_number(std::string_view token);
 std::optional<std::int64_t> to_integer(std::string_view token);
-/// What the many ways of writing a number that is none look like: nan, -inf, 1.#QNAN, …
+/// Whether `token` is one of the many spellings of NaN or infinity: nan, -inf, 1.#QNAN, …
 bool is_not_a_number(std::string_view token);
-/// `token` between quotes, shortened, without bytes that a terminal would act on.
+/// `token` in quotes, shortened, without control bytes that a terminal would interpret.
 std::string in_quotes(std::string_view token);
 bool equal_ignoring_case(std::string_view a, std::string_view b);
 
-/// Reads a text from front to back. CR, LF and CR LF end a line.
+/// Reads a text from front to back. CR, LF or CR LF end a line.
 class Scanner {
  public:
-  /// `name` stands in messages; `text` must outlive the scanner. From line 1 on a UTF-8 byte order mark is skipped.
+  /// `name` appears in messages; `text` must outlive the scanner. At line 1, skips a UTF-8 byte order mark.
   Scanner(std::span<const std::uint8_t> text, std::string name, std::size_t line = 1);
 
   /// The next token, on this line or a later one; empty at the end of the text.
   std::string_view token();
   /// The next token of this line; empty at its end.
   std::string_view token_in_line();
-  /// Skips what is left of this line and its end.
+  /// Skips the rest of this line and its end.
   void next_line();
   bool at_end() const { return at_ == text_.size(); }
 
-  /// The next token, which must be `word` in whatever case.
+  /// Reads a token that must be `word`, in upper or lower case.
   void expect(std::string_view word);
-  /// The next token as a number; `what` stands in the message if it is none.
+  /// Reads a token that must be a number; `what` names it in the message.
   double number(const char* what);
-  /// Skips a number of which nothing is needed; NaN, infinity and decimal commas pass.
+  /// Skips a number whose value is not used; accepts NaN, infinity and decimal commas.
   void skip_number(const char* what);
-  /// Three numbers that are fit for a vertex: |x| ≤ 1e30.
+  /// Reads three numbers that are valid vertex coordinates: |x| ≤ 1e30.
   Vec3 vertex();
 
   /// 1-based line of the last token.

@@ -21,8 +21,8 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "binary STL is little-endian");
 
 constexpr std::size_t kHeader = 80, kStart = 84, kRecord = 50;
-constexpr std::size_t kPiece = 1 << 15;  // triangles that are written at once: 1.6 MB
-// Must not begin with "solid", which many readers take for ASCII.
+constexpr std::size_t kPiece = 1 << 15;  // triangles written at once: 1.6 MB
+// Must not start with "solid", which many readers take for ASCII.
 constexpr std::string_view kTitle = "Binary STL by Riffler; lengths in mm";
 
 Mesh to_mesh(const Welder<Vec3f>& welder, Triangles&& triangles) {
@@ -32,7 +32,7 @@ Mesh to_mesh(const Welder<Vec3f>& welder, Triangles&& triangles) {
   return mesh;
 }
 
-/// The first vertex that is not finite or too large is named by the byte of its coordinate.
+/// Reports the first vertex that is not finite or too large, with the byte of its coordinate.
 void check_coordinates(std::span<const std::uint8_t> bytes, std::size_t count, const std::string& name) {
   constexpr std::size_t kGrain = 1 << 15;
   std::vector<std::size_t> bad((count + kGrain - 1) / kGrain, 0);

@@ -1,4 +1,4 @@
-// Subtraction of stretches from the rays of a window, many at a time, and the sums over what is taken.
+// Subtracts intervals from the rays of a window, many rays at a time, and sums up what is removed.
 #if defined(RIFFLER_SWEEP_CUT_LANES_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef RIFFLER_SWEEP_CUT_LANES_INL_HPP
 #undef RIFFLER_SWEEP_CUT_LANES_INL_HPP
@@ -15,21 +15,21 @@ namespace riffler::sweep::HWY_NAMESPACE {
 
 using namespace base::HWY_NAMESPACE;
 
-/// A group of neighbouring rays of one row.
+/// A group of neighbouring rays in one row.
 struct Group {
-  int ray;      // index of the first in the tile
-  int slot;     // of the sums
-  V v;          // their coordinate; u is the row's
-  V near, far;  // their material
+  int ray;      // index of the first ray in the tile
+  int slot;     // slot in the sums
+  V v;          // v of the rays; the row has one u
+  V near, far;  // the rays' material
   M active;     // lanes that the step may touch
 };
 
-/// Rays in a tool's frame: their point at height s over the tip is (x + s tilt, y, z + s oz).
+/// Rays in a tool's frame: the point at height s above the tip is (x + s tilt, y, z + s oz).
 struct SectionRays {
   V x, y, z;
 };
 
-/// Looks up the group's material. The last rays of a tile may be fewer than lanes.
+/// Loads the group's material. At the end of a tile, fewer rays than lanes may remain.
 HWY_INLINE void load_material(const RayWindow& w, Group& g) {
   static_assert(sizeof(dexel::Span) == 2 * sizeof(double));
   const dexel::Span* rays = w.rays + g.ray;
@@ -43,7 +43,7 @@ HWY_INLINE void load_material(const RayWindow& w, Group& g) {
 #if HWY_TARGET == HWY_SCALAR
   hn::LoadInterleaved2(kD, ends, g.near, g.far);
 #else
-  // Fewer shuffles than LoadInterleaved2's.
+  // needs fewer shuffles than LoadInterleaved2
   const V low = hn::LoadU(kD, ends), high = hn::LoadU(kD, ends + lanes());
   g.near = hn::ConcatEven(kD, high, low), g.far = hn::ConcatOdd(kD, high, low);
 #endif
@@ -69,7 +69,7 @@ HWY_INLINE Group group_at(const RayWindow& w, int row, int column) {
   return g;
 }
 
-/// Lanes in which the first look sees all material out of reach.
+/// Lanes for which the quick reject shows that all material is out of reach.
 template <bool kFlank>
 HWY_INLINE M under_ball(const QuickReject& look, double u, const Group& g) {
   const V x = set(u - look.from[0]), y = hn::Sub(g.v, set(look.from[1])), z = hn::Sub(g.far, set(look.from[2]));
@@ -99,13 +99,13 @@ HWY_INLINE M under_planes(const QuickReject& look, double u, const Group& g) {
   return hn::Lt(most, set(-look.slack));
 }
 
-/// A group that may be touched: its first ray and its active lanes.
+/// A group that the step may touch: its first ray and its active lanes.
 struct Candidate {
   std::uint16_t ray;
   std::uint8_t active;
 };
 
-/// The window's groups with material at its heights that `under` does not see out of reach.
+/// The groups of the window that have material at its heights and that `under` does not reject.
 template <class Under>
 HWY_INLINE int find_groups(RayWindow& w, const Under& under, Candidate* out) {
   const V low = set(w.low), high = set(w.high);
@@ -154,7 +154,8 @@ HWY_INLINE void add_to(double* slots, int slot, V x) {
   hn::StoreU(hn::Add(hn::LoadU(kD, slots + slot), x), kD, slots + slot);
 }
 
-/// (3.20)–(3.22) in one: `force` against the velocity of the tool's material point p at time t, as long as `length`.
+/// Equations (3.20)–(3.22) combined: a `force` of size `length`, opposed to the velocity of the tool's material point p
+/// at time t.
 HWY_INLINE void force_at(const ForceLaw& law, const V (&p)[3], V length, V t, V (&force)[3]) {
   V arm[3], square = zero();
   for (int i = 0; i < 3; ++i) arm[i] = hn::Sub(p[i], hn::Add(set(law.tip[i]), hn::Mul(t, set(law.way[i]))));
@@ -163,12 +164,12 @@ HWY_INLINE void force_at(const ForceLaw& law, const V (&p)[3], V length, V t, V 
     const V turn = hn::Sub(hn::Mul(set(law.spin[k]), arm[j]), hn::Mul(set(law.spin[j]), arm[k]));
     force[i] = hn::Sub(turn, set(law.way[i])), square = hn::Add(square, hn::Mul(force[i], force[i]));
   }
-  // Along the axis where that point stands still.
+  // along the axis where that point is at rest
   const M moves = hn::Gt(square, zero());
   const V scale = hn::Div(length, sqrt(pick(moves, square, set(1))));
   for (int i = 0; i < 3; ++i) force[i] = pick(moves, hn::Mul(force[i], scale), hn::Mul(length, set(law.axis[i])));
 }
-/// The same for a tool that does not turn.
+/// Same for a tool that does not rotate.
 HWY_INLINE void force_along(const ForceLaw& law, V length, V (&force)[3]) {
   const bool moves = law.speed > 0;
   const V scale = moves ? hn::Div(length, set(law.speed)) : length;
@@ -185,9 +186,9 @@ HWY_INLINE void add_force(RayWindow& w, const V (&p)[3], const V (&force)[3], in
   }
 }
 
-/// Takes `cut` from the lanes of `mask`; `t_near` and `t_far` are the motion's t at its ends.
+/// Removes `cut` in the lanes of `mask`. `t_near` and `t_far`: the motion's t at its two ends.
 HWY_INLINE void subtract(RayWindow& w, double u, const Group& g, M mask, RayIntervals cut, V t_near, V t_far) {
-  // A cut thinner than what vanishes is none: it would leave two spans that touch.
+  // Ignore a cut thinner than the minimum thickness: it would leave two spans that touch.
   const M touched = both(both(mask, hn::Gt(hn::Sub(cut.far, cut.near), set(w.thinnest))),
                          both(hn::Lt(cut.near, g.far), hn::Gt(cut.far, g.near)));
   if (none(touched)) return;
@@ -208,7 +209,7 @@ HWY_INLINE void subtract(RayWindow& w, double u, const Group& g, M mask, RayInte
       V length = hn::IfThenElseZero(simple, hn::Sub(high, low));
       if (w.uneven) length = hn::Mul(length, hn::Mul(set(w.share_u[a]), hn::LoadU(kD, w.share_v + b)));
       add_to(w.sums->length, g.slot, length);
-      // Lanes that lose nothing may hold infinities.
+      // Lanes without removed material may hold infinities.
       const V middle = hn::IfThenElseZero(simple, hn::Mul(set(0.5), hn::Add(low, high)));
       if (w.with_force) {
         const V p[3] = {set(u), g.v, middle};

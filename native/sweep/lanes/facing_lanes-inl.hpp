@@ -1,5 +1,5 @@
-// The supporting plane of a convex group that looks towards a point: what tells without a hit that the group stays
-// away.
+// The supporting plane of a convex group that faces a point. It shows, without intersecting the ray, that the group
+// stays away from the point.
 #if defined(RIFFLER_SWEEP_FACING_LANES_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef RIFFLER_SWEEP_FACING_LANES_INL_HPP
 #undef RIFFLER_SWEEP_FACING_LANES_INL_HPP
@@ -14,14 +14,14 @@ namespace riffler::sweep::HWY_NAMESPACE {
 
 using namespace base::HWY_NAMESPACE;
 
-/// A unit normal, out of the group, and the point's height over the plane with that normal that touches the group.
+/// A unit normal out of the group, and the point's height over the supporting plane with that normal.
 struct Facing {
   V3 n;
   V height;
 };
 
-/// The plane that touches the group and over which the rays' points at `at` are highest: of those outside of the group,
-/// square to the way to its nearest point.
+/// The supporting plane over which the rays' points at `at` are highest. For points outside the group it is
+/// perpendicular to the line to the nearest point of the group.
 HWY_INLINE Facing facing(const TurningBody& body, const Pose& pose, V at) {
   const V3& o = pose.axis;
   const V3 x{pose.from_tip.x, pose.from_tip.y, hn::Add(pose.from_tip.z, at)};
@@ -31,7 +31,7 @@ HWY_INLINE Facing facing(const TurningBody& body, const Pose& pose, V at) {
   // n = (out r / ρ + up o) / d. The flat ends first.
   const V below = hn::Sub(set(body.pieces[0].z0), z), above = hn::Sub(z, set(body.pieces[body.count - 1].z1));
   V height = max(below, above), out = zero(), up = pick(hn::Gt(below, above), set(-1), set(1)), d = set(1);
-  // Near the axis, the direction away from it is not known well enough.
+  // Near the axis, the radial direction is too inaccurate.
   const M off_axis = hn::Gt(rho, set(1e-7 * body.widest));
   for (std::size_t k = 0; k < body.count; ++k) {
     const PieceShape& s = body.pieces[k];

@@ -1,4 +1,4 @@
-// Where rays meet a convex group of pieces at poses of its motion, a pose of its own for every lane.
+// Intersects rays with a convex group of pieces, each lane at its own pose of the motion.
 #if defined(RIFFLER_SWEEP_HIT_LANES_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef RIFFLER_SWEEP_HIT_LANES_INL_HPP
 #undef RIFFLER_SWEEP_HIT_LANES_INL_HPP
@@ -17,10 +17,10 @@ class HitLanes : private AxisView {
  public:
   using AxisView::AxisView;
 
-  /// What the group covers of the rays; `active` lanes only. A far end above `high` need not be exact.
+  /// The interval of each ray inside the group, in `active` lanes. A far end above `high` need not be exact.
   RayIntervals find(M active, V high) {
     out_ = nothing();
-    for (std::size_t k = b_.count; k-- > 0;) {  // the upper pieces are simple and often make `far` known
+    for (std::size_t k = b_.count; k-- > 0;) {  // upper pieces are simple and often determine `far`
       const PieceShape& s = b_.pieces[k];
       if (!s.round)
         frustum(s);
@@ -33,14 +33,14 @@ class HitLanes : private AxisView {
   }
 
  private:
-  static constexpr double kArrived = 1e-13;  // of the size: where Newton's method has arrived
+  static constexpr double kArrived = 1e-13;  // convergence limit of Newton's method, relative to the size
 
   void add(M hit, RayIntervals s) {
     out_.near = min(out_.near, pick(hit, s.near, set(kInfinity)));
     out_.far = max(out_.far, pick(hit, s.far, set(-kInfinity)));
   }
 
-  /// {s : (q2) s² + 2 q1 s + q0 ≤ 0} on the nappe whose radius is positive; `grow`: how it widens along the ray.
+  /// {s : (q2) s² + 2 q1 s + q0 ≤ 0} on the nappe with positive radius; `grow`: rate of the radius along the ray.
   static RayIntervals inside(V q2, V q1, V q0, V grow, bool cone) {
     const V disc = hn::Sub(hn::Mul(q1, q1), hn::Mul(q2, q0));
     const V q = hn::Neg(hn::Add(q1, with_sign(sqrt(max(disc, zero())), q1)));
@@ -48,14 +48,14 @@ class HitLanes : private AxisView {
     const V b = hn::Div(q0, pick(flat, set(1), q));
     const V a = pick(straight, with_sign(set(kInfinity), q), hn::Div(q, pick(straight, set(1), q2)));
     const V other = pick(flat, pick(straight, with_sign(set(kInfinity), hn::Neg(q0)), zero()), b);
-    // Along the axis of a cylinder: all or nothing.
+    // A ray along the axis of a cylinder is inside entirely or not at all.
     const M whole = both(flat, straight);
     const V low = pick(whole, pick(hn::Le(q0, zero()), set(-kInfinity), set(kInfinity)), min(a, other));
     const V high = pick(whole, pick(hn::Le(q0, zero()), set(kInfinity), set(-kInfinity)), max(a, other));
     RayIntervals out = where(either(whole, hn::Ge(disc, zero())), {low, high});
     if (!cone) return out;
     const M open = hn::Lt(q2, zero()), up = hn::Gt(grow, zero());
-    // Steeper than the flank, a ray stays inside of one nappe beyond a root.
+    // A ray steeper than the flank stays inside one nappe beyond a root.
     out.near = pick(open, pick(up, high, set(-kInfinity)), out.near);
     out.far = pick(open, pick(up, set(kInfinity), low), out.far);
     return out;
@@ -80,14 +80,14 @@ class HitLanes : private AxisView {
     add(hn::Gt(disc, zero()), {hn::Neg(hn::Add(c.z, root)), hn::Sub(root, c.z)});
   }
 
-  /// Moves `at`, where a ray comes into the cylinder and slab about a Round, on to where it enters the Round (`sign` 1)
-  /// or, for a ray looked at from the other side, leaves it (−1); no further than `until`. Returns the lanes that meet
-  /// it.
+  /// Moves `at` from where a ray enters the cylinder and slab around a Round to where it enters the Round (`sign` 1)
+  /// or, traversed from the other side, to where it leaves it (−1), but not beyond `until`. Returns the lanes that hit
+  /// the Round.
   ///
-  /// A Round is all the balls about the points of its disc, and of these the one about the point nearest to where the
-  /// ray enters is met first. So each step goes to the ball about the point nearest to where the last step ended, which
-  /// is inside of the Round, and converges like Newton's method. Where a ray misses that ball, the step is one of
-  /// Newton's on the squared distance from the disc, which is convex: it does not pass the Round.
+  /// A Round is the union of all balls centred on its disc. The ray first meets the ball whose centre is nearest to the
+  /// entry point. So each step goes to the ball whose centre is nearest to the end of the last step; that ball is
+  /// inside the Round, and the iteration converges like Newton's method. If the ray misses that ball, the step is one
+  /// of Newton's on the squared distance from the disc, which is convex, so the step does not pass the Round.
   M walk(const PieceShape& s, M mask, double sign, V& at, V until) const {
     M open = mask, hit = no_lane();
     const double size = std::abs(s.e) + s.r;
@@ -98,7 +98,7 @@ class HitLanes : private AxisView {
       const V rho = max(sqrt(max(square, zero())), set(1e-150)), out = max(hn::Sub(rho, set(s.e)), zero());
       const V over = hn::Sub(hn::Add(hn::Mul(out, out), hn::Mul(z, z)), set(s.r * s.r));
       const M inside = both(open, hn::Le(over, slack));
-      // Half the rate of the squared distance, times ρ.
+      // half the rate of the squared distance, times ρ
       const V rate = hn::Add(hn::Mul(out, grow), hn::Mul(hn::Mul(z, o_.z), rho)), coming = hn::Mul(rate, set(-sign));
       const V disc = hn::Sub(hn::Mul(rate, rate), hn::Mul(over, hn::Mul(rho, rho)));
       const M meets = hn::Ge(disc, zero());
@@ -108,7 +108,7 @@ class HitLanes : private AxisView {
       if (i == 0) open = without(open, inside);  // through the slab's end
       open = both(open, hn::Gt(sum, zero()));
       at = pick(open, hn::Add(at, hn::Mul(set(sign), step)), at);
-      // The error after a step goes with the square of its length.
+      // The error after a step is proportional to the square of its length.
       const M arrived = both(open, both(either(meets, inside), hn::Le(abs(step), set(1e-7 * s.r))));
       hit = either(hit, arrived);
       open =
@@ -120,7 +120,7 @@ class HitLanes : private AxisView {
   void round(const PieceShape& s, M active, V high) {
     const RayIntervals box = box_of(s);
     M mask = both(active, hn::Le(box.near, box.far));
-    // What the pieces above cover already need not be found.
+    // Intervals that the pieces above already cover are not needed.
     mask = without(mask, both(hn::Le(out_.near, box.near), hn::Ge(out_.far, box.far)));
     if (none(mask)) return;
     RayIntervals at = box;
@@ -132,7 +132,7 @@ class HitLanes : private AxisView {
     add(hit, at);
   }
 
-  /// The ray inside of the slab and the cylinder about a Round.
+  /// The part of the ray inside the slab and cylinder around a Round.
   RayIntervals box_of(const PieceShape& s) const {
     const double most = s.e + s.r;
     const RayIntervals side = inside(a_, b1_, hn::Sub(c_, set(most * most)), zero(), false);

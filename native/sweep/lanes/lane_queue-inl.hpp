@@ -1,4 +1,4 @@
-// What lanes are to work on, kept in memory: so that rays from anywhere in a tile share the lanes of a vector.
+// Queues of lane items in memory, so that rays from anywhere in a tile can share the lanes of a vector.
 #if defined(RIFFLER_SWEEP_LANE_QUEUE_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef RIFFLER_SWEEP_LANE_QUEUE_INL_HPP
 #undef RIFFLER_SWEEP_LANE_QUEUE_INL_HPP
@@ -18,7 +18,7 @@ namespace riffler::sweep::HWY_NAMESPACE {
 
 using namespace base::HWY_NAMESPACE;
 
-/// Items, each of one lane of an Item; its fields are what the function `each(item, f)` calls f with.
+/// A queue of single lanes of an Item. The function `each(item, f)` calls f with each of the item's fields.
 template <class Item, int kMax>
 class LaneQueue {
  public:
@@ -27,7 +27,7 @@ class LaneQueue {
 
   /// Adds the lanes of `mask`.
   void add(M mask, Item& item) {
-    // Not by Compress: what it becomes takes some processors a hundred cycles.
+    // Compress would be slower: on some processors it takes a hundred cycles.
     std::int64_t places[base::kLanes] = {};
     int added = 0;
     for (unsigned m = bits(mask); m; m &= m - 1) places[added++] = std::countr_zero(m);
@@ -37,7 +37,7 @@ class LaneQueue {
     count_ += added;
   }
 
-  /// Fills lanes of `idle` with items, as long as there are any, and returns which.
+  /// Fills lanes of `idle` with queued items, as far as there are any. Returns these lanes.
   M take(M idle, Item& item) {
     unsigned wanted = bits(idle);
     while (std::popcount(wanted) > count_) wanted &= wanted - 1;
@@ -58,7 +58,7 @@ class LaneQueue {
   int count_ = 0;
 };
 
-/// A stack of items for each lane; `choose(mask, a, b)` picks between two items.
+/// One stack of items per lane; `choose(mask, a, b)` selects between two items.
 template <class Item, int kMax>
 class LaneStack {
  public:
@@ -85,7 +85,7 @@ class LaneStack {
 
  private:
   Item at_[kMax];
-  unsigned filled_[kMax] = {};  // lanes that have an item at this level
+  unsigned filled_[kMax] = {};  // lanes that have an item at each level
   int top_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// What straight stretches of rays need of vectors, for as many rays at a time as there are lanes.
+// Interval arithmetic on straight rays, as many rays at a time as there are lanes.
 #if defined(RIFFLER_SWEEP_LANES_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef RIFFLER_SWEEP_LANES_INL_HPP
 #undef RIFFLER_SWEEP_LANES_INL_HPP
@@ -15,7 +15,7 @@ namespace riffler::sweep::HWY_NAMESPACE {
 
 using namespace base::HWY_NAMESPACE;
 
-/// A stretch of each ray; empty where near > far.
+/// An interval of each ray; empty if near > far.
 struct RayIntervals {
   V near, far;
 };
@@ -33,8 +33,8 @@ HWY_INLINE RayIntervals common(RayIntervals a, RayIntervals b) {
   return {max(a.near, b.near), min(a.far, b.far)};
 }
 
-/// {s : q2 s² + 2 q1 s + q0 ≤ 0} for one q2 ≥ 0, by roots that do not cancel. `tangent`: what, as a part of q1²,
-/// rounding may have taken from a double root.
+/// {s : q2 s² + 2 q1 s + q0 ≤ 0} for one q2 ≥ 0, with a root formula that avoids cancellation. `tangent`: a negative
+/// discriminant counts as a double root up to this fraction of q1², because it may be due to rounding.
 HWY_INLINE RayIntervals at_most_zero(double q2, double per_q2, V q1, V q0, double tangent = 0) {
   const V square = hn::Mul(q1, q1), disc = hn::Sub(square, hn::Mul(set(q2), q0));
   const M real = hn::Ge(disc, hn::Mul(set(-tangent), square));
@@ -54,7 +54,7 @@ HWY_INLINE RayIntervals at_most_zero(double q2, V q1, V q0) {
   return at_most_zero(q2, 1 / q2, q1, q0);
 }
 
-/// {s : 0 ≤ at + slope · s ≤ height}; `per_slope` is 1 / slope, or 0 for a slope of nothing.
+/// {s : 0 ≤ at + slope · s ≤ height}; `per_slope` is 1 / slope, or 0 for slope 0.
 HWY_INLINE RayIntervals slab_by(V at, double per_slope, double height) {
   if (per_slope == 0) return where(both(hn::Ge(at, zero()), hn::Le(at, set(height))), everything());
   const V r = set(-per_slope), a = hn::Mul(at, r), b = hn::Mul(hn::Sub(at, set(height)), r);

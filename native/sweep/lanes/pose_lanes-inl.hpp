@@ -1,4 +1,4 @@
-// A tool's pose in every lane, and a ray as it stands to it.
+// A tool pose in every lane, and rays relative to it.
 #if defined(RIFFLER_SWEEP_POSE_LANES_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef RIFFLER_SWEEP_POSE_LANES_INL_HPP
 #undef RIFFLER_SWEEP_POSE_LANES_INL_HPP
@@ -14,7 +14,7 @@ namespace riffler::sweep::HWY_NAMESPACE {
 
 using namespace base::HWY_NAMESPACE;
 
-/// The tool's axis, and the way from its tip to the rays' points at s = 0.
+/// The tool's axis, and the vector from its tip to the rays' points at s = 0.
 struct Pose {
   V3 axis, from_tip;
 };
@@ -25,10 +25,10 @@ HWY_INLINE V series(V q, const double (&k)[5]) {
   return sum;
 }
 
-/// The rays (u, v) and the poses at `t`.
+/// The poses at `t`, relative to the rays (u, v).
 HWY_INLINE Pose pose_at(const TurningBody& body, V u, V v, V t) {
   const V turn = hn::Mul(set(body.angle), hn::Sub(t, set(body.middle)));
-  // |turn| ≤ 1/8 (steps.cpp): the series end below 1e-16.
+  // |turn| ≤ 1/8 (steps.cpp), so truncating the series costs less than 1e-16.
   const V q = hn::Mul(turn, turn);
   const V c = series(q, {1, -1.0 / 2, 1.0 / 24, -1.0 / 720, 1.0 / 40320});
   const V s = hn::Mul(turn, series(q, {1, -1.0 / 6, 1.0 / 120, -1.0 / 5040, 1.0 / 362880}));
@@ -37,12 +37,13 @@ HWY_INLINE Pose pose_at(const TurningBody& body, V u, V v, V t) {
   return {{axis(0), axis(1), axis(2)}, {hn::Sub(u, tip(0)), hn::Sub(v, tip(1)), hn::Neg(tip(2))}};
 }
 
-/// A ray about the axis: height over the tip z + s oz; squared distance from the axis a s² + 2 b s + c.
+/// A ray relative to the axis: its height above the tip is z + s oz, its squared distance from the axis a s² + 2 b s +
+/// c.
 class AxisView {
  public:
   AxisView(const TurningBody& body, const Pose& pose) : b_(body), o_(pose.axis), w_(pose.from_tip) {
     z_ = dot(w_, o_);
-    // Without cancellation where the axis is along the ray.
+    // Avoids cancellation if the axis is parallel to the ray.
     a_ = hn::Add(hn::Mul(o_.x, o_.x), hn::Mul(o_.y, o_.y));
     const V across = hn::Add(hn::Mul(w_.x, o_.x), hn::Mul(w_.y, o_.y));
     b1_ = hn::Sub(hn::Mul(w_.z, a_), hn::Mul(o_.z, across));
@@ -52,16 +53,16 @@ class AxisView {
   }
 
  protected:
-  static constexpr double kLevel = 1e-12;  // the axis counts as square to the rays: a piece that a ray meets there is
-                                           // met a moment before and after as well
+  static constexpr double kLevel = 1e-12;  // the axis counts as perpendicular to the rays: if a ray meets a piece then,
+                                           // it also does shortly before and after
   static constexpr int kMaxSteps = 24;
 
   V z_at(V s) const { return hn::Add(z_, hn::Mul(s, o_.z)); }
   V3 point(V s) const { return {w_.x, w_.y, hn::Add(w_.z, s)}; }
-  /// From the axis, square to it, to the point at s.
+  /// The vector from the axis, perpendicular to it, to the ray's point at s.
   V3 radial(V s) const { return less(point(s), z_at(s), o_); }
 
-  /// The ray between two heights over the tip; where it is level, all or nothing.
+  /// The interval of the ray between two heights above the tip; for a level ray, everything or nothing.
   RayIntervals slab(double low, double high) const {
     const V a = hn::Mul(hn::Sub(set(low), z_), per_oz_), b = hn::Mul(hn::Sub(set(high), z_), per_oz_);
     const RayIntervals out{min(a, b), max(a, b)};

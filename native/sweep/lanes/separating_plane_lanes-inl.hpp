@@ -1,4 +1,4 @@
-// Planes between a convex group of pieces and rays that miss it.
+// Separating planes between a convex group of pieces and rays that miss it.
 #if defined(RIFFLER_SWEEP_BESIDE_LANES_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef RIFFLER_SWEEP_BESIDE_LANES_INL_HPP
 #undef RIFFLER_SWEEP_BESIDE_LANES_INL_HPP
@@ -17,8 +17,9 @@ class SeparatingPlaneLanes : private AxisView {
  public:
   using AxisView::AxisView;
 
-  /// Where rays miss the group: a direction in which they do, square to the ray, and how far out they are in it. It is
-  /// that of the piece beside which the ray passes the axis; on flanks that lean, the best of all pieces.
+  /// For rays that miss the group: a direction perpendicular to the ray that separates them, and the ray's height over
+  /// the plane. The direction is that of the piece next to the point where the ray passes the axis; for conical flanks,
+  /// the best of all pieces.
   V3 find(M missed, V& height) const {
     const M along = hn::Lt(a_, set(1e-24));
     const V at = pick(along, zero(), hn::Neg(hn::Div(b1_, pick(along, set(1), a_))));
@@ -40,7 +41,7 @@ class SeparatingPlaneLanes : private AxisView {
       n = choose(better, own, n), height = k == 0 ? out : pick(better, out, height);
     }
     if (!b_.leans) height = above(n);
-    // Rarely, a direction is not good enough to tell that the ray misses.
+    // Rarely, a direction is too inaccurate to show that the ray misses.
     for (int i = 0; i < 3 && !none(both(missed, hn::Le(height, zero()))); ++i)
       steer(both(missed, hn::Le(height, zero())), n, height);
     if (const M lost = both(missed, hn::Le(height, zero())); !none(lost)) search(lost, n, height);
@@ -48,7 +49,7 @@ class SeparatingPlaneLanes : private AxisView {
   }
 
  private:
-  /// Height of the rays over the plane with unit normal n that touches the group, at s = 0.
+  /// Height of the rays at s = 0 over the supporting plane with unit normal n.
   V above(const V3& n) const {
     const V rise = dot(n, o_), across = sqrt(max(hn::Sub(set(1), hn::Mul(rise, rise)), zero()));
     V most = set(-kInfinity);
@@ -69,7 +70,7 @@ class SeparatingPlaneLanes : private AxisView {
     return hn::Sub(dot(n, w_), most);
   }
 
-  /// Distance to the disc (or, for e < 0, to the circle beyond the axis) that a Round thickens, less its thickness.
+  /// Distance to the disc that a Round thickens (for e < 0, to the circle beyond the axis), minus the thickness.
   struct Gap {
     V out, rho, z, d, gap, rate;
   };
@@ -90,9 +91,9 @@ class SeparatingPlaneLanes : private AxisView {
     return less(scaled(radial(at), hn::Div(g.out, hn::Mul(rho, d))), hn::Neg(hn::Div(g.z, d)), o_);
   }
 
-  /// Turns n, square to the ray, towards where the height over its plane is greatest: one step of Newton's method on
-  /// the angle. With p the point of the group that the plane touches and r the radius of its outline's curvature there,
-  /// the height H changes with the angle as H′ = n′ · (ray − p), H″ = −(H + r).
+  /// Rotates n, perpendicular to the ray, towards the maximum of the height over its plane: one step of Newton's method
+  /// on the angle. With p the point where the plane touches the group and r the radius of curvature of the group's
+  /// outline there, the height H changes with the angle as H′ = n′ · (ray − p), H″ = −(H + r).
   void steer(M mask, V3& n, V& height) const {
     const V rise = dot(n, o_), across = sqrt(max(hn::Sub(set(1), hn::Mul(rise, rise)), set(1e-12)));
     V most = set(-kInfinity), z = zero(), rho = zero(), thick = zero();
@@ -116,7 +117,7 @@ class SeparatingPlaneLanes : private AxisView {
            pick(high, set(s.r1), pick(low, set(s.r0), set(s.e))), pick(end, zero(), set(s.r)));
     }
     const V3 tangent{hn::Neg(n.y), n.x, zero()};
-    // n′ · p: the thickness is along n, the disc's point along n less its part along the axis.
+    // n′ · p: the thickness is along n; the disc's point is along n minus its part along the axis.
     const V lean = dot(tangent, o_);
     const V point = hn::Sub(hn::Mul(z, lean), hn::Div(hn::Mul(hn::Mul(rho, rise), lean), across));
     const V bend = hn::Add(hn::Div(hn::Mul(rho, hn::Mul(o_.z, o_.z)), hn::Mul(hn::Mul(across, across), across)), thick);
@@ -129,7 +130,7 @@ class SeparatingPlaneLanes : private AxisView {
     n = choose(better, next, n), height = pick(better, there, height);
   }
 
-  /// Looks for the direction square to the ray in which its height is greatest: all round, then by golden section.
+  /// Searches for the direction perpendicular to the ray with the greatest height: all around, then by golden section.
   void search(M mask, V3& n, V& height) const {
     const auto better = [&](const V3& other) {
       const V there = above(other);
@@ -145,7 +146,7 @@ class SeparatingPlaneLanes : private AxisView {
       return unit({hn::Add(middle.x, hn::Mul(x, aside.x)), hn::Add(middle.y, hn::Mul(x, aside.y)), zero()});
     };
     const V golden = set(0.6180339887498949);
-    V low = set(-0.42), high = set(0.42);  // beyond the neighbours' directions
+    V low = set(-0.42), high = set(0.42);  // beyond the directions of the neighbours
     for (int i = 0; i < 40; ++i) {
       const V part = hn::Mul(golden, hn::Sub(high, low)), a = hn::Sub(high, part), b = hn::Add(low, part);
       const M left = hn::Gt(above(at(a)), above(at(b)));
@@ -154,14 +155,14 @@ class SeparatingPlaneLanes : private AxisView {
     better(at(hn::Mul(set(0.5), hn::Add(low, high))));
   }
 
-  /// `at` moved to where the ray is between two heights over the tip.
+  /// `at` moved to the part of the ray between two heights above the tip.
   V clamped(V at, double low, double high) const {
     const RayIntervals flat = slab(low, high);
     return pick(hn::Gt(flat.near, flat.far), at, max(flat.near, min(flat.far, at)));
   }
 
-  /// The combination of the radial direction at s and the axis that is square to the ray: the normal of a rim's outline
-  /// as the ray sees it.
+  /// The combination of the axis and the radial direction at s that is perpendicular to the ray: the normal of a rim's
+  /// outline as seen along the ray.
   V3 rim(V at) const {
     const V3 r = radial(at);
     return unit(scaled(less(scaled(r, o_.z), r.z, o_), o_.z));
@@ -185,24 +186,24 @@ class SeparatingPlaneLanes : private AxisView {
       n = choose(beside, less(scaled(unit(radial(at)), set(s.cosine)), set(s.slope * s.cosine), o_), n);
     const M level = hn::Le(abs(o_.z), set(kLevel));
     if (none(level)) return n;
-    // The ray runs level: it may pass above or below.
+    // A level ray may pass above or below.
     const M high = both(level, hn::Gt(z_, set(s.z1))), low = both(level, hn::Lt(z_, set(s.z0)));
     return choose(high, o_, choose(low, scaled(o_, set(-1)), n));
   }
 
-  /// Away from the centre.
+  /// Direction away from the ball's centre.
   V3 beside_ball(const PieceShape& s) const {
     const V3 c = less(w_, set(s.zc), o_);
     return unit({c.x, c.y, zero()});
   }
 
-  /// The direction of least distance from the disc, made square to the ray.
+  /// The direction of least distance from the disc, made perpendicular to the ray.
   V3 beside_round(const PieceShape& s, V closest, M mask) const {
     if (s.e == 0) return beside_ball(s);
     V at = clamped(closest, std::max(s.z0, s.zc - s.r), std::min(s.z1, s.zc + s.r));
     RayIntervals bracket{set(-kInfinity), set(kInfinity)};
     for (int i = 0; i < kMaxSteps; ++i) {
-      // Newton's method on the squared distance, which is convex; over the disc itself its normal is right.
+      // Newton's method on the squared distance, which is convex. Over the disc itself its normal is exact.
       const Gap g = gap(s, at);
       const M open = both(mask, both(hn::Gt(g.out, zero()), hn::Gt(abs(g.rate), set(1e-7))));
       if (none(open)) break;

@@ -1,4 +1,4 @@
-// What a convex group takes on a straight way, for many rays at a time; straight_part.hpp explains the geometry.
+// Cuts with a convex group on a straight path, many rays at a time. straight_part.hpp explains the geometry.
 #if defined(RIFFLER_SWEEP_STRAIGHT_LANES_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef RIFFLER_SWEEP_STRAIGHT_LANES_INL_HPP
 #undef RIFFLER_SWEEP_STRAIGHT_LANES_INL_HPP
@@ -15,8 +15,8 @@ namespace riffler::sweep::HWY_NAMESPACE {
 
 using namespace base::HWY_NAMESPACE;
 
-/// One group of rays and the section of the body with each of them. kWays: whether to keep account of the way at which
-/// the ends are.
+/// One group of rays, and the section of the body with each of them. kWays: whether to record the path length at which
+/// each end arises.
 template <bool kWays>
 class StraightLanes {
  public:
@@ -27,8 +27,8 @@ class StraightLanes {
     r_ = {along(b_.e1), along(b_.e2), along(b_.axis)};
   }
 
-  /// Looks for both ends in the lanes of `mask`, between the heights `low` and `high`, where the material is; an end
-  /// beyond them need not be exact.
+  /// Finds both ends in the lanes of `mask`, between the heights `low` and `high` of the material. An end outside them
+  /// need not be exact.
   void find(M mask, V low, V high) {
     M met[ConvexGroup::kMax], open = mask;
     for (std::size_t k = 0; k < b_.count; ++k) {
@@ -37,7 +37,7 @@ class StraightLanes {
       if (p.round && p.e != 0 && !none(met[k])) met[k] = near_of_round(k, met[k], low, high, open);
     }
     if (none(open)) return;
-    for (std::size_t k = b_.count; k-- > 0;) {  // the upper pieces are simple and often make `far` known
+    for (std::size_t k = b_.count; k-- > 0;) {  // upper pieces are simple and often determine `far`
       const SweptShape& p = b_.pieces[k];
       mask_ = met[k] = both(met[k], open);
       if (none(mask_)) continue;
@@ -48,7 +48,7 @@ class StraightLanes {
       else
         far_of_round(p, low, high);
     }
-    // Without its neighbour, the face of a piece towards it is a bound.
+    // If a piece's neighbour is not met, the face between them is a bound.
     for (std::size_t k = 0; k + 1 < b_.count; ++k) {
       const SweptShape &lower = b_.pieces[k], &upper = b_.pieces[k + 1];
       if (lower.cut1 && !lower.face1) hidden_face(without(met[k], met[k + 1]), lower.z1, lower.r1);
@@ -81,7 +81,7 @@ class StraightLanes {
     if (kWays) far_way_ = pick(higher, way, far_way_);
   }
   void add(M good, V s, V way) { add_near(good, s, way), add_far(good, s, way); }
-  /// A stretch at one pose, unless it is empty or infinite.
+  /// Includes an interval at one pose, unless it is empty or infinite.
   void include(RayIntervals s, double way) {
     const M good = both(hn::Le(s.near, s.far), both(hn::Gt(s.near, set(-kInfinity)), hn::Lt(s.far, set(kInfinity))));
     add_near(good, s.near, set(way)), add_far(good, s.far, set(way));
@@ -116,8 +116,9 @@ class StraightLanes {
     }
   }
 
-  /// Torus or barrel. Returns the lanes of `mask` that meet it where the material is. Takes those from `open` in which
-  /// nothing else matters: the end is on the group's own surface, and the top of the material lies in the group then.
+  /// Torus or barrel. Returns the lanes of `mask` that meet it at the material. Removes from `open` the lanes that are
+  /// complete: their near end is on the group's own surface, and the top of the material lies in the group at that
+  /// pose.
   M near_of_round(std::size_t k, M mask, V low, V high, M& open) {
     const SweptShape& p = b_.pieces[k];
     V s, way;
@@ -147,10 +148,10 @@ class StraightLanes {
     add_far(both(far, on_side(p, height(s, way))), s, way);
   }
 
-  /// Height on the axis of the rays' points at s when the tool is at `way`.
+  /// Height along the axis of the rays' points at s when the tool has moved this far along its path.
   V height(V s, V way) const { return less(hn::Add(r_.z, hn::Mul(s, set(b_.oz))), way, b_.mo); }
 
-  /// Lanes whose point at s lies in the piece when the tool is at `way`.
+  /// Lanes whose point at s lies in the piece when the tool has moved this far along its path.
   M holds(const SweptShape& p, V s, V way) const {
     const V a = hn::Sub(hn::Add(r_.x, hn::Mul(s, set(b_.tilt))), hn::Mul(way, set(b_.m1)));
     const V b = less(r_.y, way, b_.m2), z = height(s, way);
@@ -208,7 +209,7 @@ class StraightLanes {
   }
 
   void face(double z, double radius) {
-    // Otherwise ray and motion lie in the plane: the side's own hits bound the section.
+    // If there is no such line, ray and motion lie in the plane, and the side's own hits bound the section.
     if (!b_.face.exists) return;
     const double ds = b_.face.ds, dt = b_.face.dt;
     const V at = hn::Mul(hn::Sub(set(z), r_.z), set(b_.face.per_norm));
@@ -226,7 +227,7 @@ class StraightLanes {
   }
 
   void silhouette(const SweptShape& p) {
-    // Otherwise the motion runs along the flank: both ends and both faces bound the section.
+    // If there is no such line, the motion runs along the flank, and both ends and both faces bound the section.
     if (!p.outline.exists) return;
     const double ds = p.outline.ds, dt = p.outline.dt;
     const V k0 = hn::Add(set(p.r0), hn::Mul(set(p.slope), hn::Sub(r_.z, set(p.z0))));
@@ -251,7 +252,7 @@ class StraightLanes {
 
   const StraightBody& b_;
   SectionRays r_;
-  M mask_;  // lanes whose material is at heights that the piece reaches
+  M mask_;  // lanes with material at heights that the piece reaches
   RayIntervals out_ = nothing();
   V near_way_ = zero(), far_way_ = zero();
 };
@@ -269,7 +270,7 @@ void cut_straight_with(const StraightBody& body, RayWindow& w) {
 }
 
 inline void cut_straight_lanes(const StraightBody& body, RayWindow& w) {
-  // Only normals ask when the tool was where.
+  // Only normals need the tool's position at each end.
   if (w.in_place)
     cut_straight_with<false>(body, w);
   else

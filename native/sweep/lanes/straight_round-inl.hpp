@@ -1,10 +1,11 @@
-// Ends of a torus or a barrel on a straight way, for many rays at a time.
+// Finds the ends of the cut by a torus or barrel on a straight path, many rays at a time.
 //
 // The distance D(s, τ) from a point of the section to the disc (for a barrel, to a circle beyond the axis) is convex in
-// both, and so is its square F. A point with F = r², ∂F/∂τ = 0 (or at an end of the way, with the slope outwards) and
-// ∂F/∂s < 0 *is* the near end, however it was found (the conditions of Karush, Kuhn and Tucker); and where a tangent
-// plane of F stays above r² for all heights and ways, there is none. Both are tested at every step of a search that
-// puts a quadratic in place of F: exact for a ball, and for any round whose axis is along the ray.
+// both variables, and so is its square F. A point with F = r², ∂F/∂s < 0 and ∂F/∂τ = 0 (or at an end of the path, with
+// the slope pointing outwards) *is* the near end, no matter how it was found (Karush-Kuhn-Tucker conditions). If a
+// tangent plane of F stays above r² for all heights and path lengths, there is no end. The search tests both conditions
+// at every step. Each step replaces F by a quadratic, which is exact for a ball, and for any Round whose axis is
+// parallel to the ray.
 #if defined(RIFFLER_SWEEP_STRAIGHT_ROUND_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef RIFFLER_SWEEP_STRAIGHT_ROUND_INL_HPP
 #undef RIFFLER_SWEEP_STRAIGHT_ROUND_INL_HPP
@@ -25,8 +26,9 @@ class StraightRound {
   StraightRound(const StraightBody& body, const SweptShape& piece, const SectionRays& rays)
       : b_(body), p_(piece), r_(rays), size_(std::abs(piece.e) + piece.r) {}
 
-  /// Finds the near (sign 1) or far (−1) end and the way there in lanes of `mask`; returns those that have one. Lanes
-  /// that do not meet the round between the heights `low` and `high` may count as having none.
+  /// Finds the near (sign 1) or far (−1) end, and the path length at which it arises, in lanes of `mask`. Returns the
+  /// lanes that have one. A lane that does not meet the Round between the heights `low` and `high` may count as having
+  /// none.
   M end(M mask, double sign, V low, V high, V& end, V& end_way) const {
     V s, way;
     M hit = both(mask, start(sign, s, way)), open = without(mask, hit);
@@ -44,9 +46,9 @@ class StraightRound {
 
  private:
   static constexpr int kSteps = 16;
-  static constexpr double kNear = 3e-5;  // of the smaller radius: a shorter step ends exactly
+  static constexpr double kNear = 3e-5;  // of the smaller radius; a step shorter than this ends exactly
   struct Point {
-    V a, b, z, square, rho;  // from the centre; ρ² and ρ
+    V a, b, z, square, rho;  // relative to the centre; ρ² and ρ
   };
   struct Gap {
     V f;                               // F − r²
@@ -65,14 +67,14 @@ class StraightRound {
 
   HWY_INLINE Gap gap(V s, V way) const {
     const Point p = point(s, way);
-    // Not 1 / ρ, which would have to wait for the root.
+    // avoids 1 / ρ, which would have to wait for the root
     const V per_rho = hn::Mul(p.rho, hn::Div(set(1), max(p.square, set(1e-300))));
     const V out = max(hn::Sub(p.rho, set(p_.e)), zero());
     const V rho_s = hn::Mul(hn::Mul(p.a, set(b_.tilt)), per_rho);
     const V rho_t = hn::Neg(hn::Mul(hn::Add(hn::Mul(p.a, set(b_.m1)), hn::Mul(p.b, set(b_.m2))), per_rho));
     const V share = hn::Mul(out, per_rho);
     const M beside = hn::Gt(out, zero());
-    // ρ_i ρ_j + out ρ_ij beside the disc, and what the height adds.
+    // ρ_i ρ_j + out ρ_ij outside the disc, plus the contribution of the height
     const auto bend = [&](V i, V j, double plane, double height) {
       const V product = hn::Mul(i, j);
       const V aside = hn::Add(product, hn::Mul(share, hn::Sub(set(plane), product)));
@@ -90,8 +92,8 @@ class StraightRound {
 
   V on_way(V way) const { return min(max(way, zero()), set(b_.way)); }
 
-  /// Where to look first. Returns the lanes in which that is the end: on the flat face of a disc, at the end of the way
-  /// at which it is furthest out.
+  /// Start of the search. Returns the lanes in which the start is already the end: on the flat face of a disc, at the
+  /// end of the path where it is farthest out.
   HWY_INLINE M start(double sign, V& s, V& way) const {
     const double steep = 0.3, level = b_.m1 * b_.m1 + b_.m2 * b_.m2, along = sign * b_.oz;
     if (!(std::abs(b_.oz) > steep)) {
@@ -110,7 +112,8 @@ class StraightRound {
     const V b = hn::Sub(r_.y, hn::Mul(last, set(b_.m2)));
     const V aside = hn::Add(hn::Mul(a, a), hn::Mul(b, b)), disc = set(p_.e > 0 ? p_.e * p_.e : 0);
     const M over = hn::Le(aside, disc);
-    // Elsewhere nearest to the axis, or, where the disc passes, just after it left the ray: F bends sharply there.
+    // Otherwise start nearest to the axis or, if the disc passes over the ray, just after it has left the ray, where F
+    // bends sharply.
     const double left = 1 + 1e-9;
     const double per_level = level > 1e-12 ? 1 / level : 0;
     const V ahead = hn::Mul(hn::Add(hn::Mul(a, set(b_.m1)), hn::Mul(b, set(b_.m2))), set(per_level));
@@ -122,7 +125,7 @@ class StraightRound {
     return (below ? p_.cut0 : p_.cut1) ? no_lane() : over;
   }
 
-  /// Outside of the round; over the disc, F would not say where to go.
+  /// Start outside the Round: over the disc, F is constant and gives no search direction.
   V beside(double sign, V way) const {
     const V x = hn::Sub(r_.x, hn::Mul(way, set(b_.m1)));
     const V z = hn::Sub(hn::Sub(r_.z, set(p_.zc)), hn::Mul(way, set(b_.mo)));
@@ -130,23 +133,23 @@ class StraightRound {
     return hn::Sub(nearest, set(sign * (std::max(p_.e, 0.0) + p_.r)));
   }
 
-  /// The tangent plane of F says that the round is nowhere on the way at these heights.
+  /// Whether the tangent plane of F shows that the Round is nowhere on the path at these heights.
   HWY_INLINE M misses(const Gap& g, V s, V way, V low, V high) const {
     const V up = min(hn::Mul(g.along, hn::Sub(low, s)), hn::Mul(g.along, hn::Sub(high, s)));
     const V on = min(hn::Neg(hn::Mul(g.across, way)), hn::Mul(g.across, hn::Sub(set(b_.way), way)));
     return hn::Ge(hn::Add(hn::Mul(set(0.5), g.f), hn::Add(up, on)), zero());
   }
 
-  /// To the end of the quadratic with the same derivatives (`falls`: it has one), or else to its lowest point. Returns
-  /// the lanes in which that was so near that the error, of third order, is below rounding.
+  /// Steps to the end of the quadratic with the same derivatives or, if it has none (`falls` false), to its lowest
+  /// point. Returns the lanes in which the step was so short that its third-order error is below rounding.
   HWY_INLINE M step(const Gap& g, M open, double sign, V& s, V& way, M& falls) const {
     const V bend = max(g.across_bend, set(1e-12)), per_bend = hn::Div(set(1), bend);
-    // Where the lowest point along the way is at one of its ends, it stays there as s changes.
+    // If the lowest point along the path is at one of its ends, it stays there as s changes.
     const V back = hn::Neg(hn::Mul(way, bend)), ahead = hn::Mul(hn::Sub(set(b_.way), way), bend);
     const V wanted = hn::Neg(g.across);
     const M free = both(hn::Ge(wanted, back), hn::Le(wanted, ahead));
     const V on = hn::Sub(pick(hn::Lt(wanted, back), zero(), set(b_.way)), way);
-    // Of the free, all coefficients times the bend: the root does not change, and need not wait for a division.
+    // For the free lanes, multiply all coefficients by the bend: the root is the same, without waiting for a division.
     const V a =
         max(pick(free, hn::Sub(hn::Mul(g.along_bend, bend), hn::Mul(g.mixed, g.mixed)), g.along_bend), set(1e-24));
     const V b = hn::Mul(set(sign), pick(free, hn::Sub(hn::Mul(g.along, bend), hn::Mul(g.across, g.mixed)),
@@ -164,9 +167,9 @@ class StraightRound {
     return hn::Le(max(abs(move), abs(turn)), set(kNear * std::min(p_.r, p_.e + p_.r)));
   }
 
-  // ---- where that fails: slow and sure
+  // Fallback, slow and safe:
 
-  /// The way at which the piece comes nearest to the point at s: a root of a slope that never falls.
+  /// The path length at which the piece comes nearest to the point at s: a root of a monotonic slope.
   V nearest(V s) const {
     V low = zero(), high = set(b_.way);
     for (int i = 0; i < 64; ++i) {
@@ -178,7 +181,7 @@ class StraightRound {
   }
   V least(V s) const { return gap(s, nearest(s)).f; }
 
-  /// Narrows down the lowest point of the least F over the way, then halves towards the end.
+  /// Brackets the minimum over s of the least F along the path, then bisects towards the end.
   HWY_NOINLINE M search(M mask, double sign, V& s, V& way) const {
     const double reach = std::max(p_.e, 0.0) + p_.r, slack = 1e-9 * size_, golden = 0.6180339887498949;
     const double c0 = p_.zc * b_.oz, c1 = c0 + b_.way * (b_.m1 * b_.tilt + b_.mo * b_.oz);

@@ -1,9 +1,9 @@
-// What a turning part takes from the rays of a tile, many at a time. docs/methods.md, "Carving", has the proof.
+// Cuts the rays of a tile with a turning part, many rays at a time. docs/methods.md, "Carving", has the proof.
 //
-// A convex body lies behind each of its supporting planes at every pose, for the plane moves with it. Hits at exact
-// poses say what the body surely takes; planes at the same poses say what it surely does not reach between them. Where
-// both agree up to the tolerance, a ray is done; where they do not, the time between two poses is halved for that ray.
-// For most rays one plane or one pose is enough. Those that need more are gathered, so that no lane waits for another.
+// At every pose a convex body lies behind each of its supporting planes, because the plane moves with it. Hits at exact
+// poses show what the body certainly removes; planes at the same poses show what it certainly does not reach between
+// them. A ray is finished when both agree within the tolerance; otherwise the time between two poses is halved for that
+// ray. Most rays need only one plane or one pose. The others are queued, so that no lane waits for another.
 #if defined(RIFFLER_SWEEP_TURNING_LANES_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef RIFFLER_SWEEP_TURNING_LANES_INL_HPP
 #undef RIFFLER_SWEEP_TURNING_LANES_INL_HPP
@@ -24,15 +24,15 @@ namespace riffler::sweep::HWY_NAMESPACE {
 
 using namespace base::HWY_NAMESPACE;
 
-/// A ray in each lane.
+/// One ray per lane.
 struct Ray {
   V place;  // index in the tile
   V u, v;
-  V low, high;  // its material, from the origin
-  V direction;  // of time: 1, or −1 where it is looked at from the end
+  V low, high;  // its material, heights from the body's origin
+  V direction;  // of time: 1, or −1 if traversed from the end
 };
 
-/// What was found to be taken, and when.
+/// The interval found so far, and the times of its ends.
 struct Found {
   RayIntervals at;
   V t_near, t_far;
@@ -88,8 +88,8 @@ class TurningLanes {
   }
 
  private:
-  /// Most rays are not reached at all, which needs no hit to tell: those behind the tool, where what the last move left
-  /// is where this one begins, and those beside it or below.
+  /// Rejects most rays without a hit: those behind the tool, where the last move's cut ends where this one begins, and
+  /// those next to or below it.
   void look(Ray& ray, M active) {
     const V3 axis{set(b_.start.axis[0]), set(b_.start.axis[1]), set(b_.start.axis[2])};
     const V3 from_tip{hn::Sub(ray.u, set(b_.start.tip[0])), hn::Sub(ray.v, set(b_.start.tip[1])),
@@ -99,15 +99,15 @@ class TurningLanes {
     const Plane p = certificate_.towards(pose, all);
     const M open = without(active, certificate_.stays_away(p, all));
     if (none(open)) return;
-    // A tool that comes is best looked at where it arrives.
+    // For an approaching tool it is best to start at the end of its path.
     ray.direction = pick(hn::Lt(hn::Add(p.g0, hn::Mul(p.g1, ray.high)), zero()), set(-1), set(1));
-    // What was added just now is still on its way to memory.
+    // The rays added last may not have reached memory yet.
     if (reached_.count() >= lanes()) settle();
     reached_.add(open, ray);
   }
 
-  /// Looks at the pose at one end of the part. Where the tool moves away from there, or comes to where it stays, that
-  /// tells all.
+  /// Evaluates the pose at one end of the part. If the tool only moves away from there, or arrives there, this settles
+  /// the ray.
   void settle() {
     Ray ray{};
     const M active = reached_.take(hn::FirstN(kD, lanes()), ray);
@@ -124,10 +124,10 @@ class TurningLanes {
     if (open_.full()) refine();
   }
 
-  /// Halves the time for the rays that are open, every one at its own pace.
+  /// Halves the time for the open rays, each at its own pace.
   void refine() {
     Open now{};
-    Sample last{}, next{};  // others, for later, are on the stack
+    Sample last{}, next{};  // others wait on the stack
     M busy = no_lane();
     V split = zero();
     for (;;) {
@@ -136,14 +136,14 @@ class TurningLanes {
       if (none(busy)) return;
       const V end = pick(hn::Lt(now.ray.direction, zero()), set(b_.t0), set(b_.t1));
       const V t = pick(fresh, end, hn::Add(last.t, hn::Mul(now.ray.direction, split)));
-      next.depth = hn::Add(next.depth, set(1));  // both halves are one deeper
+      next.depth = hn::Add(next.depth, set(1));  // both halves are one level deeper
       pending_.push(without(busy, fresh), next);
       const Pose pose = pose_at(b_, now.ray.u, now.ray.v, t);
       next.t = t, next.hit = hits(now.ray, pose, busy), next.depth = pick(fresh, zero(), next.depth);
       merge(now.found, t, next.hit, busy);
       set_planes(next, pose, now, busy);
       last = choose(fresh, now.first, last);
-      // On to the pose up to which there is nothing more to ask.
+      // Advance to the first pose after which the ray is still open.
       for (M good = advance(now, last, next, busy, split); !none(good); good = advance(now, last, next, good, split)) {
         last = choose(good, next, last);
         const M done = both(good, pending_.empty());
@@ -154,20 +154,20 @@ class TurningLanes {
     }
   }
 
-  /// Lanes for which nothing is open from the last sample to the next; `split`: for the others, the time after the last
-  /// at which to look.
+  /// Lanes that are settled from the last sample to the next. `split`: for the other lanes, the time after the last
+  /// sample at which to evaluate the next pose.
   M advance(Open& now, const Sample& last, const Sample& next, M mask, V& split) {
     M apart = merge(now.found, next.t, next.hit, mask);
     const V span = abs(hn::Sub(next.t, last.t)), half = hn::Mul(set(0.5), span);
     const M deepest = both(mask, hn::Ge(next.depth, set(b_.deepest + kGuided)));
     if (!none(apart)) {
-      // A new stretch: what was found before is complete if the body was off the ray in between.
+      // A separate interval: the previous one is complete if the body was off the ray in between.
       const M done = both(apart, either(deepest, hn::Ge(last.hit.near, last.hit.far)));
       if (!none(done)) restart(now, next, done), apart = without(apart, done);
     }
     V guess = half;
     const M good = both(mask, either(deepest, without(certain(now, last, next, span, guess), apart)));
-    // First where the planes say that the end is; later in the middle, which surely comes to an end.
+    // First split where the planes place the end; later in the middle, which is sure to terminate.
     split = pick(without(mask, good), pick(hn::Ge(next.depth, set(kGuided)), half, guess), split);
     return good;
   }
@@ -184,8 +184,9 @@ class TurningLanes {
     if (!none(high)) s.above = choose(high, certificate_.between(pose, above(o), missed), s.below);
   }
 
-  /// Joins a hit to what was found, but for lanes in which they lie further apart than an end may miss; returns those.
-  /// (Where a tool that moves along the ray only grazes it, hits may be shorter than the steps between them.)
+  /// Merges a hit into the interval found so far. Returns the lanes in which the two are farther apart than the
+  /// tolerance of an end. (If a tool moving along the ray only grazes it, hits may be shorter than the steps between
+  /// them.)
   M merge(Found& found, V t, RayIntervals s, M mask) const {
     const M hit = both(mask, hn::Lt(s.near, s.far)), fresh = hn::Gt(found.at.near, found.at.far);
     const V gap = max(hn::Sub(s.near, found.at.far), hn::Sub(found.at.near, s.far));
@@ -197,7 +198,7 @@ class TurningLanes {
     return without(hit, join);
   }
 
-  /// The material below and above what was found, but for what an end may miss.
+  /// The material below and above the interval found, minus the tolerance of an end.
   Kept below(const Open& o) const {
     const V at = hn::Sub(o.found.at.near, set(b_.along));
     return {max(min(at, o.ray.high), o.ray.low), o.ray.low, o.ray.direction};
@@ -211,15 +212,15 @@ class TurningLanes {
     return both(hn::Lt(o.found.at.near, o.found.at.far), hn::Lt(o.found.at.far, o.ray.high));
   }
 
-  /// Lanes in which planes at the first pose alone keep the body from all material outside of what was found.
+  /// Lanes in which the planes at the first pose alone keep the body away from all material outside the interval found.
   M certain(const Open& o) const {
     const M good = either(hn::Not(has_below(o)), certificate_.stays_away(o.first.below, below(o))), more = has_above(o);
     if (none(more)) return good;
     return both(good, either(hn::Not(more), certificate_.stays_away(o.first.above, above(o))));
   }
 
-  /// Lanes in which the body surely reaches no material outside of what was found, up to the tolerance, for the `span`
-  /// of time from a to b. `split`: for the others, the time after a to look at next.
+  /// Lanes in which the body certainly reaches no material outside the interval found, up to the tolerance, during the
+  /// time `span` from a to b. `split`: for the other lanes, the time after a at which to evaluate the next pose.
   M certain(const Open& o, const Sample& a, const Sample& b, V span, V& split) const {
     V until;
     const M low_good = either(hn::Not(has_below(o)), certificate_.stays_away(a.below, b.below, below(o), span, until));
@@ -231,7 +232,7 @@ class TurningLanes {
     return both(low_good, high_good);
   }
 
-  /// The rays of `mask` are done.
+  /// Stores the result of the rays of `mask`.
   void finish(const Ray& ray, const Found& found, M mask) {
     each_cut(ray, found, mask, [&](int place, const RayCut& cut) {
       near_[place] = cut.near, far_[place] = cut.far, t_near_[place] = cut.near_t, t_far_[place] = cut.far_t;
@@ -239,7 +240,7 @@ class TurningLanes {
     });
   }
 
-  /// What was found so far in the lanes of `mask` is complete; from here on, another stretch is.
+  /// Completes the interval found so far in the lanes of `mask` and starts another one.
   void restart(Open& o, const Sample& s, M mask) {
     each_cut(o.ray, o.found, mask,
              [&](int place, const RayCut& cut) { earlier_.push_back({place, earlier_.size(), cut}); });
@@ -261,9 +262,9 @@ class TurningLanes {
     }
   }
 
-  /// Takes from the rays what was found, in their order, so that sums do not depend on who was done first.
+  /// Subtracts the intervals in the order of the rays, so that sums do not depend on the order in which rays finish.
   void take() {
-    // Not std::stable_sort, which asks the system for memory.
+    // std::stable_sort would allocate memory.
     std::sort(earlier_.begin(), earlier_.end(),
               [](const Cut& a, const Cut& b) { return a.ray != b.ray ? a.ray < b.ray : a.number < b.number; });
     for (const Cut& c : earlier_) {
@@ -279,21 +280,21 @@ class TurningLanes {
         const M mask = from_bits(taken);
         Group g{ray, (b - w_.first[a]) % base::kLanes, hn::LoadU(kD, w_.v + b), zero(), zero(), mask};
         load_material(w_, g);
-        // The other lanes' places were never written, and no number times zero need be zero.
+        // The other lanes' entries were never written, and zero times an arbitrary value need not be zero.
         const auto load = [&](const double* from) { return hn::IfThenElseZero(mask, hn::LoadU(kD, from + ray)); };
         subtract(w_, w_.u[a], g, mask, {load(near_), load(far_)}, load(t_near_), load(t_far_));
       }
   }
 
   static constexpr int kGuided = 8;
-  static constexpr int kMaxPending = 50;  // kGuided and the most halvings (turning_part.cpp), and one
+  static constexpr int kMaxPending = 50;  // kGuided, plus the maximum number of halvings (turning_part.cpp), plus one
   const TurningBody& b_;
   RayWindow& w_;
   Certificate certificate_;
   LaneQueue<Ray, 2 * base::kLanes> reached_;
   LaneQueue<Open, 16 * base::kLanes> open_;
   LaneStack<Sample, kMaxPending> pending_;
-  // Of the tile's rays: which lose something, and what.
+  // Which rays of the tile lose an interval, and which interval.
   std::uint32_t taken_[dexel::kTileSide] = {};
   double near_[dexel::kTileRays + base::kLanes], far_[dexel::kTileRays + base::kLanes],
       t_near_[dexel::kTileRays + base::kLanes], t_far_[dexel::kTileRays + base::kLanes];
@@ -302,7 +303,7 @@ class TurningLanes {
     std::size_t number;
     RayCut cut;
   };
-  base::BlockVector<Cut> earlier_;  // of rays that are met more than once
+  base::BlockVector<Cut> earlier_;  // earlier intervals of rays that are cut more than once
 };
 
 inline void cut_turning_lanes(const TurningBody& body, RayWindow& window) {

@@ -1,4 +1,4 @@
-// Vectors of three coordinates, a vector for every lane.
+// 3D vectors with one vector per lane.
 #if defined(RIFFLER_SWEEP_VECTOR_LANES_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef RIFFLER_SWEEP_VECTOR_LANES_INL_HPP
 #undef RIFFLER_SWEEP_VECTOR_LANES_INL_HPP
@@ -39,7 +39,7 @@ HWY_INLINE V3 less(const V3& a, V f, const V3& b) {
 HWY_INLINE V3 choose(M m, const V3& yes, const V3& no) {
   return {pick(m, yes.x, no.x), pick(m, yes.y, no.y), pick(m, yes.z, no.z)};
 }
-/// One long; (1, 0, 0) where `a` is zero.
+/// a scaled to length 1; (1, 0, 0) if `a` is zero.
 HWY_INLINE V3 unit(const V3& a) {
   const V square = dot(a, a);
   const M good = hn::Gt(square, set(1e-300));

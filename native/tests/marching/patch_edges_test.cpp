@@ -93,7 +93,7 @@ TEST(Patch, OfOneBrickIsThatBricks) {
 
 TEST(Patch, RefusesBricksThatAreTwiceThereOrNotAtAll) {
   const Mesher mesher(test::scenes()[0].volume);
-  EXPECT_EQ(test::error_of([&] { mesher.patch(std::vector<std::size_t>{2, 1, 2}); }), "bricks: 2 is there twice");
+  EXPECT_EQ(test::error_of([&] { mesher.patch(std::vector<std::size_t>{2, 1, 2}); }), "bricks: 2 is listed twice");
   EXPECT_THROW(mesher.patch(std::vector<std::size_t>{1, 100000}), std::out_of_range);
 }
 

@@ -63,9 +63,9 @@ TEST(Mesh, ValidateNamesTheRow) {
   mesh.vertices[5].y = 1e30;
   EXPECT_EQ(message_of(mesh), "");
   mesh.triangles[7].z = 8;
-  EXPECT_EQ(message_of(mesh), "triangles, row 7: vertex 8 of 8");
+  EXPECT_EQ(message_of(mesh), "triangles, row 7: no vertex 8: there are 8, counted from 0");
   mesh.triangles[7].z = -1;
-  EXPECT_EQ(message_of(mesh), "triangles, row 7: vertex -1 of 8");
+  EXPECT_EQ(message_of(mesh), "triangles, row 7: no vertex -1: there are 8, counted from 0");
 }
 
 }  // namespace

@@ -91,7 +91,7 @@ def test_takes_lists_and_other_dtypes_and_copies_them():
         ([[0, 2e30, 0]], [[0, 0, 0]], "vertices, row 0: beyond 1e30"),
         ([[0, 0, 0]], [0, 0, 0], r"triangles must have the shape \(k, 3\), not \(3,\)"),
         ([[0, 0, 0]], [[0, 0, 0, 0]], r"triangles must have the shape \(k, 3\), not \(1, 4\)"),
-        ([[0, 0, 0]], [[0, 0, 0], [0, 1, 0]], "triangles, row 1: vertex 1 of 1"),
+        ([[0, 0, 0]], [[0, 0, 0], [0, 1, 0]], "triangles, row 1: no vertex 1: there are 1"),
         ([[0, 0, 0]], [[0, 0, -1]], "triangles, row 0: no vertex has the index -1"),
         ([[0, 0, 0]], [[0, 0, 2**32]], "triangles, row 0: no vertex has the index 4294967296"),
         ([[0, 0, 0]], np.array([[0, 0, 2**63]], np.uint64), "triangles, row 0: no vertex has the index"),
@@ -148,7 +148,7 @@ def test_files_that_cannot_be_read(tmp_path):
     with pytest.raises(riffler.FormatError, match=r"none\.stl"):
         riffler.Mesh.read(tmp_path / "none.stl")
     (tmp_path / "bad.obj").write_text("v 0 0 0\nf 1 2 3\n")
-    with pytest.raises(riffler.FormatError, match=r"bad\.obj, line 2: vertex 2 of 1"):
+    with pytest.raises(riffler.FormatError, match=r"bad\.obj, line 2: no vertex 2: 1 are defined"):
         riffler.Mesh.read(tmp_path / "bad.obj")
     assert issubclass(riffler.FormatError, ValueError)
 

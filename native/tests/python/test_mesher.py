@@ -220,7 +220,7 @@ def test_wrong_rays():
 
 def test_wrong_bricks():
     mesher = riffler.Mesher(carved())
-    with pytest.raises(ValueError, match=r"^bricks: 1 is there twice"):
+    with pytest.raises(ValueError, match=r"^bricks: 1 is listed twice"):
         mesher.patch([1, 0, 1])
     with pytest.raises(IndexError, match="no brick 1000000"):
         mesher.patch([0, 1_000_000])

@@ -1,5 +1,5 @@
-// Memory for blocks that come and go all the time, kept ready for the next: a step of the pen does not wait for the
-// system, nor for a thread that does.
+// A pool of freed memory blocks for reuse. A step of the pen has a deadline: it must wait neither for the system's
+// allocator nor for another thread.
 #pragma once
 
 #include <cstddef>
@@ -11,12 +11,13 @@
 
 namespace riffler::base {
 
-/// A block of at least that many bytes, from those that were freed or from the system; any thread may free it. Nobody
-/// waits for another thread. Throws std::bad_alloc.
+/// Returns a block of at least `bytes` bytes, from the pool or else from the system. Any thread may free it. Takes no
+/// lock, so it never waits for another thread. Throws std::bad_alloc.
 void* allocate_block(std::size_t bytes);
+/// Returns a block to the pool or the system. `bytes` is the size given to allocate_block.
 void free_block(void* memory, std::size_t bytes) noexcept;
 
-/// As long as one lives, up to 32 MB of freed blocks are kept, otherwise 2 MB.
+/// While any BlockReserve exists, the pool keeps up to 32 MB of freed blocks; otherwise up to 2 MB.
 class BlockReserve {
  public:
   BlockReserve() noexcept;
@@ -24,15 +25,16 @@ class BlockReserve {
   BlockReserve& operator=(const BlockReserve&) = delete;
   ~BlockReserve();
 
-  /// Sees to it that so many blocks of every size up to `largest` bytes are ready and no others, as far as the 32 MB
-  /// allow, small ones first: for a thread that has time, so that another need not ask the system. Throws
-  /// std::bad_alloc.
+  /// Fills the pool with `count` blocks of every block size up to `largest` bytes and returns all other blocks to the
+  /// system. Small sizes come first; the total stays within 32 MB. Call it on a thread without a deadline, so that the
+  /// thread with one need not ask the system. Throws std::bad_alloc.
   void fill(std::size_t largest, std::size_t count);
 };
 
-/// How often blocks had to come from the system so far, in this thread.
+/// Number of blocks that this thread has had to take from the system so far.
 std::uint64_t blocks_from_system();
 
+/// Standard allocator on top of the pool.
 template <class T>
 struct BlockAllocator {
   using value_type = T;
@@ -46,9 +48,11 @@ struct BlockAllocator {
   friend bool operator==(const BlockAllocator&, const BlockAllocator&) { return true; }
 };
 
+/// Vector whose storage comes from the pool.
 template <class T>
 using BlockVector = std::vector<T, BlockAllocator<T>>;
 
+/// std::make_shared whose storage comes from the pool.
 template <class T, class... Arguments>
 std::shared_ptr<T> make_shared_block(Arguments&&... arguments) {
   return std::allocate_shared<T>(BlockAllocator<T>(), std::forward<Arguments>(arguments)...);

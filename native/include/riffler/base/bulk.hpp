@@ -1,4 +1,4 @@
-// Vectors of many megabytes that a call fills itself.
+// Vectors of many megabytes without the cost of zero-filling.
 #pragma once
 
 #include <cstddef>
@@ -10,11 +10,13 @@
 
 namespace riffler::base {
 
-/// Memory for bulk data, in huge pages where the system gives them: a fresh page of 4 kB costs more than the writing.
+/// Allocates memory for bulk data, in huge pages where the system has them: a first touch of a 4 kB page costs more
+/// than filling it.
 void* allocate_bulk(std::size_t bytes);
+/// Frees memory from allocate_bulk.
 void free_bulk(void* memory) noexcept;
 
-/// Leaves elements that `resize` adds as they are: they are about to be written, by several threads at once.
+/// Leaves elements that `resize` adds uninitialised: the caller writes them next, often from several threads.
 template <class T>
 struct BulkAllocator {
   using value_type = T;
@@ -37,6 +39,7 @@ struct BulkAllocator {
   friend bool operator==(const BulkAllocator&, const BulkAllocator&) { return true; }
 };
 
+/// Vector whose new elements are uninitialised after `resize`.
 template <class T>
 using BulkVector = std::vector<T, BulkAllocator<T>>;
 

@@ -1,4 +1,4 @@
-// The exceptions of the core. Bindings map them one to one: std::invalid_argument → ValueError.
+// The exceptions of the core. The bindings map each to one Python exception: std::invalid_argument → ValueError.
 #pragma once
 
 #include <stdexcept>
@@ -6,14 +6,14 @@
 
 namespace riffler::base {
 
-/// A file that cannot be read: `file` (base name), `where` ("line 12" or "byte 84") and what was expected there.
+/// A file is malformed. `file`: base name; `where`: "line 12" or "byte 84"; `what`: what was expected there.
 class FormatError : public std::runtime_error {
  public:
   FormatError(const std::string& file, const std::string& where, const std::string& what)
       : std::runtime_error(file + (where.empty() ? "" : ", " + where) + ": " + what) {}
 };
 
-/// A long call that its progress callback stopped; the object is as it was before the call.
+/// The progress callback stopped a long call. The call's object is unchanged.
 class Cancelled : public std::runtime_error {
  public:
   Cancelled() : std::runtime_error("cancelled") {}

@@ -1,4 +1,4 @@
-// Fork and join over an index range.
+// Fork-join parallelism over an index range.
 #pragma once
 
 #include <cstddef>
@@ -9,28 +9,30 @@
 
 namespace riffler::base {
 
-/// Threads a parallel call uses: what set_thread_count said, else RIFFLER_THREADS where it is set, else the process's
-/// CPU affinity; at least 1.
+/// Number of threads a parallel call uses: the value given to set_thread_count, else RIFFLER_THREADS if set, else the
+/// size of the process's CPU affinity mask. At least 1.
 int thread_count();
 
-/// Of calls that begin from now on, in any thread (where writing the environment would race with those that read it).
-/// Nothing: as RIFFLER_THREADS says. Throws std::invalid_argument unless 1 ≤ count ≤ 256.
+/// Sets the thread count, 1 ≤ count ≤ 256, for calls that start from now on, on any thread. (Changing the environment
+/// variable instead would race with threads that read it.) std::nullopt: back to RIFFLER_THREADS. Throws
+/// std::invalid_argument for any other count.
 void set_thread_count(std::optional<int> count);
 
-/// Runs body(begin, end) over disjoint chunks of [0, n) of at most `grain` indices, on thread_count() threads, the
-/// caller's among them. Chunks are the same for any number of threads; a body that writes only to places owned by its
-/// indices therefore gives the same bytes for any number. The first exception is rethrown after all threads stopped.
-/// `progress` is called from the calling thread only; the last it is told is 1, whichever threads did the work. Within
-/// a body that runs beside others, the call starts no threads.
+/// Runs body(begin, end) over disjoint chunks of [0, n), each of at most `grain` indices, on thread_count() threads
+/// including the caller's. The chunks do not depend on the number of threads, so a body that writes only to the slots
+/// of its own indices gives the same bytes for any thread count. Rethrows the first exception after all threads have
+/// stopped. Calls `progress` on the calling thread only, the last time with 1. A nested call, made inside a body that
+/// runs in parallel, starts no threads.
 void parallel_for(std::size_t n, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body,
                   const Progress& progress = {});
 
-/// In a body of parallel_for that takes long, now and then: throws Cancelled where the call no longer needs what the
-/// body makes, because its listener has stopped it or another body has failed. In the caller's thread the listener is
-/// asked.
+/// Call it now and then in a slow parallel_for body. Throws Cancelled if the result is no longer needed, because the
+/// progress callback cancelled the call or another body threw. On the caller's thread it also calls the progress
+/// callback.
 void still_wanted();
 
-/// As long as it lives, parallel calls of this thread start no others: the caller knows that all processors are busy.
+/// While one exists, parallel calls made on this thread run on this thread only. For callers that already keep all
+/// processors busy.
 class SerialScope {
  public:
   SerialScope();

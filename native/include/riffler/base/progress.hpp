@@ -1,4 +1,4 @@
-// Progress and cancel of long calls.
+// Progress and cancellation of long calls.
 #pragma once
 
 #include <functional>
@@ -7,16 +7,16 @@
 
 namespace riffler::base {
 
-/// Called now and then, always from the thread that made the call, with the finished share in [0, 1].
-/// Returning false cancels: the call throws Cancelled and leaves its object unchanged.
+/// Called from time to time with the finished fraction in [0, 1], always on the thread that made the call. Returning
+/// false cancels: the call throws Cancelled and leaves its object unchanged.
 using Progress = std::function<bool(double)>;
 
-/// Reports `share`, if anybody listens, and throws Cancelled if the listener wants to stop.
+/// Reports the finished fraction `share` if there is a callback. Throws Cancelled if the callback returns false.
 inline void report(const Progress& progress, double share) {
   if (progress && !progress(share)) throw Cancelled();
 }
 
-/// Progress of one part of a longer call. Refers to `progress`.
+/// Maps one part of a longer call to [begin, end] of the whole call's progress. Keeps a reference to `progress`.
 inline Progress part(const Progress& progress, double begin, double end) {
   if (!progress) return {};
   return [&progress, begin, end](double share) { return progress(begin + share * (end - begin)); };

@@ -1,4 +1,4 @@
-// A queue between two threads, of fixed size, without locks.
+// A lock-free queue of fixed size between two threads.
 #pragma once
 
 #include <atomic>
@@ -8,23 +8,24 @@
 
 namespace riffler::base {
 
-/// One thread puts, one other takes; neither waits for the other, and nothing is allocated after the start (Lamport,
-/// "Proving the correctness of multiprocess programs", IEEE Trans. Software Engineering 3(2), 1977).
+/// Single-producer, single-consumer queue: neither thread waits for the other, and only the constructor allocates
+/// (Lamport, "Proving the correctness of multiprocess programs", IEEE Trans. Software Engineering 3(2), 1977).
 template <class T>
 class Ring {
  public:
-  /// Holds so many. std::invalid_argument for none.
+  /// A queue for up to `capacity` values. Throws std::invalid_argument if it is 0.
   explicit Ring(std::size_t capacity) : slots_(capacity) {
-    if (capacity == 0) throw std::invalid_argument("a ring must have room");
+    if (capacity == 0) throw std::invalid_argument("a ring's capacity must not be 0");
   }
 
+  /// Maximum number of values.
   std::size_t capacity() const noexcept { return slots_.size(); }
-  /// How many are in it at least, as the taker sees it, and at most, as the putter does.
+  /// Number of values in the queue: a lower bound when the consumer calls it, an upper bound when the producer does.
   std::size_t size() const noexcept {
     return put_.load(std::memory_order_acquire) - taken_.load(std::memory_order_acquire);
   }
 
-  /// By the one thread. False, and nothing is put, where it is full.
+  /// Called by the producer. Returns false, and stores nothing, if the queue is full.
   bool put(const T& value) noexcept {
     const std::size_t n = put_.load(std::memory_order_relaxed);
     if (n - taken_.load(std::memory_order_acquire) == slots_.size()) return false;
@@ -32,7 +33,7 @@ class Ring {
     put_.store(n + 1, std::memory_order_release);
     return true;
   }
-  /// By the other. False where it is empty.
+  /// Called by the consumer. Returns false if the queue is empty.
   bool take(T& value) noexcept {
     const std::size_t n = taken_.load(std::memory_order_relaxed);
     if (n == put_.load(std::memory_order_acquire)) return false;

@@ -1,4 +1,4 @@
-// Union, difference and intersection of volumes on one grid, in place, tile by tile.
+// Union, difference and intersection of volumes on the same grid, in place and tile by tile.
 #pragma once
 
 #include <memory>
@@ -11,16 +11,16 @@ namespace riffler::dexel {
 
 enum class Boolean { Subtract, Add, Intersect };
 
-/// Throws std::invalid_argument that says in what the frame of `what` differs from the volume's, if it does.
+/// Throws std::invalid_argument if `other` differs from `frame`. The message names `what` and the differing property.
 void check_same_grid(const Frame& frame, const Frame& other, const std::string& what);
 
-/// a := a op b. Both must share their frame (std::invalid_argument otherwise). Tiles that the operation leaves as they
-/// are keep their revision and stay shared; ends that come from b carry b's normals (turned round for Subtract).
-/// Spans thinner than 1e-9 h and gaps narrower than that vanish. Cancelled leaves `a` unchanged.
+/// a := a op b. Throws std::invalid_argument unless both have the same frame. Tiles without a change keep their
+/// revision and stay shared. Span ends that come from b carry b's normals (reversed for Subtract). Spans thinner than
+/// 1e-9 h vanish, and gaps narrower than that close. Cancelled leaves `a` unchanged.
 void apply(Boolean op, Volume& a, const Volume& b, const Progress& progress = {});
 
-/// The same, of one tile of `grid` (its number `tile`) that is `a` here and `b` there; `a` itself where nothing
-/// changes. `builder` is empty, and is so again afterwards.
+/// Same for one tile, number `tile` of `grid`: `a` in the first volume, `b` in the second. Returns `a` itself if
+/// nothing changes. `builder` is scratch space, empty before and after the call.
 std::shared_ptr<const Tile> apply(Boolean op, const Grid& grid, std::size_t tile, const std::shared_ptr<const Tile>& a,
                                   const std::shared_ptr<const Tile>& b, TileBuilder& builder);
 

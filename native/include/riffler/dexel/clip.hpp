@@ -1,4 +1,4 @@
-// A volume cut off by a plane.
+// Cuts a volume with a plane.
 #pragma once
 
 #include "riffler/base/progress.hpp"
@@ -6,9 +6,9 @@
 
 namespace riffler::dexel {
 
-/// Takes away what lies in front of the plane through `point` (mm) with `normal`, any length but 0: what is left looks
-/// out along it. Every end is the exact crossing of its ray. Throws std::invalid_argument for vectors that are not
-/// finite and a normal of length 0.
+/// Removes the material in front of the plane through `point` (mm); `normal` (any length but 0) points to the front and
+/// becomes the outward normal of the cut. Every new span end is the exact crossing of ray and plane. Throws
+/// std::invalid_argument if a vector is not finite or the normal has length 0.
 void clip(Volume& volume, const Vec3& point, const Vec3& normal, const Progress& progress = {});
 
 }  // namespace riffler::dexel

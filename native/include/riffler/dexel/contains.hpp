@@ -1,4 +1,4 @@
-// Points in a volume.
+// Point-in-volume test.
 #pragma once
 
 #include <span>
@@ -8,8 +8,8 @@
 
 namespace riffler::dexel {
 
-/// Of each point (mm), whether it lies in the material, by the nearest ray of each direction: of three directions, two
-/// decide. Points outside of the volume's box, and points that are not finite, lie outside of the material.
+/// For each point (mm): whether it lies in the material, by the nearest ray of each direction. With three directions,
+/// two of them decide. Points outside the volume's box and points that are not finite count as outside.
 std::vector<char> contains(const Volume& volume, std::span<const Vec3> points);
 
 }  // namespace riffler::dexel

@@ -1,4 +1,4 @@
-// A volume in a larger box: rays stay where they stand, and more are put beside them.
+// Enlarges a volume's box: existing rays stay in place, new rays are added around them.
 #pragma once
 
 #include "riffler/base/progress.hpp"
@@ -6,14 +6,14 @@
 
 namespace riffler::dexel {
 
-/// The frame with each side moved outward by whole pitches until it lies at or beyond that of `wanted`, to 1e-6 of a
-/// pitch; a side that already does stays. The upper sides may move one pitch more, where the box's size is no whole
-/// number of pitches, so that all rays keep a place. Throws std::invalid_argument where `wanted` is not finite or has a
-/// lower corner above the upper one.
+/// Moves each side of the frame outward by whole pitches until it reaches that of `wanted`, to 1e-6 of a pitch. A side
+/// that already does is unchanged. If the box size is no multiple of the pitch, an upper side may move one pitch more,
+/// so that every ray keeps its place. Throws std::invalid_argument if `wanted` is not finite or its lower corner is
+/// above its upper one.
 Frame grown(const Frame& frame, const Box3& wanted);
 
-/// The volume in grown(frame, wanted): the same spans and normals, bit for bit, and no material in what is new. Throws
-/// as grown() and, before anything is allocated, as Volume() do.
+/// The volume in the frame grown(frame, wanted): the same spans and normals, bit for bit, and no material in the new
+/// region. Throws as the overload above does, and as Volume() does before anything is allocated.
 Volume grown(const Volume& volume, const Box3& wanted, const Progress& progress = {});
 
 }  // namespace riffler::dexel

@@ -1,4 +1,4 @@
-// The separate pieces of a volume.
+// Splits a volume into its connected pieces.
 #pragma once
 
 #include <vector>
@@ -8,13 +8,13 @@
 
 namespace riffler::dexel {
 
-/// One volume for each piece that hangs together, the largest first, equal ones by where their first ray stands. They
-/// share the volume's frame, and their spans are the volume's, each in one of them.
+/// Returns one volume for each connected piece, largest first; equal pieces are ordered by their first ray. They have
+/// the volume's frame, and each of its spans is in exactly one of them.
 ///
-/// Spans of neighbouring rays hang together where they overlap, and rays of two directions where both hold the point in
-/// which they meet. What no ray of the reference direction sees, as a fin thinner than the pitch may be, goes with the
+/// Spans of neighbouring rays are connected if they overlap; rays of two directions, if both contain their crossing
+/// point. Material that no ray of the reference direction meets, such as a fin thinner than the pitch, goes to the
 /// largest piece, and so do pieces smaller than `least` mm³. An empty volume has no pieces. Throws
-/// std::invalid_argument for more than `kMaxParts`.
+/// std::invalid_argument for more than `kMaxParts` pieces.
 std::vector<Volume> parts(const Volume& volume, double least = 0, const Progress& progress = {});
 
 inline constexpr std::size_t kMaxParts = 1000;

@@ -1,4 +1,4 @@
-// What one ray carries: spans of material and, in tri-dexel volumes, the surface normal at each end.
+// The content of one ray: spans of material and, in tri-dexel volumes, the surface normal at each end.
 #pragma once
 
 #include <cstdint>
@@ -7,20 +7,22 @@
 
 namespace riffler::dexel {
 
-/// Material between two absolute coordinates along the ray (mm): near < far strictly, both finite.
+/// Material between two absolute coordinates along the ray, mm; near < far strictly, both finite.
 struct Span {
   double near, far;
   double length() const { return far - near; }
   bool operator==(const Span&) const = default;
 };
 
-/// A unit normal in four bytes: octahedral map with 16 bits a component (Cigolle et al., "A Survey of Efficient
-/// Representations for Independent Unit Vectors", JCGT 3(2), 2014); error below 5e-5 rad. World frame, out of the
+/// A unit normal in four bytes: octahedral map with 16 bits per component (Cigolle et al., "A Survey of Efficient
+/// Representations for Independent Unit Vectors", JCGT 3(2), 2014). Error below 5e-5 rad. World frame, out of the
 /// material.
 struct PackedNormal {
   std::int16_t u = 0, v = 0;
 
+  /// Packs a unit vector.
   static PackedNormal pack(const Vec3& n);
+  /// The unit vector.
   Vec3 unpack() const;
   bool operator==(const PackedNormal&) const = default;
 };

@@ -1,18 +1,19 @@
-// Operation counters: the proof that work follows the tool's footprint and not the grid.
+// Operation counters. They show that the work grows with the tool's footprint, not with the grid.
 #pragma once
 
 #include <cstdint>
 
 namespace riffler::dexel {
 
+/// Counts since the last Volume::take_stats().
 struct Stats {
-  std::uint64_t moves = 0;             ///< moves carved
-  std::uint64_t steps = 0;             ///< steps they were split into, over all pieces of the tool
-  std::uint64_t tiles_visited = 0;     ///< (tile, move) pairs whose rays were looked at
-  std::uint64_t tiles_changed = 0;     ///< tiles written
-  std::uint64_t rays_tested = 0;       ///< (ray, step) pairs intersected with a swept piece
-  std::uint64_t hits = 0;              ///< (ray, pose) pairs intersected for them: one a straight step, more for turns
-  std::uint64_t rays_changed = 0;      ///< of these, rays that lost material
+  std::uint64_t moves = 0;          ///< moves carved
+  std::uint64_t steps = 0;          ///< steps the moves were split into, summed over the tool's pieces
+  std::uint64_t tiles_visited = 0;  ///< (tile, move) pairs whose rays were tested
+  std::uint64_t tiles_changed = 0;  ///< tiles written
+  std::uint64_t rays_tested = 0;    ///< (ray, step) pairs intersected with a swept piece
+  std::uint64_t hits = 0;  ///< (ray, pose) intersections made for them: one per straight step, more per rotating step
+  std::uint64_t rays_changed = 0;      ///< tested rays that lost material
   std::uint64_t tiles_meshed = 0;      ///< tiles turned into triangles
   std::uint64_t triangles_tested = 0;  ///< triangles tested against rays or tools
   std::uint64_t bytes_copied = 0;      ///< bytes of tiles copied on write

@@ -1,4 +1,4 @@
-// A square of 32 × 32 rays: the unit of sharing, copying on write, undo and re-meshing.
+// A square of 32 × 32 rays: the unit of sharing, copy on write, undo and re-meshing.
 #pragma once
 
 #include <array>
@@ -16,23 +16,25 @@ namespace riffler::dexel {
 inline constexpr int kTileSide = 32;
 inline constexpr int kTileRays = kTileSide * kTileSide;
 
-/// Where the rays of a tile begin among its spans, and where the last one ends. Nearly all tiles have one span in each
-/// ray, or none at all: they need no memory for this. Immutable; copies share what there is.
+/// For each ray of a tile, the index of its first span, then the end of the last ray. In nearly all tiles every ray has
+/// one span, or none has any; these two cases need no memory here. Immutable; copies share storage.
 class RayOffsets {
  public:
   using Array = std::array<std::uint32_t, kTileRays + 1>;
 
-  /// Of a tile without spans.
+  /// Offsets of a tile without spans.
   RayOffsets() : first_(none().data()) {}
+  /// Offsets of any tile; shares storage for the two common cases.
   explicit RayOffsets(const Array& offsets);
 
   std::uint32_t operator[](int r) const { return first_[r]; }
-  /// Whether each ray has one span.
+  /// Whether every ray has exactly one span.
   bool one_each() const { return first_ == one().data(); }
   const std::uint32_t* data() const { return first_; }
   std::size_t size() const { return kTileRays + 1; }
   const std::uint32_t* begin() const { return first_; }
   const std::uint32_t* end() const { return first_ + size(); }
+  /// Bytes of memory of its own.
   std::size_t nbytes() const { return own_ ? sizeof *own_ : 0; }
   bool operator==(const RayOffsets& o) const;
 
@@ -43,33 +45,35 @@ class RayOffsets {
   const std::uint32_t* first_;
 };
 
-/// Rays of one tile in compressed rows: ray r = a · 32 + b (a along u, b along v) owns spans [offset[r], offset[r +
-/// 1]). A tile in a grid is never written: volumes and snapshots share it, and a change puts a new one in its place.
-/// Rays of a border tile that lie beyond the grid are empty.
+/// The rays of one tile in compressed rows: ray r = a · 32 + b (a along u, b along v) owns the spans offset[r] to
+/// offset[r + 1] − 1. A tile in a grid is immutable: volumes and snapshots share it, and a change replaces it. Rays of
+/// a border tile that lie outside the grid are empty.
 struct Tile {
   RayOffsets offset;
   base::BlockVector<Span> spans;
-  base::BlockVector<SpanNormals> normals;  // as long as `spans`, or empty in a grid that stores none
-  Interval reach;                          // covers every span; may be larger after a cut, never smaller
-  std::uint64_t revision = 0;              // changes whenever the content does
+  base::BlockVector<SpanNormals> normals;  // as long as `spans`, or empty if the grid stores no normals
+  Interval reach;                          // covers every span; after a cut it may be larger than necessary
+  std::uint64_t revision = 0;              // changes with the content
 
+  /// Spans, and normals at their ends, of ray r.
   std::span<const Span> ray(int r) const { return {spans.data() + offset[r], spans.data() + offset[r + 1]}; }
   std::span<const SpanNormals> ray_normals(int r) const {
     return normals.empty() ? std::span<const SpanNormals>{}
                            : std::span<const SpanNormals>{normals.data() + offset[r], normals.data() + offset[r + 1]};
   }
+  /// Bytes in use.
   std::size_t nbytes() const;
 };
 
-/// The same spans and normals, whatever the revision.
+/// Whether both tiles have the same spans and normals, regardless of the revision.
 inline bool same_material(const Tile& a, const Tile& b) {
   return a.offset == b.offset && a.spans == b.spans && a.normals == b.normals;
 }
 
-/// A fresh revision number, greater than all before it in this process.
+/// A new revision number, greater than all earlier ones in this process.
 std::uint64_t next_revision();
 
-/// Writes a tile ray by ray, in the order r = 0 … 1023; rays not written before `finish` are empty.
+/// Builds a tile ray by ray, in the order r = 0 … 1023. Rays not written before `finish` are empty.
 class TileBuilder {
  public:
   explicit TileBuilder(bool with_normals) : with_normals_(with_normals) { clear(); }
@@ -82,8 +86,9 @@ class TileBuilder {
   }
   /// Ends the current ray.
   void next_ray() { offset_[++rays_] = static_cast<std::uint32_t>(tile_.spans.size()); }
+  /// Number of rays that have ended.
   int rays() const { return rays_; }
-  /// The finished tile, with storage trimmed to its content and a fresh revision; the builder is empty again.
+  /// Returns the tile, its storage trimmed, with a new revision. The builder is then empty.
   std::shared_ptr<Tile> finish();
 
  private:

@@ -10,7 +10,7 @@
 
 namespace riffler::dexel {
 
-/// Box, pitch and directions: what two volumes must share to be combined.
+/// Box (mm), pitch (mm) and directions. Two volumes can be combined if their frames are equal.
 struct Frame {
   Box3 box;
   double pitch = 0;
@@ -21,36 +21,41 @@ struct Frame {
   }
 };
 
-/// Copies share their tiles until one of them writes, so a copy *is* a snapshot and costs pointers only.
+/// Copies share their tiles until one of them writes: a copy is a snapshot and costs only pointers.
 class Volume {
  public:
-  /// An empty volume. Throws std::invalid_argument for a box, pitch or directions that make no sense, and, before
-  /// anything is allocated, for a grid that this machine's free memory cannot hold (the message has the bytes).
+  /// An empty volume. Throws std::invalid_argument for an invalid box, pitch or directions and, before anything is
+  /// allocated, for a grid that does not fit in the machine's free memory (the message has the bytes).
   explicit Volume(const Frame& frame);
-  /// The box full of material; its spans end exactly at `box.lower` and `box.upper`.
+  /// The box full of material. Its spans end exactly at `box.lower` and `box.upper`.
   static Volume block(const Frame& frame);
 
   const Frame& frame() const { return frame_; }
+  /// One grid per direction, in the order of Frame::directions.
   std::vector<Grid>& grids() { return grids_; }
   const std::vector<Grid>& grids() const { return grids_; }
   /// The grid of one direction, or nullptr.
   const Grid* grid(Axis axis) const;
-  /// The grid that defines `volume()`: z, or the only one there is.
+  /// The grid that defines `volume()`: z, or the only one.
   const Grid& reference() const;
 
+  /// Volume of the material, mm³.
   double volume() const { return reference().volume(); }
+  /// Bytes in use; each shared tile counts once.
   std::size_t nbytes() const;
-  /// Changes whenever the content does; a restored snapshot brings its number back.
+  /// Changes with the content; restoring a snapshot restores its revision.
   std::uint64_t revision() const { return revision_; }
-  /// Called by whatever changed the content.
+  /// Must be called after every change of the content.
   void touch() { revision_ = next_revision(); }
 
+  /// A copy, which shares the tiles.
   Volume snapshot() const { return *this; }
-  /// Throws std::invalid_argument if the snapshot's frame is another one. Counters go on.
+  /// Throws std::invalid_argument if the snapshot has another frame. The counters are not reset.
   void restore(const Volume& snapshot);
 
-  /// Adds to the counters; `take_stats` returns and clears them.
+  /// Adds to the counters.
   void count(const Stats& stats) { stats_ += stats; }
+  /// Returns the counters and resets them.
   Stats take_stats() { return std::exchange(stats_, {}); }
 
  private:
@@ -60,13 +65,13 @@ class Volume {
   Stats stats_;
 };
 
-/// Directions as axes, in the order of the grids; std::invalid_argument for anything but "x", "y", "z", "xyz".
+/// Directions as axes, in the order of the grids. Throws std::invalid_argument unless "x", "y", "z" or "xyz".
 std::vector<Axis> parse_directions(const std::string& directions);
 
-/// Bytes that a fresh volume of one span a ray would take.
+/// Estimated bytes of a new volume with one span per ray.
 double estimated_bytes(const Frame& frame);
 
-/// Memory that this machine can still give, bytes; infinity where the system does not say.
+/// Bytes of memory that this machine can still provide; infinity if the system does not report it.
 double available_memory();
 
 }  // namespace riffler::dexel

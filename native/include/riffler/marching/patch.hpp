@@ -1,4 +1,4 @@
-// Part of a mesh, with numbers of its own.
+// Part of a mesh with its own vertex numbers.
 #pragma once
 
 #include <cstdint>
@@ -9,19 +9,19 @@
 
 namespace riffler::marching {
 
-/// The part of a mesh in some bricks of 32 × 32 × 32 cells: their own vertices, then those of other bricks that their
-/// triangles touch. World frame. What two patches share has the same coordinates in both, bit for bit, and no other
-/// vertices of a mesh have.
+/// The part of a mesh in some bricks of 32 × 32 × 32 cells: first the bricks' own vertices, then the vertices of other
+/// bricks that their triangles use. World frame, mm. A vertex shared by two patches has the same coordinates in both,
+/// bit for bit; no other two vertices of a mesh have equal coordinates.
 struct MeshPatch {
   base::BulkVector<Vec3f> vertices;
   mesh::Triangles triangles;
-  std::size_t own = 0;                ///< vertices that are the bricks' own
-  std::vector<std::size_t> bricks;    ///< those of them that have triangles, in order
-  std::vector<std::int32_t> foreign;  ///< the others' numbers in the whole mesh, ascending
+  std::size_t own = 0;                ///< number of vertices that belong to the bricks themselves
+  std::vector<std::size_t> bricks;    ///< the requested bricks that have triangles, in order
+  std::vector<std::int32_t> foreign;  ///< numbers in the whole mesh of the other bricks' vertices, ascending
 };
 
 struct MeshState;
-/// As Mesher::patch.
+/// Same as Mesher::patch.
 MeshPatch patch_of(const MeshState& state, std::span<const std::size_t> bricks);
 
 }  // namespace riffler::marching

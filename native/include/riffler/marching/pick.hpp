@@ -1,4 +1,4 @@
-// A surface to be picked: what a mouse, a tablet or a pen points at.
+// A surface for picking: finds the point under a mouse, tablet or pen.
 #pragma once
 
 #include <memory>
@@ -13,17 +13,19 @@ namespace riffler::marching {
 class Facets;
 class Lattice;
 
-/// A mesher's surface as it was at one time, to be picked only. Shares with the mesher, and with other surfaces of it,
-/// the bricks that did not change in between; goes on when the mesher has gone. May be read from several threads.
+/// A mesher's surface at one time, for picking only. Shares unchanged bricks with the mesher and with its other frozen
+/// surfaces, and may outlive the mesher. Several threads may read it at once.
 class FrozenSurface {
  public:
   using Bricks = std::vector<std::shared_ptr<const Facets>>;  // null for bricks without triangles
+  /// `bricks` by number.
   FrozenSurface(const Lattice& lattice, Bricks bricks);
 
-  /// As Mesher::pick.
+  /// Same as Mesher::pick.
   std::optional<SurfaceHit> pick(const Vec3& origin, const Vec3& direction, PickStats& stats) const;
+  /// Number of triangles.
   std::size_t triangles() const;
-  /// Bytes of its triangles, those shared with others included.
+  /// Bytes of its triangles, including those shared with other surfaces.
   std::size_t nbytes() const;
 
  private:

@@ -1,4 +1,4 @@
-// Indexed triangle mesh: the currency between files, volumes and Blender.
+// Indexed triangle mesh: the exchange format between files, volumes and Blender.
 #pragma once
 
 #include "riffler/base/bulk.hpp"
@@ -9,8 +9,8 @@ namespace riffler::mesh {
 using Vertices = base::BulkVector<Vec3>;
 using Triangles = base::BulkVector<Vec3i>;
 
-/// Vertices (mm) and triangles (vertex indices, counter-clockwise seen from outside the material).
-/// Nothing here is checked: `audit.hpp` says what a mesh is worth, `validate` below whether it can be used at all.
+/// Vertices (mm) and triangles (vertex indices, counter-clockwise seen from outside the material). The struct checks
+/// nothing: `validate` checks whether a mesh can be used at all, audit.hpp whether it bounds a solid.
 struct Mesh {
   Vertices vertices;
   Triangles triangles;
@@ -18,11 +18,11 @@ struct Mesh {
   bool empty() const { return triangles.empty(); }
 };
 
-/// Throws std::invalid_argument naming the first row of `vertices` that is not finite (or beyond 1e30) or of
-/// `triangles` whose index is out of range.
+/// Throws std::invalid_argument naming the first row of `vertices` that is not finite (or beyond 1e30), or the first
+/// row of `triangles` with an index out of range.
 void validate(const Mesh& mesh);
 
-/// Signed volume enclosed, mm³ (divergence theorem about the box's centre); meaningful for closed meshes.
+/// Signed enclosed volume, mm³ (divergence theorem about the box's centre). Meaningful for closed meshes.
 double volume(const Mesh& mesh);
 /// Sum of the triangles' areas, mm².
 double area(const Mesh& mesh);

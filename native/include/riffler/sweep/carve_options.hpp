@@ -1,4 +1,4 @@
-// How a carve is to go, and what it did.
+// Options and result of a carve.
 #pragma once
 
 #include <vector>
@@ -8,15 +8,16 @@
 
 namespace riffler::sweep {
 
-/// What a tool does where it sweeps: takes material away, or puts it on.
+/// What a tool does with the material in its swept volume.
 enum class CarveMode { Remove, Add };
 
+/// Options of `carve`.
 struct CarveOptions {
-  /// mm: every interval end lies within it, along its ray, of the exact swept surface; where the ray grazes, within it
-  /// in space. Only a turning ball may be cut too deep within it, everything else too shallow. Moves without rotation
-  /// are exact whatever it is.
+  /// mm. Maximum error of every span end: along its ray from the exact swept surface or, where the ray grazes the
+  /// surface, in space. Only a turning ball may cut too deep (by at most the tolerance); all other cuts are too
+  /// shallow. Moves without rotation are exact for any tolerance.
   double tolerance = 0.01;
-  /// s, one per move, or empty: no force.
+  /// s, one per move. Empty: compute no force.
   std::vector<double> dt;
   /// N·s/mm³: force per volume removed per second (methods: "Removal force").
   double removal_constant = 0.05;
@@ -26,11 +27,11 @@ struct CarveOptions {
   const Volume* protect = nullptr;
 };
 
-/// What each move took away, or put on, from the rays that define Volume::volume().
+/// Result of each move, measured on the rays that define Volume::volume().
 struct Cut {
-  std::vector<double> removed;  ///< mm³; of CarveMode::Add what was put on, positive too
-  std::vector<Vec3> force;      ///< N, on the tool, against its motion; zero unless dt was given
-  std::vector<Vec3> torque;     ///< N·mm about the tip at the end of the move
+  std::vector<double> removed;  ///< mm³ removed or, for CarveMode::Add, added; positive in both modes
+  std::vector<Vec3> force;      ///< N, on the tool, against its motion; zero without dt
+  std::vector<Vec3> torque;     ///< N·mm, about the tip at the end of the move
 };
 
 }  // namespace riffler::sweep

@@ -1,4 +1,4 @@
-// One tool on one volume, move by move, as a pen makes them.
+// Carves with one tool on one volume, one move per call, in real time.
 #pragma once
 
 #include <cstdint>
@@ -11,37 +11,39 @@
 
 namespace riffler::sweep {
 
-/// Leaves of a volume, bit for bit, what `carve` would leave of each move by itself, and says the same of it. Where
-/// moves stay as large, nothing is asked of the system after the first of them, as long as tiles that are replaced come
-/// back (block_pool.hpp): a step of the pen has a deadline.
+/// Real-time `carve`, one move per call: bit-identical volume and result. Allocates no memory from the system after the
+/// first move, as long as moves keep their size and the tiles that they replace are freed (block_pool.hpp): a step of
+/// the pen has a deadline.
 class MoveCarver {
  public:
   struct Options {
-    double tolerance = 0.01;         ///< mm, as CarveOptions
+    double tolerance = 0.01;         ///< mm, as in CarveOptions
     double removal_constant = 0.05;  ///< N·s/mm³
   };
+  /// Result of one move.
   struct Taken {
     double removed = 0;        ///< mm³
-    Vec3 force{0}, torque{0};  ///< N; N·mm about the tip at the end of the move: on the tool, against its motion
+    Vec3 force{0}, torque{0};  ///< on the tool, against its motion: N; N·mm about the tip at the end of the move
   };
 
-  /// `volume` must outlive this and stay where it is. std::invalid_argument as `carve`.
+  /// `volume` must outlive the carver and must not be moved. Throws std::invalid_argument as `carve` does.
   MoveCarver(Volume& volume, const Tool& tool, const Options& options);
   MoveCarver(const MoveCarver&) = delete;
   MoveCarver& operator=(const MoveCarver&) = delete;
   ~MoveCarver();
 
-  /// Throws std::invalid_argument as `carve` does for poses or a `dt` (s) that make no move; then nothing was cut.
+  /// Carves one move of duration `dt` (s). Throws std::invalid_argument as `carve` does; the volume is then unchanged.
   Taken move(const Pose& from, const Pose& to, double dt);
 
+  /// Pitch of the volume, mm.
   double pitch() const;
 
-  /// A tile by the numbers of its grid and in it.
+  /// Index of a grid, and index of a tile in it.
   struct Place {
     std::uint32_t grid, tile;
     friend bool operator==(const Place&, const Place&) = default;
   };
-  /// What the last move replaced.
+  /// The tiles that the last move replaced.
   std::span<const Place> replaced() const;
 
  private:

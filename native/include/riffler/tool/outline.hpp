@@ -1,4 +1,4 @@
-// The outline of a tool with shank and holder in the (radius, height) half-plane, and how far points are from it.
+// The outline of a tool with shank and holder in the (radius, height) half-plane, and distances from it.
 #pragma once
 
 #include <optional>
@@ -8,45 +8,48 @@
 
 namespace riffler::tool {
 
-/// One step of an outline, upwards or level, with the solid on its left: on the side of the axis.
+/// One edge of an outline, rising or level. The solid is on its left, the side of the axis.
 struct OutlineEdge {
   Vec2 from, to;  ///< (radius, height from the tip), mm
   std::optional<Vec2> centre;
-  double bulge = 0;  ///< radius of an arc, negative where it is a hollow; 0: a line
-  Part part;         ///< what it belongs to
+  double bulge = 0;  ///< radius of the arc, negative if concave; 0: straight line
+  Part part;         ///< the part of the tool that the edge belongs to
 };
 
-/// Whether a point is in the sector of an arc: its nearest point of the circle lies on the arc. Told by areas, as where
-/// the circle is level heights cannot tell: rounded, those of 1e-8 of it are all the same.
+/// Whether a point lies in the sector of an arc, so that its nearest point of the circle is on the arc. Compares areas,
+/// not heights: where the circle is level, points up to 1e-8 of the radius apart have the same rounded height.
 bool faces(const OutlineEdge& arc, const Vec2& p);
-/// Radius of an edge whose height rises, at a height between its ends.
+/// Radius of a rising edge at height z between its ends, mm.
 double radius_at(const OutlineEdge& e, double z);
 
-/// Signed distance of a solid of revolution in space: for a point at height ζ and ρ from the axis it is that of (ρ, ζ)
-/// in the half-plane, exact outside and inside, for the union of all pieces.
+/// Signed distance from the union of all pieces of a tool. A solid of revolution has the same distance in space as in
+/// the half-plane: a point at height ζ and distance ρ from the axis has the distance of (ρ, ζ). Exact outside and
+/// inside.
 class Outline {
  public:
+  /// Result of `nearest`.
   struct Nearest {
     double distance;  ///< mm, negative inside
-    Vec2 point;       ///< the nearest of the outline
-    Vec2 normal;      ///< out of the solid: the gradient of the distance, at corners towards the point
+    Vec2 point;       ///< nearest point of the outline
+    Vec2 normal;      ///< out of the solid: the gradient of the distance; at corners, towards the query point
     Part part;
   };
 
-  /// Hollow arcs are exact here, not the cones that stand for them where rays are cut.
+  /// Uses the exact concave arcs, not the cones that replace them when rays are cut.
   explicit Outline(const Tool& tool);
 
-  /// From the tip upwards; where the tool has a gap, its edges come back to the axis.
+  /// Edges from the tip upwards. At a gap in the tool they return to the axis.
   const std::vector<OutlineEdge>& edges() const { return edges_; }
-  /// rho ≥ 0.
+  /// The nearest point of the outline to (rho, z), mm; rho ≥ 0.
   Nearest nearest(double rho, double z) const;
+  /// Whether the point (rho, z), mm, is inside the solid; rho ≥ 0.
   bool inside(double rho, double z) const;
 
  private:
   std::vector<OutlineEdge> edges_;
 };
 
-/// The edge as a polyline that stays within `tolerance` mm of it, both ends included.
+/// Approximates the edge by a polyline within `tolerance` mm, both ends included.
 std::vector<Vec2> polyline(const OutlineEdge& edge, double tolerance);
 
 }  // namespace riffler::tool

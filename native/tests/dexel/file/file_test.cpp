@@ -150,7 +150,7 @@ TEST(File, NamesWhatIsWrongAndWhere) {
   EXPECT_PRED2(has, error_of(Bytes(good.begin(), good.end() - 1)), "the file ends here");
   Bytes longer = good;
   longer.push_back(0);
-  EXPECT_PRED2(has, error_of(longer), "more after the file's end");
+  EXPECT_PRED2(has, error_of(longer), "data after the file's end");
   repair(longer);
   EXPECT_PRED2(has, error_of(longer), "the file ends where a chunk should begin");
   Bytes other = good;

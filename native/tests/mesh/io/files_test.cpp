@@ -225,9 +225,9 @@ TEST(Obj, BadFilesNameTheLine) {
   EXPECT_EQ(error(""), "part, line 4: zero faces");
   EXPECT_EQ(error("f 1 2 3"), "no error");
   EXPECT_EQ(error("f 1 2"), "part, line 4: a face with fewer than three vertices");
-  EXPECT_EQ(error("\nf 1 2 4"), "part, line 5: vertex 4 of 3 so far");
-  EXPECT_EQ(error("f 1 2 0"), "part, line 4: vertex 0 of 3 so far");
-  EXPECT_EQ(error("f 1 2 -4"), "part, line 4: vertex -4 of 3 so far");
+  EXPECT_EQ(error("\nf 1 2 4"), "part, line 5: no vertex 4: 3 are defined so far");
+  EXPECT_EQ(error("f 1 2 0"), "part, line 4: no vertex 0: 3 are defined so far");
+  EXPECT_EQ(error("f 1 2 -4"), "part, line 4: no vertex -4: 3 are defined so far");
   EXPECT_EQ(error("f 1 2 x"), "part, line 4: expected a vertex's index, found 'x'");
   EXPECT_EQ(error("f 1 2 3/x"), "part, line 4: expected v, v/vt, v//vn or v/vt/vn, found '3/x'");
   EXPECT_EQ(error("f 1 2 3.5"), "part, line 4: expected a vertex's index, found '3.5'");
@@ -288,7 +288,7 @@ TEST(Ply, BadBinaryNamesTheByte) {
   const std::size_t size = raw_ply(false).size();
   for (const bool big : {false, true}) {
     EXPECT_EQ(error(raw_ply(big, 3)),
-              "part, byte " + std::to_string(size + (big ? -3 : 0) - 1) + ": vertex 3 of 3 (counted from 0)");
+              "part, byte " + std::to_string(size + (big ? -3 : 0) - 1) + ": no vertex 3: there are 3, counted from 0");
     Bytes bytes = raw_ply(big);
     bytes.push_back(0);
     EXPECT_EQ(error(bytes), "part, byte " + std::to_string(bytes.size() - 1) + ": 1 bytes left over");
@@ -313,12 +313,12 @@ TEST(Ply, BadTextNamesTheLine) {
   EXPECT_EQ(error("property float y", "property float why"), "part, line 16: element 'vertex' has no x, y, z");
   EXPECT_EQ(error("vertex_indices", "indices"), "part, line 19: element 'face' has no list of integers vertex_indices");
   EXPECT_EQ(error("element face 1", "element vertex 1"), "part, line 9: element 'vertex' twice");
-  EXPECT_EQ(error("element vertex 4", "element vertex 5"), "part, line 21: vertex 7 of 5 (counted from 0)");
+  EXPECT_EQ(error("element vertex 4", "element vertex 5"), "part, line 21: no vertex 7: there are 5, counted from 0");
   EXPECT_EQ(error("1 1 0 0", "1 inf 0 0"), "part, line 18: expected a finite number, found 'inf'");
   EXPECT_EQ(error("1 1 0 0", "1 -1e31 0 0"), "part, line 18: a vertex's coordinate is beyond 1e30");
-  EXPECT_EQ(error("4 0 1 2 3", "4 0 1 2 4"), "part, line 20: vertex 4 of 4 (counted from 0)");
+  EXPECT_EQ(error("4 0 1 2 3", "4 0 1 2 4"), "part, line 20: no vertex 4: there are 4, counted from 0");
   EXPECT_EQ(error("4 0 1 2 3", "2 0 1"), "part, line 20: a face with fewer than three vertices");
-  EXPECT_EQ(error("4 0 1 2 3", "-1 0 1"), "part, line 20: a list of -1 values");
+  EXPECT_EQ(error("4 0 1 2 3", "-1 0 1"), "part, line 20: a list with -1 values");
   EXPECT_EQ(error("element face 1", "element face 0"), "part, line 21: expected the end of the file, found '7'");
   EXPECT_EQ(error("0.25\n", "0.25\n9"), "part, line 22: expected the end of the file, found '9'");
   EXPECT_EQ(error("end_header\n" + kPlyBody, ""),

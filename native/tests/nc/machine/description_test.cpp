@@ -136,7 +136,7 @@ TEST(Description, NamesTheLineThatIsWrong) {
   EXPECT_EQ(error(with("at = [0, 0, -50]", "a.\xC3\xA4 = 3")).substr(0, 19), "mill.toml, line 27:") << "no key";
   EXPECT_EQ(error(with("words", "word")), "mill.toml, line 2: unknown key word");
   EXPECT_EQ(error(with("description = \"my mill\"", "")), "mill.toml, line 1: description is missing");
-  EXPECT_EQ(error(with("[-100, 100]", "[100, -100]")), "mill.toml, line 7: limits must grow");
+  EXPECT_EQ(error(with("[-100, 100]", "[100, -100]")), "mill.toml, line 7: limits must be in increasing order");
   EXPECT_EQ(error(with("[-100, 100]", "[100]")), "mill.toml, line 7: limits must be two numbers");
   EXPECT_EQ(error(with("5000", "0")), "mill.toml, line 8: rate must be positive");
   EXPECT_EQ(error(with("5000", "nan")), "mill.toml, line 8: rate must be a finite number");

@@ -157,7 +157,7 @@ TEST(PenGeometry, RefusesValuesThatCannotBe) {
   expect("slope = [22.0,", "slope = [-23.0,",
          "slope, entry 1: the motor's peak torque, 90 N*mm, would be step 2070, and the converter ends at 2047");
   expect("lines = [2000,", "lines = [1000000,", "lines, entry 1: more than 16777216 counts per turn of the joint");
-  expect("elbow = [-1.2, 1.2]", "elbow = [1.2, -1.2]", "elbow must grow");
+  expect("elbow = [-1.2, 1.2]", "elbow = [1.2, -1.2]", "elbow must be in increasing order");
   expect("elbow = [-1.2, 1.2]", "elbow = [-1.2, 1.6]", "elbow must lie within -1.57 and 1.57 rad");
   expect("upper = [260.0, 110.0, -80.0]", "upper = [60.0, 110.0, -80.0]", "upper must be above lower");
   expect("force = 6.0", "force = 0.0", "force must be positive, at most 1e+12");

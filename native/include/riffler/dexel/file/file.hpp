@@ -1,4 +1,4 @@
-// The .rvol file: versioned, checksummed, compressed.
+// The .rvol file format: versioned, checksummed, compressed.
 #pragma once
 
 #include <cstdint>
@@ -12,12 +12,13 @@
 
 namespace riffler::dexel {
 
-/// The file's bytes, and back. `name` stands in messages. FormatError names the byte where a file is not what it should
-/// be (magic, version, checksum, order of spans, truncated); memory is checked before it is allocated.
+/// Converts a volume to the file's bytes and back. `name` appears in messages. Throws FormatError naming the byte where
+/// the data is wrong (magic, version, checksum, order of spans, truncation). Checks the memory needed before it
+/// allocates.
 std::vector<std::uint8_t> to_bytes(const Volume& volume, const Progress& progress = {});
 Volume from_bytes(std::span<const std::uint8_t> bytes, const std::string& name, const Progress& progress = {});
 
-/// Written beside and renamed, so a file is whole or not there.
+/// Saves and loads a file. Saving writes a temporary file and renames it, so the file is complete or absent.
 void save(const Volume& volume, const std::filesystem::path& path, const Progress& progress = {});
 Volume load(const std::filesystem::path& path, const Progress& progress = {});
 

@@ -1,4 +1,4 @@
-// Mesh → volume by winding number along each column.
+// Converts a mesh to a volume by the winding number along each ray.
 #pragma once
 
 #include "riffler/base/progress.hpp"
@@ -8,16 +8,19 @@
 
 namespace riffler::dexel {
 
-/// A volume over frame.box filled with the points whose absolute generalized winding number exceeds ½: spans end at
-/// crossings of the surface, or, in an opening of a broken part, where |w| passes ½. Rays on vertices, edges and walls
-/// are decided by a half-open rule on snapped coordinates, so a closed part has no odd ray at any alignment. What lies
-/// outside the box is clipped. Throws std::invalid_argument for a mesh that is invalid or has no volume. `report`,
-/// where it is given, is filled with what was wrong with the mesh; shares are of what lies within the box, all
-/// directions.
-/// Triangles are turned, and repeated ones left out, as mesh/orient.hpp says; shells of a closed mesh only where
-/// winding numbers are negative on some column. Rays on the box's upper side, and a lone ray beyond it, are taken for
-/// what is within. `missed`, where it is given, says whether all rays of the volume's reference direction miss much of
-/// a mesh that lies within the box.
+/// Returns a volume over frame.box that holds the points whose absolute generalized winding number |w| exceeds ½. Spans
+/// end at crossings of the surface or, in an opening of a broken part, where |w| passes ½. A half-open rule on snapped
+/// coordinates decides rays through vertices, edges and walls, so a closed part gives no odd number of crossings at any
+/// alignment. Material outside the box is clipped. Throws std::invalid_argument for a mesh that is invalid or has no
+/// volume.
+///
+/// Triangles are turned, and repeated ones removed, as mesh/orient.hpp describes; shells of a closed mesh are turned
+/// only if the winding number is negative on some ray. Rays on the box's upper side, and a lone ray beyond it, count as
+/// inside.
+///
+/// `report`, if given, receives the mesh's defects; its fractions refer to the part inside the box, over all
+/// directions. `missed`, if given, receives whether all rays of the volume's reference direction miss a large part of a
+/// mesh that lies within the box.
 Volume from_mesh(const Mesh& mesh, const Frame& frame, const Progress& progress = {}, MeshReport* report = nullptr,
                  MissedMaterial* missed = nullptr);
 

@@ -1,4 +1,4 @@
-// Fewer triangles for the same surface.
+// Reduces the number of triangles of a mesh.
 #pragma once
 
 #include <cstddef>
@@ -9,24 +9,25 @@
 
 namespace riffler::mesh {
 
-/// Where to stop; at least one is needed. With both, whatever comes first.
+/// Where to stop. At least one limit is required; with both, decimation stops at the first one reached.
 struct DecimateLimits {
-  std::optional<std::size_t> triangles;  ///< stop at this many triangles or fewer
-  std::optional<double> tolerance;       ///< mm between old and new surface, in both directions
+  std::optional<std::size_t> triangles;  ///< number of triangles to reach
+  std::optional<double> tolerance;       ///< mm, maximum distance between old and new surface, in both directions
 };
 
-/// A mesh like `mesh` with fewer triangles: edges become vertices one after the other, cheapest first, each where the
-/// squared distances from the planes of the triangles that it stands for are least (quadrics: Garland & Heckbert,
-/// SIGGRAPH 97). In planes, on straight edges and at corners these are vertices of `mesh`; others are float32 numbers.
-/// The result is closed, oriented and two-manifold where `mesh` is; vertices stay distinct in float32; no triangle
-/// turns over or folds onto a neighbour. Borders keep some of their vertices, and to the tolerance; vertices with
-/// several fans and ends of non-manifold edges stay where they are. There may be more triangles left than asked for
-/// where no further collapse keeps to all this. Triangles that name a vertex twice are dropped. The bytes are the same
-/// for any number of threads.
+/// Returns a mesh with fewer triangles. Edges collapse one at a time, cheapest first, each to the point with the least
+/// sum of squared distances from the planes of the triangles it replaces (quadrics: Garland & Heckbert, SIGGRAPH 97).
+/// In planes, on straight edges and at corners that point is a vertex of `mesh`; elsewhere it has float32 coordinates.
 ///
-/// The tolerance bounds the distance of every point of either surface from the other (see MapCheck).
+/// If `mesh` is closed, oriented and two-manifold, so is the result. Vertices stay distinct in float32; no triangle
+/// turns over or folds onto a neighbour. Borders keep some of their vertices and stay within the tolerance. Vertices
+/// with several fans and ends of non-manifold edges do not move. The result may have more triangles than
+/// `limits.triangles` if no further collapse satisfies all this. Triangles that name a vertex twice are dropped. The
+/// bytes are the same for any number of threads.
 ///
-/// std::invalid_argument where `validate` throws, without a limit, or for a tolerance that is negative or not finite.
+/// The tolerance bounds the distance of every point of each surface from the other surface (see MapCheck).
+///
+/// Throws std::invalid_argument if `validate` does, without a limit, or for a tolerance that is negative or not finite.
 Mesh decimate(const Mesh& mesh, const DecimateLimits& limits, const Progress& progress = {});
 
 }  // namespace riffler::mesh

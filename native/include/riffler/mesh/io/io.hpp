@@ -1,4 +1,4 @@
-// Mesh files by their name.
+// Reads and writes mesh files; the file name's extension selects the format.
 #pragma once
 
 #include <filesystem>
@@ -8,11 +8,13 @@
 
 namespace riffler::mesh {
 
-/// Reads .stl, .obj or .ply (any case). FormatError for a bad file, std::invalid_argument for another extension.
+/// Reads .stl, .obj or .ply (in any case). Throws FormatError for a bad file, std::invalid_argument for another
+/// extension.
 Mesh read_mesh(const std::filesystem::path& path, const Progress& progress = {});
 
-/// Writes .stl (binary, float32), .obj (text) or .ply (binary little-endian), whole or not at all.
-/// std::invalid_argument for another extension or where `validate` throws, std::runtime_error where the system refuses.
+/// Writes .stl (binary, float32), .obj (text) or .ply (binary little-endian), completely or not at all. Throws
+/// std::invalid_argument for another extension or if `validate` does, std::runtime_error with the system's reason if
+/// the file cannot be written.
 void write_mesh(const Mesh& mesh, const std::filesystem::path& path, const Progress& progress = {});
 
 }  // namespace riffler::mesh
