@@ -6,10 +6,10 @@
 //   const ForceState state = safety.observe({.dt = dt, .age = age, .pose = grip, .twist = twist, ...});  // may trip
 //   if (!lets_force_through(state)) w = {};
 //
-//   const auto [way, turn] = stretch(grip, last_grip);
-//   passivity.observe(applied, {way, turn}, dt);  // what the motors did since then, as the device reports it
+//   const auto [linear, angular] = pose_error(grip, last_grip);
+//   passivity.observe(applied, {linear, angular}, dt);  // what the motors did since then, as the device reports it
 //
-//   const auto [on_grip, on_tool, energy] = couple(coupling, stretch(grip, tool), twist, tool_twist);
+//   const auto [on_grip, on_tool, energy] = couple(coupling, pose_error(grip, tool), twist, tool_twist);
 //   tool = ...;  // moved by on_tool, or held by a contact
 //
 //   w = limited(limits, capability, w, on_grip, twist, dt);  // rates: from the last w, not from applied

@@ -25,7 +25,7 @@ struct Clearance {
   std::optional<double> safe_height;
   /// Margin around occupied space, mm.
   double distance = 10;
-  /// Box around stock, part and fixtures, as far as they are known, mm.
+  /// Box around stock, part and fixtures, where known, mm.
   Box3 occupied;
 };
 
