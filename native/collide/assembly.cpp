@@ -52,7 +52,7 @@ std::vector<Vec2> find_deepest(const tool::Outline& outline, double width) {
       for (int a = -1; a <= 1; ++a)
         for (int b = -1; b <= 1; ++b)
           if (i + a <= kAcross && j + b >= 0 && j + b <= kAlong && at(i + a, j + b) < at(i, j)) lowest = false;
-      // Of neighbours with equal depth, use one.
+      // If neighbours are equally deep, use one of them.
       if (!lowest || (j > 0 && at(i, j - 1) == at(i, j)) || (i > 0 && at(i - 1, j) == at(i, j))) continue;
       out.push_back(sink(outline, {i * du, low + j * dz}, std::max(du, dz)));
     }

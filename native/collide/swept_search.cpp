@@ -71,7 +71,7 @@ void SweptSearch::look_again(const Surface& surface, Entry& e) {
   e.low = std::max(e.low, e.distance - e.radius - e.drifts);
 }
 
-/// Whether to split time rather than space: whichever leaves more open. A group that is too near anyway contains a
+/// Whether to split time rather than space: the one that leaves more open. A group that is too near anyway contains a
 /// triangle that is, and in short intervals tangent planes give better bounds than spheres.
 bool SweptSearch::is_better_halved(const Entry& e) const {
   constexpr double kShort = 0.05;  // times the cutter's diameter
