@@ -15,7 +15,7 @@ namespace riffler::nc {
 
 namespace {
 
-/// A program with the same tools and provenance, its rows [first, last) as `change` leaves them.
+/// A program with the same tools and provenance, and rows [first, last) modified by `change`.
 template <class Change>
 Program copied(const Program& program, std::size_t first, std::size_t last, const Change& change) {
   Program out;
@@ -89,7 +89,7 @@ Program joined(std::span<const Program* const> programs) {
   for (const Program* p : programs) {
     for (std::size_t row = 0; row < p->size(); ++row) {
       Move move = (*p)[row];
-      // Rapids before the first place that is known are where the program before has ended.
+      // Rapids before the first known place stand where the previous program ended.
       if (move.at_machine && !out.empty()) move.pose = out.poses().back();
       out.append(move);
     }

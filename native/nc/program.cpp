@@ -19,7 +19,7 @@ Pose checked_pose(const Pose& pose, std::string_view name, std::size_t row) {
   if (!geom::finite(pose.tip) || !geom::finite(pose.axis)) fail(name, row, "not finite");
   const double length = glm::length(pose.axis);
   if (!(std::abs(length - 1) < 1e-6)) fail(name, row, "the axis is not a unit vector");
-  // A vector that is as close to unit length as doubles allow is kept to the bit.
+  // A vector as close to unit length as doubles allow stays bit-identical.
   return std::abs(length - 1) < 1e-15 ? pose : Pose{pose.tip, pose.axis / length};
 }
 

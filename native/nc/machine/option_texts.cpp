@@ -12,10 +12,10 @@ namespace {
 
 struct Text {
   std::string_view name, unit, about;
-  std::string_view languages = {};  ///< whose posts do something with it; nothing: all
+  std::string_view languages = {};  ///< languages whose posts use it; empty: all
 };
 
-/// Of options that a machine's own file does not describe. A name that ends in _ stands for one of each axis.
+/// Options without a description in the machine's own file. A name that ends in _ stands for one option per axis.
 constexpr Text kTexts[] = {
     {"tcp", "",
      "X Y Z are the tip in part coordinates, and the control knows the machine; otherwise where its linear axes stand"},
@@ -50,9 +50,9 @@ const Text* text_of(std::string_view name) {
 
 MachineOption described(OptionFact fact) {
   const Text* text = text_of(fact.name);
-  if (!text) return {std::move(fact), "mm", true};  // a machine's own are places and lengths
+  if (!text) return {std::move(fact), "mm", true};  // a machine's own options are places and lengths
   std::string unit(text->unit);
-  // Those of each axis: rotary ones turn.
+  // One option per axis; rotary axes use degrees.
   if (text->name.ends_with('_') && fact.name.back() <= 'c') unit.replace(0, 2, "deg");
   fact.about = text->about;
   return {std::move(fact), std::move(unit)};

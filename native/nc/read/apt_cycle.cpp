@@ -14,14 +14,14 @@ namespace {
 
 constexpr double kMaxPecks = 100'000;
 
-/// Lengths and feeds in pairs, a word and its number.
+/// Lengths and feeds in pairs of a word and its number.
 void take_words(AptCycle& cycle, const AptStatement& statement, const AptLexer& lexer, double unit,
                 const NcPlace& place) {
   bool retracts = false, feeds = false;
   for (std::size_t k = 1; k < statement.words.size(); k += 2) {
     const std::string& word = statement.words[k];
     if (word == "DEEP" && k == 1) {
-      --k;  // beside DRILL
+      --k;  // DRILL takes no number
       continue;
     }
     const std::optional<double> number =

@@ -1,4 +1,4 @@
-// Circles and rounded corners of a Heidenhain conversational program.
+// Circles and rounded corners of Heidenhain programs.
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -12,10 +12,10 @@ namespace riffler::nc {
 
 namespace {
 
-/// mm: what is nearer to a line than this has no arc.
+/// mm: a point closer to a line than this gives no arc.
 constexpr double kOnLine = 1e-9;
 
-/// Radians from `from` to `to` in the sense that is asked, (0, 2 π].
+/// Angle from `from` to `to` in the given direction, rad, (0, 2 π].
 double turn_between(double from, double to, bool clockwise) {
   const double turn = std::fmod(clockwise ? from - to : to - from, kTwoPi);
   const double positive = turn <= kFullCircle * 1e-3 ? turn + kTwoPi : turn;
@@ -24,7 +24,7 @@ double turn_between(double from, double to, bool clockwise) {
 
 }  // namespace
 
-/// CC: two coordinates, which are also the plane of circles about it; without any, where the tool is.
+/// CC: two coordinates, which also define the plane of circles about it; without any, the tool's position.
 void HeidenhainInterpreter::circle_centre(HeidenhainWords& words) {
   if (words.has_rotary()) place_.fail("CC takes two of X Y Z");
   Pole pole{at_};
@@ -69,7 +69,7 @@ void HeidenhainInterpreter::circle(HeidenhainWords& words) {
   }
 }
 
-/// CR: more than half a turn where R is negative.
+/// CR: more than half a turn if R is negative.
 void HeidenhainInterpreter::radius_circle(HeidenhainWords& words) {
   begin_codes(words);
   take_feed(words);
@@ -91,7 +91,7 @@ void HeidenhainInterpreter::radius_circle(HeidenhainWords& words) {
   }
 }
 
-/// Where PR, PA and the third coordinate lead from the pole.
+/// The point given by PR, PA and the third coordinate from the pole.
 Vec3 HeidenhainInterpreter::polar_target(const HeidenhainWords& words) {
   const Pole& at = pole("a polar coordinate");
   const int u = static_cast<int>(at.u), v = static_cast<int>(at.v);
@@ -107,7 +107,7 @@ Vec3 HeidenhainInterpreter::polar_target(const HeidenhainWords& words) {
   return to;
 }
 
-/// CP: about the pole by an angle, which with the third coordinate may be several turns of a helix.
+/// CP: about the pole by an angle; with the third coordinate, a helix of possibly several turns.
 void HeidenhainInterpreter::polar_circle(HeidenhainWords& words) {
   begin_codes(words);
   take_feed(words);
@@ -137,7 +137,7 @@ void HeidenhainInterpreter::polar_circle(HeidenhainWords& words) {
   arc_to(to, {centre, radius, radius, start, sweep}, at.u, at.v, words);
 }
 
-/// CT: leaves the element before without a corner.
+/// CT: leaves the previous element tangentially.
 void HeidenhainInterpreter::tangent_circle(HeidenhainWords& words, bool polar) {
   begin_codes(words);
   take_feed(words);
@@ -185,7 +185,7 @@ void HeidenhainInterpreter::arc_rows(const Vec3& to, const Arc& arc, std::size_t
   at_ = to, rotary_ = rotary;
 }
 
-/// From `from` to `to` along `arc` in the axes of `plane`; the rotary axes turn evenly.
+/// From `from` to `to` along `arc` in the axes of `plane`; the rotary axes move evenly.
 void HeidenhainInterpreter::round_rows(const Vec3& from, const Vec3& to, const Arc& arc,
                                        std::pair<std::size_t, std::size_t> plane,
                                        const std::pair<Joints, Joints>& rotary, const NcRowWords& words) {
@@ -209,7 +209,7 @@ void HeidenhainInterpreter::round_rows(const Vec3& from, const Vec3& to, const A
 
 // --- Corners ---
 
-/// Whether RND or CHF stands in the next block.
+/// Whether the next block is RND or CHF.
 bool HeidenhainInterpreter::corner_follows() const {
   for (std::size_t k = next_; k < text_->size(); ++k) {
     const HeidenhainBlock& block = (*text_)[k];
@@ -221,7 +221,7 @@ bool HeidenhainInterpreter::corner_follows() const {
   return false;
 }
 
-/// RND, CHF: the size of the corner that the line before leads to.
+/// RND, CHF: the size of the corner to which the previous line leads.
 void HeidenhainInterpreter::corner(HeidenhainWords& words, bool round) {
   const std::string name = round ? "RND" : "CHF";
   if (!corner_ || corner_->size)
@@ -237,7 +237,7 @@ void HeidenhainInterpreter::check_no_corner() const {
   if (corner_) place_.fail("RND or CHF is read between two lines only: have the CAM system write the corner's moves");
 }
 
-/// The tool goes to the corner, and past it, on the way to `to`: at the end it stands where the second line begins.
+/// Moves to the corner and around it, on the way to `to`, and ends at the start of the second line.
 void HeidenhainInterpreter::cut_corner(const Vec3& to) {
   if (!corner_->size) check_no_corner();
   const Corner corner = *corner_;

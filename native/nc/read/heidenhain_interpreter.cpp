@@ -16,7 +16,7 @@ namespace riffler::nc {
 
 namespace {
 
-/// Statements that would move the tool, or what follows, and are not read.
+/// Unsupported statements that would move the tool or affect later moves.
 constexpr std::string_view kMovingStatements[] = {"APPR",    "DEP",  "FPOL",   "FL",       "FLT",    "FC",    "FCT",
                                                   "FSELECT", "SPL",  "TCH",    "SEL",      "PGM",    "TRANS", "PATTERN",
                                                   "CONTOUR", "GOTO", "MIRROR", "POLARKIN", "TABDATA"};
@@ -40,8 +40,8 @@ void HeidenhainInterpreter::take_options(const ReadOptions& options) {
   std::unique_ptr<Machine> machine = make_machine(options.machine, taken);
   const double chord = taken.positive("chord_tolerance").value_or(0.002);
   const std::optional<double> axis = taken.positive("axis_tolerance");
-  take_post_options(taken);                                     // the same options write and read
-  arc_miss_ = taken.positive("arc_tolerance").value_or(0.016);  // what the control itself takes
+  take_post_options(taken);                                     // reading and writing share these options
+  arc_miss_ = taken.positive("arc_tolerance").value_or(0.016);  // as the control itself
   block_delete_ = taken.flag("block_delete", false);
   check_header_ = taken.word("header", {"check", "ignore"}, "check") == "check";
   max_turns_ = taken.positive("max_turns").value_or(1e6);
@@ -89,7 +89,7 @@ void HeidenhainInterpreter::begin_program() {
     const std::string_view last = name.substr(name.size() - unit.size());
     return std::ranges::equal(last, unit, [](char a, char b) { return NcCursor::upper(a) == b; });
   };
-  // For reasons of resolution F counts tenths of inches.
+  // For resolution, F counts tenths of inches.
   if (ends_with("INCH"))
     unit_ = kInch, feed_unit_ = kInch / 10;
   else if (!ends_with("MM"))
@@ -187,7 +187,7 @@ bool HeidenhainInterpreter::execute_definition(const std::string& word, Heidenha
   } else if (word == "BEGIN") {
     place_.fail("BEGIN PGM within a program: give each program a file of its own");
   } else {
-    return word == "BLK" || word == "QS";  // the stock's shape, texts
+    return word == "BLK" || word == "QS";  // shape of the stock; texts
   }
   return true;
 }

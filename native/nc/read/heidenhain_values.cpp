@@ -18,7 +18,7 @@ struct QFunction {
   double (*of)(double);
 };
 
-// Names that begin like another one come first.
+// A name that begins with another name must come before it.
 constexpr QFunction kQFunctions[] = {
     {"SQRT", [](double x) { return std::sqrt(x); }},
     {"SQ", [](double x) { return x * x; }},
