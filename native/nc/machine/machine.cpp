@@ -137,7 +137,7 @@ Machine::Turns Machine::angles(const Vec3& axis, int branch, const Turns& near, 
   if (std::asin(std::min(1.0, glm::length(glm::cross(two_.first, axis)))) <= free) {
     // The free axis stays; the other one takes the axis as far as possible in the plane that results.
     const Turns out{near[0], angle_about(two_.second, kSpindle, geom::rotate_about(axis, two_.first, -near[0]))};
-    // No angle of the other axis may reach a pole.
+    // A pole may be out of reach for every angle of the other axis.
     if (geom::angle_between(axis_at(out), axis) > 2 * free + kSingle) cannot_reach();
     return out;
   }

@@ -21,7 +21,7 @@ void take_words(AptCycle& cycle, const AptStatement& statement, const AptLexer& 
   for (std::size_t k = 1; k < statement.words.size(); k += 2) {
     const std::string& word = statement.words[k];
     if (word == "DEEP" && k == 1) {
-      --k;  // DRILL takes no number
+      --k;  // DEEP after DRILL has no number
       continue;
     }
     const std::optional<double> number =

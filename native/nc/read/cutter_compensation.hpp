@@ -79,10 +79,10 @@ class CutterCompensation {
     Joints to{};
     NcRowWords words;
     bool entry = false;
-    Vec2 corner{0};                                 // programmed end end
+    Vec2 corner{0};                                 // programmed end
     Vec2 start_tangent{0}, end_tangent{0};          // unit tangents of the contour at its ends
     double start_curvature = 0, end_curvature = 0;  // curvature there, 1/mm, > 0 to the left
-    Vec2 start{0}, end{0};   // arc of the centre: perpendicular to the contour's ends, until a corner moves them
+    Vec2 start{0}, end{0};   // of the centre: perpendicular to the contour's ends, until a corner moves them
     std::optional<Arc> arc;  // arc of the centre
     double trim_start = 0, trim_end = 0;     // rad by which corners shorten an arc at its start and end
     std::vector<StationaryMove> stationary;  // moves at its end without motion in the plane
@@ -110,7 +110,7 @@ class CutterCompensation {
   std::function<void(const CentreMove&)> emit_;
   CutterOffset offset_;
   bool on_ = false, begun_ = false, leaving_ = false;
-  Vec2 point_{0};  // programmed end
+  Vec2 point_{0};  // programmed
   Joints centre_{};
   std::optional<Element> pending_;
 };

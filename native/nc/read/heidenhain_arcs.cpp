@@ -237,7 +237,7 @@ void HeidenhainInterpreter::check_no_corner() const {
   if (corner_) place_.fail("RND or CHF is read between two lines only: have the CAM system write the corner's moves");
 }
 
-/// Moves to the corner and around it, on the way to `to`, and ends at the start of the second line.
+/// Moves to the corner and around it, towards `to`, and ends at the start of the second line.
 void HeidenhainInterpreter::cut_corner(const Vec3& to) {
   if (!corner_->size) check_no_corner();
   const Corner corner = *corner_;

@@ -16,7 +16,7 @@ namespace riffler::nc {
 /// The value of a cycle's feed parameter that means FMAX.
 inline constexpr double kHeidenhainFmax = 99'999.999;
 
-/// Inputs of a cycle besides its parameters.
+/// Inputs of a cycle other than its parameters.
 struct HeidenhainCycleSetting {
   double unit = 1;       ///< mm
   double feed_unit = 1;  ///< mm/min per unit of F

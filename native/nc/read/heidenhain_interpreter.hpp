@@ -179,7 +179,7 @@ class HeidenhainInterpreter {
 
   const Progress& progress_;
   std::size_t next_ = 0;             // index of the next block
-  std::vector<std::size_t> calls_;   // index of the next blocks to return to
+  std::vector<std::size_t> calls_;   // blocks to return to
   std::map<std::size_t, int> left_;  // repetitions left, by block of the call
   bool ended_ = false;
 

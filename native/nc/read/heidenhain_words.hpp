@@ -38,7 +38,7 @@ struct HeidenhainRetraction {
 
 class HeidenhainWords {
  public:
-  /// The words that a statement may have, besides coordinates of axes, feed and M functions.
+  /// Optional words of a statement. Coordinates of axes, feed and M functions are always allowed.
   enum Kind : std::uint8_t { Normal = 1, ToolAxis = 2, Polar = 4, Radius = 8, Turning = 16, Length = 32 };
 
   /// Reads the words up to the end of the block. Throws FormatError for unknown words and for those not in `kinds`.

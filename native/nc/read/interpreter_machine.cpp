@@ -1,4 +1,4 @@
-// Positions of the machine (G28, G30, G53) and what is known of work offsets: which motions lie in the part.
+// Machine positions (G28, G30, G53) and knowledge of work offsets: decides which motions lie in the part.
 #include <algorithm>
 #include <array>
 #include <stdexcept>
@@ -16,7 +16,7 @@ constexpr std::array<const char*, 9> kOffsetCodes{"G54", "G55", "G56", "G57", "G
 
 }  // namespace
 
-/// Work offsets and the positions of G28 and G30 as options; they stand over those of a file of parameters.
+/// Work offsets and the positions of G28 and G30 as options, which override those of a parameter file.
 void NcInterpreter::take_positions(OptionReader& options) {
   const auto take = [&](const char* name, int first) {
     if (const auto numbers = options.numbers(name, 3, 6)) given_.positions.emplace_back(first, *numbers);
@@ -47,7 +47,7 @@ void NcInterpreter::use_positions() {
   }
 }
 
-/// By the words' position to that of the machine; without words all axes go there at once.
+/// Moves through the position in the words to that of the machine; without words all axes go there directly.
 void NcInterpreter::go_home(int code) {
   const std::size_t which = code == 280 ? 0 : 1;
   refuse_in_compensation(which == 0 ? "G28" : "G30");
@@ -55,7 +55,7 @@ void NcInterpreter::go_home(int code) {
   const bool some = words_->has_axes();
   if (some) {
     const auto before = stand_;
-    // Nearly always G91 and zeros, from where the axes stand: nothing that a program should begin with.
+    // Nearly always G91 with zeros, from the current position: not a meaningful start of a program.
     if (const Joints by = target(); rows_->begun() || by != at_ || stand_ != before) line_to(by, true);
   }
   Joints machine = frame_.to_machine(at_);
@@ -69,7 +69,7 @@ void NcInterpreter::go_home(int code) {
   line_to(frame_.to_program(machine), true);
 }
 
-/// Under G53.
+/// The target under G53.
 Joints NcInterpreter::machine_target() {
   refuse_in_compensation("G53");
   Joints machine = frame_.to_machine(at_);
@@ -81,12 +81,12 @@ Joints NcInterpreter::machine_target() {
   return frame_.to_program(machine);
 }
 
-/// Whether the machine's coordinates of an axis are known in the system in use.
+/// Whether the machine coordinates of an axis are known in the active system.
 bool NcInterpreter::is_zero_known(std::size_t joint) const {
   return joint >= 3 || zero_[static_cast<std::size_t>(modes_.system)][joint] == Zero::Machine;
 }
 
-/// A rotary axis's zero on the machine is taken for the part's: that of a linear axis is anywhere.
+/// A rotary axis's machine zero is taken as the part's; that of a linear axis may be anywhere.
 void NcInterpreter::to_machine_position(std::size_t joint, Joints& machine, double position, bool known) {
   stand_[joint] = known || joint >= 3 ? Stand::Given : Stand::Machine;
   if (stand_[joint] == Stand::Given) machine[joint] = position;
@@ -97,7 +97,7 @@ void NcInterpreter::to_machine_position(std::size_t joint, Joints& machine, doub
 }
 
 void NcInterpreter::leave_part(const char* code) {
-  // X and Y of a turned system are known together.
+  // X and Y of a rotated system are known only together.
   if (frame_.rotation != 0 && (stand_[0] == Stand::Machine || stand_[1] == Stand::Machine))
     stand_[0] = stand_[1] = Stand::Machine;
   if (axes_away().empty() || position_noted_) return;
@@ -108,7 +108,7 @@ void NcInterpreter::leave_part(const char* code) {
   position_noted_ = true;
 }
 
-/// The axes that stand at a position of the machine.
+/// The axes at a machine position.
 std::string NcInterpreter::axes_away() const {
   std::string out;
   for (std::size_t k = 0; k < 3; ++k)
@@ -123,7 +123,7 @@ void NcInterpreter::check_stands_in_part(const char* what) const {
                 " of the machine: move there by absolute words first, or give options g28, g30 and g54");
 }
 
-/// Before every motion: notes what is assumed of it. Whether it ends in the part.
+/// Called before every motion: whether it ends in the part. Notes the assumptions.
 bool NcInterpreter::moves_in_part(bool rapid) {
   if (!units_said_) {
     if (!given_.units) note("units", "neither G20 nor G21 before the first move: taken for millimetres; option units");
@@ -142,9 +142,9 @@ bool NcInterpreter::moves_in_part(bool rapid) {
   return !away;
 }
 
-/// Rapids before every linear axis has been named end where nobody knows; a feed move takes the others for 0.
+/// Rapids before every linear axis has been programmed have an unknown end; a feed move takes the missing axes as 0.
 void NcInterpreter::begin_or_wait(bool rapid) {
-  constexpr std::size_t kMax = 1000;  // rows; who moves on and on without Z has taken it for 0
+  constexpr std::size_t kMax = 1000;  // rows; a program that keeps moving without Z assumes 0
   const bool named = std::find(stand_.begin(), stand_.begin() + 3, Stand::Start) == stand_.begin() + 3;
   begun_ = named || !rapid || rows_->held() > kMax;
   if (begun_)
@@ -153,7 +153,7 @@ void NcInterpreter::begin_or_wait(bool rapid) {
     rows_->hold();
 }
 
-/// At the first feed move.
+/// Called at the first feed move.
 void NcInterpreter::note_start() {
   start_noted_ = true;
   std::string axes;
@@ -172,7 +172,7 @@ void NcInterpreter::note_rapid(const Joints& to) {
   rapid_noted_ = true;
 }
 
-/// Where another system lies from the one before is known where both are known on the machine, or G10 L20 said it.
+/// The distance between two systems is known if both are known on the machine, or from G10 L20.
 void NcInterpreter::check_work_offset() {
   const auto now = static_cast<std::size_t>(modes_.system);
   if (now == first_system_) return;
@@ -190,7 +190,7 @@ void NcInterpreter::check_work_offset() {
                           kOffsetOptions[first_system_ - 1] + " and " + kOffsetOptions[now - 1] + ", or parameters");
 }
 
-/// What G10 tells of an axis's zero: L2 where it lies on the machine, L20 where it lies from where the tool is.
+/// What G10 tells about an axis's zero: L2 in machine coordinates, L20 relative to the tool's position.
 void NcInterpreter::learn_zero(int number, std::size_t joint, bool by_position) {
   const auto system = static_cast<std::size_t>(number), now = static_cast<std::size_t>(modes_.system);
   Zero& zero = zero_[system][joint];

@@ -1,4 +1,4 @@
-// Circles of a Sinumerik program: about a centre, by radius or angle, tangential, and through a point.
+// Circles of Sinumerik programs: about a centre, by radius or angle, tangential, and through a point.
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -12,13 +12,13 @@ namespace riffler::nc {
 
 namespace {
 
-/// mm: points nearer to a line than this have no circle.
+/// mm: points closer to a line than this define no circle.
 constexpr double kNoCircle = 1e-6;
 constexpr double kMaxTurns = 999;
 
 }  // namespace
 
-/// I J K count from the arc's start unless AC says otherwise.
+/// I J K are relative to the arc's start unless AC is given.
 Vec2 SinumerikInterpreter::centre_of(const SinumerikWords& words, const Vec2& from) const {
   const auto [u, v, w] = plane_;
   if (words.centre[w].given && words.centre[w].value != 0 && !words.centre[w].is_absolute(false))
@@ -31,7 +31,7 @@ Vec2 SinumerikInterpreter::centre_of(const SinumerikWords& words, const Vec2& fr
   return {of(words.centre[u], from.x), of(words.centre[v], from.y)};
 }
 
-/// The arc in its plane; by AR and a centre it says where the end is.
+/// The arc in its plane; with AR and a centre it also computes the end.
 Arc SinumerikInterpreter::plane_arc(const SinumerikWords& words, const Vec2& from, Vec3& to, Motion motion) {
   const int u = static_cast<int>(plane_[0]), v = static_cast<int>(plane_[1]);
   const bool clockwise = motion == Motion::Clockwise, centred = words.has_centre();
@@ -122,7 +122,7 @@ void SinumerikInterpreter::arc_to(const Vec3& to, const Arc& arc, const NcRowWor
   (*leaving_)[u] = -sense * std::sin(end), (*leaving_)[v] = sense * std::cos(end);
 }
 
-/// CIP: from here through I1 J1 K1 to X Y Z, in whatever plane that is.
+/// CIP: from here through I1 J1 K1 to X Y Z, in any plane.
 void SinumerikInterpreter::arc_through(const SinumerikWords& words) {
   const NcRowWords row = row_words(false);
   if (words.has_rotary() || words.has_vector() || words.turns || words.has_centre() || words.radius)

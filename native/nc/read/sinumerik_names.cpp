@@ -1,4 +1,4 @@
-// Names in the blocks of a Sinumerik program: commands that switch something, and those that are refused.
+// Names in blocks of Sinumerik programs: commands that switch modes, and rejected names.
 #include <algorithm>
 #include <iterator>
 #include <string>
@@ -9,7 +9,7 @@ namespace riffler::nc {
 
 namespace {
 
-/// Commands for how the control drives the path, shows, looks ahead and watches its limits: they move nothing.
+/// Commands without motion: path control, display, look-ahead, limits.
 constexpr std::string_view kQuiet[] = {
     "FFWON",      "FFWOF",     "SOFT",     "SOFTA",   "BRISK",    "BRISKA",    "DRIVE",    "DRIVEA",     "COMPON",
     "COMPCURV",   "COMPCAD",   "COMPSURF", "COMPOF",  "FNORM",    "FLIN",      "FCUB",     "DYNNORM",    "DYNROUGH",
@@ -22,7 +22,7 @@ constexpr std::string_view kQuiet[] = {
     "SPCON",      "PAROTOF",   "PTPOF",    "CP",      "CYCLE832", "WORKPIECE", "MSG",      "SETPIECE",   "FENDNORM",
     "LFOF",       "LFON",      "TOFFOF",   "SPIF1",   "SPIF2",    "ICYCOF",    "ICYCON",   "DELAYFSTON", "DELAYFSTOF"};
 
-/// A name, or with * what names begin with.
+/// A name, or with * a prefix of names.
 struct Refused {
   std::string_view name;
   const char* why;
@@ -31,7 +31,7 @@ struct Refused {
     return name.ends_with('*') ? other.starts_with(name.substr(0, name.size() - 1)) : other == name;
   }
 };
-/// Statements that are read in blocks of their own.
+/// Statements with blocks of their own.
 constexpr std::string_view kBlocks[] = {"TRANS", "ATRANS", "ROT",  "AROT",  "CYCLE800", "HOLES1", "HOLES2",
                                         "MCALL", "CALL",   "GOTO", "GOTOF", "GOTOB",    "IF",     "DEF"};
 constexpr const char* kWriteMoves = "have the CAM system write its moves";
@@ -90,7 +90,7 @@ constexpr Refused kRefused[] = {
 
 }  // namespace
 
-/// A name in a block, with or without brackets behind it, which is no variable.
+/// A name in a block that is no variable, with or without brackets after it.
 void SinumerikInterpreter::named(const std::string& name, SinumerikCursor& cursor, const SinumerikWords& words) {
   if (switches(name)) {
     if (cursor.take_if("(")) cursor.skip_brackets();
@@ -128,7 +128,7 @@ void SinumerikInterpreter::named(const std::string& name, SinumerikCursor& curso
   call(name, cursor, times);
 }
 
-/// Commands that change what follows.
+/// Commands that affect later blocks.
 bool SinumerikInterpreter::switches(const std::string& name) {
   if (name == "TRAORI")
     keep_tip(true);
