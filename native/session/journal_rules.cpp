@@ -19,13 +19,13 @@ std::string at(const char* name, std::size_t row) {
   return std::string(name) + ", row " + std::to_string(row) + ": ";
 }
 
-/// Whether a column has as many rows as it must have.
+/// Checks that a column has the required number of rows.
 void check_length(const char* name, std::size_t size, bool wanted, std::size_t rows) {
   if (size == (wanted ? rows : 0)) return;
   fail(wanted ? std::string(name) + " must be as many as poses" : std::string(name) + " for a stroke that has none");
 }
 
-/// `last`: the time before the first of these, if there is one.
+/// `last`: the time before the first of these rows, or null.
 void check_values(const JournalRows& rows, const double* last) {
   for (std::size_t row = 0; row < rows.poses.size(); ++row) nc::checked_pose(rows.poses[row], "poses", row);
   for (std::size_t row = 0; row < rows.times.size(); ++row) {

@@ -8,7 +8,7 @@ namespace riffler::verify {
 
 namespace {
 
-/// The rows' values add up; of the others the worst row counts.
+/// Whether the values of rows add up; otherwise the worst row counts.
 bool adds_up(Kind kind) {
   return kind == Kind::Rapid || kind == Kind::Spindle;
 }
@@ -51,7 +51,7 @@ void FindingList::add(std::vector<Event> events, std::span<const std::int32_t> t
 
 void FindingList::add_row(const Event& e, std::int32_t tool, std::int32_t line) {
   const auto [open, added] = open_.try_emplace({e.kind, e.fixture}, findings_.size());
-  // What the stock lacks from the start stands at row 0 and is no move's neighbour.
+  // What the stock lacks from the start is reported at row 0, which is no neighbour of a move.
   if (!added) {
     Finding& last = findings_[open->second];
     if (last.last_row + 1 == e.row && last.last_row > 0 && last.tool == tool) {

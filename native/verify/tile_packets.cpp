@@ -29,7 +29,7 @@ dexel::SpanNormals normals_at(const Components& components, std::size_t k) {
   return {{at(0), at(1)}, {at(2), at(3)}};
 }
 
-/// Columns of all tiles together: a slab is small, and a tile alone too short to compress.
+/// Columns of all tiles together: a single tile is too short to compress.
 struct Columns {
   std::vector<std::uint32_t> counts;
   std::vector<std::uint64_t> near, far;
