@@ -22,14 +22,14 @@ std::string letters_of(const DeviceCapability& device, bool (*has)(const Coordin
   return out.empty() ? " nothing" : out;
 }
 
-/// What A and B turn about: square to the grip, the first the one most like x, or like y where the grip lies along x.
+/// Axes of A and B: perpendicular to the grip; the first closest to x, or to y if the grip lies along x.
 std::pair<Vec3, Vec3> turning_axes(const Vec3& axis) {
   const Vec3 x(1, 0, 0), y(0, 1, 0), like = std::abs(axis.x) < 0.9 ? x : y;
   const Vec3 a = glm::normalize(like - glm::dot(like, axis) * axis);
   return {a, glm::cross(axis, a)};
 }
 
-/// N or N·mm of the direction `unit` that the motors have in this posture.
+/// Largest force or torque (N, N·mm) of the motors along `unit` in this posture.
 struct Strength {
   double peak, continuous;
 };

@@ -60,7 +60,7 @@ std::string PlaybackPen::about() const {
 double PlaybackPen::elapsed() const noexcept {
   double start = kNotBegun;
   const double now = clock_();
-  // Whoever asks first begins.
+  // The first call starts the playback.
   if (start_.compare_exchange_strong(start, now)) return 0;
   return speed_ * (now - start);
 }

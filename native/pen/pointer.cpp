@@ -23,7 +23,7 @@ void PointerFrame::validate() const {
 
 Vec3 tilted_axis(const PointerFrame& frame, double tilt_x, double tilt_y) noexcept {
   const Vec3 upright = glm::cross(frame.right, frame.up);
-  // Each tilt is the angle of the pen's shadow on one wall: tangents add up.
+  // Each tilt is the angle of the pen's projection on one plane: tangents add up.
   const auto slope = [&](double tilt) {
     return std::isfinite(tilt) ? std::tan(std::clamp(tilt, -frame.most_tilt, frame.most_tilt)) : 0.0;
   };

@@ -13,9 +13,9 @@ namespace riffler::pen {
 
 namespace {
 
-constexpr double kSquare = 1e-6;     // by which axes may miss unit length and right angles
-constexpr double kLongest = 1e4;     // mm: of a link, far beyond what a desk holds
-constexpr double kHeaviest = 100;    // kg: nobody holds more
+constexpr double kSquare = 1e-6;     // tolerance of unit lengths and right angles
+constexpr double kLongest = 1e4;     // mm: length of a link, far beyond the size of a desk
+constexpr double kHeaviest = 100;    // kg: more than a hand can hold
 constexpr double kMaxInertia = 1e9;  // kg·mm²
 constexpr double kMaxAmperes = 32;   // reports carry mA in 16 bits
 
@@ -73,7 +73,7 @@ class PenReader : base::TomlReader {
     pen_.origin = vector(needed(table, "origin"), "origin");
   }
 
-  /// One length for each arm: { R = 150, L = 180 }.
+  /// A length per arm: { R = 150, L = 180 }.
   std::array<double, 2> of_both(const toml::table& table, std::string_view key) const {
     const toml::table& both = needed_table(table, key);
     allow(both, {"R", "L"});
@@ -113,7 +113,7 @@ class PenReader : base::TomlReader {
     return value->get();
   }
 
-  /// The list of six of `key`.
+  /// The list of six under `key`.
   const toml::array& six(const toml::table& table, std::string_view key) const {
     const toml::node& node = needed(table, key);
     const toml::array* list = node.as_array();
@@ -223,7 +223,7 @@ class PenReader : base::TomlReader {
     allow(table, {"elbow", "lower", "upper", "force", "torque", "speed", "turn_rate", "friction_speed"});
     const toml::node& elbow = needed(table, "elbow");
     const Vec2 range = growing_pair(elbow, "elbow");
-    // Beyond ±π/2 an arm is straight or folded, and its angles are no longer one answer.
+    // At ±π/2 an arm is straight or folded, and beyond it the solution for its angles is no longer unique.
     if (!(range.x > -1.57 && range.y < 1.57)) fail(elbow, "elbow must lie within -1.57 and 1.57 rad");
     pen_.elbow_low = range.x, pen_.elbow_high = range.y;
     pen_.workspace = {vector(needed(table, "lower"), "lower"), vector(needed(table, "upper"), "upper")};
@@ -234,7 +234,7 @@ class PenReader : base::TomlReader {
     pen_.friction_speed = positive(table, "friction_speed");
   }
 
-  /// A pen that contradicts itself where it is homed would be wrong everywhere.
+  /// A pen that contradicts itself in its home posture would be wrong everywhere.
   void check_home() const {
     const toml::node& home = needed(section("channels"), "home");
     const PenKinematics kinematics(pen_);

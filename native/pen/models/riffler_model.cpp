@@ -12,11 +12,11 @@
 namespace riffler::pen {
 namespace {
 
-/// s by which the pen's clock may differ from ours after a gap, for the pen to have been on power all the time.
+/// s by which the pen's clock may differ from the host's after a gap if the pen stayed powered.
 constexpr double kClockError = 0.1;
 
-/// Faults that say nothing against the pen and its pose, only that somebody was late. The firmware counts on in them
-/// and leaves them with the next report that disables, as it leaves all: the difference is made here.
+/// Faults that cast no doubt on the pen and its pose: something was late. The firmware keeps counting during these
+/// faults, and like every fault clears them with the next report that disables; the distinction is made here.
 bool only_late(std::uint8_t fault) {
   return fault == RIFFLER_PEN_WATCHDOG || fault == RIFFLER_PEN_LATE_STEP;
 }
@@ -79,7 +79,7 @@ void check_descriptor(std::span<const std::uint8_t> bytes) {
 
 PenGeometry geometry_of(const riffler_pen_identity& identity, const riffler_pen_limits& limits) {
   try {
-    // A name of its own folder, never a path of the device's choice.
+    // A name in Riffler's own folder, never a path chosen by the device.
     if (std::string_view(identity.geometry).find_first_of("/\\") != std::string_view::npos)
       throw std::invalid_argument("the name of a geometry has no folders");
     PenGeometry geometry = load_pen(identity.geometry);
@@ -96,7 +96,8 @@ PenGeometry geometry_of(const riffler_pen_identity& identity, const riffler_pen_
 }
 
 riffler_pen_identity checked_identity(Transport& transport) {
-  // In this order: of a pen with another version the descriptor may be another, too, and the version is what helps.
+  // In this order: a pen with another protocol version may have another descriptor too, and the version is the useful
+  // message.
   const riffler_pen_identity identity = ask_identity(transport);
   check_descriptor(transport.descriptor());
   return identity;
@@ -165,11 +166,11 @@ void RifflerModel::take_report(const riffler_pen_input& report, double now, Take
     taken.lost += step - 1U;
     sample_.sequence += step;
     device_time_ += 1e-6 * static_cast<std::uint32_t>(report.time_us - last_.time_us);
-    // Numbers that the pen takes for old, after another host's: beyond all that are on their way.
+    // The pen takes these sequence numbers as old, after those of another host: jump past all that are in transit.
     if (report.refused_count != last_.refused_count) sent_ = static_cast<std::uint16_t>(report.echo_sequence + 16);
   } else {
-    // The pen has been on power since we last heard of it if its clock has gone on as ours has. If not, its counters
-    // began anew, and nobody knows where it is.
+    // The pen stayed powered since the last report if its clock advanced as the host's did. Otherwise its counters
+    // restarted, and its pose is unknown.
     const double ours = now - last_time_;
     const double its = 1e-6 * static_cast<std::uint32_t>(report.time_us - last_.time_us);
     if (!ever_heard_ || ours > 3600 || std::abs(its - ours) > kClockError) sample_.homed = false;
@@ -209,8 +210,8 @@ void RifflerModel::place(const riffler_pen_input& report, double now) noexcept {
   sample_.powered = report.state != RIFFLER_PEN_BOOT && report.state != RIFFLER_PEN_FAULT;
 }
 
-/// N·mm at the motors, less their share of what was no wrench. Ramp, limits and age scale all of a command by one
-/// factor, which the currents tell.
+/// Motor torques (N·mm) minus their part that is no wrench. Ramp, limits and age scale a whole command by one factor,
+/// which follows from the currents.
 MotorTorques RifflerModel::applied_wrench(const riffler_pen_input& report) const noexcept {
   const Command& command = commands_[report.echo_sequence % commands_.size()];
   double dot = 0, square = 0;
@@ -228,7 +229,7 @@ MotorTorques RifflerModel::applied_wrench(const riffler_pen_input& report) const
 }
 
 bool RifflerModel::may_enable() const noexcept {
-  // A pen that does not know where it stands would push in some other direction.
+  // A pen that is not homed would push in a wrong direction.
   if (!heard_ || !sample_.homed) return false;
   const bool on = last_.state == RIFFLER_PEN_RAMP || last_.state == RIFFLER_PEN_ACTIVE;
   return on || (last_.state == RIFFLER_PEN_IDLE && (last_.flags & RIFFLER_PEN_FLAG_ARMED) != 0);
