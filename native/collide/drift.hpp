@@ -9,7 +9,7 @@
 namespace riffler::collide {
 
 /// Motion of the part's points in the tool's frame, during half an interval on either side of its middle. A point q
-/// from the tip moves by ± (way + turn × q), up to an error of second_order(|q|).
+/// from the tip moves by ± (translation + rotation × q), up to an error of second_order(|q|).
 struct Drift {
   Vec3 way{0}, turn{0};  ///< of the tool in half the interval, mm and rad
   double reach = 0;      ///< largest distance of the tool's points from its tip, mm

@@ -124,9 +124,9 @@ class FixtureSum {
     // Exactly at the centre there is no direction.
     const Vec3 way = towards / std::max(glm::length(towards), boxes_.spacing());
     contact_.push(arm, stiffness_ * sum.volume * way);
-    // When the tool moves by δ, its volume in the material grows by area (normal · δ) and pushes along `way`. The exact
-    // stiffness −way normalᵀ is not symmetric. Half the sum of the two squares is never less than its symmetric part;
-    // the whole sum also covers what deflects the tool sideways. With less, stiff fixtures shake a tool.
+    // When the tool moves by δ, its volume in the material grows by area (normal · δ) and pushes along the direction d.
+    // The exact stiffness −d normalᵀ is not symmetric. Half the sum of the two squares is never less than its symmetric
+    // part; the whole sum also covers what deflects the tool sideways. With less, stiff fixtures shake a tool.
     contact_.resist(arm, way, stiffness_ * sum.area);
     if (const double normal = glm::length(sum.normal); normal > 0)
       contact_.resist(arm, sum.normal / normal, stiffness_ * sum.area);

@@ -143,7 +143,7 @@ Twist SculptStep::balanced(const Part& part) const {
   return way;
 }
 
-/// Queries the contact at the end of displacement `way`; false if the result misses too much.
+/// Queries the contact at the end of that displacement; false if the result misses too much.
 bool SculptStep::look(const Twist& way, const Part& part, Result& result) {
   asked_ = moved(tool_, way);
   obstacles_->query(assembly_, asked_, part.budget, contact_, 0.1 * settings_.missed);

@@ -65,7 +65,7 @@ Program transformed(const Program& program, const Mat3& turn, const Vec3& shift)
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) off = std::max(off, std::abs(square[i][j] - (i == j)));
   if (!(off < 1e-9) || !(glm::determinant(turn) > 0) || !geom::finite(shift))
-    throw std::invalid_argument("matrix must turn and move only: no scale, no mirror, finite");
+    throw std::invalid_argument("matrix must be a rotation and a translation: no scale, no mirror, finite");
   return copied(program, [&](Move& move) {
     const auto turned = [&](const Pose& p) { return Pose{turn * p.tip + shift, glm::normalize(turn * p.axis)}; };
     move.pose = turned(move.pose);

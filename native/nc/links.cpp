@@ -14,7 +14,8 @@ namespace {
 /// After this many evaluations, a move counts as not clear.
 constexpr std::size_t kMaxEvaluations = 200'000;
 constexpr const char* kRemedy =
-    "tilt the tool otherwise there (another key), let it stick out further, take a slimmer holder or move the fixture";
+    "tilt the tool differently there (another key), let it stick out further, take a slimmer holder or move the "
+    "fixture";
 
 std::string at_place(const Vec3& p) {
   char text[96];

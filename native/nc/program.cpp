@@ -35,7 +35,7 @@ void Program::append(const Move& move) {
   if (move.at_machine && leading_ == row)
     ++leading_;
   else if (move.at_machine && !(pose.tip == poses_.back().tip && pose.axis == poses_.back().axis))
-    fail("poses", row, "a row at a position of the machine repeats the pose of the row before");
+    fail("poses", row, "a row at a machine position repeats the pose of the row before");
   if (move.via && !move.via->empty() && row > 0) {
     for (const Pose& on_the_way : *move.via) checked_pose(on_the_way, "via", row);
     via_.emplace_hint(via_.end(), row, move.via);

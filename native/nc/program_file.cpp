@@ -172,10 +172,10 @@ class Reader {
 
   void check_header() {
     if (bytes_.size() < kMagic.size() || !std::equal(kMagic.begin(), kMagic.end(), bytes_.begin()))
-      fail(0, "not a .rprog file (its first eight bytes are others)");
+      fail(0, "not a .rprog file (its first eight bytes differ)");
     if (bytes_.size() < kHeader) fail(bytes_.size(), "the file ends within its header");
     if (base::get<std::uint32_t>(bytes_, kHeader - 4) != base::checksum(bytes_.first(kHeader - 4)))
-      fail(kHeader - 4, "the header's checksum does not fit");
+      fail(kHeader - 4, "the header's checksum does not match");
     const auto version = base::get<std::uint32_t>(bytes_, 8);
     if (version != kVersion)
       fail(8, "version " + std::to_string(version) + "; this program reads version " + std::to_string(kVersion));
@@ -200,7 +200,7 @@ class Reader {
       const Record record{at, base::get<std::uint32_t>(head, 0), base::get<std::uint32_t>(head, 4),
                           head.subspan(kRecordHeader, length)};
       if (base::get<std::uint32_t>(head, 16) != base::checksum(head.first(16), record.payload))
-        fail(at, "the record's checksum does not fit");
+        fail(at, "the record's checksum does not match");
       const bool via = record.kind == kVia && all.size() > tools_ && all.back().kind != kRows;
       if (!via && record.kind != (all.empty() ? kNotes : all.size() <= tools_ ? kTool : kRows))
         fail(at, "a record of another kind than expected");
@@ -279,7 +279,7 @@ class Reader {
   void add_tool(const Record& record, std::map<int, Tool>& tools) const {
     const int number = static_cast<int>(record.number);
     if (number < 0 || (!tools.empty() && number <= tools.rbegin()->first))
-      fail(record.at + 4, "the tools' numbers do not rise");
+      fail(record.at + 4, "the tools' numbers are not ascending");
     tools.emplace(number, taken(record, &Reader::take_tool));
   }
 
@@ -288,7 +288,8 @@ class Reader {
     std::size_t count = 0, last = 0;
     for (const Record& record : records) {
       if (record.kind != kVia) break;
-      if (record.number <= last || record.number >= rows_) fail(record.at + 4, "no row to lead to, or not in order");
+      if (record.number <= last || record.number >= rows_)
+        fail(record.at + 4, "via poses without a row, or not in order");
       vias_.emplace(record.number, taken(record, [&](base::ByteReader& from) {
                       auto out = std::make_shared<std::vector<Pose>>();
                       for (auto k = from.number<std::uint32_t>(); k > 0; --k) {
@@ -334,7 +335,7 @@ class Reader {
   /// would change was not written by Riffler and is an error.
   void add_rows(const Record& record, const Columns& columns, Program& program) const {
     for (std::size_t k = 0; k < record.number; ++k) {
-      if (columns.flags[k] > 3) fail(record.at, "a row has flags that are not known");
+      if (columns.flags[k] > 3) fail(record.at, "a row has unknown flags");
       const Move move{{columns.vector(k, 0), columns.vector(k, 3)},
                       columns.number(k, 6),
                       columns.number(k, 7),
@@ -350,7 +351,7 @@ class Reader {
       }
       const Move kept = program[program.size() - 1];
       if (kept.pose.axis != move.pose.axis || kept.feed != move.feed)
-        fail(record.at, "row " + std::to_string(program.size() - 1) + " is none that a program holds");
+        fail(record.at, "row " + std::to_string(program.size() - 1) + " has values that no program can hold");
     }
   }
 

@@ -67,7 +67,8 @@ std::string capability_text(const DeviceCapability& device) {
   for (std::size_t k = 0; k < 3; ++k)
     if (!device.coordinates[k].pushes) add(std::string("force along ") + kLetters[k]);
   const bool grip = device.turns == TurnAxes::Grip;
-  if (grip && !(device[Coordinate::A].pushes && device[Coordinate::B].pushes)) add("torque square to the grip's axis");
+  if (grip && !(device[Coordinate::A].pushes && device[Coordinate::B].pushes))
+    add("torque perpendicular to the grip's axis");
   if (grip && !device[Coordinate::C].pushes) add("torque about the grip's axis");
   for (std::size_t k = 0; k < 3 && !grip; ++k)
     if (!device.coordinates[3 + k].pushes) add(std::string("torque about ") + kLetters[k]);

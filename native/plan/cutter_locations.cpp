@@ -18,7 +18,7 @@ namespace {
 constexpr int kMaxInserted = 100'000;
 
 constexpr const char* kOf[] = {"the cutter meets the part", "the shank meets the part", "the holder meets the part",
-                               "a fixture is in the way"};
+                               "the tool meets a fixture"};
 
 std::string text(const char* format, double value) {
   char out[64];
@@ -27,7 +27,7 @@ std::string text(const char* format, double value) {
 }
 
 std::string why_not_free(const Lift& lift, const LocationRule& rule) {
-  if (lift.swallowed && lift.height == 0) return "the tool stands wholly within the part's material";
+  if (lift.swallowed && lift.height == 0) return "the tool is entirely inside the part's material";
   const std::string where =
       std::string(kOf[static_cast<int>(lift.touch)]) + text(", clearance %.6g mm", lift.before) + " before any lift";
   if (lift.swallowed) return where + ", and a lift only pushes the tool into the material";

@@ -150,7 +150,7 @@ TiltAnswer least_tilt(const PencilPath& path, const collide::Assembly& assembly,
     return none(steps.size() - 1, "none of its free orientations is within max_change of those before it");
   std::vector<std::size_t> nodes = Chain::trace(steps, Chain::best(steps.back()));
   if (path.closed && n > 1) nodes = best_round(chain, n);
-  if (nodes.empty()) return none(0, "no free orientation here is met again within max_change after a round");
+  if (nodes.empty()) return none(0, "no free orientation here can be reached again within max_change after one lap");
   TiltAnswer out;
   out.found = true;
   const auto turned = [&](const Vec3& a, const Vec3& b) {

@@ -113,7 +113,8 @@ class Wall {
     return std::min(foot, most);
   }
 
-  /// The axis through the centre near `way` whose point at `height` has the flank's distance from the wall.
+  /// The axis through the centre near the given direction whose point at `height` has the flank's distance from the
+  /// wall.
   Fit fit(const Vec3& centre, const Vec3& way, double height, double lean) const {
     Vec3 top = centre + height * way;
     for (int i = 0; i < 4; ++i) {

@@ -104,7 +104,7 @@ void write_at(int fd, View bytes, std::uint64_t at, const std::string& name) {
 JournalWriter::JournalWriter(const std::filesystem::path& path, Keep keep) : name_(path.filename().string()) {
   Descriptor file(open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666));
   if (file.get() < 0) fail_system(name_, "cannot be opened for writing");
-  if (flock(file.get(), LOCK_EX | LOCK_NB) != 0) fail_system(name_, "is being written by somebody else");
+  if (flock(file.get(), LOCK_EX | LOCK_NB) != 0) fail_system(name_, "is being written by another program");
   struct stat status{};
   if (fstat(file.get(), &status) != 0) fail_system(name_, "cannot be read");
   if (!S_ISREG(status.st_mode))

@@ -102,15 +102,15 @@ void JournalRules::extend_stroke(const JournalRows& rows) {
 }
 
 void JournalRules::undo(std::size_t n) {
-  if (counting_ == 0) fail("there is no stroke to take back");
-  if (n < 1 || n > counting_) fail("strokes to take back must be from 1 to " + std::to_string(counting_));
+  if (counting_ == 0) fail("there is no stroke to undo");
+  if (n < 1 || n > counting_) fail("strokes to undo must be from 1 to " + std::to_string(counting_));
   counting_ -= n, taken_ += n;
   last_.reset();
 }
 
 void JournalRules::redo(std::size_t n) {
-  if (taken_ == 0) fail("there is no stroke to bring back");
-  if (n < 1 || n > taken_) fail("strokes to bring back must be from 1 to " + std::to_string(taken_));
+  if (taken_ == 0) fail("there is no stroke to redo");
+  if (n < 1 || n > taken_) fail("strokes to redo must be from 1 to " + std::to_string(taken_));
   counting_ += n, taken_ -= n;
   last_.reset();
 }

@@ -126,7 +126,7 @@ Session::Core::~Core() {
 }
 
 void Session::Core::record(std::shared_ptr<StrokeSink> sink) {
-  if (state_ != State::New) throw std::runtime_error("the session has begun: what it did would be missing");
+  if (state_ != State::New) throw std::runtime_error("the session has started: its earlier strokes would be missing");
   sink_ = std::move(sink);
 }
 

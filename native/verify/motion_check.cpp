@@ -108,7 +108,7 @@ void refuse_strikes(const nc::Program& program, const nc::MachineMotion& motion,
     char place[96];
     std::snprintf(place, sizeof place, " at [%.3f %.3f %.3f]", finding.point.x + 0.0, finding.point.y + 0.0,
                   finding.point.z + 0.0);
-    throw nc::RowError("poses", row, "on the way there" + std::string(place) + " " + finding.message);
+    throw nc::RowError("poses", row, "on the move there" + std::string(place) + " " + finding.message);
   }
 }
 

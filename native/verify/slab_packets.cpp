@@ -76,7 +76,7 @@ void put(PacketWriter& out, const Mesh& mesh) {
 Mesh get_mesh(PacketReader& in) {
   const std::vector<double> at = in.get_all<double>();
   const std::vector<int> corners = in.get_all<int>();
-  if (at.size() % 3 != 0 || corners.size() % 3 != 0) in.fail("a mesh that is none");
+  if (at.size() % 3 != 0 || corners.size() % 3 != 0) in.fail("an invalid mesh");
   Mesh mesh;
   for (std::size_t k = 0; k < at.size(); k += 3) mesh.vertices.emplace_back(at[k], at[k + 1], at[k + 2]);
   for (std::size_t k = 0; k < corners.size(); k += 3)

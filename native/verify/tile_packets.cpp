@@ -88,7 +88,7 @@ SlabTiles get_tiles(PacketReader& in) {
   const std::vector<double> reach = in.get_all<double>();
   const auto full = static_cast<std::size_t>(std::ranges::count_if(states, [](auto s) { return s >= Spans; }));
   if (reach.size() != 2 * full || std::ranges::any_of(states, [](auto s) { return s > Normals; }))
-    in.fail("tiles that are none");
+    in.fail("invalid tiles");
   const std::size_t spans = in.count(), normals = in.count();
   Columns columns;
   in.columns([&](base::PlaneReader& planes) {

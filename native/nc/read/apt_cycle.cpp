@@ -28,8 +28,8 @@ void take_words(AptCycle& cycle, const AptStatement& statement, const AptLexer& 
         k + 1 < statement.words.size() ? lexer.number(statement.words[k + 1]) : std::nullopt;
     if (lexer.number(word))
       place.fail(
-          "CYCLE with numbers alone: what they mean is known to one post processor only; have the CAM system "
-          "write FEDTO, RAPTO and RTRCTO, or the moves");
+          "CYCLE with numbers alone: only one post processor knows their meaning; have the CAM system write FEDTO, "
+          "RAPTO and RTRCTO, or the moves");
     if (!number) place.fail("CYCLE: " + word + " without a number");
     const double length = *number * unit;
     if (!(std::abs(length) <= kMaxLength)) place.fail("CYCLE: " + word + " is out of range");

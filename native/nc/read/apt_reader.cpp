@@ -305,7 +305,7 @@ class AptReader {
 
   void row(const Pose& pose) {
     use_cutter();
-    if (program_.size() >= kMaxRows) place_.fail("more rows than can be held");
+    if (program_.size() >= kMaxRows) place_.fail("more rows than can be stored");
     if (!rapid_ && !(feed_ > 0) && program_.size() > 0) place_.fail("a feed move without FEDRAT");
     double feed = rapid_ ? 0 : feed_;
     if (per_turn_ && !rapid_) {

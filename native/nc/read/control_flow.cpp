@@ -192,7 +192,7 @@ std::pair<NcControlFlow::File*, NcSource::Mark> NcControlFlow::find(const std::s
     place_.fail(file.source->name() + " holds no subroutine " + show(label));
   }
   place_.fail("no subroutine " + show(label) + ": neither in the program, nor as " + label +
-              ".ngc beside it or in the folder of option subroutines");
+              ".ngc in its folder or that of option subroutines");
 }
 
 void NcControlFlow::call(const std::string& label, const std::vector<double>& arguments) {

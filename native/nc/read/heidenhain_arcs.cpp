@@ -95,7 +95,8 @@ void HeidenhainInterpreter::radius_circle(HeidenhainWords& words) {
 Vec3 HeidenhainInterpreter::polar_target(const HeidenhainWords& words) {
   const Pole& at = pole("a polar coordinate");
   const int u = static_cast<int>(at.u), v = static_cast<int>(at.v);
-  if (words.axes[at.u].given || words.axes[at.v].given) place_.fail("polar coordinates beside those of their plane");
+  if (words.axes[at.u].given || words.axes[at.v].given)
+    place_.fail("polar coordinates together with those of their plane");
   const Vec2 from(at_[u] - at.at[u], at_[v] - at.at[v]);
   const double radius = words.radius.from(glm::length(from), unit_);
   const double angle = words.angle.from(std::atan2(from.y, from.x) / kDegree, 1);
@@ -114,7 +115,7 @@ void HeidenhainInterpreter::polar_circle(HeidenhainWords& words) {
   compensate(words.compensation);
   const Pole at = pole("CP");
   const int u = static_cast<int>(at.u), v = static_cast<int>(at.v);
-  if (words.axes[at.u].given || words.axes[at.v].given) place_.fail("CP beside coordinates of its plane");
+  if (words.axes[at.u].given || words.axes[at.v].given) place_.fail("CP together with coordinates of its plane");
   if (!words.angle.given) place_.fail("CP without PA or IPA");
   const Vec2 centre(at.at[u], at.at[v]), from = Vec2(at_[u], at_[v]) - centre;
   const double radius = glm::length(from), start = std::atan2(from.y, from.x);
@@ -162,8 +163,7 @@ void HeidenhainInterpreter::arc_to(const Vec3& to, const Arc& arc, std::size_t u
   if (rotary != rotary_ && !keeps_tip_) place_.fail("rotary axes turn along an arc without M128");
   stand_[u] = is_away() ? stand_[u] : Stand::Given;
   if (is_away())
-    place_.fail("an arc while " + axes_away() +
-                " is at a position of the machine: move all of X Y Z into the part first");
+    place_.fail("an arc while " + axes_away() + " is at a machine position: move all of X Y Z into the part first");
   if (!keeps_tip_ && !is_upright()) fail_tilted();
   moves_in_part(row);
   arc_rows(to, arc, u, v, rotary, row);

@@ -75,7 +75,7 @@ bool HeidenhainInterpreter::compensates() {
   if (radius == 0) return false;
   if (is_away())
     place_.fail("radius compensation begins while " + axes_away() +
-                " is at a position of the machine: move all of X Y Z into the part first");
+                " is at a machine position: move all of X Y Z into the part first");
   const bool left = (side_ == 'L') == (radius > 0);
   compensation_->on(
       {left ? CutterSide::Left : CutterSide::Right, std::abs(radius), 0, 1, "R0", CutterEntry::NextElement},
@@ -87,7 +87,7 @@ bool HeidenhainInterpreter::compensates() {
 void HeidenhainInterpreter::contour_to(const Vec3& to, const Arc* arc, const Joints& rotary, const NcRowWords& words) {
   check_length(to);
   if (rotary != rotary_) place_.fail("rotary axes turn in radius compensation: a line with R0 before it");
-  if (!moves_in_part(words)) refuse_in_compensation("a position of the machine");
+  if (!moves_in_part(words)) refuse_in_compensation("a machine position");
   if (arc)
     compensation_->arc(contour_joints(to, rotary), *arc, words);
   else

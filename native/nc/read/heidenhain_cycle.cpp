@@ -140,7 +140,8 @@ class Hole {
   }
 
   void drill_with_breaks() {
-    const double f = drilling_feed(), out = retraction_feed(f), back = length_or(256, "the way of a chip break", 0.2);
+    const double f = drilling_feed(), out = retraction_feed(f),
+                 back = length_or(256, "the retraction of a chip break", 0.2);
     const double most = values_.has(213) ? values_.needed(213, "the number of chip breaks") : 0;
     double step = plunging_depth(surface_ - bottom_), breaks = 0, strokes = 0;
     for (double to = surface_ - step; to > bottom_ + kRest; to -= step) {
@@ -190,7 +191,7 @@ class Hole {
   /// One peck, with chip breaking every Q257.
   void break_chips(double from, double to, double feed) {
     const double every = length_or(257, "the depth of a chip break", 0);
-    const double back = length_or(256, "the way of a chip break", 0.2);
+    const double back = length_or(256, "the retraction of a chip break", 0.2);
     if (every > 0) {
       if (!((from - to) / every <= kMaxHoleStrokes)) place_.fail("Q257 is too small: too many chip breaks");
       for (double at = from - every; at > to + kRest; at -= every) {
@@ -247,7 +248,7 @@ class Hole {
   /// Retracts by some pitches, or completely, every Q257.
   void break_tap(double feed, double in) {
     const double every = length(257, "the depth of a chip break");
-    const double back = values_.needed(256, "the way of a chip break") * std::abs(length(239, "the pitch"));
+    const double back = values_.needed(256, "the retraction of a chip break") * std::abs(length(239, "the pitch"));
     if (every <= 0) return;
     if (!((surface_ - bottom_) / every <= kMaxHoleStrokes)) place_.fail("Q257 is too small: too many chip breaks");
     for (double to = surface_ - every; to > bottom_ + kRest; to -= every) {

@@ -88,7 +88,7 @@ void HeidenhainInterpreter::define_old(int number, int part, HeidenhainCursor& c
       if (part == 0 || cursor.peek() == '\0') return;  // without values: cancelled
       if (number == 11 && cursor.take_word("SCL") && values_.value(cursor, "SCL") == 1) return;
       place_.fail(name + (number == 8 ? " (mirroring)" : " (scaling)") +
-                  " is not read: have the CAM system write the moves as they are to be");
+                  " is not read: have the CAM system write the final moves");
     case 12:
       place_.fail("cycle 12 calls another program, which is not read: paste it in as a label (LBL), and call that");
     default:
@@ -124,7 +124,7 @@ void HeidenhainInterpreter::take_parameters(HeidenhainCursor& cursor) {
 
 void HeidenhainInterpreter::shift_datum(HeidenhainCursor& cursor) {
   if (cursor.take_if('#'))
-    place_.fail("cycle 7 with a line of the datum table is not read: what the table has is known to the control only");
+    place_.fail("cycle 7 with a line of the datum table is not read: only the control knows what the table has");
   HeidenhainWords words;
   words.read(cursor, values_, 0);
   for (std::size_t k = 3; k < words.axes.size(); ++k)
@@ -173,7 +173,8 @@ void HeidenhainInterpreter::use_preset() {
   if (!preset_)
     note("work offset", "preset " + shown + ": the part is where its coordinates are");
   else if (*preset_ != preset)
-    note("work offset", "preset " + shown + ": how far it is from the one before is not in the program, taken for 0");
+    note("work offset",
+         "preset " + shown + ": its distance from the one before is not in the program, assumed to be 0");
   preset_ = preset;
   reset_datum();
   HeidenhainFrame frame = frame_;
@@ -189,7 +190,7 @@ void HeidenhainInterpreter::call_cycle() {
     place_.fail(std::string("cycle ") + std::to_string(cycle_) +
                 " is not read (1, 2, 200 to 203, 205 to 209 and 241 are): have the CAM system write its moves");
   if (stand_[0] == Stand::Machine || stand_[1] == Stand::Machine || (cycle_ < 200 && stand_[2] == Stand::Machine))
-    place_.fail("a cycle while " + axes_away() + " is at a position of the machine: move into the part first");
+    place_.fail("a cycle while " + axes_away() + " is at a machine position: move into the part first");
   if (!is_upright()) fail_tilted();
   if (cycle_ == 208) return bore();
   const HeidenhainCycleSetting setting{unit_, feed_unit_, speed_, at_.z, old_cycle_};
@@ -199,7 +200,7 @@ void HeidenhainInterpreter::call_cycle() {
                      place_.line};
     stand_[2] = Stand::Given;
     move_to({hole.x + stroke.aside.x, hole.y + stroke.aside.y, stroke.height}, rotary_, words);
-    if (rows_->pending().size() > kMaxRows) place_.fail("more rows than can be held");
+    if (rows_->pending().size() > kMaxRows) place_.fail("more rows than can be stored");
   });
   leaving_.reset();
 }

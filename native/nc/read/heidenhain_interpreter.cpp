@@ -51,7 +51,7 @@ void HeidenhainInterpreter::take_options(const ReadOptions& options) {
   taken.done();
   if (machine->joint_words())
     throw std::invalid_argument("machine " + machine->name() +
-                                ": a Heidenhain control is given the tip (M128): tcp must not be False");
+                                ": code for a Heidenhain control has tip coordinates (M128): tcp must not be False");
   if (chord < 1e-6) throw std::invalid_argument("option chord_tolerance must be at least 1e-6 mm");
   if (axis && *axis < 1e-6) throw std::invalid_argument("option axis_tolerance must be at least 1e-6 rad");
   rows_ = std::make_unique<NcRows>(std::move(machine), chord, axis, place_);
@@ -93,7 +93,7 @@ void HeidenhainInterpreter::begin_program() {
   if (ends_with("INCH"))
     unit_ = kInch, feed_unit_ = kInch / 10;
   else if (!ends_with("MM"))
-    note("units", "BEGIN PGM says neither MM nor INCH: taken for millimetres");
+    note("units", "BEGIN PGM says neither MM nor INCH: taken as millimetres");
   set_plane_parameters({});
 }
 
@@ -139,7 +139,7 @@ bool HeidenhainInterpreter::execute_motion(const std::string& word, HeidenhainCu
     corner(words, word == "RND");
   } else if (word == "STOP") {
     words.read(cursor, values_, 0);
-    if (words.has_linear() || words.has_rotary()) place_.fail("axis words beside STOP");
+    if (words.has_linear() || words.has_rotary()) place_.fail("axis words together with STOP");
     line(words);
   } else {
     return false;
@@ -161,7 +161,7 @@ bool HeidenhainInterpreter::execute_definition(const std::string& word, Heidenha
       place_.fail("CYCL CALL POS and PAT are not read: have the post write a positioning block with M99 for each hole");
     HeidenhainWords words;
     words.read(cursor, values_, 0);
-    if (words.has_linear() || words.has_rotary()) place_.fail("axis words beside CYCL CALL");
+    if (words.has_linear() || words.has_rotary()) place_.fail("axis words together with CYCL CALL");
     begin_codes(words);
     take_feed(words);
     call_cycle();
@@ -183,7 +183,7 @@ bool HeidenhainInterpreter::execute_definition(const std::string& word, Heidenha
     else if (cursor.take_word("AXIS"))
       shift_datum(cursor);
     else
-      place_.fail("TRANS DATUM is read with AXIS and RESET: what the datum table has is known to the control only");
+      place_.fail("TRANS DATUM is read with AXIS and RESET: only the control knows the datum table");
   } else if (word == "BEGIN") {
     place_.fail("BEGIN PGM within a program: give each program a file of its own");
   } else {
@@ -195,7 +195,7 @@ bool HeidenhainInterpreter::execute_definition(const std::string& word, Heidenha
 void HeidenhainInterpreter::unknown(const std::string& word) {
   const bool moves = std::ranges::find(kMovingStatements, word) != std::end(kMovingStatements);
   if (word == "TCH")
-    place_.fail("probing (TCH PROBE) cannot be simulated: what it measures is known at the machine only; take it out");
+    place_.fail("probing (TCH PROBE) cannot be simulated: only the machine knows what it measures; take it out");
   if (moves)
     place_.fail(word +
                 " is not read: it would move the tool or what follows; have the CAM system write L and C blocks");
@@ -211,7 +211,7 @@ void HeidenhainInterpreter::expect_end(HeidenhainCursor& cursor) {
 
 void HeidenhainInterpreter::flush() {
   std::vector<Move>& pending = rows_->pending();
-  if (program_.size() + pending.size() > kMaxRows) place_.fail("more rows than can be held");
+  if (program_.size() + pending.size() > kMaxRows) place_.fail("more rows than can be stored");
   for (const Move& move : pending) program_.append(move);
   pending.clear();
 }

@@ -82,7 +82,7 @@ double HeidenhainInterpreter::take_tool_delta(HeidenhainCursor& cursor, bool not
   cursor.take_if(':');
   const double delta = values_.value(cursor, "DL, DR");
   if (delta != 0 && noted)
-    note("tool length", "DL and DR of TOOL CALL are passed over: points are taken for those of the tip");
+    note("tool length", "DL and DR of TOOL CALL are passed over: points are taken as those of the tip");
   return delta;
 }
 
@@ -152,7 +152,7 @@ void HeidenhainInterpreter::begin_codes(const HeidenhainWords& words) {
     } else if (code == 128) {
       keep_tip(true);
     } else if (code == 103 && noted_.insert(code).second) {
-      note("feed", "M103 slows plunging down: its feeds are taken for those of F");
+      note("feed", "M103 slows plunging down: its feeds are taken as those of F");
     } else if (code == 136 || code == 137) {
       if (per_turn_ != (code == 136)) feed_ = 0;
       per_turn_ = code == 136;

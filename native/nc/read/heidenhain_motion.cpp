@@ -37,12 +37,12 @@ void HeidenhainInterpreter::leave_part(const NcRowWords& words) {
   const bool begun = rows_->begun();
   if (begun && !position_noted_)
     note("machine position",
-         "a position of the machine (M91, M92, M140 MB MAX, or rotary axes that turn without M128): where it is in the "
-         "part is not in the program; the moves there, and from there to the next position in the part, are not those "
-         "of the machine");
+         "a machine position (M91, M92, M140 MB MAX, or rotary axes that turn without M128): where it is in the part "
+         "is not in the program; the moves there, and from there to the next position in the part, are not those of "
+         "the machine");
   position_noted_ |= begun;
   check_no_corner();
-  refuse_in_compensation("a position of the machine");
+  refuse_in_compensation("a machine position");
   compensation_->end_leaving();
   leaving_.reset();
   rows_->at_machine(words);
@@ -54,12 +54,12 @@ bool HeidenhainInterpreter::moves_in_part(const NcRowWords& words) {
   if (words.rapid) return upright && !is_away();
   if (!upright) fail_tilted();
   if (is_away() && !std::exchange(away_noted_, true))
-    note("coordinates",
-         "a feed move while " + axes_away() + " is at a position of the machine: neither cut nor checked");
+    note("coordinates", "a feed move while " + axes_away() + " is at a machine position: neither cut nor checked");
   if (!std::exchange(start_noted_, true)) {
     const std::string axes = axes_of(stand_, Stand::Start, ", ");
     if (!axes.empty())
-      note("start", axes + " has not been named before the first feed move: taken for 0 at the start of the program");
+      note("start",
+           axes + " was not programmed before the first feed move: assumed to be 0 at the start of the program");
   }
   return !is_away();
 }
@@ -143,7 +143,7 @@ void HeidenhainInterpreter::move(const HeidenhainWords& words, const Vec3& other
   if (turns && !keeps_tip_) {
     if (!row.rapid && words.has_linear())
       place_.fail(
-          "a feed move in which rotary axes turn without M128: the tip's way depends on the machine; have the post "
+          "a feed move in which rotary axes turn without M128: the tip's path depends on the machine; have the post "
           "write M128 or FUNCTION TCPM");
     if (!row.rapid && !std::exchange(away_noted_, true))
       note("coordinates", "rotary axes turn in feed without M128: neither cut nor checked");

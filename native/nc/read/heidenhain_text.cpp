@@ -58,7 +58,7 @@ HeidenhainText::HeidenhainText(std::string_view text, NcPlace& place) {
     place.line = block.line, place.text = line;
     bool more = without_blanks(line).ends_with('~');
     while (more) {
-      if (!source.next(line)) place.fail("the text ends where a ~ says that the block goes on");
+      if (!source.next(line)) place.fail("the text ends after a ~, which continues the block");
       more = without_blanks(line).ends_with('~');
       block.text = {block.text.data(), static_cast<std::size_t>(line.data() + line.size() - block.text.data())};
     }

@@ -123,8 +123,8 @@ void NcInterpreter::block(NcCursor& cursor) {
     if (flow_->execute(cursor)) return leave_saved_states();
     if (!first)
       place_.fail(
-          "O with a number alone is the number of the program, before everything else, or a subprogram of "
-          "M98, after its end");
+          "O with only a number is the program number, before everything else, or a subprogram for M98, after the "
+          "program's end");
   }
   words_->read(cursor, parameters_);
   for (const std::string& word : skipped_here_) {

@@ -36,7 +36,7 @@ class NcInterpreter final : private NcPredefined {
   bool step();
   std::vector<Move>& pending() { return rows_->pending(); }
   /// Throws FormatError naming the line: more rows than can be stored.
-  [[noreturn]] void fail_rows() const { place_.fail("more rows than can be held"); }
+  [[noreturn]] void fail_rows() const { place_.fail("more rows than can be stored"); }
 
   /// "source", and "skipped" and "notes" if there are any.
   Provenance provenance() const { return notes_.provenance(source_); }

@@ -124,8 +124,8 @@ void NcInterpreter::leave_contour(const Joints& to, bool in_part) {
   const CutterOffset& by = compensation_->offset();
   if (in_part && to[by.u] == at_[by.u] && to[by.v] == at_[by.v])
     note("cutter compensation",
-         "the move after G40 has no motion in the plane: it goes from beside the contour to the contour's last point, "
-         "as on LinuxCNC; other controls stay beside it");
+         "the move after G40 has no motion in the plane: it goes from the offset path to the contour's last point, as "
+         "in LinuxCNC; other controls stay on the offset path");
   compensation_->end_leaving();
 }
 

@@ -102,9 +102,8 @@ void NcInterpreter::leave_part(const char* code) {
     stand_[0] = stand_[1] = Stand::Machine;
   if (axes_away().empty() || position_noted_) return;
   note("machine position", std::string(code) +
-                               " goes to a position of the machine: the moves from there to the next positions in "
-                               "the part are neither cut nor compared; options g28, g30 and g54 (or parameters) say "
-                               "where it is");
+                               " goes to a machine position: the moves from there to the next positions in the part "
+                               "are neither cut nor compared; options g28, g30 and g54 (or parameters) give it");
   position_noted_ = true;
 }
 
@@ -119,14 +118,14 @@ std::string NcInterpreter::axes_away() const {
 void NcInterpreter::check_stands_in_part(const char* what) const {
   if (const std::string axes = axes_away(); !axes.empty())
     place_.fail(std::string(what) + " where " + axes +
-                (axes.size() == 1 ? " stands at a position" : " stand at positions") +
-                " of the machine: move there by absolute words first, or give options g28, g30 and g54");
+                (axes.size() == 1 ? " stands at a machine position" : " stand at machine positions") +
+                ": move there by absolute words first, or give options g28, g30 and g54");
 }
 
 /// Called before every motion: whether it ends in the part. Notes the assumptions.
 bool NcInterpreter::moves_in_part(bool rapid) {
   if (!units_said_) {
-    if (!given_.units) note("units", "neither G20 nor G21 before the first move: taken for millimetres; option units");
+    if (!given_.units) note("units", "neither G20 nor G21 before the first move: taken as millimetres; option units");
     units_said_ = true;
   }
   if (!begun_) begin_or_wait(rapid);
@@ -134,8 +133,7 @@ bool NcInterpreter::moves_in_part(bool rapid) {
   if (!away) check_work_offset();
   if (rapid) return !away;
   if (away && !away_noted_) {
-    note("coordinates",
-         "a feed move where " + axes_away() + " is at a position of the machine: neither cut nor checked");
+    note("coordinates", "a feed move where " + axes_away() + " is at a machine position: neither cut nor checked");
     away_noted_ = true;
   }
   if (!start_noted_) note_start();
@@ -160,7 +158,7 @@ void NcInterpreter::note_start() {
   for (std::size_t k = 0; k < 3; ++k)
     if (stand_[k] == Stand::Start) axes += (axes.empty() ? "" : ", ") + std::string(1, kJointLetters[k]);
   if (!axes.empty())
-    note("start", axes + " has not been named before the first feed move: taken for 0 at the start of the program");
+    note("start", axes + " was not programmed before the first feed move: assumed to be 0 at the start of the program");
 }
 
 /// Many controls move each axis at its own rate.
@@ -168,7 +166,7 @@ void NcInterpreter::note_rapid(const Joints& to) {
   int linear = 0;
   for (std::size_t k = 0; k < 3; ++k) linear += to[k] != at_[k];
   if (linear < 2 || !rows_->begun() || rows_->machine().control().rapids != "unknown") return;
-  note("rapid", "rapids of several axes are taken for straight lines: option rapids (straight or independent)");
+  note("rapid", "rapids of several axes are taken as straight lines: option rapids (straight or independent)");
   rapid_noted_ = true;
 }
 
@@ -186,7 +184,7 @@ void NcInterpreter::check_work_offset() {
   if (known || offset_noted_[now]) return;
   offset_noted_[now] = true;
   note("work offset", std::string(kOffsetCodes[now - 1]) + ": how far it is from " + kOffsetCodes[first_system_ - 1] +
-                          " is not in the program, taken for what G10 left, or 0: options " +
+                          " is not in the program, assumed to be what G10 left, or 0: options " +
                           kOffsetOptions[first_system_ - 1] + " and " + kOffsetOptions[now - 1] + ", or parameters");
 }
 
@@ -197,12 +195,12 @@ void NcInterpreter::learn_zero(int number, std::size_t joint, bool by_position) 
   if (by_position) {
     const bool lost = stand_[joint] == Stand::Machine && rows_->begun();
     zero = lost ? Zero::Unknown : std::max(zero_[now][joint], Zero::Relative);
-    if (lost) note("coordinates", "G10 L20 where " + axes_away() + " is at a position of the machine");
+    if (lost) note("coordinates", "G10 L20 where " + axes_away() + " is at a machine position");
     if (system == now) stand_[joint] = Stand::Given;
     return;
   }
   if (system == now && rows_->begun() && zero != Zero::Machine && !offset_noted_[now]) {
-    note("work offset", std::string("G10 L2 moves the system in use, whose offset before is taken for 0: option ") +
+    note("work offset", std::string("G10 L2 moves the system in use, whose offset before is taken as 0: option ") +
                             kOffsetOptions[now - 1]);
     offset_noted_[now] = true;
   }

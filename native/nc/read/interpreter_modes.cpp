@@ -145,7 +145,7 @@ void NcInterpreter::kinematics() {
   if (machine.branches() == 1 || machine.joint_words() != tip_words) return;
   refuse_in_compensation("a switch of the kinematics");
   if (tcp_given_)
-    place_.fail(std::string(tip_words ? "M428 has X Y Z mean the tip" : "M429 has X Y Z mean where the axes stand") +
+    place_.fail(std::string(tip_words ? "M428 makes X Y Z the tip" : "M429 makes X Y Z the axis positions") +
                 ", but option tcp says otherwise: leave the option out, and what the program says is followed");
   Options options = machine_options_;
   options["tcp"] = tip_words;
@@ -163,7 +163,8 @@ void NcInterpreter::dwell() {
   const char time = words_->has('P') ? 'P' : 'X';  // Fanuc's G04 X2. waits two seconds
   if (!words_->has(time)) place_.fail("G4 needs P");
   if (words_->value(time, 1e6) < 0) place_.fail(std::string(1, time) + " is negative");
-  if (time == 'P' && words_->has_axes() && words_->code(NcGroup::Motion) < 0) place_.fail("axis words beside G4");
+  if (time == 'P' && words_->has_axes() && words_->code(NcGroup::Motion) < 0)
+    place_.fail("axis words together with G4");
 }
 
 void NcInterpreter::modes() {
@@ -202,7 +203,7 @@ void NcInterpreter::tool_length() {
   length_used_ = code != 490;
   if (code == 431) {
     if (words_->code(NcGroup::Motion) >= 0 && words_->has_axes())
-      place_.fail("G43.1 beside a motion: both use axis words");
+      place_.fail("G43.1 together with a motion: both use axis words");
     Vec3 length(0);
     for (std::size_t k = 0; k < 3; ++k)
       if (const char letter = "XYZ"[k]; words_->has(letter)) length[static_cast<int>(k)] = length_or_angle(k);

@@ -51,11 +51,11 @@ void NcInterpreter::motion() {
   }
   if (motion_ < 0 || code == 800) place_.fail("axis words without a motion (G0, G1, G2, G3)");
   if (cancelled_ && !by_machine)
-    note("motion", "axis words after G80: taken for the motion from before the cycle, as Fanuc's controls do");
+    note("motion", "axis words after G80: taken as the motion from before the cycle, as Fanuc's controls do");
   cancelled_ = false;
   if (by_machine) {
     if (motion_ > 10) place_.fail("G53 goes with G0 and G1 only");
-    if (!modes_.absolute) place_.fail("G53 under G91: positions of the machine are absolute (G90)");
+    if (!modes_.absolute) place_.fail("G53 under G91: machine positions are absolute (G90)");
   }
   move(motion_);
 }
@@ -102,7 +102,7 @@ void NcInterpreter::refuse(int code) {
     case 383:
     case 384:
     case 385:
-      place_.fail("probing (G38) cannot be simulated: where it ends is known at the machine only");
+      place_.fail("probing (G38) cannot be simulated: only the machine knows where it ends");
     case 330:
     case 331:
     case 760:
@@ -146,7 +146,7 @@ Joints NcInterpreter::target() {
 
 NcRowWords NcInterpreter::row_words(bool rapid) {
   if (length_off_) {
-    note("tool length", "a move after G49: its points are taken for those of the tip");
+    note("tool length", "a move after G49: its points are taken as those of the tip");
     length_off_ = false;
   }
   return {rapid,

@@ -142,8 +142,7 @@ void NcInterpreter::shift_by_words(bool local) {
   for (std::size_t k = 0; k < 6; ++k) {
     if (!words_->has(kJointLetters[k])) continue;
     if (!local && stand_[k] == Stand::Machine && rows_->begun())
-      note("coordinates",
-           "G92 where " + axes_away() + " is at a position of the machine: what follows may lie elsewhere");
+      note("coordinates", "G92 where " + axes_away() + " is at a machine position: what follows may lie elsewhere");
     if (!local) stand_[k] = Stand::Given;
     frame.shift[k] = local ? length_or_angle(k) : at_[k] + frame.shift[k] - length_or_angle(k);
   }

@@ -115,7 +115,7 @@ Program read_all(std::unique_ptr<NcSource> source, const std::filesystem::path& 
     if (!sinumerik) throw;
     throw FormatError(
         error.what(), "",
-        "the file begins as a Sinumerik program; machines that read such ones: " + machines_of_language("sinumerik"));
+        "the file begins as a Sinumerik program; machines that read them: " + machines_of_language("sinumerik"));
   }
 }
 

@@ -70,10 +70,10 @@ void NcRows::check_limits(const Joints& joints) const {
   const AxisRange& range = machine_->range(k);
   place_.fail(std::string(1, kJointLetters[k]) + " would stand at " + number_text(joints[k]) +
               ", beyond the limits of machine " + machine_->name() + ", " + number_text(range.low) + " to " +
-              number_text(range.high) + ": place the part otherwise, or read it without limits");
+              number_text(range.high) + ": place the part differently, or read it without limits");
 }
 
-/// Feed in mm/min of a block whose tip moves by the distance `way` (mm).
+/// Feed in mm/min of a block, given the distance of its tip (mm).
 double NcRows::feed_over(double way, const NcRowWords& words) const {
   if (words.rapid) return 0;
   return words.inverse_time ? std::min(way * words.feed, kMaxFeed) : words.feed;

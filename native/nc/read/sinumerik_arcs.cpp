@@ -73,8 +73,7 @@ void SinumerikInterpreter::arc(const SinumerikWords& words, Motion motion) {
   if (words.has_rotary() || words.has_vector())
     place_.fail("an arc in which rotary axes turn is not read: have the CAM system write lines");
   if (is_away())
-    place_.fail("an arc while " + axes_away() +
-                " is at a position of the machine: move all of X Y Z into the part first");
+    place_.fail("an arc while " + axes_away() + " is at a machine position: move all of X Y Z into the part first");
   const Vec2 from(at_[static_cast<int>(plane_[0])], at_[static_cast<int>(plane_[1])]);
   Vec3 to = linear_target(words);
   try {
@@ -85,8 +84,8 @@ void SinumerikInterpreter::arc(const SinumerikWords& words, Motion motion) {
     const bool full = std::abs(made.sweep) >= kTwoPi;
     if (full && turns > 0)
       note_once(-14, "helix",
-                std::string("TURN counts turns beside the full circle that the block has anyway: TURN=") +
-                    number_of(turns) + " makes " + number_of(turns + 1));
+                std::string("TURN counts turns in addition to the block's full circle: TURN=") + number_of(turns) +
+                    " makes " + number_of(turns + 1));
     if (turns > 0) made = made.with_turns(1 + static_cast<int>(turns));
     arc_to(to, made, row);
   } catch (const std::invalid_argument& e) {
@@ -127,7 +126,7 @@ void SinumerikInterpreter::arc_through(const SinumerikWords& words) {
   const NcRowWords row = row_words(false);
   if (words.has_rotary() || words.has_vector() || words.turns || words.has_centre() || words.radius)
     place_.fail("CIP takes X Y Z and I1= J1= K1=");
-  if (is_away()) place_.fail("an arc while " + axes_away() + " is at a position of the machine");
+  if (is_away()) place_.fail("an arc while " + axes_away() + " is at a machine position");
   const Vec3 from = at_;
   Vec3 via = at_;
   for (std::size_t k = 0; k < 3; ++k)

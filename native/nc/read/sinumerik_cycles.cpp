@@ -75,7 +75,7 @@ void SinumerikInterpreter::modal_call(SinumerikCursor& cursor) {
 void SinumerikInterpreter::drill(int number, const Arguments& given) {
   const auto [u, v, w] = plane_;
   if (stand_[u] == Stand::Machine || stand_[v] == Stand::Machine)
-    place_.fail("a cycle while " + axes_away() + " is at a position of the machine: move into the part first");
+    place_.fail("a cycle while " + axes_away() + " is at a machine position: move into the part first");
   if (!keeps_tip_ && !is_upright()) fail_tilted();
   if (plane_[2] == 2 && geom::angle_between(rows_->machine().pose(rotary_).axis, frame_.turn[2]) > kAlong)
     place_.fail("a drilling cycle whose hole is not along the tool: have the CAM system write its moves");

@@ -230,7 +230,7 @@ void SinumerikInterpreter::call(const std::string& name, SinumerikCursor& cursor
   if (!routine) {
     if (!skip_unknown_)
       place_.fail("unknown statement or subprogram " + name + ": correct it, or put the file " + name +
-                  ".SPF beside the program (or into the folder of option subroutines)");
+                  ".SPF into the program's folder (or that of option subroutines)");
     note("coordinates", name + " was skipped, a subprogram that is not there: where the tool is after it is not known");
     cursor.skip_all();
     lose_place();
@@ -272,7 +272,8 @@ void SinumerikInterpreter::bind(const SinumerikRoutine& routine, SinumerikCursor
     place_ = {routine.file, routine.blocks[0].line, routine.blocks[0].text};
     SinumerikCursor header(routine.blocks[0].text, place_);
     if (header.take_word("PROC") && (header.name(), header.take_if("(")) && !header.take_if(")")) {
-      if (main) place_.fail("a subprogram with parameters: read the program that calls it, with this file beside it");
+      if (main)
+        place_.fail("a subprogram with parameters: read the program that calls it, with this file in its folder");
       do {
         std::string type = header.name();
         if (type == "VAR")

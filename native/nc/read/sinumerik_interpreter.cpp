@@ -58,7 +58,7 @@ void SinumerikInterpreter::take_options(const ReadOptions& options) {
   taken.done();
   if (machine->joint_words())
     throw std::invalid_argument("machine " + machine->name() +
-                                ": a Sinumerik control is given the tip (TRAORI): tcp must not be False");
+                                ": code for a Sinumerik control has tip coordinates (TRAORI): tcp must not be False");
   if (arc_miss_ > 1) throw std::invalid_argument("option arc_tolerance must be at most 1 mm");
   if (chord < 1e-6) throw std::invalid_argument("option chord_tolerance must be at least 1e-6 mm");
   if (axis && *axis < 1e-6) throw std::invalid_argument("option axis_tolerance must be at least 1e-6 rad");
@@ -174,7 +174,7 @@ void SinumerikInterpreter::execute_words(SinumerikWords& words) {
 
 void SinumerikInterpreter::flush() {
   std::vector<Move>& pending = rows_->pending();
-  if (program_.size() + pending.size() + rows_->held() > kMaxRows) place_.fail("more rows than can be held");
+  if (program_.size() + pending.size() + rows_->held() > kMaxRows) place_.fail("more rows than can be stored");
   for (const Move& move : pending) program_.append(move);
   pending.clear();
 }

@@ -138,8 +138,7 @@ void SinumerikInterpreter::take_units(int code) {
   if (code < 700 && unit_ != basic_unit_ && !units_given_)
     note_once(-11, "units",
               std::string("G") + std::to_string(code) +
-                  " is of lengths, not of F, which is in the control's own unit: taken for mm; "
-                  "option units says it");
+                  " is of lengths, not of F, which is in the control's own unit: taken as mm; option units says it");
 }
 
 void SinumerikInterpreter::take_feed(const SinumerikWords& words) {
@@ -152,7 +151,7 @@ void SinumerikInterpreter::take_feed(const SinumerikWords& words) {
   };
   if (dwells_) {
     if (!words.feed && !words.speed) place_.fail("G4 needs F (seconds) or S (turns)");
-    if (words.has_linear() || words.has_rotary()) place_.fail("axis words beside G4");
+    if (words.has_linear() || words.has_rotary()) place_.fail("axis words together with G4");
     return;
   }
   if (words.feed) feed_ = of(*words.feed);
@@ -220,7 +219,7 @@ void SinumerikInterpreter::compensate(int code) {
 
 NcRowWords SinumerikInterpreter::row_words(bool rapid) {
   if (length_off_ && !by_machine_ && !homes_) {
-    note("tool length", "a move under D0: its points are taken for those of the tip");
+    note("tool length", "a move under D0: its points are taken as those of the tip");
     length_off_ = false;
   }
   double feed = block_feed_ > 0 ? block_feed_ : feed_;

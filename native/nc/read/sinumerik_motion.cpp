@@ -52,11 +52,10 @@ void SinumerikInterpreter::lose_place() {
 void SinumerikInterpreter::leave_part(const NcRowWords& words) {
   const bool begun = rows_->begun();
   if (begun && !std::exchange(position_noted_, true))
-    note(
-        "machine position",
-        "a position of the machine (SUPA, G53, G153, G74, CYCLE800, or rotary axes that turn without TRAORI): where it "
-        "is in the part is not in the program; the moves there, and from there to the next position in the part, are "
-        "neither cut nor compared");
+    note("machine position",
+         "a machine position (SUPA, G53, G153, G74, CYCLE800, or rotary axes that turn without TRAORI): where it is in "
+         "the part is not in the program; the moves there, and from there to the next position in the part, are "
+         "neither cut nor compared");
   leaving_.reset();
   rows_->at_machine(words);
 }
@@ -75,14 +74,14 @@ void SinumerikInterpreter::begin_or_wait(bool rapid) {
 void SinumerikInterpreter::note_start() {
   const std::string axes = axes_of(stand_, Stand::Start, ", ");
   if (!axes.empty())
-    note("start", axes + " has not been named before the first feed move: taken for 0 at the start of the program");
+    note("start", axes + " was not programmed before the first feed move: assumed to be 0 at the start of the program");
 }
 
 /// Called before every motion in program coordinates: whether it ends in the part. Notes the assumptions.
 bool SinumerikInterpreter::moves_in_part(const NcRowWords& words) {
   if (!units_said_ && !units_given_)
     note("units",
-         "none of G70, G71, G700 and G710 before the first move: taken for the control's own unit, millimetres; option "
+         "none of G70, G71, G700 and G710 before the first move: taken as the control's own unit, millimetres; option "
          "units");
   units_said_ = true;
   if (!begun_) begin_or_wait(words.rapid);
@@ -92,8 +91,7 @@ bool SinumerikInterpreter::moves_in_part(const NcRowWords& words) {
   if (!away && upright) check_system();
   if (words.rapid) return upright && !away;
   if (away && !std::exchange(away_noted_, true))
-    note("coordinates",
-         "a feed move while " + axes_away() + " is at a position of the machine: neither cut nor checked");
+    note("coordinates", "a feed move while " + axes_away() + " is at a machine position: neither cut nor checked");
   if (!std::exchange(start_noted_, true)) note_start();
   return !away;
 }
@@ -102,9 +100,10 @@ bool SinumerikInterpreter::moves_in_part(const NcRowWords& words) {
 void SinumerikInterpreter::check_system() {
   if (!first_system_) first_system_ = system_;
   if (system_ == *first_system_) return;
-  note_once(-100 - system_, "work offset",
-            system_name(system_) + ": how far it is from " + system_name(*first_system_) +
-                " is not in the program, taken for 0; read a program for each of them, or write the distance as TRANS");
+  note_once(
+      -100 - system_, "work offset",
+      system_name(system_) + ": how far it is from " + system_name(*first_system_) +
+          " is not in the program, assumed to be 0; read a program for each of them, or write the distance as TRANS");
 }
 
 void SinumerikInterpreter::keep_tip(bool on) {
@@ -215,7 +214,7 @@ void SinumerikInterpreter::line(const SinumerikWords& words, bool rapid) {
   if (rotary != rotary_ && !keeps_tip_) {
     if (!rapid)
       place_.fail(
-          "a feed move in which rotary axes turn without TRAORI: the tip's way depends on the machine; have the post "
+          "a feed move in which rotary axes turn without TRAORI: the tip's path depends on the machine; have the post "
           "write TRAORI");
     lose_place();
     rotary_ = rotary;
@@ -244,7 +243,7 @@ void SinumerikInterpreter::move_to(const Vec3& to, const Joints& rotary, const N
 /// The tool's axis by A3 B3 C3; missing ones are 0.
 void SinumerikInterpreter::vector_line(const SinumerikWords& words, bool rapid) {
   if (!keeps_tip_) place_.fail("A3= B3= C3= without TRAORI: have the post write TRAORI before");
-  if (words.has_rotary()) place_.fail("A3= B3= C3= beside rotary axes");
+  if (words.has_rotary()) place_.fail("A3= B3= C3= together with rotary axes");
   if (machine_vectors_)
     place_.fail("A3= B3= C3= under ORIMKS are in coordinates of the machine: have the post write ORIWKS");
   const Vec3 given(words.vector[0].value_or(0), words.vector[1].value_or(0), words.vector[2].value_or(0));

@@ -59,23 +59,21 @@ constexpr Refused kRefused[] = {
     {"ORIVIRT", "virtual angles of the tool are not read: have the CAM system write A3= B3= C3="},
     {"PTP", "point-to-point moves are not read: have the CAM system write G0 or G1"},
     {"DIAM*", "diameters (turning) are not read"},
-    {"SCALE", "scaling is not read: have the CAM system write the moves as they are to be"},
-    {"ASCALE", "scaling is not read: have the CAM system write the moves as they are to be"},
-    {"MIRROR", "mirroring is not read: have the CAM system write the moves as they are to be"},
-    {"AMIRROR", "mirroring is not read: have the CAM system write the moves as they are to be"},
+    {"SCALE", "scaling is not read: have the CAM system write the final moves"},
+    {"ASCALE", "scaling is not read: have the CAM system write the final moves"},
+    {"MIRROR", "mirroring is not read: have the CAM system write the final moves"},
+    {"AMIRROR", "mirroring is not read: have the CAM system write the final moves"},
     {"ROTS", "solid angles are not read: have the CAM system write ROT and AROT"},
     {"AROTS", "solid angles are not read: have the CAM system write ROT and AROT"},
     {"CROTS", "solid angles are not read: have the CAM system write ROT and AROT"},
     {"PRESET*", "it sets the machine's coordinates: have the CAM system write TRANS"},
-    {"TOFFON", "an offset of the tool that changes as it goes is not read: take it out"},
+    {"TOFFON", "a tool offset that changes along the path is not read: take it out"},
     {"CLGON", "centreless grinding is not read"},
-    {"WHEN*",
-     "actions beside the program (WHEN ... DO) are not read: what they do depends on the machine; take it out"},
-    {"EVERY",
-     "actions beside the program (EVERY ... DO) are not read: what they do depends on the machine; take it out"},
-    {"DO", "actions beside the program (DO) are not read: what they do depends on the machine; take it out"},
-    {"IDS", "actions beside the program (IDS=) are not read: what they do depends on the machine; take it out"},
-    {"ID", "actions beside the program (ID=) are not read: what they do depends on the machine; take it out"},
+    {"WHEN*", "synchronized actions (WHEN ... DO) are not read: what they do depends on the machine; take it out"},
+    {"EVERY", "synchronized actions (EVERY ... DO) are not read: what they do depends on the machine; take it out"},
+    {"DO", "synchronized actions (DO) are not read: what they do depends on the machine; take it out"},
+    {"IDS", "synchronized actions (IDS=) are not read: what they do depends on the machine; take it out"},
+    {"ID", "synchronized actions (ID=) are not read: what they do depends on the machine; take it out"},
     {"SETAL", "it stops the program with an alarm: what it checks is not met"},
     {"POCKET*", kWriteMoves},
     {"SLOT*", kWriteMoves},
@@ -149,7 +147,7 @@ bool SinumerikInterpreter::switches(const std::string& name) {
   else if (name == "ORIMKS")
     by_system_ = Turning::Axes, machine_vectors_ = true;
   else if (name == "RTLIOF")
-    note_once(-10, "rapid", "RTLIOF: each axis goes at its own rate in rapids, which are taken for straight lines");
+    note_once(-10, "rapid", "RTLIOF: each axis goes at its own rate in rapids, which are taken as straight lines");
   else
     return false;
   return true;

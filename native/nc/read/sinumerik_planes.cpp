@@ -108,7 +108,7 @@ void SinumerikInterpreter::swivel(SinumerikCursor& cursor) {
   const int state = whole(2), mode = whole(3), adds = state % 10;
   if (adds > 1 || state / 100 % 10 != 0 || state / 10'000 % 10 != 0)
     place_.fail(std::string("CYCLE800 with state ") + std::to_string(state) +
-                " is not read: new or additional planes that turn the axes are; have the post write such ones");
+                " is not read: new or additional planes that turn the axes are; have the post write those");
   // The axis of each angle: three pairs of bits, the first pair lowest.
   const std::size_t order[] = {static_cast<std::size_t>(mode & 3), static_cast<std::size_t>(mode >> 2 & 3),
                                static_cast<std::size_t>(mode >> 4 & 3)};

@@ -159,7 +159,7 @@ double SinumerikValues::value(SinumerikCursor& cursor, std::string_view what) {
   const std::optional<double> out = expression(cursor);
   if (!out)
     place_.fail("the value of " + std::string(what) +
-                " is known to the control only (a system variable, $...): write what it is at your machine");
+                " is known only to the control (a system variable, $...): write what it is at your machine");
   return *out;
 }
 
@@ -190,7 +190,7 @@ std::optional<double> SinumerikValues::comparison(SinumerikCursor& cursor) {
     const std::optional<double> right = logic(cursor, 0, combined);
     if (combined)
       place_.fail(
-          "a comparison beside AND, OR or XOR without brackets: these bind more tightly; put each comparison in "
+          "a comparison combined with AND, OR or XOR without brackets: these bind more tightly; put each comparison in "
           "brackets");
     left = both(left, right, [&](double a, double b) {
       const bool equal = std::abs(a - b) <= kEqualShare * std::max(std::abs(a), std::abs(b));

@@ -115,7 +115,7 @@ class BlockMaker {
     try {
       return splitter.split(before_, *stands_, to, joints, free);
     } catch (const std::invalid_argument& e) {
-      throw RowError("poses", row, std::string("on the way there ") + e.what());
+      throw RowError("poses", row, std::string("on the move there ") + e.what());
     }
   }
 
@@ -366,9 +366,9 @@ class BlockMaker {
     if (k == joints.size()) return;
     const AxisRange& range = machine_.range(k);
     throw RowError("poses", row,
-                   "on the way there machine " + machine_.name() + " would leave the limits of " + kJointLetters[k] +
+                   "on the move there machine " + machine_.name() + " would leave the limits of " + kJointLetters[k] +
                        ", " + number_text(range.low) + " to " + number_text(range.high) + ": " +
-                       number_text(joints[k]) + "; place the part otherwise or put rows closer together");
+                       number_text(joints[k]) + "; place the part differently or put rows closer together");
   }
 
   /// A row whose tip stands still has no feed of its own: it uses the previous or the next one.

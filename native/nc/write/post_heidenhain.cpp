@@ -18,7 +18,7 @@ class Heidenhain final : public Post {
   Heidenhain(const Machine& machine, PostOptions options) : Post(machine, std::move(options)) {
     if (machine.joint_words())
       throw std::invalid_argument("machine " + machine.name() +
-                                  ": a Heidenhain control is given the tip (M128): tcp must not be False");
+                                  ": code for a Heidenhain control has tip coordinates (M128): tcp must not be False");
     if (options_.retract)
       throw std::invalid_argument("machine " + machine.name() +
                                   ": retract is G53's; put L Z+… M91 into retract of the machine's file");

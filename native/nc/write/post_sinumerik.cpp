@@ -16,7 +16,7 @@ class Sinumerik final : public Post {
   Sinumerik(const Machine& machine, PostOptions options) : Post(machine, std::move(options)) {
     if (machine.joint_words())
       throw std::invalid_argument("machine " + machine.name() +
-                                  ": a Sinumerik control is given the tip (TRAORI): tcp must not be False");
+                                  ": code for a Sinumerik control has tip coordinates (TRAORI): tcp must not be False");
   }
 
   bool has_arcs() const override { return true; }

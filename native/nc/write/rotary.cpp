@@ -383,7 +383,7 @@ class Chooser {
       }
     }
     if (text.back() == ':') text += " along the great circle from the row before";
-    throw RowError("poses", row, text + "; place the part otherwise or tilt the tool less");
+    throw RowError("poses", row, text + "; place the part differently or tilt the tool less");
   }
 
   const Program& program_;

@@ -64,7 +64,7 @@ std::optional<RowError> RowCheck::first_fault(const Program& program, BlockSink&
     report = make_blocks(follows ? whole : program, settings, sink);
   } catch (const RowError& e) {
     if (!follows) return e;
-    return RowError(e.name(), map.original(e.row()), (e.name() == "poses" ? "on the way there " : "") + e.reason());
+    return RowError(e.name(), map.original(e.row()), (e.name() == "poses" ? "on the move there " : "") + e.reason());
   }
   if (follows) count_original_rows(report, map);
   return std::nullopt;

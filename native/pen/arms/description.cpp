@@ -67,7 +67,7 @@ class PenReader : base::TomlReader {
   void base(const toml::table& table) {
     allow(table, {"x", "z", "origin"});
     const Vec3 x = unit(table, "x"), z = unit(table, "z");
-    if (std::abs(glm::dot(x, z)) > kSquare) fail(needed(table, "z"), "z must be square to x");
+    if (std::abs(glm::dot(x, z)) > kSquare) fail(needed(table, "z"), "z must be perpendicular to x");
     const Vec3 y = glm::normalize(glm::cross(z, x));
     pen_.turn = Mat3(glm::cross(y, z), y, z);
     pen_.origin = vector(needed(table, "origin"), "origin");
@@ -177,7 +177,7 @@ class PenReader : base::TomlReader {
          [&](PenChannel& c, const toml::node& n, const std::string& key) { c.viscous = not_negative(n, key); });
     each("gravity", [&](PenChannel& c, const toml::node& n, const std::string& key) {
       c.gravity = not_negative(n, key);
-      if (c.joint == 0 && c.gravity != 0) fail(n, key + " must be 0: joint 1 turns about the upright");
+      if (c.joint == 0 && c.gravity != 0) fail(n, key + " must be 0: joint 1 turns about the vertical axis");
     });
     each("inertia", [&](PenChannel& c, const toml::node& n, const std::string& key) {
       c.inertia = positive(n, key, kMaxInertia);
@@ -249,7 +249,7 @@ class PenReader : base::TomlReader {
     }
     for (const Vec3& arm : angles)
       if (arm.y - arm.z < pen_.elbow_low || arm.y - arm.z > pen_.elbow_high)
-        fail(home, "home: joint 2 less joint 3 is " + in_digits(arm.y - arm.z) + " rad, and the elbow's limits are " +
+        fail(home, "home: joint 2 minus joint 3 is " + in_digits(arm.y - arm.z) + " rad, and the elbow's limits are " +
                        in_digits(pen_.elbow_low) + " to " + in_digits(pen_.elbow_high));
     if (std::abs(posture.length - pen_.grip_length) > pen_.grip_tolerance)
       fail(home, "home: the arms' ends are " + in_digits(posture.length) + " mm apart there, and the grip is " +

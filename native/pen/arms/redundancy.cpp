@@ -27,7 +27,7 @@ Vec3 arm_of_circle(const ArmLinks& links, const Vec3& angles, const Vec3& end, i
   return links.fore * in_plane(std::cos(angles.z), std::sin(angles.z));
 }
 
-/// Smallest angle from `from`, in the direction `way` (±1), at which the cosine is `c`; infinite if there is none.
+/// Smallest angle from `from`, in the given direction (±1), at which the cosine is `c`; infinite if there is none.
 double way_to_cosine(double from, double way, double c) {
   if (!(std::abs(c) <= 1)) return kInfinity;
   double least = kInfinity;

@@ -134,8 +134,8 @@ void PolhemModel::check(Transport& transport) {
   }
   if (reports.numbered || reports.input[0] < kMessage || reports.output[0] < kMessage || reports.output[0] > 64)
     throw OpenError(OpenProblem::WrongDescriptor,
-                    "its report descriptor has no unnumbered reports of 14 to 64 bytes both ways, as the firmware of "
-                    "WoodenHaptics and Polhem has");
+                    "its report descriptor has no unnumbered reports of 14 to 64 bytes in both directions, as the "
+                    "firmware of WoodenHaptics and Polhem has");
   input_size_ = reports.input[0];
   output_size_ = 1 + std::size_t{reports.output[0]};
 }

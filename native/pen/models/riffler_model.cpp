@@ -128,7 +128,8 @@ void RifflerModel::check(Transport& transport) {
                     std::equal(limits.peak_ma, limits.peak_ma + RIFFLER_PEN_JOINTS, limits_.peak_ma) &&
                     std::equal(limits.continuous_ma, limits.continuous_ma + RIFFLER_PEN_JOINTS, limits_.continuous_ma);
   if (!same)
-    throw OpenError(OpenProblem::UnknownDevice, "another pen was plugged in, or its limits have changed: open it anew");
+    throw OpenError(OpenProblem::UnknownDevice,
+                    "another pen was plugged in, or its limits have changed: open it again");
 }
 
 bool RifflerModel::home() noexcept {

@@ -31,7 +31,7 @@ void SimulatedPenSettings::validate() const {
   hand.validate();
   cable.validate();
   if (turn_us < 25 || turn_us > SimulatedPen::kFrame || SimulatedPen::kFrame % turn_us != 0)
-    throw std::invalid_argument("turn_us must divide 1000, from 25 on");
+    throw std::invalid_argument("turn_us must divide 1000 and be at least 25");
   if (parts < 1 || parts > 100) throw std::invalid_argument("parts must be within 1 and 100");
 }
 

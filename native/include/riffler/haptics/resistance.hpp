@@ -29,7 +29,7 @@ class Resistance {
   /// `memory`: mm, positive. `damping`: N·s/mm, added while cutting.
   Resistance(double memory, double damping) : memory_(memory), damping_(damping) {}
 
-  /// Records a move. `way`: the displacement of the tool about its tip at the end; `wrench` on the tool about that tip;
+  /// Records a move: the displacement of the tool about its tip at the end; `wrench` on the tool about that tip;
   /// `dt`: s; `reach`: mm from the tip within which the tool cuts. Rotations count as travel at that distance.
   void learn(const Twist& way, const Wrench& wrench, double dt, double reach);
   /// Clears the estimate: call it when the tool is placed elsewhere.

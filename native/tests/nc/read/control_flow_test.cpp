@@ -63,8 +63,8 @@ TEST(NcControlFlow, CallsSubroutinesWithArgumentsAndValues) {
 TEST(NcControlFlow, CallsSubprogramsAfterTheEnd) {
   EXPECT_EQ(xs("G91 M98 P12 L3\nX10\nM30\nO12\nX1\nM99\n"), (Xs{1, 2, 3, 13}));
   EXPECT_EQ(nc_error("M98 P12"),
-            "line 1: no subroutine O12: neither in the program, nor as 12.ngc beside it or in the "
-            "folder of option subroutines [M98 P12]");
+            "line 1: no subroutine O12: neither in the program, nor as 12.ngc in its folder or that of option "
+            "subroutines [M98 P12]");
 }
 
 TEST(NcControlFlow, FindsSubroutinesInFilesBesideTheProgramAndInTheirFolder) {

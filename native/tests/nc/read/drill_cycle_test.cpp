@@ -57,7 +57,7 @@ TEST(DrillCycle, IsRefusedWithoutItsWords) {
       {"G81", "a canned cycle without axis words"},
       {"G86 X1 R1 Z-1 P1", "G86 needs a spindle that turns (M3, M4)"},
       {"G93 G81 X1 R1 Z-1 F1", "canned cycles know no inverse time (G93)"},
-      {"G38.2 Z-1", "probing (G38) cannot be simulated: where it ends is known at the machine only"},
+      {"G38.2 Z-1", "probing (G38) cannot be simulated: only the machine knows where it ends"},
       {"G76 Z-1", "threads (G33, G33.1, G76) are cut by the spindle's position: they are not read"},
       {"G5.2 X1", "NURBS (G5.2, G5.3) are not read: have the CAM system write arcs or lines"},
   };

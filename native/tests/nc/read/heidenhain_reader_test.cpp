@@ -179,7 +179,7 @@ TEST(HeidenhainReader, CalculatesWithParameters) {
   EXPECT_EQ(x("Q1 = 1\nFN 11: IF +Q1 GT +1 GOTO LBL 1\nFN 10: IF +Q1 NE +1 GOTO LBL 1\nQ1 = 7\nLBL 1", "Q1"), 7);
   EXPECT_EQ(error("L XQ5 FMAX"), "line 2: Q5 has no value: assign one before it is used (FN 0: Q5 = ...) [L XQ5 FMAX]");
   EXPECT_EQ(error("FN 18: SYSREAD Q5 = ID270 NR1 IDX1\nQ6 = Q5 + 1\nL XQ6 FMAX").substr(0, 60),
-            "line 4: the value of X is known to the control only (FN 18, ");
+            "line 4: the value of X is known only to the control (FN 18, ");
   EXPECT_EQ(error("Q1 = 1 / 0").substr(0, 46), "line 2: a calculation without a finite result ");
   EXPECT_EQ(error("Q1 = ( 1 + 2"), "line 2: a bracket that is not closed [Q1 = ( 1 + 2]");
   EXPECT_EQ(error("FN 14: ERROR=1042").substr(0, 24), "line 2: FN 14 stops the ");

@@ -118,7 +118,7 @@ TEST(MachinePositions, AreNoStartOfACut) {
   EXPECT_EQ(kinds(there + "G1 X5 F100"), uncut);
   EXPECT_EQ(kinds(there + "G1 X5 Z3 F100"), Kinds{"machine position"});
   const std::string arc = nc_error(there + "G2 X5 Z1 I2 F100");
-  EXPECT_NE(arc.find("an arc or a spline where Z stands at a position of the machine: move there by absolute words"),
+  EXPECT_NE(arc.find("an arc or a spline where Z stands at a machine position: move there by absolute words"),
             arc.npos);
   EXPECT_EQ(nc_error(there + "Z3\nG2 X5 I2 F100"), "no error");
   // Cycles: from R on all is known under G99; G98 would come back to where nobody knows.
