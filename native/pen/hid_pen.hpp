@@ -63,8 +63,8 @@ class StepSwitch final : public PenStep {
 
 class HidPen : public Pen {
  public:
-  /// `transport`: open and checked by the model; `open` finds, opens and checks the device again. `now`: time on
-  /// `clock` (see Driver); required with a clock.
+  /// `transport`: open and checked by the model; `open` finds, opens and checks the device again. `clock`: as in
+  /// Driver; a subclass that passes one overrides now().
   HidPen(std::string kind, std::shared_ptr<HidModel> model, std::unique_ptr<Transport> transport, Driver::Open open,
          const DriverSettings& settings = {}, std::shared_ptr<Clock> clock = nullptr);
 

@@ -230,7 +230,7 @@ class AptReader {
     cutter_.reset();
   }
 
-  // --- Where coordinates are ---
+  // --- Coordinate systems ---
 
   /// A second, different CSYS or TRNTYP does not define where the part is.
   void system() {

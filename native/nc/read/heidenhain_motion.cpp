@@ -16,7 +16,7 @@ void HeidenhainInterpreter::check_length(const Vec3& at) const {
     if (!(std::abs(at[k]) <= kMaxLength)) place_.fail(std::string(1, "XYZ"[k]) + " is out of range");
 }
 
-// --- What is known of where the tip is ---
+// --- Knowledge of the tip's position ---
 
 bool HeidenhainInterpreter::is_away() const {
   return has_stand(stand_, Stand::Machine);

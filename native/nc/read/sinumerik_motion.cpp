@@ -28,7 +28,7 @@ std::string system_name(int system) {
 
 }  // namespace
 
-// --- What is known of where the tip is ---
+// --- Knowledge of the tip's position ---
 
 void SinumerikInterpreter::check_length(const Vec3& at) const {
   for (int k = 0; k < 3; ++k)

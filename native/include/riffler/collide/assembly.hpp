@@ -39,6 +39,7 @@ class Assembly {
 
   /// The outline in the forms that the searches use.
   const OutlineRuns& runs() const;
+  /// The outline's edges with precomputed data for vector lanes.
   const std::vector<LaneEdge>& lane_edges() const;
 
  private:

@@ -19,6 +19,7 @@ namespace riffler::collide {
 /// 1e-6).
 class Collider {
  public:
+  /// Point spacing and stiffnesses of the force model (4.4).
   struct Settings {
     double spacing = 0;            ///< distance of the sample points on the part, mm; 0: √(part area / 100 000)
     double coarse = 4;             ///< factor on `spacing` for points that only shank and holder can touch
@@ -45,6 +46,7 @@ class Collider {
   /// points inside the tool. `budget`: seconds of the monotonic clock; after that the search stops and only bounds what
   /// is left (Contact::missed_depth_bound). Without a budget the result is deterministic.
   Contact query(const Assembly& assembly, const Pose& pose, std::optional<double> budget = {}) const;
+  /// As above; adds the operation counts to `counts`.
   Contact query(const Assembly& assembly, const Pose& pose, std::optional<double> budget, Counts& counts) const;
   /// Overwrites `contact` and reuses its memory, so repeated calls from one thread soon allocate nothing. `loose` (mm)
   /// allows the reported depth to fall short by that much, counted in missed_depth_bound; this skips most of the search
@@ -56,6 +58,7 @@ class Collider {
   /// mm; negative where they overlap. Exact to 1e-9 or rounding, or to 1e-3 in the cases that
   /// Contact::missed_depth_bound describes.
   double clearance(const Assembly& assembly, const Pose& pose) const;
+  /// As above; adds the operation counts to `counts`.
   double clearance(const Assembly& assembly, const Pose& pose, Counts& counts) const;
   /// Clearance over part and fixtures, with the closest point. A fixture counts as solid: a tool in its middle is as
   /// deep as the fixture is thick.

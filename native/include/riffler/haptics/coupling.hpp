@@ -7,6 +7,7 @@
 
 namespace riffler::haptics {
 
+/// Stiffness, damping and limits of the virtual coupling.
 struct CouplingSettings {
   double stiffness = 1;         ///< N/mm
   double damping = 1e-3;        ///< N·s/mm

@@ -5,6 +5,7 @@
 
 namespace riffler::haptics {
 
+/// Haptic properties of a material.
 struct Material {
   double stiffness = 1;            ///< of a surface, N per mm of depth and mm²; of a fixture, N per mm³ inside the tool
   double removal_constant = 0.05;  ///< N·s/mm³: force per volume removed per second

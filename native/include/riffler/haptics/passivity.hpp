@@ -21,6 +21,7 @@
 
 namespace riffler::haptics {
 
+/// Timing, device data and energy limits of the passivity controller.
 struct PassivitySettings {
   double period = 1e-3;  ///< s: nominal duration of a hold
   double jitter = 1e-4;  ///< s: a hold may be shorter or longer by this

@@ -35,6 +35,7 @@
 
 namespace riffler::haptics {
 
+/// Thresholds and times of the safety checks.
 struct SafetySettings {
   double ramp = 0.5;                ///< s from zero to full force, at the start and after every interruption
   double fresh = 3e-3;              ///< s: data up to this age, and ticks up to this late, count as fresh

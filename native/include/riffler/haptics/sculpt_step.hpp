@@ -11,6 +11,7 @@
 
 namespace riffler::haptics {
 
+/// Settings of the haptic step.
 struct SculptSettings {
   CouplingSettings coupling;
   std::optional<double> memory{};  ///< mm of travel for Resistance; default: memory_for
@@ -35,6 +36,7 @@ struct SculptSettings {
 /// in as deep as the surface's own stiffness lets it.
 class SculptStep {
  public:
+  /// The result of one step.
   struct Result {
     Wrench on_grip;          ///< N, N·mm about the grip's point, from the coupling
     Pose tool;               ///< at the end of the step

@@ -18,6 +18,7 @@ enum class ForceState : std::uint8_t {
 };
 inline constexpr std::size_t kForceStates = 7;
 
+/// Events that change the force state.
 enum class ForceEvent : std::uint8_t {
   SwitchOn,
   Homed,    ///< the device knows its pose
@@ -53,6 +54,7 @@ inline constexpr std::size_t kCauses = 14;
 /// The state after an event. The only place where states change.
 ForceState next(ForceState state, ForceEvent event);
 
+/// Whether the state is Ramp, Active or Degraded.
 bool lets_force_through(ForceState state);
 /// Whether the force may return by itself when the cause is gone. It may not where the device's pose is in doubt.
 bool heals(Cause cause);

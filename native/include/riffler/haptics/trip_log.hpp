@@ -11,6 +11,7 @@
 
 namespace riffler::haptics {
 
+/// One trip or stop of the force.
 struct Trip {
   double time;       ///< s since the Safety object was created
   ForceState state;  ///< before the trip

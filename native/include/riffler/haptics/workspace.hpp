@@ -8,6 +8,7 @@
 
 namespace riffler::haptics {
 
+/// Mapping from grip to tool, and the device's switches.
 struct WorkspaceSettings {
   double scale = 1;                 ///< mm of the tool per mm of the grip
   Mat3 turn{1};                     ///< orthonormal, right-handed: the grip's frame → the part's

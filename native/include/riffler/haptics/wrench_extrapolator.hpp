@@ -6,6 +6,7 @@
 
 namespace riffler::haptics {
 
+/// Times and limits of the extrapolation.
 struct WrenchExtrapolatorSettings {
   double ahead = 2e-3;          ///< s for which the last trend continues after a step, decelerating
   double fade = 20e-3;          ///< s after the last step at which the wrench reaches zero
@@ -30,6 +31,7 @@ class WrenchExtrapolator {
   Wrench missed(double dt);
   /// Time since the last step, s.
   double age() const { return age_; }
+  /// Forgets all steps; the output starts from zero.
   void reset();
 
  private:

@@ -83,10 +83,12 @@ class Program {
   /// feed; a negative tool number; what nc/limits.hpp excludes; an `at_machine` row after the beginning whose pose
   /// differs from the row before. Via poses of the first row are dropped, since no motion leads to it.
   void append(const Move& move);
+  /// Reserves memory for `rows` rows.
   void reserve(std::size_t rows);
 
   std::size_t size() const { return poses_.size(); }
   bool empty() const { return poses_.empty(); }
+  /// The row with this index, from 0 to size() − 1.
   Move operator[](std::size_t row) const;
 
   const std::vector<Pose>& poses() const { return poses_; }

@@ -15,6 +15,7 @@ struct PenGeometry;
 /// Along the device's x, y, z, and about three axes; see TurnAxes.
 enum class Coordinate : unsigned char { X, Y, Z, A, B, C };
 
+/// What is sensed of a coordinate.
 enum class Sensing : unsigned char {
   None,
   Position,  // mm, rad
@@ -27,6 +28,7 @@ enum class TurnAxes : unsigned char {
   Grip,    // C about the grip's own axis; A and B about two perpendiculars, A the one closest to the device's x
 };
 
+/// Sensing and force of one coordinate.
 struct CoordinateCapability {
   Sensing sensing = Sensing::None;
   bool pushes = false;
@@ -36,6 +38,7 @@ struct CoordinateCapability {
   double peak = 0, continuous = 0;  // N or N·mm in the home posture, one coordinate alone; 0: does not push
 };
 
+/// Name and six coordinates of a device.
 struct DeviceCapability {
   std::string name;
   TurnAxes turns = TurnAxes::Device;
@@ -43,6 +46,7 @@ struct DeviceCapability {
 
   const CoordinateCapability& operator[](Coordinate c) const { return coordinates[static_cast<std::size_t>(c)]; }
   CoordinateCapability& operator[](Coordinate c) { return coordinates[static_cast<std::size_t>(c)]; }
+  /// Whether the device pushes any coordinate.
   bool has_force() const;
 };
 

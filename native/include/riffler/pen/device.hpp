@@ -15,6 +15,7 @@ namespace riffler::pen {
 
 struct PenGeometry;
 
+/// Why a requested wrench is not, or not entirely, felt.
 enum class NotPushed : unsigned char {
   None,          // the whole wrench will be felt
   NoMotors,      // no motor for some or all of it: see `missing`
@@ -24,8 +25,10 @@ enum class NotPushed : unsigned char {
   BadWrench,     // not finite
   Tripped,       // a safety check failed: see cause()
 };
+/// The reason as a short text for users.
 const char* not_pushed_text(NotPushed reason) noexcept;
 
+/// The answer to a requested wrench.
 struct PushAnswer {
   Wrench felt{}, missing{};  // at full gain; their sum is the requested wrench
   NotPushed reason = NotPushed::None;

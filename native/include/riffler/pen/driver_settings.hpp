@@ -3,6 +3,7 @@
 
 namespace riffler::pen {
 
+/// Time-outs and retries of a device's thread.
 struct DriverSettings {
   double read_timeout = 0.01;  ///< s without a report after which the step runs with the old sample
   double silence = 0.25;       ///< s without a report after which a periodic device counts as disconnected

@@ -9,12 +9,14 @@
 
 namespace riffler::pen {
 
+/// State of the connection to a device.
 enum class LinkState : unsigned char {
   Stopped,     // pushing stopped, device closed
   Connected,   // reports arrive
   Waiting,     // device disconnected; the next attempt follows after a pause
   Connecting,  // searching for the device and opening it
 };
+/// The state as a short text for users.
 const char* link_text(LinkState state) noexcept;
 
 /// Counts since the start.

@@ -32,7 +32,7 @@ class PlaybackPen final : public Pen {
   /// The first call starts the playback.
   PenSample newest() const noexcept override;
   double now() const noexcept override { return clock_(); }
-  /// Stopped at the end of the last stroke.
+  /// State Connected, and Stopped after the end of the last stroke.
   LinkStatus status() const noexcept override;
 
   /// Time from the first row to the last at this speed, s.

@@ -19,6 +19,7 @@ struct PointerFrame {
   void validate() const;
 };
 
+/// One event of a tablet or mouse.
 struct PointerEvent {
   double x = 0, y = 0;            ///< right and up, in pointer units
   double pressure = 0;            ///< 0 … 1; a mouse's button is 1
@@ -31,6 +32,7 @@ struct PointerEvent {
 /// from upright.
 Vec3 tilted_axis(const PointerFrame& frame, double tilt_x, double tilt_y) noexcept;
 
+/// A tablet or mouse as a device without force.
 class PointerPen final : public Pen {
  public:
   enum class Kind : unsigned char { Tablet, Mouse };

@@ -5,6 +5,7 @@
 
 namespace riffler::pen {
 
+/// A trivially copyable value with one writer and any number of readers.
 template <class T>
 class Published {
  public:

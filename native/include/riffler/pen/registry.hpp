@@ -19,6 +19,7 @@ namespace riffler::pen {
 class HidModel;
 class Transport;
 
+/// Options for opening a device.
 struct PenOptions {
   RateSettings rate{};                     ///< for pucks
   std::string geometry = "woodenhaptics";  ///< for the Polhem protocol: "woodenhaptics" or "polhem-1"
@@ -26,6 +27,7 @@ struct PenOptions {
   DriverSettings driver{};
 };
 
+/// A family of HID devices.
 struct PenFamily {
   const char* kind;
   const char* what;
@@ -37,10 +39,12 @@ struct PenFamily {
   std::unique_ptr<HidModel> (*make)(Transport& transport, const HidInfo& info, const PenOptions& options);
 };
 
+/// All families.
 std::span<const PenFamily> pen_families();
 /// The family that matches a device; null if none does.
 const PenFamily* family_of(const HidInfo& info);
 
+/// A HID device found by a search.
 struct FoundDevice {
   HidInfo info;
   const PenFamily* family = nullptr;  ///< null: not supported by Riffler

@@ -14,6 +14,7 @@ namespace riffler::plan {
 /// fit into the hollow is not considered.
 class CutterSupport {
  public:
+  /// Takes the cutter of `tool`; ignores shank and holder.
   explicit CutterSupport(const Tool& tool);
 
   /// (radius, height) in mm of the point furthest along `d`, a direction with d.x ≥ 0. On a horizontal edge it is the

@@ -11,6 +11,7 @@
 
 namespace riffler::plan {
 
+/// Clearance, tolerance and limits of the search.
 struct LocationRule {
   double clearance = 0;  ///< wanted clearance to part and fixtures, mm
   /// How far the clearance may fall below `clearance`, mm. Finishing cuts touch the part everywhere: this depth counts
@@ -45,6 +46,7 @@ struct UnsafeWay {
   std::string reason;
 };
 
+/// Rows of cutter locations, and the places where none could be found.
 struct CutterLocations {
   std::vector<LocationRow> rows;  ///< in path order; a closed path repeats its first point at the end
   std::vector<BlockedPoint> blocked;

@@ -16,12 +16,14 @@ namespace riffler::plan {
 /// on several threads.
 class DropCutter {
  public:
+  /// Where the tool comes to rest.
   struct Landing {
     bool touches = false;  ///< false: no part of the mesh lies in line with the tool
     double height = 0;     ///< height of the tip along the axis, mm
     Vec3 point{0};         ///< contact point on the part, mm
     tool::Part part = tool::Part::Cutter;
   };
+  /// Operation counts.
   struct Stats {
     std::size_t boxes = 0, triangles = 0;  ///< tested
   };
@@ -34,6 +36,7 @@ class DropCutter {
   /// As above for many points, in parallel.
   std::vector<Landing> operator()(const std::vector<Vec3>& points, const Progress& progress = {}) const;
 
+  /// The axis passed to the constructor.
   const Vec3& axis() const;
 
  private:

@@ -10,6 +10,7 @@
 
 namespace riffler::plan {
 
+/// Options of engrave.
 struct EngraveOptions {
   double depth = 0;         ///< mm below the surface along its normal; negative: above
   double inclination = 0;   ///< rad, of the axis in the frame of feed and normal (plan/cc_frame.hpp)

@@ -8,6 +8,7 @@
 
 namespace riffler::plan {
 
+/// Rule of the search for tool axes.
 struct TiltRule {
   MapRule map;
   /// Largest angle between the axes of neighbouring points, rad. Must not be smaller than the grid's steps can satisfy.
@@ -16,6 +17,7 @@ struct TiltRule {
   double smoothness = 4;
 };
 
+/// The axes found, or why there are none.
 struct TiltAnswer {
   bool found = false;
   std::vector<Vec3> axes;      ///< one per point, where found

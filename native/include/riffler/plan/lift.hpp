@@ -5,6 +5,7 @@
 
 namespace riffler::plan {
 
+/// Clearance, tolerance and limits of a lift.
 struct LiftRule {
   /// Wanted clearance to part and fixtures, mm. Negative values allow that depth, for cuts that must touch.
   double clearance = 0;

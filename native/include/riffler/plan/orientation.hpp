@@ -9,6 +9,7 @@
 
 namespace riffler::plan {
 
+/// How axes are interpolated between keys.
 enum class Interpolation {
   Linear,  ///< (4.4)–(4.5): linear between the two axes by point index, then normalised
   Slerp,   ///< along the great circle, at a constant rate per arc length of the path
@@ -17,6 +18,7 @@ enum class Interpolation {
 
 /// The rule named "linear", "slerp" or "smooth". Throws std::invalid_argument for other names.
 Interpolation interpolation_named(std::string_view name);
+/// The rule's name; inverse of interpolation_named.
 const char* name_of(Interpolation rule);
 
 /// The cone of all axes within `angle` (rad, below π) of the unit vector `about`: the range of a machine's rotary axes.

@@ -12,6 +12,7 @@
 
 namespace riffler::plan {
 
+/// Grid and limits of an orientation map.
 struct MapRule {
   std::vector<double> inclinations, tilts;  ///< rad, ascending; the grid
   double clearance = 0;                     ///< wanted clearance to part and fixtures, mm
@@ -25,6 +26,7 @@ void validate(const MapRule& rule);
 
 /// One entry per node of the grid, row-major: inclinations × tilts.
 struct OrientationMap {
+  /// State of one tool axis.
   enum class State : unsigned char {
     Free,
     Blocked,

@@ -15,6 +15,7 @@
 
 namespace riffler::plan {
 
+/// Options of pencil.
 struct PencilOptions {
   double tolerance = 0.01;  ///< mm; of the curves; a valley with a smaller gap under the ball counts as faceting
   /// Smallest angle (rad) between the directions to the two contacts; default: the angle of a gap of `tolerance`.
@@ -42,6 +43,7 @@ struct PencilStats {
   std::size_t cut = 0;       ///< path ends cut off at the step limit
 };
 
+/// The paths found, and the area that the ball cannot reach.
 struct PencilResult {
   std::vector<PencilPath> paths;
   /// How each path begins and ends: "loop", "corner", "part", "faded" or "cut"; "joined" where another path continues;

@@ -11,6 +11,7 @@
 
 namespace riffler::plan {
 
+/// Options of swarf.
 struct SwarfOptions {
   int side = 0;  ///< index of the path's contact that lies on the wall: 0 or 1
   std::optional<double>

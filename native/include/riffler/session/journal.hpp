@@ -24,6 +24,7 @@ class Journal {
   void set_stock(const JournalStock& stock);
   /// `json`: the tool's dict as JSON text.
   void add_tool(int number, const std::string& json);
+  /// Adds a key/value note on the journal's origin.
   void add_note(std::string key, std::string value);
   /// Adds a stroke; undone strokes are discarded for good.
   void add_stroke(JournalStroke stroke);
@@ -51,6 +52,7 @@ class Journal {
   std::vector<JournalStroke> strokes_;  // the strokes that count come first
 };
 
+/// Options of to_program.
 struct JournalProgramOptions {
   std::optional<double> feed;  ///< mm/min; default: each row's feed follows from its times
   double spindle = 0;          ///< rev/min

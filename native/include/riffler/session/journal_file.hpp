@@ -25,8 +25,10 @@ namespace riffler::session {
 /// journal, another version, a damaged record followed by others, a record with invalid content. Anything else after
 /// the last complete record is the tail left by a crash: Journal::cut_at gives its offset.
 Journal parse_journal(std::span<const std::uint8_t> bytes, const std::string& name, const Progress& progress = {});
+/// As parse_journal, for a file. Throws FormatError if it cannot be read.
 Journal read_journal(const std::filesystem::path& path, const Progress& progress = {});
 
+/// The bytes of a journal file.
 std::vector<std::uint8_t> to_bytes(const Journal& journal);
 /// Writes the file atomically, under a temporary name that is then renamed.
 void write_journal(const Journal& journal, const std::filesystem::path& path);

@@ -59,6 +59,7 @@ struct JournalStroke {
   double strength = 0.5;  ///< 0 … 1, for Soften
 
   JournalRows rows() const { return {poses, times, forces, removed}; }
+  /// Appends rows with the same columns.
   void append(const JournalRows& rows);
 };
 

@@ -10,6 +10,7 @@
 
 namespace riffler::session {
 
+/// A StrokeSink that writes to a JournalWriter through a ring buffer and a thread of its own.
 class JournalSink final : public StrokeSink {
  public:
   /// Records strokes made with tool number `tool`, which must be in the journal of `writer`, carved with `tolerance`

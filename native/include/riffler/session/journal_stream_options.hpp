@@ -7,6 +7,7 @@
 
 namespace riffler::session {
 
+/// Ring size and timing of the stream.
 struct JournalStreamOptions {
   std::size_t rows = 1 << 16;            ///< capacity of the ring, 128 bytes per row: 65 s at 1000 Hz
   double drain = 0.05;                   ///< s between two reads of the ring

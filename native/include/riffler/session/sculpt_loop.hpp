@@ -22,6 +22,7 @@
 
 namespace riffler::session {
 
+/// Settings of a sculpting loop, by component.
 struct SculptLoopSettings {
   haptics::SculptSettings sculpt;  ///< must have one part, since one pose is recorded per tick
   sweep::MoveCarver::Options carving;

@@ -12,6 +12,7 @@
 
 namespace riffler::session {
 
+/// Settings of a session.
 struct SessionSettings {
   SculptLoopSettings loop{};
   /// Pose of the tool at the start, independent of the hand's. Default: the hand's pose for devices in the part frame
@@ -55,8 +56,10 @@ class Session {
   /// Starts sculpting, in the device's own thread, or in a thread that polls the device a thousand times a second. Call
   /// it once.
   void start();
+  /// Whether the session was started and not stopped.
   bool running() const noexcept;
-  /// Stops the device and brings `shown` up to date. Does nothing if not running. If `shown` was changed by something
+  /// Stops the device and brings `shown` up to date. If it is not running, only returns
+  /// what earlier calls left. If `shown` was changed by something
   /// else, throws as frame(), but the session has stopped all the same, and the next call returns its last ticks.
   SessionFrame stop(Volume& shown);
 

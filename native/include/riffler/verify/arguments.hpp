@@ -24,6 +24,7 @@ struct MachineChoice {
   Vec3 shift{0};
 };
 
+/// Tolerances and the optional machine of a verification.
 struct VerifyOptions {
   double tolerance = 0.01;               ///< mm: as CarveOptions::tolerance; contact less deep than this is ignored
   double gouge_tolerance = 0.05;         ///< mm below the part's surface

@@ -58,6 +58,7 @@ struct Finding {
   }
 };
 
+/// Findings and measurements of a verification.
 struct VerifyReport {
   std::vector<Finding> findings;         ///< in row order
   std::vector<std::string> not_checked;  ///< checks not requested, and notes of the NC reader

@@ -8,6 +8,7 @@
 
 namespace riffler::nc {
 
+/// Options of parse_nc, read_nc and NcStream.
 struct ReadOptions {
   std::string machine = "tcp";  ///< name from machines(): defines axis words and language
   /// Options of the machine, and of the reader:

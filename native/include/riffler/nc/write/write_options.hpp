@@ -10,6 +10,7 @@
 
 namespace riffler::nc {
 
+/// Options of to_nc and write_nc.
 struct WriteOptions {
   std::string post = "tcp";         ///< name from machines(), or path of a machine description
   double tolerance = 0.01;          ///< mm, distance of the tip from the line between two rows; at least 2e-5
@@ -25,6 +26,7 @@ struct PolePassage {
   double slowed;        ///< largest ratio of a block's time to the time at its feed; 1: not slowed
 };
 
+/// Blocks, slowed blocks, retracts and pole passages of a written program.
 struct WriteReport {
   std::size_t blocks = 0;            ///< blocks with a motion
   std::size_t slowed = 0;            ///< blocks slowed by the rate limit of an axis

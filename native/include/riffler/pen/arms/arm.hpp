@@ -8,6 +8,7 @@
 
 namespace riffler::pen {
 
+/// Position and Jacobian of an arm's end.
 struct ArmPosture {
   Vec3 end{0};       // base frame, mm
   Mat3 jacobian{1};  // mm per rad: column j is the motion of the end per joint j
@@ -27,6 +28,7 @@ inline Vec3 joint_torques(const ArmPosture& posture, const Vec3& force) noexcept
 /// Equals det J / (L1 L2 (L1 + L2)) up to the sign of the joint order.
 double arm_dexterity(const ArmLinks& links, const Vec3& angles) noexcept;
 
+/// The result of inverse kinematics for one arm.
 enum class ReachResult : unsigned char {
   Reached,
   TooFar,     // further away than the straight arm
@@ -36,6 +38,7 @@ enum class ReachResult : unsigned char {
   Limits,     // a solution exists but exceeds the joint limits
 };
 
+/// Joint angles for a point, and whether the arm reaches it.
 struct ArmInverse {
   Vec3 angles{0};  // rad; of the nearest reachable point if `end` is out of reach
   ReachResult reach = ReachResult::NotFinite;

@@ -54,6 +54,7 @@ struct Converter {
   int highest() const { return (1 << (bits - 1)) - 1; }
 };
 
+/// A pen of two arms with three joints each, and a grip between the arms' ends.
 struct PenGeometry {
   std::string name, description;
   Mat3 turn{1};    // A of (2.3): rotation from the base frame to the pose frame

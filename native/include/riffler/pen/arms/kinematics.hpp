@@ -18,6 +18,7 @@ using JointAngles = std::array<Vec3, 2>;                       // θ1 θ2 θ3 of
 /// The angle in (−π, π] that equals `angle` up to whole turns.
 double within_a_turn(double angle) noexcept;
 
+/// The posture of the pen at given joint angles.
 struct PenPosture {
   JointAngles angles{};
   std::array<ArmPosture, 2> arms{};  // base frame
@@ -28,17 +29,20 @@ struct PenPosture {
   Pose pose{};
 };
 
+/// The grip's motion at given joint rates.
 struct PenSpeed {
   Twist twist{};  // of the grip about its pivot, pose frame; rotation about its own axis is not measured by the arms
   double stretch = 0;  // mm/s: rate of the grip's length; 0 for a rigid grip
 };
 
+/// Joint angles for a pose, and whether both arms reach it.
 struct PenInverse {
   JointAngles angles{};
   std::array<ReachResult, 2> reach{ReachResult::NotFinite, ReachResult::NotFinite};  // R, L
   bool reached() const { return reach[0] == ReachResult::Reached && reach[1] == ReachResult::Reached; }
 };
 
+/// Forward and inverse kinematics of a pen, with the homing of its counters.
 class PenKinematics {
  public:
   explicit PenKinematics(const PenGeometry& geometry);
@@ -63,8 +67,10 @@ class PenKinematics {
   /// The nearest count for a rotation of the grip (rad).
   std::int32_t probe_count(double angle) const noexcept;
 
+  /// The posture at joint angles (rad), or at raw counts.
   PenPosture posture(const JointAngles& angles) const noexcept;
   PenPosture posture(const EncoderCounts& raw) const noexcept { return posture(angles(raw)); }
+  /// The grip's motion in a posture at joint rates (rad/s).
   PenSpeed speed(const PenPosture& posture, const JointAngles& rates) const noexcept;
 
   /// Joint angles that bring the grip's middle and direction to `pose` (pose frame, unit axis), or which arm cannot

@@ -20,6 +20,7 @@ JointAngles joint_torques(const PenGeometry& pen, const MotorTorques& motor_torq
 /// bears (within the peaks). 0 if a torque is not finite.
 double scale_to_peaks(const PenGeometry& pen, const MotorTorques& torques, const MotorTorques& first = {}) noexcept;
 
+/// Commands for all motors, in the device's order.
 struct MotorCommands {
   std::array<std::int16_t, kPenChannels> values{};
   /// Common factor that keeps every motor within its peak; the wrench keeps its direction. 0 if a torque is not finite;

@@ -16,6 +16,7 @@ struct HidInfo {
   int interface = -1;
   std::vector<std::pair<std::uint16_t, std::uint16_t>> usages;  // page and usage of every top-level collection
 
+  /// Whether a top-level collection has this usage.
   bool has_usage(std::uint16_t page, std::uint16_t usage) const;
   /// Vendor and product, for example "256f:c635".
   std::string id() const;
@@ -32,6 +33,7 @@ struct HidAddress {
   std::string serial;
   int interface = -1;
 
+  /// The address of a listed device.
   static HidAddress of(const HidInfo& info);
 };
 

@@ -6,6 +6,7 @@
 
 namespace riffler::pen {
 
+/// Why a device did not open.
 enum class OpenProblem : unsigned char {
   None,
   NoFile,           // no such path, or nothing is plugged in

@@ -7,6 +7,7 @@
 
 namespace riffler::pen {
 
+/// Response of a puck.
 struct RateSettings {
   double bubble = 0.08;    ///< dead zone as a fraction of full deflection, over all three directions together
   double exponent = 2;     ///< exponent of the response from the edge of the bubble to full deflection; 1: linear
@@ -25,6 +26,7 @@ struct RateSettings {
 /// zero in the bubble. NaN counts as rest.
 Vec3 shaped(const Vec3& deflection, double bubble, double exponent) noexcept;
 
+/// Integrates the deflections of a puck to a pose.
 class RateControl {
  public:
   /// Throws std::invalid_argument for invalid settings.
