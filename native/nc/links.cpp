@@ -110,7 +110,7 @@ Link LinkFinder::find(const Pose& pose) const {
     way = {end, above(end)};
   }
   way.insert(way.begin(), pose);
-  throw std::invalid_argument(met(way) + ", and so it does on every other way out that was tried: " + kRemedy);
+  throw std::invalid_argument(met(way) + ", and the same on every other path out: " + kRemedy);
 }
 
 /// A move along `direction`, then straight up, or sideways and then up.

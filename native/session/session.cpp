@@ -178,7 +178,7 @@ SessionFrame Session::Core::stop(Volume& shown) {
 }
 
 SessionFrame Session::Core::frame(Volume& shown) {
-  if (state_ != State::Running) throw std::runtime_error("the session does not run");
+  if (state_ != State::Running) throw std::runtime_error("the session is not running");
   home_.check("the session");
   SessionFrame frame = std::exchange(kept_, {});
   look(shown, frame);
@@ -231,7 +231,7 @@ std::size_t Session::Core::redo(Volume& shown) {
 /// Moves one moment forward or back.
 std::size_t Session::Core::go_to(Volume& shown, int step, const char* what) {
   SessionFrame frame;
-  if (state_ != State::Running) throw std::runtime_error("the session does not run");
+  if (state_ != State::Running) throw std::runtime_error("the session is not running");
   home_.check("the session");
   look(shown, frame);
   if (frame.in_stroke) throw std::runtime_error(std::string("nothing can be ") + what + " in the middle of a stroke");

@@ -374,7 +374,7 @@ class AptReader {
     if (!(glm::dot(axis_, to.axis) > -1 + 1e-12)) place_.fail("the tool's axis turns to its opposite");
     const Motion turning({from, axis_}, to);
     const int chords = round.chords(chord_tolerance_);
-    if (chords > kMaxChords) place_.fail("an arc of too many chords");
+    if (chords > kMaxChords) place_.fail("an arc with too many chords");
     for (int i = 1; i <= chords; ++i) {
       const double t = static_cast<double>(i) / chords;
       const Vec2 p = round.at(t);

@@ -14,7 +14,8 @@ namespace {
 
 [[noreturn]] void fail_miss(double miss) {
   char text[128];
-  std::snprintf(text, sizeof text, "the arc's end misses its circle by %.4f mm: option arc_tolerance takes more", miss);
+  std::snprintf(text, sizeof text, "the arc's end misses its circle by %.4f mm: option arc_tolerance allows more",
+                miss);
   throw std::invalid_argument(text);
 }
 

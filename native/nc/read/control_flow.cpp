@@ -78,7 +78,7 @@ void NcControlFlow::turn() {
 }
 
 void NcControlFlow::expect_end(NcCursor& cursor) {
-  if (cursor.peek() != '\0') place_.fail("text after an O-word: it has a line of its own");
+  if (cursor.peek() != '\0') place_.fail("text after an O-word: an O-word must be alone on its line");
 }
 
 double NcControlFlow::condition(NcCursor& cursor) {
@@ -197,7 +197,7 @@ std::pair<NcControlFlow::File*, NcSource::Mark> NcControlFlow::find(const std::s
 
 void NcControlFlow::call(const std::string& label, const std::vector<double>& arguments) {
   turn();
-  if (frames_.size() > kDeepestCall) place_.fail("calls within more than 10 calls");
+  if (frames_.size() > kDeepestCall) place_.fail("calls nested more than 10 deep");
   const auto [file, mark] = find(label, false);
   Frame frame{file, label, false, 1, mark, frames_.back().file->source->mark()};
   parameters_.enter(arguments);
@@ -216,7 +216,7 @@ void NcControlFlow::leave(std::optional<double> value) {
 
 void NcControlFlow::call_subprogram(int number, int repeats) {
   turn();
-  if (frames_.size() > kDeepestCall) place_.fail("calls within more than 10 calls");
+  if (frames_.size() > kDeepestCall) place_.fail("calls nested more than 10 deep");
   if (repeats == 0) return;
   const std::string label = std::to_string(number);
   const auto [file, mark] = find(label, true);

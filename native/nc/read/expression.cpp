@@ -85,7 +85,7 @@ class Evaluator {
   /// Tracks the recursion depth.
   struct Deeper {
     explicit Deeper(Evaluator& evaluator) : e(evaluator) {
-      if (++e.depth_ > kDeepest) e.cursor_.fail("brackets within more than 100 brackets");
+      if (++e.depth_ > kDeepest) e.cursor_.fail("brackets nested more than 100 deep");
     }
     Deeper(const Deeper&) = delete;
     Deeper& operator=(const Deeper&) = delete;
@@ -190,7 +190,7 @@ class Evaluator {
   }
 
   double exists() {
-    if (!cursor_.take_if('#') || !cursor_.take_if('<')) cursor_.fail("EXISTS asks for a name: EXISTS[#<name>]");
+    if (!cursor_.take_if('#') || !cursor_.take_if('<')) cursor_.fail("EXISTS needs a name: EXISTS[#<name>]");
     const std::string name = cursor_.name();
     if (!cursor_.take_if(']')) cursor_.fail("an expression that is not closed by ]");
     return parameters_.exists(name) ? 1 : 0;

@@ -191,7 +191,7 @@ void HeidenhainInterpreter::round_rows(const Vec3& from, const Vec3& to, const A
                                        const std::pair<Joints, Joints>& rotary, const NcRowWords& words) {
   const auto [u, v] = plane;
   const int chords = arc.chords(rows_->chord_tolerance());
-  if (chords > kMaxChords) place_.fail("an arc of too many chords");
+  if (chords > kMaxChords) place_.fail("an arc with too many chords");
   const int x = static_cast<int>(u), y = static_cast<int>(v), w = 3 - x - y;
   rows_->curve(
       in_part(from, rotary.first), chords, std::hypot(arc.length(), to[w] - from[w]),

@@ -247,7 +247,7 @@ void HeidenhainInterpreter::fail_tilted() const {
     return out;
   };
   if (plane_joints_)
-    place_.fail("the rotary axes stand at " + shown(rotary_) + ", the tilted plane asks for " + shown(*plane_joints_) +
+    place_.fail("the rotary axes stand at " + shown(rotary_) + ", the tilted plane needs " + shown(*plane_joints_) +
                 ": turn them there (by Q120 to Q122, or PLANE with TURN), or read it with the machine that the program "
                 "is for");
   place_.fail("a feed move with the rotary axes at " + shown(rotary_) +

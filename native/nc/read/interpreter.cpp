@@ -102,7 +102,7 @@ bool NcInterpreter::ended(std::string_view line) {
   if (NcControlFlow::begins_subroutine(line)) return true;
   NcCursor cursor(line, place_);
   if (!executes(cursor)) return false;
-  note("end", "what follows the end of the program is not read");
+  note("end", "text after the end of the program is not read");
   return true;
 }
 

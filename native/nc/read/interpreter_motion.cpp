@@ -184,7 +184,7 @@ Arc NcInterpreter::arc_of_words(const Joints& to, bool clockwise) {
   }
   if (words_->has('P')) {
     const int turns = words_->whole('P');
-    if (turns < 1) place_.fail("P of an arc is its turns: 1 at least");
+    if (turns < 1) place_.fail("P of an arc is its number of turns: at least 1");
     arc = arc.with_turns(turns);
   }
   return arc;
@@ -244,7 +244,7 @@ void NcInterpreter::spline_to(const Joints& to, int code) {
   // that.
   const double bend = 6 * std::max(glm::length(a - 2.0 * b + c), glm::length(b - 2.0 * c + d));
   const double parts = std::max(1.0, std::ceil(std::sqrt(bend / (8 * rows_->chord_tolerance()))));
-  if (parts > kMaxChords) place_.fail("a spline of too many chords");
+  if (parts > kMaxChords) place_.fail("a spline with too many chords");
   const auto point = [&](double t) {
     const double s = 1 - t;
     return s * s * s * a + 3 * s * s * t * b + 3 * s * t * t * c + t * t * t * d;
@@ -295,14 +295,14 @@ void NcInterpreter::take_cycle_words(int code) {
 
 void NcInterpreter::drill_at(int code) {
   refuse_in_compensation("a canned cycle");
-  if (modes_.feed_mode == 930) place_.fail("canned cycles know no inverse time (G93)");
+  if (modes_.feed_mode == 930) place_.fail("canned cycles do not support inverse time (G93)");
   for (const char letter : {'A', 'B', 'C'})
     if (words_->has(letter)) place_.fail("rotary axes do not turn in canned cycles");
   if (code == 860 && modes_.turning == 0) place_.fail("G86 needs a spindle that turns (M3, M4)");
   const auto [u, v, w] = modes_.plane;
   take_cycle_words(code);
   const int repeats = words_->has('L') ? words_->whole('L') : 1;
-  if (repeats < 1) place_.fail("L must be 1 at least");
+  if (repeats < 1) place_.fail("L must be at least 1");
   const double retract = cycle_.retract + (modes_.absolute ? 0 : cycle_.level);
   const double bottom = cycle_.bottom + (modes_.absolute ? 0 : retract);
   if (retract < bottom) place_.fail("the canned cycle's R is below its depth");

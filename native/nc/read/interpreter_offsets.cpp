@@ -161,8 +161,8 @@ std::optional<double> NcInterpreter::predefined(int number) const {
     if (number < 5420) return 0;
     const int k = number - 5420;
     if (k > 5) return 0;
-    if (stand_[static_cast<std::size_t>(k)] == Stand::Machine) check_stands_in_part("a position is asked for");
-    refuse_in_compensation("a position is asked for");
+    if (stand_[static_cast<std::size_t>(k)] == Stand::Machine) check_stands_in_part("a position is read");
+    refuse_in_compensation("a position is read");
     return at_[static_cast<std::size_t>(k)] / (k < 3 ? modes_.unit : 1);
   }
   return std::nullopt;
@@ -173,8 +173,8 @@ std::optional<double> NcInterpreter::predefined(std::string_view name) const {
   const Modes& m = modes_;
   if (name.size() == 2) {
     const std::size_t k = std::string_view("xyzabc").find(name[1]);
-    if (k != std::string_view::npos && stand_[k] == Stand::Machine) check_stands_in_part("a position is asked for");
-    if (k != std::string_view::npos) refuse_in_compensation("a position is asked for");
+    if (k != std::string_view::npos && stand_[k] == Stand::Machine) check_stands_in_part("a position is read");
+    if (k != std::string_view::npos) refuse_in_compensation("a position is read");
     if (k != std::string_view::npos) return at_[k] / (k < 3 ? m.unit : 1);
     return name[1] >= 'u' && name[1] <= 'w' ? std::optional(0.0) : std::nullopt;
   }

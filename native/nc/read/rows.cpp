@@ -207,7 +207,7 @@ bool NcRows::is_great_circle(const Joints& to) const {
 void NcRows::arc(const Joints& from, const Joints& to, const Arc& arc, std::size_t u, std::size_t v,
                  const NcRowWords& words) {
   const int chords = arc.chords(chord_tolerance_);
-  if (chords > kMaxChords) place_.fail("an arc of too many chords");
+  if (chords > kMaxChords) place_.fail("an arc with too many chords");
   const std::size_t w = 3 - u - v;
   curve(
       from, chords, std::hypot(arc.length(), to[w] - from[w]),

@@ -101,7 +101,7 @@ void SinumerikInterpreter::arc_to(const Vec3& to, const Arc& arc, const NcRowWor
   check_length(to);
   moves_in_part(words);
   const int chords = arc.chords(rows_->chord_tolerance());
-  if (chords > kMaxChords) place_.fail("an arc of too many chords");
+  if (chords > kMaxChords) place_.fail("an arc with too many chords");
   const int u = static_cast<int>(plane_[0]), v = static_cast<int>(plane_[1]), w = static_cast<int>(plane_[2]);
   const Vec3 from = at_;
   rows_->curve(
@@ -148,7 +148,7 @@ void SinumerikInterpreter::arc_through(const SinumerikWords& words) {
   const Arc arc{Vec2(0), radius, radius, 0, sweep};
   moves_in_part(row);
   const int chords = arc.chords(rows_->chord_tolerance());
-  if (chords > kMaxChords) place_.fail("an arc of too many chords");
+  if (chords > kMaxChords) place_.fail("an arc with too many chords");
   rows_->curve(
       in_part(from, rotary_), chords, arc.length(),
       [&](double t) {

@@ -175,7 +175,7 @@ class SinumerikHole {
     const double thread = std::abs(number(size));
     if (thread == 0) return out;
     const auto found = std::ranges::find(kThreads, thread, &Thread::size);
-    if (found == std::end(kThreads)) fail("MPIT, the thread's size, is none of M3 to M48: write PIT, its pitch");
+    if (found == std::end(kThreads)) fail("MPIT, the thread's size, is not one of M3 to M48: write PIT, its pitch");
     if (out != 0 && std::abs(std::abs(out) - found->pitch) > 1e-6) fail("MPIT and PIT are of different threads");
     return std::copysign(found->pitch, number(size));
   }

@@ -79,7 +79,7 @@ void SinumerikInterpreter::drill(int number, const Arguments& given) {
   if (!keeps_tip_ && !is_upright()) fail_tilted();
   if (plane_[2] == 2 && geom::angle_between(rows_->machine().pose(rotary_).axis, frame_.turn[2]) > kAlong)
     place_.fail("a drilling cycle whose hole is not along the tool: have the CAM system write its moves");
-  if (feed_mode_ == 93) place_.fail("drilling cycles know no inverse time (G93)");
+  if (feed_mode_ == 93) place_.fail("drilling cycles do not support inverse time (G93)");
   const double feed = feed_mode_ == 95 ? feed_ * (surface_speed_ ? 0 : speed_) : feed_;
   if (!(feed <= kMaxFeed)) place_.fail("F is out of range");
   const SinumerikCycleSetting setting{unit_, feed_mode_ == 95 ? unit_ * speed_ : feed_unit_, feed, speed_, turning_};
@@ -107,7 +107,7 @@ void SinumerikInterpreter::holes(const std::string& word, const Arguments& given
     if (!(std::abs(of(k)) <= kMaxLength)) place_.fail("a number of " + word + " is out of range");
   const double count = of(5);
   if (!(count >= 1 && count <= kMaxHoles && count == std::floor(count)))
-    place_.fail("NUM, the number of holes of " + word + ", must be a whole number, 1 at least");
+    place_.fail("NUM, the number of holes of " + word + ", must be a whole number of at least 1");
   const Vec2 origin = unit_ * Vec2(of(0), of(1));
   const int number = static_cast<int>(count);
   if (word == "HOLES1") {

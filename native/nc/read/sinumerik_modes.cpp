@@ -138,7 +138,7 @@ void SinumerikInterpreter::take_units(int code) {
   if (code < 700 && unit_ != basic_unit_ && !units_given_)
     note_once(-11, "units",
               std::string("G") + std::to_string(code) +
-                  " is of lengths, not of F, which is in the control's own unit: taken as mm; option units says it");
+                  " is of lengths, not of F, which is in the control's own unit: assumed to be mm; set option units");
 }
 
 void SinumerikInterpreter::take_feed(const SinumerikWords& words) {

@@ -84,7 +84,7 @@ class Parser {
         now_.count = value;
         return;
       case kReportId:
-        if (value == 0 || value > 255) fail("numbers of reports are 1 to 255");
+        if (value == 0 || value > 255) fail("report numbers must be 1 to 255");
         now_.id = value;
         out_.numbered = true;
         return;
@@ -93,7 +93,7 @@ class Parser {
         stack_.push_back(now_);
         return;
       case kPop:
-        if (stack_.empty()) fail("pops what was not pushed");
+        if (stack_.empty()) fail("pops more than it pushes");
         now_ = stack_.back();
         stack_.pop_back();
         return;

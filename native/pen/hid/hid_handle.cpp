@@ -75,7 +75,7 @@ std::string explain(const HidInfo& info, OpenProblem problem, int error) {
     case OpenProblem::Forbidden:
       return at + "the system forbids it (a container or a sandbox that was not given the device?)";
     case OpenProblem::Busy:
-      return at + "busy, another program drives it; end that one first";
+      return at + "in use by another program; close that program first";
     case OpenProblem::Unplugged:
       return at + "it was unplugged";
     case OpenProblem::NoFile:
@@ -187,7 +187,7 @@ const char* problem_text(OpenProblem problem) noexcept {
     case OpenProblem::WrongDescriptor:
       return "wrong report descriptor";
     case OpenProblem::OtherVersion:
-      return "other version of the protocol";
+      return "other protocol version";
     case OpenProblem::NoAnswer:
       return "no answer";
     case OpenProblem::BadContent:
@@ -195,7 +195,7 @@ const char* problem_text(OpenProblem problem) noexcept {
     case OpenProblem::Other:
       break;
   }
-  return "error of the system";
+  return "system error";
 }
 
 }  // namespace riffler::pen

@@ -30,8 +30,8 @@ std::span<const std::uint8_t> feature(Transport& transport, std::uint8_t id, std
   bytes[0] = id;
   const int n = transport.get_feature(bytes);
   if (n < 0)
-    throw OpenError(OpenProblem::NoAnswer,
-                    "the pen does not give feature report " + std::to_string(id) + "; unplug it and plug it in again");
+    throw OpenError(OpenProblem::NoAnswer, "the pen does not provide feature report " + std::to_string(id) +
+                                               "; unplug it and plug it in again");
   return std::span(bytes).first(std::min(static_cast<std::size_t>(n), N));
 }
 
@@ -52,7 +52,7 @@ riffler_pen_identity ask_identity(Transport& transport) {
                     std::string("not a Riffler pen: its identity report: ") + riffler_pen_result_text(result));
   if (result != RIFFLER_PEN_OK)
     throw OpenError(OpenProblem::BadContent,
-                    std::string("the pen's identity report cannot be: ") + riffler_pen_result_text(result));
+                    std::string("the pen's identity report is invalid: ") + riffler_pen_result_text(result));
   return identity;
 }
 
@@ -63,7 +63,7 @@ riffler_pen_limits ask_limits(Transport& transport) {
   const riffler_pen_result result = riffler_pen_decode_limits(report.data(), report.size(), &limits);
   if (result != RIFFLER_PEN_OK)
     throw OpenError(OpenProblem::BadContent,
-                    std::string("the pen's limits cannot be: ") + riffler_pen_result_text(result));
+                    std::string("the pen's limits are invalid: ") + riffler_pen_result_text(result));
   return limits;
 }
 
@@ -74,14 +74,14 @@ void check_descriptor(std::span<const std::uint8_t> bytes) {
   throw OpenError(OpenProblem::WrongDescriptor,
                   "the pen's report descriptor differs from that of its protocol at byte " +
                       std::to_string(a - bytes.begin()) + " (it has " + std::to_string(bytes.size()) + " bytes, of " +
-                      std::to_string(ours.size()) + "); its firmware was built from other files than it says");
+                      std::to_string(ours.size()) + "); its firmware was built from other files than it states");
 }
 
 PenGeometry geometry_of(const riffler_pen_identity& identity, const riffler_pen_limits& limits) {
   try {
     // A name in Riffler's own folder, never a path chosen by the device.
     if (std::string_view(identity.geometry).find_first_of("/\\") != std::string_view::npos)
-      throw std::invalid_argument("the name of a geometry has no folders");
+      throw std::invalid_argument("the name of a geometry must not contain a folder");
     PenGeometry geometry = load_pen(identity.geometry);
     for (std::size_t k = 0; k < kPenChannels; ++k) {
       PenChannel& channel = geometry.channels[k];
@@ -91,7 +91,7 @@ PenGeometry geometry_of(const riffler_pen_identity& identity, const riffler_pen_
     return geometry;
   } catch (const std::exception& error) {
     throw OpenError(OpenProblem::BadContent,
-                    std::string("the pen says that its geometry is \"") + identity.geometry + "\": " + error.what());
+                    std::string("the pen names the geometry \"") + identity.geometry + "\": " + error.what());
   }
 }
 
