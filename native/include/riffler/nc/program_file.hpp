@@ -14,8 +14,8 @@
 // - one "via " per row with via poses, in ascending order; number: row; payload: count u32, then tip and axis of each
 //   pose (6 × f64).
 // - "rows", with at most kChunkRows rows each; number: count of rows; payload: columns (base/planes.hpp) of tip and
-// axis
-//   x y z, feed and spindle (bits of doubles, u64), tool and line (u32), flags (u16): 1 for a rapid, 2 for at_machine.
+//   axis x y z, feed and spindle (bits of doubles, u64), tool and line (u32), flags (u16): 1 for a rapid, 2 for
+//   at_machine.
 #pragma once
 
 #include <cstdint>
