@@ -33,10 +33,9 @@ class SweptSearch {
     std::uint32_t half;  // index of the first half interval; 0: not split yet
   };
   struct Entry {
-    double low, radius,
-        drifts;           // bound and radius of its sphere; how much nearer the tool may come in half the interval
-    double distance;      // of the sphere's centre at the middle of the interval
-    std::uint32_t index;  // index of a group, or place of a triangle
+    double low, radius, drifts;  // of its sphere; the last: how much nearer the tool may come in half the interval
+    double distance;             // of the sphere's centre at the middle of the interval
+    std::uint32_t index;         // index of a group, or place of a triangle
     std::uint32_t stretch;
     std::uint16_t surface;
     enum Kind : std::uint16_t { Group, Triangle } kind;

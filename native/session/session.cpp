@@ -213,8 +213,7 @@ void Session::Core::look(Volume& shown, SessionFrame& frame) {
   take_ticks(frame);
   frame.strokes = mark.strokes, frame.in_stroke = mark.in_stroke;
   if (mark.in_stroke || mark.strokes == strokes_) return;
-  moments_.erase(moments_.begin() + static_cast<std::ptrdiff_t>(here_) + 1,
-                 moments_.end());  // a new stroke discards the redo history
+  moments_.erase(moments_.begin() + static_cast<std::ptrdiff_t>(here_) + 1, moments_.end());  // ends redo
   moments_.push_back({mark.strokes - std::exchange(strokes_, mark.strokes), shown, left_});
   if (moments_.size() > settings_.undo + 1) moments_.erase(moments_.begin());
   here_ = moments_.size() - 1;

@@ -21,8 +21,7 @@ struct SculptSettings {
   double settled = 1e-3;           ///< mm: no further query for a pose that the last one changed by less
   Bounds rest{0.02, 2e-3};         ///< mm, rad: largest move from rest per part while the grip stands still
   Bounds most{2, 0.2};             ///< mm, rad: largest move of the tool per step
-  double missed =
-      0.05;  ///< mm: allowed missed_depth_bound of a query, a tenth always; beyond it the tool does not move
+  double missed = 0.05;  ///< mm: allowed missed_depth_bound of a query, a tenth always; else the tool does not move
   std::optional<double> budget{};  ///< s for a step; without a budget steps are deterministic
 
   /// Throws std::invalid_argument naming the field.

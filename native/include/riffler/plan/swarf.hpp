@@ -13,10 +13,9 @@ namespace riffler::plan {
 
 /// Options of swarf.
 struct SwarfOptions {
-  int side = 0;  ///< index of the path's contact that lies on the wall: 0 or 1
-  std::optional<double>
-      height;  ///< mm, from the ball's centre: largest height of the wall; default: up to the end of flank or wall
-  double tolerance = 0.05;  ///< largest distance between flank and wall, mm
+  int side = 0;                  ///< index of the path's contact that lies on the wall: 0 or 1
+  std::optional<double> height;  ///< mm, wall height from the ball's centre; default: to the end of flank or wall
+  double tolerance = 0.05;       ///< largest distance between flank and wall, mm
 };
 
 /// A wall to be cut by the flank.
