@@ -1,11 +1,11 @@
-/* From the host's command to the motors' currents: limits, ramp, age, rate. Integers throughout; each product says why
- * it fits. */
+/* From the host's command to motor currents: limits, ramp, age, rate. Integers throughout; each product states
+ * why it fits. */
 #include "pen_firmware.h"
 
-/* Bits behind the point of heat_q12. */
+/* Fraction bits of heat_q12. */
 enum { HEAT_BITS = 12 };
-/* Heat is brought forward by at least so many µs at once, or rounding would eat what a short step adds, and by no more
- * than a second. */
+/* Shortest span by which heat is advanced at once, or rounding would lose what short steps add; and the longest,
+ * a second. */
 static const uint32_t kHeatStepUs = 1000, kHeatLongestUs = 1000000;
 
 static int32_t magnitude(int32_t value) {
@@ -13,13 +13,13 @@ static int32_t magnitude(int32_t value) {
 }
 
 int riffler_pen_limit_currents(int16_t* currents, const uint16_t* limits) {
-  /* The current that exceeds its limit by the greatest factor; compared crosswise, 2¹⁵ × 2¹⁶ < 2⁶³. */
+  /* The current that exceeds its limit by the largest factor; compared crosswise, 2¹⁵ × 2¹⁶ < 2⁶³. */
   size_t worst = 0;
   for (size_t k = 1; k < RIFFLER_PEN_JOINTS; ++k)
     if ((int64_t)magnitude(currents[k]) * limits[worst] > (int64_t)magnitude(currents[worst]) * limits[k]) worst = k;
   const int32_t limit = limits[worst], asked = magnitude(currents[worst]);
   if (asked <= limit) return 0;
-  /* Towards zero, so that no other current exceeds its own limit by rounding. */
+  /* Rounds towards zero, so that no other current exceeds its own limit. */
   for (size_t k = 0; k < RIFFLER_PEN_JOINTS; ++k) currents[k] = (int16_t)((int64_t)currents[k] * limit / asked);
   return 1;
 }
@@ -33,18 +33,19 @@ int riffler_pen_approach(int16_t* from, const int16_t* to, int32_t most) {
   const int stays_behind = farthest > most;
   for (size_t k = 0; k < RIFFLER_PEN_JOINTS; ++k) {
     const int32_t way = to[k] - from[k];
-    /* Between the two ends, so it fits 16 bits again. */
+    /* Lies between the two ends, so it fits 16 bits again. */
     from[k] = (int16_t)(from[k] + (stays_behind ? (int32_t)((int64_t)way * most / farthest) : way));
   }
   return stays_behind;
 }
 
-/* First-order model of the windings: their heat follows the square of the current with the configured time constant. */
+/* First-order thermal model of the windings: their heat follows the square of the current with the configured
+ * time constant. */
 void riffler_pen_warm(riffler_pen_firmware* pen, uint32_t elapsed_us) {
   const uint32_t span = elapsed_us < kHeatLongestUs ? elapsed_us : kHeatLongestUs;
   pen->energy_us += span;
   for (size_t k = 0; k < RIFFLER_PEN_JOINTS; ++k) {
-    /* What flowed since the last step: as measured, or as told where that is more. 2³⁰ × 2²¹. */
+    /* Current since the last step: the larger of the measured and the commanded one. 2³⁰ × 2²¹. */
     const int32_t measured = magnitude(pen->sensors.current_ma[k]), told = magnitude(pen->drive.current_ma[k]);
     const int64_t current = measured > told ? measured : told;
     pen->energy[k] += current * current * span;
@@ -60,8 +61,9 @@ void riffler_pen_warm(riffler_pen_firmware* pen, uint32_t elapsed_us) {
   pen->energy_us = 0;
 }
 
-/* Peak while a winding is below half of what the continuous current makes of it, from there straight down to the
- * continuous current: there heat and current meet and stay. 1 if any limit is below its peak. */
+/* Limits per motor: the peak while a winding is below half the heat of the continuous current, then falling
+ * linearly to the continuous current, where heat and current reach equilibrium. Returns 1 if any limit is below
+ * its peak. */
 static int fold_back(const riffler_pen_firmware* pen, uint16_t* limits) {
   int folds = 0;
   for (size_t k = 0; k < RIFFLER_PEN_JOINTS; ++k) {
@@ -88,7 +90,7 @@ void riffler_pen_push(riffler_pen_firmware* pen, uint32_t elapsed_us) {
   uint16_t limits[RIFFLER_PEN_JOINTS];
   for (size_t k = 0; k < RIFFLER_PEN_JOINTS; ++k) wanted[k] = pen->link.newest.commands[k];
 
-  /* Limits go first: a ramp on what is far above them would hardly be one. */
+  /* Limits come first: a ramp on a command far above them would have no effect. */
   if (fold_back(pen, limits)) pen->flags |= RIFFLER_PEN_FLAG_FOLDBACK;
   if (riffler_pen_limit_currents(wanted, limits)) pen->flags |= RIFFLER_PEN_FLAG_LIMITED;
   if (pen->state == RIFFLER_PEN_RAMP) scale(wanted, pen->ramp_us, bounds->ramp_us);
@@ -101,7 +103,8 @@ void riffler_pen_push(riffler_pen_firmware* pen, uint32_t elapsed_us) {
     scale(wanted, bounds->watchdog_us - pen->link.age_us, bounds->watchdog_us - bounds->stale_us);
   }
 
-  /* What the division leaves over counts in the next step, or short steps would never move. */
+  /* The remainder of the division carries over to the next step; otherwise short steps would never change
+   * anything. */
   const uint64_t rate = (uint64_t)bounds->rate_ma_per_ms * elapsed_us + pen->rate_rest;
   pen->rate_rest = (uint32_t)(rate % 1000);
   const int32_t most = rate / 1000 < UINT16_MAX ? (int32_t)(rate / 1000) : UINT16_MAX;

@@ -67,7 +67,8 @@ riffler_pen_result riffler_pen_receive(riffler_pen_firmware* pen, const uint8_t*
   riffler_pen_link* const link = &pen->link;
   riffler_pen_output report;
   riffler_pen_result result = riffler_pen_decode_output(bytes, size, &report);
-  /* A host that was gone for the watchdog's time may begin at any number; until then an old number is an old report. */
+  /* A host that was silent for the watchdog's time may start at any number; until then an old number means an old
+   * report. */
   if (result == RIFFLER_PEN_OK && link->alive && !riffler_pen_is_newer(report.sequence, link->newest.sequence))
     result = RIFFLER_PEN_OLD_SEQUENCE;
   if (result != RIFFLER_PEN_OK) {
@@ -115,7 +116,7 @@ size_t riffler_pen_feature(const riffler_pen_config* config, uint8_t id, uint8_t
 
 /* --- One step ----------------------------------------------------------------------------------------------------- */
 
-/* How old the newest report is, and whether one that enables would start the ramp. */
+/* Updates the age of the newest report, and whether an enabling one would start the ramp. */
 static void update_link(riffler_pen_firmware* pen, uint32_t elapsed_us) {
   riffler_pen_link* const link = &pen->link;
   link->age_us = link->taken ? 0 : add_saturating(link->age_us, elapsed_us);
@@ -135,12 +136,12 @@ static unsigned find_events(const riffler_pen_firmware* pen, const riffler_pen_s
   return events;
 }
 
-/* What changes with the state, and with it only. */
+/* Changes tied to a state transition, and only to that. */
 static void enter(riffler_pen_firmware* pen, riffler_pen_state next, riffler_pen_cause cause) {
   const riffler_pen_state last = pen->state;
   pen->state = next;
   if (next == last) return;
-  /* A pen that comes up under a host that enables already waits for it to disable. */
+  /* If the host already enables when the pen starts, the pen waits for it to disable first. */
   pen->link.armed = next == RIFFLER_PEN_IDLE && last != RIFFLER_PEN_BOOT;
   pen->ramp_us = pen->rate_rest = 0;
   if (!riffler_pen_pushes(next)) {
@@ -152,7 +153,7 @@ static void enter(riffler_pen_firmware* pen, riffler_pen_state next, riffler_pen
   if (next == RIFFLER_PEN_FAULT) ++pen->fault_count;
 }
 
-/* A bridge that may be broken is only switched off: to brake through it could short the supply. */
+/* A bridge that may be broken is only switched off: braking through it could short the supply. */
 static int brakes(uint8_t fault) {
   return fault != RIFFLER_PEN_DRIVER && fault != RIFFLER_PEN_OVER_CURRENT && fault != RIFFLER_PEN_DRIVE_MISMATCH;
 }

@@ -1,6 +1,6 @@
 #include "pen_board.h"
 
-/* Reports taken in one turn at most: a host that floods the pen does not keep it from its motors. */
+/* Largest number of reports per turn: a flooding host must not delay the motors. */
 enum { MOST_REPORTS = 8 };
 
 void riffler_pen_loop_start(riffler_pen_loop* loop, const riffler_pen_config* config, const riffler_pen_board* board) {
@@ -15,14 +15,15 @@ static void take_reports(riffler_pen_loop* loop) {
   for (int k = 0; k < MOST_REPORTS; ++k) {
     const size_t size = loop->board.receive(loop->board.context, bytes, sizeof bytes);
     if (size == 0) return;
-    /* A refused report is counted, and the host sees the count. A longer one than fits is refused for its length. */
+    /* Refused reports are counted, and the host sees the count. A report that is too long is refused for its
+     * length. */
     (void)riffler_pen_receive(&loop->pen, bytes, size);
   }
 }
 
 static void send_report(riffler_pen_loop* loop, uint32_t elapsed_us) {
   const uint32_t period = loop->pen.config.limits.period_us;
-  /* After a late turn the next report keeps to the beat, or begins a new one where a whole period was missed. */
+  /* After a late turn the next report keeps the rhythm, or starts a new one if a whole period was missed. */
   loop->since_report_us =
       loop->since_report_us > UINT32_MAX - elapsed_us ? UINT32_MAX : loop->since_report_us + elapsed_us;
   if (loop->since_report_us < period) return;

@@ -1,12 +1,13 @@
 #include "pen_firmware.h"
 
-/* Sensors of motor temperature read beyond these when their wires are shorted or open. */
+/* Temperature sensors read beyond these values if their wires are shorted or open. */
 enum { COLDEST_DC = -400, BROKEN_DC = 1500 };
-/* A motor that was too hot must cool by this before it may push again. */
+/* An overheated motor must cool by this before it may push again. */
 enum { COOLING_DC = 100 };
-/* Counts by which a joint at rest may flicker within a step, above what its speed allows. */
+/* Counts by which a joint at rest may flicker within a step, in addition to its speed limit. */
 enum { FLICKER_COUNTS = 8 };
-/* For which a joint whose force was eased to nothing may still not move: a hand takes about a tenth of a second. */
+/* How long a joint may stay still after its force was reduced to zero: a hand takes about a tenth of a second to
+ * move. */
 enum { ANSWER_US = 100000 };
 
 static const riffler_pen_cause kNone = {RIFFLER_PEN_NO_FAULT, RIFFLER_PEN_NO_JOINT};
@@ -33,12 +34,12 @@ static size_t first_joint(uint8_t bits) {
   return RIFFLER_PEN_NO_JOINT;
 }
 
-/* A joint that stands under force may be held by a quiet hand, and there its counter is right; or its encoder is dead,
- * and the force goes on whatever the hand does. Standing still is the same in both, and so is the current, which
- * follows from the counts. What tells them apart is an answer: the force is slowly eased, and a hand that held against
- * it moves, so that a count or two later all of the force comes back. A counter that has not moved when there is no
- * force left is dead, or the joint is at a stop. Heat is no reason to stop a joint that stands: windings are held to
- * their continuous current by pen_currents.c, moving or not. */
+/* A joint that stands still under force may be held by a quiet hand, and its counter is right; or its encoder is
+ * dead, and the force ignores the hand. Both look the same, and the current, which follows from the counts, is
+ * the same too. A response distinguishes them: the force is slowly reduced. A hand that held against it then
+ * moves, and a count or two later the full force returns. A counter that has not moved when the force is zero is
+ * dead, or the joint is at a stop. Heat is no reason to stop a motionless joint: pen_currents.c limits windings
+ * to their continuous current, moving or not. */
 static void ease(riffler_pen_firmware* pen, uint32_t elapsed_us) {
   int stands = 0;
   for (size_t k = 0; k < RIFFLER_PEN_JOINTS; ++k)
@@ -48,11 +49,11 @@ static void ease(riffler_pen_firmware* pen, uint32_t elapsed_us) {
   pen->eased_us = stands ? pen->eased_us + step : pen->eased_us - step;
 }
 
-/* What runs on in time, brought forward for every joint whatever is found: differences of current, joints at rest. */
+/* Advances the timers of every joint, even if a fault is found: current differences, joints at rest. */
 static void bring_forward(riffler_pen_firmware* pen, const riffler_pen_sensors* sensors, uint32_t elapsed_us) {
   for (size_t k = 0; k < RIFFLER_PEN_JOINTS; ++k) {
     const int32_t told = pen->drive.current_ma[k];
-    /* Shorted windings make a current of their own when the hand moves the pen. */
+    /* A hand that moves the pen induces a current in shorted windings. */
     const int differs = !pen->drive.brake && magnitude(sensors->current_ma[k] - told) > pen->config.mismatch_ma;
     pen->mismatched_us[k] = differs ? grown(pen->mismatched_us[k], elapsed_us) : 0;
     const int still = sensors->counters[k] == pen->sensors.counters[k];
@@ -106,7 +107,7 @@ static riffler_pen_cause find_pushing_cause(const riffler_pen_firmware* pen, uin
 riffler_pen_cause riffler_pen_find_cause(riffler_pen_firmware* pen, const riffler_pen_sensors* sensors,
                                          uint32_t elapsed_us) {
   bring_forward(pen, sensors, elapsed_us);
-  /* What only a restart mends. */
+  /* Faults that only a restart clears. */
   if (!pen->configured) return cause_of(RIFFLER_PEN_CONFIGURATION, RIFFLER_PEN_NO_JOINT);
   if ((unsigned)pen->state >= RIFFLER_PEN_STATES || pen->fault == RIFFLER_PEN_INTERNAL)
     return cause_of(RIFFLER_PEN_INTERNAL, RIFFLER_PEN_NO_JOINT);

@@ -1,10 +1,10 @@
-/* The HID report descriptor (Device Class Definition for HID 1.11, 6.2.2). Fields as the codec has them, so that any
- * HID tool shows a pen's values. All in one vendor collection: no system takes the pen for a mouse.
+/* The HID report descriptor (Device Class Definition for HID 1.11, 6.2.2). It describes every field of the codec,
+ * so that any HID tool can display a pen's values. Everything is in one vendor collection, so that no system
+ * takes the pen for a mouse.
  *
- * Two habits of report parsers shape it. Some read every maximum as signed, so that a 16-bit maximum of 65535 takes
- * four bytes, and 32 unsigned bits, whose maximum would read as −1, are described as four bytes. And a range once set
- * holds until it is set again, so each kind of field sets all of size, minimum and maximum.
- */
+ * Two properties of report parsers shape it. Some read every maximum as signed: a 16-bit maximum of 65535
+ * therefore takes four bytes, and 32 unsigned bits, whose maximum would read as −1, are described as four bytes.
+ * And a range stays in force until it is set again, so each kind of field sets size, minimum and maximum. */
 #include "pen_protocol.h"
 
 #define LOW(x) ((x) & 0xFF)
@@ -18,7 +18,7 @@
 #define UNSIGNED16 0x75, 16, 0x15, 0x00, 0x27, 0xFF, 0xFF, 0x00, 0x00
 #define SIGNED16 0x75, 16, 0x16, 0x00, 0x80, 0x26, 0xFF, 0x7F
 #define SIGNED32 0x75, 32, 0x17, 0x00, 0x00, 0x00, 0x80, 0x27, 0xFF, 0xFF, 0xFF, 0x7F
-/* Data, variable, absolute; constant for what is reserved. */
+/* Data, variable, absolute; constant for reserved fields. */
 #define INPUT 0x81, 0x02
 #define OUTPUT 0x91, 0x02
 #define FEATURE 0xB1, 0x02

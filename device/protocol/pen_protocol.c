@@ -2,7 +2,8 @@
 
 static const uint8_t kMagic[4] = {'R', 'P', 'e', 'n'};
 
-/* --- Bytes: least significant first. ------------------------------------------------------------------------------ */
+/* --- Bytes: least significant first
+ * ------------------------------------------------------------------------------- */
 
 static void put16(uint8_t* at, uint16_t value) {
   at[0] = (uint8_t)(value & 0xFFU);
@@ -22,7 +23,7 @@ static uint32_t get32(const uint8_t* at) {
   return (uint32_t)get16(at) | ((uint32_t)get16(at + 2) << 16);
 }
 
-/* Two's complement without a conversion that C11 leaves to the compiler (6.3.1.3). */
+/* Two's complement without the implementation-defined conversion of C11 (6.3.1.3). */
 static int32_t to_signed32(uint32_t bits) {
   return bits <= (uint32_t)INT32_MAX ? (int32_t)bits : (int32_t)(bits - 0x80000000U) + INT32_MIN;
 }
@@ -39,7 +40,7 @@ static void get_currents(const uint8_t* at, int16_t* currents) {
   for (size_t k = 0; k < RIFFLER_PEN_JOINTS; ++k) currents[k] = to_signed16(get16(at + 2 * k));
 }
 
-/* A name fills its field from the left; what is left over is 0. */
+/* A name starts at the beginning of its field; the rest is 0. */
 static void put_name(uint8_t* at, const char* name, size_t chars) {
   size_t k = 0;
   for (; k < chars && name[k] != '\0'; ++k) at[k] = (uint8_t)name[k];
@@ -82,7 +83,7 @@ void riffler_pen_encode_input(const riffler_pen_input* report, uint8_t* bytes) {
   put32(bytes + RIFFLER_PEN_INPUT_ECHO_TIME, report->echo_time_us);
 }
 
-/* A fault has a name exactly in the state of fault, and only a fault is about a joint. */
+/* A fault code is present exactly in the fault state, and only a fault names a joint. */
 static int is_consistent(uint8_t state, uint8_t fault, uint8_t joint) {
   if (state >= RIFFLER_PEN_STATES || (state == RIFFLER_PEN_FAULT) != (fault != RIFFLER_PEN_NO_FAULT)) return 0;
   return joint == RIFFLER_PEN_NO_JOINT || (joint < RIFFLER_PEN_JOINTS && fault != RIFFLER_PEN_NO_FAULT);
@@ -147,7 +148,7 @@ void riffler_pen_encode_identity(const riffler_pen_identity* report, uint8_t* by
 }
 
 riffler_pen_result riffler_pen_decode_identity(const uint8_t* bytes, size_t size, riffler_pen_identity* report) {
-  /* These bytes first, and by themselves: another version may have another length. */
+  /* Decode these bytes first: another version may have another length. */
   if (size <= RIFFLER_PEN_IDENTITY_MINOR) return RIFFLER_PEN_WRONG_LENGTH;
   if (bytes[0] != RIFFLER_PEN_IDENTITY_ID) return RIFFLER_PEN_WRONG_ID;
   for (size_t k = 0; k < sizeof kMagic; ++k)

@@ -23,7 +23,7 @@ struct Assembly::Deepest {
 
 namespace {
 
-/// Steps to ever smaller distances, until they are of rounding size.
+/// Descends to a local minimum of the distance with shrinking steps, down to rounding size.
 Vec2 sink(const tool::Outline& outline, Vec2 p, double step) {
   const auto value = [&](const Vec2& q) { return outline.nearest(std::abs(q.x), q.y).distance; };
   double least = value(p);
@@ -37,7 +37,7 @@ Vec2 sink(const tool::Outline& outline, Vec2 p, double step) {
 }
 
 std::vector<Vec2> find_deepest(const tool::Outline& outline, double width) {
-  // A grid over the half-plane; from each of its points that none of its neighbours is below, downhill.
+  // A grid over the half-plane. From each grid point with no lower neighbour, descend.
   constexpr int kAcross = 24, kAlong = 192;
   const double low = outline.edges().front().from.y, high = outline.edges().back().to.y;
   const double du = width / kAcross, dz = (high - low) / kAlong;
@@ -52,7 +52,7 @@ std::vector<Vec2> find_deepest(const tool::Outline& outline, double width) {
       for (int a = -1; a <= 1; ++a)
         for (int b = -1; b <= 1; ++b)
           if (i + a <= kAcross && j + b >= 0 && j + b <= kAlong && at(i + a, j + b) < at(i, j)) lowest = false;
-      // Of neighbours that are as deep, one.
+      // If neighbours are equally deep, use one of them.
       if (!lowest || (j > 0 && at(i, j - 1) == at(i, j)) || (i > 0 && at(i - 1, j) == at(i, j))) continue;
       out.push_back(sink(outline, {i * du, low + j * dz}, std::max(du, dz)));
     }

@@ -2,8 +2,7 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "collide/box_lanes.cpp"
-// Clang-format would sort foreach_target.h away from its place.
-// clang-format off
+// foreach_target.h must stay here; clang-format would sort it.
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 // clang-format on
@@ -20,8 +19,8 @@ namespace {
 /// As Points, with the direction away from the outline.
 struct Slopes {
   Points points;
-  V out, up;            // from the nearest place so far
-  V edge_out, edge_up;  // the edge's normal there: the direction where that is too near to have one
+  V out, up;            // away from the nearest point so far
+  V edge_out, edge_up;  // the edge's normal there: the direction if the point is too near to have its own
 
   HWY_INLINE Slopes(const Centres& at)
       : points(at.rho, at.z), out(zero()), up(zero()), edge_out(zero()), edge_up(zero()) {}
@@ -61,7 +60,7 @@ struct Slopes {
          pick(on, mul(outward, y), mul(per, pick(first, set(e.first[1]), set(e.last[1])))));
   }
 
-  /// Out of the solid.
+  /// Normal of the tool's surface, out of the solid.
   HWY_INLINE void normal(V distance, V& x, V& y) const {
     const V size = abs(distance);
     const M far = hn::Gt(size, set(1e-9));
@@ -70,11 +69,12 @@ struct Slopes {
   }
 };
 
-/// Of a rectangle's area the share that lies behind a line at depth t from its middle; p ≥ q are what its half sides
-/// measure across the line. And by how much that grows with t.
+/// Adds the fraction of a rectangle's area that lies behind a line at signed distance t from its centre, and the
+/// derivative of that fraction by t. p ≥ q: half sides of the rectangle projected on the line's normal.
 HWY_INLINE void add_rectangle(V t, V p, V q, V per_p, V& share, V& rise) {
   const V size = abs(t);
-  // Behind all of one side the share is a trapezium's, and a triangle is missing or begun in the corners.
+  // If the line crosses two opposite sides, the area behind it is a trapezium; otherwise a triangle at a corner is
+  // missing, or is all there is.
   const V corner = max(sub(add(p, q), size), zero());
   const M slanted = hn::Gt(size, sub(p, q));
   const V part = mul(corner, hn::Div(per_p, mul(set(4), max(q, set(1e-150)))));  // corner / 4 p q
@@ -87,7 +87,7 @@ HWY_INLINE void add_rectangle(V t, V p, V q, V per_p, V& share, V& rise) {
 
 void Shares(std::span<const LaneEdge> outline, const ToolFrame& frame, const SphereGroup& spheres,
             const BoxGroup& boxes, BoxShares& out) {
-  const V root = set(0.57735026918962576);  // of ⅓: the places of Gauss's rule
+  const V root = set(0.57735026918962576);  // √⅓: the nodes of Gauss's rule
   for (int k = 0; k < base::kLanes; k += lanes()) {
     const Centres at(frame, spheres, k);
     Slopes slopes(at);
@@ -97,7 +97,7 @@ void Shares(std::span<const LaneEdge> outline, const ToolFrame& frame, const Sph
     slopes.normal(distance, radial, up);
     const M off_axis = hn::Gt(at.rho, set(1e-150));
     const V per = mul(radial, hn::Div(set(1), pick(off_axis, at.rho, set(1))));
-    // On the axis any direction will do.
+    // On the axis any direction is valid.
     const V u = pick(off_axis, mul(per, at.u), radial), v = pick(off_axis, mul(per, at.v), zero());
     const auto along = [&](double fu, double fv, double fa) {
       return add(add(mul(u, set(fu)), mul(v, set(fv))), mul(up, set(fa)));

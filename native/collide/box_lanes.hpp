@@ -1,4 +1,4 @@
-// How much of small boxes is in a tool, in vector lanes, chosen at run time.
+// Fraction of small boxes that lies inside a tool, in vector lanes chosen at run time.
 #pragma once
 
 #include <span>
@@ -9,24 +9,25 @@
 
 namespace riffler::collide {
 
-/// Half the sides of boxes along the part's directions, mm, and the volume of material in each, mm³. Their middles are
-/// those of the spheres round them.
+/// Half the side lengths (mm) of boxes along the part's axes, and the volume of material in each (mm³). Their centres
+/// are those of the bounding spheres.
 struct alignas(64) BoxGroup {
   double half[3][base::kLanes]{}, volume[base::kLanes]{};
 };
 
-/// What of each box is in the tool.
+/// How far each box lies inside the tool.
 struct BoxShares {
-  double distance[base::kLanes];   ///< of its middle, mm
-  double share[base::kLanes];      ///< of its volume
-  double rise[base::kLanes];       ///< by which the share grows where the tool comes nearer, 1/mm
-  double normal[3][base::kLanes];  ///< of the tool there, along the part's directions
+  double distance[base::kLanes];   ///< of the box's centre, mm
+  double share[base::kLanes];      ///< fraction of the volume inside the tool
+  double rise[base::kLanes];       ///< derivative of the fraction as the tool approaches, 1/mm
+  double normal[3][base::kLanes];  ///< of the tool's surface there, part frame
 };
 
-/// The tool is to a box what its tangent plane is: the half-space at the distance of the box's middle, square to the
-/// way to the nearest place of the outline. The share is then exact but for the shortest of its three widths, along
-/// which two places stand for all: as continuous in the pose as distances are, with a continuous derivative but for
-/// faces that come on flat, and shares of neighbours add up to that of both.
+/// Approximates the tool at each box by its tangent plane: the half-space at the distance of the box's centre,
+/// perpendicular to the direction to the nearest point of the outline. The fraction is exact except along the shortest
+/// of the box's three projected widths, which two sample points represent. It is as continuous in the pose as distances
+/// are, with a continuous derivative except for faces that approach flat, and the fractions of adjacent boxes add up to
+/// that of their union.
 void box_shares(std::span<const LaneEdge> outline, const ToolFrame& frame, const SphereGroup& spheres,
                 const BoxGroup& boxes, BoxShares& out);
 

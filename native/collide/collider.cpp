@@ -19,7 +19,7 @@ namespace riffler::collide {
 
 namespace {
 
-constexpr double kBoxes = 1.5;  // sides of a fixture's pieces in spacings of points on the part
+constexpr double kBoxes = 1.5;  // side of a fixture's boxes, in units of the part's point spacing
 constexpr double kNone = -std::numeric_limits<double>::infinity();
 
 void check(const Collider::Settings& s, std::size_t fixtures) {
@@ -38,8 +38,8 @@ void check(const Collider::Settings& s, std::size_t fixtures) {
 
 Mesh mesh_of(const Volume& volume, std::size_t index) {
   try {
-    // Faces in few triangles, as many are equally near to a tool's side that lies along them. A tolerance below what
-    // the mesh of a carved volume is off by itself cannot be proven, and the attempt takes tens of seconds.
+    // Merge coplanar triangles: otherwise very many are equally near to a flank that lies along a face. A clearance
+    // below the mesh error of a carved volume cannot be proven, and trying takes tens of seconds.
     return decimate(marching::to_mesh(volume), {{}, 1e-2 * volume.frame().pitch});
   } catch (const std::invalid_argument& e) {
     throw std::invalid_argument("fixtures, volume " + std::to_string(index) + ": " + e.what());
@@ -52,11 +52,11 @@ struct Collider::Data {
   Surface part;
   SamplePoints points;
   std::vector<Fixture> fixtures;
-  std::vector<double> stiffness;         // of each of them
-  std::vector<const Surface*> surfaces;  // the part's first
+  std::vector<double> stiffness;         // one per fixture
+  std::vector<const Surface*> surfaces;  // the part's is first
   Settings settings;
-  Box3 box;                      // of all of them
-  mutable std::once_flag asked;  // for a side of the part
+  Box3 box;                      // box around all surfaces
+  mutable std::once_flag asked;  // winding is computed on the first query for a side of the part
   mutable std::optional<WindingNumber> winding;
 
   Data(const Mesh& mesh, const Settings& s)
@@ -87,7 +87,7 @@ Collider::~Collider() = default;
 Collider::Collider(Collider&&) noexcept = default;
 Collider& Collider::operator=(Collider&&) noexcept = default;
 
-/// The least distance from the part, or from part and fixtures.
+/// Smallest distance from the part, or from part and fixtures.
 NearestSearch::Found Collider::Data::search(const Assembly& assembly, const ToolFrame& frame, bool all,
                                             Deadline deadline, Counts& counts, double enough, double loose) const {
   const std::span<const Surface* const> some(surfaces.data(), all ? surfaces.size() : 1);
@@ -150,7 +150,7 @@ void Collider::query(const Assembly& assembly, const Pose& pose, std::optional<d
 
 void Collider::query(const Assembly& assembly, const Pose& pose, std::optional<double> budget, Counts& counts,
                      Contact& out, double loose) const {
-  // Most of a budget is for the depth: what is not summed of the force is taken from coarser points.
+  // Most of a budget goes to the depth. A force sum that runs out of time uses coarser points.
   const auto until = [start = Deadline::Clock::now(), &budget](double share) {
     return budget ? Deadline(start + std::chrono::duration_cast<Deadline::Clock::duration>(
                                          std::chrono::duration<double>(share * *budget)))
@@ -161,7 +161,7 @@ void Collider::query(const Assembly& assembly, const Pose& pose, std::optional<d
   out.force = out.torque = Vec3(0), out.stiffness = {};
   out.points.clear(), out.touches.clear();
   out.depth = std::max(0.0, -found.least.distance), out.checked = found.checked;
-  // Nothing of the tool is deeper than it is wide; and the search's own slack is part of what may be missed.
+  // No point can be deeper inside the tool than its largest radius. The search's own slack counts as missed depth.
   const double most = std::min(-found.low + found.slack, assembly.max_radius());
   out.missed_depth_bound = std::max(0.0, most - out.depth);
   if (!(found.least.distance < 0)) return;

@@ -1,4 +1,4 @@
-// The end of a time budget.
+// Deadline of a time budget.
 #pragma once
 
 #include <chrono>
@@ -6,13 +6,13 @@
 
 namespace riffler::collide {
 
-/// When to stop, by the monotonic clock, which is read rarely. Without a time there is no end.
+/// Tells when to stop, by the monotonic clock, which it reads rarely. Without a budget it never passes.
 class Deadline {
  public:
   using Clock = std::chrono::steady_clock;
   Deadline() = default;
   explicit Deadline(Clock::time_point end) : end_(end) {}
-  /// Reads the clock at every eighth call.
+  /// Whether the deadline has passed. Reads the clock at every eighth call.
   bool passed() { return end_ && (passed_ = passed_ || (++calls_ % 8 == 0 && Clock::now() >= *end_)); }
 
  private:

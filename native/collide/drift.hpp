@@ -1,4 +1,4 @@
-// How far points of a part move past a tool in a stretch of its motion.
+// Bound on how far points of a part move relative to the tool during an interval of its motion.
 #pragma once
 
 #include <algorithm>
@@ -8,11 +8,11 @@
 
 namespace riffler::collide {
 
-/// Points of the part in a frame that moves with the tool, within half a stretch of a motion from its middle. There a
-/// point q from the tip goes the way ± (way + turn × q) but for second_order(q).
+/// Motion of the part's points in the tool's frame, during half an interval on either side of its middle. A point q
+/// from the tip moves by ± (translation + rotation × q), up to an error of second_order(|q|).
 struct Drift {
-  Vec3 way{0}, turn{0};  ///< of the tool in half the stretch, mm and rad
-  double reach = 0;      ///< of the tool from its tip, mm
+  Vec3 way{0}, turn{0};  ///< of the tool in half the interval, mm and rad
+  double reach = 0;      ///< largest distance of the tool's points from its tip, mm
 
   Drift() = default;
   Drift(const Motion& motion, double duration, double r)
@@ -20,7 +20,7 @@ struct Drift {
         turn(0.5 * duration * motion.rotation()),
         reach(r) {}
 
-  /// From the part's directions to the tool's.
+  /// The same drift, from part directions to tool directions.
   Drift in(const ToolFrame& f) const {
     Drift out;
     out.way = {glm::dot(way, f.u), glm::dot(way, f.v), glm::dot(way, f.axis)};
@@ -29,23 +29,24 @@ struct Drift {
     return out;
   }
 
-  /// The second derivative of a point that is fixed while a frame turns at a constant rate ω and goes at a constant
-  /// speed v is at most ω² |q| + 2 ω v.
+  /// Bound on the second-order term: the second derivative of a fixed point, seen from a frame that turns at a constant
+  /// rate ω and moves at a constant speed v, is at most ω² |q| + 2 ω v.
   double second_order(double distance) const {
     const double w = glm::length(way), a = glm::length(turn);
     return 0.5 * a * (a * (distance + w) + 2 * w);
   }
-  /// No point at a distance from the tip goes further.
+  /// Largest displacement of any point at `distance` (mm) from the tip.
   double most(double distance) const {
     const double w = glm::length(way);
     return w + glm::length(turn) * (distance + w);
   }
-  /// Nor does the tool come nearer to one by more than this: its own points go less far than those beyond it.
+  /// Largest decrease of the tool's distance to such a point. Points of the tool move less than points beyond its
+  /// reach.
   double nearer(double distance) const {
     const double w = glm::length(way);
     return w + glm::length(turn) * std::min(distance + w, reach);
   }
-  /// No point goes further than this along a unit direction.
+  /// Largest displacement of point `q` along a unit direction.
   double along(const Vec3& direction, const Vec3& q) const {
     return std::abs(glm::dot(direction, way + glm::cross(turn, q))) + second_order(glm::length(q));
   }

@@ -14,8 +14,8 @@ double distance_at(const Assembly& assembly, const Vec3& q) {
   return assembly.outline().nearest(std::sqrt(q.x * q.x + q.y * q.y), q.z).distance;
 }
 
-/// The same surface with no side longer than `most`: one plane bounds little of a long triangle that lies along a tool.
-/// Halves are not joined to their neighbours.
+/// The same surface with no edge longer than `most`, because one plane is a poor bound for a long triangle along a
+/// tool. Neighbouring triangles need not share the new vertices.
 Mesh divided(const Mesh& mesh, double most) {
   Mesh out;
   std::vector<Corners> left;
@@ -39,7 +39,8 @@ Mesh divided(const Mesh& mesh, double most) {
   return out;
 }
 
-/// Sums the force over boxes of material: k times their volume in the tool, towards the middle of what they are in.
+/// Sums the force over boxes of material: k times their volume inside the tool, towards the axis point at the centre of
+/// cutter, shank or holder.
 class FixtureSum {
  public:
   FixtureSum(const Assembly& assembly, const ToolFrame& frame, const MaterialBoxes& boxes, double stiffness,
@@ -51,7 +52,7 @@ class FixtureSum {
         contact_(contact),
         widest_(0.5 * boxes.spacing() * (1 + 1e-9)) {
     nodes_.reserve(512), pieces_.reserve(512);
-    // The tool's surface is to be flat across a box.
+    // The tool's surface should be nearly flat across a box.
     for (const Assembly::HeightBand& s : assembly.stretches()) widest_ = std::min(widest_, 0.2 * s.radius);
   }
 
@@ -79,17 +80,18 @@ class FixtureSum {
     Vec3 middle, half;
     double volume, weight;
   };
-  /// What is pushed together: the boxes of a group.
+  /// Sums over the boxes of one group.
   struct Push {
-    double volume = 0, area = 0;  // in the tool, and of its surface in the material
-    Vec3 middle{0}, normal{0};    // times the volume, and times the area
+    double volume = 0, area = 0;  // mm³ inside the tool, mm² of its surface in the material
+    Vec3 middle{0}, normal{0};    // weighted by volume, weighted by area
 
     void add(const Vec3& at, double v) { volume += v, middle += v * at; }
   };
 
-  /// Height of the middle of what is at a height: of the cutter, of the shank, of the holder. Between them it goes over
-  /// from one to the other, so that the force has no step there, and within the narrower one: a box that the face of
-  /// the wider one cuts is pushed by that. Where they are as wide, half in each.
+  /// Height of the point on the axis towards which material at height z is pushed: the centre of cutter, shank or
+  /// holder. At a border the height blends from one to the other, so that the force has no step there. The blend lies
+  /// within the narrower part, so a box cut by the face of the wider part is pushed by that; between equally wide parts
+  /// it lies half in each.
   double target(double z) const {
     const std::vector<Assembly::HeightBand>& all = assembly_.stretches();
     const auto middle = [](const Assembly::HeightBand& s) { return 0.5 * (s.low + s.high); };
@@ -102,13 +104,13 @@ class FixtureSum {
     return out;
   }
 
-  /// 1 where the material of a node that is wholly in the tool pushes as if it were all in one place, 0 where it is to
-  /// be looked at box by box, and between them in part.
+  /// Weight, 0 to 1, with which the material of a node entirely inside the tool pushes as one point; with the remaining
+  /// weight it is processed box by box.
   double together(const BoundingSphere& s, double distance) const {
-    const double room = -distance - s.radius;  // to the tool's surface
+    const double room = -distance - s.radius;  // from the sphere to the tool's surface
     if (!(room > 0) || s.radius == 0) return room > 0;
     const Vec3 p = frame_.to_tool(s.centre);
-    double least = room;  // in radii: the room, and how far it is to where the direction changes
+    double least = room;  // in radii: the smaller of that room and the distance to a change of direction
     for (const Assembly::HeightBand& st : assembly_.stretches())
       if (st.low > 0) least = std::min(least, std::abs(p.z - st.low) - s.radius - 1.5 * boxes_.spacing());
     const double far = glm::length(p - Vec3(0, 0, target(p.z)));
@@ -119,12 +121,12 @@ class FixtureSum {
     if (!(sum.volume > 0)) return;
     const Vec3 arm = sum.middle / sum.volume, at = frame_.to_tool(frame_.tip + arm);
     const Vec3 towards = frame_.turned(Vec3(0, 0, target(at.z)) - at);
-    // No direction in the very middle.
+    // Exactly at the centre there is no direction.
     const Vec3 way = towards / std::max(glm::length(towards), boxes_.spacing());
     contact_.push(arm, stiffness_ * sum.volume * way);
-    // As the tool goes on by δ, the volume in it grows by area (normal · δ) and pushes along `way`: the resistance is
-    // −way normalᵀ, which is not symmetric. Half the sum of both squares is no less than what of it is symmetric; all
-    // of the sum also holds what turns the tool aside. With less, stiff fixtures shake a tool.
+    // When the tool moves by δ, its volume in the material grows by area (normal · δ) and pushes along the direction d.
+    // The exact stiffness −d normalᵀ is not symmetric. Half the sum of the two squares is never less than its symmetric
+    // part; the whole sum also covers what deflects the tool sideways. With less, stiff fixtures shake a tool.
     contact_.resist(arm, way, stiffness_ * sum.area);
     if (const double normal = glm::length(sum.normal); normal > 0)
       contact_.resist(arm, sum.normal / normal, stiffness_ * sum.area);
@@ -153,7 +155,7 @@ class FixtureSum {
     push(sum);
   }
 
-  /// Into halves along every side that is too long.
+  /// Halves a box along every side that is too long.
   void divide(const Piece& p, Deadline& deadline, Counts& counts) {
     SphereGroup spheres;
     BoxGroup boxes;
@@ -198,7 +200,7 @@ class FixtureSum {
   const MaterialBoxes& boxes_;
   double stiffness_;
   Contact& contact_;
-  double widest_;  // half of a box
+  double widest_;  // mm: largest half side of a box
   base::BlockVector<Node> nodes_;
   base::BlockVector<Piece> pieces_;
 };

@@ -1,4 +1,4 @@
-// A vise, a clamp: a dexel volume of its own pitch, with the force of its material on a tool.
+// A fixture (vise, clamp): a dexel volume with its own pitch, and the force of its material on a tool.
 #pragma once
 
 #include <cstddef>
@@ -14,22 +14,23 @@
 
 namespace riffler::collide {
 
-/// Its shape is that of its mesh (marching/to_mesh.hpp says what that keeps), and its inside counts.
+/// A solid fixture with the shape of its mesh (marching/to_mesh.hpp states what the mesh preserves).
 class Fixture {
  public:
-  /// `mesh` is that of `volume`, not empty. `spacing`: of the pieces that push, mm; none is narrower than the pitch.
+  /// `mesh`: the mesh of `volume`, not empty. `spacing`: size of the boxes that push, mm; no box is smaller than the
+  /// pitch.
   Fixture(const Volume& volume, const Mesh& mesh, double spacing);
 
   const Surface& surface() const { return surface_; }
   bool holds(const Vec3& p) const;
-  /// Whether any of it can be nearer to the tool than `distance`.
+  /// Whether any of it may be nearer to the tool than `distance` (mm).
   bool near(const Assembly& assembly, const ToolFrame& frame, double distance) const;
 
-  /// Adds the force of what of its material is in the tool: k times the volume, each piece of it towards the middle of
-  /// what it is in: cutter, shank or holder. That is (4.9)–(4.11) with dexels cut into short pieces, so that the
-  /// direction of the rays does not matter. Material is in boxes (collide/material_boxes.hpp), of which the tool cuts
-  /// off what lies behind its tangent plane: the force is continuous, and so is its derivative but for faces that come
-  /// on flat. Torque about the tip. After the deadline nodes of any size stand for what is in them.
+  /// Adds the force of the material inside the tool: k times its volume, each box towards the centre of the part of the
+  /// tool that contains it (cutter, shank or holder). This is (4.9)–(4.11) with dexels cut into short boxes, so that
+  /// the direction of the rays does not matter. The tool takes the part of each box (collide/material_boxes.hpp) behind
+  /// its tangent plane: the force is continuous, and so is its derivative except for faces that approach flat. Torque
+  /// is about the tip. After the deadline, nodes of any size represent their contents.
   void add_force(const Assembly& assembly, const ToolFrame& frame, double stiffness, Deadline& deadline,
                  Contact& contact, Counts& counts) const;
 
@@ -37,7 +38,7 @@ class Fixture {
   MaterialBoxes boxes_;
   Surface surface_;
   mesh::Closest sides_;
-  BoundingSphere whole_;  // round all of it
+  BoundingSphere whole_;  // bounding sphere
 };
 
 }  // namespace riffler::collide

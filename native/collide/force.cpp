@@ -38,13 +38,13 @@ class ForceSum {
 
  private:
   struct Node {
-    std::size_t parent;  // the group it is in
+    std::size_t parent;  // its parent group
     int child;
     double distance, weight;
   };
 
-  /// 1 where a node stands for its points, 0 where it does not, and between them where both count in part: it changes
-  /// with the distance from the cutter, here from a cylinder round it.
+  /// Weight, 0 to 1, of a node as a substitute for its points; in between, both count in part. It depends on the
+  /// distance from the cutter, approximated by a cylinder.
   double share(const BoundingSphere& s) const {
     if (s.radius > widest_) return 0;
     const Vec3 p = frame_.to_tool(s.centre);
@@ -54,7 +54,7 @@ class ForceSum {
   }
 
   double stiffness_at(double z) const {
-    // A ramp as long as the spacing: the force has no step where the cutter ends.
+    // A ramp as long as the point spacing, so that the force has no step at the end of the cutter.
     const double above = std::clamp((z - cutter_top_) / points_.spacing() + 0.5, 0.0, 1.0);
     return stiffness_.cutter + above * (stiffness_.holder - stiffness_.cutter);
   }

@@ -1,4 +1,4 @@
-// Force and torque of a part's surface on a tool that is in it: (4.7), (4.8).
+// Force and torque of a part's surface on a tool that intersects it: (4.7), (4.8).
 #pragma once
 
 #include "collide/deadline.hpp"
@@ -9,15 +9,15 @@
 
 namespace riffler::collide {
 
-/// k of (4.7), N per mm of depth and mm² of surface. Tracing is weak, collision strong (4.4.3).
+/// k of (4.7), N per mm of depth and mm² of surface: weak for tracing with the cutter, strong for collisions (4.4.3).
 struct Stiffness {
-  double cutter, holder;  // holder: the shank, too
+  double cutter, holder;  // holder: also for the shank
 };
 
-/// Adds ∫ k · depth · n dA over the surface in the tool, its torque about the tip, and the points that were summed. The
-/// sum is continuous in the pose: depths are, and the weights of points change with their distance from the cutter, not
-/// by what they touch. Away from the cutter, where nothing is traced, nodes up to `coarse` spacings wide stand for
-/// their points. After the deadline, nodes of any width do.
+/// Adds ∫ k · depth · n dA over the surface inside the tool, the torque about the tip, and the points summed. The sum
+/// is continuous in the pose: depths are, and the weights of points depend on their distance from the cutter, not on
+/// contact. Away from the cutter, nodes up to `coarse` spacings wide represent their points. After the deadline, nodes
+/// of any width do.
 void add_force(const Assembly& assembly, const ToolFrame& frame, const SamplePoints& points, const Stiffness& stiffness,
                double coarse, Deadline& deadline, Contact& contact, Counts& counts);
 

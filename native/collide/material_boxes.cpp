@@ -10,16 +10,16 @@ namespace riffler::collide {
 
 namespace {
 
-constexpr int kSide = 8;  // cells of a brick
+constexpr int kSide = 8;  // cells per side of a brick
 
 }  // namespace
 
-/// Some cells, in the grid's cyclic frame.
+/// A block of cells in the grid's cyclic frame.
 class MaterialBoxes::Brick {
  public:
   Brick(const dexel::Grid& grid, int rays, double spacing) : grid_(grid), rays_(rays), spacing_(spacing) {}
 
-  /// Cells (u, v, w) to (u, v, w) + 8 of the grid's.
+  /// Reads the cells from (u, v, w) to (u, v, w) + 8 of the grid.
   void read(int u, int v, int w) {
     cells_ = {};
     const double h = grid_.pitch(), bottom = grid_.box().lower.z + w * spacing_, top = bottom + kSide * spacing_;
@@ -83,7 +83,7 @@ double MaterialBoxes::cell_of(const Volume& volume, double spacing) {
 
 std::vector<MaterialBoxes::Piece> MaterialBoxes::pieces_of(const Volume& volume, double spacing) {
   const dexel::Grid& grid = volume.reference();
-  // More rays than there are make one cell of them all.
+  // If the spacing exceeds the grid, one cell holds all rays.
   const int rays = static_cast<int>(std::min(std::round(spacing / grid.pitch()), 1.0 + std::max(grid.nu(), grid.nv())));
   const auto bricks = [](double cells) { return static_cast<std::size_t>(std::ceil(cells / kSide)); };
   const std::size_t nu = bricks(std::ceil(double(grid.nu()) / rays)), nv = bricks(std::ceil(double(grid.nv()) / rays)),

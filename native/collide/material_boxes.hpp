@@ -1,4 +1,4 @@
-// The material of a volume as boxes, each for a piece of it: what a fixture's force is summed over.
+// The material of a volume as boxes, over which a fixture's force is summed.
 #pragma once
 
 #include <vector>
@@ -9,20 +9,20 @@
 
 namespace riffler::collide {
 
-/// Cells of k × k rays, as long as they are wide, k such that this is nearest to the wanted spacing. A cell's box goes
-/// round all material in it, square rays included, and is as dense as that fills it; where cells are full, up to 8³ of
-/// them are one box. The same for any number of threads.
+/// Cubic cells of k × k rays, with k such that the cell size is nearest to the wanted spacing. A cell's box encloses
+/// all its material, with rays taken as square columns, and has the density that preserves the volume. Up to 8³ full
+/// cells become one box. The same for any number of threads.
 class MaterialBoxes {
  public:
-  /// spacing: mm, positive.
+  /// `spacing`: mm, positive.
   MaterialBoxes(const Volume& volume, double spacing);
 
   /// Side of a cell, mm.
   double spacing() const { return spacing_; }
   std::size_t size() const { return tree_.size(); }
-  /// Nodes have their centre where the middle of their material is.
+  /// The tree over the boxes. Each node's centre is the centroid of its material.
   const SphereTree& tree() const { return tree_; }
-  /// By the tree's groups; only those that hold items have sides, all have volumes.
+  /// Boxes per tree group. Only groups that hold items have sides; all have volumes.
   const BoxGroup& boxes(std::size_t group) const { return boxes_[group]; }
 
  private:

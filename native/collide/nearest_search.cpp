@@ -23,7 +23,7 @@ void NearestSearch::open(const Surface& surface, const Entry& e, Counts& counts)
   double distance[base::kLanes], low[base::kLanes];
   centre_distances(assembly_.lane_edges(), frame_, spheres, distance);
   counts.nodes += base::kLanes;
-  // Every sphere has a point of the surface in it.
+  // Every sphere contains a point of the surface.
   for (int k = 0; k < base::kLanes; ++k) limit_ = std::min(limit_, distance[k] + std::abs(spheres.radius[k]));
   const bool items = tree.holds_items(e.index);
   const std::size_t first = items ? tree.first_item(e.index) : base::kLanes * e.index + 1;
@@ -45,7 +45,7 @@ void NearestSearch::test(const Surface& surface, const Entry& e, Deadline& deadl
     ++counts.triangles;
     const double low = triangles_.bound(t);
     if (low < triangles_.least().distance - slack_) {
-      // Sharper than the sphere: others may come first now.
+      // This bound is tighter than the sphere's, so another entry may now come first.
       if (!heap_.empty() && low > heap_.front().low)
         push({std::max(low, e.low), e.index, e.surface, Entry::Looked});
       else
@@ -81,7 +81,7 @@ NearestSearch::Found NearestSearch::operator()(std::span<const Surface* const> s
   counts.cells += triangles_.cells();
   Found found{triangles_.least(), best_surface_, triangles_.low(), slack_, 1};
   if (heap_.empty() || heap_.front().low >= found.low - slack_) return found;
-  // Cut short: what is left in the heap, as far as it matters.
+  // The search was cut short: count what is left in the heap and could still matter.
   const double tested = static_cast<double>(counts.triangles - before);
   double left = 0;
   for (const Entry& e : heap_)

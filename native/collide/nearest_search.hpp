@@ -1,4 +1,4 @@
-// The least signed distance between a tool and surfaces, best first.
+// Smallest signed distance between a tool and surfaces, by best-first search.
 #pragma once
 
 #include <span>
@@ -11,34 +11,34 @@
 
 namespace riffler::collide {
 
-/// Nodes and triangles in the order of their lower bounds f(centre) − radius, f being the tool's signed distance, which
-/// never changes by more than one moves. So nothing is opened whose bound is above the result.
+/// Processes nodes and triangles in the order of their lower bounds f(centre) − radius. f is the tool's signed
+/// distance, which is 1-Lipschitz, so nothing with a bound above the result is opened.
 class NearestSearch {
  public:
   struct Found {
     TriangleSearch::Least least;
-    std::size_t surface = 0;  ///< its index
-    double low;               ///< no point is nearer; least.distance where not cut short
-    double slack;             ///< rounding, and what was not looked for: 1e-10 mm, or as `loose` allows
-    double checked;           ///< triangles tested, as a share of those that could matter
+    std::size_t surface = 0;  ///< index of the surface
+    double low;               ///< lower bound of the distance; equals least.distance if the search was complete
+    double slack;             ///< mm: rounding and allowed error, 1e-10 or as set by `loose`
+    double checked;           ///< triangles tested, as a fraction of those that could matter
   };
 
   NearestSearch(const Assembly& assembly, const ToolFrame& frame);
 
-  /// Ends at the first place with less than this, which need not be the least.
+  /// Stops at the first place nearer than `distance` (mm), which need not be the nearest.
   void enough(double distance) { enough_ = distance, triangles_.enough(distance); }
-  /// A place that is nearer by less than this need not be found, mm: part of the slack.
+  /// Allows the result to exceed the smallest distance by up to `by` (mm); counted in the slack.
   void loose(double by) { loose_ = by, triangles_.loose(by); }
   Found operator()(std::span<const Surface* const> surfaces, Deadline deadline, Counts& counts);
 
  private:
   struct Entry {
     double low;
-    std::uint32_t index;  // of a group, or place of a triangle
+    std::uint32_t index;  // index of a group, or place of a triangle
     std::uint16_t surface;
     enum Kind : std::uint16_t { Triangle, Looked, Group } kind;
 
-    /// Later in the heap; ties are decided by what is there, so the order is always the same.
+    /// Orders the heap by bound; ties are broken by content, so that the order is deterministic.
     bool operator<(const Entry& o) const {
       if (low != o.low) return low > o.low;
       if (kind != o.kind) return kind > o.kind;

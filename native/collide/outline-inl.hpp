@@ -1,5 +1,5 @@
-// Points in the half-plane of a tool, in vector lanes: what the kernels over its outline have in common. Included once
-// for every instruction set, as base/lanes-inl.hpp.
+// Points in a tool's half-plane, in vector lanes: the common part of the kernels over a tool's outline. Included once
+// per instruction set, as base/lanes-inl.hpp.
 #if defined(RIFFLER_COLLIDE_OUTLINE_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef RIFFLER_COLLIDE_OUTLINE_INL_HPP
 #undef RIFFLER_COLLIDE_OUTLINE_INL_HPP
@@ -26,15 +26,15 @@ HWY_INLINE V dot(V x, V y, V z, const Vec3& d) {
   return add(add(mul(x, set(d.x)), mul(y, set(d.y))), mul(z, set(d.z)));
 }
 
-/// Whether a place, from the centre of an arc, is in its sector: as faces() of tool/outline.hpp.
+/// Whether a point, relative to an arc's centre, lies in the arc's sector: as faces() of tool/outline.hpp.
 HWY_INLINE M in_sector(const LaneEdge& e, V x, V y) {
   return both(hn::Ge(mul(y, set(e.first[0])), mul(x, set(e.first[1]))),
               hn::Ge(mul(x, set(e.last[1])), mul(y, set(e.last[0]))));
 }
 
-/// Centres of spheres in the half-plane of the tool.
+/// Centres of spheres in the tool's half-plane.
 struct Centres {
-  V x, y, h;  // from the tip, in the part's directions
+  V x, y, h;  // relative to the tip, in part directions
   V u, v, rho, z;
 
   HWY_INLINE Centres(const ToolFrame& frame, const SphereGroup& spheres, int k) {
@@ -45,7 +45,7 @@ struct Centres {
   }
 };
 
-/// Points in the half-plane, the square of the least distance from the edges so far, and whether inside.
+/// Points in the half-plane with the smallest squared distance to the edges so far, and whether they are inside.
 struct Points {
   V rho, z, square;
   M inside;

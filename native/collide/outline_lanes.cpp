@@ -2,8 +2,7 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "collide/outline_lanes.cpp"
-// Clang-format would sort foreach_target.h away from its place.
-// clang-format off
+// foreach_target.h must stay here; clang-format would sort it.
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 // clang-format on
@@ -17,8 +16,8 @@ using namespace base::HWY_NAMESPACE;
 
 namespace {
 
-/// Of the tangent planes of a run's edges the one that is highest at a point: distance from it, and its normal. And the
-/// way from the nearest place of the run, which may be a corner.
+/// Among the tangent planes of a run's edges, the one with the largest signed distance at a point, with its normal.
+/// Also the vector from the nearest point of the run, which may be a corner.
 struct Plane {
   V distance, out, up, square, from_out, from_up;
 
@@ -54,8 +53,9 @@ struct Plane {
     const V off = sub(length, set(e.radius));
     add_foot(pick(on, mul(off, nx), sub(x, ex)), pick(on, mul(off, ny), sub(y, ey)));
   }
-  /// From outside, a corner is farther than any of the planes: the one that touches it there is steeper. Clearly so, or
-  /// its direction would be rounding.
+  /// From outside, a corner may be farther than every plane; then the plane that touches the corner perpendicular to
+  /// the connecting line is the steeper bound. Used only where clearly farther, since its direction would otherwise be
+  /// rounding noise.
   HWY_INLINE void use_corner(M may) {
     const V far = sqrt(square);
     const M farther = both(hn::Gt(far, set(1e-6)), hn::Gt(far, mul(distance, set(1 + 1e-6))));
@@ -66,7 +66,7 @@ struct Plane {
   }
 };
 
-/// Corners of triangles from the centres of their spheres.
+/// Corners of triangles relative to the centres of their spheres.
 struct FromCentres {
   V x[3], y[3], z[3];
 
@@ -84,7 +84,7 @@ struct FromCentres {
   }
 };
 
-/// Whether all that is within `radius` of a point lies behind the end of a run.
+/// Whether everything within `radius` of a point lies behind the end of a run.
 HWY_INLINE M behind(const OutlineRuns::End& end, const Centres& at, V radius) {
   const V past =
       add(mul(sub(at.rho, set(end.point.x)), set(end.way.x)), mul(sub(at.z, set(end.point.y)), set(end.way.y)));
@@ -105,7 +105,7 @@ struct Radial {
   }
 };
 
-/// What of a drift is the same for all lanes.
+/// The data of a drift that are the same for all lanes.
 struct Drifts {
   Drift drift;
   double way, turn;
@@ -121,8 +121,8 @@ struct Drifts {
   }
 };
 
-/// The least of what planes or a ball say of the distance at the corners, which bounds it on the triangle; −∞ where
-/// that says nothing.
+/// Smallest bound, by planes or a ball, of the distance at the corners, which bounds the distance on the whole
+/// triangle; −∞ if there is no bound.
 class RunBound {
  public:
   HWY_INLINE RunBound(const ToolFrame& frame, const Centres& at, const Corners* triangles, const SphereGroup& spheres,
@@ -158,7 +158,7 @@ class RunBound {
     return pick(either(either(outside_, own), hn::Ge(bound, zero())), bound, set(-kInfinity));
   }
 
-  /// By the ball in a hollow, from which its solid keeps away.
+  /// Bound from the ball in a hollow, which the solid never enters.
   HWY_INLINE V by_ball(const LaneEdge& hollow) const {
     const V out = sub(set(hollow.centre[0]), at_.rho), up = sub(set(hollow.centre[1]), at_.z);
     const V x = in_space(out, radial_.x, up, frame_.axis.x), y = in_space(out, radial_.y, up, frame_.axis.y),
@@ -178,13 +178,14 @@ class RunBound {
     return add(add(mul(ax, bx), mul(ay, by)), mul(az, bz));
   }
 
-  /// How far down a direction the corners lie.
+  /// Lowest value of the corners along a direction.
   HWY_INLINE V least(V x, V y, V z) const {
     V low = set(kInfinity);
     for (int i = 0; i < 3; ++i) low = min(low, dot3(x, y, z, corners_.x[i], corners_.y[i], corners_.z[i]));
     return low;
   }
-  /// The same as they drift: a corner's way along the direction is that of the centre and what its place adds.
+  /// The same with drift: a corner's displacement along the direction is that of the centre plus a term from its
+  /// offset.
   HWY_INLINE V least_drifting(V x, V y, V z) const {
     const Drift& d = drifts_->drift;
     // (turn × q) · g = (g × turn) · q
@@ -206,7 +207,7 @@ class RunBound {
   Radial radial_;
   FromCentres corners_;
   const Drifts* drifts_;
-  V reach_, far_;  // of the sphere as it drifts, and of its farthest point from the tip
+  V reach_, far_;  // largest distance of the drifting sphere's points from its centre, and from the tip
   V nearer_, by_sphere_;
   M outside_;
 };

@@ -1,5 +1,5 @@
-// Signed distances of several points at a time from a tool's outline, and bounds for those of triangles, in vector
-// lanes, chosen at run time.
+// Signed distances of several points at a time from a tool's outline, and lower bounds for triangles, in vector lanes
+// chosen at run time.
 #pragma once
 
 #include <span>
@@ -13,26 +13,26 @@
 
 namespace riffler::collide {
 
-/// An edge of an outline with what its distances need.
+/// An edge of an outline with precomputed data for distances.
 struct LaneEdge {
-  double from[2], to[2], way[2], per_square;  // way = to − from, per_square = 1 / way²
+  double from[2], to[2], way[2], per_square;  // the third is to − from, the last 1 over its square
   double normal[2];                           // of a line, out of the solid
-  double centre[2], first[2], last[2];        // of an arc; ends from the centre times side
-  double radius, side;                        // of an arc; side: 1 bulges, −1 is a hollow
+  double centre[2], first[2], last[2];        // of an arc; ends relative to the centre, times side
+  double radius, side;                        // of an arc; side: 1 convex, −1 hollow
   bool arc, rises;
 
   explicit LaneEdge(const tool::OutlineEdge& e);
 };
 
-/// distance[k] = that of the centre of sphere k, mm, negative inside: Outline::nearest to rounding.
+/// distance[k]: signed distance of the centre of sphere k, mm, negative inside. Equals Outline::nearest up to rounding.
 void centre_distances(std::span<const LaneEdge> outline, const ToolFrame& frame, const SphereGroup& spheres,
                       double* distance);
 
-/// low[k]: no point of triangle k, round which sphere k is, is nearer or deeper than this. By the sphere, and by a
-/// tangent plane of every run (outline_runs.hpp): all of the run's solid lies behind it, so it bounds the distance
-/// outside of the tool; inside, the depth, if all that is near has its feet on the run and not beyond its ends. A
-/// hollow has a ball instead, of use outside only. With a `drift`, in the part's directions: at no time of that
-/// stretch.
+/// low[k]: lower bound of the signed distance over triangle k, which sphere k encloses. From the sphere, and from a
+/// tangent plane of every run (outline_runs.hpp). The plane has the run's whole solid behind it, so it bounds the
+/// distance outside the tool; inside, it bounds the depth if all points concerned have their nearest points on the run
+/// and not beyond its ends. A hollow has a ball instead, which is useful only outside. With a `drift` (in part
+/// directions), the bound holds throughout the interval.
 void triangle_bounds(const OutlineRuns& runs, std::span<const LaneEdge> outline, const ToolFrame& frame,
                      const SphereGroup& spheres, const Corners* triangles, const Drift* drift, const double* distance,
                      double* low);

@@ -14,7 +14,7 @@ double area(const Vec2& a, const Vec2& b) {
   return a.x * b.y - a.y * b.x;
 }
 
-/// Direction of the way along an edge at one of its points.
+/// Direction along an edge at one of its points.
 Vec2 tangent(const tool::OutlineEdge& e, const Vec2& p) {
   if (!e.centre) return glm::normalize(e.to - e.from);
   const Vec2 out = (p - *e.centre) / e.bulge;
@@ -25,22 +25,22 @@ bool hollow(const tool::OutlineEdge& e) {
   return e.centre && e.bulge < 0;
 }
 
-/// Whether the outline turns towards the solid, or not at all, from one edge to the next.
+/// Whether the outline continues straight or turns towards the solid from one edge to the next.
 bool goes_on(const tool::OutlineEdge& a, const tool::OutlineEdge& b) {
   return a.to == b.from && !hollow(a) && !hollow(b) && area(tangent(a, a.to), tangent(b, b.from)) >= -1e-12;
 }
 
 }  // namespace
 
-/// The nearest point of an edge; `normal` is that of the edge there, out of the solid.
+/// The nearest point of an edge, with the edge's normal there, out of the solid.
 struct OutlineRuns::Foot {
   Vec2 point{0}, normal{0};
   double distance = kInfinity;
   bool at_end = false;
-  double margin = -1;  // from the normals at the edge's ends that are not on the axis; −1 for a foot at an end
+  double margin = -1;  // mm to the normals at the edge's ends off the axis; −1 if the foot is at an end
   const tool::OutlineEdge* edge = nullptr;
 
-  /// Of the depth at a point inside.
+  /// The depth at a point inside, as a slope.
   Slope depth(const Vec2& p) const {
     Slope s{-distance, at_end && distance > 0 ? (point - p) / distance : normal};
     if (!at_end && edge->bulge > 0) s.curvature = 1 / std::max(edge->bulge - distance, 1e-9);
@@ -116,7 +116,7 @@ bool OutlineRuns::holds(const Run& run, const Vec2& p) const {
   return false;
 }
 
-/// Of a hollow: at an end, the ball may be as large as the other end lets it, but for the hollow's own radius.
+/// For a hollow: at an end, the ball may be as large as the other end allows, but no smaller than the hollow's radius.
 double OutlineRuns::reach_at(const Run& run, const Slope& closed, const Vec2& foot) const {
   double reach = kInfinity;
   for (const Vec2& end : {run.lower.point, run.upper.point}) {
@@ -139,16 +139,16 @@ void OutlineRuns::look(const Run& run, const Vec2& p, RunAt& out, Foot& nearest,
       second = nearest, nearest = f;
     else if (f.distance < second.distance && f.point != nearest.point)
       second = f;
-    // Signed distance to the half-space that touches the edge in its foot: of K at the greatest.
+    // Signed distance to the half-space that touches the edge at its foot: at most that of K.
     Slope s{glm::dot(p - f.point, f.normal), f.normal, 0, run.reach};
-    if (out.hollow) {  // also from beside its sector, where rounding has it
+    if (out.hollow) {  // also outside its sector, where rounding requires it
       const Vec2 to_centre = *edges_[i].centre - p;
       const double length = glm::length(to_centre);
       if (length > 0) s = {run.reach - length, to_centre / length, 0, run.reach};
     }
     if (edges_[i].bulge > 0 && !f.at_end) s.curvature = 1 / std::max(edges_[i].bulge + s.distance, 1e-9);
     if (!edges_[i].centre && f.margin >= 0 && s.distance > out.facing.distance) out.facing = s, out.margin = f.margin;
-    // Steps that meet smoothly share a plane; the second is to say something else.
+    // Edges that meet smoothly share a plane; the second plane must differ.
     const auto differs = [&](const Slope& o) { return glm::dot(o.normal, s.normal) < 1 - 1e-6; };
     if (s.distance > out.behind[0].distance) {
       if (differs(out.behind[0])) out.behind[1] = out.behind[0];
@@ -172,7 +172,7 @@ void OutlineRuns::look(const Run& run, const Vec2& p, RunAt& out, Foot& nearest,
     out.closed.reach = reach_at(run, out.closed, p - out.closed.distance * out.closed.normal);
     return;
   }
-  // From outside, K's foot may be a corner of the run: steeper than any of the planes.
+  // From outside, K's foot may be a corner of the run: a steeper bound than any plane.
   if (out.closed.distance > out.behind[0].distance && out.closed.distance == own.distance)
     out.behind = {out.closed, out.closed};
 }

@@ -21,8 +21,8 @@ double area_of(const Surface& surface) {
   return sum;
 }
 
-/// Halves the longest side until none is longer than `most`, or the piece is so small that it hardly counts: otherwise
-/// needles would become pieces by their length, millions of them without any area.
+/// Halves the longest side until none is longer than `most`, or the piece's area is negligible: otherwise needles would
+/// become millions of pieces without area.
 template <class Visit>
 void split(const Corners& t, double most, const Visit& visit) {
   const double ab = glm::length(t.b - t.a), bc = glm::length(t.c - t.b), ca = glm::length(t.a - t.c);
@@ -88,7 +88,7 @@ void SamplePoints::gather(const Surface& surface, std::size_t group, double spac
         const Vec3 a = area_of(t);
         if (a != Vec3(0)) out.push_back({(t.a + t.b + t.c) / 3.0, a, glm::length(a)});
       });
-    } else if (radius > 0.7 * spacing) {  // of a square as wide as the spacing
+    } else if (radius > 0.7 * spacing) {  // circumradius of a square with side `spacing`
       gather(surface, child, spacing, out);
     } else {
       Vec3 area(0), sum(0);

@@ -1,4 +1,4 @@
-// Points on a surface, each for a piece of it: what the contact force is summed over.
+// Points on a surface that represent pieces of it; the contact force is summed over them.
 #pragma once
 
 #include <vector>
@@ -7,16 +7,16 @@
 
 namespace riffler::collide {
 
-/// About `spacing` apart: large triangles are split, dense small ones gathered. A piece stands for its area vector (out
-/// of the material) at its centroid, and so does every node of the tree over them: a coarser set of points.
+/// About `spacing` (mm) apart: large triangles are split, small dense ones are merged. Each point represents the area
+/// vector of its piece (out of the material) at its centroid, and so does every tree node: a coarser set of points.
 class SamplePoints {
  public:
-  /// The area vectors of the eight children of a node, mm².
+  /// Area vectors of the eight children of a node, mm².
   struct AreaGroup {
     Vec3 area[base::kLanes]{};
   };
-  /// A spacing of 0 is chosen: its square is a hundred-thousandth of the area. std::invalid_argument for one that is
-  /// negative, not finite, or so small that there would be more than 50 million.
+  /// `spacing` 0 selects the square root of a hundred-thousandth of the area. Throws std::invalid_argument for a
+  /// spacing that is negative, not finite, or so small that it would need more than 50 million points.
   SamplePoints(const Surface& surface, double spacing);
 
   double spacing() const { return spacing_; }
@@ -27,7 +27,7 @@ class SamplePoints {
  private:
   struct Piece {
     Vec3 centroid, area;
-    double size;  // |area| before gathering, for centroids of centroids
+    double size;  // mm²: |area| before merging, the weight of the centroid
   };
   SamplePoints(std::vector<Piece> pieces, double spacing);
   static std::vector<Piece> pieces_of(const Surface& surface, double spacing);
@@ -38,7 +38,7 @@ class SamplePoints {
   std::vector<AreaGroup> areas_;
 };
 
-/// What a spacing of 0 stands for.
+/// The spacing (mm) that 0 selects; otherwise `spacing`.
 double chosen_spacing(const Surface& surface, double spacing);
 
 }  // namespace riffler::collide

@@ -11,7 +11,7 @@ namespace riffler::collide {
 
 namespace {
 
-/// Rounding must not leave a corner outside.
+/// The radius, enlarged so that rounding leaves no corner outside.
 double grown(double radius, const Vec3& centre) {
   const double far = std::max({std::abs(centre.x), std::abs(centre.y), std::abs(centre.z)});
   return radius * (1 + 1e-14) + 1e-15 * far;
@@ -30,7 +30,7 @@ SphereGroup::SphereGroup() {
 }
 
 BoundingSphere round_triangle(const Vec3& a, const Vec3& b, const Vec3& c) {
-  // Of the longest side where the opposite corner lies in its sphere, otherwise the circle through all three.
+  // The sphere over the longest side if it contains the opposite corner, otherwise the circumscribed circle.
   const double ab = glm::dot(b - a, b - a), bc = glm::dot(c - b, c - b), ca = glm::dot(a - c, a - c);
   const auto over = [](const Vec3& p, const Vec3& q, const Vec3& r) {
     const Vec3 centre = 0.5 * (p + q);
@@ -76,7 +76,7 @@ void SphereTree::sort(const Items& items) {
       centres[i] = 0.5 * (box.lower + box.upper);
     }
   });
-  geom::sort_by_medians(order_, 3 * levels_, centres);  // eight children are three halvings
+  geom::sort_by_medians(order_, 3 * levels_, centres);  // eight children: three halvings
 }
 
 void SphereTree::bound(const Items& items) {

@@ -1,4 +1,4 @@
-// A tree of bounding spheres, eight children to a node, as flat arrays for vector lanes.
+// A tree of bounding spheres with eight children per node, in flat arrays for vector lanes.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ struct BoundingSphere {
   double radius = 0;
 };
 
-/// Eight spheres side by side, of the children of one node. Those of an empty place have the radius −∞.
+/// The spheres of the eight children of one node. Unused ones have the radius −∞.
 struct alignas(64) SphereGroup {
   double x[base::kLanes], y[base::kLanes], z[base::kLanes], radius[base::kLanes];
 
@@ -27,17 +27,17 @@ struct alignas(64) SphereGroup {
   BoundingSphere sphere(int k) const { return {{x[k], y[k], z[k]}, radius[k]}; }
 };
 
-/// Complete: group g has the groups 8 g + 1 … 8 g + 8 below it, and the last level's groups hold the items themselves.
+/// A complete tree: group g has the child groups 8 g + 1 … 8 g + 8, and the groups of the last level hold the items.
 /// The same for any number of threads.
 class SphereTree {
  public:
-  /// What is put into the tree. All are asked from several threads.
+  /// The items of the tree. The functions are called from several threads.
   struct Items {
     std::size_t count;
     std::function<Box3(std::size_t)> box;
-    std::function<BoundingSphere(std::size_t)> sphere;      ///< round the item
-    std::function<double(std::size_t, const Vec3&)> reach;  ///< greatest distance of the item from a point
-    /// Centre for the sphere round some items; without it that of their box.
+    std::function<BoundingSphere(std::size_t)> sphere;      ///< bounding sphere of the item
+    std::function<double(std::size_t, const Vec3&)> reach;  ///< largest distance of the item from a point, mm
+    /// Centre of the sphere around some items; default: the centre of their box.
     std::function<Vec3(std::span<const std::uint32_t>)> centre = {};
   };
   explicit SphereTree(const Items& items);
@@ -45,10 +45,10 @@ class SphereTree {
   std::size_t size() const { return order_.size(); }
   const SphereGroup& group(std::size_t g) const { return groups_[g]; }
   bool holds_items(std::size_t g) const { return g >= first_leaf_; }
-  /// Place of the first item of a group that holds items; items of a group are side by side.
+  /// Place of the first item of a leaf group; the items of a group are consecutive.
   std::size_t first_item(std::size_t g) const { return first(levels_, g - first_leaf_); }
   std::size_t groups() const { return groups_.size(); }
-  /// How many items are below a group, and the place of their first.
+  /// Number of items below a group, and the place of the first.
   std::size_t under(std::size_t g) const;
   std::size_t first_under(std::size_t g) const;
   /// order()[place] = item.
@@ -66,7 +66,7 @@ class SphereTree {
   std::vector<std::uint32_t> order_;
 };
 
-/// The smallest sphere round a triangle, also one without area.
+/// The smallest sphere around a triangle, also for one without area.
 BoundingSphere round_triangle(const Vec3& a, const Vec3& b, const Vec3& c);
 
 }  // namespace riffler::collide

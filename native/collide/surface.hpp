@@ -1,4 +1,4 @@
-// The triangles of a part or of a fixture's shape, in a tree.
+// The triangles of a part or fixture in a sphere tree.
 #pragma once
 
 #include <vector>
@@ -14,7 +14,7 @@ class Surface {
   explicit Surface(const Mesh& mesh) : Surface(corners_of(mesh)) {}
 
   const SphereTree& tree() const { return tree_; }
-  /// By place in the tree; the next kLanes places can be read as well.
+  /// Corners by place in the tree. The kLanes places after the last are readable too.
   const Corners& corners(std::size_t place) const { return corners_[place]; }
   std::size_t size() const { return tree_.size(); }
 

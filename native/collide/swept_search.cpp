@@ -13,7 +13,7 @@ namespace riffler::collide {
 namespace {
 
 constexpr std::size_t kLooksAReport = 64;
-constexpr double kShortest = 1e-12;  // of the motion: no stretch is halved further
+constexpr double kShortest = 1e-12;  // of the motion's duration: shorter intervals are not halved
 
 }  // namespace
 
@@ -29,7 +29,7 @@ std::uint32_t SweptSearch::add_stretch(double from, double to) {
   return static_cast<std::uint32_t>(stretches_.size() - 1);
 }
 
-/// What is far enough off is settled, and only lowers the bound.
+/// Entries that are far enough away are finished and only lower the bound.
 void SweptSearch::push(const Entry& e) {
   if (e.low >= wanted_) {
     out_.bound = std::min(out_.bound, e.low);
@@ -39,7 +39,7 @@ void SweptSearch::push(const Entry& e) {
   std::push_heap(heap_.begin(), heap_.end());
 }
 
-/// The same for either half of the stretch, of a group looked at anew there; false where it has none.
+/// Splits the interval of a group and evaluates the group again in each half; false if the interval is too short.
 bool SweptSearch::halve(const Surface& surface, Entry e) {
   const MoveInterval& whole = stretches_[e.stretch];
   const double from = whole.from, to = whole.to, middle = 0.5 * (from + to);
@@ -71,10 +71,10 @@ void SweptSearch::look_again(const Surface& surface, Entry& e) {
   e.low = std::max(e.low, e.distance - e.radius - e.drifts);
 }
 
-/// Space or time, whichever leaves more open. A group that is too near anyway has a triangle that is, and in short
-/// stretches tangent planes say more than spheres.
+/// Whether to split time rather than space: the one that leaves more open. A group that is too near anyway contains a
+/// triangle that is, and in short intervals tangent planes give better bounds than spheres.
 bool SweptSearch::is_better_halved(const Entry& e) const {
-  constexpr double kShort = 0.05;  // of the cutter's diameter
+  constexpr double kShort = 0.05;  // times the cutter's diameter
   return e.kind == Entry::Group && e.drifts > std::max(e.radius, kShort * assembly_.tool().diameter()) &&
          e.distance + e.radius >= wanted_;
 }
@@ -118,7 +118,7 @@ void SweptSearch::test(const Surface& surface, const Entry& e) {
   next.low = std::max(e.low, search_.bound(t, s.drift.in(s.frame)));
   attained(e);
   if (out_.clearance < wanted_ || next.low >= wanted_) return push(next);
-  // What was attained is the least, or nearly: then the whole tool's drift may be little enough.
+  // The clearance reached is the smallest one, or nearly: the drift of the whole tool may now be small enough.
   if (search_.least().distance - e.drifts >= wanted_) {
     Deadline none;
     search_.search(t, -kInfinity, none);
@@ -126,7 +126,7 @@ void SweptSearch::test(const Surface& surface, const Entry& e) {
     next.low = std::max(next.low, search_.low() - e.drifts);
     if (out_.clearance < wanted_ || next.low >= wanted_) return push(next);
   }
-  if (!halve(surface, next)) out_.bound = std::min(out_.bound, next.low);  // rounding is all that is left
+  if (!halve(surface, next)) out_.bound = std::min(out_.bound, next.low);  // only rounding is left
 }
 
 Swept SweptSearch::operator()(std::span<const Surface* const> surfaces) {

@@ -1,4 +1,4 @@
-// The search for the place and the time at which a moving tool comes too near to surfaces.
+// Searches for the place and time at which a moving tool comes too near to surfaces.
 #pragma once
 
 #include <cstdint>
@@ -14,32 +14,32 @@
 
 namespace riffler::collide {
 
-/// Branch and bound over the part and over time at once: what is far from all of the motion is dismissed for all of it,
-/// and only what the tool passes close to is looked at in ever shorter stretches. Over a stretch the distance of a
-/// point falls by no more than what it drifts along the tangent plane's normal (collide/drift.hpp), so what the tool
-/// slides along, as a finishing cutter does, needs few of them.
+/// Branch and bound over the part and over time together: what is far from the whole motion is dismissed for the whole
+/// motion, and only what the tool passes closely is examined in ever shorter intervals. Over an interval, a point's
+/// distance falls by at most its drift along the tangent plane's normal (collide/drift.hpp). Surfaces along which the
+/// tool slides, as in finishing, therefore need few intervals.
 class SweptSearch {
  public:
   SweptSearch(const Assembly& assembly, const Motion& motion, double wanted, std::size_t most);
 
-  /// Over all surfaces, up to the first place that is nearer than the wanted clearance.
+  /// Searches all surfaces, up to the first place closer than the wanted clearance.
   Swept operator()(std::span<const Surface* const> surfaces);
 
  private:
   struct MoveInterval {
     double from, to;
-    ToolFrame frame;  // in its middle
+    ToolFrame frame;  // at the middle of the interval
     Drift drift;
-    std::uint32_t half;  // the first of both, or 0: not needed yet
+    std::uint32_t half;  // index of the first half interval; 0: not split yet
   };
   struct Entry {
-    double low, radius, drifts;  // of its sphere; how much nearer the tool may come in half the stretch
-    double distance;             // of the sphere's centre in the stretch's middle
-    std::uint32_t index;         // of a group, or place of a triangle
+    double low, radius, drifts;  // of its sphere; the last: how much nearer the tool may come in half the interval
+    double distance;             // of the sphere's centre at the middle of the interval
+    std::uint32_t index;         // index of a group, or place of a triangle
     std::uint32_t stretch;
     std::uint16_t surface;
     enum Kind : std::uint16_t { Group, Triangle } kind;
-    bool operator<(const Entry& o) const { return low > o.low; }  // the least is first in a heap
+    bool operator<(const Entry& o) const { return low > o.low; }  // smallest bound first
   };
 
   std::uint32_t add_stretch(double from, double to);

@@ -1,17 +1,17 @@
-// Coordinates in which a tool stands still.
+// The tool's own coordinate frame.
 #pragma once
 
 #include "riffler/geom/pose.hpp"
 
 namespace riffler::collide {
 
-/// A right-handed frame with its origin in the tip and its third direction along the axis. Subtracting the tip first
-/// keeps what is small near the tool small, wherever the part stands.
+/// A right-handed frame with its origin at the tip and its third axis along the tool's axis. Subtracting the tip first
+/// keeps precision near the tool, wherever the part lies.
 struct ToolFrame {
   Vec3 tip, u, v, axis;
 
-  /// std::invalid_argument where the axis is not finite or its length differs from 1 by more than 1e-6, or the tip is
-  /// not finite.
+  /// Throws std::invalid_argument if the axis is not finite or its length differs from 1 by more than 1e-6, or if the
+  /// tip is not finite.
   explicit ToolFrame(const Pose& pose);
 
   Vec3 to_tool(const Vec3& p) const {
@@ -19,7 +19,7 @@ struct ToolFrame {
     return {glm::dot(d, u), glm::dot(d, v), glm::dot(d, axis)};
   }
   Vec3 to_part(const Vec3& q) const { return tip + turned(q); }
-  /// The same for directions.
+  /// Rotates a direction from the part's frame to the tool's.
   Vec3 turned(const Vec3& d) const { return d.x * u + d.y * v + d.z * axis; }
 };
 

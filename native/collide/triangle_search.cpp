@@ -22,8 +22,8 @@ double size_of(const Corners& t) {
   return size;
 }
 
-/// Least over a triangle of the greater of two linear functions, given at its corners: at a corner, or where a side
-/// crosses the line on which they are equal.
+/// Minimum over a triangle of the maximum of two linear functions, given at its corners: it lies at a corner, or where
+/// a side crosses the line on which they are equal.
 double least_of_greater(const std::array<double, 3>& f, const std::array<double, 3>& g) {
   double least = kInfinity;
   for (int i = 0; i < 3; ++i) {
@@ -51,7 +51,7 @@ Quadratic mix(const Quadratic& a, const Quadratic& b, double share) {
           a.bend + share * (b.bend - a.bend)};
 }
 
-/// Where a convex quadratic about `middle` is least on a triangle.
+/// Minimum of a convex quadratic about `middle` on a triangle.
 Vec3 least_place(const Quadratic& q, const Vec3& middle, const Corners& t) {
   const Vec3 e1 = t.b - t.a, e2 = t.c - t.a, from = t.a - middle;
   const Vec3 h1 = q.bend * e1, h2 = q.bend * e2, slope = q.slope + q.bend * from;
@@ -74,7 +74,7 @@ Vec3 least_place(const Quadratic& q, const Vec3& middle, const Corners& t) {
   return best;
 }
 
-/// Where the greater of two of them is least: the mean of both that has its least place where they are equal.
+/// Minimum of the maximum of two quadratics: the weighted mean of both whose minimum lies where they are equal.
 Vec3 least_place(const Quadratic& f, const Quadratic& g, const Vec3& middle, const Corners& t) {
   double low = 0, high = 1;
   Vec3 place = least_place(f, middle, t);
@@ -86,7 +86,7 @@ Vec3 least_place(const Quadratic& f, const Quadratic& g, const Vec3& middle, con
     place = least_place(mix(f, g, share), middle, t);
     (f(place - middle) > g(place - middle) ? high : low) = share;
   }
-  // A level mean has many such places: the one sought lies between those of a little more of either.
+  // A flat mean has many minima: the one sought lies between those of slightly larger weights of either function.
   const Vec3 p = least_place(mix(f, g, low), middle, t), q = least_place(mix(f, g, high), middle, t);
   const double here = f(p - middle) - g(p - middle), there = f(q - middle) - g(q - middle);
   return here == there ? p : p + std::clamp(here / (here - there), 0.0, 1.0) * (q - p);
@@ -103,14 +103,14 @@ TriangleSearch::Look TriangleSearch::look(const Vec3& p) {
 TriangleSearch::Look TriangleSearch::look_beside(const Vec3& p) {
   ++cells_;
   const double rho = std::sqrt(p.x * p.x + p.y * p.y);
-  // Squares that vanish leave no direction.
+  // A radius whose square vanishes has no direction.
   Look l{p, rho > 1e-150 ? Vec3(p.x / rho, p.y / rho, 0) : Vec3(0), {rho, p.z}, {}};
   l.at = runs_.at(l.place, at_.data());
   return l;
 }
 
-/// Values at the corners of the tangent plane of what a slope belongs to. Less what the corners may drift, which makes
-/// them those of a concave function: the plane through them is below.
+/// Values at the corners of the tangent plane of a slope, minus the corners' drift. That makes them values of a concave
+/// function, so the plane through them is a lower bound.
 std::array<double, 3> TriangleSearch::plane(const OutlineRuns::Slope& s, const Corners& t, const Look& from) const {
   const Vec3 g = s.normal.x * from.radial + Vec3(0, 0, s.normal.y);
   const auto value = [&](const Vec3& p) {
@@ -119,18 +119,18 @@ std::array<double, 3> TriangleSearch::plane(const OutlineRuns::Slope& s, const C
   return {value(t.a), value(t.b), value(t.c)};
 }
 
-/// The same of the ball that touches the foot: from any of its points its surface is that near, which is concave.
+/// The same for the ball that touches the foot: the distance to its surface is concave.
 std::array<double, 3> TriangleSearch::ball(const OutlineRuns::Slope& s, const Corners& t, const Look& from) const {
   const Vec3 out = s.normal.x * from.out() + Vec3(0, 0, s.normal.y), centre = from.point + (s.reach - s.distance) * out;
   const auto value = [&](const Vec3& p) { return s.reach - glm::length(p - centre) - drift_of(p); };
   return {value(t.a), value(t.b), value(t.c)};
 }
 
-/// No point of the tool is deeper than any one place of its surface is far from it: as a negative number the distance
-/// from the foot is concave, so the plane through its values at the corners is below. Nor is it deeper than the edge is
-/// far that the foot is on, where all feet on that edge are between its ends. Of a hollow that is a ball's bound, of
-/// another a plane's, as long as the points are on its inner side: as all are, or those that are as near to p as the
-/// edge is.
+/// The depth at a point is at most its distance from any one point of the surface. As a negative number, the distance
+/// from the foot is concave, so the plane through its values at the corners is a lower bound. The depth is also at most
+/// the distance from the foot's edge, if all feet on that edge lie between its ends. For a hollow this is the bound of
+/// a ball, otherwise that of a plane, as long as the points are on the edge's inner side: all of them, or those that
+/// are as near to p as the edge is.
 std::array<double, 3> TriangleSearch::outer(const Corners& t, const Look& from, double radius) const {
   if (from.at.margin >= radius && (from.at.outermost || from.at.distance + radius <= 0))
     return from.at.reach < kInfinity ? ball(from.at, t, from) : plane(from.at, t, from);
@@ -142,7 +142,7 @@ std::array<double, 3> TriangleSearch::outer(const Corners& t, const Look& from, 
 double TriangleSearch::run_bound(std::size_t run, const Corners& t, const Look& from, double radius,
                                  const std::array<double, 3>& outer) const {
   const OutlineRuns::RunAt& at = at_[run];
-  // The ball that touches the foot from outside and does not enter the run's solid; of a convex one, a half-space.
+  // The ball that touches the foot from outside without entering the run's solid; a half-space for a convex run.
   const auto closed = [&] {
     const double far = at.closed.distance - radius;
     if (at.closed.distance >= at.closed.reach) return far;
@@ -162,8 +162,8 @@ double TriangleSearch::run_bound(std::size_t run, const Corners& t, const Look& 
   return from.at.distance < 0 ? std::max(by_steps, least_of_greater(first, outer)) : by_steps;
 }
 
-/// By the corners alone: ρ is convex, so where it makes leaving the sector more likely it is greatest at one of them,
-/// and elsewhere it is at least the way along the radial direction.
+/// From the corners alone: ρ is convex. Where a larger ρ could leave the sector, its maximum is at a corner; where a
+/// smaller ρ could, it is at least the component along the radial direction.
 bool TriangleSearch::in_sector(std::size_t run, const Corners& t, const Look& from) const {
   if (drift_) return false;
   const auto in = [&](const Vec3& p) {
@@ -194,8 +194,8 @@ double TriangleSearch::bound(const Corners& t, const Drift& drift) {
   return low;
 }
 
-/// Newton's method on the triangle, as long as the distance falls. Inside, near an inner corner of the tool, the
-/// distance is the greater of two.
+/// Newton's method on the triangle while the distance falls. Inside, near an inner corner of the tool, the distance is
+/// the maximum of two.
 TriangleSearch::Look TriangleSearch::downhill(const Corners& t, Look from) {
   const double enough = 0.1 * slack(size_of(t));
   const auto model = [&](const OutlineRuns::Slope& s) {
@@ -218,12 +218,12 @@ TriangleSearch::Look TriangleSearch::downhill(const Corners& t, Look from) {
   return from;
 }
 
-/// Halves a cell across its longest side; false where rounding leaves nothing to halve.
+/// Halves a cell across its longest side; false if rounding leaves nothing to halve.
 bool TriangleSearch::halve(const Corners& s, double low) {
   const double ab = glm::length(s.b - s.a), bc = glm::length(s.c - s.b), ca = glm::length(s.a - s.c);
   const double longest = std::max({ab, bc, ca});
   if (longest <= 1e-15 * size_of(s)) return false;
-  if (glm::length(glm::cross(s.b - s.a, s.c - s.a)) <= 1e-12 * longest) {  // no thicker than that: a line
+  if (glm::length(glm::cross(s.b - s.a, s.c - s.a)) <= 1e-12 * longest) {  // degenerate: a line
     const auto [p, q] = ab == longest ? std::pair(s.a, s.b) : bc == longest ? std::pair(s.b, s.c) : std::pair(s.c, s.a);
     const Vec3 m = 0.5 * (p + q);
     push({{p, m, m}, low}), push({{m, q, q}, low});
@@ -266,9 +266,9 @@ void TriangleSearch::search(const Corners& t, double low_of_all, Deadline& deadl
     const Look lowest = downhill(cell.t, middle);
     if (lowest.point != middle.point) low = std::max(low, lower(cell.t, look(lowest.point)));
     if (done()) continue;
-    // The axis is a kink, too, which Newton's method overshoots. The tool is all that lies between its outline and the
-    // axis, so moving a ball that is in it, or one out of it, straight towards or from the axis keeps it there: no
-    // point is lower than that of the axis at its height.
+    // The axis is another kink, which Newton's method overshoots. The tool occupies everything between its outline and
+    // the axis; moving a ball inside it towards the axis, or a ball outside it away from the axis, keeps it inside or
+    // outside. No point is therefore lower than the axis point at its height.
     if (lowest.place.x < farthest(cell.t, lowest.point)) {
       const auto on_axis = [](const Vec3& p) { return Vec3(0, 0, p.z); };
       low = std::max(

@@ -8,7 +8,7 @@ namespace riffler::collide {
 
 namespace {
 
-constexpr double kFar = 4;  // radii from a sphere's centre at which what is in it is a dipole
+constexpr double kFar = 4;  // distance from a sphere's centre, in radii, beyond which its content is taken as a dipole
 
 /// Half the solid angle, as the argument of a complex number (van Oosterom and Strackee, IEEE Trans. Biomed. Eng. 30(2)
 /// (1983) 125).

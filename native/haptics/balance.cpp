@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kFree = 5;
 
-/// Row of the product with [e_i · (v + ω × arm)] for the coordinate k of (v, ω).
+/// Derivative of e_i · (v + ω × arm) with respect to coordinate k of (v, ω).
 double moved_by(std::size_t i, std::size_t k, const Vec3& arm) {
   if (k < 3) return i == k ? 1 : 0;
   Vec3 turn(0);
@@ -42,7 +42,7 @@ void Balance::add_contact(const Wrench& wrench, const collide::ContactStiffness&
 }
 
 Twist Balance::solve() const {
-  // Three translations and the two turns square to the axis: basis · coordinates.
+  // Three translations and the two rotations orthogonal to the axis: basis · coordinates.
   const Vec3 u = geom::any_perpendicular(axis_), v = glm::cross(axis_, u);
   double basis[6][kFree]{};
   for (std::size_t i = 0; i < 3; ++i) {
@@ -56,7 +56,7 @@ Twist Balance::solve() const {
       for (std::size_t i = 0; i < 6; ++i)
         for (std::size_t j = 0; j < 6; ++j) a[r][c] += basis[i][r] * matrix_[i][j] * basis[j][c];
   }
-  // Cholesky, in place. A coordinate that nothing holds stays.
+  // In-place Cholesky decomposition. A coordinate that nothing holds stays 0.
   for (std::size_t j = 0; j < kFree; ++j) {
     const double before = a[j][j];
     for (std::size_t k = 0; k < j; ++k) a[j][j] -= a[j][k] * a[j][k];

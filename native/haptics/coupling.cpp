@@ -12,16 +12,16 @@ namespace riffler::haptics {
 
 namespace {
 
-/// A unit vector square to `a`, from the coordinate axis that is farthest from it: more accurate than
-/// any_perpendicular(), and other bits.
+/// A unit vector orthogonal to `a`, built from the coordinate axis farthest from it. More accurate than
+/// any_perpendicular(), with different bits.
 Vec3 any_square_to(const Vec3& a) {
   const Vec3 m = glm::abs(a);
   const Vec3 far = m.x <= m.y && m.x <= m.z ? Vec3(1, 0, 0) : m.y <= m.z ? Vec3(0, 1, 0) : Vec3(0, 0, 1);
   return glm::normalize(glm::cross(a, far));
 }
 
-/// Shortest turn from unit vector to unit vector. The difference, or near half a turn the sum, is exact where the cross
-/// product of the vectors themselves would be rounding.
+/// Smallest rotation from unit vector to unit vector. Uses the difference, or near half a turn the sum, which stays
+/// exact where the cross product of the vectors themselves would be rounding noise.
 Vec3 turn(const Vec3& from, const Vec3& to) {
   const double along = glm::dot(from, to);
   const Vec3 c = glm::cross(from, along > 0 ? to - from : to + from);
@@ -30,8 +30,7 @@ Vec3 turn(const Vec3& from, const Vec3& to) {
   return s > 1e-15 ? std::atan2(s, along) / s * c : kPi * any_square_to(from);
 }
 
-/// Rotation vector of a rotation matrix, by its quaternion, of which the largest component is found first (Shepperd
-/// 1978).
+/// Rotation vector of a rotation matrix, via its quaternion, computed from its largest component (Shepperd 1978).
 Vec3 rotation_vector(const Mat3& r) {
   const double squares[4] = {1 + r[0][0] + r[1][1] + r[2][2], 1 + r[0][0] - r[1][1] - r[2][2],
                              1 - r[0][0] + r[1][1] - r[2][2], 1 - r[0][0] - r[1][1] + r[2][2]};
@@ -49,8 +48,8 @@ Vec3 rotation_vector(const Mat3& r) {
   return s > 0 ? 2 * std::atan2(s, w) / s * v : Vec3(0);
 }
 
-/// Spring force over stiffness, and energy over stiffness, at a stretch of `x` that is at most `end`: grows up to
-/// `limit`, stays, and, if `end` is finite, falls again over the last `limit`.
+/// Spring force over stiffness, and energy over stiffness, at a stretch `x` ≤ `end`. Grows up to `limit`, then stays
+/// constant and, if `end` is finite, falls over the last `limit`.
 struct Law {
   double force, energy;
 };
@@ -94,7 +93,8 @@ CouplingWrenches couple(const CouplingSettings& settings, const PoseError& stret
   const Law pull = spring(length, settings.max_stretch, std::numeric_limits<double>::infinity());
   const Law turn = spring(angle, settings.max_turn, kPi);
   const Twist relative = device - tool;
-  // On the tool, towards the device. About the device's point the force has no moment: it points along the line there.
+  // On the tool, towards the device. The force has no moment about the device's point, since its line passes through
+  // it.
   const Wrench on_tool{
       along(stretch.translation, length, settings.stiffness * pull.force) + settings.damping * relative.linear,
       along(stretch.rotation, angle, settings.turn_stiffness * turn.force) + settings.turn_damping * relative.angular};

@@ -63,8 +63,8 @@ Wrench limited(const LimitSettings& s, const Capability& device, const Wrench& p
   r.magnitude = magnitude_gain(s, w);
   w = r.speed * r.magnitude * w;
   const Wrench target = w;
-  // The limits are convex, so every wrench between two that keep them keeps them. But the pose has changed since the
-  // previous one, and with it what the device can push and how fast it moves: both are applied again.
+  // The limits are convex, so every wrench between two that satisfy them satisfies them. But since the previous wrench
+  // the pose has changed, and with it the capability and the speed: apply both again.
   w = renderable(device, slewed(s, previous, target, dt));
   r.slewed = !(w == target);
   LimitSettings slow = s;

@@ -36,9 +36,9 @@ void Passivity::reset() {
   waiting_ = static_cast<std::size_t>(std::ceil(settings_.latency / settings_.period - 1e-9));
 }
 
-/// What the device itself took from the hand, at the least. Damping: among all motions over a way the steady one loses
-/// the least (Cauchy and Schwarz). Friction: the path is at least as long as the way, which is known to one step. So
-/// that this step weighs little, ways are gathered until they are some steps long.
+/// Lower bound of what the device itself took from the hand. Damping: among all motions over a given displacement, the
+/// steady one loses the least (Cauchy–Schwarz). Friction: the path is at least as long as the displacement, which is
+/// known to one step. To make that step matter little, displacements are accumulated until they are several steps long.
 double Passivity::dissipated(const Twist& displacement, double dt) {
   double sum = 0;
   for (int k = 0; k < kCoordinates; ++k) {
@@ -59,22 +59,22 @@ void Passivity::observe(const Wrench& held, const Twist& displacement, double dt
     return;
   }
   energy_ += dissipated(displacement, dt) - power(held, displacement);
-  // Credit is forgotten, debt never is. What is not held by an object was lost for good, to friction or to cutting, and
-  // must not pay for a later fault: no object holds more than `storage`, and none anything where nothing is felt.
+  // Cap the credit, never the debt. Energy not stored in an object was dissipated, by friction or cutting, and must not
+  // pay for a later fault: no object stores more than `storage`, and none stores anything while the wrench is zero.
   energy_ = std::min(energy_, held == Wrench{} ? settings_.reserve : settings_.storage);
   if (dt > 0) rate_ = 1 / dt * displacement, last_dt_ = dt;
 }
 
 double Passivity::unsure(int k, double rate, std::size_t ahead) const {
   const double hold = settings_.period, longest = hold + settings_.jitter;
-  // From the mean rate of the last tick to that of the hold are half of both and all between; and either end of either
-  // displacement is known to half a step.
+  // Between the mean rates of the last tick and of the hold lie half of each and everything between; either end of
+  // either displacement is known to half a step.
   const double from_middle_to_middle = (2 * static_cast<double>(ahead) + 1) * longest + last_dt_;
   return settings_.acceleration[k] * longest * from_middle_to_middle / 2 +
          settings_.resolution[k] * (1 + hold / last_dt_) + settings_.jitter * std::abs(rate);
 }
 
-/// A wrench that was shrunk after the controller delivers no more than this, as less than nothing counts as nothing.
+/// A wrench scaled down after the controller delivers no more than this, since negative deliveries count as zero.
 double Passivity::on_the_way(const Capability& device) const {
   const Twist rate{rate_.linear * device.axes, rate_.angular * device.axes};
   double sum = 0;
@@ -90,12 +90,13 @@ double Passivity::on_the_way(const Capability& device) const {
 
 Wrench Passivity::control(const Wrench& wanted, const Capability& device) {
   const double hold = settings_.period;
-  // In the device's coordinates, where the damping of one is rendered by that one alone.
+  // In the device's coordinates, in which each damping acts on one coordinate only.
   const auto local = [&](const Vec3& v) { return v * device.axes; };
   const Wrench force{local(wanted.force), local(wanted.torque)};
   const Twist rate{local(rate_.linear), local(rate_.angular)};
 
-  // Largest energy that `wanted` can deliver during its hold, and smallest that full damping takes from the hand.
+  // Largest energy that `wanted` can deliver during its hold, and smallest energy that full damping takes from the
+  // hand.
   double delivered = 0, taken = 0;
   Wrench damping;
   for (int k = 0; k < kCoordinates; ++k) {
@@ -106,7 +107,7 @@ Wrench Passivity::control(const Wrench& wanted, const Capability& device) {
     damping[k] = -settings_.max_damping[k] * rate[k];
     taken += std::abs(damping[k]) * sure;
   }
-  // The delivery of a sum is at most the sum of deliveries, so kept · delivered − damped · taken bounds it.
+  // The energy of a sum is at most the sum of energies, so kept · delivered − damped · taken is an upper bound.
   const double held = energy_ - on_the_way(device);
   kept_ = 1, damped_ = 0;
   Wrench out = wanted;

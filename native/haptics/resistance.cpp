@@ -14,7 +14,7 @@ void Resistance::PerWay::add(double amount, double length, double memory) {
     if (!(amount > 0)) return;
     way = 0.02;
   }
-  // Of what was met evenly along the way, 1 − e^(−length/memory) stays. Of no way the limit.
+  // A resistance met evenly along the travel keeps the factor 1 − e^(−length/memory). For zero travel, the limit.
   const double kept = std::exp(-length / memory);
   const double share = length > 1e-9 * memory ? -std::expm1(-length / memory) / length : 1 / memory;
   sum = kept * sum + share * amount;
@@ -28,8 +28,8 @@ void Resistance::forget() {
 
 void Resistance::learn(const Twist& way, const Wrench& wrench, double dt, double reach) {
   const double force = glm::length(wrench.force), turn = glm::length(way.angular);
-  // Where the force acts: on the line of the wrench, next to the tip. Of forces that cancel each other it would be far
-  // away, and is where the tool ends; what is missing is the couple.
+  // Where the force acts: on the line of the wrench, next to the tip. Where opposing forces put that line far away, use
+  // the tool's end; the remaining moment is a couple.
   Vec3 arm = force > 0 ? glm::cross(wrench.force / force, wrench.torque / force) : Vec3(0);
   if (const double far = glm::length(arm); far > reach) arm *= reach / far;
   const Vec3 there = way.linear + glm::cross(way.angular, arm);

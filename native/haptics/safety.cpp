@@ -35,7 +35,7 @@ Safety::Finding Safety::check(const Observation& now) const {
     return {Cause::NotFinite, 0};
   if (now.device_fault)
     return {now.device_late ? Cause::DeviceLate : Cause::DeviceFault, static_cast<double>(now.device_fault)};
-  // Before it is homed a device has no pose that could be checked.
+  // Before homing, a device has no pose to check.
   if (state_ == ForceState::Homing && !now.homed) return {Cause::None, 0};
   if (!now.homed) return {Cause::NotHomed, 0};
   if (std::abs(now.redundancy) > settings_.redundancy) return {Cause::Redundancy, now.redundancy};
@@ -46,7 +46,7 @@ Safety::Finding Safety::check(const Observation& now) const {
 
 Safety::Finding Safety::check_motion(const Observation& now) const {
   if (placed_) {
-    // After a late tick the hand may have gone further, but not at a speed that the next check refuses.
+    // After a late tick the hand may have moved further, but not faster than the next check allows.
     const double way = glm::length(now.pose.tip - last_.tip), turn = geom::angle_between(now.pose.axis, last_.axis);
     if (way > settings_.jump.linear + settings_.overspeed.linear * now.dt) return {Cause::Jump, way};
     if (turn > settings_.jump.angular + settings_.overspeed.angular * now.dt) return {Cause::Jump, turn};
@@ -81,7 +81,8 @@ ForceState Safety::observe(const Observation& now) {
   return state_;
 }
 
-/// Records a finding and takes the force away. While tripped, a finding only begins the rest anew, unless it is graver.
+/// Records a finding and takes the force away. While tripped, a finding only restarts the rest period, unless it is
+/// more severe.
 void Safety::trip(const Finding& finding) {
   rested_ = 0;
   const bool news = state_ != ForceState::Tripped || (heals(cause_) && !heals(finding.cause));
@@ -97,7 +98,7 @@ void Safety::rest(double dt) {
   if (heals(cause_) && rested_ >= settings_.rest) apply(ForceEvent::Rested);
 }
 
-/// The dead-man switch. Letting go is no fault, so there is no rest to wait for: pressing again begins the ramp.
+/// The dead-man switch. Releasing it is no fault, so no rest is required: pressing it again begins the ramp.
 void Safety::let_go(const Observation& now) {
   if (!now.dead_man && lets_force_through(state_)) {
     log_.add({time_, state_, Cause::NoDeadMan, 0});
@@ -111,10 +112,10 @@ void Safety::interrupt() {
   apply(ForceEvent::Release);
 }
 
-/// Up along the ramp, down at once to what freshness leaves.
+/// Raises the gain along the ramp; lowers it at once to the freshness.
 void Safety::move_gain(double dt, double freshness) {
   cause_ = Cause::None;
-  // A late tick is no reason to climb faster.
+  // A late tick must not raise the gain faster.
   gain_ = std::min({1.0, gain_ + std::min(dt, settings_.fresh) / settings_.ramp, freshness});
   if (freshness < 1) apply(ForceEvent::Late);
   if (gain_ >= 1) apply(ForceEvent::Risen);

@@ -12,7 +12,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t kPoints = 4096;  // of a contact, for which there is room from the start
+constexpr std::size_t kPoints = 4096;  // contact points for which memory is reserved at the start
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -25,19 +25,19 @@ Pose moved(const Pose& from, const Twist& way) {
   return {from.tip + way.linear, glm::normalize(std::cos(angle) * from.axis + std::sin(angle) * side)};
 }
 
-/// As a displacement about `from`'s tip.
+/// The displacement between two poses, about `from`'s tip.
 Twist way_between(const Pose& from, const Pose& to) {
   const PoseError s = pose_error(to, from);
   return {s.translation, s.rotation};
 }
 
-/// Between two poses of the grip; of opposite axes the later one.
+/// Interpolates between two poses of the grip; for opposite axes, the later one.
 Pose between(const Pose& from, const Pose& to, double t) {
   if (t >= 1 || glm::dot(from.axis, to.axis) < -0.99) return {glm::mix(from.tip, to.tip, std::min(t, 1.0)), to.axis};
   return Motion(from, to).at(t);
 }
 
-/// Shrunk to the bounds.
+/// Scaled down to the bounds.
 Twist within(const Twist& way, const Bounds& most) {
   const auto factor = [](double length, double limit) { return length > limit ? limit / length : 1; };
   return std::min(factor(glm::length(way.linear), most.linear), factor(glm::length(way.angular), most.angular)) * way;
@@ -74,11 +74,11 @@ void SculptSettings::validate() const {
 
 /// One part of a step.
 struct SculptStep::Part {
-  Pose grip;     // at its end
+  Pose grip;     // at the end of the part
   Twist moving;  // of the grip, about its own point
   double dt;
-  Bounds most;                   // that the tool moves
-  std::optional<double> budget;  // for queries
+  Bounds most;                   // of the tool's motion
+  std::optional<double> budget;  // s for queries
 };
 
 SculptStep::SculptStep(const SculptSettings& settings, const Tool& tool, sweep::MoveCarver* stock,
@@ -91,7 +91,7 @@ SculptStep::SculptStep(const SculptSettings& settings, const Tool& tool, sweep::
       resistance_((settings.validate(), settings.memory.value_or(stock ? memory_for(stock->pitch()) : 1)),
                   settings.damping) {
   if (!obstacles) return;
-  assembly_.deepest();  // found now, not in a step
+  assembly_.deepest();  // computed now rather than in a step
   contact_.points.reserve(kPoints), contact_.touches.reserve(kPoints);
 }
 
@@ -109,11 +109,11 @@ void SculptStep::place(const Pose& pose) {
   resistance_.forget();
 }
 
-/// Where everything that is known now balances, as a displacement of the tool.
+/// The equilibrium of all known forces, as a displacement of the tool.
 Twist SculptStep::balanced(const Part& part) const {
   const CouplingSettings& c = settings_.coupling;
   const PoseError ahead = pose_error(part.grip, tool_);
-  // The spring as it is at this stretch: where it pulls less than in proportion, it is softer.
+  // Linearise the spring at this stretch: where its force is limited, it is softer.
   const CouplingWrenches pull = couple(c, ahead, {}, {});
   const auto stiffness = [](double force, double length, double small) { return length > 0 ? force / length : small; };
   const Twist far{ahead.translation, ahead.rotation};
@@ -129,8 +129,8 @@ Twist SculptStep::balanced(const Part& part) const {
     balance.add_contact(contact + times(contact_.stiffness, from_asked), contact_.stiffness);
     balance.add_contact({}, slowing_);
     const Twist kept = balance.solve();
-    // What is touched pushes and does not pull: where the hand lifts the tool off, the tool goes no further with it
-    // than where it stops to push, unless it is free there.
+    // Contacts push but do not pull. When the hand lifts the tool off, the tool goes only to where the contact force
+    // ends, unless it is free there.
     const auto push = [&](const Twist& w) {
       return glm::dot((contact - times(contact_.stiffness, w - from_asked)).force, contact.force);
     };
@@ -143,13 +143,13 @@ Twist SculptStep::balanced(const Part& part) const {
   return way;
 }
 
-/// Asks what is touched at the end of that way; false where too much of the answer is missing.
+/// Queries the contact at the end of that displacement; false if the result misses too much.
 bool SculptStep::look(const Twist& way, const Part& part, Result& result) {
   asked_ = moved(tool_, way);
   obstacles_->query(assembly_, asked_, part.budget, contact_, 0.1 * settings_.missed);
   touching_ = contact_.depth > 0;
-  // What pushes need not push along the tool's normal, and shakes a stiff contact. What resisted lately slows the tool
-  // down, along the same directions, and it stays there instead of going to and fro.
+  // The pushing direction need not be the tool's normal, which makes a stiff contact oscillate. Adding the recent
+  // resistance as damping along the same directions stops that.
   for (std::size_t i = 0; i < 6; ++i)
     for (std::size_t j = 0; j < 6; ++j)
       slowing_[i][j] = touching_ ? 0.75 * slowing_[i][j] + 0.25 * contact_.stiffness[i][j] : 0;
@@ -168,12 +168,12 @@ Twist SculptStep::advance(const Part& part, Result& result) {
     }
     const Twist before = way;
     if (touching_) {
-      // From where it was asked about as far again, and out of what was found there.
+      // Bounded by the same distance again from the queried pose, plus the depth found there.
       const Bounds most{part.most.linear + contact_.depth, part.most.angular + contact_.depth / assembly_.max_radius()};
       way = before + within(balanced(part) - before, most);
     }
     const double change = size(way - before);
-    // A distance changes by no more than the tool's points move.
+    // A distance changes by at most the displacement of the tool's points.
     bound_ = contact_.depth + contact_.missed_depth_bound + change;
     if (change <= settings_.settled) break;
   }
@@ -181,9 +181,9 @@ Twist SculptStep::advance(const Part& part, Result& result) {
 }
 
 void SculptStep::cut(const Pose& to, const Twist& way, double dt, Result& result) {
-  // Of a tool that stands, too: where it is held because a slow cut left queries no time, it would be held for ever.
+  // Also reset for a tool at rest: otherwise, if a slow cut had left no time for queries, it would be held for ever.
   cut_seconds_ = 0;
-  // A tool that stands has cut there before: what a journal replays is poses that differ.
+  // A tool at rest has already cut there; a journal replays only poses that differ.
   if (!stock_ || (to.tip == tool_.tip && to.axis == tool_.axis)) return;
   const Clock::time_point start = Clock::now();
   const sweep::MoveCarver::Taken taken = stock_->move(tool_, to, dt);
@@ -197,8 +197,8 @@ void SculptStep::cut(const Pose& to, const Twist& way, double dt, Result& result
   fresh_ = false;
 }
 
-/// A tool that was at rest does not fly off, whatever has let it go: it may go twice as far as the grip, and as itself
-/// before. What it flies into has then been asked about in time.
+/// Bounds the motion so that a released tool does not fly off: at most twice the grip's motion plus twice the tool's
+/// own last motion. Whatever it moves into is then queried in time.
 Bounds SculptStep::most_of(const Pose& grip, double share, double dt) const {
   const Twist hand = way_between(grip_, grip), own = dt * rate_;
   const auto bound = [&](const Vec3& a, const Vec3& b, double rest, double most) {
@@ -231,7 +231,7 @@ SculptStep::Result SculptStep::step(const Pose& grip, const Twist& twist, double
     tool_ = to, rate_ = 1 / part.dt * way, gone += share;
     const double each = seconds_since(start) / k;
     if (settings_.budget && k < parts - 1 && seconds_since(start) + 2 * each > *settings_.budget)
-      parts = k + 1, result.shortened = true;  // what is left in one
+      parts = k + 1, result.shortened = true;  // do the rest in one part
   }
   grip_ = grip;
   const PoseError ahead = pose_error(grip, tool_);

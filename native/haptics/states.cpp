@@ -22,7 +22,7 @@ ForceState next(ForceState state, ForceEvent event) {
     case ForceEvent::Rested:
       return state == S::Tripped ? S::Ready : state;
     case ForceEvent::Reset:
-      // By way of homing: what made the trip may have cost the device its pose.
+      // Through homing, because the cause of the trip may have cost the device its pose.
       return state == S::Tripped ? S::Homing : state;
   }
   return S::Off;

@@ -9,7 +9,7 @@ namespace riffler::haptics {
 
 namespace {
 
-/// The rotation by a rotation vector (Rodrigues).
+/// Rotation matrix of a rotation vector (Rodrigues).
 Mat3 rotation(const Vec3& turn) {
   const double angle = glm::length(turn);
   if (angle == 0) return Mat3(1);
@@ -47,10 +47,10 @@ void Workspace::set(const WorkspaceSettings& settings) {
 
 void Workspace::pair_here() {
   grip_pair_ = grip_, target_pair_ = target_;
-  // The shortest turn that is still missing, after the one there was: turns on the way are kept as they are.
+  // The smallest additional rotation on top of the existing one: earlier rotations are kept.
   const Vec3 shown = glm::normalize(aslant_ * (settings_.turn * grip_.axis));
   aslant_ = rotation(pose_error(Pose{Vec3(0), target_.axis}, Pose{Vec3(0), shown}).rotation) * aslant_;
-  // Rounding must not gather.
+  // Re-orthonormalise, so that rounding does not accumulate.
   aslant_[0] = glm::normalize(aslant_[0]);
   aslant_[1] = glm::normalize(aslant_[1] - glm::dot(aslant_[0], aslant_[1]) * aslant_[0]);
   aslant_[2] = glm::cross(aslant_[0], aslant_[1]);
@@ -60,7 +60,7 @@ Pose Workspace::target(const Pose& grip, std::uint32_t buttons) {
   if (!geom::finite(grip.tip) || !(std::abs(glm::length(grip.axis) - 1) < 1e-6)) return target_;
   const bool clutch = (buttons & settings_.clutch_mask) != 0;
   grip_ = grip;
-  // While it is pressed the pair goes along; the tick in which it is let go is still of it.
+  // While the clutch is pressed, update the pair; the tick of the release still belongs to it.
   if (!begun_ || clutch || clutched_) pair_here();
   begun_ = true, clutched_ = clutch;
   target_.tip = target_pair_.tip + settings_.scale * (settings_.turn * (grip.tip - grip_pair_.tip));

@@ -9,7 +9,7 @@ namespace riffler::haptics {
 
 namespace {
 
-/// Shrunk so that force and torque are within the bounds; their ratio stays.
+/// Scaled down so that force and torque are within the bounds; their ratio stays.
 Wrench within(const Wrench& w, const Bounds& bounds, double times = 1) {
   const double force = glm::length(w.force), torque = glm::length(w.torque);
   double gain = 1;
@@ -55,7 +55,7 @@ Wrench WrenchExtrapolator::stepped(const Wrench& wrench, double dt) {
 Wrench WrenchExtrapolator::missed(double dt) {
   if (!(dt > 0) || !std::isfinite(dt)) return out_;
   age_ += dt;
-  // The slope falls on a straight line to nothing at `ahead`; all of it on one to nothing at `fade`.
+  // The slope falls linearly to zero at `ahead`, the whole output linearly to zero at `fade`.
   const double t = std::min(age_, settings_.ahead);
   const double gone = settings_.ahead > 0 ? t - 0.5 * t * t / settings_.ahead : 0;
   const double gain = std::max(0.0, 1 - age_ / settings_.fade);

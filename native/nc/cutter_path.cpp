@@ -18,8 +18,8 @@ const Tool* find(const std::map<int, Tool>& tools, int number) {
   return it == tools.end() ? nullptr : &it->second;
 }
 
-/// What a tool may hang below its tip while it turns from any end of a cut to any other: nothing where all stand
-/// upright, its radius where some are tilted, its length where one points downwards.
+/// How far (mm) a tool may extend below its tip while it turns between any two ends of cuts: 0 if all axes are
+/// vertical, its radius if some are tilted, its length if one points down.
 double hang(std::span<const CutterPath> paths, const std::map<int, Tool>& tools) {
   bool tilted = false, downwards = false;
   for (const CutterPath& path : paths)
@@ -50,7 +50,7 @@ ClearanceZone space_of(std::span<const CutterPath> paths, const std::map<int, To
   return {box.grown(clearance.distance), safe + hang(paths, tools)};
 }
 
-/// The paths with their axes normalised and one feed per row.
+/// The paths with normalised axes and one feed per row.
 std::vector<CutterPath> checked(std::span<const CutterPath> paths) {
   std::vector<CutterPath> out(paths.begin(), paths.end());
   for (std::size_t k = 0; k < out.size(); ++k) {
@@ -73,7 +73,7 @@ struct Ends {
   Link in, out;
 };
 
-/// With a collider they are found in parallel; the first path that has none is an error.
+/// With a collider, found in parallel; throws for the first path that has none.
 std::vector<Ends> ends_of(std::span<const CutterPath> paths, const std::map<int, Tool>& tools,
                           const ClearanceZone& space, const LinkRule& rule) {
   std::vector<Ends> out(paths.size());
@@ -109,14 +109,14 @@ std::vector<Ends> ends_of(std::span<const CutterPath> paths, const std::map<int,
   return out;
 }
 
-/// One move of a link: where it ends, and whether it is fed.
+/// One move of a link: its end pose, and whether it is at feed.
 struct LinkMove {
   Pose to;
   bool fed;
 };
 
-/// The moves along a link, out of the cut at `cut`; gone backwards they are the approach, whose last move, to the cut,
-/// is the path's first row. `level`: z below which there may be stock.
+/// The moves along a link, out of the cut at `cut`. In reverse they are the approach, whose last move, into the cut, is
+/// the path's first row. `level`: z (mm) below which there may be stock.
 std::vector<LinkMove> moves_of(const Link& link, const Pose& cut, double level, const std::optional<double>& lead_in,
                                bool approach) {
   std::vector<LinkMove> out;
@@ -127,7 +127,7 @@ std::vector<LinkMove> moves_of(const Link& link, const Pose& cut, double level, 
     if (lead_in && approach && way < *lead_in && *lead_in < way + length)
       out.push_back({{from.tip + (*lead_in - way) / length * (to.tip - from.tip), to.axis}, true});
     const bool fed = lead_in ? approach && way + length <= *lead_in : !link.direct;
-    // What rises straight is in the air above everything: no feed move ends in the clearance plane.
+    // A vertical rise ends in the air above everything: no feed move ends in the clearance plane.
     const bool rises = !link.direct && &to == &link.poses.back() && !lead_in;
     if (rises && from.tip.z < level && level < to.tip.z) out.push_back({{{to.tip.x, to.tip.y, level}, to.axis}, true});
     out.push_back({to, fed && !rises});
@@ -155,7 +155,7 @@ Program program_from_paths(std::span<const CutterPath> given, std::map<int, Tool
     };
     const auto in = moves_of(ends[k].in, path.poses.front(), level, links.lead_in, true),
                out = moves_of(ends[k].out, path.poses.back(), level, links.lead_in, false);
-    // Backwards a move ends where the one before it, seen from the cut, does.
+    // In reverse, a move ends where its predecessor, seen from the cut, ends.
     for (std::size_t i = in.size(); i-- > 0;) link(in[i].to, i + 1 < in.size() && in[i + 1].fed, path.feed.front());
     for (std::size_t row = 0; row < path.poses.size(); ++row)
       program.append({path.poses[row], path.feed[row], path.spindle, path.tool, 0, false});

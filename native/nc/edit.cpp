@@ -15,7 +15,7 @@ namespace riffler::nc {
 
 namespace {
 
-/// A program with the same tools and provenance, its rows [first, last) as `change` leaves them.
+/// A program with the same tools and provenance, and rows [first, last) modified by `change`.
 template <class Change>
 Program copied(const Program& program, std::size_t first, std::size_t last, const Change& change) {
   Program out;
@@ -65,7 +65,7 @@ Program transformed(const Program& program, const Mat3& turn, const Vec3& shift)
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) off = std::max(off, std::abs(square[i][j] - (i == j)));
   if (!(off < 1e-9) || !(glm::determinant(turn) > 0) || !geom::finite(shift))
-    throw std::invalid_argument("matrix must turn and move only: no scale, no mirror, finite");
+    throw std::invalid_argument("matrix must be a rotation and a translation: no scale, no mirror, finite");
   return copied(program, [&](Move& move) {
     const auto turned = [&](const Pose& p) { return Pose{turn * p.tip + shift, glm::normalize(turn * p.axis)}; };
     move.pose = turned(move.pose);
@@ -89,7 +89,7 @@ Program joined(std::span<const Program* const> programs) {
   for (const Program* p : programs) {
     for (std::size_t row = 0; row < p->size(); ++row) {
       Move move = (*p)[row];
-      // Rapids before the first place that is known are where the program before has ended.
+      // Rapids before the first known place stand where the previous program ended.
       if (move.at_machine && !out.empty()) move.pose = out.poses().back();
       out.append(move);
     }

@@ -1,4 +1,4 @@
-// A program whose swings of rotary axes are rows: for those who follow every motion from row to row.
+// Converts via poses into rows, for code that follows every motion from row to row.
 #pragma once
 
 #include <cstddef>
@@ -9,25 +9,25 @@
 
 namespace riffler::nc {
 
-/// Which row of a program a row of the followed one belongs to: via poses to the row that they lead to.
+/// Maps the rows of a followed program to those of the original: via poses belong to the row they lead to.
 class RowMap {
  public:
-  /// Row `row` has `count` via poses. Rows ascend.
+  /// Row `row` has `count` via poses. Call it with ascending rows.
   void add(std::size_t row, std::size_t count);
   bool empty() const { return ends_.empty(); }
   std::size_t original(std::size_t followed) const;
-  /// What belongs to the rows of the followed program, added up for those of the program.
+  /// Sums per-row values of the followed program into rows of the original.
   std::vector<double> sums(const std::vector<double>& followed) const;
 
  private:
-  /// Of each row with via poses: its number in the followed program, and how many via poses there are up to it.
+  /// Per row with via poses: its index in the followed program, and the number of via poses up to it.
   std::vector<std::pair<std::size_t, std::size_t>> ends_;
 };
 
-/// Of a program that comes in chunks: each after the first begins with the row at which the one before ended.
+/// Follows a program that arrives in chunks: each after the first begins with the last row of the one before.
 class FollowedChunks {
  public:
-  /// The chunk with its via poses as rows; what is counted of it counts once it is `taken`.
+  /// The chunk with its via poses as rows. Its counts are added when it is `taken`.
   const Program& follow(const Program& chunk);
   void taken();
   const RowMap& map() const { return map_; }
@@ -38,8 +38,8 @@ class FollowedChunks {
   Program whole_;
 };
 
-/// `program` with its via poses as rows of their own, which have the line, feed and tool of the row that they lead to.
-/// `map`, if given, takes its rows; they are counted from `first_row` on.
+/// `program` with its via poses as rows, which take line, feed and tool of the row they lead to. `map`, if not null,
+/// receives the rows, counted from `first_row`.
 Program followed(const Program& program, RowMap* map = nullptr, std::size_t first_row = 0);
 
 }  // namespace riffler::nc

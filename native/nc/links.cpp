@@ -11,10 +11,11 @@ namespace riffler::nc {
 
 namespace {
 
-/// Evaluations after which a stretch counts as not clear.
+/// After this many evaluations, a move counts as not clear.
 constexpr std::size_t kMaxEvaluations = 200'000;
 constexpr const char* kRemedy =
-    "tilt the tool otherwise there (another key), let it stick out further, take a slimmer holder or move the fixture";
+    "tilt the tool differently there (another key), let it stick out further, take a slimmer holder or move the "
+    "fixture";
 
 std::string at_place(const Vec3& p) {
   char text[96];
@@ -109,10 +110,10 @@ Link LinkFinder::find(const Pose& pose) const {
     way = {end, above(end)};
   }
   way.insert(way.begin(), pose);
-  throw std::invalid_argument(met(way) + ", and so it does on every other way out that was tried: " + kRemedy);
+  throw std::invalid_argument(met(way) + ", and the same on every other path out: " + kRemedy);
 }
 
-/// A stretch along `direction`, then straight up, or to one side and then up.
+/// A move along `direction`, then straight up, or sideways and then up.
 std::optional<Link> LinkFinder::from_stretch(const Pose& pose, const Vec3& direction) const {
   const double r = 0.5 * assembly_.tool().diameter();
   std::vector<double> lengths{0.25 * r, r, 2 * r, 4 * r, 8 * r, 16 * r};
@@ -138,7 +139,7 @@ std::optional<Link> LinkFinder::from_stretch(const Pose& pose, const Vec3& direc
   return {};
 }
 
-/// What is met where a way is worst.
+/// Describes the collision at the worst place of a path.
 std::string LinkFinder::met(const std::vector<Pose>& way) const {
   Pose worst = way.front();
   double least = 0;

@@ -1,4 +1,4 @@
-// How a tool gets into a cut and out of it without meeting part and fixtures.
+// Links: collision-free paths of a tool into a cut and out of it.
 #pragma once
 
 #include <optional>
@@ -11,23 +11,25 @@
 
 namespace riffler::nc {
 
-/// The way from a cut to the clearance plane, the axis kept: the last pose lies in it, the cut's own is left out.
+/// Path from a cut to the clearance plane with a constant axis. The last pose lies in the plane; the cut's own pose is
+/// left out.
 struct Link {
   std::vector<Pose> poses;
-  /// As retract_path has it: through what the tool has cut, or a plunge along its axis. Other ways may cross stock.
+  /// Whether the path is that of retract_path: through space that the tool has cut, or a plunge along its axis. Other
+  /// paths may cross stock.
   bool direct = true;
 };
 
-/// Finds links for one tool. Every stretch is checked with cutter, shank and holder by Collider::sweep, that is, not at
-/// samples; what is far from part and fixtures by its box alone.
+/// Finds links for one tool. Collider::sweep checks every move with cutter, shank and holder continuously, without
+/// sampling; moves far from part and fixtures pass by their boxes alone.
 class LinkFinder {
  public:
-  /// `rule`, with a collider, and `space` must outlive this.
+  /// `rule` (with a collider) and `space` must outlive this object.
   LinkFinder(const Tool& tool, const ClearanceZone& space, const LinkRule& rule);
 
-  /// The way out of a cut at `pose`, or into it when it is gone backwards: along the axis up to the clearance plane; or
-  /// a stretch along the axis, upwards or between both, one to a side where it takes that, and straight up. The first
-  /// that is clear, short ones first. Throws std::invalid_argument saying what is met, where, and what to do.
+  /// Path out of a cut at `pose`, or in reverse into it: along the axis up to the clearance plane; otherwise a move
+  /// along the axis, upwards or in between, then sideways if needed, then straight up. Returns the first clear one,
+  /// trying short ones first. Throws std::invalid_argument saying what collides, where, and what to do.
   Link find(const Pose& pose) const;
 
  private:
@@ -43,9 +45,9 @@ class LinkFinder {
   Box3 around_;
 };
 
-/// "the holder meets a fixture, 2.39 mm deep, at [1 2 3]", where `pose` is the worst of a motion.
+/// Text such as "the holder meets a fixture, 2.39 mm deep, at [1 2 3]" for the worst pose of a motion.
 std::string meeting(const collide::Collider& collider, const collide::Assembly& assembly, const Pose& pose);
-/// The pose of a motion that is deepest in part and fixtures, by samples: for messages.
+/// The sampled pose of a motion that is deepest in part and fixtures, for messages.
 Pose deepest_pose(const collide::Collider& collider, const collide::Assembly& assembly, const Motion& motion);
 
 }  // namespace riffler::nc

@@ -33,7 +33,7 @@ void put_ticks(std::string& out, std::int64_t value, int decimals, bool trim) {
 }
 
 std::string number_text(double value, int decimals) {
-  if (!(std::abs(value) < 1e9)) return "out of range";  // only sizes in comments can be
+  if (!(std::abs(value) < 1e9)) return "out of range";  // only sizes in comments can be this large
   std::string out;
   put_ticks(out, ticks(value, decimals), decimals, true);
   return out;

@@ -73,7 +73,7 @@ std::optional<std::pair<double, double>> OptionReader::range(const std::string& 
   const auto* value = std::get_if<std::vector<double>>(&*given);
   if (!value || value->size() != 2 || !std::isfinite((*value)[0]) || !std::isfinite((*value)[1]) ||
       !((*value)[0] < (*value)[1]))
-    refuse(name, "two finite numbers that grow");
+    refuse(name, "two finite ascending numbers");
   return std::pair((*value)[0], (*value)[1]);
 }
 

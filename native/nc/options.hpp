@@ -1,4 +1,4 @@
-// Reads the named options that callers give to posts and machines.
+// Reads the named options that callers pass to posts and machines.
 #pragma once
 
 #include <optional>
@@ -12,62 +12,62 @@
 
 namespace riffler::nc {
 
-/// An option that an OptionReader was asked for.
+/// An option that an OptionReader has read.
 struct OptionFact {
   enum class Kind { Number, Positive, Numbers, Range, Flag, Word, Path };
 
   std::string name;
   Kind kind;
-  std::size_t most = 1;                   ///< how many numbers it has
-  std::vector<std::string> words = {};    ///< of which it is one
-  std::optional<OptionValue> value = {};  ///< where it is not given; nothing: there is none then
-  bool needed = false;                    ///< must be given
-  std::string about = {};                 ///< one sentence, where the description of a machine has it
+  std::size_t most = 1;                   ///< largest count of numbers
+  std::vector<std::string> words = {};    ///< the allowed words
+  std::optional<OptionValue> value = {};  ///< default; no value: none
+  bool needed = false;                    ///< required
+  std::string about = {};                 ///< one sentence, if the machine's description has one
 };
 
-/// Takes options out one by one; what is left at the end was not known to anybody. A name that is taken twice has two
-/// meanings, a description's own and everybody's: std::invalid_argument.
+/// Takes options out one by one; options left at the end are unknown. Taking a name twice, as an option of a
+/// description and a general one, throws std::invalid_argument.
 class OptionReader {
  public:
-  /// `owner` stands in messages: "machine tcp", "post tcp". `listing`: an option that must be given may be missing,
-  /// as what can be given is looked for.
+  /// `owner` names the source in messages: "machine tcp", "post tcp". `listing`: required options may be missing,
+  /// because the options are only being listed.
   OptionReader(Options options, std::string owner, bool listing = false)
       : options_(std::move(options)), owner_(std::move(owner)), listing_(listing) {}
 
   const std::string& owner() const { return owner_; }
 
-  /// All options asked for so far, in that order.
+  /// All options read so far, in order.
   const std::vector<OptionFact>& facts() const { return facts_; }
 
-  /// The number `name`, or nothing where it was not given; std::invalid_argument unless it is positive and finite.
+  /// The number `name`, or no value if not given; throws std::invalid_argument unless positive and finite.
   std::optional<double> positive(const std::string& name);
 
-  /// A finite number, or nothing where it was not given.
+  /// A finite number, or no value if not given.
   std::optional<double> finite(const std::string& name);
 
-  /// One number three times, or three, of a machine's description, which says what they are: `about`. Where `otherwise`
-  /// is nothing and the option `must` be given, one that is not is std::invalid_argument with `about`.
+  /// One number (repeated three times) or three numbers of a machine's description, which describes them: `about`. If
+  /// there is no `otherwise` and the option `must` be given, a missing one throws std::invalid_argument with `about`.
   Vec3 of_machine(const std::string& name, std::size_t count, const std::optional<Vec3>& otherwise, bool must,
                   const std::string& about);
 
-  /// Whether `name` was given and nobody has taken it yet.
+  /// Whether `name` was given and not taken yet.
   bool given(const std::string& name) const { return options_.contains(name); }
 
-  /// Two finite numbers that grow, or nothing where they were not given.
+  /// Two finite ascending numbers, or no value if not given.
   std::optional<std::pair<double, double>> range(const std::string& name);
 
-  /// A list of `least` to `most` finite numbers, or nothing where it was not given.
+  /// A list of `least` to `most` finite numbers, or no value if not given.
   std::optional<std::vector<double>> numbers(const std::string& name, std::size_t least, std::size_t most);
 
-  /// A finite number, true or false, or one of some words; `otherwise` where it was not given.
+  /// A finite number, a boolean or one of several words; `otherwise` if not given.
   double number(const std::string& name, double otherwise);
   bool flag(const std::string& name, bool otherwise);
   std::string word(const std::string& name, const std::vector<std::string>& known, const std::string& otherwise);
 
-  /// A path; empty where it was not given.
+  /// A path; empty if not given.
   std::string path(const std::string& name);
 
-  /// Throws std::invalid_argument naming an option that nobody took, and those that are known.
+  /// Throws std::invalid_argument naming an option that was not taken, and the known ones.
   void done() const;
 
  private:

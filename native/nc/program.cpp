@@ -19,7 +19,7 @@ Pose checked_pose(const Pose& pose, std::string_view name, std::size_t row) {
   if (!geom::finite(pose.tip) || !geom::finite(pose.axis)) fail(name, row, "not finite");
   const double length = glm::length(pose.axis);
   if (!(std::abs(length - 1) < 1e-6)) fail(name, row, "the axis is not a unit vector");
-  // A vector that is as close to unit length as doubles allow is kept to the bit.
+  // A vector as close to unit length as doubles allow stays bit-identical.
   return std::abs(length - 1) < 1e-15 ? pose : Pose{pose.tip, pose.axis / length};
 }
 
@@ -35,7 +35,7 @@ void Program::append(const Move& move) {
   if (move.at_machine && leading_ == row)
     ++leading_;
   else if (move.at_machine && !(pose.tip == poses_.back().tip && pose.axis == poses_.back().axis))
-    fail("poses", row, "a row at a position of the machine repeats the pose of the row before");
+    fail("poses", row, "a row at a machine position repeats the pose of the row before");
   if (move.via && !move.via->empty() && row > 0) {
     for (const Pose& on_the_way : *move.via) checked_pose(on_the_way, "via", row);
     via_.emplace_hint(via_.end(), row, move.via);

@@ -19,11 +19,11 @@ namespace {
 constexpr std::array<std::uint8_t, 8> kMagic{0x89, 'R', 'P', 'R', 'G', '\r', '\n', 0x1A};
 constexpr std::uint32_t kVersion = 1;
 constexpr std::size_t kHeader = 40, kRecordHeader = 20;
-/// Enough for deflate, few enough for every thread.
+/// Large enough for deflate, small enough to use every thread.
 constexpr std::size_t kChunkRows = 32768;
 constexpr std::uint32_t kNotes = 0x65746F6E, kTool = 0x6C6F6F74, kRows = 0x73776F72,
                         kVia = 0x20616976;  // "note", "tool", "rows", "via "
-constexpr std::size_t kDoubles = 8;         // of a row: tip, axis, feed, spindle
+constexpr std::size_t kDoubles = 8;         // doubles per row: tip, axis, feed, spindle
 
 double number_of(const Program& program, std::size_t row, std::size_t column) {
   const Pose& pose = program.poses()[row];
@@ -62,7 +62,7 @@ void put_pieces(Bytes& out, const std::vector<tool::Frustum>& pieces) {
 
 constexpr std::string_view kNote = "note:";
 
-/// The provenance, and behind it the reader's notes.
+/// The provenance, followed by the reader's notes.
 Provenance with_notes(const Program& program) {
   Provenance out = program.provenance;
   for (const Note& n : program.notes)
@@ -70,7 +70,7 @@ Provenance with_notes(const Program& program) {
   return out;
 }
 
-/// Takes the notes out of the provenance again; a key that only looks like one stays.
+/// Takes the notes out of the provenance; a key that only resembles a note stays.
 void take_notes(Program& program) {
   std::erase_if(program.provenance, [&](const auto& entry) {
     std::string_view key = entry.first;
@@ -133,7 +133,7 @@ Bytes via_record(std::size_t row, const std::vector<Pose>& via) {
 // --- Reading ---
 
 struct Record {
-  std::size_t at;  ///< byte of the file at which it begins
+  std::size_t at;  ///< byte offset in the file
   std::uint32_t kind, number;
   ByteView payload;
 };
@@ -172,10 +172,10 @@ class Reader {
 
   void check_header() {
     if (bytes_.size() < kMagic.size() || !std::equal(kMagic.begin(), kMagic.end(), bytes_.begin()))
-      fail(0, "not a .rprog file (its first eight bytes are others)");
+      fail(0, "not a .rprog file (its first eight bytes differ)");
     if (bytes_.size() < kHeader) fail(bytes_.size(), "the file ends within its header");
     if (base::get<std::uint32_t>(bytes_, kHeader - 4) != base::checksum(bytes_.first(kHeader - 4)))
-      fail(kHeader - 4, "the header's checksum does not fit");
+      fail(kHeader - 4, "the header's checksum does not match");
     const auto version = base::get<std::uint32_t>(bytes_, 8);
     if (version != kVersion)
       fail(8, "version " + std::to_string(version) + "; this program reads version " + std::to_string(kVersion));
@@ -188,7 +188,7 @@ class Reader {
     notes_ = base::get<std::uint32_t>(bytes_, 32);
   }
 
-  /// In the order in which they must stand; the payloads of rows are looked at later, in parallel.
+  /// Records in their required order; the payloads of rows are decoded later, in parallel.
   std::vector<Record> records() const {
     std::vector<Record> all;
     std::uint64_t rows = 0;
@@ -200,7 +200,7 @@ class Reader {
       const Record record{at, base::get<std::uint32_t>(head, 0), base::get<std::uint32_t>(head, 4),
                           head.subspan(kRecordHeader, length)};
       if (base::get<std::uint32_t>(head, 16) != base::checksum(head.first(16), record.payload))
-        fail(at, "the record's checksum does not fit");
+        fail(at, "the record's checksum does not match");
       const bool via = record.kind == kVia && all.size() > tools_ && all.back().kind != kRows;
       if (!via && record.kind != (all.empty() ? kNotes : all.size() <= tools_ ? kTool : kRows))
         fail(at, "a record of another kind than expected");
@@ -217,7 +217,7 @@ class Reader {
     return all;
   }
 
-  /// What `take` makes of the record's payload; what is wrong with it is at the record.
+  /// Decodes the record's payload with `take`; errors name the record's byte.
   template <class Take>
   auto taken(const Record& record, const Take& take) const {
     base::ByteReader from(record.payload);
@@ -279,16 +279,17 @@ class Reader {
   void add_tool(const Record& record, std::map<int, Tool>& tools) const {
     const int number = static_cast<int>(record.number);
     if (number < 0 || (!tools.empty() && number <= tools.rbegin()->first))
-      fail(record.at + 4, "the tools' numbers do not rise");
+      fail(record.at + 4, "the tools' numbers are not ascending");
     tools.emplace(number, taken(record, &Reader::take_tool));
   }
 
-  /// Those at the beginning of `records`; how many.
+  /// Takes the "via " records at the beginning of `records`; returns their number.
   std::size_t take_vias(std::span<const Record> records) {
     std::size_t count = 0, last = 0;
     for (const Record& record : records) {
       if (record.kind != kVia) break;
-      if (record.number <= last || record.number >= rows_) fail(record.at + 4, "no row to lead to, or not in order");
+      if (record.number <= last || record.number >= rows_)
+        fail(record.at + 4, "via poses without a row, or not in order");
       vias_.emplace(record.number, taken(record, [&](base::ByteReader& from) {
                       auto out = std::make_shared<std::vector<Pose>>();
                       for (auto k = from.number<std::uint32_t>(); k > 0; --k) {
@@ -330,11 +331,11 @@ class Reader {
     base::report(progress, 1);
   }
 
-  /// As Program::append takes them. It changes nothing that it let into a program before; what it would change was not
-  /// written by us.
+  /// Adds rows as Program::append does. A valid file holds rows that append would leave unchanged; a row that append
+  /// would change was not written by Riffler and is an error.
   void add_rows(const Record& record, const Columns& columns, Program& program) const {
     for (std::size_t k = 0; k < record.number; ++k) {
-      if (columns.flags[k] > 3) fail(record.at, "a row has flags that are not known");
+      if (columns.flags[k] > 3) fail(record.at, "a row has unknown flags");
       const Move move{{columns.vector(k, 0), columns.vector(k, 3)},
                       columns.number(k, 6),
                       columns.number(k, 7),
@@ -350,7 +351,7 @@ class Reader {
       }
       const Move kept = program[program.size() - 1];
       if (kept.pose.axis != move.pose.axis || kept.feed != move.feed)
-        fail(record.at, "row " + std::to_string(program.size() - 1) + " is none that a program holds");
+        fail(record.at, "row " + std::to_string(program.size() - 1) + " has values that no program can hold");
     }
   }
 

@@ -8,7 +8,7 @@ namespace riffler::nc {
 
 namespace {
 
-/// Up to this tilt the tool goes along its axis right up to safe height: at most twice the height.
+/// Up to this tilt the tool follows its axis up to safe height: at most twice the height.
 constexpr double kSteepEnough = 0.5;  // cos 60°
 
 }  // namespace
@@ -31,7 +31,7 @@ double ToolEnvelope::below_tip(double axis_z) const {
 Box3 ToolEnvelope::swept_box(const Pose& from, const Pose& to) const {
   Box3 box;
   for (const Pose* pose : {&from, &to}) box.add(pose->tip), box.add(pose->tip + length * pose->axis);
-  // No point of the axis is further than length angle² / 8 from the straight way between its two places.
+  // No point of the axis is further than length · angle² / 8 from the straight line between its two places.
   const double chord = glm::length(to.axis - from.axis), angle = 2 * std::asin(std::min(1.0, 0.5 * chord));
   return box.grown(radius + length * angle * angle / 8 + 1e-9 * (1 + length));
 }
@@ -52,7 +52,7 @@ std::vector<Pose> retract_path(const Pose& pose, const ToolEnvelope& reach, cons
   const double down = o.z < 0 ? (box.lower.z - pose.tip.z) / o.z : std::numeric_limits<double>::infinity();
   way.push_back({pose.tip + std::min(side, down) * o, o});
   if (down < side) {
-    // Out at the bottom: on below everything to the nearest side, and past it as far as the tool leans back.
+    // Out at the bottom: continue below everything to the nearest side, and past it as far as the tool leans back.
     Vec3 p = way.back().tip;
     double best = std::numeric_limits<double>::infinity();
     int axis = 0;

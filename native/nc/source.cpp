@@ -53,7 +53,8 @@ bool NcSource::next(std::string_view& line) {
   }
   line = window_.substr(at_, static_cast<std::size_t>(static_cast<const char*>(end) - window_.data()) - at_);
   at_ = std::min(at_ + line.size() + 1, window_.size());
-  // CR LF and CR CR LF; the end of a file as CP/M had it; a paper tape's leader; a mark of UTF-8.
+  // Filler at the end of a line or file: CR LF and CR CR LF, CP/M's end of file, a paper tape's leader, UTF-8's byte
+  // order mark.
   const auto is_filler = [](char c) { return c == '\r' || c == '\x1A' || c == '\0'; };
   while (!line.empty() && is_filler(line.back())) line.remove_suffix(1);
   while (!line.empty() && line.front() == '\0') line.remove_prefix(1);

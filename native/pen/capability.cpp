@@ -22,14 +22,14 @@ std::string letters_of(const DeviceCapability& device, bool (*has)(const Coordin
   return out.empty() ? " nothing" : out;
 }
 
-/// What A and B turn about: square to the grip, the first the one most like x, or like y where the grip lies along x.
+/// Axes of A and B: perpendicular to the grip; the first closest to x, or to y if the grip lies along x.
 std::pair<Vec3, Vec3> turning_axes(const Vec3& axis) {
   const Vec3 x(1, 0, 0), y(0, 1, 0), like = std::abs(axis.x) < 0.9 ? x : y;
   const Vec3 a = glm::normalize(like - glm::dot(like, axis) * axis);
   return {a, glm::cross(axis, a)};
 }
 
-/// N or N·mm of the direction `unit` that the motors have in this posture.
+/// Largest force or torque (N, N·mm) of the motors along `unit` in this posture.
 struct Strength {
   double peak, continuous;
 };
@@ -67,7 +67,8 @@ std::string capability_text(const DeviceCapability& device) {
   for (std::size_t k = 0; k < 3; ++k)
     if (!device.coordinates[k].pushes) add(std::string("force along ") + kLetters[k]);
   const bool grip = device.turns == TurnAxes::Grip;
-  if (grip && !(device[Coordinate::A].pushes && device[Coordinate::B].pushes)) add("torque square to the grip's axis");
+  if (grip && !(device[Coordinate::A].pushes && device[Coordinate::B].pushes))
+    add("torque perpendicular to the grip's axis");
   if (grip && !device[Coordinate::C].pushes) add("torque about the grip's axis");
   for (std::size_t k = 0; k < 3 && !grip; ++k)
     if (!device.coordinates[3 + k].pushes) add(std::string("torque about ") + kLetters[k]);

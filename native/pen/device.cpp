@@ -17,7 +17,7 @@ const char* not_pushed_text(NotPushed reason) noexcept {
     case NotPushed::BadWrench:
       return "the wrench is not finite";
     case NotPushed::Tripped:
-      return "a check of the safety failed";
+      return "a safety check failed";
     case NotPushed::None:
       break;
   }

@@ -15,7 +15,8 @@ namespace {
 
 using Seconds = std::chrono::duration<double>;
 
-/// A signal that this thread took would end its poll() with an error, which means to hidapi that the device is gone.
+/// Blocks signals: a signal delivered to this thread would end its poll() with an error, which hidapi takes as a
+/// disconnect.
 class WithoutSignals {
  public:
   WithoutSignals() {
@@ -37,7 +38,7 @@ double steady_seconds() noexcept {
   return Seconds(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// What both threads use. They hold it, so that it outlives a driver whose threads do not end in time.
+/// State of both threads. Both hold a reference, so that it outlives a driver whose threads do not end in time.
 struct Driver::Shared final : Connector, Clock {
   Shared(std::shared_ptr<HidModel> m, std::shared_ptr<PenStep> s, std::unique_ptr<Transport> transport, Open o,
          const DriverSettings& settings, std::shared_ptr<Clock> c)
@@ -123,7 +124,7 @@ struct Driver::Shared final : Connector, Clock {
   std::string text;
   int threads_ended = 0;
 
-  DriverLoop loop;  // last: it uses the others from the start
+  DriverLoop loop;  // last, because it uses the other members
 };
 
 Driver::Driver(std::shared_ptr<HidModel> model, std::shared_ptr<PenStep> step, std::unique_ptr<Transport> transport,

@@ -1,4 +1,4 @@
-// The thread that owns an open device, and the one that finds the device again when it is gone.
+// The thread that owns an open device, and a second thread that reconnects a lost one.
 #pragma once
 
 #include <functional>
@@ -12,12 +12,13 @@ namespace riffler::pen {
 
 class Driver {
  public:
-  /// Finds, opens and checks the device; throws OpenError. Called in a thread of its own, one call at a time, never
-  /// while the driver's thread uses the model.
+  /// Finds, opens and checks the device; throws OpenError. Called in its own thread, one call at a time, never while
+  /// the driver's thread uses the model.
   using Open = std::function<std::unique_ptr<Transport>()>;
 
-  /// Starts. `transport` as in DriverLoop. `clock`: the device's own, looked at by the driver's thread alone, or null:
-  /// the system's. Throws std::invalid_argument for settings, std::system_error where no thread can be had.
+  /// Starts the threads. `transport`: as in DriverLoop. `clock`: the device's own, read only by the driver's thread;
+  /// null: the system clock. Throws std::invalid_argument for invalid settings, std::system_error if no thread can be
+  /// created.
   Driver(std::shared_ptr<HidModel> model, std::shared_ptr<PenStep> step, std::unique_ptr<Transport> transport,
          Open open, const DriverSettings& settings = {}, std::shared_ptr<Clock> clock = nullptr);
   /// As stop().
@@ -25,14 +26,14 @@ class Driver {
   Driver(const Driver&) = delete;
   Driver& operator=(const Driver&) = delete;
 
-  /// The device is told not to push and closed, and both threads end. False where that takes longer than `seconds`, a
-  /// system call that does not come back: the threads are then left to themselves, and end when it does. Nor in a
-  /// process that was forked from that of the threads: the device is not its own.
+  /// Stops pushing, closes the device and ends both threads. Returns false if a blocking system call makes that take
+  /// longer than `seconds`: the threads then end by themselves when it returns. Also false in a process forked from
+  /// that of the threads, which does not own the device.
   bool stop(double seconds = 2);
 
   /// As of the last tick. Any thread; never waits.
   LinkStatus status() const noexcept;
-  /// Why the last attempt to connect failed, or nothing. Any thread but the driver's.
+  /// Why the last attempt to connect failed, or empty. Any thread but the driver's.
   std::string problem() const;
 
  private:
@@ -41,7 +42,7 @@ class Driver {
   base::HomeProcess home_;
 };
 
-/// Of the system: std::chrono::steady_clock.
+/// Time of std::chrono::steady_clock, s.
 double steady_seconds() noexcept;
 
 }  // namespace riffler::pen

@@ -57,7 +57,7 @@ void DriverLoop::open(std::unique_ptr<Transport> transport) noexcept {
   ++status_.counts.connections;
   status_.problem = OpenProblem::None;
   status_.state = LinkState::Connected;
-  // A device that pushed for whoever had it before stops now; one that waits for a first word speaks.
+  // A device that was pushing for its previous user stops now, and one that waits for a first report answers.
   release();
 }
 
@@ -75,8 +75,8 @@ void DriverLoop::drive() noexcept {
   if (!put(step_.step(status_.sample, now, dt), now)) lose(counts.write_errors);
 }
 
-/// Waits for a report, and takes all that have come since: only the newest counts, and a queue is delay that the hand
-/// feels. False where the device is gone.
+/// Waits for a report and reads all that have arrived: only the newest counts, and a queue is a delay that the hand
+/// feels. False if the device is gone.
 bool DriverLoop::drain() noexcept {
   LinkCounts& counts = status_.counts;
   unsigned reports = 0, reads = 0;
@@ -92,7 +92,7 @@ bool DriverLoop::drain() noexcept {
     counts.lost += taken.lost;
     counts.old += taken.old;
     counts.malformed += taken.malformed;
-    // Garbage is no sign of life: a device that sends nothing else is as good as gone.
+    // Invalid data is no sign of life: a device that sends nothing else counts as gone.
     if (taken.reports > 0) heard_ = now;
   }
   counts.reports += reports;
@@ -101,7 +101,7 @@ bool DriverLoop::drain() noexcept {
   return true;
 }
 
-/// False where the device is gone.
+/// False if the device is gone.
 bool DriverLoop::put(const haptics::SafeWrench& safe, double now) noexcept {
   std::array<std::uint8_t, 65> bytes{};
   status_.wrench = safe.wrench();
@@ -111,7 +111,7 @@ bool DriverLoop::put(const haptics::SafeWrench& safe, double now) noexcept {
   return transport_->write(std::span(bytes).first(size));
 }
 
-/// Nothing more can be done where this fails: the watchdog of the device does the rest.
+/// If this fails, nothing more can be done: the device's watchdog does the rest.
 void DriverLoop::release() noexcept {
   std::array<std::uint8_t, 65> bytes{};
   const std::size_t size = model_.release(clock_.now(), bytes);
@@ -130,7 +130,7 @@ void DriverLoop::lose(std::uint32_t& count) noexcept {
   next_attempt_ = clock_.now() + status_.retry;
 }
 
-/// Not connected.
+/// One tick without a connection.
 void DriverLoop::look() noexcept {
   const double now = clock_.now();
   if (status_.state == LinkState::Waiting) {

@@ -1,4 +1,4 @@
-// What the driver's thread does, without the thread: one call of tick() after the other, on any clock.
+// The work of the driver's thread without the thread: successive calls of tick(), on any clock.
 #pragma once
 
 #include <array>
@@ -19,16 +19,16 @@ namespace riffler::pen {
 class Connector {
  public:
   virtual ~Connector() = default;
-  /// Asks for one attempt.
+  /// Starts one attempt.
   virtual void begin() noexcept = 0;
   enum class Answer : unsigned char { Pending, Failed, Opened };
-  /// Of the attempt that was asked for. Opened hands the transport over; Failed says why.
+  /// The result of the attempt. Opened passes the transport; Failed gives the reason.
   virtual Answer poll(std::unique_ptr<Transport>& transport, OpenProblem& problem) noexcept = 0;
 };
 
 class DriverLoop {
  public:
-  /// `transport` is open, and checked by the model; or null: the first attempt follows at once. References are kept.
+  /// `transport`: open, and checked by the model; or null: the first attempt follows at once. Keeps references.
   DriverLoop(HidModel& model, PenStep& step, Connector& connector, Clock& clock, std::unique_ptr<Transport> transport,
              const DriverSettings& settings = {});
   /// As stop().
@@ -36,11 +36,11 @@ class DriverLoop {
   DriverLoop(const DriverLoop&) = delete;
   DriverLoop& operator=(const DriverLoop&) = delete;
 
-  /// Connected: waits for a report up to the time-out, takes all that are there, steps, and writes the wrench. On any
-  /// error of reading or writing the device is told not to push, closed, and looked for again. Otherwise one look at
-  /// the connector, and a wait. Allocates nothing, but for closing.
+  /// Connected: waits for a report up to the time-out, reads all available ones, runs the step and writes the wrench.
+  /// On a read or write error the device is released, closed and reconnected. Not connected: polls the connector once
+  /// and waits. Allocates nothing, except when closing.
   void tick() noexcept;
-  /// Tells the device not to push, and closes it. Ticks after this do nothing.
+  /// Makes the device stop pushing and closes it. Later ticks do nothing.
   void stop() noexcept;
 
   LinkStatus status() const noexcept { return published_.get(); }

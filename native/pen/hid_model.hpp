@@ -1,5 +1,5 @@
-// What a family of HID devices says and understands: between the bytes of its reports and samples and wrenches. A new
-// family is one file with one of these, and one line in registry.cpp.
+// Model of a family of HID devices: translates between report bytes and samples or wrenches. A new family is one file
+// with a model, and one line in registry.cpp.
 #pragma once
 
 #include <cstdint>
@@ -17,12 +17,12 @@ namespace riffler::pen {
 
 struct PenGeometry;
 
-/// What one read brought.
+/// The result of one read.
 struct Taken {
-  unsigned reports = 0;    // samples that it held
-  unsigned malformed = 0;  // pieces that are no report: too short, with an impossible field
-  unsigned lost = 0;       // reports that the numbers say were sent before these and never came
-  unsigned old = 0;        // reports that came again or in the wrong order; left out
+  unsigned reports = 0;    // valid reports
+  unsigned malformed = 0;  // invalid reports: too short, or with an impossible field
+  unsigned lost = 0;       // reports missing before these, by sequence number
+  unsigned old = 0;        // duplicate or out-of-order reports, which are ignored
 };
 
 class HidModel {
@@ -30,35 +30,36 @@ class HidModel {
   virtual ~HidModel() = default;
 
   virtual const DeviceCapability& capability() const noexcept = 0;
-  /// s between its reports; 0 for a device that only speaks while it is touched, whose silence means nothing.
+  /// Time between reports, s; 0 for a device that reports only while touched, whose silence means nothing.
   virtual double period() const noexcept = 0;
-  /// What the passivity controller may count on.
+  /// Device data for the passivity controller.
   virtual haptics::PassivitySettings passivity() const { return passivity_settings(capability()); }
-  /// Its own limits and identity, for people; may be empty.
+  /// The device's own limits and identity, as text for users; may be empty.
   virtual std::string about() const { return {}; }
-  /// Of a pen of two arms; null for everything else. Does not change.
+  /// Geometry of a two-arm pen; null for other devices. Constant.
   virtual const PenGeometry* geometry() const noexcept { return nullptr; }
 
-  /// Whether what was just opened is this very device, in the state that the model expects. Throws OpenError. Not in
-  /// the driver's thread, and never while that thread uses the model.
+  /// Checks that a newly opened device is this device, in the expected state. Throws OpenError. Not in the driver's
+  /// thread, and never while that thread uses the model.
   virtual void check(Transport& transport) = 0;
 
-  /// The device stands where its homing says: from the next report on the pose is sure. Any thread. False for a device
-  /// that needs no homing.
+  /// Tells the device that it stands in its home posture: from the next report on the pose is valid. Any thread. False
+  /// for a device that needs no homing.
   virtual bool home() noexcept { return false; }
 
-  // In the driver's thread: these allocate nothing, throw nothing and wait for nothing.
+  // In the driver's thread: these neither allocate, throw nor wait.
 
-  /// After opening, before the first report: forget what came before.
+  /// After opening, before the first report: resets the state.
   virtual void begin(double now) noexcept = 0;
-  /// What one read gave: a report, or several one after the other as a slow system may deliver them, or garbage.
+  /// Decodes the data of one read: one report, several in sequence from a slow system, or invalid data.
   virtual Taken take(std::span<const std::uint8_t> bytes, double now) noexcept = 0;
-  /// The hand at `now`. Between reports only what is integrated from a rate goes on.
+  /// The hand at `now`. Between reports, only quantities integrated from a rate change.
   virtual PenSample sample(double now) noexcept = 0;
-  /// The report that pushes with the wrench about the grip's pivot, in the frame of poses; its size. Where the gate is
-  /// not open, motors that can be switched off are. 0 for a device that takes no reports. `bytes` holds 65.
+  /// Writes the report that pushes with a wrench about the grip's pivot (pose frame) to `bytes`, which holds 65, and
+  /// returns its size. If the gate is closed, switches off motors that can be switched off. 0 for a device that takes
+  /// no reports.
   virtual std::size_t push(const haptics::SafeWrench& safe, double now, std::span<std::uint8_t> bytes) noexcept = 0;
-  /// The report after which the device does not push, whatever it was told before.
+  /// Writes the report that makes the device stop pushing, in any state.
   virtual std::size_t release(double now, std::span<std::uint8_t> bytes) noexcept = 0;
 };
 

@@ -6,7 +6,7 @@ namespace riffler::pen {
 
 namespace {
 
-/// A projection on the motors' axes and back leaves some 1e-16 of what was asked for: no motor misses that.
+/// Zeroes rounding noise: projecting on the motors' axes and back leaves about 1e-16 of the request.
 Vec3 beyond_rounding(const Vec3& missing, const Vec3& asked) {
   constexpr double kRounding = 1e-12;
   return glm::length(missing) <= kRounding * glm::length(asked) ? Vec3(0) : missing;
@@ -36,7 +36,7 @@ haptics::SafeWrench HeldPush::step(const PenSample& sample, double now, double d
 
 void StepSwitch::set(std::shared_ptr<PenStep> step) {
   const std::lock_guard lock(mutex_);
-  step_.swap(step);  // its destructor may take its time: it runs when the lock is gone
+  step_.swap(step);  // its destructor may be slow, so it runs after the lock is released
   begins_ = true;
 }
 

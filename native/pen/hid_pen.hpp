@@ -1,4 +1,4 @@
-// A HID device behind the interface of all devices: its model, driven by the driver.
+// A HID device behind the common interface of devices: a model, run by the driver.
 #pragma once
 
 #include <atomic>
@@ -12,15 +12,15 @@
 
 namespace riffler::pen {
 
-/// The step of a device that nobody computes a force for in its own thread: what was last asked for, for 20 ms, through
-/// the gate of all forces (haptics/safety.hpp) with its own settings. Asking is the dead man's switch.
+/// The step of a device without a force computation in its own thread: renders the last requested wrench for 20 ms,
+/// through the safety gate (haptics/safety.hpp) with its own settings. A request acts as the dead-man switch.
 class HeldPush final : public PenStep {
  public:
   static constexpr double kHeld = 0.02;  // s
 
   explicit HeldPush(const haptics::SafetySettings& settings = {}) : safety_(settings) { safety_.switch_on(); }
 
-  /// By one thread; `now` of the driver's clock.
+  /// Requests a wrench. One thread only; `now` is on the driver's clock.
   void ask(const Wrench& wrench, double now) noexcept { asked_.set({wrench, now}); }
   /// Clears a trip with the next step. Any thread.
   void reset() noexcept { reset_.store(true); }
@@ -36,34 +36,35 @@ class HeldPush final : public PenStep {
     double time = -1e300;
   };
   Published<Asked> asked_;
-  haptics::Safety safety_;  // the driver's thread's
+  haptics::Safety safety_;  // used by the driver's thread
   std::atomic<haptics::ForceState> state_{haptics::ForceState::Off};
   std::atomic<haptics::Cause> cause_{haptics::Cause::None};
   std::atomic<bool> reset_{false};
 };
 
-/// The step of the driver's thread, which another thread may change at any time. The driver never waits for that one: a
-/// tick in the middle of a change pushes with nothing.
+/// A step of the driver's thread that another thread may replace at any time. The driver never waits for that: a tick
+/// during a replacement pushes nothing.
 class StepSwitch final : public PenStep {
  public:
-  /// Not null.
+  /// `step` must not be null.
   explicit StepSwitch(std::shared_ptr<PenStep> step) : step_(std::move(step)) {}
 
-  /// Not null. The one before is not called after this, and let go by the calling thread.
+  /// Replaces the step; not null. The previous step is no longer called afterwards, and is released by the calling
+  /// thread.
   void set(std::shared_ptr<PenStep> step);
   haptics::SafeWrench step(const PenSample& sample, double now, double dt) noexcept override;
 
  private:
-  std::mutex mutex_;  // held while a step is called; the driver only tries it
+  std::mutex mutex_;  // held while a step is called; the driver only tries to lock it
   std::shared_ptr<PenStep> step_;
   bool begins_ = true;  // the step has not been called yet
-  double missed_ = 0;   // s, of ticks since its last call; the driver's thread's
+  double missed_ = 0;   // s: ticks missed since its last call; used by the driver's thread
 };
 
 class HidPen : public Pen {
  public:
-  /// `transport` is open and checked by the model; `open` finds, opens and checks it again. Of `clock` (Driver) whoever
-  /// gives one tells the time: now().
+  /// `transport`: open and checked by the model; `open` finds, opens and checks the device again. `clock`: as in
+  /// Driver; a subclass that passes one overrides now().
   HidPen(std::string kind, std::shared_ptr<HidModel> model, std::unique_ptr<Transport> transport, Driver::Open open,
          const DriverSettings& settings = {}, std::shared_ptr<Clock> clock = nullptr);
 
@@ -77,7 +78,7 @@ class HidPen : public Pen {
   PushAnswer push(const Wrench& wrench) noexcept override;
   bool set_step(std::shared_ptr<PenStep> step) override;
   bool home() noexcept override { return model_->home(); }
-  /// These three are push()'s, whose trips outlast other steps.
+  /// These three refer to push(), whose trips outlast other steps.
   void reset() noexcept override { held_->reset(); }
   haptics::ForceState force_state() const noexcept override {
     return pushes_ ? held_->state() : haptics::ForceState::Off;
@@ -92,8 +93,8 @@ class HidPen : public Pen {
   std::shared_ptr<HidModel> model_;
   std::shared_ptr<HeldPush> held_;
   std::shared_ptr<StepSwitch> switch_;
-  std::atomic<bool> pushes_{true};  // the step is held_
-  Driver driver_;                   // last: its threads use the others
+  std::atomic<bool> pushes_{true};  // the active step is held_
+  Driver driver_;                   // last, because its threads use the other members
 };
 
 }  // namespace riffler::pen

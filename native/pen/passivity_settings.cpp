@@ -12,12 +12,12 @@ namespace riffler::pen {
 
 namespace {
 
-/// Bounds of one arm's Jacobian in all its postures. Column 1 stands square to the arm's plane, as long as the end is
-/// far from the upright axis; columns 2 and 3 lie in the plane, as long as the links, at right angles but for the
-/// elbow.
+/// Bounds of one arm's Jacobian over all its postures. Column 1 is perpendicular to the arm's plane, with the end's
+/// distance from the vertical axis as length. Columns 2 and 3 lie in the plane, with the links' lengths, at an angle
+/// given by the elbow.
 struct ArmBounds {
-  std::array<double, 3> lever{};  // mm: greatest length of each column
-  double skew = 0;                // greatest |cos| of the angle between columns 2 and 3
+  std::array<double, 3> lever{};  // mm: largest length of each column
+  double skew = 0;                // largest |cos| of the angle between columns 2 and 3
 };
 
 ArmBounds bounds_of(const PenGeometry& pen, Arm arm) {
@@ -25,12 +25,12 @@ ArmBounds bounds_of(const PenGeometry& pen, Arm arm) {
   const ArmLinks& links = pen.arms[index(arm)];
   const auto sine = [&](double elbow) { return std::sin(std::clamp(elbow, -kRight, kRight)); };
   const double low = sine(pen.elbow_low), high = sine(pen.elbow_high);
-  // The end's distance from the shoulder, which that from the axis does not exceed: c² = a² + b² + 2 a b sin(θ2 − θ3).
+  // The end's distance from the shoulder, an upper bound of that from the axis: c² = a² + b² + 2 a b sin(θ2 − θ3).
   const double a = links.upper, b = links.fore;
   return {{std::sqrt(a * a + b * b + 2 * a * b * high), a, b}, std::max(std::abs(low), std::abs(high))};
 }
 
-/// Of three joints, one after the other: N·mm·s/rad or N·mm at each, and rad of a count.
+/// Properties of three joints in order: N·mm·s/rad or N·mm at each, and rad per count.
 struct ArmTraits {
   std::array<double, 3> viscous{}, coulomb{}, step{};
 };
@@ -51,8 +51,9 @@ double over(double length, double loss) {
   return loss > 0 ? length / loss : std::numeric_limits<double>::infinity();
 }
 
-/// N·s/mm that the end has in any direction: the least eigenvalue of J⁻ᵀ C J⁻¹, the greatest of J C⁻¹ Jᵀ turned over.
-/// In the plane J C⁻¹ Jᵀ is the sum of two squares of vectors, with the eigenvalues of their Gram matrix.
+/// Guaranteed damping (N·s/mm) of the end in every direction: the smallest eigenvalue of J⁻ᵀ C J⁻¹, the inverse of the
+/// largest of J C⁻¹ Jᵀ. In the plane, J C⁻¹ Jᵀ is the sum of two outer products, with the eigenvalues of their Gram
+/// matrix.
 double damping(const ArmBounds& arm, const ArmTraits& joints) {
   const auto& [upright, second, third] = arm.lever;
   const double out = over(upright * upright, joints.viscous[0]);
@@ -62,19 +63,19 @@ double damping(const ArmBounds& arm, const ArmTraits& joints) {
   return std::isfinite(most) ? 1 / most : 0;
 }
 
-/// N that it takes to move the end in any direction: |v| = |J q̇| ≤ Σ |J_k| |q̇_k| ≤ max(|J_k| / f_k) Σ f_k |q̇_k|.
+/// Force (N) needed to move the end in any direction: |v| = |J q̇| ≤ Σ |J_k| |q̇_k| ≤ max(|J_k| / f_k) Σ f_k |q̇_k|.
 double friction(const ArmBounds& arm, const ArmTraits& joints) {
   double most = 0;
   for (std::size_t k = 0; k < 3; ++k) most = std::max(most, over(arm.lever[k], joints.coulomb[k]));
   return std::isfinite(most) ? 1 / most : 0;
 }
 
-/// mm along any direction within which the end is known, all three joints to a count.
+/// Uncertainty (mm) of the end along any direction if all three joints are known to one count.
 double resolution(const ArmBounds& arm, const ArmTraits& joints) {
   return std::hypot(arm.lever[0] * joints.step[0], arm.lever[1] * joints.step[1] + arm.lever[2] * joints.step[2]);
 }
 
-/// s: a frame of USB out, the frame in which the motors have it, and the report of it
+/// s: one USB frame out, one frame in which the motors apply it, and one for the report
 /// (pen/simulated/simulated_cable.hpp).
 constexpr double kLatency = 2e-3;
 
@@ -105,9 +106,10 @@ haptics::PassivitySettings passivity_settings(const PenGeometry& pen, const Comp
   out.latency = kLatency;
   // The pivot is midway between the ends, the axis along their difference.
   out.resolution = {0.5 * sum, sum / pen.grip_length};
-  // Ends go at v ± w, w = ω × r with |r| half the grip: |v + w|² + |v − w|² = 2 |v|² + 2 |w|².
+  // The ends move at v ± w, w = ω × r with |r| half the grip: |v + w|² + |v − w|² = 2 |v|² + 2 |w|².
   out.device_damping = {2 * damps, 2 * damps * half * half};
-  // |v + w| + |v − w| ≥ 2 max(|v|, |w|) ≥ |v| + |w|; of three coordinates the sum of sizes is at most √3 of the length.
+  // v + w| + |v − w| ≥ 2 max(|v|, |w|) ≥ |v| + |w|; the sum of the magnitudes of three coordinates is at most √3 times
+  // the length.
   out.device_friction = {rubs, rubs * half};
   return out;
 }

@@ -20,8 +20,7 @@ constexpr double kNotBegun = -std::numeric_limits<double>::infinity();
 void check(const RecordedStroke& stroke, std::size_t number) {
   if (stroke.poses.empty()) fail(number, 0, "a stroke needs a pose");
   if (stroke.times.size() != stroke.poses.size())
-    fail(number, std::min(stroke.times.size(), stroke.poses.size()),
-         "a recording is played with one time for each pose");
+    fail(number, std::min(stroke.times.size(), stroke.poses.size()), "a recording needs one time for each pose");
   for (std::size_t k = 0; k < stroke.times.size(); ++k) {
     if (!std::isfinite(stroke.times[k])) fail(number, k, "a time is not finite");
     if (!geom::finite(stroke.poses[k].tip) || !geom::finite(stroke.poses[k].axis))
@@ -60,7 +59,7 @@ std::string PlaybackPen::about() const {
 double PlaybackPen::elapsed() const noexcept {
   double start = kNotBegun;
   const double now = clock_();
-  // Whoever asks first begins.
+  // The first call starts the playback.
   if (start_.compare_exchange_strong(start, now)) return 0;
   return speed_ * (now - start);
 }

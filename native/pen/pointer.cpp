@@ -15,7 +15,7 @@ void PointerFrame::validate() const {
   if (!geom::finite(origin)) fail("origin must be finite");
   if (!(std::abs(glm::length(right) - 1) < kSlack)) fail("right must be of unit length");
   if (!(std::abs(glm::length(up) - 1) < kSlack)) fail("up must be of unit length");
-  if (!(std::abs(glm::dot(right, up)) < kSlack)) fail("right and up must be square to each other");
+  if (!(std::abs(glm::dot(right, up)) < kSlack)) fail("right and up must be perpendicular to each other");
   if (!(scale > 0 && std::isfinite(scale))) fail("scale must be positive");
   if (!(depth >= 0 && std::isfinite(depth))) fail("depth must not be negative");
   if (!(most_tilt >= 0 && most_tilt < kPi / 2)) fail("most_tilt must be at least 0 and less than pi/2");
@@ -23,7 +23,7 @@ void PointerFrame::validate() const {
 
 Vec3 tilted_axis(const PointerFrame& frame, double tilt_x, double tilt_y) noexcept {
   const Vec3 upright = glm::cross(frame.right, frame.up);
-  // Each tilt is the angle of the pen's shadow on one wall: tangents add up.
+  // Each tilt is the angle of the pen's projection on one plane: tangents add up.
   const auto slope = [&](double tilt) {
     return std::isfinite(tilt) ? std::tan(std::clamp(tilt, -frame.most_tilt, frame.most_tilt)) : 0.0;
   };

@@ -22,12 +22,12 @@ bool is_riffler(const HidInfo& info) {
 
 bool is_spacemouse(const HidInfo& info) {
   constexpr std::uint16_t kGenericDesktop = 1, kMultiAxis = 8;
-  // Of a receiver's interfaces, the one with the puck; all of one that does not say what it has.
+  // Among a receiver's interfaces, the one with the puck; all interfaces of a device without usages.
   return spacemouse_name(info.vendor, info.product) != nullptr &&
          (info.usages.empty() || info.has_usage(kGenericDesktop, kMultiAxis));
 }
 
-/// Teensy boards as "raw HID", and mbed's default, as the published firmware has them: numbers of anybody.
+/// Teensy boards as "raw HID", and mbed's default, as in the published firmware: numbers that many devices share.
 bool may_be_polhem(const HidInfo& info) {
   const bool teensy =
       info.vendor == 0x16C0 && info.product == 0x0486 && (info.usages.empty() || info.has_usage(0xFFAB, 0x0200));
@@ -57,7 +57,7 @@ constexpr PenFamily kFamilies[] = {
     {"polhem", "WoodenHaptics and Polhem, three motors", may_be_polhem, false, make_polhem},
 };
 
-/// Opens `info` and asks it who it is. Throws OpenError with the path in front.
+/// Opens `info` and reads its identity. Throws OpenError with the path in front.
 std::pair<std::unique_ptr<HidHandle>, std::shared_ptr<HidModel>> open_model(const PenFamily& family,
                                                                             const HidInfo& info,
                                                                             const PenOptions& options) {
@@ -120,7 +120,7 @@ std::unique_ptr<Pen> open_path(std::string_view path, const PenOptions& options)
                           "\": " + family->what);
     return open_one(*family, info, options);
   }
-  HidHandle(asked, Sharing::Shared);  // says why
+  HidHandle(asked, Sharing::Shared);  // throws with the reason
   throw OpenError(OpenProblem::UnknownDevice, asked.path + ": the system does not list it as a HID device");
 }
 

@@ -8,12 +8,12 @@ namespace riffler::plan {
 
 namespace {
 
-/// What of `v` is square to the unit vector `n`, of unit length; zero where it is only rounding.
+/// The component of `v` orthogonal to the unit vector `n`, normalised; zero if it is only rounding noise.
 Vec3 square_part(const Vec3& v, const Vec3& n) {
   const double scale = glm::length(v);
   if (!(scale > 0)) return Vec3(0);
-  // Twice, so that the rest is square to `n` to rounding however small it is ("twice is enough", Parlett, The Symmetric
-  // Eigenvalue Problem, 6.9).
+  // Orthogonalise twice, so that the result is orthogonal to `n` up to rounding however short it is ("twice is enough",
+  // Parlett, The Symmetric Eigenvalue Problem, 6.9).
   Vec3 rest = v / scale;
   const double before = glm::length(rest -= glm::dot(rest, n) * n);
   if (before < 1e-12) return Vec3(0);
@@ -28,7 +28,7 @@ Vec3 coordinate_axis_far_from(const Vec3& n) {
   return out;
 }
 
-/// From the contact to the ball's centre; the part's normal where the two coincide.
+/// From the contact to the ball's centre; the part's normal if the two coincide.
 Vec3 direction(const PencilPath& path, std::size_t k, int side) {
   const Vec3 way = path.centres[k] - path.contacts[k][side];
   const double length = glm::length(way);

@@ -10,13 +10,13 @@ namespace riffler::plan {
 
 namespace {
 
-/// Below this sine of the angle between axis and normal the contact circle's place is free.
+/// Below this sine of the angle between axis and normal, the contact may lie anywhere on the contact circle.
 constexpr double kParallel = 1e-12;
 
 /// From the tip to the cutter's furthest point against `normal`.
 Vec3 touching_point(const CutterSupport& cutter, const Vec3& normal, const Vec3& axis, const Vec3& feed) {
   const double up = glm::dot(normal, axis);
-  const Vec3 across = glm::cross(glm::cross(axis, normal), axis);  // normal − (n·O) O, without its cancellation
+  const Vec3 across = glm::cross(glm::cross(axis, normal), axis);  // normal − (n·O) O, without cancellation
   const double sine = glm::length(across);
   const Vec3 out = sine > kParallel ? -across / sine : cc_frame(feed, axis).x;
   const Vec2 at = cutter.point({sine > kParallel ? sine : 0.0, -up});
@@ -40,7 +40,7 @@ CutterSupport::CutterSupport(const Tool& tool) : top_(tool.length()) {
 Vec2 CutterSupport::point(const Vec2& d) const {
   Vec2 best{0, 0};
   double most = 0;
-  // Equal to rounding is equal: then the outer of two on one level, otherwise the lower.
+  // Equal up to rounding counts as equal: then take the outer of two points at one height, otherwise the lower.
   const double same = 1e-14 * size_ * (std::abs(d.x) + std::abs(d.y));
   const auto look = [&](const Vec2& p) {
     const double reach = glm::dot(d, p);
@@ -74,13 +74,13 @@ Pose location_on_path(const CutterSupport& cutter, const PencilPath& path, std::
     normal[side] = glm::length(way) > 1e-9 * r ? glm::normalize(way) : path.normals[k][side];
     point[side] = touching_point(cutter, normal[side], axis, feed);
   }
-  const Vec3 line = glm::cross(normal[0], normal[1]);  // both offset planes meet in a line of this direction
+  const Vec3 line = glm::cross(normal[0], normal[1]);  // direction of the line in which the two offset planes intersect
   const double square = glm::dot(line, line);
   if (square < 1e-12) return location_of_contact(cutter, path.contacts[k][0], normal[0], axis, feed);
   const double b0 = glm::dot(normal[0], path.contacts[k][0] - point[0]);
   const double b1 = glm::dot(normal[1], path.contacts[k][1] - point[1]);
   const double along = glm::dot(line, path.centres[k] - 0.5 * (point[0] + point[1]));
-  // Three planes' common point (Goldman, Graphics Gems, 1990, 305).
+  // Intersection of three planes (Goldman, Graphics Gems, 1990, 305).
   return {(b0 * glm::cross(normal[1], line) + b1 * glm::cross(line, normal[0]) + along * line) / square, axis};
 }
 

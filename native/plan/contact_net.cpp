@@ -11,8 +11,8 @@ namespace {
 
 constexpr std::size_t kGrain = 256;
 
-/// A strip between two sides, from `a` to `b` and from `c` to `d`; where a triangle begins, a = c. Unlike triangles,
-/// strips stay as many as their length asks for when they are halved, however thin they are.
+/// A strip between the sides from `a` to `b` and from `c` to `d`; at the tip of a triangle, a = c. Unlike triangles,
+/// thin strips that are halved need only as many pieces as their length requires.
 struct Cell {
   Vec3 a, b, c, d;
 
@@ -57,7 +57,7 @@ struct Triangle {
       stack.pop_back();
       const Vec3 middle = cell.middle();
       const double around = cell.reach(middle);
-      // Moving the ball by `around` changes its distance from what is above its plane by no more than that.
+      // A ball moved by `around` changes its distance from anything above its plane by at most that.
       const double radius = ball.radius();
       const mesh::Closest::Above above{middle, normal, depth, cosine};
       const Vec3 centre = middle + radius * normal;

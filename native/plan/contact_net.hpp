@@ -1,4 +1,4 @@
-// The net of contact points over a part, and which of them a ball cannot reach.
+// The net of contact points over a part, and the points that a ball cannot reach.
 #pragma once
 
 #include <vector>
@@ -8,24 +8,24 @@
 
 namespace riffler::plan {
 
-/// A point of the part where a ball that is tangent there enters the part elsewhere.
+/// A point of the part whose tangent ball enters the part elsewhere.
 struct Unreached {
   Vec3 point, normal;
-  double depth;  ///< how far that ball enters, mm
+  double depth;  ///< how far that ball enters the part, mm
   int triangle;
-  double area;  ///< mm² for which it stands
+  double area;  ///< area that the point represents, mm²
 };
 
 struct ContactNet {
-  std::vector<Unreached> points;  ///< in the order of the triangles
-  std::size_t balls = 0;          ///< balls that were tried
+  std::vector<Unreached> points;  ///< in triangle order
+  std::size_t balls = 0;          ///< balls tested
 };
 
-/// Tries balls tangent to every triangle, or to parts of it down to `spacing` (mm) where neither all balls of the part
-/// fit nor all of them enter: how many are tried follows the length of the border between the two. `depth` (mm): what a
-/// ball may enter, or rise above a triangle, without counting. `angle` (rad): of a valley, at least. Where a ball
-/// enters only what is turned by less than that there is none: at a valley's contact, one of the triangles at the other
-/// contact is turned by at least the angle between the two.
+/// Tests balls tangent to every triangle, or to pieces of it down to `spacing` (mm) where some balls of a piece fit and
+/// others enter: the number of tests grows with the length of the border between the two. `depth` (mm): tolerance by
+/// which a ball may enter, or rise above a triangle. `angle` (rad): smallest angle of a valley. A ball that enters only
+/// triangles turned by less than that is in no valley: at a valley's contact, one of the triangles at the other contact
+/// is turned by at least the angle between the two.
 ContactNet contact_net(const Mesh& part, const RollingBall& ball, double spacing, double depth, double angle,
                        const Progress& progress = {});
 

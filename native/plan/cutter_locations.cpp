@@ -18,7 +18,7 @@ namespace {
 constexpr int kMaxInserted = 100'000;
 
 constexpr const char* kOf[] = {"the cutter meets the part", "the shank meets the part", "the holder meets the part",
-                               "a fixture is in the way"};
+                               "the tool meets a fixture"};
 
 std::string text(const char* format, double value) {
   char out[64];
@@ -27,7 +27,7 @@ std::string text(const char* format, double value) {
 }
 
 std::string why_not_free(const Lift& lift, const LocationRule& rule) {
-  if (lift.swallowed && lift.height == 0) return "the tool stands wholly within the part's material";
+  if (lift.swallowed && lift.height == 0) return "the tool is entirely inside the part's material";
   const std::string where =
       std::string(kOf[static_cast<int>(lift.touch)]) + text(", clearance %.6g mm", lift.before) + " before any lift";
   if (lift.swallowed) return where + ", and a lift only pushes the tool into the material";
@@ -49,7 +49,7 @@ class Planner {
   Planner(const collide::Assembly& assembly, const collide::Collider& collider, const LocationRule& rule)
       : assembly_(assembly), collider_(collider), rule_(rule) {}
 
-  /// What became of one pose.
+  /// The result for one pose.
   struct Try {
     LocationRow row;
     std::string blocked;
@@ -63,7 +63,7 @@ class Planner {
     if (!found.free) out.blocked = why_not_free(found, rule_);
     return out;
   }
-  /// `pose_at(k)`: where the tool begins; std::invalid_argument where it cannot stand.
+  /// `pose_at(k)`: the initial pose of the tool; throws std::invalid_argument if it cannot stand there.
   template <class PoseAt>
   Try try_point(const PoseAt& pose_at, std::size_t k) const {
     try {
@@ -73,17 +73,17 @@ class Planner {
     }
   }
 
-  /// What lies between two rows.
+  /// The move between two rows.
   struct Way {
     std::vector<LocationRow> inserted;
-    std::vector<UnsafeWay> unsafe;  // rows counted from the way's first
+    std::vector<UnsafeWay> unsafe;  // row numbers relative to the move's first row
     double least = std::numeric_limits<double>::infinity(), bound = least;
     std::size_t evaluations = 0;
-    int made = 0;  // rows to insert, those still ahead too
+    int made = 0;  // rows to insert, including pending ones
   };
   Way way(const LocationRow& from, const LocationRow& to) const {
     Way out;
-    // The rows still to be joined, the last on top: no recursion, whatever the part is like.
+    // Rows still to be joined, the next on top. A stack instead of recursion, for parts of any shape.
     std::vector<LocationRow> ahead{to};
     LocationRow here = from;
     while (!ahead.empty()) {
@@ -100,7 +100,7 @@ class Planner {
   }
 
  private:
-  /// A row to put between two, or nothing where the way between them is settled, for good or not.
+  /// A row to insert between two, or no value if the move between them is settled, free or not.
   std::optional<LocationRow> join(const LocationRow& from, const LocationRow& to, Way& out) const {
     const auto unsafe = [&](double clearance, double bound, std::string reason) {
       out.unsafe.push_back({out.inserted.size(), clearance, bound, std::move(reason)});

@@ -30,17 +30,17 @@ struct DropCutter::Core {
   void build(const std::vector<Triangle>& all);
   std::size_t first(std::size_t level, std::size_t place) const { return geom::first_item(count_, level, place); }
 
-  Mat3 turn_;                                            // columns: the frame, its z the axis
-  std::vector<std::pair<tool::Part, LowerSide>> sides_;  // of the assembly's pieces
+  Mat3 turn_;                                            // columns: the tool's frame, with z along the axis
+  std::vector<std::pair<tool::Part, LowerSide>> sides_;  // one per piece of the assembly
   std::size_t count_ = 0, levels_ = 0;  // the tree is complete; node i has the children 2 i + 1 and 2 i + 2
   std::vector<Box3> boxes_;
-  std::vector<Triangle> triangles_;  // in the frame, in the order of the leaves
+  std::vector<Triangle> triangles_;  // in the tool's frame, in leaf order
 };
 
 DropCutter::Core::Core(const Mesh& mesh, const Tool& tool, const Vec3& axis) {
   validate(mesh);
   if (mesh.empty()) throw std::invalid_argument("a part without triangles");
-  // Straight along z nothing is turned: coordinates stay what they are, to the bit.
+  // Along z, use the identity so that coordinates stay bit-identical.
   const CcFrame frame = axis == Vec3(0, 0, 1) ? CcFrame{} : cc_frame({1, 0, 0}, unit_axis(axis, "axis"));
   turn_ = Mat3(frame.x, frame.y, frame.z);
   for (const tool::ToolPiece& p : tool.assembly()) sides_.emplace_back(p.part, LowerSide(p.piece));
@@ -61,7 +61,7 @@ void DropCutter::Core::build(const std::vector<Triangle>& all) {
     for (auto i = begin; i != end; ++i) box.add(all[*i].a), box.add(all[*i].b), box.add(all[*i].c);
     return box;
   };
-  // Only the shadow counts for where a tool comes down: halved along x or y.
+  // Only the projection matters for a tool that comes down: split along x or y.
   const auto axis = [&](auto begin, auto end) {
     const Vec3 size = box_of(begin, end).size();
     return size.x >= size.y ? 0 : 1;
@@ -84,7 +84,7 @@ struct DropCutter::Core::Search {
   LowerSide::Stop stop{kNowhere, Vec3(0), false};
   std::size_t side = 0;
 
-  /// No triangle in the box stops the tool higher.
+  /// Upper bound of the height at which a triangle in the box stops the tool.
   double bound(std::size_t node) {
     ++counts.boxes;
     const Box3& box = tree.boxes_[node];

@@ -18,9 +18,9 @@ namespace riffler::plan {
 
 namespace {
 
-constexpr double kNothing = 1e-3;  // of the tolerance: a piece of curve too short to be divided
+constexpr double kNothing = 1e-3;  // in tolerances: shorter pieces of curve are not divided
 constexpr std::size_t kMaxPoints = 10'000'000, kPointsAReport = 1024;
-constexpr int kBridges = 6;  // 64 points over one edge
+constexpr int kBridges = 6;  // levels of bisection: up to 64 points over one edge
 
 struct OnPart {
   Vec3 point, normal;
@@ -40,7 +40,7 @@ void check(const EngraveOptions& o) {
     bad("inclination and tilt must lie within a right angle of the normal");
 }
 
-/// The part's surface under curves.
+/// The part's surface, onto which curves are projected.
 class Sheet {
  public:
   Sheet(const Mesh& part, const EngraveOptions& options)
@@ -52,7 +52,7 @@ class Sheet {
   }
   double distance(const Vec3& p) const { return closest_(p).distance; }
 
-  /// The curve's points on the part and as many between them as the options ask for.
+  /// The curve's points on the part, and as many between them as the options require.
   std::vector<OnPart> lay(const std::vector<Vec3>& curve) const {
     std::vector<OnPart> out{under(curve[0])};
     for (std::size_t k = 1; k < curve.size(); ++k)
@@ -61,7 +61,7 @@ class Sheet {
   }
 
  private:
-  /// Appends what follows `from` up to `to`, the places on the part under a and b.
+  /// Appends the points after `from` up to `to`, which lie on the part under a and b.
   void divide(const Vec3& a, const OnPart& from, const Vec3& b, const OnPart& to, std::vector<OnPart>& out) const {
     if (glm::length(b - a) < kNothing * options_.tolerance) return bridge(from, to, 0, out);
     const Vec3 middle = 0.5 * (a + b);
@@ -74,8 +74,8 @@ class Sheet {
     }
   }
 
-  /// Where nearest points jump from one face to another, over the edge between them: what is nearest to the middle from
-  /// far out, or, of a hollow edge, from deep inside.
+  /// Where the nearest point jumps from one face to another, fills in the edge between them with the points nearest to
+  /// the midpoint as seen from far outside or, for a concave edge, from deep inside.
   void bridge(const OnPart& from, const OnPart& to, int depth, std::vector<OnPart>& out) const {
     const Vec3 chord = to.point - from.point;
     const Vec3 outwards =
@@ -96,7 +96,7 @@ class Sheet {
     if (to.point != out.back().point || to.normal != out.back().normal) out.push_back(to);
   }
 
-  /// Of `between` from the chord.
+  /// Distance of `between` from the chord.
   static double away(const OnPart& from, const OnPart& between, const OnPart& to) {
     const Vec3 chord = to.point - from.point, off = between.point - from.point;
     const double length2 = glm::dot(chord, chord), share = length2 > 0 ? glm::dot(off, chord) / length2 : 0;
@@ -105,7 +105,7 @@ class Sheet {
 
   bool needs(const OnPart& from, const OnPart& between, const OnPart& to) const {
     if (away(from, between, to) > options_.tolerance) return true;
-    // Over a sharp edge no division helps: below the tolerance's size the axis turns at once.
+    // Division cannot help at a sharp edge: below the size of the tolerance the axis turns at once.
     const double longest = std::max(glm::length(to.point - from.point), glm::length(between.point - from.point));
     if (longest <= options_.tolerance) return false;
     return geom::angle_between(from.normal, to.normal) > options_.turn ||

@@ -9,14 +9,14 @@ namespace riffler::plan {
 
 namespace {
 
-constexpr double kAlongPlane = 1e-9;  // sine of an angle below which a line runs along a plane
+constexpr double kAlongPlane = 1e-9;  // sine of the angle below which a line counts as parallel to a plane
 
-/// Where the box's lowest point is along one axis; the middle where that axis does not count.
+/// The box's lowest point along one axis; the middle if that axis does not matter.
 double lowest_in_box(double up, double reach) {
   return std::abs(up) < kAlongPlane ? 0 : up > 0 ? -reach : reach;
 }
 
-/// The lowest point on the edge line of spaces[i], within the spaces before it.
+/// The lowest point on the boundary line of spaces[i], within the spaces before it.
 std::optional<Lowest2> lowest_on_edge(std::span<const HalfSpace<Vec2>> spaces, std::size_t i, const Vec2& up,
                                       double reach, double slack) {
   const double length2 = glm::dot(spaces[i].along, spaces[i].along);
@@ -47,7 +47,7 @@ std::optional<Lowest2> lowest_on_edge(std::span<const HalfSpace<Vec2>> spaces, s
   return Lowest2{foot + (slope > 0 ? low : high) * way, {static_cast<int>(i), slope > 0 ? at_low : at_high}};
 }
 
-/// Incremental, in the order given (Seidel, Discrete Comput. Geom. 6 (1991) 423).
+/// Incremental algorithm, in the given order (Seidel, Discrete Comput. Geom. 6 (1991) 423).
 std::optional<Lowest2> lowest_in_order(std::span<const HalfSpace<Vec2>> spaces, const Vec2& up, double reach,
                                        double slack) {
   Lowest2 best{{lowest_in_box(up.x, reach), lowest_in_box(up.y, reach)}, {-1, -1}};
@@ -68,7 +68,7 @@ std::optional<Lowest3> lowest_in_order(std::span<const HalfSpace<Vec3>> spaces, 
   for (std::size_t i = 0; i < spaces.size(); ++i) {
     const Vec3& normal = spaces[i].along;
     if (glm::dot(normal, best.point) >= spaces[i].least - slack) continue;
-    // In the plane of the one that is violated, the box's six sides first.
+    // In the plane of the violated half-space, with the box's six sides first.
     const Vec3 foot = normal * spaces[i].least;
     const Vec3 p = geom::any_perpendicular(normal);
     const Vec3 q = glm::cross(normal, p);
@@ -92,7 +92,7 @@ std::optional<Lowest3> lowest_in_order(std::span<const HalfSpace<Vec3>> spaces, 
   return best;
 }
 
-/// Of the few that matter: they are found by what the lowest point of those known so far violates most.
+/// Solves with few half-spaces: repeatedly adds the one that the current lowest point violates most.
 template <class Vector>
 auto lowest_of_few(std::span<const HalfSpace<Vector>> spaces, const Vector& up, double reach, double slack) {
   thread_local std::vector<HalfSpace<Vector>> few;
@@ -106,7 +106,7 @@ auto lowest_of_few(std::span<const HalfSpace<Vector>> spaces, const Vector& up, 
     for (std::size_t k = 0; k < spaces.size(); ++k)
       if (const double out = spaces[k].least - glm::dot(spaces[k].along, best->point); out > most)
         most = out, next = static_cast<int>(k);
-    // One that is known already is violated by rounding.
+    // A half-space that is already included is violated only by rounding.
     if (next < 0 || std::find(ids.begin(), ids.end(), next) != ids.end()) {
       for (int& id : best->active) id = id < 0 ? -1 : ids[id];
       return best;

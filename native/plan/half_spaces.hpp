@@ -1,4 +1,4 @@
-// Linear programs in two and three unknowns.
+// Linear programs in two and three variables.
 #pragma once
 
 #include <array>
@@ -17,9 +17,9 @@ struct HalfSpace {
   double least;
 };
 
-/// The point of all `spaces`, and of the box |x_k| ≤ reach, that is lowest along `up`. `active` are the half-spaces
-/// whose planes meet there, -1 for a side of the box. A pass over `spaces` for each of the few that matter. `slack` is
-/// what counts as rounding.
+/// The lowest point along `up` in the intersection of all `spaces` and the box |x_k| ≤ reach. `active`: the half-spaces
+/// whose planes meet there, −1 for a side of the box. Makes one pass over `spaces` for each of the few half-spaces that
+/// matter. `slack`: what counts as rounding.
 struct Lowest2 {
   Vec2 point;
   std::array<int, 2> active;

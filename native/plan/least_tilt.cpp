@@ -14,7 +14,7 @@ namespace riffler::plan {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
-constexpr double kMapped = 0.9;  // share of the work that the maps are
+constexpr double kMapped = 0.9;  // fraction of the work spent on the maps
 
 /// The free nodes of one point's map.
 struct Layer {
@@ -22,7 +22,7 @@ struct Layer {
   std::vector<double> angles;
 };
 
-/// Costs of the best way to every node of a layer, and from which node of the one before it comes.
+/// Cost of the best path to every node of a layer, and its predecessor in the layer before.
 struct LayerCosts {
   std::vector<double> cost;
   std::vector<std::size_t> from;
@@ -34,7 +34,7 @@ struct LayerCosts {
 
 class Chain {
  public:
-  /// Refers to `rule` and `progress`, which is told at every layer that the search goes on.
+  /// Keeps references to `rule` and `progress`, which it calls once per layer.
   Chain(std::vector<Layer> layers, const TiltRule& rule, const Progress& progress)
       : layers_(std::move(layers)), rule_(rule), progress_(progress) {}
 
@@ -45,7 +45,7 @@ class Chain {
     for (const double a : layer(k).angles) out.cost.push_back(a * a);
     return out;
   }
-  /// Only node `i` of layer `k`.
+  /// Costs that allow only node `i` of layer `k`.
   LayerCosts only(std::size_t k, std::size_t i) const {
     LayerCosts out = first(k);
     for (std::size_t j = 0; j < out.cost.size(); ++j)
@@ -68,7 +68,7 @@ class Chain {
     return out;
   }
 
-  /// Steps over layers 0 … count − 1, starting from `start`; fewer where one is not reached.
+  /// Steps over layers 0 … count − 1, starting from `start`; fewer if some layer cannot be reached.
   std::vector<LayerCosts> run(LayerCosts start, std::size_t count) const {
     std::vector<LayerCosts> out{std::move(start)};
     while (out.size() < count && out.back().reached()) {
@@ -93,7 +93,7 @@ class Chain {
   const Progress& progress_;
 };
 
-/// A round that comes back to its first node: the nodes, one more than layers; empty where no start allows one.
+/// The best lap that returns to its first node: one node more than layers; empty if no start allows one.
 std::vector<std::size_t> best_round(const Chain& chain, std::size_t n) {
   std::vector<std::size_t> starts(chain.layer(0).axes.size());
   std::iota(starts.begin(), starts.end(), std::size_t{0});
@@ -150,7 +150,7 @@ TiltAnswer least_tilt(const PencilPath& path, const collide::Assembly& assembly,
     return none(steps.size() - 1, "none of its free orientations is within max_change of those before it");
   std::vector<std::size_t> nodes = Chain::trace(steps, Chain::best(steps.back()));
   if (path.closed && n > 1) nodes = best_round(chain, n);
-  if (nodes.empty()) return none(0, "no free orientation here is met again within max_change after a round");
+  if (nodes.empty()) return none(0, "no free orientation here can be reached again within max_change after one lap");
   TiltAnswer out;
   out.found = true;
   const auto turned = [&](const Vec3& a, const Vec3& b) {

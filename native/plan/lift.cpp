@@ -30,14 +30,14 @@ class Climb {
       out_.touch = now_.touch, out_.point = now_.point;
       if (h > rule_.max_lift || out_.evaluations >= rule_.max_evaluations) return ended(h, false);
       double to = std::max(blocked().to, std::nextafter(h, 2 * rule_.max_lift));
-      // Newton's steps shrink fast. Those that do not are a wall, or come to an edge of the tool by a steady ratio:
-      // then the look goes most of the way to where they would end.
+      // Newton steps shrink fast. Steps that do not are a wall, or approach an edge of the tool at a constant ratio:
+      // then look most of the distance ahead to their limit.
       const double step = to - h, ratio = last > 0 ? step / last : 0;
       if (ratio > 0.25) to = ahead(to, step * (ratio < 0.8 ? 0.9 * ratio / (1 - ratio) : 4));
       last = step, h = to;
     }
     if (h == 0) out_.touch = now_.touch, out_.point = now_.point;
-    // No surface is in the tool: it is on the outside, or wholly within the material.
+    // No surface intersects the tool: it is outside, or entirely inside the material.
     out_.swallowed = collider_.inside_part(pose_.tip + (h + 0.5 * assembly_.tool().length()) * pose_.axis);
     return ended(h, h <= rule_.max_lift && !out_.swallowed);
   }
@@ -59,17 +59,19 @@ class Climb {
     if (++out_.evaluations == 1) out_.before = now_.distance;
   }
 
-  /// Heights round the last one looked at for which the point found there is in the way.
+  /// Range of heights around the current one that are blocked by the point found there.
   Range blocked() const {
     const Vec3 d = now_.point - pose_.tip;
     const double up = glm::dot(d, pose_.axis), z = up - at_, rho = glm::length(d - up * pose_.axis);
     const OffsetToolColumns::Column column = columns_.at(rho, z);
-    // A fixture is as deep as it is thick where no point of it is in the tool: then no more than its depth is known.
+    // The depth in a fixture equals its thickness even where none of its points is inside the tool: then only its depth
+    // is known.
     return column.covered ? Range{up - column.high, up - column.low}
                           : Range{at_, at_ + rule_.clearance - now_.distance};
   }
 
-  /// All heights up to `to` are blocked; further up than that, as far as doubled looks ahead prove it.
+  /// All heights up to `to` are blocked. Returns how far this holds beyond `to`, as proven with look-ahead distances
+  /// that double.
   double ahead(double to, double step) {
     while (to <= rule_.max_lift && out_.evaluations < rule_.max_evaluations) {
       look(to + step);

@@ -11,7 +11,7 @@ LowerSide::LowerSide(const tool::Piece& piece) : bottom_(bottom(piece)), flat_(r
     return;
   }
   const tool::Round& round = std::get<tool::Round>(piece);
-  if (!(round.z0 < round.zc)) return;  // only what narrows upwards: its lower end is all that is seen from below
+  if (!(round.z0 < round.zc)) return;  // it narrows upwards: only its lower end is visible from below
   centre_ = {round.e, round.zc}, arc_ = round.r;
   rim_ = std::max(flat_, round.z1 >= round.zc ? round.e + round.r : radius_at(piece, round.z1));
 }
@@ -37,7 +37,7 @@ void LowerSide::corner(const Vec3& p, Stop& stop) const {
   if (p.x * p.x + p.y * p.y <= rim_ * rim_) at(p, stop);
 }
 
-/// u ≥ 0 with the largest slope·u − height(√(d² + u²)) beyond the flat end, slope ≥ 0; not above the rim.
+/// u ≥ 0 that maximises slope·u − height(√(d² + u²)) beyond the flat end, for slope ≥ 0; not above the rim.
 double LowerSide::best_on_line(double d, double slope) const {
   const double most = std::sqrt(std::max(0.0, (rim_ - d) * (rim_ + d)));
   if (arc_ == 0) return slope < cone_ ? std::min(most, d * slope / std::sqrt((cone_ - slope) * (cone_ + slope))) : most;
@@ -45,7 +45,7 @@ double LowerSide::best_on_line(double d, double slope) const {
     const double half = std::sqrt(std::max(0.0, (arc_ - d) * (arc_ + d)));
     return std::min(most, half * slope / std::hypot(1.0, slope));
   }
-  // A torus or a barrel: its slope along the line grows, so Newton's method between bounds finds where it is `slope`.
+  // A torus or barrel: the slope along the line increases, so bracketed Newton iteration finds where it equals `slope`.
   double low = 0, high = most, u = 0.5 * most;
   for (int n = 0; n < 100 && high - low > 1e-15 * most; ++n) {
     const double rho = std::hypot(d, u), off = rho - centre_.x, down = std::sqrt((arc_ - off) * (arc_ + off));
@@ -67,7 +67,7 @@ double LowerSide::best_on_line(double d, double slope) const {
 void LowerSide::edge(const Vec3& a, const Vec3& b, Stop& stop) const {
   const Vec2 from(a.x, a.y), way(b.x - a.x, b.y - a.y);
   const double length = glm::length(way);
-  if (!(length > 0)) return;  // upright: its upper end
+  if (!(length > 0)) return;  // vertical: its upper end decides
   const Vec2 along = way / length;
   const double start = glm::dot(from, along), slope = (b.z - a.z) / length;
   const double d = std::abs(from.x * along.y - from.y * along.x);
@@ -86,7 +86,7 @@ void LowerSide::facet(const Vec3& a, const Vec3& b, const Vec3& c, Stop& stop) c
   Vec3 normal = glm::cross(b - a, c - a);
   if (normal.z < 0) normal = -normal;
   const double across = std::hypot(normal.x, normal.y);
-  if (!(normal.z > 1e-14 * across)) return;  // upright or without area: its edges
+  if (!(normal.z > 1e-14 * across)) return;  // vertical or without area: its edges decide
   const double rho = across > 0 ? radius_of_slope(across / normal.z) : 0.0;
   const Vec2 p = across > 0 ? Vec2(normal.x, normal.y) * (-rho / across) : Vec2(0);
   const auto side = [&](const Vec3& s, const Vec3& t) { return (t.x - s.x) * (p.y - s.y) - (t.y - s.y) * (p.x - s.x); };

@@ -1,4 +1,4 @@
-// Where a tool that comes down along its axis first touches a triangle.
+// Finds where a tool that comes down along its axis first touches a triangle.
 #pragma once
 
 #include <vector>
@@ -7,25 +7,25 @@
 
 namespace riffler::plan {
 
-/// The lower side of a convex piece as a height over the radius: level up to `flat`, from there on a cone or an arc up
-/// to `rim`; a convex function that does not fall. Coming down on a triangle it stops where z − height(ρ), a concave
-/// function of the place, is largest: in the triangle, on an edge, at a corner.
+/// The lower side of a convex piece as height over radius: flat up to `flat`, then a cone or an arc up to `rim`; a
+/// convex, non-decreasing function. Coming down on a triangle, it stops where z − height(ρ), a concave function of the
+/// place, is largest: inside the triangle, on an edge or at a corner.
 class LowerSide {
  public:
   explicit LowerSide(const tool::Piece& piece);
 
   double rim() const { return rim_; }
-  /// For 0 ≤ ρ ≤ rim.
+  /// Height (mm) at radius `rho`, 0 ≤ ρ ≤ rim.
   double height(double rho) const;
-  /// Where its slope is `slope` ≥ 0, or the radius nearest to that.
+  /// Radius at which the slope is `slope` ≥ 0, or the nearest possible.
   double radius_of_slope(double slope) const;
 
   struct Stop {
-    double tip;  ///< height of the tip when it touches
-    Vec3 point;  ///< where
+    double tip;  ///< height of the tip at the contact, mm
+    Vec3 point;  ///< the contact point
     bool touches = false;
   };
-  /// Axis along z through (0, 0); raises `stop` where triangle abc stops the piece earlier.
+  /// Raises `stop` if triangle abc stops the piece earlier. The axis runs along z through (0, 0).
   void meet(const Vec3& a, const Vec3& b, const Vec3& c, Stop& stop) const;
 
  private:
@@ -36,9 +36,9 @@ class LowerSide {
   double best_on_line(double d, double slope) const;
 
   double bottom_, flat_, rim_;
-  double cone_ = 0;  // slope, where it is one
+  double cone_ = 0;  // slope of the cone, if there is one
   Vec2 centre_{0, 0};
-  double arc_ = 0;  // radius, where it is one
+  double arc_ = 0;  // radius of the arc, if there is one
 };
 
 }  // namespace riffler::plan

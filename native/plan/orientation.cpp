@@ -29,7 +29,7 @@ OrientationKeys checked(const PencilPath& path, const OrientationKeys& keys) {
   return out;
 }
 
-/// Arc length to every point, and to the end of a loop.
+/// Arc length up to every point, and to the end of a closed path.
 std::vector<double> stations(const PencilPath& path) {
   std::vector<double> out{0};
   for (std::size_t k = 1; k < path.size(); ++k)
@@ -38,7 +38,7 @@ std::vector<double> stations(const PencilPath& path) {
   return out;
 }
 
-/// Keys `from` and `to` in the numbering in which a loop goes on counting.
+/// From key `from` to key `to`, in an index that keeps counting past the end of a closed path.
 struct KeySpan {
   std::size_t from, to;
   Vec3 first, last;
@@ -65,7 +65,7 @@ void fill_linear(const KeySpan& span, std::vector<Vec3>& axes) {
   }
 }
 
-/// Shares of a span by arc length; by number of points where its points coincide.
+/// Fills the axes of a span in proportion to arc length; by index if its points coincide.
 void fill_slerp(const KeySpan& span, const std::vector<double>& s, std::vector<Vec3>& axes) {
   const std::size_t n = axes.size();
   const auto station = [&](std::size_t i) { return i < n ? s[i] : s[n] + s[i - n]; };
@@ -122,7 +122,7 @@ const char* name_of(Interpolation rule) {
 
 Vec3 project(const AxisLimit& limit, const Vec3& axis) {
   if (geom::angle_between(axis, limit.about) <= limit.angle) return axis;
-  // Straight opposite, every way onto the cone is as short: cc_frame takes the same one each time.
+  // For an axis opposite to the cone, all paths onto it are equally short: cc_frame always picks the same.
   return glm::normalize(std::cos(limit.angle) * limit.about + std::sin(limit.angle) * cc_frame(axis, limit.about).x);
 }
 

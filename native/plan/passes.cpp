@@ -13,8 +13,8 @@ struct Touch {
   Vec3 centre, contact, normal;
 };
 
-/// The ball that touches the part next to where one is that was moved along its wall: laid on the nearest point, which
-/// bends it along a wall that is bent.
+/// The ball that touches the part near a ball moved along its wall: placed on the nearest point, so that it follows a
+/// curved wall.
 std::optional<Touch> laid(const RollingBall& ball, const Vec3& near, const Vec3& away) {
   const double radius = ball.radius();
   const mesh::Closest::Hit hit = ball.part()(near, 2 * radius);
@@ -34,7 +34,7 @@ Vec3 outwards(const Station& s, int side) {
   return glm::normalize(there - glm::dot(there, here) * here);
 }
 
-/// From the valley to `distance` beside it in steps that are short for the ball.
+/// Moves from the valley to `distance` (mm) from it, in steps that are short relative to the ball.
 std::optional<Touch> beside(const RollingBall& ball, const Station& s, int side, double distance) {
   const int steps = std::max(1, static_cast<int>(std::ceil(distance / (0.25 * ball.radius()))));
   Vec3 out = outwards(s, side);

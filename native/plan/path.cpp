@@ -22,7 +22,7 @@ Vec3 between(const Vec3& a, const Vec3& b, double t) {
   return a + t * (b - a);
 }
 
-/// Of two unit vectors; the first where they are opposite.
+/// Interpolates two unit vectors; the first if they are opposite.
 Vec3 normal_between(const Vec3& a, const Vec3& b, double t) {
   const Vec3 sum = between(a, b, t);
   const double length = glm::length(sum);

@@ -18,15 +18,15 @@ namespace riffler::plan {
 
 namespace {
 
-constexpr double kWidestStep = 10;    // radii: beside a valley
-constexpr double kLargestBall = 100;  // sizes of the part
-constexpr double kMaxCells = 1e9;     // of the net
+constexpr double kWidestStep = 10;    // radii: stepover between passes
+constexpr double kLargestBall = 100;  // sizes of the part: radius of the ball
+constexpr double kMaxCells = 1e9;     // cells of the net
 
-/// The lengths that a search goes by, mm.
+/// Length scales of a search, mm.
 struct Scales {
-  double spacing;  ///< of the net: the strip beside the flattest valley's bottom that the ball cannot reach
-  double depth;    ///< what a ball may enter before its contact counts as unreached
-  double touch;    ///< of cracks that are none
+  double spacing;  ///< of the net: width of the unreachable strip at the bottom of the flattest valley
+  double depth;    ///< depth that a ball may enter before its contact counts as unreached
+  double touch;    ///< width of cracks to ignore
 
   Scales(const Mesh& part, double radius, double tolerance) {
     const Box3 box = bounds(part);
@@ -37,7 +37,7 @@ struct Scales {
   }
 };
 
-/// Places that seem to lie on one valley, as the first of each group.
+/// Groups places that seem to lie on one valley and keeps the first of each group.
 std::vector<std::size_t> one_of_each(const std::vector<Station>& places, double near) {
   std::vector<std::size_t> parent(places.size());
   std::iota(parent.begin(), parent.end(), std::size_t{0});
@@ -66,7 +66,7 @@ std::vector<std::size_t> one_of_each(const std::vector<Station>& places, double 
   return out;
 }
 
-/// Valleys in rounds: one of each group of starts is followed, starts that then lie on a valley are done.
+/// Traces valleys in rounds: follows one start of each group; starts that then lie on a traced valley are done.
 class Tracing {
  public:
   Tracing(const RollingBall& ball, const ValleyTracer& tracer, const ValleyRules& rules, double near)
@@ -107,7 +107,7 @@ class Tracing {
   }
 
  private:
-  /// Gives corners that were reached from several valleys one place, and starts at the ways out of a new one.
+  /// Merges corners reached from several valleys, and starts along the branches of a new corner.
   void meet(Valley& valley, std::vector<Station>& more) {
     for (int end = 0; end < 2; ++end) {
       if (valley.ends[end] != ValleyEnd::Corner) continue;
@@ -166,7 +166,7 @@ std::string reason_of(const PencilStats& stats, const PencilOptions& options) {
 struct Search {
   std::vector<Valley> valleys;
   double area = 0;
-  std::vector<double> areas;  // of each triangle
+  std::vector<double> areas;  // mm² per triangle
 };
 
 void count(const ContactNet& net, const ValleyStarts& starts, Search& out, PencilStats& stats) {
@@ -201,7 +201,7 @@ Search search(const Mesh& part, const RollingBall& ball, const Scales& scales, c
   return out;
 }
 
-/// Valleys of larger balls into which the ball is laid where none of the valleys so far goes.
+/// Valleys of larger balls, with the ball laid into them where no valley exists yet.
 class Additions {
  public:
   Additions(const RollingBall& ball, std::vector<Valley>& valleys)
@@ -224,9 +224,10 @@ class Additions {
   }
 
  private:
-  using Run = std::pair<std::size_t, std::size_t>;  // stations, both included
+  using Run = std::pair<std::size_t, std::size_t>;  // first and last station
 
-  /// Where no valley goes so far, and on at both ends as far as counts as near, so that paths leave no gap.
+  /// Runs not covered by a valley so far, extended at both ends by the distance that counts as near, so that paths
+  /// leave no gap.
   std::vector<Run> runs(const Valley& laid) const {
     const std::vector<Station>& s = laid.stations;
     std::vector<Run> out;
@@ -258,7 +259,7 @@ class Additions {
     return out;
   }
 
-  static constexpr double kAlike = 0.5;  // rad between the sides of valleys that are one
+  static constexpr double kAlike = 0.5;  // rad: valleys whose sides differ by less count as one
   const RollingBall& ball_;
   double near_;
   std::vector<Valley>& valleys_;
@@ -278,7 +279,8 @@ void check(double radius, const PencilOptions& options) {
     throw std::invalid_argument("stepover must be at most ten times the ball's radius");
 }
 
-/// A ball that is much larger than the part touches it everywhere at once, and one that is much smaller has no end.
+/// Rejects balls much larger than the part, which touch it everywhere at once, and balls so small that the search would
+/// not end.
 void check_sizes(const Mesh& part, double radius, double spacing) {
   const double size = glm::length(bounds(part).size());
   if (radius > kLargestBall * size)
@@ -289,8 +291,8 @@ void check_sizes(const Mesh& part, double radius, double spacing) {
         "times: check the units");
 }
 
-/// What a ball that is larger by the overthickness leaves beyond the ball's own valleys. Where that is something, as in
-/// a blend, balls between come first: the smaller they are the further they go into corners.
+/// Adds what a ball enlarged by the overthickness leaves beyond the ball's own valleys. If there is any, as in a blend,
+/// balls of intermediate radii come first: smaller ones go further into corners.
 void add_rest(const Mesh& part, const RollingBall& ball, const PencilOptions& options, std::vector<Valley>& valleys,
               PencilResult& result, const Progress& progress) {
   constexpr double kBetween[] = {1.0 / 16, 1.0 / 4};
@@ -322,8 +324,8 @@ double tip_ball_radius(const Tool& tool, std::string_view name) {
   if (radius > 0) return radius;
   throw std::invalid_argument(std::string(name) + ": pencil cuts are the paths of a ball, and the tip of a \"" +
                               tool.kind() +
-                              "\" cutter is none: take a ball end, a taper with a ball tip, or a profile that begins "
-                              "with an arc about the axis");
+                              "\" cutter is no ball: take a ball end, a taper with a ball tip, or a profile that "
+                              "begins with an arc about the axis");
 }
 
 PencilResult pencil(const Mesh& given, double radius, const PencilOptions& options, const Progress& progress) {

@@ -1,4 +1,4 @@
-// How far a tool has to go along its own axis until a fixed point is out of it.
+// How far a tool must move along its own axis until a fixed point is outside it.
 #pragma once
 
 #include <vector>
@@ -7,19 +7,19 @@
 
 namespace riffler::plan {
 
-/// The tool grown by c (shrunk where c < 0): all points whose signed distance from it is below c. In a column at radius
-/// ρ round the axis it covers some intervals of heights, whose ends are in closed form: an offset edge, a circle round
-/// a corner or an arc's centre. Nothing is sampled.
+/// The tool enlarged by c (shrunk for c < 0): all points with a signed distance below c. In a column at radius ρ from
+/// the axis it covers some intervals of height, with ends in closed form: an offset edge, or a circle around a corner
+/// or an arc's centre. No sampling.
 class OffsetToolColumns {
  public:
-  /// Keeps a pointer to the outline.
+  /// Keeps a pointer to the outline. `c`: mm.
   explicit OffsetToolColumns(const tool::Outline& outline, double c) : outline_(&outline), c_(c) {}
 
   struct Column {
     bool covered = false;
-    double low = 0, high = 0;  ///< the interval of heights round z that the grown tool covers
+    double low = 0, high = 0;  ///< interval of heights around z covered by the enlarged tool, mm
   };
-  /// The interval that holds (ρ, z), which a lift by z − low gets out of, as a lowering by high − z.
+  /// The interval that contains (ρ, z): a lift by z − low leaves it, or a lowering by high − z.
   Column at(double rho, double z) const;
 
  private:

@@ -11,12 +11,12 @@ namespace riffler::plan {
 
 namespace {
 
-constexpr double kSameWay = 1e-6;        // rad: directions that differ by less are one
-constexpr int kMaxPresses = 60;          // of a ball until it sits: each is a Newton step, or as far as it is trusted
-constexpr std::size_t kMaxNormals = 16;  // at one contact
+constexpr double kSameWay = 1e-6;        // rad: directions that differ by less count as one
+constexpr int kMaxPresses = 60;          // steps until a ball is seated: each a Newton step within the trust radius
+constexpr std::size_t kMaxNormals = 16;  // normals at one contact
 
-/// The frame in which a ball is pressed: only `columns` of it may be moved along, the first one against the push, which
-/// is square to `across`.
+/// The frame in which a ball is pressed: motion only along `columns`, the first against the push, which is orthogonal
+/// to `across`.
 struct Frame {
   Vec3 e[3];
   int columns;
@@ -60,13 +60,13 @@ RollingBall::RollingBall(const Mesh& part, double radius, double touch)
 
 namespace {
 
-/// One step: where the ball gets to, and what it meets there, by a linear program. A triangle is convex, so its
-/// distance is a convex function of the centre, which lies above its tangent: a centre in all these half-spaces enters
-/// nothing, however long the step is.
+/// One step: the ball's new position and what it meets there, by a linear program. A triangle is convex, so its
+/// distance is a convex function of the centre and lies above its tangent: a centre in all these half-spaces enters
+/// nothing, however long the step.
 template <class Vector>
 struct BallStep {
   Vec3 move{0};
-  std::array<int, 3> active{-1, -1, -1};  // hits
+  std::array<int, 3> active{-1, -1, -1};  // indices of hits
 
   static std::optional<BallStep> solve(const std::vector<mesh::Closest::Hit>& hits, const Vec3& centre,
                                        const Frame& frame, double radius, double trust, double slack) {
@@ -105,12 +105,12 @@ RollingBall::Stop press_in(const RollingBall& ball, const Vec3& start, const Rol
                            RollingBall::Seat& seat) {
   using Stop = RollingBall::Stop;
   const Vec3 push = how.push - glm::dot(how.push, how.across) * how.across;
-  if (!(glm::length(push) > 1e-6)) return Stop::Lost;  // opposite walls push nowhere
+  if (!(glm::length(push) > 1e-6)) return Stop::Lost;  // opposite walls give no direction
   const Frame frame = frame_of(push, how.across);
   thread_local std::vector<mesh::Closest::Hit> hits;
   Vec3 centre = start;
   double trust = std::min(how.trust, how.roam);
-  double gathered = -1, moved = 0;  // hits are what was within `gathered` of the ball before it moved
+  double gathered = -1, moved = 0;  // `hits` holds everything within `gathered` of the ball before it moved by `moved`
   for (int round = 0; round < kMaxPresses; ++round) {
     if (moved + trust > gathered || 3 * trust < gathered) {
       gathered = 1.5 * trust, moved = 0;
@@ -136,7 +136,7 @@ RollingBall::Stop press_in(const RollingBall& ball, const Vec3& start, const Rol
     }
     centre += step->move, moved += length;
     if (glm::length(centre - start) > how.roam) return Stop::Lost;
-    // On one plane that is level there is nothing to hold it, however far one looks.
+    // A single flat plane cannot hold the ball at any distance.
     if (!step->held() && trust >= how.roam && length <= ball.rounding()) return Stop::Lost;
     trust = std::min(step->held() ? std::max(2 * length, 1e-7 * how.radius) : 2 * trust, how.roam);
   }
@@ -151,11 +151,11 @@ RollingBall::Stop RollingBall::press(const Vec3& centre, const Press& how, Seat&
 
 namespace {
 
-/// Whether `u` is one of the directions between those of `normals` that differ by less than a feature.
+/// Whether `u` lies between those directions of `normals` that differ by less than kFeatureAngle.
 bool between(const Vec3& u, const std::vector<Vec3>& normals) {
   const double mild = std::cos(mesh::kFeatureAngle);
   const std::size_t n = normals.size();
-  const auto side = [&](const Vec3& a, const Vec3& b) {  // sine of the angle of u left of the arc from a to b
+  const auto side = [&](const Vec3& a, const Vec3& b) {  // sine of the angle of u to the left of the arc from a to b
     const Vec3 c = glm::cross(a, b);
     const double length = glm::length(c);
     return length > 0 ? glm::dot(u, c) / length : 0;

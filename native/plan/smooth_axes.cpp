@@ -10,11 +10,11 @@ namespace riffler::plan {
 
 namespace {
 
-/// Between the rates `in` and `out` of two great circles through one point.
+/// The velocity at a key, between the rates `in` and `out` of two great circles through it.
 Vec3 velocity_at_key(const Vec3& in, const Vec3& out) {
   const double before = glm::length(in), after = glm::length(out);
   if (before == 0 || after == 0) return Vec3(0);
-  // |sum of unit vectors| / 2 is the cosine of half the angle between them: length and direction at once.
+  // sum of unit vectors| / 2 is the cosine of half the angle between them: length and direction at once.
   return std::min(before, after) * 0.5 * (in / before + out / after);
 }
 

@@ -17,15 +17,15 @@ namespace riffler::plan {
 
 namespace {
 
-constexpr int kHeights = 9;        // at which the flank is held against the wall
-constexpr double kWidest = 1.05;   // rad: rulings leaning further along the feed are not looked for
-constexpr int kDirections = 15;    // tried over that range before the best is refined
-constexpr int kRefinements = 24;   // of golden section: kWidest · 2 / 7 · 0.618²⁴ = 3e-6 rad
-constexpr double kProgress = 0.4;  // of its own way; a foot on an edge stays behind, one on a round wall hardly
-constexpr double kUpright = 0.1;   // of the tolerance, per rad: what a ruling that leans must be better by
+constexpr int kHeights = 9;        // heights at which flank and wall are compared
+constexpr double kWidest = 1.05;   // rad: largest lean of a ruling along the feed
+constexpr int kDirections = 15;    // directions tried over that range before refining the best
+constexpr int kRefinements = 24;   // golden section steps: kWidest · 2 / 7 · 0.618²⁴ = 3e-6 rad
+constexpr double kProgress = 0.4;  // fraction of a step that the foot must follow; it lags behind on an edge
+constexpr double kUpright = 0.1;   // tolerances per rad: improvement that a leaning ruling must bring
 
-/// What the flank is above the ball's centre: a point of the axis `s` above it is `radius + s · widening` from a plane
-/// that the flank touches.
+/// The flank above the ball's centre: the axis point `s` above it is `radius + s · widening` away from a plane that the
+/// flank touches.
 struct Flank {
   double radius, widening, length;
 
@@ -58,13 +58,13 @@ class Wall {
     double height, error, cost;
   };
 
-  /// At point k of the path.
+  /// The best axis at point k of the path.
   Fit best(const PencilPath& path, std::size_t k) const {
     const Vec3 centre = path.centres[k];
     const Vec3 normal = glm::normalize(centre - path.contacts[k][options_.side]);
     const CcFrame frame = cc_frame(feed_at(path, k), normal);
     const Vec3 other = path.normals[k][1 - options_.side];
-    const Vec3 up = glm::dot(frame.y, other) >= 0 ? frame.y : -frame.y;  // away from what the other contact lies on
+    const Vec3 up = glm::dot(frame.y, other) >= 0 ? frame.y : -frame.y;  // away from the surface of the other contact
     const double height = extent(centre, up);
     if (!(height > 0)) return {up, 0, kInfinity, kInfinity};
     const auto fit = [&](double lean) {
@@ -81,7 +81,7 @@ class Wall {
   }
 
  private:
-  /// Golden section about the best of the directions tried.
+  /// Golden section search around the best of the directions tried.
   template <class Function>
   Fit refine(const Function& fit, double at, Fit best) const {
     const double golden = 0.6180339887498949, step = kWidest / (kDirections / 2);
@@ -99,7 +99,7 @@ class Wall {
     return best;
   }
 
-  /// How far the wall goes up from the ball's centre: as long as what is nearest to a point going up goes up with it.
+  /// How far the wall extends upwards from the ball's centre: as long as the nearest point rises with the query point.
   double extent(const Vec3& centre, const Vec3& up) const {
     const double most = options_.height.value_or(flank_.length), step = most / std::ceil(4 * most / flank_.radius);
     double foot = 0;
@@ -113,7 +113,8 @@ class Wall {
     return std::min(foot, most);
   }
 
-  /// The axis through the centre near `way` whose point at `height` is as far from the wall as the flank needs.
+  /// The axis through the centre near the given direction whose point at `height` has the flank's distance from the
+  /// wall.
   Fit fit(const Vec3& centre, const Vec3& way, double height, double lean) const {
     Vec3 top = centre + height * way;
     for (int i = 0; i < 4; ++i) {

@@ -9,16 +9,16 @@ namespace riffler::plan {
 
 namespace {
 
-constexpr double kLongestStep = 0.5;  // of the radius
-constexpr double kEventStep = 1e-3;   // of the tolerance: to within this, ends and corners are bracketed
-constexpr double kOpposite = 1e-3;    // sine of the angle between the sides below which no direction along is left
+constexpr double kLongestStep = 0.5;  // radii
+constexpr double kEventStep = 1e-3;   // tolerances: accuracy of ends and corners
+constexpr double kOpposite = 1e-3;    // sine of the angle between the sides below which the valley has no direction
 constexpr std::size_t kMaxStations = 100000;
 
 double chord_angle(const Vec3& a, const Vec3& b) {
   return 2 * std::asin(std::min(1.0, 0.5 * glm::length(a - b)));
 }
 
-/// Unit vector along the valley, for sign = 1 with side 0 on the left seen along side 1's normal.
+/// Unit vector along the valley; for sign = 1, side 0 is on the left, seen along side 1's normal.
 Vec3 along(const Station& s, double sign) {
   return sign * glm::normalize(glm::cross(s.feet[0].away, s.feet[1].away));
 }
@@ -32,9 +32,9 @@ double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
 
 }  // namespace
 
-/// Whether the gap to the bottom is wide enough. Of two planes at an angle θ it is R (1 / sin(θ/2) − 1), and the ball's
-/// lowest point is R (1 − sin(θ/2)) from both: the gap times sin(θ/2). Facets of a hollow that the ball nearly fills
-/// leave less, however much the directions to its two contacts differ.
+/// Whether the gap to the bottom is wide enough. Between two planes at an angle θ it is R (1 / sin(θ/2) − 1), and the
+/// ball's lowest point is R (1 − sin(θ/2)) from both: the gap times sin(θ/2). Facets of a hollow that the ball nearly
+/// fills leave less, however large the angle between the directions to the two contacts.
 bool ValleyTracer::is_deep(const Station& s) const {
   const Vec3 up = s.feet[0].away + s.feet[1].away;
   const double length = glm::length(up);
@@ -43,7 +43,7 @@ bool ValleyTracer::is_deep(const Station& s) const {
   return !ball_.part().within(s.centre - (ball_.radius() / length) * up, rules_.least_gap * sine);
 }
 
-/// Makes a station of a seat, its sides as in `like`.
+/// Makes a station of a seat, with its sides ordered as in `like`.
 ValleyTracer::Event ValleyTracer::accept(const RollingBall::Seat& seat, const Station* like, Station& to) const {
   std::array<Foot, 2> feet{seat.feet[0], seat.feet[1]};
   if (like) {
@@ -76,7 +76,8 @@ ValleyTracer::Event ValleyTracer::advance(const Station& from, double sign, doub
 }
 
 ValleyTracer::Found ValleyTracer::start(const Unreached& from, Station& station) const {
-  // The largest ball on this point that enters nothing, by shrinking (Ma, Bae and Choi, Vis. Comput. 28 (2012) 7).
+  // The largest ball at this point that enters nothing, found by shrinking (Ma, Bae and Choi, Vis. Comput. 28 (2012)
+  // 7).
   const double full = ball_.radius(), rise = 1e-6 * full;
   double radius = full;
   Vec3 other(0);
@@ -93,16 +94,16 @@ ValleyTracer::Found ValleyTracer::start(const Unreached& from, Station& station)
   RollingBall::Seat seat;
   seat.centre = from.point + radius * from.normal;
   seat.feet[0].away = from.normal, seat.feet[1].away = glm::normalize(seat.centre - other);
-  // Grown in steps, since a ball is pressed among all that lies within a step of it. Between two planes it goes where
-  // it is set; as long as it does, steps become longer.
+  // Grown in steps, because a ball is pressed among everything within a step of it. Between two planes it moves exactly
+  // as predicted; while it does, steps become longer.
   constexpr double kFirst = 0.1, kShort = 0.03, kLongest = 0.5;
   double longest = kFirst * full;
   while (radius < full) {
     const Vec3 push = seat.feet[0].away + seat.feet[1].away, across = glm::cross(seat.feet[0].away, seat.feet[1].away);
     if (glm::length(across) < 1e-6 || glm::length(push) < 1e-6) return Found::NoSeat;
-    const double rate = 2 / glm::length(push);  // of the centre, in a valley of two planes
+    const double rate = 2 / glm::length(push);  // rate of the centre in a valley of two planes
     const double move = std::min(longest, (full - radius) * rate), next = std::min(full, radius + move / rate);
-    const bool set = move < 0.5 * radius;  // not beyond a wall
+    const bool set = move < 0.5 * radius;  // otherwise it might pass a wall
     const Vec3 ahead = set ? seat.centre + move * glm::normalize(push) : seat.centre;
     const RollingBall::Press how{push, glm::normalize(across), next, (set ? 0.1 : 1.1) * move, 4 * move};
     if (ball_.press(ahead, how, seat) == RollingBall::Stop::Seated) {
@@ -150,7 +151,7 @@ std::vector<Station> ValleyTracer::branches(const Vec3& corner) const {
   return out;
 }
 
-/// The place near `last` where a third side stops the ball, as one with its two sides.
+/// The place near `last` where a third side stops the ball, as a station with its two sides.
 std::optional<Station> ValleyTracer::corner_near(const Station& last, double sign, double within) const {
   const Vec3 way = along(last, sign);
   const double reach = 4 * within + 100 * ball_.rounding();
@@ -179,7 +180,7 @@ std::optional<Station> ValleyTracer::corner_near(const Station& last, double sig
   return {};
 }
 
-/// Whether the step from `last` to `next` comes back to `seed`, once the way has left it or turned round.
+/// Whether the step from `last` to `next` returns to `seed`, after the trace has left it or turned around.
 bool ValleyTracer::is_home(const Station& seed, double sign, const Station& last, const Station& next,
                            bool& has_left) const {
   const double home = distance_to_segment(seed.centre, last.centre, next.centre);
@@ -190,21 +191,21 @@ bool ValleyTracer::is_home(const Station& seed, double sign, const Station& last
          chord_angle(next.feet[1].away, seed.feet[1].away) < 2 * rules_.jump;
 }
 
-/// Follows the valley from `seed` to its end. Steps are as long as the polyline's bend allows; where one meets an
-/// event, shorter ones find out where it is, or that the step was only too long.
-/// Of a step that none went before, what two such steps bend: four times as much as one.
+/// For a step without a predecessor: the deviation from a straight line over two such steps, four times that of one.
 double ValleyTracer::bend_of_first(const Station& from, double sign, double step, const Station& to) const {
   Station middle;
   if (advance(from, sign, 0.5 * step, middle) != Event::None) return 0;
   return 4 * distance_to_segment(middle.centre, from.centre, to.centre);
 }
 
+// Follows the valley from `seed` to its end. Steps are as long as the bend of the polyline allows. Where a step meets
+// an event, shorter steps locate it or show that the step was only too long.
 ValleyEnd ValleyTracer::follow(const Station& seed, double sign, std::vector<Station>& out, std::size_t& steps) const {
   const double tolerance = rules_.tolerance, radius = ball_.radius();
   const double longest = kLongestStep * radius, shortest = std::max(kEventStep * tolerance, 1e-9 * radius);
   double step = 0.25 * longest;
-  double bracket = 0;  // a step failed that went so far; 0 where none did
-  int calm = 0;        // steps since
+  double bracket = 0;  // mm: length of a failed step; 0: none
+  int calm = 0;        // steps since then
   bool has_left = false;
   Event event = Event::None;
   Station before = seed, last = seed, next;
@@ -215,7 +216,7 @@ ValleyEnd ValleyTracer::follow(const Station& seed, double sign, std::vector<Sta
     if (met != Event::None) {
       event = met, bracket = step, step *= 0.5, calm = 0;
       if (bracket > (event == Event::TooFlat ? 0.1 * tolerance : shortest)) continue;
-      // A defect of the mesh that is shorter than the tolerance does not end a valley.
+      // A mesh defect shorter than the tolerance does not end a valley.
       if (event == Event::NoFace && advance(last, sign, tolerance, next) == Event::None) {
         out.push_back(next), before = last, last = next, bracket = 0, step = tolerance, calm = 0;
         continue;
@@ -239,7 +240,7 @@ ValleyEnd ValleyTracer::follow(const Station& seed, double sign, std::vector<Sta
     if (bracket > step) {
       bracket -= step, step = bracket;
     } else {
-      // Beyond the place where a longer step failed: it was only too long.
+      // Past the place where a longer step failed: that step was only too long.
       bracket = 0;
       if (++calm > 2 && bend < 0.125 * tolerance) step = std::min(2 * step, longest);
     }

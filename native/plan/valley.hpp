@@ -1,4 +1,4 @@
-// One valley: the curve along which the ball touches two sides, traced from one place on it.
+// One valley: the curve along which the ball touches two sides, traced from a place on it.
 #pragma once
 
 #include <optional>
@@ -9,21 +9,21 @@
 
 namespace riffler::plan {
 
-/// What makes a valley.
+/// The criteria of a valley.
 struct ValleyRules {
   double tolerance;    ///< mm, of the polyline
-  double jump;         ///< rad: sides that differ by less are facets of one
-  double least_angle;  ///< rad between the directions to the two sides; below it is no valley
-  double least_gap;    ///< mm between the ball and the valley's bottom; below it is no valley; 0: any
+  double jump;         ///< rad: sides that differ by less are facets of one side
+  double least_angle;  ///< rad between the directions to the two sides; less is no valley
+  double least_gap;    ///< mm between the ball and the valley's bottom; less is no valley; 0: any gap
 };
 
-/// Why a valley ends where it does.
+/// Why a valley ends.
 enum class ValleyEnd : unsigned char {
   Loop,
   Corner,   ///< a third side holds the ball
-  Part,     ///< a contact leaves over a sharp edge or an open one
-  TooFlat,  ///< the sides come too near to one another
-  Cut,      ///< too many stations: something is wrong with the part there
+  Part,     ///< a contact leaves over a sharp or open edge
+  TooFlat,  ///< the angle between the sides becomes too small
+  Cut,      ///< too many stations: a defect of the part
   Joined,   ///< another path continues here
 };
 
@@ -37,18 +37,18 @@ class ValleyTracer {
  public:
   ValleyTracer(const RollingBall& ball, const ValleyRules& rules) : ball_(ball), rules_(rules) {}
 
-  /// What became of a start.
+  /// The result of a start.
   enum class Found { Valley, NoSeat, TooFlat, NoFace };
-  /// From where a ball cannot reach to where it is held: the ball that touches there and a second place, however small,
-  /// grown to its full size.
+  /// From a place that the ball cannot reach to a seat: takes the ball of any size that touches there and at a second
+  /// place, and grows it to full size.
   Found start(const Unreached& from, Station& station) const;
-  /// From a corner along the edge of its free cone that sides `a` and `b` make; empty where that is no valley.
+  /// From a corner, along the edge of its free cone that sides `a` and `b` form; empty if that is no valley.
   std::optional<Station> leave(const Vec3& corner, const Foot& a, const Foot& b, const Vec3& way) const;
 
-  /// Both ways from `seed`. `steps` counts the balls that were set.
+  /// Traces in both directions from `seed`. `steps` counts the balls placed.
   Valley trace(const Station& seed, std::size_t& steps) const;
 
-  /// Ways out of a corner: all pairs of its feet along which the ball can leave it.
+  /// The valleys that leave a corner: all pairs of its feet along which the ball can move away.
   std::vector<Station> branches(const Vec3& corner) const;
 
  private:
@@ -66,11 +66,12 @@ class ValleyTracer {
   ValleyRules rules_;
 };
 
-/// The valley of a larger ball with `ball` laid into it: in the plane across, as deep as it goes. Stations where it has
-/// no face to rest on are left out.
+/// The valley of a larger ball with `ball` laid into it: within the plane across, as deep as it goes. Stations where it
+/// has no face to rest on are left out.
 Valley laid_into(const Valley& valley, const RollingBall& ball);
 
-/// Drops stations that lie on straight lines between others, centres to `tolerance` / 4 and contacts to `tolerance`.
+/// Drops stations on straight lines between others, within `tolerance` / 4 for centres and `tolerance` for contacts
+/// (mm).
 void simplify(Valley& valley, double tolerance);
 
 }  // namespace riffler::plan

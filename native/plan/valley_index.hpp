@@ -1,4 +1,4 @@
-// Where valleys have been traced already.
+// Index of the valleys traced so far.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace riffler::plan {
 
-/// Places in space, by cubes of one size.
+/// Values at places in space, hashed by cubes of one size.
 template <class T>
 class Cubes {
  public:
@@ -18,7 +18,7 @@ class Cubes {
   void add(const Vec3& lower, const Vec3& upper, const T& what) {
     visit(lower, upper, [&](std::uint64_t key) { cubes_[key].push_back(what); });
   }
-  /// Calls see(what) for all that was added to cubes in this box, some of it more than once.
+  /// Calls see(what) for everything added to cubes in this box, possibly more than once.
   template <class See>
   void look(const Vec3& lower, const Vec3& upper, const See& see) const {
     visit(lower, upper, [&](std::uint64_t key) {
@@ -43,12 +43,13 @@ class Cubes {
 
 class ValleyIndex {
  public:
-  /// `near` (mm): what lies that near to a traced valley, with sides that differ by less than `turn` (rad), is on it.
+  /// `near` (mm) and `turn` (rad): a place within this distance of a traced valley, with sides that differ by less,
+  /// lies on that valley.
   ValleyIndex(double cube, double near, double turn) : segments_(cube), near_(near), turn_(turn) {}
 
   void add(const Valley& valley);
   bool covers(const Station& station) const;
-  /// Most of it is covered.
+  /// Whether most of the valley is covered.
   bool covers(const Valley& valley) const;
 
  private:

@@ -10,10 +10,10 @@ namespace riffler::plan {
 
 namespace {
 
-/// The points of the net in groups: those in one cube, on surfaces that look the same way.
+/// Groups of net points: those in one cube on surfaces with similar normals.
 struct Groups {
-  std::vector<int> of;             // group of each point, -1 for those too deep to start from
-  std::vector<std::size_t> first;  // of each group the point nearest to where the ball reaches; ascending
+  std::vector<int> of;             // group of each point, -1 for points too deep to start from
+  std::vector<std::size_t> first;  // per group, the point nearest to the reachable area; ascending
 };
 
 struct Key {

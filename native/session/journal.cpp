@@ -40,8 +40,8 @@ void Journal::redo(std::size_t n) {
 
 namespace {
 
-/// mm/min with which the tip comes to each row; the first row takes the first feed there is. Hands rest and jerk, and
-/// clocks tick: what is beyond any machine is held within bounds.
+/// Feed in mm/min to each row; the first row takes the first available feed. Hands rest and jerk, and clocks are
+/// coarse: feeds beyond any machine are clamped.
 std::vector<double> feeds(const JournalStroke& stroke, std::size_t index) {
   constexpr double kSlowest = 1, kFastest = 1e5;
   const std::string name = "stroke " + std::to_string(index);

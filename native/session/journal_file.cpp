@@ -72,7 +72,7 @@ namespace {
   throw std::runtime_error(name + ": " + what + ": " + std::strerror(errno));
 }
 
-/// A file descriptor until it is given away.
+/// Owns a file descriptor until released.
 class Descriptor {
  public:
   explicit Descriptor(int fd) : fd_(fd) {}
@@ -92,7 +92,7 @@ void write_at(int fd, View bytes, std::uint64_t at, const std::string& name) {
   while (!bytes.empty()) {
     const ssize_t n = pwrite(fd, bytes.data(), bytes.size(), static_cast<off_t>(at));
     if (n < 0 && errno == EINTR) continue;
-    if (n == 0) errno = ENOSPC;  // no system says so, but none promises not to; trying again would be for ever
+    if (n == 0) errno = ENOSPC;  // no system does this, but none rules it out; retrying could loop for ever
     if (n <= 0) fail_system(name, "cannot be written");
     bytes = bytes.subspan(static_cast<std::size_t>(n));
     at += static_cast<std::uint64_t>(n);
@@ -104,7 +104,7 @@ void write_at(int fd, View bytes, std::uint64_t at, const std::string& name) {
 JournalWriter::JournalWriter(const std::filesystem::path& path, Keep keep) : name_(path.filename().string()) {
   Descriptor file(open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666));
   if (file.get() < 0) fail_system(name_, "cannot be opened for writing");
-  if (flock(file.get(), LOCK_EX | LOCK_NB) != 0) fail_system(name_, "is being written by somebody else");
+  if (flock(file.get(), LOCK_EX | LOCK_NB) != 0) fail_system(name_, "is being written by another program");
   struct stat status{};
   if (fstat(file.get(), &status) != 0) fail_system(name_, "cannot be read");
   if (!S_ISREG(status.st_mode))
@@ -143,7 +143,7 @@ void JournalWriter::append(const std::vector<std::uint8_t>& bytes) {
 }
 
 void JournalWriter::append_to(int fd, const std::vector<std::uint8_t>& bytes) {
-  // On a full disk, half a record: a cut tail, which this removes or the next record overwrites.
+  // On a full disk, half a record may be written: a truncated tail, which this removes or the next record overwrites.
   const auto cut = [&] { torn_ = torn_ && ftruncate(fd, static_cast<off_t>(size_)) != 0; };
   cut();
   try {
@@ -156,7 +156,7 @@ void JournalWriter::append_to(int fd, const std::vector<std::uint8_t>& bytes) {
   size_ += bytes.size();
 }
 
-/// `apply` what the rules allow, as soon as its record is in the file.
+/// Applies the change once its record is in the file, if the rules allow it.
 template <class Apply, class Record>
 void JournalWriter::change(const Apply& apply, const Record& record) {
   JournalRules after = rules_;

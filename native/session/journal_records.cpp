@@ -26,23 +26,23 @@ enum Kind : std::uint32_t {
   kMore = 5,
   kTakeBack = 6,
   kBringBack = 7,
-  kClayStroke = 8,  // a stroke, and its mode
-  kMaskedStock = 9  // a stock, and the name of its mask
+  kClayStroke = 8,  // a stroke with its mode
+  kMaskedStock = 9  // a stock with the name of its mask
 };
 
 bool starts_with(View bytes, std::string_view text) {
   return bytes.size() >= text.size() && std::memcmp(bytes.data(), text.data(), text.size()) == 0;
 }
 
-// --- Rows: columns of doubles to the bit. Neighbours differ little, so the differences of their bit patterns, byte
-// plane by byte plane, are mostly zeros, which zlib then packs. ---
+// --- Rows: columns of doubles, exactly. Neighbours differ little, so the differences of their bit patterns, split into
+// byte planes, are mostly zeros, which zlib then packs. ---
 
 struct Column {
   enum Of { kTip, kAxis, kTime, kForce, kTorque, kRemoved } of;
-  int k = 0;  // of a vector
+  int k = 0;  // component of a vector
 };
 
-/// In the order in which they stand in the file.
+/// The columns in file order.
 std::vector<Column> columns_of(bool times, bool forces, bool removed) {
   std::vector<Column> out;
   const auto vector = [&](Column::Of of) { out.insert(out.end(), {{of, 0}, {of, 1}, {of, 2}}); };
@@ -53,7 +53,7 @@ std::vector<Column> columns_of(bool times, bool forces, bool removed) {
   return out;
 }
 
-/// Of JournalRows or a JournalStroke.
+/// `Rows`: JournalRows or a JournalStroke.
 template <class Rows>
 auto& value(Rows& rows, const Column& column, std::size_t row) {
   switch (column.of) {
@@ -73,8 +73,8 @@ auto& value(Rows& rows, const Column& column, std::size_t row) {
   return rows.times[row];
 }
 
-// Which columns there are: their number in the low byte, and a bit for those that are there. Times have none: the
-// number tells.
+// The set of columns: their number in the low byte, and a bit for each optional column. Times have no bit: the number
+// implies them.
 constexpr std::uint32_t kForces = 0x100, kRemoved = 0x200;
 
 void put_rows(Bytes& out, const JournalRows& rows) {
@@ -102,7 +102,7 @@ void put_rows(Bytes& out, const JournalRows& rows) {
   out.insert(out.end(), packed.begin(), packed.begin() + static_cast<std::ptrdiff_t>(size));
 }
 
-/// The columns that the number in a file means; a reader that does not know them all must not guess.
+/// The columns for a code in a file; a reader that does not know all of them must not guess.
 std::vector<Column> known_columns(std::uint32_t code) {
   const bool forces = code & kForces, removed = code & kRemoved;
   for (const bool times : {false, true}) {
@@ -117,7 +117,7 @@ void take_rows(base::ByteReader& from, JournalStroke& out) {
   const std::uint64_t n = from.number<std::uint64_t>();
   const std::vector<Column> columns = known_columns(from.number<std::uint32_t>());
   const View packed = from.raw(from.number<std::uint64_t>());
-  // zlib packs at most 1 : 1032, so a damaged count cannot ask for more memory than the file can fill.
+  // zlib packs at most 1 : 1032, so a damaged count cannot request more memory than the file can fill.
   if (n > packed.size() * 1032 / (columns.size() * 8))
     throw std::invalid_argument("a stroke with more poses than it can hold");
   const auto rows = static_cast<std::size_t>(n);
@@ -206,7 +206,7 @@ Bytes note_record(const std::string& key, const std::string& value) {
 }
 
 Bytes stroke_record(const JournalStroke& stroke) {
-  // What only removes has the record that it always had: readers that know no modes read it.
+  // A removing stroke uses the original record kind, which readers without modes understand.
   const bool removes = stroke.mode == StrokeMode::Remove;
   Bytes out;
   base::put(out, static_cast<std::uint32_t>(stroke.tool));

@@ -1,4 +1,4 @@
-// The bytes of a journal's header and records. Only journal_file.cpp needs them.
+// The bytes of a journal's header and records. Used only by journal_file.cpp.
 #pragma once
 
 #include <cstdint>
@@ -22,21 +22,21 @@ Bytes more_record(const JournalRows& rows);
 Bytes undo_record(std::size_t n);
 Bytes redo_record(std::size_t n);
 
-/// The size of the header at the start of `bytes`. Throws FormatError (`name`) where it is not a journal's.
+/// The size of the header at the start of `bytes`. Throws FormatError (`name`) if it is not that of a journal.
 std::size_t check_header(View bytes, const std::string& name);
 
-/// A record whose checksums are right.
+/// A record with valid checksums.
 struct Record {
   std::uint32_t kind;
   View payload;
-  std::size_t size;  ///< with header and checksums
+  std::size_t size;  ///< bytes, with header and checksums
 };
 
-/// The whole record at the start of `bytes`, or nothing.
+/// The complete record at the start of `bytes`, or no value.
 std::optional<Record> whole_record(View bytes);
 /// Whether another record begins anywhere after the first byte.
 bool record_follows(View bytes);
-/// Adds what the record says. Throws std::invalid_argument where its content is wrong.
+/// Applies the record to the journal. Throws std::invalid_argument for invalid content.
 void apply_record(const Record& record, Journal& journal);
 
 }  // namespace riffler::session::journal_format

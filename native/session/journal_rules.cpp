@@ -19,13 +19,13 @@ std::string at(const char* name, std::size_t row) {
   return std::string(name) + ", row " + std::to_string(row) + ": ";
 }
 
-/// Whether a column has as many rows as it must have.
+/// Checks that a column has the required number of rows.
 void check_length(const char* name, std::size_t size, bool wanted, std::size_t rows) {
   if (size == (wanted ? rows : 0)) return;
   fail(wanted ? std::string(name) + " must be as many as poses" : std::string(name) + " for a stroke that has none");
 }
 
-/// `last`: the time before the first of these, if there is one.
+/// `last`: the time before the first of these rows, or null.
 void check_values(const JournalRows& rows, const double* last) {
   for (std::size_t row = 0; row < rows.poses.size(); ++row) nc::checked_pose(rows.poses[row], "poses", row);
   for (std::size_t row = 0; row < rows.times.size(); ++row) {
@@ -102,15 +102,15 @@ void JournalRules::extend_stroke(const JournalRows& rows) {
 }
 
 void JournalRules::undo(std::size_t n) {
-  if (counting_ == 0) fail("there is no stroke to take back");
-  if (n < 1 || n > counting_) fail("strokes to take back must be from 1 to " + std::to_string(counting_));
+  if (counting_ == 0) fail("there is no stroke to undo");
+  if (n < 1 || n > counting_) fail("strokes to undo must be from 1 to " + std::to_string(counting_));
   counting_ -= n, taken_ += n;
   last_.reset();
 }
 
 void JournalRules::redo(std::size_t n) {
-  if (taken_ == 0) fail("there is no stroke to bring back");
-  if (n < 1 || n > taken_) fail("strokes to bring back must be from 1 to " + std::to_string(taken_));
+  if (taken_ == 0) fail("there is no stroke to redo");
+  if (n < 1 || n > taken_) fail("strokes to redo must be from 1 to " + std::to_string(taken_));
   counting_ += n, taken_ -= n;
   last_.reset();
 }

@@ -18,7 +18,7 @@ struct JournalSink::Core {
   JournalStream stream_;
   int tool_;
   double tolerance_;
-  int owed_ = 0;  // strokes to be taken back (< 0) or brought back, for which there was no room
+  int owed_ = 0;  // pending undo (< 0) or redo of strokes, for lack of room
 };
 
 JournalSink::JournalSink(std::unique_ptr<JournalWriter> writer, int tool, double tolerance,
@@ -27,7 +27,7 @@ JournalSink::JournalSink(std::unique_ptr<JournalWriter> writer, int tool, double
 
 JournalSink::~JournalSink() = default;
 
-/// For what was taken back, the beginning of a stroke and a row.
+/// Room for a pending undo, the beginning of a stroke and a row.
 bool JournalSink::room() noexcept {
   return core_->stream_.room(3) && core_->settle();
 }

@@ -13,7 +13,7 @@ namespace riffler::session {
 
 namespace {
 
-/// Rows in one record: a piece of some 250 kB.
+/// Rows per record: about 250 kB.
 constexpr std::size_t kPiece = 4096;
 
 void add(JournalStroke& to, const JournalRow& row) {
@@ -48,7 +48,7 @@ JournalStream::~JournalStream() {
 
 bool JournalStream::room(std::size_t rows) const noexcept {
   const std::uint64_t used = head_.load(std::memory_order_relaxed) - tail_.load(std::memory_order_acquire);
-  return ring_.size() - used > rows;  // one more, for the end
+  return ring_.size() - used > rows;  // one more, for the end mark
 }
 
 bool JournalStream::push(const Slot& slot, std::size_t spare) noexcept {
@@ -77,7 +77,7 @@ bool JournalStream::count_back(int strokes) noexcept {
   return !in_stroke_ && push({{}, 0, strokes, Kind::Back}, 1);
 }
 
-// --- The keeper ---
+// --- The writer thread ---
 
 void JournalStream::pop(std::size_t n) {
   tail_.store(tail_.load(std::memory_order_relaxed) + n, std::memory_order_release);
@@ -104,7 +104,7 @@ void JournalStream::write_all() {
   }
 }
 
-/// One mark, or rows up to the next mark; false at the end. Where it throws, they wait.
+/// Writes one mark, or the rows up to the next mark; false at the end. If it throws, they stay in the ring.
 bool JournalStream::write_next(std::uint64_t end) {
   const std::uint64_t tail = tail_.load(std::memory_order_relaxed);
   if (tail == end) return false;
@@ -120,7 +120,7 @@ bool JournalStream::write_next(std::uint64_t end) {
     write_count(first.tool);
     pop(1);
   } else if (begun_ && stands(begun_->row.pose, first.row.pose)) {
-    // A tool that does not move cuts nothing: the stroke begins where it last stood.
+    // A tool that does not move cuts nothing: the stroke begins at its last position.
     begun_->row = first.row;
     pop(1);
   } else {
@@ -156,13 +156,13 @@ void JournalStream::write_rows(std::uint64_t begin, std::uint64_t end) {
     } else if (open_) {
       writer_.extend_stroke(piece_.rows());
     } else {
-      refused_.fetch_add(rows, std::memory_order_relaxed);  // of a stroke of which some were
+      refused_.fetch_add(rows, std::memory_order_relaxed);  // the stroke has refused rows already
       return pop(rows);
     }
     open_ = unsynced_ = true;
   } catch (const std::invalid_argument& e) {
-    if (rows > 1) return write_rows(begin, begin + rows / 2);  // up to the row that is wrong
-    // Trying again would not help, and rows after a gap would be moves that nobody made.
+    if (rows > 1) return write_rows(begin, begin + rows / 2);  // split until the invalid row is found
+    // A retry would not help, and rows after a gap would form moves that never happened.
     refused_.fetch_add(piece_.poses.size(), std::memory_order_relaxed);
     open_ = false;
     const std::scoped_lock lock(told_);
@@ -172,7 +172,7 @@ void JournalStream::write_rows(std::uint64_t begin, std::uint64_t end) {
   pop(rows);
 }
 
-/// Whether all that was there is in the file.
+/// Whether everything in the ring at the call is in the file.
 bool JournalStream::write(double now) {
   const std::scoped_lock lock(writing_);
   if (now < retry_at_) return false;
@@ -188,7 +188,7 @@ bool JournalStream::write(double now) {
   return problem.empty();
 }
 
-/// Once for each thing there is to sync.
+/// Whether a sync is due; true once per occasion.
 bool JournalStream::sync_due(double now) {
   const std::scoped_lock lock(writing_);
   if (!unsynced_ || !(ended_ || now - synced_at_ >= options_.sync)) return false;
@@ -197,7 +197,7 @@ bool JournalStream::sync_due(double now) {
   return true;
 }
 
-/// Does not keep others from writing meanwhile: a disk may take seconds.
+/// Allows writing by other threads meanwhile: a disk may take seconds.
 bool JournalStream::sync() {
   std::string problem;
   try {

@@ -1,5 +1,5 @@
-// From the haptic loop to the journal: the loop never waits for the disk, and asks before it cuts whether what it does
-// can still be kept.
+// Stream from the haptic loop to the journal: the loop never waits for the disk, and checks before a cut that it can
+// still be recorded.
 #pragma once
 
 #include <atomic>
@@ -18,7 +18,7 @@
 
 namespace riffler::session {
 
-/// A row of a stroke as the loop has it: columns as JournalRows.
+/// A row of a stroke in the loop; fields as the columns of JournalRows.
 struct JournalRow {
   Pose pose;
   double time = 0;
@@ -26,54 +26,54 @@ struct JournalRow {
   double removed = 0;
 };
 
-/// A ring between one loop and a keeper who writes it to a journal and syncs. Rows leave the ring when they are in the
-/// file; while the disk refuses them they wait there, and where the ring is full `room` tells the loop to cut no more.
-/// Nothing is dropped: what a journal cannot hold at all (a pose that is none) is counted and ends its stroke.
+/// A ring buffer between one loop and a writer thread that writes to a journal and syncs it. Rows leave the ring when
+/// they are in the file. While the disk refuses them they wait; when the ring is full, `room` tells the loop to stop
+/// cutting. Nothing is dropped: a row that no journal can hold (an invalid pose) is counted and ends its stroke.
 class JournalStream {
  public:
   using Options = JournalStreamOptions;
 
-  /// `writer` must outlive this, and is the keeper's: see `use`. Takes all its memory here. std::invalid_argument for
-  /// options that are not positive, or fewer than 4 rows.
+  /// `writer` must outlive this object and is used by the writer thread: see `use`. Allocates all memory here. Throws
+  /// std::invalid_argument for options that are not positive, or fewer than 4 rows.
   JournalStream(JournalWriter& writer, const Options& options);
   explicit JournalStream(JournalWriter& writer) : JournalStream(writer, Options()) {}
   JournalStream(const JournalStream&) = delete;
   JournalStream& operator=(const JournalStream&) = delete;
   ~JournalStream();
 
-  // --- Of the loop, one thread: none of them waits, allocates or throws. ---
+  // --- For the loop, one thread: none of these waits, allocates or throws. ---
 
-  /// Whether the next so many calls of `begin` and `put` will be taken. `end` always is.
+  /// Whether the next `rows` calls of `begin` and `put` will succeed. `end` always does.
   bool room(std::size_t rows = 1) const noexcept;
-  /// The tool, whose number is in the journal, stands here. False, and nothing was taken: no room, or in a stroke.
+  /// Begins a stroke at the row's pose with the tool of that number, which is in the journal. Returns false and does
+  /// nothing without room, or during a stroke.
   bool begin(int tool, double tolerance, const JournalRow& row) noexcept;
-  /// It moved here, from the row before. False: no room, or no stroke.
+  /// Adds a move from the row before. False without room, or outside a stroke.
   bool put(const JournalRow& row) noexcept;
   void end() noexcept;
-  /// So many strokes are taken back (less than zero) or brought back. False: no room, or in a stroke.
+  /// Undoes (`strokes` < 0) or redoes (`strokes` > 0) strokes. False without room, or during a stroke.
   bool count_back(int strokes) noexcept;
 
-  // --- Of any other thread ---
+  // --- For any other thread ---
 
-  /// The keeper, and one beside it who waits for the disk, in threads of their own.
+  /// Starts the writer thread, and a second thread that waits for the disk.
   void start();
-  /// Writes and syncs what is there. False where the disk refuses: the rows wait for the next start(); and in a process
-  /// that was forked from that of the journal, which leaves the file alone.
+  /// Writes and syncs what is there. Returns false if the disk refuses: the rows wait for the next start(). Also false
+  /// in a process forked from that of the journal, which leaves the file alone.
   bool stop();
-  /// What the keeper does at the time `now` (s): for tests, and for those with a thread of their own. Not after
-  /// start().
+  /// One step of the writer at time `now` (s), for tests and for callers with their own thread. Not after start().
   void step(double now);
-  /// Calls `f` with the writer, after all rows so far: tools, notes. std::runtime_error where a stroke has not
-  /// ended, or the disk refuses its rows.
+  /// Calls `f` with the writer after all rows so far, for example to add tools or notes. Throws std::runtime_error
+  /// during a stroke, or if the disk refuses its rows.
   void use(const std::function<void(JournalWriter&)>& f);
 
-  /// For the screen: why nothing is written just now, or what was refused for good; empty: all is well.
+  /// For display: why nothing is being written, or what was refused for good; empty if all is well.
   std::string problem() const;
   /// Rows that are not in the file yet; any thread.
   std::size_t waiting() const noexcept;
-  /// Waits, up to so many seconds, until all that was there at the call is in the file. False: it is not yet.
+  /// Waits up to `seconds` until everything present at the call is in the file. False: not yet.
   bool written(double seconds) const;
-  /// Rows that no journal can hold.
+  /// Number of rows that no journal can hold.
   std::uint64_t refused() const noexcept { return refused_.load(std::memory_order_relaxed); }
 
  private:
@@ -81,11 +81,11 @@ class JournalStream {
   struct Slot {
     JournalRow row;
     double tolerance;
-    int tool;  // or the strokes that come back
+    int tool;  // or the number of strokes of an undo or redo
     Kind kind;
   };
   static_assert(sizeof(Slot) == 128, "as Options::rows says");
-  struct Begun {  // a stroke of which nothing is written, for it has not moved
+  struct Begun {  // a stroke not written yet, because it has not moved
     int tool;
     double tolerance;
     JournalRow row;
@@ -107,16 +107,16 @@ class JournalStream {
   JournalWriter& writer_;
   Options options_;
   std::vector<Slot> ring_;
-  alignas(64) std::atomic<std::uint64_t> head_{0};  // the next slot that the loop fills
-  bool in_stroke_ = false;                          // the loop's
-  alignas(64) std::atomic<std::uint64_t> tail_{0};  // the first that the keeper has not written
+  alignas(64) std::atomic<std::uint64_t> head_{0};  // the next slot for the loop to fill
+  bool in_stroke_ = false;                          // used by the loop
+  alignas(64) std::atomic<std::uint64_t> tail_{0};  // the first slot not written yet
   std::atomic<std::uint64_t> refused_{0};
 
-  std::mutex writing_;  // the writer, and the keeper's state up to the next line
+  std::mutex writing_;  // protects the journal writer and the thread's state below
   std::optional<Begun> begun_;
-  bool open_ = false;  // the last stroke in the file goes on
+  bool open_ = false;  // the last stroke in the file is unfinished
   JournalStroke piece_;
-  bool unsynced_ = false, ended_ = false;  // rows, and a stroke's end, since the last sync
+  bool unsynced_ = false, ended_ = false;  // rows, or the end of a stroke, since the last sync
   double synced_at_, retry_at_;
 
   mutable std::mutex told_;

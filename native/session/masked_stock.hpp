@@ -1,5 +1,5 @@
-// What of a stock a session may cut: its material, or the air in its box, less what a mask protects. And the whole that
-// is shown.
+// The part of a stock that a session may cut: its material, or the air in its box, minus a protected region; and the
+// combined volume for display.
 #pragma once
 
 #include <span>
@@ -10,20 +10,21 @@
 
 namespace riffler::session {
 
-/// The loop cuts a volume as any other, and knows neither of a mask nor of what is put on: a step costs what it always
-/// costs, and feels what it takes. Whoever shows puts both together, tile by tile: the whole is the stock of the start
-/// less what was cut since, or with it, so that it does not depend on how often somebody looked.
+/// The loop cuts this volume like any other. It knows neither the mask nor the add mode, so a step costs the same and
+/// feels what it removes. The displaying side combines both, tile by tile: the initial stock minus, or plus, what was
+/// cut since the start. The result is therefore independent of how often it is displayed.
 class MaskedStock {
  public:
-  /// `mode`: what is cut of it is taken from the stock, or put on. `protect`: a mask, or null. std::invalid_argument
-  /// where the mask's frame is another one than the stock's.
+  /// `mode`: whether the cut volume is removed from the stock or added to it. `protect`: a mask, or null. Throws
+  /// std::invalid_argument if the frames of mask and stock differ.
   MaskedStock(const Volume& stock, sweep::CarveMode mode, const Volume* protect);
 
   sweep::CarveMode mode() const { return mode_; }
   const Volume& volume() const { return masked_stock_; }
-  /// Makes `shown`, the whole, what it is where `left` is left of volume(): these tiles, which may come twice.
+  /// Updates the tiles `places` (possibly repeated) of the combined volume `shown` for the remainder `left` of
+  /// volume().
   void show(const Volume& left, std::span<const TileExchange::Place> places, Volume& shown) const;
-  /// The whole where `left` is left of volume().
+  /// The combined volume for the remainder `left` of volume().
   Volume whole(const Volume& left) const;
 
  private:

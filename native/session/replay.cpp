@@ -12,7 +12,7 @@ namespace riffler::session {
 
 namespace {
 
-/// A journal from somebody else must not reach for other files than those beside it.
+/// A foreign journal must not access files outside its own folder.
 Volume snapshot_of(const std::string& file, const char* what, const dexel::Frame& frame,
                    const std::filesystem::path& folder, const Progress& progress) {
   const std::filesystem::path name = file;
@@ -25,7 +25,7 @@ Volume snapshot_of(const std::string& file, const char* what, const dexel::Frame
   return volume;
 }
 
-/// Stock and mask as the session found them.
+/// Stock and mask at the start of the session.
 Replayed begin(const Journal& journal, const std::filesystem::path& folder, const Progress& progress) {
   if (!journal.stock()) throw std::invalid_argument("the journal has no stock to replay on");
   const JournalStock& stock = *journal.stock();
@@ -48,13 +48,14 @@ void apply_dabs(const JournalStroke& stroke, const Tool& tool, Replayed& to, con
   smooth_dabs(to.volume, centres, options);
 }
 
-/// Strokes of a session that cuts not the volume itself, from the first on: all of one mode.
+/// A run of session strokes that cut a derived volume rather than the stock itself: all of one mode.
 struct Run {
   MaskedStock cuttable;
   Volume left;
 };
 
-/// How such a stroke carves, or nothing for those that carve the volume itself. Without a mask all of it may be cut.
+/// How such a stroke carves, or no value for strokes that carve the volume itself. Without a mask everything may be
+/// cut.
 std::optional<sweep::CarveMode> run_mode(const JournalStroke& stroke, const Replayed& to) {
   if (stroke.mode == StrokeMode::Build) return sweep::CarveMode::Add;
   if (stroke.mode == StrokeMode::Beside && to.mask) return sweep::CarveMode::Remove;
@@ -73,7 +74,7 @@ void apply_in_run(const JournalStroke& stroke, sweep::CarveMode mode, const Tool
   sweep::carve(run->left, tool, moves_of(stroke), options);
 }
 
-/// The volume is what those strokes have left.
+/// Sets the volume to the result of those strokes.
 void end_run(Replayed& to, std::optional<Run>& run) {
   if (run) to.volume = run->cuttable.whole(run->left);
   run.reset();
@@ -107,7 +108,7 @@ std::vector<Pose> moves_of(const JournalStroke& stroke) {
 
 Replayed replay_all(const Journal& journal, const std::map<int, Tool>& tools, const std::filesystem::path& folder,
                     const Progress& progress) {
-  constexpr double kStock = 0.05;  // share of the work, for the listener
+  constexpr double kStock = 0.05;  // fraction of the work, for progress
   Replayed out = begin(journal, folder, base::part(progress, 0, kStock));
   std::optional<Run> run;
   double rows = 0, done = 0;

@@ -15,13 +15,13 @@ namespace riffler::session {
 
 namespace {
 
-/// In these the device knows where it is, and its data are of now.
+/// In these states the device knows its pose and its data are fresh.
 bool sure(haptics::ForceState state) {
   return state == haptics::ForceState::Ready || lets_force_through(state);
 }
 
-/// The coupling at the tool that the hand feels as `at_hand`: ways are `scale` times as long there, and forces come
-/// back times the scale.
+/// The coupling at the tool that the hand feels as `at_hand`: displacements are `scale` times as long there, and forces
+/// come back times the scale.
 haptics::CouplingSettings at_tool(haptics::CouplingSettings at_hand, double scale) {
   at_hand.stiffness /= scale * scale, at_hand.damping /= scale * scale;
   at_hand.max_stretch *= scale;
@@ -46,7 +46,7 @@ void SculptLoopSettings::validate() const {
   workspace.validate();
 }
 
-/// What the hand works on.
+/// The objects being worked on.
 struct SculptLoop::Scene {
   Scene(const SculptLoopSettings& s, const Volume& stock, const Tool& tool, const collide::Collider* obstacles)
       : volume(stock),
@@ -85,7 +85,7 @@ haptics::SafeWrench SculptLoop::step(const pen::PenSample& sample, double now, d
   if (dt > 0) time_ += dt;
   tick.time = time_, tick.dt = dt, tick.grip = sample.pose;
   if (reset_.exchange(false)) safety_.reset();
-  if (dt == 0) {  // a connection: the hand may be anywhere else by now
+  if (dt == 0) {  // a new connection: the hand may have moved anywhere
     safety_.interrupt();
     has_grip_ = placed_ = false;
   }
@@ -121,7 +121,7 @@ haptics::SafeWrench SculptLoop::step(const pen::PenSample& sample, double now, d
   return safe;
 }
 
-/// The tool's step, and what the hand shall feel of it.
+/// The tool's step, and the resulting wrench on the hand.
 Wrench SculptLoop::sculpt(const pen::PenSample& sample, double dt, SculptTick& tick) noexcept {
   tick.from = tick.tool = last_tool_;
   if (dt > 0 && std::isfinite(dt)) owed_ += dt;
@@ -145,7 +145,7 @@ Wrench SculptLoop::sculpt(const pen::PenSample& sample, double dt, SculptTick& t
   return out;
 }
 
-/// Where the hand is now is where the tool is: no way between is cut.
+/// Places the tool at the hand's current pose; the path to it is not cut.
 void SculptLoop::place(Scene& scene, const pen::PenSample& sample) noexcept {
   end_stroke();
   if (absolute_) last_tool_ = sample.pose;
@@ -182,7 +182,7 @@ Wrench SculptLoop::missed(double dt, const char* why, SculptTick& tick) noexcept
   return wrench_extrapolator_.missed(dt);
 }
 
-/// Limits and the controller, in the order of haptics/safety.hpp.
+/// Limits and passivity controller, in the order of haptics/safety.hpp.
 Wrench SculptLoop::rendered(const pen::PenSample& sample, const Wrench& wanted, double dt) noexcept {
   const haptics::Capability push = pushed(device_, sample.pose.axis);
   slewed_ = limited(settings_.limits, push, slewed_, lets_force_through(safety_.state()) ? wanted : Wrench{},
@@ -191,7 +191,7 @@ Wrench SculptLoop::rendered(const pen::PenSample& sample, const Wrench& wanted, 
   return magnitude_gain(settings_.limits, borne) * borne;
 }
 
-/// With the move that has just taken something: from where the tool was before it.
+/// Begins with the move that has just removed something, from the tool's pose before it.
 void SculptLoop::begin_stroke(double dt) noexcept {
   in_stroke_ = true, ++strokes_;
   if (sink_) sink_->begin(time_ - dt, last_tool_);
@@ -203,18 +203,18 @@ void SculptLoop::end_stroke() noexcept {
   if (sink_) sink_->end();
 }
 
-// --- Who shows it ---
+// --- The displaying thread ---
 
 TileExchange::Mark SculptLoop::show(Volume& shown, std::vector<Place>& places, double patience) {
   constexpr double kNap = 1e-4;
   TileExchange::Mark mark;
-  exchange_.take(shown, places, mark);  // of an earlier call that did not wait long enough
+  exchange_.take(shown, places, mark);  // left over from an earlier call that timed out
   exchange_.ask();
   for (double waited = 0; waited < patience; waited += kNap) {
     if (exchange_.take(shown, places, mark)) return mark;
     std::this_thread::sleep_for(std::chrono::duration<double>(kNap));
   }
-  // Nobody steps, or a step takes long: between two of them this is as good.
+  // No steps, or a long step: between two steps a direct copy is as good.
   const std::lock_guard lock(mutex_);
   exchange_.serve(scene_->volume, {strokes_, in_stroke_});
   exchange_.take(shown, places, mark);
@@ -234,7 +234,7 @@ void SculptLoop::finish() noexcept {
   tell_undo();
 }
 
-/// In the thread that tells the sink everything else.
+/// In the thread that makes all other calls of the sink.
 void SculptLoop::tell_undo() noexcept {
   const std::int64_t strokes = std::exchange(brought_back_, 0);
   if (sink_ && strokes < 0) sink_->undo(static_cast<std::size_t>(-strokes));

@@ -21,10 +21,11 @@ namespace {
 using Seconds = std::chrono::duration<double>;
 
 constexpr double kTick = 1e-3;  // s
-// What a tile of three directions with many spans needs, and how many tiles a frame's steps may cut for the first time.
+// Memory for a tile of three directions with many spans, and the number of tiles that the steps of one frame may cut
+// for the first time.
 constexpr std::size_t kLargestBlock = 1 << 17, kBlocks = 64;
 
-/// To put material on is no work against it: of a force there would be that of milling the air.
+/// Adding material meets no resistance: a force would be that of milling air.
 SculptLoopSettings for_mode(SculptLoopSettings settings, sweep::CarveMode mode) {
   if (mode == sweep::CarveMode::Add) settings.carving.removal_constant = settings.sculpt.damping = 0;
   return settings;
@@ -32,7 +33,7 @@ SculptLoopSettings for_mode(SculptLoopSettings settings, sweep::CarveMode mode) 
 
 SculptLoopSettings for_device(SculptLoopSettings settings, const pen::DeviceCapability& device) {
   if (device.has_force()) return settings;
-  // A mouse jumps as it likes: nothing pushes anybody.
+  // A mouse may jump, since nothing pushes the hand.
   settings.safety.jump = settings.safety.overspeed = {1e9, 1e9};
   settings.safety.fresh = 1e9;
   return settings;
@@ -46,7 +47,7 @@ void SessionSettings::validate() const {
     throw std::invalid_argument("start must be a finite point and an axis of unit length");
 }
 
-/// Both sides of a session: what the loop cuts, and what is shown.
+/// Both sides of a session: the loop that cuts, and the display.
 struct Session::Core {
   Core(const Volume& stock, const Tool& tool, std::shared_ptr<pen::Pen> pen,
        std::shared_ptr<const collide::Collider> obstacles, const SessionSettings& settings, const Volume* protect);
@@ -62,11 +63,11 @@ struct Session::Core {
   enum class State : unsigned char { New, Running, Ended };
   /// The volume between two strokes.
   struct Moment {
-    std::uint64_t strokes;  // from the moment before to this one: one, or more where frames came seldom
+    std::uint64_t strokes;  // strokes since the previous moment: one, or more if frames were rare
     Volume volume;
-    std::optional<Volume> left{};  // of what may be cut, where that is not the volume itself
+    std::optional<Volume> left{};  // remainder of the cuttable volume, unless that is `volume` itself
 
-    const Volume& cut() const { return left ? *left : volume; }  // the loop's
+    const Volume& cut() const { return left ? *left : volume; }  // the volume that the loop cuts
   };
 
   std::optional<Pose> start_pose() const;
@@ -89,13 +90,13 @@ struct Session::Core {
   std::atomic<bool> ending_{false};
   base::BlockReserve reserve_;
 
-  std::optional<MaskedStock> masked_stock_;  // where that is not the volume itself
-  std::optional<Volume> left_;               // of it, as it is shown
-  std::uint64_t shown_ = 0;                  // revision of the volume that is shown
-  std::vector<Moment> moments_;              // between strokes; oldest first
-  std::size_t here_ = 0;                     // of them, the one that is shown or being changed
-  std::uint64_t strokes_ = 0;                // that were seen
-  SessionFrame kept_;                        // for the next
+  std::optional<MaskedStock> masked_stock_;  // unless the loop cuts the stock itself
+  std::optional<Volume> left_;               // its remainder as displayed
+  std::uint64_t shown_ = 0;                  // revision of the displayed volume
+  std::vector<Moment> moments_;              // states between strokes; oldest first
+  std::size_t here_ = 0;                     // index of the moment displayed or being changed
+  std::uint64_t strokes_ = 0;                // strokes seen
+  SessionFrame kept_;                        // for the next frame
 };
 
 Session::Core::Core(const Volume& stock, const Tool& tool, std::shared_ptr<pen::Pen> pen,
@@ -114,7 +115,7 @@ Session::Core::Core(const Volume& stock, const Tool& tool, std::shared_ptr<pen::
 }
 
 Session::Core::~Core() {
-  if (!home_.here()) {  // a thread that is missing here may hold what these would wait for
+  if (!home_.here()) {  // after a fork, the missing thread may hold the locks
     static_cast<void>(new std::shared_ptr<SculptLoop>(std::move(loop_)));
     static_cast<void>(new std::shared_ptr<pen::Pen>(std::move(pen_)));
     return;
@@ -125,11 +126,11 @@ Session::Core::~Core() {
 }
 
 void Session::Core::record(std::shared_ptr<StrokeSink> sink) {
-  if (state_ != State::New) throw std::runtime_error("the session has begun: what it did would be missing");
+  if (state_ != State::New) throw std::runtime_error("the session has started: its earlier strokes would be missing");
   sink_ = std::move(sink);
 }
 
-/// Where the tool stands at the start.
+/// Pose of the tool at the start.
 std::optional<Pose> Session::Core::start_pose() const {
   if (settings_.start || pen_->in_part_frame()) return settings_.start;
   const Box3& box = moments_[0].volume.frame().box;
@@ -145,7 +146,7 @@ void Session::Core::start() {
   state_ = State::Running;
 }
 
-/// The thread of a device that has none.
+/// The thread for a device without its own.
 void Session::Core::poll() noexcept {
   const auto tick = std::chrono::duration_cast<std::chrono::steady_clock::duration>(Seconds(kTick));
   auto next = std::chrono::steady_clock::now();
@@ -177,7 +178,7 @@ SessionFrame Session::Core::stop(Volume& shown) {
 }
 
 SessionFrame Session::Core::frame(Volume& shown) {
-  if (state_ != State::Running) throw std::runtime_error("the session does not run");
+  if (state_ != State::Running) throw std::runtime_error("the session is not running");
   home_.check("the session");
   SessionFrame frame = std::exchange(kept_, {});
   look(shown, frame);
@@ -188,7 +189,7 @@ SessionFrame Session::Core::frame(Volume& shown) {
   return frame;
 }
 
-/// What the loop has cut since comes into `shown`.
+/// Brings what the loop has cut since into `shown`.
 TileExchange::Mark Session::Core::follow(Volume& shown, std::vector<TileExchange::Place>& places) {
   if (!masked_stock_) return loop_->show(shown, places);
   const std::size_t before = places.size();
@@ -212,7 +213,7 @@ void Session::Core::look(Volume& shown, SessionFrame& frame) {
   take_ticks(frame);
   frame.strokes = mark.strokes, frame.in_stroke = mark.in_stroke;
   if (mark.in_stroke || mark.strokes == strokes_) return;
-  moments_.erase(moments_.begin() + static_cast<std::ptrdiff_t>(here_) + 1, moments_.end());  // nothing to redo
+  moments_.erase(moments_.begin() + static_cast<std::ptrdiff_t>(here_) + 1, moments_.end());  // ends redo
   moments_.push_back({mark.strokes - std::exchange(strokes_, mark.strokes), shown, left_});
   if (moments_.size() > settings_.undo + 1) moments_.erase(moments_.begin());
   here_ = moments_.size() - 1;
@@ -226,10 +227,10 @@ std::size_t Session::Core::redo(Volume& shown) {
   return go_to(shown, 1, "redone");
 }
 
-/// One moment on or back.
+/// Moves one moment forward or back.
 std::size_t Session::Core::go_to(Volume& shown, int step, const char* what) {
   SessionFrame frame;
-  if (state_ != State::Running) throw std::runtime_error("the session does not run");
+  if (state_ != State::Running) throw std::runtime_error("the session is not running");
   home_.check("the session");
   look(shown, frame);
   if (frame.in_stroke) throw std::runtime_error(std::string("nothing can be ") + what + " in the middle of a stroke");
@@ -247,7 +248,7 @@ std::size_t Session::Core::go_to(Volume& shown, int step, const char* what) {
   return strokes;
 }
 
-/// Tiles that the two do not share are told with the next frame.
+/// Reports the tiles in which the two volumes differ with the next frame.
 void Session::Core::note_differences(const Volume& from, const Volume& to) {
   for (std::uint32_t g = 0; g < from.grids().size(); ++g)
     for (std::size_t t = 0; t < from.grids()[g].tile_count(); ++t)

@@ -19,7 +19,7 @@ void TileExchange::changed(std::span<const Place> places) noexcept {
     auto dirty = dirty_[first_[place.grid] + place.tile];
     if (dirty) continue;
     dirty = true;
-    list_.push_back(place);  // each tile once, for which there is room
+    list_.push_back(place);  // each tile once: the capacity suffices
   }
 }
 

@@ -10,7 +10,7 @@ bool same_pose(const Pose& a, const Pose& b) {
   return a.tip == b.tip && a.axis == b.axis;
 }
 
-/// Whether move `i` of the one is move `k` of the other. Row 0 is a place, not a move.
+/// Whether move `i` of program a equals move `k` of program b. Row 0 is a place, not a move.
 bool same_move(const RunRows& a, std::size_t i, const RunRows& b, std::size_t k) {
   return a.tool[i] == b.tool[k] && a.rapid[i] == b.rapid[k] && same_pose(a.poses[i - 1], b.poses[k - 1]) &&
          same_pose(a.poses[i], b.poses[k]);

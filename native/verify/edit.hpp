@@ -1,4 +1,4 @@
-// Which moves of a program differ from those of the one that was run before.
+// Finds the moves of a program that differ from those of the previous run.
 #pragma once
 
 #include <cstdint>
@@ -11,22 +11,22 @@
 
 namespace riffler::verify {
 
-/// What of a program decides what happens to material.
+/// The rows of a program, as far as they affect material.
 struct RunRows {
   std::vector<Pose> poses;
-  std::vector<std::uint32_t> tool;  ///< places in the toolset
+  std::vector<std::uint32_t> tool;  ///< indices in the toolset
   std::vector<std::uint8_t> rapid;
 };
 
 struct ProgramEdit {
-  std::vector<std::int64_t> before, now;  ///< rows of the old and of the new program that the other one does not have
-  std::int64_t tail = 0, shift = 0;       ///< rows of the old one from `tail` on are `shift` further in the new one
+  std::vector<std::int64_t> before, now;  ///< rows only in the old program, and rows only in the new one
+  std::int64_t tail = 0, shift = 0;       ///< old rows from `tail` on correspond to new rows `shift` further
 };
 
-/// Rows at the same place, counted from the start or, if there are more or fewer of them now, from both ends.
+/// Pairs rows by position, counted from the start or, if rows were added or removed, from both ends.
 ProgramEdit edit_between(const RunRows& before, const RunRows& now);
 
-/// Calls f(moves) with the moves of `rows` in stretches that take little memory. `shapes` and `top` as for Moves.
+/// Calls f(moves) with the moves of `rows` in batches that need little memory. `shapes` and `top` as for Moves.
 void for_moves_of(const RunRows& program, std::span<const std::int64_t> rows, std::span<const ToolShapes> shapes,
                   double top, const std::function<void(const Moves&)>& f);
 

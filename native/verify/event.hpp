@@ -1,4 +1,4 @@
-// What the simulation of a slab found, row by row.
+// Events found in the simulation of a slab, per row.
 #pragma once
 
 #include <cstdint>
@@ -12,24 +12,24 @@ namespace riffler::verify {
 
 struct Event {
   Kind kind;
-  Member member = Member::Cutter;  ///< what of the tool it was
-  std::int32_t fixture = -1;       ///< which fixture was met; −1: the stock
+  Member member = Member::Cutter;  ///< part of the tool
+  std::int32_t fixture = -1;       ///< index of the fixture; −1: the stock
   std::int64_t row = 0;
-  double value = 0;  ///< mm³, or 0 where it was not measured; of gouges mm
-  double worst = 0;  ///< decides between slabs which point is the worst
+  double value = 0;  ///< mm³, or 0 if not measured; for gouges mm
+  double worst = 0;  ///< selects the worst point among slabs
   Vec3 point{0};     ///< mm, part frame
 
   bool operator==(const Event&) const = default;
 };
 
-/// Whether it is one of shank, holder or beyond in the stock.
+/// Whether shank, holder or beyond collided with the stock.
 bool is_strike(const Event& event);
 
-/// What the moves did; rows that removed nothing are left out of `removed`.
+/// The results of the moves; rows that removed nothing are not in `removed`.
 struct SlabReport {
-  std::vector<std::pair<std::int64_t, double>> removed;  ///< mm³ of the rays that define Volume::volume()
+  std::vector<std::pair<std::int64_t, double>> removed;  ///< row and mm³, on the rays that define Volume::volume()
   std::vector<Event> events;
-  std::uint64_t strikes = 0;  ///< of shank, holder and beyond, since the program's start
+  std::uint64_t strikes = 0;  ///< collisions of shank, holder and beyond since the start of the program
 };
 
 }  // namespace riffler::verify

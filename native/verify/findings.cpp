@@ -8,7 +8,7 @@ namespace riffler::verify {
 
 namespace {
 
-/// The rows' values add up; of the others the worst row counts.
+/// Whether the values of rows add up; otherwise the worst row counts.
 bool adds_up(Kind kind) {
   return kind == Kind::Rapid || kind == Kind::Spindle;
 }
@@ -51,7 +51,7 @@ void FindingList::add(std::vector<Event> events, std::span<const std::int32_t> t
 
 void FindingList::add_row(const Event& e, std::int32_t tool, std::int32_t line) {
   const auto [open, added] = open_.try_emplace({e.kind, e.fixture}, findings_.size());
-  // What the stock lacks from the start stands at row 0 and is no move's neighbour.
+  // What the stock lacks from the start is reported at row 0, which is no neighbour of a move.
   if (!added) {
     Finding& last = findings_[open->second];
     if (last.last_row + 1 == e.row && last.last_row > 0 && last.tool == tool) {
@@ -83,7 +83,7 @@ std::string message_of(const Finding& f) {
     case Kind::Rapid:
       return "a rapid takes " + number(f.value) + " mm³ of material: retract higher before it, or make it a feed move";
     case Kind::Spindle:
-      return "a feed move takes " + number(f.value) + " mm³ with a spindle that stands: start it (M3 S…) before";
+      return "a feed move takes " + number(f.value) + " mm³ with a stopped spindle: start it (M3 S…) before";
     case Kind::Holder:
       return "the holder" + tool + " meets " + met +
              "material: let the tool stick out further, tilt it, or clear the place before";
@@ -92,7 +92,7 @@ std::string message_of(const Finding& f) {
              "material: take a longer or a thinner tool, tilt it, or clear the place before";
     case Kind::Fixture:
       return std::string("the ") + name_of(f.member) + tool + " meets " + number(f.value) + " mm³ of " + what +
-             ": move the fixture or lead the tool round it";
+             ": move the fixture or lead the tool around it";
     case Kind::Gouge:
       if (f.row == 0)
         return "the stock lacks material of the part, " + number(f.value) +
@@ -117,7 +117,7 @@ std::string message_of_unknown(const Finding& f, const Tool& tool) {
           : shank ? "shank"
                   : "cutter") +
          " of tool " + std::to_string(f.tool) + " ends " + number(top) + " mm above the tip, and " + what +
-         " stands above or beside that, so what follows it cannot be checked: " +
+         " stands above or next to that, so what follows it cannot be checked: " +
          (holder  ? "describe what follows the holder as further pieces of it"
           : shank ? "describe the holder"
                   : "describe the shank and the holder");

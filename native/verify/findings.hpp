@@ -1,4 +1,4 @@
-// Events of rows → findings of neighbouring rows.
+// Combines events of rows into findings of neighbouring rows.
 #pragma once
 
 #include <map>
@@ -12,27 +12,27 @@
 
 namespace riffler::verify {
 
-/// Takes events in stretches of ascending rows.
+/// Takes events in batches of ascending rows.
 class FindingList {
  public:
-  /// `tool` and `line`: of the program's rows from number `first_row` on. Of several events of one row and kind, the
-  /// order does not matter but for sums.
+  /// `tool` and `line`: columns of the program's rows from number `first_row` on. The order of events with the same row
+  /// and kind affects only the rounding of sums.
   void add(std::vector<Event> events, std::span<const std::int32_t> tool, std::span<const std::int32_t> line,
            std::int64_t first_row);
-  /// Sorted by rows, with their messages.
+  /// The findings sorted by rows, with messages.
   std::vector<Finding> take();
 
  private:
   void add_row(const Event& event, std::int32_t tool, std::int32_t line);
 
   std::vector<Finding> findings_;
-  std::map<std::pair<Kind, std::int32_t>, std::size_t> open_;  // the last one of a kind and a fixture
+  std::map<std::pair<Kind, std::int32_t>, std::size_t> open_;  // the last finding per kind and fixture
 };
 
-/// One sentence that says what happened and what to do.
+/// One sentence: what happened and what to do.
 std::string message_of(const Finding& finding);
 
-/// The message of a finding of Kind::Unknown, which depends on how far its tool is described.
+/// The message of a finding of Kind::Unknown, which depends on how far the tool's shape is described.
 std::string message_of_unknown(const Finding& finding, const Tool& tool);
 
 }  // namespace riffler::verify

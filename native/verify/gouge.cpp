@@ -10,14 +10,14 @@ namespace riffler::verify {
 namespace {
 
 /// Whether the piece [near, far] of a part's span begins at the part's surface and is no longer than the tolerance, so
-/// that none of it is deep. Ends in the box's own faces may be within a part that sticks out of it.
+/// that no point of it is deep. Ends in the box's own faces may lie within a part that extends beyond the box.
 bool surely_shallow(const dexel::Grid& grid, const dexel::Span& span, double near, double far, double tolerance) {
   const bool at_surface =
       (near == span.near && near > grid.box().lower.z) || (far == span.far && far < grid.box().upper.z);
   return at_surface && far - near <= tolerance;
 }
 
-/// The part's material of a tile on the rays that lost some of it deep inside, as far as it was still there before.
+/// The part's material of a tile on the rays that lost some of it deep inside, as far as it was still present before.
 std::shared_ptr<const dexel::Tile> deep_rays(const PartSurface& surface, const dexel::Grid& grid, const Slab& slab,
                                              std::size_t k, const dexel::Tile& part, const dexel::Tile& before,
                                              const dexel::Tile& after) {
@@ -46,11 +46,11 @@ std::shared_ptr<const dexel::Tile> deep_rays(const PartSurface& surface, const d
   return builder ? builder->finish() : nullptr;
 }
 
-/// mm: shorter pieces are rounding. A retract on the way of its plunge would gouge what the plunge gouged, by 1e-15 mm.
-/// Not more, as many small bites make a deep gouge.
+/// mm: shorter pieces are rounding. A retract along the path of its plunge would gouge what the plunge gouged, by 1e-15
+/// mm. Not larger, since many small bites make a deep gouge.
 constexpr double kBite = 1e-6;
 
-/// The worst of what a slab of the part has lost.
+/// The deepest place at which a slab of the part lost material.
 PartSurface::Deepest deepest_loss(const PartSurface& surface, const Workbench& bench, const SlabTiles& before,
                                   const SlabTiles& after) {
   PartSurface::Deepest worst;
@@ -76,7 +76,7 @@ bool PartSurface::deep(const Vec3& near, const Vec3& far) const {
   const Vec3 middle = (near + far) / 2.0;
   if (!closest_.within(middle, tolerance_)) return true;
   const double half = glm::length(far - near) / 2, depth = closest_(middle).distance;
-  // The distance falls and rises by no more than the way.
+  // The distance changes by at most the length along the ray.
   if (depth + half <= tolerance_) return false;
   if (half < 0.01 * tolerance_) return true;
   return deep(near, middle) || deep(middle, far);
@@ -91,7 +91,7 @@ void PartSurface::look_deeper(const Vec3& near, const Vec3& far, Deepest& worst)
     const double d = closest_(p).distance;
     if (d > worst.depth) worst = {d, p};
   };
-  constexpr double kRounding = 1 + 1e-9;  // rays that end on one plane are as deep as each other
+  constexpr double kRounding = 1 + 1e-9;  // rays that end on one plane are equally deep
   if (shallower((near + far) / 2.0, glm::length(far - near) / 2, kRounding * worst.depth)) return;
   look(near), look(far);
   struct RayPiece {

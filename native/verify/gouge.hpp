@@ -1,4 +1,4 @@
-// Gouges: what a program takes from inside the part, deeper under its surface than the tolerance.
+// Gouges: material removed from inside the part, deeper below its surface than the tolerance.
 #pragma once
 
 #include "mesh/closest.hpp"
@@ -9,24 +9,24 @@
 
 namespace riffler::verify {
 
-/// How deep under the part's surface. Read by several threads at once.
+/// Depth below the part's surface. Several threads may read it at once.
 class PartSurface {
  public:
-  /// `tolerance`: mm, depth from which on it is a gouge. std::invalid_argument for a mesh that `Closest` does not take.
+  /// `tolerance`: mm, smallest depth of a gouge. Throws std::invalid_argument for a mesh that `Closest` rejects.
   PartSurface(const Mesh& part, double tolerance);
 
-  /// With sides.
+  /// Includes the side of the surface.
   const mesh::Closest& closest() const { return closest_; }
   double tolerance() const { return tolerance_; }
 
-  /// How deep under the part's surface (to 1 %), mm, and where.
+  /// Largest depth below the part's surface (within 1 %), mm, and its point.
   struct Deepest {
     double depth = 0;
     Vec3 point{0};
   };
-  /// Makes `worst` the deepest point of [near, far] on a ray, where that is deeper.
+  /// Updates `worst` with the deepest point of [near, far] on a ray if that is deeper.
   void look_deeper(const Vec3& near, const Vec3& far, Deepest& worst) const;
-  /// False where no point of the piece is deeper than the tolerance; true where one is, or nearly.
+  /// False if no point of the piece is deeper than the tolerance; true if one is, or nearly.
   bool deep(const Vec3& near, const Vec3& far) const;
 
  private:
@@ -34,11 +34,11 @@ class PartSurface {
   double tolerance_;
 };
 
-/// The part over a stock's grids. Read by several threads at once.
+/// The part as a volume on the stock's grids. Several threads may read it at once.
 class Target {
  public:
-  /// `frame` is the stock's; `tolerance` as for PartSurface. std::invalid_argument where the mesh is none to make a
-  /// volume of.
+  /// `frame`: that of the stock; `tolerance`: as PartSurface. Throws std::invalid_argument if no volume can be made of
+  /// the mesh.
   Target(const Mesh& part, const dexel::Frame& frame, double tolerance, const Progress& progress = {});
 
   const PartSurface& surface() const { return surface_; }
@@ -52,14 +52,14 @@ class Target {
   Box3 bounds_;
 };
 
-/// Adds an event for each move that took from the part in this slab, where it has the material `part`. `before` and
-/// `after` are the slab's states round the moves, `cuts` the moves that may have done it (places in `moves`),
-/// ascending.
+/// Adds an event for each move that removed part material in this slab, where the part has the material `part`.
+/// `before` and `after`: the slab's states before and after the moves; `cuts`: indices in `moves`, ascending, of the
+/// moves that may have done it.
 void find_gouges(const PartSurface& surface, const SlabTiles& part, Workbench& bench, const SlabTiles& before,
                  const SlabTiles& after, const Moves& moves, std::span<const std::size_t> cuts,
                  std::vector<Event>& events);
 
-/// Material of the part that the stock lacks from the start: an event of row 0, or nothing.
+/// Part material that the stock lacks from the start: an event of row 0, or nothing.
 void find_missing(const Target& target, const dexel::Grid& grid, const Slab& slab, const SlabTiles& stock,
                   std::vector<Event>& events);
 

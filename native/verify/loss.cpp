@@ -6,7 +6,7 @@ namespace riffler::verify {
 
 namespace {
 
-/// The place in the grid of a ray of the slab's tile k.
+/// The position in the grid of a ray of the slab's tile k.
 std::pair<int, int> ray_at(const Slab& slab, std::size_t k, int ray) {
   const auto across = static_cast<std::size_t>(slab.v1 - slab.v0);
   return {(slab.u0 + static_cast<int>(k / across)) * dexel::kTileSide + ray / dexel::kTileSide,

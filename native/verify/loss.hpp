@@ -1,4 +1,4 @@
-// What a tile has lost: the pieces of its spans that a later state of it no longer has.
+// Material lost by a tile: the pieces of its spans that a later state no longer has.
 #pragma once
 
 #include "riffler/dexel/grid.hpp"
@@ -6,7 +6,7 @@
 
 namespace riffler::verify {
 
-/// Calls f(near, far) for every piece of `before` that `after` does not have, upwards.
+/// Calls f(near, far) for every piece of `before` that is missing in `after`, upwards.
 template <class F>
 void for_each_loss_on_ray(std::span<const dexel::Span> before, std::span<const dexel::Span> after, const F& f) {
   std::size_t next = 0;
@@ -28,7 +28,7 @@ void for_each_loss(const dexel::Tile& before, const dexel::Tile& after, const F&
     for_each_loss_on_ray(before.ray(r), after.ray(r), [&](double near, double far) { f(r, near, far); });
 }
 
-/// Of a slab, in sum.
+/// The total loss of a slab.
 struct Loss {
   double volume = 0;   ///< mm³
   double longest = 0;  ///< mm along a ray

@@ -1,4 +1,4 @@
-// Whether a machine can run a program: its limits and its reach.
+// Checks whether a machine can run a program: its limits and its reach.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,8 @@
 
 namespace riffler::verify {
 
-/// The first row that cannot be written for the machine, within the limits of its axes, or nothing. `program` begins
-/// with row `first_row`. std::invalid_argument for a machine or an option that is not known.
+/// The first row that the machine cannot run within the limits of its axes, or no value. `program` begins with row
+/// `first_row`. Throws std::invalid_argument for an unknown machine or option.
 std::optional<Finding> machine_fault(const nc::Program& program, std::int64_t first_row, const MachineChoice& machine);
 
 }  // namespace riffler::verify

@@ -84,7 +84,7 @@ void refuse_strikes(const nc::Program& program, const nc::MachineMotion& motion,
   nc::Program made;
   made.reserve(motion.size() + 1);
   made.tools = program.tools;
-  constexpr double kFeed = 1000;  // any: times do not count
+  constexpr double kFeed = 1000;  // arbitrary: times do not matter
   std::vector<std::size_t> rows;
   const auto add = [&](const nc::MachineStep& step, const Pose& pose, bool rapid) {
     made.append({pose, rapid ? 0 : kFeed, program.spindle()[step.row], program.tool()[step.row], 0, rapid});
@@ -108,7 +108,7 @@ void refuse_strikes(const nc::Program& program, const nc::MachineMotion& motion,
     char place[96];
     std::snprintf(place, sizeof place, " at [%.3f %.3f %.3f]", finding.point.x + 0.0, finding.point.y + 0.0,
                   finding.point.z + 0.0);
-    throw nc::RowError("poses", row, "on the way there" + std::string(place) + " " + finding.message);
+    throw nc::RowError("poses", row, "on the move there" + std::string(place) + " " + finding.message);
   }
 }
 

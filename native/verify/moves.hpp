@@ -1,4 +1,4 @@
-// Moves to be simulated, with the boxes that say which slabs they can touch.
+// Moves to be simulated, with bounding boxes that decide which slabs they can touch.
 #pragma once
 
 #include <cstdint>
@@ -10,19 +10,20 @@
 
 namespace riffler::verify {
 
-/// Moves with no tool that could meet anything.
+/// Marks moves without a tool that could collide.
 inline constexpr std::uint32_t kNoTool = ~0U;
 
-/// In columns, one entry a move. Rows ascend.
+/// Columns with one entry per move. Rows ascend.
 class Moves {
  public:
-  /// `stride` 1: poses of a path, move i from poses[i] to poses[i + 1]; 2: pairs of poses, moves that need not join.
-  /// `tool` are places in `shapes`, or kNoTool. Arguments must outlive this. There is no material above z = `top`.
+  /// `stride` 1: poses of a path, move i from poses[i] to poses[i + 1]; 2: pairs of poses, moves that need not connect.
+  /// `tool`: indices in `shapes`, or kNoTool. Arguments must outlive this object. There is no material above z = `top`
+  /// (mm).
   Moves(std::span<const Pose> poses, std::uint32_t stride, std::span<const ToolShapes> shapes, double top);
   void add(std::int64_t row, std::uint32_t tool, bool rapid) {
     row_.push_back(row), tool_.push_back(tool), rapid_.push_back(rapid);
   }
-  /// Computes the boxes, once all moves are there.
+  /// Computes the boxes once all moves are there.
   void finish();
 
   std::size_t size() const { return row_.size(); }
@@ -36,7 +37,7 @@ class Moves {
   const ToolShapes& shapes(std::size_t i) const { return shapes_[tool_[i]]; }
   Box3 swept(const Rod& rod, std::size_t i) const { return rod.swept(from(i), to(i), top_); }
 
-  /// What of the tool could touch a box.
+  /// Parts of the tool that could touch a box.
   enum Touch : unsigned char { None = 0, Cutter = 1, Probes = 2, Whole = 3 };
   Touch touch(std::size_t i, const Box3& box) const;
   /// Calls f(i, touch) in order for every move from `first` on that could touch the box.
@@ -61,8 +62,8 @@ class Moves {
   std::vector<std::int64_t> row_;
   std::vector<std::uint32_t> tool_;
   std::vector<std::uint8_t> rapid_;
-  std::vector<Box3> cutter_, probes_;  // of each move; empty ones without a tool
-  std::vector<Box3> blocks_;           // of kBlock moves, all of the tool
+  std::vector<Box3> cutter_, probes_;  // per move; empty without a tool
+  std::vector<Box3> blocks_;           // per kBlock moves, whole tool
 };
 
 }  // namespace riffler::verify

@@ -27,7 +27,7 @@ PacketReader::PacketReader(std::span<const std::uint8_t> bytes, PacketKind kind)
   if (bytes.size() < least) throw FormatError(name_, "byte " + std::to_string(bytes.size()), "it ends here");
   bytes_ = bytes.first(bytes.size() - sizeof(std::uint32_t));
   if (base::get<std::uint32_t>(bytes, bytes_.size()) != base::checksum(bytes_))
-    throw FormatError(name_, "byte " + std::to_string(bytes_.size()), "the checksum does not fit");
+    throw FormatError(name_, "byte " + std::to_string(bytes_.size()), "the checksum does not match");
   if (get<std::uint32_t>() != static_cast<std::uint32_t>(kind)) fail("a packet of another kind");
 }
 

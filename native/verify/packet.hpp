@@ -1,4 +1,4 @@
-// Bytes that go from one process to another: numbers, arrays and compressed columns under one checksum.
+// Byte packets between processes: numbers, arrays and compressed columns under one checksum.
 #pragma once
 
 #include <cstdint>
@@ -13,14 +13,14 @@
 
 namespace riffler::verify {
 
-/// What a packet holds; the reader's messages name it.
+/// Content of a packet; named in the reader's messages.
 enum class PacketKind : std::uint32_t { Context, Task, Moves, Result };
 
 /// "the context of a cluster's slabs", …
 const char* name_of(PacketKind kind);
 
-/// Numbers are little-endian, as they stand in memory. Both ends are the same version of this program, so nothing in a
-/// packet says what it is made of.
+/// Numbers are little-endian, as in memory. Both ends run the same version of Riffler, so packets do not describe their
+/// own layout.
 class PacketWriter {
  public:
   explicit PacketWriter(PacketKind kind);
@@ -29,7 +29,7 @@ class PacketWriter {
   void put(const T& value) {
     base::put(bytes_, value);
   }
-  /// An array: how long it is, then its items.
+  /// An array: its length, then its items.
   template <class T>
   void put_all(std::span<const T> items) {
     static_assert(std::is_trivially_copyable_v<T> && std::has_unique_object_representations_v<T>,
@@ -37,7 +37,7 @@ class PacketWriter {
     put_raw(items.data(), items.size(), sizeof(T));
   }
   void put_all(std::span<const double> items) { put_raw(items.data(), items.size(), sizeof(double)); }
-  /// Compressed columns, whose lengths the reader knows: f(PlaneWriter&) writes them.
+  /// Compressed columns whose lengths the reader knows: f(PlaneWriter&) writes them.
   template <class F>
   void columns(const F& f) {
     const std::size_t at = bytes_.size();
@@ -49,7 +49,7 @@ class PacketWriter {
     const std::uint64_t length = bytes_.size() - at - sizeof length;
     std::memcpy(bytes_.data() + at, &length, sizeof length);
   }
-  /// The packet, with its checksum.
+  /// The packet with its checksum.
   std::vector<std::uint8_t> finish();
 
  private:
@@ -57,10 +57,10 @@ class PacketWriter {
   Bytes bytes_;
 };
 
-/// Reads what PacketWriter wrote, in the same order. FormatError, naming packet and byte, for everything else.
+/// Reads what PacketWriter wrote, in the same order. Throws FormatError, naming packet and byte, for anything else.
 class PacketReader {
  public:
-  /// Checks kind and checksum. `bytes` must outlive this.
+  /// Checks kind and checksum. `bytes` must outlive this object.
   PacketReader(std::span<const std::uint8_t> bytes, PacketKind kind);
 
   template <class T>
@@ -76,7 +76,7 @@ class PacketReader {
     if (n > 0) std::memcpy(items.data(), from.data(), from.size());
     return items;
   }
-  /// A count of things of which each takes some of the packet's bytes; deflated ones too.
+  /// A count of items that each take some of the packet's bytes, possibly compressed.
   std::size_t count();
   /// f(PlaneReader&) reads what `columns` wrote.
   template <class F>
@@ -87,7 +87,7 @@ class PacketReader {
     f(planes);
     planes.finish();
   }
-  /// FormatError unless all of it has been read.
+  /// Throws FormatError unless everything was read.
   void finish() const;
   [[noreturn]] void fail(const std::string& what) const;
 

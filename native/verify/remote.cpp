@@ -16,8 +16,8 @@ namespace riffler::verify {
 namespace {
 
 /// Dask starts its workers with MALLOC_TRIM_THRESHOLD_=65536: freed memory goes back to the system at once, and glibc
-/// no longer learns how large arrays are that come and go, so each one over 128 kB is mapped anew. The page faults take
-/// as long as the simulation. These are the limits that glibc would learn at most (man 3 mallopt).
+/// no longer adapts to large temporary arrays, so each array over 128 kB is mapped again. The page faults take as long
+/// as the simulation. These are the limits to which glibc would adapt at most (man 3 mallopt).
 void reuse_freed_memory() {
 #ifdef __GLIBC__
   mallopt(M_MMAP_THRESHOLD, 32 << 20);
@@ -33,7 +33,7 @@ SlabWorker::SlabWorker(std::span<const std::uint8_t> context) : context_(context
   for (const Tool& tool : context_.tools)
     shapes_.emplace_back(tool, context_.tolerance, context_.reach, context_.frames[0].pitch);
   for (const dexel::Frame& frame : context_.frames) {
-    // Not a Volume: the rays of all of it need not fit into this machine.
+    // Not a Volume: all its rays might not fit into the memory of this machine.
     std::vector<dexel::Grid>& grids = grids_.emplace_back();
     const std::vector<Axis> axes = dexel::parse_directions(frame.directions);
     for (const Axis axis : axes) grids.emplace_back(axis, frame.box, frame.pitch, axes.size() == 3);
@@ -55,7 +55,7 @@ const dexel::Grid& SlabWorker::grid_of(const SlabTask& task) const {
 
 std::vector<std::uint8_t> SlabWorker::run(std::span<const std::uint8_t> task,
                                           std::span<const std::span<const std::uint8_t>> moves) const {
-  const base::SerialScope alone;  // how many slabs run at once is the cluster's to say
+  const base::SerialScope alone;  // the cluster decides how many slabs run at once
   SlabTask at = task_of(task);
   const dexel::Grid& grid = grid_of(at);
   const bool judged = surface_ && at.fixture < 0;

@@ -1,4 +1,4 @@
-// Slabs simulated elsewhere: what a worker of a cluster does.
+// Simulation of slabs in a worker process of a cluster.
 #pragma once
 
 #include <optional>
@@ -7,16 +7,16 @@
 
 namespace riffler::verify {
 
-/// Simulates slabs whose material arrives with them; of the stock, the fixtures and the part's volume nothing is made
-/// but rays without material. Calls may run on several threads at once, each of them on one.
+/// Simulates slabs whose material arrives with them. Creates only rays without material for stock, fixtures and part.
+/// Calls may run on several threads at once, each call on one thread.
 class SlabWorker {
  public:
-  /// A packet of VerifyPlan::context. FormatError for a damaged one.
+  /// `context`: a packet of VerifyPlan::context. Throws FormatError for a damaged one.
   explicit SlabWorker(std::span<const std::uint8_t> context);
 
-  /// `task`: of VerifyPlan::task; `moves`: of VerifyPlan::add, all for this slab, in order. Returns what
-  /// VerifyPlan::accept takes: the same bytes wherever and whenever it is run. FormatError where one is damaged,
-  /// std::invalid_argument where it is of another verification.
+  /// `task`: from VerifyPlan::task; `moves`: all packets of VerifyPlan::add for this slab, in order. Returns the packet
+  /// for VerifyPlan::accept, with the same bytes on every machine. Throws FormatError for a damaged packet,
+  /// std::invalid_argument for one of another verification.
   std::vector<std::uint8_t> run(std::span<const std::uint8_t> task,
                                 std::span<const std::span<const std::uint8_t>> moves) const;
 
@@ -25,7 +25,7 @@ class SlabWorker {
 
   SlabContext context_;
   std::vector<ToolShapes> shapes_;
-  std::vector<std::vector<dexel::Grid>> grids_;  // of the frames; empty
+  std::vector<std::vector<dexel::Grid>> grids_;  // grids of the frames, without material
   std::optional<PartSurface> surface_;
 };
 

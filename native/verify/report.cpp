@@ -37,7 +37,7 @@ std::pair<Mesh, std::vector<double>> deviation_of(const Volume& left, const Mesh
 std::vector<double> part_map_of(const Mesh& left, const Mesh& part, const Progress& progress) {
   if (left.empty()) return std::vector<double>(part.vertices.size(), -std::numeric_limits<double>::infinity());
   std::vector<double> distance = deviation(part, left, true, progress);
-  for (double& d : distance) d = 0 - d;  // inside of the material: covered
+  for (double& d : distance) d = 0 - d;  // inside the material: covered
   return distance;
 }
 

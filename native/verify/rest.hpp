@@ -1,4 +1,4 @@
-// Rest material: what stands on the part.
+// Rest material: material left on the part.
 #pragma once
 
 #include "riffler/base/progress.hpp"
@@ -6,8 +6,8 @@
 
 namespace riffler::verify {
 
-/// The highest end of a span over the part's surface that is more than `tolerance` (mm) from it, and how high it is;
-/// height 0 where there is none. Ends of all grids are looked at: a mesh cuts off the tips of cusps.
+/// The span end highest above the part's surface that is more than `tolerance` (mm) from it, and its height; height 0
+/// if there is none. Examines the span ends of all grids, because a mesh cuts off the tips of cusps.
 struct Rest {
   double height = 0;
   Vec3 point{0};

@@ -28,12 +28,12 @@ Box3 box_of_all(const VerifyArguments& given) {
   return box;
 }
 
-/// How far a tool of unknown end must go on to leave everything there is.
+/// How far a tool of unknown length must extend to reach beyond everything.
 double beyond(const Box3& all) {
   return 2 * glm::length(all.size());
 }
 
-/// The part itself, or with its triangles turned.
+/// The part itself, or with its triangles reoriented.
 std::shared_ptr<const Mesh> solid_of(std::shared_ptr<const Mesh> part) {
   try {
     validate(*part);

@@ -1,4 +1,4 @@
-// What programs are verified on: stock, part and fixtures, cut in slabs and made ready once.
+// The scene of a verification: stock, part and fixtures, divided into slabs and prepared once.
 #pragma once
 
 #include <memory>
@@ -11,7 +11,7 @@
 
 namespace riffler::verify {
 
-/// Several runs, one after the other, may share one: only its toolset changes, which learns the tools of programs.
+/// Several consecutive runs may share a scene. Only its toolset changes, which adds the tools of programs.
 class VerifyScene {
  public:
   /// Throws std::invalid_argument naming the argument.
@@ -19,7 +19,7 @@ class VerifyScene {
 
   const Volume& stock() const { return given_.stock; }
   const std::vector<Volume>& fixtures() const { return given_.fixtures; }
-  /// Its triangles face outwards; null without a part.
+  /// The part with outward triangles; null without a part.
   const std::shared_ptr<const Mesh>& part() const { return given_.part; }
   /// Null without a part.
   const Target* target() const { return target_.get(); }
@@ -32,15 +32,15 @@ class VerifyScene {
   const std::vector<SlabJob>& jobs() const { return jobs_; }
   /// Material of the part that the stock lacks.
   const std::vector<Event>& missing() const { return missing_; }
-  /// mm³: what is less may be rounding.
+  /// mm³: a smaller volume may be rounding.
   double least_cut() const { return options().tolerance * stock().reference().least_area(); }
 
   /// The slabs before the first move.
   std::vector<SlabState> fresh() const;
-  /// What there is of the part in a slab; empty without a part, and for fixtures.
+  /// The part's material in a slab; empty without a part, and for fixtures.
   SlabTiles part_in(const SlabJob& job) const;
   const dexel::Grid& grid_of(const SlabJob& job) const;
-  /// Runs the moves on every slab, from where each of them stands. `keep`: whether slabs keep snapshots.
+  /// Runs the moves on every slab from its current state. `keep`: whether slabs keep snapshots.
   void simulate(const Moves& moves, std::vector<SlabState>& slabs, bool keep, VerifyStats& stats,
                 const Progress& progress) const;
 

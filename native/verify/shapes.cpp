@@ -11,7 +11,7 @@ Rod rod_round(const tool::Piece& piece) {
   return {bottom(piece), top(piece), max_radius(piece)};
 }
 
-/// Smaller by `by` on all sides, but never by more than a quarter.
+/// Smaller by `by` (mm) on all sides, but never by more than a quarter.
 tool::Frustum shrunk(const tool::Frustum& f, double by) {
   const double ends = std::min(by, (f.z1 - f.z0) / 4), slope = (f.r1 - f.r0) / (f.z1 - f.z0);
   const double side = std::min(by * std::sqrt(1 + slope * slope), std::max(f.r0, f.r1) / 4);
@@ -19,7 +19,7 @@ tool::Frustum shrunk(const tool::Frustum& f, double by) {
   return {f.z0 + ends, radius(f.z0 + ends), f.z1 - ends, radius(f.z1 - ends)};
 }
 
-/// Convex by itself: pieces may overlap or leave gaps in any order.
+/// A group of one convex piece: pieces may overlap or leave gaps in any order.
 sweep::ConvexGroup alone(const tool::Frustum& f) {
   const tool::Piece piece = f;
   return sweep::convex_groups(std::span(&piece, 1)).front();
@@ -45,8 +45,8 @@ void Rod::add(const Rod& other) {
 Box3 Rod::swept(const Pose& from, const Pose& to, double top) const {
   Box3 box;
   double end = high;
-  // The axis' z is a concave function of the time where it is positive, so it never falls below the lesser of its ends;
-  // nor does the tip's.
+  // The z of the axis is a concave function of time while positive, so it never falls below the smaller of its ends;
+  // nor does that of the tip.
   if (const double rise = std::min(from.axis.z, to.axis.z); rise > 0) {
     const double least = std::min(from.tip.z, to.tip.z);
     end = std::min(high, (top - least + radius) / rise);
@@ -61,8 +61,8 @@ Box3 Rod::swept(const Pose& from, const Pose& to, double top) const {
       box.add({centre - radius * disc, centre + radius * disc});
     }
   }
-  // Every point of the tool stays within lever φ² / 8 of the straight way between its two places: its acceleration
-  // beside the tip's is at most lever φ².
+  // Every point of the tool stays within lever φ² / 8 of the straight line between its two places, because its
+  // acceleration relative to the tip is at most lever φ².
   const double chord = glm::length(to.axis - from.axis);
   const double angle = 2 * std::asin(std::min(1.0, chord / 2)),
                lever = std::hypot(std::max(std::abs(low), std::abs(end)), radius);
@@ -77,7 +77,7 @@ ToolShapes::ToolShapes(const Tool& tool, double tolerance, double reach, double 
   whole_rod = cutter_rod;
   for (const std::vector<tool::Frustum>* pieces : {&tool.shank(), &tool.holder()})
     for (const tool::Frustum& f : *pieces) probe_rods.push_back(rod_round(f)), whole_rod.add(rod_round(f));
-  // Wider by a pitch: a wall that the cutter has just made stands beside it too, and nobody knows what passes it.
+  // Wider by a pitch: there is also a wall next to what the cutter has just cut, and it is unknown what would pass it.
   const tool::Frustum beyond{whole_rod.high, whole_rod.radius + pitch, whole_rod.high + reach,
                              whole_rod.radius + pitch};
   probes.push_back(probe_of(Member::Beyond, {beyond}, tolerance));

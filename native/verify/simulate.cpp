@@ -7,11 +7,11 @@ namespace riffler::verify {
 
 namespace {
 
-/// Moves that are probed, then cut, in one go.
+/// Moves that are probed, then cut, together.
 constexpr std::size_t kBatch = 256;
-/// Strikes of a slab that are all measured; afterwards one in sixteen.
+/// The first collisions of a slab are all measured; afterwards one in sixteen.
 constexpr std::uint64_t kMeasured = 256;
-/// How often a move is halved to tell what came first, cutter or shank.
+/// Number of times a move is halved to decide what came first, cutter or shank.
 constexpr int kHalvings = 12;
 
 Kind kind_of(Member member) {
@@ -38,7 +38,7 @@ class StockSimulation {
   };
   using Batch = std::span<const Touched>;
   struct Strike {
-    SlabTiles state;  // without what the cutter had taken by then
+    SlabTiles state;  // without the material that the cutter had removed by then
     Pose from, to;
   };
 
@@ -61,7 +61,7 @@ class StockSimulation {
 };
 
 void StockSimulation::run(std::size_t first, const SlabSaved& saved) {
-  // Material only gets less, so what cannot touch it now cannot touch it later.
+  // Material only decreases, so what cannot touch it now cannot touch it later.
   const Box3 box = material_box(bench_.grid(), bench_.slab(), state_);
   if (box.empty()) return;
   std::vector<Touched> touched;
@@ -88,8 +88,8 @@ void StockSimulation::run(std::size_t first, const SlabSaved& saved) {
   if (place_.surface) find_gouges(*place_.surface, place_.part, bench_, before, state_, moves_, cuts, report_.events);
 }
 
-/// Shank and holder are tried on the material as it is before the batch: what they do not touch now they never do.
-/// Otherwise the batch is halved, down to the move.
+/// Tests shank and holder on the material before the batch: what they do not touch now they never touch. On contact the
+/// batch is halved, down to the single move.
 void StockSimulation::pass(Batch batch) {
   if (!alarm(batch)) return cut(batch);
   if (batch.size() == 1) {
@@ -149,11 +149,11 @@ void StockSimulation::cut(Batch batch) {
   find_rapids(cuts, taken, std::move(before));
 }
 
-/// A rapid that takes more than the tolerance from some ray is in material; less may be rounding, or what a turning
-/// move before it left of its surface. To know what it took it is cut by itself.
+/// A rapid that removes more than the tolerance from some ray is in material; less may be rounding, or what a rotating
+/// move before it left of its surface. Each such rapid is cut separately to measure its volume.
 void StockSimulation::find_rapids(Batch cuts, std::span<const double> taken, SlabTiles before) {
   const double least = place_.tolerance * bench_.grid().least_area();
-  std::vector<std::uint32_t> ends;  // not cut yet
+  std::vector<std::uint32_t> ends;  // moves not cut yet
   for (std::size_t k = 0; k < cuts.size(); ++k) {
     const std::size_t i = cuts[k].move;
     if (!moves_.rapid(i) || !(taken[k] > least)) {
@@ -170,9 +170,9 @@ void StockSimulation::find_rapids(Batch cuts, std::span<const double> taken, Sla
   }
 }
 
-/// Whether the probe meets material that the cutter has not taken yet when it comes there. Clear of the material before
-/// the move: no. In what the cutter leaves after it: yes. Between them, as in a plunge with a thin shank, the halves of
-/// the move are looked at, one after the other.
+/// Whether the probe collides with material that the cutter has not removed yet. If it is clear of the material before
+/// the move: no. If it touches what the cutter leaves after the move: yes. In between, as in a plunge with a thin
+/// shank, the halves of the move are examined one after the other.
 bool StockSimulation::strike(SlabTiles& state, const Probe& probe, const Touched& touched, double t0, double t1,
                              int halvings, Strike& out) {
   const std::size_t move = touched.move;
@@ -219,8 +219,8 @@ void StockSimulation::find_strikes(const Touched& touched) {
   }
 }
 
-/// To measure what is in the way costs more than to know that something is, and where a holder is in material it is
-/// there for many moves. After the first strikes some are left out, by a number that edits elsewhere do not change.
+/// Measuring the volume costs more than detecting the collision, and a holder in material stays there for many moves.
+/// After the first collisions some are skipped, by a number that edits elsewhere do not change.
 bool StockSimulation::measured(std::size_t move) const {
   if (report_.strikes < kMeasured) return true;
   const Vec3& tip = moves_.to(move).tip;
@@ -229,7 +229,7 @@ bool StockSimulation::measured(std::size_t move) const {
   return mixed >> 60 == 0;
 }
 
-/// The moves' whole tool on one slab of a fixture.
+/// Tests the moves' whole tool on one slab of a fixture.
 class FixtureProbe {
  public:
   FixtureProbe(const SlabPlace& place, const Moves& moves, const SlabTiles& state, SlabReport& report,

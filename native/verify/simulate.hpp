@@ -1,4 +1,5 @@
-// The simulation of one slab: cutting, rapids in material, shank and holder in it, gouges; the whole tool in fixtures.
+// Simulation of one slab: cutting, rapids in material, collisions of shank and holder, gouges; the whole tool in
+// fixtures.
 #pragma once
 
 #include <functional>
@@ -10,24 +11,23 @@
 
 namespace riffler::verify {
 
-/// A slab of the stock or of a fixture, and what its simulation goes by.
+/// A slab of the stock or a fixture, with the inputs of its simulation.
 struct SlabPlace {
-  const dexel::Grid& grid;  ///< for its rays; its tiles are not used
+  const dexel::Grid& grid;  ///< defines the rays; its tiles are not used
   Slab slab;
-  std::int32_t fixture = -1;  ///< number of the fixture; −1: the stock
-  /// Whether this is the grid that shank and holder are tried on, and that volumes are taken from.
+  std::int32_t fixture = -1;  ///< index of the fixture; −1: the stock
+  /// Whether this is the grid on which shank and holder are tested and volumes are measured.
   bool probed = false;
-  double tolerance = 0;                  ///< mm: as for carve; contact less deep than it is none
+  double tolerance = 0;                  ///< mm: as for carve; contact less deep than this is ignored
   const PartSurface* surface = nullptr;  ///< null without a part, and for fixtures
-  SlabTiles part = {};                   ///< the part's material in the slab, where there is a surface
+  SlabTiles part = {};                   ///< the part's material in the slab, if there is a part
 };
 
-/// Called after each batch of moves that cut, with the last of their rows and the slab after it.
+/// Called after each batch of moves that cut, with its last row and the slab after it.
 using SlabSaved = std::function<void(std::int64_t row, const SlabTiles& tiles)>;
 
-/// Runs the moves from place `first` on. `tiles`: the slab before them, then after them; nothing cuts a fixture. Adds
-/// to `report` and `stats`. What comes out depends on the slab and the moves only, not on how moves are split into
-/// calls.
+/// Runs the moves from index `first` on. `tiles`: the slab before, and on return after, the moves; fixtures are not
+/// cut. Adds to `report` and `stats`. The result depends only on slab and moves, not on how moves are split into calls.
 void simulate(const SlabPlace& place, const Moves& moves, std::size_t first, SlabTiles& tiles, SlabReport& report,
               VerifyStats& stats, const SlabSaved& saved = {});
 

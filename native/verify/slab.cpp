@@ -6,8 +6,8 @@ namespace riffler::verify {
 
 namespace {
 
-/// Slabs along the longer side of a grid, and tiles along a slab's side. A slab of 4 × 4 tiles stays in a core's own
-/// cache; more moves touch two slabs the smaller they are.
+/// Slabs along the longer side of a grid, and limits for tiles along a slab's side. A slab of 4 × 4 tiles fits a core's
+/// own cache; the smaller the slabs, the more moves touch two of them.
 constexpr int kAcross = 8, kMin = 2, kMax = 8;
 
 }  // namespace

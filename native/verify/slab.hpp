@@ -1,5 +1,5 @@
-// Slabs: rectangles of whole tiles that are simulated by themselves. Columns are independent, so the parts put together
-// are, bit for bit, what the whole would have been.
+// Slabs: rectangles of whole tiles that are simulated independently. Columns are independent, so the combined result is
+// bit-identical to that of the whole.
 #pragma once
 
 #include <memory>
@@ -15,14 +15,14 @@ struct Slab {
   int u0 = 0, u1 = 0, v0 = 0, v1 = 0;
 
   std::size_t tile_count() const { return static_cast<std::size_t>(u1 - u0) * static_cast<std::size_t>(v1 - v0); }
-  /// Place in the grid's tiles of the slab's tile k.
+  /// Index in the grid's tiles of the slab's tile k.
   std::size_t place(const dexel::Grid& g, std::size_t k) const {
     const auto wide = static_cast<std::size_t>(v1 - v0);
     return g.tile_index(u0 + static_cast<int>(k / wide), v0 + static_cast<int>(k % wide));
   }
 };
 
-/// All slabs of a volume, grid by grid. Depends on the frame only: on no number of threads or machines.
+/// All slabs of a volume, grid by grid. Depends only on the frame, not on the number of threads or machines.
 std::vector<Slab> slabs_of(const Volume& volume);
 
 /// A slab's state: pointers to its tiles. A copy is a snapshot.
@@ -31,7 +31,8 @@ using SlabTiles = std::vector<std::shared_ptr<const dexel::Tile>>;
 SlabTiles tiles_of(const dexel::Grid& grid, const Slab& slab);
 void put_tiles(dexel::Grid& grid, const Slab& slab, const SlabTiles& tiles);
 
-/// Box of what a slab holds, world frame: its rays by half a pitch, its spans exactly. Empty without material.
+/// World-frame bounding box of a slab's material: half a pitch around its rays, its spans exactly. Empty without
+/// material.
 Box3 material_box(const dexel::Grid& grid, const Slab& slab, const SlabTiles& tiles);
 
 }  // namespace riffler::verify

@@ -41,7 +41,7 @@ std::vector<tool::Frustum> get_frusta(PacketReader& in) {
   return pieces;
 }
 
-/// Of a tool what decides where it cuts and touches.
+/// The properties of a tool that determine where it cuts and touches.
 void put(PacketWriter& out, const Tool& tool) {
   const std::vector<tool::ProfileSegment>& segments = tool.profile().segments();
   out.put(static_cast<std::uint64_t>(segments.size()));
@@ -76,7 +76,7 @@ void put(PacketWriter& out, const Mesh& mesh) {
 Mesh get_mesh(PacketReader& in) {
   const std::vector<double> at = in.get_all<double>();
   const std::vector<int> corners = in.get_all<int>();
-  if (at.size() % 3 != 0 || corners.size() % 3 != 0) in.fail("a mesh that is none");
+  if (at.size() % 3 != 0 || corners.size() % 3 != 0) in.fail("an invalid mesh");
   Mesh mesh;
   for (std::size_t k = 0; k < at.size(); k += 3) mesh.vertices.emplace_back(at[k], at[k + 1], at[k + 2]);
   for (std::size_t k = 0; k < corners.size(); k += 3)
@@ -143,18 +143,18 @@ SlabTask task_of(std::span<const std::uint8_t> packet) {
 
 namespace {
 
-/// Of a pose column by column: a path of constant axis has three columns of nothing.
+/// Poses column by column: a path with a constant axis has three constant columns.
 constexpr double Vec3::* kComponents[] = {&Vec3::x, &Vec3::y, &Vec3::z};
 
 bool identical(const Pose& a, const Pose& b) {
-  return std::memcmp(&a, &b, sizeof a) == 0;  // −0 and 0 are two poses here
+  return std::memcmp(&a, &b, sizeof a) == 0;  // −0 and 0 count as different here
 }
 
 }  // namespace
 
 std::vector<std::uint8_t> to_packet(const Moves& moves, std::span<const std::uint32_t> chosen) {
   std::vector<std::uint64_t> rows;
-  std::vector<std::uint32_t> keys;  // tool, whether it is a rapid, whether it begins where the one before ended
+  std::vector<std::uint32_t> keys;  // per move: tool, rapid flag, flag for a start at the previous end
   std::vector<Pose> poses;
   for (const std::uint32_t i : chosen) {
     const bool joined = !poses.empty() && identical(poses.back(), moves.from(i));

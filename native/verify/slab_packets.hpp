@@ -1,4 +1,4 @@
-// What goes to a worker for a slab, and what comes back, as packets.
+// Packets to and from a worker for a slab.
 #pragma once
 
 #include "riffler/geom/pose.hpp"
@@ -9,20 +9,20 @@
 
 namespace riffler::verify {
 
-/// What all slabs share. Made once on each machine.
+/// What all slabs share. Created once per machine.
 struct SlabContext {
   std::vector<dexel::Frame> frames;  ///< of the stock, then of the fixtures
-  std::vector<Tool> tools;           ///< in the order of their places
+  std::vector<Tool> tools;           ///< by index in the toolset
   double reach = 0;                  ///< mm: as for ToolShapes
   double tolerance = 0;              ///< mm
   double gouge_tolerance = 0;
   double top = 0;                    ///< mm: as for Moves
-  std::shared_ptr<const Mesh> part;  ///< or null
+  std::shared_ptr<const Mesh> part;  ///< may be null
 };
 std::vector<std::uint8_t> to_packet(const SlabContext& context);
 SlabContext context_of(std::span<const std::uint8_t> packet);
 
-/// One slab as it stands.
+/// The current state of one slab.
 struct SlabTask {
   std::int32_t fixture = -1;
   Slab slab;
@@ -34,19 +34,19 @@ struct SlabTask {
 std::vector<std::uint8_t> to_packet(const SlabTask& task);
 SlabTask task_of(std::span<const std::uint8_t> packet);
 
-/// Some of the moves that can touch a slab, rows ascending.
+/// Some of the moves that can touch a slab, in ascending rows.
 struct SlabMoves {
   std::vector<std::int64_t> row;
   std::vector<std::uint32_t> tool;
   std::vector<std::uint8_t> rapid;
-  std::vector<Pose> poses;  ///< two of each move
+  std::vector<Pose> poses;  ///< two per move
 };
-/// The moves `chosen` (places in `moves`). Where one begins at the end of the one before, the pose is stored once.
+/// The moves `chosen` (indices in `moves`). A pose at which one move ends and the next begins is stored once.
 std::vector<std::uint8_t> to_packet(const Moves& moves, std::span<const std::uint32_t> chosen);
-/// Appends what the packet holds.
+/// Appends the moves of a packet.
 void add_moves(std::span<const std::uint8_t> packet, SlabMoves& moves);
 
-/// What came out. Tiles that are as they were are null.
+/// The result. Unchanged tiles are null.
 struct SlabResult {
   SlabTiles tiles;
   SlabReport report;

@@ -8,7 +8,7 @@ namespace riffler::verify {
 
 namespace {
 
-/// A report on a followed program, as one on the program that it was made of.
+/// Converts the report on a followed program into one on the original program.
 void count_original_rows(VerifyReport& report, const nc::RowMap& map) {
   if (map.empty()) return;
   const auto original = [&](std::int64_t row) {
@@ -58,10 +58,10 @@ void SlabRun::feed_by(const Feeder& feeder, const nc::Program& given, const Prog
 
 void SlabRun::take_removed(SlabState& slab) {
   rows_.add_removed(slab.report);
-  slab.report.removed = {};  // its memory, too
+  slab.report.removed = {};  // frees the memory too
 }
 
-/// The events of the rows since the last call become findings.
+/// Turns the events of the rows since the last call into findings.
 void SlabRun::settle() {
   std::vector<Event> events;
   if (rows_.first_open() == 0 && rows_.size() > 0) events = scene_->missing();

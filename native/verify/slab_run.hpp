@@ -1,8 +1,8 @@
-// The engine of verifications: the rows of a program go in, a report comes out.
+// The engine of verification: takes the rows of a program and returns a report.
 //
-// The stock's grids are cut in slabs, each with the moves that can touch it. What a slab holds of results depends on
-// the slab and the moves alone, and the slabs' results are put together in their order: the report is the same, bit for
-// bit, for any number of threads, any splitting of the program into chunks, and wherever slabs are simulated.
+// The stock's grids are divided into slabs, each with the moves that can touch it. A slab's results depend only on the
+// slab and its moves, and are combined in slab order. The report is therefore bit-identical for any number of threads,
+// any division of the program into chunks, and wherever slabs are simulated.
 #pragma once
 
 #include <functional>
@@ -17,30 +17,31 @@
 
 namespace riffler::verify {
 
-/// One run of a program, which comes in chunks, each of which begins with the row at which the one before ended. Keeps
-/// 16 bytes a row, and nothing of the chunks.
+/// One run of a program that arrives in chunks, each beginning with the last row of the one before. Keeps 16 bytes per
+/// row and nothing of the chunks.
 class SlabRun {
  public:
   /// Throws std::invalid_argument naming the argument.
   explicit SlabRun(VerifyArguments arguments, const Progress& progress = {});
   explicit SlabRun(std::shared_ptr<VerifyScene> scene);
 
-  /// Simulates a chunk here. Throws std::invalid_argument naming number, row and line of a tool without a shape, a row
-  /// whose axis is exactly opposite to the one before, or where a chunk begins elsewhere than the one before ended.
-  /// After an error in it, or Cancelled, this cannot be used any more.
+  /// Simulates a chunk in this process. Throws std::invalid_argument naming number, row and line of a tool without a
+  /// shape, a row whose axis is exactly opposite to the one before, or a chunk that does not begin where the one before
+  /// ended. After an error here, or Cancelled, this object cannot be used any more.
   void feed(const nc::Program& chunk, const Progress& progress = {});
-  /// What the rows of all chunks did.
+  /// The report on the rows of all chunks.
   VerifyReport finish(const Progress& progress = {});
 
-  /// Brings the moves of a chunk to the slabs.
+  /// Passes the moves of a chunk to the slabs.
   using Feeder = std::function<void(const RowChunk& chunk, const Progress& progress)>;
-  /// Leaves the slabs of a chunk to `feeder`, which changes slabs() and stats(), now or up to finish(). Throws as feed.
+  /// Leaves the slabs of a chunk to `feeder`, which updates slabs() and stats() then or until finish(). Throws as feed.
   void feed_by(const Feeder& feeder, const nc::Program& chunk, const Progress& progress = {});
-  /// Adds to the rows what a slab took, which it forgets. Slabs come in their order, as rounding wants it.
+  /// Adds the volumes removed in a slab to the rows and clears them. Call it in slab order, so that rounding is
+  /// reproducible.
   void take_removed(SlabState& slab);
 
   const VerifyScene& scene() const { return *scene_; }
-  /// How many rows have been fed.
+  /// Number of rows fed.
   std::size_t size() const { return rows_.size(); }
   std::vector<SlabState>& slabs() { return slabs_; }
   const std::vector<SlabState>& slabs() const { return slabs_; }

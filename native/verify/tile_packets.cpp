@@ -29,7 +29,7 @@ dexel::SpanNormals normals_at(const Components& components, std::size_t k) {
   return {{at(0), at(1)}, {at(2), at(3)}};
 }
 
-/// Columns of all tiles together: a slab is small, and a tile alone too short to compress.
+/// Columns of all tiles together: a single tile is too short to compress.
 struct Columns {
   std::vector<std::uint32_t> counts;
   std::vector<std::uint64_t> near, far;
@@ -88,7 +88,7 @@ SlabTiles get_tiles(PacketReader& in) {
   const std::vector<double> reach = in.get_all<double>();
   const auto full = static_cast<std::size_t>(std::ranges::count_if(states, [](auto s) { return s >= Spans; }));
   if (reach.size() != 2 * full || std::ranges::any_of(states, [](auto s) { return s > Normals; }))
-    in.fail("tiles that are none");
+    in.fail("invalid tiles");
   const std::size_t spans = in.count(), normals = in.count();
   Columns columns;
   in.columns([&](base::PlaneReader& planes) {

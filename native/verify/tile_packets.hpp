@@ -6,8 +6,8 @@
 
 namespace riffler::verify {
 
-/// Null tiles stay null. Bits are kept, the tiles' reach among them: what a slab is simulated to does not depend on
-/// whether it has travelled.
+/// Null tiles stay null. Stores the exact bits, including the tiles' extent, so that the result of a slab is the same
+/// with or without the transfer.
 void put_tiles(PacketWriter& out, const SlabTiles& tiles);
 SlabTiles get_tiles(PacketReader& in);
 

@@ -61,7 +61,7 @@ std::vector<std::uint32_t> Toolset::places(const nc::Program& program, std::int6
     if (number == 0)
       throw std::invalid_argument("tools: a feed move before any tool is called (" + where(program, row, first_row) +
                                   "); give the shape of tool 0, or call a tool before it");
-    throw std::invalid_argument("tools: nothing is known of the shape of tool " + std::to_string(number) + " (" +
+    throw std::invalid_argument("tools: the shape of tool " + std::to_string(number) + " is unknown (" +
                                 where(program, row, first_row) + "); give tools={" + std::to_string(number) +
                                 ": Tool…}");
   }

@@ -1,4 +1,4 @@
-// The tools of a run, made ready once.
+// The tools of a run, prepared once.
 #pragma once
 
 #include <map>
@@ -16,18 +16,18 @@ bool same_shape(const Tool& a, const Tool& b);
 
 class Toolset {
  public:
-  /// `own` come before a program's tools of the same number.
+  /// Tools in `own` take precedence over a program's tools of the same number.
   Toolset(std::map<int, Tool> own, double tolerance, double reach, double pitch);
 
-  /// Place of each row's tool in shapes(), kNoTool before a first tool is called and where no motion in the part ends.
-  /// std::invalid_argument naming number, row and line of a number without a shape; rapids before the first call
-  /// (number 0) need none. `first_row` is the number of the program's row 0.
+  /// Index in shapes() of each row's tool; kNoTool before the first tool call and for rows that end no motion in the
+  /// part. Throws std::invalid_argument naming number, row and line of a number without a shape; rapids before the
+  /// first call (number 0) need none. `first_row`: number of the program's row 0.
   std::vector<std::uint32_t> places(const nc::Program& program, std::int64_t first_row);
 
   const std::vector<ToolShapes>& shapes() const { return shapes_; }
-  /// The tools at those places.
+  /// The tools, by index.
   const std::vector<Tool>& tools() const { return tools_; }
-  /// The tool that was placed under `number`, or null; of several the last.
+  /// The tool registered under `number`, or null; of several the last.
   const Tool* of_number(int number) const;
   double reach() const { return reach_; }
   /// Sentences on what the descriptions of some tools leave out.

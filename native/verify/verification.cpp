@@ -12,7 +12,7 @@ namespace riffler::verify {
 
 namespace {
 
-/// The row before the first that one of the slabs has not run.
+/// The row before the first one that some slab has not simulated.
 std::size_t done_by_all(const std::vector<SlabState>& slabs, std::size_t rows) {
   auto done = static_cast<std::int64_t>(rows);
   for (const SlabState& slab : slabs) done = std::clamp<std::int64_t>(slab.done, 0, done);
@@ -25,12 +25,12 @@ struct Verification::Core {
   Core(VerifyArguments arguments, const Progress& progress);
   VerifyReport run(const nc::Program& program, const Progress& progress);
 
-  struct Memory {  // of the run before
+  struct Memory {  // of the previous run
     RunRows rows;
     std::vector<SlabState> slabs;
   };
 
-  /// Which slabs can stay as they are, and from where on the others must be run again.
+  /// Decides which slabs stay as they were, and the row from which the others must be rerun.
   std::vector<SlabState> resume(const RunRows& rows, VerifyStats& stats) const;
 
   std::shared_ptr<VerifyScene> scene_;

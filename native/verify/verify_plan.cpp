@@ -25,7 +25,7 @@ std::vector<VerifyPlan::Share> VerifyPlan::add(const nc::Program& program, const
   return shares;
 }
 
-/// For every slab the moves that can touch it.
+/// For every slab, the moves that can touch it.
 std::vector<VerifyPlan::Share> VerifyPlan::shares_of(const Moves& moves, const Progress& progress) {
   const std::vector<SlabJob>& jobs = run_.scene().jobs();
   std::vector<Share> shares(jobs.size());

@@ -1,4 +1,4 @@
-// A verification whose slabs are simulated elsewhere: what has to be sent, and what becomes of what comes back.
+// A verification whose slabs are simulated elsewhere: prepares the packets to send and accepts the results.
 #pragma once
 
 #include "verify/slab_packets.hpp"
@@ -6,9 +6,9 @@
 
 namespace riffler::verify {
 
-/// First the program goes through `add`, chunk by chunk; then every slab that has moves goes to a SlabWorker; then
-/// `finish`. The report is that of SlabRun::feed, bit for bit. Keeps 24 bytes a row (feed moves under a spindle that
-/// stands: 32 more) and what slabs have found; moves go to the caller.
+/// Call sequence: `add` for every chunk of the program; a SlabWorker for every slab that has moves; `finish`. The
+/// report is bit-identical to that of SlabRun::feed. Keeps 24 bytes per row (32 more for feed moves with a stopped
+/// spindle) and the results of slabs; the caller keeps the moves.
 class VerifyPlan {
  public:
   /// Throws std::invalid_argument naming the argument.
@@ -19,19 +19,19 @@ class VerifyPlan {
     std::size_t moves;
     std::vector<std::uint8_t> packet;
   };
-  /// The chunk's moves, for every slab that they can touch, slabs ascending. Throws as SlabRun::feed. After an error or
-  /// Cancelled this cannot be used any more.
+  /// The chunk's moves for every slab that they can touch, in ascending slab order. Throws as SlabRun::feed. After an
+  /// error or Cancelled this object cannot be used any more.
   std::vector<Share> add(const nc::Program& chunk, const Progress& progress = {});
 
-  /// What a SlabWorker is made of, once all chunks are there.
+  /// The packet from which a SlabWorker is made; after the last chunk.
   std::vector<std::uint8_t> context() const;
-  /// The slab as it stands: as it came from the stock, or after the results accepted so far.
+  /// The current state of the slab: as in the stock, or after the results accepted so far.
   std::vector<std::uint8_t> task(std::size_t slab) const;
-  /// Takes a result of slab `slab` for all its moves, or for the next of them; `last`: there are no more. Slabs come in
-  /// any order, but what one waits for the slabs before it is kept until then. FormatError for a damaged result,
-  /// std::invalid_argument for one that is not this slab's; nothing is changed then.
+  /// Accepts a result of slab `slab` for all its moves or for the next of them; `last`: there are no more. Slabs may
+  /// come in any order; their volumes are kept until the slabs before them have arrived. Throws FormatError for a
+  /// damaged result, std::invalid_argument for one of another slab, and then changes nothing.
   void accept(std::size_t slab, std::span<const std::uint8_t> result, bool last);
-  /// std::logic_error where slabs are missing.
+  /// Throws std::logic_error if slabs are missing.
   VerifyReport finish(const Progress& progress = {});
 
  private:
@@ -41,8 +41,8 @@ class VerifyPlan {
   void merge_finished();
 
   SlabRun run_;
-  std::vector<std::uint8_t> open_;  // of each slab: whether a result is missing
-  std::size_t merged_ = 0;          // slabs whose volumes have been added to the rows
+  std::vector<std::uint8_t> open_;  // per slab: whether a result is missing
+  std::size_t merged_ = 0;          // number of slabs whose volumes are added to the rows
 };
 
 }  // namespace riffler::verify

@@ -12,7 +12,7 @@ namespace riffler::nc {
 
 namespace {
 
-constexpr double kMaxRotary = 3600;  // deg/min, where nothing else is said: ten turns a minute
+constexpr double kMaxRotary = 3600;  // deg/min, default: ten turns per minute
 
 class Describer : base::TomlReader {
  public:
@@ -40,14 +40,14 @@ class Describer : base::TomlReader {
   }
 
  private:
-  /// −1 where the caller wants tables to turn the other way than the file has it.
+  /// −1 if the caller reverses the rotation of tables relative to the file.
   double table_sign(OptionReader& options) const {
     if (!root().get("direction")) return 1;
     const std::string own = word(root(), "direction", {"linuxcnc", "iso"}, "");
     return options.word("direction", {"linuxcnc", "iso"}, own) == own ? 1 : -1;
   }
 
-  /// The values of the options that the file declares.
+  /// Reads the values of the options that the file declares.
   void take_options(OptionReader& options, bool joints) {
     const toml::node* node = root().get("options");
     if (!node) return;
@@ -59,7 +59,7 @@ class Describer : base::TomlReader {
     }
   }
 
-  /// An option with what it is: one that must be given where the words are joints, or one that has a value.
+  /// An option with its description: required if the words are joints, otherwise with a default.
   Vec3 described(OptionReader& options, const std::string& name, const toml::table& entry, bool joints) const {
     allow(entry, {"needed", "about", "numbers", "value"});
     const std::string about = text(entry, "about");
@@ -96,7 +96,7 @@ class Describer : base::TomlReader {
     return out;
   }
 
-  /// Three numbers, or a sum of options, each times what the file has for it.
+  /// Three numbers, or a sum of options times factors from the file.
   Vec3 point(const toml::node& node) const {
     if (node.is_array()) return vector(node, "at");
     const toml::table* sum = node.as_table();
@@ -178,7 +178,7 @@ class Describer : base::TomlReader {
     return out;
   }
 
-  std::map<std::string, Vec3> values_;  // numbers three times
+  std::map<std::string, Vec3> values_;  // a number is stored three times
 };
 
 }  // namespace

@@ -11,14 +11,14 @@ namespace {
 
 constexpr std::string_view kBegin = "Riffler ", kPost = ", post ";
 
-/// The text of a line that is a comment, in brackets or, behind a block's number, after a semicolon.
+/// The text of a comment line, in brackets or, after a block number, behind a semicolon.
 std::string_view comment_of(std::string_view line) {
   if (line.starts_with('(') && line.ends_with(')')) return line.substr(1, line.size() - 2);
   line.remove_prefix(std::min(line.find_first_not_of("0123456789 "), line.size()));
   return line.starts_with("; ") ? line.substr(2) : std::string_view();
 }
 
-/// Whether `name` is a machine that we know whose words any tip-centred machine takes alike.
+/// Whether `name` is a machine whose words mean the same to any machine with tip coordinates.
 bool is_upright(const std::string& name) {
   try {
     OptionReader none({}, name);

@@ -1,4 +1,4 @@
-// The first lines of the code that we write: for which machine it is, so that it is not read for another one.
+// Header of the NC code that Riffler writes: names the machine, so that the code is not read for another one.
 #pragma once
 
 #include <string>
@@ -8,12 +8,11 @@
 
 namespace riffler::nc {
 
-/// "Riffler 0.1.0, post NAME": the first comment.
+/// The first comment: "Riffler 0.1.0, post NAME".
 std::string header_line(const Machine& machine);
 
-/// FormatError naming the line where the text begins with our header and is for another machine, or its X Y Z mean
-/// something else, than `machine`. Code for upright tools may be read for any machine whose X Y Z are the tip. The
-/// source stands at its start before and after.
+/// Throws FormatError naming the line if the text begins with this header for another machine, or with another meaning
+/// of X Y Z. Code for vertical tools may be read for any machine with tip coordinates. Leaves the source at its start.
 void check_header(NcSource& source, const Machine& machine);
 
 }  // namespace riffler::nc

@@ -15,7 +15,7 @@ namespace riffler::nc {
 namespace {
 
 const Vec3 kSpindle(0, 0, 1);
-/// What an axis keeps that went through single precision.
+/// Precision of an axis that was stored in single precision.
 constexpr double kSingle = 1e-6;
 
 Vec3 turned_about(const Vec3& p, const RotaryAxis& axis, double angle) {
@@ -28,7 +28,7 @@ std::string show(const Vec3& v) {
   return text;
 }
 
-/// "+Z" for what points along a coordinate axis.
+/// "+Z" for a direction along a coordinate axis.
 std::string show_direction(const Vec3& v) {
   for (int k = 0; k < 3; ++k)
     if (std::abs(v[k]) > 1 - 1e-12) return {v[k] > 0 ? '+' : '-', "XYZ"[k]};
@@ -49,7 +49,7 @@ Machine::Machine(MachineDescription description) : description_(std::move(descri
     if (!(std::abs(glm::length(a.direction) - 1) < 1e-9)) refuse("an axis direction must be a unit vector");
     if (!geom::finite(a.point)) refuse("a point on an axis is not finite");
     letters_ += a.letter, index_.push_back(joint_index(a.letter));
-    // A table turns the part, so seen from the part the tool turns the other way.
+    // A table turns the part, so seen from the part the tool turns in the opposite direction.
     seen_.push_back(a.carries_part ? -a.direction : a.direction);
   }
   std::sort(letters_.begin() + 3, letters_.end());
@@ -61,7 +61,7 @@ Machine::Machine(MachineDescription description) : description_(std::move(descri
   }
   for (std::size_t k = 0; k < description_.ranges.size(); ++k) {
     AxisRange& range = description_.ranges[k];
-    // What is within a limit must also be within it when it is printed.
+    // A printed value must be within the limits too, so round them inwards.
     const double scale = std::pow(10.0, k >= 3 ? kAngleDecimals : kLengthDecimals);
     range.low = std::ceil(range.low * scale - 1e-3) / scale + 0.0;  // no -0
     range.high = std::floor(range.high * scale + 1e-3) / scale + 0.0;
@@ -84,7 +84,7 @@ Vec3 Machine::axis_at(const Turns& t) const {
   return axis;
 }
 
-/// Of the tip from where it is with the head's axes at 0.
+/// Offset of the tip from its place with the head's axes at 0.
 Vec3 Machine::head_offset(const Turns& t) const {
   Vec3 tip(0);
   for (std::size_t k = index_.size(); k-- > 0;)
@@ -114,7 +114,7 @@ Pose Machine::pose(const Joints& j) const {
 
 Vec3 Machine::pole() const {
   if (seen_.size() == 2) return seen_[0];
-  // One axis along the spindle is always free, any other never.
+  // A single axis along the spindle is always free, any other one never.
   return seen_.size() == 1 && glm::length(glm::cross(seen_[0], kSpindle)) < kSingle ? seen_[0] : Vec3(0);
 }
 
@@ -135,9 +135,9 @@ Machine::Turns Machine::angles(const Vec3& axis, int branch, const Turns& near, 
     return {pole() != Vec3(0) ? near[0] : angle_about(k, kSpindle, axis), 0};
   }
   if (std::asin(std::min(1.0, glm::length(glm::cross(two_.first, axis)))) <= free) {
-    // The free axis stays; the other one takes what the axis has in the plane that this gives it.
+    // The free axis stays; the other one takes the axis as far as possible in the plane that results.
     const Turns out{near[0], angle_about(two_.second, kSpindle, geom::rotate_about(axis, two_.first, -near[0]))};
-    // A pole can lie where no angle of the other one brings the axis.
+    // A pole may be out of reach for every angle of the other axis.
     if (geom::angle_between(axis_at(out), axis) > 2 * free + kSingle) cannot_reach();
     return out;
   }
@@ -151,7 +151,7 @@ Joints Machine::joints(const Pose& pose, int branch, const Joints& near, double 
   const Turns t = angles(pose.axis, branch, before, free);
   Joints out{};
   for (std::size_t k = 0; k < index_.size(); ++k)
-    // What stays, stays to the bit.
+    // Unchanged values stay bit-identical.
     out[index_[k]] = t[k] == before[k] ? near[index_[k]] : nearest_turn(t[k] / kDegree, near[index_[k]]);
   return with_tip(out, pose.tip);
 }

@@ -22,13 +22,13 @@ std::vector<base::DescriptionEntry> machines() {
 std::string machines_with(char axis, std::string_view language) {
   std::string out;
   for (const base::DescriptionEntry& entry : machines()) {
-    OptionReader options({{"tcp", true}}, entry.name);  // with which no pivot is asked for
+    OptionReader options({{"tcp", true}}, entry.name);  // tip coordinates need no pivot
     try {
       const std::unique_ptr<Machine> machine = make_machine(entry.name, options);
       if (machine->control().language != language || machine->axes().find(axis) == std::string_view::npos) continue;
       out += (out.empty() ? "" : ", ") + entry.name;
     } catch (const std::invalid_argument&) {
-      continue;  // a file of the user's own that cannot be read: whoever asks for it is told
+      continue;  // an unreadable user file: reported when it is used
     }
   }
   return out;
@@ -46,7 +46,7 @@ std::string machines_of_language(std::string_view language) {
       OptionReader none({{"tcp", true}}, entry.name);
       if (make_machine(entry.name, none)->control().language == language) out += (out.empty() ? "" : ", ") + entry.name;
     } catch (const std::exception&) {
-      // A description that cannot be read, or needs options, is not among those that are named.
+      // Skips descriptions that cannot be read or that require options.
     }
   }
   return out;

@@ -1,4 +1,4 @@
-// A machine by its name or by the path of its description.
+// Finds a machine by its name or by the path of its description.
 #pragma once
 
 #include <memory>
@@ -10,8 +10,8 @@
 
 namespace riffler::nc {
 
-/// `name` is one of machines(), or the path of a .toml file. Options that the machine does not take stay in `options`.
-/// Throws std::invalid_argument that lists the known ones, and what describe_machine throws.
+/// `name`: from machines(), or the path of a .toml file. Options that the machine does not take remain in `options`.
+/// Throws std::invalid_argument listing the known names, and errors of describe_machine.
 std::unique_ptr<Machine> make_machine(std::string_view name, OptionReader& options);
 
 }  // namespace riffler::nc

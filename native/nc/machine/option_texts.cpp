@@ -12,32 +12,33 @@ namespace {
 
 struct Text {
   std::string_view name, unit, about;
-  std::string_view languages = {};  ///< whose posts do something with it; nothing: all
+  std::string_view languages = {};  ///< languages whose posts use it; empty: all
 };
 
-/// Of options that a machine's own file does not describe. A name that ends in _ stands for one of each axis.
+/// Options without a description in the machine's own file. A name that ends in _ stands for one option per axis.
 constexpr Text kTexts[] = {
     {"tcp", "",
-     "X Y Z are the tip in part coordinates, and the control knows the machine; otherwise where its linear axes stand"},
-    {"direction", "", "which way positive angles turn the tables: iso, left-handed; linuxcnc, right-handed"},
-    {"max_rotary", "deg/min", "that no rotary axis exceeds in feed moves"},
-    {"limits_", "mm", "the lowest and the highest place of the axis"},
+     "X Y Z are the tip in part coordinates, and the control knows the machine; otherwise the positions of its linear "
+     "axes"},
+    {"direction", "", "rotation of the tables for positive angles: iso, left-handed; linuxcnc, right-handed"},
+    {"max_rotary", "deg/min", "largest speed of a rotary axis in feed moves"},
+    {"limits_", "mm", "the lowest and the highest position of the axis"},
     {"rate_", "mm/min", "the highest speed of the axis"},
-    {"tool_length", "", "the code that makes the tool's length count"},
+    {"tool_length", "", "the code that activates tool length compensation"},
     {"feed", "", "how feeds are written where a rotary axis moves: inverse-time (G93), or per-minute (G94)"},
-    {"rapids", "", "how rapids go: straight, or each axis at its own rate until it is there"},
+    {"rapids", "", "how rapids move: straight, or each axis at its own rate until it arrives"},
     {"line_numbers", "", "step of the N words; 0: no line numbers"},
     {"coolant", "", "what is switched on before the first cut"},
-    {"vectors", "", "Heidenhain: LN blocks with the tool's axis in place of the rotary axes", "heidenhain"},
+    {"vectors", "", "Heidenhain: LN blocks with the tool axis instead of the rotary axes", "heidenhain"},
     {"retract", "mm",
-     "machine Z of G53 or SUPA to which the tool goes before and after everything, in place of the machine's own "
+     "machine Z of G53 or SUPA to which the tool retracts at the start and the end, instead of the machine's own "
      "retract",
      "rs274 sinumerik"},
     {"safe_start", "",
-     "each tool begins with a retract, then the rotary axes, then X and Y, then Z; otherwise the first block goes "
-     "straight from wherever the machine is"},
-    {"safe_height", "mm", "z in part coordinates at which the tool is above everything: axes turn back there"},
-    {"arcs", "", "straight runs become G2 and G3 where the tolerance allows"},
+     "each tool begins with a retract, then the rotary axes, then X and Y, then Z; otherwise the first block moves "
+     "straight from the machine's current position"},
+    {"safe_height", "mm", "z in part coordinates at which the tool is above everything: rotary axes unwind there"},
+    {"arcs", "", "replace line segments by G2 and G3 where the tolerance allows"},
 };
 
 const Text* text_of(std::string_view name) {
@@ -50,9 +51,9 @@ const Text* text_of(std::string_view name) {
 
 MachineOption described(OptionFact fact) {
   const Text* text = text_of(fact.name);
-  if (!text) return {std::move(fact), "mm", true};  // a machine's own are places and lengths
+  if (!text) return {std::move(fact), "mm", true};  // a machine's own options are places and lengths
   std::string unit(text->unit);
-  // Those of each axis: rotary ones turn.
+  // One option per axis; rotary axes use degrees.
   if (text->name.ends_with('_') && fact.name.back() <= 'c') unit.replace(0, 2, "deg");
   fact.about = text->about;
   return {std::move(fact), std::move(unit)};

@@ -1,4 +1,4 @@
-// What the options of machines and posts are, for people: fields of a panel are made from it.
+// Descriptions of the options of machines and posts, from which panels build their fields.
 #pragma once
 
 #include <string>
@@ -9,15 +9,15 @@
 
 namespace riffler::nc {
 
-/// An option of a machine, or of the code that is written for it.
+/// An option of a machine, or of the code written for it.
 struct MachineOption {
   OptionFact fact;
-  std::string unit;  ///< "mm", "deg", "deg/min", "mm/min" or nothing
-  bool own = false;  ///< of this machine's file; the others are of many
+  std::string unit;  ///< "mm", "deg", "deg/min", "mm/min" or empty
+  bool own = false;  ///< declared in this machine's file; the others are common to many machines
 };
 
-/// All options of machine `name`, its own first, as they are with these `options`: which ones must be given depends on
-/// them. Throws what make_machine throws, but for options that are missing.
+/// All options of machine `name` given `options`, its own first. Which options are required depends on the ones given.
+/// Throws as make_machine, except for missing options.
 std::vector<MachineOption> machine_options(std::string_view name, Options options = {});
 
 }  // namespace riffler::nc

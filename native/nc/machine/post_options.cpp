@@ -9,7 +9,7 @@ namespace riffler::nc {
 
 namespace {
 
-/// A coordinate in mm, where it is given.
+/// A coordinate in mm, if given.
 std::optional<double> place(OptionReader& options, const std::string& name) {
   const std::optional<double> value = options.finite(name);
   if (value && !(std::abs(*value) <= kMaxLength))

@@ -1,4 +1,4 @@
-// The texts of native/nc/machine/shipped/*.toml, which the build puts into the library.
+// The texts of native/nc/machine/shipped/*.toml, embedded in the library at build time.
 #pragma once
 
 #include <span>
@@ -7,7 +7,7 @@
 
 namespace riffler::nc {
 
-/// In the order in which a list shows them.
+/// In display order.
 std::span<const base::ShippedText> shipped_machines();
 
 }  // namespace riffler::nc

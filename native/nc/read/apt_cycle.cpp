@@ -14,22 +14,22 @@ namespace {
 
 constexpr double kMaxPecks = 100'000;
 
-/// Lengths and feeds in pairs, a word and its number.
+/// Lengths and feeds in pairs of a word and its number.
 void take_words(AptCycle& cycle, const AptStatement& statement, const AptLexer& lexer, double unit,
                 const NcPlace& place) {
   bool retracts = false, feeds = false;
   for (std::size_t k = 1; k < statement.words.size(); k += 2) {
     const std::string& word = statement.words[k];
     if (word == "DEEP" && k == 1) {
-      --k;  // beside DRILL
+      --k;  // DEEP after DRILL has no number
       continue;
     }
     const std::optional<double> number =
         k + 1 < statement.words.size() ? lexer.number(statement.words[k + 1]) : std::nullopt;
     if (lexer.number(word))
       place.fail(
-          "CYCLE with numbers alone: what they mean is known to one post processor only; have the CAM system "
-          "write FEDTO, RAPTO and RTRCTO, or the moves");
+          "CYCLE with numbers alone: only one post processor knows their meaning; have the CAM system write FEDTO, "
+          "RAPTO and RTRCTO, or the moves");
     if (!number) place.fail("CYCLE: " + word + " without a number");
     const double length = *number * unit;
     if (!(std::abs(length) <= kMaxLength)) place.fail("CYCLE: " + word + " is out of range");

@@ -1,4 +1,4 @@
-// CYCLE/… of APT files as CAM systems write it: what happens at each GOTO until CYCLE/OFF.
+// CYCLE/… of APT files as CAM systems write it: the moves at each GOTO until CYCLE/OFF.
 #pragma once
 
 #include <functional>
@@ -11,18 +11,17 @@ namespace riffler::nc {
 
 /// Lengths in mm from the programmed point along the tool's axis.
 struct AptCycle {
-  double depth = 0;        ///< FEDTO: the bottom below the point
-  double clearance = 0;    ///< RAPTO: above the point, to where it moves fast
-  double retract = 0;      ///< RTRCTO: where it goes in the end; without it the clearance
-  double first_peck = 0;   ///< 1STPECK; 0: no pecks
-  double peck = 0;         ///< SUBPECK or INCR, of those after the first
-  double feed = 0;         ///< mm/min; 0: that of FEDRAT
-  bool feeds_out = false;  ///< taps, reamers and boring bars
+  double depth = 0;        ///< FEDTO: depth of the bottom below the point
+  double clearance = 0;    ///< RAPTO: height above the point where rapid motion ends
+  double retract = 0;      ///< RTRCTO: final height; default: clearance
+  double first_peck = 0;   ///< 1STPECK; 0: no pecking
+  double peck = 0;         ///< SUBPECK or INCR: pecks after the first
+  double feed = 0;         ///< mm/min; 0: feed of FEDRAT
+  bool feeds_out = false;  ///< retracts at feed: taps, reamers and boring bars
 };
 
-/// The cycle that a statement CYCLE/… begins, or nothing where it says OFF, INIT or ON. `unit`: mm of a length.
-/// FormatError for words that it does not know, and for numbers without words, which each post processor has its own
-/// meaning for.
+/// The cycle that a statement CYCLE/… starts; no value for OFF, INIT or ON. `unit`: mm per length unit. Throws
+/// FormatError for unknown words, and for numbers without words, whose meaning depends on the post processor.
 std::optional<AptCycle> apt_cycle(const AptStatement& statement, const AptLexer& lexer, double unit,
                                   const NcPlace& place);
 

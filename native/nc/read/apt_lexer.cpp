@@ -22,7 +22,7 @@ std::string compact(std::string_view text) {
   return out;
 }
 
-/// These are text up to the end of their line, of any characters, in which a $ has no meaning.
+/// Statements of text up to the end of the line, in which $ has no meaning.
 bool is_text(std::string_view line) {
   const std::string start = compact(line.substr(0, 12));
   return start.starts_with("PARTNO") || start.starts_with("PPRINT") || start.starts_with("INSERT");
@@ -38,7 +38,7 @@ bool AptLexer::next(AptStatement& statement) {
   while (source_.next(line)) {
     place_.line = source_.line(), place_.text = line;
     std::string_view part = trimmed(line);
-    // Creo's comments that say something go on behind a $, as statements do.
+    // Creo's meaningful comments continue behind a $, as statements do.
     if (!more && (comment || part.starts_with("$$->"))) {
       comment = part.ends_with('$') && part != "$$";
       continue;
@@ -50,7 +50,7 @@ bool AptLexer::next(AptStatement& statement) {
       if (statement.text.starts_with('/')) statement.text = trimmed(std::string_view(statement.text).substr(1));
       return true;
     }
-    // What follows a $ is a comment, and one $ alone continues the statement.
+    // A comment follows $; a single $ also continues the statement.
     const std::size_t end = part.find('$');
     const bool continues = end != part.npos && part.substr(end, 2) != "$$";
     part = trimmed(part.substr(0, end));

@@ -1,4 +1,4 @@
-// Text of an APT file → statements.
+// Splits the text of an APT file into statements.
 #pragma once
 
 #include <optional>
@@ -10,28 +10,28 @@
 
 namespace riffler::nc {
 
-/// MAJOR/minor,…: the words upper case without blanks; `text` as it stands, for statements that are text.
+/// MAJOR/minor,…: words in upper case without blanks; `text` verbatim, for text statements.
 struct AptStatement {
-  int line = 0;  ///< where it begins
+  int line = 0;  ///< line at which it begins
   std::string major;
   std::vector<std::string> words;
   std::string text;
 };
 
-/// A statement is a line; $ continues it on the next line, $$ does not; what follows either is a comment. A comment
-/// that begins with $$-> goes on where its line ends with a $.
+/// A statement is a line; $ continues it on the next line, $$ does not; the rest of the line is a comment. A comment
+/// that begins with $$-> continues if its line ends with a $.
 class AptLexer {
  public:
-  /// Keeps `text` and `place`, in which it says where it is.
+  /// Keeps references to `text` and `place`, and updates `place`.
   AptLexer(std::string_view text, NcPlace& place) : source_(text, place.file), place_(place) {}
 
-  /// The next statement; false at the end. FormatError where the text ends within one.
+  /// The next statement; false at the end. Throws FormatError if the text ends within a statement.
   bool next(AptStatement& statement);
 
-  /// Of the text, how much has been read, in [0, 1].
+  /// Fraction of the text read so far, 0 to 1.
   double share() const { return source_.share(); }
 
-  /// The word as a number; nothing where it is none. FormatError where it is out of range.
+  /// The word as a number; no value if it is none. Throws FormatError if it is out of range.
   std::optional<double> number(std::string_view word) const;
 
  private:

@@ -31,7 +31,7 @@ class AptReader {
       : place_{file, 0, {}}, lexer_(text, place_), progress_(options.progress) {
     OptionReader taken(options.options, "machine " + options.machine);
     make_machine(options.machine, taken);
-    take_post_options(taken);  // the same options write and read
+    take_post_options(taken);  // reading and writing share these options
     chord_tolerance_ = taken.positive("chord_tolerance").value_or(0.002);
     skip_unknown_ = taken.word("unknown", {"error", "skip"}, "error") == "skip";
     compensation_ = take_compensation_rule(taken);
@@ -138,7 +138,7 @@ class AptReader {
     return p;
   }
 
-  /// A direction as it was printed, with some digits less than a double has.
+  /// A direction as printed, with fewer digits than a double.
   Vec3 unit(const std::vector<double>& v, std::size_t first) const {
     const Vec3 d(v[first], v[first + 1], v[first + 2]);
     const double length = glm::length(d);
@@ -200,7 +200,7 @@ class AptReader {
     use_cutter();
   }
 
-  /// A shape that is not known stays so, which is noted.
+  /// An unknown shape stays unknown, with a note.
   void cutter(const std::vector<double>& v) {
     cutter_ = apt_cutter(v, unit_, place_);
     cutter_waits_ = true;
@@ -219,7 +219,7 @@ class AptReader {
     list("TLDATA of a shape that is not known");
   }
 
-  /// The cutter belongs to the tool that is loaded beside it, before or after; where a file loads none, each is one.
+  /// The cutter belongs to the tool loaded before or after it; if the file loads none, each cutter is a tool.
   void use_cutter() {
     if (!std::exchange(cutter_waits_, false)) return;
     if (!loads_) ++tool_;
@@ -230,9 +230,9 @@ class AptReader {
     cutter_.reset();
   }
 
-  // --- Where coordinates are ---
+  // --- Coordinate systems ---
 
-  /// A CSYS or TRNTYP that is not the first one's says nothing about where the part is.
+  /// A second, different CSYS or TRNTYP does not define where the part is.
   void system() {
     if (s_.major == "MSYS") {
       const std::vector<double> v = values(9, 9);
@@ -305,7 +305,7 @@ class AptReader {
 
   void row(const Pose& pose) {
     use_cutter();
-    if (program_.size() >= kMaxRows) place_.fail("more rows than can be held");
+    if (program_.size() >= kMaxRows) place_.fail("more rows than can be stored");
     if (!rapid_ && !(feed_ > 0) && program_.size() > 0) place_.fail("a feed move without FEDRAT");
     double feed = rapid_ ? 0 : feed_;
     if (per_turn_ && !rapid_) {
@@ -313,7 +313,7 @@ class AptReader {
       feed *= speed_;
       if (!(feed <= kMaxFeed)) place_.fail("FEDRAT is out of range");
     }
-    // Where the tool comes from to its first point is not known: it is not cut.
+    // The motion to the first point has an unknown start: it is not cut.
     const bool first = program_.empty();
     program_.append({{system_.in_first(pose.tip), system_.turned(pose.axis)},
                      first && !(feed > 0) ? 0 : feed,
@@ -324,7 +324,7 @@ class AptReader {
     at_ = pose.tip, axis_ = pose.axis;
   }
 
-  /// Centre, axis and, unless the start gives it, radius; a word may turn its way round.
+  /// Centre, axis and, unless it follows from the start, radius; a word may reverse the direction.
   void circle() {
     bool clockwise = false;
     std::vector<std::string> words;
@@ -349,7 +349,7 @@ class AptReader {
       for (std::size_t k = 3; k < 6; ++k) (*circle_)[k] = 0 - (*circle_)[k];
   }
 
-  /// About the circle's axis, right-handed; along it evenly.
+  /// About the circle's axis, right-handed, with even motion along the axis.
   void arc(const Pose& to) {
     const std::vector<double> v = *std::exchange(circle_, std::nullopt);
     if (program_.empty()) place_.fail("CIRCLE before the first point");
@@ -374,7 +374,7 @@ class AptReader {
     if (!(glm::dot(axis_, to.axis) > -1 + 1e-12)) place_.fail("the tool's axis turns to its opposite");
     const Motion turning({from, axis_}, to);
     const int chords = round.chords(chord_tolerance_);
-    if (chords > kMaxChords) place_.fail("an arc of too many chords");
+    if (chords > kMaxChords) place_.fail("an arc with too many chords");
     for (int i = 1; i <= chords; ++i) {
       const double t = static_cast<double>(i) / chords;
       const Vec2 p = round.at(t);
@@ -397,7 +397,7 @@ class AptReader {
   int turning_ = 0, tool_ = 0;
   Vec3 at_{0}, axis_{0, 0, 1};
   std::optional<std::vector<double>> circle_;
-  int turns_ = 1;  // of the circle
+  int turns_ = 1;  // turns of the circle
   std::optional<AptCycle> cycle_;
   AptSystem system_;
   std::string csys_, trntyp_;

@@ -14,11 +14,12 @@ namespace {
 
 [[noreturn]] void fail_miss(double miss) {
   char text[128];
-  std::snprintf(text, sizeof text, "the arc's end misses its circle by %.4f mm: option arc_tolerance takes more", miss);
+  std::snprintf(text, sizeof text, "the arc's end misses its circle by %.4f mm: option arc_tolerance allows more",
+                miss);
   throw std::invalid_argument(text);
 }
 
-/// On circles about `centre` through the two ends.
+/// An arc about `centre` between the circles through the two ends.
 Arc between(const Vec2& from, const Vec2& to, const Vec2& centre, bool clockwise) {
   const Vec2 a = from - centre, b = to - centre;
   const double start = std::atan2(a.y, a.x);
@@ -50,7 +51,7 @@ double Arc::length() const {
 }
 
 int Arc::chords(double tolerance) const {
-  // Sagitta r (1 − cos h) = 2 r sin²(h / 2) of a chord over the angle 2 h; half a right angle at most, so that small
+  // Sagitta r (1 − cos h) = 2 r sin²(h / 2) of a chord over the angle 2 h; at most half a right angle, so that small
   // circles keep their shape.
   const double r = std::max(r0, r1);
   const double half = 2 * std::asin(std::min(1.0, std::sqrt(tolerance / (2 * r))));
@@ -73,15 +74,15 @@ Arc arc_of_radius(const Vec2& from, const Vec2& to, double radius, bool clockwis
   const double length = glm::length(chord);
   if (!(r > 0)) throw std::invalid_argument("an arc of radius 0");
   if (length < kFullCircle) throw std::invalid_argument("a full circle by R has no centre");
-  // On the circle about the nearest centre that passes through the start, the end misses by what the chord is too long.
+  // On the circle through the start with the nearest possible centre, the end misses by the excess length of the chord.
   if (length - 2 * r > miss) fail_miss(length - 2 * r);
   const double height = std::sqrt(std::max(0.0, (r - length / 2) * (r + length / 2)));
-  // Seen along the chord the centre of the shorter arc is on the right for a clockwise one, on the left otherwise.
+  // Seen along the chord, the centre of the shorter arc is on the right if clockwise, otherwise on the left.
   const double side = (clockwise == (radius > 0)) ? -1 : 1;
   const Vec2 left(-chord.y / length, chord.x / length);
   const Vec2 centre = (from + to) / 2.0 + side * height * left;
   Arc arc = between(from, to, centre, clockwise);
-  // A half circle's two senses differ by rounding only: R says that it is one.
+  // The directions of a half circle differ only by rounding, so use R's.
   if (height == 0) arc.sweep = clockwise ? -kPi : kPi;
   return arc;
 }

@@ -14,10 +14,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// As on LinuxCNC.
+/// As in LinuxCNC.
 constexpr std::size_t kDeepestCall = 10;
 
-/// O100 and O<name>.
+/// "O100" and "O<name>".
 std::string show(const std::string& label) {
   return NcCursor::is_digit(label[0]) ? "O" + label : "O<" + label + ">";
 }
@@ -45,7 +45,7 @@ bool NcControlFlow::advance(std::string_view& line) {
   return true;
 }
 
-/// A turn may pass over a million lines: the number of turns alone is no bound.
+/// A turn may skip a million lines, so the number of turns alone is no bound.
 void NcControlFlow::count_line() {
   constexpr std::uint64_t kLinesAReport = 4096;
   if (place_.line > file().furthest)
@@ -78,7 +78,7 @@ void NcControlFlow::turn() {
 }
 
 void NcControlFlow::expect_end(NcCursor& cursor) {
-  if (cursor.peek() != '\0') place_.fail("text after an O-word: it has a line of its own");
+  if (cursor.peek() != '\0') place_.fail("text after an O-word: an O-word must be alone on its line");
 }
 
 double NcControlFlow::condition(NcCursor& cursor) {
@@ -134,7 +134,7 @@ void NcControlFlow::subroutine(const std::string& label, NcKeyword keyword, NcCu
   expect_end(cursor);
   switch (keyword) {
     case NcKeyword::Sub:
-      // Met on the way: passed over until it is called.
+      // Reached without a call: skip the subroutine.
       if (frames_.size() > 1) place_.fail("a subroutine within subroutine " + show(frames_.back().label));
       file().subs.emplace(label, file().source->mark());
       skip(label, {NcKeyword::EndSub});
@@ -144,7 +144,7 @@ void NcControlFlow::subroutine(const std::string& label, NcKeyword keyword, NcCu
       call(label, values);
       return;
     default:
-      // The label of a return may be any.
+      // A return may have any label.
       if (frames_.size() == 1 || frames_.back().is_subprogram ||
           (keyword == NcKeyword::EndSub && frames_.back().label != label))
         place_.fail("not within subroutine " + show(label));
@@ -167,7 +167,7 @@ void NcControlFlow::index(File& file) {
   file.source->go(here);
 }
 
-/// In the file at hand, in the program, in a file of its own.
+/// Searches the current file, the program, then a file of its own.
 std::pair<NcControlFlow::File*, NcSource::Mark> NcControlFlow::find(const std::string& label, bool subprogram) {
   const auto look = [&](File& file) -> std::optional<NcSource::Mark> {
     const auto& all = subprogram ? file.subprograms : file.subs;
@@ -180,7 +180,7 @@ std::pair<NcControlFlow::File*, NcSource::Mark> NcControlFlow::find(const std::s
   };
   for (File* file : {&file(), &program_})
     if (const auto mark = look(*file)) return {file, *mark};
-  // A name is part of a file's name only.
+  // A name may only be part of a file's name.
   const bool is_plain = label.find_first_of("/\\") == label.npos && label[0] != '.';
   for (const fs::path& folder : folders_) {
     const fs::path path = folder / (label + ".ngc");
@@ -192,12 +192,12 @@ std::pair<NcControlFlow::File*, NcSource::Mark> NcControlFlow::find(const std::s
     place_.fail(file.source->name() + " holds no subroutine " + show(label));
   }
   place_.fail("no subroutine " + show(label) + ": neither in the program, nor as " + label +
-              ".ngc beside it or in the folder of option subroutines");
+              ".ngc in its folder or that of option subroutines");
 }
 
 void NcControlFlow::call(const std::string& label, const std::vector<double>& arguments) {
   turn();
-  if (frames_.size() > kDeepestCall) place_.fail("calls within more than 10 calls");
+  if (frames_.size() > kDeepestCall) place_.fail("calls nested more than 10 deep");
   const auto [file, mark] = find(label, false);
   Frame frame{file, label, false, 1, mark, frames_.back().file->source->mark()};
   parameters_.enter(arguments);
@@ -216,7 +216,7 @@ void NcControlFlow::leave(std::optional<double> value) {
 
 void NcControlFlow::call_subprogram(int number, int repeats) {
   turn();
-  if (frames_.size() > kDeepestCall) place_.fail("calls within more than 10 calls");
+  if (frames_.size() > kDeepestCall) place_.fail("calls nested more than 10 deep");
   if (repeats == 0) return;
   const std::string label = std::to_string(number);
   const auto [file, mark] = find(label, true);
@@ -250,13 +250,13 @@ std::pair<NcKeyword, std::string_view> NcControlFlow::skip(const std::string& la
     if (!o) continue;
     if (o->label == label && std::find(keywords.begin(), keywords.end(), o->keyword) != keywords.end())
       return {o->keyword, o->rest};
-    // Labels of loops and branches belong to their subroutine.
+    // Labels of loops and branches are local to their subroutine.
     if (!to_end && o->keyword == NcKeyword::EndSub) break;
   }
   begin.fail(show(label) + " has no end");
 }
 
-/// A branch that is taken stands among the loops until its end, so that what stands alone is told.
+/// A taken branch stays among the loops until its end, so that unmatched words are detected.
 void NcControlFlow::branch(const std::string& label, NcKeyword keyword, NcCursor& cursor) {
   if (keyword == NcKeyword::If) {
     leave_loop(label);
@@ -277,7 +277,7 @@ void NcControlFlow::branch(const std::string& label, NcKeyword keyword, NcCursor
   if (keyword == NcKeyword::EndIf)
     expect_end(cursor);
   else
-    skip(label, {NcKeyword::EndIf});  // what was met while executing ends the branch that was taken
+    skip(label, {NcKeyword::EndIf});  // an ELSE reached by execution ends the branch taken
   leave_loop(label);
 }
 
@@ -287,7 +287,7 @@ NcControlFlow::Loop* NcControlFlow::find_loop(const std::string& label) {
   return nullptr;
 }
 
-/// Ends the loop and those within it.
+/// Ends the loop and all loops within it.
 void NcControlFlow::leave_loop(const std::string& label) {
   if (const Loop* loop = find_loop(label)) loops().erase(loops().begin() + (loop - loops().data()), loops().end());
 }

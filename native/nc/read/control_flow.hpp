@@ -1,4 +1,4 @@
-// Which line of NC code comes next: O-words (subroutines, loops, branches), subprograms by M98, files of subroutines.
+// Selects the next line of NC code: O-words (subroutines, loops, branches), subprograms by M98, files of subroutines.
 #pragma once
 
 #include <cstdint>
@@ -20,29 +20,29 @@ namespace riffler::nc {
 
 class NcControlFlow {
  public:
-  /// Subroutines that the program does not hold are sought as name.ngc in `folders`. After `max_turns` turns of loops
-  /// and calls, or where they read lines again and again without end, the program counts as endless. `progress` hears
-  /// of lines that are passed over, too. Keeps `place`, in which it says where it is, and `parameters`.
+  /// Subroutines not in the program are searched as name.ngc in `folders`. A program counts as endless after
+  /// `max_turns` turns of loops and calls, or when they keep rereading lines without end. `progress` is also called for
+  /// skipped lines. Keeps references to `place`, which it updates, and `parameters`.
   NcControlFlow(std::unique_ptr<NcSource> program, std::vector<std::filesystem::path> folders, double max_turns,
                 NcPlace& place, NcParameters& parameters, Progress progress = {});
 
-  /// The next line in the order of execution; false at the end. FormatError for a file that ends within a subroutine.
+  /// The next line in execution order; false at the end. Throws FormatError if a file ends within a subroutine.
   bool next(std::string_view& line);
 
-  /// What follows "O" in a block. False: it is no more than a number.
+  /// Executes what follows "O" in a block. False: it is only a program number.
   bool execute(NcCursor& cursor);
 
-  /// M98 and M99; false where M99 has nothing to return to.
+  /// M98 and M99; false if M99 has nothing to return to.
   void call_subprogram(int number, int repeats);
   bool end_subprogram();
 
-  /// Whether `line` begins subroutines, which may stand after the end of the program.
+  /// Whether `line` begins subroutines, which may follow the end of the program.
   static bool begins_subroutine(std::string_view line);
-  /// The line of the program (not of a file of subroutines) that is being executed.
+  /// The line of the program (not of a subroutine file) being executed.
   int program_line() const;
-  /// How many subroutines and subprograms it is in.
+  /// Number of active subroutines and subprograms.
   std::size_t depth() const { return frames_.size() - 1; }
-  /// Whether an O-word has been executed: then what follows M2 may have been meant for other turns.
+  /// Whether an O-word was executed: lines after M2 may then belong to other turns.
   bool is_used() const { return used_; }
 
  private:
@@ -50,20 +50,20 @@ class NcControlFlow {
     std::unique_ptr<NcSource> source;
     std::map<std::string, NcSource::Mark> subs, subprograms;
     bool is_indexed = false;
-    int furthest = 0;  // line that was read
+    int furthest = 0;  // furthest line read
   };
   struct Loop {
     std::string label;
     NcKeyword kind;
-    NcSource::Mark again;  // the line of while, the line after do and repeat
-    double left = 0;       // turns of repeat
+    NcSource::Mark again;  // the line of while; the line after do and repeat
+    double left = 0;       // turns of repeat left
   };
   struct Frame {
     File* file;
-    std::string label;           // of the subroutine
-    bool is_subprogram = false;  // by M98
+    std::string label;           // label of the subroutine
+    bool is_subprogram = false;  // called by M98
     int repeats = 1;
-    NcSource::Mark first, back{};  // where it begins, and where its caller goes on
+    NcSource::Mark first, back{};  // its start, and where the caller continues
     std::vector<Loop> loops{};
   };
 
@@ -75,7 +75,7 @@ class NcControlFlow {
   Loop* find_loop(const std::string& label);
   void next_turn(const std::string& label);
   void leave_loop(const std::string& label);
-  /// Reads on to the line of `label` with one of `keywords`: which, and the text after it.
+  /// Skips to the line of `label` with one of `keywords`: returns the keyword and the text after it.
   std::pair<NcKeyword, std::string_view> skip(const std::string& label, std::initializer_list<NcKeyword> keywords);
   std::pair<File*, NcSource::Mark> find(const std::string& label, bool subprogram);
   void index(File& file);
@@ -94,11 +94,11 @@ class NcControlFlow {
   NcPlace& place_;
   NcParameters& parameters_;
   Progress progress_;
-  double again_ = 0;         // lines that were read not for the first time
-  std::uint64_t lines_ = 0;  // in all
+  double again_ = 0;         // number of lines read again
+  std::uint64_t lines_ = 0;  // number of lines read
   std::vector<Frame> frames_;
   bool used_ = false;
-  NcSource::Mark line_mark_;  // of the line that advance() gave last
+  NcSource::Mark line_mark_;  // position of the last line from advance()
 };
 
 }  // namespace riffler::nc

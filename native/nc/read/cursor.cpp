@@ -12,7 +12,8 @@ char NcCursor::skip_comment() {
     at_ = end_;
     return '\0';
   }
-  // What a control that ends at the first bracket makes of the rest is a comment, too, where brackets pair.
+  // With nested brackets, the remainder that a control sees after the first closing bracket is treated as a comment
+  // too.
   int depth = 0;
   for (; at_ != end_; ++at_) {
     depth += *at_ == '(' ? 1 : *at_ == ')' ? -1 : 0;
@@ -63,8 +64,8 @@ double NcCursor::number(char what) {
   bool negative = false;
   if (at_ != end_ && (*at_ == '+' || *at_ == '-')) negative = *at_++ == '-';
   const char* const begin = at_;
-  // Up to 15 digits are a whole number that a double holds, and so is the power of ten: one division rounds correctly
-  // (Clinger, How to Read Floating Point Numbers Accurately, 1990). Other numbers are left to the library.
+  // Up to 15 digits form an integer exact in a double, and so is the power of ten: one division rounds correctly
+  // (Clinger, How to Read Floating Point Numbers Accurately, 1990). Other numbers use the library.
   std::uint64_t digits = 0;
   int count = 0, decimals = 0;
   for (; at_ != end_ && is_digit(*at_); ++at_, ++count) digits = digits * 10 + static_cast<std::uint64_t>(*at_ - '0');
@@ -82,7 +83,7 @@ double NcCursor::number(char what) {
     value = static_cast<double>(digits) / kTens[static_cast<std::size_t>(decimals)];
   } else {
     const auto [end, error] = std::from_chars(begin, at_, value, std::chars_format::fixed);
-    // Too many leading or trailing zeros may count as out of range too; no sensible program has 300 digits.
+    // Too many leading or trailing zeros may also count as out of range; no sensible program has 300 digits.
     if (error != std::errc() || end != at_) fail(std::string("the number after ") + what + " is out of range");
   }
   return negative ? -value : value;

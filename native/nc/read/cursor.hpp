@@ -1,4 +1,4 @@
-// The characters of one block: blanks and comments between its parts, numbers and names.
+// Cursor over one block: skips blanks and comments, reads numbers and names.
 #pragma once
 
 #include <string>
@@ -10,11 +10,11 @@ namespace riffler::nc {
 
 class NcCursor {
  public:
-  /// Keeps `place`, which stands in messages.
+  /// Keeps a reference to `place`, which appears in messages.
   NcCursor(std::string_view text, const NcPlace& place)
       : at_(text.data()), end_(text.data() + text.size()), place_(place) {}
 
-  /// The next character after blanks and comments, upper case, which is not taken; '\0' at the end.
+  /// The next character after blanks and comments, upper case, not consumed; '\0' at the end.
   char peek() {
     while (at_ != end_ && (*at_ == ' ' || *at_ == '\t')) ++at_;
     if (at_ == end_) return '\0';
@@ -23,26 +23,26 @@ class NcCursor {
     return upper(*at_);
   }
   void take() { ++at_; }
-  /// Takes `c` where it comes next.
+  /// Consumes `c` if it comes next.
   bool take_if(char c) {
     if (peek() != c) return false;
     take();
     return true;
   }
-  /// Takes `word` (upper case) where it comes next, in any case.
+  /// Consumes `word` (upper case) if it comes next, in any case.
   bool take_word(std::string_view word);
-  /// The letters that come next, upper case; taken.
+  /// Consumes and returns the next letters, upper case.
   std::string letters();
 
-  /// Whether a number comes next: a digit or a point, after a sign or none.
+  /// Whether a number comes next: a digit or a point, after an optional sign.
   bool at_number();
-  /// Takes a decimal number with an optional sign, without an exponent. `what` ("X") stands in messages.
+  /// Reads a decimal number with an optional sign, without an exponent. `what` ("X") appears in messages.
   double number(char what);
-  /// Takes "name>" after "<": lower case, without blanks.
+  /// Reads "name>" after "<": lower case, without blanks.
   std::string name();
 
   [[noreturn]] void fail(const std::string& what) const { place_.fail(what); }
-  /// Of the character that comes next.
+  /// Throws for the next character.
   [[noreturn]] void fail_character() const;
 
   // <cctype> depends on the locale.

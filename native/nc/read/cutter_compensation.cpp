@@ -22,7 +22,7 @@ constexpr double kShortfall = 0.002;
 constexpr double kMinEntryChord = 0.01;
 /// mm: a shorter motion in the plane counts as none.
 constexpr double kStill = 1e-6;
-/// rad from a reversal: the curvatures decide on which side the corner is.
+/// rad from a reversal: within it, the curvatures decide on which side the corner is.
 constexpr double kReversal = 1e-6;
 /// Bounds the memory for moves at one point of the contour.
 constexpr std::size_t kMaxStationary = 10'000;
@@ -50,12 +50,12 @@ double sense_of(const Arc& arc) {
 
 /// A line or a circle.
 struct Curve {
-  Vec2 at;            // on the line, or the centre
-  Vec2 along{0};      // unit, of the line
+  Vec2 at;            // a point of the line, or the centre
+  Vec2 along{0};      // unit direction of the line
   double radius = 0;  // 0: a line
 };
 
-/// Where a line and a circle meet: none, or two points, which may be one.
+/// Intersections of a line and a circle: none, or two, which may coincide.
 std::vector<Vec2> meetings(const Curve& line, const Vec2& centre, double radius) {
   const Vec2 foot = line.at + glm::dot(centre - line.at, line.along) * line.along;
   const double height = glm::length(centre - foot);
@@ -141,7 +141,7 @@ CutterCompensation::Element CutterCompensation::arc_element(const Joints& to, co
   const Vec2 out_first(std::cos(begin), std::sin(begin)), out_last(std::cos(end), std::sin(end));
   out.start_tangent = sense * left_of(out_first), out.end_tangent = sense * left_of(out_last);
   out.start_curvature = sense / arc.r0, out.end_curvature = sense / arc.r1;
-  // An arc that turns towards the tool has the tool inside.
+  // An arc that curves towards the tool has the tool inside.
   const double by = -side() * sense * offset_.radius;
   out.arc = arc;
   out.arc->r0 += by, out.arc->r1 += by;
@@ -160,8 +160,8 @@ CutterCompensation::Element CutterCompensation::entry_line(const Joints& to, con
   return out;
 }
 
-/// The programmed arc starts at the tool's centre and ends on the contour. The centre's arc starts there, too, and ends
-/// beside the contour: its own centre lies elsewhere on the same normal.
+/// The programmed arc starts at the tool's centre and ends on the contour. The centre's arc starts there too, but ends
+/// next to the contour: its own centre lies elsewhere on the same normal.
 CutterCompensation::Element CutterCompensation::entry_arc(const Joints& to, const Arc& arc,
                                                           const NcRowWords& words) const {
   if (offset_.entry == CutterEntry::NextElement)
@@ -194,16 +194,16 @@ void CutterCompensation::append(Element next) {
   pending_ = std::move(next);
 }
 
-/// Turn from one element to the next, rad; > 0 towards the tool: an inside corner.
+/// Rotation from one element to the next, rad; > 0 towards the tool: an inside corner.
 double CutterCompensation::turn(const Element& before, const Element& next) const {
   const double turn = side() * std::atan2(cross_of(before.end_tangent, next.start_tangent),
                                           glm::dot(before.end_tangent, next.start_tangent));
   if (std::abs(turn) < kPi - kReversal) return turn;
-  // The next element goes back: it bends into the tool's side of the one before, or away from it.
+  // The next element reverses: it curves to the tool's side of the one before, or away from it.
   return side() * (before.end_curvature + next.start_curvature) < -1e-9 ? kPi : -kPi;
 }
 
-/// Sets the end of `before` and the start of `next`. If the two differ, an arc about the corner goes between them.
+/// Sets the end of `before` and the start of `next`. If they differ, an arc about the corner joins them.
 void CutterCompensation::join(Element& before, Element& next) {
   if (before.entry && offset_.entry == CutterEntry::NextElement) {
     before.end = next.start;
@@ -221,8 +221,8 @@ void CutterCompensation::join(Element& before, Element& next) {
   }
 }
 
-/// The first point, going back from the end of `before`, at which the offsets of both elements meet. From there to its
-/// end `before` is closer to `next` than the tool's radius.
+/// The first point, going back from the end of `before`, where the offsets of both elements meet. From there to its
+/// end, `before` is closer to `next` than the tool's radius.
 std::optional<Vec2> CutterCompensation::meeting(const Element& before, const Element& next) const {
   const Curve a = before.arc ? Curve{before.arc->centre, Vec2(0), glm::length(before.end - before.arc->centre)}
                              : Curve{before.end, before.end_tangent};
@@ -258,7 +258,7 @@ void CutterCompensation::end_at(Element& element, const Vec2& at, bool beyond) c
   element.end = at;
 }
 
-/// An arc about the end of `before`. A rapid goes straight, as on LinuxCNC.
+/// An arc about the end of `before`. Rapids go straight, as in LinuxCNC.
 void CutterCompensation::round_corner(const Element& before, const Element& next) {
   const Vec2 from = before.end - before.corner, to = next.start - before.corner;
   const Joints end = with_centre(centre_, next.start);

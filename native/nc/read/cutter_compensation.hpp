@@ -15,19 +15,19 @@
 
 namespace riffler::nc {
 
-/// The side of the contour on which the tool is, seen in the direction of the feed.
+/// The side of the contour on which the tool is, seen in feed direction.
 enum class CutterSide : std::int8_t { Left = 1, Right = -1 };
 
-/// Where the first move of a compensation ends: beside the programmed point, square to …
+/// Where the first move of a compensation ends: next to the programmed point, perpendicular to …
 enum class CutterEntry : std::uint8_t {
-  ItsOwnDirection,  ///< the entry move itself, as on LinuxCNC; the corner that follows is one like any other
-  NextElement,      ///< the start of the element that follows, as on Heidenhain's controls
+  ItsOwnDirection,  ///< the entry move itself, as in LinuxCNC; the next corner is an ordinary one
+  NextElement,      ///< the start of the next element, as on Heidenhain controls
 };
 
 struct CutterOffset {
   CutterSide side = CutterSide::Left;
   double radius = 0;         ///< mm, > 0
-  std::size_t u = 0, v = 1;  ///< joints of the plane's two axes
+  std::size_t u = 0, v = 1;  ///< joint indices of the plane's two axes
   const char* off = "G40";   ///< the word that ends the compensation, for messages
   CutterEntry entry = CutterEntry::ItsOwnDirection;
 };
@@ -40,14 +40,14 @@ struct CentreMove {
 };
 
 /// Offsets lines and arcs of a plane. Outside corners get an arc about the corner; at inside corners both elements end
-/// where their offsets meet. That takes one element of look-ahead: each waits until the next one is known.
+/// where their offsets meet. This takes one element of look-ahead: each waits until the next one is known.
 ///
-/// FormatError by `place` where the tool does not fit: an inside arc that is not larger than the tool, an inside corner
-/// that its elements are too short for. The check is between neighbours, as on controls: the tool may still meet other
-/// parts of the contour.
+/// Throws FormatError at `place` if the tool does not fit: an inside arc not larger than the tool, or an inside corner
+/// for which its elements are too short. Only neighbours are checked, as on controls: the tool may still collide with
+/// other parts of the contour.
 class CutterCompensation {
  public:
-  /// Keeps `place`. `emit` is called with the moves of the centre, in order.
+  /// Keeps a reference to `place`. `emit` is called with the moves of the centre, in order.
   CutterCompensation(const NcPlace& place, std::function<void(const CentreMove&)> emit)
       : place_(place), emit_(std::move(emit)) {}
 
@@ -58,14 +58,14 @@ class CutterCompensation {
   /// Position of the tool's centre after the emitted moves.
   const Joints& centre() const { return centre_; }
 
-  /// A straight move to `to`. Without motion in the plane the other joints move beside the contour's last point.
+  /// A straight move to `to`. Without motion in the plane, the other joints move at the contour's last offset point.
   void line(const Joints& to, const NcRowWords& words);
   /// Along `arc`, which begins at the programmed point.
   void arc(const Joints& to, const Arc& arc, const NcRowWords& words);
 
-  /// Emits the pending element and ends the compensation. The tool stays beside the last point until the next move.
+  /// Emits the pending element and ends the compensation. The tool stays at the last offset point until the next move.
   void off();
-  /// Whether the tool is still where off() left it, beside the programmed point. True until end_leaving().
+  /// Whether the tool is still at the offset point where off() left it. True until end_leaving().
   bool is_leaving() const { return leaving_; }
   void end_leaving() { leaving_ = false; }
 
@@ -82,9 +82,9 @@ class CutterCompensation {
     Vec2 corner{0};                                 // programmed end
     Vec2 start_tangent{0}, end_tangent{0};          // unit tangents of the contour at its ends
     double start_curvature = 0, end_curvature = 0;  // curvature there, 1/mm, > 0 to the left
-    Vec2 start{0}, end{0};                   // of the centre: square to the contour's ends, until a corner moves them
-    std::optional<Arc> arc;                  // of the centre
-    double trim_start = 0, trim_end = 0;     // rad by which an arc begins later and ends earlier than that
+    Vec2 start{0}, end{0};   // of the centre: perpendicular to the contour's ends, until a corner moves them
+    std::optional<Arc> arc;  // arc of the centre
+    double trim_start = 0, trim_end = 0;     // rad by which corners shorten an arc at its start and end
     std::vector<StationaryMove> stationary;  // moves at its end without motion in the plane
   };
 

@@ -13,17 +13,17 @@ namespace riffler::nc {
 
 namespace {
 
-constexpr double kEqual = 1e-4;  // LinuxCNC's
-/// Brackets within brackets: a bound on the stack.
+constexpr double kEqual = 1e-4;  // as LinuxCNC
+/// Nesting depth of brackets: a bound on the stack.
 constexpr int kDeepest = 100;
 
 enum class Operator : std::uint8_t { Power, Times, Over, Mod, Plus, Minus, Eq, Ne, Gt, Ge, Lt, Le, And, Or, Xor };
 struct Named {
   std::string_view text;
   Operator op;
-  int binds;  // the larger, the tighter
+  int binds;  // larger binds tighter
 };
-// What begins another comes after it: ** and *.
+// Operators that begin with another one come first: ** before *.
 constexpr std::array<Named, 15> kOperators{{
     {"**", Operator::Power, 5},
     {"*", Operator::Times, 4},
@@ -65,13 +65,13 @@ class Evaluator {
       return c == '-' ? -value(what) : value(what);
     }
     if (NcCursor::is_letter(c)) {
-      // A letter may begin the next word: only a function's whole name followed by a bracket is taken.
+      // A letter may begin the next word: only a complete function name followed by a bracket counts.
       if (const auto result = function()) return *result;
     }
     return cursor_.number(what);
   }
 
-  /// #5, #[1 + 2], ##3, #<name>; "#" was taken. The key of an assignment is the same.
+  /// #5, #[1 + 2], ##3, #<name>, after "#". An assignment has the same key.
   std::variant<int, std::string> key() {
     const Deeper deeper(*this);
     if (cursor_.peek() == '<') {
@@ -82,10 +82,10 @@ class Evaluator {
   }
 
  private:
-  /// Counts how deep the recursion is.
+  /// Tracks the recursion depth.
   struct Deeper {
     explicit Deeper(Evaluator& evaluator) : e(evaluator) {
-      if (++e.depth_ > kDeepest) e.cursor_.fail("brackets within more than 100 brackets");
+      if (++e.depth_ > kDeepest) e.cursor_.fail("brackets nested more than 100 deep");
     }
     Deeper(const Deeper&) = delete;
     Deeper& operator=(const Deeper&) = delete;
@@ -118,8 +118,8 @@ class Evaluator {
     return nullptr;
   }
 
-  /// Precedence climbing: `left` and all that follows it with operators that bind at least as tightly as `least`. An
-  /// operator that binds less is left for the caller in waiting_.
+  /// Precedence climbing: `left` and everything after it with operators that bind at least as tightly as `least`. A
+  /// looser operator is left for the caller in waiting_.
   double climb(double left, int least) {
     while (const Named* op = next_operator()) {
       if (op->binds < least) {
@@ -190,7 +190,7 @@ class Evaluator {
   }
 
   double exists() {
-    if (!cursor_.take_if('#') || !cursor_.take_if('<')) cursor_.fail("EXISTS asks for a name: EXISTS[#<name>]");
+    if (!cursor_.take_if('#') || !cursor_.take_if('<')) cursor_.fail("EXISTS needs a name: EXISTS[#<name>]");
     const std::string name = cursor_.name();
     if (!cursor_.take_if(']')) cursor_.fail("an expression that is not closed by ]");
     return parameters_.exists(name) ? 1 : 0;

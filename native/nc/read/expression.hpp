@@ -6,15 +6,14 @@
 
 namespace riffler::nc {
 
-/// The value that comes next: a number, #parameter, function or [expression], after a sign or none. `what` is the
-/// letter of its word, for messages. FormatError for what is malformed or has no finite value.
+/// Reads the next value: a number, #parameter, function or [expression], after an optional sign. `what`: the letter of
+/// its word, for messages. Throws FormatError for malformed input and for values that are not finite.
 ///
-/// Operators bind as on LinuxCNC, those of one line from left to right: **; * / MOD; + −; EQ NE GT GE LT LE;
-/// AND OR XOR. Angles are degrees; EQ and NE take values within 1e-4 for equal; MOD has the sign of its divisor's
-/// magnitude, so never a negative value.
+/// Precedence as in LinuxCNC, left to right within a group: **; * / MOD; + −; EQ NE GT GE LT LE; AND OR XOR. Angles are
+/// in degrees; EQ and NE treat values within 1e-4 as equal; the result of MOD is never negative.
 double nc_value(NcCursor& cursor, const NcParameters& parameters, const NcPlace& place, char what);
 
-/// Takes what follows "#" up to its "=": a number or a name, and the value, which it assigns (NcParameters::assign).
+/// Reads what follows "#" up to "=", a number or a name, and the value, and assigns it (NcParameters::assign).
 void nc_assignment(NcCursor& cursor, NcParameters& parameters, const NcPlace& place);
 
 }  // namespace riffler::nc

@@ -1,4 +1,4 @@
-// Circles and rounded corners of a Heidenhain conversational program.
+// Circles and rounded corners of Heidenhain programs.
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -12,10 +12,10 @@ namespace riffler::nc {
 
 namespace {
 
-/// mm: what is nearer to a line than this has no arc.
+/// mm: a point closer to a line than this gives no arc.
 constexpr double kOnLine = 1e-9;
 
-/// Radians from `from` to `to` in the sense that is asked, (0, 2 π].
+/// Angle from `from` to `to` in the given direction, rad, (0, 2 π].
 double turn_between(double from, double to, bool clockwise) {
   const double turn = std::fmod(clockwise ? from - to : to - from, kTwoPi);
   const double positive = turn <= kFullCircle * 1e-3 ? turn + kTwoPi : turn;
@@ -24,7 +24,7 @@ double turn_between(double from, double to, bool clockwise) {
 
 }  // namespace
 
-/// CC: two coordinates, which are also the plane of circles about it; without any, where the tool is.
+/// CC: two coordinates, which also define the plane of circles about it; without any, the tool's position.
 void HeidenhainInterpreter::circle_centre(HeidenhainWords& words) {
   if (words.has_rotary()) place_.fail("CC takes two of X Y Z");
   Pole pole{at_};
@@ -69,7 +69,7 @@ void HeidenhainInterpreter::circle(HeidenhainWords& words) {
   }
 }
 
-/// CR: more than half a turn where R is negative.
+/// CR: more than half a turn if R is negative.
 void HeidenhainInterpreter::radius_circle(HeidenhainWords& words) {
   begin_codes(words);
   take_feed(words);
@@ -91,11 +91,12 @@ void HeidenhainInterpreter::radius_circle(HeidenhainWords& words) {
   }
 }
 
-/// Where PR, PA and the third coordinate lead from the pole.
+/// The point given by PR, PA and the third coordinate from the pole.
 Vec3 HeidenhainInterpreter::polar_target(const HeidenhainWords& words) {
   const Pole& at = pole("a polar coordinate");
   const int u = static_cast<int>(at.u), v = static_cast<int>(at.v);
-  if (words.axes[at.u].given || words.axes[at.v].given) place_.fail("polar coordinates beside those of their plane");
+  if (words.axes[at.u].given || words.axes[at.v].given)
+    place_.fail("polar coordinates together with those of their plane");
   const Vec2 from(at_[u] - at.at[u], at_[v] - at.at[v]);
   const double radius = words.radius.from(glm::length(from), unit_);
   const double angle = words.angle.from(std::atan2(from.y, from.x) / kDegree, 1);
@@ -107,14 +108,14 @@ Vec3 HeidenhainInterpreter::polar_target(const HeidenhainWords& words) {
   return to;
 }
 
-/// CP: about the pole by an angle, which with the third coordinate may be several turns of a helix.
+/// CP: about the pole by an angle; with the third coordinate, a helix of possibly several turns.
 void HeidenhainInterpreter::polar_circle(HeidenhainWords& words) {
   begin_codes(words);
   take_feed(words);
   compensate(words.compensation);
   const Pole at = pole("CP");
   const int u = static_cast<int>(at.u), v = static_cast<int>(at.v);
-  if (words.axes[at.u].given || words.axes[at.v].given) place_.fail("CP beside coordinates of its plane");
+  if (words.axes[at.u].given || words.axes[at.v].given) place_.fail("CP together with coordinates of its plane");
   if (!words.angle.given) place_.fail("CP without PA or IPA");
   const Vec2 centre(at.at[u], at.at[v]), from = Vec2(at_[u], at_[v]) - centre;
   const double radius = glm::length(from), start = std::atan2(from.y, from.x);
@@ -137,7 +138,7 @@ void HeidenhainInterpreter::polar_circle(HeidenhainWords& words) {
   arc_to(to, {centre, radius, radius, start, sweep}, at.u, at.v, words);
 }
 
-/// CT: leaves the element before without a corner.
+/// CT: leaves the previous element tangentially.
 void HeidenhainInterpreter::tangent_circle(HeidenhainWords& words, bool polar) {
   begin_codes(words);
   take_feed(words);
@@ -162,8 +163,7 @@ void HeidenhainInterpreter::arc_to(const Vec3& to, const Arc& arc, std::size_t u
   if (rotary != rotary_ && !keeps_tip_) place_.fail("rotary axes turn along an arc without M128");
   stand_[u] = is_away() ? stand_[u] : Stand::Given;
   if (is_away())
-    place_.fail("an arc while " + axes_away() +
-                " is at a position of the machine: move all of X Y Z into the part first");
+    place_.fail("an arc while " + axes_away() + " is at a machine position: move all of X Y Z into the part first");
   if (!keeps_tip_ && !is_upright()) fail_tilted();
   moves_in_part(row);
   arc_rows(to, arc, u, v, rotary, row);
@@ -185,13 +185,13 @@ void HeidenhainInterpreter::arc_rows(const Vec3& to, const Arc& arc, std::size_t
   at_ = to, rotary_ = rotary;
 }
 
-/// From `from` to `to` along `arc` in the axes of `plane`; the rotary axes turn evenly.
+/// From `from` to `to` along `arc` in the axes of `plane`; the rotary axes move evenly.
 void HeidenhainInterpreter::round_rows(const Vec3& from, const Vec3& to, const Arc& arc,
                                        std::pair<std::size_t, std::size_t> plane,
                                        const std::pair<Joints, Joints>& rotary, const NcRowWords& words) {
   const auto [u, v] = plane;
   const int chords = arc.chords(rows_->chord_tolerance());
-  if (chords > kMaxChords) place_.fail("an arc of too many chords");
+  if (chords > kMaxChords) place_.fail("an arc with too many chords");
   const int x = static_cast<int>(u), y = static_cast<int>(v), w = 3 - x - y;
   rows_->curve(
       in_part(from, rotary.first), chords, std::hypot(arc.length(), to[w] - from[w]),
@@ -209,7 +209,7 @@ void HeidenhainInterpreter::round_rows(const Vec3& from, const Vec3& to, const A
 
 // --- Corners ---
 
-/// Whether RND or CHF stands in the next block.
+/// Whether the next block is RND or CHF.
 bool HeidenhainInterpreter::corner_follows() const {
   for (std::size_t k = next_; k < text_->size(); ++k) {
     const HeidenhainBlock& block = (*text_)[k];
@@ -221,7 +221,7 @@ bool HeidenhainInterpreter::corner_follows() const {
   return false;
 }
 
-/// RND, CHF: the size of the corner that the line before leads to.
+/// RND, CHF: the size of the corner to which the previous line leads.
 void HeidenhainInterpreter::corner(HeidenhainWords& words, bool round) {
   const std::string name = round ? "RND" : "CHF";
   if (!corner_ || corner_->size)
@@ -237,7 +237,7 @@ void HeidenhainInterpreter::check_no_corner() const {
   if (corner_) place_.fail("RND or CHF is read between two lines only: have the CAM system write the corner's moves");
 }
 
-/// The tool goes to the corner, and past it, on the way to `to`: at the end it stands where the second line begins.
+/// Moves to the corner and around it, towards `to`, and ends at the start of the second line.
 void HeidenhainInterpreter::cut_corner(const Vec3& to) {
   if (!corner_->size) check_no_corner();
   const Corner corner = *corner_;

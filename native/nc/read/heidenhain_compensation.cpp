@@ -1,4 +1,4 @@
-// Cutter radius compensation of a Heidenhain conversational program: R0, RL, RR.
+// Cutter radius compensation of Heidenhain programs: R0, RL, RR.
 #include <cmath>
 #include <string>
 
@@ -53,7 +53,7 @@ void HeidenhainInterpreter::compensate(char compensation) {
   side_ = compensation;
 }
 
-/// mm: of option tool_diameters, or as the program has it, with DR of TOOL CALL.
+/// Radius in mm, from option tool_diameters or the program, with DR of TOOL CALL.
 double HeidenhainInterpreter::compensation_radius() {
   std::optional<double> radius;
   if (const auto diameter = diameters_.of(tool_))
@@ -67,7 +67,7 @@ double HeidenhainInterpreter::compensation_radius() {
   return is;
 }
 
-/// Whether the move that comes is offset; the first one with RL or RR begins the compensation.
+/// Whether the next move is offset. The first one with RL or RR begins the compensation.
 bool HeidenhainInterpreter::compensates() {
   if (compensation_->is_on()) return true;
   if (side_ == '0') return false;
@@ -75,7 +75,7 @@ bool HeidenhainInterpreter::compensates() {
   if (radius == 0) return false;
   if (is_away())
     place_.fail("radius compensation begins while " + axes_away() +
-                " is at a position of the machine: move all of X Y Z into the part first");
+                " is at a machine position: move all of X Y Z into the part first");
   const bool left = (side_ == 'L') == (radius > 0);
   compensation_->on(
       {left ? CutterSide::Left : CutterSide::Right, std::abs(radius), 0, 1, "R0", CutterEntry::NextElement},
@@ -87,7 +87,7 @@ bool HeidenhainInterpreter::compensates() {
 void HeidenhainInterpreter::contour_to(const Vec3& to, const Arc* arc, const Joints& rotary, const NcRowWords& words) {
   check_length(to);
   if (rotary != rotary_) place_.fail("rotary axes turn in radius compensation: a line with R0 before it");
-  if (!moves_in_part(words)) refuse_in_compensation("a position of the machine");
+  if (!moves_in_part(words)) refuse_in_compensation("a machine position");
   if (arc)
     compensation_->arc(contour_joints(to, rotary), *arc, words);
   else
@@ -101,8 +101,8 @@ void HeidenhainInterpreter::refuse_in_compensation(const char* what) {
     place_.fail(std::string(what) + " in radius compensation: a line with R0 before it");
 }
 
-/// After R0 the tool stands beside the contour until a move in the working plane. Where `to` is one of its axis alone,
-/// the tool stays beside it.
+/// After R0 the tool stays at the offset point until a move in the working plane. A move along the tool's axis alone
+/// keeps that offset.
 Vec3 HeidenhainInterpreter::leave_contour(const Vec3& to) {
   if (!compensation_->is_leaving()) return to;
   if (to.x == at_.x && to.y == at_.y) return {compensation_->centre()[0], compensation_->centre()[1], to.z};
@@ -110,7 +110,7 @@ Vec3 HeidenhainInterpreter::leave_contour(const Vec3& to) {
   return to;
 }
 
-/// Where the tool is counts from now on, not what was programmed.
+/// From now on the tool's real position counts, not the programmed one.
 void HeidenhainInterpreter::stay_beside_contour() {
   if (!compensation_->is_leaving()) return;
   at_.x = compensation_->centre()[0], at_.y = compensation_->centre()[1];

@@ -1,4 +1,4 @@
-// The characters of one block of a Heidenhain conversational program: words, numbers, quoted names.
+// Cursor over one block of a Heidenhain program: words, numbers, quoted names.
 #pragma once
 
 #include <string>
@@ -9,40 +9,40 @@
 
 namespace riffler::nc {
 
-/// A block may run over several lines, each with a comment of its own: line ends, "~" and comments are blanks.
+/// A block may span several lines, each with its own comment: line ends, "~" and comments count as blanks.
 class HeidenhainCursor {
  public:
-  /// Keeps `place`, which stands in messages.
+  /// Keeps a reference to `place`, which appears in messages.
   HeidenhainCursor(std::string_view text, const NcPlace& place)
       : at_(text.data()), end_(text.data() + text.size()), place_(place) {}
 
-  /// The next character after blanks, upper case, not taken; '\0' at the end.
+  /// The next character after blanks, upper case, not consumed; '\0' at the end.
   char peek();
   void take() { ++at_; }
-  /// Takes `c` where it comes next.
+  /// Consumes `c` if it comes next.
   bool take_if(char c) {
     if (peek() != c) return false;
     take();
     return true;
   }
-  /// Takes `word` (upper case) where it comes next, in any case. A blank in it stands for any number of blanks.
+  /// Consumes `word` (upper case) if it comes next, in any case. A blank in it matches any number of blanks.
   bool take_word(std::string_view word);
-  /// The letters that come next, upper case; taken.
+  /// Consumes and returns the next letters, upper case.
   std::string letters();
-  /// Whether a number comes next: a digit or a decimal point or comma, after no sign.
+  /// Whether an unsigned number comes next: a digit, or a decimal point or comma.
   bool at_number();
-  /// Takes a decimal number without a sign. `what` stands in messages.
+  /// Reads a decimal number without a sign. `what` appears in messages.
   double number(std::string_view what);
-  /// Takes the text between quotes, as it is; the opening quote comes next.
+  /// Reads the text between quotes verbatim; the opening quote comes next.
   std::string quoted();
   void skip_line() {
     while (at_ != end_ && *at_ != '\n') ++at_;
   }
-  /// What is left, as it is, without taking it.
+  /// The rest of the block verbatim, not consumed.
   std::string_view rest() const { return {at_, static_cast<std::size_t>(end_ - at_)}; }
 
   [[noreturn]] void fail(const std::string& what) const { place_.fail(what); }
-  /// Of what comes next: FormatError "unexpected '…'".
+  /// Throws FormatError "unexpected '…'" for what comes next.
   [[noreturn]] void fail_unexpected();
 
  private:

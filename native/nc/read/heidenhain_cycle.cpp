@@ -13,7 +13,7 @@ namespace riffler::nc {
 namespace {
 
 constexpr double kMaxHoleStrokes = 100'000;
-/// mm: less than this is no peck of its own.
+/// mm: a smaller remainder is no separate peck.
 constexpr double kRest = 1e-9;
 
 class Hole {
@@ -28,7 +28,7 @@ class Hole {
     const double depth = length(201, "its depth");
     if (depth > 0)
       place_.fail(std::string("Q201, the depth of cycle ") + std::to_string(number) + ", must be negative");
-    if (depth == 0) return;  // so on the control: the cycle is not executed
+    if (depth == 0) return;  // as on the control: the cycle is not executed
     surface_ = length(203, "the coordinate of the surface");
     clear_ = surface_ + length(200, "the set-up clearance");
     level_ = std::max(clear_, surface_ + length(204, "the second set-up clearance"));
@@ -62,7 +62,7 @@ class Hole {
   double length_or(int q, const char* what, double otherwise) const {
     return values_.has(q) ? length(q, what) : otherwise;
   }
-  /// mm/min; 0 for FMAX.
+  /// Feed in mm/min; 0 for FMAX.
   double feed(int q, const char* what) const {
     const double value = values_.needed(q, what);
     if (value >= kHeidenhainFmax) return 0;
@@ -75,7 +75,7 @@ class Hole {
     if (!(out > 0)) place_.fail("Q206, the feed of the cycle, must be positive");
     return out;
   }
-  /// Q208: 0 is the feed of drilling.
+  /// Q208: 0 means the drilling feed.
   double retraction_feed(double drilling) const {
     if (!values_.has(208)) return drilling;
     if (values_.needed(208, "the feed of the retraction") >= kHeidenhainFmax) return 0;
@@ -113,7 +113,7 @@ class Hole {
     leave();
   }
 
-  /// Out with the spindle at rest and the edge off the wall, to the side that Q214 names.
+  /// Retracts with the spindle stopped and the edge moved off the wall, to the side that Q214 names.
   void bore() {
     const double f = drilling_feed(), out = retraction_feed(f);
     const double side = values_.has(214) ? values_.needed(214, "the direction of disengaging") : 0;
@@ -133,14 +133,15 @@ class Hole {
     if (side > 0) rapid(level_);
   }
 
-  /// Steps that get smaller by Q212 down to Q205.
+  /// Steps that shrink by Q212 down to Q205.
   double next_step(double step) const {
     const double by = length_or(212, "the decrement", 0);
     return by > 0 ? std::max({step - by, length_or(205, "the least depth of a peck", 0), 1e-3}) : step;
   }
 
   void drill_with_breaks() {
-    const double f = drilling_feed(), out = retraction_feed(f), back = length_or(256, "the way of a chip break", 0.2);
+    const double f = drilling_feed(), out = retraction_feed(f),
+                 back = length_or(256, "the retraction of a chip break", 0.2);
     const double most = values_.has(213) ? values_.needed(213, "the number of chip breaks") : 0;
     double step = plunging_depth(surface_ - bottom_), breaks = 0, strokes = 0;
     for (double to = surface_ - step; to > bottom_ + kRest; to -= step) {
@@ -187,10 +188,10 @@ class Hole {
     leave();
   }
 
-  /// One peck, broken every Q257.
+  /// One peck, with chip breaking every Q257.
   void break_chips(double from, double to, double feed) {
     const double every = length_or(257, "the depth of a chip break", 0);
-    const double back = length_or(256, "the way of a chip break", 0.2);
+    const double back = length_or(256, "the retraction of a chip break", 0.2);
     if (every > 0) {
       if (!((from - to) / every <= kMaxHoleStrokes)) place_.fail("Q257 is too small: too many chip breaks");
       for (double at = from - every; at > to + kRest; at -= every) {
@@ -201,7 +202,7 @@ class Hole {
     stroke(to, feed);
   }
 
-  /// Single-lip deep hole: in and out with the spindle's speed and sense for that.
+  /// Single-lip deep hole: in and out with the spindle speed and direction given for that.
   void drill_deep() {
     const double f = drilling_feed(), start = surface_ - length_or(379, "the deepened starting point", 0);
     if (start < bottom_) place_.fail("Q379, the deepened starting point, is below the depth");
@@ -222,7 +223,7 @@ class Hole {
     return speed;
   }
 
-  /// With a floating holder (206) by its feed, rigid (207, 209) by its pitch; out with the spindle reversed.
+  /// With a floating holder (206) by its feed, rigid (207, 209) by its pitch; out with reversed spindle.
   void tap(int number) {
     double f = 0, sense = 1;
     if (number == 206) {
@@ -244,10 +245,10 @@ class Hole {
     leave();
   }
 
-  /// Out by some pitches, or altogether, every Q257.
+  /// Retracts by some pitches, or completely, every Q257.
   void break_tap(double feed, double in) {
     const double every = length(257, "the depth of a chip break");
-    const double back = values_.needed(256, "the way of a chip break") * std::abs(length(239, "the pitch"));
+    const double back = values_.needed(256, "the retraction of a chip break") * std::abs(length(239, "the pitch"));
     if (every <= 0) return;
     if (!((surface_ - bottom_) / every <= kMaxHoleStrokes)) place_.fail("Q257 is too small: too many chip breaks");
     for (double to = surface_ - every; to > bottom_ + kRest; to -= every) {
@@ -258,7 +259,7 @@ class Hole {
     }
   }
 
-  /// Cycle 2, with a floating holder: from where the tool stands, the set-up clearance above the surface.
+  /// Cycle 2, with a floating holder: from the tool's position, which is the set-up clearance above the surface.
   void old_tapping() {
     for (const std::size_t k : {0U, 1U, 3U})
       if (!setting_.old[k]) place_.fail(std::string("cycle 2 without its part 2.") + std::to_string(k + 1));
@@ -272,7 +273,7 @@ class Hole {
     stroke(start, f);
   }
 
-  /// Cycle 1: from where the tool stands, the set-up clearance above the surface.
+  /// Cycle 1: from the tool's position, which is the set-up clearance above the surface.
   void old_pecking() {
     for (const std::size_t k : {0U, 1U, 2U, 4U})
       if (!setting_.old[k]) place_.fail(std::string("cycle 1 without its part 1.") + std::to_string(k + 1));
@@ -284,7 +285,8 @@ class Hole {
     if (!(f > 0 && f <= kMaxFeed && clearance <= kMaxLength && depth <= kMaxLength))
       place_.fail("a number of cycle 1 is out of range");
     const double start = setting_.height, surface = start - clearance, bottom = surface - depth;
-    // What the control keeps from the ground before: 0.6 mm, a fiftieth of holes deeper than 30 mm, 7 mm at most.
+    // Distance that the control keeps from the previous bottom: 0.6 mm, or a fiftieth of holes deeper than 30 mm, at
+    // most 7 mm.
     const double stop = std::min(std::max(0.6, depth / 50), 7.0);
     for (double to = surface - step; to > bottom + kRest; to -= step) {
       stroke(to, f);

@@ -1,4 +1,4 @@
-// Cycles of a Heidenhain conversational program: what CYCL DEF says, and what a call does.
+// Cycles of Heidenhain programs: CYCL DEF and the calls.
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -14,14 +14,14 @@ namespace riffler::nc {
 
 namespace {
 
-/// Cycles that act where they are defined and move nothing: dwell, spindle, tolerance, and what others take data from.
+/// Cycles that act where they are defined without motion: dwell, spindle, tolerance, and data for other cycles.
 constexpr int kQuietCycles[] = {9, 13, 14, 20, 32, 238, 239, 270, 271};
-/// Machine builders' own for how the axes accelerate.
+/// Machine builders' cycles for acceleration.
 constexpr int kTuningCycles[] = {332, 392};
-/// Cycles that act where they are defined, on what follows or at once.
+/// Cycles that act where they are defined, at once or on what follows.
 constexpr int kActingCycles[] = {8, 11, 12, 26, 220, 221};
 
-/// That the cycles of holes take.
+/// Parameters of hole cycles.
 constexpr int kHoleParameters[] = {200, 201, 202, 203, 204, 205, 206, 208, 212, 213, 214, 239, 253,
                                    256, 257, 258, 259, 334, 335, 339, 351, 357, 379, 426, 427, 428};
 
@@ -38,7 +38,7 @@ void HeidenhainInterpreter::define_cycle(HeidenhainCursor& cursor) {
   int part = static_cast<int>(std::lround((given - number) * 10));
   if (cursor.peek() == '.' && cursor.at_number()) part = static_cast<int>(std::lround(cursor.number("CYCL DEF") * 10));
   if (number < 200) return define_old(number, part, cursor);
-  // What another cycle left would stand for what this one does not name.
+  // Values left by another cycle must not stand in for parameters that this one does not name.
   for (const int parameter : kHoleParameters) values_.forget(parameter);
   take_parameters(cursor);
   if (number == 247) return use_preset();
@@ -61,7 +61,7 @@ void HeidenhainInterpreter::define_cycle(HeidenhainCursor& cursor) {
   cycle_ = number, calls_everywhere_ = false;
 }
 
-/// Cycles below 200 come in parts, each a block.
+/// Cycles below 200 have several parts, each a block.
 void HeidenhainInterpreter::define_old(int number, int part, HeidenhainCursor& cursor) {
   const std::string name = std::string("cycle ") + std::to_string(number);
   switch (number) {
@@ -76,7 +76,7 @@ void HeidenhainInterpreter::define_old(int number, int part, HeidenhainCursor& c
       cycle_ = number, calls_everywhere_ = false;
       if (part == 0) return old_cycle_.fill(std::nullopt);
       if (part > 5) place_.fail(name + " has no such part");
-      // A name before the number, which differs from language to language and may touch it.
+      // Skip a name before the number, which depends on the language and may touch the number.
       while (cursor.peek() != '\0' && !cursor.at_number() && cursor.peek() != '+' && cursor.peek() != '-' &&
              cursor.peek() != 'Q')
         cursor.take();
@@ -85,10 +85,10 @@ void HeidenhainInterpreter::define_old(int number, int part, HeidenhainCursor& c
     case 8:
     case 11:
     case 26:
-      if (part == 0 || cursor.peek() == '\0') return;  // without values: taken back
+      if (part == 0 || cursor.peek() == '\0') return;  // without values: cancelled
       if (number == 11 && cursor.take_word("SCL") && values_.value(cursor, "SCL") == 1) return;
       place_.fail(name + (number == 8 ? " (mirroring)" : " (scaling)") +
-                  " is not read: have the CAM system write the moves as they are to be");
+                  " is not read: have the CAM system write the final moves");
     case 12:
       place_.fail("cycle 12 calls another program, which is not read: paste it in as a label (LBL), and call that");
     default:
@@ -105,7 +105,7 @@ void HeidenhainInterpreter::take_parameters(HeidenhainCursor& cursor) {
     }
     HeidenhainCursor ahead(cursor.rest(), place_);
     ahead.take();
-    if (!ahead.at_number()) {  // of a name
+    if (!ahead.at_number()) {  // part of a name
       cursor.letters();
       continue;
     }
@@ -124,7 +124,7 @@ void HeidenhainInterpreter::take_parameters(HeidenhainCursor& cursor) {
 
 void HeidenhainInterpreter::shift_datum(HeidenhainCursor& cursor) {
   if (cursor.take_if('#'))
-    place_.fail("cycle 7 with a line of the datum table is not read: what the table has is known to the control only");
+    place_.fail("cycle 7 with a line of the datum table is not read: only the control knows what the table has");
   HeidenhainWords words;
   words.read(cursor, values_, 0);
   for (std::size_t k = 3; k < words.axes.size(); ++k)
@@ -173,7 +173,8 @@ void HeidenhainInterpreter::use_preset() {
   if (!preset_)
     note("work offset", "preset " + shown + ": the part is where its coordinates are");
   else if (*preset_ != preset)
-    note("work offset", "preset " + shown + ": how far it is from the one before is not in the program, taken for 0");
+    note("work offset",
+         "preset " + shown + ": its distance from the one before is not in the program, assumed to be 0");
   preset_ = preset;
   reset_datum();
   HeidenhainFrame frame = frame_;
@@ -189,7 +190,7 @@ void HeidenhainInterpreter::call_cycle() {
     place_.fail(std::string("cycle ") + std::to_string(cycle_) +
                 " is not read (1, 2, 200 to 203, 205 to 209 and 241 are): have the CAM system write its moves");
   if (stand_[0] == Stand::Machine || stand_[1] == Stand::Machine || (cycle_ < 200 && stand_[2] == Stand::Machine))
-    place_.fail("a cycle while " + axes_away() + " is at a position of the machine: move into the part first");
+    place_.fail("a cycle while " + axes_away() + " is at a machine position: move into the part first");
   if (!is_upright()) fail_tilted();
   if (cycle_ == 208) return bore();
   const HeidenhainCycleSetting setting{unit_, feed_unit_, speed_, at_.z, old_cycle_};
@@ -199,12 +200,12 @@ void HeidenhainInterpreter::call_cycle() {
                      place_.line};
     stand_[2] = Stand::Given;
     move_to({hole.x + stroke.aside.x, hole.y + stroke.aside.y, stroke.height}, rotary_, words);
-    if (rows_->pending().size() > kMaxRows) place_.fail("more rows than can be held");
+    if (rows_->pending().size() > kMaxRows) place_.fail("more rows than can be stored");
   });
   leaving_.reset();
 }
 
-/// Cycle 208: a bore by a helix. Its radius follows from the tool's.
+/// Cycle 208: bores by a helix, whose radius follows from the tool's.
 void HeidenhainInterpreter::bore() {
   const auto found = tool_radii_.find(tool_);
   if (found == tool_radii_.end())
@@ -239,7 +240,7 @@ void HeidenhainInterpreter::bore() {
   move_to({centre.x, centre.y, clear}, rotary_, rapid);
   if (radius > kMinRadius) {
     move_to({centre.x + radius, centre.y, clear}, rotary_, cut);
-    // Whole turns of at most the infeed, and one at the ground.
+    // Whole turns of at most the infeed, and one at the bottom.
     const double turns = std::ceil((clear - bottom) / pitch - 1e-9), sense = climb ? 1 : -1;
     if (!(turns <= 1e5)) place_.fail("Q334, the infeed, is too small");
     const Arc round{{centre.x, centre.y}, radius, radius, 0, sense * kTwoPi * turns};

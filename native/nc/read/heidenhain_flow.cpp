@@ -1,4 +1,4 @@
-// Labels and jumps, Q parameters and the functions FN of a Heidenhain conversational program.
+// Labels and jumps, Q parameters and the FN functions of Heidenhain programs.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -11,12 +11,12 @@ namespace riffler::nc {
 namespace {
 
 constexpr std::size_t kMaxCalls = 100;
-/// Values that differ by less are equal: what the control's own arithmetic may differ by.
+/// Values that differ by less are equal, which covers differences to the control's own arithmetic.
 constexpr double kEqual = 1e-9;
 
 }  // namespace
 
-/// CALL LBL n calls a subprogram; with REP it repeats the part of the program from the label to here.
+/// CALL LBL n calls a subprogram; with REP it repeats the program from the label to here.
 void HeidenhainInterpreter::call(HeidenhainCursor& cursor) {
   if (!cursor.take_word("LBL"))
     place_.fail("a call of another program is not read: paste it in as a label (LBL), and call that");
@@ -31,7 +31,7 @@ void HeidenhainInterpreter::call(HeidenhainCursor& cursor) {
     return;
   }
   const double times = values_.value(cursor, "REP");
-  if (cursor.take_if('/')) values_.value(cursor, "REP");  // what is left, on the control's screen
+  if (cursor.take_if('/')) values_.value(cursor, "REP");  // remaining count, as shown on the control's screen
   expect_end(cursor);
   if (!(times >= 0 && times <= kMaxNumber && times == std::floor(times))) place_.fail("REP takes a whole number");
   const auto [left, first] = left_.emplace(here, static_cast<int>(times));
@@ -102,9 +102,9 @@ void HeidenhainInterpreter::function(HeidenhainCursor& cursor) {
     case 16:
     case 20:
     case 38:
-      return;  // prints, waits, sends
+      return;  // output, wait, send
     case 18:
-    case 28:  // what the control or a table of its own knows
+    case 28:  // values from the control or its tables
       if (!(cursor.take_word("SYSREAD") || cursor.take_word("TABREAD"))) cursor.fail_unexpected();
       if (cursor.peek() == 'Q') values_.set(values_.name(cursor), std::nullopt);
       return;

@@ -14,7 +14,7 @@ Vec3 rotated(const Vec3& v, double degrees) {
   return {xy.x, xy.y, v.z};
 }
 
-/// Exact for whole quarters of a turn, which most planes are.
+/// Exact for multiples of a right angle, as most planes have.
 void sine_and_cosine(double degrees, double& sine, double& cosine) {
   const double quarters = degrees / 90;
   if (quarters == std::round(quarters)) {
@@ -49,7 +49,7 @@ Mat3 spatial_turn(const Vec3& angles) {
   sine_and_cosine(angles.x, sa, ca);
   sine_and_cosine(angles.y, sb, cb);
   sine_and_cosine(angles.z, sc, cc);
-  // Columns: where the axes of the plane point.
+  // Columns: the directions of the plane's axes.
   const Mat3 about_x(Vec3(1, 0, 0), Vec3(0, ca, sa), Vec3(0, -sa, ca));
   const Mat3 about_y(Vec3(cb, 0, -sb), Vec3(0, 1, 0), Vec3(sb, 0, cb));
   const Mat3 about_z(Vec3(cc, sc, 0), Vec3(-sc, cc, 0), Vec3(0, 0, 1));

@@ -16,7 +16,7 @@ namespace riffler::nc {
 
 namespace {
 
-/// Statements that would move the tool, or what follows, and are not read.
+/// Unsupported statements that would move the tool or affect later moves.
 constexpr std::string_view kMovingStatements[] = {"APPR",    "DEP",  "FPOL",   "FL",       "FLT",    "FC",    "FCT",
                                                   "FSELECT", "SPL",  "TCH",    "SEL",      "PGM",    "TRANS", "PATTERN",
                                                   "CONTOUR", "GOTO", "MIRROR", "POLARKIN", "TABDATA"};
@@ -40,8 +40,8 @@ void HeidenhainInterpreter::take_options(const ReadOptions& options) {
   std::unique_ptr<Machine> machine = make_machine(options.machine, taken);
   const double chord = taken.positive("chord_tolerance").value_or(0.002);
   const std::optional<double> axis = taken.positive("axis_tolerance");
-  take_post_options(taken);                                     // the same options write and read
-  arc_miss_ = taken.positive("arc_tolerance").value_or(0.016);  // what the control itself takes
+  take_post_options(taken);                                     // reading and writing share these options
+  arc_miss_ = taken.positive("arc_tolerance").value_or(0.016);  // as the control itself
   block_delete_ = taken.flag("block_delete", false);
   check_header_ = taken.word("header", {"check", "ignore"}, "check") == "check";
   max_turns_ = taken.positive("max_turns").value_or(1e6);
@@ -51,7 +51,7 @@ void HeidenhainInterpreter::take_options(const ReadOptions& options) {
   taken.done();
   if (machine->joint_words())
     throw std::invalid_argument("machine " + machine->name() +
-                                ": a Heidenhain control is given the tip (M128): tcp must not be False");
+                                ": code for a Heidenhain control has tip coordinates (M128): tcp must not be False");
   if (chord < 1e-6) throw std::invalid_argument("option chord_tolerance must be at least 1e-6 mm");
   if (axis && *axis < 1e-6) throw std::invalid_argument("option axis_tolerance must be at least 1e-6 rad");
   rows_ = std::make_unique<NcRows>(std::move(machine), chord, axis, place_);
@@ -89,11 +89,11 @@ void HeidenhainInterpreter::begin_program() {
     const std::string_view last = name.substr(name.size() - unit.size());
     return std::ranges::equal(last, unit, [](char a, char b) { return NcCursor::upper(a) == b; });
   };
-  // For reasons of resolution F counts tenths of inches.
+  // For resolution, F counts tenths of inches.
   if (ends_with("INCH"))
     unit_ = kInch, feed_unit_ = kInch / 10;
   else if (!ends_with("MM"))
-    note("units", "BEGIN PGM says neither MM nor INCH: taken for millimetres");
+    note("units", "BEGIN PGM says neither MM nor INCH: taken as millimetres");
   set_plane_parameters({});
 }
 
@@ -139,7 +139,7 @@ bool HeidenhainInterpreter::execute_motion(const std::string& word, HeidenhainCu
     corner(words, word == "RND");
   } else if (word == "STOP") {
     words.read(cursor, values_, 0);
-    if (words.has_linear() || words.has_rotary()) place_.fail("axis words beside STOP");
+    if (words.has_linear() || words.has_rotary()) place_.fail("axis words together with STOP");
     line(words);
   } else {
     return false;
@@ -161,7 +161,7 @@ bool HeidenhainInterpreter::execute_definition(const std::string& word, Heidenha
       place_.fail("CYCL CALL POS and PAT are not read: have the post write a positioning block with M99 for each hole");
     HeidenhainWords words;
     words.read(cursor, values_, 0);
-    if (words.has_linear() || words.has_rotary()) place_.fail("axis words beside CYCL CALL");
+    if (words.has_linear() || words.has_rotary()) place_.fail("axis words together with CYCL CALL");
     begin_codes(words);
     take_feed(words);
     call_cycle();
@@ -183,11 +183,11 @@ bool HeidenhainInterpreter::execute_definition(const std::string& word, Heidenha
     else if (cursor.take_word("AXIS"))
       shift_datum(cursor);
     else
-      place_.fail("TRANS DATUM is read with AXIS and RESET: what the datum table has is known to the control only");
+      place_.fail("TRANS DATUM is read with AXIS and RESET: only the control knows the datum table");
   } else if (word == "BEGIN") {
     place_.fail("BEGIN PGM within a program: give each program a file of its own");
   } else {
-    return word == "BLK" || word == "QS";  // the stock's shape, texts
+    return word == "BLK" || word == "QS";  // shape of the stock; texts
   }
   return true;
 }
@@ -195,7 +195,7 @@ bool HeidenhainInterpreter::execute_definition(const std::string& word, Heidenha
 void HeidenhainInterpreter::unknown(const std::string& word) {
   const bool moves = std::ranges::find(kMovingStatements, word) != std::end(kMovingStatements);
   if (word == "TCH")
-    place_.fail("probing (TCH PROBE) cannot be simulated: what it measures is known at the machine only; take it out");
+    place_.fail("probing (TCH PROBE) cannot be simulated: only the machine knows what it measures; take it out");
   if (moves)
     place_.fail(word +
                 " is not read: it would move the tool or what follows; have the CAM system write L and C blocks");
@@ -211,7 +211,7 @@ void HeidenhainInterpreter::expect_end(HeidenhainCursor& cursor) {
 
 void HeidenhainInterpreter::flush() {
   std::vector<Move>& pending = rows_->pending();
-  if (program_.size() + pending.size() > kMaxRows) place_.fail("more rows than can be held");
+  if (program_.size() + pending.size() > kMaxRows) place_.fail("more rows than can be stored");
   for (const Move& move : pending) program_.append(move);
   pending.clear();
 }

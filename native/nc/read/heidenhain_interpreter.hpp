@@ -1,4 +1,4 @@
-// Heidenhain's conversational programs, block by block, from text to rows.
+// Interprets Heidenhain programs block by block and produces rows.
 #pragma once
 
 #include <array>
@@ -29,16 +29,16 @@ namespace riffler::nc {
 
 class HeidenhainInterpreter {
  public:
-  /// Keeps `text`. std::invalid_argument for options.
+  /// Keeps a reference to `text`. Throws std::invalid_argument for invalid options.
   HeidenhainInterpreter(std::string_view text, const std::string& file, const ReadOptions& options);
 
-  /// FormatError.
+  /// Reads the whole program. Throws FormatError.
   Program run();
 
  private:
   using Stand = TipStand;
   enum class Positioning : std::uint8_t { Stay, Turn, Move };
-  /// What stands behind the angles of a PLANE.
+  /// The words after the angles of a PLANE.
   struct PlaneWords {
     Positioning positioning = Positioning::Stay;
     int sequence = 0;  // sign of SEQ
@@ -50,16 +50,16 @@ class HeidenhainInterpreter {
     Vec3 at{0};
     std::size_t u = 0, v = 1;
   };
-  /// A corner that RND or CHF takes the edge off. The line that leads to it waits for the one that leaves it.
+  /// A corner that RND or CHF rounds or chamfers. The line that leads to it waits for the line that leaves it.
   struct Corner {
     Vec3 from{0};
     NcRowWords words;
-    std::optional<double> size;  // mm: of RND its radius, of CHF its leg; none: the block comes next
+    std::optional<double> size;  // mm: radius of RND, leg of CHF; no value: the block comes next
     bool round = false;
-    double feed = 0;  // mm/min, of the corner alone; 0: that of the lines
+    double feed = 0;  // mm/min, at the corner only; 0: as the lines
   };
 
-  // heidenhain_interpreter.cpp: options, the order of blocks, notes.
+  // heidenhain_interpreter.cpp: options, order of blocks, notes.
   void take_options(const ReadOptions& options);
   void begin_program();
   void execute(const HeidenhainBlock& block);
@@ -79,7 +79,7 @@ class HeidenhainInterpreter {
   void condition(int number, HeidenhainCursor& cursor);
   void assign(HeidenhainCursor& cursor);
 
-  // heidenhain_modes.cpp: tools, M functions, feed, functions of the control.
+  // heidenhain_modes.cpp: tools, M functions, feed, control functions.
   void call_tool(HeidenhainCursor& cursor);
   double take_tool_delta(HeidenhainCursor& cursor, bool noted);
   void define_tool(HeidenhainCursor& cursor);
@@ -102,7 +102,7 @@ class HeidenhainInterpreter {
   Vec3 leave_contour(const Vec3& to);
   void stay_beside_contour();
 
-  // heidenhain_cycles.cpp: cycles that are defined, and called.
+  // heidenhain_cycles.cpp: definition and calls of cycles.
   void define_cycle(HeidenhainCursor& cursor);
   void define_old(int number, int part, HeidenhainCursor& cursor);
   void take_parameters(HeidenhainCursor& cursor);
@@ -147,7 +147,7 @@ class HeidenhainInterpreter {
   bool moves_in_part(const NcRowWords& words);
   void check_length(const Vec3& at) const;
 
-  // heidenhain_arcs.cpp: circles, and corners that are rounded.
+  // heidenhain_arcs.cpp: circles and rounded corners.
   void circle_centre(HeidenhainWords& words);
   void circle(HeidenhainWords& words);
   void radius_circle(HeidenhainWords& words);
@@ -178,12 +178,12 @@ class HeidenhainInterpreter {
   NoteList notes_;
 
   const Progress& progress_;
-  std::size_t next_ = 0;             // block
+  std::size_t next_ = 0;             // index of the next block
   std::vector<std::size_t> calls_;   // blocks to return to
-  std::map<std::size_t, int> left_;  // repetitions, by the block that asks for them
+  std::map<std::size_t, int> left_;  // repetitions left, by block of the call
   bool ended_ = false;
 
-  double unit_ = 1, feed_unit_ = 1;  // mm; mm/min that an F of 1 is
+  double unit_ = 1, feed_unit_ = 1;  // mm; mm/min per unit of F
   double feed_ = 0, call_feed_ = 0;  // mm/min, or mm/rev; 0: none
   bool per_turn_ = false, auto_per_turn_ = false;
   double speed_ = 0;
@@ -194,7 +194,7 @@ class HeidenhainInterpreter {
   std::unique_ptr<CutterCompensation> compensation_;
   char side_ = '0';  // '0', 'L' or 'R'
   std::set<int> offsets_noted_;
-  std::set<int> noted_;  // M functions, cycles (10 000 and up) and tools (negative) that were noted
+  std::set<int> noted_;  // noted M functions, cycles (10 000 and up) and tools (negative)
   std::optional<double> preset_;
 
   HeidenhainFrame frame_;
@@ -210,7 +210,7 @@ class HeidenhainInterpreter {
   std::optional<Vec3> leaving_;  // direction of the last contour element at its end, program coordinates
   std::optional<Corner> corner_;
 
-  int cycle_ = 0;  // that a call executes; 0: none
+  int cycle_ = 0;  // cycle executed by a call; 0: none
   std::array<std::optional<double>, 5> old_cycle_{};
   bool calls_everywhere_ = false;  // M89
 

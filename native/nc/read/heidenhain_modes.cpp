@@ -1,4 +1,4 @@
-// Tools, feed, M functions and functions of the control in a Heidenhain conversational program.
+// Tools, feed, M functions and control functions of Heidenhain programs.
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -11,7 +11,7 @@ namespace riffler::nc {
 
 namespace {
 
-/// Heidenhain's own that are read, or mean nothing for the tool's way.
+/// Heidenhain's M functions that are supported or have no effect on the tool path.
 constexpr int kControlCodes[] = {0,   1,   2,   3,   4,   5,   6,   7,   8,   9,   13,  14,  19,  30,  89,  90,
                                  91,  92,  94,  95,  96,  97,  98,  99,  101, 102, 103, 104, 105, 106, 107, 108,
                                  109, 110, 111, 112, 113, 115, 116, 117, 118, 120, 124, 126, 127, 128, 129, 131,
@@ -29,7 +29,7 @@ constexpr RefusedCode kRefusedCodes[] = {
 
 }  // namespace
 
-/// The number or name may be missing: then speed and feed change only.
+/// Number or name may be missing: then only speed and feed change.
 void HeidenhainInterpreter::call_tool(HeidenhainCursor& cursor) {
   std::optional<int> tool;
   if (cursor.peek() == '"') {
@@ -77,16 +77,16 @@ void HeidenhainInterpreter::call_tool(HeidenhainCursor& cursor) {
   }
 }
 
-/// DL, DR or DR2 of TOOL CALL: what the tool differs by from its entry in the control's table.
+/// DL, DR or DR2 of TOOL CALL: differences of the tool from its entry in the control's table.
 double HeidenhainInterpreter::take_tool_delta(HeidenhainCursor& cursor, bool noted) {
   cursor.take_if(':');
   const double delta = values_.value(cursor, "DL, DR");
   if (delta != 0 && noted)
-    note("tool length", "DL and DR of TOOL CALL are passed over: points are taken for those of the tip");
+    note("tool length", "DL and DR of TOOL CALL are passed over: points are taken as those of the tip");
   return delta;
 }
 
-/// Its length and radius, on controls without a table of tools.
+/// Length and radius of a tool, for controls without a tool table.
 void HeidenhainInterpreter::define_tool(HeidenhainCursor& cursor) {
   if (!cursor.at_number()) return;
   const double number = cursor.number("TOOL DEF");
@@ -124,7 +124,7 @@ void HeidenhainInterpreter::control_function(HeidenhainCursor& cursor) {
   spatial_ = spatial, along_vectors_ = along_vectors, spatial_angles_ = Vec3(0);
 }
 
-/// M128, M129. Without it X Y Z are the tip only where the rotary axes stand as the working plane asks.
+/// M128, M129. Without M128, X Y Z are the tip only while the rotary axes are perpendicular to the working plane.
 void HeidenhainInterpreter::keep_tip(bool on) {
   if (keeps_tip_ == on) return;
   keeps_tip_ = on, spatial_ = along_vectors_ = false;
@@ -135,7 +135,7 @@ bool HeidenhainInterpreter::is_user_code(int code) const {
   return std::ranges::find(kControlCodes, code) == std::end(kControlCodes);
 }
 
-/// M functions that act at the beginning of their block.
+/// M functions that act at the start of their block.
 void HeidenhainInterpreter::begin_codes(const HeidenhainWords& words) {
   for (const int code : words.codes) {
     for (const RefusedCode& refused : kRefusedCodes)
@@ -152,7 +152,7 @@ void HeidenhainInterpreter::begin_codes(const HeidenhainWords& words) {
     } else if (code == 128) {
       keep_tip(true);
     } else if (code == 103 && noted_.insert(code).second) {
-      note("feed", "M103 slows plunging down: its feeds are taken for those of F");
+      note("feed", "M103 slows plunging down: its feeds are taken as those of F");
     } else if (code == 136 || code == 137) {
       if (per_turn_ != (code == 136)) feed_ = 0;
       per_turn_ = code == 136;
@@ -164,7 +164,7 @@ void HeidenhainInterpreter::begin_codes(const HeidenhainWords& words) {
   }
 }
 
-/// M functions that act at its end.
+/// M functions that act at the end of their block.
 void HeidenhainInterpreter::end_codes(const HeidenhainWords& words) {
   for (const int code : words.codes) {
     if (code == 5 || code == 19)

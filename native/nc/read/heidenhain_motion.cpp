@@ -1,4 +1,4 @@
-// Positioning blocks of a Heidenhain conversational program: lines.
+// Positioning blocks of Heidenhain programs: lines.
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -16,7 +16,7 @@ void HeidenhainInterpreter::check_length(const Vec3& at) const {
     if (!(std::abs(at[k]) <= kMaxLength)) place_.fail(std::string(1, "XYZ"[k]) + " is out of range");
 }
 
-// --- What is known of where the tip is ---
+// --- Knowledge of the tip's position ---
 
 bool HeidenhainInterpreter::is_away() const {
   return has_stand(stand_, Stand::Machine);
@@ -31,35 +31,35 @@ void HeidenhainInterpreter::lose_place() {
   leaving_.reset();
 }
 
-/// The one way in which a row comes to be whose place in the part depends on the machine.
+/// The only place that creates a row whose position in the part depends on the machine.
 void HeidenhainInterpreter::leave_part(const NcRowWords& words) {
-  // Before the first row nothing comes of it: from where that comes is not known anyway.
+  // Before the first row it has no effect: the start of that row is unknown anyway.
   const bool begun = rows_->begun();
   if (begun && !position_noted_)
     note("machine position",
-         "a position of the machine (M91, M92, M140 MB MAX, or rotary axes that turn without M128): where it is in the "
-         "part is not in the program; the moves there, and from there to the next position in the part, are not those "
-         "of the machine");
+         "a machine position (M91, M92, M140 MB MAX, or rotary axes that turn without M128): where it is in the part "
+         "is not in the program; the moves there, and from there to the next position in the part, are not those of "
+         "the machine");
   position_noted_ |= begun;
   check_no_corner();
-  refuse_in_compensation("a position of the machine");
+  refuse_in_compensation("a machine position");
   compensation_->end_leaving();
   leaving_.reset();
   rows_->at_machine(words);
 }
 
-/// Before every motion in program coordinates. Whether it ends in the part; notes what is assumed of it.
+/// Called before every motion in program coordinates: whether it ends in the part. Notes the assumptions.
 bool HeidenhainInterpreter::moves_in_part(const NcRowWords& words) {
   const bool upright = keeps_tip_ || is_upright();
   if (words.rapid) return upright && !is_away();
   if (!upright) fail_tilted();
   if (is_away() && !std::exchange(away_noted_, true))
-    note("coordinates",
-         "a feed move while " + axes_away() + " is at a position of the machine: neither cut nor checked");
+    note("coordinates", "a feed move while " + axes_away() + " is at a machine position: neither cut nor checked");
   if (!std::exchange(start_noted_, true)) {
     const std::string axes = axes_of(stand_, Stand::Start, ", ");
     if (!axes.empty())
-      note("start", axes + " has not been named before the first feed move: taken for 0 at the start of the program");
+      note("start",
+           axes + " was not programmed before the first feed move: assumed to be 0 at the start of the program");
   }
   return !is_away();
 }
@@ -92,7 +92,7 @@ Joints HeidenhainInterpreter::rotary_target(const HeidenhainWords& words) {
   return to;
 }
 
-/// Under FUNCTION TCPM with AXIS SPAT: A B C are angles in space.
+/// Under FUNCTION TCPM with AXIS SPAT: A B C are spatial angles.
 std::optional<Vec3> HeidenhainInterpreter::spatial_axis(const HeidenhainWords& words) {
   if (!spatial_ || !words.has_rotary()) return std::nullopt;
   for (int k = 0; k < 3; ++k)
@@ -124,7 +124,7 @@ void HeidenhainInterpreter::line(HeidenhainWords& words) {
   end_line(words);
 }
 
-/// What a block does behind its motion.
+/// Actions of a block after its motion.
 void HeidenhainInterpreter::end_line(const HeidenhainWords& words) {
   if (words.retraction.given)
     retract(words.retraction, words.feed == HeidenhainFeed::Number ? words.feed_number * feed_unit_ : 0);
@@ -135,7 +135,7 @@ void HeidenhainInterpreter::end_line(const HeidenhainWords& words) {
   end_codes(words);
 }
 
-/// By words; axes that have none go to, or stay at, `other`.
+/// Moves by words; axes without a word go to, or stay at, `other`.
 void HeidenhainInterpreter::move(const HeidenhainWords& words, const Vec3& other) {
   const NcRowWords row = row_words(words.feed == HeidenhainFeed::Rapid);
   const Joints rotary = rotary_target(words);
@@ -143,7 +143,7 @@ void HeidenhainInterpreter::move(const HeidenhainWords& words, const Vec3& other
   if (turns && !keeps_tip_) {
     if (!row.rapid && words.has_linear())
       place_.fail(
-          "a feed move in which rotary axes turn without M128: the tip's way depends on the machine; have the post "
+          "a feed move in which rotary axes turn without M128: the tip's path depends on the machine; have the post "
           "write M128 or FUNCTION TCPM");
     if (!row.rapid && !std::exchange(away_noted_, true))
       note("coordinates", "rotary axes turn in feed without M128: neither cut nor checked");
@@ -169,7 +169,7 @@ void HeidenhainInterpreter::move_to(const Vec3& to, const Joints& rotary, const 
   check_length(to), check_no_corner();
   const Vec3 from = at_, centre = leave_contour(to);
   if (!moves_in_part(words)) {
-    // With the rotary axes elsewhere every word moves the tip along all axes of the part.
+    // While the rotary axes do not match, every word moves the tip along all axes of the part.
     if (!keeps_tip_ && !is_upright()) lose_place();
     leave_part(words);
   } else if (along_vectors_ && rotary != rotary_) {
@@ -182,7 +182,7 @@ void HeidenhainInterpreter::move_to(const Vec3& to, const Joints& rotary, const 
   if (to != from && !is_away()) leaving_ = glm::normalize(to - from);
 }
 
-/// LN: with the tool's axis, where TX TY TZ give it. NX NY NZ are for compensation.
+/// LN: with the tool's axis, if TX TY TZ give it. NX NY NZ are for compensation.
 void HeidenhainInterpreter::vector_line(HeidenhainWords& words) {
   const bool has_axis = words.tool[0].given || words.tool[1].given || words.tool[2].given;
   if (!has_axis) return line(words);
@@ -203,7 +203,7 @@ void HeidenhainInterpreter::vector_line(HeidenhainWords& words) {
   end_line(words);
 }
 
-/// The rotary axes go the shortest way to hold `axis`, a unit vector in the part.
+/// Moves the rotary axes by the shortest path to hold `axis`, a unit vector in the part.
 void HeidenhainInterpreter::to_axis(const Vec3& to, const Vec3& axis, const NcRowWords& words) {
   check_no_corner();
   refuse_in_compensation("LN");
@@ -225,7 +225,7 @@ void HeidenhainInterpreter::to_axis(const Vec3& to, const Vec3& axis, const NcRo
   if (to != from && !is_away()) leaving_ = glm::normalize(to - from);
 }
 
-/// M91, M92: from the machine's zero or another point of its own.
+/// M91, M92: relative to the machine's zero or another machine point.
 void HeidenhainInterpreter::to_machine(const HeidenhainWords& words) {
   if (!words.has_linear() && !words.has_rotary()) return;
   const NcRowWords row = row_words(words.feed == HeidenhainFeed::Rapid);

@@ -1,4 +1,4 @@
-// Tilted working planes of a Heidenhain conversational program: PLANE, cycle 19.
+// Tilted working planes of Heidenhain programs: PLANE, cycle 19.
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -15,7 +15,7 @@ namespace riffler::nc {
 
 namespace {
 
-/// rad, deg: what axes that were printed may be off the plane's normal.
+/// rad, deg: tolerance between printed axis angles and the plane's normal.
 constexpr double kUpright = 1e-3, kSameAngle = 0.06;
 /// Within this angle (rad) of the pole a rotary axis is free.
 constexpr double kAtPole = 1e-6;
@@ -100,7 +100,7 @@ HeidenhainInterpreter::PlaneWords HeidenhainInterpreter::plane_words(HeidenhainC
   return words;
 }
 
-/// Cycle 19: angles A B C, which are those of PLANE SPATIAL or positions of the axes, as the machine is set up.
+/// Cycle 19: angles A B C, taken as those of PLANE SPATIAL or as axis positions, depending on the machine's setup.
 void HeidenhainInterpreter::old_plane(HeidenhainCursor& cursor) {
   HeidenhainWords words;
   words.read(cursor, values_, 0);
@@ -132,7 +132,7 @@ void HeidenhainInterpreter::use_frame(const HeidenhainFrame& frame) {
   check_length(at_);
   leaving_.reset(), pole_.reset();
   if (!turns) return;
-  // Each coordinate of the new plane comes from all of those before.
+  // Each coordinate of the new plane depends on all previous ones.
   if (is_away()) lose_place();
   if (std::ranges::find(stand_, Stand::Start) != stand_.end()) stand_.fill(Stand::Start);
 }
@@ -164,8 +164,8 @@ void HeidenhainInterpreter::untilt(const PlaneWords& words) {
   position(joints, words);
 }
 
-/// Where the rotary axes hold the tool along the plane's normal: the nearest place, or the one on the side that SEQ
-/// names, by the axis that is nearest to the tool.
+/// Joints that hold the tool along the plane's normal: the nearest, or the one on the side named by SEQ, judged by the
+/// axis closest to the tool.
 Joints HeidenhainInterpreter::plane_joints(const PlaneWords& words) const {
   const Machine& machine = rows_->machine();
   const Vec3 normal = frame_.normal();
@@ -217,12 +217,12 @@ void HeidenhainInterpreter::position(const Joints& joints, const PlaneWords& wor
   rotary_ = joints;
 }
 
-/// Q120 to Q122: where A B C are to stand.
+/// Q120 to Q122: the target positions of A B C.
 void HeidenhainInterpreter::set_plane_parameters(const Joints& joints) {
   for (int k = 0; k < 3; ++k) values_.set(120 + k, joints[static_cast<std::size_t>(3 + k)]);
 }
 
-/// Whether the rotary axes stand so that X Y Z of the working plane are the tip's place in it without M128.
+/// Whether the rotary axes stand such that X Y Z of the working plane are the tip without M128.
 bool HeidenhainInterpreter::is_upright() const {
   const Machine& machine = rows_->machine();
   if (!plane_joints_) {
@@ -247,7 +247,7 @@ void HeidenhainInterpreter::fail_tilted() const {
     return out;
   };
   if (plane_joints_)
-    place_.fail("the rotary axes stand at " + shown(rotary_) + ", the tilted plane asks for " + shown(*plane_joints_) +
+    place_.fail("the rotary axes stand at " + shown(rotary_) + ", the tilted plane needs " + shown(*plane_joints_) +
                 ": turn them there (by Q120 to Q122, or PLANE with TURN), or read it with the machine that the program "
                 "is for");
   place_.fail("a feed move with the rotary axes at " + shown(rotary_) +

@@ -1,5 +1,5 @@
-// Heidenhain's conversational programs (TNC 640, User's Manual for Klartext Programming), as CAM systems write them,
-// → Program.
+// Heidenhain Klartext programs (TNC 640, User's Manual for Klartext Programming), as CAM systems write them, to
+// Program.
 #pragma once
 
 #include <string>
@@ -10,8 +10,8 @@
 
 namespace riffler::nc {
 
-/// docs/reading-nc.md says what is read; FormatError naming the line for everything else. Poses are in the coordinates
-/// of the preset, without datum shifts and tilted planes.
+/// docs/reading-nc.md lists what is supported; throws FormatError naming the line for everything else. Poses are in the
+/// coordinates of the preset, without datum shifts and tilted planes.
 Program parse_heidenhain(std::string_view text, const std::string& file, const ReadOptions& options = {});
 
 }  // namespace riffler::nc

@@ -17,7 +17,7 @@ std::string_view without_blanks(std::string_view text) {
   return first == text.npos ? std::string_view() : text.substr(first, last - first + 1);
 }
 
-/// The block without the / before and the number that it begins with.
+/// The block without the leading / and its number.
 HeidenhainBlock block_of(std::string_view line, int number) {
   HeidenhainBlock block{number, false, without_blanks(line)};
   if (block.text.starts_with('/')) block.optional = true, block.text = without_blanks(block.text.substr(1));
@@ -27,7 +27,7 @@ HeidenhainBlock block_of(std::string_view line, int number) {
   return block;
 }
 
-/// Comments, the headings by which the control shows a program's structure, and comments as G code has them.
+/// Comments, structure headings, and comments in G code style.
 bool is_comment(std::string_view text) {
   return text.empty() || text[0] == ';' || text[0] == '*' || text[0] == '(';
 }
@@ -58,7 +58,7 @@ HeidenhainText::HeidenhainText(std::string_view text, NcPlace& place) {
     place.line = block.line, place.text = line;
     bool more = without_blanks(line).ends_with('~');
     while (more) {
-      if (!source.next(line)) place.fail("the text ends where a ~ says that the block goes on");
+      if (!source.next(line)) place.fail("the text ends after a ~, which continues the block");
       more = without_blanks(line).ends_with('~');
       block.text = {block.text.data(), static_cast<std::size_t>(line.data() + line.size() - block.text.data())};
     }
@@ -72,7 +72,7 @@ HeidenhainText::HeidenhainText(std::string_view text, NcPlace& place) {
   }
 }
 
-/// A tool's diameter, as CAM systems write it above TOOL CALL or, behind the tool's number, into a list.
+/// A tool's diameter, as CAM systems write it in comments above TOOL CALL or, after the tool's number, in a list.
 void HeidenhainText::read_comment(std::string_view text) {
   std::size_t at = text.find("D=");
   std::size_t number = at + 2;

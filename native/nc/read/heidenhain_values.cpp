@@ -18,7 +18,7 @@ struct QFunction {
   double (*of)(double);
 };
 
-// Names that begin like another one come first.
+// A name that begins with another name must come before it.
 constexpr QFunction kQFunctions[] = {
     {"SQRT", [](double x) { return std::sqrt(x); }},
     {"SQ", [](double x) { return x * x; }},
@@ -73,7 +73,7 @@ double HeidenhainValues::needed(int number, std::string_view what) const {
   const std::optional<double> value = get(number);
   if (!value)
     place_.fail(std::string("Q") + std::to_string(number) + ", " + std::string(what) +
-                ", is known to the control only");
+                ", is known only to the control");
   return *value;
 }
 
@@ -92,7 +92,7 @@ double HeidenhainValues::value(HeidenhainCursor& cursor, std::string_view what) 
   const std::optional<double> value = operand(cursor, what);
   if (!value)
     place_.fail("the value of " + std::string(what) +
-                " is known to the control only (FN 18, probing): assign what it is at your machine in its place");
+                " is known only to the control (FN 18, probing): assign what it is at your machine in its place");
   return *value;
 }
 

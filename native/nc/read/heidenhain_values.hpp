@@ -1,4 +1,4 @@
-// Q parameters of Heidenhain conversational programs, and what is calculated with them.
+// Q parameters of Heidenhain programs and their arithmetic.
 #pragma once
 
 #include <map>
@@ -12,30 +12,30 @@
 namespace riffler::nc {
 
 /// Parameters Q, QL and QR by number. A parameter may hold a value that only the control knows (FN 18: SYSREAD): it may
-/// be handed on, but not used.
+/// be assigned, but not used.
 class HeidenhainValues {
  public:
   explicit HeidenhainValues(const NcPlace& place) : place_(place) {}
 
-  /// Takes the name of a parameter, "Q5", "QL5" or "QR5": its key. FormatError.
+  /// Reads the name of a parameter, "Q5", "QL5" or "QR5", and returns its key. Throws FormatError.
   int name(HeidenhainCursor& cursor);
   static std::string shown(int key);
 
   void set(int key, std::optional<double> value) { values_[key] = value; }
-  /// FormatError for a parameter that nothing was assigned to; nothing where only the control knows its value.
+  /// The value; no value if only the control knows it. Throws FormatError for a parameter without an assignment.
   std::optional<double> get(int key) const;
-  /// The value of Q`number`; FormatError saying `what` it is for where it has none that is known.
+  /// The value of Q`number`. Throws FormatError stating its purpose `what` if it has no known value.
   double needed(int number, std::string_view what) const;
   void forget(int key) { values_.erase(key); }
   bool has(int number) const { return values_.contains(number); }
 
-  /// A number or a parameter, after a sign or none: the value of a word, `what` in messages. FormatError where it has
-  /// none that is known.
+  /// A number or parameter, after an optional sign: the value of a word; `what` appears in messages. Throws FormatError
+  /// if it has no known value.
   double value(HeidenhainCursor& cursor, std::string_view what);
   std::optional<double> operand(HeidenhainCursor& cursor, std::string_view what);
 
-  /// An expression, of formulas (^; * /; + −; functions; brackets) and of the functions FN (DIV, LEN, ANG too). Angles
-  /// are degrees. FormatError where a result is not finite.
+  /// An expression, of formulas (^; * /; + −; functions; brackets) and of FN functions (also DIV, LEN, ANG). Angles are
+  /// in degrees. No value if only the control knows it. Throws FormatError if a result is not finite.
   std::optional<double> formula(HeidenhainCursor& cursor);
 
  private:

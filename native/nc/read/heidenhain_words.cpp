@@ -39,7 +39,7 @@ void HeidenhainWords::take_word(HeidenhainCursor& cursor, HeidenhainValues& valu
     cursor.take();
     return take_coordinate(axes[joint_index(c)], cursor, values, name, false);
   }
-  if (c == '(') return cursor.skip_line();  // a comment as G code has them
+  if (c == '(') return cursor.skip_line();  // a comment in G code style
   if (c == 'I') {
     if (next(Polar, "IPR")) return take_coordinate(radius, cursor, values, "IPR", true);
     if (next(Polar, "IPA")) return take_coordinate(angle, cursor, values, "IPA", true);
@@ -82,7 +82,7 @@ void HeidenhainWords::take_word(HeidenhainCursor& cursor, HeidenhainValues& valu
   cursor.fail_unexpected();
 }
 
-/// R0, RL, RR, R+ and R− of the compensation; R with a number is the arc's radius where there can be one.
+/// R0, RL, RR, R+ and R− of the compensation; R with a number is an arc's radius if the block may have one.
 void HeidenhainWords::take_radius(HeidenhainCursor& cursor, HeidenhainValues& values) {
   if (cursor.take_word("RL")) {
     compensation = 'L';
@@ -119,7 +119,7 @@ void HeidenhainWords::read_feed(HeidenhainCursor& cursor, HeidenhainValues& valu
     cursor.fail("a feed per tooth (FZ) is not read: how many teeth the tool has is in the control's table; write F");
   } else if (cursor.at_number() || cursor.peek() == 'Q' || cursor.peek() == '+') {
     const double number = values.value(cursor, "F");
-    // The F behind M128 bounds the motions that keep the tip.
+    // F after M128 limits the compensating motions.
     if (!of_m128) feed = HeidenhainFeed::Number, feed_number = number;
   } else if (cursor.peek() != '\0' && cursor.peek() != 'M') {
     cursor.fail_unexpected();
@@ -144,7 +144,7 @@ void HeidenhainWords::take_code(HeidenhainCursor& cursor, HeidenhainValues& valu
       reduced.push_back(cursor.peek());
       cursor.take();
     }
-  // M103 F, M118 X Y Z, M120 LA: words that mean nothing for the tool's way.
+  // M103 F, M118 X Y Z, M120 LA: words without effect on the tool path.
   if (codes.back() == 120 && cursor.take_word("LA")) values.value(cursor, "LA");
   if (codes.back() == 103 && cursor.take_if('F')) values.value(cursor, "F");
 }

@@ -1,4 +1,4 @@
-// The words of a positioning block of a Heidenhain conversational program: coordinates, feed, M functions.
+// The words of a positioning block of a Heidenhain program: coordinates, feed, M functions.
 #pragma once
 
 #include <array>
@@ -13,20 +13,20 @@
 
 namespace riffler::nc {
 
-/// A coordinate as it stands: in the program's unit, or degrees.
+/// A coordinate as written: in the program's unit, or degrees.
 struct HeidenhainCoordinate {
   double value = 0;
   bool given = false, incremental = false;
 
-  /// Where it is, from `at` where it is incremental or not given.
+  /// The position in mm or degrees, relative to `at` if incremental; `at` if not given.
   double from(double at, double unit) const { return !given ? at : incremental ? at + value * unit : value * unit; }
 };
 
 enum class HeidenhainFeed : std::uint8_t {
   Unchanged,
   Number,   ///< mm/min, or tenths of inches a minute
-  Auto,     ///< as TOOL CALL has it
-  Rapid,    ///< FMAX, of its block
+  Auto,     ///< as in TOOL CALL
+  Rapid,    ///< FMAX, for its block
   PerTurn,  ///< FU
 };
 
@@ -38,27 +38,27 @@ struct HeidenhainRetraction {
 
 class HeidenhainWords {
  public:
-  /// What a statement may have; coordinates of axes, feed and M functions all may.
+  /// Optional words of a statement. Coordinates of axes, feed and M functions are always allowed.
   enum Kind : std::uint8_t { Normal = 1, ToolAxis = 2, Polar = 4, Radius = 8, Turning = 16, Length = 32 };
 
-  /// Takes the words to the end of the block. FormatError for unknown ones, and for those that are not in `kinds`.
+  /// Reads the words up to the end of the block. Throws FormatError for unknown words and for those not in `kinds`.
   void read(HeidenhainCursor& cursor, HeidenhainValues& values, std::uint8_t kinds);
 
-  /// Takes F with what belongs to it; the F comes next.
+  /// Reads F and its value; the F comes next.
   void read_feed(HeidenhainCursor& cursor, HeidenhainValues& values);
 
   std::array<HeidenhainCoordinate, 6> axes;          ///< X Y Z A B C
   std::array<HeidenhainCoordinate, 3> normal, tool;  ///< NX NY NZ, TX TY TZ
   HeidenhainCoordinate radius, angle;                ///< PR, PA
   std::optional<double> arc_radius;                  ///< R of CR, RND
-  std::optional<bool> clockwise;                     ///< DR− is, DR+ is not
-  std::optional<double> length;                      ///< of CHF, and of RND without R
-  char compensation = 0;                             ///< '0', 'L', 'R', 'P' for R+ and R−; 0: none
+  std::optional<bool> clockwise;                     ///< DR−: true, DR+: false
+  std::optional<double> length;                      ///< for CHF, and for RND without R
+  char compensation = 0;                             ///< '0', 'L', 'R', or 'P' for R+ and R−; 0: none
   HeidenhainFeed feed = HeidenhainFeed::Unchanged;
   double feed_number = 0;
   HeidenhainRetraction retraction;
-  std::optional<double> speed;  ///< S, which stands in TOOL CALL mostly
-  std::vector<int> codes;       ///< M functions in their order
+  std::optional<double> speed;  ///< S, mostly in TOOL CALL
+  std::vector<int> codes;       ///< M functions in order
   std::vector<char> reduced;    ///< axes after M94
 
   bool has_linear() const { return axes[0].given || axes[1].given || axes[2].given; }

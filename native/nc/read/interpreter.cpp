@@ -33,7 +33,7 @@ void NcInterpreter::take_options(const ReadOptions& options) {
   std::unique_ptr<Machine> machine = make_machine(options.machine, taken);
   const double chord = taken.positive("chord_tolerance").value_or(0.002);
   const std::optional<double> axis = taken.positive("axis_tolerance");
-  take_post_options(taken);  // the same options write and read
+  take_post_options(taken);  // reading and writing share these options
   given_.block_delete = taken.flag("block_delete", true);
   given_.check_header = taken.word("header", {"check", "ignore"}, "check") == "check";
   given_.max_turns = taken.positive("max_turns").value_or(1e6);
@@ -63,7 +63,7 @@ bool NcInterpreter::step() {
 
 bool NcInterpreter::execute_line() {
   std::string_view line;
-  // What follows the end in a subroutine, or may be met on another way, is not judged.
+  // After an end in a subroutine, or one that another branch may avoid, the rest is not checked.
   if (ended_ && (flow_->depth() > 0 || flow_->is_used())) return false;
   if (!flow_->next(line)) return false;
   NcCursor cursor(line, place_);
@@ -72,7 +72,7 @@ bool NcInterpreter::execute_line() {
   return true;
 }
 
-/// Whether the line, whose / and N are taken, holds a block.
+/// Whether the line, after its / and N, holds a block.
 bool NcInterpreter::executes(NcCursor& cursor) {
   const char c = cursor.peek();
   if (c == '\0') return false;
@@ -80,11 +80,11 @@ bool NcInterpreter::executes(NcCursor& cursor) {
     percent();
     return false;
   }
-  if (c == ':') {  // ISO 6983's other letter for O and for N
+  if (c == ':') {  // ISO 6983's alternative letter for O and N
     cursor.take();
     if (cursor.at_number()) cursor.number(':');
   }
-  if (!started_ && cursor.take_word("<O")) return false;  // a program's number, on some controls
+  if (!started_ && cursor.take_word("<O")) return false;  // program number on some controls
   if (c == '/') {
     if (given_.block_delete) return false;
     cursor.take();
@@ -96,19 +96,19 @@ bool NcInterpreter::executes(NcCursor& cursor) {
   return cursor.peek() != '\0';
 }
 
-/// Whether `line`, which stands after the end of the program, is the last that is looked at: what executes there is
-/// not reached, as on LinuxCNC, and subroutines may follow.
+/// Whether `line`, which follows the end of the program, is the last to examine: code after it is not reached, as in
+/// LinuxCNC, but subroutines may follow.
 bool NcInterpreter::ended(std::string_view line) {
   if (NcControlFlow::begins_subroutine(line)) return true;
   NcCursor cursor(line, place_);
   if (!executes(cursor)) return false;
-  note("end", "what follows the end of the program is not read");
+  note("end", "text after the end of the program is not read");
   return true;
 }
 
-/// What stands beside it is the name of a tape or a file.
+/// The rest of the line is the name of a tape or file.
 void NcInterpreter::percent() {
-  // The first frames the start, the second the end.
+  // The first % frames the start, the second the end.
   if (!started_ && !percent_)
     percent_ = true;
   else
@@ -123,8 +123,8 @@ void NcInterpreter::block(NcCursor& cursor) {
     if (flow_->execute(cursor)) return leave_saved_states();
     if (!first)
       place_.fail(
-          "O with a number alone is the number of the program, before everything else, or a subprogram of "
-          "M98, after its end");
+          "O with only a number is the program number, before everything else, or a subprogram for M98, after the "
+          "program's end");
   }
   words_->read(cursor, parameters_);
   for (const std::string& word : skipped_here_) {
@@ -139,8 +139,8 @@ void NcInterpreter::block(NcCursor& cursor) {
   execute();
 }
 
-/// In the order in which LinuxCNC does it (its manual, "G-Code Order of Execution"), except that G20 and G21 hold for
-/// the F beside them.
+/// In LinuxCNC's order (its manual, "G-Code Order of Execution"), except that G20 and G21 apply to an F in the same
+/// block.
 void NcInterpreter::execute() {
   if (words_->only_moves() && !words_->has('H') && !words_->has('D')) {
     feed_and_speed();

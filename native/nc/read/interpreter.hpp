@@ -1,4 +1,4 @@
-// RS-274 as LinuxCNC 2.9 reads it: block by block, from text to rows.
+// Interprets RS-274 as LinuxCNC 2.9 does, block by block, and produces rows.
 #pragma once
 
 #include <array>
@@ -28,23 +28,24 @@ namespace riffler::nc {
 
 class NcInterpreter final : private NcPredefined {
  public:
-  /// `folder`: where files of subroutines are sought, beside those of the options. std::invalid_argument for options.
+  /// `folder`: searched for subroutine files in addition to the folders in the options. Throws std::invalid_argument
+  /// for invalid options.
   NcInterpreter(std::unique_ptr<NcSource> source, const std::filesystem::path& folder, const ReadOptions& options);
 
-  /// Executes one line. False at the end of the program. Rows are left in pending(). FormatError.
+  /// Executes one line. False at the end of the program. Rows are left in pending(). Throws FormatError.
   bool step();
   std::vector<Move>& pending() { return rows_->pending(); }
-  /// More rows than can be held: FormatError naming the line.
-  [[noreturn]] void fail_rows() const { place_.fail("more rows than can be held"); }
+  /// Throws FormatError naming the line: more rows than can be stored.
+  [[noreturn]] void fail_rows() const { place_.fail("more rows than can be stored"); }
 
-  /// "source", and "skipped" and "notes" where there are any.
+  /// "source", and "skipped" and "notes" if there are any.
   Provenance provenance() const { return notes_.provenance(source_); }
   const std::vector<Note>& notes() const { return notes_.notes(); }
 
  private:
-  /// What M70 saves and M72 restores.
+  /// The modes that M70 saves and M72 restores.
   struct Modes {
-    std::array<std::size_t, 3> plane{0, 1, 2};  // joints of the plane's two axes and of its normal
+    std::array<std::size_t, 3> plane{0, 1, 2};  // joint indices of the plane's two axes and its normal
     double unit = 1;                            // mm
     bool absolute = true, absolute_centre = false;
     int feed_mode = 940, return_level = 990, system = 1;
@@ -62,34 +63,34 @@ class NcInterpreter final : private NcPredefined {
     bool skip_unknown = false;
     CompensationRule compensation = CompensationRule::Error;
     double arc_miss = kArcMiss;
-    bool units = false;                                          // given by an option
-    std::vector<std::pair<int, std::vector<double>>> positions;  // by the first of their parameters
+    bool units = false;                                          // the option "units" was given
+    std::vector<std::pair<int, std::vector<double>>> positions;  // by the first of their parameter numbers
   };
-  /// What is known of where an axis stands.
+  /// What is known of an axis's position.
   enum class Stand : std::uint8_t {
-    Given,    // the program named its coordinate
-    Start,    // as before the program, which is taken for 0
-    Machine,  // at a position of the machine, of which nobody knows where in the part it is
+    Given,    // programmed
+    Start,    // as before the program: taken as 0
+    Machine,  // at a machine position whose place in the part is unknown
   };
   /// What is known of an axis's zero in a work offset.
   enum class Zero : std::uint8_t {
-    Unknown,   // taken for 0
-    Relative,  // where it lies from the first system that the program moves in
-    Machine,   // where on the machine
+    Unknown,   // unknown: taken as 0
+    Relative,  // relative to the first system in which the program moves
+    Machine,   // in machine coordinates
   };
   struct Saved {
     Modes modes;
-    std::size_t depth;  // of calls
-    bool restores;      // at the end of the subroutine (M73)
+    std::size_t depth;  // call depth
+    bool restores;      // restored at the end of the subroutine (M73)
   };
-  /// The words of a canned cycle that stay, mm.
+  /// The modal words of a canned cycle, mm.
   struct Cycle {
     int code = -1;
     double retract = 0, bottom = 0, peck = 0;
-    double level = 0;  // of the drilling axis before the first of the cycles in a row
+    double level = 0;  // drilling axis before the first of consecutive cycles
   };
 
-  // interpreter.cpp: options, lines, the order of what a block does.
+  // interpreter.cpp: options, lines, order of execution in a block.
   void take_options(const ReadOptions& options);
   bool execute_line();
   bool executes(NcCursor& cursor);
@@ -99,7 +100,7 @@ class NcInterpreter final : private NcPredefined {
   void execute();
   void note(const char* kind, const std::string& message);
 
-  // interpreter_modes.cpp: what moves nothing.
+  // interpreter_modes.cpp: blocks without motion.
   void units_and_feed_mode();
   void feed_and_speed();
   void spindle();
@@ -116,7 +117,7 @@ class NcInterpreter final : private NcPredefined {
   void subprograms();
   void stop();
 
-  // interpreter_machine.cpp: positions of the machine, and what is known of work offsets.
+  // interpreter_machine.cpp: machine positions, and knowledge of work offsets.
   void take_positions(OptionReader& options);
   void go_home(int code);
   Joints machine_target();
@@ -145,7 +146,7 @@ class NcInterpreter final : private NcPredefined {
   void leave_contour(const Joints& to, bool in_part);
   void check_not_leaving() const;
 
-  // interpreter_offsets.cpp: where program coordinates are; parameters that say so.
+  // interpreter_offsets.cpp: offsets of program coordinates, and their parameters.
   NcFrame frame_of_parameters() const;
   void use_frame(const NcFrame& frame);
   void select_system(int code);
@@ -192,27 +193,27 @@ class NcInterpreter final : private NcPredefined {
 
   Joints at_{};  // program coordinates, mm and degrees
   std::array<Stand, 6> stand_{Stand::Start, Stand::Start, Stand::Start, Stand::Given, Stand::Given, Stand::Given};
-  std::array<std::array<Zero, 3>, 10> zero_{};  // of X Y Z, by system
-  std::size_t first_system_ = 0;                // that rows were made in
+  std::array<std::array<Zero, 3>, 10> zero_{};  // of X Y Z, per system
+  std::size_t first_system_ = 0;                // the first system in which rows were made
   std::array<bool, 10> offset_noted_{};
-  /// Of G28 and G30, by axis: the machine's position is known, or a position in the part (G28.1).
+  /// For G28 and G30, per axis: whether the machine position is known, or a position in the part (G28.1).
   std::array<std::array<bool, 6>, 2> home_known_{}, home_in_part_{};
   Modes modes_;
   int motion_ = -1, before_cycle_ = -1;  // the code times ten; −1: none
   bool cancelled_ = false;               // by G80
   NcFrame frame_;
   Cycle cycle_;
-  std::optional<Vec2> spline_end_;  // of a G5: from its end to its second control point
+  std::optional<Vec2> spline_end_;  // G5: from its end to its second control point
   int tool_ = 0, next_tool_ = 0, length_number_ = 0;
-  std::optional<Vec3> length_;  // of the tool at hand, as the first dynamic offset gave it
+  std::optional<Vec3> length_;  // of the current tool, from the first dynamic offset
   bool length_used_ = false, length_off_ = false, compensation_noted_ = false;
-  int compensation_code_ = 400;                  // of G40 to G42.1, times ten
+  int compensation_code_ = 400;                  // G40 to G42.1, times ten
   std::optional<double> compensation_diameter_;  // mm, of G41.1 and G42.1
   std::optional<int> diameter_number_;           // D
   ToolDiameters diameters_;
   std::map<int, double> tool_radii_;  // mm, of G10 L1, L10 and L11
   std::set<int> offsets_noted_;
-  bool begun_ = false;  // whether every linear axis has been named, or taken for 0
+  bool begun_ = false;  // whether every linear axis was programmed, or taken as 0
   bool position_noted_ = false, rotary_noted_ = false, start_noted_ = false, away_noted_ = false, units_said_ = false;
   bool rapid_noted_ = false;
   std::vector<Saved> saved_;

@@ -48,7 +48,7 @@ void NcInterpreter::compensate(int code) {
     place_.fail(name + " changes the compensation that holds: G40 and a straight move before it");
 }
 
-/// D beside no G41 or G42: the number of the offset that they use, as on Fanuc's controls.
+/// D without G41 or G42: the number of the offset that they use, as on Fanuc controls.
 void NcInterpreter::choose_offset() {
   if (!words_->has('D') || words_->code(NcGroup::SpindleMode) == 960) return;
   words_->pass_over("D");
@@ -58,7 +58,7 @@ void NcInterpreter::choose_offset() {
     place_.fail("D changes the compensation that holds: G40 and a straight move before it");
 }
 
-/// mm. Of G41.1 in the block; otherwise of the offset that D names, or of the tool in the spindle.
+/// Diameter in mm: of G41.1 in the block; otherwise of the offset that D names, or of the tool in the spindle.
 double NcInterpreter::compensation_diameter() {
   if (compensation_diameter_) return *compensation_diameter_;
   const int number = diameter_number_.value_or(tool_);
@@ -78,7 +78,7 @@ CutterSide NcInterpreter::compensation_side(double diameter) const {
   return left == (diameter >= 0) ? CutterSide::Left : CutterSide::Right;
 }
 
-/// Whether the move that comes is offset; the first one after G41 begins the compensation.
+/// Whether the next move is offset. The first one after G41 begins the compensation.
 bool NcInterpreter::compensates() {
   if (compensation_->is_on()) return true;
   if (compensation_code_ == 400) return false;
@@ -100,7 +100,7 @@ void NcInterpreter::contour_to(const Joints& to, int code) {
   std::optional<Arc> arc;
   if (code > 10) arc = arc_of_words(to, code == 20);
   if (words.inverse_time) {
-    // The time is that of the programmed length.
+    // The duration is that of the programmed length.
     const auto [u, v, w] = modes_.plane;
     const double along = arc ? arc->length() : std::hypot(to[u] - at_[u], to[v] - at_[v]);
     words.feed = std::min(words.feed * std::hypot(along, to[w] - at_[w]), kMaxFeed);
@@ -118,14 +118,14 @@ void NcInterpreter::refuse_in_compensation(const std::string& what) const {
   if (compensation_->is_on()) place_.fail(what + " in cutter compensation: G40 and a straight move before it");
 }
 
-/// Between G40 and the move after it the tool stands beside the programmed point.
+/// Between G40 and the next move the tool stays at the offset point next to the programmed one.
 void NcInterpreter::leave_contour(const Joints& to, bool in_part) {
   if (!compensation_->is_leaving()) return;
   const CutterOffset& by = compensation_->offset();
   if (in_part && to[by.u] == at_[by.u] && to[by.v] == at_[by.v])
     note("cutter compensation",
-         "the move after G40 has no motion in the plane: it goes from beside the contour to the contour's last point, "
-         "as on LinuxCNC; other controls stay beside it");
+         "the move after G40 has no motion in the plane: it goes from the offset path to the contour's last point, as "
+         "in LinuxCNC; other controls stay on the offset path");
   compensation_->end_leaving();
 }
 

@@ -1,4 +1,4 @@
-// Positions of the machine (G28, G30, G53) and what is known of work offsets: which motions lie in the part.
+// Machine positions (G28, G30, G53) and knowledge of work offsets: decides which motions lie in the part.
 #include <algorithm>
 #include <array>
 #include <stdexcept>
@@ -16,7 +16,7 @@ constexpr std::array<const char*, 9> kOffsetCodes{"G54", "G55", "G56", "G57", "G
 
 }  // namespace
 
-/// Work offsets and the positions of G28 and G30 as options; they stand over those of a file of parameters.
+/// Work offsets and the positions of G28 and G30 as options, which override those of a parameter file.
 void NcInterpreter::take_positions(OptionReader& options) {
   const auto take = [&](const char* name, int first) {
     if (const auto numbers = options.numbers(name, 3, 6)) given_.positions.emplace_back(first, *numbers);
@@ -47,7 +47,7 @@ void NcInterpreter::use_positions() {
   }
 }
 
-/// By the words' position to that of the machine; without words all axes go there at once.
+/// Moves through the position in the words to that of the machine; without words all axes go there directly.
 void NcInterpreter::go_home(int code) {
   const std::size_t which = code == 280 ? 0 : 1;
   refuse_in_compensation(which == 0 ? "G28" : "G30");
@@ -55,7 +55,7 @@ void NcInterpreter::go_home(int code) {
   const bool some = words_->has_axes();
   if (some) {
     const auto before = stand_;
-    // Nearly always G91 and zeros, from where the axes stand: nothing that a program should begin with.
+    // Nearly always G91 with zeros, from the current position: not a meaningful start of a program.
     if (const Joints by = target(); rows_->begun() || by != at_ || stand_ != before) line_to(by, true);
   }
   Joints machine = frame_.to_machine(at_);
@@ -69,7 +69,7 @@ void NcInterpreter::go_home(int code) {
   line_to(frame_.to_program(machine), true);
 }
 
-/// Under G53.
+/// The target under G53.
 Joints NcInterpreter::machine_target() {
   refuse_in_compensation("G53");
   Joints machine = frame_.to_machine(at_);
@@ -81,12 +81,12 @@ Joints NcInterpreter::machine_target() {
   return frame_.to_program(machine);
 }
 
-/// Whether the machine's coordinates of an axis are known in the system in use.
+/// Whether the machine coordinates of an axis are known in the active system.
 bool NcInterpreter::is_zero_known(std::size_t joint) const {
   return joint >= 3 || zero_[static_cast<std::size_t>(modes_.system)][joint] == Zero::Machine;
 }
 
-/// A rotary axis's zero on the machine is taken for the part's: that of a linear axis is anywhere.
+/// A rotary axis's machine zero is taken as the part's; that of a linear axis may be anywhere.
 void NcInterpreter::to_machine_position(std::size_t joint, Joints& machine, double position, bool known) {
   stand_[joint] = known || joint >= 3 ? Stand::Given : Stand::Machine;
   if (stand_[joint] == Stand::Given) machine[joint] = position;
@@ -97,18 +97,17 @@ void NcInterpreter::to_machine_position(std::size_t joint, Joints& machine, doub
 }
 
 void NcInterpreter::leave_part(const char* code) {
-  // X and Y of a turned system are known together.
+  // X and Y of a rotated system are known only together.
   if (frame_.rotation != 0 && (stand_[0] == Stand::Machine || stand_[1] == Stand::Machine))
     stand_[0] = stand_[1] = Stand::Machine;
   if (axes_away().empty() || position_noted_) return;
   note("machine position", std::string(code) +
-                               " goes to a position of the machine: the moves from there to the next positions in "
-                               "the part are neither cut nor compared; options g28, g30 and g54 (or parameters) say "
-                               "where it is");
+                               " goes to a machine position: the moves from there to the next positions in the part "
+                               "are neither cut nor compared; options g28, g30 and g54 (or parameters) give it");
   position_noted_ = true;
 }
 
-/// The axes that stand at a position of the machine.
+/// The axes at a machine position.
 std::string NcInterpreter::axes_away() const {
   std::string out;
   for (std::size_t k = 0; k < 3; ++k)
@@ -119,14 +118,14 @@ std::string NcInterpreter::axes_away() const {
 void NcInterpreter::check_stands_in_part(const char* what) const {
   if (const std::string axes = axes_away(); !axes.empty())
     place_.fail(std::string(what) + " where " + axes +
-                (axes.size() == 1 ? " stands at a position" : " stand at positions") +
-                " of the machine: move there by absolute words first, or give options g28, g30 and g54");
+                (axes.size() == 1 ? " stands at a machine position" : " stand at machine positions") +
+                ": move there by absolute words first, or give options g28, g30 and g54");
 }
 
-/// Before every motion: notes what is assumed of it. Whether it ends in the part.
+/// Called before every motion: whether it ends in the part. Notes the assumptions.
 bool NcInterpreter::moves_in_part(bool rapid) {
   if (!units_said_) {
-    if (!given_.units) note("units", "neither G20 nor G21 before the first move: taken for millimetres; option units");
+    if (!given_.units) note("units", "neither G20 nor G21 before the first move: taken as millimetres; option units");
     units_said_ = true;
   }
   if (!begun_) begin_or_wait(rapid);
@@ -134,17 +133,16 @@ bool NcInterpreter::moves_in_part(bool rapid) {
   if (!away) check_work_offset();
   if (rapid) return !away;
   if (away && !away_noted_) {
-    note("coordinates",
-         "a feed move where " + axes_away() + " is at a position of the machine: neither cut nor checked");
+    note("coordinates", "a feed move where " + axes_away() + " is at a machine position: neither cut nor checked");
     away_noted_ = true;
   }
   if (!start_noted_) note_start();
   return !away;
 }
 
-/// Rapids before every linear axis has been named end where nobody knows; a feed move takes the others for 0.
+/// Rapids before every linear axis has been programmed have an unknown end; a feed move takes the missing axes as 0.
 void NcInterpreter::begin_or_wait(bool rapid) {
-  constexpr std::size_t kMax = 1000;  // rows; who moves on and on without Z has taken it for 0
+  constexpr std::size_t kMax = 1000;  // rows; a program that keeps moving without Z assumes 0
   const bool named = std::find(stand_.begin(), stand_.begin() + 3, Stand::Start) == stand_.begin() + 3;
   begun_ = named || !rapid || rows_->held() > kMax;
   if (begun_)
@@ -153,14 +151,14 @@ void NcInterpreter::begin_or_wait(bool rapid) {
     rows_->hold();
 }
 
-/// At the first feed move.
+/// Called at the first feed move.
 void NcInterpreter::note_start() {
   start_noted_ = true;
   std::string axes;
   for (std::size_t k = 0; k < 3; ++k)
     if (stand_[k] == Stand::Start) axes += (axes.empty() ? "" : ", ") + std::string(1, kJointLetters[k]);
   if (!axes.empty())
-    note("start", axes + " has not been named before the first feed move: taken for 0 at the start of the program");
+    note("start", axes + " was not programmed before the first feed move: assumed to be 0 at the start of the program");
 }
 
 /// Many controls move each axis at its own rate.
@@ -168,11 +166,11 @@ void NcInterpreter::note_rapid(const Joints& to) {
   int linear = 0;
   for (std::size_t k = 0; k < 3; ++k) linear += to[k] != at_[k];
   if (linear < 2 || !rows_->begun() || rows_->machine().control().rapids != "unknown") return;
-  note("rapid", "rapids of several axes are taken for straight lines: option rapids (straight or independent)");
+  note("rapid", "rapids of several axes are taken as straight lines: option rapids (straight or independent)");
   rapid_noted_ = true;
 }
 
-/// Where another system lies from the one before is known where both are known on the machine, or G10 L20 said it.
+/// The distance between two systems is known if both are known on the machine, or from G10 L20.
 void NcInterpreter::check_work_offset() {
   const auto now = static_cast<std::size_t>(modes_.system);
   if (now == first_system_) return;
@@ -186,23 +184,23 @@ void NcInterpreter::check_work_offset() {
   if (known || offset_noted_[now]) return;
   offset_noted_[now] = true;
   note("work offset", std::string(kOffsetCodes[now - 1]) + ": how far it is from " + kOffsetCodes[first_system_ - 1] +
-                          " is not in the program, taken for what G10 left, or 0: options " +
+                          " is not in the program, assumed to be what G10 left, or 0: options " +
                           kOffsetOptions[first_system_ - 1] + " and " + kOffsetOptions[now - 1] + ", or parameters");
 }
 
-/// What G10 tells of an axis's zero: L2 where it lies on the machine, L20 where it lies from where the tool is.
+/// What G10 tells about an axis's zero: L2 in machine coordinates, L20 relative to the tool's position.
 void NcInterpreter::learn_zero(int number, std::size_t joint, bool by_position) {
   const auto system = static_cast<std::size_t>(number), now = static_cast<std::size_t>(modes_.system);
   Zero& zero = zero_[system][joint];
   if (by_position) {
     const bool lost = stand_[joint] == Stand::Machine && rows_->begun();
     zero = lost ? Zero::Unknown : std::max(zero_[now][joint], Zero::Relative);
-    if (lost) note("coordinates", "G10 L20 where " + axes_away() + " is at a position of the machine");
+    if (lost) note("coordinates", "G10 L20 where " + axes_away() + " is at a machine position");
     if (system == now) stand_[joint] = Stand::Given;
     return;
   }
   if (system == now && rows_->begun() && zero != Zero::Machine && !offset_noted_[now]) {
-    note("work offset", std::string("G10 L2 moves the system in use, whose offset before is taken for 0: option ") +
+    note("work offset", std::string("G10 L2 moves the system in use, whose offset before is taken as 0: option ") +
                             kOffsetOptions[now - 1]);
     offset_noted_[now] = true;
   }

@@ -1,4 +1,4 @@
-// What moves nothing: modes, feed and speed, tools, states that are saved.
+// Blocks without motion: modes, feed and speed, tools, saved states.
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -16,13 +16,13 @@ void NcInterpreter::units_and_feed_mode() {
   }
   const int mode = words_->code(NcGroup::FeedMode);
   if (mode < 0) return;
-  // Numbers of one mode mean nothing in another.
+  // A feed number of one mode has no meaning in another.
   if (mode != modes_.feed_mode) modes_.feed = 0;
   modes_.feed_mode = mode;
 }
 
 void NcInterpreter::feed_and_speed() {
-  if (modes_.feed_mode == 930) modes_.feed = 0;  // F counts for its own block only
+  if (modes_.feed_mode == 930) modes_.feed = 0;  // F applies to its own block only
   if (words_->has('F')) {
     modes_.feed = words_->value('F', kMaxFeed / kInch) * (modes_.feed_mode == 930 ? 1 : modes_.unit);
     if (modes_.feed < 0) place_.fail("F is negative");
@@ -55,7 +55,7 @@ void NcInterpreter::spindle() {
   }
   if (const int mode = words_->code(NcGroup::SpindleMode); mode == 960) {
     if (!words_->has('S')) place_.fail("G96 needs S");
-    // The speed follows the distance from a lathe's centre; D is its bound.
+    // The speed depends on the distance from a lathe's centre; D limits it.
     modes_.surface_speed = true;
     modes_.speed = words_->has('D') ? words_->value('D', kMaxSpindle) : 0;
     if (modes_.speed < 0) place_.fail("D is negative");
@@ -64,7 +64,7 @@ void NcInterpreter::spindle() {
   }
 }
 
-/// Switches and outputs: their words are checked for being there, and nothing comes of them.
+/// Switches and outputs: checks that their words are there; no effect.
 void NcInterpreter::signals() {
   const int code = words_->code(NcGroup::Signal);
   const auto need = [&](char letter) {
@@ -117,7 +117,7 @@ void NcInterpreter::states() {
   }
 }
 
-/// After a return: what M73 saved in the subroutine comes back, what M70 saved there is gone.
+/// After a return: restores what M73 saved in the subroutine, discards what M70 saved there.
 void NcInterpreter::leave_saved_states() {
   while (!saved_.empty() && saved_.back().depth > flow_->depth()) {
     const Saved state = saved_.back();
@@ -132,7 +132,7 @@ void NcInterpreter::restore(const Modes& modes) {
   use_frame(frame_of_parameters());
 }
 
-/// LinuxCNC's switchable kinematics: M428 has X Y Z mean the tip, M429 where the axes stand.
+/// LinuxCNC's switchable kinematics: M428 makes X Y Z the tip, M429 the axis positions.
 void NcInterpreter::kinematics() {
   const int code = words_->code(NcGroup::Kinematics);
   if (code < 0) return;
@@ -145,7 +145,7 @@ void NcInterpreter::kinematics() {
   if (machine.branches() == 1 || machine.joint_words() != tip_words) return;
   refuse_in_compensation("a switch of the kinematics");
   if (tcp_given_)
-    place_.fail(std::string(tip_words ? "M428 has X Y Z mean the tip" : "M429 has X Y Z mean where the axes stand") +
+    place_.fail(std::string(tip_words ? "M428 makes X Y Z the tip" : "M429 makes X Y Z the axis positions") +
                 ", but option tcp says otherwise: leave the option out, and what the program says is followed");
   Options options = machine_options_;
   options["tcp"] = tip_words;
@@ -163,7 +163,8 @@ void NcInterpreter::dwell() {
   const char time = words_->has('P') ? 'P' : 'X';  // Fanuc's G04 X2. waits two seconds
   if (!words_->has(time)) place_.fail("G4 needs P");
   if (words_->value(time, 1e6) < 0) place_.fail(std::string(1, time) + " is negative");
-  if (time == 'P' && words_->has_axes() && words_->code(NcGroup::Motion) < 0) place_.fail("axis words beside G4");
+  if (time == 'P' && words_->has_axes() && words_->code(NcGroup::Motion) < 0)
+    place_.fail("axis words together with G4");
 }
 
 void NcInterpreter::modes() {
@@ -188,12 +189,11 @@ void NcInterpreter::modes() {
   if (words_->code(NcGroup::LatheRadius) == 70) place_.fail("G7 (diameters) is for lathes: write radii (G8)");
 }
 
-/// The tip is what is programmed, whatever the tool's length: G43, G43.2 and G43.4 say that the control knows it. Of
-/// dynamic offsets (G43.1) the first is taken for the tool's length, so that a later one moves the tip by the
-/// difference.
+/// The tip is programmed, independent of the tool's length: G43, G43.2 and G43.4 state that the control knows it. The
+/// first dynamic offset (G43.1) is taken as the tool's length, so that a later one moves the tip by the difference.
 void NcInterpreter::tool_length() {
   const int code = words_->code(NcGroup::ToolLength);
-  // H and D beside no code that asks for them choose offsets that other blocks switch on.
+  // H and D without a code that uses them select offsets that other blocks activate.
   if (words_->has('H')) length_number_ = words_->whole('H');
   choose_offset();
   if (code < 0) return;
@@ -203,7 +203,7 @@ void NcInterpreter::tool_length() {
   length_used_ = code != 490;
   if (code == 431) {
     if (words_->code(NcGroup::Motion) >= 0 && words_->has_axes())
-      place_.fail("G43.1 beside a motion: both use axis words");
+      place_.fail("G43.1 together with a motion: both use axis words");
     Vec3 length(0);
     for (std::size_t k = 0; k < 3; ++k)
       if (const char letter = "XYZ"[k]; words_->has(letter)) length[static_cast<int>(k)] = length_or_angle(k);

@@ -16,10 +16,10 @@ constexpr std::array<char, 3> kAxes{'X', 'Y', 'Z'}, kCentre{'I', 'J', 'K'};
 
 }  // namespace
 
-/// Whether a code beside the motion's uses the axis words.
+/// Whether a code other than the motion's uses the axis words.
 bool NcInterpreter::axes_are_taken() const {
   switch (words_->code(NcGroup::NonModal)) {
-    case 40:  // of a dwell: X is its time
+    case 40:  // dwell: X is its time
       return !words_->has('P');
     case 100:
     case 280:
@@ -51,16 +51,16 @@ void NcInterpreter::motion() {
   }
   if (motion_ < 0 || code == 800) place_.fail("axis words without a motion (G0, G1, G2, G3)");
   if (cancelled_ && !by_machine)
-    note("motion", "axis words after G80: taken for the motion from before the cycle, as Fanuc's controls do");
+    note("motion", "axis words after G80: taken as the motion from before the cycle, as Fanuc's controls do");
   cancelled_ = false;
   if (by_machine) {
     if (motion_ > 10) place_.fail("G53 goes with G0 and G1 only");
-    if (!modes_.absolute) place_.fail("G53 under G91: positions of the machine are absolute (G90)");
+    if (!modes_.absolute) place_.fail("G53 under G91: machine positions are absolute (G90)");
   }
   move(motion_);
 }
 
-/// G80 ends a cycle, and the motion from before it holds again, as on Fanuc's controls; LinuxCNC wants it named.
+/// G80 ends a cycle and restores the motion before it, as on Fanuc controls; LinuxCNC requires it to be named.
 void NcInterpreter::choose_motion(int code) {
   cycle_.code = is_drill_cycle(code) ? cycle_.code : -1;
   cancelled_ = code == 800;
@@ -72,7 +72,7 @@ void NcInterpreter::choose_motion(int code) {
   motion_ = code;
 }
 
-/// G0 and G1 beside them say what the motion is after them.
+/// G0 and G1 in the same block set the motion mode afterwards.
 bool NcInterpreter::goes_home() const {
   const int code = words_->code(NcGroup::NonModal);
   return code == 280 || code == 300;
@@ -95,14 +95,14 @@ void NcInterpreter::move(int code) {
     spline_to(to, code);
 }
 
-/// What cannot be said as tool poses, and what is not read.
+/// Rejects what cannot be expressed as tool poses and what is not supported.
 void NcInterpreter::refuse(int code) {
   switch (code) {
     case 382:
     case 383:
     case 384:
     case 385:
-      place_.fail("probing (G38) cannot be simulated: where it ends is known at the machine only");
+      place_.fail("probing (G38) cannot be simulated: only the machine knows where it ends");
     case 330:
     case 331:
     case 760:
@@ -146,7 +146,7 @@ Joints NcInterpreter::target() {
 
 NcRowWords NcInterpreter::row_words(bool rapid) {
   if (length_off_) {
-    note("tool length", "a move after G49: its points are taken for those of the tip");
+    note("tool length", "a move after G49: its points are taken as those of the tip");
     length_off_ = false;
   }
   return {rapid,
@@ -163,7 +163,7 @@ void NcInterpreter::line_to(const Joints& to, bool rapid) {
   straight_to(to, words);
 }
 
-/// A row in the part, or at a position of the machine.
+/// Adds a row in the part, or at a machine position.
 void NcInterpreter::straight_to(const Joints& to, const NcRowWords& words) {
   const bool in_part = moves_in_part(words.rapid);
   leave_contour(to, in_part);
@@ -184,7 +184,7 @@ Arc NcInterpreter::arc_of_words(const Joints& to, bool clockwise) {
   }
   if (words_->has('P')) {
     const int turns = words_->whole('P');
-    if (turns < 1) place_.fail("P of an arc is its turns: 1 at least");
+    if (turns < 1) place_.fail("P of an arc is its number of turns: at least 1");
     arc = arc.with_turns(turns);
   }
   return arc;
@@ -217,7 +217,7 @@ Arc NcInterpreter::the_arc(const Vec2& from, const Vec2& end, bool clockwise) {
   return arc_about(from, end, centre, clockwise, given_.arc_miss);
 }
 
-/// G5: a cubic whose control points are I J from its start and P Q from its end; G5.1: a quadratic, I J from its start.
+/// G5: a cubic with control points I J from its start and P Q from its end; G5.1: a quadratic, I J from its start.
 void NcInterpreter::spline_to(const Joints& to, int code) {
   refuse_in_compensation("a spline (G5, G5.1)");
   if (modes_.plane[2] != 2) place_.fail("splines (G5, G5.1) lie in the plane of G17");
@@ -240,10 +240,11 @@ void NcInterpreter::spline_to(const Joints& to, int code) {
     const Vec2 control = a + vector('I', 'J');
     b = (a + 2.0 * control) / 3.0, c = (d + 2.0 * control) / 3.0;
   }
-  // Its second derivative is at most 6 times the larger second difference; a chord over 1/n is off by 1/(8 n²) of that.
+  // Its second derivative is at most 6 times the larger second difference; a chord over 1/n deviates by 1/(8 n²) of
+  // that.
   const double bend = 6 * std::max(glm::length(a - 2.0 * b + c), glm::length(b - 2.0 * c + d));
   const double parts = std::max(1.0, std::ceil(std::sqrt(bend / (8 * rows_->chord_tolerance()))));
-  if (parts > kMaxChords) place_.fail("a spline of too many chords");
+  if (parts > kMaxChords) place_.fail("a spline with too many chords");
   const auto point = [&](double t) {
     const double s = 1 - t;
     return s * s * s * a + 3 * s * s * t * b + 3 * s * t * t * c + t * t * t * d;
@@ -264,7 +265,7 @@ void NcInterpreter::spline_to(const Joints& to, int code) {
   at_ = to;
 }
 
-/// R, Q and the depth stay from cycle to cycle of one code.
+/// R, Q and the depth are modal between cycles of one code.
 void NcInterpreter::take_cycle_words(int code) {
   const char depth = kAxes[modes_.plane[2]];
   const bool first = code != cycle_.code;
@@ -294,18 +295,18 @@ void NcInterpreter::take_cycle_words(int code) {
 
 void NcInterpreter::drill_at(int code) {
   refuse_in_compensation("a canned cycle");
-  if (modes_.feed_mode == 930) place_.fail("canned cycles know no inverse time (G93)");
+  if (modes_.feed_mode == 930) place_.fail("canned cycles do not support inverse time (G93)");
   for (const char letter : {'A', 'B', 'C'})
     if (words_->has(letter)) place_.fail("rotary axes do not turn in canned cycles");
   if (code == 860 && modes_.turning == 0) place_.fail("G86 needs a spindle that turns (M3, M4)");
   const auto [u, v, w] = modes_.plane;
   take_cycle_words(code);
   const int repeats = words_->has('L') ? words_->whole('L') : 1;
-  if (repeats < 1) place_.fail("L must be 1 at least");
+  if (repeats < 1) place_.fail("L must be at least 1");
   const double retract = cycle_.retract + (modes_.absolute ? 0 : cycle_.level);
   const double bottom = cycle_.bottom + (modes_.absolute ? 0 : retract);
   if (retract < bottom) place_.fail("the canned cycle's R is below its depth");
-  // Where the drilling axis is at a position of the machine, the first move in the part is the one to R.
+  // If the drilling axis is at a machine position, the first move in the part is the one to R.
   bool away = stand_[w] == Stand::Machine;
   if (away && (!modes_.absolute || modes_.return_level == 980)) check_stands_in_part("a canned cycle under G91 or G98");
   NcRowWords words = row_words(true);
@@ -319,9 +320,9 @@ void NcInterpreter::drill_at(int code) {
     to[w] = z;
     return to;
   };
-  // From above R too, where cycles before it had theirs higher: so LinuxCNC does.
+  // Also from above R, if earlier cycles had a higher R: as in LinuxCNC.
   if (!away && cycle_.level < retract) go(height(retract), true);
-  // Where G98 returns, and goes from.
+  // The height to which G98 returns, and from which it starts.
   const double level = modes_.return_level == 980 ? std::max(cycle_.level, retract) : retract;
   for (int k = 0; k < repeats; ++k) {
     Joints to = away ? at_ : height(at_[w] > retract ? at_[w] : level);

@@ -1,4 +1,4 @@
-// Where program coordinates are on the machine, and the parameters that say so: G10, G28, G30, G52 … G59.3, G92.
+// From program to machine coordinates, and the parameters involved: G10, G28, G30, G52 … G59.3, G92.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -22,7 +22,7 @@ NcFrame NcInterpreter::frame_of_parameters() const {
   return frame;
 }
 
-/// The machine stays where it is.
+/// Changes the frame; the machine does not move.
 void NcInterpreter::use_frame(const NcFrame& frame) {
   if (frame == frame_) return;
   refuse_in_compensation("another place of the coordinates (work offset, G92, tool offset)");
@@ -38,7 +38,7 @@ void NcInterpreter::use_frame(const NcFrame& frame) {
 void NcInterpreter::select_system(int code) {
   if (code < 0) return;
   const int system = code <= 590 ? (code - 530) / 10 : 6 + code - 590;
-  // What was assigned to the parameters of the system in use counts only when it is chosen anew, as on LinuxCNC.
+  // Assignments to parameters of the active system count only when it is selected again, as in LinuxCNC.
   if (system == modes_.system) return;
   modes_.system = system;
   use_frame(frame_of_parameters());
@@ -92,7 +92,7 @@ void NcInterpreter::set_data() {
   if (!words_->has('P')) place_.fail("G10 needs P");
   const int number = words_->whole('P');
   if (what == 1 || what == 10 || what == 11) {
-    // The tool table: lengths are the control's business, the tip is what is programmed.
+    // The tool table: lengths are the control's business, since the tip is programmed.
     words_->pass_over("XYZABCIJQ");
     if (words_->has('R')) tool_radii_[number] = words_->value('R', kMaxLength) * modes_.unit;
   } else if (what == 2 || what == 20) {
@@ -111,7 +111,7 @@ void NcInterpreter::set_system(int number, bool by_position) {
   NcFrame frame = frame_;
   frame.rotation = parameters_.stored(rotation(number));
   for (std::size_t k = 0; k < 6; ++k) frame.origin[k] = parameters_.stored(origin(number) + static_cast<int>(k));
-  // Where the tool is now, in that system, with the words in place of what they name.
+  // The tool's position in that system, with the words replacing what they name.
   const Joints machine = frame_.to_machine(at_);
   Joints wanted = frame.to_program(machine);
   for (std::size_t k = 0; k < 6; ++k) {
@@ -135,15 +135,14 @@ void NcInterpreter::set_system(int number, bool by_position) {
   if (number == modes_.system) use_frame(frame);
 }
 
-/// G92: where the tool is has the coordinates of the words. G52: the shift itself is in the words.
+/// G92: the tool's position gets the coordinates in the words. G52: the words are the shift itself.
 void NcInterpreter::shift_by_words(bool local) {
   if (!words_->has_axes()) place_.fail(local ? "G52 without axis words" : "G92 without axis words");
   NcFrame frame = frame_;
   for (std::size_t k = 0; k < 6; ++k) {
     if (!words_->has(kJointLetters[k])) continue;
     if (!local && stand_[k] == Stand::Machine && rows_->begun())
-      note("coordinates",
-           "G92 where " + axes_away() + " is at a position of the machine: what follows may lie elsewhere");
+      note("coordinates", "G92 where " + axes_away() + " is at a machine position: what follows may lie elsewhere");
     if (!local) stand_[k] = Stand::Given;
     frame.shift[k] = local ? length_or_angle(k) : at_[k] + frame.shift[k] - length_or_angle(k);
   }
@@ -162,8 +161,8 @@ std::optional<double> NcInterpreter::predefined(int number) const {
     if (number < 5420) return 0;
     const int k = number - 5420;
     if (k > 5) return 0;
-    if (stand_[static_cast<std::size_t>(k)] == Stand::Machine) check_stands_in_part("a position is asked for");
-    refuse_in_compensation("a position is asked for");
+    if (stand_[static_cast<std::size_t>(k)] == Stand::Machine) check_stands_in_part("a position is read");
+    refuse_in_compensation("a position is read");
     return at_[static_cast<std::size_t>(k)] / (k < 3 ? modes_.unit : 1);
   }
   return std::nullopt;
@@ -174,8 +173,8 @@ std::optional<double> NcInterpreter::predefined(std::string_view name) const {
   const Modes& m = modes_;
   if (name.size() == 2) {
     const std::size_t k = std::string_view("xyzabc").find(name[1]);
-    if (k != std::string_view::npos && stand_[k] == Stand::Machine) check_stands_in_part("a position is asked for");
-    if (k != std::string_view::npos) refuse_in_compensation("a position is asked for");
+    if (k != std::string_view::npos && stand_[k] == Stand::Machine) check_stands_in_part("a position is read");
+    if (k != std::string_view::npos) refuse_in_compensation("a position is read");
     if (k != std::string_view::npos) return at_[k] / (k < 3 ? m.unit : 1);
     return name[1] >= 'u' && name[1] <= 'w' ? std::optional(0.0) : std::nullopt;
   }

@@ -1,4 +1,4 @@
-// What a reader assumed or passed over: notes of a program, and the same in its provenance.
+// Assumptions and omissions of a reader: notes of a program, also summarised in its provenance.
 #pragma once
 
 #include <cstddef>
@@ -12,10 +12,10 @@ namespace riffler::nc {
 
 class NoteList {
  public:
-  /// Keeps a limited number of each kind.
+  /// Adds a note; keeps a limited number of each kind.
   void add(std::string_view kind, int line, const std::string& message);
   const std::vector<Note>& notes() const { return notes_; }
-  /// "source", and "skipped" and "notes" where there are any; notes on units and rapids are in notes() alone.
+  /// "source", and "skipped" and "notes" if there are any; notes on units and rapids appear only in notes().
   Provenance provenance(const std::string& source) const;
 
  private:

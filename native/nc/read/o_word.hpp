@@ -1,4 +1,4 @@
-// O-words: what they are called, and lines that begin with one.
+// O-words: their keywords, and lines that begin with one.
 #pragma once
 
 #include <cstdint>
@@ -27,17 +27,16 @@ enum class NcKeyword : std::uint8_t {
   Continue
 };
 
-/// Of the letters after a label, upper case; nothing for unknown ones. No letters: None.
+/// The keyword of the letters after a label, in upper case; no value for unknown ones. No letters: None.
 std::optional<NcKeyword> nc_keyword(std::string_view text);
 
 struct NcOLine {
   std::string label;  ///< a number without leading zeros, or a name in lower case without blanks
   NcKeyword keyword;
-  std::string_view rest;  ///< of the line
+  std::string_view rest;  ///< rest of the line
 };
 
-/// A line that begins with an O-word whose label is written out, as it is seen while lines are passed over: nothing
-/// else in them is judged.
+/// Parses a line that begins with an O-word with a literal label, for skipping; nothing else in it is checked.
 std::optional<NcOLine> nc_o_line(std::string_view line);
 
 }  // namespace riffler::nc

@@ -17,7 +17,7 @@ bool is_global(std::string_view name) {
 }  // namespace
 
 int NcParameters::index(double number, const NcPlace& place) const {
-  // What an expression leaves of a whole number counts as it, as on LinuxCNC.
+  // An integer up to the rounding of an expression counts as that integer, as in LinuxCNC.
   const double whole = std::round(number);
   if (!(std::abs(number - whole) < 1e-4)) place.fail("the number of a parameter must be whole");
   if (!(whole >= 1 && whole <= kLast)) place.fail("parameters have the numbers 1 to " + std::to_string(kLast));
@@ -25,7 +25,7 @@ int NcParameters::index(double number, const NcPlace& place) const {
 }
 
 double NcParameters::get(int number) const {
-  // 5399 to 5428 and 5220 are the only numbers that the control sets.
+  // The control sets only the numbers 5399 to 5428 and 5220.
   if (number >= 5220)
     if (const std::optional<double> value = predefined_.predefined(number)) return *value;
   return numbered_[static_cast<std::size_t>(number)];

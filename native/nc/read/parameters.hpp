@@ -1,4 +1,4 @@
-// Parameters of NC code: #1 … #5601, #<local>, #<_global>, and those that the control itself sets.
+// Parameters of NC code: #1 … #5601, #<local>, #<_global>, and those that the control sets.
 #pragma once
 
 #include <array>
@@ -15,11 +15,11 @@
 
 namespace riffler::nc {
 
-/// LinuxCNC's numbers of what the control keeps: X Y Z A B C from each of these on, for systems the rotation too.
+/// LinuxCNC's numbers of the control's data: X Y Z A B C from each of these on, for systems also the rotation.
 namespace parameter {
 inline constexpr int kHome = 5161, kSecondHome = 5181;  // G28, G30
-inline constexpr int kShifted = 5210, kShift = 5211;    // G92: whether it holds, by what
-inline constexpr int kSystem = 5220;                    // in use: 1 for G54
+inline constexpr int kShifted = 5210, kShift = 5211;    // G92: whether active, and the shift
+inline constexpr int kSystem = 5220;                    // active system: 1 for G54
 constexpr int origin(int system) {
   return 5201 + 20 * system;
 }
@@ -28,7 +28,7 @@ constexpr int rotation(int system) {
 }
 }  // namespace parameter
 
-/// The parameters that follow from the control's state: read only.
+/// Read-only parameters that follow from the control's state.
 class NcPredefined {
  public:
   virtual ~NcPredefined() = default;
@@ -38,40 +38,40 @@ class NcPredefined {
 
 class NcParameters {
  public:
-  static constexpr int kLast = 5601;     ///< LinuxCNC's
+  static constexpr int kLast = 5601;     ///< as LinuxCNC
   static constexpr int kArguments = 30;  ///< #1 … #30 belong to the subroutine
 
   explicit NcParameters(const NcPredefined& predefined) : predefined_(predefined) { frames_.emplace_back(); }
 
-  /// FormatError (by `place`) unless `number` is whole and in range.
+  /// Throws FormatError (at `place`) unless `number` is an integer in range.
   int index(double number, const NcPlace& place) const;
   double get(int number) const;
-  /// FormatError for a name that nothing was assigned to.
+  /// Throws FormatError for a name without an assignment.
   double get(const std::string& name, const NcPlace& place) const;
   bool exists(const std::string& name) const;
 
-  /// Assignments take effect together, after the whole block was read. FormatError for what is read only.
+  /// Assignments take effect together, after the whole block was read. Throws FormatError for read-only ones.
   void assign(int number, double value, const NcPlace& place);
   void assign(const std::string& name, double value, const NcPlace& place);
   void apply();
 
-  /// What was assigned to a number, or loaded, wherever the control's own value would come first.
+  /// The assigned or loaded value of a number, even if the control's own value takes precedence.
   double stored(int number) const { return numbered_[static_cast<std::size_t>(number)]; }
-  /// At once, and where the program may not.
+  /// Sets a number immediately, also read-only ones.
   void set(int number, double value) { numbered_[static_cast<std::size_t>(number)] = value; }
 
-  /// Into a subroutine: its #1 … #30 are `arguments`, then 0; its local names are its own.
+  /// Enters a subroutine: its #1 … #30 are `arguments`, then 0; local names are separate.
   void enter(const std::vector<double>& arguments);
-  /// Out of it, with its value.
+  /// Leaves it, with its return value.
   void leave(std::optional<double> value);
   std::size_t depth() const { return frames_.size() - 1; }
 
-  /// LinuxCNC's file of parameters: a number and a value on each line. FormatError.
+  /// Loads a LinuxCNC parameter file: a number and a value per line. Throws FormatError.
   void load(const std::filesystem::path& path);
 
  private:
   struct Frame {
-    std::array<double, kArguments> outer{};  // what #1 … #30 were outside
+    std::array<double, kArguments> outer{};  // values of #1 … #30 in the caller
     std::map<std::string, double, std::less<>> names;
   };
   using Key = std::variant<int, std::string>;

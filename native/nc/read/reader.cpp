@@ -18,7 +18,7 @@ namespace riffler::nc {
 
 namespace {
 
-/// Of the machine's control.
+/// The language of the machine's control.
 std::string language_of(const ReadOptions& options) {
   OptionReader taken(options.options, "machine " + options.machine);
   return make_machine(options.machine, taken)->control().language;
@@ -47,8 +47,8 @@ constexpr const char* kOfReading[] = {"chord_tolerance",
                                       "g59_3",
                                       "g28",
                                       "g30"};
-/// FormatError where the text is in another language than the machine's control reads. RS-274 may stand behind the
-/// header of a Sinumerik program: controls that read both have it so.
+/// Throws FormatError if the text is in another language than the machine's control reads. RS-274 may follow the header
+/// of a Sinumerik program, as on controls that read both.
 void check_language(NcSource& source, const std::string& language) {
   const bool conversational = begins_heidenhain(source);
   const bool sinumerik = language != "sinumerik" && language != "rs274" && begins_sinumerik(source);
@@ -69,7 +69,7 @@ std::filesystem::path folder_of(const std::filesystem::path& path) {
   return path.has_parent_path() ? path.parent_path() : ".";
 }
 
-/// A file of a language that is read as a whole. `folder`: of its subprograms; none where it is empty.
+/// Reads a file in a language that is read as a whole. `folder`: of its subprograms; empty: none.
 Program parse_whole(std::string_view text, const std::string& file, const ReadOptions& options,
                     const std::string& language, const std::filesystem::path& folder) {
   NcSource source(text, file);
@@ -105,7 +105,7 @@ Program read_rows(NcInterpreter& interpreter) {
   return program;
 }
 
-/// Errors name the machines for a Sinumerik program.
+/// For a Sinumerik program, errors name the machines that read it.
 Program read_all(std::unique_ptr<NcSource> source, const std::filesystem::path& folder, const ReadOptions& options) {
   const bool sinumerik = begins_sinumerik(*source);
   try {
@@ -115,7 +115,7 @@ Program read_all(std::unique_ptr<NcSource> source, const std::filesystem::path& 
     if (!sinumerik) throw;
     throw FormatError(
         error.what(), "",
-        "the file begins as a Sinumerik program; machines that read such ones: " + machines_of_language("sinumerik"));
+        "the file begins as a Sinumerik program; machines that read them: " + machines_of_language("sinumerik"));
   }
 }
 
@@ -155,7 +155,7 @@ bool NcStream::next(Program& program) {
   try {
     fill(program);
   } catch (...) {
-    // What follows an error has no meaning.
+    // Nothing after an error has a meaning.
     interpreter_.reset(), whole_ = Program();
     throw;
   }

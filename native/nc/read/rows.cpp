@@ -16,7 +16,7 @@ bool same_turns(const Joints& a, const Joints& b) {
   return a[3] == b[3] && a[4] == b[4] && a[5] == b[5];
 }
 
-/// What F counts along under G94, by LinuxCNC's rule: X Y Z where one of them moves, otherwise the rotary axes.
+/// The distance to which F refers under G94, by LinuxCNC's rule: X Y Z if one of them moves, otherwise the rotary axes.
 double way_of_words(const Joints& a, const Joints& b) {
   double linear = 0, rotary = 0;
   for (std::size_t k = 0; k < a.size(); ++k) (k < 3 ? linear : rotary) += (b[k] - a[k]) * (b[k] - a[k]);
@@ -35,7 +35,7 @@ Joints NcRows::in_part(const Joints& program) const {
   return as_first_ ? program : first_->to_program(frame_.to_machine(program));
 }
 
-/// Where no rotary axis has turned since the last row and X Y Z are the tip, the axis is the last one: no sines.
+/// If X Y Z are the tip and no rotary axis has moved since the last row, reuses the last axis: no sines.
 Pose NcRows::pose(const Joints& joints) {
   if (!machine_->joint_words() && same_turns(joints, at_)) return {{joints[0], joints[1], joints[2]}, last_.axis};
   return machine_->pose(joints);
@@ -70,17 +70,17 @@ void NcRows::check_limits(const Joints& joints) const {
   const AxisRange& range = machine_->range(k);
   place_.fail(std::string(1, kJointLetters[k]) + " would stand at " + number_text(joints[k]) +
               ", beyond the limits of machine " + machine_->name() + ", " + number_text(range.low) + " to " +
-              number_text(range.high) + ": place the part otherwise, or read it without limits");
+              number_text(range.high) + ": place the part differently, or read it without limits");
 }
 
-/// mm/min of a block whose tip goes `way` mm.
+/// Feed in mm/min of a block, given the distance of its tip (mm).
 double NcRows::feed_over(double way, const NcRowWords& words) const {
   if (words.rapid) return 0;
   return words.inverse_time ? std::min(way * words.feed, kMaxFeed) : words.feed;
 }
 
 void NcRows::line(const Joints& from, const Joints& end, const NcRowWords& words) {
-  // From where the first move comes nobody knows, nor from where one that leaves a position of the machine: one row.
+  // One row: the start of the first move is unknown, and so is that of a move from a machine position.
   const bool known = first_.has_value() && !away_;
   begin(from);
   const Joints to = in_part(end);
@@ -117,7 +117,7 @@ Pose NcRows::between(const Joints& to, int i, int parts) const {
   return machine_->pose(joints);
 }
 
-/// Where the machine's axes lead from the last row to `to` by another way than the straight one.
+/// Intermediate poses if the machine's axes do not lead straight from the last row to `to`.
 std::vector<Pose> NcRows::poses_on_the_way(const Joints& to, const NcRowWords& words) const {
   if (words.rapid && machine_->control().rapids == "independent") return dog_leg(to);
   std::vector<Pose> out;
@@ -127,9 +127,9 @@ std::vector<Pose> NcRows::poses_on_the_way(const Joints& to, const NcRowWords& w
   return out;
 }
 
-/// Each axis goes at its own rate until it is there. Of rates that the machine does not say linear axes have one.
+/// Each axis moves at its own rate until it arrives. Linear axes without a known rate share one.
 std::vector<Pose> NcRows::dog_leg(const Joints& to) const {
-  double slowest = 0;  // of the linear rates that are known
+  double slowest = 0;  // slowest known linear rate
   for (std::size_t k = 0; k < 3; ++k)
     if (std::isfinite(machine_->range(k).rate)) slowest = std::max(slowest, machine_->range(k).rate);
   Joints minutes{};
@@ -147,7 +147,7 @@ std::vector<Pose> NcRows::dog_leg(const Joints& to) const {
   std::vector<double> ends(minutes.begin(), minutes.end());
   std::ranges::sort(ends);
   ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
-  // As in rotary_parts: so many that no part leaves its great circle.
+  // As in rotary_parts: enough that each part stays on its great circle.
   const int parts = std::min(kMaxChords, 1 + static_cast<int>(turn / (2 * std::sqrt(axis_bound()))));
   std::vector<Pose> out;
   double before = 0;
@@ -162,24 +162,24 @@ std::vector<Pose> NcRows::dog_leg(const Joints& to) const {
     }
     before = end;
   }
-  if (!out.empty()) out.pop_back();  // the end
+  if (!out.empty()) out.pop_back();  // drop the end pose
   return out;
 }
 
-/// Equal parts after which each great circle keeps to the axis's true way and each line to the tip's, where linear and
-/// rotary axes make it together.
+/// Number of equal parts such that each part's great circle and line stay near the true path of axis and tip, where
+/// linear and rotary axes move together.
 int NcRows::rotary_parts(const Joints& to) const {
   if (same_turns(at_, to)) return 1;
   double turn = 0;  // rad
   for (std::size_t k = 3; k < 6; ++k) turn += std::abs(to[k] - at_[k]) * kDegree;
-  // The axis's acceleration over the block is at most turn², on its own way as on the great circle: each leaves the
-  // chord at even speed by an eighth of it at most.
+  // The axis's acceleration over the block is at most turn², on its own path and on the great circle: each deviates
+  // from uniform motion on the chord by at most an eighth of it.
   if (!machine_->joint_words() && turn * turn / 4 <= axis_bound()) return 1;
   for (int parts = 1; parts <= kMaxChords; parts *= 2) {
     bool good = true;
     for (int i = 0; i < parts && good; ++i) {
       const Pose a = between(to, 4 * i, 4 * parts), b = between(to, 4 * i + 4, 4 * parts);
-      // A chord between axes more than 120° apart says nothing about the way between them.
+      // A chord between axes more than 120° apart does not determine the path between them.
       good = glm::dot(a.axis, b.axis) > -0.5;
       const Motion straight(a, b);
       for (int k = 1; k < 4 && good; ++k) {
@@ -188,13 +188,13 @@ int NcRows::rotary_parts(const Joints& to) const {
         if (machine_->joint_words()) good = good && glm::length(is.tip - straight.tip(k / 4.0)) <= chord_tolerance_;
       }
     }
-    // Two parts at least: a full turn begins and ends at the same axis.
+    // At least two parts: a full turn begins and ends at the same axis.
     if (good && (parts > 1 || turn < kPi / 2)) return parts;
   }
   place_.fail("rotary axes turn too far in one block for chord_tolerance or axis_tolerance");
 }
 
-/// Whether the block's axis keeps to the great circle as it is: a C that turns about an upright tool.
+/// Whether the block's axis follows the great circle as programmed: for example C turning about a vertical tool.
 bool NcRows::is_great_circle(const Joints& to) const {
   constexpr int kParts = 16;
   const Motion straight(between(to, 0, kParts), between(to, kParts, kParts));
@@ -207,7 +207,7 @@ bool NcRows::is_great_circle(const Joints& to) const {
 void NcRows::arc(const Joints& from, const Joints& to, const Arc& arc, std::size_t u, std::size_t v,
                  const NcRowWords& words) {
   const int chords = arc.chords(chord_tolerance_);
-  if (chords > kMaxChords) place_.fail("an arc of too many chords");
+  if (chords > kMaxChords) place_.fail("an arc with too many chords");
   const std::size_t w = 3 - u - v;
   curve(
       from, chords, std::hypot(arc.length(), to[w] - from[w]),

@@ -1,5 +1,5 @@
-// From where a program's axes go to the rows of a Program: chords for curves, parts for moves whose rotary axes turn,
-// offsets taken out.
+// From axis positions of a program to rows of a Program: splits curves into chords and rotary moves into parts, removes
+// offsets.
 #pragma once
 
 #include <functional>
@@ -15,11 +15,11 @@
 
 namespace riffler::nc {
 
-/// What the rows of a block say beside where they are.
+/// Data of a block's rows other than their position.
 struct NcRowWords {
   bool rapid = false;
   double feed = 0;            ///< mm/min, or 1/min
-  bool inverse_time = false;  ///< what feed means
+  bool inverse_time = false;  ///< whether `feed` is 1/min
   double spindle = 0;
   int tool = 0;
   int line = 0;
@@ -27,11 +27,11 @@ struct NcRowWords {
 
 class NcRows {
  public:
-  /// rad: where rotary axes that turn evenly leave the great circle by more, the poses on their way are kept.
+  /// rad: if uniformly turning rotary axes leave the great circle by more, the poses between are kept.
   static constexpr double kAxisBound = 0.002;
 
-  /// Keeps `place`. `axis_tolerance`, rad, makes rows of those poses. Without it a block is one row, with them as via
-  /// poses, where the tip's way allows it.
+  /// Keeps a reference to `place`. `axis_tolerance` (rad) turns those poses into rows. Without it a block is one row,
+  /// with those poses as via poses, if the tip's path permits.
   NcRows(std::unique_ptr<Machine> machine, double chord_tolerance, std::optional<double> axis_tolerance,
          const NcPlace& place)
       : machine_(std::move(machine)),
@@ -42,35 +42,35 @@ class NcRows {
   const Machine& machine() const { return *machine_; }
   double chord_tolerance() const { return chord_tolerance_; }
 
-  /// Rows are in the program coordinates of the frame that holds when the first of them is made.
+  /// Rows are in the program coordinates of the frame that is active when the first of them is made.
   void set_frame(const NcFrame& frame) {
     frame_ = frame;
     as_first_ = !first_ || frame == *first_;
   }
   const NcFrame& frame() const { return frame_; }
 
-  /// From `from` to `to`, program coordinates.
+  /// A line between program coordinates.
   void line(const Joints& from, const Joints& to, const NcRowWords& words);
-  /// The same along an arc in the plane of the joints u, v; the others move evenly.
+  /// As above along an arc in the plane of joints u, v; the others move evenly.
   void arc(const Joints& from, const Joints& to, const Arc& arc, std::size_t u, std::size_t v, const NcRowWords& words);
-  /// Along a curve of `parts` chords of `length` mm in all: `at(t)`, 0 < t ≤ 1.
+  /// Along a curve of `parts` chords with a total `length` (mm): `at(t)`, 0 < t ≤ 1.
   void curve(const Joints& from, int parts, double length, const std::function<Joints(double)>& at,
              const NcRowWords& words);
 
-  /// A row at a position of the machine, whose place in the part is not known: the pose stays what it was. Before the
-  /// first row there is none: where that comes from nobody knows either.
+  /// A row at a machine position, whose place in the part is unknown: the pose repeats the last one. Before the first
+  /// row it adds nothing, since the start of that is unknown too.
   void at_machine(const NcRowWords& words);
   bool begun() const { return first_.has_value(); }
-  /// Rows that are made from now on wait until it is known whether where they are counts.
+  /// From now on, rows wait until it is known whether their positions count.
   void hold() { holds_ = true; }
   std::size_t held() const { return held_.size(); }
-  /// Those that wait: as they are, or at positions of the machine.
+  /// Releases waiting rows: unchanged, or as machine positions.
   void release(bool in_part);
 
-  /// One row at `pose`, which `to` holds: the tool's axis is given as such.
+  /// One row at `pose`, held by joints `to`: the tool's axis is given directly.
   void line_to_pose(const Joints& from, const Joints& to, const Pose& pose, const NcRowWords& words);
 
-  /// The words that hold the same pose on `machine` with the same rotary axes; before the first row what they are.
+  /// The words that give the same pose on `machine` with the same rotary axes; unchanged before the first row.
   Joints change_machine(std::unique_ptr<Machine> machine, const Joints& at);
 
   std::vector<Move>& pending() { return pending_; }
@@ -96,8 +96,8 @@ class NcRows {
   const NcPlace& place_;
   NcFrame frame_;
   std::optional<NcFrame> first_;
-  bool as_first_ = true, away_ = false;  // away: the last row is at a position of the machine
-  // Where the last row is, in the first frame.
+  bool as_first_ = true, away_ = false;  // away: the last row is at a machine position
+  // Position of the last row, in the first frame.
   Joints at_{};
   Pose last_{};
   std::vector<Move> pending_, held_;

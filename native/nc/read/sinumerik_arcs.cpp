@@ -1,4 +1,4 @@
-// Circles of a Sinumerik program: about a centre, by radius or angle, tangential, and through a point.
+// Circles of Sinumerik programs: about a centre, by radius or angle, tangential, and through a point.
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -12,13 +12,13 @@ namespace riffler::nc {
 
 namespace {
 
-/// mm: points nearer to a line than this have no circle.
+/// mm: points closer to a line than this define no circle.
 constexpr double kNoCircle = 1e-6;
 constexpr double kMaxTurns = 999;
 
 }  // namespace
 
-/// I J K count from the arc's start unless AC says otherwise.
+/// I J K are relative to the arc's start unless AC is given.
 Vec2 SinumerikInterpreter::centre_of(const SinumerikWords& words, const Vec2& from) const {
   const auto [u, v, w] = plane_;
   if (words.centre[w].given && words.centre[w].value != 0 && !words.centre[w].is_absolute(false))
@@ -31,7 +31,7 @@ Vec2 SinumerikInterpreter::centre_of(const SinumerikWords& words, const Vec2& fr
   return {of(words.centre[u], from.x), of(words.centre[v], from.y)};
 }
 
-/// The arc in its plane; by AR and a centre it says where the end is.
+/// The arc in its plane; with AR and a centre it also computes the end.
 Arc SinumerikInterpreter::plane_arc(const SinumerikWords& words, const Vec2& from, Vec3& to, Motion motion) {
   const int u = static_cast<int>(plane_[0]), v = static_cast<int>(plane_[1]);
   const bool clockwise = motion == Motion::Clockwise, centred = words.has_centre();
@@ -73,8 +73,7 @@ void SinumerikInterpreter::arc(const SinumerikWords& words, Motion motion) {
   if (words.has_rotary() || words.has_vector())
     place_.fail("an arc in which rotary axes turn is not read: have the CAM system write lines");
   if (is_away())
-    place_.fail("an arc while " + axes_away() +
-                " is at a position of the machine: move all of X Y Z into the part first");
+    place_.fail("an arc while " + axes_away() + " is at a machine position: move all of X Y Z into the part first");
   const Vec2 from(at_[static_cast<int>(plane_[0])], at_[static_cast<int>(plane_[1])]);
   Vec3 to = linear_target(words);
   try {
@@ -85,8 +84,8 @@ void SinumerikInterpreter::arc(const SinumerikWords& words, Motion motion) {
     const bool full = std::abs(made.sweep) >= kTwoPi;
     if (full && turns > 0)
       note_once(-14, "helix",
-                std::string("TURN counts turns beside the full circle that the block has anyway: TURN=") +
-                    number_of(turns) + " makes " + number_of(turns + 1));
+                std::string("TURN counts turns in addition to the block's full circle: TURN=") + number_of(turns) +
+                    " makes " + number_of(turns + 1));
     if (turns > 0) made = made.with_turns(1 + static_cast<int>(turns));
     arc_to(to, made, row);
   } catch (const std::invalid_argument& e) {
@@ -102,7 +101,7 @@ void SinumerikInterpreter::arc_to(const Vec3& to, const Arc& arc, const NcRowWor
   check_length(to);
   moves_in_part(words);
   const int chords = arc.chords(rows_->chord_tolerance());
-  if (chords > kMaxChords) place_.fail("an arc of too many chords");
+  if (chords > kMaxChords) place_.fail("an arc with too many chords");
   const int u = static_cast<int>(plane_[0]), v = static_cast<int>(plane_[1]), w = static_cast<int>(plane_[2]);
   const Vec3 from = at_;
   rows_->curve(
@@ -122,12 +121,12 @@ void SinumerikInterpreter::arc_to(const Vec3& to, const Arc& arc, const NcRowWor
   (*leaving_)[u] = -sense * std::sin(end), (*leaving_)[v] = sense * std::cos(end);
 }
 
-/// CIP: from here through I1 J1 K1 to X Y Z, in whatever plane that is.
+/// CIP: from here through I1 J1 K1 to X Y Z, in any plane.
 void SinumerikInterpreter::arc_through(const SinumerikWords& words) {
   const NcRowWords row = row_words(false);
   if (words.has_rotary() || words.has_vector() || words.turns || words.has_centre() || words.radius)
     place_.fail("CIP takes X Y Z and I1= J1= K1=");
-  if (is_away()) place_.fail("an arc while " + axes_away() + " is at a position of the machine");
+  if (is_away()) place_.fail("an arc while " + axes_away() + " is at a machine position");
   const Vec3 from = at_;
   Vec3 via = at_;
   for (std::size_t k = 0; k < 3; ++k)
@@ -149,7 +148,7 @@ void SinumerikInterpreter::arc_through(const SinumerikWords& words) {
   const Arc arc{Vec2(0), radius, radius, 0, sweep};
   moves_in_part(row);
   const int chords = arc.chords(rows_->chord_tolerance());
-  if (chords > kMaxChords) place_.fail("an arc of too many chords");
+  if (chords > kMaxChords) place_.fail("an arc with too many chords");
   rows_->curve(
       in_part(from, rotary_), chords, arc.length(),
       [&](double t) {

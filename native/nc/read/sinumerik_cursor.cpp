@@ -107,7 +107,7 @@ void SinumerikCursor::expect_end() {
 
 void SinumerikCursor::fail_unexpected() {
   if (peek() == '(')
-    fail("unexpected '(': a comment begins with ; here; in round brackets stand arguments, of names that are known");
+    fail("unexpected '(': a comment begins with ; here; round brackets hold the arguments of known names");
   std::string shown;
   for (const char c : rest_.substr(0, 16)) {
     if (c == ' ' || c == ';') break;

@@ -1,4 +1,4 @@
-// The characters of one block of a Sinumerik program: names, numbers, texts in quotes.
+// Cursor over one block of a Sinumerik program: names, numbers, quoted texts.
 #pragma once
 
 #include <string>
@@ -9,39 +9,39 @@
 
 namespace riffler::nc {
 
-/// Brackets hold arguments here, no comments; a comment begins with ";".
+/// Round brackets hold arguments, not comments; a comment begins with ";".
 class SinumerikCursor {
  public:
-  /// Keeps `place`, which stands in messages.
+  /// Keeps a pointer to `place`, which appears in messages.
   SinumerikCursor(std::string_view text, const NcPlace& place) : rest_(text), place_(&place) {}
 
-  /// The next character after blanks, upper case, not taken; '\0' at the end.
+  /// The next character after blanks, upper case, not consumed; '\0' at the end.
   char peek();
   void take() { rest_.remove_prefix(1); }
-  /// Takes `symbol` where it comes next: one character or several.
+  /// Consumes `symbol`, of one or more characters, if it comes next.
   bool take_if(std::string_view symbol);
-  /// Takes the name `word` (upper case) where it comes next as a whole.
+  /// Consumes the name `word` (upper case) if it comes next as a whole.
   bool take_word(std::string_view word);
-  /// Whether the next word is an address, a letter with its value ("X10", "X=R1"), not a name ("TRAORI").
+  /// Whether the next word is an address, a letter with its value ("X10", "X=R1"), rather than a name ("TRAORI").
   bool at_address();
-  /// Whether a number comes next: a digit or a decimal point, after no sign.
+  /// Whether an unsigned number comes next: a digit or a decimal point.
   bool at_number();
-  /// Takes a name, upper case: letters, digits, _ and $. Empty where none comes next.
+  /// Reads a name, upper case: letters, digits, _ and $. Empty if none comes next.
   std::string name();
-  /// Takes a decimal number without a sign, which may have an exponent ("1.5EX3"). `what` stands in messages.
+  /// Reads a decimal number without a sign, possibly with an exponent ("1.5EX3"). `what` appears in messages.
   double number(std::string_view what);
-  /// The digits that come next without a blank before them; taken.
+  /// Consumes the digits that follow immediately.
   std::string digits();
-  /// Takes the text between quotes; the opening quote comes next.
+  /// Reads the text between quotes; the opening quote comes next.
   std::string quoted();
-  /// Takes everything up to the bracket that closes the one that was taken.
+  /// Skips to the bracket that closes the one just consumed.
   void skip_brackets();
   void skip_all() { rest_ = {}; }
 
-  /// FormatError unless the block ends here.
+  /// Throws FormatError unless the block ends here.
   void expect_end();
   [[noreturn]] void fail(const std::string& what) const { place_->fail(what); }
-  /// Of what comes next: FormatError "unexpected '...'".
+  /// Throws FormatError "unexpected '...'" for what comes next.
   [[noreturn]] void fail_unexpected();
 
  private:

@@ -11,7 +11,7 @@ namespace riffler::nc {
 namespace {
 
 constexpr double kMaxStrokes = 100'000;
-/// mm: less than this is no peck of its own.
+/// mm: a smaller remainder is no separate peck.
 constexpr double kNoPeck = 1e-9;
 
 /// Pitches of metric coarse threads (ISO 261), mm.
@@ -117,7 +117,7 @@ class SinumerikHole {
     stroke(clear_, own_feed(7, "RFF, the feed of the retraction,"));
   }
 
-  /// The depths of CYCLE83's pecks, each from the one before: by DAM smaller and smaller, or by a factor.
+  /// The depths of CYCLE83's pecks, each relative to the one before: decreasing by DAM, or by a factor.
   std::vector<double> depths() const {
     std::vector<double> out;
     const double first = number(6) != 0             ? surface_ - length(6, "FDPR, the first depth,")
@@ -136,7 +136,7 @@ class SinumerikHole {
       else if (by > 0) {
         const double amount = by * setting_.unit;
         step = step - amount > amount ? step - amount : amount;
-        // The last two pecks are alike.
+        // The last two pecks are equal.
         if (rest > step && rest < 2 * amount) step = rest / 2;
       }
       at -= step;
@@ -152,7 +152,8 @@ class SinumerikHole {
                                                                                             : 0.04 * kInch;
     if (!(factor <= 1)) fail("FRF, the factor of the first feed, is above 1");
     const double depth = surface_ - bottom_;
-    // What the control keeps from the ground before: 0.6 mm, a fiftieth of holes deeper than 30 mm, 7 mm at most.
+    // Distance that the control keeps from the previous bottom: 0.6 mm, or a fiftieth of holes deeper than 30 mm, at
+    // most 7 mm.
     const double stop = number(16) > 0 ? length(16, "_DIS1") : std::min(std::max(0.6, depth / 50), 7.0);
     double before = clear_, slow = factor;
     for (const double at : depths()) {
@@ -165,7 +166,7 @@ class SinumerikHole {
     }
   }
 
-  /// mm, > 0 right-handed: by the thread's size or by its pitch; 0 where neither is given.
+  /// Pitch in mm, > 0 right-handed: from the thread's size or given directly; 0 if neither is given.
   double pitch(std::size_t size, std::size_t given, std::size_t unit) const {
     double out = number(given) * setting_.unit;
     if (number(unit) == 1) out = number(given);
@@ -174,12 +175,12 @@ class SinumerikHole {
     const double thread = std::abs(number(size));
     if (thread == 0) return out;
     const auto found = std::ranges::find(kThreads, thread, &Thread::size);
-    if (found == std::end(kThreads)) fail("MPIT, the thread's size, is none of M3 to M48: write PIT, its pitch");
+    if (found == std::end(kThreads)) fail("MPIT, the thread's size, is not one of M3 to M48: write PIT, its pitch");
     if (out != 0 && std::abs(std::abs(out) - found->pitch) > 1e-6) fail("MPIT and PIT are of different threads");
     return std::copysign(found->pitch, number(size));
   }
 
-  /// Rigid, by its own speed; out with the spindle turned back.
+  /// Rigid, with its own speed; out with the spindle reversed.
   void tap() {
     const double rise = pitch(7, 8, 13), speed = number(10) != 0 ? number(10) : setting_.speed;
     const double out = number(11) != 0 ? number(11) : speed;
@@ -206,7 +207,7 @@ class SinumerikHole {
     spindle_ = after == 3 ? speed : after == 4 ? -speed : after == 5 ? 0 : setting_.turning * setting_.speed;
   }
 
-  /// With a compensating chuck: by the pitch, or by F.
+  /// With a compensating chuck: feed from the pitch, or from F.
   void tap_with_chuck() {
     const double rise = std::abs(pitch(9, 10, 99));
     const double f = rise > 0 && number(8) == 0 ? rise * setting_.speed : feed();
@@ -219,7 +220,7 @@ class SinumerikHole {
     spindle_ = turning;
   }
 
-  /// Out with the spindle at rest and the edge off the wall.
+  /// Retracts with the spindle stopped and the edge off the wall.
   void bore() {
     if (number(6) == 3 || number(6) == 4) spindle_ = (number(6) == 3 ? 1 : -1) * setting_.speed;
     stroke(bottom_, feed());

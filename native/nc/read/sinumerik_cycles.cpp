@@ -1,4 +1,4 @@
-// Drilling cycles and patterns of holes in a Sinumerik program: what is called, and where.
+// Drilling cycles and hole patterns of Sinumerik programs.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kMaxArguments = 100;
 constexpr double kMaxHoles = 100'000;
-/// rad: the tool may be off the hole's axis by what printed angles are off.
+/// rad: allowed angle between tool and hole axis, for the rounding of printed angles.
 constexpr double kAlong = 2e-3;
 
 }  // namespace
@@ -37,7 +37,7 @@ bool SinumerikInterpreter::execute_cycle(const std::string& word, SinumerikCurso
   return true;
 }
 
-/// What stands in brackets, up to the closing one; nothing for those that are left out, and for texts.
+/// The arguments up to the closing bracket; no value for omitted ones and for texts.
 SinumerikInterpreter::Arguments SinumerikInterpreter::arguments(SinumerikCursor& cursor) {
   Arguments out;
   if (cursor.take_if(")")) return out;
@@ -55,7 +55,7 @@ SinumerikInterpreter::Arguments SinumerikInterpreter::arguments(SinumerikCursor&
   }
 }
 
-/// MCALL CYCLE81(...): after each block that moves; MCALL alone ends that.
+/// MCALL CYCLE81(...): call after each block that moves; MCALL alone ends that.
 void SinumerikInterpreter::modal_call(SinumerikCursor& cursor) {
   modal_cycle_ = 0;
   if (cursor.peek() == '\0') return;
@@ -71,15 +71,15 @@ void SinumerikInterpreter::modal_call(SinumerikCursor& cursor) {
   modal_cycle_ = number;
 }
 
-/// At the place where the tool stands in the plane.
+/// Drills at the tool's position in the plane.
 void SinumerikInterpreter::drill(int number, const Arguments& given) {
   const auto [u, v, w] = plane_;
   if (stand_[u] == Stand::Machine || stand_[v] == Stand::Machine)
-    place_.fail("a cycle while " + axes_away() + " is at a position of the machine: move into the part first");
+    place_.fail("a cycle while " + axes_away() + " is at a machine position: move into the part first");
   if (!keeps_tip_ && !is_upright()) fail_tilted();
   if (plane_[2] == 2 && geom::angle_between(rows_->machine().pose(rotary_).axis, frame_.turn[2]) > kAlong)
     place_.fail("a drilling cycle whose hole is not along the tool: have the CAM system write its moves");
-  if (feed_mode_ == 93) place_.fail("drilling cycles know no inverse time (G93)");
+  if (feed_mode_ == 93) place_.fail("drilling cycles do not support inverse time (G93)");
   const double feed = feed_mode_ == 95 ? feed_ * (surface_speed_ ? 0 : speed_) : feed_;
   if (!(feed <= kMaxFeed)) place_.fail("F is out of range");
   const SinumerikCycleSetting setting{unit_, feed_mode_ == 95 ? unit_ * speed_ : feed_unit_, feed, speed_, turning_};
@@ -107,7 +107,7 @@ void SinumerikInterpreter::holes(const std::string& word, const Arguments& given
     if (!(std::abs(of(k)) <= kMaxLength)) place_.fail("a number of " + word + " is out of range");
   const double count = of(5);
   if (!(count >= 1 && count <= kMaxHoles && count == std::floor(count)))
-    place_.fail("NUM, the number of holes of " + word + ", must be a whole number, 1 at least");
+    place_.fail("NUM, the number of holes of " + word + ", must be a whole number of at least 1");
   const Vec2 origin = unit_ * Vec2(of(0), of(1));
   const int number = static_cast<int>(count);
   if (word == "HOLES1") {
@@ -115,7 +115,7 @@ void SinumerikInterpreter::holes(const std::string& word, const Arguments& given
     const Vec2 along(std::cos(angle), std::sin(angle));
     const auto at = [&](int k) { return origin + unit_ * (of(3) + k * of(4)) * along; };
     const Vec2 here(at_[static_cast<int>(plane_[0])], at_[static_cast<int>(plane_[1])]);
-    // From the end that is nearer.
+    // Start from the nearer end.
     const bool back = glm::length(at(number - 1) - here) < glm::length(at(0) - here);
     for (int k = 0; k < number; ++k) hole_at(at(back ? number - 1 - k : k));
     return;

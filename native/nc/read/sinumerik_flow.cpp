@@ -1,4 +1,4 @@
-// Control structures, jumps and subprograms of a Sinumerik program.
+// Control structures, jumps and subprograms of Sinumerik programs.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -14,7 +14,7 @@ namespace riffler::nc {
 namespace {
 
 constexpr std::size_t kDeepestRoutine = 60, kMaxRepetitions = 60;
-/// Of folders in which subprograms are sought.
+/// Largest number of files in the folders searched for subprograms.
 constexpr std::size_t kMaxFiles = 10'000;
 
 }  // namespace
@@ -73,7 +73,7 @@ bool SinumerikInterpreter::execute_structure(const SinumerikBlock& block, Sinume
   return true;
 }
 
-/// FOR variable = first TO last: the variable grows by 1.
+/// FOR variable = first TO last: increments the variable by 1.
 void SinumerikInterpreter::for_loop(SinumerikCursor& cursor, bool first) {
   const std::string variable = values_.element(cursor.name(), cursor);
   if (!cursor.take_if("=")) cursor.fail("FOR without =: FOR variable = first TO last");
@@ -117,7 +117,7 @@ bool SinumerikInterpreter::execute_jump(const std::string& word, SinumerikCursor
   return true;
 }
 
-/// The label that comes next; `taken`: whether the jump happens.
+/// Reads the label; `taken`: whether the jump is executed.
 void SinumerikInterpreter::jump(const std::string& way, SinumerikCursor& cursor, bool taken) {
   if (way == "GOTOS") {
     if (taken) go(0);
@@ -135,7 +135,7 @@ void SinumerikInterpreter::jump(const std::string& way, SinumerikCursor& cursor,
     if (const auto text = values_.text(label)) label = sinumerik_name(*text);
   }
   if (label.empty()) cursor.fail_unexpected();
-  // What follows may be the next branch of CASE.
+  // The next branch of CASE may follow.
   if (!taken) return;
   const std::size_t block = find_label(label, way != "GOTOB", way != "GOTOF");
   if (block < calls_.back().routine->blocks.size()) return go(block);
@@ -147,7 +147,7 @@ void SinumerikInterpreter::jump(const std::string& way, SinumerikCursor& cursor,
                 " this block");
 }
 
-/// The block of a label, the next forward, then the last before; the number of blocks where there is none.
+/// The block of a label, first searching forward, then backward; the number of blocks if there is none.
 std::size_t SinumerikInterpreter::find_label(const std::string& label, bool forward, bool backward) const {
   const Call& here = calls_.back();
   const auto found = here.routine->labels.find(label);
@@ -219,7 +219,7 @@ void SinumerikInterpreter::end_repetitions() {
       if (--part.left > 0) return go(part.begin);
       here.next = part.back;
     }
-    here.repetitions.pop_back();  // ended, or left by a jump
+    here.repetitions.pop_back();  // finished, or left by a jump
   }
 }
 
@@ -230,7 +230,7 @@ void SinumerikInterpreter::call(const std::string& name, SinumerikCursor& cursor
   if (!routine) {
     if (!skip_unknown_)
       place_.fail("unknown statement or subprogram " + name + ": correct it, or put the file " + name +
-                  ".SPF beside the program (or into the folder of option subroutines)");
+                  ".SPF into the program's folder (or that of option subroutines)");
     note("coordinates", name + " was skipped, a subprogram that is not there: where the tool is after it is not known");
     cursor.skip_all();
     lose_place();
@@ -244,7 +244,7 @@ void SinumerikInterpreter::enter(const std::shared_ptr<const SinumerikRoutine>& 
                                  int times) {
   if (calls_.size() >= kDeepestRoutine) place_.fail("subprograms are nested too deeply");
   count_turn();
-  // Arguments are values of the caller.
+  // Arguments are evaluated in the caller.
   bind(*routine, cursor);
   SinumerikCursor ahead = cursor;
   if (ahead.peek() == 'P' && ahead.at_address()) {
@@ -259,8 +259,8 @@ void SinumerikInterpreter::enter(const std::shared_ptr<const SinumerikRoutine>& 
   calls_.push_back(std::move(made));
 }
 
-/// Defines the parameters of PROC with the arguments in brackets that come next: those that are left out are 0, or
-/// what PROC says.
+/// Defines the parameters of PROC from the arguments in brackets that come next. Omitted ones get the default of PROC,
+/// or 0.
 void SinumerikInterpreter::bind(const SinumerikRoutine& routine, SinumerikCursor& cursor) {
   Arguments given;
   if (cursor.take_if("(")) given = arguments(cursor);
@@ -272,7 +272,8 @@ void SinumerikInterpreter::bind(const SinumerikRoutine& routine, SinumerikCursor
     place_ = {routine.file, routine.blocks[0].line, routine.blocks[0].text};
     SinumerikCursor header(routine.blocks[0].text, place_);
     if (header.take_word("PROC") && (header.name(), header.take_if("(")) && !header.take_if(")")) {
-      if (main) place_.fail("a subprogram with parameters: read the program that calls it, with this file beside it");
+      if (main)
+        place_.fail("a subprogram with parameters: read the program that calls it, with this file in its folder");
       do {
         std::string type = header.name();
         if (type == "VAR")
@@ -320,7 +321,7 @@ std::shared_ptr<const SinumerikRoutine> SinumerikInterpreter::find_routine(const
   return routines_[name] = std::make_shared<const SinumerikRoutine>(std::move(first));
 }
 
-/// The files of subprograms beside the program, and in the folder of the option.
+/// Indexes the subprogram files in the program's folder and the folder of the option.
 void SinumerikInterpreter::index_folders() {
   files_.emplace();
   for (const std::filesystem::path& folder : folders_) {
@@ -332,7 +333,7 @@ void SinumerikInterpreter::index_folders() {
       std::string upper;
       for (const char c : file) upper += NcCursor::upper(c);
       if (!upper.ends_with("SPF") && !upper.ends_with("MPF")) continue;
-      // Of two that differ in case only, the same one everywhere.
+      // If two names differ only in case, every system picks the same one.
       const auto [known, fresh] = files_->emplace(name, at->path());
       if (!fresh && known->second.parent_path() == at->path().parent_path())
         known->second = std::min(known->second, at->path());

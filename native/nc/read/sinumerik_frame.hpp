@@ -1,4 +1,4 @@
-// Where programmed coordinates of a Sinumerik program are in the part: TRANS, ROT, and the plane of CYCLE800.
+// From programmed to part coordinates of Sinumerik programs: TRANS, ROT, and the plane of CYCLE800.
 #pragma once
 
 #include "riffler/geom/vec.hpp"
@@ -14,7 +14,7 @@ struct SinumerikFrame {
 
   Vec3 to_part(const Vec3& p) const { return turn * p + shift; }
   Vec3 from_part(const Vec3& p) const { return glm::transpose(turn) * (p - shift); }
-  /// `inner` in the coordinates of this one.
+  /// `inner` within this frame.
   SinumerikFrame with(const SinumerikFrame& inner) const { return {turn * inner.turn, to_part(inner.shift)}; }
 };
 

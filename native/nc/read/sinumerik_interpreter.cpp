@@ -45,8 +45,8 @@ void SinumerikInterpreter::take_options(const ReadOptions& options) {
   std::unique_ptr<Machine> machine = make_machine(options.machine, taken);
   const double chord = taken.positive("chord_tolerance").value_or(0.002);
   const std::optional<double> axis = taken.positive("axis_tolerance");
-  take_post_options(taken);                                    // the same options write and read
-  arc_miss_ = taken.positive("arc_tolerance").value_or(0.01);  // the control's own (MD21000)
+  take_post_options(taken);                                    // reading and writing share these options
+  arc_miss_ = taken.positive("arc_tolerance").value_or(0.01);  // the control's default (MD21000)
   block_delete_ = taken.flag("block_delete", false);
   check_header_ = taken.word("header", {"check", "ignore"}, "check") == "check";
   max_turns_ = taken.positive("max_turns").value_or(1e6);
@@ -58,7 +58,7 @@ void SinumerikInterpreter::take_options(const ReadOptions& options) {
   taken.done();
   if (machine->joint_words())
     throw std::invalid_argument("machine " + machine->name() +
-                                ": a Sinumerik control is given the tip (TRAORI): tcp must not be False");
+                                ": code for a Sinumerik control has tip coordinates (TRAORI): tcp must not be False");
   if (arc_miss_ > 1) throw std::invalid_argument("option arc_tolerance must be at most 1 mm");
   if (chord < 1e-6) throw std::invalid_argument("option chord_tolerance must be at least 1e-6 mm");
   if (axis && *axis < 1e-6) throw std::invalid_argument("option axis_tolerance must be at least 1e-6 rad");
@@ -110,7 +110,7 @@ void SinumerikInterpreter::execute(const SinumerikBlock& block) {
   words_of(cursor);
 }
 
-/// Statements that have their block to themselves.
+/// Statements that must be alone in their block.
 bool SinumerikInterpreter::execute_statement(const std::string& word, SinumerikCursor& cursor) {
   if (word == "DEF") {
     define(cursor);
@@ -145,7 +145,7 @@ void SinumerikInterpreter::words_of(SinumerikCursor& cursor) {
   SinumerikWords words;
   const std::size_t depth = calls_.size();
   words.read(cursor, values_, [&](const std::string& name, SinumerikCursor& at) { named(name, at, words); });
-  if (calls_.size() != depth) return;  // a subprogram, which has its block to itself
+  if (calls_.size() != depth) return;  // a subprogram call, which must be alone in its block
   execute_words(words);
 }
 
@@ -174,7 +174,7 @@ void SinumerikInterpreter::execute_words(SinumerikWords& words) {
 
 void SinumerikInterpreter::flush() {
   std::vector<Move>& pending = rows_->pending();
-  if (program_.size() + pending.size() + rows_->held() > kMaxRows) place_.fail("more rows than can be held");
+  if (program_.size() + pending.size() + rows_->held() > kMaxRows) place_.fail("more rows than can be stored");
   for (const Move& move : pending) program_.append(move);
   pending.clear();
 }

@@ -1,4 +1,4 @@
-// Sinumerik programs, block by block, from text to rows.
+// Interprets Sinumerik programs block by block and produces rows.
 #pragma once
 
 #include <array>
@@ -27,35 +27,35 @@ namespace riffler::nc {
 
 class SinumerikInterpreter {
  public:
-  /// Keeps `text`. `folder`: where files of subprograms are sought, beside that of the options. std::invalid_argument
-  /// for options.
+  /// Keeps a reference to `text`. `folder`: searched for subprogram files in addition to the folder of the option.
+  /// Throws std::invalid_argument for invalid options.
   SinumerikInterpreter(std::string_view text, const std::string& file, const std::filesystem::path& folder,
                        const ReadOptions& options);
 
-  /// FormatError.
+  /// Reads the whole program. Throws FormatError.
   Program run();
 
  private:
   using Stand = TipStand;
   enum class Motion : std::uint8_t { None, Rapid, Line, Clockwise, CounterClockwise, Through, Tangent };
-  /// How the tool's axis goes between two blocks under TRAORI.
+  /// Motion of the tool's axis between two blocks under TRAORI.
   enum class Turning : std::uint8_t { Unsaid, Axes, GreatCircle };
-  /// A part of the program that REPEAT goes through again.
+  /// A part of the program that REPEAT executes again.
   struct Repetition {
-    std::size_t begin, end, back;  // blocks; end is the one behind
+    std::size_t begin, end, back;  // block indices; `end` is one past the last
     int left;
   };
   struct Call {
     std::shared_ptr<const SinumerikRoutine> routine;
-    std::size_t next = 0;  // block
+    std::size_t next = 0;  // index of the next block
     std::vector<Repetition> repetitions{};
-    int line = 0;  // of the main program
-    int left = 0;  // calls that are still to come, of P
+    int line = 0;  // line of the main program
+    int left = 0;  // calls left, from P
     std::string arguments{};
   };
   using Arguments = std::vector<std::optional<double>>;
 
-  // sinumerik_interpreter.cpp: options, the order of blocks, notes.
+  // sinumerik_interpreter.cpp: options, order of blocks, notes.
   void take_options(const ReadOptions& options);
   bool step();
   void execute(const SinumerikBlock& block);
@@ -66,7 +66,7 @@ class SinumerikInterpreter {
   void note(const char* kind, const std::string& message);
   void note_once(int key, const char* kind, const std::string& message);
 
-  // sinumerik_names.cpp: names that are no control structure: modes, commands, cycles, subprograms.
+  // sinumerik_names.cpp: names other than control structures: modes, commands, cycles, subprograms.
   void named(const std::string& name, SinumerikCursor& cursor, const SinumerikWords& words);
   bool switches(const std::string& name);
   void refuse(const std::string& name) const;
@@ -104,7 +104,7 @@ class SinumerikInterpreter {
   void select_system(int system);
   NcRowWords row_words(bool rapid);
 
-  // sinumerik_motion.cpp: what is known of the tip's place; lines.
+  // sinumerik_motion.cpp: knowledge of the tip's position; lines.
   void motion(SinumerikWords& words);
   void line(const SinumerikWords& words, bool rapid);
   void vector_line(const SinumerikWords& words, bool rapid);
@@ -144,7 +144,7 @@ class SinumerikInterpreter {
   void swivel_to(const Mat3& turn, const Vec3& before, const Vec3& after, bool adds, bool retracts, bool turns);
   void unswivel(bool retracts);
 
-  // sinumerik_cycles.cpp: drilling cycles and patterns of holes.
+  // sinumerik_cycles.cpp: drilling cycles and hole patterns.
   bool execute_cycle(const std::string& word, SinumerikCursor& cursor);
   Arguments arguments(SinumerikCursor& cursor);
   void modal_call(SinumerikCursor& cursor);
@@ -160,15 +160,15 @@ class SinumerikInterpreter {
   const Progress& progress_;
   std::map<std::string, std::shared_ptr<const SinumerikRoutine>> routines_;
   std::vector<std::filesystem::path> folders_;
-  std::optional<std::map<std::string, std::filesystem::path>> files_;  // of subprograms, by name
-  std::vector<Call> calls_;                                            // of the main program first
+  std::optional<std::map<std::string, std::filesystem::path>> files_;  // subprogram files by name
+  std::vector<Call> calls_;                                            // the main program first
   bool block_delete_ = false, check_header_ = true, skip_unknown_ = false, ignore_compensation_ = false;
   double max_turns_ = 0, turns_ = 0, arc_miss_ = 0;
-  double executed_ = 0;  // blocks
+  double executed_ = 0;  // blocks executed
   NoteList notes_;
   bool ended_ = false;
 
-  std::array<std::size_t, 3> plane_{0, 1, 2};         // axes of the plane, and its normal
+  std::array<std::size_t, 3> plane_{0, 1, 2};         // axes of the plane and its normal
   double basic_unit_ = 1, unit_ = 1, feed_unit_ = 1;  // mm
   bool units_given_ = false, units_said_ = false;
   bool absolute_ = true;
@@ -182,10 +182,10 @@ class SinumerikInterpreter {
   bool length_off_ = false;
   Motion motion_ = Motion::None;
 
-  // Of the block at hand.
+  // Flags of the current block.
   bool by_machine_ = false, homes_ = false, dwells_ = false, bounds_ = false, taps_ = false, returns_ = false;
 
-  SinumerikFrame swivel_, programmed_, frame_;  // frame_: both
+  SinumerikFrame swivel_, programmed_, frame_;  // frame_: both combined
   bool swivelled_ = false;
   std::optional<Joints> swivel_joints_;
   Vec3 at_{0};       // program coordinates, mm

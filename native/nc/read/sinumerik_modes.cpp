@@ -1,4 +1,4 @@
-// G codes, feed, spindle and tool of a Sinumerik program.
+// G codes, feed, spindle and tool of Sinumerik programs.
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -12,7 +12,7 @@ namespace riffler::nc {
 
 namespace {
 
-/// Exact stops, continuous path, corners of compensation, approach feeds: nothing that moves the tool's centre path.
+/// Exact stop, continuous path, corners of compensation, approach feeds: no effect on the path of the tool's centre.
 constexpr int kQuietCodes[] = {9,   40,  60,  62,  64,  290, 450, 451, 460, 461, 462,
                                601, 602, 603, 621, 641, 642, 643, 644, 645, 340, 341};
 
@@ -110,7 +110,7 @@ bool SinumerikInterpreter::take_code(int code) {
     case 93:
     case 94:
     case 95:
-      if (feed_mode_ != code) feed_ = 0;  // a number of one mode means nothing in another
+      if (feed_mode_ != code) feed_ = 0;  // a feed number of one mode has no meaning in another
       feed_mode_ = code, surface_speed_ = false;
       return true;
     case 96:
@@ -129,7 +129,7 @@ bool SinumerikInterpreter::take_code(int code) {
   }
 }
 
-/// G70 and G71 are of lengths alone, G700 and G710 of feeds, too.
+/// G70 and G71 apply to lengths only, G700 and G710 also to feeds.
 void SinumerikInterpreter::take_units(int code) {
   const bool inch = code == 70 || code == 700;
   unit_ = inch ? kInch : 1;
@@ -138,12 +138,11 @@ void SinumerikInterpreter::take_units(int code) {
   if (code < 700 && unit_ != basic_unit_ && !units_given_)
     note_once(-11, "units",
               std::string("G") + std::to_string(code) +
-                  " is of lengths, not of F, which is in the control's own unit: taken for mm; "
-                  "option units says it");
+                  " is of lengths, not of F, which is in the control's own unit: assumed to be mm; set option units");
 }
 
 void SinumerikInterpreter::take_feed(const SinumerikWords& words) {
-  if (feed_mode_ == 93) feed_ = 0;  // F counts for its own block only
+  if (feed_mode_ == 93) feed_ = 0;  // F applies to its own block only
   block_feed_ = 0;
   const auto of = [&](double number) {
     const double feed = number * (feed_mode_ == 93 ? 1 : feed_mode_ == 95 ? unit_ : feed_unit_);
@@ -152,7 +151,7 @@ void SinumerikInterpreter::take_feed(const SinumerikWords& words) {
   };
   if (dwells_) {
     if (!words.feed && !words.speed) place_.fail("G4 needs F (seconds) or S (turns)");
-    if (words.has_linear() || words.has_rotary()) place_.fail("axis words beside G4");
+    if (words.has_linear() || words.has_rotary()) place_.fail("axis words together with G4");
     return;
   }
   if (words.feed) feed_ = of(*words.feed);
@@ -195,7 +194,7 @@ void SinumerikInterpreter::take_tool(const SinumerikWords& words) {
   if (words.edge) length_off_ = *words.edge == 0;
 }
 
-/// Tools that are called by name get the numbers after those that are called by number.
+/// Tools called by name get the numbers after those of tools called by number.
 int SinumerikInterpreter::number_of_tool(const std::string& name) {
   const bool number = name.size() < 9 && std::ranges::all_of(name, NcCursor::is_digit);
   if (number) return std::stoi(name);
@@ -220,7 +219,7 @@ void SinumerikInterpreter::compensate(int code) {
 
 NcRowWords SinumerikInterpreter::row_words(bool rapid) {
   if (length_off_ && !by_machine_ && !homes_) {
-    note("tool length", "a move under D0: its points are taken for those of the tip");
+    note("tool length", "a move under D0: its points are taken as those of the tip");
     length_off_ = false;
   }
   double feed = block_feed_ > 0 ? block_feed_ : feed_;
@@ -236,7 +235,7 @@ NcRowWords SinumerikInterpreter::row_words(bool rapid) {
   return {rapid, rapid ? 0 : feed, feed_mode_ == 93, turning_ * speed_, tool_, calls_.front().line};
 }
 
-/// A work offset, whose place on the machine is not in the program.
+/// A work offset, whose position on the machine is not in the program.
 void SinumerikInterpreter::select_system(int system) {
   system_ = system;
 }

@@ -1,4 +1,4 @@
-// Where the tip is known to be, and lines, in a Sinumerik program.
+// Knowledge of the tip's position, and lines, of Sinumerik programs.
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -16,9 +16,9 @@ namespace riffler::nc {
 
 namespace {
 
-/// rad: what axes that were printed may be off a plane's normal.
+/// rad: tolerance between printed axes and a plane's normal.
 constexpr double kAlongNormal = 1e-3;
-/// rad: of given tool axes, within this of the pole a rotary axis stays.
+/// rad: for given tool axes, a rotary axis stays where it is within this angle of the pole.
 constexpr double kVectorAtPole = 1e-9;
 
 std::string system_name(int system) {
@@ -28,7 +28,7 @@ std::string system_name(int system) {
 
 }  // namespace
 
-// --- What is known of where the tip is ---
+// --- Knowledge of the tip's position ---
 
 void SinumerikInterpreter::check_length(const Vec3& at) const {
   for (int k = 0; k < 3; ++k)
@@ -48,22 +48,21 @@ void SinumerikInterpreter::lose_place() {
   leaving_.reset();
 }
 
-/// The one way in which a row comes to be whose place in the part depends on the machine.
+/// The only place that creates a row whose position in the part depends on the machine.
 void SinumerikInterpreter::leave_part(const NcRowWords& words) {
   const bool begun = rows_->begun();
   if (begun && !std::exchange(position_noted_, true))
-    note(
-        "machine position",
-        "a position of the machine (SUPA, G53, G153, G74, CYCLE800, or rotary axes that turn without TRAORI): where it "
-        "is in the part is not in the program; the moves there, and from there to the next position in the part, are "
-        "neither cut nor compared");
+    note("machine position",
+         "a machine position (SUPA, G53, G153, G74, CYCLE800, or rotary axes that turn without TRAORI): where it is in "
+         "the part is not in the program; the moves there, and from there to the next position in the part, are "
+         "neither cut nor compared");
   leaving_.reset();
   rows_->at_machine(words);
 }
 
-/// Where rapids end before X, Y and Z have all been named is not known; a feed move takes the others for 0.
+/// Rapids before X, Y and Z have all been programmed have an unknown end; a feed move takes the missing ones as 0.
 void SinumerikInterpreter::begin_or_wait(bool rapid) {
-  constexpr std::size_t kMax = 1000;  // rows; a program that goes on without one of them has taken it for 0
+  constexpr std::size_t kMax = 1000;  // rows; a program that keeps moving without one of them assumes 0
   const bool named = !has_stand(stand_, Stand::Start);
   begun_ = named || !rapid || rows_->held() > kMax;
   if (begun_)
@@ -75,14 +74,14 @@ void SinumerikInterpreter::begin_or_wait(bool rapid) {
 void SinumerikInterpreter::note_start() {
   const std::string axes = axes_of(stand_, Stand::Start, ", ");
   if (!axes.empty())
-    note("start", axes + " has not been named before the first feed move: taken for 0 at the start of the program");
+    note("start", axes + " was not programmed before the first feed move: assumed to be 0 at the start of the program");
 }
 
-/// Before every motion in program coordinates. Whether it ends in the part; notes what is assumed of it.
+/// Called before every motion in program coordinates: whether it ends in the part. Notes the assumptions.
 bool SinumerikInterpreter::moves_in_part(const NcRowWords& words) {
   if (!units_said_ && !units_given_)
     note("units",
-         "none of G70, G71, G700 and G710 before the first move: taken for the control's own unit, millimetres; option "
+         "none of G70, G71, G700 and G710 before the first move: taken as the control's own unit, millimetres; option "
          "units");
   units_said_ = true;
   if (!begun_) begin_or_wait(words.rapid);
@@ -92,19 +91,19 @@ bool SinumerikInterpreter::moves_in_part(const NcRowWords& words) {
   if (!away && upright) check_system();
   if (words.rapid) return upright && !away;
   if (away && !std::exchange(away_noted_, true))
-    note("coordinates",
-         "a feed move while " + axes_away() + " is at a position of the machine: neither cut nor checked");
+    note("coordinates", "a feed move while " + axes_away() + " is at a machine position: neither cut nor checked");
   if (!std::exchange(start_noted_, true)) note_start();
   return !away;
 }
 
-/// How far a work offset is from the first one is not in the program.
+/// The distance of a work offset from the first one is not in the program.
 void SinumerikInterpreter::check_system() {
   if (!first_system_) first_system_ = system_;
   if (system_ == *first_system_) return;
-  note_once(-100 - system_, "work offset",
-            system_name(system_) + ": how far it is from " + system_name(*first_system_) +
-                " is not in the program, taken for 0; read a program for each of them, or write the distance as TRANS");
+  note_once(
+      -100 - system_, "work offset",
+      system_name(system_) + ": how far it is from " + system_name(*first_system_) +
+          " is not in the program, assumed to be 0; read a program for each of them, or write the distance as TRANS");
 }
 
 void SinumerikInterpreter::keep_tip(bool on) {
@@ -113,7 +112,7 @@ void SinumerikInterpreter::keep_tip(bool on) {
   if (!on && !is_upright()) lose_place();
 }
 
-/// Whether the rotary axes stand so that X Y Z are the tip's place without TRAORI.
+/// Whether the rotary axes stand such that X Y Z are the tip without TRAORI.
 bool SinumerikInterpreter::is_upright() const {
   const Machine& machine = rows_->machine();
   if (!swivel_joints_)
@@ -215,7 +214,7 @@ void SinumerikInterpreter::line(const SinumerikWords& words, bool rapid) {
   if (rotary != rotary_ && !keeps_tip_) {
     if (!rapid)
       place_.fail(
-          "a feed move in which rotary axes turn without TRAORI: the tip's way depends on the machine; have the post "
+          "a feed move in which rotary axes turn without TRAORI: the tip's path depends on the machine; have the post "
           "write TRAORI");
     lose_place();
     rotary_ = rotary;
@@ -241,10 +240,10 @@ void SinumerikInterpreter::move_to(const Vec3& to, const Joints& rotary, const N
   if (to != from && !is_away()) leaving_ = glm::normalize(to - from);
 }
 
-/// The tool's axis by A3 B3 C3, of which those that are not there are 0.
+/// The tool's axis by A3 B3 C3; missing ones are 0.
 void SinumerikInterpreter::vector_line(const SinumerikWords& words, bool rapid) {
   if (!keeps_tip_) place_.fail("A3= B3= C3= without TRAORI: have the post write TRAORI before");
-  if (words.has_rotary()) place_.fail("A3= B3= C3= beside rotary axes");
+  if (words.has_rotary()) place_.fail("A3= B3= C3= together with rotary axes");
   if (machine_vectors_)
     place_.fail("A3= B3= C3= under ORIMKS are in coordinates of the machine: have the post write ORIWKS");
   const Vec3 given(words.vector[0].value_or(0), words.vector[1].value_or(0), words.vector[2].value_or(0));
@@ -268,7 +267,7 @@ void SinumerikInterpreter::vector_line(const SinumerikWords& words, bool rapid) 
   if (to != from && !is_away()) leaving_ = glm::normalize(to - from);
 }
 
-/// SUPA, G153, G53: from the machine's zero.
+/// SUPA, G153, G53: relative to the machine's zero.
 void SinumerikInterpreter::to_machine(const SinumerikWords& words, bool rapid) {
   const NcRowWords row = row_words(rapid);
   const Joints rotary = rotary_target(words);

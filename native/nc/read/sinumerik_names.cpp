@@ -1,4 +1,4 @@
-// Names in the blocks of a Sinumerik program: commands that switch something, and those that are refused.
+// Names in blocks of Sinumerik programs: commands that switch modes, and rejected names.
 #include <algorithm>
 #include <iterator>
 #include <string>
@@ -9,7 +9,7 @@ namespace riffler::nc {
 
 namespace {
 
-/// Commands for how the control drives the path, shows, looks ahead and watches its limits: they move nothing.
+/// Commands without motion: path control, display, look-ahead, limits.
 constexpr std::string_view kQuiet[] = {
     "FFWON",      "FFWOF",     "SOFT",     "SOFTA",   "BRISK",    "BRISKA",    "DRIVE",    "DRIVEA",     "COMPON",
     "COMPCURV",   "COMPCAD",   "COMPSURF", "COMPOF",  "FNORM",    "FLIN",      "FCUB",     "DYNNORM",    "DYNROUGH",
@@ -22,7 +22,7 @@ constexpr std::string_view kQuiet[] = {
     "SPCON",      "PAROTOF",   "PTPOF",    "CP",      "CYCLE832", "WORKPIECE", "MSG",      "SETPIECE",   "FENDNORM",
     "LFOF",       "LFON",      "TOFFOF",   "SPIF1",   "SPIF2",    "ICYCOF",    "ICYCON",   "DELAYFSTON", "DELAYFSTOF"};
 
-/// A name, or with * what names begin with.
+/// A name, or with * a prefix of names.
 struct Refused {
   std::string_view name;
   const char* why;
@@ -31,7 +31,7 @@ struct Refused {
     return name.ends_with('*') ? other.starts_with(name.substr(0, name.size() - 1)) : other == name;
   }
 };
-/// Statements that are read in blocks of their own.
+/// Statements with blocks of their own.
 constexpr std::string_view kBlocks[] = {"TRANS", "ATRANS", "ROT",  "AROT",  "CYCLE800", "HOLES1", "HOLES2",
                                         "MCALL", "CALL",   "GOTO", "GOTOF", "GOTOB",    "IF",     "DEF"};
 constexpr const char* kWriteMoves = "have the CAM system write its moves";
@@ -59,23 +59,21 @@ constexpr Refused kRefused[] = {
     {"ORIVIRT", "virtual angles of the tool are not read: have the CAM system write A3= B3= C3="},
     {"PTP", "point-to-point moves are not read: have the CAM system write G0 or G1"},
     {"DIAM*", "diameters (turning) are not read"},
-    {"SCALE", "scaling is not read: have the CAM system write the moves as they are to be"},
-    {"ASCALE", "scaling is not read: have the CAM system write the moves as they are to be"},
-    {"MIRROR", "mirroring is not read: have the CAM system write the moves as they are to be"},
-    {"AMIRROR", "mirroring is not read: have the CAM system write the moves as they are to be"},
+    {"SCALE", "scaling is not read: have the CAM system write the final moves"},
+    {"ASCALE", "scaling is not read: have the CAM system write the final moves"},
+    {"MIRROR", "mirroring is not read: have the CAM system write the final moves"},
+    {"AMIRROR", "mirroring is not read: have the CAM system write the final moves"},
     {"ROTS", "solid angles are not read: have the CAM system write ROT and AROT"},
     {"AROTS", "solid angles are not read: have the CAM system write ROT and AROT"},
     {"CROTS", "solid angles are not read: have the CAM system write ROT and AROT"},
     {"PRESET*", "it sets the machine's coordinates: have the CAM system write TRANS"},
-    {"TOFFON", "an offset of the tool that changes as it goes is not read: take it out"},
+    {"TOFFON", "a tool offset that changes along the path is not read: take it out"},
     {"CLGON", "centreless grinding is not read"},
-    {"WHEN*",
-     "actions beside the program (WHEN ... DO) are not read: what they do depends on the machine; take it out"},
-    {"EVERY",
-     "actions beside the program (EVERY ... DO) are not read: what they do depends on the machine; take it out"},
-    {"DO", "actions beside the program (DO) are not read: what they do depends on the machine; take it out"},
-    {"IDS", "actions beside the program (IDS=) are not read: what they do depends on the machine; take it out"},
-    {"ID", "actions beside the program (ID=) are not read: what they do depends on the machine; take it out"},
+    {"WHEN*", "synchronised actions (WHEN ... DO) are not read: what they do depends on the machine; take it out"},
+    {"EVERY", "synchronised actions (EVERY ... DO) are not read: what they do depends on the machine; take it out"},
+    {"DO", "synchronised actions (DO) are not read: what they do depends on the machine; take it out"},
+    {"IDS", "synchronised actions (IDS=) are not read: what they do depends on the machine; take it out"},
+    {"ID", "synchronised actions (ID=) are not read: what they do depends on the machine; take it out"},
     {"SETAL", "it stops the program with an alarm: what it checks is not met"},
     {"POCKET*", kWriteMoves},
     {"SLOT*", kWriteMoves},
@@ -90,7 +88,7 @@ constexpr Refused kRefused[] = {
 
 }  // namespace
 
-/// A name in a block, with or without brackets behind it, which is no variable.
+/// A name in a block that is no variable, with or without brackets after it.
 void SinumerikInterpreter::named(const std::string& name, SinumerikCursor& cursor, const SinumerikWords& words) {
   if (switches(name)) {
     if (cursor.take_if("(")) cursor.skip_brackets();
@@ -128,7 +126,7 @@ void SinumerikInterpreter::named(const std::string& name, SinumerikCursor& curso
   call(name, cursor, times);
 }
 
-/// Commands that change what follows.
+/// Commands that affect later blocks.
 bool SinumerikInterpreter::switches(const std::string& name) {
   if (name == "TRAORI")
     keep_tip(true);
@@ -149,7 +147,7 @@ bool SinumerikInterpreter::switches(const std::string& name) {
   else if (name == "ORIMKS")
     by_system_ = Turning::Axes, machine_vectors_ = true;
   else if (name == "RTLIOF")
-    note_once(-10, "rapid", "RTLIOF: each axis goes at its own rate in rapids, which are taken for straight lines");
+    note_once(-10, "rapid", "RTLIOF: each axis goes at its own rate in rapids, which are taken as straight lines");
   else
     return false;
   return true;

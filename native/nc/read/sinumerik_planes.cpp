@@ -1,4 +1,4 @@
-// Frames and tilted planes of a Sinumerik program: TRANS, ROT, CYCLE800.
+// Frames and tilted planes of Sinumerik programs: TRANS, ROT, CYCLE800.
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -13,7 +13,7 @@ namespace riffler::nc {
 
 namespace {
 
-/// rad: within this of the pole a rotary axis stays.
+/// rad: within this angle of the pole a rotary axis stays where it is.
 constexpr double kPlaneAtPole = 1e-6;
 
 Mat3 turn_about(std::size_t axis, double degrees) {
@@ -29,7 +29,7 @@ bool SinumerikInterpreter::execute_frame(const std::string& word, SinumerikCurso
   const bool replaces = word == "TRANS" || word == "ROT";
   const bool refused = word == "MIRROR" || word == "SCALE" || word == "AMIRROR" || word == "ASCALE";
   if (!adds && !replaces && !refused) return false;
-  // Each of them without words takes back all of TRANS, ROT, SCALE and MIRROR.
+  // Any of them without words cancels all of TRANS, ROT, SCALE and MIRROR.
   if (cursor.peek() == '\0' && (refused || replaces)) {
     use_frames(swivel_, {});
     return true;
@@ -65,11 +65,11 @@ SinumerikFrame SinumerikInterpreter::frame_of(const std::string& word, Sinumerik
   if (words.plane_angle) of[static_cast<int>(plane_[2])] = *words.plane_angle;
   for (int k = 0; k < 3; ++k)
     if (!(std::abs(of[k]) <= kMaxAngle)) place_.fail("an angle of " + word + " is out of range");
-  // Of several: about Z, then about the new Y, then about the new X.
+  // For several angles: about Z, then the new Y, then the new X.
   return {spatial_turn(of), Vec3(0)};
 }
 
-/// The tool stays where it is.
+/// Changes the frames; the tool does not move.
 void SinumerikInterpreter::use_frames(const SinumerikFrame& swivel, const SinumerikFrame& programmed) {
   const SinumerikFrame frame = swivel.with(programmed);
   swivel_ = swivel, programmed_ = programmed;
@@ -81,7 +81,7 @@ void SinumerikInterpreter::use_frames(const SinumerikFrame& swivel, const Sinume
   check_length(at_), check_length(frame_.shift);
   leaving_.reset();
   if (!turns) return;
-  // Each coordinate of the new frame comes from all of those before.
+  // Each coordinate of the new frame depends on all previous ones.
   if (is_away()) lose_place();
   if (has_stand(stand_, Stand::Start)) stand_.fill(Stand::Start);
 }
@@ -108,8 +108,8 @@ void SinumerikInterpreter::swivel(SinumerikCursor& cursor) {
   const int state = whole(2), mode = whole(3), adds = state % 10;
   if (adds > 1 || state / 100 % 10 != 0 || state / 10'000 % 10 != 0)
     place_.fail(std::string("CYCLE800 with state ") + std::to_string(state) +
-                " is not read: new or additional planes that turn the axes are; have the post write such ones");
-  // Which axis each angle turns about: three pairs of bits, the first in the lowest.
+                " is not read: new or additional planes that turn the axes are; have the post write those");
+  // The axis of each angle: three pairs of bits, the first pair lowest.
   const std::size_t order[] = {static_cast<std::size_t>(mode & 3), static_cast<std::size_t>(mode >> 2 & 3),
                                static_cast<std::size_t>(mode >> 4 & 3)};
   if (mode >= 64 || std::ranges::count(order, std::size_t{0}) > 0 || order[0] == order[1] || order[1] == order[2] ||
@@ -122,7 +122,7 @@ void SinumerikInterpreter::swivel(SinumerikCursor& cursor) {
     turn = turn * turn_about(order[k] - 1, of(7 + k));
   }
   const Vec3 before = unit_ * Vec3(of(4), of(5), of(6)), after = unit_ * Vec3(of(10), of(11), of(12));
-  // Without a direction the plane is set, and the axes stay.
+  // Without a direction, sets the plane but does not move the axes.
   swivel_to(turn, before, after, adds == 1, retracts, of(13) != 0);
 }
 
@@ -148,7 +148,7 @@ void SinumerikInterpreter::swivel_to(const Mat3& turn, const Vec3& before, const
   leave_part({true, 0, false, turning_ * speed_, tool_, calls_.front().line});
 }
 
-/// Back to coordinates without a plane. Whether the axes turn back then depends on how the machine is set up.
+/// Returns to coordinates without a plane. Whether the axes then turn back depends on the machine's setup.
 void SinumerikInterpreter::unswivel(bool retracts) {
   const bool moves = retracts || !is_upright() || swivel_joints_.has_value();
   const bool turned =

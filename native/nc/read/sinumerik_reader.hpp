@@ -1,5 +1,5 @@
 // Programs for Sinumerik 840D and 828D (Siemens, Programming Manual Fundamentals; Cycles), as CAM systems write them,
-// → Program.
+// to Program.
 #pragma once
 
 #include <filesystem>
@@ -11,9 +11,9 @@
 
 namespace riffler::nc {
 
-/// docs/reading-nc.md says what is read; FormatError naming the line for everything else. Poses are in the coordinates
-/// of the first work offset that the program moves in, without TRANS, ROT and tilted planes. `folder`: where files of
-/// subprograms are sought; none where it is empty.
+/// docs/reading-nc.md lists what is supported; throws FormatError naming the line for everything else. Poses are in the
+/// coordinates of the first work offset in which the program moves, without TRANS, ROT and tilted planes. `folder`:
+/// searched for subprogram files; empty: none.
 Program parse_sinumerik(std::string_view text, const std::string& file, const ReadOptions& options = {},
                         const std::filesystem::path& folder = {});
 

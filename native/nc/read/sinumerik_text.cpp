@@ -39,7 +39,7 @@ bool has_jump(SinumerikCursor cursor) {
   return false;
 }
 
-/// What is not a block: the name of a program, "%_N_NAME_MPF", or "%" with a number.
+/// Lines that are no blocks: the name of a program, "%_N_NAME_MPF", or "%" with a number.
 std::optional<std::string> header_name(std::string_view line) {
   const std::size_t first = line.find_first_not_of(" \t");
   if (first == line.npos || line[first] != '%') return std::nullopt;
@@ -93,7 +93,7 @@ class Routines {
     if (block.text.starts_with('/')) {
       block.optional = true;
       block.text.remove_prefix(1);
-      skip("0123456789");  // of ten levels
+      skip("0123456789");  // one of ten skip levels
       skip(" \t");
     }
     std::vector<std::string> labels;
@@ -112,7 +112,7 @@ class Routines {
     routine.blocks.push_back(block);
   }
 
-  /// "N10", or ":10" of a main block.
+  /// "N10", or ":10" for a main block.
   static void take_number(SinumerikBlock& block, std::vector<std::string>& labels) {
     const std::string_view text = block.text;
     if (text.size() < 2 || (NcCursor::upper(text[0]) != 'N' && text[0] != ':') || !NcCursor::is_digit(text[1])) return;
@@ -139,7 +139,7 @@ class Routines {
     const auto found = std::ranges::find(kStructures, word, &KeywordName::name);
     if (found == std::end(kStructures)) return;
     if (found->keyword == Keyword::If && has_jump(cursor)) return;
-    if (found->keyword == Keyword::Repeat && cursor.peek() != '\0') return;  // of a part with labels
+    if (found->keyword == Keyword::Repeat && cursor.peek() != '\0') return;  // repeats a part between labels
     block.keyword = found->keyword;
     std::vector<SinumerikBlock>& blocks = routines_.back().blocks;
     const std::size_t here = blocks.size();
@@ -177,7 +177,7 @@ class Routines {
   NcSource source_;
   NcPlace& place_;
   std::vector<SinumerikRoutine> routines_;
-  std::vector<std::size_t> open_;  // blocks of control structures
+  std::vector<std::size_t> open_;  // open control structures, by block
 };
 
 }  // namespace

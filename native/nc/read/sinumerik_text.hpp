@@ -1,5 +1,5 @@
-// Text of a Sinumerik program → routines (the main program, and subprograms in the same file), blocks, labels, and
-// where control structures end.
+// Splits the text of a Sinumerik program into routines (the main program and subprograms in the same file), blocks and
+// labels, and pairs control structures.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace riffler::nc {
 
-/// Whether a text says that it is such a program: its first lines have "%_N_..." or ";$PATH=".
+/// Whether a text is marked as a Sinumerik program: its first lines contain "%_N_..." or ";$PATH=".
 bool begins_sinumerik(NcSource& source);
 
 enum class SinumerikKeyword : std::uint8_t {
@@ -34,12 +34,12 @@ enum class SinumerikKeyword : std::uint8_t {
 
 struct SinumerikBlock {
   int line = 0;           ///< 1-based
-  bool optional = false;  ///< behind a /
+  bool optional = false;  ///< marked with /
   std::string_view text;  ///< without its number and label
-  /// Of a control structure. An IF with a jump in its block is none.
+  /// Keyword of a control structure. An IF with a jump in its block is none.
   SinumerikKeyword keyword = SinumerikKeyword::None;
-  /// The block in which that part of the structure ends: of IF its ELSE or ENDIF, of ELSE its ENDIF, of a loop's first
-  /// block its last, and of that the first.
+  /// The block that ends this part of the structure: for IF its ELSE or ENDIF, for ELSE its ENDIF, for the first block
+  /// of a loop the last, and for the last the first.
   std::size_t partner = 0;
 };
 
@@ -47,13 +47,13 @@ struct SinumerikRoutine {
   std::string name;  ///< upper case, without _N_ and _SPF
   std::string file;  ///< base name
   std::vector<SinumerikBlock> blocks;
-  /// Labels, and numbers of blocks ("N100"), with the blocks that have them.
+  /// Labels and block numbers ("N100") with the blocks that have them.
   std::map<std::string, std::vector<std::size_t>, std::less<>> labels;
-  std::shared_ptr<const std::string> text;  ///< of a file of its own
+  std::shared_ptr<const std::string> text;  ///< text of a separate file
 };
 
-/// The routines of a text, the main program first. Keeps `text`. `place` is where it is, for messages: FormatError for
-/// control structures that do not pair.
+/// The routines of a text, the main program first. Keeps a reference to `text`. `place` is the position for messages.
+/// Throws FormatError for control structures that do not pair.
 std::vector<SinumerikRoutine> sinumerik_routines(std::string_view text, NcPlace& place);
 
 /// "_N_HOLE_SPF", "hole.spf" → "HOLE".

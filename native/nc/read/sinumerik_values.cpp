@@ -14,7 +14,7 @@ namespace riffler::nc {
 namespace {
 
 constexpr int kLastParameter = 9999, kDeepestExpression = 100;
-/// Of numbers that count as equal, what they may differ by, as a share of the larger.
+/// Relative difference, as a fraction of the larger number, up to which numbers count as equal.
 constexpr double kEqualShare = 1e-12;
 
 struct Function {
@@ -52,7 +52,7 @@ std::string_view base_of(std::string_view element) {
   return element.substr(0, element.find('['));
 }
 
-/// Counts how deep the recursion is.
+/// Tracks the recursion depth.
 struct Deeper {
   explicit Deeper(int& depth) : count(++depth) {}
   Deeper(const Deeper&) = delete;
@@ -118,7 +118,7 @@ std::optional<double> SinumerikValues::get(const std::string& element) const {
   const Variable* array = find(base_of(element));
   if (!array || array->kind == Kind::Text)
     place_.fail(element + " is not defined: DEF REAL " + std::string(base_of(element)) + "=... before it is used");
-  return array->value;  // of an array what all elements have at first
+  return array->value;  // initial value of all elements of an array
 }
 
 void SinumerikValues::assign(const std::string& element, std::optional<double> value) {
@@ -159,7 +159,7 @@ double SinumerikValues::value(SinumerikCursor& cursor, std::string_view what) {
   const std::optional<double> out = expression(cursor);
   if (!out)
     place_.fail("the value of " + std::string(what) +
-                " is known to the control only (a system variable, $...): write what it is at your machine");
+                " is known only to the control (a system variable, $...): write what it is at your machine");
   return *out;
 }
 
@@ -190,7 +190,7 @@ std::optional<double> SinumerikValues::comparison(SinumerikCursor& cursor) {
     const std::optional<double> right = logic(cursor, 0, combined);
     if (combined)
       place_.fail(
-          "a comparison beside AND, OR or XOR without brackets: these bind more tightly; put each comparison in "
+          "a comparison combined with AND, OR or XOR without brackets: these bind more tightly; put each comparison in "
           "brackets");
     left = both(left, right, [&](double a, double b) {
       const bool equal = std::abs(a - b) <= kEqualShare * std::max(std::abs(a), std::abs(b));
@@ -200,7 +200,7 @@ std::optional<double> SinumerikValues::comparison(SinumerikCursor& cursor) {
   }
 }
 
-/// OR, XOR and AND, which bind in this order, AND the most tightly.
+/// OR, XOR and AND, from loosest to tightest.
 std::optional<double> SinumerikValues::logic(SinumerikCursor& cursor, int level, bool& used) {
   static constexpr std::string_view kWords[] = {"OR", "XOR", "AND"};
   if (level == 3) return sum(cursor);

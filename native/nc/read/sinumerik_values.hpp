@@ -1,4 +1,4 @@
-// Variables of Sinumerik programs, and what is calculated with them.
+// Variables of Sinumerik programs and their arithmetic.
 #pragma once
 
 #include <cstdint>
@@ -13,8 +13,8 @@
 
 namespace riffler::nc {
 
-/// R parameters, and variables that DEF and PROC define, in scopes of subprograms. A value may be one that only the
-/// control knows (system variables, $...): it may be assigned, but not used.
+/// R parameters, and variables defined by DEF and PROC, in scopes of subprograms. A value may be known only to the
+/// control (system variables, $...): it may be assigned, but not used.
 class SinumerikValues {
  public:
   enum class Kind : std::uint8_t { Real, Whole, Truth, Text };
@@ -24,29 +24,29 @@ class SinumerikValues {
   void enter() { scopes_.emplace_back(); }
   void leave() { scopes_.pop_back(); }
 
-  /// `kind` of "REAL", "INT", "BOOL", "STRING", "CHAR"; nothing for other types.
+  /// `kind` of "REAL", "INT", "BOOL", "STRING", "CHAR"; no value for other types.
   static std::optional<Kind> kind_of(std::string_view type);
   void define(const std::string& name, Kind kind, std::optional<double> value);
   void define_text(const std::string& name, const std::string& text);
   /// Whether `name` is a variable, R parameters included.
   bool knows(const std::string& name) const;
-  /// The text of a variable of that kind.
+  /// The text of a text variable.
   std::optional<std::string> text(const std::string& name) const;
 
-  /// Takes the indices "[...]" of a variable, where there are any: the name of the element.
+  /// Reads the indices "[...]" of a variable, if any, and returns the name of the element.
   std::string element(const std::string& name, SinumerikCursor& cursor);
-  /// FormatError for a name that is not defined.
+  /// Assigns a value. Throws FormatError for an undefined name.
   void assign(const std::string& element, std::optional<double> value);
-  /// Takes what follows the = of an assignment.
+  /// Reads and assigns the value after the = of an assignment.
   void assign(const std::string& element, SinumerikCursor& cursor);
 
-  /// Operators bind as on the control: NOT; * / DIV MOD; + -; AND; XOR; OR; comparisons. Comparisons beside AND, OR or
-  /// XOR without brackets are a FormatError, for they do not mean what they seem to. Angles are degrees. Nothing where
-  /// only the control knows the value; FormatError where it is not finite.
+  /// Reads an expression with the control's precedence: NOT; * / DIV MOD; + -; AND; XOR; OR; comparisons. A comparison
+  /// combined with AND, OR or XOR without brackets throws FormatError, since it does not mean what it seems to. Angles
+  /// are in degrees. No value if only the control knows it. Throws FormatError if the value is not finite.
   std::optional<double> expression(SinumerikCursor& cursor);
-  /// The same, FormatError where the value is not known. `what` stands in messages.
+  /// As above, but throws FormatError if the value is unknown. `what` appears in messages.
   double value(SinumerikCursor& cursor, std::string_view what);
-  /// A whole number, or the same.
+  /// An integer, otherwise the same.
   int whole(SinumerikCursor& cursor, std::string_view what);
   bool condition(SinumerikCursor& cursor);
 
@@ -68,10 +68,10 @@ class SinumerikValues {
   std::optional<double> function(const std::string& name, SinumerikCursor& cursor);
   double checked(double value) const;
 
-  int depth_ = 0;  // of brackets and signs within each other
+  int depth_ = 0;  // nesting depth of brackets and signs
   const NcPlace& place_;
   std::map<int, std::optional<double>> parameters_;  // R
-  std::vector<Scope> scopes_;                        // of the main program first
+  std::vector<Scope> scopes_;                        // the main program first
 };
 
 }  // namespace riffler::nc

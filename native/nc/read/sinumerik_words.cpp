@@ -21,11 +21,11 @@ constexpr MeaningName kMeanings[] = {
     {"ACN", SinumerikCoordinate::Meaning::Negative},
 };
 
-/// Parameters of how the path is smoothed, and of feeds in corners, that move nothing.
+/// Parameters without motion: smoothing of the path, and feeds in corners.
 constexpr std::string_view kQuietParameters[] = {"ADIS",  "ADISPOS", "CTOL",    "OTOL",   "ATOL",
                                                  "STOLF", "DISC",    "FRC",     "FRCM",   "OVR",
                                                  "LIMS",  "OVRRAP",  "ACCLIMA", "FPRAON", "COMPTOL"};
-/// Parameters that a program may set back to 0, and that would change the tool's path otherwise.
+/// Parameters that a program may reset to 0, but that would otherwise change the tool path.
 constexpr std::string_view kPathParameters[] = {"CHF", "CHR", "RND", "RNDM", "OFFN", "LEAD", "TILT", "TCARR", "THETA"};
 
 bool names_axis(char c) {
@@ -122,13 +122,13 @@ void SinumerikWords::take_extended(char letter, const std::string& extension, Si
     cursor.fail(name + "= is not read: have the post write the tool's axis as A3= B3= C3=, or the rotary axes");
   if (letter == 'M' || letter == 'S') {
     const int spindle = extension.empty() ? 0 : std::stoi(extension.substr(0, 3));
-    if (letter == 'S' && spindle > 1) return;  // of another spindle
+    if (letter == 'S' && spindle > 1) return;  // another spindle
     if (letter == 'S') return once(speed, value, "S", cursor);
     if (!(value >= 0 && value <= kMaxNumber && value == std::floor(value))) cursor.fail("there is no such M function");
     functions.push_back({static_cast<int>(value), spindle});
     return;
   }
-  if (letter == 'H') return;  // for the machine's own PLC
+  if (letter == 'H') return;  // for the machine's PLC
   if (!extension.empty() && letter != 'T') cursor.fail("unknown word " + name + "=: correct it, or take it out");
   take_number(letter, value, cursor);
 }
@@ -146,7 +146,7 @@ void SinumerikWords::take_number(char letter, double value, SinumerikCursor& cur
       return;
     case 'M':
       functions.push_back({whole(kMaxNumber), 0});
-      // What a function of the machine is given. Those of every control have numbers of two digits.
+      // Arguments of a machine function. The functions of every control have two-digit numbers.
       if (value > 99 && cursor.take_if("(")) cursor.skip_brackets();
       return;
     case 'F':
@@ -199,7 +199,7 @@ void SinumerikWords::take_coordinate(SinumerikCoordinate& to, const std::string&
   to = {values.value(cursor, name), SinumerikCoordinate::Meaning::Modal, true};
 }
 
-/// Parameters with names of several letters, variables, and what `other` knows.
+/// Parameters with names of several letters, variables, and names handled by `other`.
 void SinumerikWords::take_name(SinumerikCursor& cursor, SinumerikValues& values, const Other& other) {
   SinumerikCursor ahead = cursor;
   const std::string name = ahead.name();
@@ -228,7 +228,7 @@ void SinumerikWords::take_parameter(const std::string& name, SinumerikCursor& cu
   if (name == "TURN") return once(turns, values.value(cursor, name), name, cursor);
   if (name == "RPL") return once(plane_angle, values.value(cursor, name), name, cursor);
   if (name == "FB") return once(block_feed, values.value(cursor, name), name, cursor);
-  if (name == "SPOS" || name == "SPOSA") {  // the spindle stands
+  if (name == "SPOS" || name == "SPOSA") {  // the spindle stops
     SinumerikCoordinate angle;
     take_coordinate(angle, name, cursor, values);
     functions.push_back({19, 0});
@@ -240,7 +240,7 @@ void SinumerikWords::take_parameter(const std::string& name, SinumerikCursor& cu
     return;
   }
   if (name.starts_with("$TC_") || name.starts_with("$AC_TIMER") || name.starts_with("$AC_MARKER") ||
-      name.starts_with("$A_OUT") || name.starts_with("$A_DB")) {  // of the tool's table, clocks, signals
+      name.starts_with("$A_OUT") || name.starts_with("$A_DB")) {  // tool table, clocks, signals
     values.expression(cursor);
     return;
   }

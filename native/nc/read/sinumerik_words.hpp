@@ -14,10 +14,10 @@
 
 namespace riffler::nc {
 
-/// A coordinate as it stands: in the program's unit, or degrees.
+/// A coordinate as written: in the program's unit, or degrees.
 struct SinumerikCoordinate {
   enum class Meaning : std::uint8_t {
-    Modal,        ///< by G90 and G91, or from an arc's start
+    Modal,        ///< by G90 and G91, or relative to an arc's start
     Absolute,     ///< AC()
     Incremental,  ///< IC()
     Shortest,     ///< DC()
@@ -31,17 +31,17 @@ struct SinumerikCoordinate {
   bool is_absolute(bool modal) const { return meaning == Meaning::Modal ? modal : meaning != Meaning::Incremental; }
 };
 
-/// A code with what follows its = ("M1=3" is the M function 3 of spindle 1).
+/// A code with the value after its = ("M1=3" is M function 3 of spindle 1).
 struct SinumerikCode {
   int number = 0, spindle = 0;  ///< 0: the master spindle
 };
 
 class SinumerikWords {
  public:
-  /// What a name stands for that is no word of its own: it has been taken.
+  /// Handles a name that is no word; the name has been consumed.
   using Other = std::function<void(const std::string& name, SinumerikCursor& cursor)>;
 
-  /// Takes the words to the end of the block, assignments included. FormatError.
+  /// Reads the words up to the end of the block, including assignments. Throws FormatError.
   void read(SinumerikCursor& cursor, SinumerikValues& values, const Other& other);
 
   std::array<SinumerikCoordinate, 6> axes;                    ///< X Y Z A B C
@@ -53,14 +53,14 @@ class SinumerikWords {
   std::string tool_name;
   std::vector<int> codes;  ///< G
   std::vector<SinumerikCode> functions;
-  bool homes = false;  ///< axes as the machine calls them: X1=0, of G74 and G75
+  bool homes = false;  ///< axes with their machine names: X1=0, for G74 and G75
 
   bool has_linear() const { return axes[0].given || axes[1].given || axes[2].given; }
   bool has_rotary() const { return axes[3].given || axes[4].given || axes[5].given; }
   bool has_centre() const { return centre[0].given || centre[1].given || centre[2].given; }
   bool has_vector() const { return vector[0] || vector[1] || vector[2]; }
   bool has_code(int code) const;
-  /// Whether there is none, but for assignments, which are done as they are read.
+  /// Whether there are no words, except for assignments, which take effect while reading.
   bool empty() const;
 
  private:

@@ -1,4 +1,4 @@
-// What is known of where the tip is.
+// What is known of the tip's position.
 #pragma once
 
 #include <algorithm>
@@ -9,21 +9,21 @@
 
 namespace riffler::nc {
 
-/// Of a coordinate of the tip.
+/// Knowledge of one coordinate of the tip.
 enum class TipStand : std::uint8_t {
-  Given,    ///< the program named it
-  Start,    ///< as before the program, taken for 0
-  Machine,  ///< where in the part it is depends on the machine
+  Given,    ///< programmed
+  Start,    ///< as before the program: taken as 0
+  Machine,  ///< its place in the part depends on the machine
 };
 
-/// Of X Y Z.
+/// One entry each for X, Y and Z.
 using TipStands = std::array<TipStand, 3>;
 
 inline bool has_stand(const TipStands& stands, TipStand stand) {
   return std::ranges::find(stands, stand) != stands.end();
 }
 
-/// The letters of those that are `stand`, with `apart` between them.
+/// The letters of the axes in state `stand`, separated by `apart`.
 inline std::string axes_of(const TipStands& stands, TipStand stand, std::string_view apart = "") {
   std::string out;
   for (std::size_t k = 0; k < stands.size(); ++k)

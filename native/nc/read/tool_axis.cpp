@@ -6,7 +6,7 @@
 namespace riffler::nc {
 
 Joints joints_holding(const Machine& machine, const Vec3& axis, const Joints& near, double free) {
-  constexpr double kBeyond = 1e9;  // more than any way
+  constexpr double kBeyond = 1e9;  // larger than any distance
   std::optional<Joints> best;
   double best_way = 0;
   for (int branch = 0; branch < machine.branches(); ++branch) {

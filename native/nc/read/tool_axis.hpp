@@ -1,16 +1,16 @@
-// Which of a machine's rotary positions holds a tool axis.
+// Selects the rotary position of a machine that holds a tool axis.
 #pragma once
 
 #include "nc/machine/machine.hpp"
 
 namespace riffler::nc {
 
-/// The rotary axes that hold `axis` (unit, part coordinates) and are reached from `near` by the shortest way, of those
-/// within the machine's limits where there are any; X Y Z without meaning. `free`: Machine::joints.
-/// std::invalid_argument where the machine cannot hold it.
+/// The rotary axes that hold `axis` (unit, part coordinates) with the shortest path from `near`, within the machine's
+/// limits if possible; X Y Z have no meaning. `free`: see Machine::joints. Throws std::invalid_argument if the machine
+/// cannot hold the axis.
 Joints joints_holding(const Machine& machine, const Vec3& axis, const Joints& near, double free);
 
-/// Whether an angle (deg) is a whole number of turns, but for what printed angles are off.
+/// Whether an angle (deg) is a whole number of turns, up to the rounding of printed angles.
 bool is_whole_turn(double degrees);
 
 }  // namespace riffler::nc

@@ -36,7 +36,7 @@ std::string compensation_refused(const std::string& code) {
 }
 
 std::string compensation_ignored(const std::string& code) {
-  return code + " is ignored: points are taken for those of the tool's centre";
+  return code + " is ignored: points are taken as those of the tool's centre";
 }
 
 std::string diameter_unknown(const std::string& code, const std::string& whose, int number) {

@@ -1,4 +1,4 @@
-// Diameters of tools for cutter radius compensation: the reading option "tool_diameters".
+// Tool diameters for cutter radius compensation: the reading option "tool_diameters".
 #pragma once
 
 #include <cstdint>
@@ -10,17 +10,18 @@
 
 namespace riffler::nc {
 
-/// How a reader treats cutter radius compensation: G41, G42, RL, RR, CUTCOM.
+/// Treatment of cutter radius compensation: G41, G42, RL, RR, CUTCOM.
 enum class CompensationRule : std::uint8_t {
-  Error,   ///< refuse them
-  Ignore,  ///< take points for those of the tool's centre
+  Error,   ///< reject it
+  Ignore,  ///< take points as those of the tool's centre
   Offset,  ///< offset the contour by the tool's radius
 };
 
-/// Takes option "cutter_compensation".
+/// Reads option "cutter_compensation".
 CompensationRule take_compensation_rule(OptionReader& options);
 
-// What the readers say of it; `code`: G41, RL …
+// Messages of the readers; `code`: G41, RL …
+
 /// Under CompensationRule::Error.
 std::string compensation_refused(const std::string& code);
 /// Under CompensationRule::Ignore.
@@ -31,11 +32,12 @@ std::string path_is_offset(const std::string& code, const std::string& whose, do
 
 class ToolDiameters {
  public:
-  /// Takes option "tool_diameters" out of `options`, which holds `given`: one diameter (mm) of all tools, or a list of
-  /// numbers of tools each with its diameter. A negative diameter changes the side. std::invalid_argument.
+  /// Reads option "tool_diameters" from `options`, whose original values are `given`: one diameter (mm) for all tools,
+  /// or a list of tool numbers each followed by its diameter. A negative diameter swaps the side. Throws
+  /// std::invalid_argument.
   void take(const Options& given, OptionReader& options);
 
-  /// Diameter of a tool or offset, mm; none where the option does not give it.
+  /// Diameter of a tool or offset, mm; no value if the option does not give it.
   std::optional<double> of(int number) const;
 
  private:

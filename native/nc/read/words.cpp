@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::int8_t kUnknown = -1;
 
-/// Group of each code times ten.
+/// Modal group of each code, indexed by the code times ten.
 using CodeTable = std::array<std::int8_t, 4400>;
 
 constexpr void put(CodeTable& table, NcGroup group, std::initializer_list<int> tenths) {
@@ -39,9 +39,9 @@ constexpr CodeTable g_codes() {
   put(t, FeedMode, {930, 940, 950});
   put(t, SpindleMode, {960, 970});
   put(t, ReturnLevel, {980, 990});
-  // Fanuc's units, which LinuxCNC calls G20 and G21.
+  // Fanuc's unit codes, LinuxCNC's G20 and G21.
   put(t, Units, {700, 710});
-  // Polar coordinates, scaling, mirrors and turned planes off: what they would turn off is not read.
+  // Cancels polar coordinates, scaling, mirroring and rotated planes, none of which is supported.
   put(t, Off, {150, 500, 501, 690});
   return t;
 }
@@ -61,8 +61,8 @@ constexpr CodeTable m_codes() {
   put(t, Subprogram, {980, 990});
   put(t, Kinematics, {4280, 4290, 4300});
   for (int code = 1000; code <= 1990; code += 10) put(t, User, {code});
-  // Functions of machines by Haas, Fanuc, Mazak and others: brakes of rotary axes, chip conveyors, nozzles, gears, air
-  // and coolant through the tool.
+  // Machine functions by Haas, Fanuc, Mazak and others: brakes of rotary axes, chip conveyors, nozzles, gears, air and
+  // coolant through the tool.
   put(t, User, {100, 110, 310, 330, 340, 350, 400, 410, 420, 430, 440, 450, 830, 840, 880, 890});
   return t;
 }
@@ -71,7 +71,7 @@ constexpr CodeTable kG = g_codes(), kM = m_codes();
 
 constexpr const char* kAdvice = ": correct it, or read with options {'unknown': 'skip'}";
 
-/// Codes that change where the words after them are: passed over, all that follows would be elsewhere.
+/// Codes that change the meaning of later positions: if skipped, everything after them would be displaced.
 const char* never_skipped(char letter, double value) {
   if (letter != 'G') return nullptr;
   const int tenths = static_cast<int>(std::round(value * 10));
@@ -147,8 +147,8 @@ void NcWords::read(NcCursor& cursor, NcParameters& parameters) {
   if (skipped_) take_skipped_words();
 }
 
-/// Fanuc's G05 P10000, G05.1 Q1 and G08 P1 switch a control's look-ahead; LinuxCNC's G5 and G5.1 are splines, which
-/// have their words.
+/// Fanuc's G05 P10000, G05.1 Q1 and G08 P1 switch the look-ahead; LinuxCNC's G5 and G5.1 are splines, recognised by
+/// their words.
 void NcWords::take_look_ahead() {
   if (const int units = code(NcGroup::Units); units >= 700 && (has('Q') || has('P')))
     place_.fail("turning cycles (G70, G71) are not read; alone, " + nc_code_name('G', units) +
@@ -179,13 +179,13 @@ void NcWords::add_code(char letter, double value) {
   std::int16_t& slot = codes_[static_cast<std::size_t>(group)];
   const int number = static_cast<int>(tenths);
   if (slot == number) place_.fail(nc_code_name(letter, number) + " twice in one block");
-  // G80 beside a motion cancels nothing, as on LinuxCNC: headers name it among the modes.
+  // G80 next to a motion cancels nothing, as in LinuxCNC: headers list it among the modes.
   if (static_cast<NcGroup>(group) == NcGroup::Motion && slot >= 0 && (slot == 800 || number == 800)) {
     if (slot == 800) slot = static_cast<std::int16_t>(number);
     return;
   }
   if (static_cast<NcGroup>(group) == NcGroup::Off) {
-    slot = static_cast<std::int16_t>(number);  // G50 G69 G15 in one header
+    slot = static_cast<std::int16_t>(number);  // headers combine G50 G69 G15
     return;
   }
   if (slot >= 0)
@@ -196,7 +196,7 @@ void NcWords::add_code(char letter, double value) {
   groups_ |= 1U << group;
 }
 
-/// Of an axis that the machine does not have the coordinate is lost.
+/// Skips a word. For an axis that the machine does not have, the coordinate is lost.
 void NcWords::skip_letter(char letter) {
   const std::string shown = std::string("letter ") + letter;
   const bool rotary = letter <= 'C', linear = letter >= 'U' && letter <= 'W';
@@ -219,8 +219,8 @@ void NcWords::skip_code(char letter, const std::string& shown) {
   if (letter == 'G') skipped_g_ = true;
 }
 
-/// An unknown code takes with it the words that it may own: a G code the axis words, too, where the block names no
-/// motion of its own. An M code owns none.
+/// Skips the words that an unknown code may own: for a G code also the axis words, if the block has no motion of its
+/// own. An M code owns none.
 void NcWords::take_skipped_words() {
   constexpr std::string_view kOwn = "DEHIJKLPQR";
   const bool moves = code(NcGroup::Motion) >= 0;
@@ -236,7 +236,7 @@ void NcWords::take_skipped_words() {
 
 int NcWords::whole(char letter) {
   const double v = value(letter, kMaxNumber);
-  // What an expression leaves of a whole number counts as it, as on LinuxCNC.
+  // An integer up to the rounding of an expression counts as that integer, as in LinuxCNC.
   if (v < -1e-4 || std::abs(v - std::round(v)) > 1e-4) place_.fail(std::string(1, letter) + " must be a whole number");
   return static_cast<int>(std::round(v));
 }

@@ -1,5 +1,5 @@
-// The words of one block in their places: values by letter, G and M codes by modal group, assignments. Knows what
-// contradicts itself within a block, not what a control does with it.
+// The words of one block: values by letter, G and M codes by modal group, assignments. Detects contradictions within a
+// block; knows nothing of what a control does with them.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace riffler::nc {
 
-/// Modal groups, after the NIST RS274/NGC interpreter (NISTIR 6556, table 4) and LinuxCNC: two codes of one group in a
+/// Modal groups after the NIST RS274/NGC interpreter (NISTIR 6556, table 4) and LinuxCNC: two codes of one group in a
 /// block contradict each other.
 enum class NcGroup : std::uint8_t {
   Motion,
@@ -49,38 +49,39 @@ std::string nc_code_name(char letter, int tenths);
 
 class NcWords {
  public:
-  /// `axes`: the letters of the machine's axes. Errors are raised by `place`. Unknown words are skipped where `skip` is
-  /// given: it takes their texts.
+  /// `axes`: the letters of the machine's axes. Errors are thrown at `place`. With `skip`, unknown words are skipped
+  /// and their texts appended to it.
   NcWords(std::string_view axes, const NcPlace& place, std::vector<std::string>* skip)
       : axes_(axes), place_(place), skip_(skip) {}
 
-  /// Takes the words of a block. FormatError: unknown letter or code, a word twice, two codes of one group.
+  /// Reads the words of a block. Throws FormatError for an unknown letter or code, a repeated word, two codes of one
+  /// group.
   void read(NcCursor& cursor, NcParameters& parameters);
 
-  /// Whether the block holds nothing.
+  /// Whether the block is empty.
   bool empty() const { return empty_; }
   /// The code of the group times ten (434 for G43.4), or −1.
   int code(NcGroup group) const { return codes_[static_cast<std::size_t>(group)]; }
   bool has(char letter) const { return (given_ & bit(letter)) != 0; }
   bool has_axes() const { return (given_ & axis_bits_) != 0; }
-  /// Whether no code but that of a motion is there.
+  /// Whether there are no codes except a motion.
   bool only_moves() const { return (groups_ & ~1U) == 0; }
 
-  /// The value of a word that is there, marked as used. FormatError unless within ±limit.
+  /// The value of a word that is present; marks it as used. Throws FormatError unless within ±limit.
   double value(char letter, double limit) {
     used_ |= bit(letter);
     const double v = values_[static_cast<std::size_t>(letter - 'A')];
     if (!(v <= limit && v >= -limit)) fail_range(letter);
     return v;
   }
-  /// The same for a whole number from 0 to kMaxNumber.
+  /// As above for an integer from 0 to kMaxNumber.
   int whole(char letter);
   /// Whether an axis word was skipped: of an axis that the machine does not have, or with an unknown code.
   bool lost_axes() const { return lost_axes_; }
-  /// Marks words as used that mean nothing for the tool's way.
+  /// Marks words without effect on the tool path as used.
   void pass_over(std::string_view letters);
 
-  /// FormatError for a word that nobody asked for.
+  /// Throws FormatError for a word that was not used.
   void check_all_used() const {
     if (given_ & ~used_) fail_unused();
   }
@@ -100,7 +101,7 @@ class NcWords {
   const NcPlace& place_;
   std::vector<std::string>* skip_;
   std::uint32_t given_ = 0, used_ = 0, axis_bits_ = 0;
-  std::uint32_t groups_ = 0;  // a bit for each with a code
+  std::uint32_t groups_ = 0;  // one bit per group that has a code
   bool empty_ = true, skipped_ = false, skipped_g_ = false, lost_axes_ = false;
   std::array<double, 26> values_{};
   std::array<std::int16_t, kGroups> codes_{};

@@ -12,8 +12,8 @@ namespace riffler::nc {
 
 namespace {
 
-/// The most of `least` … `most` for which `works`, as if it did for all that are less: doubled, then halved, so that
-/// what is tried is in proportion to the answer. 0 where it does not for `least`.
+/// The largest count in `least` … `most` for which `works`, assuming it is monotonic: doubles, then bisects, so that
+/// the work is proportional to the answer. 0 if it does not work for `least`.
 template <class Works>
 std::size_t longest(std::size_t least, std::size_t most, const Works& works) {
   if (most < least || !works(least)) return 0;
@@ -35,7 +35,7 @@ std::size_t longest(std::size_t least, std::size_t most, const Works& works) {
 class Fitter {
  public:
   Fitter(std::span<const Vec3> points, double tolerance)
-      // What a slack of kSamePoint adds is taken off.
+      // Compensates for the slack added by kSamePoint.
       : points_(points), tolerance_(tolerance - 2 * kSamePoint) {}
 
   std::vector<FittedPiece> run() {
@@ -46,7 +46,7 @@ class Fitter {
   std::size_t looked_at = 0;
 
  private:
-  /// Moves that a piece stands for; an arc where one goes further than a line.
+  /// Moves that a piece replaces; an arc if it goes further than a line.
   struct Reach {
     std::size_t line = 1, moves = 1;
     std::optional<PlaneArc> arc = {};
@@ -54,7 +54,7 @@ class Fitter {
 
   std::span<const Vec3> moves(std::size_t at, std::size_t count) const { return points_.subspan(at, count + 1); }
 
-  /// Whether the line from first to last is within the tolerance of all points and they never go back along it.
+  /// Whether the line from first to last is within the tolerance of all points, and they never go back along it.
   bool line_fits(std::span<const Vec3> points) {
     const Vec3 way = points.back() - points.front();
     const double length = glm::length(way);
@@ -92,7 +92,7 @@ class Fitter {
       std::optional<PlaneArc> arc;
       const auto works = [&](std::size_t n) {
         const auto found = arc_within(moves(at, n), normal, tolerance_, looked_at);
-        if (found) arc = found;  // the last that works is the longest
+        if (found) arc = found;  // the last one that fits is the longest
         return found.has_value();
       };
       const std::size_t n = longest(kMinArcMoves, most, works);
@@ -107,8 +107,8 @@ class Fitter {
     return {at + reach.line, false, Axis::Z, Vec3(0), false};
   }
 
-  /// A straight run before an arc is often followed a little further by a flat arc than by a line. Where a line goes
-  /// most of that way, and the piece after it still reaches as far as otherwise, it is a line.
+  /// A flat arc often extends a line before an arc a little further than a line does. If a line covers most of that
+  /// distance and the next piece still reaches as far, prefers the line.
   bool better_straight(std::size_t at, const Reach& reach) {
     const std::size_t end = at + reach.moves;
     if (2 * reach.line < reach.moves || end + 1 >= points_.size()) return false;

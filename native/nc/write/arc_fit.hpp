@@ -1,4 +1,4 @@
-// Lines and arcs for a run of short straight moves: G2 and G3 where many blocks of G1 would be.
+// Fits lines and arcs to runs of short straight moves: G2 and G3 instead of many blocks of G1.
 #pragma once
 
 #include <cstddef>
@@ -9,29 +9,29 @@
 
 namespace riffler::nc {
 
-/// From the end of the piece before, at first from point 0, to point `last`: a line, or an arc of less than half a turn
-/// in a coordinate plane that rises along the plane's normal evenly with the angle (a helix where the ends' heights
-/// differ). Ends are points of the run.
+/// A piece from the end of the previous one (at first point 0) to point `last`: a line, or an arc of less than half a
+/// turn in a coordinate plane that rises evenly along the plane's normal (a helix if the ends' heights differ). Ends
+/// are points of the run.
 struct FittedPiece {
   std::size_t last = 0;
   bool arc = false;
   Axis normal = Axis::Z;   ///< Z: XY plane (G17), Y: ZX (G18), X: YZ (G19)
-  Vec3 centre{0};          ///< mm, of an arc; along the normal it is where the arc begins
-  bool clockwise = false;  ///< G2: seen against the normal
+  Vec3 centre{0};          ///< mm, of an arc; along the normal, the coordinate of the arc's start
+  bool clockwise = false;  ///< G2, seen against the normal
 };
 
-/// Arcs stand for at least so many moves.
+/// An arc replaces at least this many moves.
 inline constexpr std::size_t kMinArcMoves = 3;
-/// The least tolerance, mm: coordinates are written with 5 decimals.
+/// Smallest tolerance, mm: coordinates are written with 5 decimals.
 inline constexpr double kMinFitTolerance = 2e-5;
 
-/// Few lines and arcs that are within `tolerance` (mm) of the polyline through `points`, and it of them, in order:
-/// what is beside a point of the one is a point of the other, and neither goes back where the other does not. Moves
-/// that turn back, or are longer than a tolerance allows to replace, stay lines of their own. The greedy choice: every
-/// piece goes as far as it can be made to go, the line where both go equally far. Takes time in proportion to n log n.
+/// Few lines and arcs within `tolerance` (mm) of the polyline through `points`, and vice versa, in order: corresponding
+/// points pair up along both, and neither goes back where the other does not. Moves that turn back, or are too long to
+/// be replaced within the tolerance, stay lines. Greedy: every piece extends as far as possible; if both reach equally
+/// far, it is a line. Time O(n log n).
 ///
-/// Of fewer than two points nothing. Throws std::invalid_argument naming the row of a point that is not finite, or a
-/// tolerance of less than kMinFitTolerance. `looked_at`: added to, the number of points looked at.
+/// Empty for fewer than two points. Throws std::invalid_argument naming the row of a point that is not finite, or a
+/// tolerance below kMinFitTolerance. Adds the number of points examined to `looked_at`.
 std::vector<FittedPiece> fit_arcs(std::span<const Vec3> points, double tolerance, std::size_t* looked_at = nullptr);
 
 }  // namespace riffler::nc

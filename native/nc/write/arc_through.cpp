@@ -1,7 +1,7 @@
-// All arcs of less than half a turn over one chord, bulging to one side, are one family: x, the height of the apex over
-// half the chord, runs from 0 to 1, and no two of them meet between the ends. So the arcs that pass a point at most so
-// far away are those with x in an interval, in closed form, and the arcs near all points are the intersection of the
-// intervals.
+// All arcs of less than half a turn over one chord that bulge to one side form one family: x, the height of the apex
+// over half the chord, runs from 0 to 1, and two of them never meet between the ends. The arcs that pass a point within
+// a given distance are therefore those with x in an interval, in closed form, and the arcs near all points are the
+// intersection of these intervals.
 #include "nc/write/arc_through.hpp"
 
 #include <algorithm>
@@ -22,7 +22,7 @@ double cross(const Vec2& a, const Vec2& b) {
 struct Range {
   double low, high;
 
-  /// Keeps the x with a x² + b x + c ≥ 0; of two pieces the lower.
+  /// Keeps the x with a x² + b x + c ≥ 0; of two intervals the lower.
   void keep(double a, double b, double c) {
     const double square = b * b - 4 * a * c;
     if (square < 0) {
@@ -66,7 +66,7 @@ class Chord {
     along_ = half_ > 0 ? chord / (2 * half_) : Vec2(0);
   }
 
-  /// Takes the side on which the furthest of some points lies as that of the bulge.
+  /// Chooses the side of the bulge: that of the point furthest away.
   void choose_side(std::size_t& looked_at) {
     double most = 0;
     for (std::size_t k = stride(points_.size()); k + 1 < points_.size(); k += stride(points_.size())) {
@@ -78,7 +78,7 @@ class Chord {
   }
   void take_side(const PlaneArc& arc) { left_ = arc.sweep < 0; }
 
-  /// The x whose radius is neither too small nor too large, and whose sweep 4 atan x is not too large.
+  /// The x whose radius is within its limits and whose sweep 4 atan x is not too large.
   Range limits() const {
     const auto of_radius = [&](double r) { return half_ / (r + std::sqrt((r - half_) * (r + half_))); };
     if (!(half_ > kSamePoint && half_ < kMaxArcRadius)) return {0, -1};
@@ -86,17 +86,18 @@ class Chord {
     return {of_radius(kMaxArcRadius), half_ < kMinArcRadius ? std::min(most, of_radius(kMinArcRadius)) : most};
   }
 
-  /// The x of circles within `tolerance` of all points, within `range`.
+  /// The x within `range` of circles within `tolerance` of all points.
   ///
-  /// With the half chord as unit, the point (a, b) above the chord's middle and the circle's centre (x² − 1) / 2 x and
-  /// radius (x² + 1) / 2 x above it, distance − radius ≤ t and ≥ −t are quadratic in x, squared and times x.
+  /// With half the chord as unit, for the point (a, b) above the chord's middle and a circle with centre height (x² −
+  /// 1) / 2x and radius (x² + 1) / 2x, the conditions distance − radius ≤ t and ≥ −t, squared and multiplied by x, are
+  /// quadratic in x.
   Range near(double tolerance, Range range, std::size_t& looked_at) const {
     const double t = tolerance / half_;
     const auto keep = [&](std::size_t k) {
       ++looked_at;
       const Vec2 p = (flat(to_local(normal_, points_[k])) - middle_) / half_;
       const double a = glm::dot(p, along_), b = left_ ? cross(along_, p) : -cross(along_, p);
-      // All the circles pass within t of what is within t of an end.
+      // All the circles pass within t of a point that is within t of an end.
       const double end = 1 - std::abs(a);
       if (end * end + b * b <= t * t) return;
       const double square = (a - 1) * (a + 1) + (b - t) * (b + t);
@@ -124,19 +125,20 @@ class Chord {
   bool left_ = false;
 };
 
-/// One move of the polyline beside the arc, about its centre: `from` and `to` in its plane, turned so that the arc is
-/// counter-clockwise.
+/// One move of the polyline next to the arc, relative to its centre: `from` and `to` in its plane, turned so that the
+/// arc is counter-clockwise.
 struct Beside {
   Vec2 from, to;
-  double height;  ///< of `from`, above the arc
-  double climb;   ///< of the move, along the normal
-  double rise;    ///< of the arc, mm / rad
+  double height;  ///< mm: height of `from` above the arc
+  double climb;   ///< mm: rise of the move along the normal
+  double rise;    ///< mm/rad: rise of the arc
 };
 
-/// The largest radius that is missing, or the height that is wrong, within the move: at its ends they are known.
+/// The largest deficit of the radius, and error of the height, inside the move; at its ends they are known.
 ///
-/// Inside, the radius is least at the foot of the perpendicular from the centre, at distance d. With y from there along
-/// the move the angle is atan(y / d), so the height above the arc is extreme where climb / length = rise d / (d² + y²).
+/// Inside, the radius is smallest at the foot of the perpendicular from the centre, at distance d. With y from there
+/// along the move, the angle is atan(y / d), so the height above the arc is extreme where climb / length = rise d / (d²
+/// + y²).
 void look_between(const Beside& m, double radius, double& missing, double& wrong) {
   const Vec2 way = m.to - m.from;
   const double length = glm::length(way);
@@ -152,7 +154,7 @@ void look_between(const Beside& m, double radius, double& missing, double& wrong
                                        m.rise * (std::atan2(y, d) - std::atan2(begin, d))));
 }
 
-/// Whether polyline and arc are within the tolerance of each other at every angle, and the angle never falls.
+/// Whether polyline and arc are within the tolerance of each other at every angle, and the angle never decreases.
 bool fits(std::span<const Vec3> points, const PlaneArc& arc, double tolerance, std::size_t& looked_at) {
   const double sense = arc.sweep > 0 ? 1 : -1, sweep = std::abs(arc.sweep);
   const Vec3 first = to_local(arc.normal, points.front());
@@ -192,7 +194,7 @@ std::optional<PlaneArc> arc_within(std::span<const Vec3> points, Axis normal, do
   chord.choose_side(looked_at);
   range = chord.near(tolerance, range, looked_at);
   if (range.empty()) return std::nullopt;
-  // Chords lie inside their arc: the flattest arc that the points allow is the one that the chords allow first.
+  // Chords lie inside their arc: the flattest arc that the points allow is the first that the chords allow.
   const double inset = 1e-6 * (range.high - range.low);
   for (const double x : {(range.low + range.high) / 2, range.low + inset})
     if (const PlaneArc arc = chord.arc(x); fits(points, arc, tolerance, looked_at)) return arc;
@@ -203,7 +205,7 @@ PlaneArc nearest_arc(std::span<const Vec3> points, const PlaneArc& found, double
   Chord chord(points, found.normal);
   chord.take_side(found);
   const Range limits = chord.limits();
-  // The least tolerance that leaves a circle: below, none is near all points.
+  // The smallest tolerance that leaves a circle: below it, none is near all points.
   double low = 0, high = tolerance;
   Range best{0, -1};
   for (int step = 0; step < 24; ++step) {

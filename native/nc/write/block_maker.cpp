@@ -75,7 +75,7 @@ class BlockMaker {
     if (program_.at_machine()[row]) return stay_out(row, splitter);
     if (away_) return come_back(w, splitter);
     if (w.rewound) return rewind(row, w.joints, splitter);
-    // From where a new tool comes is not known: neither is how far the way is nor how long it takes.
+    // The start position of a new tool is unknown, and with it length and duration of the move.
     if (set_up(row)) stands_.reset();
     const Pose& end = program_.poses()[row];
     if (!stands_) {
@@ -92,7 +92,7 @@ class BlockMaker {
     before_ = to;
   }
 
-  /// At a position of the machine, of which only the machine knows where it is: at safe height instead.
+  /// A machine position, known only to the machine: stay at safe height instead.
   void stay_out(std::size_t row, Subdivider& splitter) {
     if (!away_ && stands_) leave(row, *stands_, splitter);
     if (set_up(row)) stands_.reset();
@@ -115,12 +115,12 @@ class BlockMaker {
     try {
       return splitter.split(before_, *stands_, to, joints, free);
     } catch (const std::invalid_argument& e) {
-      throw RowError("poses", row, std::string("on the way there ") + e.what());
+      throw RowError("poses", row, std::string("on the move there ") + e.what());
     }
   }
 
-  /// The last waypoint of a run from `first` that has one feed, tool, spindle and place of the rotary axes: what arcs
-  /// may stand for.
+  /// The last waypoint of the run from `first` with constant feed, tool, spindle and rotary axes: the rows that arcs
+  /// may replace.
   std::size_t run_end(const std::vector<Waypoint>& way, std::size_t first) const {
     const std::size_t row = way[first].row;
     std::size_t last = first;
@@ -136,8 +136,8 @@ class BlockMaker {
     return last;
   }
 
-  /// Lines and arcs for a run. With the rotary axes at rest the tip's way is that of the words, turned and moved, so
-  /// that the tolerance is the same.
+  /// Lines and arcs for a run. With the rotary axes at rest, the tip's path is that of the words, rotated and moved, so
+  /// the tolerance is the same.
   void curves(std::span<const Waypoint> run) {
     const auto words = [](const Joints& j) { return Vec3(j[0], j[1], j[2]); };
     std::vector<Vec3> points{words(*stands_)};
@@ -147,7 +147,7 @@ class BlockMaker {
       const Waypoint& w = run[piece.last - 1];
       const Pose& end = program_.poses()[w.row];
       before_ = end;
-      // Arcs are within the tolerance of the rows that they stand for.
+      // Arcs are within the tolerance of the rows that they replace.
       for (; done < piece.last; ++done)
         if (settings_.motion && piece.arc)
           record(run[done].row, done > 0 ? run[done - 1].joints : *stands_, run[done].joints, false);
@@ -164,7 +164,7 @@ class BlockMaker {
     }
   }
 
-  /// Tool and spindle as the row wants them, before its first block. Whether the tool is another.
+  /// Sets tool and spindle before the row's first block. Whether the tool changes.
   bool set_up(std::size_t row) {
     const int tool = program_.tool()[row];
     const double spindle = program_.spindle()[row];
@@ -180,7 +180,7 @@ class BlockMaker {
     return change;
   }
 
-  /// Out of the material, the rotary axes to `to` with the tip held, and back.
+  /// Leaves the material, turns the rotary axes to `to` with the tip fixed, and returns.
   void rewind(std::size_t row, const Joints& to, Subdivider& splitter) {
     const Pose pose = before_;
     report_.rewinds.push_back(row);
@@ -188,17 +188,17 @@ class BlockMaker {
     arrive(row, pose, to, true, splitter);
   }
 
-  /// Along the axis and up to safe height, the rotary axes at rest. `to`: where they will turn there.
+  /// Along the axis and up to safe height, with the rotary axes at rest. `to`: where they will turn there.
   void leave(std::size_t row, const Joints& to, Subdivider& splitter) {
     const ClearanceZone high = space(row, to);
     if (before_.tip.z >= high.top) return;
     for (const Pose& p : retract_path(before_, reach(row), high)) straight(row, p, true, splitter);
   }
 
-  /// At safe height, the tip held, the rotary axes to `to`; over `pose` and down to it: fast where the row is a rapid,
-  /// and where the tool was there before, but for the last stretch.
+  /// Turns the rotary axes to `to` at safe height with the tip fixed, moves over `pose` and down to it. Rapid if the
+  /// row is a rapid, and up to the last piece if the tool was there before.
   void arrive(std::size_t row, const Pose& pose, const Joints& to, bool was_there, Subdivider& splitter) {
-    constexpr double kGap = 1;  // mm that the tool comes back in feed
+    constexpr double kGap = 1;  // mm: last piece of the return, at feed
     const bool rapid = program_.rapid()[row] != 0;
     const ClearanceZone high = space(row, to);
     std::vector<Pose> in;
@@ -222,7 +222,7 @@ class BlockMaker {
     before_ = end;
   }
 
-  /// The rotary axes rest, and a table that rests keeps straight what is straight.
+  /// Straight move: the rotary axes are at rest, and a table at rest keeps straight lines straight.
   void straight(std::size_t row, const Pose& end, bool rapid, Subdivider& splitter) {
     go(row, end, machine_.with_tip(*stands_, end.tip), rapid, splitter);
   }
@@ -237,14 +237,14 @@ class BlockMaker {
     return *space_;
   }
 
-  /// High enough for what hangs below the tip while the rotary axes turn to `to`.
+  /// High enough for what extends below the tip while the rotary axes turn to `to`.
   ClearanceZone space(std::size_t row, const Joints& to) {
     ClearanceZone out = whole_space();
     out.top += reach(row).below_tip(lowest_axis(*stands_, to));
     return out;
   }
 
-  /// The least z of the tool's axis while the rotary axes turn from one place to another.
+  /// Smallest z of the tool's axis while the rotary axes turn from one place to another.
   double lowest_axis(const Joints& from, const Joints& to) const {
     constexpr double kStep = 2;  // deg
     const int steps = 1 + static_cast<int>(std::min(1e5, rotary_way(from, to) / kStep));
@@ -263,11 +263,11 @@ class BlockMaker {
       if (program_.rapid()[row]) top = std::max(top, program_.poses()[row].tip.z);
     }
     if (settings_.safe_height) return {box.grown(kClearance), *settings_.safe_height};
-    // As high as the program itself goes; one without rapids gets its own height.
+    // As high as the program itself goes; a program without rapids gets its own height.
     return {box.grown(kClearance), std::max(top, box.upper.z + (top < box.upper.z ? kClearance : 0))};
   }
 
-  /// One block to `joints`; `must`: a row ends here, so that it is written even where nothing moves.
+  /// One block to `joints`; `must`: a row ends here, so it is written even without motion.
   void block(std::size_t row, const Joints& joints, const Pose& pose, bool must) {
     block(row, joints, pose, must, program_.rapid()[row] != 0);
   }
@@ -283,11 +283,11 @@ class BlockMaker {
     sink_.block(b);
   }
 
-  /// What the machine makes of a block: stretches in which the rotary axes turn so little that the tool's axis keeps to
-  /// a great circle.
+  /// The machine's motion over a block, in pieces whose rotary motion is so small that the tool's axis follows a great
+  /// circle.
   void record(std::size_t row, const std::optional<Joints>& from, const Joints& to, bool rapid) {
     constexpr double kTurn = 1;         // deg: the axis is then within 4e-5 rad of the circle
-    constexpr double kAbove = 200;      // mm: from where a tool comes down for the first time, at least
+    constexpr double kAbove = 200;      // mm: smallest height from which a tool comes down for the first time
     constexpr double kMaxParts = 7200;  // twenty turns
     if (!from) {
       Joints above = to;
@@ -304,7 +304,7 @@ class BlockMaker {
     }
   }
 
-  /// The tip's way at the row's feed, or as fast as the axes may go, whichever takes longer.
+  /// The duration at the row's feed, or at the axes' largest rates if that takes longer.
   void take_time(std::size_t row, PostBlock& b, double way) {
     double own = program_.feed()[row] > 0 ? way / program_.feed()[row] : 0, least = 0;
     bool turns = false;
@@ -319,8 +319,8 @@ class BlockMaker {
     const bool slowed = least > own * (1 + 1e-9);
     if (slowed && way > 1e-6) ++report_.slowed, slowest_ = std::max(slowest_, least / own);
     if (b.inverse || !(slowed || (machine_.joint_words() && turns))) return;
-    // What F counts along under G94, by LinuxCNC's rule, as it is printed: X Y Z where one of them moves, otherwise the
-    // rotary axes.
+    // The distance to which F refers under G94, by LinuxCNC's rule, as printed: X Y Z if one of them moves, otherwise
+    // the rotary axes.
     const double linear = printed_way(b.joints, 0, kLengthDecimals), rotary = printed_way(b.joints, 3, kAngleDecimals);
     if (linear > 0)
       b.feed = linear / b.minutes;
@@ -328,7 +328,7 @@ class BlockMaker {
       b.feed = machine_.joint_words() ? rotary / b.minutes : std::min(b.feed, rotary / b.minutes);
   }
 
-  /// From where the axes stand, by three of them.
+  /// Printed distance from the current position, over three of the axes.
   double printed_way(const Joints& to, std::size_t first, int decimals) const {
     double sum = 0;
     for (std::size_t k = first; k < first + 3; ++k) {
@@ -338,7 +338,7 @@ class BlockMaker {
     return std::sqrt(sum) * std::pow(10.0, -decimals);
   }
 
-  /// Where the rotary axes turn much more than the tool.
+  /// Notes where the rotary axes turn much further than the tool.
   void note_passage(std::size_t row, double tool, double rotary) {
     constexpr double kTimes = 5, kMin = 10;  // deg
     if (!(rotary > kTimes * tool && rotary > kMin)) return;
@@ -350,7 +350,7 @@ class BlockMaker {
     }
   }
 
-  /// Numbers that the code can hold.
+  /// Checks that the numbers are within the range of the code.
   void check_range(std::size_t row, const Joints& joints) const {
     for (const char letter : machine_.axes()) {
       const std::size_t k = joint_index(letter);
@@ -361,17 +361,17 @@ class BlockMaker {
 
   void check(std::size_t row, const Joints& joints) const {
     check_range(row, joints);
-    // Limits are printable numbers: what is beyond by less than half a step is printed as the limit.
+    // Limits are printable numbers: a value beyond one by less than half a step is printed as the limit.
     const std::size_t k = machine_.beyond(joints, 4e-7);
     if (k == joints.size()) return;
     const AxisRange& range = machine_.range(k);
     throw RowError("poses", row,
-                   "on the way there machine " + machine_.name() + " would leave the limits of " + kJointLetters[k] +
+                   "on the move there machine " + machine_.name() + " would leave the limits of " + kJointLetters[k] +
                        ", " + number_text(range.low) + " to " + number_text(range.high) + ": " +
-                       number_text(joints[k]) + "; place the part otherwise or put rows closer together");
+                       number_text(joints[k]) + "; place the part differently or put rows closer together");
   }
 
-  /// A row in which the tip stands still has no feed of its own: the one before goes on, or the next to come.
+  /// A row whose tip stands still has no feed of its own: it uses the previous or the next one.
   double feed_of(std::size_t row) {
     const std::vector<double>& feed = program_.feed();
     if (program_.rapid()[row]) return 0;
@@ -389,10 +389,10 @@ class BlockMaker {
   BlockSink& sink_;
   WriteReport report_;
 
-  std::optional<Joints> stands_;  // after the last block
-  Vec3 tip_{0};                   // there
-  Pose before_;                   // of the program, there
-  bool away_ = false;             // the last row is at a position of the machine
+  std::optional<Joints> stands_;  // joints after the last block
+  Vec3 tip_{0};                   // position after the last block
+  Pose before_;                   // pose of the program after the last block
+  bool away_ = false;             // the last row is at a machine position
   std::optional<ClearanceZone> space_;
   std::optional<int> tool_;
   double spindle_ = 0, last_feed_ = 0, slowest_ = 1;

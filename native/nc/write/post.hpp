@@ -1,4 +1,4 @@
-// What the controls read: one language per file. A post writes the blocks that a program becomes
+// NC code in the languages of the controls, one per file. A post writes the blocks of a program
 // (nc/write/block_maker.hpp).
 #pragma once
 
@@ -17,12 +17,12 @@ class Post : public BlockSink {
  public:
   Post(const Machine& machine, PostOptions options) : machine_(machine), options_(std::move(options)) {}
 
-  /// Whether blocks need joints: where not, poses are written as they are.
+  /// Whether blocks need joints; otherwise poses are written unchanged.
   virtual bool wants_joints() const { return true; }
 
   virtual bool has_arcs() const { return false; }
 
-  /// Called only where has_arcs().
+  /// Called only if has_arcs().
   void arc(const PostArc&) override {}
 
   /// The text before the first block and after the last one.
@@ -33,16 +33,16 @@ class Post : public BlockSink {
   std::size_t blocks() const { return blocks_; }
 
  protected:
-  /// Whether tools come from where they are out of everything's way: the machine's file, or its user, says how.
+  /// Whether tools start from a retracted position, defined by the machine's file or the user's option.
   bool comes_safely() const { return options_.safe_start && (options_.retract || !machine_.control().retract.empty()); }
 
   const Machine& machine_;
   PostOptions options_;
   std::string text_;
-  std::size_t blocks_ = 0;  ///< with a motion
+  std::size_t blocks_ = 0;  ///< blocks with a motion
 };
 
-/// std::invalid_argument for a machine whose language is not known.
+/// Throws std::invalid_argument for a machine with an unknown language.
 std::unique_ptr<Post> make_post(const Machine& machine, PostOptions options);
 
 #define RIFFLER_DECLARE_POST(name) std::unique_ptr<Post> make_##name(const Machine& machine, PostOptions options);

@@ -75,7 +75,7 @@ class Apt final : public Post {
 
   void line(const std::string& text) { text_ += text + '\n'; }
 
-  /// A comment where seven numbers cannot describe the shape.
+  /// A comment if seven numbers cannot describe the shape.
   void cutter(const Tool& tool) {
     const std::optional<tool::AptCutter> apt = to_apt(tool);
     if (!apt) return line("$$ no CUTTER says " + plain(tool.kind()));

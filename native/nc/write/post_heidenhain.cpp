@@ -1,5 +1,5 @@
-// Heidenhain's conversational form (TNC 640 user's manual, "M128" and "Three-dimensional tool compensation"): the
-// control keeps the tip, either with the rotary axes' angles in L blocks or with the tool's axis in LN blocks.
+// Heidenhain Klartext (TNC 640 user's manual, "M128" and "Three-dimensional tool compensation"): the control keeps the
+// tip, either with rotary axis angles in L blocks or with the tool's axis in LN blocks.
 #include <array>
 #include <cmath>
 #include <stdexcept>
@@ -18,7 +18,7 @@ class Heidenhain final : public Post {
   Heidenhain(const Machine& machine, PostOptions options) : Post(machine, std::move(options)) {
     if (machine.joint_words())
       throw std::invalid_argument("machine " + machine.name() +
-                                  ": a Heidenhain control is given the tip (M128): tcp must not be False");
+                                  ": code for a Heidenhain control has tip coordinates (M128): tcp must not be False");
     if (options_.retract)
       throw std::invalid_argument("machine " + machine.name() +
                                   ": retract is G53's; put L Z+… M91 into retract of the machine's file");
@@ -107,8 +107,8 @@ class Heidenhain final : public Post {
       for (const std::string& own : machine_.control().retract) line(own);
   }
 
-  /// Before the first block of a tool, from where it is out of everything's way: the rotary axes turn there, before the
-  /// control keeps the tip in its place, then it goes across; the block itself is what comes down.
+  /// Before a tool's first block, from the retracted position: turns the rotary axes before the control keeps the tip
+  /// in place, then moves across. The block itself comes down.
   void come(const PostBlock& b) {
     coming_ = false;
     std::string turn;
@@ -129,7 +129,7 @@ class Heidenhain final : public Post {
 
   void line(const std::string& text) { text_ += std::to_string(number_++) + ' ' + text + '\n'; }
 
-  /// " X+1.00000", where it is another than before or `always`.
+  /// " X+1.00000", if it differs from the previous value or `always`.
   static void word(std::string& text, std::string_view name, double value, std::int64_t& printed, int decimals,
                    bool always) {
     const std::int64_t print = ticks(value, decimals);

@@ -1,4 +1,4 @@
-// RS-274 as LinuxCNC and controls of Fanuc's kind read it.
+// RS-274 as read by LinuxCNC and Fanuc-style controls.
 #include <array>
 #include <cmath>
 #include <initializer_list>
@@ -50,7 +50,7 @@ class Rs274 final : public Post {
       coming_ = tool;
     else
       count_length(tool);
-    // A control may lose its modes in a tool change, and an offset moves the coordinates: say everything again.
+    // A control may lose its modes in a tool change, and an offset moves the coordinates: write everything again.
     forget();
   }
 
@@ -102,7 +102,7 @@ class Rs274 final : public Post {
 
   void number_line() {
     if (options_.line_numbers == 0) return;
-    // LinuxCNC reads five digits; the next line after the last begins again.
+    // LinuxCNC reads five digits; after the largest number, start again.
     line_number_ =
         line_number_ + options_.line_numbers > 99'999 ? options_.line_numbers : line_number_ + options_.line_numbers;
     text_ += 'N' + std::to_string(line_number_) + ' ';
@@ -118,8 +118,8 @@ class Rs274 final : public Post {
 
   void count_length(int tool) { code({machine_.control().tool_length, " H", std::to_string(tool)}); }
 
-  /// The first block of a tool, from where it is out of everything's way: the rotary axes turn there, before the
-  /// control keeps the tip in its place; then across, then down.
+  /// Before a tool's first block, from the retracted position: turns the rotary axes before the control keeps the tip
+  /// in place, then moves across, then down.
   void come(const PostBlock& b) {
     const int tool = *std::exchange(coming_, std::nullopt);
     const std::string_view axes = machine_.axes();
@@ -130,9 +130,9 @@ class Rs274 final : public Post {
       PostBlock there;
       there.rapid = true;
       motion(there, '0');
-      --blocks_;  // of a row there is one
+      --blocks_;  // one per row
     };
-    // Where X Y Z are the tip, the tool's length may make the control keep it in its place.
+    // If X Y Z are the tip, activating the tool's length may make the control keep the tip in place.
     if (machine_.joint_words()) count_length(tool);
     go(axes.substr(3));
     if (!machine_.joint_words()) count_length(tool);
@@ -189,7 +189,7 @@ class Rs274 final : public Post {
   std::size_t normal_ = 2;
   bool inverse_ = false;  // G93
   bool turns_ = false, moves_ = false;
-  std::optional<int> coming_;  // the tool whose first block is to come
+  std::optional<int> coming_;  // the tool whose first block follows
   int line_number_ = 0;
 };
 

@@ -1,5 +1,5 @@
 // Sinumerik 840D and 828D (Siemens, Programming Manual Job Planning, "Five-axis transformation"): the control keeps the
-// tip under TRAORI, the rotary axes stand in the blocks.
+// tip under TRAORI; blocks contain the rotary axes.
 #include <array>
 #include <cmath>
 #include <stdexcept>
@@ -16,7 +16,7 @@ class Sinumerik final : public Post {
   Sinumerik(const Machine& machine, PostOptions options) : Post(machine, std::move(options)) {
     if (machine.joint_words())
       throw std::invalid_argument("machine " + machine.name() +
-                                  ": a Sinumerik control is given the tip (TRAORI): tcp must not be False");
+                                  ": code for a Sinumerik control has tip coordinates (TRAORI): tcp must not be False");
   }
 
   bool has_arcs() const override { return true; }
@@ -98,7 +98,7 @@ class Sinumerik final : public Post {
     forget();
   }
 
-  /// A machine without rotary axes has none.
+  /// A machine without rotary axes has no transformation.
   void transform(bool on) {
     if (transforms_ == on || machine_.axes().size() == 3) return;
     line(on ? "TRAORI" : "TRAFOOF");
@@ -106,8 +106,8 @@ class Sinumerik final : public Post {
     forget();
   }
 
-  /// Before the first block of a tool, from where it is out of everything's way: the rotary axes turn there, before the
-  /// control keeps the tip in its place, then it goes across; the block itself is what comes down.
+  /// Before a tool's first block, from the retracted position: turns the rotary axes before the control keeps the tip
+  /// in place, then moves across. The block itself comes down.
   void come(const PostBlock& b) {
     coming_ = false;
     const auto go = [&](std::string_view letters) {

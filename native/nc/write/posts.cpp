@@ -1,4 +1,4 @@
-// The posts of all languages.
+// Creates the post of a language.
 #include <algorithm>
 #include <stdexcept>
 

@@ -17,15 +17,15 @@ namespace riffler::nc {
 
 namespace {
 
-/// mm and deg by which a limit may seem to be passed: rounding.
+/// mm and deg by which a limit may seem to be exceeded due to rounding.
 constexpr double kSlack = 1e-9;
 
-/// Angle to the pole or to its opposite, whichever is nearer.
+/// Angle to the pole or its opposite, the smaller of both.
 double pole_angle(const Vec3& axis, const Vec3& pole) {
   return std::atan2(glm::length(glm::cross(axis, pole)), std::abs(glm::dot(axis, pole)));
 }
 
-/// The least pole_angle on the great arc from a to b.
+/// Smallest pole_angle on the great arc from a to b.
 double arc_pole_angle(const Vec3& a, const Vec3& b, const Vec3& pole) {
   const double ends = std::min(pole_angle(a, pole), pole_angle(b, pole));
   const Vec3 cross = glm::cross(a, b);
@@ -34,7 +34,7 @@ double arc_pole_angle(const Vec3& a, const Vec3& b, const Vec3& pole) {
   const Vec3 normal = cross / sine;
   const double off = std::abs(glm::dot(pole, normal));
   if (off >= 1) return ends;
-  // The circle's nearest point to the pole; it counts where it lies on the arc (for the pole or for its opposite).
+  // The circle's point nearest to the pole; it counts if it lies on the arc (for the pole or its opposite).
   const Vec3 foot = pole - glm::dot(pole, normal) * normal;
   const double after_a = glm::dot(glm::cross(a, foot), normal), before_b = glm::dot(glm::cross(foot, b), normal);
   const bool on_arc = (after_a >= 0 && before_b >= 0) || (after_a <= 0 && before_b <= 0);
@@ -45,11 +45,11 @@ bool opposite(const Pose& a, const Pose& b) {
   return geom::angle_between(a.axis, b.axis) > kPi - 1e-9;
 }
 
-/// One way to stand at a node, and the best way to have come there.
+/// A choice of joints at a node, with the best path that leads to it.
 struct Stand {
   Joints joints{};
-  double way = 0;          // deg, all rotary axes
-  std::uint32_t from = 0;  // among the stands of the node before
+  double way = 0;          // deg: path of all rotary axes
+  std::uint32_t from = 0;  // index among the previous node's stands
   std::uint16_t rewinds = 0;
   std::uint8_t branch = 0;
 
@@ -89,7 +89,7 @@ class Chooser {
     std::size_t row;
     double share;
     bool rewound;
-    std::size_t begin = 0;  // of its stands in traces_
+    std::size_t begin = 0;  // first of its stands in traces_
   };
 
   const Pose& pose(std::size_t row) const { return program_.poses()[row]; }
@@ -104,10 +104,10 @@ class Chooser {
 
   bool within(const Joints& joints) const { return machine_.beyond(joints, kSlack) == joints.size(); }
 
-  /// Adds where nothing as good stands at the same place.
+  /// Adds a stand unless one as good exists at the same place.
   void add(Stands& stands, const Stand& stand) const {
-    constexpr double kSame = 1e-6;  // deg: the least step that is printed
-    // Without limits one place per branch is enough: what is shorter so far stays so.
+    constexpr double kSame = 1e-6;  // deg: smallest printed step
+    // Without limits, one place per branch suffices: the shorter path so far stays shorter.
     const bool limits = !machine_.limited().empty();
     for (Stand& other : stands) {
       if (other.branch != stand.branch || (limits && rotary_way(other.joints, stand.joints) > kSame)) continue;
@@ -117,8 +117,8 @@ class Chooser {
     stands.push_back(stand);
   }
 
-  /// Every place of the rotary axes at this pose that limits allow: on every branch, of the turns of a limited axis the
-  /// lowest, the highest and the one nearest to where it was.
+  /// Every allowed place of the rotary axes at this pose: on every branch, for a limited axis the lowest, the highest
+  /// and the nearest turn.
   void add_places(Stands& stands, std::size_t row, const Pose& pose, const Stand& from) const {
     for (int b = 0; b < machine_.branches(); ++b) {
       const Joints principal = joints_of(row, pose, b, from.joints);
@@ -142,9 +142,9 @@ class Chooser {
     }
   }
 
-  /// The turns of `angle` within the range: the nearest, the outermost, and those about the nearest.
+  /// The turns of `angle` within the range: the nearest, the outermost, and those around the nearest.
   static std::vector<double> turns_within(const AxisRange& range, double angle) {
-    constexpr int kAround = 8;  // either way: all of them in a range of up to 3240°
+    constexpr int kAround = 8;  // in both directions: all turns in a range of up to 3240°
     std::vector<double> out;
     const auto put = [&](double a) {
       if (a < range.low - kSlack || a > range.high + kSlack) return;
@@ -159,8 +159,8 @@ class Chooser {
     return out;
   }
 
-  /// Where the axes stand before the first row: a free axis as the first row that needs it will have it. A tie goes to
-  /// branch 0 and to the turn nearest to 0 whatever the rounding: their head start is the least step that is printed.
+  /// The stands before the first row: a free axis takes the value that the first row needing it will have. Ties go to
+  /// branch 0 and to the turn nearest to 0, independent of rounding: their advantage is the smallest printed step.
   Stands start() const {
     const auto away = std::find_if(program_.poses().begin(), program_.poses().end(), [&](const Pose& p) {
       return pole_angle(p.axis, machine_.pole()) > free_angle(axis_tolerance_);
@@ -168,7 +168,7 @@ class Chooser {
     Stands stands;
     for (int b = 0; b < machine_.branches(); ++b) {
       Stand before;
-      // An axis that is free throughout stands within its limits, not at 0.
+      // An axis that is always free stays within its limits instead of at 0.
       for (const std::size_t k : rotary_)
         before.joints[k] = std::clamp(0.0, machine_.range(k).low, machine_.range(k).high);
       if (away != program_.poses().end())
@@ -196,7 +196,7 @@ class Chooser {
     return next;
   }
 
-  /// Along the great circle, with as many stops to turn axes back as limits ask for.
+  /// Along the great circle, with as many retracts to unwind axes as the limits require.
   void follow(std::size_t row) {
     const Pose &a = pose(row - 1), &b = pose(row);
     if (opposite(a, b)) throw RowError("poses", row, "the axis is opposite to that of the row before");
@@ -206,7 +206,7 @@ class Chooser {
     bool dead = false;
     Stands next = tied(row, a, b, stands_, passes_pole(a.axis), &dead);
     if (!dead) return keep({row, 1, false}, std::move(next));
-    // Somebody meets a limit: what could be gained by turning back first?
+    // Some stand reaches a limit: check what unwinding first would gain.
     const Motion motion(a, b);
     double share = 0;
     for (int round = 0;; ++round) {
@@ -227,8 +227,8 @@ class Chooser {
     }
   }
 
-  /// Whether one of `after` stands where none of `next` does: a turn back costs more than any way, and is of use only
-  /// for a place that cannot be had without.
+  /// Whether some stand in `after` has a place that none in `next` has: unwinding costs more than any path and is
+  /// useful only for a place that cannot be reached otherwise.
   bool gains(const Stands& after, const Stands& next) const {
     return std::any_of(after.begin(), after.end(), [&](const Stand& a) {
       return std::none_of(next.begin(), next.end(), [&](const Stand& n) {
@@ -237,12 +237,12 @@ class Chooser {
     });
   }
 
-  /// Joints at `to` on `branch`, by the turn to which `before` comes along the great circle.
+  /// Joints at `to` on `branch`, at the turn that `before` reaches along the great circle.
   Joints followed(std::size_t row, const Pose& from, const Pose& to, const Stand& before, int branch) const {
     const Joints nearest = joints_of(row, to, branch, before.joints);
     if (machine_.branches() == 1) return nearest;
-    // Beside the pole the free axis turns by less than half a turn to where the pole is nearest, and so from there, but
-    // both can be more than half a turn: as the tool turns, and a quarter where the other axis leans.
+    // Near the pole, the free axis turns by less than half a turn up to the point nearest to the pole, and again after
+    // it, but possibly by more in total: as far as the tool turns, plus a quarter turn if the other axis leans.
     const std::size_t k = machine_.free_joint();
     if (std::abs(nearest[k] - before.joints[k]) <= 90) return nearest;
     const Motion motion(from, to);
@@ -255,7 +255,7 @@ class Chooser {
     Joints from, to;
   };
 
-  /// Where the same step leads that begins at `from`, if that is whole turns from its beginning.
+  /// The result of the same step from joints that differ by whole turns.
   std::optional<Joints> by_whole_turns(const Step& step, const Joints& from) const {
     Joints out = step.to;
     for (const std::size_t k : rotary_) {
@@ -266,13 +266,13 @@ class Chooser {
     return out;
   }
 
-  /// From `before` along the great circle to `to`. `passes_pole`: where the branch may change, and the free axis may
-  /// turn either way. `dead`: whether one of them cannot go on.
+  /// From `before` along the great circle to `to`. `passes_pole`: the branch may change, and the free axis may turn in
+  /// either direction. `dead`: set if one of them cannot continue.
   Stands tied(std::size_t row, const Pose& from, const Pose& to, const Stands& before, bool passes_pole,
               bool* dead) const {
-    constexpr double kMax = 270;  // deg of the free axis at the pole
+    constexpr double kMax = 270;  // deg: of the free axis at the pole
     Stands next;
-    std::array<std::optional<Step>, 2> steps;  // of the stands before by branch, where it stays
+    std::array<std::optional<Step>, 2> steps;  // per branch of the previous stands, without a change of branch
     for (std::uint32_t k = 0; k < before.size(); ++k) {
       bool goes = false;
       for (int b = 0; b < machine_.branches(); ++b) {
@@ -302,7 +302,7 @@ class Chooser {
     return next;
   }
 
-  /// The stands of the node before and what they can be turned into.
+  /// The stands of the previous node, and all that they can become by unwinding.
   Stands rewound(std::size_t row, const Pose& pose) const {
     Stands out;
     for (std::uint32_t k = 0; k < stands_.size(); ++k) {
@@ -316,7 +316,7 @@ class Chooser {
     return out;
   }
 
-  /// The largest share of the move at which one of the stands is still within the limits.
+  /// The largest fraction of the move at which one of the stands is still within the limits.
   double reach(std::size_t row, const Motion& motion, double from, const Stands& stands) const {
     constexpr int kSteps = 256;
     double best = from;
@@ -363,7 +363,7 @@ class Chooser {
       out[n] = {node.row, node.share, machine_.with_tip(joints, tip), node.rewound};
       at = trace.from;
     }
-    // Where turning back was possible but this way did without, there is nothing to see.
+    // Omit the waypoint where unwinding was possible but this path did not need it.
     std::vector<Waypoint> kept;
     for (const Waypoint& w : out)
       if (!w.rewound || rotary_way(kept.back().joints, w.joints) > 1e-6) kept.push_back(w);
@@ -383,15 +383,15 @@ class Chooser {
       }
     }
     if (text.back() == ':') text += " along the great circle from the row before";
-    throw RowError("poses", row, text + "; place the part otherwise or tilt the tool less");
+    throw RowError("poses", row, text + "; place the part differently or tilt the tool less");
   }
 
   const Program& program_;
   const Machine& machine_;
   double axis_tolerance_;
   const std::vector<bool>& free_;
-  std::vector<std::size_t> rotary_;  // in Joints
-  Stands stands_;                    // of the last node
+  std::vector<std::size_t> rotary_;  // indices in Joints
+  Stands stands_;                    // stands of the last node
   std::vector<Node> nodes_;
   std::vector<Trace> traces_;
 };

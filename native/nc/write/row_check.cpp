@@ -20,7 +20,7 @@ class NoBlocks final : public BlockSink {
   void arc(const PostArc&) override {}
 };
 
-/// The report on a followed program, as one on the program that it was made of.
+/// Converts the report on a followed program into one on the original program.
 void count_original_rows(WriteReport& report, const RowMap& map) {
   for (std::size_t& row : report.rewinds) row = map.original(row);
   for (MachineStep& m : report.motion) m.row = map.original(m.row);
@@ -55,7 +55,7 @@ std::optional<RowError> RowCheck::first_fault(const Program& program, BlockSink&
   Program whole;
   try {
     if (follows) whole = followed(program, &map);
-  } catch (const RowError& e) {  // a via pose to which no feed leads
+  } catch (const RowError& e) {  // a via pose without a feed
     return e;
   }
   const BlockSettings settings{*machine_, options_.tolerance, options_.axis_tolerance, how_.safe_height, joints_,
@@ -64,7 +64,7 @@ std::optional<RowError> RowCheck::first_fault(const Program& program, BlockSink&
     report = make_blocks(follows ? whole : program, settings, sink);
   } catch (const RowError& e) {
     if (!follows) return e;
-    return RowError(e.name(), map.original(e.row()), (e.name() == "poses" ? "on the way there " : "") + e.reason());
+    return RowError(e.name(), map.original(e.row()), (e.name() == "poses" ? "on the move there " : "") + e.reason());
   }
   if (follows) count_original_rows(report, map);
   return std::nullopt;

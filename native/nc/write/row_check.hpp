@@ -1,5 +1,5 @@
-// Whether a machine can run the rows of a program: axes out of their limits, orientations that it cannot hold, ways
-// that its rotary axes cannot follow, feeds that are not known.
+// Checks whether a machine can run the rows of a program: axis limits, orientations it cannot hold, paths that its
+// rotary axes cannot follow, unknown feeds.
 #pragma once
 
 #include <memory>
@@ -11,27 +11,27 @@
 
 namespace riffler::nc {
 
-/// The one check of writer and verification. Where the axes stand at a row follows from the rows before and after it
+/// The common check of writer and verification. The joints of a row depend on the rows before and after it
 /// (nc/write/rotary.hpp), so rows are checked together.
 class RowCheck {
  public:
-  /// std::invalid_argument for a machine or an option that is not known, or a tolerance that is too small.
+  /// Throws std::invalid_argument for an unknown machine or option, or a tolerance that is too small.
   explicit RowCheck(const WriteOptions& options);
 
   const Machine& machine() const { return *machine_; }
-  /// Writes in the machine's language.
+  /// The post for the machine's language.
   std::unique_ptr<Post> make_post() const { return nc::make_post(*machine_, how_); }
 
-  /// The first row that the machine cannot run, or nothing. Writes nothing.
+  /// The first row that the machine cannot run, or no value. Writes nothing.
   std::optional<RowError> first_fault(const Program& program) const;
-  /// The same. Hands the blocks before the fault to `sink`; `report` changes where there is none.
+  /// As above. Passes the blocks before the fault to `sink`; sets `report` only if there is no fault.
   std::optional<RowError> first_fault(const Program& program, BlockSink& sink, WriteReport& report) const;
 
  private:
   WriteOptions options_;
   std::unique_ptr<Machine> machine_;
   PostOptions how_;
-  bool joints_ = true, arcs_ = false;  // of BlockSettings
+  bool joints_ = true, arcs_ = false;  // for BlockSettings
 };
 
 }  // namespace riffler::nc

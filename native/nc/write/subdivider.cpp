@@ -23,7 +23,7 @@ double rotary_way(const Joints& a, const Joints& b) {
 double nearest_to_pole(const Motion& motion, const Vec3& pole) {
   const auto height = [&](double t) { return std::abs(glm::dot(motion.axis(t), pole)); };
   if (motion.angle() > 0) {
-    // The cosine to the pole goes as cos(angle t - phase), that to its opposite half a turn later.
+    // The cosine of the angle to the pole varies as cos(angle t − phase), that to its opposite half a turn later.
     const Vec3 &start = motion.from().axis, ahead = glm::cross(motion.rotation() / motion.angle(), start);
     double phase = std::atan2(glm::dot(ahead, pole), glm::dot(start, pole));
     if (phase < 0) phase += kPi;
@@ -32,17 +32,17 @@ double nearest_to_pole(const Motion& motion, const Vec3& pole) {
   return height(0) >= height(1) ? 0 : 1;
 }
 
-/// A stretch of a move: shares t0 to t1 of it and the joints there.
+/// A piece of a move: fractions t0 to t1 of it and the joints there.
 struct Subdivider::Part {
   double t0, t1;
   Joints j0, j1;
 };
 
 bool Subdivider::fits(const Motion& motion, const Part& part, bool free) const {
-  // Both errors vanish at the ends and are smooth between them: where the largest of nine samples is within 0.8 of the
-  // tolerance, so is what lies between the samples within the whole of it.
+  // Both errors vanish at the ends and are smooth in between: if the largest of nine samples is within 0.8 of the
+  // tolerance, everything between the samples is within the tolerance.
   constexpr int kSamples = 9;
-  // Whole turns look like rest from one sample to the next.
+  // From one sample to the next, whole turns look like standstill.
   constexpr double kMaxTurned = 120;  // deg
   if (machine_.joint_words() && rotary_way(part.j0, part.j1) > kMaxTurned) return false;
   for (int i = 1; i <= kSamples; ++i) {
@@ -54,13 +54,13 @@ bool Subdivider::fits(const Motion& motion, const Part& part, bool free) const {
   return true;
 }
 
-/// The branches of a move: `first` up to the share `change`, from there `last`.
+/// The branches of a move: `first` up to fraction `change`, then `last`.
 struct Subdivider::Route {
   int first = 0, last = 0;
   double change = 1;
 };
 
-/// The branch on which `joints` hold the pose; −1 where both are one.
+/// The branch on which `joints` hold the pose; −1 if both branches coincide.
 int Subdivider::branch_of(const Pose& pose, const Joints& joints) const {
   if (machine_.branches() == 1) return 0;
   constexpr double kOne = 1e-4;  // deg
@@ -70,7 +70,7 @@ int Subdivider::branch_of(const Pose& pose, const Joints& joints) const {
   return rotary_way(joints, zero) <= rotary_way(joints, one) ? 0 : 1;
 }
 
-/// A move that changes the branch does so where it is nearest to the pole.
+/// A move that changes the branch does so at its point nearest to the pole.
 Subdivider::Route Subdivider::route(const Motion& motion, const Joints& from, const Joints& to) const {
   const int a = branch_of(motion.from(), from), b = branch_of(motion.to(), to);
   const double change = nearest_to_pole(motion, machine_.pole());
@@ -78,8 +78,8 @@ Subdivider::Route Subdivider::route(const Motion& motion, const Joints& from, co
   return {a, b, change};
 }
 
-/// Joints at the middle of the part. Close to the pole, closer than the axis need be held, the free axis moves on
-/// evenly: this is how a move that passes the pole changes branches.
+/// Joints at the middle of the part. If it is closer to the pole than the axis tolerance requires, the free axis moves
+/// on evenly: this is how a move that passes the pole changes branches.
 Joints Subdivider::between(const Motion& motion, const Part& part, const Route& route) const {
   const double t = (part.t0 + part.t1) / 2, free = axis_tolerance_ / 2;
   const bool before = t < route.change;
@@ -87,21 +87,21 @@ Joints Subdivider::between(const Motion& motion, const Part& part, const Route& 
   const Pose pose = motion.at(t);
   const Joints near = mix(part.j0, part.j1, 0.5), held = machine_.joints(pose, branch, near, free);
   if (machine_.branches() == 1 || part.t0 >= route.change || part.t1 <= route.change) return held;
-  // The free axis turns by less than half a turn on either side of where the pole is nearest, by up to a whole one over
-  // both.
+  // The free axis turns by less than half a turn on either side of the point nearest to the pole, and by up to a whole
+  // turn in total.
   const std::size_t k = machine_.free_joint();
   return held[k] == near[k] ? held : machine_.joints(pose, branch, before ? part.j0 : part.j1, free);
 }
 
 const std::vector<Joints>& Subdivider::split(const Pose& a, const Joints& ja, const Pose& b, const Joints& jb,
                                              bool free) {
-  // 2^40 parts of one move cannot be told apart in doubles; where the rotary axes are continuous it never comes to
-  // that. What they cannot do continuously must not become one long block.
+  // 2^40 parts of one move are indistinguishable in doubles; with continuous rotary axes this is never reached. A
+  // discontinuous motion must not become one long block.
   constexpr double kMin = 0x1p-40;
   out_.clear();
-  // What may go any way has no great circle to keep to, and may have opposite ends.
+  // A free move has no great circle to follow, and its axes may be opposite.
   const Motion motion(a, free ? Pose{b.tip, a.axis} : b);
-  // A stack of parts that are still to be done, the earliest on top.
+  // A stack of pending parts, the earliest on top.
   std::vector<Part> todo{{0, 1, ja, jb}};
   std::optional<Route> route;
   while (!todo.empty()) {

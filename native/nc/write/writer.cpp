@@ -22,7 +22,7 @@ std::vector<std::string> comments_on(const Program& program, const Machine& mach
                                "mm, degrees, feed in mm/min at the tip; tolerance " + number_text(options.tolerance) +
                                    " mm, axis " + number_text(options.axis_tolerance, 8) + " rad"};
   for (auto [key, value] : program.provenance) {
-    // "(LOGOPEN," and its like are commands to LinuxCNC.
+    // LinuxCNC executes comments such as "(LOGOPEN,": avoid the comma.
     std::replace(key.begin(), key.end(), ',', ' ');
     out.push_back(key + ": " + value);
   }

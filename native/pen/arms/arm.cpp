@@ -9,7 +9,7 @@ ArmPosture arm_posture(const ArmLinks& links, const Vec3& angles) noexcept {
   const double s1 = std::sin(angles.x), c1 = std::cos(angles.x);
   const double s2 = std::sin(angles.y), c2 = std::cos(angles.y);
   const double s3 = std::sin(angles.z), c3 = std::cos(angles.z);
-  const double out = links.upper * s2 + links.fore * c3;  // from the upright axis
+  const double out = links.upper * s2 + links.fore * c3;  // distance from the vertical axis
   ArmPosture posture;
   posture.end = {out * c1, out * s1 + links.shoulder, links.fore * s3 - links.upper * c2};
   posture.jacobian = Mat3(Vec3(-out * s1, out * c1, 0),  //
@@ -30,15 +30,15 @@ ArmInverse arm_angles(const ArmLinks& links, const Vec3& end) noexcept {
   inverse.reach = distance > straight ? ReachResult::TooFar
                   : distance < folded ? ReachResult::TooNear
                                       : ReachResult::Reached;
-  // A point of the upright axis is reached, but from any side.
+  // A point on the vertical axis can be reached, but from any side.
   if (inverse.reach == ReachResult::Reached && (out == 0 || distance == 0)) inverse.reach = ReachResult::OnAxis;
-  // sin and cos of θ2 − θ3 from the law of cosines, in factors: no digits are lost near the straight and folded arm.
+  // sin and cos of θ2 − θ3 from the law of cosines, in factored form: precise near the straight and the folded arm.
   const double two = 2 * links.upper * links.fore;
   const double less = (straight - distance) * (straight + distance) / two;  // 1 − sin
   const double more = (distance - folded) * (distance + folded) / two;      // 1 + sin
   const double s = std::clamp(less < more ? 1 - less : more - 1, -1.0, 1.0);
   const double c = std::sqrt(std::max(less, 0.0) * std::max(more, 0.0));
-  // With θ2 = θ3 + δ the end is (L2 + L1 sin δ, −L1 cos δ) turned by θ3.
+  // With θ2 = θ3 + δ the end is (L2 + L1 sin δ, −L1 cos δ) rotated by θ3.
   const double third = std::atan2(end.z, out) - std::atan2(-links.upper * c, links.fore + links.upper * s);
   inverse.angles = {std::atan2(y, end.x), third + std::atan2(s, c), third};
   return inverse;

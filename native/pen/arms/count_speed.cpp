@@ -8,8 +8,8 @@ namespace riffler::pen {
 
 namespace {
 
-// Counts. Readings are rounded down, so those of a steady motion are less than one off; one that trembles at a count's
-// edge is off by just one, and no motion.
+// Counts. Readings are rounded down, so those of a steady motion deviate by less than one. One that trembles at the
+// edge of a count deviates by exactly one, and is no motion.
 constexpr double kOff = 1 + 1e-9;
 
 }  // namespace
@@ -22,7 +22,7 @@ void CountSpeed::add(const EncoderCounts& raw, double time) noexcept {
 }
 
 double CountSpeed::counts_per_second(std::size_t channel) const noexcept {
-  // Counts since, and time since, the reading of this age; differences of counters that wrap are right.
+  // Counts and time since the reading of this age; differences of wrapping counters are right.
   std::array<double, kWindow> count{}, time{};
   double slope = 0;
   for (std::size_t age = 1; age < size_; ++age) {

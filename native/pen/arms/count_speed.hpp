@@ -8,20 +8,20 @@
 
 namespace riffler::pen {
 
-/// Of each counter, the slope of the longest line through the newest reading and an older one from which no reading
-/// between them is more than a count off: first-order adaptive windowing with end fit (Janabi-Sharifi, Hayward and
-/// Chen, "Discrete-time adaptive windowing for velocity estimation", IEEE Trans. Control Systems Technology 8(6),
-/// 2000). A steady motion is averaged over the whole window, which leaves less than a count over its time, and a change
-/// is followed at once. The difference of two readings at 1 kHz would be off by up to a count per millisecond, 24 mm/s
-/// at the end of a 180 mm arm. Counters may wrap. Allocates nothing.
+/// Per counter, the slope of the longest line through the newest reading and an older one such that no reading between
+/// them deviates by more than a count: first-order adaptive windowing with end fit (Janabi-Sharifi, Hayward and Chen,
+/// "Discrete-time adaptive windowing for velocity estimation", IEEE Trans. Control Systems Technology 8(6), 2000). A
+/// steady motion is averaged over the whole window, with an error below a count over its duration, and a change is
+/// followed at once. The difference of two readings at 1 kHz could be wrong by a count per millisecond, 24 mm/s at the
+/// end of a 180 mm arm. Counters may wrap. Allocates nothing.
 class CountSpeed {
  public:
   explicit CountSpeed(const PenGeometry& pen) noexcept : channels_(pen.channels) {}
 
-  /// `time` in s, the device's own. Readings that are not later than the one before, or not at a finite time, are left
-  /// out.
+  /// `time`: s on the device's clock. Ignores readings that are not later than the one before, or whose time is not
+  /// finite.
   void add(const EncoderCounts& raw, double time) noexcept;
-  /// Forgets all: after a gap or a homing.
+  /// Clears all readings: after a gap or a homing.
   void clear() noexcept { size_ = 0; }
 
   /// rad/s of R and L; zeros before the second reading.
@@ -31,7 +31,7 @@ class CountSpeed {
   static constexpr std::size_t kWindow = 20;
 
   double counts_per_second(std::size_t channel) const noexcept;
-  /// `age` 0 is the newest.
+  /// Index of the reading of this age; 0 is the newest.
   std::size_t slot(std::size_t age) const noexcept { return (newest_ + kWindow - age) % kWindow; }
 
   std::array<PenChannel, kPenChannels> channels_;

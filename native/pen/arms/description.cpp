@@ -13,9 +13,9 @@ namespace riffler::pen {
 
 namespace {
 
-constexpr double kSquare = 1e-6;     // by which axes may miss unit length and right angles
-constexpr double kLongest = 1e4;     // mm: of a link, far beyond what a desk holds
-constexpr double kHeaviest = 100;    // kg: nobody holds more
+constexpr double kSquare = 1e-6;     // tolerance of unit lengths and right angles
+constexpr double kLongest = 1e4;     // mm: length of a link, far beyond the size of a desk
+constexpr double kHeaviest = 100;    // kg: more than a hand can hold
 constexpr double kMaxInertia = 1e9;  // kg·mm²
 constexpr double kMaxAmperes = 32;   // reports carry mA in 16 bits
 
@@ -67,13 +67,13 @@ class PenReader : base::TomlReader {
   void base(const toml::table& table) {
     allow(table, {"x", "z", "origin"});
     const Vec3 x = unit(table, "x"), z = unit(table, "z");
-    if (std::abs(glm::dot(x, z)) > kSquare) fail(needed(table, "z"), "z must be square to x");
+    if (std::abs(glm::dot(x, z)) > kSquare) fail(needed(table, "z"), "z must be perpendicular to x");
     const Vec3 y = glm::normalize(glm::cross(z, x));
     pen_.turn = Mat3(glm::cross(y, z), y, z);
     pen_.origin = vector(needed(table, "origin"), "origin");
   }
 
-  /// One length for each arm: { R = 150, L = 180 }.
+  /// A length per arm: { R = 150, L = 180 }.
   std::array<double, 2> of_both(const toml::table& table, std::string_view key) const {
     const toml::table& both = needed_table(table, key);
     allow(both, {"R", "L"});
@@ -113,7 +113,7 @@ class PenReader : base::TomlReader {
     return value->get();
   }
 
-  /// The list of six of `key`.
+  /// The list of six under `key`.
   const toml::array& six(const toml::table& table, std::string_view key) const {
     const toml::node& node = needed(table, key);
     const toml::array* list = node.as_array();
@@ -177,7 +177,7 @@ class PenReader : base::TomlReader {
          [&](PenChannel& c, const toml::node& n, const std::string& key) { c.viscous = not_negative(n, key); });
     each("gravity", [&](PenChannel& c, const toml::node& n, const std::string& key) {
       c.gravity = not_negative(n, key);
-      if (c.joint == 0 && c.gravity != 0) fail(n, key + " must be 0: joint 1 turns about the upright");
+      if (c.joint == 0 && c.gravity != 0) fail(n, key + " must be 0: joint 1 turns about the vertical axis");
     });
     each("inertia", [&](PenChannel& c, const toml::node& n, const std::string& key) {
       c.inertia = positive(n, key, kMaxInertia);
@@ -223,7 +223,7 @@ class PenReader : base::TomlReader {
     allow(table, {"elbow", "lower", "upper", "force", "torque", "speed", "turn_rate", "friction_speed"});
     const toml::node& elbow = needed(table, "elbow");
     const Vec2 range = growing_pair(elbow, "elbow");
-    // Beyond ±π/2 an arm is straight or folded, and its angles are no longer one answer.
+    // At ±π/2 an arm is straight or folded, and beyond it the solution for its angles is no longer unique.
     if (!(range.x > -1.57 && range.y < 1.57)) fail(elbow, "elbow must lie within -1.57 and 1.57 rad");
     pen_.elbow_low = range.x, pen_.elbow_high = range.y;
     pen_.workspace = {vector(needed(table, "lower"), "lower"), vector(needed(table, "upper"), "upper")};
@@ -234,7 +234,7 @@ class PenReader : base::TomlReader {
     pen_.friction_speed = positive(table, "friction_speed");
   }
 
-  /// A pen that contradicts itself where it is homed would be wrong everywhere.
+  /// A pen that contradicts itself in its home posture would be wrong everywhere.
   void check_home() const {
     const toml::node& home = needed(section("channels"), "home");
     const PenKinematics kinematics(pen_);
@@ -249,7 +249,7 @@ class PenReader : base::TomlReader {
     }
     for (const Vec3& arm : angles)
       if (arm.y - arm.z < pen_.elbow_low || arm.y - arm.z > pen_.elbow_high)
-        fail(home, "home: joint 2 less joint 3 is " + in_digits(arm.y - arm.z) + " rad, and the elbow's limits are " +
+        fail(home, "home: joint 2 minus joint 3 is " + in_digits(arm.y - arm.z) + " rad, and the elbow's limits are " +
                        in_digits(pen_.elbow_low) + " to " + in_digits(pen_.elbow_high));
     if (std::abs(posture.length - pen_.grip_length) > pen_.grip_tolerance)
       fail(home, "home: the arms' ends are " + in_digits(posture.length) + " mm apart there, and the grip is " +

@@ -8,12 +8,12 @@ namespace riffler::pen {
 
 namespace {
 
-/// What was counted from `from` to `to` by a counter of 32 bits that may have wrapped between.
+/// Counts between two readings of a 32-bit counter that may have wrapped.
 std::int32_t counted(std::int32_t from, std::int32_t to) {
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(to) - static_cast<std::uint32_t>(from));
 }
 
-/// The counter's reading for `angle`, the inverse of (2.9).
+/// The counter's reading for `angle`: the inverse of (2.9).
 std::int32_t reading(double angle, double steps, int sign, std::int32_t home, std::int32_t at_home) {
   const double count = std::nearbyint(sign * angle * steps / kTwoPi) - home;
   const double wrapped = std::isfinite(count) ? std::remainder(count, 0x1p32) : 0;

@@ -54,7 +54,7 @@ MotorCommands motor_currents(const PenGeometry& pen, const MotorTorques& torques
   out.scale = scale_to_peaks(pen, torques, first);
   for (std::size_t k = 0; k < kPenChannels; ++k) {
     const PenChannel& c = pen.channels[k];
-    // Not rounded beyond the peak.
+    // Rounded down, so as not to exceed the peak.
     const double most = std::floor(1000 * c.peak_current);
     out.values[k] = rounded(1000 * (first[k] + out.scale * torques[k]) / c.torque_constant, -most, most);
   }
@@ -76,7 +76,7 @@ JointAngles gravity_torques(const PenGeometry& pen, const JointAngles& angles) n
   JointAngles out{};
   for (const PenChannel& c : pen.channels) {
     const double angle = angles[index(c.arm)][c.joint];
-    // Joint 1 turns about the upright.
+    // Joint 1 turns about the vertical: no weight.
     out[index(c.arm)][c.joint] = c.joint == 0 ? 0 : c.gravity * (c.joint == 1 ? std::sin(angle) : std::cos(angle));
   }
   return out;

@@ -1,4 +1,4 @@
-// The pens that are known by name: those that come with Riffler (device/geometry/*.toml), and files of the user's own.
+// Pens by name: those shipped with Riffler (device/geometry/*.toml), and the user's own files.
 #pragma once
 
 #include <string_view>
@@ -9,12 +9,12 @@
 
 namespace riffler::pen {
 
-/// All pens, ours first, then every *.toml in the folders of RIFFLER_PENS (apart as in PATH) and in riffler/pens of the
-/// user's folder for settings; of a file that cannot be read the description says why.
+/// All pens: the shipped ones, then every *.toml in the folders of RIFFLER_PENS (separated as in PATH) and in
+/// riffler/pens of the user's configuration folder. The description of an unreadable file states the reason.
 std::vector<base::DescriptionEntry> pens();
 
-/// `name` is one of pens(), or the path of a .toml file. Throws std::invalid_argument that lists the known ones, and
-/// what describe_pen throws.
+/// `name`: from pens(), or the path of a .toml file. Throws std::invalid_argument listing the known names, and errors
+/// of describe_pen.
 PenGeometry load_pen(std::string_view name);
 
 }  // namespace riffler::pen

@@ -11,14 +11,14 @@ namespace riffler::pen {
 
 namespace {
 
-constexpr double kApart = 0.02;         // rad: by which a joint differs between postures that are kept
-constexpr std::size_t kFewest = 12;     // postures
-constexpr double kExplained = 1.0 / 3;  // of the tolerance, of what an explanation may leave
-constexpr double kClearly = 2;          // times as much must the second best leave
-constexpr int kSteps = 30;              // of Gauss–Newton
+constexpr double kApart = 0.02;         // rad: smallest difference of a joint between stored postures
+constexpr std::size_t kFewest = 12;     // smallest number of postures
+constexpr double kExplained = 1.0 / 3;  // of the tolerance: largest remainder of an explanation
+constexpr double kClearly = 2;          // factor by which the second-best remainder must be larger
+constexpr int kSteps = 30;              // Gauss–Newton steps
 constexpr double kConverged = 1e-3;     // counts
 
-/// From the centre of the circle that joint `joint` moves the end on, to the end.
+/// From the centre of the circle on which joint `joint` moves the end, to the end.
 Vec3 arm_of_circle(const ArmLinks& links, const Vec3& angles, const Vec3& end, int joint) {
   const double s1 = std::sin(angles.x), c1 = std::cos(angles.x);
   const auto in_plane = [&](double out, double up) { return Vec3(out * c1, out * s1, up); };
@@ -27,7 +27,7 @@ Vec3 arm_of_circle(const ArmLinks& links, const Vec3& angles, const Vec3& end, i
   return links.fore * in_plane(std::cos(angles.z), std::sin(angles.z));
 }
 
-/// The least way from angle `from` on, in direction `way`, to where the cosine is `c`; infinite where it never is.
+/// Smallest angle from `from`, in the given direction (±1), at which the cosine is `c`; infinite if there is none.
 double way_to_cosine(double from, double way, double c) {
   if (!(std::abs(c) <= 1)) return kInfinity;
   double least = kInfinity;
@@ -54,8 +54,8 @@ std::array<NoticedCounts, kPenChannels> noticed_counts(const PenKinematics& pen,
     const PenChannel& c = g.channels[k];
     const std::size_t arm = index(c.arm);
     const ArmPosture& moved = posture.arms[arm];
-    // On its circle the end is centre + q cos δ + t sin δ, and its square distance from the other end K − 2 M cos(δ −
-    // φ).
+    // On its circle the end is centre + q cos δ + t sin δ, and its squared distance from the other end is K − 2 M cos(δ
+    // − φ).
     const Vec3 q = arm_of_circle(g.arms[arm], posture.angles[arm], moved.end, c.joint), t = moved.jacobian[c.joint];
     const Vec3 other = posture.arms[1 - arm].end - moved.end + q;
     const double p = glm::dot(other, q), s = glm::dot(other, t), m = std::hypot(p, s), phase = std::atan2(s, p);
@@ -80,15 +80,15 @@ void GripDiagnosis::add(const PenPosture& posture) noexcept {
   }
   if (!std::isfinite(posture.length)) return;
   angles_[size_ % kKept] = posture.angles;
-  // Beyond twice the room only the remainder matters.
+  // Beyond twice the capacity only the remainder matters.
   if (++size_ == 3 * kKept) size_ = 2 * kKept;
 }
 
-/// Gauss–Newton.
+/// Fits by Gauss–Newton.
 GripDiagnosis::Fit GripDiagnosis::fit_from(std::size_t channel, double counts) const noexcept {
   const PenGeometry& g = pen_->geometry();
   const PenChannel& c = g.channels[channel];
-  // What one count of this channel more turns its joint by, and what is taken from the joint with `counts`.
+  // Rotation of this channel's joint per count, and the correction of the joint by `counts`.
   const double turn = c.sign / c.steps * kTwoPi;
   for (int step = 0;; ++step) {
     double squares = 0, slopes = 0, both = 0;
@@ -102,7 +102,7 @@ GripDiagnosis::Fit GripDiagnosis::fit_from(std::size_t channel, double counts) c
       squares += stretch * stretch, slopes += slope * slope, both += slope * stretch;
     }
     const Fit now{std::sqrt(squares / static_cast<double>(postures())), counts};
-    // No more than a twentieth of a turn at once: the circles are only straight nearby.
+    // At most a twentieth of a turn per step: the circles are straight only locally.
     const double change = slopes > 0 ? std::clamp(-both / slopes, -c.steps / 20, c.steps / 20) : 0;
     if (step == kSteps || std::abs(change) < kConverged) return now;
     counts += change;
@@ -111,7 +111,7 @@ GripDiagnosis::Fit GripDiagnosis::fit_from(std::size_t channel, double counts) c
 
 GripDiagnosis::Fit GripDiagnosis::fit(std::size_t channel) const noexcept {
   Fit best{kInfinity, 0};
-  // From several starts, since over large turns there are other minima.
+  // Several starts, because over large rotations there are other minima.
   for (const double turns : {0.0, -0.04, 0.04, -0.1, 0.1}) {
     const Fit one = fit_from(channel, turns * pen_->geometry().channels[channel].steps);
     if (one.left < best.left) best = one;

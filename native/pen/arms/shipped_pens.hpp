@@ -1,4 +1,4 @@
-// The texts of device/geometry/*.toml, which the build puts into the library.
+// The texts of device/geometry/*.toml, embedded in the library at build time.
 #pragma once
 
 #include <span>

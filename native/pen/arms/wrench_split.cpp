@@ -7,7 +7,7 @@ namespace riffler::pen {
 WrenchSplit split_wrench(const Wrench& wrench, const Vec3& apart) noexcept {
   const double length = glm::length(apart);
   if (!(length > 0)) return {{0.5 * wrench.force, 0.5 * wrench.force}, wrench.torque};
-  // Through the unit vector: |r|² of a grip of 1e-160 would be zero.
+  // Via the unit vector: |r|² of a grip of 1e-160 would be zero.
   const Vec3 along = apart / length;
   const Vec3 couple = glm::cross(wrench.torque, along) / length;
   const Vec3 half = 0.5 * wrench.force;
@@ -30,7 +30,7 @@ PenEffort pen_effort(const PenKinematics& pen, const PenPosture& posture, const 
 }
 
 Wrench felt_wrench(const PenKinematics& pen, const PenPosture& posture, const JointAngles& torques) noexcept {
-  constexpr double kSingular = 1e-3;  // of arm_dexterity
+  constexpr double kSingular = 1e-3;  // limit of arm_dexterity
   ArmForces forces{Vec3(0), Vec3(0)};
   for (std::size_t arm = 0; arm < 2; ++arm)
     if (std::abs(arm_dexterity(pen.geometry().arms[arm], posture.angles[arm])) > kSingular)

@@ -1,4 +1,4 @@
-// What the two arms push with so that the hand feels a force and a torque (4.14–4.18).
+// Splits a wrench on the hand into forces of the two arms (4.14–4.18).
 #pragma once
 
 #include <array>
@@ -12,30 +12,31 @@ using ArmForces = std::array<Vec3, 2>;  // R, L; N
 
 struct WrenchSplit {
   ArmForces forces{};
-  Vec3 missing{0};  // the torque that cannot be felt: its part along the grip
+  Vec3 missing{0};  // N·mm: torque that cannot be rendered, its component along the grip
 };
 
-/// `wrench` is about the grip's pivot (the middle between the arms' ends), `apart` = r_L − r_R, in one frame. Each arm
-/// has half the force, and a couple (τ × r)/|r|² on the left, its opposite on the right, whose torque r × (τ × r)/|r|²
-/// is exactly the part of τ square to the grip. The source's (4.16) overstates it by |τ| over that part, and divides by
-/// zero where τ lies along r. Of all forces with this wrench these are the least: they do not squeeze the grip. Ends
-/// that coincide can bear no couple, so all of τ is missing then.
+/// `wrench`: about the grip's pivot (the middle between the arms' ends); `apart` = r_L − r_R, mm, in the same frame.
+/// Each arm takes half the force, and the left one the couple force (τ × r)/|r|², the right one its opposite. Their
+/// torque r × (τ × r)/|r|² is exactly the component of τ perpendicular to the grip. Erratum: the source's (4.16)
+/// overstates it by |τ| over that component, and divides by zero if τ is along r. These are the
+/// smallest forces with this wrench: they do not squeeze the grip. Coinciding ends can bear no couple; all of τ is then
+/// missing.
 WrenchSplit split_wrench(const Wrench& wrench, const Vec3& apart) noexcept;
 
-/// The wrench about the pivot that the hand feels of the arms' forces.
+/// The wrench about the pivot that the hand feels from the arms' forces.
 Wrench wrench_of(const ArmForces& forces, const Vec3& apart) noexcept;
 
 struct PenEffort {
-  JointAngles torques{};  // N·mm at the joints: θ1 θ2 θ3 of R, of L
-  Vec3 missing{0};        // torque, frame of poses
+  JointAngles torques{};  // N·mm at the joints: θ1 θ2 θ3 of R and of L
+  Vec3 missing{0};        // N·mm: missing torque, pose frame
 };
 
-/// The joint torques with which the arms push so that the hand feels `wrench` about `at`, both in the frame of poses.
+/// Joint torques that make the hand feel `wrench` about `at`, both in the pose frame.
 PenEffort pen_effort(const PenKinematics& pen, const PenPosture& posture, const Wrench& wrench,
                      const Vec3& at) noexcept;
 
-/// And back: the wrench about the grip's pivot, frame of poses, that the hand feels of joint torques. An arm that is
-/// singular, and could bear any force, counts as bearing none.
+/// The inverse: the wrench about the grip's pivot (pose frame) that the hand feels from joint torques. A singular arm,
+/// which could bear any force, counts as bearing none.
 Wrench felt_wrench(const PenKinematics& pen, const PenPosture& posture, const JointAngles& torques) noexcept;
 
 }  // namespace riffler::pen

@@ -7,7 +7,7 @@
 namespace riffler::pen {
 namespace {
 
-/// Type and tag of a short item (6.2.2.2), as the upper six bits of its first byte.
+/// Type and tag of a short item (6.2.2.2), the upper six bits of its first byte.
 enum Item : std::uint8_t {
   kInput = 0x80,
   kOutput = 0x90,
@@ -23,7 +23,7 @@ enum Item : std::uint8_t {
   kUsage = 0x08,
 };
 constexpr std::uint8_t kLongItem = 0xFE;
-constexpr std::uint64_t kMaxBits = 8 * 4096;  // of a report: HID_MAX_BUFFER_SIZE of Linux was 4096 for long
+constexpr std::uint64_t kMaxBits = 8 * 4096;  // per report: Linux's HID_MAX_BUFFER_SIZE was 4096 for years
 
 struct Globals {
   std::uint32_t page = 0, size = 0, id = 0, count = 0;
@@ -71,7 +71,7 @@ class Parser {
       case kEndCollection:
         if (depth_-- == 0) fail("ends a collection that did not begin");
         return;
-      case kUsage:  // the page comes with the usage where it has four bytes
+      case kUsage:  // a four-byte usage includes its page
         if (usage_ == 0) usage_ = size == 4 ? value : now_.page << 16 | value;
         return;
       case kUsagePage:
@@ -84,7 +84,7 @@ class Parser {
         now_.count = value;
         return;
       case kReportId:
-        if (value == 0 || value > 255) fail("numbers of reports are 1 to 255");
+        if (value == 0 || value > 255) fail("report numbers must be 1 to 255");
         now_.id = value;
         out_.numbered = true;
         return;
@@ -93,7 +93,7 @@ class Parser {
         stack_.push_back(now_);
         return;
       case kPop:
-        if (stack_.empty()) fail("pops what was not pushed");
+        if (stack_.empty()) fail("pops more than it pushes");
         now_ = stack_.back();
         stack_.pop_back();
         return;

@@ -19,7 +19,7 @@ namespace {
 
 constexpr char kPlain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789 ._-";
 
-/// Closes unless it is taken.
+/// Closes the file unless released.
 class File {
  public:
   explicit File(int fd) : fd_(fd) {}
@@ -63,19 +63,19 @@ OpenProblem problem_of(int error) {
   }
 }
 
-/// What is wrong, and what to do about it.
+/// Text with the problem and its remedy.
 std::string explain(const HidInfo& info, OpenProblem problem, int error) {
   const std::string at = info.path + ": ";
   const std::string id = info.id();
   switch (problem) {
     case OpenProblem::Permission:
-      // 73-seat-late.rules acts on the tag, so the file's number must be lower.
+      // 73-seat-late.rules evaluates the tag, so the file's number must be lower.
       return at + "permission denied; as root, put this line into /etc/udev/rules.d/60-riffler-" + id.substr(0, 4) +
              "-" + id.substr(5) + ".rules, then unplug the device and plug it in again: " + udev_rule(info);
     case OpenProblem::Forbidden:
       return at + "the system forbids it (a container or a sandbox that was not given the device?)";
     case OpenProblem::Busy:
-      return at + "busy, another program drives it; end that one first";
+      return at + "in use by another program; close that program first";
     case OpenProblem::Unplugged:
       return at + "it was unplugged";
     case OpenProblem::NoFile:
@@ -111,8 +111,8 @@ std::vector<std::uint8_t> read_descriptor(const HidInfo& info, int fd) {
 }  // namespace
 
 HidHandle::HidHandle(const HidInfo& info, Sharing sharing) {
-  // Ours first: it gives the system's reason, which hidapi turns into a text of the locale's; and hid_open_path 0.13
-  // touches freed memory where the file is not a hidraw device.
+  // First open the file directly: this gives the system's error code, which hidapi turns into a localised text; and
+  // hid_open_path 0.13 uses freed memory if the file is not a hidraw device.
   File file(open_file(info));
   if (sharing == Sharing::Exclusive && ::flock(file.get(), LOCK_EX | LOCK_NB) != 0) fail(info, errno);
   descriptor_ = read_descriptor(info, file.get());
@@ -120,7 +120,7 @@ HidHandle::HidHandle(const HidInfo& info, Sharing sharing) {
     const std::lock_guard lock(hidapi_mutex());
     device_.reset(hid_open_path(info.path.c_str()));
   }
-  if (!device_) fail(info, ENODEV);  // it was there a moment ago
+  if (!device_) fail(info, ENODEV);  // it existed a moment ago
   lock_ = file.take();
 }
 
@@ -149,7 +149,7 @@ std::string udev_rule(const HidInfo& info) {
   const std::string id = info.id();
   std::string rule = R"(ACTION!="remove", SUBSYSTEM=="hidraw", ATTRS{idVendor}==")" + id.substr(0, 4) +
                      R"(", ATTRS{idProduct}==")" + id.substr(5) + '"';
-  // Numbers that several makers use are not enough; udev gives characters like * a meaning.
+  // Several makers use these numbers, so also match the name. Characters like * have a meaning in udev rules.
   if (!info.name.empty() && info.name.find_first_not_of(kPlain) == std::string::npos)
     rule += R"(, ATTRS{product}==")" + info.name + '"';
   return rule + R"(, TAG+="uaccess")";
@@ -187,7 +187,7 @@ const char* problem_text(OpenProblem problem) noexcept {
     case OpenProblem::WrongDescriptor:
       return "wrong report descriptor";
     case OpenProblem::OtherVersion:
-      return "other version of the protocol";
+      return "other protocol version";
     case OpenProblem::NoAnswer:
       return "no answer";
     case OpenProblem::BadContent:
@@ -195,7 +195,7 @@ const char* problem_text(OpenProblem problem) noexcept {
     case OpenProblem::Other:
       break;
   }
-  return "error of the system";
+  return "system error";
 }
 
 }  // namespace riffler::pen

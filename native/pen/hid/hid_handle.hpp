@@ -1,4 +1,4 @@
-// An open HID device, through stock hidapi on hidraw.
+// An open HID device, through unmodified hidapi on hidraw.
 #pragma once
 
 #include <cstdint>
@@ -14,14 +14,14 @@ struct hid_device_;
 
 namespace riffler::pen {
 
-/// Whether others may drive the device at the same time.
+/// Whether other programs may use the device at the same time.
 enum class Sharing : unsigned char { Exclusive, Shared };
 
 class HidHandle final : public Transport {
  public:
-  /// Opens what is at `info.path`. Throws OpenError with the exact reason; texts name the rule to install where that
-  /// would help. hidraw lets any number of programs open one device, and two that push with it fight: an exclusive
-  /// handle holds a lock (flock) on the device file, and a second one, in whatever program, is told that it is busy.
+  /// Opens the device at `info.path`. Throws OpenError with the exact reason; the text names the udev rule to install
+  /// if that helps. hidraw lets any number of programs open a device, and two that push would fight: an exclusive
+  /// handle holds a lock (flock) on the device file, and a second one, in any program, gets Busy.
   explicit HidHandle(const HidInfo& info, Sharing sharing = Sharing::Exclusive);
   HidHandle(const HidHandle&) = delete;
   HidHandle& operator=(const HidHandle&) = delete;
@@ -37,16 +37,15 @@ class HidHandle final : public Transport {
     void operator()(hid_device_* device) const noexcept;
   };
 
-  int lock_ = -1;  // our own file descriptor of the device
+  int lock_ = -1;  // file descriptor that holds the lock
   std::vector<std::uint8_t> descriptor_;
   std::unique_ptr<hid_device_, Closing> device_;
 };
 
-/// The line that lets whoever sits at the computer open the device, and nobody else.
+/// The udev rule that lets the user who sits at the computer open the device, and no other user.
 std::string udev_rule(const HidInfo& info);
 
-/// Why `info.path` would not open; OpenProblem::None if it would. Asks the system only: nothing is read from the
-/// device.
+/// Why `info.path` would not open; OpenProblem::None if it would. Asks only the system; reads nothing from the device.
 OpenProblem why_not_open(const HidInfo& info, std::string& text);
 
 }  // namespace riffler::pen

@@ -28,15 +28,16 @@ void append_utf8(std::string& out, std::uint32_t c) {
   }
 }
 
-/// hidapi's wide strings are UTF-32 on Linux. No function of the C library is asked: those follow the locale.
+/// Converts hidapi's wide strings, which are UTF-32 on Linux. Avoids the C library's functions, which depend on the
+/// locale.
 std::string to_utf8(const wchar_t* text) {
   std::string out;
   for (; text != nullptr && *text != 0; ++text) append_utf8(out, static_cast<std::uint32_t>(*text));
   return out;
 }
 
-/// The kernel's own name of the device. hidapi decodes names with mbstowcs, which gives nothing in the C locale for a
-/// name that is not ASCII (linux/hid.c of 0.13, utf8_to_wchar_t), and has none for Bluetooth devices.
+/// The kernel's name of the device. hidapi decodes names with mbstowcs, which fails in the C locale for names that are
+/// not ASCII (linux/hid.c of 0.13, utf8_to_wchar_t), and has none for Bluetooth devices.
 std::string name_of_kernel(const std::string& path) {
   std::ifstream file("/sys/class/hidraw/" + path.substr(path.rfind('/') + 1) + "/device/uevent");
   constexpr std::string_view key = "HID_NAME=";
@@ -58,7 +59,7 @@ HidInfo to_info(const hid_device_info& d) {
   return info;
 }
 
-/// hidraw10 after hidraw9.
+/// Sorts hidraw10 after hidraw9.
 bool path_before(const HidInfo& a, const HidInfo& b) {
   return a.path.size() != b.path.size() ? a.path.size() < b.path.size() : a.path < b.path;
 }
@@ -86,7 +87,7 @@ std::vector<HidInfo> list_hid() {
   hid_device_info* const all = hid_enumerate(0, 0);
   for (const hid_device_info* d = all; d != nullptr; d = d->next) {
     if (d->path == nullptr) continue;
-    // One entry for each collection of one device.
+    // hidapi lists a device once per collection.
     auto known = std::find_if(out.begin(), out.end(), [&](const HidInfo& i) { return i.path == d->path; });
     if (known == out.end()) known = out.insert(out.end(), to_info(*d));
     if (d->usage_page != 0 || d->usage != 0) known->usages.emplace_back(d->usage_page, d->usage);

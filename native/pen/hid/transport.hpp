@@ -1,5 +1,5 @@
-// What the driver drives: a way to exchange reports, and a clock. Both have a fake in the tests, so that every order of
-// events can be played without hardware and without waiting.
+// What the driver uses: a transport for reports, and a clock. Tests replace both, so that any order of events can be
+// played without hardware and without waiting.
 #pragma once
 
 #include <cstdint>
@@ -7,25 +7,27 @@
 
 namespace riffler::pen {
 
-/// The longest report of a full-speed device is 64 bytes, 65 with a number; a serial line in between may deliver
-/// several at once.
+/// Reports of a full-speed device have at most 64 bytes, 65 with a number; a serial line in between may deliver several
+/// at once.
 inline constexpr std::size_t kLongestRead = 1024;
 
-/// An open device. Used by one thread at a time. Closed by its destructor.
+/// An open device. Used by one thread at a time. The destructor closes it.
 class Transport {
  public:
   virtual ~Transport() = default;
-  /// Bytes of one input report; 0 where none came within `seconds` (0: what is there now), −1 where the device is gone.
+  /// Reads one input report and returns its size in bytes; 0 if none arrived within `seconds` (0: do not wait), −1 if
+  /// the device is gone.
   virtual int read(std::span<std::uint8_t> bytes, double seconds) noexcept = 0;
-  /// An output report, its number first (0 where the device numbers none). False where the device is gone.
+  /// Writes an output report that begins with its number (0 if reports are not numbered). False if the device is gone.
   virtual bool write(std::span<const std::uint8_t> bytes) noexcept = 0;
-  /// Bytes of the feature report that `bytes[0]` numbers; −1 where the device does not give it.
+  /// Reads the feature report with number `bytes[0]` and returns its size in bytes; −1 if the device does not provide
+  /// it.
   virtual int get_feature(std::span<std::uint8_t> bytes) noexcept = 0;
   /// The HID report descriptor.
   virtual std::span<const std::uint8_t> descriptor() const noexcept = 0;
 };
 
-/// Seconds since some start; never falls.
+/// A monotonic clock in seconds since some start.
 class Clock {
  public:
   virtual ~Clock() = default;

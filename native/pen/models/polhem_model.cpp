@@ -12,17 +12,17 @@
 namespace riffler::pen {
 namespace {
 
-// In both messages: seven numbers of 16 bits, little-endian. To the host: counters a … f, then a flag of the index.
-// To the device: currents of a b c (mA), a command, three attributes. Command 1 presets the counters: attributes are
-// those of a b c, currents those of d e f, and nothing is pushed.
+// Both messages have seven 16-bit numbers, little-endian. To the host: counters a … f, then a flag of the index. To the
+// device: currents of a b c (mA), a command, three attributes. Command 1 presets the counters: the attributes are those
+// of a b c, the currents those of d e f, and nothing is pushed.
 constexpr std::size_t kMessage = 14;
 constexpr int kCommandField = 3, kFirstAttribute = 4;
 constexpr std::int16_t kPreset = 1;
-/// The button of the stylus is told by adding this to counter d.
+/// The stylus button is encoded by adding this to counter d.
 constexpr int kButtonOffset = 10000;
 
 constexpr PolhemGeometry kGeometries[] = {
-    // Of 2015: the capstans are 10 mm, the bodies that they drive 160 and 120 mm.
+    // From 2015: capstans of 10 mm, driven bodies of 160 and 120 mm.
     {"woodenhaptics",
      {16, 12, 12},
      {1, 1, 1},
@@ -34,7 +34,7 @@ constexpr PolhemGeometry kGeometries[] = {
      2000,
      2,
      {0, 0, 6000, 0, 0, 0}},
-    // The first Polhem: 10 mm, 180 and 100 mm. Its motors stand the other way round.
+    // The first Polhem: 10 mm, 180 and 100 mm. Its motors are mounted in reverse.
     {"polhem-1",
      {18, 10, 10},
      {-1, -1, -1},
@@ -66,7 +66,7 @@ Vec3 angles_of(const PolhemGeometry& g, const std::array<std::int32_t, 3>& count
   return out;
 }
 
-/// Within what a hand moves it in a few reports.
+/// Whether the counts are within what a hand can move in a few reports of the preset.
 bool at_preset(const PolhemGeometry& g, const std::array<std::int16_t, 6>& raw) {
   constexpr int kNear = 100;
   for (std::size_t k = 0; k < 3; ++k)
@@ -78,7 +78,7 @@ DeviceCapability capability_of(const PolhemGeometry& g) {
   DeviceCapability out;
   out.name = g.name;
   const PolhemPosture home = polhem_posture(g, angles_of(g, {g.preset[0], g.preset[1], g.preset[2]}));
-  // The force that each joint's peak torque allows along an axis: the least of |τ_j| / |J_ij|.
+  // The force along an axis that each joint's peak torque allows: the smallest |τ_j| / |J_ij|.
   for (int i = 0; i < 3; ++i) {
     CoordinateCapability& c = out.coordinates[static_cast<std::size_t>(i)];
     c.sensing = Sensing::Position;
@@ -134,8 +134,8 @@ void PolhemModel::check(Transport& transport) {
   }
   if (reports.numbered || reports.input[0] < kMessage || reports.output[0] < kMessage || reports.output[0] > 64)
     throw OpenError(OpenProblem::WrongDescriptor,
-                    "its report descriptor has no unnumbered reports of 14 to 64 bytes both ways, as the firmware of "
-                    "WoodenHaptics and Polhem has");
+                    "its report descriptor has no unnumbered reports of 14 to 64 bytes in both directions, as the "
+                    "firmware of WoodenHaptics and Polhem has");
   input_size_ = reports.input[0];
   output_size_ = 1 + std::size_t{reports.output[0]};
 }
@@ -147,7 +147,7 @@ bool PolhemModel::home() noexcept {
 
 void PolhemModel::begin(double) noexcept {
   heard_ = homing_ = false;
-  // The counters live in the device, and it has no clock that says whether it was off.
+  // The counters live in the device, which has no clock that would reveal a loss of power.
   sample_.homed = false;
   sample_.velocity = Vec3(0);
   sample_.powered = false;
@@ -173,7 +173,7 @@ void PolhemModel::place(std::span<const std::uint8_t> report, double now) noexce
   }
   if (homing_ && at_preset(geometry_, raw)) {
     std::copy_n(raw.begin(), counts_.size(), counts_.begin());
-    heard_ = homing_ = false;  // a step of the counters that is no motion
+    heard_ = homing_ = false;  // the counters jump without motion
     sample_.homed = true;
   }
   raw_ = raw;
@@ -191,7 +191,7 @@ void PolhemModel::place(std::span<const std::uint8_t> report, double now) noexce
   ++sample_.sequence;
 }
 
-/// All scaled by one factor where one is beyond its peak, so that the force keeps its direction.
+/// Scales all currents by one factor if one exceeds its peak, so that the force keeps its direction.
 std::array<std::int16_t, 3> PolhemModel::currents(const Vec3& force) const noexcept {
   std::array<double, 3> amps{};
   double most = 0;

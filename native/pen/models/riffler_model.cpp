@@ -12,11 +12,11 @@
 namespace riffler::pen {
 namespace {
 
-/// s by which the pen's clock may differ from ours after a gap, for the pen to have been on power all the time.
+/// s by which the pen's clock may differ from the host's after a gap if the pen stayed powered.
 constexpr double kClockError = 0.1;
 
-/// Faults that say nothing against the pen and its pose, only that somebody was late. The firmware counts on in them
-/// and leaves them with the next report that disables, as it leaves all: the difference is made here.
+/// Faults that cast no doubt on the pen and its pose: something was late. The firmware keeps counting during these
+/// faults, and like every fault clears them with the next report that disables; the distinction is made here.
 bool only_late(std::uint8_t fault) {
   return fault == RIFFLER_PEN_WATCHDOG || fault == RIFFLER_PEN_LATE_STEP;
 }
@@ -30,8 +30,8 @@ std::span<const std::uint8_t> feature(Transport& transport, std::uint8_t id, std
   bytes[0] = id;
   const int n = transport.get_feature(bytes);
   if (n < 0)
-    throw OpenError(OpenProblem::NoAnswer,
-                    "the pen does not give feature report " + std::to_string(id) + "; unplug it and plug it in again");
+    throw OpenError(OpenProblem::NoAnswer, "the pen does not provide feature report " + std::to_string(id) +
+                                               "; unplug it and plug it in again");
   return std::span(bytes).first(std::min(static_cast<std::size_t>(n), N));
 }
 
@@ -52,7 +52,7 @@ riffler_pen_identity ask_identity(Transport& transport) {
                     std::string("not a Riffler pen: its identity report: ") + riffler_pen_result_text(result));
   if (result != RIFFLER_PEN_OK)
     throw OpenError(OpenProblem::BadContent,
-                    std::string("the pen's identity report cannot be: ") + riffler_pen_result_text(result));
+                    std::string("the pen's identity report is invalid: ") + riffler_pen_result_text(result));
   return identity;
 }
 
@@ -63,7 +63,7 @@ riffler_pen_limits ask_limits(Transport& transport) {
   const riffler_pen_result result = riffler_pen_decode_limits(report.data(), report.size(), &limits);
   if (result != RIFFLER_PEN_OK)
     throw OpenError(OpenProblem::BadContent,
-                    std::string("the pen's limits cannot be: ") + riffler_pen_result_text(result));
+                    std::string("the pen's limits are invalid: ") + riffler_pen_result_text(result));
   return limits;
 }
 
@@ -74,14 +74,14 @@ void check_descriptor(std::span<const std::uint8_t> bytes) {
   throw OpenError(OpenProblem::WrongDescriptor,
                   "the pen's report descriptor differs from that of its protocol at byte " +
                       std::to_string(a - bytes.begin()) + " (it has " + std::to_string(bytes.size()) + " bytes, of " +
-                      std::to_string(ours.size()) + "); its firmware was built from other files than it says");
+                      std::to_string(ours.size()) + "); its firmware was built from other files than it states");
 }
 
 PenGeometry geometry_of(const riffler_pen_identity& identity, const riffler_pen_limits& limits) {
   try {
-    // A name of its own folder, never a path of the device's choice.
+    // A name in Riffler's own folder, never a path chosen by the device.
     if (std::string_view(identity.geometry).find_first_of("/\\") != std::string_view::npos)
-      throw std::invalid_argument("the name of a geometry has no folders");
+      throw std::invalid_argument("the name of a geometry must not contain a folder");
     PenGeometry geometry = load_pen(identity.geometry);
     for (std::size_t k = 0; k < kPenChannels; ++k) {
       PenChannel& channel = geometry.channels[k];
@@ -91,12 +91,13 @@ PenGeometry geometry_of(const riffler_pen_identity& identity, const riffler_pen_
     return geometry;
   } catch (const std::exception& error) {
     throw OpenError(OpenProblem::BadContent,
-                    std::string("the pen says that its geometry is \"") + identity.geometry + "\": " + error.what());
+                    std::string("the pen names the geometry \"") + identity.geometry + "\": " + error.what());
   }
 }
 
 riffler_pen_identity checked_identity(Transport& transport) {
-  // In this order: of a pen with another version the descriptor may be another, too, and the version is what helps.
+  // In this order: a pen with another protocol version may have another descriptor too, and the version is the useful
+  // message.
   const riffler_pen_identity identity = ask_identity(transport);
   check_descriptor(transport.descriptor());
   return identity;
@@ -127,7 +128,8 @@ void RifflerModel::check(Transport& transport) {
                     std::equal(limits.peak_ma, limits.peak_ma + RIFFLER_PEN_JOINTS, limits_.peak_ma) &&
                     std::equal(limits.continuous_ma, limits.continuous_ma + RIFFLER_PEN_JOINTS, limits_.continuous_ma);
   if (!same)
-    throw OpenError(OpenProblem::UnknownDevice, "another pen was plugged in, or its limits have changed: open it anew");
+    throw OpenError(OpenProblem::UnknownDevice,
+                    "another pen was plugged in, or its limits have changed: open it again");
 }
 
 bool RifflerModel::home() noexcept {
@@ -165,11 +167,11 @@ void RifflerModel::take_report(const riffler_pen_input& report, double now, Take
     taken.lost += step - 1U;
     sample_.sequence += step;
     device_time_ += 1e-6 * static_cast<std::uint32_t>(report.time_us - last_.time_us);
-    // Numbers that the pen takes for old, after another host's: beyond all that are on their way.
+    // The pen takes these sequence numbers as old, after those of another host: jump past all that are in transit.
     if (report.refused_count != last_.refused_count) sent_ = static_cast<std::uint16_t>(report.echo_sequence + 16);
   } else {
-    // The pen has been on power since we last heard of it if its clock has gone on as ours has. If not, its counters
-    // began anew, and nobody knows where it is.
+    // The pen stayed powered since the last report if its clock advanced as the host's did. Otherwise its counters
+    // restarted, and its pose is unknown.
     const double ours = now - last_time_;
     const double its = 1e-6 * static_cast<std::uint32_t>(report.time_us - last_.time_us);
     if (!ever_heard_ || ours > 3600 || std::abs(its - ours) > kClockError) sample_.homed = false;
@@ -209,8 +211,8 @@ void RifflerModel::place(const riffler_pen_input& report, double now) noexcept {
   sample_.powered = report.state != RIFFLER_PEN_BOOT && report.state != RIFFLER_PEN_FAULT;
 }
 
-/// N·mm at the motors, less their share of what was no wrench. Ramp, limits and age scale all of a command by one
-/// factor, which the currents tell.
+/// Motor torques (N·mm) minus their part that is no wrench. Ramp, limits and age scale a whole command by one factor,
+/// which follows from the currents.
 MotorTorques RifflerModel::applied_wrench(const riffler_pen_input& report) const noexcept {
   const Command& command = commands_[report.echo_sequence % commands_.size()];
   double dot = 0, square = 0;
@@ -228,7 +230,7 @@ MotorTorques RifflerModel::applied_wrench(const riffler_pen_input& report) const
 }
 
 bool RifflerModel::may_enable() const noexcept {
-  // A pen that does not know where it stands would push in some other direction.
+  // A pen that is not homed would push in a wrong direction.
   if (!heard_ || !sample_.homed) return false;
   const bool on = last_.state == RIFFLER_PEN_RAMP || last_.state == RIFFLER_PEN_ACTIVE;
   return on || (last_.state == RIFFLER_PEN_IDLE && (last_.flags & RIFFLER_PEN_FLAG_ARMED) != 0);

@@ -14,8 +14,8 @@ namespace riffler::pen {
 
 class RifflerModel final : public HidModel {
  public:
-  /// Asks the pen who it is. Throws OpenError: not a Riffler pen, another version of the protocol, a descriptor that
-  /// differs, limits that cannot be, a geometry that is not known here. Validates the shares.
+  /// Reads the pen's identity. Throws OpenError for a device that is no Riffler pen, another protocol version, a
+  /// different descriptor, impossible limits, or an unknown geometry. Throws std::invalid_argument for invalid shares.
   explicit RifflerModel(Transport& transport, const Compensation& share = {});
 
   const DeviceCapability& capability() const noexcept override { return capability_; }
@@ -24,17 +24,16 @@ class RifflerModel final : public HidModel {
   std::string about() const override;
   const PenGeometry* geometry() const noexcept override { return &geometry_; }
   void check(Transport& transport) override;
-  /// Counters count from where they were when power came on: somebody has to hold the pen in its home posture and say
-  /// so.
+  /// Counters start at the posture at power-on: the user must hold the pen in its home posture and confirm it.
   bool home() noexcept override;
 
   void begin(double now) noexcept override;
   Taken take(std::span<const std::uint8_t> bytes, double now) noexcept override;
   PenSample sample(double) noexcept override { return sample_; }
-  /// The pen pushes once it is told so after it was told not to: reports enable as long as the gate is open, so that a
-  /// tool that leaves the material does not go through the firmware's ramp at the next touch, and not in any state in
-  /// which the pen would not take it. Weight and friction are made up for by the gate's gain, so neither without a
-  /// check nor without the ramp. PenSample::applied is without them: they are no part of the wrench.
+  /// After a disabling report, the pen pushes only once enabled again. Reports therefore enable as long as the gate is
+  /// open, so that a tool that leaves the material does not pass the firmware's ramp at the next contact, and never in
+  /// a state in which the pen would not accept it. Compensation of weight and friction is scaled by the gate's gain, so
+  /// it too passes the checks and the ramp. PenSample::applied excludes it, since it is no part of the wrench.
   std::size_t push(const haptics::SafeWrench& safe, double now, std::span<std::uint8_t> bytes) noexcept override;
   std::size_t release(double now, std::span<std::uint8_t> bytes) noexcept override;
 
@@ -55,12 +54,12 @@ class RifflerModel final : public HidModel {
   PenPosture posture_{};
   PenSample sample_{};
   riffler_pen_input last_{};
-  bool heard_ = false;  // since the device was opened
+  bool heard_ = false;  // a report was received since opening
   bool ever_heard_ = false;
-  double last_time_ = 0;    // of the driver's clock, when last_ came
-  double device_time_ = 0;  // s of the pen's clock since the first report; does not wrap
+  double last_time_ = 0;    // s on the driver's clock: arrival of last_
+  double device_time_ = 0;  // s on the pen's clock since the first report; does not wrap
   std::uint16_t sent_ = 0;
-  /// What the last commands were, and what of them was no wrench: the pen says which one it has.
+  /// The last commands, and their part that is no wrench; the pen reports which one it applies.
   struct Command {
     std::array<std::int16_t, kPenChannels> all{};  // mA
     MotorTorques own{};

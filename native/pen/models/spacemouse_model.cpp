@@ -16,8 +16,8 @@ struct Puck {
   const char* name;
 };
 
-// Numbers as in the list of USB IDs (linux-usb.org/usb.ids of 2025-07-26), but for the module and the two by Bluetooth,
-// which are not in it. Logitech's are from before 2013.
+// Numbers as in the list of USB IDs (linux-usb.org/usb.ids of 2025-07-26), except for the module and the two Bluetooth
+// devices, which it lacks. Logitech's are from before 2013.
 constexpr Puck kPucks[] = {
     {kLogitech, 0xC603, "SpaceMouse Plus"},
     {kLogitech, 0xC605, "CADman"},
@@ -46,7 +46,7 @@ std::int16_t int16_at(std::span<const std::uint8_t> bytes, std::size_t at) {
   return static_cast<std::int16_t>(static_cast<std::uint16_t>(bytes[at] | (bytes[at + 1] << 8)));
 }
 
-/// Three deflections from the puck's axes to ours, held to full deflection: pucks overshoot a little.
+/// Three deflections from the puck's axes to the device axes, clamped to full deflection: pucks overshoot slightly.
 Vec3 deflection_at(std::span<const std::uint8_t> bytes, std::size_t at) {
   const auto share = [&](std::size_t k) { return std::clamp(int16_at(bytes, at + 2 * k) / kFull, -1.0, 1.0); };
   return {share(0), -share(1), -share(2)};
@@ -100,7 +100,7 @@ void SpaceMouseModel::check(Transport& transport) {
 }
 
 void SpaceMouseModel::begin(double) noexcept {
-  // Whatever it was pushed by when it went away, it is not any more.
+  // Discard the last deflection from before the disconnect.
   translation_ = rotation_ = Vec3(0);
   control_.push(translation_, rotation_);
   control_.rest();
@@ -142,7 +142,7 @@ std::size_t SpaceMouseModel::take_one(std::span<const std::uint8_t> bytes, doubl
 }
 
 void SpaceMouseModel::moved(double now, Taken& taken) noexcept {
-  // Up to now the puck was where it was before.
+  // The previous deflection applied up to now.
   control_.advance(now);
   control_.push(translation_, rotation_);
   ++taken.reports;
@@ -156,7 +156,7 @@ PenSample SpaceMouseModel::sample(double now) noexcept {
   sample_.spin = control_.spin();
   sample_.velocity = control_.velocity();
   sample_.turning = control_.turning();
-  // It says when something changes, so what it said last holds now.
+  // The puck reports only changes, so the last report is still valid.
   if (sample_.sequence > 0) sample_.time = now;
   return sample_;
 }

@@ -8,7 +8,7 @@
 namespace riffler::pen {
 
 namespace {
-constexpr std::size_t kQueue = 64;  // as hidraw's
+constexpr std::size_t kQueue = 64;  // as in hidraw
 }
 
 void CableSettings::validate() const {
@@ -30,7 +30,7 @@ void SimulatedCable::set(const CableSettings& settings) {
   settings_ = settings;
 }
 
-/// In [0, 1), the same on every system: the library's distributions are not.
+/// A number in [0, 1), the same on every system, unlike the distributions of the standard library.
 double SimulatedCable::draw() {
   return static_cast<double>(random_() >> 11) * 0x1p-53;
 }
@@ -54,7 +54,7 @@ void SimulatedCable::frame(std::int64_t now_us) {
   written_.clear();
   if (waiting_.empty()) return;
   Report report = std::exchange(waiting_, {});
-  // Always as many draws, so that one share does not change what another meets.
+  // Always the same number of draws, so that changing one fraction does not affect the other effects.
   const double lost = draw(), doubled = draw(), merged = draw();
   ++counts_.sent;
   if (lost < settings_.lost) {

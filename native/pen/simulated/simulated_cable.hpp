@@ -1,4 +1,4 @@
-// The cable between a simulated pen and its host: USB's frames of a millisecond, and what goes wrong in them.
+// The cable between a simulated pen and its host: USB frames of one millisecond, and their faults.
 #pragma once
 
 #include <cstdint>
@@ -9,16 +9,16 @@
 
 namespace riffler::pen {
 
-/// Shares are of reports, 0 to 1, drawn one by one from a generator with the seed: the same every time.
+/// Fractions of reports, 0 to 1, drawn independently from a seeded generator: the same every time.
 struct CableSettings {
-  std::int64_t latency_us = 125;  ///< from the end of a report's frame to where it is read
-  std::int64_t jitter_us = 0;     ///< up to so much more
-  double lost = 0, doubled = 0;   ///< on the way to the host
-  double merged = 0;              ///< held back, and read together with the next
-  double lost_out = 0;            ///< on the way to the pen
+  std::int64_t latency_us = 125;  ///< µs from the end of a report's frame to its arrival
+  std::int64_t jitter_us = 0;     ///< µs: largest additional delay
+  double lost = 0, doubled = 0;   ///< fractions of reports to the host lost or doubled
+  double merged = 0;              ///< fraction held back and read together with the next
+  double lost_out = 0;            ///< fraction of reports to the pen lost
   std::uint64_t seed = 1;
 
-  /// std::invalid_argument naming the field.
+  /// Throws std::invalid_argument naming the field.
   void validate() const;
 };
 
@@ -35,23 +35,25 @@ class SimulatedCable {
   void set(const CableSettings& settings);
 
   // The pen's end.
-  /// The endpoint holds one report: a newer one takes its place.
+
+  /// Offers a report. The endpoint holds one: a newer one replaces it.
   void offer(std::span<const std::uint8_t> report) { waiting_.assign(report.begin(), report.end()); }
-  /// Takes the oldest report of the host; 0 where none is there. At most `bytes.size()` are copied, the whole size is
-  /// the answer.
+  /// Takes the oldest report of the host and returns its size; 0 if there is none. Copies at most `bytes.size()` bytes.
   std::size_t receive(std::span<std::uint8_t> bytes);
-  /// What happens in the frame that ends at this time.
+  /// Simulates the frame that ends at this time.
   void frame(std::int64_t now_us);
 
   // The host's end.
-  /// Goes with the next frame.
+
+  /// Sends a report with the next frame.
   void write(std::span<const std::uint8_t> report) { written_.emplace_back(report.begin(), report.end()); }
-  /// What has arrived by now, oldest first; 0 where nothing has. Like a kernel's queue it holds the newest 64.
+  /// Reads the oldest report that has arrived by now and returns its size; 0 if there is none. Like a kernel's queue,
+  /// it holds the newest 64.
   std::size_t read(std::int64_t now_us, std::span<std::uint8_t> bytes);
-  /// When the next read may bring something.
+  /// Earliest time at which a read may return something.
   std::int64_t arrival_us(std::int64_t next_frame_us) const;
 
-  /// Nothing is on the way any more.
+  /// Drops everything in transit.
   void clear();
   const CableCounts& counts() const { return counts_; }
 
@@ -67,8 +69,8 @@ class SimulatedCable {
   CableCounts counts_;
   std::mt19937_64 random_;
   Report waiting_, held_;               // at the endpoint; to be merged with the next
-  std::deque<Arrival> arrivals_;        // times do not fall
-  std::deque<Report> written_, taken_;  // by the host; of them, those that are at the pen
+  std::deque<Arrival> arrivals_;        // in order of time
+  std::deque<Report> written_, taken_;  // written by the host; arrived at the pen
 };
 
 }  // namespace riffler::pen

@@ -13,7 +13,7 @@
 
 namespace riffler::pen {
 
-/// What the hand was told, and what it does by itself.
+/// The hand's commanded target and its autonomous motion.
 struct SimulatedDevice::Hand {
   struct Told {
     HandWish wish{};
@@ -28,12 +28,12 @@ struct SimulatedDevice::Hand {
   }
 };
 
-/// What the encoders are told to lose, and what they have lost.
+/// The counts that encoders are commanded to lose, and have lost.
 struct SimulatedDevice::Losses {
   std::array<std::atomic<std::int32_t>, kPenChannels> told{};
-  std::array<std::int32_t, kPenChannels> gone{};  // of the thread that moves the pen
+  std::array<std::int32_t, kPenChannels> gone{};  // used by the thread that moves the pen
 
-  /// One count of each in a turn of the firmware: all at once would be seen as a speed.
+  /// Removes one count of each per turn of the firmware: all at once would look like a speed.
   void take(riffler_pen_sensors& sensors) {
     for (std::size_t k = 0; k < kPenChannels; ++k) {
       const std::int32_t wanted = told[k].load(std::memory_order_relaxed);
@@ -55,7 +55,7 @@ std::unique_ptr<SimulatedDevice> SimulatedDevice::open(const SimulatedPenSetting
   const double start = clock->now();
   auto transport = std::make_unique<SimulatedTransport>(pen, clock, start);
   auto model = std::make_shared<RifflerModel>(*transport, compensation);
-  // It begins in its home posture, and the hand rests there for longer than the first report takes.
+  // It starts in its home posture, and the hand rests there for longer than the first report takes.
   model->home();
   auto again = [pen, clock, start, model]() -> std::unique_ptr<Transport> {
     auto next = std::make_unique<SimulatedTransport>(pen, clock, start);

@@ -1,4 +1,4 @@
-// The simulated pen as a device that anyone can pick: in the driver's own thread, and as fast as the machine keeps up.
+// The simulated pen as a selectable device: it runs in the driver's own thread, in real time if the machine keeps up.
 #pragma once
 
 #include <memory>
@@ -13,24 +13,24 @@ namespace riffler::pen {
 inline constexpr const char* kSimulatedKind = "simulated";
 inline constexpr const char* kSimulatedWhat = "Riffler's pen without hardware, moved by a hand of its own";
 
-/// Its time is a StallTolerantClock's: no force is taken away from a hand that this machine moves because the machine
-/// is busy.
+/// Uses a StallTolerantClock: a busy machine must not take the force away from the hand that it simulates.
 class SimulatedDevice final : public HidPen {
  public:
-  /// Homed. Its hand goes round on a curve (hand_on_a_curve) until it is told where to go.
+  /// A homed pen. Its hand moves on a curve (hand_on_a_curve) until it gets a target.
   static std::unique_ptr<SimulatedDevice> open(const SimulatedPenSettings& settings = {},
                                                const DriverSettings& driver = {},
                                                const Compensation& compensation = {});
 
   double now() const noexcept override { return clock_->last(); }
 
-  /// The hand goes there at its own haste, as far as the arms reach; it lets go where the grip is 0. By one thread;
-  /// never waits. std::invalid_argument for what is not finite, an axis without length, a grip outside 0 to 1.
+  /// Moves the hand to a target at its own speed, as far as the arms reach; it lets go if the grip is 0. One thread
+  /// only; never waits. Throws std::invalid_argument for values that are not finite, a zero axis, or a grip outside 0
+  /// to 1.
   void aim(const HandWish& wish);
-  /// On the curve again. By the same thread.
+  /// Returns the hand to the curve. By the same thread.
   void wander() noexcept;
-  /// From now on a counter reads `counts` too few, as an encoder that loses them one by one; of the pen as it was made,
-  /// not of what it has lost by now. Any thread. std::invalid_argument for a channel that is not there.
+  /// Makes a counter read `counts` too few from now on, as an encoder that loses them one by one; relative to the
+  /// original pen, not to earlier losses. Any thread. Throws std::invalid_argument for an unknown channel.
   void lose(std::size_t channel, std::int32_t counts);
 
  private:

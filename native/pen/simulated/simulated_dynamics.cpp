@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kJoints = 6;
 constexpr double kMilli = 1e-3;  // kg to N·s²/mm, kg·mm² to N·mm·s²
-/// Of the stops at the joints' limits: N·mm/rad, stiff for a hand and slow for a step, and N·mm·s/rad.
+/// Stops at the joints' limits: stiffness N·mm/rad, stiff for a hand and soft for a step, and damping N·mm·s/rad.
 constexpr double kStop = 5e4, kStopDrag = 20;
 
 double& entry(JointAngles& angles, std::size_t k) {
@@ -34,7 +34,7 @@ double dot(const JointVector& a, const JointVector& b) {
   return sum;
 }
 
-/// How far `angle` is beyond its limits: negative below, positive above.
+/// How far `angle` is outside its limits: negative below, positive above.
 double beyond(double angle, double low, double high) {
   return std::min(angle - low, 0.0) + std::max(angle - high, 0.0);
 }
@@ -47,7 +47,7 @@ Vec3 turn_between(const Vec3& from, const Vec3& to) noexcept {
   return sine > 0 ? std::atan2(sine, glm::dot(from, to)) / sine * normal : Vec3(0);
 }
 
-/// What the joints move: columns of the grip's middle and of r_L − r_R, base frame.
+/// Jacobian of the joints: columns for the grip's middle and for r_L − r_R, base frame.
 struct PenDynamics::Reach {
   std::array<Vec3, kJoints> middle, apart;
   Vec3 along;
@@ -68,7 +68,8 @@ struct PenDynamics::Reach {
     for (std::size_t k = 0; k < kJoints; ++k) out[k] = glm::dot(along, apart[k]);
     return out;
   }
-  /// What a mass at the middle, and one that is `turning` / length² to motion of the ends apart, make of motions.
+  /// Transposed Jacobian times a mass at the middle, and times an inertia of `turning` / length² for motion of the ends
+  /// apart.
   JointVector back(double mass, const Vec3& of_middle, double turning, const Vec3& of_apart) const {
     JointVector out;
     for (std::size_t k = 0; k < kJoints; ++k)
@@ -84,10 +85,10 @@ struct PenDynamics::Reach {
   }
 };
 
-/// Solves A x = b with x kept to the constraint, A symmetric and positive: Cholesky, and the constraint's force.
+/// Solves A x = b subject to the constraint, A symmetric and positive definite, by Cholesky and the constraint's force.
 struct PenDynamics::Mobility {
-  std::array<JointVector, kJoints> lower;  // the factor
-  JointVector stretch, answer;             // gradient of the constraint, and A⁻¹ of it
+  std::array<JointVector, kJoints> lower;  // Cholesky factor
+  JointVector stretch, answer;             // gradient of the constraint, and A⁻¹ times it
   double give = 0;
 
   Mobility(const std::array<JointVector, kJoints>& matrix, const JointVector& gradient)
@@ -129,7 +130,7 @@ PenDynamics::PenDynamics(const PenGeometry& geometry)
     inertia_[k] = kMilli * c.inertia;
     viscous_[k] = c.viscous * c.ratio * c.ratio;
     coulomb_[k] = c.coulomb * c.ratio;
-    // The motor's voltage, 1e-3 · torque_constant V·s/rad, over its resistance, is the current that brakes.
+    // The braking current is the motor's voltage, 1e-3 · torque_constant V·s/rad, over its resistance.
     brake_[k] = kMilli * c.torque_constant * c.torque_constant / c.resistance * c.ratio * c.ratio;
     low_[k] = c.low, high_[k] = c.high;
   }
@@ -154,7 +155,7 @@ void PenDynamics::step(const PenLoad& load, double seconds) {
   kick(load, seconds / 2);
 }
 
-/// What holds the grip comes and goes at the grip's speed, with its energy.
+/// Changes the mass that holds the grip: it joins and leaves at the grip's speed, with its energy.
 void PenDynamics::hold(const PenLoad& load) {
   const double mass = kMilli * load.mass, inertia = kMilli * load.inertia;
   if (mass == held_mass_ && inertia == held_inertia_) return;
@@ -163,7 +164,7 @@ void PenDynamics::hold(const PenLoad& load) {
   account_.hand += kinetic() - before;
 }
 
-/// Of inertia, and of half the damping for `time` with a load.
+/// For the inertia plus half the damping over `time` with a load.
 PenDynamics::Mobility PenDynamics::mobility(const Reach& reach, const PenLoad* load, double time) const {
   const double share = load ? time / 2 : 0;
   const haptics::Bounds damping = load ? load->damping : haptics::Bounds{0, 0};
@@ -207,7 +208,7 @@ JointVector PenDynamics::weight_torques() const {
   return out;
 }
 
-/// All that does not depend on the speed.
+/// All forces that do not depend on the speed.
 Wrench PenDynamics::hand(const PenLoad& load) const {
   const Pose& is = posture_.pose;
   const Vec3 force = load.stiffness.linear * (load.aim.tip - is.tip);
@@ -234,7 +235,7 @@ double PenDynamics::kinetic() const {
   return 0.5 * twice;
 }
 
-/// Whose derivatives weight_torques() and stop_torques() are.
+/// The potential energy whose derivatives are weight_torques() and stop_torques().
 double PenDynamics::potential() const {
   const PenGeometry& g = pen_.geometry();
   double out = 0;
@@ -260,7 +261,8 @@ PenEnergy PenDynamics::energy() const {
   return out;
 }
 
-/// All forces for `time`, the posture at rest: M Δv = time · (f − B v̄) − friction's impulse, v̄ the mean of both ends.
+/// Applies all forces for `time` at a fixed posture: M Δv = time · (f − B v̄) − friction's impulse, v̄ the mean of both
+/// ends.
 void PenDynamics::kick(const PenLoad& load, double time) {
   const Reach reach(posture_);
   const Mobility mobility = this->mobility(reach, &load, time);
@@ -278,8 +280,8 @@ void PenDynamics::kick(const PenLoad& load, double time) {
   JointVector v = mobility.solve(impulse, -dot(mobility.stretch, before));
   for (std::size_t k = 0; k < kJoints; ++k) v[k] += before[k];
 
-  // Dry friction minimises the energy that is left: one joint after the other until none changes (projected Gauss and
-  // Seidel; the matrix is positive, so it converges).
+  // Dry friction minimises the remaining energy: one joint after the other until none changes (projected Gauss–Seidel;
+  // converges because the matrix is positive definite).
   std::array<JointVector, kJoints> answers;
   const auto rub = [&](std::size_t k, double by) {
     for (std::size_t i = 0; i < kJoints; ++i) v[i] -= by * answers[k][i];
@@ -310,7 +312,7 @@ void PenDynamics::kick(const PenLoad& load, double time) {
   for (std::size_t k = 0; k < kJoints; ++k) account_.lost += time * (drags[k] * mean[k] + rubbing_[k]) * mean[k];
 }
 
-/// Free motion for `time`: the momentum that leaves a posture is that which comes to the next.
+/// Free motion for `time`: the momentum that leaves a posture arrives at the next.
 void PenDynamics::drift(double time) {
   const Reach from(posture_);
   const Mobility mobility = this->mobility(from, nullptr, 0);

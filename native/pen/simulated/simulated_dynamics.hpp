@@ -1,14 +1,15 @@
-// How the pen's two arms and its grip move under their motors, their weight, their friction and a hand.
+// Dynamics of the pen's two arms and grip under motors, weight, friction and a hand.
 //
-// Coordinates are the six joint angles, with one constraint: the arms' ends stay the grip's length apart. Kinetic
-// energy is that of each joint's inertia, taken as constant (rotors through the square of their gears, and links, whose
-// part that changes with the posture is the smaller), and of the grip, a rigid body of a mass and an inertia square to
-// its length. It turns about itself without mass: no motor and no energy is in that turn.
+// The coordinates are the six joint angles, with one constraint: the arms' ends stay the grip's length apart. Kinetic
+// energy comes from each joint's inertia, taken as constant (rotors through the square of their gears, and links, whose
+// posture-dependent part is the smaller one), and from the grip, a rigid body with a mass and an inertia perpendicular
+// to its length. Its rotation about its own axis has no inertia: no motor acts on it and it stores no energy.
 //
 // A step is kick, drift, kick. The drift is RATTLE (Andersen, J. Comput. Phys. 52, 1983; Hairer, Lubich and Wanner,
-// "Geometric Numerical Integration", 2nd ed., VII.1.4) of angles and grip together: free motion, symplectic, of second
-// order, the grip's length exact. All forces act in the kicks: viscous ones by the implicit midpoint, dry friction as
-// the impulse that brings a joint to rest or has its full size, so that a pen at rest stays where it is.
+// "Geometric Numerical Integration", 2nd ed., VII.1.4) of angles and grip together: free motion, symplectic, second
+// order, with the exact grip length. All forces act in the kicks: viscous ones by the implicit midpoint rule, dry
+// friction as an impulse that either brings a joint to rest or has its full magnitude, so that a pen at rest stays at
+// rest.
 #pragma once
 
 #include <array>
@@ -18,42 +19,44 @@
 
 namespace riffler::pen {
 
-/// The rotation vector that brings one unit vector to the other by the shortest way; none for opposite ones.
+/// The rotation vector of the shortest rotation between two unit vectors; zero for opposite ones.
 Vec3 turn_between(const Vec3& from, const Vec3& to) noexcept;
 
 using JointVector = std::array<double, 6>;  // θ1 θ2 θ3 of R, then of L
 
-/// What acts on the pen during a step. Wrench and damping are about the grip's pivot, in the frame of poses.
+/// Loads on the pen during a step. Wrench and damping are about the grip's pivot, in the pose frame.
 struct PenLoad {
   MotorTorques motors{};  ///< N·mm at the motors
   bool brake = false;     ///< windings shorted
   Wrench wrench{};
-  /// A spring that draws the grip to `aim`, and gives way beyond its strength: N/mm, N·mm/rad; N, N·mm.
+  /// A spring that pulls the grip to `aim`, up to its strength: N/mm, N·mm/rad; N, N·mm.
   haptics::Bounds stiffness{0, 0}, strength{0, 0};
   Pose aim{};
   haptics::Bounds damping{0, 0};  ///< N·s/mm, N·mm·s/rad: against motion other than `drift`
   Twist drift{};
-  double mass = 0, inertia = 0;  ///< kg, kg·mm² square to the grip: of what holds it
-  double borne = 0;              ///< share of the pen's weight that somebody bears, 0 to 1
+  double mass = 0, inertia = 0;  ///< kg, kg·mm² perpendicular to the grip: of what holds it
+  double borne = 0;              ///< fraction of the pen's weight that is supported, 0 to 1
 };
 
-/// N·mm since the pen was placed. Kinetic + potential = motors + hand + borne − lost, but for the error of the method.
+/// Energy accounts in N·mm since the pen was placed. Kinetic + potential = motors + hand + borne − lost, up to the
+/// error of the method.
 struct PenEnergy {
   double kinetic = 0, potential = 0;
   double motors = 0;  ///< done by the motors
   double hand = 0;    ///< done by wrench, spring and damping of the load
-  double borne = 0;   ///< by the load's bearing of weight
-  double lost = 0;    ///< to friction, brake and stops
+  double borne = 0;   ///< done by the support of weight
+  double lost = 0;    ///< lost to friction, brake and stops
 };
 
 class PenDynamics {
  public:
-  /// At home, at rest. `geometry` is the pen as it is, its home the grip's length apart.
+  /// Starts at home, at rest. `geometry`: the real pen, with its home posture consistent with the grip's length.
   explicit PenDynamics(const PenGeometry& geometry);
 
-  /// At the pose, at rest; the accounts begin anew. False, and nothing changed, where the pen does not reach it.
+  /// Places the pen at a pose, at rest, and resets the accounts. Returns false and changes nothing if the pen does not
+  /// reach it.
   bool place(const Pose& pose);
-  /// `seconds` further, at most 1 ms.
+  /// Advances by `seconds`, at most 1 ms.
   void step(const PenLoad& load, double seconds);
 
   const PenKinematics& kinematics() const { return pen_; }
@@ -83,8 +86,8 @@ class PenDynamics {
   double grip_mass_, grip_inertia_;                          // N·s²/mm, N·mm·s²
   PenPosture posture_{};
   JointAngles rates_{};
-  double held_mass_ = 0, held_inertia_ = 0;  // as the grip's
-  JointVector rubbing_{};                    // dry friction of the last kick, N·mm: where the next search begins
+  double held_mass_ = 0, held_inertia_ = 0;  // units as for the grip
+  JointVector rubbing_{};                    // dry friction of the last kick, N·mm: start of the next search
   PenEnergy account_{};
 };
 

@@ -12,14 +12,14 @@ namespace riffler::pen {
 
 namespace {
 
-/// A unit vector turned by a rotation vector square to it.
+/// A unit vector rotated by a rotation vector perpendicular to it.
 Vec3 turned(const Vec3& axis, const Vec3& by) {
   const double angle = glm::length(by);
   if (angle == 0) return axis;
   return glm::normalize(std::cos(angle) * axis + std::sin(angle) / angle * glm::cross(by, axis));
 }
 
-/// Two directions square to `axis`.
+/// Two directions perpendicular to `axis`.
 std::pair<Vec3, Vec3> square_to(const Vec3& axis) {
   const Vec3 other = std::abs(axis.x) < 0.7 ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
   const Vec3 first = glm::normalize(glm::cross(axis, glm::cross(other, axis)));
@@ -48,7 +48,7 @@ HandPath hand_on_a_curve(const Pose& home) {
     HandWish wish{.pose = home};
     if (seconds <= kRest) return wish;
     const double turn = kTwoPi * (seconds - kRest) / kRound;
-    // From home, smoothly: each term begins at zero.
+    // Starts smoothly at home: each term is zero at the beginning.
     wish.pose.tip += kWay * (std::sin(turn) * sides.first + 0.5 * (1 - std::cos(turn)) * sides.second +
                              0.3 * std::sin(2 * turn) * home.axis);
     wish.pose.axis =
@@ -69,7 +69,7 @@ SimulatedHand::SimulatedHand(const HandSettings& settings, HandPath path, const 
   wish_.pose = start;
 }
 
-/// Three frequencies that have no common period, other phases along each axis.
+/// Three frequencies without a common period, with different phases along each axis.
 Vec3 SimulatedHand::tremor(double seconds) const {
   Vec3 out(0);
   for (int k = 0; k < 3; ++k) {
@@ -80,7 +80,7 @@ Vec3 SimulatedHand::tremor(double seconds) const {
   return settings_.tremor / 3 * out;
 }
 
-/// The aim goes towards the wish at the hand's haste; its twist on the way.
+/// Moves the aim towards the target at the hand's speed; returns its twist.
 Twist SimulatedHand::aim(double dt) {
   const Vec3 way = geom::clamp_length(wish_.pose.tip - aim_.tip, settings_.haste.linear * dt);
   const Vec3 turn = geom::clamp_length(turn_between(aim_.axis, wish_.pose.axis), settings_.haste.angular * dt);
@@ -93,7 +93,7 @@ void SimulatedHand::hold(const PenDynamics& pen, double seconds, double dt, PenL
   if (path_) wish_ = path_(seconds);
   const double grip = std::clamp(wish_.grip, 0.0, 1.0);
   if (!(grip > 0)) {
-    aim_ = pen.posture().pose;  // it takes hold where the grip is then
+    aim_ = pen.posture().pose;  // grips at the grip's current pose
     return;
   }
   const Twist drift = aim(dt);

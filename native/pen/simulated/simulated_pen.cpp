@@ -14,7 +14,7 @@ namespace {
 constexpr std::int64_t kHardwareWatchdog = 10'000;  // µs
 constexpr std::int16_t kRoom = 250;                 // tenths of °C
 
-/// Counts since power came on, as a register that wraps has them.
+/// Counts since power-on, in a register that wraps.
 std::int32_t since(std::int32_t now, std::int32_t start) {
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(now) - static_cast<std::uint32_t>(start));
 }
@@ -31,7 +31,7 @@ void SimulatedPenSettings::validate() const {
   hand.validate();
   cable.validate();
   if (turn_us < 25 || turn_us > SimulatedPen::kFrame || SimulatedPen::kFrame % turn_us != 0)
-    throw std::invalid_argument("turn_us must divide 1000, from 25 on");
+    throw std::invalid_argument("turn_us must divide 1000 and be at least 25");
   if (parts < 1 || parts > 100) throw std::invalid_argument("parts must be within 1 and 100");
 }
 
@@ -108,7 +108,7 @@ void SimulatedPen::sense(riffler_pen_sensors& sensors) const {
   sensors.buttons = static_cast<std::uint16_t>(hand_.wish().buttons);
 }
 
-/// One turn's time of arms and hand.
+/// Moves arms and hand for one turn of the firmware.
 void SimulatedPen::move() {
   const double part = 1e-6 * static_cast<double>(settings_.turn_us) / settings_.parts;
   PenLoad load;

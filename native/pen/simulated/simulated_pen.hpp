@@ -1,6 +1,5 @@
-// A whole pen without hardware: the reference firmware on a board whose motors and encoders are those of simulated
-// arms, a hand that holds the grip, and a cable. Time passes only when it is told to; the same calls give the same
-// bytes.
+// A complete pen without hardware: the reference firmware on a board with the motors and encoders of simulated arms, a
+// hand that holds the grip, and a cable. Time advances only on request; the same calls give the same bytes.
 #pragma once
 
 #include <cstdint>
@@ -13,28 +12,28 @@
 namespace riffler::pen {
 
 struct SimulatedPenSettings {
-  PenGeometry geometry;         ///< the pen as it is; the firmware only knows its name
+  PenGeometry geometry;         ///< the real pen; the firmware knows only its name
   riffler_pen_config config{};  ///< of the firmware
   HandSettings hand{};
   CableSettings cable{};
-  std::int64_t turn_us = 250;  ///< between two turns of the firmware's loop, a divisor of a millisecond
-  int parts = 2;               ///< steps of the arms' motion in a turn
+  std::int64_t turn_us = 250;  ///< µs per turn of the firmware's loop; divides a millisecond
+  int parts = 2;               ///< dynamics steps per turn
 
-  /// Of the shipped pen, with the reference firmware.
+  /// The shipped pen with the reference firmware.
   SimulatedPenSettings();
-  /// std::invalid_argument naming the field.
+  /// Throws std::invalid_argument naming the field.
   void validate() const;
 };
 
 class SimulatedPen {
  public:
-  /// On power, plugged in, in its home posture. An empty path is a hand that holds it there.
+  /// Powered, plugged in, in its home posture. With an empty path, the hand holds it there.
   explicit SimulatedPen(const SimulatedPenSettings& settings, HandPath path = nullptr);
   SimulatedPen(const SimulatedPen&) = delete;
   SimulatedPen& operator=(const SimulatedPen&) = delete;
 
   std::int64_t time_us() const { return time_us_; }
-  /// All turns up to then; nothing where that is past.
+  /// Executes all turns up to that time; nothing if it is past.
   void advance(std::int64_t until_us);
   std::int64_t next_frame_us() const { return (time_us_ / kFrame + 1) * kFrame; }
   static constexpr std::int64_t kFrame = 1000;
@@ -45,23 +44,23 @@ class SimulatedPen {
   SimulatedCable& cable() { return cable_; }
   const riffler_pen_firmware& firmware() const { return loop_.pen; }
   const riffler_pen_config& config() const { return settings_.config; }
-  /// What the motors have, which is not what they were told where the board switched them off.
+  /// The state that the motors really apply; differs from the command if the board switched them off.
   const riffler_pen_drive& drive() const { return drive_; }
   bool pushes() const;
 
-  // What goes wrong.
+  // Faults.
   bool plugged() const { return plugged_; }
   void unplug();
   void plug();
-  /// Off and on again: firmware and counters begin anew, where the pen is.
+  /// Switches power off and on: firmware and counters restart at the current posture.
   void restart();
-  /// The processor stands still for so long. The board's own watchdog switches the motors off after 10 ms.
+  /// Stops the processor for `time_us`. The board's own watchdog switches the motors off after 10 ms.
   void halt(std::int64_t time_us) { halted_until_us_ = time_us_ + time_us; }
-  /// Called with what the sensors read in each turn, to falsify it.
+  /// Called with the sensor readings of each turn, to falsify them.
   std::function<void(riffler_pen_sensors&)> on_sense;
   /// Called after each turn of the firmware.
   std::function<void()> on_turn;
-  /// Pushes the grip besides hand and motors.
+  /// A wrench on the grip in addition to hand and motors.
   Wrench extra{};
 
  private:
@@ -77,7 +76,7 @@ class SimulatedPen {
   SimulatedCable cable_;
   riffler_pen_loop loop_{};
   riffler_pen_drive drive_{};
-  EncoderCounts at_start_{};  // counts where power came on
+  EncoderCounts at_start_{};  // counts at power-on
   std::int32_t probe_at_start_ = 0;
   std::int64_t time_us_ = 0, halted_until_us_ = 0, fed_us_ = 0;
   bool plugged_ = true;

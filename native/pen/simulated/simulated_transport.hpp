@@ -1,4 +1,4 @@
-// The simulated pen as the driver sees it: a transport, and a clock whose time passes only by waiting.
+// The simulated pen as seen by the driver: a transport, and a clock that advances only by waiting.
 #pragma once
 
 #include <memory>
@@ -8,22 +8,22 @@
 
 namespace riffler::pen {
 
-/// Virtual time, in whole µs: as fast as the machine computes, and the same from run to run.
+/// Virtual time in whole µs: as fast as the machine computes, and the same from run to run.
 class SimulatedClock final : public Clock {
  public:
   double now() noexcept override { return 1e-6 * static_cast<double>(time_us_); }
-  /// At least a microsecond.
+  /// Advances by at least a microsecond.
   void wait(double seconds) noexcept override;
 
  private:
   std::int64_t time_us_ = 0;
 };
 
-/// The pen is as old as the clock, from when the transport was made: it moves when somebody reads or writes. Pen and
-/// clock are shared by all transports of a pen, one after the other.
+/// The pen's time follows the clock, from the creation of the transport: reads and writes advance it. All consecutive
+/// transports of a pen share pen and clock.
 class SimulatedTransport final : public Transport {
  public:
-  /// `start`: when the pen's time was 0, of the clock.
+  /// `start`: the clock's time (s) at the pen's time 0.
   SimulatedTransport(std::shared_ptr<SimulatedPen> pen, std::shared_ptr<Clock> clock, double start = 0);
 
   int read(std::span<std::uint8_t> bytes, double seconds) noexcept override;

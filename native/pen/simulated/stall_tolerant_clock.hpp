@@ -1,4 +1,4 @@
-// The time of a device that is simulated on this machine: it stands still while the machine does.
+// Clock of a device simulated on this machine: it stops while the machine stalls.
 #pragma once
 
 #include <atomic>
@@ -8,12 +8,11 @@
 
 namespace riffler::pen {
 
-/// The system's seconds, but no more than `most` from one look to the next beside what was waited for. Where the thread
-/// that looks is kept from running, the rest of that time has not been: everything goes on more slowly, nothing is
-/// late.
+/// The system's time, but advancing by at most `most` (s) between two reads, plus the time waited. If the reading
+/// thread is kept from running, the excess is dropped: everything gets slower, but nothing is late.
 class StallTolerantClock final : public Clock {
  public:
-  /// The system's clock and its waiting; for tests another one's.
+  /// The system's clock and wait function; replaced in tests.
   struct System {
     std::function<double()> now;
     std::function<void(double)> wait;
@@ -26,7 +25,7 @@ class StallTolerantClock final : public Clock {
   double now() noexcept override { return pass(most_); }
   void wait(double seconds) noexcept override;
 
-  /// As of the last look. Any thread.
+  /// As of the last read. Any thread.
   double last() const noexcept { return time_.load(std::memory_order_relaxed); }
 
  private:

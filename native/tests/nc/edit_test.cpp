@@ -46,7 +46,7 @@ TEST(Edit, TransformedTurnsTipsAndAxes) {
     EXPECT_LT(glm::length(is.axis - Vec3(-was.axis.y, was.axis.x, was.axis.z)), 1e-15);
     EXPECT_EQ(t[row].feed, p[row].feed);
   }
-  const char* what = "matrix must turn and move only: no scale, no mirror, finite";
+  const char* what = "matrix must be a rotation and a translation: no scale, no mirror, finite";
   EXPECT_EQ(error_of([&] { transformed(p, Mat3(2.0), {0, 0, 0}); }), what);
   EXPECT_EQ(error_of([&] { transformed(p, Mat3(-1.0), {0, 0, 0}); }), what);
   EXPECT_EQ(error_of([&] { transformed(p, Mat3(1.0), {0, NAN, 0}); }), what);

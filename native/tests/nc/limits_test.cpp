@@ -376,7 +376,7 @@ TEST(Rewinds, NameTheAxisThatNoTurnBringsWithinItsLimits) {
   } catch (const std::invalid_argument& e) {
     EXPECT_EQ(std::string(e.what()),
               "poses, row 0: machine linuxcnc-xyzac cannot hold it within its limits: A would stand at 70 (-30 to 50); "
-              "A would stand at -70 (-30 to 50); place the part otherwise or tilt the tool less");
+              "A would stand at -70 (-30 to 50); place the part differently or tilt the tool less");
   }
 }
 

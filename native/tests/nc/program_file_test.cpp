@@ -176,7 +176,7 @@ TEST(ProgramFile, NamesWhatIsWrongAndWhere) {
     forge(bytes);
     return error_of(bytes);
   };
-  EXPECT_EQ(error_of({}), "p.rprog, byte 0: not a .rprog file (its first eight bytes are others)");
+  EXPECT_EQ(error_of({}), "p.rprog, byte 0: not a .rprog file (its first eight bytes differ)");
   EXPECT_EQ(changed(8, 2U), "p.rprog, byte 8: version 2; this program reads version 1");
   EXPECT_EQ(changed(24, std::uint64_t{61}), "p.rprog, byte 24: the header announces 61 rows, the records hold 60");
   EXPECT_EQ(changed(32, 4U), "p.rprog, byte 44: the header announces another number of notes");

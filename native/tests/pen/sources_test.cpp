@@ -77,8 +77,7 @@ TEST(Playback, WrongRecordingsNameStrokeAndRow) {
     return error_of([&] { PlaybackPen{strokes}; });
   };
   EXPECT_EQ(error([](auto& s) { s[1].times = {9, 8}; }), "stroke 1, row 1: times fall");
-  EXPECT_EQ(error([](auto& s) { s[1].times.pop_back(); }),
-            "stroke 1, row 1: a recording is played with one time for each pose");
+  EXPECT_EQ(error([](auto& s) { s[1].times.pop_back(); }), "stroke 1, row 1: a recording needs one time for each pose");
   EXPECT_EQ(error([](auto& s) { s[0].times[0] = NAN; }), "stroke 0, row 0: a time is not finite");
   EXPECT_EQ(error([](auto& s) { s[0].poses[1].axis = {0, 0, -1}; }),
             "stroke 0, row 1: the axis is opposite to the one before");

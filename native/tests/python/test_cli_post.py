@@ -367,4 +367,4 @@ def test_a_damaged_program_names_the_byte(folder):
     (folder / "p.rprog").write_bytes(data)
     done = riffle("post", "p.rprog", *POST, *OUT, "--json", cwd=folder)
     assert done.returncode == 2
-    assert json.loads(done.stdout)["error"] == "p.rprog, byte 60: the record's checksum does not fit"
+    assert json.loads(done.stdout)["error"] == "p.rprog, byte 60: the record's checksum does not match"

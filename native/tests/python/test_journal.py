@@ -196,7 +196,7 @@ def test_program_has_the_strokes_with_their_tools_and_feeds(journal):
         (lambda j: j.extend_stroke(stroke(3)[0]), "times must be as many"),
         (lambda j: j.take_back(4), "from 1 to 3"),
         (lambda j: j.take_back(0), "from 1 to 3"),
-        (lambda j: j.bring_back(), "no stroke to bring back"),
+        (lambda j: j.bring_back(), "no stroke to redo"),
     ],
 )
 def test_what_is_wrong_is_named_and_changes_nothing(journal, tmp_path, call, message):

@@ -142,7 +142,7 @@ def test_what_cannot_be_linked_is_refused_and_its_remedies_help(remedy):
     free = located(riffler.Collider(PART, fixtures=[roof((400, -300, 80), (900, 340, 86))]))
     assert np.array_equal(free, cl)
     said = r"^path 1, row 0: no approach is clear: the \w+ meets a fixture, .* mm deep, at \[.*\] \(tip at \[.*\]\).*"
-    with pytest.raises(ValueError, match=said + ": tilt the tool otherwise there .*stick out further"):
+    with pytest.raises(ValueError, match=said + ": tilt the tool differently there .*stick out further"):
         riffler.Program.from_cl([np.array([[0, -300, 200, 0, 0, 1.0]] * 2), cl], **how)
 
 
@@ -178,7 +178,7 @@ def test_how_the_tool_leaves_is_the_callers_to_choose():
     # A lead-in that leaves stock above it is found where there is stock.
     block_of_all = riffler.Volume.block([0, 0, 0], [60, 40, 24], 0.5)
     with pytest.raises(
-        ValueError, match=r"^poses, row \d+: on the way there at \[.*a rapid takes .* of material: retract"
+        ValueError, match=r"^poses, row \d+: on the move there at \[.*a rapid takes .* of material: retract"
     ):
         lead.write("never.ngc", collider=collider, stock=block_of_all)
 

@@ -46,7 +46,7 @@ def on_rays(volume, n, rng):
 
 
 def swept(program):
-    """The poses of all motions in the part: a run of rows ends at a position of the machine."""
+    """The poses of all motions in the part: a run of rows ends at a machine position."""
     whole = program.followed()
     away = np.asarray(whole.at_machine)
     ends = [0, *(np.flatnonzero(np.diff(away)) + 1).tolist(), len(whole)]

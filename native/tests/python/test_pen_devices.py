@@ -117,7 +117,7 @@ def test_each_reason_is_told(plugged):
         (0x1209, 0x0001, "Riffler pen", PUCK),
     ]
     version, descriptor, board, mute = listed(plugged("pen", "list", "--json", devices=devices))
-    assert version["problem"] == "other version of the protocol" and "version 7.0" in version["text"]
+    assert version["problem"] == "other protocol version" and "version 7.0" in version["text"]
     assert descriptor["problem"] == "wrong report descriptor" and "/dev/hidraw1: " in descriptor["text"]
     assert board["kind"] == "polhem" and not board["tried"] and board["problem"] is None
     assert mute["problem"] == "no answer"

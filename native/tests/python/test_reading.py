@@ -95,7 +95,7 @@ def test_what_was_skipped_is_in_the_provenance(tmp_path):
         riffler.Program.read(file)
     program = riffler.Program.read(file, options={"unknown": "skip"})
     assert program.provenance["skipped"] == "line 2: G187; line 3: U was skipped, an axis of the program"
-    assert "line 4: G28 goes to a position of the machine" in program.provenance["notes"]
+    assert "line 4: G28 goes to a machine position" in program.provenance["notes"]
 
 
 def test_notes_stay_with_the_program(tmp_path):

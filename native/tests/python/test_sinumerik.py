@@ -78,5 +78,5 @@ def test_options_that_are_not_the_readers_are_errors(plate):
         riffler.Program.read(plate, machine="sinumerik", options={"g54": [0, 0, 0]})
     with pytest.raises(ValueError, match="tcp must not be False"):
         riffler.Program.read(plate, machine="sinumerik", options={"tcp": False})
-    with pytest.raises(riffler.FormatError, match="machines that read such ones: sinumerik, sinumerik-bc"):
+    with pytest.raises(riffler.FormatError, match="machines that read them: sinumerik, sinumerik-bc"):
         riffler.Program.read(plate)

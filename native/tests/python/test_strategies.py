@@ -136,7 +136,7 @@ def test_swarf_without_a_wall_says_why():
 def test_swarf_refuses_a_tool_without_the_paths_ball():
     part = step()
     paths = plan.pencil(part, BALL)
-    with pytest.raises(ValueError, match='tip of a "flat" cutter is none'):
+    with pytest.raises(ValueError, match='tip of a "flat" cutter is no ball'):
         plan.find("swarf", part, Tool.flat(6, 25), paths)
     with pytest.raises(ValueError, match="the paths are those of a ball of 6 mm, not of 4 mm"):
         plan.find("swarf", part, Tool.ball(4, 25), paths)

@@ -86,7 +86,7 @@ def test_positions_of_the_machine_are_neither_cut_nor_compared(folder, capsys):
         (folder / f"{name}.ngc").write_text(text)
         status, data = run(capsys, f"{name}.ngc", *words)
         assert status == 0 and data["findings"] == [], name
-        assert sum("position of the machine" in sentence for sentence in data["not_checked"]) == 1, name
+        assert sum("a machine position" in sentence for sentence in data["not_checked"]) == 1, name
         program = riffler.Program.read(f"{name}.ngc", machine="3-axis")
         assert program.at_machine.any() and program.poses[~program.at_machine, 2].min() == 19
         # Carving with the program takes what verification takes; posted again it does, too, and never comes lower.
@@ -94,7 +94,7 @@ def test_positions_of_the_machine_are_neither_cut_nor_compared(folder, capsys):
         assert main(carved) == 0
         said = capsys.readouterr()
         data = json.loads(said.out)
-        assert data["moves_at_machine"] > 0 and "position of the machine" in said.err
+        assert data["moves_at_machine"] > 0 and "a machine position" in said.err
         removed[name] = data["removed"]
         assert main(["post", f"{name}.ngc", "--machine", "3-axis", "--post", "3-axis", "--out", "again.ngc"]) == 0
         capsys.readouterr()

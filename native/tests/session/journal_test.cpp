@@ -301,10 +301,10 @@ TEST(Journal, NamesWhatIsWrongAndStaysAsItWas) {
             "removed must be as many as poses");
   EXPECT_EQ(error_of([&] { j.add_stroke(with([&](auto& s) { s.removed = {1, 0, -1e-300}; })); }),
             "removed, row 2: must be finite and not negative");
-  EXPECT_EQ(error_of([&] { j.undo(0); }), "strokes to take back must be from 1 to 4");
-  EXPECT_EQ(error_of([&] { j.undo(5); }), "strokes to take back must be from 1 to 4");
-  EXPECT_EQ(error_of([&] { Journal().undo(); }), "there is no stroke to take back");
-  EXPECT_EQ(error_of([&] { j.redo(); }), "there is no stroke to bring back");
+  EXPECT_EQ(error_of([&] { j.undo(0); }), "strokes to undo must be from 1 to 4");
+  EXPECT_EQ(error_of([&] { j.undo(5); }), "strokes to undo must be from 1 to 4");
+  EXPECT_EQ(error_of([&] { Journal().undo(); }), "there is no stroke to undo");
+  EXPECT_EQ(error_of([&] { j.redo(); }), "there is no stroke to redo");
   EXPECT_NE(error_of([&] { j.extend_stroke({wavy(2).poses}); }), "") << "the last stroke has times";
   EXPECT_NE(error_of([&] { Journal().extend_stroke({wavy(2).poses}); }), "");
   Journal fresh;

@@ -43,10 +43,10 @@ TEST(JournalUndo, TakesBackTheLastStrokesAndBringsThemBackInOrder) {
   EXPECT_EQ(numbers(j.taken_back()), (std::vector{2, 3, 4}));
   j.redo(2);
   EXPECT_EQ(numbers(j.strokes()), (std::vector{0, 1, 2, 3}));
-  EXPECT_EQ(error_of([&] { j.redo(2); }), "strokes to bring back must be from 1 to 1");
+  EXPECT_EQ(error_of([&] { j.redo(2); }), "strokes to redo must be from 1 to 1");
   j.add_stroke(numbered(9));
   EXPECT_EQ(numbers(j.strokes()), (std::vector{0, 1, 2, 3, 9}));
-  EXPECT_EQ(error_of([&] { j.redo(); }), "there is no stroke to bring back") << "a new stroke ends redo";
+  EXPECT_EQ(error_of([&] { j.redo(); }), "there is no stroke to redo") << "a new stroke ends redo";
   j.undo(5);
   EXPECT_TRUE(j.strokes().empty());
   EXPECT_TRUE(to_program(j, {}).empty());

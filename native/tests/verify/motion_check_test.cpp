@@ -95,7 +95,7 @@ TEST(MotionCheck, RunsOnTheStockAsItThenIs) {
   EXPECT_EQ(error_of([&] { refuse_strikes(p, motion_of(p), stock, 0.01); }), "");
   add({-10, 20, 12}, true), add({20, 20, 12}, true);
   const std::string said = error_of([&] { refuse_strikes(p, motion_of(p), stock, 0.01); });
-  EXPECT_TRUE(said.starts_with("poses, row 6: on the way there at [")) << said;
+  EXPECT_TRUE(said.starts_with("poses, row 6: on the move there at [")) << said;
   EXPECT_NE(said.find("a rapid takes"), std::string::npos) << said;
 }
 

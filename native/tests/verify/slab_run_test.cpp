@@ -59,7 +59,7 @@ nc::Program mixed(std::size_t rows, unsigned seed) {
       move.via = std::make_shared<const std::vector<Pose>>(std::vector<Pose>{middle});
     }
   }
-  p.notes = {{"work offset", 3, "G55 taken for G54"}};
+  p.notes = {{"work offset", 3, "G55 taken as G54"}};
   return p;
 }
 
@@ -195,8 +195,7 @@ TEST(Verification, AfterAnErrorIsAsItWasBefore) {
   bad.append({{{1, 1, 1}, kUp}, 100, 8000, 9, 61});
   Verification verification(arguments());
   verification.run(good);
-  EXPECT_NE(error_of([&] { verification.run(bad); }).find("nothing is known of the shape of tool 9"),
-            std::string::npos);
+  EXPECT_NE(error_of([&] { verification.run(bad); }).find("the shape of tool 9 is unknown"), std::string::npos);
   const auto stop = [](double) { return false; };
   EXPECT_THROW(verification.run(mixed(60, 9), stop), Cancelled);
   const VerifyReport again = verification.run(good);

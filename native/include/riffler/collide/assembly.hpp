@@ -1,4 +1,4 @@
-// A tool made ready for contact.
+// Assembly: a tool with the data that contact queries need.
 #pragma once
 
 #include <memory>
@@ -11,32 +11,35 @@ namespace riffler::collide {
 struct LaneEdge;
 class OutlineRuns;
 
-/// Prepare it once, use it for many poses, from any number of threads.
+/// A tool prepared for collision queries. Build it once and query it at many poses, from any number of threads.
 class Assembly {
  public:
   explicit Assembly(const Tool& tool);
 
   const Tool& tool() const { return tool_; }
   const tool::Outline& outline() const { return outline_; }
-  /// Largest distance of any of its points from the tip, mm.
+  /// Largest distance from the tip to any point of the tool, mm.
   double reach() const { return reach_; }
 
-  /// Of all of it, mm: no point is deeper than this.
+  /// Largest radius of the tool, mm: no point can lie deeper inside it than this.
   double max_radius() const { return max_radius_; }
-  /// Cutter, shank and holder by their heights: which is the widest there.
+  /// Cutter, shank and holder as height bands: each band names the part with the largest radius there.
   struct HeightBand {
     double low, high;
     tool::Part part;
-    double radius, bottom, top;  // where it is widest, and at both ends
+    double radius, bottom, top;  // mm: largest radius in the band, and the radii at its two ends
   };
+  /// Height bands from the tip upward, heights in mm along the axis.
   const std::vector<HeightBand>& stretches() const { return stretches_; }
+  /// The part with the largest radius at height `z` (mm along the axis from the tip).
   tool::Part part_at(double z) const;
-  /// Places on the axis and off it (radius, height) that are deeper than what is round them: at least one of every
-  /// connected set of such. Found when first asked for.
+  /// Local maxima of the depth inside the tool, as (radius, height) in mm: at least one point of every connected set of
+  /// maxima. Computed on the first call.
   const std::vector<Vec2>& deepest() const;
 
-  /// The outline in the forms that searches use.
+  /// The outline in the forms that the searches use.
   const OutlineRuns& runs() const;
+  /// The outline's edges with precomputed data for vector lanes.
   const std::vector<LaneEdge>& lane_edges() const;
 
  private:

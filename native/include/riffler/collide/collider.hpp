@@ -1,4 +1,4 @@
-// The part and its fixtures, against which tools are held.
+// Collider: the part and its fixtures, with queries for contact, clearance and motions of a tool.
 #pragma once
 
 #include <memory>
@@ -14,71 +14,79 @@
 
 namespace riffler::collide {
 
-/// Immutable after construction; queries may run on several threads. Poses whose tip is not finite or whose axis is
-/// not of unit length (to 1e-6) are a std::invalid_argument.
+/// Part and fixtures, prepared for queries. Immutable after construction; queries may run on several threads. Every
+/// query throws std::invalid_argument for a pose whose tip is not finite or whose axis is not of unit length (within
+/// 1e-6).
 class Collider {
  public:
+  /// Point spacing and stiffnesses of the force model (4.4).
   struct Settings {
-    double spacing = 0;            ///< of the points on the part, mm; 0: √(its area / 100 000)
-    double coarse = 4;             ///< away from the cutter, points are this many times as far apart
-    double stiffness = 1;          ///< k of (4.7) against the cutter, N per mm of depth and mm² of surface
-    double holder_stiffness = 10;  ///< the same against shank and holder (4.4.3: tracing weak, collision strong)
-    /// k_D of (4.9), N per mm³ of a fixture in the tool. Up to 10 a held tool is quiet (SculptStep); at 1000 some 0.4 N
-    /// may come at once.
+    double spacing = 0;            ///< distance of the sample points on the part, mm; 0: √(part area / 100 000)
+    double coarse = 4;             ///< factor on `spacing` for points that only shank and holder can touch
+    double stiffness = 1;          ///< k of (4.7) for the cutter, N per mm of depth and mm² of surface
+    double holder_stiffness = 10;  ///< the same for shank and holder (4.4.3: tracing weak, collision strong)
+    /// k_D of (4.9), N per mm³ of fixture inside the tool. Up to 10 a tool held in contact stays quiet (SculptStep); at
+    /// 1000 the force may jump by 0.4 N.
     double fixture_stiffness = 10;
-    std::vector<double> stiffness_of_each{};  ///< fixture, in the place of that; or empty: all are alike
+    std::vector<double> stiffness_of_each{};  ///< one value per fixture, overriding fixture_stiffness; empty: all
+                                              ///< fixtures use fixture_stiffness
   };
-  /// The part is a solid: its triangles are turned as mesh/orient.hpp says, room in endless material kept. Copies
-  /// nothing of the volumes but pointers to their tiles. std::invalid_argument for an empty or invalid mesh, for
-  /// settings that are negative or not finite or as many as no fixtures are, and where a fixture has no mesh
-  /// (marching/to_mesh.hpp), naming it. An empty fixture is nothing, and ignored.
+  /// `part` is treated as a solid: its triangles are oriented by the rules of mesh/orient.hpp, and a cavity in
+  /// unbounded material stays a cavity. Fixture volumes share their tiles with the caller. Empty fixtures are ignored.
+  /// Throws std::invalid_argument for an empty or invalid mesh, for settings that are negative or not finite, for a
+  /// stiffness_of_each whose length is not the number of fixtures, and, with its name, for a fixture that has no mesh
+  /// (marching/to_mesh.hpp).
   explicit Collider(const Mesh& part, std::vector<Volume> fixtures, const Settings& settings);
   explicit Collider(const Mesh& part, std::vector<Volume> fixtures = {}) : Collider(part, std::move(fixtures), {}) {}
   ~Collider();
   Collider(Collider&&) noexcept;
   Collider& operator=(Collider&&) noexcept;
 
-  /// Force, torque, depth and where: the deepest point first, then the sample points that are in the tool. `budget`:
-  /// seconds by the monotonic clock, after which what is left is only bounded; without it the result is always the
-  /// same.
+  /// Force, torque and depth of a tool at a pose, with the contact points: the deepest point first, then the sample
+  /// points inside the tool. `budget`: seconds of the monotonic clock; after that the search stops and only bounds what
+  /// is left (Contact::missed_depth_bound). Without a budget the result is deterministic.
   Contact query(const Assembly& assembly, const Pose& pose, std::optional<double> budget = {}) const;
+  /// As above; adds the operation counts to `counts`.
   Contact query(const Assembly& assembly, const Pose& pose, std::optional<double> budget, Counts& counts) const;
-  /// Writes over `contact`: asked again and again by one thread, it soon asks the system for no memory. The depth may
-  /// be less than the true one by `loose` mm, which is part of what may have been missed: where a side lies flat on a
-  /// wall, that spares most of the search. The force is the same.
+  /// Overwrites `contact` and reuses its memory, so repeated calls from one thread soon allocate nothing. `loose` (mm)
+  /// allows the reported depth to fall short by that much, counted in missed_depth_bound; this skips most of the search
+  /// where a flank lies flat on a wall. The force does not change.
   void query(const Assembly& assembly, const Pose& pose, std::optional<double> budget, Contact& contact,
              double loose = 0) const;
 
-  /// Least signed distance between the part's surface and the union of cutter, shank and holder; negative where they
-  /// overlap, to the union's outer surface. mm, exact to 1e-9 or rounding; to 1e-3 where
-  /// `missed_depth_bound` says so.
+  /// Smallest signed distance between the part's surface and the outer surface of cutter, shank and holder together,
+  /// mm; negative where they overlap. Exact to 1e-9 or rounding, or to 1e-3 in the cases that
+  /// Contact::missed_depth_bound describes.
   double clearance(const Assembly& assembly, const Pose& pose) const;
+  /// As above; adds the operation counts to `counts`.
   double clearance(const Assembly& assembly, const Pose& pose, Counts& counts) const;
-  /// As clearance, over the part and the fixtures, and where it is. A fixture is solid: in the middle of one a tool is
-  /// as deep as it is thick.
+  /// Clearance over part and fixtures, with the closest point. A fixture counts as solid: a tool in its middle is as
+  /// deep as the fixture is thick.
   struct Nearest {
     double distance;
-    Vec3 point;   ///< of part or fixture
-    Touch touch;  ///< what of the tool it is next to, or Fixture
+    Vec3 point;   ///< on the part or fixture
+    Touch touch;  ///< part of the tool that is closest, or Fixture
   };
   Nearest nearest(const Assembly& assembly, const Pose& pose) const;
-  /// Whether that distance is at least `wanted`. The first place with less will do: how deep the least one is takes
-  /// a hundred times longer to prove where a holder stands in the part.
+  /// Whether the distance of `nearest` is at least `wanted` (mm). Stops at the first place with less: finding the
+  /// minimum takes a hundred times longer where a holder stands inside the part.
   bool keeps(const Assembly& assembly, const Pose& pose, double wanted) const;
 
-  /// Whether the clearance from part and fixtures is at least `wanted` all along a motion, from and to poses that are
-  /// in no fixture; gives up after `most` evaluations.
+  /// Whether the clearance to part and fixtures stays at least `wanted` (mm) along a motion whose two end poses touch
+  /// no fixture. Gives up after `most` evaluations and answers Unknown.
   Swept sweep(const Assembly& assembly, const Motion& motion, double wanted, std::size_t most) const;
 
-  /// Whether a point is in the part's material, behind its normals, by its winding number (collide/winding.hpp): a tool
-  /// that the part has swallowed whole touches none of its surface. Of an open surface only what it mostly surrounds is
-  /// its material.
+  /// Whether `p` lies in the part's material, by its winding number (collide/winding.hpp). Needed for a tool entirely
+  /// inside the part, which touches none of its surface. For an open surface, material is what the surface mostly
+  /// encloses.
   bool inside_part(const Vec3& p) const;
 
-  /// Box around part and fixtures, mm.
+  /// Bounding box of part and fixtures, mm.
   const Box3& bounds() const;
 
+  /// Distance of the sample points on the part, mm.
   double spacing() const;
+  /// Number of triangles, sample points and fixtures.
   std::size_t triangles() const;
   std::size_t points() const;
   std::size_t fixtures() const;

@@ -1,4 +1,4 @@
-// What a tool meets at a pose.
+// The result of a contact query: force, torque, depth and contact points.
 #pragma once
 
 #include <array>
@@ -8,43 +8,44 @@
 
 namespace riffler::collide {
 
-/// What of the assembly touches the part, or that it is a fixture which is touched, by whatever piece.
+/// What is in contact: a part of the tool that touches the part, or a fixture, which any part of the tool may touch.
 enum class Touch : unsigned char { Cutter, Shank, Holder, Fixture };
 
-/// Work that a call did.
+/// Operation counts of a query.
 struct Counts {
-  std::size_t nodes = 0;      ///< bounding spheres looked at
-  std::size_t triangles = 0;  ///< looked at by themselves
-  std::size_t cells = 0;      ///< places on triangles where the tool's distance was taken
+  std::size_t nodes = 0;      ///< bounding spheres visited
+  std::size_t triangles = 0;  ///< triangles tested one by one
+  std::size_t cells = 0;      ///< evaluations of the tool's distance on triangles
   std::size_t points = 0;     ///< sample points of the force
-  std::size_t boxes = 0;      ///< of the material of fixtures, looked at by themselves
+  std::size_t boxes = 0;      ///< boxes of fixture material tested one by one
 };
 
-/// How force (N) and torque about the tip (N·mm) fall when the tool is moved by a small displacement: its translation
-/// at the tip (mm), then its rotation vector (rad). Symmetric; nothing resists what slides along the surfaces.
+/// Decrease of force (N) and torque about the tip (N·mm) per small displacement of the tool: translation of the tip
+/// (mm), then rotation vector (rad). Symmetric; sliding along the surfaces meets no resistance.
 using ContactStiffness = std::array<std::array<double, 6>, 6>;
 
-/// Force and torque act on the tool. All in the part frame.
+/// Force and torque that act on the tool. All values are in the part frame.
 struct Contact {
-  Vec3 force{0};   ///< N, out of what is touched
+  Vec3 force{0};   ///< N, directed out of the obstacle
   Vec3 torque{0};  ///< N·mm, about the tip
-  /// Of a point of the part k times its area along its normal: the derivative of its force where the tool's surface
-  /// runs along the part's. Of a fixture k times the area of the tool's surface in it, along the force and along the
-  /// tool's normal: twice the derivative where both agree, and no less than what of it is symmetric anywhere.
+  /// A point of the part contributes k times its area along its normal: the derivative of its force where the tool's
+  /// surface is tangent to the part's. A fixture contributes k times the area of the tool's surface inside it, along
+  /// the force and along the tool's normal: twice the derivative where these agree, and never less than its symmetric
+  /// part.
   ContactStiffness stiffness{};
   /// max(0, −clearance) over part and fixtures, mm; the true depth is at most `depth` + `missed_depth_bound`.
   double depth = 0;
-  /// Without a budget rounding, 1e-10 mm and more far from the origin; up to about 1e-3 mm deep in a tool where three
-  /// of its surfaces are equally near, where the search ends by its count of cells. The clock is read at every
-  /// eighth step of a search, so short budgets may be exceeded.
+  /// Bound on the depth that the search missed, mm. Without a budget this is rounding, 1e-10 mm and more far from the
+  /// origin, but up to about 1e-3 mm deep inside a tool where three of its surfaces are equally near and the search
+  /// stops at its cell limit. The clock is read at every eighth search step, so a short budget may be exceeded.
   double missed_depth_bound = 0;
-  double checked = 1;          ///< share of the candidates that was looked at
-  std::vector<Vec3> points;    ///< contact points, the deepest first; empty where nothing touches
-  std::vector<Touch> touches;  ///< of the points
+  double checked = 1;          ///< share of the candidates that were examined, 0 to 1
+  std::vector<Vec3> points;    ///< contact points, deepest first; empty without contact
+  std::vector<Touch> touches;  ///< one per entry of `points`
 
-  /// Adds a force on the tool's point that is `arm` away from its tip.
+  /// Adds the force `pushing` (N) at a point of the tool that lies `arm` (mm) from its tip.
   void push(const Vec3& arm, const Vec3& pushing) { force += pushing, torque += glm::cross(arm, pushing); }
-  /// Adds what that point's motion along a direction meets, N/mm.
+  /// Adds a stiffness `per_mm` (N/mm) against motion of that point along the unit vector `direction`.
   void resist(const Vec3& arm, const Vec3& direction, double per_mm);
 };
 

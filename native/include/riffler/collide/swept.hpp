@@ -1,4 +1,4 @@
-// What a check of a motion answers.
+// The result of a check of a motion.
 #pragma once
 
 #include <cstddef>
@@ -7,18 +7,18 @@
 
 namespace riffler::collide {
 
-/// Whether a tool that moves between two poses stays clear all along, not at sampled poses only.
+/// Whether a tool that moves between two poses keeps its clearance along the whole motion, not only at sampled poses.
 struct Swept {
   enum class Answer {
-    Clear,    ///< the clearance is at least the wanted one all along
-    Gouges,   ///< it is less at time `at`
-    Unknown,  ///< the evaluations ran out
+    Clear,    ///< the clearance is at least the wanted one along the whole motion
+    Gouges,   ///< the clearance is less at time `at`
+    Unknown,  ///< the evaluation limit was reached
   } answer = Answer::Unknown;
-  double at = 0;         ///< time of the least clearance seen
-  double clearance = 0;  ///< that clearance, mm; ∞ where everything is far off
-  double bound = 0;      ///< no pose in between has less than this, mm
+  double at = 0;         ///< time of the smallest clearance found, 0 to 1
+  double clearance = 0;  ///< that clearance, mm; ∞ where every obstacle is far away
+  double bound = 0;      ///< lower bound of the clearance over the whole motion, mm
   Touch touch = Touch::Cutter;
-  std::size_t evaluations = 0;  ///< groups of bounds, and triangles looked at by themselves
+  std::size_t evaluations = 0;  ///< groups of bounds, and triangles tested one by one
 };
 
 }  // namespace riffler::collide

@@ -1,4 +1,4 @@
-// A body of revolution without mass between springs and dampers: where it is after a step.
+// Equilibrium of a massless body of revolution held by springs, dampers and contacts, after one time step.
 #pragma once
 
 #include <array>
@@ -9,23 +9,23 @@
 
 namespace riffler::haptics {
 
-/// Backward Euler: the forces balance at the step's end, where springs have been stretched and dampers moved. Every
-/// spring and damper adds a positive semidefinite matrix, so with one that holds the body the step exists, and whatever
-/// the others are it never goes further than the springs pull: stiff contacts and tough materials need no short steps.
-/// About the body's axis nothing turns it.
+/// Backward Euler: the forces balance at the end of the step, with springs stretched and dampers moved up to then.
+/// Every spring and damper adds a positive semidefinite matrix. One spring or damper that holds the body therefore
+/// makes the step exist, and the step never overshoots what the springs ask for: stiff contacts and tough materials
+/// need no shorter steps. No torque acts about the body's own axis.
 class Balance {
  public:
-  /// Unit axis; dt > 0, s.
+  /// `axis`: unit vector; `dt` > 0, s.
   Balance(const Vec3& axis, double dt) : axis_(axis), dt_(dt) {}
 
-  /// Pulls towards a place that is `stretch` away: N/mm and N·mm/rad.
+  /// Pulls towards a pose that is `stretch` (mm, rad) away, with stiffness `linear` (N/mm) and `angular` (N·mm/rad).
   void add_spring(double linear, double angular, const Twist& stretch);
-  /// Against motion relative to a body that moves so; `moving` at the damper's own point.
+  /// Resists motion relative to a body with twist `moving`, given at the damper's own point.
   void add_damper(const Damper& damper, const Twist& moving = {});
-  /// A wrench about the tip that falls by `stiffness` with the displacement.
+  /// A contact wrench about the tip that decreases by `stiffness` per displacement.
   void add_contact(const Wrench& wrench, const collide::ContactStiffness& stiffness);
 
-  /// The displacement, about the tip; nothing where nothing holds the body, or with numbers that are not finite.
+  /// Displacement of the tip and rotation over the step. Zero where nothing holds the body or an input is not finite.
   Twist solve() const;
 
  private:

@@ -1,19 +1,19 @@
-// Time-domain passivity: an observer that keeps the account of the energy that rendering took from the hand, and a
-// controller that lets it go back no further than that (Hannaford and Ryu, "Time-domain passivity control of haptic
+// Time-domain passivity: an observer keeps an account of the energy that the rendered force took from the hand, and a
+// controller limits what it gives back to that account (Hannaford and Ryu, "Time-domain passivity control of haptic
 // interfaces", IEEE Trans. Robotics and Automation 18(1), 2002; series type, for impedance devices).
 //
-// Two things are done differently. A hold's energy is known exactly at the tick that ends it, wrench held ·
-// displacement since (Stramigioli, Secchi, van der Schaft and Fantuzzi, IEEE Trans. Robotics 21(4), 2005), so the
-// account has no error of sampling. And the controller does not wait for a debt. The grip's acceleration is bounded, so
-// its next displacement is known up to an uncertainty; no wrench is let through which could deliver more than the
-// account holds, wherever in there the grip goes. While the bounds hold, the account is never below zero; a tick that
-// breaks them leaves a debt, which is accounted and paid before anything else is delivered. Behind a cable the same
-// holds of all wrenches that are still on their way (PassivitySettings::latency).
+// Two things differ from the paper. First, the energy of a hold is known exactly at the tick that ends it: wrench held
+// · displacement since (Stramigioli, Secchi, van der Schaft and Fantuzzi, IEEE Trans. Robotics 21(4), 2005). The
+// account therefore has no sampling error. Second, the controller does not wait for a debt. The grip's acceleration is
+// bounded, so its next displacement is known up to an uncertainty; the controller passes no wrench that could deliver
+// more than the account holds for any displacement within it. While the bounds hold, the account never falls below
+// zero. A tick that breaks them leaves a debt, which is recorded and repaid before anything else is delivered. With a
+// transmission delay, the same rule covers all wrenches still in transit (PassivitySettings::latency).
 //
 // One account serves all coordinates. Energy per coordinate depends on the choice of axes and pivot, and a passive
-// object may take it in one and give it back in another for ever (a spring whose principal axes are not the coordinates
-// does, on an elliptic path: a constant sum per turn); the sum over all is what the hand gets, and depends on nothing.
-// The coordinates' own sums are kept to be looked at.
+// object may take it in one coordinate and return it in another for ever: a spring whose principal axes are not the
+// coordinate axes does so on an elliptic path, by a constant amount per turn. The sum over all coordinates is what the
+// hand receives and depends on no such choice. The sums per coordinate are kept for display.
 #pragma once
 
 #include "riffler/haptics/settings.hpp"
@@ -21,52 +21,57 @@
 
 namespace riffler::haptics {
 
+/// Timing, device data and energy limits of the passivity controller.
 struct PassivitySettings {
-  double period = 1e-3;  ///< s: the hold that is counted on
-  double jitter = 1e-4;  ///< s: by how much it may be shorter or longer
-  /// s from a wrench that is let through to the hold with it, and back to its account, at most 8 periods. Wrenches on
-  /// their way have to be borne, too; the less is sure of where the hand will be then, the less stiff a wall can be.
+  double period = 1e-3;  ///< s: nominal duration of a hold
+  double jitter = 1e-4;  ///< s: a hold may be shorter or longer by this
+  /// s from passing a wrench to the end of the hold with it, as accounted; at most 8 periods. Wrenches in transit count
+  /// against the account; the longer the delay, the less certain the hand's position and the softer a wall can be.
   double latency = 0;
-  Bounds acceleration{1e5, 1e3};  ///< mm/s², rad/s²: of the grip, per coordinate
-  Bounds resolution{0.03, 2e-3};  ///< mm, rad: step of the measured position
-  Bounds max_damping{2e-3, 2};    ///< N·s/mm, N·mm·s/rad: the most that is injected
-  // What the device takes from the hand by itself is what lets a wall within its passive bound be sampled at a loss for
-  // ever: without it, the reserve is spent some day, and contacts begin soft.
-  Bounds device_damping{0, 0};   ///< what the device surely has, in whatever direction
-  Bounds device_friction{0, 0};  ///< N, N·mm: surely, in each coordinate; of one that is the same all round, 1/√3
-  double reserve = 1;            ///< N·mm that rendering may owe to nobody: where the account starts
-  double storage = 50;           ///< N·mm, ≥ reserve: the most that rendered objects can hold
+  Bounds acceleration{1e5, 1e3};  ///< mm/s², rad/s²: bound on the grip's acceleration per coordinate
+  Bounds resolution{0.03, 2e-3};  ///< mm, rad: resolution of the measured position
+  Bounds max_damping{2e-3, 2};    ///< N·s/mm, N·mm·s/rad: largest injected damping
+  // The device's own dissipation lets the account sustain a sampled wall within its passive bound indefinitely. Without
+  // it the reserve is eventually spent, and contacts then begin soft.
+  Bounds device_damping{0, 0};   ///< N·s/mm, N·mm·s/rad: guaranteed viscous damping in every direction
+  Bounds device_friction{0, 0};  ///< N, N·mm: guaranteed dry friction per coordinate; 1/√3 of isotropic friction
+  double reserve = 1;            ///< N·mm: initial balance of the account
+  double storage = 50;           ///< N·mm, ≥ reserve: largest energy that rendered objects can store
 
-  /// std::invalid_argument naming the field.
+  /// Throws std::invalid_argument naming the field.
   void validate() const;
 };
 
+/// Energy account and controller of one device. Not thread-safe.
 class Passivity {
  public:
-  /// Validates the settings.
+  /// Throws std::invalid_argument for invalid settings.
   explicit Passivity(const PassivitySettings& settings);
 
-  /// The hold that ends now: the wrench that the device's motors really had, and how far the grip has gone meanwhile,
-  /// about the same pivot, in dt seconds. Without finite numbers nothing is accounted and the grip counts as at rest.
+  /// Records the hold that ends now. `held`: the wrench that the motors really applied; `displacement` of the grip
+  /// during the hold, about the same pivot; `dt`: s. Values that are not finite are not recorded, and the grip counts
+  /// as at rest.
   void observe(const Wrench& held, const Twist& displacement, double dt);
 
-  /// The wrench to hold next: `wanted` if the account bears it, otherwise with as much damping as that takes, up to
-  /// max_damping; if that is not enough, `wanted` shrinks, to nothing at the worst. Damping is injected only where the
-  /// grip's direction is sure: below that, measured velocity is noise, and amplified would be felt.
+  /// The wrench to hold next. Returns `wanted` if the account covers it, otherwise `wanted` with the damping needed, up
+  /// to max_damping; if that is not enough, `wanted` shrinks, to zero at worst. Damping is injected only where the
+  /// direction of the grip's motion is certain: below that, the measured velocity is noise, and amplified noise would
+  /// be felt.
   Wrench control(const Wrench& wanted, const Capability& device);
 
-  /// N·mm that may go to the hand; below zero a debt.
+  /// Energy that may go to the hand, N·mm; negative: a debt.
   double energy() const { return energy_; }
-  /// Factor of the wanted wrench and share of max_damping in the last wrench let through: (1, 0) is untouched.
+  /// Factor on the wanted wrench and share of max_damping in the last wrench: (1, 0) means unchanged.
   double kept() const { return kept_; }
   double damped() const { return damped_; }
-  /// A new session. Otherwise the account is never set: trips and ramps leave debts as they are.
+  /// Starts a new account. Nothing else sets the account: trips and ramps keep a debt.
   void reset();
 
  private:
-  /// How far coordinate k may end from where its rate leads, in the hold that begins after `ahead` others, mm or rad.
+  /// Uncertainty of coordinate k (mm or rad) at the end of the hold that begins after `ahead` others, about the
+  /// position that its rate predicts.
   double unsure(int k, double rate, std::size_t ahead) const;
-  /// N·mm that wrenches on their way may still deliver.
+  /// Energy that wrenches in transit may still deliver, N·mm.
   double on_the_way(const Capability& device) const;
   double dissipated(const Twist& displacement, double dt);
 
@@ -74,7 +79,7 @@ class Passivity {
   double energy_;
   Twist rate_{};  // mean over the last tick
   double last_dt_;
-  Twist way_{};  // since the device's own dissipation was credited last, and for how long: by coordinate
+  Twist way_{};  // per coordinate: displacement and time since the device's own dissipation was last credited
   std::array<double, kCoordinates> way_time_{};
   double kept_ = 1, damped_ = 0;
   static constexpr std::size_t kMaxOnTheWay = 8;

@@ -1,4 +1,4 @@
-// What the settings of the haptic step have in common: pairs of bounds and their checks.
+// Pairs of bounds for the haptic settings, and their checks.
 #pragma once
 
 #include <string>
@@ -7,19 +7,19 @@
 
 namespace riffler::haptics {
 
-/// A bound on translation and its sister on rotation: they have no common unit.
+/// Two bounds, one for translation and one for rotation, since the two have no common unit.
 struct Bounds {
   double linear, angular;
 
   double operator[](int coordinate) const { return coordinate < 3 ? linear : angular; }
 };
 
-/// std::invalid_argument naming the one that is not positive and finite: "NAME.linear must be positive".
+/// Throws std::invalid_argument naming the bound that is not positive and finite: "NAME.linear must be positive".
 inline void require_positive(const Bounds& b, const std::string& name) {
   base::require_positive(b.linear, name + ".linear"), base::require_positive(b.angular, name + ".angular");
 }
 
-/// As require_positive, but zero is allowed: it switches off what is bounded.
+/// As require_positive, but allows zero, which switches off what is bounded.
 inline void require_not_negative(const Bounds& b, const std::string& name) {
   base::require_not_negative(b.linear, name + ".linear"), base::require_not_negative(b.angular, name + ".angular");
 }

@@ -1,4 +1,4 @@
-// The last trips, written by the haptic loop and read by anybody else, without locks.
+// The last trips: the haptic loop writes them, any thread reads them without locks.
 #pragma once
 
 #include <array>
@@ -11,23 +11,25 @@
 
 namespace riffler::haptics {
 
+/// One trip or stop of the force.
 struct Trip {
-  double time;       ///< s since the machine was made
-  ForceState state;  ///< in which it happened
+  double time;       ///< s since the Safety object was created
+  ForceState state;  ///< before the trip
   Cause cause;
-  double value;  ///< what the cause is about: see Cause
+  double value;  ///< measured value; its meaning is given at Cause
 };
 
-/// A ring: one thread writes, any may read. Neither waits for the other or allocates.
+/// A ring buffer: one thread writes, any may read. Neither waits for the other or allocates.
 class TripLog {
  public:
   static constexpr std::size_t kCapacity = 256;
 
+  /// Appends a trip; overwrites the oldest when full. By the writing thread.
   void add(const Trip& trip);
-  /// Trips so far; the last kCapacity of them are held.
+  /// Number of trips so far. The last kCapacity of them are stored.
   std::uint64_t count() const { return count_.load(std::memory_order_acquire); }
-  /// Copies trips from number `from` on, oldest first, skipping those that are no longer held. Returns how many were
-  /// copied; `from` becomes the number of the first that was not looked at.
+  /// Copies trips from number `from` on into `out`, oldest first, skipping overwritten ones. Returns the number copied
+  /// and sets `from` to the number of the first trip not read yet.
   std::size_t read(std::uint64_t& from, std::span<Trip> out) const;
 
  private:

@@ -1,4 +1,4 @@
-// From where the hand holds the grip to where the tool shall be, and from the tool's force back to the hand.
+// Mapping between the grip's frame and the tool's: poses forward, wrenches back to the hand.
 #pragma once
 
 #include <cstdint>
@@ -8,41 +8,43 @@
 
 namespace riffler::haptics {
 
+/// Mapping from grip to tool, and the device's switches.
 struct WorkspaceSettings {
   double scale = 1;                 ///< mm of the tool per mm of the grip
   Mat3 turn{1};                     ///< orthonormal, right-handed: the grip's frame → the part's
-  std::uint32_t clutch_mask = 2;    ///< buttons of which any lifts the tool off the hand; 0: none does
-  std::uint32_t dead_man_mask = 1;  ///< buttons of which any must be held for force; 0: a device that has none
+  std::uint32_t clutch_mask = 2;    ///< any of these buttons is the clutch; 0: no clutch
+  std::uint32_t dead_man_mask = 1;  ///< any of these buttons is the dead-man switch; 0: no dead-man switch
 
-  /// std::invalid_argument naming the field.
+  /// Throws std::invalid_argument naming the field.
   void validate() const;
 };
 
-/// The tool's target follows the grip, turned and scaled about a pair of poses that belong together. Whatever is
-/// changed makes the last grip and the last target that pair, so the target never jumps: not when the clutch is pressed
-/// or let go, not with the scale, not with the view. While the clutch is pressed the target stands still; grip and
-/// target then may lie aslant to each other, and turn by the same turns from there on.
+/// The tool's target follows the grip, rotated and scaled about a pair of corresponding poses. Every change makes the
+/// last grip and the last target the new pair, so the target never jumps: not when the clutch is pressed or released,
+/// nor when scale or view change. While the clutch is pressed the target stands still. Afterwards grip and target may
+/// differ in orientation; both then make the same rotations.
 class Workspace {
  public:
-  /// Validates.
+  /// Throws std::invalid_argument for invalid settings.
   explicit Workspace(const WorkspaceSettings& settings = {});
 
-  /// The next grip belongs to this target.
+  /// Makes the next grip correspond to `target`.
   void place(const Pose& target);
-  /// std::invalid_argument naming the field; then nothing is changed.
+  /// Throws std::invalid_argument naming the field and then changes nothing.
   void set(const WorkspaceSettings& settings);
   const WorkspaceSettings& settings() const { return settings_; }
 
-  /// Of this tick: the target. Of a grip that is not finite or has no axis the last one.
+  /// The target for the grip of this tick. For a grip that is not finite or has no axis: the last target.
   Pose target(const Pose& grip, std::uint32_t buttons);
+  /// Whether the dead-man switch is held. Always true if the device has none.
   bool dead_man(std::uint32_t buttons) const {
     return settings_.dead_man_mask == 0 || (buttons & settings_.dead_man_mask) != 0;
   }
 
-  /// A twist of the grip in the target's frame: no motion while the clutch is pressed.
+  /// Twist of the grip in the target's frame. Zero while the clutch is pressed.
   Twist to_target(const Twist& grip) const;
-  /// A wrench on the target, on the grip: scaled as the way is, so that what the hand does is what the tool gets. None
-  /// while the clutch is pressed.
+  /// Wrench on the target, converted to the grip. Scaled like displacements, so the work at the hand equals the work at
+  /// the tool. Zero while the clutch is pressed.
   Wrench to_grip(const Wrench& target) const;
 
  private:
@@ -51,7 +53,7 @@ class Workspace {
   WorkspaceSettings settings_;
   Pose grip_, target_;  // of the last tick
   Pose grip_pair_, target_pair_;
-  Mat3 aslant_{1};  // from settings_.turn · grip's axis to the target's
+  Mat3 aslant_{1};  // rotation from settings_.turn · grip axis to target axis
   bool clutched_ = false, begun_ = false;
 };
 

@@ -1,4 +1,4 @@
-// Wrench and twist: six coordinates about one pivot, and which of them a device can push.
+// Wrench and twist: six coordinates about one pivot. Capability: which coordinates a device can push.
 #pragma once
 
 #include <array>
@@ -23,8 +23,8 @@ struct Wrench {
   friend bool operator==(const Wrench& a, const Wrench& b) { return a.force == b.force && a.torque == b.torque; }
 };
 
-/// Velocity (mm/s) of the body's material point at the pivot, and angular velocity (rad/s). Over a tick, the
-/// displacement in mm and the rotation vector in rad.
+/// Velocity (mm/s) of the body's material point at the pivot, and angular velocity (rad/s). For a tick: displacement in
+/// mm and rotation vector in rad.
 struct Twist {
   Vec3 linear{0}, angular{0};
 
@@ -35,7 +35,8 @@ struct Twist {
   friend Twist operator*(double s, const Twist& a) { return {s * a.linear, s * a.angular}; }
 };
 
-/// N·mm/s that the wrench delivers to the body that moves so; N·mm for a displacement. About one and the same pivot.
+/// Power (N·mm/s) that the wrench delivers to a body with this twist, or work (N·mm) for a displacement. Both about the
+/// same pivot.
 inline double power(const Wrench& w, const Twist& t) {
   return glm::dot(w.force, t.linear) + glm::dot(w.torque, t.angular);
 }
@@ -55,8 +56,8 @@ inline bool finite(const Twist& t) {
   return geom::finite(t.linear) && geom::finite(t.angular);
 }
 
-/// Which coordinates a device can push: forces along, and torques about, three axes square to each other, which may
-/// turn with its grip. The pen pushes all but the torque about its own axis: `axes` with the grip for the third column.
+/// Coordinates that a device can push: forces along three orthogonal axes and torques about them. The axes may turn
+/// with the grip. The pen pushes all but the torque about its own axis: its third column of `axes` is the grip's axis.
 struct Capability {
   std::array<bool, kCoordinates> push{true, true, true, true, true, true};
   Mat3 axes{1};  ///< orthonormal; columns in the part frame
@@ -64,7 +65,7 @@ struct Capability {
   friend bool operator==(const Capability&, const Capability&) = default;
 };
 
-/// The part of the wrench that the device can render: its projection. What it cannot is the difference.
+/// The part of the wrench that the device can render: the projection onto the coordinates it pushes.
 inline Wrench renderable(const Capability& device, const Wrench& w) {
   Wrench out;
   for (int k = 0; k < 3; ++k) {

@@ -1,4 +1,4 @@
-// What the hand is given in a tick whose step is not done in time.
+// Replacement wrench for a tick whose step is not done in time.
 #pragma once
 
 #include "riffler/haptics/settings.hpp"
@@ -6,29 +6,32 @@
 
 namespace riffler::haptics {
 
+/// Times and limits of the extrapolation.
 struct WrenchExtrapolatorSettings {
-  double ahead = 2e-3;          ///< s for which the last change goes on after a step, ever slower
-  double fade = 20e-3;          ///< s after the last step at which the wrench is gone
-  Bounds rate{2'000, 120'000};  ///< N/s, N·mm/s: no more of a change than this goes on, or comes with the next step
-  Bounds most{5, 300};          ///< N, N·mm: neither what is held over nor its parts grow beyond
+  double ahead = 2e-3;          ///< s for which the last trend continues after a step, decelerating
+  double fade = 20e-3;          ///< s after the last step at which the wrench reaches zero
+  Bounds rate{2'000, 120'000};  ///< N/s, N·mm/s: largest rate of the output
+  Bounds most{5, 300};          ///< N, N·mm: largest extrapolated wrench, also of its terms
 
-  /// std::invalid_argument naming the field.
+  /// Throws std::invalid_argument naming the field.
   void validate() const;
 };
 
-/// Without a new step the wrench goes on from the last two and comes to nothing; with the next one it turns towards
-/// that from where it is. It never changes faster than `rate`: ticks and steps may fail and come back in any order.
+/// Without a new step the wrench continues from the last two and fades to zero. With the next step it turns from there
+/// towards the new value. It never changes faster than `rate`, so steps may fail and return in any order.
 class WrenchExtrapolator {
  public:
-  /// Validates.
+  /// Throws std::invalid_argument for invalid settings.
   explicit WrenchExtrapolator(const WrenchExtrapolatorSettings& settings = {});
 
-  /// A tick with the step's wrench, dt s after the last tick. dt ≤ 0, or a wrench that is not finite, is as `missed`.
+  /// Output for a tick with a step's wrench, `dt` s after the last tick. For dt ≤ 0 or a wrench that is not finite: as
+  /// `missed`.
   Wrench stepped(const Wrench& wrench, double dt);
-  /// A tick without.
+  /// Output for a tick without a step, `dt` s after the last tick.
   Wrench missed(double dt);
-  /// s since the last step.
+  /// Time since the last step, s.
   double age() const { return age_; }
+  /// Forgets all steps; the output starts from zero.
   void reset();
 
  private:

@@ -1,4 +1,4 @@
-// Programs made from programs.
+// Edited copies of programs.
 #pragma once
 
 #include <map>
@@ -8,22 +8,24 @@
 
 namespace riffler::nc {
 
-/// Rows [first, last). The first of them is a rapid: the way to it is not the program's any more.
-/// std::invalid_argument where there are no such rows.
+/// Rows [first, last). The first of them becomes a rapid, because the moves before it are gone. Throws
+/// std::invalid_argument for rows that do not exist.
 Program trimmed(const Program& program, std::size_t first, std::size_t last);
 
-/// Turned, then moved (mm): another clamping. `turn` must be a rotation within 1e-9, otherwise std::invalid_argument.
+/// The program rotated by `turn`, then moved by `shift` (mm): another clamping. Throws std::invalid_argument unless
+/// `turn` is a rotation within 1e-9.
 Program transformed(const Program& program, const Mat3& turn, const Vec3& shift);
 
-/// Feeds times `factor`, which must be positive and finite; rapids as they are.
+/// The program with feeds multiplied by `factor`, positive and finite. Rapids stay.
 Program scale_feeds(const Program& program, double factor);
 
-/// One after the other: the way from one's last row to the next one's first is as that row says. Of provenance that
-/// several have the first stays. std::invalid_argument where one number stands for tools of two shapes.
+/// The programs in sequence. The move from one program's last row to the next one's first is of the kind that this
+/// first row states. If a provenance key occurs in several, the first value stays. Throws std::invalid_argument where
+/// one tool number has two different shapes.
 Program joined(std::span<const Program* const> programs);
 
-/// Tool numbers by `numbers`; those that are not in it stay. std::invalid_argument naming a number that is not positive
-/// or that two tools of different shapes would have.
+/// The program with tool numbers replaced by `numbers`; numbers not in the map stay. Throws std::invalid_argument
+/// naming a new number that is not positive or that two tools of different shapes would share.
 Program renumber_tools(const Program& program, const std::map<int, int>& numbers);
 
 }  // namespace riffler::nc

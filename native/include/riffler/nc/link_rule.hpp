@@ -1,4 +1,4 @@
-// What approaches to cuts and retracts from them keep clear of.
+// Rule for approaches to cuts and retracts from them.
 #pragma once
 
 #include <optional>
@@ -8,17 +8,17 @@
 
 namespace riffler::nc {
 
-/// What approaches and retracts must keep clear of, and how they go.
+/// Obstacles that approaches and retracts must clear, and how they move.
 struct LinkRule {
-  const collide::Collider* collider = nullptr;  ///< part and fixtures; null: nothing is looked at
-  double tolerance = 0.02;                      ///< mm that the tool may enter them: cuts touch the part
-  std::optional<double> retract;                ///< mm of the first stretch out of a cut; not given: what is clear
-  std::optional<Vec3> direction;  ///< unit, of that stretch; not given: along the tool's axis, or what is clear
-  /// mm before a cut that are fed, the way down to there is a rapid; not given: all of it is fed.
+  const collide::Collider* collider = nullptr;  ///< part and fixtures; null: no checks
+  double tolerance = 0.02;                      ///< mm that the tool may enter them, since cuts touch the part
+  std::optional<double> retract;                ///< mm of the first move out of a cut; default: as far as is clear
+  std::optional<Vec3> direction;  ///< unit vector of that move; default: the tool's axis, or a clear direction
+  /// mm before a cut to move at feed, with a rapid up to there; default: all of the approach at feed.
   std::optional<double> lead_in;
 };
 
-/// Throws std::invalid_argument naming the option.
+/// Throws std::invalid_argument naming the field.
 void validate(const LinkRule& rule);
 
 }  // namespace riffler::nc

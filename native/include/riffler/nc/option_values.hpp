@@ -1,4 +1,4 @@
-// Named options of machines and posts, as callers give them.
+// Named options of machines and posts, as callers pass them.
 #pragma once
 
 #include <map>

@@ -1,5 +1,5 @@
-// What an input device senses and what it can push with, coordinate by coordinate: the one description that pens, pucks
-// and tablets share, and by which a session knows what the hand will not feel.
+// What an input device senses and pushes, per coordinate. Pens, pucks and tablets share this description; from it a
+// session knows what the hand will not feel.
 #pragma once
 
 #include <array>
@@ -12,30 +12,33 @@ namespace riffler::pen {
 
 struct PenGeometry;
 
-/// Along the device's x, y, z, and about three axes, see TurnAxes.
+/// Along the device's x, y, z, and about three axes; see TurnAxes.
 enum class Coordinate : unsigned char { X, Y, Z, A, B, C };
 
+/// What is sensed of a coordinate.
 enum class Sensing : unsigned char {
   None,
   Position,  // mm, rad
-  Rate,      // how far it is pushed sets a speed: pucks
+  Rate,      // the deflection sets a speed: pucks
 };
 
-/// What A, B and C turn about.
+/// The axes of A, B and C.
 enum class TurnAxes : unsigned char {
   Device,  // the device's x, y, z
-  Grip,    // C about the grip's own axis; A and B about two directions square to it, A the one most like the device's x
+  Grip,    // C about the grip's own axis; A and B about two perpendiculars, A the one closest to the device's x
 };
 
+/// Sensing and force of one coordinate.
 struct CoordinateCapability {
   Sensing sensing = Sensing::None;
   bool pushes = false;
-  /// Of what is sensed, mm or rad (of rates mm/s or rad/s); infinite where nothing ends it or nothing is said.
+  /// Range of the sensed value, mm or rad (for rates mm/s or rad/s); infinite if unlimited or unknown.
   double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();
-  double resolution = 0;            // the coarsest step of one count, in the home posture; 0: not said
-  double peak = 0, continuous = 0;  // N or N·mm in the home posture, alone; 0 where it does not push
+  double resolution = 0;            // coarsest step of one count in the home posture; 0: unknown
+  double peak = 0, continuous = 0;  // N or N·mm in the home posture, one coordinate alone; 0: does not push
 };
 
+/// Name and six coordinates of a device.
 struct DeviceCapability {
   std::string name;
   TurnAxes turns = TurnAxes::Device;
@@ -43,19 +46,21 @@ struct DeviceCapability {
 
   const CoordinateCapability& operator[](Coordinate c) const { return coordinates[static_cast<std::size_t>(c)]; }
   CoordinateCapability& operator[](Coordinate c) { return coordinates[static_cast<std::size_t>(c)]; }
+  /// Whether the device pushes any coordinate.
   bool has_force() const;
 };
 
-/// "senses x y z a b c, pushes x y z a b; the hand does not feel: torque about the grip's axis"
+/// For example "senses x y z a b c, pushes x y z a b; the hand does not feel: torque about the grip's axis".
 std::string capability_text(const DeviceCapability& device);
 
-/// What of a wrench the device has motors for, for renderable(): with the grip's axis (unit, device's frame) for the
-/// third column where turns are about the grip, which then has a torque square to it only where both A and B push, and
-/// forces only where X, Y and Z all do. Whether the motors are strong enough is another matter.
+/// The coordinates for which the device has motors, as input of renderable(). `axis`: the grip's axis (unit, device
+/// frame); it becomes the third column where rotations are about the grip. Such a device has torques perpendicular to
+/// the grip only if both A and B push, and forces only if X, Y and Z all do. The strength of the motors is not
+/// considered.
 haptics::Capability pushed(const DeviceCapability& device, const Vec3& axis) noexcept;
 
-/// Six coordinates sensed, five that push: strengths and resolutions from the motors, gears and encoders, at home, and
-/// within the pen's limits. Its device frame is the arms' base frame.
+/// Capability of a two-arm pen: senses six coordinates, pushes five. Strengths and resolutions follow from motors,
+/// gears and encoders in the home posture, within the pen's limits. The device frame is the base frame of the arms.
 DeviceCapability pen_capability(const PenGeometry& pen);
 
 }  // namespace riffler::pen

@@ -1,4 +1,4 @@
-// One interface for everything that a hand can hold: pens with motors, pucks, recordings, tablets, mice.
+// The common interface of all input devices: pens with motors, pucks, recordings, tablets, mice.
 #pragma once
 
 #include <memory>
@@ -15,74 +15,77 @@ namespace riffler::pen {
 
 struct PenGeometry;
 
+/// Why a requested wrench is not, or not entirely, felt.
 enum class NotPushed : unsigned char {
-  None,          // all of it will be felt
-  NoMotors,      // some or all of it has no motor: `missing`
-  NotConnected,  // the device is gone
-  NotHomed,      // it does not know where it is
-  NotPowered,    // it reports a fault, or is not ready
+  None,          // the whole wrench will be felt
+  NoMotors,      // no motor for some or all of it: see `missing`
+  NotConnected,  // the device is disconnected
+  NotHomed,      // the device does not know its pose
+  NotPowered,    // the device reports a fault, or is not ready
   BadWrench,     // not finite
-  Tripped,       // a check of the safety failed: cause() says which
+  Tripped,       // a safety check failed: see cause()
 };
+/// The reason as a short text for users.
 const char* not_pushed_text(NotPushed reason) noexcept;
 
+/// The answer to a requested wrench.
 struct PushAnswer {
-  Wrench felt{}, missing{};  // at full gain; their sum is what was asked for
+  Wrench felt{}, missing{};  // at full gain; their sum is the requested wrench
   NotPushed reason = NotPushed::None;
 };
 
-/// Destroying one stops it. Where nothing else is said, functions are for one thread.
+/// An input device. The destructor stops it. Functions are for one thread unless stated otherwise.
 class Pen {
  public:
   virtual ~Pen() = default;
 
-  /// As families are called: "riffler-pen", "spacemouse", "recording", "tablet" …
+  /// Name of the device family: "riffler-pen", "spacemouse", "recording", "tablet" …
   virtual std::string kind() const = 0;
-  /// Which coordinates are sensed and which can push. Does not change.
+  /// The coordinates that are sensed and pushed. Constant.
   virtual const DeviceCapability& capability() const noexcept = 0;
-  /// Its poses are where the tool shall be, and not where some grip is on a desk.
+  /// Whether poses are those of the tool in the part frame, rather than those of a grip on a desk.
   virtual bool in_part_frame() const noexcept { return false; }
-  /// What the passivity controller of a step may count on. Does not change.
+  /// Settings for the passivity controller of a step. Constant.
   virtual haptics::PassivitySettings passivity() const { return passivity_settings(capability()); }
-  /// Of the device itself, for people.
+  /// Text about the device itself, for users.
   virtual std::string about() const { return {}; }
-  /// Of a pen of two arms, with the currents that the device allows; null for everything else. Does not change.
+  /// Geometry of a two-arm pen, with the currents that the device allows; null for other devices. Constant.
   virtual const PenGeometry* geometry() const noexcept { return nullptr; }
 
-  /// The newest sample; sample.time is in seconds of `now`. Any thread; never waits.
+  /// The newest sample; sample.time is on the clock of `now`. Any thread; never waits.
   virtual PenSample newest() const noexcept = 0;
-  /// s of the clock that samples are dated by. Any thread.
+  /// Time on the clock of the samples, s. Any thread.
   virtual double now() const noexcept = 0;
-  /// s since the newest sample was measured; infinite before the first. Any thread.
+  /// Time since the newest sample was measured, s; infinite before the first. Any thread.
   double age() const noexcept;
 
-  /// Asks for a wrench about the grip's pivot, in the frame of poses, and says what of it the hand will feel. It holds
-  /// for 20 ms: whoever pushes goes on asking. By one thread; never waits. Ignored, and the answer says why, where the
-  /// device cannot push.
+  /// Requests a wrench about the grip's pivot, in the pose frame, and returns which part of it the hand will feel. It
+  /// holds for 20 ms, so it must be repeated. One thread only; never waits. Ignored where the device cannot push; the
+  /// answer gives the reason.
   virtual PushAnswer push(const Wrench& wrench) noexcept;
 
-  /// From now on `step` computes the wrench, in the device's own thread, and push() is answered as by a device without
-  /// motors; null gives it back to push(). When this returns, the step before is not called any more. By the thread
-  /// that pushes, not from within a step; waits for one call of the step before at most. False, and nothing changed,
-  /// where the device has no thread of its own.
+  /// Installs `step`, which from then on computes the wrench in the device's own thread; push() then answers as for a
+  /// device without motors. Null returns control to push(). On return, the previous step is no longer called. Call it
+  /// from the thread that pushes, not from within a step; it waits for at most one call of the previous step. Returns
+  /// false, and changes nothing, if the device has no thread of its own.
   virtual bool set_step(std::shared_ptr<PenStep> step) {
     static_cast<void>(step);
     return false;
   }
 
-  /// What lets push() through: it ramps up from the first call on, and is taken away where a check fails. Trips that do
-  /// not heal by themselves are cleared by reset(). Any thread.
+  /// State of the force. It ramps up from the first push() and is taken away where a check fails. reset() clears trips
+  /// that do not heal by themselves. Any thread.
   virtual haptics::ForceState force_state() const noexcept { return haptics::ForceState::Off; }
   virtual haptics::Cause cause() const noexcept { return haptics::Cause::None; }
   virtual void reset() noexcept {}
 
-  /// The device stands in its home posture. False where nothing has to be homed.
+  /// Tells the device that it stands in its home posture. False if nothing has to be homed.
   virtual bool home() noexcept { return false; }
-  /// Any thread; never waits.
+  /// State of the connection. Any thread; never waits.
   virtual LinkStatus status() const noexcept;
-  /// Why the device is not there, or nothing.
+  /// Why the device is not available, or empty.
   virtual std::string problem() const { return {}; }
-  /// The device does not push any more, and is closed. False where it could not be told in time.
+  /// Stops pushing and closes the device. False if the device did not accept the stop in time.
   virtual bool stop() { return true; }
 };
 

@@ -1,17 +1,18 @@
-// How the thread of a device reads it and looks for it again.
+// Settings of a device's thread: reading and reconnecting.
 #pragma once
 
 namespace riffler::pen {
 
+/// Time-outs and retries of a device's thread.
 struct DriverSettings {
-  double read_timeout = 0.01;  ///< s without a report after which the step runs all the same, with an old sample
-  double silence = 0.25;       ///< s without a report after which a device that has a period counts as gone
-  double first_retry = 0.1;    ///< s after which a lost device is looked for; doubled after every failure …
+  double read_timeout = 0.01;  ///< s without a report after which the step runs with the old sample
+  double silence = 0.25;       ///< s without a report after which a periodic device counts as disconnected
+  double first_retry = 0.1;    ///< s before the first attempt to reconnect; doubled after every failure …
   double longest_retry = 2;    ///< … up to this
-  double poll = 0.01;          ///< s between two looks at the connector
-  unsigned most_reads = 256;   ///< in one tick: a device that floods cannot hold up the step
+  double poll = 0.01;          ///< s between two polls for the device
+  unsigned most_reads = 256;   ///< per tick: a flooding device cannot delay the step
 
-  /// std::invalid_argument naming the field.
+  /// Throws std::invalid_argument naming the field.
   void validate() const;
 };
 

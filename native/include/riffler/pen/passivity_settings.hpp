@@ -1,4 +1,4 @@
-// What the passivity controller may take for sure of a device: how finely it measures, and what it takes from the hand.
+// Device data for the passivity controller: resolution of the measurement, and guaranteed damping and friction.
 #pragma once
 
 #include "riffler/haptics/passivity.hpp"
@@ -7,12 +7,12 @@
 
 namespace riffler::pen {
 
-/// Of a device that only says what it senses: resolutions as said, and no losses. What is not said is 0.
+/// For a device with only a capability: its stated resolutions and no losses. Unknown resolutions are 0.
 haptics::PassivitySettings passivity_settings(const DeviceCapability& device);
 
-/// Of a pen of two arms, with bounds that hold in every posture that its joints and elbows allow, in all directions:
-/// resolution from the counts of all six joints together, damping and friction from the motors' as described, less what
-/// is made up for. Bounds, so the pen itself has more to give in most postures: docs/stability.md.
+/// For a two-arm pen: bounds that hold in every posture within its joint and elbow limits and in all directions.
+/// Resolution from the counts of all six joints together; damping and friction as described for the motors, minus the
+/// compensated fraction. Most postures are better than these bounds: docs/stability.md.
 haptics::PassivitySettings passivity_settings(const PenGeometry& pen, const Compensation& share = {});
 
 }  // namespace riffler::pen

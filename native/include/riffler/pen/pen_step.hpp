@@ -6,13 +6,13 @@
 
 namespace riffler::pen {
 
-/// Called once in each tick of an open device; from the driver's thread, so it must not wait or allocate.
+/// Called once per tick of an open device, from the driver's thread: it must not wait or allocate.
 class PenStep {
  public:
   virtual ~PenStep() = default;
-  /// The wrench to push with until the next step. `now` and `dt`, the time since the last step, are the driver's
-  /// clock's; sample.time says how old the sample is. The first step after a connection, or with a device that had
-  /// another step before, has dt = 0, and no other has.
+  /// Returns the wrench to push until the next step. `now` and `dt` (time since the last step) are in s on the driver's
+  /// clock; sample.time gives the age of the sample. dt = 0 only in the first step after a connection, or after a
+  /// change of the step.
   virtual haptics::SafeWrench step(const PenSample& sample, double now, double dt) noexcept = 0;
 };
 

@@ -1,4 +1,4 @@
-// A recording in the place of a device: the hand of then, at the pace of then.
+// Plays a recording as a device: the recorded hand at the recorded pace.
 #pragma once
 
 #include <atomic>
@@ -9,38 +9,40 @@
 
 namespace riffler::pen {
 
-/// As journals have them.
+/// Poses and times as stored in a journal.
 struct RecordedStroke {
   std::vector<Pose> poses;
-  std::vector<double> times;  ///< s, one for each pose, never falling
+  std::vector<double> times;  ///< s, one per pose, non-decreasing
 };
 
-/// Button 1 is held during strokes. Between rows the pose moves as a tool does between two poses; between strokes, and
-/// after the last, it rests where it was. A stroke whose times begin before the last one's end follows it at once.
+/// Button 1 is held during strokes. Between rows the pose moves as a tool does between two poses. Between strokes and
+/// after the last one it rests at the last pose. A stroke whose times begin before the end of the previous one follows
+/// it immediately.
 class PlaybackPen final : public Pen {
  public:
-  /// `speed` times as fast as it was. Throws std::invalid_argument naming the stroke and the row: no strokes, no poses,
-  /// not one time for each pose, times that fall or are not finite, axes that are opposite. `clock` for tests.
+  /// `speed`: factor on the recorded pace. `clock`: replaces the system clock in tests. Throws std::invalid_argument
+  /// naming stroke and row: no strokes, no poses, a different number of times than poses, times that decrease or are
+  /// not finite, opposite axes.
   explicit PlaybackPen(std::vector<RecordedStroke> strokes, double speed = 1, std::function<double()> clock = nullptr);
 
   std::string kind() const override { return "recording"; }
   bool in_part_frame() const noexcept override { return true; }
   const DeviceCapability& capability() const noexcept override { return capability_; }
   std::string about() const override;
-  /// Begins with the first call.
+  /// The first call starts the playback.
   PenSample newest() const noexcept override;
   double now() const noexcept override { return clock_(); }
-  /// Stopped at the end of the last stroke.
+  /// State Connected, and Stopped after the end of the last stroke.
   LinkStatus status() const noexcept override;
 
-  /// s from the first row to the last, at this speed.
+  /// Time from the first row to the last at this speed, s.
   double duration() const noexcept { return rows_.back().time / speed_; }
 
  private:
   struct Row {
     double time;  // s from the start
     Pose pose;
-    bool ends;  // a stroke: the hand is off up to the next row
+    bool ends;  // end of a stroke: no button up to the next row
   };
   double elapsed() const noexcept;
 

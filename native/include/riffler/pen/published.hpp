@@ -5,14 +5,15 @@
 
 namespace riffler::pen {
 
+/// A trivially copyable value with one writer and any number of readers.
 template <class T>
 class Published {
  public:
   explicit Published(const T& value = T{}) noexcept { set(value); }
 
-  /// By one thread, which never waits.
+  /// Call it from one thread; never waits.
   void set(const T& value) noexcept { lock_.store(value, lock_.ticket() + 2); }
-  /// By any thread; copies again where the writer came in between.
+  /// Any thread. Copies again if the writer interfered.
   T get() const noexcept {
     T value;
     while (lock_.load(value) == 0) {

@@ -1,4 +1,4 @@
-// The HID devices that Riffler knows, those that are plugged in, and how one is opened.
+// The HID devices that Riffler supports: finding and opening them.
 #pragma once
 
 #include <memory>
@@ -19,43 +19,47 @@ namespace riffler::pen {
 class HidModel;
 class Transport;
 
+/// Options for opening a device.
 struct PenOptions {
-  RateSettings rate{};                     ///< of pucks
-  std::string geometry = "woodenhaptics";  ///< of the Polhem protocol: "woodenhaptics" or "polhem-1"
-  Compensation compensation{};             ///< of Riffler's pen, the simulated one too
+  RateSettings rate{};                     ///< for pucks
+  std::string geometry = "woodenhaptics";  ///< for the Polhem protocol: "woodenhaptics" or "polhem-1"
+  Compensation compensation{};             ///< for Riffler's pen, including the simulated one
   DriverSettings driver{};
 };
 
+/// A family of HID devices.
 struct PenFamily {
   const char* kind;
   const char* what;
   bool (*matches)(const HidInfo& info);
-  /// Whether the search for devices may open one. False where other makers' devices have the same numbers and nothing
-  /// in them tells which it is: such a device is opened only by the name of its kind. Pushing a stranger's motors is no
-  /// test.
+  /// Whether a search for devices may open this family. False where devices of other makers share the numbers and
+  /// are indistinguishable: such a device is opened only by its kind. Pushing the motors of an unknown device is
+  /// no acceptable test.
   bool opened_by_search;
   std::unique_ptr<HidModel> (*make)(Transport& transport, const HidInfo& info, const PenOptions& options);
 };
 
+/// All families.
 std::span<const PenFamily> pen_families();
-/// Null if none claims it.
+/// The family that matches a device; null if none does.
 const PenFamily* family_of(const HidInfo& info);
 
+/// A HID device found by a search.
 struct FoundDevice {
   HidInfo info;
-  const PenFamily* family = nullptr;  ///< null: not a device for Riffler
-  bool was_opened = false;            ///< and asked who it is; otherwise only whether it may be opened
+  const PenFamily* family = nullptr;  ///< null: not supported by Riffler
+  bool was_opened = false;            ///< opened and identified; otherwise only permission was checked
   OpenProblem problem = OpenProblem::None;
-  std::string text;        ///< why it does not open, and what to do
-  std::string capability;  ///< of those that opened: what is sensed and pushed
+  std::string text;        ///< why it does not open, and the remedy
+  std::string capability;  ///< what is sensed and pushed; only for opened devices
   std::string about;
 };
 
-/// Every HID device, and exactly why one does not open. Those that no family claims are not touched.
+/// Every HID device, with the exact reason if one does not open. Devices of unknown families are not touched.
 std::vector<FoundDevice> find_devices();
 
-/// `what` is a path or a kind: of a kind, the first that opens; "simulated" is one, too, and is always there. Throws
-/// OpenError; for a kind, of the device that came nearest to opening.
+/// Opens a device. `what`: a path or a kind; a kind opens the first device that can be opened. "simulated" is always
+/// available. Throws OpenError; for a kind, the error of the device that came closest to opening.
 std::unique_ptr<Pen> open_pen(std::string_view what, const PenOptions& options = {});
 
 }  // namespace riffler::pen

@@ -1,4 +1,4 @@
-// From an oriented path to cutter locations that gouge nothing, at the points and between them.
+// From an oriented path to gouge-free cutter locations, at the points and between them.
 #pragma once
 
 #include <optional>
@@ -11,24 +11,25 @@
 
 namespace riffler::plan {
 
+/// Clearance, tolerance and limits of the search.
 struct LocationRule {
-  double clearance = 0;  ///< wanted over part and fixtures, mm
-  /// How much less than `clearance` it may be, mm. Finishing cuts touch the part everywhere: less than this deep counts
-  /// as touching. Points are lifted to within half of it, so that the way between them has the other half.
+  double clearance = 0;  ///< wanted clearance to part and fixtures, mm
+  /// How far the clearance may fall below `clearance`, mm. Finishing cuts touch the part everywhere: this depth counts
+  /// as touching. Points are lifted to within half of it, which leaves the other half for the moves between them.
   double tolerance = 0.01;
   double max_lift = 100;         ///< mm along the axis
-  int max_inserted = 200;        ///< points, between two of the path
-  int max_evaluations = 100000;  ///< between two rows
+  int max_inserted = 200;        ///< points added between two points of the path
+  int max_evaluations = 100000;  ///< clearance evaluations between two rows
 };
 
 /// One row of the result.
 struct LocationRow {
   Pose pose;
-  std::ptrdiff_t point = -1;  ///< of the path; −1: inserted
-  double lift = 0;            ///< mm along the axis from where the path wants the tool, or the motion had it
-  double before = 0;          ///< clearance there, mm
-  double clearance = 0;       ///< clearance now, mm
-  collide::Touch touch = collide::Touch::Cutter;  ///< what it was lifted off, or is nearest
+  std::ptrdiff_t point = -1;                      ///< index of the path's point; −1: inserted
+  double lift = 0;                                ///< mm along the axis from the pose on the path, or on the motion
+  double before = 0;                              ///< clearance before the lift, mm
+  double clearance = 0;                           ///< clearance after the lift, mm
+  collide::Touch touch = collide::Touch::Cutter;  ///< what the tool was lifted off, or the nearest contact
 };
 
 /// A point of the path that has no row.
@@ -37,36 +38,37 @@ struct BlockedPoint {
   std::string reason;
 };
 
-/// A way between two rows that could not be made or shown to be free.
+/// A move between two rows that could not be made or proven free.
 struct UnsafeWay {
   std::size_t row;   ///< from this row to the next
-  double clearance;  ///< the least seen, mm
-  double bound;      ///< it is nowhere less than this, mm
+  double clearance;  ///< smallest clearance found, mm
+  double bound;      ///< lower bound of the clearance, mm
   std::string reason;
 };
 
+/// Rows of cutter locations, and the places where none could be found.
 struct CutterLocations {
-  std::vector<LocationRow> rows;  ///< in the order of the path; of a loop, the first point once more at the end
+  std::vector<LocationRow> rows;  ///< in path order; a closed path repeats its first point at the end
   std::vector<BlockedPoint> blocked;
   std::vector<UnsafeWay> unsafe;
-  double least_clearance = 0;  ///< over all poses that were looked at, mm
-  double bound = 0;            ///< nowhere along the rows is the clearance less, mm
+  double least_clearance = 0;  ///< smallest clearance over all poses evaluated, mm
+  double bound = 0;            ///< lower bound of the clearance along all rows, mm
   std::size_t evaluations = 0;
 
-  /// Every point has a row, and bound ≥ clearance − tolerance.
+  /// Whether every point has a row and bound ≥ clearance − tolerance.
   bool good() const { return blocked.empty() && unsafe.empty(); }
 };
 
-/// Poses by plan/contact_location.hpp from the path's axes, lifted by plan/lift.hpp where they gouge. Between rows the
-/// tip moves on a line and the axis on the great circle (geom/pose.hpp), checked by collide/swept_search.hpp; where
-/// that gouges, the pose that does is lifted and becomes a row between them. Orientations are kept as they are. A point
-/// that cannot be freed has no row, but an entry in `blocked`; nothing is made to fit silently. std::invalid_argument
-/// for a path without axes, or naming a setting; parallel over points, then over ways between them.
+/// Computes poses from the path's axes (plan/contact_location.hpp) and lifts those that gouge along the axis
+/// (plan/lift.hpp). Between rows the tip moves on a line and the axis on a great circle (geom/pose.hpp);
+/// collide/swept_search.hpp checks each move. Where a move gouges, the offending pose is lifted and inserted as a row.
+/// Orientations are never changed. A point that cannot be freed has no row but an entry in `blocked`. Throws
+/// std::invalid_argument for a path without axes, or naming an invalid setting. Parallel over points, then over moves.
 CutterLocations cutter_locations(const PencilPath& path, const collide::Assembly& assembly,
                                  const collide::Collider& collider, const LocationRule& rule,
                                  const Progress& progress = {});
 
-/// The same from `poses` with unit axes, which stand for the points of an open path.
+/// The same for given poses with unit axes, taken as the points of an open path.
 CutterLocations cutter_locations(const std::vector<Pose>& poses, const collide::Assembly& assembly,
                                  const collide::Collider& collider, const LocationRule& rule,
                                  const Progress& progress = {});

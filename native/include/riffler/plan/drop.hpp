@@ -1,4 +1,4 @@
-// The drop cutter: a tool comes down along its axis until it first touches a part.
+// Drop cutter: lowers a tool along its axis until it first touches a part.
 #pragma once
 
 #include <cstddef>
@@ -11,29 +11,32 @@
 
 namespace riffler::plan {
 
-/// Over a mesh's triangles, seen along one axis. Exact to rounding for lines and arcs that bulge; a hollow arc is taken
-/// as cones that fill at most Profile::kConcaveTolerance of it less than the whole (tool/profile.hpp).
-/// Queries may run on several threads.
+/// Drop cutter over a mesh's triangles along one axis. Exact to rounding for line segments and convex arcs; a concave
+/// arc is replaced by cones that lie at most Profile::kConcaveTolerance inside it (tool/profile.hpp). Queries may run
+/// on several threads.
 class DropCutter {
  public:
+  /// Where the tool comes to rest.
   struct Landing {
-    bool touches = false;  ///< nothing lies below or above the tool otherwise
-    double height = 0;     ///< of the tip along the axis, mm
-    Vec3 point{0};         ///< of the part
+    bool touches = false;  ///< false: no part of the mesh lies in line with the tool
+    double height = 0;     ///< height of the tip along the axis, mm
+    Vec3 point{0};         ///< contact point on the part, mm
     tool::Part part = tool::Part::Cutter;
   };
+  /// Operation counts.
   struct Stats {
-    std::size_t boxes = 0, triangles = 0;  ///< looked at
+    std::size_t boxes = 0, triangles = 0;  ///< tested
   };
 
-  /// `axis`: unit, from tip to spindle. std::invalid_argument for an empty or invalid mesh.
+  /// `axis`: unit vector from tip to spindle. Throws std::invalid_argument for an empty or invalid mesh.
   DropCutter(const Mesh& mesh, const Tool& tool, const Vec3& axis = {0, 0, 1});
 
-  /// The tool whose tip is somewhere on the line through `p` along the axis.
+  /// Lowers the tool along the line through `p` (mm) parallel to the axis.
   Landing operator()(const Vec3& p, Stats* stats = nullptr) const;
-  /// All of them, in parallel.
+  /// As above for many points, in parallel.
   std::vector<Landing> operator()(const std::vector<Vec3>& points, const Progress& progress = {}) const;
 
+  /// The axis passed to the constructor.
   const Vec3& axis() const;
 
  private:

@@ -1,4 +1,4 @@
-// Key orientations on a path and what is interpolated between them (4.3.3).
+// Key orientations on a path, and interpolation between them (4.3.3).
 #pragma once
 
 #include <map>
@@ -9,39 +9,41 @@
 
 namespace riffler::plan {
 
+/// How axes are interpolated between keys.
 enum class Interpolation {
-  Linear,  ///< (4.4)–(4.5): straight between the two axes by number of points, made unit
-  Slerp,   ///< the great circle between them, at constant rate by arc length of the path
-  Smooth,  ///< by arc length, with a continuous first derivative: plan/smooth_axes.hpp
+  Linear,  ///< (4.4)–(4.5): linear between the two axes by point index, then normalised
+  Slerp,   ///< along the great circle, at a constant rate per arc length of the path
+  Smooth,  ///< per arc length with a continuous first derivative: plan/smooth_axes.hpp
 };
 
-/// "linear", "slerp", "smooth"; std::invalid_argument naming others.
+/// The rule named "linear", "slerp" or "smooth". Throws std::invalid_argument for other names.
 Interpolation interpolation_named(std::string_view name);
+/// The rule's name; inverse of interpolation_named.
 const char* name_of(Interpolation rule);
 
-/// All axes within `angle` (rad, below π) of the unit vector `about`: how far a machine's rotary axes reach.
+/// The cone of all axes within `angle` (rad, below π) of the unit vector `about`: the range of a machine's rotary axes.
 struct AxisLimit {
   Vec3 about{0, 0, 1};
   double angle = 0;
-  bool project = false;  ///< move axes beyond it onto the cone, along the great circle; otherwise they are an error
+  bool project = false;  ///< true: move axes outside to the cone, along the great circle; false: error
 };
 
-/// `axis`, or the nearest one that the limit allows.
+/// `axis` if the limit allows it, otherwise the nearest axis that it allows.
 Vec3 project(const AxisLimit& limit, const Vec3& axis);
 
-/// Numbers of points, from 0, and unit axes, tip to spindle.
+/// Index of a path point (from 0) → unit axis, tip to spindle.
 using OrientationKeys = std::map<std::size_t, Vec3>;
 
-/// The path with axes at all its points: a key's at its point, to the bit; before the first key and after the last that
-/// key's; on a loop also between the last and the first. The keys stay with the path, so that some can be set again,
-/// and any interpolated axis is adjusted by making it one.
-/// std::invalid_argument naming the point: no key at all, a key outside the path, not finite, not a unit vector;
-/// neighbouring keys that are opposite (within 1e-6 rad: no great circle), an axis beyond `limit` unless it projects.
+/// The path with an axis at every point. A key's axis is used unchanged at its point; before the first and after the
+/// last key the nearest key's axis applies; a closed path also interpolates between last and first key. The keys are
+/// stored with the path, so that single keys can be changed later. Throws std::invalid_argument naming the point: no
+/// keys, a key outside the path, not finite or not a unit vector; neighbouring keys that are opposite within 1e-6 rad
+/// (no unique great circle); an axis beyond `limit` unless the limit projects.
 PencilPath oriented(const PencilPath& path, const OrientationKeys& keys, Interpolation rule,
                     const std::optional<AxisLimit>& limit = {});
 
-/// The path with these axes at its points, which came about elsewhere: from a file, from a search. The keys and the
-/// name of the rule are kept with it, nothing is interpolated. std::invalid_argument as for `oriented`.
+/// The path with given axes at its points, for example from a file or a search. Keys and the name of the rule are
+/// stored with it; nothing is interpolated. Throws std::invalid_argument as `oriented`.
 PencilPath with_axes(const PencilPath& path, std::vector<Vec3> axes, const OrientationKeys& keys = {},
                      std::string interpolation = {});
 

@@ -1,4 +1,4 @@
-// Pencil cuts: the curves along which a ball touches a part at two places at once and enters it nowhere.
+// Pencil paths: the curves along which a ball touches a part at two places at once without entering it.
 #pragma once
 
 #include <array>
@@ -15,60 +15,63 @@
 
 namespace riffler::plan {
 
+/// Options of pencil.
 struct PencilOptions {
-  double tolerance = 0.01;  ///< mm; of the curves, and the gap at a valley's bottom below which it is faceting
-  /// Least angle (rad) between the directions to both contacts; without it that of the gap.
+  double tolerance = 0.01;  ///< mm; of the curves; a valley with a smaller gap under the ball counts as faceting
+  /// Smallest angle (rad) between the directions to the two contacts; default: the angle of a gap of `tolerance`.
   std::optional<double> bitangency_angle = {};
   double minimum_length = 0;  ///< mm; shorter paths are dropped
-  /// mm. Adds what a ball whose radius is larger by that much leaves behind: the valleys of that ball, with the ball
-  /// itself laid into them, where the ball has no valley of its own. So blends of its own radius and larger count.
+  /// mm. Also machine what a ball larger in radius by this amount leaves: where the ball has no valley of its own, the
+  /// valleys of the larger ball are followed with the ball laid into them. Blends of the ball's radius and larger then
+  /// count.
   double overthickness = 0;
-  /// Curves at each valley and side: 1 is the valley alone, each more adds one pass on either side of it.
+  /// Curves per valley: 1 is the valley alone, each further pass adds one curve on either side.
   int passes = 1;
-  std::optional<double> stepover = {};  ///< mm between passes; without it what leaves ridges of the tolerance
+  std::optional<double> stepover = {};  ///< mm between passes; default: scallops of height `tolerance`
 };
 
-/// What was done, and what became of it.
+/// Counts of what the search did and how it ended.
 struct PencilStats {
-  std::size_t balls = 0;     ///< tried against the part, tangent to it
-  std::size_t entered = 0;   ///< of these: there the ball cannot reach
-  std::size_t starts = 0;    ///< of these: pressed into a valley
-  std::size_t stuck = 0;     ///< starts from which no room was found for the ball
-  std::size_t faceting = 0;  ///< starts where the gap is within the tolerance, or the angle too small
+  std::size_t balls = 0;     ///< tangent balls tested against the part
+  std::size_t entered = 0;   ///< of these: the ball enters the part, so the place is out of reach
+  std::size_t starts = 0;    ///< of these: moved into a valley as a start
+  std::size_t stuck = 0;     ///< starts without a valid place for the ball
+  std::size_t faceting = 0;  ///< starts with a gap within the tolerance or too small an angle
   std::size_t edges = 0;     ///< starts where the ball rests on sharp or open edges
-  std::size_t traces = 0;    ///< valleys followed, those found twice among them
-  std::size_t steps = 0;     ///< balls set while following
-  std::size_t cut = 0;       ///< ends of paths that were cut off because they would not end
+  std::size_t traces = 0;    ///< valleys traced, including duplicates
+  std::size_t steps = 0;     ///< ball positions computed while tracing
+  std::size_t cut = 0;       ///< path ends cut off at the step limit
 };
 
+/// The paths found, and the area that the ball cannot reach.
 struct PencilResult {
   std::vector<PencilPath> paths;
   /// How each path begins and ends: "loop", "corner", "part", "faded" or "cut"; "joined" where another path continues;
-  /// "pass" for passes beside a valley, which follow it.
+  /// "pass" for the passes at the sides of a valley.
   std::vector<std::array<const char*, 2>> ends;
-  double rest_area = 0;            ///< mm² that the ball cannot reach
-  std::vector<double> rest_areas;  ///< of each triangle
-  /// The same for the ball that is larger by the overthickness: what is there to be machined. Without one they are
-  /// those above.
+  double rest_area = 0;            ///< area that the ball cannot reach, mm²
+  std::vector<double> rest_areas;  ///< mm² per triangle
+  /// The same for the ball enlarged by the overthickness: the area to be machined. Without overthickness equal to the
+  /// two above.
   double reference_area = 0;
   std::vector<double> reference_areas;
   PencilStats stats;
-  std::string reason;  ///< why there are no paths; empty where there are some
+  std::string reason;  ///< why there are no paths; empty if there are some
 };
 
-/// The angle (rad) between the directions to both contacts at which the ball's gap to the bottom of a valley of two
-/// planes is `gap`: R (1 / cos(angle / 2) - 1).
+/// The angle (rad) between the directions to the two contacts at which a ball of `radius` (mm) leaves `gap` (mm) to the
+/// bottom of a valley between two planes: 2 acos(R / (R + gap)), the inverse of R (1 / cos(angle / 2) − 1).
 double bitangency_angle_of_gap(double radius, double gap);
 
-/// Radius (mm) of the ball at the tool's tip, which is what rolls. std::invalid_argument naming the argument `name` and
-/// the cutters that have one, for a flat end, a bull nose and whatever else has none: such a cutter touches a valley's
-/// two sides elsewhere than a ball of its diameter does.
+/// Radius (mm) of the ball at the tool's tip: the ball that rolls. Throws std::invalid_argument naming the argument
+/// `name` and the cutters that qualify, for a flat end, a bull nose or any other tip: such a cutter touches the sides
+/// of a valley at other places than a ball of its diameter.
 double tip_ball_radius(const Tool& tool, std::string_view name);
 
-/// All valleys of `part` for a ball of `radius` (mm). Paths run to the part's end or to three-contact points, each
-/// valley once. With an overthickness, balls between the two radii are tried as well where the larger one leaves
-/// blends, so that paths in a blend run on towards its corners. std::invalid_argument for an empty or invalid mesh and
-/// for sizes that are not positive and finite.
+/// All valleys of `part` for a ball of `radius` (mm). Paths end at the part's border or at three-contact points, each
+/// valley once. With an overthickness, balls of radii between the two are tried as well where the larger ball leaves
+/// blends, so that paths in a blend extend towards its corners. Throws std::invalid_argument for an empty or invalid
+/// mesh and for sizes that are not positive and finite.
 PencilResult pencil(const Mesh& part, double radius, const PencilOptions& options = {}, const Progress& progress = {});
 
 }  // namespace riffler::plan

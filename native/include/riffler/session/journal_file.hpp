@@ -1,12 +1,12 @@
-// The .rjournal file: a header and records, each whole or not there.
+// The .rjournal file: a header and records, each of them complete or absent.
 //
 //   header   8 bytes "RIFFLERJ", u32 version (1), u32 CRC-32 of the 12 bytes before
 //   record   4 bytes "RREC", u32 kind, u32 size of the payload, u32 CRC-32 of the 12 bytes before,
 //            payload, u32 CRC-32 of the payload
 //
-// Little endian. A record is written with one call and never changed, so a crash can cut the last one only. The version
-// is that of header and records; what a record may hold grows by kinds and columns, and a reader names those that it
-// does not know.
+// Little endian. A record is written with one call and never changed, so a crash can truncate only the last one. The
+// version covers header and record layout; new content comes as new record kinds and columns, and a reader reports
+// those that it does not know.
 #pragma once
 
 #include <cstdint>
@@ -21,32 +21,36 @@
 
 namespace riffler::session {
 
-/// `name` stands in messages. FormatError naming the byte: not a journal, another version, a damaged record that others
-/// follow, a record whose content is wrong. What follows the last whole record otherwise is a tail that a crash has
-/// cut: Journal::cut_at says where.
+/// Reads a journal from bytes. `name` identifies the file in messages. Throws FormatError naming the byte: not a
+/// journal, another version, a damaged record followed by others, a record with invalid content. Anything else after
+/// the last complete record is the tail left by a crash: Journal::cut_at gives its offset.
 Journal parse_journal(std::span<const std::uint8_t> bytes, const std::string& name, const Progress& progress = {});
+/// As parse_journal, for a file. Throws FormatError if it cannot be read.
 Journal read_journal(const std::filesystem::path& path, const Progress& progress = {});
 
+/// The bytes of a journal file.
 std::vector<std::uint8_t> to_bytes(const Journal& journal);
-/// Written beside and renamed.
+/// Writes the file atomically, under a temporary name that is then renamed.
 void write_journal(const Journal& journal, const std::filesystem::path& path);
 
-/// Appends to a journal on disk, each record handed to the system before the call returns: a crash of the program loses
-/// none, and a long stroke written in pieces loses at most the last. sync() is for a crash of the machine.
+/// Appends to a journal on disk. Each record is passed to the system before the call returns: a crash of the program
+/// loses none, and of a long stroke written in pieces at most the last piece. Use sync() to survive a crash of the
+/// machine.
 class JournalWriter {
  public:
-  /// What the writer has in memory: all that is in the file, or what its checks need, which does not grow with rows and
-  /// strokes.
+  /// What the writer keeps in memory: the complete journal, or only the state of its checks, which does not grow with
+  /// rows and strokes.
   enum class Keep { Everything, Rules };
 
-  /// Goes on with a journal that is there, after cutting a damaged tail off, or begins a new one.
-  /// FormatError as read_journal; std::runtime_error where the file cannot be written.
+  /// Continues an existing journal, after removing a damaged tail, or creates a new one. Throws FormatError as
+  /// read_journal; std::runtime_error if the file cannot be written.
   explicit JournalWriter(const std::filesystem::path& path, Keep keep = Keep::Everything);
   JournalWriter(const JournalWriter&) = delete;
   JournalWriter& operator=(const JournalWriter&) = delete;
   ~JournalWriter();
 
-  /// As the functions of Journal: what it refuses is not written; what could not be written is not known here either.
+  /// As the functions of Journal: what it refuses is not written, and what could not be written is not added here
+  /// either.
   void set_stock(const JournalStock& stock);
   void add_tool(int number, const std::string& json);
   void add_note(const std::string& key, const std::string& value);
@@ -55,11 +59,11 @@ class JournalWriter {
   void undo(std::size_t n = 1);
   void redo(std::size_t n = 1);
 
-  /// Another thread may go on writing meanwhile.
+  /// Flushes the file to disk. Another thread may write meanwhile.
   void sync();
-  /// Ends writing; a call after it throws std::runtime_error.
+  /// Closes the file; later calls throw std::runtime_error.
   void close();
-  /// Everything in the file; std::runtime_error where only the rules are kept.
+  /// The journal as in the file. Throws std::runtime_error with Keep::Rules.
   const Journal& journal() const;
   const JournalRules& rules() const { return rules_; }
 
@@ -73,8 +77,8 @@ class JournalWriter {
   JournalRules rules_;
   std::optional<Journal> journal_;
   int fd_ = -1;
-  std::uint64_t size_ = 0;  // bytes of whole records
-  bool torn_ = false;       // a piece of a record may follow them
+  std::uint64_t size_ = 0;  // bytes of complete records
+  bool torn_ = false;       // a partial record may follow them
 };
 
 }  // namespace riffler::session

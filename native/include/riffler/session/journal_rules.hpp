@@ -1,4 +1,4 @@
-// What a journal is made of, and what may follow what in it.
+// The elements of a journal, and the rules for their order.
 #pragma once
 
 #include <cstddef>
@@ -15,73 +15,75 @@
 
 namespace riffler::session {
 
-/// The frame of the stock's volume, and the file of its snapshot where it is not the full block.
+/// Frame of the stock's volume, and the file of its snapshot unless it is a full block.
 struct JournalStock {
   Box3 box;
   double pitch = 0;
   std::string directions = "z";  ///< "z" or "xyz"
-  std::string snapshot;          ///< file name beside the journal (.rvol), or empty: a block
-  std::string mask{};            ///< file name beside the journal (.rvol) of what is protected, or empty: nothing is
+  std::string snapshot;          ///< file name (.rvol) in the journal's folder; empty: a full block
+  std::string mask{};            ///< file name (.rvol) of the protected region in the journal's folder; empty: none
 };
 
-/// What a stroke does where the tool sweeps: to the stock, but for what is protected, or to what is protected. Soften:
-/// a dab at the tip of each row, as wide as the tool (dexel/smooth/smooth_dabs.hpp). Beside: removes as a session does
-/// beside what is protected (session/masked_stock.hpp), and Build puts on as a session does; those of one mode that
-/// follow each other have one beginning, and no seams between them.
+/// Effect of the swept tool: on the stock outside the protected region, or on that region itself.
+/// Soften: one smoothing dab at the tip of each row, as wide as the tool (dexel/smooth/smooth_dabs.hpp).
+/// Beside: removes as a session with a protected region does (session/masked_stock.hpp). Build: adds as a session does.
+/// Consecutive strokes of one of these modes share one start, so they leave no seams.
 enum class StrokeMode : std::uint32_t { Remove = 0, Add = 1, Mask = 2, Unmask = 3, Soften = 4, Beside = 5, Build = 6 };
 inline constexpr std::uint32_t kStrokeModes = 7;
 
-/// Rows of a stroke. A column beside the poses is as long as they are, or empty: not recorded.
+/// Rows of a stroke. Each column is as long as `poses`, or empty if it was not recorded.
 struct JournalRows {
   std::span<const Pose> poses;
-  std::span<const double> times{};    ///< s, never falling
-  std::span<const Wrench> forces{};   ///< N, N·mm that the device was told to give the hand: about the grip
-  std::span<const double> removed{};  ///< mm³ by the move that ends at the row; or put on
+  std::span<const double> times{};    ///< s, non-decreasing
+  std::span<const Wrench> forces{};   ///< N, N·mm requested from the device, on the hand, about the grip
+  std::span<const double> removed{};  ///< mm³ removed (or added) by the move that ends at the row
 };
 
-/// Whether a tool that stood at `a` stands there still at `b`: no move.
+/// Whether a tool at `a` and a tool at `b` have exactly the same pose: no move.
 inline bool stands(const Pose& a, const Pose& b) {
   return a.tip == b.tip && a.axis == b.axis;
 }
 
-/// One stroke: what was carved in one go with one tool (replay.hpp). Of one that removes, where nothing is protected,
-/// any division into carves leaves the same bytes; of others but a session's (Beside, Build) each carve is a stroke.
+/// One stroke: a continuous cut with one tool (replay.hpp). A removing stroke without a protected region leaves the
+/// same bytes however it is divided into carves; for other strokes, except those of a session (Beside, Build), each
+/// carve is a stroke.
 struct JournalStroke {
   int tool = 0;
-  double tolerance = 0.01;  ///< mm, as carve() was given it
+  double tolerance = 0.01;  ///< mm, the tolerance given to carve()
   std::string name{};
   std::vector<Pose> poses{};    ///< at least one
-  std::vector<double> times{};  ///< this and the following as JournalRows
+  std::vector<double> times{};  ///< this and the following columns as in JournalRows
   std::vector<Wrench> forces{};
   std::vector<double> removed{};
   StrokeMode mode = StrokeMode::Remove;
-  double strength = 0.5;  ///< 0 … 1, of one that softens
+  double strength = 0.5;  ///< 0 … 1, for Soften
 
   JournalRows rows() const { return {poses, times, forces, removed}; }
+  /// Appends rows with the same columns.
   void append(const JournalRows& rows);
 };
 
-/// What of a journal its checks need: as small for a long one as for a short one. Each function throws
-/// std::invalid_argument saying what is wrong and changes nothing then: a second stock, a number with another tool, a
-/// stroke with a tool that is not there, rows with other columns than the stroke's, more rows for a stroke that has
-/// ended.
+/// The part of a journal's state that its checks need; its size does not grow with the journal. Each function throws
+/// std::invalid_argument with the reason, and then changes nothing: a second stock, a tool number used for another
+/// tool, a stroke with an unknown tool, rows with other columns than the stroke's, rows for a stroke that has ended.
 class JournalRules {
  public:
   void set_stock(const JournalStock& stock);
   void add_tool(int number, const std::string& json);
   void add_stroke(const JournalStroke& stroke);
   void extend_stroke(const JournalRows& rows);
-  /// n from 1: of those that count, and of those taken back since the last stroke was added.
+  /// `n`: at least 1 and at most the number of strokes that count (undo) or of those undone since the last stroke was
+  /// added (redo).
   void undo(std::size_t n);
   void redo(std::size_t n);
 
   const std::optional<JournalStock>& stock() const { return stock_; }
   const std::map<int, std::string>& tools() const { return tools_; }
-  std::size_t counting() const { return counting_; }  ///< strokes that were not taken back
-  std::size_t taken() const { return taken_; }        ///< strokes that can be brought back
+  std::size_t counting() const { return counting_; }  ///< strokes that are not undone
+  std::size_t taken() const { return taken_; }        ///< strokes that can be redone
 
  private:
-  struct Last {  // row of the stroke that may be extended
+  struct Last {  // last row of the stroke that may be extended
     double time;
     bool timed, forces, removed;
   };

@@ -1,4 +1,4 @@
-// The strokes of a session into a journal on disk.
+// Writes the strokes of a session to a journal on disk.
 #pragma once
 
 #include <memory>
@@ -10,9 +10,11 @@
 
 namespace riffler::session {
 
+/// A StrokeSink that writes to a JournalWriter through a ring buffer and a thread of its own.
 class JournalSink final : public StrokeSink {
  public:
-  /// Of strokes with that tool, which is in the journal that `writer` writes. Its keeper runs from now on.
+  /// Records strokes made with tool number `tool`, which must be in the journal of `writer`, carved with `tolerance`
+  /// (mm). Starts the writing thread.
   JournalSink(std::unique_ptr<JournalWriter> writer, int tool, double tolerance,
               const JournalStreamOptions& options = {});
   ~JournalSink() override;
@@ -24,12 +26,14 @@ class JournalSink final : public StrokeSink {
   void undo(std::size_t strokes) noexcept override;
   void redo(std::size_t strokes) noexcept override;
 
-  /// Nobody calls the functions above any more: everything is on the disk, and the file is closed. False where the disk
-  /// refuses some of it: problem() says why.
+  /// Call it when none of the functions above is called any more: writes everything to disk and closes the file.
+  /// Returns false if the disk refuses some of it; see problem().
   bool close();
-  /// Any thread: why rows wait, or were refused; empty where all is well.
+  /// Why rows wait or were refused; empty if all is well. Any thread.
   std::string problem() const;
+  /// Number of rows not written yet.
   std::size_t waiting() const noexcept;
+  /// Waits up to `seconds` for all rows to be written; whether they are.
   bool written(double seconds) const;
 
  private:

@@ -1,4 +1,4 @@
-// What a session left of its stock, from its journal.
+// Rebuilds the stock of a session from its journal.
 #pragma once
 
 #include <filesystem>
@@ -14,25 +14,26 @@
 
 namespace riffler::session {
 
-/// The path that a stroke's poses mean to `carve`. A row that stands where the row before stood is no move: the tool
-/// has cut there before. Only a stroke that never moves, of two rows or more, is one move: the tool cuts where it
-/// stands. One row cuts nothing, as one pose does in `carve`.
+/// The poses to pass to `carve` for a stroke. A row with the same pose as the row before is no move, since the tool has
+/// already cut there. Exception: a stroke of two or more rows that never moves becomes one move, and the tool cuts
+/// where it stands. A single row cuts nothing, as a single pose does in `carve`.
 std::vector<Pose> moves_of(const JournalStroke& stroke);
 
-/// What the strokes have left.
+/// The result of all strokes.
 struct Replayed {
   Volume volume;
-  std::optional<Volume> mask;  ///< what is protected; nothing as long as no stroke has asked for it
+  std::optional<Volume> mask;  ///< protected region; no value until a stroke protects something
 };
 
-/// The stock and its mask after the strokes that count, bit for bit as their moves left them one by one (MoveCarver,
-/// carve of one stroke). The stock is a block, or its snapshot in `folder`, where the mask's is, too. Throws
-/// std::invalid_argument naming the stroke: no stock, a tool that is not in `tools`, poses that make no move; a
-/// snapshot that is no plain file name, or of another frame. FormatError as load(); Cancelled.
+/// Stock and protected region after the strokes that count, bit-identical to carving their moves one by one
+/// (MoveCarver, or `carve` of one stroke). The stock is a block or its snapshot in `folder`, which also holds the
+/// snapshot of the protected region. Throws std::invalid_argument naming the stroke: no stock, a tool missing in
+/// `tools`, poses that make no move; a snapshot that is no plain file name or has another frame. FormatError as load();
+/// Cancelled.
 Replayed replay_all(const Journal& journal, const std::map<int, Tool>& tools, const std::filesystem::path& folder = {},
                     const Progress& progress = {});
 
-/// The stock alone.
+/// As replay_all, for the stock alone.
 Volume replay(const Journal& journal, const std::map<int, Tool>& tools, const std::filesystem::path& folder = {},
               const Progress& progress = {});
 

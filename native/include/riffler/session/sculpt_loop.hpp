@@ -1,5 +1,5 @@
-// What happens in a tick of the pen while somebody sculpts: checks, the account, the tool, the force, and the word of
-// it to those who show and record it.
+// One tick of sculpting: safety checks, energy account, tool motion and force, and the hand-over to the threads that
+// display and record.
 #pragma once
 
 #include <atomic>
@@ -22,8 +22,9 @@
 
 namespace riffler::session {
 
+/// Settings of a sculpting loop, by component.
 struct SculptLoopSettings {
-  haptics::SculptSettings sculpt;  ///< of one part: what is recorded is a pose for each tick
+  haptics::SculptSettings sculpt;  ///< must have one part, since one pose is recorded per tick
   sweep::MoveCarver::Options carving;
   haptics::LimitSettings limits;
   haptics::PassivitySettings passivity;
@@ -31,73 +32,73 @@ struct SculptLoopSettings {
   haptics::WrenchExtrapolatorSettings wrench_extrapolator;
   haptics::WorkspaceSettings workspace;
 
-  /// std::invalid_argument naming the field.
+  /// Throws std::invalid_argument naming the field.
   void validate() const;
 };
 
-/// One tick, as it was. Trivially copyable.
+/// Record of one tick. Trivially copyable.
 struct SculptTick {
-  double time = 0;     ///< s since the loop began
-  Pose grip, tool;     ///< at its end; the grip in the device's frame
-  Pose from;           ///< the tool at its begin: not where the last one left it where it was placed anew
-  Wrench wrench;       ///< on the hand, about the grip's point, device's frame: what the device was told
-  Wrench applied;      ///< what it had, as far as it says so; otherwise what it was told a tick before
-  Wrench on_tool;      ///< of the material, about the tip, part's frame: what the tool feels; nothing where it is air
-  double removed = 0;  ///< mm³; of a session that puts on, what it put on
-  double depth = 0;    ///< mm that the tool is at most in what it must not enter
-  double energy = 0;   ///< N·mm: of the account
-  double dt = 0;       ///< s since the last
-  double seconds = 0;  ///< of processor time
+  double time = 0;     ///< s since the start of the loop
+  Pose grip, tool;     ///< at the end of the tick; the grip in the device frame
+  Pose from;           ///< tool at the start of the tick; differs from the last tick's `tool` after a new placement
+  Wrench wrench;       ///< on the hand, about the grip's point, device frame: as sent to the device
+  Wrench applied;      ///< as applied, if the device reports it; otherwise as sent one tick before
+  Wrench on_tool;      ///< of the material, about the tip, part frame; zero in air
+  double removed = 0;  ///< mm³ removed; added in a session that adds
+  double depth = 0;    ///< mm: upper bound of the tool's depth in obstacles
+  double energy = 0;   ///< N·mm: balance of the energy account
+  double dt = 0;       ///< s since the last tick
+  double seconds = 0;  ///< s of processor time
   haptics::ForceState state = haptics::ForceState::Off;
   haptics::Cause cause = haptics::Cause::None;
   bool cutting = false;           ///< in a stroke
-  bool missed = false;            ///< no step was made, and the force was held over
-  const char* problem = nullptr;  ///< why nothing was cut though the hand wanted to, or no step was made
+  bool missed = false;            ///< no step was made; the force was extrapolated
+  const char* problem = nullptr;  ///< why nothing was cut despite the request, or why no step was made
 };
 
-/// The tool goes where the hand goes, stays out of the obstacles, and cuts while the dead-man switch is held and every
-/// check has passed: from the first move that takes something to the end of that is a stroke. What the hand has to be
-/// given is computed in each tick from the volume. Where a step could not be made, the force is held over
-/// (WrenchExtrapolator); a step that takes longer than its tick leaves the device with what it had, and the next tick
-/// turns from there at a limited rate.
+/// The tool follows the hand, stays out of the obstacles, and cuts while the dead-man switch is held and every check
+/// has passed. A stroke lasts from the first move that removes something to the end of that condition. The force is
+/// computed in each tick from the volume. If a step cannot be made, WrenchExtrapolator continues the force. If a step
+/// takes longer than its tick, the device keeps its last wrench, and the next tick turns from there at a limited rate.
 class SculptLoop final : public pen::PenStep {
  public:
   using Place = TileExchange::Place;
-  static constexpr std::size_t kTicks = 4096;  ///< that are held for whoever shows them
+  static constexpr std::size_t kTicks = 4096;  ///< capacity of the queue of ticks for the display
 
-  /// Validates. `obstacles` and `sink` may be null, and must outlive this. The tool stands at `start` when the hand's
-  /// pose is first known, and where it is when that is known again; without a start, where the hand is: then the
-  /// device's frame is the part's. std::invalid_argument as MoveCarver.
+  /// Validates the settings. `obstacles` and `sink` may be null, and must outlive this object. `start`: pose of the
+  /// tool when the hand's pose is first known; when the hand's pose returns after a loss, the tool continues where it
+  /// is. Without a start the tool stands at the hand, and the device frame is the part frame. Throws
+  /// std::invalid_argument as MoveCarver.
   SculptLoop(const SculptLoopSettings& settings, const Volume& stock, const Tool& tool,
              const collide::Collider* obstacles, const pen::DeviceCapability& device, const std::optional<Pose>& start,
              StrokeSink* sink = nullptr);
   ~SculptLoop() override;
 
-  /// By the thread of the device. Allocates nothing once it is warm, and waits for nobody.
+  /// By the thread of the device. After warm-up it neither allocates nor waits.
   haptics::SafeWrench step(const pen::PenSample& sample, double now, double dt) noexcept override;
 
-  // By the thread that shows. None of these waits for longer than a step takes.
+  // By the displaying thread. None of these waits longer than one step takes.
 
-  /// What was cut into `shown`, a volume of the same frame that nobody else has changed: all of it where the loop is
-  /// not stepped within `patience` s, otherwise what there was after a step that began later than this call. The
-  /// tiles' places at the end of `places`.
+  /// Copies what was cut into `shown`, a volume of the same frame that nothing else changes. If the loop makes no step
+  /// within `patience` (s), copies everything cut so far; otherwise the state after a step that began later than this
+  /// call. Appends the places of the changed tiles to `places`.
   TileExchange::Mark show(Volume& shown, std::vector<Place>& places, double patience = 3e-3);
-  /// The next tick that was not taken yet; false where there is none.
+  /// The next tick not taken yet; false if there is none.
   bool take(SculptTick& tick) noexcept { return ticks_.take(tick); }
-  /// Ticks that nobody had room for.
+  /// Number of ticks lost because the queue was full.
   std::uint64_t dropped_ticks() const noexcept { return dropped_ticks_.load(); }
-  /// The volume is another one of the same frame from now on, and so many strokes were taken back (less than zero) or
-  /// brought back. False during a stroke, and then nothing is changed.
+  /// Replaces the volume by another of the same frame. `strokes`: number of strokes undone (negative) or redone
+  /// (positive) by that. During a stroke returns false and changes nothing.
   bool replace(const Volume& volume, std::int64_t strokes);
-  /// The device's frame, scale and switches. std::invalid_argument; then nothing is changed.
+  /// Sets frame, scale and switches of the device. Throws std::invalid_argument and then changes nothing.
   void set_workspace(const haptics::WorkspaceSettings& settings);
 
   // By any thread.
 
-  /// Clears a trip with the next tick.
+  /// Clears a trip in the next tick.
   void reset() noexcept { reset_.store(true); }
   const haptics::TripLog& trips() const noexcept { return safety_.log(); }
-  /// Nobody steps any more, and the sink has been told everything. Not while the loop is stepped.
+  /// Ends the last stroke and informs the sink. Call it after the last step.
   void finish() noexcept;
 
  private:
@@ -115,21 +116,21 @@ class SculptLoop final : public pen::PenStep {
   pen::DeviceCapability device_;
   StrokeSink* sink_;
 
-  // The device's thread's.
+  // Used by the device's thread only.
   haptics::Safety safety_;
   haptics::Passivity passivity_;
   haptics::WrenchExtrapolator wrench_extrapolator_;
-  Wrench slewed_, held_;  // before the controller, and what was released
+  Wrench slewed_, held_;  // wrench before the passivity controller, and wrench released
   Pose last_grip_;
   Pose last_tool_;
-  double time_ = 0, owed_ = 0;  // s; the second since the last step that was made
+  double time_ = 0, owed_ = 0;  // s; the second: time since the last completed step
   bool has_grip_ = false, placed_ = false, absolute_;
 
-  // Whoever's who holds the lock; the device's thread never waits for it.
+  // Protected by the mutex; the device's thread only tries to lock it.
   std::mutex mutex_;
   std::unique_ptr<Scene> scene_;
   std::uint64_t strokes_ = 0;
-  std::int64_t brought_back_ = 0;  // since the sink was told
+  std::int64_t brought_back_ = 0;  // not reported to the sink yet
   bool in_stroke_ = false;
 
   TileExchange exchange_;

@@ -1,4 +1,4 @@
-// Who wants to know every move of every stroke, in the thread that makes them.
+// Observer of strokes, called in the sculpting thread for every move.
 #pragma once
 
 #include <cstddef>
@@ -8,18 +8,20 @@
 
 namespace riffler::session {
 
-/// Functions are called in the thread of the device: none may wait or allocate.
+/// The device's thread calls these functions: none may wait or allocate.
 class StrokeSink {
  public:
   virtual ~StrokeSink() = default;
-  /// Whether a stroke may begin or go on: without room for the next row nothing is cut.
+  /// Whether a stroke may begin or continue. Nothing is cut without room for the next row.
   virtual bool room() noexcept = 0;
-  /// s since the session began; the tool stands here.
+  /// A stroke begins. `time`: s since the start of the session; `tool`: its first pose.
   virtual void begin(double time, const Pose& tool) noexcept = 0;
-  /// It has gone here, taken so much (mm³), and the hand was told to feel this (device's frame, about the grip).
+  /// The tool moved to `tool` and removed `removed` mm³; `wrench` was sent to the device (device frame, about the
+  /// grip).
   virtual void row(double time, const Pose& tool, const Wrench& wrench, double removed) noexcept = 0;
+  /// The stroke ends.
   virtual void end() noexcept = 0;
-  /// Between strokes: the last `strokes` that count do so no longer (undo), or again (redo).
+  /// Between strokes: the last `strokes` strokes are undone, or redone.
   virtual void undo(std::size_t strokes) noexcept = 0;
   virtual void redo(std::size_t strokes) noexcept = 0;
 };

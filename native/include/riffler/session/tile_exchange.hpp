@@ -1,4 +1,4 @@
-// From the volume that is being cut to the one that is shown: the tiles that have changed, by their pointers.
+// Passes changed tiles, by pointer, from the volume being cut to the one being displayed.
 #pragma once
 
 #include <atomic>
@@ -11,42 +11,44 @@
 
 namespace riffler::session {
 
-/// Two threads: one cuts, one shows. Neither waits or sees half of a change: what is handed over is the volume between
-/// two cuts, and what it costs is what has changed since the last time. The cutting one allocates nothing.
+/// For two threads: one cuts, one displays. Neither waits or sees a partial change: each hand-over is the state between
+/// two cuts, and its cost is that of the changes since the last. The cutting side allocates nothing.
 class TileExchange {
  public:
   using Place = sweep::MoveCarver::Place;
-  /// Of the cutter at the moment of handing over; given on as it is.
+  /// State of the cutting side at the hand-over, passed through unchanged.
   struct Mark {
-    std::uint64_t strokes = 0;  ///< that were begun so far
+    std::uint64_t strokes = 0;  ///< strokes begun so far
     bool in_stroke = false;
   };
 
-  /// For volumes of this frame.
+  /// For volumes of the frame of `volume`.
   explicit TileExchange(const Volume& volume);
 
-  // By the thread that cuts.
+  // By the cutting thread.
 
+  /// Marks tiles as changed.
   void changed(std::span<const Place> places) noexcept;
-  /// After each step: hands over what has changed, where that was asked for.
+  /// After each step: hands over the changes if the other thread has requested them.
   void serve(const Volume& cut, const Mark& mark) noexcept;
 
-  // By the thread that shows.
+  // By the displaying thread.
 
-  /// Asks for a hand-over with the next step.
+  /// Requests a hand-over with the next step.
   void ask() noexcept;
-  /// What was handed over into `shown`, and its places at the end of `places`. False where nothing has come yet.
+  /// Applies the handed-over tiles to `shown` and appends their places to `places`. False if nothing was handed over
+  /// yet.
   bool take(Volume& shown, std::vector<Place>& places, Mark& mark);
 
  private:
   enum class State : unsigned char { Idle, Asked, Full };
 
   std::atomic<State> state_{State::Idle};
-  // The cutter's.
-  std::vector<std::size_t> first_;  // number of each grid's first tile among all
+  // Used by the cutting thread.
+  std::vector<std::size_t> first_;  // index of each grid's first tile in the list of all tiles
   std::vector<bool> dirty_;
   std::vector<Place> list_;
-  // In Idle and Full the shower's, in Asked the cutter's.
+  // Owned by the displaying thread in Idle and Full, by the cutting thread in Asked.
   struct Handed {
     Place place;
     std::shared_ptr<const dexel::Tile> tile;

@@ -1,4 +1,4 @@
-// What a verification is given.
+// Arguments of a verification.
 #pragma once
 
 #include <map>
@@ -15,30 +15,31 @@
 
 namespace riffler::verify {
 
-/// What a program is to run on: a name of machines(), or the path of a description, and its options.
+/// The machine that runs a program: a name from machines() or the path of a description, and its options.
 struct MachineChoice {
   std::string name;
   nc::Options options;
-  /// From the verified coordinates to those that the machine's program is in: p → turn p + shift.
+  /// From the verified coordinates to those of the machine's program: p → turn p + shift (mm).
   Mat3 turn{1};
   Vec3 shift{0};
 };
 
+/// Tolerances and the optional machine of a verification.
 struct VerifyOptions {
-  double tolerance = 0.01;               ///< mm: as CarveOptions::tolerance; contact less deep than it is none
-  double gouge_tolerance = 0.05;         ///< mm under the part's surface
-  std::optional<double> rest_tolerance;  ///< mm over the part's surface; without it rest material is no fault
-  double rapid_feed = 10'000;            ///< mm/min, for the time that rapids take
-  /// On which it is to run; without it limits are not checked. Chunks of a program are checked one by one.
+  double tolerance = 0.01;               ///< mm: as CarveOptions::tolerance; contact less deep than this is ignored
+  double gouge_tolerance = 0.05;         ///< mm below the part's surface
+  std::optional<double> rest_tolerance;  ///< mm above the part's surface; by default rest material is no fault
+  double rapid_feed = 10'000;            ///< mm/min, for the duration of rapids
+  /// The machine for limit checks; without one, limits are not checked. Each chunk of a program is checked by itself.
   std::optional<MachineChoice> machine = {};
 };
 
-/// What a verification is given but for the program.
+/// Everything a verification needs except the program.
 struct VerifyArguments {
   Volume stock;
   std::shared_ptr<const Mesh> part = {};  ///< may be null
   std::vector<Volume> fixtures = {};
-  std::map<int, Tool> tools = {};  ///< they come before a program's own
+  std::map<int, Tool> tools = {};  ///< take precedence over the program's own
   VerifyOptions options = {};
 };
 

@@ -1,4 +1,4 @@
-// Verification of a program, and again while it is edited.
+// Verification of a program, repeated incrementally while it is edited.
 #pragma once
 
 #include <memory>
@@ -10,8 +10,8 @@
 
 namespace riffler::verify {
 
-/// Verifies a program. Of the next one that is like it, only what differs is simulated. The report is that of a fresh
-/// run, bit for bit.
+/// Verifies programs. For a program similar to the last one, only the differences are simulated; the report is
+/// bit-identical to that of a fresh run.
 class Verification {
  public:
   /// Throws std::invalid_argument naming the argument.
@@ -20,7 +20,8 @@ class Verification {
   Verification(Verification&&) noexcept;
   Verification& operator=(Verification&&) noexcept;
 
-  /// Throws as SlabRun::feed. After that, or Cancelled, this is as it was before the call.
+  /// Verifies `program`. Errors as SlabRun::feed. After an exception, including Cancelled, this object is as it was
+  /// before the call.
   VerifyReport run(const nc::Program& program, const Progress& progress = {});
 
  private:

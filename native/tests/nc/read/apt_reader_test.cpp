@@ -128,8 +128,8 @@ TEST(AptReader, RefusesWhatItDoesNotUnderstand) {
       {"SPINDL/5,SFM", "SPINDL: unknown word SFM [SPINDL/5,SFM]"},
       {"UNITS/FEET", "UNITS: expected MM or INCHES, not FEET [UNITS/FEET]"},
       {"CYCLE/DRILL,5",
-       "CYCLE with numbers alone: what they mean is known to one post processor only; have the CAM system write FEDTO, "
-       "RAPTO and RTRCTO, or the moves [CYCLE/DRILL,5]"},
+       "CYCLE with numbers alone: only one post processor knows their meaning; have the CAM system write FEDTO, RAPTO "
+       "and RTRCTO, or the moves [CYCLE/DRILL,5]"},
       {"CYCLE/MILL,FEDTO,5",
        "CYCLE/MILL is not read: DRILL, FACE, DEEP, TAP, REAM and BORE are; have the CAM system write its moves "
        "[CYCLE/MILL,FEDTO,5]"},

@@ -63,8 +63,8 @@ TEST(NcControlFlow, CallsSubroutinesWithArgumentsAndValues) {
 TEST(NcControlFlow, CallsSubprogramsAfterTheEnd) {
   EXPECT_EQ(xs("G91 M98 P12 L3\nX10\nM30\nO12\nX1\nM99\n"), (Xs{1, 2, 3, 13}));
   EXPECT_EQ(nc_error("M98 P12"),
-            "line 1: no subroutine O12: neither in the program, nor as 12.ngc beside it or in the "
-            "folder of option subroutines [M98 P12]");
+            "line 1: no subroutine O12: neither in the program, nor as 12.ngc in its folder or that of option "
+            "subroutines [M98 P12]");
 }
 
 TEST(NcControlFlow, FindsSubroutinesInFilesBesideTheProgramAndInTheirFolder) {
@@ -94,7 +94,7 @@ TEST(NcControlFlow, RefusesWhatDoesNotEnd) {
   const std::pair<const char*, const char*> cases[] = {
       {"o1 while [1]\no1 endwhile",
        "line 2: an endless loop? More turns of loops and calls than option max_turns allows"},
-      {"o1 sub\no1 call\no1 endsub\no1 call", "line 2: calls within more than 10 calls"},
+      {"o1 sub\no1 call\no1 endsub\no1 call", "line 2: calls nested more than 10 deep"},
       {"o1 if [0]\nG0", "line 1: O1 has no end"},
       {"o1 sub\nG0", "line 1: O1 has no end"},
       {"G0\no1 repeat [0]", "line 2: O1 has no end"},
@@ -107,7 +107,7 @@ TEST(NcControlFlow, RefusesWhatDoesNotEnd) {
       {"o1 return", "line 1: not within subroutine O1"},
       {"o1 sub\no2 endsub\no1 endsub\no1 call", "line 2: not within subroutine O2"},
       {"o1 if 5", "line 1: expected a value in brackets after an O-word"},
-      {"o1 if [1] G0", "line 1: text after an O-word: it has a line of its own"},
+      {"o1 if [1] G0", "line 1: text after an O-word: an O-word must be alone on its line"},
       {"o1 loop", "line 1: unknown word after O1: LOOP"},
       {"o call", "line 1: expected a number or <name> after O"},
       {"o1.5 call", "line 1: O must be a whole number"},

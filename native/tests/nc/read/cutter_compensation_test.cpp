@@ -277,7 +277,7 @@ TEST(CutterCompensation, RefusesWhatLinuxCncRefusesAndSaysHowToGoOn) {
       {"G92 X5", "another place of the coordinates (work offset, G92, tool offset)"},
       {"G10 L2 P1 X5", "another place of the coordinates (work offset, G92, tool offset)"},
       {"M6 T2", "a change of the tool"},
-      {"G0 X#5420", "a position is asked for"},
+      {"G0 X#5420", "a position is read"},
       {"G28.1", "G28.1 and G30.1"},
   };
   for (const auto& [text, what] : cases) {
@@ -297,8 +297,7 @@ TEST(CutterCompensation, RefusesWhatLinuxCncRefusesAndSaysHowToGoOn) {
   EXPECT_EQ(error(start + "X10\nG40\nG2 X20 I5"),
             "line 7: the move after G40 is not straight: write G0 or G1 before it [G2 X20 I5]");
   EXPECT_EQ(error(start + "X10\nG40\nG1 X11\nG2 X20 I5 J0"),
-            "line 8: the arc's end misses its circle by 1.0000 mm: "
-            "option arc_tolerance takes more [G2 X20 I5 J0]");
+            "line 8: the arc's end misses its circle by 1.0000 mm: option arc_tolerance allows more [G2 X20 I5 J0]");
   EXPECT_EQ(error("G19\nG41 D1"),
             "line 3: cutter compensation (G41) in the plane of G19: G17 and G18 are read [G41 D1]");
   EXPECT_EQ(nc_error("G21 G0 X0 Y0 Z0\nG41.1 D1\nG1 A5 X5 F1", "tcp", kOffset).substr(0, 60),

@@ -80,7 +80,7 @@ TEST(NcExpression, RefusesWhatHasNoValue) {
       {"[]", "expected a number after ["},
       {"SIN 30", "expected [ after SIN"},
       {"ATAN[1]", "ATAN takes two values: ATAN[y]/[x]"},
-      {"EXISTS[1]", "EXISTS asks for a name: EXISTS[#<name>]"},
+      {"EXISTS[1]", "EXISTS needs a name: EXISTS[#<name>]"},
       {"[EXP[99999]]", "an expression whose value is not finite"},
       {"[10 ** 400]", "an expression whose value is not finite"},
       {"#<_nobody>", "parameter #<_nobody> is read before anything is assigned to it"},
@@ -96,8 +96,8 @@ TEST(NcExpression, RefusesWhatHasNoValue) {
   EXPECT_EQ(nc_error("#5420=1"), "line 1: parameter #5420 is read only [#5420=1]");
   EXPECT_EQ(nc_error("#<_x>=1"), "line 1: parameter #<_x> is read only [#<_x>=1]");
   EXPECT_EQ(nc_error("#1 1"), "line 1: expected = after a parameter [#1 1]");
-  EXPECT_NE(nc_error("G0 X" + std::string(5000, '[') + "1").find("more than 100 brackets"), std::string::npos);
-  EXPECT_NE(nc_error("G0 X" + std::string(5000, '#') + "1").find("more than 100 brackets"), std::string::npos);
+  EXPECT_NE(nc_error("G0 X" + std::string(5000, '[') + "1").find("nested more than 100 deep"), std::string::npos);
+  EXPECT_NE(nc_error("G0 X" + std::string(5000, '#') + "1").find("nested more than 100 deep"), std::string::npos);
   EXPECT_NE(nc_error("G0 X" + std::string(5000, '-') + "1").find("expected a number"), std::string::npos);
 }
 

@@ -165,7 +165,7 @@ TEST(HeidenhainArcs, RefusesWhatIsNoArc) {
   EXPECT_EQ(error("L X1 Y0 Z0 FMAX\nCC X1 Y0\nCP IPA+90 F9"), "line 4: an arc of radius 0 [CP IPA+90 F9]");
   EXPECT_EQ(error("L X1 Y0 Z0 FMAX\nCC X0 Y0\nCP IPA+0 DR+ F9"), "line 4: CP by an angle of 0 [CP IPA+0 DR+ F9]");
   EXPECT_EQ(error("L X1 Y0 Z0 FMAX\nL Z0 FMAX M91\nCC X0 Y0\nC DR+ F9").substr(0, 40),
-            "line 5: an arc while Z is at a position ");
+            "line 5: an arc while Z is at a machine p");
   // Ends within 0.016 mm are taken, as the control does, and more where the option says so.
   EXPECT_EQ(error("L X10 Y0 Z0 FMAX\nCC X0 Y0\nC X0 Y10.015 DR+ F9"), "no error");
   EXPECT_EQ(read("L X10 Y0 Z0 FMAX\nCC X0 Y0\nC X0 Y10.1 DR+ F9", {{"arc_tolerance", 0.2}}).poses().back().tip,

@@ -83,7 +83,7 @@ TEST(HeidenhainCompensation, RefusesWhatWouldMoveTheContourOrDoesNotFit) {
   const std::string on = "L X0 Y0 RL F100\nL X10\n", remedy = " in radius compensation: a line with R0 before it [";
   const std::pair<const char*, const char*> cases[] = {
       {"TOOL CALL 1 Z", "TOOL CALL"},
-      {"L Z+50 FMAX M91", "a position of the machine"},
+      {"L Z+50 FMAX M91", "a machine position"},
       {"CYCL DEF 7.0 DATUM SHIFT\nCYCL DEF 7.1 X+5", "another place or tilt of the coordinates"},
       {"L M140 MB+5 F100", "M140"},
   };

@@ -159,8 +159,7 @@ TEST(HeidenhainCycle, RefusesWhatDoesNotFit) {
       {"CYCL DEF 200 D" + kHole + "Q202=5\nCYCL DEF 201 D ~\n Q201=-3\nCYCL CALL",
        "Q203, the coordinate of the surface, is missing"},
       {"CYCL DEF 1.0 PECKING\nCYCL DEF 1.1 DIST 2\nL M99", "cycle 1 without its part 1.2"},
-      {"CYCL DEF 200 D" + kHole + "Q202=5\nL X5 FMAX M91\nCYCL CALL",
-       "a cycle while X is at a position of the machine"},
+      {"CYCL DEF 200 D" + kHole + "Q202=5\nL X5 FMAX M91\nCYCL CALL", "a cycle while X is at a machine position"},
       {"CYCL DEF 200 D" + kHole + "Q202=5\nM128\nL A30 FMAX\nCYCL CALL", "a feed move with the rotary axes at A30 C0"},
   };
   for (const auto& [blocks, wanted] : cases) {

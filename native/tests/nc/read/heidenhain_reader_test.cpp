@@ -179,7 +179,7 @@ TEST(HeidenhainReader, CalculatesWithParameters) {
   EXPECT_EQ(x("Q1 = 1\nFN 11: IF +Q1 GT +1 GOTO LBL 1\nFN 10: IF +Q1 NE +1 GOTO LBL 1\nQ1 = 7\nLBL 1", "Q1"), 7);
   EXPECT_EQ(error("L XQ5 FMAX"), "line 2: Q5 has no value: assign one before it is used (FN 0: Q5 = ...) [L XQ5 FMAX]");
   EXPECT_EQ(error("FN 18: SYSREAD Q5 = ID270 NR1 IDX1\nQ6 = Q5 + 1\nL XQ6 FMAX").substr(0, 60),
-            "line 4: the value of X is known to the control only (FN 18, ");
+            "line 4: the value of X is known only to the control (FN 18, ");
   EXPECT_EQ(error("Q1 = 1 / 0").substr(0, 46), "line 2: a calculation without a finite result ");
   EXPECT_EQ(error("Q1 = ( 1 + 2"), "line 2: a bracket that is not closed [Q1 = ( 1 + 2]");
   EXPECT_EQ(error("FN 14: ERROR=1042").substr(0, 24), "line 2: FN 14 stops the ");
@@ -252,8 +252,8 @@ TEST(HeidenhainReader, TakesTheAnglesOfAxesThatThePostPrints) {
     expect_near(p.poses().back().tip, {0, -1, 0}, 1e-9, angles);
     expect_near(p.poses().back().axis, {0, 1, 0}, 1e-9, angles);
   }
-  EXPECT_EQ(error(begin + "L A-80 C0" + end).substr(0, 70),
-            "line 5: the rotary axes stand at A-80 C0, the tilted plane asks for A-");
+  EXPECT_EQ(error(begin + "L A-80 C0" + end).substr(0, 67),
+            "line 5: the rotary axes stand at A-80 C0, the tilted plane needs A-");
   EXPECT_EQ(error(begin + "L X0 Y0 Z10 FMAX\nL Z-1 F100").substr(0, 44),
             "line 4: the rotary axes stand at A0 C0, the ");
   EXPECT_EQ(error("L A30 FMAX\nL X0 Y0 Z0 F100").substr(0, 64),

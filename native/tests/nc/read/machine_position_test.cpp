@@ -118,7 +118,7 @@ TEST(MachinePositions, AreNoStartOfACut) {
   EXPECT_EQ(kinds(there + "G1 X5 F100"), uncut);
   EXPECT_EQ(kinds(there + "G1 X5 Z3 F100"), Kinds{"machine position"});
   const std::string arc = nc_error(there + "G2 X5 Z1 I2 F100");
-  EXPECT_NE(arc.find("an arc or a spline where Z stands at a position of the machine: move there by absolute words"),
+  EXPECT_NE(arc.find("an arc or a spline where Z stands at a machine position: move there by absolute words"),
             arc.npos);
   EXPECT_EQ(nc_error(there + "Z3\nG2 X5 I2 F100"), "no error");
   // Cycles: from R on all is known under G99; G98 would come back to where nobody knows.
@@ -126,7 +126,7 @@ TEST(MachinePositions, AreNoStartOfACut) {
   EXPECT_EQ(rows(cycle)[3], (Row{{5, 6, 2}, false}));
   EXPECT_EQ(cycle.poses()[4].tip, Vec3(5, 6, -4));
   EXPECT_NE(nc_error(there + "G98 G81 X5 Y6 Z-4 R2 F100").find("a canned cycle under G91 or G98"), std::string::npos);
-  EXPECT_NE(nc_error(there + "#1=#5422").find("a position is asked for where Z stands"), std::string::npos);
+  EXPECT_NE(nc_error(there + "#1=#5422").find("a position is read where Z stands"), std::string::npos);
   EXPECT_EQ(kinds(there + "G92 Z0\nG0 Z5"), uncut);
 }
 
@@ -246,7 +246,7 @@ TEST(Assumptions, OfUnitsAndOfTheStartAreNoted) {
 TEST(Assumptions, ArcsMayMissByAsMuchAsIsAskedFor) {
   const std::string arc = "G21 G0 X0 Y0\nG2 X2.02 I1 F1";
   const std::string said = nc_error(arc);
-  EXPECT_NE(said.find("misses its circle by 0.0200 mm: option arc_tolerance takes more"), said.npos) << said;
+  EXPECT_NE(said.find("misses its circle by 0.0200 mm: option arc_tolerance allows more"), said.npos) << said;
   EXPECT_EQ(nc_error(arc, "tcp", {{"arc_tolerance", 0.03}}), "no error");
   EXPECT_EQ(read_nc_text(arc, "tcp", {{"arc_tolerance", 0.03}}).poses().back().tip.x, 2.02);
   EXPECT_EQ(nc_error("G21 G0 X0 Y0\nG2 X2.02 R1 F1", "tcp", {{"arc_tolerance", 0.03}}), "no error");

@@ -72,7 +72,7 @@ TEST(NcOffsets, OfTheToolLengthMoveTheTipByTheirDifference) {
   EXPECT_EQ(tips("T1 M6 G43.1 Z120\nG0 Z0\nG43.1 Z120.5\nZ0\nG43 H1\nZ0"), (Tips{{0, 0, 0}, {0, 0, 0.5}, {0, 0, 0}}));
   EXPECT_EQ(tips("T1 M6 G43.1 Z120\nG0 Z0\nT2 M6 G43.1 Z90\nZ0"), (Tips{{0, 0, 0}, {0, 0, 0}}));
   const Program p = read_nc_text("G21 G43 H1\nG0 Z1\nG49\nZ50");
-  EXPECT_EQ(p.provenance[1].second, "line 4: a move after G49: its points are taken for those of the tip");
+  EXPECT_EQ(p.provenance[1].second, "line 4: a move after G49: its points are taken as those of the tip");
   EXPECT_EQ(read_nc_text("G21 G43 H1\nG0 Z1\nG49\nM2").provenance.size(), 1U);
 }
 
@@ -87,7 +87,7 @@ TEST(NcOffsets, AreRefusedWhereTheyMakeNoSense) {
       {"G10 L3 P1 X1", "G10 L3 is not read: L1, L2, L10, L11 and L20 are"},
       {"G53 X1", "axis words without a motion (G0, G1, G2, G3)"},
       {"G53 G2 X1 I.5 F1", "G53 goes with G0 and G1 only"},
-      {"G91 G53 G0 X1", "G53 under G91: positions of the machine are absolute (G90)"},
+      {"G91 G53 G0 X1", "G53 under G91: machine positions are absolute (G90)"},
       {"G0 X1 G92 Y1", "two codes that both use axis words: they need a block each"},
       {"G41 D1 G1 X1 F1",
        "cutter radius compensation (G41): where the program has the contour, read it with options "

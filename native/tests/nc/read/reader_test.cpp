@@ -88,13 +88,13 @@ TEST(Reader, RefusesWhatItDoesNotUnderstandAndNamesFileAndLine) {
       {"X1 F1", "axis words without a motion (G0, G1, G2, G3)"},
       {"G80\nX2", "axis words without a motion (G0, G1, G2, G3)"},
       {"G4", "G4 needs P"},
-      {"G4 P1 X1", "axis words beside G4"},
+      {"G4 P1 X1", "axis words together with G4"},
       {"G0 X1 R1", "R has no meaning in this block"},
       {"G0 X1 I1", "I has no meaning in this block"},
       {"X1 N5", "N must be first in its block"},
       {"G0 X1\nO5",
-       "O with a number alone is the number of the program, before everything else, or a subprogram of M98, after its "
-       "end"},
+       "O with only a number is the program number, before everything else, or a subprogram for M98, after the "
+       "program's end"},
       {"G0 X\xC3\xA9", "expected a number after X"},
       {"G0 X1 \xC3\xA9", "a character outside ASCII (byte 0xC3)"},
       {"G0 X1 #5", "expected = after a parameter"},
@@ -105,8 +105,8 @@ TEST(Reader, RefusesWhatItDoesNotUnderstandAndNamesFileAndLine) {
       {"G2 F1", "an arc without an end or a centre"},
       {"G2 X1 I1 R1 F1", "an arc with both R and a centre"},
       {"G2 X1 K1 I1 F1", "K does not lie in the arc's plane"},
-      {"G2 X2 I1.01 F1", "the arc's end misses its circle by 0.0200 mm: option arc_tolerance takes more"},
-      {"G2 X2 R0.99 F1", "the arc's end misses its circle by 0.0200 mm: option arc_tolerance takes more"},
+      {"G2 X2 I1.01 F1", "the arc's end misses its circle by 0.0200 mm: option arc_tolerance allows more"},
+      {"G2 X2 R0.99 F1", "the arc's end misses its circle by 0.0200 mm: option arc_tolerance allows more"},
       {"G2 X0 Y0 R5 F1", "a full circle by R has no centre"},
       {"G90.1 G2 X2 I1 F1", "under G90.1 an arc needs both I and J"},
       {"G91 G1 X999999 F1\nX999999", "X is out of range"},
@@ -232,14 +232,12 @@ TEST(Reader, FollowsSwitchesOfTheKinematics) {
     }
     return "";
   };
-  EXPECT_EQ(
-      fails("\nM428", machine, joints),
-      "p.ngc, line 2: M428 has X Y Z mean the tip, but option tcp says otherwise: leave the option out, and what the "
-      "program says is followed [M428]");
-  EXPECT_EQ(
-      fails("\nM429", machine, tips),
-      "p.ngc, line 2: M429 has X Y Z mean where the axes stand, but option tcp says otherwise: leave the option out, "
-      "and what the program says is followed [M429]");
+  EXPECT_EQ(fails("\nM428", machine, joints),
+            "p.ngc, line 2: M428 makes X Y Z the tip, but option tcp says otherwise: leave the option out, and what "
+            "the program says is followed [M428]");
+  EXPECT_EQ(fails("\nM429", machine, tips),
+            "p.ngc, line 2: M429 makes X Y Z the axis positions, but option tcp says otherwise: leave the option out, "
+            "and what the program says is followed [M429]");
   EXPECT_NE(fails("M430", "3-axis", {}), "");
   EXPECT_EQ(fails("M428\nM429", "3-axis", {}), "");
 }

@@ -70,7 +70,7 @@ TEST(RealPrograms, WhatFollowsTheEndIsNotReadAndNoted) {
   const Program p = read_nc_text("G21 G0 X1\nM30\n(a comment)\nM30\nG0 X2\n%\nnonsense");
   EXPECT_EQ(p.size(), 1U);
   ASSERT_EQ(p.notes.size(), 1U);
-  EXPECT_EQ(p.notes[0], (Note{"end", 4, "what follows the end of the program is not read"}));
+  EXPECT_EQ(p.notes[0], (Note{"end", 4, "text after the end of the program is not read"}));
   EXPECT_TRUE(read_nc_text("G21 G0 X1\nM30\n(a comment)\n%\n").notes.empty());
 }
 

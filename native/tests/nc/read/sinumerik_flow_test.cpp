@@ -59,7 +59,7 @@ TEST(SinumerikFlow, CalculatesAsTheControlDoes) {
   EXPECT_EQ(error("X=NAME"), "line 2: NAME is not defined: DEF REAL NAME=... before it is used [X=NAME]");
   EXPECT_EQ(error("X=FOO(1)").substr(0, 28), "line 2: unknown function FOO");
   EXPECT_EQ(error("IF 1<2 AND 3<4 GOTOF A\nA:").substr(0, 66),
-            "line 2: a comparison beside AND, OR or XOR without brackets: these");
+            "line 2: a comparison combined with AND, OR or XOR without brackets");
 }
 
 TEST(SinumerikFlow, KeepsVariablesByTheirTypes) {
@@ -68,7 +68,7 @@ TEST(SinumerikFlow, KeepsVariablesByTheirTypes) {
   EXPECT_EQ(xs("DEF REAL ARR[5]\nARR[2]=4\nX=ARR[2]+ARR[3]"), (std::vector<double>{4}));
   EXPECT_EQ(xs("DEF STRING[20] NAME=\"MILL\"\nT=NAME\nX1"), (std::vector<double>{1}));
   EXPECT_EQ(xs("R1=$AA_IM[X]\nR2=R1+1\nX1"), (std::vector<double>{1})) << "known to the control, and not used";
-  EXPECT_EQ(error("R1=$AA_IM[X]\nX=R1").substr(0, 60), "line 3: the value of X is known to the control only (a syste");
+  EXPECT_EQ(error("R1=$AA_IM[X]\nX=R1").substr(0, 60), "line 3: the value of X is known only to the control (a syste");
   EXPECT_EQ(error("_B=1").substr(0, 26), "line 2: _B is not defined:");
 }
 

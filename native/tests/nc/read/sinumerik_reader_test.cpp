@@ -104,7 +104,7 @@ TEST(SinumerikReader, PutsFramesIntoTheirOrder) {
             "line 1: TRANS with a rotary axis is not read: have the post write its angles "
             "[TRANS C30]");
   EXPECT_EQ(error("SCALE X2"),
-            "line 1: SCALE: scaling is not read: have the CAM system write the moves as they are to be [SCALE X2]");
+            "line 1: SCALE: scaling is not read: have the CAM system write the final moves [SCALE X2]");
   EXPECT_EQ(error("MIRROR X0", {{"unknown", std::string("skip")}}).substr(0, 16), "line 1: MIRROR: ");
   EXPECT_EQ(error("G0 X1 TRANS X1").substr(0, 36), "line 1: TRANS needs a block of its o");
 }
@@ -120,7 +120,7 @@ TEST(SinumerikReader, MarksPositionsOfTheMachine) {
   EXPECT_EQ(kinds(read("G0 X0 Y0 Z9\nG153 G1 Z0 F1\nX1")),
             (std::vector<std::string>{"machine position", "coordinates"}));
   EXPECT_EQ(kinds(read("G0 X0 Y0 D0\nZ9\nG1 Z0 F1")), (std::vector<std::string>{"tool length"}));
-  EXPECT_EQ(error("G0 X0 Y0 Z9\nSUPA Z0\nG2 X9 CR=9 F9").substr(0, 36), "line 3: an arc while Z is at a posit");
+  EXPECT_EQ(error("G0 X0 Y0 Z9\nSUPA Z0\nG2 X9 CR=9 F9").substr(0, 36), "line 3: an arc while Z is at a machi");
   EXPECT_EQ(error("SUPA G2 X0 CR=5 F9").substr(0, 47), "line 1: an arc in coordinates of the machine: G");
   // A turned frame knows X and Y of the part only together.
   const Program turned = read("G0 X0 Y0 Z9\nROT Z45\nSUPA X0\nG0 X1 Y1\nZ9");
@@ -244,8 +244,7 @@ TEST(SinumerikReader, RefusesByNameAndSkipsOnlyWhatMovesNothing) {
 TEST(SinumerikReader, NamesTheMachinesThatReadIt) {
   EXPECT_EQ(test::nc_error("%_N_A_MPF\nG0 X=1"),
             "line 2: expected a number after X [G0 X=1]: the file begins as a Sinumerik program; machines that read "
-            "such ones: "
-            "sinumerik, sinumerik-bc");
+            "them: sinumerik, sinumerik-bc");
   EXPECT_EQ(test::nc_error("%_N_A_MPF\nG0 X1"), "no error");
   EXPECT_EQ(test::nc_error("%_N_A_MPF\nG0 X1", "heidenhain").substr(0, 31), "line 1: a Sinumerik program (%_");
   EXPECT_EQ(test::nc_error("BEGIN PGM A MM\n", "sinumerik").substr(0, 40), "line 1: a Heidenhain conversational prog");

@@ -99,7 +99,7 @@ TEST(RowCheck, LooksAtTheWayBetweenRowsToo) {
   ASSERT_TRUE(fault(45).has_value());
   EXPECT_EQ(fault(45)->row(), 1U);
   EXPECT_TRUE(fault(45)->reason().starts_with(
-      "on the way there machine linuxcnc-xyzac would leave the limits of X, -45 to 45: "))
+      "on the move there machine linuxcnc-xyzac would leave the limits of X, -45 to 45: "))
       << fault(45)->reason();
 }
 

@@ -133,7 +133,7 @@ TEST(PenGeometry, RefusesValuesThatCannotBe) {
   expect("length = 30.0", "length = 0", "length must be positive, at most 10000");
   expect("tolerance = 0.25", "tolerance = 31", "tolerance must be below length");
   expect("x = [1.0, 0.0, 0.0]", "x = [2.0, 0.0, 0.0]", "x must have the length 1");
-  expect("z = [0.0, 0.0, 1.0]", "z = [0.6, 0.0, 0.8]", "z must be square to x");
+  expect("z = [0.0, 0.0, 1.0]", "z = [0.6, 0.0, 0.8]", "z must be perpendicular to x");
   expect("sign = 1  ", "sign = 2  ", "sign must be 1 or -1");
   expect("\"R2\", \"R3\"", "\"R2\", \"R4\"", "order must be of R1 R2 R3 L1 L2 L3");
   expect("\"R2\", \"R3\"", "\"R2\", \"R2\"", "order has R2 twice");
@@ -147,7 +147,7 @@ TEST(PenGeometry, RefusesValuesThatCannotBe) {
          "continuous_current, entry 1 must be positive, at most 3");
   expect("coulomb = [1.5,", "coulomb = [-1.5,", "coulomb, entry 1 must not be negative");
   expect("gravity = [60.0, 30.0, 0.0,", "gravity = [60.0, 30.0, 5.0,",
-         "gravity, entry 3 must be 0: joint 1 turns about the upright");
+         "gravity, entry 3 must be 0: joint 1 turns about the vertical axis");
   expect("inertia = [260.0,", "inertia = [0.0,", "inertia, entry 1 must be positive, at most 1e+09");
   expect("resistance = [2.0,", "resistance = [-2.0,", "resistance, entry 1 must be positive, at most 1e+06");
   expect("mass = 0.02", "mass = 200.0", "mass must be positive, at most 100");
@@ -178,7 +178,7 @@ TEST(PenGeometry, RefusesAPenThatContradictsItselfAtHome) {
          "presets and grip do not fit each other");
   expect(home, "home = [9000, 0, -5133, 9000, 0, 5133]", "home, entry 1: 1.1781 rad, and its limits are -0.7 to 1");
   expect_at("home = [0,", "elbow = [-1.2, 1.2]", "elbow = [0.1, 1.2]",
-            "home: joint 2 less joint 3 is 0 rad, and the elbow's limits are 0.1 to 1.2");
+            "home: joint 2 minus joint 3 is 0 rad, and the elbow's limits are 0.1 to 1.2");
   expect_at("lower = [200.0", "lower = [100.0, -110.0, -240.0]", "lower = [200.0, -110.0, -240.0]",
             "lower, upper: the grip's middle at home, 161.231 0 -165, is outside");
 }

@@ -240,7 +240,7 @@ TEST(SimulatedPen, SettingsThatCannotBeAreRefusedByName) {
     change(settings);
     return test::error_of([&] { SimulatedPen pen(settings); });
   };
-  EXPECT_EQ(refused([](auto& s) { s.turn_us = 300; }), "turn_us must divide 1000, from 25 on");
+  EXPECT_EQ(refused([](auto& s) { s.turn_us = 300; }), "turn_us must divide 1000 and be at least 25");
   EXPECT_EQ(refused([](auto& s) { s.parts = 0; }), "parts must be within 1 and 100");
   EXPECT_EQ(refused([](auto& s) { s.cable.lost = 2; }), "lost must be a number between 0.000000 and 1.000000");
   EXPECT_EQ(refused([](auto& s) { s.hand.haste.linear = 0; }), "haste.linear must be positive");

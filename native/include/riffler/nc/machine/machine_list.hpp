@@ -1,5 +1,5 @@
-// The machines that programs are written for and read from: those that come with Riffler
-// (native/nc/machine/shipped/*.toml), and files of the user's own.
+// The machines for which programs are written and read: those shipped with Riffler (native/nc/machine/shipped/*.toml),
+// and the user's own files.
 #pragma once
 
 #include <string>
@@ -10,14 +10,14 @@
 
 namespace riffler::nc {
 
-/// All machines, ours first, then every *.toml in the folders of RIFFLER_MACHINES (apart as in PATH) and in
-/// riffler/machines of the user's folder for settings; of a file that cannot be read the description says why.
+/// All machines: the shipped ones, then every *.toml in the folders of RIFFLER_MACHINES (separated as in PATH) and in
+/// riffler/machines of the user's configuration folder. The description of an unreadable file states the reason.
 std::vector<base::DescriptionEntry> machines();
 
-/// The names of those with an axis of this letter whose control reads `language`, apart by commas.
+/// Comma-separated names of the machines that have an axis with letter `axis` and whose control reads `language`.
 std::string machines_with(char axis, std::string_view language = "rs274");
 
-/// The names of machines() whose control reads `language`, apart by commas.
+/// Comma-separated names of the machines whose control reads `language`.
 std::string machines_of_language(std::string_view language);
 
 }  // namespace riffler::nc

@@ -1,4 +1,4 @@
-// The tool's way as a machine makes it: its axes move evenly from block to block.
+// The tool's path as a machine executes it, with axes that move at constant rates within each block.
 #pragma once
 
 #include <cstddef>
@@ -8,15 +8,15 @@
 
 namespace riffler::nc {
 
-/// A stretch of a block that is a Motion: where rotary axes turn, blocks are several.
+/// A piece of a block that is a Motion. A block that turns rotary axes has several pieces.
 struct MachineStep {
-  std::size_t row;  ///< of the program, to whose end the block leads
+  std::size_t row;  ///< row of the program at which the block ends
   Pose from, to;
   bool rapid;
-  bool first;  ///< from where the machine is after a tool change or at the start, straight down to the row
+  bool first;  ///< starts at the machine's position after a tool change or at the start, straight to the row
 };
 
-/// The whole of a program, in its order; rows that do not move are left out.
+/// The motion of a whole program in order. Rows without motion are left out.
 using MachineMotion = std::vector<MachineStep>;
 
 }  // namespace riffler::nc

@@ -1,4 +1,4 @@
-// How NC code is read.
+// Options for reading NC code.
 #pragma once
 
 #include <string>
@@ -8,17 +8,20 @@
 
 namespace riffler::nc {
 
+/// Options of parse_nc, read_nc and NcStream.
 struct ReadOptions {
-  std::string machine = "tcp";  ///< a name of machines(): what the axis words mean; its control says in which language
-  /// Of the machine, and of the reader:
-  /// "chord_tolerance" (mm, curves as chords; default 0.002); "axis_tolerance" (rad): where it is given, a feed move
-  /// whose rotary axes, moving linearly, leave the great circle between its ends by more becomes several rows; without
-  /// it every block is one row; "block_delete" (default true: lines that begin with / are passed over);
-  /// "unknown": "error" (default) or "skip"; "subroutines": a folder of files name.ngc; "parameters": a file of
-  /// LinuxCNC's parameters (work offsets, G28); "max_turns" of loops and calls (default 1e6), after which a program
-  /// counts as endless.
+  std::string machine = "tcp";  ///< name from machines(): defines axis words and language
+  /// Options of the machine, and of the reader:
+  /// "chord_tolerance" (mm, default 0.002): of chords that replace curves.
+  /// "axis_tolerance" (rad): if given, a feed move whose linearly moving rotary axes leave the great circle between its
+  /// ends by more is split into several rows; by default every block is one row.
+  /// "block_delete" (default true): skip lines that begin with /.
+  /// "unknown": "error" (default) or "skip".
+  /// "subroutines": a folder of files name.ngc.
+  /// "parameters": a LinuxCNC parameter file (work offsets, G28).
+  /// "max_turns" (default 1e6): number of loops and calls after which a program counts as endless.
   Options options;
-  /// Called from the calling thread, some thousand lines apart, with the share of the text that has been read.
+  /// Called from the calling thread every few thousand lines with the fraction of the text read so far, 0 to 1.
   Progress progress{};
 };
 

@@ -1,4 +1,4 @@
-// NC code (RS-274, an APT cutter location file, a Heidenhain conversational program, a Sinumerik program) → Program.
+// NC code to Program: RS-274, APT cutter location files, Heidenhain Klartext and Sinumerik programs.
 #pragma once
 
 #include <cstddef>
@@ -12,29 +12,32 @@
 
 namespace riffler::nc {
 
-/// `options` without those of the reader alone: what the same machine takes for other work.
+/// `options` without those of the reader: the options that the same machine takes elsewhere.
 Options without_reading(Options options);
 
-/// One row per move end; rows of one block have its line. `file` (base name) stands in messages. FormatError naming the
-/// line, with its text, for everything that is not understood in full; docs/reading-nc.md says what is. Poses are in
-/// the coordinates in which the first move is programmed; offsets that change later move what comes after. Cancelled
-/// where the progress callback says so.
+/// Reads a program from its text: one row per move end; all rows of a block have its line number. `file` (base name)
+/// identifies the file in messages. Throws FormatError with number and text of the line for everything that is not
+/// fully understood; docs/reading-nc.md lists what is. Poses are in the coordinates in which the first move is
+/// programmed; later changes of offsets shift the moves after them. Throws Cancelled when the progress callback
+/// cancels.
 Program parse_nc(std::string_view text, const std::string& file, const ReadOptions& options = {});
 
+/// As parse_nc, for a file. Throws FormatError if the file cannot be read.
 Program read_nc(const std::filesystem::path& path, const ReadOptions& options = {});
 
 class NcInterpreter;
 
-/// A file that is read as it is asked for, in memory that does not grow with it.
+/// Reads a file piece by piece, with memory independent of its size.
 class NcStream {
  public:
-  /// FormatError where the file cannot be opened, std::invalid_argument for options and `rows` < 2.
+  /// Opens the file; `rows`: largest number of rows per piece. Throws FormatError if the file cannot be opened,
+  /// std::invalid_argument for invalid options and for `rows` < 2.
   NcStream(const std::filesystem::path& path, const ReadOptions& options = {}, std::size_t rows = 65536);
   NcStream(NcStream&&) noexcept;
   ~NcStream();
 
-  /// The next at most `rows` rows; the first of them is the last of those before, where there are any. False, and an
-  /// empty program, at the end and after a FormatError.
+  /// Reads up to `rows` rows into `program`. The first row repeats the last one of the previous piece. Returns false
+  /// with an empty program at the end and after a FormatError.
   bool next(Program& program);
 
  private:
@@ -42,7 +45,7 @@ class NcStream {
 
   std::unique_ptr<NcInterpreter> interpreter_;
   std::size_t rows_, taken_ = 0;
-  Program whole_;  // the rows of a language that is read as a whole
+  Program whole_;  // all rows, for a language that can only be read as a whole
   std::unique_ptr<Move> last_;
 };
 

@@ -1,4 +1,4 @@
-// What programs are written for, and what comes of it beside the text.
+// Options for writing NC code, and the report that comes with the text.
 #pragma once
 
 #include <cstddef>
@@ -10,27 +10,29 @@
 
 namespace riffler::nc {
 
+/// Options of to_nc and write_nc.
 struct WriteOptions {
-  std::string post = "tcp";         ///< a name of machines(), or the path of a description
-  double tolerance = 0.01;          ///< mm, tip between two rows to the straight line; at least 2e-5
-  double axis_tolerance = 0.00175;  ///< rad, axis between two rows to the great circle; at least 1e-7
-  Options options;                  ///< of the machine and of the post
-  bool motion = false;              ///< whether the report is to have the machine's motion
+  std::string post = "tcp";         ///< name from machines(), or path of a machine description
+  double tolerance = 0.01;          ///< mm, distance of the tip from the line between two rows; at least 2e-5
+  double axis_tolerance = 0.00175;  ///< rad, angle of the axis to the great circle between two rows; at least 1e-7
+  Options options;                  ///< options of the machine and the post
+  bool motion = false;              ///< whether to fill WriteReport::motion
 };
 
-/// Neighbouring rows in which the rotary axes turn much more than the tool does: near the singular direction.
+/// Neighbouring rows in which the rotary axes turn much further than the tool: near the singular direction.
 struct PolePassage {
   std::size_t first, last;
   double tool, rotary;  ///< deg
-  double slowed;        ///< the longest time of a block by what its feed would take; 1: nothing slowed
+  double slowed;        ///< largest ratio of a block's time to the time at its feed; 1: not slowed
 };
 
+/// Blocks, slowed blocks, retracts and pole passages of a written program.
 struct WriteReport {
-  std::size_t blocks = 0;            ///< with a motion
-  std::size_t slowed = 0;            ///< of them longer than their feed asks, for an axis's rate
-  std::vector<std::size_t> rewinds;  ///< rows before whose ends the tool leaves the material to turn axes back
+  std::size_t blocks = 0;            ///< blocks with a motion
+  std::size_t slowed = 0;            ///< blocks slowed by the rate limit of an axis
+  std::vector<std::size_t> rewinds;  ///< rows during which the tool retracts to unwind rotary axes
   std::vector<PolePassage> passages;
-  MachineMotion motion;  ///< where it was asked for
+  MachineMotion motion;  ///< filled if WriteOptions::motion is set
 };
 
 }  // namespace riffler::nc

@@ -1,4 +1,4 @@
-// Program → NC code.
+// Program to NC code.
 #pragma once
 
 #include <filesystem>
@@ -10,12 +10,13 @@
 
 namespace riffler::nc {
 
-/// The text of the program: every row is the end of a block, with more blocks between two rows where the machine's
-/// axes, moving linearly, would leave the tolerances. The same program gives the same bytes. Throws
-/// std::invalid_argument naming the row that cannot be written, or the post or option that is not known.
+/// The NC text of the program. Every row ends a block; further blocks are added between two rows where the linearly
+/// moving axes would exceed the tolerances. The same program gives the same bytes. Throws std::invalid_argument naming
+/// the row that cannot be written, or an unknown post or option. `report`: filled if not null.
 std::string to_nc(const Program& program, const WriteOptions& options = {}, WriteReport* report = nullptr);
 
-/// Writes it beside `path` and renames: the file is whole or not there. What `check` throws comes before that.
+/// Writes the NC text atomically, under a temporary name that is then renamed. `check` sees the report first; if it
+/// throws, nothing is written.
 WriteReport write_nc(const Program& program, const std::filesystem::path& path, const WriteOptions& options = {},
                      const std::function<void(const WriteReport&)>& check = {});
 

@@ -1,27 +1,26 @@
-// What the motors do by themselves, besides the wrench that was asked for: they bear the arms' weight, and make up for
-// their friction.
+// Motor torques in addition to the requested wrench: compensation of the arms' weight and friction.
 #pragma once
 
 #include "riffler/pen/arms/motors.hpp"
 
 namespace riffler::pen {
 
-/// Shares, 0 to 1, of what the pen's description says. Weights and friction that are less than described make a pen
-/// that rises, or that moves on by itself: the default does nothing, and a share is for pens that somebody has
-/// measured.
+/// Fractions, 0 to 1, of the described values to compensate. Where the real weight or friction is smaller than
+/// described, the pen would rise or keep moving; the default therefore compensates nothing, and other values are for
+/// measured pens.
 struct Compensation {
   double gravity = 0;
-  /// Below the share by which real friction may be less than the described, it takes energy from the hand as before,
-  /// however late it comes: dry friction is made up for by no more than its share of it in any direction, and of the
-  /// viscous one a late answer is worth no more than an instant one (Cauchy and Schwarz).
+  /// As long as the real friction is at least this fraction of the described one, the pen stays dissipative for any
+  /// delay: dry friction is compensated by at most its fraction in every direction, and for viscous friction a delayed
+  /// compensation does no more work than an instant one (Cauchy–Schwarz).
   double friction = 0;
 
-  /// std::invalid_argument naming the field.
+  /// Throws std::invalid_argument naming the field.
   void validate() const;
 };
 
-/// N·mm at the motors, in the device's order, for these joint angles (rad) and rates (rad/s); where that is beyond a
-/// motor's peak, all of it is less by one factor.
+/// Torques (N·mm) at the motors, in the device's order, for joint angles (rad) and rates (rad/s). If a motor would
+/// exceed its peak, all torques are scaled down by one factor.
 MotorTorques compensation_torques(const PenGeometry& pen, const Compensation& share, const JointAngles& angles,
                                   const JointAngles& rates) noexcept;
 

@@ -1,4 +1,4 @@
-// What a pen is: lengths, gears, encoders, motors and limits (pen/arms/description.hpp reads them from TOML).
+// Description of a pen: lengths, gears, encoders, motors and limits (pen/arms/description.hpp reads them from TOML).
 #pragma once
 
 #include <array>
@@ -10,33 +10,33 @@
 
 namespace riffler::pen {
 
-/// The right arm stands at y = +L0, the left one at y = −L0 of the base frame. They index arrays.
+/// The right arm stands at y = +L0 of the base frame, the left one at y = −L0. Used as array indices.
 enum class Arm : unsigned char { R = 0, L = 1 };
 
 constexpr std::size_t index(Arm arm) {
   return static_cast<std::size_t>(arm);
 }
 
-/// One arm's lengths, mm: (2.1), (2.2).
+/// Lengths of one arm, mm: (2.1), (2.2).
 struct ArmLinks {
-  double shoulder;  // y of its upright axis: +L0 or −L0
+  double shoulder;  // y of the vertical axis: +L0 or −L0
   double upper;     // L1
   double fore;      // L2
 };
 
-/// One motor with its encoder, its gear and its joint.
+/// One motor with its encoder, gear and joint.
 struct PenChannel {
   Arm arm = Arm::R;
   int joint = 0;     // 0, 1, 2: θ1, θ2, θ3
   double steps = 0;  // counts per turn of the joint
   double ratio = 0;  // turns of the motor per turn of the joint
-  int sign = 1;      // of count and command, where the joint turns forward
+  int sign = 1;      // sign of count and command for positive joint rotation
   std::int32_t home = 0;
   double low = 0, high = 0;                                              // rad, of the joint
   double torque_constant = 0, peak_current = 0, continuous_current = 0;  // N·mm/A, A
   double coulomb = 0, viscous = 0;                                       // N·mm and N·mm·s/rad at the motor
-  double gravity = 0;                                                    // N·mm at the joint, where its link lies level
-  double inertia = 0;     // kg·mm² at the joint: rotor through the gear, and links
+  double gravity = 0;     // N·mm at the joint while its link is horizontal
+  double inertia = 0;     // kg·mm² at the joint: rotor (through the gear) and links
   double resistance = 0;  // Ω of the winding
 
   double peak_torque() const { return torque_constant * peak_current; }  // N·mm at the motor
@@ -45,31 +45,32 @@ struct PenChannel {
 
 constexpr std::size_t kPenChannels = 6;
 
-/// A digital to analogue board in front of the amplifiers, two's complement.
+/// A digital-to-analogue converter board in front of the amplifiers, with two's complement values.
 struct Converter {
   int bits = 0;
-  std::array<double, kPenChannels> slope{}, offset{};  // steps per N·mm at the motor, and steps without torque
+  std::array<double, kPenChannels> slope{}, offset{};  // steps per N·mm at the motor, and steps at zero torque
 
   int lowest() const { return -(1 << (bits - 1)); }
   int highest() const { return (1 << (bits - 1)) - 1; }
 };
 
+/// A pen of two arms with three joints each, and a grip between the arms' ends.
 struct PenGeometry {
   std::string name, description;
-  Mat3 turn{1};    // A of (2.3): base frame → the frame of poses, a rotation
+  Mat3 turn{1};    // A of (2.3): rotation from the base frame to the pose frame
   Vec3 origin{0};  // p
   std::array<ArmLinks, 2> arms{};
   double grip_length = 0, grip_tolerance = 0;  // mm
-  double grip_mass = 0, grip_inertia = 0;      // kg; kg·mm² about a line square to it through its middle
-  Arm tip = Arm::L;                            // whose end is nearer the tool's tip
+  double grip_mass = 0, grip_inertia = 0;      // kg; kg·mm² about a perpendicular through its middle
+  Arm tip = Arm::L;                            // the arm whose end is nearer to the tool's tip
   double probe_steps = 0;                      // counts per turn
   std::int32_t probe_home = 0;
   int probe_sign = 1;
   std::array<PenChannel, kPenChannels> channels{};  // in the device's order
   std::optional<Converter> converter;
   double elbow_low = 0, elbow_high = 0;  // rad: θ2 − θ3
-  Box3 workspace{};                      // of the grip's middle, base frame
-  double force = 0, torque = 0;          // N, N·mm: on the hand
+  Box3 workspace{};                      // of the grip's middle, base frame, mm
+  double force = 0, torque = 0;          // N, N·mm: limits on the hand
   double speed = 0, turn_rate = 0;       // mm/s, rad/s
   double friction_speed = 0;             // rad/s at the motor
 };

@@ -1,4 +1,4 @@
-// Which HID devices are plugged in. Takes milliseconds, and allocates: never in the thread that drives a device.
+// Lists the HID devices that are plugged in. Takes milliseconds and allocates: not for a device's thread.
 #pragma once
 
 #include <cstdint>
@@ -8,35 +8,37 @@
 
 namespace riffler::pen {
 
-/// The texts are UTF-8, whatever the process's locale.
+/// One HID device. Texts are UTF-8 in every locale.
 struct HidInfo {
-  std::string path;  // what opens it: /dev/hidraw3
+  std::string path;  // path to open, e.g. /dev/hidraw3
   std::uint16_t vendor = 0, product = 0;
   std::string maker, name, serial;
   int interface = -1;
-  std::vector<std::pair<std::uint16_t, std::uint16_t>> usages;  // page and usage of every top collection
+  std::vector<std::pair<std::uint16_t, std::uint16_t>> usages;  // page and usage of every top-level collection
 
+  /// Whether a top-level collection has this usage.
   bool has_usage(std::uint16_t page, std::uint16_t usage) const;
-  /// "256f:c635"
+  /// Vendor and product, for example "256f:c635".
   std::string id() const;
 };
 
-/// All of them, in the order of their paths' numbers. Throws std::runtime_error where the system's device list cannot
+/// All HID devices, ordered by the numbers in their paths. Throws std::runtime_error if the system's device list cannot
 /// be read.
 std::vector<HidInfo> list_hid();
 
-/// What stays the same when a device is plugged in again, at another path perhaps.
+/// Identifies a device when it is plugged in again, possibly at another path.
 struct HidAddress {
   std::string path;
   std::uint16_t vendor = 0, product = 0;
   std::string serial;
   int interface = -1;
 
+  /// The address of a listed device.
   static HidAddress of(const HidInfo& info);
 };
 
-/// The device of that address among `found`: by maker, product and serial; of several the one at the same path, or the
-/// first. Null if there is none.
+/// The device with that address among `found`: by vendor, product and serial number; of several the one at the same
+/// path, otherwise the first. Null if there is none.
 const HidInfo* find_again(const std::vector<HidInfo>& found, const HidAddress& address);
 
 }  // namespace riffler::pen

@@ -1,4 +1,4 @@
-// Why a device did not open.
+// Reasons why a device does not open.
 #pragma once
 
 #include <stdexcept>
@@ -6,26 +6,27 @@
 
 namespace riffler::pen {
 
+/// Why a device did not open.
 enum class OpenProblem : unsigned char {
   None,
   NoFile,           // no such path, or nothing is plugged in
-  Permission,       // a udev rule has to be installed
-  Forbidden,        // the system refuses whoever asks: a container or a sandbox
-  Busy,             // another program drives it
-  Unplugged,        // it went away while it was being opened
-  NotHid,           // the path is something else
-  UnknownDevice,    // no family takes it
-  WrongDescriptor,  // its reports are not those of the device that it claims to be
-  OtherVersion,     // of the protocol
-  NoAnswer,         // it does not give a report that it must have
-  BadContent,       // it does, and what it says cannot be
-  Other,            // the text says
+  Permission,       // missing permission: a udev rule must be installed
+  Forbidden,        // the system refuses every program: a container or sandbox
+  Busy,             // in use by another program
+  Unplugged,        // disconnected while opening
+  NotHid,           // the path is not a HID device
+  UnknownDevice,    // no device family matches
+  WrongDescriptor,  // the report descriptor does not match the claimed device
+  OtherVersion,     // another protocol version
+  NoAnswer,         // a required report is not answered
+  BadContent,       // the report's content is invalid
+  Other,            // see the text
 };
 
-/// In a few words, for tables.
+/// The problem in a few words, for tables.
 const char* problem_text(OpenProblem problem) noexcept;
 
-/// The text says what is wrong and what to do.
+/// The text states the problem and its remedy.
 class OpenError : public std::runtime_error {
  public:
   OpenError(OpenProblem problem, const std::string& text) : std::runtime_error(text), problem_(problem) {}

@@ -1,4 +1,4 @@
-// From how far a puck is pushed and turned to where the tool goes: speeds that are integrated to a pose.
+// Rate control: a puck's deflection sets speeds that are integrated to a pose.
 #pragma once
 
 #include <array>
@@ -7,36 +7,38 @@
 
 namespace riffler::pen {
 
+/// Response of a puck.
 struct RateSettings {
-  double bubble = 0.08;           ///< share of the full deflection, of all three directions together, that is rest
-  double exponent = 2;            ///< of the curve from the bubble's edge to full deflection: 1 is a straight line
-  double speed = 60;              ///< mm/s at full deflection
-  double turn_rate = 1.5;         ///< rad/s at full deflection
-  bool hold_orientation = false;  ///< turning is left out: the tool keeps its axis
-  bool hold_position = false;     ///< and moving
-  std::array<int, 6> signs{1, 1, 1, 1, 1, 1};  ///< −1, 0 or 1 for x y z a b c, before anything else
+  double bubble = 0.08;    ///< dead zone as a fraction of full deflection, over all three directions together
+  double exponent = 2;     ///< exponent of the response from the edge of the bubble to full deflection; 1: linear
+  double speed = 60;       ///< mm/s at full deflection
+  double turn_rate = 1.5;  ///< rad/s at full deflection
+  bool hold_orientation = false;               ///< no rotation: the tool keeps its axis
+  bool hold_position = false;                  ///< no translation
+  std::array<int, 6> signs{1, 1, 1, 1, 1, 1};  ///< −1, 0 or 1 for x y z a b c, applied first
 
-  /// std::invalid_argument naming the field.
+  /// Throws std::invalid_argument naming the field.
   void validate() const;
 };
 
-/// `deflection`: shares of full, each −1 … 1. The bubble is a ball and the curve acts on the length, so that the
-/// direction stays: three bubbles, one on each axis, would bend slow motions towards the axes. Continuous, and zero in
-/// the bubble. NaN is rest.
+/// Response to a deflection in fractions of full, each −1 … 1. The bubble is a ball and the curve acts on the length,
+/// so the direction is kept: separate dead zones per axis would bend slow motions towards the axes. Continuous, and
+/// zero in the bubble. NaN counts as rest.
 Vec3 shaped(const Vec3& deflection, double bubble, double exponent) noexcept;
 
+/// Integrates the deflections of a puck to a pose.
 class RateControl {
  public:
-  /// Validates.
+  /// Throws std::invalid_argument for invalid settings.
   explicit RateControl(const RateSettings& settings = {});
 
-  /// Where the tool goes on from.
+  /// Sets the tool's pose.
   void place(const Pose& pose) noexcept { pose_ = pose; }
-  /// Translation and rotation as shares of full deflection, from `now` on.
+  /// Sets the deflection (translation and rotation as fractions of full) from now on.
   void push(const Vec3& translation, const Vec3& rotation) noexcept;
-  /// Integrates up to `now`; steps longer than 0.1 s (a suspended machine) count as 0.1 s.
+  /// Integrates up to `now` (s). Steps longer than 0.1 s, as after suspend, count as 0.1 s.
   void advance(double now) noexcept;
-  /// Forgets deflections and time; the pose stays.
+  /// Clears deflection and time; the pose stays.
   void rest() noexcept;
 
   const Pose& pose() const noexcept { return pose_; }
