@@ -101,6 +101,9 @@ def view_box(screen):
     return a.x, a.y, a.x + a.width, a.y + a.height
 
 
+ASIDE = (-0.06, -0.03, 0.03, 0.06)  # shares of a sidebar's width, from where Blender 3.4 has a button
+
+
 class Look(bpy.types.Operator):
     """Notes the command of the button under the mouse, or an empty text, by the mouse's height."""
 
@@ -140,23 +143,29 @@ def commands(screen, x, heights):
 
 
 def found(screen, region, words, share):
-    """Steps: the mouse over the first button of a region, at a share of its width, that has all `words` in the command
-    that it gives; what lies below is scrolled to."""
+    """Steps: the mouse over the first button of a region that has all `words` in the command that it gives: at a share
+    of the region's width, or a little beside that, as other versions place buttons; what lies below is scrolled to."""
     enable_looking()
-    x, middle = region.x + int(region.width * share), region.y + region.height // 2
+    middle = region.y + region.height // 2
     heights = range(region.y + region.height - 8, region.y + 8, -STEP)
-    for turns in (-60, 12, 12, 12):
-        for _ in range(abs(turns)):
-            event(screen, "WHEELDOWNMOUSE" if turns > 0 else "WHEELUPMOUSE", "PRESS", (x, middle))
-        yield 0.3
-        there = yield from commands(screen, x, heights)
-        fitting = [y for y in heights if all(word in there.get(y, "") for word in words)]
-        if fitting:
-            screen.move(x, fitting[0])
-            yield 0.1
-            return
+    seen = set()
+    for columns in ((share,), tuple(share + aside for aside in ASIDE)):
+        for turns in (-60, 12, 12, 12):
+            for _ in range(abs(turns)):
+                where = (region.x + int(region.width * share), middle)
+                event(screen, "WHEELDOWNMOUSE" if turns > 0 else "WHEELUPMOUSE", "PRESS", where)
+            yield 0.3
+            for column in columns:
+                x = region.x + int(region.width * column)
+                there = yield from commands(screen, x, heights)
+                seen.update(there.values())
+                fitting = [y for y in heights if all(word in there.get(y, "") for word in words)]
+                if fitting:
+                    screen.move(x, fitting[0])
+                    yield 0.1
+                    return
     screen.shot("no-button")
-    raise AssertionError(f"no button has {words}; there are {sorted(set(there.values()))}")
+    raise AssertionError(f"no button has {words}; there are {sorted(seen)}")
 
 
 def press(screen, *words, region="UI", share=0.6):
