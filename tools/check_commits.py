@@ -12,7 +12,7 @@ from collections.abc import Iterator
 
 from shell import ROOT, StepError, main
 
-BEFORE = "6a970f6350e9"  # older messages stay unchanged
+BEFORE = "c41c9cfe093d"  # older messages stay unchanged
 LENGTH = 72
 SUBJECT = re.compile(r"[a-z][a-z0-9 _/,.-]*: (?P<verb>[A-Z][\w-]*)(?: .*)?")
 NOT_IMPERATIVE = re.compile(r"[A-Z][a-z]+(?:ing|ed)")

@@ -144,7 +144,7 @@ def commands(screen, x, heights):
 
 def found(screen, region, words, share):
     """Steps: the mouse over the first button of a region that has all `words` in the command that it gives: at a share
-    of the region's width, or a little beside that, as other versions place buttons; what lies below is scrolled to."""
+    of the region's width, or close to it, where other versions place buttons; what lies below is scrolled to."""
     enable_looking()
     middle = region.y + region.height // 2
     heights = range(region.y + region.height - 8, region.y + 8, -STEP)
