@@ -63,7 +63,7 @@ TEST(RifflerModel, SaysWhyAPenDoesNotOpen) {
     EXPECT_NE(text.find("nobody-knows"), std::string::npos) << text;
     std::strcpy(b.pen.config.identity.geometry, "/etc/passwd");
     EXPECT_EQ(b.problem(text), OpenProblem::BadContent) << "a device does not choose files";
-    EXPECT_NE(text.find("no folders"), std::string::npos) << text;
+    EXPECT_NE(text.find("must not contain a folder"), std::string::npos) << text;
   }
   {
     Bench b;
