@@ -76,7 +76,8 @@ def draw(layout, context):
     for key, (keymap, item) in zip(KEYS, users(), strict=True):
         if item is None:
             layout.label(
-                text=f"{key.label}: removed. Restore in the list Keymap, {key.keymap}, brings it back", icon="INFO"
+                text=f"{key.label}: removed. Use Restore in the list Keymap, {key.keymap}, to bring it back",
+                icon="INFO",
             )
             continue
         layout.context_pointer_set("keymap", keymap)

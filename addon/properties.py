@@ -52,7 +52,7 @@ class RifflerObject(bpy.types.PropertyGroup):
     again."""
 
     token: StringProperty()
-    mark: StringProperty(description="What the work at the sculpt is known by, also after it")
+    mark: StringProperty(description="Identifier of the sculpt's session, which stays after its end")
     plan: PointerProperty(type=RifflerPlanObject)
 
 

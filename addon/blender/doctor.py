@@ -25,8 +25,9 @@ def facts():
 
 
 class RIFFLER_OT_doctor(bpy.types.Operator):
-    """Look at this machine, its folders and the devices that are plugged in, and copy what was found to the clipboard
-    and into a text of this file"""
+    """Check this computer, its folders and its devices, and copy a report to the clipboard and into a text of this
+    file
+    """
 
     bl_idname = "riffler.doctor"
     bl_label = "Copy Doctor Report"
@@ -49,7 +50,7 @@ class RIFFLER_OT_doctor(bpy.types.Operator):
         text.clear()
         text.write(last)
         context.window_manager.clipboard = last
-        self.report({"INFO"}, f"Copied, and in the text {text.name!r}")
+        self.report({"INFO"}, f"Copied to the clipboard and to the text {text.name!r}")
         return {"FINISHED"}
 
 

@@ -18,7 +18,7 @@ class FileWork(LongWork):
         name="Ask",
         default=True,
         options={"HIDDEN", "SKIP_SAVE"},
-        description="With INVOKE_DEFAULT: choose the file first; off: begin at once, in the background",
+        description="With INVOKE_DEFAULT: choose the file first; off: start at once, in the background",
     )
     _asked = False
 

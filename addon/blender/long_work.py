@@ -26,12 +26,12 @@ _running = None  # the operator whose work runs in a window, if one's does
 
 
 class WorkProgress:
-    running: StringProperty(description="What runs (“Cutting”); empty where nothing does")
-    simulating: StringProperty(description="The program that is simulated; empty where none is")
-    shading: StringProperty(description="How views were shaded before they showed colours of distances")
+    running: StringProperty(description="Running operation (“Cutting”); empty if there is none")
+    simulating: StringProperty(description="The program being simulated; empty if there is none")
+    shading: StringProperty(description="Shading of the views before they showed colours of distances")
     percent: FloatProperty(name="Progress", subtype="PERCENTAGE", min=0, max=100, precision=0)
-    notice: StringProperty(description="Message about sculpts that no command reports; empty if there is none")
-    text: StringProperty(description="How far it is, in its own words")
+    notice: StringProperty(description="Message about sculpts that no operator reports; empty if there is none")
+    text: StringProperty(description="Progress in words")
 
 
 class LongWork:

@@ -31,7 +31,7 @@ def busy(cls, context, simulation=True):
     if state.running:
         deny(cls, f"{state.running}: Esc cancels")
     if state.sculpting:
-        deny(cls, "A pen is sculpting: Esc ends it")
+        deny(cls, "A pen session is running: Esc ends it")
     if state.simulating and simulation:
         deny(cls, f"{state.simulating} is being simulated: Esc in the view ends it")
     return bool(state.running or state.sculpting or (state.simulating and simulation))

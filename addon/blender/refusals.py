@@ -89,8 +89,8 @@ def scaled(ob):
     if np.allclose(axes.T @ axes, np.eye(3), rtol=0, atol=ALIKE) and np.linalg.det(axes) > 0:
         return ""
     return (
-        f"{ob.name} is scaled or mirrored: its millimetres are those of its own axes, not the scene's. To have them "
-        f"alike, {_unscale(ob)}"
+        f"{ob.name} is scaled or mirrored: its millimetres follow its own axes, not the scene's. To make them "
+        f"equal, {_unscale(ob)}"
     )
 
 
@@ -99,7 +99,7 @@ def modified(ob):
     if not has_modifiers(ob):
         return ""
     return (
-        f"{ob.name} has modifiers: what is worked on is the volume, without them. Take them over by Take Edits, or "
+        f"{ob.name} has modifiers, which the volume does not include: use Apply Mesh Edits to include them, or "
         "remove them"
     )
 

@@ -111,7 +111,7 @@ def folder(path: Path) -> str:
     there = next(p for p in (path, *path.parents) if p.is_dir())
     if not os.access(there, os.W_OK):
         return f"{path}, which may not be written"
-    return str(path) if there == path else f"{path}, made when it is needed"
+    return str(path) if there == path else f"{path}, created on demand"
 
 
 def table(title: str, rows: list[tuple[str, str]]) -> str:

@@ -23,7 +23,7 @@ TELL = 0.2  # s between two changes of what the panel says
 # (sculpt/idle_detection.py).
 TOOL = "riffler.carve"
 MODES = (
-    ("TOOL", "As the tool at hand", "What the sculpt tool in the toolbar does; without one, Carve"),
+    ("TOOL", "Active Tool", "Do what the active tool of the toolbar does; Carve if it is not a sculpting tool"),
     *brushes.entries(brush for brush in brushes.BRUSHES.values() if brush.session),
 )
 
@@ -39,7 +39,7 @@ def brush_of(context, choice):
     if brush is None:
         return brushes.of("remove")
     if not brush.session:
-        raise ValueError(f"a pen carves or puts material on: take Carve or Add instead of {brush.label}")
+        raise ValueError(f"a pen session removes or adds material: use Carve or Add instead of {brush.label}")
     return brush
 
 
@@ -88,7 +88,7 @@ def open_device(settings):
     if settings.device != properties.RECORDING:
         return riffler.pen.open(device_of(settings))
     if not settings.recording.endswith(".rjournal"):
-        raise ValueError("choose a recording (.rjournal) to be played")
+        raise ValueError("choose a recording (.rjournal) to play")
     path = bpy.path.abspath(settings.recording)
     problems.check_source(path)
     return riffler.pen.open(path)
@@ -107,11 +107,11 @@ def recordings(settings):
     return folder
 
 
-NO_COPIES = "Mirror and Radial are for strokes of the pointer: a session of a device makes no copies"
+NO_COPIES = "Mirror and Radial apply to strokes of the pointer only: a pen session makes no copies"
 
 
 class RIFFLER_OT_pen_sculpt(sculpt_work.TakesTool, properties.PenSettings, bpy.types.Operator):
-    """Sculpt with a pen or another device, until Esc or until this is called again"""
+    """Sculpt with a pen or another device, until Esc or until the operator is called again"""
 
     bl_idname = "riffler.pen_sculpt"
     bl_label = "Sculpt with Pen"
@@ -122,14 +122,14 @@ class RIFFLER_OT_pen_sculpt(sculpt_work.TakesTool, properties.PenSettings, bpy.t
         items=MODES,
         default="TOOL",
         options={"SKIP_SAVE"},
-        description="What the session does to the material",
+        description="Whether the session removes or adds material",
     )
     seconds: bpy.props.FloatProperty(
         name="Seconds",
         min=0.0,
         max=86400.0,
         options={"HIDDEN", "SKIP_SAVE"},
-        description="How long it sculpts when it is called from a script",
+        description="Duration of the session when a script calls the operator, in s",
     )
 
     @classmethod
@@ -141,7 +141,9 @@ class RIFFLER_OT_pen_sculpt(sculpt_work.TakesTool, properties.PenSettings, bpy.t
         if pen_session.running is not None:
             return _stop(self)
         if not self.seconds > 0:
-            return operator_parts.fail(self, ValueError("seconds: say how long, as there is no window to end it in"))
+            return operator_parts.fail(
+                self, ValueError("seconds: give the duration, as there is no window to end the session in")
+            )
         if not self._start(context):
             return {"CANCELLED"}
         session, end = pen_session.running, time.monotonic() + self.seconds
@@ -226,7 +228,7 @@ def _tell(session):
     state = bpy.context.window_manager.riffler
     state.force, state.text, state.why = told
     why = f"    {run.why}" if run.why else ""
-    _status(f"Riffler: {hand}, {text}    Esc: end    Ctrl Z: take a stroke back{why}")
+    _status(f"Riffler: {hand}, {text}    Esc: end    Ctrl Z: undo a stroke{why}")
     views.redraw_sidebars(bpy.context)
 
 
@@ -288,7 +290,7 @@ class PenRuns:
 
 
 class RIFFLER_OT_pen_stop(PenRuns, bpy.types.Operator):
-    """End the sculpting with a pen: its strokes stay"""
+    """End the pen session and keep its strokes"""
 
     bl_idname = "riffler.pen_stop"
     bl_label = "End Session"
@@ -300,7 +302,7 @@ class RIFFLER_OT_pen_stop(PenRuns, bpy.types.Operator):
 
 
 class RIFFLER_OT_pen_home(PenRuns, bpy.types.Operator):
-    """The pen stands in its home posture now: its counters are set"""
+    """Set the pen's counters: it stands in its home posture now"""
 
     bl_idname = "riffler.pen_home"
     bl_label = "Home"
@@ -314,7 +316,7 @@ class RIFFLER_OT_pen_home(PenRuns, bpy.types.Operator):
 
 
 class RIFFLER_OT_pen_reset(PenRuns, bpy.types.Operator):
-    """Let force through again after it was taken away, once what was wrong is mended"""
+    """Allow force again after a safety trip, once its cause is fixed"""
 
     bl_idname = "riffler.pen_reset"
     bl_label = "Clear Trip"

@@ -52,7 +52,7 @@ class RifflerCutter(bpy.types.PropertyGroup):
             items=KINDS,
             get=_kind,
             set=lambda group, number: _change(group, "kind", KINDS[number][0]),
-            description="Of the end of the cutter",
+            description="Shape of the cutter's end",
         ),
         **{k: _size(k, field) for k, field in FIELDS.items()},
     }

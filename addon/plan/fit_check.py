@@ -61,7 +61,7 @@ def tool_note(settings, tool):
         return ""  # the panel says what is wrong with it
     if _shape(wanted) == _shape(tool):
         return ""
-    said = f"Planned with {tool.name}, not with what the Tool panel has"
+    said = f"Planned with {tool.name}, not with the Tool panel's tool"
     if same_cutter(wanted, tool):
         return f"{said}: Use This Tool takes its shank and holder, and keeps the keys"
     return f"{said}, whose cutter needs paths of its own"

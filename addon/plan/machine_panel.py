@@ -50,7 +50,7 @@ def _field(layout, group, fact):
 
 def _ask(layout, context, name, group, fact):
     box = layout.box()
-    needed = local("{} is not given").format(local(machine_fields.label(fact)))
+    needed = local("{} is not set").format(local(machine_fields.label(fact)))
     lines(box, *wrapped(context, f"{needed}: {local(machine_fields.about(fact))}."), icon="ERROR")
     row = box.row(align=True)
     row.use_property_split = False
@@ -58,7 +58,7 @@ def _ask(layout, context, name, group, fact):
     row = box.row(align=True)
     if fact["count"] == 3:
         _button(row, name, fact, "CURSOR", text="3D Cursor", icon="PIVOT_CURSOR")
-    _button(row, name, fact, "GIVE", text="Take This", icon="CHECKMARK")
+    _button(row, name, fact, "GIVE", text="Use This", icon="CHECKMARK")
 
 
 def _button(layout, name, fact, how, **look):

@@ -79,7 +79,7 @@ class RIFFLER_PT_plan(Tab, bpy.types.Panel):
         p = ob.riffler.plan
         layout.label(text=ob.name, icon="CURVE_DATA", translate=False)
         own = watch.part_of(context.scene, ob)
-        part = own.name if own else "a part that is gone"
+        part = own.name if own else "a deleted part"
         count = f"Paths: {units.format_count(p.paths)}, {units.trim(p.length, 1)} mm"
         lines(layout, count, *wrapped(context, f"On {part} with {p.tool}"))
         verdict = watch.known(context, ob)
@@ -88,7 +88,7 @@ class RIFFLER_PT_plan(Tab, bpy.types.Panel):
         if verdict.part:
             lines(layout, *wrapped(context, f"{verdict.part}. Find the paths again."), icon="ERROR")
         if verdict.edited:
-            edits = f"Curves that were edited or are gone: {units.format_count(verdict.edited)}. The plan is as it was."
+            edits = f"Curves that were edited or are gone: {units.format_count(verdict.edited)}. The plan is unchanged."
             lines(layout, *wrapped(context, edits), icon="ERROR")
             layout.operator(find.RIFFLER_OT_plan_show.bl_idname, icon="FILE_REFRESH")
         if verdict.tool is not None and (note := fit_check.tool_note(context.scene.riffler.plan, verdict.tool)):
@@ -156,7 +156,7 @@ class RIFFLER_PT_plan_part(Tab, bpy.types.Panel):
                 if unit == size_guess.likely(one):
                     text = f"{text}, {local('likely')}"
                 elif math.isclose(long, max(size), rel_tol=1e-6):
-                    text = f"{text}, {local('as it is')}"
+                    text = f"{text}, {local('unchanged')}"
                 op = column.operator(scene_unit.RIFFLER_OT_scene_unit.bl_idname, text=text, translate=False)
                 op.unit = unit
 

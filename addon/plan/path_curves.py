@@ -80,7 +80,7 @@ def kept_note(names):
     if not names:
         return ""
     shown = ", ".join(names[:3]) + (" …" if len(names) > 3 else "")
-    return f"Left as they are, since they were renamed or are in use: {shown}"
+    return f"Left unchanged, since they were renamed or are in use: {shown}"
 
 
 def _used(curves):

@@ -105,12 +105,12 @@ def plan(ob):
     where the data is not what was written."""
     key = identity(ob)
     if not key:
-        raise ValueError(f"{ob.name} is no plan")
+        raise ValueError(f"{ob.name} is not a plan")
     kept = _cache.get(key)
     if kept is None:
         block = packed_images.read(ob.riffler.plan.store, "the plan")
         if sculpt_payload.content_id(block) != key:
-            raise ValueError(f"{ob.name}: the plan's data in this .blend is damaged: its checksum is another one")
+            raise ValueError(f"{ob.name}: the plan's data in this .blend is damaged: its checksum does not match")
         kept = _Kept(riffler.plan.loads(block, ob.name), len(block))
         _cache.put(key, kept)
     return kept.plan

@@ -22,13 +22,13 @@ from .machines import MACHINES
 
 SHOWN = (
     ("CONTACTS", "Contacts", "Where the cutter touches the part, on both sides of each path", 1),
-    ("NORMALS", "Normals", "Of the part at the contacts", 2),
-    ("AXES", "Axes", "Of the tool along each path; those of keys stand out", 4),
+    ("NORMALS", "Normals", "Normals of the part at the contacts", 2),
+    ("AXES", "Axes", "Axes of the tool along each path; those of keys are highlighted", 4),
 )
 
 
 LEAVE = (
-    ("CLEAR", "What Is Clear", "Along the tool's axis where that is clear, otherwise another way"),
+    ("CLEAR", "Clear Direction", "Along the tool axis where that is clear, otherwise in another direction"),
     ("UP", "Up", "Along the scene's z"),
 )
 
@@ -54,15 +54,15 @@ class RifflerPlan(FindSettings, bpy.types.PropertyGroup):
         poll=lambda _, ob: ob.type in WITH_SURFACE,
         description="The finished part, as it lies in the scene",
     )
-    sized: StringProperty(description="Which part, in which unit, was said to have the right size")
+    sized: StringProperty(description="Part, and its unit, whose size was confirmed")
     fixtures: PointerProperty(
         name="Fixtures",
         type=bpy.types.Collection,
-        description="Vises, clamps and whatever else the tool must stay clear of",
+        description="Vises, clamps and other objects that the tool must stay clear of",
     )
     tool: StringProperty(name="Tool", description="Cutter, shank and holder as JSON", default="")
     source: StringProperty(name="From", description="The file that the tool was taken from; empty: the presets")
-    clearance: length("Clearance", 0.0, "That shank and holder keep from part and fixtures, in mm")
+    clearance: length("Clearance", 0.0, "Distance that shank and holder keep from part and fixtures, in mm")
     plane: length(
         "Clearance Plane",
         0.0,
@@ -75,7 +75,7 @@ class RifflerPlan(FindSettings, bpy.types.PropertyGroup):
         name="Leave",
         items=LEAVE,
         default="CLEAR",
-        description="Which way the tool leaves a cut, and comes to it",
+        description="Direction in which the tool leaves and approaches a cut",
     )
     lead_in: length(
         "Lead-In", 0.0, "mm before a cut that are fed, with air above them; 0: all the way from the clearance plane"
@@ -87,10 +87,10 @@ class RifflerPlan(FindSettings, bpy.types.PropertyGroup):
         items=SHOWN,
         options={"ENUM_FLAG"},
         default={"CONTACTS", "AXES"},
-        description="What is drawn of the active plan while the Orient tool is chosen",
+        description="What to draw of the active plan while the Orient tool is active",
     )
     draw_paths: BoolProperty(
-        name="Draw Paths", default=True, description="Thick lines, coloured by what the tool does along them"
+        name="Draw Paths", default=True, description="Draw thick lines, coloured by the tool's movement along them"
     )
     frame_names: BoolProperty(
         name="Path Names",
@@ -98,7 +98,9 @@ class RifflerPlan(FindSettings, bpy.types.PropertyGroup):
         update=_named,
         description="Markers on the timeline where each path begins",
     )
-    post: EnumProperty(name="Machine", items=MACHINES, default="tcp", description="That the NC code is written for")
+    post: EnumProperty(
+        name="Machine", items=MACHINES, default="tcp", description="Machine that the NC code is written for"
+    )
 
     def tool_dict(self):
         """The form of riffler.Tool.to_dict. ValueError where the text is none."""
@@ -116,7 +118,7 @@ class RifflerFinding(bpy.types.PropertyGroup):
     scene."""
 
     name: StringProperty()
-    title: StringProperty(description="What a list shows: kind, size and place first; empty: the name")
+    title: StringProperty(description="Text of the list's row, with kind, size and place first; empty: the name")
     kind: StringProperty()
     path: IntProperty(default=-1)
     point: IntProperty(default=-1)
@@ -127,11 +129,11 @@ class RifflerFinding(bpy.types.PropertyGroup):
 
 
 STATES = (
-    ("free", "Free", "Resolved: the tool is clear of part and fixtures all along it"),
-    ("blocked", "Blocked", "The tool collides somewhere: turn its keys, or switch it off"),
-    ("keyed", "To Resolve", "It was not resolved since it was found or turned"),
-    ("unplanned", "No Keys", "It has no key orientation"),
-    ("off", "Off", "It is left out: neither resolved nor written"),
+    ("free", "Free", "Resolved: the tool is clear of part and fixtures along the whole path"),
+    ("blocked", "Blocked", "The tool collides somewhere on the path: turn its keys, or switch the path off"),
+    ("keyed", "To Resolve", "The path has not been resolved since it was found or turned"),
+    ("unplanned", "No Keys", "The path has no key orientation"),
+    ("off", "Off", "The path is off: it is neither resolved nor written"),
 )
 
 
@@ -155,7 +157,7 @@ class RifflerPathRow(bpy.types.PropertyGroup):
     length: FloatProperty(description="mm")
     state: EnumProperty(items=STATES, default="unplanned")
     on: BoolProperty(
-        name="On", default=True, update=_switched, description="A path that is off is neither resolved nor written"
+        name="On", default=True, update=_switched, description="Paths that are off are neither resolved nor written"
     )
 
 
@@ -178,10 +180,12 @@ class RifflerPlanObject(bpy.types.PropertyGroup):
     resolved: IntProperty(default=-1)  # of those with keys; -1: in a file from before it was counted
     tool: StringProperty()
     curves: CollectionProperty(type=RifflerPathCurve)
-    rows: CollectionProperty(type=RifflerPathRow, description="Its paths, in their order")
-    row: IntProperty(name="Path", default=-1, update=_chosen, description="The one that is chosen in the list, from 0")
-    findings: CollectionProperty(type=RifflerFinding, description="What resolving the paths has changed, and what not")
-    index: IntProperty(name="Finding", default=-1, description="The one that is chosen in the list, from 0")
+    rows: CollectionProperty(type=RifflerPathRow, description="The plan's paths, in order")
+    row: IntProperty(name="Path", default=-1, update=_chosen, description="Selected finding in the list, from 0")
+    findings: CollectionProperty(
+        type=RifflerFinding, description="What resolving the paths changed, and what it could not"
+    )
+    index: IntProperty(name="Finding", default=-1, description="Selected finding in the list, from 0")
 
     def forget(self, paths):
         """What was found on paths, by their numbers from 0, that are others now."""

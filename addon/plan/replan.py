@@ -75,7 +75,7 @@ def _take_keys(plan_ob, plan, tool, now):
     frames, quats = timeline.read_keys(tool)
     now.seen = key_orientations.fingerprint(frames, quats)
     if tool.animation_data and tool.animation_data.nla_tracks:
-        now.problems.append("The tool's keyframes are in the NLA: they change the plan only as its action")
+        now.problems.append("The tool's keyframes are in the NLA: only those of its active action change the plan")
         return plan
     if tool.rotation_mode != "QUATERNION":
         now.problems.append(f"{tool.name}: set its rotation mode back to Quaternion; other keyframes do not count")

@@ -33,7 +33,7 @@ class RIFFLER_PT_timeline(OfPlan, bpy.types.Panel):
         self._turn(layout, context)
         layout.operator(keys.RIFFLER_OT_plan_check.bl_idname, icon="MOD_PHYSICS")
         if collision_marks.outdated(ob):
-            lines(layout, *wrapped(context, "The marks of collisions may be of before."), icon="INFO")
+            lines(layout, *wrapped(context, "The marks of collisions may be out of date."), icon="INFO")
         for first, last in now.colliding[:4]:
             lines(layout, f"Collides at frames {first} to {last}", icon="ERROR")
         if len(now.colliding) > 4:

@@ -23,16 +23,22 @@ EXTENSIONS = {"heidenhain": ".h", "heidenhain-bc": ".h", "sinumerik": ".mpf", "s
 
 
 class RIFFLER_OT_plan_resolve(PlanWork, bpy.types.Operator):
-    """Find where the tool stands along the plan's paths: lifted along its axis where any of it would enter the part or
-    a fixture. What no lift frees is listed"""
+    """Find where the tool stands along the plan's paths: it is lifted along its axis where it would collide with the
+    part or a fixture, and collisions that no lift removes are listed
+    """
 
     bl_idname = "riffler.plan_resolve"
     bl_label = "Resolve"
     doing = "Resolving collisions"
-    cancelled = "Stopped resolving: the plan is as it was"
+    cancelled = "Resolving cancelled: the plan is unchanged"
 
     max_lift: FloatProperty(
-        name="Highest Lift", default=100.0, min=0.0, max=1e4, precision=2, description="Along the tool's axis, in mm"
+        name="Max Lift",
+        default=100.0,
+        min=0.0,
+        max=1e4,
+        precision=2,
+        description="Largest lift along the tool axis, in mm",
     )
 
     @classmethod
@@ -137,7 +143,11 @@ class RIFFLER_OT_plan_nc(GivenOptions, bpy.types.Operator, ExportHelper):
 
     filter_glob: StringProperty(default="*.ngc;*.nc;*.tap;*.h;*.mpf;*.apt", options={"HIDDEN"})
     post: EnumProperty(
-        name="Machine", items=MACHINES, default="tcp", options={"SKIP_SAVE"}, description="That the code is written for"
+        name="Machine",
+        items=MACHINES,
+        default="tcp",
+        options={"SKIP_SAVE"},
+        description="Machine that the NC code is written for",
     )
     feed: FloatProperty(
         name="Feed", default=0.0, min=0.0, max=1e6, options={"SKIP_SAVE"}, description="mm/min; 0: the plan's"

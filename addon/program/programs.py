@@ -49,12 +49,14 @@ def ready(context, ob, plan):
     missing = plan_store.unresolved(plan)
     if missing:
         raise ValueError(
-            f"{numbered(missing)} may collide: use Resolve, turn the keys where it finds no way, or switch off a "
-            "path that is to be left out"
+            f"{numbered(missing)} may collide: use Resolve, turn the keys where it finds no solution, or switch "
+            "the path off"
         )
     clearance = scene_units.clean(context.scene.riffler.plan.clearance)
     if plan.provenance.get(plan_store.RESOLVED) != taken.fingerprint(plan.tool, clearance):
-        raise ValueError("Part, fixtures, tool or clearance have changed since the paths were resolved: use Resolve")
+        raise ValueError(
+            "Part, fixtures, tool or clearance have changed since the paths were resolved: use Resolve again"
+        )
     return taken
 
 
@@ -306,7 +308,7 @@ def _with_tools(context, program, name):
     called = sorted({int(n) for n in np.unique(program.tool[1:])} - set(program.tools))
     if len(called) > 1:
         raise ValueError(
-            f"{name} calls tools {', '.join(map(str, called))}, and only one can be chosen here: take a .rprog file, "
+            f"{name} calls tools {', '.join(map(str, called))}, and only one can be chosen here: use a .rprog file, "
             "which has their shapes, or one program for each tool"
         )
     if not called:

@@ -194,7 +194,7 @@ def program_poll(cls, context):
 
 
 class RIFFLER_OT_simulate(properties.ProgramSettings, properties.GivenOptions, bpy.types.Operator):
-    """Show the stock as the program leaves it at the current frame: play, or drag the frame. Esc in the view ends it"""
+    """Show the stock as the program has cut it at the current frame; Esc in the view ends the simulation"""
 
     bl_idname = "riffler.simulate"
     bl_label = "Simulate"

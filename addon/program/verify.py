@@ -31,15 +31,18 @@ class _Kept:
 
 
 class RIFFLER_OT_verify(LongWork, properties.VerifySettings, properties.GivenOptions, bpy.types.Operator):
-    """Run the program on its stock and list what goes wrong: gouges, rapids in material, holder and fixtures hit"""
+    """Run the program on its stock and list its errors: gouges, rapids in material, collisions of holder and
+    fixtures"""
 
     bl_idname = "riffler.verify"
     bl_label = "Verify"
     bl_options = {"REGISTER", "UNDO"}
     doing = "Verifying"
-    cancelled = "Not verified: everything is as it was"
+    cancelled = "Not verified: nothing has changed"
 
-    hide: BoolProperty(name="Hide the Rest", default=True, description="What would cover the colours")
+    hide: BoolProperty(
+        name="Hide Other Objects", default=True, description="Hide the objects that would cover the colours"
+    )
 
     @classmethod
     def poll(cls, context):
@@ -103,7 +106,8 @@ class RIFFLER_OT_verify(LongWork, properties.VerifySettings, properties.GivenOpt
             distance = np.asarray(report.part_map)
             own = ob.type == "MESH" and len(ob.data.vertices) == len(distance)
             if not own or ob.library or ob.data.library:
-                return [f"{ob.name} is not coloured, as it is no plain mesh of this file: colour what is left instead."]
+                why = f"{ob.name} is not coloured, since it is not a plain mesh of this file"
+                return [f"{why}: colour Remaining Stock instead."]
         attributes.show_distance(ob.data, distance, scene_units.clean(self.scale))
         attributes.shade_by_attribute()
         if self.hide:
@@ -212,7 +216,7 @@ def _entry(found, setup):
 
 
 class RIFFLER_OT_finding_go(bpy.types.Operator):
-    """Go to what was found: the frame, the place in the view, the line of the NC code"""
+    """Go to the finding: its frame, its place in the view and its line of the NC code"""
 
     bl_idname = "riffler.finding_go"
     bl_label = "Go to Finding"
@@ -220,16 +224,19 @@ class RIFFLER_OT_finding_go(bpy.types.Operator):
 
     of: EnumProperty(
         name="List",
-        items=(("VERIFY", "Verified", "What was verified"), ("PLAN", "Plan", "What resolving a plan has found")),
-        description="Which list it is in",
+        items=(
+            ("VERIFY", "Verified", "Findings of verifying a program"),
+            ("PLAN", "Plan", "Findings of resolving a plan"),
+        ),
+        description="List that has the finding",
     )
-    index: IntProperty(name="Number", default=0, min=0, description="In the list, from 0")
+    index: IntProperty(name="Number", default=0, min=0, description="Position in the list, from 0")
 
     @classmethod
     def poll(cls, context):
         if context.scene.riffler.verify.findings or _plan_findings(context):
             return True
-        return operator_parts.deny(cls, "Nothing was found, or nothing was verified yet")
+        return operator_parts.deny(cls, "There are no findings: use Verify first, or Resolve")
 
     def execute(self, context):
         settings, plan_ob = context.scene.riffler.verify, plan_store.active(context)
@@ -257,7 +264,7 @@ def _plan_findings(context):
 
 
 class RIFFLER_OT_verify_clear(bpy.types.Operator):
-    """Take away the list, and the colours of the part"""
+    """Remove the list of findings, and the colours of the part"""
 
     bl_idname = "riffler.verify_clear"
     bl_label = "Clear Findings"

@@ -40,7 +40,7 @@ class RIFFLER_OT_stroke_elsewhere(bpy.types.Operator):
         ob = sculpts.active(context)
         if refusal(context) or ob is None or mesh_edits.made(ob):
             return True
-        return operator_parts.deny(cls, "The active sculpt gets the stroke itself")
+        return operator_parts.deny(cls, "The active sculpt is under the pointer: use Sculpt Stroke")
 
     def invoke(self, context, event):
         """The drag belongs to this operator whatever comes of it, so that nothing is moved or selected by it."""
@@ -60,7 +60,7 @@ class RIFFLER_OT_stroke_elsewhere(bpy.types.Operator):
         }
         self._keep(event)
         if self._target and context.workspace is not None:
-            context.workspace.status_text_set(local("Riffler: let go to be asked what this is to be    Esc: cancel"))
+            context.workspace.status_text_set(local("Riffler: release to make this object a sculpt    Esc: cancel"))
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
@@ -174,7 +174,7 @@ class TakesDrag:
     stroke: StringProperty(
         name="Stroke",
         options={"HIDDEN", "SKIP_SAVE"},
-        description="What riffler.stroke takes, with a view that goes from the world to clip space; empty: no stroke",
+        description="Stroke as in riffler.stroke, with a view from world to clip space; empty: no stroke",
     )
 
     def go_on(self, context):
@@ -195,16 +195,19 @@ class RIFFLER_OT_make_sculpt(TakesDrag, bpy.types.Operator):
     bl_label = "Make It a Sculpt?"
     bl_options = set()  # making the sculpt is one undo step, and the stroke another
 
-    object: StringProperty(name="Object", options={"HIDDEN", "SKIP_SAVE"}, description="Empty: the active one")
+    object: StringProperty(
+        name="Object", options={"HIDDEN", "SKIP_SAVE"}, description="Name of the object; empty: the active object"
+    )
     side: FloatProperty(
-        name="Longest side (mm)",
+        name="Longest Side (mm)",
         min=0.0,
         max=1e5,
         precision=2,
         options={"SKIP_SAVE"},
         update=lambda self, context: _fit(self, context),
-        description="The scene's unit becomes so many millimetres that the object is as long as this; nothing is "
-        "scaled. 0: chosen from the object",
+        description=(
+            "Length of the object's longest side, set by the scene's unit without scaling; 0: chosen from the object"
+        ),
     )
     pitch: FloatProperty(
         name="Pitch (mm)",
@@ -212,7 +215,7 @@ class RIFFLER_OT_make_sculpt(TakesDrag, bpy.types.Operator):
         max=1e5,
         precision=4,
         options={"SKIP_SAVE"},
-        description="Distance between rays: what the surface can resolve. 0: chosen from the size",
+        description="Distance between rays, the finest detail of the surface; 0: chosen from the size",
     )
     diameter: FloatProperty(
         name="Cutter (mm)",
@@ -220,7 +223,7 @@ class RIFFLER_OT_make_sculpt(TakesDrag, bpy.types.Operator):
         max=1e5,
         precision=3,
         options={"SKIP_SAVE"},
-        description="Diameter of the cutter. 0: chosen from the size",
+        description="Diameter of the cutter; 0: chosen from the size",
     )
 
     @classmethod
@@ -240,8 +243,8 @@ class RIFFLER_OT_make_sculpt(TakesDrag, bpy.types.Operator):
         if source is None:
             return
         column = layout.column(align=True)
-        column.label(text=local("{} is no sculpt yet.").format(source.name), icon="SCULPTMODE_HLT", translate=False)
-        column.label(text="OK makes one of it; the object stays, hidden.", icon="BLANK1")
+        column.label(text=local("{} is not a sculpt yet.").format(source.name), icon="SCULPTMODE_HLT", translate=False)
+        column.label(text="OK makes a sculpt of it and hides the object.", icon="BLANK1")
         layout.use_property_split = True
         column = layout.column(align=True)
         column.enabled = not fit.others(context)
@@ -288,21 +291,21 @@ class RIFFLER_OT_make_sculpt(TakesDrag, bpy.types.Operator):
 
 
 class RIFFLER_OT_edits_first(TakesDrag, bpy.types.Operator):
-    """Say what becomes of what Blender's own tools have made of the sculpt; then the stroke goes on"""
+    """Apply or discard the edits made with Blender's own tools, then make the stroke"""
 
     bl_idname = "riffler.edits_first"
-    bl_label = "Keep the Edits?"
+    bl_label = "Apply Mesh Edits?"
     bl_options = {"INTERNAL"}
 
     edits: EnumProperty(
         name="Edits",
         items=(
-            ("TAKE", "Take Edits", "The mesh as it is now becomes the sculpt's material"),
-            ("DROP", "Drop Edits", "The mesh is made from the volume again, as it was before them"),
+            ("TAKE", "Apply Mesh Edits", "Make the edited mesh the sculpt's material"),
+            ("DROP", "Discard Edits", "Rebuild the mesh from the volume, without the edits"),
         ),
         default="TAKE",
         options={"SKIP_SAVE"},
-        description="What becomes of them",
+        description="Whether to apply or discard the edits",
     )
 
     @classmethod

@@ -143,7 +143,7 @@ def _settle(ob):
         undo_states.tell(str(error))
         return
     if sculpt_store.token(ob.data) != token:
-        undo_states.tell(f"{ob.name} is as it was last packed: the strokes since are in its journal, if there is one")
+        undo_states.tell(f"{ob.name} is as last saved: later strokes are in its journal, if there is one")
 
 
 @bpy.app.handlers.persistent

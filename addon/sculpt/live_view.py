@@ -15,7 +15,7 @@ ROOM = 1.1  # around what is framed
 
 
 class RIFFLER_OT_frame(bpy.types.Operator):
-    """Look at the whole sculpt"""
+    """Fit the whole sculpt into the view"""
 
     bl_idname = "riffler.frame"
     bl_label = "Frame Sculpt"
@@ -47,13 +47,15 @@ def _corners(ob):
 
 
 class RIFFLER_OT_leave(bpy.types.Operator):
-    """End the work at live sculpts, so that Blender's modes open: their strokes are in their meshes then"""
+    """Write the strokes into the sculpts' meshes, so that Blender's other modes can be used"""
 
     bl_idname = "riffler.leave"
     bl_label = "Leave for Another Mode"
     bl_options = set()  # entering the mode is Blender's undo step
 
-    menu: BoolProperty(name="Menu", description="Open the pie of modes; off: enter Edit Mode", options={"SKIP_SAVE"})
+    menu: BoolProperty(
+        name="Menu", description="Open the pie menu of modes; off: enter Edit Mode", options={"SKIP_SAVE"}
+    )
 
     @classmethod
     def poll(cls, context):

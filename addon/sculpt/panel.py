@@ -113,9 +113,9 @@ def looks(stages):
         return []
     shares = {name: f"{name} {100 * ms / whole:.0f} %" for name, ms in times.items()}
     middle, longest = stages.lag()
-    lag = [f"Lag: {middle:.0f} ms, {longest:.0f} at most"] if longest else []
+    lag = [f"Lag: {middle:.0f} ms, at most {longest:.0f}"] if longest else []
     return [
-        f"A look: {whole:.1f} ms",
+        f"Update: {whole:.1f} ms",
         f"{shares['cut']}, {shares['mesh']}",
         f"{shares['transfer']}, {shares['draw']}",
         f"{counts['bricks']:.1f} tiles, {counts['chunks']:.1f} chunks",

@@ -169,7 +169,7 @@ def crashed(look=False):
             found = [f for place in preferences_access.folders("journals") for f in journal.crashed(place)]
             _crashed = sorted(found, key=lambda f: f.when, reverse=True)
         except OSError as error:
-            print(f"Riffler: no journals can be looked for: {error}")
+            print(f"Riffler: cannot search for journals: {error}")
             _crashed = []
     return _crashed
 
@@ -201,7 +201,7 @@ def told(token):
         try:
             content = begun.state(token)
         except journal.PROBLEMS as error:
-            print(f"Riffler: a journal could not be told again: {error}")
+            print(f"Riffler: a journal could not be read: {error}")
             continue
         if content is not None:
             return content

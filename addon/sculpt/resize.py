@@ -12,9 +12,9 @@ from . import pointer
 from .pure import sizing
 
 FIELDS = (
-    ("RADIUS", "Radius", "Of the cutter"),
-    ("DEPTH", "Depth", "How far the tool goes in"),
-    ("STRENGTH", "Strength", "How much smoothing smooths"),
+    ("RADIUS", "Radius", "Radius of the cutter"),
+    ("DEPTH", "Depth", "Depth of the stroke"),
+    ("STRENGTH", "Strength", "Strength of the smoothing"),
 )
 SHORTER = 0.9  # of a size: one step
 FACTOR_PIXELS = 200.0  # a whole strength
@@ -31,16 +31,15 @@ DIGITS = {
 
 
 class RIFFLER_OT_resize(bpy.types.Operator):
-    """Set the size by the pointer's distance from the middle of the circle, or by digits. Shift: finer. Ctrl: round
-    numbers"""
+    """Set the size by the pointer's distance from the centre of the circle, or type a number (Shift: finer, Ctrl:
+    round numbers)
+    """
 
     bl_idname = "riffler.resize"
     bl_label = "Resize Cutter"
     bl_options = set()  # settings of a brush are no undo steps
 
-    field: EnumProperty(
-        name="Field", items=FIELDS, default="RADIUS", options={"SKIP_SAVE"}, description="Which size is set"
-    )
+    field: EnumProperty(name="Field", items=FIELDS, default="RADIUS", options={"SKIP_SAVE"}, description="Size to set")
 
     @classmethod
     def poll(cls, context):
@@ -102,7 +101,7 @@ class RIFFLER_OT_size_step(bpy.types.Operator):
     bl_label = "Step Cutter Size"
     bl_options = set()
 
-    larger: BoolProperty(name="Larger", options={"SKIP_SAVE"}, description="Off: smaller")
+    larger: BoolProperty(name="Larger", options={"SKIP_SAVE"}, description="Make the cutter larger; off: smaller")
 
     def execute(self, context):
         settings = context.scene.riffler.sculpt

@@ -31,7 +31,7 @@ def content(mesh):
     what was written."""
     key = identity(mesh)
     if not key:
-        raise ValueError(f"{mesh.name} is no sculpt")
+        raise ValueError(f"{mesh.name} is not a sculpt")
     found = _cache.get(key)
     if found is None:
         block, cuts, mask, shaped = sculpt_payload.decode(packed_images.read(mesh.riffler.store, "the sculpt"), key)

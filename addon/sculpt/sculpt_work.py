@@ -9,8 +9,12 @@ from ..common import json_object, units
 from ..translations import local
 from . import live_registry, mesh_edits, sculpt_store, sculpts
 
-EDITS_FIRST = "{} was edited in Blender's own modes: Take Edits keeps that, Rebuild Mesh drops it; then go on"
-EDITS_LEFT_OUT = "The mesh was edited: what is made is the volume, without the edits. Take Edits takes them over first"
+EDITS_FIRST = (
+    "{} was edited in Blender's own modes: use Apply Mesh Edits to keep the edits, or Rebuild Mesh to discard them"
+)
+EDITS_LEFT_OUT = (
+    "The mesh was edited, but the result has the volume without the edits: use Apply Mesh Edits first to include them"
+)
 
 
 def tool_of_text(text):
@@ -22,7 +26,7 @@ class TakesTool:
     """Mixin of operators that cut with the scene's tool or one that they are given."""
 
     tool: bpy.props.StringProperty(
-        name="Tool", options={"HIDDEN", "SKIP_SAVE"}, description="A tool as JSON; empty: the scene's tool"
+        name="Tool", options={"HIDDEN", "SKIP_SAVE"}, description="Tool as JSON; empty: the scene's tool"
     )
 
     def tool_dict(self, context):

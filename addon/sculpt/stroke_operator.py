@@ -28,7 +28,7 @@ last = ""  # the newest stroke that was made by hand, for riffler.stroke(stroke=
 
 
 class RIFFLER_OT_stroke(sculpt_work.TakesTool, bpy.types.Operator):
-    """Sculpt where the pointer goes. Esc or the right button takes the stroke back"""
+    """Sculpt along the pointer's path (Esc or right mouse button: cancel the stroke)"""
 
     bl_idname = "riffler.stroke"
     bl_label = "Sculpt Stroke"
@@ -51,9 +51,7 @@ class RIFFLER_OT_stroke(sculpt_work.TakesTool, bpy.types.Operator):
 
     def execute(self, context):
         if not self.stroke:
-            return operator_parts.fail(
-                self, ValueError("stroke: say how the tool goes, as there is no pointer to follow")
-            )
+            return operator_parts.fail(self, ValueError("stroke: give the path, as there is no pointer to follow"))
         try:
             view, samples, looks = brush_stroke.read(self.stroke)
             self._take_up(context)
@@ -104,7 +102,7 @@ class RIFFLER_OT_stroke(sculpt_work.TakesTool, bpy.types.Operator):
     def modal(self, context, event):
         if live_registry.lives.get(self._run.mark) is not self._run:
             self._leave(context)
-            self.report({"WARNING"}, local("The sculpt was saved or taken in mid-stroke: the stroke was taken back"))
+            self.report({"WARNING"}, local("The sculpt was saved or ended during a stroke: the stroke was undone"))
             return {"CANCELLED"}
         if event.type in {"ESC", "RIGHTMOUSE"} and event.value == "PRESS":
             return self._give_up(context)
@@ -176,7 +174,7 @@ class RIFFLER_OT_stroke(sculpt_work.TakesTool, bpy.types.Operator):
         if self._shown is not None and made.pose is not None:
             self._shown.pose, self._shown.force, self._shown.torque = made.pose, made.force, made.torque
         if context.workspace is not None:
-            context.workspace.status_text_set(f"Riffler: {summary(made, made.brush)}    Esc: take the stroke back")
+            context.workspace.status_text_set(f"Riffler: {summary(made, made.brush)}    Esc: cancel the stroke")
 
     def _end(self, context):
         global last

@@ -9,13 +9,13 @@ from ..translations import CONTEXT
 
 
 class RIFFLER_OT_tool_preset(bpy.types.Operator):
-    """Take the cutter of this name for strokes and cuts"""
+    """Use the cutter of this name for strokes and cuts"""
 
     bl_idname = "riffler.tool_preset"
     bl_label = "Tool Preset"
     bl_options = {"INTERNAL"}  # no undo step, as of all settings of the sculpt tools
 
-    name: bpy.props.StringProperty(name="Name", description="Of the preset")
+    name: bpy.props.StringProperty(name="Name", description="Name of the preset")
 
     def execute(self, context):
         try:

@@ -25,9 +25,9 @@ FIELDS = {name: _field(size) for name, size in presets.ALL.items()}
 class RifflerTool(bpy.types.PropertyGroup):
     __annotations__ = {
         "preset": StringProperty(
-            name="Preset", description="That the sizes were taken from", default=presets.presets()[0]["name"]
+            name="Preset", description="Preset that the sizes come from", default=presets.presets()[0]["name"]
         ),
-        "kind": EnumProperty(name="Shape", items=KINDS, default="ball", description="Of the end of the cutter"),
+        "kind": EnumProperty(name="Shape", items=KINDS, default="ball", description="Shape of the cutter's end"),
         **FIELDS,
     }
 

@@ -39,7 +39,7 @@ def state_of(ob):
     if state is None and token:
         content = persistence.told(token)
         if content is not None:
-            tell(f"{ob.name}: the state was made again from its journal")
+            tell(f"{ob.name}: the state was rebuilt from its journal")
             state = State(content, tuple(riffler.Mesher(content.volume).shape), None)
             snapshots.put(token, state)
     return state

@@ -42,8 +42,8 @@ def along_curve(context, ob, curve, tool, axis, depth, follow, tolerance):
         cuts.append(Cut(tool, poses.make_poses(points, axes, depth), tolerance))
     if not cuts and far:
         raise ValueError(
-            f"{curve.name} is too far from {ob.name}, of which one point is the nearest to all of it: move it nearer, "
-            "or turn Follow surface off"
+            f"{curve.name} is too far from {ob.name}, one point of which is the nearest to the whole curve: move it "
+            "nearer, or turn Follow Surface off"
         )
     if not cuts:
         raise ValueError(f"{curve.name} has no spline with two points: add points, or choose another curve")
@@ -61,7 +61,7 @@ def from_recording(path):
         if len(s) > 1 and brush_of(s).cuts
     ]
     if not cuts:
-        raise ValueError("the recording has no stroke with two poses that removes material or puts it on")
+        raise ValueError("the recording has no stroke with two poses that removes or adds material")
     return cuts, journal.stock
 
 
@@ -70,7 +70,7 @@ def stock_of_recording(path):
     problems.check_source(path)
     stock = riffler.Journal.read(path).stock
     if stock is None:
-        raise ValueError(f"{Path(path).name} does not say what stock it was made on")
+        raise ValueError(f"{Path(path).name} does not name the stock it was made on")
     if stock["snapshot"]:
         return riffler.Volume.load(Path(path).with_name(stock["snapshot"]))
     return riffler.Volume.block(stock["lower"], stock["upper"], stock["pitch"], stock["directions"])

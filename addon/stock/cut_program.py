@@ -19,11 +19,11 @@ def not_in_cuts(content):
     masked = sum(cut.mode == "remove" and cut.masked for cut in content.cuts)
     said = []
     if added:
-        said.append(f"No machine can put material on: left out {units.counted(added, 'stroke')} that did")
+        said.append(f"No machine can add material: left out {units.counted(added, 'stroke')} of Add")
     if masked:
-        said.append(f"Cuts made beside a mask: {masked}. They cut what it protected, too")
+        said.append(f"Cuts made with a mask: {masked}. They also cut what it protected")
     if content.shaped:
-        said.append("Only cuts are in it: no crop, smoothing or relief, and no edits of the mesh")
+        said.append("The file has cuts only: no crop, smoothing or relief, and no edits of the mesh")
     return said
 
 

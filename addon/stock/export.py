@@ -53,7 +53,9 @@ class ExportSurface(FileWork):
     cancelled = "Not exported: no file was written"
 
     world: bpy.props.BoolProperty(
-        name="As placed", default=True, description="Apply the object's transform; off: as milled, in the stock's frame"
+        name="Apply Transform",
+        default=True,
+        description="Apply the object's transform; off: as milled, in the stock's own coordinates",
     )
 
     @classmethod
@@ -137,7 +139,7 @@ def placed(surface, matrix):
 
 
 class RIFFLER_OT_export_nc(properties.NcSettings, Export, bpy.types.Operator):
-    """Write the cuts made on the active sculpt as NC code in the stock's own frame"""
+    """Write the cuts made on the active sculpt as NC code in the stock's own coordinates"""
 
     bl_idname = "riffler.export_nc"
     bl_label = "Write NC"
@@ -155,7 +157,7 @@ class RIFFLER_OT_export_nc(properties.NcSettings, Export, bpy.types.Operator):
 
 
 class RIFFLER_OT_export_recording(Export, bpy.types.Operator):
-    """Write the cuts made on the active sculpt as a recording, which another stock can be cut with"""
+    """Write the cuts made on the active sculpt as a recording, to cut another stock with"""
 
     bl_idname = "riffler.export_recording"
     bl_label = "Save Recording"

@@ -24,8 +24,9 @@ def set_unit(operator, context, mm, shown="MM"):
 
 
 class RIFFLER_OT_millimetres(bpy.types.Operator):
-    """Make one Blender unit so many millimetres in this scene, one if nothing is said; sculpts keep their size in mm,
-    other objects their units"""
+    """Set the millimetres of one Blender unit in this scene; sculpts keep their size in mm, other objects their size
+    in units
+    """
 
     bl_idname = "riffler.millimetres"
     bl_label = "Scene in Millimetres"

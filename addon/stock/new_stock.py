@@ -18,7 +18,7 @@ from ..sculpt import live_registry, sculpt_store, sculpt_work, sculpts
 from . import cut_paths, properties
 from .pure import estimate
 
-NO_SOURCE = "select the object that is to be the material: a mesh, curve, text, surface or metaball"
+NO_SOURCE = "select the object to make material of: a mesh, curve, text, surface or metaball"
 
 
 def source_size(ob, scene):
@@ -36,7 +36,7 @@ class _New(NamedTuple):
 
 
 class RIFFLER_OT_new_stock(properties.StockSettings, LongWork, bpy.types.Operator):
-    """Make a block of material, or take the active object as material"""
+    """Make a block of material, or make material of the active object"""
 
     bl_idname = "riffler.new_stock"
     bl_label = "New Stock"
@@ -93,11 +93,11 @@ class RIFFLER_OT_new_stock(properties.StockSettings, LongWork, bpy.types.Operato
     def _check(self, source, volume):
         found = self._new.found
         if volume.volume <= 0:
-            why = found.get("lost_note") or "it has no volume at this pitch: close it, or take a finer one"
+            why = found.get("lost_note") or "it has no volume at this pitch: close it, or use a finer one"
             raise ValueError(f"{source.name}: {why}")
         if found.get("open_edges"):
             count = units.counted(found["open_edges"], "open edge")
-            self.report({"WARNING"}, f"{source.name} is not closed: {count} closed as well as could be")
+            self.report({"WARNING"}, f"{source.name} is not closed: {count} closed approximately")
         for note in notes_on(found):
             self.report({"WARNING"}, f"{source.name}: {note}")
 
@@ -183,7 +183,7 @@ def _viewed(context, done):
 
 
 class RIFFLER_OT_fit_pitch(bpy.types.Operator):
-    """Choose a pitch that suits the size: some 400 rays along the longest side"""
+    """Set a pitch that suits the size: about 400 rays along the longest side"""
 
     bl_idname = "riffler.fit_pitch"
     bl_label = "Fit Pitch"
@@ -193,7 +193,7 @@ class RIFFLER_OT_fit_pitch(bpy.types.Operator):
         stock = context.scene.riffler.stock
         source = object_surfaces.source_object(context)
         if stock.source == "OBJECT" and source is None:
-            return operator_parts.fail(self, ValueError("select the object that is to be the material"))
+            return operator_parts.fail(self, ValueError("select the object to make material of"))
         if stock.source == "RECORDING":
             return operator_parts.fail(self, ValueError("a recording has the pitch of the stock that it was made on"))
         size = stock.size if stock.source == "BLOCK" else source_size(source, context.scene)
@@ -205,7 +205,7 @@ class RIFFLER_OT_fit_pitch(bpy.types.Operator):
 
 
 class RIFFLER_OT_rebuild(bpy.types.Operator):
-    """Show the stored volume again, in the scene's units; edits to the mesh are lost"""
+    """Rebuild the mesh from the stored volume, in the scene's units; edits of the mesh are lost"""
 
     bl_idname = "riffler.rebuild"
     bl_label = "Rebuild Mesh"

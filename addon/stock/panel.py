@@ -21,7 +21,7 @@ class RIFFLER_PT_sculpt(Sidebar, bpy.types.Panel):
         layout = self.layout
         ob = sculpts.active(context)
         if ob is None:
-            lines(layout, "No sculpt is active.", "Make one, or Add > Mesh.", icon="INFO")
+            lines(layout, "No sculpt is active.", "Make one below, or use Add > Mesh.", icon="INFO")
             if object_surfaces.source_object(context) is not None:
                 layout.operator(
                     first_stroke.RIFFLER_OT_make_sculpt.bl_idname, text="Make Sculpt", icon="SCULPTMODE_HLT"
@@ -55,7 +55,7 @@ class RIFFLER_PT_sculpt(Sidebar, bpy.types.Panel):
         if stale:
             lines(layout, "The scene's units have changed;", "the mesh shows another size.", icon="ERROR")
         elif edited:
-            lines(layout, "The mesh was edited in Blender's", "own modes. Keep that, or drop it:", icon="ERROR")
+            lines(layout, "The mesh was edited in Blender's", "own modes. Apply or discard the edits:", icon="ERROR")
             layout.operator(clay.RIFFLER_OT_take_edits.bl_idname, icon="CHECKMARK")
         if stale or edited:
             layout.operator(new_stock.RIFFLER_OT_rebuild.bl_idname, icon="FILE_REFRESH")

@@ -17,7 +17,7 @@ class TakesJournal:
     """Mixin of operators on one of the journals that nobody holds."""
 
     journal: bpy.props.StringProperty(
-        name="Journal", options={"SKIP_SAVE"}, description="Name of its folder; empty: the newest"
+        name="Journal", options={"SKIP_SAVE"}, description="Name of the journal's folder; empty: the newest journal"
     )
 
     @classmethod
@@ -25,14 +25,14 @@ class TakesJournal:
         if not operator_parts.object_mode(cls, context) or operator_parts.busy(cls, context):
             return False
         return bool(persistence.crashed()) or operator_parts.deny(
-            cls, "There is nothing to recover: no work was cut off"
+            cls, "There is nothing to recover: no session was interrupted"
         )
 
     def take(self):
         """The journal, locked. ValueError where somebody else has it."""
         found = [f for f in persistence.crashed(look=True) if self.journal in ("", f.folder.name)]
         if not found:
-            raise ValueError(f"there is no journal {self.journal} that nobody works at".replace("  ", " "))
+            raise ValueError(f"there is no journal {self.journal} that can be recovered".replace("  ", " "))
         lock = journal.Lock(found[0].folder)
         if not lock.held:
             raise ValueError(f"the journal of {found[0].name} is being recovered by another Blender")
@@ -40,8 +40,7 @@ class TakesJournal:
 
 
 class RIFFLER_OT_recover(TakesJournal, long_work.LongWork, bpy.types.Operator):
-    """Make a sculpt as it was when Blender was cut off: its strokes are made again, in the sculpt that is in this file,
-    or in a new object"""
+    """Restore a sculpt from its journal after a crash, in this file's sculpt or in a new object"""
 
     bl_idname = "riffler.recover"
     bl_label = "Recover Sculpt"
@@ -83,7 +82,7 @@ class RIFFLER_OT_recover(TakesJournal, long_work.LongWork, bpy.types.Operator):
         persistence.park(self._lock, sculpt_store.identity(ob.data))
         persistence.crashed(look=True)
         context.window_manager.riffler.notice = ""
-        self.report({"INFO"}, f"{ob.name} is as it was when Blender was cut off: save the file")
+        self.report({"INFO"}, f"{ob.name} is restored to its state before the crash: save the file")
         return {"FINISHED"}
 
 
@@ -153,7 +152,7 @@ def _new(context, name, content, about):
 
 
 class RIFFLER_OT_discard_journal(TakesJournal, bpy.types.Operator):
-    """Delete the journal of work that was cut off: its strokes are lost then"""
+    """Delete the journal of an interrupted session; its strokes are lost"""
 
     bl_idname = "riffler.discard_journal"
     bl_label = "Discard"
@@ -174,7 +173,7 @@ class RIFFLER_OT_discard_journal(TakesJournal, bpy.types.Operator):
 
 
 class RIFFLER_OT_dismiss(bpy.types.Operator):
-    """Take this notice away: it was read"""
+    """Hide this notice"""
 
     bl_idname = "riffler.dismiss"
     bl_label = "Dismiss"

@@ -23,16 +23,16 @@ REACH = 2.0  # pitches by which a relief reaches into what it joins
 
 
 class RIFFLER_OT_relief(properties.ReliefSettings, SculptWork, bpy.types.Operator):
-    """Raise a picture on the sculpt, or engrave it: what is light is high, or deep"""
+    """Raise a picture on the sculpt, or engrave it: light areas are high, or deep"""
 
     bl_idname = "riffler.relief"
     bl_label = "Emboss Picture"
     doing = "Embossing"
-    cancelled = "Not embossed: the sculpt is as it was"
+    cancelled = "Not embossed: the sculpt is unchanged"
 
     image: StringProperty(name="Picture", description="Name of an image in this file")
     place: StringProperty(
-        name="Place", description="An object in whose plane z = 0 the picture lies, seen from where its z points"
+        name="Place", description="Object whose local plane z = 0 holds the picture, seen from its +z side"
     )
 
     def begin(self, context):
@@ -61,12 +61,12 @@ class RIFFLER_OT_relief(properties.ReliefSettings, SculptWork, bpy.types.Operato
 
     def _tell_change(self, changed):
         if self.mode == "RAISE" and not changed:
-            why = "the stock's box is full there, or protected. Engrave the picture inverted, or use Make Room"
-            self.report({"WARNING"}, f"Nothing was put on: {why}")
+            why = "the stock's box is full there, or protected. Engrave the picture inverted, or use Grow Box"
+            self.report({"WARNING"}, f"Nothing was added: {why}")
             return
         if self._cut_off:
             self.report(
-                {"WARNING"}, local("The picture was cut off at the stock's box: Make Room in Clay gives it more")
+                {"WARNING"}, local("The picture was cut off at the stock's box: use Grow Box in Clay to enlarge it")
             )
         what = "Added" if self.mode == "RAISE" else "Removed"
         self.report({"INFO"} if changed > 0 else {"WARNING"}, f"{what} {units.format_volume(changed)}")

@@ -34,25 +34,29 @@ class _Shape(NamedTuple):
 
 
 class RIFFLER_OT_add_solid(bpy.types.Operator):
-    """Add a block, sphere or cylinder of material at the 3D cursor, ready to be sculpted"""
+    """Add a block, sphere or cylinder of material at the 3D cursor, ready to sculpt"""
 
     bl_idname = "riffler.add_solid"
     bl_label = "Add Solid"
     bl_options = {"REGISTER", "UNDO"}
 
-    shape: EnumProperty(name="Shape", items=SHAPES, default="SPHERE", description="What is added")
+    shape: EnumProperty(name="Shape", items=SHAPES, default="SPHERE", description="Shape to add")
     size: FloatVectorProperty(
         name="Size",
         default=(2, 2, 2),
         min=0,
         subtype="XYZ_LENGTH",
-        description="Of a block along x, y and z, in Blender units",
+        description="Size of a block along x, y and z, in Blender units",
     )
     radius: FloatProperty(
-        name="Radius", default=1, min=0, subtype="DISTANCE", description="Of a sphere or cylinder, in Blender units"
+        name="Radius",
+        default=1,
+        min=0,
+        subtype="DISTANCE",
+        description="Radius of a sphere or cylinder, in Blender units",
     )
     depth: FloatProperty(
-        name="Depth", default=2, min=0, subtype="DISTANCE", description="Of a cylinder along z, in Blender units"
+        name="Depth", default=2, min=0, subtype="DISTANCE", description="Length of a cylinder along z, in Blender units"
     )
     rays: IntProperty(
         name="Resolution",
@@ -60,10 +64,13 @@ class RIFFLER_OT_add_solid(bpy.types.Operator):
         min=2,
         soft_min=50,
         soft_max=1000,
-        description="Rays along the longest side: the more, the finer the details that the surface can have",
+        description="Number of rays along the longest side: more rays give finer details",
     )
     directions: EnumProperty(
-        name="Rays", items=properties.DIRECTIONS, default="xyz", description="Along which axes the material is measured"
+        name="Rays",
+        items=properties.DIRECTIONS,
+        default="xyz",
+        description="Directions of the rays that measure the material",
     )
 
     @classmethod

@@ -184,7 +184,7 @@ def test_shape_keys_go_with_the_vertices_that_they_were_of():
     ob.shape_key_add(name="Key").value = 1.0
     edited = common.part("sculpt.sculpts").edited
     assert edited(ob.data)  # so the panel offers to take them over, or to drop them
-    common.refused(lambda: bpy.ops.riffler.cut_curve(curve="Line", tool=common.FLAT, depth=2.0), "Take Edits")
+    common.refused(lambda: bpy.ops.riffler.cut_curve(curve="Line", tool=common.FLAT, depth=2.0), "Apply Mesh Edits")
     assert ob.data.shape_keys is not None and bpy.ops.riffler.rebuild() == {"FINISHED"}
     assert bpy.ops.riffler.cut_curve(curve="Line", tool=common.FLAT, depth=2.0) == {"FINISHED"}
     bpy.context.view_layer.update()

@@ -152,7 +152,7 @@ def test_material_that_the_box_cuts_off_is_said_at_once():
     settings(depth=0.5)
     assert "cut off" not in common.printed(add)  # it ends half a millimetre below the box
     settings(depth=1.5)
-    assert "cut off at the stock's box: Make Room" in common.printed(add)
+    assert "cut off at the stock's box: use Grow Box" in common.printed(add)
     common.part("sculpt.live_registry").end_all()
     top = common.coordinates(ob.data)[:, 2].max()
     assert top <= 20 + 1e-4

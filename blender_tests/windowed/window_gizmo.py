@@ -185,7 +185,7 @@ def hold_still(screen):
 
 
 def end(screen):
-    """The tool's end goes where the pointer goes: here straight up over the point."""
+    """The tool's end follows the pointer: here straight up over the point."""
     at = spot()
     turning = module("plan.current_pose")
     reach = turning.reach(bpy.context, view(screen), at.centre)

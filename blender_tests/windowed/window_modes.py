@@ -178,7 +178,7 @@ def told(screen, before):
 
 
 def begun_again(screen):
-    """A block whose box is its own: Take Edits has made the other's larger."""
+    """A block whose box is its own: Apply Mesh Edits has made the other's larger."""
     stroke.module("sculpt.live_registry").end_all()
     bpy.data.objects.remove(sculpt())
     stroke.cut.stock(screen, 0.5)
@@ -205,7 +205,7 @@ def with_force(screen):
 
 
 def at_the_box(screen):
-    """What Add puts into a groove is cut off at the block's top, and that is said; Make Room moves no vertex; then
+    """What Add puts into a groove is cut off at the block's top, and that is said; Grow Box moves no vertex; then
     there is room, and the seam of what was added is sharp all along."""
     yield from groove(screen, 16)
     stroke.tool(screen, "riffler.add")
@@ -246,7 +246,7 @@ def box():
     return np.subtract(sculpt().data.riffler.upper, sculpt().data.riffler.lower)
 
 
-CUT_OFF = "What was put on is cut off at the stock's box: Make Room in Clay gives it more"
+CUT_OFF = "The added material was cut off at the stock's box: use Grow Box in Clay to enlarge it"
 
 
 def seam(mesh, mm):

@@ -11,7 +11,9 @@ from .plan_work import plan_poll, tell
 
 
 class RIFFLER_OT_plan_use_tool(bpy.types.Operator):
-    """Plan on with shank and holder of the Tool panel's tool. Keys stay; what was resolved has to be resolved again"""
+    """Use the shank and the holder of the Tool panel's tool in this plan; keys stay, but the paths must be resolved
+    again
+    """
 
     bl_idname = "riffler.plan_use_tool"
     bl_label = "Use This Tool"

@@ -38,7 +38,7 @@ def missing(context, settings):
 
 
 class RIFFLER_OT_plan_find(LongWork, properties.FindSettings, bpy.types.Operator):
-    """Find paths on the part by a strategy, as those of a new plan"""
+    """Find paths on the part with a strategy, and make a plan of them"""
 
     bl_idname = "riffler.plan_find"
     bl_label = "Find Paths"
@@ -48,12 +48,14 @@ class RIFFLER_OT_plan_find(LongWork, properties.FindSettings, bpy.types.Operator
 
     strategy: strategy_fields.choice(options={"SKIP_SAVE"})  # what is not given is the first, whatever was before
     tool: bpy.props.StringProperty(
-        name="Tool", options={"HIDDEN", "SKIP_SAVE"}, description="A tool as JSON; empty: the plan's tool of the scene"
+        name="Tool", options={"HIDDEN", "SKIP_SAVE"}, description="Tool as JSON; empty: the scene's plan tool"
     )
     replace: bpy.props.StringProperty(
         name="Replace",
         options={"SKIP_SAVE"},
-        description="Name of a plan whose paths are found anew on its own part; its orientations go. Empty: a new plan",
+        description=(
+            "Name of a plan whose paths are found again on its own part, without its orientations; empty: a new plan"
+        ),
     )
 
     @classmethod
@@ -146,8 +148,7 @@ class RIFFLER_OT_plan_find(LongWork, properties.FindSettings, bpy.types.Operator
 
 
 class RIFFLER_OT_plan_show(bpy.types.Operator):
-    """Draw the plan's paths anew; edits to their curves are lost. Copies stay, and curves that were renamed or are in
-    use"""
+    """Draw the plan's paths again; edits of their curves are lost, but copies, renamed curves and curves in use stay"""
 
     bl_idname = "riffler.plan_show"
     bl_label = "Redraw Paths"

@@ -8,16 +8,16 @@ from ..machines import MACHINES
 from ..pure import machine_fields
 
 HOW = (
-    ("GIVE", "Value Shown", "Give the value that the field shows"),
-    ("CURSOR", "3D Cursor", "Give the place of the 3D cursor, in mm of the scene"),
-    ("UNSET", "Not Given", "What counts is what the machine has where nothing is given"),
+    ("GIVE", "Value Shown", "Set the value shown in the field"),
+    ("CURSOR", "3D Cursor", "Set the position of the 3D cursor, in mm of the scene"),
+    ("UNSET", "Default", "Use the machine's default"),
 )
 
 
 class OfMachine:
     """Mixin: of which machine; `option` is of a subclass."""
 
-    machine: EnumProperty(name="Machine", items=MACHINES, default="tcp", description="Whose option it is")
+    machine: EnumProperty(name="Machine", items=MACHINES, default="tcp", description="Machine that has the option")
 
     def fact(self, context):
         """ValueError that lists the options where there is none of that name."""
@@ -34,14 +34,14 @@ class OfMachine:
 
 
 class RIFFLER_OT_machine_option(OfMachine, bpy.types.Operator):
-    """Give this option of the machine, or take it back"""
+    """Set this option of the machine, or reset it to the machine's default"""
 
     bl_idname = "riffler.machine_option"
-    bl_label = "Machine Option"
+    bl_label = "Set Machine Option"
     bl_options = {"REGISTER", "UNDO", "INTERNAL"}
 
-    option: StringProperty(name="Option", description="Its name")
-    how: EnumProperty(name="How", items=HOW, default="GIVE", description="What becomes of it")
+    option: StringProperty(name="Option", description="Name of the option")
+    how: EnumProperty(name="How", items=HOW, default="GIVE", description="Whether to set or reset the option")
 
     @classmethod
     def description(cls, context, properties):
@@ -51,7 +51,7 @@ class RIFFLER_OT_machine_option(OfMachine, bpy.types.Operator):
         try:
             fact = self.fact(context)
             if self.how == "CURSOR" and fact["count"] != 3:
-                raise ValueError(f"{self.option} is no place: give a number")
+                raise ValueError(f"{self.option} is not a position: give a number")
         except operator_parts.ERRORS as error:
             return operator_parts.fail(self, error)
         if self.how == "UNSET":
@@ -78,13 +78,13 @@ def _others(self, context):
 
 
 class RIFFLER_OT_machine_option_add(OfMachine, bpy.types.Operator):
-    """Give one more of the machine's options: limits and rates of its axes, how its code is written"""
+    """Set one more option of the machine: limits and rates of its axes, or how its code is written"""
 
     bl_idname = "riffler.machine_option_add"
-    bl_label = "Give an Option"
+    bl_label = "Add Machine Option"
     bl_options = {"REGISTER", "UNDO", "INTERNAL"}
 
-    option: EnumProperty(name="Option", items=_others, description="Its name")
+    option: EnumProperty(name="Option", items=_others, description="Name of the option")
 
     def execute(self, context):
         self.give(context)

@@ -39,7 +39,7 @@ def _editable(cls, collection):
 
 
 class RIFFLER_OT_plan_part(bpy.types.Operator):
-    """Plan on the active object: the finished part, as it lies in the scene"""
+    """Make the active object the part: the finished shape, as it lies in the scene"""
 
     bl_idname = "riffler.plan_part"
     bl_label = "Set Part"
@@ -72,7 +72,7 @@ class RIFFLER_OT_plan_part(bpy.types.Operator):
 
 
 class RIFFLER_OT_plan_fixtures_add(bpy.types.Operator):
-    """Make fixtures of the selected objects: the tool will stay clear of them"""
+    """Make the selected objects fixtures, which the tool stays clear of"""
 
     bl_idname = "riffler.plan_fixtures_add"
     bl_label = "Add Fixtures"
@@ -85,7 +85,7 @@ class RIFFLER_OT_plan_fixtures_add(bpy.types.Operator):
         if why := next(filter(None, map(refusals.instance, context.selected_objects)), ""):
             return operator_parts.deny(cls, f"{why} first")
         if not any(ob != context.scene.riffler.plan.part for ob in surfaces(context)):
-            return operator_parts.deny(cls, "Select the vise, the clamps: objects with a surface other than the part")
+            return operator_parts.deny(cls, "Select the vise, the clamps: objects with a surface, other than the part")
         return not operator_parts.busy(cls, context)
 
     def execute(self, context):
@@ -113,7 +113,7 @@ class RIFFLER_OT_plan_fixtures_add(bpy.types.Operator):
 
 
 class RIFFLER_OT_plan_fixtures_remove(bpy.types.Operator):
-    """Take the selected objects out of the fixtures; they stay in the scene"""
+    """Remove the selected objects from the fixtures; they stay in the scene"""
 
     bl_idname = "riffler.plan_fixtures_remove"
     bl_label = "Remove Fixtures"
@@ -127,7 +127,7 @@ class RIFFLER_OT_plan_fixtures_remove(bpy.types.Operator):
         if not _editable(cls, home):
             return False
         if not any(home in ob.users_collection for ob in context.selected_objects):
-            return operator_parts.deny(cls, "Select the fixtures that are none any more")
+            return operator_parts.deny(cls, "Select the fixtures to remove")
         return not operator_parts.busy(cls, context)
 
     def execute(self, context):
@@ -140,16 +140,16 @@ class RIFFLER_OT_plan_fixtures_remove(bpy.types.Operator):
 
 
 class RIFFLER_OT_plan_tool(bpy.types.Operator):
-    """Plan with this tool: cutter, shank and holder"""
+    """Use this tool for planning: cutter, shank and holder"""
 
     bl_idname = "riffler.plan_tool"
-    bl_label = "Take Tool"
+    bl_label = "Use Tool"
     bl_options = {"REGISTER", "UNDO"}
 
-    name: bpy.props.StringProperty(name="Name", description="Of the tool; empty: the first of the file")
+    name: bpy.props.StringProperty(name="Name", description="Name of the tool; empty: the first tool of the file")
     path: bpy.props.StringProperty(name="File", description="A tool file; empty: the presets", subtype="FILE_PATH")
     sculpting: bpy.props.BoolProperty(
-        name="Of sculpting", default=False, description="The cutter of the Tool panel, whatever name and file say"
+        name="Sculpting Cutter", default=False, description="Use the cutter of the Tool panel, and ignore name and file"
     )
 
     def execute(self, context):
@@ -165,7 +165,7 @@ class RIFFLER_OT_plan_tool(bpy.types.Operator):
 
 
 class RIFFLER_OT_plan_tool_open(bpy.types.Operator, ImportHelper):
-    """Take a tool from a file (.json, .toml)"""
+    """Load a tool from a file (.json, .toml)"""
 
     bl_idname = "riffler.plan_tool_open"
     bl_label = "Open Tool File"
@@ -173,7 +173,7 @@ class RIFFLER_OT_plan_tool_open(bpy.types.Operator, ImportHelper):
 
     filename_ext = ".json"
     filter_glob: bpy.props.StringProperty(default="*.json;*.toml", options={"HIDDEN"})
-    name: bpy.props.StringProperty(name="Name", description="Of the tool; empty: the first of the file")
+    name: bpy.props.StringProperty(name="Name", description="Name of the tool; empty: the first tool of the file")
 
     def execute(self, context):
         path = bpy.path.abspath(self.filepath)
@@ -185,15 +185,20 @@ class RIFFLER_OT_plan_tool_open(bpy.types.Operator, ImportHelper):
 
 
 class RIFFLER_OT_plan_tool_save(bpy.types.Operator):
-    """Keep the plan's tool, with shank and holder, as a file in the tool library"""
+    """Save the plan's tool, with shank and holder, as a file in the tool library"""
 
     bl_idname = "riffler.plan_tool_save"
     bl_label = "Save Tool"
     bl_options = {"REGISTER", "UNDO"}
 
-    name: bpy.props.StringProperty(name="Name", description="Of the tool, and of its file; empty: the one that it has")
+    name: bpy.props.StringProperty(
+        name="Name", description="Name of the tool and of its file; empty: the tool's current name"
+    )
     folder: bpy.props.StringProperty(
-        name="Folder", subtype="DIR_PATH", options={"SKIP_SAVE"}, description="Empty: the tool library's"
+        name="Folder",
+        subtype="DIR_PATH",
+        options={"SKIP_SAVE"},
+        description="Folder of the file; empty: the tool library's folder",
     )
 
     def invoke(self, context, event):
@@ -243,17 +248,17 @@ def _drawn_out(pieces, further):
 
 
 class RIFFLER_OT_plan_assembly(bpy.types.Operator):
-    """Give the plan's tool a shank and a holder: what must not touch the part when the tool leans"""
+    """Define the shank and the holder of the plan's tool, which must not touch the part"""
 
     bl_idname = "riffler.plan_assembly"
     bl_label = "Shank and Holder"
     bl_options = {"REGISTER", "UNDO"}
 
-    shank: length("Shank diameter", 6.0, "In mm; 0: no shank")
-    reach: length("Reach", 40.0, "From the tip to the holder, in mm")
-    holder: length("Holder diameter", 28.0, "At its lower end, in mm; 0: no holder")
-    upper: length("Upper diameter", 32.0, "Of the holder, at its upper end, in mm")
-    height: length("Holder length", 30.0, "In mm")
+    shank: length("Shank Diameter", 6.0, "Diameter of the shank, in mm; 0: no shank")
+    reach: length("Reach", 40.0, "Distance from the tip to the holder, in mm")
+    holder: length("Holder Diameter", 28.0, "Diameter at the holder's lower end, in mm; 0: no holder")
+    upper: length("Upper Diameter", 32.0, "Diameter at the holder's upper end, in mm")
+    height: length("Holder Length", 30.0, "Length of the holder, in mm")
 
     def invoke(self, context, event):
         try:
@@ -273,9 +278,9 @@ class RIFFLER_OT_plan_assembly(bpy.types.Operator):
             return  # executing says it
         sizes = sizes_of(tool)
         if len(tool.shank) > 1 and self.shank and not self._as_it_is(sizes, SHANK):
-            self.layout.label(text="The shank's pieces become one: its diameter was changed", icon="INFO")
+            self.layout.label(text="The shank becomes one piece, as its diameter was changed", icon="INFO")
         if len(tool.holder) > 1 and self.holder and not self._as_it_is(sizes, HOLDER):
-            self.layout.label(text="The holder's pieces become one: its sizes were changed", icon="INFO")
+            self.layout.label(text="The holder becomes one piece, as its sizes were changed", icon="INFO")
 
     def execute(self, context):
         settings = context.scene.riffler.plan

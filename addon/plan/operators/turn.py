@@ -30,10 +30,10 @@ from .plan_work import PlanWork, tell, timeline_poll
 
 MAP = "MAP"
 HANDLES = (
-    (tool_rotation.INCLINATION, "Inclination", "Forward and backward, about the path's y"),
-    (tool_rotation.TILT, "Tilt", "To the left and to the right"),
-    (tool_rotation.FREE, "Free", "The tool's end goes where the pointer goes"),
-    (MAP, "Map", "To the cell of the map of free orientations that is pointed at"),
+    (tool_rotation.INCLINATION, "Inclination", "Turn forward and backward, about the path's y"),
+    (tool_rotation.TILT, "Tilt", "Turn to the left and to the right"),
+    (tool_rotation.FREE, "Free", "Drag the tool's end with the pointer"),
+    (MAP, "Map", "Turn to the cell under the pointer, in the map of free orientations"),
 )
 BUDGET = 2000.0  # µs for the force at a move of the pointer
 _held = None  # the operator that turns the tool in a window
@@ -54,7 +54,7 @@ def _spot(context, ob, path=0, point=0):
 
 
 class RIFFLER_OT_plan_turn(bpy.types.Operator):
-    """Turn the tool at this point of its path, and make that a key. In the view, drag a dial or the tool's end"""
+    """Turn the tool at this point of its path and set a key; in the view, drag a dial or the tool's end"""
 
     bl_idname = "riffler.plan_turn"
     bl_label = "Turn Tool"
@@ -74,9 +74,11 @@ class RIFFLER_OT_plan_turn(bpy.types.Operator):
         max=math.pi / 2,
         description="How far the tool leans to the left of the path",
     )
-    relative: BoolProperty(name="Relative", description="The angles are added to those the tool has")
+    relative: BoolProperty(name="Relative", description="Add the angles to the tool's current ones")
     path: IntProperty(name="Path", min=0, options={"SKIP_SAVE"}, description="Number of the path; 0: that of the frame")
-    point: IntProperty(name="Point", min=0, options={"SKIP_SAVE"}, description="Of the path, from 0; with a path")
+    point: IntProperty(
+        name="Point", min=0, options={"SKIP_SAVE"}, description="Point of the path, from 0; needs a path"
+    )
     handle: EnumProperty(name="Handle", items=HANDLES, default=tool_rotation.FREE, options={"HIDDEN", "SKIP_SAVE"})
 
     _turn = None
@@ -206,7 +208,7 @@ class RIFFLER_OT_plan_turn(bpy.types.Operator):
         ob = bpy.data.objects.get(self._ob)
         spot = current_pose.spot(context.scene, ob)
         if spot is None or (spot.path, spot.index) != (self._path, self._index):
-            raise ValueError("The plan or the frame has changed: the tool is as it was")
+            raise ValueError("The plan or the frame has changed: the tool was not turned")
         current_pose.held = axis = self._turn.axis
         said = tool_rotation.said(*self._turn.angles)
         try:
@@ -239,7 +241,7 @@ class PointsAt:
     """Mixin of operators for a point of a path: one that is given, or the one under the pointer."""
 
     path: IntProperty(name="Path", default=0, min=0, description="Number of the path; 0: that of the frame")
-    point: IntProperty(name="Point", default=0, min=0, description="Of the path, from 0; where a path is given")
+    point: IntProperty(name="Point", default=0, min=0, description="Point of the path, from 0; needs a path")
 
     @classmethod
     def poll(cls, context):
@@ -264,7 +266,7 @@ class PointsAt:
 
 
 class RIFFLER_OT_plan_point(PointsAt, bpy.types.Operator):
-    """Go to the frame at which the tool is at this point of its path"""
+    """Go to the frame where the tool is at this point of its path"""
 
     bl_idname = "riffler.plan_point"
     bl_label = "Go to Point of Path"
@@ -279,13 +281,14 @@ class RIFFLER_OT_plan_point(PointsAt, bpy.types.Operator):
 
 
 class RIFFLER_OT_plan_point_key(PointsAt, PlanWork, bpy.types.Operator):
-    """Set a key at this point of the path: the free orientation that leans least, and none where none is free. Only
-    where there is no part to look at, the one it has"""
+    """Set a key at this point of the path, with the collision-free orientation of least tilt; without a part, with the
+    current orientation
+    """
 
     bl_idname = "riffler.plan_point_key"
     bl_label = "Set Free Key at Point"
-    doing = "Looking for a free orientation"
-    cancelled = "Stopped looking for a free orientation: no key was set"
+    doing = "Searching for a free orientation"
+    cancelled = "Search for a free orientation cancelled: no key was set"
 
     def invoke(self, context, event):
         return PlanWork.invoke(self, context, event) if self._pointed(context, event) else {"PASS_THROUGH"}
@@ -303,7 +306,7 @@ class RIFFLER_OT_plan_point_key(PointsAt, PlanWork, bpy.types.Operator):
         )
 
     def finish(self, context, job):
-        axis, said = self._spot.axis, "There is no part: the orientation is the one it was"
+        axis, said = self._spot.axis, "There is no part: the orientation is unchanged"
         if job.result is not None:
             axis, said = job.result.suggestion, ""
             if axis is None:

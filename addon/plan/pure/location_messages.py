@@ -27,7 +27,7 @@ def entries(path: int, centres: np.ndarray, cl: np.ndarray, report) -> list[dict
         first = int(report.inserted[0])
         point = _point(report.points, first)
         out.append(
-            _entry(path, "inserted", point, cl[first, :3], f"{_rows(len(report.inserted))} put between its points")
+            _entry(path, "inserted", point, cl[first, :3], f"{_rows(len(report.inserted))} inserted between its points")
         )
     return out
 

@@ -61,4 +61,4 @@ def check(machine: str, given: dict) -> None:
     """ValueError that names what must be given, and where."""
     for fact in missing(machine, given):
         place = ", or take the place of the 3D cursor there" if fact["count"] == 3 else ""
-        raise ValueError(f"{machine}: {label(fact)} is not given, {fact['about']}: set it in the panel Machine{place}")
+        raise ValueError(f"{machine}: {label(fact)} is not set, {fact['about']}: set it in the panel Machine{place}")

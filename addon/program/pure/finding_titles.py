@@ -5,15 +5,15 @@ from __future__ import annotations
 from ...common import units
 
 KINDS = {
-    "rapid": "Rapid cuts",
-    "holder": "Holder hits",
-    "shank": "Shank hits",
-    "fixture": "Fixture hit",
+    "rapid": "Rapid in material",
+    "holder": "Holder collision",
+    "shank": "Shank collision",
+    "fixture": "Fixture collision",
     "gouge": "Gouge",
     "rest": "Rest",
-    "spindle": "Spindle stands",
+    "spindle": "Spindle stopped",
     "machine": "Out of reach",
-    "unknown": "Undescribed",
+    "unknown": "Other",
 }
 
 

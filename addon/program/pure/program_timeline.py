@@ -83,7 +83,7 @@ def begins(poses: np.ndarray, paths: list) -> list[int]:
     for number, rows in enumerate(paths):
         begin = _find(poses, rows, at)
         if begin is None:
-            raise ValueError(f"the program does not have path {number + 1} as it is")
+            raise ValueError(f"the program does not contain path {number + 1} unchanged")
         out.append(begin)
         at = begin + len(rows)
     return out

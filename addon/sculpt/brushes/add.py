@@ -18,15 +18,15 @@ def stub(tool, depth: float):
 
 class Add(Brush):
     id, place, label, icon = "add", 20, "Add", "add"
-    description = "Put material on"
-    tip = "Put material on in the shape of the cutter. Ctrl: take it away. Shift: smooth"
+    description = "Add material"
+    tip = "Add material in the shape of the cutter (Ctrl: remove, Shift: smooth)"
     colour = (0.3, 0.65, 1.0)
     opposite = "remove"
     journal = cuts = "add"
     puts_on = chips = session = True
-    done = "put on"
-    no_stroke = "no stroke where the stock's box has room; Make Room in Clay gives it more"
-    unchanged = "Nothing was put on: the stock's box is full there, or protected. Make Room in Clay gives it more"
+    done = "added"
+    no_stroke = "no stroke where the stock's box has room; use Grow Box in Clay to enlarge it"
+    unchanged = "Nothing was added: the stock's box is full there, or protected. Use Grow Box in Clay to enlarge it"
 
     def cutter(self, given, depth):
         return stub(given, depth)

@@ -18,8 +18,8 @@ class Smooth(Brush):
         if volume.directions == "xyz":
             return ""
         return (
-            "Smooth needs rays in three directions: use Change Pitch in Clay, and set its Rays to Three (tri-dexel) in "
-            "the box at the lower left"
+            "Smooth needs rays in three directions: use Change Pitch in Clay, and set Rays to Three "
+            "(Tri-Dexel) in the box at the lower left"
         )
 
     def path(self, axis, depth, diameter, pitch):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 SLIGHT = 0.01  # pitches that nobody sees
-CUT_OFF = "What was put on is cut off at the stock's box: Make Room in Clay gives it more"
+CUT_OFF = "The added material was cut off at the stock's box: use Grow Box in Clay to enlarge it"
 
 
 def outline_of(tool) -> np.ndarray:

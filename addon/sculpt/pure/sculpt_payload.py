@@ -51,9 +51,9 @@ def decode(block: bytes, identity: str | None = None) -> tuple[memoryview, list[
     """A view of the volume's bytes, the cuts, a view of the mask's bytes (empty: none), whether it was shaped by other
     means. ValueError says what is wrong with a block that is not whole."""
     if identity is not None and content_id(block) != identity:
-        raise ValueError("the sculpt's data in this .blend is damaged: its checksum is another one")
+        raise ValueError("the sculpt's data in this .blend is damaged: its checksum does not match")
     if len(block) < _HEAD.size or block[:8] != MAGIC:
-        raise ValueError("the sculpt's data in this .blend does not begin as Riffler's does")
+        raise ValueError("the sculpt's data in this .blend is not Riffler's: its header is another one")
     _, version, size = _HEAD.unpack_from(block)
     if not 1 <= version <= VERSION:
         raise ValueError(

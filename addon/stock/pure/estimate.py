@@ -22,8 +22,8 @@ def check_surface(name: str, size, area: float, pitch: float, remedy: str = "tak
     triangles = 2 * area / pitch**2
     if triangles > MOST_TRIANGLES:
         raise ValueError(
-            f"{name} is {units.format_size(size)}, which are {units.format_count(round(triangles))} triangles at "
-            f"{units.trim(pitch, 4)} mm: {remedy}; or where a unit was to be a millimetre, use Scene in Millimetres"
+            f"{name} is {units.format_size(size)}, or {units.format_count(round(triangles))} triangles at "
+            f"{units.trim(pitch, 4)} mm: {remedy}; or if one unit should be one millimetre, use Scene in Millimetres"
         )
 
 
@@ -34,7 +34,7 @@ def check_block(size, pitch: float) -> None:
             raise ValueError(f"Size along {axis} must be a positive length in mm, not {side:g}")
         if side < pitch:
             raise ValueError(
-                f"Size along {axis} is {side:g} mm, less than the pitch of {pitch:g} mm: make it larger, or take a "
+                f"Size along {axis} is {side:g} mm, less than the pitch of {pitch:g} mm: make it larger, or use a "
                 "finer pitch"
             )
     check_surface("The block", size, box_area(size), pitch)
@@ -42,7 +42,7 @@ def check_block(size, pitch: float) -> None:
 
 def too_thin(name: str, pitch: float) -> str:
     """The error for a sculpt whose material lies between the rays, so that its mesh would be empty."""
-    return f"Nothing of {name} is thick enough for a pitch of {pitch:g} mm: take a finer one"
+    return f"{name} is too thin for a pitch of {pitch:g} mm: use a finer one"
 
 
 def shown_area(triangles: int, pitch: float) -> float:

@@ -168,16 +168,14 @@ NOT_LOCAL = {
     overriding: "Sculpt overrides data of another file, which keeps no edits: use Object > Relations > Make Local > "
     "Selected Objects and Data",
 }
-OTHER_SIZE = (
-    "Sculpt is scaled or mirrored: its millimetres are those of its own axes, not the scene's. To have them alike, "
-)
+OTHER_SIZE = "Sculpt is scaled or mirrored: its millimetres follow its own axes, not the scene's. To make them equal, "
 SCALED = {
     scaled: OTHER_SIZE + "use Object > Clear > Scale",
     mirrored: OTHER_SIZE + "use Object > Clear > Scale",
     under_a_scaled_one: OTHER_SIZE + "use Object > Parent > Clear and Keep Transformation, then Object > Clear > Scale",
 }
 MODIFIED = {
-    modified: "Sculpt has modifiers: what is worked on is the volume, without them. Take them over by Take Edits, or "
+    modified: "Sculpt has modifiers, which the volume does not include: use Apply Mesh Edits to include them, or "
     "remove them"
 }
 STATES = UNFIT | NOT_LOCAL | SCALED | MODIFIED
@@ -209,7 +207,7 @@ STEPS = {
         type="SELECT_OBDATA"
     ),
     "Object > Apply > Make Instances Real": make_real,
-    "Take them over by Take Edits": lambda: bpy.ops.riffler.take_edits(),
+    "use Apply Mesh Edits": lambda: bpy.ops.riffler.take_edits(),
     "or remove them": lambda: bpy.context.object.modifiers.clear(),
 }
 

@@ -285,7 +285,7 @@ def test_putting_on_where_the_box_is_full_says_so():
         assert sculpt_for(0.5, mode="ADD") == {"CANCELLED"}
     finally:
         operators._said = said
-    assert "Nothing was put on" in heard[0], heard
+    assert "Nothing was added" in heard[0], heard
     live().end_all()
     assert now_of(ob) == before
     nothing_is_left()

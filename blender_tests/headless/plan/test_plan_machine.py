@@ -38,7 +38,7 @@ def test_a_pivot_that_nobody_gave_is_asked_for():
     Path(path).unlink(missing_ok=True)
     common.refused(
         lambda: bpy.ops.riffler.plan_nc("EXEC_DEFAULT", filepath=path),
-        "linuxcnc-xyzac: Rot Point (mm) is not given", "in the panel Machine, or take the place of the 3D cursor",
+        "linuxcnc-xyzac: Rot Point (mm) is not set", "in the panel Machine, or take the place of the 3D cursor",
     )  # fmt: skip
     assert not Path(path).exists() and programs.content(ob)
     (missing,) = common.part("plan.pure.machine_fields").missing("linuxcnc-xyzac", {})
@@ -92,7 +92,8 @@ def test_options_are_added_and_wrong_names_listed():
         lambda: bpy.ops.riffler.machine_option(machine="tcp", option="pivot"), "tcp has no option 'pivot': it has tcp"
     )
     common.refused(
-        lambda: bpy.ops.riffler.machine_option(machine="head-head", option="pivot_length", how="CURSOR"), "is no place"
+        lambda: bpy.ops.riffler.machine_option(machine="head-head", option="pivot_length", how="CURSOR"),
+        "is not a position",
     )
 
 
@@ -107,5 +108,5 @@ def test_a_file_is_read_with_the_fields_of_its_machine():
     machines().of("linuxcnc-xyzac").property_unset("rot_point")
     common.refused(
         lambda: bpy.ops.riffler.verify(source="FILE", filepath=str(path), machine="linuxcnc-xyzac"),
-        "Rot Point (mm) is not given",
+        "Rot Point (mm) is not set",
     )

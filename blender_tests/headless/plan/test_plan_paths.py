@@ -71,7 +71,7 @@ def test_several_are_switched_at_once():
     ):  # fmt: skip
         assert bpy.ops.riffler.plan_switch(which=which) == {"FINISHED"}
         assert programs.content(ob).off == off and [not on for _, _, on in rows(ob)] == [k in off for k in range(4)]
-    common.refused(lambda: bpy.ops.riffler.plan_switch(which="ONLY"), "No path is chosen")
+    common.refused(lambda: bpy.ops.riffler.plan_switch(which="ONLY"), "No path is selected in the list")
     ob.riffler.plan.row = 1
     bpy.ops.riffler.plan_switch(which="ONLY")
     assert programs.content(ob).off == {0, 2, 3}
@@ -114,7 +114,7 @@ def test_deleting_keeps_the_keys_and_locations_of_the_others():
         ob.riffler.plan.row = 0
         bpy.ops.riffler.plan_delete_paths(which="CHOSEN")
     assert rows(ob) == [] and names() == []
-    common.refused(lambda: bpy.ops.riffler.plan_delete_paths(which="CHOSEN"), "No path is chosen")
+    common.refused(lambda: bpy.ops.riffler.plan_delete_paths(which="CHOSEN"), "No path is selected in the list")
 
 
 def names():

@@ -243,7 +243,7 @@ def test_a_state_that_memory_lost_is_told_again_from_the_journal():
         begun.whole = False
     bpy.ops.ed.undo()
     assert current(name) == states[0]
-    assert "as it was last packed" in bpy.context.window_manager.riffler.notice
+    assert "as last saved" in bpy.context.window_manager.riffler.notice
     matches_its_volume(name)
     nothing_is_left()
 

@@ -67,7 +67,7 @@ def test_whatever_changes_the_sculpt_asks_first_what_becomes_of_the_edits():
             ob = local_pull()
             common.push("pull")
             kept, before = common.coordinates(ob.data), common.shape(common.content(ob).volume)
-            common.refused(call, ob.name, "Take Edits", "Rebuild Mesh")
+            common.refused(call, ob.name, "Apply Mesh Edits", "Rebuild Mesh")
             assert np.array_equal(common.coordinates(ob.data), kept), name
             assert common.same(common.shape(common.content(ob).volume), before), name
             assert remedy() == {"FINISHED"} and call() == {"FINISHED"}, name

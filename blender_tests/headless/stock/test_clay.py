@@ -115,9 +115,7 @@ def test_a_pitch_at_which_nothing_would_be_left_is_refused():
     pillar = riffler.Volume.block((3, 3, 0), (4, 4, 1), 0.25, "xyz").resampled(0.25, None, (0, 0, 0), (40, 30, 20))
     common.part("sculpt.sculpts").commit(ob.data, common.part("common.contents").Content(pillar), 1.0)
     before = volume(ob).to_bytes()
-    common.refused(
-        lambda: bpy.ops.riffler.resample(pitch=15), f"Nothing of {ob.name} is thick enough", "15 mm", "finer"
-    )
+    common.refused(lambda: bpy.ops.riffler.resample(pitch=15), f"{ob.name} is too thin", "15 mm", "finer")
     for pitch, words in ((1e9, "longer than every side of the box, 40 × 30 × 20 mm"), (float("nan"), "not nan")):
         common.refused(lambda pitch=pitch: bpy.ops.riffler.resample(pitch=pitch), words)
     common.refused(lambda: bpy.ops.riffler.room(room=1e9), "mm at most")
@@ -315,7 +313,7 @@ def test_a_picture_that_is_cut_off_by_the_box_says_what_gives_it_room():
     def said(**more):
         text = common.printed(lambda: bpy.ops.riffler.relief(**settings, **more))
         bpy.ops.riffler.crop(point=(0, 0, 19), normal=(0, 0, 1))
-        return "Warning" in text, "Make Room" in text
+        return "Warning" in text, "Grow Box" in text
 
     assert said(depth=2.0) == (True, True) and said(depth=0.9) == (False, False)
     assert said(depth=2.0, mode="ENGRAVE") == (False, False)

@@ -164,7 +164,7 @@ def test_what_is_refused_changes_nothing():
     far = common.curve("Far", [(900, 900, 900), (950, 940, 930)], mm_per_unit=1)
     one = common.curve("One", [(10, 10, 20)], mm_per_unit=1)
     common.select(ob)
-    words = "Far is too far from Stock", "move it nearer, or turn Follow surface off"
+    words = "Far is too far from Stock", "move it nearer, or turn Follow Surface off"
     common.refused(lambda: bpy.ops.riffler.cut_curve(curve=far.name, follow=True), *words)
     common.refused(lambda: bpy.ops.riffler.cut_curve(curve=one.name, follow=True), "One has no spline with two points")
     for tool, word in (("{", "xpecting"), ("[]", "JSON"), ('{"kind": "spoon"}', "spoon")):

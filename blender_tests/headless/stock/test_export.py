@@ -228,15 +228,15 @@ def test_code_of_cuts_beside_a_mask_says_that_it_cuts_what_was_protected():
     c = common.curve("Across", [(5, 15, 16), (35, 15, 16)], mm_per_unit=1)
     common.select(ob)
     bpy.ops.riffler.cut_curve(curve=c.name, tool=common.BALL)
-    assert "beside a mask: 1." in written()
+    assert "with a mask: 1." in written()
     for look in (bpy.ops.riffler.verify, bpy.ops.riffler.simulate):  # who looks at the program is told, too
-        assert "beside a mask: 1." in common.printed(lambda look=look: look(source="CUTS"))
+        assert "with a mask: 1." in common.printed(lambda look=look: look(source="CUTS"))
     bpy.ops.riffler.simulate_stop()
     sculpting.stroke(ob.name, 2)
-    assert "beside a mask: 2." in written()
+    assert "with a mask: 2." in written()
     sculpting.live().end_all()
     common.part("sculpt.sculpt_store").clear_cache()  # as in another session
-    assert "beside a mask: 2." in written() and "smoothing" not in written()
+    assert "with a mask: 2." in written() and "smoothing" not in written()
     assert [cut.masked for cut in common.content(ob).cuts] == [False, True, True]
 
 

@@ -345,7 +345,7 @@ def test_an_autosave_of_a_large_sculpt_has_the_last_rest_and_says_so():
     path = as_autosaved("autosave_large.blend")
     bpy.ops.wm.open_mainfile(filepath=path)
     assert common.content(bpy.data.objects[name]).volume.to_bytes() == rest
-    assert "as it was last packed" in bpy.context.window_manager.riffler.notice
+    assert "as last saved" in bpy.context.window_manager.riffler.notice
     bpy.ops.riffler.dismiss()
     assert bpy.context.window_manager.riffler.notice == ""
     matches_its_volume(name)

@@ -11,7 +11,7 @@
 namespace riffler::pen {
 
 inline constexpr const char* kSimulatedKind = "simulated";
-inline constexpr const char* kSimulatedWhat = "Riffler's pen without hardware, moved by a hand of its own";
+inline constexpr const char* kSimulatedWhat = "Riffler pen without hardware, moved by a simulated hand";
 
 /// Its time is a StallTolerantClock's: no force is taken away from a hand that this machine moves because the machine
 /// is busy.
