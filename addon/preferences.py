@@ -1,4 +1,4 @@
-"""The add-on's preferences: what belongs to the machine and to who sits at it, not to a file."""
+"""The add-on's preferences: settings of the computer and its user, not of a file."""
 
 import bpy
 import riffler
@@ -27,7 +27,8 @@ def _use_threads(self, _):
 
 
 def _made_absolute(name):
-    """Blender may choose a folder beside the open file; preferences are for all files."""
+    """Makes a relative folder absolute: Blender may choose one relative to the open file, but preferences hold for all
+    files."""
 
     def update(self, _):
         text = getattr(self, name)

@@ -45,7 +45,8 @@ def _put(mesh, name, kind, field, values):
 
 # ------------------------------------------------------------------ how the views show them
 def shade_by_attribute():
-    """Switches solid views to vertex colours. The window manager keeps their previous shading, which no undo changes."""
+    """Switches solid views to vertex colours. The window manager keeps their previous shading, which no undo
+    changes."""
     global _undone
     _undone = False
     before = _before()

@@ -27,7 +27,8 @@ def give(op, settings, group):
 
 
 def at_work(layout, context, *operators):
-    """True while one of these operators runs. Its progress then replaces the buttons, so that the layout does not move."""
+    """True while one of these operators runs. Its progress then replaces the buttons, so that the layout
+    does not move."""
     state = context.window_manager.riffler
     if state.running not in {operator.doing for operator in operators}:
         return False

@@ -1,6 +1,5 @@
-"""Sculpting with a pen, or whatever device: a session in the device's thread (pen/session.py), at which Blender
-looks thirty times a second; what its tool feels is drawn, and what it does is said.
-"""
+"""Sculpting with a pen or another device: a session on the device's thread (pen/session.py), polled thirty times a
+second; the force on its tool is drawn, and its state is shown."""
 
 import time
 from pathlib import Path
@@ -17,9 +16,9 @@ from ..translations import local
 from . import properties
 from . import session as pen_session
 
-FRAME = 1 / 30  # s from one look to the next
-TELL = 0.2  # s between two changes of what the panel says
-# The tool that is active while a device sculpts: Esc is its key, and choosing another one ends the work
+FRAME = 1 / 30  # s between two polls
+TELL = 0.2  # s between two updates of the panel's text
+# The tool that is active while a device sculpts: it binds Esc, and choosing another tool ends the session
 # (sculpt/idle_detection.py).
 TOOL = "riffler.carve"
 MODES = (
@@ -28,11 +27,11 @@ MODES = (
 )
 
 _shown = None  # arrows and gauge (sculpt/force_view.py)
-_told, _told_at = (), 0.0  # what the panel says, and since when
+_told, _told_at = (), 0.0  # the panel's text, and the time since when it is shown
 
 
 def brush_of(context, choice):
-    """What a session does to the material. ValueError where the tool at hand does something that no session can."""
+    """The brush of a session. ValueError if the active tool's brush cannot be used in a session."""
     if choice != "TOOL":
         return brushes.of(choice.lower())
     brush = brushes.of_tool(_at_hand(context))
@@ -44,7 +43,7 @@ def brush_of(context, choice):
 
 
 def _at_hand(context):
-    """Identifier of the tool that is active in the 3D view's toolbar, or ""."""
+    """Identifier of the active tool in the 3D view's toolbar, or ""."""
     tool = context.workspace.tools.from_space_view3d_mode("OBJECT", create=False) if context.workspace else None
     return tool.idname if tool is not None else ""
 
@@ -59,7 +58,7 @@ def session_options(context, ob, settings, brush):
         **preferences_access.limits(),
     }
     if settings.device == properties.RECORDING:
-        return options  # its poses are in the stock's frame
+        return options  # a recording's poses are in the stock's frame
     options["scale"] = clean(settings.scale)
     if settings.start == "CURSOR":
         world = np.append(context.scene.cursor.location, 1.0)
@@ -95,7 +94,7 @@ def open_device(settings):
 
 
 def recordings(settings):
-    """The folder that recordings go into, or None."""
+    """The folder for recordings, or None."""
     if not settings.record:
         return None
     if not settings.folder or (settings.folder.startswith("//") and not bpy.data.filepath):
@@ -115,7 +114,7 @@ class RIFFLER_OT_pen_sculpt(sculpt_work.TakesTool, properties.PenSettings, bpy.t
 
     bl_idname = "riffler.pen_sculpt"
     bl_label = "Sculpt with Pen"
-    bl_options = set()  # it pushes its undo steps itself: its beginning, and each stroke
+    bl_options = set()  # it pushes its undo steps itself: one at the beginning, and one for each stroke
 
     mode: bpy.props.EnumProperty(
         name="Mode",
@@ -137,7 +136,7 @@ class RIFFLER_OT_pen_sculpt(sculpt_work.TakesTool, properties.PenSettings, bpy.t
         return pen_session.running is not None or sculpt_work.sculpt_poll(cls, context)
 
     def execute(self, context):
-        """For `seconds`, in one go."""
+        """Runs the session for `seconds`, in one call."""
         if pen_session.running is not None:
             return _stop(self)
         if not self.seconds > 0:
@@ -196,7 +195,7 @@ def _take_up_tool(context):
 
 
 def _look():
-    """Of the timer, as long as the session goes on."""
+    """Timer function while the session runs."""
     session = pen_session.running
     if session is None:
         return None
@@ -237,13 +236,13 @@ def _strokes(session):
 
 
 def _status(text):
-    """In every window: a timer has none of its own."""
+    """Sets the status text of every window: a timer has no window of its own."""
     for window in bpy.context.window_manager.windows:
         window.workspace.status_text_set(text)
 
 
 def _leave():
-    """The session has ended, whoever ended it."""
+    """Called when the session has ended, for whatever reason."""
     global _shown, _told
     _told = ()
     if _shown is not None:
@@ -264,7 +263,7 @@ def _stop(operator):
 
 
 def _said(operator, session):
-    """What a session has done, and whether that is anything."""
+    """Reports what the session has done, or that it has done nothing."""
     problem = session.problem or session.run.why
     brush = brushes.of(session.mode)
     done = brush.done
@@ -282,7 +281,7 @@ def _said(operator, session):
 
 
 class PenRuns:
-    """Mixin of operators that need a session."""
+    """Mixin of operators that need a running session."""
 
     @classmethod
     def poll(cls, context):

@@ -1,4 +1,4 @@
-"""Which device the hand holds, how it feels, and what its session is doing."""
+"""Settings of the device and its feel, and the state of its session."""
 
 import bpy
 import riffler
@@ -58,7 +58,7 @@ class RifflerPen(PenSettings, bpy.types.PropertyGroup):
 
 
 class PenProgress:
-    """Of the session that runs, for the panel."""
+    """State of the running session, for the panel."""
 
     sculpting: BoolProperty()
     force: StringProperty()

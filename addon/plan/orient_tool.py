@@ -8,7 +8,7 @@ from .orientation_gizmo import RIFFLER_GGT_orientation
 
 
 class PlanTool(bpy.types.WorkSpaceTool):
-    """At the point of the plan that the frame is at."""
+    """Turns the tool at the plan's point of the current frame."""
 
     bl_space_type = "VIEW_3D"
     bl_context_mode = "OBJECT"

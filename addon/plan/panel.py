@@ -1,5 +1,5 @@
-"""The plan's tab: part, fixtures, tool, settings, what is missing, and what has been found. Drawing reads properties,
-and what plan/operators/watch.py knows already."""
+"""The plan's tab: part, fixtures, tool, settings, missing input, and findings. Drawing reads properties, and the
+results that plan/operators/watch.py has already."""
 
 import math
 
@@ -15,7 +15,7 @@ from .current_pose import plan_object
 from .operators import change_tool, find, scene_unit, setup, watch
 from .pure import size_guess, tool_library
 
-PICTURE = 4.5  # lines that a tool's picture is high
+PICTURE = 4.5  # height of a tool's picture, in lines
 
 
 class Tab(Sidebar):
@@ -25,7 +25,7 @@ class Tab(Sidebar):
 
 
 class OfPlan(Tab):
-    """Mixin of those that are there where there is a plan."""
+    """Mixin of the panels that need a plan."""
 
     @classmethod
     def poll(cls, context):
@@ -96,7 +96,7 @@ class RIFFLER_PT_plan(Tab, bpy.types.Panel):
             layout.operator(change_tool.RIFFLER_OT_plan_use_tool.bl_idname, icon="TOOL_SETTINGS")
 
     def _next(self, layout, context, ob):
-        """What is missing for a search, and what comes next."""
+        """The missing input of a search, or the next step."""
         settings = context.scene.riffler.plan
         if why := object_surfaces.unfit(settings.part, context.scene):
             lines(layout, *wrapped(context, f"{why}."), icon="INFO")
@@ -141,7 +141,7 @@ class RIFFLER_PT_plan_part(Tab, bpy.types.Panel):
             lines(layout, *wrapped(context, f"Stays clear of {', '.join(held)}"))
 
     def _size(self, layout, context, settings):
-        """How large the part is; where that is odd, which unit the scene's may be."""
+        """The part's size; if it is unusual, the units that would make it usual."""
         if object_surfaces.unfit(settings.part, context.scene):
             return
         size = object_surfaces.size(settings.part, context.scene)
@@ -187,7 +187,7 @@ class RIFFLER_PT_plan_tool(Tab, bpy.types.Panel):
         row.operator(setup.RIFFLER_OT_plan_tool_save.bl_idname, text="Save…")
 
     def _sizes(self, layout, context, tool):
-        """A free profile has none."""
+        """The tool's sizes; a free profile has none."""
         if tool.kind not in presets.SIZES:
             lines(layout, f"Cutter: Ø {units.trim(tool.diameter)}, {units.trim(tool.length)} mm long")
             return

@@ -1,4 +1,4 @@
-"""What a plan is made for, with what, and how; and what a plan's objects keep."""
+"""A plan's settings: part, tool, machine; and the data on a plan's objects."""
 
 import json
 
@@ -34,7 +34,7 @@ LEAVE = (
 
 
 class FindSettings:
-    """Shared by the panel's settings and the operator: the strategy, and the parameters of all of them."""
+    """Shared by the panel's settings and the operator: the strategy, and the parameters of all strategies."""
 
     __annotations__ = strategy_fields.FIELDS
 
@@ -46,7 +46,7 @@ def _named(settings, context):
 
 
 class RifflerPlan(FindSettings, bpy.types.PropertyGroup):
-    """On a scene. The tool is kept whole, so that a plan can be made anew where its file is gone."""
+    """On a scene. The tool is stored whole, so that a plan can be made again without the tool's file."""
 
     part: PointerProperty(
         name="Part",
@@ -103,7 +103,7 @@ class RifflerPlan(FindSettings, bpy.types.PropertyGroup):
     )
 
     def tool_dict(self):
-        """The form of riffler.Tool.to_dict. ValueError where the text is none."""
+        """The tool in the form of riffler.Tool.to_dict. ValueError if the text is invalid."""
         if not self.tool:
             return presets.preset(presets.presets()[0]["name"])
         return json_object.loads(self.tool, "the plan's tool (take one from a library)")
@@ -114,8 +114,8 @@ class RifflerPlan(FindSettings, bpy.types.PropertyGroup):
 
 
 class RifflerFinding(bpy.types.PropertyGroup):
-    """One line of a list. `path` and `point`: of the plan, from 0; -1: it is about a program's row. `place`: mm of the
-    scene."""
+    """One row of a list. `path` and `point`: of the plan, from 0; -1: the finding belongs to a program's row. `place`:
+    mm of the scene."""
 
     name: StringProperty()
     title: StringProperty(description="Text of the list's row, with kind, size and place first; empty: the name")
@@ -138,7 +138,7 @@ STATES = (
 
 
 def _switched(row, context):
-    """A box in the list: what is written to it here, by the add-on, is what the plan has already."""
+    """Called for a box in the list; a value written by the add-on equals the plan's already."""
     from . import path_switches
 
     path_switches.follow(row)
@@ -151,7 +151,7 @@ def _chosen(p, context):
 
 
 class RifflerPathRow(bpy.types.PropertyGroup):
-    """What a list shows of a path."""
+    """A list's row for a path."""
 
     name: StringProperty()
     length: FloatProperty(description="mm")
@@ -162,22 +162,22 @@ class RifflerPathRow(bpy.types.PropertyGroup):
 
 
 class RifflerPathCurve(bpy.types.PropertyGroup):
-    """The curve object of one path, and the name that it was given."""
+    """The curve object of one path, and the name it was given."""
 
     name: StringProperty()
     curve: PointerProperty(type=bpy.types.Object)
 
 
 class RifflerPlanObject(bpy.types.PropertyGroup):
-    """On a plan's Empty: where the plan is, what a panel shows without reading it, and what shows its paths, in their
-    order (plan/path_curves.py)."""
+    """On a plan's Empty: the plan's image, the panel's facts, and the objects that show its paths, in order
+    (plan/path_curves.py)."""
 
     store: PointerProperty(type=bpy.types.Image)
     part: PointerProperty(type=bpy.types.Object)
     paths: IntProperty()
     length: FloatProperty()
     keyed: IntProperty()
-    resolved: IntProperty(default=-1)  # of those with keys; -1: in a file from before it was counted
+    resolved: IntProperty(default=-1)  # of the paths with keys; -1 in a file from before it was counted
     tool: StringProperty()
     curves: CollectionProperty(type=RifflerPathCurve)
     rows: CollectionProperty(type=RifflerPathRow, description="The plan's paths, in order")
@@ -188,7 +188,7 @@ class RifflerPlanObject(bpy.types.PropertyGroup):
     index: IntProperty(name="Finding", default=-1, description="Selected finding in the list, from 0")
 
     def forget(self, paths):
-        """What was found on paths, by their numbers from 0, that are others now."""
+        """Removes findings of paths, by their numbers from 0, that have changed."""
         for k in reversed(range(len(self.findings))):
             if self.findings[k].path in paths:
                 self.findings.remove(k)

@@ -1,4 +1,4 @@
-"""Key orientations as keyframes: a plan on the timeline, keys set, deleted and jumped to, collisions marked."""
+"""Key orientations as keyframes: a plan on the timeline; keys set, deleted and jumped to; collisions marked."""
 
 from dataclasses import replace
 
@@ -65,7 +65,7 @@ class RIFFLER_OT_plan_to_timeline(bpy.types.Operator):
         return tell(self, ob)
 
     def _divided(self, ob, plan, rate):
-        """The plan with a point at each frame; and where it is on the timeline so already, what that says."""
+        """The plan with a point at each frame; if it is on the timeline like that already, its current state."""
         paths = [p if k in plan.depths else key_orientations.divided(p, rate) for k, p in enumerate(plan.paths)]
         cl = list(plan.cl) or [None] * len(paths)
         cl = [rows if path.interpolation != "linear" or path is old else None
@@ -85,7 +85,7 @@ class RIFFLER_OT_plan_to_timeline(bpy.types.Operator):
 
 def lay_out(context, ob, plan, times, known=None, quats=None):
     """Makes `plan` the object's, and puts it on the timeline; `times`: frames per mm, and the first frame. ValueError,
-    with nothing changed, where it is too long."""
+    with nothing changed, if it is too long."""
     rate, first = times
     layout = key_orientations.Layout(plan.paths, rate, first)
     if layout.last > 1_000_000:
@@ -148,7 +148,7 @@ class RIFFLER_OT_plan_key(bpy.types.Operator):
 
 
 def frame_of(layout, path, point):
-    """Of a path (from 1) and its point (from 0). ValueError."""
+    """The frame of a path (from 1) and its point (from 0). ValueError."""
     if path > len(layout.tracks):
         raise ValueError(f"path {path}: the plan has {len(layout.tracks)}")
     track = layout.tracks[path - 1]
@@ -163,9 +163,9 @@ def ranges(layout):
 
 
 def set_key(scene, ob, frame, quat=None, axis=None):
-    """A keyframe at `frame`, or on the one that its point has already, and all that follows from it. `quat` (4,), or
-    else an axis (3,), taken with as little twist as can be, and kept in the plan as it is: keyframes are single
-    precision. ValueError, with nothing changed, where the path takes no such key."""
+    """Sets a keyframe at `frame`, or changes the one that its point has already, and updates the plan. `quat` (4,), or
+    else an axis (3,), converted with as little twist as possible; the plan stores the exact axis, since keyframes are
+    single precision. ValueError, with nothing changed, if the path takes no such key."""
     tool, _ = timeline.pair(ob)
     plan = plan_store.plan(ob)
     if not replan.fits(ob, plan):
@@ -185,7 +185,7 @@ def set_key(scene, ob, frame, quat=None, axis=None):
     else:
         axis = quaternions.axes_of(np.asarray(quat, float))
     wanted = key_orientations.change(plan.paths[path].keys, {**reading.keys[path], index: axis}).keys
-    # What the path refuses comes before the change.
+    # The path's errors come before the change.
     turned = plan.paths[path].oriented({**wanted, index: axis}, plan.paths[path].interpolation or "smooth")
     others = np.abs(frames - frame) > 1e-4
     frames, quats = np.append(frames[others], frame), np.vstack([quats[others], quat])
@@ -227,7 +227,7 @@ class RIFFLER_OT_plan_key_jump(bpy.types.Operator):
 
     bl_idname = "riffler.plan_key_jump"
     bl_label = "Jump to Key Orientation"
-    bl_options = {"REGISTER"}  # going to a frame is no step of undo in Blender
+    bl_options = {"REGISTER"}  # in Blender a change of frame is no undo step
 
     back: BoolProperty(name="Back", description="Go to the previous key")
 

@@ -1,4 +1,4 @@
-"""Keys on many paths at once: those that lean least and are free at every point, or one axis everywhere."""
+"""Keys on many paths at once: those of least tilt that are collision-free at every point, or one axis everywhere."""
 
 import math
 from dataclasses import replace
@@ -30,7 +30,7 @@ AXES = (
         ("One orientation everywhere, as with a clamped head; Resolve lifts the tool where it collides"),
     ),
 )
-NAMED = 5  # paths in a report
+NAMED = 5  # paths named in a report
 
 
 class RIFFLER_OT_plan_least_tilt(TimelineWork, bpy.types.Operator):
@@ -81,7 +81,7 @@ class RIFFLER_OT_plan_least_tilt(TimelineWork, bpy.types.Operator):
             raise ValueError("axis must be finite and not 0, 0, 0")
         axis /= np.linalg.norm(axis)
         chosen = [plan.paths[k] for k in self._paths]
-        self._notes = []  # one axis is looked at with nothing
+        self._notes = []  # one axis is not checked for collisions
         if self.axes == "GIVEN":
             return tilt_search.SearchesJob([tilt_search.Given(path, axis) for path in chosen])
         taken, clearance = obstacles.take(context, ob), scene_units.clean(context.scene.riffler.plan.clearance)
@@ -100,7 +100,7 @@ class RIFFLER_OT_plan_least_tilt(TimelineWork, bpy.types.Operator):
         return AfterJob(taken, search)
 
     def _chosen(self, context, ob, plan):
-        """Numbers of the paths, from 0. ValueError where there are none."""
+        """Numbers of the paths, from 0. ValueError if there are none."""
         if self.paths == "FRAME":
             layout, frame = replan.layout_of(ob, plan), context.scene.frame_current_final
             if layout.at(frame) is None:
@@ -129,7 +129,7 @@ class RIFFLER_OT_plan_least_tilt(TimelineWork, bpy.types.Operator):
         return found
 
     def finish(self, context, job):
-        """One change of the plan and of the animation, however many paths there are."""
+        """Changes the plan and the animation once, whatever the number of paths."""
         ob, plan = self.ob, plan_store.plan(self.ob)
         paths, cl = list(plan.paths), list(plan.cl) or [None] * len(plan.paths)
         marks = [e for e in findings.read(ob.riffler.plan.findings) if e["path"] not in self._paths]

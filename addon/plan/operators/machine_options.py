@@ -1,4 +1,4 @@
-"""What is given of a machine's options, and what is not."""
+"""Sets and resets options of a machine."""
 
 import bpy
 from bpy.props import EnumProperty, StringProperty
@@ -15,19 +15,19 @@ HOW = (
 
 
 class OfMachine:
-    """Mixin: of which machine; `option` is of a subclass."""
+    """Mixin with the machine's setting; a subclass has `option`."""
 
     machine: EnumProperty(name="Machine", items=MACHINES, default="tcp", description="Machine that has the option")
 
     def fact(self, context):
-        """ValueError that lists the options where there is none of that name."""
+        """The option's description. ValueError, which lists the options, for an unknown name."""
         listed = {fact["name"]: fact for fact in machine_fields.facts(self.machine)}
         if self.option not in listed:
             raise ValueError(f"{self.machine} has no option {self.option!r}: it has {', '.join(listed)}")
         return listed[self.option]
 
     def give(self, context, value=None):
-        """By default the value that the field shows: from then on it counts as given."""
+        """Sets the option, by default to the field's value; from then on it is passed on."""
         group, key = context.scene.riffler.machines.of(self.machine), machine_fields.identifier(self.option)
         value = getattr(group, key) if value is None else value
         setattr(group, key, value if isinstance(value, (str, bool, float)) else tuple(value))
@@ -63,11 +63,11 @@ class RIFFLER_OT_machine_option(OfMachine, bpy.types.Operator):
         return {"FINISHED"}
 
 
-_entries = []  # Blender keeps no reference to the texts of an enumeration that a function makes
+_entries = []  # Blender keeps no reference to the texts of a dynamic enumeration
 
 
 def _others(self, context):
-    """The options that are not given."""
+    """The options that are not set."""
     given = {} if context is None else context.scene.riffler.machines.given(self.machine)
     _entries[:] = [
         (fact["name"], machine_fields.label(fact), machine_fields.about(fact), k)

@@ -1,4 +1,4 @@
-"""What one unit of the scene is, so that a plan's part has its real size."""
+"""Sets the scene's unit, so that a plan's part has its real size."""
 
 import math
 
@@ -32,7 +32,7 @@ class RIFFLER_OT_scene_unit(bpy.types.Operator):
         return operator_parts.object_mode(cls, context) and not operator_parts.busy(cls, context)
 
     def execute(self, context):
-        # If the scene has this unit already, no sculpt's mesh is filled again.
+        # If the scene has this unit already, no sculpt's mesh is rebuilt.
         same = math.isclose(scene_units.mm_per_unit(context.scene), size_guess.UNITS[self.unit], rel_tol=1e-6)
         done = {"FINISHED"} if same else set_unit(self, context, size_guess.UNITS[self.unit], self.unit)
         if done == {"FINISHED"}:

@@ -1,4 +1,4 @@
-"""What a plan is made for: the part, the fixtures, and the tool with its shank and holder."""
+"""A plan's setup: the part, the fixtures, and the tool with its shank and holder."""
 
 import bpy
 import numpy as np
@@ -22,7 +22,7 @@ def surfaces(context):
 
 
 def described(mesh):
-    """What a part is worth before it is planned on: the level of the report, and its text."""
+    """Assessment of a part before planning: the report's level, and its text."""
     found = riffler.plan.analyse(mesh)
     size = units.format_size(found["bounds"][1] - found["bounds"][0])
     facts = f"{size}, {units.counted(found['triangles'], 'triangle')}"
@@ -30,7 +30,7 @@ def described(mesh):
 
 
 def _editable(cls, collection):
-    """True where objects can be put into the fixtures' collection and taken out."""
+    """True if objects can be added to the fixtures' collection and removed."""
     if collection is None or not (collection.library or collection.override_library):
         return True
     return operator_parts.deny(
@@ -59,7 +59,7 @@ class RIFFLER_OT_plan_part(bpy.types.Operator):
             home = settings.fixtures.name
             return operator_parts.fail(self, ValueError(f"{ob.name} is a fixture: take it out of {home} first"))
         try:
-            live_registry.end_all()  # the mesh of a sculpt that is being worked at is not up to date
+            live_registry.end_all()  # the mesh of a live sculpt is not up to date
             mesh = object_surfaces.in_world(context, ob)
         except operator_parts.ERRORS as error:
             return operator_parts.fail(self, error)
@@ -105,7 +105,7 @@ class RIFFLER_OT_plan_fixtures_add(bpy.types.Operator):
             settings.fixtures.objects.link(ob)
         try:
             held = obstacles.fixture_objects(settings, settings.part)
-        except ValueError as error:  # something that was put into the collection otherwise
+        except ValueError as error:  # an invalid object that was added to the collection by other means
             self.report({"WARNING"}, operator_parts.as_sentence(str(error)))
             return {"FINISHED"}
         self.report({"INFO"}, f"{settings.fixtures.name}: {units.counted(len(held), 'object')}")
@@ -226,7 +226,7 @@ SHANK, HOLDER = ("shank",), ("holder", "upper", "height")
 
 
 def sizes_of(tool):
-    """The fields of a tool's shank and holder, in mm, by name; none for what it does not have."""
+    """The fields of a tool's shank and holder, in mm, by name; without those of missing pieces."""
     sizes = {}
     if tool.shank:
         sizes.update(shank=2 * tool.shank[0][1], reach=tool.shank[-1][2])
@@ -237,7 +237,7 @@ def sizes_of(tool):
 
 
 def _drawn_out(pieces, further):
-    """A shank with `further` mm of its uppermost piece out of the holder. ValueError where none of it is left."""
+    """A shank whose uppermost piece is `further` mm longer outside the holder. ValueError if none of it is left."""
     *others, (low, radius, high, upper) = pieces
     high = units.clean(high + further)
     if high <= low:
@@ -275,7 +275,7 @@ class RIFFLER_OT_plan_assembly(bpy.types.Operator):
         try:
             tool = riffler.Tool.from_dict(context.scene.riffler.plan.tool_dict())
         except operator_parts.ERRORS:
-            return  # executing says it
+            return  # execute reports the error
         sizes = sizes_of(tool)
         if len(tool.shank) > 1 and self.shank and not self._as_it_is(sizes, SHANK):
             self.layout.label(text="The shank becomes one piece, as its diameter was changed", icon="INFO")
@@ -295,8 +295,8 @@ class RIFFLER_OT_plan_assembly(bpy.types.Operator):
         return {"FINISHED"}
 
     def _with_pieces(self, tool):
-        """What has the sizes that the tool has keeps its pieces; a reach that was changed draws out the shank,
-        at its uppermost piece, and moves the holder."""
+        """Keeps the pieces of shank and holder whose sizes are unchanged. A changed reach lengthens the shank's
+        uppermost piece, and moves the holder."""
         sizes = sizes_of(tool)
         fields = (self.shank, self.reach, self.holder, self.upper, self.height)
         shank, reach, lower, upper, height = map(units.clean, fields)
@@ -310,7 +310,7 @@ class RIFFLER_OT_plan_assembly(bpy.types.Operator):
         return tool.with_shank(shanks).with_holder(holders)
 
     def _as_it_is(self, sizes, keys):
-        """True where the fields are what the tool has, as far as single precision tells."""
+        """True if the fields equal the tool's sizes, within single precision."""
         return all(key in sizes and getattr(self, key) == np.float32(sizes[key]) for key in keys)
 
 

@@ -1,4 +1,4 @@
-"""The paths of a plan, several at a time: switched on and off, deleted."""
+"""Switches several paths of a plan on or off, or deletes them."""
 
 from dataclasses import replace
 
@@ -123,7 +123,7 @@ class RIFFLER_OT_plan_delete_paths(bpy.types.Operator):
         findings.write(p.findings, marks)
         plan_store.refresh_rows(ob)
         if context.object is not None and context.object.parent == ob:
-            context.view_layer.objects.active = ob  # the curve that may be active goes
+            context.view_layer.objects.active = ob  # the active curve may be deleted
         if found is not None and after.paths:
             keys.lay_out(context, ob, after, (found[0][timeline.RATE], found[0][timeline.FIRST]))
         path_curves.show(ob, after, scene_units.mm_per_unit(context.scene))
