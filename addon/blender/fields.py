@@ -6,7 +6,7 @@ from bpy.props import FloatProperty
 
 
 def length(name, default, description, low=0.0, high=1e5):
-    """A length in mm, whatever units the scene shows."""
+    """A length in mm, in any scene units."""
     return FloatProperty(name=name, default=default, min=low, max=high, precision=3, step=10, description=description)
 
 

@@ -6,7 +6,7 @@ clean = units.clean
 
 
 def mm_per_unit(scene):
-    """scene mm = Blender units × scale_length × 1000, whatever units the scene shows."""
+    """scene mm = Blender units × scale_length × 1000, in any displayed units."""
     return units.mm_per_unit(scene.unit_settings.scale_length)
 
 

@@ -134,7 +134,7 @@ def shade_chunk(mesh, angle, smooth=None, normals=None):
 
 
 def lighten(mesh):
-    """Before 4.0 undo reads a mesh again as soon as anything near it changes, whatever its size: a mesh that is hidden
+    """Before 4.0 undo reads a mesh again as soon as anything near it changes, even a large one: a mesh that is hidden
     for a while is replaced by the corners of its box. Since then a large mesh costs nothing."""
     if _SINCE_4_0 or mesh.users > 1 or not mesh.polygons:
         return

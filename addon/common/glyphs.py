@@ -108,7 +108,7 @@ def arc_arrow(centre, axis, radius: float, angle: float, width: float) -> np.nda
 
 def ribbon(points, width: float, closed: bool = False) -> np.ndarray:
     """A line (n, 2) as triangles (m, 2 corners each of x, y): (m, 3, 2), `width` wide. Graphics cards draw lines one
-    pixel wide, whatever width is set. Points that are not numbers break the line."""
+    pixel wide at any width setting. Points that are not numbers break the line."""
     points = np.asarray(points, float)
     ends = np.roll(points, -1, axis=0) if closed else points[1:]
     starts = points if closed else points[:-1]

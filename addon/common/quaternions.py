@@ -47,7 +47,7 @@ def between(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def transported(axes: np.ndarray, before: np.ndarray | None = None) -> np.ndarray:
-    """Quaternions of the axes: each is the previous one turned the shortest way onto its axis; the first is `before`
+    """Quaternions of the axes: each is the previous one turned by the smallest angle onto its axis; the first is `before`
     (4,), by default the identity, turned likewise. Neighbours have the same sign."""
     before = np.array([1.0, 0, 0, 0]) if before is None else unit(np.asarray(before, float))
     first = multiply(between(axes_of(before), axes[0]), before)
@@ -60,7 +60,7 @@ def transported(axes: np.ndarray, before: np.ndarray | None = None) -> np.ndarra
 
 
 def aligned(q: np.ndarray) -> np.ndarray:
-    """The same orientations, each with the sign nearer to the previous row: F-curves take the short way."""
+    """The same orientations, each with the sign nearer to the previous row: so that F-curves take the shorter arc."""
     if len(q) < 2:
         return q.copy()
     flips = np.where(np.einsum("ij,ij->i", q[1:], q[:-1]) < 0, -1.0, 1.0)

@@ -1,7 +1,7 @@
 """Bézier, NURBS and poly splines as polylines within a tolerance.
 
 Control points are in millimetres in the stock's frame: both kinds of curve are invariant under affine maps, so the
-tolerance is a distance on the stock, whatever the objects' transforms are.
+tolerance is a distance on the stock, independent of the objects' transforms.
 """
 
 from __future__ import annotations

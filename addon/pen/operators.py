@@ -34,7 +34,7 @@ def brush_of(context, choice):
     """The brush of a session. ValueError if the active tool's brush cannot be used in a session."""
     if choice != "TOOL":
         return brushes.of(choice.lower())
-    brush = brushes.of_tool(_at_hand(context))
+    brush = brushes.of_tool(_active_tool(context))
     if brush is None:
         return brushes.of("remove")
     if not brush.session:
@@ -42,7 +42,7 @@ def brush_of(context, choice):
     return brush
 
 
-def _at_hand(context):
+def _active_tool(context):
     """Identifier of the active tool in the 3D view's toolbar, or ""."""
     tool = context.workspace.tools.from_space_view3d_mode("OBJECT", create=False) if context.workspace else None
     return tool.idname if tool is not None else ""
@@ -190,7 +190,7 @@ class RIFFLER_OT_pen_sculpt(sculpt_work.TakesTool, properties.PenSettings, bpy.t
 
 
 def _take_up_tool(context):
-    if not _at_hand(context).startswith("riffler."):
+    if not _active_tool(context).startswith("riffler."):
         bpy.ops.wm.tool_set_by_id(name=TOOL, space_type="VIEW_3D")
 
 
@@ -242,7 +242,7 @@ def _status(text):
 
 
 def _leave():
-    """Called when the session has ended, for whatever reason."""
+    """Called when the session has ended, for any reason."""
     global _shown, _told
     _told = ()
     if _shown is not None:

@@ -26,7 +26,7 @@ running = None  # only one at a time: one hand, one device
 
 class PenSession:
     """A session of the open `device` with the sculpt `ob`; `tool`: riffler.Tool. `options`: riffler.Session's.
-    `recordings`: the folder for a recording, or None. `ended` is called after its end, for whatever reason. ValueError,
+    `recordings`: the folder for a recording, or None. `ended` is called after its end, for any reason. ValueError,
     OSError, RuntimeError if it cannot start; then nothing has changed, and the device is closed."""
 
     def __init__(self, context, ob, device, tool, options, recordings=None, ended=lambda: None):
@@ -65,7 +65,7 @@ class PenSession:
         work.persistence.begin_session(work.object, work.token, snapshots.get(work.token).content, session)
         self.run.start()
 
-    # ------------------------------------------------------------------ while it goes on
+    # ------------------------------------------------------------------ while it runs
     @property
     def changed(self):
         """mm³ removed or added since the start, without undone strokes."""

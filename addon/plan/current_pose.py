@@ -92,7 +92,7 @@ def reach(context, view, centre):
 
 
 def hand(scene, spot, pose):
-    """Shows the tool at a pose (6,), mm, whatever the animation gives, until `release`."""
+    """Shows the tool at a pose (6,), mm, instead of the animated one, until `release`."""
     tool, ghost = timeline.pair(spot.ob)
     stands = timeline.stands(scene, tool, ghost)
     quat = quaternions.transported(pose[None, 3:], stands)[0]

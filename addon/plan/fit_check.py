@@ -49,8 +49,8 @@ def size_question(scene):
 
 
 def same_cutter(a, b):
-    """True if the tools have the same cutter, so that paths of one are paths of the other, whatever shank and holder
-    they have."""
+    """True if the tools have the same cutter, so that paths of one are paths of the other, even with another shank
+    or holder."""
     return tool_icons.cutter(_shape(a)) == tool_icons.cutter(_shape(b))
 
 

@@ -139,7 +139,7 @@ def suspect(context, ob):
 
 
 def version(ob):
-    """Changes whenever asking again may give other surroundings."""
+    """A value that changes when asking again may give other surroundings."""
     return ("made", _kept[ob.name].number) if known(ob) is not None else ("changed", _changes, _who(scene_of(ob), ob))
 
 

@@ -48,7 +48,7 @@ maps = 0  # maps computed since the add-on runs
 
 
 def ask(context, spot):
-    """Known of a current_pose.Spot, as far as it is computed."""
+    """Known of a current_pose.Spot, with the results computed so far."""
     global _wanted, _asked, _known
     wanted = _Wanted(context.scene.name, spot.ob.name, spot, _key(context.scene, spot.ob, spot))
     moved = _wanted is None or _wanted.key != wanted.key

@@ -1,5 +1,5 @@
 """A row for each path of a plan, for lists: its name, length, state, and whether it is on. The plan itself stores which
-paths are off (riffler.plan.Plan.off); the rows are updated whenever it is written."""
+paths are off (riffler.plan.Plan.off); the rows are updated when it is written."""
 
 from collections import Counter
 

@@ -97,7 +97,7 @@ class Found:
 
 def nearest(plan, view, at, reach=NEAR, hidden=None):
     """The visible contact nearest to a pixel, or None if none is within `reach` of it. `hidden`: a function of a place
-    (3,), True if something hides it. It is called for few contacts, whatever their number."""
+    (3,), True if something hides it. It is called for few contacts only."""
     origin, away = view.ray(*at)
     firsts = []
     for k, path in enumerate(plan.paths):

@@ -68,10 +68,10 @@ def tell_followers():
 def forget():
     """Clears all state: another file was opened, or the add-on is unregistered."""
     _states.clear()
-    list_anew()
+    search_again()
 
 
-def list_anew():
+def search_again():
     """Searches again: names and numbers of objects may have changed, as after an undo."""
     global _known
     _known = (-1, ())

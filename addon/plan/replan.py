@@ -1,6 +1,6 @@
 """Turns the timeline's keyframes into the plan's key orientations, and the plan into the animation.
 
-The keyframes are the source: the plan's keys and the animation follow from them, whatever changed them: Blender's own
+The keyframes are the source: the plan's keys and the animation follow from them after every change, by Blender's own
 tools, a script, undo or a file that was opened. Nothing here is an undo step: the consequences of an edit belong to
 that edit, and after an undo they are computed again from the restored keyframes, cutter locations from memory. So one
 Ctrl Z undoes a key and its consequences.
@@ -276,7 +276,7 @@ def _settle_all():
 @bpy.app.handlers.persistent
 def _on_history(*_):
     """After undo and redo; names and numbers of objects may have changed."""
-    plan_states.list_anew()
+    plan_states.search_again()
     if on_timeline():
         _soon()
 

@@ -64,10 +64,10 @@ def faults(tool, scene):
     if not placed(tool):
         return [f"{tool.name} was deleted: use Plan to Timeline to have it again"]
     if max(abs(size - 1) for size in tool.matrix_world.to_scale()) > SCALED:
-        return [f"{tool.name} is scaled, and is not as large as it is shown: use Object > Clear > Scale"]
+        return [f"{tool.name} is scaled, so its displayed size is wrong: use Object > Clear > Scale"]
     mm = scene_units.mm_per_unit(scene)
     if tool.get(UNIT, mm) != mm:
-        return [f"The scene's unit has changed: use Plan to Timeline, so that {tool.name} is seen as it is"]
+        return [f"The scene's unit has changed: use Plan to Timeline, so that {tool.name} has its real size"]
     return []
 
 
@@ -222,7 +222,7 @@ def _write(curves, path, index, frames, values, kinds):
     curve.update()
 
 
-# ------------------------------------------------------------------ the tool in somebody's hand
+# ------------------------------------------------------------------ the tool while the user turns it
 def orientation(ob, frame):
     """The quaternion (4,) of an object's curves at a frame, or None."""
     curves = [_find(ob, ROTATION, i) for i in range(4)]

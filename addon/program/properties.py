@@ -1,4 +1,4 @@
-"""What is simulated and verified, and what was found."""
+"""Settings of simulation and verification, and the findings."""
 
 import bpy
 from bpy.props import CollectionProperty, EnumProperty, IntProperty, PointerProperty, StringProperty
@@ -19,7 +19,7 @@ FRAMES = (
 
 
 class ProgramSettings:
-    """Which program, on which stock: shared by the panel's settings and the operators."""
+    """The program and its stock: shared by the panel's settings and the operators."""
 
     source: EnumProperty(name="Program", items=SOURCES, default="PLAN", description="Program that moves the tool")
     filepath: StringProperty(name="File", subtype="FILE_PATH", description="NC code, or .rprog")
@@ -30,7 +30,7 @@ class ProgramSettings:
 
 
 class GivenOptions:
-    """Of operators, for scripts; people set the fields of the machine."""
+    """Options as JSON, for scripts; the panel has fields of the machine instead."""
 
     options: StringProperty(
         name="Options",

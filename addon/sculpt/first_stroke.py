@@ -1,5 +1,5 @@
-"""The first stroke on an object that is no sculpt yet: the drag is kept, and once it is over Riffler asks whether the
-object is to be one. Blender would have moved the object otherwise."""
+"""The first stroke on an object that is not a sculpt yet: the drag is recorded, and after it Riffler asks whether to
+make the object a sculpt. Without this Blender would move the object."""
 
 import json
 import textwrap
@@ -15,7 +15,7 @@ from ..translations import local
 from . import chunks, fit, mesh_edits, sculpt_work, sculpts
 from .stroke_operator import MODES, MOVES, sample
 
-WIDE = 70  # characters in a line of a popup
+WIDE = 70  # characters per line of a popup
 NOTHING = "Nothing to sculpt here: drag on a mesh, or add a block, sphere or cylinder by Add > Mesh > Riffler"
 
 
@@ -32,7 +32,8 @@ class RIFFLER_OT_stroke_elsewhere(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        """Where the stroke itself is refused: keys of a tool are not asked in the order in which they are made."""
+        """Available where the stroke itself is refused: Blender does not try a tool's keys in the order in which they
+        are defined."""
         if not operator_parts.object_mode(cls, context):
             return False
         if context.region_data is None:
@@ -43,7 +44,7 @@ class RIFFLER_OT_stroke_elsewhere(bpy.types.Operator):
         return operator_parts.deny(cls, "The active sculpt is under the pointer: use Sculpt Stroke")
 
     def invoke(self, context, event):
-        """The drag belongs to this operator whatever comes of it, so that nothing is moved or selected by it."""
+        """Always captures the drag, so that it neither moves nor selects anything."""
         self._refused, self._rows, self._begin = refusal(context), [], time.perf_counter()
         target = None if self._refused else under(context, event) or object_surfaces.source_object(context)
         if not self._refused:
@@ -99,7 +100,7 @@ class RIFFLER_OT_stroke_elsewhere(bpy.types.Operator):
 
 
 def say(context, text):
-    """At the pointer, where whoever drags looks; a line of the status bar is overlooked."""
+    """Shows a message at the pointer, where the user looks; one in the status bar is overlooked."""
 
     def draw(menu, context):
         for line in textwrap.wrap(local(text), WIDE):
@@ -109,7 +110,7 @@ def say(context, text):
 
 
 def refusal(context):
-    """Why nothing can be sculpted now, whatever lies under the pointer; otherwise nothing."""
+    """Why nothing can be sculpted now, under the pointer or elsewhere; otherwise ""."""
     heard = Heard()
     if operator_parts.busy(heard, context):
         return heard.text
@@ -120,7 +121,7 @@ def refusal(context):
 
 
 class Heard:
-    """Stands for an operator's class, and keeps why its button would be grey."""
+    """Stands in for an operator's class, and records why its button would be disabled."""
 
     text = ""
 
@@ -129,8 +130,7 @@ class Heard:
 
 
 def under(context, event):
-    """The object with a surface that the pointer is on; of a live sculpt's chunk, the sculpt. None where there is
-    none."""
+    """The object with a surface under the pointer; for a live sculpt's chunk, the sculpt. None if there is none."""
     from bpy_extras import view3d_utils
 
     region, space = context.region, context.region_data
@@ -146,14 +146,15 @@ def under(context, event):
 
 
 def unfit(context, ob):
-    """Why that object cannot become a sculpt, with the remedy; otherwise nothing."""
+    """Why that object cannot become a sculpt, with the remedy; otherwise ""."""
     if ob is None:
         return refusals.instance(context.object) or NOTHING
     if why := refusals.instance(ob):
         return why
     if ob.type not in object_surfaces.WITH_SURFACE:
         return NOTHING
-    if ob.name not in context.view_layer.objects or not ob.visible_get():  # one that the pointer is on all the same
+    # the pointer can hit such an object all the same
+    if ob.name not in context.view_layer.objects or not ob.visible_get():
         stands = (o for o in context.view_layer.objects if o.instance_collection is not None)
         of = next((o for o in stands if ob.name in o.instance_collection.all_objects), None)
         return refusals.instance(of) if of is not None else refusals.disabled(ob, context.view_layer) or NOTHING
@@ -161,14 +162,14 @@ def unfit(context, ob):
 
 
 def _fit(chosen, context):
-    """Pitch and cutter that suit the size which `chosen`, the fields of the operator below, has."""
+    """Sets pitch and cutter to suit the size in `chosen`, the properties of the operator below."""
     if chosen.side > 0:
         chosen.pitch = fitting.pitch(chosen.side)
         chosen.diameter = fit.cutter(context, chosen.side)
 
 
 class TakesDrag:
-    """Mixin of operators that ask first, and go on with the drag that was kept."""
+    """Mixin of operators that ask first, and then continue with the recorded drag."""
 
     mode: EnumProperty(name="Mode", items=MODES, default="REMOVE", options={"HIDDEN", "SKIP_SAVE"})
     stroke: StringProperty(
@@ -178,7 +179,7 @@ class TakesDrag:
     )
 
     def go_on(self, context):
-        """The drag becomes a stroke on the sculpt that is active now."""
+        """Turns the drag into a stroke on the active sculpt."""
         if not self.stroke:
             return {"FINISHED"}
         data = json.loads(self.stroke)
@@ -278,7 +279,7 @@ class RIFFLER_OT_make_sculpt(TakesDrag, bpy.types.Operator):
         return bpy.data.objects.get(self.object) if self.object else object_surfaces.source_object(context)
 
     def _choose(self, context):
-        """Whatever was not chosen, from the object's size."""
+        """Fills in settings that were not given, from the object's size."""
         source = self._source(context)
         if why := unfit(context, source):
             raise ValueError(why)
@@ -332,7 +333,7 @@ class RIFFLER_OT_edits_first(TakesDrag, bpy.types.Operator):
 
 
 def _units(ob):
-    """The longest side as it is shown, in Blender units."""
+    """The displayed longest side, in Blender units."""
     if min(ob.dimensions) <= 0:
         raise ValueError(f"{ob.name} is flat, so it has no volume: give it thickness, by the modifier Solidify")
     return fitting.longest(ob.dimensions)

@@ -1,4 +1,4 @@
-"""How the sculpt tool's strokes are made; on the scene, beside the cutter."""
+"""Settings of the sculpt tool's strokes, on the scene, next to the cutter's."""
 
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty
@@ -122,7 +122,7 @@ class RifflerSculpt(bpy.types.PropertyGroup):
     )
 
     def choice(self, mode):
-        """How a stroke is made; `mode`: of sculpt/pure/brush_stroke.py."""
+        """The settings of a stroke; `mode`: of sculpt/pure/brush_stroke.py."""
         return brush_stroke.Choice(
             mode=mode,
             depth=units.clean(self.depth),
@@ -134,5 +134,5 @@ class RifflerSculpt(bpy.types.PropertyGroup):
         )
 
     def maps(self):
-        """The stroke's copies, as sculpt/pure/symmetry.py has them."""
+        """The stroke's symmetric copies, in the form of sculpt/pure/symmetry.py."""
         return symmetry.maps("".join(sorted(self.mirror)), self.radial_axis, self.radial)

@@ -1,6 +1,6 @@
 """F and Shift F, [ and ]: radius, depth and strength of the sculpt tools, by the pointer's distance or in steps.
 
-Blender's own control of a size leaves an undo step, which settings of a brush do not.
+Blender's own radial control leaves an undo step, which settings of a brush do not.
 """
 
 import bpy
@@ -16,8 +16,8 @@ FIELDS = (
     ("DEPTH", "Depth", "Depth of the stroke"),
     ("STRENGTH", "Strength", "Strength of the smoothing"),
 )
-SHORTER = 0.9  # of a size: one step
-FACTOR_PIXELS = 200.0  # a whole strength
+SHORTER = 0.9  # ratio of sizes for one step
+FACTOR_PIXELS = 200.0  # pixels for the full strength
 
 WORDS = ("ZERO", "ONE", "TWO", "THREE", "FOUR", "FIVE", "SIX", "SEVEN", "EIGHT", "NINE")
 DIGITS = {
@@ -75,7 +75,7 @@ class RIFFLER_OT_resize(bpy.types.Operator):
     def _set(self, context, value):
         settings = context.scene.riffler.sculpt
         setattr(settings, self._name, value)
-        self._drag.value = getattr(settings, self._name)  # as its field allows
+        self._drag.value = getattr(settings, self._name)  # clamped to its field's range
         self._show(context)
 
     def _show(self, context):

@@ -1,4 +1,4 @@
-"""What is done to a sculpt as a whole: another pitch or box, cut off by a plane, taken apart, edits taken over."""
+"""Operations on a sculpt as a whole: another pitch or box, cropping by a plane, splitting, applying edits."""
 
 from dataclasses import replace
 
@@ -46,7 +46,7 @@ class RIFFLER_OT_resample(SculptWork, bpy.types.Operator):
         before = self._before
         content = replace(before, volume=job.result, mask=mask_display.on_grid_of(job.result, before.mask))
         self.keep(content, unseen=estimate.too_thin(self._object, job.result.pitch))
-        context.scene.riffler.clay.pitch = job.result.pitch  # what the panel offers next
+        context.scene.riffler.clay.pitch = job.result.pitch  # the panel's next default
         off = job.result.volume - before.volume.volume
         self.report({"INFO"}, f"{units.counted(job.result.rays, 'ray')}; material {_signed(off)}")
         return {"FINISHED"}
@@ -174,7 +174,7 @@ class RIFFLER_OT_split(SculptWork, bpy.types.Operator):
 
 
 def _left_of(mask, piece):
-    """The mask of one piece: None where it protects nothing of it."""
+    """The mask of one piece: None if it protects nothing of it."""
     if mask is None:
         return None
     return mask if mask.copy().intersect(piece).volume > 0 else None
@@ -193,7 +193,7 @@ class RIFFLER_OT_take_edits(SculptWork, bpy.types.Operator):
         ob, self._before = self.take(context)
         volume = self._before.volume
         surface = object_volumes.of_object(context, ob, ob)
-        box = volume.grown(*surface.bounds)  # so that what has not moved stands on the rays that it stood on
+        box = volume.grown(*surface.bounds)  # so that unmoved material stays on its rays
         self._report = {}
         rays = box.pitch, box.directions
         return TaskJob(tasks.from_mesh(surface, *rays, lower=box.lower, upper=box.upper, report=self._report))
@@ -202,7 +202,8 @@ class RIFFLER_OT_take_edits(SculptWork, bpy.types.Operator):
         if job.result.volume <= 0:
             raise ValueError("the edited mesh has no volume: close it, or undo the edits")
         before, volume = self._before, job.result
-        mask = mask_display.on_grid_of(volume, before.mask)  # where it was: what was moved has left it, or come into it
+        # unmoved: material that was moved has left it, or come into it
+        mask = mask_display.on_grid_of(volume, before.mask)
         middle = sculpts.middle(self.mesh, before.volume)
         self.keep(Content(volume, mask=mask, shaped=True))
         sculpts.keep_middle(self.mesh, volume, middle)

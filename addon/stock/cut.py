@@ -1,4 +1,5 @@
-"""Cutting: one operator per source of motion, carved in slices by the shell of long work; the surface follows."""
+"""Cutting: one operator per source of motion, carved in slices by the shell of long work, with the surface updated
+meanwhile."""
 
 import time
 from dataclasses import replace
@@ -21,7 +22,7 @@ from . import cut_paths, properties
 
 
 class CutShell(sculpt_work.TakesTool, SculptWork):
-    """Mixin; a subclass has `make_cuts(context, ob)`, which returns them."""
+    """Mixin; a subclass has `make_cuts(context, ob)`, which returns the cuts."""
 
     doing = "Cutting"
     cancelled = "Cut cancelled: the sculpt is unchanged"
@@ -54,7 +55,7 @@ class CutShell(sculpt_work.TakesTool, SculptWork):
 
 
 def _cut_off(cut, volume):
-    """True where a cut put material on that the box cut off."""
+    """True if a cut added material that the box clipped."""
     if cut.mode != "add":
         return False
     return reach.is_cut_off(reach.outline_of(riffler.Tool.from_dict(cut.tool)), cut.poses, volume)

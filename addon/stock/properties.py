@@ -1,4 +1,4 @@
-"""What new stock is made of, what is done to a sculpt as a whole, what is made of it, and what its mesh keeps."""
+"""Settings of new stock, of operations on a sculpt as a whole, and of its results; and the data on its mesh."""
 
 import bpy
 from bpy.props import (
@@ -177,17 +177,17 @@ class RifflerResult(ResultSettings, bpy.types.PropertyGroup):
 
 # ---------------------------------------------------------------------- what a mesh keeps
 class RifflerMesh(bpy.types.PropertyGroup):
-    """On a sculpt's mesh: where its volume is, and what a panel shows without reading it."""
+    """On a sculpt's mesh: the image of its volume, and the panel's facts."""
 
     store: PointerProperty(type=bpy.types.Image)
     mm_per_unit: FloatProperty(default=1000.0)
     shown: IntVectorProperty(size=2)
     shown_of: StringProperty(description="Content id of the volume that the mesh was made from")
     shown_at: FloatVectorProperty(size=24)
-    shown_crc: StringProperty()  # of all coordinates as they were shown; files of older add-ons have none
+    shown_crc: StringProperty()  # of all coordinates as displayed; files of older add-ons have none
     lower: FloatVectorProperty()
     upper: FloatVectorProperty()
-    off_middle: FloatVectorProperty()  # from where strokes are mirrored to the middle of the box, mm
+    off_middle: FloatVectorProperty()  # from the centre of symmetry to the middle of the box, mm
     pitch: FloatProperty()
     directions: StringProperty()
     material: FloatProperty()

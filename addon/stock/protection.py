@@ -1,4 +1,4 @@
-"""What of a sculpt is protected: from closed curves and meshes, the other way round, or nothing."""
+"""The mask of a sculpt: set from closed curves and meshes, inverted, or cleared."""
 
 from dataclasses import replace
 
@@ -11,11 +11,11 @@ from ..sculpt.sculpt_work import SculptWork
 from . import object_volumes
 from .properties import HOW
 
-TOLERANCE = 0.25  # pitches: of curves
+TOLERANCE = 0.25  # pitches: tolerance of curves
 
 
 def masked(content, mask):
-    """The content with that mask, of which None is left where it protects nothing."""
+    """The content with that mask, or with None if it protects nothing."""
     return replace(content, mask=None if mask is None or mask.volume == 0 else mask)
 
 
@@ -26,7 +26,7 @@ def said_of(content):
 
 
 class Masking(SculptWork):
-    """Mixin of what changes the mask only: the job makes it, or None."""
+    """Mixin of operators that change the mask only: the job makes it, or None."""
 
     doing = "Masking"
     cancelled = "Not masked: the mask is unchanged"

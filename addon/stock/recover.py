@@ -1,4 +1,4 @@
-"""Journals of a Blender that has died: made again, or thrown away."""
+"""Journals of a Blender that has crashed: recovers or discards them."""
 
 import bpy
 import riffler
@@ -14,7 +14,7 @@ from ..sculpt.pure import journal
 
 
 class TakesJournal:
-    """Mixin of operators on one of the journals that nobody holds."""
+    """Mixin of operators on a journal that no process holds."""
 
     journal: bpy.props.StringProperty(
         name="Journal", options={"SKIP_SAVE"}, description="Name of the journal's folder; empty: the newest journal"
@@ -29,7 +29,7 @@ class TakesJournal:
         )
 
     def take(self):
-        """The journal, locked. ValueError where somebody else has it."""
+        """The journal, locked. ValueError if another process has it."""
         found = [f for f in persistence.crashed(look=True) if self.journal in ("", f.folder.name)]
         if not found:
             raise ValueError(f"there is no journal {self.journal} that can be recovered".replace("  ", " "))
@@ -87,7 +87,7 @@ class RIFFLER_OT_recover(TakesJournal, long_work.LongWork, bpy.types.Operator):
 
 
 def _prepared(found):
-    """The strokes that are still to be made, on a snapshot in the journal's folder, all cuts, whether other means have
+    """The strokes still to be made, on a snapshot in the journal's folder, all cuts, whether other operations have
     shaped it, too, and the tokens of the states that the journal knows, from the first to the last."""
     try:
         strokes, cuts = journal.part_of(found.folder)
@@ -102,8 +102,7 @@ def _prepared(found):
 
 
 def _on_what_the_file_has(found, strokes, states):
-    """The crash came before the state that the journal begins with was written: it, or a later one, may be in this
-    file."""
+    """The crash came before the journal's initial state was written: it, or a later one, may be in this file."""
     for ob in filter(sculpts.is_sculpt, bpy.data.objects):
         state = _state(ob, found.about, states)
         if state:
@@ -115,7 +114,7 @@ def _on_what_the_file_has(found, strokes, states):
 
 
 def _rest(folder, strokes, done, content):
-    """Those after the first `done`, on `content`."""
+    """The strokes after the first `done`, on `content`."""
     content.volume.save(folder / journal.STOCK)
     if content.mask is not None:
         content.mask.save(folder / journal.MASK)
@@ -130,15 +129,15 @@ def _rest(folder, strokes, done, content):
 
 
 def _state(ob, about, states):
-    """Which of the journal's states the file has of the sculpt, or ""."""
+    """The journal's state that the file has of the sculpt, or ""."""
     if about.get("base") and sculpt_store.identity(ob.data) == about["base"]:
         return states[0]
     return sculpt_store.token(ob.data) if sculpt_store.token(ob.data) in states else ""
 
 
 def _target(about, states):
-    """The sculpt of which this file has a state of the journal, or None: one that has gone on by other means since is
-    left alone. Copies that share it are not meant, where the one that was worked at is there."""
+    """The sculpt of which this file has a state of the journal, or None: a sculpt that other operations have changed
+    since is not used. Copies that share the state are ignored if the original exists."""
     found = [ob for ob in bpy.data.objects if sculpts.is_sculpt(ob) and _state(ob, about, states)]
     found = [ob for ob in found if not (ob.library or ob.data.library)]
     return next((ob for ob in found if ob.riffler.mark == about.get("mark")), found[0] if found else None)

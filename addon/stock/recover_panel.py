@@ -1,4 +1,4 @@
-"""Messages about sculpts that no command reports: work that was cut off, journals that cannot be written."""
+"""Messages about sculpts that no operator reports: interrupted sessions, journals that cannot be written."""
 
 from datetime import datetime
 

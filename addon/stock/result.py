@@ -1,4 +1,4 @@
-"""What is made of a sculpt: a plain mesh with a stated error, and colours of its distance from a reference."""
+"""Results of a sculpt: a plain mesh with a known error, and colours of its distance from a reference."""
 
 import bpy
 import numpy as np
@@ -79,13 +79,13 @@ class RIFFLER_OT_to_mesh(properties.ResultSettings, SculptWork, bpy.types.Operat
 
 
 def said_of(mesh):
-    """What a mesh is beside the sculpt that it was made of."""
+    """A note on the mesh compared with its sculpt."""
     count = units.counted(len(mesh.polygons), "triangle")
     return f"{count}, at most {units.trim(mesh[attributes.ERROR], 5)} mm from the sculpt"
 
 
 def _in_world(context, ob):
-    """In mm of the scene, vertex by vertex that of the evaluated mesh. ValueError where that is not known."""
+    """In mm of the scene, vertex by vertex that of the evaluated mesh. ValueError if it is unknown."""
     if why := refusals.disabled(ob, context.view_layer):
         raise ValueError(why)
     matrix = meshes.matrix(ob.matrix_world)

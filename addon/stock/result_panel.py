@@ -1,4 +1,4 @@
-"""From a sculpt to a mesh, and how far it is from what it should be."""
+"""From a sculpt to a mesh, and the distance from a reference."""
 
 import bpy
 

@@ -1,4 +1,4 @@
-"""New sculpts of exact shapes, sized as Blender's own Add Mesh sizes its own."""
+"""New sculpts of exact shapes, with sizes as in Blender's own Add Mesh."""
 
 import math
 from collections.abc import Callable
@@ -100,8 +100,8 @@ class RIFFLER_OT_add_solid(bpy.types.Operator):
         self.layout.label(text=f"{local('Pitch')}: {units.trim(size.max() / self.rays, 4)} mm", translate=False)
 
     def _fit(self, context):
-        """Metres and a cutter of millimetres are nothing to begin with: the scene's unit and the cutter become such
-        that the solid can be sculpted."""
+        """A solid of metres and a cutter of millimetres do not match: sets the scene's unit and the cutter such that
+        the solid can be sculpted."""
         longest = self._shape(context.scene).size.max() / scene_units.mm_per_unit(context.scene)
         if longest > 0:
             side = fit.side(context, longest)
@@ -125,7 +125,7 @@ class RIFFLER_OT_add_solid(bpy.types.Operator):
         )
 
     def _pitch(self, name, size):
-        """mm. ValueError where a side is nothing, or has no room for two rays."""
+        """mm. ValueError if a side is 0, or too short for two rays."""
         for field, side in zip(_SIDES[self.shape], size, strict=False):
             if not side > 0:
                 raise ValueError(f"{field} is 0: give it a length")

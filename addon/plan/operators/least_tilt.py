@@ -129,7 +129,7 @@ class RIFFLER_OT_plan_least_tilt(TimelineWork, bpy.types.Operator):
         return found
 
     def finish(self, context, job):
-        """Changes the plan and the animation once, whatever the number of paths."""
+        """Changes the plan and the animation once, for any number of paths."""
         ob, plan = self.ob, plan_store.plan(self.ob)
         paths, cl = list(plan.paths), list(plan.cl) or [None] * len(plan.paths)
         marks = [e for e in findings.read(ob.riffler.plan.findings) if e["path"] not in self._paths]

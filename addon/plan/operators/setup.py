@@ -277,9 +277,9 @@ class RIFFLER_OT_plan_assembly(bpy.types.Operator):
         except operator_parts.ERRORS:
             return  # execute reports the error
         sizes = sizes_of(tool)
-        if len(tool.shank) > 1 and self.shank and not self._as_it_is(sizes, SHANK):
+        if len(tool.shank) > 1 and self.shank and not self._unchanged(sizes, SHANK):
             self.layout.label(text="The shank becomes one piece, as its diameter was changed", icon="INFO")
-        if len(tool.holder) > 1 and self.holder and not self._as_it_is(sizes, HOLDER):
+        if len(tool.holder) > 1 and self.holder and not self._unchanged(sizes, HOLDER):
             self.layout.label(text="The holder becomes one piece, as its sizes were changed", icon="INFO")
 
     def execute(self, context):
@@ -300,16 +300,16 @@ class RIFFLER_OT_plan_assembly(bpy.types.Operator):
         sizes = sizes_of(tool)
         fields = (self.shank, self.reach, self.holder, self.upper, self.height)
         shank, reach, lower, upper, height = map(units.clean, fields)
-        further = 0.0 if self._as_it_is(sizes, ("reach",)) else reach - sizes.get("reach", reach)
+        further = 0.0 if self._unchanged(sizes, ("reach",)) else reach - sizes.get("reach", reach)
         shanks = [(tool.length, shank / 2, reach, shank / 2)] if shank else []
-        if self._as_it_is(sizes, SHANK):
+        if self._unchanged(sizes, SHANK):
             shanks = _drawn_out(tool.shank, further)
         holders = [(reach, lower / 2, reach + height, upper / 2)] if lower else []
-        if self._as_it_is(sizes, HOLDER):
+        if self._unchanged(sizes, HOLDER):
             holders = [(units.clean(a + further), r, units.clean(b + further), s) for a, r, b, s in tool.holder]
         return tool.with_shank(shanks).with_holder(holders)
 
-    def _as_it_is(self, sizes, keys):
+    def _unchanged(self, sizes, keys):
         """True if the fields equal the tool's sizes, within single precision."""
         return all(key in sizes and getattr(self, key) == np.float32(sizes[key]) for key in keys)
 

@@ -1,4 +1,4 @@
-"""Options from riffler.machine_options as fields of a panel: their names, and conversions of values in both directions."""
+"""Options from riffler.machine_options as fields of a panel: names, and conversions of values in both directions."""
 
 from __future__ import annotations
 

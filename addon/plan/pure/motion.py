@@ -150,7 +150,7 @@ class Played:
 
 
 def played(motion: Motion) -> Played:
-    """Depends on this path only, whatever the others are."""
+    """Depends on this path only, not on the others."""
     if not len(motion):
         return Played(motion.frames, motion.poses, np.empty((0, 4)))
     rows = fine(motion)

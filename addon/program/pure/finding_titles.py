@@ -1,4 +1,4 @@
-"""Findings as lists show them: kind, size and place first, so that ten of a kind are told apart."""
+"""Titles of findings in lists: kind, size and place first, to distinguish findings of one kind."""
 
 from __future__ import annotations
 
@@ -25,5 +25,5 @@ def verified(what: str, value: float, place) -> str:
 
 
 def _number(value: float) -> str:
-    """Two digits are enough to tell findings apart."""
+    """Two digits, which are enough to distinguish findings."""
     return f"{value:.2g}" if value < 10 else f"{value:.0f}"

@@ -1,4 +1,4 @@
-"""Puts material on in the shape of the cutter."""
+"""Adds material in the shape of the cutter."""
 
 import riffler
 
@@ -7,7 +7,7 @@ from .brush import Brush
 
 
 def stub(tool, depth: float):
-    """The end of the cutter only: putting on a whole cutter would make a pillar of its full length."""
+    """The end of the cutter only: the whole cutter would make a pillar of its full length."""
     line = outline_of(tool)
     widest = line[line[:, 0] >= line[:, 0].max() * (1 - 1e-9), 1].min()
     data = tool.to_dict()

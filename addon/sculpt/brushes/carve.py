@@ -1,4 +1,4 @@
-"""Takes material away with the cutter."""
+"""Removes material with the cutter."""
 
 from .brush import Brush
 

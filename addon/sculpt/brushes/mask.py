@@ -1,4 +1,4 @@
-"""Protects what the cutter sweeps from all other brushes, or frees it."""
+"""Protects the volume that the cutter sweeps from all other brushes, or unprotects it."""
 
 import riffler
 

@@ -234,7 +234,7 @@ def test_what_is_masked_gets_no_material_put_on():
 @common.core_bound
 def test_a_session_does_what_the_tool_at_hand_does():
     operators = common.part("pen.operators")
-    at_hand = operators._at_hand
+    at_hand = operators._active_tool
     try:
         for tool, mode in (
             ("riffler.add", "add"),
@@ -242,22 +242,22 @@ def test_a_session_does_what_the_tool_at_hand_does():
             ("riffler.plan", "remove"),
             ("", "remove"),
         ):
-            operators._at_hand = lambda context, tool=tool: tool
+            operators._active_tool = lambda context, tool=tool: tool
             assert operators.brush_of(bpy.context, "TOOL").id == mode
             assert operators.brush_of(bpy.context, "ADD").id == "add"
         ob = lowered()
         live().end_all()
         before = now()
         for tool, word in (("riffler.smooth", "Smooth"), ("riffler.mask", "Mask")):
-            operators._at_hand = lambda context, tool=tool: tool
-            common.refused(lambda: sculpt_for(0.2), f"take Carve or Add instead of {word}")
+            operators._active_tool = lambda context, tool=tool: tool
+            common.refused(lambda: sculpt_for(0.2), f"use Carve or Add instead of {word}")
             no_session()
         assert now_of(ob) == before
-        operators._at_hand = lambda context: "riffler.add"
+        operators._active_tool = lambda context: "riffler.add"
         place = folder("put-on")
         until_cut(record=True, folder=str(place))
     finally:
-        operators._at_hand = at_hand
+        operators._active_tool = at_hand
     no_session()
     live().end_all()
     content = common.content(bpy.data.objects[NAME])

@@ -306,9 +306,9 @@ def test_the_dialog_says_which_pieces_become_one():
         layout = SimpleNamespace(prop=lambda *_: None, label=lambda text, icon: told.append(text))
         sizes = {"shank": 4.0, "reach": 50.0, "holder": 20.0, "upper": 30.0, "height": 50.0, **changed}
         drawn = SimpleNamespace(layout=layout, **sizes)
-        drawn._as_it_is = lambda *a: operator._as_it_is(drawn, *a)
+        drawn._unchanged = lambda *a: operator._unchanged(drawn, *a)
         operator.draw(drawn, bpy.context)
-        return " ".join(text.split("'")[0] for text in told)
+        return " ".join(text.split(" becomes")[0] for text in told)
 
     assert (said(), said(reach=60.0), said(shank=0.0, holder=0.0)) == ("", "", "")
     assert said(shank=6.0, upper=32.0) == "The shank The holder" and said(height=40.0) == "The holder"

@@ -154,7 +154,7 @@ def test_on_the_timeline_it_plays_its_poses_and_takes_no_keys():
     why = "Path 1 has its orientations from its strategy"
     common.refused(lambda: bpy.ops.riffler.plan_key(axis=(0, 0.3, 1), path=1, point=1), why)
     common.refused(lambda: bpy.ops.riffler.plan_turn(inclination=0.1), why)
-    common.refused(lambda: bpy.ops.riffler.plan_least_tilt(paths="ALL"), "none takes keys")
+    common.refused(lambda: bpy.ops.riffler.plan_least_tilt(paths="ALL"), "none of them takes keys")
     common.refused(lambda: bpy.ops.riffler.plan_least_tilt(paths="FRAME"), why)
     tool = pair(ob)[0]
     tool.rotation_quaternion = (0.9, 0.1, 0, 0)

@@ -146,7 +146,9 @@ def test_blocked_paths_stay_unresolved_and_name_their_points():
     assert programs.content(ob).cl[0] is None
     lines = programs.listed(ob.riffler.plan.findings)
     assert lines[0]["kind"] == "blocked" and "points from 0" in lines[0]["name"]
-    common.refused(lambda: bpy.ops.riffler.plan_nc(filepath=common.out("x.ngc")), "path 1 may collide", "left out")
+    common.refused(
+        lambda: bpy.ops.riffler.plan_nc(filepath=common.out("x.ngc")), "path 1 may collide", "switch the path off"
+    )
 
 
 @common.core_bound
@@ -277,7 +279,7 @@ def test_paths_without_keys_are_not_cut_and_that_is_said():
     ob = programs.plan(programs.valley(programs.LEANING), plans.ring(), programs.valley(programs.INTO))
     bpy.ops.riffler.plan_resolve(max_lift=0.01)
     call = lambda: bpy.ops.riffler.plan_nc(filepath=common.out("some.ngc"))  # noqa: E731
-    common.refused(call, "path 3 may collide", "switch off a path")
+    common.refused(call, "path 3 may collide", "switch the path off")
     tool = pair(ob)[0]
     frames, quats = common.part("plan.timeline").read_keys(tool)
     first = tracks(ob)[2].first

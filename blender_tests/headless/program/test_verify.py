@@ -305,7 +305,7 @@ def test_one_step_of_undo():
 
 
 def test_what_is_missing_is_said():
-    common.refused(bpy.ops.riffler.finding_go, "Nothing was found")
+    common.refused(bpy.ops.riffler.finding_go, "There are no findings")
     common.refused(bpy.ops.riffler.verify_clear, "Nothing was verified")
     bpy.context.view_layer.objects.active = None
     common.refused(bpy.ops.riffler.verify, "There is no stock")

@@ -122,7 +122,7 @@ def test_sizes_that_make_no_sense_are_refused_by_the_name_of_their_field():
     nan, inf = float("nan"), float("inf")
     for size, pitch, *words in (
         ((-5, 60, 30), 0.5, "Size along x", "0.001 mm", "pitch of 0.5 mm: make it larger"),
-        ((100, 0.001, 30), 0.5, "Size along y is 0.001 mm", "take a finer pitch"),
+        ((100, 0.001, 30), 0.5, "Size along y is 0.001 mm", "use a finer pitch"),
         ((100, 60, nan), 0.5, "Size along z must be a positive length in mm, not nan"),
         ((inf, 60, 30), 0.5, "100000 × 60 × 30 mm", "coarser pitch"),
         ((100, 60, 30), 1000, "Size along x is 100 mm", "pitch of 1000 mm"),
