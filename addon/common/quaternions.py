@@ -47,8 +47,8 @@ def between(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def transported(axes: np.ndarray, before: np.ndarray | None = None) -> np.ndarray:
-    """Quaternions of the axes: each is the previous one turned by the smallest angle onto its axis; the first is `before`
-    (4,), by default the identity, turned likewise. Neighbours have the same sign."""
+    """Quaternions of the axes: each is the previous one turned by the smallest angle onto its axis; the first
+    is `before` (4,), by default the identity, turned likewise. Neighbours have the same sign."""
     before = np.array([1.0, 0, 0, 0]) if before is None else unit(np.asarray(before, float))
     first = multiply(between(axes_of(before), axes[0]), before)
     q = np.vstack([first, between(axes[:-1], axes[1:])])

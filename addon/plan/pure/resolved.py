@@ -13,7 +13,8 @@ COUNT, NBYTES = 2000, 64_000_000  # number and bytes of the stored locations: mo
 
 
 class Resolved:
-    """The locations of one plan. `mark`: what the locations are free of (plan/plan_store.py); without one they are not stored."""
+    """The locations of one plan's paths. `mark`: what they are free of (plan/plan_store.py); without one they are not
+    stored."""
 
     def __init__(self, count: int = COUNT, nbytes: int = NBYTES):
         self._count, self._most, self._nbytes = count, nbytes, 0

@@ -1,4 +1,4 @@
-"""What is said to a person: errors of the system, files that cannot be, surfaces too large, tables of a report."""
+"""Messages for users: errors of the system, invalid files, surfaces too large, tables of a report."""
 
 import errno
 import os
@@ -75,7 +75,7 @@ def test_a_surface_is_refused_by_its_triangles_not_by_its_box():
         estimate.check_surface("The cube", cube, estimate.box_area(cube), 0.5)
     estimate.check_surface("The cube", cube, estimate.box_area(cube), 2.0)  # 12 million
     estimate.check_surface("A rod across", cube, 1e5, 0.5)
-    estimate.check_surface("No number", cube, float("nan"), 0.5)  # the volume refuses it in its own words
+    estimate.check_surface("No number", cube, float("nan"), 0.5)  # the volume refuses it with its own message
 
 
 def test_boxes_have_the_triangles_that_are_foretold():

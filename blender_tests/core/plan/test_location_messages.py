@@ -1,4 +1,4 @@
-"""What is said about cutter locations, of a report of our own."""
+"""Messages about cutter locations, from a fake report."""
 
 from types import SimpleNamespace
 

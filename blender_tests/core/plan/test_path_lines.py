@@ -1,4 +1,4 @@
-"""A plan's lines by what the tool does, titles of findings, names on the timeline, sizes of tools and parts."""
+"""A plan's lines by the tool's movement, titles of findings, names on the timeline, sizes of tools and parts."""
 
 import json
 import math
@@ -92,7 +92,7 @@ def test_parts_are_odd_where_no_tool_of_that_size_makes_them():
 @pytest.mark.parametrize("kind", ["ball", "flat", "fillet", "taper", "cone_end"])
 @pytest.mark.parametrize(("key", "value"), [("diameter", 0.2), ("diameter", 60.0), ("length", 3.0), ("length", 200.0)])
 def test_every_size_that_is_set_makes_a_tool(kind, key, value):
-    """Of a cutter whose other sizes are those that a change of the kind gives it."""
+    """For a cutter with the other sizes that a change of its shape sets."""
     tool = riffler.Tool.ball(6, 40).with_shank([(40, 3, 60, 3)]).with_holder([(60, 14, 90, 16)]).to_dict()
     made = tool_sizes.changed(tool_sizes.changed(json.loads(json.dumps(tool)), "kind", kind), key, value)
     built = riffler.Tool.from_dict(made)

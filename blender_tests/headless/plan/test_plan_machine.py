@@ -1,4 +1,4 @@
-"""A machine's options as fields: what must be given is asked for, what is set is what is written, read and verified."""
+"""A machine's options as fields: required ones are asked for, and set ones are used to write, read and verify."""
 
 from pathlib import Path
 
@@ -27,7 +27,7 @@ def test_every_option_of_every_machine_is_a_field_with_its_unit():
             prop = group.bl_rna.properties[fields.identifier(fact["name"])]
             assert prop.name.endswith(f"({fact['unit']})") if fact["unit"] else "(" not in prop.name, prop.name
             assert prop.description == fields.about(fact)
-        assert machines().given(machine) == {}, "nothing is given before somebody gives it"
+        assert machines().given(machine) == {}, "no option is passed on before the user sets it"
 
 
 def test_a_pivot_that_nobody_gave_is_asked_for():
@@ -78,7 +78,7 @@ def test_fields_keep_the_numbers_that_were_meant():
 
 
 def test_another_machine_takes_its_own_options():
-    """What is set of one machine is no option of the other."""
+    """An option set for one machine is not passed to the other."""
     programs.resolved()
     machines().of("linuxcnc-xyzac").rot_point = (0, 0, -40)
     bpy.context.scene.riffler.plan.post = "linuxcnc-xyzac"

@@ -92,7 +92,7 @@ def test_the_scenes_tool_is_used_and_kept_with_the_cut():
     bpy.ops.riffler.tool_preset(name="V-bit 90°")
     bpy.ops.riffler.cut_curve(curve=c.name, depth=2)
     assert common.content(ob).cuts[0].tool["name"] == "V-bit 90°"
-    # a groove of 90° and depth d has the section d², and cones at both ends
+    # a groove of 90° and depth d has the section d², with cones at both ends
     removed = 24000 - common.content(ob).volume.volume
     assert abs(removed / (20 * 4 + np.pi * 8 / 3) - 1) < 0.05, removed
 
