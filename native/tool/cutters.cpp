@@ -27,7 +27,8 @@ constexpr CutterSize kLength{"length", SizeUnit::Length, "Length", "Cutting leng
 constexpr CutterSize kCornerRadius{
     "corner_radius", SizeUnit::Length, "Corner Radius", "Radius of the rounded edge, in mm", kLow, kHigh, 1, 0.5};
 constexpr CutterSize kTipRadius{
-    "tip_radius", SizeUnit::Length, "Tip Radius", "Radius of the ball or flat at the tip, in mm", 1e-4, kHigh, 0.5, 0, true};
+    "tip_radius", SizeUnit::Length, "Tip Radius", "Radius of the ball or flat at the tip, in mm", 1e-4, kHigh, 0.5, 0,
+    true};
 constexpr CutterSize kTipHeight{
     "tip_height", SizeUnit::Length, "Tip Height", "Height of the first cone, in mm", kLow, kHigh, 1};
 constexpr CutterSize kHalfAngle{"half_angle", SizeUnit::Angle, "Half Angle", "Angle between the axis and the flank",
