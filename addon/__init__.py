@@ -1,7 +1,7 @@
-"""Riffler in Blender: carve a block with a pen as if milling it; take STL and NC code away.
+"""Riffler in Blender: carve a block with a pen as if milling it, then export STL and NC code.
 
-This module imports neither bpy nor the native core, so `addon.common` and every `pure` folder are importable anywhere,
-and a core that does not load ends in a panel that says why rather than in a traceback.
+This module imports neither bpy nor the native core, so `addon.common` and every `pure` folder can be imported anywhere.
+If the core does not load, a panel shows the reason instead of a traceback.
 """
 
 import sys
@@ -15,14 +15,15 @@ bl_info = {  # Blender before 4.2; later ones read blender_manifest.toml
     "location": "3D View > Sidebar > Riffler",
     "category": "Sculpt",
 }
-VERSION = ".".join(map(str, bl_info["version"]))  # before Blender puts the manifest's into bl_info
+VERSION = ".".join(map(str, bl_info["version"]))  # before Blender puts the manifest's version into bl_info
 
 
 def _forget_submodules():
-    """After an update, and for Reload Scripts, Blender reads this file anew, and would run it with the old rest."""
+    """Removes the submodules from sys.modules. After an update, and for Reload Scripts, Blender runs this file again,
+    and would combine it with the old submodules."""
     for name in [n for n in sys.modules if n.startswith(f"{__name__}.")]:
         del sys.modules[name]
-        globals().pop(name.removeprefix(f"{__name__}."), None)  # where `from . import` looks first
+        globals().pop(name.removeprefix(f"{__name__}."), None)  # `from . import` looks here first
 
 
 _forget_submodules()

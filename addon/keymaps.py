@@ -1,5 +1,5 @@
-"""The add-on's own keys beside those of its tools: in Blender's add-on key configuration, taken back with the add-on.
-What a user makes of them is in the user's configuration, and stays there."""
+"""The add-on's own keys, in addition to those of its tools: registered in Blender's add-on key configuration, and
+removed with the add-on. The user's changes are in the user's configuration, and stay there."""
 
 from dataclasses import dataclass, field
 
@@ -18,11 +18,11 @@ class Key:
     operator: str
     event: dict
     label: str
-    given: dict = field(default_factory=dict)  # to the operator
+    given: dict = field(default_factory=dict)  # settings of the operator
     space: str = "EMPTY"
 
     def is_of(self, item):
-        """Keys of others may be of operators that have nothing of such a name, or that are gone."""
+        """Other add-ons' keys may call operators without such a property, or operators that no longer exist."""
         given = self.given.items()
         return item.idname == self.operator and all(getattr(item.properties, n, None) == v for n, v in given)
 
@@ -32,7 +32,7 @@ def _menu(operator, menu, **event):
 
 
 STOP = simulation.RIFFLER_OT_simulate_stop
-# Blender has nothing on these keys in any version, but for Esc, which is ours only while something is simulated.
+# No version of Blender uses these keys, except Esc, which is ours only during a simulation.
 KEYS = (
     _menu("wm.call_menu_pie", panel.RIFFLER_MT_sculpt_pie, type="W", ctrl=True, shift=True),
     _menu("wm.call_menu", menus.RIFFLER_MT_object, type="W", ctrl=True, alt=True),
@@ -44,7 +44,7 @@ _made = []  # (keymap, item)
 
 def attach():
     configuration = bpy.context.window_manager.keyconfigs.addon
-    if configuration is None:  # Blender without a window may have none
+    if configuration is None:  # Blender without a window may have no configuration
         return
     for key in KEYS:
         keymap = configuration.keymaps.new(key.keymap, space_type=key.space)
@@ -61,8 +61,8 @@ def detach():
 
 
 def users():
-    """(keymap, item) of each of KEYS in the user's configuration, which is the one that counts; the item is None where
-    the user has removed it."""
+    """(keymap, item) of each of KEYS in the user's configuration, which takes precedence; the item is None if the user
+    has removed it."""
     configuration = bpy.context.window_manager.keyconfigs.user
     for key in KEYS:
         keymap = configuration.keymaps.get(key.keymap) if configuration is not None else None
@@ -71,12 +71,13 @@ def users():
 
 
 def draw(layout, context):
-    """One row for each key, as in Blender's own list: edited there, and put back by its arrow."""
+    """One row for each key, as in Blender's own list: edited there, and reset by its arrow."""
     layout.label(text="Keys", text_ctxt=CONTEXT)
     for key, (keymap, item) in zip(KEYS, users(), strict=True):
         if item is None:
             layout.label(
-                text=f"{key.label}: removed. Restore in the list Keymap, {key.keymap}, brings it back", icon="INFO"
+                text=f"{key.label}: removed. Use Restore in the list Keymap, {key.keymap}, to bring it back",
+                icon="INFO",
             )
             continue
         layout.context_pointer_set("keymap", keymap)

@@ -1,4 +1,4 @@
-"""Entries in Blender's own menus, with the settings that the panels show."""
+"""Entries in Blender's own menus, with the panels' settings."""
 
 import bpy
 
@@ -11,7 +11,7 @@ from .stock import properties as stock_properties
 
 
 class RIFFLER_MT_object(bpy.types.Menu):
-    """What can be done with the active object"""
+    """Riffler's operators on the active object"""
 
     bl_idname = "RIFFLER_MT_object"
     bl_label = "Riffler"
@@ -55,7 +55,7 @@ def _object(self, context):
 
 
 class RIFFLER_MT_add(bpy.types.Menu):
-    """Solids to be sculpted"""
+    """Solids to sculpt"""
 
     bl_idname = "RIFFLER_MT_add"
     bl_label = "Riffler"
@@ -90,7 +90,7 @@ PLACES = (
     ("TOPBAR_MT_file_export", _export),
 )
 CLASSES = (RIFFLER_MT_object, RIFFLER_MT_add)
-_drawn = []  # those of PLACES that Blender has
+_drawn = []  # those of PLACES that this Blender has
 
 
 def attach():

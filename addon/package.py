@@ -20,28 +20,28 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 NOT_SHIPPED = {"package.py", "ruff.toml"}
-# Folder of the legacy add-on. It is imported by this name, so it cannot be `riffler`, the native package's.
+# Folder of the legacy add-on. It is imported by this name, so it cannot be `riffler`, the native package's name.
 LEGACY_NAME = "riffler_addon"
 LEGACY_PYTHON = (3, 11)
-FIXED = (2020, 1, 1, 0, 0, 0)  # the time of all entries
-# The pipeline's names for what a wheel's platform tag begins with.
+FIXED = (2020, 1, 1, 0, 0, 0)  # the time stamp of all entries
+# The pipeline's names for prefixes of a wheel's platform tag.
 PLATFORMS = {"x86_64": "x64", "amd64": "x64", "aarch64": "arm64", "arm64": "arm64"}
 
 
 def sources() -> list[Path]:
-    """What is shipped of this folder: as with Blender's own tool nothing hidden, as the caches of linters."""
+    """The files of this folder that are shipped: as with Blender's own tool no hidden ones, such as linters' caches."""
     files = (p.relative_to(HERE) for p in HERE.rglob("*") if p.is_file())
     shown = (p for p in files if not any(part.startswith(".") for part in p.parts))
     return sorted(p for p in shown if p.suffix != ".pyc" and p.name not in NOT_SHIPPED)
 
 
 def tag(python: tuple[int, ...]) -> str:
-    """cp311-cp311 for (3, 11): what the names of our wheels have for a version of Python."""
+    """cp311-cp311 for (3, 11): the tag of a Python version in our wheels' names."""
     return f"cp{python[0]}{python[1]}-cp{python[0]}{python[1]}"
 
 
 def legacy_wheel(wheels: list[Path]) -> Path | None:
-    """The one that the legacy add-on unpacks: it can hold one only, and no Blender chooses."""
+    """The wheel that the legacy add-on unpacks: it can hold only one, and Blender does not choose."""
     fitting = [w for w in wheels if f"-{tag(LEGACY_PYTHON)}-" in w.name and platform_of(w).startswith("linux")]
     return next(iter(fitting), None)
 
@@ -76,7 +76,7 @@ def version() -> str:
 
 
 def check_versions(wheels: list[Path]) -> None:
-    """The manifest, bl_info and every wheel must have one version."""
+    """ValueError unless the manifest, bl_info and every wheel have the same version."""
     expected = version()
     info = re.search(r'"version": \((\d+), (\d+), (\d+)\)', (HERE / "__init__.py").read_text(encoding="utf-8"))
     found = {"bl_info in __init__.py": ".".join(info.groups()), **{w.name: w.name.split("-")[1] for w in wheels}}
@@ -86,7 +86,7 @@ def check_versions(wheels: list[Path]) -> None:
 
 
 def check_choice(wheels: list[Path]) -> None:
-    """Blender takes the wheel for its Python and its system: there may be one for each."""
+    """Blender takes the wheel for its Python and system: there may be only one for each."""
     seen: dict[tuple[str, str], Path] = {}
     for wheel in wheels:
         python = "-".join(wheel.stem.split("-")[2:4])
@@ -96,7 +96,7 @@ def check_choice(wheels: list[Path]) -> None:
 
 
 def write_zip(path: Path, entries: dict[str, bytes], folder: str = "") -> None:
-    """`folder`: one that gets an entry of its own, before all others."""
+    """`folder`: a folder that gets an entry of its own, before all others."""
     part = path.with_suffix(".part")
     with zipfile.ZipFile(part, "w", zipfile.ZIP_DEFLATED) as archive:
         if folder:
@@ -125,19 +125,19 @@ def build_legacy(wheel: Path, out: Path) -> Path:
     entries = {p.as_posix(): (HERE / p).read_bytes() for p in sources() if p.name != "blender_manifest.toml"}
     entries["LICENSE"] = (HERE.parent / "LICENSE").read_bytes()
     with zipfile.ZipFile(wheel) as archive:
-        # auditwheel puts shared libraries beside the package, in riffler.libs
+        # auditwheel puts shared libraries next to the package, in riffler.libs
         for name in archive.namelist():
             if name.startswith(("riffler/", "riffler.libs/")) and not name.endswith("/"):
                 entries[f"_vendor/{name}"] = archive.read(name)
     path = out / f"riffler-{version()}-legacy.zip"
-    # Blender removes what it had before where an entry of the zip names it. Otherwise it writes into the file of the
-    # core that is running, and crashes.
+    # Blender removes the old folder if an entry of the zip names it. Otherwise it overwrites the file of the running
+    # core, and crashes.
     write_zip(path, {f"{LEGACY_NAME}/{name}": data for name, data in entries.items()}, folder=LEGACY_NAME)
     return path
 
 
 def build(wheels: list[Path], out: Path) -> list[Path]:
-    """The zips in `out`; ValueError naming what does not fit."""
+    """Writes the zips into `out`; ValueError names what does not fit."""
     for wheel in wheels:
         if not wheel.is_file():
             raise ValueError(f"{wheel} is not there")

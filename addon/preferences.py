@@ -1,4 +1,4 @@
-"""The add-on's preferences: what belongs to the machine and to who sits at it, not to a file."""
+"""The add-on's preferences: settings of the computer and its user, not of a file."""
 
 import bpy
 import riffler
@@ -11,13 +11,14 @@ from .pen import properties as pen_properties
 from .translations import local
 
 HID = (
-    "Pens and pucks are HID devices. There is no permission in Blender for using them: Riffler opens one while a "
-    "session runs, and asks those that it knows who they are for the report below. Where the system refuses, the "
-    "report has the line that lets you, and where it goes."
+    "Pens and SpaceMouse pucks are HID devices, for which Blender has no permission setting. "
+    "Riffler opens a device only while a session runs, and reads the names of known devices for"
+    " the report below. If the system refuses access, the report has the line that grants it, "
+    "and the file for that line."
 )
 SPACEMOUSE = (
-    "Blender reads a SpaceMouse, too: while it sculpts, it may also turn the view. Preferences, Input, NDOF has what "
-    "Blender does with it."
+    "Blender also reads the SpaceMouse: the view may turn while you sculpt. Preferences > Input"
+    " > NDOF sets what Blender does with it."
 )
 
 
@@ -26,7 +27,8 @@ def _use_threads(self, _):
 
 
 def _made_absolute(name):
-    """Blender may choose a folder beside the open file; preferences are for all files."""
+    """Makes a relative folder absolute: Blender may choose one relative to the open file, but preferences hold for all
+    files."""
 
     def update(self, _):
         text = getattr(self, name)
@@ -47,34 +49,34 @@ class RifflerPreferences(bpy.types.AddonPreferences):
         name="Device",
         items=[d for d in pen_properties.DEVICES if d[0] != pen_properties.RECORDING],
         default="simulated",
-        description="What the hand holds where a scene does not say otherwise",
+        description="Input device of scenes that do not choose another",
     )
     force: FloatProperty(
-        name="Force limit (N)",
+        name="Force Limit (N)",
         default=5.0,
         min=0.0,
         max=20.0,
         precision=1,
         step=10,
-        description="The most that any session lets through to the hand, whatever the device can do; 0: none",
+        description="Largest value that a session passes on to the hand, even if the device can give more; 0: none",
     )
     torque: FloatProperty(
-        name="Torque limit (N·mm)",
+        name="Torque Limit (N·mm)",
         default=300.0,
         min=0.0,
         max=1200.0,
         precision=0,
         step=1000,
-        description="The most that any session lets through to the hand, whatever the device can do; 0: none",
+        description="Largest value that a session passes on to the hand, even if the device can give more; 0: none",
     )
     power: FloatProperty(
-        name="Power limit (W)",
+        name="Power Limit (W)",
         default=2.0,
         min=0.0,
         max=20.0,
         precision=1,
         step=10,
-        description="The most that any session gives to the moving hand; 0: none",
+        description="Largest power that a session gives to the moving hand; 0: none",
     )
     threads: IntProperty(
         name="Threads",
@@ -82,12 +84,14 @@ class RifflerPreferences(bpy.types.AddonPreferences):
         min=0,
         max=256,
         update=_use_threads,
-        description="Of long calculations; 0: as many as there are processors. Results are the same for any number",
+        description="Number of threads for long calculations, which does not change results; 0: one per processor",
     )
     journals: _folder(
-        "journals", "Journals", "Where strokes are kept until the file is saved, for recovery; empty: the folder below"
+        "journals",
+        "Journals",
+        ("Folder of the journals, which keep strokes for recovery until the file is saved; empty: the folder below"),
     )
-    tools: _folder("tools", "Tools", "Tool files that everybody shares, say; empty: the folder below")
+    tools: _folder("tools", "Tools", "Folder of tool files, for instance a shared one; empty: the folder below")
 
     def draw(self, context):
         layout = self.layout

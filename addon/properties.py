@@ -1,6 +1,6 @@
-"""What the add-on keeps on scenes, objects, meshes and the window manager. Lengths in mm, angles in rad.
+"""The add-on's data on scenes, objects, meshes and the window manager. Lengths in mm, angles in rad.
 
-A module has the fields of one topic; here they are put together, and attached to what owns them.
+Each module has the fields of one topic; this one combines them, and attaches them to their owners.
 """
 
 import bpy
@@ -47,17 +47,16 @@ class RifflerScene(bpy.types.PropertyGroup):
 
 
 class RifflerObject(bpy.types.PropertyGroup):
-    """On an object. `token` and `mark`, of a sculpt that is being worked at: which state of it is shown, and whose work
-    it is. Blender's undo brings both back with the object; on the mesh they would make Blender read the whole mesh
-    again."""
+    """On an object. `token` and `mark` of a live sculpt: its displayed state, and its session. Blender's undo restores
+    both with the object; on the mesh they would make Blender read the whole mesh again."""
 
     token: StringProperty()
-    mark: StringProperty(description="What the work at the sculpt is known by, also after it")
+    mark: StringProperty(description="Identifier of the sculpt's session, which stays after its end")
     plan: PointerProperty(type=RifflerPlanObject)
 
 
 class RifflerProgress(WorkProgress, PenProgress, bpy.types.PropertyGroup):
-    """On the window manager: what runs now, and what panels change without undo steps."""
+    """On the window manager: the running operation, and what panels change without undo steps."""
 
     sculpt: PointerProperty(type=RifflerStrokeFields)
     tool: PointerProperty(type=RifflerToolFields)
@@ -94,7 +93,7 @@ _OWNERS = (
     (bpy.types.Object, RifflerObject),
     (bpy.types.WindowManager, RifflerProgress),
 )
-_given = []  # those that have theirs
+_given = []  # owners that have their fields
 
 
 def attach():

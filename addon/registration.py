@@ -1,4 +1,4 @@
-"""What the add-on registers, section by section; unregistered in the reverse order."""
+"""What the add-on registers, section by section, and unregisters in the reverse order."""
 
 import importlib
 from typing import NamedTuple
@@ -7,10 +7,11 @@ from .common import native
 
 
 class Section(NamedTuple):
-    """A folder of the add-on, "" for its root, and those of its modules that have something to register, in order.
+    """A folder of the add-on, "" for its root, and its modules that have something to register, in order.
 
-    A module has CLASSES, which may be empty. It may have attach(), called once they are registered, and detach(),
-    called before they are unregistered, even where attach() has failed in the middle."""
+    A module has CLASSES, which may be empty. It may have attach(), called after they are registered, and detach(),
+    called before they are unregistered, even if attach() has failed halfway.
+    """
 
     folder: str
     names: tuple[str, ...]
@@ -20,15 +21,16 @@ class Section(NamedTuple):
             _take(module)
 
     def paths(self):
-        """What the modules are called, below the add-on."""
+        """The modules' names, below the add-on."""
         return [f"{self.folder}.{name}" if self.folder else name for name in self.names]
 
     def modules(self):
         return [_module(path) for path in self.paths()]
 
 
-# The order of the features is a layer order, too (tools/check_layers.py): a feature imports `common`, `translations`,
-# `blender` and the features before it, never one after it. A section without a folder may import all of them.
+# The order of the features is their layer order, too (tools/check_layers.py): a feature imports `common`,
+# `translations`, `blender` and the features before it, never a later one. A section without a folder may import all of
+# them.
 SECTIONS = (
     Section("", ("properties", "preferences")),
     Section("blender", ("attributes", "doctor")),
@@ -73,7 +75,7 @@ SECTIONS = (
         "plan",
         (
             "plan_store",
-            "obstacles",  # hears of changes before the modules that ask it
+            "obstacles",  # is notified of changes before the modules that use it
             "replan",
             "orientation_probe",
             "path_view",
@@ -97,12 +99,12 @@ SECTIONS = (
         ),
     ),
     Section("program", ("line_view", "simulation", "plan_nc", "verify", "panel")),
-    # Work that runs is cancelled while its class is still registered. The toolbar's buttons call what is there.
+    # Running work is cancelled while its class is still registered. The toolbar's buttons call registered operators.
     Section("", ("blender.long_work", "toolbar", "menus", "keymaps", "translations")),
 )
-FALLBACK = "blender.fallback"  # instead of them all, where the native core does not load
+FALLBACK = "blender.fallback"  # instead of all modules, if the native core does not load
 
-_undo = []  # one function per thing that was registered
+_undo = []  # one function per registered thing
 
 
 def register():
@@ -122,7 +124,7 @@ def register():
 
 
 def unregister():
-    """Unregisters everything that was registered, whatever fails; then raises the first error."""
+    """Unregisters everything, continuing after errors; then raises the first error."""
     first = None
     while _undo:
         try:
@@ -134,7 +136,7 @@ def unregister():
 
 
 def modules():
-    """Of all sections, in order."""
+    """All modules of all sections, in order."""
     return [module for section in SECTIONS for module in section.modules()]
 
 
@@ -143,7 +145,7 @@ def _module(name):
 
 
 def _one_line(cls):
-    """A tooltip wraps by itself: the lines of a docstring are the source's."""
+    """The docstring on one line: a tooltip wraps by itself."""
     if "\n" in (cls.__doc__ or "") and "bl_idname" in vars(cls) and "bl_description" not in vars(cls):
         cls.bl_description = " ".join(cls.__doc__.split())
 
@@ -156,7 +158,7 @@ def _take(module):
         _module("blender.versions").own_words(cls)
         bpy.utils.register_class(cls)
         _undo.append(lambda cls=cls: bpy.utils.unregister_class(cls))
-    if hasattr(module, "detach"):  # first: what fails in the middle leaves something to be taken back
+    if hasattr(module, "detach"):  # first: an attach() that fails halfway leaves something to undo
         _undo.append(module.detach)
     if hasattr(module, "attach"):
         module.attach()

@@ -1,4 +1,4 @@
-"""The add-on's tools in the 3D view's toolbar: put there in their order, and taken out."""
+"""The add-on's tools in the 3D view's toolbar: adds them in order, and removes them."""
 
 import itertools
 
@@ -7,7 +7,7 @@ import bpy
 from .plan.orient_tool import PlanTool
 from .sculpt.tools import TOOLS
 
-# Blender's first tool, as it sets it itself; Blender 3.4 crashes where one of these is left out.
+# Blender's default tool, with all its settings; Blender 3.4 crashes if one of these is missing.
 FIRST = {
     "idname": "builtin.select_box",
     "keymap": "3D View Tool: Select Box",
@@ -21,12 +21,12 @@ FIRST = {
     "keymap_fallback": "",
 }
 CLASSES = ()
-_registered = []  # those of TOOLS and PlanTool that Blender has
+_registered = []  # those of TOOLS and PlanTool that are registered
 
 
 def attach():
-    """The four of sculpting in one group of the toolbar, that of planning below: after a tool of a group it would be in
-    it."""
+    """Adds the four sculpting tools as one group of the toolbar, and the planning tool below: placed after a tool of
+    the group, it would join the group."""
     _register(PlanTool, "builtin.measure", separator=True)
     _register(TOOLS[0], "builtin.measure", separator=True, group=True)
     for before, tool in itertools.pairwise(TOOLS):
@@ -47,11 +47,11 @@ def detach():
 
 
 def _put_down():
-    """Whoever has one of ours at hand, also in a workspace that no window shows, gets Blender's first one: a tool that
-    is gone leaves no way to select."""
+    """Activates Blender's default tool in place of ours, also in workspaces without a window: with a missing tool
+    nothing can be selected."""
     ours = {tool.bl_idname for tool in (*TOOLS, PlanTool)}
     windows = () if bpy.app.background else bpy.context.window_manager.windows
-    # While an add-on is registered, and when that has failed, Blender shows no data; nobody has a tool of it then.
+    # While an add-on is registered, and when that has failed, Blender hides its data; then none of our tools is active.
     workspaces = getattr(bpy.data, "workspaces", ())
     at_hand = [t for t in map(_chosen, workspaces) if t is not None and t.idname in ours]
     if not windows or not at_hand:
@@ -67,7 +67,8 @@ def _chosen(workspace):
 
 
 def _choose_again(windows):
-    """What draws the cursor of the tool that was chosen last, in whichever workspace, stays until one is chosen."""
+    """Activates the tool again: the draw function of the last tool's cursor, in any workspace, stays until a tool is
+    activated."""
     for window in windows:
         area = next((a for a in window.screen.areas if a.type == "VIEW_3D"), None)
         if area is None:

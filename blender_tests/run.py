@@ -4,12 +4,12 @@
     python blender_tests/run.py --only test_cut       tests whose name contains the text
     python blender_tests/run.py --blender 4.5 --mode source --no-window
 
-Each (Blender, way of installing), and each script of a window, is one process with a time limit; a few run at a time.
-Ways of installing: the zips that users get (extension from 4.2 on, legacy before), built here from the wheel, and the
-source folder, of which one Blender tests what goes by the way of installing, and everything where --blender or --mode
-names it. Tests whose time goes into the core (common.core_bound) run in the oldest and the newest Blender, and in any
-that --blender or --mode names. Ends with the slowest tests and the number of those that passed, failed and were
-skipped, with reasons; exit code 1 if one failed.
+Each (Blender, installation mode), and each script of a window, is one process with a time limit; a few run at a time.
+Installation modes: the zips that users get (extension from 4.2 on, legacy before), built here from the wheel, and the
+source folder. One Blender also tests from the source folder what depends on the installation mode, or everything if
+--blender or --mode names it. Tests whose time is spent in the core (common.core_bound) run in the oldest and the newest
+Blender, and in any that --blender or --mode names. Ends with the slowest tests and the numbers of passed, failed and
+skipped tests, with reasons; exit code 1 if one failed.
 """
 
 from __future__ import annotations
@@ -36,15 +36,15 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(ROOT / "addon"))
 import package  # noqa: E402 (the zips are built by what builds them for users)
 
-# Processes, of a gigabyte each; windows and pens wait for themselves for half of their time.
+# Processes, of a gigabyte each; windows and pens are idle for half of their time.
 AT_ONCE = min(3, 2 * (os.cpu_count() or 1))
-FIRST_DISPLAY = 90  # each window looks for a free one from a number of its own on: two at once would take the same
-FROM_SOURCE = (4, 5)  # the Blender that has the source folder, too
-# What may depend on where the add-on lies and what its module is called; the rest is the same code as in the extension,
-# which the same Blender tests whole.
+FIRST_DISPLAY = 90  # each window searches for a free one from its own number on: two at once would find the same
+FROM_SOURCE = (4, 5)  # the Blender that also tests the source folder
+# Tests that may depend on the add-on's folder and module name; the rest is the same code as in the extension, which the
+# same Blender tests completely.
 OF_THE_PLACE = ("lifecycle", "preferences", "recovery", "operators", "tools", "messages")
 SLOWEST = 20
-END = 8  # lines of a message that are said again at the end, where they are read first
+END = 8  # lines of a message repeated at the end, where they are read first
 
 
 def indented(message: str, last: int = 0) -> str:
@@ -85,7 +85,7 @@ class Tally:
 
 @dataclass
 class Bench:
-    """What all runs share: the native package to import, the zips, a folder for what is written."""
+    """Shared by all runs: the native package to import, the zips, a folder for output."""
 
     paths: list[str]
     zips: dict[str, str]
@@ -93,12 +93,12 @@ class Bench:
     only: str
     timeout: float
     tally: Tally
-    measure: bool = False  # what takes minutes and decides nothing
+    measure: bool = False  # measurements that take minutes and decide nothing
 
     def run(
         self, environment: Environment, mode: str, files: list[Path], more: dict | None = None, timeout: float = 0
     ) -> None:
-        """One process; every result it prints counts, and a test that was begun and never ended has failed."""
+        """One process; every result it prints counts, and a test that began and never ended has failed."""
         where = f"{environment.name}, {mode}"
         timeout = max(timeout, self.timeout)
         self.begin(where)
@@ -167,11 +167,12 @@ class Bench:
 
     figures: list[dict] = field(default_factory=list)
     ends: str = ""  # the Blenders that run every test
-    printing: threading.Lock = field(default_factory=threading.Lock)  # what one process says stays together
+    printing: threading.Lock = field(default_factory=threading.Lock)  # keeps the output of one process together
 
 
 def native_paths(wheel: Path | None, folder: Path) -> list[str]:
-    """Where `import riffler` finds the core in runs from source: the unpacked wheel, or a developer's build."""
+    """The path from which `import riffler` loads the core in runs from source: the unpacked wheel, or a developer's
+    build."""
     if wheel is None:
         return [str(ROOT / "native" / "python")]
     with zipfile.ZipFile(wheel) as archive:
@@ -180,14 +181,14 @@ def native_paths(wheel: Path | None, folder: Path) -> list[str]:
 
 
 def newest_wheel() -> Path | None:
-    """Of this Python, which is that of the Blenders here; ./dist may hold those of others too."""
+    """For this Python, the one of the Blenders here; ./dist may hold wheels for others, too."""
     name = f"riffler-*-{package.tag(sys.version_info)}-*.whl"
     found = [w for place in ("build/wheel/riffler", "dist") for w in (ROOT / place).glob(name)]
     return max(found, key=lambda w: w.stat().st_mtime, default=None)
 
 
 def made_zips(folder: Path) -> dict[str, str]:
-    """Zips that are there already, by the way of installing them."""
+    """Existing zips, by installation mode."""
     found = {"legacy" if z.stem.endswith("-legacy") else "extension": str(z.resolve()) for z in folder.glob("*.zip")}
     if "extension" not in found:
         raise SystemExit(f"{folder} has no extension zip: make it with `make package`")
@@ -195,7 +196,7 @@ def made_zips(folder: Path) -> dict[str, str]:
 
 
 def core_tests(tally: Tally, only: str) -> None:
-    """What needs no Blender, by pytest in this Python."""
+    """Tests without Blender, by pytest in this Python."""
     print("plain Python", flush=True)
     report = Path(tempfile.mkdtemp()) / "report.xml"
     command = [
@@ -305,7 +306,7 @@ def headless(bench: Bench, arguments) -> list[Callable[[], None]]:
 
 
 def modes(environment: Environment, arguments) -> list[str]:
-    """Ways of installing that are tested in a Blender."""
+    """Installation modes that are tested in a Blender."""
     found = ["source", "extension" if environment.extensions else "legacy"]
     if arguments.mode:
         return [mode for mode in found if mode == arguments.mode]
@@ -313,14 +314,14 @@ def modes(environment: Environment, arguments) -> list[str]:
 
 
 def chain(bench: Bench, usable: list[Environment]) -> None:
-    """What one Blender wrote the next one opens."""
+    """Each Blender opens what the previous one wrote."""
     with tempfile.TemporaryDirectory() as folder:
         for environment in usable:
             bench.run(environment, "source", [HERE / "chain" / "test_chain.py"], {"chain": folder})
 
 
 def windowed(bench: Bench, arguments) -> list[Callable[[], None]]:
-    """As `headless`: a process for each script."""
+    """Like `headless`: a process for each script."""
     from support import window
 
     application = environments.application()
@@ -345,8 +346,8 @@ def windowed(bench: Bench, arguments) -> list[Callable[[], None]]:
 
 
 def validate(bench: Bench) -> None:
-    """The extension in Blender's own tool, that of `blender` if it has extensions, or of the newest bpy wheel: it is
-    accepted, and what is built of its content has the same files."""
+    """Checks the extension with Blender's own tool, from `blender` if it has extensions, or from the newest bpy wheel:
+    it is accepted, and a build of its content has the same files."""
     scripts = "lib/python*/site-packages/bpy/*/scripts/addons_core/bl_pkg/cli/blender_ext.py"
     command = [[sys.executable, str(path)] for path in sorted(ROOT.glob(f".envs/bpy-*/{scripts}"))]
     application = environments.application()

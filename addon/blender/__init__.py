@@ -1,1 +1,1 @@
-"""Adapters to Blender that know no feature. Every difference between its versions is dealt with in versions.py only."""
+"""Adapters to Blender that know no feature. Only versions.py handles the differences between Blender's versions."""

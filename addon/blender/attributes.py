@@ -1,4 +1,4 @@
-"""Values at the vertices of a mesh, and how the views show them."""
+"""Values at the vertices of a mesh, and the views that show them."""
 
 import bpy
 import numpy as np
@@ -9,14 +9,15 @@ from .views import views
 
 DISTANCE = "riffler_deviation"  # mm
 COLOUR = "riffler_deviation_colour"
-ERROR = "riffler_error"  # on a mesh that was made of a sculpt: mm, how far from it at most
-SCALE = "riffler_deviation_scale"  # on the mesh: mm of the full colours; where it is there, a legend is drawn
+ERROR = "riffler_error"  # on a mesh made from a sculpt: mm, the largest distance from it
+SCALE = "riffler_deviation_scale"  # on the mesh: distance of full colours, mm; present if a legend is drawn
 
-_undone = False  # an undo has taken the last colours away, and a redo may bring them again
+_undone = False  # True after an undo removed the last colours, which a redo may restore
 
 
 def show_distance(mesh, distance, scale):
-    """`distance` (n,) mm of the vertices, as an attribute and as colours that are full from `scale` mm on."""
+    """Stores `distance` (n,) mm of the vertices as an attribute and as colours, which reach full strength at `scale`
+    mm."""
     _put(mesh, DISTANCE, "FLOAT", "value", np.asarray(distance, np.float32))
     _put(mesh, COLOUR, "FLOAT_COLOR", "color", colours.of_distance(distance, scale))
     mesh.color_attributes.active_color = mesh.color_attributes[COLOUR]
@@ -24,7 +25,7 @@ def show_distance(mesh, distance, scale):
 
 
 def hide_distance(mesh):
-    """True where it was shown."""
+    """True if the mesh showed distances."""
     for name in (DISTANCE, COLOUR):
         if name in mesh.attributes:
             mesh.attributes.remove(mesh.attributes[name])
@@ -32,7 +33,7 @@ def hide_distance(mesh):
 
 
 def coloured(mesh):
-    """Whether it shows distances: what has changed the mesh may have taken the colours, and left the scale."""
+    """Whether the mesh shows distances. An edit of the mesh may have removed the colours but not the scale."""
     return SCALE in mesh and COLOUR in mesh.attributes
 
 
@@ -44,7 +45,8 @@ def _put(mesh, name, kind, field, values):
 
 # ------------------------------------------------------------------ how the views show them
 def shade_by_attribute():
-    """Solid views show vertex colours; how they were is kept on the window manager, which no undo takes back."""
+    """Switches solid views to vertex colours. The window manager keeps their previous shading, which no undo
+    changes."""
     global _undone
     _undone = False
     before = _before()
@@ -56,8 +58,7 @@ def shade_by_attribute():
 
 
 def settle():
-    """Views that were made to show vertex colours are as they were once no mesh is coloured any more. True where they
-    were made so until now."""
+    """Restores the shading of the views once no mesh is coloured. True if views showed vertex colours until now."""
     before = _before()
     if not before or any(mesh.users and SCALE in mesh for mesh in bpy.data.meshes):
         return False
@@ -69,7 +70,7 @@ def settle():
 
 
 def follow():
-    """Undo and redo bring back meshes, and no views."""
+    """After undo or redo, which restore meshes but not views."""
     global _undone
     if settle():
         _undone = True

@@ -16,17 +16,17 @@ FONT, SIZE = 0, 11  # Blender's own font; points
 
 @dataclass(frozen=True)
 class Bar:
-    """Upright, from `low` at its foot to `high`; sizes in pixels at a scale of 1."""
+    """An upright bar from `low` at its foot to `high`; sizes in pixels at an interface scale of 1."""
 
     title: str
     low: float
     high: float
     width: float = 12.0
     height: float = 120.0
-    colours: tuple = ()  # (share, (r, g, b)) from the foot up, of a legend
-    value: float | None = None  # of a gauge: how far it is filled
+    colours: tuple = ()  # (share, (r, g, b)) from the foot up; legends only
+    value: float | None = None  # filled height; gauges only
     fill: tuple = (0.3, 0.75, 0.35, 1.0)
-    limit: float | None = None  # where there is a mark
+    limit: float | None = None  # place of the mark
 
     def at(self, value):
         """Height of a value above the foot."""
@@ -34,7 +34,7 @@ class Bar:
 
 
 def triangles(bar):
-    """What it is made of: [(triangles (n, 3, 2), colour or a colour for each corner)], the foot's left end in the
+    """The bar's geometry: [(triangles (n, 3, 2), one colour, or one for each corner)], with the foot's left end at the
     origin."""
     parts = [(glyphs.box(-6, -8, bar.width + 58, bar.height + 34), DARK)]
     if bar.colours:
@@ -53,7 +53,7 @@ def triangles(bar):
 
 
 def draw(kept, bar, place, zoom=1.0, name="bar"):
-    """`kept`: Batches, which know it by `name`; `place`: pixels of the foot's left end in the region; `zoom`: the
+    """`kept`: Batches that hold the bar under `name`; `place`: pixels of the foot's left end in the region; `zoom`: the
     interface's scale."""
     import gpu
 

@@ -1,4 +1,4 @@
-"""What goes to the graphics card: made once for each signature, drawn as often as the view is, its state given back.
+"""Geometry on the graphics card: uploaded once per signature, drawn as often as the view, with the GPU state restored.
 
 Nothing here may run without a window: `gpu` is imported where it is used.
 """
@@ -9,18 +9,18 @@ from contextlib import contextmanager
 
 import numpy as np
 
-LIGHT = np.array([0.35, 0.45, 0.82])  # from over the right shoulder, so that an arrow looks round
+LIGHT = np.array([0.35, 0.45, 0.82])  # from over the right shoulder, so that arrows look round
 
 
 class Batches:
-    """By name; a batch is made again only where its signature is another one. `built` counts those made."""
+    """Batches by name. A batch is rebuilt only when its signature changes; `built` counts rebuilds."""
 
     def __init__(self):
         self._kept = {}
         self.built = 0
 
     def get(self, name, signature, make):
-        """`make()`: (shader's name, kind of primitive, {attribute: array}); nothing to draw where an array is empty."""
+        """`make()` returns (shader name, primitive kind, {attribute: array}). An empty array draws nothing."""
         kept = self._kept.get(name)
         if kept is None or kept[0] != signature:
             kept = self._kept[name] = (signature, _batch(*make()))
@@ -43,7 +43,7 @@ def _batch(shader, kind, arrays):
 
 
 def flat(triangles):
-    """Triangles (n, 3, 2 or 3) in one colour, which is given when they are drawn."""
+    """Triangles (n, 3, 2 or 3) in one colour, which `draw` takes."""
     return "UNIFORM_COLOR", "TRIS", {"pos": np.asarray(triangles).reshape(-1, np.shape(triangles)[-1])}
 
 
@@ -59,7 +59,7 @@ def shaded(triangles, colour, towards):
 
 
 def draw(batch, colour=None):
-    """`colour`: of those that have one for all."""
+    """`colour`: for batches of one colour."""
     if batch is None:
         return
     program, triangles = batch
@@ -70,7 +70,7 @@ def draw(batch, colour=None):
 
 
 def draw_lines(batch, colour, width, size):
-    """Of the shader POLYLINE_UNIFORM_COLOR. `width`, and `size` of the region: pixels."""
+    """For batches of the shader POLYLINE_UNIFORM_COLOR. `width`, and `size` of the region: pixels."""
     if batch is None:
         return
     program, lines = batch
@@ -83,7 +83,7 @@ def draw_lines(batch, colour, width, size):
 
 @contextmanager
 def nearer(share=2e-4):
-    """What is drawn within is before what stands at the same place, by a share of the depth."""
+    """Context in which drawings win against others at the same depth, by a small share of the depth."""
     import gpu
 
     with gpu.matrix.push_pop_projection():
@@ -95,8 +95,8 @@ def nearer(share=2e-4):
 
 @contextmanager
 def state(blend="ALPHA", depth="NONE", write=True):
-    """The graphics card as it is needed within, and as it was afterwards. `write`: what is drawn hides what comes after
-    it behind it."""
+    """Context that sets the GPU state for drawing and restores it afterwards. `write`: drawings write depth, so they
+    hide later ones behind them."""
     import gpu
 
     before = gpu.state.blend_get(), gpu.state.depth_test_get(), gpu.state.depth_mask_get()

@@ -7,7 +7,7 @@ from ..common.splines import Spline
 
 
 def splines(curve, depsgraph, to_stock):
-    """The splines of a curve object as its control points have them (no modifiers, no shape keys), mapped by `to_stock`
+    """The splines of a curve object from its control points (without modifiers and shape keys), mapped by `to_stock`
     (4, 4): from the object's Blender units to millimetres in the stock's frame. Hidden splines are left out."""
     out = []
     for s in curve.evaluated_get(depsgraph).data.splines:
@@ -45,7 +45,7 @@ def splines(curve, depsgraph, to_stock):
 
 
 def deformed(curve):
-    """True where the curve that is seen is not the one that its control points say."""
+    """True if the visible curve differs from its control points."""
     return bool(curve.data.shape_keys) or any(m.show_viewport for m in curve.modifiers)
 
 

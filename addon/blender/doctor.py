@@ -1,4 +1,4 @@
-"""What Riffler finds on this machine, as a text to be sent with a question."""
+"""A report on this computer for support requests."""
 
 import bpy
 from riffler.command import doctor
@@ -12,7 +12,7 @@ last = ""  # the newest report, for the preferences
 
 
 def facts():
-    """Pairs of what Riffler's own report does not know."""
+    """Pairs of facts that riffler's own report does not contain."""
     found = [("Blender", bpy.app.version_string + (" without a window" if bpy.app.background else ""))]
     found += [("graphics", card)] if (card := versions.graphics()) else []
     found.append(("add-on", preferences_access.ROOT))
@@ -25,8 +25,9 @@ def facts():
 
 
 class RIFFLER_OT_doctor(bpy.types.Operator):
-    """Look at this machine, its folders and the devices that are plugged in, and copy what was found to the clipboard
-    and into a text of this file"""
+    """Check this computer, its folders and its devices, and copy a report to the clipboard and into a text of this
+    file
+    """
 
     bl_idname = "riffler.doctor"
     bl_label = "Copy Doctor Report"
@@ -34,7 +35,7 @@ class RIFFLER_OT_doctor(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        return not operator_parts.busy(cls, context)  # a device that sculpts is not to be asked who it is
+        return not operator_parts.busy(cls, context)  # a device that is in use must not be queried
 
     def execute(self, context):
         global last
@@ -49,7 +50,7 @@ class RIFFLER_OT_doctor(bpy.types.Operator):
         text.clear()
         text.write(last)
         context.window_manager.clipboard = last
-        self.report({"INFO"}, f"Copied, and in the text {text.name!r}")
+        self.report({"INFO"}, f"Copied to the clipboard and to the text {text.name!r}")
         return {"FINISHED"}
 
 

@@ -1,4 +1,4 @@
-"""What is registered when the native core does not load: why, and how to mend it."""
+"""What is registered if the native core does not load: a panel with the reason and the remedy."""
 
 import bpy
 
@@ -9,7 +9,7 @@ _report = {"why": "", "facts": [], "steps": [], "text": ""}
 
 def set_error(error):
     _report.update(diagnosis.report(error, diagnosis.Machine.current(bpy.app.version_string)))
-    print(_report["text"])  # the console is what a user is asked for first
+    print(_report["text"])  # users are first asked for the console's text
 
 
 def text():

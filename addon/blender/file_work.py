@@ -1,4 +1,4 @@
-"""Long work on a file that is chosen first."""
+"""Long work on a file that the user chooses first."""
 
 import bpy
 
@@ -7,10 +7,11 @@ from .long_work import LongWork
 
 
 class FileWork(LongWork):
-    """Mixin of operators of long work, before ExportHelper or ImportHelper, which is also the `helper`.
+    """Mixin of operators of long work, placed before ExportHelper or ImportHelper, which is also the `helper`.
 
-    Blender calls `execute` once the file is chosen, and frees the operator after it: the work, which goes on, is
-    another call of the same operator, which does not ask any more."""
+    Blender calls `execute` once the file is chosen, and frees the operator after it. So the work, which takes longer,
+    runs in a second call of the same operator, which does not ask for a file.
+    """
 
     helper = None
 
@@ -18,7 +19,7 @@ class FileWork(LongWork):
         name="Ask",
         default=True,
         options={"HIDDEN", "SKIP_SAVE"},
-        description="With INVOKE_DEFAULT: choose the file first; off: begin at once, in the background",
+        description="With INVOKE_DEFAULT: choose the file first; off: start at once, in the background",
     )
     _asked = False
 
@@ -32,10 +33,11 @@ class FileWork(LongWork):
         if not self._asked or bpy.app.background or context.window is None:
             return LongWork.execute(self, context)
         self._asked = False
-        call = getattr(bpy.ops.riffler, type(self).bl_idname.partition(".")[2])  # an instance has Blender's name for it
+        # an instance has Blender's own form of the name
+        call = getattr(bpy.ops.riffler, type(self).bl_idname.partition(".")[2])
         try:
             call("INVOKE_DEFAULT", **{**self.as_keywords(), "ask": False})
-        except RuntimeError as error:  # what the other call has reported, as Blender hands it on
+        except RuntimeError as error:  # what the second call reported, passed on by Blender
             said = " ".join(line.removeprefix("Error: ") for line in str(error).splitlines())
             return operator_parts.fail(self, RuntimeError(said))
-        return {"CANCELLED"}  # of this call there is nothing to be undone
+        return {"CANCELLED"}  # this call has nothing to undo

@@ -1,5 +1,4 @@
-"""What Blender calls when something has happened: functions by the name of their list in bpy.app.handlers; and when it
-is time."""
+"""Registration of functions with bpy.app.handlers, by the names of its lists, and of timers."""
 
 import bpy
 
@@ -17,7 +16,7 @@ def ignore(functions):
 
 
 def stop(*functions):
-    """Timers that may be running."""
+    """Unregisters timers that may be running."""
     for function in functions:
         if bpy.app.timers.is_registered(function):
             bpy.app.timers.unregister(function)

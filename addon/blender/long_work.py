@@ -1,9 +1,9 @@
-"""Long work: one shell for all operators that take longer than a person waits.
+"""Long work: one shell for all operators that take noticeable time.
 
-In a window the work runs on a timer, in slices (a cut) or in a thread of its own (a native task): the status bar and
-the panel show how far it is, the view may be looked at, Esc takes everything back. Without a window, from a script, and
-when settings are changed in the redo panel it runs in one go. Either way finished work is one undo step, and cancelled
-or failed work leaves nothing behind.
+In a window the work runs on a timer, in slices (a cut) or on a thread of its own (a native task): the status bar and
+the panel show its progress, the view can be turned, and Esc cancels and restores everything. Without a window, from a
+script, and when settings change in the redo panel, the work runs in one call. In both cases finished work is one undo
+step, and cancelled or failed work leaves nothing behind.
 """
 
 import time
@@ -16,43 +16,43 @@ from ..translations import local
 from . import handlers, operator_parts, views
 
 TELL = 0.1  # s between two reports of progress
-TICK = {False: 0.01, True: 0.05}  # s from one step to the next of work in slices; from one look at a thread to the next
+TICK = {False: 0.01, True: 0.05}  # s between two steps: of work in slices; of a check on a thread
 
-AGAIN, SETTLED = 0.5, 10.0  # s between redraws of the sidebars after the end, and for how long
+AGAIN, SETTLED = 0.5, 10.0  # s between redraws of the sidebars after the end, and their duration
 
 CLASSES = ()
-_until = 0.0  # sidebars are drawn again
-_running = None  # the operator whose work runs in a window, if one's does
+_until = 0.0  # until then the sidebars are redrawn
+_running = None  # the operator whose work runs in a window, or None
 
 
 class WorkProgress:
-    running: StringProperty(description="What runs (“Cutting”); empty where nothing does")
-    simulating: StringProperty(description="The program that is simulated; empty where none is")
-    shading: StringProperty(description="How views were shaded before they showed colours of distances")
+    running: StringProperty(description="Running operation (“Cutting”); empty if there is none")
+    simulating: StringProperty(description="The program being simulated; empty if there is none")
+    shading: StringProperty(description="Shading of the views before they showed colours of distances")
     percent: FloatProperty(name="Progress", subtype="PERCENTAGE", min=0, max=100, precision=0)
-    notice: StringProperty(description="Message about sculpts that no command reports; empty if there is none")
-    text: StringProperty(description="How far it is, in its own words")
+    notice: StringProperty(description="Message about sculpts that no operator reports; empty if there is none")
+    text: StringProperty(description="Progress in words")
 
 
 class LongWork:
     """Mixin of operators. A subclass has `begin(context)`, which returns the job (common/job.py), or raises one of
-    operator_parts.ERRORS and has changed nothing then; and `finish(context, job)`, which takes over what the finished
-    job has made, and returns what the operator returns. Its own attributes keep names, not references to Blender's
-    data, which may be gone with the next event."""
+    operator_parts.ERRORS without having changed anything; and `finish(context, job)`, which takes over the finished
+    job's result and returns the operator's result. Its own attributes hold names, not references to Blender's data,
+    which the next event may free."""
 
-    doing = ""  # for the panel, the status bar, and the tooltips of what has to wait: "Finding pencil paths"
-    cancelled = ""  # what Esc reports
-    _job = None  # Blender also calls `cancel` where nothing has begun: of a file selector that was closed
+    doing = ""  # for the panel, the status bar, and the tooltips of operators that must wait: "Finding pencil paths"
+    cancelled = ""  # the report after Esc
+    _job = None  # Blender also calls `cancel` before anything has begun, when a file selector is closed
 
     def lost(self, context):
-        """Why the work is for nothing now, as what it was begun for has changed; otherwise nothing."""
+        """Why the work is pointless now, since its input has changed; otherwise ""."""
         return ""
 
     def show(self, context, job):
         """Shows the unfinished work; never takes more than a share of the time."""
 
     def restore(self, context):
-        """Takes back what `show` has shown."""
+        """Removes what `show` has shown."""
 
     # ------------------------------------------------------------------ in one go
     def execute(self, context):
@@ -107,7 +107,7 @@ class LongWork:
             raise
 
     def cancel(self, context):
-        """Nothing has come of it. Blender calls it too, when the window closes or another file is opened."""
+        """Discards the work. Blender also calls it when the window closes or another file is opened."""
         if self._job is None:
             return
         try:
@@ -122,7 +122,7 @@ class LongWork:
             self.cancel(context)
             self.report({"WARNING"}, why)
             return {"CANCELLED"}
-        outside = time.perf_counter() - self._left  # what drawing the window took
+        outside = time.perf_counter() - self._left  # the time that drawing the window took
         if self._spent:
             self._clock.spent(self._spent + outside)
             self._spent = 0.0
@@ -166,8 +166,8 @@ class LongWork:
 
 
 def _settle():
-    """The button that has begun the work is grey meanwhile, and Blender leaves one under the pointer as it is, however
-    often it is drawn: it is drawn until the pointer is elsewhere."""
+    """Redraws the sidebars after the end. The button that began the work is grey until then, and Blender does not
+    refresh a button under the pointer, so the sidebar is redrawn until the pointer has left it."""
     global _until
     _until = time.monotonic() + SETTLED
     if not bpy.app.timers.is_registered(_redraw):
@@ -180,14 +180,14 @@ def _redraw():
 
 
 def _status(context, text):
-    if context.workspace is not None:  # there is none while another file is opened
+    if context.workspace is not None:  # None while another file is opened
         context.workspace.status_text_set(text)
 
 
 def detach():
-    """Whatever runs is cancelled."""
+    """Cancels running work."""
     try:
         if _running is not None:
             _running.cancel(bpy.context)
     finally:
-        handlers.stop(_redraw)  # which the end of the work has begun
+        handlers.stop(_redraw)  # registered by the end of the work

@@ -1,7 +1,8 @@
 """Triangles into and out of Blender meshes.
 
-One place owns every dtype and memory layout: a non-contiguous array in `foreach_set` raises and then crashes Blender at
-exit. The arrays that go out are contiguous float32 and int32; versions.py has the ways that differ.
+This module owns every dtype and memory layout: a non-contiguous array in `foreach_set` raises an error and then crashes
+Blender at exit. Arrays passed to Blender are contiguous float32 and int32; versions.py handles the differences between
+versions.
 """
 
 import math
@@ -11,22 +12,24 @@ import numpy as np
 
 from . import versions
 
-# Dexel surfaces facet curved cuts by a few degrees, and edges that a tool leaves are steeper than this. The seam of a
-# bead or groove of the default radius and depth has 25 to 40 degrees: with an angle among these, one of its edges is
-# sharp and the next smooth, which looks like crumbs along the seam.
+# Angle above which an edge is sharp. Dexel surfaces facet curved cuts by a few degrees, and edges that a tool leaves
+# are steeper than this angle. The seam of a bead or groove of the default radius and depth has 25 to 40 degrees: an
+# angle within that range makes one edge of the seam sharp and the next smooth, which looks like crumbs.
 SHARP_ANGLE = math.radians(20)
 
 
 def fill(mesh, co, tri, edges=None, **shading):
     """Replaces the mesh's geometry: `co` (V, 3) Blender units, `tri` (F, 3) vertex indices. Keeps material slots.
 
-    `edges`, where they are known: (E, 2) vertex indices, each edge once, and (F, 3), of each triangle's corners the
-    edge to the next one. Blender needs three times as long to find them. Such a mesh is one of the chunks: `shading` is
-    of versions.shade_chunk."""
+    `edges`, if known: (E, 2) vertex indices, each edge once, and (F, 3), for each corner of a triangle the edge to the
+    next corner. Blender takes three times as long to compute them. A mesh with `edges` is one of the chunks: `shading`
+    is that of versions.shade_chunk.
+    """
     co = np.ascontiguousarray(co, np.float32)
     tri = np.ascontiguousarray(tri, np.int32)
     _forget_shape_keys(mesh)
-    # Always: new topology in place with equal counts leaves stale vertex-to-face maps (wrong normals, 4.2 to 5.0).
+    # Always rebuild: new topology in place with equal counts leaves stale vertex-to-face maps (wrong normals, 4.2 to
+    # 5.0).
     mesh.clear_geometry()
     if len(tri):
         mesh.vertices.add(len(co))
@@ -46,14 +49,13 @@ def fill(mesh, co, tri, edges=None, **shading):
 
 
 def _forget_shape_keys(mesh):
-    """They have places of vertices that are there no more: what is seen would be neither. Only an object can clear
-    them."""
+    """Removes the shape keys, whose vertices no longer exist. Only an object can clear them."""
     if mesh.shape_keys is not None:
         next(ob for ob in bpy.data.objects if ob.data == mesh).shape_key_clear()
 
 
 def coordinates(mesh):
-    """(V, 3) float32, as they are stored."""
+    """(V, 3) float32, as stored."""
     co = np.empty((len(mesh.vertices), 3), np.float32)
     versions.read_positions(mesh, co.ravel())
     return co
@@ -61,7 +63,7 @@ def coordinates(mesh):
 
 def read(ob, depsgraph):
     """Vertices (V, 3) float64 in Blender units in the object's own frame and triangles (F, 3) int32 of the object with
-    its modifiers; meshes, curves, texts, surfaces and metaballs."""
+    its modifiers. Takes meshes, curves, texts, surfaces and metaballs."""
     evaluated = ob.evaluated_get(depsgraph)
     mesh = evaluated.to_mesh()
     try:

@@ -1,4 +1,4 @@
-"""Parts and fixtures: objects of the scene as surfaces in millimetres of the world, the frame that plans are in."""
+"""Parts and fixtures: objects of the scene as surfaces in millimetres of the world, the frame of plans."""
 
 import numpy as np
 import riffler
@@ -6,12 +6,12 @@ import riffler
 from ..common import poses
 from . import meshes, refusals, scene_units
 
-WITH_SURFACE = {"MESH", "CURVE", "SURFACE", "FONT", "META"}  # types of objects that have a surface, or may have one
+WITH_SURFACE = {"MESH", "CURVE", "SURFACE", "FONT", "META"}  # object types that can have a surface
 
 
 def surface(ob, depsgraph, to_mm):
-    """The object with its modifiers as a riffler.Mesh: `to_mm` (4, 4) maps its own Blender units to millimetres; where
-    it mirrors, normals still look out of the material."""
+    """The object with its modifiers as a riffler.Mesh: `to_mm` (4, 4) maps its own Blender units to millimetres. If it
+    mirrors, triangles are turned so that normals still point out of the material."""
     co, triangles = meshes.read(ob, depsgraph)
     if len(triangles) == 0:
         raise ValueError(f"{ob.name} has no faces: choose another object, or give it a surface")
@@ -19,14 +19,14 @@ def surface(ob, depsgraph, to_mm):
 
 
 def placed(co, triangles, to_mm):
-    """Vertices and triangles under a map (4, 4); where it mirrors, normals still look out of the material."""
+    """Vertices and triangles under a map (4, 4). If it mirrors, normals still point out of the material."""
     if np.linalg.det(to_mm[:3, :3]) < 0:
         triangles = np.ascontiguousarray(triangles[:, ::-1])
     return poses.transform_points(to_mm, co), triangles
 
 
 def in_world(context, ob):
-    """The object as it lies in the scene. ValueError with the remedy where it cannot be a part."""
+    """The object as it lies in the scene. ValueError with the remedy if it cannot be a part."""
     if why := unfit(ob, context.scene):
         raise ValueError(why)
     if why := refusals.disabled(ob, context.view_layer):
@@ -40,17 +40,16 @@ def in_world(context, ob):
 
 
 def size(ob, scene):
-    """Sides in mm of the box that an object fills in the scene, from what Blender knows of it: cheap enough for a
-    panel."""
+    """Sides in mm of the object's bounding box in the scene, from Blender's cached data: cheap enough for a panel."""
     matrix, box = meshes.matrix(ob.matrix_world), np.array(ob.bound_box, float)
     return np.ptp(poses.transform_points(matrix, box), axis=0) * scene_units.mm_per_unit(scene)
 
 
 def unfit(ob, scene):
-    """Why the object can be neither part nor fixture, or nothing; cheap enough for a poll."""
+    """Why the object can be neither part nor fixture, or ""; cheap enough for a poll."""
     if ob is None:
         return "There is no part: select one and use Set Part"
-    if scene not in ob.users_scene:  # by its name one of another file may be meant
+    if scene not in ob.users_scene:  # another file may have an object of the same name
         return f"{ob.name} was deleted from this scene: set another part"
     if why := refusals.instance(ob):
         return why

@@ -1,4 +1,4 @@
-"""What operators of every feature have in common: why they are refused, what they report, how they fail."""
+"""What operators of all features share: refusals, reports, errors."""
 
 import bpy
 from riffler.mesh_notes import notes_on
@@ -16,29 +16,30 @@ NAVIGATION = {
     "TRACKPADZOOM",
     "NDOF_MOTION",
 }
-# What is a message to the person in front of the screen; anything else is a fault of ours, and its traceback is shown.
+# Errors that are messages to the user. Any other exception is a bug, and its traceback is shown.
 ERRORS = (ValueError, OSError, RuntimeError, MemoryError)
 
 
 def object_mode(cls, context):
-    """True where objects can be made, removed and selected."""
+    """True if objects can be made, removed and selected."""
     return context.mode == "OBJECT" or deny(cls, "Leave Edit Mode or Sculpt Mode first")
 
 
 def busy(cls, context, simulation=True):
-    """True while something runs that has the sculpt; the tooltip says what. `simulation`: one that is shown counts."""
+    """True while something runs that uses the sculpt; the tooltip names it. `simulation`: a running simulation counts,
+    too."""
     state = context.window_manager.riffler
     if state.running:
         deny(cls, f"{state.running}: Esc cancels")
     if state.sculpting:
-        deny(cls, "A pen is sculpting: Esc ends it")
+        deny(cls, "A pen session is running: Esc ends it")
     if state.simulating and simulation:
         deny(cls, f"{state.simulating} is being simulated: Esc in the view ends it")
     return bool(state.running or state.sculpting or (state.simulating and simulation))
 
 
 def tell_turned(operator, name, mesh):
-    """A warning where a mesh that is taken as a solid has triangles that are turned for it."""
+    """Warns if triangles of a mesh had to be turned to make it a solid."""
     found = {}
     mesh.oriented(found)
     for note in notes_on(found):
@@ -46,7 +47,7 @@ def tell_turned(operator, name, mesh):
 
 
 def tell_all(operator, done, notes, wrong=False):
-    """What was done; a warning where that is `wrong`, or there is more to be said of it."""
+    """Reports the result; as a warning if `wrong`, or if there are notes."""
     operator.report({"WARNING" if wrong or notes else "INFO"}, ". ".join([done, *map(local, notes)]))
 
 
@@ -56,19 +57,19 @@ def deny(cls, message):
 
 
 def fail(operator, error):
-    """One clear message instead of a traceback; the operator is cancelled."""
+    """Reports one clear message instead of a traceback, and cancels the operator."""
     operator.report({"ERROR"}, as_sentence(said(error)))
     return {"CANCELLED"}
 
 
 def as_sentence(text):
-    """A message in the interface's language; it begins large, but names of what is in the file stay as they are."""
+    """A message in the interface's language, with a capital first letter; names from the file stay unchanged."""
     data = bpy.data.objects, bpy.data.collections, bpy.data.images, bpy.data.texts, bpy.data.meshes
     return capitalised(local(text), (x.name for kind in data for x in kind))
 
 
 def draw_fields(operator, keys):
-    """Some of its properties in the redo panel or the file selector, one below the other."""
+    """Draws some of the operator's properties in the redo panel or the file selector, one below the other."""
     operator.layout.use_property_split = True
     for key in keys:
         operator.layout.prop(operator, key)

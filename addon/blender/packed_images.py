@@ -1,17 +1,18 @@
 """Bytes inside the .blend, in packed images.
 
-Of all datablocks that hold bytes, a packed image is the one that survives every version, undo, save and reopening
-without being doubled or cut short. Who points to an image owns it; it goes when its owner goes.
+A packed image is the only datablock with bytes that survives every version, undo, save and reopening without being
+doubled or truncated. The datablock that points to an image owns it; the image goes when its owner goes.
 """
 
 import bpy
 from riffler import files
 
-IDENTITY = "riffler_content"  # on the image: the hash of what is packed in it
+IDENTITY = "riffler_content"  # on the image: the hash of its packed bytes
 
 
 def new(name):
-    """An image for what belongs to `name`. A name with a dot in front is not listed among images to choose from."""
+    """A new image for the data of `name`. Blender does not list a name that starts with a dot among images to choose
+    from."""
     return bpy.data.images.new(f".riffler {name}", 1, 1)
 
 
@@ -21,15 +22,15 @@ def write(image, block, identity):
 
 
 def identity(image):
-    """The hash of what is packed, or "" where there is nothing."""
+    """The hash of the packed bytes, or "" if there are none."""
     return image.get(IDENTITY, "") if image else ""
 
 
 def read(image, what):
-    """The bytes; `what` they are of is for the ValueError where they are gone."""
+    """The bytes. ValueError, which names `what`, if they are missing."""
     if image.packed_file:
         return bytes(image.packed_file.data)
-    # File > External Data > Unpack wrote it to a file of its own.
+    # File > External Data > Unpack wrote the bytes to a file.
     path = bpy.path.abspath(image.filepath, library=image.library)
     try:
         return files.read(path)

@@ -1,4 +1,4 @@
-"""What panels of every feature are made of."""
+"""Building blocks of the panels of all features."""
 
 from ..common import diagnosis
 from ..translations import local
@@ -6,7 +6,7 @@ from . import versions
 
 
 class Sidebar:
-    """In the tab of artists: what is sculpted and with what comes first, by bl_order; machining comes last."""
+    """Mixin of panels in the artists' tab: sculpting comes first, by bl_order; machining comes last."""
 
     bl_space_type = "VIEW_3D"
     bl_region_type = "UI"
@@ -21,13 +21,14 @@ def lines(layout, *texts, icon="NONE"):
 
 
 def give(op, settings, group):
-    """A button's operator gets what the panel shows: the fields of `group`, which both have."""
+    """Gives a button's operator the panel's settings: the fields of `group`, which both have."""
     for key in group.__annotations__:
         setattr(op, key, getattr(settings, key))
 
 
 def at_work(layout, context, *operators):
-    """True where one of these runs, whose progress takes the place of the buttons, so that nothing moves."""
+    """True while one of these operators runs. Its progress then replaces the buttons, so that the layout
+    does not move."""
     state = context.window_manager.riffler
     if state.running not in {operator.doing for operator in operators}:
         return False
@@ -37,6 +38,6 @@ def at_work(layout, context, *operators):
 
 
 def wrapped(context, text):
-    """The sidebar's labels do not wrap: fitted to its width, and looked up whole."""
+    """A text as lines that fit the sidebar, whose labels do not wrap; translated as a whole."""
     width = max(24, int(context.region.width / (7.2 * context.preferences.system.ui_scale)) - 6)
     return diagnosis.wrap(local(text), width)

@@ -1,4 +1,4 @@
-"""What the user has chosen in the add-on's preferences (preferences.py), for whoever goes by it."""
+"""Read access to the add-on's preferences (preferences.py)."""
 
 from pathlib import Path
 
@@ -6,12 +6,12 @@ import bpy
 
 from . import versions
 
-ROOT = __package__.rpartition(".")[0]  # what Blender knows the add-on by, in whatever way it was installed
+ROOT = __package__.rpartition(".")[0]  # Blender's name for the add-on, whether extension or legacy add-on
 MM = 1000.0  # N·mm/s in one watt
 
 
 def preferences():
-    """None where the add-on was registered without being enabled: then everything is as it comes."""
+    """None if the add-on was registered without being enabled: then all defaults hold."""
     addon = bpy.context.preferences.addons.get(ROOT)
     return addon.preferences if addon is not None else None
 
@@ -23,7 +23,7 @@ def device():
 
 
 def limits():
-    """What no session lets through more than: options of riffler.Session."""
+    """Limits of every session: options of riffler.Session."""
     found = preferences()
     if found is None:
         return {}
@@ -31,7 +31,7 @@ def limits():
 
 
 def folder(name):
-    """The one that was chosen for `name` ("journals", "tools"), or None. FileNotFoundError where it is gone."""
+    """The folder chosen for `name` ("journals", "tools"), or None. FileNotFoundError if it no longer exists."""
     text = getattr(preferences(), name, "")
     if not text:
         return None
@@ -42,13 +42,13 @@ def folder(name):
 
 
 def target(name):
-    """The one that is written to; our own need not be there yet. FileNotFoundError where the chosen one is gone."""
+    """The folder to write to; our own need not exist yet. FileNotFoundError if the chosen one no longer exists."""
     return folder(name) or Path(versions.user_folder(name))
 
 
 def folders(name):
-    """All that may hold something, the one that is written to first: what was kept before another was chosen is still
-    found. A folder that is gone is left out."""
+    """All folders to read from, the one to write to first, so that files from before a change of the preference are
+    still found. Folders that no longer exist are left out."""
     own = Path(versions.user_folder(name))
     try:
         first = folder(name)

@@ -6,7 +6,7 @@ clean = units.clean
 
 
 def mm_per_unit(scene):
-    """scene mm = Blender units × scale_length × 1000, whatever units the scene shows."""
+    """scene mm = Blender units × scale_length × 1000, in any displayed units."""
     return units.mm_per_unit(scene.unit_settings.scale_length)
 
 
@@ -14,8 +14,8 @@ SHOWN = {"MM": "MILLIMETERS", "CM": "CENTIMETERS", "M": "METERS", "INCH": "INCHE
 
 
 def set_unit(scene, screens, mm, shown="MM"):
-    """One Blender unit is `mm` millimetres; lengths are shown in one of size_guess.UNITS. In millimetres a part of
-    some metres stays within the views' clipping."""
+    """Makes one Blender unit `mm` millimetres; lengths are shown in one of size_guess.UNITS. With millimetres, a part
+    of some metres stays within the views' clipping."""
     settings = scene.unit_settings
     settings.system = "IMPERIAL" if shown == "INCH" else "METRIC"
     settings.scale_length = mm / 1000
@@ -26,5 +26,6 @@ def set_unit(scene, screens, mm, shown="MM"):
         for area in screen.areas:
             if area.type == "VIEW_3D":
                 space = area.spaces.active
-                space.clip_start = max(0.1 / mm, 0.01)  # Blender's own; nearer, it tells far surfaces apart no more
+                # Blender's own value; a smaller one loses depth precision at far surfaces
+                space.clip_start = max(0.1 / mm, 0.01)
                 space.clip_end = max(space.clip_end, 10_000.0 / mm)

@@ -1,28 +1,30 @@
-"""Where Blender's versions differ: the only module that asks which one it runs in, or tries what is there.
+"""The differences between Blender's versions: the only module that checks which version it runs in, or which features
+exist.
 
-A function does one thing in this Blender's way, and says how the ways differ. numpy is imported where it is used: the
-panel that says that it is missing needs this module.
+Each function does one thing in the method of this Blender, and its docstring states how the versions differ. numpy is
+imported where it is used: the panel that reports it as missing needs this module.
 """
 
 import bpy
 
 from ..translations import CONTEXT, local
 
-# From 4.0 on a layout has a bar, and a polygon's corners end where the next one's begin: no count of them is kept.
+# From 4.0 on a layout has a progress bar, and a polygon's corners end where those of the next begin: their count is not
+# stored.
 _SINCE_4_0 = bpy.app.version >= (4, 0, 0)
-# From 4.1 on auto smooth is gone: sharp edges are an attribute, and polygons are smooth until they are told otherwise.
+# From 4.1 on there is no auto smooth: sharp edges are an attribute, and polygons are smooth by default.
 _SINCE_4_1 = bpy.app.version >= (4, 1, 0)
-# From 4.4 on an action keeps its curves by slots: one for each thing that is animated by it.
+# From 4.4 on an action keeps its curves in slots: one for each datablock that it animates.
 _SINCE_4_4 = bpy.app.version >= (4, 4, 0)
-# From 4.5 on a mesh takes the normals of its corners as they are given.
+# From 4.5 on a mesh stores custom normals of its corners unchanged.
 OWN_NORMALS = bpy.app.version >= (4, 5, 0)
-# Before 4.1 a polygon is smooth or flat as a whole, unless auto smooth, which is slow, makes its normals.
+# Before 4.1 a polygon is smooth or flat as a whole, unless auto smooth, which is slow, computes its normals.
 SMOOTH_BY_POLYGON = not _SINCE_4_1
 
 
 def user_folder(name):
-    """A folder of the user's for files that the add-on keeps, which outlives an update of it; it need not be there yet.
-    Extensions, which there are from 4.2 on, have one of their own; none may write into its folder."""
+    """A folder of the user's for files that the add-on keeps, which survives updates; it need not exist yet. Extensions
+    (from 4.2 on) have a user folder of their own, and may not write into their installation folder."""
     package = __package__.rpartition(".")[0]
     if package.startswith("bl_ext."):
         return bpy.utils.extension_path_user(package, path=name)
@@ -30,7 +32,7 @@ def user_folder(name):
 
 
 def graphics():
-    """What draws the window, or nothing where there is none: Blender 3.4 does not outlive the question then."""
+    """Name of the graphics backend, or "" without a window: Blender 3.4 crashes if it is queried then."""
     if bpy.app.background:
         return ""
     import gpu
@@ -39,8 +41,8 @@ def graphics():
 
 
 def own_words(cls):
-    """What a class that is not registered yet, and its fields, are called is looked up as ours. Fields of Blender 3.4
-    know no contexts: its own words for theirs come first."""
+    """Makes Blender translate the labels of a class that is not registered yet, and of its fields, from our table.
+    Fields of Blender 3.4 have no contexts: there Blender's own words come first."""
     if hasattr(cls, "bl_label"):
         cls.bl_translation_context = CONTEXT
     for field in fields_of(cls).values():
@@ -49,8 +51,8 @@ def own_words(cls):
 
 
 def fields_of(cls):
-    """{name: field} of a class and those that it is built on. Python 3.14, which Blender 5.2 has, makes annotations
-    when they are asked for: none stand among a class's names before."""
+    """{name: field} of a class and its bases. Python 3.14, in Blender 5.2, evaluates annotations lazily: they are not
+    in the class's __dict__ before."""
     fields = {}
     for base in reversed(cls.__mro__):
         fields |= getattr(base, "__annotations__", {})
@@ -58,7 +60,7 @@ def fields_of(cls):
 
 
 def progress(layout, state):
-    """A bar for `state.percent`, named `state.running`. Before 4.0 a slider looks like one."""
+    """A bar for `state.percent`, named `state.running`. Before 4.0 it is a slider, which looks alike."""
     row = layout.row()
     row.use_property_split = False  # the name goes into the bar, as wide as the panel
     if _SINCE_4_0:
@@ -68,7 +70,7 @@ def progress(layout, state):
 
 
 def write_positions(mesh, co):
-    """`co`: flat float32 of all vertices. An attribute is copied as it is; before 3.5 there is none."""
+    """`co`: flat float32 of all vertices. Copies an attribute; before 3.5 there is none."""
     if "position" in mesh.attributes:
         mesh.attributes["position"].data.foreach_set("vector", co)
     else:
@@ -76,7 +78,7 @@ def write_positions(mesh, co):
 
 
 def read_positions(mesh, co):
-    """Into `co`, as `write_positions` has it."""
+    """Reads into `co`, in the layout of `write_positions`."""
     if "position" in mesh.attributes:
         mesh.attributes["position"].data.foreach_get("vector", co)
     else:
@@ -120,10 +122,9 @@ def write_material_indices(mesh, indices):
 
 
 def shade_chunk(mesh, angle, smooth=None, normals=None):
-    """As `shade_by_angle`, of a mesh that changes all the time and is part of another. `normals`, where OWN_NORMALS:
-    (corners, 3) float32 of the whole's. `smooth`, where SMOOTH_BY_POLYGON: which triangles are. Auto smooth computes
-    normals again at each undo: 27 of 60 ms for four chunks of 12 000 triangles.
-    """
+    """Like `shade_by_angle`, for a mesh that changes all the time and is part of a larger one. `normals`, if
+    OWN_NORMALS: (corners, 3) float32 of the whole mesh. `smooth`, if SMOOTH_BY_POLYGON: which triangles are smooth.
+    Auto smooth computes normals again at each undo: 27 of 60 ms for four chunks of 12 000 triangles."""
     if OWN_NORMALS:
         mesh.attributes.new("custom_normal", "FLOAT_VECTOR", "CORNER").data.foreach_set("vector", normals.ravel())
     elif SMOOTH_BY_POLYGON:
@@ -133,8 +134,8 @@ def shade_chunk(mesh, angle, smooth=None, normals=None):
 
 
 def lighten(mesh):
-    """Before 4.0 undo reads a mesh again as soon as anything near it changed, however large: one that is hidden for a
-    while gives way to the corners of its box. Since then it costs nothing."""
+    """Before 4.0 undo reads a mesh again as soon as anything near it changes, even a large one: a mesh that is hidden
+    for a while is replaced by the corners of its box. Since then a large mesh costs nothing."""
     if _SINCE_4_0 or mesh.users > 1 or not mesh.polygons:
         return
     import numpy as np
@@ -150,7 +151,7 @@ def lighten(mesh):
 
 
 def shade_by_angle(mesh, angle):
-    """Smooth, with edges steeper than `angle` (rad) sharp."""
+    """Makes faces smooth, and edges steeper than `angle` (rad) sharp."""
     if _SINCE_4_1:
         mesh.set_sharp_from_angle(angle=angle)
     else:
@@ -160,7 +161,7 @@ def shade_by_angle(mesh, angle):
 
 
 def channels(ob):
-    """The F-curves of the action that an object has; an empty tuple where it has none."""
+    """The F-curves of an object's action; an empty tuple without one."""
     data = ob.animation_data
     if data is None or data.action is None:
         return ()
@@ -173,7 +174,7 @@ def channels(ob):
 
 
 def own_channels(ob, name):
-    """The same to be written: an action of the name is made where there is none, with all that curves stand in."""
+    """The same for writing: makes an action of the name, with the containers of its curves, if there is none."""
     data = ob.animation_data_create()
     if data.action is None:
         data.action = bpy.data.actions.new(name)

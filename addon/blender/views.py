@@ -1,4 +1,4 @@
-"""The 3D views, of all screens or of those that windows show, and what draws in them."""
+"""The 3D views, of all screens or of those in windows, and drawing in them."""
 
 import bpy
 
@@ -12,7 +12,7 @@ def views():
 
 
 def redraw():
-    """Those that windows show are drawn again."""
+    """Redraws the views in windows."""
     for window in bpy.context.window_manager.windows:
         for area in window.screen.areas:
             if area.type == "VIEW_3D":
@@ -20,7 +20,7 @@ def redraw():
 
 
 def redraw_sidebars(context):
-    """The sidebars only: the view itself is costly, and is drawn again when the mesh changes."""
+    """Redraws the sidebars only: the view itself is costly, and is redrawn when the mesh changes."""
     for window in context.window_manager.windows:
         for area in window.screen.areas:
             if area.type == "VIEW_3D":
@@ -30,7 +30,7 @@ def redraw_sidebars(context):
 
 
 class InViews:
-    """The drawing functions of one topic. `when`: POST_VIEW, in the scene's space, or POST_PIXEL, in the region's."""
+    """The draw handlers of one topic. `when`: POST_VIEW, in the scene's space, or POST_PIXEL, in the region's."""
 
     def __init__(self):
         self._handlers = []

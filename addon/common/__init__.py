@@ -1,1 +1,1 @@
-"""What several features need and no Blender: plain Python tests all of it."""
+"""What several features need without Blender: plain Python tests all of it."""

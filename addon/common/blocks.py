@@ -1,4 +1,4 @@
-"""A lattice of bricks in blocks: as fine as a number of objects allows."""
+"""Groups the bricks of a lattice into blocks: as fine as a maximal number of objects allows."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ MOST = 128  # objects: undo costs 0.08 ms for each (docs/decisions.md, "A live s
 
 
 def within(shape: tuple[int, int, int], low, high, side: int = 32) -> list[int]:
-    """Bricks of `side` rays that a box reaches, from `low` to `high` in rays from the lattice's corner, and some rays
-    around it, since surfaces are made across them."""
+    """Bricks of `side` rays that a box reaches, from `low` to `high` in rays from the lattice's corner, with a margin
+    of some rays, since surfaces are made across brick borders."""
     around = 2
     spans = [
         range(max(0, int((a - around) // side)), min(n, int((b + around) // side) + 1))
@@ -18,7 +18,7 @@ def within(shape: tuple[int, int, int], low, high, side: int = 32) -> list[int]:
 
 
 def beside(shape: tuple[int, int, int], bricks) -> set[int]:
-    """Bricks and all that touch them."""
+    """The bricks and all their neighbours."""
     places = [(b // shape[2] // shape[1], b // shape[2] % shape[1], b % shape[2]) for b in bricks]
     near = {(i + a, j + b, k + c) for i, j, k in places for a in (-1, 0, 1) for b in (-1, 0, 1) for c in (-1, 0, 1)}
     return {
@@ -29,13 +29,13 @@ def beside(shape: tuple[int, int, int], bricks) -> set[int]:
 
 
 class Blocks:
-    """Bricks (i, j, k) of a lattice of `shape`, numbered as riffler.Mesher does, in cuboids of bricks."""
+    """Bricks (i, j, k) of a lattice of `shape`, numbered as in riffler.Mesher, grouped into cuboids."""
 
     def __init__(self, shape: tuple[int, int, int], most: int = MOST):
         self._shape = shape
         side = [1, 1, 1]
         while self._count(side) > most:
-            # the shortest side grows, of those that can: blocks stay as round as the lattice lets them
+            # the shortest side that can grow grows, so that blocks stay as close to cubes as the lattice allows
             k = min((k for k in range(3) if side[k] < shape[k]), key=lambda k: (side[k], -shape[k]))
             side[k] += 1
         self.side = tuple(side)
@@ -49,14 +49,14 @@ class Blocks:
         return a * b * c
 
     def of(self, brick: int) -> int:
-        """The block that a brick is in."""
+        """The block of a brick."""
         _, ny, nz = self._shape
         i, j, k = brick // nz // ny, brick // nz % ny, brick % nz
         a, b, c = (x // s for x, s in zip((i, j, k), self.side, strict=True))
         return (a * self._blocks[1] + b) * self._blocks[2] + c
 
     def bricks(self, block: int) -> list[int]:
-        """Of a block, ascending."""
+        """The bricks of a block, ascending."""
         _, nb, nc = self._blocks
         first = [x * s for x, s in zip((block // nc // nb, block // nc % nb, block % nc), self.side, strict=True)]
         last = [min(f + s, n) for f, s, n in zip(first, self.side, self._shape, strict=True)]

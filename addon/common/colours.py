@@ -1,15 +1,16 @@
-"""Distances as colours: white where they are nothing, blue where there is too much, red where there is too little."""
+"""Distances as colours: white for none, blue for too much material, red for too little."""
 
 from __future__ import annotations
 
 import numpy as np
 
-# ColorBrewer's RdBu (Brewer, Harrower, Pennsylvania State University): told apart by the colour-blind, too.
+# ColorBrewer's RdBu (Brewer, Harrower, Pennsylvania State University), which colour-blind people can distinguish.
 OVER, UNDER = np.array([33, 102, 172]) / 255, np.array([178, 24, 43]) / 255
 
 
 def of_distance(distance, scale: float) -> np.ndarray:
-    """(n, 4) float32, sRGB, of (n,) mm; full colours from `scale` mm on; what is not finite is grey."""
+    """(n, 4) float32, sRGB, of distances (n,) in mm; full colours from `scale` mm on, grey for values that are not
+    finite."""
     distance = np.asarray(distance, float)
     out = np.empty((len(distance), 4), np.float32)
     share = np.clip(np.abs(distance) / scale, 0, 1)[:, None]

@@ -1,8 +1,8 @@
 """Volumes in memory by content id.
 
-Undo and redo bring back a sculpt's datablock with its id; the volume of that id is either still here (volumes share
-their unchanged tiles, so keeping the last ones costs little) or is read from the block again. Nothing refers to a
-Blender object, so nothing can go stale.
+Undo and redo restore a sculpt's datablock with its id. The volume of that id is either still in this cache (volumes
+share their unchanged tiles, so keeping the last ones costs little), or is read from the datablock again. Nothing refers
+to a Blender object, so nothing can go stale.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from typing import Any
 
 @dataclass
 class Content:
-    """A volume that nobody changes any more, and the cuts that made it; what is protected, a volume on the same grid,
-    or None. `shaped`: other means have made something of it, too, which no cut tells; False where it is not known."""
+    """A volume that no longer changes, and the cuts that made it; the mask, a volume on the same grid, or None.
+    `shaped`: other operations than cuts have changed it, too; False if unknown."""
 
     volume: Any
     cuts: list = field(default_factory=list)
@@ -27,7 +27,7 @@ class Content:
         return self.volume.nbytes + (self.mask.nbytes if self.mask is not None else 0)
 
     def copy(self) -> Content:
-        """With volumes and a list of cuts of its own."""
+        """A copy with volumes and a list of cuts of its own."""
         mask = None if self.mask is None else self.mask.copy()
         return Content(self.volume.copy(), list(self.cuts), mask, self.shaped)
 
@@ -41,7 +41,7 @@ def _revision(volume):
 
 
 class ContentCache:
-    """Of things that have `nbytes`; those used last stay."""
+    """A cache of objects with `nbytes`; those used last stay."""
 
     def __init__(self, count: int = 32, nbytes: int = 2_000_000_000):
         self._count, self._nbytes = count, nbytes
@@ -59,7 +59,7 @@ class ContentCache:
     def put(self, identity: str, content) -> None:
         self._items[identity] = content
         self._items.move_to_end(identity)
-        # The sum counts shared tiles once per volume: too much, so the limit errs on the small side.
+        # The sum counts shared tiles once per volume. That overestimates, so the cache stays below its limit.
         while len(self._items) > 1 and (
             len(self._items) > self._count or sum(c.nbytes for c in self._items.values()) > self._nbytes
         ):
@@ -70,11 +70,12 @@ class ContentCache:
 
 
 class Snapshots:
-    """States between two packings, which only this session of Blender knows, by the token that the object carries.
+    """States between two packings, which only this session of Blender has, by the token on the object.
 
-    Blender's undo may ask for each state that was shown within its last steps. A state counts as old from the moment
-    when another took its place, not from when it was made: a sculpt that rested for a hundred strokes on another one
-    can still be taken back."""
+    Blender's undo may ask for each state that was shown within its last steps. A state's age counts from the moment
+    when another state replaced it, not from its making: a sculpt that rested for a hundred strokes on another one can
+    still be undone.
+    """
 
     def __init__(self, most: int = 34):
         self.most = most
@@ -88,7 +89,7 @@ class Snapshots:
         return self._items.get(token)
 
     def hold(self, tokens: set[str]) -> None:
-        """What is shown now, which is not dropped."""
+        """The state shown now, which is not dropped."""
         self._held = set(tokens)
 
     def put(self, token: str, state: Any, replaces: str = "") -> None:

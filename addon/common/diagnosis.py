@@ -1,4 +1,4 @@
-"""Why the native core does not load, and how to mend it, in words for the person in front of the machine."""
+"""Why the native core does not load, and the remedy, in words for the user."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import sys
 from dataclasses import dataclass, field
 from pathlib import Path
 
-# What installs numpy for the Python of a distribution, by the names in its /etc/os-release.
+# Commands that install numpy for a distribution's Python, by the names in its /etc/os-release.
 NUMPY = {
     "debian": "sudo apt install python3-numpy",
     "fedora": "sudo dnf install python3-numpy",
@@ -19,15 +19,15 @@ NUMPY = {
 
 @dataclass
 class Machine:
-    """What decides whether a binary wheel fits."""
+    """The facts that decide whether a binary wheel fits."""
 
     system: str  # "Linux", "Windows", "Darwin"
     release: str
     processor: str
     python: str
     blender: str
-    system_python: bool = False  # Blender has none of its own, as those of distributions
-    distribution: list[str] = field(default_factory=list)  # its name, and those of what it is made from
+    system_python: bool = False  # Blender has no Python of its own, as in distributions
+    distribution: list[str] = field(default_factory=list)  # its name, and those of the distributions it derives from
 
     @classmethod
     def current(cls, blender: str) -> Machine:
@@ -44,12 +44,12 @@ def distribution() -> list[str]:
 
 
 def built_for(folder: Path) -> list[str]:
-    """The extension modules that lie in a package folder: their names say which Python they were built for."""
+    """The Python versions that a package folder's extension modules were built for, from their names."""
     return sorted(p.name for p in folder.glob("_core*") if p.suffix in (".so", ".pyd"))
 
 
 def mend(error: BaseException, machine: Machine, found: list[str]) -> list[str]:
-    """Steps that fit the error, the most likely one first."""
+    """Remedies that fit the error, the most likely one first."""
     text = f"{type(error).__name__}: {error}"
     tag = "cp" + "".join(machine.python.split(".")[:2])
     steps = []
@@ -107,21 +107,21 @@ def report(error: BaseException, machine: Machine, folders: list[str] | None = N
 
 
 def folder(path: Path) -> str:
-    """Whether something can be written there; nothing is."""
+    """Whether the folder can be written to; writes nothing."""
     there = next(p for p in (path, *path.parents) if p.is_dir())
     if not os.access(there, os.W_OK):
         return f"{path}, which may not be written"
-    return str(path) if there == path else f"{path}, made when it is needed"
+    return str(path) if there == path else f"{path}, created on demand"
 
 
 def table(title: str, rows: list[tuple[str, str]]) -> str:
-    """Lines with what things are in one column and what was found in another."""
+    """Lines of two columns: the names of things, and their values."""
     width = max(len(name) for name, _ in rows)
     return "\n".join([title, *(f"{name:{width}}  {text}" for name, text in rows)]) + "\n"
 
 
 def wrap(text: str, width: int = 44) -> list[str]:
-    """Lines for a panel, which does not wrap; long words (paths) are cut."""
+    """Lines for a panel, which does not wrap; long words (paths) are broken."""
     lines, line = [], ""
     for word in text.split():
         while len(word) > width:

@@ -1,4 +1,4 @@
-"""The unit, pitch and cutter that suit an object of a given size, to begin sculpting with."""
+"""The unit, pitch and cutter that suit an object of a given size, to begin sculpting."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ import math
 from . import presets, units
 
 FEW_RAYS = 50  # along the longest side: fewer show no detail
-BEGIN_RAYS = 200  # along the longest side of a new sculpt: fine enough to carve, and quick to show
-HANDY = (10.0, 500.0)  # mm: an object whose longest side lies between is taken to be as large as the scene says
-WANTED = 100.0  # mm: about what the longest side of any other object becomes
-CUTTERS = 10  # diameters of the cutter along the longest side: a chip that is seen
-SUITS = (1 / 12, 1 / 4)  # of the longest side: a cutter whose diameter lies between is left as it is
-DEPTH = 1 / 6  # of the diameter
+BEGIN_RAYS = 200  # along the longest side of a new sculpt: fine enough to carve, and fast to display
+HANDY = (10.0, 500.0)  # mm: an object whose longest side lies in this range keeps the scene's unit
+WANTED = 100.0  # mm: about the longest side of any other object, once its unit is set
+CUTTERS = 10  # diameters of the cutter along the longest side: a visible chip
+SUITS = (1 / 12, 1 / 4)  # shares of the longest side: a cutter whose diameter lies between them is kept
+DEPTH = 1 / 6  # share of the diameter
 LENGTHS = tuple(name for name, size in presets.ALL.items() if size.unit == "mm")
 
 
@@ -26,7 +26,7 @@ def rounded(value: float, steps=(1, 2, 2.5, 5, 10)) -> float:
 
 
 def longest(size) -> float:
-    """ValueError where there is none: of an object without surface."""
+    """The longest side. ValueError for an object without surface."""
     side = max(float(s) for s in size)
     if not (math.isfinite(side) and side > 0):
         raise ValueError(f"size must be three positive lengths, not {tuple(size)}")
@@ -34,22 +34,22 @@ def longest(size) -> float:
 
 
 def is_handy(side: float) -> bool:
-    """Of the longest side, in mm."""
+    """True if the longest side, in mm, needs no other unit."""
     return HANDY[0] <= side <= HANDY[1]
 
 
 def unit(side: float) -> float:
-    """The round number of millimetres in a Blender unit that makes a longest side of `side` units about WANTED."""
+    """The round number of millimetres per Blender unit that makes a longest side of `side` units about WANTED."""
     return rounded(WANTED / longest([side]))
 
 
 def pitch(side: float, rays: int = BEGIN_RAYS) -> float:
-    """A round one that gives about so many rays along `side`; both in mm."""
+    """A round pitch that gives about so many rays along `side`; both in mm."""
     return rounded(side / rays)
 
 
 def tool(tool: dict, side: float) -> dict:
-    """`tool` where its diameter suits the longest side (mm); otherwise the same shape with all its lengths scaled."""
+    """`tool` if its diameter suits the longest side (mm); otherwise the same shape with all lengths scaled."""
     now = float(tool["diameter"])
     if SUITS[0] * side <= now <= SUITS[1] * side:
         return tool
@@ -64,10 +64,10 @@ def scaled(tool: dict, diameter: float) -> dict:
 
 
 def depth(diameter: float) -> float:
-    """Of a stroke, in mm, where the cutter's size was chosen anew."""
+    """Depth of a stroke, in mm, for a cutter whose size was just set."""
     return rounded(DEPTH * diameter)
 
 
 def depth_suits(depth: float, diameter: float) -> bool:
-    """True where a stroke of that depth neither scratches nor buries the cutter."""
+    """True if a stroke of that depth neither scratches nor buries the cutter."""
     return diameter / 12 <= depth <= diameter / 2

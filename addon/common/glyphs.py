@@ -1,4 +1,4 @@
-"""Arrows, rings and bars as triangles, without anything that draws them.
+"""Arrows, rings and bars as triangles, without drawing.
 
 Triangles are (n, 3, 3), their corners counter-clockwise seen from outside; lines are (n, 3) points.
 """
@@ -8,11 +8,11 @@ from __future__ import annotations
 import numpy as np
 
 SIDES = 16
-HEAD = 3.0  # widths of the shaft: an arrow's head is as wide, and 1.5 times as long
+HEAD = 3.0  # widths of the shaft: width of an arrow's head, which is 1.5 times as long
 
 
 def frame(axis) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Two directions square to `axis`, and `axis` as a unit vector: right-handed."""
+    """Two directions perpendicular to `axis`, and `axis` as a unit vector: right-handed."""
     axis = np.asarray(axis, float)
     axis = axis / np.linalg.norm(axis)
     helper = np.eye(3)[np.argmin(np.abs(axis))]
@@ -22,21 +22,21 @@ def frame(axis) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def ring(centre, axis, radius: float, sides: int = 64) -> np.ndarray:
-    """Closed: the first point is not repeated."""
+    """A closed ring: the first point is not repeated."""
     first, second, _ = frame(axis)
     angle = 2 * np.pi * np.arange(sides) / sides
     return np.asarray(centre) + radius * (np.cos(angle)[:, None] * first + np.sin(angle)[:, None] * second)
 
 
 def tube(line, places, sides: int = SIDES) -> np.ndarray:
-    """A tube around `places` (k, 3), with radii `line` (k,): its rings stand square to the way at each."""
+    """A tube around `places` (k, 3), with radii `line` (k,). Its rings are perpendicular to the path."""
     places, radii = np.asarray(places, float), np.asarray(line, float)
     way = np.gradient(places, axis=0)
     rings = []
     first = frame(way[0])[0]
     for place, radius, t in zip(places, radii, way, strict=True):
         t = t / np.linalg.norm(t)
-        first = first - (first @ t) * t  # carried along: the tube does not twist
+        first = first - (first @ t) * t  # transported along the path, so that the tube does not twist
         first /= np.linalg.norm(first)
         angle = 2 * np.pi * np.arange(sides) / sides
         across = np.cos(angle)[:, None] * first + np.sin(angle)[:, None] * np.cross(t, first)
@@ -51,8 +51,8 @@ def tube(line, places, sides: int = SIDES) -> np.ndarray:
 
 
 def arrow(start, end, width: float) -> np.ndarray:
-    """A closed arrow with a shaft `width` wide; one that is shorter than its head is all head, and smaller. Nothing
-    where it has no length."""
+    """A closed arrow with a shaft `width` wide. An arrow shorter than its head is a smaller head alone. Empty for
+    length 0."""
     start, end = np.asarray(start, float), np.asarray(end, float)
     length = float(np.linalg.norm(end - start))
     if length < 1e-12:
@@ -66,7 +66,7 @@ def arrow(start, end, width: float) -> np.ndarray:
 
 
 def _turned_about(start, way, shares, radii) -> np.ndarray:
-    """A body of revolution about a straight way: rings that lie in one plane are allowed, unlike for a tube."""
+    """A body of revolution about a straight path: unlike for a tube, rings may lie in one plane."""
     first, second, _ = frame(way)
     angle = 2 * np.pi * np.arange(SIDES) / SIDES
     across = np.cos(angle)[:, None] * first + np.sin(angle)[:, None] * second
@@ -83,8 +83,8 @@ def _turned_about(start, way, shares, radii) -> np.ndarray:
 
 
 def arc_arrow(centre, axis, radius: float, angle: float, width: float) -> np.ndarray:
-    """An arrow bent about `axis` by `angle` (rad, less than a turn), as the right hand turns; one that is shorter than
-    its head is all head, and smaller. Nothing where the angle is none."""
+    """An arrow bent about `axis` by `angle` (rad, less than a turn), right-handed. An arrow shorter than its head is a
+    smaller head alone. Empty for angle 0."""
     if angle <= 0:
         return np.empty((0, 3, 3))
     first, second, _ = frame(axis)
@@ -99,7 +99,7 @@ def arc_arrow(centre, axis, radius: float, angle: float, width: float) -> np.nda
     parts = []
     if angle - head > 1e-9:
         parts.append(tube(np.full(len(shaft), 0.5 * width), at(shaft)))
-    # The head is straight: bent, it would point elsewhere than the arc does where it ends.
+    # The head is straight: a bent one would point elsewhere than the end of the arc.
     neck, tip = at(np.array([angle - head, angle]))
     radii = 0.5 * HEAD * width * size * np.array([0, 1, 0])
     parts.append(_turned_about(neck, tip - neck, np.array([0, 0, 1.0]), radii))
@@ -107,8 +107,8 @@ def arc_arrow(centre, axis, radius: float, angle: float, width: float) -> np.nda
 
 
 def ribbon(points, width: float, closed: bool = False) -> np.ndarray:
-    """A line (n, 2) as triangles (m, 2 corners each of x, y): (m, 3, 2), `width` wide. Lines of a graphics card are a
-    pixel wide, whatever they are asked for. Places that are not numbers break the line."""
+    """A line (n, 2) as triangles (m, 2 corners each of x, y): (m, 3, 2), `width` wide. Graphics cards draw lines one
+    pixel wide at any width setting. Points that are not numbers break the line."""
     points = np.asarray(points, float)
     ends = np.roll(points, -1, axis=0) if closed else points[1:]
     starts = points if closed else points[:-1]
@@ -118,7 +118,7 @@ def ribbon(points, width: float, closed: bool = False) -> np.ndarray:
     starts, ends, way, length = starts[good], ends[good], way[good], length[good]
     unit = way / length[:, None]
     across = 0.5 * width * np.c_[-unit[:, 1], unit[:, 0]]
-    along = 0.5 * width * unit  # half a width further, so that corners have no notch
+    along = 0.5 * width * unit  # half a width longer, so that corners have no notch
     a, b = starts - along - across, starts - along + across
     c, d = ends + along + across, ends + along - across
     return np.concatenate([np.stack([a, d, c], axis=1), np.stack([a, c, b], axis=1)])
@@ -132,7 +132,7 @@ def box(x: float, y: float, width: float, height: float) -> np.ndarray:
 
 def meridian(outline, height: float = np.inf) -> np.ndarray:
     """Both sides of a tool's outline in its own plane, up to a height: (n, 2) of a closed line, x across and y up from
-    the tip. `outline`: of riffler.Tool.outline."""
+    the tip. `outline`: that of riffler.Tool.outline."""
     line = np.vstack([points for _, points in outline])
     if line[-1, 1] > height:
         k = int(np.argmax(line[:, 1] > height))

@@ -1,4 +1,4 @@
-"""Long work in steps: what a modal operator does on each tick, without the operator."""
+"""Long work in steps: the work of a modal operator, without the operator."""
 
 from __future__ import annotations
 
@@ -13,28 +13,28 @@ from . import units
 
 
 class Job(Protocol):
-    """What blender/long_work.py runs. Errors are raised by `step`, which leaves nothing half done then."""
+    """The interface of work that blender/long_work.py runs. `step` raises errors, and leaves nothing half done."""
 
     in_background: bool  # the work has a thread of its own, and `step` only waits for it
-    fraction: float  # of the work that is done, 0 … 1
-    text: str  # how far it is in its own words, or ""
+    fraction: float  # share of the work done, 0 … 1
+    text: str  # progress in words, or ""
 
     def step(self, budget: float) -> bool:
         """Works, or waits, for about `budget` seconds; True when all is done."""
 
     def cancel(self) -> None:
-        """Takes back what was done; may be called at any time."""
+        """Restores the state before the work; may be called at any time."""
 
 
 def run_through(job: Job, report=None) -> None:
-    """All of it in one go, in steps, so that `report(fraction)` is heard."""
+    """Runs the whole job, in steps, so that `report(fraction)` is called."""
     while not job.step(0.25):
         if report:
             report(job.fraction)
 
 
 class DoneJob:
-    """What was made at once, as a job, where others of its kind take long."""
+    """A finished result as a job, where other jobs of its kind take long."""
 
     in_background, fraction, text = False, 1.0, ""
 
@@ -45,7 +45,7 @@ class DoneJob:
         return True
 
     def cancel(self) -> None:
-        """Nothing was changed."""
+        """Does nothing: nothing was changed."""
 
 
 class TaskJob:
@@ -67,8 +67,8 @@ class TaskJob:
             spent = self._clock() - begin
             if spent >= budget:
                 return False
-            self._sleep(min(budget - spent, max(2e-4, 0.05 * spent), 0.005))  # short tasks are not made long ones
-        self.result = self._task.result()  # raises what the task's call raised
+            self._sleep(min(budget - spent, max(2e-4, 0.05 * spent), 0.005))  # so that short tasks are not delayed
+        self.result = self._task.result()  # raises the error of the task's call
         return True
 
     def cancel(self) -> None:
@@ -76,8 +76,8 @@ class TaskJob:
 
 
 class ChainJob:
-    """Native tasks one after the other: `steps` are functions that start one with what the last one made; the first is
-    given None. Shares of the whole are equal."""
+    """Native tasks in sequence: `steps` are functions that start a task with the previous one's result; the first gets
+    None. All have equal shares of the progress."""
 
     in_background = True
 
@@ -105,13 +105,13 @@ class ChainJob:
 
 
 class AfterJob:
-    """The job that `make` returns of what a task makes, once that is done; what it has made is asked of this as of that
-    job. `in_background`: as that job's."""
+    """The job that `make` returns for a task's result, once the task is done. Attributes of that job can be read from
+    this one. `in_background`: that of the job."""
 
     def __init__(self, task, make, in_background=True, text=""):
         self.in_background, self._text = in_background, text
         self._wait, self._make, self._job = TaskJob(task), make, None
-        self._begin = 0.0 if task.done else 0.5  # of the whole, where the job's own share begins
+        self._begin = 0.0 if task.done else 0.5  # start of the job's share of the whole
 
     @property
     def fraction(self) -> float:
@@ -125,7 +125,7 @@ class AfterJob:
 
     def step(self, budget: float = 0.0) -> bool:
         if self._job is None:
-            if not self._wait.step(budget if self.in_background else min(budget, 0.01)):  # who waits needs no slice
+            if not self._wait.step(budget if self.in_background else min(budget, 0.01)):  # waiting costs no time slice
                 return False
             self._job = self._make(self._wait.result)
         return self._job.step(budget)
@@ -138,8 +138,8 @@ class AfterJob:
 
 
 class ThreadTask:
-    """What a riffler.Task is, for a call that there is no native one of: on a thread of Python's, `call(progress)`. It
-    must not touch Blender, and has to let Python go while it works, as long calls of riffler do."""
+    """Counterpart of riffler.Task for a call without a native task: `call(progress)` on a Python thread. The call must
+    not touch Blender, and must release Python's lock while it works, as long calls of riffler do."""
 
     def __init__(self, call):
         self.share, self._cancelled = 0.0, False
@@ -172,8 +172,8 @@ class ThreadTask:
 
 
 class PiecesJob:
-    """Work of Python's in pieces: a generator, which yields after each of its `count` pieces; where it yields a native
-    task it is sent what that has made. What it returns is the `result`."""
+    """Python work in pieces: a generator that yields after each of its `count` pieces. If it yields a native task, it
+    is sent that task's result. Its return value is the `result`."""
 
     def __init__(self, pieces, count: int, text="", clock=time.perf_counter):
         self.text, self.result = text, None
@@ -214,13 +214,13 @@ class PiecesJob:
 
 @dataclass
 class Cut:
-    """One uninterrupted motion of one tool: what is carved, kept with the sculpt, and written as NC."""
+    """One uninterrupted motion of one tool: the argument of carving, stored with the sculpt, and written as NC code."""
 
-    tool: dict  # the form of riffler.Tool.to_dict
+    tool: dict  # in the form of riffler.Tool.to_dict
     poses: np.ndarray  # (n, 6) tip and axis, mm, stock's frame
-    tolerance: float = 0.01  # mm, as carve is given it
-    mode: str = "remove"  # as carve is given it
-    masked: bool = False  # made beside a mask: cut again without it, it takes what that protected
+    tolerance: float = 0.01  # mm, the tolerance of carve
+    mode: str = "remove"  # the mode of carve
+    masked: bool = False  # made with a mask: without it, the cut also removes what the mask protected
 
     @property
     def moves(self) -> int:
@@ -228,13 +228,13 @@ class Cut:
 
 
 def cuts_of(strokes, masked: bool) -> list[Cut]:
-    """Of strokes of a live sculpt, (copy, tool, mode, pieces of poses): those that have any."""
+    """The cuts of a live sculpt's strokes, (copy, tool, mode, pieces of poses), except strokes without cuts."""
     return [Cut(tool, np.vstack(rows), mode=mode, masked=masked) for _, tool, mode, rows in strokes if rows]
 
 
 class CutJob:
-    """Carves `cuts` from `volume` in slices. `step` until it returns True; `cancel` at any time before restores the
-    volume as it was; so does any error."""
+    """Carves `cuts` from `volume` in slices. Call `step` until it returns True. `cancel` before that, and any error,
+    restore the volume."""
 
     in_background = False
 
@@ -248,7 +248,7 @@ class CutJob:
         self.removed = 0.0
         self._tools = [make_tool(c.tool) for c in self.cuts]
         self._clock = clock
-        # a volume's carve is asked for what is special only where something is
+        # carve gets optional arguments only where they are needed
         self._more = {} if protect is None else {"protect": protect}
         self._snapshot = volume.snapshot()
         self._cut = self._move = 0
@@ -267,7 +267,7 @@ class CutJob:
         return self.done == self.total
 
     def step(self, budget: float = 0.04) -> bool:
-        """Carves for about `budget` seconds (one slice of moves at least); True when all is cut."""
+        """Carves for about `budget` seconds (at least one slice of moves); True when all is cut."""
         end = self._clock() + budget
         while not self.finished:
             left = end - self._clock()
@@ -304,14 +304,14 @@ class CutJob:
 
 
 def slice_budget(outside: float, least: float = 0.04, most: float = 0.5) -> float:
-    """Seconds of carving for the next tick when the last one is `outside` seconds ago: as long as drawing the window
-    took, so that half of the time goes into the cut on a slow display and the hand still feels no lag on a fast one."""
+    """Seconds of carving for the next tick, after `outside` seconds since the last one: as long as drawing the window
+    took. So a slow display gives half of the time to the cut, and a fast one shows no lag."""
     return min(max(outside, least), most)
 
 
 class RefreshClock:
-    """When the picture of a running cut is worth drawing again: never more than a `share` of the time, so that showing
-    a cut cannot make it much slower."""
+    """When to redraw a running cut: never more than a `share` of the time, so that showing a cut cannot slow it down
+    much."""
 
     def __init__(self, share: float = 0.25, least: float = 0.25, clock=time.perf_counter):
         self._share, self._least, self._clock = share, least, clock

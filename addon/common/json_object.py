@@ -1,4 +1,4 @@
-"""JSON that comes from a .blend or a file, which may be anything."""
+"""JSON from a .blend or a file, which may contain anything."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ from typing import Any
 
 
 def loads(text: str | bytes | memoryview, what: str) -> dict[str, Any]:
-    """The object that the text is. ValueError begins with `what` where it is none, and where it is too deep to read."""
+    """The object in the text. ValueError, which begins with `what`, if the text is no object, or is nested
+    too deeply."""
     try:
         found = json.loads(bytes(text) if isinstance(text, memoryview) else text)
     except RecursionError:

@@ -1,4 +1,4 @@
-"""The import of the native core, which may fail on a user's machine, and why it did."""
+"""The import of the native core, which may fail on a user's computer, and the reason."""
 
 from __future__ import annotations
 
@@ -8,12 +8,13 @@ from pathlib import Path
 
 from .. import VERSION
 
-# Names of the native package that the add-on uses: an older riffler on the path would otherwise fail in mid-work.
+# Names in the native package that the add-on uses: with an older riffler on the path, the import fails instead of an
+# operator later.
 NEEDED = ("Tool", "Volume", "Mesh", "Program", "Journal", "Session", "Mesher", "Material", "Task")
 
 
 def vendored() -> Path | None:
-    """Where the legacy zip (Blender before 4.2, which installs no wheels) carries the package."""
+    """The folder in which the legacy zip (Blender before 4.2, which installs no wheels) carries the package."""
     folder = Path(__file__).resolve().parent.parent / "_vendor"
     return folder if (folder / "riffler").is_dir() else None
 
@@ -33,8 +34,8 @@ def load():
 
 
 def _check(module):
-    """ImportError where that is not the core this add-on was made with: an update in a running Blender brings the
-    add-on, and the old core stays."""
+    """ImportError if the core is not the one this add-on was made with: an update in a running Blender loads the new
+    add-on, but the old core stays loaded."""
     where = getattr(module, "__file__", None) or list(getattr(module, "__path__", []))
     found = getattr(module, "__version__", VERSION)
     if found != VERSION:
@@ -45,7 +46,7 @@ def _check(module):
 
 
 def _forget():
-    """So that it is looked for again, unless its binary is loaded: no process bears a second one."""
+    """Lets Python search for the package again, unless its binary is loaded: a process cannot load a second one."""
     if "riffler._core" in sys.modules:
         return
     for name in [n for n in sys.modules if n == "riffler" or n.startswith("riffler.")]:

@@ -16,25 +16,25 @@ def fixed_axes(count: int, axis=UP) -> np.ndarray:
 
 
 def tangents(points: np.ndarray) -> np.ndarray:
-    """Unit tangents of a polyline of distinct points: at a corner the mean of both directions; a polyline that ends
-    where it began is closed."""
+    """Unit tangents of a polyline of distinct points: at a corner the mean of both directions. A polyline that ends at
+    its start is closed."""
     d = unit(np.diff(points, axis=0))
     closed = len(points) > 3 and np.array_equal(points[0], points[-1])
     before = np.vstack([d[-1:] if closed else d[:1], d])
     after = np.vstack([d, d[:1] if closed else d[-1:]])
     mean = before + after
-    # straight back: either direction will do
+    # a reversal: either direction is right
     turn = np.linalg.norm(mean, axis=1) < 1e-9
     mean[turn] = after[turn]
     return unit(mean)
 
 
 def tilted_axes(points: np.ndarray, tilt: np.ndarray) -> np.ndarray:
-    """Axes square to the path: +Z of the stock made square to the tangent, then turned about the tangent by `tilt`
-    (right hand). Where the path itself stands upright the last axis before goes on."""
+    """Axes perpendicular to the path: +Z of the stock projected perpendicular to the tangent, then turned about the
+    tangent by `tilt` (right hand). Where the path itself is vertical, the previous axis is kept."""
     t = tangents(points)
     axes = np.empty_like(t)
-    # An upright start leans on the next direction that is not upright, or on +X.
+    # A vertical start uses the next direction that is not vertical, or +X.
     level = np.nonzero(np.abs(t[:, 2]) < 1 - 1e-6)[0]
     last = _square(UP, t[level[0]]) if len(level) else np.array([1.0, 0.0, 0.0])
     for k in range(len(t)):
@@ -54,7 +54,7 @@ def _square(v, t):
 
 def smooth_axes(points: np.ndarray, axes: np.ndarray, window: float) -> np.ndarray:
     """Mean of the axes over `window` (mm of path) around each point, by the trapezoidal rule on the running integral,
-    so unevenly spaced points weigh what they stand for. A closed path is averaged around its seam."""
+    so unevenly spaced points have the right weights. A closed path is averaged across its seam."""
     if len(points) < 3 or window <= 0:
         return axes
     chord = np.linalg.norm(np.diff(points, axis=0), axis=1)
@@ -82,7 +82,7 @@ def smooth_axes(points: np.ndarray, axes: np.ndarray, window: float) -> np.ndarr
 
 
 def make_poses(points: np.ndarray, axes: np.ndarray, depth: float = 0.0) -> np.ndarray:
-    """Tips `depth` below the points, against the axis; rows whose neighbour's axis is opposite are refused by carve."""
+    """Tips `depth` below the points, against the axis. carve refuses successive rows with opposite axes."""
     if not np.isfinite(depth):
         raise ValueError("depth must be finite")
     return np.ascontiguousarray(np.hstack([points - depth * axes, unit(axes)]))
@@ -94,8 +94,8 @@ def transform_points(matrix: np.ndarray, points: np.ndarray) -> np.ndarray:
 
 
 def moving(poses, dt=None):
-    """The poses, (n, 6), and the times of their moves without those that stand where the one before stood: a journal
-    takes them for no moves. Where none moves, the first two are one move: the tool cuts where it stands."""
+    """The poses, (n, 6), and the times of their moves, without poses equal to the one before: a journal does not count
+    them as moves. If none moves, the first two are one move: the tool cuts in place."""
     stands = (poses[1:] == poses[:-1]).all(axis=1)
     if not stands.any():
         return poses, dt

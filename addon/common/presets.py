@@ -9,10 +9,10 @@ from pathlib import Path
 import riffler
 
 SHAPES = {shape.name: shape for shape in riffler.Tool.shapes()}
-# Every size by its name. It means the same in all shapes that have it. Lengths in mm, angles in rad.
+# Every size by its name, with the same meaning in all shapes that have it. Lengths in mm, angles in rad.
 ALL = {size.name: size for shape in SHAPES.values() for size in shape.sizes}
 FLAGS = tuple(name for name, size in ALL.items() if size.unit == "bool")
-# The sizes of each shape, in the order in which a panel shows them.
+# The sizes of each shape, in a panel's order.
 SIZES = {
     name: ("diameter", *(size.name for size in shape.sizes if size.name != "diameter"))
     for name, shape in SHAPES.items()
@@ -35,7 +35,7 @@ def preset(name: str) -> dict:
 
 
 def tool_dict(kind: str, sizes: dict, name: str = "") -> dict:
-    """The dictionary of one tool from a superset of its sizes."""
+    """The dictionary of one tool, from a superset of its sizes."""
     if kind not in SIZES:
         raise ValueError(f"kind must be one of {', '.join(SIZES)}, not {kind!r}")
     tool = {"kind": kind, **{key: sizes[key] for key in SIZES[kind]}}

@@ -1,4 +1,4 @@
-"""Errors of the system in the words of ours: which file, what is wrong, what helps."""
+"""The system's errors in our words: the file, the problem, the remedy."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ REMEDIES = {
 
 
 def said(error: BaseException) -> str:
-    """One line for a person, never empty."""
+    """One line for the user, never empty."""
     if isinstance(error, OSError) and error.filename and error.errno in REMEDIES:
         return f"{error.filename}: {REMEDIES[error.errno]}"
     if isinstance(error, MemoryError) and str(error) in ("", "std::bad_alloc"):
@@ -27,7 +27,7 @@ def said(error: BaseException) -> str:
 
 
 def capitalised(text: str, names=()) -> str:
-    """A message as a sentence begins, whoever wrote it. `names` and names of files stay as they are."""
+    """A message with a capital first letter. `names` and names of files stay unchanged."""
     word = text.partition(" ")[0].rstrip(":")
     if not (word.isalpha() and word.islower()) or any(name and text.startswith(name) for name in names):
         return text
@@ -35,7 +35,7 @@ def capitalised(text: str, names=()) -> str:
 
 
 def check_target(path, suffix: str = "") -> None:
-    """Before a file is written: ValueError where it cannot be. `suffix`: what its name is to end with."""
+    """Call before writing a file: ValueError if it cannot be written. `suffix`: the required end of its name."""
     if not str(path):
         raise ValueError("no file was chosen: give one a name")
     path = Path(path)
@@ -50,7 +50,7 @@ def check_target(path, suffix: str = "") -> None:
 
 
 def check_source(path) -> None:
-    """Before a file is read: ValueError where it cannot be."""
+    """Call before reading a file: ValueError if it cannot be read."""
     if not str(path):
         raise ValueError("no file was chosen: choose one")
     path = Path(path)

@@ -1,8 +1,7 @@
-"""Orientations of the tool: unit quaternions (n, 4), w first as Blender has them, and the axes (n, 3) that they give
-to z.
+"""Orientations of the tool: unit quaternions (n, 4), w first as in Blender, and the axes (n, 3) to which they turn z.
 
-A turn about the axis itself has no meaning for the tool, so an axis has many quaternions; those made here twist as
-little as they can from one row to the next.
+Rotation about the axis itself has no meaning for the tool, so an axis has many quaternions; those made here twist as
+little as possible from one row to the next.
 """
 
 from __future__ import annotations
@@ -28,14 +27,14 @@ def multiply(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def axes_of(q: np.ndarray) -> np.ndarray:
-    """Where z goes, for quaternions of any length but zero, as they come out of F-curves."""
+    """The images of z, for quaternions of any length but zero, as F-curves give them."""
     w, x, y, z = np.moveaxis(unit(q), -1, 0)
     return unit(np.stack([2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)], axis=-1))
 
 
 def between(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """The shortest turns from the unit axes `a` to `b`; of opposite ones the half turn about some axis square to
-    them."""
+    """The shortest rotations from the unit axes `a` to `b`; for opposite axes a half turn about some perpendicular
+    axis."""
     a, b = np.broadcast_arrays(np.asarray(a, float), np.asarray(b, float))
     total = a + b
     size = np.linalg.norm(total, axis=-1, keepdims=True)  # 2 cos of half the angle
@@ -48,8 +47,8 @@ def between(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def transported(axes: np.ndarray, before: np.ndarray | None = None) -> np.ndarray:
-    """Quaternions of the axes, each the one before it turned the shortest way onto its axis; the first is `before`
-    (4,), by default the identity, turned so. Neighbours have the same sign."""
+    """Quaternions of the axes: each is the previous one turned by the smallest angle onto its axis; the first
+    is `before` (4,), by default the identity, turned likewise. Neighbours have the same sign."""
     before = np.array([1.0, 0, 0, 0]) if before is None else unit(np.asarray(before, float))
     first = multiply(between(axes_of(before), axes[0]), before)
     q = np.vstack([first, between(axes[:-1], axes[1:])])
@@ -61,7 +60,7 @@ def transported(axes: np.ndarray, before: np.ndarray | None = None) -> np.ndarra
 
 
 def aligned(q: np.ndarray) -> np.ndarray:
-    """The same orientations, each with the sign that is nearer to the row before it: F-curves go the short way."""
+    """The same orientations, each with the sign nearer to the previous row: so that F-curves take the shorter arc."""
     if len(q) < 2:
         return q.copy()
     flips = np.where(np.einsum("ij,ij->i", q[1:], q[:-1]) < 0, -1.0, 1.0)
@@ -69,12 +68,12 @@ def aligned(q: np.ndarray) -> np.ndarray:
 
 
 def angle(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Between unit axes, row by row, rad; exact for small angles, too."""
+    """Angles between unit axes, row by row, rad; exact for small angles, too."""
     return 2 * np.arctan2(np.linalg.norm(a - b, axis=-1), np.linalg.norm(a + b, axis=-1))
 
 
 def slerp(a: np.ndarray, b: np.ndarray, share: np.ndarray) -> np.ndarray:
-    """Unit axes on the great circles from `a` to `b` at these shares of the angle, row by row."""
+    """Unit axes on the great circles from `a` to `b`, at these shares of the angle, row by row."""
     theta = angle(a, b)
     share = np.asarray(share, float)
     small = theta < 1e-9

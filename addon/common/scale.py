@@ -1,4 +1,4 @@
-"""Scales of gauges and legends: round numbers within a range, and where they stand."""
+"""Scales of gauges and legends: round numbers within a range, and their places."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import math
 
 
 def step(low: float, high: float, most: int = 6) -> float:
-    """The least of 1, 2, 5 times a power of ten with which at most `most` multiples lie in the range."""
+    """The smallest of 1, 2, 5 times a power of ten with at most `most` multiples in the range."""
     if not (math.isfinite(low) and math.isfinite(high) and low < high and most > 1):
         raise ValueError(f"a scale needs low < high, both finite, and room for two numbers, not {low}, {high}, {most}")
     power = 10.0 ** math.floor(math.log10((high - low) / most))
@@ -18,12 +18,12 @@ def step(low: float, high: float, most: int = 6) -> float:
 
 def ticks(low: float, high: float, most: int = 6) -> list[float]:
     size = step(low, high, most)
-    # n / 1000 rather than n * 0.001: the nearest double to the number that is meant
+    # n / 1000 rather than n * 0.001: the nearest double to the decimal number
     return [n * size if size >= 1 else n / round(1 / size) for n in _multiples(low, high, size)]
 
 
 def ceiling(value: float) -> float:
-    """The least of 1, 2, 5 times a power of ten that is no less than a positive value."""
+    """The smallest of 1, 2, 5 times a power of ten that is not below a positive value."""
     if not (math.isfinite(value) and value > 0):
         raise ValueError(f"a scale's end must be positive and finite, not {value}")
     power = 10.0 ** math.floor(math.log10(value))
@@ -31,7 +31,7 @@ def ceiling(value: float) -> float:
 
 
 def share(value: float, low: float, high: float) -> float:
-    """Where a value stands between the ends of a scale, 0 to 1; what is beyond stands at the end."""
+    """The place of a value between the ends of a scale, 0 to 1, clamped."""
     return min(max((value - low) / (high - low), 0.0), 1.0)
 
 

@@ -1,7 +1,7 @@
 """Bézier, NURBS and poly splines as polylines within a tolerance.
 
-Control points come in millimetres in the stock's frame: both kinds of curve are invariant under affine maps, so the
-tolerance is a distance on the stock whatever the objects' transforms are.
+Control points are in millimetres in the stock's frame: both kinds of curve are invariant under affine maps, so the
+tolerance is a distance on the stock, independent of the objects' transforms.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from itertools import pairwise
 
 import numpy as np
 
-# A limit on points of one spline, so that a tolerance that is far too fine ends in a message and not in swap.
+# Maximal number of points of one spline, so that a tolerance that is far too fine ends in a message, not in swapping.
 MAX_POINTS = 2_000_000
 
 
@@ -33,7 +33,7 @@ class Spline:
 
 def evaluate(spline: Spline, tolerance: float) -> tuple[np.ndarray, np.ndarray]:
     """Points (m, 3) whose polyline lies within `tolerance` (mm) of the curve, and the tilt (m,) at each. A cyclic
-    spline ends where it began. Points that fall together are one point."""
+    spline ends at its start. Coincident points are merged."""
     if not (np.isfinite(tolerance) and tolerance > 0):
         raise ValueError(f"tolerance must be positive, not {tolerance}")
     points = np.ascontiguousarray(spline.points, float).reshape(-1, 3)
@@ -55,7 +55,7 @@ def evaluate(spline: Spline, tolerance: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 def distinct(points: np.ndarray) -> np.ndarray:
-    """(n,) bool: the points that are not where the one before is (within a picometre-scale 1e-9 mm)."""
+    """(n,) bool: points that differ from the one before (by more than 1e-9 mm)."""
     keep = np.ones(len(points), bool)
     keep[1:] = np.linalg.norm(np.diff(points, axis=0), axis=1) > 1e-9
     return keep
@@ -92,8 +92,8 @@ def _bezier(spline, p, tilt, tolerance):
 
 
 def knots(count: int, order: int, cyclic: bool, endpoint: bool, bezier: bool) -> np.ndarray:
-    """The knot vector that Blender gives a NURBS spline of `count` points (periodic part included): uniform; clamped
-    (`endpoint`); multiplicity order − 1 inside (`bezier`)."""
+    """The knot vector of a Blender NURBS spline with `count` points (periodic part included): uniform; clamped
+    (`endpoint`); inner multiplicity order − 1 (`bezier`)."""
     inner = order - 1 if bezier else 1
     free = min(2, inner) if bezier else 1
     head = order - int(cyclic) if endpoint else free
@@ -115,7 +115,7 @@ def knots(count: int, order: int, cyclic: bool, endpoint: bool, bezier: bool) ->
 
 def basis(u: np.ndarray, knot: np.ndarray, order: int) -> np.ndarray:
     """B-spline basis functions at `u` by the Cox–de Boor recursion (Piegl & Tiller, The NURBS Book, eq. 2.5): (len(u),
-    len(knot) − order). The last knot belongs to the last span that is not empty."""
+    len(knot) − order). The last knot belongs to the last non-empty span."""
     wide = len(knot) - 1
     n = np.zeros((len(u), wide))
     span = np.searchsorted(knot, u, side="right") - 1
@@ -185,7 +185,7 @@ def length(points: np.ndarray) -> float:
 
 
 def refine(points: np.ndarray, tilt: np.ndarray, step: float) -> tuple[np.ndarray, np.ndarray]:
-    """Inserts points so that no chord is longer than `step`; the polyline stays where it is."""
+    """Inserts points so that no chord is longer than `step`; the polyline's shape is unchanged."""
     if len(points) < 2:
         return points, tilt
     if not (np.isfinite(step) and step > 0):

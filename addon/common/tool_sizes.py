@@ -1,4 +1,4 @@
-"""One size or the kind of a tool changed, as a panel's fields do: the others stay as they are as far as they can."""
+"""Changes one size or the shape of a tool, as a panel's fields do. The other sizes stay the same where possible."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from . import presets, units
 
 @lru_cache(maxsize=8)
 def parsed(text: str) -> dict:
-    """The tool's dictionary of a JSON text that is known to be one; not to be changed."""
+    """The tool's dictionary from a JSON text known to be valid; not to be changed."""
     return json.loads(text)
 
 
 def changed(tool: dict, key: str, value) -> dict:
-    """The dictionary with another `kind` or size. Shank and holder go with the cutter's length, and a rounded edge is
-    no wider than the cutter. ValueError, from riffler, where there is no such tool."""
+    """The dictionary with another `kind` or size. Shank and holder move with the cutter's length, and a rounded edge is
+    no wider than the cutter. ValueError, from riffler, if there is no such tool."""
     kind = value if key == "kind" else tool["kind"]
     sizes = {**_first(tool), **{k: v for k, v in tool.items() if k in presets.ALL}}
     if key != "kind":
@@ -30,7 +30,7 @@ def changed(tool: dict, key: str, value) -> dict:
             sizes[name] = min(sizes[name], size.largest * sizes["diameter"])
     if kind != tool["kind"] or key in ("diameter", "length"):
         sizes["tip_radius"] = min(sizes["tip_radius"], 0.9 * half)
-        widest = 0.9 * half / math.tan(sizes["tip_half_angle"])  # where the first cone would be as wide as that
+        widest = 0.9 * half / math.tan(sizes["tip_half_angle"])  # where the first cone would be as wide
         sizes["tip_height"] = units.clean(min(sizes["tip_height"], widest, sizes["length"] / 2))
         sizes["half_angle"] = max(sizes["half_angle"], _least_angle(kind, sizes))
     out = presets.tool_dict(kind, sizes, _name(kind, sizes["diameter"]))
@@ -43,7 +43,7 @@ def changed(tool: dict, key: str, value) -> dict:
 
 
 def _least_angle(kind: str, sizes: dict) -> float:
-    """Of the flank (rad), with which a cone ends within nine tenths of the cutter's length."""
+    """Smallest half angle of the flank (rad), with which a cone ends within nine tenths of the cutter's length."""
     half, height = sizes["diameter"] / 2, 0.9 * sizes["length"]
     if kind == "taper":
         return math.atan2(half - 0.9 * sizes["tip_radius"], height)
@@ -54,7 +54,7 @@ def _least_angle(kind: str, sizes: dict) -> float:
 
 
 def _first(tool: dict) -> dict:
-    """First values of all sizes for a cutter of this diameter."""
+    """Default sizes for a cutter of this diameter."""
     diameter = tool.get("diameter", 6.0)
     share = diameter / presets.ALL["diameter"].default
     first = {

@@ -6,7 +6,8 @@ import numpy as np
 
 
 def solid(outline, sides: int = 32) -> tuple[np.ndarray, np.ndarray]:
-    """Vertices (n, 3) and triangles (k, 3) of what a tool's outline, of riffler.Tool.outline, sweeps about z."""
+    """Vertices (n, 3) and triangles (k, 3) of the surface that a tool's outline (riffler.Tool.outline)
+    sweeps about z."""
     vertices, triangles = [], []
     angle = 2 * np.pi * np.arange(sides) / sides
     a, b = np.arange(sides), (np.arange(sides) + 1) % sides

@@ -1,4 +1,4 @@
-"""Millimetres and Blender units, and how sizes are written for people."""
+"""Millimetres and Blender units, and the text form of sizes."""
 
 from __future__ import annotations
 
@@ -6,7 +6,8 @@ import math
 
 
 def clean(value: float) -> float:
-    """Blender's properties are float32: the seven digits that were meant (0.001 reads 0.0010000000474974513)."""
+    """The decimal number that was entered: Blender's properties are float32 with seven digits (0.001 reads
+    0.0010000000474974513)."""
     return float(f"{value:.7g}")
 
 

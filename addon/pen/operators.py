@@ -1,6 +1,5 @@
-"""Sculpting with a pen, or whatever device: a session in the device's thread (pen/session.py), at which Blender
-looks thirty times a second; what its tool feels is drawn, and what it does is said.
-"""
+"""Sculpting with a pen or another device: a session on the device's thread (pen/session.py), polled thirty times a
+second; the force on its tool is drawn, and its state is shown."""
 
 import time
 from pathlib import Path
@@ -17,34 +16,34 @@ from ..translations import local
 from . import properties
 from . import session as pen_session
 
-FRAME = 1 / 30  # s from one look to the next
-TELL = 0.2  # s between two changes of what the panel says
-# The tool that is active while a device sculpts: Esc is its key, and choosing another one ends the work
+FRAME = 1 / 30  # s between two polls
+TELL = 0.2  # s between two updates of the panel's text
+# The tool that is active while a device sculpts: it binds Esc, and choosing another tool ends the session
 # (sculpt/idle_detection.py).
 TOOL = "riffler.carve"
 MODES = (
-    ("TOOL", "As the tool at hand", "What the sculpt tool in the toolbar does; without one, Carve"),
+    ("TOOL", "Active Tool", "Do what the active tool of the toolbar does; Carve if it is not a sculpting tool"),
     *brushes.entries(brush for brush in brushes.BRUSHES.values() if brush.session),
 )
 
 _shown = None  # arrows and gauge (sculpt/force_view.py)
-_told, _told_at = (), 0.0  # what the panel says, and since when
+_told, _told_at = (), 0.0  # the panel's text, and the time since when it is shown
 
 
 def brush_of(context, choice):
-    """What a session does to the material. ValueError where the tool at hand does something that no session can."""
+    """The brush of a session. ValueError if the active tool's brush cannot be used in a session."""
     if choice != "TOOL":
         return brushes.of(choice.lower())
-    brush = brushes.of_tool(_at_hand(context))
+    brush = brushes.of_tool(_active_tool(context))
     if brush is None:
         return brushes.of("remove")
     if not brush.session:
-        raise ValueError(f"a pen carves or puts material on: take Carve or Add instead of {brush.label}")
+        raise ValueError(f"a pen session removes or adds material: use Carve or Add instead of {brush.label}")
     return brush
 
 
-def _at_hand(context):
-    """Identifier of the tool that is active in the 3D view's toolbar, or ""."""
+def _active_tool(context):
+    """Identifier of the active tool in the 3D view's toolbar, or ""."""
     tool = context.workspace.tools.from_space_view3d_mode("OBJECT", create=False) if context.workspace else None
     return tool.idname if tool is not None else ""
 
@@ -59,7 +58,7 @@ def session_options(context, ob, settings, brush):
         **preferences_access.limits(),
     }
     if settings.device == properties.RECORDING:
-        return options  # its poses are in the stock's frame
+        return options  # a recording's poses are in the stock's frame
     options["scale"] = clean(settings.scale)
     if settings.start == "CURSOR":
         world = np.append(context.scene.cursor.location, 1.0)
@@ -88,14 +87,14 @@ def open_device(settings):
     if settings.device != properties.RECORDING:
         return riffler.pen.open(device_of(settings))
     if not settings.recording.endswith(".rjournal"):
-        raise ValueError("choose a recording (.rjournal) to be played")
+        raise ValueError("choose a recording (.rjournal) to play")
     path = bpy.path.abspath(settings.recording)
     problems.check_source(path)
     return riffler.pen.open(path)
 
 
 def recordings(settings):
-    """The folder that recordings go into, or None."""
+    """The folder for recordings, or None."""
     if not settings.record:
         return None
     if not settings.folder or (settings.folder.startswith("//") and not bpy.data.filepath):
@@ -107,29 +106,29 @@ def recordings(settings):
     return folder
 
 
-NO_COPIES = "Mirror and Radial are for strokes of the pointer: a session of a device makes no copies"
+NO_COPIES = "Mirror and Radial apply to strokes of the pointer only: a pen session makes no copies"
 
 
 class RIFFLER_OT_pen_sculpt(sculpt_work.TakesTool, properties.PenSettings, bpy.types.Operator):
-    """Sculpt with a pen or another device, until Esc or until this is called again"""
+    """Sculpt with a pen or another device, until Esc or until the operator is called again"""
 
     bl_idname = "riffler.pen_sculpt"
     bl_label = "Sculpt with Pen"
-    bl_options = set()  # it pushes its undo steps itself: its beginning, and each stroke
+    bl_options = set()  # it pushes its undo steps itself: one at the beginning, and one for each stroke
 
     mode: bpy.props.EnumProperty(
         name="Mode",
         items=MODES,
         default="TOOL",
         options={"SKIP_SAVE"},
-        description="What the session does to the material",
+        description="Whether the session removes or adds material",
     )
     seconds: bpy.props.FloatProperty(
         name="Seconds",
         min=0.0,
         max=86400.0,
         options={"HIDDEN", "SKIP_SAVE"},
-        description="How long it sculpts when it is called from a script",
+        description="Duration of the session when a script calls the operator, in s",
     )
 
     @classmethod
@@ -137,11 +136,13 @@ class RIFFLER_OT_pen_sculpt(sculpt_work.TakesTool, properties.PenSettings, bpy.t
         return pen_session.running is not None or sculpt_work.sculpt_poll(cls, context)
 
     def execute(self, context):
-        """For `seconds`, in one go."""
+        """Runs the session for `seconds`, in one call."""
         if pen_session.running is not None:
             return _stop(self)
         if not self.seconds > 0:
-            return operator_parts.fail(self, ValueError("seconds: say how long, as there is no window to end it in"))
+            return operator_parts.fail(
+                self, ValueError("seconds: give the duration, as there is no window to end the session in")
+            )
         if not self._start(context):
             return {"CANCELLED"}
         session, end = pen_session.running, time.monotonic() + self.seconds
@@ -189,12 +190,12 @@ class RIFFLER_OT_pen_sculpt(sculpt_work.TakesTool, properties.PenSettings, bpy.t
 
 
 def _take_up_tool(context):
-    if not _at_hand(context).startswith("riffler."):
+    if not _active_tool(context).startswith("riffler."):
         bpy.ops.wm.tool_set_by_id(name=TOOL, space_type="VIEW_3D")
 
 
 def _look():
-    """Of the timer, as long as the session goes on."""
+    """Timer function while the session runs."""
     session = pen_session.running
     if session is None:
         return None
@@ -226,7 +227,7 @@ def _tell(session):
     state = bpy.context.window_manager.riffler
     state.force, state.text, state.why = told
     why = f"    {run.why}" if run.why else ""
-    _status(f"Riffler: {hand}, {text}    Esc: end    Ctrl Z: take a stroke back{why}")
+    _status(f"Riffler: {hand}, {text}    Esc: end    Ctrl Z: undo a stroke{why}")
     views.redraw_sidebars(bpy.context)
 
 
@@ -235,13 +236,13 @@ def _strokes(session):
 
 
 def _status(text):
-    """In every window: a timer has none of its own."""
+    """Sets the status text of every window: a timer has no window of its own."""
     for window in bpy.context.window_manager.windows:
         window.workspace.status_text_set(text)
 
 
 def _leave():
-    """The session has ended, whoever ended it."""
+    """Called when the session has ended, for any reason."""
     global _shown, _told
     _told = ()
     if _shown is not None:
@@ -262,7 +263,7 @@ def _stop(operator):
 
 
 def _said(operator, session):
-    """What a session has done, and whether that is anything."""
+    """Reports what the session has done, or that it has done nothing."""
     problem = session.problem or session.run.why
     brush = brushes.of(session.mode)
     done = brush.done
@@ -280,7 +281,7 @@ def _said(operator, session):
 
 
 class PenRuns:
-    """Mixin of operators that need a session."""
+    """Mixin of operators that need a running session."""
 
     @classmethod
     def poll(cls, context):
@@ -288,7 +289,7 @@ class PenRuns:
 
 
 class RIFFLER_OT_pen_stop(PenRuns, bpy.types.Operator):
-    """End the sculpting with a pen: its strokes stay"""
+    """End the pen session and keep its strokes"""
 
     bl_idname = "riffler.pen_stop"
     bl_label = "End Session"
@@ -300,7 +301,7 @@ class RIFFLER_OT_pen_stop(PenRuns, bpy.types.Operator):
 
 
 class RIFFLER_OT_pen_home(PenRuns, bpy.types.Operator):
-    """The pen stands in its home posture now: its counters are set"""
+    """Set the pen's counters: it stands in its home posture now"""
 
     bl_idname = "riffler.pen_home"
     bl_label = "Home"
@@ -314,7 +315,7 @@ class RIFFLER_OT_pen_home(PenRuns, bpy.types.Operator):
 
 
 class RIFFLER_OT_pen_reset(PenRuns, bpy.types.Operator):
-    """Let force through again after it was taken away, once what was wrong is mended"""
+    """Allow force again after a safety trip, once its cause is fixed"""
 
     bl_idname = "riffler.pen_reset"
     bl_label = "Clear Trip"

@@ -1,4 +1,4 @@
-"""The pen's panel: which device, how it feels, what it is doing."""
+"""The pen's panel: the device, its feel, and the state of its session."""
 
 import bpy
 

@@ -1,4 +1,4 @@
-"""Which device the hand holds, how it feels, and what its session is doing."""
+"""Settings of the device and its feel, and the state of its session."""
 
 import bpy
 import riffler
@@ -9,29 +9,32 @@ from ..blender.fields import length, stored_number
 RECORDING = "recording"
 DEVICES = tuple(
     (kind, kind.replace("-", " ").capitalize(), what, "NONE", stored_number(kind))
-    for kind, what in {**riffler.pen.kinds(), RECORDING: "What a hand did before, at its pace"}.items()
+    for kind, what in {
+        **riffler.pen.kinds(),
+        RECORDING: "Recorded strokes, played back at their recorded speed",
+    }.items()
 )
 PREFERRED = "preferred"
 CHOICES = ((PREFERRED, "As in Preferences", "The device that Riffler's preferences name", "NONE", 0), *DEVICES)
 STARTS = (
-    ("ABOVE", "Above the stock", "The tool stands upright above the middle of the stock when the session starts"),
-    ("CURSOR", "3D cursor", "The tool's tip stands upright at the 3D cursor when the session starts"),
+    ("ABOVE", "Above the Stock", "The tool stands upright above the middle of the stock when the session starts"),
+    ("CURSOR", "3D Cursor", "The tool's tip stands upright at the 3D cursor when the session starts"),
 )
 
 
 class PenSettings:
     """Shared by the panel's settings and the operator."""
 
-    device: EnumProperty(name="Device", items=CHOICES, default=PREFERRED, description="What the hand holds")
+    device: EnumProperty(name="Device", items=CHOICES, default=PREFERRED, description="Input device")
     recording: StringProperty(
-        name="Recording", subtype="FILE_PATH", description="A recording (.rjournal) to be played as a device"
+        name="Recording", subtype="FILE_PATH", description="Recording (.rjournal) that plays as a device"
     )
     start: EnumProperty(
-        name="Start", items=STARTS, default="ABOVE", description="Where the tool stands when the session starts"
+        name="Start", items=STARTS, default="ABOVE", description="Position of the tool when the session starts"
     )
-    gap: length("Gap", 1.0, "From the stock's top to the tool's tip at the start, in mm", 0.0, 1e4)
-    scale: length("Scale", 1.0, "Way of the tool for a way of the hand", 1e-3, 100.0)
-    stiffness: length("Stiffness", 1.0, "Of the pull between hand and tool, in N/mm", 1e-3, 100.0)
+    gap: length("Gap", 1.0, "Distance from the top of the stock to the tool tip at the start, in mm", 0.0, 1e4)
+    scale: length("Scale", 1.0, "Distance that the tool moves, per distance of the hand", 1e-3, 100.0)
+    stiffness: length("Stiffness", 1.0, "Stiffness of the coupling between hand and tool, in N/mm", 1e-3, 100.0)
     removal_constant: FloatProperty(
         name="Resistance",
         default=0.005,
@@ -39,11 +42,14 @@ class PenSettings:
         max=100.0,
         precision=4,
         step=0.1,
-        description="Of the material: N for every mm³ that is removed in a second",
+        description="Resistance of the material, in N per mm³ removed in a second",
     )
-    record: BoolProperty(name="Record", default=False, description="Write a journal of every stroke into a folder")
+    record: BoolProperty(name="Record", default=False, description="Record every stroke in a journal")
     folder: StringProperty(
-        name="Folder", subtype="DIR_PATH", default="//", description="For the journal and the stock that it begins with"
+        name="Folder",
+        subtype="DIR_PATH",
+        default="//",
+        description="Folder for the journal and the stock that it starts from",
     )
 
 
@@ -52,7 +58,7 @@ class RifflerPen(PenSettings, bpy.types.PropertyGroup):
 
 
 class PenProgress:
-    """Of the session that runs, for the panel."""
+    """State of the running session, for the panel."""
 
     sculpting: BoolProperty()
     force: StringProperty()

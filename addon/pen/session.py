@@ -1,10 +1,10 @@
-"""The session of a device with a live sculpt: it cuts in the device's thread, and the owner of the timer shows thirty
-times a second what has changed.
+"""The session of a device with a live sculpt: it cuts on the device's thread, and a timer shows the changes thirty
+times a second.
 
-A stroke of the hand is what the pointer's are: a state with a token, an undo step, packed when the hand rests. The
-native session has snapshots of its strokes, too, so undo and redo go through it; where it cannot go (the state is older
-than the session, a stroke has begun meanwhile), it is ended and another is begun with that state, the tool staying
-where it is. Nothing modal runs: Blender makes its autosaves meanwhile.
+A stroke of the hand is like one of the pointer: a state with a token, an undo step, packed when the hand rests. The
+native session has snapshots of its strokes, too, so undo and redo use them. If the session cannot restore a state (it
+is older than the session, or a stroke has begun meanwhile), it is ended and a new one begins with that state and the
+same pose of the tool. Nothing modal runs, so Blender can make its autosaves.
 """
 
 import time
@@ -21,19 +21,19 @@ from .pure import pen_run
 
 LABEL = "Pen Stroke"
 
-running = None  # a device is in one hand
+running = None  # only one at a time: one hand, one device
 
 
 class PenSession:
-    """Of `device`, open, with the sculpt `ob`; `tool`: riffler.Tool. `options`: riffler.Session's. `recordings`: the
-    folder for a recording of what was done, or None. `ended` is called when it has ended, whoever ended it. ValueError,
-    OSError, RuntimeError where it cannot be; then nothing has changed, and the device is closed."""
+    """A session of the open `device` with the sculpt `ob`; `tool`: riffler.Tool. `options`: riffler.Session's.
+    `recordings`: the folder for a recording, or None. `ended` is called after its end, for any reason. ValueError,
+    OSError, RuntimeError if it cannot start; then nothing has changed, and the device is closed."""
 
     def __init__(self, context, ob, device, tool, options, recordings=None, ended=lambda: None):
         global running
         self._begin, self._recordings, self._on_end = time.perf_counter(), recordings, ended
         self.ended = False
-        self.problem, self.count = "", 0  # what went wrong; strokes
+        self.problem, self.count = "", 0  # problem of the session; number of strokes
         self._tool, self.mode = tool, options.get("mode", "remove")
         self.run = pen_run.PenRun(device, tool, {**options, "undo": context.preferences.edit.undo_steps + SPARE})
         fresh = live_registry.of(ob) is None
@@ -56,19 +56,19 @@ class PenSession:
         bpy.context.window_manager.riffler.sculpting = True
 
     def _take_up(self):
-        """A native session with the volume as it is."""
+        """Starts a native session with the current volume."""
         work = self.live
-        _ = work.mesher  # has to know what is shown before it changes
+        _ = work.mesher  # creates the mesher before the volume changes
         session = self.run.prepare(work.volume, work.mask)
         self._seen, self._strokes = work.volume.revision, 0
-        self._states, self._at = [self._seen], 0  # revisions, as the session's own undo has them
+        self._states, self._at = [self._seen], 0  # revisions in the session's own undo
         work.persistence.begin_session(work.object, work.token, snapshots.get(work.token).content, session)
         self.run.start()
 
-    # ------------------------------------------------------------------ while it goes on
+    # ------------------------------------------------------------------ while it runs
     @property
     def changed(self):
-        """mm³ removed or put on since it began, but for what was taken back."""
+        """mm³ removed or added since the start, without undone strokes."""
         return abs(self._before - self.live.volume.volume)
 
     @property
@@ -80,7 +80,7 @@ class PenSession:
         return time.perf_counter() - self._begin
 
     def look(self):
-        """Shows what was cut since the last look. False where it has ended."""
+        """Shows what was cut since the last call. False if the session has ended."""
         if self.ended:
             return False
         work = self.live
@@ -100,7 +100,7 @@ class PenSession:
         return not over
 
     def _follow(self):
-        """The volume has gone on; a stroke may have ended."""
+        """Updates the sculpt after the volume has changed; a stroke may have ended."""
         work, run = self.live, self.run
         if work.volume.revision != self._seen:
             self._seen = work.volume.revision
@@ -122,12 +122,12 @@ class PenSession:
 
     # ------------------------------------------------------------------ undo
     def before_undo(self):
-        """The stroke that is being made ends here."""
+        """Ends the stroke in progress."""
         if self.look() and self.run.in_stroke:
             self._halt()
 
     def go(self, content):
-        """The volume is `content`'s again, or False: then it is not the session's any more."""
+        """Restores the volume of `content`; False if the session cannot, and no longer owns the volume."""
         wanted = content.volume.revision
         if self.run.running and wanted in self._states:
             to = self._states.index(wanted)
@@ -169,7 +169,7 @@ class PenSession:
         return path
 
     def finish(self):
-        """Ends it, once: the stroke that is being made is the last."""
+        """Ends the session, once: the stroke in progress becomes the last one."""
         if self.ended:
             return
         self.ended = True
@@ -180,7 +180,7 @@ class PenSession:
             self.drop()
 
     def drop(self):
-        """Ends it, whatever has become of the sculpt; what was not looked at is nobody's."""
+        """Ends the session after its sculpt has changed; strokes that were not polled are discarded."""
         global running
         self.ended = True
         if self.live.device is not self:
@@ -199,7 +199,7 @@ class PenSession:
             self._on_end()
 
     def fail(self, error):
-        """Ends it where something else has failed; what no state has yet is taken back."""
+        """Ends the session after an error elsewhere; changes that belong to no state yet are undone."""
         self.problem = str(error) or type(error).__name__
         self.drop()
         if self.live.object is not None and self.live.awake:
@@ -207,6 +207,6 @@ class PenSession:
 
 
 def end():
-    """Whatever session runs."""
+    """Ends the running session, if any."""
     if running is not None:
         running.finish()

@@ -1,5 +1,5 @@
-"""Frames of the timeline whose poses collide: looked for where somebody has asked, a little at a time, and marked. The
-markers are in the file, and so is that somebody has asked; what was looked at is not."""
+"""Marks the frames of the timeline whose poses collide, once the user asks for it: checked in slices, then shown as
+markers. The markers and the request are stored in the file; the results of the checks are not."""
 
 import bpy
 import numpy as np
@@ -11,11 +11,11 @@ from .pure import collisions, motion
 ERRORS = (ValueError, OSError, RuntimeError)
 ASKED = "riffler_marked"  # of the plan's object
 WAIT = 0.5  # s, while something renders
-LOOK = 0.03  # s between two looks at surroundings in the making
+LOOK = 0.03  # s between two polls of surroundings that are being built
 
 
 def look(scene, plan_ob):
-    """Looks at the poses that were not looked at yet: at once without a window, otherwise from a timer."""
+    """Checks the poses that were not checked yet: at once without a window, otherwise from a timer."""
     now, near = state(plan_ob), obstacles.known(plan_ob)
     if near is not None and near is not now.near:
         now.near, now.clearances = near, {}
@@ -29,7 +29,7 @@ def look(scene, plan_ob):
 
 
 def clearance_job(plan_ob, near, known):
-    """Of all poses of the animation; `known`: clearances with these surroundings."""
+    """A job for the clearances of all poses of the animation; `known`: clearances with these surroundings."""
     now = state(plan_ob)
     poses = np.vstack([played.poses for _, played in _played(plan_ob)] or [np.empty((0, 6))])
     return collisions.ClearanceJob(near, now.tool, poses, known)
@@ -52,14 +52,15 @@ def show(scene, plan_ob, job=None):
     tolerance = plan.tolerance or 0.01
     deep = [np.full(len(p.poses), plan.depths[k] + tolerance if k in plan.depths else 0.0) for k, p in _played(plan_ob)]
     now.looks += job.computed
-    clearances = job.clearances + np.concatenate([np.empty(0), *deep])  # those that the cutter is to enter the part by
+    # adds the depth by which the cutter is meant to enter the part
+    clearances = job.clearances + np.concatenate([np.empty(0), *deep])
     now.colliding = collisions.runs(frames, clearances, -tolerance, ends)
     timeline.mark(scene, collisions.union(state(p).colliding for p in on_timeline() if scene.objects.get(p.name) == p))
     return now.colliding
 
 
 def go_on():
-    """A timer's: 20 ms of looking at collisions, as long as there is something to look at."""
+    """Timer function: 20 ms of collision checks per call, until all poses are checked."""
     if rendering():
         return WAIT
     for plan_ob in on_timeline():
@@ -77,19 +78,19 @@ def go_on():
 
 
 def asked(plan_ob):
-    """True where somebody wants collisions marked: undo takes that back, too."""
+    """True if the user has asked for marks; undo reverts that, too."""
     return bool(plan_ob.get(ASKED))
 
 
 def outdated(plan_ob):
-    """True where the marks are of before part or fixtures changed, of a file that was opened, or may be."""
+    """True if the marks may be from before a change of part or fixtures, or from a file that was opened."""
     now = state(plan_ob)
     looked = now.near is not None and obstacles.known(plan_ob) is now.near and now.job is None
     return asked(plan_ob) and not looked
 
 
 def look_again():
-    """A timer's, once part and fixtures have been left alone: looks again where they are others now."""
+    """Timer function: after part and fixtures have stayed unchanged for a moment, checks again if they differ now."""
     waiting = False
     for plan_ob in on_timeline():
         now, scene = state(plan_ob), scene_of(plan_ob)

@@ -1,5 +1,5 @@
-"""The point of a plan that the scene's frame is at, and the tool there: where it is looked for, turned by hand, and
-drawn."""
+"""The point of a plan at the scene's frame, and the tool there: where collisions are checked, and where the tool is
+turned by hand and drawn."""
 
 from dataclasses import dataclass
 
@@ -12,7 +12,7 @@ from . import plan_store, replan, timeline
 from .pure import tool_rotation
 
 TOOL = "riffler.plan"  # in the toolbar
-REACH = 1.7  # of Blender's size of gizmos: from the point to the handle at the tool's end
+REACH = 1.7  # distance from the point to the handle at the tool's end, in Blender's gizmo sizes
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class Spot:
         return tool_rotation.axis_at(self.line, self.index)
 
 
-held = None  # the axis while somebody turns the tool, for what is drawn beside it
+held = None  # the axis while the user turns the tool, for what is drawn next to it
 
 
 def plan_object(context):
@@ -46,7 +46,7 @@ def plan_object(context):
 
 
 def tool_active(context):
-    """True where the toolbar's plan tool is chosen in the 3D view."""
+    """True if the plan tool of the toolbar is active in the 3D view."""
     if context.workspace is None or context.mode != "OBJECT":
         return False
     tool = context.workspace.tools.from_space_view3d_mode("OBJECT", create=False)
@@ -54,7 +54,7 @@ def tool_active(context):
 
 
 def spot(scene, ob, frame=None):
-    """Of a plan's object at a frame, by default the scene's; None where there is none. ValueError where the plan
+    """The spot of a plan's object at a frame, by default the scene's; None if there is none. ValueError if the plan
     cannot be read."""
     if ob is None or timeline.pair(ob) is None:
         return None
@@ -67,8 +67,8 @@ def spot(scene, ob, frame=None):
 
 
 def seen(context):
-    """The spot that handles and maps are for. None where there is none, where it cannot be found, and where the path
-    takes no keys: errors are for operators, not for drawing."""
+    """The spot for handles and maps. None if there is none, if it cannot be found, and if the path takes no keys:
+    operators report errors, drawing does not."""
     try:
         found = spot(context.scene, plan_object(context))
     except ValueError:
@@ -77,7 +77,7 @@ def seen(context):
 
 
 def sight(context, region, space):
-    """From where a region looks at the world, in millimetres."""
+    """The region's view of the world, in millimetres."""
     mm = scene_units.mm_per_unit(context.scene)
     return ViewRays(
         meshes.matrix(space.perspective_matrix) @ np.diag([1 / mm] * 3 + [1.0]), (region.width, region.height)
@@ -85,14 +85,14 @@ def sight(context, region, space):
 
 
 def reach(context, view, centre):
-    """mm from a point to its handle at the tool's end: as many pixels everywhere."""
+    """mm from a point to its handle at the tool's end: the same number of pixels everywhere."""
     preferences = context.preferences
     pixels = REACH * preferences.view.gizmo_size * preferences.system.ui_scale
     return pixels / view.pixels_per_unit(centre)
 
 
 def hand(scene, spot, pose):
-    """Shows the tool at a pose (6,), mm, whatever the animation says, until `release`."""
+    """Shows the tool at a pose (6,), mm, instead of the animated one, until `release`."""
     tool, ghost = timeline.pair(spot.ob)
     stands = timeline.stands(scene, tool, ghost)
     quat = quaternions.transported(pose[None, 3:], stands)[0]
@@ -100,5 +100,5 @@ def hand(scene, spot, pose):
 
 
 def release(scene, ob):
-    """The tool moves with the animation again."""
+    """Lets the tool follow the animation again."""
     timeline.settle(scene, *timeline.pair(ob), afresh=True)

@@ -8,7 +8,7 @@ from ..sculpt.tool_properties import FIELDS, KINDS
 
 
 def _cutter(group):
-    """The dictionary of the plan's tool, whose fields `group` has; None where it cannot be read."""
+    """The dictionary of the plan's tool, whose fields `group` has; None if it cannot be read."""
     try:
         return group.id_data.riffler.plan.tool_dict()
     except ValueError:
@@ -16,7 +16,7 @@ def _cutter(group):
 
 
 def _change(group, key, value):
-    """What would be no tool changes nothing."""
+    """Changes the tool's dictionary; a change that gives no valid tool is ignored."""
     tool = _cutter(group)
     try:
         if tool is not None and tool.get(key) != value:
@@ -31,7 +31,7 @@ def _kind(group):
 
 
 def _size(key, field):
-    """The field of RifflerTool, but of the plan's tool."""
+    """A field like that of RifflerTool, for the plan's tool."""
     first, is_flag = field.keywords["default"], key in presets.FLAGS
 
     def get(group):
@@ -44,7 +44,7 @@ def _size(key, field):
 
 
 class RifflerCutter(bpy.types.PropertyGroup):
-    """The cutter of the plan's tool as fields: what is set here is kept in RifflerPlan.tool."""
+    """The cutter of the plan's tool as fields, stored in RifflerPlan.tool."""
 
     __annotations__ = {
         "kind": EnumProperty(
@@ -52,7 +52,7 @@ class RifflerCutter(bpy.types.PropertyGroup):
             items=KINDS,
             get=_kind,
             set=lambda group, number: _change(group, "kind", KINDS[number][0]),
-            description="Of the end of the cutter",
+            description="Shape of the cutter's end",
         ),
         **{k: _size(k, field) for k, field in FIELDS.items()},
     }

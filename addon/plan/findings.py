@@ -1,4 +1,4 @@
-"""Lists of what was found, and the way to each: the frame, the place in the views, the line of NC code."""
+"""Lists of findings, and going to a finding: its frame, its place in the views, its line of NC code."""
 
 import hashlib
 from itertools import chain, count
@@ -9,7 +9,7 @@ from mathutils import Vector
 from ..blender import scene_units
 from . import plan_store, replan, timeline
 
-WRITTEN = "riffler_written"  # of a Text: the hash of what was written to it
+WRITTEN = "riffler_written"  # of a Text: the hash of the text written to it
 
 
 def write(collection, entries):
@@ -22,28 +22,28 @@ def write(collection, entries):
 
 
 def read(collection):
-    """The same back."""
+    """The inverse of `write`."""
     keys = ("name", "title", "kind", "path", "point", "row", "line", "frame")
     return [{**{key: getattr(item, key) for key in keys}, "place": tuple(item.place)} for item in collection]
 
 
 def frame_of(item, plan_ob):
-    """The frame of a finding, or None: that of a plan's point is where the plan is on the timeline now."""
+    """The frame of a finding, or None. A plan's point has its frame from the plan's current timeline."""
     if item.path < 0:
         return item.frame if item.row >= 0 else None
     if plan_ob is None or timeline.pair(plan_ob) is None:
         return None
     tracks = replan.layout_of(plan_ob, plan_store.plan(plan_ob)).tracks
     if item.path >= len(tracks) or not 0 <= item.point < tracks[item.path].points:
-        return None  # the paths are others now
+        return None  # the paths have changed
     return tracks[item.path].frame_of(item.point)
 
 
 def go(context, item, frame, text):
-    """Shows a finding: the scene's frame (None: as it is), the views about its place, the line of `text`."""
+    """Shows a finding: the scene's frame (None: unchanged), the views about its place, the line of `text`."""
     scene = context.scene
     if text is not None and not 0 < item.line <= len(text.lines):
-        text = None  # no line, or one that somebody has deleted
+        text = None  # there is no line, or the user deleted the text
     if frame is not None:
         timeline.go_to(scene, frame)
     place = Vector(item.place) / scene_units.mm_per_unit(scene)
@@ -65,8 +65,8 @@ def _screens(context):
 
 
 def text_of(existing, name, code):
-    """A Text block with the code: the one that had it before, where it is still there and as it was written; and the
-    name of the one that somebody has edited since, which is left to them, or ""."""
+    """A Text block with the code: the previous one if it still exists and is unedited; and the name of a previous one
+    that the user has edited, which is left unchanged, or ""."""
     if existing is not None and existing.as_string() == code:
         existing[WRITTEN] = _hash(existing)
         return existing, ""
@@ -81,11 +81,11 @@ def text_of(existing, name, code):
 
 
 def _rename(text, name):
-    """To the name, or to the next that is free: some Blenders take it from the text that has it."""
+    """Renames to the name, or to the next free one: some Blenders take the name from the text that has it."""
     names = chain([name], (f"{name}.{k:03}" for k in count(1)))
     text.name = next(n for n in names if bpy.data.texts.get(n) in (None, text))
 
 
 def _hash(text):
-    """Of what Blender gives back, which is not to the byte what was written."""
+    """Hash of the text as Blender returns it, which may differ in bytes from what was written."""
     return hashlib.sha256(text.as_string().encode()).hexdigest()

@@ -1,4 +1,4 @@
-"""The curves that a strategy starts from: the selected curve objects, as they lie in the scene."""
+"""The curves that a strategy starts from: the selected curve objects, where they lie in the scene."""
 
 import numpy as np
 
@@ -8,13 +8,13 @@ from . import plan_store
 
 
 def objects(context):
-    """The selected curve objects, but for those that show the paths of a plan."""
+    """The selected curve objects, except those that show the paths of a plan."""
     return [ob for ob in context.selected_objects if ob.type == "CURVE" and not plan_store.is_plan(ob.parent)]
 
 
 def selected(context, tolerance):
     """Their splines as polylines (n, 3) in mm of the world, within `tolerance` mm. ValueError with the remedy for a
-    text, and for a curve that is seen otherwise than its control points say."""
+    text, and for a curve that differs from its control points."""
     found, texts = objects(context), [ob.name for ob in context.selected_objects if ob.type == "FONT"]
     if not found and texts:
         raise ValueError(f"{texts[0]} is a text: use Object > Convert > Curve first")

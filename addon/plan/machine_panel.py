@@ -1,4 +1,4 @@
-"""The plan's machine, and options of machines as fields: what must be given, the machine's own, what else is given."""
+"""The plan's machine, and its options as fields: required ones, the machine's own, and others that are set."""
 
 import bpy
 
@@ -10,7 +10,7 @@ from .pure import machine_fields
 
 
 def draw_options(layout, context, name):
-    """Of a machine: what it needs, its own, what is given, and a menu of what else can be."""
+    """Draws a machine's options: required ones, its own, others that are set, and a menu to add more."""
     machines = context.scene.riffler.machines
     given = machines.given(name)
     try:
@@ -34,7 +34,7 @@ def draw_options(layout, context, name):
 
 
 def _field(layout, group, fact):
-    """The row of an option's field. What has a unit has its name above it: beside it there is no room for both."""
+    """The row of an option's field. The name of a field with a unit is above it, since both do not fit into one row."""
     key = machine_fields.identifier(fact["name"])
     if not fact["unit"]:
         row = layout.row(align=True)
@@ -50,7 +50,7 @@ def _field(layout, group, fact):
 
 def _ask(layout, context, name, group, fact):
     box = layout.box()
-    needed = local("{} is not given").format(local(machine_fields.label(fact)))
+    needed = local("{} is not set").format(local(machine_fields.label(fact)))
     lines(box, *wrapped(context, f"{needed}: {local(machine_fields.about(fact))}."), icon="ERROR")
     row = box.row(align=True)
     row.use_property_split = False
@@ -58,7 +58,7 @@ def _ask(layout, context, name, group, fact):
     row = box.row(align=True)
     if fact["count"] == 3:
         _button(row, name, fact, "CURSOR", text="3D Cursor", icon="PIVOT_CURSOR")
-    _button(row, name, fact, "GIVE", text="Take This", icon="CHECKMARK")
+    _button(row, name, fact, "GIVE", text="Use This", icon="CHECKMARK")
 
 
 def _button(layout, name, fact, how, **look):

@@ -1,5 +1,5 @@
-"""What is set of each machine: a group of fields for each, made from what the core says that the machine takes. A field
-that nobody has set is not given."""
+"""Settings of each machine: a group of fields for each, made from the core's description of the machine's options.
+Fields that the user has not set are not passed on."""
 
 import bpy
 import riffler
@@ -9,7 +9,7 @@ from ..blender.fields import stored_number
 from .pure import machine_fields
 
 MACHINES = tuple((m, m, what, "NONE", stored_number(m)) for m, what in riffler.machines().items())
-FIRST = {"positive": 1000.0, "range": (-100.0, 100.0)}  # what such a field begins with
+FIRST = {"positive": 1000.0, "range": (-100.0, 100.0)}  # initial values of such fields
 
 
 def _field(fact):
@@ -26,7 +26,7 @@ def _field(fact):
 
 
 def _facts(machine):
-    """None of a file of the user's own that cannot be read; whoever takes that machine is told."""
+    """The options, or None for a user's file that cannot be read; using that machine reports the error."""
     try:
         return machine_fields.facts(machine)
     except ValueError:
@@ -40,11 +40,11 @@ def _group(machine):
 
 
 GROUPS = {machine: _group(machine) for machine, *_ in MACHINES}
-globals().update({group.__name__: group for group in GROUPS.values()})  # found by its name, as every class is
+globals().update({group.__name__: group for group in GROUPS.values()})  # registration finds classes by their names
 
 
 class RifflerMachines(bpy.types.PropertyGroup):
-    """On a scene: a group for each machine, by its identifier."""
+    """Settings on a scene: a group for each machine, by its identifier."""
 
     __annotations__ = {
         machine_fields.machine_identifier(m): PointerProperty(type=GROUPS[m], name=m, description=what)
@@ -56,7 +56,7 @@ class RifflerMachines(bpy.types.PropertyGroup):
         return getattr(self, machine_fields.machine_identifier(machine))
 
     def given(self, machine):
-        """The options of a machine that somebody has set, as riffler takes them."""
+        """The options of a machine that the user has set, as riffler takes them."""
         own, found = self.of(machine), {}
         for fact in _facts(machine):
             key = machine_fields.identifier(fact["name"])

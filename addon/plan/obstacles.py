@@ -1,8 +1,8 @@
-"""What a plan's tool must stay clear of: the part that the plan was made on and the scene's fixtures. Keeps their
-surfaces until one of them changes. Native tasks make the Surroundings of plan/pure/clearance.py at the first query.
+"""The obstacles of a plan's tool: the part that the plan was made on and the scene's fixtures. Keeps their surfaces
+until one of them changes. Native tasks build the Surroundings of plan/pure/clearance.py at the first query.
 
-Blender is not believed at once that something has changed, as undo says so of every object; nor, by whoever may not be
-wrong (`take`, `now`), that nothing has: a script's changes are told later.
+Blender's change notices are not reliable: undo reports every object as changed, and a script's changes are reported
+late. So a notice alone rebuilds nothing, and callers that must be right (`take`, `now`) always compare.
 """
 
 import hashlib
@@ -22,17 +22,17 @@ CLASSES = ()
 
 @dataclass
 class Taken:
-    """Surfaces in millimetres of the scene, and the task (as a riffler.Task is one) that makes surroundings of them.
-    `prints`: their hashes."""
+    """Surfaces in millimetres of the scene, and the task (with the interface of riffler.Task) that builds surroundings
+    of them. `prints`: their hashes."""
 
-    who: tuple  # names of part and fixtures, and the scene's millimetres
+    who: tuple  # names of part and fixtures, and the scene's mm per unit
     part: riffler.Mesh
     fixtures: list  # of (name, riffler.Mesh)
     prints: tuple
     making: Making | None = None
     made: Surroundings | None = None
-    number: int = 0  # of those that were made
-    doubtful: bool = False  # Blender has said since that something has changed
+    number: int = 0  # serial number
+    doubtful: bool = False  # Blender has reported a change since
 
     def begin(self):
         if self.made is None and self.making is None:
@@ -40,7 +40,7 @@ class Taken:
 
     @property
     def done(self):
-        """Asked now and then, from the first time on it is made; where it is, `result` does not wait."""
+        """Poll this: the first call starts the task. Once it is True, `result` does not wait."""
         self.begin()
         return self.making is None or self.making.done
 
@@ -49,10 +49,10 @@ class Taken:
         return 1.0 if self.making is None else self.making.share
 
     def cancel(self):
-        """It goes on: whoever asks next has it."""
+        """Does nothing: the task continues for the next query."""
 
     def result(self):
-        """The plan.pure.clearance.Surroundings, however long they take."""
+        """The plan.pure.clearance.Surroundings; waits for them."""
         global made
         if self.made is None:
             self.begin()
@@ -63,7 +63,7 @@ class Taken:
         return self.made
 
     def fingerprint(self, tool, clearance):
-        """What cutter locations hold for: another one, and they have to be found again."""
+        """Identifies what cutter locations are valid for: if it changes, they must be found again."""
         text = json.dumps([self.prints, tool.to_dict(), clearance], sort_keys=True)
         return hashlib.sha256(text.encode()).hexdigest()[:16]
 
@@ -74,7 +74,7 @@ class Taken:
 
 
 class SceneContext:
-    """What a timer, which has no window, knows of a scene."""
+    """A scene's context for timers, which have no window."""
 
     def __init__(self, scene):
         self.scene = scene
@@ -85,12 +85,12 @@ class SceneContext:
 
 
 _kept = {}  # name of a plan's object → Taken
-made = 0  # plan.pure.clearance.Surroundings, since the add-on runs
-_changes = 0  # that Blender told of
+made = 0  # plan.pure.clearance.Surroundings built since the add-on runs
+_changes = 0  # number of changes that Blender has reported
 
 
 def part_of(scene, ob=None):
-    """What a plan's object was made on, while that is in the scene; otherwise what plans are made on now."""
+    """The part that a plan's object was made on, while it is in the scene; otherwise the scene's current part."""
     own = ob.riffler.plan.part if ob is not None else None
     if own is not None and scene.objects.get(own.name) == own:
         return own
@@ -98,7 +98,7 @@ def part_of(scene, ob=None):
 
 
 def take(context, ob):
-    """Taken of a plan's object, as the scene is now. ValueError where part or fixtures are not what they should be."""
+    """Taken of a plan's object in the scene's current state. ValueError if part or fixtures are invalid."""
     part, fixtures, who = _objects(context, ob)
     mesh = object_surfaces.in_world(context, part)
     held = [(fixture.name, object_surfaces.in_world(context, fixture)) for fixture in fixtures]
@@ -111,12 +111,12 @@ def take(context, ob):
 
 
 def now(context, ob):
-    """The plan.pure.clearance.Surroundings of a plan's object, however long they take."""
+    """The plan.pure.clearance.Surroundings of a plan's object; waits for them."""
     return take(context, ob).result()
 
 
 def ask(context, ob):
-    """The same, or None while they are made: ask again. ValueError where there can be none."""
+    """The same, or None while they are being built: ask again. ValueError if they cannot be built."""
     kept = _kept.get(ob.name)
     if kept is None or kept.doubtful or kept.who != _objects(context, ob)[2]:
         kept = take(context, ob)
@@ -124,13 +124,13 @@ def ask(context, ob):
 
 
 def known(ob):
-    """The same if they are there and nothing has changed since, otherwise None."""
+    """The same if they exist and nothing has changed since, otherwise None."""
     kept = _kept.get(ob.name)
     return kept.made if kept is not None and not suspect(SceneContext(scene_of(ob)), ob) else None
 
 
 def suspect(context, ob):
-    """True where what is known may be of before: asking again says."""
+    """True if the known surroundings may be outdated; `ask` checks that."""
     kept = _kept.get(ob.name)
     try:
         return kept is not None and (kept.doubtful or kept.who != _objects(context, ob)[2])
@@ -139,12 +139,12 @@ def suspect(context, ob):
 
 
 def version(ob):
-    """Another one wherever it may be worth asking again, or the surroundings are others."""
+    """A value that changes when asking again may give other surroundings."""
     return ("made", _kept[ob.name].number) if known(ob) is not None else ("changed", _changes, _who(scene_of(ob), ob))
 
 
 def _who(scene, ob):
-    """What Taken.who has, or why there is nothing to be had."""
+    """The value of Taken.who, or why there is none."""
     try:
         return _objects(SceneContext(scene), ob)[2]
     except ValueError as error:
@@ -152,7 +152,7 @@ def _who(scene, ob):
 
 
 def _objects(context, ob):
-    """Part, fixtures, and what Taken.who has of them."""
+    """Part, fixtures, and the value of Taken.who."""
     part = part_of(context.scene, ob)
     if why := object_surfaces.unfit(part, context.scene):
         raise ValueError(why)
@@ -193,8 +193,8 @@ def detach():
 
 
 def fixture_objects(settings, part):
-    """The objects of the fixtures' collection that have a surface, but the part. ValueError where there is one whose
-    surface would be passed over."""
+    """The objects of the fixtures' collection that have a surface, except the part. ValueError if the surface of one
+    would be ignored."""
     if settings.fixtures is None:
         return []
     if why := next(filter(None, map(refusals.instance, settings.fixtures.all_objects)), ""):

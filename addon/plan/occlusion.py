@@ -1,4 +1,4 @@
-"""Whether something that is seen stands before a place of the scene, in a 3D view."""
+"""Whether a visible object hides a place of the scene in a 3D view."""
 
 import bpy
 import numpy as np
@@ -6,14 +6,14 @@ import numpy as np
 from ..blender import scene_units
 from . import timeline
 
-MOST = 16  # surfaces on the way that hide nothing: the plan's own tool has a few
-THROUGH = {"WIRE", "BOUNDS"}  # objects that are shown so are looked through
+MOST = 16  # surfaces along a ray that hide nothing: the plan's own tool has a few
+THROUGH = {"WIRE", "BOUNDS"}  # display types that are transparent
 
 
 def hider(context, view):
-    """A function of a place (3,) in mm, outside of its own surface: True where something hides it in the context's 3D
-    view, whose ViewRays is given. Rays start at the place and end at the eye: Blender's single precision is finer near
-    the surface than near an eye that is far away."""
+    """A function of a place (3,) in mm, outside its own surface: True if something hides it in the context's 3D view,
+    given its ViewRays. Rays start at the place and end at the eye: Blender's single precision is finer near the surface
+    than near a distant eye."""
     scene, space = context.scene, context.space_data
     if _looks_through(space):
         return lambda place: False
@@ -33,7 +33,7 @@ def _looks_through(space):
 
 
 def _meets(scene, graph, space, begin, way):
-    """Whether what hides lies on the way, all in Blender units."""
+    """Whether an occluder lies on the ray, all in Blender units."""
     left = float(np.linalg.norm(way))
     if not (np.isfinite(left) and left > 0):
         return False

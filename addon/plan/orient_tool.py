@@ -8,15 +8,15 @@ from .orientation_gizmo import RIFFLER_GGT_orientation
 
 
 class PlanTool(bpy.types.WorkSpaceTool):
-    """At the point of the plan that the frame is at."""
+    """Turns the tool at the plan's point of the current frame."""
 
     bl_space_type = "VIEW_3D"
     bl_context_mode = "OBJECT"
     bl_idname = current_pose.TOOL
     bl_label = "Orient"
     bl_description = (
-        "Turn the plan's tool by dials, by its end, or by a click in the map of free orientations. A click on a path "
-        "goes to that point. Ctrl: set a free key there"
+        "Turn the plan's tool by dials, by its end, or by a click in the map of free orientations; "
+        "click on a path to go to that point (Ctrl: set a free key there)"
     )
     bl_icon = str(ICONS / current_pose.TOOL)
     bl_cursor = "DEFAULT"

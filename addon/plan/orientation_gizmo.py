@@ -1,5 +1,5 @@
-"""Handles of the plan's tool where it stands: a dial for the inclination, one for the tilt, and the tool's end, which
-goes wherever it is pulled. They start operators, since only those can be undone."""
+"""Handles of the plan's tool: a dial for the inclination, one for the tilt, and the tool's end, which follows the
+pointer. They start operators, since only those can be undone."""
 
 import bpy
 import numpy as np
@@ -10,7 +10,7 @@ from ..common import glyphs
 from . import current_pose
 from .pure import tool_rotation
 
-# As Blender paints x and y: the tilt is about the path's x, the inclination about its y.
+# Blender's colours of x and y: the tilt is about the path's x, the inclination about its y.
 COLOURS = {
     tool_rotation.INCLINATION: ((0.35, 0.75, 0.2), (0.6, 1.0, 0.4)),
     tool_rotation.TILT: ((0.9, 0.25, 0.3), (1.0, 0.5, 0.5)),
@@ -68,7 +68,7 @@ class RIFFLER_GGT_orientation(bpy.types.GizmoGroup):
 
 
 def _matrix(place, axis):
-    """A dial's: its z is the axis."""
+    """A dial's matrix: its z is the axis."""
     first, second, axis = glyphs.frame(axis)
     return Matrix(np.vstack([np.column_stack([first, second, axis, place]), (0, 0, 0, 1)]).tolist())
 

@@ -1,4 +1,4 @@
-"""The map of free orientations in the corner of the 3D view while the plan tool is chosen, and how the tool stands."""
+"""The map of free orientations in the corner of the 3D view while the plan tool is active, and the tool's clearance."""
 
 import bpy
 import numpy as np
@@ -11,7 +11,7 @@ from .pure import orientation_map, tool_rotation
 CLASSES = ()
 CELL = 8.0  # pixels at a scale of 1
 LINE = 22.0  # pixels from one line of text to the next
-MARGIN = (24.0, 34.0)  # from the lower right corner, beside the sidebar
+MARGIN = (24.0, 34.0)  # from the lower right corner, next to the sidebar
 DARK, EDGE = (0.05, 0.05, 0.05, 0.65), (0.75, 0.75, 0.75, 0.9)
 TEXT, ALARM = (0.92, 0.92, 0.92, 1.0), (1.0, 0.5, 0.4, 1.0)
 NOW, BEST = (1.0, 1.0, 1.0, 1.0), (0.55, 0.95, 0.65, 0.9)
@@ -33,7 +33,7 @@ def corner(context, grid):
 
 
 def angles_at(context, at):
-    """(inclination, tilt) of the cell at pixels of the region, or None beside the map."""
+    """(inclination, tilt) of the cell at pixels of the region, or None outside the map."""
     spot = current_pose.seen(context) if current_pose.tool_active(context) else None
     if spot is None or context.area is None:
         return None
@@ -62,14 +62,15 @@ def _draw():
     grid = grid_of(known.map, zoom)
     place = corner(context, grid)
     angles = spot.line.lean(spot.index, current_pose.held if current_pose.held is not None else spot.axis)
-    state = "" if current_pose.held is not None else known.text  # while it is turned the header says how it stands
+    # while the tool is turned, the header shows its clearance
+    state = "" if current_pose.held is not None else known.text
     _back(grid, place, zoom, 2 if state else 1)
     _map(known, grid, place, spot, angles, zoom)
     _labels(known, state, grid, place, angles, zoom)
 
 
 def _back(grid, place, zoom, lines):
-    """So that the map and so many lines over it can be read on anything."""
+    """A background that makes the map and the lines of text above it readable."""
     import gpu
 
     width, height = grid.size
@@ -103,7 +104,7 @@ def _map(known, grid, place, spot, angles, zoom):
 
 
 def coloured(found, grid, old):
-    """Two triangles a cell, each cell in its colour."""
+    """Two triangles per cell, in the cell's colour."""
     colours = orientation_map.colours(found.state, found.clearance, old).reshape(-1, 4)
     return (
         "SMOOTH_COLOR",

@@ -1,8 +1,8 @@
-"""What there is around the plan's tool where it stands: whether it is free, and the map of free orientations.
+"""The surroundings of the plan's tool at its current pose: whether it is free, and the map of free orientations.
 
-Whoever draws asks, which costs nothing; what is missing then is looked for from a timer, the map in a native task. Of a
-point that was left the old map stays, and is said to be old, until the new one is there. Maps are of places, not of
-orientations: turning the tool makes none.
+Drawing asks for them, which costs nothing; missing results are computed from a timer, the map in a native task. After a
+change of point the old map stays, marked as old, until the new one is ready. A map belongs to a place, not to an
+orientation: turning the tool computes none.
 """
 
 from dataclasses import dataclass
@@ -15,13 +15,13 @@ from . import current_pose, obstacles, plan_store
 from .pure import tool_rotation
 
 CLASSES = ()
-PAUSE = 0.1  # s that the frame stands still, before a map is begun
-LOOK = 0.03  # s between two looks at a task
+PAUSE = 0.1  # s without a change of frame, before a map is begun
+LOOK = 0.03  # s between two polls of a task
 
 
 @dataclass
 class Known:
-    """`text`: how the tool stands, or what is missing; `map`: a riffler FreeOrientations, `old` where it is of another
+    """`text`: the tool's clearance, or what is missing; `map`: a riffler FreeOrientations, `old` if it is of another
     point."""
 
     text: str = ""
@@ -39,16 +39,16 @@ class _Wanted:
 
 
 _known = Known()
-_wanted = None  # _Wanted of whoever asked last
-_shown = _begun = None  # keys of the map that is shown, and of the one in the making
-_stood = None  # what `text` is about
+_wanted = None  # _Wanted of the last query
+_shown = _begun = None  # keys of the map that is shown, and of the one being computed
+_stood = None  # what `text` describes
 _task = None
-_asked = False  # since the timer last looked
-maps = 0  # that were computed, since the add-on runs
+_asked = False  # since the last call of the timer
+maps = 0  # maps computed since the add-on runs
 
 
 def ask(context, spot):
-    """Known about a turning.Spot, as far as it is by now."""
+    """Known of a current_pose.Spot, with the results computed so far."""
     global _wanted, _asked, _known
     wanted = _Wanted(context.scene.name, spot.ob.name, spot, _key(context.scene, spot.ob, spot))
     moved = _wanted is None or _wanted.key != wanted.key
@@ -60,7 +60,7 @@ def ask(context, spot):
 
 
 def _key(scene, ob, spot):
-    """What a map is of. An object that a spot was kept with may be gone: it is not asked."""
+    """The key of a spot's map. The spot's object may have been removed, so it is not accessed."""
     settings = scene.riffler.plan
     return (
         ob.name,
@@ -79,14 +79,14 @@ def _standing(wanted):
 
 
 def _look():
-    """A timer's."""
+    """Timer function."""
     global _asked, _stood
     scene = bpy.data.scenes.get(_wanted.scene)
     ob = scene.objects.get(_wanted.ob) if scene is not None else None
     if not plan_store.is_plan(ob):
         _stop()
         return None
-    if _asked:  # whoever scrubs waits for nothing
+    if _asked:  # scrubbing never waits
         _asked = False
         return PAUSE
     try:
@@ -113,7 +113,7 @@ def _stand(scene, near, wanted):
 
 
 def state(scene, near, spot, axis):
-    """plan.pure.clearance.State of the tool at a spot. ValueError where it cannot stand so."""
+    """plan.pure.clearance.State of the tool at a spot. ValueError if it cannot stand there."""
     pose = tool_rotation.stand(spot.line, spot.index, axis, spot.plan.tool)
     return near.state(
         spot.plan.tool, pose, spot.plan.tolerance or 0.01, scene_units.clean(scene.riffler.plan.clearance)
@@ -121,17 +121,17 @@ def state(scene, near, spot, axis):
 
 
 def free_orientations(scene, near, spot, start=riffler.plan.free_orientations):
-    """At a spot, with the plan's tolerance and the room beside shank and holder that the scene wants; `start`: may be
-    that of riffler.tasks."""
+    """Map at a spot, with the plan's tolerance and the scene's clearance of shank and holder; `start`: may be that of
+    riffler.tasks."""
     tool = riffler.plan.with_room(spot.plan.tool, scene_units.clean(scene.riffler.plan.clearance))
     return start(spot.line, spot.index, tool, near.collider, tolerance=spot.plan.tolerance or 0.01)
 
 
 def _map(scene, near, wanted):
-    """True while the map is in the making."""
+    """True while the map is being computed."""
     global _task, _begun, _shown, maps
     if _shown == wanted.key:
-        if _known.old:  # for a moment nobody knew whether something had changed
+        if _known.old:  # a change was suspected for a moment
             _known.old = False
             views.redraw()
         return False
@@ -151,7 +151,7 @@ def _map(scene, near, wanted):
 def _missing(text):
     global _shown, _stood
     _cancel()
-    _shown, _stood = _wanted.key, _standing(_wanted)  # not to be tried again before something is another
+    _shown, _stood = _wanted.key, _standing(_wanted)  # not tried again before something changes
     _known.text, _known.free, _known.map = text, False, None
     views.redraw()
 

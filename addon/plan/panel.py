@@ -1,5 +1,5 @@
-"""The plan's tab: part, fixtures, tool, settings, what is missing, and what has been found. Drawing reads properties,
-and what plan/operators/watch.py knows already."""
+"""The plan's tab: part, fixtures, tool, settings, missing input, and findings. Drawing reads properties, and the
+results that plan/operators/watch.py has already."""
 
 import math
 
@@ -15,7 +15,7 @@ from .current_pose import plan_object
 from .operators import change_tool, find, scene_unit, setup, watch
 from .pure import size_guess, tool_library
 
-PICTURE = 4.5  # lines that a tool's picture is high
+PICTURE = 4.5  # height of a tool's picture, in lines
 
 
 class Tab(Sidebar):
@@ -25,7 +25,7 @@ class Tab(Sidebar):
 
 
 class OfPlan(Tab):
-    """Mixin of those that are there where there is a plan."""
+    """Mixin of the panels that need a plan."""
 
     @classmethod
     def poll(cls, context):
@@ -79,7 +79,7 @@ class RIFFLER_PT_plan(Tab, bpy.types.Panel):
         p = ob.riffler.plan
         layout.label(text=ob.name, icon="CURVE_DATA", translate=False)
         own = watch.part_of(context.scene, ob)
-        part = own.name if own else "a part that is gone"
+        part = own.name if own else "a deleted part"
         count = f"Paths: {units.format_count(p.paths)}, {units.trim(p.length, 1)} mm"
         lines(layout, count, *wrapped(context, f"On {part} with {p.tool}"))
         verdict = watch.known(context, ob)
@@ -88,7 +88,7 @@ class RIFFLER_PT_plan(Tab, bpy.types.Panel):
         if verdict.part:
             lines(layout, *wrapped(context, f"{verdict.part}. Find the paths again."), icon="ERROR")
         if verdict.edited:
-            edits = f"Curves that were edited or are gone: {units.format_count(verdict.edited)}. The plan is as it was."
+            edits = f"Curves that were edited or are gone: {units.format_count(verdict.edited)}. The plan is unchanged."
             lines(layout, *wrapped(context, edits), icon="ERROR")
             layout.operator(find.RIFFLER_OT_plan_show.bl_idname, icon="FILE_REFRESH")
         if verdict.tool is not None and (note := fit_check.tool_note(context.scene.riffler.plan, verdict.tool)):
@@ -96,7 +96,7 @@ class RIFFLER_PT_plan(Tab, bpy.types.Panel):
             layout.operator(change_tool.RIFFLER_OT_plan_use_tool.bl_idname, icon="TOOL_SETTINGS")
 
     def _next(self, layout, context, ob):
-        """What is missing for a search, and what comes next."""
+        """The missing input of a search, or the next step."""
         settings = context.scene.riffler.plan
         if why := object_surfaces.unfit(settings.part, context.scene):
             lines(layout, *wrapped(context, f"{why}."), icon="INFO")
@@ -141,7 +141,7 @@ class RIFFLER_PT_plan_part(Tab, bpy.types.Panel):
             lines(layout, *wrapped(context, f"Stays clear of {', '.join(held)}"))
 
     def _size(self, layout, context, settings):
-        """How large the part is; where that is odd, which unit the scene's may be."""
+        """The part's size; if it is unusual, the units that would make it usual."""
         if object_surfaces.unfit(settings.part, context.scene):
             return
         size = object_surfaces.size(settings.part, context.scene)
@@ -156,7 +156,7 @@ class RIFFLER_PT_plan_part(Tab, bpy.types.Panel):
                 if unit == size_guess.likely(one):
                     text = f"{text}, {local('likely')}"
                 elif math.isclose(long, max(size), rel_tol=1e-6):
-                    text = f"{text}, {local('as it is')}"
+                    text = f"{text}, {local('unchanged')}"
                 op = column.operator(scene_unit.RIFFLER_OT_scene_unit.bl_idname, text=text, translate=False)
                 op.unit = unit
 
@@ -187,7 +187,7 @@ class RIFFLER_PT_plan_tool(Tab, bpy.types.Panel):
         row.operator(setup.RIFFLER_OT_plan_tool_save.bl_idname, text="Save…")
 
     def _sizes(self, layout, context, tool):
-        """A free profile has none."""
+        """The tool's sizes; a free profile has none."""
         if tool.kind not in presets.SIZES:
             lines(layout, f"Cutter: Ø {units.trim(tool.diameter)}, {units.trim(tool.length)} mm long")
             return

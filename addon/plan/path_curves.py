@@ -1,9 +1,9 @@
-"""What is seen of a plan: one curve object for each path, along the ball's centres. They are a picture of the plan that
-can be selected; edits to them change nothing.
+"""The display of a plan: one curve object for each path, along the ball's centres. They show the plan and can be
+selected; edits of them do not change it.
 
-The plan's Empty points to those that the add-on has made. A copy of one is in nobody's list and so belongs to whoever
-made it; where the Empty is copied with its curves, Blender lets the copy point to the copies. What somebody has named,
-or put to a use of their own, is theirs, too: drawing anew leaves it where it is.
+The plan's Empty points to the curves that the add-on has made. A copy of one is in no list, so it belongs to the user;
+if the Empty is copied with its curves, Blender lets the copy point to the copies. Curves that the user has renamed or
+used elsewhere belong to the user, too: redrawing leaves them unchanged.
 """
 
 import re
@@ -15,12 +15,14 @@ import numpy as np
 from . import plan_store
 
 _T = bpy.types
-_KEEPERS = (_T.Scene, _T.Collection, _T.Screen, _T.WorkSpace, _T.WindowManager)  # have what is seen, or show it
-_NUMBER = re.compile(r"\.\d{3,}$")  # what Blender appends to a name that is taken
+# types that contain or show visible objects
+_KEEPERS = (_T.Scene, _T.Collection, _T.Screen, _T.WorkSpace, _T.WindowManager)
+_NUMBER = re.compile(r"\.\d{3,}$")  # Blender's suffix for a name that is taken
 
 
 def show(ob, plan, mm_per_unit):
-    """Makes the plan's curves anew, as children of its Empty and beside it; returns what was left, as `hide` does."""
+    """Makes the plan's curves again, as children of its Empty and in its collections; returns what was left, as `hide`
+    does."""
     left = hide(ob)
     home = ob.users_collection[0]
     for k, path in enumerate(plan.paths):
@@ -40,7 +42,7 @@ def show(ob, plan, mm_per_unit):
 
 
 def hide(ob):
-    """Takes the curves away; returns the names of those that are a person's by now, which stay."""
+    """Removes the curves; returns the names of those that belong to the user by now, which stay."""
     lines = [(line.curve, line.name) for line in ob.riffler.plan.curves if _is_of(line.curve, ob)]
     used = _used([curve for curve, _ in lines])
     left = [curve for curve, name in lines if curve in used or _plain(curve.name) != _plain(name)]
@@ -59,15 +61,15 @@ def of(ob):
 
 
 def numbered(ob):
-    """The plan's curve objects by the number of their path, from 0; not those that were deleted, which stay in the file
-    as long as the plan points to them."""
+    """The plan's curve objects by the number of their path, from 0; without deleted ones, which stay in the file as
+    long as the plan points to them."""
     seen = {other for scene in bpy.data.scenes for other in scene.objects}
     lines = enumerate(line.curve for line in ob.riffler.plan.curves)
     return {k: curve for k, curve in lines if _is_of(curve, ob) and curve in seen}
 
 
 def _is_of(curve, ob):
-    """A copy of the Empty alone points to the curves of the other one."""
+    """False for curves of the original, to which a copy of the Empty alone points."""
     return curve is not None and curve.type == "CURVE" and curve.parent == ob
 
 
@@ -76,16 +78,16 @@ def _plain(name):
 
 
 def kept_note(names):
-    """What is said of those that `hide` has left."""
+    """A note on the curves that `hide` has left."""
     if not names:
         return ""
     shown = ", ".join(names[:3]) + (" …" if len(names) > 3 else "")
-    return f"Left as they are, since they were renamed or are in use: {shown}"
+    return f"Left unchanged, since they were renamed or are in use: {shown}"
 
 
 def _used(curves):
-    """Those of these objects that somebody has put to a use: in one more collection, by other data (children,
-    modifiers, constraints), by a setting of a scene, or with something added to them."""
+    """The objects that the user has used elsewhere: in one more collection, by other data (children, modifiers,
+    constraints), by a setting of a scene, or with something added to them."""
     if not curves:
         return set()
     homes = Counter(ob for collection in _collections() for ob in collection.objects)
@@ -93,7 +95,7 @@ def _used(curves):
     for curve, users in bpy.data.user_map(subset=curves).items():
         plans = sum(plan_store.is_plan(user) for user in users if isinstance(user, bpy.types.Object))
         others = [user for user in users if not isinstance(user, _KEEPERS)]
-        counted = curve.users - homes[curve] - plans  # by a setting, say
+        counted = curve.users - homes[curve] - plans  # for instance by a setting
         if homes[curve] > 1 or len(others) > plans or counted > 0 or _has_additions(curve):
             used.add(curve)
     return used
@@ -110,12 +112,12 @@ def _has_additions(curve):
 
 
 def name_of(k, path):
-    """The number is in front, so that lists have them in the plan's order."""
+    """The number comes first, so that lists have the plan's order."""
     return f"Path {k + 1}: {path.length:.1f} mm"
 
 
 def edited(ob, plan, mm_per_unit):
-    """How many of the paths are not shown as they are: their curve was edited, moved, or is gone."""
+    """The number of paths that are not shown unchanged: their curve was edited, moved, or removed."""
     right = set()
     for k, c in numbered(ob).items():
         if k < len(plan.paths) and _is_as_shown(c, plan.paths[k], mm_per_unit):

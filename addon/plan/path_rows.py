@@ -1,11 +1,12 @@
-"""A line for each path of a plan, for lists: its name, its length, how far it is, and whether it is on. The plan itself
-has which paths are off (riffler.plan.Plan.off); the lines follow it whenever it is written."""
+"""A row for each path of a plan, for lists: its name, length, state, and whether it is on. The plan itself stores which
+paths are off (riffler.plan.Plan.off); the rows are updated when it is written."""
 
 from collections import Counter
 
 
 def update(p, plan, free):
-    """Brings the lines of `p` (properties.RifflerPlanObject) to its plan; `free`: numbers of the paths that are."""
+    """Updates the rows of `p` (properties.RifflerPlanObject) from its plan; `free`: numbers of the collision-free
+    paths."""
     while len(p.rows) > len(plan.paths):
         p.rows.remove(len(p.rows) - 1)
     while len(p.rows) < len(plan.paths):

@@ -1,4 +1,4 @@
-"""Paths of a plan, one by one: switched on and off, and gone to."""
+"""Single paths of a plan: switched on or off, and gone to."""
 
 from dataclasses import replace
 
@@ -12,7 +12,7 @@ from . import path_curves, plan_states, plan_store, replan, timeline
 
 
 def follow(row):
-    """A line was switched on or off by hand: the plan goes with it."""
+    """A row was switched on or off by the user: updates the plan."""
     ob = row.id_data
     k = next(k for k, other in enumerate(ob.riffler.plan.rows) if other == row)
     plan = plan_store.plan(ob)
@@ -21,36 +21,36 @@ def follow(row):
 
 
 def switch(ob, numbers, on):
-    """Switches paths, by their numbers from 0, on or off. ValueError where the plan cannot be changed."""
+    """Switches paths, by their numbers from 0, on or off. ValueError if the plan cannot be changed."""
     off = plan_store.plan(ob).off
     switch_to(ob, off - set(numbers) if on else off | set(numbers))
 
 
 def switch_to(ob, off):
-    """Lets these paths be off, and no others."""
+    """Switches off these paths, and all others on."""
     plan = plan_store.plan(ob)
     if off == plan.off:
         return
     plan_store.write(ob, replace(plan, off=frozenset(off)))
     show(ob)
-    views.redraw()  # their lines have other colours now
+    views.redraw()  # the colours of their lines change
     plan_states.tell_followers()
     if timeline.pair(ob) is not None:
         replan.sync(bpy.context.scene, ob)
 
 
 def show(ob):
-    """Curves of paths that are off are not seen."""
+    """Hides the curves of paths that are off."""
     off = plan_store.plan(ob).off
     if off:
-        bpy.context.view_layer.update()  # curves that were made just now are not in it before
+        bpy.context.view_layer.update()  # it does not contain curves made just now
     for k, curve in path_curves.numbered(ob).items():
         if curve.name in bpy.context.view_layer.objects and curve.hide_get() != (k in off):
             curve.hide_set(k in off)
 
 
 def go(context, ob, k):
-    """Selects a path, shows the frame at which it begins, and brings it into the middle of the views."""
+    """Selects a path, shows the frame at which it begins, and centres the views on it."""
     if not 0 <= k < len(ob.riffler.plan.rows) or context.mode != "OBJECT":
         return
     plan = plan_store.plan(ob)

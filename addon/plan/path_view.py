@@ -1,5 +1,5 @@
-"""The active plan in the 3D view while the plan tool is chosen: where its paths touch the part, the normals there and
-the tool's axes; and the contact under the pointer, or beside the tool of a device that sculpts."""
+"""The active plan in the 3D view while the plan tool is active: the contacts of its paths on the part, the normals
+there and the tool's axes; and the contact under the pointer, or at the tool of a device that sculpts."""
 
 from dataclasses import dataclass
 
@@ -12,10 +12,10 @@ from ..pen import session as pen_session
 from . import current_pose, occlusion, plan_store
 
 CLASSES = ()
-NEAR = 24.0  # pixels from the pointer to a contact that it points at
-ASKED, APART = 48, 4.0  # contacts that are asked for whether they are hidden, and pixels between those of one path
-OFF = 0.02  # of the ball's radius: lines are that far out of the surface, to be seen
-NORMAL, AXIS = 0.5, 4.0  # of the ball's radius: how long they are drawn
+NEAR = 24.0  # pixels from the pointer to a contact under it
+ASKED, APART = 48, 4.0  # contacts tested for being hidden, and pixels between tested ones of one path
+OFF = 0.02  # share of the ball's radius: distance of lines from the surface, to be visible
+NORMAL, AXIS = 0.5, 4.0  # shares of the ball's radius: lengths of normals and axes
 COLOURS = {
     "CONTACTS": (0.15, 0.75, 0.95, 1.0),
     "NORMALS": (0.55, 0.85, 0.4, 0.8),
@@ -46,7 +46,7 @@ def normals(path):
 
 
 def axes(path, rows=None):
-    """At the points `rows`, by default all; none where the path has no orientations."""
+    """At the points `rows`, by default all; empty if the path has no orientations."""
     if not len(path.axes):
         return np.empty((0, 3))
     rows = np.arange(len(path)) if rows is None else np.asarray(rows, int)
@@ -73,7 +73,7 @@ def _draw():
         return
     try:
         plan = plan_store.plan(ob)
-    except ValueError:  # the panel says so
+    except ValueError:  # the panel shows the error
         return
     mm = scene_units.mm_per_unit(context.scene)
     signature = plan_store.identity(ob), mm
@@ -87,7 +87,7 @@ def _draw():
 # ------------------------------------------------------------------ the pointer
 @dataclass(frozen=True)
 class Found:
-    """A contact: numbers of path and point, which of the two it is, where, and the part's normal there."""
+    """A contact: numbers of path and point, which of the two sides, its place, and the part's normal there."""
 
     path: int
     index: int
@@ -96,14 +96,14 @@ class Found:
 
 
 def nearest(plan, view, at, reach=NEAR, hidden=None):
-    """The contact that is seen nearest to a pixel, or None where none is within `reach` of it. `hidden`: a function of
-    a place (3,), True where something stands before it. It is asked of few contacts, however many there are."""
+    """The visible contact nearest to a pixel, or None if none is within `reach` of it. `hidden`: a function of a place
+    (3,), True if something hides it. It is called for few contacts only."""
     origin, away = view.ray(*at)
     firsts = []
     for k, path in enumerate(plan.paths):
         found = path.nearest(origin, away)
         gap = float(np.hypot(*(view.project([found["point"]])[0] - at)))
-        if gap <= reach:  # never where it is not a number, behind whoever looks
+        if gap <= reach:  # false for NaN, behind the viewer
             firsts.append((gap, k, found["index"], found["side"]))
     firsts.sort()
     best, closest, left = None, reach, ASKED
@@ -127,13 +127,13 @@ def _found(k, path, index, side):
 
 
 def _over(path, index, side):
-    """Where a contact is drawn."""
+    """The place where a contact is drawn."""
     return path.contacts[index, side] + OFF * path.radius * path.normals[index, side]
 
 
 def _spread(path, view, at, reach):
-    """(gap, index, side) of a path's contacts within so many pixels, nearest first: of each few pixels along either
-    line one, as beside a hidden one its neighbours are most often hidden, too."""
+    """(gap, index, side) of a path's contacts within so many pixels, nearest first: one for each few pixels along
+    either line, since neighbours of a hidden contact are mostly hidden, too."""
     gaps = np.hypot(*(view.project(path.contacts.reshape(-1, 3)) - at).T)
     rows = np.flatnonzero(gaps <= reach)
     rows = rows[np.argsort(gaps[rows], kind="stable")]
@@ -156,7 +156,7 @@ def under(context, at):
 
 
 def beside(plan, place, reach):
-    """The contact nearest to a place (3,) in mm, or None where none is within `reach` mm of it."""
+    """The contact nearest to a place (3,) in mm, or None if none is within `reach` mm of it."""
     best, closest = None, reach
     for k, path in enumerate(plan.paths):
         gaps = np.linalg.norm(path.contacts - place, axis=2)
@@ -168,7 +168,7 @@ def beside(plan, place, reach):
 
 
 def at_tool(context):
-    """The contact of the active plan that a device's tool is at, within its diameter; None where no device sculpts."""
+    """The contact of the active plan at a device's tool, within its diameter; None without a device session."""
     session, ob = pen_session.running, current_pose.plan_object(context)
     if session is None or session.run.pose is None or ob is None:
         return None
@@ -190,7 +190,7 @@ def _draw_at_tool():
 
 
 def draw_cursor(context, tool, xy):
-    """Blender draws cursors over the finished view: following the pointer costs no new picture of the part."""
+    """Blender draws cursors over the finished view: following the pointer does not redraw the part."""
     region, space = context.region, context.region_data
     if region is None or space is None or current_pose.held is not None:
         return
@@ -205,7 +205,7 @@ def draw_cursor(context, tool, xy):
 
 
 def _mark(found, view, corner, at, zoom):
-    """A ring and a pin at a contact, and beside `at` which it is; pixels of the region, whose `corner` is given."""
+    """A ring and a pin at a contact, and its name next to `at`; pixels of the region, whose `corner` is given."""
     import gpu
 
     radius = 9 * zoom / view.pixels_per_unit(found.point)

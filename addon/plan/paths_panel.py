@@ -1,4 +1,4 @@
-"""The paths of the plan as a list: on or off, how far each is, how long; a click on one goes there."""
+"""The paths of the plan as a list: on or off, state, length; a click on one goes there."""
 
 import bpy
 

@@ -1,5 +1,5 @@
-"""What is known of the plans on the timeline while Blender runs. Nothing of it is in the file: it follows from the
-keyframes (plan/replan.py) and the scene."""
+"""State of the plans on the timeline while Blender runs. None of it is in the file: it follows from the keyframes
+(plan/replan.py) and the scene."""
 
 from dataclasses import dataclass, field
 
@@ -13,13 +13,13 @@ from .pure.resolved import Resolved
 
 @dataclass
 class Baked:
-    """What was computed of one path, and what for."""
+    """What was computed of one path, and from which input."""
 
     path: object
     cl: object
     ends: tuple
-    motion: motion.Motion  # as the program has it
-    played: motion.Played  # as the timeline has it
+    motion: motion.Motion  # as in the program
+    played: motion.Played  # as on the timeline
     difference: playback.Difference | None = None
 
     def of(self, path, cl, ends):
@@ -28,31 +28,31 @@ class Baked:
 
 @dataclass
 class State:
-    """Of one plan, by its object: what the panel says, and what need not be computed again."""
+    """The state of one plan, by its object: the panel's messages, and cached results."""
 
     problems: list = field(default_factory=list)
     difference: playback.Difference = field(default_factory=playback.Difference)
-    changes: dict = field(default_factory=dict)  # path → plan.pure.key_orientations.Change: what the last edit did
-    synced: int = 0  # how often plan and animation were brought up to date, since the add-on runs
+    changes: dict = field(default_factory=dict)  # path → plan.pure.key_orientations.Change: the effect of the last edit
+    synced: int = 0  # number of updates of plan and animation, since the add-on runs
     baked: int = 0  # paths whose motion was computed
     laid: int = 0  # paths that were laid out in time
     layout: key_orientations.Layout | None = None
-    seen: str = ""  # fingerprint of the keyframes
+    seen: str = ""  # fingerprint of the last seen keyframes
     motions: list = field(default_factory=list)  # Baked, one for each path
-    program: tuple = ((), None)  # the last that was made of it: program/programs.py
-    near: object = None  # plan.pure.clearance.Surroundings, once collisions were asked for
-    clearances: dict = field(default_factory=dict)  # of poses that were looked at, with those and that tool
-    resolved: Resolved = field(default_factory=Resolved)  # what paths had, for keys that come back
+    program: tuple = ((), None)  # the last program made of it: program/programs.py
+    near: object = None  # plan.pure.clearance.Surroundings, after the first collision check
+    clearances: dict = field(default_factory=dict)  # of checked poses, with those surroundings and that tool
+    resolved: Resolved = field(default_factory=Resolved)  # earlier cutter locations, for keys that come back
     tool: object = None
-    looks: int = 0  # clearances that were computed
+    looks: int = 0  # number of computed clearances
     colliding: list = field(default_factory=list)  # runs of frames
     job: object = None  # plan.pure.collisions.ClearanceJob
 
 
-followers = []  # functions that are called after a plan has changed
+followers = []  # functions called after a plan has changed
 
 _states = {}
-_known = (-1, ())  # how many objects there were, and the keys of the plans on the timeline
+_known = (-1, ())  # number of objects at the last search, and the keys of the plans on the timeline
 
 
 def state(plan_ob):
@@ -60,25 +60,25 @@ def state(plan_ob):
 
 
 def tell_followers():
-    """A plan has changed: what was made of it may be outdated."""
+    """A plan has changed: what was made from it may be outdated."""
     for follower in followers:
         follower()
 
 
 def forget():
-    """Another file, or the add-on goes."""
+    """Clears all state: another file was opened, or the add-on is unregistered."""
     _states.clear()
-    list_anew()
+    search_again()
 
 
-def list_anew():
-    """Names and numbers of objects may be others, as after an undo."""
+def search_again():
+    """Searches again: names and numbers of objects may have changed, as after an undo."""
     global _known
     _known = (-1, ())
 
 
 def on_timeline():
-    """All plans that are, in a scene. Objects are looked through only where there are more or fewer than before."""
+    """All plans on the timeline, in a scene. Objects are searched only if their number has changed."""
     global _known
     if len(bpy.data.objects) != _known[0] or any(_pair_of(key) is None for key in _known[1]):
         found = [sculpts.key_of(ob) for ob in bpy.data.objects if timeline.TOOL in ob and timeline.pair(ob)]
@@ -96,5 +96,5 @@ def scene_of(ob):
 
 
 def rendering():
-    """A render job reads what timers would change meanwhile."""
+    """A render job reads what timers would change."""
     return bpy.app.is_job_running("RENDER")

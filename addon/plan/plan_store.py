@@ -1,7 +1,7 @@
 """Plans inside the .blend. A plan is an Empty in a collection of its own; its JSON (riffler.plan.dumps) is in a packed
-image that the Empty points to, as the volume of a sculpt is.
+image that the Empty points to, as for the volume of a sculpt.
 
-A plan is in millimetres of the world: the Empty's place means nothing, and is locked.
+A plan is in millimetres of the world: the Empty's place has no meaning, and is locked.
 """
 
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ from ..sculpt import fit, sculpts
 from ..sculpt.pure import sculpt_payload
 from . import path_rows
 
-RESOLVED = "resolved"  # in a plan's provenance: the fingerprint of what its cutter locations are free of
+RESOLVED = "resolved"  # in a plan's provenance: the fingerprint of the obstacles that its cutter locations are free of
 
 
 @dataclass
@@ -25,9 +25,9 @@ class _Kept:
 
 
 _cache = ContentCache()
-_texts = {}  # name of a plan's object → riffler.plan.Texts: an edit of one path formats that one only
-_listed = {}  # name of a scene → how many objects there were, and its plans: (name, file that it is linked from)
-searches = 0  # through the objects of a scene, since the add-on runs
+_texts = {}  # name of a plan's object → riffler.plan.Texts: an edit of one path formats only that path again
+_listed = {}  # name of a scene → number of objects, and its plans: (name, file that it is linked from)
+searches = 0  # searches of a scene's objects, since the add-on runs
 
 
 def clear_cache():
@@ -42,7 +42,7 @@ def texts(ob):
 
 def new(context, plan, name="Riffler Plan"):
     """A new plan in the scene, active and the only one selected."""
-    block = riffler.plan.dumps(plan)  # what can fail comes before the first change
+    block = riffler.plan.dumps(plan)  # anything that can fail comes before the first change
     collection = bpy.data.collections.new(name)
     context.scene.collection.children.link(collection)
     ob = bpy.data.objects.new(name, None)
@@ -55,7 +55,7 @@ def new(context, plan, name="Riffler Plan"):
 
 
 def lock(ob):
-    """Against being moved by accident."""
+    """Locks the object against accidental moves."""
     ob.lock_location = ob.lock_rotation = ob.lock_scale = (True, True, True)
     ob.lock_rotation_w = True
     ob.hide_render = True
@@ -66,7 +66,7 @@ def is_plan(ob):
 
 
 def active(context):
-    """The plan that the active object is or belongs to, as its curves and its tool do; otherwise the only one of the
+    """The plan that the active object is or belongs to, as its curves and its tool do; otherwise the only plan of the
     scene; otherwise None."""
     ob = context.object
     while ob is not None:
@@ -78,8 +78,8 @@ def active(context):
 
 
 def in_scene(scene):
-    """The scene's plans. Everything that is drawn and every button asks: a scene's objects are looked through only
-    where there are more or fewer than before, or Blender has told of another place of one (`look_again`)."""
+    """The scene's plans. Every drawing and every button asks for them, so a scene's objects are searched only if their
+    number has changed, or Blender has reported that a plan has moved (`look_again`)."""
     global searches
     count, keys = _listed.get(scene.name, (-1, ()))
     found = [bpy.data.objects.get(key) for key in keys]
@@ -96,33 +96,33 @@ def look_again():
 
 
 def identity(ob):
-    """The content id, or "" where the object is no plan."""
+    """The content id, or "" if the object is not a plan."""
     return packed_images.identity(ob.riffler.plan.store) if is_plan(ob) else ""
 
 
 def plan(ob):
-    """The object's riffler.plan.Plan. It is shared: what changes it makes another one (dataclasses.replace). ValueError
-    where the data is not what was written."""
+    """The object's riffler.plan.Plan. It is shared: make changes on a copy (dataclasses.replace). ValueError if the
+    data is damaged."""
     key = identity(ob)
     if not key:
-        raise ValueError(f"{ob.name} is no plan")
+        raise ValueError(f"{ob.name} is not a plan")
     kept = _cache.get(key)
     if kept is None:
         block = packed_images.read(ob.riffler.plan.store, "the plan")
         if sculpt_payload.content_id(block) != key:
-            raise ValueError(f"{ob.name}: the plan's data in this .blend is damaged: its checksum is another one")
+            raise ValueError(f"{ob.name}: the plan's data in this .blend is damaged: its checksum does not match")
         kept = _Kept(riffler.plan.loads(block, ob.name), len(block))
         _cache.put(key, kept)
     return kept.plan
 
 
 def wanted(plan):
-    """Numbers, from 0, of the paths that are to be cut: those that are on and have an orientation."""
+    """Numbers, from 0, of the paths to cut: those that are on and have an orientation."""
     return [k for k, path in enumerate(plan.paths) if len(path.axes) and k not in plan.off]
 
 
 def refuse_turning(plan, path):
-    """ValueError where the poses of a path, by its number from 0, are what is to be cut: keys would change them."""
+    """ValueError if the path, by its number from 0, has fixed poses, which keys would change."""
     if path in plan.depths:
         raise ValueError(
             f"Path {path + 1} has its orientations from its strategy, not from keys: find it again with another "
@@ -131,25 +131,25 @@ def refuse_turning(plan, path):
 
 
 def free(plan):
-    """Numbers, from 0, of the paths with cutter locations that are free all the way."""
+    """Numbers, from 0, of the paths whose cutter locations are all collision-free."""
     return {k for k, rows in enumerate(plan.cl) if rows is not None and len(rows)}
 
 
 def unresolved(plan):
-    """Numbers, from 0, of the paths that are to be cut without cutter locations that are free all the way."""
+    """Numbers, from 0, of the paths to cut without cutter locations that are all collision-free."""
     done = free(plan)
     return [k for k in wanted(plan) if k not in done]
 
 
 def refresh_rows(ob):
-    """After what was found on the paths has changed."""
+    """Call after findings of the paths have changed."""
     now = plan(ob)
     path_rows.update(ob.riffler.plan, now, free(now))
 
 
 def write(ob, plan):
-    """Makes `plan` the object's content. It must not be changed after it."""
-    if why := refusals.linked(ob):  # the file would have the library's plan again
+    """Makes `plan` the object's content. It must not be changed afterwards."""
+    if why := refusals.linked(ob):  # the file would load the library's plan again
         raise ValueError(why)
     _write(ob, plan, riffler.plan.dumps(plan, texts(ob)))
 
@@ -168,7 +168,7 @@ def _write(ob, plan, block):
 
 
 def _shared(ob):
-    """True where a copy of the object has the same image."""
+    """True if a copy of the object has the same image."""
     image = ob.riffler.plan.store
     return any(other != ob and other.riffler.plan.store == image for other in bpy.data.objects)
 
@@ -185,7 +185,7 @@ def _on_history(*_):
 
 @bpy.app.handlers.persistent
 def _on_update(scene, depsgraph):
-    """Objects that go to another scene are no more and no fewer."""
+    """An object that moves to another scene does not change the number of objects."""
     if depsgraph.id_type_updated("COLLECTION") or depsgraph.id_type_updated("SCENE"):
         look_again()
 

@@ -1,4 +1,4 @@
-"""What a plan is made for, with what, and how; and what a plan's objects keep."""
+"""A plan's settings: part, tool, machine; and the data on a plan's objects."""
 
 import json
 
@@ -22,19 +22,19 @@ from .machines import MACHINES
 
 SHOWN = (
     ("CONTACTS", "Contacts", "Where the cutter touches the part, on both sides of each path", 1),
-    ("NORMALS", "Normals", "Of the part at the contacts", 2),
-    ("AXES", "Axes", "Of the tool along each path; those of keys stand out", 4),
+    ("NORMALS", "Normals", "Normals of the part at the contacts", 2),
+    ("AXES", "Axes", "Axes of the tool along each path; those of keys are highlighted", 4),
 )
 
 
 LEAVE = (
-    ("CLEAR", "What Is Clear", "Along the tool's axis where that is clear, otherwise another way"),
+    ("CLEAR", "Clear Direction", "Along the tool axis where that is clear, otherwise in another direction"),
     ("UP", "Up", "Along the scene's z"),
 )
 
 
 class FindSettings:
-    """Shared by the panel's settings and the operator: the strategy, and the parameters of all of them."""
+    """Shared by the panel's settings and the operator: the strategy, and the parameters of all strategies."""
 
     __annotations__ = strategy_fields.FIELDS
 
@@ -46,7 +46,7 @@ def _named(settings, context):
 
 
 class RifflerPlan(FindSettings, bpy.types.PropertyGroup):
-    """On a scene. The tool is kept whole, so that a plan can be made anew where its file is gone."""
+    """On a scene. The tool is stored whole, so that a plan can be made again without the tool's file."""
 
     part: PointerProperty(
         name="Part",
@@ -54,15 +54,15 @@ class RifflerPlan(FindSettings, bpy.types.PropertyGroup):
         poll=lambda _, ob: ob.type in WITH_SURFACE,
         description="The finished part, as it lies in the scene",
     )
-    sized: StringProperty(description="Which part, in which unit, was said to have the right size")
+    sized: StringProperty(description="Part, and its unit, whose size was confirmed")
     fixtures: PointerProperty(
         name="Fixtures",
         type=bpy.types.Collection,
-        description="Vises, clamps and whatever else the tool must stay clear of",
+        description="Vises, clamps and other objects that the tool must stay clear of",
     )
     tool: StringProperty(name="Tool", description="Cutter, shank and holder as JSON", default="")
     source: StringProperty(name="From", description="The file that the tool was taken from; empty: the presets")
-    clearance: length("Clearance", 0.0, "That shank and holder keep from part and fixtures, in mm")
+    clearance: length("Clearance", 0.0, "Distance that shank and holder keep from part and fixtures, in mm")
     plane: length(
         "Clearance Plane",
         0.0,
@@ -75,7 +75,7 @@ class RifflerPlan(FindSettings, bpy.types.PropertyGroup):
         name="Leave",
         items=LEAVE,
         default="CLEAR",
-        description="Which way the tool leaves a cut, and comes to it",
+        description="Direction in which the tool leaves and approaches a cut",
     )
     lead_in: length(
         "Lead-In", 0.0, "mm before a cut that are fed, with air above them; 0: all the way from the clearance plane"
@@ -87,10 +87,10 @@ class RifflerPlan(FindSettings, bpy.types.PropertyGroup):
         items=SHOWN,
         options={"ENUM_FLAG"},
         default={"CONTACTS", "AXES"},
-        description="What is drawn of the active plan while the Orient tool is chosen",
+        description="What to draw of the active plan while the Orient tool is active",
     )
     draw_paths: BoolProperty(
-        name="Draw Paths", default=True, description="Thick lines, coloured by what the tool does along them"
+        name="Draw Paths", default=True, description="Draw thick lines, coloured by the tool's movement along them"
     )
     frame_names: BoolProperty(
         name="Path Names",
@@ -98,10 +98,12 @@ class RifflerPlan(FindSettings, bpy.types.PropertyGroup):
         update=_named,
         description="Markers on the timeline where each path begins",
     )
-    post: EnumProperty(name="Machine", items=MACHINES, default="tcp", description="That the NC code is written for")
+    post: EnumProperty(
+        name="Machine", items=MACHINES, default="tcp", description="Machine that the NC code is written for"
+    )
 
     def tool_dict(self):
-        """The form of riffler.Tool.to_dict. ValueError where the text is none."""
+        """The tool in the form of riffler.Tool.to_dict. ValueError if the text is invalid."""
         if not self.tool:
             return presets.preset(presets.presets()[0]["name"])
         return json_object.loads(self.tool, "the plan's tool (take one from a library)")
@@ -112,11 +114,11 @@ class RifflerPlan(FindSettings, bpy.types.PropertyGroup):
 
 
 class RifflerFinding(bpy.types.PropertyGroup):
-    """One line of a list. `path` and `point`: of the plan, from 0; -1: it is about a program's row. `place`: mm of the
-    scene."""
+    """One row of a list. `path` and `point`: of the plan, from 0; -1: the finding belongs to a program's row. `place`:
+    mm of the scene."""
 
     name: StringProperty()
-    title: StringProperty(description="What a list shows: kind, size and place first; empty: the name")
+    title: StringProperty(description="Text of the list's row, with kind, size and place first; empty: the name")
     kind: StringProperty()
     path: IntProperty(default=-1)
     point: IntProperty(default=-1)
@@ -127,16 +129,16 @@ class RifflerFinding(bpy.types.PropertyGroup):
 
 
 STATES = (
-    ("free", "Free", "Resolved: the tool is clear of part and fixtures all along it"),
-    ("blocked", "Blocked", "The tool collides somewhere: turn its keys, or switch it off"),
-    ("keyed", "To Resolve", "It was not resolved since it was found or turned"),
-    ("unplanned", "No Keys", "It has no key orientation"),
-    ("off", "Off", "It is left out: neither resolved nor written"),
+    ("free", "Free", "Resolved: the tool is clear of part and fixtures along the whole path"),
+    ("blocked", "Blocked", "The tool collides somewhere on the path: turn its keys, or switch the path off"),
+    ("keyed", "To Resolve", "The path has not been resolved since it was found or turned"),
+    ("unplanned", "No Keys", "The path has no key orientation"),
+    ("off", "Off", "The path is off: it is neither resolved nor written"),
 )
 
 
 def _switched(row, context):
-    """A box in the list: what is written to it here, by the add-on, is what the plan has already."""
+    """Called for a box in the list; a value written by the add-on equals the plan's already."""
     from . import path_switches
 
     path_switches.follow(row)
@@ -149,42 +151,44 @@ def _chosen(p, context):
 
 
 class RifflerPathRow(bpy.types.PropertyGroup):
-    """What a list shows of a path."""
+    """A list's row for a path."""
 
     name: StringProperty()
     length: FloatProperty(description="mm")
     state: EnumProperty(items=STATES, default="unplanned")
     on: BoolProperty(
-        name="On", default=True, update=_switched, description="A path that is off is neither resolved nor written"
+        name="On", default=True, update=_switched, description="Paths that are off are neither resolved nor written"
     )
 
 
 class RifflerPathCurve(bpy.types.PropertyGroup):
-    """The curve object of one path, and the name that it was given."""
+    """The curve object of one path, and the name it was given."""
 
     name: StringProperty()
     curve: PointerProperty(type=bpy.types.Object)
 
 
 class RifflerPlanObject(bpy.types.PropertyGroup):
-    """On a plan's Empty: where the plan is, what a panel shows without reading it, and what shows its paths, in their
-    order (plan/path_curves.py)."""
+    """On a plan's Empty: the plan's image, the panel's facts, and the objects that show its paths, in order
+    (plan/path_curves.py)."""
 
     store: PointerProperty(type=bpy.types.Image)
     part: PointerProperty(type=bpy.types.Object)
     paths: IntProperty()
     length: FloatProperty()
     keyed: IntProperty()
-    resolved: IntProperty(default=-1)  # of those with keys; -1: in a file from before it was counted
+    resolved: IntProperty(default=-1)  # of the paths with keys; -1 in a file from before it was counted
     tool: StringProperty()
     curves: CollectionProperty(type=RifflerPathCurve)
-    rows: CollectionProperty(type=RifflerPathRow, description="Its paths, in their order")
-    row: IntProperty(name="Path", default=-1, update=_chosen, description="The one that is chosen in the list, from 0")
-    findings: CollectionProperty(type=RifflerFinding, description="What resolving the paths has changed, and what not")
-    index: IntProperty(name="Finding", default=-1, description="The one that is chosen in the list, from 0")
+    rows: CollectionProperty(type=RifflerPathRow, description="The plan's paths, in order")
+    row: IntProperty(name="Path", default=-1, update=_chosen, description="Selected finding in the list, from 0")
+    findings: CollectionProperty(
+        type=RifflerFinding, description="What resolving the paths changed, and what it could not"
+    )
+    index: IntProperty(name="Finding", default=-1, description="Selected finding in the list, from 0")
 
     def forget(self, paths):
-        """What was found on paths, by their numbers from 0, that are others now."""
+        """Removes findings of paths, by their numbers from 0, that have changed."""
         for k in reversed(range(len(self.findings))):
             if self.findings[k].path in paths:
                 self.findings.remove(k)

@@ -1,12 +1,12 @@
-"""The timeline's keyframes become the plan's key orientations, and the plan becomes the animation again.
+"""Turns the timeline's keyframes into the plan's key orientations, and the plan into the animation.
 
-The keyframes are what counts: the plan's keys and the animation follow from them, whoever has changed them and in
-which way, Blender's own tools, a script, undo or a file that was opened. Nothing here is an undo step: what follows
-from an edit goes with that edit, and after an undo it is made again from the keyframes that came back, cutter locations
-from memory. So one Ctrl Z takes back a key and what it did.
+The keyframes are the source: the plan's keys and the animation follow from them after every change, by Blender's own
+tools, a script, undo or a file that was opened. Nothing here is an undo step: the consequences of an edit belong to
+that edit, and after an undo they are computed again from the restored keyframes, cutter locations from memory. So one
+Ctrl Z undoes a key and its consequences.
 
-In a window this happens when nothing has changed for a tenth of a second; without one timers never run, and it happens
-at once.
+In a window this happens when nothing has changed for a tenth of a second; without a window timers never run, and it
+happens at once.
 """
 
 from dataclasses import replace
@@ -30,17 +30,17 @@ ERRORS = (ValueError, OSError, RuntimeError)
 
 # ------------------------------------------------------------------ keyframes → plan → animation
 def geometry(plan):
-    """What the keyframes' places were laid out for."""
+    """What the keyframes' frames were computed from."""
     return key_orientations.fingerprint(*(a for p in plan.paths for a in (p.centres, np.array([p.closed]))))
 
 
 def fits(plan_ob, plan):
-    """True where the plan has the paths that it was laid out with."""
+    """True if the plan has the paths that it was laid out with."""
     return geometry(plan) == timeline.pair(plan_ob)[0][timeline.PATHS]
 
 
 def layout_of(plan_ob, plan):
-    """Of a plan on the timeline; kept, as it is asked for whenever the view is drawn."""
+    """Layout of a plan on the timeline; cached, since every drawing of the view asks for it."""
     now, (tool, _) = state(plan_ob), timeline.pair(plan_ob)
     rate, first, known = tool[timeline.RATE], tool[timeline.FIRST], now.layout
     if known is None or not known.of(plan.paths, rate, first):
@@ -50,13 +50,13 @@ def layout_of(plan_ob, plan):
 
 
 def sync(scene, plan_ob):
-    """Brings plan and animation to what the keyframes say; cheap where they already are. Problems go into the plan's
-    state; a path with one stays as it was."""
+    """Updates plan and animation from the keyframes; cheap if they are up to date. Problems go into the plan's state; a
+    path with one stays unchanged."""
     now, (tool, ghost) = state(plan_ob), timeline.pair(plan_ob)
     now.problems, now.changes = [], {}
     now.synced += 1
     if plan_ob.library or tool.library or ghost.library:
-        return  # another file's
+        return  # it belongs to another file
     try:
         plan = plan_store.plan(plan_ob)
         if not fits(plan_ob, plan):
@@ -75,7 +75,7 @@ def _take_keys(plan_ob, plan, tool, now):
     frames, quats = timeline.read_keys(tool)
     now.seen = key_orientations.fingerprint(frames, quats)
     if tool.animation_data and tool.animation_data.nla_tracks:
-        now.problems.append("The tool's keyframes are in the NLA: they change the plan only as its action")
+        now.problems.append("The tool's keyframes are in the NLA: only those of its active action change the plan")
         return plan
     if tool.rotation_mode != "QUATERNION":
         now.problems.append(f"{tool.name}: set its rotation mode back to Quaternion; other keyframes do not count")
@@ -102,7 +102,7 @@ def _take_keys(plan_ob, plan, tool, now):
 
 
 def _nothing_plays(scene, plan_ob):
-    """What is seen on the timeline is of paths that are no more: nothing is said of it, and no frame of it marked."""
+    """The timeline shows paths that no longer exist: clears the messages and the marked frames."""
     now = state(plan_ob)
     now.motions, now.difference = [], playback.Difference()
     name_paths(scene)
@@ -117,7 +117,7 @@ def _oriented(path, wanted):
 
 
 def bake(scene, plan_ob, plan):
-    """Brings the animation to the plan; only paths that are others than before are computed."""
+    """Updates the animation from the plan; only changed paths are computed."""
     now, layout = state(plan_ob), layout_of(plan_ob, plan)
     tool, ghost = timeline.pair(plan_ob)
     if now.tool is not plan.tool:
@@ -149,7 +149,7 @@ def bake(scene, plan_ob, plan):
 
 
 def name_paths(scene):
-    """Markers of the paths of all plans that the scene plays."""
+    """Sets markers for the paths of all plans that the scene plays."""
     wanted, plans = [], [p for p in on_timeline() if scene.objects.get(p.name) == p]
     for plan_ob in plans if scene.riffler.plan.frame_names else ():
         plan = plan_store.plan(plan_ob)
@@ -162,15 +162,15 @@ def name_paths(scene):
 
 
 def _unname():
-    """Of scenes whose plans are gone."""
+    """Removes markers of scenes whose plans are gone."""
     for scene in bpy.data.scenes:
         if not any(scene.objects.get(p.name) == p for p in on_timeline()):
             timeline.name_paths(scene, [])
 
 
 def _motion(path, rows, track, tool, kept):
-    """Of a path without keys, along the middle between its contacts; there is no program of that. `kept`: its poses are
-    what is to be cut."""
+    """Motion of a path without keys, along the middle between its contacts, which has no program. `kept`: its poses are
+    fixed."""
     if kept:
         return motion.along(track, riffler.plan.poses_of(path), np.arange(len(path)), rows)
     shown = path if len(path.axes) else path.with_axes(path.frames[:, 2])
@@ -182,7 +182,7 @@ def _motion(path, rows, track, tool, kept):
 
 # ------------------------------------------------------------------ what Blender tells
 def flush():
-    """All that is to follow from the keyframes follows now."""
+    """Makes all pending updates from the keyframes now."""
     handlers.stop(_due)
     for plan_ob in on_timeline():
         sync(scene_of(plan_ob), plan_ob)
@@ -190,7 +190,7 @@ def flush():
 
 
 def _due():
-    """A timer's."""
+    """Timer function."""
     if rendering():
         return WAIT
     for plan_ob in on_timeline():
@@ -208,7 +208,7 @@ def _soon():
 
 
 def _later(function):
-    """In PAUSE, counted from the last time that it was asked for."""
+    """Schedules an update in PAUSE, counted from the last request."""
     handlers.stop(function)
     bpy.app.timers.register(function, first_interval=PAUSE)
 
@@ -222,7 +222,7 @@ def _on_update(scene, depsgraph):
         if any(path_names.is_name(m.name) for m in scene.timeline_markers):
             _soon()
         return
-    if not all(state(p).synced for p in plans):  # of another name now, or appended
+    if not all(state(p).synced for p in plans):  # renamed, or appended
         _soon()
         return
     ids = [u.id.original for u in depsgraph.updates]
@@ -237,8 +237,8 @@ def _on_update(scene, depsgraph):
 
 
 def _look_later(plans):
-    """Collisions were asked for, and something may be elsewhere now. A script, which has no timers, asks by itself:
-    fixtures that it moves one by one are not to be looked at each time."""
+    """Schedules a collision check after something may have moved. Scripts, which have no timers, ask explicitly:
+    fixtures that a script moves one by one are not checked each time."""
     if bpy.app.background:
         return
     if any(collision_marks.outdated(p) for p in plans):
@@ -246,17 +246,17 @@ def _look_later(plans):
 
 
 def _changed(plans):
-    """True where keyframes are not those that were seen last."""
+    """True if the keyframes differ from those seen last."""
     tools = [(state(p), timeline.pair(p)[0]) for p in plans]
     return any(now.seen != key_orientations.fingerprint(*timeline.read_keys(tool)) for now, tool in tools)
 
 
 @bpy.app.handlers.persistent
 def _on_frame(scene, depsgraph=None):
-    """A turn that was not keyed is gone with its frame, as ever in Blender. What is written to an animated property
-    here is overwritten in the same moment, so the tool is made ready for the next turn by a timer."""
+    """After a change of frame, a turn without a key is lost, as everywhere in Blender. A value written to an animated
+    property here is overwritten at once, so a timer prepares the tool for the next turn."""
     if depsgraph is not None and depsgraph.mode != "VIEWPORT":
-        return  # a render's copy: nobody turns a tool in it
+        return  # a render's copy, in which the user does not turn the tool
     plans = on_timeline()
     for plan_ob in plans:
         timeline.hold(timeline.pair(plan_ob)[0])
@@ -265,7 +265,7 @@ def _on_frame(scene, depsgraph=None):
 
 
 def _settle_all():
-    """A timer's."""
+    """Timer function."""
     if rendering():
         return WAIT
     for plan_ob in on_timeline():
@@ -275,8 +275,8 @@ def _settle_all():
 
 @bpy.app.handlers.persistent
 def _on_history(*_):
-    """After undo and redo; names and numbers of objects may be others."""
-    plan_states.list_anew()
+    """After undo and redo; names and numbers of objects may have changed."""
+    plan_states.search_again()
     if on_timeline():
         _soon()
 

@@ -1,5 +1,4 @@
-"""The strategies as fields: one choice, and what each is set to, made from the table that riffler has
-(riffler.plan.STRATEGIES)."""
+"""The strategies as fields: one choice, and their parameters, made from riffler's table (riffler.plan.STRATEGIES)."""
 
 from bpy.props import EnumProperty, IntProperty
 from riffler.plan import STRATEGIES
@@ -7,7 +6,8 @@ from riffler.plan import STRATEGIES
 from ..blender.fields import angle, length, stored_number
 from ..common import units
 
-FIRST = next(iter(STRATEGIES))  # its fields have no name in front: scripts and files have them since before the others
+# its fields have no prefix: scripts and files used them before there were other strategies
+FIRST = next(iter(STRATEGIES))
 
 
 def _entries(choices):

@@ -1,12 +1,13 @@
-"""A plan on Blender's timeline: the tool with its keyframes, and what moves it.
+"""A plan on Blender's timeline: the tool with its keyframes, and the motion that drives it.
 
 **Riffler Tool** is the cutter with shank and holder; the keyframes of its rotation are the plan's key orientations.
-**Riffler Motion**, an Empty that nobody sees, has the whole way as an animation; the tool copies its place and its
-orientation from it, so playing, scrubbing and rendering need nothing of the add-on.
+**Riffler Motion**, an invisible Empty, has the whole motion as an animation; the tool copies its location and rotation
+from it, so playing, scrubbing and rendering work without the add-on.
 
 The plan's Empty points to both, and both back to it, by custom properties: those survive every version, renaming and
-undo, and copies of all three point to each other. A copy of the tool alone belongs to nobody. The motion cannot be
-selected, so a copy of the Empty points to the original's, with which it has nothing to do: it is not on the timeline.
+undo, and copies of all three point to each other. A copy of the tool alone belongs to no plan. The motion cannot be
+selected, so a copy of the Empty points to the original's motion, which does not belong to it: that copy is not on the
+timeline.
 """
 
 import math
@@ -19,19 +20,19 @@ from ..common import quaternions, tool_solid
 from .pure import collisions, path_names
 
 TOOL, MOTION, PLAN = "riffler_tool", "riffler_motion", "riffler_plan"
-# Of the tool: how time is laid out, and for which paths.
+# On the tool: the layout in time, and its paths.
 RATE, FIRST, PATHS = "riffler_frames_per_mm", "riffler_first_frame", "riffler_paths"
 ROTATION, LOCATION = "rotation_quaternion", "location"
-UNIT = "riffler_mm_per_unit"  # of the tool: the scene's, when it was made
-# The tool's constraints: they let go of it while somebody turns it, the place only where the add-on does.
+UNIT = "riffler_mm_per_unit"  # on the tool: the scene's value when it was made
+# The tool's constraints: switched off while the user turns it, the location only by the add-on.
 PLACE, TURN = "Riffler: place", "Riffler: orientation"
 CONSTANT, LINEAR = 0, 1
 SCALED = 1e-4
-TURNED = 1e-5  # of a quaternion's components: what single precision does not do by itself
+TURNED = 1e-5  # difference of a quaternion's components above the error of single precision
 
 
 def pair(plan_ob):
-    """The tool and the motion of a plan that is on the timeline, otherwise None."""
+    """The tool and the motion of a plan on the timeline, otherwise None."""
     tool, ghost = plan_ob.get(TOOL), plan_ob.get(MOTION)
     if not (_is_of(tool, plan_ob) and _is_of(ghost, plan_ob)) or RATE not in tool:
         return None
@@ -39,7 +40,7 @@ def pair(plan_ob):
 
 
 def _is_of(ob, plan_ob):
-    """False for what a copy of a plan still points to, and the original has."""
+    """False for objects of the original that a copy of a plan still points to."""
     return ob is not None and ob.get(PLAN) == plan_ob
 
 
@@ -51,27 +52,27 @@ def plan_of(ob):
 
 
 def placed(ob):
-    """True where the object is in a scene: one that was deleted stays in the file as long as its plan points to it."""
+    """True if the object is in a scene: a deleted one stays in the file as long as its plan points to it."""
     named = [scene.objects.get(ob.name) for scene in bpy.data.scenes]
     if ob in named or not any(named):
         return ob in named
-    return any(ob in scene.objects[:] for scene in bpy.data.scenes)  # a linked one of that name is before it
+    return any(ob in scene.objects[:] for scene in bpy.data.scenes)  # a linked one of that name comes first
 
 
 def faults(tool, scene):
-    """What keeps a plan's tool from being seen as it is, with the remedy."""
+    """Why a plan's tool is not displayed correctly, with the remedy."""
     if not placed(tool):
         return [f"{tool.name} was deleted: use Plan to Timeline to have it again"]
     if max(abs(size - 1) for size in tool.matrix_world.to_scale()) > SCALED:
-        return [f"{tool.name} is scaled, and is not as large as it is shown: use Object > Clear > Scale"]
+        return [f"{tool.name} is scaled, so its displayed size is wrong: use Object > Clear > Scale"]
     mm = scene_units.mm_per_unit(scene)
     if tool.get(UNIT, mm) != mm:
-        return [f"The scene's unit has changed: use Plan to Timeline, so that {tool.name} is seen as it is"]
+        return [f"The scene's unit has changed: use Plan to Timeline, so that {tool.name} has its real size"]
     return []
 
 
 def make(context, plan_ob, tool):
-    """The objects of a plan with a riffler.Tool, made where they are missing, the tool's shape in any case."""
+    """Makes the missing objects of a plan with a riffler.Tool, and updates the tool's shape in any case."""
     home = plan_ob.users_collection[0] if plan_ob.users_collection else context.collection
     ghost, shown = plan_ob.get(MOTION), plan_ob.get(TOOL)
     if not _is_of(ghost, plan_ob):
@@ -81,7 +82,7 @@ def make(context, plan_ob, tool):
         shown.parent = plan_ob
         shown.data.materials.append(_material())
     for ob in (shown, ghost):
-        if not ob.users_collection:  # new, or deleted: the plan keeps what it refers to
+        if not ob.users_collection:  # new, or deleted: the plan keeps objects it refers to
             home.objects.link(ob)
     shown.lock_scale = (True, True, True)
     shown.rotation_mode = ghost.rotation_mode = "QUATERNION"
@@ -101,7 +102,7 @@ def _empty():
 
 
 def _material():
-    """Orange, so that it is told from the part; one for all tools."""
+    """Orange, in contrast to the part; one for all tools."""
     found = bpy.data.materials.get(("Riffler Tool", None))
     if found is None:
         found = bpy.data.materials.new("Riffler Tool")
@@ -110,7 +111,7 @@ def _material():
 
 
 def _follow(tool, ghost):
-    """Place and orientation apart: while somebody turns the tool it stays on its path."""
+    """Location and rotation separately: while the user turns the tool it stays on its path."""
     for kind, name in (("COPY_LOCATION", PLACE), ("COPY_ROTATION", TURN)):
         constraint = tool.constraints.get(name) or tool.constraints.new(kind)
         constraint.name, constraint.target = name, ghost
@@ -118,7 +119,7 @@ def _follow(tool, ghost):
 
 # ------------------------------------------------------------------ the scene's frames
 def _remapped(scene):
-    """How many frames of the scene one of the animation is (Time Stretching); frame_current_final is of the latter."""
+    """Frames of the scene per frame of the animation (Time Stretching); frame_current_final is of the latter."""
     return scene.render.frame_map_new / scene.render.frame_map_old
 
 
@@ -129,15 +130,15 @@ def go_to(scene, frame):
 
 
 def show_range(scene, first, last):
-    """Lets the scene play these frames of the animation, too."""
+    """Makes the scene play these frames of the animation, too."""
     scene.frame_start = min(scene.frame_start, max(0, math.floor(first * _remapped(scene))))
     scene.frame_end = max(scene.frame_end, math.ceil(last * _remapped(scene)))
 
 
 # ------------------------------------------------------------------ keyframes of the tool
 def read_keys(tool):
-    """Frames (k,) and quaternions (k, 4) of all keyframes of the tool's rotation; a component without a curve is what
-    the property is, as Blender plays it."""
+    """Frames (k,) and quaternions (k, 4) of all keyframes of the tool's rotation; a component without a curve has the
+    property's value, as Blender plays it."""
     curves = [_find(tool, ROTATION, i) for i in range(4)]
     frames = np.unique(np.concatenate([np.round(_points(c)[:, 0], 4) for c in curves if c] or [np.empty(0)]))
     values = tool.rotation_quaternion
@@ -155,11 +156,11 @@ def write_keys(tool, frames, quats):
 
 # ------------------------------------------------------------------ the animation
 def bake(ghost, frames, tips, quats, ends, mm_per_unit):
-    """Writes the animation, tips in mm; True where it was another one."""
+    """Writes the animation, tips in mm; True if it has changed."""
     rows = {(LOCATION, i): tips[:, i] / mm_per_unit for i in range(3)}
     rows.update({(ROTATION, i): quats[:, i] for i in range(4)})
     kinds = np.full(len(frames), LINEAR, np.int32)
-    kinds[ends] = CONSTANT  # the tool is at the next path when that begins
+    kinds[ends] = CONSTANT  # the tool jumps to the next path when that begins
     wrong = [key for key, values in rows.items() if not _is(_find(ghost, *key), frames, values, kinds)]
     if wrong:
         curves = versions.own_channels(ghost, "Riffler Motion")
@@ -170,8 +171,8 @@ def bake(ghost, frames, tips, quats, ends, mm_per_unit):
 
 
 def player(ghost, mm_per_unit):
-    """What the animation has at frames, as Blender keeps it: a function of frames (n,) to tips (n, 3) in mm and
-    quaternions (n, 4)."""
+    """The animation's values as Blender stores them: a function of frames (n,) to tips (n, 3) in mm and quaternions (n,
+    4)."""
     curves = {key: _points(_find(ghost, *key)) for key in _all_channels()}
 
     def play(frames):
@@ -207,7 +208,7 @@ def _is(curve, frames, values, kinds):
 
 
 def _write(curves, path, index, frames, values, kinds):
-    """Anew: points that are only moved keep handles and flags of their own."""
+    """Makes new keyframes: moved ones keep handles and flags of their own."""
     old = curves.find(path, index=index)
     if old:
         curves.remove(old)
@@ -221,25 +222,26 @@ def _write(curves, path, index, frames, values, kinds):
     curve.update()
 
 
-# ------------------------------------------------------------------ the tool in somebody's hand
+# ------------------------------------------------------------------ the tool while the user turns it
 def orientation(ob, frame):
-    """The quaternion (4,) that an object's curves have at a frame, or None."""
+    """The quaternion (4,) of an object's curves at a frame, or None."""
     curves = [_find(ob, ROTATION, i) for i in range(4)]
     return np.array([c.evaluate(frame) for c in curves]) if all(curves) else None
 
 
 def settle(scene, tool, ghost, afresh=False):
-    """Between its keys the tool's own curves play something else than the motion. So that turning it (R) begins with
-    what is seen, and a keyframe (I) takes that, its rotation is set to the motion's axis, with the twist of its own. A
-    rotation that is neither is somebody's: the tool shows that until the frame changes or a key is set, which is when
-    to begin `afresh`."""
+    """Sets the tool's rotation to the motion's axis, with its own twist. Between its keys the tool's own curves differ
+    from the motion, so this makes turning it (R) start with the visible orientation, and a keyframe (I) store that. A
+    rotation that is neither comes from the user: the tool shows it until the frame changes or a key is set, which calls
+    this with `afresh`."""
     frame = scene.frame_current_final
     moved, own = orientation(ghost, frame), orientation(tool, frame)
     if moved is None:
         return
     now = np.array(tool.rotation_quaternion)
     wanted = moved if own is None else quaternions.transported(quaternions.axes_of(moved)[None], own)[0]
-    right = _near(now, wanted) and abs(np.linalg.norm(now) - 1) < TURNED  # its curves play shorter ones between keys
+    # its curves give shorter quaternions between keys
+    right = _near(now, wanted) and abs(np.linalg.norm(now) - 1) < TURNED
     if not right and not afresh and (own is None or not _near(now, own)):
         hold(tool, False)
         return
@@ -249,14 +251,13 @@ def settle(scene, tool, ghost, afresh=False):
 
 
 def hold(tool, held=True):
-    """Lets the tool stand as the motion has it, or, but for its place, as it is itself."""
+    """Lets the tool follow the motion, or, except for its location, its own rotation."""
     for name in (PLACE, TURN) if held else (TURN,):
         _influence(tool, name, float(held))
 
 
 def take(tool, tip, quat):
-    """Lets the tool stand with its tip at a place of the world, in Blender units, and an orientation, until it is held
-    again."""
+    """Puts the tool's tip at a place of the world, in Blender units, with an orientation, until `hold`."""
     inverse = meshes.matrix(tool.parent.matrix_world.inverted()) if tool.parent else np.eye(4)
     tool.location = (inverse @ np.append(tip, 1.0))[:3]
     tool.rotation_quaternion = quat
@@ -271,7 +272,7 @@ def _influence(tool, name, value):
 
 
 def stands(scene, tool, ghost):
-    """The quaternion (4,) in which the tool is seen."""
+    """The quaternion (4,) of the tool as displayed."""
     constraint = tool.constraints.get(TURN)
     moved = orientation(ghost, scene.frame_current_final)
     if moved is None or (constraint is not None and constraint.influence == 0):
@@ -286,8 +287,8 @@ def _near(a, b):
 
 # ------------------------------------------------------------------ marks
 def name_paths(scene, names):
-    """Timeline markers at the frames at which paths begin: (name, frame); none where `names` is empty. Those of before
-    go; markers of others stay."""
+    """Sets timeline markers at the frames at which paths begin: (name, frame); none if `names` is empty. Removes the
+    previous ones; other markers stay."""
     ours = [m for m in scene.timeline_markers if path_names.is_name(m.name)]
     if sorted(names) == sorted((m.name, m.frame) for m in ours):
         return
@@ -298,7 +299,7 @@ def name_paths(scene, names):
 
 
 def mark(scene, found):
-    """Timeline markers of what collides: runs of frames. Those of before go; markers of others stay."""
+    """Sets timeline markers of collisions: runs of frames. Removes the previous ones; other markers stay."""
     wanted = [(collisions.label(run), run[0]) for run in collisions.merged(found)]
     ours = [m for m in scene.timeline_markers if collisions.is_label(m.name)]
     if sorted(wanted) == sorted((m.name, m.frame) for m in ours):

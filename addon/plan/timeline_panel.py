@@ -1,4 +1,4 @@
-"""A plan's keys: on the timeline, with what is wrong with them, and where the tool collides."""
+"""A plan's keys: on the timeline, with their problems, and the tool's collisions."""
 
 import bpy
 
@@ -33,14 +33,14 @@ class RIFFLER_PT_timeline(OfPlan, bpy.types.Panel):
         self._turn(layout, context)
         layout.operator(keys.RIFFLER_OT_plan_check.bl_idname, icon="MOD_PHYSICS")
         if collision_marks.outdated(ob):
-            lines(layout, *wrapped(context, "The marks of collisions may be of before."), icon="INFO")
+            lines(layout, *wrapped(context, "The marks of collisions may be out of date."), icon="INFO")
         for first, last in now.colliding[:4]:
             lines(layout, f"Collides at frames {first} to {last}", icon="ERROR")
         if len(now.colliding) > 4:
             lines(layout, f"and {units.counted(len(now.colliding) - 4, 'time')} more", icon="BLANK1")
 
     def _turn(self, layout, context):
-        """The tool in the view that turns it, and what is drawn with that."""
+        """Draws the button of the tool that turns the plan's tool in the view, and its display options."""
         if not current_pose.tool_active(context):
             layout.operator(
                 "wm.tool_set_by_id", text="Orient in View", icon="ORIENTATION_GIMBAL"
@@ -50,7 +50,7 @@ class RIFFLER_PT_timeline(OfPlan, bpy.types.Panel):
 
 
 def draw_header(context, layout):
-    """Of the tool that turns the plan's tool."""
+    """Header of the tool that turns the plan's tool."""
     if current_pose.plan_object(context) is None:
         layout.label(text="Select a plan first, or find paths on a part", icon="INFO")
         return

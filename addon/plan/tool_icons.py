@@ -1,4 +1,4 @@
-"""Pictures of tools for panels, made when they are first shown."""
+"""Pictures of tools for panels, made at their first display."""
 
 import json
 
@@ -9,12 +9,12 @@ from .pure import tool_picture
 
 CLASSES = ()
 SIZE = 128
-MANY = 64  # pictures that are kept
-_pictures = None  # the collection, once there is one
+MANY = 64  # cached pictures
+_pictures = None  # the preview collection, once it exists
 
 
 def icon(tool):
-    """The icon of a tool's dictionary; 0, which is none, where Blender has no window. ValueError for no tool."""
+    """The icon of a tool's dictionary; 0, no icon, if Blender has no window. ValueError for an invalid tool."""
     global _pictures
     if bpy.app.background:
         return 0

@@ -1,4 +1,4 @@
-"""Where tool libraries are, and what is in them."""
+"""The folders of tool libraries, and their tools."""
 
 import riffler
 
@@ -7,18 +7,18 @@ from .pure import tool_library
 
 
 def folders():
-    """Of tool files."""
+    """Folders of tool files."""
     return preferences_access.folders("tools")
 
 
 def target():
-    """Where a tool is saved. FileNotFoundError where the folder that was chosen is gone."""
+    """Folder for saving a tool. FileNotFoundError if the chosen folder no longer exists."""
     return preferences_access.target("tools")
 
 
 def files():
-    """The tools of all folders, and a line for each file that cannot be read, and for a folder that was chosen and is
-    gone. Our own is empty where it is not there yet."""
+    """The tools of all folders, and a line for each file that cannot be read, and for a chosen folder that no longer
+    exists. Our own folder may not exist yet."""
     entries, problems = [], []
     try:
         preferences_access.folder("tools")
@@ -33,7 +33,7 @@ def files():
 
 
 def tool(name, path=""):
-    """The dictionary of a tool: from a file, or where `path` is empty, from the presets. ValueError says what there is
-    instead."""
+    """The dictionary of a tool: from a file, or, if `path` is empty, from the presets. ValueError lists the available
+    ones."""
     entries = tool_library.read(path, riffler.Tool.from_dict) if path else tool_library.shipped()
     return dict(tool_library.find(entries, name).tool) if name or not path else dict(entries[0].tool)

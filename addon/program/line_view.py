@@ -1,5 +1,5 @@
-"""The active plan's paths as thick lines, coloured by what the tool does along them, with a legend; and the way from
-cut to cut, once a program was made of the plan."""
+"""The active plan's paths as thick lines, coloured by the tool's movement, with a legend; and the moves between cuts,
+once the plan has a program."""
 
 import bpy
 import numpy as np
@@ -25,19 +25,18 @@ LOOK = {
     "unplanned": ("No Keys", (0.85, 0.85, 0.85, 1.0), 3.0),
     "off": ("Off", (0.5, 0.5, 0.5, 0.5), 1.5),
 }
-HIDDEN = 0.25  # share of the opacity of what stands behind something
+HIDDEN = 0.25  # share of the opacity of lines behind something
 ROW = 17.0  # pixels of the legend, at a scale of 1
-CORNER = (20.0, 60.0)  # of its foot, from the tools and from the bottom: the last operator stands below
+CORNER = (20.0, 60.0)  # of its foot, from the toolbar and from the bottom: the last operator's panel is below
 
 kept = batches.Batches()
-_drawn = [None, ()]  # the signature of what `kept` has, and its kinds
+_drawn = [None, ()]  # the signature of the content of `kept`, and its kinds
 _in_views = views.InViews()
-_paths = {}  # what was made of single paths: (id of the path, of its rows, state) → path, rows, {kind: pieces}
+_paths = {}  # cached lines of single paths: (id of the path, of its rows, state) → path, rows, {kind: segments}
 
 
 def lines(context, ob):
-    """{kind: pieces (n, 2, 3) in mm} of a plan and of the program that was made of it last. ValueError where the plan
-    cannot be read."""
+    """{kind: segments (n, 2, 3) in mm} of a plan and of its last program. ValueError if the plan cannot be read."""
     plan, found = plan_store.plan(ob), {}
     cl = list(plan.cl) or [None] * len(plan.paths)
     states = [row.state for row in ob.riffler.plan.rows] or ["unplanned"] * len(plan.paths)
@@ -51,7 +50,8 @@ def lines(context, ob):
 def _of_path(path, rows, state):
     key = id(path), id(rows), state
     if key not in _paths:
-        _paths[key] = path, rows, path_lines.of_path(path, rows, state)  # has the objects, so that ids stay theirs
+        # holds the objects, so that their ids stay unique
+        _paths[key] = path, rows, path_lines.of_path(path, rows, state)
     return _paths[key][2]
 
 
@@ -66,7 +66,7 @@ def _links(context, ob, plan):
 
 
 def signature(context, ob):
-    """Other lines where it is another one."""
+    """A value that changes with the lines."""
     program = programs.made_of(context, ob)
     states = "".join(row.state[0] for row in ob.riffler.plan.rows)
     return plan_store.identity(ob), states, id(program), scene_units.mm_per_unit(context.scene)
@@ -80,7 +80,7 @@ def shown(context):
 
 
 def _made(context, ob):
-    """{kind: the batch} of what there is to draw."""
+    """{kind: the batch} of the lines to draw."""
     now = signature(context, ob)
     if _drawn[0] != now:
         kept.clear()
@@ -107,7 +107,7 @@ def _draw():
         return
     try:
         made = _made(context, ob)
-    except ValueError:  # the panel says so
+    except ValueError:  # the panel shows the error
         return
     zoom = context.preferences.system.ui_scale
     size = context.region.width, context.region.height
@@ -119,7 +119,7 @@ def _draw():
 
 
 def entries(ob, present):
-    """The legend's lines: (colour, text)."""
+    """The legend's rows: (colour, text)."""
     number = path_rows.counts(ob.riffler.plan)
     number["cut"] = number.pop("free", 0)
     return [

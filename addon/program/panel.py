@@ -1,4 +1,4 @@
-"""From a plan to NC code, simulated and verified: what was found, and the way to it."""
+"""From a plan to NC code, with simulation and verification: findings, and going to each."""
 
 import bpy
 
@@ -32,7 +32,7 @@ class RIFFLER_UL_findings(bpy.types.UIList):
 
 
 def resolved(p):
-    """How far a plan (properties.RifflerPlanObject) is from NC code; nothing where that was not counted yet."""
+    """How many paths of a plan (properties.RifflerPlanObject) are ready for NC code; "" if not counted yet."""
     if p.resolved < 0:
         return ""
     off = sum(not row.on for row in p.rows)
@@ -42,7 +42,8 @@ def resolved(p):
 
 
 def found(layout, context, name, of, rows):
-    """The list of findings of a plan or a verification, which cuts them off, and the chosen one whole below it."""
+    """The list of findings of a plan or a verification, which truncates them, and the full text of the selected one
+    below it."""
     layout.template_list(RIFFLER_UL_findings.bl_idname, name, of, "findings", of, "index", rows=rows)
     if 0 <= of.index < len(of.findings):
         item = of.findings[of.index]
@@ -116,7 +117,7 @@ class RIFFLER_PT_verify(Tab, bpy.types.Panel):
             lines(layout, *wrapped(context, said), icon="INFO")
 
     def _give(self, op, settings, group):
-        """An operator the settings of a group, and of those that it is built on."""
+        """Gives an operator the settings of a group, and of its base classes."""
         for key in versions.fields_of(group):
             setattr(op, key, getattr(settings, key))
 

@@ -1,4 +1,4 @@
-"""From a plan to NC code: cutter locations that are free of part and fixtures, written for a machine."""
+"""From a plan to NC code: cutter locations free of collisions with part and fixtures, written for a machine."""
 
 from dataclasses import replace
 
@@ -23,16 +23,22 @@ EXTENSIONS = {"heidenhain": ".h", "heidenhain-bc": ".h", "sinumerik": ".mpf", "s
 
 
 class RIFFLER_OT_plan_resolve(PlanWork, bpy.types.Operator):
-    """Find where the tool stands along the plan's paths: lifted along its axis where any of it would enter the part or
-    a fixture. What no lift frees is listed"""
+    """Find where the tool stands along the plan's paths: it is lifted along its axis where it would collide with the
+    part or a fixture, and collisions that no lift removes are listed
+    """
 
     bl_idname = "riffler.plan_resolve"
     bl_label = "Resolve"
     doing = "Resolving collisions"
-    cancelled = "Stopped resolving: the plan is as it was"
+    cancelled = "Resolving cancelled: the plan is unchanged"
 
     max_lift: FloatProperty(
-        name="Highest Lift", default=100.0, min=0.0, max=1e4, precision=2, description="Along the tool's axis, in mm"
+        name="Max Lift",
+        default=100.0,
+        min=0.0,
+        max=1e4,
+        precision=2,
+        description="Largest lift along the tool axis, in mm",
     )
 
     @classmethod
@@ -50,9 +56,9 @@ class RIFFLER_OT_plan_resolve(PlanWork, bpy.types.Operator):
         if not turned:
             raise ValueError(programs.nothing_wanted(plan))
         open_ones = set(plan_store.unresolved(plan)) if same else set(turned)
-        self._paths = [k for k in turned if k in open_ones] or turned  # what holds still need not be found again
+        self._paths = [k for k in turned if k in open_ones] or turned  # valid locations need not be found again
         self._found = []
-        tool = riffler.plan.with_room(plan.tool, clearance)  # the cutter touches what it cuts
+        tool = riffler.plan.with_room(plan.tool, clearance)  # the cutter touches the surface that it cuts
         self._clearance, self._max_lift = clearance, scene_units.clean(self.max_lift)
         return AfterJob(taken, lambda near: self._all(plan, tool, near))
 
@@ -86,7 +92,7 @@ class RIFFLER_OT_plan_resolve(PlanWork, bpy.types.Operator):
         for k, (rows, report) in zip(self._paths, found, strict=True):
             entered = self._entered(plan, rows) if k in plan.depths else []
             free = report.ok and not entered
-            cl[k] = rows if free else None  # what collides anywhere is no program
+            cl[k] = rows if free else None  # a path with any collision is not written
             blocked += not free
             kept += location_messages.entries(k, plan.paths[k].centres, rows, report)
             kept += [location_messages.entered(k, plan.paths[k].centres[0], *fixture) for fixture in entered]
@@ -103,11 +109,12 @@ class RIFFLER_OT_plan_resolve(PlanWork, bpy.types.Operator):
         return {"FINISHED"}
 
     def _entered(self, plan, rows):
-        """(mm, name) of the fixtures that a tool enters which is to enter the part."""
+        """(mm, name) of the fixtures that a tool enters whose cutter is meant to enter the part."""
         return self._near.near_fixtures(plan.tool, rows, -(plan.tolerance or 0.01)) if len(rows) else []
 
     def _too_near(self, plan, free):
-        """Where the cutter itself comes nearer to a fixture than the clearance, which lifts shank and holder only."""
+        """Reports where the cutter itself comes closer to a fixture than the clearance, for which only shank and holder
+        are lifted."""
         room = scene_units.clean(bpy.context.scene.riffler.plan.clearance)
         if not free or room <= 0:
             return []
@@ -137,7 +144,11 @@ class RIFFLER_OT_plan_nc(GivenOptions, bpy.types.Operator, ExportHelper):
 
     filter_glob: StringProperty(default="*.ngc;*.nc;*.tap;*.h;*.mpf;*.apt", options={"HIDDEN"})
     post: EnumProperty(
-        name="Machine", items=MACHINES, default="tcp", options={"SKIP_SAVE"}, description="That the code is written for"
+        name="Machine",
+        items=MACHINES,
+        default="tcp",
+        options={"SKIP_SAVE"},
+        description="Machine that the NC code is written for",
     )
     feed: FloatProperty(
         name="Feed", default=0.0, min=0.0, max=1e6, options={"SKIP_SAVE"}, description="mm/min; 0: the plan's"
@@ -160,14 +171,14 @@ class RIFFLER_OT_plan_nc(GivenOptions, bpy.types.Operator, ExportHelper):
         self._take_settings(context)
         try:
             programs.options(context.scene, self.post, self.options)
-        except ValueError as error:  # before a file is chosen for nothing
+        except ValueError as error:  # before the user chooses a file in vain
             return operator_parts.fail(self, error)
         if not self.filepath:
             self.filepath = plan_object(context).name + self.filename_ext
         return ExportHelper.invoke(self, context, event)
 
     def _take_settings(self, context):
-        """What was not asked for is as the scene has it."""
+        """Settings that were not given are the scene's."""
         settings = context.scene.riffler.plan
         if not self.properties.is_property_set("post"):
             self.post = settings.post
@@ -197,7 +208,7 @@ class RIFFLER_OT_plan_nc(GivenOptions, bpy.types.Operator, ExportHelper):
         notes = [note for note in said if note]
         if timeline.pair(ob) is not None:
             difference = plan_states.state(ob).difference
-            notes += plan_states.state(ob).problems  # a refused key is on the timeline, and not in the code
+            notes += plan_states.state(ob).problems  # a refused key is on the timeline, but not in the code
             if difference.small:
                 done = f"{done}. {difference}"
             else:

@@ -1,5 +1,5 @@
-"""Programs of a plan, of a file, of a sculpt's cuts; and as they are simulated and verified: in the frame of the stock,
-and on the timeline."""
+"""Programs of a plan, of a file, of a sculpt's cuts; and their form for simulation and verification: in the frame of
+the stock, and on the timeline."""
 
 import re
 import tempfile
@@ -22,7 +22,7 @@ from .pure.program_timeline import ProgramTimeline
 
 # ------------------------------------------------------------------ of a plan
 def left_out(plan):
-    """Which paths are not to be cut, as a sentence, or nothing."""
+    """A sentence on the paths that are not cut, or ""."""
     bare, off = sorted({*range(len(plan.paths))} - {*plan_store.wanted(plan)} - plan.off), sorted(plan.off)
     have, are = ("has" if len(bare) == 1 else "have"), ("is" if len(bare) == 1 else "are")
     said = [f"{numbered(bare).capitalize()} {have} no keys and {are} not cut"] if bare else []
@@ -31,14 +31,14 @@ def left_out(plan):
 
 
 def nothing_wanted(plan):
-    """Why nothing is to be cut."""
+    """Why no path is to be cut."""
     if any(len(path.axes) for path in plan.paths):
         return "Every path with an orientation is off: switch one on in the list of paths"
     return "No path has an orientation: set a key first"
 
 
 def ready(context, ob, plan):
-    """The surroundings.Taken of a plan that may become a program. ValueError with the remedy where it may not."""
+    """The obstacles.Taken of a plan that is ready for a program. ValueError with the remedy if it is not."""
     if not plan.paths:
         raise ValueError(f"{ob.name} has no paths: find some first")
     if not plan_store.wanted(plan):
@@ -49,23 +49,25 @@ def ready(context, ob, plan):
     missing = plan_store.unresolved(plan)
     if missing:
         raise ValueError(
-            f"{numbered(missing)} may collide: use Resolve, turn the keys where it finds no way, or switch off a "
-            "path that is to be left out"
+            f"{numbered(missing)} may collide: use Resolve, turn the keys where it finds no solution, or switch "
+            "the path off"
         )
     clearance = scene_units.clean(context.scene.riffler.plan.clearance)
     if plan.provenance.get(plan_store.RESOLVED) != taken.fingerprint(plan.tool, clearance):
-        raise ValueError("Part, fixtures, tool or clearance have changed since the paths were resolved: use Resolve")
+        raise ValueError(
+            "Part, fixtures, tool or clearance have changed since the paths were resolved: use Resolve again"
+        )
     return taken
 
 
 def numbered(paths):
-    """“path 3”, “paths 1, 2”: numbers from 0 as people count."""
+    """“path 3”, “paths 1, 2”, counted from 1, for numbers from 0."""
     shown = ", ".join(str(k + 1) for k in paths[:6]) + (" …" if len(paths) > 6 else "")
     return f"{'path' if len(paths) == 1 else 'paths'} {shown}"
 
 
 def made_of(context, ob):
-    """The riffler.Program that was made last of a plan; None once the plan, or how the panel links its paths, has
+    """The last riffler.Program made of a plan; None once the plan, or the panel's links between its paths, have
     changed."""
     mark, program = plan_states.state(ob).program
     return program if mark == _mark(context, ob) else None
@@ -77,7 +79,7 @@ def _mark(context, ob):
 
 
 def of_plan(context, ob, plan, feed, spindle):
-    """The riffler.Program of all paths that are to be cut, in their order, in the scene's millimetres."""
+    """The riffler.Program of all paths to cut, in order, in the scene's millimetres."""
     taken, chosen = ready(context, ob, plan), plan_store.wanted(plan)
     settings = context.scene.riffler.plan
     collider = taken.result().collider
@@ -93,7 +95,7 @@ def of_plan(context, ob, plan, feed, spindle):
     try:
         program = riffler.Program.from_cl([plan.cl[k] for k in chosen], tools=[plan.tool] * len(chosen), **how)
     except ValueError as error:
-        # The numbers of the panel, and the names of its fields.
+        # The panel's numbers, and the names of its fields.
         text = re.sub(r"^path (\d+)\b", lambda found: f"Path {chosen[int(found[1])] + 1}", str(error))
         raise ValueError(text.replace("safe_height", "Clearance Plane")) from None
     plan_states.state(ob).program = _mark(context, ob), program
@@ -101,13 +103,13 @@ def of_plan(context, ob, plan, feed, spindle):
 
 
 def touch(plan):
-    """mm by which a plan's tool may enter part and fixtures: that of its locations, as much again between blocks,
-    rounding, and as deep as it cuts."""
+    """mm by which a plan's tool may enter part and fixtures: the tolerance of its locations, the same again between
+    blocks, rounding, and the depth of its cut."""
     return 3 * (plan.tolerance or 0.01) + plan.deepest
 
 
 def _links(settings):
-    """How the tool gets into its cuts and out of them, for Program.from_cl; 0 stands for what is found."""
+    """Approaches and retracts between cuts, for Program.from_cl; 0 means automatic."""
     return {
         "safe_height": scene_units.clean(settings.plane) or None,
         "retract": scene_units.clean(settings.retract) or None,
@@ -117,15 +119,15 @@ def _links(settings):
 
 
 def write(program, plan, path, post, chosen, collider=None):
-    """Writes a plan's program as NC code; what Program.write says of it. With a `collider` the machine's motion is
-    checked: nothing is written that enters part or fixtures."""
+    """Writes a plan's program as NC code; returns the result of Program.write. With a `collider` the machine's motion
+    is checked: nothing is written that enters part or fixtures."""
     how = {"tolerance": plan.tolerance or 0.01, "options": chosen}
     return program.write(path, post=post, collider=collider, contact_tolerance=touch(plan), **how)
 
 
 def options(scene, machine, text=""):
-    """A machine's options: from JSON, or those that the scene has for it. ValueError where the text is none, and where
-    one that must be given is not."""
+    """A machine's options: from JSON, or the scene's settings for it. ValueError if the text is invalid, and if a
+    required option is missing."""
     if text.strip():
         return json_object.loads(text, 'options, as {"max_rotary": 3600}')
     given = scene.riffler.machines.given(machine)
@@ -137,7 +139,8 @@ def options(scene, machine, text=""):
 @dataclass
 class Setup:
     """A program on its stock. `program`, `stock`: in the stock's frame, mm; `to_world`: (4, 4) from there to the
-    scene's mm; `text`: the NC code that the program's lines are of; `plan`: name of the plan's object, or nothing."""
+    scene's mm; `text`: the NC code that the program's line numbers refer to; `plan`: name of the plan's object, or "".
+    """
 
     name: str
     program: riffler.Program
@@ -146,16 +149,16 @@ class Setup:
     to_world: np.ndarray
     program_timeline: ProgramTimeline
     text: str = ""
-    machine: str = ""  # that it is for
+    machine: str = ""  # its machine
     options: dict = field(default_factory=dict)
-    in_machine: bool = False  # the machine has the program in the stock's frame, not in the scene's
+    in_machine: bool = False  # True if the program is in the stock's frame on the machine, not in the scene's
     plan: str = ""
-    notes: tuple = ()  # what is not in it, as sentences
-    deepest: float = 0.0  # mm below the part's surface that are to be cut
+    notes: tuple = ()  # sentences on what the program leaves out
+    deepest: float = 0.0  # mm below the part's surface that are meant to be cut
 
     @property
     def to_machine(self):
-        """(4, 4) from the stock's frame to that in which the machine has the program."""
+        """(4, 4) from the stock's frame to the program's frame on the machine."""
         return np.eye(4) if self.in_machine else self.to_world
 
     @property
@@ -173,12 +176,12 @@ def stock_object(context):
 
 
 def no_stock(context):
-    """Why there is none, with the step that helps."""
+    """Why there is no stock, with the remedy."""
     return refusals.instance(context.object) or "There is no stock: select a sculpt, or make one that the part lies in"
 
 
 def take(context, wanted):
-    """The Setup that `wanted` (properties.ProgramSettings) asks for. ValueError, OSError where it cannot be."""
+    """The Setup for `wanted` (properties.ProgramSettings). ValueError, OSError if there is none."""
     live_registry.end_all()
     ob = stock_object(context)
     if ob is None:
@@ -202,7 +205,7 @@ def _noted(setup, ob):
 
 
 def _rigid(context, ob):
-    """The stock's frame in the scene, as a turn and a shift: programs are in millimetres."""
+    """The stock's frame in the scene, as a rotation and a translation: programs are in millimetres."""
     refusals.refuse(context, ob)
     if why := refusals.scaled(ob):
         raise ValueError(why)
@@ -246,15 +249,15 @@ def _plan(context):
 
 
 def _played_paths(context, ob, plan):
-    """[(rows, frames)] of the paths that are to be cut, as a plan plays them on the timeline."""
+    """[(rows, frames)] of the paths to cut, as a plan plays them on the timeline."""
     replan.sync(context.scene, ob)
     played = [e.motion for e in plan_states.state(ob).motions]
     return [(played[k].poses, played[k].frames) for k in plan_store.wanted(plan) if k < len(played) and len(played[k])]
 
 
 def _with_lines(program, plan, post, chosen):
-    """A plan's program with the lines that its rows have as NC code, and that code; neither where the machine's
-    language is not one that is read."""
+    """A plan's program with its rows' line numbers in the NC code, and that code; neither if riffler cannot read the
+    machine's language."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "program.ngc"
         write(program, plan, path, post, chosen)
@@ -271,7 +274,7 @@ def _with_lines(program, plan, post, chosen):
 
 
 def _of_reading(chosen):
-    """Without those that only say how code is written."""
+    """The options without those that only control how code is written."""
     written = ("line_numbers", "coolant", "retract", "safe_start", "safe_height", "arcs", "max_rotary")
     return {key: value for key, value in chosen.items() if key not in written and not key.startswith("rate_")}
 
@@ -293,7 +296,7 @@ def _file(context, wanted):
 
 
 def _played(context, program, wanted):
-    """The timeline of a file that was written from the active plan: its rows are where it shows the plan's tool."""
+    """The timeline of a file written from the active plan: its rows are at the frames of the plan."""
     ob = plan_store.active(context)
     if wanted.frame != "WORLD" or ob is None or timeline.pair(ob) is None:
         return None
@@ -302,11 +305,11 @@ def _played(context, program, wanted):
 
 
 def _with_tools(context, program, name):
-    """NC code has numbers only: the one whose shape is not known is the scene's tool of plans."""
+    """NC code only numbers its tools: the one of unknown shape is the scene's plan tool."""
     called = sorted({int(n) for n in np.unique(program.tool[1:])} - set(program.tools))
     if len(called) > 1:
         raise ValueError(
-            f"{name} calls tools {', '.join(map(str, called))}, and only one can be chosen here: take a .rprog file, "
+            f"{name} calls tools {', '.join(map(str, called))}, and only one can be chosen here: use a .rprog file, "
             "which has their shapes, or one program for each tool"
         )
     if not called:

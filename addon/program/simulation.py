@@ -1,9 +1,9 @@
-"""A program that is simulated: the stock at the row of the scene's current frame, shown in chunks as a sculpt that is
-worked at is. The sculpt itself is hidden meanwhile and stays as it is: what is carved is a copy.
+"""The simulation of a program: the stock at the row of the scene's current frame, shown in chunks like a live sculpt.
+The sculpt itself is hidden meanwhile and unchanged: a copy is carved.
 
-With a window the carving is done from a timer, some milliseconds at a time, so that scrubbing stays light; the stock
-catches up. Without one timers never run, and it is done at once. Nothing modal runs. Undo ends a simulation, since it
-may bring back anything of what is shown; so do saving and the loading of a file.
+With a window a timer carves, some milliseconds at a time, so that scrubbing stays responsive; the stock catches up.
+Without a window timers never run, and it is carved at once. Nothing modal runs. Undo ends a simulation, since it may
+restore any part of the display; so do saving and loading a file.
 """
 
 import time
@@ -19,13 +19,13 @@ from ..sculpt import chunks, sculpts, undo_states
 from . import programs, properties
 from .pure.program_prefix import ProgramPrefix
 
-BUDGET, PAUSE = 0.02, 0.01  # s of carving, and between two lots of it
-SHOWN = 0.15  # s between two pictures of a stock that is still catching up
+BUDGET, PAUSE = 0.02, 0.01  # s of carving per slice, and between two slices
+SHOWN = 0.15  # s between two redraws of a stock that is still catching up
 _now = None
 
 
 class Simulation:
-    """Simulates the program of a programs.Setup. `prefix.volume` is the stock that the view shows."""
+    """Simulates the program of a programs.Setup. `prefix.volume` is the displayed stock."""
 
     def __init__(self, context, setup):
         ob = bpy.data.objects[setup.sculpt]
@@ -50,12 +50,12 @@ class Simulation:
 
     @property
     def object(self):
-        """The sculpt, as long as it and what is shown of it are there."""
+        """The sculpt, as long as it and its display exist."""
         return sculpts.marked(self.mark, self.sculpt) if self.chunks.there else None
 
     @property
     def outdated(self):
-        """True where the program is of a plan that is another one now."""
+        """True if the program belongs to a plan that has changed."""
         return _identity(self._plan) != self._identity
 
     @property
@@ -63,7 +63,7 @@ class Simulation:
         return bpy.data.scenes[self.scene].frame_current_final
 
     def go_on(self, budget):
-        """Towards the row of the current frame; True when the stock is there and seen so."""
+        """Carves towards the row of the current frame; True when the stock has reached it and is displayed."""
         there = self.prefix.step(self.program_timeline.row_at(self.scene_frame), budget)
         if there or time.monotonic() - self._pictured > SHOWN:
             self._show()
@@ -82,18 +82,18 @@ class Simulation:
 
 
 def _identity(plan):
-    """Of the plan's object with that name."""
+    """The identity of the plan's object of that name."""
     return plan_store.identity(bpy.data.objects.get(plan))
 
 
 def active():
-    """The Simulation that is shown, or None."""
+    """The displayed Simulation, or None."""
     return _now
 
 
 def begin(context, setup):
-    """Shows `setup` at the current frame; what was shown before is not any more. None where it has stopped at once,
-    which was told."""
+    """Shows `setup` at the current frame, in place of an earlier simulation. None if it stopped at once, which was
+    reported."""
     global _now
     end()
     _now = Simulation(context, setup)
@@ -103,7 +103,7 @@ def begin(context, setup):
 
 
 def end():
-    """The sculpt itself is seen again."""
+    """Shows the sculpt itself again."""
     global _now
     was, _now = _now, None
     handlers.stop(_tick)
@@ -113,7 +113,7 @@ def end():
 
 
 def drop_outdated():
-    """Ends it where its plan has changed; True where it did."""
+    """Ends the simulation if its plan has changed; True if it did."""
     if _now is None or not _now.outdated:
         return False
     name = _now.name
@@ -130,14 +130,14 @@ def _follow():
 
 
 def _tick():
-    """A timer's. A render reads what would be changed."""
+    """Timer function. Does nothing during a render, which reads what would change."""
     if _now is not None and bpy.app.is_job_running("RENDER"):
         return SHOWN
     return None if _now is None or _lot(BUDGET) else PAUSE
 
 
 def _lot(budget):
-    """True where nothing is left to do."""
+    """One slice of work; True if nothing is left to do."""
     if _now.object is None or _now.scene not in bpy.data.scenes:
         end()
         return True
@@ -185,7 +185,7 @@ _HANDLERS = {
 
 # ---------------------------------------------------------------------- operators
 def program_poll(cls, context):
-    """True where there may be a program on a stock."""
+    """True if a program can run on a stock."""
     if not operator_parts.object_mode(cls, context):
         return False
     if programs.stock_object(context) is None:
@@ -194,11 +194,11 @@ def program_poll(cls, context):
 
 
 class RIFFLER_OT_simulate(properties.ProgramSettings, properties.GivenOptions, bpy.types.Operator):
-    """Show the stock as the program leaves it at the current frame: play, or drag the frame. Esc in the view ends it"""
+    """Show the stock as the program has cut it at the current frame; Esc in the view ends the simulation"""
 
     bl_idname = "riffler.simulate"
     bl_label = "Simulate"
-    bl_options = {"REGISTER"}  # what is shown is no step of undo
+    bl_options = {"REGISTER"}  # the display is no undo step
 
     @classmethod
     def poll(cls, context):
@@ -207,7 +207,7 @@ class RIFFLER_OT_simulate(properties.ProgramSettings, properties.GivenOptions, b
     def execute(self, context):
         try:
             end()
-            replan.flush()  # the program is that of the keys as they are now
+            replan.flush()  # so that the program has the current keys
             setup = programs.take(context, self)
             now = begin(context, setup)
             if now is None:

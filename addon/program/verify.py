@@ -1,4 +1,4 @@
-"""A program is verified on its stock: gouges, rapids in material, holder and fixtures that are hit, what is left."""
+"""Verifies a program on its stock: gouges, rapids in material, collisions of holder and fixtures, rest material."""
 
 import hashlib
 import json
@@ -20,8 +20,8 @@ from ..translations import local
 from . import programs, properties, simulation
 from .pure import finding_titles
 
-MOST = 1000  # lines in the list
-_last = None  # what was verified last: an edited program is verified again only where it differs
+MOST = 1000  # rows in the list
+_last = None  # the last verification: an edited program is verified again only where it differs
 
 
 @dataclass
@@ -31,15 +31,18 @@ class _Kept:
 
 
 class RIFFLER_OT_verify(LongWork, properties.VerifySettings, properties.GivenOptions, bpy.types.Operator):
-    """Run the program on its stock and list what goes wrong: gouges, rapids in material, holder and fixtures hit"""
+    """Run the program on its stock and list its errors: gouges, rapids in material, collisions of holder and
+    fixtures"""
 
     bl_idname = "riffler.verify"
     bl_label = "Verify"
     bl_options = {"REGISTER", "UNDO"}
     doing = "Verifying"
-    cancelled = "Not verified: everything is as it was"
+    cancelled = "Not verified: nothing has changed"
 
-    hide: BoolProperty(name="Hide the Rest", default=True, description="What would cover the colours")
+    hide: BoolProperty(
+        name="Hide Other Objects", default=True, description="Hide the objects that would cover the colours"
+    )
 
     @classmethod
     def poll(cls, context):
@@ -91,7 +94,7 @@ class RIFFLER_OT_verify(LongWork, properties.VerifySettings, properties.GivenOpt
         return {"FINISHED"}
 
     def _colour(self, context, report):
-        """Shows the distances between the part and what is left; returns why not, as sentences."""
+        """Shows the distances between the part and the remaining stock; returns reasons why not, as sentences."""
         ob, stock = context.scene.objects.get(self._part), context.scene.objects[self._setup.sculpt]
         _clear(context)
         if ob is None or self.coloured == "NONE":
@@ -103,7 +106,8 @@ class RIFFLER_OT_verify(LongWork, properties.VerifySettings, properties.GivenOpt
             distance = np.asarray(report.part_map)
             own = ob.type == "MESH" and len(ob.data.vertices) == len(distance)
             if not own or ob.library or ob.data.library:
-                return [f"{ob.name} is not coloured, as it is no plain mesh of this file: colour what is left instead."]
+                why = f"{ob.name} is not coloured, since it is not a plain mesh of this file"
+                return [f"{why}: colour Remaining Stock instead."]
         attributes.show_distance(ob.data, distance, scene_units.clean(self.scale))
         attributes.shade_by_attribute()
         if self.hide:
@@ -116,16 +120,16 @@ class RIFFLER_OT_verify(LongWork, properties.VerifySettings, properties.GivenOpt
 
 
 def _show_text(settings, setup):
-    """Gives the list the program's lines; returns what became of those of before, as sentences."""
+    """Shows the program's lines in the list; returns notes on the previous text, as sentences."""
     if not setup.text:
-        settings.text = None  # lines of another program lead astray
+        settings.text = None  # lines of another program would mislead
         return []
     settings.text, edited = findings.text_of(settings.text, setup.name, setup.text)
     return [f"The text {edited} was edited and is kept: the lines are in {settings.text.name}."] if edited else []
 
 
 def _left(context, surface, stock):
-    """A new object that shows what is left of a stock, where the stock stands."""
+    """A new object with the remaining stock, at the stock's place."""
     mesh = bpy.data.meshes.new(f"{stock.name} Left")
     ob = context.scene.riffler.verify.left = bpy.data.objects.new(mesh.name, mesh)
     for collection in stock.users_collection:
@@ -143,7 +147,7 @@ def _hide(context, objects):
 
 
 def _clear(context):
-    """Takes the colours away, also the object that was made for them, and shows what was hidden for them."""
+    """Removes the colours and the object that was made for them, and shows the objects hidden for them."""
     settings = context.scene.riffler.verify
     for ob in context.scene.objects:
         if ob.type == "MESH" and attributes.SCALE in ob.data and not ob.data.library:
@@ -157,12 +161,12 @@ def _clear(context):
     if settings.left is not None:
         mesh = settings.left.data
         bpy.data.objects.remove(settings.left)
-        if mesh.users == 0:  # a linked duplicate of it is somebody's own
+        if mesh.users == 0:  # a linked duplicate of it belongs to the user
             bpy.data.meshes.remove(mesh)
 
 
 def _around(context, setup):
-    """The part's name, the part and the fixtures with their names, in the stock's frame; no part where none is set."""
+    """The part's name, the part, and the fixtures with their names, in the stock's frame; no part if none is set."""
     plan_ob = context.scene.objects.get(setup.plan) if setup.plan else plan_store.active(context)
     ob = obstacles.part_of(context.scene, plan_ob)
     to_stock = np.linalg.inv(setup.to_world)
@@ -183,7 +187,7 @@ def _moved(mesh, matrix):
 
 
 def _verification(setup, part, fixtures, limits, progress):
-    """The one of before, where stock, surroundings and limits are the same. Not on Blender's thread."""
+    """The previous verification, if stock, surroundings and limits are the same. Runs off Blender's thread."""
     global _last
     digest = hashlib.sha256(setup.stock.to_bytes())
     for mesh in (m for m in (part, *fixtures) if m is not None):
@@ -212,24 +216,27 @@ def _entry(found, setup):
 
 
 class RIFFLER_OT_finding_go(bpy.types.Operator):
-    """Go to what was found: the frame, the place in the view, the line of the NC code"""
+    """Go to the finding: its frame, its place in the view and its line of the NC code"""
 
     bl_idname = "riffler.finding_go"
     bl_label = "Go to Finding"
-    bl_options = {"REGISTER"}  # going somewhere is no step of undo in Blender
+    bl_options = {"REGISTER"}  # in Blender a change of frame or view is no undo step
 
     of: EnumProperty(
         name="List",
-        items=(("VERIFY", "Verified", "What was verified"), ("PLAN", "Plan", "What resolving a plan has found")),
-        description="Which list it is in",
+        items=(
+            ("VERIFY", "Verified", "Findings of verifying a program"),
+            ("PLAN", "Plan", "Findings of resolving a plan"),
+        ),
+        description="List that has the finding",
     )
-    index: IntProperty(name="Number", default=0, min=0, description="In the list, from 0")
+    index: IntProperty(name="Number", default=0, min=0, description="Position in the list, from 0")
 
     @classmethod
     def poll(cls, context):
         if context.scene.riffler.verify.findings or _plan_findings(context):
             return True
-        return operator_parts.deny(cls, "Nothing was found, or nothing was verified yet")
+        return operator_parts.deny(cls, "There are no findings: use Verify first, or Resolve")
 
     def execute(self, context):
         settings, plan_ob = context.scene.riffler.verify, plan_store.active(context)
@@ -257,7 +264,7 @@ def _plan_findings(context):
 
 
 class RIFFLER_OT_verify_clear(bpy.types.Operator):
-    """Take away the list, and the colours of the part"""
+    """Remove the list of findings, and the colours of the part"""
 
     bl_idname = "riffler.verify_clear"
     bl_label = "Clear Findings"

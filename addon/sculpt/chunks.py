@@ -1,12 +1,11 @@
-"""What is seen of a sculpt while somebody works at it: a hundred mesh objects, each with the triangles of some bricks.
+"""The display of a live sculpt: about a hundred mesh objects, each with the triangles of some bricks.
 
-Filling one mesh of half a million triangles takes a tenth of a second; a chunk takes what its own triangles take. They
-are Blender's own objects, so that materials, matcaps and overlays are the artist's, and few, since Blender's undo costs
-by the object (docs/decisions.md). The sculpt itself is hidden meanwhile.
+Filling one mesh of half a million triangles takes a tenth of a second; filling a chunk takes time for its own triangles
+only. Chunks are Blender objects, so that the artist's materials, matcaps and overlays apply, and few, since Blender's
+undo costs time per object (docs/decisions.md). The sculpt itself is hidden meanwhile.
 
-Everything is in one collection that says which sculpt it stands for: what is left of one, in an undo step or in the
-file of a Blender that crashed, is known and swept away. A copy that somebody made of something in it stays: Blender has
-given it another name.
+Everything is in one collection, which names its sculpt: so leftovers in an undo step or in the file of a Blender that
+crashed are recognised and removed. The user's copies of objects in it stay: Blender has given them other names.
 """
 
 import itertools
@@ -22,26 +21,26 @@ from ..blender.views import views
 from ..common.blocks import Blocks
 from . import mask_display, sculpts
 
-MARK = "riffler_live"  # on the collection: the sculpt's mark (sculpts.new_mark); on meshes and the material, too
-MADE = "riffler_made"  # on the collection and its objects: the name that they were given
+MARK = "riffler_live"  # on the collection: the sculpt's mark (sculpts.new_mark); also on meshes and the material
+MADE = "riffler_made"  # on the collection and its objects: their original names
 NUMBER = "riffler_chunk"  # on a chunk's object
-FILLING = "riffler_filling"  # on its mesh: which of our fillings it shows
+FILLING = "riffler_filling"  # on its mesh: serial number of the filling it shows
 TOOL = "Riffler Tool"
-SHOWN = "riffler_shown"  # on its object: which time it was shown
+SHOWN = "riffler_shown"  # on its object: serial number of its display
 
 _fillings = itertools.count(1)
 
 
 class Chunks:
-    """Of the sculpt `ob`, whose mesh has bricks in a lattice of `shape`. Keeps names and no references: those die with
-    the next undo."""
+    """The chunks of the sculpt `ob`, whose mesh has bricks in a lattice of `shape`. Holds names, no references, which
+    the next undo invalidates."""
 
     def __init__(self, context, ob, shape, mm_per_unit):
         self._take(ob, shape, mm_per_unit)
         collection = _new_collection(context, ob)
         self._before = _before(collection)
         try:
-            first = None  # the others hang on it: one line in the outliner, and one object to be moved
+            first = None  # parent of the others: one row in the outliner, and one object to move
             for block in range(len(self._blocks)):
                 chunk = self._add(collection, ob, "Riffler Chunk")
                 chunk[NUMBER] = block
@@ -57,7 +56,7 @@ class Chunks:
 
     @classmethod
     def found(cls, ob, shape, mm_per_unit):
-        """Those that an undo has brought back."""
+        """The chunks that an undo has restored."""
         self = cls.__new__(cls)
         self._take(ob, shape, mm_per_unit)
         self._before = _before(collection_of(self._mark))
@@ -66,22 +65,22 @@ class Chunks:
 
     def _take(self, ob, shape, mm_per_unit):
         self._mm, self._mark, self._blocks = mm_per_unit, ob.riffler.mark, Blocks(shape)
-        self._names: dict[int, str] = {}  # of objects, by block
+        self._names: dict[int, str] = {}  # names of objects, by block
         self._shown = ""
-        self.fillings: dict[int, int] = {}  # which one each block shows
+        self.fillings: dict[int, int] = {}  # serial number of the filling that each block shows
         self._materials = [m.name for m in ob.data.materials if m and m.name != mask_display.NAME]
-        self._tool, self._tool_at = "", None  # name of its object; where it was put, unless an undo may have moved it
+        self._tool, self._tool_at = "", None  # name of the tool's object; its matrix, unless an undo may have moved it
 
     # ------------------------------------------------------------------ what is shown
     def update(self, mesher, bricks, mask=None, stages=None):
-        """Fills the blocks of these bricks anew; what lies in `mask`, a volume, is seen to be protected."""
+        """Refills the blocks of these bricks; the faces within `mask`, a volume, are shown as protected."""
         solid = set(mesher.patches()) if len(bricks) else ()
         for block in sorted({self._blocks.of(int(b)) for b in bricks}):
             self._fill(block, mesher, [b for b in self._blocks.bricks(block) if b in solid], mask, stages)
 
     def _fill(self, block, mesher, bricks, mask, stages):
         ob = bpy.data.objects.get(self._names.get(block, ""))
-        if ob is None:  # somebody has removed it: it is not wanted
+        if ob is None:  # the user removed it, so it stays removed
             return
         vertices, triangles, edges, shading = _patch(mesher, bricks)
         meshes.fill(ob.data, vertices / self._mm, triangles, edges, **shading)
@@ -93,16 +92,17 @@ class Chunks:
             stages.count(bricks=len(bricks), chunks=1, triangles=len(triangles), bytes=size)
 
     def place(self, matrix):
-        """All of them at `matrix`, the sculpt's."""
+        """Moves all chunks to `matrix`, the sculpt's."""
         for name in self._names.values():
             ob = bpy.data.objects.get(name)
             if ob is not None and ob.parent is None and ob.matrix_world != matrix:
                 ob.matrix_world = matrix
 
     def adopt(self, fillings):
-        """After an undo: the objects that came back, and the bricks of those that do not show what `fillings` says."""
+        """After an undo: takes over the restored objects, and returns the bricks of those that do not show what
+        `fillings` says."""
         self._tool_at = None
-        if fillings is None:  # nobody knows: all of them
+        if fillings is None:  # unknown: all of them
             fillings = dict.fromkeys(range(len(self._blocks)), -1)
         found = {ob[NUMBER]: ob for ob in collection_of(self._mark).objects if NUMBER in ob and is_own(ob)}
         self._names = {block: ob.name for block, ob in found.items()}
@@ -111,20 +111,20 @@ class Chunks:
         return [brick for block in stale for brick in self._blocks.bricks(block)]
 
     def outline(self, on):
-        """The views' outlines, which no undo brings back or takes away: they are off while chunks are there."""
+        """Switches off the views' outlines, which no undo restores or removes, while chunks are shown."""
         if on:
             _outline(self._before.outlined)
         else:
             _draw_outlines(self._before.outlined, False)
 
     def give_back(self, name):
-        """Where somebody has removed the collection: what `sweep` would have given back."""
+        """If the user has removed the collection: restores what `sweep` would have restored."""
         self.outline(True)
         _reveal(sculpts.marked(self._mark, name), self._before)
 
     @property
     def there(self):
-        """Whether the collection is there: an undo may have gone back to before it."""
+        """Whether the collection exists: an undo may have gone back to before it."""
         return collection_of(self._mark) is not None
 
     # ------------------------------------------------------------------ the tool
@@ -152,18 +152,18 @@ class Chunks:
         if ob is not None and sculpt is not None:
             turn = Vector((0, 0, 1)).rotation_difference(Vector(pose[3:])).to_matrix().to_4x4()
             matrix = sculpt.matrix_world @ Matrix.Translation(Vector(pose[:3]) / self._mm) @ turn
-            if matrix != self._tool_at:  # a hand at rest has nothing drawn
+            if matrix != self._tool_at:  # no redraw while the hand rests
                 self._tool_at = ob.matrix_world = matrix
 
     @property
     def tool_there(self):
-        """Whether it is the tool that this has shown: an undo may have gone back to before that."""
+        """Whether this has shown the tool: an undo may have gone back to before that."""
         return any(ob.get(SHOWN) == self._shown for ob in self._tools())
 
     def hide_tool(self):
-        """It is not seen any more, nor is one that an undo has brought back. It stays until the next one or the end:
-        Blender's undo takes for unchanged what has not changed from step to step, and so would bring it back without
-        the collection that it was in, had it been removed between two."""
+        """Hides the tool, also one that an undo has restored. It stays in the file until the next tool or the end:
+        Blender's undo keeps what is equal in successive steps, so a tool removed between two steps would come back
+        without its collection."""
         for ob in self._tools():
             ob.hide_viewport = True
 
@@ -179,7 +179,7 @@ class Chunks:
         ob = bpy.data.objects.new(name, mesh)
         ob[MADE] = ob.name
         ob.matrix_world = sculpt.matrix_world
-        ob.hide_render = True  # what is rendered is the sculpt
+        ob.hide_render = True  # the sculpt is rendered instead
         collection.objects.link(ob)
         for space in _local_views():
             ob.local_view_set(space, True)
@@ -187,14 +187,15 @@ class Chunks:
 
 
 def _patch(mesher, bricks):
-    """Vertices, triangles, edges and shading of a chunk, as meshes.fill takes them."""
+    """Vertices, triangles, edges and shading of a chunk, in the form of meshes.fill."""
     if versions.OWN_NORMALS:
         vertices, triangles, *edges, normals = mesher.patch(bricks, edges=True, normals=meshes.SHARP_ANGLE)
         return vertices, triangles, edges, {"normals": normals}
     if not versions.SMOOTH_BY_POLYGON:
         vertices, triangles, *edges = mesher.patch(bricks, edges=True)
         return vertices, triangles, edges, {}
-    # Flat is what touches an edge: its corners' mean normals lean away from its own by half of what the edge has.
+    # Triangles at an edge are flat: the mean normals of their corners lean away from their own by half of the edge's
+    # angle.
     vertices, triangles, *edges, normals = mesher.patch(bricks, edges=True, normals=np.pi)
     corners = vertices[triangles]
     (a, b, c), (d, e, f) = (corners[:, 1] - corners[:, 0]).T, (corners[:, 2] - corners[:, 0]).T
@@ -210,8 +211,8 @@ def _new_collection(context, ob):
     collection["hidden"], collection["selected"] = ob.hide_get(), ob.select_get()
     collection["selectable"] = not ob.hide_select
     collection["scene"], collection["layer"] = context.scene.name, context.view_layer.name
-    # Views that draw a line around every object would draw it around every chunk. It is written down here, so that it
-    # is given back after a crash, too.
+    # Views that draw an outline around every object would draw one around every chunk. The setting is stored here, so
+    # that it can be restored after a crash, too.
     outlined = [f"{screen}/{k}" for screen, k, space in views() if space.shading.show_object_outline]
     collection["outlined"] = "\n".join(outlined)
     collection.hide_select = True
@@ -221,9 +222,10 @@ def _new_collection(context, ob):
 
 
 def hide(ob):
-    """The sculpt's own mesh is not seen, and does not weigh on each undo, where that would cost. It stays visible for
-    Blender, as one that only its instances are drawn of, which it has none of: to a view a hidden object is not the
-    active one, and its menu of modes is empty. Whatever has children, or instances of its own, is hidden by its eye."""
+    """Hides the sculpt's own mesh, and lightens it where undo would read it each time. The object stays visible to
+    Blender, displayed only by its instances, of which it has none: a view does not treat a hidden object as the active
+    one, and its menu of modes would be empty. An object with children, or with instances of its own, is hidden by its
+    eye icon."""
     versions.lighten(ob.data)
     ob.select_set(False)
     if ob.hide_get():
@@ -235,12 +237,12 @@ def hide(ob):
 
 
 def is_hidden(ob):
-    """Whether `hide` has hidden it, so that its instances would be drawn only."""
+    """Whether `hide` has hidden it, so that only its instances would be drawn."""
     return ob.instance_type == "VERTS" and not ob.show_instancer_for_viewport
 
 
 def reveal(ob, select=False, layers=None, selectable=True):
-    """Undoes the hiding, in these view layers, or in every one. `selectable`: as it was."""
+    """Undoes `hide`, in these view layers, or in every one. `selectable`: the previous setting."""
     if is_hidden(ob):
         ob.instance_type, ob.show_instancer_for_viewport, ob.hide_select = "NONE", True, not selectable
     if layers is None:
@@ -254,7 +256,7 @@ def reveal(ob, select=False, layers=None, selectable=True):
 
 @dataclass
 class Before:
-    """How it was before the chunks: whether the sculpt was hidden and selected in that view layer, and which views drew
+    """The state before the chunks: whether the sculpt was hidden and selected in that view layer, and which views drew
     outlines."""
 
     hidden: bool
@@ -265,7 +267,7 @@ class Before:
 
 
 def _before(collection):
-    """Of a collection of chunks; an older add-on did not write down the layer."""
+    """The state stored on a collection of chunks; older add-ons did not store the layer."""
     layer = collection.get("scene", ""), collection.get("layer", "")
     selectable = bool(collection.get("selectable", True))
     return Before(collection["hidden"], collection["selected"], selectable, layer, collection["outlined"].split("\n"))
@@ -280,7 +282,7 @@ def _reveal(ob, before):
 
 
 def _outline(places):
-    """Gives the views their outlines back; where another sculpt is shown in chunks, that one will."""
+    """Restores the views' outlines, unless another sculpt is shown in chunks, which restores them later."""
     other = next((c for c in bpy.data.collections if MARK in c), None)
     if other is not None:
         other["outlined"] = "\n".join([other["outlined"], *places])
@@ -295,7 +297,7 @@ def _draw_outlines(places, on):
 
 
 def weigh(ob):
-    """Undoes versions.lighten, where nobody has shown anything else since."""
+    """Undoes versions.lighten, unless the mesh was refilled since."""
     if sculpts.is_sculpt(ob) and not ob.data.polygons and ob.data.vertices:
         sculpts.refill(ob.data, sculpts.shown_mm_per_unit(ob.data))
 
@@ -306,12 +308,13 @@ def collection_of(mark):
 
 
 def shown():
-    """Marks of the sculpts that are shown in chunks."""
+    """Marks of the sculpts shown in chunks."""
     return [c[MARK] for c in bpy.data.collections if MARK in c]
 
 
 def _local_views():
-    """Of the windows only: Blender crashes where an object is put into the local view of a screen that none shows."""
+    """Local views of windows only: Blender crashes if an object is put into the local view of a screen without a
+    window."""
     for window in bpy.context.window_manager.windows:
         for area in window.screen.areas:
             if area.type == "VIEW_3D" and area.spaces.active.local_view and window.scene == bpy.context.scene:
@@ -319,23 +322,23 @@ def _local_views():
 
 
 def sweep(mark=None, name=""):
-    """Takes away what there is, of the sculpt of that mark (and name, where it is known) or of all, and shows the
-    sculpts again."""
+    """Removes the chunks of the sculpt of that mark (and name, if known) or of all sculpts, and shows the sculpts
+    again."""
     for collection in [c for c in bpy.data.collections if MARK in c and mark in (None, c[MARK])]:
         ob, before = sculpts.marked(collection[MARK], name), _before(collection)
         try:
             weigh(ob)
-        except ValueError as error:  # what is packed cannot be read: there is no surface to be shown
+        except ValueError as error:  # the packed data cannot be read: there is no surface to show
             print(f"Riffler: {error}")
         _clear(collection)
         _reveal(ob, before)
         _outline(before.outlined)
     stray = [ob for ob in bpy.data.objects if is_own(ob) and ob.data is not None and _is_marked(ob.data, mark)]
-    _remove(stray)  # somebody, or an undo, has taken them out of the collection
+    _remove(stray)  # moved out of the collection by the user, or by an undo
     for place in (bpy.data.meshes, bpy.data.materials):
         marked = [thing for thing in place if _is_marked(thing, mark)]
         for thing in (thing for thing in marked if thing.users):
-            del thing[MARK]  # a copy shows it: it is somebody's now
+            del thing[MARK]  # a copy shows it: it belongs to the user now
         bpy.data.batch_remove([thing for thing in marked if not thing.users])
 
 
@@ -344,18 +347,18 @@ def _is_marked(thing, mark):
 
 
 def is_own(thing):
-    """Of an object or a collection: True where the add-on has made it, and it is no copy."""
+    """True if the add-on has made the object or the collection, and it is no copy."""
     return thing.get(MADE) == thing.name
 
 
 def _clear(collection):
-    """Takes away the collection and what the add-on has made in it. A copy of the whole collection, as of a scene, has
-    pictures only."""
+    """Removes the collection and the add-on's objects in it. A copy of the whole collection, as of a scene, has only
+    display objects."""
     pictures = [ob for ob in collection.objects if ob.data is not None and MARK in ob.data]
     if is_own(collection):
         pictures = [ob for ob in pictures if is_own(ob)]
     _remove(pictures)
-    for ob in list(collection.objects):  # somebody put it there
+    for ob in list(collection.objects):  # added by the user
         collection.objects.unlink(ob)
         if not ob.users_collection:
             bpy.context.scene.collection.objects.link(ob)
@@ -363,7 +366,7 @@ def _clear(collection):
 
 
 def _remove(pictures):
-    """What hangs on them, a copy of one, say, stays where it is."""
+    """Removes the objects; their children, such as a copy of one, keep their place."""
     gone = set(pictures)
     left = [(ob, ob.matrix_world.copy()) for ob in bpy.data.objects if ob.parent in gone and ob not in gone]
     bpy.data.batch_remove(gone)

@@ -1,7 +1,7 @@
-"""Measures how long Blender draws its 3D views during a stroke: the stage "draw" of sculpt/pure/stages.py.
+"""Measures the time that Blender takes to draw its 3D views during a stroke: the stage "draw" of sculpt/pure/stages.py.
 
-The time runs from before a view is drawn until after it. That is the processor's share of a picture: a graphics card
-works on after it, a software renderer does not.
+The time runs from before a view is drawn until after it: the processor's share. A graphics card continues after that, a
+software renderer does not.
 """
 
 import time
@@ -13,7 +13,7 @@ _stages, _begun = None, 0.0
 
 
 def begin(stages):
-    """Into these from now on."""
+    """Adds measurements to these stages from now on."""
     global _stages
     end()
     _stages = stages

@@ -1,8 +1,8 @@
-"""Settings of the sculpt tools as panels show them: fields of the window manager that read and write the scene's.
+"""Settings of the sculpt tools for panels: fields of the window manager that read and write the scene's.
 
-Blender makes an undo step of each field that is changed in a panel, unless a window manager or a screen has it; the
-brushes of its own Sculpt Mode have none. With kept_settings.py, which keeps the settings
-through undo, Ctrl Z undoes strokes only.
+Blender makes an undo step for each field changed in a panel, unless it belongs to a window manager or a screen; brushes
+of its own Sculpt Mode make none. With kept_settings.py, which keeps the settings through undo, Ctrl Z undoes strokes
+only.
 """
 
 import bpy
@@ -14,7 +14,7 @@ KINDS = (bpy.props.BoolProperty, bpy.props.EnumProperty, bpy.props.FloatProperty
 
 
 def passed_on(name, group, place):
-    """A class of the name with the fields of `group`, which is `place` on a scene's settings. Pointers stay there."""
+    """A class of the name with the fields of `group`, which is `place` in the scene's settings. Without pointers."""
     fields = {key: _field(place, key, field) for key, field in group.__annotations__.items() if _is_plain(field)}
     return type(name, (bpy.types.PropertyGroup,), {"__annotations__": fields, "__module__": __name__})
 
@@ -40,7 +40,7 @@ def _field(place, key, field):
 
 
 def _number(source, key, value):
-    """Of a choice, or of a set of choices: what Blender keeps."""
+    """Blender's stored number of an enum, or of a set of enum flags."""
     items = source.bl_rna.properties[key].enum_items
     return sum(items[v].value for v in value) if isinstance(value, set) else items[value].value
 

@@ -1,5 +1,5 @@
-"""The first stroke on an object that is no sculpt yet: the drag is kept, and once it is over Riffler asks whether the
-object is to be one. Blender would have moved the object otherwise."""
+"""The first stroke on an object that is not a sculpt yet: the drag is recorded, and after it Riffler asks whether to
+make the object a sculpt. Without this Blender would move the object."""
 
 import json
 import textwrap
@@ -15,7 +15,7 @@ from ..translations import local
 from . import chunks, fit, mesh_edits, sculpt_work, sculpts
 from .stroke_operator import MODES, MOVES, sample
 
-WIDE = 70  # characters in a line of a popup
+WIDE = 70  # characters per line of a popup
 NOTHING = "Nothing to sculpt here: drag on a mesh, or add a block, sphere or cylinder by Add > Mesh > Riffler"
 
 
@@ -32,7 +32,8 @@ class RIFFLER_OT_stroke_elsewhere(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        """Where the stroke itself is refused: keys of a tool are not asked in the order in which they are made."""
+        """Available where the stroke itself is refused: Blender does not try a tool's keys in the order in which they
+        are defined."""
         if not operator_parts.object_mode(cls, context):
             return False
         if context.region_data is None:
@@ -40,10 +41,10 @@ class RIFFLER_OT_stroke_elsewhere(bpy.types.Operator):
         ob = sculpts.active(context)
         if refusal(context) or ob is None or mesh_edits.made(ob):
             return True
-        return operator_parts.deny(cls, "The active sculpt gets the stroke itself")
+        return operator_parts.deny(cls, "The active sculpt is under the pointer: use Sculpt Stroke")
 
     def invoke(self, context, event):
-        """The drag belongs to this operator whatever comes of it, so that nothing is moved or selected by it."""
+        """Always captures the drag, so that it neither moves nor selects anything."""
         self._refused, self._rows, self._begin = refusal(context), [], time.perf_counter()
         target = None if self._refused else under(context, event) or object_surfaces.source_object(context)
         if not self._refused:
@@ -60,7 +61,7 @@ class RIFFLER_OT_stroke_elsewhere(bpy.types.Operator):
         }
         self._keep(event)
         if self._target and context.workspace is not None:
-            context.workspace.status_text_set(local("Riffler: let go to be asked what this is to be    Esc: cancel"))
+            context.workspace.status_text_set(local("Riffler: release to make this object a sculpt    Esc: cancel"))
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
@@ -99,7 +100,7 @@ class RIFFLER_OT_stroke_elsewhere(bpy.types.Operator):
 
 
 def say(context, text):
-    """At the pointer, where whoever drags looks; a line of the status bar is overlooked."""
+    """Shows a message at the pointer, where the user looks; one in the status bar is overlooked."""
 
     def draw(menu, context):
         for line in textwrap.wrap(local(text), WIDE):
@@ -109,7 +110,7 @@ def say(context, text):
 
 
 def refusal(context):
-    """Why nothing can be sculpted now, whatever lies under the pointer; otherwise nothing."""
+    """Why nothing can be sculpted now, under the pointer or elsewhere; otherwise ""."""
     heard = Heard()
     if operator_parts.busy(heard, context):
         return heard.text
@@ -120,7 +121,7 @@ def refusal(context):
 
 
 class Heard:
-    """Stands for an operator's class, and keeps why its button would be grey."""
+    """Stands in for an operator's class, and records why its button would be disabled."""
 
     text = ""
 
@@ -129,8 +130,7 @@ class Heard:
 
 
 def under(context, event):
-    """The object with a surface that the pointer is on; of a live sculpt's chunk, the sculpt. None where there is
-    none."""
+    """The object with a surface under the pointer; for a live sculpt's chunk, the sculpt. None if there is none."""
     from bpy_extras import view3d_utils
 
     region, space = context.region, context.region_data
@@ -146,14 +146,15 @@ def under(context, event):
 
 
 def unfit(context, ob):
-    """Why that object cannot become a sculpt, with the remedy; otherwise nothing."""
+    """Why that object cannot become a sculpt, with the remedy; otherwise ""."""
     if ob is None:
         return refusals.instance(context.object) or NOTHING
     if why := refusals.instance(ob):
         return why
     if ob.type not in object_surfaces.WITH_SURFACE:
         return NOTHING
-    if ob.name not in context.view_layer.objects or not ob.visible_get():  # one that the pointer is on all the same
+    # the pointer can hit such an object all the same
+    if ob.name not in context.view_layer.objects or not ob.visible_get():
         stands = (o for o in context.view_layer.objects if o.instance_collection is not None)
         of = next((o for o in stands if ob.name in o.instance_collection.all_objects), None)
         return refusals.instance(of) if of is not None else refusals.disabled(ob, context.view_layer) or NOTHING
@@ -161,24 +162,24 @@ def unfit(context, ob):
 
 
 def _fit(chosen, context):
-    """Pitch and cutter that suit the size which `chosen`, the fields of the operator below, has."""
+    """Sets pitch and cutter to suit the size in `chosen`, the properties of the operator below."""
     if chosen.side > 0:
         chosen.pitch = fitting.pitch(chosen.side)
         chosen.diameter = fit.cutter(context, chosen.side)
 
 
 class TakesDrag:
-    """Mixin of operators that ask first, and go on with the drag that was kept."""
+    """Mixin of operators that ask first, and then continue with the recorded drag."""
 
     mode: EnumProperty(name="Mode", items=MODES, default="REMOVE", options={"HIDDEN", "SKIP_SAVE"})
     stroke: StringProperty(
         name="Stroke",
         options={"HIDDEN", "SKIP_SAVE"},
-        description="What riffler.stroke takes, with a view that goes from the world to clip space; empty: no stroke",
+        description="Stroke as in riffler.stroke, with a view from world to clip space; empty: no stroke",
     )
 
     def go_on(self, context):
-        """The drag becomes a stroke on the sculpt that is active now."""
+        """Turns the drag into a stroke on the active sculpt."""
         if not self.stroke:
             return {"FINISHED"}
         data = json.loads(self.stroke)
@@ -195,16 +196,19 @@ class RIFFLER_OT_make_sculpt(TakesDrag, bpy.types.Operator):
     bl_label = "Make It a Sculpt?"
     bl_options = set()  # making the sculpt is one undo step, and the stroke another
 
-    object: StringProperty(name="Object", options={"HIDDEN", "SKIP_SAVE"}, description="Empty: the active one")
+    object: StringProperty(
+        name="Object", options={"HIDDEN", "SKIP_SAVE"}, description="Name of the object; empty: the active object"
+    )
     side: FloatProperty(
-        name="Longest side (mm)",
+        name="Longest Side (mm)",
         min=0.0,
         max=1e5,
         precision=2,
         options={"SKIP_SAVE"},
         update=lambda self, context: _fit(self, context),
-        description="The scene's unit becomes so many millimetres that the object is as long as this; nothing is "
-        "scaled. 0: chosen from the object",
+        description=(
+            "Length of the object's longest side, set by the scene's unit without scaling; 0: chosen from the object"
+        ),
     )
     pitch: FloatProperty(
         name="Pitch (mm)",
@@ -212,7 +216,7 @@ class RIFFLER_OT_make_sculpt(TakesDrag, bpy.types.Operator):
         max=1e5,
         precision=4,
         options={"SKIP_SAVE"},
-        description="Distance between rays: what the surface can resolve. 0: chosen from the size",
+        description="Distance between rays, the finest detail of the surface; 0: chosen from the size",
     )
     diameter: FloatProperty(
         name="Cutter (mm)",
@@ -220,7 +224,7 @@ class RIFFLER_OT_make_sculpt(TakesDrag, bpy.types.Operator):
         max=1e5,
         precision=3,
         options={"SKIP_SAVE"},
-        description="Diameter of the cutter. 0: chosen from the size",
+        description="Diameter of the cutter; 0: chosen from the size",
     )
 
     @classmethod
@@ -240,8 +244,8 @@ class RIFFLER_OT_make_sculpt(TakesDrag, bpy.types.Operator):
         if source is None:
             return
         column = layout.column(align=True)
-        column.label(text=local("{} is no sculpt yet.").format(source.name), icon="SCULPTMODE_HLT", translate=False)
-        column.label(text="OK makes one of it; the object stays, hidden.", icon="BLANK1")
+        column.label(text=local("{} is not a sculpt yet.").format(source.name), icon="SCULPTMODE_HLT", translate=False)
+        column.label(text="OK makes a sculpt of it and hides the object.", icon="BLANK1")
         layout.use_property_split = True
         column = layout.column(align=True)
         column.enabled = not fit.others(context)
@@ -275,7 +279,7 @@ class RIFFLER_OT_make_sculpt(TakesDrag, bpy.types.Operator):
         return bpy.data.objects.get(self.object) if self.object else object_surfaces.source_object(context)
 
     def _choose(self, context):
-        """Whatever was not chosen, from the object's size."""
+        """Fills in settings that were not given, from the object's size."""
         source = self._source(context)
         if why := unfit(context, source):
             raise ValueError(why)
@@ -288,21 +292,21 @@ class RIFFLER_OT_make_sculpt(TakesDrag, bpy.types.Operator):
 
 
 class RIFFLER_OT_edits_first(TakesDrag, bpy.types.Operator):
-    """Say what becomes of what Blender's own tools have made of the sculpt; then the stroke goes on"""
+    """Apply or discard the edits made with Blender's own tools, then make the stroke"""
 
     bl_idname = "riffler.edits_first"
-    bl_label = "Keep the Edits?"
+    bl_label = "Apply Mesh Edits?"
     bl_options = {"INTERNAL"}
 
     edits: EnumProperty(
         name="Edits",
         items=(
-            ("TAKE", "Take Edits", "The mesh as it is now becomes the sculpt's material"),
-            ("DROP", "Drop Edits", "The mesh is made from the volume again, as it was before them"),
+            ("TAKE", "Apply Mesh Edits", "Make the edited mesh the sculpt's material"),
+            ("DROP", "Discard Edits", "Rebuild the mesh from the volume, without the edits"),
         ),
         default="TAKE",
         options={"SKIP_SAVE"},
-        description="What becomes of them",
+        description="Whether to apply or discard the edits",
     )
 
     @classmethod
@@ -329,7 +333,7 @@ class RIFFLER_OT_edits_first(TakesDrag, bpy.types.Operator):
 
 
 def _units(ob):
-    """The longest side as it is shown, in Blender units."""
+    """The displayed longest side, in Blender units."""
     if min(ob.dimensions) <= 0:
         raise ValueError(f"{ob.name} is flat, so it has no volume: give it thickness, by the modifier Solidify")
     return fitting.longest(ob.dimensions)

@@ -1,4 +1,4 @@
-"""What a tool must not touch: the meshes of a collection, in a sculpt's millimetres."""
+"""Obstacles of a tool: the meshes of a collection, in a sculpt's millimetres."""
 
 import hashlib
 
@@ -8,14 +8,14 @@ import riffler.plan
 
 from ..blender import meshes, object_surfaces
 
-BETWEEN = (0.25, 0.5, 0.75)  # shares of a move at which it is looked whether it is clear
-CLEAR = 1e-3  # mm: how closely a lifted tool comes to what it touches
-_last = ("", None)  # the meshes' hash, and the collider of them: a stroke changes no fixture
+BETWEEN = (0.25, 0.5, 0.75)  # shares of a move at which its clearance is checked
+CLEAR = 1e-3  # mm: distance of a lifted tool from the fixture
+_last = ("", None)  # the meshes' hash, and their collider: a stroke changes no fixture
 
 
 def collider(context, collection, to_mm, without=()):
-    """riffler.Collider of the meshes that are seen of `collection`, or None where there are none. `to_mm`: (4, 4) world
-    → mm; `without`: names of objects that are no fixtures."""
+    """riffler.Collider of the visible meshes of `collection`, or None if there are none. `to_mm`: (4, 4) world → mm;
+    `without`: names of objects that are no fixtures."""
     global _last
     depsgraph = context.evaluated_depsgraph_get()
     vertices, triangles, count = [], [], 0
@@ -36,9 +36,9 @@ def collider(context, collection, to_mm, without=()):
 
 
 def keeper(tool, collider):
-    """Poses (n, 6) and seconds (n - 1,) → the same of poses that are free: lifted along the tool's axis, as little as
-    it takes, up before it goes there and down after it has left. Where no lift frees one the tool waits at the place
-    before; None where it has none."""
+    """Poses (n, 6) and seconds (n - 1,) → the same, free of collisions: lifted along the tool's axis as little as
+    possible, up before the move and down after it. If no lift frees a pose, the tool waits at the pose before; None if
+    there is none."""
 
     def keep_out(poses, dt):
         lifted, report = riffler.plan.lift(tool, poses, collider, tolerance=CLEAR)
@@ -53,8 +53,8 @@ def keeper(tool, collider):
 
 
 def _upright(poses, lifts, dt, clearance):
-    """The way between two poses of different lift goes through the corner above the lower one, where the straight way
-    would enter what the higher one is lifted over."""
+    """Inserts the corner above the lower one of two poses of different lift, since the straight move would enter the
+    fixture under the higher one."""
     rise = np.diff(lifts)
     steps = np.flatnonzero(np.abs(rise) > CLEAR)
     if not len(steps):

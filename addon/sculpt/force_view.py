@@ -1,6 +1,6 @@
 """Force and torque on the tool while it cuts: two arrows at its tip, and two gauges with their limits.
 
-Draw handlers are there only while there is something to show: from `begin` to `end`.
+Draw handlers exist only from `begin` to `end`.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from ..blender import bars, batches, views
 from ..common import glyphs, scale, units
 
 FORCE, TORQUE, BEYOND = (0.98, 0.62, 0.12), (0.25, 0.62, 0.98), (0.95, 0.15, 0.12)
-LENGTH, WIDTH = 140.0, 6.0  # pixels: an arrow at the limit, its shaft
-CORNER, BESIDE = (24.0, 60.0), 92.0  # pixels from the region's lower left, beside the toolbar; from gauge to gauge
+LENGTH, WIDTH = 140.0, 6.0  # pixels: length of an arrow at the limit, and width of its shaft
+CORNER, BESIDE = (24.0, 60.0), 92.0  # pixels from the region's lower left, next to the toolbar; from gauge to gauge
 
 kept = batches.Batches()
 _in_views = views.InViews()
@@ -24,10 +24,10 @@ _shown = None
 
 @dataclass
 class Shown:
-    """What is drawn now; whoever began it changes it."""
+    """The displayed values; the caller of `begin` updates them."""
 
     limit: float  # N
-    lever: float  # mm: torque is drawn as the force that it is at this distance
+    lever: float  # mm: torque is drawn as the force at this distance
     pose: np.ndarray | None = None  # (6,) mm
     force: np.ndarray = field(default_factory=lambda: np.zeros(3))
     torque: np.ndarray = field(default_factory=lambda: np.zeros(3))
@@ -43,7 +43,7 @@ class Shown:
 
 
 def begin(limit, lever, to_world):
-    """A Shown to be kept up to date. Whatever was shown before is not any more."""
+    """A Shown to be updated by the caller, in place of an earlier one."""
     global _shown
     end()
     _shown = Shown(limit, lever, to_world=np.asarray(to_world, float))
@@ -95,7 +95,7 @@ def _draw_arrows():
 
 
 def gauges(shown):
-    """Of force and torque."""
+    """The gauges of force and torque."""
     return (
         _gauge(shown.size, shown.limit, FORCE, f"{units.trim(shown.size, 2)} N"),
         _gauge(shown.moment, shown.limit * shown.lever, TORQUE, f"{units.trim(shown.moment, 1)} N·mm"),

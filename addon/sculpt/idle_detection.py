@@ -1,15 +1,15 @@
-"""Whether the artist is still at a live sculpt: asked by the timer that looks after them (sculpt/live_registry.py)."""
+"""Whether the artist still works at a live sculpt: called by the timer of sculpt/live_registry.py."""
 
 import bpy
 
-LOOK = 0.25  # s from one look to the next
-AWAY = 0.5  # s that somebody has to be away before the work ends
+LOOK = 0.25  # s between two checks
+AWAY = 0.5  # s of absence before the session ends
 
-TOOLS = "riffler."  # how the names of the sculpt tools begin
+TOOLS = "riffler."  # prefix of the sculpt tools' names
 
 
 def stays(ob):
-    """Whether some window has the sculpt as its active object, with one of the sculpt tools at hand."""
+    """Whether a window has the sculpt as its active object, with one of the sculpt tools active."""
     return any(_has(window, ob) for window in bpy.context.window_manager.windows)
 
 
@@ -21,13 +21,13 @@ def _has(window, ob):
 
 
 class IdleClock:
-    """How long nobody has been at one sculpt."""
+    """Measures how long one sculpt has been idle."""
 
     def __init__(self):
         self._since = None
 
     def long(self, here, now):
-        """True where nobody has been for too long; `here` is whether somebody is now."""
+        """True if the sculpt has been idle for too long; `here`: whether it is in use now."""
         if here:
             self._since = None
         elif self._since is None:

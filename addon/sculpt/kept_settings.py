@@ -1,4 +1,4 @@
-"""The cutter and the settings of strokes stay as they are through undo and redo, as brushes of Sculpt Mode do."""
+"""Keeps the cutter and the settings of strokes unchanged through undo and redo, like brushes of Sculpt Mode."""
 
 import bpy
 
@@ -10,7 +10,7 @@ _kept = {}  # (scene, group, field) → value
 
 
 def _fields(group):
-    """Names of those that hold a value of their own."""
+    """Names of the fields that hold a value of their own."""
     return [p.identifier for p in group.bl_rna.properties if p.type != "POINTER" and not p.is_readonly]
 
 

@@ -1,4 +1,4 @@
-"""Which live sculpts (live_sculpt.py) there are, and what Blender's events mean for them."""
+"""The live sculpts (live_sculpt.py), and the handlers of Blender's events for them."""
 
 import time
 
@@ -12,33 +12,33 @@ from .live_sculpt import LiveSculpt, lives
 from .undo_states import snapshots
 
 ERRORS = (ValueError, OSError, RuntimeError, MemoryError)
-_told = {}  # mark of a sculpt → what went wrong with it last
+_told = {}  # mark of a sculpt → its last reported problem
 
 
 def of(ob):
-    """The LiveSculpt of that object, or None where it has none."""
-    # To ask an object that has none yet for its settings gives it some, and undo takes it for another one.
+    """The LiveSculpt of that object, or None."""
+    # Reading the settings of an object that has none yet creates them, and undo then treats it as changed.
     live = lives.get(ob.riffler.mark) if lives and ob is not None else None
     return live if live is not None and live.awake and live.object == ob else None
 
 
 def content(ob):
-    """The sculpt's volume, cuts and mask, as they are now; not to be changed."""
+    """The sculpt's current volume, cuts and mask; not to be changed."""
     live = of(ob)
     return sculpt_store.content(ob.data) if live is None else Content(live.volume, live.cuts, live.mask, live.shaped)
 
 
 def begin(context, ob):
-    """The LiveSculpt of that sculpt, made where there is none. One of operator_parts.ERRORS where it cannot be."""
+    """The LiveSculpt of that sculpt, made if there is none. One of operator_parts.ERRORS if it cannot be made."""
     refusals.refuse(context, ob)
     live = of(ob)
     if live is not None:
         return live
-    for other in awake():  # what shares the mesh goes on with what was done to it
+    for other in awake():  # a sculpt with the same mesh starts from its result
         if other.object is not None and other.object.data == ob.data:
             other.end()
     before = lives.get(ob.riffler.mark)
-    if before is not None:  # the sculpt was changed by other means, or is the copy of one
+    if before is not None:  # other operations changed the sculpt, or it is a copy
         before.end()
     live = LiveSculpt(context, ob)
     lives[live.mark] = live
@@ -51,7 +51,8 @@ def awake():
 
 
 def end_all():
-    """Whatever needs the sculpts themselves calls it first. One of ERRORS where one cannot be ended; the others are."""
+    """Ends all sessions; call before using the sculpts' meshes. One of ERRORS if one cannot be ended; the
+    others are."""
     first = None
     for live in list(lives.values()):
         try:
@@ -63,8 +64,8 @@ def end_all():
 
 
 def _safely(mark, name, call, *args):
-    """Calls what nobody has asked for: it fails for one sculpt only, and that is told once, as it is tried again and
-    again. None where it fails."""
+    """Calls a background task for one sculpt: an error affects that sculpt only, and is reported once, since the task
+    is repeated. None if it fails."""
     try:
         result = call(*args)
     except ERRORS as error:
@@ -83,13 +84,13 @@ def _end_safely():
 
 
 def _watch():
-    """Timers do not run without a window."""
+    """Starts the timer; timers do not run without a window."""
     if lives and not bpy.app.background and not bpy.app.timers.is_registered(_look):
         bpy.app.timers.register(_look, first_interval=idle_detection.LOOK)
 
 
 def _look():
-    """Of the timer, while there is work. A render reads what would be changed."""
+    """Timer function, while there are live sculpts. Pauses during a render, which reads what would change."""
     if not bpy.app.is_job_running("RENDER"):
         for live in list(lives.values()):
             _safely(live.mark, live.name, live.look, time.monotonic())
@@ -114,13 +115,13 @@ def _before_render(*_):
 
 @bpy.app.handlers.persistent
 def _before_load(*_):
-    """Nobody knows yet whether the other file can be opened: where it cannot, this one stays, and has it all."""
+    """The other file may fail to open, and then this one stays: everything is kept."""
     _end_safely()
 
 
 @bpy.app.handlers.persistent
 def _after_load(*_):
-    """The other file is there. It may be an autosave, with work in it."""
+    """The other file is open. It may be an autosave, with unfinished work."""
     for live in list(lives.values()):
         live.forget()
     persistence.leave()
@@ -135,7 +136,7 @@ def _after_load(*_):
 
 
 def _settle(ob):
-    """The sculpt is what is packed: the last state, or an older one, which is said."""
+    """Makes the sculpt what is packed: the last state, or an older one, which is reported."""
     token, ob.riffler.token = ob.riffler.token, ""
     try:
         sculpts.refill(ob.data, sculpts.shown_mm_per_unit(ob.data))
@@ -143,12 +144,12 @@ def _settle(ob):
         undo_states.tell(str(error))
         return
     if sculpt_store.token(ob.data) != token:
-        undo_states.tell(f"{ob.name} is as it was last packed: the strokes since are in its journal, if there is one")
+        undo_states.tell(f"{ob.name} is as last saved: later strokes are in its journal, if there is one")
 
 
 @bpy.app.handlers.persistent
 def _before_undo(*_):
-    """What a device has cut up to now is a step, too: the one that is undone."""
+    """Makes what a device has cut so far a step, which this undo then undoes."""
     for live in awake():
         if live.device is not None:
             live.device.before_undo()
@@ -167,7 +168,7 @@ def _after_undo(*_):
 
 
 def _revive(mark):
-    """Chunks that nobody works at came back: the work goes on if its state is still known, and otherwise the sculpt is
+    """Chunks without a session came back: the session continues if its state is still known, otherwise the sculpt is
     what is packed."""
     ob = sculpts.marked(mark)
     if ob is not None:
@@ -198,7 +199,7 @@ def attach():
 
 
 def detach():
-    handlers.ignore(HANDLERS)  # first: ending the work below changes objects
+    handlers.ignore(HANDLERS)  # first: ending the sessions below changes objects
     handlers.stop(_look)
     try:
         _end_safely()

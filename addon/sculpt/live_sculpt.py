@@ -1,12 +1,13 @@
 """A live sculpt: a volume that changes stroke by stroke, shown in chunks, each stroke one of Blender's own undo steps.
 
-A stroke ends with a new token on the object; the state that it names stays in memory (undo_states.py). Undo and redo
-bring back the token and the chunks' meshes, and `follow` brings the volume. So a step costs what Blender takes for its
-objects, whatever the size of the sculpt. The sculpt's own mesh and the data in the file follow when they are needed:
-when the work ends, before the file is saved, when an operator wants the sculpt. Packing and journal: persistence.py.
+A stroke ends with a new token on the object; the state of that token stays in memory (undo_states.py). Undo and redo
+restore the token and the chunks' meshes, and `follow` restores the volume. So a step costs what Blender needs for its
+objects, at any size of the sculpt. The sculpt's own mesh and the data in the file are updated when they are
+needed: when the session ends, before the file is saved, when an operator uses the sculpt. Packing and journal:
+persistence.py.
 
-The work ends by itself once no window has the sculpt and one of its tools (idle_detection.py). A timer looks; nothing
-modal runs between strokes, since Blender makes no autosave while something does.
+The session ends by itself once no window has the sculpt and one of its tools active (idle_detection.py). A timer checks
+that; nothing modal runs between strokes, since Blender makes no autosave during a modal operator.
 """
 
 import bpy
@@ -28,7 +29,7 @@ lives = {}  # by the mark of the object (sculpts.new_mark); live_registry.py kee
 
 
 class LiveSculpt:
-    """Of the sculpt `ob`. ValueError, MemoryError where it cannot be; then nothing has changed."""
+    """The session of the sculpt `ob`. ValueError, MemoryError if it cannot start; then nothing has changed."""
 
     def __init__(self, context, ob):
         if why := refusals.linked(ob, ob.data):
@@ -50,7 +51,7 @@ class LiveSculpt:
 
     @classmethod
     def revived(cls, ob, state):
-        """Of a sculpt whose chunks an undo has brought back after the work at it had ended."""
+        """A session of a sculpt whose chunks an undo has restored after its session had ended."""
         self = cls.__new__(cls)
         self._take(ob, state.content)
         self._show_in(chunks.Chunks.found(ob, state.shape, self.mm))
@@ -65,17 +66,17 @@ class LiveSculpt:
         self._identity = SculptIdentity(ob)
         self.stages = Stages()
         self._become(content)
-        self.token = ""  # of the state
-        self._facts = None  # (token, of it)
+        self.token = ""  # of the current state
+        self._facts = None  # (token, facts of its state)
         self.maps, self.centre = symmetry.maps(), sculpts.middle(ob.data, self.volume)
-        self.strength = 0.5  # of brushes that blend
-        self.keep_out = None  # of the copies by symmetry, as BrushStroke's
-        self.stroke = None  # StrokeRecord of the one that is being made
-        self.cut_off = False  # whether the box has cut off what this stroke, or this session, put on
-        self._outline = None, None  # a tool, and its cutter's
+        self.strength = 0.5  # of smoothing brushes
+        self.keep_out = None  # for symmetric copies, like BrushStroke's
+        self.stroke = None  # StrokeRecord of the stroke in progress
+        self.cut_off = False  # whether the box has clipped material that this stroke, or this session, added
+        self._outline = None, None  # a tool, and its cutter's outline
         self.awake, self._idle = True, idle_detection.IdleClock()
-        self._objects = -1  # in the file, when copies were last looked for
-        self.device = None  # pen/session.py: PenSession, while one sculpts this
+        self._objects = -1  # number in the file at the last search for copies
+        self.device = None  # pen/session.py: PenSession, while a device sculpts this
 
     def _show_in(self, chunks, mesher=None):
         self.chunks, self._surface = chunks, ShownSurface(chunks, self.stages, mesher)
@@ -83,7 +84,7 @@ class LiveSculpt:
     # ------------------------------------------------------------------ where things are
     @property
     def object(self):
-        """The sculpt's object, or None where it was removed or something else has changed it."""
+        """The sculpt's object, or None if it was removed or changed by other operations."""
         return self._identity.object
 
     @property
@@ -110,7 +111,7 @@ class LiveSculpt:
 
     # ------------------------------------------------------------------ what it is
     def _become(self, content):
-        """Takes over a state: volume, mask, cuts, and whether other means have shaped it."""
+        """Takes over a state: volume, mask, cuts, and whether other operations have shaped it."""
         own = content.copy()
         self.volume, self.mask, self.cuts, self.shaped = own.volume, own.mask, own.cuts, own.shaped
 
@@ -119,7 +120,7 @@ class LiveSculpt:
 
     @property
     def facts(self):
-        """sculpts.facts of the state at the end of the last stroke: counted once for each."""
+        """sculpts.facts of the state at the end of the last stroke: computed once per state."""
         if self._facts is None or self._facts[0] != self.token:
             self._facts = self.token, sculpts.facts(Content(self.volume, self.cuts, self.mask))
         return self._facts[1]
@@ -129,7 +130,7 @@ class LiveSculpt:
         return self._surface.mesher(self.volume)
 
     def freeze(self):
-        """The surface as it is now, for picking while the stroke changes it."""
+        """The current surface, for picking while the stroke changes it."""
         return self.mesher.freeze()
 
     def show(self):
@@ -137,7 +138,7 @@ class LiveSculpt:
 
     # ------------------------------------------------------------------ a stroke
     def begin_stroke(self):
-        _ = self.mesher  # has to know what is shown before it changes
+        _ = self.mesher  # creates the mesher before the volume changes
         ob = self.object
         if ob is None:
             raise ValueError(f"{self.name} was changed or removed meanwhile")
@@ -146,7 +147,7 @@ class LiveSculpt:
         self.persistence.begin_stroke(ob, self.token, self.stroke.begin)
 
     def begin_device_stroke(self):
-        """What a device has begun to take belongs to a stroke."""
+        """Begins a stroke for what a device removes from now on."""
         self.stroke = StrokeRecord(undo_states.snapshots.get(self.token).content.copy())
         versions.lighten(self.object.data)
 
@@ -155,13 +156,13 @@ class LiveSculpt:
         return self.stroke is not None
 
     def give_up(self):
-        """What a device has taken since the last state is there again."""
+        """Restores what a device has removed since the last state."""
         if not self.in_stroke:
             self.begin_device_stroke()
         self.cancel_stroke()
 
     def took(self, tool, rows, mode):
-        """The poses, (n, 6), of a stroke with `tool`, a dictionary, that a device has made."""
+        """Records the poses, (n, 6), of a device's stroke with `tool`, a dictionary."""
         brush, tool = brushes.of(mode), riffler.Tool.from_dict(tool)
         if brush.puts_on:
             self._reach_out(tool, rows)
@@ -169,8 +170,8 @@ class LiveSculpt:
             brush.record(self.stroke, 0, tool, rows, True)
 
     def carve(self, tool, poses, dt=None, mode="remove", new=True):
-        """Applies a brush (`mode`: its id) along the poses, (n, 6), and along their copies by symmetry. `new`: they do
-        not go on from the last ones. Returns what Brush.apply does of the poses themselves."""
+        """Applies a brush (`mode`: its id) along the poses, (n, 6), and along their symmetric copies. `new`: they do
+        not continue the last ones. Returns the result of Brush.apply for the poses themselves."""
         brush = brushes.of(mode)
         if brush.idle(self):
             return None
@@ -207,7 +208,7 @@ class LiveSculpt:
         return cut
 
     def _extent(self, tool, poses):
-        """(lower, upper) of what the cutter may touch, in rays."""
+        """(lower, upper) of the region that the cutter may touch, in rays."""
         ends = np.vstack([poses[:, :3], poses[:, :3] + tool.length * poses[:, 3:]])
         lower, upper = ends.min(axis=0) - tool.diameter / 2, ends.max(axis=0) + tool.diameter / 2
         return (lower - self.volume.lower) / self.volume.pitch, (upper - self.volume.lower) / self.volume.pitch
@@ -218,7 +219,7 @@ class LiveSculpt:
         self.cut_off |= reach.is_cut_off(self._outline[1], poses, self.volume)
 
     def _kept_out(self, k, poses):
-        """A copy's poses, clear of the fixtures; None where nothing of it is. The first is no copy: it is clear."""
+        """A copy's poses, clear of the fixtures; None if there are none. The first is the original: it is clear."""
         if k == 0 or self.keep_out is None:
             return poses
         kept = self.keep_out(poses, np.ones(len(poses) - 1))
@@ -228,8 +229,8 @@ class LiveSculpt:
         return moving(kept[0])[0]
 
     def finish_stroke(self, context, label=""):
-        """What was carved since `begin_stroke` is a state of its own. The caller's operator makes the undo step; a
-        caller that has none gives it a `label`. False where nothing has changed."""
+        """Makes what was carved since `begin_stroke` a state of its own. The caller's operator makes the undo step; a
+        caller without one gives it a `label`. False if nothing has changed."""
         stroke, self.stroke = self.stroke, None
         if stroke is None or not stroke.begin.differs(self.volume, self.mask):
             return False
@@ -254,13 +255,13 @@ class LiveSculpt:
 
     # ------------------------------------------------------------------ undo
     def _remember(self, ob, token=""):
-        """What is shown is a state that undo and redo may ask for."""
+        """Stores the current state, which undo and redo may ask for."""
         state = State(self._content(), self._surface.shape, dict(self.chunks.fillings))
         self.token = undo_states.remember(state, token, self.token, {other.token for other in lives.values()})
         ob.riffler.token = self.token
 
     def follow(self):
-        """After an undo or a redo: this shows what Blender has brought back. False where it cannot."""
+        """After an undo or a redo: restores the state that Blender has restored. False if it cannot."""
         ob = self.object
         if ob is None:
             return False
@@ -270,11 +271,11 @@ class LiveSculpt:
         if not self.awake:
             if self.device is not None:
                 self.device.drop()
-            return True  # redo may bring it again
+            return True  # redo may restore it
         state = undo_states.state_of(ob)
         if state is None:
             return False
-        dropped = self.device is not None and not self.chunks.tool_there  # its beginning was undone
+        dropped = self.device is not None and not self.chunks.tool_there  # the start of its session was undone
         if dropped:
             self.device.drop()
         if dropped or self.device is not None or ob.riffler.token != self.token:
@@ -294,11 +295,11 @@ class LiveSculpt:
         self.token = token
         self._surface.outdate()
         if self.device is not None:
-            _ = self.mesher  # has to know what is shown before the device cuts on
+            _ = self.mesher  # creates the mesher before the device continues cutting
 
     # ------------------------------------------------------------------ the end
     def forget(self):
-        """Somebody works at it no more, and nothing of it is to be seen."""
+        """Ends the session, and removes its display."""
         if self.device is not None:
             self.device.drop()
         if self.awake and not self.chunks.there:
@@ -306,7 +307,7 @@ class LiveSculpt:
         self.persistence.end()
 
     def commit(self):
-        """The sculpt's mesh and data are what is shown."""
+        """Updates the sculpt's mesh and data from the displayed state."""
         ob = self.object
         if ob is None:
             return
@@ -320,12 +321,12 @@ class LiveSculpt:
     def _changed(self, ob):
         try:
             content = sculpt_store.content(ob.data)
-        except ValueError:  # what is packed is damaged: what is in memory takes its place
+        except ValueError:  # the packed data is damaged: the state in memory replaces it
             return True
         return content.differs(self.volume, self.mask)
 
     def end(self):
-        """Commits, and shows the sculpt itself again. An undo may bring the work back."""
+        """Commits, and shows the sculpt itself again. An undo may revive the session."""
         if self.device is not None:
             self.device.finish()
         ob = self.object
@@ -343,7 +344,7 @@ class LiveSculpt:
 
     # ------------------------------------------------------------------ between strokes
     def look(self, now):
-        """Ends the work that nobody is at any more; otherwise packs it while the hand rests."""
+        """Ends an idle session; otherwise packs the sculpt while the hand rests."""
         if not self.awake or self.in_stroke:
             return
         ob = self.object
@@ -361,8 +362,8 @@ class LiveSculpt:
             self._identity.written(ob)
 
     def _part_copies(self, ob):
-        """What was duplicated meanwhile is a sculpt of its own, with the state that is shown. What shares the mesh
-        shows it once the work has ended."""
+        """Makes duplicates sculpts of their own, with the displayed state. Objects that share the mesh show it once the
+        session has ended."""
         for other in [o for o in bpy.data.objects if o.riffler.mark == self.mark and o != ob]:
             other.riffler.mark = other.riffler.token = ""
             if not sculpts.is_sculpt(other) or other.data == ob.data:

@@ -1,5 +1,5 @@
-"""What Blender's own keys do over the view, for a sculpt that is worked at: it is hidden meanwhile and its chunks stand
-for it, so "frame selected" finds nothing and the modes are closed."""
+"""Replacements for Blender's own keys in the view, for a live sculpt: it is hidden and its chunks represent it, so
+"frame selected" finds nothing and its modes cannot be entered."""
 
 import bpy
 import numpy as np
@@ -10,12 +10,12 @@ from ..blender import meshes, operator_parts
 from ..common import poses
 from . import live_registry, sculpt_work, sculpts
 
-SENSOR = 36.0  # mm; a view's lens is one of a sensor as wide (Blender's DEFAULT_SENSOR_WIDTH)
-ROOM = 1.1  # around what is framed
+SENSOR = 36.0  # mm; a view's lens is that of a sensor of this width (Blender's DEFAULT_SENSOR_WIDTH)
+ROOM = 1.1  # margin around the framed box
 
 
 class RIFFLER_OT_frame(bpy.types.Operator):
-    """Look at the whole sculpt"""
+    """Fit the whole sculpt into the view"""
 
     bl_idname = "riffler.frame"
     bl_label = "Frame Sculpt"
@@ -39,7 +39,7 @@ class RIFFLER_OT_frame(bpy.types.Operator):
 
 
 def _corners(ob):
-    """(8, 3): of the volume's box, in the world."""
+    """(8, 3): corners of the volume's box, in the world."""
     p = ob.data.riffler
     sides = np.array([p.lower, p.upper]) / sculpts.shown_mm_per_unit(ob.data)
     box = np.array([[sides[i >> k & 1][k] for k in range(3)] for i in range(8)])
@@ -47,13 +47,15 @@ def _corners(ob):
 
 
 class RIFFLER_OT_leave(bpy.types.Operator):
-    """End the work at live sculpts, so that Blender's modes open: their strokes are in their meshes then"""
+    """Write the strokes into the sculpts' meshes, so that Blender's other modes can be used"""
 
     bl_idname = "riffler.leave"
     bl_label = "Leave for Another Mode"
-    bl_options = set()  # entering the mode is Blender's undo step
+    bl_options = set()  # entering the mode is Blender's own undo step
 
-    menu: BoolProperty(name="Menu", description="Open the pie of modes; off: enter Edit Mode", options={"SKIP_SAVE"})
+    menu: BoolProperty(
+        name="Menu", description="Open the pie menu of modes; off: enter Edit Mode", options={"SKIP_SAVE"}
+    )
 
     @classmethod
     def poll(cls, context):

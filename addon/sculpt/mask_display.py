@@ -1,4 +1,4 @@
-"""What is protected of a sculpt, as it is seen: faces of another material, in every way of shading."""
+"""The display of a sculpt's mask: protected faces have another material, in every shading mode."""
 
 import bpy
 import numpy as np
@@ -10,23 +10,23 @@ COLOUR = (0.16, 0.2, 0.3, 1.0)
 
 
 def on_grid_of(volume, mask):
-    """The mask of a sculpt that becomes `volume`, which has other rays or another box; None where nothing is left."""
+    """The mask of a sculpt that becomes `volume`, with other rays or another box; None if nothing stays protected."""
     if mask is None or mask.volume == 0:
         return None
     if (mask.pitch, mask.directions) == (volume.pitch, volume.directions):
         made = mask.grown(volume.lower, volume.upper)
         if np.array_equal([made.lower, made.upper], [volume.lower, volume.upper]):
-            return made  # on the rays that it had
+            return made  # on its previous rays
     made = mask.resampled(volume.pitch, volume.directions, volume.lower, volume.upper)
     return made if made.volume > 0 else None
 
 
 def show(mesh, mask, co, tri):
-    """Gives the faces that lie in `mask` (a volume or None) the mask's material. `co` (V, 3) mm in the sculpt's frame,
-    `tri` (F, 3): what the mesh was just filled with."""
+    """Gives the faces within `mask` (a volume or None) the mask's material. `co` (V, 3) mm in the sculpt's frame, `tri`
+    (F, 3): the mesh's current geometry."""
     slot = next((k for k, m in enumerate(mesh.materials) if m is not None and m.name == NAME), None)
     if mask is None:
-        if slot is not None:  # the last one, as it was put on
+        if slot is not None:  # the last one, where it was added
             mesh.materials.pop(index=slot)
         return
     if not len(tri):
@@ -36,7 +36,7 @@ def show(mesh, mask, co, tri):
         return
     if slot is None:
         if not mesh.materials:
-            mesh.materials.append(None)  # of what is free
+            mesh.materials.append(None)  # for unprotected faces
         mesh.materials.append(_material())
         slot = len(mesh.materials) - 1
     versions.write_material_indices(mesh, np.where(covered, slot, 0).astype(np.int32))

@@ -1,5 +1,5 @@
-"""Whether Blender's own tools have changed a sculpt's mesh, for panels: every vertex counts, and is looked at only once
-Blender has said that some mesh is another one."""
+"""Whether Blender's own tools have changed a sculpt's mesh, for panels: compares every vertex, but only after Blender
+has reported that some mesh has changed."""
 
 import bpy
 
@@ -11,14 +11,14 @@ _found = {}  # name of a mesh → whether it was changed
 
 
 def made(ob):
-    """True where Blender's own tools have changed a sculpt's mesh since it was shown. While chunks show the sculpt, its
-    mesh is not what is seen, and nobody has edited it."""
+    """True if Blender's own tools have changed a sculpt's mesh since it was shown. While chunks represent the sculpt,
+    its mesh is hidden, and cannot have been edited."""
     return live_registry.of(ob) is None and sculpts.changed(ob.data)
 
 
 def noticed(ob):
-    """The same for panels, which are drawn all the time. In Blender's own modes the vertices are not in the mesh yet: a
-    cheaper look has to do."""
+    """The same for panels, which are drawn all the time. In Blender's own modes the vertices are not in the mesh yet,
+    so a cheaper check is used."""
     if live_registry.of(ob) is not None:
         return False
     if ob.mode != "OBJECT":

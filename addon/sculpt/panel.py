@@ -8,7 +8,7 @@ from ..common import presets, units
 from ..translations import CONTEXT
 from . import brushes, first_stroke, live_registry, sculpts
 
-AROUND = 4  # places of the pie that are left for brushes
+AROUND = 4  # places of the pie reserved for brushes
 
 
 def brush_of(context):
@@ -23,7 +23,7 @@ def choose(layout, brush, **how):
 
 
 def fields(context):
-    """(of strokes, of the cutter): what panels show of the scene's settings, without undo steps."""
+    """(stroke settings, cutter settings) of the scene for panels, without undo steps."""
     shown = context.window_manager.riffler
     return shown.sculpt, shown.tool
 
@@ -48,7 +48,7 @@ def draw_header(context, layout):
 
 
 def begin_button(layout, context):
-    """Makes the active object a sculpt, where it is none and could be one."""
+    """A button that makes the active object a sculpt, if it can become one."""
     source = object_surfaces.source_object(context)
     if source is not None:
         layout.operator(first_stroke.RIFFLER_OT_make_sculpt.bl_idname, text="Make Sculpt", icon="SCULPTMODE_HLT")
@@ -106,16 +106,16 @@ class RIFFLER_PT_sculpt_tool(Sidebar, bpy.types.Panel):
 
 
 def looks(stages):
-    """What a look takes, and what it moves, in lines as short as the panel is wide. None where nobody has looked."""
+    """Time and counts of a display update, in lines as short as the panel is wide. Empty before the first update."""
     times, counts = stages.milliseconds(), stages.per_look()
     whole = sum(times.values())
     if not whole:
         return []
     shares = {name: f"{name} {100 * ms / whole:.0f} %" for name, ms in times.items()}
     middle, longest = stages.lag()
-    lag = [f"Lag: {middle:.0f} ms, {longest:.0f} at most"] if longest else []
+    lag = [f"Lag: {middle:.0f} ms, at most {longest:.0f}"] if longest else []
     return [
-        f"A look: {whole:.1f} ms",
+        f"Update: {whole:.1f} ms",
         f"{shares['cut']}, {shares['mesh']}",
         f"{shares['transfer']}, {shares['draw']}",
         f"{counts['bricks']:.1f} tiles, {counts['chunks']:.1f} chunks",

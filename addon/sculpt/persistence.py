@@ -1,10 +1,10 @@
-"""What is kept of a live sculpt beside memory: its packing in the .blend, and its journal for a crash.
+"""How a live sculpt persists outside memory: packed in the .blend, and in a journal for a crash.
 
-Blender's autosave and quit.blend write the last undo step and call no handler, so what they are to have must be there
-when a stroke ends. A small sculpt is packed then. Of a large one the image has the state of the last rest, and says
-which that is; the strokes since are in the journal (docs/decisions.md).
+Blender's autosave and quit.blend write the last undo step and call no handler, so their data must be ready when a
+stroke ends. A small sculpt is packed then. For a large one the image has the state of the last rest, with its token;
+later strokes are in the journal (docs/decisions.md).
 
-A journal goes once the file is saved, or is left on purpose: until then a crash would take what is in it.
+A journal is deleted once the file is saved, or is closed on purpose: until then a crash would lose its strokes.
 """
 
 import time
@@ -17,26 +17,26 @@ from ..common.packing import Packing
 from . import sculpt_store
 from .pure import journal
 
-AGAIN = 10.0  # s from a journal that could not be begun to the next attempt
+AGAIN = 10.0  # s from a journal that could not be started to the next attempt
 
-_open = []  # journals of work that goes on
-_crashed = None  # what was found, once somebody has looked
-_parked = []  # journals of work that has ended, and locks on those that were recovered, until the file is saved
+_open = []  # journals of running sessions
+_crashed = None  # the journals found, once searched
+_parked = []  # journals of ended sessions, and locks on recovered ones, until the file is saved
 
 
 def folder():
-    """Where journals are; the first makes it. FileNotFoundError where the chosen one is gone."""
+    """The folder for journals; makes the default one. FileNotFoundError if the chosen one no longer exists."""
     return preferences_access.target("journals")
 
 
 class Persistence:
-    """Of the sculpt `name`, whose state at the beginning is `token`."""
+    """Persistence of the sculpt `name`, whose initial state is `token`."""
 
     def __init__(self, ob, token):
         self._about = {"mark": ob.riffler.mark}
         self._packing = Packing(sculpt_store.nbytes(ob.data), time.monotonic())
-        self._task = None  # (token, tasks): of the bytes that will be packed
-        self.packed = token if sculpt_store.token(ob.data) == token else ""  # the state that the image has
+        self._task = None  # (token, tasks) that make the bytes to pack
+        self.packed = token if sculpt_store.token(ob.data) == token else ""  # the state in the image
         self.journal, self.problem, self._tried = None, "", -AGAIN
 
     # ------------------------------------------------------------------ strokes
@@ -68,22 +68,22 @@ class Persistence:
 
     # ------------------------------------------------------------------ strokes that a device's session writes itself
     def begin_session(self, ob, token, content, session):
-        """`session` has not started; until `end_session` its journal is the one."""
+        """`session` has not started; until `end_session` its journal is used."""
         before, self.journal, self.problem = self.journal, None, ""
-        if before is not None:  # it does not have what the session does
+        if before is not None:  # it does not contain the session's strokes
             _park(before)
         self._begin(lambda *about: journal.SessionJournal(session, folder(), content, token, *about), ob, token)
         if self.journal is not None:
             _settle(self.journal)
 
     def made(self, strokes):
-        """So many more strokes of the session, on the way to the next state."""
+        """Counts further strokes of the session, towards the next state."""
         self._packing.stroke(time.monotonic())
         if isinstance(self.journal, journal.SessionJournal):
             self.journal.made(strokes)
 
     def end_session(self):
-        """The folder of its journal, or None."""
+        """Returns the folder of its journal, or None."""
         ended, self.journal = self.journal, None
         if not isinstance(ended, journal.SessionJournal):
             self.journal = ended
@@ -102,27 +102,27 @@ class Persistence:
             self.journal.cancel()
 
     def finished(self, ob, content, token):
-        """The stroke has made `content`. What is small is packed with it, so that it is in the step of the undo."""
+        """The stroke has made `content`. A small sculpt is packed at once, so that the undo step includes it."""
         self._packing.stroke(time.monotonic())
         if self.journal is not None:
             self.journal.finish(token)
             self.journal.settled()
             self.problem = self.problem or self.journal.problem
-            if not self.journal.whole:  # the next begins with what this stroke has made
+            if not self.journal.whole:  # the next journal begins with this stroke's result
                 self.begin_stroke(ob, token, content)
         if self._packing.at_once:
             begin = time.perf_counter()
             self._pack(ob, content, token, sculpt_store.blocks(content), begin)
 
     def went(self, token):
-        """Undo or redo has brought this state."""
+        """Undo or redo has restored this state."""
         self._task = None
         if self.journal is not None:
             self.journal.go(token)
 
     # ------------------------------------------------------------------ while the hand rests
     def look(self, ob, content, token):
-        """True where the image was written."""
+        """Packs if it is due; True if the image was written."""
         now = time.monotonic()
         if self.journal is not None:
             _settle(self.journal)
@@ -152,7 +152,7 @@ class Persistence:
 
     # ------------------------------------------------------------------ the end
     def end(self, identity=""):
-        """The journal stays until the file, which has what was made under `identity`, is saved."""
+        """Ends the session. The journal stays until the file, which has its result under `identity`, is saved."""
         self._task = None
         if self.journal is not None:
             self.journal.ended = identity
@@ -161,7 +161,7 @@ class Persistence:
 
 
 def crashed(look=False):
-    """Journals that no process holds, the newest first: as they were when a file was opened, or with `look` as they are
+    """Journals that no process holds, the newest first: found when a file was opened, or with `look` found
     now."""
     global _crashed
     if look or _crashed is None:
@@ -169,13 +169,13 @@ def crashed(look=False):
             found = [f for place in preferences_access.folders("journals") for f in journal.crashed(place)]
             _crashed = sorted(found, key=lambda f: f.when, reverse=True)
         except OSError as error:
-            print(f"Riffler: no journals can be looked for: {error}")
+            print(f"Riffler: cannot search for journals: {error}")
             _crashed = []
     return _crashed
 
 
 def _settle(begun):
-    """Once what a journal began on is in its folder, those before it are not needed."""
+    """Drops older journals once this journal's initial state is in its folder."""
     if begun.settled() and not begun.problem:
         for other in [p for p in _parked if isinstance(p, journal.StrokeJournal)]:
             if other.token == begun.first or (other.ended and other.ended == begun.base):
@@ -190,18 +190,18 @@ def _park(thing):
 
 
 def park(lock, made):
-    """The journal that is locked was recovered: it goes when the file is saved with what it `made`, an identity."""
+    """The locked journal was recovered: it is deleted when the file is saved with its result `made`, an identity."""
     lock.made = made
     _park(lock)
 
 
 def told(token):
-    """The content of a state that memory does not have any more, from a journal; None where none knows it."""
+    """The content of a state that is no longer in memory, from a journal; None if no journal has it."""
     for begun in [k for k in (*_open, *_parked) if isinstance(k, journal.StrokeJournal)]:
         try:
             content = begun.state(token)
         except journal.PROBLEMS as error:
-            print(f"Riffler: a journal could not be told again: {error}")
+            print(f"Riffler: a journal could not be read: {error}")
             continue
         if content is not None:
             return content
@@ -209,20 +209,21 @@ def told(token):
 
 
 def saved():
-    """The file has it all. What was recovered and then undone it has not: that is offered again."""
+    """The file was saved with everything, except recovered sculpts whose recovery was undone: their journals are
+    offered again."""
     there = {sculpt_store.identity(mesh) for mesh in bpy.data.meshes if mesh.riffler.store is not None}
     if _drop(lambda lock: lock.made in there):
         crashed(look=True)
 
 
 def leave():
-    """The file was left on purpose, and its work with it; what an earlier Blender has left is still nobody's."""
+    """The file was closed on purpose, and its sessions with it; journals of an earlier Blender stay available."""
     _drop(lambda lock: False)
 
 
 def _drop(done):
-    """Deletes the journals, but for those that were recovered and are not `done`: they are anybody's again. True where
-    there are such."""
+    """Deletes the journals, except recovered ones that are not `done`, which become available again. True if there are
+    such."""
     released = False
     while _parked:
         thing = _parked.pop()

@@ -1,7 +1,7 @@
-"""The sculpt tool's cursor: the outline of the real cutter as a click would set it on the surface, its axis, and the
-place it goes in.
+"""The sculpt tool's cursor: the outline of the real cutter as a click would place it on the surface, its axis, and its
+point on the surface.
 
-Blender draws cursors over the finished view, so following the pointer costs no new picture of the sculpt.
+Blender draws cursors over the finished view, so following the pointer does not redraw the sculpt.
 """
 
 import numpy as np
@@ -12,18 +12,19 @@ from . import live_registry, sculpts
 from .pure import brush_stroke, symmetry
 from .pure.view_rays import ViewRays
 
-AXES = ((1.0, 0.25, 0.3), (0.45, 0.8, 0.1), (0.25, 0.55, 1.0))  # planes square to x, y and z, as Blender's axes
+# colours of planes perpendicular to x, y and z, as for Blender's axes
+AXES = ((1.0, 0.25, 0.3), (0.45, 0.8, 0.1), (0.25, 0.55, 1.0))
 SHADOW = (0.0, 0.0, 0.0, 0.55)
 SHOWN = 1.5  # diameters of the tool above its tip: more would cover the view
 
 kept = batches.Batches()
-pixels_per_mm = 10.0  # where the pointer was last: for Blender's radial control, which knows no place
-sizing = None  # sculpt/pure/sizing.Drag, while a size is set by the pointer's distance
-held = None  # the BrushStroke of the stroke that is made now, and what its tool is
+pixels_per_mm = 10.0  # at the pointer's last place: for Blender's radial control, which has no place
+sizing = None  # sculpt/pure/sizing.Drag, while the pointer's distance sets a size
+held = None  # the BrushStroke in progress, and its tool
 
 
 def sight(region, space, run):
-    """From where a region looks at a live sculpt, in the sculpt's millimetres."""
+    """A region's view of a live sculpt, in the sculpt's millimetres."""
     return ViewRays(meshes.matrix(space.perspective_matrix) @ run.to_world, (region.width, region.height))
 
 
@@ -55,7 +56,8 @@ def draw(context, brush, xy):
 
 
 def _on_surface(context, brush, run, tool, at):
-    """None where nothing is under the pointer, and where a stroke would be refused with a message: drawing has none."""
+    """None if nothing is under the pointer, and where a stroke would be refused with a message, which drawing does not
+    show."""
     global pixels_per_mm
     settings = context.scene.riffler.sculpt
     try:
@@ -82,7 +84,7 @@ def tool_lines(cutter, pose, place, normal, view):
     size = float(np.linalg.norm(across))
     shown = glyphs.meridian(outline, SHOWN * cutter.diameter)
     out = []
-    if size > 0.05:  # seen along its axis a tool is its ring
+    if size > 0.05:  # seen along its axis a tool is only its ring
         out.append((pose[:3] + shown[:, :1] * (across / size) + shown[:, 1:] * axis, True, True))
     line = np.vstack([points for part, points in outline if part == "cutter"])
     radius, height = line[np.argmax(line[:, 0])]
@@ -94,7 +96,7 @@ def tool_lines(cutter, pose, place, normal, view):
 
 
 def _planes(context, ob, region, space, corner, zoom):
-    """Where strokes are mirrored, as outlines of the planes within the stock's box; and the axis of radial copies."""
+    """Symmetry planes, as their outlines within the stock's box; and the axis of radial copies."""
     settings, p = context.scene.riffler.sculpt, ob.data.riffler
     if not settings.mirror and settings.radial < 2:
         return
@@ -109,8 +111,8 @@ def _planes(context, ob, region, space, corner, zoom):
 
 
 def _before(context, region, space, at):
-    """Where no sculpt is active: a ring as wide as the cutter would be on the active object if it were one
-    (common/fitting.py); without an object, any ring."""
+    """Without an active sculpt: a ring as wide as the cutter would be on the active object if it became one
+    (common/fitting.py); without an object, a ring of fixed size."""
     ob, pixels = context.object, 0.0
     if ob is not None and ob.type in object_surfaces.WITH_SURFACE and min(ob.dimensions) > 0:
         middle = meshes.matrix(ob.matrix_world) @ np.append(np.mean(ob.bound_box, axis=0), 1.0)
@@ -126,7 +128,7 @@ def _ring(at, radius):
 
 
 def _beside(context, ob, region, space, at):
-    """Off the surface, and before the first stroke: a ring as wide as the tool would be in the sculpt's middle."""
+    """Off the surface, and before the first stroke: a ring as wide as the tool at the sculpt's centre."""
     global pixels_per_mm
     p = ob.data.riffler
     mm = sculpts.shown_mm_per_unit(ob.data)

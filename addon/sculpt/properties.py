@@ -1,4 +1,4 @@
-"""How the sculpt tool's strokes are made; on the scene, beside the cutter."""
+"""Settings of the sculpt tool's strokes, on the scene, next to the cutter's."""
 
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty
@@ -8,15 +8,15 @@ from ..common import units
 from .pure import brush_stroke, symmetry
 
 AXES = (
-    ("NORMAL", "Surface normal", "The tool stands square to the surface under the pointer"),
-    ("VIEW", "View", "The tool points at whoever looks"),
+    ("NORMAL", "Surface Normal", "The tool stands perpendicular to the surface under the pointer"),
+    ("VIEW", "View", "The tool points towards the viewer"),
     ("UP", "Stock's Z", "The tool stands along the stock's +Z, as on a three-axis machine"),
-    ("TILT", "Pen tilt", "The tool leans as the tablet's pen does, upright on the view; a mouse does not lean"),
+    ("TILT", "Pen Tilt", "The tool tilts with the tablet's pen; with a mouse it points towards the viewer"),
 )
 PRESSURES = (
-    ("NONE", "Nothing", "The tablet's pressure changes nothing"),
-    ("DEPTH", "Depth", "The harder the pen is pressed, the deeper the tool goes"),
-    ("FEED", "Feed", "The harder the pen is pressed, the faster the tool is taken to move: more force"),
+    ("NONE", "Nothing", "Ignore the tablet's pressure"),
+    ("DEPTH", "Depth", "More pressure makes the stroke deeper"),
+    ("FEED", "Feed", "More pressure makes the tool's assumed speed higher, and so its force"),
 )
 LETTERS = (("X", "X", ""), ("Y", "Y", ""), ("Z", "Z", ""))
 MIRRORS = tuple((x, x, f"Mirror in the middle of the stock, along its {x}", 1 << k) for k, x in enumerate("XYZ"))
@@ -31,10 +31,10 @@ def _set_radius(self, value):
 
 
 class RifflerSculpt(bpy.types.PropertyGroup):
-    depth: length("Depth", 0.5, "How far the tool goes into the surface, or puts material on it, in mm", 1e-4, 1e4)
-    axis: EnumProperty(name="Axis", items=AXES, default="NORMAL", description="Where the tool points")
+    depth: length("Depth", 0.5, "Depth that the tool cuts into the surface, or height that it adds, in mm", 1e-4, 1e4)
+    axis: EnumProperty(name="Axis", items=AXES, default="NORMAL", description="Direction of the tool's axis")
     pressure: EnumProperty(
-        name="Pressure", items=PRESSURES, default="DEPTH", description="What a tablet's pressure does"
+        name="Pressure", items=PRESSURES, default="DEPTH", description="Effect of the tablet's pressure"
     )
     feed: FloatProperty(
         name="Feed",
@@ -43,7 +43,7 @@ class RifflerSculpt(bpy.types.PropertyGroup):
         max=1e5,
         precision=1,
         step=100,
-        description="In mm/s: how fast the tool is taken to move where the clock or the pressure does not say",
+        description="Speed of the tool in mm/s, where neither the clock nor the pressure sets it",
     )
     string: FloatProperty(
         name="Stabiliser",
@@ -53,43 +53,50 @@ class RifflerSculpt(bpy.types.PropertyGroup):
         max=500.0,
         precision=0,
         step=100,
-        description="The tool is pulled on a string of this length: a hand's trembling stays in the string",
+        description="Length of a string by which the pointer pulls the tool, which smooths out tremor",
     )
     mirror: EnumProperty(
         name="Mirror",
         items=MIRRORS,
         options={"ENUM_FLAG"},
         default=set(),
-        description="Every stroke is made on the other side of the stock's middle, too",
+        description="Mirror every stroke in the middle of the stock",
     )
     radial: IntProperty(
         name="Radial",
         default=1,
         min=1,
         max=64,
-        description="Every stroke is made so many times around the stock's middle",
+        description="Number of times that every stroke is made around the middle of the stock",
     )
-    radial_axis: EnumProperty(name="Radial axis", items=LETTERS, default="Z", description="Copies are turned about it")
+    radial_axis: EnumProperty(
+        name="Radial Axis", items=LETTERS, default="Z", description="Axis that the copies are turned about"
+    )
     strength: FloatProperty(
-        name="Strength", subtype="FACTOR", default=0.5, min=0.0, max=1.0, description="How much smoothing smooths"
+        name="Strength", subtype="FACTOR", default=0.5, min=0.0, max=1.0, description="Strength of the smoothing"
     )
     accumulate: BoolProperty(
         name="Accumulate",
         default=False,
-        description="Within one stroke the tool follows what it has already cut, deeper and deeper; otherwise the "
-        "surface as it was at the stroke's start",
+        description=(
+            "Let the tool cut deeper where one stroke crosses itself; off: it follows the surface from "
+            "before the stroke"
+        ),
     )
     fixtures: PointerProperty(
         name="Fixtures",
         type=bpy.types.Collection,
-        description="The tool stays out of this collection's meshes: the pointer's is lifted along its axis, a pen's "
-        "hand is pushed back; empty: nothing is in the way",
+        description=(
+            "Collection of meshes that the tool stays out of: the pointer's tool is lifted along its "
+            "axis, a pen pushes the hand back; empty: no fixtures"
+        ),
     )
     show_force: BoolProperty(
-        name="Show force",
+        name="Show Force",
         default=False,
-        description="Draw force, torque and a gauge while a mouse or a tablet cuts, which cannot feel them; a pen with "
-        "motors always shows them",
+        description=(
+            "Draw force, torque and a gauge while a mouse or a tablet cuts; a pen with motors always shows them"
+        ),
     )
     limit: FloatProperty(
         name="Limit",
@@ -98,8 +105,10 @@ class RifflerSculpt(bpy.types.PropertyGroup):
         max=1e5,
         precision=1,
         step=100,
-        description="In N: the gauge's mark, beyond which force is drawn in red; torque's is that at the tool's "
-        "diameter",
+        description=(
+            "Mark of the force gauge, in N: larger forces are drawn in red; the torque's mark is this "
+            "force times the tool's diameter"
+        ),
     )
     radius: FloatProperty(
         name="Radius",
@@ -109,11 +118,11 @@ class RifflerSculpt(bpy.types.PropertyGroup):
         precision=2,
         get=_radius,
         set=_set_radius,
-        description="Of the cutter: half its diameter, in mm",
+        description="Radius of the cutter, in mm",
     )
 
     def choice(self, mode):
-        """How a stroke is made; `mode`: of sculpt/pure/brush_stroke.py."""
+        """The settings of a stroke; `mode`: of sculpt/pure/brush_stroke.py."""
         return brush_stroke.Choice(
             mode=mode,
             depth=units.clean(self.depth),
@@ -125,5 +134,5 @@ class RifflerSculpt(bpy.types.PropertyGroup):
         )
 
     def maps(self):
-        """The stroke's copies, as sculpt/pure/symmetry.py has them."""
+        """The stroke's symmetric copies, in the form of sculpt/pure/symmetry.py."""
         return symmetry.maps("".join(sorted(self.mirror)), self.radial_axis, self.radial)

@@ -1,6 +1,6 @@
 """F and Shift F, [ and ]: radius, depth and strength of the sculpt tools, by the pointer's distance or in steps.
 
-Blender's own control of a size leaves an undo step, which settings of a brush do not.
+Blender's own radial control leaves an undo step, which settings of a brush do not.
 """
 
 import bpy
@@ -12,12 +12,12 @@ from . import pointer
 from .pure import sizing
 
 FIELDS = (
-    ("RADIUS", "Radius", "Of the cutter"),
-    ("DEPTH", "Depth", "How far the tool goes in"),
-    ("STRENGTH", "Strength", "How much smoothing smooths"),
+    ("RADIUS", "Radius", "Radius of the cutter"),
+    ("DEPTH", "Depth", "Depth of the stroke"),
+    ("STRENGTH", "Strength", "Strength of the smoothing"),
 )
-SHORTER = 0.9  # of a size: one step
-FACTOR_PIXELS = 200.0  # a whole strength
+SHORTER = 0.9  # ratio of sizes for one step
+FACTOR_PIXELS = 200.0  # pixels for the full strength
 
 WORDS = ("ZERO", "ONE", "TWO", "THREE", "FOUR", "FIVE", "SIX", "SEVEN", "EIGHT", "NINE")
 DIGITS = {
@@ -31,16 +31,15 @@ DIGITS = {
 
 
 class RIFFLER_OT_resize(bpy.types.Operator):
-    """Set the size by the pointer's distance from the middle of the circle, or by digits. Shift: finer. Ctrl: round
-    numbers"""
+    """Set the size by the pointer's distance from the centre of the circle, or type a number (Shift: finer, Ctrl:
+    round numbers)
+    """
 
     bl_idname = "riffler.resize"
     bl_label = "Resize Cutter"
     bl_options = set()  # settings of a brush are no undo steps
 
-    field: EnumProperty(
-        name="Field", items=FIELDS, default="RADIUS", options={"SKIP_SAVE"}, description="Which size is set"
-    )
+    field: EnumProperty(name="Field", items=FIELDS, default="RADIUS", options={"SKIP_SAVE"}, description="Size to set")
 
     @classmethod
     def poll(cls, context):
@@ -76,7 +75,7 @@ class RIFFLER_OT_resize(bpy.types.Operator):
     def _set(self, context, value):
         settings = context.scene.riffler.sculpt
         setattr(settings, self._name, value)
-        self._drag.value = getattr(settings, self._name)  # as its field allows
+        self._drag.value = getattr(settings, self._name)  # clamped to its field's range
         self._show(context)
 
     def _show(self, context):
@@ -102,7 +101,7 @@ class RIFFLER_OT_size_step(bpy.types.Operator):
     bl_label = "Step Cutter Size"
     bl_options = set()
 
-    larger: BoolProperty(name="Larger", options={"SKIP_SAVE"}, description="Off: smaller")
+    larger: BoolProperty(name="Larger", options={"SKIP_SAVE"}, description="Make the cutter larger; off: smaller")
 
     def execute(self, context):
         settings = context.scene.riffler.sculpt

@@ -2,8 +2,8 @@
 
 The *mesh* owns it, so undo, copy, append and linked duplicates treat surface and volume as one thing, and it goes when
 the mesh goes. A copy of a mesh shares the image until one of the two is written. Sculpts need no handler of undo and
-redo: Blender brings back the mesh together with the content id of its volume, and the volume of that id is in the cache
-or in the packed image that came back too.
+redo: Blender restores the mesh together with the content id of its volume, and the volume of that id is in the cache or
+in the packed image that was restored, too.
 """
 
 import bpy
@@ -13,7 +13,7 @@ from ..blender import handlers, packed_images
 from ..common.contents import Content, ContentCache
 from .pure import sculpt_payload
 
-TOKEN = "riffler_token"  # on the image: the state of a live sculpt that it has (sculpt/live_registry.py)
+TOKEN = "riffler_token"  # on the image: the state of a live sculpt in it (sculpt/live_registry.py)
 _cache = ContentCache()
 
 
@@ -22,16 +22,16 @@ def clear_cache():
 
 
 def identity(mesh):
-    """The content id, or "" where the mesh is no sculpt."""
+    """The content id, or "" if the mesh is not a sculpt."""
     return packed_images.identity(mesh.riffler.store)
 
 
 def content(mesh):
-    """The mesh's volume and cuts. The volume is shared: copy it before changing it. ValueError where the data is not
-    what was written."""
+    """The mesh's volume and cuts. The volume is shared: copy it before changing it. ValueError if the data is
+    damaged."""
     key = identity(mesh)
     if not key:
-        raise ValueError(f"{mesh.name} is no sculpt")
+        raise ValueError(f"{mesh.name} is not a sculpt")
     found = _cache.get(key)
     if found is None:
         block, cuts, mask, shaped = sculpt_payload.decode(packed_images.read(mesh.riffler.store, "the sculpt"), key)
@@ -42,18 +42,18 @@ def content(mesh):
 
 
 def token(mesh):
-    """The state of a live sculpt that is packed, or ""."""
+    """The packed state of a live sculpt, or ""."""
     image = mesh.riffler.store
     return image.get(TOKEN, "") if image else ""
 
 
 def mark_state(mesh, token):
-    """What is packed is the state `token`."""
+    """Marks the packed data as the state `token`."""
     mesh.riffler.store[TOKEN] = token
 
 
 def nbytes(mesh):
-    """Of what is packed."""
+    """Size of the packed data."""
     file = mesh.riffler.store.packed_file
     return file.size if file else 0
 
@@ -64,8 +64,8 @@ def blocks(content):
 
 
 def write(mesh, content, token="", made=None):
-    """Makes `content`, a live sculpt's state `token`, the mesh's; returns the bytes kept. It must not be changed after
-    it. `made`: its blocks, where they are made already."""
+    """Makes `content`, a live sculpt's state `token`, the mesh's; returns the bytes stored. It must not be changed
+    afterwards. `made`: its blocks, if they are made already."""
     volume, mask = made or blocks(content)
     block = sculpt_payload.encode(volume, content.cuts, mask, content.shaped)
     key = sculpt_payload.content_id(block)
@@ -84,7 +84,7 @@ def _shared(mesh, image):
 
 @bpy.app.handlers.persistent
 def _on_load(*_):
-    clear_cache()  # another file: the memory is worth more than what it held
+    clear_cache()  # another file: frees the cache's memory
 
 
 _HANDLERS = {"load_post": _on_load}

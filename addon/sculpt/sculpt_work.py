@@ -1,4 +1,4 @@
-"""What operators on the active sculpt have in common: why they are refused, what they warn of, and long work on it."""
+"""What operators on the active sculpt share: refusals, warnings, and long work on it."""
 
 import bpy
 import numpy as np
@@ -9,8 +9,12 @@ from ..common import json_object, units
 from ..translations import local
 from . import live_registry, mesh_edits, sculpt_store, sculpts
 
-EDITS_FIRST = "{} was edited in Blender's own modes: Take Edits keeps that, Rebuild Mesh drops it; then go on"
-EDITS_LEFT_OUT = "The mesh was edited: what is made is the volume, without the edits. Take Edits takes them over first"
+EDITS_FIRST = (
+    "{} was edited in Blender's own modes: use Apply Mesh Edits to keep the edits, or Rebuild Mesh to discard them"
+)
+EDITS_LEFT_OUT = (
+    "The mesh was edited, but the result has the volume without the edits: use Apply Mesh Edits first to include them"
+)
 
 
 def tool_of_text(text):
@@ -19,10 +23,10 @@ def tool_of_text(text):
 
 
 class TakesTool:
-    """Mixin of operators that cut with the scene's tool or one that they are given."""
+    """Mixin of operators that cut with the scene's tool or a given one."""
 
     tool: bpy.props.StringProperty(
-        name="Tool", options={"HIDDEN", "SKIP_SAVE"}, description="A tool as JSON; empty: the scene's tool"
+        name="Tool", options={"HIDDEN", "SKIP_SAVE"}, description="Tool as JSON; empty: the scene's tool"
     )
 
     def tool_dict(self, context):
@@ -30,7 +34,7 @@ class TakesTool:
 
 
 def sculpt_poll(cls, context):
-    """True where the active object is a sculpt that can be changed; otherwise the button's tooltip says why not."""
+    """True if the active object is a sculpt that can be changed; otherwise the button's tooltip gives the reason."""
     ob = sculpts.active(context)
     if ob is None:
         return operator_parts.deny(cls, no_sculpt(context))
@@ -42,25 +46,25 @@ def sculpt_poll(cls, context):
 
 
 def no_sculpt(context):
-    """Why the active object is none, with the step that helps."""
+    """Why there is no active sculpt, with the remedy."""
     return refusals.instance(context.object) or "Select a sculpt first, or make a new stock"
 
 
 def refuse_edits(ob):
-    """ValueError where Blender's own tools have changed the mesh of a sculpt since it was shown: it would be shown anew
-    from the volume, and nobody's work is dropped unasked."""
+    """ValueError if Blender's own tools have changed the mesh of a sculpt since it was shown: rebuilding it from the
+    volume would discard the user's work without asking."""
     if mesh_edits.made(ob):
         raise ValueError(local(EDITS_FIRST).format(ob.name))
 
 
 def tell_edits(operator, ob):
-    """The same as a warning, for what only reads the volume and leaves the mesh."""
+    """The same as a warning, for work that only reads the volume and leaves the mesh unchanged."""
     if mesh_edits.made(ob):
         operator.report({"WARNING"}, local(EDITS_LEFT_OUT))
 
 
 def check_state(operator, context, ob):
-    """ValueError where a sculpt cannot be worked with; a warning where what is seen is not its volume, as it is scaled,
+    """ValueError if a sculpt is unusable; a warning if its display differs from its volume, since it is scaled,
     mirrored or modified."""
     refusals.refuse(context, ob)
     for why in filter(None, (refusals.scaled(ob), refusals.modified(ob))):
@@ -68,18 +72,18 @@ def check_state(operator, context, ob):
 
 
 def tell_made(operator, ob):
-    """The size of a new sculpt's box, and what its mesh has."""
+    """Reports the size of a new sculpt's box, and of its mesh."""
     size = np.subtract(ob.data.riffler.upper, ob.data.riffler.lower)
     triangles = units.counted(len(ob.data.polygons), "triangle")
     operator.report({"INFO"}, f"{ob.name}: {units.format_size(size)}, {triangles}")
 
 
 class SculptWork(LongWork):
-    """Mixin; a subclass makes the job from what `take` gives and ends in `keep`."""
+    """Mixin; a subclass makes the job from the result of `take` and ends with `keep`."""
 
     bl_options = {"REGISTER", "UNDO"}
-    from_edits = False  # it takes over what Blender's own tools have made of the mesh
-    leaves_mesh = False  # it makes something else, and the mesh stays as it is
+    from_edits = False  # True if it applies the edits of Blender's own tools
+    leaves_mesh = False  # True if its result is another object, and the mesh stays unchanged
 
     @classmethod
     def poll(cls, context):
@@ -108,5 +112,5 @@ class SculptWork(LongWork):
         return bpy.data.objects[self._object].data
 
     def keep(self, content, unseen=""):
-        """`unseen`: as sculpts.commit's."""
+        """`unseen`: that of sculpts.commit."""
         sculpts.commit(self.mesh, content, sculpts.shown_mm_per_unit(self.mesh), unseen=unseen)

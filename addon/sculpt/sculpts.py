@@ -17,19 +17,19 @@ def is_sculpt(ob):
 
 
 def active(context):
-    """The active object where it is a sculpt, otherwise None."""
+    """The active object if it is a sculpt, otherwise None."""
     ob = context.object
     return ob if is_sculpt(ob) else None
 
 
 def new_mark(ob):
-    """What a sculpt that is worked at is known by, whatever it is called; undo brings it back with the object."""
+    """A new identifier of a live sculpt, independent of its name; undo restores it with the object."""
     ob.riffler.mark = uuid.uuid4().hex
     return ob.riffler.mark
 
 
 def marked(mark, name=""):
-    """The sculpt of that mark, or None. Its name, if that is known, tells it from its copies, which have the mark."""
+    """The sculpt of that mark, or None. Its name, if known, distinguishes it from copies, which have the same mark."""
     ob = bpy.data.objects.get(name)
     if ob is not None and ob.riffler.mark == mark:
         return ob if is_sculpt(ob) else None
@@ -37,13 +37,13 @@ def marked(mark, name=""):
 
 
 def key_of(ob):
-    """What bpy.data.objects takes an object by, name and file: a linked one may be called as one of this file."""
+    """The key of bpy.data.objects, name and file: a linked object may have the name of a local one."""
     return ob.name, ob.library.filepath if ob.library else None
 
 
 def new_object(context, name, content, matrix, mm_per_unit=None, collections=(), unseen=""):
     """A new sculpt at `matrix` (world), active and the only one selected, in these collections, or in the active one.
-    `mm_per_unit`: None for the scene's; `unseen`: as `commit`'s."""
+    `mm_per_unit`: None for the scene's; `unseen`: that of `commit`."""
     mesh = bpy.data.meshes.new(name)
     try:
         commit(mesh, content, mm_per_unit or scene_units.mm_per_unit(context.scene), unseen=unseen)
@@ -59,7 +59,7 @@ def new_object(context, name, content, matrix, mm_per_unit=None, collections=(),
 
 
 def _home(context):
-    """The active collection; the scene's own where nothing can be put into that one, or would not be seen in it."""
+    """The active collection; the scene's own if nothing can be added to that one, or it is not visible."""
     active = context.collection
     if active.library or active.override_library or context.layer_collection.exclude:
         return context.scene.collection
@@ -67,7 +67,7 @@ def _home(context):
 
 
 def select_only(context, ob):
-    """Active, and the only one selected."""
+    """Makes the object active, and the only one selected."""
     for other in context.selected_objects:
         other.select_set(False)
     ob.select_set(True)
@@ -75,16 +75,16 @@ def select_only(context, ob):
 
 
 def take_looks(ob, other):
-    """The materials of another sculpt."""
+    """Copies the materials of another sculpt."""
     for material in other.data.materials:
         ob.data.materials.append(material)
 
 
 def commit(mesh, content, mm_per_unit, token="", unseen=""):
     """Makes `content` the mesh's and shows its volume. It must not be changed afterwards. Returns triangles. `unseen`:
-    what to say where there would be none; without it the mesh may be empty."""
+    the error if there would be none; without it the mesh may be empty."""
     _must_be_fillable(mesh)
-    surface = content.volume.to_mesh(report={})  # whatever can fail comes before the first change
+    surface = content.volume.to_mesh(report={})  # anything that can fail comes before the first change
     if unseen and not len(surface.triangles):
         raise ValueError(unseen)
     sculpt_store.write(mesh, content, token)
@@ -107,17 +107,17 @@ def _show_whole(mesh, content, surface, mm_per_unit):
 
 
 def middle(mesh, volume):
-    """(3,) mm: where strokes on the mesh's volume are mirrored. It stays when the box becomes longer on one side."""
+    """(3,) mm: the centre of symmetry of strokes on the mesh's volume. It stays when the box grows on one side."""
     return 0.5 * (volume.lower + volume.upper) - np.array(mesh.riffler.off_middle)
 
 
 def keep_middle(mesh, volume, before):
-    """The mesh has got this volume, with another box: its `middle` is the one that was there `before`."""
+    """The mesh has this volume, with another box: keeps its `middle` at the one `before`."""
     mesh.riffler.off_middle = np.array(mesh.riffler.off_middle) + middle(mesh, volume) - before
 
 
 class Facts(NamedTuple):
-    """What a panel says of a sculpt; mesh.riffler has the same."""
+    """A panel's facts of a sculpt; mesh.riffler has the same."""
 
     material: float  # mm³
     nbytes: float
@@ -131,8 +131,8 @@ def facts(content):
 
 
 def show(mesh, surface, mm_per_unit, mask=None):
-    """Fills the mesh from a surface in millimetres; what lies in `mask`, a volume, is seen to be protected. Colours of
-    distances were those of the surface before."""
+    """Fills the mesh from a surface in millimetres; faces within `mask`, a volume, are shown as protected. Deviation
+    colours are removed, since they belong to the previous surface."""
     if attributes.hide_distance(mesh):
         attributes.settle()
     meshes.fill(mesh, np.asarray(surface.vertices) / mm_per_unit, surface.triangles)
@@ -152,8 +152,8 @@ def refill(mesh, mm_per_unit):
 
 @contextmanager
 def in_object_mode(ob):
-    """Blender fills a mesh in no other mode. What follows is done in Object Mode, and the mode taken up again, with an
-    undo step, since those of the mode before have other geometry."""
+    """Context in Object Mode, the only one in which Blender fills a mesh. The previous mode is entered again
+    afterwards, with an undo step, since its own steps have other geometry."""
     mode = ob.mode
     if mode == "OBJECT":
         yield
@@ -173,14 +173,13 @@ def _set_mode(ob, mode):
 
 
 def behind(mesh):
-    """True where what is packed has gone on since the mesh showed it: of a live sculpt."""
+    """True if the packed data is newer than the displayed mesh: of a live sculpt."""
     return mesh.riffler.shown_of not in ("", sculpt_store.identity(mesh))
 
 
 def edited(mesh):
-    """True where the mesh is not the surface that was last shown: other counts, or other places of a few vertices (as
-    after Apply Scale), or shape keys. Cheap enough for every drawing of a panel; a few pulled vertices escape it.
-    """
+    """True if the mesh differs from the surface last shown: other counts, or other coordinates of a few vertices (as
+    after Apply Scale), or shape keys. Cheap enough for every drawing of a panel; it misses a few moved vertices."""
     if mesh.shape_keys is not None:
         return True
     counts, places = _fingerprint(mesh)
@@ -188,8 +187,8 @@ def edited(mesh):
 
 
 def changed(mesh):
-    """`edited`, by every vertex: for what takes the sculpt up for work (5 ms for a million). A file of an older add-on
-    has no checksum to compare with."""
+    """`edited`, by every vertex: before work on the sculpt (5 ms for a million vertices). A file of an older add-on has
+    no checksum to compare with."""
     return edited(mesh) or mesh.riffler.shown_crc not in ("", _checksum(mesh))
 
 
@@ -205,7 +204,7 @@ def _fingerprint(mesh):
 
 
 def shown_mm_per_unit(mesh):
-    """Millimetres of the volume in one Blender unit of its mesh, as it is shown now."""
+    """Millimetres of the volume in one Blender unit of its mesh, as currently displayed."""
     return scene_units.clean(mesh.riffler.mm_per_unit)
 
 
@@ -219,7 +218,7 @@ def to_world_mm(ob, scene):
 
 
 def from_world(ob):
-    """(4, 4): Blender units in the world → millimetres in the sculpt's frame. ValueError where it has none."""
+    """(4, 4): Blender units in the world → millimetres in the sculpt's frame. ValueError if it has none."""
     if why := refusals.flat(ob):
         raise ValueError(why)
     m = np.linalg.inv(meshes.matrix(ob.matrix_world))

@@ -1,4 +1,4 @@
-"""What the views show of a live sculpt: chunks, filled by a mesher of its volume."""
+"""The displayed surface of a live sculpt: chunks, filled by a mesher of its volume."""
 
 import riffler
 
@@ -7,25 +7,25 @@ from ..common import blocks
 
 
 class ShownSurface:
-    """`chunks`: chunks.Chunks. `stages` counts what it costs. Strokes say in `reached` and `masked` where material and
-    mask may have changed since the last look: extents in rays."""
+    """`chunks`: chunks.Chunks. `stages` measures the cost. Strokes add to `reached` and `masked` where material and
+    mask may have changed since the last update: extents in rays."""
 
     def __init__(self, chunks, stages, mesher=None):
         self.chunks, self._stages, self._mesher = chunks, stages, mesher
-        self._stale = False  # the mesher has another state than the volume
+        self._stale = False  # True if the mesher's state differs from the volume
         self.reached, self.masked = [], []
 
     @property
     def shape(self):
-        """Of the lattice of bricks."""
+        """Shape of the lattice of bricks."""
         return tuple(self._mesher.shape)
 
     def outdate(self):
-        """The volume has become another one, and the chunks show it already."""
+        """The volume was replaced, and the chunks show the new one already."""
         self._stale = True
 
     def mesher(self, volume):
-        """riffler.Mesher of the volume as it is: undo alone does not need it, the next stroke does."""
+        """riffler.Mesher of the current volume, made on demand: undo alone does not need it, the next stroke does."""
         if self._mesher is None:
             self._mesher = riffler.Mesher(volume)
         elif self._stale:
@@ -34,11 +34,11 @@ class ShownSurface:
         return self._mesher
 
     def show(self, volume, mask, place):
-        """Meshes what has changed since the last look, and fills the chunks that it is in. `place`: of the sculpt."""
+        """Meshes what has changed since the last update, and fills its chunks. `place`: matrix of the sculpt."""
         with self._stages.of("mesh"):
             mesher = self.mesher(volume)
             bricks = mesher.update(volume)
-        for extent in self.masked:  # the surface is the same there, but not its colour
+        for extent in self.masked:  # there the surface is the same, but not its colour
             bricks = sorted({*bricks, *blocks.within(mesher.shape, *extent)})
         bricks = self._with_borders(bricks)
         self.masked, self.reached = [], []
@@ -48,7 +48,7 @@ class ShownSurface:
         self._stages.looked()
 
     def _with_borders(self, bricks):
-        """And those whose triangles are the same, but whose normals at the border to a changed one are others."""
+        """Adds bricks with unchanged triangles whose normals at the border to a changed one differ."""
         if not versions.OWN_NORMALS or not len(bricks):
             return bricks
         shape = self._mesher.shape
@@ -56,7 +56,7 @@ class ShownSurface:
         return sorted({*bricks, *(swept & blocks.beside(shape, bricks))})
 
     def adopt(self, fillings, volume, mask):
-        """Blender has brought the chunks' meshes back after an undo; the rest is filled."""
+        """Blender has restored the chunks' meshes after an undo; fills the rest."""
         stale = self.chunks.adopt(fillings)
         if stale:
             self.chunks.update(self.mesher(volume), stale, mask, self._stages)

@@ -1,4 +1,4 @@
-"""Handles of the sculpt tool's cutter, beside the sculpt: one for its radius, one for how deep it goes."""
+"""Handles of the sculpt tool's cutter, next to the sculpt: one for its radius, one for the depth of strokes."""
 
 import bpy
 from mathutils import Matrix, Vector
@@ -6,7 +6,8 @@ from mathutils import Matrix, Vector
 from . import pointer, sculpts
 
 COLOUR, STRONG = (1.0, 0.55, 0.2), (1.0, 0.8, 0.5)
-ASIDE = 0.3  # of the stock's length: from it to the middle of the handles, which stays while they are pulled
+# share of the stock's length: distance from it to the centre of the handles, which does not move while they are dragged
+ASIDE = 0.3
 
 
 class RIFFLER_GGT_size(bpy.types.GizmoGroup):
@@ -38,11 +39,11 @@ class RIFFLER_GGT_size(bpy.types.GizmoGroup):
         settings = context.scene.riffler.sculpt
         middle, unit = _place(ob)
         for gizmo in (self._ring, self._radius, self._depth):
-            gizmo.hide = unit == 0  # scaled to nothing
+            gizmo.hide = unit == 0  # scaled to zero
         turn = ob.matrix_world.to_quaternion().to_matrix().to_4x4()
-        # Without the view's scale, Blender does not look at scale_basis either.
+        # Without the view's scale, Blender ignores scale_basis, too.
         self._ring.matrix_basis = Matrix.Translation(middle) @ turn @ Matrix.Scale(settings.radius * unit, 4)
-        # An arrow's own way is its z: along the stock's x for the radius, down for the depth.
+        # An arrow points along its z: along the stock's x for the radius, down for the depth.
         for gizmo, way in ((self._radius, (1, 0, 0)), (self._depth, (0, 0, -1))):
             lean = Vector((0, 0, 1)).rotation_difference(Vector(way)).to_matrix().to_4x4()
             gizmo.matrix_basis = Matrix.Translation(middle) @ turn @ lean
@@ -64,14 +65,14 @@ class RIFFLER_GGT_size(bpy.types.GizmoGroup):
 
 
 def _unit():
-    """Blender units in the world for a millimetre of the active sculpt. Asked anew each time: the scene's units may
-    change while the handles are there."""
+    """Blender units in the world for a millimetre of the active sculpt. Computed each time: the scene's units may
+    change while the handles are shown."""
     ob = sculpts.active(bpy.context)
     return _place(ob)[1] if ob is not None else 1.0
 
 
 def _place(ob):
-    """Beside the middle of the stock's top (world), and Blender units in the world for a mm of the sculpt."""
+    """Next to the middle of the stock's top (world), and Blender units in the world for a mm of the sculpt."""
     p, mm = ob.data.riffler, sculpts.shown_mm_per_unit(ob.data)
     aside = p.upper[0] + ASIDE * (p.upper[0] - p.lower[0])
     at = Vector((aside, 0.5 * (p.lower[1] + p.upper[1]), p.upper[2])) / mm

@@ -1,10 +1,10 @@
 """A stroke of the sculpt tool: from the press of a button to its release, of a mouse or a tablet's pen.
 
-Events only queue up samples. Blender handles all events that are waiting before it draws, and sends a timer's event
-after them: there the samples are carved, and there is one look, however many events there were. So a look that takes
-longer than an event makes no queue.
+Events only queue samples. Blender handles all waiting events before it draws, and sends a timer's event after them:
+there the samples are carved, with one update of the display for any number of events. So an update that takes longer
+than an event makes no backlog.
 
-The same stroke can be made from a script: `stroke` is what BrushStroke.text says of one that was made (`last`).
+A script can make the same stroke: `stroke` is the BrushStroke.text of a finished one (`last`).
 """
 
 import time
@@ -19,21 +19,21 @@ from . import brushes, draw_pace, fixtures, force_view, live_registry, mesh_edit
 from .pure import brush_stroke, reach
 from .pure.stroke_path import Sample
 
-LOOK = 1 / 30  # s from one look to the next
+LOOK = 1 / 30  # s between two updates
 MODES = brushes.entries(brushes.BRUSHES.values())
 MOVES = {"MOUSEMOVE", "INBETWEEN_MOUSEMOVE"}
 
-_held = None  # the operator whose stroke is being made in a window
-last = ""  # the newest stroke that was made by hand, for riffler.stroke(stroke=…)
+_held = None  # the operator of the stroke in progress in a window, or None
+last = ""  # the newest stroke made by hand, for riffler.stroke(stroke=…)
 
 
 class RIFFLER_OT_stroke(sculpt_work.TakesTool, bpy.types.Operator):
-    """Sculpt where the pointer goes. Esc or the right button takes the stroke back"""
+    """Sculpt along the pointer's path (Esc or right mouse button: cancel the stroke)"""
 
     bl_idname = "riffler.stroke"
     bl_label = "Sculpt Stroke"
-    bl_options = {"UNDO"}  # not REGISTER: changed settings would need the hand again
-    _run, _fresh = None, False  # the live sculpt; whether this stroke has made one of it
+    bl_options = {"UNDO"}  # not REGISTER: changed settings would need the hand's movement again
+    _run, _fresh = None, False  # the live sculpt; whether this stroke has started its session
 
     mode: bpy.props.EnumProperty(
         name="Mode", items=MODES, default="REMOVE", options={"SKIP_SAVE"}, description="What the tool does"
@@ -51,9 +51,7 @@ class RIFFLER_OT_stroke(sculpt_work.TakesTool, bpy.types.Operator):
 
     def execute(self, context):
         if not self.stroke:
-            return operator_parts.fail(
-                self, ValueError("stroke: say how the tool goes, as there is no pointer to follow")
-            )
+            return operator_parts.fail(self, ValueError("stroke: give the path, as there is no pointer to follow"))
         try:
             view, samples, looks = brush_stroke.read(self.stroke)
             self._take_up(context)
@@ -72,9 +70,9 @@ class RIFFLER_OT_stroke(sculpt_work.TakesTool, bpy.types.Operator):
         global _held
         if self.stroke or bpy.app.background or context.region_data is None:
             return self.execute(context)
-        if mesh_edits.made(sculpts.active(context)):  # somebody is asked first, and the drag kept meanwhile
+        if mesh_edits.made(sculpts.active(context)):  # the user is asked first, and the drag recorded meanwhile
             return bpy.ops.riffler.stroke_elsewhere("INVOKE_DEFAULT", mode=self.mode)
-        context.window.cursor_modal_set("WAIT")  # the first stroke brings the sculpt into chunks
+        context.window.cursor_modal_set("WAIT")  # the first stroke builds the sculpt's chunks
         try:
             self._take_up(context)
             self._start(context, pointer.sight(context.region, context.region_data, self._run))
@@ -87,9 +85,7 @@ class RIFFLER_OT_stroke(sculpt_work.TakesTool, bpy.types.Operator):
         self._region = context.region.x, context.region.y
         self._begin = self._looked = self._taken = time.perf_counter()
         self._queue = [sample(event, self._region)]
-        self._oldest = self._drawn = (
-            None  # since when what is carved, and what the last look has shown, may have waited
-        )
+        self._oldest = self._drawn = None  # since when carved samples, and displayed ones, may have waited
         self._shown = None
         if settings.show_force and brushes.of(self.mode.lower()).chips:
             limit = units.clean(settings.limit)
@@ -104,7 +100,7 @@ class RIFFLER_OT_stroke(sculpt_work.TakesTool, bpy.types.Operator):
     def modal(self, context, event):
         if live_registry.lives.get(self._run.mark) is not self._run:
             self._leave(context)
-            self.report({"WARNING"}, local("The sculpt was saved or taken in mid-stroke: the stroke was taken back"))
+            self.report({"WARNING"}, local("The sculpt was saved or ended during a stroke: the stroke was undone"))
             return {"CANCELLED"}
         if event.type in {"ESC", "RIGHTMOUSE"} and event.value == "PRESS":
             return self._give_up(context)
@@ -145,10 +141,10 @@ class RIFFLER_OT_stroke(sculpt_work.TakesTool, bpy.types.Operator):
         self._stroke = brush_stroke.BrushStroke(self._run, tool, view, choice, keep_out)
 
     def _step(self, context):
-        """Once for each picture that Blender draws."""
+        """Called once per redraw."""
         try:
             before, now = self._taken, time.perf_counter()
-            if self._drawn is not None:  # since the last look Blender has drawn
+            if self._drawn is not None:  # Blender has drawn since the last update
                 self._run.stages.waited(now - self._drawn)
                 self._drawn = None
             if self._carve(now) and self._oldest is None:
@@ -163,7 +159,8 @@ class RIFFLER_OT_stroke(sculpt_work.TakesTool, bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
     def _carve(self, now):
-        """All samples that are waiting. Nobody knows when their events were made: evenly since the last time."""
+        """Carves all waiting samples. The times of their events are unknown: they are spread evenly since the last
+        call."""
         before, queue, carved = self._taken, self._queue, False
         self._taken, self._queue = now, []
         for k, sample in enumerate(queue, 1):
@@ -176,7 +173,7 @@ class RIFFLER_OT_stroke(sculpt_work.TakesTool, bpy.types.Operator):
         if self._shown is not None and made.pose is not None:
             self._shown.pose, self._shown.force, self._shown.torque = made.pose, made.force, made.torque
         if context.workspace is not None:
-            context.workspace.status_text_set(f"Riffler: {summary(made, made.brush)}    Esc: take the stroke back")
+            context.workspace.status_text_set(f"Riffler: {summary(made, made.brush)}    Esc: cancel the stroke")
 
     def _end(self, context):
         global last
@@ -191,7 +188,7 @@ class RIFFLER_OT_stroke(sculpt_work.TakesTool, bpy.types.Operator):
         return self._finish(context)
 
     def _finish(self, context):
-        """The stroke becomes a state; Blender makes the undo step of what has finished."""
+        """Makes the stroke a state; Blender makes the undo step when the operator finishes."""
         try:
             changed = self._run.finish_stroke(context)
         except operator_parts.ERRORS as error:
@@ -211,8 +208,8 @@ class RIFFLER_OT_stroke(sculpt_work.TakesTool, bpy.types.Operator):
         return {"CANCELLED"}
 
     def _undone(self):
-        """Chunks that this stroke has brought go with it: no undo step has them, and Blender crashes in the next undo
-        over objects that none has."""
+        """Removes the chunks that this stroke has made: no undo step has them, and Blender crashes in the next undo
+        over objects that no step has."""
         if self._run is None:
             return
         self._run.cancel_stroke()
@@ -220,7 +217,7 @@ class RIFFLER_OT_stroke(sculpt_work.TakesTool, bpy.types.Operator):
             self._run.end()
 
     def _leave(self, context):
-        """Takes back what is there only while a stroke is made."""
+        """Removes what is displayed only during a stroke."""
         global _held
         _held = pointer.held = None
         force_view.end()
@@ -231,13 +228,14 @@ class RIFFLER_OT_stroke(sculpt_work.TakesTool, bpy.types.Operator):
         if context.workspace is not None:
             context.workspace.status_text_set(None)
         if context.area is not None:
-            context.area.tag_redraw()  # the arrows go
+            context.area.tag_redraw()  # removes the arrows
 
 
 def sample(event, corner):
-    """Of an event in a region with this lower left corner, in pixels of the window. Its time is not known yet."""
+    """The sample of an event in a region with this lower left corner, in pixels of the window. Its time is not known
+    yet."""
     pressure, lean = (event.pressure, event.tilt) if event.is_tablet else (1.0, (0.0, 0.0))
-    # A tablet's second tilt grows towards whoever holds the pen: down the view (GHOST_TabletData).
+    # A tablet's second tilt grows towards the user: down the view (GHOST_TabletData).
     return Sample(event.mouse_x - corner[0], event.mouse_y - corner[1], pressure, lean[0], -lean[1])
 
 
@@ -259,7 +257,7 @@ CLASSES = (RIFFLER_OT_stroke,)
 
 
 def detach():
-    """A stroke that is being made is given up: Blender drops its operator without a word."""
+    """Discards a stroke in progress: Blender drops its operator without calling it."""
     try:
         if _held is not None:
             _held._give_up(bpy.context)

@@ -9,13 +9,13 @@ from ..translations import CONTEXT
 
 
 class RIFFLER_OT_tool_preset(bpy.types.Operator):
-    """Take the cutter of this name for strokes and cuts"""
+    """Use the cutter of this name for strokes and cuts"""
 
     bl_idname = "riffler.tool_preset"
     bl_label = "Tool Preset"
-    bl_options = {"INTERNAL"}  # no undo step, as of all settings of the sculpt tools
+    bl_options = {"INTERNAL"}  # no undo step, as for all settings of the sculpt tools
 
-    name: bpy.props.StringProperty(name="Name", description="Of the preset")
+    name: bpy.props.StringProperty(name="Name", description="Name of the preset")
 
     def execute(self, context):
         try:
@@ -46,7 +46,7 @@ class RIFFLER_PT_tool(Sidebar, bpy.types.Panel):
         layout.menu(RIFFLER_MT_tools.bl_idname, text=preset["name"] if preset else "Custom", text_ctxt=CONTEXT)
         layout.use_property_split = True
         layout.use_property_decorate = False
-        tool = context.window_manager.riffler.tool  # whose fields make no undo steps
+        tool = context.window_manager.riffler.tool  # its fields make no undo steps
         layout.prop(tool, "kind")
         column = layout.column(align=True)
         for key in presets.SIZES[tool.kind]:

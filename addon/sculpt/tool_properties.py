@@ -1,4 +1,4 @@
-"""The cutter: a preset, or a kind with its sizes. Fields are made from the core's table of shapes."""
+"""The cutter: a preset, or a shape with its sizes. Fields are made from the core's table of shapes."""
 
 import math
 
@@ -25,14 +25,14 @@ FIELDS = {name: _field(size) for name, size in presets.ALL.items()}
 class RifflerTool(bpy.types.PropertyGroup):
     __annotations__ = {
         "preset": StringProperty(
-            name="Preset", description="That the sizes were taken from", default=presets.presets()[0]["name"]
+            name="Preset", description="Preset that the sizes come from", default=presets.presets()[0]["name"]
         ),
-        "kind": EnumProperty(name="Shape", items=KINDS, default="ball", description="Of the end of the cutter"),
+        "kind": EnumProperty(name="Shape", items=KINDS, default="ball", description="Shape of the cutter's end"),
         **FIELDS,
     }
 
     def take(self, tool):
-        """Sets kind and sizes from a tool's dictionary."""
+        """Sets shape and sizes from a tool's dictionary."""
         self.preset = tool.get("name", "")
         self.kind = tool["kind"]
         for flag in presets.FLAGS:
@@ -48,13 +48,13 @@ class RifflerTool(bpy.types.PropertyGroup):
         }
 
     def from_preset(self):
-        """The preset that these sizes still are, or None after one was changed."""
+        """The preset with exactly these sizes, or None."""
         named = [t for t in presets.presets() if t["name"] == self.preset and t["kind"] == self.kind]
         ours = self.sizes()
         same = named and all(math.isclose(float(named[0].get(k, 0)), float(v), rel_tol=1e-6) for k, v in ours.items())
         return named[0] if same else None
 
     def dictionary(self):
-        """The form of riffler.Tool.to_dict; a preset's own numbers where it is one."""
+        """The cutter in the form of riffler.Tool.to_dict; for a preset, its own numbers."""
         preset = self.from_preset()
         return dict(preset) if preset else presets.tool_dict(self.kind, self.sizes(), f"{self.kind} (custom)")

@@ -1,4 +1,4 @@
-"""The tools in the 3D view's toolbar: what each one's buttons and keys do, its cursor and its header."""
+"""The tools in the 3D view's toolbar: buttons and keys, cursor and header of each."""
 
 from pathlib import Path
 
@@ -8,18 +8,18 @@ from . import brushes, panel, pointer
 from .brushes.smooth import SMOOTH
 from .size_gizmo import RIFFLER_GGT_size
 
-ICONS = Path(__file__).resolve().parent.parent / "icons"  # an absolute path is taken as it is
+ICONS = Path(__file__).resolve().parent.parent / "icons"  # Blender uses an absolute path unchanged
 
 
 def _stroke(brush, **modifiers):
-    """On the active sculpt; where Blender may not call that, on whatever is under the pointer."""
+    """A stroke on the active sculpt; if Blender refuses that, on the object under the pointer."""
     event = {"type": "LEFTMOUSE", "value": "PRESS", **modifiers}
     given = {"properties": [("mode", brush.id.upper())]}
     return ("riffler.stroke", event, given), ("riffler.stroke_elsewhere", event, given)
 
 
 def _size(brush):
-    """F and Shift F, as in Sculpt Mode, where the second is strength; of a cutter that is its depth."""
+    """F and Shift F, as in Sculpt Mode, where the second sets the strength; for a cutter it sets the depth."""
     for field, shift in (("RADIUS", False), (brush.second, True)):
         event = {"type": "F", "value": "PRESS", "shift": shift}
         yield ("riffler.resize", event, {"properties": [("field", field)]})
@@ -38,7 +38,7 @@ class SculptTool:
 
 
 def _tool(brush):
-    """A WorkSpaceTool of a brush; Blender wants a class for each."""
+    """The WorkSpaceTool of a brush; Blender needs a class for each."""
 
     def draw_cursor(context, tool, xy):
         pointer.draw(context, brush, xy)

@@ -1,1 +1,1 @@
-"""The material as a whole: made, cut along curves, cropped, masked, measured, exported, recovered."""
+"""The material as a whole: making it, cutting along curves, cropping, masking, measuring, exporting, recovering."""

@@ -1,4 +1,4 @@
-"""What is done to a sculpt as a whole: another pitch or box, cut off by a plane, taken apart, edits taken over."""
+"""Operations on a sculpt as a whole: another pitch or box, cropping by a plane, splitting, applying edits."""
 
 from dataclasses import replace
 
@@ -18,23 +18,21 @@ from ..translations import local
 from . import object_volumes, properties
 from .pure import estimate
 
-DIRECTIONS = (("KEEP", "As now", "The directions that the sculpt has"), *properties.DIRECTIONS)
+DIRECTIONS = (("KEEP", "Unchanged", "The sculpt's current directions"), *properties.DIRECTIONS)
 
 
 class RIFFLER_OT_resample(SculptWork, bpy.types.Operator):
-    """Make the clay finer or coarser: the same shape on rays that stand closer together or further apart"""
+    """Make the clay finer or coarser: the same shape, with another distance between rays"""
 
     bl_idname = "riffler.resample"
     bl_label = "Change Pitch"
     doing = "Changing the pitch"
-    cancelled = "Pitch not changed: the sculpt is as it was"
+    cancelled = "Pitch not changed: the sculpt is unchanged"
 
     pitch: FloatProperty(
-        name="Pitch (mm)", default=0.25, min=1e-4, max=1e5, precision=3, description="Distance between rays from now on"
+        name="Pitch (mm)", default=0.25, min=1e-4, max=1e5, precision=3, description="New distance between rays"
     )
-    directions: EnumProperty(
-        name="Rays", items=DIRECTIONS, default="KEEP", description="Along which axes they stand from now on"
-    )
+    directions: EnumProperty(name="Rays", items=DIRECTIONS, default="KEEP", description="New directions of the rays")
 
     def begin(self, context):
         ob, self._before = self.take(context)
@@ -48,22 +46,26 @@ class RIFFLER_OT_resample(SculptWork, bpy.types.Operator):
         before = self._before
         content = replace(before, volume=job.result, mask=mask_display.on_grid_of(job.result, before.mask))
         self.keep(content, unseen=estimate.too_thin(self._object, job.result.pitch))
-        context.scene.riffler.clay.pitch = job.result.pitch  # what the panel offers next
+        context.scene.riffler.clay.pitch = job.result.pitch  # the panel's next default
         off = job.result.volume - before.volume.volume
         self.report({"INFO"}, f"{units.counted(job.result.rays, 'ray')}; material {_signed(off)}")
         return {"FINISHED"}
 
 
 class RIFFLER_OT_room(SculptWork, bpy.types.Operator):
-    """Make the sculpt's box larger, so that there is room for material outside of it; the sculpt stays where it is"""
+    """Grow the sculpt's box, so that material can be added outside it; the sculpt stays in place"""
 
     bl_idname = "riffler.room"
-    bl_label = "Make Room"
-    doing = "Making room"
-    cancelled = "No room was made: the sculpt is as it was"
+    bl_label = "Grow Box"
+    doing = "Growing the box"
+    cancelled = "Box not grown: the sculpt is unchanged"
 
     room: FloatProperty(
-        name="Room (mm)", default=5.0, min=1e-3, precision=2, description="On every side, in whole pitches"
+        name="Margin (mm)",
+        default=5.0,
+        min=1e-3,
+        precision=2,
+        description="Width added on every side, rounded to whole pitches",
     )
 
     def begin(self, context):
@@ -77,7 +79,7 @@ class RIFFLER_OT_room(SculptWork, bpy.types.Operator):
         counted = volume.volume - before.volume.volume
         note = ""
         if abs(counted) > 1e-9 * before.volume.volume:
-            note = f"; {_signed(counted)} are counted, as the rays at the old border stand for whole cells now"
+            note = f"; {_signed(counted)} are counted, since the rays at the old border now stand for whole cells"
         self.report({"INFO"}, f"The box is {units.format_size(volume.upper - volume.lower)}{note}")
         return {"FINISHED"}
 
@@ -87,17 +89,21 @@ def _signed(volume):
 
 
 class RIFFLER_OT_crop(SculptWork, bpy.types.Operator):
-    """Cut the sculpt off by the plane of another object, or by a point and a normal"""
+    """Cut off one side of the sculpt, at the plane of another object or at a point and a normal"""
 
     bl_idname = "riffler.crop"
     bl_label = "Crop by Plane"
     doing = "Cropping"
-    cancelled = "Not cropped: the sculpt is as it was"
+    cancelled = "Not cropped: the sculpt is unchanged"
 
-    plane: StringProperty(name="Plane", description="An object whose local plane z = 0 cuts; empty: the values below")
-    point: FloatVectorProperty(name="Point", subtype="TRANSLATION", description="In the world, Blender units")
-    normal: FloatVectorProperty(name="Normal", subtype="DIRECTION", description="Into what is taken away; 0: unused")
-    flip: BoolProperty(name="Other Side", description="Take away what lies behind the plane")
+    plane: StringProperty(name="Plane", description="Object whose local plane z = 0 cuts; empty: the values below")
+    point: FloatVectorProperty(
+        name="Point", subtype="TRANSLATION", description="Point on the plane, in world space and Blender units"
+    )
+    normal: FloatVectorProperty(
+        name="Normal", subtype="DIRECTION", description="Normal of the plane, towards the removed side; 0: unused"
+    )
+    flip: BoolProperty(name="Other Side", description="Remove what lies behind the plane")
 
     def begin(self, context):
         ob, self._before = self.take(context)
@@ -126,15 +132,15 @@ class RIFFLER_OT_crop(SculptWork, bpy.types.Operator):
 
 
 class RIFFLER_OT_split(SculptWork, bpy.types.Operator):
-    """Take the sculpt's separate pieces apart: each becomes a sculpt of its own, the largest stays this one"""
+    """Split the sculpt into its separate pieces: each becomes a sculpt of its own, the largest stays this one"""
 
     bl_idname = "riffler.split"
     bl_label = "Split into Parts"
     doing = "Splitting"
-    cancelled = "Not split: the sculpt is as it was"
+    cancelled = "Not split: the sculpt is unchanged"
 
     least: FloatProperty(
-        name="Smallest (mm³)", default=0.0, min=0.0, description="Smaller pieces stay with the largest"
+        name="Smallest (mm³)", default=0.0, min=0.0, description="Pieces smaller than this stay with the largest"
     )
 
     def begin(self, context):
@@ -168,26 +174,26 @@ class RIFFLER_OT_split(SculptWork, bpy.types.Operator):
 
 
 def _left_of(mask, piece):
-    """The mask of one piece: None where it protects nothing of it."""
+    """The mask of one piece: None if it protects nothing of it."""
     if mask is None:
         return None
     return mask if mask.copy().intersect(piece).volume > 0 else None
 
 
 class RIFFLER_OT_take_edits(SculptWork, bpy.types.Operator):
-    """Make the mesh as it is now, deformed by Blender's own tools and modifiers, the sculpt's material"""
+    """Make the mesh, as edited by Blender's own tools and modifiers, the sculpt's material"""
 
     bl_idname = "riffler.take_edits"
-    bl_label = "Take Edits"
-    doing = "Taking the edits"
-    cancelled = "Edits not taken: the sculpt's volume is as it was"
+    bl_label = "Apply Mesh Edits"
+    doing = "Applying the edits"
+    cancelled = "Edits not applied: the sculpt's volume is unchanged"
     from_edits = True
 
     def begin(self, context):
         ob, self._before = self.take(context)
         volume = self._before.volume
         surface = object_volumes.of_object(context, ob, ob)
-        box = volume.grown(*surface.bounds)  # so that what has not moved stands on the rays that it stood on
+        box = volume.grown(*surface.bounds)  # so that unmoved material stays on its rays
         self._report = {}
         rays = box.pitch, box.directions
         return TaskJob(tasks.from_mesh(surface, *rays, lower=box.lower, upper=box.upper, report=self._report))
@@ -196,7 +202,8 @@ class RIFFLER_OT_take_edits(SculptWork, bpy.types.Operator):
         if job.result.volume <= 0:
             raise ValueError("the edited mesh has no volume: close it, or undo the edits")
         before, volume = self._before, job.result
-        mask = mask_display.on_grid_of(volume, before.mask)  # where it was: what was moved has left it, or come into it
+        # unmoved: material that was moved has left it, or come into it
+        mask = mask_display.on_grid_of(volume, before.mask)
         middle = sculpts.middle(self.mesh, before.volume)
         self.keep(Content(volume, mask=mask, shaped=True))
         sculpts.keep_middle(self.mesh, volume, middle)

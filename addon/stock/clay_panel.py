@@ -1,4 +1,4 @@
-"""The clay: what is done to a sculpt as a whole."""
+"""The panel of operations on a sculpt as a whole."""
 
 import bpy
 
@@ -41,7 +41,7 @@ class RIFFLER_PT_clay(Sidebar, bpy.types.Panel):
                     clay.RIFFLER_OT_resample.bl_idname, text=f"{text}: {units.trim(factor * now, 4)} mm"
                 )
                 op.pitch = factor * now
-        column = layout.column(align=True)  # below one another: both labels show whole in a narrow sidebar
+        column = layout.column(align=True)  # one below the other: both labels fit a narrow sidebar
         column.prop(settings, "room")
         column.operator(clay.RIFFLER_OT_room.bl_idname).room = settings.room
         column = layout.column(align=True)
@@ -86,7 +86,7 @@ class RIFFLER_PT_relief(Clay, bpy.types.Panel):
         layout.prop(settings, "place")
         column = layout.column(align=True)
         for key in properties.ReliefSettings.__annotations__:
-            column.prop(settings, key, **({"text": "Follow"} if key == "follow" else {}))  # whole in a narrow sidebar
+            column.prop(settings, key, **({"text": "Follow"} if key == "follow" else {}))  # fits a narrow sidebar
         if at_work(layout, context, relief.RIFFLER_OT_relief):
             return
         op = layout.operator(relief.RIFFLER_OT_relief.bl_idname, icon="MOD_DISPLACE")

@@ -1,4 +1,5 @@
-"""Cutting: one operator per source of motion, carved in slices by the shell of long work; the surface follows."""
+"""Cutting: one operator per source of motion, carved in slices by the shell of long work, with the surface updated
+meanwhile."""
 
 import time
 from dataclasses import replace
@@ -21,10 +22,10 @@ from . import cut_paths, properties
 
 
 class CutShell(sculpt_work.TakesTool, SculptWork):
-    """Mixin; a subclass has `make_cuts(context, ob)`, which returns them."""
+    """Mixin; a subclass has `make_cuts(context, ob)`, which returns the cuts."""
 
     doing = "Cutting"
-    cancelled = "Cut cancelled: the sculpt is as it was"
+    cancelled = "Cut cancelled: the sculpt is unchanged"
 
     def begin(self, context):
         self._begin = time.perf_counter()
@@ -45,7 +46,7 @@ class CutShell(sculpt_work.TakesTool, SculptWork):
         self.keep(replace(before, volume=job.volume, cuts=before.cuts + cuts))
         seconds = time.perf_counter() - self._begin
         changed, adds = units.format_volume(job.removed), {cut.mode == "add" for cut in job.cuts}
-        done = {(False,): "Removed", (True,): "Put on"}.get(tuple(adds), "Removed and put on")
+        done = {(False,): "Removed", (True,): "Added"}.get(tuple(adds), "Removed and added")
         if any(_cut_off(cut, job.volume) for cut in job.cuts):
             self.report({"WARNING"}, local(reach.CUT_OFF))
         level = {"INFO"} if job.removed > 0 else {"WARNING"}
@@ -54,7 +55,7 @@ class CutShell(sculpt_work.TakesTool, SculptWork):
 
 
 def _cut_off(cut, volume):
-    """True where a cut put material on that the box cut off."""
+    """True if a cut added material that the box clipped."""
     if cut.mode != "add":
         return False
     return reach.is_cut_off(reach.outline_of(riffler.Tool.from_dict(cut.tool)), cut.poses, volume)
@@ -100,7 +101,7 @@ def _selected_curve(context):
 
 
 class RIFFLER_OT_cut_recording(FileWork, CutShell, bpy.types.Operator, ImportHelper):
-    """Carve the active sculpt with the strokes of a recording, in the stock's own frame"""
+    """Carve the active sculpt with the strokes of a recording, in the stock's own coordinates"""
 
     bl_idname = "riffler.cut_recording"
     bl_label = "Cut Recording"
@@ -112,9 +113,8 @@ class RIFFLER_OT_cut_recording(FileWork, CutShell, bpy.types.Operator, ImportHel
         name="Recording", subtype="FILE_PATH", options={"SKIP_SAVE"}, description="A recording (.rjournal)"
     )
     other: bpy.props.BoolProperty(
-        name="With the Panel's Tool",
-        description="The tip goes the recording's way with the tool of the panel Tool, whatever the recording was made "
-        "with",
+        name="Use Panel's Tool",
+        description="Move the tool of the panel Tool along the recorded path, instead of the recorded tool",
     )
 
     def invoke(self, context, event):

@@ -14,7 +14,7 @@ from ..sculpt.pure.journal import brush_of
 
 
 def along_curve(context, ob, curve, tool, axis, depth, follow, tolerance):
-    """One cut per spline of the curve object. ValueError where nothing can be cut."""
+    """One cut per spline of the curve object. ValueError if there is nothing to cut."""
     depsgraph = context.evaluated_depsgraph_get()
     size = riffler.Tool.from_dict(tool).diameter
     cuts, far = [], False
@@ -23,7 +23,7 @@ def along_curve(context, ob, curve, tool, axis, depth, follow, tolerance):
         if len(points) < 2:
             continue
         if follow or axis == "NORMAL":
-            # The surface bends between the curve's points: look at it every pitch.
+            # The surface bends between the curve's points, so it is sampled every pitch.
             points, tilt = splines.refine(points, tilt, ob.data.riffler.pitch)
             scale = sculpts.shown_mm_per_unit(ob.data)
             places, normals = nearest_on_surface(ob, depsgraph, points, scale)
@@ -37,13 +37,13 @@ def along_curve(context, ob, curve, tool, axis, depth, follow, tolerance):
             axes = poses.fixed_axes(len(points))
         elif axis == "TILT":
             axes = poses.tilted_axes(points, tilt)
-        else:  # facets and edges would jerk the tool: turn over about its own width
+        else:  # facets and edges would jerk the tool: smooth the axis over about its own width
             axes = poses.smooth_axes(points, normals, size)
         cuts.append(Cut(tool, poses.make_poses(points, axes, depth), tolerance))
     if not cuts and far:
         raise ValueError(
-            f"{curve.name} is too far from {ob.name}, of which one point is the nearest to all of it: move it nearer, "
-            "or turn Follow surface off"
+            f"{curve.name} is too far from {ob.name}, one point of which is the nearest to the whole curve: move it "
+            "nearer, or turn Follow Surface off"
         )
     if not cuts:
         raise ValueError(f"{curve.name} has no spline with two points: add points, or choose another curve")
@@ -61,23 +61,23 @@ def from_recording(path):
         if len(s) > 1 and brush_of(s).cuts
     ]
     if not cuts:
-        raise ValueError("the recording has no stroke with two poses that removes material or puts it on")
+        raise ValueError("the recording has no stroke with two poses that removes or adds material")
     return cuts, journal.stock
 
 
 def stock_of_recording(path):
-    """The volume that a recording begins with: its snapshot, which lies beside it, or the full block."""
+    """The volume that a recording begins with: its snapshot, a file next to it, or the full block."""
     problems.check_source(path)
     stock = riffler.Journal.read(path).stock
     if stock is None:
-        raise ValueError(f"{Path(path).name} does not say what stock it was made on")
+        raise ValueError(f"{Path(path).name} does not name the stock it was made on")
     if stock["snapshot"]:
         return riffler.Volume.load(Path(path).with_name(stock["snapshot"]))
     return riffler.Volume.block(stock["lower"], stock["upper"], stock["pitch"], stock["directions"])
 
 
 def to_recording(cuts, volume):
-    """A journal of the cuts on the volume's frame; equal tools share a number."""
+    """A journal of the cuts in the volume's frame; equal tools share a number."""
     journal = riffler.Journal()
     journal.set_stock(volume.lower, volume.upper, volume.pitch, volume.directions)
     tools = []
@@ -90,7 +90,7 @@ def to_recording(cuts, volume):
 
 
 def nearest_on_surface(ob, depsgraph, points, mm_per_unit):
-    """Nearest points (n, 3) of the sculpt as it is shown and the surface's normals (n, 3) there, in millimetres in its
+    """Nearest points (n, 3) of the sculpt as displayed and the surface's normals (n, 3) there, in millimetres in its
     own frame like `points`."""
     if not ob.data.polygons:
         raise ValueError("the sculpt has no surface left to follow")

@@ -1,4 +1,4 @@
-"""The program of a sculpt's cuts, and what of the sculpt no program can make."""
+"""The program of a sculpt's cuts, and the parts of the sculpt that no program can make."""
 
 import riffler
 
@@ -6,7 +6,7 @@ from ..common import units
 
 
 def removing(name, content):
-    """The cuts of a sculpt that a machine can make: those that take material away. ValueError where there is none."""
+    """The cuts of a sculpt that a machine can make: those that remove material. ValueError if there are none."""
     cuts = [c for c in content.cuts if c.mode == "remove"]
     if not cuts:
         raise ValueError(f"{name} has no cuts yet: carve it first")
@@ -14,16 +14,16 @@ def removing(name, content):
 
 
 def not_in_cuts(content):
-    """What of a sculpt its `removing` cuts do not make, as sentences."""
+    """Sentences on the parts of a sculpt that its `removing` cuts do not make."""
     added = sum(cut.mode != "remove" for cut in content.cuts)
     masked = sum(cut.mode == "remove" and cut.masked for cut in content.cuts)
     said = []
     if added:
-        said.append(f"No machine can put material on: left out {units.counted(added, 'stroke')} that did")
+        said.append(f"No machine can add material: left out {units.counted(added, 'stroke')} of Add")
     if masked:
-        said.append(f"Cuts made beside a mask: {masked}. They cut what it protected, too")
+        said.append(f"Cuts made with a mask: {masked}. They also cut what it protected")
     if content.shaped:
-        said.append("Only cuts are in it: no crop, smoothing or relief, and no edits of the mesh")
+        said.append("The file has cuts only: no crop, smoothing or relief, and no edits of the mesh")
     return said
 
 
@@ -34,7 +34,7 @@ def of_cuts(name, cuts, volume, feed, spindle):
         tools=[riffler.Tool.from_dict(c.tool) for c in cuts],
         feed=feed,
         spindle=spindle,
-        # retracts clear the stock as it was before the first cut
+        # retracts clear the stock before the first cut
         occupied=(volume.lower, volume.upper),
         provenance={"stock": name},
     )

@@ -1,11 +1,11 @@
-"""The legend of deviation colours, in views that show them: of the active mesh, or of what was verified."""
+"""The legend of deviation colours, in views that show them: of the active mesh, or of the verified part."""
 
 import bpy
 
 from ..blender import attributes, bars, batches, views
 from ..common import colours
 
-CORNER = (90.0, 40.0)  # pixels from the view's lower right, the sidebar not counted
+CORNER = (90.0, 40.0)  # pixels from the view's lower right, without the sidebar
 
 CLASSES = ()
 kept = batches.Batches()
@@ -13,7 +13,7 @@ _in_views = views.InViews()
 
 
 def mesh_of(context):
-    """The mesh whose colours are explained, or None."""
+    """The mesh whose colours the legend explains, or None."""
     own = context.scene.riffler
     for ob in (context.object, own.verify.left, own.plan.part):
         if ob is not None and ob.type == "MESH" and attributes.coloured(ob.data) and ob.visible_get():

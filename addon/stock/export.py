@@ -1,4 +1,4 @@
-"""STL, NC code and recordings out."""
+"""Export of STL, 3MF, NC code and recordings."""
 
 import bpy
 import numpy as np
@@ -16,7 +16,7 @@ from . import cut_paths, cut_program, properties
 
 
 class Export(ExportHelper):
-    """Mixin: file selector in a window, one clear message for what goes wrong."""
+    """Mixin: file selector in a window, one clear message for an error."""
 
     @classmethod
     def poll(cls, context):
@@ -37,7 +37,7 @@ class Export(ExportHelper):
         return {"FINISHED"}
 
     def removing(self, ob, content):
-        """cut_program.removing, and a word on what is left out."""
+        """cut_program.removing, with a report on what is left out."""
         cuts = cut_program.removing(ob.name, content)
         for said in cut_program.not_in_cuts(content):
             self.report({"WARNING"}, local(said))
@@ -45,15 +45,18 @@ class Export(ExportHelper):
 
 
 class ExportSurface(FileWork):
-    """Mixin of the operators that write the surface, by `job`, whole or not at all. `in_background`: as that job's."""
+    """Mixin of the operators that write the surface, by `job`, completely or not at all. `in_background`: that of the
+    job."""
 
-    bl_options = set()  # what is written is no step of undo
+    bl_options = set()  # a written file is no undo step
     helper = ExportHelper
     doing = "Exporting"
     cancelled = "Not exported: no file was written"
 
     world: bpy.props.BoolProperty(
-        name="As placed", default=True, description="Apply the object's transform; off: as milled, in the stock's frame"
+        name="Apply Transform",
+        default=True,
+        description="Apply the object's transform; off: as milled, in the stock's own coordinates",
     )
 
     @classmethod
@@ -79,7 +82,7 @@ class ExportSurface(FileWork):
             return self.job(surface, path, name)
 
         self._thin = {}
-        # a copy: who sculpts meanwhile goes on
+        # a copy, so that sculpting can continue meanwhile
         return AfterJob(
             tasks.to_mesh(live_registry.content(ob).volume.copy(), report=self._thin), write, self.in_background
         )
@@ -127,7 +130,7 @@ class RIFFLER_OT_export_3mf(ExportSurface, bpy.types.Operator, ExportHelper):
 
 
 def placed(surface, matrix):
-    """A surface under an affine map; still outward where the map mirrors."""
+    """A surface under an affine map; still outward if the map mirrors."""
     if np.allclose(matrix, np.eye(4), rtol=0, atol=1e-12):
         return surface
     triangles = surface.triangles
@@ -137,7 +140,7 @@ def placed(surface, matrix):
 
 
 class RIFFLER_OT_export_nc(properties.NcSettings, Export, bpy.types.Operator):
-    """Write the cuts made on the active sculpt as NC code in the stock's own frame"""
+    """Write the cuts made on the active sculpt as NC code in the stock's own coordinates"""
 
     bl_idname = "riffler.export_nc"
     bl_label = "Write NC"
@@ -155,7 +158,7 @@ class RIFFLER_OT_export_nc(properties.NcSettings, Export, bpy.types.Operator):
 
 
 class RIFFLER_OT_export_recording(Export, bpy.types.Operator):
-    """Write the cuts made on the active sculpt as a recording, which another stock can be cut with"""
+    """Write the cuts made on the active sculpt as a recording, to cut another stock with"""
 
     bl_idname = "riffler.export_recording"
     bl_label = "Save Recording"

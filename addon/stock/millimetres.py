@@ -1,4 +1,4 @@
-"""The scene in millimetres; sculpts keep their size."""
+"""Sets the scene to millimetres; sculpts keep their size."""
 
 import bpy
 from bpy.props import FloatProperty
@@ -8,11 +8,11 @@ from ..sculpt import live_registry, sculpt_store, sculpt_work, sculpts
 
 
 def set_unit(operator, context, mm, shown="MM"):
-    """Of the scene; sculpts keep their size in mm. What the operator returns."""
+    """Sets the scene's unit; sculpts keep their size in mm. Returns the operator's result."""
     try:
         live_registry.end_all()
         found = [ob for ob in context.scene.objects if sculpts.is_sculpt(ob) and not ob.data.library]
-        for ob in found:  # what cannot be comes before the first change
+        for ob in found:  # anything that can fail comes before the first change
             sculpt_store.content(ob.data)
             sculpt_work.refuse_edits(ob)
         scene_units.set_unit(context.scene, bpy.data.screens, mm, shown)
@@ -24,8 +24,9 @@ def set_unit(operator, context, mm, shown="MM"):
 
 
 class RIFFLER_OT_millimetres(bpy.types.Operator):
-    """Make one Blender unit so many millimetres in this scene, one if nothing is said; sculpts keep their size in mm,
-    other objects their units"""
+    """Set the millimetres of one Blender unit in this scene; sculpts keep their size in mm, other objects their size
+    in units
+    """
 
     bl_idname = "riffler.millimetres"
     bl_label = "Scene in Millimetres"

@@ -1,4 +1,4 @@
-"""New stock, and its picture made anew."""
+"""Makes new stock, and rebuilds a stock's mesh."""
 
 from typing import NamedTuple
 
@@ -18,25 +18,25 @@ from ..sculpt import live_registry, sculpt_store, sculpt_work, sculpts
 from . import cut_paths, properties
 from .pure import estimate
 
-NO_SOURCE = "select the object that is to be the material: a mesh, curve, text, surface or metaball"
+NO_SOURCE = "select the object to make material of: a mesh, curve, text, surface or metaball"
 
 
 def source_size(ob, scene):
-    """Its size along its own axes in millimetres, as it is shown."""
+    """Its displayed size along its own axes in millimetres."""
     return tuple(float(d) * scene_units.mm_per_unit(scene) for d in ob.dimensions)
 
 
 class _New(NamedTuple):
-    """The sculpt that the material becomes."""
+    """The sculpt to be made from the material."""
 
     name: str
-    frame: Matrix  # where it stands in the world
-    source: tuple = ()  # what it is made from: name and file, as bpy.data.objects takes them
-    found: dict | None = None  # of a mesh: what from_mesh reports
+    frame: Matrix  # its place in the world
+    source: tuple = ()  # its source: name and file, as keys of bpy.data.objects
+    found: dict | None = None  # for a mesh: the report of from_mesh
 
 
 class RIFFLER_OT_new_stock(properties.StockSettings, LongWork, bpy.types.Operator):
-    """Make a block of material, or take the active object as material"""
+    """Make a block of material, or make material of the active object"""
 
     bl_idname = "riffler.new_stock"
     bl_label = "New Stock"
@@ -49,7 +49,7 @@ class RIFFLER_OT_new_stock(properties.StockSettings, LongWork, bpy.types.Operato
         return operator_parts.object_mode(cls, context) and not operator_parts.busy(cls, context)
 
     def invoke(self, context, event):
-        """Only a mesh takes long; whatever else it is made from is there at once."""
+        """Only a mesh takes long; all other sources are immediate."""
         long = self.source == "OBJECT" and not _is_its_volume(context, object_surfaces.source_object(context))
         return _viewed(context, super().invoke(context, event) if long else self.execute(context))
 
@@ -87,17 +87,17 @@ class RIFFLER_OT_new_stock(properties.StockSettings, LongWork, bpy.types.Operato
         return {"FINISHED"}
 
     def _from(self):
-        """The object that the stock is made from, if it is made from one that is still there."""
+        """The object that the stock is made from, if there is one and it still exists."""
         return bpy.data.objects.get(self._new.source) if self._new.source else None
 
     def _check(self, source, volume):
         found = self._new.found
         if volume.volume <= 0:
-            why = found.get("lost_note") or "it has no volume at this pitch: close it, or take a finer one"
+            why = found.get("lost_note") or "it has no volume at this pitch: close it, or use a finer one"
             raise ValueError(f"{source.name}: {why}")
         if found.get("open_edges"):
             count = units.counted(found["open_edges"], "open edge")
-            self.report({"WARNING"}, f"{source.name} is not closed: {count} closed as well as could be")
+            self.report({"WARNING"}, f"{source.name} is not closed: {count} closed approximately")
         for note in notes_on(found):
             self.report({"WARNING"}, f"{source.name}: {note}")
 
@@ -133,7 +133,7 @@ class RIFFLER_OT_new_stock(properties.StockSettings, LongWork, bpy.types.Operato
         return new, TaskJob(tasks.from_mesh(mesh, pitch, self.directions, report=new.found))
 
     def _from_sculpt(self, context, source, frame):
-        """Its volume itself: nothing is lost where the pitch stays the same."""
+        """Uses its volume itself: nothing is lost if the pitch stays the same."""
         volume = sculpt_store.content(source.data).volume.resampled(units.clean(self.pitch), self.directions)
         return _New(f"{source.name} Copy", frame, sculpts.key_of(source)), DoneJob(volume)
 
@@ -158,8 +158,8 @@ class RIFFLER_OT_new_stock(properties.StockSettings, LongWork, bpy.types.Operato
 
 
 def _is_its_volume(context, ob):
-    """Of a sculpt: whether what is seen in the world is its volume, as large, not turned inside out, and neither
-    modified nor edited."""
+    """Whether a sculpt's display in the world is its volume: of the same size, not mirrored, neither modified nor
+    edited."""
     if not sculpts.is_sculpt(ob) or refusals.has_modifiers(ob):
         return False
     if live_registry.of(ob) is None and sculpts.changed(ob.data):
@@ -173,7 +173,7 @@ def _at_cursor(context):
 
 
 def _viewed(context, done):
-    """Brings the new sculpt, where one was made, into the view that it was asked for in."""
+    """Moves the new sculpt, if one was made, into the view that the operator was called in."""
     if done == {"FINISHED"} and context.area and context.area.type == "VIEW_3D":
         region = next((r for r in context.area.regions if r.type == "WINDOW"), None)
         if region:
@@ -183,7 +183,7 @@ def _viewed(context, done):
 
 
 class RIFFLER_OT_fit_pitch(bpy.types.Operator):
-    """Choose a pitch that suits the size: some 400 rays along the longest side"""
+    """Set a pitch that suits the size: about 400 rays along the longest side"""
 
     bl_idname = "riffler.fit_pitch"
     bl_label = "Fit Pitch"
@@ -193,7 +193,7 @@ class RIFFLER_OT_fit_pitch(bpy.types.Operator):
         stock = context.scene.riffler.stock
         source = object_surfaces.source_object(context)
         if stock.source == "OBJECT" and source is None:
-            return operator_parts.fail(self, ValueError("select the object that is to be the material"))
+            return operator_parts.fail(self, ValueError("select the object to make material of"))
         if stock.source == "RECORDING":
             return operator_parts.fail(self, ValueError("a recording has the pitch of the stock that it was made on"))
         size = stock.size if stock.source == "BLOCK" else source_size(source, context.scene)
@@ -205,7 +205,7 @@ class RIFFLER_OT_fit_pitch(bpy.types.Operator):
 
 
 class RIFFLER_OT_rebuild(bpy.types.Operator):
-    """Show the stored volume again, in the scene's units; edits to the mesh are lost"""
+    """Rebuild the mesh from the stored volume, in the scene's units; edits of the mesh are lost"""
 
     bl_idname = "riffler.rebuild"
     bl_label = "Rebuild Mesh"

@@ -1,4 +1,4 @@
-"""Objects as forms in a sculpt's frame: what masks, crops and reliefs are made from."""
+"""Objects as shapes in a sculpt's frame: the input of masks, crops and reliefs."""
 
 import bpy
 import numpy as np
@@ -10,7 +10,7 @@ from ..sculpt import sculpts
 
 
 def task_of(mesh, volume):
-    """That makes the mesh (mm, the sculpt's frame) material on the volume's grid."""
+    """A task that makes the mesh (mm, the sculpt's frame) material on the volume's grid."""
     return tasks.from_mesh(mesh, volume.pitch, volume.directions, lower=volume.lower, upper=volume.upper)
 
 
@@ -22,7 +22,7 @@ def of_object(context, source, ob):
 def of_outline(context, curve, ob, volume, tolerance):
     """The closed splines of a curve, through the whole sculpt along the curve's own z."""
     to_sculpt = sculpts.from_object(ob, curve)
-    along = to_sculpt[:3, 2] if to_sculpt[:3, 2].any() else axes(ob, curve)[3]  # it may have been flattened
+    along = to_sculpt[:3, 2] if to_sculpt[:3, 2].any() else axes(ob, curve)[3]  # the z scale may be zero
     along = along / np.linalg.norm(along)
     size = float(np.linalg.norm(volume.upper - volume.lower))
     centre = 0.5 * (volume.lower + volume.upper)
@@ -32,7 +32,7 @@ def of_outline(context, curve, ob, volume, tolerance):
             continue
         points, _ = splines.evaluate(spline, tolerance)
         if len(points) > 3:
-            # from well below the sculpt, wherever the curve itself lies
+            # from well below the sculpt, wherever the curve lies
             points = points - np.outer((points - centre) @ along + size, along)
             outlines.append(points)
     if not outlines:
@@ -41,15 +41,15 @@ def of_outline(context, curve, ob, volume, tolerance):
 
 
 def plane(ob, other):
-    """(point, normal) of an object's own plane z = 0, mm in the sculpt's frame; the normal to where its z points."""
+    """(point, normal) of an object's own plane z = 0, mm in the sculpt's frame; the normal points along its z."""
     origin, _, _, up = axes(ob, other)
     mirrored = sculpts.from_object(ob, other)[:3, 2] @ up < 0
     return origin, -up if mirrored else up
 
 
 def axes(ob, other):
-    """An object's origin, unit x and y, and the unit normal of both as they turn: mm in the sculpt's frame. Its z may
-    be flat. ValueError where x or y are."""
+    """An object's origin, unit x and y, and their unit normal: mm in the sculpt's frame. Its z scale may be zero.
+    ValueError if that of x or y is."""
     m = sculpts.from_object(ob, other)
     if np.linalg.matrix_rank(m[:3, :2]) < 2:
         raise ValueError(f"{other.name} is scaled to nothing along its x or y: use Object > Clear > Scale")
@@ -69,7 +69,7 @@ def pixels(image):
 
 
 def chosen(context, name, kinds, what):
-    """The object of that name, or the other selected one of these types; ValueError says what to do."""
+    """The object of that name, or the other selected one of these types; ValueError with the remedy."""
     ob = bpy.data.objects.get(name) if name else None
     if name and ob is None:
         raise ValueError(f"there is no object {name!r}")

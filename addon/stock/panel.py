@@ -21,7 +21,7 @@ class RIFFLER_PT_sculpt(Sidebar, bpy.types.Panel):
         layout = self.layout
         ob = sculpts.active(context)
         if ob is None:
-            lines(layout, "No sculpt is active.", "Make one, or Add > Mesh.", icon="INFO")
+            lines(layout, "No sculpt is active.", "Make one below, or use Add > Mesh.", icon="INFO")
             if object_surfaces.source_object(context) is not None:
                 layout.operator(
                     first_stroke.RIFFLER_OT_make_sculpt.bl_idname, text="Make Sculpt", icon="SCULPTMODE_HLT"
@@ -49,13 +49,13 @@ class RIFFLER_PT_sculpt(Sidebar, bpy.types.Panel):
     def _warnings(self, layout, context, ob):
         mesh = ob.data
         if live_registry.of(ob) is not None:
-            return  # its mesh is not what is shown, and the work goes on from the volume
+            return  # its mesh is hidden, and the session continues from the volume
         stale = sculpts.shown_mm_per_unit(mesh) != scene_units.mm_per_unit(context.scene)
         edited = mesh_edits.noticed(ob)
         if stale:
             lines(layout, "The scene's units have changed;", "the mesh shows another size.", icon="ERROR")
         elif edited:
-            lines(layout, "The mesh was edited in Blender's", "own modes. Keep that, or drop it:", icon="ERROR")
+            lines(layout, "The mesh was edited in Blender's", "own modes. Apply or discard the edits:", icon="ERROR")
             layout.operator(clay.RIFFLER_OT_take_edits.bl_idname, icon="CHECKMARK")
         if stale or edited:
             layout.operator(new_stock.RIFFLER_OT_rebuild.bl_idname, icon="FILE_REFRESH")
@@ -100,7 +100,7 @@ class RIFFLER_PT_stock(Sidebar, bpy.types.Panel):
             layout.operator(millimetres.RIFFLER_OT_millimetres.bl_idname)
 
     def _suits(self, layout, context, settings, size):
-        """Warns of a lump of a few rays, and of a cutter as large as the stock; one button mends both."""
+        """Warns of a block with only a few rays, and of a cutter as large as the stock; one button fixes both."""
         longest = max(size)
         across = round(longest / units.clean(settings.pitch))
         told = [f"Longest side {units.trim(longest, 3)} mm:"]
@@ -121,9 +121,7 @@ class RIFFLER_PT_stock(Sidebar, bpy.types.Panel):
         if settings.source == "BLOCK":
             column = layout.column(align=True)
             column.label(text="Size")
-            column.prop(
-                settings, "size", text=""
-            )  # below one another: sizes of 100 000 mm show whole in a narrow sidebar
+            column.prop(settings, "size", text="")  # one below the other: sizes of 100 000 mm fit a narrow sidebar
             return [units.clean(s) for s in settings.size]
         if settings.source == "RECORDING":
             layout.prop(settings, "recording", text="")

@@ -1,4 +1,4 @@
-"""What new stock is made of, what is done to a sculpt as a whole, what is made of it, and what its mesh keeps."""
+"""Settings of new stock, of operations on a sculpt as a whole, and of its results; and the data on its mesh."""
 
 import bpy
 from bpy.props import (
@@ -16,8 +16,8 @@ from ..blender.fields import length
 
 # ---------------------------------------------------------------------- new stock
 DIRECTIONS = (
-    ("xyz", "Three (tri-dexel)", "Rays along x, y and z: sharp edges and clean walls wherever the tool comes from"),
-    ("z", "One (Z)", "Rays along z only: about a third of the memory; walls come out within half the pitch"),
+    ("xyz", "Three (Tri-Dexel)", "Rays along x, y and z: sharp edges and clean walls from every direction"),
+    ("z", "One (Z)", "Rays along z only: about a third of the memory; walls are accurate to half the pitch"),
 )
 SOURCES = (
     ("BLOCK", "Block", "A box of material at the 3D cursor"),
@@ -25,8 +25,8 @@ SOURCES = (
     ("RECORDING", "Recording", "The stock that a recording (.rjournal) was made on"),
 )
 ORIGINS = (
-    ("CORNER", "Lower corner", "The object's origin, which is the origin of NC code, lies at the lowest corner"),
-    ("TOP", "Top centre", "The object's origin, which is the origin of NC code, lies in the middle of the top"),
+    ("CORNER", "Lower Corner", "The object's origin, which is the origin of NC code, lies at the lowest corner"),
+    ("TOP", "Top Centre", "The object's origin, which is the origin of NC code, lies in the middle of the top"),
     ("CENTRE", "Centre", "The object's origin, which is the origin of NC code, lies in the middle"),
 )
 
@@ -34,7 +34,7 @@ ORIGINS = (
 class StockSettings:
     """Shared by the panel's settings and the operator."""
 
-    source: EnumProperty(name="From", items=SOURCES, default="BLOCK", description="What is to be the material")
+    source: EnumProperty(name="From", items=SOURCES, default="BLOCK", description="What the material is made of")
     recording: StringProperty(name="Recording", subtype="FILE_PATH", description="A recording (.rjournal)")
     size: FloatVectorProperty(
         name="Size",
@@ -45,12 +45,10 @@ class StockSettings:
         subtype="XYZ",
         description="Block along x, y and z, in mm",
     )
-    origin: EnumProperty(
-        name="Origin", items=ORIGINS, default="CORNER", description="Where the block has the zero of its coordinates"
-    )
-    pitch: length("Pitch", 0.5, "Distance between rays, in mm: what the surface can resolve", 1e-4)
+    origin: EnumProperty(name="Origin", items=ORIGINS, default="CORNER", description="Place of the block's origin")
+    pitch: length("Pitch", 0.5, "Distance between rays, in mm: the finest detail of the surface", 1e-4)
     directions: EnumProperty(
-        name="Rays", items=DIRECTIONS, default="xyz", description="Along which axes the material is measured"
+        name="Rays", items=DIRECTIONS, default="xyz", description="Directions of the rays that measure the material"
     )
 
 
@@ -63,10 +61,10 @@ AXES = (
     ("UP", "Stock's Z", "The tool stands along the stock's +Z: three-axis work"),
     (
         "TILT",
-        "Curve tilt",
-        "The tool stands square to the curve and upright, turned about the curve by its tilt (Ctrl T)",
+        "Curve Tilt",
+        "The tool stands perpendicular to the curve and upright, turned about the curve by its tilt (Ctrl T)",
     ),
-    ("NORMAL", "Surface normal", "The tool stands along the sculpt's surface normal nearest to the curve"),
+    ("NORMAL", "Surface Normal", "The tool stands along the sculpt's surface normal nearest to the curve"),
 )
 POSTS = (
     ("3-axis", "3-axis", "X Y Z; every cut must have the tool along the stock's Z"),
@@ -81,12 +79,12 @@ POSTS = (
 class CutSettings:
     """Shared by the panel's settings and the operator."""
 
-    axis: EnumProperty(name="Axis", items=AXES, default="UP", description="Where the tool points")
+    axis: EnumProperty(name="Axis", items=AXES, default="UP", description="Direction of the tool's axis")
     depth: length("Depth", 1.0, "How far below the curve the tip goes, against the tool's axis, in mm", -1e5)
     follow: BoolProperty(
-        name="Follow surface",
+        name="Follow Surface",
         default=False,
-        description="Take the nearest points of the surface instead of the curve's",
+        description="Use the nearest points of the surface instead of the curve's",
     )
     tolerance: length("Tolerance", 0.01, "Largest distance from the exact curve and the exact sweep, in mm", 1e-5, 10.0)
 
@@ -111,44 +109,48 @@ class RifflerNc(NcSettings, bpy.types.PropertyGroup):
 
 # ---------------------------------------------------------------------- the clay
 HOW = (
-    ("REPLACE", "Replace", "What is protected is this and nothing else"),
-    ("ADD", "Add", "This is protected, too"),
-    ("SUBTRACT", "Subtract", "This is not protected any more"),
+    ("REPLACE", "Replace", "Protect only this"),
+    ("ADD", "Add", "Add this to the protected region"),
+    ("SUBTRACT", "Subtract", "Remove this from the protected region"),
 )
 RELIEF = (
-    ("RAISE", "Raise", "What is light in the picture stands out of the surface"),
-    ("ENGRAVE", "Engrave", "What is light in the picture is cut into the surface"),
+    ("RAISE", "Raise", "Raise light areas above the surface"),
+    ("ENGRAVE", "Engrave", "Cut light areas into the surface"),
 )
 
 
 class ReliefSettings:
     """Shared by the panel's settings and the operator."""
 
-    mode: EnumProperty(name="Mode", items=RELIEF, default="RAISE", description="Which way the picture goes")
-    depth: length("Depth", 1.0, "Height of what is white in the picture, in mm", 1e-4)
+    mode: EnumProperty(
+        name="Mode", items=RELIEF, default="RAISE", description="Whether to raise or to engrave the picture"
+    )
+    depth: length("Depth", 1.0, "Height of white areas of the picture, in mm", 1e-4)
     width: length("Width", 40.0, "Width of the picture, in mm; its height follows", 1e-3)
-    invert: BoolProperty(name="Invert", description="What is dark in the picture is high")
+    invert: BoolProperty(name="Invert", description="Make dark areas high, instead of light ones")
     follow: BoolProperty(
         name="Follow Surface",
         default=True,
-        description="Heights are over the sculpt's surface; off: over the plane that the picture lies in",
+        description="Measure heights from the sculpt's surface; off: from the picture's plane",
     )
 
 
 class RifflerClay(ReliefSettings, bpy.types.PropertyGroup):
-    pitch: length("Pitch", 0.25, "Distance between rays, in mm: what the surface can resolve", 1e-4)
-    room: length("Room", 5.0, "How much larger the sculpt's box becomes on every side, in mm", 1e-3)
+    pitch: length("Pitch", 0.25, "Distance between rays, in mm: the finest detail of the surface", 1e-4)
+    room: length("Margin", 5.0, "Width added to the sculpt's box on every side, in mm", 1e-3)
     plane: PointerProperty(
-        name="Plane", type=bpy.types.Object, description="Its local plane z = 0 is where the sculpt is cut off"
+        name="Plane", type=bpy.types.Object, description="Object whose local plane z = 0 cuts the sculpt"
     )
     form: PointerProperty(
         name="Form", type=bpy.types.Object, description="A mesh, or a curve whose closed splines go through the sculpt"
     )
-    image: PointerProperty(name="Picture", type=bpy.types.Image, description="Its brightness is the height")
+    image: PointerProperty(name="Picture", type=bpy.types.Image, description="Picture whose brightness is the height")
     place: PointerProperty(
         name="Place",
         type=bpy.types.Object,
-        description="The picture lies in its local plane z = 0, its middle at the origin, seen from where z points",
+        description=(
+            "Object whose local plane z = 0 holds the picture, centred at its origin and seen from its +z side"
+        ),
     )
 
 
@@ -157,10 +159,12 @@ class ResultSettings:
     """Shared by the panel's settings and the operator."""
 
     tolerance: length(
-        "Tolerance", 0.01, "How far decimation may take the surface from the volume's, in mm; 0: all", 0.0
+        "Tolerance", 0.01, "Largest distance that decimation may move the surface, in mm; 0: no decimation", 0.0
     )
-    iterations: IntProperty(name="Smooth", default=0, min=0, max=200, description="Passes that smooth, edges stay")
-    smooth_tolerance: length("At most", 0.02, "How far smoothing may move a vertex, in mm", 1e-5)
+    iterations: IntProperty(
+        name="Smooth", default=0, min=0, max=200, description="Number of smoothing passes; edges stay sharp"
+    )
+    smooth_tolerance: length("Max Displacement", 0.02, "Largest distance that smoothing may move a vertex, in mm", 1e-5)
     hide_sculpt: BoolProperty(name="Hide Sculpt", default=True, description="Show the new mesh in the sculpt's place")
 
 
@@ -168,22 +172,22 @@ class RifflerResult(ResultSettings, bpy.types.PropertyGroup):
     reference: PointerProperty(
         name="Reference", type=bpy.types.Object, description="The surface that distances are measured from"
     )
-    scale: length("Full colours at", 0.1, "Distance from which colours are full, in mm", 1e-5)
+    scale: length("Colour Range", 0.1, "Distance at which colours reach full strength, in mm", 1e-5)
 
 
 # ---------------------------------------------------------------------- what a mesh keeps
 class RifflerMesh(bpy.types.PropertyGroup):
-    """On a sculpt's mesh: where its volume is, and what a panel shows without reading it."""
+    """On a sculpt's mesh: the image of its volume, and the panel's facts."""
 
     store: PointerProperty(type=bpy.types.Image)
     mm_per_unit: FloatProperty(default=1000.0)
     shown: IntVectorProperty(size=2)
-    shown_of: StringProperty(description="Content id of the volume that the mesh was made of")
+    shown_of: StringProperty(description="Content id of the volume that the mesh was made from")
     shown_at: FloatVectorProperty(size=24)
-    shown_crc: StringProperty()  # of all coordinates as they were shown; files of older add-ons have none
+    shown_crc: StringProperty()  # of all coordinates as displayed; files of older add-ons have none
     lower: FloatVectorProperty()
     upper: FloatVectorProperty()
-    off_middle: FloatVectorProperty()  # from where strokes are mirrored to the middle of the box, mm
+    off_middle: FloatVectorProperty()  # from the centre of symmetry to the middle of the box, mm
     pitch: FloatProperty()
     directions: StringProperty()
     material: FloatProperty()

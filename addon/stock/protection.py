@@ -1,4 +1,4 @@
-"""What of a sculpt is protected: from closed curves and meshes, the other way round, or nothing."""
+"""The mask of a sculpt: set from closed curves and meshes, inverted, or cleared."""
 
 from dataclasses import replace
 
@@ -11,11 +11,11 @@ from ..sculpt.sculpt_work import SculptWork
 from . import object_volumes
 from .properties import HOW
 
-TOLERANCE = 0.25  # pitches: of curves
+TOLERANCE = 0.25  # pitches: tolerance of curves
 
 
 def masked(content, mask):
-    """The content with that mask, of which None is left where it protects nothing."""
+    """The content with that mask, or with None if it protects nothing."""
     return replace(content, mask=None if mask is None or mask.volume == 0 else mask)
 
 
@@ -26,10 +26,10 @@ def said_of(content):
 
 
 class Masking(SculptWork):
-    """Mixin of what changes the mask only: the job makes it, or None."""
+    """Mixin of operators that change the mask only: the job makes it, or None."""
 
     doing = "Masking"
-    cancelled = "Not masked: what is protected is as it was"
+    cancelled = "Not masked: the mask is unchanged"
 
     def begin(self, context):
         _, self._before = self.take(context)
@@ -52,7 +52,7 @@ class RIFFLER_OT_mask_form(Masking, bpy.types.Operator):
     bl_label = "Mask from Object"
 
     form: StringProperty(name="Form", description="Name of a mesh or a curve; empty: the other selected object")
-    how: EnumProperty(name="How", items=HOW, default="REPLACE", description="What becomes of the mask that there is")
+    how: EnumProperty(name="How", items=HOW, default="REPLACE", description="How to combine with the existing mask")
 
     def begin(self, context):
         source = object_volumes.chosen(context, self.form, {"MESH", "CURVE"}, "a mesh or a curve")
@@ -87,7 +87,7 @@ def _inverse(volume, mask, progress):
 
 
 class RIFFLER_OT_mask_clear(Masking, bpy.types.Operator):
-    """Free all that is protected"""
+    """Remove the protection from the whole sculpt"""
 
     bl_idname = "riffler.mask_clear"
     bl_label = "Clear Mask"

@@ -1,4 +1,4 @@
-"""Journals of a Blender that has died: made again, or thrown away."""
+"""Journals of a Blender that has crashed: recovers or discards them."""
 
 import bpy
 import riffler
@@ -14,10 +14,10 @@ from ..sculpt.pure import journal
 
 
 class TakesJournal:
-    """Mixin of operators on one of the journals that nobody holds."""
+    """Mixin of operators on a journal that no process holds."""
 
     journal: bpy.props.StringProperty(
-        name="Journal", options={"SKIP_SAVE"}, description="Name of its folder; empty: the newest"
+        name="Journal", options={"SKIP_SAVE"}, description="Name of the journal's folder; empty: the newest journal"
     )
 
     @classmethod
@@ -25,14 +25,14 @@ class TakesJournal:
         if not operator_parts.object_mode(cls, context) or operator_parts.busy(cls, context):
             return False
         return bool(persistence.crashed()) or operator_parts.deny(
-            cls, "There is nothing to recover: no work was cut off"
+            cls, "There is nothing to recover: no session was interrupted"
         )
 
     def take(self):
-        """The journal, locked. ValueError where somebody else has it."""
+        """The journal, locked. ValueError if another process has it."""
         found = [f for f in persistence.crashed(look=True) if self.journal in ("", f.folder.name)]
         if not found:
-            raise ValueError(f"there is no journal {self.journal} that nobody works at".replace("  ", " "))
+            raise ValueError(f"there is no journal {self.journal} that can be recovered".replace("  ", " "))
         lock = journal.Lock(found[0].folder)
         if not lock.held:
             raise ValueError(f"the journal of {found[0].name} is being recovered by another Blender")
@@ -40,8 +40,7 @@ class TakesJournal:
 
 
 class RIFFLER_OT_recover(TakesJournal, long_work.LongWork, bpy.types.Operator):
-    """Make a sculpt as it was when Blender was cut off: its strokes are made again, in the sculpt that is in this file,
-    or in a new object"""
+    """Restore a sculpt from its journal after a crash, in this file's sculpt or in a new object"""
 
     bl_idname = "riffler.recover"
     bl_label = "Recover Sculpt"
@@ -83,12 +82,12 @@ class RIFFLER_OT_recover(TakesJournal, long_work.LongWork, bpy.types.Operator):
         persistence.park(self._lock, sculpt_store.identity(ob.data))
         persistence.crashed(look=True)
         context.window_manager.riffler.notice = ""
-        self.report({"INFO"}, f"{ob.name} is as it was when Blender was cut off: save the file")
+        self.report({"INFO"}, f"{ob.name} is restored to its state before the crash: save the file")
         return {"FINISHED"}
 
 
 def _prepared(found):
-    """The strokes that are still to be made, on a snapshot in the journal's folder, all cuts, whether other means have
+    """The strokes still to be made, on a snapshot in the journal's folder, all cuts, whether other operations have
     shaped it, too, and the tokens of the states that the journal knows, from the first to the last."""
     try:
         strokes, cuts = journal.part_of(found.folder)
@@ -103,8 +102,7 @@ def _prepared(found):
 
 
 def _on_what_the_file_has(found, strokes, states):
-    """The crash came before the state that the journal begins with was written: it, or a later one, may be in this
-    file."""
+    """The crash came before the journal's initial state was written: it, or a later one, may be in this file."""
     for ob in filter(sculpts.is_sculpt, bpy.data.objects):
         state = _state(ob, found.about, states)
         if state:
@@ -116,7 +114,7 @@ def _on_what_the_file_has(found, strokes, states):
 
 
 def _rest(folder, strokes, done, content):
-    """Those after the first `done`, on `content`."""
+    """The strokes after the first `done`, on `content`."""
     content.volume.save(folder / journal.STOCK)
     if content.mask is not None:
         content.mask.save(folder / journal.MASK)
@@ -131,15 +129,15 @@ def _rest(folder, strokes, done, content):
 
 
 def _state(ob, about, states):
-    """Which of the journal's states the file has of the sculpt, or ""."""
+    """The journal's state that the file has of the sculpt, or ""."""
     if about.get("base") and sculpt_store.identity(ob.data) == about["base"]:
         return states[0]
     return sculpt_store.token(ob.data) if sculpt_store.token(ob.data) in states else ""
 
 
 def _target(about, states):
-    """The sculpt of which this file has a state of the journal, or None: one that has gone on by other means since is
-    left alone. Copies that share it are not meant, where the one that was worked at is there."""
+    """The sculpt of which this file has a state of the journal, or None: a sculpt that other operations have changed
+    since is not used. Copies that share the state are ignored if the original exists."""
     found = [ob for ob in bpy.data.objects if sculpts.is_sculpt(ob) and _state(ob, about, states)]
     found = [ob for ob in found if not (ob.library or ob.data.library)]
     return next((ob for ob in found if ob.riffler.mark == about.get("mark")), found[0] if found else None)
@@ -153,7 +151,7 @@ def _new(context, name, content, about):
 
 
 class RIFFLER_OT_discard_journal(TakesJournal, bpy.types.Operator):
-    """Delete the journal of work that was cut off: its strokes are lost then"""
+    """Delete the journal of an interrupted session; its strokes are lost"""
 
     bl_idname = "riffler.discard_journal"
     bl_label = "Discard"
@@ -174,7 +172,7 @@ class RIFFLER_OT_discard_journal(TakesJournal, bpy.types.Operator):
 
 
 class RIFFLER_OT_dismiss(bpy.types.Operator):
-    """Take this notice away: it was read"""
+    """Hide this notice"""
 
     bl_idname = "riffler.dismiss"
     bl_label = "Dismiss"

@@ -1,4 +1,4 @@
-"""Messages about sculpts that no command reports: work that was cut off, journals that cannot be written."""
+"""Messages about sculpts that no operator reports: interrupted sessions, journals that cannot be written."""
 
 from datetime import datetime
 
@@ -29,7 +29,7 @@ class RIFFLER_PT_recover(Sidebar, bpy.types.Panel):
         for found in persistence.crashed():
             box = layout.box()
             when = datetime.fromtimestamp(found.when)
-            lines(box, found.name, f"Cut off on {when:%d %b, %H:%M}", icon="RECOVER_LAST")
+            lines(box, found.name, f"Interrupted on {when:%d %b, %H:%M}", icon="RECOVER_LAST")
             row = box.row(align=True)
             for cls in (recover.RIFFLER_OT_recover, recover.RIFFLER_OT_discard_journal):
                 row.operator(cls.bl_idname, text=cls.bl_label.split()[0]).journal = found.folder.name

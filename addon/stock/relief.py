@@ -1,4 +1,4 @@
-"""Pictures raised on a sculpt or engraved into it."""
+"""Raises pictures on a sculpt or engraves them."""
 
 from dataclasses import replace
 
@@ -16,23 +16,23 @@ from ..translations import local
 from . import object_volumes, properties
 from .pure import relief_heights
 
-BANDS, OTHERS = 8, 6  # pieces in which the surface is looked for; and all others
-FINEST = 1500  # places along a side: finer pictures than rays would be lost work
-SLIGHT = 0.01  # pitches that nobody sees: of what is cut off by the box
-REACH = 2.0  # pitches by which a relief reaches into what it joins
+BANDS, OTHERS = 8, 6  # number of pieces of the search for the surface; and of all other work
+FINEST = 1500  # places along a side: more than the rays can resolve would be wasted
+SLIGHT = 0.01  # pitches: invisible amount clipped by the box
+REACH = 2.0  # pitches by which a relief overlaps the material it joins
 
 
 class RIFFLER_OT_relief(properties.ReliefSettings, SculptWork, bpy.types.Operator):
-    """Raise a picture on the sculpt, or engrave it: what is light is high, or deep"""
+    """Raise a picture on the sculpt, or engrave it: light areas are high, or deep"""
 
     bl_idname = "riffler.relief"
     bl_label = "Emboss Picture"
     doing = "Embossing"
-    cancelled = "Not embossed: the sculpt is as it was"
+    cancelled = "Not embossed: the sculpt is unchanged"
 
     image: StringProperty(name="Picture", description="Name of an image in this file")
     place: StringProperty(
-        name="Place", description="An object in whose plane z = 0 the picture lies, seen from where its z points"
+        name="Place", description="Object whose local plane z = 0 holds the picture, seen from its +z side"
     )
 
     def begin(self, context):
@@ -43,7 +43,7 @@ class RIFFLER_OT_relief(properties.ReliefSettings, SculptWork, bpy.types.Operato
         place = object_volumes.chosen(
             context, self.place, {"MESH", "EMPTY"}, "a place for the picture, a plane or an empty,"
         )
-        # what is Blender's is read now; the work itself knows nothing of it
+        # Blender's data is read now; the work itself does not access it
         pieces = self._form(
             self._before.volume, object_volumes.pixels(image), object_volumes.axes(ob, place), place.name
         )
@@ -61,18 +61,18 @@ class RIFFLER_OT_relief(properties.ReliefSettings, SculptWork, bpy.types.Operato
 
     def _tell_change(self, changed):
         if self.mode == "RAISE" and not changed:
-            why = "the stock's box is full there, or protected. Engrave the picture inverted, or use Make Room"
-            self.report({"WARNING"}, f"Nothing was put on: {why}")
+            why = "the stock's box is full there, or protected. Engrave the picture inverted, or use Grow Box"
+            self.report({"WARNING"}, f"Nothing was added: {why}")
             return
         if self._cut_off:
             self.report(
-                {"WARNING"}, local("The picture was cut off at the stock's box: Make Room in Clay gives it more")
+                {"WARNING"}, local("The picture was cut off at the stock's box: use Grow Box in Clay to enlarge it")
             )
         what = "Added" if self.mode == "RAISE" else "Removed"
         self.report({"INFO"} if changed > 0 else {"WARNING"}, f"{what} {units.format_volume(changed)}")
 
     def _form(self, volume, pixels, axes, place):
-        """Makes what is put on or taken away, a volume, in pieces (PiecesJob)."""
+        """Makes the material to add or remove, a volume, in pieces (PiecesJob)."""
         heights = relief_heights.luminance(pixels)
         yield
         heights = 1 - heights if self.invert else heights
@@ -108,8 +108,8 @@ class RIFFLER_OT_relief(properties.ReliefSettings, SculptWork, bpy.types.Operato
 
 
 def _grid(axes, size, pitch):
-    """Places of a picture of that size in the plane of `axes` (forms.axes), (right, up, 3) mm in the sculpt's frame,
-    and its unit normal."""
+    """Places of a picture of that size in the plane of `axes` (object_volumes.axes), (right, up, 3) mm in the sculpt's
+    frame, and its unit normal."""
     origin, right, top, up = axes
     count = np.clip(np.ceil(size / (0.5 * pitch)).astype(int) + 1, 2, FINEST)
     x, y = (np.linspace(-0.5 * s, 0.5 * s, n) for s, n in zip(size, count, strict=True))
@@ -117,7 +117,7 @@ def _grid(axes, size, pitch):
 
 
 def _dropped(volume, points, up):
-    """Where the places lie on the volume's surface, seen from above; those that look past it are not found. Yields."""
+    """The places projected onto the volume's surface, seen from above, and which of them hit it. Yields."""
     surface = riffler.Mesher(volume).freeze()
     yield
     far = float(np.linalg.norm(volume.upper - volume.lower)) + float(np.abs(points).max())

@@ -1,4 +1,4 @@
-"""What is made of a sculpt: a plain mesh with a stated error, and colours of its distance from a reference."""
+"""Results of a sculpt: a plain mesh with a known error, and colours of its distance from a reference."""
 
 import bpy
 import numpy as np
@@ -15,7 +15,7 @@ from . import properties
 
 
 class RIFFLER_OT_to_mesh(properties.ResultSettings, SculptWork, bpy.types.Operator):
-    """Make a plain mesh of the sculpt, decimated and smoothed as asked, and say how far it is from the sculpt"""
+    """Make a plain mesh of the sculpt, decimated and smoothed, and report its distance from the sculpt"""
 
     bl_idname = "riffler.to_mesh"
     bl_label = "To Mesh"
@@ -79,13 +79,13 @@ class RIFFLER_OT_to_mesh(properties.ResultSettings, SculptWork, bpy.types.Operat
 
 
 def said_of(mesh):
-    """What a mesh is beside the sculpt that it was made of."""
+    """A note on the mesh compared with its sculpt."""
     count = units.counted(len(mesh.polygons), "triangle")
     return f"{count}, at most {units.trim(mesh[attributes.ERROR], 5)} mm from the sculpt"
 
 
 def _in_world(context, ob):
-    """In mm of the scene, vertex by vertex that of the evaluated mesh. ValueError where that is not known."""
+    """In mm of the scene, vertex by vertex that of the evaluated mesh. ValueError if it is unknown."""
     if why := refusals.disabled(ob, context.view_layer):
         raise ValueError(why)
     matrix = meshes.matrix(ob.matrix_world)
@@ -94,27 +94,29 @@ def _in_world(context, ob):
 
 
 class RIFFLER_OT_show_deviation(LongWork, bpy.types.Operator):
-    """Colour the active mesh by its distance from another object: blue is too much, red too little, in mm"""
+    """Colour the active mesh by its distance from another object, in mm: blue for too much material, red for too
+    little
+    """
 
     bl_idname = "riffler.show_deviation"
     bl_label = "Show Deviation"
     bl_options = {"REGISTER", "UNDO"}
     doing = "Measuring"
-    cancelled = "Not measured: the mesh is as it was"
+    cancelled = "Not measured: the mesh is unchanged"
 
     reference: StringProperty(name="Reference", description="Name of the object; empty: the other selected one")
     scale: FloatProperty(
-        name="Full colours at (mm)",
+        name="Colour Range (mm)",
         default=0.1,
         min=1e-5,
         precision=4,
-        description="Distance from which on a colour is full",
+        description="Distance at which colours reach full strength",
     )
 
     @classmethod
     def poll(cls, context):
         if context.object is None or context.object.type != "MESH":
-            return operator_parts.deny(cls, "Select the mesh or the sculpt that is to be coloured")
+            return operator_parts.deny(cls, "Select the mesh or the sculpt to colour")
         if why := refusals.linked(context.object, context.object.data):
             return operator_parts.deny(cls, why)
         return operator_parts.object_mode(cls, context) and not operator_parts.busy(cls, context)
@@ -136,7 +138,7 @@ class RIFFLER_OT_show_deviation(LongWork, bpy.types.Operator):
         if sculpts.is_sculpt(ob) and not ob.modifiers and len(own.vertices) != len(ob.data.vertices):
             raise ValueError("the mesh was edited: rebuild it first")
         if len(own.vertices) != len(ob.data.vertices):
-            raise ValueError(f"{ob.name}: apply its modifiers first, which make other vertices")
+            raise ValueError(f"{ob.name}: apply its modifiers first, since they change its vertices")
         return TaskJob(tasks.deviation(own, _in_world(context, reference), signed=True))
 
     def lost(self, context):
@@ -156,7 +158,7 @@ class RIFFLER_OT_show_deviation(LongWork, bpy.types.Operator):
 
 
 class RIFFLER_OT_hide_deviation(bpy.types.Operator):
-    """Take the colours of its distance away from the active mesh"""
+    """Remove the deviation colours from the active mesh"""
 
     bl_idname = "riffler.hide_deviation"
     bl_label = "Hide Deviation"

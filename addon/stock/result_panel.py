@@ -1,4 +1,4 @@
-"""From a sculpt to a mesh, and how far it is from what it should be."""
+"""From a sculpt to a mesh, and the distance from a reference."""
 
 import bpy
 
@@ -29,7 +29,7 @@ class RIFFLER_PT_result(Sidebar, bpy.types.Panel):
         made = context.object.data if context.object is not None and context.object.type == "MESH" else None
         if made is not None and attributes.ERROR in made:
             lines(layout, result.said_of(made), icon="INFO")
-            layout.label(text="Adjust Last Operation (F9) tries others")
+            layout.label(text="Try others in Adjust Last Operation (F9)")
         layout.separator()
         layout.prop(settings, "reference")
         layout.prop(settings, "scale")

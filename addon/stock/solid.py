@@ -1,4 +1,4 @@
-"""New sculpts of exact shapes, sized as Blender's own Add Mesh sizes its own."""
+"""New sculpts of exact shapes, with sizes as in Blender's own Add Mesh."""
 
 import math
 from collections.abc import Callable
@@ -34,25 +34,29 @@ class _Shape(NamedTuple):
 
 
 class RIFFLER_OT_add_solid(bpy.types.Operator):
-    """Add a block, sphere or cylinder of material at the 3D cursor, ready to be sculpted"""
+    """Add a block, sphere or cylinder of material at the 3D cursor, ready to sculpt"""
 
     bl_idname = "riffler.add_solid"
     bl_label = "Add Solid"
     bl_options = {"REGISTER", "UNDO"}
 
-    shape: EnumProperty(name="Shape", items=SHAPES, default="SPHERE", description="What is added")
+    shape: EnumProperty(name="Shape", items=SHAPES, default="SPHERE", description="Shape to add")
     size: FloatVectorProperty(
         name="Size",
         default=(2, 2, 2),
         min=0,
         subtype="XYZ_LENGTH",
-        description="Of a block along x, y and z, in Blender units",
+        description="Size of a block along x, y and z, in Blender units",
     )
     radius: FloatProperty(
-        name="Radius", default=1, min=0, subtype="DISTANCE", description="Of a sphere or cylinder, in Blender units"
+        name="Radius",
+        default=1,
+        min=0,
+        subtype="DISTANCE",
+        description="Radius of a sphere or cylinder, in Blender units",
     )
     depth: FloatProperty(
-        name="Depth", default=2, min=0, subtype="DISTANCE", description="Of a cylinder along z, in Blender units"
+        name="Depth", default=2, min=0, subtype="DISTANCE", description="Length of a cylinder along z, in Blender units"
     )
     rays: IntProperty(
         name="Resolution",
@@ -60,10 +64,13 @@ class RIFFLER_OT_add_solid(bpy.types.Operator):
         min=2,
         soft_min=50,
         soft_max=1000,
-        description="Rays along the longest side: the more, the finer the details that the surface can have",
+        description="Number of rays along the longest side: more rays give finer details",
     )
     directions: EnumProperty(
-        name="Rays", items=properties.DIRECTIONS, default="xyz", description="Along which axes the material is measured"
+        name="Rays",
+        items=properties.DIRECTIONS,
+        default="xyz",
+        description="Directions of the rays that measure the material",
     )
 
     @classmethod
@@ -93,8 +100,8 @@ class RIFFLER_OT_add_solid(bpy.types.Operator):
         self.layout.label(text=f"{local('Pitch')}: {units.trim(size.max() / self.rays, 4)} mm", translate=False)
 
     def _fit(self, context):
-        """Metres and a cutter of millimetres are nothing to begin with: the scene's unit and the cutter become such
-        that the solid can be sculpted."""
+        """A solid of metres and a cutter of millimetres do not match: sets the scene's unit and the cutter such that
+        the solid can be sculpted."""
         longest = self._shape(context.scene).size.max() / scene_units.mm_per_unit(context.scene)
         if longest > 0:
             side = fit.side(context, longest)
@@ -118,7 +125,7 @@ class RIFFLER_OT_add_solid(bpy.types.Operator):
         )
 
     def _pitch(self, name, size):
-        """mm. ValueError where a side is nothing, or has no room for two rays."""
+        """mm. ValueError if a side is 0, or too short for two rays."""
         for field, side in zip(_SIDES[self.shape], size, strict=False):
             if not side > 0:
                 raise ValueError(f"{field} is 0: give it a length")

@@ -1,11 +1,11 @@
-"""The interface in other languages: <code of the language>.json has what is said in English, and how it is there.
+"""The interface in other languages: <language code>.json maps English texts to translated ones.
 
-Blender looks in the table for labels, tooltips and why a button is grey; for what it does not look up itself, reports
-and lines that are wrapped, there is `local`. What is not in the table stays English. A message that has numbers or
-names in it is made when it is said, and stays English, too.
+Blender looks up labels, tooltips and reasons for disabled buttons in the table; `local` translates what Blender does
+not look up, reports and wrapped lines. Texts missing from the table stay English. A message with numbers or names in it
+is built at run time, and stays English, too.
 
-Blender asks its own catalogue first, where Pitch is a slope and Path belongs to a file. So the add-on's classes and
-fields have a context of their own, given to them as they are registered (versions.own_words).
+Blender first consults its own catalogue, where Pitch is a slope and Path belongs to a file. So the add-on's classes and
+fields have a context of their own, set when they are registered (versions.own_words).
 """
 
 import json
@@ -20,7 +20,7 @@ CONTEXTS = ("*", "Operator", CONTEXT)  # tooltips have none
 
 
 def table():
-    """As bpy.app.translations.register takes it."""
+    """In the form of bpy.app.translations.register."""
     found = {}
     for path in sorted(FOLDER.glob("*.json")):
         texts = json.loads(path.read_text(encoding="utf-8"))

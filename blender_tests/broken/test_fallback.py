@@ -1,4 +1,4 @@
-"""A native core that does not load: a panel that says why and how to mend it, and nothing else."""
+"""A native core that does not load: a panel gives the reason and the remedy, and nothing else is registered."""
 
 import sys
 import tempfile
@@ -10,7 +10,7 @@ from support import common
 
 
 def enable_with(source):
-    """Enables the add-on where `import riffler` runs `source`; returns what is registered for it."""
+    """Enables the add-on while `import riffler` runs `source`; returns what is registered for it."""
     folder = tempfile.mkdtemp()
     (Path(folder) / "riffler").mkdir()
     (Path(folder) / "riffler" / "__init__.py").write_text(source)
@@ -53,13 +53,13 @@ def test_a_broken_binary():
 
 
 def _of_the_system():
-    """What is said in a Blender of Debian's, which has the system's Python."""
+    """The text in a Blender of Debian, which uses the system's Python."""
     debian = sys.prefix == "/usr" and Path("/etc/debian_version").exists()
     return ["sudo apt install python3-numpy", "Then restart Blender"] if debian else []
 
 
 def test_numpy_is_missing():
-    """It is what the core and most of the add-on are made with; the panel does without."""
+    """The core and most of the add-on need it; the panel does not."""
     kept = {name: sys.modules.pop(name) for name in list(sys.modules) if name.partition(".")[0] == "numpy"}
     sys.modules["numpy"] = None
     try:

@@ -1,4 +1,4 @@
-"""One .blend handed from the oldest Blender to the newest: each reads what the last one saved, cuts, sets a key
+"""One .blend passed from the oldest Blender to the newest: each reads the file of the last one, cuts, sets a key
 orientation on the timeline, and saves."""
 
 from pathlib import Path
@@ -42,7 +42,7 @@ def test_the_file_goes_on():
 
 
 def test_the_timeline_goes_on():
-    """Its own file: keys that one Blender wrote, and the animation that followed, are those of the next."""
+    """A separate file: the next Blender has the keys and the animation that the last one wrote."""
     folder = Path(common.JOB["chain"]) / "timeline"
     folder.mkdir(exist_ok=True)
     files = sorted(folder.glob("*.blend"))

@@ -1,4 +1,4 @@
-"""Which tests the Blenders in the middle leave out, and that it is said."""
+"""The tests that the Blenders in the middle leave out, and the report on that."""
 
 import ast
 import json
@@ -15,12 +15,12 @@ import run  # noqa: E402
 
 from support import environments  # noqa: E402 (the path first)
 
-# What differs between Blender's versions: whatever uses it runs in all of them.
+# What differs between Blender's versions: tests that use it run in all of them.
 DIFFERS = ("bpy.ops.ed.", "open_mainfile", "frame_set", "attributes", "insert(")
 
 
 def marked():
-    """(file, name, source) of each test that is marked."""
+    """(file, name, source) of each marked test."""
     for path in sorted((HERE / "headless").rglob("test_*.py")):
         text = path.read_text()
         for node in ast.parse(text).body:
@@ -37,8 +37,8 @@ def test_no_test_is_marked_that_uses_what_differs_between_versions():
 
 
 def jobs(monkeypatch, capsys, versions, **more):
-    """(Blender, way of installing, whether marked tests are left out) of each process, and what the runs print of three
-    tests that each has left out."""
+    """(Blender, installation mode, whether marked tests are left out) of each process, and the runs' output for three
+    tests left out by each."""
     found = [environments.Environment(f"bpy {v}", tuple(map(int, v.split("."))), ["bpy"]) for v in versions]
     found.append(environments.Environment("bpy 9.9", (9, 9), [], "not there"))
     monkeypatch.setattr(environments, "find", lambda: found)

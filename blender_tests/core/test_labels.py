@@ -1,4 +1,4 @@
-"""Fields of panels have their names beside them, but for those of which something else says what they are."""
+"""Fields of panels show their names, except those that something else identifies."""
 
 import ast
 from pathlib import Path

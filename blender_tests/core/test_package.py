@@ -1,4 +1,4 @@
-"""The zips, from a wheel of our own making."""
+"""The zips, from a wheel made here."""
 
 import tomllib
 import zipfile
@@ -31,7 +31,7 @@ def test_the_extension_carries_wheels_and_a_manifest_that_names_them(tmp_path):
         names = set(archive.namelist())
         first = archive.infolist()[0]
     root = package.LEGACY_NAME
-    # what an update removes first, rather than to write into the core that is running
+    # an update removes this first, instead of overwriting the running core
     assert first.filename == f"{root}/" and first.is_dir()
     assert {
         f"{root}/__init__.py",

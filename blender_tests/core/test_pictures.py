@@ -1,4 +1,4 @@
-"""Loose comparison of pictures, on pictures of our own making."""
+"""Loose comparison of pictures, on pictures made here."""
 
 import importlib.util
 import shutil

@@ -1,4 +1,4 @@
-"""The list of modules that the add-on registers, held against the files that there are."""
+"""The list of modules that the add-on registers, compared with the existing files."""
 
 import ast
 import sys
@@ -20,7 +20,7 @@ def path_of(name):
 
 
 def top_level(path):
-    """Names that a file defines or assigns, not counting what it imports."""
+    """Names that a file defines or assigns, without imported ones."""
     names = set()
     for node in ast.parse(path.read_text(encoding="utf-8")).body:
         if isinstance(node, ast.FunctionDef | ast.ClassDef):

@@ -1,5 +1,5 @@
-"""Whatever the add-on says in fixed words has its German: labels, tooltips, entries of menus and lists, what a panel
-writes, and why something is refused. Found in the sources, so that the table cannot fall behind them."""
+"""Every fixed text of the add-on has its German: labels, tooltips, menu and enum entries, texts of panels, and reasons
+for refusals. Found in the sources, so that the table cannot fall behind them."""
 
 import ast
 import json
@@ -13,20 +13,20 @@ from addon.plan.pure import machine_fields
 
 ADDON = Path(addon.__file__).parent
 TABLE = json.loads((ADDON / "translations" / "de.json").read_text(encoding="utf-8"))
-# Functions of ours that make a field or a line of a panel: which of their arguments are shown.
+# Functions of ours that make a field or a line of a panel: the arguments that are shown.
 FIELDS_OF = {"length": (0, 2), "_folder": (1, 2)}
 MESSAGES = {"wrapped": (1,), "deny": (1,), "poll_message_set": (0,), "local": (0,), "ValueError": (0,), "report": (1,)}
 SHOWN = {**FIELDS_OF, **MESSAGES}
 NOT_SHOWN = {
     "package.py",  # makes the zips
-    "blender/fallback.py",  # what is said where the core does not load, and no table either
+    "blender/fallback.py",  # texts for a core that does not load, when there is no table either
 }
 FIELDS = {"name", "description"}
-TABLES = {"STATES", "KINDS", "LOOK"}  # of words, by the name of what has them
+TABLES = {"STATES", "KINDS", "LOOK"}  # names of tables of texts
 DRAWN = {"text", "heading"}
 OF_BRUSH = ("label", "description", "tip")  # fields of a brush
-SAID_BY = {"description", "unfit", "missing", "refusal"}  # functions that return what is shown
-ENTRY = re.compile(r"[A-Z][A-Z0-9_]*")  # what Blender knows an entry of a list by
+SAID_BY = {"description", "unfit", "missing", "refusal"}  # functions that return a shown text
+ENTRY = re.compile(r"[A-Z][A-Z0-9_]*")  # identifier of an enum entry
 
 
 def sources():
@@ -41,7 +41,7 @@ def is_text(node):
 
 
 def texts(node, names=None):
-    """Of an expression: the fixed texts that it may be. `names`: what variables of the source are set to."""
+    """The fixed texts that an expression may be. `names`: values of the source's variables."""
     if is_text(node):
         yield node.lineno, node.value
     elif isinstance(node, ast.IfExp):
@@ -56,7 +56,7 @@ def texts(node, names=None):
 
 
 def variables(tree):
-    """{name: expressions that it is set to}"""
+    """{name: expressions assigned to it}"""
     names = {}
     for node in ast.walk(tree):
         for target in node.targets if isinstance(node, ast.Assign) else ():
@@ -75,7 +75,7 @@ def name_of(call):
 
 
 def assigned(node):
-    """(name, expression) of an assignment, and of each place of one of several."""
+    """(name, expression) of an assignment, and of each element of a tuple assignment."""
     for target in node.targets if isinstance(node, ast.Assign) else ():
         several = isinstance(target, ast.Tuple) and isinstance(node.value, ast.Tuple)
         pairs = zip(target.elts, node.value.elts, strict=True) if several else [(target, node.value)]
@@ -116,7 +116,7 @@ def of_entry(row):
 
 
 def of_table(node):
-    """What a table of words has: those that begin with a capital."""
+    """The texts of a table that begin with a capital."""
     if any(getattr(target, "id", "") in TABLES for target in node.targets):
         for inner in ast.walk(node.value):
             if is_text(inner) and re.match("[A-Z][a-z]", inner.value):
@@ -124,7 +124,7 @@ def of_table(node):
 
 
 def of_machines():
-    """(where, text) of the fields that are made from what the core says of each machine."""
+    """(where, text) of the fields that are made from the core's description of each machine."""
     for machine in riffler.machines():
         for fact in riffler.machine_options(machine):
             where = f"riffler.machine_options({machine!r}), {fact['name']}"
@@ -150,7 +150,7 @@ def of_strategies():
 
 
 def shown(tree):
-    """(line, text) of all that a source shows."""
+    """(line, text) of all texts that a source shows."""
     names = variables(tree)
     for node in ast.walk(tree):
         if isinstance(node, ast.Assign):
@@ -168,7 +168,7 @@ def shown(tree):
 
 
 def found():
-    """{text: where it is}"""
+    """{text: its place}"""
     said = {text: f"riffler.machines()[{name!r}]" for name, text in riffler.machines().items()}
     for where, text in (*of_machines(), *of_shapes(), *of_strategies()):
         said.setdefault(text, where)
@@ -185,7 +185,7 @@ class RIFFLER_OT_a(Mixin, bpy.types.Operator):
     '''The tooltip
     in two lines'''
     bl_label = "Label"
-    size: length("Size", 0.0, "Of it")
+    size: length("Size", 0.0, "Its size")
     axis: EnumProperty(name="Axis", items=[("X", "Along x", "The first")], description="Which")
 
     def draw(self, context):
@@ -208,7 +208,7 @@ class Carve(Brush):
         "The tooltip in two lines",
         "Label",
         "Size",
-        "Of it",
+        "Its size",
         "Axis",
         "Along x",
         "The first",

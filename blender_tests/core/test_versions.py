@@ -1,4 +1,4 @@
-"""Blender's version is asked for in one module of the add-on only."""
+"""Only one module of the add-on checks Blender's version."""
 
 import ast
 from pathlib import Path
@@ -13,7 +13,7 @@ NAMES = {"version", "version_cycle", "version_file"}
 
 
 def root(node):
-    """The name that a chain of attributes, calls and indices begins with."""
+    """The first name of a chain of attributes, calls and indices."""
     while isinstance(node, ast.Attribute | ast.Call | ast.Subscript):
         node = node.func if isinstance(node, ast.Call) else node.value
     return node.id if isinstance(node, ast.Name) else ""
@@ -24,7 +24,7 @@ def is_app(node):
 
 
 def asks(node):
-    """True where a node of the syntax tree asks which Blender this is, or tries what Blender has."""
+    """True if a node of the syntax tree checks Blender's version, or tries its features."""
     if isinstance(node, ast.Attribute):
         return node.attr in NAMES and is_app(node.value)
     if isinstance(node, ast.ImportFrom):

@@ -1,4 +1,4 @@
-"""Scripts of windows: steps that nobody takes would be tests that cannot fail."""
+"""Scripts of windows: steps that never run would be tests that cannot fail."""
 
 import ast
 from pathlib import Path
@@ -28,4 +28,4 @@ def test_all_steps_are_taken(script):
     for node in ast.walk(TREES[script]):
         if isinstance(node, ast.Call) and (name := getattr(node.func, "attr", getattr(node.func, "id", ""))) in parts:
             taken_by_the_driver = name == "steps"
-            assert id(node) in taken or taken_by_the_driver, f"{script.name}, line {node.lineno}: nobody takes {name}"
+            assert id(node) in taken or taken_by_the_driver, f"{script.name}, line {node.lineno}: no step runs {name}"

@@ -1,5 +1,5 @@
-"""The documents' examples for Blender: what they call is there with its settings, and each page's run as one script in
-the scene that the page speaks of."""
+"""The documents' examples for Blender: the operators they call exist with those settings, and each page's examples run
+as one script in the scene that the page describes."""
 
 import ast
 import re
@@ -13,12 +13,12 @@ import riffler
 from support import common, plans, programs
 
 DOCS = Path(common.__file__).resolve().parents[2] / "docs"
-MARK = "<!-- not run: it runs in Blender's tests -->"  # what tools/check_docs.py says of them
+MARK = "<!-- not run: it runs in Blender's tests -->"  # the mark of tools/check_docs.py
 BLOCK = re.compile(r"^```python\n(.*?)^```", re.MULTILINE | re.DOTALL)
 
 
 def blocks():
-    """(page, line of its first line, the line above its fence, text) of each Python example that is Blender's."""
+    """(page, line of its first line, the line above its fence, text) of each Python example for Blender."""
     for page in sorted(DOCS.glob("*.md")):
         text = page.read_text()
         for found in BLOCK.finditer(text):
@@ -57,7 +57,7 @@ def test_a_call_that_is_not_there_is_found():
 
 
 def run(page):
-    """The page's examples in their order, with the lines' numbers as the page has them."""
+    """The page's examples in order, with the page's line numbers."""
     lines = []
     for name, first, _, text in blocks():
         if name == page:
@@ -66,12 +66,12 @@ def run(page):
 
 
 def saved(folder):
-    """The scene has a file, beside which // is."""
+    """The scene has a file, whose folder is //."""
     bpy.ops.wm.save_as_mainfile(filepath=str(folder / "scene.blend"))
 
 
 def engrave(folder):
-    """The name is cut along another tool's recording, on a stock like its own."""
+    """The name is cut along another tool's recording, on a similar stock."""
     common.scale(1)
     saved(folder)
     common.stock(pitch=0.25)
@@ -88,7 +88,7 @@ def engrave(folder):
 
 
 def planning(folder):
-    """The step, and a stock with half a millimetre on it: verifying finds that what no pencil cut takes is left."""
+    """The step, and a stock with half a millimetre on it: verifying finds the material that no pencil cut removes."""
     common.scale(1)
     plans.part_object().name = "Part"
     programs.stock()
@@ -106,7 +106,7 @@ def planning(folder):
 
 
 def sessions(folder):
-    """The hand that is simulated presses its button for four seconds of eight; a busy machine takes the force away."""
+    """The simulated hand presses its button for four seconds of eight; a busy computer cuts the force."""
     common.scale(1)
     ob = common.stock(size=(60, 60, 20))
     saved(folder)

@@ -1,4 +1,4 @@
-"""What is drawn over the 3D view, as numbers: force and torque with their gauges, the contact at a device's tool."""
+"""Drawings over the 3D view, as numbers: force and torque with their gauges, the contact at a device's tool."""
 
 from types import SimpleNamespace
 
@@ -31,7 +31,7 @@ def test_arrows_are_as_long_as_force_and_torque_and_red_beyond_their_limits():
         assert straight[1] == (module.FORCE if size <= 3 else module.BEYOND)
         assert bent[1] == (module.TORQUE if moment < 24 else module.BEYOND)
         around = bent[0].reshape(-1, 3) - tip
-        assert np.hypot(around[:, 0], around[:, 1]).max() < module.LENGTH * pixel  # about z, beside the other
+        assert np.hypot(around[:, 0], around[:, 1]).max() < module.LENGTH * pixel  # about z, next to the other
 
 
 def test_gauges_tell_force_and_torque_and_mark_both_limits():
@@ -50,8 +50,8 @@ def test_the_contact_at_a_device_s_tool_is_the_nearest_within_its_diameter():
     drawing, sessions = common.part("plan.path_view"), common.part("pen.session")
     contacts = [path.contacts.reshape(-1, 3) for path in common.part("plan.plan_store").plan(ob).paths]
     mm = common.part("blender.scene_units").mm_per_unit(bpy.context.scene)
-    to_world = np.diag([1 / mm] * 3 + [1.0])  # a sculpt that stands in the origin
-    assert drawing.at_tool(bpy.context) is None  # no device sculpts
+    to_world = np.diag([1 / mm] * 3 + [1.0])  # a sculpt at the origin
+    assert drawing.at_tool(bpy.context) is None  # no device session
     rng = np.random.default_rng(3)
     try:
         for _ in range(50):

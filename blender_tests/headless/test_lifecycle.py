@@ -1,4 +1,4 @@
-"""Enabled, disabled and enabled again: nothing stays behind, nothing is missing."""
+"""Enabled, disabled and enabled again: nothing remains, nothing is missing."""
 
 import importlib
 import sys
@@ -9,7 +9,7 @@ from support import common, leak_check
 
 
 def listed():
-    """Every class that the add-on's modules say they register."""
+    """Every class that the add-on's modules list for registration."""
     return [cls for module in common.part("registration").modules() for cls in module.CLASSES]
 
 
@@ -42,13 +42,13 @@ def test_everything_is_registered():
 
 
 def test_no_class_was_forgotten():
-    """A class that Blender could register, in one of the add-on's modules, is in a list of CLASSES."""
+    """Every class of the add-on's modules that Blender could register is in a list of CLASSES."""
     made = {c for c in leak_check.subclasses(bpy.types.bpy_struct) if leak_check.of(common.MODULE, c)}
     current = {c for c in made if getattr(sys.modules.get(c.__module__), c.__name__, None) is c}
     fallback = (
         set(common.part("blender.fallback").CLASSES) if f"{common.MODULE}.blender.fallback" in sys.modules else set()
     )
-    tools = {c for c in current if issubclass(c, bpy.types.WorkSpaceTool)}  # bpy.utils.register_tool has these
+    tools = {c for c in current if issubclass(c, bpy.types.WorkSpaceTool)}  # bpy.utils.register_tool registers these
     assert current - fallback - tools == set(listed())
 
 
@@ -109,7 +109,7 @@ def test_whatever_is_left_behind_is_noticed():
 
 
 def failing(owner, name, at):
-    """Replaces a function by one that fails when it is called for the `at`-th time; returns what puts it back."""
+    """Replaces a function by one that fails at its `at`-th call; returns a function that restores it."""
     original, calls = getattr(owner, name), []
 
     def call(*args, **more):
@@ -123,7 +123,7 @@ def failing(owner, name, at):
 
 
 def fails_to(call):
-    """What Blender says of an add-on that raises is an error for some versions, and printed by others."""
+    """Blender's message on an add-on that raises is an error in some versions, and printed by others."""
     try:
         call()
     except RuntimeError as error:
@@ -171,7 +171,8 @@ def test_what_is_not_there_is_taken_back_without_a_word():
 
 
 def test_what_is_reloaded_is_other_code():
-    """After an update, and for Reload Scripts, Blender reads the add-on's __init__ anew: the rest has to be, too."""
+    """After an update, and for Reload Scripts, Blender runs the add-on's __init__ again: all other modules must be
+    reloaded, too."""
     disable()
     with leak_check.Watch(common.MODULE) as watch:
         enable()
@@ -211,7 +212,7 @@ def test_an_update_that_finds_the_old_core_at_work_says_so():
 
 
 def test_it_is_installed_over_itself():
-    """As an update is, while the core is in use: whoever writes into its file lets Blender crash in the next call."""
+    """Like an update while the core is in use: overwriting its file makes Blender crash in the next call."""
     from support import harness
 
     for _ in range(2):

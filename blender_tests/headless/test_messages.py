@@ -1,4 +1,4 @@
-"""What is said where something cannot be: every refusal names the remedy, and nothing is changed or lost."""
+"""Messages where something is impossible: every refusal names the remedy, and nothing is changed or lost."""
 
 import os
 import struct
@@ -27,7 +27,7 @@ def operators():
 
 
 def refusals():
-    """By operator, why it is refused now; only those that are."""
+    """By operator, why it is refused now; only refused ones."""
     found = {}
     for name in operators():
         call = getattr(bpy.ops.riffler, name)
@@ -106,7 +106,7 @@ def test_no_button_is_grey_without_saying_why():
 
 
 def test_work_at_another_sculpt_is_parked_not_lost():
-    """Somebody works at one sculpt, and another is cut: the first keeps what was carved."""
+    """A session on one sculpt, and another sculpt is cut: the first keeps its carvings."""
     from support import sculpting
 
     first, second = sculpting.sculpt("First"), sculpting.sculpt("Second")
@@ -144,7 +144,7 @@ def cube(size=20.0, **more):
 
 
 def refused(call, *words):
-    """With all the words, and nothing is there afterwards that was not before."""
+    """With all the words, and afterwards nothing exists that did not before."""
     before = [len(x) for x in (bpy.data.objects, bpy.data.meshes, bpy.data.images, bpy.data.curves)]
     text = common.refused(call, *words)
     assert [len(x) for x in (bpy.data.objects, bpy.data.meshes, bpy.data.images, bpy.data.curves)] == before, text
@@ -255,7 +255,7 @@ def exports():
 
 
 def writes_only_where_it_may(name, call):
-    """An export: what folders it refuses, with which words; and that it writes where it may."""
+    """An export: the folders it refuses, with which words; and that it writes where it may."""
     folder = Path(common.out("locked"))
     folder.mkdir(exist_ok=True)
     path, access = folder / f"x.{name}", os.access
@@ -321,7 +321,7 @@ def test_a_plan_of_a_newer_version_is_kept_and_named():
 
 
 def listing(root):
-    """(size, time) of every file; not of what Python keeps of modules that it has read."""
+    """(size, time) of every file, except Python's caches of modules."""
     paths = [p for p in root.rglob("*") if p.is_file() and "__pycache__" not in p.parts]
     return {p: (p.stat().st_size, p.stat().st_mtime_ns) for p in paths}
 

@@ -1,4 +1,4 @@
-"""docs/operators.md says of every operator what is registered."""
+"""docs/operators.md describes every registered operator."""
 
 import difflib
 import importlib
@@ -39,6 +39,6 @@ def test_an_operator_that_is_forgotten_is_named():
     except operators.StepError as failure:
         assert "riffler.test_forgotten" in str(failure)
     else:
-        raise AssertionError("nothing was said")
+        raise AssertionError("no error was raised")
     finally:
         bpy.utils.unregister_class(RIFFLER_OT_test_forgotten)

@@ -1,4 +1,4 @@
-"""The add-on's preferences: device, limits, threads and folders are those that are used; keys, menus, the doctor."""
+"""The add-on's preferences: device, limits, threads and folders are used; keys, menus, the doctor."""
 
 import contextlib
 import importlib.util
@@ -14,8 +14,8 @@ from support import common, leak_check
 
 @contextlib.contextmanager
 def preferred(**chosen):
-    """Preferences outlast a file: given back afterwards."""
-    preferences = common.part("blender.preferences_access").preferences  # others after the add-on was disabled
+    """Preferences survive a change of file: restores them afterwards."""
+    preferences = common.part("blender.preferences_access").preferences  # another object after the add-on was disabled
     before = {name: getattr(preferences(), name) for name in chosen}
     try:
         for name, value in chosen.items():
@@ -34,7 +34,7 @@ def folder(name):
 
 
 def other(device):
-    """A device of another kind than the simulated one; none is plugged in."""
+    """A device of another kind than the simulated one; none is connected."""
     return next(kind for kind in riffler.pen.kinds() if kind not in ("simulated", device))
 
 
@@ -53,7 +53,7 @@ def test_limits_come_as_they_are_in_the_core():
 
 
 def test_no_session_lets_more_force_through_than_was_allowed():
-    """By its journal, which has every step: 0.2 N of the 5 that are let through otherwise."""
+    """From its journal, which has every step: 0.2 N instead of the default 5."""
     common.scale(1)
     ob = common.stock(size=(60, 60, 20), pitch=0.5, directions="z")
     place = folder("limited")
@@ -65,7 +65,7 @@ def test_no_session_lets_more_force_through_than_was_allowed():
         assert np.allclose([given["max_force"], given["max_torque"], given["max_power"]], (0.2, 30, 500))
         device = {"device": "simulated", "gap": 0.0, "removal_constant": 0.5}
         forces = []
-        for seconds in (4.0, 8.0, 16.0, 32.0):  # a busy machine takes the force away now and then
+        for seconds in (4.0, 8.0, 16.0, 32.0):  # a busy computer cuts the force now and then
             bpy.ops.riffler.pen_sculpt(seconds=seconds, tool=common.BALL, record=True, folder=str(place), **device)
             strokes = [s for p in place.glob("*.rjournal") for s in riffler.Journal.read(p).strokes]
             forces = [np.linalg.norm(s.forces[:, :3], axis=1).max() for s in strokes if s.forces is not None and len(s)]
@@ -81,7 +81,7 @@ def test_the_device_is_the_one_of_the_preferences_unless_the_scene_has_another()
     assert bpy.context.scene.riffler.pen.device == "preferred"
     kind = other("simulated")
     with preferred(device=kind):
-        common.refused(lambda: bpy.ops.riffler.pen_sculpt(seconds=0.1))  # nothing of it is plugged in
+        common.refused(lambda: bpy.ops.riffler.pen_sculpt(seconds=0.1))  # no such device is connected
         assert bpy.ops.riffler.pen_sculpt(seconds=0.1, device="simulated", gap=500.0) == {"CANCELLED"}
 
 
@@ -120,7 +120,7 @@ def test_journals_are_found_in_the_old_folder_too():
     with preferred(journals=str(folder("new journals"))) as found:
         assert chosen.folders("journals") == [Path(found.journals), own]
         assert keeping.folder() == Path(found.journals) and not keeping.crashed(look=True)
-        shutil.copytree(left_in(own), own / "cut off")  # the copy is held by nobody
+        shutil.copytree(left_in(own), own / "cut off")  # no process holds the copy
         try:
             assert [f.folder for f in keeping.crashed(look=True)] == [own / "cut off"]
         finally:
@@ -136,7 +136,7 @@ def left_in(place):
         name = sculpting.sculpt()
         sculpting.stroke(name, 1)
         journal = common.part("sculpt.live_registry").of(bpy.data.objects[name]).persistence.journal
-        while not journal.settled():  # the stock that it begins with is written meanwhile
+        while not journal.settled():  # its initial stock is being written
             pass
         assert journal.folder.parent == place
         return journal.folder
@@ -190,7 +190,7 @@ def test_the_doctor_writes_what_it_finds_into_a_text():
 
 
 def blenders_keys():
-    """(keymap, key, ctrl, shift, alt) of everything in Blender's own configuration."""
+    """(keymap, key, ctrl, shift, alt) of every item in Blender's own configuration."""
     for place in bpy.utils.script_paths():
         path = Path(place) / "presets" / "keyconfig" / "keymap_data" / "blender_default.py"
         if path.exists():
@@ -226,7 +226,7 @@ def test_menus_are_drawn_into_blenders():
 
 
 def shown():
-    """(where, property) of all that a person can set, and (where, None) of operators."""
+    """(where, property) of everything that a user can set, and (where, None) of operators."""
     for module in common.part("registration").modules():
         for cls in module.CLASSES:
             if issubclass(cls, bpy.types.Operator):
@@ -246,7 +246,7 @@ def shown():
 
 
 def groups():
-    """Of the scene's settings: what objects, meshes and the window manager have is shown nowhere."""
+    """Groups of the scene's settings: the data on objects, meshes and the window manager is shown nowhere."""
     own = common.part("properties")
     return {
         p.fixed_type.identifier
@@ -266,7 +266,7 @@ def test_whatever_a_person_can_press_or_set_has_a_tooltip_in_one_line():
 
 
 def test_every_text_of_the_translations_is_one_of_the_addons():
-    """In a class, or word by word in the sources (what is drawn, and why something is refused)."""
+    """In a class, or literally in the sources (drawn texts, and reasons for refusals)."""
     import ast
 
     known = {text for s in riffler.plan.STRATEGIES.values() for text in (s.action, s.missing)}
@@ -312,7 +312,7 @@ def test_a_blender_in_german_speaks_german():
         view.language = "de_DE"
         view.use_translate_interface = True
         assert bpy.app.translations.pgettext_iface("New Stock", "Operator") == "Neues Rohteil"
-        own = common.part("translations").CONTEXT  # in Blender's own words a pitch is a slope
+        own = common.part("translations").CONTEXT  # in Blender's own catalogue a pitch is a slope
         assert bpy.app.translations.pgettext_iface("Pitch", own) == "Raster"
         common.refused(bpy.ops.riffler.relief, "Ein Bild wählen")  # reports, which Blender does not look up
     finally:

@@ -1,5 +1,5 @@
-"""Scenes as artists have them: collections that are excluded or linked, objects scaled to nothing, shape keys, many
-objects. What cannot be done is said, nothing is left half done, and nothing is looked for again and again."""
+"""Scenes as artists have them: collections that are excluded or linked, objects scaled to zero, shape keys, many
+objects. Impossible actions are reported, nothing is left half done, and nothing is searched again and again."""
 
 from types import SimpleNamespace
 
@@ -12,13 +12,13 @@ from support.sculpting import live
 
 
 def datablocks():
-    """How many there are of what the add-on makes."""
+    """Numbers of the datablocks that the add-on makes."""
     places = (bpy.data.objects, bpy.data.meshes, bpy.data.images, bpy.data.collections, bpy.data.materials)
     return tuple(map(len, places))
 
 
 def exclude(ob):
-    """Puts an object into a collection of its own that the view layer leaves out."""
+    """Puts an object into a collection of its own that the view layer excludes."""
     home = bpy.data.collections.new("Away")
     bpy.context.scene.collection.children.link(home)
     for collection in ob.users_collection:
@@ -61,7 +61,7 @@ def test_a_stock_in_an_excluded_collection_is_not_simulated_and_nothing_is_left(
 
 
 def test_a_stock_in_an_excluded_collection_is_verified_once_it_is_enabled():
-    """Where it stands is not known before: excluded objects are not evaluated."""
+    """Its place is unknown before: excluded objects are not evaluated."""
     programs.resolved()
     stock = programs.stock()
     home = exclude(stock)
@@ -156,7 +156,7 @@ def test_a_plane_that_is_flat_crops_and_one_that_is_a_line_is_refused():
     bpy.context.collection.objects.link(plane)
     plane.location = ob.location
     volumes = []
-    for scale in ((1, 1, 1), (1, 1, 0), (2, 3, 0)):  # somebody pressed S Z 0
+    for scale in ((1, 1, 1), (1, 1, 0), (2, 3, 0)):  # the user pressed S Z 0
         plane.location.z = ob.matrix_world.translation.z + 12
         plane.scale = scale
         bpy.context.view_layer.update()
@@ -183,8 +183,8 @@ def test_shape_keys_go_with_the_vertices_that_they_were_of():
     ob.shape_key_add(name="Basis")
     ob.shape_key_add(name="Key").value = 1.0
     edited = common.part("sculpt.sculpts").edited
-    assert edited(ob.data)  # so the panel offers to take them over, or to drop them
-    common.refused(lambda: bpy.ops.riffler.cut_curve(curve="Line", tool=common.FLAT, depth=2.0), "Take Edits")
+    assert edited(ob.data)  # so the panel offers to apply or discard them
+    common.refused(lambda: bpy.ops.riffler.cut_curve(curve="Line", tool=common.FLAT, depth=2.0), "Apply Mesh Edits")
     assert ob.data.shape_keys is not None and bpy.ops.riffler.rebuild() == {"FINISHED"}
     assert bpy.ops.riffler.cut_curve(curve="Line", tool=common.FLAT, depth=2.0) == {"FINISHED"}
     bpy.context.view_layer.update()
@@ -230,7 +230,7 @@ def test_one_sculpt_that_cannot_be_ended_keeps_no_other_from_being_saved():
         assert [r.name for r in live().awake()] == [first]
         bpy.context.window_manager.riffler.notice = ""
         bpy.ops.wm.save_as_mainfile(filepath=common.out("one.blend"), copy=True)
-        assert not bpy.context.window_manager.riffler.notice  # the same again is not told again
+        assert not bpy.context.window_manager.riffler.notice  # the same problem is not reported again
         common.select(bpy.data.objects[second])
         common.refused(bpy.ops.riffler.rebuild, "not enough memory")
     finally:
@@ -291,7 +291,7 @@ def test_plans_are_looked_for_once_among_many_objects():
     bpy.data.objects["Other"].location.x = 1
     keyframed_plan.update()
     assert store.active(bpy.context) == ob and store.searches == before + 1
-    # whatever makes it another list is seen at once
+    # every change of the list is noticed at once
     twin = store.new(bpy.context, store.plan(ob), "Twin")
     assert store.in_scene(bpy.context.scene) == [ob, twin]
     bpy.data.objects.remove(twin)
@@ -300,7 +300,7 @@ def test_plans_are_looked_for_once_among_many_objects():
     assert store.in_scene(bpy.context.scene) == [ob]
     assert store.in_scene(bpy.data.scenes.new("Empty")) == []
     (home,) = ob.users_collection
-    home.objects.unlink(ob)  # no more and no fewer objects
+    home.objects.unlink(ob)  # the number of objects is unchanged
     keyframed_plan.update()
     assert store.in_scene(bpy.context.scene) == []
     home.objects.link(ob)
@@ -322,7 +322,7 @@ def overridden(name):
 
 
 def test_an_overridden_plan_is_changed_only_once_it_is_local():
-    """The plan's data is not what an override keeps: edits would be lost when the file is opened again."""
+    """An override does not keep the plan's data: edits would be lost when the file is opened again."""
     store = common.part("plan.plan_store")
     ob = overridden(plans.on_timeline().name)
     plan = store.plan(ob)

@@ -1,4 +1,4 @@
-"""docs/sculpting.md: settings are called, and begin, as its tables say, and buttons are called as they are there."""
+"""docs/sculpting.md: settings have the names and defaults of its tables, and buttons their names there."""
 
 import json
 import re
@@ -22,13 +22,13 @@ def tables():
 
 
 def fields(group):
-    """{label: (property, value)} of what a panel may show of a group."""
+    """{label: (property, value)} of a group's fields for panels."""
     shown = [p for p in group.bl_rna.properties if p.description and not p.is_hidden and p.identifier != "name"]
     return {p.name: (p, getattr(group, p.identifier)) for p in shown}
 
 
 def said(prop, value):
-    """A value as the page writes it."""
+    """A value in the page's form."""
     if value is None or value == set() or (prop.type == "STRING" and not value):
         return "none"
     if prop.type == "BOOLEAN":
@@ -53,8 +53,8 @@ def test_settings_have_the_names_and_defaults_of_the_tables():
 
 
 def test_buttons_are_called_as_they_are_there():
-    """Bold in the first cell of a line: a button, or a tool. What the add-on writes in fixed words has its German, but
-    for what a number follows."""
+    """Bold in the first cell of a line: a button, or a tool. Fixed texts of the add-on have their German, except those
+    followed by a number."""
     addon = Path(common.part("registration").__file__).parent
     texts = set(json.loads((addon / "translations" / "de.json").read_text(encoding="utf-8")))
     panels = "".join(path.read_text(encoding="utf-8") for path in addon.rglob("*panel*.py"))

@@ -1,4 +1,4 @@
-"""The sculpt tools without a window: in the toolbar, strokes from scripts, fixtures, what is refused."""
+"""The sculpt tools without a window: in the toolbar, strokes from scripts, fixtures, refusals."""
 
 import json
 from pathlib import Path
@@ -22,21 +22,21 @@ def volume_of(ob):
 
 
 def view(middle):
-    """From the stock's +Z, ten pixels a millimetre, `middle` (mm) in the middle."""
+    """From the stock's +Z, ten pixels per millimetre, centred on `middle` (mm)."""
     matrix = np.diag([2 / (SIZE[0] * PIXEL), 2 / (SIZE[1] * PIXEL), -0.01, 1.0])
     matrix[:3, 3] = -(matrix[:3, :3] @ np.append(middle, 0))
     return {"matrix": matrix.ravel().tolist(), "size": list(SIZE)}
 
 
 def stroke(*places, middle=(20, 15), **more):
-    """A stroke through places on the top (mm), as a script makes one."""
+    """A script's stroke through places on the top (mm)."""
     rows = [[0.5 * SIZE[0] + (x - middle[0]) / PIXEL, 0.5 * SIZE[1] + (y - middle[1]) / PIXEL] for x, y in places]
     text = json.dumps({"view": view(middle), "rows": rows})
     return bpy.ops.riffler.stroke(stroke=text, tool=more.pop("tool", common.BALL), **more)
 
 
 def groove(length, depth, radius=3.0):
-    """Closed form: a segment of the circle along the way, and two halves of a cap of the ball."""
+    """Closed form: a segment of the circle along the path, and two halves of a cap of the ball."""
     half = np.arccos((radius - depth) / radius)
     segment = radius**2 * (half - np.sin(half) * np.cos(half))
     return length * segment + np.pi * depth**2 * (3 * radius - depth) / 3
@@ -152,7 +152,7 @@ def test_material_that_the_box_cuts_off_is_said_at_once():
     settings(depth=0.5)
     assert "cut off" not in common.printed(add)  # it ends half a millimetre below the box
     settings(depth=1.5)
-    assert "cut off at the stock's box: Make Room" in common.printed(add)
+    assert "cut off at the stock's box: use Grow Box" in common.printed(add)
     common.part("sculpt.live_registry").end_all()
     top = common.coordinates(ob.data)[:, 2].max()
     assert top <= 20 + 1e-4
@@ -160,14 +160,14 @@ def test_material_that_the_box_cuts_off_is_said_at_once():
     assert "cut off" not in common.printed(add)
     common.part("sculpt.live_registry").end_all()
     assert common.coordinates(ob.data)[:, 2].max() > top + 0.5
-    assert "cut off" not in common.printed(lambda: stroke((10, 8), (30, 8)))  # of what was added before
+    assert "cut off" not in common.printed(lambda: stroke((10, 8), (30, 8)))  # what was added before
     path = common.out("added.rjournal")
     recorded(path, ob)
     assert "cut off at the stock's box" in common.printed(lambda: bpy.ops.riffler.cut_recording(filepath=path))
 
 
 def recorded(path, ob):
-    """A recording of a stroke that puts material on beyond the box of a sculpt."""
+    """A recording of a stroke that adds material beyond the box of a sculpt."""
     volume, journal = volume_of(ob), riffler.Journal()
     journal.set_stock(volume.lower, volume.upper, volume.pitch, volume.directions)
     journal.add_tool(1, riffler.Tool.ball(6, 4).to_dict())
@@ -241,7 +241,7 @@ def clamp(ob, place, size=4):
 
 
 def least_clearance(ob, clamps):
-    """Of all that was cut, between the poses too, from the fixtures."""
+    """The smallest clearance of the whole cut from the fixtures, between the poses, too."""
     solid = common.part("sculpt.fixtures").collider(bpy.context, clamps, common.part("sculpt.sculpts").from_world(ob))
     found = []
     for cut in common.part("sculpt.live_registry").content(ob).cuts:
@@ -287,7 +287,7 @@ def test_a_stroke_goes_around_what_no_lift_frees_it_from():
 
 
 def test_a_mirrored_fixture_is_as_solid_as_any():
-    """The tool is wholly inside it, and touches none of its faces."""
+    """The tool is completely inside it, and touches none of its faces."""
     common.scale(1)
     ob = common.stock(pitch=0.5)
     jaws = bpy.data.collections.new("Jaws")

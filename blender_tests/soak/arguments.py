@@ -1,7 +1,7 @@
-"""Settings of operators and of the scene as random draws, right ones and wrong ones, by what Blender knows of them.
+"""Random settings of operators and of the scene, valid and invalid, from Blender's descriptions of them.
 
-New operators and new settings are drawn like all others. By name are here only what must mean something to reach the
-work behind it (a tool, a stroke), and what would take hours where it is right.
+New operators and new settings are drawn like all others. Only settings that need a meaningful value to reach the work
+behind them (a tool, a stroke), and those whose valid values would take hours, are listed here by name.
 """
 
 import json
@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from support import common
 
 WRONG = (math.nan, math.inf, -math.inf, -1.0, 0.0, 1e-30, 1e30)
-# What of a number is drawn, and which wrong ones: others would be honest work for hours, or for days.
+# Ranges of drawn numbers, with the invalid ones: values outside would cause hours or days of regular work.
 NUMBERS = {
     "pitch": ((0.5, 3.0), WRONG[:6]),
     "size": ((3.0, 12.0), (math.nan, -1.0, 0.0, 1e-30)),
@@ -58,18 +58,18 @@ STROKES = (
 
 
 def names():
-    """Of what there is, not of what the add-on keeps for itself."""
+    """Names of existing data, without the add-on's internal data."""
     found = (ob.name for data in (bpy.data.objects, bpy.data.images, bpy.data.collections) for ob in data)
     return sorted({name for name in found if not name.startswith((".", "Riffler Chunk", "Riffler Live"))})
 
 
 def paths():
-    """Nothing of the user's is written over: all are in the folder of the tests."""
+    """Protects the user's files: all paths are in the tests' folder."""
     return [common.out(n) for n in ("fuzz.stl", "fuzz.ngc", "fuzz.rjournal", "missing/fuzz", ".")]
 
 
 def value(of):
-    """A draw for a property (bpy.types.Property), right or wrong, of the type that it takes; None: leave it."""
+    """A draw for a property (bpy.types.Property), valid or not, of the type that it takes; None: leave it unset."""
     if of.is_readonly or of.type in ("POINTER", "COLLECTION"):
         return None
     if of.type == "BOOLEAN":
@@ -109,6 +109,6 @@ def _texts(of):
 
 
 def settings(rna):
-    """Draws for all that `rna` (bl_rna) has, some of them."""
+    """Draws for some of the properties of `rna` (bl_rna)."""
     found = {p.identifier: value(p) for p in rna.properties if p.identifier not in ("rna_type", "name_full")}
     return st.fixed_dictionaries({}, optional={name: draw for name, draw in found.items() if draw is not None})

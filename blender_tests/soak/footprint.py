@@ -1,4 +1,4 @@
-"""What a Blender holds: memory, datablocks, threads, files, and what the add-on keeps beside them."""
+"""A Blender's resources: memory, datablocks, threads, files, and the add-on's caches."""
 
 import gc
 import os
@@ -17,7 +17,7 @@ def resident():
 
 
 def held():
-    """Numbers that stay where they are, however long one works: by name."""
+    """Numbers that stay constant during work of any length, by name."""
     gc.collect()
     keeping, working = common.part("sculpt.persistence"), common.part("sculpt.live_sculpt")
     folder = keeping.folder()

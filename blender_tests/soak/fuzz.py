@@ -1,7 +1,7 @@
-"""All operators of the add-on with settings right and wrong, in scenes that others have been at, in any order.
+"""All operators of the add-on with valid and invalid settings, in scenes changed by others, in any order.
 
-After each step every sculpt is what it was, or what an operator that said FINISHED has made of it; what said it did
-nothing has changed nothing; undo, redo and the file bring back to the byte what there was.
+After each step every sculpt is unchanged, or the result of an operator that returned FINISHED; an operator that
+returned CANCELLED has changed nothing; undo, redo and the file restore all states to the byte.
 """
 
 import faulthandler
@@ -21,14 +21,14 @@ from soak import arguments, world
 from support import common
 
 STEPS = 30  # of an example; fewer than Blender's undo steps
-LONGEST = 30.0  # s for one step: beyond, it hangs
+LONGEST = 30.0  # s for one step: a longer one hangs
 OTHERS = {"riffler.recover"}  # may change another sculpt than the active one
 MODES = ("REMOVE", "ADD", "SOFTEN", "MASK", "UNMASK")
 INDEX = st.integers(0, 1000)
 
 
 def operators():
-    """Of all modules that the add-on registers, in a fixed order."""
+    """Operators of all modules that the add-on registers, in a fixed order."""
     found = {c for module in common.part("registration").modules() for c in module.CLASSES}
     found = [c for c in found if issubclass(c, bpy.types.Operator)]
     return sorted(found, key=lambda c: c.bl_idname)
@@ -40,7 +40,7 @@ def function(cls):
 
 
 class Heard(io.TextIOBase):
-    """Standard error, with an ear for faults: Blender prints what handlers raise, and goes on."""
+    """Standard error, checked for faults: Blender prints what handlers raise, and continues."""
 
     def __init__(self, out):
         self.out, self.text = out, ""
@@ -64,14 +64,15 @@ class Fuzz(RuleBasedStateMachine):
         self.push()
 
     def log(self, what):
-        """For who looks after a crash: the last line is what it died of. What takes too long is ended there."""
+        """For analysis after a crash: the last line is the step that crashed. A step that takes too long is ended
+        there."""
         faulthandler.dump_traceback_later(LONGEST, exit=True, file=sys.__stderr__)
         with open(common.out("fuzz.log"), "a") as file:
             file.write(f"{time.perf_counter():.2f} {self.at} {what}\n")
 
     # ------------------------------------------------------------------ the model
     def push(self, message="step"):
-        """What has been done is a step of the history."""
+        """Makes the last change a step of the history."""
         bpy.ops.ed.undo_push(message=message)
         self.remember()
 
@@ -87,7 +88,7 @@ class Fuzz(RuleBasedStateMachine):
         assert "Traceback" not in self.heard.text, self.heard.text
 
     def call(self, cls, chosen, undo=True):
-        """One operator; what it says and what it did agree."""
+        """One operator; its report and its effect agree."""
         before = world.look()
         what = f"{cls.bl_idname}({', '.join(f'{k}={v!r}' for k, v in chosen.items())})"
         self.log(what)
@@ -136,7 +137,7 @@ class Fuzz(RuleBasedStateMachine):
 
     @rule(which=INDEX, data=st.data())
     def setting(self, which, data):
-        """Of the scene: one group of settings."""
+        """Sets one group of settings of the scene."""
         self.log(f"setting {which}")
         root = bpy.context.scene.riffler
         groups = sorted(
@@ -216,7 +217,7 @@ class Fuzz(RuleBasedStateMachine):
 
     @rule(which=INDEX)
     def edit(self, which):
-        """Of a mesh, by hand."""
+        """Edits a mesh by hand."""
         self.log(f"edit {which}")
         ob = self.chosen(which)
         if ob is not None and ob.type == "MESH" and len(ob.data.vertices):
@@ -269,7 +270,7 @@ class Fuzz(RuleBasedStateMachine):
 
     @rule()
     def end(self):
-        """As when another tool is taken up."""
+        """As when another tool is chosen."""
         self.log("end")
         common.part("sculpt.live_registry").end_all()
 
@@ -284,8 +285,8 @@ class Fuzz(RuleBasedStateMachine):
 
 
 def furnish():
-    """A sculpt, and one of each thing that operators ask for by name."""
-    common.part("common.packing").FAST = 60.0  # a busy machine decides nothing
+    """A sculpt, and one of each kind of data that operators take by name."""
+    common.part("common.packing").FAST = 60.0  # independent of a busy computer
     bpy.data.images.new("Picture", 8, 8)
     common.curve("Line", [(-4, 0, 4), (4, 1, 4)], mm_per_unit=1)
     bpy.ops.mesh.primitive_cone_add(radius1=3, radius2=1, depth=6)
@@ -304,7 +305,7 @@ def heard():
 
 def test_no_operator_loses_a_volume():
     chosen = common.JOB["soak"]
-    phases = (Phase.generate, Phase.shrink) if chosen["long"] else (Phase.generate,)  # a short run says it at once
+    phases = (Phase.generate, Phase.shrink) if chosen["long"] else (Phase.generate,)  # a short run reports it at once
     options = settings(
         max_examples=chosen["examples"],
         stateful_step_count=STEPS,

@@ -1,7 +1,7 @@
-"""Thousands of strokes in every mode and walks through Blender's history: each state is the right one to the byte, and
-nothing grows.
+"""Thousands of strokes in every mode and walks through Blender's history: each state is right to the byte, and nothing
+grows.
 
-Blocks are carved one after the other, a tenth of the strokes each, so that what belongs to one is flat. The reference
+Blocks are carved one after the other, a tenth of the strokes each, so that the data of one stays bounded. The reference
 is a replay of the poses by plain Volume.carve and Volume.soften, with masks and mirrors of its own.
 """
 
@@ -26,22 +26,22 @@ TOOLS = (
     '{"kind": "flat", "diameter": 3.0, "length": 20.0}',
     '{"kind": "ball", "diameter": 1.5, "length": 20.0}',
 )
-DEPTH = 20  # how far back a walk goes
-GROWTH, ROOM = 1.05, 8.0  # of memory from the first blocks to the last; MB, of the allocators
-REST = 50  # strokes from one rest of the hand to the next, which is also when a walk begins
-KEPT = 25  # states from one that the replay keeps to the next
+DEPTH = 20  # steps of a walk back
+GROWTH, ROOM = 1.05, 8.0  # allowed growth of memory from the first blocks to the last; MB for the allocators
+REST = 50  # strokes between two rests of the hand, at which a walk begins, too
+KEPT = 25  # states between two that the replay keeps
 
 
 @dataclass
 class State:
     digest: str
-    carves: list  # what has made it of the one before
+    carves: list  # the carves that made it from the previous one
     reference: tuple | None = None  # (volume, mask) of the replay
 
 
 @dataclass
 class Recorder:
-    """Stands between brushes and live sculpts, and writes down what is carved."""
+    """Sits between brushes and live sculpts, and records what is carved."""
 
     carves: list = field(default_factory=list)
 
@@ -99,7 +99,7 @@ def same(content, reference):
 
 
 class Block:
-    """One sculpt, its history as this test knows it, and where in it Blender is."""
+    """One sculpt, the test's own record of its history, and Blender's place in it."""
 
     def __init__(self, rng, recorder):
         self.rng, self.recorder = rng, recorder
@@ -159,7 +159,7 @@ class Block:
         return json.dumps({"view": view, "rows": rows, "looks": looks})
 
     def walk(self, steps):
-        """Undo and redo at random; the state is that of the history at each."""
+        """Undo and redo at random; at each step the state is that of the history."""
         lowest = max(0, len(self.states) - 1 - DEPTH)
         for _ in range(steps):
             back = self.at > lowest and (self.at == len(self.states) - 1 or self.rng.random() < 0.6)
@@ -185,8 +185,8 @@ class Block:
 
 
 def carved(rng, recorder, strokes, walks):
-    """A block of so many strokes and steps through the history; the memory while it was carved, in MB, and what was
-    held at its end."""
+    """A block of so many strokes and steps through the history; the memory during it, in MB, and the resources at its
+    end."""
     bpy.ops.wm.read_homefile(use_empty=False)
     block, memory, walked = Block(rng, recorder), [], 0
     for k in range(1, strokes + 1):

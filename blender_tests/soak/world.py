@@ -1,4 +1,4 @@
-"""What is in Blender that an operator which says it did nothing must leave alone."""
+"""The data in Blender that an operator must leave unchanged if it reports that it did nothing."""
 
 import hashlib
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ from support import common
 @dataclass(frozen=True)
 class World:
     sculpts: dict  # name → hash of volume and mask, count of cuts
-    meshes: dict  # name of a sculpt → that of its mesh: linked copies have one
+    meshes: dict  # name of a sculpt → hash of its mesh: linked copies share one
     objects: tuple
     collections: tuple
     selected: tuple
@@ -22,7 +22,7 @@ class World:
 
 
 def ours(thing):
-    """True of what stands for a live sculpt only."""
+    """True for objects that represent a live sculpt only."""
     chunks = common.part("sculpt.chunks")
     return chunks.MARK in thing or (getattr(thing, "data", None) is not None and chunks.MARK in thing.data)
 
@@ -30,7 +30,7 @@ def ours(thing):
 def look():
     live, chunks, sculpts = (common.part(f"sculpt.{name}") for name in ("live_registry", "chunks", "sculpts"))
     selected = {ob.name for ob in bpy.context.view_layer.objects if ob.select_get() and not ours(ob)}
-    for ob in bpy.data.objects:  # hidden while it is worked at, and given back after it
+    for ob in bpy.data.objects:  # hidden during a session, and restored after it
         if live.of(ob) is not None and chunks.collection_of(ob.riffler.mark)["selected"]:
             selected.add(ob.name)
     found = [ob for ob in bpy.data.objects if sculpts.is_sculpt(ob)]

@@ -1,1 +1,1 @@
-"""What the tests of the add-on share. `common`, and what uses it, runs in a Blender."""
+"""Shared by the add-on's tests. `common`, and modules that use it, run in a Blender."""

@@ -1,4 +1,4 @@
-"""What every test in a Blender uses. The harness sets JOB, MODULE and Skip."""
+"""Helpers of all tests in a Blender. The harness sets JOB, MODULE and Skip."""
 
 import ctypes
 import importlib
@@ -30,14 +30,14 @@ def out(name):
 
 
 def core_bound(test):
-    """Marks a test whose time goes into the core and that uses nothing that differs between Blender's versions: it runs
-    in the oldest and in the newest of them only. Undo, opening files, frames and mesh attributes need all."""
+    """Marks a test whose time is spent in the core and that uses nothing that differs between Blender's versions: it
+    runs in the oldest and in the newest of them only. Undo, opening files, frames and mesh attributes need all."""
     test.core_bound = True
     return test
 
 
 def scale(mm_per_unit):
-    """Sets what one Blender unit is worth, in mm."""
+    """Sets the mm of one Blender unit."""
     bpy.context.scene.unit_settings.scale_length = mm_per_unit / 1000
 
 
@@ -65,12 +65,12 @@ def curve(name, points, matrix=None, mm_per_unit=1000.0, kind="POLY", tilt=None,
 
 
 def content(ob):
-    """The sculpt's volume and cuts as the add-on sees them."""
+    """The sculpt's volume and cuts in the add-on."""
     return part("sculpt.sculpt_store").content(ob.data)
 
 
 def shape(volume):
-    """A volume's material as arrays that compare."""
+    """A volume's material as comparable arrays."""
     return [volume.intervals(d) for d in volume.directions]
 
 
@@ -91,25 +91,25 @@ def triangles(mesh):
 
 
 def select(ob):
-    """Active, and the only one selected."""
+    """Makes the object active, and the only one selected."""
     bpy.ops.object.select_all(action="DESELECT")
     ob.select_set(True)
     bpy.context.view_layer.objects.active = ob
 
 
 def is_hidden(ob):
-    """True where it is not drawn: by its eye, or as chunks stand for it."""
+    """True if it is not drawn: hidden by its eye, or represented by chunks."""
     return part("sculpt.chunks").is_hidden(ob) or ob.hide_get()
 
 
 def mesh_volume(co, tri):
-    """Divergence theorem, by hand: the reference for what the product says."""
+    """Divergence theorem, computed here: the reference for the product's value."""
     a, b, c = (co[tri[:, k]].astype(float) for k in range(3))
     return float(np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6)
 
 
 def read_stl(path):
-    """Triangles (n, 3, 3) of a binary STL, read by hand."""
+    """Triangles (n, 3, 3) of a binary STL, parsed here."""
     data = Path(path).read_bytes()
     count = int(np.frombuffer(data, "<u4", 1, 80)[0])
     rows = np.frombuffer(data, np.dtype([("n", "<f4", 3), ("v", "<f4", (3, 3)), ("a", "<u2")]), count, 84)
@@ -123,11 +123,10 @@ def stl_volume(path):
 
 
 def refused(call, *words):
-    """The call must fail with an error that has all the words, whether or not a sentence begins with them; returns its
-    text."""
+    """The call must fail with an error that contains all the words, with or without a capital; returns its text."""
     try:
         call()
-    except RuntimeError as error:  # what a report of type ERROR becomes for a script
+    except RuntimeError as error:  # a report of type ERROR in a script
         text = str(error)
         assert all(w in text or w[:1].upper() + w[1:] in text for w in words), text
         said = text.strip().removeprefix("Error: ")
@@ -139,7 +138,7 @@ def refused(call, *words):
 
 
 def printed(call):
-    """What Blender prints while it runs, which are the operators' reports where no window shows them."""
+    """Blender's output while it runs: without a window, the operators' reports."""
     path, kept = Path(out("printed.txt")), os.dup(1)
     _flush()
     with path.open("w") as file:
@@ -154,13 +153,13 @@ def printed(call):
 
 
 def _flush():
-    """Blender prints some by itself, and some by Python."""
+    """Blender prints some of it itself, and some through Python."""
     sys.stdout.flush()
     ctypes.CDLL(None).fflush(None)
 
 
 def figure(name, value):
-    """Something that was measured, for out/blender/figures.json."""
+    """Records a measurement, for out/blender/figures.json."""
     report.say(figure=name, value=value)
 
 

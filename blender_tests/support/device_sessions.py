@@ -23,8 +23,8 @@ def sculpt_for(seconds, **more):
 
 
 def until_cut(**more):
-    """A hand of its own needs some seconds, and a busy machine takes the force away now and then and gives it few
-    steps: each try has twice the time of the one before."""
+    """A simulated hand needs some seconds, and a busy computer cuts the force now and then and gives it few steps: each
+    try has twice the time of the one before."""
     for seconds in (4.0, 8.0, 16.0, 32.0):
         if sculpt_for(seconds, **more) == {"FINISHED"}:
             return
@@ -74,7 +74,7 @@ def lowered(directions="z"):
 
 class Hand:
     """A session whose device is a mouse that a test moves: a stroke is a groove along x, 1 mm deep, or in mode "add" a
-    ridge on what is `lowered`. It waits where the machine is busy: a session steps with the newest event only."""
+    ridge on what is `lowered`. It waits if the computer is busy: a session steps with the newest event only."""
 
     def __init__(self, ob, record=None, mode="remove", **options):
         tool = common.part("sculpt.brushes").of(mode).cutter(riffler.Tool.ball(6, 30), 0.5)
@@ -99,8 +99,8 @@ class Hand:
         self.pen.give(x, y, pressure=float(pressed), buttons=int(pressed), time=self._time)
 
     def _go(self, x, y, pressed):
-        """There, and a step has been made with it that cuts where it is pressed: after a late one the session takes
-        what it does away for half a second. Or the session has ended."""
+        """Moves there, and waits until a step was made with it that cuts when pressed: after a late step the session
+        cuts the force for half a second. Or until the session has ended."""
         self._give(x, y, pressed)
         there, run = self.pen.state().pose, self.session.run
         return self.look(
@@ -110,7 +110,7 @@ class Hand:
         )
 
     def down(self, y, first=5, last=45):
-        """The hand comes and cuts; it does not let go."""
+        """The hand comes and cuts; it does not release."""
         self._go(first, y, 0)
         for x in np.arange(first, last, 1.0):
             self._go(x, y, 1)
@@ -128,7 +128,7 @@ class Hand:
         return True
 
     def stroke(self, y):
-        """The bytes of the volume after it."""
+        """Returns the bytes of the volume after it."""
         self.session.look()
         before = self.session.count
         self.down(y)

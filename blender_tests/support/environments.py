@@ -1,4 +1,4 @@
-"""The Blenders of this machine: bpy wheels in .envs/bpy-<version>, and `blender` on the PATH."""
+"""The Blenders on this computer: bpy wheels in .envs/bpy-<version>, and `blender` on the PATH."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Environment:
 
     @property
     def extensions(self) -> bool:
-        """True where Blender installs extensions with wheels; otherwise it takes the legacy zip."""
+        """True if Blender installs extensions with wheels; otherwise it takes the legacy zip."""
         return self.version >= (4, 2)
 
     def run(self, script: Path, variables: dict[str, str], timeout: float) -> subprocess.CompletedProcess:

@@ -16,7 +16,8 @@ RUNS = 5
 
 
 def best(call, before=lambda: None):
-    """Least wall time and least processor time (of all threads) in ms: the second stays right on a busy machine."""
+    """Smallest wall time and smallest processor time (of all threads) in ms: the second stays right on a busy
+    computer."""
     walls, cpus = [], []
     for _ in range(RUNS):
         before()

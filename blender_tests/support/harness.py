@@ -50,14 +50,14 @@ def install():
             if not (folder / name).exists():
                 (folder / name).symlink_to(Path(job["repo"]) / "addon", target_is_directory=True)
         bpy.ops.preferences.addon_enable(module=name)
-    # The operators say FINISHED even where nothing was installed.
+    # The operators return FINISHED even if nothing was installed.
     if name not in bpy.context.preferences.addons:
         raise RuntimeError(f"{name} was not enabled")
     return name
 
 
 class OnlyInstalled:
-    """Finds `riffler` anywhere but in this Python's own packages, where a developer has it too."""
+    """Finds `riffler` anywhere except in this Python's own packages, where a developer may have it, too."""
 
     def find_spec(self, name, path=None, target=None):
         if name != "riffler":

@@ -1,4 +1,4 @@
-"""A plan on the timeline as tests look at it and edit it."""
+"""A plan on the timeline, checked and edited by tests."""
 
 import bpy
 import numpy as np
@@ -37,7 +37,7 @@ def quat(axis, before=(1, 0, 0, 0)):
 
 
 def insert(tool, frame, axis, sign=1.0):
-    """As inserting in the graph editor does: a point in each curve."""
+    """Like inserting in the graph editor: a point in each curve."""
     for curve, value in zip(curves(tool), sign * quat(axis), strict=True):
         curve.keyframe_points.insert(frame, value)
     update()
@@ -55,7 +55,7 @@ def indices(ob):
 
 
 def seen(ob, frame):
-    """Tip in mm and axis of the tool as Blender has it at a frame, by its dependency graph."""
+    """Tip in mm and axis of the tool in Blender at a frame, by its dependency graph."""
     bpy.context.scene.frame_set(int(frame // 1), subframe=frame % 1)
     matrix = np.array(pair(ob)[0].evaluated_get(bpy.context.evaluated_depsgraph_get()).matrix_world)
     scale = bpy.context.scene.unit_settings.scale_length * 1000
@@ -67,6 +67,6 @@ def close(a, b, tolerance=1e-5):
 
 
 def same_axes(path, wanted, tolerance=1e-5):
-    """The path's keys against a dict of index to axis of any length."""
+    """Compares the path's keys with a dict of index to axis of any length."""
     assert list(path.keys) == sorted(wanted), (list(path.keys), wanted)
     return all(close(path.keys[k], np.array(a, float) / np.linalg.norm(a), tolerance) for k, a in wanted.items())

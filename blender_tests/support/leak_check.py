@@ -1,18 +1,18 @@
-"""What an add-on has in Blender: to be nothing once it is disabled.
+"""What an add-on has registered in Blender, which must be nothing once it is disabled.
 
-Blender lists classes, properties, handlers, keymaps, tools and what is drawn in its menus. Draw handlers, timers and
-previews it does not: they are written down as they are made and taken away, which is why a Watch has to begin before
-the add-on is enabled.
+Blender lists classes, properties, handlers, keymaps, tools and functions drawn in its menus. It does not list draw
+handlers, timers and previews: they are recorded when they are made and removed, so a Watch must begin before the add-on
+is enabled.
 """
 
 import bpy
 import bpy.utils.previews
 
-PREFIX = "riffler"  # of properties, operators and tools
+PREFIX = "riffler"  # prefix of properties, operators and tools
 
 
 def of(module, function):
-    """True where a callback is the add-on's; partial functions and bound methods, too."""
+    """True if a callback is the add-on's; partial functions and bound methods, too."""
     function = getattr(function, "func", function)
     name = getattr(function, "__module__", None) or ""
     return name == module or name.startswith(f"{module}.")
@@ -31,7 +31,7 @@ def classes(module):
 
 
 def properties():
-    """On any of Blender's types."""
+    """The add-on's properties on any of Blender's types."""
     out = []
     for name in dir(bpy.types):
         rna = getattr(getattr(bpy.types, name), "bl_rna", None)
@@ -60,7 +60,7 @@ def _ours(item):
 
 
 def menus(module):
-    """What the add-on draws in Blender's own menus, panels and headers."""
+    """The add-on's functions that draw in Blender's own menus, panels and headers."""
     out = []
     for cls in {c for base in (bpy.types.Menu, bpy.types.Panel, bpy.types.Header) for c in subclasses(base)}:
         drawn = getattr(vars(cls).get("draw"), "_draw_funcs", ())  # the first is the menu's own
@@ -69,7 +69,7 @@ def menus(module):
 
 
 def tools():
-    """In the toolbars: their lists hold tools, groups of tools, and functions that make some."""
+    """The add-on's tools in the toolbars, whose lists hold tools, groups of tools, and functions that make some."""
     from bl_ui.space_toolsystem_toolbar import VIEW3D_PT_tools_active as toolbar
 
     def flat(items):
@@ -83,7 +83,7 @@ def tools():
 
 
 class Watch:
-    """From `with` on, knows the add-on's draw handlers, timers and previews, too."""
+    """From `with` on, records the add-on's draw handlers, timers and previews, too."""
 
     def __init__(self, module):
         self._module = module
@@ -102,7 +102,7 @@ class Watch:
             self._put_back.pop()()
 
     def left(self):
-        """One line for each thing, sorted."""
+        """One line for each item, sorted."""
         drawn = [f"draw handler {f.__qualname__}" for f in self._drawn.values()]
         timed = [f"timer {f.__qualname__}" for f in self._timed if bpy.app.timers.is_registered(f)]
         previews = ["preview collection" for _ in self._previews]

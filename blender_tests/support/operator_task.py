@@ -1,4 +1,4 @@
-"""An operator whose long work does what a test says, through the add-on's own shell for native tasks."""
+"""An operator whose long work is defined by a test, through the add-on's own shell for native tasks."""
 
 from contextlib import contextmanager
 
@@ -9,7 +9,8 @@ from support import common
 
 
 class Task:
-    """Looks like riffler.Task. `looks`: how often it is asked before it is done by itself; None: when it is told."""
+    """Has the interface of riffler.Task. `looks`: number of polls before it is done by itself; None: when the test says
+    so."""
 
     def __init__(self, looks=None, outcome="made"):
         self.looks, self.outcome, self.share = looks, outcome, 0.0
@@ -33,7 +34,7 @@ class Task:
 
 @contextmanager
 def meshes_taken_by(task):
-    """What makes a volume of a mesh gets `task` instead of the native one."""
+    """Code that makes a volume of a mesh gets `task` instead of the native one."""
     native, tasks.from_mesh = tasks.from_mesh, lambda *args, **kwargs: task
     try:
         yield
@@ -42,12 +43,12 @@ def meshes_taken_by(task):
 
 
 class Stage:
-    """The operator riffler.test_work while it is registered: what it is to do, and what it did."""
+    """The operator riffler.test_work while it is registered: its behaviour, and a record of its calls."""
 
     def __init__(self):
         self.task = Task()
         self.refusal = None  # raised by begin()
-        self.gone = ""  # what lost() says
+        self.gone = ""  # result of lost()
         self.log = []
 
     def __enter__(self):

@@ -34,7 +34,7 @@ def part_object(mm_per_unit=1.0):
 
 
 def ring(radius=20.0, count=90):
-    """A closed path round a pin on a plate, both touched by a ball of 6 mm: centres 3 mm off the two."""
+    """A closed path around a pin on a plate, both touched by a ball of 6 mm: centres 3 mm off the two."""
     a = 2 * np.pi * np.arange(count) / count
     way = np.c_[np.cos(a), np.sin(a), np.zeros(count)]
     centres = radius * way + [0, 0, 3]

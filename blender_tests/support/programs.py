@@ -1,4 +1,4 @@
-"""A plan of the step, resolved or not, a stock around it, and NC text of our own making."""
+"""A plan of the step, resolved or not, a stock around it, and NC text made here."""
 
 import bpy
 import numpy as np
@@ -44,7 +44,7 @@ def content(ob):
 
 
 def stock(pitch=0.5, offset=0.5, location=(0, 0, 0), turn=0.0):
-    """A sculpt that is the step with `offset` mm of material on it, wherever it stands in the scene."""
+    """A sculpt that is the step with `offset` mm of material on it, at any place in the scene."""
     vertices = plans.step()[0]
     low, high = vertices.min(axis=0) - 1, vertices.max(axis=0) + 1
     triangles = plans.step()[1]

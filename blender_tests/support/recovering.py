@@ -1,8 +1,8 @@
-"""Runs in a Blender of its own that will be killed: a sculpt in strokes, told line by line, as long as it lives.
+"""Runs in a Blender of its own that will be killed: a sculpt carved in strokes, reported line by line.
 
 The job's `what`: "stroke", one that never ends; "rest", strokes and then nothing; "end", the add-on is disabled after
 them. `path`: a file to save before the first stroke, or ""; `stroke`: mode of the last one. Each line is printed when
-the carve that it tells of has returned.
+the carve that it reports has returned.
 """
 
 import math
@@ -23,7 +23,7 @@ import riffler
 
 BALL = riffler.Tool.ball(6, 30)
 SIZE = (60, 60, 20)
-ROWS = 5  # of a carve
+ROWS = 5  # rows per carve
 MODES = ("remove", "add", "mask", "remove")  # of the strokes before the last
 
 
@@ -33,8 +33,8 @@ def lane(k):
 
 
 def spiral(rows):
-    """The first rows of the last stroke: down through the block. Not by numpy's sine, which on some processors is
-    another by where in memory the array lies."""
+    """The first rows of the last stroke: down through the block. Not by numpy's sine, which on some processors depends
+    on the array's address."""
     turns = [0.03 * k for k in range(rows + 1)]
     return np.array([[30 + 20 * math.cos(a), 30 + 20 * math.sin(a), 19 - 0.07 * a, 0, 0, 1] for a in turns])
 
@@ -56,7 +56,7 @@ def both(rows, mode):
     poses = spiral(rows)
     for k in range(0, rows, ROWS):
         piece = poses[k : k + ROWS + 1]
-        if mode == "soften":  # the first of a piece was dabbed with the one before
+        if mode == "soften":  # the first of a piece was dabbed with the previous one
             volume.soften(piece[1 if k else 0 :, :3], 0.5 * BALL.diameter, 0.5, mask)
         elif mode in ("mask", "unmask"):
             mask.carve(BALL, piece, mode="add" if mode == "mask" else "remove")

@@ -1,4 +1,4 @@
-"""Sculpts that are worked at, for tests: strokes, and whether what is shown is what they have made."""
+"""Live sculpts for tests: strokes, and whether the display matches their result."""
 
 import bpy
 import numpy as np
@@ -57,7 +57,7 @@ def expected(volume):
 
 
 def same_triangles(a, b):
-    """Chunks turn a triangle's corners as the mesh does; equal sets of rows, then."""
+    """Chunks may rotate a triangle's corners; so compares sets of rows."""
     return a.shape == b.shape and np.array_equal(a, b)
 
 

@@ -1,7 +1,7 @@
-"""The runs that go on and on: strokes and walks through the history, and operators with random settings.
+"""The long-running tests: strokes and walks through the history, and operators with random settings.
 
-Short in every run of the tests; `run.py --soak` (`make soak`) takes them alone and long. The strokes' process ends as
-Blender does, not by os._exit: one that crashes at exit has failed.
+Short in every run of the tests; `run.py --soak` (`make soak`) runs them alone and long. The strokes' process ends as
+Blender does, not by os._exit: a crash at exit is a failure.
 """
 
 from __future__ import annotations
@@ -16,9 +16,9 @@ from support import environments
 from support.environments import Environment
 
 HERE = Path(__file__).resolve().parent.parent / "soak"
-STROKES = {(3, 4), (4, 5)}  # the Blenders that are carved in: the oldest, and the one in the middle
+STROKES = {(3, 4), (4, 5)}  # the Blenders used: the oldest, and the one in the middle
 FUZZED = {(4, 5)}
-LIBRARIES = ("hypothesis", "sortedcontainers")  # pure Python, whatever Blender runs it
+LIBRARIES = ("hypothesis", "sortedcontainers")  # pure Python, so that any Blender can run them
 SHORT = {"strokes": 500, "undos": 60, "examples": 30}
 LONG = {"strokes": 10_000, "undos": 1000, "examples": 1000}
 LIMITS = {False: 900, True: 4 * 3600}  # s for one process of a short run, and of a long one
@@ -61,7 +61,7 @@ def _files(environment: Environment) -> list[str]:
 
 
 def _lend(name: str, folder: Path) -> None:
-    """A library of this Python's, for Blender's."""
+    """Makes a library of this Python available to Blender's."""
     found = metadata.distribution(name)
     for top in {file.parts[0] for file in found.files if file.parts[0] not in ("..", "__pycache__")}:
         (folder / top).symlink_to(found.locate_file(top))

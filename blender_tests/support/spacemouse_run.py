@@ -1,5 +1,5 @@
-"""Runs in a Blender of its own, where umockdev has plugged in a puck that is pushed to the right, button 1 held most of
-the time: it sculpts through the add-on, and tells what came of it. `command` is what runs it so."""
+"""Runs in a Blender of its own, where umockdev has connected a SpaceMouse that is pushed to the right, button 1 held
+most of the time: it sculpts through the add-on, and reports the result. `command` is the command line for that."""
 
 import os
 import struct
@@ -48,16 +48,16 @@ A: idProduct=c631\\n
 A: product=SpaceMouse Pro Wireless\\n
 
 """
-FULL = 350  # what a puck says at full deflection
+FULL = 350  # a puck's value at full deflection
 PUSH = 175
 START = (-8, 30, 19)  # of the tool: left of the stock, 1 mm below its top
 PAUSE = 20  # ms between two reports
 DOWN, UP = 80, 20  # reports with button 1 held, and without
-LASTS = 60  # s, of which Blender's start takes some
+LASTS = 60  # s, including Blender's start
 
 
 def escaped(report):
-    """As scripts of umockdev have them: control characters and ^ after a ^."""
+    """In the form of umockdev's scripts: control characters and ^ after a ^."""
     return b"".join(
         bytes([0x5E, b ^ 0x40 if b != 0x5E else 0x60]) if b < 32 or b == 0x5E else bytes([b]) for b in report
     )
@@ -67,12 +67,12 @@ def says():
     """Its reports, as a script of umockdev."""
     for k in range(1000 * LASTS // PAUSE):
         held = k % (DOWN + UP) >= UP
-        trembling = k % 2  # the last axis, within what is rest
+        trembling = k % 2  # the last axis, within the dead zone
         yield b"r %d " % PAUSE + escaped(struct.pack("<BHB6h", 3, held, 1, PUSH, 0, 0, 0, 0, trembling)) + b"\n"
 
 
 def command(folder):
-    """Runs this file with this bpy, and with the puck; what describes it goes into `folder`."""
+    """Command that runs this file with this bpy, and with the puck; its description goes into `folder`."""
     size = struct.pack("<I", len(DESCRIPTOR)).hex().upper()
     descriptor = DESCRIPTOR.ljust(4096, b"\0").hex().upper()
     answers = f"@DEV /dev/hidraw0\nHIDIOCGRDESCSIZE 0 {size}\nHIDIOCGRDESC 0 {size}{descriptor}\n"

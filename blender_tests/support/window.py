@@ -1,4 +1,4 @@
-"""Starts Blender in a real window on a virtual display and hands it a script of steps."""
+"""Starts Blender in a real window on a virtual display and runs a script of steps."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ WIDTH, HEIGHT = 1400, 950
 
 
 def missing() -> str:
-    """Why no window can be opened here, or nothing."""
+    """Why no window can be opened here, or ""."""
     for program, package in (("xvfb-run", "xvfb"), ("import", "imagemagick"), ("xdotool", "xdotool")):
         if not shutil.which(program):
             return f"there is no `{program}` (package {package})"
@@ -22,8 +22,8 @@ def missing() -> str:
 
 
 def run(bench, application, mode: str, script: Path, display: int = 90) -> None:
-    """`mode`: how the add-on is installed: "source", or by the zip "extension" or "legacy". `display`: where a free one
-    is looked for."""
+    """`mode`: how the add-on is installed: "source", or by the zip "extension" or "legacy". `display`: the number from
+    which to search for a free one."""
     where = f"{application.name}, window, {mode}, {script.stem}"
     bench.begin(where)
     with tempfile.TemporaryDirectory() as resources:

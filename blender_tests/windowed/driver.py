@@ -1,4 +1,4 @@
-"""Runs inside Blender's window: takes a script's steps one by one from a timer, as fast as the window draws them.
+"""Runs inside Blender's window: runs a script's steps one by one from a timer, as fast as the window draws them.
 
 A script is a generator `steps(screen)`: it yields seconds to wait, or a function to wait for until it is true.
 """
@@ -19,19 +19,19 @@ from support import common, harness, report
 
 VERSION = "{}.{}".format(*bpy.app.version)
 PATIENCE = 300  # s for one condition; a software renderer on a busy machine is slow
-# xdotool's names for what Blender calls otherwise.
+# xdotool's names for keys with other names in Blender.
 KEYS = {"ESC": "Escape", "RET": "Return", "SPACE": "space", "TAB": "Tab", "DEL": "Delete", "LEFT_ARROW": "Left",
         "RIGHT_ARROW": "Right", "UP_ARROW": "Up", "DOWN_ARROW": "Down"}  # fmt: skip
 BUTTONS = {"LEFTMOUSE": 1, "MIDDLEMOUSE": 2, "RIGHTMOUSE": 3}
 
 
 class Screen:
-    """The window, its 3D view, and what a person would do with them."""
+    """The window, its 3D view, and a user's actions in them."""
 
     def __init__(self, out, script):
         self.out, self.script = Path(out), script
-        self.at = (0, 0)  # where the mouse was sent
-        self.unlike = []  # what pictures differ in; the steps go on, so that all of them are taken
+        self.at = (0, 0)  # the mouse's last target
+        self.unlike = []  # differences of pictures; the steps continue, so that all pictures are taken
 
     @property
     def window(self):
@@ -48,15 +48,15 @@ class Screen:
         return bpy.context.temp_override(window=self.window, area=self.area, region=self.region())
 
     def areas(self):
-        """Kind and box of every area, and of the sidebar in the 3D view, as pictures.judge takes them."""
+        """Kind and box of every area, and of the sidebar in the 3D view, in the form of pictures.judge."""
         w, h = self.window.width, self.window.height
         parts = [(a.type, a) for a in self.window.screen.areas]
         parts += [("SIDEBAR", self.region("UI"))] if self.area.spaces.active.show_region_ui else []
         return [(kind, (p.x / w, 1 - (p.y + p.height) / h, (p.x + p.width) / w, 1 - p.y / h)) for kind, p in parts]
 
     def draw_smoothly(self, smoothly):
-        """Smooth edges and outlines take a software renderer two thirds of its time: they are for pictures that people
-        will look at."""
+        """Smooth edges and outlines take a software renderer two thirds of its time: they are used only for pictures in
+        documents."""
         system = bpy.context.preferences.system
         system.viewport_aa = "FXAA" if smoothly else "OFF"  # the others draw several times
         system.use_overlay_smooth_wire = smoothly
@@ -66,13 +66,13 @@ class Screen:
 
     def picture(self, name, vary=()):
         """A picture of the whole display, compared with its reference if there is one: steps to `yield from`. Panels
-        that glide to where they belong, and a renderer on a busy machine, get time to become like it.
-        vary: kinds of areas, and boxes, that may look different each time."""
+        that are still moving, and a renderer on a busy computer, get time to match it. vary: kinds of areas, and boxes,
+        that may differ each time."""
         for pause in (0.5, 1.0, 2.0, 4.0, 0):
             complaint = self._shoot(name, vary)
             if not complaint:
                 break
-            self.area.tag_redraw()  # panels glide with each drawing
+            self.area.tag_redraw()  # panels move on with each drawing
             yield pause
         if complaint is None:
             report.say(note=f"{self.script}/{name}.png: there are no references for Blender {VERSION}")
@@ -83,27 +83,27 @@ class Screen:
             )
 
     def shot(self, name):
-        """A picture of the whole display to be looked at, compared with nothing. From outside: Blender's own operator
-        gives a black one from 4.3 on."""
+        """A picture of the whole display for inspection, without comparison. From outside: Blender's own operator gives
+        a black one from 4.3 on."""
         path = self.out / self.script / f"{name}.png"
         path.parent.mkdir(parents=True, exist_ok=True)
         subprocess.run(["import", "-window", "root", str(path)], check=True)
         assert path.stat().st_size > 20_000, f"{path} is all but empty"
 
     def _shoot(self, name, vary):
-        """What pictures.check says."""
+        """Returns the result of pictures.check."""
         self.shot(name)
         return pictures.check(self.out, f"{self.script}/{name}", VERSION, self.areas(), vary)
 
-    # A Blender that takes simulated events takes no others: a script says REAL_EVENTS = True to be without them, and
-    # all below then comes from outside, by xdotool, as a mouse and a keyboard send it.
+    # A Blender that takes simulated events takes no others: a script sets REAL_EVENTS = True to avoid them, and all
+    # events below then come from outside, by xdotool, as from a mouse and a keyboard.
 
     def xdotool(self, *words):
         assert not bpy.app.use_event_simulate, "without REAL_EVENTS = True, Blender is deaf to xdotool"
         subprocess.run(["xdotool", *map(str, words)], check=True)
 
     def move(self, x, y):
-        """The mouse to window pixels, y up."""
+        """Moves the mouse to window pixels, y up."""
         if bpy.app.use_event_simulate:
             self.window.event_simulate("MOUSEMOVE", "NOTHING", x=int(x), y=int(y))
         else:
@@ -111,14 +111,14 @@ class Screen:
         self.at = int(x), int(y)
 
     def button(self, value, name="LEFTMOUSE"):
-        """PRESS or RELEASE where the mouse is."""
+        """PRESS or RELEASE at the mouse's place."""
         if bpy.app.use_event_simulate:
             self.window.event_simulate(name, value, x=self.at[0], y=self.at[1])
         else:
             self.xdotool("mousedown" if value == "PRESS" else "mouseup", BUTTONS[name])
 
     def to_view(self):
-        """The mouse into the middle of the 3D view."""
+        """Moves the mouse to the middle of the 3D view."""
         r = self.region()
         self.move(r.x + r.width // 3, r.y + r.height // 2)
 
@@ -194,8 +194,8 @@ class Play:
 
 
 def rest():
-    """Blender's main loop sleeps where nothing happens, but not while it takes simulated events: it would keep a core
-    busy with waiting. This is called once in each of its turns."""
+    """Blender's main loop sleeps when idle, except while it takes simulated events: it would keep a core busy. This is
+    called once in each of its iterations."""
     time.sleep(0.005)
     return 0.0
 

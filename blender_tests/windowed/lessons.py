@@ -1,7 +1,7 @@
-"""What the tutorials' scripts share: buttons are found by pointing at them, and pictures are cropped and made small.
+"""Shared by the tutorials' scripts: buttons are found by pointing at them, and pictures are cropped and scaled down.
 
-A tutorial_*.py does what its page in docs/ says, in the same order, and its pictures are those of the page: `make
-tutorials` puts them there.
+A tutorial_*.py follows its page in docs/, in the same order, and its pictures are the page's: `make tutorials` copies
+them there.
 """
 
 import itertools
@@ -19,7 +19,7 @@ HERE = Path(__file__).resolve().parent
 cut = harness.load(HERE / "window_cut.py")
 COLOURS = 128  # of a picture's palette: at most 250 kB for a whole window
 PIE = {"riffler.carve": (-1, 0), "riffler.add": (1, 0), "riffler.smooth": (0, -1), "riffler.mask": (0, 1)}
-STEP = 12  # pixels from one look at a panel's buttons to the next: less than a button is high
+STEP = 12  # pixels between two positions on a panel's buttons: less than a button's height
 
 
 def module(name):
@@ -27,8 +27,8 @@ def module(name):
 
 
 def messages(screen):
-    """Lines of Blender's log of messages, the newest last: what popups and the status bar have shown. It has none of
-    what a script calls, only what came by mouse or keyboard, or from work that went on behind the window."""
+    """Lines of Blender's log of messages, the newest last: texts of popups and the status bar. It does not have reports
+    of calls from scripts, only of operators started by mouse or keyboard, or of work in the background."""
     area = next(a for a in screen.window.screen.areas if a.type in ("DOPESHEET_EDITOR", "OUTLINER", "PROPERTIES"))
     before, area.type = area.type, "INFO"
     try:
@@ -41,11 +41,11 @@ def messages(screen):
     finally:
         area.type = before
     lines = bpy.context.window_manager.clipboard.splitlines()
-    return [line for line in lines if not line.startswith("bpy.")]  # what was called is in it, too
+    return [line for line in lines if not line.startswith("bpy.")]  # it also has the calls
 
 
 class Recorded:
-    """Within it, calls of one of the add-on's functions are kept: (arguments, what was returned)."""
+    """Within it, calls of one of the add-on's functions are recorded: (arguments, return value)."""
 
     def __init__(self, part, name):
         self._part, self._name, self.calls = module(part), name, []
@@ -70,11 +70,11 @@ class Recorded:
 
 
 def plain_window():
-    """As a person has it, but for what would be in a picture's way."""
+    """As for a user, except for what would disturb a picture."""
     preferences = bpy.context.preferences
     preferences.view.show_tooltips = False
     preferences.view.show_splash = False
-    preferences.view.show_developer_ui = True  # buttons say which operator they are
+    preferences.view.show_developer_ui = True  # buttons show their operators
 
 
 def picture(screen, name, box=None):
@@ -105,7 +105,7 @@ ASIDE = (-0.06, -0.03, 0.03, 0.06)  # shares of a sidebar's width, from where Bl
 
 
 class Look(bpy.types.Operator):
-    """Notes the command of the button under the mouse, or an empty text, by the mouse's height."""
+    """Records the command of the button under the mouse, or "", by the mouse's height."""
 
     bl_idname = "wm.riffler_test_look"
     bl_label = "Look"
@@ -121,7 +121,7 @@ class Look(bpy.types.Operator):
 
 
 def enable_looking():
-    """Once in a Blender: KEY looks, over any panel."""
+    """Once in a Blender: KEY records a button, over any panel."""
     if not hasattr(bpy.types, "WM_OT_riffler_test_look"):
         bpy.utils.register_class(Look)
         keymap = bpy.context.window_manager.keyconfigs.addon.keymaps.new("User Interface")
@@ -131,7 +131,7 @@ def enable_looking():
 def commands(screen, x, heights):
     """Steps: {height: command} of the buttons there, by events that Blender handles together, between two drawings:
     each drawing costs a software renderer 40 ms. A button that the mouse leaves takes one move, and the next button
-    another. A field for text or for an object takes the key for itself, and has no entry."""
+    another. A field for text or for an object handles the key itself, and has no entry."""
     Look.seen.clear()
     for y in heights:
         screen.move(x, y)
@@ -143,8 +143,8 @@ def commands(screen, x, heights):
 
 
 def found(screen, region, words, share):
-    """Steps: the mouse over the first button of a region that has all `words` in the command that it gives: at a share
-    of the region's width, or close to it, where other versions place buttons; what lies below is scrolled to."""
+    """Steps: moves the mouse over the first button of a region, at or close to a share of its width, whose command has all
+    `words`; scrolls to buttons further down."""
     enable_looking()
     middle = region.y + region.height // 2
     heights = range(region.y + region.height - 8, region.y + 8, -STEP)
@@ -169,15 +169,15 @@ def found(screen, region, words, share):
 
 
 def press(screen, *words, region="UI", share=0.6):
-    """Clicks the button of an operator in the sidebar; `share`: how far to the right it is, of several in a row."""
+    """Clicks the button of an operator in the sidebar; `share`: its horizontal place in a row of several."""
     yield from found(screen, screen.region(region), words, share)
     screen.click(*screen.at)
     yield 0.3
 
 
 def begin(screen, millimetres=True):
-    """A new file as Blender opens it: our tab opened, all deleted, millimetres chosen; by hand unless the button is
-    in a panel that is folded."""
+    """A new file as Blender opens it: our tab opened, all deleted, millimetres set; by hand unless the button is in a
+    collapsed panel."""
     plain_window()
     yield from cut.open_tab(screen)
     screen.to_view()
@@ -208,7 +208,7 @@ def tool(screen, name):
 
 
 def pie(screen, name):
-    """W over the view, and one of the four tools that open about the pointer."""
+    """W over the view, and one of the four tools of the pie menu."""
     x, y = (PIE[name][k] * 70 for k in (0, 1))
     screen.to_view()
     at = np.array(screen.at)
@@ -261,7 +261,7 @@ def volume(ob):
 
 
 def only_open(*names):
-    """The tab with these panels open and all others folded; before it is seen for the first time."""
+    """The tab with these panels open and all others collapsed; before its first drawing."""
     harness.load(HERE / "window_pen.py").only_open(*names)
 
 
@@ -275,7 +275,7 @@ def idle():
 
 
 def closed(path, expected, within):
-    """An STL's surface: closed, and of the volume (mm³) that is expected within a share."""
+    """An STL's surface: closed, and of the expected volume (mm³) within a share."""
     surface = riffler.Mesh.read(str(path))
     audit = surface.audit()
     assert audit["open_edges"] == 0, audit
@@ -292,8 +292,8 @@ def block(screen, size, pitch=0.25):
 
 
 def aside(screen):
-    """Steps: what was in the middle of the view is in the middle of what the sidebar leaves of it."""
-    yield 0.5  # the matrix is of the last drawing
+    """Steps: moves the centre of the view to the centre of the part not covered by the sidebar."""
+    yield 0.5  # the matrix is that of the last drawing
     region, view = screen.region(), screen.area.spaces.active.region_3d
     sight = module("sculpt.pure.view_rays").ViewRays(np.array(view.perspective_matrix), (region.width, region.height))
     pixels = screen.region("UI").width / 2 / sight.pixels_per_unit(np.array(view.view_location))
@@ -302,7 +302,7 @@ def aside(screen):
 
 
 def activate(ob):
-    """As a click on it in the outliner."""
+    """Like a click on it in the outliner."""
     for other in bpy.context.view_layer.objects:
         other.select_set(False)
     ob.select_set(True)
@@ -310,7 +310,7 @@ def activate(ob):
 
 
 def hidden(screen, ob):
-    """Steps: a click on the eye beside a name in the outliner, of a scene with one collection."""
+    """Steps: a click on the eye next to a name in the outliner, of a scene with one collection."""
     area = next(a for a in screen.window.screen.areas if a.type == "OUTLINER")
     region = next(r for r in area.regions if r.type == "WINDOW")
     system = bpy.context.preferences.system
@@ -323,8 +323,8 @@ def hidden(screen, ob):
 
 
 def interpreted(path, rows):
-    """LinuxCNC's interpreter accepts the program and finds so many feed moves at least; where there is none, that is a
-    test that was skipped."""
+    """LinuxCNC's interpreter accepts the program and finds at least so many feed moves; without it, the test counts as
+    skipped."""
     judge = harness.load(HERE.parent / "headless" / "program" / "test_plan_nc.py")
     try:
         feeds = judge.interpreted(Path(path))

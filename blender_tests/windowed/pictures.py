@@ -1,12 +1,12 @@
 """Pictures of a window, compared loosely: a grid of mean luminance and one of edge strength, by kind of area.
 
-Fonts, anti-aliasing and a mouse that stands elsewhere must not fail a test; a panel that is not drawn, an empty view
-or an error over everything must. References are kept per version of Blender, as text: references/4.3.json. A run writes
-what it found to <out>/pictures-4.3.json; once somebody has looked at the pictures beside it,
+Fonts, anti-aliasing and the mouse's place must not fail a test; a missing panel, an empty view or an error over
+everything must. References are kept per version of Blender, as text: references/4.3.json. A run writes its grids to
+<out>/pictures-4.3.json; after looking at the pictures next to it,
 
-    python blender_tests/windowed/pictures.py out/blender/pictures-3.4.json [name …]
+python blender_tests/windowed/pictures.py out/blender/pictures-3.4.json [name …]
 
-makes them (or those that are named) the references.
+makes them (or the named ones) the references.
 """
 
 from __future__ import annotations
@@ -74,17 +74,17 @@ def differing(found, kept):
 
 
 def covered(box):
-    """Cells whose centres lie in (left, top, right, bottom), as parts of the picture."""
+    """Cells that differ, (ROWS, COLUMNS) of bool."""
     left, top, right, bottom = box
     x, y = (np.arange(COLUMNS) + 0.5) / COLUMNS, (np.arange(ROWS) + 0.5) / ROWS
     return np.outer((y >= top) & (y < bottom), (x >= left) & (x < right))
 
 
 def judge(found, kept, areas, vary=()):
-    """What is too different, a text for each area; nothing if the pictures are alike.
+    """Areas that differ too much, a text for each; empty if the pictures match.
 
-    areas: (kind, box) of what the window consists of, what lies on top of others after them; box as in `covered`.
-    vary: kinds, and boxes, that may differ.
+    areas: (kind, box) of the window's areas, those on top of others after them; box as in `covered`. vary: kinds, and
+    boxes, that may differ.
     """
     off = differing(found, kept)
     for box in vary:
@@ -114,7 +114,7 @@ def store(path, pictures):
 
 
 def note(out, version, pictures):
-    """Adds them to <out>/pictures-<version>.json, into which other windows write, too."""
+    """Adds them to <out>/pictures-<version>.json, which other windows write to, too."""
     with open(out / "pictures.lock", "w") as handle:
         fcntl.flock(handle, fcntl.LOCK_EX)
         notes = out / f"pictures-{version}.json"
@@ -122,8 +122,8 @@ def note(out, version, pictures):
 
 
 def check(out, name, version, areas, vary=()):
-    """Notes the grids of the picture <out>/<name>.png and compares them with their reference: a text on what differs,
-    "" if nothing does, None if there are no references for this version."""
+    """Records the grids of the picture <out>/<name>.png and compares them with their reference: a text on the
+    differences, "" if there are none, None if this version has no references."""
     out = Path(out)
     text = {kind: to_text(grid) for kind, grid in grids(gray(out / f"{name}.png")).items()}
     note(out, version, {name: text})

@@ -30,17 +30,17 @@ def steps(screen):
 
 
 def preferences(screen):
-    """Edit > Preferences > Add-ons, with Riffler unfolded, in the place of the view; its doctor is asked."""
+    """Edit > Preferences > Add-ons, with Riffler expanded, in the view's area; its doctor report is made."""
     area = screen.area
     bpy.context.preferences.active_section = "ADDONS"
     bpy.context.window_manager.addon_search = "Riffler"
     area.type = "PREFERENCES"
-    yield 1.0  # it has to be drawn once
+    yield 1.0  # it must be drawn once
     bpy.ops.preferences.addon_expand(module=common.MODULE)
     area.tag_redraw()
     yield 1.0
     region = next(r for r in area.regions if r.type == "WINDOW")
-    # Above lies the add-on's file, below are folders: of a computer, not of the page.
+    # Above is the add-on's file, below are folders: of a computer, not of the page.
     top = area.y + area.height
     yield from lessons.picture(screen, "connect-a-pen-1", (area.x + 172, top - 463, area.x + 1147, top - 254))
     with bpy.context.temp_override(window=screen.window, area=area, region=region):
@@ -53,7 +53,7 @@ def preferences(screen):
 
 
 def cutting():
-    """Steps: until the hand is in a stroke and feels it; a machine that keeps no time gets any stroke in the end."""
+    """Steps: until the hand is in a stroke and feels it; a computer that is too slow gets any stroke in the end."""
     force, begin = common.part("sculpt.force_view"), time.perf_counter()
 
     def cuts():

@@ -78,7 +78,7 @@ def engraved(screen, stock, curve):
 
 
 def replayed(screen, first, curve, recording):
-    """The same strokes, with the tool that the panel has now, on a new block."""
+    """The same strokes, with the panel's current tool, on a new block."""
     first.location.y = 42
     second = lessons.block(screen, SIZE)
     lessons.cutter("Ball 3 mm")

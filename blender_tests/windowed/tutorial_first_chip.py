@@ -45,7 +45,7 @@ def first_chip(screen):
 
 def egg(screen):
     """A sphere, stretched, is the material."""
-    yield from lessons.tool(screen, "builtin.select_box")  # from a tool of Riffler nothing is selected
+    yield from lessons.tool(screen, "builtin.select_box")  # Riffler's tools select nothing
     yield lambda: bpy.data.objects["Stock"].select_get()
     screen.to_view()
     screen.key("DEL")
@@ -67,7 +67,7 @@ def egg(screen):
     assert abs(lessons.volume(made).volume / exact - 1) < 0.005
     view = screen.area.spaces.active.region_3d
     view.view_distance *= 1.1
-    view.view_location.x += 6  # the size's handles stand beside the egg
+    view.view_location.x += 6  # the size's handles are next to the egg
     yield 0.5
 
 
@@ -77,7 +77,7 @@ def front(x, z):
 
 
 def curve(*corners, steps=24):
-    """A smooth way over the egg's front, through (x, z): Catmull and Rom's."""
+    """A smooth path over the egg's front, through (x, z): Catmull–Rom."""
     c = np.array([2 * np.subtract(corners[0], corners[1]) + corners[1], *corners])
     c = np.vstack([c, 2 * c[-1] - c[-2]])
     way = []
@@ -123,8 +123,8 @@ def owl(screen):
     after = lessons.volume(ob)
     taken, put_on = before.copy().subtract(after).volume, after.copy().subtract(before).volume
     report.say(note=f"owl: {taken:.0f} mm³ taken, {put_on:.0f} mm³ put on")
-    # Grooves and caps as on a plane: of sockets, pupils, beak, wings and feathers 470 mm³, less the eyes; brows, ears
-    # and toes come on top, with their round ends, and follow what they have put on.
+    # Grooves and caps as on a plane: sockets, pupils, beak, wings and feathers remove 470 mm³, less the eyes; brows,
+    # ears and toes add material, with their round ends, and follow what they have added.
     assert 250 < taken < 500 and 250 < put_on < 900, (taken, put_on)
     screen.area.spaces.active.shading.show_cavity = True
     region = screen.region()

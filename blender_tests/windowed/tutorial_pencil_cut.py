@@ -12,8 +12,8 @@ HERE = Path(__file__)
 lessons = harness.load(HERE.with_name("lessons.py"))
 gizmo = harness.load(HERE.with_name("window_gizmo.py"))
 line = gizmo.line
-# Inclination and tilt at the key by the clamp, degrees: one of two that lean least, with which the clamp is hit further
-# on, and one that stays clear of it all the way.
+# Inclination and tilt at the key by the clamp, degrees: one of two with the least tilt, with which the clamp is hit
+# further along, and one that stays clear of it on the whole path.
 LEAST, CLEAR = (-30.0, 22.5), (0.0, 37.5)
 CENTRES = np.array([17.0, 11.0])  # y and z of the ball along the valley: 3 mm off wall and plate
 
@@ -40,14 +40,14 @@ def steps(screen):
 
 
 def look(screen, direction, at):
-    """From a direction, with a place (mm) in the middle of the view."""
+    """Views from a direction, with a place (mm) in the middle of the view."""
     view = screen.area.spaces.active.region_3d
     view.view_rotation = gizmo.Vector(direction).to_track_quat("Z", "Y")
     view.view_distance, view.view_location = 140, at
 
 
 def cube(screen, name, middle, size):
-    """As the menu adds one; Dimensions and Location in the sidebar make it what it should be."""
+    """A cube from the menu; Dimensions and Location in the sidebar set its size and place."""
     with screen.override():
         bpy.ops.mesh.primitive_cube_add("INVOKE_DEFAULT", True)
     ob = bpy.context.object
@@ -70,7 +70,7 @@ def made_part(screen):
 
 
 def made_stock(screen, part):
-    """What roughing has left: the part with half a millimetre more or so."""
+    """The stock after roughing: the part with about half a millimetre more."""
     lessons.activate(part)
     bpy.ops.object.duplicate()
     rough = bpy.context.object
@@ -116,12 +116,12 @@ def searched(screen):
 
 
 def keyed(screen, ob):
-    """Ctrl-click near the far end, and then by the clamp, sets the free orientation that leans least. The frame of the
-    latter."""
+    """Ctrl-click near the far end, and then by the clamp, sets the free orientation of least tilt. Returns the frame of
+    the latter."""
     bpy.context.scene.riffler.plan.feed = 600
     yield from lessons.press(screen, "riffler.plan_to_timeline")
     yield lambda: lessons.module("plan.timeline").pair(ob) is not None
-    lessons.activate(bpy.data.objects["Riffler Tool"])  # the timeline has the keys of what is selected
+    lessons.activate(bpy.data.objects["Riffler Tool"])  # the timeline shows the keys of selected objects
     yield from lessons.tool(screen, "riffler.plan")
     last = len(line.paths()[0]) - 1
     for index in (round(0.93 * last), round(0.13 * last)):
@@ -143,7 +143,7 @@ def keyed(screen, ob):
 
 
 def higher_timeline(screen, pixels):
-    """Its upper edge is pulled, so that keys are seen."""
+    """Drags its upper edge, so that keys are visible."""
     area = line.area(screen, "DOPESHEET_EDITOR")
     before, x, y = area.height, area.x + area.width // 2, area.y + area.height
     yield from screen.drag([(x, y), (x, y + pixels // 2), (x, y + pixels)], pause=0.3)
@@ -151,12 +151,12 @@ def higher_timeline(screen, pixels):
 
 
 def lower(path):
-    """Which of the two contacts is on the plate, where it is seen."""
+    """The contact on the plate, of the two, where it is visible."""
     return int(path.contacts[0, 1, 2] < path.contacts[0, 0, 2])
 
 
 def turned(screen):
-    """In the middle the tool is turned by its dial; the map shows what is free."""
+    """In the middle the tool is turned by its dial; the map shows the free orientations."""
     scene = bpy.context.scene
     frames = line.key_frames()
     scene.frame_set(round((frames[0] + frames[-1]) / 2))
@@ -181,7 +181,7 @@ def by_resolve(screen, ob):
 
 
 def resolved(screen, ob):
-    """What would hit the clamp is lifted, and the list says so."""
+    """Where the tool would hit the clamp it is lifted, and the list says so."""
     yield from lessons.press(screen, "riffler.plan_check")
     yield lessons.idle
     yield from by_resolve(screen, ob)
@@ -195,11 +195,11 @@ def resolved(screen, ob):
     screen.to_view()
     yield 0.5
     yield from lessons.picture(screen, "pencil-cut-5", (0, 0, *lessons.view_box(screen)[2:]))
-    view.view_location, view.view_distance = before  # the glass has moved it
+    view.view_location, view.view_distance = before  # the magnifier button has moved it
 
 
 def turned_again(screen, frame):
-    """At the key by the clamp the map's cell of no inclination, and the tilt that goes by the clamp."""
+    """At the key by the clamp the map's cell of no inclination, and the tilt that passes the clamp."""
     scene = bpy.context.scene
     for _ in range(len(line.key_frames())):
         away = frame - scene.frame_current_final

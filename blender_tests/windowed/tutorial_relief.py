@@ -1,4 +1,4 @@
-"""docs/relief.md: a flower from a picture, smoothed, masked, and dimples about it."""
+"""docs/relief.md: a flower from a picture, smoothed, masked, and dimples around it."""
 
 import subprocess
 from pathlib import Path
@@ -13,7 +13,7 @@ SIDE, DEEP, WIDTH, DEPTH = 70.0, 12.0, 60.0, 3.0  # block and relief, mm
 
 
 def flower(n=512):
-    """Heights (n, n) of 0 to 1 of eight petals about a heart of seeds."""
+    """Heights (n, n) of 0 to 1 of eight petals around a heart of seeds."""
     x = np.linspace(-1, 1, n)
     x, y = np.meshgrid(x, x)
     r, a = np.hypot(x, y), np.arctan2(y, x)
@@ -45,7 +45,7 @@ def steps(screen):
     yield from embossed(screen, ob)
     yield from smoothed(screen, ob)
     yield from masked(screen, ob)
-    assert 0 < len(common.content(ob).cuts) <= 64  # the dimples: all that NC code would have
+    assert 0 < len(common.content(ob).cuts) <= 64  # the dimples: NC code would have only these
     path = common.out("relief.stl")
     with screen.override():
         assert bpy.ops.riffler.export_stl(filepath=path) == {"FINISHED"}
@@ -72,7 +72,7 @@ def embossed(screen, ob):
     removed = SIDE * SIDE * DEEP - lessons.volume(ob).volume
     exact = DEPTH * WIDTH**2 * (1 - heights.mean())
     assert abs(removed / exact - 1) < 0.02, (removed, exact)
-    yield 1.2  # the button is drawn again
+    yield 1.2  # the button is redrawn
     yield from lessons.picture(screen, "relief-2", lessons.view_box(screen))
 
 
@@ -93,7 +93,7 @@ def smoothed(screen, ob):
 
 
 def masked(screen, ob):
-    """All within 25 mm of the middle is protected; dimples go round it."""
+    """All within 25 mm of the middle is protected; dimples surround it."""
     with screen.override():
         bpy.ops.curve.primitive_bezier_circle_add("INVOKE_DEFAULT", True, radius=25)
         circle = bpy.context.object
@@ -113,7 +113,7 @@ def masked(screen, ob):
     yield from lessons.picture(screen, "relief-4", lessons.view_box(screen))
     sculpt = bpy.context.scene.riffler.sculpt
     sculpt.radius, sculpt.depth, sculpt.radial = 2.5, 1.0, 32
-    yield from lessons.tool(screen, "riffler.smooth")  # the one of the four that was taken last
+    yield from lessons.tool(screen, "riffler.smooth")  # the tool of the four that was used last
     yield from lessons.pie(screen, "riffler.carve")
     yield from lessons.brushed(screen, ob, [(27.0, 0, -3), (27.2, 0, -3)])
     yield from lessons.brushed(screen, ob, [(24.0, 2.4, -3), (24.2, 2.4, -3)])

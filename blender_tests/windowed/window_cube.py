@@ -1,7 +1,7 @@
 """The first minute (docs/first-chip.md, "The cube"): Blender's cube is there, Carve is chosen, and the mouse is dragged
-over it. The cube stays, Riffler asks, Return is pressed, and the drag is a stroke; Ctrl Z takes back first the stroke,
-then the sculpt. A drag off everything says what to do, a drag over another sculpt strokes that one. At the end the cube
-is a small figure, by the mouse and keys alone."""
+over it. The cube stays, Riffler asks, Return is pressed, and the drag is a stroke; Ctrl Z undoes first the stroke, then
+the sculpt. A drag off everything shows what to do, a drag over another sculpt strokes that one. At the end the cube is
+a small figure, by the mouse and keys alone."""
 
 import time
 from pathlib import Path
@@ -45,7 +45,7 @@ def steps(screen):
     assert cube().matrix_world == place and "Cube Stock" not in bpy.data.objects
     yield from lessons.picture(screen, "cube-1", lessons.view_box(screen))
 
-    # somebody who does not want to: nothing has happened
+    # the user declines: nothing has happened
     yield from answered(screen, "ESC")
     yield 0.5
     assert "Cube Stock" not in bpy.data.objects and bpy.context.scene.unit_settings.scale_length == 1
@@ -68,7 +68,7 @@ def steps(screen):
     yield lambda: volume() < carved and common.part("sculpt.pointer").held is None
     yield from sized(screen, 7, 3)
     screen.to_view()
-    for expected in (carved, 1e6):  # no step of the sizes, which stay
+    for expected in (carved, 1e6):  # no undo step of the sizes, which stay
         screen.key("Z", ctrl=True)
         yield 1.5
         assert volume() == expected
@@ -89,7 +89,7 @@ def volume():
 
 
 def off_everything(screen, place):
-    """Nothing is under the pointer, and what is active has no surface."""
+    """Nothing is under the pointer, and the active object has no surface."""
     bpy.context.view_layer.objects.active = bpy.data.objects["Light"]
     region = screen.region()
     screen.move(region.x + 150, region.y + 100)
@@ -164,7 +164,7 @@ WORDS = ("ZERO", "ONE", "TWO", "THREE", "FOUR", "FIVE", "SIX", "SEVEN", "EIGHT",
 
 
 def seen(screen, tilt, turn):
-    """From where a person has turned the view: degrees down from above, and around z from the front."""
+    """From a direction that a user has turned the view to: degrees down from above, and around z from the front."""
     view = screen.area.spaces.active.region_3d
     view.view_perspective = "ORTHO"
     view.view_rotation = Euler(np.radians((tilt, 0, turn))).to_quaternion()
@@ -200,7 +200,7 @@ def bear(screen):
     yield from sized(screen, 7, 6)
     yield from carved(screen, (18, -h, 10), (18.3, -h, 10.2), ctrl=True)  # eyes
     yield from sized(screen, 9, 5)
-    yield from carved(screen, (7, -h, 0), (15, -h, -7), (24, -h, -16), (28, -h, -26))  # beside the snout
+    yield from carved(screen, (7, -h, 0), (15, -h, -7), (24, -h, -16), (28, -h, -26))  # next to the snout
     yield from sized(screen, 3, 2.5)
     yield from carved(screen, (0, -h, -14), (0, -h, -22), (7, -h, -28), (15, -h, -27))  # the mouth
     yield from carved(screen, (-4, -h, -8), (4, -h, -8))  # the nose

@@ -1,4 +1,4 @@
-"""A person's way through the add-on: the sidebar's tab, new stock, a cut that runs in view, Ctrl-Z, and Esc."""
+"""A user's steps through the add-on: the sidebar's tab, new stock, a cut that runs in view, Ctrl-Z, and Esc."""
 
 import bpy
 import numpy as np
@@ -30,7 +30,7 @@ def open_tab(screen, panel="RIFFLER_PT_sculpt"):
 
 
 def stock(screen, pitch):
-    """A block of 60 × 60 × 20 mm from the origin on, and a ball of 8 mm at hand."""
+    """A block of 60 × 60 × 20 mm from the origin on, and a ball of 8 mm as the tool."""
     with screen.override():
         bpy.ops.riffler.millimetres()
         tool = bpy.context.scene.riffler.tool
@@ -95,7 +95,7 @@ def steps(screen):
 
     yield from undo_and_redo(screen, before, after)
     yield from cancel(screen, after)
-    # no undo step of its own: the first takes back the long curve, the second the cut before
+    # no undo step of its own: the first undoes the long curve, the second the cut before
     yield from undo(screen, after)
     assert "Long" not in bpy.data.objects
     yield from undo(screen, before)
@@ -123,8 +123,8 @@ def undo_and_redo(screen, before, after):
 
 
 def cancel(screen, after):
-    """Esc in mid-cut, after the surface was shown half cut: all is as it was, and no undo step is left."""
-    name = spiral(6, 250_000, "Long")  # long enough on any machine
+    """Esc during a cut, after the half-cut surface was shown: everything is restored, and no undo step is left."""
+    name = spiral(6, 250_000, "Long")  # long enough on any computer
     bpy.data.objects[name].hide_set(True)
     bpy.context.view_layer.objects.active = bpy.data.objects["Stock"]
     with screen.override():

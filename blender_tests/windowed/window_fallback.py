@@ -1,4 +1,4 @@
-"""The panel that replaces the add-on where the native core does not load: the C library is too old, or there is no
+"""The panel that replaces the add-on if the native core does not load: the C library is too old, or there is no
 numpy."""
 
 import sys

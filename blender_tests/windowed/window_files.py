@@ -1,5 +1,5 @@
-"""Stock of too few rays and of sizes that make no sense, by the panel's button. Then work whose file is chosen first:
-the selector opens, the work goes on behind the window, Esc leaves no file."""
+"""Stock of too few rays and of invalid sizes, by the panel's button. Then work whose file is chosen first: the selector
+opens, the work runs in the background, Esc leaves no file."""
 
 from pathlib import Path
 
@@ -9,7 +9,7 @@ from support import common, harness
 
 cut = harness.load(Path(__file__).with_name("window_cut.py"))
 lessons = harness.load(Path(__file__).with_name("lessons.py"))
-# two million triangles: work that can be seen
+# two million triangles: work of visible duration
 STOCK = {"source": "BLOCK", "size": (100, 60, 30), "pitch": 0.15, "directions": "xyz"}
 
 
@@ -22,7 +22,7 @@ def selectors():
 
 
 def choose(screen, operator, path, name=None, **more):
-    """The operator's button, the file in the selector that comes, and its button: steps to `yield from`. `name`: if not
+    """The operator's button, the file in the selector that opens, and its button: steps to `yield from`. `name`: if not
     that of the path."""
     path = Path(path)
     with screen.override():
@@ -56,8 +56,8 @@ def steps(screen):
 
 
 def of_few_rays(screen):
-    """Suzanne in millimetres, at a fine pitch: the panel says that there will be no details, and so does what is made;
-    one button mends it."""
+    """Suzanne in millimetres, at a fine pitch: the panel warns that there will be no details, and so does the report;
+    one button fixes it."""
     stock, before = bpy.context.scene.riffler.stock, bpy.context.scene.riffler.tool.dictionary()
     stock.source, stock.pitch = "OBJECT", 0.06
     bpy.data.objects.remove(bpy.data.objects["Cube"])
@@ -104,7 +104,7 @@ NONSENSE = (
 
 
 def of_odd_sizes(screen):
-    """New Stock with fields as somebody has typed them: each is refused by its name, and nothing is made."""
+    """New Stock with fields as a user has typed them: each is refused by its name, and nothing is made."""
     stock, there = bpy.context.scene.riffler.stock, len(bpy.data.objects)
     for fields, words in NONSENSE:
         stock.source, stock.pitch = "BLOCK", 0.5
@@ -125,7 +125,7 @@ def of_odd_sizes(screen):
 
 
 def without_a_name(screen):
-    """The selector's button with no name: the folder is named, and what to do."""
+    """The selector's button with no name: the message names the folder, and the remedy."""
     with screen.override():
         bpy.ops.riffler.new_stock(source="BLOCK", size=(20, 20, 20), pitch=1.0, directions="z")
     log = len(lessons.messages(screen))
@@ -150,7 +150,7 @@ def written(screen):
 
 
 def cancelled(screen):
-    """Esc: no file, and nothing beside it; what was there stays."""
+    """Esc: no file, and no leftovers next to it; an existing file stays."""
     path = Path(common.out("chosen.3mf"))
     # Other windows write into the same folder.
     before, beside = path.read_bytes(), set(path.parent.glob("*chosen*"))
@@ -163,7 +163,7 @@ def cancelled(screen):
 
 
 def no_recording(screen):
-    """A file that is none is said in the words of whoever finds it, and nothing runs."""
+    """An invalid file is reported with the message of the code that detects it, and nothing runs."""
     shared, said = common.part("blender.operator_parts"), []
     fail = shared.fail
     shared.fail = lambda operator, error: said.append(str(error)) or fail(operator, error)
@@ -178,7 +178,7 @@ def no_recording(screen):
 
 
 def recording(screen):
-    """Strokes from a file: behind the window, and one step of undo."""
+    """Strokes from a file: in the background, and one undo step."""
     name = cut.spiral(2, 6_000, "Spiral")
     path = Path(common.out("chosen.rjournal"))
     with screen.override():

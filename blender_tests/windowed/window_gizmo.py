@@ -1,5 +1,5 @@
-"""A person turns the plan's tool in the view: the Orient tool is chosen, a dial is dragged, Ctrl Z, typed degrees, Esc,
-the tool's end is pulled, the map is clicked, a path is clicked, and Ctrl-clicked."""
+"""A user turns the plan's tool in the view: the Orient tool is chosen, a dial is dragged, Ctrl Z, typed degrees, Esc,
+the tool's end is dragged, the map is clicked, a path is clicked, and Ctrl-clicked."""
 
 import math
 from pathlib import Path
@@ -48,7 +48,7 @@ def press(screen, at, value, kind="LEFTMOUSE", **modifiers):
 
 
 def drag(screen, way, release=True):
-    """Along pixels, so slowly that the handle under the pointer is found."""
+    """Along pixels, slowly enough that the handle under the pointer is found."""
     screen.move(*map(int, way[0] + (3, 3)))
     yield 0.3
     screen.move(*map(int, way[0]))
@@ -64,7 +64,7 @@ def drag(screen, way, release=True):
 
 
 def on_dial(screen, handle, angles, size):
-    """Pixels of a dial at angles (rad) about its axis; `size`: of that of Blender's gizmos."""
+    """Pixels of a dial at angles (rad) about its axis; `size`: relative to Blender's gizmo size."""
     at = spot()
     turn = module("plan.pure.tool_rotation")
     frame = at.line.frames[at.index]
@@ -99,7 +99,7 @@ def steps(screen):
     bpy.context.scene.riffler.plan.part = part
     bpy.context.scene.frame_set(73)
     line.look_at_the_part(screen)
-    # Neither dial is seen from its side.
+    # Neither dial is seen edge-on.
     line.area(screen, "VIEW_3D").spaces.active.region_3d.view_rotation = Vector((0.7, 0.8, 1)).to_track_quat("Z", "Y")
     with screen.override():
         assert bpy.ops.wm.tool_set_by_id(name="riffler.plan") == {"FINISHED"}
@@ -119,7 +119,7 @@ def steps(screen):
 
 
 def dial(screen):
-    """40° along the dial of the inclination are 40° of it; one Ctrl Z takes them back."""
+    """40° along the dial of the inclination are 40° of it; one Ctrl Z undoes them."""
     turn = module("plan.pure.tool_rotation")
     before = lean()
     begin = facing(screen, turn.INCLINATION, 1.0)
@@ -174,10 +174,10 @@ def escape(screen):
 
 
 def hold_still(screen):
-    """A click on a dial turns nothing, and is no step."""
+    """A click on a dial turns nothing, and is no undo step."""
     before, turn = line.key_frames(), module("plan.pure.tool_rotation")
     (at,) = on_dial(screen, turn.INCLINATION, [facing(screen, turn.INCLINATION, 1.0)], 1.0)
-    yield from line.press(screen, "VIEW_3D", "Z", ctrl=True)  # the key that was typed
+    yield from line.press(screen, "VIEW_3D", "Z", ctrl=True)  # the typed key
     yield lambda: line.settled() and line.indices() == [0, 144]
     yield from drag(screen, [at, at])
     yield 0.5
@@ -185,7 +185,7 @@ def hold_still(screen):
 
 
 def end(screen):
-    """The tool's end goes where the pointer goes: here straight up over the point."""
+    """The tool's end follows the pointer: here straight up over the point."""
     at = spot()
     turning = module("plan.current_pose")
     reach = turning.reach(bpy.context, view(screen), at.centre)
@@ -198,7 +198,7 @@ def end(screen):
 
 
 def click_the_map(screen):
-    """A cell that collides, and one that is free: the key has just its angles, and the map stays."""
+    """A cell that collides, and one that is free: the key has exactly its angles, and the map stays."""
     looking, drawn = module("plan.orientation_probe"), module("plan.orientation_map_view")
     maps = looking.maps
     found = looking._known.map
@@ -222,7 +222,7 @@ def click_the_map(screen):
 
 
 def click_a_path(screen):
-    """From before the wall, as what it hides is not pointed at."""
+    """From in front of the wall, since what it hides cannot be clicked."""
     line.area(screen, "VIEW_3D").spaces.active.region_3d.view_rotation = Vector((0.4, -0.8, 1)).to_track_quat("Z", "Y")
     yield 0.5
     at = spot()
@@ -230,7 +230,7 @@ def click_a_path(screen):
     seen = module("plan.path_view").kept
     seen.clear()
     screen.move(*map(int, pixel(screen, place)))
-    yield lambda: "line 0" in seen._kept  # the ring about what is pointed at was drawn
+    yield lambda: "line 0" in seen._kept  # the ring around the contact under the pointer was drawn
     yield 0.5
     yield from screen.picture("orient-06-pointed-at")
     screen.click(*map(int, pixel(screen, place)))

@@ -1,5 +1,5 @@
-"""A person's mouse and keyboard on a sculpt, from outside, by xdotool: a drag carves, Ctrl Z and Ctrl Shift Z, a drag
-that Esc gives up, Ctrl S; the file is opened again, has the sculpt to the byte, and the next drag carves on."""
+"""A user's mouse and keyboard on a sculpt, from outside, by xdotool: a drag carves, Ctrl Z and Ctrl Shift Z, a drag
+cancelled by Esc, Ctrl S; the file is opened again, has the sculpt to the byte, and the next drag carves on."""
 
 import subprocess
 import tempfile
@@ -27,7 +27,7 @@ def held():
 
 
 def drag(screen, first, last, release=True):
-    """A stroke between two places (mm of the stock); what the stroke was told of begins and ends at their pixels."""
+    """A stroke between two places (mm of the stock); the stroke's own samples begin and end at their pixels."""
     a, b = pixel(screen, first), pixel(screen, last)
     screen.move(*a)
     yield 0.3
@@ -49,7 +49,7 @@ def drag(screen, first, last, release=True):
 
 
 def typed(screen, expected, **modifiers):
-    """Z with modifiers, which must bring the volume `expected` (bytes)."""
+    """Z with modifiers, which must restore the volume `expected` (bytes)."""
     screen.key("Z", **modifiers)
     yield lambda: content() == expected
     yield 0.5
@@ -68,7 +68,7 @@ def begin(screen, path):
 
 
 def save(screen, path):
-    """Ctrl S, which asks nothing, as the file has a name."""
+    """Ctrl S, without a dialog, since the file has a name."""
     before = path.stat().st_mtime_ns
     assert bpy.data.is_dirty, "a stroke is a change that Blender asks about when it is closed"
     screen.key("S", ctrl=True)
@@ -78,7 +78,7 @@ def save(screen, path):
 
 
 def reopen(screen, path):
-    """By way of a new file, so that nothing is left but what the file has."""
+    """Through a new file, so that only the file's content is left."""
     with screen.override():
         bpy.ops.wm.read_homefile()
     yield 1.0
@@ -110,7 +110,7 @@ def steps(screen):
 
 
 def carved_and_undone(screen):
-    """Two strokes, of which Ctrl Z takes back one after the other, and Ctrl Shift Z brings both back."""
+    """Two strokes, which Ctrl Z undoes one after the other, and Ctrl Shift Z redoes."""
     states = [content()]
     for y in (15, 45):
         yield from drag(screen, (15, y, 20), (45, y, 20))
@@ -123,7 +123,7 @@ def carved_and_undone(screen):
 
 
 def give_up(screen):
-    """Esc while the button is held: all is as it was, and the button's release is nobody's."""
+    """Esc while the button is held: everything is restored, and the button's release does nothing."""
     before = content()
     yield from drag(screen, (15, 30, 20), (45, 30, 20), release=False)
     yield lambda: content() != before
@@ -135,8 +135,8 @@ def give_up(screen):
 
 
 def without_ribs(screen):
-    """Whole pixels of a slow hand, aslant: the tool's way does not turn with each of them, and the groove's floor lies
-    on the hand's own."""
+    """Whole pixels of a slow hand, at an angle: the tool's path does not turn with each of them, and the groove's floor
+    lies on the hand's own path."""
     a, b = pixel(screen, (8, 24, 20)), pixel(screen, (52, 36, 20))
     screen.move(*a)
     yield 0.3
@@ -183,7 +183,7 @@ def on_top(screen, at):
 
 
 def carve_on(screen):
-    """A stroke on what was opened, across those in the file; Ctrl Z takes back that one alone."""
+    """A stroke on the opened sculpt, across those in the file; Ctrl Z undoes that one only."""
     saved, whole = content(), strokes.volume().volume
     yield from drag(screen, (30, 10, 20), (30, 50, 20))
     assert run() is not None and strokes.volume().volume < whole

@@ -1,6 +1,6 @@
-"""A mouse at 125 events a second, from outside, on 1.3 million triangles: how long a place of the hand waits until its
+"""A mouse at 125 events a second, from outside, on 1.3 million triangles: the time from a place of the hand until its
 material is gone, from the first second to the last, and until the stroke is over. The software renderer takes half a
-second for a picture of that; with the chunks drawn as boxes what is left is what Riffler and Blender take."""
+second for a picture of that; with the chunks drawn as boxes only the time of Riffler and Blender is left."""
 
 import json
 import subprocess
@@ -17,7 +17,7 @@ from support import common, harness
 REAL_EVENTS = True
 strokes = harness.load(Path(__file__).with_name("window_stroke.py"))
 
-# Another process, so that nothing here slows the hand down; perf_counter is one clock for all.
+# Another process, so that nothing here slows the hand; perf_counter is one clock for all.
 HAND = """
 import json, subprocess, sys, time
 places, path = json.loads(sys.argv[1]), sys.argv[2]
@@ -51,7 +51,7 @@ SIDE = 130.0
 
 
 class Watch:
-    """When each sample was carved and when what was carved was shown, whatever the stroke's loop is like."""
+    """The times when each sample was carved and when the result was shown, independent of the stroke's loop."""
 
     def __init__(self):
         self.brush = common.part("sculpt.pure.brush_stroke").BrushStroke
@@ -84,7 +84,7 @@ class Watch:
             sent = times.get((int(place[0]), int(place[1])))
             after = np.searchsorted(looks[:, 1], k + 1) if len(looks) else 0
             if sent is not None and after < len(looks):
-                out.append((sent - begin, looks[after, 0] - sent))  # to the end of the look, before it is drawn
+                out.append((sent - begin, looks[after, 0] - sent))  # to the end of the update, before it is drawn
         return np.array(out)
 
 
@@ -95,7 +95,7 @@ def timed_stroke(screen, name, seconds):
         watch, operator = Watch(), common.part("sculpt.stroke_operator")
         operator.last = ""
         hand = subprocess.Popen([sys.executable, "-c", HAND, json.dumps(places.tolist()), str(path)])
-        yield lambda: operator.last  # a short one is over before anybody has seen it begin
+        yield lambda: operator.last  # a short one is over before its beginning can be polled
         ended = time.perf_counter()
         watch.shown.append((ended, len(watch.added)))
         yield lambda: hand.poll() is not None
@@ -110,7 +110,7 @@ def timed_stroke(screen, name, seconds):
     over = ended - told["end"]
     common.figure(f"{name}: from s of hand: lag of a sample p50, p95 (s), samples", table)
     stages = strokes.run().stages
-    if seconds > 1:  # a short one on a busy machine is over before its first look was drawn
+    if seconds > 1:  # a short one on a busy computer is over before its first update was drawn
         assert any(line.startswith("Lag: ") for line in common.part("sculpt.panel").looks(stages))
     figures = [{k: round(v, 1) for k, v in stages.milliseconds().items()}, *np.round(stages.lag())]
     common.figure(f"{name}: ms of a look by stage; behind the hand by the counters, median and longest", figures)
@@ -119,7 +119,7 @@ def timed_stroke(screen, name, seconds):
 
 
 def keeps_up(lags, over, seconds):
-    """A picture on a busy machine may take a second; a queue that grows takes more and more of them."""
+    """A picture on a busy computer may take a second; a growing queue takes more and more of them."""
     assert over < 20, f"the stroke went on for {over:.1f} s after the hand"
     halves = [lags[(lags[:, 0] > a * seconds) & (lags[:, 0] <= b * seconds), 1] for a, b in ((0.1, 0.55), (0.55, 1.1))]
     first, last = (np.median(part) for part in halves)

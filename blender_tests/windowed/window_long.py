@@ -1,4 +1,5 @@
-"""Long work in a window: seen in panel and status bar, Esc, errors, a lost object, a disabled add-on, another file."""
+"""Long work in a window: display in panel and status bar, Esc, errors, a lost object, a disabled add-on,
+another file."""
 
 from pathlib import Path
 
@@ -31,14 +32,14 @@ def steps(screen):
         yield from watched(screen, stage)
         yield from cancelled(screen, stage)
         yield from stock_of_a_mesh(screen)
-        yield from failed(screen, stage)  # what it reports stays in the window, and takes the next Esc
+        yield from failed(screen, stage)  # its report stays in the window, and takes the next Esc
         yield from lost(screen, stage)
     yield from disabled(screen)
     yield from another_file(screen)
 
 
 def watched(screen, stage):
-    """The work's share is seen while others have to wait; Blender goes on; then the result is one undo step."""
+    """The work's progress is shown while other operators wait; Blender continues; then the result is one undo step."""
     with screen.override():
         bpy.ops.ed.undo_push(message="Before")
     begin(screen)
@@ -61,7 +62,7 @@ def fresh(stage, **more):
 
 
 def cancelled(screen, stage):
-    """Esc reaches the task; what was shown is taken back."""
+    """Esc reaches the task; the preview is removed."""
     fresh(stage)
     begin(screen)
     yield lambda: "show" in stage.log
@@ -71,7 +72,7 @@ def cancelled(screen, stage):
 
 
 def failed(screen, stage):
-    """What the task raises ends the work, a message or a fault of ours."""
+    """An error of the task ends the work, with a message or, for a bug, a traceback."""
     for error in (ValueError("no path was found"), KeyError("a fault")):
         fresh(stage, outcome=error)
         begin(screen)
@@ -82,7 +83,7 @@ def failed(screen, stage):
 
 
 def lost(screen, stage):
-    """What the work was begun for is gone: it ends, and nothing of it is touched."""
+    """The work's object is gone: the work ends, and changes nothing."""
     fresh(stage)
     begin(screen)
     yield lambda: "show" in stage.log
@@ -99,7 +100,7 @@ def begin_stock(screen):
 
 
 def stock_of_a_mesh(screen):
-    """Esc, and the mesh being removed, leave no stock; what was made is seen, and is one undo step."""
+    """Esc, and removing the mesh, leave no stock; a finished one is shown, and is one undo step."""
     with screen.override():
         bpy.ops.riffler.millimetres()
         bpy.ops.mesh.primitive_uv_sphere_add("EXEC_DEFAULT", True, radius=20, location=(200, 0, 0))
@@ -134,7 +135,7 @@ def stock_of_a_mesh(screen):
 
 
 def long_cut(screen):
-    """A cut that is under way and can be seen, of a new stock; returns the stock's state before it."""
+    """A cut that is running and visible, of a new stock; returns the stock's state before it."""
     with screen.override():
         bpy.ops.riffler.millimetres()
         how = {"source": "BLOCK", "size": (100, 60, 30), "pitch": 0.25, "directions": "xyz"}
@@ -150,7 +151,7 @@ def long_cut(screen):
 
 
 def disabled(screen):
-    """The add-on is disabled in mid-cut: the cut is cancelled, the mesh shows the volume; enabled, it cuts again."""
+    """The add-on is disabled during a cut: the cut is cancelled, the mesh shows the volume; enabled, it cuts again."""
     before = yield from long_cut(screen)
     bpy.ops.preferences.addon_disable(module=common.MODULE)
     yield 1.0
@@ -165,7 +166,7 @@ def disabled(screen):
 
 
 def another_file(screen):
-    """Another file is opened in mid-cut."""
+    """Another file is opened during a cut."""
     bpy.data.objects.remove(bpy.data.objects["Stock"])
     yield from long_cut(screen)
     with screen.override():

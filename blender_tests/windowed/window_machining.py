@@ -1,4 +1,4 @@
-"""Machining's first minute: a part whose size is asked about, the list of paths with their lines and names, the
+"""Machining's first minute: a question about the part's size, the list of paths with their lines and names, the
 machine's options as fields."""
 
 import re
@@ -30,7 +30,7 @@ def steps(screen):
 
 
 def asked(screen):
-    """Four metres and a ball of 6 mm: no search begins before somebody has said that it is so."""
+    """Four metres and a ball of 6 mm: no search begins before the user has confirmed the size."""
     cube = bpy.data.objects["Cube"]
     cube.scale = (2, 2, 0.5)
     with screen.override():
@@ -80,11 +80,11 @@ def listed(screen):
     built = lines().kept.built
     screen.area.tag_redraw()
     yield 1.0
-    assert lines().kept.built == built, "nothing is made anew where nothing has changed"
+    assert lines().kept.built == built, "nothing is rebuilt without a change"
 
 
 def chosen(screen):
-    """Paths that stop the program are switched off; the way between the cuts is seen once it is written."""
+    """Paths that block the program are switched off; the moves between the cuts are shown once it is written."""
     ob = bpy.data.objects["Riffler Plan"]
     with screen.override():
         bpy.ops.riffler.plan_key("EXEC_DEFAULT", True, path=2, point=0, axis=(0, -0.6, 0.8))
@@ -112,7 +112,7 @@ def chosen(screen):
 
 
 def machine(screen):
-    """What must be given is asked for where the machine is chosen."""
+    """Required options are asked for where the machine is chosen."""
     bpy.utils.unregister_class(bpy.types.RIFFLER_PT_plan_paths)
     cls = bpy.types.RIFFLER_PT_plan_machine
     bpy.utils.unregister_class(cls)
@@ -122,7 +122,7 @@ def machine(screen):
     settings().post = "linuxcnc-xyzac"
     yield 1.0
     ui = screen.region("UI")
-    screen.click(ui.x + 60, ui.y + ui.height - 14)  # it begins closed
+    screen.click(ui.x + 60, ui.y + ui.height - 14)  # it is collapsed at first
     screen.to_view()
     yield 1.0
     yield from screen.picture("43-machine-asks")
@@ -139,7 +139,7 @@ def machine(screen):
 
 
 def first_and_last(blocks):
-    """Up first, then turned, then across, then down; up at the end; and no more than a turn."""
+    """Up first, then turned, then across, then down; up at the end; and at most one turn."""
     moves = [re.findall(r"([XYZAC])-?\d", block) for block in blocks if not block.startswith("(")]
     assert [move for move in moves if move][:4] == [["Z"], ["A", "C"], ["X", "Y"], ["Z"]], blocks[:24]
     assert "G53 G0 Z0" in blocks and blocks[-2:] == ["G53 G0 Z0", "M30"], blocks[-5:]

@@ -1,7 +1,7 @@
-"""What Blender's own keys, workspaces and files do in the middle of the work at a sculpt: the point of the number pad
-frames it, Tab and the workspace Modeling find its strokes in its mesh, a local view elsewhere is no danger, and a file
-that is saved by somebody else in mid-stroke leaves no half of one. Then what a stroke says: at the stock's box, on a
-sculpt that is scaled to nothing, scaled by its parent or modified; and what Clay makes of sizes."""
+"""Blender's own keys, workspaces and files during a session at a sculpt: the number pad's point frames it, Tab and the
+workspace Modeling find its strokes in its mesh, a local view elsewhere does no harm, and a file saved by other means
+during a stroke contains no half of one. Then the messages of a stroke: at the stock's box, on a sculpt that is scaled
+to zero, scaled by its parent or modified; and Clay with odd sizes."""
 
 import tempfile
 from pathlib import Path
@@ -88,7 +88,7 @@ def tabbed(screen):
 
 
 def in_modeling(screen):
-    """A workspace that opens in Edit Mode and asks no operator of ours."""
+    """A workspace that opens in Edit Mode and calls no operator of ours."""
     yield from groove(screen, 22)
     assert stroke.run() is not None
     before = screen.window.workspace
@@ -103,12 +103,12 @@ def in_modeling(screen):
 
 
 def from_the_header(screen):
-    """The menu of modes has Sculpt Mode while somebody works at the sculpt; what its brush does there is asked about at
-    the next stroke, and kept."""
+    """The menu of modes has Sculpt Mode during a session; the next stroke asks about its brush's edits, which
+    are kept."""
     yield from groove(screen, 32)
     assert stroke.run() is not None and not sculpt().hide_get()
     with screen.override():
-        assert bpy.context.active_object == sculpt()  # whose modes the header's menu has
+        assert bpy.context.active_object == sculpt()  # the header's menu has its modes
         bpy.ops.object.mode_set("EXEC_DEFAULT", True, mode="SCULPT")
     yield lambda: not stroke.module("sculpt.live_sculpt").lives
     assert sculpt().mode == "SCULPT" and not common.is_hidden(sculpt()) and in_mesh(32)
@@ -136,7 +136,7 @@ def from_the_header(screen):
 
 
 def in_local_view(screen):
-    """Blender crashes where an object is put into the local view of a screen that no window shows."""
+    """Blender crashes if an object is put into the local view of a screen without a window."""
     text = stroke.module("sculpt.stroke_operator").last
     with screen.override():
         bpy.ops.view3d.localview()
@@ -157,7 +157,7 @@ def saved_in_mid_stroke(screen):
     whole = stroke.volume().to_bytes()
     yield from groove(screen, 40, release=False)
     assert stroke.volume().to_bytes() != whole
-    assert stroke.module("sculpt.force_view")._shown is None, "a mouse feels no force, and nobody has asked to see it"
+    assert stroke.module("sculpt.force_view")._shown is None, "a mouse feels no force, and Show Force is off"
     with tempfile.TemporaryDirectory() as folder:
         with screen.override():
             bpy.ops.wm.save_as_mainfile(filepath=str(Path(folder) / "saved.blend"), copy=True)
@@ -173,12 +173,12 @@ def saved_in_mid_stroke(screen):
 
 
 def told(screen, before):
-    """What was said since the log had so many lines."""
+    """The messages since the log had so many lines."""
     return "\n".join(lessons.messages(screen)[before:])
 
 
 def begun_again(screen):
-    """A block whose box is its own: Take Edits has made the other's larger."""
+    """A block whose box is its own: Apply Mesh Edits has made the other's larger."""
     stroke.module("sculpt.live_registry").end_all()
     bpy.data.objects.remove(sculpt())
     stroke.cut.stock(screen, 0.5)
@@ -190,7 +190,7 @@ def begun_again(screen):
 
 
 def with_force(screen):
-    """Where force is to be shown a mask has none, and a stroke that cuts has."""
+    """With Show Force a mask shows none, and a stroke that cuts does."""
     stroke.settings().show_force, shown = True, stroke.module("sculpt.force_view")
     for name, cuts in (("riffler.mask", False), ("riffler.carve", True)):
         stroke.tool(screen, name)
@@ -205,8 +205,8 @@ def with_force(screen):
 
 
 def at_the_box(screen):
-    """What Add puts into a groove is cut off at the block's top, and that is said; Make Room moves no vertex; then
-    there is room, and the seam of what was added is sharp all along."""
+    """Material that Add puts into a groove is clipped at the block's top, with a message; Grow Box moves no vertex;
+    then there is room, and the seam of the added material is sharp everywhere."""
     yield from groove(screen, 16)
     stroke.tool(screen, "riffler.add")
     stroke.settings().depth = 2.5
@@ -246,11 +246,11 @@ def box():
     return np.subtract(sculpt().data.riffler.upper, sculpt().data.riffler.lower)
 
 
-CUT_OFF = "What was put on is cut off at the stock's box: Make Room in Clay gives it more"
+CUT_OFF = "The added material was cut off at the stock's box: use Grow Box in Clay to enlarge it"
 
 
 def seam(mesh, mm):
-    """Of each edge in which the bead at 4 meets the top at 20: whether it is drawn sharp."""
+    """For each edge in which the bead at 4 meets the top at 20: whether it is drawn sharp."""
     co, tri = (common.coordinates(mesh) * mm).astype(float), common.triangles(mesh)
     normals = np.cross(co[tri[:, 1]] - co[tri[:, 0]], co[tri[:, 2]] - co[tri[:, 0]])
     normals /= np.linalg.norm(normals, axis=1)[:, None]
@@ -271,8 +271,8 @@ def seam(mesh, mm):
 
 
 def in_odd_states(screen):
-    """Where nothing can be made of a stroke, a popup has the sentence with the remedy, which works; where what is seen
-    is not the volume, the stroke warns as STL does."""
+    """Where a stroke is impossible, a popup has the sentence with the remedy, which works; where the display differs
+    from the volume, the stroke warns like STL."""
     stroke.tool(screen, "riffler.carve")
     stroke.settings().depth = 1.5
     way = [tuple(map(int, stroke.pixel(screen, (x, 27, 20)))) for x in (15, 30, 45)]
@@ -323,7 +323,7 @@ def content():
 
 
 def of_odd_sizes(screen):
-    """Finer halves the pitch, and the field follows; a pitch or a room of 10⁹ mm is refused by a popup."""
+    """Finer halves the pitch, and the field follows; a pitch or a margin of 10⁹ mm is refused by a popup."""
     clay = bpy.context.scene.riffler.clay
     clay.pitch = 2.0
     screen.area.tag_redraw()

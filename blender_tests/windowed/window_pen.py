@@ -1,5 +1,5 @@
-"""The simulated pen carves in view: chunks, tool and arrows follow, Blender makes its autosave meanwhile, Ctrl-Z takes
-a stroke back and Ctrl-Shift-Z brings it again, Esc or another tool ends it; with the tool Add at hand it puts on."""
+"""The simulated pen carves in view: chunks, tool and arrows follow, Blender makes its autosave meanwhile, Ctrl-Z undoes
+a stroke and Ctrl-Shift-Z redoes it, Esc or another tool ends it; with the tool Add active it adds."""
 
 import shutil
 import time
@@ -40,7 +40,7 @@ def begin(screen, **more):
 
 
 def only_open(*names):
-    """The sidebar with these panels open, so that one picture has them."""
+    """The sidebar with these panels open, so that one picture has them all."""
     classes = [cls for module in common.part("registration").modules() for cls in module.CLASSES]
     for cls in classes:
         if issubclass(cls, bpy.types.Panel):
@@ -50,7 +50,7 @@ def only_open(*names):
 
 
 def autosaves():
-    """The folder that Blender's autosave goes into, MINUTE from now."""
+    """Makes Blender autosave into the folder, MINUTE from now."""
     folder = Path(common.out("pen-autosave"))
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
@@ -74,7 +74,7 @@ def prepare(screen):
 
 
 def counted(looks):
-    """The running session tells when it looks."""
+    """Counts the polls of the running session."""
     look = session().look
 
     def counting():
@@ -88,8 +88,8 @@ def counted(looks):
 
 
 def of_the_page(screen):
-    """The picture of docs/sessions.md: deep in a stroke, with force on tool and hand. A machine that does not keep time
-    for a minute gets one that says so, and later one of any stroke."""
+    """The picture of docs/sessions.md: deep in a stroke, with force on tool and hand. If the computer is too slow for a
+    minute, a report says so, and later any stroke is used."""
     force, begin = common.part("sculpt.force_view"), time.perf_counter()
 
     def cuts():
@@ -126,7 +126,7 @@ def steps(screen):
     force = common.part("sculpt.force_view")
     yield lambda: session() is None or (session().run.in_stroke and force._shown.size > 0)
     assert sculpting(), "the session was over before it could be looked at"
-    look, session().look = session().look, lambda: True  # nobody looks for a moment, and a picture has the arrows
+    look, session().look = session().look, lambda: True  # polling pauses for a moment, and a picture has the arrows
     yield 2.0
     yield from screen.picture("10-pen-force", vary=["VIEW_3D", "SIDEBAR"])
     session().look = look
@@ -142,7 +142,7 @@ def steps(screen):
         },
     )
 
-    # once the hand has let go, Ctrl-Z takes the last stroke back
+    # once the hand has released, Ctrl-Z undoes the last stroke
     device = session().run.device
     device.aim(device.geometry.forward([device.geometry.home])[0])
     yield lambda: not device.state().buttons and not session().run.in_stroke
@@ -154,7 +154,7 @@ def steps(screen):
     yield lambda: volume().volume == made
     assert session() is mine
 
-    # nothing modal: Blender makes its autosave, and a stroke of the hand is in it; drawing begins again when it is due
+    # nothing modal: Blender makes its autosave, and a stroke of the hand is in it; the display continues when it is due
     look, session().look = session().look, lambda: True
     yield lambda: session() is None or time.perf_counter() - since > MINUTE - 5
     assert session() is mine
@@ -178,7 +178,7 @@ def steps(screen):
     assert after[0] < before[0] and not common.part("sculpt.chunks").is_hidden(bpy.data.objects[NAME])
     assert "Riffler Tool" not in bpy.data.objects and len(bpy.data.collections) == 1
 
-    # called again, it ends; so it does with another tool, and with the object's end
+    # a second call ends it; so do another tool, and the object's removal
     assert begin(screen, gap=100.0) == {"FINISHED"}
     yield 1.0
     begin(screen)
@@ -190,7 +190,7 @@ def steps(screen):
     yield lambda: not sculpting()
     assert volume().to_bytes() == last
 
-    # it does what the tool at hand does when it starts
+    # it does what the active tool does when it starts
     with screen.override():
         bpy.ops.wm.tool_set_by_id(name="riffler.add")
     assert begin(screen) == {"FINISHED"} and session().mode == "add"
@@ -199,7 +199,7 @@ def steps(screen):
     yield lambda: not sculpting()
     with screen.override():
         bpy.ops.wm.tool_set_by_id(name="riffler.mask")
-    common.refused(lambda: begin(screen), "take Carve or Add instead of Mask")
+    common.refused(lambda: begin(screen), "use Carve or Add instead of Mask")
     assert not sculpting() and volume().to_bytes() == last
     with screen.override():
         bpy.ops.wm.open_mainfile(filepath=common.out("pen-autosaved.blend"))

@@ -1,4 +1,4 @@
-"""A machinist's way to a plan: part, fixtures, tool, pencil cuts; a part that was moved; Ctrl-Z; Esc."""
+"""A machinist's steps to a plan: part, fixtures, tool, pencil cuts; a part that was moved; Ctrl-Z; Esc."""
 
 import time
 from pathlib import Path
@@ -22,7 +22,7 @@ def plans():
 
 
 def known():
-    """What the panel says of the only plan."""
+    """The panel's verdict on the only plan."""
     return common.part("plan.operators.watch")._known.get(plans()[0].name, (None, None))[1]
 
 
@@ -70,7 +70,7 @@ def make_vise():
 
 
 def moved_and_back(screen):
-    """The panel says that the part was moved, and that a curve was edited, without being asked."""
+    """The panel reports by itself that the part was moved, and that a curve was edited."""
     part = find.settings().part
     part.location.x = 2
     find.curves(plans()[0])[0].location.z = 5
@@ -85,7 +85,7 @@ def moved_and_back(screen):
 
 
 def undone(screen):
-    """Ctrl-Z in the window: first what was moved, in one step with the redrawing, then the plan."""
+    """Ctrl-Z in the window: first the moves, in one step with the redrawing, then the plan."""
     with screen.override():
         bpy.ops.ed.undo_push(message="Moved and back")
     screen.to_view()
@@ -99,7 +99,7 @@ def undone(screen):
 
 
 def engraved(screen):
-    """A selected curve becomes a path of another plan, drawn as it is to be resolved; Ctrl-Z takes it away."""
+    """A selected curve becomes a path of another plan, drawn unchanged; Ctrl-Z removes it."""
     curve = common.curve("Line", [(5, 10, 8), (55, 10, 8)], mm_per_unit=1.0)
     find.settings().part, find.settings().strategy = plans()[0].riffler.plan.part, "ENGRAVE"
     with screen.override():
@@ -117,7 +117,7 @@ def engraved(screen):
 
 
 def ripples(n=300):
-    """A field of valleys that takes a search many seconds."""
+    """A field of valleys, on which a search takes many seconds."""
     x = np.linspace(0, 200, n)
     x, y = np.meshgrid(x, x, indexing="ij")
     z = 4 * np.abs(np.sin(x / 6 + y / 17)) + 3 * np.abs(np.sin(y / 7 - x / 19))
@@ -133,7 +133,7 @@ def ripples(n=300):
 
 
 def cancelled(screen):
-    """Esc in mid-search: it is over soon, and nothing has changed. The window lives meanwhile."""
+    """Esc during a search: it ends soon, and nothing has changed. The window responds meanwhile."""
     find.settings().part = ripples()
     before = len(bpy.data.objects), [find.store().identity(ob) for ob in plans()]
     with screen.override():
@@ -154,6 +154,6 @@ def cancelled(screen):
     screen.key("ESC")
     yield lambda: not running()
     shell.cancel = original
-    common.figure("ending a search, ms", took)  # without what drawing the window takes
+    common.figure("ending a search, ms", took)  # without the window's drawing
     assert (len(bpy.data.objects), [find.store().identity(ob) for ob in plans()]) == before
     yield 0.5

@@ -1,4 +1,4 @@
-"""What xdotool sends reaches Blender: the pointer at the very pixel, the button, a key with its modifier, Ctrl-Z."""
+"""xdotool's events reach Blender: the pointer at the exact pixel, the button, a key with its modifier, Ctrl-Z."""
 
 import bpy
 
@@ -8,7 +8,7 @@ seen = []
 
 
 class TEST_OT_watch(bpy.types.Operator):
-    """Notes every event."""
+    """Records every event."""
 
     bl_idname = "test.watch"
     bl_label = "Watch"
@@ -49,7 +49,7 @@ def steps(screen):
 
 
 def undone(screen):
-    """By the keymap, as a person does it."""
+    """By the keymap, as for a user."""
     with screen.override():
         bpy.ops.ed.undo_push(message="Before")
         bpy.ops.mesh.primitive_cone_add()

@@ -1,4 +1,4 @@
-"""In a window: the hand rests, the artist leaves, Blender makes its autosave meanwhile, and work that was cut off is
+"""In a window: the hand rests, the artist leaves, Blender makes its autosave meanwhile, and an interrupted session is
 offered and recovered."""
 
 import shutil
@@ -55,7 +55,7 @@ def steps(screen):
 
 
 def rests(screen):
-    """A large sculpt is packed when the hand rests, and stays live as long as the tool is at hand."""
+    """A large sculpt is packed when the hand rests, and stays live as long as the tool is active."""
     take_up(screen, "riffler.test")
     run = work(NAME)
     run.persistence._packing.nbytes = 1e9
@@ -69,7 +69,7 @@ def rests(screen):
 
 
 def leaves(screen):
-    """Another tool or another object: the work ends, and an undo takes the last stroke back."""
+    """Another tool or another object: the session ends, and an undo undoes the last stroke."""
     second = stroke(NAME, 2)
     take_up(screen, "builtin.select_box")
     yield lambda: running() is None
@@ -111,10 +111,10 @@ def saved_meanwhile(screen, folder):
 
 
 def cut_off(screen):
-    """What a Blender that died has left is offered in the sidebar, and recovered by its button."""
+    """The journal of a Blender that died is offered in the sidebar, and recovered by its button."""
     keeping = common.part("sculpt.persistence")
     take_up(screen, "riffler.test")
-    stroke(NAME, 8, may_be_none=True)  # as one of those before, where the autosave took long
+    stroke(NAME, 8, may_be_none=True)  # like those before, if the autosave took long
     last = stroke(NAME, 8, "add")
     begun = running().persistence.journal
     yield begun.settled
@@ -141,4 +141,4 @@ def cut_off(screen):
     with screen.override():
         bpy.ops.view3d.view_all()
     yield 1.0
-    yield from screen.picture("22-recovered", vary=["VIEW_3D"])  # whenever it was killed
+    yield from screen.picture("22-recovered", vary=["VIEW_3D"])  # at any time of the crash

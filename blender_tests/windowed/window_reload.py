@@ -1,6 +1,6 @@
-"""The add-on goes and comes back three times in a window, each time in the midst of something: a stroke whose button is
-still held, a long cut, a pen's session. Nothing of it stays, and what was carved by then is kept. A tool that is at
-hand in another workspace is put down, and one that is turned is given back to its path."""
+"""The add-on is disabled and enabled three times in a window, each time in the middle of something: a stroke whose
+button is still held, a long cut, a pen's session. Nothing of it remains, and what was carved by then is kept. An active
+tool of ours in another workspace is deactivated, and a turned tool returns to its path."""
 
 import subprocess
 from pathlib import Path
@@ -14,7 +14,7 @@ strokes = harness.load(Path(__file__).with_name("window_stroke.py"))
 
 
 class RIFFLERTEST_OT_count(bpy.types.Operator):
-    """Count the events of timers; it has none of its own, so there are as many as somebody left behind"""
+    """Count the events of timers; it has none of its own, so all of them are leftovers"""
 
     bl_idname = "rifflertest.count"
     bl_label = "Count Timers"
@@ -42,7 +42,7 @@ def enable():
 
 
 def whole(before):
-    """The sculpt is shown itself again, as it was."""
+    """The sculpt itself is shown again, unchanged."""
     ob = bpy.data.objects["Stock"]
     assert not ob.hide_get() and ob.visible_get()
     left = [c.name for c in (*bpy.data.collections, *bpy.data.objects, *bpy.data.meshes) if "Riffler" in c.name]
@@ -51,8 +51,8 @@ def whole(before):
 
 
 def timers(screen):
-    """How often timers of the window tick in a second."""
-    yield 0.5  # for what waits in the window's queue
+    """Number of ticks of the window's timers in a second."""
+    yield 0.5  # for events waiting in the window's queue
     bpy.utils.register_class(RIFFLERTEST_OT_count)
     with screen.override():
         bpy.ops.rifflertest.count("INVOKE_DEFAULT")
@@ -79,7 +79,7 @@ def long_cut(screen):
     bpy.context.view_layer.objects.active = bpy.data.objects["Stock"]
     with screen.override():
         assert bpy.ops.riffler.cut_curve("INVOKE_DEFAULT", True, curve=name, depth=6) == {"RUNNING_MODAL"}
-    # as soon as something is cut: how much is left a second later depends on how long the window takes to be drawn
+    # as soon as something is cut: how much is left a second later depends on the window's drawing time
     yield lambda: bpy.context.window_manager.riffler.percent > 0 or not cut.running()
     assert cut.running() == "Cutting", "the cut was over before it could be looked at"
     return before
@@ -89,7 +89,7 @@ def pen_session(screen):
     strokes.tool(screen, "riffler.add")
     before = cut.state()
     with screen.override():
-        # far above the stock: what it carves would be kept, and this asks whether all is as it was
+        # far above the stock: what it carves would be kept, and this test checks that everything is unchanged
         assert bpy.ops.riffler.pen_sculpt("INVOKE_DEFAULT", True, device="simulated", gap=500) == {"FINISHED"}
     yield 1.0
     assert bpy.context.window_manager.riffler.sculpting
@@ -97,7 +97,7 @@ def pen_session(screen):
 
 
 def tool_of_another_workspace(screen):
-    """It is put down where no window shows it, and what draws its cursor in every workspace goes."""
+    """It is deactivated also where no window shows it, and its cursor's draw function is removed in every workspace."""
     from bl_ui.space_toolsystem_common import _activate_by_item as chosen
 
     strokes.tool(screen, "riffler.carve")
@@ -118,7 +118,7 @@ def tool_of_another_workspace(screen):
 
 
 def scripts_reloaded(screen):
-    """Reload Scripts, while a sculpt is worked at: its strokes are in it, and the add-on goes on."""
+    """Reload Scripts during a session: the sculpt has its strokes, and the add-on continues."""
     strokes.tool(screen, "riffler.carve")
     yield from strokes.drag(screen, [(15, 20, 20), (45, 20, 20)])
     assert strokes.run() is not None
@@ -136,7 +136,7 @@ def scripts_reloaded(screen):
 
 
 def tool_turned(screen):
-    """In mid-drag: the tool moves with the animation again."""
+    """During a drag: the tool moves with the animation again."""
     bpy.context.scene.riffler.plan.part = plans.part_object()
     plan = plans.on_timeline(chosen=plans.paths()[:1])
     bpy.context.scene.frame_set(73)
@@ -159,8 +159,8 @@ def tool_turned(screen):
 
 
 def keys_of_others(screen):
-    """The list of keys finds ours beside the key of another add-on, which came first, and says where the user has
-    removed one."""
+    """The list of keys finds ours in addition to the key of another add-on, which came first, and reports if the user
+    has removed one."""
     configurations = bpy.context.window_manager.keyconfigs
     disable()
     keymap = configurations.addon.keymaps.new("Object Mode")
@@ -181,8 +181,8 @@ def keys_of_others(screen):
 
 
 def preferences(screen):
-    """As they look, in the place of the 3D view."""
-    if bpy.app.version >= (4, 2, 0):  # extensions are listed in another way there
+    """Their look, in the 3D view's area."""
+    if bpy.app.version >= (4, 2, 0):  # there extensions are listed by other means
         return
     import addon_utils
 

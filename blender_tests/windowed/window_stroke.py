@@ -1,5 +1,5 @@
-"""A stroke by mouse in the window: the tool is chosen, its cursor follows the surface, a drag carves, Ctrl-Z takes it
-back, a script repeats it, Esc gives it up, F sizes the cutter, and the arrows of force are there and gone again."""
+"""A stroke by mouse in the window: the tool is chosen, its cursor follows the surface, a drag carves, Ctrl-Z undoes it,
+a script repeats it, Esc cancels one, F sizes the cutter, and the arrows of force appear and disappear."""
 
 import itertools
 from pathlib import Path
@@ -42,7 +42,7 @@ def press(screen, x, y, value, kind="LEFTMOUSE", **modifiers):
 
 
 def drag(screen, places, release=True, **modifiers):
-    """Press at the first place, move through the others, one a look; places in mm on the stock."""
+    """Press at the first place, move through the others, one per update; places in mm on the stock."""
     way = [pixel(screen, p) for p in places]
     screen.move(*map(int, way[0]))
     yield 0.3
@@ -64,11 +64,11 @@ def tool(screen, name):
 
 
 def handles(screen):
-    """The handle of the radius beside the stock, pulled outwards by 10 mm."""
+    """The handle of the radius next to the stock, dragged outwards by 10 mm."""
     view = screen.area.spaces.active.region_3d
     view.view_distance *= 1.6
     at = view.view_location.copy()
-    view.view_location.x += 30  # or a wide sidebar lies over it
+    view.view_location.x += 30  # or a wide sidebar covers it
     settings().radius = 4.0
     yield 1.0
     middle = np.array([60 + 0.3 * 60, 30, 20])
@@ -103,7 +103,7 @@ def at_the_limit(screen):
     built = force.kept.built
     screen.area.tag_redraw()
     yield 1.5
-    assert force.kept.built == built > 0, "nothing has changed: nothing is made anew"
+    assert force.kept.built == built > 0, "nothing has changed: nothing is rebuilt"
     shown.force = 2 * shown.force
     screen.area.tag_redraw()
     yield 1.5
@@ -118,7 +118,8 @@ def spread(milliseconds):
 
 
 def measure(side, name):
-    """What a look costs that a hand waits for, event by event, without the drawing: a 60 Hz hand on a square block."""
+    """The cost of an update that a hand waits for, event by event, without the drawing: a 60 Hz hand on a
+    square block."""
     import time
 
     with_live = module("sculpt.live_registry")
@@ -157,7 +158,7 @@ def measure(side, name):
     begin = time.perf_counter()
     bpy.ops.wm.redraw_timer(type="DRAW_WIN_SWAP", iterations=3)
     common.figure(f"{name}: drawn a second, by this graphics card", round(3 / (time.perf_counter() - begin), 1))
-    assert counts["bricks"] / 150 < 12 and counts["moves"] > 400  # what a look touches does not grow with the sculpt
+    assert counts["bricks"] / 150 < 12 and counts["moves"] > 400  # the cost of an update does not grow with the sculpt
     with_live.end_all()
     bpy.data.objects.remove(ob)
 
@@ -175,7 +176,7 @@ def steps(screen):
     tool(screen, "riffler.carve")
     settings().depth, settings().limit, settings().show_force = 1.5, 2.0, True
     with screen.override():
-        bpy.ops.ed.undo_push(message="Settings")  # which undo brings back, too
+        bpy.ops.ed.undo_push(message="Settings")  # which undo restores, too
     yield 1.0
     whole = volume().volume
 
@@ -192,7 +193,7 @@ def steps(screen):
     removed, ball, depth = whole - first, 4.0, 1.5
     half = np.arccos((ball - depth) / ball)
     expected = 30 * ball**2 * (half - np.sin(half) * np.cos(half)) + np.pi * depth**2 * (3 * ball - depth) / 3
-    assert abs(removed / expected - 1) < 0.03, (removed, expected)  # a pixel is 0.1 mm or so
+    assert abs(removed / expected - 1) < 0.03, (removed, expected)  # a pixel is about 0.1 mm
     text, at = module("sculpt.stroke_operator").last, volume().to_bytes()
     stages = run().stages.milliseconds()
     assert all(stages.values()), stages
@@ -200,7 +201,7 @@ def steps(screen):
     assert "draw " in told[2] and " tiles, " in told[3] and not told[3].startswith("0.0"), told
     common.figure("stroke of 8 mm on 60×60×20 mm at 0.25 mm, a look, ms", {k: round(v, 2) for k, v in stages.items()})
 
-    # more, so that the cursor has something to stand on
+    # more, so that the cursor has a surface
     yield from drag(screen, [(15, 40, 20), (30, 34, 20), (45, 42, 20)])
     yield from drag(screen, [(30, 10, 20), (30, 50, 20)], ctrl=True)
     added = volume().volume
@@ -208,7 +209,7 @@ def steps(screen):
     yield 1.0
     yield from screen.picture("stroke-2-cursor")
 
-    # a drag that is given up leaves nothing
+    # a cancelled drag leaves nothing
     before = volume().to_bytes()
     yield from drag(screen, [(10, 52, 20), (50, 52, 20)], release=False)
     assert volume().volume < added
@@ -218,7 +219,7 @@ def steps(screen):
     yield 1.0
     assert volume().to_bytes() == before
 
-    # undo, stroke by stroke; then a script makes the first one again, to the byte
+    # undo, stroke by stroke; then a script repeats the first one, to the byte
     screen.to_view()
     for _ in range(3):
         screen.key("Z", ctrl=True)
@@ -229,7 +230,7 @@ def steps(screen):
     assert volume().to_bytes() == at
     yield 0.5
 
-    # F: twice as far from the middle of the circle is twice as wide
+    # F: twice the distance from the centre of the circle is twice the width
     x, y = pixel(screen, (30, 30, 20))
     screen.move(int(x), int(y))
     yield 1.0
@@ -249,7 +250,7 @@ def steps(screen):
     press(screen, x, y, "PRESS", kind="W")
     press(screen, x, y, "RELEASE", kind="W")
     yield 1.0
-    for step in (4, -4, 4):  # it opens like a flower, a bit with every event
+    for step in (4, -4, 4):  # it opens gradually, a bit with every event
         screen.move(int(x + step), int(y))
         yield 1.0
     yield from screen.picture("stroke-4-pie")

@@ -1,4 +1,4 @@
-"""A person's way with keys on the timeline: scrubbing, turning the tool and keying it, and the dope sheet's Delete, G,
+"""A user's steps with keys on the timeline: scrubbing, turning the tool and keying it, and the dope sheet's Delete, G,
 Shift D and Ctrl Z; each changes the plan."""
 
 import math
@@ -68,7 +68,7 @@ def key_frames():
 
 
 def shown():
-    """Ball centre and axis of the tool as it is drawn, mm."""
+    """Ball centre and axis of the displayed tool, mm."""
     matrix = np.array(pair()[0].evaluated_get(bpy.context.evaluated_depsgraph_get()).matrix_world)
     return matrix[:3, 3] + 3 * matrix[:3, 2], matrix[:3, 2]
 
@@ -80,12 +80,12 @@ def settled():
 
 
 def marks():
-    """The timeline's markers but for those that name the paths."""
+    """The timeline's markers, except those that name the paths."""
     return [m.name for m in bpy.context.scene.timeline_markers if "▸ " not in m.name]
 
 
 def select_column(screen, frame):
-    """The keys at a frame, as a click on the column does."""
+    """Selects the keys at a frame, like a click on the column."""
     bpy.context.scene.frame_set(frame)
     with bpy.context.temp_override(
         window=screen.window, area=area(screen, "DOPESHEET_EDITOR"), region=region(screen, "DOPESHEET_EDITOR")
@@ -160,7 +160,8 @@ def scrub(screen):
 
 
 def turn_and_key(screen):
-    """R X 30 Enter, and I: the tool follows the hand and stays on its path; the key is what was seen."""
+    """R X 30 Enter, and I: the tool follows the pointer and stays on its path; the key has the displayed
+    orientation."""
     place, before = shown()
     bpy.context.scene.keying_sets.active = bpy.context.scene.keying_sets_all["Rotation"]
     area(screen, "VIEW_3D").tag_redraw()
@@ -205,7 +206,7 @@ def dope_sheet(screen):
 
 
 def undo(screen):
-    """Each Ctrl Z takes back an edit and what it did to the plan; Ctrl Shift Z brings both again."""
+    """Each Ctrl Z undoes an edit and its effect on the plan; Ctrl Shift Z redoes both."""
     for wanted in ([0, 42, 92, 144], [0, 92, 144], [0, 72, 144]):
         yield from press(screen, "DOPESHEET_EDITOR", "Z", ctrl=True)
         yield lambda wanted=wanted: settled() and indices() == wanted
@@ -224,7 +225,7 @@ def undo(screen):
 
 
 def collide(screen):
-    """A key that lays the tool into the wall: the frames are marked, and unmarked when it goes."""
+    """A key that turns the tool into the wall: the frames are marked, and unmarked when it is deleted."""
     yield from cut.open_tab(screen, "RIFFLER_PT_timeline")
     bpy.context.scene.frame_set(20)
     with screen.override():
@@ -236,12 +237,12 @@ def collide(screen):
     ui = screen.region("UI")
     x, y = ui.x + ui.width // 2, ui.y + ui.height // 2
     screen.move(x, y)
-    for _ in range(30):  # down to the panel
+    for _ in range(30):  # scroll down to the panel
         screen.window.event_simulate("WHEELDOWNMOUSE", "PRESS", x=x, y=y)
     yield 1.5
     yield from screen.picture("timeline-06-colliding")
     part = bpy.context.scene.riffler.plan.part
-    for way, markers in ((-100, 0), (100, 1)):  # mm: away from the tool and back, looked at without being asked
+    for way, markers in ((-100, 0), (100, 1)):  # mm: away from the tool and back, checked automatically
         part.location.z += way * bpy.context.scene.unit_settings.scale_length * 1000
         yield lambda count=markers: settled() and len(marks()) == count
     assert not common.part("plan.collision_marks").outdated(plan_object())
@@ -252,7 +253,7 @@ def collide(screen):
 
 
 def least(screen):
-    """Keys of least tilt, looked for while the window lives; one Ctrl Z takes them back."""
+    """Keys of least tilt, searched while the window responds; one Ctrl Z undoes them."""
     before, state = indices(), bpy.context.window_manager.riffler
     with screen.override():
         assert bpy.ops.riffler.plan_least_tilt("INVOKE_DEFAULT", True, paths="ALL", count=2) == {"RUNNING_MODAL"}

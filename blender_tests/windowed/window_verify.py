@@ -1,4 +1,4 @@
-"""A machinist's way from a plan to NC code: resolved, simulated by scrubbing, verified; a finding is gone to; Esc."""
+"""A machinist's steps from a plan to NC code: resolved, simulated by scrubbing, verified; going to a finding; Esc."""
 
 from pathlib import Path
 
@@ -18,7 +18,7 @@ def now():
 
 
 def there():
-    """The simulated stock is where the frame is, and the timer has ended."""
+    """The simulated stock has reached the frame, and the timer has ended."""
     wanted = now().program_timeline.row_at(bpy.context.scene.frame_current_final)
     return now().prefix.row == wanted and not bpy.app.timers.is_registered(common.part("program.simulation")._tick)
 
@@ -46,7 +46,7 @@ def steps(screen):
 
 
 def make_room():
-    """The panels above ours are taken away: a person scrolls."""
+    """Removes the panels above ours: a user would scroll."""
     take_away("plan_part", "plan_tool", "plan", "plan_paths", "plan_machine")
 
 
@@ -81,7 +81,7 @@ def simulated(screen, stock):
 
 
 def programs_volume(row):
-    """The stock with all rows up to that one carved in one go."""
+    """The stock with all rows up to that one carved in one call."""
     setup = common.part("program.programs").take(bpy.context, programs.settings())
     volume = setup.stock
     ((tool, poses),) = setup.runs
@@ -103,7 +103,7 @@ def verified(screen, stock):
     yield lambda: not bpy.context.window_manager.riffler.running
     assert verify.kinds() == ["gouge"] and common.is_hidden(stock)
     index = 0
-    kind, size, at, *place = verify.findings()[0]["title"].split()  # what the list's lines begin with
+    kind, size, at, *place = verify.findings()[0]["title"].split()  # the form of the list's rows
     assert (kind, at) == ("Gouge", "at") and 0 < float(size) < 1 and len(place) == 3, verify.findings()[0]
     with screen.override():
         bpy.ops.riffler.finding_go("INVOKE_DEFAULT", of="VERIFY", index=index)
@@ -132,7 +132,8 @@ def verified(screen, stock):
 
 
 def on_the_plans_machine(screen):
-    """Verify takes the machine that is chosen for the plan; of one that cannot lean so far the finding begins so."""
+    """Verify uses the machine chosen for the plan; the finding of a machine that cannot lean so far begins like
+    this."""
     bpy.context.scene.riffler.plan.post = "linuxcnc-xyzac"
     own = bpy.context.scene.riffler.machines.of("linuxcnc-xyzac")
     own.rot_point = (0, 0, -40)

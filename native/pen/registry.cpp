@@ -52,9 +52,9 @@ std::unique_ptr<HidModel> make_polhem(Transport& transport, const HidInfo&, cons
 
 // A new family is one line here.
 constexpr PenFamily kFamilies[] = {
-    {"riffler-pen", "Riffler's pen, two arms, six motors", is_riffler, true, make_riffler},
-    {"spacemouse", "3Dconnexion's pucks, no force", is_spacemouse, true, make_spacemouse},
-    {"polhem", "WoodenHaptics and Polhem, three motors", may_be_polhem, false, make_polhem},
+    {"riffler-pen", "Riffler pen, with two arms and six motors", is_riffler, true, make_riffler},
+    {"spacemouse", "3Dconnexion SpaceMouse, without force", is_spacemouse, true, make_spacemouse},
+    {"polhem", "WoodenHaptics and Polhem, with three motors", may_be_polhem, false, make_polhem},
 };
 
 /// Opens `info` and reads its identity. Throws OpenError with the path in front.

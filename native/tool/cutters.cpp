@@ -25,18 +25,18 @@ constexpr CutterSize kDiameter{
 constexpr CutterSize kLength{"length", SizeUnit::Length, "Length", "Cutting length from the tip, in mm", kLow, kHigh,
                              30};
 constexpr CutterSize kCornerRadius{
-    "corner_radius", SizeUnit::Length, "Corner radius", "Radius of the rounded edge, in mm", kLow, kHigh, 1, 0.5};
+    "corner_radius", SizeUnit::Length, "Corner Radius", "Radius of the rounded edge, in mm", kLow, kHigh, 1, 0.5};
 constexpr CutterSize kTipRadius{
-    "tip_radius", SizeUnit::Length, "Tip radius", "Radius of the ball or flat at the tip, in mm", 1e-4, kHigh, 0.5, 0,
+    "tip_radius", SizeUnit::Length, "Tip Radius", "Radius of the ball or flat at the tip, in mm", 1e-4, kHigh, 0.5, 0,
     true};
 constexpr CutterSize kTipHeight{
-    "tip_height", SizeUnit::Length, "Tip height", "Height of the first cone, in mm", kLow, kHigh, 1};
-constexpr CutterSize kHalfAngle{"half_angle", SizeUnit::Angle, "Half angle", "Angle between the axis and the flank",
+    "tip_height", SizeUnit::Length, "Tip Height", "Height of the first cone, in mm", kLow, kHigh, 1};
+constexpr CutterSize kHalfAngle{"half_angle", SizeUnit::Angle, "Half Angle", "Angle between the axis and the flank",
                                 kLowAngle,    kHighAngle,      5 * kDegree};
 constexpr CutterSize kTipHalfAngle{
-    "tip_half_angle", SizeUnit::Angle, "Tip half angle", "Angle between the axis and the first cone",
+    "tip_half_angle", SizeUnit::Angle, "Tip Half Angle", "Angle between the axis and the first cone",
     kLowAngle,        kHighAngle,      30 * kDegree};
-constexpr CutterSize kFlatTip{"flat_tip", SizeUnit::Flag, "Flat tip", "A flat instead of a ball at the tip", 0, 1, 0};
+constexpr CutterSize kFlatTip{"flat_tip", SizeUnit::Flag, "Flat Tip", "A flat instead of a ball at the tip", 0, 1, 0};
 
 void check(const CutterSize& size, double x) {
   if (size.unit == SizeUnit::Angle) base::require(x > 0 && x < kPi / 2, size.name, "must lie between 0 and pi/2 rad");
@@ -185,7 +185,7 @@ constexpr CutterSize kConeEnd[] = {kTipHalfAngle, kTipHeight, kHalfAngle, kDiame
 constexpr CutterShape kShapes[] = {
     row<ball_profile, ball_to_apt>("ball", "Ball", "Ball end mill", kBall, ball_from_apt),
     row<flat_profile, flat_to_apt>("flat", "Flat", "Flat end mill", kBall, flat_from_apt),
-    row<fillet_profile, fillet_to_apt>("fillet", "Fillet", "Bull nose: a flat end mill whose edge is rounded", kFillet,
+    row<fillet_profile, fillet_to_apt>("fillet", "Bull Nose", "Flat end mill with a rounded edge", kFillet,
                                        fillet_from_apt),
     row<taper_profile, taper_to_apt>("taper", "Taper", "Cone above a ball tip or a flat one, then a cylinder", kTaper,
                                      taper_from_apt),

@@ -1,4 +1,4 @@
-"""A session with a pen between two looks at it, without Blender, and the names of its recordings."""
+"""A session with a pen between two polls, without Blender, and the names of its recordings."""
 
 from __future__ import annotations
 
@@ -7,31 +7,31 @@ import riffler
 
 
 def journal_name(name: str, when) -> str:
-    """Of a sculpt and a date, fit for any file system."""
+    """A file name from a sculpt's name and a date, valid on any file system."""
     kept = "".join(c if c.isalnum() or c in " -_." else "_" for c in name).strip(" .")
     return f"{kept or 'sculpt'} {when:%Y-%m-%d %H-%M-%S}.rjournal"
 
 
 class PenRun:
-    """A device and its sessions, one after the other, each with a volume that nobody else changes meanwhile: `prepare`,
-    `start`, `look` some thirty times a second, `halt`; at last `close`.
+    """A device and its sessions, one after the other, each with a volume that nothing else changes meanwhile:
+    `prepare`, `start`, `look` about thirty times a second, `halt`; finally `close`.
 
-    `options` are riffler.Session's. Where they say where the tool stands (`at`), the next session goes on from where it
-    stood last."""
+    `options` are riffler.Session's. If they set the tool's pose (`at`), the next session starts from the last pose.
+    """
 
     def __init__(self, device, tool, options):
         self.device, self._tool, self._options = device, tool, dict(options)
         self.session = None
-        self.pose: np.ndarray | None = None  # (6,) of the tool, mm
-        self.push = np.zeros((2, 3))  # N, N·mm about its tip: on the tool, the mean since the last look
-        self.state, self.force, self.why = "off", 0.0, ""  # the force is the hand's
-        self.strokes, self.in_stroke = 0, False  # of this session
-        self.untold = 0  # steps that nobody looked at in time
+        self.pose: np.ndarray | None = None  # (6,) pose of the tool, mm
+        self.push = np.zeros((2, 3))  # N, N·mm about its tip: on the tool, the mean since the last poll
+        self.state, self.force, self.why = "off", 0.0, ""  # the force on the hand
+        self.strokes, self.in_stroke = 0, False  # counts of this session
+        self.untold = 0  # steps that were dropped because they were not polled in time
         self._rows: list[list[list[float]]] = []
         self._open = False
 
     def prepare(self, volume, mask=None):
-        """The session, which may be given a journal before it starts."""
+        """Makes the session, which can be given a journal before it starts."""
         if self.pose is not None and "at" in self._options:
             self._options["at"] = self.pose
         self.session = riffler.Session(volume, self._tool, self.device, protect=mask, **self._options)
@@ -49,17 +49,17 @@ class PenRun:
     def look(self) -> None:
         """Brings the volume up to date."""
         self._take(self.session.frame())
-        # A simulated hand presses no button to say that it has seen what was wrong.
+        # A simulated hand presses no button to confirm an error.
         if self.state == "tripped" and self.device.kind == "simulated" and not self.device.state().fault:
             self.session.reset()
 
     @property
     def over(self) -> bool:
-        """True where nothing more will come: a recording that was played to its end."""
+        """True when a recording has been played to its end."""
         return self.device.kind == "recording" and self.device.health()["state"] == "stopped"
 
     def halt(self) -> str:
-        """The device pushes no more, and the volume is as the session left it. What went wrong, or nothing."""
+        """Stops the device's forces and the session, and updates the volume. Returns the session's problem, or ""."""
         try:
             if self.running:
                 self._take(self.session.stop())
@@ -71,14 +71,14 @@ class PenRun:
 
     @property
     def pushes(self) -> bool:
-        """True where the device has motors, so that the hand feels what is cut."""
+        """True if the device has motors, so that the hand feels the cut."""
         return any(axis["pushes"] for axis in self.device.limits.values())
 
     def close(self) -> None:
         self.device.stop()
 
     def taken_rows(self) -> list[np.ndarray]:
-        """(n, 6) of each stroke since the last time, of which none is being made."""
+        """(n, 6) of each stroke finished since the last call."""
         rows = [np.array(stroke) for stroke in self._rows if len(stroke) > 1]
         self._rows.clear()
         return rows
@@ -95,7 +95,7 @@ class PenRun:
         self.why = self.session.journal_problem or frame.problem or health or cause or ""
 
     def _collect(self, frame) -> None:
-        """What a stroke is for a journal: from where the tool stood before the first move that takes something."""
+        """Collects a stroke for a journal: from the pose before the first move that removes material."""
         for start, end, cutting, missed in zip(
             frame.starts.tolist(), frame.poses.tolist(), frame.cutting, frame.missed, strict=True
         ):

@@ -1,1 +1,1 @@
-"""What a plan is made and edited by."""
+"""Operators that make and edit a plan."""

@@ -1,4 +1,4 @@
-"""Another shank or holder for a plan that has keys already: its paths stay what they are."""
+"""Changes shank or holder of a plan that has keys; its paths stay unchanged."""
 
 from dataclasses import replace
 
@@ -11,7 +11,9 @@ from .plan_work import plan_poll, tell
 
 
 class RIFFLER_OT_plan_use_tool(bpy.types.Operator):
-    """Plan on with shank and holder of the Tool panel's tool. Keys stay; what was resolved has to be resolved again"""
+    """Use the shank and the holder of the Tool panel's tool in this plan; keys stay, but the paths must be resolved
+    again
+    """
 
     bl_idname = "riffler.plan_use_tool"
     bl_label = "Use This Tool"
@@ -32,7 +34,7 @@ class RIFFLER_OT_plan_use_tool(bpy.types.Operator):
                     "use Find Again, or another tool with that cutter"
                 )
             known = {key: text for key, text in plan.provenance.items() if key != plan_store.RESOLVED}
-            ob.riffler.plan.findings.clear()  # of the tool before
+            ob.riffler.plan.findings.clear()  # they are of the previous tool
             plan_store.write(ob, replace(plan, tool=tool, cl=[], provenance=known))
             if timeline.pair(ob) is None:
                 self.report({"INFO"}, f"{ob.name}: {tool.name}")

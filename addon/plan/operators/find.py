@@ -1,4 +1,4 @@
-"""Paths found on the part by a strategy, in a thread of their own; the result is a plan and its curves."""
+"""Finds paths on the part with a strategy, on a thread of its own; the result is a plan and its curves."""
 
 import functools
 
@@ -27,8 +27,7 @@ from .. import (
 
 
 def missing(context, settings):
-    """What the chosen strategy starts from and is not there, with the next step, or nothing; cheap enough for a
-    panel."""
+    """The missing input of the chosen strategy, with the next step, or ""; cheap enough for a panel."""
     strategy, ob = strategy_fields.chosen(settings), plan_store.active(context)
     there = {
         "curves": given_curves.objects(context),
@@ -38,7 +37,7 @@ def missing(context, settings):
 
 
 class RIFFLER_OT_plan_find(LongWork, properties.FindSettings, bpy.types.Operator):
-    """Find paths on the part by a strategy, as those of a new plan"""
+    """Find paths on the part with a strategy, and make a plan of them"""
 
     bl_idname = "riffler.plan_find"
     bl_label = "Find Paths"
@@ -46,14 +45,16 @@ class RIFFLER_OT_plan_find(LongWork, properties.FindSettings, bpy.types.Operator
     doing = "Finding paths"
     cancelled = "Search cancelled: nothing has changed"
 
-    strategy: strategy_fields.choice(options={"SKIP_SAVE"})  # what is not given is the first, whatever was before
+    strategy: strategy_fields.choice(options={"SKIP_SAVE"})  # without a value it is the first one, not the last used
     tool: bpy.props.StringProperty(
-        name="Tool", options={"HIDDEN", "SKIP_SAVE"}, description="A tool as JSON; empty: the plan's tool of the scene"
+        name="Tool", options={"HIDDEN", "SKIP_SAVE"}, description="Tool as JSON; empty: the scene's plan tool"
     )
     replace: bpy.props.StringProperty(
         name="Replace",
         options={"SKIP_SAVE"},
-        description="Name of a plan whose paths are found anew on its own part; its orientations go. Empty: a new plan",
+        description=(
+            "Name of a plan whose paths are found again on its own part, without its orientations; empty: a new plan"
+        ),
     )
 
     @classmethod
@@ -73,7 +74,7 @@ class RIFFLER_OT_plan_find(LongWork, properties.FindSettings, bpy.types.Operator
         return not operator_parts.busy(cls, context)
 
     def invoke(self, context, event):
-        """A person is asked first; a script has said what it wants."""
+        """Asks the user for confirmation; a script gets none."""
         if asked := fit_check.size_question(context.scene):
             return operator_parts.fail(
                 self, ValueError(f"{asked} Choose it in the panel Part and Fixtures, also if it is right")
@@ -86,18 +87,18 @@ class RIFFLER_OT_plan_find(LongWork, properties.FindSettings, bpy.types.Operator
             raise ValueError(f"there is no plan {self.replace!r} in this scene: leave Replace empty for a new one")
         self._tool = riffler.Tool.from_dict(sculpt_work.tool_of_text(self.tool) if self.tool else settings.tool_dict())
         part = self._own_part(context) or settings.part
-        live_registry.end_all()  # the mesh of a sculpt that is being worked at is not up to date
+        live_registry.end_all()  # the mesh of a live sculpt is not up to date
         mesh = object_surfaces.in_world(context, part)
         self._part, self._mm = part.name, scene_units.mm_per_unit(context.scene)
         strategy, options = strategy_fields.chosen(self), strategy_fields.options(self)
         given = self._given(context, strategy)
-        strategy.check(self._tool, given)  # said at once, not by the thread
+        strategy.check(self._tool, given)  # reports errors at once, not from the thread
         self._nothing = strategy.nothing
         call = functools.partial(riffler.plan.find, strategy.id, mesh, self._tool, given, name=self._part, **options)
         return TaskJob(ThreadTask(lambda progress: call(progress=progress)))
 
     def _given(self, context, strategy):
-        """The curves or paths that the strategy starts from. ValueError with the next step where there are none."""
+        """The curves or paths that the strategy starts from. ValueError with the next step if there are none."""
         found = []
         if strategy.needs == "curves":
             found = given_curves.selected(context, strategy_fields.options(self).get("tolerance", 0.01))
@@ -109,7 +110,7 @@ class RIFFLER_OT_plan_find(LongWork, properties.FindSettings, bpy.types.Operator
         return found
 
     def _own_part(self, context):
-        """That of the plan that is to be replaced, if it is still there."""
+        """The part of the plan that is to be replaced, if it still exists."""
         own = context.scene.objects[self.replace].riffler.plan.part if self.replace else None
         return None if object_surfaces.unfit(own, context.scene) else own
 
@@ -126,7 +127,7 @@ class RIFFLER_OT_plan_find(LongWork, properties.FindSettings, bpy.types.Operator
             raise ValueError(f"{self._part}: no {self._nothing}, as {job.result.reason}")
         if self.replace:
             ob = context.scene.objects[self.replace]
-            ob.riffler.plan.findings.clear()  # on the paths of before
+            ob.riffler.plan.findings.clear()  # they are of the old paths
             plan_store.write(ob, plan)
         else:
             ob = plan_store.new(context, plan)
@@ -146,8 +147,7 @@ class RIFFLER_OT_plan_find(LongWork, properties.FindSettings, bpy.types.Operator
 
 
 class RIFFLER_OT_plan_show(bpy.types.Operator):
-    """Draw the plan's paths anew; edits to their curves are lost. Copies stay, and curves that were renamed or are in
-    use"""
+    """Draw the plan's paths again; edits of their curves are lost, but copies, renamed curves and curves in use stay"""
 
     bl_idname = "riffler.plan_show"
     bl_label = "Redraw Paths"
@@ -165,7 +165,7 @@ class RIFFLER_OT_plan_show(bpy.types.Operator):
             plan = plan_store.plan(ob)
         except ValueError as error:
             return operator_parts.fail(self, error)
-        context.view_layer.objects.active = ob  # the curve that may be active goes
+        context.view_layer.objects.active = ob  # the active curve may be deleted
         left = path_curves.show(ob, plan, scene_units.mm_per_unit(context.scene))
         path_switches.show(ob)
         if left:

@@ -1,4 +1,4 @@
-"""Key orientations as keyframes: a plan on the timeline, keys set, deleted and jumped to, collisions marked."""
+"""Key orientations as keyframes: a plan on the timeline; keys set, deleted and jumped to; collisions marked."""
 
 from dataclasses import replace
 
@@ -26,8 +26,9 @@ from .plan_work import TimelineWork, plan_poll, tell, timeline_poll
 
 
 class RIFFLER_OT_plan_to_timeline(bpy.types.Operator):
-    """Lay the plan's paths out on the timeline, with a tool that moves along them; its keyframes are the plan's key
-    orientations from then on"""
+    """Lay the plan's paths out on the timeline and animate a tool along them, whose keyframes become the plan's key
+    orientations
+    """
 
     bl_idname = "riffler.plan_to_timeline"
     bl_label = "Plan to Timeline"
@@ -39,9 +40,11 @@ class RIFFLER_OT_plan_to_timeline(bpy.types.Operator):
         min=0.0,
         max=1e4,
         precision=3,
-        description="How slowly the tool moves; 0: as fast as the feed and the scene's frame rate say",
+        description="Frames for each mm of the path; 0: from the feed and the scene's frame rate",
     )
-    first: IntProperty(name="First Frame", default=1, min=0, max=1_000_000, description="Where the first path begins")
+    first: IntProperty(
+        name="First Frame", default=1, min=0, max=1_000_000, description="Frame at which the first path begins"
+    )
 
     @classmethod
     def poll(cls, context):
@@ -62,7 +65,7 @@ class RIFFLER_OT_plan_to_timeline(bpy.types.Operator):
         return tell(self, ob)
 
     def _divided(self, ob, plan, rate):
-        """The plan with a point at each frame; and where it is on the timeline so already, what that says."""
+        """The plan with a point at each frame; if it is on the timeline like that already, its current state."""
         paths = [p if k in plan.depths else key_orientations.divided(p, rate) for k, p in enumerate(plan.paths)]
         cl = list(plan.cl) or [None] * len(paths)
         cl = [rows if path.interpolation != "linear" or path is old else None
@@ -82,11 +85,11 @@ class RIFFLER_OT_plan_to_timeline(bpy.types.Operator):
 
 def lay_out(context, ob, plan, times, known=None, quats=None):
     """Makes `plan` the object's, and puts it on the timeline; `times`: frames per mm, and the first frame. ValueError,
-    with nothing changed, where it is too long."""
+    with nothing changed, if it is too long."""
     rate, first = times
     layout = key_orientations.Layout(plan.paths, rate, first)
     if layout.last > 1_000_000:
-        raise ValueError(f"The way is {layout.last} frames long: take fewer frames per mm")
+        raise ValueError(f"The animation is {layout.last} frames long: use fewer frames per mm")
     tool, _ = timeline.make(context, ob, plan.tool)
     tool[timeline.RATE], tool[timeline.FIRST] = rate, first
     tool[timeline.PATHS] = replan.geometry(plan)
@@ -105,7 +108,9 @@ def _rate(scene):
 
 
 class RIFFLER_OT_plan_key(bpy.types.Operator):
-    """Make the tool's orientation a key of the path at this frame. Turn the tool with R before, or give an axis"""
+    """Set the tool's orientation as a key of the path at the current frame; turn the tool with R first, or give an
+    axis
+    """
 
     bl_idname = "riffler.plan_key"
     bl_label = "Set Key Orientation"
@@ -114,10 +119,10 @@ class RIFFLER_OT_plan_key(bpy.types.Operator):
     axis: FloatVectorProperty(
         name="Axis",
         subtype="XYZ",
-        description="From the tool's tip to the spindle, in the world; 0, 0, 0: as the tool stands now",
+        description="World direction from the tip to the spindle; 0, 0, 0: the tool's current direction",
     )
     path: IntProperty(name="Path", default=0, min=0, description="Number of the path; 0: that of the frame")
-    point: IntProperty(name="Point", default=0, min=0, description="Of the path, from 0; where a path is given")
+    point: IntProperty(name="Point", default=0, min=0, description="Point of the path, from 0; needs a path")
 
     @classmethod
     def poll(cls, context):
@@ -143,7 +148,7 @@ class RIFFLER_OT_plan_key(bpy.types.Operator):
 
 
 def frame_of(layout, path, point):
-    """Of a path (from 1) and its point (from 0). ValueError."""
+    """The frame of a path (from 1) and its point (from 0). ValueError."""
     if path > len(layout.tracks):
         raise ValueError(f"path {path}: the plan has {len(layout.tracks)}")
     track = layout.tracks[path - 1]
@@ -158,9 +163,9 @@ def ranges(layout):
 
 
 def set_key(scene, ob, frame, quat=None, axis=None):
-    """A keyframe at `frame`, or on the one that its point has already, and all that follows from it. `quat` (4,), or
-    else an axis (3,), taken with as little twist as can be, and kept in the plan as it is: keyframes are single
-    precision. ValueError, with nothing changed, where the path takes no such key."""
+    """Sets a keyframe at `frame`, or changes the one that its point has already, and updates the plan. `quat` (4,), or
+    else an axis (3,), converted with as little twist as possible; the plan stores the exact axis, since keyframes are
+    single precision. ValueError, with nothing changed, if the path takes no such key."""
     tool, _ = timeline.pair(ob)
     plan = plan_store.plan(ob)
     if not replan.fits(ob, plan):
@@ -180,7 +185,7 @@ def set_key(scene, ob, frame, quat=None, axis=None):
     else:
         axis = quaternions.axes_of(np.asarray(quat, float))
     wanted = key_orientations.change(plan.paths[path].keys, {**reading.keys[path], index: axis}).keys
-    # What the path refuses comes before the change.
+    # The path's errors come before the change.
     turned = plan.paths[path].oriented({**wanted, index: axis}, plan.paths[path].interpolation or "smooth")
     others = np.abs(frames - frame) > 1e-4
     frames, quats = np.append(frames[others], frame), np.vstack([quats[others], quat])
@@ -194,7 +199,7 @@ def set_key(scene, ob, frame, quat=None, axis=None):
 
 
 class RIFFLER_OT_plan_key_delete(bpy.types.Operator):
-    """Delete the path's key at this frame"""
+    """Delete the path's key at the current frame"""
 
     bl_idname = "riffler.plan_key_delete"
     bl_label = "Delete Key Orientation"
@@ -218,13 +223,13 @@ class RIFFLER_OT_plan_key_delete(bpy.types.Operator):
 
 
 class RIFFLER_OT_plan_key_jump(bpy.types.Operator):
-    """Go to the next key orientation, or to the one before"""
+    """Go to the next or the previous key orientation"""
 
     bl_idname = "riffler.plan_key_jump"
     bl_label = "Jump to Key Orientation"
-    bl_options = {"REGISTER"}  # going to a frame is no step of undo in Blender
+    bl_options = {"REGISTER"}  # in Blender a change of frame is no undo step
 
-    back: BoolProperty(name="Back", description="To the one before")
+    back: BoolProperty(name="Back", description="Go to the previous key")
 
     @classmethod
     def poll(cls, context):
@@ -244,19 +249,23 @@ class RIFFLER_OT_plan_key_jump(bpy.types.Operator):
 
 
 class RIFFLER_OT_plan_check(TimelineWork, bpy.types.Operator):
-    """Mark the frames at which cutter, shank or holder enter the part or a fixture; from then on as keys change"""
+    """Mark the frames where cutter, shank or holder collide with the part or a fixture, and update the marks when keys
+    change
+    """
 
     bl_idname = "riffler.plan_check"
     bl_label = "Mark Collisions"
-    doing = "Looking for collisions"
-    cancelled = "Stopped looking for collisions"
+    doing = "Checking for collisions"
+    cancelled = "Check for collisions cancelled"
 
     def begin(self, context):
         ob, plan = self.take(context)
         if not replan.fits(ob, plan):
             raise ValueError(replan.OTHER_PATHS)
         if not plan_states.state(ob).motions:
-            raise ValueError("; ".join(plan_states.state(ob).problems) or "Nothing plays: use Plan to Timeline")
+            raise ValueError(
+                "; ".join(plan_states.state(ob).problems) or "Nothing is on the timeline: use Plan to Timeline"
+            )
         taken = obstacles.take(context, ob)
         self._notes = fit_check.notes(context, plan, taken)
         return AfterJob(taken, self._look, in_background=False)

@@ -1,4 +1,4 @@
-"""Keys on many paths at once: those that lean least and are free at every point, or one axis everywhere."""
+"""Keys on many paths at once: those of least tilt that are collision-free at every point, or one axis everywhere."""
 
 import math
 from dataclasses import replace
@@ -17,41 +17,46 @@ from . import keys
 from .plan_work import TimelineWork
 
 PATHS = (
-    ("UNKEYED", "Without Keys", "Those that have no key yet"),
-    ("SELECTED", "Selected", "Those whose curves are selected; keys that they have are replaced"),
-    ("FRAME", "At Frame", "The one that the tool is on at this frame; keys that it has are replaced"),
-    ("ALL", "All", "All of them; keys that they have are replaced"),
+    ("UNKEYED", "Without Keys", "Paths that have no key yet"),
+    ("SELECTED", "Selected", "Paths whose curves are selected; their existing keys are replaced"),
+    ("FRAME", "At Current Frame", "The path at the current frame; its existing keys are replaced"),
+    ("ALL", "All", "All paths; their existing keys are replaced"),
 )
 AXES = (
-    ("LEAST", "Least Tilt", "The free ones that lean least from the middle between both walls"),
-    ("GIVEN", "One Axis", "The same everywhere, as with a head that is clamped; what collides is for Resolve to lift"),
+    ("LEAST", "Least Tilt", "The collision-free orientations of least tilt from the middle between both walls"),
+    (
+        "GIVEN",
+        "One Axis",
+        ("One orientation everywhere, as with a clamped head; Resolve lifts the tool where it collides"),
+    ),
 )
-NAMED = 5  # paths in a report
+NAMED = 5  # paths named in a report
 
 
 class RIFFLER_OT_plan_least_tilt(TimelineWork, bpy.types.Operator):
-    """Set few keys on many paths at once, with which the tool is free at every point and leans least. Paths on which no
-    orientation is free are listed and stay as they are"""
+    """Set few keys on many paths at once, so that the tool is collision-free at every point with the least tilt; paths
+    without a free orientation are listed and stay unchanged
+    """
 
     bl_idname = "riffler.plan_least_tilt"
     bl_label = "Keys of Least Tilt"
-    doing = "Looking for free keys"
-    cancelled = "Stopped looking for free keys: the plan is as it was"
+    doing = "Searching for free keys"
+    cancelled = "Search for free keys cancelled: the plan is unchanged"
 
-    paths: EnumProperty(name="Paths", items=PATHS, default="UNKEYED", description="Which of them get keys")
-    axes: EnumProperty(name="Axes", items=AXES, default="LEAST", description="How the tool stands at the keys")
+    paths: EnumProperty(name="Paths", items=PATHS, default="UNKEYED", description="Paths that get keys")
+    axes: EnumProperty(name="Axes", items=AXES, default="LEAST", description="Orientation of the tool at the keys")
     count: IntProperty(
         name="Keys per Path",
         default=2,
         min=1,
         max=1000,
-        description="At least; more where the tool would collide between",
+        description="Smallest number of keys on a path; more are set where the tool would collide between them",
     )
     axis: FloatVectorProperty(
         name="Axis",
         subtype="XYZ",
         default=(0, 0, 1),
-        description="From the tip to the spindle, in the world: the one axis, or the middle of the machine's range",
+        description=("World direction from the tip to the spindle: the one axis, or the middle of the machine's range"),
     )
     limit: FloatProperty(
         name="Limit",
@@ -76,7 +81,7 @@ class RIFFLER_OT_plan_least_tilt(TimelineWork, bpy.types.Operator):
             raise ValueError("axis must be finite and not 0, 0, 0")
         axis /= np.linalg.norm(axis)
         chosen = [plan.paths[k] for k in self._paths]
-        self._notes = []  # one axis is looked at with nothing
+        self._notes = []  # one axis is not checked for collisions
         if self.axes == "GIVEN":
             return tilt_search.SearchesJob([tilt_search.Given(path, axis) for path in chosen])
         taken, clearance = obstacles.take(context, ob), scene_units.clean(context.scene.riffler.plan.clearance)
@@ -95,7 +100,7 @@ class RIFFLER_OT_plan_least_tilt(TimelineWork, bpy.types.Operator):
         return AfterJob(taken, search)
 
     def _chosen(self, context, ob, plan):
-        """Numbers of the paths, from 0. ValueError where there are none."""
+        """Numbers of the paths, from 0. ValueError if there are none."""
         if self.paths == "FRAME":
             layout, frame = replan.layout_of(ob, plan), context.scene.frame_current_final
             if layout.at(frame) is None:
@@ -119,12 +124,12 @@ class RIFFLER_OT_plan_least_tilt(TimelineWork, bpy.types.Operator):
             raise ValueError(
                 "Every path has keys: choose All to replace them"
                 if on
-                else "Every path has its orientations from its strategy: none takes keys"
+                else "The strategy sets the orientations of every path: none of them takes keys"
             )
         return found
 
     def finish(self, context, job):
-        """One change of the plan and of the animation, however many paths there are."""
+        """Changes the plan and the animation once, for any number of paths."""
         ob, plan = self.ob, plan_store.plan(self.ob)
         paths, cl = list(plan.paths), list(plan.cl) or [None] * len(plan.paths)
         marks = [e for e in findings.read(ob.riffler.plan.findings) if e["path"] not in self._paths]

@@ -1,4 +1,4 @@
-"""What is given of a machine's options, and what is not."""
+"""Sets and resets options of a machine."""
 
 import bpy
 from bpy.props import EnumProperty, StringProperty
@@ -8,40 +8,40 @@ from ..machines import MACHINES
 from ..pure import machine_fields
 
 HOW = (
-    ("GIVE", "Value Shown", "Give the value that the field shows"),
-    ("CURSOR", "3D Cursor", "Give the place of the 3D cursor, in mm of the scene"),
-    ("UNSET", "Not Given", "What counts is what the machine has where nothing is given"),
+    ("GIVE", "Value Shown", "Set the value shown in the field"),
+    ("CURSOR", "3D Cursor", "Set the position of the 3D cursor, in mm of the scene"),
+    ("UNSET", "Default", "Use the machine's default"),
 )
 
 
 class OfMachine:
-    """Mixin: of which machine; `option` is of a subclass."""
+    """Mixin with the machine's setting; a subclass has `option`."""
 
-    machine: EnumProperty(name="Machine", items=MACHINES, default="tcp", description="Whose option it is")
+    machine: EnumProperty(name="Machine", items=MACHINES, default="tcp", description="Machine that has the option")
 
     def fact(self, context):
-        """ValueError that lists the options where there is none of that name."""
+        """The option's description. ValueError, which lists the options, for an unknown name."""
         listed = {fact["name"]: fact for fact in machine_fields.facts(self.machine)}
         if self.option not in listed:
             raise ValueError(f"{self.machine} has no option {self.option!r}: it has {', '.join(listed)}")
         return listed[self.option]
 
     def give(self, context, value=None):
-        """By default the value that the field shows: from then on it counts as given."""
+        """Sets the option, by default to the field's value; from then on it is passed on."""
         group, key = context.scene.riffler.machines.of(self.machine), machine_fields.identifier(self.option)
         value = getattr(group, key) if value is None else value
         setattr(group, key, value if isinstance(value, (str, bool, float)) else tuple(value))
 
 
 class RIFFLER_OT_machine_option(OfMachine, bpy.types.Operator):
-    """Give this option of the machine, or take it back"""
+    """Set this option of the machine, or reset it to the machine's default"""
 
     bl_idname = "riffler.machine_option"
-    bl_label = "Machine Option"
+    bl_label = "Set Machine Option"
     bl_options = {"REGISTER", "UNDO", "INTERNAL"}
 
-    option: StringProperty(name="Option", description="Its name")
-    how: EnumProperty(name="How", items=HOW, default="GIVE", description="What becomes of it")
+    option: StringProperty(name="Option", description="Name of the option")
+    how: EnumProperty(name="How", items=HOW, default="GIVE", description="Whether to set or reset the option")
 
     @classmethod
     def description(cls, context, properties):
@@ -51,7 +51,7 @@ class RIFFLER_OT_machine_option(OfMachine, bpy.types.Operator):
         try:
             fact = self.fact(context)
             if self.how == "CURSOR" and fact["count"] != 3:
-                raise ValueError(f"{self.option} is no place: give a number")
+                raise ValueError(f"{self.option} is not a position: give a number")
         except operator_parts.ERRORS as error:
             return operator_parts.fail(self, error)
         if self.how == "UNSET":
@@ -63,11 +63,11 @@ class RIFFLER_OT_machine_option(OfMachine, bpy.types.Operator):
         return {"FINISHED"}
 
 
-_entries = []  # Blender keeps no reference to the texts of an enumeration that a function makes
+_entries = []  # Blender keeps no reference to the texts of a dynamic enumeration
 
 
 def _others(self, context):
-    """The options that are not given."""
+    """The options that are not set."""
     given = {} if context is None else context.scene.riffler.machines.given(self.machine)
     _entries[:] = [
         (fact["name"], machine_fields.label(fact), machine_fields.about(fact), k)
@@ -78,13 +78,13 @@ def _others(self, context):
 
 
 class RIFFLER_OT_machine_option_add(OfMachine, bpy.types.Operator):
-    """Give one more of the machine's options: limits and rates of its axes, how its code is written"""
+    """Set one more option of the machine: limits and rates of its axes, or how its code is written"""
 
     bl_idname = "riffler.machine_option_add"
-    bl_label = "Give an Option"
+    bl_label = "Add Machine Option"
     bl_options = {"REGISTER", "UNDO", "INTERNAL"}
 
-    option: EnumProperty(name="Option", items=_others, description="Its name")
+    option: EnumProperty(name="Option", items=_others, description="Name of the option")
 
     def execute(self, context):
         self.give(context)

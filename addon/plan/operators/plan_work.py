@@ -1,4 +1,4 @@
-"""Work on a plan: what the operators of its keys, of the tool's turning and of its NC code have in common."""
+"""Work on a plan: what the operators of its keys, of the tool's turning and of its NC code share."""
 
 import bpy
 
@@ -9,7 +9,7 @@ from ..current_pose import plan_object
 
 
 def plan_poll(cls, context):
-    """True where there is a plan that can be changed; otherwise the button's tooltip says why not."""
+    """True if there is a plan that can be changed; otherwise the button's tooltip gives the reason."""
     if plan_object(context) is None:
         return operator_parts.deny(cls, "Select a plan first, or find paths on a part")
     if why := refusals.linked(plan_object(context)):
@@ -26,14 +26,14 @@ def timeline_poll(cls, context):
 
 
 def part_poll(cls, context):
-    """True where the plan has a part to be looked at; whether it may be changed is another question."""
+    """True if the plan has a part for checks, whether or not the plan can be changed."""
     if why := object_surfaces.unfit(obstacles.part_of(context.scene, plan_object(context)), context.scene):
         return operator_parts.deny(cls, why)
     return True
 
 
 def tell(operator, ob):
-    """How the plan plays now, or what is wrong with it."""
+    """Reports how the plan plays now, or its problem."""
     now = plan_states.state(ob)
     problems = timeline.faults(timeline.pair(ob)[0], plan_states.scene_of(ob)) + now.problems
     if problems:
@@ -46,12 +46,12 @@ def tell(operator, ob):
 
 
 class PlanWork(LongWork):
-    """Mixin; a subclass makes the job from what `take` gives."""
+    """Mixin; a subclass makes the job from the result of `take`."""
 
     bl_options = {"REGISTER", "UNDO"}
 
     def take(self, context):
-        """(object, plan), with all that follows from its keyframes."""
+        """(object, plan), after all updates from its keyframes."""
         replan.flush()
         ob = plan_object(context)
         plan = plan_store.plan(ob)
@@ -65,12 +65,12 @@ class PlanWork(LongWork):
 
     @property
     def ob(self):
-        """The plan's object, or None where it is gone."""
+        """The plan's object, or None if it was removed."""
         return bpy.data.objects.get(self._plan)
 
 
 class TimelineWork(PlanWork):
-    """Mixin of what also needs the plan's tool on the timeline, and the part."""
+    """Mixin of work that also needs the plan's tool on the timeline, and the part."""
 
     @classmethod
     def poll(cls, context):

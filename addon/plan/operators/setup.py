@@ -1,4 +1,4 @@
-"""What a plan is made for: the part, the fixtures, and the tool with its shank and holder."""
+"""A plan's setup: the part, the fixtures, and the tool with its shank and holder."""
 
 import bpy
 import numpy as np
@@ -22,7 +22,7 @@ def surfaces(context):
 
 
 def described(mesh):
-    """What a part is worth before it is planned on: the level of the report, and its text."""
+    """Assessment of a part before planning: the report's level, and its text."""
     found = riffler.plan.analyse(mesh)
     size = units.format_size(found["bounds"][1] - found["bounds"][0])
     facts = f"{size}, {units.counted(found['triangles'], 'triangle')}"
@@ -30,7 +30,7 @@ def described(mesh):
 
 
 def _editable(cls, collection):
-    """True where objects can be put into the fixtures' collection and taken out."""
+    """True if objects can be added to the fixtures' collection and removed."""
     if collection is None or not (collection.library or collection.override_library):
         return True
     return operator_parts.deny(
@@ -39,7 +39,7 @@ def _editable(cls, collection):
 
 
 class RIFFLER_OT_plan_part(bpy.types.Operator):
-    """Plan on the active object: the finished part, as it lies in the scene"""
+    """Make the active object the part: the finished shape, as it lies in the scene"""
 
     bl_idname = "riffler.plan_part"
     bl_label = "Set Part"
@@ -59,7 +59,7 @@ class RIFFLER_OT_plan_part(bpy.types.Operator):
             home = settings.fixtures.name
             return operator_parts.fail(self, ValueError(f"{ob.name} is a fixture: take it out of {home} first"))
         try:
-            live_registry.end_all()  # the mesh of a sculpt that is being worked at is not up to date
+            live_registry.end_all()  # the mesh of a live sculpt is not up to date
             mesh = object_surfaces.in_world(context, ob)
         except operator_parts.ERRORS as error:
             return operator_parts.fail(self, error)
@@ -72,7 +72,7 @@ class RIFFLER_OT_plan_part(bpy.types.Operator):
 
 
 class RIFFLER_OT_plan_fixtures_add(bpy.types.Operator):
-    """Make fixtures of the selected objects: the tool will stay clear of them"""
+    """Make the selected objects fixtures, which the tool stays clear of"""
 
     bl_idname = "riffler.plan_fixtures_add"
     bl_label = "Add Fixtures"
@@ -85,7 +85,7 @@ class RIFFLER_OT_plan_fixtures_add(bpy.types.Operator):
         if why := next(filter(None, map(refusals.instance, context.selected_objects)), ""):
             return operator_parts.deny(cls, f"{why} first")
         if not any(ob != context.scene.riffler.plan.part for ob in surfaces(context)):
-            return operator_parts.deny(cls, "Select the vise, the clamps: objects with a surface other than the part")
+            return operator_parts.deny(cls, "Select the vise, the clamps: objects with a surface, other than the part")
         return not operator_parts.busy(cls, context)
 
     def execute(self, context):
@@ -105,7 +105,7 @@ class RIFFLER_OT_plan_fixtures_add(bpy.types.Operator):
             settings.fixtures.objects.link(ob)
         try:
             held = obstacles.fixture_objects(settings, settings.part)
-        except ValueError as error:  # something that was put into the collection otherwise
+        except ValueError as error:  # an invalid object that was added to the collection by other means
             self.report({"WARNING"}, operator_parts.as_sentence(str(error)))
             return {"FINISHED"}
         self.report({"INFO"}, f"{settings.fixtures.name}: {units.counted(len(held), 'object')}")
@@ -113,7 +113,7 @@ class RIFFLER_OT_plan_fixtures_add(bpy.types.Operator):
 
 
 class RIFFLER_OT_plan_fixtures_remove(bpy.types.Operator):
-    """Take the selected objects out of the fixtures; they stay in the scene"""
+    """Remove the selected objects from the fixtures; they stay in the scene"""
 
     bl_idname = "riffler.plan_fixtures_remove"
     bl_label = "Remove Fixtures"
@@ -127,7 +127,7 @@ class RIFFLER_OT_plan_fixtures_remove(bpy.types.Operator):
         if not _editable(cls, home):
             return False
         if not any(home in ob.users_collection for ob in context.selected_objects):
-            return operator_parts.deny(cls, "Select the fixtures that are none any more")
+            return operator_parts.deny(cls, "Select the fixtures to remove")
         return not operator_parts.busy(cls, context)
 
     def execute(self, context):
@@ -140,16 +140,16 @@ class RIFFLER_OT_plan_fixtures_remove(bpy.types.Operator):
 
 
 class RIFFLER_OT_plan_tool(bpy.types.Operator):
-    """Plan with this tool: cutter, shank and holder"""
+    """Use this tool for planning: cutter, shank and holder"""
 
     bl_idname = "riffler.plan_tool"
-    bl_label = "Take Tool"
+    bl_label = "Use Tool"
     bl_options = {"REGISTER", "UNDO"}
 
-    name: bpy.props.StringProperty(name="Name", description="Of the tool; empty: the first of the file")
+    name: bpy.props.StringProperty(name="Name", description="Name of the tool; empty: the first tool of the file")
     path: bpy.props.StringProperty(name="File", description="A tool file; empty: the presets", subtype="FILE_PATH")
     sculpting: bpy.props.BoolProperty(
-        name="Of sculpting", default=False, description="The cutter of the Tool panel, whatever name and file say"
+        name="Sculpting Cutter", default=False, description="Use the cutter of the Tool panel, and ignore name and file"
     )
 
     def execute(self, context):
@@ -165,7 +165,7 @@ class RIFFLER_OT_plan_tool(bpy.types.Operator):
 
 
 class RIFFLER_OT_plan_tool_open(bpy.types.Operator, ImportHelper):
-    """Take a tool from a file (.json, .toml)"""
+    """Load a tool from a file (.json, .toml)"""
 
     bl_idname = "riffler.plan_tool_open"
     bl_label = "Open Tool File"
@@ -173,7 +173,7 @@ class RIFFLER_OT_plan_tool_open(bpy.types.Operator, ImportHelper):
 
     filename_ext = ".json"
     filter_glob: bpy.props.StringProperty(default="*.json;*.toml", options={"HIDDEN"})
-    name: bpy.props.StringProperty(name="Name", description="Of the tool; empty: the first of the file")
+    name: bpy.props.StringProperty(name="Name", description="Name of the tool; empty: the first tool of the file")
 
     def execute(self, context):
         path = bpy.path.abspath(self.filepath)
@@ -185,15 +185,20 @@ class RIFFLER_OT_plan_tool_open(bpy.types.Operator, ImportHelper):
 
 
 class RIFFLER_OT_plan_tool_save(bpy.types.Operator):
-    """Keep the plan's tool, with shank and holder, as a file in the tool library"""
+    """Save the plan's tool, with shank and holder, as a file in the tool library"""
 
     bl_idname = "riffler.plan_tool_save"
     bl_label = "Save Tool"
     bl_options = {"REGISTER", "UNDO"}
 
-    name: bpy.props.StringProperty(name="Name", description="Of the tool, and of its file; empty: the one that it has")
+    name: bpy.props.StringProperty(
+        name="Name", description="Name of the tool and of its file; empty: the tool's current name"
+    )
     folder: bpy.props.StringProperty(
-        name="Folder", subtype="DIR_PATH", options={"SKIP_SAVE"}, description="Empty: the tool library's"
+        name="Folder",
+        subtype="DIR_PATH",
+        options={"SKIP_SAVE"},
+        description="Folder of the file; empty: the tool library's folder",
     )
 
     def invoke(self, context, event):
@@ -221,7 +226,7 @@ SHANK, HOLDER = ("shank",), ("holder", "upper", "height")
 
 
 def sizes_of(tool):
-    """The fields of a tool's shank and holder, in mm, by name; none for what it does not have."""
+    """The fields of a tool's shank and holder, in mm, by name; without those of missing pieces."""
     sizes = {}
     if tool.shank:
         sizes.update(shank=2 * tool.shank[0][1], reach=tool.shank[-1][2])
@@ -232,7 +237,7 @@ def sizes_of(tool):
 
 
 def _drawn_out(pieces, further):
-    """A shank with `further` mm of its uppermost piece out of the holder. ValueError where none of it is left."""
+    """A shank whose uppermost piece is `further` mm longer outside the holder. ValueError if none of it is left."""
     *others, (low, radius, high, upper) = pieces
     high = units.clean(high + further)
     if high <= low:
@@ -243,17 +248,17 @@ def _drawn_out(pieces, further):
 
 
 class RIFFLER_OT_plan_assembly(bpy.types.Operator):
-    """Give the plan's tool a shank and a holder: what must not touch the part when the tool leans"""
+    """Define the shank and the holder of the plan's tool, which must not touch the part"""
 
     bl_idname = "riffler.plan_assembly"
     bl_label = "Shank and Holder"
     bl_options = {"REGISTER", "UNDO"}
 
-    shank: length("Shank diameter", 6.0, "In mm; 0: no shank")
-    reach: length("Reach", 40.0, "From the tip to the holder, in mm")
-    holder: length("Holder diameter", 28.0, "At its lower end, in mm; 0: no holder")
-    upper: length("Upper diameter", 32.0, "Of the holder, at its upper end, in mm")
-    height: length("Holder length", 30.0, "In mm")
+    shank: length("Shank Diameter", 6.0, "Diameter of the shank, in mm; 0: no shank")
+    reach: length("Reach", 40.0, "Distance from the tip to the holder, in mm")
+    holder: length("Holder Diameter", 28.0, "Diameter at the holder's lower end, in mm; 0: no holder")
+    upper: length("Upper Diameter", 32.0, "Diameter at the holder's upper end, in mm")
+    height: length("Holder Length", 30.0, "Length of the holder, in mm")
 
     def invoke(self, context, event):
         try:
@@ -270,12 +275,12 @@ class RIFFLER_OT_plan_assembly(bpy.types.Operator):
         try:
             tool = riffler.Tool.from_dict(context.scene.riffler.plan.tool_dict())
         except operator_parts.ERRORS:
-            return  # executing says it
+            return  # execute reports the error
         sizes = sizes_of(tool)
-        if len(tool.shank) > 1 and self.shank and not self._as_it_is(sizes, SHANK):
-            self.layout.label(text="The shank's pieces become one: its diameter was changed", icon="INFO")
-        if len(tool.holder) > 1 and self.holder and not self._as_it_is(sizes, HOLDER):
-            self.layout.label(text="The holder's pieces become one: its sizes were changed", icon="INFO")
+        if len(tool.shank) > 1 and self.shank and not self._unchanged(sizes, SHANK):
+            self.layout.label(text="The shank becomes one piece, as its diameter was changed", icon="INFO")
+        if len(tool.holder) > 1 and self.holder and not self._unchanged(sizes, HOLDER):
+            self.layout.label(text="The holder becomes one piece, as its sizes were changed", icon="INFO")
 
     def execute(self, context):
         settings = context.scene.riffler.plan
@@ -290,22 +295,22 @@ class RIFFLER_OT_plan_assembly(bpy.types.Operator):
         return {"FINISHED"}
 
     def _with_pieces(self, tool):
-        """What has the sizes that the tool has keeps its pieces; a reach that was changed draws out the shank,
-        at its uppermost piece, and moves the holder."""
+        """Keeps the pieces of shank and holder whose sizes are unchanged. A changed reach lengthens the shank's
+        uppermost piece, and moves the holder."""
         sizes = sizes_of(tool)
         fields = (self.shank, self.reach, self.holder, self.upper, self.height)
         shank, reach, lower, upper, height = map(units.clean, fields)
-        further = 0.0 if self._as_it_is(sizes, ("reach",)) else reach - sizes.get("reach", reach)
+        further = 0.0 if self._unchanged(sizes, ("reach",)) else reach - sizes.get("reach", reach)
         shanks = [(tool.length, shank / 2, reach, shank / 2)] if shank else []
-        if self._as_it_is(sizes, SHANK):
+        if self._unchanged(sizes, SHANK):
             shanks = _drawn_out(tool.shank, further)
         holders = [(reach, lower / 2, reach + height, upper / 2)] if lower else []
-        if self._as_it_is(sizes, HOLDER):
+        if self._unchanged(sizes, HOLDER):
             holders = [(units.clean(a + further), r, units.clean(b + further), s) for a, r, b, s in tool.holder]
         return tool.with_shank(shanks).with_holder(holders)
 
-    def _as_it_is(self, sizes, keys):
-        """True where the fields are what the tool has, as far as single precision tells."""
+    def _unchanged(self, sizes, keys):
+        """True if the fields equal the tool's sizes, within single precision."""
         return all(key in sizes and getattr(self, key) == np.float32(sizes[key]) for key in keys)
 
 

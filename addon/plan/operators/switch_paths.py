@@ -1,4 +1,4 @@
-"""The paths of a plan, several at a time: switched on and off, deleted."""
+"""Switches several paths of a plan on or off, or deletes them."""
 
 from dataclasses import replace
 
@@ -15,26 +15,26 @@ from .plan_work import plan_poll
 
 SWITCH = (
     ("ALL", "All On", "Every path is resolved and written"),
-    ("NONE", "All Off", "No path is"),
-    ("INVERT", "Invert", "What is on goes off, and what is off comes on"),
-    ("ONLY", "Only the Chosen One", "All are off but the one that is chosen in the list"),
-    ("BLOCKED", "Blocked Off", "Paths on which the tool collides are left out"),
-    ("UNPLANNED", "Without Keys Off", "Paths without key orientations are left out"),
+    ("NONE", "All Off", "No path is resolved or written"),
+    ("INVERT", "Invert", "Switch on paths that are off, and off paths that are on"),
+    ("ONLY", "Only the Selected Path", "Switch on only the path selected in the list"),
+    ("BLOCKED", "Blocked Paths Off", "Switch off the paths on which the tool collides"),
+    ("UNPLANNED", "Paths Without Keys Off", "Switch off the paths without key orientations"),
 )
 DELETED = (
-    ("CHOSEN", "The Chosen One", "The path that is chosen in the list"),
-    ("OFF", "All That Are Off", "Paths that are left out anyway"),
+    ("CHOSEN", "Selected Path", "The path selected in the list"),
+    ("OFF", "Paths That Are Off", "Paths that are switched off"),
 )
 
 
 class RIFFLER_OT_plan_switch(bpy.types.Operator):
-    """Switch several paths on or off: what is off is neither resolved nor written"""
+    """Switch several paths on or off; paths that are off are neither resolved nor written"""
 
     bl_idname = "riffler.plan_switch"
     bl_label = "Switch Paths"
     bl_options = {"REGISTER", "UNDO"}
 
-    which: EnumProperty(name="Which", items=SWITCH, default="ALL", description="Which paths are on afterwards")
+    which: EnumProperty(name="Paths", items=SWITCH, default="ALL", description="Paths to switch on or off")
 
     @classmethod
     def poll(cls, context):
@@ -57,7 +57,7 @@ class RIFFLER_OT_plan_switch(bpy.types.Operator):
         every, rows = set(range(len(plan.paths))), ob.riffler.plan.rows
         if self.which == "ONLY":
             if ob.riffler.plan.row not in every:
-                raise ValueError("No path is chosen: click one in the list")
+                raise ValueError("No path is selected in the list: click one")
             return every - {ob.riffler.plan.row}
         states = {k: row.state for k, row in enumerate(rows)}
         return {
@@ -70,13 +70,13 @@ class RIFFLER_OT_plan_switch(bpy.types.Operator):
 
 
 class RIFFLER_OT_plan_delete_paths(bpy.types.Operator):
-    """Delete paths from the plan, with their keys; the others keep theirs, and get new numbers"""
+    """Delete paths and their keys from the plan; the other paths keep their keys and are renumbered"""
 
     bl_idname = "riffler.plan_delete_paths"
     bl_label = "Delete Paths"
     bl_options = {"REGISTER", "UNDO"}
 
-    which: EnumProperty(name="Which", items=DELETED, default="CHOSEN", description="Which paths go")
+    which: EnumProperty(name="Paths", items=DELETED, default="CHOSEN", description="Paths to delete")
 
     @classmethod
     def poll(cls, context):
@@ -98,10 +98,10 @@ class RIFFLER_OT_plan_delete_paths(bpy.types.Operator):
     def _going(self, ob, plan):
         if self.which == "OFF":
             if not plan.off:
-                raise ValueError("No path is off: switch those off that are to go")
+                raise ValueError("No path is off: switch off the paths to delete")
             return set(plan.off)
         if not 0 <= ob.riffler.plan.row < len(plan.paths):
-            raise ValueError("No path is chosen: click one in the list")
+            raise ValueError("No path is selected in the list: click one")
         return {ob.riffler.plan.row}
 
     def _delete(self, context, ob, plan, going):
@@ -123,7 +123,7 @@ class RIFFLER_OT_plan_delete_paths(bpy.types.Operator):
         findings.write(p.findings, marks)
         plan_store.refresh_rows(ob)
         if context.object is not None and context.object.parent == ob:
-            context.view_layer.objects.active = ob  # the curve that may be active goes
+            context.view_layer.objects.active = ob  # the active curve may be deleted
         if found is not None and after.paths:
             keys.lay_out(context, ob, after, (found[0][timeline.RATE], found[0][timeline.FIRST]))
         path_curves.show(ob, after, scene_units.mm_per_unit(context.scene))

@@ -1,5 +1,5 @@
-"""Turning the tool at the point of the path that the frame is at: by dials and handles in the view, by the map of free
-orientations, by numbers; and going to a point that is pointed at."""
+"""Turns the tool at the point of the path at the current frame: by dials and handles in the view, by the map of free
+orientations, by numbers; and goes to the point under the pointer."""
 
 import math
 
@@ -30,13 +30,13 @@ from .plan_work import PlanWork, tell, timeline_poll
 
 MAP = "MAP"
 HANDLES = (
-    (tool_rotation.INCLINATION, "Inclination", "Forward and backward, about the path's y"),
-    (tool_rotation.TILT, "Tilt", "To the left and to the right"),
-    (tool_rotation.FREE, "Free", "The tool's end goes where the pointer goes"),
-    (MAP, "Map", "To the cell of the map of free orientations that is pointed at"),
+    (tool_rotation.INCLINATION, "Inclination", "Turn forward and backward, about the path's y"),
+    (tool_rotation.TILT, "Tilt", "Turn to the left and to the right"),
+    (tool_rotation.FREE, "Free", "Drag the tool's end with the pointer"),
+    (MAP, "Map", "Turn to the cell under the pointer, in the map of free orientations"),
 )
-BUDGET = 2000.0  # µs for the force at a move of the pointer
-_held = None  # the operator that turns the tool in a window
+BUDGET = 2000.0  # µs for the force at each move of the pointer
+_held = None  # the operator that turns the tool in a window, or None
 HELP = "Ctrl: steps of 5°    Shift: slowly    Numbers: degrees    Esc: as it was"
 
 
@@ -54,7 +54,7 @@ def _spot(context, ob, path=0, point=0):
 
 
 class RIFFLER_OT_plan_turn(bpy.types.Operator):
-    """Turn the tool at this point of its path, and make that a key. In the view, drag a dial or the tool's end"""
+    """Turn the tool at this point of its path and set a key; in the view, drag a dial or the tool's end"""
 
     bl_idname = "riffler.plan_turn"
     bl_label = "Turn Tool"
@@ -74,9 +74,11 @@ class RIFFLER_OT_plan_turn(bpy.types.Operator):
         max=math.pi / 2,
         description="How far the tool leans to the left of the path",
     )
-    relative: BoolProperty(name="Relative", description="The angles are added to those the tool has")
+    relative: BoolProperty(name="Relative", description="Add the angles to the tool's current ones")
     path: IntProperty(name="Path", min=0, options={"SKIP_SAVE"}, description="Number of the path; 0: that of the frame")
-    point: IntProperty(name="Point", min=0, options={"SKIP_SAVE"}, description="Of the path, from 0; with a path")
+    point: IntProperty(
+        name="Point", min=0, options={"SKIP_SAVE"}, description="Point of the path, from 0; needs a path"
+    )
     handle: EnumProperty(name="Handle", items=HANDLES, default=tool_rotation.FREE, options={"HIDDEN", "SKIP_SAVE"})
 
     _turn = None
@@ -101,7 +103,7 @@ class RIFFLER_OT_plan_turn(bpy.types.Operator):
         return self._say(context, ob, frame, angles)
 
     def _say(self, context, ob, frame, angles):
-        """What came of it; how the tool stands only where somebody has looked around before."""
+        """Reports the result; with the clearance only if the surroundings are known already."""
         near = obstacles.known(ob)
         if near is None or plan_states.state(ob).problems:
             return tell(self, ob)
@@ -149,7 +151,7 @@ class RIFFLER_OT_plan_turn(bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
     def _axis(self, context, spot):
-        """As the tool is seen: somebody may have turned it by R."""
+        """The tool's visible axis: the user may have turned it with R."""
         tool, ghost = timeline.pair(spot.ob)
         if tool.constraints.get(timeline.TURN) and tool.constraints[timeline.TURN].influence == 0:
             return quaternions.axes_of(timeline.stands(context.scene, tool, ghost))
@@ -175,7 +177,7 @@ class RIFFLER_OT_plan_turn(bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
     def cancel(self, context):
-        """The tool is as it was; Blender calls it too, when another file is opened."""
+        """Restores the tool's orientation. Blender calls it too, when another file is opened."""
         self._end(context)
         ob = bpy.data.objects.get(self._ob)
         if ob is not None and timeline.pair(ob) is not None:
@@ -194,7 +196,7 @@ class RIFFLER_OT_plan_turn(bpy.types.Operator):
         global _held
         _held = current_pose.held = None
         force_view.end()
-        # The context is another one where the add-on is disabled, and the area may be gone.
+        # The context is another one when the add-on is disabled, and the area may be gone.
         for window in context.window_manager.windows:
             for area in window.screen.areas:
                 if area == self._area:
@@ -202,16 +204,16 @@ class RIFFLER_OT_plan_turn(bpy.types.Operator):
                     area.tag_redraw()
 
     def _follow(self, context):
-        """Shows the tool as it is turned, what pushes it, and how it stands."""
+        """Shows the turned tool, the force on it, and its clearance."""
         ob = bpy.data.objects.get(self._ob)
         spot = current_pose.spot(context.scene, ob)
         if spot is None or (spot.path, spot.index) != (self._path, self._index):
-            raise ValueError("The plan or the frame has changed: the tool is as it was")
+            raise ValueError("The plan or the frame has changed: the tool was not turned")
         current_pose.held = axis = self._turn.axis
         said = tool_rotation.said(*self._turn.angles)
         try:
             pose = tool_rotation.stand(spot.line, spot.index, axis, spot.plan.tool)
-        except ValueError as error:  # a bull-nosed cutter does not reach a valley at any angle
+        except ValueError as error:  # a bull-nose cutter does not reach a valley at any angle
             context.area.header_text_set(f"{said}: {error}    {HELP}")
             return
         current_pose.hand(context.scene, spot, pose)
@@ -236,10 +238,10 @@ class RIFFLER_OT_plan_turn(bpy.types.Operator):
 
 
 class PointsAt:
-    """Mixin of operators for a point of a path: one that is given, or the one under the pointer."""
+    """Mixin of operators for a point of a path: a given one, or the one under the pointer."""
 
     path: IntProperty(name="Path", default=0, min=0, description="Number of the path; 0: that of the frame")
-    point: IntProperty(name="Point", default=0, min=0, description="Of the path, from 0; where a path is given")
+    point: IntProperty(name="Point", default=0, min=0, description="Point of the path, from 0; needs a path")
 
     @classmethod
     def poll(cls, context):
@@ -249,7 +251,7 @@ class PointsAt:
         return self.execute(context) if self._pointed(context, event) else {"PASS_THROUGH"}
 
     def _pointed(self, context, event):
-        """Takes what is under the pointer; False where that is nothing."""
+        """Uses what is under the pointer; False if there is nothing."""
         if context.region_data is None:
             return True
         found = path_view.under(context, (event.mouse_region_x, event.mouse_region_y))
@@ -264,11 +266,11 @@ class PointsAt:
 
 
 class RIFFLER_OT_plan_point(PointsAt, bpy.types.Operator):
-    """Go to the frame at which the tool is at this point of its path"""
+    """Go to the frame where the tool is at this point of its path"""
 
     bl_idname = "riffler.plan_point"
     bl_label = "Go to Point of Path"
-    bl_options = {"REGISTER"}  # going to a frame is no step of undo in Blender
+    bl_options = {"REGISTER"}  # in Blender a change of frame is no undo step
 
     def execute(self, context):
         try:
@@ -279,13 +281,14 @@ class RIFFLER_OT_plan_point(PointsAt, bpy.types.Operator):
 
 
 class RIFFLER_OT_plan_point_key(PointsAt, PlanWork, bpy.types.Operator):
-    """Set a key at this point of the path: the free orientation that leans least, and none where none is free. Only
-    where there is no part to look at, the one it has"""
+    """Set a key at this point of the path, with the collision-free orientation of least tilt; without a part, with the
+    current orientation
+    """
 
     bl_idname = "riffler.plan_point_key"
     bl_label = "Set Free Key at Point"
-    doing = "Looking for a free orientation"
-    cancelled = "Stopped looking for a free orientation: no key was set"
+    doing = "Searching for a free orientation"
+    cancelled = "Search for a free orientation cancelled: no key was set"
 
     def invoke(self, context, event):
         return PlanWork.invoke(self, context, event) if self._pointed(context, event) else {"PASS_THROUGH"}
@@ -303,7 +306,7 @@ class RIFFLER_OT_plan_point_key(PointsAt, PlanWork, bpy.types.Operator):
         )
 
     def finish(self, context, job):
-        axis, said = self._spot.axis, "There is no part: the orientation is the one it was"
+        axis, said = self._spot.axis, "There is no part: the orientation is unchanged"
         if job.result is not None:
             axis, said = job.result.suggestion, ""
             if axis is None:
@@ -319,6 +322,6 @@ CLASSES = (RIFFLER_OT_plan_turn, RIFFLER_OT_plan_point, RIFFLER_OT_plan_point_ke
 
 
 def detach():
-    """The tool is as it was: Blender drops the operator that turns it without a word."""
+    """Restores the tool: Blender drops a running modal operator without calling it."""
     if _held is not None:
         _held.cancel(bpy.context)

@@ -1,7 +1,7 @@
-"""Whether a plan still fits what it was made on, for panels: looked up once after a change, never while drawing.
+"""Whether a plan still fits its part, for panels: checked once after a change, never while drawing.
 
-A part's identity is the hash of its whole surface, which takes some 0.1 s for half a million triangles. So a panel that
-asks gets what is known, and where nothing is, a timer looks as soon as the scene has been left alone for a moment.
+A part's identity is the hash of its whole surface, which takes about 0.1 s for half a million triangles. So a panel
+gets the last known verdict; if there is none, a timer checks as soon as the scene has been unchanged for a moment.
 """
 
 import time
@@ -15,30 +15,30 @@ from ...sculpt import live_registry
 from .. import obstacles, path_curves, plan_store
 
 CLASSES = ()
-QUIET = 0.4  # s without a change, before a part is looked at
+QUIET = 0.4  # s without a change, before a part is checked
 
 
 @dataclass
 class Verdict:
-    part: str  # what is wrong with the part, or nothing
-    edited: int  # paths whose curves are not what the plan says
-    tool: riffler.Tool | None = field(default=None, compare=False)  # that it was planned with
+    part: str  # problem of the part, or ""
+    edited: int  # paths whose curves differ from the plan
+    tool: riffler.Tool | None = field(default=None, compare=False)  # the tool it was planned with
 
 
-_known = {}  # name of a plan → _key of the time, Verdict
-_asked = set()  # names of plans that somebody wants to know about
+_known = {}  # name of a plan → (its _key then, Verdict)
+_asked = set()  # names of plans whose verdict a panel has asked for
 _changed = 0.0
 
 
 def judge(context, ob):
-    """The Verdict on a plan, now. ValueError where the plan cannot be read."""
+    """The Verdict on a plan, now. ValueError if the plan cannot be read."""
     plan = plan_store.plan(ob)
     edited = path_curves.edited(ob, plan, scene_units.mm_per_unit(context.scene))
     return Verdict(_part(context, ob, plan), edited, plan.tool)
 
 
 def part_of(scene, ob):
-    """The part that a plan is looked at with, or None where there is none in the scene."""
+    """The part that a plan is checked with, or None if the scene has none."""
     part = obstacles.part_of(scene, ob)
     return part if part is not None and scene.objects.get(part.name) == part else None
 
@@ -48,7 +48,7 @@ def _part(context, ob, plan):
     if part is None:
         return f"The part, {name}, is gone from the scene"
     if part.mode != "OBJECT" or live_registry.of(part) is not None:
-        return ""  # half an edit is not looked at
+        return ""  # the edit is not finished
     try:
         mesh = object_surfaces.in_world(context, part)
     except ValueError as error:
@@ -61,7 +61,7 @@ def _part(context, ob, plan):
 
 
 def known(context, ob):
-    """The Verdict on a plan if there is one; otherwise None, and soon there will be."""
+    """The Verdict on a plan if it is known; otherwise None, and a check is scheduled."""
     key, verdict = _known.get(ob.name, (None, None))
     if key == _key(context, ob):
         return verdict
@@ -72,7 +72,7 @@ def known(context, ob):
 
 
 def _key(context, ob):
-    """What a Verdict is on, as far as that costs nothing to compare."""
+    """What a Verdict is valid for, as far as the comparison is cheap."""
     part = part_of(context.scene, ob)
     return plan_store.identity(ob), scene_units.mm_per_unit(context.scene), part.name if part else ""
 
@@ -96,7 +96,7 @@ def _look():
 
 @bpy.app.handlers.persistent
 def _on_update(scene, depsgraph):
-    """Forgets what is known of plans whose part or curves have changed."""
+    """Forgets the verdicts on plans whose part or curves have changed."""
     global _changed
     if not _known and not _asked:
         return

@@ -1,4 +1,4 @@
-"""What a plan's tool can collide with: the part and its fixtures, how near the tool is to them, and what of it."""
+"""Collision checks of a plan's tool with the part and its fixtures: distances, and their text."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from riffler import tasks
 
 from ...common import units
 
-FLAT = 1e-6  # of what is flat: thickness to width
+FLAT = 1e-6  # ratio of thickness to width of a flat sheet
 # A triangle that no machine reaches.
 _FAR = np.array([(1e6, 0, 0), (1e6 + 1, 0, 0), (1e6, 1, 0)])
 
@@ -22,14 +22,14 @@ def _nowhere():
 
 @functools.cache
 def nothing():
-    """A Collider that nothing collides with, for whoever only wants to know how a tool stands."""
+    """An empty Collider, for callers that only need the tool's pose."""
     return riffler.Collider(_nowhere())
 
 
 @dataclass(frozen=True)
 class State:
-    """How the tool stands: `distance` (mm) is below zero where it collides, otherwise that of what is nearest beside
-    its cut, `room` the least that is wanted of that."""
+    """The tool's clearance: `distance` (mm) is negative in a collision, otherwise the distance of the nearest obstacle
+    outside its cut; `room` is the required minimum."""
 
     distance: float
     piece: str  # of the tool: "cutter", "shank", "holder", or "tool"
@@ -52,24 +52,25 @@ class State:
 
 class Surroundings:
     """`collider`: a riffler.Collider of the part, called `name`, and all fixtures; `fixtures`: (name, riffler.Collider)
-    of each alone. Made by Making."""
+    of each fixture alone. Built by Making."""
 
     def __init__(self, collider, name: str, fixtures):
         self.collider, self._name, self._fixtures = collider, name, fixtures
 
     def clearance(self, tool, poses: np.ndarray) -> np.ndarray:
         """(n,) mm for poses (n, 6), over part and fixtures."""
-        if not self._fixtures:  # on all threads
+        if not self._fixtures:  # uses all threads
             return self.collider.clearance(tool, poses)
         return np.array([self.collider.nearest(tool, pose)[0] for pose in poses])
 
     def near_fixtures(self, tool, poses: np.ndarray, room: float) -> list[tuple[float, str]]:
-        """(mm, name) of the fixtures that the tool, its cutter too, comes nearer than `room` at poses (n, 6)."""
+        """(mm, name) of the fixtures that the tool, including its cutter, approaches closer than `room` at poses (n,
+        6)."""
         found = [(min(c.nearest(tool, pose)[0] for pose in poses), name) for name, c in self._fixtures]
         return [(gap, name) for gap, name in found if gap < room]
 
     def state(self, tool, pose, tolerance: float = 0.01, room: float = 0.0) -> State:
-        """The tool at a pose on its path: the cutter touches the part, to the tolerance."""
+        """The tool at a pose on its path: the cutter touches the part, within the tolerance."""
         distance, _, piece = self.collider.nearest(tool, pose)
         near = [(c.nearest(tool, pose)[0], "tool", name) for name, c in self._fixtures]
         if distance < -tolerance:
@@ -92,8 +93,8 @@ def _first(tool) -> str:
 
 
 def above(tool):
-    """Shank and holder as a tool of their own, and how far above the tip that begins (mm); (None, 0) where there are
-    none. Its cutter is a sliver of the first piece."""
+    """Shank and holder as a separate tool, and the height of its start above the tip (mm); (None, 0) if there are none.
+    Its cutter is a sliver of the first piece."""
     pieces = [*tool.shank, *tool.holder]
     if not pieces:
         return None, 0.0
@@ -112,7 +113,7 @@ def above(tool):
 
 
 def check_fixture(mesh, name: str) -> None:
-    """ValueError with the remedy where a riffler.Mesh is a flat sheet, however it is turned: no volume comes of it."""
+    """ValueError with the remedy if a riffler.Mesh is a flat sheet, in any direction, since it has no volume."""
     vertices = np.asarray(mesh.vertices, float)
     away = vertices - vertices.mean(axis=0)
     across = np.sqrt(np.maximum(np.linalg.eigvalsh(away.T @ away), 0))
@@ -125,18 +126,18 @@ def _unfit(name: str, why: str) -> ValueError:
 
 
 class Making:
-    """Surroundings in the making, by native tasks. `part`: a riffler.Mesh and its name; `fixtures`: (name,
-    riffler.Mesh) each, which become volumes first."""
+    """Builds Surroundings with native tasks. `part`: a riffler.Mesh and its name; `fixtures`: (name, riffler.Mesh)
+    each, which become volumes first."""
 
     def __init__(self, part, name: str, fixtures=()):
         self._part, self._name, self._fixtures = part, name, [fixture for fixture, _ in fixtures]
         self._volumes = [tasks.from_mesh(mesh, riffler.plan.fixture_pitch(mesh)) for _, mesh in fixtures]
-        self._colliders = None  # of everything, then of each fixture
+        self._colliders = None  # of all surfaces, then of each fixture
         self._error = None  # of a volume that could not be made
 
     @property
     def done(self) -> bool:
-        """Asked now and then: that is what makes colliders of the volumes."""
+        """Poll this: it makes colliders of finished volumes."""
         if self._colliders is None:
             if not all(task.done for task in self._volumes):
                 return False
@@ -145,12 +146,12 @@ class Making:
 
     @property
     def share(self) -> float:
-        """Of the work that is done, 0 … 1."""
+        """Share of the work done, 0 … 1."""
         begun = [*self._volumes, *(self._colliders or ())]
         return sum(task.share for task in begun) / (2 * len(self._volumes) + 1)
 
     def result(self) -> Surroundings:
-        """Waits for it; raises what went wrong."""
+        """Waits for the result; raises its error."""
         if self._colliders is None:
             self._collide()
         if self._error is not None:

@@ -1,5 +1,5 @@
-"""Where along an animation the tool collides: clearances of its rows, the frames of those that are too small, and names
-for what lies together."""
+"""Where the tool collides along an animation: clearances of its rows, the frames of those that are too small, and names
+for runs of frames."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ import numpy as np
 
 from ...common import units
 
-MOST = 64  # markers: more are no help to anybody
+MOST = 64  # markers: more would not help the user
 SLICE = 64  # poses in one call
 
 
 class ClearanceJob:
-    """Clearances (mm) of poses (n, 6) as a job for blender/long_work.py; `collider` has `clearance(tool, poses)`. Poses
-    that `known`, a dict of a pose's bytes to its clearance, has, are not computed again; it gets the new ones.
-    `computed`: how many those were."""
+    """Clearances (mm) of poses (n, 6) as a job for blender/long_work.py; `collider` has `clearance(tool, poses)`.
+    `known`, a dict of a pose's bytes to its clearance, gives results that are not computed again, and receives the new
+    ones. `computed`: their number."""
 
     in_background = False
 
@@ -49,17 +49,17 @@ class ClearanceJob:
         return self.computed == len(self._rows)
 
     def cancel(self) -> None:
-        """What is known stays: it is right whatever comes after."""
+        """Keeps the known clearances, which stay valid."""
 
     @property
     def clearances(self) -> np.ndarray:
-        """(n,) once all is done."""
+        """(n,) once all are computed."""
         return np.array([self._known[name] for name in self._names])
 
 
 def runs(frames: np.ndarray, clearances: np.ndarray, least: float, ends=()) -> list[tuple[int, int]]:
-    """First and last frame of what lies together where the clearance is below `least`; from row to row, whole frames
-    outwards. `ends`: rows after which something else begins."""
+    """First and last frame of each run in which the clearance is below `least`; from row to row, extended to whole
+    frames. `ends`: rows after which a run cannot continue."""
     bad = np.flatnonzero(np.asarray(clearances) < least)
     if not len(bad):
         return []
@@ -72,7 +72,7 @@ def runs(frames: np.ndarray, clearances: np.ndarray, least: float, ends=()) -> l
 
 
 def union(lists) -> list[tuple[int, int]]:
-    """Of several lists of runs: in order, those that overlap as one."""
+    """The union of several lists of runs: in order, overlapping runs merged."""
     out: list[tuple[int, int]] = []
     for begin, end in sorted(run for found in lists for run in found):
         if out and begin <= out[-1][1]:
@@ -83,7 +83,7 @@ def union(lists) -> list[tuple[int, int]]:
 
 
 def merged(found: list[tuple[int, int]], most: int = MOST) -> list[tuple[int, int]]:
-    """At most so many runs: those with the least between them become one."""
+    """At most so many runs: those with the smallest gaps are merged."""
     if len(found) <= most:
         return list(found)
     gaps = np.array([b[0] - a[1] for a, b in pairwise(found)])

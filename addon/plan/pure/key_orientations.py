@@ -1,7 +1,7 @@
-"""Key orientations on a timeline: which frame is which point of which path, and what keyframes say about a plan.
+"""Key orientations on a timeline: the point of each frame on its path, and the keyframes' effect on a plan.
 
-All paths of a plan lie one after the other, each from a whole frame to a whole frame. Between two points of a path the
-frames go by arc length. A keyframe belongs to the point that is nearest to it.
+All paths of a plan follow one another, each from a whole frame to a whole frame. Between two points of a path frames
+are proportional to arc length. A keyframe belongs to the nearest point.
 """
 
 from __future__ import annotations
@@ -16,11 +16,11 @@ from ...common import quaternions
 
 GAP = 10  # frames between two paths
 REACH = 0.5  # frames beyond a path's ends that still belong to it
-SAME = 1e-6  # rad: what single precision makes of an axis and nobody has turned
+SAME = 1e-6  # rad: error of single precision in an axis that was not turned
 
 
 def frames_per_mm(feed: float, fps: float) -> float:
-    """What plays at the speed at which it is cut; `feed` in mm/min."""
+    """Plays at the speed of the cut; `feed` in mm/min."""
     if not (math.isfinite(feed) and feed > 0 and math.isfinite(fps) and fps > 0):
         raise ValueError("feed and frame rate must be positive")
     return 60 * fps / feed
@@ -28,7 +28,7 @@ def frames_per_mm(feed: float, fps: float) -> float:
 
 class Track:
     """One path on the timeline. `stations`: arc length (mm) to its points, and of a loop to its first point again;
-    `frames`: where they are."""
+    `frames`: their frames."""
 
     def __init__(self, centres: np.ndarray, closed: bool, first: int, rate: float):
         ring = np.vstack([centres, centres[:1]]) if closed else centres
@@ -44,23 +44,23 @@ class Track:
         return self.first - REACH <= frame <= self.last + REACH
 
     def nearest(self, frame: float) -> int:
-        """The point that is nearest in time; of two that are as near the earlier."""
+        """The nearest point in time; the earlier of two equally near ones."""
         return int(np.abs(self.frames - frame).argmin()) % self.points
 
     def station(self, frame: float) -> float:
-        """mm from the path's beginning."""
+        """mm from the path's start."""
         return float(np.interp(frame, self.frames, self.stations))
 
     def frame_of(self, index: int) -> float:
-        """Where a key of the point goes: on a whole frame, if that is still nearest to it."""
+        """The frame of the point's key: a whole frame, if that is still nearest to the point."""
         frame = float(self.frames[index])
         whole = min(max(round(frame), self.first), self.last)
         return float(whole) if self.nearest(whole) == index else frame
 
 
 class Layout:
-    """The tracks of all paths; `paths` have `centres` and `closed`, which never change. `known`: a layout of before;
-    paths that are in it, at the same frames, keep their tracks. `made`: how many did not."""
+    """The tracks of all paths; `paths` have `centres` and `closed`, which never change. `known`: an earlier layout;
+    paths that it has, at the same frames, keep their tracks. `made`: number of new tracks."""
 
     def __init__(self, paths, rate: float, first: int = 1, known: Layout | None = None):
         if not (math.isfinite(rate) and rate > 0):
@@ -78,7 +78,7 @@ class Layout:
         self._firsts = np.array([t.first - REACH for t in self.tracks])
 
     def of(self, paths, rate: float, first: int) -> bool:
-        """True where a layout of these would be this one."""
+        """True if a layout of these paths would equal this one."""
         same = len(paths) == len(self.paths) and all(a is b for a, b in zip(paths, self.paths, strict=True))
         return same and (rate, first) == (self.rate, self.first)
 
@@ -87,7 +87,7 @@ class Layout:
         return self.tracks[-1].last if self.tracks else 0
 
     def at(self, frame: float) -> int | None:
-        """The number of the path that a frame belongs to."""
+        """The number of the path at a frame."""
         k = int(np.searchsorted(self._firsts, frame, side="right")) - 1
         return k if k >= 0 and self.tracks[k].holds(frame) else None
 
@@ -99,12 +99,12 @@ class Layout:
 
 @dataclass
 class Reading:
-    """What keyframes say: for each path a dict of point to unit axis, the frame of each key, and what does not
-    count."""
+    """The keyframes' content: for each path a dict of point to unit axis, the frame of each key, and the keyframes that
+    do not count."""
 
     keys: list[dict[int, np.ndarray]]
     frames: dict[tuple[int, int], float] = field(default_factory=dict)
-    outside: list[float] = field(default_factory=list)  # frames that belong to no path
+    outside: list[float] = field(default_factory=list)  # frames on no path
     doubled: list[float] = field(default_factory=list)  # another key is nearer to the same point
     without: list[float] = field(default_factory=list)  # all four components are zero: no orientation
 
@@ -150,8 +150,8 @@ def read(layout: Layout, frames: np.ndarray, quats: np.ndarray) -> Reading:
 
 @dataclass
 class Change:
-    """What became of a path's keys: their points; `moved` has (from, to). `keys`: all as they are now, those that were
-    left alone with the numbers that the plan has of them."""
+    """Changes of a path's keys: their points; `moved` has (from, to). `keys`: all current keys; unchanged ones have the
+    plan's exact values."""
 
     keys: dict[int, np.ndarray]
     added: list[int] = field(default_factory=list)
@@ -186,7 +186,7 @@ def _same(a, b) -> bool:
 
 def written(layout: Layout, keys: list[dict], known: Reading | None = None, quats: dict | None = None):
     """Keyframes of a plan's keys: (frames (k,), quats (k, 4)), with the least twist and signs aligned. A key that
-    `known`, what is on the timeline now, has unturned stays where it is and, of `quats` (by frame), as it is."""
+    `known`, the current keyframes, has unturned keeps its frame and its quaternion in `quats` (by frame)."""
     frames, rows = [], []
     for path, (track, of_path) in enumerate(zip(layout.tracks, keys, strict=True)):
         for index, axis in sorted(of_path.items(), key=lambda item: track.frames[item[0]]):
@@ -204,8 +204,8 @@ def written(layout: Layout, keys: list[dict], known: Reading | None = None, quat
 
 
 def replaced(layout: Layout, keys: list[dict], frames: np.ndarray, quats: np.ndarray):
-    """Keyframes of a plan's keys in the place of those on the timeline, as `written`; what stands there and does not
-    count, and what is unturned, stays as it is."""
+    """Keyframes of a plan's keys to replace those on the timeline, as in `written`; keyframes that do not count or are
+    unturned stay unchanged."""
     known, by_frame = read(layout, frames, quats), dict(zip(map(float, frames), quats, strict=True))
     new_frames, new_quats = written(layout, keys, known, by_frame)
     stray = [f for f in (*known.outside, *known.doubled, *known.without) if not np.isin(f, new_frames)]
@@ -217,7 +217,7 @@ def replaced(layout: Layout, keys: list[dict], frames: np.ndarray, quats: np.nda
 
 
 def fingerprint(*arrays: np.ndarray) -> str:
-    """Equal where the arrays are, as single precision keeps them."""
+    """Equal for equal arrays, in single precision."""
     digest = hashlib.blake2b(digest_size=16)
     for array in arrays:
         digest.update(str(np.shape(array)).encode())
@@ -226,21 +226,21 @@ def fingerprint(*arrays: np.ndarray) -> str:
 
 
 def divided(path, rate: float):
-    """The path with a point at each frame at least, so that a key can be set wherever one can stop; its keys stay at
-    their places. The axes between keys are the same as before, but for the rule "linear", which counts points."""
+    """The path with at least a point at each frame, so that a key can be set at every frame; its keys stay in place.
+    The axes between keys are unchanged, except for the rule "linear", which counts points."""
     fine = path.divided(1 / rate)
     if len(fine) == len(path):
         return path
     if not len(path.axes):
         return fine
     places = _places(path.centres, fine.centres)
-    if not path.interpolation or not path.keys:  # axes that came from elsewhere: each is a key
+    if not path.interpolation or not path.keys:  # axes from another source: each is a key
         return fine.oriented({places[k]: axis for k, axis in enumerate(path.axes)}, "slerp")
     return fine.oriented({places[k]: axis for k, axis in path.keys.items()}, path.interpolation)
 
 
 def _places(points: np.ndarray, fine: np.ndarray) -> list[int]:
-    """The rows of `fine` that the points are; it has them all, in order."""
+    """The rows of `fine` that are the points; it has them all, in order."""
     out, at = [], 0
     for point in points:
         while not np.array_equal(fine[at], point):

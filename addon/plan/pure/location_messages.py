@@ -1,5 +1,5 @@
-"""What there is to say about cutter locations: where the tool was lifted, and where it finds no way. In the form of the
-lists that plan/findings.py keeps."""
+"""Messages about cutter locations: where the tool was lifted, and where no collision-free location exists. In the form
+of plan/findings.py's lists."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ import numpy as np
 
 from ...common import units
 
-ORDER = ("blocked", "unsafe", "lifted", "inserted")  # what is in the way of a program comes first
+ORDER = ("blocked", "unsafe", "lifted", "inserted")  # what blocks a program comes first
 
 
 def entries(path: int, centres: np.ndarray, cl: np.ndarray, report) -> list[dict]:
-    """Of a riffler.plan.LocationReport of the path with this number, from 0, and these points (n, 3) mm."""
+    """Findings of a riffler.plan.LocationReport of the path with this number, from 0, and these points (n, 3) mm."""
     out = []
     for reason, points in _blocked(report.blocked):
         where = f"point {points[0]}" if len(points) == 1 else f"{len(points)} points from {points[0]} on"
@@ -27,14 +27,14 @@ def entries(path: int, centres: np.ndarray, cl: np.ndarray, report) -> list[dict
         first = int(report.inserted[0])
         point = _point(report.points, first)
         out.append(
-            _entry(path, "inserted", point, cl[first, :3], f"{_rows(len(report.inserted))} put between its points")
+            _entry(path, "inserted", point, cl[first, :3], f"{_rows(len(report.inserted))} inserted between its points")
         )
     return out
 
 
 def left(reports, tolerance: float) -> str:
-    """What there is to say of lifts on paths that are free, or nothing: where the tool is lifted by more than the
-    tolerance it does not cut down to the path."""
+    """A message about lifts on collision-free paths, or "": where the tool is lifted by more than the tolerance, it
+    leaves material on the path."""
     lifts = np.concatenate([np.empty(0), *(np.asarray(r.lift, float) for r in reports)])
     lifts = lifts[lifts > tolerance]
     if not len(lifts):
@@ -44,17 +44,17 @@ def left(reports, tolerance: float) -> str:
 
 
 def entered(path: int, place: np.ndarray, gap: float, name: str) -> dict:
-    """Of a path whose poses enter a fixture, by `gap` mm below zero."""
+    """A finding of a path whose poses enter a fixture, with `gap` (negative mm)."""
     return _entry(path, "blocked", 0, place, f"the tool enters {name}, {_mm(-gap)} deep")
 
 
 def without_key(path: int, point: int, place: np.ndarray, reason: str) -> dict:
-    """Of a path that has no free orientation at this point."""
+    """A finding of a path without a free orientation at this point."""
     return _entry(path, "blocked", point, place, f"no key, point {point}: {reason}")
 
 
 def renumbered(entry: dict, path: int) -> dict:
-    """Of the path that has this number, from 0, now."""
+    """The finding with the path's new number, from 0."""
     _, what = entry["name"].split(", ", 1)
     return {**entry, "path": path, "name": f"Path {path + 1}, {what}"}
 
@@ -77,7 +77,7 @@ def _mm(value):
 
 
 def _blocked(blocked):
-    """Neighbouring points with one reason are one finding: [(reason, points)]."""
+    """Neighbouring points with the same reason are one finding: [(reason, points)]."""
     out: list[tuple[str, list[int]]] = []
     for point, reason in blocked:
         if out and reason == out[-1][0] and point == out[-1][1][-1] + 1:
@@ -95,7 +95,7 @@ def _runs(rows):
 
 
 def _point(points, row):
-    """The path's point that a row is, or that came last before it."""
+    """The path's point of a row, or the last one before it."""
     known = np.asarray(points)[: row + 1]
     known = known[known >= 0]
     return int(known[-1]) if len(known) else 0

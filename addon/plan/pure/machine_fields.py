@@ -1,4 +1,4 @@
-"""What riffler.machine_options says of a machine, as fields of a panel: their names, and values that go either way."""
+"""Options from riffler.machine_options as fields of a panel: names, and conversions of values in both directions."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ ABBREVIATIONS = {"tcp": "TCP"}
 
 
 def identifier(name: str) -> str:
-    """What Blender can call an option of that name."""
+    """A valid Blender identifier for an option of that name."""
     return re.sub(r"\W", "_", name, flags=re.ASCII)
 
 
 def machine_identifier(name: str) -> str:
-    """What Blender can call a machine of that name: “tcp-bc” is another one than “tcp_bc”."""
+    """A valid Blender identifier for a machine of that name: “tcp-bc” and “tcp_bc” differ."""
     return identifier(name.replace("_", "__"))
 
 
@@ -30,13 +30,13 @@ def label(fact: dict) -> str:
 
 
 def about(fact: dict) -> str:
-    """As a tooltip: Blender puts the stop."""
+    """The tooltip: Blender adds the full stop."""
     text = fact["about"]
     return text[:1].upper() + text[1:]
 
 
 def value(fact: dict, found):
-    """Of an option, as it is given to riffler, from what a field has."""
+    """An option's value for riffler, from its field's value."""
     if fact["kind"] in ("flag", "word"):
         return found
     return [units.clean(x) for x in found] if fact["count"] > 1 else units.clean(found)
@@ -48,17 +48,17 @@ def _facts(machine: str, given: str) -> tuple[dict, ...]:
 
 
 def facts(machine: str, given: dict | None = None) -> tuple[dict, ...]:
-    """riffler.machine_options, kept: panels ask whenever they are drawn. ValueError for options that are wrong."""
+    """riffler.machine_options, cached, since panels call it at every drawing. ValueError for wrong options."""
     return _facts(machine, json.dumps(given or {}, sort_keys=True))
 
 
 def missing(machine: str, given: dict) -> list[dict]:
-    """Options that must be given, and are not."""
+    """Required options that are not set."""
     return [fact for fact in facts(machine, given) if fact["needed"] and fact["name"] not in given]
 
 
 def check(machine: str, given: dict) -> None:
-    """ValueError that names what must be given, and where."""
+    """ValueError that names the missing option, and where to set it."""
     for fact in missing(machine, given):
         place = ", or take the place of the 3D cursor there" if fact["count"] == 3 else ""
-        raise ValueError(f"{machine}: {label(fact)} is not given, {fact['about']}: set it in the panel Machine{place}")
+        raise ValueError(f"{machine}: {label(fact)} is not set, {fact['about']}: set it in the panel Machine{place}")

@@ -1,7 +1,7 @@
-"""What the tool does on the timeline: at which frame it is in which pose, along one path.
+"""The tool's motion on the timeline: its pose at each frame, along one path.
 
-The rows are those that become NC code, so that what is played is what is cut: the plan's cutter locations where it has
-them, otherwise the poses of the path itself.
+The rows are those that become NC code, so that the animation shows the cut: the plan's cutter locations if it has them,
+otherwise the poses of the path itself.
 """
 
 from __future__ import annotations
@@ -15,9 +15,9 @@ import numpy as np
 from ...common import quaternions
 from .key_orientations import Track
 
-STEP = math.radians(2)  # largest turn between two keys: there, normalised lerp is the great circle within 1e-6 rad
-GAP = 0.0101  # frames: Blender's 0.01 (BEZT_BINARYSEARCH_THRESH), and what single precision makes of it
-MATCH = 1e-6  # mm off the axis, or rad: what is still the same location, lifted or not
+STEP = math.radians(2)  # largest turn between two keys: there normalised lerp equals the great circle within 1e-6 rad
+GAP = 0.0101  # frames: Blender's 0.01 (BEZT_BINARYSEARCH_THRESH), plus the error of single precision
+MATCH = 1e-6  # mm off the axis, or rad: tolerance for the same location, lifted or not
 
 
 @dataclass
@@ -44,8 +44,8 @@ def along(track: Track, start: np.ndarray, points: np.ndarray, cl: np.ndarray | 
 
 
 def _frames_of_rows(cl: np.ndarray, start: np.ndarray, frames: np.ndarray, ends: tuple[float, float]) -> np.ndarray:
-    """A location that was lifted along its axis is at its point's frame; what was inserted lies between by the tip's
-    way."""
+    """A location that was lifted along its axis is at its point's frame; inserted ones lie between, in proportion to
+    the tip's distance."""
     number = points_of_rows(cl, start)
     known = np.where(number >= 0, frames[number], np.nan)
     way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(cl[:, :3], axis=0), axis=1))])
@@ -56,7 +56,7 @@ def _frames_of_rows(cl: np.ndarray, start: np.ndarray, frames: np.ndarray, ends:
     if np.isnan(known[-1]):
         known[-1] = ends[1]
     there = ~np.isnan(known)
-    way += 1e-12 * np.arange(len(cl))  # where the tip stands still, by number
+    way += 1e-12 * np.arange(len(cl))  # where the tip does not move, in order of the rows
     frames, ends = np.interp(way, way[there], known[there]), np.flatnonzero(there)
     for i, j in pairwise(ends):
         if j > i + 1 and np.diff(frames[i : j + 1]).min() <= GAP < known[j] - known[i]:
@@ -65,8 +65,8 @@ def _frames_of_rows(cl: np.ndarray, start: np.ndarray, frames: np.ndarray, ends:
 
 
 def points_of_rows(cl: np.ndarray, start: np.ndarray) -> np.ndarray:
-    """(n,) of each cutter location the number of the location in `start` (m, 6) that it is, lifted or not; -1 for what
-    was inserted. They are in order."""
+    """(n,) for each cutter location the number of its location in `start` (m, 6), lifted or not; -1 for inserted ones.
+    They are in order."""
     found, at = np.full(len(cl), -1), 0
     for row, pose in enumerate(cl):
         hit = _first_like(pose, start, at)
@@ -76,16 +76,16 @@ def points_of_rows(cl: np.ndarray, start: np.ndarray) -> np.ndarray:
 
 
 def _spread(frames: np.ndarray) -> np.ndarray:
-    """The same beginning and end, and every step long enough for a key of its own, if there is room: beside a long way
-    straight up the rows that were inserted would all have nearly one frame."""
+    """The same beginning and end, and every step long enough for a key of its own, if there is room: next to a long
+    vertical lift the inserted rows would have almost the same frame."""
     even = np.linspace(frames[0], frames[-1], len(frames))
     share = min(1.0, 1.5 * GAP / (even[1] - even[0]))
     return frames + share * (even - frames)
 
 
 def _first_like(pose: np.ndarray, start: np.ndarray, at: int) -> int | None:
-    """The first location from number `at` on that has the pose's axis and the pose on it."""
-    ahead = 8  # most often it is the very next
+    """The first location from number `at` on with the pose's axis and the pose on it."""
+    ahead = 8  # it is mostly the next one
     while at < len(start):
         some = start[at : at + ahead]
         off = pose[:3] - some[:, :3]
@@ -98,8 +98,8 @@ def _first_like(pose: np.ndarray, start: np.ndarray, at: int) -> int | None:
 
 
 def distinct(motion: Motion) -> Motion:
-    """Without rows that Blender cannot keep as keys: frames are single precision there, and from 4.x on, of keys no
-    more than GAP apart one is left, with the frame of the first and the value of the last."""
+    """Removes rows that Blender cannot store as keys: frames are single precision there, and from 4.x on Blender merges
+    keys no more than GAP apart into one, with the frame of the first and the value of the last."""
     frames = np.maximum.accumulate(np.asarray(motion.frames, np.float32)).astype(float)
     rows = np.flatnonzero(np.append(frames[1:] > frames[:-1], True))
     if (np.diff(frames[rows]) <= GAP).any():
@@ -108,7 +108,7 @@ def distinct(motion: Motion) -> Motion:
 
 
 def _apart(frames: np.ndarray, rows: np.ndarray) -> list[int]:
-    """Of these rows as many as are more than GAP apart; the last one is."""
+    """As many of these rows as are more than GAP apart, including the last."""
     kept: list[int] = []
     for row in rows.tolist():
         if not kept or frames[row] - frames[kept[-1]] > GAP:
@@ -121,14 +121,14 @@ def _apart(frames: np.ndarray, rows: np.ndarray) -> list[int]:
 
 
 def between(poses: np.ndarray, row: np.ndarray, share: np.ndarray) -> np.ndarray:
-    """Poses on the way from row to row + 1, as programs move: the tip on a line, the axis on the great circle."""
+    """Poses between row and row + 1, interpolated as in programs: the tip on a line, the axis on the great circle."""
     after = np.minimum(row + 1, len(poses) - 1)
     tips = poses[row, :3] + share[:, None] * (poses[after, :3] - poses[row, :3])
     return np.hstack([tips, quaternions.slerp(poses[row, 3:], poses[after, 3:], share)])
 
 
 def fine(motion: Motion, step: float = STEP) -> Motion:
-    """With rows between those that turn by more than `step` (rad)."""
+    """Inserts rows where the axis turns by more than `step` (rad)."""
     turn = quaternions.angle(motion.poses[:-1, 3:], motion.poses[1:, 3:])
     pieces = np.maximum(1, np.ceil(turn / step - 1e-9)).astype(int)
     row = np.repeat(np.arange(len(pieces)), pieces)
@@ -142,7 +142,7 @@ def fine(motion: Motion, step: float = STEP) -> Motion:
 
 @dataclass
 class Played:
-    """What is animated of one path: fine rows, with the least twist from one to the next."""
+    """The animation of one path: fine rows, with the least twist from one to the next."""
 
     frames: np.ndarray
     poses: np.ndarray
@@ -150,7 +150,7 @@ class Played:
 
 
 def played(motion: Motion) -> Played:
-    """By the path alone, so that it is the same whatever the others do."""
+    """Depends on this path only, not on the others."""
     if not len(motion):
         return Played(motion.frames, motion.poses, np.empty((0, 4)))
     rows = fine(motion)
@@ -158,7 +158,7 @@ def played(motion: Motion) -> Played:
 
 
 def joined(paths: list[Played]) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """All of them as one animation: frames (n,), tips (n, 3) mm, quaternions (n, 4), and the rows after which the tool
+    """All paths as one animation: frames (n,), tips (n, 3) mm, quaternions (n, 4), and the rows after which the tool
     jumps to the next path."""
     paths = [p for p in paths if len(p.frames)]
     if not paths:

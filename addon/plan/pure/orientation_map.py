@@ -1,7 +1,7 @@
-"""The map of free orientations at a point, as a picture to click in: cells, angles and pixels.
+"""The map of free orientations at a point, as a clickable picture: cells, angles and pixels.
 
-Tilts go to the right, inclinations upwards, as in riffler.plan.draw_map; a cell is around its own angles. Pixels are
-those of the map's own frame, its lower left corner in the origin.
+Tilts go to the right, inclinations upwards, as in riffler.plan.draw_map; a cell is centred on its angles. Pixels are in
+the map's own frame, with its lower left corner at the origin.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from ...common import glyphs
 
 # By the numbers of riffler.plan's FREE, BLOCKED, BEYOND, UNREACHABLE.
 COLOURS = np.array([(0.22, 0.62, 0.36), (0.72, 0.24, 0.20), (0.24, 0.24, 0.26), (0.33, 0.33, 0.36)])
-DEEP = 2.0  # mm: what collides by that much, or has that much room, is as dark or as light as it gets
+DEEP = 2.0  # mm: depth of a collision, or clearance, from which colours are darkest or lightest
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,7 @@ class Grid:
         return len(self.tilts) * self.cell, len(self.inclinations) * self.cell
 
     def cell_at(self, x: float, y: float) -> tuple[int, int] | None:
-        """(row, column) of a pixel, or None beside the map."""
+        """(row, column) of a pixel, or None outside the map."""
         column, row = int(np.floor(x / self.cell)), int(np.floor(y / self.cell))
         inside = 0 <= row < len(self.inclinations) and 0 <= column < len(self.tilts)
         return (row, column) if inside else None
@@ -39,12 +39,12 @@ class Grid:
         return self.inclinations[row], self.tilts[column]
 
     def angles_at(self, x: float, y: float) -> tuple[float, float] | None:
-        """Those of the cell under a pixel."""
+        """The angles of the cell at a pixel."""
         cell = self.cell_at(x, y)
         return None if cell is None else self.angles_of(*cell)
 
     def place(self, inclination: float, tilt: float) -> tuple[float, float]:
-        """Pixel of any angles; those beyond the map are on its edge."""
+        """The pixel of any angles, clamped to the map's edge."""
         out = []
         for angle, angles in ((tilt, self.tilts), (inclination, self.inclinations)):
             share = (angle - angles[0]) / (angles[-1] - angles[0]) * (len(angles) - 1) + 0.5
@@ -59,7 +59,7 @@ class Grid:
 
 
 def colours(state, clearance, old: bool = False) -> np.ndarray:
-    """(rows, columns, 4): lighter where there is room, darker the deeper something collides; grey where the map is of
+    """(rows, columns, 4): lighter with more clearance, darker with deeper collisions; grey if the map belongs to
     another place."""
     state = np.asarray(state)
     depth = np.nan_to_num(np.clip(np.asarray(clearance, float) / DEEP, -1, 1))

@@ -1,6 +1,6 @@
-"""The lines of a plan that a view shows, by what the tool does along them: along the centres of its ball, in mm.
+"""A plan's lines in the view, by the tool's movement along them: along the ball's centres, in mm.
 
-Pieces are (n, 2, 3), the two ends of each.
+Segments are (n, 2, 3), the two ends of each.
 """
 
 from __future__ import annotations
@@ -9,13 +9,13 @@ import numpy as np
 
 from . import motion
 
-# In the order of a legend: what is wrong first, then what is written, then what is not.
+# In a legend's order: problems first, then what is written, then what is not.
 KINDS = ("blocked", "lifted", "cut", "lead", "retract", "rapid", "keyed", "unplanned", "off")
-LIFTED = 1e-3  # mm: what is less is rounding
+LIFTED = 1e-3  # mm: smaller lifts are rounding
 
 
 def of_path(path, rows, state: str) -> dict[str, np.ndarray]:
-    """{kind: pieces} of one path in a state of plan/path_rows.py; `rows`: its cutter locations, or None."""
+    """{kind: segments} of one path in a state of plan/path_rows.py; `rows`: its cutter locations, or None."""
     if state != "free" or rows is None or not len(rows):
         line = np.vstack([path.centres, path.centres[:1]]) if path.closed else path.centres
         return {state: pieces(line)}
@@ -33,7 +33,7 @@ def pieces(line: np.ndarray) -> np.ndarray:
 
 
 def lifts(path, rows: np.ndarray) -> np.ndarray:
-    """(n,) mm by which rows stand off their path along the tool's axis; what was put between points, evenly between."""
+    """(n,) mm by which rows are lifted off their path along the tool axis; for inserted rows, interpolated."""
     start = np.hstack([path.centres - path.radius * path.axes, path.axes])
     if path.closed:
         start = np.vstack([start, start[:1]])
@@ -46,8 +46,9 @@ def lifts(path, rows: np.ndarray) -> np.ndarray:
 
 
 def of_links(poses: np.ndarray, begins: list[int], lengths: list[int], radius: float) -> dict[str, np.ndarray]:
-    """{kind: pieces} of a program's own rows: before, between and after the cuts, which are `lengths` rows long from
-    `begins` on. The way up from a cut is a retract, the way down to the next a lead-in, what lies between a rapid."""
+    """{kind: segments} of a program's own rows: before, between and after the cuts, which are `lengths` rows long from
+    `begins` on. The first move up from a cut is a retract, the last one down to the next a lead-in, all between a
+    rapid."""
     line, found = centres(poses, radius), {"lead": [], "retract": [], "rapid": []}
     ends = [b + n - 1 for b, n in zip(begins, lengths, strict=True)]
     for first, last in zip([0, *ends], [*begins, len(poses) - 1], strict=True):

@@ -1,4 +1,4 @@
-"""Names of a plan's paths on the timeline, where each begins."""
+"""Names of a plan's paths on the timeline, at their beginnings."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ import re
 
 from ...common import units
 
-_NAME = re.compile(r"(.+ )?▸ Path \d+, [\d.]+ mm( off)?")  # nobody else writes the arrow
+_NAME = re.compile(r"(.+ )?▸ Path \d+, [\d.]+ mm( off)?")  # other markers do not use the arrow
 
 
 def name(path: int, length: float, off: bool = False, plan: str = "") -> str:
-    """“▸ Path 3, 12.4 mm”; `path`: from 0; `plan`: where there are several."""
+    """“▸ Path 3, 12.4 mm”; `path`: from 0; `plan`: given if there are several."""
     said = f"▸ Path {path + 1}, {units.trim(length, 1)} mm"
     return f"{plan} {said}".strip() + (" off" if off else "")
 

@@ -1,8 +1,7 @@
-"""Does the timeline play what the program cuts?
+"""Whether the timeline plays what the program cuts.
 
-The animation is a chain of straight pieces in single precision, tip and quaternion by component; the program moves the
-tip on lines and the axis on great circles. Both are held against each other at ten times as many places as there are
-rows.
+The animation is a chain of linear pieces in single precision, tip and quaternion by component; the program moves the
+tip on lines and the axis on great circles. Both are compared at ten times as many places as there are rows.
 """
 
 from __future__ import annotations
@@ -16,13 +15,13 @@ from ...common import quaternions
 from . import motion as motions
 from .motion import Motion
 
-TIP, AXIS = 0.01, math.radians(0.01)  # mm and rad that nobody has to be told of
+TIP, AXIS = 0.01, math.radians(0.01)  # mm and rad: differences that are not worth a report
 SAMPLES = 10  # on each move
 
 
 @dataclass
 class Difference:
-    """The largest distances between animation and program, and the frames where they are."""
+    """The largest differences between animation and program, and their frames."""
 
     tip: float = 0.0  # mm
     tip_frame: float = 0.0
@@ -42,15 +41,15 @@ class Difference:
         return f"Plays up to {tip} and {axis} off the program, at frame {where:.2f}"
 
     def worse(self, other: Difference) -> Difference:
-        """Of two, the larger of either kind."""
+        """The larger difference of each kind."""
         tip = self if self.tip >= other.tip else other
         axis = self if self.axis >= other.axis else other
         return Difference(tip.tip, tip.tip_frame, axis.axis, axis.axis_frame, self.samples + other.samples)
 
 
 def compare(motion: Motion, play, samples: int = SAMPLES) -> Difference:
-    """`motion` as the program has it; `play(frames)` gives what the animation has there: tips (n, 3) in mm and
-    quaternions (n, 4) of any length."""
+    """`motion` as in the program; `play(frames)` gives the animation's values: tips (n, 3) in mm and quaternions (n, 4)
+    of any length."""
     if len(motion) < 2:
         row, share = np.zeros(len(motion), int), np.zeros(len(motion))
     else:
@@ -64,7 +63,7 @@ def compare(motion: Motion, play, samples: int = SAMPLES) -> Difference:
     tips, quats = play(frames)
     size = np.linalg.norm(quats, axis=1)
     tip = np.linalg.norm(tips - wanted[:, :3], axis=1)
-    # a quaternion that is all but zero has any direction
+    # a quaternion near zero has an arbitrary direction
     some = np.where((size > 1e-3)[:, None], quats, 1.0)
     axis = np.where(size > 1e-3, quaternions.angle(quaternions.axes_of(some), wanted[:, 3:]), np.pi)
     k, m = int(tip.argmax()), int(axis.argmax())

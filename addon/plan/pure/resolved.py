@@ -1,5 +1,5 @@
-"""Cutter locations that paths have had, for keys that come back. In a window what follows from a key comes after its
-step of undo: undo brings the keyframe back as it was, and the plan stays as it became."""
+"""Earlier cutter locations of paths, for keys that come back. In a window the plan's update follows after the undo step
+of a key: undo restores the keyframe, but not the plan."""
 
 from __future__ import annotations
 
@@ -9,21 +9,22 @@ import numpy as np
 
 from . import key_orientations
 
-COUNT, NBYTES = 2000, 64_000_000  # of paths, and of their locations: more than many steps of one plan
+COUNT, NBYTES = 2000, 64_000_000  # number and bytes of the stored locations: more than many steps of one plan
 
 
 class Resolved:
-    """Of one plan. `mark`: what the locations are free of (plan/plan_store.py); without one they are not kept."""
+    """The locations of one plan's paths. `mark`: what they are free of (plan/plan_store.py); without one they are not
+    stored."""
 
     def __init__(self, count: int = COUNT, nbytes: int = NBYTES):
         self._count, self._most, self._nbytes = count, nbytes, 0
-        self._kept: OrderedDict[tuple, tuple] = OrderedDict()  # the path is held, so its id is nobody else's
+        self._kept: OrderedDict[tuple, tuple] = OrderedDict()  # holds the path, so that its id stays unique
 
     def __len__(self) -> int:
         return len(self._kept)
 
     def put(self, number: int, path, rows, mark) -> None:
-        """A path's locations, `rows` (n, 6) or None; what was put last stays."""
+        """Stores a path's locations, `rows` (n, 6) or None; the newest ones stay."""
         if rows is None or not len(rows) or not mark:
             return
         name = number, id(path)
@@ -35,7 +36,7 @@ class Resolved:
             self._nbytes -= self._kept.popitem(last=False)[1][1].nbytes
 
     def get(self, number: int, path, wanted: dict, mark):
-        """(path, rows) of that path with the keys `wanted`, to single precision, or None."""
+        """(path, rows) of that path with the keys `wanted`, within single precision, or None."""
         for (other, _), (before, rows, marked) in reversed(self._kept.items()):
             if (
                 (other, marked) == (number, mark)
@@ -47,6 +48,6 @@ class Resolved:
 
 
 def _same(before, path) -> bool:
-    """But for the keys."""
+    """Equal except for the keys."""
     rule = before.interpolation == (path.interpolation or before.interpolation)
     return rule and before.closed == path.closed and np.array_equal(before.centres, path.centres)

@@ -1,23 +1,22 @@
-"""Whether a part has the size that it was drawn with in mind: lengths of models have no unit, and a scene's may be
-another one."""
+"""Whether a part has a plausible size: models have no unit, and the scene's may be wrong."""
 
 from __future__ import annotations
 
 import math
 
-# mm in one unit of the scene, if it is this one.
+# mm in one unit of the scene, for each unit.
 UNITS = {"MM": 1.0, "CM": 10.0, "INCH": 25.4, "M": 1000.0}
-LARGE, SMALL = 300.0, 1.0  # diameters of the tool: a part that is larger, or smaller, is asked about
-USUAL = 120.0  # mm: parts that people mill are some 10 mm to 1 m long
+LARGE, SMALL = 300.0, 1.0  # diameters of the tool: larger or smaller parts raise a question
+USUAL = 120.0  # mm: usual milled parts are about 10 mm to 1 m long
 
 
 def odd(largest: float, diameter: float) -> bool:
-    """Of a part's largest side and a tool's diameter, mm."""
+    """True if a part's largest side does not fit a tool's diameter, both in mm."""
     return largest > 0 and not SMALL * diameter <= largest <= LARGE * diameter
 
 
 def likely(largest: float) -> str:
-    """The unit that a part has whose largest side is so many of them."""
+    """The likely unit of a part whose largest side is so many units."""
     return min(UNITS, key=lambda unit: abs(math.log(largest * UNITS[unit] / USUAL)))
 
 

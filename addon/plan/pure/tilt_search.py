@@ -1,9 +1,10 @@
-"""Few keys along a path with which the tool is free at each of its points: those that lean least from the middle
-between the two walls, by the maps of free orientations (riffler.plan.least_tilt), more of them only where points
-between collide.
+"""Finds few keys along a path with which the tool is collision-free at each of its points: the orientations of least
+tilt from the middle between the two walls, from the maps of free orientations (riffler.plan.least_tilt), and more keys
+only where points between them collide.
 
-The way from point to point is not judged here: on a curved path it dips into the part by what its chord does, and only
-resolving, which may lift and put rows between, says whether that matters."""
+Moves between points are not checked here: on a curved path they dip into the part by the chord error, and only
+resolving, which may lift the tool and insert rows, decides whether that matters.
+"""
 
 from __future__ import annotations
 
@@ -18,15 +19,16 @@ from riffler import tasks
 from ...common import units
 from ...common.job import TaskJob
 
-SMOOTH = 0.1  # weight of the turn from key to key against the lean: of two ways round something both keys take one
-ROUNDS = 8  # of putting keys where it collides between them
-AT_ONCE = 8  # paths that are looked at: whoever waits for native tasks looks only now and then
+# weight of the turn from key to key against the tilt: of two equivalent orientations both keys take the same
+SMOOTH = 0.1
+ROUNDS = 8  # rounds of adding keys where the tool collides between them
+AT_ONCE = 8  # paths searched at the same time: native tasks are polled only now and then
 
 
 @dataclass(frozen=True)
 class Rule:
-    """`tool`: with the room that shank and holder are to have; `count`: of keys on each path, at least; `limit`: (axis,
-    angle), the machine's cone, or None."""
+    """`tool`: enlarged by the clearance of shank and holder; `count`: smallest number of keys on each path; `limit`:
+    (axis, angle), the machine's cone, or None."""
 
     tool: object
     collider: object
@@ -37,7 +39,7 @@ class Rule:
 
 @dataclass
 class Answer:
-    """Of one path: `path` oriented, or None and then the `point` at which there is no way, and why."""
+    """Result of one path: `path` with orientations, or None and then the `point` without a solution, and the reason."""
 
     path: object = None
     point: int = 0
@@ -45,7 +47,7 @@ class Answer:
 
 
 def begun(path, count: int) -> list[int]:
-    """The first keys' points: evenly by length, the ends of an open path among them; one alone is in its middle."""
+    """The first keys' points: evenly spaced by length, with the ends of an open path; a single one is in the middle."""
     count = min(count, len(path))
     ring = np.vstack([path.centres, path.centres[:1]]) if path.closed else path.centres
     stations = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(ring, axis=0), axis=1))])
@@ -56,7 +58,7 @@ def begun(path, count: int) -> list[int]:
 
 
 def further(points: list[int], blocked: list[int]) -> list[int]:
-    """With one more key in the middle of each run of points that are blocked, as far as they are none already."""
+    """Adds a key in the middle of each run of blocked points, unless all its points are keys."""
     rows = np.array(sorted(set(blocked)), int)
     if not len(rows):
         return points
@@ -65,14 +67,14 @@ def further(points: list[int], blocked: list[int]) -> list[int]:
 
 
 def _nearest_free(run: np.ndarray, points: list[int]):
-    """The point of a run that is nearest to its middle and no key; None where all are."""
+    """The point of a run that is nearest to its middle and not a key; None if all are."""
     free = np.setdiff1d(run, points)
     return int(free[np.abs(free - run.mean()).argmin()]) if len(free) else None
 
 
 class Search:
-    """Of one path, step by step: `step` waits for about so many seconds for a native task; True when `answer` is
-    there."""
+    """The search on one path, step by step: `step` waits for about so many seconds for a native task; True when
+    `answer` is ready."""
 
     def __init__(self, path, rule: Rule):
         self._path, self._rule = path, rule
@@ -92,7 +94,7 @@ class Search:
             self._job.cancel()
 
     def _choose(self) -> None:
-        """Axes at the keys' points, which are a path of their own for that."""
+        """Axes at the keys' points, which form a path of their own for that."""
         rule, some, path = self._rule, self._points, self._path
         closed = path.closed and len(some) > 2
         few = riffler.plan.PencilPath(path.radius, path.centres[some], path.contacts[some], path.normals[some], closed)
@@ -101,7 +103,7 @@ class Search:
         self._taken = self._check
 
     def _check(self, found) -> None:
-        """Whether the points between them are free as well."""
+        """Checks whether the points between them are free as well."""
         oriented, report = found
         if oriented is None:
             self.answer = Answer(None, self._points[report["point"]], report["reason"].partition(": ")[2])
@@ -130,7 +132,7 @@ class Search:
 
 
 class Given:
-    """As Search, with one axis, whatever is in its way."""
+    """Like Search, with one axis, whether or not it collides."""
 
     def __init__(self, path, axis):
         (point,) = begun(path, 1)
@@ -140,11 +142,11 @@ class Given:
         return True
 
     def cancel(self) -> None:
-        """There is nothing to take back."""
+        """Nothing to undo."""
 
 
 class SearchesJob:
-    """Searches as a job for blender/long_work.py; `answers`: theirs, in their order, once all are there."""
+    """Searches as a job for blender/long_work.py; `answers`: theirs, in order, once all are ready."""
 
     in_background = True
 

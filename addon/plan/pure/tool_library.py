@@ -1,7 +1,7 @@
 """Tool libraries: the presets, and files (*.json, *.toml) in folders. A file holds one tool, in the form of
 riffler.Tool.to_dict, or several: a list in JSON, [[tools]] in TOML.
 
-A bad file spoils neither the others nor a list that is shown: what is wrong with it is kept beside what was read.
+A bad file affects neither the others nor a displayed list: its error is returned together with the tools.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ def shipped() -> list[Entry]:
 
 def scan(folder: Path, make_tool) -> tuple[list[Entry], list[str]]:
     """The tools of a folder's files by file name, and a line for each file that could not be read. `make_tool` makes a
-    tool from a dictionary and raises ValueError where it cannot."""
+    tool from a dictionary and raises ValueError if it cannot."""
     try:
         found = sorted(p for p in Path(folder).iterdir() if p.suffix.lower() in SUFFIXES and not p.name.startswith("."))
     except OSError as error:
@@ -52,7 +52,7 @@ def scan(folder: Path, make_tool) -> tuple[list[Entry], list[str]]:
 
 
 def read(path, make_tool) -> list[Entry]:
-    """The tools of one file. ValueError names the file, the line, and what is wrong there."""
+    """The tools of one file. ValueError names the file, the line, and the problem."""
     path = Path(path)
     try:
         text = files.read(path).decode("utf-8-sig")
@@ -75,8 +75,9 @@ def find(entries: list[Entry], name: str) -> Entry:
 
 
 def write(folder, tool: dict) -> Path:
-    """Writes a tool into a folder of its own making as a file named after it. The file is whole or not there; one that
-    is there is written over only if it holds a tool of the same name. ValueError with the remedy where it cannot be."""
+    """Writes a tool into a folder, which is made if needed, as a file named after it. The file is written whole or not
+    at all; an existing one is overwritten only if it holds a tool of the same name. ValueError with the remedy if it
+    cannot be written."""
     target = Path(folder) / f"{file_name(tool['name'])}.json"
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
@@ -91,7 +92,7 @@ def write(folder, tool: dict) -> Path:
 
 
 def file_name(name: str) -> str:
-    """Of a tool, fit for any file system."""
+    """A tool's file name, valid on any file system."""
     return "".join(c if c.isalnum() or c in " -_.°" else "_" for c in name).strip(" .") or "tool"
 
 
@@ -105,7 +106,7 @@ def _holds(path: Path, name: str) -> bool:
 def _tool(row, place: str, name: str, make_tool) -> dict:
     if not isinstance(row, dict):
         raise ValueError(f"{place}: a tool, a table of its sizes, expected")
-    row = {"name": name, **row}  # a file of one tool may leave its name to the file's
+    row = {"name": name, **row}  # the tool in a file of one may have the file's name
     if not isinstance(row["name"], str) or not row["name"]:
         raise ValueError(f"{place}: name: a text expected")
     try:
@@ -133,7 +134,7 @@ def _no_constant(name: str):
 
 
 def _lines_of_elements(text: str) -> list[int]:
-    """The lines on which the elements of a list begin. The text is sound: it has been read."""
+    """The lines on which the elements of a list begin. The text is valid: it has been parsed."""
     decode = json.JSONDecoder().raw_decode
     at = _past_space(text, 0) + 1
     lines = []
@@ -152,13 +153,13 @@ def _past_space(text: str, at: int) -> int:
 
 
 def _toml(text: str, path: Path) -> list[tuple[object, int]]:
-    import tomllib  # Python 3.11; few have such files
+    import tomllib  # Python 3.11; few users have such files
 
     try:
         data = tomllib.loads(text)
     except RecursionError:
         raise ValueError(f"{path.name}: thousands of brackets in each other") from None
-    except ValueError as error:  # its text ends with the line and the column
+    except ValueError as error:  # its text ends with line and column
         raise ValueError(f"{path.name}: {error}") from None
     if "tools" not in data:
         return [(data, 1)] if data else []

@@ -1,8 +1,8 @@
-"""Turning the tool at a point of a path: angles to axes and back, the pointer on a dial or on the tool's end, numbers
-that are typed meanwhile.
+"""Turning the tool at a point of a path: conversions between angles and axes, the pointer on a dial or on the tool's
+end, numbers typed meanwhile.
 
-Angles are the path's own: an axis leans by the inclination about the frame's y, that is forward, and then by the tilt,
-to the left (riffler.plan.PencilPath.axis). Rays are an origin and a unit direction, in mm.
+Angles are in the path's own frame: the inclination leans an axis forward, about the frame's y, and then the tilt leans
+it to the left (riffler.plan.PencilPath.axis). Rays are an origin and a unit direction, in mm.
 """
 
 from __future__ import annotations
@@ -16,23 +16,23 @@ from ...common import glyphs, quaternions, units
 from . import clearance
 
 INCLINATION, TILT, FREE = HANDLES = ("INCLINATION", "TILT", "FREE")
-STEP = math.radians(5)  # of angles that snap
-SLOW = 0.1  # of a turn, where the hand wants to be exact
-STEEP = 0.2  # sine between view and dial below which the pointer goes along the dial instead of around it
+STEP = math.radians(5)  # step of snapped angles
+SLOW = 0.1  # share of a turn in precise mode
+STEEP = 0.2  # sine between view and dial below which the pointer moves along the dial instead of around it
 
 
 def cleaned(angle: float) -> float:
-    """Of a single-precision angle (rad) the degrees that were meant."""
+    """Degrees of a single-precision angle (rad), rounded to what was entered."""
     return math.radians(units.clean(math.degrees(angle)))
 
 
 def axis_at(path, index: int) -> np.ndarray:
-    """The unit axis at a point, as the animation has it where there is none yet."""
+    """The unit axis at a point; the animation's, if the path has none yet."""
     return np.array(path.axes[index] if len(path.axes) else path.frames[index][2])
 
 
 def stand(path, index: int, axis, tool) -> np.ndarray:
-    """The pose (6,) of a tool that stands on a point with an axis. ValueError where it cannot."""
+    """The pose (6,) of a tool on a point with an axis. ValueError if there is none."""
     part = slice(index, index + 1)
     point = riffler.plan.PencilPath(path.radius, path.centres[part], path.contacts[part], path.normals[part])
     rows, report = riffler.plan.cutter_locations(
@@ -44,7 +44,7 @@ def stand(path, index: int, axis, tool) -> np.ndarray:
 
 
 def dial_axis(frame, inclination: float, handle: str) -> np.ndarray:
-    """What a dial turns about, right-handed, at this inclination: its angle is then that of its name."""
+    """The axis of a dial, right-handed, at this inclination: the dial's angle is then the angle of its name."""
     x, y, z = frame
     if handle == INCLINATION:
         return np.array(y)
@@ -52,8 +52,8 @@ def dial_axis(frame, inclination: float, handle: str) -> np.ndarray:
 
 
 class Dial:
-    """The pointer around an axis through a centre; `turned` is the angle (rad) since the first ray, as often around as
-    it went. `radius`: of the dial, mm."""
+    """The pointer around an axis through a centre; `turned` is the angle (rad) since the first ray, including full
+    turns. `radius`: of the dial, mm."""
 
     def __init__(self, centre, axis, radius: float, ray):
         self._centre, self._radius, self.turned = np.asarray(centre, float), radius, 0.0
@@ -62,7 +62,7 @@ class Dial:
         self._last = self._at(ray)
 
     def move(self, ray, share: float = 1.0) -> float:
-        """`share`: how much of the pointer's way counts."""
+        """`share`: weight of the pointer's movement."""
         now = self._at(ray)
         step = now - self._last
         if not self._steep:
@@ -73,19 +73,19 @@ class Dial:
 
     def _at(self, ray) -> float:
         origin, away = ray
-        if self._steep:  # along the side of it that is seen
+        if self._steep:  # along its visible side
             along = np.cross(away, self._axis)
             near = origin + ((self._centre - origin) @ away) * away - self._centre
             return float(near @ along / np.linalg.norm(along)) / self._radius
         facing = away @ self._axis
-        if abs(facing) < 1e-6:  # the view went into the dial's plane meanwhile
+        if abs(facing) < 1e-6:  # the view turned into the dial's plane meanwhile
             return self._last
         place = origin + ((self._centre - origin) @ self._axis) / facing * away - self._centre
         return math.atan2(place @ self._second, place @ self._first)
 
 
 class Ball:
-    """The pointer on a ball around a centre, which takes the axis with it. It begins at the axis' own end."""
+    """The pointer on a ball around a centre, which turns the axis with it. It begins at the axis' own end."""
 
     def __init__(self, centre, axis, radius: float, ray):
         self._centre, self._radius = np.asarray(centre, float), radius
@@ -93,7 +93,7 @@ class Ball:
         self._held = self._last = self._on(ray, self._begun)
 
     def move(self, ray) -> np.ndarray:
-        """The axis, turned as the pointer went, the shortest way."""
+        """The axis, turned like the pointer, by the shortest rotation."""
         self._last = self._on(ray, self._last)
         w, *v = quaternions.between(self._held, self._last)
         around = np.cross(v, self._begun)
@@ -102,7 +102,7 @@ class Ball:
         return self.axis
 
     def _on(self, ray, before) -> np.ndarray:
-        """Where the ray meets the ball, of two places the one nearer to `before`; beside the ball its edge."""
+        """The intersection of the ray with the ball that is nearer to `before`; outside the ball, its edge."""
         origin, away = ray
         near = origin + ((self._centre - origin) @ away) * away - self._centre
         inside = self._radius**2 - near @ near
@@ -113,7 +113,7 @@ class Ball:
 
 
 class Typed:
-    """A number as it is typed: digits, a point, the sign that a minus changes, and backspace."""
+    """A number being typed: digits, a point, a minus key that changes the sign, and backspace."""
 
     def __init__(self):
         self._digits, self._sign = "", ""
@@ -125,7 +125,7 @@ class Typed:
         return self._sign + self._digits
 
     def take(self, kind: str, character: str) -> bool:
-        """An event's type and character; False where it is no part of a number."""
+        """Handles an event's type and character; False if it is no part of a number."""
         if kind == "BACK_SPACE":
             self._digits, self._sign = (self._digits[:-1], self._sign) if self._digits else ("", "")
         elif character and character in "0123456789":
@@ -145,8 +145,7 @@ class Typed:
 
 
 class Turn:
-    """One turn by a handle, from where the pointer takes it; `angles` (inclination, tilt), rad, are what it has led
-    to."""
+    """One turn by a handle, from where the pointer grabs it; `angles` (inclination, tilt), rad, are the result."""
 
     def __init__(self, path, index: int, axis, handle: str, ray, radius: float):
         self._path, self._index, self._handle = path, index, handle
@@ -179,7 +178,7 @@ class Turn:
         self.angles = within(*angles)
 
     def type(self, kind: str, character: str) -> bool:
-        """A typed number (degrees) is how far a dial is turned; False where the event is none."""
+        """A typed number (degrees) sets the dial's angle; False if the event is none."""
         if self._handle == FREE or not self.typed.take(kind, character):
             return False
         self.angles = within(*self._by(math.radians(self.typed.degrees)))
@@ -191,8 +190,7 @@ class Turn:
 
 
 def within(inclination: float, tilt: float) -> tuple[float, float]:
-    """The angles with which each axis is named once, as a turn stops at them: the tilt ends where the tool lies
-    sideways."""
+    """The range in which angles name each axis once, where a turn stops: the tilt ends where the tool is horizontal."""
     tilt = min(max(cleaned(tilt), -math.pi / 2), math.pi / 2)
     return cleaned(math.remainder(inclination, 2 * math.pi)), tilt
 

@@ -1,19 +1,19 @@
-"""Findings as lists show them: kind, size and place first, so that ten of a kind are told apart."""
+"""Titles of findings in lists: kind, size and place first, to distinguish findings of one kind."""
 
 from __future__ import annotations
 
 from ...common import units
 
 KINDS = {
-    "rapid": "Rapid cuts",
-    "holder": "Holder hits",
-    "shank": "Shank hits",
-    "fixture": "Fixture hit",
+    "rapid": "Rapid in material",
+    "holder": "Holder collision",
+    "shank": "Shank collision",
+    "fixture": "Fixture collision",
     "gouge": "Gouge",
     "rest": "Rest",
-    "spindle": "Spindle stands",
+    "spindle": "Spindle stopped",
     "machine": "Out of reach",
-    "unknown": "Undescribed",
+    "unknown": "Other",
 }
 
 
@@ -25,5 +25,5 @@ def verified(what: str, value: float, place) -> str:
 
 
 def _number(value: float) -> str:
-    """Two digits are enough to tell findings apart."""
+    """Two digits, which are enough to distinguish findings."""
     return f"{value:.2g}" if value < 10 else f"{value:.0f}"

@@ -1,6 +1,7 @@
-"""A stock as it is after any number of a program's rows: forwards by carving, backwards from snapshots.
+"""The stock after any number of a program's rows: forwards by carving, backwards from snapshots.
 
-Whatever way leads to a row, the stock is there what carving all rows up to it in one go makes it, to the byte.
+The order of visits does not matter: at each row the stock equals, to the byte, the one that carving all rows up to it
+in one call makes.
 """
 
 from __future__ import annotations
@@ -9,13 +10,13 @@ import time
 
 import numpy as np
 
-SNAPSHOTS = 64  # about as many are kept: going back takes at most that part of all the carving
-LEAST = 32  # rows between two
+SNAPSHOTS = 64  # about so many are kept: a step back takes at most this fraction of the whole carving
+LEAST = 32  # rows between two snapshots
 
 
 class ProgramPrefix:
-    """`stock` is changed; `runs`: (tool, poses (k, 6)), one after the other, in the stock's frame. A run's first row is
-    where it begins: between two runs nothing is cut, as another tool is taken there."""
+    """`stock` is changed; `runs`: (tool, poses (k, 6)), in sequence, in the stock's frame. A run begins at its first
+    row: between two runs the tool is changed, and nothing is cut."""
 
     def __init__(self, stock, runs, tolerance: float = 0.01, clock=time.perf_counter):
         self.volume, self._runs, self._tolerance, self._clock = stock, list(runs), tolerance, clock
@@ -24,13 +25,13 @@ class ProgramPrefix:
         if not self.rows:
             raise ValueError("there is nothing to simulate: the program has no rows")
         self.row = 0
-        self.carved = 0  # rows, in all
+        self.carved = 0  # number of carved rows
         self._every = max(LEAST, -(-self.rows // SNAPSHOTS))
         self._kept = {0: stock.snapshot()}
         self._rate = 200.0  # rows per second; measured from the first slice on
 
     def step(self, row: int, budget: float = 0.02) -> bool:
-        """Towards a row, for about `budget` seconds, one slice at least; True when the stock is there."""
+        """Carves towards a row, for about `budget` seconds, at least one slice; True when the stock has reached it."""
         end = self._clock() + budget
         row = min(max(row, 0), self.rows - 1)
         self._jump(row)
@@ -42,12 +43,12 @@ class ProgramPrefix:
         return True
 
     def reset(self) -> None:
-        """The stock as it was."""
+        """Restores the initial stock."""
         self.volume.restore(self._kept[0])
         self.row = 0
 
     def pose(self, row: int):
-        """(tool, pose (6,)) with which the row ends."""
+        """(tool, pose (6,)) at the end of the row."""
         run, at = self._place(min(max(row, 0), self.rows - 1))
         return self._runs[run][0], self._runs[run][1][at]
 
@@ -62,7 +63,7 @@ class ProgramPrefix:
             self.row = best
 
     def _carve(self, last):
-        """From where the stock is to `last`, or to the end of the run or to the next snapshot, which comes first."""
+        """Carves from the current row to the first of `last`, the end of the run and the next snapshot."""
         run, at = self._place(self.row + 1)
         last = min(last, int(self._ends[run]) - 1, (self.row // self._every + 1) * self._every)
         tool, poses = self._runs[run]

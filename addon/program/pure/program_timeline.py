@@ -1,7 +1,6 @@
-"""A program on the timeline: at which frame each of its rows is done.
+"""A program on the timeline: the frame at which each of its rows is done.
 
-The rows that a plan's cutter locations become are at the frames at which the plan plays them; a program that comes from
-elsewhere goes at its own feeds.
+Rows from a plan's cutter locations are at the plan's frames; a program from elsewhere follows its own feeds.
 """
 
 from __future__ import annotations
@@ -13,15 +12,15 @@ import numpy as np
 from ...common import quaternions
 
 RAPID = 10_000.0  # mm/min
-TURN = math.radians(3600)  # rad/min of an axis that turns while the tip stands still
+TURN = math.radians(3600)  # rad/min of an axis that turns while the tip does not move
 LEAD = 5  # frames before a path's beginning and after its end, for approach and retract
-MOST = 100_000  # frames: what takes longer is played faster
-REACH = 4096  # rows that may lie between two of them
-HERE = 1e-3  # mm and axis: the same place, after having been written as text
+MOST = 100_000  # frames: longer programs are played faster
+REACH = 4096  # other rows that may lie between two matching ones
+HERE = 1e-3  # mm and axis: tolerance for the same place, after being written as text
 
 
 class ProgramTimeline:
-    """`frames` (n,) of a program's rows, never falling."""
+    """`frames` (n,) of a program's rows, monotonic."""
 
     def __init__(self, frames: np.ndarray):
         self.frames = np.maximum.accumulate(np.asarray(frames, float))
@@ -35,7 +34,7 @@ class ProgramTimeline:
         return math.ceil(self.frames[-1] - 1e-6)
 
     def row_at(self, frame: float) -> int:
-        """The last row that is done at a frame; before all of them the first, which is where the tool begins."""
+        """The last row done at a frame; before all of them the first, where the tool begins."""
         return max(0, int(np.searchsorted(self.frames, frame + 1e-3, side="right")) - 1)
 
     def frame_of(self, row: int) -> int:
@@ -44,7 +43,7 @@ class ProgramTimeline:
 
 
 def seconds(poses: np.ndarray, feed: np.ndarray, rapid: np.ndarray) -> np.ndarray:
-    """(n,) what each row's move takes; row 0: nothing. `feed`: mm/min."""
+    """(n,) duration of each row's move; row 0: 0. `feed`: mm/min."""
     way = np.linalg.norm(np.diff(poses[:, :3], axis=0), axis=1)
     turn = quaternions.angle(poses[:-1, 3:], poses[1:, 3:])
     speed = np.where(rapid[1:], RAPID, feed[1:])
@@ -54,14 +53,14 @@ def seconds(poses: np.ndarray, feed: np.ndarray, rapid: np.ndarray) -> np.ndarra
 
 
 def by_time(duration: np.ndarray, fps: float, first: int = 1, most: int = MOST) -> ProgramTimeline:
-    """As `seconds` says, or as fast as it takes to end within `most` frames."""
+    """Frames from `seconds`, compressed to at most `most` frames."""
     at = np.cumsum(duration) * fps
     return ProgramTimeline(first + at * min(1.0, most / max(at[-1], 1e-9)))
 
 
 def of_paths(poses: np.ndarray, paths: list) -> ProgramTimeline:
-    """Of a program (n, 6) that is made of `paths`: (rows (k, 6), their frames (k,)), in order, with ways of its own
-    before, between and after them. ValueError where it does not have them."""
+    """For a program (n, 6) made from `paths`: (rows (k, 6), their frames (k,)), in order, with moves of its own before,
+    between and after them. ValueError if it does not contain them."""
     frames, at = np.full(len(poses), np.nan), 0
     for begin, (_, when) in zip(begins(poses, [rows for rows, _ in paths]), paths, strict=True):
         at = begin + len(when)
@@ -77,20 +76,20 @@ def of_paths(poses: np.ndarray, paths: list) -> ProgramTimeline:
 
 
 def begins(poses: np.ndarray, paths: list) -> list[int]:
-    """The rows at which `paths`, each (k, 6), begin in a program (n, 6) that has them in order. ValueError where it
+    """The rows at which `paths`, each (k, 6), begin in a program (n, 6) that contains them in order. ValueError if it
     does not."""
     out, at = [], 0
     for number, rows in enumerate(paths):
         begin = _find(poses, rows, at)
         if begin is None:
-            raise ValueError(f"the program does not have path {number + 1} as it is")
+            raise ValueError(f"the program does not contain path {number + 1} unchanged")
         out.append(begin)
         at = begin + len(rows)
     return out
 
 
 def _find(poses, rows, begin):
-    """The first row from `begin` on where `rows` are, one after the other."""
+    """The first row from `begin` on where `rows` follow one another."""
     for at in begin + np.flatnonzero(np.abs(poses[begin : len(poses) - len(rows) + 1] - rows[0]).max(axis=1) < HERE):
         if np.abs(poses[at : at + len(rows)] - rows).max() < HERE:
             return int(at)
@@ -98,8 +97,8 @@ def _find(poses, rows, begin):
 
 
 def like_paths(poses: np.ndarray, paths: list) -> ProgramTimeline | None:
-    """Of a program (n, 6) that was written from `paths`, read again and perhaps edited: it has other rows between
-    theirs. None where it has not nine in ten of them, in order."""
+    """For a program (n, 6) written from `paths`, read again and perhaps edited: it has other rows between theirs. None
+    unless it contains nine in ten of them, in order."""
     rows, when = (np.concatenate([p[k] for p in paths]) for k in (0, 1))
     found = _in_order(rows, poses)
     there = np.flatnonzero(found >= 0)
@@ -111,15 +110,15 @@ def like_paths(poses: np.ndarray, paths: list) -> ProgramTimeline | None:
 
 
 def lines(poses: np.ndarray, read: np.ndarray, numbers: np.ndarray) -> np.ndarray:
-    """(n,) the source lines of a program's rows, of the text it was written as: `read` (m, 6) and `numbers` (m,) are
-    that read again, which has each of the rows, in order, and rows between them. 0 where a row is not found."""
+    """(n,) line numbers of a program's rows in the text it was written as: `read` (m, 6) and `numbers` (m,) are the
+    text read again, which has each of the rows, in order, and rows between them. 0 for rows that are not found."""
     found = _in_order(poses, read)
     return np.where(found >= 0, numbers[found], 0)
 
 
 def _in_order(rows, poses):
-    """(n,) of each row the first of `poses` after that of the row before where it is; -1 where it is not among the next
-    ones, and for all where hardly any is."""
+    """(n,) for each row the index of the first equal one in `poses` after the match of the row before; -1 if it is not
+    among the next ones, and for all rows if hardly any is found."""
     out, at, missed = np.full(len(rows), -1), 0, 0
     for k, row in enumerate(rows):
         hit = _ahead(poses, row, at)
@@ -133,7 +132,7 @@ def _in_order(rows, poses):
 
 
 def _ahead(poses, row, at):
-    size = 8  # most often it is the very next
+    size = 8  # it is mostly the next one
     while at < len(poses) and size <= REACH:
         near = np.abs(poses[at : at + size] - row).max(axis=1) < HERE
         if near.any():

@@ -1,4 +1,4 @@
-"""The table of brushes. A module here lists its brushes in BRUSHES; nothing else has a list of them."""
+"""The table of brushes. A module here lists its brushes in BRUSHES; there is no other list of them."""
 
 import importlib
 import pkgutil
@@ -15,7 +15,7 @@ BRUSHES: dict[str, Brush] = {brush.id: brush for brush in _found()}
 
 
 def of(name: str) -> Brush:
-    """The brush of an id. ValueError where there is none."""
+    """The brush of an id. ValueError if there is none."""
     if name not in BRUSHES:
         raise ValueError(f"mode must be one of {', '.join(BRUSHES)}, not {name!r}")
     return BRUSHES[name]
@@ -32,15 +32,15 @@ def of_journal(name: str) -> Brush | None:
 
 
 def with_tool() -> list[Brush]:
-    """Those that the toolbar has, in its order."""
+    """The brushes with a tool in the toolbar, in its order."""
     return [brush for brush in BRUSHES.values() if brush.tip]
 
 
 def opposite(brush: Brush) -> Brush:
-    """What the brush's tool does with Ctrl."""
+    """The brush of the tool with Ctrl held."""
     return of(brush.opposite or brush.id)
 
 
 def entries(brushes) -> list[tuple[str, str, str]]:
-    """(identifier, label, description) of each, as an operator's setting lists them."""
+    """(identifier, label, description) of each, for an operator's enum property."""
     return [(brush.id.upper(), brush.label, brush.description) for brush in brushes]

@@ -1,4 +1,4 @@
-"""Puts material on in the shape of the cutter."""
+"""Adds material in the shape of the cutter."""
 
 import riffler
 
@@ -7,7 +7,7 @@ from .brush import Brush
 
 
 def stub(tool, depth: float):
-    """The end of the cutter only: putting on a whole cutter would make a pillar of its full length."""
+    """The end of the cutter only: the whole cutter would make a pillar of its full length."""
     line = outline_of(tool)
     widest = line[line[:, 0] >= line[:, 0].max() * (1 - 1e-9), 1].min()
     data = tool.to_dict()
@@ -18,15 +18,15 @@ def stub(tool, depth: float):
 
 class Add(Brush):
     id, place, label, icon = "add", 20, "Add", "add"
-    description = "Put material on"
-    tip = "Put material on in the shape of the cutter. Ctrl: take it away. Shift: smooth"
+    description = "Add material"
+    tip = "Add material in the shape of the cutter (Ctrl: remove, Shift: smooth)"
     colour = (0.3, 0.65, 1.0)
     opposite = "remove"
     journal = cuts = "add"
     puts_on = chips = session = True
-    done = "put on"
-    no_stroke = "no stroke where the stock's box has room; Make Room in Clay gives it more"
-    unchanged = "Nothing was put on: the stock's box is full there, or protected. Make Room in Clay gives it more"
+    done = "added"
+    no_stroke = "no stroke where the stock's box has room; use Grow Box in Clay to enlarge it"
+    unchanged = "Nothing was added: the stock's box is full there, or protected. Use Grow Box in Clay to enlarge it"
 
     def cutter(self, given, depth):
         return stub(given, depth)

@@ -1,4 +1,4 @@
-"""What a brush is. Knows no Blender."""
+"""The base class of brushes. Knows no Blender."""
 
 from __future__ import annotations
 
@@ -9,39 +9,39 @@ from ...common.poses import moving
 
 
 class Path(NamedTuple):
-    """How samples of the hand become poses."""
+    """How samples of the pointer become poses."""
 
     axis: str  # NORMAL, VIEW, UP, TILT
     depth: float  # mm below the surface
-    more: dict = {}  # of stroke_path.Settings, where it differs from what suits the tool
+    more: dict = {}  # for stroke_path.Settings, if different from the tool's defaults
 
 
 class Brush(ABC):
-    """What a stroke does to a sculpt. A subclass says what differs from this one; its module lists its objects in
-    BRUSHES, and everything that offers, draws, carves or records brushes reads the table of them all
-    (brushes/__init__.py). Strings in files: `id`, `journal`, `cuts`."""
+    """The effect of a stroke on a sculpt. A subclass overrides what differs; its module lists its objects in BRUSHES,
+    and all code that offers, draws, carves or records brushes reads the table of all of them (brushes/__init__.py).
+    Strings in files: `id`, `journal`, `cuts`."""
 
-    id = ""  # of the operators' modes (in capitals) and of scripts
-    place = 0  # where it stands in the toolbar and in lists: the smallest first
+    id = ""  # in the operators' modes (in capitals) and in scripts
+    place = 0  # order in the toolbar and in lists, ascending
     label, description = "", ""  # of the mode
-    tip = ""  # of its tool in the toolbar; "" for the opposite of another brush, which has no tool
+    tip = ""  # tooltip of its tool in the toolbar; "" for the opposite of another brush, which has no tool
     icon = ""  # icons/riffler.<icon>.dat; its tool is riffler.<icon>
     colour = (1.0, 1.0, 1.0)  # of the pointer
     opposite = ""  # id of the brush that Ctrl gives; "": the same
-    second = "DEPTH"  # the setting beside the radius: DEPTH or STRENGTH
+    second = "DEPTH"  # the setting next to the radius: DEPTH or STRENGTH
 
-    journal = ""  # the name of its strokes in a journal, by which riffler.Journal replays them
-    cuts = ""  # what its moves are among the sculpt's cuts, which become NC code: "remove", "add", "" for none
-    shapes = False  # it changes the material by other means than cuts
-    paints = False  # it changes the mask, not the material
-    protects = False  # what it paints is protected
-    puts_on = False  # it puts material on: from within, and the stock's box may cut it off
-    clear = False  # fixtures are in the cutter's way
+    journal = ""  # name of its strokes in a journal, from which riffler.Journal replays them
+    cuts = ""  # kind of its moves among the sculpt's cuts, which become NC code: "remove", "add", or ""
+    shapes = False  # changes the material by other operations than cuts
+    paints = False  # changes the mask, not the material
+    protects = False  # what it paints becomes protected
+    puts_on = False  # adds material: from within, and the stock's box may clip it
+    clear = False  # avoids fixtures
     chips = False  # the material resists, so there is a force
-    session = False  # a device's session can do it
+    session = False  # usable in a device's session
 
     done = "changed"  # "3 mm³ changed"
-    no_stroke = "no stroke"  # why a session changed nothing
+    no_stroke = "no stroke"  # reason why a session changed nothing
     unchanged = "The stroke changed nothing: what it met is protected, or there was nothing left to change"
 
     @property
@@ -58,24 +58,23 @@ class Brush(ABC):
         return False
 
     def cutter(self, given, depth: float):
-        """The riffler.Tool that it works with, where `given` is chosen."""
+        """The riffler.Tool that it works with, for the chosen tool `given`."""
         return given
 
     def path(self, axis: str, depth: float, diameter: float, pitch: float) -> Path:
-        """How it follows the surface, where `axis` and `depth` are chosen; mm."""
+        """How it follows the surface, for the chosen `axis` and `depth`; mm."""
         return Path(axis, depth)
 
     def moves(self, poses, dt, new: bool):
-        """Which of the poses, (n, 6), it applies, and the times between them; `new`: they do not go on from the last
-        ones."""
+        """The poses, (n, 6), that it applies, and the times between them; `new`: they do not continue the last ones."""
         return moving(poses, dt)
 
     @abstractmethod
     def apply(self, sculpt, tool, poses, dt):
-        """Changes the sculpt's volume or mask. Returns riffler.Cut, or None where there is no chip."""
+        """Changes the sculpt's volume or mask. Returns riffler.Cut, or None for a brush without chips."""
 
     def record(self, stroke, copy: int, tool, poses, new: bool) -> None:
-        """Notes in a StrokeRecord what of it can be cut again; `copy`: of symmetry."""
+        """Notes in a StrokeRecord what can be cut again; `copy`: index of the symmetric copy."""
         stroke.shaped |= self.shapes
         if self.cuts:
             stroke.cut(copy, tool, self.cuts, poses, new)

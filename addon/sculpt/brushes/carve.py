@@ -1,12 +1,12 @@
-"""Takes material away with the cutter."""
+"""Removes material with the cutter."""
 
 from .brush import Brush
 
 
 class Carve(Brush):
     id, place, label, icon = "remove", 10, "Carve", "carve"
-    description = "Take material away"
-    tip = "Take material away with the cutter, along the surface. Ctrl: put it on. Shift: smooth"
+    description = "Remove material"
+    tip = "Remove material with the cutter, along the surface (Ctrl: add, Shift: smooth)"
     colour = (1.0, 0.45, 0.2)
     opposite = "add"
     journal = cuts = "remove"

@@ -1,4 +1,4 @@
-"""Protects what the cutter sweeps from all other brushes, or frees it."""
+"""Protects the volume that the cutter sweeps from all other brushes, or unprotects it."""
 
 import riffler
 
@@ -8,7 +8,7 @@ from .brush import Brush
 class Mask(Brush):
     id, place, label, icon = "mask", 40, "Mask", "mask"
     description = "Protect what the tool sweeps"
-    tip = "Protect what the cutter sweeps from all other tools. Ctrl: protect it no more"
+    tip = "Protect what the cutter sweeps from all other tools (Ctrl: remove the protection)"
     colour = (0.85, 0.85, 0.85)
     opposite = "unmask"
     journal = "mask"
@@ -27,7 +27,7 @@ class Mask(Brush):
 
 class Unmask(Brush):
     id, place, label = "unmask", 41, "Unmask"
-    description = "Protect it no more"
+    description = "Remove the protection"
     colour = (0.6, 0.6, 0.6)
     opposite = "mask"
     journal = "unmask"

@@ -2,7 +2,7 @@
 
 from .brush import Brush, Path
 
-DABS = 1 / 6  # of the tool's width: from one dab to the next
+DABS = 1 / 6  # share of the tool's width between two dabs
 
 
 class Smooth(Brush):
@@ -18,16 +18,16 @@ class Smooth(Brush):
         if volume.directions == "xyz":
             return ""
         return (
-            "Smooth needs rays in three directions: use Change Pitch in Clay, and set its Rays to Three (tri-dexel) in "
-            "the box at the lower left"
+            "Smooth needs rays in three directions: use Change Pitch in Clay, and set Rays to Three "
+            "(Tri-Dexel) in the box at the lower left"
         )
 
     def path(self, axis, depth, diameter, pitch):
-        """A dab's middle is the tip, on the surface."""
+        """A dab's centre is the tip, on the surface."""
         return Path("NORMAL", 0.0, {"spacing": max(pitch, DABS * diameter)})
 
     def moves(self, poses, dt, new):
-        """The first of poses that go on was dabbed with the last ones."""
+        """The first pose of a continued move was already dabbed with the last ones."""
         return poses[0 if new else 1 :], None
 
     def apply(self, sculpt, tool, poses, dt):
@@ -37,5 +37,5 @@ class Smooth(Brush):
         return draw.wave() + draw.cutter(draw.FLOOR + 4)
 
 
-SMOOTH = Smooth()  # what Shift gives with every tool
+SMOOTH = Smooth()  # the brush that Shift selects with every tool
 BRUSHES = (SMOOTH,)

@@ -1,1 +1,1 @@
-"""Strokes, journals and what a sculpt keeps in the .blend, without Blender."""
+"""Strokes, journals and a sculpt's data in the .blend, without Blender."""

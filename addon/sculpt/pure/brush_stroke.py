@@ -1,7 +1,7 @@
 """A stroke of the sculpt tool on a live sculpt: samples become poses, and poses are carved, as the hand moves.
 
-`BrushStroke.text` keeps a stroke: the view, the samples, and the samples at which the surface was frozen again. The
-same text on the same sculpt cuts the same, in a window or in a script.
+`BrushStroke.text` stores a stroke: the view, the samples, and the samples at which the surface was frozen again. The
+same text on the same sculpt makes the same cuts, in a window or in a script.
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ from .stroke_path import Hit, Sample, StrokeMaker, View, settings_for
 from .view_rays import ViewRays, cross
 
 NUMBERS = len(Sample._fields)
-AROUND = 0.25  # of the tool's width: the surface's normal is the mean of what is so far around a place
+AROUND = 0.25  # share of the tool's width: the surface's normal is the mean within this distance
 TURN = 2 * np.pi * np.arange(16) / 8
 SPOKES, RINGS = np.stack([np.cos(TURN), np.sin(TURN)], axis=1), np.repeat([1.0, 0.5], 8)  # eight in each of two rings
 
 
 @dataclass(frozen=True)
 class Choice:
-    """How a stroke is made, whatever makes it."""
+    """The settings of a stroke."""
 
     mode: str = "remove"  # id of a brush
     depth: float = 0.5  # mm
@@ -39,25 +39,25 @@ class Choice:
 
 
 class BrushStroke:
-    """`add` samples and `look` now and then, then `end` once. `run` is a LiveSculpt; `keep_out`: poses (n, 6)
-    and seconds (n - 1,) → the same of a way that does not touch what must not be touched, or None."""
+    """Call `add` with samples and `look` now and then, then `end` once. `run` is a LiveSculpt; `keep_out`: poses (n, 6)
+    and seconds (n - 1,) → the same along a collision-free path, or None."""
 
     def __init__(self, run, tool: dict, sight: ViewRays, choice: Choice, keep_out=None, surface=None):
-        """`surface`: what the tool follows; without one, the surface as it is now."""
+        """`surface`: what the tool follows; by default the current surface."""
         self.brush = brushes.of(choice.mode)
         self._run, self._sight, self._choice, self._keep_out = run, sight, choice, keep_out
         self.tool = self.brush.cutter(riffler.Tool.from_dict(tool), choice.depth)
         self.samples: list[Sample] = []
-        self.looks: list[int] = []  # how many samples there were when the surface was looked at
+        self.looks: list[int] = []  # number of samples at each update of the surface
         self.removed, self.moves, self.lifted = 0.0, 0, 0
-        self._apart = False  # what was kept out lies between the last move and the next
-        self.pose: np.ndarray | None = None  # (6,) where the tool is, mm
+        self._apart = False  # poses that were kept out separate the last move and the next
+        self.pose: np.ndarray | None = None  # (6,) of the tool, mm
         self.force = self.torque = np.zeros(3)
         self._surface = surface or run.freeze()
         self._maker = self._make_maker()
 
     def add(self, sample: Sample) -> bool:
-        """True where something was carved."""
+        """True if something was carved."""
         self.samples.append(sample)
         return self._carve(self._maker.add(sample))
 
@@ -65,15 +65,15 @@ class BrushStroke:
         return self._carve(self._maker.end())
 
     def look(self) -> None:
-        """Shows what was carved; with `accumulate` the tool follows that from here on."""
+        """Shows what was carved; with `accumulate` the tool follows the new surface from here on."""
         self._run.show()
         if self._choice.accumulate:
             self.looks.append(len(self.samples))
             self._surface = self._run.freeze()
 
     def hover(self, x: float, y: float):
-        """What a click there would do: the tool's pose (6,) and the surface's point and normal (mm); None off the
-        surface. Carves nothing; for a brush that makes no stroke."""
+        """Preview of a click: the tool's pose (6,) and the surface's point and normal (mm); None off the surface.
+        Carves nothing; for a brush that makes no stroke."""
         pieces = self._make_maker().add(Sample(x, y))
         found = self._surface.pick(*self._sight.ray(x, y))
         return (pieces[0].poses[-1], *found[1:3]) if pieces and found is not None else None
@@ -88,7 +88,7 @@ class BrushStroke:
         choice, view = self._choice, self._sight.basis()
         diameter, pitch = self.tool.diameter, self._run.volume.pitch
         axis, depth, more = self.brush.path(choice.axis, choice.depth, diameter, pitch)
-        if axis == "UP":  # of the stock, which is a view from above
+        if axis == "UP":  # the stock's z, as in a view from above
             view, axis = View(*np.eye(3)), "VIEW"
         if self.brush.puts_on:
             view = View(*(-v for v in view))
@@ -111,19 +111,19 @@ class BrushStroke:
             return None
         _, point, normal, _ = found
         point, normal = np.asarray(point), self._around(np.asarray(point), np.asarray(normal))
-        # Material is put on from within: by the tool's mirror image, whose tip comes out of the surface.
+        # Material is added from within: by the tool's mirror image, whose tip comes out of the surface.
         return Hit(point, -normal if self.brush.puts_on else normal)
 
     def _around(self, point: np.ndarray, normal: np.ndarray) -> np.ndarray:
-        """The surface's normal without the jerks of its facets: the mean of a place and of two rings around it. Rays
-        come in from all sides at 45°, so what lies behind an edge counts before the tool is there. It is a function of
-        the place: on a curved surface a mean along the way would lag behind it."""
+        """The surface's normal without the jumps of its facets: the mean at a place and at two rings around it. Rays
+        come in from all sides at 45°, so the surface behind an edge counts before the tool reaches it. The mean depends
+        on the place only: on a curved surface a mean along the path would lag."""
         spokes = SPOKES @ across(normal)
         far = AROUND * self.tool.diameter * RINGS
         directions = -np.sqrt(0.5) * (spokes + normal)
         distance, _, normals, _ = self._surface.pick(point + far[:, None] * (2 * spokes + normal), directions)
         near = distance <= 2 * np.sqrt(2) * far
-        from_outside = (normals * directions).sum(axis=1) < 0  # NaN where there is none
+        from_outside = (normals * directions).sum(axis=1) < 0  # NaN where nothing was hit
         mean = normal + normals[near & from_outside].sum(axis=0)
         size = np.sqrt(mean @ mean)
         return mean / size if size > 1e-6 else normal
@@ -152,7 +152,7 @@ class BrushStroke:
 
 
 def across(normal: np.ndarray) -> np.ndarray:
-    """(2, 3) unit vectors square to a unit vector and to each other."""
+    """(2, 3) unit vectors perpendicular to a unit vector and to each other."""
     x, y, z = normal.tolist()
     if abs(z) > 0.7:
         size = math.hypot(y, z)
@@ -164,7 +164,7 @@ def across(normal: np.ndarray) -> np.ndarray:
 
 
 def read(text: str) -> tuple[ViewRays, list[Sample], list[int]]:
-    """Of BrushStroke.text: view, samples, looks. ValueError naming what is wrong."""
+    """Parses BrushStroke.text: view, samples, looks. ValueError naming the problem."""
     try:
         data = json_object.loads(text, "stroke")
         view, rows, looks = data["view"], data["rows"], data.get("looks", [])
@@ -188,12 +188,12 @@ def _numbers(values, count=None) -> bool:
         return False
     try:
         return all(isinstance(v, int | float) and not isinstance(v, bool) and math.isfinite(v) for v in values)
-    except OverflowError:  # of a whole number
+    except OverflowError:  # of an integer
         return False
 
 
 def replay(brush: BrushStroke, samples: list[Sample], looks: list[int]) -> None:
-    """What a window did, in one go."""
+    """Repeats a window's stroke, in one call."""
     waiting = list(looks)
     for sample in samples:
         brush.add(sample)

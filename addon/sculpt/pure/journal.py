@@ -1,7 +1,8 @@
-"""The journal of the work at one sculpt: a folder with the strokes as they are made, and with what they began on.
+"""The journal of a session at one sculpt: a folder with its strokes, written one by one, and their initial state.
 
-It is there for a crash. While the work goes on the strokes' file is held (flock), so a journal that nobody holds is one
-whose Blender has died. A stroke is written carve by carve: what a crash takes is what the hand did since the last one.
+Its purpose is recovery after a crash. During the session the strokes' file is locked (flock), so an unlocked journal
+belongs to a Blender that has died. A stroke is written carve by carve: a crash loses only what the hand did since the
+last one.
 """
 
 from __future__ import annotations
@@ -32,27 +33,29 @@ except ImportError:  # Windows
     import msvcrt
 
 STROKES, STOCK, MASK, CUTS, ABOUT = "strokes.rjournal", "stock.rvol", "mask.rvol", "cuts", "about.json"
-STATES = "states"  # of a session's: a line for each state, of how many strokes make it and its token
-# Modes of the strokes that a device's session writes, and the mode of the brush that does the same.
+STATES = "states"  # of a session's journal: a line for each state, with its number of strokes and its token
+# Modes of the strokes that a device's session writes, and the mode of the equivalent brush.
 OF_SESSIONS = {"beside": "remove", "build": "add"}
 FAR = 1 << 30
 PROBLEMS = (OSError, RuntimeError, ValueError)
 
 
 class StrokeJournal:
-    """Begins with `content`, the state `token`, which nobody changes. OSError, RuntimeError where it cannot be written.
+    """Begins with `content`, the state `token`, which nothing changes any more. OSError, RuntimeError if it cannot be
+    written.
 
-    `identity` is the id under which the file has `content`, or "". `about` is kept with it: strings by strings. A
-    subclass writes the strokes."""
+    `identity` is the id under which the file has `content`, or "". `about`, a dictionary of strings, is stored with it.
+    A subclass writes the strokes.
+    """
 
     def __init__(self, root: Path, content: Content, token: str, identity: str = "", about: dict | None = None):
         self.folder = root / uuid.uuid4().hex
         self.base, self.first = identity, token
-        self.ended = ""  # the id under which the file has what it made, once it is known
-        self._tokens, self._counts, self._at = [token], [0], 0  # strokes that make each state
-        self._open = 0  # strokes of the file that the stroke being made has
+        self.ended = ""  # the id under which the file has its result, once it is known
+        self._tokens, self._counts, self._at = [token], [0], 0  # number of strokes of each state
+        self._open = 0  # strokes of the file that belong to the stroke in progress
         self._saving: list = []  # tasks
-        self.whole = True  # whether all of it can be told again
+        self.whole = True  # whether all of it can be replayed
         self.problem = ""
         self.folder.mkdir(parents=True)
         try:
@@ -79,7 +82,7 @@ class StrokeJournal:
         return self._tokens[self._at]
 
     def settled(self) -> bool:
-        """Whether what it began on is in its folder."""
+        """Whether its initial state is in its folder."""
         while self._saving and self._saving[0].done:
             try:
                 self._saving.pop(0).result()
@@ -88,7 +91,7 @@ class StrokeJournal:
         return not self._saving
 
     def state(self, token: str) -> Content | None:
-        """What a state that was made here was, told again; None where it is not known. ValueError, OSError."""
+        """The content of a state made here, by replay; None if it is unknown. ValueError, OSError."""
         if token not in self._tokens or not self.whole:
             return None
         for task in self._saving:
@@ -97,7 +100,7 @@ class StrokeJournal:
 
 
 class LiveJournal(StrokeJournal):
-    """Of strokes that are carved here, piece by piece."""
+    """The journal of strokes that are carved here, piece by piece."""
 
     def _begin(self, content: Content) -> None:
         self._tools: dict[str, int] = {}
@@ -110,7 +113,7 @@ class LiveJournal(StrokeJournal):
 
     # ------------------------------------------------------------------ strokes
     def carved(self, tool: dict, poses: np.ndarray, mode: str, token: str, strength: float = 0.5) -> None:
-        """The poses, of which none stands (poses.moving), were carved in one go, on the way to the state `token`."""
+        """Records that the poses, each a move (poses.moving), were carved in one call, towards the state `token`."""
         if brushes.of_journal(mode) is None:
             self.whole = False
             return
@@ -129,7 +132,7 @@ class LiveJournal(StrokeJournal):
             self._open = 0
 
     def go(self, token: str) -> bool:
-        """The state is `token` again. False where this journal does not know it."""
+        """The state is `token` again. False if this journal does not know it."""
         if token not in self._tokens:
             return False
         self.cancel()
@@ -143,8 +146,8 @@ class LiveJournal(StrokeJournal):
         return True
 
     def _write(self, call) -> bool:
-        """A journal that cannot be written must not stop the hand: it says why, and writes no more, so that what is
-        written can be told again."""
+        """Writes to the file. A journal that cannot be written must not stop the hand: it reports the error, and writes
+        no more, so that what is written can be replayed."""
         if self.problem:
             return False
         try:
@@ -158,7 +161,7 @@ class LiveJournal(StrokeJournal):
         self._write(self._writer.sync)
 
     def delete(self) -> None:
-        """It is not needed any more."""
+        """Deletes the journal, which is no longer needed."""
         for task in self._saving:
             task.cancel()
         self._saving.clear()
@@ -167,7 +170,7 @@ class LiveJournal(StrokeJournal):
 
 
 class SessionJournal(StrokeJournal):
-    """Of strokes that a device's session, not started yet, writes by itself. It counts them here."""
+    """The journal of strokes that a device's session, not started yet, writes by itself. This class counts them."""
 
     def __init__(self, session, *args, **more):
         self._session, self._lock = session, None
@@ -177,7 +180,7 @@ class SessionJournal(StrokeJournal):
         self._session.journal(self.folder / STROKES)
 
     def made(self, strokes: int) -> None:
-        """So many more strokes of the file, on the way to the next state."""
+        """Counts further strokes of the file, towards the next state."""
         self._open += strokes
         self.problem = self._session.journal_problem or ""
 
@@ -190,7 +193,8 @@ class SessionJournal(StrokeJournal):
             self.problem = self.problem or str(error)
 
     def go(self, token: str) -> bool:
-        """The session is in the state `token` again, and its file says so. False where this does not know it."""
+        """The session is in the state `token` again, and its file records that. False if this journal does not
+        know it."""
         if token not in self._tokens:
             return False
         self._at, self._open = self._tokens.index(token), 0
@@ -200,21 +204,21 @@ class SessionJournal(StrokeJournal):
         return super().state(token) if self._session.journal_written() else None
 
     def stopped(self) -> None:
-        """The session does not write any more: nobody else shall take the file for one that was left."""
+        """The session writes no more: locks the file, so that no other Blender takes it for an abandoned one."""
         self._lock = Lock(self.folder)
 
     def sync(self) -> None:
-        """The session does, once a second."""
+        """Does nothing: the session syncs once a second."""
 
     def delete(self) -> None:
-        """It is not needed any more."""
+        """Deletes the journal, which is no longer needed."""
         shutil.rmtree(self.folder, ignore_errors=True)
         if self._lock is not None:
             self._lock.release()
 
 
 def write_recording(folder: Path, path: Path, notes: dict[str, str]) -> None:
-    """The journal of a session, those of its strokes that count, as a file of the user's with its stock beside it.
+    """Writes the journal of a session, without undone strokes, to a file of the user's, with its stock next to it.
     OSError, ValueError."""
     journal, out = riffler.Journal.read(folder / STROKES), riffler.Journal()
     if not journal.strokes:
@@ -239,7 +243,7 @@ def write_recording(folder: Path, path: Path, notes: dict[str, str]) -> None:
 # ---------------------------------------------------------------------- after a crash
 @dataclass
 class FoundJournal:
-    """A journal that nobody holds."""
+    """A journal that no process holds."""
 
     folder: Path
     about: dict
@@ -252,7 +256,7 @@ class FoundJournal:
 
 
 def crashed(root: Path) -> list[FoundJournal]:
-    """The newest first. What cannot be looked at is left out: nothing is deleted here."""
+    """The newest first. Unreadable ones are left out, not deleted."""
     found = []
     try:
         folders = [path for path in root.iterdir() if (path / STROKES).is_file()]
@@ -274,17 +278,18 @@ def about(folder: Path) -> dict:
 
 
 def _hold(file: int) -> None:
-    """Nobody else holds the file until it is closed, or its process has died. OSError where somebody does."""
+    """Locks the file until it is closed, or its process has died. OSError if another process holds it."""
     if fcntl is not None:
         fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         return
-    # What Windows locks nobody else can read either: one byte far behind the end, which is allowed. Untested.
+    # Windows also prevents others from reading locked bytes: so lock one byte far behind the end, which is allowed.
+    # Untested.
     os.lseek(file, FAR, os.SEEK_SET)
     msvcrt.locking(file, msvcrt.LK_NBLCK, 1)
 
 
 class Lock:
-    """On a journal's strokes, as the writer has it; `held` where nobody else has."""
+    """A lock on a journal's strokes, like the writer's; `held` if no other process has it."""
 
     def __init__(self, folder: Path):
         self.folder, self._file = folder, -1
@@ -304,30 +309,30 @@ class Lock:
             self._file = -1
 
     def delete(self) -> None:
-        """The journal and all that is with it."""
+        """Deletes the journal and everything in its folder."""
         shutil.rmtree(self.folder)
         self.release()
 
 
 def part_of(folder: Path, count: int | None = None) -> tuple[riffler.Journal, list[Cut]]:
-    """The journal of `folder`, or its first `count` strokes, and all cuts up to there. ValueError names what is wrong
-    with it, OSError what cannot be read."""
+    """The journal in `folder`, or its first `count` strokes, and all cuts up to there. ValueError names its problem,
+    OSError what cannot be read."""
     journal = riffler.Journal.read(folder / STROKES)
     extra = 0 if count is None else len(journal.strokes) - count
     if extra > 0:
         journal.take_back(extra)
-    elif extra < 0:  # of strokes that were taken back
+    elif extra < 0:  # undone strokes
         journal.bring_back(-extra)
     return journal, _before(folder)[0] + cuts_of(journal)
 
 
 def shaped(folder: Path, journal: riffler.Journal) -> bool:
-    """Whether what the journal tells was shaped by other means than cuts, too (Content.shaped)."""
+    """Whether other operations than cuts have shaped the journal's state, too (Content.shaped)."""
     return _before(folder)[1] or any(brush_of(stroke).shapes for stroke in journal.strokes)
 
 
 def _before(folder: Path) -> tuple[list[Cut], bool]:
-    """Of the state that the journal in `folder` begins with: its cuts, and whether it was shaped by other means."""
+    """Cuts of the state that the journal in `folder` begins with, and whether other operations have shaped it."""
     if not (folder / CUTS).exists():
         return [], False
     _, cuts, _, by_others = sculpt_payload.decode((folder / CUTS).read_bytes())
@@ -335,13 +340,13 @@ def _before(folder: Path) -> tuple[list[Cut], bool]:
 
 
 def states(folder: Path, about: dict, journal: riffler.Journal) -> list[str]:
-    """Tokens: of the state that the journal begins with, and of those after each stroke; "" where no state ended."""
+    """Tokens: of the journal's initial state, and of the states after each stroke; "" where no state ended."""
     out = [about.get("token", ""), *(stroke.name for stroke in journal.strokes)]
     try:
         lines = (folder / STATES).read_text().splitlines()
     except OSError:
         return out
-    for line in lines:  # the last counts: strokes may have been taken back, and others made
+    for line in lines:  # the last line counts: strokes may have been undone, and replaced by others
         count, _, token = line.partition(" ")
         if count.isdigit() and int(count) < len(out):
             out[int(count)] = token
@@ -349,12 +354,13 @@ def states(folder: Path, about: dict, journal: riffler.Journal) -> list[str]:
 
 
 def brush_of(stroke) -> Brush:
-    """A brush that makes such strokes of a riffler.Journal; one that cuts nothing where there is none."""
+    """A brush that makes such strokes of a riffler.Journal; one without cuts if there is none."""
     return brushes.of_journal(OF_SESSIONS.get(stroke.mode, stroke.mode)) or Brush()
 
 
 def cuts_of(journal: riffler.Journal) -> list[Cut]:
-    """The strokes that shape the material, pieces of one stroke put together. Those of symmetry's copies stay apart."""
+    """The strokes that shape the material, with the pieces of a stroke joined. Those of symmetric copies stay
+    separate."""
     cuts: list[Cut] = []
     rows: dict[tuple, list[np.ndarray]] = {}
     tools, masked = journal.tools, bool(journal.stock and journal.stock["mask"])
@@ -378,7 +384,7 @@ def cuts_of(journal: riffler.Journal) -> list[Cut]:
 
 
 def replay(folder: Path, count: int | None = None) -> Content:
-    """What the first `count` strokes of the journal in `folder`, or all of them, have made."""
+    """The result of the first `count` strokes of the journal in `folder`, or of all of them."""
     journal, cuts = part_of(folder, count)
     volume, mask = journal.replay(folder, with_mask=True)
     return Content(volume, cuts, mask, shaped(folder, journal))

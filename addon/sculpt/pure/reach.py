@@ -1,11 +1,11 @@
-"""How far a cutter that puts material on reaches out of the stock's box, where nothing can be put."""
+"""How far a cutter that adds material reaches out of the stock's box, where no material can be."""
 
 from __future__ import annotations
 
 import numpy as np
 
-SLIGHT = 0.01  # pitches that nobody sees
-CUT_OFF = "What was put on is cut off at the stock's box: Make Room in Clay gives it more"
+SLIGHT = 0.01  # pitches: an invisible amount
+CUT_OFF = "The added material was cut off at the stock's box: use Grow Box in Clay to enlarge it"
 
 
 def outline_of(tool) -> np.ndarray:
@@ -14,13 +14,13 @@ def outline_of(tool) -> np.ndarray:
 
 
 def is_cut_off(outline: np.ndarray, poses: np.ndarray, volume) -> bool:
-    """True where material that is put on along these poses would stand out of the volume's box, to be seen."""
+    """True if material added along these poses would visibly stick out of the volume's box."""
     return past(outline, poses, volume.lower, volume.upper) > SLIGHT * volume.pitch
 
 
 def past(outline: np.ndarray, poses: np.ndarray, lower, upper) -> float:
-    """mm by which a cutter with this outline sticks out of the box at one of the poses (n, 6), on any side; 0 where it
-    does not. Between two poses it is within what both reach, but for the turn of the axis."""
+    """mm by which a cutter with this outline sticks out of the box at one of the poses (n, 6), on any side; 0 if it
+    does not. Between two poses it stays within the reach of both, apart from the turn of the axis."""
     tip, axis = poses[:, None, :3], poses[:, None, 3:]
     radius, height = outline[:, 0, None], outline[:, 1, None]
     across = radius * np.sqrt(np.maximum(1 - axis**2, 0))  # of a disc, along each axis of the box

@@ -1,12 +1,11 @@
-"""What a sculpt keeps in the .blend: its volume (the bytes of an .rvol file), what of it is protected, and the cuts
-that made it, as one block.
+"""A sculpt's data in the .blend, as one block: its volume (the bytes of an .rvol file), its mask, and its cuts.
 
-Whether other means have shaped it, too, is in the header, where older add-ons do not look.
+The header says whether other operations have shaped it, too; older add-ons ignore that.
 
 Layout, little endian: magic (8 bytes), format version and header length (uint32 each), a JSON header, then the bytes of
 the volume and of the mask, and the poses (float64) of every cut, in order. Blocks without a mask and with nothing but
 cuts are of version 1, which older add-ons read. The content id is a hash of the whole block, so equal content has an
-equal id and a block that was damaged does not pass for what was written.
+equal id and a damaged block is detected.
 """
 
 from __future__ import annotations
@@ -48,12 +47,12 @@ def encode(volume: bytes, cuts: list[Cut], mask: bytes = b"", shaped: bool = Fal
 
 
 def decode(block: bytes, identity: str | None = None) -> tuple[memoryview, list[Cut], memoryview, bool]:
-    """A view of the volume's bytes, the cuts, a view of the mask's bytes (empty: none), whether it was shaped by other
-    means. ValueError says what is wrong with a block that is not whole."""
+    """A view of the volume's bytes, the cuts, a view of the mask's bytes (empty: none), and whether other operations
+    have shaped it. ValueError names the problem of a damaged block."""
     if identity is not None and content_id(block) != identity:
-        raise ValueError("the sculpt's data in this .blend is damaged: its checksum is another one")
+        raise ValueError("the sculpt's data in this .blend is damaged: its checksum does not match")
     if len(block) < _HEAD.size or block[:8] != MAGIC:
-        raise ValueError("the sculpt's data in this .blend does not begin as Riffler's does")
+        raise ValueError("the sculpt's data in this .blend is not Riffler's: its header is another one")
     _, version, size = _HEAD.unpack_from(block)
     if not 1 <= version <= VERSION:
         raise ValueError(

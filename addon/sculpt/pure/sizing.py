@@ -1,20 +1,20 @@
-"""A size that is set by the pointer's distance from the middle of a circle, or by digits."""
+"""A size set by the pointer's distance from the centre of a circle, or by typed digits."""
 
 from __future__ import annotations
 
 import math
 
-FINE = 0.1  # of the pointer's way
-LEAST = 8.0  # pixels: a circle that can be held
+FINE = 0.1  # share of the pointer's movement in precise mode
+LEAST = 8.0  # pixels: smallest circle that is easy to grab
 
 
 class Drag:
-    """`first`: the size to begin with; `scale`: pixels for one of it; `at`: the pointer, which begins on the circle."""
+    """`first`: the initial size; `scale`: pixels per unit of size; `at`: the pointer, which begins on the circle."""
 
     def __init__(self, first: float, scale: float, at):
         self.first, self.scale, self.value, self.text = float(first), max(float(scale), 1e-9), float(first), ""
         radius = self.first * self.scale
-        # A circle too small or too large to be held is one that is easy to hold, and stands for the size as it is.
+        # A circle too small or too large to grab is replaced by one of usable size, which represents the current size.
         shown = min(max(radius, LEAST), 400.0)
         self.scale *= shown / radius if radius > 0 else 1.0
         self.middle = float(at[0]) - shown, float(at[1])
@@ -22,11 +22,11 @@ class Drag:
 
     @property
     def radius(self) -> float:
-        """Of the circle, in pixels."""
+        """Radius of the circle, in pixels."""
         return self.value * self.scale
 
     def to(self, at, fine: bool = False, rounded: bool = False) -> float:
-        """The size where the pointer is."""
+        """The size at the pointer."""
         now = math.hypot(at[0] - self.middle[0], at[1] - self.middle[1])
         self._distance = max(self._distance + (FINE if fine else 1.0) * (now - self._last), 0.0)
         self._last, self.text = now, ""
@@ -37,12 +37,12 @@ class Drag:
         return self.value
 
     def typed(self, key: str) -> float:
-        """The size where digits have been typed; "\\b" takes the last one back."""
+        """The size after typed digits; "\b" deletes the last one."""
         text = self.text[:-1] if key == "\b" else self.text + key
         if text.count(".") <= 1:
             self.text = text
         try:
             self.value = float(self.text)
-        except ValueError:  # nothing yet, or the point alone
+        except ValueError:  # nothing typed yet, or only the point
             self.value = self.first
         return self.value

@@ -1,11 +1,10 @@
-"""A hand's samples as a smooth path. A mouse tells whole pixels: a tool that went straight from one to the next would
-turn by 20° at nearly every sample, and its groove would look like bamboo.
+"""A smooth path through the pointer's samples. A mouse reports whole pixels: a tool that went straight from one to the
+next would turn by 20° at nearly every sample, and its groove would look like bamboo.
 
 A cubic runs through the samples, and the path is its mean over `REACH` pixels before and behind each place. The mean is
-centred, so a curve stays where it is: one of radius R moves inwards by REACH² / 10 R. The price is that the path is
-certain only `REACH` pixels and one sample behind the hand. Beyond both ends the cubic goes on as its mirror image, so
-the path begins at the first sample and ends at the last. It depends on the samples alone, not on when they were asked
-for.
+centred, so a curve stays in place: one of radius R moves inwards by REACH² / 10 R. The price is that the path is final
+only `REACH` pixels and one sample behind the pointer. Beyond both ends the cubic continues as its mirror image, so the
+path begins at the first sample and ends at the last. It depends on the samples alone, not on the times of the calls.
 """
 
 from __future__ import annotations
@@ -13,25 +12,28 @@ from __future__ import annotations
 import numpy as np
 
 REACH = 10.0  # pixels
-PRESSED = 10.0  # pixels: what a change of pressure from 0 to 1 counts as way, so that a pen at rest can press harder
+# pixels: the distance that a change of pressure from 0 to 1 counts as, so that a pen at rest can press harder
+PRESSED = 10.0
 OFFSETS = np.linspace(-1, 1, 25)[1:-1]
-WEIGHTS = (1 - OFFSETS**2) / (1 - OFFSETS**2).sum()  # Epanechnikov's: of all of one reach it damps noise best, nearly
+# Epanechnikov's kernel: nearly the best noise damping of all with the same reach
+WEIGHTS = (1 - OFFSETS**2) / (1 - OFFSETS**2).sum()
 MOST = 1024  # rows between two samples
 
 
 class SmoothPath:
-    """`add` rows (x and y in pixels, pressure, more columns), then `finish`, once. `at` gives the path's rows."""
+    """Call `add` with rows (x and y in pixels, pressure, more columns), then `finish`, once. `at` returns the path's
+    rows."""
 
     def __init__(self):
         self._knots: list[np.ndarray] = []  # the last three samples
-        self._places: list[float] = []  # how far along the path they are, pixels
+        self._places: list[float] = []  # their distances along the path, pixels
         self._rows = np.empty((0, 0))  # of the cubic, about one a pixel
         self._along = np.empty(0)
         self._reach, self._begin, self._end = REACH, None, None
 
     @property
     def ready(self) -> float:
-        """How far the path is certain, in pixels from its first sample."""
+        """Length of the final part of the path, in pixels from its first sample."""
         return self._along[-1] if self._end is not None else max(0.0, self._along[-1] - REACH)
 
     def add(self, row) -> None:
@@ -54,17 +56,17 @@ class SmoothPath:
         if len(self._knots) > 1:
             self._join(-2)
         self._end = self._rows[-1]
-        self._reach = min(REACH, self._along[-1])  # of a stroke that is shorter
+        self._reach = min(REACH, self._along[-1])  # for a shorter stroke
 
     def at(self, along) -> np.ndarray:
-        """Rows (n, columns) at `along` (n,), none of which is beyond `ready`."""
+        """Rows (n, columns) at `along` (n,), all of them within `ready`."""
         asked = np.asarray(along, float)[:, None] + self._reach * OFFSETS
         rows = np.einsum("k,nkc->nc", WEIGHTS, self._cubic(asked))
         rows[:, 2] = np.clip(rows[:, 2], 0, 1)
         return rows
 
     def forget(self, along: float) -> None:
-        """What is before is asked for no more."""
+        """Forgets what is before: it is not needed any more."""
         first = int(np.searchsorted(self._along, along - REACH)) - 1
         if along > 2 * REACH and first > 0:
             self._rows, self._along = self._rows[first:], self._along[first:]
@@ -87,7 +89,7 @@ class SmoothPath:
         return rows
 
     def _join(self, k: int) -> None:
-        """The cubic from knot k to the next, Catmull's and Rom's for uneven steps; what is no place goes evenly."""
+        """The cubic from knot k to the next, Catmull–Rom for uneven steps; other columns are interpolated linearly."""
         a, b = self._knots[k], self._knots[k + 1]
         way = self._places[k + 1] - self._places[k]
         share = np.linspace(0, 1, int(np.clip(np.ceil(way), 1, MOST)) + 1)[1:, None]
@@ -100,7 +102,7 @@ class SmoothPath:
         self._along = np.append(self._along, self._places[k] + way * share[:, 0])
 
     def _slope(self, k: int) -> np.ndarray:
-        """Of the parabola through a knot and its neighbours; of the chord at the first and at the last."""
+        """Slope of the parabola through a knot and its neighbours; of the chord at the first and at the last."""
         steps = []
         for i in (k - 1, k):
             if -len(self._knots) <= i and i + 1 <= -1:

@@ -1,5 +1,5 @@
-"""What showing a sculpt costs: milliseconds of the last looks, by stage, how long the hand's samples waited to be seen,
-and counts that no machine changes."""
+"""The cost of displaying a sculpt: milliseconds of the last updates, by stage, the delay from the pointer's samples to
+the screen, and counts that do not depend on the computer."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ COUNTS = ("moves", "bricks", "chunks", "triangles", "bytes")
 
 
 class Stages:
-    """`with stages.of("cut"): …` for what is timed, `count(bricks=3)` for what is counted; `looked` ends a look."""
+    """`with stages.of("cut"): …` measures time, `count(bricks=3)` counts; `looked` ends an update."""
 
     def __init__(self, keep: int = 30, clock=time.perf_counter):
         self._clock = clock
@@ -42,29 +42,29 @@ class Stages:
         self._now = dict.fromkeys((*NAMES, *COUNTS), 0.0)
 
     def waited(self, seconds: float) -> None:
-        """At most, from an event of the hand until what it has done was drawn."""
+        """Records the longest delay from a pointer event until its effect was drawn."""
         self._waits.append(seconds)
 
     def lag(self) -> tuple[float, float]:
-        """Milliseconds: the median and the longest of the waits that were kept."""
+        """Milliseconds: the median and the longest of the recorded delays."""
         return 1000 * _median(list(self._waits)), 1000 * max(self._waits, default=0.0)
 
     @property
     def newest(self) -> dict[str, float]:
-        """Seconds of the last look, by stage."""
+        """Seconds of the last update, by stage."""
         return {name: self._looks[-1][name] for name in NAMES}
 
     def take_counts(self) -> dict[str, int]:
-        """What was counted since the last call."""
+        """The counts since the last call."""
         counts, self.counts = self.counts, dict.fromkeys(COUNTS, 0)
         return counts
 
     def milliseconds(self) -> dict[str, float]:
-        """Of a look, by stage: the median of those that were kept."""
+        """Milliseconds of an update, by stage: the median of the recorded ones."""
         return {name: 1000 * _median([look[name] for look in self._looks]) for name in NAMES}
 
     def per_look(self) -> dict[str, float]:
-        """What was counted in a look: the mean of those that were kept."""
+        """Counts per update: the mean of the recorded ones."""
         return {name: sum(look[name] for look in self._looks) / max(len(self._looks), 1) for name in COUNTS}
 
 

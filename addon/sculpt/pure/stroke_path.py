@@ -1,8 +1,8 @@
 """A stroke of a mouse or a tablet as tool poses: the tool follows the surface under the cursor.
 
-Nothing here knows of Blender: a `pick` says what the surface is at a place of the view, and what comes back are poses
-to carve, piece by piece as the hand moves on. The tool goes along a smooth path through the samples (smooth_path.py),
-some pixels behind the hand. The same samples on the same surface give the same poses.
+Nothing here knows Blender: a `pick` returns the surface at a place of the view, and the result is poses to carve, piece
+by piece as the pointer moves. The tool follows a smooth path through the samples (smooth_path.py), some pixels behind
+the pointer. The same samples on the same surface give the same poses.
 """
 
 from __future__ import annotations
@@ -15,13 +15,13 @@ import numpy as np
 
 from .smooth_path import SmoothPath
 
-MOST_TILT = 1.0  # rad: tablets tell nonsense near the horizon
-MOST_PICKS = 1024  # between two samples: a hand that jumps across the view in one event
+MOST_TILT = 1.0  # rad: tablets report wrong values near the horizon
+MOST_PICKS = 1024  # between two samples: limits a jump across the view in one event
 FINEST = 0.25  # pixels between two picks
 
 
 class Sample(NamedTuple):
-    """What an event says: pixels, pressure 0 to 1, lean of the pen to the right and up (-1 to 1, of 90°), seconds."""
+    """An event's data: pixels, pressure 0 to 1, tilt of the pen to the right and up (-1 to 1, of 90°), seconds."""
 
     x: float
     y: float
@@ -32,14 +32,14 @@ class Sample(NamedTuple):
 
 
 class Hit(NamedTuple):
-    """Of a pick: a point of the surface (mm) and its normal, out of the material, in the stock's frame."""
+    """Result of a pick: a point of the surface (mm) and its normal, out of the material, in the stock's frame."""
 
     point: np.ndarray
     normal: np.ndarray
 
 
 class View(NamedTuple):
-    """Unit vectors of the view in the stock's frame; `back` points to whoever looks."""
+    """Unit vectors of the view in the stock's frame; `back` points to the viewer."""
 
     right: np.ndarray
     up: np.ndarray
@@ -49,16 +49,16 @@ class View(NamedTuple):
 @dataclass(frozen=True)
 class Settings:
     depth: float = 0.5  # mm below the surface, along its normal
-    spacing: float = 0.5  # mm between two poses, and what the surface is looked at by
+    spacing: float = 0.5  # mm between two poses, and between two picks of the surface
     axis: str = "NORMAL"  # of the surface, VIEW, UP (the stock's z) or TILT (of the pen, upright on the view)
-    pressure: str = "NONE"  # what it does: NONE, DEPTH (share of depth), FEED (share of feed)
-    feed: float = 50.0  # mm/s, where the clock says nothing and for FEED
-    string: float = 0.0  # pixels: the tool hangs on a string of this length
-    gap: float = 10.0  # mm: what is further from one place to the next is another part of the surface
+    pressure: str = "NONE"  # effect of pressure: NONE, DEPTH (share of depth), FEED (share of feed)
+    feed: float = 50.0  # mm/s, where there are no times, and for FEED
+    string: float = 0.0  # pixels: length of the string that pulls the tool
+    gap: float = 10.0  # mm: a larger step between two places is a jump to another part of the surface
 
 
 class Piece(NamedTuple):
-    """Moves to carve: (n, 6) tip and axis, and (n - 1,) seconds. `new`: it does not go on from the last one."""
+    """Moves to carve: (n, 6) tip and axis, and (n - 1,) seconds. `new`: it does not continue the last one."""
 
     poses: np.ndarray
     dt: np.ndarray
@@ -73,9 +73,9 @@ class _Place:
 
 
 def support(outline: np.ndarray, axis: np.ndarray, towards: np.ndarray) -> np.ndarray:
-    """Of a tool with its tip in the origin, the point furthest along `towards` (3,). `outline`: (k, 2) radius, height.
+    """For a tool with its tip at the origin, the point furthest along `towards` (3,). `outline`: (k, 2) radius, height.
 
-    A body of revolution's support is that of its meridian on the side that `towards` leans to.
+    A body of revolution's support is that of its meridian on the side towards which `towards` points.
     """
     along = float(np.dot(towards, axis))
     across = towards - along * axis
@@ -87,17 +87,17 @@ def support(outline: np.ndarray, axis: np.ndarray, towards: np.ndarray) -> np.nd
 
 @dataclass
 class StrokeMaker:
-    """`add` samples as they come, then `end`, once; both give what is to be carved now."""
+    """Call `add` with samples as they come, then `end`, once; both return what to carve now."""
 
     settings: Settings
-    outline: np.ndarray  # (k, 2) radius and height of the cutter, mm; riffler.Tool.outline has it
+    outline: np.ndarray  # (k, 2) radius and height of the cutter, mm, from riffler.Tool.outline
     pick: Callable[[float, float], Hit | None]
     view: View
     _last: _Place | None = field(default=None, init=False)
     _newest: Sample | None = field(default=None, init=False)
-    _pulled: Sample | None = field(default=None, init=False)  # where the string's end is
+    _pulled: Sample | None = field(default=None, init=False)  # the end of the string
     _path: SmoothPath = field(default_factory=SmoothPath, init=False)
-    _along: float = field(default=0.0, init=False)  # the path, in its pixels: where the tool is
+    _along: float = field(default=0.0, init=False)  # the tool's distance along the path, in pixels
 
     def add(self, sample: Sample) -> list[Piece]:
         self._newest, self._pulled = sample, self._pull(sample)
@@ -105,7 +105,7 @@ class StrokeMaker:
         return self._follow()
 
     def end(self) -> list[Piece]:
-        """The tool comes to where the hand let go, string or not."""
+        """Moves the tool to the pointer's last place, with or without a string."""
         if self._newest is None:
             return []
         self._path.add(self._newest)
@@ -122,7 +122,7 @@ class StrokeMaker:
         return sample._replace(x=here.x + share * (sample.x - here.x), y=here.y + share * (sample.y - here.y))
 
     def _follow(self, end: bool = False) -> list[Piece]:
-        """Along the path as far as it is certain; not for less than half a spacing, unless it is the end."""
+        """Follows the final part of the path; not for less than half a spacing, except at the end."""
         ready = self._path.ready
         if self._last is None:
             return self._pieces(self._places([0.0]))
@@ -143,7 +143,7 @@ class StrokeMaker:
         return [_Place(s, self.pick(s.x, s.y)) for s in samples]
 
     def _wanted(self, goal: _Place, pixels: float) -> float:
-        """How many steps the way there is, so that the tool does not go straight through what lies between."""
+        """Number of steps for the distance, so that the tool does not cut straight through what lies between."""
         last = self._last
         if last.hit is None or goal.hit is None:
             return pixels  # onto the surface or off it: the edge may be at any of them
@@ -201,12 +201,12 @@ class StrokeMaker:
         return np.cos(angle) * self.view.back + np.sin(angle) * across
 
     def _pose(self, point, normal, axis, depth) -> np.ndarray:
-        """The cutter's outermost point against the normal lies `depth` below `point`."""
+        """The cutter's outermost point against the normal is `depth` below `point`."""
         tip = point - depth * normal - support(self.outline, axis, -normal)
         return np.concatenate([tip, axis])
 
     def _seconds(self, way: float, sample: Sample, passed: float) -> float:
-        """Never nothing: forces are per second."""
+        """Never 0: forces are per second."""
         if self.settings.pressure == "FEED":
             return max(way, 1e-6) / (self.settings.feed * min(max(sample.pressure, 0.01), 1.0))
         return passed if passed > 0 else max(way, 1e-6) / self.settings.feed

@@ -1,4 +1,4 @@
-"""A stroke while it is made: what it began on, what it has cut, and where it has been."""
+"""A stroke in progress: its initial state, its cuts, and the regions it has touched."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Extent = tuple[np.ndarray, np.ndarray]  # lower and upper corner, in rays
 
 @dataclass
 class Moves:
-    """Poses that go on from each other, of one tool; `copy`: of symmetry, 0 for the hand's own."""
+    """Successive poses of one tool; `copy`: index of the symmetric copy, 0 for the original."""
 
     copy: int
     tool: dict
@@ -25,18 +25,18 @@ class Moves:
 
 @dataclass
 class StrokeRecord:
-    """Of a live sculpt; a brush notes in it what it does (Brush.record)."""
+    """Record of a live sculpt's stroke, filled by its brush (Brush.record)."""
 
-    begin: Content  # the state that it began on; nobody changes it
-    token: str = field(default_factory=lambda: uuid4().hex)  # of the state that it makes
+    begin: Content  # the initial state, which nothing changes any more
+    token: str = field(default_factory=lambda: uuid4().hex)  # of the resulting state
     moves: list[Moves] = field(default_factory=list)
-    shaped: bool = False  # it has changed the material by other means than cuts
-    swept: list[Extent] = field(default_factory=list)  # what tools may have touched of the material
+    shaped: bool = False  # other operations than cuts have changed the material
+    swept: list[Extent] = field(default_factory=list)  # regions of the material that tools may have touched
     painted: list[Extent] = field(default_factory=list)  # and of the mask
     apart: set[int] = field(default_factory=set)  # copies whose last moves were kept out
 
     def cut(self, copy: int, tool, mode: str, poses: np.ndarray, new: bool) -> None:
-        """`new`: the poses do not go on from the last ones of that copy."""
+        """`new`: the poses do not continue the last ones of that copy."""
         if not new:
             for moves in reversed(self.moves):
                 if moves.copy == copy and moves.mode == mode:
@@ -45,5 +45,5 @@ class StrokeRecord:
         self.moves.append(Moves(copy, tool.to_dict(), mode, [poses]))
 
     def cuts(self, masked: bool) -> list[Cut]:
-        """`masked`: the sculpt has a mask, beside which they were made."""
+        """`masked`: the sculpt has a mask, which limited the cuts."""
         return [Cut(m.tool, np.vstack(m.pieces), mode=m.mode, masked=masked) for m in self.moves]

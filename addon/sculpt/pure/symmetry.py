@@ -1,5 +1,5 @@
-"""Copies of a stroke: mirrored in planes, turned about an axis. A tool of revolution is its own mirror image, so a copy
-of a pose is a pose."""
+"""Copies of a stroke: mirrored in planes, rotated about an axis. A tool of revolution is its own mirror image, so a
+copy of a pose is a pose."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 
 def maps(mirror: str = "", axis: str = "Z", count: int = 1) -> list[np.ndarray]:
     """(3, 3) orthogonal maps, the identity first: all products of mirrors in the planes x = 0, y = 0, z = 0 of the
-    letters in `mirror` and of `count` turns about `axis`. None twice."""
+    letters in `mirror` and of `count` rotations about `axis`. Without duplicates."""
     if count < 1:
         raise ValueError("count must be at least 1")
     if set(mirror) - set("XYZ") or axis not in ("X", "Y", "Z"):
@@ -35,8 +35,8 @@ def turned(axis: str, angle: float) -> np.ndarray:
 
 
 def copies(poses: np.ndarray, about: list[np.ndarray], origin) -> list[np.ndarray]:
-    """The poses, (n, 6), under each of the maps about `origin` (3,), mm. A copy that lies on one before is left out:
-    what runs along the mirror's plane is cut once."""
+    """The poses, (n, 6), under each of the maps about `origin` (3,), mm. A copy equal to an earlier one is left out: a
+    stroke in the mirror's plane is cut once."""
     origin = np.asarray(origin, float)
     near = 1e-6 * (1.0 + np.abs(poses[:, :3]).max(initial=0.0))
     kept: list[np.ndarray] = []
@@ -48,8 +48,8 @@ def copies(poses: np.ndarray, about: list[np.ndarray], origin) -> list[np.ndarra
 
 
 def outlines(mirror, count: int, axis: str, box, middle) -> list[tuple[np.ndarray, str, bool]]:
-    """Where the copies come from, within a box (`lower`, `upper`, mm): of each mirror a rectangle (4, 3), the letter it
-    is square to, and True; of turns the axis (2, 3), its letter, and False."""
+    """Symmetry elements within a box (`lower`, `upper`, mm): for each mirror a rectangle (4, 3), the letter of its
+    normal, and True; for rotations the axis (2, 3), its letter, and False."""
     lower, upper, middle = np.asarray(box.lower, float), np.asarray(box.upper, float), np.asarray(middle, float)
     found = []
     for letter in sorted(mirror):

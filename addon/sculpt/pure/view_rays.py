@@ -1,7 +1,7 @@
-"""Where a 3D view looks from, as numbers: rays through its pixels, and pixels of points.
+"""The viewpoint of a 3D view, as numbers: rays through its pixels, and pixels of points.
 
-A view is the 4 × 4 matrix that takes points to clip space, and its size in pixels. With millimetres of a stock's frame
-as the points' space, a mouse's way and this are all that a stroke is made of, in a window or not.
+A view is the 4 × 4 matrix that maps points to clip space, and its size in pixels. With millimetres of a stock's frame
+as the points' space, the pointer's path and a view define a stroke, in a window or not.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from .stroke_path import View
 
 
 def cross(a, b):
-    """Of two sequences of three or more floats: np.cross takes ten times as long."""
+    """Cross product of two sequences of three or more floats: np.cross takes ten times as long."""
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
@@ -28,10 +28,10 @@ class ViewRays:
             raise ValueError("view: the matrix must be finite and invertible, and the size positive")
 
     def ray(self, x: float, y: float) -> tuple[np.ndarray, np.ndarray]:
-        """Origin on the near plane and unit direction away from whoever looks.
+        """Origin on the near plane and unit direction away from the viewer.
 
-        A pixel's ray is where two planes meet: the matrix's depth, whose last digits the near and far plane share, is
-        not asked for the direction.
+        A pixel's ray is the intersection of two planes. The matrix's depth is not used for the direction, since the
+        near and the far plane differ only in its last digits.
         """
         across, up, depth, weight = self.matrix.tolist()
         a, b = 2 * x / self.size[0] - 1, 2 * y / self.size[1] - 1
@@ -39,7 +39,7 @@ class ViewRays:
         second = [v - b * w for v, w in zip(up, weight, strict=True)]
         near = [d + w for d, w in zip(depth, weight, strict=True)]
         along = cross(first, second)
-        # Where the three planes meet (Cramer's rule).
+        # The intersection of the three planes (Cramer's rule).
         beside, below = cross(second, near), cross(near, first)
         inverse = -1 / sum(n * c for n, c in zip(near[:3], along, strict=True))
         origin = [
@@ -49,7 +49,7 @@ class ViewRays:
         return np.array(origin), np.array([c / length for c in along])
 
     def project(self, points) -> np.ndarray:
-        """(n, 2) pixels of (n, 3) points; NaN behind whoever looks."""
+        """(n, 2) pixels of (n, 3) points; NaN behind the viewer."""
         clip = np.c_[np.asarray(points, float), np.ones(len(points))] @ self.matrix.T
         with np.errstate(divide="ignore", invalid="ignore"):
             pixels = (clip[:, :2] / clip[:, 3:] + 1) * 0.5 * self.size
@@ -57,7 +57,7 @@ class ViewRays:
         return pixels
 
     def basis(self) -> View:
-        """Right, up and towards whoever looks, in the middle of the view."""
+        """Right, up and towards the viewer, in the middle of the view."""
         away = self.ray(0.5 * self.size[0], 0.5 * self.size[1])[1]
         right = self.matrix[0, :3] - (self.matrix[0, :3] @ away) * away
         right /= np.linalg.norm(right)
@@ -66,7 +66,7 @@ class ViewRays:
         return View(right, up / np.linalg.norm(up), -away)
 
     def pixels_per_unit(self, point) -> float:
-        """At a point, square to the view."""
+        """At a point, perpendicular to the view."""
         away = self.ray(0.5 * self.size[0], 0.5 * self.size[1])[1]
         across = self.matrix[0, :3] - (self.matrix[0, :3] @ away) * away
         weight = self.matrix[3] @ np.append(point, 1.0)

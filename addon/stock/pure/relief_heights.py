@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-LUMINANCE = (0.2126, 0.7152, 0.0722)  # of linear red, green and blue: Rec. ITU-R BT.709-6, item 3.2
-STEEP = 4.0  # of a grid's width: what a surface may fall from one place to the next and still be one
+LUMINANCE = (0.2126, 0.7152, 0.0722)  # weights of linear red, green and blue: Rec. ITU-R BT.709-6, item 3.2
+STEEP = 4.0  # grid widths: largest drop of a surface from one place to the next
 
 
 def luminance(pixels: np.ndarray) -> np.ndarray:
-    """(n, m) of `pixels` (n, m, channels), 0 to 1; what is transparent is dark."""
+    """(n, m) of `pixels` (n, m, channels), 0 to 1; transparent pixels are dark."""
     channels = pixels.shape[2]
     grey = pixels[:, :, 0] if channels < 3 else pixels[:, :, :3] @ np.array(LUMINANCE)
     alpha = pixels[:, :, -1] if channels in (2, 4) else 1.0
@@ -17,15 +17,15 @@ def luminance(pixels: np.ndarray) -> np.ndarray:
 
 
 def fitted(heights: np.ndarray, rows: int, columns: int) -> np.ndarray:
-    """The picture over `rows` × `columns` places that reach from rim to rim: means where it is finer than those,
-    between its pixels where it is coarser."""
+    """The picture at `rows` × `columns` places from edge to edge: averaged where it is finer than those, interpolated
+    where it is coarser."""
     return _along(_along(heights, rows, 0), columns, 1)
 
 
 def _along(values: np.ndarray, count: int, axis: int) -> np.ndarray:
     values = np.moveaxis(values, axis, 0)
     n = len(values)
-    # the running integral of the pixels: exact means over any window, however fine or coarse
+    # the running integral of the pixels: exact means over any window
     integral = np.concatenate([np.zeros((1, *values.shape[1:])), np.cumsum(values, axis=0)])
     step = n / max(count - 1, 1)
     half = max(0.5 * step, 0.5)
@@ -42,11 +42,12 @@ def _at(integral: np.ndarray, x: np.ndarray) -> np.ndarray:
 
 
 def draped(points: np.ndarray, found: np.ndarray, up: np.ndarray, heights: np.ndarray, depth: float, reach: float):
-    """(top, bottom, cells) for riffler.shape.slab: `heights` (n, m), 0 to 1, on a surface that was looked at against
-    `up` at `points` (n, m, 3), where it was `found` (n, m). What is raised stands `depth` × height over the surface and
-    reaches `reach` below it; a negative `depth` engraves, and reaches as much above.
+    """(top, bottom, cells) for riffler.shape.slab: `heights` (n, m), 0 to 1, on a surface sampled against `up` at
+    `points` (n, m, 3), where it was `found` (n, m). Raised material is `depth` × height above the surface and reaches
+    `reach` below it; a negative `depth` engraves, and reaches as much above.
 
-    A cell is left out where the surface is not under all its corners, or falls so steeply that it is another one."""
+    A cell is left out if the surface is not under all its corners, or drops so steeply that it is another surface.
+    """
     level = points @ up
     offset = heights[:, :, None] * abs(depth) * up
     top, bottom = (points + offset, points - reach * up) if depth > 0 else (points + reach * up, points - offset)
@@ -59,14 +60,14 @@ def draped(points: np.ndarray, found: np.ndarray, up: np.ndarray, heights: np.nd
 
 
 def leaves(top: np.ndarray, raised: np.ndarray, lower, upper, slight: float) -> bool:
-    """Whether what is raised by more than `slight` (n, m) has a place, of `top` (n, m, 3), further than that outside of
+    """Whether material raised by more than `slight` (n, m) has a place, of `top` (n, m, 3), further than that outside
     the box from `lower` to `upper`. Places that are not found are NaN."""
     outside = ((top < lower - slight) | (top > upper + slight)).any(axis=2)
     return bool((outside & (raised > slight)).any())
 
 
 def _spacing(points: np.ndarray, up: np.ndarray) -> float:
-    """How far the places are from each other, seen along `up`."""
+    """The distance between places, seen along `up`."""
     across = np.diff(points, axis=0)
     across = across - (across @ up)[:, :, None] * up
     return float(np.nanmax(np.linalg.norm(across, axis=2), initial=0.0))

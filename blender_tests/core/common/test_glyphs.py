@@ -1,4 +1,4 @@
-"""Arrows, rings, lines and scales: closed, the right way round, of the size of the closed form."""
+"""Arrows, rings, lines and scales: closed, correctly oriented, of the size of the closed form."""
 
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ def audited(triangles):
 
 
 def polygon(radius):
-    """Area of the polygon that a circle is drawn as."""
+    """Area of the polygon that represents a circle."""
     return 0.5 * glyphs.SIDES * radius**2 * np.sin(2 * np.pi / glyphs.SIDES)
 
 
@@ -39,7 +39,7 @@ def test_a_short_arrow_is_a_smaller_head_and_none_is_nothing():
     assert glyphs.arrow((1, 2, 3), (1, 2, 3), 1.0).shape == (0, 3, 3)
     assert glyphs.arc_arrow((0, 0, 0), (0, 0, 1), 5, 0.0, 0.2).shape == (0, 3, 3)
     bent = glyphs.arc_arrow((0, 0, 0), (0, 0, 1), 5, 0.002, 1.0).reshape(-1, 3)
-    assert np.ptp(bent, axis=0).max() < 0.03  # 0.01 long
+    assert np.ptp(bent, axis=0).max() < 0.03  # length 0.01
 
 
 @pytest.mark.parametrize("angle", [0.05, 0.5, 2.0, 5.5])
@@ -53,7 +53,7 @@ def test_a_bent_arrow_turns_as_the_right_hand_does(angle):
     tip = 5 * (np.cos(angle) * first + np.sin(angle) * second)
     assert np.linalg.norm(away - tip, axis=1).min() < 1e-9
     assert np.abs(np.linalg.norm(away - np.outer(away @ axis, axis), axis=1) - 5).max() < 0.5
-    if angle > 0.3:  # the shaft is closed but for its tail, which is a ring
+    if angle > 0.3:  # the shaft is closed except for its tail, which is a ring
         assert audited(triangles)["open_edges"] == 2 * glyphs.SIDES
 
 

@@ -1,4 +1,4 @@
-"""Long work in steps: of a cut and of a native task, on a clock, a volume and a task of our own."""
+"""Long work in steps: a cut and a native task, with a fake clock, volume and task."""
 
 import threading
 from itertools import pairwise
@@ -29,7 +29,7 @@ class Clock:
 
 
 class Volume:
-    """Counts moves; each takes `cost` s; fails at move `bad`."""
+    """Counts moves; each takes `cost` s; move `bad` fails."""
 
     def __init__(self, clock, cost=0.001, bad=None):
         self.clock, self.cost, self.bad = clock, cost, bad
@@ -83,7 +83,7 @@ def test_a_step_takes_about_its_budget():
 def test_a_slow_move_is_not_held_up_by_the_guess():
     clock = Clock()
     j = job(Volume(clock, cost=1.0), cut(0, 40))
-    j.step(0.04)  # the first guess is wrong once
+    j.step(0.04)  # the first estimate is wrong once
     for _ in range(10):
         begin = clock.now
         j.step(0.04)
@@ -148,7 +148,7 @@ def test_what_was_made_at_once_needs_no_step():
 
 
 class Task:
-    """Looks like riffler.Task: done after `seconds` of its clock, then gives or raises `outcome`."""
+    """Has the interface of riffler.Task: done after `seconds` of its clock, then returns or raises `outcome`."""
 
     def __init__(self, clock, seconds, outcome):
         self.clock, self.seconds, self.outcome = clock, seconds, outcome
@@ -185,7 +185,7 @@ def task_job(seconds, outcome, text=""):
 
 def test_a_task_is_waited_for_no_longer_than_the_budget():
     clock, j = task_job(1.0, "paths")
-    assert not j.step(0.0) and clock.now == 0  # a window's tick only looks
+    assert not j.step(0.0) and clock.now == 0  # a window's tick only polls
     assert not j.step(0.25) and clock.now == pytest.approx(0.25) and j.fraction == pytest.approx(0.25)
     assert j.result is None
     assert j.step(10.0) and clock.now < 1.01 and j.result == "paths"
@@ -213,7 +213,7 @@ def test_cancel_reaches_the_task():
 
 
 class Making:
-    """A task that is done when it is asked for the n-th time."""
+    """A task that is done at its n-th poll."""
 
     def __init__(self, asked):
         self.left, self.cancelled = asked, False
@@ -296,7 +296,7 @@ def test_work_in_pieces_goes_on_where_it_was_and_gets_what_its_task_has_made():
     assert not work.step(0.0) and done == ["a", "b"]
     assert (
         not work.step(0.0) and work.in_background and work.fraction == 0.75
-    )  # a window's tick only looks from here on
+    )  # a window's tick only polls from here on
     assert not work.step(0.0) and done == ["a", "b"]
     clock.now = 1.0
     assert work.step(0.0) and done == ["a", "b", "made"] and work.result == "all" and not work.in_background

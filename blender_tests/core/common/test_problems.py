@@ -1,4 +1,4 @@
-"""What is said to a person: errors of the system, files that cannot be, surfaces too large, tables of a report."""
+"""Messages for users: errors of the system, invalid files, surfaces too large, tables of a report."""
 
 import errno
 import os
@@ -71,13 +71,11 @@ def test_a_file_that_cannot_be_read_is_named(tmp_path, monkeypatch):
 
 def test_a_surface_is_refused_by_its_triangles_not_by_its_box():
     cube = (2000.0, 2000.0, 2000.0)
-    with pytest.raises(
-        ValueError, match=r"The cube is 2000 × 2000 × 2000 mm, which are 192.000.000 triangles at 0.5 mm"
-    ):
+    with pytest.raises(ValueError, match=r"The cube is 2000 × 2000 × 2000 mm, or 192.000.000 triangles at 0.5 mm"):
         estimate.check_surface("The cube", cube, estimate.box_area(cube), 0.5)
     estimate.check_surface("The cube", cube, estimate.box_area(cube), 2.0)  # 12 million
     estimate.check_surface("A rod across", cube, 1e5, 0.5)
-    estimate.check_surface("No number", cube, float("nan"), 0.5)  # the volume refuses it in its own words
+    estimate.check_surface("No number", cube, float("nan"), 0.5)  # the volume refuses it with its own message
 
 
 def test_boxes_have_the_triangles_that_are_foretold():
@@ -89,6 +87,6 @@ def test_a_report_is_a_table_and_folders_say_whether_they_can_be_used(tmp_path, 
     text = diagnosis.table("Title", [("a", "1"), ("longer", "2")])
     assert text == "Title\na       1\nlonger  2\n"
     assert diagnosis.folder(tmp_path) == str(tmp_path)
-    assert diagnosis.folder(tmp_path / "x" / "y") == f"{tmp_path}/x/y, made when it is needed"
+    assert diagnosis.folder(tmp_path / "x" / "y") == f"{tmp_path}/x/y, created on demand"
     monkeypatch.setattr(os, "access", lambda path, mode: False)
     assert "may not be written" in diagnosis.folder(tmp_path)

@@ -42,7 +42,7 @@ def test_opposite_axes_are_joined_by_a_half_turn():
 
 
 def test_transport_twists_nowhere():
-    """Each quaternion gives its axis, and the turn from one to the next is square to both axes."""
+    """Each quaternion gives its axis, and the rotation axis from one to the next is perpendicular to both axes."""
     t = np.linspace(0, 1, 333)
     axes = np.c_[np.sin(3 * t) * np.cos(9 * t), np.sin(3 * t) * np.sin(9 * t), np.cos(3 * t)]  # from pole to pole
     q = quaternions.transported(axes)

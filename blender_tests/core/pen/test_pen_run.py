@@ -1,4 +1,4 @@
-"""Names of journals, the shape of the tool that is shown, and a device's session with its journal."""
+"""Names of journals, the displayed shape of the tool, and a device's session with its journal."""
 
 import time
 from datetime import datetime
@@ -70,7 +70,7 @@ def test_the_rows_of_a_run_and_its_journal_tell_the_same_and_states_are_known_af
         states[token] = volume.to_bytes()
     assert session.undo() == 1 and kept.go("t2") and kept.token == "t2" and not kept.go("x")
     assert run.halt() == "" and not run.running
-    assert journal.crashed(tmp_path)  # nobody holds it, as after a crash
+    assert journal.crashed(tmp_path)  # no process holds it, as after a crash
     kept.stopped()
     assert journal.crashed(tmp_path) == []
     for token, expected in states.items():

@@ -1,4 +1,4 @@
-"""Colliding frames: what is computed, what lies together, and what it is called."""
+"""Colliding frames: computed clearances, runs, and their names."""
 
 from itertools import pairwise
 
@@ -9,7 +9,7 @@ from addon.plan.pure import collisions
 
 
 class Collider:
-    """Clearance is the tip's height; counts what it is asked."""
+    """Clearance is the tip's height; counts its queries."""
 
     def __init__(self):
         self.asked = 0

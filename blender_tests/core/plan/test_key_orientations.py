@@ -1,4 +1,4 @@
-"""Which frame is which point of which path, and what keyframes say about a plan's keys."""
+"""The point of each frame on its path, and the keyframes' effect on a plan's keys."""
 
 from dataclasses import dataclass, field
 from itertools import pairwise
@@ -55,7 +55,7 @@ def test_paths_lie_one_after_the_other_from_whole_frame_to_whole_frame():
 def test_a_frame_belongs_to_the_nearest_point_of_its_path():
     layout = key_orientations.Layout([line(0, 10), line(0, 4, 5)], 1.0, first=1)
     assert layout.place(1) == (0, 0, 0.0) and layout.place(11) == (0, 1, 10.0)
-    assert layout.place(6)[:2] == (0, 0)  # half way: the earlier
+    assert layout.place(6)[:2] == (0, 0)  # halfway: the earlier
     assert layout.place(6.01)[:2] == (0, 1) and layout.place(6.01)[2] == pytest.approx(5.01)
     assert layout.place(0.5)[:2] == (0, 0) and layout.place(11.5)[:2] == (0, 1)
     for outside in (0.4, 11.6, 16, 20.4, 27, -100, 1e9):
@@ -139,7 +139,7 @@ def test_changes_are_told_apart():
     assert added and (added.added, added.moved, added.deleted, added.turned) == ([3], [], [], [])
     moved = key_orientations.change(before, {0: before[0], 6: before[5] + 3e-8 * np.eye(3)[1], 9: before[9]})
     assert moved.moved == [(5, 6)] and not (moved.added or moved.deleted or moved.turned)
-    assert moved.keys[6] is before[5]  # the plan's own number, not what single precision made of it
+    assert moved.keys[6] is before[5]  # the plan's exact number, not its single-precision copy
     deleted = key_orientations.change(before, {0: before[0]})
     assert deleted.deleted == [5, 9] and deleted.keys == {0: before[0]}
     turned = key_orientations.change(before, {**before, 5: unit(1, 0, 1.00001)})
@@ -176,7 +176,7 @@ def test_keys_that_nobody_has_turned_stay_as_somebody_set_them():
     of_path = {**known.keys[0], 40: unit(1, 0, 1)}
     found, q = key_orientations.written(layout, [of_path], known, dict(zip(frames, table, strict=True)))
     assert found.tolist() == [1.0, 8.1, 21.0] and np.allclose(q[1], twist)
-    of_path[14] = unit(1, 0, 2)  # turned: anew, at the point's own frame
+    of_path[14] = unit(1, 0, 2)  # turned: set again, at the point's own frame
     found, q = key_orientations.written(layout, [of_path], known, dict(zip(frames, table, strict=True)))
     assert found.tolist() == [1.0, 8.0, 21.0]
     assert np.allclose(quaternions.axes_of(q[1]), unit(1, 0, 2))
@@ -192,7 +192,7 @@ def test_fingerprints_see_what_single_precision_keeps():
 
 
 class Divided:
-    """A path of the core by its interface, on a line: what `divided` makes has more points and no axes."""
+    """A path with the interface of the core's, on a line: the result of `divided` has more points and no axes."""
 
     def __init__(self, xs, axes=(), of=None, rule=""):
         self.centres = np.array([(x, 0.0, 0.0) for x in xs])
@@ -230,7 +230,7 @@ def test_axes_from_elsewhere_become_keys_and_no_axes_stay_none():
 def test_a_layout_that_follows_another_lays_out_what_is_another_path_or_elsewhere():
     first, second, third = line(0, 10), line(0, 20), line(0, 5)
     before = key_orientations.Layout([first, second, third], 1.0)
-    same = line(0, 20)  # as long, and another object
+    same = line(0, 20)  # of the same length, and another object
     after = key_orientations.Layout([first, same, third], 1.0, 1, before)
     assert after.made == 1 and after.tracks[0] is before.tracks[0] and after.tracks[2] is before.tracks[2]
     longer = key_orientations.Layout([first, line(0, 30), third], 1.0, 1, before)

@@ -1,4 +1,4 @@
-"""What is said about cutter locations, of a report of our own."""
+"""Messages about cutter locations, from a fake report."""
 
 from types import SimpleNamespace
 
@@ -23,7 +23,7 @@ def said(**more):
 
 
 def test_what_was_put_between_belongs_to_the_point_before():
-    assert said() == [("inserted", 2, "Path 2, 1 row put between its points")]
+    assert said() == [("inserted", 2, "Path 2, 1 row inserted between its points")]
 
 
 def test_neighbouring_points_with_one_reason_are_one_line():

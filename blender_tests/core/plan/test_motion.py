@@ -1,4 +1,4 @@
-"""At which frame the tool is in which pose."""
+"""The tool's pose at each frame."""
 
 import numpy as np
 import pytest
@@ -30,7 +30,7 @@ def test_a_path_without_cutter_locations_is_at_its_points(closed):
     found = motion.along(track, start, points, None)
     assert np.array_equal(found.frames, track.frames) and np.array_equal(found.poses, start)
     assert found.frames[-1] == track.last
-    lesser = motion.along(track, start[2:], points[2:], None)  # the tool does not stand on the first two
+    lesser = motion.along(track, start[2:], points[2:], None)  # the tool has no location on the first two
     assert np.array_equal(lesser.frames, track.frames[2:])
 
 

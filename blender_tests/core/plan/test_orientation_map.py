@@ -1,4 +1,4 @@
-"""The map of free orientations as a picture: cells, angles, pixels, colours; and what the tool is near to."""
+"""The map of free orientations as a picture: cells, angles, pixels, colours; and the tool's surroundings."""
 
 import math
 import time
@@ -71,8 +71,8 @@ def floor():
     return box((-50, -50, -10), (50, 50, 0))
 
 
-# The holder's flank, 16 mm from the axis at its top, leans by 1 : 15. What is 3 mm in it there is as deep in it as from
-# the top, h, where (3 - h / 15) c = h with the flank's cosine c.
+# The holder's flank, 16 mm from the axis at its top, leans by 1 : 15. A point 3 mm inside it is as far from the flank
+# as from the top, at depth h with (3 - h / 15) c = h and the flank's cosine c.
 FLANK = 15 / math.hypot(15, 1)
 IN_HOLDER = 3 * FLANK / (1 + FLANK / 15)
 UPRIGHT, BESIDE = np.array([(0.0, 0, 0, 0, 0, 1), (10, 0, 0, 0, 0, 1)])
@@ -131,7 +131,7 @@ def test_surroundings_are_made_while_others_work_and_errors_are_raised_by_the_re
     with pytest.raises(TypeError):
         surroundings.Making("no mesh", "Plate").result()
     flat = riffler.Mesh(np.array([(0.0, 0, 0), (9, 0, 0), (0, 9, 0)]), np.array([(0, 1, 2)]))
-    with pytest.raises(ValueError, match="no volume"):  # at once: there is nothing to wait for
+    with pytest.raises(ValueError, match="no volume"):  # at once, without waiting
         surroundings.Making(floor(), "Plate", [("Sheet", flat)])
 
 

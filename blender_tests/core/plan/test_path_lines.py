@@ -1,4 +1,4 @@
-"""A plan's lines by what the tool does, titles of findings, names on the timeline, sizes of tools and parts."""
+"""A plan's lines by the tool's movement, titles of findings, names on the timeline, sizes of tools and parts."""
 
 import json
 import math
@@ -65,7 +65,7 @@ def test_ways_between_cuts_are_lead_ins_rapids_and_retracts():
     assert np.allclose(found["rapid"][:, :, 2], 53), "at safe height, the ball's centre a radius above"
     up, down = found["retract"][:, :, 2], found["lead"][:, :, 2]
     assert np.all(np.diff(up, axis=1) >= 0) and np.all(np.diff(down, axis=1) <= 0)
-    with pytest.raises(ValueError, match="the program does not have path 2 as it is"):
+    with pytest.raises(ValueError, match="the program does not contain path 2 unchanged"):
         program_timeline.begins(program.poses, [cuts[0], cuts[1] + 1])
 
 
@@ -79,7 +79,7 @@ def test_names_on_the_timeline_are_known_again():
 
 def test_titles_begin_with_what_differs():
     assert finding_titles.verified("Gouge", 0.7694, (43.8, 17.2, 7.2)) == "Gouge 0.77 at 44 17 7"
-    assert finding_titles.verified("Rapid cuts", 1234.5, (-0.2, 0, 1e3)) == "Rapid cuts 1234 at 0 0 1000"
+    assert finding_titles.verified("Rapid in material", 1234.5, (-0.2, 0, 1e3)) == "Rapid in material 1234 at 0 0 1000"
     assert finding_titles.verified("Out of reach", 0.0, (0, 0, 0)) == "Out of reach at 0 0 0"
 
 
@@ -92,7 +92,7 @@ def test_parts_are_odd_where_no_tool_of_that_size_makes_them():
 @pytest.mark.parametrize("kind", ["ball", "flat", "fillet", "taper", "cone_end"])
 @pytest.mark.parametrize(("key", "value"), [("diameter", 0.2), ("diameter", 60.0), ("length", 3.0), ("length", 200.0)])
 def test_every_size_that_is_set_makes_a_tool(kind, key, value):
-    """Of a cutter whose other sizes are those that a change of the kind gives it."""
+    """For a cutter with the other sizes that a change of its shape sets."""
     tool = riffler.Tool.ball(6, 40).with_shank([(40, 3, 60, 3)]).with_holder([(60, 14, 90, 16)]).to_dict()
     made = tool_sizes.changed(tool_sizes.changed(json.loads(json.dumps(tool)), "kind", kind), key, value)
     built = riffler.Tool.from_dict(made)
@@ -126,7 +126,7 @@ def test_machines_and_options_have_names_that_blender_takes():
     assert machine_fields.label(fact) == "Max Rotary (deg/min)" and machine_fields.about(fact)[0].isupper()
     assert [f["name"] for f in machine_fields.missing("linuxcnc-xyzac", {})] == ["rot_point"]
     assert machine_fields.missing("linuxcnc-xyzac", {"tcp": True}) == []
-    with pytest.raises(ValueError, match=r"Rot Point \(mm\) is not given, .*3D cursor"):
+    with pytest.raises(ValueError, match=r"Rot Point \(mm\) is not set, .*3D cursor"):
         machine_fields.check("linuxcnc-xyzac", {})
-    with pytest.raises(ValueError, match=r"Pivot Length \(mm\) is not given, .*panel Machine$"):
+    with pytest.raises(ValueError, match=r"Pivot Length \(mm\) is not set, .*panel Machine$"):
         machine_fields.check("head-head", {"tcp": False})

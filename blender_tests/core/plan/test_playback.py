@@ -1,4 +1,4 @@
-"""What the timeline plays against what the program cuts: the reference is scipy's slerp."""
+"""The timeline's animation compared with the program: the reference is scipy's slerp."""
 
 import numpy as np
 import pytest
@@ -17,7 +17,7 @@ def program(count=40, seed=3):
 
 
 def player(frames, tips, quats):
-    """F-curves as Blender has them: single precision, straight between keys, by component."""
+    """F-curves as in Blender: single precision, linear between keys, by component."""
     frames, tips, quats = (np.float32(x).astype(float) for x in (frames, tips, quats))
 
     def play(at):
@@ -42,7 +42,7 @@ def test_a_baked_program_plays_as_it_cuts():
 
 
 def test_the_way_between_rows_is_the_great_circle():
-    """The reference that the animation is held against, from other hands."""
+    """The reference for the animation is independent code."""
     way = program()
     for k in range(len(way) - 1):
         a, b = way.poses[k, 3:], way.poses[k + 1, 3:]
@@ -55,7 +55,7 @@ def test_the_way_between_rows_is_the_great_circle():
 
 
 def test_keys_far_apart_are_reported_with_the_place():
-    """Two keys 100° apart: at a quarter of the way normalised lerp lags 1.66° behind, by the closed form."""
+    """Two keys 100° apart: at a quarter of the turn normalised lerp lags 1.66° behind, by the closed form."""
     a = np.radians(100)
     poses = np.array([(0, 0, 0, 0, 0, 1), (0, 0, 0, np.sin(a), 0, np.cos(a))])
     way = motion.Motion(np.array([1.0, 11.0]), poses)

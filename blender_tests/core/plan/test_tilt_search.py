@@ -1,4 +1,4 @@
-"""Few keys that are free: of a step whose wall, roof and floor are known in closed form."""
+"""Few keys that are free: on a step whose wall, roof and floor are known in closed form."""
 
 import math
 
@@ -60,7 +60,7 @@ def test_an_open_valley_is_keyed_at_its_ends_in_the_middle_between_the_walls():
 
 
 def test_a_roof_over_the_middle_takes_further_keys_and_the_way_is_free_by_distance():
-    """A beam across the valley, from 22 to 38 in x: held against the distance from axis to beam."""
+    """A beam across the valley, from 22 to 38 in x: compared with the distance from axis to beam."""
     beam = ((22, -40, 12), (38, -8, 16))
     collider = solid(FLOOR, WALL, beam)
     answer = found(valley(61, 60), collider)
@@ -80,7 +80,7 @@ def test_where_nothing_is_free_the_point_is_named():
     lid = ((20, -60, 6.5), (40, 20, 30))  # lower than the cutter is long
     answer = found(valley(61, 60), solid(FLOOR, WALL, lid, ((20, -60, -5), (40, -8, 30))), count=3)
     assert answer.path is None and 20 <= answer.point <= 40 and "no orientation is free" in answer.reason
-    assert "point" not in answer.reason  # that of the few points, which mean nothing to anybody
+    assert "point" not in answer.reason  # the index among the few points, which means nothing to the user
 
 
 def test_the_machine_s_cone_is_kept():
@@ -124,7 +124,7 @@ def test_further_keys(points, blocked, wanted):
 
 
 class Slow:
-    """A search that takes so many looks."""
+    """A search that takes so many polls."""
 
     def __init__(self, name, looks):
         self.answer, self.looks, self.cancelled = name, looks, False

@@ -1,4 +1,4 @@
-"""Tool libraries without Blender: what is read from files, what is wrong with them, and pictures of tools."""
+"""Tool libraries without Blender: tools read from files, errors of files, and pictures of tools."""
 
 import json
 import os
@@ -141,7 +141,7 @@ def test_names_of_tools_become_names_of_files():
 
 
 def read_only(tmp_path):
-    """A folder that even root cannot write into, and one that is a file."""
+    """A folder that even root cannot write into, and a file in place of a folder."""
     (tmp_path / "file").write_text("")
     return [tmp_path / "file" / "tools", "/proc/riffler"] if os.path.isdir("/proc/self") else [tmp_path / "file" / "x"]
 
@@ -169,7 +169,7 @@ def test_a_disk_that_is_full_leaves_the_file_before(tmp_path, monkeypatch):
 
 
 def covered(tool, size=256):
-    """Area of what a picture shows, mm², and the picture."""
+    """Area of the shape in a picture, mm², and the picture."""
     pixels = tool_picture.profile(tool.outline(0.001), size)
     low, high = 0.0, max(line[:, 1].max() for _, line in tool.outline())
     wide = max(line[:, 0].max() for _, line in tool.outline())

@@ -1,4 +1,5 @@
-"""Turning the tool: angles, the pointer on dials and on the ball, typed numbers; held against rotations by hand."""
+"""Turning the tool: angles, the pointer on dials and on the ball, typed numbers; compared with rotations
+computed here."""
 
 import math
 
@@ -25,7 +26,7 @@ def ray_to(place, eye=(30.0, -80, 60)):
 
 
 def on_dial(path, handle, angles, turned, radius=20.0):
-    """A place on a dial, so far around it."""
+    """A place on a dial, at this angle."""
     frame = path.frames[2]
     axis = tool_rotation.dial_axis(frame, angles[0], handle)
     across = np.cross(axis, EAST if abs(axis @ EAST) < 0.9 else (0, 1, 0))
@@ -87,12 +88,12 @@ def test_the_tool_s_end_goes_where_the_pointer_goes():
     goal = np.array([0.48, -0.64, 0.6])
     made.move(ray_to(centre + radius * goal))
     assert np.allclose(made.axis, goal, atol=1e-6)
-    made.move(ray_to(np.add(centre, (300, 0, 0))))  # beside the ball: its edge
+    made.move(ray_to(np.add(centre, (300, 0, 0))))  # outside the ball: its edge
     assert np.linalg.norm(made.axis) == pytest.approx(1) and made.axis @ goal > 0
 
 
 def test_a_ball_is_held_on_the_side_that_the_axis_is_on():
-    """An axis that points away from whoever looks is on the far side."""
+    """An axis that points away from the viewer is on the far side."""
     away = np.array([0.0, 1, 0])
     ball = tool_rotation.Ball((0, 0, 0), away, 10.0, ray_to((0, 10, 0), (1, -90, 2)))
     goal = np.array([0.1, 1, 0.2]) / np.linalg.norm((0.1, 1, 0.2))
@@ -107,7 +108,7 @@ def test_typed_numbers_are_how_far_it_is_turned():
     assert made.angles == pytest.approx((0.1, 0.2 + math.radians(12.5)), abs=1e-7) and str(made.typed) == "12.5"
     before = made.angles
     made.move(ray_to((50, 50, 0)))
-    assert made.angles == before, "the pointer does not count beside a number"
+    assert made.angles == before, "the pointer does not count once a number is typed"
     assert made.type("MINUS", "-") and made.angles[1] == pytest.approx(0.2 - math.radians(12.5), abs=1e-7)
     assert made.type("BACK_SPACE", "") and str(made.typed) == "-12."
     assert not made.type("A", "a") and not made.type("LEFT_SHIFT", "")

@@ -1,4 +1,4 @@
-"""The stock at any row is what carving up to it in one go makes, whatever way led there."""
+"""The stock at any row equals the result of carving up to it in one call, for any order of visits."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""A program's rows on the timeline, and which lines of its text they are."""
+"""A program's rows on the timeline, and their line numbers."""
 
 import numpy as np
 import pytest

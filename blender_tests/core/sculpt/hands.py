@@ -1,9 +1,9 @@
-"""A hand with a mouse, as Blender hears it: whole pixels, 125 times a second; and a live sculpt without Blender."""
+"""A hand with a mouse as Blender receives it: whole pixels, 125 times a second; and a live sculpt without Blender."""
 
 import numpy as np
 import riffler
 
-RATE = 125  # Hz: what a mouse tells
+RATE = 125  # Hz: rate of a mouse
 
 
 class Run:
@@ -32,8 +32,8 @@ class Run:
 
 
 def way(start, angle, length, bend, speed):
-    """Pixels (n, 2) and seconds (n,) of a hand, eight places between two samples: it goes off at `angle` (rad), at a
-    speed (pixels a second) that rises and falls as a hand's does, and turns by `bend` (rad) there and back."""
+    """Pixels (n, 2) and seconds (n,) of a hand, eight places between two samples: it starts at `angle` (rad), at a
+    speed (pixels a second) that rises and falls like a hand's, and turns by `bend` (rad) and back."""
     steps = 8 * RATE
     seconds = np.arange(0, 3 * length / speed, 1 / steps)
     pace = speed * (1 + 0.4 * np.sin(4.4 * seconds))
@@ -45,7 +45,7 @@ def way(start, angle, length, bend, speed):
 
 
 def samples(places, seconds):
-    """What Blender is told of that: rows x, y, pressure, tilts, time, where the mouse has gone to another pixel."""
+    """Blender's events of that: rows x, y, pressure, tilts, time, where the mouse has moved to another pixel."""
     told = np.round(places[::8])
     moved = np.r_[True, (np.diff(told, axis=0) != 0).any(axis=1)]
     return [(x, y, 1.0, 0.0, 0.0, t) for (x, y), t in zip(told[moved], seconds[::8][moved], strict=True)]

@@ -1,4 +1,4 @@
-"""Strokes on a volume, seen from above: what is carved and put on, what a text repeats, what is refused."""
+"""Strokes on a volume, seen from above: what is carved and added, what a text repeats, what is refused."""
 
 import json
 
@@ -46,7 +46,7 @@ def stroke(run, *places, tool=BALL, **chosen):
 
 
 def groove(length, depth, radius=3.0):
-    """Closed form: a segment of the circle along the way, and two halves of a cap of the ball."""
+    """Closed form: a segment of the circle along the path, and two halves of a cap of the ball."""
     half = np.arccos((radius - depth) / radius)
     segment = radius**2 * (half - np.sin(half) * np.cos(half))
     return length * segment + np.pi * depth**2 * (3 * radius - depth) / 3

@@ -1,4 +1,4 @@
-"""The table of brushes: what each does is what a journal replays, and nothing but its own module has to know it."""
+"""The table of brushes: a journal replays the effect of each, and only its own module knows it."""
 
 import importlib
 import sys
@@ -20,7 +20,7 @@ EVERY = pytest.mark.parametrize("brush", brushes.BRUSHES.values(), ids=str)
 
 
 class Sculpt:
-    """A live sculpt without Blender: half of what is left of a block after a groove is protected."""
+    """A live sculpt without Blender: half of the remaining block next to a groove is protected."""
 
     def __init__(self):
         self.volume = riffler.Volume.block(*BOX)

@@ -1,5 +1,5 @@
-"""Grooves of a mouse's whole pixels, at the settings that a new scene has: held against the sweep of a ball along the
-hand's own way, which is worked out densely and in doubles."""
+"""Grooves of a mouse's whole pixels, with the settings of a new scene: compared with the sweep of a ball along the
+hand's own path, computed densely in doubles."""
 
 import numpy as np
 import pytest
@@ -40,7 +40,7 @@ def sphere():
 
 
 def groove(run, on, places, seconds):
-    """Carves; returns the hand's own way of the ball's centre, and the surface's normals there, (n, 3) each."""
+    """Carves; returns the hand's own path of the ball's centre, and the surface's normals there, (n, 3) each."""
     made = brush_stroke.BrushStroke(run, BALL, above(), brush_stroke.Choice(depth=DEPTH))
     for row in samples(places, seconds):
         made.add(Sample(*row))
@@ -50,11 +50,11 @@ def groove(run, on, places, seconds):
 
 
 def off_the_sweep(volume, centres, normals):
-    """mm that a groove's surface lies off the sweep of the ball along the hand's own way: of its floor, half as wide as
-    the groove, and of all of it but for the pitch at its rim; the two ends are left out."""
+    """mm between a groove's surface and the sweep of the ball along the hand's own path: of its floor, half as wide as
+    the groove, and of all of it except the pitch at its rim; the two ends are left out."""
     vertices = np.asarray(volume.to_mesh().vertices, float)
     vertices = vertices[np.abs(vertices[:, 2]) < 5.9]
-    reach = RADIUS + 3 * PITCH  # farther from every centre than this, a vertex is not of the groove
+    reach = RADIUS + 3 * PITCH  # vertices further from every centre are not of the groove
     near = (vertices > centres.min(axis=0) - reach) & (vertices < centres.max(axis=0) + reach)
     vertices = vertices[near.all(axis=1)]
     off, lean, along = np.empty((3, len(vertices)))
@@ -74,7 +74,7 @@ def off_the_sweep(volume, centres, normals):
 
 
 def turned(run, centres):
-    """rad by which the ball's way is turned against the hand's own, from one pose to the next."""
+    """rad between the directions of the ball's path and the hand's own, from one pose to the next."""
     poses = np.vstack(run.way)[1:]
     made = poses[:, :3] + RADIUS * poses[:, 3:]
     steps = np.diff(made, axis=0)

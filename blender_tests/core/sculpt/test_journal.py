@@ -1,4 +1,4 @@
-"""When a live sculpt is packed, and the journal of the work at it, without Blender."""
+"""When a live sculpt is packed, and the journal of its session, without Blender."""
 
 import importlib.util
 import json
@@ -29,7 +29,7 @@ def lane(y, *xs):
 
 
 class Work:
-    """Carves and keeps, as a live sculpt does."""
+    """Carves and records, like a live sculpt."""
 
     def __init__(self, root, cuts=(), shaped=False, **more):
         self.volume, self.mask = riffler.Volume.block(*BOX), None
@@ -164,7 +164,7 @@ def test_rows_that_stand_are_no_moves():
 def test_small_sculpts_are_packed_at_once_and_large_ones_at_rest():
     small = packing.Packing(1_000_000, 0.0)
     assert small.at_once and not small.due(0.5) and small.due(1.0)
-    small.done(1_000_000, 0.02, 1.0)  # it was felt: at rest, then
+    small.done(1_000_000, 0.02, 1.0)  # it can be felt: so it is packed at rest
     assert not small.at_once
     small.stroke(2.0)
     assert not small.due(2.9) and small.due(3.0)
@@ -178,7 +178,7 @@ def test_small_sculpts_are_packed_at_once_and_large_ones_at_rest():
 
 
 def test_where_there_is_no_flock_the_same_is_asked_of_windows(tmp_path, monkeypatch):
-    """That it can be imported there, and whom it asks; what Windows answers is not known here."""
+    """That it can be imported there, and which function it calls; Windows' behaviour is not tested here."""
     calls, taken = [], []
 
     def locking(file, mode, nbytes):
@@ -192,11 +192,11 @@ def test_where_there_is_no_flock_the_same_is_asked_of_windows(tmp_path, monkeypa
     monkeypatch.setitem(sys.modules, "msvcrt", windows)
     spec = importlib.util.spec_from_file_location("addon.sculpt.pure.journal_elsewhere", journal.__file__)
     elsewhere = importlib.util.module_from_spec(spec)
-    monkeypatch.setitem(sys.modules, spec.name, elsewhere)  # dataclasses look for it
+    monkeypatch.setitem(sys.modules, spec.name, elsewhere)  # dataclasses look it up
     spec.loader.exec_module(elsewhere)
     (tmp_path / journal.STROKES).write_bytes(b"strokes")
     lock = elsewhere.Lock(tmp_path)
-    assert lock.held and calls == [(elsewhere.FAR, 2, 1)]  # far behind the end: what is there can still be read
+    assert lock.held and calls == [(elsewhere.FAR, 2, 1)]  # far behind the end: the content can still be read
     lock.release()
     taken.append(True)
     assert not elsewhere.Lock(tmp_path).held and len(calls) == 2

@@ -1,4 +1,4 @@
-"""Blocks of bricks, stages and snapshots: what a live sculpt counts and keeps, without Blender."""
+"""Blocks of bricks, stages and snapshots of a live sculpt, without Blender."""
 
 import pytest
 
@@ -38,7 +38,7 @@ def test_stages_tell_the_median_look_and_count():
     stages.add("draw", 0.5)
     stages.looked()
     assert stages.newest == {"cut": 0.0, "mesh": 0.0, "transfer": 0.0, "draw": 0.5}
-    assert stages.per_look()["bricks"] == pytest.approx(5 / 3)  # of the three looks that are kept
+    assert stages.per_look()["bricks"] == pytest.approx(5 / 3)  # of the three recorded updates
     assert not any(Stages().per_look().values())
     assert Stages().milliseconds() == dict.fromkeys(("cut", "mesh", "transfer", "draw"), 0.0)
 
@@ -48,14 +48,14 @@ def test_stages_tell_how_long_the_hand_waits():
     assert stages.lag() == (0.0, 0.0)
     for seconds in (9.0, 0.02, 0.08, 0.03):
         stages.waited(seconds)
-    assert stages.lag() == pytest.approx((30, 80))  # of the three that are kept
+    assert stages.lag() == pytest.approx((30, 80))  # of the three recorded ones
 
 
 def test_snapshots_that_undo_may_ask_for_are_kept():
     kept = Snapshots(most=3)
     for k in range(3):
         kept.put(f"a{k}", k)
-    kept.put("b0", "b", replaces="a0")  # a0 was what was shown until now: undo may ask for it next
+    kept.put("b0", "b", replaces="a0")  # a0 was displayed until now: undo may ask for it next
     assert kept.get("a1") is None
     assert (kept.get("a0"), kept.get("a2"), kept.get("b0")) == (0, 2, "b")
 

@@ -1,4 +1,4 @@
-"""What of a cutter stands out of the stock's box, by its closed form and by points all around it."""
+"""How far a cutter sticks out of the stock's box, by its closed form and by points all around it."""
 
 import numpy as np
 import pytest

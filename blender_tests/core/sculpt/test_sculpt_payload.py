@@ -37,7 +37,7 @@ def test_what_cuts_do_not_tell_comes_back_and_older_blocks_have_none():
     beside = [CUTS[0], Cut({"kind": "ball"}, POSES, masked=True)]
     _, cuts, _, shaped = sculpt_payload.decode(sculpt_payload.encode(b"v", beside, shaped=True))
     assert [c.masked for c in cuts] == [False, True] and shaped
-    assert sculpt_payload.encode(b"v", beside, shaped=True)[8] == 1  # older add-ons read it as ever
+    assert sculpt_payload.encode(b"v", beside, shaped=True)[8] == 1  # older add-ons can read it
     assert b"masked" not in sculpt_payload.encode(b"v", CUTS) and b"shaped" not in sculpt_payload.encode(b"v", CUTS)
 
 
@@ -83,7 +83,7 @@ def test_the_cache_forgets_the_oldest():
 def test_rays_are_counted_as_the_volume_counts_them():
     assert estimate.ray_count((100, 60, 30), 0.25, "z") == 400 * 240
     assert estimate.ray_count((100, 60, 30), 0.25, "xyz") == 400 * 240 + 240 * 120 + 120 * 400
-    assert estimate.ray_count((0.1, 2.5, 1), 1, "z") == 1 * 3  # half goes up, and never none
+    assert estimate.ray_count((0.1, 2.5, 1), 1, "z") == 1 * 3  # half rounds up, and never to 0
     for bad in ((0, 1, 1), (1, np.nan, 1)):
         with pytest.raises(ValueError, match="size"):
             estimate.ray_count(bad, 1, "z")
@@ -181,7 +181,7 @@ def test_lines_fit_the_panel():
 
 
 def test_a_header_of_any_kind_is_a_value_error():
-    """A .blend comes from anybody, and its checksum with it."""
+    """A .blend may come from any source, and its checksum with it."""
     cut = {"tool": {}, "tolerance": 0.01, "rows": 0}
     headers = [
         "[]",

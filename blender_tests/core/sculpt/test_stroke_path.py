@@ -19,7 +19,7 @@ def outline(tool):
 
 
 def plane(x, y, half=20.0):
-    """What a view from above sees of a square."""
+    """The view of a square from above."""
     p = np.array([x * PIXEL, y * PIXEL, 0.0])
     return Hit(p, np.array([0, 0, 1.0])) if np.abs(p[:2]).max() <= half else None
 
@@ -43,7 +43,7 @@ def stroke(make, *samples):
 
 
 def joined(pieces):
-    """Rows without those that a piece repeats of the last."""
+    """Rows without those that a piece repeats from the last."""
     return np.vstack([p.poses if p.new else p.poses[1:] for p in pieces])
 
 
@@ -111,7 +111,7 @@ def test_pressure_is_depth_or_feed():
     assert rows[:, 2].min() == pytest.approx(-0.55, abs=0.05)
     assert rows[-1, 2] == pytest.approx(-0.1)
     deepest = int(rows[:, 2].argmin())
-    assert (np.diff(rows[1:deepest, 2]) < 0).all()  # no steps: pressure grows along the way
+    assert (np.diff(rows[1:deepest, 2]) < 0).all()  # no steps: pressure grows along the path
     assert (np.diff(rows[deepest:, 2]) > 0).all()
 
     slow = stroke(maker(pressure="FEED", feed=10), Sample(0, 0, 0.5), Sample(50, 0, 0.5))
@@ -131,7 +131,7 @@ def test_off_the_surface_a_stroke_ends_and_begins_anew_behind_the_gap():
     pieces = stroke(maker(two), Sample(-100, 0), Sample(100, 0))
     assert sum(p.new for p in pieces) == 2
     rows = joined(pieces)
-    assert np.abs(rows[:, 0]).min() == pytest.approx(2.1, abs=0.5)  # up to the last look on either side
+    assert np.abs(rows[:, 0]).min() == pytest.approx(2.1, abs=0.5)  # up to the last pick on either side
     assert stroke(maker(lambda x, y: None), Sample(0, 0), Sample(9, 9)) == []
 
 

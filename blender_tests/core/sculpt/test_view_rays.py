@@ -1,4 +1,4 @@
-"""Rays through pixels and pixels of points, held against a camera in closed form."""
+"""Rays through pixels and pixels of points, compared with a camera in closed form."""
 
 import numpy as np
 import pytest
@@ -9,7 +9,7 @@ SIZE = (800, 500)
 
 
 def camera(rng, perspective, near=0.1, far=1e4):
-    """World → clip as OpenGL has it, a camera somewhere; and where it is, with its axes as rows."""
+    """World → clip as in OpenGL, with a camera at some place; and that place, with its axes as rows."""
     turn = np.linalg.qr(rng.normal(size=(3, 3)))[0]
     turn[2] = np.cross(turn[0], turn[1])
     place = rng.normal(size=3) * 50

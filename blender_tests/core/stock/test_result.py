@@ -1,4 +1,4 @@
-"""3MF out, colours of distances, tasks in a row."""
+"""3MF export, colours of distances, chained tasks."""
 
 import zipfile
 import zlib

@@ -1,4 +1,4 @@
-"""Our splines against Blender's own tessellation."""
+"""Our splines compared with Blender's own tessellation."""
 
 import bpy
 import numpy as np
@@ -52,7 +52,7 @@ def test_nurbs_of_every_kind():
                     assert len(theirs) > 10, what
                     line = ours(ob, 1e-3)
                     assert distance(theirs, line) < 2e-3, (what, distance(theirs, line))
-                    # and nothing of ours is beyond theirs (chords of Blender's are coarser)
+                    # and none of ours is beyond theirs (chords of Blender's are coarser)
                     closed = np.vstack([theirs, theirs[:1]]) if cyclic else theirs
                     assert distance(line, closed) < 0.2, (what, distance(line, closed))
 

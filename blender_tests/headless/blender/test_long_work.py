@@ -1,4 +1,4 @@
-"""The shell of long work, from a script: in one go, with the errors of the work, and seen by others."""
+"""The shell of long work, from a script: in one call, with the errors of the work, and as other operators see it."""
 
 import threading
 
@@ -13,7 +13,7 @@ def progress():
 
 
 def test_no_operator_takes_the_shell_s_own_functions_for_others():
-    """Without a window those of the shell are not called, so that nothing else would tell."""
+    """Without a window the shell's functions are not called, so that no other test would detect it."""
     shell = common.part("blender.long_work").LongWork
     own = {name for name, value in vars(shell).items() if name.startswith("_") and callable(value)} - set(vars(object))
     assert {"_tell", "_end"} <= own
@@ -69,7 +69,7 @@ def test_what_has_to_wait_says_for_what():
 
 
 def test_part_and_fixtures_are_made_while_the_window_goes_on():
-    """Nothing waits for surroundings in the making: they are asked for until they are there."""
+    """Nothing waits for surroundings that are being built: they are polled until they are ready."""
     programs.plan()
     surroundings = common.part("plan.obstacles")
     made, plain = [], surroundings.Making
@@ -114,7 +114,7 @@ def test_a_verification_is_made_on_a_thread():
     riffler.Verification = noted
     try:
         bpy.ops.riffler.verify(source="PLAN")
-        bpy.ops.riffler.verify(source="PLAN")  # which is there
+        bpy.ops.riffler.verify(source="PLAN")  # which is ready
     finally:
         riffler.Verification = plain
     assert len(threads) == 1 and threads[0] is not threading.main_thread()

@@ -1,5 +1,5 @@
 """Objects that are hidden, disabled, linked, instanced, flat, sheared, scaled, mirrored or modified: every operator
-works, or says the same sentence; and what the sentence tells to do helps."""
+works, or reports the same sentence; and the sentence's remedy works."""
 
 import json
 from itertools import product
@@ -61,7 +61,7 @@ RUN = {
     "verify": lambda: bpy.ops.riffler.verify(source="CUTS"),
     "simulate": lambda: bpy.ops.riffler.simulate(source="CUTS"),
 }
-OF_CUTS = {"export_nc", "export_recording", *RUN}  # which edits of the mesh would take away
+OF_CUTS = {"export_nc", "export_recording", *RUN}  # which edits of the mesh would delete
 OF_SCULPTS = CHANGE | READ | RUN
 OF_OBJECTS = {
     "new_stock": lambda: bpy.ops.riffler.new_stock(source="OBJECT", pitch=1.0, directions="z"),
@@ -92,7 +92,7 @@ def mirrored(ob):
 
 
 def above(ob, scale, turn=(0, 0, 0)):
-    """It hangs on an empty that is scaled, which hangs on another."""
+    """Its parent is scaled, and has a parent itself."""
     first, second = (bpy.data.objects.new(name, None) for name in ("First", "Second"))
     for new in (first, second):
         bpy.context.collection.objects.link(new)
@@ -168,16 +168,14 @@ NOT_LOCAL = {
     overriding: "Sculpt overrides data of another file, which keeps no edits: use Object > Relations > Make Local > "
     "Selected Objects and Data",
 }
-OTHER_SIZE = (
-    "Sculpt is scaled or mirrored: its millimetres are those of its own axes, not the scene's. To have them alike, "
-)
+OTHER_SIZE = "Sculpt is scaled or mirrored: its millimetres follow its own axes, not the scene's. To make them equal, "
 SCALED = {
     scaled: OTHER_SIZE + "use Object > Clear > Scale",
     mirrored: OTHER_SIZE + "use Object > Clear > Scale",
     under_a_scaled_one: OTHER_SIZE + "use Object > Parent > Clear and Keep Transformation, then Object > Clear > Scale",
 }
 MODIFIED = {
-    modified: "Sculpt has modifiers: what is worked on is the volume, without them. Take them over by Take Edits, or "
+    modified: "Sculpt has modifiers, which the volume does not include: use Apply Mesh Edits to include them, or "
     "remove them"
 }
 STATES = UNFIT | NOT_LOCAL | SCALED | MODIFIED
@@ -209,13 +207,13 @@ STEPS = {
         type="SELECT_OBDATA"
     ),
     "Object > Apply > Make Instances Real": make_real,
-    "Take them over by Take Edits": lambda: bpy.ops.riffler.take_edits(),
+    "use Apply Mesh Edits": lambda: bpy.ops.riffler.take_edits(),
     "or remove them": lambda: bpy.context.object.modifiers.clear(),
 }
 
 
 def follow(sentence, other=False):
-    """The steps of a sentence, in its order; of two that it leaves to choose, the first or the `other`."""
+    """Follows the steps of a sentence, in order; of two alternatives the first or the `other`."""
     found = sorted((sentence.index(step), step) for step in STEPS if step in sentence)
     if any(step.startswith("or ") for _, step in found):
         found = found[1:] if other else found[:1]
@@ -235,7 +233,7 @@ def prepared(path, state, name="Sculpt"):
 
 
 def outcome(call):
-    """Whether it has finished, and what it said."""
+    """Whether it has finished, and its report."""
     error = ""
     done = set()
 
@@ -251,7 +249,7 @@ def outcome(call):
 
 
 def sentences(said):
-    """Those of the states that were said, of any object; whatever else sounds like one, as it is."""
+    """The known sentences in the reports, of any object; other text that sounds like one stays unchanged."""
     known = {sentence.replace("Sculpt", name) for sentence in KNOWN for name in ("Sculpt", "Solid", "Line")}
     found = {sentence for sentence in known if sentence in said}
     found = {sentence for sentence in found if not any(sentence in other and sentence != other for other in found)}
@@ -261,7 +259,7 @@ def sentences(said):
 
 
 def wanted(name, state):
-    """Whether the operator works on a sculpt in that state, and what it says."""
+    """Whether the operator works on a sculpt in that state, and its report."""
     if state in UNFIT:
         return False, {UNFIT[state]}
     if state in NOT_LOCAL:
@@ -284,7 +282,7 @@ def test_every_operator_of_sculpts_says_the_same_of_a_state_and_its_remedy_helps
             continue
         if not sentence:
             continue
-        if done:  # the warning is followed from where it was said
+        if done:  # the warning's remedy is applied to the reporting object
             prepared(path, state)
         follow(*sentence, other=name in OF_CUTS)
         done, said = outcome(call)
@@ -312,7 +310,7 @@ def test_stock_and_parts_are_made_of_objects_in_any_state_or_name_it():
     }
     for (name, call), state in product(OF_OBJECTS.items(), [*STATES, hidden]):
         if (name, state) == ("make_sculpt", hidden):
-            continue  # it is for what the pointer is on
+            continue  # it acts on the object under the pointer
         sentence = refused.get(state) or (of_parts.get(state) if name == "plan_part" else None)
         prepared(path, state, "Solid")
         done, said = outcome(call)

@@ -1,4 +1,4 @@
-"""A device sculpts: its strokes, their undo, what they leave alone, and the journal that tells of them."""
+"""A device sculpts: its strokes, their undo, what they leave unchanged, and their journal."""
 
 import json
 
@@ -67,7 +67,7 @@ def test_each_stroke_is_an_undo_step_and_a_walk_back_and_on_has_the_volumes_to_t
     while at > 2:
         bpy.ops.ed.undo()
         at -= 1
-    new = hand.stroke(50)  # what was taken back is gone
+    new = hand.stroke(50)  # the undone stroke is gone
     assert new not in states
     expected = riffler.Volume.from_bytes(states[2])
     for cut in live().content(bpy.data.objects[NAME]).cuts[-1:]:
@@ -78,7 +78,7 @@ def test_each_stroke_is_an_undo_step_and_a_walk_back_and_on_has_the_volumes_to_t
     assert now() == states[2]
     hand.session.finish()
     no_session()
-    for k in (1, 0):  # undo goes on without it
+    for k in (1, 0):  # undo continues without it
         bpy.ops.ed.undo()
         assert now() == states[k]
         no_session()
@@ -195,7 +195,7 @@ def test_material_is_put_on_stroke_by_stroke_undone_and_told_by_the_journal():
         assert now() == states[1]
         hand.session.look()
         assert hand.session.run.session.journal_written(20.0)
-        told = core.replay(journal.folder)  # as a recovery has it
+        told = core.replay(journal.folder)  # as in a recovery
         assert told.volume.to_bytes() == states[1]
         assert [c.mode for c in told.cuts] == ["remove", "add", "add"]
         hand.session.finish()
@@ -234,7 +234,7 @@ def test_what_is_masked_gets_no_material_put_on():
 @common.core_bound
 def test_a_session_does_what_the_tool_at_hand_does():
     operators = common.part("pen.operators")
-    at_hand = operators._at_hand
+    at_hand = operators._active_tool
     try:
         for tool, mode in (
             ("riffler.add", "add"),
@@ -242,22 +242,22 @@ def test_a_session_does_what_the_tool_at_hand_does():
             ("riffler.plan", "remove"),
             ("", "remove"),
         ):
-            operators._at_hand = lambda context, tool=tool: tool
+            operators._active_tool = lambda context, tool=tool: tool
             assert operators.brush_of(bpy.context, "TOOL").id == mode
             assert operators.brush_of(bpy.context, "ADD").id == "add"
         ob = lowered()
         live().end_all()
         before = now()
         for tool, word in (("riffler.smooth", "Smooth"), ("riffler.mask", "Mask")):
-            operators._at_hand = lambda context, tool=tool: tool
-            common.refused(lambda: sculpt_for(0.2), f"take Carve or Add instead of {word}")
+            operators._active_tool = lambda context, tool=tool: tool
+            common.refused(lambda: sculpt_for(0.2), f"use Carve or Add instead of {word}")
             no_session()
         assert now_of(ob) == before
-        operators._at_hand = lambda context: "riffler.add"
+        operators._active_tool = lambda context: "riffler.add"
         place = folder("put-on")
         until_cut(record=True, folder=str(place))
     finally:
-        operators._at_hand = at_hand
+        operators._active_tool = at_hand
     no_session()
     live().end_all()
     content = common.content(bpy.data.objects[NAME])
@@ -285,14 +285,14 @@ def test_putting_on_where_the_box_is_full_says_so():
         assert sculpt_for(0.5, mode="ADD") == {"CANCELLED"}
     finally:
         operators._said = said
-    assert "Nothing was put on" in heard[0], heard
+    assert "Nothing was added" in heard[0], heard
     live().end_all()
     assert now_of(ob) == before
     nothing_is_left()
 
 
 class Heard:
-    """What an operator would report."""
+    """An operator's reports."""
 
     def __init__(self, texts):
         self._texts = texts
@@ -321,7 +321,7 @@ def test_there_is_one_journal_and_a_recovery_knows_its_states():
     ]
     hand.session.finish()
     assert not core.Lock(journal.folder).held, "still ours"
-    sculpting.stroke(NAME, 2)  # a pointer's stroke goes into a journal of its own
+    sculpting.stroke(NAME, 2)  # a pointer's stroke has a journal of its own
     assert work().persistence.journal is not journal
     while not work().persistence.journal.settled():
         pass

@@ -1,4 +1,4 @@
-"""Sessions of devices as a person has them: how they begin and end, what they show, what is refused."""
+"""Sessions of devices as a user has them: how they begin and end, their display, refusals."""
 
 import json
 import shutil
@@ -93,7 +93,7 @@ def test_what_is_shown_follows_and_somebody_who_removes_it_spoils_nothing():
 
 
 def test_the_force_on_the_tool_is_against_its_way_and_the_materials():
-    """Removal force: the constant times what is taken in a second, against the motion (docs/methods.md)."""
+    """Removal force: the constant times the volume removed per second, against the motion (docs/methods.md)."""
     sculpt()
     hand, pushes = Hand(bpy.data.objects[NAME]), []
     run = hand.session.run
@@ -175,7 +175,7 @@ def test_a_device_that_fails_ends_it_and_what_was_made_stays():
     sculpt()
     hand = Hand(bpy.data.objects[NAME])
     first = hand.stroke(10)
-    work().volume.subtract(riffler.Volume.block((0, 0, 0), (60, 60, 20), 0.5, "z"))  # somebody spoils it
+    work().volume.subtract(riffler.Volume.block((0, 0, 0), (60, 60, 20), 0.5, "z"))  # an error elsewhere
     try:
         hand.session.look()
     except RuntimeError as error:
@@ -211,7 +211,7 @@ def test_nothing_else_takes_the_sculpt_meanwhile_and_disabling_the_addon_ends_it
 
 
 class InHand:
-    """A simulated pen that goes by another kind's name: a session clears no trip of such a one by itself."""
+    """A simulated pen under another kind's name: a session does not clear the trip of such a device by itself."""
 
     kind = "riffler-pen"
 
@@ -233,7 +233,7 @@ def test_a_pen_that_has_lost_counts_gives_force_again_once_it_is_homed_and_its_t
     """Lost counts leave the pose in doubt, so neither of the two buttons is enough alone."""
     ob = sculpt()
     before, pen = now_of(ob), riffler.pen.open("simulated")
-    pen.aim(pen.geometry.forward([pen.geometry.home])[0])  # where a hand holds it to be homed; no button is pressed
+    pen.aim(pen.geometry.forward([pen.geometry.home])[0])  # held in place to be homed; no button is pressed
     tool, options = riffler.Tool.ball(6, 30), {"at": (30, 30, 40, 0, 0, 1)}
     session = sessions().PenSession(bpy.context, ob, pen, tool, options)
     run, run.device = session.run, InHand(pen)
@@ -243,12 +243,12 @@ def test_a_pen_that_has_lost_counts_gives_force_again_once_it_is_homed_and_its_t
     pen.lose(1, 100)
     looked(session, lost)
     trips = len(run.session.trips)
-    assert bpy.ops.riffler.pen_reset() == {"FINISHED"}  # what was wrong is wrong still
+    assert bpy.ops.riffler.pen_reset() == {"FINISHED"}  # the problem persists
     looked(session, lambda: len(run.session.trips) > trips and lost())
     assert abs(pen.state().stretch) > 1
     assert bpy.ops.riffler.pen_home() == {"FINISHED"}
     looked(session, lambda: abs(pen.state().stretch) < 0.1)
-    rested = time.monotonic() + 1  # twice what a trip that heals by itself takes
+    rested = time.monotonic() + 1  # twice the duration of a trip that clears by itself
     looked(session, lambda: time.monotonic() > rested)
     assert lost()
     assert bpy.ops.riffler.pen_reset() == {"FINISHED"}
@@ -265,7 +265,7 @@ def test_what_has_no_home_is_not_homed_and_buttons_of_a_session_need_one():
     hand = Hand(sculpt())
     common.refused(bpy.ops.riffler.pen_home, "mouse has nothing to home")
     assert sessions().running is hand.session
-    assert bpy.ops.riffler.pen_reset() == {"FINISHED"}  # nothing is tripped, and nothing is changed
+    assert bpy.ops.riffler.pen_reset() == {"FINISHED"}  # nothing is tripped, and nothing changes
     first = hand.stroke(10)
     hand.session.finish()
     no_session()
@@ -297,7 +297,7 @@ def test_what_is_refused_changes_nothing():
 
 
 def test_fixtures_keep_the_tool_of_a_device_out():
-    """A clamp lies on the stock in the way of a groove: the hand goes through it, the tool does not."""
+    """A clamp lies on the stock in the path of a groove: the hand goes through it, the tool does not."""
     ob = sculpt()
     clamps = bpy.data.collections.new("Clamps")
     bpy.context.scene.collection.children.link(clamps)
@@ -310,7 +310,7 @@ def test_fixtures_keep_the_tool_of_a_device_out():
     hand = Hand(ob, obstacles=obstacles(bpy.context, ob))
 
     def height(y, x):
-        """Least and largest (mm) of the top along a groove, 3 mm to either side of x."""
+        """Smallest and largest height (mm) of the top along a groove, 3 mm to either side of x."""
         counts, spans = live().content(ob).volume.intervals("z")
         top = spans[np.cumsum(counts.ravel()) - 1, 1].reshape(counts.shape)
         row, places = top[:, int(y / 60 * top.shape[1])], (np.arange(top.shape[0]) + 0.5) * 60 / top.shape[0]
@@ -318,7 +318,7 @@ def test_fixtures_keep_the_tool_of_a_device_out():
         return near.min(), near.max()
 
     for y, places in ((10, (12,)), (30, (12, 25))):
-        for _ in range(8):  # a step that is late holds the tool: what was left out is cut the next time
+        for _ in range(8):  # a late step stops the tool: the part left out is cut the next time
             hand.stroke(y)
             if all(height(y, x)[1] < 19.8 for x in places):
                 break
@@ -330,7 +330,7 @@ def test_fixtures_keep_the_tool_of_a_device_out():
 
 @common.core_bound
 def test_a_puck_carves_where_it_is_pushed_as_fast_as_its_curve_says():
-    """A SpaceMouse of umockdev, in a Blender of its own: it has to be there when that one starts."""
+    """A SpaceMouse of umockdev, in a Blender of its own: it must exist when Blender starts."""
     if bpy.app.binary_path:
         raise common.Skip("an application's jemalloc and umockdev wait for each other; wheels have none")
     if shutil.which("umockdev-run") is None:
@@ -359,6 +359,6 @@ def test_a_puck_carves_where_it_is_pushed_as_fast_as_its_curve_says():
     way, seconds = (x[-1] - x[0] for x in (longest.poses[:, 0], longest.times))
     speed = (
         60 * ((spacemouse_run.PUSH / spacemouse_run.FULL - 0.08) / (1 - 0.08)) ** 2
-    )  # bubble, exponent: riffler.pen.open's own
+    )  # bubble, exponent: defaults of riffler.pen.open
     assert seconds > 0.5 and abs(way / seconds / speed - 1) < 0.05, (way, seconds, speed)
     assert np.isclose(removed, 60 * 60 * 20 - replayed.volume)

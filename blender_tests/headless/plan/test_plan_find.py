@@ -190,7 +190,7 @@ def test_two_plans_have_nothing_to_do_with_each_other():
     assert abs(store().plan(a).paths[0].length - 60) < 0.01 and abs(store().plan(b).paths[0].length - 30) < 0.01
     b_part.location.x = 3
     assert judge(a).part == "" and judge(b).part != ""
-    find(replace=a.name)  # on its own part, whichever is the scene's
+    find(replace=a.name)  # on its own part, not the scene's
     assert abs(store().plan(a).paths[0].length - 60) < 0.01 and a.riffler.plan.part == a_part
     bpy.context.view_layer.objects.active = curves(a)[0]
     assert store().active(bpy.context) == a and a.riffler.plan.part == a_part
@@ -224,7 +224,7 @@ def redraw(ob):
 
 
 def test_copies_of_paths_curves_are_a_persons():
-    """Whichever way one is made; also where the curve that it is of was deleted since."""
+    """By any method of copying; also if the original curve was deleted since."""
     step()
     ob = find(passes=2, stepover=0.5)
     a, b, c = curves(ob)
@@ -238,7 +238,7 @@ def test_copies_of_paths_curves_are_a_persons():
     kept.add(by_script.name)
     common.select(c)
     bpy.ops.object.delete()
-    assert len(curves(ob)) == 2 and judge(ob).edited == 1 and len(names()) == 7  # the plan points to what was deleted
+    assert len(curves(ob)) == 2 and judge(ob).edited == 1 and len(names()) == 7  # the plan points to the deleted one
     was = {name: [p.co[:] for p in bpy.data.objects[name].data.splines[0].points] for name in kept}
     redraw(ob)
     assert len(curves(ob)) == 3 and judge(ob).edited == 0 and names() == kept | {c.name for c in curves(ob)}
@@ -268,7 +268,7 @@ def test_what_was_renamed_or_is_in_use_is_a_persons():
     assert follower.constraints[0].target.name in kept and rider.parent.name in kept
     assert not kept & {c.name for c in curves(ob)}
     redraw(ob)
-    assert kept <= names() and len(names()) == 13, "what was drawn the second time was nobody's"
+    assert kept <= names() and len(names()) == 13, "curves drawn the second time did not belong to the user"
 
 
 def test_a_copy_of_the_plan_alone_takes_no_curves_away():
@@ -297,7 +297,7 @@ def test_what_is_copied_with_its_plan_is_the_copys():
 
 
 def test_what_is_done_for_a_panel_is_done_once():
-    """A part is read again only where it was changed; other objects cost nothing."""
+    """A part is read again only if it was changed; other objects cost nothing."""
     part, watch = step(), common.part("plan.operators.watch")
     ob = find()
     bpy.context.view_layer.update()

@@ -1,4 +1,4 @@
-"""What a plan is looked at with: a tool that is not the panel's, a part that is not what it was; and what is said."""
+"""The tool and the part of checks: a tool that is not the panel's, a part that has changed; and the notes on them."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -12,7 +12,7 @@ from support import common, plans, programs
 from support.keyframed_plan import insert, pair, state
 
 SHORT = riffler.Tool.ball(6, 10)
-WIDE = SHORT.with_holder([(12, 30, 40, 30)])  # its holder stands in the wall however it leans
+WIDE = SHORT.with_holder([(12, 30, 40, 30)])  # its holder collides with the wall at any tilt
 
 
 def settings():
@@ -24,7 +24,7 @@ def take(tool):
 
 
 def said(call):
-    """What is reported of a call that ends well."""
+    """The reports of a call that succeeds."""
     return common.printed(lambda: call() == {"FINISHED"} or print("not finished"))
 
 
@@ -38,7 +38,7 @@ def write():
 
 
 def found_on_the_step():
-    """A resolved plan that knows its part by its surface, as those that were searched for do."""
+    """A resolved plan that identifies its part by its surface, like plans from a search."""
     ob = programs.plan()
     mesh = common.part("blender.object_surfaces").in_world(bpy.context, ob.riffler.plan.part)
     plan = replace(programs.content(ob), part=riffler.plan.part_of(mesh, "Step"))
@@ -73,7 +73,7 @@ def test_a_part_that_was_moved_since_is_said_and_makes_no_code():
 
 
 def test_a_part_that_nobody_knows_the_surface_of_may_lie_anywhere():
-    """Its code says which it is."""
+    """Its code identifies it."""
     ob = programs.plan()
     shift(ob.riffler.plan.part, -0.5)
     bpy.ops.riffler.plan_resolve()
@@ -83,13 +83,13 @@ def test_a_part_that_nobody_knows_the_surface_of_may_lie_anywhere():
 
 
 def delete(ob):
-    """As X does: what points to it still does."""
+    """Like X: what points to it still does."""
     common.select(ob)
     bpy.ops.object.delete()
 
 
 def test_a_part_that_was_deleted_and_brought_back_is_the_part():
-    """The same model imported again, and set as the part. Another one is not taken for it."""
+    """The same model imported again, and set as the part. Another model is not accepted for it."""
     ob = found_on_the_step()
     take(plans.TOOL)
     judge = common.part("plan.operators.watch").judge
@@ -121,7 +121,7 @@ def test_a_plan_whose_own_part_is_there_is_found_again_without_the_scene_s():
 
 
 def test_what_is_verified_is_the_code_that_is_written():
-    """Its lines are those of the file: both are written to the plan's tolerance."""
+    """Its lines are those of the file: both are written with the plan's tolerance."""
     ob = programs.plan(programs.valley(programs.LEANING, (0, -0.2, 1), programs.LEANING))
     common.part("plan.plan_store").write(ob, replace(programs.content(ob), tolerance=0.2))
     bpy.ops.riffler.plan_resolve()
@@ -138,7 +138,7 @@ def test_what_is_verified_is_the_code_that_is_written():
 
 
 def test_paths_that_are_found_again_leave_nothing_of_the_old_ones():
-    """Their findings, what plays and the marks of what collides: all of it was on the paths of before."""
+    """Their findings, the animation and the marks of collisions: all of it belonged to the old paths."""
     ob = programs.plan(programs.valley(programs.LEANING, programs.INTO))
     bpy.ops.riffler.plan_resolve(max_lift=0.01)
     bpy.ops.riffler.plan_check()
@@ -180,7 +180,7 @@ def test_how_many_paths_are_resolved_is_kept_for_the_panel():
     assert said(p) == "1 of 3 paths resolved, 1 without keys"
     bpy.ops.riffler.plan_least_tilt(paths="ALL", axes="GIVEN", axis=programs.LEANING)
     assert said(p) == "0 of 3 paths resolved"
-    p.resolved = -1  # of a file from before it was counted
+    p.resolved = -1  # from a file without the count
     assert said(p) == ""
 
 
@@ -218,7 +218,7 @@ def test_shank_and_holder_are_exchanged_and_the_keys_stay():
     assert list(plan.paths[0].keys) == list(before.paths[0].keys)
     assert np.array_equal(plan.paths[0].axes, before.paths[0].axes)
     assert not any(r is not None for r in plan.cl) and not ob.riffler.plan.findings
-    assert len(pair(ob)[0].data.vertices) != rows  # it is seen on the timeline
+    assert len(pair(ob)[0].data.vertices) != rows  # it is displayed on the timeline
     assert state(ob).colliding  # marks follow
     common.refused(lambda: bpy.ops.riffler.plan_nc(filepath=common.out("x.ngc")), "may collide", "Resolve")
     assert "Use This Tool" not in said(bpy.ops.riffler.plan_resolve)

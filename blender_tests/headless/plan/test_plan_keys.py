@@ -1,4 +1,4 @@
-"""Operators of key orientations, a tool that somebody turns, and colliding frames."""
+"""Operators of key orientations, a tool that the user turns, and colliding frames."""
 
 import time
 
@@ -31,7 +31,7 @@ def test_the_operators_set_delete_and_jump():
     assert same_axes(paths(ob)[0], {0: (0, -0.6, 0.8), 72: (0, -0.3, 1), 144: (0.6, 0, 0.8)})
     scene.frame_set(90)
     wanted = paths(ob)[0].axes[89]
-    bpy.ops.riffler.plan_key()  # as it stands
+    bpy.ops.riffler.plan_key()  # with its current orientation
     assert close(paths(ob)[0].keys[89], wanted, 1e-5)
     bpy.ops.riffler.plan_key(axis=(0, 0, 1), path=2, point=10)
     assert close(paths(ob)[1].keys[10], (0, 0, 1), 1e-6)
@@ -101,13 +101,13 @@ def test_a_tool_that_somebody_turns_is_not_held():
     tool.rotation_quaternion = quat((0, 1, 1))
     update()
     assert hold.influence == 0
-    seen(ob, 74)  # as ever in Blender, what is not keyed is gone with the frame
+    seen(ob, 74)  # as everywhere in Blender, an orientation without a key is lost with the frame
     update()
     assert hold.influence == 1 and close(seen(ob, 74)[1], paths(ob)[0].axes[73])
 
 
 def test_turning_begins_with_what_is_seen():
-    """Between keys, on a key, and on a path that has none; what a window's timer does is asked for here."""
+    """Between keys, on a key, and on a path that has none; the test calls what a window's timer would call."""
     ob = plans.on_timeline(chosen=[*plans.paths()[:1], plans.ring()])
     tool, _ = pair(ob)
     ready = common.part("plan.replan")._settle_all
@@ -119,7 +119,8 @@ def test_turning_begins_with_what_is_seen():
         assert tool.constraints[common.part("plan.timeline").TURN].influence == 1
     bpy.context.scene.frame_set(145)
     ready()
-    assert list(tool.rotation_quaternion) == [c.evaluate(145) for c in curves(tool)]  # Blender shows it as keyed
+    # Blender shows the keyed orientation
+    assert list(tool.rotation_quaternion) == [c.evaluate(145) for c in curves(tool)]
 
 
 def test_a_plan_without_keys_gets_its_first_one():
@@ -133,7 +134,7 @@ def test_a_plan_without_keys_gets_its_first_one():
 
 
 def markers():
-    """But for those that name the paths."""
+    """Except those that name the paths."""
     return sorted((m.frame, m.name) for m in bpy.context.scene.timeline_markers if "▸ " not in m.name)
 
 
@@ -150,7 +151,8 @@ def test_colliding_frames_are_marked_and_looked_at_again_where_keys_change():
     insert(pair(ob)[0], 73, (0, 1, 0.2))  # into the wall, y from 20 on
     (run,) = state(ob).colliding
     assert run[0] <= 73 <= run[1] and (run[0], f"collides {run[0]}–{run[1]}") in markers() and len(markers()) == 2
-    # against the closed form: the shank is a cylinder of 6 mm about the axis through the ball's centre, up to z = 24
+    # compared with the closed form: the shank is a cylinder of 6 mm about the axis through the ball's centre, up to z =
+    # 24
     for frame in range(1, 146):
         axis = seen(ob, frame)[1]
         inside = axis[1] > 1e-3
@@ -213,13 +215,13 @@ def test_fixtures_count():
     fixture((20, 40), (0, 10), (8, 40))
     bpy.context.scene.riffler.plan.part = part
     bpy.ops.riffler.plan_check()
-    # The tool leans away from the wall, over the vise; the cutter, 3 mm in radius, is in it for x in 17 … 43, that is
-    # after frame 41.8 and before 104.2.
+    # The tool leans away from the wall, over the vise; the cutter, 3 mm in radius, is inside it for x in 17 … 43, that
+    # is after frame 41.8 and before 104.2.
     assert state(ob).colliding == [(42, 104)]
 
 
 def looked_again():
-    """What a window's timer does once the scene is left alone."""
+    """What a window's timer does once the scene has not changed for a moment."""
     again = common.part("plan.collision_marks").look_again
     while again() is not None:
         time.sleep(0.01)
@@ -230,7 +232,7 @@ def test_marks_are_of_before_once_a_fixture_has_moved_until_it_is_looked_at_agai
     ob = plans.on_timeline(chosen=[plans.paths()[0].oriented({0: (0, -0.6, 0.8)})])
     outdated = common.part("plan.collision_marks").outdated
     vise = fixture((20, 40), (0, 10), (8, 40))
-    assert not outdated(ob)  # nobody has asked
+    assert not outdated(ob)  # no marks were requested
     bpy.context.scene.riffler.plan.part = part
     bpy.ops.riffler.plan_check()
     assert state(ob).colliding == [(42, 104)] and not outdated(ob)
@@ -244,7 +246,7 @@ def test_marks_are_of_before_once_a_fixture_has_moved_until_it_is_looked_at_agai
     assert not outdated(ob) and np.allclose(state(ob).colliding, np.add([(42, 104)], along * 12), atol=1)
     assert common.part("plan.obstacles").made == made + 1 and state(ob).looks > looks
     looks = state(ob).looks
-    vise.location.x += 0  # Blender says that it has changed
+    vise.location.x += 0  # Blender reports a change
     vise.update_tag()
     update()
     looked_again()

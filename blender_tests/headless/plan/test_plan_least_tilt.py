@@ -1,4 +1,4 @@
-"""Keys on many paths at once: one change, one step of undo, and what has none is named."""
+"""Keys on many paths at once: one change, one undo step; paths without a solution are named."""
 
 import math
 from itertools import pairwise
@@ -35,7 +35,7 @@ def laid(count=4, roof=False):
 
 
 def cover(x):
-    """A fixture: a block over the valley at x, lower than the ball is high."""
+    """A fixture: a block over the valley at x, lower than the ball's height."""
     mesh = bpy.data.meshes.new("Clamp")
     corners = [(a, b, c) for a in (x - 4, x + 4) for b in (-20, 40) for c in (13, 40)]
     faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
@@ -58,7 +58,7 @@ def test_every_path_has_its_keys_after_one_step_that_undo_takes_back():
     name, before = ob.name, counts(ob)
     common.push("timeline")
     assert bpy.ops.riffler.plan_least_tilt("EXEC_DEFAULT", True) == {"FINISHED"}
-    # brought up to date before and after, however many paths; each of them baked, laid out and formatted once
+    # updated before and after, for any number of paths; each of them baked, laid out and formatted once
     assert (counts(ob) - before).tolist() == [2, 4, 4, 4]
     for path in paths(ob):
         assert list(path.keys) == [0, len(path) - 1] and close(path.axes, np.tile(SLOPE, (len(path), 1)))
@@ -130,7 +130,7 @@ def test_keyframes_of_other_paths_and_strays_stay():
 
 
 def test_a_search_that_is_cancelled_in_its_midst_leaves_all_as_it_was():
-    """What a native task says then, after two paths have their keys already."""
+    """With the report of a native task, after two paths have their keys already."""
     ob = laid(4)
     made, before = store().identity(ob), counts(ob)
     search = common.part("plan.pure.tilt_search").Search

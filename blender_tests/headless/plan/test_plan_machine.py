@@ -1,4 +1,4 @@
-"""A machine's options as fields: what must be given is asked for, what is set is what is written, read and verified."""
+"""A machine's options as fields: required ones are asked for, and set ones are used to write, read and verify."""
 
 from pathlib import Path
 
@@ -27,7 +27,7 @@ def test_every_option_of_every_machine_is_a_field_with_its_unit():
             prop = group.bl_rna.properties[fields.identifier(fact["name"])]
             assert prop.name.endswith(f"({fact['unit']})") if fact["unit"] else "(" not in prop.name, prop.name
             assert prop.description == fields.about(fact)
-        assert machines().given(machine) == {}, "nothing is given before somebody gives it"
+        assert machines().given(machine) == {}, "no option is passed on before the user sets it"
 
 
 def test_a_pivot_that_nobody_gave_is_asked_for():
@@ -38,7 +38,7 @@ def test_a_pivot_that_nobody_gave_is_asked_for():
     Path(path).unlink(missing_ok=True)
     common.refused(
         lambda: bpy.ops.riffler.plan_nc("EXEC_DEFAULT", filepath=path),
-        "linuxcnc-xyzac: Rot Point (mm) is not given", "in the panel Machine, or take the place of the 3D cursor",
+        "linuxcnc-xyzac: Rot Point (mm) is not set", "in the panel Machine, or take the place of the 3D cursor",
     )  # fmt: skip
     assert not Path(path).exists() and programs.content(ob)
     (missing,) = common.part("plan.pure.machine_fields").missing("linuxcnc-xyzac", {})
@@ -78,7 +78,7 @@ def test_fields_keep_the_numbers_that_were_meant():
 
 
 def test_another_machine_takes_its_own_options():
-    """What is set of one machine is no option of the other."""
+    """An option set for one machine is not passed to the other."""
     programs.resolved()
     machines().of("linuxcnc-xyzac").rot_point = (0, 0, -40)
     bpy.context.scene.riffler.plan.post = "linuxcnc-xyzac"
@@ -92,7 +92,8 @@ def test_options_are_added_and_wrong_names_listed():
         lambda: bpy.ops.riffler.machine_option(machine="tcp", option="pivot"), "tcp has no option 'pivot': it has tcp"
     )
     common.refused(
-        lambda: bpy.ops.riffler.machine_option(machine="head-head", option="pivot_length", how="CURSOR"), "is no place"
+        lambda: bpy.ops.riffler.machine_option(machine="head-head", option="pivot_length", how="CURSOR"),
+        "is not a position",
     )
 
 
@@ -107,5 +108,5 @@ def test_a_file_is_read_with_the_fields_of_its_machine():
     machines().of("linuxcnc-xyzac").property_unset("rot_point")
     common.refused(
         lambda: bpy.ops.riffler.verify(source="FILE", filepath=str(path), machine="linuxcnc-xyzac"),
-        "Rot Point (mm) is not given",
+        "Rot Point (mm) is not set",
     )

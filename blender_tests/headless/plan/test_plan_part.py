@@ -1,4 +1,4 @@
-"""The size of a part and the unit of its scene; the cutter's sizes as fields; which cutters find pencil cuts."""
+"""The size of a part and the unit of its scene; the cutter's sizes as fields; the cutters that find pencil cuts."""
 
 from types import SimpleNamespace
 
@@ -28,7 +28,7 @@ def cube(side, name="Part"):
 
 
 def test_a_part_of_four_metres_is_asked_about():
-    """It was accepted for a ball of 6 mm, and a search began."""
+    """Earlier it was accepted for a ball of 6 mm, and a search began."""
     common.scale(1000.0)
     bpy.context.scene.riffler.plan.take({"kind": "ball", "diameter": 6, "length": 30})
     part, fit = cube(4), common.part("plan.fit_check")
@@ -54,7 +54,7 @@ def test_a_part_that_is_so_large_is_not_asked_about_again():
     cube(4)
     bpy.ops.riffler.plan_part()
     assert fit.size_question(scene)
-    bpy.ops.riffler.scene_unit(unit="M")  # it is right
+    bpy.ops.riffler.scene_unit(unit="M")  # the size is right
     assert fit.size_question(scene) == "" and abs(scene.unit_settings.scale_length - 1) < 1e-9
     cube(5, "Other")
     bpy.ops.riffler.plan_part()
@@ -81,7 +81,7 @@ def test_the_search_of_a_person_waits_for_the_answer():
     bpy.ops.riffler.plan_part()
     said, find = [], common.part("plan.operators.find").RIFFLER_OT_plan_find
     operator = SimpleNamespace(report=lambda level, text: said.append((level, text)))
-    assert find.invoke(operator, bpy.context, None) == {"CANCELLED"}  # without a window Blender does not ask
+    assert find.invoke(operator, bpy.context, None) == {"CANCELLED"}  # without a window Blender shows no dialog
     ((level, text),) = said
     assert level == {"ERROR"} and "what is one unit of the scene? Choose it in the panel Part and Fixtures" in text
 
@@ -121,7 +121,7 @@ def test_the_cutter_s_sizes_are_fields():
 
 
 def test_a_flat_end_mill_finds_no_pencil_cuts():
-    """Its paths were those of a ball of its diameter."""
+    """Earlier its paths were those of a ball of its diameter."""
     common.scale(1.0)
     scene, part = bpy.context.scene.riffler, plans.part_object()
     bpy.context.view_layer.objects.active = part

@@ -18,8 +18,8 @@ def rows(ob):
 
 
 def four():
-    """A path that is free, one without keys, one that leans into the wall, which no lift of a millimetre frees, and
-    one that was not resolved."""
+    """A path that is free, one without keys, one that leans into the wall, which no lift of a millimetre frees, and one
+    that was not resolved."""
     bare, blocked = programs.bare(), programs.valley(programs.INTO)
     ob = programs.plan(programs.valley(programs.LEANING), bare, blocked, programs.valley((0, -0.3, 1)))
     bpy.ops.riffler.plan_resolve(max_lift=1.0)
@@ -36,7 +36,7 @@ def test_the_list_has_a_line_for_each_path_with_its_state_and_length():
     assert np.allclose([row.length for row in ob.riffler.plan.rows], 60, atol=1e-3)
     text = common.part("plan.paths_panel").summary(ob.riffler.plan)
     assert text == "4 on, 240 mm: 1 Free, 1 Blocked, 1 To Resolve, 1 No Keys", text
-    bpy.ops.riffler.plan_key(path=3, point=0, axis=(0, -0.6, 0.8))  # what was found on it is of other keys
+    bpy.ops.riffler.plan_key(path=3, point=0, axis=(0, -0.6, 0.8))  # its findings belong to other keys
     assert rows(ob)[2][1] == "keyed" and not any(e["path"] == 2 for e in programs.listed(ob.riffler.plan.findings))
 
 
@@ -71,7 +71,7 @@ def test_several_are_switched_at_once():
     ):  # fmt: skip
         assert bpy.ops.riffler.plan_switch(which=which) == {"FINISHED"}
         assert programs.content(ob).off == off and [not on for _, _, on in rows(ob)] == [k in off for k in range(4)]
-    common.refused(lambda: bpy.ops.riffler.plan_switch(which="ONLY"), "No path is chosen")
+    common.refused(lambda: bpy.ops.riffler.plan_switch(which="ONLY"), "No path is selected in the list")
     ob.riffler.plan.row = 1
     bpy.ops.riffler.plan_switch(which="ONLY")
     assert programs.content(ob).off == {0, 2, 3}
@@ -114,7 +114,7 @@ def test_deleting_keeps_the_keys_and_locations_of_the_others():
         ob.riffler.plan.row = 0
         bpy.ops.riffler.plan_delete_paths(which="CHOSEN")
     assert rows(ob) == [] and names() == []
-    common.refused(lambda: bpy.ops.riffler.plan_delete_paths(which="CHOSEN"), "No path is chosen")
+    common.refused(lambda: bpy.ops.riffler.plan_delete_paths(which="CHOSEN"), "No path is selected in the list")
 
 
 def names():
@@ -142,7 +142,7 @@ def test_paths_have_names_on_the_timeline():
 
 
 def test_lines_are_coloured_by_what_the_tool_does():
-    """The way between the cuts is there once a program was made, as long as the plan and the panel are as they were."""
+    """The moves between the cuts are shown once a program was made, as long as the plan and the panel are unchanged."""
     ob = programs.resolved(
         programs.valley(programs.LEANING), programs.valley(programs.LEANING), programs.valley(programs.INTO, (0, 0, 1))
     )

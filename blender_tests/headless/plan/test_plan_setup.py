@@ -1,4 +1,4 @@
-"""What a plan is made for: part, fixtures, tool; libraries of files; and plans in the .blend."""
+"""A plan's setup: part, fixtures, tool; libraries of files; and plans in the .blend."""
 
 import json
 from pathlib import Path
@@ -159,7 +159,7 @@ def is_fixture(ob):
 
 
 def test_a_linked_vise_is_no_fixture_before_it_is_real():
-    """An object that stands for a collection has no surface of its own: it would be passed over."""
+    """An object that stands for a collection has no surface of its own: it would be ignored."""
     common.scale(1)
     settings().part = cube("Part")
     jaws, inside = cube("Jaws", location=(40, 0, 0)), bpy.data.collections.new("Vise")
@@ -172,7 +172,7 @@ def test_a_linked_vise_is_no_fixture_before_it_is_real():
     home = settings().fixtures = bpy.data.collections.new("Fixtures")
     bpy.context.scene.collection.children.link(home)
     home.objects.link(vise)
-    text = common.refused(bpy.ops.riffler.plan_find, "Part: no pencil cut")  # the search looks at no fixture
+    text = common.refused(bpy.ops.riffler.plan_find, "Part: no pencil cut")  # the search ignores fixtures
     take = common.part("plan.obstacles").take
     ob = common.part("plan.plan_store").new(bpy.context, a_plan())
     try:
@@ -190,7 +190,7 @@ def test_a_linked_vise_is_no_fixture_before_it_is_real():
 
 
 def test_a_flat_fixture_is_named_with_the_remedy():
-    """However it is turned; also one that became a fixture otherwise."""
+    """In any orientation; also one that was added to the collection by other means."""
     common.scale(1)
     settings().part = cube("Part")
     for turn in ((0, 0, 0), (0.3, 0.4, 0.5)):
@@ -277,7 +277,7 @@ NECKED = [(25, 2, 35, 3), (35, 3, 50, 3)]
 
 
 def assembled(**changed):
-    """Shank and holder of a stepped tool, once the dialog with its sizes was closed by OK, those `changed`."""
+    """Shank and holder of a stepped tool, after OK in the dialog with its sizes, some `changed`."""
     tool = riffler.Tool.ball(diameter=6, length=25).with_shank(NECKED).with_holder(STEPPED)
     settings().take(tool.to_dict())
     sizes = {"shank": 4, "reach": 50, "holder": 20, "upper": 30, "height": 50}
@@ -306,9 +306,9 @@ def test_the_dialog_says_which_pieces_become_one():
         layout = SimpleNamespace(prop=lambda *_: None, label=lambda text, icon: told.append(text))
         sizes = {"shank": 4.0, "reach": 50.0, "holder": 20.0, "upper": 30.0, "height": 50.0, **changed}
         drawn = SimpleNamespace(layout=layout, **sizes)
-        drawn._as_it_is = lambda *a: operator._as_it_is(drawn, *a)
+        drawn._unchanged = lambda *a: operator._unchanged(drawn, *a)
         operator.draw(drawn, bpy.context)
-        return " ".join(text.split("'")[0] for text in told)
+        return " ".join(text.split(" becomes")[0] for text in told)
 
     assert (said(), said(reach=60.0), said(shank=0.0, holder=0.0)) == ("", "", "")
     assert said(shank=6.0, upper=32.0) == "The shank The holder" and said(height=40.0) == "The holder"

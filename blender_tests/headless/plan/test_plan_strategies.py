@@ -1,4 +1,4 @@
-"""Strategies in Blender: curves engraved into a step, its wall cut by the flank, and what is refused."""
+"""Strategies in Blender: curves engraved into a step, its wall cut by the flank, and refusals."""
 
 import bpy
 import numpy as np
@@ -64,7 +64,7 @@ def test_the_fields_are_those_of_the_table():
             assert (getattr(field, "subtype", "") == "ANGLE") == (p.unit == "rad"), name
     assert {"tolerance", "minimum_length", "passes", "stepover"} <= set(
         find.keys()
-    )  # named so before there were others
+    )  # named so before there were other strategies
 
 
 def test_a_curve_on_the_part_is_engraved_as_the_function_does():
@@ -112,7 +112,7 @@ def test_it_is_resolved_written_and_verified_as_deep_as_it_is():
     assert bpy.ops.riffler.verify(source="PLAN", coloured="NONE") == {"FINISHED"}
     assert not programs.listed(verify.findings) and "0.3 mm below the part's surface are to be cut" in verify.said
     bpy.ops.riffler.verify(source="FILE", filepath=path, machine="tcp", coloured="NONE")
-    assert [e["kind"] for e in programs.listed(verify.findings)] == ["gouge"]  # a file says nothing of a depth
+    assert [e["kind"] for e in programs.listed(verify.findings)] == ["gouge"]  # a file has no information on a depth
     assert stock.name in bpy.data.objects
 
 
@@ -129,7 +129,8 @@ def test_a_holder_and_a_fixture_in_the_way_are_found():
     ob = engrave()
     bpy.ops.riffler.plan_resolve()
     assert rows(ob) == ["blocked"] and "holder meets the part" in ob.riffler.plan.findings[0].name
-    bpy.ops.mesh.primitive_cube_add(size=4, location=(30, 14.4, 10))  # the cutter is to enter it less than the part
+    # the cutter is meant to enter it less than the part
+    bpy.ops.mesh.primitive_cube_add(size=4, location=(30, 14.4, 10))
     block = bpy.context.object
     block.name = "Block"
     bpy.context.view_layer.update()
@@ -154,7 +155,7 @@ def test_on_the_timeline_it_plays_its_poses_and_takes_no_keys():
     why = "Path 1 has its orientations from its strategy"
     common.refused(lambda: bpy.ops.riffler.plan_key(axis=(0, 0.3, 1), path=1, point=1), why)
     common.refused(lambda: bpy.ops.riffler.plan_turn(inclination=0.1), why)
-    common.refused(lambda: bpy.ops.riffler.plan_least_tilt(paths="ALL"), "none takes keys")
+    common.refused(lambda: bpy.ops.riffler.plan_least_tilt(paths="ALL"), "none of them takes keys")
     common.refused(lambda: bpy.ops.riffler.plan_least_tilt(paths="FRAME"), why)
     tool = pair(ob)[0]
     tool.rotation_quaternion = (0.9, 0.1, 0, 0)

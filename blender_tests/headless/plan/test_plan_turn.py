@@ -1,4 +1,4 @@
-"""Turning a plan's tool without a window: angles, keys, undo, collisions, points that are gone to, what is drawn."""
+"""Turning a plan's tool without a window: angles, keys, undo, collisions, going to points, drawing."""
 
 import math
 import time
@@ -39,7 +39,7 @@ def test_the_angles_of_a_turn_are_the_key_s_own():
     assert close(paths(ob)[0].lean(72, paths(ob)[0].keys[72]), before + np.radians((10, -5)), 1e-6)
     turn(inclination=0.2, tilt=0.1, path=2, point=10)
     assert close(paths(ob)[1].keys[10], by_hand(paths(ob)[1], 10, 0.2, 0.1), 1e-7)
-    # The exact key outlives what follows from edits elsewhere, and a file.
+    # The exact key survives updates from edits elsewhere, and a file.
     exact = paths(ob)[0].keys[72].copy()
     insert(pair(ob)[0], 100, (0, -0.5, 1))
     assert np.array_equal(paths(ob)[0].keys[72], exact) and 99 in indices(ob)[0]
@@ -100,11 +100,11 @@ def test_points_are_gone_to_and_free_keys_set_there():
     bpy.ops.riffler.plan_point(path=2, point=30)
     assert track.nearest(scene.frame_current_final) == 30
     before = paths(ob)[0].axes[72].copy()
-    bpy.ops.riffler.plan_point_key(path=1, point=72)  # nothing to look at: as it was
+    bpy.ops.riffler.plan_point_key(path=1, point=72)  # no part: unchanged
     assert scene.frame_current == 73 and close(paths(ob)[0].keys[72], before, 1e-9)
     scene.riffler.plan.part = part
     bpy.ops.riffler.plan_point_key(path=1, point=72)
-    # The part is the same along x: upright between floor and wall, by 45°, leans least of all.
+    # The part is constant along x: 45°, between floor and wall, is the least tilt.
     assert close(paths(ob)[0].keys[72], np.array((0, -1, 1)) / math.sqrt(2), 1e-9)
 
 
@@ -146,7 +146,7 @@ def test_collisions_are_named_with_their_depth():
     free = look(ob, (0, -0.6, 0.8))
     assert free.free and free.other == "Step"
     upright = look(ob, (0, 0, 1))
-    # The shank begins 25 mm above the tip, which is at z = 8, and is as far out as the wall, whose top is at 24.
+    # The shank begins 25 mm above the tip, which is at z = 8, and extends as far out as the wall, whose top is at 24.
     assert upright.free and upright.piece == "shank" and abs(upright.distance - 9) < 1e-6
     leaning = look(ob, (0, 0.6, 0.8))
     assert not leaning.free and "hits Step by" in str(leaning)
@@ -165,20 +165,20 @@ def test_surroundings_are_made_once_and_again_where_something_moved():
     bpy.context.scene.frame_set(73)
     turn(inclination=0.1, tilt=0.1)
     bpy.ops.riffler.plan_check()
-    part.data.update_tag()  # says that something changed, as undo does, where nothing has
+    part.data.update_tag()  # reports a change, as undo does, although nothing has changed
     update()
     assert surroundings.now(bpy.context, ob) is first and surroundings.made == made + 1
     part.location.z = 5
     update()
     assert surroundings.known(ob) is None
     assert surroundings.now(bpy.context, ob) is not first and surroundings.made == made + 2
-    part.location.z = 6  # a script's change, which Blender has not told of yet
+    part.location.z = 6  # a script's change, which Blender has not reported yet
     assert surroundings.known(ob) is not None
     assert surroundings.now(bpy.context, ob).collider is not None and surroundings.made == made + 3
 
 
 def test_a_fixture_that_comes_or_goes_makes_what_is_known_old():
-    """As + does it to a collection that is there: no object that is known of says that it has changed."""
+    """As + does to an existing collection: no known object reports a change."""
     ob = plans.on_timeline(chosen=plans.paths()[:1])
     settings, surroundings = bpy.context.scene.riffler.plan, common.part("plan.obstacles")
     settings.part = plans.part_object()
@@ -210,7 +210,7 @@ def test_a_map_is_made_when_somebody_looks_and_again_only_where_the_point_is_ano
     def ask():
         spot = turning.spot(scene, ob)
         known = looking.ask(bpy.context, spot)
-        for _ in range(2000):  # what a window's timer does
+        for _ in range(2000):  # stands in for a window's timer
             if looking._look() is None:
                 break
             time.sleep(0.002)
@@ -233,7 +233,7 @@ def test_a_map_is_made_when_somebody_looks_and_again_only_where_the_point_is_ano
 
 
 def looked(ob):
-    """What a window's timer comes to, at the frame that the scene is at."""
+    """The timer's result at the scene's frame."""
     looking, turning = common.part("plan.orientation_probe"), common.part("plan.current_pose")
     known = looking.ask(bpy.context, turning.spot(bpy.context.scene, ob))
     while looking._look() is not None:
@@ -279,7 +279,7 @@ def test_what_undo_brings_back_as_it_was_makes_no_other_map():
 
 
 def test_a_map_that_was_asked_for_before_an_undo_is_made_after_it():
-    """The plan's object is another one in memory then."""
+    """The plan's object is then another one in memory."""
     ob = plans.on_timeline()
     bpy.context.scene.riffler.plan.part = plans.part_object()
     looking, turning = common.part("plan.orientation_probe"), common.part("plan.current_pose")
@@ -289,13 +289,13 @@ def test_a_map_that_was_asked_for_before_an_undo_is_made_after_it():
     common.push("touched")
     looking.ask(bpy.context, turning.spot(bpy.context.scene, ob))
     bpy.ops.ed.undo()
-    while looking._look() is not None:  # the timer comes before the view is drawn, and asks, again
+    while looking._look() is not None:  # the timer comes before the view is drawn, and the drawing asks again
         time.sleep(0.002)
     assert looking._known.map is not None and looking._known.free
 
 
 def test_the_contact_that_is_pointed_at_is_the_one_seen_nearest():
-    """Against every contact of all paths, projected one by one."""
+    """Compared with every contact of all paths, projected one by one."""
     drawn, sight = common.part("plan.path_view"), common.part("sculpt.pure.view_rays")
     plan = riffler.plan.Plan([p.divided(0.5) for p in plans.paths()], plans.TOOL)
     rng = np.random.default_rng(7)
@@ -322,14 +322,14 @@ def test_the_contact_that_is_pointed_at_is_the_one_seen_nearest():
 
 
 def from_above(scale=30.0):
-    """A parallel view along -z, `scale` pixels to the millimetre round the middle of the step."""
+    """A parallel view along -z, `scale` pixels per millimetre, centred on the step."""
     matrix = np.diag([scale / 400, scale / 400, -1 / 1000, 1.0])
     matrix[:2, 3] = -matrix[0, 0] * np.array((30, 20))
     return common.part("sculpt.pure.view_rays").ViewRays(matrix, (800, 800))
 
 
 def line(y, z, n=200):
-    """A path along x with both contacts 3 mm beside it; what is over z = 20 is in front."""
+    """A path along x with both contacts 3 mm from it; contacts above z = 20 are in front."""
     centres = np.c_[np.linspace(0, 60, n), np.full(n, y), np.full(n, z)]
     aside = np.array((0, 3.0, 0))
     contacts = np.stack([centres - aside, centres + aside], axis=1)
@@ -349,7 +349,7 @@ def test_a_contact_that_is_hidden_is_not_pointed_at():
     found = drawn.nearest(plan, view, at, hidden=below)
     assert found.path == 1 and abs(found.point[0] - 30) < 0.2 and abs(found.point[1] - 17.5) < 1e-9
     assert len(asked) < 40, "every contact was asked for"
-    # Of a path that is hidden here and seen 4 mm on, that is 12 pixels, what is seen is taken.
+    # On a path that is hidden here and visible 4 mm further, that is 12 pixels, the visible contact is found.
     found = drawn.nearest(riffler.plan.Plan([line(20, 0)], plans.TOOL), view, at, hidden=lambda place: place[0] < 34)
     assert 34 <= found.point[0] < 36
     asked.clear()

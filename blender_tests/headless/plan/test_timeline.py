@@ -1,5 +1,5 @@
-"""Keyframes of the tool are the plan's key orientations: edited as a person's edits arrive, through F-curves and
-Blender's own operators."""
+"""Keyframes of the tool are the plan's key orientations: edited like a user's edits, through F-curves and Blender's own
+operators."""
 
 import bpy
 import numpy as np
@@ -71,15 +71,15 @@ def test_a_tool_that_was_deleted_is_in_the_scene_again():
     ob = plans.on_timeline()
     for gone in pair(ob):
         for collection in gone.users_collection:
-            collection.objects.unlink(gone)  # as X does: the plan refers to it still
+            collection.objects.unlink(gone)  # like X: the plan still refers to it
     common.select(ob)
     assert bpy.ops.riffler.plan_to_timeline() == {"FINISHED"}
     assert all(found.name in bpy.context.scene.objects for found in pair(ob))
 
 
 def test_scrubbing_moves_the_tool_along_the_paths():
-    """Against the closed form: the valley's ball runs on a line, the ring's on a circle; the tip is 3 mm below, along
-    the axis."""
+    """Compared with the closed form: the valley's ball runs on a line, the ring's on a circle; the tip is 3 mm below,
+    along the axis."""
     for scale in (1.0, 1000.0):
         bpy.ops.wm.read_homefile()
         ob = plans.on_timeline(scale)
@@ -96,8 +96,8 @@ def test_scrubbing_moves_the_tool_along_the_paths():
 
 
 def test_what_plays_is_what_nc_code_does():
-    """Blender's own evaluation of the curves at ten times as many places as there are points, against the program as it
-    is read from its NC text."""
+    """Blender's own evaluation of the curves at ten times as many places as there are points, compared with the program
+    read from its NC text."""
     valley, loop = plans.paths()
     ob = plans.on_timeline(chosen=[valley, loop])
     _, ghost = pair(ob)
@@ -126,7 +126,7 @@ CHANNELS = [("location", i) for i in range(3)] + [("rotation_quaternion", i) for
 
 
 def nearest(poses, tips, axes):
-    """Of each tip the distance to the program's polyline, and of its axis to the great circle there."""
+    """For each tip the distance to the program's polyline, and for its axis to the great circle there."""
     a, b = poses[:-1], poses[1:]
     off, turn = np.empty(len(tips)), np.empty(len(tips))
     way = b[:, :3] - a[:, :3]
@@ -179,7 +179,7 @@ def test_a_key_is_moved():
         next(p for p in curve.keyframe_points if p.co[0] == 145).co[0] = 100
     update()
     assert state(ob).changes[0].moved == [(144, 99)] and indices(ob)[0] == [0, 99]
-    assert np.array_equal(paths(ob)[0].keys[99], (0.6, 0, 0.8))  # the number itself, not its single precision
+    assert np.array_equal(paths(ob)[0].keys[99], (0.6, 0, 0.8))  # the exact number, not its single precision
     assert close(seen(ob, 145)[1], (0.6, 0, 0.8)) and close(seen(ob, 100)[1], (0.6, 0, 0.8))
 
 
@@ -211,7 +211,7 @@ def test_keys_are_deleted():
     assert indices(ob)[0] == [0] and close(paths(ob)[0].axes, np.tile((0, -0.6, 0.8), (145, 1)))
     remove(tool, 1)
     assert indices(ob)[0] == [] and len(paths(ob)[0].axes) == 0  # a path without an orientation is not cut
-    assert close(seen(ob, 50)[1], (0, -np.sqrt(0.5), np.sqrt(0.5)))  # it is shown half way between floor and wall
+    assert close(seen(ob, 50)[1], (0, -np.sqrt(0.5), np.sqrt(0.5)))  # it is shown halfway between floor and wall
     assert np.array_equal(paths(ob)[1].axes, other)
     tool.animation_data_clear()
     insert_first(tool, 30, (0, -0.5, 1))
@@ -219,7 +219,7 @@ def test_keys_are_deleted():
 
 
 def insert_first(tool, frame, axis):
-    """Where the tool has no curves any more."""
+    """For a tool that has no curves any more."""
     tool.rotation_quaternion = quat(axis)
     tool.keyframe_insert("rotation_quaternion", frame=frame)
     update()
@@ -267,7 +267,7 @@ def test_keys_that_cannot_be_are_told_and_change_nothing():
     insert(tool, 73, (0, 0.6, -0.8))  # opposite to the first
     assert "opposite" in state(ob).problems[0] and "Path 1" in state(ob).problems[0]
     assert np.array_equal(paths(ob)[0].axes, before[0].axes)
-    insert(tool, 40, (1, 0, 0))  # a way round
+    insert(tool, 40, (1, 0, 0))  # a detour
     assert not state(ob).problems and indices(ob)[0] == [0, 39, 72, 144]
 
 

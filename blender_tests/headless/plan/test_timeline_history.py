@@ -1,4 +1,4 @@
-"""What becomes of a plan on the timeline: undo, files, another speed, cutter locations, copies, several plans."""
+"""A plan on the timeline through undo, files, another speed, cutter locations, copies, several plans."""
 
 import bpy
 import numpy as np
@@ -41,7 +41,7 @@ def test_a_key_and_what_it_did_are_one_step_of_undo():
 
 
 def test_undo_where_the_consequence_came_after_the_step():
-    """As in a window: Blender's step is made when the key is set, the plan follows a moment later."""
+    """As in a window: Blender's step is made when the key is set, the plan is updated a moment later."""
     ob = plans.on_timeline()
     name, replan = ob.name, common.part("plan.replan")
     common.push("timeline")
@@ -63,7 +63,7 @@ def test_undo_where_the_consequence_came_after_the_step():
 
 
 def test_undo_brings_resolved_paths_back_and_so_does_a_key_that_is_moved_back():
-    """As in a window; Blender keeps the plan as it has become, since it is the same in both of its steps."""
+    """As in a window; Blender keeps the updated plan, since it is the same in both of its steps."""
     ob = programs.resolved(programs.valley(programs.LEANING, programs.LEANING))
     name, replan, store = ob.name, common.part("plan.replan"), common.part("plan.plan_store")
     common.push("resolved")
@@ -92,7 +92,7 @@ def test_undo_brings_resolved_paths_back_and_so_does_a_key_that_is_moved_back():
 
 
 def with_held(replan, action):
-    """Runs it while nothing follows from keyframes."""
+    """Runs it while no updates from keyframes are made."""
     soon, replan._soon = replan._soon, lambda: None
     try:
         action()
@@ -229,7 +229,7 @@ def test_a_tool_that_is_deleted_or_scaled_is_said_and_a_plan_that_is_deleted_is_
 
 
 def duplicated(*objects):
-    """What Shift D makes of the first of them, with the others."""
+    """The result of Shift D on the first of them, with the others."""
     bpy.ops.object.select_all(action="DESELECT")
     for ob in objects:
         ob.select_set(True)

@@ -1,4 +1,4 @@
-"""A plan's paths resolved, and written as NC code that says what the timeline plays."""
+"""A plan's paths resolved, and written as NC code that matches the timeline."""
 
 import itertools
 import json
@@ -25,7 +25,7 @@ def write(name="plan.ngc", **more):
 
 
 def free(poses):
-    """The least clearance of poses over the step."""
+    """The smallest clearance of poses over the step."""
     return riffler.Collider(riffler.Mesh(*plans.step())).clearance(plans.TOOL, poses).min()
 
 
@@ -55,8 +55,8 @@ def test_resolved_paths_become_nc_code_that_reads_back():
 
 
 def interpreted(path):
-    """X Y Z A C (n, 5) of the feed moves as LinuxCNC's interpreter says them. It needs a table of tools, and keeps a
-    file in the home folder."""
+    """X Y Z A C (n, 5) of the feed moves from LinuxCNC's interpreter. It needs a table of tools, and writes a file into
+    the home folder."""
     folder = Path(common.JOB["repo"]) / ".envs" / "linuxcnc" / "usr"
     if not (folder / "bin" / "rs274").exists():
         raise common.Skip("no LinuxCNC interpreter: make envs")
@@ -83,7 +83,7 @@ def test_linuxcnc_accepts_it():
 
 
 def test_what_collides_is_lifted_and_listed():
-    """A tool that stands square on the step's floor is free; leaning into the wall it is not, and is lifted."""
+    """A tool that stands upright on the step's floor is free; leaning into the wall it is not, and is lifted."""
     ob = programs.resolved(programs.valley(programs.LEANING, programs.INTO, programs.LEANING))
     plan = programs.content(ob)
     lines = programs.listed(ob.riffler.plan.findings)
@@ -140,19 +140,21 @@ def test_a_key_that_changes_takes_the_path_s_locations_away():
 
 @common.core_bound
 def test_blocked_paths_stay_unresolved_and_name_their_points():
-    """No lift of at most a hundredth of a millimetre frees a shank that stands in the wall."""
+    """No lift of at most a hundredth of a millimetre frees a shank that is in the wall."""
     ob = programs.plan(programs.valley(programs.INTO))
     bpy.ops.riffler.plan_resolve(max_lift=0.01)
     assert programs.content(ob).cl[0] is None
     lines = programs.listed(ob.riffler.plan.findings)
     assert lines[0]["kind"] == "blocked" and "points from 0" in lines[0]["name"]
-    common.refused(lambda: bpy.ops.riffler.plan_nc(filepath=common.out("x.ngc")), "path 1 may collide", "left out")
+    common.refused(
+        lambda: bpy.ops.riffler.plan_nc(filepath=common.out("x.ngc")), "path 1 may collide", "switch the path off"
+    )
 
 
 @common.core_bound
 def test_clearance_is_kept_beside_shank_and_holder_and_lifts_no_cut():
     """The valley's finish is the same with 0.3 mm of it; where the shank is too near for 15 mm the tool is lifted, and
-    that is said."""
+    a report says so."""
     settings = bpy.context.scene.riffler.plan
     ob = programs.plan(programs.valley(programs.LEANING), timeline=False)
     short = riffler.Tool.ball(6, 10).with_shank([(10, 3, 40, 3)])
@@ -215,7 +217,7 @@ def test_a_clamp_that_the_holder_would_meet_on_the_way_in_is_gone_round():
     except ValueError as error:
         assert "the holder meets a fixture" in str(error)
     else:
-        raise AssertionError("the scene is not as it is meant to be")
+        raise AssertionError("the scene is not the intended one")
     read = riffler.Program.read(write("clamped.ngc"))
     assert max(np.linalg.norm(read.poses - row, axis=1).min() for row in rows) < 2e-4
     share = np.linspace(0, 1, 40)[:, None]
@@ -260,7 +262,7 @@ def test_what_cannot_be_linked_is_refused_with_its_place_until_the_fixture_is_mo
 
 
 def test_a_key_that_was_refused_is_said_with_the_code():
-    """It is on the timeline, and the program has the orientation of before."""
+    """It is on the timeline, and the program has the previous orientation."""
     ob = programs.resolved()
     bpy.context.scene.riffler.plan.take(plans.TOOL.to_dict())
     (before,) = programs.content(ob).cl
@@ -273,11 +275,11 @@ def test_a_key_that_was_refused_is_said_with_the_code():
 
 
 def test_paths_without_keys_are_not_cut_and_that_is_said():
-    """The second of three has none, the third is blocked until it has none either."""
+    """The second of three has none, the third is blocked until its keys are deleted."""
     ob = programs.plan(programs.valley(programs.LEANING), plans.ring(), programs.valley(programs.INTO))
     bpy.ops.riffler.plan_resolve(max_lift=0.01)
     call = lambda: bpy.ops.riffler.plan_nc(filepath=common.out("some.ngc"))  # noqa: E731
-    common.refused(call, "path 3 may collide", "switch off a path")
+    common.refused(call, "path 3 may collide", "switch the path off")
     tool = pair(ob)[0]
     frames, quats = common.part("plan.timeline").read_keys(tool)
     first = tracks(ob)[2].first
@@ -334,7 +336,7 @@ def test_the_plan_s_locations_are_what_plays():
 
 
 def test_rows_that_were_inserted_beside_a_lift_play_too():
-    """Blender from 4.x on makes one key of two that are a hundredth of a frame apart."""
+    """Blender from 4.x on merges two keys that are a hundredth of a frame apart."""
     ob = programs.resolved(programs.valley(programs.LEANING, (0, -0.2, 1), (0, 0.5, 0.8), programs.LEANING))
     found = common.part("plan.plan_states").state(ob)
     rows = found.motions[0].motion

@@ -1,4 +1,5 @@
-"""A program is simulated on a stock: the timeline decides how much of it is cut, and nothing of it stays."""
+"""A program is simulated on a stock: the timeline decides how much of it is cut, and nothing of the simulation
+remains."""
 
 import bpy
 import numpy as np
@@ -17,7 +18,7 @@ def now():
 
 
 def seen():
-    """The surface of all chunks, as a volume by the divergence theorem, and the names of what shows it."""
+    """The volume inside all chunks' surface, by the divergence theorem, and the names of the visible objects."""
     chunks = common.part("sculpt.chunks")
     collection = chunks.collection_of(now().mark)
     parts = [ob for ob in collection.objects if chunks.NUMBER in ob and len(ob.data.polygons)]
@@ -25,7 +26,7 @@ def seen():
 
 
 def carved(setup, row):
-    """The stock after carving all rows up to that one in one go."""
+    """The stock after carving all rows up to that one in one call."""
     volume = setup.stock
     for tool, poses in setup.runs:
         some = poses[: max(row + 1, 0)]
@@ -36,7 +37,7 @@ def carved(setup, row):
 
 
 def take():
-    """The program and stock of the scene, once more: a simulation does not change them."""
+    """The program and stock of the scene, again: a simulation does not change them."""
     return common.part("program.programs").take(bpy.context, programs.settings())
 
 
@@ -67,7 +68,7 @@ def test_scrubbing_back_and_forth_equals_carving_the_prefix_by_bytes():
 
 
 def test_the_stock_is_cut_where_the_tool_is_seen():
-    """At a frame, the plan's rows that the tool has passed are cut, and those ahead of it are not."""
+    """At a frame, the rows that the tool has passed are cut, and those ahead of it are not."""
     programs.resolved()
     programs.stock()
     bpy.ops.riffler.simulate(source="PLAN")
@@ -75,7 +76,7 @@ def test_the_stock_is_cut_where_the_tool_is_seen():
         tip, axis = keyframed_plan.seen(bpy.data.objects["Riffler Plan"], frame)
         _, pose = now().prefix.pose(now().prefix.row)
         assert np.linalg.norm(pose[:3] - tip) <= 60 / 144 + 1e-3 and np.abs(pose[3:] - axis).max() < 1e-3
-        # a quarter of a millimetre over the step's floor, under the ball: it goes from x = 60 to 0
+        # a quarter of a millimetre above the step's floor, under the ball: it goes from x = 60 to 0
         behind, ahead = ((tip[0] + 6, 17, 8.25), (tip[0] - 6, 17, 8.25))
         assert list(now().prefix.volume.contains(np.array([behind, ahead]))) == [False, True]
 
@@ -131,7 +132,7 @@ def test_a_sculpt_s_own_cuts_begin_with_the_full_block():
     bpy.context.scene.frame_set(-100)
     assert abs(now().prefix.volume.volume - 40 * 30 * 20) < 1e-6
     bpy.context.scene.frame_set(now().program_timeline.last)
-    # approach and retract sweep where the cut itself has been: the same material but for rounding
+    # approach and retract sweep where the cut itself has been: the same material except for rounding
     both = now().prefix.volume.copy().subtract(left).volume + left.copy().subtract(now().prefix.volume).volume
     assert both < 1e-3 < 40 * 30 * 20 - left.volume, both
     bpy.ops.riffler.simulate_stop()
@@ -173,7 +174,7 @@ def test_saving_and_undo_end_it():
 
 
 def test_a_plan_that_changes_ends_it():
-    """The tool plays the new keys: the old program is not shown beside it."""
+    """The tool plays the new keys: the old program is not shown at the same time."""
     ob, replan = programs.resolved(), common.part("plan.replan")
     stock = programs.stock()
     bpy.ops.riffler.simulate(source="PLAN")
@@ -185,13 +186,13 @@ def test_a_plan_that_changes_ends_it():
     common.refused(bpy.ops.riffler.simulate, "path 1 may collide")
     bpy.ops.riffler.plan_resolve()
     bpy.ops.riffler.simulate(source="PLAN")
-    store = common.part("plan.plan_store")  # as a script changes it, which Blender does not tell of
+    store = common.part("plan.plan_store")  # a script's change, which Blender does not report
     store.write(ob, riffler.plan.Plan(keyframed_plan.paths(ob), plans.TOOL))
     bpy.context.scene.frame_set(20)
     assert now() is None
     replan.flush()
     bpy.ops.riffler.plan_resolve()
-    soon, replan._soon = replan._soon, lambda: None  # as in a window, in the tenth of a second before keys count
+    soon, replan._soon = replan._soon, lambda: None  # as in a window, in the tenth of a second before keys take effect
     try:
         keyframed_plan.insert(keyframed_plan.pair(ob)[0], 73, (0, -0.2, 1))
         common.refused(bpy.ops.riffler.simulate, "path 1 may collide")
@@ -222,7 +223,7 @@ def test_what_is_missing_is_said():
 
 
 def test_a_simulation_costs_no_more_than_what_changes():
-    """Operation counts: going one frame on fills a few chunks and carves a row or two."""
+    """Operation counts: one frame further fills a few chunks and carves a row or two."""
     programs.resolved()
     programs.stock()
     bpy.context.scene.frame_set(70)

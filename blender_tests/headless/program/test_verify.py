@@ -1,4 +1,4 @@
-"""A program is verified: what is wrong with it is found, and the way leads to the frame, the place and the line."""
+"""A program is verified: its errors are found, and each leads to the frame, the place and the line."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -49,8 +49,8 @@ def test_a_good_plan_passes():
     part = bpy.data.objects["Step"]
     distance = values(part)
     assert len(distance) == len(part.data.vertices)
-    # the half millimetre of material stands on what the pencil cut does not reach: all of the part's corners but those
-    # of the valley, which the ball cleans to its radius (√2 − 1) · 3 mm from the edge
+    # the half millimetre of material remains where the pencil cut does not reach: at all of the part's corners except
+    # those of the valley, which the ball cleans to its radius (√2 − 1) · 3 mm from the edge
     co = common.coordinates(part.data)
     inner = (co[:, 1] == 20) & (co[:, 2] == 8)
     assert np.all(distance >= 0) and np.all(distance[~inner] <= 0.5 + 1e-6) and distance[~inner].max() > 0.4
@@ -71,7 +71,7 @@ def test_a_slip_of_ten_moves_is_found_and_the_jump_sets_frame_view_and_line():
     path, rows = nc(slip=60)
     assert bpy.ops.riffler.verify(source="FILE", filepath=path, gouge=0.05) == {"FINISHED"}
     (found,) = [e for e in findings() if e["kind"] == "gouge"]
-    # the ball's bottom went SLIP under the floor
+    # the ball's bottom went SLIP below the floor
     lines = Path(path).read_text().splitlines()
     read = riffler.Program.read(path)
     slipped = [int(np.linalg.norm(read.poses - row, axis=1).argmin()) for row in rows[60:70]]
@@ -91,13 +91,13 @@ def test_a_slip_of_ten_moves_is_found_and_the_jump_sets_frame_view_and_line():
     )
     space = other.spaces.active
     assert space.text == text and space.top <= found["line"] - 1 <= space.top + 30
-    text.clear()  # somebody has edited it: the rest of the way is shown all the same
+    text.clear()  # the user has edited it: frame and place are shown all the same
     bpy.context.scene.frame_set(1)
     bpy.ops.riffler.finding_go(of="VERIFY", index=index)
     assert bpy.context.scene.frame_current_final == found["frame"]
     view = area.spaces.active.region_3d
     assert np.allclose(view.view_location, found["place"], atol=1e-4)
-    # at that frame the simulated stock has the row that was found
+    # at that frame the simulated stock has the row of the finding
     bpy.ops.riffler.verify_clear()
     bpy.ops.riffler.simulate(source="FILE", filepath=path)
     assert common.part("program.simulation").active().prefix.row >= found["row"]
@@ -106,7 +106,7 @@ def test_a_slip_of_ten_moves_is_found_and_the_jump_sets_frame_view_and_line():
 
 
 def test_a_plan_s_findings_have_the_lines_of_its_nc_code():
-    """A stock with a block above the wall, which approach and retract do not reach, and the plan's rows do."""
+    """A stock with a block above the wall, which the plan's rows reach, but approach and retract do not."""
     ob = programs.resolved()
     plan = programs.content(ob)
     rows = np.array(plan.cl[0])
@@ -150,7 +150,7 @@ def test_what_is_left_is_shown_with_its_distances():
     left = programs.settings().left
     part = bpy.data.objects["Step"]
     assert left.matrix_world == stock.matrix_world and not left.hide_get()
-    assert stock.hide_get() and part.hide_get()  # it would stand in its own gouges
+    assert stock.hide_get() and part.hide_get()  # it would cover its own gouges
     co, distance = common.coordinates(left.data).astype(float), values(left)
     floor = (np.abs(co[:, 0] - 30) < 20) & (co[:, 1] > 1) & (co[:, 1] < 13) & (co[:, 2] > 6)
     assert floor.sum() > 100 and np.abs(distance[floor] - 0.5).max() < 0.01
@@ -201,7 +201,7 @@ def test_a_program_that_was_edited_is_verified_only_where_it_differs():
 
 @common.core_bound
 def test_every_machine_s_program_is_verified():
-    """Also of one whose language is not read: it has no lines then."""
+    """Also of one whose language riffler cannot read: it has no lines then."""
     prepared()
     for machine in riffler.machines():
         if machine == "3-axis":
@@ -220,7 +220,7 @@ def reports(**how):
 
 
 def test_the_chosen_machine_is_verified_wherever_the_stock_stands():
-    """“No machine was given” was said of a stock that is turned, and of a .rprog file; no limits were looked at."""
+    """Earlier a turned stock, and a .rprog file, gave “No machine was given”, and no limits were checked."""
     ob = programs.resolved()
     bpy.context.scene.riffler.plan.take(plans.TOOL.to_dict())
     tilt = float(np.degrees(np.arccos(programs.content(ob).cl[0][:, 5].min())))
@@ -272,7 +272,7 @@ def test_findings_begin_with_what_differs():
 
 
 def test_a_holder_that_is_described_is_not_asked_for():
-    """Material stands where the spindle would be: findings told to describe the shank and the holder."""
+    """Material is where the spindle would be: earlier findings asked for the shank and the holder."""
     programs.resolved()
     bpy.context.scene.riffler.plan.take(plans.TOOL.to_dict())
     path, _ = nc()
@@ -305,7 +305,7 @@ def test_one_step_of_undo():
 
 
 def test_what_is_missing_is_said():
-    common.refused(bpy.ops.riffler.finding_go, "Nothing was found")
+    common.refused(bpy.ops.riffler.finding_go, "There are no findings")
     common.refused(bpy.ops.riffler.verify_clear, "Nothing was verified")
     bpy.context.view_layer.objects.active = None
     common.refused(bpy.ops.riffler.verify, "There is no stock")
@@ -339,7 +339,7 @@ def test_an_edited_text_is_kept_where_it_is_verified_again():
         return programs.settings().text
 
     first = verified(path)
-    assert verified(other) == first, "nobody has edited it"
+    assert verified(other) == first, "it is unedited"
     mine = first.as_string().replace("G1", "G1 (mine)", 1)
     first.from_string(mine)
     second = verified(path)

@@ -1,5 +1,5 @@
-"""A plain object becomes a sculpt: units, pitch and cutter follow its size, the drag becomes a stroke, and whatever is
-refused leaves all as it was."""
+"""A plain object becomes a sculpt: units, pitch and cutter follow its size, the drag becomes a stroke, and a refusal
+leaves everything unchanged."""
 
 import json
 
@@ -130,7 +130,8 @@ def test_what_cannot_become_a_sculpt_is_refused_and_all_stays_as_it_was():
 
 
 def test_whatever_is_under_the_pointer_gets_the_drag_where_the_stroke_does_not():
-    """Each key of a tool that strokes is followed by one that takes the drag, or Blender would move the object."""
+    """Each key of a tool that makes strokes is followed by one that captures the drag, or Blender would move the
+    object."""
     for tool in common.part("sculpt.tools").TOOLS:
         items = [(name, event) for name, event, _ in tool.bl_keymap]
         for k, (name, event) in enumerate(items):

@@ -1,4 +1,4 @@
-"""Whatever happens to a live sculpt between strokes: every state that Blender's history has is shown to the byte."""
+"""Events of a live sculpt between strokes: every state in Blender's history is shown to the byte."""
 
 import json
 
@@ -11,12 +11,12 @@ from support.sculpting import BALL, is_shown, live, matches_its_volume, nothing_
 
 
 def current(name):
-    """The bytes of what is shown, live or not."""
+    """The bytes of the displayed state, live or not."""
     return live().content(bpy.data.objects[name]).volume.to_bytes()
 
 
 def whole(name):
-    """What is shown is the state that memory, file and mesh are said to be in."""
+    """The displayed state is the one recorded in memory, file and mesh."""
     if live().of(bpy.data.objects[name]):
         is_shown(name)
     else:
@@ -24,7 +24,7 @@ def whole(name):
 
 
 def rested(name):
-    """As if the hand had rested for long: what the timer does in a window."""
+    """As after a long rest of the hand: what the timer does in a window."""
     run = live().of(bpy.data.objects[name])
     run.persistence._packing._stroke -= 100
     run.persistence._packing._last -= 100
@@ -48,7 +48,7 @@ def test_fifty_strokes_and_a_walk_through_them_among_other_steps():
     rng = np.random.default_rng(11)
     states = [current(name)]
     for k in range(50):
-        if k % 9 == 4:  # another operator, another object, an end of the work in between
+        if k % 9 == 4:  # another operator, another object, an end of the session in between
             bpy.data.objects[name].location.x = 1 + k
             common.push("moved")
         elif k % 9 == 7:
@@ -86,7 +86,7 @@ def test_fifty_strokes_and_a_walk_through_them_among_other_steps():
 
 
 def test_the_end_needs_no_step_of_its_own():
-    """The artist leaves the tool: nothing is pushed, and an undo takes the last stroke back."""
+    """The artist chooses another tool: nothing is pushed, and an undo undoes the last stroke."""
     name = sculpt()
     large(work(name))
     states = [current(name)] + [stroke(name, k) for k in range(3)]
@@ -237,13 +237,13 @@ def test_a_state_that_memory_lost_is_told_again_from_the_journal():
     assert "journal" in bpy.context.window_manager.riffler.notice
     is_shown(name)
     assert live().of(bpy.data.objects[name]).mask.volume > 0
-    # and without a journal, the sculpt is what the file has, which is said
+    # and without a journal, the sculpt is the one in the file, which is reported
     common.part("sculpt.undo_states").snapshots.clear()
     for begun in (*common.part("sculpt.persistence")._open, *common.part("sculpt.persistence")._parked):
         begun.whole = False
     bpy.ops.ed.undo()
     assert current(name) == states[0]
-    assert "as it was last packed" in bpy.context.window_manager.riffler.notice
+    assert "as last saved" in bpy.context.window_manager.riffler.notice
     matches_its_volume(name)
     nothing_is_left()
 
@@ -309,7 +309,7 @@ def test_a_stroke_of_a_sculpt_that_is_gone_is_refused():
 
 
 def test_a_stroke_that_does_nothing_leaves_nothing_that_an_undo_would_fall_over():
-    """Chunks that no undo step had made Blender crash in the next undo."""
+    """Earlier, chunks that no undo step had made Blender crash in the next undo."""
     name = sculpt()
     common.push("before")
     bpy.data.objects[name].location.x = 1
@@ -330,5 +330,5 @@ def test_a_stroke_that_does_nothing_leaves_nothing_that_an_undo_would_fall_over(
         matches_its_volume(name)
     first = stroke(name, 1)
     assert bpy.ops.riffler.stroke("EXEC_DEFAULT", True, stroke=past) == {"CANCELLED"}
-    assert live().of(bpy.data.objects[name]) is not None, "work that went on goes on"
+    assert live().of(bpy.data.objects[name]) is not None, "a running session continues"
     assert current(name) == first

@@ -1,5 +1,5 @@
-"""What a hand of 125 events a second waits for on 1.3 million triangles, in this process's own processor time: what
-other work a machine has does not count, nor does drawing, which a graphics card does."""
+"""The delay for a hand of 125 events a second on 1.3 million triangles, in this process's own processor time: other
+work of the computer does not count, nor does drawing, which a graphics card does."""
 
 import time
 
@@ -9,19 +9,20 @@ import numpy as np
 from support import common
 
 SIDE, RATE, SECONDS = 130.0, 125, 4
-TRIES = 3  # other work takes the caches, and so this process's time, for a stretch of a stroke
+TRIES = 3  # other work displaces the caches, and so slows this process, for a part of a stroke
 
 
 def spiral():
     """Pixels of 0.25 mm: a turn in two seconds, 400 pixels a second."""
     n = RATE * SECONDS
     turn = np.linspace(0, 2 * np.pi * SECONDS / 2, n)
-    radius = np.linspace(120, 140, n)  # nearly one speed: a faster hand reaches more chunks
+    radius = np.linspace(120, 140, n)  # nearly constant speed: a faster hand reaches more chunks
     return np.c_[500 + radius * np.cos(turn), 500 + radius * np.sin(turn)].round()
 
 
 def waits(live, mirror):
-    """Seconds from each place of the hand to the end of the look that shows it; a clock that only this work moves."""
+    """Seconds from each place of the hand to the end of the update that shows it; the clock advances with this work
+    only."""
     brush, symmetry = common.part("sculpt.pure.brush_stroke"), common.part("sculpt.pure.symmetry")
     sample, look = common.part("sculpt.pure.stroke_path").Sample, common.part("sculpt.stroke_operator").LOOK
     sight = common.part("sculpt.pure.view_rays").ViewRays(
@@ -31,7 +32,7 @@ def waits(live, mirror):
     made = brush.BrushStroke(live, {"kind": "ball", "diameter": 6.0, "length": 30.0}, sight, brush.Choice(depth=0.5))
     places, now, done, out = spiral(), 0.0, 0, []
     while done < len(places):
-        now = max(now, done / RATE)  # a hand that the loop has to wait for
+        now = max(now, done / RATE)  # a hand that waits for the loop
         waiting = places[done : int(now * RATE) + 1]
         begin = time.process_time()
         for k, (x, y) in enumerate(waiting, done):

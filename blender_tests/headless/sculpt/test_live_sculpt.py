@@ -1,4 +1,4 @@
-"""A sculpt that is worked at: chunks, undo by strokes, and what the sculpt is afterwards."""
+"""A live sculpt: chunks, undo by strokes, and the sculpt afterwards."""
 
 import bpy
 import numpy as np
@@ -49,7 +49,8 @@ def test_chunks_show_the_volume_and_only_dirty_ones_move():
 
 
 def test_seams_of_added_material_are_sharp_all_along():
-    """Not one edge sharp and the next smooth: crumbs. Beads of the default radius and depth, on a ball of 25 mm."""
+    """An edge that is sharp next to one that is smooth looks like crumbs. Beads of the default radius and depth, on a
+    ball of 25 mm."""
     radius, depth, ball = 3.0, 0.5, 25.0
     volume = riffler.Volume.empty((-20, -15, 14), (20, 15, 28), 0.25, "xyz")
     volume.carve(riffler.Tool.ball(2 * ball, 2 * ball), [(0, 0, ball, 0, 0, -1)] * 2, mode="add")
@@ -72,11 +73,11 @@ def test_seams_of_added_material_are_sharp_all_along():
     seams = bend[(bend > 12) & (bend < 60) & (corners[first][:, :, 2].min(axis=1) > 15)]
     undecided = np.abs(seams - np.degrees(common.part("blender.meshes").SHARP_ANGLE)) < 2
     assert len(seams) > 500 and undecided.mean() < 0.08, undecided.mean()
-    assert (np.abs(seams - 30) < 2).mean() > 0.2, "what they were told apart by before"
+    assert (np.abs(seams - 30) < 2).mean() > 0.2, "the angle that separated them before"
 
 
 def corner_keys(vertices, triangles):
-    """Of all corners: the vertex's place and the triangle's, as bytes."""
+    """For all corners: the places of the vertex and of the triangle, as bytes."""
     corners = np.ascontiguousarray(vertices, np.float32)[triangles]
     return [at.tobytes() + whole.tobytes() for whole in corners for at in whole]
 
@@ -139,7 +140,7 @@ def test_chunks_hang_on_one_go_where_the_sculpt_goes_and_stay_there_without_it()
 def test_work_that_is_ended_is_in_volume_mesh_and_cuts():
     name = sculpt()
     last = [stroke(name, k) for k in range(3)][-1]
-    assert common.part("sculpt.sculpts").behind(bpy.data.objects[name].data)  # the mesh has to wait
+    assert common.part("sculpt.sculpts").behind(bpy.data.objects[name].data)  # the mesh is updated later
     live().end_all()
     content = common.content(bpy.data.objects[name])
     assert content.volume.to_bytes() == last
@@ -189,11 +190,11 @@ def refused(call, *words):
     except ValueError as error:
         assert all(word in str(error) for word in words), error
         return
-    raise AssertionError("nothing was said")
+    raise AssertionError("no message was shown")
 
 
 def test_edit_mode_has_the_strokes_and_keeps_them():
-    """As the workspace Modeling does, which asks no operator of ours."""
+    """Like the workspace Modeling, which calls no operator of ours."""
     for packed in (False, True):
         name = sculpt()
         last = stroke(name, 1)
@@ -408,11 +409,11 @@ def test_a_file_that_cannot_be_opened_takes_no_work_with_it():
     for k, path in enumerate((broken, common.out("there_is_none.blend"))):
         common.refused(lambda path=path: bpy.ops.wm.open_mainfile(filepath=path))
         assert live().content(bpy.data.objects[name]).volume.to_bytes() == last
-        live().end_all()  # where the add-on was told that another file would come, it has ended already
+        live().end_all()  # if the add-on was notified of the other file, it has ended already
         assert common.content(bpy.data.objects[name]).volume.to_bytes() == last
         matches_its_volume(name)
         nothing_is_left()
-        last = stroke(name, 5 + k)  # and it goes on
+        last = stroke(name, 5 + k)  # and it continues
 
 
 def outlines():
@@ -421,7 +422,7 @@ def outlines():
 
 
 def test_outlines_are_there_again_whatever_ends_the_work():
-    """No undo brings a view's settings back."""
+    """No undo restores a view's settings."""
     views = [space.shading for _, _, space in common.part("sculpt.chunks").views()]
     for shading, on in zip(views, [True, False] * len(views), strict=False):
         shading.show_object_outline = on
@@ -470,8 +471,8 @@ def test_where_a_sculpt_was_hidden_it_stays_hidden():
 
 
 def test_a_copy_of_what_is_shown_is_a_persons():
-    """In the collection or out of it, with a mesh of its own or without one. What is shown itself goes, wherever it
-    was put meanwhile."""
+    """In the collection or outside it, with a mesh of its own or without one. The display objects themselves are
+    removed, wherever they were moved."""
     name = sculpt(directions="z")
     bpy.data.objects[name].location.x = 5
     bpy.context.view_layer.update()

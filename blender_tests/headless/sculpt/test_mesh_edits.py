@@ -1,4 +1,4 @@
-"""What Blender's own tools have done to a sculpt's mesh is seen by whatever takes the sculpt up, and said."""
+"""Edits of a sculpt's mesh by Blender's own tools are detected by all operators that use the sculpt, and reported."""
 
 from pathlib import Path
 
@@ -19,7 +19,7 @@ def ball():
 
 
 def pull(ob, centre, by=3.0, radius=8.0):
-    """As a brush of sculpt mode does."""
+    """Like a brush of Sculpt Mode."""
     co = common.coordinates(ob.data)
     fall = np.clip(1 - np.linalg.norm(co - centre, axis=1) / radius, 0, 1)[:, None]
     co += (by * fall * np.asarray(centre) / np.linalg.norm(centre)).astype(np.float32)
@@ -38,11 +38,11 @@ def test_every_local_pull_is_seen():
         missed += not sculpts.edited(ob.data)
         ob.data.vertices.foreach_set("co", whole.ravel())
         assert not sculpts.changed(ob.data)
-    assert missed > 10  # which the panel's cheap look does not see
+    assert missed > 10  # which the panel's cheap check misses
 
 
 def local_pull():
-    """A sculpt that was pulled where the cheap look sees nothing."""
+    """A sculpt that was edited where the cheap check misses it."""
     ob, sculpts = ball(), common.part("sculpt.sculpts")
     pull(ob, (12.0, 9.0, 13.0))
     assert sculpts.changed(ob.data) and not sculpts.edited(ob.data)
@@ -50,7 +50,7 @@ def local_pull():
 
 
 def test_whatever_changes_the_sculpt_asks_first_what_becomes_of_the_edits():
-    """Nothing is dropped, and either remedy that the message names works."""
+    """Nothing is discarded, and either remedy in the message works."""
     from support import sculpting
 
     line = common.curve("Line", [(-30, 0, 18), (30, 0, 18)], mm_per_unit=1.0)
@@ -67,7 +67,7 @@ def test_whatever_changes_the_sculpt_asks_first_what_becomes_of_the_edits():
             ob = local_pull()
             common.push("pull")
             kept, before = common.coordinates(ob.data), common.shape(common.content(ob).volume)
-            common.refused(call, ob.name, "Take Edits", "Rebuild Mesh")
+            common.refused(call, ob.name, "Apply Mesh Edits", "Rebuild Mesh")
             assert np.array_equal(common.coordinates(ob.data), kept), name
             assert common.same(common.shape(common.content(ob).volume), before), name
             assert remedy() == {"FINISHED"} and call() == {"FINISHED"}, name
@@ -149,7 +149,7 @@ def test_a_file_of_an_older_add_on_has_no_checksum_to_go_by():
 
 
 def masked_block():
-    """A block of which a ball at one end is protected, with a cut beside it."""
+    """A block with a protected ball at one end, and a cut next to it."""
     common.scale(1)
     ob = common.stock(size=(40, 30, 20), pitch=0.5, directions="xyz")
     bpy.ops.mesh.primitive_uv_sphere_add(radius=6, location=(34, 15, 10))
@@ -174,7 +174,7 @@ def test_take_edits_keeps_the_mask_and_says_which_cuts_are_gone():
     assert after.volume.lower[0] == -5 and not after.cuts and after.shaped
     assert abs(after.mask.volume / before.mask.volume - 1) < 1e-2
     assert after.mask.contains(np.array([[34.0, 15, 10]]))[0] and not after.mask.contains(np.array([[20.0, 15, 10]]))[0]
-    after.volume.copy().intersect(after.mask)  # both stand on the same rays
+    after.volume.copy().intersect(after.mask)  # both use the same rays
     assert "any more" not in common.printed(lambda: bpy.ops.riffler.take_edits())
 
 
@@ -218,7 +218,7 @@ def test_parts_keep_the_mask_and_go_where_the_sculpt_is():
     assert not other.objects and len(home.objects) == 2
     parts = {o.name: common.content(o) for o in home.objects}
     first = parts.pop(name)
-    assert first.mask is not None  # of 26 mm, with the ball; the other piece has nothing of it
+    assert first.mask is not None  # of 26 mm, with the ball; the other piece has none of the mask
     assert [part.mask for part in parts.values()] == [None]
     small = next(iter(parts))
     common.select(bpy.data.objects[name])

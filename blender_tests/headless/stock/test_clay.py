@@ -1,4 +1,4 @@
-"""What is done to a sculpt as a whole: pitch, crop, parts, edits, masks, reliefs."""
+"""Operations on a sculpt as a whole: pitch, crop, parts, edits, masks, reliefs."""
 
 import bpy
 import numpy as np
@@ -67,7 +67,7 @@ def test_a_pitch_that_cannot_be_shown_is_refused_before_anything_is_made():
 
 
 def stays(before, after):
-    """Each ray has what it had, to the bit, and those that came have nothing."""
+    """Each ray keeps its content, to the bit, and new ones are empty."""
     for direction, was, now in zip(before.directions, common.shape(before), common.shape(after), strict=True):
         assert np.array_equal(was[1], now[1]) and was[0].sum() == now[0].sum()
         assert np.array_equal(before.normals(direction), after.normals(direction))
@@ -115,9 +115,7 @@ def test_a_pitch_at_which_nothing_would_be_left_is_refused():
     pillar = riffler.Volume.block((3, 3, 0), (4, 4, 1), 0.25, "xyz").resampled(0.25, None, (0, 0, 0), (40, 30, 20))
     common.part("sculpt.sculpts").commit(ob.data, common.part("common.contents").Content(pillar), 1.0)
     before = volume(ob).to_bytes()
-    common.refused(
-        lambda: bpy.ops.riffler.resample(pitch=15), f"Nothing of {ob.name} is thick enough", "15 mm", "finer"
-    )
+    common.refused(lambda: bpy.ops.riffler.resample(pitch=15), f"{ob.name} is too thin", "15 mm", "finer")
     for pitch, words in ((1e9, "longer than every side of the box, 40 × 30 × 20 mm"), (float("nan"), "not nan")):
         common.refused(lambda pitch=pitch: bpy.ops.riffler.resample(pitch=pitch), words)
     common.refused(lambda: bpy.ops.riffler.room(room=1e9), "mm at most")
@@ -177,7 +175,7 @@ def test_parts_become_sculpts_whose_volumes_sum():
     bpy.ops.riffler.cut_curve(curve=saw.name, tool='{"kind": "flat", "diameter": 2.0, "length": 60.0}')
     before, name = volume(ob).volume, ob.name
     common.push("cut")
-    common.scale(1000)  # changed by hand, meanwhile: pieces are as large as what they are pieces of
+    common.scale(1000)  # changed by hand, meanwhile: pieces have the scale of the original
     assert bpy.ops.riffler.split("EXEC_DEFAULT", True) == {"FINISHED"}
     common.scale(1)
     parts = [o for o in bpy.data.objects if o.type == "MESH" and o.data.riffler.store]
@@ -275,7 +273,7 @@ def test_a_picture_is_raised_and_engraved_to_the_depth_that_was_asked():
     pixels[:, :, 3] = 1
     pixels[5:15, 10:30, :3] = 1
     image.pixels.foreach_set(pixels.ravel())
-    # stock that something can be raised on
+    # stock with room to raise something
     empty("Lid", Matrix.Translation((0, 0, 15)))
     common.select(ob)
     bpy.ops.riffler.crop(plane="Lid")
@@ -284,10 +282,10 @@ def test_a_picture_is_raised_and_engraved_to_the_depth_that_was_asked():
     common.select(ob)
     settings = {"image": "Picture", "place": "Place", "width": 20.0, "depth": 2.0}
     assert bpy.ops.riffler.relief(mode="RAISE", **settings) == {"FINISHED"}
-    # 10 × 5 mm of white in a picture of 20 × 10 mm, its rim softened by a pixel
+    # 10 × 5 mm of white in a picture of 20 × 10 mm, its rim blurred by a pixel
     assert close(volume(ob).volume - before, 100, 0.05)
     assert abs(volume(ob).intervals("z")[1].max() - 17) < 1e-6
-    assert abs(common.coordinates(ob.data)[:, 2].max() - 17) < 0.25  # walls that are steeper than rays can tell
+    assert abs(common.coordinates(ob.data)[:, 2].max() - 17) < 0.25  # walls that are steeper than rays can resolve
     matches(ob)
     assert bpy.ops.riffler.relief(mode="ENGRAVE", invert=True, **settings) == {"FINISHED"}
     assert abs(volume(ob).volume - before - 100 + 300) < 20
@@ -315,7 +313,7 @@ def test_a_picture_that_is_cut_off_by_the_box_says_what_gives_it_room():
     def said(**more):
         text = common.printed(lambda: bpy.ops.riffler.relief(**settings, **more))
         bpy.ops.riffler.crop(point=(0, 0, 19), normal=(0, 0, 1))
-        return "Warning" in text, "Make Room" in text
+        return "Warning" in text, "Grow Box" in text
 
     assert said(depth=2.0) == (True, True) and said(depth=0.9) == (False, False)
     assert said(depth=2.0, mode="ENGRAVE") == (False, False)

@@ -92,7 +92,7 @@ def test_the_scenes_tool_is_used_and_kept_with_the_cut():
     bpy.ops.riffler.tool_preset(name="V-bit 90°")
     bpy.ops.riffler.cut_curve(curve=c.name, depth=2)
     assert common.content(ob).cuts[0].tool["name"] == "V-bit 90°"
-    # a groove of 90° and depth d has the section d², and cones at both ends
+    # a groove of 90° and depth d has the section d², with cones at both ends
     removed = 24000 - common.content(ob).volume.volume
     assert abs(removed / (20 * 4 + np.pi * 8 / 3) - 1) < 0.05, removed
 
@@ -164,7 +164,7 @@ def test_what_is_refused_changes_nothing():
     far = common.curve("Far", [(900, 900, 900), (950, 940, 930)], mm_per_unit=1)
     one = common.curve("One", [(10, 10, 20)], mm_per_unit=1)
     common.select(ob)
-    words = "Far is too far from Stock", "move it nearer, or turn Follow surface off"
+    words = "Far is too far from Stock", "move it nearer, or turn Follow Surface off"
     common.refused(lambda: bpy.ops.riffler.cut_curve(curve=far.name, follow=True), *words)
     common.refused(lambda: bpy.ops.riffler.cut_curve(curve=one.name, follow=True), "One has no spline with two points")
     for tool, word in (("{", "xpecting"), ("[]", "JSON"), ('{"kind": "spoon"}', "spoon")):

@@ -1,4 +1,4 @@
-"""STL in millimetres whatever the scene says, NC code, recordings."""
+"""STL in millimetres in any scene units, NC code, recordings."""
 
 from pathlib import Path
 
@@ -98,7 +98,7 @@ def test_a_changed_scene_scale_changes_what_is_exported_and_is_said():
     ob = cut_stock(1000.0)
     common.scale(1)
     path = common.out("shrunk.stl")
-    bpy.ops.riffler.export_stl(filepath=path)  # as shown: 0.04 units of 1 mm
+    bpy.ops.riffler.export_stl(filepath=path)  # as displayed: 0.04 units of 1 mm
     assert np.allclose(common.read_stl(path).reshape(-1, 3).max(0), (0.04, 0.03, 0.02), rtol=1e-4)
     bpy.ops.riffler.rebuild()
     bpy.ops.riffler.export_stl(filepath=path)
@@ -177,7 +177,7 @@ def test_a_recording_makes_the_same_sculpt_again():
 
 
 def test_a_recording_is_cut_with_another_tool():
-    """A ball's way gone by a flat end: a slot as wide as the tool, with a half disc at either end."""
+    """A ball's path followed by a flat end: a slot as wide as the tool, with a half disc at either end."""
     common.scale(1)
     common.stock(pitch=0.25)
     c = common.curve("Line", [(10, 15, 20), (30, 15, 20)], mm_per_unit=1)
@@ -206,7 +206,7 @@ def test_what_is_no_recording_is_named():
 
 
 def written():
-    """What the writing of NC code and of a recording warns of."""
+    """The warnings of NC code and of a recording."""
     said = common.printed(lambda: bpy.ops.riffler.export_nc(filepath=common.out("left.ngc")))
     again = common.printed(lambda: bpy.ops.riffler.export_recording(filepath=common.out("left.rjournal")))
     assert [line for line in again.splitlines() if "Warning" in line] == [
@@ -224,19 +224,19 @@ def test_code_of_cuts_beside_a_mask_says_that_it_cuts_what_was_protected():
     form = bpy.context.object
     common.select(ob)
     bpy.ops.riffler.mask_form(form=form.name)
-    assert "Warning" not in written()  # nothing has been cut beside it yet
+    assert "Warning" not in written()  # nothing has been cut with it yet
     c = common.curve("Across", [(5, 15, 16), (35, 15, 16)], mm_per_unit=1)
     common.select(ob)
     bpy.ops.riffler.cut_curve(curve=c.name, tool=common.BALL)
-    assert "beside a mask: 1." in written()
-    for look in (bpy.ops.riffler.verify, bpy.ops.riffler.simulate):  # who looks at the program is told, too
-        assert "beside a mask: 1." in common.printed(lambda look=look: look(source="CUTS"))
+    assert "with a mask: 1." in written()
+    for look in (bpy.ops.riffler.verify, bpy.ops.riffler.simulate):  # users of the program are warned, too
+        assert "with a mask: 1." in common.printed(lambda look=look: look(source="CUTS"))
     bpy.ops.riffler.simulate_stop()
     sculpting.stroke(ob.name, 2)
-    assert "beside a mask: 2." in written()
+    assert "with a mask: 2." in written()
     sculpting.live().end_all()
     common.part("sculpt.sculpt_store").clear_cache()  # as in another session
-    assert "beside a mask: 2." in written() and "smoothing" not in written()
+    assert "with a mask: 2." in written() and "smoothing" not in written()
     assert [cut.masked for cut in common.content(ob).cuts] == [False, True, True]
 
 

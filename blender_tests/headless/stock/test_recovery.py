@@ -1,4 +1,4 @@
-"""Work that was cut off: a Blender that is killed, files that an autosave has written, journals that are not whole."""
+"""Interrupted sessions: a Blender that is killed, files that an autosave has written, incomplete journals."""
 
 import json
 import os
@@ -27,7 +27,7 @@ def keeping():
 
 @contextmanager
 def fresh():
-    """Nothing cut off before is left."""
+    """Removes what was interrupted before."""
     root = keeping().folder()
     root.mkdir(parents=True, exist_ok=True)
     for path in root.iterdir():
@@ -46,7 +46,7 @@ def command():
 
 @contextmanager
 def another_blender(what, path="", small=False, mode="remove"):
-    """One that sculpts; what is yielded reads its next message."""
+    """Another Blender that sculpts; the yielded function reads its next message."""
     with tempfile.TemporaryDirectory() as resources:
         (Path(resources) / "scripts" / "addons").mkdir(parents=True)
         job = {**common.JOB, "what": what, "path": path, "small": small, "stroke": mode}
@@ -78,11 +78,11 @@ def another_blender(what, path="", small=False, mode="remove"):
             child.stdout.close()
 
 
-_cut_off = []  # the journal that a killed Blender has left, and the rows that it said
+_cut_off = []  # the journal that a killed Blender has left, and the rows that it reported
 
 
 def cut_off():
-    """As `killed`, by a copy of what the first of them has left: a Blender's start takes longer than most tests."""
+    """Like `killed`, with a copy of the first one's journal: a Blender's start takes longer than most tests."""
     root = keeping().folder()
     if not _cut_off:
         said = killed()
@@ -97,7 +97,7 @@ def cut_off():
 
 
 def killed(path="", small=False, rows=300, mode="remove"):
-    """A Blender killed in the midst of a stroke; rows of it that it said it had carved."""
+    """A Blender killed in the middle of a stroke; the rows of it that it reported as carved."""
     with another_blender("stroke", path, small, mode) as (child, messages):
         said = 0
         for message in messages:
@@ -110,13 +110,13 @@ def killed(path="", small=False, rows=300, mode="remove"):
             if MARK in line:
                 try:
                     said = json.loads(line.partition(MARK)[2])["rows"]
-                except ValueError:  # cut off
+                except ValueError:  # truncated
                     break
     return said
 
 
 def is_whole(name, said):
-    """Everything that was said to be carved is there, and what may have been carved since."""
+    """Everything reported as carved is there, and perhaps what was carved since."""
     made = common.content(bpy.data.objects[name]).volume.to_bytes()
     found = [r for r in (said, said + recovering.ROWS) if recovering.expected(r).to_bytes() == made]
     assert found, f"not the volume after {said} rows"
@@ -204,7 +204,7 @@ def test_killed_in_mid_stroke_of_the_other_modes():
             made = common.content(bpy.data.objects["Stock"])
             there = [tuple(v.to_bytes() for v in recovering.both(r, mode)) for r in (said, said + recovering.ROWS)]
             assert (made.volume.to_bytes(), made.mask.to_bytes()) in there, f"{mode}: not what {said} rows make"
-            if mode == "add":  # into the block, where there is no room: the rows tell
+            if mode == "add":  # into the block, where there is no room: only the rows show it
                 assert len(made.cuts[-1].poses) - 1 in (said, said + recovering.ROWS)
             bpy.ops.wm.save_as_mainfile(filepath=common.out("recovered_mode.blend"))
 
@@ -231,7 +231,7 @@ def test_ended_work_leaves_no_journal():
 
 @common.core_bound
 def test_two_blenders_at_once():
-    """What somebody works at is nobody else's to recover."""
+    """Another Blender cannot recover a journal in use."""
     with fresh() as root, another_blender("rest") as (child, messages):
         for message in messages:
             if "rested" in message:
@@ -244,7 +244,7 @@ def test_two_blenders_at_once():
         child.wait(30)
         assert len(keeping().crashed(look=True)) == 1
         lock = common.part("sculpt.pure.journal").Lock(keeping().crashed()[0].folder)
-        keeping().crashed()  # as the panel has found them
+        keeping().crashed()  # as the panel found them
         assert lock.held and not keeping().crashed(look=True)
         lock.release()
         keeping().crashed(look=True)
@@ -271,7 +271,7 @@ def test_damaged_and_newer_journals_are_named_and_kept():
             assert "Stock" in text and len(bpy.data.objects) == 3
             assert (folder / "strokes.rjournal").read_bytes() == bytes(data)
             assert len(keeping().crashed(look=True)) == 1
-        # a cut tail is what a crash leaves: the whole records count
+        # a crash leaves a truncated tail: the complete records count
         (folder / "strokes.rjournal").write_bytes(whole[: len(whole) - 7])
         (folder / "about.json").write_text("{")
         bpy.ops.riffler.recover()
@@ -295,7 +295,7 @@ def test_a_journal_is_discarded_only_when_it_is_asked_for():
 
 
 def as_autosaved(name):
-    """Writes the file as an autosave does: as it is, without a handler."""
+    """Writes the file like an autosave: unchanged, without a handler."""
     path = common.out(name)
     before = list(bpy.app.handlers.save_pre), list(bpy.app.handlers.save_post)
     for handlers in (bpy.app.handlers.save_pre, bpy.app.handlers.save_post):
@@ -320,7 +320,7 @@ def test_an_autosave_of_a_small_sculpt_has_the_last_stroke():
 def autosave_has_the_last_stroke():
     name = sculpt()
     for k in range(3):
-        work(name).persistence._packing.seconds = 0.0  # whatever else this machine does meanwhile
+        work(name).persistence._packing.seconds = 0.0  # independent of other work of this computer
         last = stroke(name, k)
     path = as_autosaved("autosave_small.blend")
     is_shown(name)
@@ -345,7 +345,7 @@ def test_an_autosave_of_a_large_sculpt_has_the_last_rest_and_says_so():
     path = as_autosaved("autosave_large.blend")
     bpy.ops.wm.open_mainfile(filepath=path)
     assert common.content(bpy.data.objects[name]).volume.to_bytes() == rest
-    assert "as it was last packed" in bpy.context.window_manager.riffler.notice
+    assert "as last saved" in bpy.context.window_manager.riffler.notice
     bpy.ops.riffler.dismiss()
     assert bpy.context.window_manager.riffler.notice == ""
     matches_its_volume(name)
@@ -353,7 +353,7 @@ def test_an_autosave_of_a_large_sculpt_has_the_last_rest_and_says_so():
 
 
 def test_an_autosave_that_was_opened_takes_the_strokes_of_the_journal():
-    """Blender dies after the autosave; the autosave is opened, and the work recovered into its sculpt."""
+    """Blender dies after the autosave; the autosave is opened, and the session recovered into its sculpt."""
     with fresh() as root:
         name = sculpt()
         run = work(name)
@@ -366,7 +366,7 @@ def test_an_autosave_that_was_opened_takes_the_strokes_of_the_journal():
             pass
         kept = root.parent / "kept"
         shutil.rmtree(kept, ignore_errors=True)
-        shutil.copytree(folder, kept)  # as it would be after a crash
+        shutil.copytree(folder, kept)  # its state after a crash
         bpy.ops.wm.open_mainfile(filepath=path)
         assert not folder.exists()
         shutil.move(kept, folder)

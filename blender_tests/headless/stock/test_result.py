@@ -1,4 +1,4 @@
-"""From sculpts to meshes and files, and how far they are from what they should be."""
+"""From sculpts to meshes and files, and their distance from the reference."""
 
 import os
 
@@ -34,7 +34,7 @@ def test_a_mesh_is_made_with_the_error_that_is_said():
     assert 0 < len(tri) < 0.2 * len(exact.triangles)
     mesh = riffler.Mesh(co.astype(float), tri)
     assert mesh.audit()["open_edges"] == 0
-    # against the dense surface, both ways: smoothing and decimating each keep their tolerance
+    # compared with the dense surface, in both directions: smoothing and decimating each keep their tolerance
     error = max(np.abs(mesh.deviation(exact)).max(), np.abs(exact.deviation(mesh)).max())
     assert 1e-4 < error < 0.03 + 1e-5
     assert abs(made.data["riffler_error"] - error) < 1e-5  # coordinates are float32 in Blender
@@ -60,7 +60,7 @@ def test_3mf_and_stl_hold_the_same_surface():
         path = common.out(f"result.{name}")
         assert getattr(bpy.ops.riffler, f"export_{name}")(filepath=path) == {"FINISHED"}
     modes = {os.stat(common.out(f"result.{name}")).st_mode & 0o777 for name in ("stl", "3mf")}
-    assert len(modes) == 1 and modes.pop() & 0o400  # as any new file
+    assert len(modes) == 1 and modes.pop() & 0o400  # like any new file
     stl = riffler.Mesh.read(common.out("result.stl"))
     assert abs(stl.bounds[0][0] - 7) < 1e-4
     import zipfile
@@ -116,7 +116,7 @@ def test_a_reference_without_a_surface_is_refused():
 
 
 def coloured():
-    """A sculpt that shows its distance from a cube, and what its views were like before."""
+    """A sculpt that shows its distance from a cube, and the previous settings of its views."""
     ob = sculpt()
     bpy.ops.mesh.primitive_cube_add(size=30)
     reference = bpy.context.object
@@ -164,5 +164,5 @@ def test_views_stay_coloured_while_another_mesh_is():
 
 def test_a_legend_needs_colours():
     ob, _ = coloured()
-    ob.data.attributes.remove(ob.data.attributes["riffler_deviation_colour"])  # as Blender's own tools may do
+    ob.data.attributes.remove(ob.data.attributes["riffler_deviation_colour"])  # as Blender's own tools may
     assert common.part("stock.deviation_legend").mesh_of(bpy.context) is None

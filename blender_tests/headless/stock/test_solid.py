@@ -5,7 +5,7 @@ import numpy as np
 
 from support import common
 
-LONGEST = 200.0  # mm, of what is added here: 0.2 m
+LONGEST = 200.0  # mm, of the solids added here: 0.2 m
 
 
 def added(**settings):

@@ -1,4 +1,4 @@
-"""New stock: sizes in every unit, objects as material, and what is refused."""
+"""New stock: sizes in every unit, objects as material, and refusals."""
 
 import bpy
 import numpy as np
@@ -76,7 +76,7 @@ def test_a_mirrored_object_is_material_too():
 
 
 def test_of_a_sculpt_the_stock_is_what_is_seen():
-    """Its volume itself where it stands unscaled; mirrored, larger or with a modifier, its surface."""
+    """Its volume itself if it is unscaled; mirrored, larger or with a modifier, its surface."""
     common.scale(1)
     for scale, modifier, exact in (((1, 1, 1), "", True), ((-1, 1, 1), "", False), ((2, 2, 2), "", False),
                                    ((1, 1, 1), "MIRROR", False)):  # fmt: skip
@@ -98,7 +98,7 @@ def test_of_a_sculpt_the_stock_is_what_is_seen():
 
 
 def box_of(ob):
-    """Of its vertices, in the world."""
+    """The box of its vertices, in the world."""
     at = np.array(ob.matrix_world) @ np.column_stack([common.coordinates(ob.data), np.ones(len(ob.data.vertices))]).T
     return np.array([at[:3].min(axis=1), at[:3].max(axis=1)])
 
@@ -122,7 +122,7 @@ def test_sizes_that_make_no_sense_are_refused_by_the_name_of_their_field():
     nan, inf = float("nan"), float("inf")
     for size, pitch, *words in (
         ((-5, 60, 30), 0.5, "Size along x", "0.001 mm", "pitch of 0.5 mm: make it larger"),
-        ((100, 0.001, 30), 0.5, "Size along y is 0.001 mm", "take a finer pitch"),
+        ((100, 0.001, 30), 0.5, "Size along y is 0.001 mm", "use a finer pitch"),
         ((100, 60, nan), 0.5, "Size along z must be a positive length in mm, not nan"),
         ((inf, 60, 30), 0.5, "100000 × 60 × 30 mm", "coarser pitch"),
         ((100, 60, 30), 1000, "Size along x is 100 mm", "pitch of 1000 mm"),
@@ -138,7 +138,7 @@ def test_sizes_that_make_no_sense_are_refused_by_the_name_of_their_field():
 
 
 def seen():
-    """What there is, what of it is seen and selected, and what is active."""
+    """All objects, the visible and selected ones, and the active one."""
     kinds = bpy.data.objects, bpy.data.meshes, bpy.data.images
     chosen = [(ob.name, ob.hide_get(), ob.select_get()) for ob in bpy.context.view_layer.objects]
     return [len(kind) for kind in kinds], chosen, bpy.context.object.name
@@ -230,7 +230,7 @@ def test_every_preset_makes_a_tool():
 
 
 def test_a_lump_of_a_few_rays_is_warned_of():
-    """Suzanne in a scene in millimetres, at the pitch that the panel begins with."""
+    """Suzanne in a scene in millimetres, at the panel's default pitch."""
     common.scale(1)
     bpy.ops.mesh.primitive_monkey_add(size=2)
     said = common.printed(lambda: bpy.ops.riffler.new_stock(source="OBJECT", pitch=0.06))

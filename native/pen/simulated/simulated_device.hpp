@@ -11,7 +11,7 @@
 namespace riffler::pen {
 
 inline constexpr const char* kSimulatedKind = "simulated";
-inline constexpr const char* kSimulatedWhat = "Riffler's pen without hardware, moved by a hand of its own";
+inline constexpr const char* kSimulatedWhat = "Riffler pen without hardware, moved by a simulated hand";
 
 /// Uses a StallTolerantClock: a busy machine must not take the force away from the hand that it simulates.
 class SimulatedDevice final : public HidPen {

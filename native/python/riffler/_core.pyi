@@ -238,7 +238,7 @@ class Tool:
         """
         Ball end mill.
 
-        - ``diameter``: of the cylinder above the end, in mm
+        - ``diameter``: diameter of the cylinder above the end, in mm
         - ``length``: cutting length from the tip, in mm
         """
     @staticmethod
@@ -246,19 +246,19 @@ class Tool:
         """
         Sharp tip, a first cone, a second cone, then a cylinder.
 
-        - ``tip_half_angle``: between the axis and the first cone, in rad
-        - ``tip_height``: of the first cone, in mm
-        - ``half_angle``: between the axis and the flank, in rad
-        - ``diameter``: of the cylinder above the end, in mm
+        - ``tip_half_angle``: angle between the axis and the first cone, in rad
+        - ``tip_height``: height of the first cone, in mm
+        - ``half_angle``: angle between the axis and the flank, in rad
+        - ``diameter``: diameter of the cylinder above the end, in mm
         - ``length``: cutting length from the tip, in mm
         """
     @staticmethod
     def fillet(diameter: typing.SupportsFloat, corner_radius: typing.SupportsFloat, length: typing.SupportsFloat) -> Tool:
         """
-        Bull nose: a flat end mill whose edge is rounded.
+        Flat end mill with a rounded edge.
 
-        - ``diameter``: of the cylinder above the end, in mm
-        - ``corner_radius``: of the rounded edge, in mm
+        - ``diameter``: diameter of the cylinder above the end, in mm
+        - ``corner_radius``: radius of the rounded edge, in mm
         - ``length``: cutting length from the tip, in mm
         """
     @staticmethod
@@ -266,7 +266,7 @@ class Tool:
         """
         Flat end mill.
 
-        - ``diameter``: of the cylinder above the end, in mm
+        - ``diameter``: diameter of the cylinder above the end, in mm
         - ``length``: cutting length from the tip, in mm
         """
     @staticmethod
@@ -290,9 +290,9 @@ class Tool:
         """
         Cone above a ball tip or a flat one, then a cylinder.
 
-        - ``tip_radius``: of the ball or flat at the tip, in mm
-        - ``half_angle``: between the axis and the flank, in rad
-        - ``diameter``: of the cylinder above the end, in mm
+        - ``tip_radius``: radius of the ball or flat at the tip, in mm
+        - ``half_angle``: angle between the axis and the flank, in rad
+        - ``diameter``: diameter of the cylinder above the end, in mm
         - ``length``: cutting length from the tip, in mm
         - ``flat_tip``: a flat instead of a ball at the tip
         """
