@@ -2,6 +2,9 @@
 that they show from docs/images/bench.
 
     tools/bench_docs.py out/bench      (a folder that `riffler bench` wrote)
+
+A mark may select a part of its table: `<!-- bench JOB/TABLE rows="REGEX" columns="NAME; NAME" note="no" -->` keeps the
+rows in which the regular expression is found, the named columns, and leaves out the text below the table.
 """
 
 from __future__ import annotations
@@ -16,8 +19,37 @@ from shell import ROOT, StepError, main
 
 DOCS = ROOT / "docs"
 IMAGES = DOCS / "images" / "bench"
-BLOCK = re.compile(r"(<!-- bench (\S+) -->\n)(.*?)(<!-- end -->)", re.DOTALL)
+BLOCK = re.compile(r"(<!-- bench (\S+)((?: \w+=\"[^\"]*\")*) -->\n)(.*?)(<!-- end -->)", re.DOTALL)
+SELECTION = re.compile(r'(\w+)="([^"]*)"')
 IMAGE = re.compile(r"\(images/bench/([\w-]+\.png)\)")
+
+
+def cells(row: str) -> list[str]:
+    return [cell.strip() for cell in row.strip().strip("|").split("|")]
+
+
+def select(name: str, text: str, selection: str) -> str:
+    """The part of a table that its mark asks for."""
+    given = dict(SELECTION.findall(selection))
+    if unknown := given.keys() - {"rows", "columns", "note"}:
+        raise StepError(f"{name}: unknown selection {', '.join(sorted(unknown))}")
+    table = [line for line in text.splitlines() if line.startswith("|")]
+    note = [line for line in text.splitlines() if line and not line.startswith("|")]
+    if "columns" in given:
+        head, wanted = cells(table[0]), [column.strip() for column in given["columns"].split(";")]
+        if missing := [column for column in wanted if column not in head]:
+            raise StepError(f"{name}: no column {', '.join(missing)}; there are {'; '.join(head)}")
+        kept = [i for i, column in enumerate(head) if column in wanted]
+    else:
+        kept = range(len(cells(table[0]))) if table else []
+    rows = [row for row in table[2:] if re.search(given.get("rows", ""), row)]
+    if table and not rows:
+        raise StepError(f"{name}: no row matches {given['rows']!r}")
+    lines = [f"| {' | '.join(cells(row)[i] for i in kept)} |" for row in (table[0], *rows)] if table else []
+    lines[1:1] = ["|" + "---|" * len(kept)] if table else []
+    if note and given.get("note") != "no":
+        lines += ["", *note] if table else note
+    return "\n".join(lines) + "\n"
 
 
 def measured(folder: Path) -> dict[str, str]:
@@ -29,7 +61,7 @@ def measured(folder: Path) -> dict[str, str]:
             raise StepError(f"{path.name} is from a run with --quick: measure it in full")
         if data["problems"]:
             raise StepError(f"{path.name}: {data['problems'][0]}")
-        tables |= {name: text for _, name, text, _ in BLOCK.findall(path.read_text())}
+        tables |= {name: text for _, name, _, text, _ in BLOCK.findall(path.read_text())}
     if not tables:
         raise StepError(f"{folder}: nothing was measured there")
     return tables
@@ -43,8 +75,8 @@ def entry() -> None:
     images: set[str] = set()
     for path in sorted(DOCS.glob("*.md")):
         text = path.read_text()
-        new = BLOCK.sub(lambda m: m[1] + tables.get(m[2], m[3]) + m[4], text)
-        names = [name for _, name, _, _ in BLOCK.findall(text)]
+        new = BLOCK.sub(lambda m: m[1] + (select(m[2], tables[m[2]], m[3]) if m[2] in tables else m[4]) + m[5], text)
+        names = [name for _, name, *_ in BLOCK.findall(text)]
         images |= set(IMAGE.findall(text))
         if new != text:
             path.write_text(new)

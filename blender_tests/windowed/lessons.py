@@ -143,7 +143,7 @@ def commands(screen, x, heights):
 
 
 def found(screen, region, words, share):
-    """Steps: moves the mouse over the first button of a region, at or close to a share of its width, whose command has all
+    """Steps: moves the mouse over the first button of a region, at or near a share of its width, whose command has all
     `words`; scrolls to buttons further down."""
     enable_looking()
     middle = region.y + region.height // 2

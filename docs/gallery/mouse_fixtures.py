@@ -52,7 +52,7 @@ def main() -> None:
     print(f"without the vise: {depths(first, alone).max():.4f} mm deep; with it {entered.max():.2f} mm, ", end="")
     print(f"{(entered > 0.01).sum()} of {len(path)} points")
     if not entered.max() > 1:
-        raise SystemExit("the vise should be in the way")
+        raise SystemExit("the vise should collide")
     tips = np.hstack([first.centres - first.radius * first.axes, first.axes])
 
     # Keys stay 2 mm from the vise, so that what is interpolated between them does not enter it.

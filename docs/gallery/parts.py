@@ -32,12 +32,12 @@ def loft(rings: list[Ring]) -> Mesh:
 
 
 def between(first: Ring, last: Ring, steps: int) -> list[Ring]:
-    """Rings on the way from the first to the last, without the first."""
+    """Rings between the first and the last, without the first."""
     return [first + (last - first) * t for t in np.linspace(0, 1, steps + 1)[1:]]
 
 
 def inwards(ring: Ring, distance: float) -> Ring:
-    """Moved to the left of its way, in the plane."""
+    """Moved to the left of its direction, in the plane."""
     way = np.roll(ring, -1, 0) - np.roll(ring, 1, 0)
     way /= np.linalg.norm(way[:, :2], axis=1)[:, None]
     return ring + distance * np.column_stack([-way[:, 1], way[:, 0], np.zeros(len(ring))])

@@ -101,11 +101,11 @@ class Picture:
         self._run(out, blender, "blender_scene.py", view=[*target, *direction, width, *size])
 
     def photograph(
-        self, out: Path, blender: Path, *, eye, target, floor: float, width: float, size=(1000, 750)
+        self, out: Path, blender: Path, *, eye, target, floor: float, width: float, size=(1000, 750), samples: int = 24
     ) -> None:
         """Stands on a table at height `floor`, in a studio's light, seen from `eye`; `width` mm at the target fill the
         picture's width."""
-        self._run(out, blender, "studio.py", view=[*target, *eye, width, *size, floor])
+        self._run(out, blender, "studio.py", view=[*target, *eye, width, *size, floor, samples])
 
     def _run(self, out: Path, blender: Path, script: str, **more) -> None:
         out.parent.mkdir(parents=True, exist_ok=True)

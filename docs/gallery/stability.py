@@ -1,4 +1,4 @@
-"""The plots and tables of docs/stability.md: theory beside simulation, by riffler_stability.
+"""The plots and tables of docs/stability.md: theory and simulation, by riffler_stability.
 
 cmake --build --preset release --target riffler_stability
 python docs/gallery/stability.py

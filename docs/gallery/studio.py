@@ -15,8 +15,6 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
 from demo import scene as studio
 
-SAMPLES = 24  # the denoiser does the rest
-
 
 def add(number: int, vertices: np.ndarray, triangles: np.ndarray, look: np.ndarray) -> None:
     mesh = bpy.data.meshes.new(f"Thing {number}")
@@ -61,7 +59,7 @@ def main(scene_file: str, picture: str) -> None:
     scene.world.use_nodes = True
     background = scene.world.node_tree.nodes["Background"].inputs
     background["Color"].default_value, background["Strength"].default_value = (0.20, 0.22, 0.25, 1), 0.35
-    studio.render_settings(scene, SAMPLES, os.cpu_count() or 2)
+    studio.render_settings(scene, int(view[10]), os.cpu_count() or 2)
     scene.cycles.time_limit = 0.0
     scene.render.resolution_x, scene.render.resolution_y = int(view[7]), int(view[8])
     scene.render.image_settings.file_format, scene.render.image_settings.quality = "JPEG", 90
