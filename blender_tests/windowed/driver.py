@@ -154,9 +154,11 @@ class Screen:
 
 def where(generator):
     """The lines at which a script waits, from the outermost generator to the innermost."""
+    lines = []
     while generator is not None and getattr(generator, "gi_frame", None) is not None:
-        yield f"{Path(generator.gi_code.co_filename).name}:{generator.gi_frame.f_lineno}"
+        lines.append(f"{Path(generator.gi_code.co_filename).name}:{generator.gi_frame.f_lineno}")
         generator = generator.gi_yieldfrom
+    return " > ".join(lines)
 
 
 class Play:
@@ -172,7 +174,7 @@ class Play:
                     self.condition = None
                 elif time.perf_counter() - self.since > PATIENCE:
                     self.screen.shot("in-vain")
-                    raise AssertionError(f"waited {PATIENCE} s in vain at {' > '.join(where(self.generator))}")
+                    raise AssertionError(f"waited {PATIENCE} s in vain at {where(self.generator)}")
                 else:
                     return 0.05
             wanted = next(self.generator)
