@@ -35,7 +35,7 @@ BLENDERS = {
         "Vertical",
     ),
 }
-OURS = {"Clamp", "Sphere Stock", "Rot Point (mm) is not given"}  # the last is made of an option's name
+OURS = {"Clamp", "Sphere Stock", "Rot Point (mm) is not set"}  # the last is made of an option's name
 LONGEST = 60  # of a label; what is longer is a sentence
 
 

@@ -269,7 +269,7 @@ def test_a_pointer_says_what_is_wrong_and_stays_as_it_was():
     mouse.set_frame(origin=[1, 2, 3])
     for wrong, word in (
         ({"right": [2, 0, 0]}, "right"),
-        ({"up": [1, 0, 0]}, "square"),
+        ({"up": [1, 0, 0]}, "perpendicular"),
         ({"scale": 0}, "scale"),
         ({"depth": -1}, "depth"),
         ({"most_tilt": 2}, "most_tilt"),

@@ -222,7 +222,7 @@ def test_bad_input_is_named(tmp_path):
     with pytest.raises(ValueError, match="removal_constant"):
         riffler.Material(removal_constant=-1)
     session = riffler.Session(volume, BALL)
-    with pytest.raises(RuntimeError, match="does not run"):
+    with pytest.raises(RuntimeError, match="is not running"):
         session.frame()
     (tmp_path / "there.rjournal").write_bytes(b"")
     with pytest.raises(ValueError, match="is there already"):

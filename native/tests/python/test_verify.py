@@ -221,7 +221,7 @@ def test_bad_input_is_one_clear_error_and_changes_nothing():
     unknown = program(path([[-10, 10, 5], [-10, 10, -1], [30, 10, -1]]), None, tool=[3, 3, 3])
     part = box_mesh([0, 0, -10], [20, 20, -1])
     cases = [
-        (lambda: riffler.verify(unknown, stock), "tool 3 (row 1, line 101)"),
+        (lambda: riffler.verify(unknown, stock), "tool 3 is unknown (row 1, line 101)"),
         (lambda: riffler.verify(unknown, stock, tools={3: "ball"}), "tools must be a dict"),
         (lambda: riffler.verify(good, stock, tolerance=0), "tolerance must be a positive length"),
         (lambda: riffler.verify(good, stock, gouge_tolerance=float("nan")), "gouge_tolerance"),
