@@ -232,7 +232,7 @@ def test_bad_input_is_named(tmp_path):
     session.start()
     with pytest.raises(RuntimeError, match="once"):
         session.start()
-    with pytest.raises(RuntimeError, match="has begun"):
+    with pytest.raises(RuntimeError, match="has started"):
         session.journal(tmp_path / "late.rjournal")
     session.stop()
 
