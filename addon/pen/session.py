@@ -113,7 +113,7 @@ class PenSession:
         work.persistence.made(made)
         for rows in run.taken_rows():
             work.took(self._tool.to_dict(), rows, self.mode)
-        if run.untold:
+        if run.dropped_ticks:
             self.problem = "Blender was busy for seconds: strokes may be missing among the cuts"
         if work.finish_stroke(bpy.context, LABEL):
             self.count += made

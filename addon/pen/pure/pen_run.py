@@ -26,7 +26,7 @@ class PenRun:
         self.push = np.zeros((2, 3))  # N, N·mm about its tip: on the tool, the mean since the last poll
         self.state, self.force, self.why = "off", 0.0, ""  # the force on the hand
         self.strokes, self.in_stroke = 0, False  # counts of this session
-        self.untold = 0  # steps that were dropped because they were not polled in time
+        self.dropped_ticks = 0  # steps that were dropped because they were not polled in time
         self._rows: list[list[list[float]]] = []
         self._open = False
 
@@ -35,7 +35,7 @@ class PenRun:
         if self.pose is not None and "at" in self._options:
             self._options["at"] = self.pose
         self.session = riffler.Session(volume, self._tool, self.device, protect=mask, **self._options)
-        self.strokes, self.in_stroke, self.untold, self._open = 0, False, 0, False
+        self.strokes, self.in_stroke, self.dropped_ticks, self._open = 0, False, 0, False
         self._rows.clear()
         return self.session
 
@@ -87,7 +87,7 @@ class PenRun:
         self.state, self.strokes, self.in_stroke = frame.state, frame.strokes, frame.in_stroke
         if len(frame):
             self.pose, self.push = frame.tool, frame.tool_forces.mean(axis=0).reshape(2, 3)
-        self.untold = frame.untold
+        self.dropped_ticks = frame.untold
         self.force = float(np.linalg.norm(frame.force))
         self._collect(frame)
         health = self.device.health()["problem"] if self.session.running else None
