@@ -44,7 +44,7 @@ def select(name: str, text: str, selection: str) -> str:
         kept = range(len(cells(table[0]))) if table else []
     rows = [row for row in table[2:] if re.search(given.get("rows", ""), row)]
     if table and not rows:
-        raise StepError(f"{name}: no row matches {given['rows']!r}")
+        raise StepError(f"{name}: no row matches {given.get('rows', '')!r}")
     lines = [f"| {' | '.join(cells(row)[i] for i in kept)} |" for row in (table[0], *rows)] if table else []
     lines[1:1] = ["|" + "---|" * len(kept)] if table else []
     if note and given.get("note") != "no":

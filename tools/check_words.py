@@ -12,14 +12,13 @@ from __future__ import annotations
 
 import io
 import re
-import subprocess
 import sys
 import tokenize
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from shell import ROOT, StepError, main
+from shell import ROOT, StepError, git, main
 
 ALLOWED = ROOT / "tools" / "words_allowed.txt"
 # What is looked for, and what stands there instead.
@@ -41,9 +40,7 @@ WORDS = {
 PATTERN = re.compile("|".join(f"({pattern})" for pattern in WORDS), re.MULTILINE)
 ADVICE = tuple(WORDS.values())
 # Texts of others, generated ones, and this list's own files.
-EXEMPT = re.compile(
-    r"^(tools/check_words\.py|tools/tests/test_check_words\.py|third_party/|LICENSE|.*\.pyi$|docs/operators\.md)"
-)
+EXEMPT = re.compile(r"tools/(tests/test_)?check_words\.py|third_party/.*|LICENSE.*|.*\.pyi|docs/operators\.md")
 C_TOKEN = re.compile(r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\'', re.DOTALL)
 FENCE = re.compile(r"^```.*?^```", re.MULTILINE | re.DOTALL)
 
@@ -58,13 +55,8 @@ class Hit:
 
 def tracked() -> list[str]:
     """Every file of the project: what git knows, and what is new and not ignored."""
-    done = subprocess.run(
-        ["git", "ls-files", "--cached", "--others", "--exclude-standard"],
-        cwd=ROOT, capture_output=True, text=True, check=False,
-    )  # fmt: skip
-    if done.returncode != 0:
-        raise StepError(f"git ls-files failed: {done.stderr.strip()}")
-    return [name for name in done.stdout.splitlines() if (ROOT / name).is_file()]
+    names = git("ls-files", "--cached", "--others", "--exclude-standard").splitlines()
+    return [name for name in names if (ROOT / name).is_file()]
 
 
 def blank(text: str) -> str:
@@ -76,42 +68,36 @@ def prose_of_markdown(text: str) -> Iterator[tuple[int, str]]:
     yield 1, re.sub(r"`[^`\n]*`", lambda m: "`" + " " * (len(m[0]) - 2) + "`", FENCE.sub(lambda m: blank(m[0]), text))
 
 
-def prose_of_c(text: str) -> Iterator[tuple[int, str]]:
-    """Comments, lines of `//` that follow one another as one text, and string literals with a space."""
-    end, start, lines = -1, 0, []
-    for match in C_TOKEN.finditer(text):
-        token = match[0]
-        line = text.count("\n", 0, match.start()) + 1
-        if token.startswith("//"):
-            if lines and line != end + 1:
-                yield start, "\n".join(lines)
-                lines = []
-            start = start if lines else line
-            lines.append(token.lstrip("/!< "))
-            end = line
-        elif token[0] != "'" and (token[0] == "/" or " " in token):
-            yield line, token.strip('"')
+def joined(comments: Iterator[tuple[int, str]]) -> Iterator[tuple[int, str]]:
+    """Comments of one line each, those on consecutive lines as one text: a sentence may cross lines."""
+    start, lines = 0, []
+    for line, comment in comments:
+        if lines and line != start + len(lines):
+            yield start, "\n".join(lines)
+            lines = []
+        start = start if lines else line
+        lines.append(comment)
     if lines:
         yield start, "\n".join(lines)
+
+
+def prose_of_c(text: str) -> Iterator[tuple[int, str]]:
+    """Comments, and string literals with a space."""
+    tokens = [(text.count("\n", 0, match.start()) + 1, match[0]) for match in C_TOKEN.finditer(text)]
+    yield from joined((line, token.lstrip("/!< ")) for line, token in tokens if token.startswith("//"))
+    for line, token in tokens:
+        if token.startswith("/*") or (token[0] == '"' and " " in token):
+            yield line, token.strip('"')
 
 
 def prose_of_python(text: str) -> Iterator[tuple[int, str]]:
     """Comments, and string literals with a space, of which docstrings are some."""
-    lines, start, end = [], 0, -1
-    for token in tokenize.generate_tokens(io.StringIO(text).readline):
-        line = token.start[0]
-        if token.type == tokenize.COMMENT:
-            if lines and line != end + 1:
-                yield start, "\n".join(lines)
-                lines = []
-            start = start if lines else line
-            lines.append(token.string.lstrip("# "))
-            end = line
-        elif token.type == tokenize.STRING and " " in token.string:
-            prefix, text = re.match(r"(\w*)(?:\"\"\"|'''|\"|')(.*)", token.string, re.DOTALL).groups()
-            yield line, re.sub(r"\{[^{}]*\}", "{}", text) if "f" in prefix.lower() else text
-    if lines:
-        yield start, "\n".join(lines)
+    tokens = [(t.start[0], t.type, t.string) for t in tokenize.generate_tokens(io.StringIO(text).readline)]
+    yield from joined((line, token.lstrip("# ")) for line, kind, token in tokens if kind == tokenize.COMMENT)
+    for line, kind, token in tokens:
+        if kind == tokenize.STRING and " " in token:
+            prefix, literal = re.match(r"(\w*)(?:\"\"\"|'''|\"|')(.*)", token, re.DOTALL).groups()
+            yield line, re.sub(r"\{[^{}]*\}", "{}", literal) if "f" in prefix.lower() else literal
 
 
 PROSE = {".md": prose_of_markdown, ".py": prose_of_python} | dict.fromkeys((".c", ".h", ".cpp", ".hpp"), prose_of_c)
@@ -135,7 +121,7 @@ def checked(names: list[str]) -> list[str]:
         name
         for name in tracked()
         if Path(name).suffix in PROSE
-        and not EXEMPT.match(name)
+        and not EXEMPT.fullmatch(name)
         and (not names or any(name == n or name.startswith(n.rstrip("/") + "/") for n in names))
     )
 

@@ -28,7 +28,7 @@ def build_preset(preset: str, *targets: str) -> None:
 def test_preset(preset: str) -> None:
     """Every C++ test in a process of its own, as many at once as there are cores; under the sanitizers in batches."""
     if preset in IN_BATCHES:
-        test_in_batches(preset, lambda _: True)
+        test_in_batches(preset)
         return
     build_preset(preset, "riffler_tests")
     report = ROOT / "build" / preset / "tests.xml"
@@ -42,8 +42,8 @@ def test_preset(preset: str) -> None:
             )
 
 
-def test_in_batches(preset: str, chosen: Callable[[gtest_batches.Test], bool]) -> None:
-    """The chosen C++ tests, several in a process."""
+def test_in_batches(preset: str, chosen: Callable[[gtest_batches.Test], bool] = lambda _: True) -> None:
+    """The chosen C++ tests, all by default, several in a process."""
     build_preset(preset, "riffler_tests")
     program = ROOT / "build" / preset / "native" / "tests" / "riffler_tests"
     print_slowest(preset, gtest_batches.run_tests(program, left_out(preset), chosen))

@@ -50,6 +50,14 @@ def run(*command: str | Path, env: dict[str, str] | None = None, cwd: Path = ROO
         raise StepError(f"failed with exit code {code}: {shlex.join(words)}")
 
 
+def git(*words: str) -> str:
+    """What a git command prints; StepError if it does not succeed."""
+    done = subprocess.run(["git", *words], cwd=ROOT, capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        raise StepError(f"git {words[0]} failed: {done.stderr.strip()}")
+    return done.stdout
+
+
 def digest(files: Iterable[Path], *words: str) -> str:
     """A digest of names (relative to the project) and contents; changes when a file comes, goes or changes."""
     h = hashlib.sha256("\0".join(words).encode())

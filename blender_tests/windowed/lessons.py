@@ -146,14 +146,13 @@ def found(screen, region, words, share):
     """Steps: moves the mouse over the first button of a region, at or near a share of its width, whose command has all
     `words`; scrolls to buttons further down."""
     enable_looking()
-    middle = region.y + region.height // 2
+    middle = (region.x + int(region.width * share), region.y + region.height // 2)
     heights = range(region.y + region.height - 8, region.y + 8, -STEP)
     seen = set()
     for columns in ((share,), tuple(share + aside for aside in ASIDE)):
         for turns in (-60, 12, 12, 12):
             for _ in range(abs(turns)):
-                where = (region.x + int(region.width * share), middle)
-                event(screen, "WHEELDOWNMOUSE" if turns > 0 else "WHEELUPMOUSE", "PRESS", where)
+                event(screen, "WHEELDOWNMOUSE" if turns > 0 else "WHEELUPMOUSE", "PRESS", middle)
             yield 0.3
             for column in columns:
                 x = region.x + int(region.width * column)
