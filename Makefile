@@ -24,7 +24,7 @@ demo:  ## Carve the demo figure, write STL and NC code, render it: out/demo
 	@$(ready) demo
 	$(python) demo/run.py --out out/demo --blender-python .envs/bpy-4.5/bin/python
 
-test:  ## Run every test: C++, Python, tools, documents, Blender (SUITES="… lint sanitize sanitize-pen" for others)
+test:  ## Run every test: C++, Python, tools, documents, Blender (SUITES="… lint sanitize" for others)
 	@$(ready) test
 	@$(python) tools/test.py $(SUITES)
 
@@ -94,7 +94,7 @@ format:  ## Bring all sources into style
 
 sanitize:  ## Run the C++ tests under the address and undefined-behaviour sanitizers
 	@$(ready) cpp-tests
-	@$(python) tools/test.py sanitize sanitize-pen
+	@$(python) tools/test.py sanitize
 
 docs:  ## Check links and examples, make the site of the documents and the API reference: out/site
 	@$(ready)

@@ -6,11 +6,9 @@ as the tests. A batch that fails is shown with all that it printed; tests that a
 
 from __future__ import annotations
 
-import json
 import re
 import subprocess
 import tempfile
-from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
@@ -31,22 +29,21 @@ class Outcome:
     printed: str
 
 
-@dataclass(frozen=True)
-class Test:
-    name: str  # Suite.Name
-    source: str  # path of the file that defines it, as the compiler was given it
-
-
-def tests_of(program: Path) -> list[Test]:
-    """Every test of a program, in the program's order."""
-    with tempfile.TemporaryDirectory() as folder:
-        listing = Path(folder) / "tests.json"
-        command = [program, "--gtest_list_tests", f"--gtest_output=json:{listing}"]
-        done = subprocess.run(command, capture_output=True, text=True, check=False, env=tool_environment())
-        if done.returncode != 0:
-            raise StepError(f"{program} --gtest_list_tests failed:\n{done.stdout}{done.stderr}")
-        suites = json.loads(listing.read_text())["testsuites"]
-    return [Test(f"{suite['name']}.{test['name']}", test["file"]) for suite in suites for test in suite["testsuite"]]
+def names_of(program: Path) -> list[str]:
+    """Every test as Suite.Name; what follows a # is a parameter's text."""
+    done = subprocess.run(
+        [program, "--gtest_list_tests"], capture_output=True, text=True, check=False, env=tool_environment()
+    )
+    if done.returncode != 0:
+        raise StepError(f"{program} --gtest_list_tests failed:\n{done.stdout}{done.stderr}")
+    names, suite = [], ""
+    for line in done.stdout.splitlines():
+        word = line.split("#")[0].rstrip()
+        if line.startswith("  "):
+            names.append(suite + word.strip())
+        elif word.endswith("."):
+            suite = word
+    return names
 
 
 def batches(names: list[str], size: int = BATCH) -> list[list[str]]:
@@ -76,13 +73,10 @@ def run_batch(program: Path, names: list[str]) -> Outcome:
     return Outcome(names, [(seconds, name) for name, seconds in times.items()], failed, printed)
 
 
-def run_tests(
-    program: Path, without: str = "", chosen: Callable[[Test], bool] = lambda _: True
-) -> list[tuple[float, str]]:
-    """Runs the chosen tests but those in whose name the expression `without` is found: seconds and name of each.
-    StepError naming those that failed, after what they printed."""
-    tests = [test for test in tests_of(program) if chosen(test)]
-    names = [test.name for test in tests if not (without and re.search(without, test.name))]
+def run_tests(program: Path, without: str = "") -> list[tuple[float, str]]:
+    """All tests but those in whose name the expression `without` is found: seconds and name of each. StepError naming
+    those that failed, after what they printed."""
+    names = [name for name in names_of(program) if not (without and re.search(without, name))]
     if not names:
         raise StepError(f"{program} has no tests")
     times, failed, ended = [], [], 0

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Callable
 from xml.etree import ElementTree
 
 import compiler_cache
@@ -27,10 +26,11 @@ def build_preset(preset: str, *targets: str) -> None:
 
 def test_preset(preset: str) -> None:
     """Every C++ test in a process of its own, as many at once as there are cores; under the sanitizers in batches."""
-    if preset in IN_BATCHES:
-        test_in_batches(preset)
-        return
     build_preset(preset, "riffler_tests")
+    if preset in IN_BATCHES:
+        program = ROOT / "build" / preset / "native" / "tests" / "riffler_tests"
+        print_slowest(preset, gtest_batches.run_tests(program, left_out(preset)))
+        return
     report = ROOT / "build" / preset / "tests.xml"
     report.unlink(missing_ok=True)
     try:
@@ -40,13 +40,6 @@ def test_preset(preset: str) -> None:
             print_slowest(
                 preset, [(float(c.get("time")), c.get("name")) for c in ElementTree.parse(report).iter("testcase")]
             )
-
-
-def test_in_batches(preset: str, chosen: Callable[[gtest_batches.Test], bool] = lambda _: True) -> None:
-    """The chosen C++ tests, all by default, several in a process."""
-    build_preset(preset, "riffler_tests")
-    program = ROOT / "build" / preset / "native" / "tests" / "riffler_tests"
-    print_slowest(preset, gtest_batches.run_tests(program, left_out(preset), chosen))
 
 
 def left_out(preset: str) -> str:
