@@ -31,4 +31,5 @@ PYBIND11_MODULE(_core, m) {
   bindings::bind_strategies(m);
   bindings::bind_plan(m);
   bindings::refuse_objects_without_init(m);
+  bindings::answer_misfits(m);
 }
