@@ -11,7 +11,7 @@ import importlib
 import sys
 import warnings
 from collections.abc import Callable, ItemsView, Iterator, KeysView, Mapping, ValuesView
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields, is_dataclass
 from typing import ClassVar
 
 _warned: set[str] = set()
@@ -114,8 +114,7 @@ class DictResult:
     old_keys: ClassVar[Mapping[str, str]] = {}
 
     def _as_dict(self) -> dict[str, object]:
-        fields = getattr(self, "__dataclass_fields__", {})
-        names = {name: name for name in fields if not name.startswith("_")}
+        names = {f.name: f.name for f in fields(self) if not f.name.startswith("_")} if is_dataclass(self) else {}
         for key, attribute in self.old_keys.items():
             names.pop(attribute, None)
             names[key] = attribute
