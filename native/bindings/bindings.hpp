@@ -27,6 +27,8 @@ void bind_errors(py::module_& m);
 void translate_errors(const py::module_& core);
 /// Of all classes of the module: an object that `__new__` made without `__init__` is a TypeError wherever it is used.
 void refuse_objects_without_init(const py::module_& m);
+/// A call of any function of the module whose arguments do not fit is answered by riffler.hints.
+void answer_misfits(const py::module_& m);
 void bind_files(py::module_& m);
 void bind_mesh(py::module_& m);
 void bind_tool(py::module_& m);

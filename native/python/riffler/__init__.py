@@ -3,7 +3,9 @@
 Lengths in mm, angles in rad, times in s, forces in N. The names below are the public API; ``riffler._core`` is not.
 """
 
-from . import cluster, pen, plan, tasks
+from typing import TYPE_CHECKING
+
+from . import _core, cluster, deprecated, old, pen, plan, shape, tasks
 from ._core import (
     Cancelled,
     Collider,
@@ -71,7 +73,12 @@ __all__ = [
     "pen",
     "plan",
     "set_threads",
+    "shape",
     "tasks",
     "threads",
     "verify",
 ]
+
+deprecated.install(old.ALL.attributes, vars(plan) | vars(pen) | vars(_core) | globals())
+if not TYPE_CHECKING:
+    __getattr__ = deprecated.module_getattr("riffler", old.ALL.modules.get("", {}))
