@@ -25,14 +25,14 @@ def ring(around=160, across=64):
     return riffler.Mesh(points.reshape(-1, 3), np.concatenate([np.c_[a, b, c], np.c_[a, c, d]]))
 
 
-box = {"lower": (-30, -30, -10), "upper": (30, 30, 10)}
-volume = riffler.Volume.from_mesh(ring(), PITCH, "xyz", **box)
+lower, upper = (-30, -30, -10), (30, 30, 10)
+volume = riffler.Volume.from_mesh(ring(), PITCH, "xyz", lower=lower, upper=upper)
 print(f"volume of the ring {volume.volume:.1f} mm³")
 
 # Six bores along z. Volumes on the same grid are added, subtracted and intersected exactly.
 for angle in np.arange(6) * np.pi / 3:
     centre = (R * np.cos(angle), R * np.sin(angle), 0)
-    volume.subtract(riffler.Volume.cylinder(centre, 3.0, 40.0, PITCH, "xyz", **box))
+    volume.subtract(riffler.Volume.cylinder(centre, 3.0, 40.0, PITCH, "xyz", lower=lower, upper=upper))
 
 mesh = volume.to_mesh().decimate(tolerance=0.01)
 mesh.write("ring.stl")

@@ -31,12 +31,12 @@ with riffler.pen.open("simulated") as pen:
         for t in np.arange(0, 3.0, 0.03):  # the hand goes down, twice across, each time deeper, and up again
             across = 14 * np.cos(2 * np.pi * t / 1.5)
             down = np.interp(t, [0.2, 0.5, 2.6, 2.8], [0, 6, 9, 0])
-            pose = np.add(home, [across, 2 * t - 3, -down, 0, 0, 0])
+            pose = home + np.array([across, 2 * t - 3, -down, 0, 0, 0])
             pen.aim(pose, buttons=int(down > 2))  # button 1, held: the force is on, and the tool cuts
             time.sleep(0.03)
             frame = session.frame()
             rows.append(np.column_stack([frame.times, frame.poses[:, :3], frame.applied[:, :3]]))
-    state = frame.state
+        state = session.frame().state
 
 times, tips, force = (part.squeeze() for part in np.split(np.concatenate(rows), [1, 4], axis=1))
 again = riffler.Session.replay("pen.rjournal")

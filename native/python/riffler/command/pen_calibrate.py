@@ -120,9 +120,9 @@ def calibrate_pen(
     if not device.home():
         raise pen.PenError(f"{device.kind} cannot be homed")
     wait_for(device, lambda: device.state().homed)
-    for channel, counts in losses.items():
-        device.lose(channel, counts)
-    if losses:
+    if losses and isinstance(device, pen.SimulatedPen):
+        for channel, counts in losses.items():
+            device.lose(channel, counts)
         time.sleep(0.25e-3 * max(losses.values()) + 0.1)  # one by one
 
     postures = Postures(geometry)
@@ -211,7 +211,7 @@ def move(
             if not state.homed:
                 raise pen.PenError("the pen lost its power, and its counts with it: begin anew")
             postures.add(state.counts, state.stretch)
-            if hand is not None and now - turned > 0.3:
+            if hand is not None and isinstance(device, pen.SimulatedPen) and now - turned > 0.3:
                 turned = now
                 device.aim(next(hand))
             if draw is not None and now - shown > 1 / FRAMES:

@@ -59,7 +59,9 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
         need_matplotlib()
     window = open_window() if arguments.window else None
     log = Log()
-    with pen.open("simulated") as device:
+    device = pen.open("simulated")
+    assert isinstance(device, pen.SimulatedPen)
+    with device:
         home = homed(device)
         block = block_at(home, pitch)
         before = block.volume
@@ -131,7 +133,7 @@ def homed(device: pen.PenDevice) -> np.ndarray:
     return device.geometry.forward([device.geometry.home])[0]
 
 
-def come_to(device: pen.PenDevice, pose: np.ndarray) -> None:
+def come_to(device: pen.SimulatedPen, pose: np.ndarray) -> None:
     """The hand goes there; for two seconds at most."""
     device.aim(pose)
     end = time.monotonic() + 2
@@ -140,7 +142,7 @@ def come_to(device: pen.PenDevice, pose: np.ndarray) -> None:
 
 
 def carve(
-    device: pen.PenDevice, home: np.ndarray, session: Session, log: Log, seconds: float, live: Any, window: Any
+    device: pen.SimulatedPen, home: np.ndarray, session: Session, log: Log, seconds: float, live: Any, window: Any
 ) -> None:
     """Moves the hand, and shows what happens, until the time is over; Ctrl-C ends it sooner."""
     start = time.monotonic()
