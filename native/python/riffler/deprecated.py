@@ -7,6 +7,7 @@ fit, by `riffler.hints`; calls in today's form pay nothing.
 
 from __future__ import annotations
 
+import dataclasses
 import importlib
 import sys
 import warnings
@@ -44,8 +45,8 @@ def _depth() -> int:
 class Old:
     """The old names of one topic. Callables are named as users write them, without ``riffler.``: ``Volume.carve``."""
 
-    #: module ("" is riffler itself): old name → new name
-    modules: dict[str, dict[str, str]] = field(default_factory=dict)
+    #: module ("" is riffler itself): old name → new name, or what to use now and the name of what the old one gives
+    modules: dict[str, dict[str, str | tuple[str, str]]] = field(default_factory=dict)
     #: class: old attribute or method → new one of the same kind
     attributes: dict[str, dict[str, str]] = field(default_factory=dict)
     #: callable: old keyword → new keyword
@@ -87,7 +88,7 @@ def install(attributes: Mapping[str, Mapping[str, str]], classes: Mapping[str, t
             setattr(classes[owner], old, OldAttribute(owner, old, new))
 
 
-def module_getattr(module: str, names: Mapping[str, str]) -> Callable[[str], object]:
+def module_getattr(module: str, names: Mapping[str, str | tuple[str, str]]) -> Callable[[str], object]:
     """The ``__getattr__`` of a module that had other names. A new name with a dot is looked up from riffler."""
 
     def getter(attribute: str) -> object:
@@ -95,8 +96,9 @@ def module_getattr(module: str, names: Mapping[str, str]) -> Callable[[str], obj
             raise AttributeError(f"module {module!r} has no attribute {attribute!r}")
         new = names[attribute]
         prefix = module.removeprefix("riffler").removeprefix(".")
-        path = new if "." in new or not prefix else f"{prefix}.{new}"
-        warn(f"{prefix}.{attribute}".lstrip("."), path)
+        advice, path = new if isinstance(new, tuple) else (new, new)
+        warn(f"{prefix}.{attribute}".lstrip("."), advice if "." in advice or not prefix else f"{prefix}.{advice}")
+        path = path if "." in path or not prefix else f"{prefix}.{path}"
         found: object = importlib.import_module("riffler")
         for part in path.split("."):
             found = getattr(found, part)
@@ -114,8 +116,7 @@ class DictResult:
     old_keys: ClassVar[Mapping[str, str]] = {}
 
     def _as_dict(self) -> dict[str, object]:
-        fields = getattr(self, "__dataclass_fields__", {})
-        names = {name: name for name in fields if not name.startswith("_")}
+        names = {f.name: f.name for f in dataclasses.fields(self)}  # pyright: ignore[reportArgumentType]
         for key, attribute in self.old_keys.items():
             names.pop(attribute, None)
             names[key] = attribute
@@ -145,6 +146,9 @@ class DictResult:
 
     def __len__(self) -> int:
         return len(self._read_as_dict(" as a dict"))
+
+    def __bool__(self) -> bool:
+        return True
 
     def keys(self) -> KeysView[str]:
         return self._read_as_dict(".keys()").keys()

@@ -32,7 +32,7 @@ from .shapes import from_mesh, rays, write_left
 
 HELP = "carve stock with an NC program"
 AWAY = -1  # the number of no tool: of a move that begins or ends at a position of the machine
-__doc__ += "\n" + tools.FORMS
+__doc__ = f"{__doc__}\n{tools.FORMS}"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -146,7 +146,7 @@ def stock(arguments: argparse.Namespace, console: Console) -> Volume:
         return volume
     if pitch is None:
         raise ValueError(f"--pitch is needed for {path.name}")
-    return from_mesh(path, pitch, arguments.directions or "xyz", console, "stock")
+    return from_mesh(path, pitch, arguments.directions or "xyz", console, "stock")[0]
 
 
 def _solid(kind: str, lower: np.ndarray, upper: np.ndarray, pitch: float, directions: str) -> Volume:
@@ -154,10 +154,9 @@ def _solid(kind: str, lower: np.ndarray, upper: np.ndarray, pitch: float, direct
     if kind == "block":
         return Volume.block(lower, upper, pitch, directions)
     centre, (w, _, h) = 0.5 * (lower + upper), upper - lower
-    box = {"lower": lower, "upper": upper}
     if kind == "sphere":
-        return Volume.sphere(centre, 0.5 * w, pitch, directions, **box)
-    return Volume.cylinder(centre, 0.5 * w, h, pitch, directions, **box)
+        return Volume.sphere(centre, 0.5 * w, pitch, directions, lower=lower, upper=upper)
+    return Volume.cylinder(centre, 0.5 * w, h, pitch, directions, lower=lower, upper=upper)
 
 
 def carve(
@@ -179,7 +178,8 @@ def carve(
                 continue  # nothing is in the spindle yet
 
             def share(done: float, first: int = first, last: int = last) -> None:
-                progress((first + done * (last - first)) / len(removed))
+                if progress:
+                    progress((first + done * (last - first)) / len(removed))
 
             cut = volume.carve(
                 by_number[tool], poses[first : last + 1], tolerance=tolerance, progress=share if progress else None

@@ -25,8 +25,8 @@ class Console:
         self.written: str | None = None
         for stream in (sys.stdout, sys.stderr):
             # A terminal without Unicode shows "?" for "³" instead of failing.
-            if hasattr(stream, "reconfigure"):
-                stream.reconfigure(errors="replace")
+            if reconfigure := getattr(stream, "reconfigure", None):
+                reconfigure(errors="replace")
 
     def error(self, message: str) -> None:
         line = " ".join(message.split())

@@ -119,8 +119,9 @@ def calibrate_pen(
     if not device.home():
         raise pen.PenError(f"{device.kind} cannot be homed")
     wait_for(device, lambda: device.state().homed)
-    for channel, counts in losses.items():
-        device.lose(channel, counts)
+    if isinstance(device, pen.SimulatedPen):  # others have been refused
+        for channel, counts in losses.items():
+            device.lose(channel, counts)
     if losses:
         time.sleep(0.25e-3 * max(losses.values()) + 0.1)  # one by one
 
@@ -210,7 +211,7 @@ def move(
             if not state.homed:
                 raise pen.PenError("the pen lost its power, and its counts with it: begin anew")
             postures.add(state.counts, state.stretch)
-            if hand is not None and now - turned > 0.3:
+            if hand is not None and isinstance(device, pen.SimulatedPen) and now - turned > 0.3:
                 turned = now
                 device.aim(next(hand))
             if draw is not None and now - shown > 1 / FRAMES:

@@ -11,6 +11,8 @@ from matplotlib.figure import Figure
 from .plot_style import COLOURS, INK, STYLE, TARGET, logarithmic
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
     from .pen_simulate import Log
 
 
@@ -53,7 +55,7 @@ def fill(panels: np.ndarray, log: Log) -> None:
     steps(spent, 1e6 * log.column("step_seconds"))
 
 
-def steps(axis: object, spent: np.ndarray) -> None:
+def steps(axis: Axes, spent: np.ndarray) -> None:
     """How many steps took at least so long: the tail is what a haptic loop is judged by."""
     spent = np.sort(spent[spent > 0])
     if len(spent):

@@ -130,7 +130,7 @@ def homed(device: pen.PenDevice) -> np.ndarray:
     return device.geometry.forward([device.geometry.home])[0]
 
 
-def come_to(device: pen.PenDevice, pose: np.ndarray) -> None:
+def come_to(device: pen.SimulatedPen, pose: np.ndarray) -> None:
     """The hand goes there; for two seconds at most."""
     device.aim(pose)
     end = time.monotonic() + 2
@@ -139,7 +139,7 @@ def come_to(device: pen.PenDevice, pose: np.ndarray) -> None:
 
 
 def carve(
-    device: pen.PenDevice, home: np.ndarray, session: Session, log: Log, seconds: float, live: Any, window: Any
+    device: pen.SimulatedPen, home: np.ndarray, session: Session, log: Log, seconds: float, live: Any, window: Any
 ) -> None:
     """Moves the hand, and shows what happens, until the time is over; Ctrl-C ends it sooner."""
     start = time.monotonic()

@@ -24,7 +24,7 @@ from .shapes import read_part
 from .surroundings import add_fixtures, add_rods, fixture, fixtures_alone, rods, with_rods
 
 HELP = "write NC code for a machine"
-__doc__ += f"""
+__doc__ = f"""{__doc__}
 files:
   .json      a plan, as riffler pencil writes it: its cutter locations; or its paths, the ball's tip on them
   .rjournal  a recording; without --feed as fast as the hand was
@@ -317,7 +317,7 @@ def first_blocked(path, rows: np.ndarray, report: plan.LocationReport) -> str:
 
 def first_within(fixtures: Collider | None, tool: Tool, rows: np.ndarray) -> np.ndarray | None:
     """The tip of the first row at which the tool enters a fixture."""
-    return next((row[:3] for row in rows if fixtures and fixtures.nearest(tool, row)[0] < -LIFTED), None)
+    return next((row[:3] for row in rows if fixtures and fixtures.nearest(tool, row).distance < -LIFTED), None)
 
 
 def placed(point: np.ndarray) -> str:

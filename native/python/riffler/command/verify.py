@@ -32,7 +32,7 @@ from .surroundings import add_fixtures, add_rods, fixture, rods, with_rods
 HELP = "check an NC program by simulation"
 MAPS = (".ply",)
 MOST = 30  # findings in the table
-__doc__ += "\n" + tools.FORMS
+__doc__ = f"{__doc__}\n{tools.FORMS}"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -1,0 +1,21 @@
+"""Checks the types of the Python package, its stub and the examples, as pyright's standard mode does. Settings are in
+pyproject.toml; what is imported is looked up in ./.venv.
+
+    tools/check_types.py
+"""
+
+from __future__ import annotations
+
+from environments import types_environment
+from shell import PYTHON, StepError, main, run
+
+
+def entry() -> None:
+    try:
+        run(types_environment() / "bin" / "basedpyright", "--pythonpath", PYTHON)
+    except StepError as failure:
+        raise StepError("types do not agree: see above") from failure
+
+
+if __name__ == "__main__":
+    main(entry)
