@@ -133,7 +133,7 @@ def example_problems(document: Document) -> list[str]:
 
 def entry() -> None:
     every = [ROOT / name for name in ("README.md", "CHANGELOG.md", "CONTRIBUTING.md")]
-    every += (path for folder in ("docs", "addon", "device") for path in (ROOT / folder).rglob("*.md"))
+    every += (path for folder in ("docs", "addon", "device", "examples") for path in (ROOT / folder).rglob("*.md"))
     documents = {path: read(path) for path in sorted(every)}
     wanted = [Path(name).resolve() for name in sys.argv[1:]] or list(documents)
     problems = [] if sys.argv[1:] else picture_problems(documents)

@@ -7,12 +7,14 @@ pyproject.toml; what is imported is looked up in ./.venv.
 from __future__ import annotations
 
 from environments import types_environment
-from shell import PYTHON, StepError, main, run
+from shell import PYTHON, ROOT, StepError, main, run
 
 
 def entry() -> None:
     try:
-        run(types_environment() / "bin" / "basedpyright", "--pythonpath", PYTHON)
+        # The project by name: a pyrightconfig.json above the checkout would come first.
+        settings = ROOT / "pyproject.toml"
+        run(types_environment() / "bin" / "basedpyright", "--project", settings, "--pythonpath", PYTHON)
     except StepError as failure:
         raise StepError("types do not agree: see above") from failure
 

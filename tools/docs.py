@@ -13,7 +13,7 @@ from environments import docs_environment
 from shell import ROOT, main, run, tool_environment
 
 OUT = ROOT / "out" / "docs"
-PAGES = ("README.md", "CHANGELOG.md", "CONTRIBUTING.md")
+PAGES = ("README.md", "CHANGELOG.md", "CONTRIBUTING.md", "examples/README.md")
 
 
 def collect() -> None:
@@ -21,8 +21,9 @@ def collect() -> None:
     OUT.mkdir(parents=True)
     shutil.copytree(ROOT / "docs", OUT / "docs", ignore=shutil.ignore_patterns("__pycache__"))
     for name in PAGES:
-        shutil.copy(ROOT / name, OUT)
-    for path in sorted([*OUT.glob("*.md"), *OUT.glob("docs/*.md")]):
+        (OUT / name).parent.mkdir(exist_ok=True)
+        shutil.copy(ROOT / name, OUT / name)
+    for path in sorted([*map(OUT.joinpath, PAGES), *OUT.glob("docs/*.md")]):
         original = ROOT / path.relative_to(OUT)
         for _, target in check_docs.read(original).links:
             linked = (original.parent / target.partition("#")[0]).resolve()

@@ -6,66 +6,13 @@ with ``--json``, ``{"error": …}`` on stdout; nothing is written then.
 
 from __future__ import annotations
 
-import argparse
 import os
 import sys
 import traceback
-from typing import Any, NoReturn
 
 from . import Cancelled, __version__
-from .command import audit, bench, carve, convert, doctor, machines, mesh, pen, pencil, plan, post, replay, verify
+from .command import verbs
 from .command.console import Console
-
-COMMANDS = (carve, replay, verify, convert, mesh, plan, pencil, post, machines, audit, pen, doctor, bench)
-LISTS = ("--origin", "--axis")
-EPILOG = "lengths in mm, angles on the command line in degrees; exit status 0, 1 (a check failed) or 2 (bad input)"
-
-
-class UsageError(ValueError):
-    """The command line itself is wrong."""
-
-
-class Parser(argparse.ArgumentParser):
-    """Raises what is wrong instead of printing usage and exiting."""
-
-    def error(self, message: str) -> NoReturn:
-        raise UsageError(f"{message} (see {self.prog} --help)")
-
-
-def parser() -> Parser:
-    top = Parser(prog="riffler", description="Dexel volumes, carving and meshes.", epilog=EPILOG, allow_abbrev=False)
-    top.add_argument("--version", action="version", version=f"riffler {__version__}")
-    commands = top.add_subparsers(dest="command", required=True, metavar="command")
-    for module in COMMANDS:
-        add_command(commands, module, module.__name__.rpartition(".")[2])
-    return top
-
-
-def add_command(commands: Any, module: Any, name: str) -> None:
-    """One command, or with PARTS the commands that it consists of: ``riffler pen list``."""
-    sub = commands.add_parser(
-        name, help=module.HELP, description=module.__doc__, epilog=EPILOG, allow_abbrev=False,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )  # fmt: skip
-    if hasattr(module, "PARTS"):
-        parts = sub.add_subparsers(dest="part", required=True, metavar="command")
-        for part in module.PARTS:
-            add_command(parts, part, part.__name__.rpartition("_")[2])
-        return
-    module.add_arguments(sub)
-    sub.add_argument("--json", action="store_true", help="print the result, or the error, as JSON")
-    sub.set_defaults(run=module.run)
-
-
-def joined(argv: list[str]) -> list[str]:
-    """``--origin -5,0,0`` as ``--origin=-5,0,0``: argparse takes a list that begins with a minus for an option."""
-    out: list[str] = []
-    for word in argv:
-        if out and out[-1] in LISTS and word[:1] == "-" and word[1:2] in "0123456789.":
-            out[-1] += "=" + word
-        else:
-            out.append(word)
-    return out
 
 
 def main(argv: list[str] | None = None) -> int:
@@ -73,8 +20,7 @@ def main(argv: list[str] | None = None) -> int:
     argv = sys.argv[1:] if argv is None else list(argv)
     console = Console(json_output="--json" in argv)
     try:
-        arguments = parser().parse_args(joined(argv))
-        status = arguments.run(arguments, console)
+        status = dispatch(argv, console)
         sys.stdout.flush()
         return status
     except (KeyboardInterrupt, Cancelled):
@@ -90,6 +36,20 @@ def main(argv: list[str] | None = None) -> int:
             traceback.print_exc()
         console.error(explain(error))
         return 2
+
+
+def dispatch(words: list[str], console: Console) -> int:
+    """Finds the verb and runs it; an old name is answered on stderr with the new one."""
+    if words[:1] == ["--version"]:
+        print(f"riffler {__version__}")
+        return 0
+    found = verbs.find(words)
+    if found.verb is None:
+        print(found.help)
+        return 0
+    if found.old:
+        console.warning(f"riffler {found.old} is an old name of riffler {found.verb.path}")
+    return found.verb.run(found.rest, console)
 
 
 def explain(error: Exception) -> str:

@@ -37,7 +37,7 @@ __all__ = [
 for _function in (
     plan.pencil, plan.cutter_locations, plan.kept_locations, plan.free_orientations, plan.least_tilt
 ):  # fmt: skip
-    runs_as_task(_function)
+    runs_as_task(_function)  # pyright: ignore[reportArgumentType]
 
 
 def _task_of(old: str, call: Callable, name: str) -> Callable[..., Task]:

@@ -182,10 +182,10 @@ def test_without_the_package_it_is_asked_for(tmp_path, monkeypatch):
 
 def test_the_command_line_takes_3mf(tmp_path, capsys):
     scenes.box_mesh([0, 0, 0], [4, 5, 6]).write(tmp_path / "box.3mf")
-    assert cli.main(["audit", str(tmp_path / "box.3mf")]) == 0
+    assert cli.main(["mesh", "audit", str(tmp_path / "box.3mf")]) == 0
     volume, out = str(tmp_path / "box.rvol"), str(tmp_path / "out.3mf")
-    assert cli.main(["convert", str(tmp_path / "box.3mf"), "--pitch", "0.5", "--out", volume]) == 0
-    assert cli.main(["mesh", volume, "--out", out]) == 0
+    assert cli.main(["volume", "from-mesh", str(tmp_path / "box.3mf"), "--pitch", "0.5", "--out", volume]) == 0
+    assert cli.main(["volume", "to-mesh", volume, "--out", out]) == 0
     assert riffler.Mesh.read(out).volume == pytest.approx(120, rel=1e-3)
 
 

@@ -51,7 +51,7 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-CARVE = ("carve", "--stock", "40x20x10", "--pitch", "0.5", "--program", "slot.ngc")
+CARVE = ("volume", "carve", "--stock", "40x20x10", "--pitch", "0.5", "--program", "slot.ngc")
 
 
 # ---- each command
@@ -70,7 +70,7 @@ def test_carve_writes_a_closed_mesh_of_what_is_left(folder):
     written = (folder / "part.stl").read_bytes()
     assert data["bytes"] == len(written) == 84 + 50 * data["triangles"]
     assert stl_volume(written) == pytest.approx(data["volume"], rel=1e-3)
-    audit = result("audit", "part.stl", cwd=folder)
+    audit = result("mesh", "audit", "part.stl", cwd=folder)
     assert audit["closed"] and audit["triangles"] == data["triangles"]
 
 
@@ -94,14 +94,24 @@ def test_carve_agrees_with_the_library(folder):
 
 
 def test_carve_starts_from_files(folder):
-    first = result("carve", "--stock", "box.stl", "--pitch", 0.5, "--tool", "flat:4", "--program", "slot.ngc",
+    first = result("volume", "carve", "--stock", "box.stl", "--pitch", 0.5, "--tool", "flat:4", "--program", "slot.ngc",
                    "--out", "a.rvol", cwd=folder)  # fmt: skip
     assert first["removed"] == pytest.approx(20 * 4 * 6)
     again = result(
-        "carve", "--stock", "a.rvol", "--tool", "flat:6", "--program", "slot.ngc", "--out", "b.stl", cwd=folder
+        "volume",
+        "carve",
+        "--stock",
+        "a.rvol",
+        "--tool",
+        "flat:6",
+        "--program",
+        "slot.ngc",
+        "--out",
+        "b.stl",
+        cwd=folder,
     )
     assert again["removed"] == pytest.approx(20 * 2 * 6)
-    carve = ("carve", "--stock", "a.rvol", "--tool", "flat:6", "--program", "slot.ngc", "--out", "c.stl")
+    carve = ("volume", "carve", "--stock", "a.rvol", "--tool", "flat:6", "--program", "slot.ngc", "--out", "c.stl")
     for option in (("--pitch", "0.4"), ("--directions", "z"), ("--origin", "0,0,0")):
         done = riffle(*carve, *option, cwd=folder)
         assert done.returncode == 2 and "a.rvol" in done.stderr
@@ -112,8 +122,8 @@ def test_carve_starts_from_files(folder):
     [("sphere:20", 4 / 3 * np.pi * 1000, (20, 20, 20)), ("cylinder:20:15", np.pi * 1500, (20, 20, 15))],
 )
 def test_stock_may_be_round(folder, stock, volume, upper):
-    data = result("carve", "--stock", stock, "--pitch", 0.2, "--origin", "5.1,1,2", "--tool", "ball:1", "--program",
-                  "slot.ngc", "--out", "a.rvol", cwd=folder)  # fmt: skip
+    data = result("volume", "carve", "--stock", stock, "--pitch", 0.2, "--origin", "5.1,1,2", "--tool", "ball:1",
+                  "--program", "slot.ngc", "--out", "a.rvol", cwd=folder)  # fmt: skip
     assert data["volume_before"] == pytest.approx(volume, rel=3e-3)
     left = riffler.Volume.load(folder / "a.rvol")
     assert left.lower.tolist() == [5.1, 1, 2] and np.allclose(left.upper - left.lower, upper, atol=1e-12)
@@ -136,8 +146,8 @@ def test_a_block_stands_where_it_is_wanted(folder, origin, lower):
 def test_a_tool_of_no_length_reaches_out_of_the_stock(folder):
     # 1 mm wide, 100 deep: a cutter of five diameters would leave a roof.
     (folder / "deep.ngc").write_text("G21 G90\nG0 X5 Y5 Z120\nG1 Z0 F100\nM2\n")
-    data = result("carve", "--stock", "10x10x100", "--pitch", 0.1, "--directions", "z", "--tool", "flat:1", "--program",
-                  "deep.ngc", "--out", "a.rvol", cwd=folder)  # fmt: skip
+    data = result("volume", "carve", "--stock", "10x10x100", "--pitch", 0.1, "--directions", "z", "--tool", "flat:1",
+                  "--program", "deep.ngc", "--out", "a.rvol", cwd=folder)  # fmt: skip
     assert data["removed"] == pytest.approx(np.pi / 4 * 100, rel=0.05)
     (counts, spans) = riffler.Volume.load(folder / "a.rvol").intervals("z")
     assert counts.min() == 0 and set(spans.ravel()) == {0, 100}
@@ -147,7 +157,7 @@ def test_tools_by_number_and_from_files(folder):
     (folder / "two.ngc").write_text(
         "G21 G90 G94\nG0 Z20\nT3 M6\nG0 X-10 Y5 Z5\nG1 X50 F500\nG0 Z20\nT12 M6\nG0 X-10 Y15\nZ5\nG1 X50\nG0 Z20\nM2\n"
     )
-    carve = ("carve", "--stock", "40x20x10", "--pitch", 0.5, "--program", "two.ngc", "--out", "a.rvol")
+    carve = ("volume", "carve", "--stock", "40x20x10", "--pitch", 0.5, "--program", "two.ngc", "--out", "a.rvol")
     (folder / "t.json").write_text(json.dumps(riffler.Tool.flat(4, 40).named("roughing").to_dict()))
     (folder / "t.toml").write_text('kind = "flat"\ndiameter = 2\nlength = 40.0\nname = "finishing"\n')
     data = result(*carve, "--tool", "3=t.json", "--tool", "12=t.toml", cwd=folder)
@@ -165,28 +175,28 @@ def test_tools_by_number_and_from_files(folder):
 
 
 def test_convert_and_mesh(folder):
-    data = result("convert", "box.stl", "--pitch", 0.5, "--out", "box.rvol", cwd=folder)
+    data = result("volume", "from-mesh", "box.stl", "--pitch", 0.5, "--out", "box.rvol", cwd=folder)
     assert data["volume"] == pytest.approx(20 * 15 * 10)
     assert (data["lower"], data["upper"]) == ([0, 0, 0], [20, 15, 10])
-    data = result("mesh", "box.rvol", "--out", "again.stl", cwd=folder)
+    data = result("volume", "to-mesh", "box.rvol", "--out", "again.stl", cwd=folder)
     assert stl_volume((folder / "again.stl").read_bytes()) == pytest.approx(20 * 15 * 10, rel=1e-5)
-    few = result("mesh", "box.rvol", "--out", "few.stl", "--decimate", 0.01, cwd=folder)
+    few = result("volume", "to-mesh", "box.rvol", "--out", "few.stl", "--decimate", 0.01, cwd=folder)
     assert few["triangles_before_decimation"] == data["triangles"]
     assert few["triangles"] < data["triangles"] / 10
-    assert result("audit", "few.stl", cwd=folder)["closed"]
+    assert result("mesh", "audit", "few.stl", cwd=folder)["closed"]
 
 
 def test_convert_tells_what_was_wrong_with_the_mesh(folder):
-    done = riffle("convert", "box.stl", "--pitch", 0.5, "--out", "box.rvol", cwd=folder)
+    done = riffle("volume", "from-mesh", "box.stl", "--pitch", 0.5, "--out", "box.rvol", cwd=folder)
     assert not any(word in done.stdout for word in ("open", "inside out", "overlap", "edges", "triangles"))
     vertices, triangles = box_triangles((0, 0, 0), (10, 10, 10))
     (folder / "open.stl").write_bytes(stl_bytes(vertices, triangles[1:]))
-    data = result("convert", "open.stl", "--pitch", 0.5, "--out", "open.rvol", cwd=folder)
+    data = result("volume", "from-mesh", "open.stl", "--pitch", 0.5, "--out", "open.rvol", cwd=folder)
     assert (data["mesh"]["open_edges"], data["mesh"]["openings"], data["mesh"]["overlap"]) == (3, 1, 0)
-    done = riffle("convert", "open.stl", "--pitch", 0.5, "--out", "open.rvol", cwd=folder)
+    done = riffle("volume", "from-mesh", "open.stl", "--pitch", 0.5, "--out", "open.rvol", cwd=folder)
     assert "1 opening, 3 open edges" in done.stdout and "inside out" not in done.stdout
     (folder / "bad.stl").write_bytes(stl_bytes(vertices, [t[::-1] for t in triangles] * 2))
-    done = riffle("convert", "bad.stl", "--pitch", 0.5, "--out", "bad.rvol", cwd=folder)
+    done = riffle("volume", "from-mesh", "bad.stl", "--pitch", 0.5, "--out", "bad.rvol", cwd=folder)
     for line in ("1 shell is inside out", "100 % of the volume is enclosed more than once", "12 doubled triangles"):
         assert line in " ".join(done.stdout.split()), done.stdout
 
@@ -194,11 +204,11 @@ def test_convert_tells_what_was_wrong_with_the_mesh(folder):
 def test_audit_fails_a_mesh_that_is_not_closed(folder):
     vertices, triangles = box_triangles((0, 0, 0), (1, 1, 1))
     (folder / "open.stl").write_bytes(stl_bytes(vertices, triangles[1:]))
-    data = result("audit", "open.stl", cwd=folder, status=1)
+    data = result("mesh", "audit", "open.stl", cwd=folder, status=1)
     assert not data["closed"] and data["open_edges"] == 3
-    done = riffle("audit", "open.stl", cwd=folder)
+    done = riffle("mesh", "audit", "open.stl", cwd=folder)
     assert done.returncode == 1 and "not a closed 2-manifold" in done.stdout and done.stderr == ""
-    done = riffle("audit", "box.stl", cwd=folder)
+    done = riffle("mesh", "audit", "box.stl", cwd=folder)
     assert done.returncode == 0 and "a closed 2-manifold" in done.stdout
 
 
@@ -268,29 +278,29 @@ BAD = {
     # name: (words, what the message must say)
     "no command": ([], "command"),
     "unknown command": (["sculpt"], "sculpt"),
-    "unknown option": (["audit", "box.stl", "--fast"], "--fast"),
-    "missing option": (["convert", "box.stl", "--out", "a.rvol"], "--pitch"),
-    "audit: missing": (["audit", "nowhere.stl"], "nowhere.stl: No such file"),
-    "audit: truncated": (["audit", "short.stl"], "short.stl, byte "),
-    "audit: NaN": (["audit", "nan.stl"], "nan.stl, byte "),
-    "audit: no triangles": (["audit", "none.stl"], "none.stl"),
-    "audit: another kind of file": (["audit", "slot.ngc"], "slot.ngc: .stl"),
-    "convert: truncated": (["convert", "short.stl", "--pitch", 1, "--out", "a.rvol"], "short.stl, byte "),
-    "convert: NaN": (["convert", "nan.stl", "--pitch", 1, "--out", "a.rvol"], "nan.stl, byte "),
-    "convert: flat": (["convert", "flat.stl", "--pitch", 1, "--out", "a.rvol"], "flat.stl"),
-    "convert: pitch 0": (["convert", "box.stl", "--pitch", 0, "--out", "a.rvol"], "--pitch"),
-    "convert: pitch -1": (["convert", "box.stl", "--pitch=-1", "--out", "a.rvol"], "--pitch"),
-    "convert: pitch NaN": (["convert", "box.stl", "--pitch", "nan", "--out", "a.rvol"], "--pitch"),
-    "convert: pitch far too fine": (["convert", "box.stl", "--pitch", 1e-7, "--out", "a.rvol"], "pitch"),
+    "unknown option": (["mesh", "audit", "box.stl", "--fast"], "--fast"),
+    "missing option": (["volume", "from-mesh", "box.stl", "--out", "a.rvol"], "--pitch"),
+    "audit: missing": (["mesh", "audit", "nowhere.stl"], "nowhere.stl: No such file"),
+    "audit: truncated": (["mesh", "audit", "short.stl"], "short.stl, byte "),
+    "audit: NaN": (["mesh", "audit", "nan.stl"], "nan.stl, byte "),
+    "audit: no triangles": (["mesh", "audit", "none.stl"], "none.stl"),
+    "audit: another kind of file": (["mesh", "audit", "slot.ngc"], "slot.ngc: .stl"),
+    "convert: truncated": (["volume", "from-mesh", "short.stl", "--pitch", 1, "--out", "a.rvol"], "short.stl, byte "),
+    "convert: NaN": (["volume", "from-mesh", "nan.stl", "--pitch", 1, "--out", "a.rvol"], "nan.stl, byte "),
+    "convert: flat": (["volume", "from-mesh", "flat.stl", "--pitch", 1, "--out", "a.rvol"], "flat.stl"),
+    "convert: pitch 0": (["volume", "from-mesh", "box.stl", "--pitch", 0, "--out", "a.rvol"], "--pitch"),
+    "convert: pitch -1": (["volume", "from-mesh", "box.stl", "--pitch=-1", "--out", "a.rvol"], "--pitch"),
+    "convert: pitch NaN": (["volume", "from-mesh", "box.stl", "--pitch", "nan", "--out", "a.rvol"], "--pitch"),
+    "convert: pitch far too fine": (["volume", "from-mesh", "box.stl", "--pitch", 1e-7, "--out", "a.rvol"], "pitch"),
     "convert: pitch longer than the part": (
-        ["convert", "box.stl", "--pitch", 1000, "--out", "a.rvol"],
+        ["volume", "from-mesh", "box.stl", "--pitch", 1000, "--out", "a.rvol"],
         "pitch 1000 mm is longer than every side of the box",
     ),
-    "convert: out of another kind": (["convert", "box.stl", "--pitch", 1, "--out", "a.stl"], "--out a.stl"),
-    "convert: out nowhere": (["convert", "box.stl", "--pitch", 1, "--out", "no/a.rvol"], "no folder"),
-    "mesh: not a volume": (["mesh", "text.rvol", "--out", "a.stl"], "text.rvol, byte 0"),
-    "mesh: missing": (["mesh", "nowhere.rvol", "--out", "a.stl"], "nowhere.rvol: No such file"),
-    "mesh: tolerance": (["mesh", "text.rvol", "--out", "a.stl", "--decimate", "-2"], "--decimate"),
+    "convert: out of another kind": (["volume", "from-mesh", "box.stl", "--pitch", 1, "--out", "a.stl"], "--out a.stl"),
+    "convert: out nowhere": (["volume", "from-mesh", "box.stl", "--pitch", 1, "--out", "no/a.rvol"], "no folder"),
+    "mesh: not a volume": (["volume", "to-mesh", "text.rvol", "--out", "a.stl"], "text.rvol, byte 0"),
+    "mesh: missing": (["volume", "to-mesh", "nowhere.rvol", "--out", "a.stl"], "nowhere.rvol: No such file"),
+    "mesh: tolerance": (["volume", "to-mesh", "text.rvol", "--out", "a.stl", "--decimate", "-2"], "--decimate"),
 }
 TOOL = ("--tool", "ball:6")
 BAD_CARVES = {
@@ -337,7 +347,7 @@ BAD_CARVES = {
 }
 for name, (change, message) in BAD_CARVES.items():
     options = {"--stock": "40x20x10", "--pitch": "1", "--tool": "ball:6", "--program": "slot.ngc", "--out": "a.stl"}
-    BAD["carve: " + name] = (["carve", *[w for pair in (options | change).items() for w in pair]], message)
+    BAD["carve: " + name] = (["volume", "carve", *[w for pair in (options | change).items() for w in pair]], message)
 
 
 @pytest.mark.parametrize("case", BAD)
@@ -365,7 +375,7 @@ def test_bad_input_is_one_clear_line_and_leaves_no_file(folder, case):
 def test_an_error_leaves_the_old_file(folder):
     (folder / "part.stl").write_bytes(b"the old one")
     (folder / "bad.ngc").write_text("G21 G90\nG1 X9\n")
-    carve = ("carve", "--stock", "9x9x9", "--pitch", 1, *TOOL, "--program", "bad.ngc", "--out", "part.stl")
+    carve = ("volume", "carve", "--stock", "9x9x9", "--pitch", 1, *TOOL, "--program", "bad.ngc", "--out", "part.stl")
     for extra in ([], ["--json"]):
         done = riffle(*carve, *extra, cwd=folder)
         assert done.returncode == 2
@@ -385,7 +395,7 @@ def test_ctrl_c_leaves_nothing_behind(folder):
     moves = "".join(f"X{k % 2 * 90} Y{k % 60}\n" for k in range(1_000_000))
     (folder / "long.ngc").write_text("G21 G90 G94\nG0 Z5\nG1 X0 Y0 F500\n" + moves + "M2\n")
     before = sorted(p.name for p in folder.iterdir())
-    command = [*RIFFLER, "carve", "--stock", "90x60x30", "--pitch", "0.2", *TOOL, "--program",
+    command = [*RIFFLER, "volume", "carve", "--stock", "90x60x30", "--pitch", "0.2", *TOOL, "--program",
                "long.ngc", "--out", "part.stl"]  # fmt: skip
     # Tests that run in the background may have been told to ignore it.
     heed = partial(signal.signal, signal.SIGINT, signal.SIG_DFL)

@@ -1,4 +1,4 @@
-"""``riffler post`` and ``riffler machines``: plans, recordings and programs as NC code for a machine."""
+"""``riffler nc post`` and ``riffler nc machines``: plans, recordings and programs as NC code for a machine."""
 
 import json
 import re
@@ -15,7 +15,7 @@ from riffler_bench import nc_judge
 import linuxcnc
 
 TABLE = {"rot_point": [0, 0, -40], "offset": [0, 0, 25]}
-TABLE_WORDS = ("--option", "rot_point=0,0,-40", "--option", "offset=0,0,25")
+TABLE_WORDS = ("--post-option", "rot_point=0,0,-40", "--post-option", "offset=0,0,25")
 BALL = riffler.Tool.ball(6, 30)
 CORNER = plan.PencilPath(
     3.0,
@@ -83,7 +83,7 @@ def nearest(poses, wanted):
 
 
 def test_a_plan_becomes_code_with_the_balls_tip_on_its_paths(folder):
-    data = result("post", "plain.json", "--feed", 700, "--post", "3-axis", "--out", "p.ngc", cwd=folder)
+    data = result("nc", "post", "plain.json", "--feed", 700, "--post", "3-axis", "--out", "p.ngc", cwd=folder)
     tips = np.array([[3, y, 0.0, 0, 0, 1] for y in (0, 4, 9)])
     assert nearest(poses_of(folder / "p.ngc", "3-axis"), tips) < 1e-5
     assert data["rows"] == 5 and data["blocks"] == 5 and data["subdivisions"] == 0
@@ -97,17 +97,17 @@ def test_a_plan_becomes_code_with_the_balls_tip_on_its_paths(folder):
 
 
 def test_a_plan_without_a_feed_is_cut_slowly_and_says_so(folder):
-    data = result("post", "plain.json", "--post", "linuxcnc-xyzac", *TABLE_WORDS, "--out", "p.ngc", cwd=folder)
+    data = result("nc", "post", "plain.json", "--post", "linuxcnc-xyzac", *TABLE_WORDS, "--out", "p.ngc", cwd=folder)
     assert data["notes"][0].startswith("feed 500 mm/min") and data["minutes"] == pytest.approx(19 / 500)
 
 
 def test_axes_of_a_plan_and_of_the_command_line(folder):
     wanted = np.array([[3 - 3 * 0.6, y, 3 - 3 * 0.8, 0.6, 0, 0.8] for y in (0, 4, 9)])
-    result("post", "leaning.json", "--feed", 700, "--post", "tcp", "--out", "a.ngc", cwd=folder)
-    result("post", "plain.json", "--feed", 700, "--axis", "6,0,8", "--post", "tcp", "--out", "b.ngc", cwd=folder)
+    result("nc", "post", "leaning.json", "--feed", 700, "--post", "tcp", "--out", "a.ngc", cwd=folder)
+    result("nc", "post", "plain.json", "--feed", 700, "--axis", "6,0,8", "--post", "tcp", "--out", "b.ngc", cwd=folder)
     for name in ("a.ngc", "b.ngc"):
         assert nearest(poses_of(folder / name, "tcp"), wanted) < 2e-5
-    result("post", "plain.json", "--feed", 9, "--axis", "-6,0,8", "--post", "tcp", "--out", "c.ngc", cwd=folder)
+    result("nc", "post", "plain.json", "--feed", 9, "--axis", "-6,0,8", "--post", "tcp", "--out", "c.ngc", cwd=folder)
     assert poses_of(folder / "c.ngc", "tcp")[1, 3] == pytest.approx(-0.6)
 
 
@@ -117,23 +117,23 @@ def test_a_path_that_is_off_is_left_out(folder, more):
     away = CORNER.oriented({0: (0.6, 0, 0.8)})  # told apart by its axis
     both = plan.Plan([CORNER, away], BALL, part=part, off=frozenset({1}))
     plan.save(folder / "off.json", both)
-    data = result("post", "off.json", "--feed", 700, *more, "--post", "tcp", "--out", "off.ngc", cwd=folder)
+    data = result("nc", "post", "off.json", "--feed", 700, *more, "--post", "tcp", "--out", "off.ngc", cwd=folder)
     assert "path 1: switched off in the plan, left out" in data["notes"]
     assert np.all(poses_of(folder / "off.ngc", "tcp")[:, 5] == 1)
     plan.save(folder / "on.json", replace(both, off=frozenset()))
-    result("post", "on.json", "--feed", 700, *more, "--post", "tcp", "--out", "on.ngc", cwd=folder)
+    result("nc", "post", "on.json", "--feed", 700, *more, "--post", "tcp", "--out", "on.ngc", cwd=folder)
     assert not np.all(poses_of(folder / "on.ngc", "tcp")[:, 5] == 1)
 
 
 def test_a_part_lifts_the_tool_out_of_it(folder):
     # Leaning into the wall the shaft would enter it; upright it stands in the corner as the path says.
     free = result(
-        "post", "plain.json", "--feed", 7, "--part", "corner.stl", "--post", "tcp", "--out", "a.ngc", cwd=folder
+        "nc", "post", "plain.json", "--feed", 7, "--part", "corner.stl", "--post", "tcp", "--out", "a.ngc", cwd=folder
     )
     assert any(note.startswith("free of corner.stl") for note in free["notes"])
     assert not any("lifted" in note for note in free["notes"])
     high = result(
-        "post", "plain.json", "--feed", 7, "--part", "corner.stl", "--axis", "-1,0,4", "--post", "tcp", "--out",
+        "nc", "post", "plain.json", "--feed", 7, "--part", "corner.stl", "--axis", "-1,0,4", "--post", "tcp", "--out",
         "b.ngc", cwd=folder,
     )  # fmt: skip
     mesh = riffler.Mesh.read(folder / "corner.stl")
@@ -145,14 +145,14 @@ def test_a_part_lifts_the_tool_out_of_it(folder):
     assert note.startswith(f"3 of 3 rows are lifted, by up to {report.lift.max():.3g} mm (path 0): the tool does not")
     riffler.Mesh(mesh.vertices * 2, mesh.triangles).write(folder / "other.stl")
     done = riffle(
-        "post", "plain.json", "--feed", 7, "--part", "other.stl", "--post", "tcp", "--out", "c.ngc", cwd=folder
+        "nc", "post", "plain.json", "--feed", 7, "--part", "other.stl", "--post", "tcp", "--out", "c.ngc", cwd=folder
     )
     assert done.returncode == 2 and "the plan is for another part, corner.stl" in done.stderr
 
 
 HOLDER = ("--holder", "30:20:60:20")
 PLAN = (
-    *("post", "plain.json", "--feed", 7, "--part", "corner.stl"),
+    *("nc", "post", "plain.json", "--feed", 7, "--part", "corner.stl"),
     *("--post", "tcp", "--safe-height", 60, "--out", "a.ngc"),
 )
 
@@ -161,7 +161,7 @@ def test_what_is_written_beside_a_clamp_passes_the_verification(folder):
     """The holder would meet the clamp on the wall: what was not named is not seen, and said."""
     clamp = riffler.Volume.block((-20, -10, 30), (-5, 20, 38), pitch=0.5)
     clamp.to_mesh().write(folder / "clamp.stl")
-    verify = ("verify", "a.ngc", "--stock", "corner.stl", "--pitch", 0.5, "--tool", "ball:6:30", *HOLDER)
+    verify = ("nc", "verify", "a.ngc", "--stock", "corner.stl", "--pitch", 0.5, "--tool", "ball:6:30", *HOLDER)
     notes = result(*PLAN, cwd=folder)["notes"]
     assert any(note.startswith("shank and holder were not looked at") for note in notes)
     assert any(note.startswith("no fixtures were looked at") for note in notes)
@@ -199,21 +199,22 @@ def test_paths_that_no_lift_frees_are_named_and_left_out_if_that_is_asked_for(fo
 
 def test_programs_go_from_one_machine_to_another(folder):
     data = result(
-        "post", "p.ngc", "--machine", "tcp", "--post", "linuxcnc-xyzac", *TABLE_WORDS, "--option", "safe_start=false",
-        "--out", "q.ngc", cwd=folder,
+        "nc", "post", "p.ngc", "--machine", "tcp", "--post", "linuxcnc-xyzac", *TABLE_WORDS, "--post-option",
+        "safe_start=false", "--out", "q.ngc", cwd=folder,
     )  # fmt: skip
     assert nearest(poses_of(folder / "q.ngc", "linuxcnc-xyzac", **TABLE), swinging()) < 4e-5
     assert data["blocks"] == data["rows"] + data["subdivisions"] and data["subdivisions"] > 0
     # And back, under other options.
-    back = [word.replace("--option", "--machine-option") for word in TABLE_WORDS]
-    result("post", "q.ngc", "--machine", "linuxcnc-xyzac", *back, "--post", "tcp", "--out", "r.ngc", cwd=folder)
+    back = [word.replace("--post-option", "--machine-option") for word in TABLE_WORDS]
+    result("nc", "post", "q.ngc", "--machine", "linuxcnc-xyzac", *back, "--post", "tcp", "--out", "r.ngc", cwd=folder)
     assert nearest(poses_of(folder / "r.ngc", "tcp"), swinging()) < 6e-5
 
 
 def test_a_saved_program_is_written_as_the_library_writes_it(folder):
     result(
-        "post", "p.rprog", "--post", "linuxcnc-xyzbc", *TABLE_WORDS, "--option", "direction=iso", "--option",
-        "max_rotary=1200", "--tolerance", 0.003, "--axis-tolerance", np.degrees(0.002), "--out", "a.ngc", cwd=folder,
+        "nc", "post", "p.rprog", "--post", "linuxcnc-xyzbc", *TABLE_WORDS, "--post-option", "direction=iso",
+        "--post-option", "max_rotary=1200", "--tolerance", 0.003, "--axis-tolerance", np.degrees(0.002),
+        "--out", "a.ngc", cwd=folder,
     )  # fmt: skip
     riffler.Program.load(folder / "p.rprog").write(
         folder / "b.ngc", post="linuxcnc-xyzbc", tolerance=0.003, axis_tolerance=0.002,
@@ -223,26 +224,26 @@ def test_a_saved_program_is_written_as_the_library_writes_it(folder):
 
 
 def test_a_recording_becomes_a_program(folder):
-    data = result("post", "s.rjournal", "--spindle", -9000, "--out", "s.rprog", cwd=folder)
+    data = result("nc", "post", "s.rjournal", "--spindle", -9000, "--out", "s.rprog", cwd=folder)
     program = riffler.Program.load(folder / "s.rprog")
     wanted = riffler.Journal.read(folder / "s.rjournal").program(spindle=-9000)
     assert program.to_bytes() == wanted.to_bytes()
     assert data["tools"] == [3] and "blocks" not in data and data["post"] is None
     whole = (folder / "s.rjournal").read_bytes()
     (folder / "cut.rjournal").write_bytes(whole + whole[16:28])
-    data = result("post", "cut.rjournal", "--feed", 500, "--post", "tcp", "--out", "s.ngc", cwd=folder)
+    data = result("nc", "post", "cut.rjournal", "--feed", 500, "--post", "tcp", "--out", "s.ngc", cwd=folder)
     assert data["notes"] == [f"the recording was cut at byte {len(whole)}: all whole strokes"]
     assert set(re.findall(r"F(\S+)", (folder / "s.ngc").read_text())) == {"500"}
 
 
 def test_feed_spindle_and_tools_of_the_command_line_stand(folder):
     words = ("--feed", 321, "--spindle", 4500, "--tool", "1=taper:1:10:12:60")
-    result("post", "p.rprog", *words, "--out", "q.rprog", cwd=folder)
+    result("nc", "post", "p.rprog", *words, "--out", "q.rprog", cwd=folder)
     before, after = riffler.Program.load(folder / "p.rprog"), riffler.Program.load(folder / "q.rprog")
     assert np.array_equal(before.poses, after.poses) and np.array_equal(before.rapid, after.rapid)
     assert set(after.feed[~after.rapid]) == {321} and set(after.spindle) == {4500}
     assert after.tools[1].kind == "taper"
-    result("post", "plain.json", "--feed", 5, "--tool", "12=ball:6:80", "--out", "r.rprog", cwd=folder)
+    result("nc", "post", "plain.json", "--feed", 5, "--tool", "12=ball:6:80", "--out", "r.rprog", cwd=folder)
     posted = riffler.Program.load(folder / "r.rprog")
     assert set(posted.tool) == {12} and posted.tools[12].length == 80
 
@@ -250,7 +251,17 @@ def test_feed_spindle_and_tools_of_the_command_line_stand(folder):
 @linuxcnc.needed
 def test_what_it_writes_is_read_by_linuxcnc(folder):
     result(
-        "post", "leaning.json", "--feed", 700, "--post", "linuxcnc-xyzac", *TABLE_WORDS, "--out", "p.ngc", cwd=folder
+        "nc",
+        "post",
+        "leaning.json",
+        "--feed",
+        700,
+        "--post",
+        "linuxcnc-xyzac",
+        *TABLE_WORDS,
+        "--out",
+        "p.ngc",
+        cwd=folder,
     )
     moves = linuxcnc.interpreted(folder / "p.ngc")
     at = nc_judge.poses(moves.joints, nc_judge.tilting_table("A", TABLE["rot_point"], TABLE["offset"]))
@@ -261,27 +272,27 @@ def test_what_it_writes_is_read_by_linuxcnc(folder):
 def test_a_machine_of_ones_own_is_a_file(folder):
     shipped = Path(__file__).parents[2] / "nc" / "machine" / "shipped" / "linuxcnc-xyzac.toml"
     (folder / "mine.toml").write_text(shipped.read_text())
-    result("post", "p.rprog", "--post", "mine.toml", *TABLE_WORDS, "--out", "a.ngc", cwd=folder)
-    result("post", "p.rprog", "--post", "linuxcnc-xyzac", *TABLE_WORDS, "--out", "b.ngc", cwd=folder)
+    result("nc", "post", "p.rprog", "--post", "mine.toml", *TABLE_WORDS, "--out", "a.ngc", cwd=folder)
+    result("nc", "post", "p.rprog", "--post", "linuxcnc-xyzac", *TABLE_WORDS, "--out", "b.ngc", cwd=folder)
     mine, theirs = ((folder / name).read_text().splitlines() for name in ("a.ngc", "b.ngc"))
     assert "mine" in mine[0] and mine[1:] == theirs[1:]
 
 
 def test_a_saved_program_is_carved(folder):
     words = ("--stock", "60x20x5", "--origin", "0,-10,-5", "--pitch", 0.5, "--directions", "z", "--tool", "ball:6")
-    saved = result("carve", *words, "--program", "p.rprog", "--out", "a.rvol", cwd=folder)
-    code = result("carve", *words, "--program", "p.ngc", "--out", "b.rvol", cwd=folder)
+    saved = result("volume", "carve", *words, "--program", "p.rprog", "--out", "a.rvol", cwd=folder)
+    code = result("volume", "carve", *words, "--program", "p.ngc", "--out", "b.rvol", cwd=folder)
     assert saved["removed"] == pytest.approx(code["removed"], rel=1e-3) and saved["removed"] > 100
 
 
 def test_machines_are_listed(folder):
-    assert result("machines", cwd=folder)["machines"] == riffler.machines()
-    done = riffle("machines", cwd=folder)
+    assert result("nc", "machines", cwd=folder)["machines"] == riffler.machines()
+    done = riffle("nc", "machines", cwd=folder)
     assert done.returncode == 0 and all(name in done.stdout for name in riffler.machines())
 
 
 def test_a_table_says_what_was_written(folder):
-    done = riffle("post", "plain.json", "--feed", 700, "--post", "tcp", "--out", "a.ngc", cwd=folder)
+    done = riffle("nc", "post", "plain.json", "--feed", 700, "--post", "tcp", "--out", "a.ngc", cwd=folder)
     assert done.returncode == 0 and done.stderr == ""
     for word in ("a.ngc written", "rows", "blocks", "length", "time", "not checked for gouges"):
         assert word in done.stdout
@@ -296,11 +307,14 @@ BAD = {
     "no post": (["p.rprog", *OUT], "--post"),
     "unknown post": (["p.rprog", "--post", "lathe", *OUT], "lathe"),
     "post for a .rprog": (["p.rprog", *POST, "--out", "b.rprog"], "leave --post"),
-    "option": (["p.rprog", *POST, "--option", "speed=3", *OUT], "unknown option 'speed'"),
-    "option without value": (["p.rprog", *POST, "--option", "max_rotary", *OUT], "--option max_rotary: KEY=VALUE"),
-    "option twice": (["p.rprog", *POST, "--option", "a=1", "--option", "a=2", *OUT], "given before"),
-    "option, no number": (["p.rprog", *POST, "--option", "max_rotary=3x", *OUT], "--option max_rotary=3x"),
-    "option, list": (["p.rprog", *POST, "--option", "rot_point=1,,2", *OUT], "--option rot_point=1,,2"),
+    "option": (["p.rprog", *POST, "--post-option", "speed=3", *OUT], "unknown option 'speed'"),
+    "option without value": (
+        ["p.rprog", *POST, "--post-option", "max_rotary", *OUT],
+        "--post-option max_rotary: KEY=VALUE",
+    ),
+    "option twice": (["p.rprog", *POST, "--post-option", "a=1", "--post-option", "a=2", *OUT], "given before"),
+    "option, no number": (["p.rprog", *POST, "--post-option", "max_rotary=3x", *OUT], "--post-option max_rotary=3x"),
+    "option, list": (["p.rprog", *POST, "--post-option", "rot_point=1,,2", *OUT], "--post-option rot_point=1,,2"),
     "tolerance": (["p.rprog", *POST, "--tolerance", "0", *OUT], "--tolerance"),
     "tolerance too fine": (["p.rprog", *POST, "--tolerance", "1e-7", *OUT], "tolerance"),
     "axis tolerance": (["p.rprog", *POST, "--axis-tolerance", "nan", *OUT], "--axis-tolerance"),
@@ -319,21 +333,21 @@ BAD = {
     "axis of a program": (["p.rprog", "--axis", "0,0,1", *POST, *OUT], "--axis: only for .json"),
     "safe height of a program": (
         ["p.rprog", "--safe-height", "9", *POST, *OUT],
-        "--safe-height: only for .json and .rjournal files; a program takes --option safe_height=…",
+        "--safe-height: only for .json and .rjournal files; a program takes --post-option safe_height=…",
     ),
     "safe height too low": (["plain.json", "--feed", "5", "--safe-height", "-9", *POST, *OUT], "safe_height"),
     "part: missing": (["plain.json", "--feed", "5", "--part", "no.stl", *POST, *OUT], "no.stl: No such file"),
     "fixture: missing": (["plain.json", "--part", "corner.stl", "--fixture", "no.stl", *POST, *OUT], "no.stl: No such"),
     "a fixture without a part": (
         ["plain.json", "--fixture", "corner.stl", *POST, *OUT],
-        "--fixture: only beside",
+        "--fixture: only with",
     ),
     "a holder without a part": (
         ["plain.json", *("--holder", "30:9:60:9"), *POST, *OUT],
-        "--holder: only beside",
+        "--holder: only with",
     ),
     "a holder of a program": (["p.rprog", *("--holder", "30:9:60:9"), *POST, *OUT], "--holder: only for .json files"),
-    "nothing to skip": (["plain.json", "--skip-blocked", *POST, *OUT], "--skip-blocked: only beside --part"),
+    "nothing to skip": (["plain.json", "--skip-blocked", *POST, *OUT], "--skip-blocked: only with --part"),
     "clearance of nothing": (
         ["plain.json", "--part", "corner.stl", "--clearance", "1", *POST, *OUT],
         "--clearance: of shank and holder, which --shank and --holder describe",
@@ -353,7 +367,7 @@ def test_bad_input_is_one_clear_line_and_leaves_no_file(folder, case, monkeypatc
     words, message = BAD[case]
     monkeypatch.chdir(folder)
     before = sorted(path.name for path in folder.iterdir())
-    status = cli.main(["post", *words])
+    status = cli.main(["nc", "post", *words])
     out, err = capsys.readouterr()
     assert status == 2 and out == ""
     assert err.startswith("riffler: ") and err.count("\n") == 1
@@ -365,6 +379,6 @@ def test_a_damaged_program_names_the_byte(folder):
     data = bytearray((folder / "p.rprog").read_bytes())
     data[100] ^= 1
     (folder / "p.rprog").write_bytes(data)
-    done = riffle("post", "p.rprog", *POST, *OUT, "--json", cwd=folder)
+    done = riffle("nc", "post", "p.rprog", *POST, *OUT, "--json", cwd=folder)
     assert done.returncode == 2
     assert json.loads(done.stdout)["error"] == "p.rprog, byte 60: the record's checksum does not match"

@@ -1,4 +1,4 @@
-"""``riffler replay``: what a session left, from its journal."""
+"""``riffler volume replay``: what a session left, from its journal."""
 
 import numpy as np
 import pytest
@@ -28,7 +28,7 @@ def session(tmp_path):
 
 
 def test_replay_writes_the_bytes_of_the_session(session):
-    data = result("replay", "a.rjournal", "--out", "out.rvol", cwd=session)
+    data = result("volume", "replay", "a.rjournal", "--out", "out.rvol", cwd=session)
     assert (session / "out.rvol").read_bytes() == (session / "left.rvol").read_bytes()
     assert (data["strokes"], data["rows"], data["cut_at"], data["triangles"]) == (2, 8, None, None)
 
@@ -37,10 +37,13 @@ def test_replay_meshes_and_takes_a_cut_journal_as_far_as_it_goes(session):
     (session / "b").mkdir()
     whole = (session / "a.rjournal").read_bytes()
     (session / "b" / "cut.rjournal").write_bytes(whole[:-1])
-    data = result("replay", "b/cut.rjournal", "--folder", ".", "--out", "out.stl", cwd=session)
+    data = result("volume", "replay", "b/cut.rjournal", "--folder", ".", "--out", "out.stl", cwd=session)
     assert (data["strokes"], data["cut_at"]) == (3, len(whole) - 28), "up to the last stroke, which is not taken back"
     assert len(riffler.Mesh.read(session / "out.stl").triangles) == data["triangles"] > 1000
-    assert "cut at byte" in riffle("replay", "b/cut.rjournal", "--folder", ".", "--out", "o.rvol", cwd=session).stdout
+    assert (
+        "cut at byte"
+        in riffle("volume", "replay", "b/cut.rjournal", "--folder", ".", "--out", "o.rvol", cwd=session).stdout
+    )
 
 
 @pytest.mark.parametrize(
@@ -52,6 +55,6 @@ def test_replay_meshes_and_takes_a_cut_journal_as_far_as_it_goes(session):
     ],
 )
 def test_what_is_wrong_is_one_line(session, words, message):
-    done = riffle("replay", *words, "--out", "out.rvol", cwd=session)
+    done = riffle("volume", "replay", *words, "--out", "out.rvol", cwd=session)
     assert done.returncode == 2 and message in done.stderr and len(done.stderr.splitlines()) == 1
     assert not (session / "out.rvol").exists()

@@ -154,7 +154,7 @@ def test_diameters_are_taken_from_python_and_from_the_command_line(tmp_path):
     out = tmp_path / "out.ngc"
     how = ["--machine", "3-axis", "--machine-option", "cutter_compensation=offset"]
     how += ["--machine-option", "tool_diameters=3:8,5:2", "--post", "3-axis", "--out", out]
-    done = riffle("post", tmp_path / "p.ngc", *how, cwd=tmp_path)
+    done = riffle("nc", "post", tmp_path / "p.ngc", *how, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert "offsets the path by the radius of offset D5, 1 mm" in done.stderr
     assert "Y1.00000" in out.read_text()

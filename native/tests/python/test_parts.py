@@ -155,36 +155,36 @@ CARVE = ("--pitch", 1, "--tool", "ball:4:30", "--program", "p.ngc", "--out", "ou
 def test_commands_tell_what_is_lost(tmp_path):
     write_parts(tmp_path)
     tray = ("--stock", "50x50x10", "--pitch", 1, "--tool", "flat:200:30", "--program", "down.ngc", "--out")
-    done = riffle("carve", *tray, "out.stl", cwd=tmp_path)
+    done = riffle("volume", "carve", *tray, "out.stl", cwd=tmp_path)
     assert done.returncode == 2 and "nothing of the 750 mm³" in done.stderr and "0.29 mm keeps it" in done.stderr
     assert not (tmp_path / "out.stl").exists()
-    done = riffle("carve", *tray, "out.rvol", cwd=tmp_path)
+    done = riffle("volume", "carve", *tray, "out.rvol", cwd=tmp_path)
     assert done.returncode == 0
-    done = riffle("mesh", "out.rvol", "--out", "out.stl", cwd=tmp_path)
+    done = riffle("volume", "to-mesh", "out.rvol", "--out", "out.stl", cwd=tmp_path)
     assert done.returncode == 2 and not (tmp_path / "out.stl").exists()
-    done = riffle("convert", "fin.stl", "--pitch", 1, "--out", "fin.rvol", cwd=tmp_path)
+    done = riffle("volume", "from-mesh", "fin.stl", "--pitch", 1, "--out", "fin.rvol", cwd=tmp_path)
     assert done.returncode == 0 and "thinner than the pitch of 1 mm" in done.stderr
-    done = riffle("carve", "--stock", "fin.stl", *CARVE, cwd=tmp_path)
+    done = riffle("volume", "carve", "--stock", "fin.stl", *CARVE, cwd=tmp_path)
     assert done.returncode == 0 and "a pitch of 0.19 mm keeps it" in done.stderr
 
 
 def test_commands_tell_what_is_turned(tmp_path):
     write_parts(tmp_path)
-    done = riffle("carve", "--stock", "turned.stl", *CARVE, cwd=tmp_path)
+    done = riffle("volume", "carve", "--stock", "turned.stl", *CARVE, cwd=tmp_path)
     assert done.returncode == 0 and "turned.stl: 6 triangles faced the other way" in done.stderr
     done = riffle(
-        "verify", "p.ngc", "--stock", "20x20x10", "--pitch", 1, "--tool", "ball:4:30",
+        "nc", "verify", "p.ngc", "--stock", "20x20x10", "--pitch", 1, "--tool", "ball:4:30",
         "--part", "turned.stl", "--fixture", "turned.stl", cwd=tmp_path,
     )  # fmt: skip
     assert done.stderr.count("turned.stl: 6 triangles faced the other way") == 2
-    done = riffle("pencil", "turned.stl", "--tool", "ball:4", "--out", "plan.json", cwd=tmp_path)
+    done = riffle("plan", "pencil", "turned.stl", "--tool", "ball:4", "--out", "plan.json", cwd=tmp_path)
     assert done.returncode == 0 and "6 triangles" in done.stderr and " 0: " in done.stdout
 
 
 def test_a_stock_that_is_all_gone_is_told(tmp_path):
     (tmp_path / "p.ngc").write_text("G21 G90 G94 F600\nG0 X-300 Y10 Z-1\nG1 X300\nM2\n")
     done = riffle(
-        "carve", "--stock", "20x20x10", "--pitch", 1, "--tool", "flat:100:30", "--program", "p.ngc",
+        "volume", "carve", "--stock", "20x20x10", "--pitch", 1, "--tool", "flat:100:30", "--program", "p.ngc",
         "--out", "out.stl", cwd=tmp_path,
     )  # fmt: skip
     assert done.returncode == 0 and "no material is left" in done.stderr

@@ -368,7 +368,7 @@ def test_the_simulated_hand_carves(tmp_path):
     assert data["force_n"] > 0.05 and data["energy_least"] > -1
     block = 50 * 40 * 16
     assert riffler.Volume.load(folder / "a.rvol").volume == pytest.approx(block - data["removed"], rel=1e-12)
-    result("replay", "a.rjournal", "--out", "b.rvol", cwd=folder)
+    result("volume", "replay", "a.rjournal", "--out", "b.rvol", cwd=folder)
     assert (folder / "a.rvol").read_bytes() == (folder / "b.rvol").read_bytes()
     strokes = riffler.Journal.read(folder / "a.rjournal").strokes
     assert len(strokes) == data["strokes"] and all(len(stroke.poses) > 10 for stroke in strokes)

@@ -516,25 +516,27 @@ def test_pencil_writes_a_plan(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(pencil_strategy, "pencil", find)
     mesh(FLOOR, WALL).write(tmp_path / "part.stl")
     monkeypatch.chdir(tmp_path)
-    assert run("pencil", "part.stl", "--tool", "ball:6", "--out", "p.json", "--tolerance", "0.02", "--json") == 0
+    assert (
+        run("plan", "pencil", "part.stl", "--tool", "ball:6", "--out", "p.json", "--tolerance", "0.02", "--json") == 0
+    )
     data = json.loads(capsys.readouterr().out)
     assert data["paths"] == 2 and data["points"] == 13 and data["closed"] == 1 and data["tolerance"] == 0.02
     assert given["tolerance"] == 0.02 and given["tool"].diameter == 6
     read = plan.load("p.json")
     assert len(read.paths) == 2 and read.part["name"] == "part.stl" and read.tolerance == 0.02
     assert read.part == plan.part_of(riffler.Mesh.read("part.stl"), "part.stl")
-    assert run("pencil", "part.stl", "--tool", "ball:6", "--out", "p.json") == 0
+    assert run("plan", "pencil", "part.stl", "--tool", "ball:6", "--out", "p.json") == 0
     assert "paths" in capsys.readouterr().out
 
 
 def test_pencil_finds_the_corner(tmp_path, monkeypatch, capsys):
     mesh(FLOOR, WALL).write(tmp_path / "part.stl")
     monkeypatch.chdir(tmp_path)
-    assert run("pencil", "part.stl", "--tool", "ball:6", "--out", "p.json", "--json") == 0
+    assert run("plan", "pencil", "part.stl", "--tool", "ball:6", "--out", "p.json", "--json") == 0
     data = json.loads(capsys.readouterr().out)
     assert data["paths"] >= 1 and data["length"] == pytest.approx(40, abs=0.5)
     passes = ["--passes", "3", "--stepover", "0.5"]
-    assert run("pencil", "part.stl", "--tool", "ball:6", "--out", "p.json", "--json", *passes) == 0
+    assert run("plan", "pencil", "part.stl", "--tool", "ball:6", "--out", "p.json", "--json", *passes) == 0
     assert json.loads(capsys.readouterr().out)["paths"] == 5 * data["paths"]
 
 
@@ -551,6 +553,6 @@ def test_pencil_finds_the_corner(tmp_path, monkeypatch, capsys):
 def test_pencil_refuses_bad_input(tmp_path, monkeypatch, capsys, words):
     mesh(FLOOR, WALL).write(tmp_path / "part.stl")
     monkeypatch.chdir(tmp_path)
-    assert run("pencil", *words, "--json") == 2
+    assert run("plan", "pencil", *words, "--json") == 2
     assert "error" in json.loads(capsys.readouterr().out)
     assert os.listdir(tmp_path) == ["part.stl"]

@@ -227,8 +227,11 @@ def test_locations_of_poses_are_those_of_the_path():
 
 def test_an_engraved_plan_becomes_code_that_cuts_as_deep_as_it_says(folder, capsys):
     assert command(plan.STRATEGIES["engrave"]) == 0
-    assert main(["post", "out.json", "--post", "tcp", "--out", "plain.ngc", "--json"]) == 0
-    assert main(["post", "out.json", "--part", "step.stl", "--post", "tcp", "--out", "a.ngc", "--spindle", "9000"]) == 0
+    assert main(["nc", "post", "out.json", "--post", "tcp", "--out", "plain.ngc", "--json"]) == 0
+    assert (
+        main(["nc", "post", "out.json", "--part", "step.stl", "--post", "tcp", "--out", "a.ngc", "--spindle", "9000"])
+        == 0
+    )
     assert "enters step.stl by up to 0.3 mm" in " ".join(capsys.readouterr().out.split())
     read = riffler.Program.read("a.ngc")
     cut = read.poses[(read.poses[:, 2] < 8)]
@@ -257,7 +260,19 @@ def test_an_engraved_plan_becomes_code_that_cuts_as_deep_as_it_says(folder, caps
 
 def test_a_shank_that_would_hit_is_refused_and_nothing_is_lifted(folder, capsys):
     assert command(plan.STRATEGIES["engrave"]) == 0
-    words = ["post", "out.json", "--part", "step.stl", "--holder", "12:15:40:15", "--post", "tcp", "--out", "a.ngc"]
+    words = [
+        "nc",
+        "post",
+        "out.json",
+        "--part",
+        "step.stl",
+        "--holder",
+        "12:15:40:15",
+        "--post",
+        "tcp",
+        "--out",
+        "a.ngc",
+    ]
     capsys.readouterr()
     assert main([*words, "--json"]) == 2
     said = json.loads(capsys.readouterr().out)["error"]
@@ -267,7 +282,19 @@ def test_a_shank_that_would_hit_is_refused_and_nothing_is_lifted(folder, capsys)
 
 def test_a_fixture_that_the_cutter_enters_less_deep_than_the_part_is_refused(folder, capsys):
     assert command(plan.STRATEGIES["engrave"]) == 0
-    words = ["post", "out.json", "--part", "step.stl", "--fixture", "block.rvol", "--post", "tcp", "--out", "a.ngc"]
+    words = [
+        "nc",
+        "post",
+        "out.json",
+        "--part",
+        "step.stl",
+        "--fixture",
+        "block.rvol",
+        "--post",
+        "tcp",
+        "--out",
+        "a.ngc",
+    ]
     for y, status in ((12.6, 0), (12.4, 2)):  # the groove's edge is at 12.5
         riffler.Volume.block([28, y, 8], [32, 16, 12], 0.1, "xyz").save("block.rvol")
         capsys.readouterr()

@@ -1,4 +1,4 @@
-"""``riffler verify`` as a shell sees it."""
+"""``riffler nc verify`` as a shell sees it."""
 
 import json
 import struct
@@ -34,7 +34,7 @@ def folder(tmp_path, monkeypatch):
 
 
 def run(capsys, *words):
-    status = main(["verify", *words, "--json"])
+    status = main(["nc", "verify", *words, "--json"])
     return status, json.loads(capsys.readouterr().out)
 
 
@@ -44,7 +44,7 @@ def test_a_good_program_passes_and_a_bad_one_names_the_block(folder, capsys):
     status, data = run(capsys, "bad.ngc", *WORDS)
     (found,) = data["findings"]
     assert status == 1 and (found["kind"], found["line"], found["block"]) == ("rapid", 8, "X20")
-    assert main(["verify", "bad.ngc", *WORDS]) == 1
+    assert main(["nc", "verify", "bad.ngc", *WORDS]) == 1
     said = capsys.readouterr().out
     assert "NOT passed" in said and "retract higher" in said and "fixtures: none were given" in said
 
@@ -53,7 +53,7 @@ def test_what_was_passed_over_is_said_and_skipped_coordinates_never_pass(folder,
     good = (folder / "good.ngc").read_text()
     skip = ["--machine", "3-axis", "--machine-option", "unknown=skip"]
     (folder / "odd.ngc").write_text(good.replace("G0 Z40", "G187 P1\nG0 Z40\nG60 X9"))
-    status = main(["verify", "odd.ngc", *WORDS, *skip])
+    status = main(["nc", "verify", "odd.ngc", *WORDS, *skip])
     said = capsys.readouterr()
     assert status == 1 and "odd.ngc, line 11: G60 was skipped, with its axis words" in said.err
     assert "line 9: G187" in said.err and "NOT passed" in said.out and "G60" in said.out
@@ -66,9 +66,9 @@ def test_what_was_passed_over_is_said_and_skipped_coordinates_never_pass(folder,
     status, data = run(capsys, "fine.ngc", *WORDS, *skip, *more)
     assert status == 0 and data["passed"]
     out = ["--out", "left.rvol", "--program", "odd.ngc", *WORDS[:6]]
-    assert main(["carve", *out, *skip]) == 0
+    assert main(["volume", "carve", *out, *skip]) == 0
     assert "line 11: G60 was skipped" in capsys.readouterr().err
-    assert main(["post", "odd.ngc", *skip, "--post", "3-axis", "--out", "again.ngc"]) == 0
+    assert main(["nc", "post", "odd.ngc", *skip, "--post", "3-axis", "--out", "again.ngc"]) == 0
     assert "line 11: G60 was skipped" in capsys.readouterr().err
 
 
@@ -90,13 +90,13 @@ def test_positions_of_the_machine_are_neither_cut_nor_compared(folder, capsys):
         program = riffler.Program.read(f"{name}.ngc", machine="3-axis")
         assert program.at_machine.any() and program.poses[~program.at_machine, 2].min() == 19
         # Carving with the program takes what verification takes; posted again it does, too, and never comes lower.
-        carved = ["carve", *words, "--program", f"{name}.ngc", "--out", "left.rvol", "--json"]
+        carved = ["volume", "carve", *words, "--program", f"{name}.ngc", "--out", "left.rvol", "--json"]
         assert main(carved) == 0
         said = capsys.readouterr()
         data = json.loads(said.out)
         assert data["moves_at_machine"] > 0 and "a machine position" in said.err
         removed[name] = data["removed"]
-        assert main(["post", f"{name}.ngc", "--machine", "3-axis", "--post", "3-axis", "--out", "again.ngc"]) == 0
+        assert main(["nc", "post", f"{name}.ngc", "--machine", "3-axis", "--post", "3-axis", "--out", "again.ngc"]) == 0
         capsys.readouterr()
         again = riffler.Program.read("again.ngc", machine="3-axis")
         assert again.poses[~again.at_machine, 2].min() == 19

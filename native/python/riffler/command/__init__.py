@@ -1,1 +1,1 @@
-"""One module per command: HELP, add_arguments(parser) and run(arguments, console) -> exit status."""
+"""One module per verb: HELP, add_arguments(parser) and run(arguments, console) -> exit status; verbs.py lists them."""

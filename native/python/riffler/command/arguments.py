@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
-import argparse
 import math
 import os
 import re
 from pathlib import Path
 from typing import Any
 
+from .parser import Parser
+
 MESHES = (".stl", ".obj", ".ply", ".3mf")
 VOLUMES = (".rvol",)
 PAIRS = re.compile(r"\d+:[-+.\deE]+(,\d+:[-+.\deE]+)*")
 ORIGINS = ("corner", "top-centre", "bottom-centre")
+PROGRAMS = (".rprog",)
+PLANS = (".json",)
+JOURNALS = (".rjournal",)
+CODE = (".ngc", ".nc", ".cnc", ".tap", ".gcode", ".mpf", ".h", ".i", ".apt", ".cls", ".txt")
 SOLIDS = {"block": 3, "sphere": 1, "cylinder": 2}  # sizes of each
 
 
@@ -44,11 +49,11 @@ def whole(text: str, what: str) -> int:
     return value
 
 
-def add_pitch(parser: argparse.ArgumentParser, required: bool, more: str = "") -> None:
+def add_pitch(parser: Parser, required: bool, more: str = "") -> None:
     parser.add_argument("--pitch", metavar="MM", required=required, help="distance of the rays, mm" + more)
 
 
-def add_directions(parser: argparse.ArgumentParser) -> None:
+def add_directions(parser: Parser) -> None:
     parser.add_argument(
         "--directions", choices=("z", "xyz"), help='rays along z, or along all three axes (default "xyz"): sharp edges'
     )
@@ -100,7 +105,7 @@ def output_file(text: str, suffixes: tuple[str, ...], option: str = "--out") -> 
     return path
 
 
-def add_machine_option(parser: argparse.ArgumentParser) -> None:
+def add_machine_option(parser: Parser) -> None:
     parser.add_argument(
         "--machine-option",
         action="append",

@@ -14,6 +14,7 @@ import argparse
 
 from .. import __version__
 from .console import Console
+from .parser import Parser
 
 HELP = "measure run time, error and memory"
 MISSING = f"riffler bench: needs riffler-bench {__version__}: in a checkout of that version, pip install ./bench"
@@ -23,9 +24,10 @@ NAMES = (
 )
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
+def add_arguments(parser: Parser) -> None:
     jobs = f"{', '.join(NAMES)}; all of them if none is named"
     parser.add_argument("jobs", nargs="*", metavar="JOB", help=jobs)
+    parser.offer("jobs", NAMES)
     parser.add_argument("--quick", action="store_true", help="coarser and shorter: does everything work?")
     parser.add_argument("--out", default="riffler-bench", metavar="DIR", help="default riffler-bench")
     parser.add_argument("--no-plots", action="store_true", help="figures only; plots need matplotlib")

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-import argparse
 from typing import Any
 
 from .. import pen
+from .arguments import JOURNALS
+from .parser import Parser
 
 
-def add_device(parser: argparse.ArgumentParser, default: str | None = None) -> None:
-    more = f"default {default}" if default else "default: the first that is plugged in and opens"
-    parser.add_argument(
-        "device", nargs="?", default=default, metavar="DEVICE",
-        help=f"{', '.join(pen.kinds())}, a path of riffler pen list, or a .rjournal; {more}",
-    )  # fmt: skip
+def add_device(parser: Parser) -> None:
+    """The device of a command: by default the first that opens."""
+    known = pen.kinds()
+    about = f"{', '.join(known)}, a path of riffler pen list, or a .rjournal; default: the first plugged in that opens"
+    parser.add_input("device", about, JOURNALS, required=False, words=known)
 
 
 def open_device(what: str | None, **options: Any) -> pen.PenDevice:

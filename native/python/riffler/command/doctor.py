@@ -17,6 +17,7 @@ import numpy as np
 
 from .. import __version__, _core, pen
 from .console import Console, number
+from .parser import Parser
 from .pen_list import describe
 
 HELP = "versions, instruction set, devices found and why one did not open"
@@ -25,7 +26,7 @@ HELP = "versions, instruction set, devices found and why one did not open"
 INSTRUCTION_SETS = ("avx512f", "avx2", "avx", "sse4_2", "asimd")
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
+def add_arguments(parser: Parser) -> None:
     pass
 
 

@@ -27,6 +27,7 @@ from .arguments import length, output_file, whole
 from .console import Console
 from .devices import add_device, open_device
 from .live import FRAMES, Braille, Enter, polyline, screen
+from .parser import Parser
 from .pen_diagnosis import Joint, Postures, Verdict, bubble_of, joints, judge
 
 if TYPE_CHECKING:
@@ -39,11 +40,11 @@ FEWEST = 20  # postures, of a judgement
 REST = 5.0  # s that a puck is left alone
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
+def add_arguments(parser: Parser) -> None:
     add_device(parser)
     parser.add_argument("--yes", action="store_true", help="ask nothing: the pen stands in its home posture now")
     parser.add_argument("--seconds", default="20", metavar="N", help="of moving, at most (default 20)")
-    parser.add_argument("--out", metavar="FILE", help=".toml for what was measured and what to change")
+    parser.add_file("--out", ".toml for what was measured and what to change", (".toml",))
     parser.add_argument("--force", action="store_true", help="--out may take the place of a file")
     parser.add_argument(
         "--lose", action="append", default=[], metavar="JOINT=N", help='for "simulated": counts that it loses, L1=60'

@@ -13,11 +13,12 @@ from typing import Any
 
 from .. import pen
 from .console import Console
+from .parser import Parser
 
 HELP = "the devices that are plugged in, and why one does not open"
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
+def add_arguments(parser: Parser) -> None:
     pass
 
 

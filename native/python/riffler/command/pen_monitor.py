@@ -27,6 +27,7 @@ from .arguments import length, output_file
 from .console import Console, number
 from .devices import add_device, open_device
 from .live import FRAMES, History, chart, screen, width_of_terminal
+from .parser import Parser
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -45,10 +46,10 @@ COLUMNS = (
 )
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
+def add_arguments(parser: Parser) -> None:
     add_device(parser)
     parser.add_argument("--seconds", metavar="N", help="how long (default: until Ctrl-C)")
-    parser.add_argument("--csv", metavar="FILE", help="a row for each report, with the force that the motors had")
+    parser.add_file("--csv", "a row for each report, with the force that the motors had", (".csv",))
 
 
 def run(arguments: argparse.Namespace, console: Console) -> int:

@@ -24,9 +24,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .. import Material, Session, SessionFrame, Tool, pen
-from .arguments import MESHES, VOLUMES, length, output_file
+from .arguments import JOURNALS, MESHES, VOLUMES, length, output_file
 from .console import Console, number
 from .live import FRAMES, History, chart, screen, width_of_terminal
+from .parser import Parser
 from .pen_carving import REMOVAL, TOOL, block_at, hand_at, table_at
 from .shapes import write_mesh, write_volume
 
@@ -37,14 +38,14 @@ HELP = "carve with the simulated pen, and see it"
 SHOWN = 10  # s that the charts show
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
+def add_arguments(parser: Parser) -> None:
     parser.add_argument("--seconds", default="20", metavar="N", help="how long (default 20)")
     parser.add_argument("--stiffness", default="1", metavar="N/MM", help="between hand and tool (default 1)")
     parser.add_argument("--pitch", default="0.5", metavar="MM", help="of the block (default 0.5)")
-    parser.add_argument("--plot", metavar="FILE", help="a .png of the whole run; needs matplotlib")
+    parser.add_file("--plot", "a .png of the whole run; needs matplotlib", (".png",))
     parser.add_argument("--window", action="store_true", help="plots in a window while it runs; needs matplotlib")
-    parser.add_argument("--journal", metavar="FILE", help="a new .rjournal of the strokes; riffler post takes it")
-    parser.add_argument("--out", metavar="FILE", help="what is left: .stl, .obj, .ply, .3mf or .rvol")
+    parser.add_file("--journal", "a new .rjournal of the strokes; riffler nc post takes it", JOURNALS)
+    parser.add_file("--out", "what is left: .stl, .obj, .ply, .3mf or .rvol", MESHES + VOLUMES)
 
 
 def run(arguments: argparse.Namespace, console: Console) -> int:

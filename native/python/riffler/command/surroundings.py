@@ -7,26 +7,26 @@ import argparse
 from .. import Collider, Mesh, Tool, Volume, plan
 from .arguments import MESHES, VOLUMES, finite, input_file
 from .console import Console
+from .parser import Parser
 from .shapes import from_mesh
 
 RODS = ("shank", "holder")
 
 
-def add_rods(parser: argparse.ArgumentParser) -> None:
+def add_rods(parser: Parser) -> None:
     for what in RODS:
         parser.add_argument(
             f"--{what}",
             action="append",
             default=[],
-            metavar="[N=]Z0:R0:Z1:R1[,…]",
-            help=f"{what} of tool N, or of all: truncated cones, heights from the tip and radii, mm",
+            metavar="CONES",
+            help=f"{what} of tool N, or of all: [N=]Z0:R0:Z1:R1[,…], cones by heights from the tip and radii",
         )
 
 
-def add_fixtures(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "--fixture", action="append", default=[], metavar="FILE", help="a mesh or .rvol file; may be repeated"
-    )
+def add_fixtures(parser: Parser) -> None:
+    about = "a mesh or .rvol file; may be repeated"
+    parser.add_file("--fixture", about, MESHES + VOLUMES, action="append", default=[])
 
 
 def rods(arguments: argparse.Namespace) -> list[tuple]:

@@ -14,6 +14,7 @@ import numpy as np
 
 from .. import Tool
 from .arguments import finite
+from .parser import Parser
 
 # Sizes in the order of the command line. The length comes last and may be left out; flags are false.
 SIZES = {
@@ -26,14 +27,18 @@ def _form(kind: str) -> str:
     return f"{kind}:{':'.join(size.name for size in SIZES[kind])}[:length]"
 
 
-FORMS = "\n".join(
-    [
-        "tools, lengths in mm and angles in degrees:",
-        *(f"  {_form(kind)}" for kind in SIZES),
-        "  tool.json, tool.toml    the form of Tool.to_dict, angles in rad there",
-        "  The length defaults to whatever reaches out of the stock. N=… is the tool that the program calls N.",
-    ]
-)
+FORMS = {kind: _form(kind) for kind in SIZES} | {"file": "tool.json or tool.toml"}
+
+
+def add_tool(parser: Parser, about: str, **more: Any) -> None:
+    parser.add_argument("--tool", metavar="TOOL", help=f"{about}; riffler nc tools lists the forms", **more)
+    parser.offer("tool", (f"{kind}:" for kind in SIZES), (".json", ".toml"))
+
+
+def add_tools(parser: Parser, required: bool = True) -> None:
+    """A tool for each number that a program calls."""
+    about = "as in ball:6, or 2=flat:10:30 for the tool called 2; may be repeated"
+    add_tool(parser, about, required=required, action="append", default=None if required else [])
 
 
 @dataclass(frozen=True)

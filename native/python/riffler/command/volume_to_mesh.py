@@ -1,6 +1,6 @@
 """Turn a dexel volume into a closed mesh.
 
-riffler mesh part.rvol --out part.stl [--decimate 0.01]
+riffler volume to-mesh part.rvol --out part.stl [--decimate 0.01]
 """
 
 from __future__ import annotations
@@ -10,14 +10,15 @@ import argparse
 from .. import Volume
 from .arguments import MESHES, VOLUMES, input_file, length, output_file
 from .console import Console, number, times
+from .parser import Parser
 from .shapes import to_mesh, write_mesh
 
 HELP = "turn a dexel volume into a closed mesh"
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("volume", metavar="FILE", help=".rvol")
-    parser.add_argument("--out", required=True, metavar="FILE", help=".stl, .obj, .ply or .3mf")
+def add_arguments(parser: Parser) -> None:
+    parser.add_input("volume", ".rvol", VOLUMES)
+    parser.add_file("--out", ".stl, .obj, .ply or .3mf", MESHES, required=True)
     parser.add_argument("--decimate", metavar="MM", help="leave out triangles as long as the surface moves no further")
 
 

@@ -1,48 +1,35 @@
 """Carve stock with an NC program and write what is left.
 
-riffler carve --stock 100x60x30 --pitch 0.25 --tool ball:6 --program part.ngc --out part.stl
+riffler volume carve part.ngc --stock 100x60x30 --pitch 0.25 --tool ball:6 --out part.stl
 """
 
 from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from .. import Program, Tool, Volume
 from . import tools
-from .arguments import (
-    MESHES,
-    ORIGINS,
-    VOLUMES,
-    add_directions,
-    add_machine_option,
-    add_pitch,
-    input_file,
-    is_solid,
-    length,
-    machine_options,
-    output_file,
-    solid,
-)
+from .arguments import MESHES, VOLUMES, length, machine_options, output_file
 from .console import Console, number, times
-from .shapes import from_mesh, rays, write_left
+from .parser import Parser
+from .programs import add_machine, add_program, read_program
+from .shapes import rays, write_left
+from .stock import add_stock, stock
 
 HELP = "carve stock with an NC program"
 AWAY = -1  # the number of no tool: of a move that begins or ends at a position of the machine
-__doc__ = f"{__doc__}\n{tools.FORMS}"
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
+def add_arguments(parser: Parser) -> None:
+    add_program(parser)
     add_stock(parser)
-    parser.add_argument("--tool", required=True, action="append", metavar="TOOL", help="see above; may be repeated")
-    parser.add_argument("--program", required=True, metavar="FILE", help="NC program, RS-274, or .rprog")
-    parser.add_argument("--machine", default="tcp", help='what the program\'s axes mean (default "tcp": tip and axis)')
-    add_machine_option(parser)
+    tools.add_tools(parser)
+    add_machine(parser)
     parser.add_argument("--tolerance", default="0.01", metavar="MM", help="of moves that turn the tool (default 0.01)")
-    parser.add_argument("--out", required=True, metavar="FILE", help=".stl, .obj, .ply, .3mf or .rvol")
+    parser.add_file("--out", "what is left: .stl, .obj, .ply, .3mf or .rvol", MESHES + VOLUMES, required=True)
 
 
 def run(arguments: argparse.Namespace, console: Console) -> int:
@@ -51,7 +38,7 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
     wanted = [tools.parse(text) for text in arguments.tool]
     with console.step("program"):
         how = machine_options(arguments.machine_option, "--machine-option")
-        program = read_program(Path(arguments.program), arguments.machine, how, console).followed()
+        program = read_program(Path(arguments.program), arguments.machine or "tcp", how, console).followed()
         poses = np.asarray(program.poses)
         called = called_in_part(program)
         rapid = np.asarray(program.rapid)[1:]
@@ -92,71 +79,6 @@ def called_in_part(program: Program) -> np.ndarray:
     """(n,) the rows' tool numbers; AWAY where the motion there begins or ends at a position of the machine."""
     away = np.asarray(program.at_machine)
     return np.where(np.append(False, away[1:] | away[:-1]), AWAY, program.tool)
-
-
-def is_saved(path: Path) -> bool:
-    return path.suffix.lower() == ".rprog"
-
-
-def read_program(path: Path, machine: str, options: dict[str, Any] | None, console: Console) -> Program:
-    """Loads a saved program or reads NC code for the machine; prints the notes of its reader on stderr."""
-    program = Program.load(path) if is_saved(path) else Program.read(path, machine, options)
-    for note in program.notes:
-        console.warning(f"{path.name}, line {note.line}: {note.message}")
-    return program
-
-
-def add_stock(parser: argparse.ArgumentParser) -> None:
-    """What `stock` reads."""
-    parser.add_argument(
-        "--stock",
-        required=True,
-        metavar="WxDxH|sphere:D|cylinder:D:H|FILE",
-        help="a block's sizes, a sphere's diameter, a cylinder's diameter and height along z, or a .stl, .obj, .ply, "
-        ".3mf or .rvol file",
-    )
-    add_pitch(parser, required=False, more=" (a .rvol file brings its own)")
-    add_directions(parser)
-    parser.add_argument(
-        "--origin",
-        metavar="X,Y,Z",
-        help=f"lower corner of the box of what has sizes (default 0,0,0), or one of {', '.join(ORIGINS)}",
-    )
-
-
-def stock(arguments: argparse.Namespace, console: Console) -> Volume:
-    """The volume to carve: a block, sphere or cylinder, a mesh or a .rvol file."""
-    pitch = None if arguments.pitch is None else length(arguments.pitch, "--pitch")
-    if is_solid(arguments.stock):
-        kind, lower, upper = solid(arguments.stock, arguments.origin or "corner")
-        if pitch is None:
-            raise ValueError(f"--pitch is needed for a {kind}")
-        with console.step("stock"):
-            return _solid(kind, np.array(lower), np.array(upper), pitch, arguments.directions or "xyz")
-    path = input_file(arguments.stock, MESHES + VOLUMES)
-    if arguments.origin is not None:
-        raise ValueError(f"--origin is for stock of given sizes; {path.name} has its own place")
-    if path.suffix.lower() in VOLUMES:
-        with console.step("stock") as progress:
-            volume = Volume.load(path, progress=progress)
-        if pitch is not None and pitch != volume.pitch:
-            raise ValueError(f"{path.name} has pitch {volume.pitch} mm, not the {pitch} of --pitch")
-        if arguments.directions not in (None, volume.directions):
-            raise ValueError(f"{path.name} has directions {volume.directions}, not {arguments.directions}")
-        return volume
-    if pitch is None:
-        raise ValueError(f"--pitch is needed for {path.name}")
-    return from_mesh(path, pitch, arguments.directions or "xyz", console, "stock")[0]
-
-
-def _solid(kind: str, lower: np.ndarray, upper: np.ndarray, pitch: float, directions: str) -> Volume:
-    """What fills the box, and has its corners as they are."""
-    if kind == "block":
-        return Volume.block(lower, upper, pitch, directions)
-    centre, (w, _, h) = 0.5 * (lower + upper), upper - lower
-    if kind == "sphere":
-        return Volume.sphere(centre, 0.5 * w, pitch, directions, lower=lower, upper=upper)
-    return Volume.cylinder(centre, 0.5 * w, h, pitch, directions, lower=lower, upper=upper)
 
 
 def carve(

@@ -1,6 +1,6 @@
 """Say what a mesh is worth; exit status 1 unless it is a closed 2-manifold.
 
-riffler audit part.stl
+riffler mesh audit part.stl
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ import dataclasses
 from .. import Mesh
 from .arguments import MESHES, input_file
 from .console import Console, number
+from .parser import Parser
 
 HELP = "check that a mesh is a closed 2-manifold"
 
@@ -18,8 +19,8 @@ HELP = "check that a mesh is a closed 2-manifold"
 DEFECTS = ("open_edges", "nonmanifold_edges", "nonmanifold_vertices", "duplicates")
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("mesh", metavar="FILE", help=".stl, .obj, .ply or .3mf")
+def add_arguments(parser: Parser) -> None:
+    parser.add_input("mesh", ".stl, .obj, .ply or .3mf", MESHES)
 
 
 def repairs(mesh: Mesh) -> dict[str, int]:

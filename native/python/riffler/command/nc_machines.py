@@ -1,6 +1,6 @@
 """List the machines that programs are written for and read from.
 
-riffler machines
+riffler nc machines
 """
 
 from __future__ import annotations
@@ -9,11 +9,12 @@ import argparse
 
 from .. import machines
 from .console import Console
+from .parser import Parser
 
 HELP = "list the machines that programs are written for"
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
+def add_arguments(parser: Parser) -> None:
     pass
 
 

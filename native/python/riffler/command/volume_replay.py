@@ -1,6 +1,6 @@
 """Carve the stock of a recorded session again, and write what the session left of it, to the bit.
 
-riffler replay session.rjournal --out session.rvol
+riffler volume replay session.rjournal --out session.rvol
 """
 
 from __future__ import annotations
@@ -9,21 +9,22 @@ import argparse
 from pathlib import Path
 
 from .. import Journal
-from .arguments import MESHES, VOLUMES, input_file, output_file
+from .arguments import JOURNALS, MESHES, VOLUMES, input_file, output_file
 from .console import Console, number, times
+from .parser import Parser
 from .shapes import rays, write_left
 
 HELP = "carve what a session carved"
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("journal", metavar="FILE", help=".rjournal")
+def add_arguments(parser: Parser) -> None:
+    parser.add_input("journal", ".rjournal", JOURNALS)
     parser.add_argument("--folder", metavar="DIR", help="of the stock's snapshot (default: where the journal is)")
-    parser.add_argument("--out", required=True, metavar="FILE", help=".stl, .obj, .ply, .3mf or .rvol")
+    parser.add_file("--out", ".stl, .obj, .ply, .3mf or .rvol", MESHES + VOLUMES, required=True)
 
 
 def run(arguments: argparse.Namespace, console: Console) -> int:
-    path = input_file(arguments.journal, (".rjournal",))
+    path = input_file(arguments.journal, JOURNALS)
     out = output_file(arguments.out, MESHES + VOLUMES)
     with console.step("read"):
         journal = Journal.read(path)

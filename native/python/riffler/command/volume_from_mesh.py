@@ -1,6 +1,6 @@
 """Turn a mesh into a dexel volume.
 
-riffler convert part.stl --pitch 0.2 --out part.rvol
+riffler volume from-mesh part.stl --pitch 0.2 --out part.rvol
 """
 
 from __future__ import annotations
@@ -11,16 +11,17 @@ import dataclasses
 from .. import VolumeReport
 from .arguments import MESHES, VOLUMES, add_directions, add_pitch, input_file, length, output_file
 from .console import Console, Rows, number, times
+from .parser import Parser
 from .shapes import from_mesh, rays, write_volume
 
 HELP = "turn a mesh into a dexel volume"
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("mesh", metavar="FILE", help=".stl, .obj, .ply or .3mf")
+def add_arguments(parser: Parser) -> None:
+    parser.add_input("mesh", ".stl, .obj, .ply or .3mf", MESHES)
     add_pitch(parser, required=True)
     add_directions(parser)
-    parser.add_argument("--out", required=True, metavar="FILE", help=".rvol")
+    parser.add_file("--out", ".rvol", VOLUMES, required=True)
 
 
 def run(arguments: argparse.Namespace, console: Console) -> int:
@@ -79,7 +80,7 @@ def defects(report: VolumeReport) -> Rows:
     if triangles := listed(turned="triangle"):
         rows.append(("turned", f"{triangles} to agree with their neighbours"))
     if pieces := listed(one_sided="piece"):
-        rows.append(("one side", f"{pieces} like a Möbius strip, left as they are"))
+        rows.append(("one side", f"{pieces} like a Möbius strip, left unchanged"))
     if report.flipped_shells:
         shells = count("flipped_shells", "shell is", "shells are")
         rows.append(("inside out", f"{shells} inside out, {share('inside_out')} of the volume; taken as solid"))

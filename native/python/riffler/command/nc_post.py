@@ -1,8 +1,8 @@
 """Write a plan, a recording or a program as NC code for a machine.
 
-riffler post pencil.json --feed 800 --post linuxcnc-xyzac --option rot_point=0,0,-40 --out p.ngc
-riffler post p.ngc --machine tcp --post linuxcnc-xyzac --option rot_point=0,0,-40 --out q.ngc
-riffler post session.rjournal --out session.rprog
+riffler nc post pencil.json --feed 800 --post linuxcnc-xyzac --post-option rot_point=0,0,-40 --out p.ngc
+riffler nc post p.ngc --machine tcp --post linuxcnc-xyzac --post-option rot_point=0,0,-40 --out q.ngc
+riffler nc post session.rjournal --out session.rprog
 """
 
 from __future__ import annotations
@@ -15,78 +15,87 @@ from typing import Any
 
 import numpy as np
 
-from .. import Collider, Journal, Program, Tool, _core, plan
+from .. import Collider, Journal, Program, Tool, _core, machines, plan
 from . import tools
-from .arguments import MESHES, add_machine_option, finite, input_file, length, machine_options, output_file
-from .carve import read_program
+from .arguments import (
+    CODE,
+    JOURNALS,
+    MESHES,
+    PLANS,
+    PROGRAMS,
+    finite,
+    input_file,
+    length,
+    machine_options,
+    output_file,
+)
 from .console import Console, number, times
+from .parser import Parser
+from .programs import add_machine, read_program
 from .shapes import read_part
 from .surroundings import add_fixtures, add_rods, fixture, fixtures_alone, rods, with_rods
 
 HELP = "write NC code for a machine"
 __doc__ = f"""{__doc__}
 files:
-  .json      a plan, as riffler pencil writes it: its cutter locations; or its paths, the ball's tip on them
+  .json      a plan, as riffler plan writes it: its cutter locations; or its paths, the ball's tip on them
   .rjournal  a recording; without --feed as fast as the hand was
   .rprog     a program to the bit; --out may be one, too
   others     NC code, written for --machine
-
-{tools.FORMS}"""
-PLANS, RECORDINGS, PROGRAMS = (".json",), (".rjournal",), (".rprog",)
-CODE = (".ngc", ".nc", ".cnc", ".tap", ".gcode", ".mpf", ".h", ".i", ".apt", ".cls", ".txt")
+"""
 AXIS_TOLERANCE = 0.00175  # rad
 LIFTED = 0.01  # mm that the tool may enter the part of a plan
-TOUCHED = 0.02  # mm, on the ways into its cuts and out of them
+TOUCHED = 0.02  # mm, on approaches and retracts
 WRITTEN = 0.05  # mm, between the blocks of what is written
 OF_A_PART = ("fixture", "shank", "holder", "clearance", "skip_blocked")  # what goes with --part
 FEED = 500.0  # mm/min, slow: of a plan without another
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("file", metavar="FILE", help="a plan, a recording or a program, see above")
-    parser.add_argument("--post", metavar="NAME", help="the machine; riffler machines lists them")
-    parser.add_argument(
-        "--option", action="append", default=[], metavar="KEY=VALUE", help="of the post; may be repeated"
-    )
+def add_arguments(parser: Parser) -> None:
+    parser.add_input("program", "a plan, a recording or a program, see above", PLANS + JOURNALS + PROGRAMS + CODE,
+        flags=("--plan", "--journal"))  # fmt: skip
+    parser.add_argument("--post", metavar="NAME", help="the machine; riffler nc machines lists them")
+    parser.offer("post", machines())
+    about = "of the post; may be repeated"
+    parser.add_argument("--post-option", "--option", action="append", default=[], metavar="KEY=VALUE", help=about)
     parser.add_argument("--tolerance", metavar="MM", default="0.01", help="of the tip between blocks (default 0.01)")
     parser.add_argument("--axis-tolerance", metavar="DEG", help="of the tool's axis between blocks (default 0.1)")
     parser.add_argument("--feed", metavar="F", help="mm/min at the tip (default of a plan 500)")
     parser.add_argument("--spindle", metavar="S", help="rev/min, negative counter-clockwise")
-    parser.add_argument("--tool", action="append", default=[], metavar="TOOL", help="see above; may be repeated")
+    tools.add_tools(parser, required=False)
     parser.add_argument("--safe-height", metavar="MM", help="z between cuts of a plan or a recording")
     parser.add_argument("--axis", metavar="X,Y,Z", help="of the tool, on a plan's paths that say none (default 0,0,1)")
-    parser.add_argument("--part", metavar="FILE", help="of a plan: lift the tool along its axis where it would gouge")
+    parser.add_file("--part", "of a plan: lift the tool along its axis where it would gouge", MESHES)
     add_fixtures(parser)
     add_rods(parser)
     parser.add_argument(
         "--clearance", metavar="MM", help="of shank and holder from part and fixtures, with --part (default 0)"
     )
     parser.add_argument("--skip-blocked", action="store_true", help="leave out paths that no lift frees, with --part")
-    parser.add_argument("--machine", metavar="NAME", help="that NC code was written for")
-    add_machine_option(parser)
-    parser.add_argument("--out", required=True, metavar="FILE", help="NC code (.ngc, .nc, …), or .rprog")
+    add_machine(parser, "that NC code was written for")
+    parser.add_file("--out", "NC code (.ngc, .nc, …), or .rprog", CODE + PROGRAMS, required=True)
 
 
 def run(arguments: argparse.Namespace, console: Console) -> int:
     out = output_file(arguments.out, CODE + PROGRAMS)
     saved = out.suffix.lower() in PROGRAMS
     if not saved and arguments.post is None:
-        raise ValueError("--post: a machine's name expected; riffler machines lists them")
-    if saved and (arguments.post is not None or arguments.option):
-        raise ValueError(f"--out {out.name}: a .rprog file is for no machine, leave --post and --option out")
+        raise ValueError("--post: a machine's name expected; riffler nc machines lists them")
+    if saved and (arguments.post is not None or arguments.post_option):
+        raise ValueError(f"--out {out.name}: a .rprog file is for no machine, leave --post and --post-option out")
     how = {
         "tolerance": length(arguments.tolerance, "--tolerance"),
         "axis_tolerance": AXIS_TOLERANCE
         if arguments.axis_tolerance is None
         else math.radians(length(arguments.axis_tolerance, "--axis-tolerance")),
-        "options": machine_options(arguments.option, "--option"),
+        "options": machine_options(arguments.post_option, "--post-option"),
     }
     program, notes, collider, depth = read(arguments, console)
     if not len(program):
-        raise ValueError(f"{Path(arguments.file).name}: nothing moves in it")
+        raise ValueError(f"{Path(arguments.program).name}: nothing moves in it")
     with console.step("write"), console.writing(out) as beside:
         how["collider"], how["contact_tolerance"] = collider, max(WRITTEN, depth)
-        report = program.save(beside) if saved else program.write(beside, post=arguments.post, **how)
+        report = program.save(beside) if saved else program.write(beside, post=str(arguments.post), **how)
     data = summary(program, report) | {"post": arguments.post, "notes": notes}
     data |= {"out": str(out), "bytes": out.stat().st_size, "seconds": console.seconds}
     console.result(data, f"{out.name} written", rows(data))
@@ -109,11 +118,11 @@ def vector(text: str, what: str) -> np.ndarray:
 def read(arguments: argparse.Namespace, console: Console) -> tuple[Program, list[str], Collider | None, float]:
     """The program, what one should know about it, what its moves are checked against, and how far they may enter the
     part since they are to, mm."""
-    kind = Path(arguments.file).suffix.lower()
-    path = input_file(arguments.file, (kind,))
-    code = kind not in PLANS + RECORDINGS + PROGRAMS
+    kind = Path(arguments.program).suffix.lower()
+    path = input_file(arguments.program, (kind,))
+    code = kind not in PLANS + JOURNALS + PROGRAMS
     for name, kinds, instead in (
-        ("safe_height", PLANS + RECORDINGS, "; a program takes --option safe_height=…"),
+        ("safe_height", PLANS + JOURNALS, "; a program takes --post-option safe_height=…"),
         ("axis", PLANS, ""),
         *((name, PLANS, "") for name in ("part", *OF_A_PART)),
     ):
@@ -122,22 +131,22 @@ def read(arguments: argparse.Namespace, console: Console) -> tuple[Program, list
         if kind not in kinds:
             raise ValueError(f"--{name.replace('_', '-')}: only for {' and '.join(kinds)} files{instead}")
         if name in OF_A_PART and arguments.part is None:
-            raise ValueError(f"--{name.replace('_', '-')}: only beside --part")
+            raise ValueError(f"--{name.replace('_', '-')}: only with --part")
     if code and arguments.machine is None:
         raise ValueError(f"--machine: say for which machine {path.name} was written")
     if not code and (arguments.machine is not None or arguments.machine_option):
         raise ValueError("--machine: only for NC code")
     notes: list[str] = []
-    with console.step("read"):
-        if kind in PLANS:
+    if kind in PLANS:
+        with console.step("read"):
             planned = plan.load(path)
-        elif kind in RECORDINGS:
+        return from_plan(planned, path.name, arguments, console)
+    with console.step("read"):
+        if kind in JOURNALS:
             program, notes = recorded(path, arguments)
         else:
             how = machine_options(arguments.machine_option, "--machine-option")
-            program = read_program(path, arguments.machine, how, console)
-    if kind in PLANS:
-        return from_plan(planned, path.name, arguments, console)
+            program = read_program(path, str(arguments.machine), how, console)
     return changed(program, arguments), notes, None, 0.0
 
 
@@ -311,7 +320,7 @@ def lifted(
 
 
 def first_blocked(path, rows: np.ndarray, report: plan.LocationReport) -> str:
-    """Where on a path: of points that have no row the ball's centre, of ways between rows the tip."""
+    """Where on a path: of points that have no row the ball's centre, between rows the tip."""
     return placed(path.centres[report.blocked[0][0]] if report.blocked else rows[report.unsafe[0][0], :3])
 
 
@@ -332,7 +341,7 @@ def listed(numbers: Collection[int], of: int) -> str:
 
 
 def with_room(tool: Tool, arguments: argparse.Namespace) -> Tool:
-    """With so much more of shank and holder as they are to stay clear; the cutter touches what it cuts."""
+    """The tool with shank and holder larger by the clearance; the cutter touches what it cuts and is unchanged."""
     if arguments.clearance is None:
         return tool
     room = finite(arguments.clearance, "--clearance")
@@ -343,7 +352,7 @@ def with_room(tool: Tool, arguments: argparse.Namespace) -> Tool:
     return plan.with_room(tool, room)
 
 
-# ---- what is said about it
+# ---- the report
 
 
 def summary(program: Program, report: dict[str, Any] | None) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""Find the paths of a plan by a strategy. There is a command for each strategy of riffler.plan."""
+"""Paths of a plan by a strategy: a verb for each strategy of riffler.plan."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ from typing import Any
 from .. import plan
 from ..plan import curves
 from . import tools
-from .arguments import MESHES, finite, input_file, length, output_file, whole
+from .arguments import MESHES, PLANS, finite, input_file, length, output_file, whole
 from .console import Console, number, times
+from .parser import Parser
 from .shapes import read_part
 
-HELP = "find paths on a part by a strategy: " + ", ".join(plan.STRATEGIES)
-PLANS = (".json",)
-GIVEN = {  # what a strategy needs beside part and tool: the help of its option, and the files it may be
+GIVEN = {  # what a strategy needs in addition to part and tool: the help of its option, and the files it may be
     "curves": (
         "the curves, as they lie on the part: polylines of .obj, points of .txt, .xyz, .csv or .json",
         curves.FORMATS,
+        ("--curves",),
     ),
-    "paths": ("the plan whose paths it starts from; those that are off are left out", PLANS),
+    "paths": ("the plan whose paths it starts from; those that are off are left out", PLANS, ("--plan", "--paths")),
 }
 
 
@@ -38,24 +38,24 @@ class StrategyCommand:
             f"riffler plan {strategy.id} part.stl --tool ball:6{more} --out plan.json"
         )
 
-    def add_arguments(self, parser: argparse.ArgumentParser) -> None:
+    def add_arguments(self, parser: Parser) -> None:
         needs = self.strategy.needs
-        parser.add_argument("mesh", metavar="FILE", help="the part: .stl, .obj, .ply or .3mf")
+        parser.add_input("part", "the part: .stl, .obj, .ply or .3mf", MESHES, flags=("--mesh",))
         whose = "; by default the plan's" if needs == "paths" else ""
-        parser.add_argument(
-            "--tool", required=not whose, metavar="TOOL", help=f"the cutter, as in ball:6, or a file{whose}"
-        )
+        tools.add_tool(parser, f"the cutter, as in ball:6, or a file{whose}", required=not whose)
         if needs in GIVEN:
-            parser.add_argument(f"--{needs}", required=True, metavar="FILE", help=GIVEN[needs][0])
+            about, suffixes, flags = GIVEN[needs]
+            parser.add_argument(*flags, dest=needs, required=True, metavar="FILE", help=about)
+            parser.offer(needs, (), suffixes)
         for parameter in self.strategy.parameters:
             add_option(parser, parameter)
-        parser.add_argument("--out", required=True, metavar="FILE", help=".json")
+        parser.add_file("--out", ".json", PLANS, required=True)
 
     def run(self, arguments: argparse.Namespace, console: Console) -> int:
         strategy = self.strategy
         options = {p.key: value_of(p, getattr(arguments, p.key)) for p in strategy.parameters}
         asked = None if arguments.tool is None else tools.parse(arguments.tool)
-        path = input_file(arguments.mesh, MESHES)
+        path = input_file(arguments.part, MESHES)
         source = (
             input_file(getattr(arguments, strategy.needs), GIVEN[strategy.needs][1])
             if strategy.needs in GIVEN
@@ -80,9 +80,9 @@ class StrategyCommand:
         return 0
 
 
-def add_option(parser: argparse.ArgumentParser, parameter: plan.Parameter) -> None:
+def add_option(parser: Parser, parameter: plan.Parameter) -> None:
     flag, about = f"--{parameter.key.replace('_', '-')}", parameter.help[:1].lower() + parameter.help[1:]
-    about = about.replace("; 0: ", "; by default ")  # a panel's way of leaving it out
+    about = about.replace("; 0: ", "; by default ")  # a panel shows 0 where it is left out
     if parameter.choices:
         words = [value for value, _, _ in parameter.choices]
         meanings = "; ".join(f"{value}: {help[:1].lower()}{help[1:]}" for value, _, help in parameter.choices)
@@ -151,6 +151,3 @@ def rows(data: dict[str, Any]) -> list[tuple[str, str]]:
         ("file", number(data["bytes"], "bytes")),
         ("times", times(data["seconds"])),
     ]
-
-
-PARTS = tuple(map(StrategyCommand, plan.STRATEGIES.values()))

@@ -1,6 +1,6 @@
 """Run an NC program on its stock and say what goes wrong: rapids in material, holder and fixtures that are hit, gouges.
 
-riffler verify part.ngc --stock 100x60x30 --pitch 0.25 --tool ball:6:30 --holder 30:20:60:20 --part part.stl
+riffler nc verify part.ngc --stock 100x60x30 --pitch 0.25 --tool ball:6:30 --holder 30:20:60:20 --part part.stl
 
 Exit status 0: passed, 1: something was found or could not be checked, 2: bad input.
 """
@@ -17,42 +17,39 @@ from . import tools
 from .arguments import (
     MESHES,
     VOLUMES,
-    add_machine_option,
     input_file,
     length,
     machine_options,
     output_file,
 )
-from .carve import add_stock, is_saved, read_program, stock
 from .console import Console, number, times
 from .deviation_map import LEGEND, write_map
+from .parser import Parser
+from .programs import add_machine, add_program, is_saved, read_program
 from .shapes import read_part, to_mesh, write_mesh, write_volume
+from .stock import add_stock, stock
 from .surroundings import add_fixtures, add_rods, fixture, rods, with_rods
 
 HELP = "check an NC program by simulation"
 MAPS = (".ply",)
 MOST = 30  # findings in the table
-__doc__ = f"{__doc__}\n{tools.FORMS}"
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("program", metavar="FILE", help="NC program, RS-274, or .rprog")
+def add_arguments(parser: Parser) -> None:
+    add_program(parser)
     add_stock(parser)
-    parser.add_argument("--tool", required=True, action="append", metavar="TOOL", help="see above; may be repeated")
+    tools.add_tools(parser)
     add_rods(parser)
-    parser.add_argument(
-        "--machine", help='what the program\'s axes mean (default "tcp": tip and axis); its limits are checked'
-    )
-    add_machine_option(parser)
-    parser.add_argument("--part", metavar="FILE", help="what it should become: .stl, .obj, .ply or .3mf")
+    add_machine(parser, 'what the program\'s axes mean (default "tcp": tip and axis); its limits are checked')
+    parser.add_file("--part", "what it should become: .stl, .obj, .ply or .3mf", MESHES)
     add_fixtures(parser)
     parser.add_argument("--tolerance", default="0.01", metavar="MM", help="of cutting and of contact (default 0.01)")
     parser.add_argument("--gouge", default="0.05", metavar="MM", help="depth of a gouge in the part (default 0.05)")
     parser.add_argument("--rest", metavar="MM", help="height of rest material that is a finding (default: none is)")
     parser.add_argument("--rapid-feed", default="10000", metavar="MM/MIN", help="for the time (default 10000)")
     parser.add_argument("--scheduler", metavar="ADDRESS", help="run it on a Dask cluster: tcp://host:8786")
-    parser.add_argument("--out", metavar="FILE", help="what is left: .stl, .obj, .ply, .3mf or .rvol")
-    parser.add_argument("--map", metavar="FILE", help=f".ply of what is left, coloured: {LEGEND}")
+    parser.add_file("--out", "what is left: .stl, .obj, .ply, .3mf or .rvol", MESHES + VOLUMES)
+    parser.add_file("--map", f".ply of what is left, coloured: {LEGEND}", MAPS)
     parser.add_argument("--map-scale", default="0.5", metavar="MM", help="distance of the full colours (default 0.5)")
 
 

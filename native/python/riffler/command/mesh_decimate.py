@@ -1,0 +1,58 @@
+"""Leave out triangles of a mesh, as long as its surface moves no further than a tolerance, or down to a number.
+
+riffler mesh decimate part.stl --tolerance 0.01 --out small.stl
+riffler mesh decimate part.stl --triangles 20000 --out small.stl
+"""
+
+from __future__ import annotations
+
+import argparse
+
+from .. import Mesh
+from .arguments import MESHES, input_file, length, output_file, whole
+from .console import Console, number, times
+from .parser import Parser
+from .shapes import write_mesh
+
+HELP = "leave out triangles within a tolerance"
+
+
+def add_arguments(parser: Parser) -> None:
+    parser.add_input("mesh", ".stl, .obj, .ply or .3mf", MESHES)
+    parser.add_argument("--tolerance", metavar="MM", help="how far the surface may move")
+    parser.add_argument("--triangles", metavar="N", help="how many should be left")
+    parser.add_file("--out", ".stl, .obj, .ply or .3mf", MESHES, required=True)
+
+
+def run(arguments: argparse.Namespace, console: Console) -> int:
+    if arguments.tolerance is None and arguments.triangles is None:
+        raise ValueError("--tolerance or --triangles expected: how far to go")
+    tolerance = None if arguments.tolerance is None else length(arguments.tolerance, "--tolerance")
+    triangles = None if arguments.triangles is None else whole(arguments.triangles, "--triangles")
+    path = input_file(arguments.mesh, MESHES)
+    out = output_file(arguments.out, MESHES)
+    with console.step("read"):
+        mesh = Mesh.read(path)
+    with console.step("decimate") as progress:
+        small = mesh.decimate(triangles=triangles, tolerance=tolerance, progress=progress)
+    with console.step("measure"):
+        moved = max(float(small.deviation(mesh).max(initial=0)), float(mesh.deviation(small).max(initial=0)))
+    data = {
+        "out": str(out),
+        "triangles": write_mesh(small, out, console),
+        "triangles_before": len(mesh.triangles),
+        "deviation": moved,
+        "volume": float(small.volume),
+        "volume_before": float(mesh.volume),
+        "bytes": out.stat().st_size,
+        "seconds": console.seconds,
+    }
+    rows = [
+        ("triangles", f"{number(data['triangles'])} of {number(data['triangles_before'])}"),
+        ("deviation", f"{moved:.3g} mm at most, measured at the vertices of both"),
+        ("volume", f"{number(data['volume'], 'mm³')}, {number(data['volume_before'], 'mm³')} before"),
+        ("file", number(data["bytes"], "bytes")),
+        ("times", times(console.seconds)),
+    ]
+    console.result(data, f"{out.name} written", rows)
+    return 0

@@ -1,0 +1,184 @@
+"""The table of verbs: their groups, the module of each, and what they were called before there were groups."""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from typing import Any, NoReturn, Protocol
+
+from ..plan import STRATEGIES
+from .arguments import MESHES, VOLUMES
+from .console import Console
+from .parser import EPILOG, Parser, UsageError, nearest
+
+GROUPS = {
+    "mesh": "triangle meshes: files of .stl, .obj, .ply and .3mf",
+    "volume": "dexel volumes: stock, carving, and what is left",
+    "plan": "paths on a part by a strategy, as a plan",
+    "nc": "programs of machines: write, check, list",
+    "pen": "pens and other devices",
+}
+HELP = ("-h", "--help")
+
+
+class Command(Protocol):
+    """What the module of a verb has."""
+
+    HELP: str  # one line
+    __doc__: str | None
+
+    def add_arguments(self, parser: Parser) -> None: ...
+
+    def run(self, arguments: argparse.Namespace, console: Console) -> int: ...
+
+
+@dataclass(frozen=True)
+class Verb:
+    """One verb. ``group`` is empty for one that stands alone; ``old``: its name before there were groups."""
+
+    group: str
+    name: str
+    load: Callable[[], Any]  # a Command
+    old: str = ""
+
+    @property
+    def path(self) -> str:
+        """``volume carve``."""
+        return f"{self.group} {self.name}".strip()
+
+    def parser(self) -> Parser:
+        command: Command = self.load()
+        parser = Parser(f"riffler {self.path}", command.__doc__)
+        command.add_arguments(parser)
+        parser.add_argument("--json", action="store_true", help="print the result, or the error, as JSON")
+        parser.shorten_usage()
+        return parser
+
+    def run(self, words: list[str], console: Console) -> int:
+        """Exit status of the verb with the words after its name."""
+        return self.load().run(self.parser().parse(words), console)
+
+
+def _module(name: str) -> Callable[[], Any]:
+    return partial(importlib.import_module, f"{__package__}.{name}")
+
+
+def _strategy(name: str) -> Any:
+    from .plan_strategies import StrategyCommand
+
+    return StrategyCommand(STRATEGIES[name])
+
+
+VERBS = (
+    Verb("mesh", "audit", _module("mesh_audit"), "audit"),
+    Verb("mesh", "convert", _module("mesh_convert")),
+    Verb("mesh", "decimate", _module("mesh_decimate")),
+    Verb("volume", "from-mesh", _module("volume_from_mesh"), "convert"),
+    Verb("volume", "carve", _module("volume_carve"), "carve"),
+    Verb("volume", "replay", _module("volume_replay"), "replay"),
+    Verb("volume", "to-mesh", _module("volume_to_mesh"), "mesh"),
+    *(Verb("plan", name, partial(_strategy, name), "pencil" if name == "pencil" else "") for name in STRATEGIES),
+    Verb("nc", "post", _module("nc_post"), "post"),
+    Verb("nc", "verify", _module("nc_verify"), "verify"),
+    Verb("nc", "machines", _module("nc_machines"), "machines"),
+    Verb("nc", "tools", _module("nc_tools")),
+    Verb("pen", "list", _module("pen_list")),
+    Verb("pen", "monitor", _module("pen_monitor")),
+    Verb("pen", "calibrate", _module("pen_calibrate")),
+    Verb("pen", "simulate", _module("pen_simulate")),
+    Verb("", "doctor", _module("doctor")),
+    Verb("", "bench", _module("bench")),
+    Verb("", "completion", _module("completion")),
+)
+ALONE = {verb.name: verb for verb in VERBS if not verb.group}
+OLD = {verb.old: verb for verb in VERBS if verb.old}
+
+
+def of(group: str) -> dict[str, Verb]:
+    """The verbs of a group, by name."""
+    return {verb.name: verb for verb in VERBS if verb.group == group}
+
+
+@dataclass(frozen=True)
+class Found:
+    """The verb of a command line, the words after it, and its old name where it was called by that. Without a verb,
+    ``help`` is what was asked for instead."""
+
+    verb: Verb | None
+    rest: list[str]
+    old: str = ""
+    help: str = ""
+
+
+def find(words: list[str]) -> Found:
+    """Takes the verb off a command line. UsageError names the nearest verb for an unknown one."""
+    if words[:1] == ["help"]:
+        words = [*words[1:], "--help"]
+    if not words:
+        raise UsageError(f"a command expected: {', '.join([*GROUPS, *ALONE])} (see riffler --help)")
+    first, rest = words[0], words[1:]
+    if first in HELP:
+        return Found(None, [], help=overview())
+    if first in ALONE:
+        return Found(ALONE[first], rest)
+    if first in OLD and (first not in GROUPS or _is_old_mesh(rest)):
+        return Found(OLD[first], rest, first)
+    if first not in GROUPS:
+        _refuse(first, "")
+    if not rest:
+        raise UsageError(f"a verb expected: {', '.join(of(first))} (see riffler {first} --help)")
+    if rest[0] in HELP:
+        return Found(None, [], help=overview_of(first))
+    if rest[0] not in of(first):
+        _refuse(rest[0], first)
+    return Found(of(first)[rest[0]], rest[1:])
+
+
+def _is_old_mesh(rest: list[str]) -> bool:
+    """Whether what follows ``mesh`` is ``riffler mesh part.rvol --out part.stl`` as it was before there were groups: no
+    verb comes first, but a file or an option."""
+    if not rest or rest[0] in of("mesh") or rest[0] in HELP:
+        return False
+    return rest[0].startswith("-") or rest[0].lower().endswith(MESHES + VOLUMES) or "." in rest[0]
+
+
+def _refuse(word: str, group: str) -> NoReturn:
+    """UsageError for an unknown verb, with the nearest one of the group, else of all."""
+    where = f"riffler {group}".strip()
+    if word.startswith("-"):
+        raise UsageError(
+            f"{word}: the command comes first, then its options, as in riffler doctor --json (see {where} --help)"
+        )
+    paths = {verb.path: verb for verb in VERBS}
+    near = nearest(word, of(group)) if group else nearest(word, [*GROUPS, *ALONE])
+    if near is not None:
+        near = f"{group} {near}".strip()
+    else:
+        names = {verb.name: path for path, verb in paths.items()} | {verb.old: verb.path for verb in OLD.values()}
+        near = names.get(nearest(word, names) or "")
+    more = f"; did you mean riffler {near}?" if near else ""
+    raise UsageError(f"{where} has no {'verb' if group else 'command'} {word!r}{more} (see {where} --help)")
+
+
+def overview() -> str:
+    """The help of ``riffler`` itself."""
+    lines = ["usage: riffler GROUP VERB [options]", "", "Dexel volumes, carving, five-axis programs and pens.", ""]
+    for group, about in GROUPS.items():
+        lines += [f"  {group:<12}{about}", f"  {'':<12}{', '.join(of(group))}"]
+    lines += [f"  {name:<12}{verb.load().HELP}" for name, verb in ALONE.items()]
+    lines += ["", "riffler GROUP --help and riffler GROUP VERB --help tell more.", *_epilog()]
+    return "\n".join(lines)
+
+
+def overview_of(group: str) -> str:
+    """The help of a group."""
+    lines = [f"usage: riffler {group} VERB [options]", "", f"{GROUPS[group][:1].upper()}{GROUPS[group][1:]}.", ""]
+    lines += [f"  {name:<12}{verb.load().HELP}" for name, verb in of(group).items()]
+    return "\n".join([*lines, "", f"riffler {group} VERB --help shows the options.", *_epilog()])
+
+
+def _epilog() -> list[str]:
+    return [*EPILOG.replace("; exit", ";\nexit").splitlines()]
