@@ -2461,7 +2461,7 @@ class Note:
     @property
     def line(self) -> int:
         """
-        Of the source, from 1.
+        Line of the source, from 1.
         """
     @property
     def message(self) -> str:
@@ -3377,11 +3377,11 @@ class Material:
     @property
     def stiffness(self) -> float:
         """
-        Of its surface, N per mm of depth and mm²; of a fixture N per mm³ in the tool.
+        N per mm of depth and mm² of surface; for a fixture N per mm³ in the tool.
         """
 class SessionFrame:
     """
-    What happened between two calls of Session.frame: one row for each step.
+    What happened between two calls of ``Session.frame``: one row for each step.
 
     Forces and torques act on the hand, about the grip's point, in the device's frame; those on the tool act on it, about its
     tip, in the part's.
@@ -3391,10 +3391,10 @@ class SessionFrame:
     @property
     def applied(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n, 6): what it had, where it says so; otherwise what it was told a step before.
+        (n, 6): as applied, if the device reports it; otherwise as sent one step before.
         """
     @property
-    def cause(self) -> typing.Any:
+    def cause(self) -> str | None:
         """
         Why the force was taken away and what to do, or None.
         """
@@ -3407,6 +3407,11 @@ class SessionFrame:
     def depth(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         (n,) mm that the tool is at most in what it must not enter.
+        """
+    @property
+    def dropped_ticks(self) -> int:
+        """
+        Steps since the start that are in no frame, because frames were too rare: 4096 are kept.
         """
     @property
     def dt(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -3426,7 +3431,7 @@ class SessionFrame:
     @property
     def forces(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n, 6): force (N) and torque (N·mm) that the device was told.
+        (n, 6): force (N) and torque (N·mm), as sent to the device.
         """
     @property
     def grip(self) -> numpy.ndarray:
@@ -3452,24 +3457,24 @@ class SessionFrame:
         (n, 6) of the tool, at each step's end.
         """
     @property
-    def problem(self) -> typing.Any:
+    def problem(self) -> str | None:
         """
         Why nothing is cut though the hand wants to, or None.
         """
     @property
     def removed(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n,) mm³; with mode "add" what was put on.
+        (n,) mm³ removed; added in a session that adds.
         """
     @property
     def starts(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n, 6) of the tool, at each step's begin: not where the last one left it where it was placed anew.
+        (n, 6) of the tool, at the start of each step; differs from the pose before after a new placement.
         """
     @property
     def state(self) -> str:
         """
-        Of the force, now: off, homing, ready, ramp, active, degraded or tripped.
+        Force state now: off, homing, ready, ramp, active, degraded or tripped.
         """
     @property
     def step_seconds(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -3479,7 +3484,7 @@ class SessionFrame:
     @property
     def strokes(self) -> int:
         """
-        That were begun since the start.
+        Number of strokes begun since the start.
         """
     @property
     def tiles(self) -> numpy.typing.NDArray[numpy.int32]:
@@ -3499,7 +3504,7 @@ class SessionFrame:
     @property
     def tool_forces(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n, 6): force (N) and torque (N·mm) of the material on the tool, whatever the hand is given of them.
+        (n, 6): force (N) and torque (N·mm) of the material on the tool, before limits.
         """
     @property
     def torque(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -3509,26 +3514,73 @@ class SessionFrame:
     @property
     def untold(self) -> int:
         """
-        Steps since the start that are in no frame: they were asked for too seldom (4096 are kept).
+        Steps since the start that are in no frame, because frames were too rare: 4096 are kept.
         """
 class Session:
     """
-    A pen, a tool and a stock: the tool follows the hand and cuts, a thousand
-    times a second, in a thread of its own, and the hand feels it. Context manager: starts and stops.
+    A pen, a tool and a stock: the tool follows the hand and cuts a thousand times a second, and the hand feels it.
 
-    The volume is the one that is shown: it follows with each call of ``frame``, between steps, and nobody else changes it
-    while the session runs. The tool cuts while a button of ``dead_man_mask`` is held, and every check of the pen passes.
+    The device's own thread cuts. ``volume`` is what is shown: each call of ``frame`` brings it up to date, between steps, and
+    nothing else may change it while the session runs. The tool cuts while a button of ``dead_man_mask`` is held and every
+    check of the pen passes. Context manager: starts and stops.
 
-    pen: of ``riffler.pen.open``; None: a ``riffler.pen.Pointer`` of kind "mouse", see ``pen``. obstacles: a Collider to stay
-    out of. protect: a volume of the same lower, upper, pitch and directions, or None; what lies in it stays as it is, and is
-    as air to the tool. mode: "remove", or "add": the cutter puts on what it sweeps, all its length, within the volume's box;
-    then it feels neither that nor the stock, only obstacles. Options: ``material`` (of the stock), ``at`` ((6,) where the tool
-    stands at the start; for tablets, mice and recordings their own pose, otherwise 5 mm above the stock), ``scale`` and
-    ``turn`` ((3, 3); from the hand's motion to the tool's), ``stiffness`` (N/mm), ``turn_stiffness`` (N·mm/rad), ``damping``,
-    ``turn_damping`` (of the coupling between hand and tool), ``tolerance`` (mm, of cuts), ``memory`` (mm of way over which
-    resistance is learnt; None: by tool and stock), ``max_force`` (N), ``max_torque`` (N·mm), ``max_power`` (N·mm/s), ``ramp``
-    (s), ``dead_man_mask``, ``clutch_mask`` (of buttons), ``budget`` (s for a step; None: as long as it takes), ``undo`` (strokes
-    that can be taken back).
+    Parameters
+    ----------
+    volume : Volume
+        The stock.
+    tool : Tool
+        The cutter.
+    pen : PenDevice, optional
+        From ``riffler.pen.open``, or a ``riffler.pen.Pointer``; None: a Pointer of kind "mouse", then the session's ``pen``.
+    obstacles : Collider, optional
+        Part and fixtures that the tool stays out of.
+    protect : Volume, optional
+        Region that must not change, with the lower, upper, pitch and directions of ``volume``; air to the tool.
+    mode : {"remove", "add"}
+        "add": the cutter adds what it sweeps, over its whole length and within the volume's box. The hand then feels neither
+        that nor the stock, only obstacles.
+    material : Material, optional
+        What the stock is made of.
+    at : array_like, shape (6,), optional
+        Pose of the tool at the start: tip in mm and axis. None: the hand's pose for tablets, mice and recordings, otherwise
+        5 mm above the middle of the stock.
+    scale : float
+        mm of the tool per mm of the hand.
+    turn : array_like, shape (3, 3), optional
+        Rotation from the hand's frame to the tool's; None: none.
+    stiffness, turn_stiffness : float
+        Of the coupling between hand and tool, N/mm and N·mm/rad.
+    damping, turn_damping : float
+        Of the coupling, N·s/mm and N·mm·s/rad.
+    tolerance : float
+        mm, of the cuts, as in ``Volume.carve``.
+    memory : float, optional
+        mm of travel over which the resistance is estimated; None: chosen by tool and stock.
+    max_force, max_torque, max_power : float
+        Largest force (N), torque (N·mm) and power (N·mm/s) given to the hand.
+    ramp : float
+        s from no force to full force, at the start and after interruptions.
+    dead_man_mask, clutch_mask : int
+        Buttons, as bits: cut while one is held; move the hand without the tool.
+    budget : float, "auto" or None
+        s for one step; None: as long as it takes, and steps are deterministic; "auto": 0.0004 for a device with motors, None
+        for others.
+    undo : int
+        Number of strokes that can be undone.
+
+    Raises
+    ------
+    TypeError, ValueError
+        Naming the argument that is wrong.
+
+    Examples
+    --------
+    >>> stock = riffler.Volume.block(lower=(0, 0, 0), upper=(20, 20, 10), pitch=0.5)
+    >>> ball = riffler.Tool.ball(diameter=6, length=30)
+    >>> with riffler.Session(stock, ball, at=(10, 10, 15, 0, 0, 1), max_force=3.0) as session:
+    ...     frame = session.frame()
+    >>> frame.in_stroke
+    False
     """
     @staticmethod
     def replay(path: os.PathLike | str | bytes, progress: typing.Any = None) -> typing.Any:
@@ -3539,7 +3591,7 @@ class Session:
         ...
     def __exit__(self, *args) -> None:
         ...
-    def __init__(self, volume: Volume, tool: Tool, pen: PenDevice | None = None, *, obstacles: typing.Any = None, protect: Volume | None = None, mode: str = 'remove', **kwargs) -> None:
+    def __init__(self, volume: Volume, tool: Tool, pen: PenDevice | None = None, *, obstacles: Collider | None = None, protect: Volume | None = None, mode: str = 'remove', material: Material | None = None, at: typing.Any = None, scale: typing.SupportsFloat = 1.0, turn: typing.Any = None, stiffness: typing.SupportsFloat = 1.0, turn_stiffness: typing.SupportsFloat = 2000.0, damping: typing.SupportsFloat = 0.001, turn_damping: typing.SupportsFloat = 2.0, tolerance: typing.SupportsFloat = 0.01, memory: typing.SupportsFloat | None = None, max_force: typing.SupportsFloat = 5.0, max_torque: typing.SupportsFloat = 300.0, max_power: typing.SupportsFloat = 2000.0, ramp: typing.SupportsFloat = 0.5, dead_man_mask: typing.SupportsInt = 1, clutch_mask: typing.SupportsInt = 2, budget: typing.Any = 'auto', undo: typing.SupportsInt = 64) -> None:
         ...
     def frame(self) -> SessionFrame:
         """

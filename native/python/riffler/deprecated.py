@@ -7,12 +7,11 @@ fit, by `riffler.hints`; calls in today's form pay nothing.
 
 from __future__ import annotations
 
-import dataclasses
 import importlib
 import sys
 import warnings
 from collections.abc import Callable, ItemsView, Iterator, KeysView, Mapping, ValuesView
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields, is_dataclass
 from typing import ClassVar
 
 _warned: set[str] = set()
@@ -116,7 +115,7 @@ class DictResult:
     old_keys: ClassVar[Mapping[str, str]] = {}
 
     def _as_dict(self) -> dict[str, object]:
-        names = {f.name: f.name for f in dataclasses.fields(self)}  # pyright: ignore[reportArgumentType]
+        names = {f.name: f.name for f in fields(self) if not f.name.startswith("_")} if is_dataclass(self) else {}
         for key, attribute in self.old_keys.items():
             names.pop(attribute, None)
             names[key] = attribute
