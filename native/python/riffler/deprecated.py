@@ -124,6 +124,8 @@ class DictResult:
     def _read_as_dict(self, use: str, key: object = None) -> dict[str, object]:
         found, name = self._as_dict(), type(self).__name__
         if isinstance(key, str) and key in found:
+            if f"{name}.keys()" in _warned:  # dict(result) asks for the keys first
+                return found
             warn(f'{name}["{key}"]', f"{name}.{self.old_keys.get(key, key)}")
         else:
             warn(f"{name}{use}", f"the attributes of {name}, or dataclasses.asdict")
