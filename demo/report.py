@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import dataclasses
 from dataclasses import dataclass, field
 
 from rich.console import Console
 from rich.table import Table
+from riffler import Audit
 
 
 @dataclass
@@ -21,12 +23,12 @@ class Piece:
         self.rows[what] = value
 
 
-def defects(audit: dict) -> dict:
+def defects(audit: Audit) -> dict[str, int]:
     """The counts of an audit that a sound mesh has at 0."""
-    return {key: count for key, count in audit.items() if key not in ("components", "volume")}
+    return {key: count for key, count in dataclasses.asdict(audit).items() if key not in ("components", "volume")}
 
 
-def describe_audit(audit: dict) -> str:
+def describe_audit(audit: Audit) -> str:
     wrong = [f"{count} {key.replace('_', ' ')}" for key, count in defects(audit).items() if count]
     return ", ".join(wrong) if wrong else f"all {len(defects(audit))} counts 0"
 

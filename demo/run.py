@@ -148,7 +148,7 @@ def mesh_and_check(volume, path: Path, piece, stages) -> riffler.Mesh:
         audit = mesh.audit()
     piece.note("triangles", f"{len(mesh.triangles):,}")
     piece.note("audit after reading", report.describe_audit(audit))
-    piece.note("pieces", f"{audit['components']}")
+    piece.note("pieces", f"{audit.components}")
     piece.sound &= not any(report.defects(audit).values())
     with stages(f"{piece.name}: error of the mesh"):
         ends, rays = ray_ends(volume)

@@ -8,9 +8,9 @@ import riffler
 from picture import BLUE, ORANGE, RED, STEEL, View, plt, save
 
 # A plate up to z = 0 with a ball of 12 mm radius on it, around the origin, and a clamp at the far end.
-box = {"lower": (-40, -20, -10), "upper": (50, 20, 14)}
-part = riffler.Volume.sphere((0, 0, 0), 12, 0.5, "xyz", **box)
-part.add(riffler.Volume.cylinder((0, 0, -5), 60, 10, 0.5, "xyz", **box))
+LOWER, UPPER = (-40, -20, -10), (50, 20, 14)
+part = riffler.Volume.sphere((0, 0, 0), 12, 0.5, "xyz", lower=LOWER, upper=UPPER)
+part |= riffler.Volume.cylinder((0, 0, -5), 60, 10, 0.5, "xyz", lower=LOWER, upper=UPPER)
 clamp = riffler.Volume.block((38, -8, 0), (50, 8, 20), 0.5, "xyz")
 collider = riffler.Collider(part.to_mesh(), fixtures=[clamp])
 

@@ -1,6 +1,6 @@
 """Make a dexel volume of a mesh, cut it, and write a closed STL file: 3D printing, milling, or the next program.
 
-Shows: Mesh, Volume.from_mesh, Volume.cylinder, Volume.subtract, Volume.to_mesh, Mesh.audit, Mesh.write.
+Shows: Mesh, Volume.from_mesh, Volume.cylinder, set operators, Volume.to_mesh, Mesh.audit, Mesh.write.
 """
 
 import numpy as np
@@ -25,19 +25,19 @@ def ring(around=160, across=64):
     return riffler.Mesh(points.reshape(-1, 3), np.concatenate([np.c_[a, b, c], np.c_[a, c, d]]))
 
 
-lower, upper = (-30, -30, -10), (30, 30, 10)
-volume = riffler.Volume.from_mesh(ring(), PITCH, "xyz", lower=lower, upper=upper)
+LOWER, UPPER = (-30, -30, -10), (30, 30, 10)
+volume = riffler.Volume.from_mesh(ring(), PITCH, "xyz", lower=LOWER, upper=UPPER)
 print(f"volume of the ring {volume.volume:.1f} mm³")
 
-# Six bores along z. Volumes on the same grid are added, subtracted and intersected exactly.
+# Six bores along z. Volumes on the same grid are joined (|), subtracted (-) and intersected (&) exactly.
 for angle in np.arange(6) * np.pi / 3:
     centre = (R * np.cos(angle), R * np.sin(angle), 0)
-    volume.subtract(riffler.Volume.cylinder(centre, 3.0, 40.0, PITCH, "xyz", lower=lower, upper=upper))
+    volume -= riffler.Volume.cylinder(centre, 3.0, 40.0, PITCH, "xyz", lower=LOWER, upper=UPPER)
 
 mesh = volume.to_mesh().decimate(tolerance=0.01)
 mesh.write("ring.stl")
 audit = riffler.Mesh.read("ring.stl").audit()
-print(f"ring.stl: {len(mesh.triangles)} triangles, {mesh.volume:.1f} mm³, {audit['open_edges']} open edges")
+print(f"ring.stl: {len(mesh.triangles)} triangles, {mesh.volume:.1f} mm³, {audit.open_edges} open edges")
 
 figure, ax = plt.subplots(figsize=(7, 4.2))
 View(riffler.Mesh.read("ring.stl"), azimuth=-65, elevation=40).show(ax, STEEL)

@@ -1,6 +1,6 @@
 """Make stock of a scan that is not closed: the volume closes its holes, and a report lists them.
 
-Shows: Volume.from_mesh with a report, Mesh.audit, Volume.sphere.
+Shows: Volume.from_mesh_with_report, Mesh.audit, Volume.sphere.
 """
 
 import numpy as np
@@ -20,13 +20,12 @@ kept = ball.triangles[(middle @ holes.T < np.cos([0.30, 0.22, 0.16])).all(axis=1
 scan = riffler.Mesh(vertices, kept)
 scan.write("scan.stl")
 
-report = {}
-stock = riffler.Volume.from_mesh(riffler.Mesh.read("scan.stl"), 0.25, "xyz", report=report)
-print(f"scan: {report['openings']:.0f} openings with {report['open_edges']:.0f} open edges; "
-      f"{report['doubtful_rays']:.1%} of the rays end in one")  # fmt: skip
+stock, report = riffler.Volume.from_mesh_with_report(riffler.Mesh.read("scan.stl"), 0.25, "xyz")
+print(f"scan: {report.openings} openings with {report.open_edges} open edges; "
+      f"{report.doubtful_rays:.1%} of the rays end in one")  # fmt: skip
 mesh = stock.to_mesh()
 ball_volume = 4 / 3 * np.pi * R**3
-print(f"stock: {stock.volume:.0f} mm³, {mesh.audit()['open_edges']} open edges; a perfect ball has {ball_volume:.0f}")
+print(f"stock: {stock.volume:.0f} mm³, {mesh.audit().open_edges} open edges; a perfect ball has {ball_volume:.0f}")
 
 # The scan's own picture needs a body: each triangle gets a thickness of 0.4 mm.
 inner = scan.vertices * (1 - 0.4 / R)

@@ -26,7 +26,7 @@ with riffler.pen.open("simulated") as pen:
     for old in Path().glob("pen*.r*"):  # a session never writes over a recording
         old.unlink()
     session.journal("pen.rjournal")
-    rows = []
+    rows, state = [], ""
     with session:
         for t in np.arange(0, 3.0, 0.03):  # the hand goes down, twice across, each time deeper, and up again
             across = 14 * np.cos(2 * np.pi * t / 1.5)

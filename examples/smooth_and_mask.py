@@ -1,6 +1,6 @@
 """Smooth a carved surface with a round brush, and protect a part of it with a mask.
 
-Shows: Volume.carve, Volume.soften with protect, Volume.intersect.
+Shows: Volume.carve, Volume.smooth with protect, Volume.intersect.
 """
 
 import numpy as np
@@ -8,20 +8,19 @@ import riffler
 from picture import BLUE, RED, View, plt, save
 
 # Rows of a ball cutter 4 mm apart leave ridges of about 0.7 mm on a block.
-box = {"lower": (0, 0, 0), "upper": (60, 40, 10), "pitch": 0.4, "directions": "xyz"}
-block = riffler.Volume.block(**box)
+LOWER, UPPER, PITCH = (0, 0, 0), (60, 40, 10), 0.4
+block = riffler.Volume.block(LOWER, UPPER, PITCH, "xyz")
 ball = riffler.Tool.ball(6, 30)
 for y in np.arange(-2, 45, 4.0):
     block.carve(ball, [[-5, y, 7, 0, 0, 1], [65, y, 7, 0, 0, 1]])
 before = block.copy()
 
 # The mask is a volume on the same grid: what lies in it stays, material and air. Here it is a cylinder in the middle.
-grid = {key: box[key] for key in ("lower", "upper")}
-mask = riffler.Volume.cylinder((30, 20, 5), 11, 30, box["pitch"], "xyz", **grid)
+mask = riffler.Volume.cylinder((30, 20, 5), 11, 30, PITCH, "xyz", lower=LOWER, upper=UPPER)
 x, y = np.meshgrid(np.arange(8, 53, 2.0), np.arange(8, 33, 2.0))
 dabs = np.column_stack([x.ravel(), y.ravel(), np.full(x.size, 7.3)])
 for _ in range(3):
-    block.soften(dabs, radius=5, strength=1.0, protect=mask)
+    block.smooth(dabs, radius=5, strength=1.0, protect=mask)
 
 
 def heights(volume):
@@ -31,7 +30,7 @@ def heights(volume):
 
 
 old, new = heights(before), heights(block)
-i, j = np.meshgrid(*((np.arange(n) + 0.5) * box["pitch"] for n in old.shape), indexing="ij")
+i, j = np.meshgrid(*((np.arange(n) + 0.5) * PITCH for n in old.shape), indexing="ij")
 masked = np.hypot(i - 30, j - 20) < 11
 free = (np.hypot(i - 30, j - 20) > 17) & (np.abs(i - 30) < 18) & (np.abs(j - 20) < 9)
 print(f"ridges {np.ptp(old[free]):.3f} mm high before, {np.ptp(new[free]):.3f} mm after, "

@@ -1,5 +1,5 @@
 """Python environments with pinned packages: ./.venv for the work, ./.envs/bpy-X.Y for each Blender, ./.envs/rivals,
-./.envs/docs for the documents' site."""
+./.envs/docs for the documents' site, ./.envs/types for the type checker."""
 
 from __future__ import annotations
 
@@ -51,6 +51,13 @@ def docs_environment() -> Path:
     """./.envs/docs, which makes the documents' site, made or brought up to date."""
     path = ROOT / ".envs" / "docs"
     make_environment(path, REQUIREMENTS / "docs.txt")
+    return path
+
+
+def types_environment() -> Path:
+    """./.envs/types, which checks types, made or brought up to date."""
+    path = ROOT / ".envs" / "types"
+    make_environment(path, REQUIREMENTS / "types.txt")
     return path
 
 

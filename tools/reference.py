@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import ast
+import dataclasses
 import importlib
 import inspect
+import itertools
 import re
+import textwrap
 from pathlib import Path
 from types import ModuleType
 
@@ -12,16 +16,19 @@ from shell import StepError
 
 # Page: title, and what is on it. Every public name of riffler stands on exactly one, which `write` checks.
 PAGES = {
-    "volumes": ("Volumes", ["Volume", "Cut", "Softened", "Snapshot"]),
+    "volumes": ("Volumes", ["Volume", "Cut", "Smoothed", "Snapshot", "VolumeReport", "SurfaceReport",
+                            "VolumeCounters"]),
     "tools": ("Tools", ["Tool", "ToolShape", "ToolSize"]),
-    "meshes": ("Meshes", ["Mesh", "Mesher", "FrozenSurface", "riffler.shape"]),
-    "contact": ("Contact", ["Collider", "Contact"]),
+    "meshes": ("Meshes", ["Mesh", "Audit", "Orientation", "Mesher", "Patch", "Hit", "Hits", "FrozenSurface",
+                          "PickCounters", "shape"]),
+    "contact": ("Contact", ["Collider", "Contact", "Nearest"]),
     "planning": ("Planning", ["plan"]),
     "programs": ("Programs and verification", ["Program", "machines", "machine_options", "verify", "Verification",
                                                "VerifyReport", "Finding", "Material", "cluster"]),
     "sessions": ("Sessions and journals", ["Session", "SessionFrame", "Journal", "JournalStroke", "JournalWriter"]),
     "pens": ("Pens", ["pen"]),
-    "calls": ("Tasks, threads, errors", ["tasks", "Task", "threads", "set_threads", "Cancelled", "FormatError"]),
+    "calls": ("Long calls, threads, errors", ["submit", "Future", "tasks", "threads", "set_threads", "Cancelled",
+                                              "FormatError"]),
 }  # fmt: skip
 
 # What pybind11 writes for arguments that Python converts, in the words of who calls.
@@ -68,24 +75,60 @@ def folded(head: str) -> str:
 
 
 def prose(text: str) -> list[str]:
-    """A docstring's text as Markdown: what ``::`` opens is indented as code is, an interpreter's lines are made so."""
+    """A docstring's text as Markdown: what ``::`` opens is indented as code is; the sections of a numpy docstring are
+    lists, its examples are code."""
     out: list[str] = []
-    for line in text.splitlines():
-        if line.startswith((">>>", "...")):
-            out += [] if out and out[-1].startswith("    ") else [""]
-            out.append(f"    {line}")
-        else:
+    section = ""
+    lines = text.splitlines()
+    for k, line in enumerate(lines):
+        rule = lines[k + 1] if k + 1 < len(lines) else ""
+        if rule.startswith("---") and re.fullmatch(r"[A-Z][a-z]+", line):
+            section = line
+            out += [f"**{line}**", "", *(["```python"] if line == "Examples" and has_code(lines[k + 2 :]) else [])]
+        elif line.startswith("---") and k and lines[k - 1] == section:
+            continue
+        elif section == "Examples" or not section:
             out.append(re.sub(r"::$", ":", line))
+        elif line and not line.startswith(" "):
+            name, colon, kind = line.partition(" : ")
+            out.append(f"- `{name}`{': ' * bool(colon)}{kind}  ")
+        else:
+            out.append(f"  {line.strip()}" if line else "")
+    if section == "Examples" and has_code(lines):
+        out.append("```")
     return [*out, ""]
+
+
+def has_code(lines: list[str]) -> bool:
+    return any(line.startswith(">>> ") for line in lines)
+
+
+def fields_of(cls: type) -> list[str]:
+    """A dataclass's or named tuple's attributes, with the text that stands below each in its source."""
+    body = ast.parse(textwrap.dedent(inspect.getsource(cls))).body[0]
+    assert isinstance(body, ast.ClassDef)
+    out = []
+    for field, text in itertools.pairwise([*body.body, ast.Pass()]):
+        if isinstance(field, ast.AnnAssign):
+            says = isinstance(text, ast.Expr) and isinstance(text.value, ast.Constant)
+            out.append(f"- `{ast.unparse(field.target)}`: {inspect.cleandoc(str(text.value.value)) if says else ''}")
+    return [*out, ""] if out else []
 
 
 def members_of(thing: type | ModuleType) -> list[str]:
     """A module without ``__all__`` has what it defines itself, not what it imports."""
-    public = [name for name in vars(thing) if not name.startswith("_")]
+    public = [name for name, value in vars(thing).items() if not name.startswith("_") and not is_old(value)]
+    if inspect.isclass(thing) and (dataclasses.is_dataclass(thing) or issubclass(thing, tuple)):
+        public = [name for name in public if callable(vars(thing)[name]) and name not in dir(tuple)]
     if isinstance(thing, ModuleType):
         own = [name for name in public if getattr(vars(thing)[name], "__module__", None) == thing.__name__]
         return list(getattr(thing, "__all__", own))
     return public
+
+
+def is_old(value: object) -> bool:
+    """Old names are in no document."""
+    return type(value).__name__ == "OldAttribute"
 
 
 def entry_of(name: str, thing: object, level: int, within: str = "") -> list[str]:
@@ -94,6 +137,8 @@ def entry_of(name: str, thing: object, level: int, within: str = "") -> list[str
     if inspect.isclass(thing) or isinstance(thing, ModuleType):
         lines = [heading, "", *prose(inspect.getdoc(thing) or "")]
         prefix = f"{name}." if inspect.isclass(thing) else ""
+        if inspect.isclass(thing) and (dataclasses.is_dataclass(thing) or issubclass(thing, tuple)):
+            lines += fields_of(thing)
         plain = []
         for member in members_of(thing):
             found = inspect.getattr_static(thing, member, None)

@@ -21,8 +21,11 @@ FIXES = [
     (r"^__compiler__: str = .*$", "__compiler__: str"),
     (r"^__version__: str = .*$", "__version__: str"),
     (r"(?<=def __next__\(self\) -> )\.\.\.:", "Program:"),  # an iterator that is bound before what it gives
-    (r"typing_extensions\.Buffer", "collections.abc.Buffer"),  # its name since Python 3.12
-    (r"^import typing_extensions\n", ""),
+    (r"(?<=def result\(self\) -> )typing\.Any", "object"),  # riffler.Future has the type of what its call returns
+    (r"^def then\(.*$", "def then(found: _Found, convert: collections.abc.Callable[[_Found], _Made]) -> _Made:"),
+    (r"^import typing$", "import typing\n_Found = typing.TypeVar('_Found')\n_Made = typing.TypeVar('_Made')"),
+    (r"(?<=def __eq__\(self, )\w+: \w+", "other: object"),
+    (r"(: [A-Z]\w+) = None", r"\1 | None = None"),  # pointers to what may be missing
     (r"[ \t]+$", ""),
 ]
 

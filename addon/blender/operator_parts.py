@@ -40,9 +40,7 @@ def busy(cls, context, simulation=True):
 
 def tell_turned(operator, name, mesh):
     """Warns if triangles of a mesh had to be turned to make it a solid."""
-    found = {}
-    mesh.oriented(found)
-    for note in notes_on(found):
+    for note in notes_on(mesh.orient_with_report()[1]):
         operator.report({"WARNING"}, f"{name}: {note}")
 
 

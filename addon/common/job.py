@@ -49,7 +49,7 @@ class DoneJob:
 
 
 class TaskJob:
-    """A native task (riffler.Task) as a job: once `step` has returned True, `result` is what the task made."""
+    """A riffler.Future as a job: once `step` has returned True, `result` is what the call made."""
 
     in_background = True
 
@@ -59,11 +59,11 @@ class TaskJob:
 
     @property
     def fraction(self) -> float:
-        return self._task.share
+        return self._task.progress()
 
     def step(self, budget: float = 0.0) -> bool:
         begin = self._clock()
-        while not self._task.done:
+        while not self._task.done():
             spent = self._clock() - begin
             if spent >= budget:
                 return False
@@ -111,7 +111,7 @@ class AfterJob:
     def __init__(self, task, make, in_background=True, text=""):
         self.in_background, self._text = in_background, text
         self._wait, self._make, self._job = TaskJob(task), make, None
-        self._begin = 0.0 if task.done else 0.5  # start of the job's share of the whole
+        self._begin = 0.0 if task.done() else 0.5  # start of the job's share of the whole
 
     @property
     def fraction(self) -> float:
@@ -138,26 +138,28 @@ class AfterJob:
 
 
 class ThreadTask:
-    """Counterpart of riffler.Task for a call without a native task: `call(progress)` on a Python thread. The call must
+    """Counterpart of riffler.Future that keeps Python alive: `call(progress)` on a Python thread. The call must
     not touch Blender, and must release Python's lock while it works, as long calls of riffler do."""
 
     def __init__(self, call):
-        self.share, self._cancelled = 0.0, False
+        self._share, self._cancelled = 0.0, False
         self._result, self._error = None, None
         self._thread = threading.Thread(target=self._run, args=(call,))
         self._thread.start()
 
     def _run(self, call) -> None:
         try:
-            self._result = call(self._progress)
+            self._result = call(self._report)
         except BaseException as error:  # `result` raises it
             self._error = error
 
-    def _progress(self, share: float) -> bool:
-        self.share = share
+    def _report(self, share: float) -> bool:
+        self._share = share
         return not self._cancelled
 
-    @property
+    def progress(self) -> float:
+        return self._share
+
     def done(self) -> bool:
         return not self._thread.is_alive()
 

@@ -42,7 +42,7 @@ class PenSession:
             self.live = live_registry.begin(context, ob)
             self.live.cut_off = False
             self._take_up()
-            self.live.chunks.show_tool(tool_solid.solid(tool.outline(0.02 * tool.diameter)))
+            self.live.chunks.show_tool(tool_solid.solid(tool.outline(tolerance=0.02 * tool.diameter)))
         except BaseException:
             self.run.halt()
             self.run.close()

@@ -22,8 +22,8 @@ CLASSES = ()
 
 @dataclass
 class Taken:
-    """Surfaces in millimetres of the scene, and the task (with the interface of riffler.Task) that builds surroundings
-    of them. `prints`: their hashes."""
+    """Surfaces in millimetres of the scene, and what builds surroundings of them (with the interface of
+    riffler.Future). `prints`: their hashes."""
 
     who: tuple  # names of part and fixtures, and the scene's mm per unit
     part: riffler.Mesh
@@ -38,15 +38,13 @@ class Taken:
         if self.made is None and self.making is None:
             self.making = Making(self.part, self.who[0], self.fixtures)
 
-    @property
     def done(self):
         """Poll this: the first call starts the task. Once it is True, `result` does not wait."""
         self.begin()
-        return self.making is None or self.making.done
+        return self.making is None or self.making.done()
 
-    @property
-    def share(self):
-        return 1.0 if self.making is None else self.making.share
+    def progress(self):
+        return 1.0 if self.making is None else self.making.progress()
 
     def cancel(self):
         """Does nothing: the task continues for the next query."""
@@ -120,7 +118,7 @@ def ask(context, ob):
     kept = _kept.get(ob.name)
     if kept is None or kept.doubtful or kept.who != _objects(context, ob)[2]:
         kept = take(context, ob)
-    return kept.result() if kept.done else None
+    return kept.result() if kept.done() else None
 
 
 def known(ob):

@@ -120,11 +120,17 @@ def state(scene, near, spot, axis):
     )
 
 
-def free_orientations(scene, near, spot, start=riffler.plan.free_orientations):
-    """Map at a spot, with the plan's tolerance and the scene's clearance of shank and holder; `start`: may be that of
-    riffler.tasks."""
+def free_orientations(scene, near, spot):
+    """Map at a spot, with the plan's tolerance and the scene's clearance of shank and holder."""
+    return start_free_orientations(scene, near, spot).result()
+
+
+def start_free_orientations(scene, near, spot):
+    """A riffler.Future of it."""
     tool = riffler.plan.with_room(spot.plan.tool, scene_units.clean(scene.riffler.plan.clearance))
-    return start(spot.line, spot.index, tool, near.collider, tolerance=spot.plan.tolerance or 0.01)
+    tolerance = spot.plan.tolerance or 0.01
+    free = riffler.plan.free_orientations
+    return riffler.submit(free, spot.line, spot.index, tool, near.collider, tolerance=tolerance)
 
 
 def _map(scene, near, wanted):
@@ -137,10 +143,10 @@ def _map(scene, near, wanted):
         return False
     if _task is None or _begun != wanted.key:
         _cancel()
-        _task = free_orientations(scene, near, wanted.spot, riffler.tasks.free_orientations)
+        _task = start_free_orientations(scene, near, wanted.spot)
         _begun = wanted.key
         return True
-    if not _task.done:
+    if not _task.done():
         return True
     _known.map, _known.old, _shown = _task.result(), False, _begun
     _task, maps = None, maps + 1

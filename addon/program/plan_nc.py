@@ -70,10 +70,10 @@ class RIFFLER_OT_plan_resolve(PlanWork, bpy.types.Operator):
             path = plan.paths[k]
             if k in plan.depths:
                 room = self._clearance
-                kept = riffler.tasks.kept_locations
-                return kept(path, plan.depths[k], plan.tool, near.collider, room, tolerance=tolerance)
+                kept = riffler.plan.kept_locations
+                return riffler.submit(kept, path, plan.depths[k], plan.tool, near.collider, room, tolerance=tolerance)
             sizes = {"tolerance": tolerance, "max_lift": self._max_lift}
-            return riffler.tasks.cutter_locations(path, tool, near.collider, **sizes)
+            return riffler.submit(riffler.plan.cutter_locations, path, tool, near.collider, **sizes)
 
         def start(k):
             def go(before):

@@ -65,7 +65,7 @@ class RIFFLER_OT_verify(LongWork, properties.VerifySettings, properties.GivenOpt
             limits.update(machine=setup.machine, machine_options=setup.options, machine_frame=setup.to_machine.tolist())
         return ChainJob(
             lambda _: ThreadTask(lambda progress: _verification(setup, part, fixtures, limits, progress)),
-            lambda verification: riffler.tasks.run(verification, setup.program),
+            lambda verification: riffler.submit(riffler.Verification.run, verification, setup.program),
         )
 
     def lost(self, context):

@@ -189,20 +189,23 @@ class Chunks:
 def _patch(mesher, bricks):
     """Vertices, triangles, edges and shading of a chunk, in the form of meshes.fill."""
     if versions.OWN_NORMALS:
-        vertices, triangles, *edges, normals = mesher.patch(bricks, edges=True, normals=meshes.SHARP_ANGLE)
-        return vertices, triangles, edges, {"normals": normals}
+        patch = mesher.patch(bricks, edges=True, normals=meshes.SHARP_ANGLE)
+        return *_arrays(patch), {"normals": patch.normals}
     if not versions.SMOOTH_BY_POLYGON:
-        vertices, triangles, *edges = mesher.patch(bricks, edges=True)
-        return vertices, triangles, edges, {}
+        return *_arrays(mesher.patch(bricks, edges=True)), {}
     # Triangles at an edge are flat: the mean normals of their corners lean away from their own by half of the edge's
     # angle.
-    vertices, triangles, *edges, normals = mesher.patch(bricks, edges=True, normals=np.pi)
-    corners = vertices[triangles]
+    patch = mesher.patch(bricks, edges=True, normals=np.pi)
+    corners = patch.vertices[patch.triangles]
     (a, b, c), (d, e, f) = (corners[:, 1] - corners[:, 0]).T, (corners[:, 2] - corners[:, 0]).T
     own = np.stack([b * f - c * e, c * d - a * f, a * e - b * d], axis=1)  # np.cross takes three times as long
     least = np.cos(0.5 * meshes.SHARP_ANGLE) * np.sqrt(np.einsum("fc,fc->f", own, own))
-    leaning = np.einsum("fkc,fc->fk", normals.reshape(-1, 3, 3), own).min(axis=1)
-    return vertices, triangles, edges, {"smooth": leaning >= least}
+    leaning = np.einsum("fkc,fc->fk", patch.normals.reshape(-1, 3, 3), own).min(axis=1)
+    return *_arrays(patch), {"smooth": leaning >= least}
+
+
+def _arrays(patch):
+    return patch.vertices, patch.triangles, [patch.edges, patch.corner_edges]
 
 
 def _new_collection(context, ob):

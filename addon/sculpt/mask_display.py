@@ -14,10 +14,10 @@ def on_grid_of(volume, mask):
     if mask is None or mask.volume == 0:
         return None
     if (mask.pitch, mask.directions) == (volume.pitch, volume.directions):
-        made = mask.grown(volume.lower, volume.upper)
+        made = mask.grow(volume.lower, volume.upper)
         if np.array_equal([made.lower, made.upper], [volume.lower, volume.upper]):
             return made  # on its previous rays
-    made = mask.resampled(volume.pitch, volume.directions, volume.lower, volume.upper)
+    made = mask.resample(volume.pitch, volume.directions, lower=volume.lower, upper=volume.upper)
     return made if made.volume > 0 else None
 
 

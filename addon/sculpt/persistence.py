@@ -10,7 +10,7 @@ A journal is deleted once the file is saved, or is closed on purpose: until then
 import time
 
 import bpy
-from riffler import tasks
+import riffler
 
 from ..blender import preferences_access
 from ..common.packing import Packing
@@ -129,7 +129,7 @@ class Persistence:
         if self._task is None:
             if token == self.packed or not self._packing.due(now):
                 return False
-            made = [tasks.to_bytes(v) for v in (content.volume, content.mask) if v is not None]
+            made = [riffler.submit(riffler.Volume.to_bytes, v) for v in (content.volume, content.mask) if v is not None]
             self._task = token, made
             if self.journal is not None:
                 self.journal.sync()
@@ -137,7 +137,7 @@ class Persistence:
         if of != token:
             self._task = None
             return False
-        if not all(task.done for task in made):
+        if not all(task.done() for task in made):
             return False
         self._task = None
         begin = time.perf_counter()

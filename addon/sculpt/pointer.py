@@ -78,7 +78,7 @@ def _on_surface(context, brush, run, tool, at):
 
 def tool_lines(cutter, pose, place, normal, view):
     """[(points (n, 2) in pixels, closed, whether it is the outline)] of a tool at its pose."""
-    outline = cutter.outline(0.002 * cutter.diameter)
+    outline = cutter.outline(tolerance=0.002 * cutter.diameter)
     axis, back = pose[3:], view.basis().back
     across = np.cross(axis, back)
     size = float(np.linalg.norm(across))

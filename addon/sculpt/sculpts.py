@@ -84,7 +84,7 @@ def commit(mesh, content, mm_per_unit, token="", unseen=""):
     """Makes `content` the mesh's and shows its volume. It must not be changed afterwards. Returns triangles. `unseen`:
     the error if there would be none; without it the mesh may be empty."""
     _must_be_fillable(mesh)
-    surface = content.volume.to_mesh(report={})  # anything that can fail comes before the first change
+    surface = content.volume.to_mesh_with_report()[0]  # anything that can fail comes before the first change
     if unseen and not len(surface.triangles):
         raise ValueError(unseen)
     sculpt_store.write(mesh, content, token)
@@ -147,7 +147,7 @@ def refill(mesh, mm_per_unit):
     """Shows the stored volume again: after the mesh was edited, or the scene's units were changed."""
     _must_be_fillable(mesh)
     content = sculpt_store.content(mesh)
-    _show_whole(mesh, content, content.volume.to_mesh(report={}), mm_per_unit)
+    _show_whole(mesh, content, content.volume.to_mesh_with_report()[0], mm_per_unit)
 
 
 @contextmanager

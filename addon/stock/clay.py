@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import bpy
 import numpy as np
+import riffler
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, FloatVectorProperty, StringProperty
-from riffler import tasks
 from riffler.mesh_notes import notes_on
 
 from ..blender import scene_units
@@ -40,7 +40,7 @@ class RIFFLER_OT_resample(SculptWork, bpy.types.Operator):
         wanted = volume.directions if self.directions == "KEEP" else self.directions
         area = estimate.shown_area(len(ob.data.polygons), volume.pitch)
         estimate.check_surface(ob.name, volume.upper - volume.lower, area, pitch)
-        return TaskJob(tasks.resampled(volume, pitch, wanted))
+        return TaskJob(riffler.submit(riffler.Volume.resample, volume, pitch, wanted))
 
     def finish(self, context, job):
         before = self._before
@@ -71,7 +71,7 @@ class RIFFLER_OT_room(SculptWork, bpy.types.Operator):
     def begin(self, context):
         _, self._before = self.take(context)
         volume, room = self._before.volume, scene_units.clean(self.room)
-        return TaskJob(tasks.grown(volume, volume.lower - room, volume.upper + room))
+        return TaskJob(riffler.submit(riffler.Volume.grow, volume, volume.lower - room, volume.upper + room))
 
     def finish(self, context, job):
         before, volume = self._before, job.result
@@ -145,7 +145,7 @@ class RIFFLER_OT_split(SculptWork, bpy.types.Operator):
 
     def begin(self, context):
         _, self._before = self.take(context)
-        return TaskJob(tasks.parts(self._before.volume, scene_units.clean(self.least)))
+        return TaskJob(riffler.submit(self._before.volume.parts, minimum=scene_units.clean(self.least)))
 
     def finish(self, context, job):
         first, *others = job.result or [self._before.volume]
@@ -193,15 +193,15 @@ class RIFFLER_OT_take_edits(SculptWork, bpy.types.Operator):
         ob, self._before = self.take(context)
         volume = self._before.volume
         surface = object_volumes.of_object(context, ob, ob)
-        box = volume.grown(*surface.bounds)  # so that unmoved material stays on its rays
-        self._report = {}
+        box = volume.grow(*surface.bounds)  # so that unmoved material stays on its rays
         rays = box.pitch, box.directions
-        return TaskJob(tasks.from_mesh(surface, *rays, lower=box.lower, upper=box.upper, report=self._report))
+        made = riffler.Volume.from_mesh_with_report
+        return TaskJob(riffler.submit(made, surface, *rays, lower=box.lower, upper=box.upper))
 
     def finish(self, context, job):
-        if job.result.volume <= 0:
+        before, (volume, report) = self._before, job.result
+        if volume.volume <= 0:
             raise ValueError("the edited mesh has no volume: close it, or undo the edits")
-        before, volume = self._before, job.result
         # unmoved: material that was moved has left it, or come into it
         mask = mask_display.on_grid_of(volume, before.mask)
         middle = sculpts.middle(self.mesh, before.volume)
@@ -210,7 +210,7 @@ class RIFFLER_OT_take_edits(SculptWork, bpy.types.Operator):
         ob = bpy.data.objects[self._object]
         for modifier in [m for m in ob.modifiers if m.show_viewport]:
             ob.modifiers.remove(modifier)
-        open_edges, mended = self._report.get("open_edges", 0), notes_on(self._report)
+        open_edges, mended = report.open_edges, notes_on(report)
         level = {"WARNING"} if open_edges or mended else {"INFO"}
         note = f", {units.counted(open_edges, 'open edge')} closed" if open_edges else ""
         note += f"; no longer in the NC code: {units.counted(len(before.cuts), 'cut')}" if before.cuts else ""

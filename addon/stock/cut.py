@@ -35,7 +35,7 @@ class CutShell(sculpt_work.TakesTool, SculptWork):
 
     def show(self, context, job):
         mm = sculpts.shown_mm_per_unit(self.mesh)
-        sculpts.show(self.mesh, job.volume.to_mesh(report={}), mm, self._before.mask)
+        sculpts.show(self.mesh, job.volume.to_mesh_with_report()[0], mm, self._before.mask)
 
     def restore(self, context):
         sculpts.refill(self.mesh, sculpts.shown_mm_per_unit(self.mesh))

@@ -4,7 +4,7 @@ import bpy
 import numpy as np
 import riffler
 from bpy_extras.io_utils import ExportHelper
-from riffler import tasks, threemf_writer
+from riffler import threemf_writer
 
 from ..blender import operator_parts
 from ..blender.file_work import FileWork
@@ -74,23 +74,23 @@ class ExportSurface(FileWork):
         matrix = sculpts.to_world_mm(ob, context.scene) if self.world else np.eye(4)
         name = ob.name
 
-        def write(surface):
+        def write(made):
+            surface, report = made
+            self._thin = report.lost_note
             if not len(surface.triangles):
-                raise ValueError(self._thin["lost_note"] or "the sculpt has no material left")
+                raise ValueError(self._thin or "the sculpt has no material left")
             surface = placed(surface, matrix)
             self._done = _said(surface)
             return self.job(surface, path, name)
 
-        self._thin = {}
         # a copy, so that sculpting can continue meanwhile
-        return AfterJob(
-            tasks.to_mesh(live_registry.content(ob).volume.copy(), report=self._thin), write, self.in_background
-        )
+        volume = live_registry.content(ob).volume.copy()
+        return AfterJob(riffler.submit(volume.to_mesh_with_report), write, self.in_background)
 
     def finish(self, context, job):
         name = bpy.path.basename(self.filepath)
-        if note := self._thin.get("lost_note"):
-            self.report({"WARNING"}, f"{name}: {note}")
+        if self._thin:
+            self.report({"WARNING"}, f"{name}: {self._thin}")
         self.report({"INFO"}, f"{name}: {self._done}")
         return {"FINISHED"}
 
@@ -111,7 +111,7 @@ class RIFFLER_OT_export_stl(ExportSurface, bpy.types.Operator, ExportHelper):
     in_background = True
 
     def job(self, surface, path, name):
-        return TaskJob(tasks.write(surface, path))
+        return TaskJob(riffler.submit(riffler.Mesh.write, surface, path))
 
 
 class RIFFLER_OT_export_3mf(ExportSurface, bpy.types.Operator, ExportHelper):

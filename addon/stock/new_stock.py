@@ -6,7 +6,6 @@ import bpy
 import numpy as np
 import riffler
 from mathutils import Matrix
-from riffler import tasks
 from riffler.mesh_notes import notes_on
 
 from ..blender import meshes, object_surfaces, operator_parts, refusals, scene_units
@@ -32,7 +31,6 @@ class _New(NamedTuple):
     name: str
     frame: Matrix  # its place in the world
     source: tuple = ()  # its source: name and file, as keys of bpy.data.objects
-    found: dict | None = None  # for a mesh: the report of from_mesh
 
 
 class RIFFLER_OT_new_stock(properties.StockSettings, LongWork, bpy.types.Operator):
@@ -70,8 +68,9 @@ class RIFFLER_OT_new_stock(properties.StockSettings, LongWork, bpy.types.Operato
 
     def finish(self, context, job):
         new, source, volume = self._new, self._from(), job.result
-        if new.found is not None:
-            self._check(source, volume)
+        if isinstance(volume, tuple):
+            volume, report = volume
+            self._check(source, volume, report)
         unseen = estimate.too_thin(new.source[0] if new.source else "the stock", volume.pitch)
         ob = sculpts.new_object(context, new.name, Content(volume), new.frame, unseen=unseen)
         if source is not None:
@@ -90,15 +89,14 @@ class RIFFLER_OT_new_stock(properties.StockSettings, LongWork, bpy.types.Operato
         """The object that the stock is made from, if there is one and it still exists."""
         return bpy.data.objects.get(self._new.source) if self._new.source else None
 
-    def _check(self, source, volume):
-        found = self._new.found
+    def _check(self, source, volume, report):
         if volume.volume <= 0:
-            why = found.get("lost_note") or "it has no volume at this pitch: close it, or use a finer one"
+            why = report.lost_note or "it has no volume at this pitch: close it, or use a finer one"
             raise ValueError(f"{source.name}: {why}")
-        if found.get("open_edges"):
-            count = units.counted(found["open_edges"], "open edge")
+        if report.open_edges:
+            count = units.counted(report.open_edges, "open edge")
             self.report({"WARNING"}, f"{source.name} is not closed: {count} closed approximately")
-        for note in notes_on(found):
+        for note in notes_on(report):
             self.report({"WARNING"}, f"{source.name}: {note}")
 
     # ------------------------------------------------------------------ (what it becomes, the job that makes it)
@@ -129,12 +127,12 @@ class RIFFLER_OT_new_stock(properties.StockSettings, LongWork, bpy.types.Operato
         if not size.all():
             raise ValueError(f"{source.name} is flat, so it has no volume: give it thickness, by the modifier Solidify")
         estimate.check_surface(source.name, size, mesh.area, pitch)
-        new = _New(f"{source.name} Stock", frame, sculpts.key_of(source), {})
-        return new, TaskJob(tasks.from_mesh(mesh, pitch, self.directions, report=new.found))
+        new = _New(f"{source.name} Stock", frame, sculpts.key_of(source))
+        return new, TaskJob(riffler.submit(riffler.Volume.from_mesh_with_report, mesh, pitch, self.directions))
 
     def _from_sculpt(self, context, source, frame):
         """Uses its volume itself: nothing is lost if the pitch stays the same."""
-        volume = sculpt_store.content(source.data).volume.resampled(units.clean(self.pitch), self.directions)
+        volume = sculpt_store.content(source.data).volume.resample(units.clean(self.pitch), self.directions)
         return _New(f"{source.name} Copy", frame, sculpts.key_of(source)), DoneJob(volume)
 
     def _from_recording(self, context):

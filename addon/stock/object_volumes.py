@@ -2,7 +2,8 @@
 
 import bpy
 import numpy as np
-from riffler import shape, tasks
+import riffler
+from riffler import shape
 
 from ..blender import curve_objects, object_surfaces, refusals
 from ..common import splines
@@ -11,7 +12,8 @@ from ..sculpt import sculpts
 
 def task_of(mesh, volume):
     """A task that makes the mesh (mm, the sculpt's frame) material on the volume's grid."""
-    return tasks.from_mesh(mesh, volume.pitch, volume.directions, lower=volume.lower, upper=volume.upper)
+    rays = volume.pitch, volume.directions
+    return riffler.submit(riffler.Volume.from_mesh, mesh, *rays, lower=volume.lower, upper=volume.upper)
 
 
 def of_object(context, source, ob):

@@ -3,7 +3,6 @@
 import bpy
 import riffler
 from mathutils import Matrix
-from riffler import tasks
 
 from ..blender import long_work, operator_parts, scene_units
 from ..common import units
@@ -55,7 +54,7 @@ class RIFFLER_OT_recover(TakesJournal, long_work.LongWork, bpy.types.Operator):
         self._found, self._lock = self.take()
         try:
             strokes, self._cuts, self._shaped, self._states = _prepared(self._found)
-            task = tasks.replay(strokes, self._found.folder, with_mask=True)
+            task = riffler.submit(riffler.Journal.replay, strokes, self._found.folder, with_mask=True)
         except BaseException:
             self._lock.release()
             raise

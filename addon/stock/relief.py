@@ -94,7 +94,7 @@ class RIFFLER_OT_relief(properties.ReliefSettings, SculptWork, bpy.types.Operato
         if not cells.any():
             raise ValueError("the sculpt falls too steeply under the picture: turn its place")
         yield
-        surface = shape.slab(top, bottom, cells)
+        surface = shape.slab(top, bottom, cells=cells)
         form = yield object_volumes.task_of(surface, volume)
         return form
 

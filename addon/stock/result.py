@@ -2,8 +2,8 @@
 
 import bpy
 import numpy as np
+import riffler
 from bpy.props import FloatProperty, StringProperty
-from riffler import tasks
 
 from ..blender import attributes, meshes, object_surfaces, operator_parts, refusals, scene_units
 from ..blender.long_work import LongWork
@@ -28,36 +28,50 @@ class RIFFLER_OT_to_mesh(properties.ResultSettings, SculptWork, bpy.types.Operat
         iterations, tolerance = self.iterations, scene_units.clean(self.tolerance)
 
         def first(_):
-            return tasks.to_mesh(content.volume, report=self._thin)
+            return riffler.submit(content.volume.to_mesh_with_report)
 
-        def smooth(mesh):
-            self._exact = mesh
-            return tasks.smooth(mesh, iterations, scene_units.clean(self.smooth_tolerance))
+        def made_of(found):
+            """The first step's mesh, whose report is kept; other steps give meshes."""
+            if not isinstance(found, tuple):
+                return found
+            mesh, report = found
+            self._thin = report.lost_note
+            return mesh
 
-        def decimate(mesh):
+        def smooth(found):
+            self._exact = made_of(found)
+            limit = scene_units.clean(self.smooth_tolerance)
+            return riffler.submit(self._exact.smooth, iterations=iterations, tolerance=limit)
+
+        def decimate(found):
+            mesh = made_of(found)
             if self._exact is None:
                 self._exact = mesh
-            return tasks.decimate(mesh, tolerance=tolerance)
+            return riffler.submit(riffler.Mesh.decimate, mesh, tolerance=tolerance)
 
         def there(mesh):
             self._made = mesh
-            return tasks.deviation(mesh, self._exact)
+            return riffler.submit(riffler.Mesh.deviation, mesh, self._exact)
 
         def back(distance):
             self._there = distance
-            return tasks.deviation(self._exact, self._made)
+            return riffler.submit(riffler.Mesh.deviation, self._exact, self._made)
 
-        self._exact, self._thin = None, {}
+        self._exact, self._thin = None, ""
         changes = [smooth] * (iterations > 0) + [decimate] * (tolerance > 0)
         return ChainJob(first, *changes, there, back) if changes else ChainJob(first)
 
     def finish(self, context, job):
         changed = self._exact is not None
-        mesh = self._made if changed else job.result
+        if changed:
+            mesh = self._made
+        else:
+            mesh, report = job.result
+            self._thin = report.lost_note
         if not len(mesh.triangles):
-            raise ValueError(self._thin["lost_note"] or "the sculpt has no material left")
-        if note := self._thin["lost_note"]:
-            self.report({"WARNING"}, note)
+            raise ValueError(self._thin or "the sculpt has no material left")
+        if self._thin:
+            self.report({"WARNING"}, self._thin)
         error = max(np.abs(self._there).max(), np.abs(job.result).max()) if changed else 0.0
         sculpt = bpy.data.objects[self._object]
         scale = sculpts.shown_mm_per_unit(sculpt.data)
@@ -139,7 +153,7 @@ class RIFFLER_OT_show_deviation(LongWork, bpy.types.Operator):
             raise ValueError("the mesh was edited: rebuild it first")
         if len(own.vertices) != len(ob.data.vertices):
             raise ValueError(f"{ob.name}: apply its modifiers first, since they change its vertices")
-        return TaskJob(tasks.deviation(own, _in_world(context, reference), signed=True))
+        return TaskJob(riffler.submit(riffler.Mesh.deviation, own, _in_world(context, reference), signed=True))
 
     def lost(self, context):
         ob = bpy.data.objects.get(self._object)

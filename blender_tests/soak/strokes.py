@@ -79,7 +79,7 @@ def replayed(volume, mask, carves):
             if mode == "soften":
                 dabs = rows[0 if new else 1 :, :3]
                 if len(dabs):
-                    volume.soften(dabs, 0.5 * tool.diameter, strength, mask)
+                    volume.smooth(dabs, 0.5 * tool.diameter, strength=strength, protect=mask)
             elif mode in ("mask", "unmask"):
                 if mask is None:
                     mask = riffler.Volume.empty(volume.lower, volume.upper, volume.pitch, volume.directions)

@@ -3,20 +3,22 @@
 from contextlib import contextmanager
 
 import bpy
-from riffler import tasks
+import riffler
 
 from support import common
 
 
 class Task:
-    """Has the interface of riffler.Task. `looks`: number of polls before it is done by itself; None: when the test says
-    so."""
+    """Has the interface of riffler.Future. `looks`: number of polls before it is done by itself; None: when the test
+    says so."""
 
     def __init__(self, looks=None, outcome="made"):
         self.looks, self.outcome, self.share = looks, outcome, 0.0
         self.finished = self.cancelled = False
 
-    @property
+    def progress(self):
+        return self.share
+
     def done(self):
         if self.looks is not None:
             self.looks -= 1
@@ -35,11 +37,13 @@ class Task:
 @contextmanager
 def meshes_taken_by(task):
     """Code that makes a volume of a mesh gets `task` instead of the native one."""
-    native, tasks.from_mesh = tasks.from_mesh, lambda *args, **kwargs: task
+    native = riffler.submit
+    made = (riffler.Volume.from_mesh, riffler.Volume.from_mesh_with_report)
+    riffler.submit = lambda call, *args, **kwargs: task if call in made else native(call, *args, **kwargs)
     try:
         yield
     finally:
-        tasks.from_mesh = native
+        riffler.submit = native
 
 
 class Stage:

@@ -57,7 +57,7 @@ def both(rows, mode):
     for k in range(0, rows, ROWS):
         piece = poses[k : k + ROWS + 1]
         if mode == "soften":  # the first of a piece was dabbed with the previous one
-            volume.soften(piece[1 if k else 0 :, :3], 0.5 * BALL.diameter, 0.5, mask)
+            volume.smooth(piece[1 if k else 0 :, :3], 0.5 * BALL.diameter, strength=0.5, protect=mask)
         elif mode in ("mask", "unmask"):
             mask.carve(BALL, piece, mode="add" if mode == "mask" else "remove")
         else:

@@ -277,7 +277,7 @@ def closed(path, expected, within):
     """An STL's surface: closed, and of the expected volume (mm³) within a share."""
     surface = riffler.Mesh.read(str(path))
     audit = surface.audit()
-    assert audit["open_edges"] == 0, audit
+    assert audit.open_edges == 0, audit
     assert abs(surface.volume / expected - 1) < within, (surface.volume, expected)
     return surface
 

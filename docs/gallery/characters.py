@@ -74,7 +74,7 @@ def main() -> None:
         volume = engraved(part, name, 0.5 if given.fast else 0.2)
         mesh = volume.to_mesh()
         print(f"{name}, {TOOLS[name].name}: {part.volume - volume.volume:.0f} mm³ removed")
-        if mesh.audit()["open_edges"]:
+        if mesh.audit().open_edges:
             raise SystemExit("the plate is not closed")
         picture.add(mesh.vertices + place, mesh.triangles, colour, smooth=32)
     if not given.fast:

@@ -38,7 +38,7 @@ def smooth(clay: riffler.Volume, *, radius: float, passes: int, within=None) -> 
         if within is not None:
             places = places[within(places)]
         cells = np.unique(np.floor(places / (0.8 * radius)), axis=0, return_index=True)[1]
-        clay.soften(places[np.sort(cells)], radius, strength=1.0)
+        clay.smooth(places[np.sort(cells)], radius, strength=1.0)
 
 
 class Sketcher:

@@ -128,7 +128,7 @@ def owl(pitch: float) -> riffler.Volume:
     smooth(made, radius=5.0, passes=1)
     face(made)
     smooth(made, radius=2.5, passes=1)
-    made = largest(made).resampled(pitch)
+    made = largest(made).resample(pitch)
     eyes(made)
     sketch = Sketcher(made)
     feathers(sketch)
@@ -144,7 +144,7 @@ def main() -> None:
     made = owl(0.5 if given.fast else 0.25)
     mesh = made.to_mesh()
     print(f"{made.volume:.0f} mm³, {len(mesh.triangles)} triangles")
-    if len(made.parts()) != 1 or mesh.audit()["open_edges"]:
+    if len(made.parts()) != 1 or mesh.audit().open_edges:
         raise SystemExit("the owl is not one closed piece")
     if given.fast:
         return

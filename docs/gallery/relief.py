@@ -79,7 +79,7 @@ def main() -> None:
     block, moves = milled(part, tool, 1.0 if given.fast else 0.2, 0.5 if given.fast else 0.2)
     mesh = block.to_mesh()
     print(f"{moves} moves, {block.volume:.0f} mm³ left, {len(mesh.triangles)} triangles")
-    if mesh.audit()["open_edges"]:
+    if mesh.audit().open_edges:
         raise SystemExit("the relief is not closed")
     if given.fast:
         return

@@ -1,7 +1,10 @@
 // The two ends of a verification on a cluster. Not public: riffler.cluster is.
+#include <pybind11/typing.h>
+
 #include "bindings/bindings.hpp"
 #include "bindings/one_caller.hpp"
 #include "bindings/shared_report.hpp"
+#include "bindings/typed.hpp"
 #include "bindings/verify_arguments.hpp"
 #include "verify/remote.hpp"
 #include "verify/verify_plan.hpp"
@@ -36,11 +39,13 @@ class SharedPlan : Guarded {
   verify::VerifyPlan plan_;
 };
 
-py::list add(SharedPlan& self, const nc::Program& chunk, const py::object& progress) {
+using ShareList = py::typing::List<py::typing::Tuple<std::size_t, std::size_t, py::bytes>>;
+
+ShareList add(SharedPlan& self, const nc::Program& chunk, const ProgressLike& progress) {
   const Progress listener = to_progress(progress);
   std::vector<verify::VerifyPlan::Share> shares =
       self.run([&](verify::VerifyPlan& plan) { return plan.add(chunk, listener); });
-  py::list out;
+  ShareList out;
   for (verify::VerifyPlan::Share& share : shares) {
     out.append(py::make_tuple(share.slab, share.moves, to_python(share.packet)));
     share.packet = {};
@@ -81,7 +86,7 @@ void bind_cluster(py::module_& m) {
   define_with_arguments(
       [&](const auto&... arguments) { bound.def(py::init(with_arguments<>(&make_of<SharedPlan>)), arguments...); });
   bound
-      .def("add", &add, py::arg("program"), py::arg("progress") = py::none(),
+      .def("add", &add, py::arg("program"), py::kw_only(), py::arg("progress") = py::none(),
            "List of (slab, number of moves, bytes) of the chunk: what can touch each slab.")
       .def(
           "context",
@@ -103,11 +108,11 @@ void bind_cluster(py::module_& m) {
           "A result of SlabWorker.run; ``last``: the slab has no more moves. FormatError for damaged bytes.")
       .def(
           "finish",
-          [](SharedPlan& self, const py::object& progress) {
+          [](SharedPlan& self, const ProgressLike& progress) {
             const Progress listener = to_progress(progress);
             return share(self.run([&](verify::VerifyPlan& plan) { return plan.finish(listener); }));
           },
-          py::arg("progress") = py::none(), "The VerifyReport, once all slabs are there.");
+          py::kw_only(), py::arg("progress") = py::none(), "The VerifyReport, once all slabs are there.");
 }
 
 }  // namespace riffler::bindings

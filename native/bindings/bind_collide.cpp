@@ -3,7 +3,7 @@
 #include <memory>
 #include <mutex>
 
-#include "bindings/bindings.hpp"
+#include "bindings/results.hpp"
 #include "bindings/shared_volume.hpp"
 #include "bindings/task.hpp"
 #include "riffler/base/parallel.hpp"
@@ -13,6 +13,9 @@
 namespace riffler::bindings {
 
 namespace {
+
+RIFFLER_TYPED(StiffnessLike,
+              "float | riffler._core.Material | collections.abc.Sequence[float | riffler._core.Material]")
 
 bool same(const std::vector<tool::Frustum>& a, const std::vector<tool::Frustum>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const tool::Frustum& f, const tool::Frustum& g) {
@@ -55,7 +58,7 @@ double to_stiffness(const py::handle& object) {
 using ColliderPtr = std::shared_ptr<collide::Collider>;
 
 collide::Collider::Settings settings_of(const std::optional<double>& spacing, double stiffness, double holder_stiffness,
-                                        const py::object& fixture_stiffness) {
+                                        const StiffnessLike& fixture_stiffness) {
   collide::Collider::Settings settings;
   if (spacing && !(*spacing > 0)) throw py::value_error("spacing must be positive");
   if (spacing) settings.spacing = *spacing;
@@ -69,7 +72,7 @@ collide::Collider::Settings settings_of(const std::optional<double>& spacing, do
 
 auto made(const std::shared_ptr<Mesh>& part, const std::vector<SharedVolume*>& fixtures,
           const std::optional<double>& spacing, double stiffness, double holder_stiffness,
-          const py::object& fixture_stiffness, const py::object& progress) {
+          const StiffnessLike& fixture_stiffness, const ProgressLike& progress) {
   std::vector<Volume> volumes;
   for (SharedVolume* v : fixtures) {
     if (!v) throw py::value_error("fixtures, volume " + std::to_string(volumes.size()) + ": None");
@@ -88,8 +91,9 @@ auto made(const std::shared_ptr<Mesh>& part, const std::vector<SharedVolume*>& f
 
 ColliderPtr make(const std::shared_ptr<Mesh>& part, const std::vector<SharedVolume*>& fixtures,
                  const std::optional<double>& spacing, double stiffness, double holder_stiffness,
-                 const py::object& fixture_stiffness) {
-  return made(part, fixtures, spacing, stiffness, holder_stiffness, fixture_stiffness, py::none()).cast<ColliderPtr>();
+                 const StiffnessLike& fixture_stiffness) {
+  return made(part, fixtures, spacing, stiffness, holder_stiffness, fixture_stiffness, ProgressLike(py::none()))
+      .cast<ColliderPtr>();
 }
 
 /// The row of `array` whose axis is not of unit length is named.
@@ -130,14 +134,16 @@ std::vector<double> clearances(const collide::Collider& self, const Tool& tool, 
   return out;
 }
 
-py::tuple nearest(const collide::Collider& self, const Tool& tool, const Doubles& array) {
+NearestResult nearest(const collide::Collider& self, const Tool& tool, const Doubles& array) {
   const Pose pose = one_pose(array);
   const std::shared_ptr<const collide::Assembly> assembly = prepared(tool);
   const collide::Collider::Nearest at = [&] {
     const NoGil release;
     return self.nearest(*assembly, pose);
   }();
-  return py::make_tuple(at.distance, from_vec3(at.point), name_of(at.touch));
+  using namespace py::literals;
+  return make_result(
+      "Nearest", py::dict("distance"_a = at.distance, "point"_a = from_vec3(at.point), "part"_a = name_of(at.touch)));
 }
 
 std::string describe(const collide::Collider& self) {
@@ -148,8 +154,8 @@ std::string describe(const collide::Collider& self) {
 }
 
 void bind_contact(py::module_& m) {
-  py::class_<collide::Contact>(m, "Contact",
-                               "What a tool meets at a pose: forces act on the tool, in the part's frame.")
+  py::class_<collide::Contact>(
+      m, "Contact", "What a tool meets at a pose: forces act on the tool, in the part's frame. See `Collider.query`.")
       .def_property_readonly(
           "force", [](const collide::Contact& c) { return from_vec3(c.force); }, "N, (3,): out of what is touched.")
       .def_property_readonly(
@@ -165,8 +171,8 @@ void bind_contact(py::module_& m) {
       .def_property_readonly(
           "parts",
           [](const collide::Contact& c) {
-            py::list names;
-            for (const collide::Touch t : c.touches) names.append(name_of(t));
+            std::vector<std::string> names;
+            for (const collide::Touch t : c.touches) names.emplace_back(name_of(t));
             return names;
           },
           "What touches at each point: \"cutter\", \"shank\", \"holder\", or \"fixture\" where it is one that is "
@@ -191,34 +197,159 @@ void bind_collide(py::module_& m) {
       m, "Collider",
       R"(A part and its fixtures, against which tools are held; immutable.
 
-``part`` is a Mesh, ``fixtures`` are Volumes, each of its own pitch; empty ones are ignored. ``spacing`` (mm) is
-that of the points on the part that forces are summed over, by default √(area / 100 000). The stiffnesses
-are N per mm of depth and mm² of surface against the cutter and against shank and holder, and N per mm³ of a
-fixture in the tool: one number or Material, or a list of one for each fixture. A pose is 6 numbers: tip, unit axis from the tip to the spindle. Calls may come from
-several threads and release the GIL.)")
+A pose is 6 numbers: tip in mm, unit axis from the tip to the spindle. Calls may come from several threads; they release
+Python's lock.
+
+Parameters
+----------
+part : Mesh
+    The surface; an empty one is ignored.
+fixtures : list of Volume
+    Each of its own pitch; empty ones are ignored.
+spacing : float, mm, or None
+    Of the points on the part that forces are summed over. Default: √(area / 100 000).
+stiffness : float, N per mm of depth and mm² of surface
+    Against the cutter.
+holder_stiffness : float, N per mm of depth and mm² of surface
+    Against shank and holder.
+fixture_stiffness : float, N per mm³ of a fixture in the tool, or a Material, or a list of one for each fixture
+    Against the whole tool.
+
+Raises
+------
+ValueError
+    Names the argument: a spacing that is not positive, another number of stiffnesses than of fixtures.
+
+Examples
+--------
+>>> part = riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5, directions="xyz").to_mesh()
+>>> collider = riffler.Collider(part)
+>>> collider.clearance(riffler.Tool.ball(6, 30), [[10, 10, 12, 0, 0, 1]]).round(3).tolist()
+[2.0]
+)")
       .def(py::init(&make), py::arg("part").none(false), py::kw_only(), py::arg("fixtures") = py::list(),
            py::arg("spacing") = py::none(), py::arg("stiffness") = 1.0, py::arg("holder_stiffness") = 10.0,
            py::arg("fixture_stiffness") = 10.0)
       .def_static("made", &made, py::arg("part").none(false), py::kw_only(), py::arg("fixtures") = py::list(),
                   py::arg("spacing") = py::none(), py::arg("stiffness") = 1.0, py::arg("holder_stiffness") = 10.0,
                   py::arg("fixture_stiffness") = 10.0, py::arg("progress") = py::none(),
-                  R"(The same as a function, for ``riffler.tasks.collider``. ``progress`` is asked at the beginning
-and at the end only.)")
-      .def("query", &query, py::arg("tool"), py::arg("pose"), py::arg("budget_us") = py::none(),
-           R"(Force, torque, depth and where they are, as a Contact. After ``budget_us`` microseconds what is left is
-only bounded: see ``checked`` and ``missed_depth_bound``.)")
+                  R"(The same as ``Collider(…)``, as a function with progress: what `riffler.submit` calls.
+
+Parameters
+----------
+part : Mesh
+    The surface; an empty one is ignored.
+fixtures : list of Volume
+    Each of its own pitch; empty ones are ignored.
+spacing : float, mm, or None
+    Of the points on the part that forces are summed over. Default: √(area / 100 000).
+stiffness : float, N per mm of depth and mm² of surface
+    Against the cutter.
+holder_stiffness : float, N per mm of depth and mm² of surface
+    Against shank and holder.
+fixture_stiffness : float, N per mm³ of a fixture in the tool, or a Material, or a list of one for each fixture
+    Against the whole tool.
+progress : callable or None
+    Called at the beginning and at the end only.
+
+Returns
+-------
+Collider
+    A new collider.
+
+Examples
+--------
+>>> part = riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5).to_mesh()
+>>> riffler.submit(riffler.Collider, part, spacing=0.5).result().spacing
+0.5
+)")
+      .def("query", &query, py::arg("tool"), py::arg("pose"), py::kw_only(), py::arg("budget_us") = py::none(),
+           R"(Force, torque and depth of a tool in contact, and where they are.
+
+Parameters
+----------
+tool : Tool
+    Cutter, shank and holder.
+pose : array_like of shape (6,), tip in mm and unit axis
+    Where the tool is.
+budget_us : float, µs, or None
+    After so long, what is left is only bounded: see ``checked`` and ``missed_depth_bound``.
+
+Returns
+-------
+Contact
+    With depth 0 where nothing touches.
+
+Raises
+------
+ValueError
+    Names the argument: no unit axis, a number that is not finite, a negative budget.
+
+Examples
+--------
+>>> part = riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5, directions="xyz").to_mesh()
+>>> collider = riffler.Collider(part)
+>>> hit = collider.query(riffler.Tool.ball(6, 30), [10, 10, 9.5, 0, 0, 1])
+>>> round(hit.depth, 3), hit.parts[0], bool(hit.force[2] > 0)
+(0.5, 'cutter', True)
+)")
       .def(
           "clearance",
           [](const collide::Collider& self, const Tool& tool, const Doubles& poses) {
             return take<double>(clearances(self, tool, poses));
           },
           py::arg("tool"), py::arg("poses"),
-          R"((n,) mm for poses (n, 6): the least signed distance between the part's surface and the union of cutter, shank
-and holder, negative where they overlap. Fixtures do not count. On all threads.)")
-      .def(
-          "nearest", &nearest, py::arg("tool"), py::arg("pose"),
-          R"((distance, point, part) for one pose, over part and fixtures: mm, (3,) mm on part or fixture, and what of the
-tool it is next to, or "fixture".)")
+          R"(The least signed distance between the part's surface and a tool, pose by pose, on all threads.
+
+The tool is the union of cutter, shank and holder. Fixtures do not count.
+
+Parameters
+----------
+tool : Tool
+    Cutter, shank and holder.
+poses : array_like of shape (n, 6), tip in mm and unit axis
+    Where the tool is.
+
+Returns
+-------
+ndarray of shape (n,), float64, mm
+    Negative where they overlap.
+
+Raises
+------
+ValueError
+    Names argument and row.
+
+Examples
+--------
+>>> part = riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5, directions="xyz").to_mesh()
+>>> collider = riffler.Collider(part)
+>>> collider.clearance(riffler.Tool.flat(6, 30), [[10, 10, 11, 0, 0, 1], [10, 10, 9, 0, 0, 1]]).round(3).tolist()
+[1.0, -1.0]
+)")
+      .def("nearest", &nearest, py::arg("tool"), py::arg("pose"),
+           R"(What of part and fixtures is nearest to a tool.
+
+Parameters
+----------
+tool : Tool
+    Cutter, shank and holder.
+pose : array_like of shape (6,), tip in mm and unit axis
+    Where the tool is.
+
+Returns
+-------
+Nearest
+    Distance, point on part or fixture, and what of the tool it is next to, or "fixture".
+
+Examples
+--------
+>>> part = riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5, directions="xyz").to_mesh()
+>>> collider = riffler.Collider(part)
+>>> distance, point, part = collider.nearest(riffler.Tool.ball(6, 30), [10, 10, 12, 0, 0, 1])
+>>> round(distance, 3), part
+(2.0, 'cutter')
+)")
       .def_property_readonly(
           "spacing", [](const collide::Collider& self) { return self.spacing(); }, "Of the points on the part, mm.")
       .def("__repr__", &describe);

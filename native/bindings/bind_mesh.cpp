@@ -1,25 +1,18 @@
-// riffler.Mesh: triangle meshes, their files, audit, decimation and smoothing.
-#include "riffler/mesh/mesh.hpp"
-
+// riffler.Mesh: its arrays, and its files.
 #include <array>
 #include <cstring>
-#include <memory>
 
+#include "bindings/mesh_class.hpp"
 #include "bindings/task.hpp"
-#include "mesh/closest.hpp"
+#include "bindings/typed.hpp"
 #include "mesh/io/scan.hpp"
 #include "mesh/weld.hpp"
-#include "riffler/mesh/audit.hpp"
-#include "riffler/mesh/decimate/decimate.hpp"
 #include "riffler/mesh/io/io.hpp"
-#include "riffler/mesh/orient.hpp"
-#include "riffler/mesh/smooth.hpp"
 
 namespace riffler::bindings {
 
 namespace {
 
-using MeshPtr = std::shared_ptr<Mesh>;
 /// A read-only view of a vector that `owner` keeps; a Mesh never changes once Python has it.
 template <class T, class V>
 py::array view(const base::BulkVector<V>& values, py::handle owner) {
@@ -74,7 +67,7 @@ mesh::Triangles to_triangles(const py::object& object) {
   return triangles;
 }
 
-MeshPtr make(const py::object& vertices, const py::object& triangles) {
+MeshPtr make(const ArrayLike& vertices, const ArrayLike& triangles) {
   auto mesh = std::make_shared<Mesh>(Mesh{to_vertices(vertices), to_triangles(triangles)});
   validate(*mesh);
   return mesh;
@@ -96,14 +89,14 @@ bool is_3mf(const std::filesystem::path& path) {
   return mesh::equal_ignoring_case(path.extension().string(), ".3mf");
 }
 
-MeshPtr read(const std::filesystem::path& path, const py::object& progress) {
+MeshPtr read(const std::filesystem::path& path, const ProgressLike& progress) {
   if (is_3mf(path)) return read_3mf(path);
   const Progress listener = to_progress(progress);
   const NoGil no_gil;
   return std::make_shared<Mesh>(mesh::read_mesh(path, listener));
 }
 
-auto write(const MeshPtr& mesh, const std::filesystem::path& path, const py::object& progress) {
+auto write(const MeshPtr& mesh, const std::filesystem::path& path, const ProgressLike& progress) {
   const auto work = [=](const Progress& listener) {
     write_mesh(*mesh, path, listener);
     return path;
@@ -116,65 +109,10 @@ auto write(const MeshPtr& mesh, const std::filesystem::path& path, const py::obj
   return decltype(long_call(progress, work, nothing))(py::none());
 }
 
-py::dict audit_dict(const Mesh& mesh, const py::object& progress) {
-  mesh::Audit a;
-  {
-    const Progress listener = to_progress(progress);
-    const NoGil no_gil;
-    a = audit(mesh, listener);
-  }
-  using namespace py::literals;
-  return py::dict("open_edges"_a = a.open_edges, "nonmanifold_edges"_a = a.nonmanifold_edges,
-                  "nonmanifold_vertices"_a = a.nonmanifold_vertices, "degenerate"_a = a.degenerate,
-                  "duplicates"_a = a.duplicates, "folds"_a = a.folds, "components"_a = a.components,
-                  "volume"_a = a.volume);
-}
-
 py::array_t<double> bounds_array(const Mesh& mesh) {
   if (mesh.empty()) throw py::value_error("a mesh without triangles has no bounds");
   const Box3 box = bounds(mesh);
   return take<double>(std::vector<Vec3>{box.lower, box.upper}, 3);
-}
-
-std::optional<std::size_t> to_count(const std::optional<std::int64_t>& triangles) {
-  if (!triangles) return {};
-  if (*triangles < 0) throw py::value_error("triangles must not be negative, not " + std::to_string(*triangles));
-  return static_cast<std::size_t>(*triangles);
-}
-
-auto decimated(const MeshPtr& mesh, std::optional<std::int64_t> triangles, std::optional<double> tolerance,
-               const py::object& progress) {
-  const mesh::DecimateLimits limits{to_count(triangles), tolerance};
-  const auto work = [=](const Progress& listener) { return std::make_shared<Mesh>(decimate(*mesh, limits, listener)); };
-  return long_call(progress, work, Identity());
-}
-
-auto smoothed(const MeshPtr& mesh, int iterations, std::optional<double> tolerance, double feature_angle,
-              const py::object& progress) {
-  const auto work = [=](const Progress& listener) {
-    return std::make_shared<Mesh>(smooth(*mesh, iterations, tolerance, feature_angle, listener));
-  };
-  return long_call(progress, work, Identity());
-}
-
-auto deviation_array(const MeshPtr& mesh, const MeshPtr& other, bool with_sign, const py::object& progress) {
-  const auto work = [=](const Progress& listener) { return deviation(*mesh, *other, with_sign, listener); };
-  return long_call(progress, work, [](std::vector<double>&& distances) { return take<double>(std::move(distances)); });
-}
-
-MeshPtr oriented_mesh(const MeshPtr& mesh, std::optional<py::dict> report, bool hollow) {
-  mesh::Orientation found;
-  std::optional<Mesh> better;
-  {
-    const NoGil no_gil;
-    better = oriented(*mesh, found, hollow ? mesh::Hollow::Kept : mesh::Hollow::Turned);
-  }
-  if (report) {
-    py::dict& d = *report;
-    d["turned"] = found.turned, d["turned_shells"] = found.turned_shells;
-    d["left_out"] = found.left_out, d["one_sided"] = found.one_sided;
-  }
-  return better ? std::make_shared<Mesh>(*std::move(better)) : mesh;
 }
 
 std::string repr(const Mesh& mesh) {
@@ -186,68 +124,100 @@ std::string repr(const Mesh& mesh) {
 
 void bind_mesh(py::module_& m) {
   using namespace py::literals;
-  py::class_<Mesh, MeshPtr> mesh(m, "Mesh",
-                                 R"(A triangle mesh, mm. It never changes: what changes a mesh returns a new one.
+  MeshClass mesh(m, "Mesh",
+                 R"(A triangle mesh, mm. It never changes: a method that changes a mesh returns a new one.
 
-Mesh(vertices, triangles): (n, 3) numbers and (k, 3) integers, indices of vertices, counter-clockwise seen from outside.
-ValueError naming the argument and the row for a wrong shape, a vertex that is not finite or beyond 1e30, an index out of
-range. Vertices are not welded; files are, when they are read.)");
+Parameters
+----------
+vertices : array_like of shape (n, 3), mm
+    Positions; they are not welded.
+triangles : array_like of shape (k, 3), integers
+    Indices of vertices, counter-clockwise seen from outside.
+
+Raises
+------
+ValueError
+    Names argument and row: a wrong shape, a vertex that is not finite or beyond 1e30, an index out of range.
+
+Examples
+--------
+>>> mesh = riffler.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+>>> mesh.area
+0.5
+)");
   mesh.def(py::init(&make), "vertices"_a, "triangles"_a);
-  mesh.def_static(
-      "read", &read, "path"_a, py::kw_only(), "progress"_a = py::none(),
-      R"(The mesh in a .stl (binary or ASCII), .obj, .ply or .3mf file; equal vertices become one. A .3mf file gives
-all that it says to build, placed, in mm whatever its unit; it needs the package lib3mf. FormatError naming the byte or
-line for a bad file (for .3mf what was expected), among them those with no triangle; ValueError for another extension.
-``progress`` is called with a share of the part of the file at hand, of .stl and .3mf not after the beginning.)");
-  mesh.def(
-      "write", &write, "path"_a, "progress"_a = py::none(),
-      R"(Writes .stl (binary, coordinates rounded to float32), .obj, .ply (binary) or .3mf (mm, float32 to its last step; needs the package
-lib3mf, which tells no progress), whole or not at all.)");
+  mesh.def_static("read", &read, "path"_a, py::kw_only(), "progress"_a = py::none(),
+                  R"(Reads a .stl (binary or ASCII), .obj, .ply or .3mf file; equal vertices become one.
+
+A .3mf file gives everything that it says to build, placed, in mm whatever its unit; it needs the package lib3mf.
+
+Parameters
+----------
+path : path_like, with one of these extensions
+    The file.
+progress : callable or None
+    Called with the finished share of the part of the file at hand, of .stl and .3mf not after the beginning. Returning
+    False cancels.
+
+Returns
+-------
+Mesh
+    In mm.
+
+Raises
+------
+FormatError
+    Names the byte or line of a bad file (of .3mf what was expected), among them files without a triangle.
+ValueError
+    Another extension.
+Cancelled
+    ``progress`` returned False.
+
+Examples
+--------
+>>> volume = riffler.Volume.block((0, 0, 0), (4, 3, 2), pitch=0.5)
+>>> volume.to_mesh().write("block.stl")
+>>> riffler.Mesh.read("block.stl")
+<riffler.Mesh: 210 vertices, 416 triangles>
+)");
+  mesh.def("write", &write, "path"_a, py::kw_only(), "progress"_a = py::none(),
+           R"(Writes a .stl (binary), .obj, .ply (binary) or .3mf file, whole or not at all.
+
+Coordinates of .stl are rounded to float32, those of .3mf (mm) are float32 to the last step; .3mf needs the package
+lib3mf, which reports no progress.
+
+Parameters
+----------
+path : path_like, with one of these extensions
+    The file; one that is there is replaced.
+progress : callable or None
+    Called with the finished share; returning False cancels.
+
+Raises
+------
+RuntimeError
+    The file cannot be written.
+ValueError
+    Another extension.
+Cancelled
+    ``progress`` returned False; no file is left, or the one that was there.
+
+Examples
+--------
+>>> riffler.Volume.block((0, 0, 0), (4, 3, 2), pitch=0.5).to_mesh().write("block.ply")
+)");
   mesh.def_property_readonly(
       "vertices", [](const py::object& self) { return view<double>(self.cast<const Mesh&>().vertices, self); },
-      "(n, 3) float64, read-only, no copy.");
+      "(n, 3) float64, mm, read-only, no copy.");
   mesh.def_property_readonly(
-      "triangles", [](const py::object& self) { return view<std::int32_t>(self.cast<const Mesh&>().triangles, self); },
+      "triangles", [](const py::object& self) { return view<int>(self.cast<const Mesh&>().triangles, self); },
       "(k, 3) int32, read-only, no copy.");
   mesh.def_property_readonly("volume", &mesh::volume, py::call_guard<NoGil>(), "mm³, signed; of a closed mesh.");
   mesh.def_property_readonly("area", &mesh::area, py::call_guard<NoGil>(), "mm².");
-  mesh.def_property_readonly(
-      "bounds", &bounds_array,
-      "(2, 3) float64, lower and upper corner of the triangles' box. ValueError without triangles.");
-  mesh.def("audit", &audit_dict, py::kw_only(), "progress"_a = py::none(),
-           R"(A dict of counts, all 0 but the last two for a closed two-manifold without defects:
-open_edges (of one triangle), nonmanifold_edges (of three or more, or of two in the same direction),
-nonmanifold_vertices (whose triangles are not one fan), degenerate (a vertex twice, or area exactly 0),
-duplicates (the vertices of an earlier triangle), folds (edges whose two triangles lie on each other),
-components (pieces connected across edges), volume (mm³, signed).)");
-  mesh.def(
-      "decimate", &decimated, "triangles"_a = py::none(), "tolerance"_a = py::none(), py::kw_only(),
-      "progress"_a = py::none(),
-      R"(A mesh with fewer triangles: down to `triangles`, or as far as old and new surface stay within `tolerance` (mm) of
-each other, or until the first of both. Closed and two-manifold where this one is; sharp edges and borders stay. The
-vertices are some of the old ones, or where that fits better new ones between them.)");
-  mesh.def(
-      "smooth", &smoothed, "iterations"_a = 10, "tolerance"_a = py::none(), py::kw_only(),
-      "feature_angle"_a = mesh::kFeatureAngle, "progress"_a = py::none(),
-      R"(A smoother mesh of the same triangles (Taubin) and the same volume; no vertex moves farther than `tolerance`
-(mm) in all. Edges whose sides turn by more than `feature_angle` (rad) stay sharp, and corners stay where they are, as
-do vertices on borders.)");
-  mesh.def(
-      "deviation", &deviation_array, "other"_a.none(false), py::kw_only(), "signed"_a = false,
-      "progress"_a = py::none(),
-      R"((n,) float64: how far (mm) each vertex is from the surface of `other`; with signed=True negative inside.)");
-  mesh.def("oriented", &oriented_mesh, "report"_a = py::none(), py::kw_only(), "hollow"_a = false,
-           R"(This mesh as the surface of a solid: the mesh itself, or one in which triangles are turned.
-
-What takes a mesh as a solid (Volume.from_mesh, Collider, verify, plan.pencil, plan.engrave, deviation with signs) does
-this by itself. In closed pieces orientation is carried over edges that two triangles share, the larger area decides, and
-they then face outwards, but for cavities: pieces within another that are oriented the other way round. Open pieces, and
-pieces with one side only, stay as they are. ``hollow``: leave closed pieces that all face inwards, as
-plans and Collider do: room in endless material.
-
-``report``: a dict that is filled with ``turned`` triangles; ``turned_shells``, closed pieces that faced inwards as a
-whole; ``left_out``, repeated triangles that tear the surface open, which name one vertex three times in the result;
-``one_sided``, pieces like a Möbius strip.)");
+  mesh.def_property_readonly("bounds", &bounds_array,
+                             "(2, 3) float64, mm: lower and upper corner of the triangles' box. ValueError without "
+                             "triangles.");
+  bind_mesh_edits(mesh);
   mesh.def("__repr__", &repr);
   mesh.def("__copy__", [](const MeshPtr& self) { return self; });
   mesh.def("__deepcopy__", [](const MeshPtr& self, const py::dict&) { return self; }, "memo"_a);
@@ -255,7 +225,7 @@ whole; ``left_out``, repeated triangles that tear the surface open, which name o
       py::pickle([](const py::object& self) { return py::make_tuple(self.attr("vertices"), self.attr("triangles")); },
                  [](const py::tuple& state) {
                    if (state.size() != 2) throw py::value_error("a pickled Mesh has two arrays");
-                   return make(state[0], state[1]);
+                   return make(py::object(state[0]), py::object(state[1]));
                  }));
 }
 

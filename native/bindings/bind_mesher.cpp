@@ -1,8 +1,10 @@
 #include <optional>
+#include <tuple>
+#include <utility>
 #include <variant>
 
-#include "bindings/bindings.hpp"
 #include "bindings/one_caller.hpp"
+#include "bindings/results.hpp"
 #include "bindings/shared_volume.hpp"
 #include "geom/math.hpp"
 #include "marching/patch_edges.hpp"
@@ -15,12 +17,12 @@ namespace {
 struct SharedMesher : Guarded {
   explicit SharedMesher(marching::Mesher m) : mesher(std::move(m)) {}
   marching::Mesher mesher;
-  marching::PickStats stats;  // under the GIL
+  marching::PickStats stats;  // since the last take_counters; under the GIL
 };
 
 struct SharedSurface {
   marching::FrozenSurface surface;
-  marching::PickStats stats;  // under the GIL
+  marching::PickStats stats;  // since the last take_counters; under the GIL
 };
 
 /// Held through every call.
@@ -32,22 +34,17 @@ Volume state_of(SharedVolume& volume) {
   return Reading(volume).volume.snapshot();
 }
 
-std::unique_ptr<SharedMesher> make(SharedVolume& volume, const py::object& callable) {
+std::unique_ptr<SharedMesher> make(SharedVolume& volume, const ProgressLike& callable) {
   const Progress progress = to_progress(callable);
   const Volume state = state_of(volume);
   const NoGil release;
   return std::make_unique<SharedMesher>(marching::Mesher(state, progress));
 }
 
-py::list to_list(const std::vector<std::size_t>& numbers) {
-  py::list out;
-  for (const std::size_t n : numbers) out.append(n);
-  return out;
-}
-
 using BrickOrBricks = std::variant<std::size_t, std::vector<std::size_t>>;
 
-py::tuple patch(SharedMesher& self, const BrickOrBricks& bricks, bool with_edges, const std::optional<double>& sharp) {
+PatchResult patch(SharedMesher& self, const BrickOrBricks& bricks, bool with_edges,
+                  const std::optional<double>& sharp) {
   if (sharp && !(*sharp >= 0 && *sharp <= kPi)) throw std::invalid_argument("normals: the angle must be 0 to pi rad");
   marching::MeshPatch patch;
   marching::PatchEdges edges;
@@ -60,25 +57,28 @@ py::tuple patch(SharedMesher& self, const BrickOrBricks& bricks, bool with_edges
     if (with_edges) edges = edges_of(patch);
     if (sharp) normals = self.mesher.corner_normals(patch, *sharp);
   }
-  py::list out;
-  out.append(take<float>(std::move(patch.vertices), 3));
-  out.append(take<std::int32_t>(std::move(patch.triangles), 3));
+  using namespace py::literals;
+  py::dict out("vertices"_a = take<float>(std::move(patch.vertices), 3),
+               "triangles"_a = take<std::int32_t>(std::move(patch.triangles), 3));
   if (with_edges) {
-    out.append(take<std::int32_t>(std::move(edges.vertices), 2));
-    out.append(take<std::int32_t>(std::move(edges.of_corner), 3));
+    out["edges"] = take<std::int32_t>(std::move(edges.vertices), 2);
+    out["corner_edges"] = take<std::int32_t>(std::move(edges.of_corner), 3);
   }
-  if (sharp) out.append(take<float>(std::move(normals), 3));
-  return py::tuple(out);
+  if (sharp) out["normals"] = take<float>(std::move(normals), 3);
+  return make_result("Patch", out);
 }
 
 using Hits = std::vector<std::optional<marching::SurfaceHit>>;
 
 py::object from_hit(const std::optional<marching::SurfaceHit>& hit) {
   if (!hit) return py::none();
-  return py::make_tuple(hit->distance, from_vec3(hit->point), from_vec3(hit->normal), hit->brick);
+  using namespace py::literals;
+  return make_result("Hit", py::dict("distance"_a = hit->distance, "point"_a = from_vec3(hit->point),
+                                     "normal"_a = from_vec3(hit->normal), "brick"_a = hit->brick));
 }
 
-py::tuple from_hits(const Hits& hits) {
+py::object from_hits(const Hits& hits) {
+  using namespace py::literals;
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   const marching::SurfaceHit nothing{std::numeric_limits<double>::infinity(), Vec3(kNone), Vec3(kNone), 0};
   std::vector<double> distances;
@@ -89,8 +89,9 @@ py::tuple from_hits(const Hits& hits) {
     distances.push_back(hit.distance), points.push_back(hit.point), normals.push_back(hit.normal);
     bricks.push_back(found ? static_cast<std::int64_t>(hit.brick) : -1);
   }
-  return py::make_tuple(take<double>(std::move(distances)), from_vec3s(points), from_vec3s(normals),
-                        take<std::int64_t>(std::move(bricks)));
+  return make_result("Hits",
+                     py::dict("distance"_a = take<double>(std::move(distances)), "point"_a = from_vec3s(points),
+                              "normal"_a = from_vec3s(normals), "brick"_a = take<std::int64_t>(std::move(bricks))));
 }
 
 void add(marching::PickStats& sum, const marching::PickStats& s) {
@@ -118,7 +119,7 @@ py::object pick(const Doubles& origin, const Doubles& direction, marching::PickS
     return hits_of(origins, directions, stats);
   }();
   add(sum, stats);
-  return one ? from_hit(hits[0]) : py::object(from_hits(hits));
+  return one ? from_hit(hits[0]) : from_hits(hits);
 }
 
 template <class Pickable>
@@ -129,7 +130,7 @@ Hits hits_of(Pickable& surface, const std::vector<Vec3>& origins, const std::vec
   return hits;
 }
 
-py::object pick_live(SharedMesher& self, const Doubles& origin, const Doubles& direction) {
+PickResult pick_live(SharedMesher& self, const Doubles& origin, const Doubles& direction) {
   return pick(origin, direction, self.stats,
               [&](const auto& origins, const auto& directions, marching::PickStats& stats) {
                 const auto held = lock(self);
@@ -137,18 +138,42 @@ py::object pick_live(SharedMesher& self, const Doubles& origin, const Doubles& d
               });
 }
 
-py::object pick_frozen(SharedSurface& self, const Doubles& origin, const Doubles& direction) {
+PickResult pick_frozen(SharedSurface& self, const Doubles& origin, const Doubles& direction) {
   return pick(origin, direction, self.stats,
               [&](const auto& origins, const auto& directions, marching::PickStats& stats) {
                 return hits_of(self.surface, origins, directions, stats);
               });
 }
 
-py::dict stats(marching::PickStats& sum) {
+PickCountersResult result_of(const marching::PickStats& s) {
   using namespace py::literals;
-  const marching::PickStats s = std::exchange(sum, {});
-  return py::dict("rays"_a = s.rays, "bricks_visited"_a = s.bricks_visited, "bricks_prepared"_a = s.bricks_prepared,
-                  "triangles_tested"_a = s.triangles_tested);
+  return make_result("PickCounters",
+                     py::dict("rays"_a = s.rays, "bricks_visited"_a = s.bricks_visited,
+                              "bricks_prepared"_a = s.bricks_prepared, "triangles_tested"_a = s.triangles_tested));
+}
+
+/// `counters` and `take_counters`, of a mesher or of a surface.
+template <class Shared>
+void bind_counters(py::class_<Shared>& bound) {
+  bound.def_property_readonly(
+      "counters", [](const Shared& self) { return result_of(self.stats); },
+      "PickCounters: the work of picking since it was made, or since `take_counters`. Reading them changes nothing.");
+  bound.def(
+      "take_counters", [](Shared& self) { return result_of(std::exchange(self.stats, {})); },
+      R"(The counters, which start again from 0.
+
+Returns
+-------
+PickCounters
+    The work since the last call.
+
+Examples
+--------
+>>> mesher = riffler.Mesher(riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5))
+>>> hit = mesher.pick((10, 10, 20), (0, 0, -1))
+>>> mesher.take_counters().rays, mesher.counters.rays
+(1, 0)
+)");
 }
 
 std::unique_ptr<SharedSurface> freeze(SharedMesher& self) {
@@ -163,94 +188,207 @@ std::unique_ptr<SharedSurface> freeze(SharedMesher& self) {
 }
 
 const char* const kPickText =
-    R"(The first point of the surface along a ray: ``(distance, point, normal, brick)``, or None.
+    R"(The first point of the surface along a ray, or along each of several.
 
-``direction`` may have any length but 0; ``distance`` is in mm. ``normal`` is that of the triangle that was hit, a unit
-vector out of the material: it points along the ray where the ray comes from inside. No ray falls through between
-triangles, and one that touches an edge hits it. With (n, 3) arrays, one ray a row, arrays of n rows: where nothing is
-hit ``distance`` is inf, ``brick`` -1, the rest NaN. ValueError naming the argument and row for what is not finite, or
-zero.)";
+No ray falls through between triangles, and one that touches an edge hits it.
+
+Parameters
+----------
+origin : array_like of shape (3,) or (n, 3), mm
+    Where each ray begins.
+direction : array_like of the same shape, of any length but 0
+    Where it goes.
+
+Returns
+-------
+Hit, None or Hits
+    For one ray a Hit, or None. For (n, 3) arrays a Hits with arrays of n rows: where nothing is hit, ``distance`` is
+    inf, ``brick`` -1, the rest NaN.
+
+Raises
+------
+ValueError
+    Names argument and row: what is not finite, or a direction of length 0.
+
+Examples
+--------
+>>> mesher = riffler.Mesher(riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5))
+>>> hit = mesher.pick((10, 10, 20), (0, 0, -1))
+>>> round(hit.distance, 3), hit.normal.round(3).tolist()
+(10.0, [0.0, 0.0, 1.0])
+)";
 
 void bind_frozen_surface(py::module_& m) {
-  py::class_<SharedSurface>(
-      m, "FrozenSurface",
-      R"(The surface of a ``Mesher`` as it was when ``freeze()`` was called, to be picked, whatever becomes of the mesher.)")
-      .def("pick", &pick_frozen, py::arg("origin"), py::arg("direction"), kPickText)
-      .def(
-          "stats", [](SharedSurface& self) { return stats(self.stats); },
-          "What picking took since the last call of stats(): rays, bricks_visited, triangles_tested.")
-      .def_property_readonly("triangles", [](const SharedSurface& self) { return self.surface.triangles(); })
+  py::class_<SharedSurface> surface(m, "FrozenSurface",
+                                    "The surface of a ``Mesher`` as it was when ``freeze()`` was called, to be picked, "
+                                    "whatever becomes of the mesher.");
+  surface.def("pick", &pick_frozen, py::arg("origin"), py::arg("direction"), kPickText)
+      .def_property_readonly(
+          "triangles", [](const SharedSurface& self) { return self.surface.triangles(); }, "How many it has.")
       .def_property_readonly(
           "nbytes", [](const SharedSurface& self) { return self.surface.nbytes(); },
           "Bytes of its triangles, of which it shares those of bricks that did not change with the mesher.");
+  bind_counters(surface);
+}
+
+std::vector<std::size_t> update(SharedMesher& self, SharedVolume& volume) {
+  const Volume state = state_of(volume);
+  const NoGil release;
+  const auto held = lock(self);
+  return self.mesher.update(state);
+}
+
+std::vector<std::size_t> patches(SharedMesher& self) {
+  const auto held = lock(self);
+  return self.mesher.patches();
+}
+
+std::tuple<int, int, int> shape(SharedMesher& self) {
+  const auto held = lock(self);
+  const Vec3i shape = self.mesher.shape();
+  return {shape.x, shape.y, shape.z};
+}
+
+Mesh whole(SharedMesher& self) {
+  const NoGil release;
+  const auto held = lock(self);
+  return self.mesher.mesh();
 }
 
 }  // namespace
 
 void bind_mesher(py::module_& m) {
   bind_frozen_surface(m);
-  py::class_<SharedMesher>(m, "Mesher", R"(The mesh of a volume that goes on changing, in bricks of 32 × 32 × 32 cells.
+  py::class_<SharedMesher> mesher(m, "Mesher",
+                                  R"(The mesh of a volume that keeps changing, in bricks of 32 × 32 × 32 cells.
 
 ``Mesher(volume)`` meshes all of it; ``update(volume)`` meshes again only where it was changed. What a mesher holds is
-always, bit for bit, what ``volume.to_mesh()`` gives. It keeps a snapshot of the volume, which shares its tiles.)")
-      .def(py::init(&make), py::arg("volume"), py::arg("progress") = py::none(),
-           "``progress``: called with the finished share; returning False cancels and raises Cancelled.")
-      .def(
-          "update",
-          [](SharedMesher& self, SharedVolume& volume) {
-            const Volume state = state_of(volume);
-            std::vector<std::size_t> changed;
-            {
-              const NoGil release;
-              const auto held = lock(self);
-              changed = self.mesher.update(state);
-            }
-            return to_list(changed);
-          },
-          py::arg("volume"),
-          "Follows a change of the volume and returns the numbers of the bricks whose patches changed, ascending. "
-          "ValueError for a volume with another box, pitch or directions.")
-      .def(
-          "patches", [](SharedMesher& self) { return to_list((lock(self), self.mesher.patches())); },
-          "Numbers of the bricks that have triangles, ascending.")
+always, bit for bit, what ``volume.to_mesh()`` gives. It keeps a snapshot of the volume, which shares its tiles.
+
+Parameters
+----------
+volume : Volume
+    What is meshed first.
+progress : callable or None
+    Called with the finished share; returning False cancels.
+
+Examples
+--------
+>>> volume = riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5)
+>>> mesher = riffler.Mesher(volume)
+>>> cut = volume.carve(riffler.Tool.ball(6, 30), [[5, 10, 8, 0, 0, 1], [15, 10, 8, 0, 0, 1]])
+>>> changed = mesher.update(volume)
+>>> len(mesher.mesh().triangles) == len(volume.to_mesh().triangles)
+True
+)");
+  mesher.def(py::init(&make), py::arg("volume"), py::kw_only(), py::arg("progress") = py::none())
+      .def("update", &update, py::arg("volume"), R"(Follows a change of the volume.
+
+Parameters
+----------
+volume : Volume
+    As it is now.
+
+Returns
+-------
+list of int
+    Numbers of the bricks whose patches changed, ascending.
+
+Raises
+------
+ValueError
+    A volume with another box, pitch or directions.
+
+Examples
+--------
+>>> volume = riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5)
+>>> mesher = riffler.Mesher(volume)
+>>> mesher.update(volume)
+[]
+)")
+      .def("patches", &patches, R"(Numbers of the bricks that have triangles.
+
+Returns
+-------
+list of int
+    Ascending.
+
+Examples
+--------
+>>> riffler.Mesher(riffler.Volume.block((0, 0, 0), (4, 3, 2), pitch=0.5)).patches()
+[0]
+)")
       .def_property_readonly(
-          "shape",
-          [](SharedMesher& self) {
-            const Vec3i shape = (lock(self), self.mesher.shape());
-            return py::make_tuple(shape.x, shape.y, shape.z);
-          },
+          "shape", &shape,
           "Bricks along each axis, with triangles or without: brick n stands at ``numpy.unravel_index(n, shape)``.")
-      .def("patch", &patch, py::arg("bricks"), py::arg("edges") = false, py::arg("normals") = py::none(),
-           R"((vertices (n, 3) float32, triangles (k, 3) int32) of a brick, empty where nothing is left.
+      .def("patch", &patch, py::arg("bricks"), py::kw_only(), py::arg("edges") = false, py::arg("normals") = py::none(),
+           R"(The triangles of a brick, or of several without seams between them.
 
 The brick's own vertices come first, then those of its neighbours that its triangles touch; what two patches share has
-the same coordinates in both, bit for bit. A sequence of bricks gives one patch of them all, without seams between them.
+the same coordinates in both, bit for bit.
 
-``edges=True`` adds edges (e, 2) int32, each once, and of each triangle's corners the edge to the next one, (k, 3)
-int32: Blender's ``.edge_verts`` and ``.corner_edge``. IndexError for a brick that there is not, ValueError for one
-that is there twice.
+Parameters
+----------
+bricks : int or list of int
+    Numbers as `patches` and `update` give them, each once.
+edges : bool
+    Whether edges are wanted, and of each triangle's corners the edge to the next one: Blender's ``.edge_verts`` and
+    ``.corner_edge``.
+normals : float, rad, or None
+    Asks for normals of the triangles' corners on the whole mesh: the mean of the triangles around the vertex, in
+    whatever brick, whose normals are within this angle of the corner's own.
 
-``normals``, an angle in rad, adds normals (3 k, 3) float32 of the triangles' corners on the whole mesh: the mean of the
-triangles around the vertex, in whatever brick, whose normals are within that angle of the corner's own.)")
+Returns
+-------
+Patch
+    Without triangles where nothing is left.
+
+Raises
+------
+IndexError
+    There is no such brick.
+ValueError
+    A brick is there twice.
+
+Examples
+--------
+>>> mesher = riffler.Mesher(riffler.Volume.block((0, 0, 0), (4, 3, 2), pitch=0.5))
+>>> patch = mesher.patch(0, normals=0.5)
+>>> patch.vertices.shape, patch.triangles.shape, patch.normals.shape
+((210, 3), (416, 3), (1248, 3))
+)")
       .def("pick", &pick_live, py::arg("origin"), py::arg("direction"), kPickText)
-      .def("freeze", &freeze,
-           R"(The surface as it is now, to be picked while the mesher goes on: a ``FrozenSurface``.
+      .def("freeze", &freeze, R"(The surface as it is now, to be picked while the mesher follows the volume.
 
 A stroke that follows the surface on which it began does not climb into its own groove. What did not change since the
-last call is shared; the first call looks at all triangles.)")
-      .def(
-          "stats", [](SharedMesher& self) { return stats(self.stats); },
-          "What picking and freezing took since the last call of stats(): rays, bricks_visited, bricks_prepared (those "
-          "that had changed), triangles_tested.")
-      .def(
-          "mesh",
-          [](SharedMesher& self) {
-            const NoGil release;
-            const auto held = lock(self);
-            return self.mesher.mesh();
-          },
-          "The whole mesh, the same as ``to_mesh()`` of the volume.")
-      .def_property_readonly("triangles", [](SharedMesher& self) { return (lock(self), self.mesher.triangles()); });
+last call is shared; the first call looks at all triangles.
+
+Returns
+-------
+FrozenSurface
+    It never changes.
+
+Examples
+--------
+>>> mesher = riffler.Mesher(riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5))
+>>> mesher.freeze().pick((10, 10, 20), (0, 0, 1)) is None
+True
+)")
+      .def("mesh", &whole, R"(The whole mesh, the same as ``to_mesh()`` of the volume.
+
+Returns
+-------
+Mesh
+    A new mesh.
+
+Examples
+--------
+>>> riffler.Mesher(riffler.Volume.block((0, 0, 0), (4, 3, 2), pitch=0.5)).mesh().audit().open_edges
+0
+)")
+      .def_property_readonly(
+          "triangles", [](SharedMesher& self) { return (lock(self), self.mesher.triangles()); }, "How many it has.");
+  bind_counters(mesher);
 }
 
 }  // namespace riffler::bindings

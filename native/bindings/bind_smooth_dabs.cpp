@@ -1,15 +1,13 @@
-// riffler.Volume.soften
+// riffler.Volume.smooth
 #include <optional>
 
-#include "bindings/bindings.hpp"
-#include "bindings/shared_volume.hpp"
+#include "bindings/typed.hpp"
+#include "bindings/volume_class.hpp"
 #include "riffler/dexel/smooth/smooth_dabs.hpp"
 
 namespace riffler::bindings {
 
 namespace {
-
-using VolumeClass = py::class_<SharedVolume, std::shared_ptr<SharedVolume>>;
 
 /// (n, 3), or (3,) for one.
 std::vector<Vec3> to_centres(Doubles array) {
@@ -18,7 +16,7 @@ std::vector<Vec3> to_centres(Doubles array) {
 }
 
 dexel::SmoothResult smooth_brush(SharedVolume& self, const Doubles& centres, double radius, double strength,
-                                 SharedVolume* protect, const py::object& progress) {
+                                 SharedVolume* protect, const ProgressLike& progress) {
   const std::vector<Vec3> dabs = to_centres(centres);
   dexel::SmoothOptions options{radius, strength, nullptr, to_progress(progress)};
   std::optional<Volume> kept;  // which may be `self`
@@ -31,7 +29,8 @@ dexel::SmoothResult smooth_brush(SharedVolume& self, const Doubles& centres, dou
 }  // namespace
 
 void bind_smooth_dabs(py::module_& m) {
-  py::class_<dexel::SmoothResult>(m, "Softened", "What each dab of a smooth brush did; arrays with one number per dab.")
+  py::class_<dexel::SmoothResult>(
+      m, "Smoothed", "What each dab of a smooth brush did; arrays with one number per dab. See `Volume.smooth`.")
       .def_property_readonly(
           "removed", [](const dexel::SmoothResult& s) { return take<double>(std::vector<double>(s.removed)); },
           "(n,) mm³ taken away.")
@@ -41,19 +40,46 @@ void bind_smooth_dabs(py::module_& m) {
       .def("__len__", [](const dexel::SmoothResult& s) { return s.removed.size(); });
 
   py::reinterpret_borrow<VolumeClass>(m.attr("Volume"))
-      .def("soften", &smooth_brush, py::arg("centres"), py::arg("radius"),
+      .def("smooth", &smooth_brush, py::arg("centres"), py::arg("radius"), py::kw_only(),
            py::arg("strength") = dexel::SmoothOptions{}.strength, py::arg("protect") = py::none(),
            py::arg("progress") = py::none(),
-           R"(Smooths the surface by dabs of a round brush at ``centres`` (n, 3) or (3,), one after the other.
+           R"(Smooths the surface by dabs of a round brush, one after the other; volumes with directions "xyz" only.
 
-``radius``: mm, of the brush; what lies beyond it stays as it is. ``strength``: 0 to 1, the share of the way to the
-smoothed surface at the brush's centre, less towards its rim. A dab levels what is finer than about four pitches and
-moves nothing by more than one pitch; repeat it for more. Planes stay as they are, edges become round, convex places
-lose material and concave ones get some, within the volume's box only.
+A dab levels what is finer than about four pitches and moves nothing by more than one pitch; repeat it for more. Planes
+stay planes, edges become round, convex places lose material and concave ones get some, within the volume's box only.
 
-Tri-dexel volumes ("xyz") only, whose ends have normals; ValueError for others. ``protect``: a volume of the same lower,
-upper, pitch and directions; what lies in it stays as it is, material and air. ``progress``: called with the finished
-share; returning False cancels, raises Cancelled and leaves the volume as it was.)");
+Parameters
+----------
+centres : array_like of shape (n, 3) or (3,), mm
+    Centres of the dabs.
+radius : float, mm
+    Of the brush; what lies beyond it stays unchanged.
+strength : float, from 0 to 1
+    The share of the distance to the smoothed surface at the brush's centre, less towards its rim.
+protect : Volume or None
+    Of the same lower, upper, pitch and directions; what lies in it stays unchanged, material and air.
+progress : callable or None
+    Called with the finished share; returning False cancels.
+
+Returns
+-------
+Smoothed
+    What each dab took away and put on.
+
+Raises
+------
+ValueError
+    The volume has one direction only; the protected volume's grid is another; names argument and row.
+Cancelled
+    ``progress`` returned False; the volume is as it was.
+
+Examples
+--------
+>>> volume = riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5, directions="xyz")
+>>> moved = volume.smooth((20, 10, 10), radius=4)
+>>> bool(moved.removed[0] > 0), len(moved)
+(True, 1)
+)");
 }
 
 }  // namespace riffler::bindings

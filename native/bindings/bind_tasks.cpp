@@ -1,4 +1,7 @@
-// riffler.Task and the number of threads.
+// Tasks, which riffler.Future waits for, and the number of threads.
+#include <algorithm>
+#include <chrono>
+
 #include "bindings/task.hpp"
 #include "riffler/base/parallel.hpp"
 
@@ -41,14 +44,7 @@ Task::~Task() {
 }
 
 py::object Task::result() {
-  // As often as a person at a keyboard notices.
-  for (bool ended = background_->done(); !ended;) {
-    {
-      const NoGil release;
-      ended = background_->wait(std::chrono::milliseconds(30));
-    }
-    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-  }
+  wait(std::nullopt);
   background_->check();
   // A stage may run Python, and with it another thread that asks; one that failed is not made again.
   const std::vector<Stage> stages = std::exchange(stages_, {});
@@ -58,9 +54,28 @@ py::object Task::result() {
   return found_ = std::move(found);
 }
 
+bool Task::wait(const std::optional<double>& timeout) {
+  using Clock = std::chrono::steady_clock;
+  using Seconds = std::chrono::duration<double>;
+  const Clock::time_point begin = Clock::now();
+  while (!background_->done()) {
+    Seconds step(0.03);  // as often as a person at a keyboard notices
+    if (timeout) step = std::min(step, Seconds(*timeout - Seconds(Clock::now() - begin).count()));
+    if (!(step.count() > 0)) return false;
+    {
+      const NoGil release;
+      background_->wait(std::chrono::milliseconds(1 + static_cast<int>(1000 * step.count())));
+    }
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+  }
+  return true;
+}
+
 void bind_tasks(py::module_& m) {
+  static const py::handle not_a_task = PyErr_NewException("riffler._core.NotATask", PyExc_TypeError, nullptr);
+  m.attr("NotATask") = not_a_task;
   py::class_<Task>(m, "Task",
-                   R"(A long call on a native thread, which runs no Python: made by the functions of riffler.tasks.
+                   R"(A long call on a native thread, which runs no Python: what a riffler.Future waits for.
 
 What the call was given is taken when it is made, volumes by a snapshot; what is done with them afterwards changes
 nothing. A Task that nobody holds any more is cancelled and waited for; so are all when Python ends.)")
@@ -75,11 +90,15 @@ nothing. A Task that nobody holds any more is cancelled and waited for; so are a
       .def("result", &Task::result,
            "What the call returns, the same object each time; waits for it, other threads go on. Raises what the call "
            "raises, Cancelled after ``cancel``. Ctrl-C ends the waiting, not the call.")
+      .def("wait", &Task::wait, py::arg("timeout") = py::none(),
+           "Waits until the call has ended, or for so many seconds; whether it has. Other threads run meanwhile.")
       .def("__repr__", [](const Task& t) {
         const base::Background& b = t.background();
         const int percent = static_cast<int>(100 * b.share());
         return std::string("<riffler.Task: ") + (b.done() ? "done" : std::to_string(percent) + " %") + ">";
       });
+  task_request() = py::type::of<Task>().ptr();
+  task_refusal() = not_a_task.ptr();
   m.def(
       "then",
       [](const py::object& found, const py::object& convert) -> py::object {
@@ -90,16 +109,43 @@ nothing. A Task that nobody holds any more is cancelled and waited for; so are a
       py::arg("found"), py::arg("convert"), "convert(found); of a Task, that it will be done by its result().");
   py::module_::import("atexit").attr("register")(py::cpp_function(&end_all));
 
-  m.def("threads", &base::thread_count,
-        "Threads that a parallel call uses: what set_threads() says, else RIFFLER_THREADS where that is set, else as "
-        "many "
-        "as the process may run on.");
+  m.def("threads", &base::thread_count, R"(How many threads a parallel call uses.
+
+That is what `set_threads` says, else RIFFLER_THREADS where that is set, else as many as the process may run on.
+
+Returns
+-------
+int
+    1 to 256.
+
+Examples
+--------
+>>> 1 <= riffler.threads() <= 256
+True
+)");
   m.def(
       "set_threads", [](std::optional<int> n) { base::set_thread_count(n); }, py::arg("n"),
       R"(Says how many threads parallel calls use from now on, in all of the process; those that run keep theirs.
 
-``n``: 1 to 256, or None: RIFFLER_THREADS decides again, or the CPU affinity. Results are the same bytes for any number.
-ValueError for others.)");
+Results are the same bytes for any number.
+
+Parameters
+----------
+n : int from 1 to 256, or None
+    None: RIFFLER_THREADS decides again, or the CPU affinity.
+
+Raises
+------
+ValueError
+    Another number.
+
+Examples
+--------
+>>> riffler.set_threads(1)
+>>> riffler.threads()
+1
+>>> riffler.set_threads(None)
+)");
 }
 
 }  // namespace riffler::bindings

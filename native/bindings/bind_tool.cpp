@@ -1,16 +1,23 @@
-// riffler.Tool, and riffler.ToolShape and ToolSize: the table of cutters.
-#include <array>
-#include <cctype>
-#include <utility>
-#include <variant>
+// riffler.Tool
+#include <pybind11/typing.h>
 
 #include "bindings/bindings.hpp"
+#include "bindings/typed.hpp"
 #include "riffler/tool/cutters.hpp"
 #include "riffler/tool/outline.hpp"
 
 namespace riffler::bindings {
 
+/// The functions of Tool that make named cutters, and their table (bind_tool_shapes.cpp).
+void bind_tool_shapes(py::module_& m, py::class_<Tool>& tool);
+
 namespace {
+
+RIFFLER_TYPED(RowsLike, "numpy.typing.ArrayLike | collections.abc.Sequence[collections.abc.Sequence[float]]")
+RIFFLER_TYPED(ToolDict, "dict[str, bool | float | str | list[tuple[float, ...]]]")
+RIFFLER_TYPED(OutlineList, "list[tuple[str, numpy.typing.NDArray[numpy.float64]]]")
+
+using FrustumList = py::typing::List<py::typing::Tuple<double, double, double, double>>;
 
 double number(const py::handle& value, const std::string& name) {
   try {
@@ -49,8 +56,8 @@ std::vector<tool::ProfileSegment> to_segments(const py::object& object) {
   return out;
 }
 
-py::list from_frusta(const std::vector<tool::Frustum>& pieces) {
-  py::list out;
+FrustumList from_frusta(const std::vector<tool::Frustum>& pieces) {
+  FrustumList out;
   for (const tool::Frustum& f : pieces) out.append(py::make_tuple(f.z0, f.r0, f.z1, f.r1));
   return out;
 }
@@ -109,7 +116,7 @@ Tool from_dict(const py::dict& d) {
 }
 
 /// Edges of one part that follow each other make one polyline.
-py::list outline(const Tool& tool, double tolerance) {
+OutlineList outline(const Tool& tool, double tolerance) {
   if (!(tolerance > 0) || !std::isfinite(tolerance)) throw py::value_error("tolerance must be positive and finite");
   constexpr const char* kNames[] = {"cutter", "shank", "holder"};
   py::list out;
@@ -127,132 +134,228 @@ py::list outline(const Tool& tool, double tolerance) {
     part = edge.part;
   }
   flush();
-  return out;
-}
-
-const char* unit_of(const tool::CutterSize& size) {
-  constexpr const char* kUnits[] = {"mm", "rad", "bool"};
-  return kUnits[static_cast<int>(size.unit)];
-}
-
-std::variant<bool, double> initial(const tool::CutterSize& size) {
-  if (size.unit == tool::SizeUnit::Flag) return size.initial != 0;
-  return size.initial;
-}
-
-std::string docstring(const tool::CutterShape& shape) {
-  std::string out = std::string(shape.description) + ".\n";
-  for (const tool::CutterSize& size : shape.sizes) {
-    std::string text = size.description;
-    text[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(text[0])));
-    out += std::string("\n- ``") + size.name + "``: " + text + (size.unit == tool::SizeUnit::Angle ? ", in rad" : "");
-  }
-  return out;
-}
-
-template <class T, std::size_t>
-using Each = T;
-
-/// Tool.<shape>(sizes): numbers, then flags, which are false by default.
-template <std::size_t... number, std::size_t... flag>
-void bind_shape(py::class_<Tool>& tool, const tool::CutterShape& shape, std::index_sequence<number...>,
-                std::index_sequence<flag...>) {
-  tool.def_static(
-      shape.name,
-      [&shape](Each<double, number>... numbers, Each<bool, flag>... flags) {
-        return make_cutter(shape, std::array{numbers..., static_cast<double>(flags)...});
-      },
-      py::arg(shape.sizes[number].name)..., (py::arg(shape.sizes[sizeof...(number) + flag].name) = false)...,
-      docstring(shape).c_str());
-}
-
-/// Tool.<shape>, which has `count` numbers or more.
-template <std::size_t count = 2>
-void bind_any_shape(py::class_<Tool>& tool, const tool::CutterShape& shape) {
-  constexpr std::size_t kMaxNumbers = 8;
-  std::size_t numbers = 0;
-  while (numbers < shape.sizes.size() && shape.sizes[numbers].unit != tool::SizeUnit::Flag) ++numbers;
-  const std::size_t flags = shape.sizes.size() - numbers;
-  if constexpr (count <= kMaxNumbers) {
-    if (numbers != count) return bind_any_shape<count + 1>(tool, shape);
-    if (flags == 0) return bind_shape(tool, shape, std::make_index_sequence<count>(), std::index_sequence<>());
-    if (flags == 1) return bind_shape(tool, shape, std::make_index_sequence<count>(), std::index_sequence<0>());
-  }
-  throw std::logic_error(std::string(shape.name) + ": a shape has 2 to 8 numbers, then one flag at most");
-}
-
-void bind_shapes(py::module_& m) {
-  py::class_<tool::CutterSize>(m, "ToolSize",
-                               "One size of a cutter shape. It means the same in every shape that has it.")
-      .def_readonly("name", &tool::CutterSize::name, "The argument's name, and the key in a tool's dict.")
-      .def_property_readonly("unit", &unit_of, "\"mm\", \"rad\" or \"bool\".")
-      .def_readonly("label", &tool::CutterSize::label, "Short name for a form.")
-      .def_readonly("description", &tool::CutterSize::description, "One phrase for a form's tooltip.")
-      .def_readonly("low", &tool::CutterSize::low, "Smallest value that a form should offer.")
-      .def_readonly("high", &tool::CutterSize::high, "Largest value that a form should offer.")
-      .def_property_readonly("default", &initial, "First value of a form; suits a cutter of 6 mm.")
-      .def_property_readonly(
-          "largest", [](const tool::CutterSize& s) { return s.largest > 0 ? std::optional(s.largest) : std::nullopt; },
-          "Largest multiple of the diameter that a form should offer, or None.")
-      .def("__repr__", [](const tool::CutterSize& s) { return "<riffler.ToolSize " + std::string(s.name) + ">"; });
-  py::class_<tool::CutterShape>(m, "ToolShape", "A named cutter shape, one row of Tool.shapes().")
-      .def_readonly("name", &tool::CutterShape::name,
-                    "The kind of its tools, and the function of Tool that makes them.")
-      .def_readonly("label", &tool::CutterShape::label, "Short name for a form.")
-      .def_readonly("description", &tool::CutterShape::description, "One phrase for a form's tooltip.")
-      .def_property_readonly(
-          "sizes",
-          [](const tool::CutterShape& s) { return std::vector<tool::CutterSize>(s.sizes.begin(), s.sizes.end()); },
-          "In the order of the function's arguments; one is \"diameter\", one \"length\".")
-      .def("__repr__", [](const tool::CutterShape& s) { return "<riffler.ToolShape " + std::string(s.name) + ">"; });
+  return py::object(out);
 }
 
 }  // namespace
 
 void bind_tool(py::module_& m) {
-  bind_shapes(m);
   py::class_<Tool> tool(m, "Tool", R"(A cutter with the shank and holder above it; immutable.
 
 Heights are measured from the tip towards the spindle, lengths in mm, angles in rad. ``length`` includes the
-rounded or conical end. Sizes that are not positive or do not fit raise ValueError naming the size.)");
-  for (const tool::CutterShape& shape : tool::cutter_shapes()) bind_any_shape(tool, shape);
+rounded or conical end. Sizes that are not positive or do not fit raise ValueError naming the size.
+
+Examples
+--------
+>>> riffler.Tool.ball(diameter=6, length=30) == riffler.Tool.ball(6, 30)
+True
+)");
+  bind_tool_shapes(m, tool);
   tool.def_static(
           "shapes",
           [] { return std::vector<tool::CutterShape>(tool::cutter_shapes().begin(), tool::cutter_shapes().end()); },
-          R"(The named cutter shapes with their sizes, for forms: those that have a function here but ``profile``.)")
+          R"(The named cutter shapes with their sizes, for forms: those that have a function here but `profile`.
+
+Returns
+-------
+list of ToolShape
+    In the order of the table.
+
+Examples
+--------
+>>> [shape.name for shape in riffler.Tool.shapes()][:2]
+['ball', 'flat']
+)")
       .def_static(
           "profile",
-          [](const py::object& segments, double length) { return cutters::profile(to_segments(segments), length); },
+          [](const RowsLike& segments, double length) { return cutters::profile(to_segments(segments), length); },
           py::arg("segments"), py::arg("length"),
-          R"(Free profile from the tip (0, 0) upwards: rows (radius, height) are lines, rows (radius, height,
-centre_radius, centre_height) arcs, the shorter way round; a cylinder follows up to ``length``.)")
-      .def_static("from_dict", &from_dict, py::arg("d"), "The tool of a tool library's entry; see to_dict.")
-      .def("to_dict", &to_dict, "The JSON / TOML form: kind, its sizes, name, shank and holder.")
+          R"(A free profile from the tip (0, 0) upwards; a cylinder follows up to ``length``.
+
+Parameters
+----------
+segments : list of rows of 2 or 4 numbers, mm
+    (radius, height) is a line to there, (radius, height, centre_radius, centre_height) an arc, the shorter way round.
+length : float, mm
+    Cutting length from the tip.
+
+Returns
+-------
+Tool
+    Without shank and holder.
+
+Raises
+------
+ValueError
+    Names the row.
+
+Examples
+--------
+>>> riffler.Tool.profile([(2, 0), (3, 1)], length=20).diameter
+6.0
+)")
+      .def_static("from_dict", &from_dict, py::arg("d"), R"(The tool of a tool library's entry.
+
+Parameters
+----------
+d : dict with the keys of `to_dict`
+    Kind, its sizes, and where there are such name, shank and holder.
+
+Returns
+-------
+Tool
+    Equal to the one that `to_dict` was called on.
+
+Raises
+------
+ValueError
+    Names the key that is missing or wrong.
+
+Examples
+--------
+>>> riffler.Tool.from_dict({"kind": "ball", "diameter": 6, "length": 30}).diameter
+6.0
+)")
       .def(
-          "with_shank",
-          [](const Tool& t, const py::object& pieces) { return t.with_shank(to_frusta(pieces, "shank")); },
-          py::arg("pieces"), "The same tool with a shank of truncated cones (z0, r0, z1, r1).")
+          "to_dict", [](const Tool& t) { return ToolDict(to_dict(t)); },
+          R"(The JSON / TOML form: kind, its sizes, name, shank and holder.
+
+Returns
+-------
+dict
+    Numbers, texts and lists only.
+
+Examples
+--------
+>>> riffler.Tool.ball(6, 30).to_dict()["kind"]
+'ball'
+)")
+      .def(
+          "with_shank", [](const Tool& t, const ArrayLike& pieces) { return t.with_shank(to_frusta(pieces, "shank")); },
+          py::arg("pieces"), R"(The same tool with another shank.
+
+Parameters
+----------
+pieces : array_like of shape (k, 4), mm
+    Truncated cones (z0, r0, z1, r1), heights from the tip.
+
+Returns
+-------
+Tool
+    A new tool.
+
+Raises
+------
+ValueError
+    Names the row.
+
+Examples
+--------
+>>> riffler.Tool.ball(6, 30).with_shank([(30, 3, 60, 3)]).shank
+[(30.0, 3.0, 60.0, 3.0)]
+)")
       .def(
           "with_holder",
-          [](const Tool& t, const py::object& pieces) { return t.with_holder(to_frusta(pieces, "holder")); },
-          py::arg("pieces"), "The same tool with a holder of truncated cones (z0, r0, z1, r1).")
-      .def(
-          "with_margins", &Tool::with_margins, py::arg("shank") = 0.0, py::arg("holder") = 0.0,
-          R"(The same tool with wider shank and holder, mm: to be planned and checked with, so that these keep clear of the
-part by as much while the cutter touches it. The ends of the holder move as well, those of the shank do not.)")
-      .def("named", &Tool::named, py::arg("name"), "The same tool under another name.")
-      .def_property_readonly("name", &Tool::name)
-      .def_property_readonly("kind", &Tool::kind)
+          [](const Tool& t, const ArrayLike& pieces) { return t.with_holder(to_frusta(pieces, "holder")); },
+          py::arg("pieces"), R"(The same tool with another holder.
+
+Parameters
+----------
+pieces : array_like of shape (k, 4), mm
+    Truncated cones (z0, r0, z1, r1), heights from the tip.
+
+Returns
+-------
+Tool
+    A new tool.
+
+Raises
+------
+ValueError
+    Names the row.
+
+Examples
+--------
+>>> riffler.Tool.ball(6, 30).with_holder([(40, 15, 80, 20)]).holder
+[(40.0, 15.0, 80.0, 20.0)]
+)")
+      .def("with_margins", &Tool::with_margins, py::kw_only(), py::arg("shank") = 0.0, py::arg("holder") = 0.0,
+           R"(The same tool with wider shank and holder: to be planned and checked with, so that these keep clear.
+
+The ends of the holder move as well, those of the shank do not.
+
+Parameters
+----------
+shank, holder : float, mm
+    By how much each is wider on every side.
+
+Returns
+-------
+Tool
+    A new tool.
+
+Raises
+------
+ValueError
+    A negative margin.
+
+Examples
+--------
+>>> riffler.Tool.ball(6, 30).with_shank([(30, 3, 60, 3)]).with_margins(shank=0.5).shank
+[(30.0, 3.5, 60.0, 3.5)]
+)")
+      .def("named", &Tool::named, py::arg("name"), R"(The same tool under another name.
+
+Parameters
+----------
+name : str
+    For messages and tool libraries.
+
+Returns
+-------
+Tool
+    A new tool.
+
+Examples
+--------
+>>> riffler.Tool.ball(6, 30).named("finisher").name
+'finisher'
+)")
+      .def_property_readonly("name", &Tool::name, "In messages and tool libraries.")
+      .def_property_readonly("kind", &Tool::kind, "\"ball\", \"flat\" …, or \"profile\".")
       .def_property_readonly("diameter", &Tool::diameter, "Largest diameter of the cutter, mm.")
       .def_property_readonly("length", &Tool::length, "From the tip to the end of the cutter, mm.")
-      .def_property_readonly("shank", [](const Tool& t) { return from_frusta(t.shank()); })
-      .def_property_readonly("holder", [](const Tool& t) { return from_frusta(t.holder()); })
-      .def("outline", &outline, py::arg("tolerance") = 0.01,
+      .def_property_readonly(
+          "shank", [](const Tool& t) { return from_frusta(t.shank()); }, "Truncated cones (z0, r0, z1, r1), mm.")
+      .def_property_readonly(
+          "holder", [](const Tool& t) { return from_frusta(t.holder()); }, "Truncated cones (z0, r0, z1, r1), mm.")
+      .def("outline", &outline, py::kw_only(), py::arg("tolerance") = 0.01,
            R"(The outline of cutter, shank and holder together, from the tip upwards, for drawing.
 
-A list of (part, points): ``"cutter"``, ``"shank"`` or ``"holder"``, and a polyline (n, 2) of radius and height, mm, that
-stays within ``tolerance`` of it. What lies inside of another piece is left out.)")
-      .def("__eq__", [](const Tool& a, const Tool& b) { return to_dict(a).equal(to_dict(b)); })
+What lies inside of another piece is left out.
+
+Parameters
+----------
+tolerance : float, mm
+    How close polylines stay to arcs.
+
+Returns
+-------
+list of (str, ndarray of shape (n, 2), mm)
+    "cutter", "shank" or "holder", and a polyline of radius and height.
+
+Raises
+------
+ValueError
+    A tolerance that is not positive.
+
+Examples
+--------
+>>> [(part, line.tolist()) for part, line in riffler.Tool.flat(6, 30).outline()][0]
+('cutter', [[0.0, 0.0], [3.0, 0.0], [3.0, 30.0], [0.0, 30.0]])
+)")
+      .def(
+          "__eq__", [](const Tool& a, const Tool& b) { return to_dict(a).equal(to_dict(b)); }, py::is_operator())
       .def("__hash__", [](const Tool& t) { return py::hash(py::str(to_dict(t))); })
       .def("__repr__",
            [](const Tool& t) {

@@ -60,7 +60,10 @@ auto verify(const py::object& program, GivenArguments given, const py::object& p
   }
   if (!py::isinstance<py::iterable>(program))
     throw py::value_error("program must be a Program or an iterable of Programs");
-  if (is_task_request(progress)) throw py::value_error("program must be a Program for a Task, which runs no Python");
+  if (is_task_request(progress)) {
+    PyErr_SetString(task_refusal(), "program must be a Program for a native task, which runs no Python");
+    throw py::error_already_set();
+  }
   const Progress listener = to_progress(progress);
   std::unique_ptr<verify::SlabRun> run;
   {

@@ -1,89 +1,11 @@
-// riffler.Volume
-#include <optional>
-
-#include "bindings/lost.hpp"
-#include "bindings/task.hpp"
+// riffler.Volume: its frame, its rays, its counters.
+#include "bindings/results.hpp"
+#include "bindings/typed.hpp"
 #include "bindings/volume_class.hpp"
-#include "riffler/dexel/boolean.hpp"
-#include "riffler/dexel/file/file.hpp"
-#include "riffler/dexel/from_mesh/from_mesh.hpp"
-#include "riffler/marching/to_mesh.hpp"
-#include "riffler/sweep/carve.hpp"
 
 namespace riffler::bindings {
 
 namespace {
-
-/// A volume's state at one time; shares its tiles.
-struct Snapshot {
-  Volume volume;
-};
-
-std::shared_ptr<SharedVolume> block(const py::object& lower, const py::object& upper, double pitch,
-                                    const std::string& directions) {
-  const dexel::Frame frame{{to_vec3(lower, "lower"), to_vec3(upper, "upper")}, pitch, directions};
-  return share(Volume::block(frame));
-}
-
-/// The box of a volume from a mesh: what is given, else the mesh's own. Said here, where the words "flat" and "lower"
-/// mean something to the caller, what Frame would refuse without them.
-Box3 box_around(const Mesh& mesh, const py::object& lower, const py::object& upper) {
-  validate(mesh);
-  if (mesh.empty()) throw py::value_error("mesh has no triangles, so no volume");
-  Box3 box = bounds(mesh);
-  for (int k = 0; k < 3 && (lower.is_none() || upper.is_none()); ++k)
-    if (!(box.lower[k] < box.upper[k]))
-      throw py::value_error(std::string("mesh is flat in ") + "xyz"[k] + ", so it has no volume");
-  if (!lower.is_none()) box.lower = to_vec3(lower, "lower");
-  if (!upper.is_none()) box.upper = to_vec3(upper, "upper");
-  return box;
-}
-
-void fill(py::dict& d, const dexel::MeshReport& r) {
-  d["triangles"] = r.triangles, d["degenerate"] = r.degenerate, d["duplicates"] = r.duplicates;
-  d["open_edges"] = r.open_edges, d["nonmanifold_edges"] = r.nonmanifold_edges;
-  d["inconsistent_edges"] = r.inconsistent_edges, d["openings"] = r.openings;
-  d["turned"] = r.turned, d["left_out"] = r.left_out, d["one_sided"] = r.one_sided;
-  d["flipped_shells"] = r.flipped_shells, d["inside_out"] = r.inside_out, d["overlap"] = r.overlap;
-  d["doubtful_rays"] = r.doubtful_rays;
-}
-
-auto volume_from_mesh(const std::shared_ptr<Mesh>& mesh, double pitch, const std::string& directions,
-                      const py::object& lower, const py::object& upper, const py::object& progress,
-                      std::optional<py::dict> report) {
-  struct Made {
-    std::shared_ptr<SharedVolume> volume;
-    dexel::MeshReport report;
-    Lost lost;
-  };
-  const dexel::Frame frame{box_around(*mesh, lower, upper), pitch, directions};
-  const auto work = [mesh, frame, reports = report.has_value()](const Progress& listener) {
-    Made out;
-    dexel::MissedMaterial missed;
-    Volume volume = dexel::from_mesh(*mesh, frame, listener, reports ? &out.report : nullptr, &missed);
-    out.lost = lost_in(volume, missed);
-    out.volume = share(std::move(volume));
-    return out;
-  };
-  return long_call(progress, work, [report](Made&& found) mutable {
-    if (report) fill(*report, found.report);
-    tell(found.lost, report);
-    return found.volume;
-  });
-}
-
-auto volume_to_mesh(SharedVolume& self, const py::object& progress, std::optional<py::dict> report) {
-  using Made = std::pair<std::shared_ptr<Mesh>, Lost>;
-  const auto work = [state = Reading(self).volume.snapshot()](const Progress& listener) {
-    Made out{std::make_shared<Mesh>(marching::to_mesh(state, listener)), {}};
-    out.second = lost_by_meshing(state, out.first->triangles.size());
-    return out;
-  };
-  return long_call(progress, work, [report](Made&& made) mutable {
-    tell(made.second, report);
-    return made.first;
-  });
-}
 
 const dexel::Grid& grid_of(const Volume& volume, const std::string& direction) {
   const std::vector<Axis> axes = dexel::parse_directions(direction);
@@ -130,89 +52,6 @@ py::array_t<double> normals(SharedVolume& self, const std::string& direction) {
   return out;
 }
 
-std::vector<double> to_times(const py::object& dt, std::size_t moves) {
-  if (dt.is_none()) return {};
-  const Doubles array = py::cast<Doubles>(dt);
-  if (array.ndim() == 0) return std::vector<double>(moves, *array.data());
-  if (array.ndim() != 1 || static_cast<std::size_t>(array.shape(0)) != moves)
-    throw py::value_error("dt must be a number or have the shape (" + std::to_string(moves) + ",), one per move");
-  return {array.data(), array.data() + moves};
-}
-
-sweep::CarveMode to_mode(const std::string& mode) {
-  if (mode == "remove") return sweep::CarveMode::Remove;
-  if (mode == "add") return sweep::CarveMode::Add;
-  throw py::value_error("mode must be \"remove\" or \"add\", not \"" + mode + "\"");
-}
-
-sweep::Cut carve_poses(SharedVolume& self, const Tool& tool, const Doubles& poses, double tolerance,
-                       const py::object& dt, double removal_constant, const py::object& progress,
-                       const std::string& mode, SharedVolume* protect) {
-  const std::vector<Pose> path = to_poses(poses, "poses");
-  sweep::CarveOptions options{tolerance,        to_times(dt, path.empty() ? 0 : path.size() - 1),
-                              removal_constant, to_progress(progress),
-                              to_mode(mode),    nullptr};
-  std::optional<Volume> kept;  // which may be `self`
-  if (protect) options.protect = &kept.emplace(Reading(*protect).volume.snapshot());
-  Writing writing(self);
-  const NoGil release;
-  return sweep::carve(writing.volume, tool, path, options);
-}
-
-/// v.subtract(w) and its like: changes v and returns it.
-auto boolean(dexel::Boolean op) {
-  return [op](const std::shared_ptr<SharedVolume>& self, SharedVolume& other, const py::object& progress) {
-    const Progress listener = to_progress(progress);
-    const Volume operand = Reading(other).volume.snapshot();  // which may be `self`
-    Writing writing(*self);
-    const NoGil release;
-    apply(op, writing.volume, operand, listener);
-    return self;
-  };
-}
-
-auto save_volume(SharedVolume& self, const std::filesystem::path& path, const py::object& progress) {
-  const auto work = [state = Reading(self).volume.snapshot(), path](const Progress& listener) {
-    save(state, path, listener);
-    return path;
-  };
-  return long_call(progress, work, [](const std::filesystem::path&) { return py::none(); });
-}
-
-std::shared_ptr<SharedVolume> load_volume(const std::filesystem::path& path, const py::object& progress) {
-  const Progress listener = to_progress(progress);
-  const NoGil release;
-  return share(dexel::load(path, listener));
-}
-
-auto volume_to_bytes(SharedVolume& self, const py::object& progress) {
-  const auto work = [state = Reading(self).volume.snapshot()](const Progress& listener) {
-    return to_bytes(state, listener);
-  };
-  return long_call(progress, work, [](const std::vector<std::uint8_t>& bytes) {
-    return py::bytes(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  });
-}
-
-std::shared_ptr<SharedVolume> volume_from_bytes(const py::buffer& data, const std::string& name) {
-  const py::buffer_info info = data.request();
-  const std::span bytes(static_cast<const std::uint8_t*>(info.ptr),
-                        static_cast<std::size_t>(info.size * info.itemsize));
-  const NoGil release;
-  return share(dexel::from_bytes(bytes, name));
-}
-
-py::dict stats(SharedVolume& self) {
-  Writing writing(self);
-  const dexel::Stats s = writing.volume.take_stats();
-  py::dict d;
-  d["moves"] = s.moves, d["steps"] = s.steps, d["tiles_visited"] = s.tiles_visited;
-  d["tiles_changed"] = s.tiles_changed, d["rays_tested"] = s.rays_tested, d["hits"] = s.hits,
-  d["rays_changed"] = s.rays_changed;
-  d["tiles_meshed"] = s.tiles_meshed, d["triangles_tested"] = s.triangles_tested, d["bytes_copied"] = s.bytes_copied;
-  return d;
-}
-
 std::string describe(SharedVolume& self) {
   const Reading reading(self);
   const Volume& v = reading.volume;
@@ -223,128 +62,158 @@ std::string describe(SharedVolume& self) {
          py::cast<std::string>(py::str(py::float_(v.frame().pitch))) + " mm, " + rays + " rays>";
 }
 
-void bind_cut(py::module_& m) {
-  py::class_<sweep::Cut>(m, "Cut", "What each move of a carve took away; arrays with one row per move.")
-      .def_property_readonly(
-          "removed", [](const sweep::Cut& c) { return take<double>(std::vector<double>(c.removed)); }, "(n,) mm³.")
-      .def_property_readonly(
-          "force", [](const sweep::Cut& c) { return from_vec3s(c.force); },
-          "(n, 3) N on the tool, against its motion; zeros unless dt was given.")
-      .def_property_readonly(
-          "torque", [](const sweep::Cut& c) { return from_vec3s(c.torque); },
-          "(n, 3) N·mm about the tip at the move's end.")
-      .def("__len__", [](const sweep::Cut& c) { return c.removed.size(); });
+py::object result_of(const dexel::Stats& s) {
+  using namespace py::literals;
+  return make_result("VolumeCounters",
+                     py::dict("moves"_a = s.moves, "steps"_a = s.steps, "tiles_visited"_a = s.tiles_visited,
+                              "tiles_changed"_a = s.tiles_changed, "rays_tested"_a = s.rays_tested, "hits"_a = s.hits,
+                              "rays_changed"_a = s.rays_changed, "tiles_meshed"_a = s.tiles_meshed,
+                              "triangles_tested"_a = s.triangles_tested, "bytes_copied"_a = s.bytes_copied));
 }
 
-}  // namespace
+/// All that was counted since the last `take_counters`: the volume's own counters are moved here when they are read.
+dexel::Stats& counted(SharedVolume& self) {
+  Writing writing(self);
+  return self.counted += writing.volume.take_stats();
+}
 
-void bind_volume(py::module_& m) {
-  bind_cut(m);
-  py::class_<Snapshot>(m, "Snapshot", "The state of a volume at one time; shares its tiles until they are written.")
-      .def_property_readonly("volume", [](const Snapshot& s) { return s.volume.volume(); })
-      .def_property_readonly("revision", [](const Snapshot& s) { return s.volume.revision(); })
-      .def_property_readonly("nbytes", [](const Snapshot& s) { return s.volume.nbytes(); });
+VolumeCountersResult counters(SharedVolume& self) {
+  return result_of(counted(self));
+}
 
-  VolumeClass volume(m, "Volume", R"(A dexel volume: material as spans along parallel rays.
+VolumeCountersResult take_counters(SharedVolume& self) {
+  return result_of(std::exchange(counted(self), {}));
+}
 
-``directions`` is "z" for one grid of rays or "xyz" for three (a tri-dexel volume, which also keeps the surface's
-normals and so its sharp edges). Ray (i, j) of "z" stands at lower + ((i + .5) h, (j + .5) h); "x" rays are indexed
-(y, z), "y" rays (z, x). Lengths in mm.)");
+std::size_t ray_count(SharedVolume& v) {
+  std::size_t n = 0;
+  for (const dexel::Grid& g : v.volume.grids()) n += static_cast<std::size_t>(g.nu()) * g.nv();
+  return n;
+}
+
+void bind_properties(VolumeClass& volume) {
   volume
-      .def_static("block", &block, py::arg("lower"), py::arg("upper"), py::arg("pitch"), py::arg("directions") = "z",
-                  "A box full of material. ValueError, before anything is allocated, if it does not fit in memory.")
-      .def_static("from_mesh", &volume_from_mesh, py::arg("mesh").none(false), py::arg("pitch"),
-                  py::arg("directions") = "z", py::arg("lower") = py::none(), py::arg("upper") = py::none(),
-                  py::arg("progress") = py::none(), py::arg("report") = py::none(),
-                  R"(The points whose absolute generalized winding number in ``mesh`` exceeds 1/2.
-
-Covers the mesh's box, or ``lower`` to ``upper`` (clipping what lies outside). Inside-out, overlapping, touching and open
-parts are fine, as are triangles that face the other way than their neighbours and repeated ones (Mesh.oriented); a mesh
-without volume is a ValueError.
-
-``report``: a dict that is filled with what was wrong with the mesh, all 0 but ``triangles`` for one that is closed and
-well oriented: ``degenerate`` and ``duplicates``, triangles; ``open_edges`` of one triangle, ``nonmanifold_edges`` of
-three or more, ``inconsistent_edges`` of two that run it in the same direction; ``turned`` triangles, turned to agree with
-their neighbours, ``left_out``, repeated ones that tear the surface open, ``one_sided`` pieces, like a Möbius strip;
-``openings``, walks along which the surface ends; ``flipped_shells`` that face into the material; of the volume, the shares ``inside_out``, where the
-winding number is negative, and ``overlap``, where it is 2 or more; ``doubtful_rays``, the share of the rays with
-material that end within an opening instead of on the surface; and with ``lost``, ``lost_box``, ``lost_pitch`` and
-``lost_note`` as by to_mesh(): what rays miss, or a mesh of the volume will lack. Without a report the note is a
-UserWarning.)")
-      .def_static("from_bytes", &volume_from_bytes, py::arg("data"), py::arg("name") = "volume",
-                  "The volume whose to_bytes() these are; ``name`` stands in messages.")
-      .def_property_readonly("pitch", [](SharedVolume& v) { return v.volume.frame().pitch; })
-      .def_property_readonly("directions", [](SharedVolume& v) { return v.volume.frame().directions; })
-      .def_property_readonly("lower", [](SharedVolume& v) { return from_vec3(v.volume.frame().box.lower); })
-      .def_property_readonly("upper", [](SharedVolume& v) { return from_vec3(v.volume.frame().box.upper); })
+      .def_property_readonly(
+          "pitch", [](SharedVolume& v) { return v.volume.frame().pitch; }, "Distance of neighbouring rays, mm.")
+      .def_property_readonly(
+          "directions", [](SharedVolume& v) { return v.volume.frame().directions; }, "\"z\" or \"xyz\".")
+      .def_property_readonly(
+          "lower", [](SharedVolume& v) { return from_vec3(v.volume.frame().box.lower); },
+          "(3,) mm: the box's corner with the smallest coordinates.")
+      .def_property_readonly(
+          "upper", [](SharedVolume& v) { return from_vec3(v.volume.frame().box.upper); },
+          "(3,) mm: the box's corner with the largest coordinates.")
       .def_property_readonly(
           "volume", [](SharedVolume& v) { return Reading(v).volume.volume(); },
           "mm³: lengths of the z rays × their areas (of the only rays, where there are no z rays). An area is h², but "
-          "for the "
-          "last rays, whose cells end with the box.")
+          "for the last rays, whose cells end with the box.")
       .def_property_readonly(
           "nbytes", [](SharedVolume& v) { return Reading(v).volume.nbytes(); },
           "Bytes held, shared tiles counted once.")
       .def_property_readonly(
           "revision", [](SharedVolume& v) { return Reading(v).volume.revision(); }, "Changes with the content.")
-      .def_property_readonly(
-          "rays",
-          [](SharedVolume& v) {
-            std::size_t n = 0;
-            for (const dexel::Grid& g : v.volume.grids()) n += static_cast<std::size_t>(g.nu()) * g.nv();
-            return n;
-          },
-          "Number of rays, all directions.")
-      .def("intervals", &intervals, py::arg("direction"),
-           "(counts (nu, nv) uint32, spans (counts.sum(), 2) [near, far]), rays in C order.")
-      .def("normals", &normals, py::arg("direction"),
-           "(spans, 2, 3): unit normals at the ends of the spans of ``intervals``; tri-dexel volumes only.")
-      .def("carve", &carve_poses, py::arg("tool"), py::arg("poses"), py::arg("tolerance") = 0.01,
-           py::arg("dt") = py::none(), py::arg("removal_constant") = sweep::CarveOptions{}.removal_constant,
-           py::arg("progress") = py::none(), py::arg("mode") = "remove", py::arg("protect") = py::none(),
-           R"(Takes away what the cutter sweeps along ``poses`` (n, 6): tip xyz, unit axis xyz; n - 1 moves.
+      .def_property_readonly("rays", &ray_count, "Number of rays, all directions.")
+      .def_property_readonly("counters", &counters,
+                             "VolumeCounters: the work since the volume was made, or since `take_counters`. Reading "
+                             "them changes nothing.")
+      .def("take_counters", &take_counters, R"(The counters, which start again from 0.
 
-``tolerance``: mm, for moves that turn the axis; others are exact. ``dt``: s, a number or (n - 1,), asks for force.
-``removal_constant``: N·s/mm³. Shank and holder never cut. ``progress``: called with the finished share; returning
-False cancels, raises Cancelled and leaves the volume as it was.
+Returns
+-------
+VolumeCounters
+    The work since the volume was made, or since the last call.
 
-``mode``: "remove", or "add", which puts material on wherever the cutter sweeps within the volume's box; ``removed`` is
-then what was put on. ``protect``: a volume of the same lower, upper, pitch and directions; what lies in it stays as it
-is, material and air. ValueError if its grid is another.)")
-      .def(
-          "snapshot", [](SharedVolume& v) { return Snapshot{Reading(v).volume.snapshot()}; },
-          "The state to come back to with restore(); costs pointers only.")
-      .def(
-          "restore", [](SharedVolume& v, const Snapshot& s) { Writing(v).volume.restore(s.volume); },
-          py::arg("snapshot"), "Back to a snapshot of this volume.")
-      .def(
-          "copy", [](SharedVolume& v) { return share(Reading(v).volume.snapshot()); },
-          "An independent volume; shares its tiles until one of the two is written.")
-      .def("__copy__", [](SharedVolume& v) { return share(Reading(v).volume.snapshot()); })
-      .def("__deepcopy__", [](SharedVolume& v, const py::dict&) { return share(Reading(v).volume.snapshot()); })
-      .def(
-          "subtract", boolean(dexel::Boolean::Subtract), py::arg("other"), py::arg("progress") = py::none(),
-          "Takes the other volume's material away, in place; returns this volume. ValueError unless both have the same "
-          "lower, upper, pitch and directions.")
-      .def("add", boolean(dexel::Boolean::Add), py::arg("other"), py::arg("progress") = py::none(),
-           "Adds the other volume's material, in place; see subtract.")
-      .def("intersect", boolean(dexel::Boolean::Intersect), py::arg("other"), py::arg("progress") = py::none(),
-           "Keeps what both volumes have, in place; see subtract.")
-      .def("save", &save_volume, py::arg("path"), py::arg("progress") = py::none(),
-           "Writes a .rvol file, whole or not at all. Equal volumes are equal files.")
-      .def_static("load", &load_volume, py::arg("path"), py::arg("progress") = py::none(),
-                  "Reads a .rvol file; FormatError where it is damaged or not one.")
-      .def("to_bytes", &volume_to_bytes, py::arg("progress") = py::none(), "The bytes of the .rvol file.")
-      .def("to_mesh", &volume_to_mesh, py::arg("progress") = py::none(), py::arg("report") = py::none(),
-           R"(The surface: closed, outward, two-manifold, and still so in a binary STL.
-
-``report``: a dict that is filled with what is no part of it, since it is thinner than the pitch: ``lost`` (mm³),
-``lost_box``, where, as two corners, or None; ``lost_pitch`` (mm) that keeps it, or None; ``lost_note``, a sentence where
-there is more than crumbs, otherwise empty. Without a report that sentence is a UserWarning.)")
-      .def(py::pickle([](SharedVolume& v) { return py::bytes(volume_to_bytes(v, py::none())); },
-                      [](const py::bytes& b) { return volume_from_bytes(py::buffer(b), "pickle"); }))
-      .def("stats", &stats, "Operation counters since the last call of stats().")
+Examples
+--------
+>>> volume = riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5)
+>>> cut = volume.carve(riffler.Tool.ball(6, 30), [[5, 10, 8, 0, 0, 1], [15, 10, 8, 0, 0, 1]])
+>>> volume.take_counters().moves, volume.counters.moves
+(1, 0)
+)")
       .def("__repr__", &describe);
+}
+
+void bind_rays(VolumeClass& volume) {
+  volume
+      .def("intervals", &intervals, py::arg("direction"),
+           R"(The material along every ray of a direction.
+
+Parameters
+----------
+direction : "x", "y" or "z", one that the volume has
+    Of the rays.
+
+Returns
+-------
+counts : ndarray of shape (nu, nv), uint32
+    Spans of each ray.
+spans : ndarray of shape (counts.sum(), 2), float64, mm
+    Near and far end of each span: coordinates along the ray, rays in C order.
+
+Raises
+------
+ValueError
+    The volume has no such rays.
+
+Examples
+--------
+>>> counts, spans = riffler.Volume.block((0, 0, 0), (4, 3, 2), pitch=0.5).intervals("z")
+>>> counts.shape, spans[0].tolist()
+((8, 6), [0.0, 2.0])
+)")
+      .def("normals", &normals, py::arg("direction"),
+           R"(The surface's normals at the ends of the spans of `intervals`; volumes with directions "xyz" only.
+
+Parameters
+----------
+direction : "x", "y" or "z", one that the volume has
+    Of the rays.
+
+Returns
+-------
+ndarray of shape (spans, 2, 3), float64
+    Unit normals at near and far ends, out of the material.
+
+Raises
+------
+ValueError
+    The volume has no such rays, or no normals.
+
+Examples
+--------
+>>> volume = riffler.Volume.block((0, 0, 0), (4, 3, 2), pitch=0.5, directions="xyz")
+>>> volume.normals("z")[0].round(3).tolist()
+[[0.0, 0.0, -1.0], [0.0, 0.0, 1.0]]
+)");
+}
+
+}  // namespace
+
+void bind_volume(py::module_& m) {
+  VolumeClass volume(m, "Volume", R"(A dexel volume: material as spans along parallel rays.
+
+``directions`` is "z" for one grid of rays or "xyz" for three (a tri-dexel volume, which also keeps the surface's
+normals and so its sharp edges). Ray (i, j) of "z" stands at lower + ((i + .5) h, (j + .5) h); "x" rays are indexed
+(y, z), "y" rays (z, x). Lengths in mm.
+
+Volumes are made by `block`, `empty`, `sphere`, `cylinder`, `from_mesh` and `load`. Operators of sets work on volumes
+with the same lower, upper, pitch and directions: ``v | w``, ``v & w``, ``v - w`` give a new volume, ``v |= w``,
+``v &= w``, ``v -= w`` change v.
+
+Examples
+--------
+>>> block = riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5)
+>>> ball = riffler.Volume.sphere((10, 10, 10), 6, pitch=0.5, lower=block.lower, upper=block.upper)
+>>> dish = block - ball
+>>> bool(dish.volume < block.volume), (dish | ball).volume == block.volume
+(True, True)
+)");
+  bind_volume_solids(volume);
+  bind_volume_meshes(volume);
+  bind_properties(volume);
+  bind_rays(volume);
+  bind_volume_carving(m, volume);
+  bind_volume_files(volume);
   bind_volume_edits(volume);
 }
 

@@ -1,54 +1,38 @@
-// riffler.Volume: what is done to it as a whole.
+// riffler.Volume: other volumes made of it, clipping, and what it holds.
+#include <pybind11/typing.h>
+
 #include "bindings/task.hpp"
+#include "bindings/typed.hpp"
 #include "bindings/volume_class.hpp"
 #include "riffler/dexel/clip.hpp"
 #include "riffler/dexel/contains.hpp"
 #include "riffler/dexel/from_mesh/from_mesh.hpp"
 #include "riffler/dexel/grown.hpp"
 #include "riffler/dexel/parts.hpp"
-#include "riffler/dexel/quadrics.hpp"
 #include "riffler/marching/to_mesh.hpp"
 
 namespace riffler::bindings {
 
 namespace {
 
-std::shared_ptr<SharedVolume> empty(const py::object& lower, const py::object& upper, double pitch,
-                                    const std::string& directions) {
-  return share(Volume({{to_vec3(lower, "lower"), to_vec3(upper, "upper")}, pitch, directions}));
-}
+/// A list whose items the signature names.
+using VolumeList = py::typing::List<std::shared_ptr<SharedVolume>>;
 
 /// What is given of a box, and of `own` what is not.
 Box3 box_or(const Box3& own, const py::object& lower, const py::object& upper) {
   return {lower.is_none() ? own.lower : to_vec3(lower, "lower"), upper.is_none() ? own.upper : to_vec3(upper, "upper")};
 }
 
-auto sphere_volume(const py::object& centre, double radius, double pitch, const std::string& directions,
-                   const py::object& lower, const py::object& upper, const py::object& progress) {
-  const dexel::Sphere solid{to_vec3(centre, "centre"), radius};
-  const dexel::Frame frame{box_or(bounds(solid), lower, upper), pitch, directions};
-  const auto work = [solid, frame](const Progress& listener) { return share(sphere(solid, frame, listener)); };
-  return long_call(progress, work, Identity());
-}
-
-auto cylinder_volume(const py::object& centre, double radius, double height, double pitch,
-                     const std::string& directions, const py::object& axis, const py::object& lower,
-                     const py::object& upper, const py::object& progress) {
-  const dexel::Cylinder solid{to_vec3(centre, "centre"), radius, height, to_vec3(axis, "axis")};
-  const dexel::Frame frame{box_or(bounds(solid), lower, upper), pitch, directions};
-  const auto work = [solid, frame](const Progress& listener) { return share(cylinder(solid, frame, listener)); };
-  return long_call(progress, work, Identity());
-}
-
-auto grown_volume(SharedVolume& self, const py::object& lower, const py::object& upper, const py::object& progress) {
+auto grown_volume(SharedVolume& self, const OptionalArrayLike& lower, const OptionalArrayLike& upper,
+                  const ProgressLike& progress) {
   const Volume state = Reading(self).volume.snapshot();
   const Box3 wanted = box_or(state.frame().box, lower, upper);
   const auto work = [state, wanted](const Progress& listener) { return share(grown(state, wanted, listener)); };
   return long_call(progress, work, Identity());
 }
 
-std::shared_ptr<SharedVolume> clip_volume(const std::shared_ptr<SharedVolume>& self, const py::object& point,
-                                          const py::object& normal, const py::object& progress) {
+std::shared_ptr<SharedVolume> clip_volume(const std::shared_ptr<SharedVolume>& self, const ArrayLike& point,
+                                          const ArrayLike& normal, const ProgressLike& progress) {
   const Vec3 p = to_vec3(point, "point"), n = to_vec3(normal, "normal");
   const Progress listener = to_progress(progress);
   Writing writing(*self);
@@ -57,12 +41,12 @@ std::shared_ptr<SharedVolume> clip_volume(const std::shared_ptr<SharedVolume>& s
   return self;
 }
 
-auto parts_of(SharedVolume& self, double least, const py::object& progress) {
-  const auto work = [state = Reading(self).volume.snapshot(), least](const Progress& listener) {
-    return parts(state, least, listener);
+auto parts_of(SharedVolume& self, double minimum, const ProgressLike& progress) {
+  const auto work = [state = Reading(self).volume.snapshot(), minimum](const Progress& listener) {
+    return parts(state, minimum, listener);
   };
   return long_call(progress, work, [](std::vector<Volume>&& found) {
-    py::list out;
+    VolumeList out;
     for (Volume& v : found) out.append(share(std::move(v)));
     return out;
   });
@@ -81,8 +65,8 @@ py::array_t<bool> contains_points(SharedVolume& self, const Doubles& points) {
   return out;
 }
 
-auto resampled(SharedVolume& self, double pitch, const std::optional<std::string>& directions, const py::object& lower,
-               const py::object& upper, const py::object& progress) {
+auto resampled(SharedVolume& self, double pitch, const std::optional<std::string>& directions,
+               const OptionalArrayLike& lower, const OptionalArrayLike& upper, const ProgressLike& progress) {
   const Volume state = Reading(self).volume.snapshot();
   const dexel::Frame& old = state.frame();
   const dexel::Frame frame{box_or(old.box, lower, upper), pitch, directions.value_or(old.directions)};
@@ -99,50 +83,155 @@ auto resampled(SharedVolume& self, double pitch, const std::optional<std::string
 
 void bind_volume_edits(VolumeClass& volume) {
   volume
-      .def_static("empty", &empty, py::arg("lower"), py::arg("upper"), py::arg("pitch"), py::arg("directions") = "z",
-                  "The box without material: what is put on (``carve``, ``add``) is all that it has. mm.")
-      .def_static("sphere", &sphere_volume, py::arg("centre"), py::arg("radius"), py::arg("pitch"),
-                  py::arg("directions") = "z", py::arg("lower") = py::none(), py::arg("upper") = py::none(),
-                  py::arg("progress") = py::none(),
-                  R"(A ball of material around ``centre``, mm, made of exact rays: it has no facets.
-
-Each end of a span is where its ray crosses the sphere, to the rounding of doubles, and has the sphere's normal. Covers
-the ball's box, or ``lower`` to ``upper``, clipping what lies outside. ValueError where all rays of a direction miss a
-ball that lies in the box: the message has a pitch at which they do not.)")
-      .def_static("cylinder", &cylinder_volume, py::arg("centre"), py::arg("radius"), py::arg("height"),
-                  py::arg("pitch"), py::arg("directions") = "z", py::arg("axis") = py::make_tuple(0, 0, 1),
-                  py::arg("lower") = py::none(), py::arg("upper") = py::none(), py::arg("progress") = py::none(),
-                  R"(A cylinder of material along ``axis``, of any length but 0; ``centre`` is the middle of it. mm.
-
-Made of exact rays as ``sphere``: the caps are planes, and meet the side at a sharp edge in volumes of three directions.
-Box and errors as there.)")
-      .def("grown", &grown_volume, py::arg("lower") = py::none(), py::arg("upper") = py::none(),
+      .def("grow", &grown_volume, py::arg("lower") = py::none(), py::arg("upper") = py::none(), py::kw_only(),
            py::arg("progress") = py::none(),
            R"(This volume in a larger box: a new volume with the same spans and normals, bit for bit.
 
-Rays stay where they stand, and others, without material, are put beside them: each side of the box moves outward by
-whole pitches until it lies at or beyond that of ``lower`` to ``upper`` (mm; default: its own), to 1e-6 of a pitch. A
-side that does already stays. Where a box's size is no whole number of pitches, an upper side may move one pitch more;
-``volume`` then counts the rays that were last with whole cells. ValueError, before anything is allocated, if the box
-does not fit in memory.)")
-      .def(
-          "clip", &clip_volume, py::arg("point"), py::arg("normal"), py::arg("progress") = py::none(),
-          "Takes away what lies in front of the plane through ``point`` (mm) with ``normal``, of any length, in place: "
-          "the new face looks out along it. Returns this volume.")
-      .def("parts", &parts_of, py::arg("least") = 0.0, py::arg("progress") = py::none(),
-           R"(A list of volumes on this one's grid, one for each piece that hangs together, the largest first.
+Rays stay where they stand, and others, without material, are put next to them: each side of the box moves outward by
+whole pitches until it lies at or beyond that of ``lower`` to ``upper``, to 1e-6 of a pitch. A side that does already
+stays. Where a box's size is no whole number of pitches, an upper side may move one pitch more; ``volume`` then counts
+the rays that were last with whole cells.
 
-Spans of neighbouring rays hang together where they overlap. Pieces smaller than ``least`` mm³ stay with the largest.
-The parts' volumes sum to this one's. ValueError for more than 1000 pieces.)")
+Parameters
+----------
+lower, upper : array_like of shape (3,), mm, or None
+    The box that is wanted. Default: this volume's own.
+progress : callable or None
+    Called with the finished share; returning False cancels.
+
+Returns
+-------
+Volume
+    A new volume.
+
+Raises
+------
+ValueError
+    Before anything is allocated, if the box does not fit in memory.
+Cancelled
+    ``progress`` returned False.
+
+Examples
+--------
+>>> volume = riffler.Volume.block((0, 0, 0), (4, 3, 2), pitch=0.5)
+>>> volume.grow(upper=(6, 3, 2)).upper.tolist()
+[6.0, 3.0, 2.0]
+)")
+      .def("clip", &clip_volume, py::arg("point"), py::arg("normal"), py::kw_only(), py::arg("progress") = py::none(),
+           R"(Takes away what lies in front of a plane, in place: the new face looks out along its normal.
+
+Parameters
+----------
+point : array_like of shape (3,), mm
+    On the plane.
+normal : array_like of shape (3,), of any length but 0
+    Points to what is taken away.
+progress : callable or None
+    Called with the finished share; returning False cancels.
+
+Returns
+-------
+Volume
+    This volume.
+
+Raises
+------
+ValueError
+    A normal of length 0.
+Cancelled
+    ``progress`` returned False.
+
+Examples
+--------
+>>> volume = riffler.Volume.block((0, 0, 0), (4, 3, 2), pitch=0.5)
+>>> volume.clip(point=(0, 0, 1), normal=(0, 0, 1)).volume
+12.0
+)")
+      .def("parts", &parts_of, py::kw_only(), py::arg("minimum") = 0.0, py::arg("progress") = py::none(),
+           R"(One volume on this one's grid for each piece that hangs together, the largest first.
+
+Spans of neighbouring rays hang together where they overlap. The parts' volumes sum to this one's.
+
+Parameters
+----------
+minimum : float, mm³
+    Smaller pieces stay with the largest.
+progress : callable or None
+    Called with the finished share; returning False cancels.
+
+Returns
+-------
+list of Volume
+    New volumes.
+
+Raises
+------
+ValueError
+    More than 1000 pieces, or a negative ``minimum``.
+Cancelled
+    ``progress`` returned False.
+
+Examples
+--------
+>>> volume = riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5)
+>>> cut = volume.carve(riffler.Tool.flat(4, 30), [[-5, 12, 0, 0, 0, 1], [25, 12, 0, 0, 0, 1]])
+>>> [part.volume for part in volume.parts()]
+[2000.0, 1200.0]
+)")
       .def("contains", &contains_points, py::arg("points"),
-           "(n,) bool for ``points`` (n, 3) mm: in the material, by the nearest ray of each direction; of three, two "
-           "decide.")
-      .def("resampled", &resampled, py::arg("pitch"), py::arg("directions") = py::none(), py::arg("lower") = py::none(),
-           py::arg("upper") = py::none(), py::arg("progress") = py::none(),
-           R"(This volume at another pitch, with other directions or in another box (default: its own): a new volume.
+           R"(Whether points lie in the material, by the nearest ray of each direction; of three, two decide.
 
-Material outside of the new box is left out. What is resampled is the mesh of ``to_mesh``, so a finer pitch brings no
-detail back. A volume with the same pitch, directions and box is a copy, bit for bit.)");
+Parameters
+----------
+points : array_like of shape (n, 3), mm
+    Anywhere.
+
+Returns
+-------
+ndarray of shape (n,), bool
+    One for each point.
+
+Examples
+--------
+>>> riffler.Volume.block((0, 0, 0), (4, 3, 2), pitch=0.5).contains([[1, 1, 1], [1, 1, 3]]).tolist()
+[True, False]
+)")
+      .def("resample", &resampled, py::arg("pitch"), py::arg("directions") = py::none(), py::kw_only(),
+           py::arg("lower") = py::none(), py::arg("upper") = py::none(), py::arg("progress") = py::none(),
+           R"(This volume at another pitch, with other directions or in another box: a new volume.
+
+Material outside of the new box is left out. The mesh of `to_mesh` is what is resampled, so a finer pitch brings no
+detail back. A volume with the same pitch, directions and box is a copy, bit for bit.
+
+Parameters
+----------
+pitch : float, mm
+    Distance of neighbouring rays.
+directions : "z", "xyz" or None
+    Default: this volume's own.
+lower, upper : array_like of shape (3,), mm, or None
+    The box. Default: this volume's own.
+progress : callable or None
+    Called with the finished share; returning False cancels.
+
+Returns
+-------
+Volume
+    A new volume.
+
+Raises
+------
+ValueError
+    The volume does not fit in memory.
+Cancelled
+    ``progress`` returned False.
+
+Examples
+--------
+>>> fine = riffler.Volume.block((0, 0, 0), (4, 3, 2), pitch=0.5, directions="xyz").resample(0.25)
+>>> round(fine.volume, 3), fine.pitch
+(24.0, 0.25)
+)");
 }
 
 }  // namespace riffler::bindings

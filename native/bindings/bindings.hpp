@@ -94,6 +94,11 @@ py::array_t<T> take(std::vector<V, A>&& values, std::size_t columns = 0) {
   return py::array_t<T>({n / wide, wide}, data, free);
 }
 
+/// The class of tasks, by which `riffler.submit` asks a call for a task; null in modules without tasks.
+PyObject*& task_request();
+/// The error of a call that can give none.
+PyObject*& task_refusal();
+
 /// A Python callable as Progress, for calls that released the GIL: takes it back, lets Ctrl-C through, and cancels
 /// where the callable returns False (None and anything else go on). Empty for None, but Ctrl-C still works.
 Progress to_progress(const py::object& callable);

@@ -89,7 +89,21 @@ std::vector<Pose> to_poses(const Doubles& array, const char* name) {
   return poses;
 }
 
+PyObject*& task_request() {
+  static PyObject* type = nullptr;
+  return type;
+}
+
+PyObject*& task_refusal() {
+  static PyObject* type = nullptr;
+  return type;
+}
+
 Progress to_progress(const py::object& callable) {
+  if (task_request() && callable.ptr() == task_request()) {
+    PyErr_SetString(task_refusal(), "progress: this call cannot be a task");
+    throw py::error_already_set();
+  }
   // The function object must be released under the GIL, wherever the last copy of the Progress dies.
   std::shared_ptr<py::object> held;
   if (!callable.is_none())

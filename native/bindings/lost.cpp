@@ -67,17 +67,16 @@ Lost lost_by_meshing(const Volume& volume, std::size_t triangles) {
   return out;
 }
 
-void tell(const Lost& lost, std::optional<py::dict>& report) {
-  if (!report) {
-    if (!lost.note.empty() && PyErr_WarnEx(PyExc_UserWarning, lost.note.c_str(), 2) != 0) throw py::error_already_set();
-    return;
-  }
-  py::dict& d = *report;
-  d["lost"] = lost.volume, d["lost_note"] = lost.note;
-  d["lost_pitch"] = lost.volume > 0 && lost.pitch > 0 ? py::object(py::float_(lost.pitch)) : py::none();
-  d["lost_box"] = py::none();
+void warn(const Lost& lost) {
+  if (!lost.note.empty() && PyErr_WarnEx(PyExc_UserWarning, lost.note.c_str(), 2) != 0) throw py::error_already_set();
+}
+
+void put(const Lost& lost, py::dict& fields) {
+  fields["lost"] = lost.volume, fields["lost_note"] = lost.note;
+  fields["lost_pitch"] = lost.volume > 0 && lost.pitch > 0 ? py::object(py::float_(lost.pitch)) : py::none();
+  fields["lost_box"] = py::none();
   if (lost.volume > 0 && !lost.box.empty())
-    d["lost_box"] = py::make_tuple(corner(lost.box.lower), corner(lost.box.upper));
+    fields["lost_box"] = py::make_tuple(corner(lost.box.lower), corner(lost.box.upper));
 }
 
 }  // namespace riffler::bindings

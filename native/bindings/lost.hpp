@@ -20,7 +20,9 @@ Lost lost_in(const Volume& volume, const dexel::MissedMaterial& missed);
 /// Of a volume whose mesh has so many triangles.
 Lost lost_by_meshing(const Volume& volume, std::size_t triangles);
 
-/// Puts `lost`, `lost_box`, `lost_pitch` and `lost_note` into a report; without one the note becomes a Python warning.
-void tell(const Lost& lost, std::optional<py::dict>& report);
+/// The note, where there is one, as a Python warning.
+void warn(const Lost& lost);
+/// Puts `lost`, `lost_box`, `lost_pitch` and `lost_note` among the fields of a result.
+void put(const Lost& lost, py::dict& fields);
 
 }  // namespace riffler::bindings

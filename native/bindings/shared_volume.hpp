@@ -14,6 +14,7 @@ namespace riffler::bindings {
 struct SharedVolume {
   explicit SharedVolume(Volume v) : volume(std::move(v)) {}
   Volume volume;
+  dexel::Stats counted;  // with those that are still in `volume`: since the last take_counters
   std::shared_mutex mutex;
 };
 

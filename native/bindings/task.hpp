@@ -29,7 +29,9 @@ class Task {
   void then(const py::object& more) {
     stages_.push_back([more](const py::object& found) { return more(found); });
   }
-  /// Waits without the GIL, and lets Ctrl-C through. Throws what the work threw.
+  /// Waits without the GIL, and lets Ctrl-C through; false after `timeout` s.
+  bool wait(const std::optional<double>& timeout);
+  /// Waits likewise. Throws what the work threw.
   py::object result();
 
  private:
@@ -57,9 +59,9 @@ py::object to_python_object(T&& value) {
     return py::cast(std::forward<T>(value));
 }
 
-/// Whether the caller gave the class riffler.Task as `progress`.
+/// Whether `riffler.submit` gave the class of tasks as `progress`.
 inline bool is_task_request(const py::object& progress) {
-  return progress.is(py::type::of<Task>());
+  return progress.ptr() == task_request();
 }
 
 /// A long call, with its arguments taken from Python: `work(progress)` runs without the GIL, touches no Python and owns

@@ -37,9 +37,7 @@ namespace riffler::bindings {
 
 RIFFLER_TYPED(ArrayLike, "numpy.typing.ArrayLike")
 RIFFLER_TYPED(OptionalArrayLike, "numpy.typing.ArrayLike | None")
-RIFFLER_TYPED(ProgressLike, "collections.abc.Callable[[float], object] | None")
-/// A function of Python.
-RIFFLER_TYPED(Callback, "collections.abc.Callable[[float], object]")
+RIFFLER_TYPED(ProgressLike, "collections.abc.Callable[[float], bool | None] | None")
 /// Options of machines and posts.
 RIFFLER_TYPED(OptionsLike, "collections.abc.Mapping[str, float | bool | str | collections.abc.Sequence[float]] | None")
 

@@ -5,7 +5,6 @@ import math
 
 import bpy
 import numpy as np
-import riffler
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
 from ...blender import operator_parts, scene_units
@@ -299,10 +298,10 @@ class RIFFLER_OT_plan_point_key(PointsAt, PlanWork, bpy.types.Operator):
         plan_store.refuse_turning(self._spot.plan, self._spot.path)
         if obstacles.part_of(context.scene, ob) is None:
             return DoneJob(None)
-        scene, start = context.scene.name, riffler.tasks.free_orientations
+        scene = context.scene.name
         return AfterJob(
             obstacles.take(context, ob),
-            lambda near: TaskJob(orientation_probe.free_orientations(bpy.data.scenes[scene], near, self._spot, start)),
+            lambda near: TaskJob(orientation_probe.start_free_orientations(bpy.data.scenes[scene], near, self._spot)),
         )
 
     def finish(self, context, job):

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import riffler
-from riffler import tasks
 
 from ...common import units
 
@@ -61,18 +60,18 @@ class Surroundings:
         """(n,) mm for poses (n, 6), over part and fixtures."""
         if not self._fixtures:  # uses all threads
             return self.collider.clearance(tool, poses)
-        return np.array([self.collider.nearest(tool, pose)[0] for pose in poses])
+        return np.array([self.collider.nearest(tool, pose).distance for pose in poses])
 
     def near_fixtures(self, tool, poses: np.ndarray, room: float) -> list[tuple[float, str]]:
         """(mm, name) of the fixtures that the tool, including its cutter, approaches closer than `room` at poses (n,
         6)."""
-        found = [(min(c.nearest(tool, pose)[0] for pose in poses), name) for name, c in self._fixtures]
+        found = [(min(c.nearest(tool, pose).distance for pose in poses), name) for name, c in self._fixtures]
         return [(gap, name) for gap, name in found if gap < room]
 
     def state(self, tool, pose, tolerance: float = 0.01, room: float = 0.0) -> State:
         """The tool at a pose on its path: the cutter touches the part, within the tolerance."""
         distance, _, piece = self.collider.nearest(tool, pose)
-        near = [(c.nearest(tool, pose)[0], "tool", name) for name, c in self._fixtures]
+        near = [(c.nearest(tool, pose).distance, "tool", name) for name, c in self._fixtures]
         if distance < -tolerance:
             found = min(near)[1:] if piece == "fixture" else (piece, self._name)
             return State(distance, *found)
@@ -131,24 +130,24 @@ class Making:
 
     def __init__(self, part, name: str, fixtures=()):
         self._part, self._name, self._fixtures = part, name, [fixture for fixture, _ in fixtures]
-        self._volumes = [tasks.from_mesh(mesh, riffler.plan.fixture_pitch(mesh)) for _, mesh in fixtures]
+        self._volumes = [
+            riffler.submit(riffler.Volume.from_mesh, mesh, riffler.plan.fixture_pitch(mesh)) for _, mesh in fixtures
+        ]
         self._colliders = None  # of all surfaces, then of each fixture
         self._error = None  # of a volume that could not be made
 
-    @property
     def done(self) -> bool:
         """Poll this: it makes colliders of finished volumes."""
         if self._colliders is None:
-            if not all(task.done for task in self._volumes):
+            if not all(task.done() for task in self._volumes):
                 return False
             self._collide()
-        return all(task.done for task in self._colliders)
+        return all(task.done() for task in self._colliders)
 
-    @property
-    def share(self) -> float:
+    def progress(self) -> float:
         """Share of the work done, 0 … 1."""
         begun = [*self._volumes, *(self._colliders or ())]
-        return sum(task.share for task in begun) / (2 * len(self._volumes) + 1)
+        return sum(task.progress() for task in begun) / (2 * len(self._volumes) + 1)
 
     def result(self) -> Surroundings:
         """Waits for the result; raises its error."""
@@ -163,8 +162,8 @@ class Making:
         self._colliders = []
         try:
             volumes = [self._volume(task, name) for task, name in zip(self._volumes, self._fixtures, strict=True)]
-            self._colliders.append(tasks.collider(self._part, fixtures=volumes))
-            self._colliders += [tasks.collider(_nowhere(), fixtures=[volume]) for volume in volumes]
+            self._colliders.append(riffler.submit(riffler.Collider, self._part, fixtures=volumes))
+            self._colliders += [riffler.submit(riffler.Collider, _nowhere(), fixtures=[volume]) for volume in volumes]
         except (ValueError, TypeError, MemoryError) as error:
             self._error = error
 

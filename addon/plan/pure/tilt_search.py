@@ -14,7 +14,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import riffler
-from riffler import tasks
 
 from ...common import units
 from ...common.job import TaskJob
@@ -99,7 +98,7 @@ class Search:
         closed = path.closed and len(some) > 2
         few = riffler.plan.PencilPath(path.radius, path.centres[some], path.contacts[some], path.normals[some], closed)
         sizes = {"tolerance": rule.tolerance, "limit": rule.limit, "max_change": math.pi, "smoothness": SMOOTH}
-        self._job = TaskJob(tasks.least_tilt(few, rule.tool, rule.collider, **sizes))
+        self._job = TaskJob(riffler.submit(riffler.plan.least_tilt, few, rule.tool, rule.collider, **sizes))
         self._taken = self._check
 
     def _check(self, found) -> None:
@@ -115,7 +114,8 @@ class Search:
             self.answer = Answer(None, self._points[0], str(error))
             return
         sizes = {"tolerance": self._rule.tolerance, "max_lift": 0.0, "max_inserted": 0}
-        self._job = TaskJob(tasks.cutter_locations(self._keyed, self._rule.tool, self._rule.collider, **sizes))
+        locate = riffler.plan.cutter_locations
+        self._job = TaskJob(riffler.submit(locate, self._keyed, self._rule.tool, self._rule.collider, **sizes))
         self._taken = self._judge
 
     def _judge(self, found) -> None:

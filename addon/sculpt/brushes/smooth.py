@@ -31,7 +31,7 @@ class Smooth(Brush):
         return poses[0 if new else 1 :], None
 
     def apply(self, sculpt, tool, poses, dt):
-        sculpt.volume.soften(poses[:, :3], 0.5 * tool.diameter, sculpt.strength, sculpt.mask)
+        sculpt.volume.smooth(poses[:, :3], 0.5 * tool.diameter, strength=sculpt.strength, protect=sculpt.mask)
 
     def picture(self, draw):
         return draw.wave() + draw.cutter(draw.FLOOR + 4)

@@ -17,7 +17,7 @@ from pathlib import Path
 
 import numpy as np
 import riffler
-from riffler import files, tasks
+from riffler import files
 
 from ...common import json_object
 from ...common.contents import Content
@@ -83,7 +83,7 @@ class StrokeJournal:
 
     def settled(self) -> bool:
         """Whether its initial state is in its folder."""
-        while self._saving and self._saving[0].done:
+        while self._saving and self._saving[0].done():
             try:
                 self._saving.pop(0).result()
             except PROBLEMS as error:
@@ -107,9 +107,9 @@ class LiveJournal(StrokeJournal):
         self._writer = riffler.JournalWriter(self.folder / STROKES, keep=False)
         v, mask = content.volume, MASK if content.mask is not None else ""
         self._writer.set_stock(v.lower, v.upper, v.pitch, v.directions, STOCK, mask=mask)
-        self._saving = [tasks.save(v, self.folder / STOCK)]
+        self._saving = [riffler.submit(riffler.Volume.save, v, self.folder / STOCK)]
         if mask:
-            self._saving.append(tasks.save(content.mask, self.folder / MASK))
+            self._saving.append(riffler.submit(riffler.Volume.save, content.mask, self.folder / MASK))
 
     # ------------------------------------------------------------------ strokes
     def carved(self, tool: dict, poses: np.ndarray, mode: str, token: str, strength: float = 0.5) -> None:

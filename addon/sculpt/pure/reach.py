@@ -10,7 +10,7 @@ CUT_OFF = "The added material was cut off at the stock's box: use Grow Box in Cl
 
 def outline_of(tool) -> np.ndarray:
     """(k, 2) radius and height of a riffler.Tool's cutter, without shank and holder; mm."""
-    return np.vstack([line for part, line in tool.outline(1e-3 * tool.diameter) if part == "cutter"])
+    return np.vstack([line for part, line in tool.outline(tolerance=1e-3 * tool.diameter) if part == "cutter"])
 
 
 def is_cut_off(outline: np.ndarray, poses: np.ndarray, volume) -> bool:

@@ -70,7 +70,7 @@ def path(out: Report, settings: Settings, progress: Progress) -> None:
             tolerance=tolerance,
             move_s=timing.seconds / scenes.MOVES,
             ratio=timing.ratio,
-            steps=volume.stats()["steps"] / scenes.MOVES,
+            steps=volume.take_counters().steps / scenes.MOVES,
             **compare(out, f"{cutter.name} on B5X, h = {pitch:g}", volume, cutter.tool, poses, tolerance, rays),
         )
     table.notes.append(

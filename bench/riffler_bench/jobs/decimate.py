@@ -71,8 +71,8 @@ def judged(part: Mesh, less: Mesh, points: int) -> dict[str, Any]:
     return {
         "max_mm": float(max(there.max(), back.max())),
         "rms_mm": float(np.sqrt(max(np.mean(there**2), np.mean(back**2)))),
-        "bad": sum(int(audit[name]) for name in BAD),
-        "others": sum(int(audit[name]) for name in OTHER),
+        "bad": sum(int(getattr(audit, name)) for name in BAD),
+        "others": sum(int(getattr(audit, name)) for name in OTHER),
     }
 
 

@@ -64,7 +64,7 @@ def timed(volume: Volume, tool: Tool, tips: np.ndarray) -> dict[str, object]:
             start = time.thread_time()
             changed = mesher.update(volume)
             updated = time.thread_time()
-            triangles = sum(len(mesher.patch(n)[1]) for n in changed)
+            triangles = sum(len(mesher.patch(n).triangles) for n in changed)
             updates.append(updated - start), patches.append(time.thread_time() - updated)
         for _ in range(3):
             start = time.thread_time()

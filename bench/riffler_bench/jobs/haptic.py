@@ -73,12 +73,12 @@ def stroke(side: int, steps: int, turning: bool) -> tuple[list[float], dict[str,
     with steady():
         for _ in range(20):
             volume.carve(tool, above, dt=DT)
-        volume.stats()
+        volume.take_counters()
         for k in range(steps):
             start = time.thread_time()
             cut = volume.carve(tool, poses[k : k + 2], dt=DT)
             force, _ = cut.force, cut.torque
             times.append(time.thread_time() - start)
             felt += float((force**2).sum() ** 0.5)
-    counted = volume.stats()
-    return times, {name: counted[name] / steps for name in COUNTERS}, felt / steps
+    counted = volume.take_counters()
+    return times, {name: getattr(counted, name) / steps for name in COUNTERS}, felt / steps

@@ -145,8 +145,8 @@ def judged(mesh: Mesh, folder: Path) -> dict[str, Any]:
     triangles = np.asarray(mesh.triangles)
     middle = exact.from_surface(vertices[triangles[:: -(-len(triangles) // MIDDLES)]].mean(1))
     return {
-        "bad": sum(int(audit[name]) for name in BAD),
-        "others": sum(int(audit[name]) for name in OTHER),
+        "bad": sum(int(getattr(audit, name)) for name in BAD),
+        "others": sum(int(getattr(audit, name)) for name in OTHER),
         **spread("", off),
         **spread("middle_", middle),
     }
@@ -184,7 +184,7 @@ def edges(out: Report, settings: Settings, folder: Path, progress: Progress) -> 
             mesh.write(folder / "box.stl")
             mesh = Mesh.read(folder / "box.stl")
             audit = mesh.audit()
-            counts = (sum(int(audit[name]) for name in names) for names in (BAD, OTHER))
+            counts = (sum(int(getattr(audit, name)) for name in names) for names in (BAD, OTHER))
             with threads(None):
                 off = (core.mesh_distances(points, mesh) for points in (box.edges(), box.corners()))
                 found.setdefault(engine, []).append((*off, *counts))

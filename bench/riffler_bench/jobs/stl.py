@@ -74,7 +74,7 @@ def rays(out: Report, settings: Settings, progress: Progress) -> None:
     meshes = {f"{f.__name__}, made in code": f(made) for f in (parts.organic, parts.sharp)}
     for path in model_paths(settings):
         mesh = Mesh.read(path)
-        if not mesh.audit()["open_edges"]:
+        if not mesh.audit().open_edges:
             meshes[path.stem] = mesh
     with tempfile.TemporaryDirectory() as folder:
         for part, mesh in watched(list(meshes.items()), progress):
@@ -165,7 +165,7 @@ def openings(out: Report, settings: Settings, progress: Progress) -> None:
             if closed:
                 known["difference"] = figures["volume"] / to_rays(closed, side, path)["volume"] - 1
             out.check(abs(known.get("difference", 0)) < 0.001, f"{part}: {known}")
-            edges = mesh.audit()["open_edges"]
+            edges = mesh.audit().open_edges
             table.row(part=part, triangles=len(mesh.triangles), open_edges=edges, side=side, **figures, **known)
     table.notes.append("The same parts as above, without some of their triangles. Target: 0.3 s.")
 
@@ -204,7 +204,7 @@ def files(out: Report, settings: Settings, progress: Progress) -> None:
 def compare(path: Path) -> dict:
     mesh = Mesh.read(path)
     audit = mesh.audit()
-    broken = audit["open_edges"] + audit["nonmanifold_edges"] > 0
+    broken = audit.open_edges + audit.nonmanifold_edges > 0
     # As many evaluations for every part: the reference takes points x triangles.
     cells = round(40 * min(1.0, 5000 / len(mesh.triangles)) ** (1 / 3))
     reference, deviation = winding_volume(mesh, cells) if broken else (mesh.volume, 0.0)
@@ -214,11 +214,11 @@ def compare(path: Path) -> dict:
     seconds = time.perf_counter() - start
     out = volume.to_mesh().audit()
     difference, asked = volume.volume / reference - 1, 0.02 if broken else 0.003
-    good = abs(difference) <= asked + 3 * deviation / reference and not any(out[k] for k in COUNTS)
+    good = abs(difference) <= asked + 3 * deviation / reference and not any(getattr(out, k) for k in COUNTS)
     return {
         "part": path.stem,
         "triangles": len(mesh.triangles),
-        "open_edges": int(audit["open_edges"]),
+        "open_edges": int(audit.open_edges),
         "reference_text": f"{reference:.6g}" + (f" ± {deviation:.2g}" if broken else ""),
         "volume": volume.volume,
         "difference": float(difference),

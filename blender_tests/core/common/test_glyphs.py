@@ -27,10 +27,10 @@ def test_an_arrow_is_closed_and_points_where_it_is_told(way):
     along = (triangles.reshape(-1, 3) - start) @ unit
     assert along.min() == pytest.approx(0, abs=1e-9) and along.max() == pytest.approx(length)
     if audit:
-        assert audit["open_edges"] == 0 and audit["nonmanifold_edges"] == 0
+        assert audit.open_edges == 0 and audit.nonmanifold_edges == 0
         head = 1.5 * glyphs.HEAD * width
         expected = polygon(width / 2) * (length - head) + polygon(glyphs.HEAD * width / 2) * head / 3
-        assert audit["volume"] == pytest.approx(expected, rel=1e-6)
+        assert audit.volume == pytest.approx(expected, rel=1e-6)
 
 
 def test_a_short_arrow_is_a_smaller_head_and_none_is_nothing():
@@ -54,7 +54,7 @@ def test_a_bent_arrow_turns_as_the_right_hand_does(angle):
     assert np.linalg.norm(away - tip, axis=1).min() < 1e-9
     assert np.abs(np.linalg.norm(away - np.outer(away @ axis, axis), axis=1) - 5).max() < 0.5
     if angle > 0.3:  # the shaft is closed except for its tail, which is a ring
-        assert audited(triangles)["open_edges"] == 2 * glyphs.SIDES
+        assert audited(triangles).open_edges == 2 * glyphs.SIDES
 
 
 def test_a_ring_is_square_to_its_axis():
@@ -78,11 +78,11 @@ def test_a_line_is_as_wide_as_it_is_told_and_broken_where_there_is_no_place():
 
 def test_a_tools_outline_has_both_its_sides():
     tool = riffler.Tool.ball(diameter=6, length=30)
-    points = glyphs.meridian(tool.outline(0.01))
+    points = glyphs.meridian(tool.outline(tolerance=0.01))
     assert points[:, 0].min() == -3 and points[:, 0].max() == 3
     assert (points[:, 1].min(), points[:, 1].max()) == (0, 30)
     cone = riffler.Tool.taper(tip_radius=1.0, half_angle=0.2, diameter=20, length=60)
-    part = glyphs.meridian(cone.outline(0.01), 12.0)
+    part = glyphs.meridian(cone.outline(tolerance=0.01), 12.0)
     assert part[:, 1].max() == pytest.approx(12)
     # the tangent point lies cos 0.2 off the axis, 1 - sin 0.2 above the tip
     assert part[:, 0].max() == pytest.approx(np.cos(0.2) + (12 - 1 + np.sin(0.2)) * np.tan(0.2))

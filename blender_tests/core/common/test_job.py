@@ -148,17 +148,15 @@ def test_what_was_made_at_once_needs_no_step():
 
 
 class Task:
-    """Has the interface of riffler.Task: done after `seconds` of its clock, then returns or raises `outcome`."""
+    """Has the interface of riffler.Future: done after `seconds` of its clock, then returns or raises `outcome`."""
 
     def __init__(self, clock, seconds, outcome):
         self.clock, self.seconds, self.outcome = clock, seconds, outcome
         self.cancelled = False
 
-    @property
-    def share(self):
+    def progress(self):
         return min(1.0, self.clock.now / self.seconds)
 
-    @property
     def done(self):
         return self.cancelled or self.clock.now >= self.seconds
 
@@ -218,13 +216,11 @@ class Making:
     def __init__(self, asked):
         self.left, self.cancelled = asked, False
 
-    @property
     def done(self):
         self.left -= 1
         return self.left < 0
 
-    @property
-    def share(self):
+    def progress(self):
         return 0.5
 
     def result(self):

@@ -123,11 +123,11 @@ def test_surroundings_are_made_while_others_work_and_errors_are_raised_by_the_re
     fixtures = [("Vise", box((23, -10, 0), (40, 10, 80)))]
     making = surroundings.Making(floor(), "Plate", fixtures)
     asked = 0
-    while not making.done:
+    while not making.done():
         asked += 1
-        assert 0 <= making.share <= 1
+        assert 0 <= making.progress() <= 1
         time.sleep(0.001)
-    assert making.share == 1 and making.result().state(TOOL, UPRIGHT).other == "Vise" and making.done and asked
+    assert making.progress() == 1 and making.result().state(TOOL, UPRIGHT).other == "Vise" and making.done and asked
     with pytest.raises(TypeError):
         surroundings.Making("no mesh", "Plate").result()
     flat = riffler.Mesh(np.array([(0.0, 0, 0), (9, 0, 0), (0, 9, 0)]), np.array([(0, 1, 2)]))

@@ -170,7 +170,7 @@ def test_a_disk_that_is_full_leaves_the_file_before(tmp_path, monkeypatch):
 
 def covered(tool, size=256):
     """Area of the shape in a picture, mm², and the picture."""
-    pixels = tool_picture.profile(tool.outline(0.001), size)
+    pixels = tool_picture.profile(tool.outline(tolerance=0.001), size)
     low, high = 0.0, max(line[:, 1].max() for _, line in tool.outline())
     wide = max(line[:, 0].max() for _, line in tool.outline())
     side = max(high - low, 2 * wide) / (1 - 2 * tool_picture.MARGIN)

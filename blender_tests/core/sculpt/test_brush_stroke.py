@@ -89,7 +89,7 @@ def test_what_puts_material_on_is_no_longer_than_its_end(tool, height):
     low = np.linspace(0, 0.99 * short.length, 30)
 
     def width(t):
-        line = np.vstack([p for _, p in t.outline(1e-5)])
+        line = np.vstack([p for _, p in t.outline(tolerance=1e-5)])
         return np.interp(low, line[:, 1], line[:, 0])
 
     assert np.allclose(width(short), width(given), atol=2e-3)

@@ -25,7 +25,7 @@ class Sculpt:
     def __init__(self):
         self.volume = riffler.Volume.block(*BOX)
         self.volume.carve(riffler.Tool.flat(8, 30), POSES + np.array([0, 4.0, 0, 0, 0, 0]))
-        self.mask = riffler.Volume.block((0, 0, 0), (20, 30, 10), 0.5, "xyz").grown((0, 0, 0), (40, 30, 10))
+        self.mask = riffler.Volume.block((0, 0, 0), (20, 30, 10), 0.5, "xyz").grow((0, 0, 0), (40, 30, 10))
         self.strength = 0.7
 
     def bytes(self):

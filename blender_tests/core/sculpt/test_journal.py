@@ -41,7 +41,7 @@ class Work:
             self.mask = self.mask or riffler.Volume.empty(*BOX)
             self.mask.carve(BALL, poses, mode="add" if mode == "mask" else "remove")
         elif mode == "soften":
-            self.volume.soften(poses[:, :3], 3.0, 0.8, self.mask)
+            self.volume.smooth(poses[:, :3], 3.0, strength=0.8, protect=self.mask)
         else:
             self.volume.carve(BALL, poses, mode=mode, protect=self.mask)
         self.journal.carved(BALL.to_dict(), poses, mode, token, 0.8)

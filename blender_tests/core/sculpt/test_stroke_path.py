@@ -15,7 +15,7 @@ PIXEL = 0.1  # mm
 
 
 def outline(tool):
-    return np.vstack([line for _, line in tool.outline(0.0005)])
+    return np.vstack([line for _, line in tool.outline(tolerance=0.0005)])
 
 
 def plane(x, y, half=20.0):

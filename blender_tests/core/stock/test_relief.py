@@ -46,8 +46,8 @@ def test_heights_follow_the_surface(depth):
     over, under = (heights * 1.5, 0.4) if depth > 0 else (0.4, heights * 1.5)
     assert np.allclose(top[:, :, 2] - points[:, :, 2], over)
     assert np.allclose(points[:, :, 2] - bottom[:, :, 2], under)
-    mesh = shape.slab(top, bottom, cells)
-    assert mesh.audit()["open_edges"] == 0
+    mesh = shape.slab(top, bottom, cells=cells)
+    assert mesh.audit().open_edges == 0
     assert mesh.volume == pytest.approx((heights[:-1, :-1].mean() * 1.5 + 0.4) * 80, rel=0.02)
 
 
@@ -59,7 +59,7 @@ def test_edges_and_gaps_of_the_surface_are_no_part_of_it():
     top, bottom, cells = relief_heights.draped(points, found, UP, np.ones((21, 17)), 1.0, 0.2)
     assert not cells[10].any() and not cells[2:4, 2:4].any()
     assert cells.sum() == 20 * 16 - 16 - 4
-    assert shape.slab(top, bottom, cells).audit()["open_edges"] == 0
+    assert shape.slab(top, bottom, cells=cells).audit().open_edges == 0
 
 
 def test_an_embossed_ball_is_as_high_as_was_asked():
@@ -70,7 +70,8 @@ def test_an_embossed_ball_is_as_high_as_was_asked():
     distance, _, _, _ = surface.pick(origins, np.tile([0.0, 0, -1], (len(origins), 1)))
     points = (origins - distance[:, None] * UP).reshape(161, 161, 3)
     heights = np.clip(1 - ((x - 15) ** 2 + (y - 15) ** 2) / 64, 0, 1)
-    mesh = shape.slab(*relief_heights.draped(points, np.isfinite(points).all(axis=2), UP, heights, -2.0, 0.5))
+    top, bottom, cells = relief_heights.draped(points, np.isfinite(points).all(axis=2), UP, heights, -2.0, 0.5)
+    mesh = shape.slab(top, bottom, cells=cells)
     form = riffler.Volume.from_mesh(mesh, 0.25, "xyz", lower=volume.lower, upper=volume.upper)
     volume.subtract(form)
     # a paraboloid of radius 8 and depth 2

@@ -90,15 +90,20 @@ def test_colours_tell_too_much_from_too_little_and_from_nothing():
 
 def test_tasks_in_a_row_hand_on_what_they_made():
     volume = riffler.Volume.block((0, 0, 0), (20, 15, 10), 0.5, "xyz")
-    from riffler import tasks
-
     shares = []
-    job = ChainJob(lambda _: tasks.to_mesh(volume), tasks.smooth, lambda mesh: tasks.decimate(mesh, tolerance=0.01))
+    job = ChainJob(
+        lambda _: riffler.submit(volume.to_mesh),
+        lambda mesh: riffler.submit(mesh.smooth),
+        lambda mesh: riffler.submit(mesh.decimate, tolerance=0.01),
+    )
     run_through(job, shares.append)
     assert len(job.result.triangles) == 12 and job.fraction == 1
     assert shares == sorted(shares) and all(0 <= s <= 1 for s in shares)
 
-    job = ChainJob(lambda _: tasks.to_mesh(volume), lambda mesh: tasks.smooth(mesh, 2_000_000_000))
+    endless = 2_000_000_000
+    job = ChainJob(
+        lambda _: riffler.submit(volume.to_mesh), lambda mesh: riffler.submit(mesh.smooth, iterations=endless)
+    )
     while not job._done:
         job.step(0.01)
     job.step(0.01)

@@ -77,10 +77,9 @@ def test_part_and_fixtures_are_made_while_the_window_goes_on():
     class Slow(plain):
         left = 3
 
-        @property
         def done(self):
             self.left -= 1
-            return self.left < 0 and super().done
+            return self.left < 0 and super().done()
 
         def result(self):
             assert self.left < 0, "waited for"

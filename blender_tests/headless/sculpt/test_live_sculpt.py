@@ -104,7 +104,8 @@ def shaded_as_the_whole(run):
     if not versions.OWN_NORMALS:
         return
     whole = riffler.Mesher(run.volume)
-    vertices, triangles, normals = whole.patch(whole.patches(), normals=meshes.SHARP_ANGLE)
+    patch = whole.patch(whole.patches(), normals=meshes.SHARP_ANGLE)
+    vertices, triangles, normals = patch.vertices, patch.triangles, patch.normals
     expected = dict(zip(corner_keys(vertices / run.mm, triangles), normals, strict=True))
     for mesh in filled:
         shown = np.empty((len(mesh.loops), 3), np.float32)
@@ -563,7 +564,7 @@ def test_smoothing_takes_the_roughness_keeps_what_is_masked_and_is_undone():
     assert run.carve(riffler.Tool.ball(16, 30), dabs, mode="soften") is None
     assert run.finish_stroke(bpy.context, "smooth")
     smooth = run.volume.to_bytes()
-    assert smooth != rough and not run.volume.to_mesh().audit()["open_edges"]
+    assert smooth != rough and not run.volume.to_mesh().audit().open_edges
     is_shown(name)
     bpy.ops.ed.undo()
     assert live().of(bpy.data.objects[name]).volume.to_bytes() == rough

@@ -112,7 +112,7 @@ def test_room_around_a_box_of_no_whole_pitches_keeps_rays_and_symmetry_and_can_b
 
 def test_a_pitch_at_which_nothing_would_be_left_is_refused():
     ob = sculpt()
-    pillar = riffler.Volume.block((3, 3, 0), (4, 4, 1), 0.25, "xyz").resampled(0.25, None, (0, 0, 0), (40, 30, 20))
+    pillar = riffler.Volume.block((3, 3, 0), (4, 4, 1), 0.25, "xyz").resample(0.25, None, (0, 0, 0), (40, 30, 20))
     common.part("sculpt.sculpts").commit(ob.data, common.part("common.contents").Content(pillar), 1.0)
     before = volume(ob).to_bytes()
     common.refused(lambda: bpy.ops.riffler.resample(pitch=15), f"{ob.name} is too thin", "15 mm", "finer")

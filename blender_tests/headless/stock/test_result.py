@@ -33,7 +33,7 @@ def test_a_mesh_is_made_with_the_error_that_is_said():
     co, tri = common.coordinates(made.data), common.triangles(made.data)
     assert 0 < len(tri) < 0.2 * len(exact.triangles)
     mesh = riffler.Mesh(co.astype(float), tri)
-    assert mesh.audit()["open_edges"] == 0
+    assert mesh.audit().open_edges == 0
     # compared with the dense surface, in both directions: smoothing and decimating each keep their tolerance
     error = max(np.abs(mesh.deviation(exact)).max(), np.abs(exact.deviation(mesh)).max())
     assert 1e-4 < error < 0.03 + 1e-5

@@ -5,8 +5,12 @@ import numpy
 import numpy.typing
 import os
 import pathlib
+import riffler.results
 import typing
-__all__: list[str] = ['AtomicFileWriter', 'Cancelled', 'Collider', 'Contact', 'Cut', 'Finding', 'FormatError', 'FrozenSurface', 'Journal', 'JournalStroke', 'JournalWriter', 'Material', 'Mesh', 'Mesher', 'Note', 'PenDevice', 'PenError', 'PenGeometry', 'PenState', 'PencilPath', 'Pointer', 'Program', 'ProgramStream', 'Session', 'SessionFrame', 'SimulatedPen', 'SlabWorker', 'Snapshot', 'Softened', 'Task', 'Tool', 'ToolShape', 'ToolSize', 'Verification', 'VerifyPlan', 'VerifyReport', 'Volume', 'clear_drafts', 'contact_locations', 'cutter_locations', 'draft_prefix', 'drop', 'engrave', 'least_tilt', 'lift', 'machine_options', 'machines', 'orientation_maps', 'pencil', 'read_file', 'replace_file', 'replaceable', 'set_threads', 'stepover_of_scallop', 'swarf', 'then', 'threads', 'tip_ball_radius', 'verify']
+_Found = typing.TypeVar('_Found')
+_Made = typing.TypeVar('_Made')
+import typing_extensions
+__all__: list[str] = ['AtomicFileWriter', 'Cancelled', 'Collider', 'Contact', 'Cut', 'Finding', 'FormatError', 'FrozenSurface', 'Journal', 'JournalStroke', 'JournalWriter', 'Material', 'Mesh', 'Mesher', 'NotATask', 'Note', 'PenDevice', 'PenError', 'PenGeometry', 'PenState', 'PencilPath', 'Pointer', 'Program', 'ProgramStream', 'Session', 'SessionFrame', 'SimulatedPen', 'SlabWorker', 'Smoothed', 'Snapshot', 'Task', 'Tool', 'ToolShape', 'ToolSize', 'Verification', 'VerifyPlan', 'VerifyReport', 'Volume', 'clear_drafts', 'contact_locations', 'cutter_locations', 'draft_prefix', 'drop', 'engrave', 'least_tilt', 'lift', 'machine_options', 'machines', 'orientation_maps', 'pencil', 'read_file', 'replace_file', 'replaceable', 'set_threads', 'stepover_of_scallop', 'swarf', 'then', 'threads', 'tip_ball_radius', 'verify']
 class FormatError(ValueError):
     """
     A file that is not what it should be: names the file, the line or byte, and what was expected.
@@ -15,9 +19,11 @@ class Cancelled(RuntimeError):
     """
     A long call that its progress callback stopped; the object is as it was before.
     """
+class NotATask(TypeError):
+    pass
 class Task:
     """
-    A long call on a native thread, which runs no Python: made by the functions of riffler.tasks.
+    A long call on a native thread, which runs no Python: what a riffler.Future waits for.
 
     What the call was given is taken when it is made, volumes by a snapshot; what is done with them afterwards changes
     nothing. A Task that nobody holds any more is cancelled and waited for; so are all when Python ends.
@@ -28,9 +34,13 @@ class Task:
         """
         Asks the call to end with Cancelled, and does not wait; without effect where it has ended.
         """
-    def result(self) -> typing.Any:
+    def result(self) -> object:
         """
         What the call returns, the same object each time; waits for it, other threads go on. Raises what the call raises, Cancelled after ``cancel``. Ctrl-C ends the waiting, not the call.
+        """
+    def wait(self, timeout: typing.SupportsFloat | None = None) -> bool:
+        """
+        Waits until the call has ended, or for so many seconds; whether it has. Other threads run meanwhile.
         """
     @property
     def done(self) -> bool:
@@ -60,19 +70,91 @@ class AtomicFileWriter:
         """
 class Mesh:
     """
-    A triangle mesh, mm. It never changes: what changes a mesh returns a new one.
+    A triangle mesh, mm. It never changes: a method that changes a mesh returns a new one.
 
-    Mesh(vertices, triangles): (n, 3) numbers and (k, 3) integers, indices of vertices, counter-clockwise seen from outside.
-    ValueError naming the argument and the row for a wrong shape, a vertex that is not finite or beyond 1e30, an index out of
-    range. Vertices are not welded; files are, when they are read.
+    Parameters
+    ----------
+    vertices : array_like of shape (n, 3), mm
+        Positions; they are not welded.
+    triangles : array_like of shape (k, 3), integers
+        Indices of vertices, counter-clockwise seen from outside.
+
+    Raises
+    ------
+    ValueError
+        Names argument and row: a wrong shape, a vertex that is not finite or beyond 1e30, an index out of range.
+
+    Examples
+    --------
+    >>> mesh = riffler.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+    >>> mesh.area
+    0.5
     """
     @staticmethod
-    def read(path: os.PathLike | str | bytes, *, progress: typing.Any = None) -> Mesh:
+    def oriented(*args, **kwargs):
         """
-        The mesh in a .stl (binary or ASCII), .obj, .ply or .3mf file; equal vertices become one. A .3mf file gives
-        all that it says to build, placed, in mm whatever its unit; it needs the package lib3mf. FormatError naming the byte or
-        line for a bad file (for .3mf what was expected), among them those with no triangle; ValueError for another extension.
-        ``progress`` is called with a share of the part of the file at hand, of .stl and .3mf not after the beginning.
+        orient(self: riffler._core.Mesh, *, hollow: bool = False) -> riffler._core.Mesh
+
+        This mesh as the surface of a solid: the mesh itself, or one in which triangles are turned.
+
+        What takes a mesh as a solid (Volume.from_mesh, Collider, verify, plan.pencil, plan.engrave, deviation with signs) does
+        this by itself. In closed pieces orientation is carried over edges that two triangles share, the larger area decides, and
+        they then face outwards, but for cavities: pieces within another that are oriented the opposite way round. Open pieces,
+        and pieces with one side only, stay unchanged.
+
+        Parameters
+        ----------
+        hollow : bool
+            Leave closed pieces that all face inwards, as plans and Collider do: room in endless material.
+
+        Returns
+        -------
+        Mesh
+            This mesh where nothing had to be turned.
+
+        Examples
+        --------
+        >>> block = riffler.Volume.block((0, 0, 0), (4, 3, 2), pitch=0.5).to_mesh()
+        >>> inside_out = riffler.Mesh(block.vertices, block.triangles[:, ::-1])
+        >>> bool(inside_out.volume < 0 < inside_out.orient().volume)
+        True
+
+        """
+    @staticmethod
+    def read(path: os.PathLike | str | bytes, *, progress: collections.abc.Callable[[float], bool | None] | None = None) -> Mesh:
+        """
+        Reads a .stl (binary or ASCII), .obj, .ply or .3mf file; equal vertices become one.
+
+        A .3mf file gives everything that it says to build, placed, in mm whatever its unit; it needs the package lib3mf.
+
+        Parameters
+        ----------
+        path : path_like, with one of these extensions
+            The file.
+        progress : callable or None
+            Called with the finished share of the part of the file at hand, of .stl and .3mf not after the beginning. Returning
+            False cancels.
+
+        Returns
+        -------
+        Mesh
+            In mm.
+
+        Raises
+        ------
+        FormatError
+            Names the byte or line of a bad file (of .3mf what was expected), among them files without a triangle.
+        ValueError
+            Another extension.
+        Cancelled
+            ``progress`` returned False.
+
+        Examples
+        --------
+        >>> volume = riffler.Volume.block((0, 0, 0), (4, 3, 2), pitch=0.5)
+        >>> volume.to_mesh().write("block.stl")
+        >>> riffler.Mesh.read("block.stl")
+        <riffler.Mesh: 210 vertices, 416 triangles>
         """
     def __copy__(self) -> Mesh:
         ...
@@ -80,54 +162,209 @@ class Mesh:
         ...
     def __getstate__(self) -> tuple:
         ...
-    def __init__(self, vertices: typing.Any, triangles: typing.Any) -> None:
+    def __init__(self, vertices: numpy.typing.ArrayLike, triangles: numpy.typing.ArrayLike) -> None:
         ...
     def __repr__(self) -> str:
         ...
     def __setstate__(self, arg0: tuple) -> None:
         ...
-    def audit(self, *, progress: typing.Any = None) -> dict:
+    def audit(self, *, progress: collections.abc.Callable[[float], bool | None] | None = None) -> riffler.results.Audit:
         """
-        A dict of counts, all 0 but the last two for a closed two-manifold without defects:
-        open_edges (of one triangle), nonmanifold_edges (of three or more, or of two in the same direction),
-        nonmanifold_vertices (whose triangles are not one fan), degenerate (a vertex twice, or area exactly 0),
-        duplicates (the vertices of an earlier triangle), folds (edges whose two triangles lie on each other),
-        components (pieces connected across edges), volume (mm³, signed).
+        Counts the defects of a mesh.
+
+        Parameters
+        ----------
+        progress : callable or None
+            Called with the finished share; returning False cancels.
+
+        Returns
+        -------
+        Audit
+            All counts are 0 for a closed two-manifold without defects.
+
+        Examples
+        --------
+        >>> mesh = riffler.Volume.block((0, 0, 0), (4, 3, 2), pitch=0.5).to_mesh()
+        >>> audit = mesh.audit()
+        >>> audit.open_edges, audit.components
+        (0, 1)
         """
-    def decimate(self, triangles: typing.SupportsInt | None = None, tolerance: typing.SupportsFloat | None = None, *, progress: typing.Any = None) -> Mesh:
+    def decimate(self, *, triangles: typing.SupportsInt | None = None, tolerance: typing.SupportsFloat | None = None, progress: collections.abc.Callable[[float], bool | None] | None = None) -> Mesh:
         """
-        A mesh with fewer triangles: down to `triangles`, or as far as old and new surface stay within `tolerance` (mm) of
-        each other, or until the first of both. Closed and two-manifold where this one is; sharp edges and borders stay. The
-        vertices are some of the old ones, or where that fits better new ones between them.
+        A mesh with fewer triangles.
+
+        It is closed and two-manifold where this one is; sharp edges and borders stay. The vertices are some of the old ones,
+        or, where that fits better, new ones between them.
+
+        Parameters
+        ----------
+        triangles : int, how many triangles to keep, or None
+            Down to so many.
+        tolerance : float, mm, or None
+            As far as old and new surface stay within it of each other. With both limits, until the first of them.
+        progress : callable or None
+            Called with the finished share; returning False cancels.
+
+        Returns
+        -------
+        Mesh
+            A new mesh.
+
+        Raises
+        ------
+        ValueError
+            Neither limit is given, or one is negative or not finite.
+        Cancelled
+            ``progress`` returned False.
+
+        Examples
+        --------
+        >>> ball = riffler.Volume.sphere((0, 0, 0), 5, pitch=0.5, directions="xyz").to_mesh()
+        >>> len(ball.decimate(triangles=500).triangles)
+        500
         """
-    def deviation(self, other: Mesh, *, signed: bool = False, progress: typing.Any = None) -> numpy.typing.NDArray[numpy.float64]:
+    def deviation(self, other: Mesh, *, signed: bool = False, progress: collections.abc.Callable[[float], bool | None] | None = None) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n,) float64: how far (mm) each vertex is from the surface of `other`; with signed=True negative inside.
+        How far each vertex is from the surface of another mesh.
+
+        Parameters
+        ----------
+        other : Mesh
+            The surface that is measured against.
+        signed : bool
+            Whether distances inside of ``other`` are negative.
+        progress : callable or None
+            Called with the finished share; returning False cancels.
+
+        Returns
+        -------
+        ndarray of shape (n,), float64, mm
+            One distance for each vertex.
+
+        Raises
+        ------
+        ValueError
+            ``other`` has no triangles.
+        Cancelled
+            ``progress`` returned False.
+
+        Examples
+        --------
+        >>> ball = riffler.Volume.sphere((0, 0, 0), 5, pitch=0.5, directions="xyz").to_mesh()
+        >>> bool(abs(ball.decimate(tolerance=0.02).deviation(ball)).max() <= 0.02)
+        True
         """
-    def oriented(self, report: dict | None = None, *, hollow: bool = False) -> Mesh:
+    def orient(self, *, hollow: bool = False) -> Mesh:
         """
         This mesh as the surface of a solid: the mesh itself, or one in which triangles are turned.
 
         What takes a mesh as a solid (Volume.from_mesh, Collider, verify, plan.pencil, plan.engrave, deviation with signs) does
         this by itself. In closed pieces orientation is carried over edges that two triangles share, the larger area decides, and
-        they then face outwards, but for cavities: pieces within another that are oriented the other way round. Open pieces, and
-        pieces with one side only, stay as they are. ``hollow``: leave closed pieces that all face inwards, as
-        plans and Collider do: room in endless material.
+        they then face outwards, but for cavities: pieces within another that are oriented the opposite way round. Open pieces,
+        and pieces with one side only, stay unchanged.
 
-        ``report``: a dict that is filled with ``turned`` triangles; ``turned_shells``, closed pieces that faced inwards as a
-        whole; ``left_out``, repeated triangles that tear the surface open, which name one vertex three times in the result;
-        ``one_sided``, pieces like a Möbius strip.
+        Parameters
+        ----------
+        hollow : bool
+            Leave closed pieces that all face inwards, as plans and Collider do: room in endless material.
+
+        Returns
+        -------
+        Mesh
+            This mesh where nothing had to be turned.
+
+        Examples
+        --------
+        >>> block = riffler.Volume.block((0, 0, 0), (4, 3, 2), pitch=0.5).to_mesh()
+        >>> inside_out = riffler.Mesh(block.vertices, block.triangles[:, ::-1])
+        >>> bool(inside_out.volume < 0 < inside_out.orient().volume)
+        True
         """
-    def smooth(self, iterations: typing.SupportsInt = 10, tolerance: typing.SupportsFloat | None = None, *, feature_angle: typing.SupportsFloat = 0.7, progress: typing.Any = None) -> Mesh:
+    def orient_with_report(self, *, hollow: bool = False) -> tuple[Mesh, riffler.results.Orientation]:
         """
-        A smoother mesh of the same triangles (Taubin) and the same volume; no vertex moves farther than `tolerance`
-        (mm) in all. Edges whose sides turn by more than `feature_angle` (rad) stay sharp, and corners stay where they are, as
-        do vertices on borders.
+        The same as `orient`, with what was wrong.
+
+        Parameters
+        ----------
+        hollow : bool
+            As of `orient`.
+
+        Returns
+        -------
+        (Mesh, Orientation)
+            The mesh, and what was turned or left out.
+
+        Examples
+        --------
+        >>> block = riffler.Volume.block((0, 0, 0), (4, 3, 2), pitch=0.5).to_mesh()
+        >>> inside_out = riffler.Mesh(block.vertices, block.triangles[:, ::-1])
+        >>> mesh, report = inside_out.orient_with_report()
+        >>> report.turned_shells
+        1
         """
-    def write(self, path: os.PathLike | str | bytes, progress: typing.Any = None) -> None:
+    def smooth(self, *, iterations: typing.SupportsInt = 10, tolerance: typing.SupportsFloat | None = None, feature_angle: typing.SupportsFloat = 0.7, progress: collections.abc.Callable[[float], bool | None] | None = None) -> Mesh:
         """
-        Writes .stl (binary, coordinates rounded to float32), .obj, .ply (binary) or .3mf (mm, float32 to its last step; needs the package
-        lib3mf, which tells no progress), whole or not at all.
+        A smoother mesh of the same triangles (Taubin's filter) and the same volume.
+
+        Edges whose sides turn by more than ``feature_angle`` stay sharp; corners stay in their place, and so do vertices on
+        borders.
+
+        Parameters
+        ----------
+        iterations : int, steps of the filter
+            Not negative.
+        tolerance : float, mm, or None
+            No vertex moves farther in all.
+        feature_angle : float, rad
+            Between the normals of an edge's two sides.
+        progress : callable or None
+            Called with the finished share; returning False cancels.
+
+        Returns
+        -------
+        Mesh
+            A new mesh.
+
+        Raises
+        ------
+        ValueError
+            A negative number, or an angle that is not positive.
+        Cancelled
+            ``progress`` returned False.
+
+        Examples
+        --------
+        >>> ball = riffler.Volume.sphere((0, 0, 0), 5, pitch=0.5, directions="xyz").to_mesh()
+        >>> smoother = ball.smooth(iterations=5, tolerance=0.05)
+        >>> bool(abs(smoother.vertices - ball.vertices).max() <= 0.05)
+        True
+        """
+    def write(self, path: os.PathLike | str | bytes, *, progress: collections.abc.Callable[[float], bool | None] | None = None) -> None:
+        """
+        Writes a .stl (binary), .obj, .ply (binary) or .3mf file, whole or not at all.
+
+        Coordinates of .stl are rounded to float32, those of .3mf (mm) are float32 to the last step; .3mf needs the package
+        lib3mf, which reports no progress.
+
+        Parameters
+        ----------
+        path : path_like, with one of these extensions
+            The file; one that is there is replaced.
+        progress : callable or None
+            Called with the finished share; returning False cancels.
+
+        Raises
+        ------
+        RuntimeError
+            The file cannot be written.
+        ValueError
+            Another extension.
+        Cancelled
+            ``progress`` returned False; no file is left, or the one that was there.
+
+        Examples
+        --------
+        >>> riffler.Volume.block((0, 0, 0), (4, 3, 2), pitch=0.5).to_mesh().write("block.ply")
         """
     @property
     def area(self) -> float:
@@ -137,7 +374,7 @@ class Mesh:
     @property
     def bounds(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (2, 3) float64, lower and upper corner of the triangles' box. ValueError without triangles.
+        (2, 3) float64, mm: lower and upper corner of the triangles' box. ValueError without triangles.
         """
     @property
     def triangles(self) -> numpy.ndarray:
@@ -147,12 +384,413 @@ class Mesh:
     @property
     def vertices(self) -> numpy.ndarray:
         """
-        (n, 3) float64, read-only, no copy.
+        (n, 3) float64, mm, read-only, no copy.
         """
     @property
     def volume(self) -> float:
         """
         mm³, signed; of a closed mesh.
+        """
+class Tool:
+    """
+    A cutter with the shank and holder above it; immutable.
+
+    Heights are measured from the tip towards the spindle, lengths in mm, angles in rad. ``length`` includes the
+    rounded or conical end. Sizes that are not positive or do not fit raise ValueError naming the size.
+
+    Examples
+    --------
+    >>> riffler.Tool.ball(diameter=6, length=30) == riffler.Tool.ball(6, 30)
+    True
+    """
+    @staticmethod
+    def ball(diameter: typing.SupportsFloat, length: typing.SupportsFloat) -> Tool:
+        """
+        Ball end mill.
+
+        Parameters
+        ----------
+        diameter : float, mm
+            Diameter of the cylinder above the end, in mm.
+        length : float, mm
+            Cutting length from the tip, in mm.
+
+        Returns
+        -------
+        Tool
+            Without shank and holder.
+
+        Raises
+        ------
+        ValueError
+            Names the size that is not positive or does not fit the others.
+
+        Examples
+        --------
+        >>> riffler.Tool.ball(diameter=6.0, length=30.0).kind
+        'ball'
+        """
+    @staticmethod
+    def cone_end(tip_half_angle: typing.SupportsFloat, tip_height: typing.SupportsFloat, half_angle: typing.SupportsFloat, diameter: typing.SupportsFloat, length: typing.SupportsFloat) -> Tool:
+        """
+        Sharp tip, a first cone, a second cone, then a cylinder.
+
+        Parameters
+        ----------
+        tip_half_angle : float, rad
+            Angle between the axis and the first cone.
+        tip_height : float, mm
+            Height of the first cone, in mm.
+        half_angle : float, rad
+            Angle between the axis and the flank.
+        diameter : float, mm
+            Diameter of the cylinder above the end, in mm.
+        length : float, mm
+            Cutting length from the tip, in mm.
+
+        Returns
+        -------
+        Tool
+            Without shank and holder.
+
+        Raises
+        ------
+        ValueError
+            Names the size that is not positive or does not fit the others.
+
+        Examples
+        --------
+        >>> riffler.Tool.cone_end(tip_half_angle=0.5235987755982988, tip_height=1.0, half_angle=0.08726646259971647, diameter=6.0, length=30.0).kind
+        'cone_end'
+        """
+    @staticmethod
+    def fillet(diameter: typing.SupportsFloat, corner_radius: typing.SupportsFloat, length: typing.SupportsFloat) -> Tool:
+        """
+        Flat end mill with a rounded edge.
+
+        Parameters
+        ----------
+        diameter : float, mm
+            Diameter of the cylinder above the end, in mm.
+        corner_radius : float, mm
+            Radius of the rounded edge, in mm.
+        length : float, mm
+            Cutting length from the tip, in mm.
+
+        Returns
+        -------
+        Tool
+            Without shank and holder.
+
+        Raises
+        ------
+        ValueError
+            Names the size that is not positive or does not fit the others.
+
+        Examples
+        --------
+        >>> riffler.Tool.fillet(diameter=6.0, corner_radius=1.0, length=30.0).kind
+        'fillet'
+        """
+    @staticmethod
+    def flat(diameter: typing.SupportsFloat, length: typing.SupportsFloat) -> Tool:
+        """
+        Flat end mill.
+
+        Parameters
+        ----------
+        diameter : float, mm
+            Diameter of the cylinder above the end, in mm.
+        length : float, mm
+            Cutting length from the tip, in mm.
+
+        Returns
+        -------
+        Tool
+            Without shank and holder.
+
+        Raises
+        ------
+        ValueError
+            Names the size that is not positive or does not fit the others.
+
+        Examples
+        --------
+        >>> riffler.Tool.flat(diameter=6.0, length=30.0).kind
+        'flat'
+        """
+    @staticmethod
+    def from_dict(d: dict) -> Tool:
+        """
+        The tool of a tool library's entry.
+
+        Parameters
+        ----------
+        d : dict with the keys of `to_dict`
+            Kind, its sizes, and where there are such name, shank and holder.
+
+        Returns
+        -------
+        Tool
+            Equal to the one that `to_dict` was called on.
+
+        Raises
+        ------
+        ValueError
+            Names the key that is missing or wrong.
+
+        Examples
+        --------
+        >>> riffler.Tool.from_dict({"kind": "ball", "diameter": 6, "length": 30}).diameter
+        6.0
+        """
+    @staticmethod
+    def profile(segments: numpy.typing.ArrayLike | collections.abc.Sequence[collections.abc.Sequence[float]], length: typing.SupportsFloat) -> Tool:
+        """
+        A free profile from the tip (0, 0) upwards; a cylinder follows up to ``length``.
+
+        Parameters
+        ----------
+        segments : list of rows of 2 or 4 numbers, mm
+            (radius, height) is a line to there, (radius, height, centre_radius, centre_height) an arc, the shorter way round.
+        length : float, mm
+            Cutting length from the tip.
+
+        Returns
+        -------
+        Tool
+            Without shank and holder.
+
+        Raises
+        ------
+        ValueError
+            Names the row.
+
+        Examples
+        --------
+        >>> riffler.Tool.profile([(2, 0), (3, 1)], length=20).diameter
+        6.0
+        """
+    @staticmethod
+    def shapes() -> list[ToolShape]:
+        """
+        The named cutter shapes with their sizes, for forms: those that have a function here but `profile`.
+
+        Returns
+        -------
+        list of ToolShape
+            In the order of the table.
+
+        Examples
+        --------
+        >>> [shape.name for shape in riffler.Tool.shapes()][:2]
+        ['ball', 'flat']
+        """
+    @staticmethod
+    def taper(tip_radius: typing.SupportsFloat, half_angle: typing.SupportsFloat, diameter: typing.SupportsFloat, length: typing.SupportsFloat, flat_tip: bool = False) -> Tool:
+        """
+        Cone above a ball tip or a flat one, then a cylinder.
+
+        Parameters
+        ----------
+        tip_radius : float, mm
+            Radius of the ball or flat at the tip, in mm.
+        half_angle : float, rad
+            Angle between the axis and the flank.
+        diameter : float, mm
+            Diameter of the cylinder above the end, in mm.
+        length : float, mm
+            Cutting length from the tip, in mm.
+        flat_tip : bool
+            A flat instead of a ball at the tip.
+
+        Returns
+        -------
+        Tool
+            Without shank and holder.
+
+        Raises
+        ------
+        ValueError
+            Names the size that is not positive or does not fit the others.
+
+        Examples
+        --------
+        >>> riffler.Tool.taper(tip_radius=0.5, half_angle=0.08726646259971647, diameter=6.0, length=30.0, flat_tip=False).kind
+        'taper'
+        """
+    def __eq__(self, other: object) -> bool:
+        ...
+    def __getstate__(self) -> dict:
+        ...
+    def __hash__(self) -> int:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def __setstate__(self, arg0: dict) -> None:
+        ...
+    def named(self, name: str) -> Tool:
+        """
+        The same tool under another name.
+
+        Parameters
+        ----------
+        name : str
+            For messages and tool libraries.
+
+        Returns
+        -------
+        Tool
+            A new tool.
+
+        Examples
+        --------
+        >>> riffler.Tool.ball(6, 30).named("finisher").name
+        'finisher'
+        """
+    def outline(self, *, tolerance: typing.SupportsFloat = 0.01) -> list[tuple[str, numpy.typing.NDArray[numpy.float64]]]:
+        """
+        The outline of cutter, shank and holder together, from the tip upwards, for drawing.
+
+        What lies inside of another piece is left out.
+
+        Parameters
+        ----------
+        tolerance : float, mm
+            How close polylines stay to arcs.
+
+        Returns
+        -------
+        list of (str, ndarray of shape (n, 2), mm)
+            "cutter", "shank" or "holder", and a polyline of radius and height.
+
+        Raises
+        ------
+        ValueError
+            A tolerance that is not positive.
+
+        Examples
+        --------
+        >>> [(part, line.tolist()) for part, line in riffler.Tool.flat(6, 30).outline()][0]
+        ('cutter', [[0.0, 0.0], [3.0, 0.0], [3.0, 30.0], [0.0, 30.0]])
+        """
+    def to_dict(self) -> dict[str, bool | float | str | list[tuple[float, ...]]]:
+        """
+        The JSON / TOML form: kind, its sizes, name, shank and holder.
+
+        Returns
+        -------
+        dict
+            Numbers, texts and lists only.
+
+        Examples
+        --------
+        >>> riffler.Tool.ball(6, 30).to_dict()["kind"]
+        'ball'
+        """
+    def with_holder(self, pieces: numpy.typing.ArrayLike) -> Tool:
+        """
+        The same tool with another holder.
+
+        Parameters
+        ----------
+        pieces : array_like of shape (k, 4), mm
+            Truncated cones (z0, r0, z1, r1), heights from the tip.
+
+        Returns
+        -------
+        Tool
+            A new tool.
+
+        Raises
+        ------
+        ValueError
+            Names the row.
+
+        Examples
+        --------
+        >>> riffler.Tool.ball(6, 30).with_holder([(40, 15, 80, 20)]).holder
+        [(40.0, 15.0, 80.0, 20.0)]
+        """
+    def with_margins(self, *, shank: typing.SupportsFloat = 0.0, holder: typing.SupportsFloat = 0.0) -> Tool:
+        """
+        The same tool with wider shank and holder: to be planned and checked with, so that these keep clear.
+
+        The ends of the holder move as well, those of the shank do not.
+
+        Parameters
+        ----------
+        shank, holder : float, mm
+            By how much each is wider on every side.
+
+        Returns
+        -------
+        Tool
+            A new tool.
+
+        Raises
+        ------
+        ValueError
+            A negative margin.
+
+        Examples
+        --------
+        >>> riffler.Tool.ball(6, 30).with_shank([(30, 3, 60, 3)]).with_margins(shank=0.5).shank
+        [(30.0, 3.5, 60.0, 3.5)]
+        """
+    def with_shank(self, pieces: numpy.typing.ArrayLike) -> Tool:
+        """
+        The same tool with another shank.
+
+        Parameters
+        ----------
+        pieces : array_like of shape (k, 4), mm
+            Truncated cones (z0, r0, z1, r1), heights from the tip.
+
+        Returns
+        -------
+        Tool
+            A new tool.
+
+        Raises
+        ------
+        ValueError
+            Names the row.
+
+        Examples
+        --------
+        >>> riffler.Tool.ball(6, 30).with_shank([(30, 3, 60, 3)]).shank
+        [(30.0, 3.0, 60.0, 3.0)]
+        """
+    @property
+    def diameter(self) -> float:
+        """
+        Largest diameter of the cutter, mm.
+        """
+    @property
+    def holder(self) -> list[tuple[float, float, float, float]]:
+        """
+        Truncated cones (z0, r0, z1, r1), mm.
+        """
+    @property
+    def kind(self) -> str:
+        """
+        "ball", "flat" …, or "profile".
+        """
+    @property
+    def length(self) -> float:
+        """
+        From the tip to the end of the cutter, mm.
+        """
+    @property
+    def name(self) -> str:
+        """
+        In messages and tool libraries.
+        """
+    @property
+    def shank(self) -> list[tuple[float, float, float, float]]:
+        """
+        Truncated cones (z0, r0, z1, r1), mm.
         """
 class ToolSize:
     """
@@ -226,139 +864,1032 @@ class ToolShape:
         """
         In the order of the function's arguments; one is "diameter", one "length".
         """
-class Tool:
+class Volume:
     """
-    A cutter with the shank and holder above it; immutable.
+    A dexel volume: material as spans along parallel rays.
 
-    Heights are measured from the tip towards the spindle, lengths in mm, angles in rad. ``length`` includes the
-    rounded or conical end. Sizes that are not positive or do not fit raise ValueError naming the size.
+    ``directions`` is "z" for one grid of rays or "xyz" for three (a tri-dexel volume, which also keeps the surface's
+    normals and so its sharp edges). Ray (i, j) of "z" stands at lower + ((i + .5) h, (j + .5) h); "x" rays are indexed
+    (y, z), "y" rays (z, x). Lengths in mm.
+
+    Volumes are made by `block`, `empty`, `sphere`, `cylinder`, `from_mesh` and `load`. Operators of sets work on volumes
+    with the same lower, upper, pitch and directions: ``v | w``, ``v & w``, ``v - w`` give a new volume, ``v |= w``,
+    ``v &= w``, ``v -= w`` change v.
+
+    Examples
+    --------
+    >>> block = riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5)
+    >>> ball = riffler.Volume.sphere((10, 10, 10), 6, pitch=0.5, lower=block.lower, upper=block.upper)
+    >>> dish = block - ball
+    >>> bool(dish.volume < block.volume), (dish | ball).volume == block.volume
+    (True, True)
     """
     @staticmethod
-    def ball(diameter: typing.SupportsFloat, length: typing.SupportsFloat) -> Tool:
+    def block(lower: numpy.typing.ArrayLike, upper: numpy.typing.ArrayLike, pitch: typing.SupportsFloat, directions: str = 'z') -> Volume:
         """
-        Ball end mill.
+        A box full of material.
 
-        - ``diameter``: diameter of the cylinder above the end, in mm
-        - ``length``: cutting length from the tip, in mm
-        """
-    @staticmethod
-    def cone_end(tip_half_angle: typing.SupportsFloat, tip_height: typing.SupportsFloat, half_angle: typing.SupportsFloat, diameter: typing.SupportsFloat, length: typing.SupportsFloat) -> Tool:
-        """
-        Sharp tip, a first cone, a second cone, then a cylinder.
+        Parameters
+        ----------
+        lower, upper : array_like of shape (3,), mm
+            Opposite corners of the box.
+        pitch : float, mm
+            Distance of neighbouring rays.
+        directions : "z" or "xyz"
+            One grid of rays, or three.
 
-        - ``tip_half_angle``: angle between the axis and the first cone, in rad
-        - ``tip_height``: height of the first cone, in mm
-        - ``half_angle``: angle between the axis and the flank, in rad
-        - ``diameter``: diameter of the cylinder above the end, in mm
-        - ``length``: cutting length from the tip, in mm
-        """
-    @staticmethod
-    def fillet(diameter: typing.SupportsFloat, corner_radius: typing.SupportsFloat, length: typing.SupportsFloat) -> Tool:
-        """
-        Flat end mill with a rounded edge.
+        Returns
+        -------
+        Volume
+            A new volume.
 
-        - ``diameter``: diameter of the cylinder above the end, in mm
-        - ``corner_radius``: radius of the rounded edge, in mm
-        - ``length``: cutting length from the tip, in mm
-        """
-    @staticmethod
-    def flat(diameter: typing.SupportsFloat, length: typing.SupportsFloat) -> Tool:
-        """
-        Flat end mill.
+        Raises
+        ------
+        ValueError
+            Before anything is allocated, if it does not fit in memory.
 
-        - ``diameter``: diameter of the cylinder above the end, in mm
-        - ``length``: cutting length from the tip, in mm
+        Examples
+        --------
+        >>> riffler.Volume.block((0, 0, 0), (4, 3, 2), pitch=0.5).volume
+        24.0
         """
     @staticmethod
-    def from_dict(d: dict) -> Tool:
+    def cylinder(centre: numpy.typing.ArrayLike, radius: typing.SupportsFloat, height: typing.SupportsFloat, pitch: typing.SupportsFloat, directions: str = 'z', *, axis: numpy.typing.ArrayLike = (0, 0, 1), lower: numpy.typing.ArrayLike | None = None, upper: numpy.typing.ArrayLike | None = None, progress: collections.abc.Callable[[float], bool | None] | None = None) -> Volume:
         """
-        The tool of a tool library's entry; see to_dict.
-        """
-    @staticmethod
-    def profile(segments: typing.Any, length: typing.SupportsFloat) -> Tool:
-        """
-        Free profile from the tip (0, 0) upwards: rows (radius, height) are lines, rows (radius, height,
-        centre_radius, centre_height) arcs, the shorter way round; a cylinder follows up to ``length``.
-        """
-    @staticmethod
-    def shapes() -> list[ToolShape]:
-        """
-        The named cutter shapes with their sizes, for forms: those that have a function here but ``profile``.
-        """
-    @staticmethod
-    def taper(tip_radius: typing.SupportsFloat, half_angle: typing.SupportsFloat, diameter: typing.SupportsFloat, length: typing.SupportsFloat, flat_tip: bool = False) -> Tool:
-        """
-        Cone above a ball tip or a flat one, then a cylinder.
+        A cylinder of material, made of exact rays as `sphere`.
 
-        - ``tip_radius``: radius of the ball or flat at the tip, in mm
-        - ``half_angle``: angle between the axis and the flank, in rad
-        - ``diameter``: diameter of the cylinder above the end, in mm
-        - ``length``: cutting length from the tip, in mm
-        - ``flat_tip``: a flat instead of a ball at the tip
+        The caps are planes, and meet the side at a sharp edge in volumes of three directions.
+
+        Parameters
+        ----------
+        centre : array_like of shape (3,), mm
+            The middle of the cylinder.
+        radius : float, mm
+            Of the cylinder.
+        height : float, mm
+            Along the axis.
+        pitch : float, mm
+            Distance of neighbouring rays.
+        directions : "z" or "xyz"
+            One grid of rays, or three.
+        axis : array_like of shape (3,), of any length but 0
+            Direction of the axis.
+        lower, upper : array_like of shape (3,), mm, or None
+            The volume's box; what lies outside of it is clipped. Default: the cylinder's own.
+        progress : callable or None
+            Called with the finished share; returning False cancels.
+
+        Returns
+        -------
+        Volume
+            A new volume.
+
+        Raises
+        ------
+        ValueError
+            As for `sphere`.
+        Cancelled
+            ``progress`` returned False.
+
+        Examples
+        --------
+        >>> rod = riffler.Volume.cylinder((0, 0, 0), 2, 10, pitch=0.1, axis=(1, 0, 0))
+        >>> round(rod.volume)
+        126
         """
-    def __eq__(self, arg0: Tool) -> bool:
+    @staticmethod
+    def empty(lower: numpy.typing.ArrayLike, upper: numpy.typing.ArrayLike, pitch: typing.SupportsFloat, directions: str = 'z') -> Volume:
+        """
+        A box without material: it holds only what is put on later (``carve``, ``|=``).
+
+        Parameters
+        ----------
+        lower, upper : array_like of shape (3,), mm
+            Opposite corners of the box.
+        pitch : float, mm
+            Distance of neighbouring rays.
+        directions : "z" or "xyz"
+            One grid of rays, or three.
+
+        Returns
+        -------
+        Volume
+            A new volume.
+
+        Raises
+        ------
+        ValueError
+            The box is empty or does not fit in memory.
+
+        Examples
+        --------
+        >>> riffler.Volume.empty((0, 0, 0), (4, 3, 2), pitch=0.5).volume
+        0.0
+        """
+    @staticmethod
+    def from_bytes(data: typing_extensions.Buffer, *, name: str = 'volume') -> Volume:
+        """
+        The volume whose `to_bytes` these are.
+
+        Parameters
+        ----------
+        data : bytes, or another buffer
+            Of a .rvol file.
+        name : str
+            Stands in messages.
+
+        Returns
+        -------
+        Volume
+            A new volume.
+
+        Raises
+        ------
+        FormatError
+            The bytes are damaged.
+
+        Examples
+        --------
+        See `to_bytes`.
+        """
+    @staticmethod
+    def from_mesh(mesh: Mesh, pitch: typing.SupportsFloat, directions: str = 'z', *, lower: numpy.typing.ArrayLike | None = None, upper: numpy.typing.ArrayLike | None = None, progress: collections.abc.Callable[[float], bool | None] | None = None) -> Volume:
+        """
+        The solid within a mesh: points whose absolute generalized winding number exceeds 1/2.
+
+        Inside-out, overlapping, touching and open parts are fine, as are triangles that face against their neighbours and
+        repeated ones (`Mesh.orient`). Material thinner than the pitch may be lost: where that is worth a sentence, it is a
+        UserWarning; `from_mesh_with_report` puts it into its report.
+
+        Parameters
+        ----------
+        mesh : Mesh
+            With some volume.
+        pitch : float, mm
+            Distance of neighbouring rays.
+        directions : "z" or "xyz"
+            One grid of rays, or three.
+        lower, upper : array_like of shape (3,), mm, or None
+            The volume's box; what lies outside of it is clipped. Default: the mesh's own.
+        progress : callable or None
+            Called with the finished share; returning False cancels.
+
+        Returns
+        -------
+        Volume
+            A new volume.
+
+        Raises
+        ------
+        ValueError
+            The mesh is flat or empty, or the volume does not fit in memory.
+        Cancelled
+            ``progress`` returned False.
+
+        Examples
+        --------
+        >>> mesh = riffler.Volume.block((0, 0, 0), (4, 3, 2), pitch=0.5, directions="xyz").to_mesh()
+        >>> round(riffler.Volume.from_mesh(mesh, 0.25).volume, 3)
+        24.0
+        """
+    @staticmethod
+    def from_mesh_with_report(mesh: Mesh, pitch: typing.SupportsFloat, directions: str = 'z', *, lower: numpy.typing.ArrayLike | None = None, upper: numpy.typing.ArrayLike | None = None, progress: collections.abc.Callable[[float], bool | None] | None = None) -> tuple[Volume, riffler.results.VolumeReport]:
+        """
+        The same as `from_mesh`, with what was wrong with the mesh and what was lost of it.
+
+        Parameters
+        ----------
+        mesh : Mesh
+            With some volume.
+        pitch : float, mm
+            Distance of neighbouring rays.
+        directions : "z" or "xyz"
+            One grid of rays, or three.
+        lower, upper : array_like of shape (3,), mm, or None
+            The volume's box; what lies outside of it is clipped. Default: the mesh's own.
+        progress : callable or None
+            Called with the finished share; returning False cancels.
+
+        Returns
+        -------
+        (Volume, VolumeReport)
+            The volume, and the report.
+
+        Raises
+        ------
+        ValueError
+            As `from_mesh`.
+        Cancelled
+            ``progress`` returned False.
+
+        Examples
+        --------
+        >>> mesh = riffler.Volume.block((0, 0, 0), (4, 3, 2), pitch=0.5).to_mesh()
+        >>> volume, report = riffler.Volume.from_mesh_with_report(mesh, 0.25)
+        >>> report.open_edges, report.lost_note
+        (0, '')
+        """
+    @staticmethod
+    def grown(*args, **kwargs):
+        """
+        grow(self: riffler._core.Volume, lower: numpy.typing.ArrayLike | None = None, upper: numpy.typing.ArrayLike | None = None, *, progress: collections.abc.Callable[[float], bool | None] | None = None) -> riffler._core.Volume
+
+        This volume in a larger box: a new volume with the same spans and normals, bit for bit.
+
+        Rays stay where they stand, and others, without material, are put next to them: each side of the box moves outward by
+        whole pitches until it lies at or beyond that of ``lower`` to ``upper``, to 1e-6 of a pitch. A side that does already
+        stays. Where a box's size is no whole number of pitches, an upper side may move one pitch more; ``volume`` then counts
+        the rays that were last with whole cells.
+
+        Parameters
+        ----------
+        lower, upper : array_like of shape (3,), mm, or None
+            The box that is wanted. Default: this volume's own.
+        progress : callable or None
+            Called with the finished share; returning False cancels.
+
+        Returns
+        -------
+        Volume
+            A new volume.
+
+        Raises
+        ------
+        ValueError
+            Before anything is allocated, if the box does not fit in memory.
+        Cancelled
+            ``progress`` returned False.
+
+        Examples
+        --------
+        >>> volume = riffler.Volume.block((0, 0, 0), (4, 3, 2), pitch=0.5)
+        >>> volume.grow(upper=(6, 3, 2)).upper.tolist()
+        [6.0, 3.0, 2.0]
+
+        """
+    @staticmethod
+    def load(path: os.PathLike | str | bytes, *, progress: collections.abc.Callable[[float], bool | None] | None = None) -> Volume:
+        """
+        Reads a .rvol file.
+
+        Parameters
+        ----------
+        path : path_like
+            The file.
+        progress : callable or None
+            Called with the finished share; returning False cancels.
+
+        Returns
+        -------
+        Volume
+            A new volume.
+
+        Raises
+        ------
+        FormatError
+            The file is damaged, or no .rvol file: names the byte.
+        Cancelled
+            ``progress`` returned False.
+
+        Examples
+        --------
+        See `save`.
+        """
+    @staticmethod
+    def resampled(*args, **kwargs):
+        """
+        resample(self: riffler._core.Volume, pitch: typing.SupportsFloat, directions: str | None = None, *, lower: numpy.typing.ArrayLike | None = None, upper: numpy.typing.ArrayLike | None = None, progress: collections.abc.Callable[[float], bool | None] | None = None) -> riffler._core.Volume
+
+        This volume at another pitch, with other directions or in another box: a new volume.
+
+        Material outside of the new box is left out. The mesh of `to_mesh` is what is resampled, so a finer pitch brings no
+        detail back. A volume with the same pitch, directions and box is a copy, bit for bit.
+
+        Parameters
+        ----------
+        pitch : float, mm
+            Distance of neighbouring rays.
+        directions : "z", "xyz" or None
+            Default: this volume's own.
+        lower, upper : array_like of shape (3,), mm, or None
+            The box. Default: this volume's own.
+        progress : callable or None
+            Called with the finished share; returning False cancels.
+
+        Returns
+        -------
+        Volume
+            A new volume.
+
+        Raises
+        ------
+        ValueError
+            The volume does not fit in memory.
+        Cancelled
+            ``progress`` returned False.
+
+        Examples
+        --------
+        >>> fine = riffler.Volume.block((0, 0, 0), (4, 3, 2), pitch=0.5, directions="xyz").resample(0.25)
+        >>> round(fine.volume, 3), fine.pitch
+        (24.0, 0.25)
+
+        """
+    @staticmethod
+    def soften(*args, **kwargs):
+        """
+        smooth(self: riffler._core.Volume, centres: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], radius: typing.SupportsFloat, *, strength: typing.SupportsFloat = 0.5, protect: riffler._core.Volume = None, progress: collections.abc.Callable[[float], bool | None] | None = None) -> riffler._core.Smoothed
+
+        Smooths the surface by dabs of a round brush, one after the other; volumes with directions "xyz" only.
+
+        A dab levels what is finer than about four pitches and moves nothing by more than one pitch; repeat it for more. Planes
+        stay planes, edges become round, convex places lose material and concave ones get some, within the volume's box only.
+
+        Parameters
+        ----------
+        centres : array_like of shape (n, 3) or (3,), mm
+            Centres of the dabs.
+        radius : float, mm
+            Of the brush; what lies beyond it stays unchanged.
+        strength : float, from 0 to 1
+            The share of the distance to the smoothed surface at the brush's centre, less towards its rim.
+        protect : Volume or None
+            Of the same lower, upper, pitch and directions; what lies in it stays unchanged, material and air.
+        progress : callable or None
+            Called with the finished share; returning False cancels.
+
+        Returns
+        -------
+        Smoothed
+            What each dab took away and put on.
+
+        Raises
+        ------
+        ValueError
+            The volume has one direction only; the protected volume's grid is another; names argument and row.
+        Cancelled
+            ``progress`` returned False; the volume is as it was.
+
+        Examples
+        --------
+        >>> volume = riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5, directions="xyz")
+        >>> moved = volume.smooth((20, 10, 10), radius=4)
+        >>> bool(moved.removed[0] > 0), len(moved)
+        (True, 1)
+
+        """
+    @staticmethod
+    def sphere(centre: numpy.typing.ArrayLike, radius: typing.SupportsFloat, pitch: typing.SupportsFloat, directions: str = 'z', *, lower: numpy.typing.ArrayLike | None = None, upper: numpy.typing.ArrayLike | None = None, progress: collections.abc.Callable[[float], bool | None] | None = None) -> Volume:
+        """
+        A ball of material, made of exact rays: it has no facets.
+
+        Each end of a span is where its ray crosses the sphere, to the rounding of doubles, and has the sphere's normal.
+
+        Parameters
+        ----------
+        centre : array_like of shape (3,), mm
+            Of the ball.
+        radius : float, mm
+            Of the ball.
+        pitch : float, mm
+            Distance of neighbouring rays.
+        directions : "z" or "xyz"
+            One grid of rays, or three.
+        lower, upper : array_like of shape (3,), mm, or None
+            The volume's box; what lies outside of it is clipped. Default: the ball's own.
+        progress : callable or None
+            Called with the finished share; returning False cancels.
+
+        Returns
+        -------
+        Volume
+            A new volume.
+
+        Raises
+        ------
+        ValueError
+            All rays of a direction miss a ball that lies in the box: the message has a pitch at which they do not.
+        Cancelled
+            ``progress`` returned False.
+
+        Examples
+        --------
+        >>> ball = riffler.Volume.sphere((0, 0, 0), 5, pitch=0.1)
+        >>> round(ball.volume)
+        524
+        """
+    @staticmethod
+    def stats(*args, **kwargs):
+        """
+        take_counters(self: riffler._core.Volume) -> riffler.results.VolumeCounters
+
+        The counters, which start again from 0.
+
+        Returns
+        -------
+        VolumeCounters
+            The work since the volume was made, or since the last call.
+
+        Examples
+        --------
+        >>> volume = riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5)
+        >>> cut = volume.carve(riffler.Tool.ball(6, 30), [[5, 10, 8, 0, 0, 1], [15, 10, 8, 0, 0, 1]])
+        >>> volume.take_counters().moves, volume.counters.moves
+        (1, 0)
+
+        """
+    def __and__(self, arg0: Volume) -> Volume:
         ...
-    def __getstate__(self) -> dict:
+    def __copy__(self) -> Volume:
         ...
-    def __hash__(self) -> int:
+    def __deepcopy__(self, arg0: dict) -> Volume:
+        ...
+    def __getstate__(self) -> bytes:
+        ...
+    def __iand__(self, arg0: Volume) -> Volume:
+        ...
+    def __ior__(self, arg0: Volume) -> Volume:
+        ...
+    def __isub__(self, arg0: Volume) -> Volume:
+        ...
+    def __or__(self, arg0: Volume) -> Volume:
         ...
     def __repr__(self) -> str:
         ...
-    def __setstate__(self, arg0: dict) -> None:
+    def __setstate__(self, arg0: bytes) -> None:
         ...
-    def named(self, name: str) -> Tool:
+    def __sub__(self, arg0: Volume) -> Volume:
+        ...
+    def add(self, other: Volume, *, progress: collections.abc.Callable[[float], bool | None] | None = None) -> Volume:
         """
-        The same tool under another name.
-        """
-    def outline(self, tolerance: typing.SupportsFloat = 0.01) -> list:
-        """
-        The outline of cutter, shank and holder together, from the tip upwards, for drawing.
+        Adds the other volume's material, in place: ``v |= other`` with progress; see `subtract`.
 
-        A list of (part, points): ``"cutter"``, ``"shank"`` or ``"holder"``, and a polyline (n, 2) of radius and height, mm, that
-        stays within ``tolerance`` of it. What lies inside of another piece is left out.
+        Parameters
+        ----------
+        other : Volume
+            Of the same lower, upper, pitch and directions.
+        progress : callable or None
+            Called with the finished share; returning False cancels.
+
+        Returns
+        -------
+        Volume
+            This volume.
+
+        Examples
+        --------
+        >>> block = riffler.Volume.block((0, 0, 0), (4, 3, 2), pitch=0.5)
+        >>> riffler.Volume.empty((0, 0, 0), (4, 3, 2), pitch=0.5).add(block).volume
+        24.0
         """
-    def to_dict(self) -> dict:
+    def carve(self, tool: Tool, poses: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], *, tolerance: typing.SupportsFloat = 0.01, dt: numpy.typing.ArrayLike | None = None, removal_constant: typing.SupportsFloat = 0.05, mode: str = 'remove', protect: Volume | None = None, progress: collections.abc.Callable[[float], bool | None] | None = None) -> Cut:
         """
-        The JSON / TOML form: kind, its sizes, name, shank and holder.
+        Takes away what the cutter sweeps along a path, or puts it on. Shank and holder never cut.
+
+        Parameters
+        ----------
+        tool : Tool
+            Its cutter is swept.
+        poses : array_like of shape (n, 6), tip in mm and unit axis
+            Tip xyz, then unit axis xyz from the tip to the spindle; n - 1 moves.
+        tolerance : float, mm
+            For moves that turn the axis; others are exact.
+        dt : array_like, a number or of shape (n - 1,), s, or None
+            Duration of the moves: asks for force.
+        removal_constant : float, N·s/mm³
+            Force for each rate of removal.
+        mode : "remove" or "add"
+            "add" puts material on wherever the cutter sweeps within the volume's box; ``removed`` is then what was put on.
+        protect : Volume or None
+            Of the same lower, upper, pitch and directions; what lies in it stays unchanged, material and air.
+        progress : callable or None
+            Called with the finished share; returning False cancels.
+
+        Returns
+        -------
+        Cut
+            What each move took away.
+
+        Raises
+        ------
+        ValueError
+            Names argument and row: a shape, an axis that is no unit vector, opposite axes; or the protected volume's grid is
+            another.
+        Cancelled
+            ``progress`` returned False; the volume is as it was.
+
+        Examples
+        --------
+        >>> volume = riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5)
+        >>> cut = volume.carve(riffler.Tool.flat(6, 30), [[-5, 10, 8, 0, 0, 1], [25, 10, 8, 0, 0, 1]], dt=1.0)
+        >>> cut.removed.round(3).tolist(), bool(cut.force[0, 0] < 0)
+        ([240.0], True)
         """
-    def with_holder(self, pieces: typing.Any) -> Tool:
+    def clip(self, point: numpy.typing.ArrayLike, normal: numpy.typing.ArrayLike, *, progress: collections.abc.Callable[[float], bool | None] | None = None) -> Volume:
         """
-        The same tool with a holder of truncated cones (z0, r0, z1, r1).
+        Takes away what lies in front of a plane, in place: the new face looks out along its normal.
+
+        Parameters
+        ----------
+        point : array_like of shape (3,), mm
+            On the plane.
+        normal : array_like of shape (3,), of any length but 0
+            Points to what is taken away.
+        progress : callable or None
+            Called with the finished share; returning False cancels.
+
+        Returns
+        -------
+        Volume
+            This volume.
+
+        Raises
+        ------
+        ValueError
+            A normal of length 0.
+        Cancelled
+            ``progress`` returned False.
+
+        Examples
+        --------
+        >>> volume = riffler.Volume.block((0, 0, 0), (4, 3, 2), pitch=0.5)
+        >>> volume.clip(point=(0, 0, 1), normal=(0, 0, 1)).volume
+        12.0
         """
-    def with_margins(self, shank: typing.SupportsFloat = 0.0, holder: typing.SupportsFloat = 0.0) -> Tool:
+    def contains(self, points: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.bool]:
         """
-        The same tool with wider shank and holder, mm: to be planned and checked with, so that these keep clear of the
-        part by as much while the cutter touches it. The ends of the holder move as well, those of the shank do not.
+        Whether points lie in the material, by the nearest ray of each direction; of three, two decide.
+
+        Parameters
+        ----------
+        points : array_like of shape (n, 3), mm
+            Anywhere.
+
+        Returns
+        -------
+        ndarray of shape (n,), bool
+            One for each point.
+
+        Examples
+        --------
+        >>> riffler.Volume.block((0, 0, 0), (4, 3, 2), pitch=0.5).contains([[1, 1, 1], [1, 1, 3]]).tolist()
+        [True, False]
         """
-    def with_shank(self, pieces: typing.Any) -> Tool:
+    def copy(self) -> Volume:
         """
-        The same tool with a shank of truncated cones (z0, r0, z1, r1).
+        An independent volume; shares its tiles until one of the two is written.
+
+        Returns
+        -------
+        Volume
+            A new volume.
+
+        Examples
+        --------
+        >>> volume = riffler.Volume.block((0, 0, 0), (4, 3, 2), pitch=0.5)
+        >>> volume.copy().to_bytes() == volume.to_bytes()
+        True
+        """
+    def grow(self, lower: numpy.typing.ArrayLike | None = None, upper: numpy.typing.ArrayLike | None = None, *, progress: collections.abc.Callable[[float], bool | None] | None = None) -> Volume:
+        """
+        This volume in a larger box: a new volume with the same spans and normals, bit for bit.
+
+        Rays stay where they stand, and others, without material, are put next to them: each side of the box moves outward by
+        whole pitches until it lies at or beyond that of ``lower`` to ``upper``, to 1e-6 of a pitch. A side that does already
+        stays. Where a box's size is no whole number of pitches, an upper side may move one pitch more; ``volume`` then counts
+        the rays that were last with whole cells.
+
+        Parameters
+        ----------
+        lower, upper : array_like of shape (3,), mm, or None
+            The box that is wanted. Default: this volume's own.
+        progress : callable or None
+            Called with the finished share; returning False cancels.
+
+        Returns
+        -------
+        Volume
+            A new volume.
+
+        Raises
+        ------
+        ValueError
+            Before anything is allocated, if the box does not fit in memory.
+        Cancelled
+            ``progress`` returned False.
+
+        Examples
+        --------
+        >>> volume = riffler.Volume.block((0, 0, 0), (4, 3, 2), pitch=0.5)
+        >>> volume.grow(upper=(6, 3, 2)).upper.tolist()
+        [6.0, 3.0, 2.0]
+        """
+    def intersect(self, other: Volume, *, progress: collections.abc.Callable[[float], bool | None] | None = None) -> Volume:
+        """
+        Keeps what both volumes have, in place: ``v &= other`` with progress; see `subtract`.
+
+        Parameters
+        ----------
+        other : Volume
+            Of the same lower, upper, pitch and directions.
+        progress : callable or None
+            Called with the finished share; returning False cancels.
+
+        Returns
+        -------
+        Volume
+            This volume.
+
+        Examples
+        --------
+        >>> block = riffler.Volume.block((0, 0, 0), (4, 3, 2), pitch=0.5)
+        >>> block.copy().intersect(block).volume
+        24.0
+        """
+    def intervals(self, direction: str) -> tuple:
+        """
+        The material along every ray of a direction.
+
+        Parameters
+        ----------
+        direction : "x", "y" or "z", one that the volume has
+            Of the rays.
+
+        Returns
+        -------
+        counts : ndarray of shape (nu, nv), uint32
+            Spans of each ray.
+        spans : ndarray of shape (counts.sum(), 2), float64, mm
+            Near and far end of each span: coordinates along the ray, rays in C order.
+
+        Raises
+        ------
+        ValueError
+            The volume has no such rays.
+
+        Examples
+        --------
+        >>> counts, spans = riffler.Volume.block((0, 0, 0), (4, 3, 2), pitch=0.5).intervals("z")
+        >>> counts.shape, spans[0].tolist()
+        ((8, 6), [0.0, 2.0])
+        """
+    def normals(self, direction: str) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        The surface's normals at the ends of the spans of `intervals`; volumes with directions "xyz" only.
+
+        Parameters
+        ----------
+        direction : "x", "y" or "z", one that the volume has
+            Of the rays.
+
+        Returns
+        -------
+        ndarray of shape (spans, 2, 3), float64
+            Unit normals at near and far ends, out of the material.
+
+        Raises
+        ------
+        ValueError
+            The volume has no such rays, or no normals.
+
+        Examples
+        --------
+        >>> volume = riffler.Volume.block((0, 0, 0), (4, 3, 2), pitch=0.5, directions="xyz")
+        >>> volume.normals("z")[0].round(3).tolist()
+        [[0.0, 0.0, -1.0], [0.0, 0.0, 1.0]]
+        """
+    def parts(self, *, minimum: typing.SupportsFloat = 0.0, progress: collections.abc.Callable[[float], bool | None] | None = None) -> list[Volume]:
+        """
+        One volume on this one's grid for each piece that hangs together, the largest first.
+
+        Spans of neighbouring rays hang together where they overlap. The parts' volumes sum to this one's.
+
+        Parameters
+        ----------
+        minimum : float, mm³
+            Smaller pieces stay with the largest.
+        progress : callable or None
+            Called with the finished share; returning False cancels.
+
+        Returns
+        -------
+        list of Volume
+            New volumes.
+
+        Raises
+        ------
+        ValueError
+            More than 1000 pieces, or a negative ``minimum``.
+        Cancelled
+            ``progress`` returned False.
+
+        Examples
+        --------
+        >>> volume = riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5)
+        >>> cut = volume.carve(riffler.Tool.flat(4, 30), [[-5, 12, 0, 0, 0, 1], [25, 12, 0, 0, 0, 1]])
+        >>> [part.volume for part in volume.parts()]
+        [2000.0, 1200.0]
+        """
+    def resample(self, pitch: typing.SupportsFloat, directions: str | None = None, *, lower: numpy.typing.ArrayLike | None = None, upper: numpy.typing.ArrayLike | None = None, progress: collections.abc.Callable[[float], bool | None] | None = None) -> Volume:
+        """
+        This volume at another pitch, with other directions or in another box: a new volume.
+
+        Material outside of the new box is left out. The mesh of `to_mesh` is what is resampled, so a finer pitch brings no
+        detail back. A volume with the same pitch, directions and box is a copy, bit for bit.
+
+        Parameters
+        ----------
+        pitch : float, mm
+            Distance of neighbouring rays.
+        directions : "z", "xyz" or None
+            Default: this volume's own.
+        lower, upper : array_like of shape (3,), mm, or None
+            The box. Default: this volume's own.
+        progress : callable or None
+            Called with the finished share; returning False cancels.
+
+        Returns
+        -------
+        Volume
+            A new volume.
+
+        Raises
+        ------
+        ValueError
+            The volume does not fit in memory.
+        Cancelled
+            ``progress`` returned False.
+
+        Examples
+        --------
+        >>> fine = riffler.Volume.block((0, 0, 0), (4, 3, 2), pitch=0.5, directions="xyz").resample(0.25)
+        >>> round(fine.volume, 3), fine.pitch
+        (24.0, 0.25)
+        """
+    def restore(self, snapshot: Snapshot) -> None:
+        """
+        Back to a snapshot of this volume.
+
+        Parameters
+        ----------
+        snapshot : Snapshot
+            What `snapshot` gave.
+
+        Raises
+        ------
+        ValueError
+            It is of a volume with another box, pitch or directions.
+
+        Examples
+        --------
+        See `snapshot`.
+        """
+    def save(self, path: os.PathLike | str | bytes, *, progress: collections.abc.Callable[[float], bool | None] | None = None) -> None:
+        """
+        Writes a .rvol file, whole or not at all. Equal volumes are equal files.
+
+        Parameters
+        ----------
+        path : path_like
+            The file; one that is there is replaced.
+        progress : callable or None
+            Called with the finished share; returning False cancels.
+
+        Raises
+        ------
+        RuntimeError
+            The file cannot be written.
+        Cancelled
+            ``progress`` returned False.
+
+        Examples
+        --------
+        >>> riffler.Volume.block((0, 0, 0), (4, 3, 2), pitch=0.5).save("block.rvol")
+        >>> riffler.Volume.load("block.rvol")
+        <riffler.Volume "z", pitch 0.5 mm, 8 × 6 rays>
+        """
+    def smooth(self, centres: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], radius: typing.SupportsFloat, *, strength: typing.SupportsFloat = 0.5, protect: Volume | None = None, progress: collections.abc.Callable[[float], bool | None] | None = None) -> Smoothed:
+        """
+        Smooths the surface by dabs of a round brush, one after the other; volumes with directions "xyz" only.
+
+        A dab levels what is finer than about four pitches and moves nothing by more than one pitch; repeat it for more. Planes
+        stay planes, edges become round, convex places lose material and concave ones get some, within the volume's box only.
+
+        Parameters
+        ----------
+        centres : array_like of shape (n, 3) or (3,), mm
+            Centres of the dabs.
+        radius : float, mm
+            Of the brush; what lies beyond it stays unchanged.
+        strength : float, from 0 to 1
+            The share of the distance to the smoothed surface at the brush's centre, less towards its rim.
+        protect : Volume or None
+            Of the same lower, upper, pitch and directions; what lies in it stays unchanged, material and air.
+        progress : callable or None
+            Called with the finished share; returning False cancels.
+
+        Returns
+        -------
+        Smoothed
+            What each dab took away and put on.
+
+        Raises
+        ------
+        ValueError
+            The volume has one direction only; the protected volume's grid is another; names argument and row.
+        Cancelled
+            ``progress`` returned False; the volume is as it was.
+
+        Examples
+        --------
+        >>> volume = riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5, directions="xyz")
+        >>> moved = volume.smooth((20, 10, 10), radius=4)
+        >>> bool(moved.removed[0] > 0), len(moved)
+        (True, 1)
+        """
+    def snapshot(self) -> Snapshot:
+        """
+        The state to come back to with `restore`; costs pointers only.
+
+        Returns
+        -------
+        Snapshot
+            Of this volume as it is now.
+
+        Examples
+        --------
+        >>> volume = riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5)
+        >>> before = volume.snapshot()
+        >>> cut = volume.carve(riffler.Tool.ball(6, 30), [[5, 10, 8, 0, 0, 1], [15, 10, 8, 0, 0, 1]])
+        >>> volume.restore(before)
+        >>> volume.volume
+        4000.0
+        """
+    def subtract(self, other: Volume, *, progress: collections.abc.Callable[[float], bool | None] | None = None) -> Volume:
+        """
+        Takes the other volume's material away, in place: ``v -= other`` with progress.
+
+        Parameters
+        ----------
+        other : Volume
+            Of the same lower, upper, pitch and directions.
+        progress : callable or None
+            Called with the finished share; returning False cancels.
+
+        Returns
+        -------
+        Volume
+            This volume.
+
+        Raises
+        ------
+        ValueError
+            The other volume's grid is another.
+        Cancelled
+            ``progress`` returned False.
+
+        Examples
+        --------
+        >>> block = riffler.Volume.block((0, 0, 0), (4, 3, 2), pitch=0.5)
+        >>> block.copy().subtract(block).volume
+        0.0
+        """
+    def take_counters(self) -> riffler.results.VolumeCounters:
+        """
+        The counters, which start again from 0.
+
+        Returns
+        -------
+        VolumeCounters
+            The work since the volume was made, or since the last call.
+
+        Examples
+        --------
+        >>> volume = riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5)
+        >>> cut = volume.carve(riffler.Tool.ball(6, 30), [[5, 10, 8, 0, 0, 1], [15, 10, 8, 0, 0, 1]])
+        >>> volume.take_counters().moves, volume.counters.moves
+        (1, 0)
+        """
+    def to_bytes(self, *, progress: collections.abc.Callable[[float], bool | None] | None = None) -> bytes:
+        """
+        The bytes of the .rvol file.
+
+        Parameters
+        ----------
+        progress : callable or None
+            Called with the finished share; returning False cancels.
+
+        Returns
+        -------
+        bytes
+            The same for equal volumes.
+
+        Examples
+        --------
+        >>> volume = riffler.Volume.block((0, 0, 0), (4, 3, 2), pitch=0.5)
+        >>> riffler.Volume.from_bytes(volume.to_bytes()).volume
+        24.0
+        """
+    def to_mesh(self, *, progress: collections.abc.Callable[[float], bool | None] | None = None) -> Mesh:
+        """
+        The surface: closed, outward, two-manifold, and still so in a binary STL.
+
+        Material thinner than the pitch is no part of it: where that is worth a sentence, it is a UserWarning;
+        `to_mesh_with_report` puts it into its report.
+
+        Parameters
+        ----------
+        progress : callable or None
+            Called with the finished share; returning False cancels.
+
+        Returns
+        -------
+        Mesh
+            Without triangles for an empty volume.
+
+        Raises
+        ------
+        Cancelled
+            ``progress`` returned False.
+
+        Examples
+        --------
+        >>> riffler.Volume.block((0, 0, 0), (4, 3, 2), pitch=0.5).to_mesh().audit().open_edges
+        0
+        """
+    def to_mesh_with_report(self, *, progress: collections.abc.Callable[[float], bool | None] | None = None) -> tuple[Mesh, riffler.results.SurfaceReport]:
+        """
+        The same as `to_mesh`, with what is no part of the mesh since it is thinner than the pitch.
+
+        Parameters
+        ----------
+        progress : callable or None
+            Called with the finished share; returning False cancels.
+
+        Returns
+        -------
+        (Mesh, SurfaceReport)
+            The mesh, and the report.
+
+        Raises
+        ------
+        Cancelled
+            ``progress`` returned False.
+
+        Examples
+        --------
+        >>> mesh, report = riffler.Volume.block((0, 0, 0), (4, 3, 2), pitch=0.5).to_mesh_with_report()
+        >>> report.lost, report.lost_box
+        (0.0, None)
         """
     @property
-    def diameter(self) -> float:
+    def counters(self) -> riffler.results.VolumeCounters:
         """
-        Largest diameter of the cutter, mm.
-        """
-    @property
-    def holder(self) -> list:
-        ...
-    @property
-    def kind(self) -> str:
-        ...
-    @property
-    def length(self) -> float:
-        """
-        From the tip to the end of the cutter, mm.
+        VolumeCounters: the work since the volume was made, or since `take_counters`. Reading them changes nothing.
         """
     @property
-    def name(self) -> str:
-        ...
+    def directions(self) -> str:
+        """
+        "z" or "xyz".
+        """
     @property
-    def shank(self) -> list:
-        ...
+    def lower(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (3,) mm: the box's corner with the smallest coordinates.
+        """
+    @property
+    def nbytes(self) -> int:
+        """
+        Bytes held, shared tiles counted once.
+        """
+    @property
+    def pitch(self) -> float:
+        """
+        Distance of neighbouring rays, mm.
+        """
+    @property
+    def rays(self) -> int:
+        """
+        Number of rays, all directions.
+        """
+    @property
+    def revision(self) -> int:
+        """
+        Changes with the content.
+        """
+    @property
+    def upper(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (3,) mm: the box's corner with the largest coordinates.
+        """
+    @property
+    def volume(self) -> float:
+        """
+        mm³: lengths of the z rays × their areas (of the only rays, where there are no z rays). An area is h², but for the last rays, whose cells end with the box.
+        """
 class Cut:
     """
-    What each move of a carve took away; arrays with one row per move.
+    What each move of a carve took away; arrays with one row per move. See `Volume.carve`.
     """
     def __len__(self) -> int:
         ...
@@ -379,235 +1910,26 @@ class Cut:
         """
 class Snapshot:
     """
-    The state of a volume at one time; shares its tiles until they are written.
+    The state of a volume at one time; shares its tiles until they are written. See `Volume.snapshot`.
     """
-    @property
-    def nbytes(self) -> int:
-        ...
-    @property
-    def revision(self) -> int:
-        ...
-    @property
-    def volume(self) -> float:
-        ...
-class Volume:
-    """
-    A dexel volume: material as spans along parallel rays.
-
-    ``directions`` is "z" for one grid of rays or "xyz" for three (a tri-dexel volume, which also keeps the surface's
-    normals and so its sharp edges). Ray (i, j) of "z" stands at lower + ((i + .5) h, (j + .5) h); "x" rays are indexed
-    (y, z), "y" rays (z, x). Lengths in mm.
-    """
-    @staticmethod
-    def block(lower: typing.Any, upper: typing.Any, pitch: typing.SupportsFloat, directions: str = 'z') -> Volume:
-        """
-        A box full of material. ValueError, before anything is allocated, if it does not fit in memory.
-        """
-    @staticmethod
-    def cylinder(centre: typing.Any, radius: typing.SupportsFloat, height: typing.SupportsFloat, pitch: typing.SupportsFloat, directions: str = 'z', axis: typing.Any = (0, 0, 1), lower: typing.Any = None, upper: typing.Any = None, progress: typing.Any = None) -> Volume:
-        """
-        A cylinder of material along ``axis``, of any length but 0; ``centre`` is the middle of it. mm.
-
-        Made of exact rays as ``sphere``: the caps are planes, and meet the side at a sharp edge in volumes of three directions.
-        Box and errors as there.
-        """
-    @staticmethod
-    def empty(lower: typing.Any, upper: typing.Any, pitch: typing.SupportsFloat, directions: str = 'z') -> Volume:
-        """
-        The box without material: what is put on (``carve``, ``add``) is all that it has. mm.
-        """
-    @staticmethod
-    def from_bytes(data: collections.abc.Buffer, name: str = 'volume') -> Volume:
-        """
-        The volume whose to_bytes() these are; ``name`` stands in messages.
-        """
-    @staticmethod
-    def from_mesh(mesh: Mesh, pitch: typing.SupportsFloat, directions: str = 'z', lower: typing.Any = None, upper: typing.Any = None, progress: typing.Any = None, report: dict | None = None) -> Volume:
-        """
-        The points whose absolute generalized winding number in ``mesh`` exceeds 1/2.
-
-        Covers the mesh's box, or ``lower`` to ``upper`` (clipping what lies outside). Inside-out, overlapping, touching and open
-        parts are fine, as are triangles that face the other way than their neighbours and repeated ones (Mesh.oriented); a mesh
-        without volume is a ValueError.
-
-        ``report``: a dict that is filled with what was wrong with the mesh, all 0 but ``triangles`` for one that is closed and
-        well oriented: ``degenerate`` and ``duplicates``, triangles; ``open_edges`` of one triangle, ``nonmanifold_edges`` of
-        three or more, ``inconsistent_edges`` of two that run it in the same direction; ``turned`` triangles, turned to agree with
-        their neighbours, ``left_out``, repeated ones that tear the surface open, ``one_sided`` pieces, like a Möbius strip;
-        ``openings``, walks along which the surface ends; ``flipped_shells`` that face into the material; of the volume, the shares ``inside_out``, where the
-        winding number is negative, and ``overlap``, where it is 2 or more; ``doubtful_rays``, the share of the rays with
-        material that end within an opening instead of on the surface; and with ``lost``, ``lost_box``, ``lost_pitch`` and
-        ``lost_note`` as by to_mesh(): what rays miss, or a mesh of the volume will lack. Without a report the note is a
-        UserWarning.
-        """
-    @staticmethod
-    def load(path: os.PathLike | str | bytes, progress: typing.Any = None) -> Volume:
-        """
-        Reads a .rvol file; FormatError where it is damaged or not one.
-        """
-    @staticmethod
-    def sphere(centre: typing.Any, radius: typing.SupportsFloat, pitch: typing.SupportsFloat, directions: str = 'z', lower: typing.Any = None, upper: typing.Any = None, progress: typing.Any = None) -> Volume:
-        """
-        A ball of material around ``centre``, mm, made of exact rays: it has no facets.
-
-        Each end of a span is where its ray crosses the sphere, to the rounding of doubles, and has the sphere's normal. Covers
-        the ball's box, or ``lower`` to ``upper``, clipping what lies outside. ValueError where all rays of a direction miss a
-        ball that lies in the box: the message has a pitch at which they do not.
-        """
-    def __copy__(self) -> Volume:
-        ...
-    def __deepcopy__(self, arg0: dict) -> Volume:
-        ...
-    def __getstate__(self) -> bytes:
-        ...
-    def __repr__(self) -> str:
-        ...
-    def __setstate__(self, arg0: bytes) -> None:
-        ...
-    def add(self, other: Volume, progress: typing.Any = None) -> Volume:
-        """
-        Adds the other volume's material, in place; see subtract.
-        """
-    def carve(self, tool: Tool, poses: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], tolerance: typing.SupportsFloat = 0.01, dt: typing.Any = None, removal_constant: typing.SupportsFloat = 0.05, progress: typing.Any = None, mode: str = 'remove', protect: Volume = None) -> Cut:
-        """
-        Takes away what the cutter sweeps along ``poses`` (n, 6): tip xyz, unit axis xyz; n - 1 moves.
-
-        ``tolerance``: mm, for moves that turn the axis; others are exact. ``dt``: s, a number or (n - 1,), asks for force.
-        ``removal_constant``: N·s/mm³. Shank and holder never cut. ``progress``: called with the finished share; returning
-        False cancels, raises Cancelled and leaves the volume as it was.
-
-        ``mode``: "remove", or "add", which puts material on wherever the cutter sweeps within the volume's box; ``removed`` is
-        then what was put on. ``protect``: a volume of the same lower, upper, pitch and directions; what lies in it stays as it
-        is, material and air. ValueError if its grid is another.
-        """
-    def clip(self, point: typing.Any, normal: typing.Any, progress: typing.Any = None) -> Volume:
-        """
-        Takes away what lies in front of the plane through ``point`` (mm) with ``normal``, of any length, in place: the new face looks out along it. Returns this volume.
-        """
-    def contains(self, points: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.bool]:
-        """
-        (n,) bool for ``points`` (n, 3) mm: in the material, by the nearest ray of each direction; of three, two decide.
-        """
-    def copy(self) -> Volume:
-        """
-        An independent volume; shares its tiles until one of the two is written.
-        """
-    def grown(self, lower: typing.Any = None, upper: typing.Any = None, progress: typing.Any = None) -> Volume:
-        """
-        This volume in a larger box: a new volume with the same spans and normals, bit for bit.
-
-        Rays stay where they stand, and others, without material, are put beside them: each side of the box moves outward by
-        whole pitches until it lies at or beyond that of ``lower`` to ``upper`` (mm; default: its own), to 1e-6 of a pitch. A
-        side that does already stays. Where a box's size is no whole number of pitches, an upper side may move one pitch more;
-        ``volume`` then counts the rays that were last with whole cells. ValueError, before anything is allocated, if the box
-        does not fit in memory.
-        """
-    def intersect(self, other: Volume, progress: typing.Any = None) -> Volume:
-        """
-        Keeps what both volumes have, in place; see subtract.
-        """
-    def intervals(self, direction: str) -> tuple:
-        """
-        (counts (nu, nv) uint32, spans (counts.sum(), 2) [near, far]), rays in C order.
-        """
-    def normals(self, direction: str) -> numpy.typing.NDArray[numpy.float64]:
-        """
-        (spans, 2, 3): unit normals at the ends of the spans of ``intervals``; tri-dexel volumes only.
-        """
-    def parts(self, least: typing.SupportsFloat = 0.0, progress: typing.Any = None) -> list:
-        """
-        A list of volumes on this one's grid, one for each piece that hangs together, the largest first.
-
-        Spans of neighbouring rays hang together where they overlap. Pieces smaller than ``least`` mm³ stay with the largest.
-        The parts' volumes sum to this one's. ValueError for more than 1000 pieces.
-        """
-    def resampled(self, pitch: typing.SupportsFloat, directions: str | None = None, lower: typing.Any = None, upper: typing.Any = None, progress: typing.Any = None) -> Volume:
-        """
-        This volume at another pitch, with other directions or in another box (default: its own): a new volume.
-
-        Material outside of the new box is left out. What is resampled is the mesh of ``to_mesh``, so a finer pitch brings no
-        detail back. A volume with the same pitch, directions and box is a copy, bit for bit.
-        """
-    def restore(self, snapshot: Snapshot) -> None:
-        """
-        Back to a snapshot of this volume.
-        """
-    def save(self, path: os.PathLike | str | bytes, progress: typing.Any = None) -> None:
-        """
-        Writes a .rvol file, whole or not at all. Equal volumes are equal files.
-        """
-    def snapshot(self) -> Snapshot:
-        """
-        The state to come back to with restore(); costs pointers only.
-        """
-    def soften(self, centres: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], radius: typing.SupportsFloat, strength: typing.SupportsFloat = 0.5, protect: Volume = None, progress: typing.Any = None) -> Softened:
-        """
-        Smooths the surface by dabs of a round brush at ``centres`` (n, 3) or (3,), one after the other.
-
-        ``radius``: mm, of the brush; what lies beyond it stays as it is. ``strength``: 0 to 1, the share of the way to the
-        smoothed surface at the brush's centre, less towards its rim. A dab levels what is finer than about four pitches and
-        moves nothing by more than one pitch; repeat it for more. Planes stay as they are, edges become round, convex places
-        lose material and concave ones get some, within the volume's box only.
-
-        Tri-dexel volumes ("xyz") only, whose ends have normals; ValueError for others. ``protect``: a volume of the same lower,
-        upper, pitch and directions; what lies in it stays as it is, material and air. ``progress``: called with the finished
-        share; returning False cancels, raises Cancelled and leaves the volume as it was.
-        """
-    def stats(self) -> dict:
-        """
-        Operation counters since the last call of stats().
-        """
-    def subtract(self, other: Volume, progress: typing.Any = None) -> Volume:
-        """
-        Takes the other volume's material away, in place; returns this volume. ValueError unless both have the same lower, upper, pitch and directions.
-        """
-    def to_bytes(self, progress: typing.Any = None) -> bytes:
-        """
-        The bytes of the .rvol file.
-        """
-    def to_mesh(self, progress: typing.Any = None, report: dict | None = None) -> Mesh:
-        """
-        The surface: closed, outward, two-manifold, and still so in a binary STL.
-
-        ``report``: a dict that is filled with what is no part of it, since it is thinner than the pitch: ``lost`` (mm³),
-        ``lost_box``, where, as two corners, or None; ``lost_pitch`` (mm) that keeps it, or None; ``lost_note``, a sentence where
-        there is more than crumbs, otherwise empty. Without a report that sentence is a UserWarning.
-        """
-    @property
-    def directions(self) -> str:
-        ...
-    @property
-    def lower(self) -> numpy.typing.NDArray[numpy.float64]:
-        ...
     @property
     def nbytes(self) -> int:
         """
         Bytes held, shared tiles counted once.
         """
     @property
-    def pitch(self) -> float:
-        ...
-    @property
-    def rays(self) -> int:
-        """
-        Number of rays, all directions.
-        """
-    @property
     def revision(self) -> int:
         """
-        Changes with the content.
+        The volume's revision at that time.
         """
-    @property
-    def upper(self) -> numpy.typing.NDArray[numpy.float64]:
-        ...
     @property
     def volume(self) -> float:
         """
-        mm³: lengths of the z rays × their areas (of the only rays, where there are no z rays). An area is h², but for the last rays, whose cells end with the box.
+        mm³ of material.
         """
-class Softened:
+class Smoothed:
     """
-    What each dab of a smooth brush did; arrays with one number per dab.
+    What each dab of a smooth brush did; arrays with one number per dab. See `Volume.smooth`.
     """
     def __len__(self) -> int:
         ...
@@ -625,19 +1947,77 @@ class FrozenSurface:
     """
     The surface of a ``Mesher`` as it was when ``freeze()`` was called, to be picked, whatever becomes of the mesher.
     """
-    def pick(self, origin: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], direction: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> typing.Any:
+    @staticmethod
+    def stats(*args, **kwargs):
         """
-        The first point of the surface along a ray: ``(distance, point, normal, brick)``, or None.
+        take_counters(self: riffler._core.FrozenSurface) -> riffler.results.PickCounters
 
-        ``direction`` may have any length but 0; ``distance`` is in mm. ``normal`` is that of the triangle that was hit, a unit
-        vector out of the material: it points along the ray where the ray comes from inside. No ray falls through between
-        triangles, and one that touches an edge hits it. With (n, 3) arrays, one ray a row, arrays of n rows: where nothing is
-        hit ``distance`` is inf, ``brick`` -1, the rest NaN. ValueError naming the argument and row for what is not finite, or
-        zero.
+        The counters, which start again from 0.
+
+        Returns
+        -------
+        PickCounters
+            The work since the last call.
+
+        Examples
+        --------
+        >>> mesher = riffler.Mesher(riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5))
+        >>> hit = mesher.pick((10, 10, 20), (0, 0, -1))
+        >>> mesher.take_counters().rays, mesher.counters.rays
+        (1, 0)
+
         """
-    def stats(self) -> dict:
+    def pick(self, origin: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], direction: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> riffler.results.Hit | riffler.results.Hits | None:
         """
-        What picking took since the last call of stats(): rays, bricks_visited, triangles_tested.
+        The first point of the surface along a ray, or along each of several.
+
+        No ray falls through between triangles, and one that touches an edge hits it.
+
+        Parameters
+        ----------
+        origin : array_like of shape (3,) or (n, 3), mm
+            Where each ray begins.
+        direction : array_like of the same shape, of any length but 0
+            Where it goes.
+
+        Returns
+        -------
+        Hit, None or Hits
+            For one ray a Hit, or None. For (n, 3) arrays a Hits with arrays of n rows: where nothing is hit, ``distance`` is
+            inf, ``brick`` -1, the rest NaN.
+
+        Raises
+        ------
+        ValueError
+            Names argument and row: what is not finite, or a direction of length 0.
+
+        Examples
+        --------
+        >>> mesher = riffler.Mesher(riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5))
+        >>> hit = mesher.pick((10, 10, 20), (0, 0, -1))
+        >>> round(hit.distance, 3), hit.normal.round(3).tolist()
+        (10.0, [0.0, 0.0, 1.0])
+        """
+    def take_counters(self) -> riffler.results.PickCounters:
+        """
+        The counters, which start again from 0.
+
+        Returns
+        -------
+        PickCounters
+            The work since the last call.
+
+        Examples
+        --------
+        >>> mesher = riffler.Mesher(riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5))
+        >>> hit = mesher.pick((10, 10, 20), (0, 0, -1))
+        >>> mesher.take_counters().rays, mesher.counters.rays
+        (1, 0)
+        """
+    @property
+    def counters(self) -> riffler.results.PickCounters:
+        """
+        PickCounters: the work of picking since it was made, or since `take_counters`. Reading them changes nothing.
         """
     @property
     def nbytes(self) -> int:
@@ -646,76 +2026,228 @@ class FrozenSurface:
         """
     @property
     def triangles(self) -> int:
-        ...
+        """
+        How many it has.
+        """
 class Mesher:
     """
-    The mesh of a volume that goes on changing, in bricks of 32 × 32 × 32 cells.
+    The mesh of a volume that keeps changing, in bricks of 32 × 32 × 32 cells.
 
     ``Mesher(volume)`` meshes all of it; ``update(volume)`` meshes again only where it was changed. What a mesher holds is
     always, bit for bit, what ``volume.to_mesh()`` gives. It keeps a snapshot of the volume, which shares its tiles.
+
+    Parameters
+    ----------
+    volume : Volume
+        What is meshed first.
+    progress : callable or None
+        Called with the finished share; returning False cancels.
+
+    Examples
+    --------
+    >>> volume = riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5)
+    >>> mesher = riffler.Mesher(volume)
+    >>> cut = volume.carve(riffler.Tool.ball(6, 30), [[5, 10, 8, 0, 0, 1], [15, 10, 8, 0, 0, 1]])
+    >>> changed = mesher.update(volume)
+    >>> len(mesher.mesh().triangles) == len(volume.to_mesh().triangles)
+    True
     """
-    def __init__(self, volume: Volume, progress: typing.Any = None) -> None:
+    @staticmethod
+    def stats(*args, **kwargs):
         """
-        ``progress``: called with the finished share; returning False cancels and raises Cancelled.
+        take_counters(self: riffler._core.Mesher) -> riffler.results.PickCounters
+
+        The counters, which start again from 0.
+
+        Returns
+        -------
+        PickCounters
+            The work since the last call.
+
+        Examples
+        --------
+        >>> mesher = riffler.Mesher(riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5))
+        >>> hit = mesher.pick((10, 10, 20), (0, 0, -1))
+        >>> mesher.take_counters().rays, mesher.counters.rays
+        (1, 0)
+
         """
+    def __init__(self, volume: Volume, *, progress: collections.abc.Callable[[float], bool | None] | None = None) -> None:
+        ...
     def freeze(self) -> FrozenSurface:
         """
-        The surface as it is now, to be picked while the mesher goes on: a ``FrozenSurface``.
+        The surface as it is now, to be picked while the mesher follows the volume.
 
         A stroke that follows the surface on which it began does not climb into its own groove. What did not change since the
         last call is shared; the first call looks at all triangles.
+
+        Returns
+        -------
+        FrozenSurface
+            It never changes.
+
+        Examples
+        --------
+        >>> mesher = riffler.Mesher(riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5))
+        >>> mesher.freeze().pick((10, 10, 20), (0, 0, 1)) is None
+        True
         """
     def mesh(self) -> Mesh:
         """
         The whole mesh, the same as ``to_mesh()`` of the volume.
+
+        Returns
+        -------
+        Mesh
+            A new mesh.
+
+        Examples
+        --------
+        >>> riffler.Mesher(riffler.Volume.block((0, 0, 0), (4, 3, 2), pitch=0.5)).mesh().audit().open_edges
+        0
         """
-    def patch(self, bricks: typing.SupportsInt | collections.abc.Sequence[typing.SupportsInt], edges: bool = False, normals: typing.SupportsFloat | None = None) -> tuple:
+    def patch(self, bricks: typing.SupportsInt | collections.abc.Sequence[typing.SupportsInt], *, edges: bool = False, normals: typing.SupportsFloat | None = None) -> riffler.results.Patch:
         """
-        (vertices (n, 3) float32, triangles (k, 3) int32) of a brick, empty where nothing is left.
+        The triangles of a brick, or of several without seams between them.
 
         The brick's own vertices come first, then those of its neighbours that its triangles touch; what two patches share has
-        the same coordinates in both, bit for bit. A sequence of bricks gives one patch of them all, without seams between them.
+        the same coordinates in both, bit for bit.
 
-        ``edges=True`` adds edges (e, 2) int32, each once, and of each triangle's corners the edge to the next one, (k, 3)
-        int32: Blender's ``.edge_verts`` and ``.corner_edge``. IndexError for a brick that there is not, ValueError for one
-        that is there twice.
+        Parameters
+        ----------
+        bricks : int or list of int
+            Numbers as `patches` and `update` give them, each once.
+        edges : bool
+            Whether edges are wanted, and of each triangle's corners the edge to the next one: Blender's ``.edge_verts`` and
+            ``.corner_edge``.
+        normals : float, rad, or None
+            Asks for normals of the triangles' corners on the whole mesh: the mean of the triangles around the vertex, in
+            whatever brick, whose normals are within this angle of the corner's own.
 
-        ``normals``, an angle in rad, adds normals (3 k, 3) float32 of the triangles' corners on the whole mesh: the mean of the
-        triangles around the vertex, in whatever brick, whose normals are within that angle of the corner's own.
-        """
-    def patches(self) -> list:
-        """
-        Numbers of the bricks that have triangles, ascending.
-        """
-    def pick(self, origin: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], direction: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> typing.Any:
-        """
-        The first point of the surface along a ray: ``(distance, point, normal, brick)``, or None.
+        Returns
+        -------
+        Patch
+            Without triangles where nothing is left.
 
-        ``direction`` may have any length but 0; ``distance`` is in mm. ``normal`` is that of the triangle that was hit, a unit
-        vector out of the material: it points along the ray where the ray comes from inside. No ray falls through between
-        triangles, and one that touches an edge hits it. With (n, 3) arrays, one ray a row, arrays of n rows: where nothing is
-        hit ``distance`` is inf, ``brick`` -1, the rest NaN. ValueError naming the argument and row for what is not finite, or
-        zero.
+        Raises
+        ------
+        IndexError
+            There is no such brick.
+        ValueError
+            A brick is there twice.
+
+        Examples
+        --------
+        >>> mesher = riffler.Mesher(riffler.Volume.block((0, 0, 0), (4, 3, 2), pitch=0.5))
+        >>> patch = mesher.patch(0, normals=0.5)
+        >>> patch.vertices.shape, patch.triangles.shape, patch.normals.shape
+        ((210, 3), (416, 3), (1248, 3))
         """
-    def stats(self) -> dict:
+    def patches(self) -> list[int]:
         """
-        What picking and freezing took since the last call of stats(): rays, bricks_visited, bricks_prepared (those that had changed), triangles_tested.
+        Numbers of the bricks that have triangles.
+
+        Returns
+        -------
+        list of int
+            Ascending.
+
+        Examples
+        --------
+        >>> riffler.Mesher(riffler.Volume.block((0, 0, 0), (4, 3, 2), pitch=0.5)).patches()
+        [0]
         """
-    def update(self, volume: Volume) -> list:
+    def pick(self, origin: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], direction: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> riffler.results.Hit | riffler.results.Hits | None:
         """
-        Follows a change of the volume and returns the numbers of the bricks whose patches changed, ascending. ValueError for a volume with another box, pitch or directions.
+        The first point of the surface along a ray, or along each of several.
+
+        No ray falls through between triangles, and one that touches an edge hits it.
+
+        Parameters
+        ----------
+        origin : array_like of shape (3,) or (n, 3), mm
+            Where each ray begins.
+        direction : array_like of the same shape, of any length but 0
+            Where it goes.
+
+        Returns
+        -------
+        Hit, None or Hits
+            For one ray a Hit, or None. For (n, 3) arrays a Hits with arrays of n rows: where nothing is hit, ``distance`` is
+            inf, ``brick`` -1, the rest NaN.
+
+        Raises
+        ------
+        ValueError
+            Names argument and row: what is not finite, or a direction of length 0.
+
+        Examples
+        --------
+        >>> mesher = riffler.Mesher(riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5))
+        >>> hit = mesher.pick((10, 10, 20), (0, 0, -1))
+        >>> round(hit.distance, 3), hit.normal.round(3).tolist()
+        (10.0, [0.0, 0.0, 1.0])
+        """
+    def take_counters(self) -> riffler.results.PickCounters:
+        """
+        The counters, which start again from 0.
+
+        Returns
+        -------
+        PickCounters
+            The work since the last call.
+
+        Examples
+        --------
+        >>> mesher = riffler.Mesher(riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5))
+        >>> hit = mesher.pick((10, 10, 20), (0, 0, -1))
+        >>> mesher.take_counters().rays, mesher.counters.rays
+        (1, 0)
+        """
+    def update(self, volume: Volume) -> list[int]:
+        """
+        Follows a change of the volume.
+
+        Parameters
+        ----------
+        volume : Volume
+            As it is now.
+
+        Returns
+        -------
+        list of int
+            Numbers of the bricks whose patches changed, ascending.
+
+        Raises
+        ------
+        ValueError
+            A volume with another box, pitch or directions.
+
+        Examples
+        --------
+        >>> volume = riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5)
+        >>> mesher = riffler.Mesher(volume)
+        >>> mesher.update(volume)
+        []
         """
     @property
-    def shape(self) -> tuple:
+    def counters(self) -> riffler.results.PickCounters:
+        """
+        PickCounters: the work of picking since it was made, or since `take_counters`. Reading them changes nothing.
+        """
+    @property
+    def shape(self) -> tuple[int, int, int]:
         """
         Bricks along each axis, with triangles or without: brick n stands at ``numpy.unravel_index(n, shape)``.
         """
     @property
     def triangles(self) -> int:
-        ...
+        """
+        How many it has.
+        """
 class Contact:
     """
-    What a tool meets at a pose: forces act on the tool, in the part's frame.
+    What a tool meets at a pose: forces act on the tool, in the part's frame. See `Collider.query`.
     """
     def __repr__(self) -> str:
         ...
@@ -740,7 +2272,7 @@ class Contact:
         mm: the true depth is at most depth + missed_depth_bound.
         """
     @property
-    def parts(self) -> list:
+    def parts(self) -> list[str]:
         """
         What touches at each point: "cutter", "shank", "holder", or "fixture" where it is one that is touched.
         """
@@ -758,36 +2290,157 @@ class Collider:
     """
     A part and its fixtures, against which tools are held; immutable.
 
-    ``part`` is a Mesh, ``fixtures`` are Volumes, each of its own pitch; empty ones are ignored. ``spacing`` (mm) is
-    that of the points on the part that forces are summed over, by default √(area / 100 000). The stiffnesses
-    are N per mm of depth and mm² of surface against the cutter and against shank and holder, and N per mm³ of a
-    fixture in the tool: one number or Material, or a list of one for each fixture. A pose is 6 numbers: tip, unit axis from the tip to the spindle. Calls may come from
-    several threads and release the GIL.
+    A pose is 6 numbers: tip in mm, unit axis from the tip to the spindle. Calls may come from several threads; they release
+    Python's lock.
+
+    Parameters
+    ----------
+    part : Mesh
+        The surface; an empty one is ignored.
+    fixtures : list of Volume
+        Each of its own pitch; empty ones are ignored.
+    spacing : float, mm, or None
+        Of the points on the part that forces are summed over. Default: √(area / 100 000).
+    stiffness : float, N per mm of depth and mm² of surface
+        Against the cutter.
+    holder_stiffness : float, N per mm of depth and mm² of surface
+        Against shank and holder.
+    fixture_stiffness : float, N per mm³ of a fixture in the tool, or a Material, or a list of one for each fixture
+        Against the whole tool.
+
+    Raises
+    ------
+    ValueError
+        Names the argument: a spacing that is not positive, another number of stiffnesses than of fixtures.
+
+    Examples
+    --------
+    >>> part = riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5, directions="xyz").to_mesh()
+    >>> collider = riffler.Collider(part)
+    >>> collider.clearance(riffler.Tool.ball(6, 30), [[10, 10, 12, 0, 0, 1]]).round(3).tolist()
+    [2.0]
     """
     @staticmethod
-    def made(part: Mesh, *, fixtures: collections.abc.Sequence[Volume] = [], spacing: typing.SupportsFloat | None = None, stiffness: typing.SupportsFloat = 1.0, holder_stiffness: typing.SupportsFloat = 10.0, fixture_stiffness: typing.Any = 10.0, progress: typing.Any = None) -> Collider:
+    def made(part: Mesh, *, fixtures: collections.abc.Sequence[Volume] = [], spacing: typing.SupportsFloat | None = None, stiffness: typing.SupportsFloat = 1.0, holder_stiffness: typing.SupportsFloat = 10.0, fixture_stiffness: float | Material | collections.abc.Sequence[float | Material] = 10.0, progress: collections.abc.Callable[[float], bool | None] | None = None) -> Collider:
         """
-        The same as a function, for ``riffler.tasks.collider``. ``progress`` is asked at the beginning
-        and at the end only.
+        The same as ``Collider(…)``, as a function with progress: what `riffler.submit` calls.
+
+        Parameters
+        ----------
+        part : Mesh
+            The surface; an empty one is ignored.
+        fixtures : list of Volume
+            Each of its own pitch; empty ones are ignored.
+        spacing : float, mm, or None
+            Of the points on the part that forces are summed over. Default: √(area / 100 000).
+        stiffness : float, N per mm of depth and mm² of surface
+            Against the cutter.
+        holder_stiffness : float, N per mm of depth and mm² of surface
+            Against shank and holder.
+        fixture_stiffness : float, N per mm³ of a fixture in the tool, or a Material, or a list of one for each fixture
+            Against the whole tool.
+        progress : callable or None
+            Called at the beginning and at the end only.
+
+        Returns
+        -------
+        Collider
+            A new collider.
+
+        Examples
+        --------
+        >>> part = riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5).to_mesh()
+        >>> riffler.submit(riffler.Collider, part, spacing=0.5).result().spacing
+        0.5
         """
-    def __init__(self, part: Mesh, *, fixtures: collections.abc.Sequence[Volume] = [], spacing: typing.SupportsFloat | None = None, stiffness: typing.SupportsFloat = 1.0, holder_stiffness: typing.SupportsFloat = 10.0, fixture_stiffness: typing.Any = 10.0) -> None:
+    def __init__(self, part: Mesh, *, fixtures: collections.abc.Sequence[Volume] = [], spacing: typing.SupportsFloat | None = None, stiffness: typing.SupportsFloat = 1.0, holder_stiffness: typing.SupportsFloat = 10.0, fixture_stiffness: float | Material | collections.abc.Sequence[float | Material] = 10.0) -> None:
         ...
     def __repr__(self) -> str:
         ...
     def clearance(self, tool: Tool, poses: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n,) mm for poses (n, 6): the least signed distance between the part's surface and the union of cutter, shank
-        and holder, negative where they overlap. Fixtures do not count. On all threads.
+        The least signed distance between the part's surface and a tool, pose by pose, on all threads.
+
+        The tool is the union of cutter, shank and holder. Fixtures do not count.
+
+        Parameters
+        ----------
+        tool : Tool
+            Cutter, shank and holder.
+        poses : array_like of shape (n, 6), tip in mm and unit axis
+            Where the tool is.
+
+        Returns
+        -------
+        ndarray of shape (n,), float64, mm
+            Negative where they overlap.
+
+        Raises
+        ------
+        ValueError
+            Names argument and row.
+
+        Examples
+        --------
+        >>> part = riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5, directions="xyz").to_mesh()
+        >>> collider = riffler.Collider(part)
+        >>> collider.clearance(riffler.Tool.flat(6, 30), [[10, 10, 11, 0, 0, 1], [10, 10, 9, 0, 0, 1]]).round(3).tolist()
+        [1.0, -1.0]
         """
-    def nearest(self, tool: Tool, pose: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> tuple:
+    def nearest(self, tool: Tool, pose: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> riffler.results.Nearest:
         """
-        (distance, point, part) for one pose, over part and fixtures: mm, (3,) mm on part or fixture, and what of the
-        tool it is next to, or "fixture".
+        What of part and fixtures is nearest to a tool.
+
+        Parameters
+        ----------
+        tool : Tool
+            Cutter, shank and holder.
+        pose : array_like of shape (6,), tip in mm and unit axis
+            Where the tool is.
+
+        Returns
+        -------
+        Nearest
+            Distance, point on part or fixture, and what of the tool it is next to, or "fixture".
+
+        Examples
+        --------
+        >>> part = riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5, directions="xyz").to_mesh()
+        >>> collider = riffler.Collider(part)
+        >>> distance, point, part = collider.nearest(riffler.Tool.ball(6, 30), [10, 10, 12, 0, 0, 1])
+        >>> round(distance, 3), part
+        (2.0, 'cutter')
         """
-    def query(self, tool: Tool, pose: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], budget_us: typing.SupportsFloat | None = None) -> Contact:
+    def query(self, tool: Tool, pose: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], *, budget_us: typing.SupportsFloat | None = None) -> Contact:
         """
-        Force, torque, depth and where they are, as a Contact. After ``budget_us`` microseconds what is left is
-        only bounded: see ``checked`` and ``missed_depth_bound``.
+        Force, torque and depth of a tool in contact, and where they are.
+
+        Parameters
+        ----------
+        tool : Tool
+            Cutter, shank and holder.
+        pose : array_like of shape (6,), tip in mm and unit axis
+            Where the tool is.
+        budget_us : float, µs, or None
+            After so long, what is left is only bounded: see ``checked`` and ``missed_depth_bound``.
+
+        Returns
+        -------
+        Contact
+            With depth 0 where nothing touches.
+
+        Raises
+        ------
+        ValueError
+            Names the argument: no unit axis, a number that is not finite, a negative budget.
+
+        Examples
+        --------
+        >>> part = riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5, directions="xyz").to_mesh()
+        >>> collider = riffler.Collider(part)
+        >>> hit = collider.query(riffler.Tool.ball(6, 30), [10, 10, 9.5, 0, 0, 1])
+        >>> round(hit.depth, 3), hit.parts[0], bool(hit.force[2] > 0)
+        (0.5, 'cutter', True)
         """
     @property
     def spacing(self) -> float:
@@ -836,7 +2489,7 @@ class Program:
         A program from the bytes of a .rprog file.
         """
     @staticmethod
-    def from_cl(cl: collections.abc.Iterable, tools: typing.Any, feed: typing.Any, spindle: typing.Any = 0.0, *, safe_height: typing.SupportsFloat | None = None, clearance: typing.SupportsFloat = 10.0, occupied: typing.Any = None, provenance: typing.Any = None, collider: Collider = None, retract: typing.SupportsFloat | None = None, direction: typing.Any = None, lead_in: typing.SupportsFloat | None = None, contact_tolerance: typing.SupportsFloat = 0.02) -> Program:
+    def from_cl(cl: collections.abc.Iterable, tools: typing.Any, feed: typing.Any, spindle: typing.Any = 0.0, *, safe_height: typing.SupportsFloat | None = None, clearance: typing.SupportsFloat = 10.0, occupied: typing.Any = None, provenance: typing.Any = None, collider: Collider | None = None, retract: typing.SupportsFloat | None = None, direction: typing.Any = None, lead_in: typing.SupportsFloat | None = None, contact_tolerance: typing.SupportsFloat = 0.02) -> Program:
         """
         From cutter locations: every (n, 6) array is one cut.
 
@@ -936,7 +2589,7 @@ class Program:
         """
         Rows [first, last) as a program. The first of them is a rapid; an approach is yours to put before it.
         """
-    def write(self, path: os.PathLike | str | bytes, post: str = 'tcp', tolerance: typing.SupportsFloat = 0.01, axis_tolerance: typing.SupportsFloat = 0.00175, options: typing.Any = None, *, collider: Collider = None, stock: Volume = None, contact_tolerance: typing.SupportsFloat = 0.05) -> dict:
+    def write(self, path: os.PathLike | str | bytes, post: str = 'tcp', tolerance: typing.SupportsFloat = 0.01, axis_tolerance: typing.SupportsFloat = 0.00175, options: typing.Any = None, *, collider: Collider | None = None, stock: Volume | None = None, contact_tolerance: typing.SupportsFloat = 0.05) -> dict:
         """
         Writes NC code; ``post`` is a name of machines(). The file is whole or not there.
 
@@ -1188,7 +2841,7 @@ class VerifyPlan:
         """
         A result of SlabWorker.run; ``last``: the slab has no more moves. FormatError for damaged bytes.
         """
-    def add(self, program: Program, progress: typing.Any = None) -> list:
+    def add(self, program: Program, *, progress: collections.abc.Callable[[float], bool | None] | None = None) -> list[tuple[int, int, bytes]]:
         """
         List of (slab, number of moves, bytes) of the chunk: what can touch each slab.
         """
@@ -1196,7 +2849,7 @@ class VerifyPlan:
         """
         What SlabWorker is made of, after the last chunk.
         """
-    def finish(self, progress: typing.Any = None) -> VerifyReport:
+    def finish(self, *, progress: collections.abc.Callable[[float], bool | None] | None = None) -> VerifyReport:
         """
         The VerifyReport, once all slabs are there.
         """
@@ -1938,7 +3591,7 @@ class Session:
         ...
     def __exit__(self, *args) -> None:
         ...
-    def __init__(self, volume: Volume, tool: Tool, pen: PenDevice = None, *, obstacles: Collider = None, protect: Volume = None, mode: str = 'remove', material: Material | None = None, at: typing.Any = None, scale: typing.SupportsFloat = 1.0, turn: typing.Any = None, stiffness: typing.SupportsFloat = 1.0, turn_stiffness: typing.SupportsFloat = 2000.0, damping: typing.SupportsFloat = 0.001, turn_damping: typing.SupportsFloat = 2.0, tolerance: typing.SupportsFloat = 0.01, memory: typing.SupportsFloat | None = None, max_force: typing.SupportsFloat = 5.0, max_torque: typing.SupportsFloat = 300.0, max_power: typing.SupportsFloat = 2000.0, ramp: typing.SupportsFloat = 0.5, dead_man_mask: typing.SupportsInt = 1, clutch_mask: typing.SupportsInt = 2, budget: typing.Any = 'auto', undo: typing.SupportsInt = 64) -> None:
+    def __init__(self, volume: Volume, tool: Tool, pen: PenDevice | None = None, *, obstacles: Collider | None = None, protect: Volume | None = None, mode: str = 'remove', material: Material | None = None, at: typing.Any = None, scale: typing.SupportsFloat = 1.0, turn: typing.Any = None, stiffness: typing.SupportsFloat = 1.0, turn_stiffness: typing.SupportsFloat = 2000.0, damping: typing.SupportsFloat = 0.001, turn_damping: typing.SupportsFloat = 2.0, tolerance: typing.SupportsFloat = 0.01, memory: typing.SupportsFloat | None = None, max_force: typing.SupportsFloat = 5.0, max_torque: typing.SupportsFloat = 300.0, max_power: typing.SupportsFloat = 2000.0, ramp: typing.SupportsFloat = 0.5, dead_man_mask: typing.SupportsInt = 1, clutch_mask: typing.SupportsInt = 2, budget: typing.Any = 'auto', undo: typing.SupportsInt = 64) -> None:
         ...
     def frame(self) -> SessionFrame:
         """
@@ -2173,8 +3826,24 @@ def set_threads(n: typing.SupportsInt | None) -> None:
     """
     Says how many threads parallel calls use from now on, in all of the process; those that run keep theirs.
 
-    ``n``: 1 to 256, or None: RIFFLER_THREADS decides again, or the CPU affinity. Results are the same bytes for any number.
-    ValueError for others.
+    Results are the same bytes for any number.
+
+    Parameters
+    ----------
+    n : int from 1 to 256, or None
+        None: RIFFLER_THREADS decides again, or the CPU affinity.
+
+    Raises
+    ------
+    ValueError
+        Another number.
+
+    Examples
+    --------
+    >>> riffler.set_threads(1)
+    >>> riffler.threads()
+    1
+    >>> riffler.set_threads(None)
     """
 def stepover_of_scallop(radius: typing.SupportsFloat, height: typing.SupportsFloat) -> float:
     ...
@@ -2182,13 +3851,25 @@ def swarf(path: PencilPath, part: Mesh, tool: Tool, *, side: typing.SupportsInt,
     """
     For riffler.plan.swarf.
     """
-def then(found: typing.Any, convert: typing.Any) -> typing.Any:
+def then(found: _Found, convert: collections.abc.Callable[[_Found], _Made]) -> _Made:
     """
     convert(found); of a Task, that it will be done by its result().
     """
 def threads() -> int:
     """
-    Threads that a parallel call uses: what set_threads() says, else RIFFLER_THREADS where that is set, else as many as the process may run on.
+    How many threads a parallel call uses.
+
+    That is what `set_threads` says, else RIFFLER_THREADS where that is set, else as many as the process may run on.
+
+    Returns
+    -------
+    int
+        1 to 256.
+
+    Examples
+    --------
+    >>> 1 <= riffler.threads() <= 256
+    True
     """
 def tip_ball_radius(tool: Tool, name: str) -> float:
     """

@@ -11,7 +11,7 @@ import queue
 import time
 import uuid
 from array import array
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -31,6 +31,8 @@ from ._core import (
 
 if TYPE_CHECKING:
     from distributed import Client, Future
+
+__all__ = ["verify"]
 
 MOVES = 1 << 18  # of a task, about: 60 MB on the worker; a slab with more of them is run piece by piece
 PER_THREAD = 2  # slabs under way: one that runs and one that waits beside it
@@ -55,18 +57,69 @@ def verify(
     rest_tolerance: float | None = None,
     rapid_feed: float = 10000.0,
     machine: str | None = None,
-    machine_options: dict[str, Any] | None = None,
-    progress: Callable[[float], Any] | None = None,
+    machine_options: Mapping[str, float | bool | str | Sequence[float]] | None = None,
+    progress: Callable[[float], object] | None = None,
 ) -> VerifyReport:
     """``riffler.verify`` on a cluster: same arguments, same report, same bytes.
 
-    ``scheduler``: the address of a Dask scheduler ("tcp://host:8786") or a ``distributed.Client``. Moves wait in a
-    temporary file (TMPDIR); of the program 24 bytes a row are kept. A worker that dies costs the slabs it was at: Dask
-    gives them to another one. After an error, Ctrl-C, or a ``progress`` that raises or returns False (Cancelled),
+    Moves wait in a temporary file (TMPDIR); of the program 24 bytes a row are kept. A worker that dies costs the slabs
+    it was at: Dask gives them to another one. After an error, Ctrl-C, or a ``progress`` that raises or returns False,
     nothing is left on the cluster.
 
-    ConnectionError where there is no scheduler, or no worker; RuntimeError naming the worker that has another riffler,
-    or none; ValueError as ``riffler.verify``, and where the package distributed is missing.
+    Parameters
+    ----------
+    program : Program, or an iterable of Programs
+        As of `riffler.verify`.
+    stock_volume : Volume
+        As of `riffler.verify`.
+    part_mesh : Mesh or None
+        As of `riffler.verify`.
+    fixtures : list of Volume or Mesh
+        As of `riffler.verify`.
+    scheduler : str or distributed.Client
+        The address of a Dask scheduler, such as "tcp://host:8786", or a client of one.
+    tools : dict of int to Tool, or None
+        As of `riffler.verify`.
+    tolerance, gouge_tolerance : float, mm
+        As of `riffler.verify`.
+    rest_tolerance : float, mm, or None
+        As of `riffler.verify`.
+    rapid_feed : float, mm/min
+        As of `riffler.verify`.
+    machine : str or None
+        As of `riffler.verify`.
+    machine_options : dict or None
+        As of `riffler.verify`.
+    progress : callable or None
+        Called with the finished share; returning False cancels.
+
+    Returns
+    -------
+    VerifyReport
+        The same bytes as of `riffler.verify`.
+
+    Raises
+    ------
+    ConnectionError
+        There is no scheduler, or no worker.
+    RuntimeError
+        Names the worker that has another version of riffler, or none.
+    ValueError
+        As `riffler.verify`; and where the package distributed is missing.
+    Cancelled
+        ``progress`` returned False.
+
+    Examples
+    --------
+    >>> import distributed
+    >>> tool = riffler.Tool.ball(6, 30)
+    >>> passes = [[-5, 5, 8, 0, 0, 1], [25, 5, 8, 0, 0, 1]]
+    >>> program = riffler.Program.from_cl([passes], tools=[tool], feed=600, spindle=9000)
+    >>> stock = riffler.Volume.block((0, 0, 0), (20, 10, 10), pitch=0.5)
+    >>> with distributed.Client(processes=False, n_workers=1, threads_per_worker=1, dashboard_address=None) as client:
+    ...     report = riffler.cluster.verify(program, stock, scheduler=client)
+    >>> bool(report.removed.sum() > 0)
+    True
     """
     told = _Told(progress)
     with _client(scheduler) as client:
@@ -80,7 +133,7 @@ def verify(
             sort_moves(program, plan, spool, told)
             with Slabs(client, plan, spool, told.part(0.15, 0.9)) as slabs:
                 slabs.run()
-    report = plan.finish(told.part(0.9, 1))
+    report = plan.finish(progress=told.part(0.9, 1))
     told(1.0)
     return report
 
@@ -94,7 +147,7 @@ def sort_moves(program: Program | Iterable[Program], plan: VerifyPlan, spool: Sp
         if not isinstance(chunk, Program):
             raise ValueError("program must be a Program or an iterable of Programs")
         middle = end if chunk is program else (begin + end) / 2
-        for slab, moves, packet in plan.add(chunk, told.part(begin, middle)):
+        for slab, moves, packet in plan.add(chunk, progress=told.part(begin, middle)):
             spool.add(slab, moves, packet)
         begin = middle
 
@@ -102,7 +155,7 @@ def sort_moves(program: Program | Iterable[Program], plan: VerifyPlan, spool: Sp
 class _Told:
     """The caller's progress: its share never falls."""
 
-    def __init__(self, progress: Callable[[float], Any] | None) -> None:
+    def __init__(self, progress: Callable[[float], object] | None) -> None:
         self.progress, self.most = progress, 0.0
 
     def __call__(self, share: float) -> None:
@@ -131,9 +184,10 @@ def _client(scheduler: str | Client) -> Iterator[Client]:
     """A client that is given stays open."""
     distributed = library()
     if isinstance(scheduler, distributed.Client):
-        if scheduler.asynchronous:
+        client: Client = scheduler  # pyright: ignore[reportAssignmentType]
+        if client.asynchronous:
             raise ValueError("scheduler: an asynchronous Client; give one that waits, or an address")
-        yield scheduler
+        yield client
         return
     if not isinstance(scheduler, str):
         raise ValueError('scheduler must be an address ("tcp://host:8786") or a distributed.Client')
@@ -145,15 +199,20 @@ def _client(scheduler: str | Client) -> Iterator[Client]:
         yield client
 
 
+def address_of(client: Client) -> str:
+    """Where its scheduler is."""
+    return str(client.scheduler.address)  # pyright: ignore[reportOptionalMemberAccess]
+
+
 def check_versions(client: Client) -> None:
     """RuntimeError naming the first machine without this version of riffler: the scheduler takes tasks apart and needs
     it too. ConnectionError where there is no worker."""
-    address = client.scheduler.address
+    address = address_of(client)
     try:
         client.wait_for_workers(1, timeout=PATIENCE)
     except TimeoutError:
         raise ConnectionError(f"{address} has no workers (start one: dask worker {address} --nthreads 1)") from None
-    found = client.run(eval, VERSION_OF, on_error="return")
+    found: dict[str, Any] = client.run(eval, VERSION_OF, on_error="return")  # pyright: ignore[reportAssignmentType]
     try:
         found[f"the scheduler {address}"] = client.run_on_scheduler(eval, VERSION_OF)
     except ImportError as error:
@@ -267,7 +326,7 @@ class Slabs:
     client: Client
     plan: VerifyPlan
     spool: Spool
-    progress: Callable[[float], Any]
+    progress: Callable[[float], object]
     traffic: Traffic = field(default_factory=Traffic)
 
     def __enter__(self) -> Slabs:
@@ -313,7 +372,8 @@ class Slabs:
         self.looked = now
         if self.client.status == "running":
             try:
-                self.threads = sum(self.client.nthreads().values())
+                threads: dict[str, int] = self.client.nthreads()  # pyright: ignore[reportAssignmentType]
+                self.threads = sum(threads.values())
             except OSError:
                 self.threads = 0
         else:
@@ -321,7 +381,7 @@ class Slabs:
         if self.threads > 0:
             self.seen = now
         elif self.client.status == "closed" or now - self.seen > WITHOUT_WORKERS:
-            raise ConnectionError(f"{self.client.scheduler.address}: the scheduler, or its last worker, is gone")
+            raise ConnectionError(f"{address_of(self.client)}: the scheduler, or its last worker, is gone")
 
     def fill(self) -> None:
         most = max(1, PER_THREAD * self.threads)
@@ -346,12 +406,12 @@ class Slabs:
         slab.future.add_done_callback(self.arrived.put)
 
     def take(self, future: Future) -> None:
-        slab = self.active[future.key]
+        slab = self.active[str(future.key)]
         result = self.result(future, slab)
         self.traffic.received += len(result)
         self.plan.accept(slab.number, result, slab.last)
         self.finished += slab.moves
-        del self.active[future.key]
+        del self.active[str(future.key)]
         slab.future = None
         future.release()
         if not slab.last:
@@ -367,7 +427,7 @@ class Slabs:
                 "their logs say why (memory?)"
             ) from error
         except distributed.CancelledError as error:
-            raise ConnectionError(f"{self.client.scheduler.address}: the scheduler has given the work up") from error
+            raise ConnectionError(f"{address_of(self.client)}: the scheduler has given the work up") from error
         except FormatError as error:
             raise RuntimeError(f"slab {slab.number}: damaged on its way ({error})") from error
 
@@ -375,7 +435,7 @@ class Slabs:
 @contextmanager
 def _large_tasks() -> Iterator[None]:
     """Slabs travel in their tasks, because data that lie on a worker would be lost with it; Dask need not warn."""
-    import dask
+    from dask import config
 
-    with dask.config.set({"distributed.admin.large-graph-warning-threshold": "1 TB"}):
+    with config.set({"distributed.admin.large-graph-warning-threshold": "1 TB"}):
         yield

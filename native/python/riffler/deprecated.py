@@ -44,8 +44,8 @@ def _depth() -> int:
 class Old:
     """The old names of one topic. Callables are named as users write them, without ``riffler.``: ``Volume.carve``."""
 
-    #: module ("" is riffler itself): old name → new name
-    modules: dict[str, dict[str, str]] = field(default_factory=dict)
+    #: module ("" is riffler itself): old name → new name, or what to use now and the name of what the old one gives
+    modules: dict[str, dict[str, str | tuple[str, str]]] = field(default_factory=dict)
     #: class: old attribute or method → new one of the same kind
     attributes: dict[str, dict[str, str]] = field(default_factory=dict)
     #: callable: old keyword → new keyword
@@ -87,7 +87,7 @@ def install(attributes: Mapping[str, Mapping[str, str]], classes: Mapping[str, t
             setattr(classes[owner], old, OldAttribute(owner, old, new))
 
 
-def module_getattr(module: str, names: Mapping[str, str]) -> Callable[[str], object]:
+def module_getattr(module: str, names: Mapping[str, str | tuple[str, str]]) -> Callable[[str], object]:
     """The ``__getattr__`` of a module that had other names. A new name with a dot is looked up from riffler."""
 
     def getter(attribute: str) -> object:
@@ -95,8 +95,9 @@ def module_getattr(module: str, names: Mapping[str, str]) -> Callable[[str], obj
             raise AttributeError(f"module {module!r} has no attribute {attribute!r}")
         new = names[attribute]
         prefix = module.removeprefix("riffler").removeprefix(".")
-        path = new if "." in new or not prefix else f"{prefix}.{new}"
-        warn(f"{prefix}.{attribute}".lstrip("."), path)
+        advice, path = new if isinstance(new, tuple) else (new, new)
+        warn(f"{prefix}.{attribute}".lstrip("."), advice if "." in advice or not prefix else f"{prefix}.{advice}")
+        path = path if "." in path or not prefix else f"{prefix}.{path}"
         found: object = importlib.import_module("riffler")
         for part in path.split("."):
             found = getattr(found, part)
@@ -123,6 +124,8 @@ class DictResult:
     def _read_as_dict(self, use: str, key: object = None) -> dict[str, object]:
         found, name = self._as_dict(), type(self).__name__
         if isinstance(key, str) and key in found:
+            if f"{name}.keys()" in _warned:  # dict(result) asks for the keys first
+                return found
             warn(f'{name}["{key}"]', f"{name}.{self.old_keys.get(key, key)}")
         else:
             warn(f"{name}{use}", f"the attributes of {name}, or dataclasses.asdict")
@@ -144,6 +147,9 @@ class DictResult:
 
     def __len__(self) -> int:
         return len(self._read_as_dict(" as a dict"))
+
+    def __bool__(self) -> bool:
+        return True
 
     def keys(self) -> KeysView[str]:
         return self._read_as_dict(".keys()").keys()

@@ -2,20 +2,47 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from ._core import Mesh
+from .hints import hinted
 
 __all__ = ["extrude", "relief", "slab"]
 
 
-def slab(top, bottom, cells=None) -> Mesh:
-    """The closed mesh between two sheets of points: ``top`` and ``bottom`` (n, m, 3), point by point.
+@hinted("shape.slab")
+def slab(top: ArrayLike, bottom: ArrayLike, *, cells: ArrayLike | None = None) -> Mesh:
+    """The closed mesh between two sheets of points, point by point.
 
-    ``cells`` (n - 1, m - 1) bool: which cells there are; each piece of them is closed by walls along its rim. Seen from
-    the side that top lies on, rows and columns turn counter-clockwise: (right, up, towards the viewer) is right-handed.
-    Where the sheets cross, the mesh turns inside out; a volume of it takes both parts as solid.
-    ValueError for other shapes, fewer than two rows or columns, values that are not finite, no cell at all.
+    Seen from the side that top lies on, rows and columns turn counter-clockwise: (right, up, towards the viewer) is
+    right-handed. Where the sheets cross, the mesh turns inside out; a volume of it takes both parts as solid.
+
+    Parameters
+    ----------
+    top, bottom : array_like of shape (n, m, 3), mm
+        The sheets, with at least two rows and columns.
+    cells : array_like of shape (n - 1, m - 1), bool, or None
+        Which cells there are; each piece of them is closed by walls along its rim. Default: all.
+
+    Returns
+    -------
+    Mesh
+        Closed.
+
+    Raises
+    ------
+    ValueError
+        Names argument, row and column: another shape, a value that is not finite, no cell at all.
+
+    Examples
+    --------
+    >>> x, y = np.meshgrid(np.arange(5.0), np.arange(4.0), indexing="ij")
+    >>> plane = np.stack([x, y, 0 * x], axis=2)
+    >>> round(riffler.shape.slab(plane + [0, 0, 2], plane).volume, 6)
+    24.0
     """
     top, bottom = _sheet(top, "top"), _sheet(bottom, "bottom")
     if top.shape != bottom.shape:
@@ -43,17 +70,40 @@ def slab(top, bottom, cells=None) -> Mesh:
     return Mesh(np.concatenate([top[used], bottom[used]]), np.concatenate([faces, faces[:, ::-1] + count, walls]))
 
 
-def relief(heights, size, depth, *, sink=0.0) -> Mesh:
-    """A closed mesh on the plane z = 0: ``heights`` (n, m), 0 to 1, times ``depth``, over ``size`` (x, y), its lower
-    left corner in the origin. Rows go along y as those of a picture do whose first row is the lowest, columns along x.
+@hinted("shape.relief")
+def relief(heights: ArrayLike, size: ArrayLike, depth: float, *, sink: float = 0.0) -> Mesh:
+    """A closed mesh of heights on the plane z = 0, its lower left corner in the origin.
 
-    It reaches ``sink`` below the plane, so that it joins what lies there; with ``sink`` 0, as much as 1e-6 of depth.
-    ValueError for other shapes and values that are not finite.
+    Parameters
+    ----------
+    heights : array_like of shape (n, m), from 0 to 1
+        Rows go along y as those of a picture do whose first row is the lowest, columns along x.
+    size : array_like of shape (2,), mm
+        Width along x and height along y.
+    depth : float, mm
+        What a height of 1 is.
+    sink : float, mm
+        How far the mesh reaches below the plane, so that it joins what lies there; 0 counts as 1e-6 of the depth.
+
+    Returns
+    -------
+    Mesh
+        Closed.
+
+    Raises
+    ------
+    ValueError
+        Another shape, a size that is not positive, a value that is not finite.
+
+    Examples
+    --------
+    >>> riffler.shape.relief([[0, 1], [0, 1]], size=(20, 10), depth=2).bounds.round(3).tolist()
+    [[0.0, 0.0, -0.0], [20.0, 10.0, 2.0]]
     """
     heights = np.asarray(heights, float)
     if heights.ndim != 2 or min(heights.shape) < 2:
         raise ValueError(f"heights must have two rows and columns at least, not the shape {heights.shape}")
-    width, height = (float(v) for v in size)
+    width, height = np.asarray(size, float).tolist()
     if not (np.isfinite([width, height, depth, sink]).all() and width > 0 and height > 0 and depth > 0 and sink >= 0):
         raise ValueError("size and depth must be positive lengths in mm, sink not negative")
     x, y = np.linspace(0, width, heights.shape[1]), np.linspace(0, height, heights.shape[0])
@@ -63,19 +113,41 @@ def relief(heights, size, depth, *, sink=0.0) -> Mesh:
     return slab(plane + heights.T[:, :, None] * depth * up, plane - max(sink, 1e-6 * depth) * up)
 
 
-def extrude(outlines, direction) -> Mesh:
-    """The closed mesh that closed ``outlines`` sweep along ``direction`` (mm): (n, 3) or a list of such. Of several
-    that lie inside one another the turn decides: one that turns the other way is a hole.
+@hinted("shape.extrude")
+def extrude(outlines: ArrayLike | Sequence[ArrayLike], direction: ArrayLike) -> Mesh:
+    """The closed mesh that closed outlines sweep along a direction.
 
     The caps are fans, whose triangles overlap where an outline is not convex; a volume of the mesh has the right
-    material all the same, since it goes by how often the surface winds about a point.
-    ValueError for fewer than three points, values that are not finite, a direction of length 0.
+    material all the same, since it follows how often the surface winds about a point.
+
+    Parameters
+    ----------
+    outlines : array_like of shape (n, 3), mm, or a list of such
+        Corners. For several that lie inside one another the turn decides: one that turns the opposite way is a hole.
+    direction : array_like of shape (3,), mm
+        Of any length but 0.
+
+    Returns
+    -------
+    Mesh
+        Closed.
+
+    Raises
+    ------
+    ValueError
+        Names outline and row: fewer than three points, a value that is not finite, a direction of length 0.
+
+    Examples
+    --------
+    >>> square = np.array([[0, 0, 0], [4, 0, 0], [4, 3, 0], [0, 3, 0]])
+    >>> round(riffler.shape.extrude(square, (0, 0, 2)).volume, 6)
+    24.0
     """
     direction = np.asarray(direction, float)
     if direction.shape != (3,) or not np.isfinite(direction).all() or not direction.any():
         raise ValueError("direction must be three finite numbers, not all 0")
-    outlines = [outlines] if isinstance(outlines, np.ndarray) else list(outlines)
-    points = [_outline(outline, k) for k, outline in enumerate(outlines)]
+    several = [outlines] if isinstance(outlines, np.ndarray) else list(outlines)  # pyright: ignore[reportArgumentType]
+    points = [_outline(outline, k) for k, outline in enumerate(several)]
     if not points:
         raise ValueError("outlines: there is none")
     if sum(float(_area(p) @ direction) for p in points) < 0:
@@ -94,14 +166,14 @@ def extrude(outlines, direction) -> Mesh:
     return Mesh(np.concatenate(vertices), np.concatenate(triangles))
 
 
-def _sheet(points, name) -> np.ndarray:
-    points = np.asarray(points, float)
+def _sheet(given: ArrayLike, name: str) -> NDArray[np.float64]:
+    points = np.asarray(given, float)
     if points.ndim != 3 or points.shape[2] != 3 or min(points.shape[:2]) < 2:
         raise ValueError(f"{name} must have the shape (n, m, 3) with n and m at least 2, not {points.shape}")
     return points
 
 
-def _walls(number, cells, count) -> np.ndarray:
+def _walls(number: NDArray, cells: NDArray, count: int) -> NDArray:
     """Triangles along every side of a cell that no other cell has: from the top sheet down to the bottom one."""
     padded = np.pad(cells, 1)
     walls = []
@@ -118,7 +190,7 @@ def _walls(number, cells, count) -> np.ndarray:
     return np.concatenate(walls)
 
 
-def _outline(outline, k) -> np.ndarray:
+def _outline(outline: ArrayLike, k: int) -> NDArray[np.float64]:
     p = np.asarray(outline, float)
     if p.ndim != 2 or p.shape[1] != 3:
         raise ValueError(f"outlines, number {k}: must have the shape (n, 3), not {p.shape}")

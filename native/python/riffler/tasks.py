@@ -1,15 +1,13 @@
-"""Long calls on a native thread that runs no Python: windows go on, and the call can be asked, cancelled or dropped.
+"""The older form of `riffler.submit`: functions that start a long call and return a task. Each warns once."""
 
-Each function takes the arguments of the call it is named after (methods: the object first), but no ``progress``, and
-returns a ``Task``; ``.result()`` is what the call returns. Arguments are checked and taken at once: what is wrong with
-them is raised here or by ``.result()``. Tasks run beside each other; they share the processors.
+from __future__ import annotations
 
-Calls that run Python in their midst are not here: ``verify`` of an iterable of Programs, ``riffler.cluster.verify`` and
-files by ``riffler.threemf``. Nor are those that change their object: ``Volume.carve``, ``add``, ``Mesher.update``.
-"""
+from collections.abc import Callable
 
 from . import plan
 from ._core import Collider, Journal, Mesh, Task, Verification, Volume, verify
+from .deprecated import warn
+from .futures import runs_as_task
 
 __all__ = [
     "collider",
@@ -36,37 +34,43 @@ __all__ = [
     "write",
 ]
 
+for _function in (
+    plan.pencil, plan.cutter_locations, plan.kept_locations, plan.free_orientations, plan.least_tilt
+):  # fmt: skip
+    runs_as_task(_function)  # pyright: ignore[reportArgumentType]
 
-def _task_of(call, name):
+
+def _task_of(old: str, call: Callable, name: str) -> Callable[..., Task]:
     """The function that makes the call as a Task: the class in the place of a progress callback asks for that."""
 
     def start(*args, **kwargs) -> Task:
+        warn(f"tasks.{old}", f"riffler.submit(riffler.{name}, …)")
         return call(*args, progress=Task, **kwargs)
 
-    start.__name__ = start.__qualname__ = call.__name__
-    start.__doc__ = f"A Task of ``riffler.{name}``."
+    start.__name__ = start.__qualname__ = old
+    start.__doc__ = f"Deprecated: ``riffler.submit(riffler.{name}, …)``."
     return start
 
 
-pencil = _task_of(plan.pencil, "plan.pencil")
-cutter_locations = _task_of(plan.cutter_locations, "plan.cutter_locations")
-kept_locations = _task_of(plan.kept_locations, "plan.kept_locations")
-free_orientations = _task_of(plan.free_orientations, "plan.free_orientations")
-least_tilt = _task_of(plan.least_tilt, "plan.least_tilt")
-collider = _task_of(Collider.made, "Collider")
-verify = _task_of(verify, "verify")
-run = _task_of(Verification.run, "Verification.run")
-sphere = _task_of(Volume.sphere, "Volume.sphere")
-cylinder = _task_of(Volume.cylinder, "Volume.cylinder")
-from_mesh = _task_of(Volume.from_mesh, "Volume.from_mesh")
-parts = _task_of(Volume.parts, "Volume.parts")
-grown = _task_of(Volume.grown, "Volume.grown")
-resampled = _task_of(Volume.resampled, "Volume.resampled")
-to_mesh = _task_of(Volume.to_mesh, "Volume.to_mesh")
-to_bytes = _task_of(Volume.to_bytes, "Volume.to_bytes")
-save = _task_of(Volume.save, "Volume.save")
-replay = _task_of(Journal.replay, "Journal.replay")
-decimate = _task_of(Mesh.decimate, "Mesh.decimate")
-smooth = _task_of(Mesh.smooth, "Mesh.smooth")
-deviation = _task_of(Mesh.deviation, "Mesh.deviation")
-write = _task_of(Mesh.write, "Mesh.write")
+pencil = _task_of("pencil", plan.pencil, "plan.pencil")
+cutter_locations = _task_of("cutter_locations", plan.cutter_locations, "plan.cutter_locations")
+kept_locations = _task_of("kept_locations", plan.kept_locations, "plan.kept_locations")
+free_orientations = _task_of("free_orientations", plan.free_orientations, "plan.free_orientations")
+least_tilt = _task_of("least_tilt", plan.least_tilt, "plan.least_tilt")
+collider = _task_of("collider", Collider.made, "Collider")
+verify = _task_of("verify", verify, "verify")
+run = _task_of("run", Verification.run, "Verification.run")
+sphere = _task_of("sphere", Volume.sphere, "Volume.sphere")
+cylinder = _task_of("cylinder", Volume.cylinder, "Volume.cylinder")
+from_mesh = _task_of("from_mesh", Volume.from_mesh, "Volume.from_mesh")
+parts = _task_of("parts", Volume.parts, "Volume.parts")
+grown = _task_of("grown", Volume.grow, "Volume.grow")
+resampled = _task_of("resampled", Volume.resample, "Volume.resample")
+to_mesh = _task_of("to_mesh", Volume.to_mesh, "Volume.to_mesh")
+to_bytes = _task_of("to_bytes", Volume.to_bytes, "Volume.to_bytes")
+save = _task_of("save", Volume.save, "Volume.save")
+replay = _task_of("replay", Journal.replay, "Journal.replay")
+decimate = _task_of("decimate", Mesh.decimate, "Mesh.decimate")
+smooth = _task_of("smooth", Mesh.smooth, "Mesh.smooth")
+deviation = _task_of("deviation", Mesh.deviation, "Mesh.deviation")
+write = _task_of("write", Mesh.write, "Mesh.write")

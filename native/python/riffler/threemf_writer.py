@@ -82,7 +82,7 @@ def _write(path, texts: Iterator[str]) -> Iterator[None]:
 def _open(archive, name):
     info = zipfile.ZipInfo(name, EPOCH)
     info.compress_type, info.external_attr = zipfile.ZIP_DEFLATED, 0o644 << 16
-    info._compresslevel = FAST  # of a ZipInfo there is no other way to say it
+    info._compresslevel = FAST  # pyright: ignore[reportAttributeAccessIssue] (a ZipInfo has no public name for it)
     return archive.open(info, "w", force_zip64=True)
 
 

@@ -85,8 +85,8 @@ def test_items_and_components_stand_where_their_transforms_put_them(tmp_path):
     audit = mesh.audit()
     # The shifted box first moves to x = 5 … 6, then its x becomes y and its y becomes −x.
     np.testing.assert_allclose(mesh.bounds, [[8, 19, 30], [10, 26, 33]], atol=1e-9)
-    assert mesh.volume == pytest.approx(6 + 1) and audit["open_edges"] == 0
-    assert audit["components"] == 2
+    assert mesh.volume == pytest.approx(6 + 1) and audit.open_edges == 0
+    assert audit.components == 2
     both = read(tmp_path, box_object(1), f'<item objectid="1"/><item objectid="1" transform="{shift}"/>')
     assert len(both.triangles) == 24 and both.bounds[1][0] == 6
     touching = read(tmp_path, box_object(1), '<item objectid="1"/><item objectid="1"/>')

@@ -11,7 +11,7 @@ import time
 import numpy as np
 import pytest
 import riffler
-from riffler import _core, plan, tasks
+from riffler import _core, plan
 
 UP = [0.0, 0.0, 1.0]
 BALL = riffler.Tool.ball(6, 40)
@@ -200,14 +200,14 @@ def in_child(work, seconds=20):
 @pytest.mark.filterwarnings("ignore:.*fork.*:DeprecationWarning")
 def test_a_task_is_lost_in_a_forked_process():
     volume = riffler.Volume.block([0, 0, 0], [60, 60, 20], 0.2, "xyz")
-    task = tasks.to_mesh(volume)
+    task = riffler.submit(riffler.Volume.to_mesh, volume)
 
     def ask():
         try:
             task.result()
         except RuntimeError as error:
             return (
-                task.done,
+                task.done(),
                 "forked" in str(error),
                 len(riffler.Volume.block([0] * 3, [1] * 3, 0.5).to_mesh().triangles),
             )
@@ -228,7 +228,7 @@ def test_a_forked_process_ends_while_sessions_tasks_and_pens_run(tmp_path):
         session = riffler.Session(volume.copy(), riffler.Tool.ball(6, 30), device)
         session.journal({str(tmp_path / "s.rjournal")!r})
         session.start()
-        task = tasks.to_mesh(volume)
+        task = riffler.submit(riffler.Volume.to_mesh, volume)
         child = os.fork()
         if child == 0:
             for call in (session.frame, session.stop):
@@ -254,7 +254,7 @@ def test_a_forked_process_ends_while_sessions_tasks_and_pens_run(tmp_path):
 
 
 def test_worker_processes_that_fork_use_the_library_while_a_task_runs():
-    task = tasks.to_mesh(riffler.Volume.block([0, 0, 0], [60, 60, 20], 0.25, "xyz"))
+    task = riffler.submit(riffler.Volume.to_mesh, riffler.Volume.block([0, 0, 0], [60, 60, 20], 0.25, "xyz"))
     with multiprocessing.get_context("fork").Pool(2) as pool:
         assert pool.map(_carved, [1.0, 2.0]) == [_carved(1.0), _carved(2.0)]
     assert task.result()

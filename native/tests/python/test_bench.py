@@ -150,8 +150,10 @@ def test_a_ball_on_a_known_curve_touches_every_mesh_of_its_part_at_both_contacts
     for k, way in enumerate(remesh.WAYS):
         case = pen.case(part, way, 40 + k, moved=10.0 * k)
         audit = case.mesh.audit()
-        assert audit["components"] == 1 and audit["volume"] > 0
-        assert not any(audit[name] for name in ("open_edges", "nonmanifold_edges", "nonmanifold_vertices", "folds"))
+        assert audit.components == 1 and audit.volume > 0
+        assert not any(
+            getattr(audit, name) for name in ("open_edges", "nonmanifold_edges", "nonmanifold_vertices", "folds")
+        )
         for curve in case.true:
             every = slice(None, None, max(1, len(curve.centres) // 200))
             centres, contacts = curve.centres[every], curve.contacts[every]
@@ -202,8 +204,10 @@ def test_parts_made_in_code_are_closed_and_have_the_volume_of_their_shape():
     assert star.volume == pytest.approx(area * stacked, rel=1e-12)
     for part in (star, parts.organic(5_000)):
         audit = part.audit()
-        assert audit["components"] == 1 and audit["volume"] > 0
-        assert not any(audit[name] for name in ("open_edges", "nonmanifold_edges", "nonmanifold_vertices", "folds"))
+        assert audit.components == 1 and audit.volume > 0
+        assert not any(
+            getattr(audit, name) for name in ("open_edges", "nonmanifold_edges", "nonmanifold_vertices", "folds")
+        )
 
 
 def test_the_exact_part_is_what_it_is_described_as():
@@ -400,8 +404,10 @@ def test_waves_are_the_same_in_pieces_and_their_part_is_closed():
         atol=1e-12,
     )
     audit = waves.part(40).audit()
-    assert audit["components"] == 1 and audit["volume"] > 0
-    assert not any(audit[name] for name in ("open_edges", "nonmanifold_edges", "nonmanifold_vertices", "folds"))
+    assert audit.components == 1 and audit.volume > 0
+    assert not any(
+        getattr(audit, name) for name in ("open_edges", "nonmanifold_edges", "nonmanifold_vertices", "folds")
+    )
 
 
 @pytest.mark.skipif(not BPY.exists(), reason="no .envs/bpy-4.5 (make envs)")

@@ -44,7 +44,7 @@ def corner_part():
     mesh = riffler.Mesh(np.array(vertices, float), np.array(sides + ends, np.int32))
     if mesh.volume < 0:
         mesh = riffler.Mesh(mesh.vertices, mesh.triangles[:, ::-1].copy())
-    assert mesh.audit()["open_edges"] == 0
+    assert mesh.audit().open_edges == 0
     return mesh
 
 

@@ -105,7 +105,7 @@ def test_every_name_of_the_first_command_line_is_there():
 def test_mesh_is_a_group_and_still_the_old_verb(folder, capsys, words):
     assert cli.main(words) == 0
     assert "riffler volume to-mesh" in capsys.readouterr().err
-    assert riffler.Mesh.read("a.stl").audit()["open_edges"] == 0
+    assert riffler.Mesh.read("a.stl").audit().open_edges == 0
 
 
 def test_the_old_verb_mesh_still_refuses_what_is_no_volume(folder, capsys):

@@ -51,11 +51,11 @@ def holds(volume, grown):
 def test_every_span_and_normal_stays_to_the_bit(directions, room):
     volume = grooved(directions)
     before = volume.to_bytes()
-    grown = volume.grown(volume.lower - room, volume.upper + room)
+    grown = volume.grow(volume.lower - room, volume.upper + room)
     assert np.array_equal(grown.lower, volume.lower - room) and np.array_equal(grown.upper, volume.upper + room)
     holds(volume, grown)
     assert grown.volume == pytest.approx(volume.volume, rel=1e-14) and volume.to_bytes() == before
-    assert grown.grown(grown.lower, grown.upper).to_bytes() == grown.to_bytes()
+    assert grown.grow(grown.lower, grown.upper).to_bytes() == grown.to_bytes()
 
 
 def test_boxes_of_any_size_keep_all_their_rays_and_hold_what_was_asked():
@@ -69,7 +69,7 @@ def test_boxes_of_any_size_keep_all_their_rays_and_hold_what_was_asked():
         wanted = lower - more[0], lower + sides + more[1]
         if (wanted[0] > wanted[1]).any():
             continue
-        grown = volume.grown(*wanted)
+        grown = volume.grow(*wanted)
         holds(volume, grown)
         slack = 2e-6 * pitch
         assert (grown.lower <= np.minimum(wanted[0], lower) + slack).all(), k
@@ -78,7 +78,7 @@ def test_boxes_of_any_size_keep_all_their_rays_and_hold_what_was_asked():
         assert (grown.upper < np.maximum(wanted[1], lower + sides) + 2 * pitch + slack).all(), k
         stays = (more[0] <= 0) & (grown.lower == lower)
         assert stays[more[0] <= 0].all()
-        assert volume.grown(grown.lower, grown.upper).to_bytes() == grown.to_bytes()
+        assert volume.grow(grown.lower, grown.upper).to_bytes() == grown.to_bytes()
         assert riffler.Volume.from_bytes(grown.to_bytes()).to_bytes() == grown.to_bytes()
 
 
@@ -94,7 +94,7 @@ def block_in(box, lower, upper, pitch, directions):
 def test_carving_on_is_as_in_a_box_that_was_large_from_the_start(directions):
     lower, upper = np.zeros(3), np.array((40.0, 30, 20))
     box = lower - ROOM, upper + ROOM
-    grown, large = grooved(directions).grown(*box), block_in(box, lower, upper, 0.5, directions)
+    grown, large = grooved(directions).grow(*box), block_in(box, lower, upper, 0.5, directions)
     large.carve(BALL, GROOVE)
     assert grown.to_bytes() == large.to_bytes()
     put_on = np.array([[5.0, 15, 17, 0, 0, 1], [30, 33, 19, 0.6, 0, 0.8]])
@@ -108,8 +108,8 @@ def test_a_mask_that_grows_with_the_stock_protects_the_same():
     stock, mask = grooved(), riffler.Volume.sphere((20, 15, 20), 8, 0.5, "xyz", lower=(0, 0, 0), upper=(40, 30, 20))
     box = stock.lower - 3, stock.upper + 3
     across = np.array([[20.0, -5, 18, 0, 0, 1], [20, 35, 18, 0, 0, 1]])
-    grown = stock.grown(*box)
-    grown.carve(BALL, across, protect=mask.grown(*box))
+    grown = stock.grow(*box)
+    grown.carve(BALL, across, protect=mask.grow(*box))
     stock.carve(BALL, across, protect=mask)
     holds(stock, grown)
 
@@ -123,9 +123,9 @@ def test_the_surface_does_not_move(directions, room, moved):
     volume = grooved(directions, 0.25)
     before = volume.to_mesh()
     for _ in range(5):
-        volume = volume.grown(volume.lower - room, volume.upper + room)
+        volume = volume.grow(volume.lower - room, volume.upper + room)
     after = volume.to_mesh()
-    assert len(before.triangles) == len(after.triangles) and after.audit()["open_edges"] == 0
+    assert len(before.triangles) == len(after.triangles) and after.audit().open_edges == 0
     was, now = (np.unique(np.asarray(m.vertices), axis=0) for m in (before, after))
     inner = ((was > 0.25) & (was < np.array((40, 30, 20)) - 0.25)).all(axis=1)
     there = {tuple(v) for v in now.tolist()}
@@ -138,7 +138,7 @@ def test_the_surface_does_not_move(directions, room, moved):
 def test_shared_tiles_stay_shared():
     block = riffler.Volume.block((0, 0, 0), (400, 400, 400), 0.5, "xyz")
     for room in (1.0, 16.0):
-        grown = block.grown(block.lower - room, block.upper + room)
+        grown = block.grow(block.lower - room, block.upper + room)
         assert grown.nbytes < 5 * block.nbytes < 0.05 * 24 * 3 * 800**2
 
 
@@ -146,12 +146,12 @@ def test_threads_do_not_change_a_byte(monkeypatch):
     volume, made = grooved(), []
     for threads in ("1", "3"):
         monkeypatch.setenv("RIFFLER_THREADS", threads)
-        made.append(volume.grown(volume.lower - 1.7, volume.upper).to_bytes())
+        made.append(volume.grow(volume.lower - 1.7, volume.upper).to_bytes())
     assert made[0] == made[1]
 
 
 def test_an_empty_one_grows_too():
-    empty = riffler.Volume.empty((0, 0, 0), (4, 3, 2), 0.5, "xyz").grown(upper=(9, 9, 9))
+    empty = riffler.Volume.empty((0, 0, 0), (4, 3, 2), 0.5, "xyz").grow(upper=(9, 9, 9))
     assert empty.volume == 0 and np.array_equal(empty.upper, (9, 9, 9)) and np.array_equal(empty.lower, (0, 0, 0))
 
 
@@ -169,10 +169,10 @@ def test_nonsense_is_refused_before_memory_is_made(box, words):
     volume = grooved()
     before = volume.to_bytes()
     with pytest.raises(ValueError, match=words):
-        volume.grown(*box)
+        volume.grow(*box)
     assert volume.to_bytes() == before
 
 
 def test_cancelled():
     with pytest.raises(riffler.Cancelled):
-        grooved().grown((-3, -3, -3), progress=lambda share: False)
+        grooved().grow((-3, -3, -3), progress=lambda share: False)

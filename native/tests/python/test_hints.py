@@ -45,8 +45,14 @@ def test_a_wrong_keyword_of_a_constructor_and_of_a_static_method():
 def test_a_wrong_type_names_the_argument_and_what_was_given():
     assert message(volume().carve, 6.0, POSES) == "Volume.carve: tool must be a Tool; got float 6.0"
     assert message(volume().carve, None, POSES) == "Volume.carve: tool must be a Tool; got None"
-    text = message(volume().carve, BALL, "up")
-    assert text.startswith("Volume.carve: poses must be an array") and text.endswith("; got str 'up'")
+    assert message(volume().carve, BALL, "up") == (
+        "Volume.carve: poses must be an array of shape (n, 6), tip in mm and unit axis; got str 'up'"
+    )
+    assert message(volume().carve, BALL, POSES, tolerance="fine") == (
+        "Volume.carve: tolerance must be a number, mm; got str 'fine'"
+    )
+    assert message(volume().smooth, (1, 2, 3), None) == "Volume.smooth: radius must be a number, mm; got None"
+    assert message(riffler.Collider, None) == "Collider: part must be a Mesh; got None"
 
 
 def test_a_missing_argument_and_one_given_twice_are_named():

@@ -5,7 +5,6 @@ import json
 import numpy as np
 import pytest
 import riffler
-from riffler import tasks
 
 BALL = riffler.Tool.ball(6, 30).named("ball é")
 
@@ -217,7 +216,7 @@ def test_modes_and_masks_are_kept_and_replayed(tmp_path):
         for m, y in (("mask", 10), ("unmask", 12), ("remove", 11), ("add", 14))
     }
     mask.carve(tool, lanes["mask"] + [0, 20, 0, 0, 0, 0], mode="add")
-    tasks.save(stock, tmp_path / "stock.rvol").result()
+    riffler.submit(riffler.Volume.save, stock, tmp_path / "stock.rvol").result()
     mask.save(tmp_path / "mask.rvol")
     file = tmp_path / "a.rjournal"
     with riffler.JournalWriter(file, keep=False) as w:
@@ -233,7 +232,10 @@ def test_modes_and_masks_are_kept_and_replayed(tmp_path):
     stock.carve(tool, lanes["add"], protect=mask, mode="add")
     j = riffler.Journal.read(file)
     assert [s.mode for s in j.strokes] == list(lanes) and j.stock["mask"] == "mask.rvol"
-    for volume, kept in (j.replay(tmp_path, with_mask=True), tasks.replay(j, tmp_path, with_mask=True).result()):
+    for volume, kept in (
+        j.replay(tmp_path, with_mask=True),
+        riffler.submit(riffler.Journal.replay, j, tmp_path, with_mask=True).result(),
+    ):
         assert volume.to_bytes() == stock.to_bytes() and kept.to_bytes() == mask.to_bytes()
     assert j.replay(tmp_path).to_bytes() == stock.to_bytes()
     assert riffler.Journal.read(file).replay(tmp_path, with_mask=True)[1].volume > 0

@@ -36,7 +36,7 @@ def torus(around=120, across=60, major=10.0, minor=4.0):
 
 def defects(mesh):
     audit = mesh.audit()
-    return {name: audit[name] for name in COUNTS if audit[name]}
+    return {name: getattr(audit, name) for name in COUNTS if getattr(audit, name)}
 
 
 def normals_and_areas(mesh):
@@ -174,14 +174,14 @@ def test_damaged_stl_is_a_format_error_or_a_valid_mesh(tmp_path_factory, data):
 def test_audit_names_defects():
     mesh = torus(20, 12)
     audit = mesh.audit()
-    assert set(audit) == {*COUNTS, "components", "volume"}
-    assert defects(mesh) == {} and audit["components"] == 1 and audit["volume"] == mesh.volume
+    assert set(vars(audit)) == {*COUNTS, "components", "volume"}
+    assert defects(mesh) == {} and audit.components == 1 and audit.volume == mesh.volume
     assert defects(riffler.Mesh(mesh.vertices, mesh.triangles[1:])) == {"open_edges": 3}
     turned = mesh.triangles.copy()
     turned[5] = turned[5, ::-1]
     assert defects(riffler.Mesh(mesh.vertices, turned)) == {"nonmanifold_edges": 3}
     soup = riffler.Mesh(mesh.vertices[mesh.triangles].reshape(-1, 3), np.arange(3 * len(mesh.triangles)).reshape(-1, 3))
-    assert soup.audit()["components"] == len(mesh.triangles)
+    assert soup.audit().components == len(mesh.triangles)
     assert defects(soup) == {"open_edges": 3 * len(mesh.triangles)}
 
 
@@ -218,7 +218,7 @@ def test_decimate_keeps_to_its_limits():
         assert len(result.triangles) < len(mesh.triangles) / 1.5
         assert mesh.deviation(result).max() <= tolerance
         assert defects(result) == {}
-    result = mesh.decimate(1000)
+    result = mesh.decimate(triangles=1000)
     assert 998 <= len(result.triangles) <= 1000
     assert len(mesh.decimate(triangles=2000, tolerance=0.5).triangles) == 2000
     assert len(mesh.triangles) == 14400  # unchanged
@@ -260,14 +260,14 @@ def test_smooth_moves_vertices_by_at_most_the_tolerance():
     # Of the roughness across the surface at least a third is gone.
     assert np.abs(rough.smooth().deviation(mesh)).mean() < np.abs(rough.deviation(mesh)).mean() / 1.5
     with pytest.raises(ValueError, match="iterations"):
-        rough.smooth(-1)
+        rough.smooth(iterations=-1)
     with pytest.raises(ValueError, match="tolerance"):
-        rough.smooth(1, -1.0)
+        rough.smooth(iterations=1, tolerance=-1.0)
 
 
 def test_decimate_keeps_to_a_count_and_a_tolerance_at_once():
     mesh = torus(240, 120)
-    result = mesh.decimate(5760, tolerance=0.03)
+    result = mesh.decimate(triangles=5760, tolerance=0.03)
     assert len(result.triangles) == 5760
     assert defects(result) == {}
     weights = np.array([(i, j, 4 - i - j) for i in range(5) for j in range(5 - i)]) / 4
@@ -281,21 +281,21 @@ def test_smooth_keeps_sharp_edges_and_the_volume():
     rough = riffler.Mesh(
         mesh.vertices + np.random.default_rng(2).uniform(-0.02, 0.02, mesh.vertices.shape), mesh.triangles
     )
-    result = rough.smooth(16)
+    result = rough.smooth(iterations=16)
     assert result.volume == pytest.approx(rough.volume, rel=1e-6)
     inset = 4 - np.abs(result.vertices - 4).max(axis=1)  # of every vertex, from the cube's surface
     assert np.abs(inset).max() < 0.03
-    rounded = rough.smooth(16, feature_angle=3.1)
+    rounded = rough.smooth(iterations=16, feature_angle=3.1)
     assert (4 - np.abs(rounded.vertices - 4).max(axis=1)).max() > 0.05
     with pytest.raises(ValueError, match="feature_angle"):
-        rough.smooth(1, feature_angle=0)
+        rough.smooth(iterations=1, feature_angle=0)
 
 
 def test_progress_is_reported_and_cancels():
     mesh = torus(400, 200)
     for call in (
-        lambda progress: mesh.decimate(1000, progress=progress),
-        lambda progress: mesh.smooth(30, progress=progress),
+        lambda progress: mesh.decimate(triangles=1000, progress=progress),
+        lambda progress: mesh.smooth(iterations=30, progress=progress),
         lambda progress: mesh.deviation(mesh, progress=progress),
         lambda progress: mesh.audit(progress=progress),
     ):
@@ -316,7 +316,7 @@ def test_copies_pickles_and_repr():
         assert other.triangles.dtype == np.int32
     assert repr(mesh) == "<riffler.Mesh: 8 vertices, 12 triangles>"
     empty = pickle.loads(pickle.dumps(riffler.Mesh([], [])))
-    assert empty.audit()["components"] == 0 and empty.volume == 0
+    assert empty.audit().components == 0 and empty.volume == 0
     with pytest.raises(ValueError, match="no bounds"):
         empty.bounds  # noqa: B018
 
@@ -324,7 +324,8 @@ def test_copies_pickles_and_repr():
 def test_results_are_the_same_for_any_number_of_threads():
     program = (
         "import sys, hashlib; sys.path.insert(0, sys.argv[1]); import test_mesh as t\n"
-        "m = t.torus(150, 80); r = m.decimate(tolerance=0.02); s = m.smooth(5, 0.01); d = m.deviation(r, signed=True)\n"
+        "m = t.torus(150, 80); r = m.decimate(tolerance=0.02); s = m.smooth(tolerance=0.01)\n"
+        "d = m.deviation(r, signed=True)\n"
         "print(hashlib.sha256(r.vertices.tobytes() + r.triangles.tobytes() + s.vertices.tobytes() + d.tobytes()"
         " + repr((m.audit(), m.area)).encode()).hexdigest())"
     )

@@ -1,5 +1,7 @@
 """riffler.Mesher: the mesh that follows a volume, as patches and as a whole."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 import riffler
@@ -40,7 +42,7 @@ def test_patches_are_the_mesh():
         stroke(volume, x, 12)
         for n in mesher.update(volume):
             patches[n] = mesher.patch(n)
-    corners = np.concatenate([v[t].reshape(-1, 9) for v, t in patches.values() if len(t)])
+    corners = np.concatenate([p.vertices[p.triangles].reshape(-1, 9) for p in patches.values() if len(p.triangles)])
     whole = volume.to_mesh()
     expected = whole.vertices[whole.triangles].reshape(-1, 9).astype(np.float32)
     assert corners.dtype == np.float32
@@ -88,7 +90,8 @@ def test_a_patch_has_the_normals_of_the_whole_mesh(degrees):
     bricks = mesher.patches()
     seen = 0
     for some in (bricks[:1], bricks[3:5], bricks):
-        v, t, normals = mesher.patch(some, normals=sharp)
+        patch = mesher.patch(some, normals=sharp)
+        v, t, normals = patch.vertices, patch.triangles, patch.normals
         k = [place[a.tobytes() + b.tobytes()] for a, b in zip(*keys(v, t), strict=True)]
         cosines = (normals * expected[k]).sum(axis=1)
         off = np.degrees(np.arccos(np.clip(cosines, -1, 1)))
@@ -112,26 +115,36 @@ def test_bricks_in_one_patch_have_no_seams():
     mesher = riffler.Mesher(volume)
     assert mesher.shape == (4, 4, 2)  # 122, 98 and 50 points
     whole = volume.to_mesh()
-    vertices, triangles = mesher.patch(mesher.patches())
+    patch = mesher.patch(mesher.patches())
+    vertices, triangles = patch.vertices, patch.triangles
     assert vertices.dtype == np.float32 and triangles.dtype == np.int32
     assert len(vertices) == len(whole.vertices)
     assert np.array_equal(sorted_corners(vertices, triangles), sorted_corners(whole.vertices, whole.triangles))
     some = np.array(mesher.patches())[::2]
-    vertices, triangles = mesher.patch(some)
+    patch = mesher.patch(some)
+    vertices, triangles = patch.vertices, patch.triangles
     singly = [mesher.patch(n) for n in some]
     assert np.array_equal(
-        sorted_corners(vertices, triangles), sorted_corners(np.concatenate([v[t] for v, t in singly]), slice(None))
+        sorted_corners(vertices, triangles),
+        sorted_corners(np.concatenate([p.vertices[p.triangles] for p in singly]), slice(None)),
     )
-    assert len(np.unique(vertices, axis=0)) == len(vertices) < sum(len(v) for v, _ in singly)
-    assert [a.shape for a in mesher.patch([], edges=True)] == [(0, 3), (0, 3), (0, 2), (0, 3)]
+    assert len(np.unique(vertices, axis=0)) == len(vertices) < sum(len(p.vertices) for p in singly)
+    none = mesher.patch([], edges=True)
+    assert [a.shape for a in (none.vertices, none.triangles, none.edges, none.corner_edges)] == [
+        (0, 3),
+        (0, 3),
+        (0, 2),
+        (0, 3),
+    ]
 
 
 @pytest.mark.parametrize("bricks", [lambda all: all[0], lambda all: all[:3], lambda all: all])
 def test_edges_are_those_of_the_triangles(bricks):
     mesher = riffler.Mesher(carved())
     bricks = bricks(mesher.patches())
-    _, triangles, edges, corner_edge = mesher.patch(bricks, edges=True)
-    assert np.array_equal(triangles, mesher.patch(bricks)[1])
+    patch = mesher.patch(bricks, edges=True)
+    triangles, edges, corner_edge = patch.triangles, patch.edges, patch.corner_edges
+    assert np.array_equal(triangles, mesher.patch(bricks).triangles)
     assert edges.dtype == corner_edge.dtype == np.int32
     sides = np.sort(np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2), axis=2)
     assert np.array_equal(np.sort(edges, axis=1)[corner_edge], sides)
@@ -145,7 +158,7 @@ def test_picks_what_a_ray_meets_first():
     assert distance == pytest.approx(8, abs=1e-6)
     assert point == pytest.approx([8, 7, 12], abs=1e-6)
     assert normal.tolist() == [0, 0, 1]
-    vertices = mesher.patch(brick)[0]
+    vertices = mesher.patch(brick).vertices
     assert (vertices.min(axis=0) <= point + 1e-6).all() and (point <= vertices.max(axis=0) + 1e-6).all()
     assert mesher.pick([8, 7, 20], [0, 0, 1]) is None
     stroke(volume, 8, 7)
@@ -182,7 +195,7 @@ def test_a_frozen_surface_stays():
     frozen = mesher.freeze()
     assert frozen.triangles == mesher.triangles
     assert frozen.nbytes < 40 * frozen.triangles
-    mesher.stats()
+    mesher.take_counters()
     stroke(volume, 8, 7)
     changed = mesher.update(volume)
     down = [8, 7, 20], [0, 0, -1]
@@ -190,13 +203,13 @@ def test_a_frozen_surface_stays():
     assert mesher.pick(*down)[0] > 8.9
     again = mesher.freeze()
     assert again.pick(*down)[0] == mesher.pick(*down)[0]
-    assert mesher.stats()["bricks_prepared"] == len(changed)
+    assert mesher.take_counters().bricks_prepared == len(changed)
     del mesher
     assert frozen.pick(*down)[0] == pytest.approx(8, abs=1e-6)
-    counts = frozen.stats()
-    assert counts["rays"] == 2 and counts["bricks_prepared"] == 0
-    assert 0 < counts["triangles_tested"] < frozen.triangles / 20
-    assert set(frozen.stats().values()) == {0}
+    counts = frozen.take_counters()
+    assert counts.rays == 2 and counts.bricks_prepared == 0
+    assert 0 < counts.triangles_tested < frozen.triangles / 20
+    assert set(dataclasses.astuple(frozen.take_counters())) == {0}
 
 
 def test_wrong_rays():

@@ -30,14 +30,14 @@ BALL = riffler.Tool.ball(4, 20)
 
 
 def test_turned_triangles_are_turned_back():
-    report = {}
     bad = box((0, 0, 0), (10, 10, 10), HALF)
-    assert bad.oriented(report).volume == pytest.approx(1000)
-    assert report == {"turned": 6, "turned_shells": 0, "left_out": 0, "one_sided": 0}
-    assert CUBE.oriented() is CUBE
-    found = {}
-    assert riffler.Volume.from_mesh(bad, 0.5, "xyz", report=found).volume == pytest.approx(1000)
-    assert found["turned"] == 6 and found["lost"] == 0 and found["lost_note"] == ""
+    mesh, report = bad.orient_with_report()
+    assert mesh.volume == bad.orient().volume == pytest.approx(1000)
+    assert report == riffler.Orientation(turned=6, turned_shells=0, left_out=0, one_sided=0)
+    assert CUBE.orient() is CUBE
+    volume, found = riffler.Volume.from_mesh_with_report(bad, 0.5, "xyz")
+    assert volume.volume == pytest.approx(1000)
+    assert found.turned == 6 and found.lost == 0 and found.lost_note == ""
 
 
 def test_a_turned_part_is_the_same_to_all_that_takes_solids():
@@ -100,20 +100,19 @@ def test_thin_material_is_told():
     mill = riffler.Tool.flat(200, 20)
     tray.carve(mill, np.array([[25, 25, 12, 0, 0, 1.0], [25, 25, 0.3, 0, 0, 1]]))
     assert tray.volume == pytest.approx(750)
-    report = {}
-    assert len(tray.to_mesh(report=report).triangles) == 0
-    assert report["lost"] == pytest.approx(750) and report["lost_pitch"] == pytest.approx(0.29)
-    assert np.allclose(report["lost_box"], [[0, 0, 0], [50, 50, 0.3]])
+    mesh, report = tray.to_mesh_with_report()
+    assert len(mesh.triangles) == 0
+    assert report.lost == pytest.approx(750) and report.lost_pitch == pytest.approx(0.29)
+    assert np.allclose(report.lost_box, [[0, 0, 0], [50, 50, 0.3]])
     with pytest.warns(UserWarning, match="nothing of the 750 mm³"):
         tray.to_mesh()
     # The pitch that is named keeps it.
-    fine = riffler.Volume.from_mesh(plate, report["lost_pitch"], "xyz")
+    fine = riffler.Volume.from_mesh(plate, report.lost_pitch, "xyz")
     assert fine.to_mesh().volume == pytest.approx(750, rel=0.01)
     # Part of a body: a fin of 0.2 mm on a block.
     body = joined(box((0, 0, 0), (20, 20, 5)), box((9.7, 0, 5), (9.9, 20, 15)))
-    found = {}
-    riffler.Volume.from_mesh(body, 1, "xyz", report=found)
-    assert found["lost"] == pytest.approx(40, rel=0.1) and "a pitch of 0.19 mm keeps it" in found["lost_note"]
+    _, found = riffler.Volume.from_mesh_with_report(body, 1, "xyz")
+    assert found.lost == pytest.approx(40, rel=0.1) and "a pitch of 0.19 mm keeps it" in found.lost_note
     with pytest.warns(UserWarning, match="thinner than the pitch of 1 mm"):
         riffler.Volume.from_mesh(body, 1, "xyz")
     # A wire between all rays.

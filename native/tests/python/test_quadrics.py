@@ -159,7 +159,7 @@ def test_meshes_are_closed_and_lie_on_the_surface(solid, of_three, directions, s
     pitch, share = 0.25, share or of_three
     mesh = solid.volume(pitch, directions).to_mesh()
     audit = mesh.audit()
-    assert not any(audit[n] for n in ("open_edges", "nonmanifold_edges", "nonmanifold_vertices", "degenerate"))
+    assert not any(getattr(audit, n) for n in ("open_edges", "nonmanifold_edges", "nonmanifold_vertices", "degenerate"))
     # across one direction's rays a wall is known within half a pitch along each of two axes
     assert abs(solid.distance(mesh.vertices.astype(float))).max() < share * pitch
 
@@ -213,7 +213,7 @@ def test_rays_that_touch_or_run_in_the_side():
         assert (spans[:, 0] < spans[:, 1]).all() and np.isfinite(spans).all()
         bar = riffler.Volume.cylinder((0, 0, 0), r, 4, 0.5, "xyz", lower=(-3, -3, -3), upper=(3, 3, 3))
         audit = bar.to_mesh().audit()
-        assert audit["open_edges"] == 0 and audit["components"] == 1
+        assert audit.open_edges == 0 and audit.components == 1
         counts, spans = bar.intervals("z")
         x = -2.75 + 0.5 * np.arange(12)
         d = np.hypot(x[:, None], x)

@@ -8,7 +8,7 @@ from riffler import shape
 
 def clean(mesh):
     audit = mesh.audit()
-    return not any(audit[n] for n in ("open_edges", "nonmanifold_edges", "degenerate", "duplicates"))
+    return not any(getattr(audit, n) for n in ("open_edges", "nonmanifold_edges", "degenerate", "duplicates"))
 
 
 def sheets(n, m, height=2.0):
@@ -26,9 +26,9 @@ def test_a_slab_with_holes_has_walls_around_them():
     rng = np.random.default_rng(8)
     for _ in range(20):
         cells = rng.random((9, 6)) < 0.6
-        mesh = shape.slab(*sheets(10, 7), cells)
+        mesh = shape.slab(*sheets(10, 7), cells=cells)
         assert mesh.volume == pytest.approx(2 * cells.sum())
-        assert mesh.audit()["open_edges"] == 0  # cells that touch in a corner share its edge
+        assert mesh.audit().open_edges == 0  # cells that touch in a corner share its edge
 
 
 def test_what_is_not_used_need_not_be_finite():
@@ -36,9 +36,9 @@ def test_what_is_not_used_need_not_be_finite():
     top[0, 0] = bottom[0, 0] = np.nan
     cells = np.ones((3, 3), bool)
     with pytest.raises(ValueError, match="top, row 0, column 0: not finite"):
-        shape.slab(top, bottom, cells)
+        shape.slab(top, bottom, cells=cells)
     cells[0, 0] = False
-    assert shape.slab(top, bottom, cells).volume == pytest.approx(16)
+    assert shape.slab(top, bottom, cells=cells).volume == pytest.approx(16)
 
 
 def test_a_relief_has_the_volume_under_its_heights():
@@ -88,7 +88,7 @@ def test_outlines_that_are_not_convex_become_the_right_material(turn, direction)
     comb = np.c_[x, y, np.zeros(12)].astype(float)
     for outline in (star(), comb):
         mesh = shape.extrude(outline[::turn], direction)
-        assert mesh.audit()["open_edges"] == 0
+        assert mesh.audit().open_edges == 0
         assert mesh.volume == pytest.approx(area(outline) * 8)
         volume = riffler.Volume.from_mesh(mesh, 0.1, "z")
         assert volume.volume == pytest.approx(area(outline) * 8, rel=0.01)
@@ -105,8 +105,8 @@ def test_bad_shapes_are_named():
     for bad, words in (
         (lambda: shape.slab(top[0], bottom), "top must have the shape"),
         (lambda: shape.slab(top, bottom[:2]), "one shape"),
-        (lambda: shape.slab(top, bottom, np.ones((3, 3), bool)), "cells must have the shape"),
-        (lambda: shape.slab(top, bottom, np.zeros((2, 2), bool)), "there is none"),
+        (lambda: shape.slab(top, bottom, cells=np.ones((3, 3), bool)), "cells must have the shape"),
+        (lambda: shape.slab(top, bottom, cells=np.zeros((2, 2), bool)), "there is none"),
         (lambda: shape.relief([1, 2], (1, 1), 1), "heights must have"),
         (lambda: shape.relief(np.ones((2, 2)), (1, 1), 0), "depth"),
         (lambda: shape.relief(np.full((2, 2), np.nan), (1, 1), 1), "not finite"),

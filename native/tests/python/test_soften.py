@@ -1,5 +1,7 @@
 """Volume.soften: the smooth brush."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 import riffler
@@ -33,14 +35,14 @@ def lid(volume, radius):
 
 def clean(mesh):
     audit = mesh.audit()
-    return not any(n for name, n in audit.items() if name not in ("components", "volume"))
+    return not any(n for name, n in dataclasses.asdict(audit).items() if name not in ("components", "volume"))
 
 
 def test_a_stroke_levels_what_is_rough_and_says_what_it_moved():
     volume = bumpy()
     before, rough = volume.volume, lid(volume, 3)
     stroke = [[x, 10, 12] for x in np.linspace(12, 18, 13)]
-    moved = volume.soften(stroke, 5, strength=1.0)
+    moved = volume.smooth(stroke, 5, strength=1.0)
     assert len(moved) == 13 and moved.removed.shape == moved.added.shape == (13,)
     assert (moved.removed > 0).all() and (moved.added > 0).all()
     assert moved.added.sum() - moved.removed.sum() == pytest.approx(volume.volume - before, abs=1e-9)
@@ -51,20 +53,20 @@ def test_a_stroke_levels_what_is_rough_and_says_what_it_moved():
 def test_one_dab_is_one_of_a_stroke():
     one, two = bumpy(), bumpy()
     for centre in [(14, 10, 12), (16, 10, 12)]:
-        assert len(one.soften(centre, 3)) == 1
-    two.soften([(14, 10, 12), (16, 10, 12)], 3)
+        assert len(one.smooth(centre, 3)) == 1
+    two.smooth([(14, 10, 12), (16, 10, 12)], 3)
     assert one.to_bytes() == two.to_bytes()
-    assert len(two.soften(np.empty((0, 3)), 3)) == 0
+    assert len(two.smooth(np.empty((0, 3)), 3)) == 0
 
 
 def test_a_plane_costs_nothing_and_keeps_its_bytes():
     volume = block()
     before, revision = volume.to_bytes(), volume.revision
-    moved = volume.soften((15, 10, 12), 5, 1.0)
+    moved = volume.smooth((15, 10, 12), 5, strength=1.0)
     assert moved.removed.sum() == moved.added.sum() == 0
     assert volume.to_bytes() == before and volume.revision == revision
-    stats = volume.stats()
-    assert stats["moves"] == 1 and stats["rays_tested"] == stats["tiles_changed"] == 0
+    counters = volume.take_counters()
+    assert counters.moves == 1 and counters.rays_tested == counters.tiles_changed == 0
 
 
 def test_what_is_protected_stays():
@@ -72,40 +74,40 @@ def test_what_is_protected_stays():
     mask = block()
     mask.carve(riffler.Tool.flat(30, 30), np.array([[0.0, -20, 0, 0, 0, 1], [0, 40, 0, 0, 0, 1]]))  # x > 15 is left
     before, free = volume.copy(), volume.copy()
-    moved = volume.soften((15, 10, 12), 5, 1.0, protect=mask)
-    assert 0 < moved.removed.sum() < free.soften((15, 10, 12), 5, 1.0).removed.sum()
+    moved = volume.smooth((15, 10, 12), 5, strength=1.0, protect=mask)
+    assert 0 < moved.removed.sum() < free.smooth((15, 10, 12), 5, strength=1.0).removed.sum()
     counts, spans = volume.copy().intersect(mask).intervals("z")
     counts_before, spans_before = before.intersect(mask).intervals("z")
     assert (counts == counts_before).all() and (spans == spans_before).all()
     itself = volume.to_bytes()
-    volume.soften((15, 0, 12), 3, 1.0, protect=volume)  # which leaves air to grow into only
+    volume.smooth((15, 0, 12), 3, strength=1.0, protect=volume)  # which leaves air to grow into only
     assert volume.to_bytes() == itself
 
 
 def test_it_is_the_mesher_that_sees_few_bricks_change():
     volume = riffler.Volume.block((0, 0, 0), (60, 60, 30), 0.25, "xyz")
     mesher = riffler.Mesher(volume)
-    volume.soften((30, 0, 30), 4, 1.0)
+    volume.smooth((30, 0, 30), 4, strength=1.0)
     assert 0 < len(mesher.update(volume)) <= 12
 
 
 def test_bad_arguments_are_named_and_a_cancelled_call_leaves_no_trace():
     volume = bumpy()
     with pytest.raises(ValueError, match='soften needs a volume of directions "xyz"'):
-        block("z").soften((1, 2, 3), 5)
+        block("z").smooth((1, 2, 3), 5)
     with pytest.raises(ValueError, match="centres must have the shape"):
-        volume.soften([[1, 2]], 5)
+        volume.smooth([[1, 2]], 5)
     with pytest.raises(ValueError, match="centres, row 1: not finite"):
-        volume.soften([[1, 2, 3], [1, np.nan, 3]], 5)
+        volume.smooth([[1, 2, 3], [1, np.nan, 3]], 5)
     with pytest.raises(ValueError, match="radius must be a positive length in mm"):
-        volume.soften((1, 2, 3), 0)
+        volume.smooth((1, 2, 3), 0)
     with pytest.raises(ValueError, match="strength must be from 0 to 1"):
-        volume.soften((1, 2, 3), 5, 2)
+        volume.smooth((1, 2, 3), 5, strength=2)
     with pytest.raises(ValueError, match="protect must have the same grid as the volume, but its pitch differs"):
-        volume.soften((1, 2, 3), 5, protect=block(pitch=0.5))
+        volume.smooth((1, 2, 3), 5, protect=block(pitch=0.5))
     before = volume.to_bytes()
     shares = []
     with pytest.raises(riffler.Cancelled):
-        volume.soften([(15, 10, 12)] * 3, 5, progress=lambda share: shares.append(share) or len(shares) < 2)
+        volume.smooth([(15, 10, 12)] * 3, 5, progress=lambda share: shares.append(share) or len(shares) < 2)
     assert shares == sorted(shares)
     assert volume.to_bytes() == before

@@ -217,7 +217,7 @@ def test_locations_of_poses_are_those_of_the_path():
     rows, report = plan.cutter_locations(path, BALL, collider)
     same, other = plan.cutter_locations(plan.poses_of(path), BALL, collider)
     assert np.allclose(rows, same, atol=1e-12) and np.array_equal(report.points, other.points)
-    task = riffler.tasks.cutter_locations(plan.poses_of(path), BALL, collider)
+    task = riffler.submit(riffler.plan.cutter_locations, plan.poses_of(path), BALL, collider)
     assert np.array_equal(task.result()[0], same)
     with pytest.raises(ValueError, match="path: has no poses"):
         plan.cutter_locations(np.empty((0, 6)), BALL, collider)

@@ -1,4 +1,4 @@
-"""riffler.tasks: the same calls on a thread of their own; and how many threads calls use."""
+"""riffler.submit: calls on a thread of their own; and how many threads calls use."""
 
 import functools
 import gc
@@ -93,23 +93,23 @@ CALLS = {
     "from_mesh": (riffler.Volume.from_mesh, (SURFACE, 0.7, "xyz"), {"lower": [0, 0, -1]}),
     "sphere": (riffler.Volume.sphere, ((1, 2, 3), 9.0, 0.2, "xyz"), {"lower": [0, 0, 0]}),
     "cylinder": (riffler.Volume.cylinder, ((1, 2, 3), 9.0, 20.0, 0.2), {"axis": (1, 2, 3)}),
-    "grown": (riffler.Volume.grown, (VOLUME, [-9, -3, -1]), {}),
+    "grown": (riffler.Volume.grow, (VOLUME, [-9, -3, -1]), {}),
     "to_mesh": (riffler.Volume.to_mesh, (VOLUME,), {}),
-    "parts": (riffler.Volume.parts, (VOLUME,), {"least": 1.0}),
-    "resampled": (riffler.Volume.resampled, (VOLUME, 0.4, "xyz"), {"lower": [0, 0, -1]}),
+    "parts": (riffler.Volume.parts, (VOLUME,), {"minimum": 1.0}),
+    "resampled": (riffler.Volume.resample, (VOLUME, 0.4, "xyz"), {"lower": [0, 0, -1]}),
     "to_bytes": (riffler.Volume.to_bytes, (VOLUME,), {}),
     "save": (riffler.Volume.save, (VOLUME, TEMPORARY), {}),
     "replay": (riffler.Journal.replay, (strokes(),), {"with_mask": True}),
-    "decimate": (riffler.Mesh.decimate, (SURFACE, 2000), {"tolerance": 0.05}),
-    "smooth": (riffler.Mesh.smooth, (SURFACE, 5), {"feature_angle": 0.7}),
+    "decimate": (riffler.Mesh.decimate, (SURFACE,), {"triangles": 2000, "tolerance": 0.05}),
+    "smooth": (riffler.Mesh.smooth, (SURFACE,), {"iterations": 5, "feature_angle": 0.7}),
     "deviation": (riffler.Mesh.deviation, (SURFACE, STEP), {"signed": True}),
     "write": (riffler.Mesh.write, (SURFACE, WRITTEN), {}),
 }
 
 
 def started(name, *args, **kwargs):
-    call = getattr(tasks, name)
-    return call(verification(), *args, **kwargs) if name == "run" else call(*args, **kwargs)
+    call = verification().run if name == "run" else CALLS[name][0]
+    return riffler.submit(call, *args, **kwargs)
 
 
 def bits(thing):
@@ -141,7 +141,7 @@ def expected_bits(name):
 
 def endless():
     """A call that nobody would wait for, in short steps."""
-    return tasks.smooth(SURFACE, 2_000_000_000)
+    return riffler.submit(SURFACE.smooth, iterations=2_000_000_000)
 
 
 def threads_of_process():
@@ -160,13 +160,13 @@ def test_a_task_gives_what_the_call_gives(name):
     call, args, kwargs = CALLS[name]
     expected = call(*args, **kwargs)
     task = started(name, *args, **kwargs)
-    assert isinstance(task, riffler.Task)
+    assert isinstance(task, riffler.Future)
     found = task.result()
-    assert task.done and task.share == 1 and "done" in repr(task)
+    assert task.done() and task.progress() == 1 and "done" in repr(task)
     assert type(found) is type(expected) and bits(found) == bits(expected)
     assert task.result() is found
     task.cancel()
-    assert task.result() is found and task.share == 1
+    assert task.result() is found and task.progress() == 1
 
 
 @pytest.mark.parametrize("name", CALLS)
@@ -190,8 +190,8 @@ def test_both_ways_say_the_same_of_bad_arguments():
         "verify": [(passes(), stock(), flat, [flat]), (7, stock()), (None, stock()), (passes(), stock(), VOLUME)],
         "run": [(None,)],
         "from_mesh": [(flat, 1.0), (None, 1.0), (STEP, -1.0)],
-        "decimate": [(STEP,), (STEP, -1), (None, 5)],
-        "smooth": [(STEP, -1)],
+        "decimate": [(STEP,), (None,)],
+        "smooth": [(None,)],
         "deviation": [(STEP, nothing), (STEP, None)],
         "write": [(STEP, "part.step"), (STEP, "/nowhere/at/all.stl"), (STEP, None)],
     }
@@ -206,26 +206,86 @@ def test_both_ways_say_the_same_of_bad_arguments():
 
 
 def test_an_error_is_raised_as_often_as_asked():
-    task = tasks.pencil(riffler.Mesh([], []), BALL)
+    task = riffler.submit(riffler.plan.pencil, riffler.Mesh([], []), BALL)
     for _ in range(2):
         with pytest.raises(ValueError, match="triangle"):
             task.result()
-    assert task.done and task.share < 1
+    assert task.done() and task.progress() < 1
 
 
-def test_a_task_takes_no_progress_and_runs_no_python():
-    with pytest.raises(TypeError, match="progress"):
-        tasks.to_mesh(VOLUME, progress=print)
-    with pytest.raises(ValueError, match="program must be a Program for a Task"):
-        tasks.verify(iter([passes()]), stock())
+def test_a_progress_of_ones_own_is_called_on_a_python_thread():
+    shares = []
+    future = riffler.submit(VOLUME.to_mesh, progress=shares.append)
+    assert bits(future.result()) == bits(SURFACE) and shares and future.progress() == 1
+    with pytest.raises(riffler.Cancelled):
+        riffler.submit(VOLUME.to_mesh, progress=lambda share: False).result()
+
+
+def test_calls_that_run_python_or_change_their_object_are_futures_too():
+    report = riffler.submit(riffler.verify, iter([passes()]), stock()).result()
+    assert bits(report) == bits(riffler.verify(iter([passes()]), stock()))
+    volume = stock()
+    cut = riffler.submit(volume.carve, BALL, [[0, 0, 5, *UP], [40, 30, 5, *UP]]).result()
+    assert cut.removed.sum() == pytest.approx(stock().volume - volume.volume)
+    future = riffler.submit(SURFACE.audit)
+    assert future.result() == SURFACE.audit() and future.exception() is None
+
+
+def test_a_python_call_is_cancelled_by_its_progress():
+    def slow(progress):
+        while progress(0.5) is not False:
+            time.sleep(0.001)
+        raise riffler.Cancelled("stopped")
+
+    future = riffler.submit(slow)
+    assert future.running() and future.cancel()
+    assert isinstance(future.exception(30), riffler.Cancelled) and future.cancelled() and not future.cancel()
+
+
+def test_a_result_that_is_not_there_in_time_is_a_timeout():
+    future = endless()
+    for ask in (future.result, future.exception):
+        with pytest.raises(TimeoutError, match=r"has not ended after 0.05 s"):
+            ask(timeout=0.05)
+    future.cancel()
+
+
+def test_callbacks_get_the_future_once_it_is_done(caplog):
+    seen, later = [], threading.Event()
+    future = riffler.submit(SURFACE.deviation, STEP)
+    future.add_done_callback(lambda _: 1 / 0)
+    future.add_done_callback(lambda found: (seen.append(found), later.set()))
+    assert later.wait(30) and seen == [future]
+    future.add_done_callback(seen.append)
+    assert len(seen) == 2 or later.wait(0.2)
+    assert "ZeroDivisionError" in caplog.text
+
+
+def test_wrong_arguments_of_a_native_call_are_raised_at_once():
+    with pytest.raises(TypeError, match=r"Mesh.decimate: there is no argument tolerence; did you mean tolerance\?"):
+        riffler.submit(SURFACE.decimate, tolerence=1)
     with pytest.raises(TypeError):
-        riffler.Task()
+        riffler._core.Task()
 
 
+@pytest.mark.parametrize("name", CALLS)
+def test_the_older_functions_warn_and_give_tasks(name):
+    riffler.deprecated.forget()
+    _, args, kwargs = CALLS[name]
+    call = getattr(tasks, name)
+    with pytest.warns(DeprecationWarning, match=rf"tasks.{name} is deprecated, use riffler.submit\(riffler\."):
+        task = call(verification(), *args, **kwargs) if name == "run" else call(*args, **kwargs)
+    assert isinstance(task, riffler._core.Task) and bits(task.result()) == expected_bits(name)
+    assert task.done and task.share == 1
+
+
+@pytest.mark.filterwarnings("ignore:riffler. tasks:DeprecationWarning")
 def test_a_report_of_a_mesh_is_filled_with_the_result():
     open_box = riffler.Mesh(PART.vertices, PART.triangles[1:])
     expected, found = {}, {}
-    riffler.Volume.from_mesh(open_box, 1.0, report=expected)
+    riffler.deprecated.forget()
+    with pytest.warns(DeprecationWarning, match="Volume.from_mesh_with_report"):
+        riffler.Volume.from_mesh(open_box, 1.0, report=expected)
     task = tasks.from_mesh(open_box, 1.0, report=found)
     while not task.done:
         time.sleep(0.001)
@@ -235,7 +295,7 @@ def test_a_report_of_a_mesh_is_filled_with_the_result():
 
 
 def test_a_conversion_that_failed_is_not_made_again():
-    task = tasks.to_bytes(VOLUME)
+    task = VOLUME.to_bytes(progress=riffler._core.Task)
     assert riffler._core.then(task, lambda found: 1 / 0) is task
     with pytest.raises(ZeroDivisionError):
         task.result()
@@ -249,9 +309,9 @@ def test_a_conversion_that_failed_is_not_made_again():
 def test_a_volume_may_be_carved_while_a_task_reads_it():
     volume = carved()
     before = bits(volume.to_mesh())
-    running = [tasks.to_mesh(volume) for _ in range(4)]
+    running = [riffler.submit(riffler.Volume.to_mesh, volume) for _ in range(4)]
     volume.carve(BALL, [[0, 0, 5, *UP], [40, 30, 5, *UP]])
-    running.append(tasks.to_mesh(volume))
+    running.append(riffler.submit(riffler.Volume.to_mesh, volume))
     after = bits(volume.to_mesh())
     del volume
     assert [bits(task.result()) for task in running] == 4 * [before] + [after]
@@ -260,7 +320,7 @@ def test_a_volume_may_be_carved_while_a_task_reads_it():
 
 def test_a_task_keeps_what_nobody_else_holds():
     path, collider, tool = valley(9), riffler.Collider(STEP), riffler.Tool.ball(6, 40)
-    task = tasks.free_orientations(path, [0, 4], tool, collider, **GRID)
+    task = riffler.submit(riffler.plan.free_orientations, path, [0, 4], tool, collider, **GRID)
     del path, collider, tool
     gc.collect()
     assert bits(task.result()) == bits(plan.free_orientations(PATH, [0, 4], BALL, COLLIDER, **GRID))
@@ -268,7 +328,7 @@ def test_a_task_keeps_what_nobody_else_holds():
 
 def test_arrays_may_be_written_once_the_task_is_made():
     inclinations, tilts = GRID["inclinations"].copy(), GRID["tilts"].copy()
-    task = tasks.least_tilt(PATH, BALL, COLLIDER, inclinations=inclinations, tilts=tilts)
+    task = riffler.submit(riffler.plan.least_tilt, PATH, BALL, COLLIDER, inclinations=inclinations, tilts=tilts)
     inclinations[:], tilts[:] = 7, 7
     assert bits(task.result()) == bits(plan.least_tilt(PATH, BALL, COLLIDER, **GRID))
 
@@ -285,8 +345,8 @@ def test_a_verification_in_use_says_so():
     shared = verification()
     many = np.array([[20 + 19 * np.sin(k), 15 + 14 * np.cos(1.7 * k), 7] for k in range(200_000)])
     program = riffler.Program(np.column_stack([many, np.tile(UP, (len(many), 1))]), 600.0, spindle=1.0, tools={1: BALL})
-    first = tasks.run(shared, program)
-    while first.share == 0:
+    first = riffler.submit(riffler.Verification.run, shared, program)
+    while first.progress() == 0:
         time.sleep(0.001)
     with pytest.raises(RuntimeError, match="in use by another thread"):
         shared.run(passes())
@@ -301,12 +361,12 @@ def test_a_verification_in_use_says_so():
 
 def test_a_cancelled_task_raises_cancelled():
     task = endless()
-    assert not task.done and "%" in repr(task)
+    assert not task.done() and "%" in repr(task)
     task.cancel()
     for _ in range(2):
         with pytest.raises(riffler.Cancelled):
             task.result()
-    assert task.done and task.share < 1
+    assert task.done() and task.progress() < 1
 
 
 def test_the_share_grows_and_waiting_lets_python_go_on():
@@ -320,9 +380,9 @@ def test_the_share_grows_and_waiting_lets_python_go_on():
 
     waiting = threading.Thread(target=wait)
     waiting.start()
-    shares = [task.share]
+    shares = [task.progress()]
     while len(set(shares)) < 3:  # this thread runs although the other one waits in the core
-        shares.append(task.share)
+        shares.append(task.progress())
     assert sorted(shares) == shares and shares[0] >= 0 and shares[-1] < 1
     assert waiting.is_alive()
     task.cancel()
@@ -345,7 +405,7 @@ def test_a_signal_ends_the_waiting_but_not_the_task():
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0)
         signal.signal(signal.SIGALRM, before)
-    assert not task.done
+    assert not task.done()
     task.cancel()
     with pytest.raises(riffler.Cancelled):
         task.result()
@@ -393,7 +453,7 @@ EXITS = {
     "from a function": "def f():\n    held = endless()\n    sys.exit(0)\nf()",
     "in a thread's hands": "t = threading.Thread(target=lambda held: time.sleep(0.2), args=[endless()]); t.start()",
     "many": "tasks_ = [endless() for _ in range(8)]; tasks_[3].cancel()",
-    "with a result nobody asked for": "task = riffler.tasks.to_bytes(test_tasks.VOLUME); time.sleep(0.2)",
+    "with a result nobody asked for": "task = riffler.submit(test_tasks.VOLUME.to_bytes); time.sleep(0.2)",
     "started late": "import atexit; atexit.register(lambda: globals().update(late=endless()))",
 }
 
@@ -459,13 +519,13 @@ def test_one_thread_is_one_thread(free_choice):
     wide = {"inclinations": angles, "tilts": angles}
     riffler.set_threads(1)
     before = threads_of_process()
-    task = tasks.free_orientations(valley(300), range(300), BALL, COLLIDER, **wide)
-    while task.share == 0:
+    task = riffler.submit(riffler.plan.free_orientations, valley(300), range(300), BALL, COLLIDER, **wide)
+    while task.progress() == 0:
         assert threads_of_process() <= before + 1
     del task
     riffler.set_threads(4)
-    task, most = tasks.free_orientations(valley(300), range(300), BALL, COLLIDER, **wide), 0
-    while most < before + 4 and not task.done:
+    task, most = riffler.submit(riffler.plan.free_orientations, valley(300), range(300), BALL, COLLIDER, **wide), 0
+    while most < before + 4 and not task.done():
         most = max(most, threads_of_process())
     assert most == before + 4  # the task's own and three beside it
     del task

@@ -70,12 +70,12 @@ def test_shapes_describe_themselves_for_forms():
     for shape in SHAPES.values():
         text = getattr(riffler.Tool, shape.name).__doc__
         assert shape.label and shape.description in text and repr(shape) == f"<riffler.ToolShape {shape.name}>"
-        assert all(f"``{s.name}``" in text and s.label and 0 <= s.low <= s.default <= s.high for s in shape.sizes)
+        assert all(f"\n{s.name} : " in text and s.label and 0 <= s.low <= s.default <= s.high for s in shape.sizes)
 
 
 def revolved(tool):
     """Volume of the solid of revolution, mm³, from its outline."""
-    ((_, points),) = tool.outline(1e-4)
+    ((_, points),) = tool.outline(tolerance=1e-4)
     r, z = points.T
     return math.pi / 3 * np.sum(np.diff(z) * (r[1:] ** 2 + r[1:] * r[:-1] + r[:-1] ** 2))
 

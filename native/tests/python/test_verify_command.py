@@ -129,7 +129,7 @@ def test_what_is_left_and_its_map_are_written(folder, capsys):
     left = riffler.Volume.load("left.rvol")
     assert status == 0 and left.volume == pytest.approx(data["volume"])
     mesh = riffler.Mesh.read("map.ply")
-    assert mesh.audit()["open_edges"] == 0
+    assert mesh.audit().open_edges == 0
     raw = (folder / "map.ply").read_bytes()
     header, body = raw.split(b"end_header\n", 1)
     assert b"red is gouged" in header

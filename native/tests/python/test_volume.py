@@ -1,6 +1,7 @@
 """riffler.Volume through its public interface: block, from_mesh, carve, snapshot, to_mesh."""
 
 import copy
+import dataclasses
 import pickle
 import threading
 
@@ -9,7 +10,6 @@ import pytest
 import riffler
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from riffler import tasks
 
 UP = [0.0, 0, 1]
 BALL = riffler.Tool.ball(6, 30)
@@ -26,7 +26,7 @@ def box_mesh(lower, upper):
 def clean(mesh):
     audit = mesh.audit()
     names = ("open_edges", "nonmanifold_edges", "nonmanifold_vertices", "degenerate", "duplicates")
-    return not any(audit[n] for n in names)
+    return not any(getattr(audit, n) for n in names)
 
 
 def test_a_block_has_the_rays_and_spans_of_the_contract():
@@ -86,9 +86,9 @@ def test_a_box_or_pitch_that_makes_no_sense_is_refused_by_whatever_makes_a_volum
     with pytest.raises(ValueError, match=word):
         riffler.Volume.from_mesh(mesh, pitch, *directions, lower=lower, upper=upper)
     with pytest.raises(ValueError, match=word):
-        sound.resampled(pitch, *directions, lower=lower, upper=upper)
+        sound.resample(pitch, *directions, lower=lower, upper=upper)
     with pytest.raises(ValueError, match=word):
-        tasks.from_mesh(mesh, pitch, *directions, lower=lower, upper=upper).result()
+        riffler.submit(riffler.Volume.from_mesh, mesh, pitch, *directions, lower=lower, upper=upper).result()
 
 
 @pytest.mark.parametrize("directions", ["z", "xyz"])
@@ -99,8 +99,8 @@ def test_a_plate_thinner_than_the_pitch_is_a_volume_and_a_mesh(directions):
     mesh = box_mesh(low, high)
     for made in (riffler.Volume.block(low, high, 1, directions), riffler.Volume.from_mesh(mesh, 1, directions)):
         assert made.volume == pytest.approx(40)
-        surface = made.to_mesh(report=(found := {}))
-        assert len(surface.triangles) and not found["lost_note"]
+        surface, found = made.to_mesh_with_report()
+        assert len(surface.triangles) and not found.lost_note
         assert surface.bounds == pytest.approx(np.array([low, high]), abs=1e-5 if directions == "xyz" else 0.5 + 1e-5)
 
 
@@ -243,18 +243,27 @@ def test_from_mesh_refuses_what_has_no_volume():
 def test_from_mesh_tells_what_was_wrong():
     v = riffler.Volume.block([0, 0, 0], [4, 3, 2], 0.5, "xyz")
     mesh = v.to_mesh()
-    report = {"old": 1}
-    riffler.Volume.from_mesh(mesh, 0.5, "xyz", report=report)
-    assert report.pop("triangles") == len(mesh.triangles) and report.pop("old") == 1
-    assert len(report) == 17 and not any(report.values())
+    _, report = riffler.Volume.from_mesh_with_report(mesh, 0.5, "xyz")
+    facts = dataclasses.asdict(report)
+    assert facts.pop("triangles") == len(mesh.triangles)
+    assert len(facts) == 17 and not any(facts.values())
 
-    report = {}
     cut = riffler.Mesh(mesh.vertices, mesh.triangles[1:])
-    riffler.Volume.from_mesh(cut, 0.5, report=report)
-    assert (report["open_edges"], report["openings"], report["flipped_shells"]) == (3, 1, 0)
-    riffler.Volume.from_mesh(riffler.Mesh(mesh.vertices, mesh.triangles[:, ::-1]), 0.5, report=report)
-    assert (report["open_edges"], report["openings"], report["flipped_shells"]) == (0, 0, 1)
-    assert report["inside_out"] == 1
+    _, report = riffler.Volume.from_mesh_with_report(cut, 0.5)
+    assert (report.open_edges, report.openings, report.flipped_shells) == (3, 1, 0)
+    inside_out = riffler.Mesh(mesh.vertices, mesh.triangles[:, ::-1])
+    _, report = riffler.Volume.from_mesh_with_report(inside_out, 0.5)
+    assert (report.open_edges, report.openings, report.flipped_shells) == (0, 0, 1)
+    assert report.inside_out == 1
+
+
+def test_a_dict_for_the_report_is_still_filled():
+    mesh = riffler.Volume.block([0, 0, 0], [4, 3, 2], 0.5, "xyz").to_mesh()
+    report = {"old": 1}
+    riffler.deprecated.forget()
+    with pytest.warns(DeprecationWarning, match="from_mesh_with_report"):
+        riffler.Volume.from_mesh(mesh, 0.5, "xyz", report=report)
+    assert len(report) == 19 and report["old"] == 1 and report["triangles"] == len(mesh.triangles)
     riffler.Volume.from_mesh(mesh, 0.5, report=None)
     with pytest.raises(TypeError):
         riffler.Volume.from_mesh(mesh, 0.5, report=[])
@@ -295,10 +304,15 @@ def test_a_volume_in_use_by_another_thread_says_so():
     assert v.volume < 36000
 
 
-def test_counters_are_cleared_when_they_are_read():
+def test_counters_are_cleared_when_they_are_taken():
     v = riffler.Volume.block([0, 0, 0], [20, 20, 10], 0.5)
     v.carve(BALL, [[0, 10, 5, *UP], [20, 10, 5, *UP]])
-    stats = v.stats()
-    assert stats["moves"] == 1
-    assert 0 < stats["rays_changed"] <= stats["rays_tested"]
-    assert not any(v.stats().values())
+    counters = v.counters
+    assert counters.moves == 1
+    assert 0 < counters.rays_changed <= counters.rays_tested
+    assert v.take_counters() == counters
+    assert not any(dataclasses.astuple(v.counters))
+    v.carve(BALL, [[0, 10, 4, *UP], [20, 10, 4, *UP]])
+    riffler.deprecated.forget()
+    with pytest.warns(DeprecationWarning, match=r"Volume.stats is deprecated, use Volume.take_counters"):
+        assert v.stats().moves == 1

@@ -6,8 +6,7 @@ riffler mesh audit part.stl
 from __future__ import annotations
 
 import argparse
-
-import numpy as np
+import dataclasses
 
 from .. import Mesh
 from .arguments import MESHES, input_file
@@ -26,15 +25,13 @@ def add_arguments(parser: Parser) -> None:
 
 def repairs(mesh: Mesh) -> dict[str, int]:
     """What would be turned or left out where the mesh is taken as a solid."""
-    report: dict[str, int] = {}
-    mesh.oriented(report)
-    return report
+    return dataclasses.asdict(mesh.orient_with_report()[1])
 
 
 def run(arguments: argparse.Namespace, console: Console) -> int:
     path = input_file(arguments.mesh, MESHES)
     mesh = Mesh.read(path)
-    audit = {key: value.item() if isinstance(value, np.generic) else value for key, value in mesh.audit().items()}
+    audit = dataclasses.asdict(mesh.audit())
     closed = not any(audit[key] for key in DEFECTS)
     data = {
         "file": str(path),
@@ -42,7 +39,7 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
         "vertices": len(mesh.vertices),
         "triangles": len(mesh.triangles),
         **audit,
-        **{name: int(n) for name, n in repairs(mesh).items()},
+        **repairs(mesh),
     }
     rows = [(key.replace("_", " "), number(value)) for key, value in data.items() if key not in ("file", "closed")]
     verdict = "a closed 2-manifold" if closed else "not a closed 2-manifold"

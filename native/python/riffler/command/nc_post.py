@@ -328,7 +328,7 @@ def first_blocked(path, rows: np.ndarray, report: plan.LocationReport) -> str:
 
 def first_within(fixtures: Collider | None, tool: Tool, rows: np.ndarray) -> np.ndarray | None:
     """The tip of the first row at which the tool enters a fixture."""
-    return next((row[:3] for row in rows if fixtures and fixtures.nearest(tool, row)[0] < -LIFTED), None)
+    return next((row[:3] for row in rows if fixtures and fixtures.nearest(tool, row).distance < -LIFTED), None)
 
 
 def placed(point: np.ndarray) -> str:

@@ -28,7 +28,7 @@ STYLE = {
 
 def logarithmic(axis: XAxis | YAxis, sub: bool = False) -> None:
     """A log scale with plain numbers, at 2 and 5 too where `sub`."""
-    axis.axes.set(**{f"{axis.axis_name}scale": "log"})
+    axis.axes.set(**{f"{axis.axis_name}scale": "log"})  # pyright: ignore[reportAttributeAccessIssue]
     axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     if sub:
         axis.set_major_locator(LogLocator(subs=(1, 2, 5)))

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
-from .. import Mesh, Volume
+from .. import Mesh, Orientation, SurfaceReport, Volume, VolumeReport
 from ..mesh_notes import notes_on
 from .arguments import VOLUMES
 from .console import Console
@@ -18,28 +17,24 @@ def from_mesh(
     directions: str,
     console: Console,
     step: str,
-    report: dict[str, Any] | None = None,
-) -> Volume:
-    """The volume of a mesh file; prints what was mended and lost. ``pitch`` may follow from the mesh; ``report`` is
-    filled as by Volume.from_mesh."""
-    report = {} if report is None else report
+) -> tuple[Volume, VolumeReport]:
+    """The volume of a mesh file, and what was mended and lost, which is printed. ``pitch`` may follow from the mesh."""
     with console.step("read"):
         mesh = Mesh.read(path)
     spacing = pitch(mesh) if callable(pitch) else pitch
     with console.step(step) as progress:
         try:
-            volume = Volume.from_mesh(mesh, spacing, directions, progress=progress, report=report)
+            volume, report = Volume.from_mesh_with_report(mesh, spacing, directions, progress=progress)
         except ValueError as error:
             raise ValueError(f"{path.name}: {error}") from None
     tell(path.name, report, console)
-    return volume
+    return volume, report
 
 
 def read_part(path: Path, console: Console, hollow: bool = False) -> Mesh:
     """A mesh file, as it is: plans know a part by its sum. Prints what is turned where it is taken as a solid."""
-    report: dict[str, Any] = {}
     mesh = Mesh.read(path)
-    mesh.oriented(report, hollow=hollow)
+    _, report = mesh.orient_with_report(hollow=hollow)
     tell(path.name, report, console)
     return mesh
 
@@ -47,19 +42,18 @@ def read_part(path: Path, console: Console, hollow: bool = False) -> Mesh:
 def to_mesh(volume: Volume, console: Console, out: Path) -> Mesh:
     """The mesh of a volume that is to be written to ``out``; prints on stderr what is too thin for it. ValueError where
     that is everything."""
-    report: dict[str, Any] = {}
     with console.step("mesh") as progress:
-        mesh = volume.to_mesh(progress=progress, report=report)
+        mesh, report = volume.to_mesh_with_report(progress=progress)
     if len(mesh.triangles):
         tell(out.name, report, console)
-    elif report["lost_note"]:
-        raise ValueError(f"{out.name} not written: {report['lost_note']}")
+    elif report.lost_note:
+        raise ValueError(f"{out.name} not written: {report.lost_note}")
     else:
         console.warning(f"{out.name}: no material is left, so the mesh has no triangles")
     return mesh
 
 
-def tell(name: str, report: dict[str, Any], console: Console) -> None:
+def tell(name: str, report: Orientation | SurfaceReport, console: Console) -> None:
     for note in notes_on(report):
         console.warning(f"{name}: {note}")
 

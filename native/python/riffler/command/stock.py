@@ -54,7 +54,7 @@ def stock(arguments: argparse.Namespace, console: Console) -> Volume:
         return volume
     if pitch is None:
         raise ValueError(f"--pitch is needed for {path.name}")
-    return from_mesh(path, pitch, arguments.directions or "xyz", console, "stock")
+    return from_mesh(path, pitch, arguments.directions or "xyz", console, "stock")[0]
 
 
 def _solid(kind: str, lower: np.ndarray, upper: np.ndarray, pitch: float, directions: str) -> Volume:
@@ -62,7 +62,6 @@ def _solid(kind: str, lower: np.ndarray, upper: np.ndarray, pitch: float, direct
     if kind == "block":
         return Volume.block(lower, upper, pitch, directions)
     centre, (w, _, h) = 0.5 * (lower + upper), upper - lower
-    box = {"lower": lower, "upper": upper}
     if kind == "sphere":
-        return Volume.sphere(centre, 0.5 * w, pitch, directions, **box)
-    return Volume.cylinder(centre, 0.5 * w, h, pitch, directions, **box)
+        return Volume.sphere(centre, 0.5 * w, pitch, directions, lower=lower, upper=upper)
+    return Volume.cylinder(centre, 0.5 * w, h, pitch, directions, lower=lower, upper=upper)

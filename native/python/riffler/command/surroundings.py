@@ -67,4 +67,4 @@ def fixture(name: str, console: Console, pitch: float | None = None) -> Volume:
     path = input_file(name, MESHES + VOLUMES)
     if path.suffix.lower() in VOLUMES:
         return Volume.load(path)
-    return from_mesh(path, plan.fixture_pitch if pitch is None else pitch, "z", console, "fixtures")
+    return from_mesh(path, plan.fixture_pitch if pitch is None else pitch, "z", console, "fixtures")[0]

@@ -6,7 +6,9 @@ riffler volume from-mesh part.stl --pitch 0.2 --out part.rvol
 from __future__ import annotations
 
 import argparse
+import dataclasses
 
+from .. import VolumeReport
 from .arguments import MESHES, VOLUMES, add_directions, add_pitch, input_file, length, output_file
 from .console import Console, Rows, number, times
 from .parser import Parser
@@ -26,8 +28,7 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
     pitch = length(arguments.pitch, "--pitch")
     path = input_file(arguments.mesh, MESHES)
     out = output_file(arguments.out, VOLUMES)
-    report: dict[str, float] = {}
-    volume = from_mesh(path, pitch, arguments.directions or "xyz", console, "convert", report)
+    volume, report = from_mesh(path, pitch, arguments.directions or "xyz", console, "convert")
     write_volume(volume, out, console)
     data = {
         "out": str(out),
@@ -38,7 +39,7 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
         "rays": rays(volume),
         "volume": volume.volume,
         "bytes": out.stat().st_size,
-        "mesh": report,
+        "mesh": dataclasses.asdict(report),
         "seconds": console.seconds,
     }
     rows = [
@@ -52,27 +53,27 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
     return 0
 
 
-def defects(report: dict[str, float]) -> Rows:
+def defects(report: VolumeReport) -> Rows:
     """What was wrong with the mesh and what was made of it, in words."""
 
     def count(name: str, one: str, many: str = "") -> str:
-        n = int(report[name])
+        n = int(getattr(report, name))
         return f"{number(n)} {one if n == 1 else many or one + 's'}"
 
     def share(name: str) -> str:
-        percent = 100 * report[name]
+        percent = 100 * getattr(report, name)
         return f"{percent:.3g} %" if percent >= 0.01 else "less than 0.01 %"
 
     def listed(**words: str) -> str:
-        return ", ".join(count(name, word) for name, word in words.items() if report[name])
+        return ", ".join(count(name, word) for name, word in words.items() if getattr(report, name))
 
     rows: Rows = []
-    if report["openings"]:
+    if report.openings:
         text = f"{count('openings', 'opening')}, {count('open_edges', 'open edge')}"
-        if report["doubtful_rays"]:
+        if report.doubtful_rays:
             text += f"; {share('doubtful_rays')} of the rays end in one, where a closed part would have its surface"
         rows.append(("open", text))
-    elif report["open_edges"]:
+    elif report.open_edges:
         rows.append(("open", f"{count('open_edges', 'open edge')} that cancel: the volume is not in doubt"))
     if edges := listed(nonmanifold_edges="non-manifold edge", inconsistent_edges="inconsistently oriented edge"):
         rows.append(("edges", edges))
@@ -80,10 +81,10 @@ def defects(report: dict[str, float]) -> Rows:
         rows.append(("turned", f"{triangles} to agree with their neighbours"))
     if pieces := listed(one_sided="piece"):
         rows.append(("one side", f"{pieces} like a Möbius strip, left unchanged"))
-    if report["flipped_shells"]:
+    if report.flipped_shells:
         shells = count("flipped_shells", "shell is", "shells are")
         rows.append(("inside out", f"{shells} inside out, {share('inside_out')} of the volume; taken as solid"))
-    if report["overlap"]:
+    if report.overlap:
         rows.append(("overlap", f"{share('overlap')} of the volume is enclosed more than once; taken once"))
     if triangles := listed(duplicates="doubled triangle", degenerate="flat triangle"):
         rows.append(("triangles", triangles))

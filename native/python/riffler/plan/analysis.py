@@ -1,5 +1,7 @@
 """What a part is worth before it is planned on."""
 
+import dataclasses
+
 import numpy as np
 
 from ..mesh_notes import notes_on
@@ -8,7 +10,7 @@ from ..mesh_notes import notes_on
 def analyse(mesh):
     """A report on a part: ``mesh.audit()`` and what follows from it.
 
-    The audit is that of ``mesh.oriented(hollow=True)``, as which plans take the part; its counts of what was turned are
+    The audit is that of ``mesh.orient(hollow=True)``, as which plans take the part; its counts of what was turned are
     there, too. Adds to the audit's counts: ``triangles``, ``area`` (mm²), ``bounds`` ((2, 3) mm), ``closed`` (no open
     and no non-manifold edges), ``degenerate_share`` (of the triangles), ``outward`` (True where the normals point out
     of the material, False where they point in; None for open parts, where the volume's sign says nothing), ``units``
@@ -16,8 +18,8 @@ def analyse(mesh):
     without triangles.
     """
     bounds = mesh.bounds
-    repairs = {}
-    report = mesh.oriented(repairs, hollow=True).audit()
+    oriented, repairs = mesh.orient_with_report(hollow=True)
+    report = dataclasses.asdict(oriented.audit())
     count = len(mesh.triangles)
     size = float(np.max(bounds[1] - bounds[0]))
     closed = report["open_edges"] == 0 and report["nonmanifold_edges"] == 0
@@ -28,7 +30,7 @@ def analyse(mesh):
         closed=closed,
         degenerate_share=report["degenerate"] / count,
         outward=bool(report["volume"] > 0) if closed and report["volume"] != 0 else None,
-        **repairs,
+        **dataclasses.asdict(repairs),
         units=_units_of(size),
     )
     report["warnings"] = list(_warnings(report, size))

@@ -1,0 +1,221 @@
+"""Results of several values: frozen dataclasses with typed attributes, and named tuples.
+
+Those that were dicts can still be read as one, with a DeprecationWarning (`riffler.deprecated.DictResult`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .deprecated import DictResult, warn
+
+__all__ = [
+    "Audit",
+    "Hit",
+    "Hits",
+    "Nearest",
+    "Orientation",
+    "Patch",
+    "PickCounters",
+    "SurfaceReport",
+    "VolumeCounters",
+    "VolumeReport",
+]
+
+Corner = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Audit(DictResult):
+    """Defects of a mesh, counted by `Mesh.audit`; 0 for a closed two-manifold, but for the last two."""
+
+    open_edges: int
+    """Edges of one triangle."""
+    nonmanifold_edges: int
+    """Edges of three triangles or more, or of two that run it in the same direction."""
+    nonmanifold_vertices: int
+    """Vertices whose triangles are not one fan."""
+    degenerate: int
+    """Triangles with a vertex twice, or of area exactly 0."""
+    duplicates: int
+    """Triangles with the vertices of an earlier one."""
+    folds: int
+    """Edges whose two triangles lie on each other."""
+    components: int
+    """Pieces connected across edges."""
+    volume: float
+    """mm³, signed."""
+
+
+@dataclass(frozen=True)
+class Orientation(DictResult):
+    """What `Mesh.orient_with_report` changed."""
+
+    turned: int
+    """Triangles that were turned."""
+    turned_shells: int
+    """Closed pieces that faced inwards as a whole."""
+    left_out: int
+    """Repeated triangles that tear the surface open; in the result they name one vertex three times."""
+    one_sided: int
+    """Pieces with one side only, like a Möbius strip."""
+
+
+@dataclass(frozen=True)
+class SurfaceReport(DictResult):
+    """What is no part of the mesh of `Volume.to_mesh_with_report`, since it is thinner than the pitch."""
+
+    lost: float
+    """mm³."""
+    lost_box: tuple[Corner, Corner] | None
+    """Where it is, mm: lower and upper corner."""
+    lost_pitch: float | None
+    """A pitch that keeps it, mm."""
+    lost_note: str
+    """A sentence where there is more than crumbs, otherwise empty."""
+
+
+@dataclass(frozen=True)
+class VolumeReport(SurfaceReport):
+    """What was wrong with the mesh of `Volume.from_mesh_with_report`, and what rays miss or a mesh of it will lack."""
+
+    triangles: int
+    """All triangles of the mesh."""
+    degenerate: int
+    """Triangles without area."""
+    duplicates: int
+    """Repeated triangles."""
+    open_edges: int
+    """Edges of one triangle."""
+    nonmanifold_edges: int
+    """Edges of three triangles or more."""
+    inconsistent_edges: int
+    """Edges of two triangles that run it in the same direction."""
+    openings: int
+    """Walks along which the surface ends."""
+    turned: int
+    """Triangles, turned to agree with their neighbours."""
+    left_out: int
+    """Repeated triangles that tear the surface open."""
+    one_sided: int
+    """Pieces with one side only, like a Möbius strip."""
+    flipped_shells: int
+    """Shells that face into the material."""
+    inside_out: float
+    """Share of the volume where the winding number is negative."""
+    overlap: float
+    """Share of the volume where the winding number is 2 or more."""
+    doubtful_rays: float
+    """Share of the rays with material that end within an opening instead of on the surface."""
+
+
+@dataclass(frozen=True)
+class VolumeCounters(DictResult):
+    """The work done on a volume: `Volume.counters`."""
+
+    moves: int
+    """Moves carved."""
+    steps: int
+    """Steps that the moves were split into, summed over the tool's pieces."""
+    tiles_visited: int
+    """(tile, move) pairs whose rays were tested."""
+    tiles_changed: int
+    """Tiles written."""
+    rays_tested: int
+    """(ray, step) pairs intersected with a swept piece."""
+    hits: int
+    """(ray, pose) intersections made for them."""
+    rays_changed: int
+    """Tested rays that lost material."""
+    tiles_meshed: int
+    """Tiles turned into triangles."""
+    triangles_tested: int
+    """Triangles tested against rays or tools."""
+    bytes_copied: int
+    """Bytes of tiles copied when they were written."""
+
+
+@dataclass(frozen=True)
+class PickCounters(DictResult):
+    """The work of picking: `Mesher.counters`."""
+
+    rays: int
+    """Rays that were picked along."""
+    bricks_visited: int
+    """Bricks that these passed."""
+    bricks_prepared: int
+    """Bricks that had changed, and so were looked at first."""
+    triangles_tested: int
+    """Triangles tested against rays."""
+
+
+@dataclass(frozen=True, eq=False)
+class Patch:
+    """The triangles of one or more bricks: `Mesher.patch`."""
+
+    vertices: NDArray[np.float32]
+    """(n, 3) mm."""
+    triangles: NDArray[np.int32]
+    """(k, 3): indices of vertices."""
+    edges: NDArray[np.int32] | None = None
+    """(e, 2): indices of vertices, each edge once. None unless asked for."""
+    corner_edges: NDArray[np.int32] | None = None
+    """(k, 3): of each triangle's corners the edge to the next one. None unless asked for."""
+    normals: NDArray[np.float32] | None = None
+    """(3 k, 3): unit normals of the triangles' corners. None unless asked for."""
+
+    def _as_tuple(self) -> tuple[NDArray, ...]:
+        warn("Patch as a tuple", "its attributes: vertices, triangles, edges, corner_edges, normals")
+        arrays = (self.vertices, self.triangles, self.edges, self.corner_edges, self.normals)
+        return tuple(a for a in arrays if a is not None)
+
+    def __iter__(self) -> Iterator[NDArray]:
+        return iter(self._as_tuple())
+
+    def __getitem__(self, index: int) -> NDArray:
+        return self._as_tuple()[index]
+
+    def __len__(self) -> int:
+        return len(self._as_tuple())
+
+
+class Hit(NamedTuple):
+    """Where a ray meets the surface: `Mesher.pick`."""
+
+    distance: float
+    """mm from the ray's origin."""
+    point: NDArray[np.float64]
+    """(3,) mm."""
+    normal: NDArray[np.float64]
+    """(3,): of the triangle, unit, out of the material: along the ray where this comes from inside."""
+    brick: int
+    """Number of the brick."""
+
+
+class Hits(NamedTuple):
+    """Where n rays meet the surface: `Mesher.pick`."""
+
+    distance: NDArray[np.float64]
+    """(n,) mm from the ray's origin; inf where nothing is hit."""
+    point: NDArray[np.float64]
+    """(n, 3) mm; NaN where nothing is hit."""
+    normal: NDArray[np.float64]
+    """(n, 3): of the triangle, unit, out of the material; NaN where nothing is hit."""
+    brick: NDArray[np.int64]
+    """(n,): number of the brick; -1 where nothing is hit."""
+
+
+class Nearest(NamedTuple):
+    """What of part and fixtures is nearest to a tool: `Collider.nearest`."""
+
+    distance: float
+    """mm, negative where they overlap."""
+    point: NDArray[np.float64]
+    """(3,) mm, on part or fixture."""
+    part: str
+    """What of the tool it is next to: "cutter", "shank" or "holder"; or "fixture"."""

@@ -1,0 +1,87 @@
+"""Every public function, method and class has a docstring with an example, and the example is right."""
+
+import doctest
+import inspect
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+import riffler
+
+# Names that have no example yet, one a line: the list may only shrink.
+ALLOWANCE = Path(__file__).with_name("without_example.txt")
+MODULES = ("", "plan", "pen", "cluster", "shape")
+# Classes whose objects are given and not made by users; what their attributes mean is in their docstrings.
+RESULTS = (riffler.deprecated.DictResult, tuple, Exception)
+
+
+def is_made_by_users(cls):
+    return not issubclass(cls, RESULTS) and "__init__" in vars(cls)
+
+
+def public():
+    """(name, object) of everything that should have an example."""
+    for module in MODULES:
+        owner = getattr(riffler, module) if module else riffler
+        for name in owner.__all__:
+            value, full = getattr(owner, name), f"{module}.{name}".lstrip(".")
+            if inspect.isclass(value):
+                if is_made_by_users(value):
+                    yield full, value
+                yield from methods(full, value)
+            elif callable(value):
+                yield full, value
+
+
+def methods(full, cls):
+    for name, member in vars(cls).items():
+        if name.startswith("_") or isinstance(member, property | riffler.deprecated.OldAttribute):
+            continue
+        if callable(getattr(cls, name)) and not inspect.isclass(getattr(cls, name)):
+            yield f"{full}.{name}", getattr(cls, name)
+
+
+NAMES = dict(public())
+
+
+def doc_of(value):
+    return inspect.getdoc(value) or ""
+
+
+def has_example(value):
+    """Or says where it is: "See `save`."."""
+    doc = doc_of(value)
+    return ">>> " in doc or "See `" in doc or "see `" in doc
+
+
+def test_the_allowance_is_what_is_missing():
+    missing = sorted(name for name, value in NAMES.items() if not has_example(value))
+    if os.environ.get("RIFFLER_UPDATE"):
+        ALLOWANCE.write_text("".join(f"{name}\n" for name in missing))
+    allowed = ALLOWANCE.read_text().split()
+    assert set(missing) - set(allowed) == set(), "no example"
+    assert set(allowed) - set(missing) == set(), "these have an example now: RIFFLER_UPDATE=1 takes them off the list"
+
+
+@pytest.mark.parametrize("name", [name for name, value in NAMES.items() if ">>> " in doc_of(value)])
+def test_an_example_gives_what_it_says(name, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    found = doctest.DocTestParser().get_doctest(
+        doc_of(NAMES[name]), {"riffler": riffler, "np": np}, name, None, None
+    )  # fmt: skip
+    said = []
+    failed = doctest.DocTestRunner(optionflags=doctest.NORMALIZE_WHITESPACE).run(found, out=said.append).failed
+    assert not failed, "".join(said)
+
+
+SECTIONS = ("Parameters", "Returns", "Raises", "Examples")
+
+
+@pytest.mark.parametrize("name", [name for name, value in NAMES.items() if "Parameters\n---" in doc_of(value)])
+def test_documented_arguments_are_those_of_the_signature(name):
+    """So that messages on wrong arguments find what each must be."""
+    documented = set(riffler.hints._documented(doc_of(NAMES[name])))
+    there = {p.name for p in inspect.signature(NAMES[name]).parameters.values()} - {"self", "args", "kwargs"}
+    assert there <= documented, f"not documented: {there - documented}"
+    assert documented <= there, f"no such argument: {documented - there}"
