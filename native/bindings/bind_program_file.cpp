@@ -1,6 +1,6 @@
 // riffler.Program.save, .load, .to_bytes, and pickling: programs to the bit.
 #include "base/bytes.hpp"
-#include "bindings/bindings.hpp"
+#include "bindings/program_arguments.hpp"
 #include "riffler/nc/program_file.hpp"
 
 namespace riffler::bindings {
@@ -43,7 +43,7 @@ nc::Program load(const std::filesystem::path& path, const py::object& progress) 
 }  // namespace
 
 void bind_program_file(py::module_& m) {
-  auto program = py::reinterpret_borrow<py::class_<nc::Program, std::shared_ptr<nc::Program>>>(m.attr("Program"));
+  ProgramClass program = program_class(m);
   program
       .def("save", &save, py::arg("path"), py::arg("progress") = py::none(),
            R"(Writes a .rprog file, whole or not at all: everything to the bit, which NC code cannot keep.

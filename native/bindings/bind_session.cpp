@@ -1,8 +1,9 @@
-// riffler.Session, riffler.Material
+// riffler.Session
 #include <memory>
 
 #include "bindings/bindings.hpp"
 #include "bindings/one_caller.hpp"
+#include "bindings/session_frame.hpp"
 #include "bindings/shared_volume.hpp"
 #include "riffler/dexel/file/file.hpp"
 #include "riffler/haptics/material.hpp"
@@ -15,39 +16,12 @@ namespace riffler::bindings {
 namespace {
 
 using namespace py::literals;
-/// Rows of the ticks of a frame, as arrays.
-struct FrameView {
-  session::SessionFrame frame;
-  session::SculptTick last;  // the newest that there was
-
-  template <class Get>
-  py::array_t<double> column(const Get& get) const {
-    std::vector<double> out;
-    out.reserve(frame.ticks.size());
-    for (const session::SculptTick& tick : frame.ticks) out.push_back(get(tick));
-    return take<double>(std::move(out));
-  }
-  template <class Get>
-  py::array_t<double> poses(const Get& get) const {
-    std::vector<Pose> out;
-    out.reserve(frame.ticks.size());
-    for (const session::SculptTick& tick : frame.ticks) out.push_back(get(tick));
-    return take<double>(std::move(out), 6);
-  }
-  template <class Get>
-  py::array_t<double> wrenches(const Get& get) const {
-    std::vector<Wrench> out;
-    out.reserve(frame.ticks.size());
-    for (const session::SculptTick& tick : frame.ticks) out.push_back(get(tick));
-    return take<double>(std::move(out), 6);
-  }
-};
+using Obstacles = std::shared_ptr<collide::Collider>;
 
 /// A session with what it uses, which Python may have let go.
 struct SharedSession : Guarded {
   std::shared_ptr<SharedVolume> volume;
   std::shared_ptr<pen::Pen> pen;
-  py::object collider;
   Tool tool;
   sweep::MoveCarver::Options carving;
   sweep::CarveMode mode;
@@ -56,14 +30,9 @@ struct SharedSession : Guarded {
   std::unique_ptr<session::Session> session;
   session::SculptTick last{};
 
-  SharedSession(std::shared_ptr<SharedVolume> v, std::shared_ptr<pen::Pen> p, py::object c, const Tool& t,
+  SharedSession(std::shared_ptr<SharedVolume> v, std::shared_ptr<pen::Pen> p, const Tool& t,
                 const session::SessionSettings& settings)
-      : volume(std::move(v)),
-        pen(std::move(p)),
-        collider(std::move(c)),
-        tool(t),
-        carving(settings.loop.carving),
-        mode(settings.mode) {}
+      : volume(std::move(v)), pen(std::move(p)), tool(t), carving(settings.loop.carving), mode(settings.mode) {}
   ~SharedSession() {
     const NoGil release;  // the thread of the device may be waiting for it
     session.reset();
@@ -106,100 +75,80 @@ std::optional<Pose> to_pose(const py::object& at) {
   return pose;
 }
 
-struct Options {
-  session::SessionSettings settings;
-
-  void read(const py::kwargs& given) {
-    session::SculptLoopSettings& loop = settings.loop;
-    haptics::CouplingSettings& coupling = loop.sculpt.coupling;
-    const auto number = [](const char* name, double& to) { return std::pair<const char*, double*>(name, &to); };
-    const std::pair<const char*, double*> numbers[] = {
-        number("stiffness", coupling.stiffness),
-        number("turn_stiffness", coupling.turn_stiffness),
-        number("damping", coupling.damping),
-        number("turn_damping", coupling.turn_damping),
-        number("tolerance", loop.carving.tolerance),
-        number("scale", loop.workspace.scale),
-        number("max_force", loop.limits.wrench.linear),
-        number("max_torque", loop.limits.wrench.angular),
-        number("max_power", loop.limits.power),
-        number("ramp", loop.safety.ramp),
-    };
-    for (const auto& [key, value] : given) {
-      const auto name = py::cast<std::string>(key);
-      const auto* found =
-          std::find_if(std::begin(numbers), std::end(numbers), [&](auto& n) { return name == n.first; });
-      if (found != std::end(numbers))
-        *found->second = as_number(name, value);
-      else
-        read_other(name, py::reinterpret_borrow<py::object>(value));
-    }
-    loop.wrench_extrapolator.most = loop.limits.wrench;
-    settings.validate();
-  }
-
-  static double as_number(const std::string& name, const py::handle& value) {
-    try {
-      return py::cast<double>(value);
-    } catch (const py::cast_error&) {
-      throw py::type_error(name + " must be a number");
-    }
-  }
-
-  void read_other(const std::string& name, const py::object& value) {
-    session::SculptLoopSettings& loop = settings.loop;
-    if (name == "material") {
-      const haptics::Material& material = py::cast<const haptics::Material&>(value);
-      material.validate("the stock");
-      loop.carving.removal_constant = material.removal_constant, loop.sculpt.damping = material.damping;
-    } else if (name == "at") {
-      settings.start = to_pose(value);
-    } else if (name == "turn") {
-      loop.workspace.turn = to_turn(value);
-    } else if (name == "dead_man_mask") {
-      loop.workspace.dead_man_mask = py::cast<std::uint32_t>(value);
-    } else if (name == "clutch_mask") {
-      loop.workspace.clutch_mask = py::cast<std::uint32_t>(value);
-    } else if (name == "budget") {
-      loop.sculpt.budget = value.is_none() ? std::nullopt : std::optional(as_number(name, value));
-    } else if (name == "memory") {
-      loop.sculpt.memory = value.is_none() ? std::nullopt : std::optional(as_number(name, value));
-    } else if (name == "undo") {
-      settings.undo = py::cast<std::size_t>(value);
-    } else {
-      throw py::type_error("Session has no option \"" + name + "\"");
-    }
-  }
-};
-
 sweep::CarveMode to_mode(const std::string& mode) {
   if (mode == "remove") return sweep::CarveMode::Remove;
   if (mode == "add") return sweep::CarveMode::Add;
   throw py::value_error("mode must be \"remove\" or \"add\", not \"" + mode + '"');
 }
 
+/// Set by Session where the device decides: 0.4 ms a step for a device with motors, none for others.
+constexpr const char* kAutomatic = "auto";
+
+std::optional<double> to_budget(const py::object& budget, const pen::Pen& pen) {
+  if (py::isinstance<py::str>(budget) && py::cast<std::string>(budget) == kAutomatic)
+    return pen.capability().has_force() ? std::optional(4e-4) : std::nullopt;
+  if (budget.is_none()) return std::nullopt;
+  try {
+    return py::cast<double>(budget);
+  } catch (const py::cast_error&) {
+    throw py::type_error("budget must be a number in s, None or \"auto\"");
+  }
+}
+
 std::unique_ptr<SharedSession> make(const std::shared_ptr<SharedVolume>& volume, const Tool& tool,
-                                    std::shared_ptr<pen::Pen> pen, const py::object& obstacles, SharedVolume* protect,
-                                    const std::string& mode, const py::kwargs& given) {
-  if (!volume) throw py::type_error("volume: None");
+                                    std::shared_ptr<pen::Pen> pen, const Obstacles& obstacles, SharedVolume* protect,
+                                    session::SessionSettings settings, const py::object& budget) {
   if (!pen) pen = std::make_shared<pen::PointerPen>(pen::PointerPen::Kind::Mouse);
-  Options options;
-  options.settings.loop.passivity = pen->passivity();
-  if (pen->capability().has_force()) options.settings.loop.sculpt.budget = 4e-4;
-  options.read(given);
-  options.settings.mode = to_mode(mode);
-  // Python's collider is immutable, and kept by the object.
-  const collide::Collider* collider = obstacles.is_none() ? nullptr : py::cast<const collide::Collider*>(obstacles);
-  auto out = std::make_unique<SharedSession>(volume, pen, obstacles, tool, options.settings);
+  settings.loop.passivity = pen->passivity();
+  settings.loop.sculpt.budget = to_budget(budget, *pen);
+  settings.loop.wrench_extrapolator.most = settings.loop.limits.wrench;
+  settings.validate();
+  auto out = std::make_unique<SharedSession>(volume, pen, tool, settings);
   const Volume state = Reading(*volume).volume.snapshot();
   if (protect) out->mask = Reading(*protect).volume.snapshot();
-  out->session = std::make_unique<session::Session>(
-      state, tool, std::move(pen), std::shared_ptr<const collide::Collider>(std::shared_ptr<void>(), collider),
-      options.settings, out->mask ? &*out->mask : nullptr);
+  out->session = std::make_unique<session::Session>(state, tool, std::move(pen), obstacles, settings,
+                                                    out->mask ? &*out->mask : nullptr);
   return out;
 }
 
-/// Of all its strokes.
+/// Session's constructor, with a default for every setting.
+void bind_constructor(py::class_<SharedSession>& c) {
+  const session::SessionSettings usual;
+  const session::SculptLoopSettings& loop = usual.loop;
+  const haptics::CouplingSettings& coupling = loop.sculpt.coupling;
+  c.def(py::init([](const std::shared_ptr<SharedVolume>& volume, const Tool& tool, std::shared_ptr<pen::Pen> pen,
+                    const Obstacles& obstacles, SharedVolume* protect, const std::string& mode,
+                    const std::optional<haptics::Material>& material, const py::object& at, double scale,
+                    const py::object& turn, double stiffness, double turn_stiffness, double damping,
+                    double turn_damping, double tolerance, std::optional<double> memory, double max_force,
+                    double max_torque, double max_power, double ramp, std::uint32_t dead_man_mask,
+                    std::uint32_t clutch_mask, const py::object& budget, std::size_t undo) {
+          session::SessionSettings settings;
+          settings.mode = to_mode(mode), settings.start = to_pose(at), settings.undo = undo;
+          session::SculptLoopSettings& made = settings.loop;
+          made.sculpt.coupling.stiffness = stiffness, made.sculpt.coupling.turn_stiffness = turn_stiffness;
+          made.sculpt.coupling.damping = damping, made.sculpt.coupling.turn_damping = turn_damping;
+          made.sculpt.memory = memory, made.carving.tolerance = tolerance, made.safety.ramp = ramp;
+          made.limits.wrench = {max_force, max_torque}, made.limits.power = max_power;
+          made.workspace = {scale, to_turn(turn), clutch_mask, dead_man_mask};
+          if (material) {
+            material->validate("the stock");
+            made.carving.removal_constant = material->removal_constant, made.sculpt.damping = material->damping;
+          }
+          return make(volume, tool, std::move(pen), obstacles, protect, std::move(settings), budget);
+        }),
+        "volume"_a.none(false), "tool"_a, "pen"_a = py::none(), py::kw_only(), "obstacles"_a = py::none(),
+        "protect"_a = py::none(), "mode"_a = "remove", "material"_a = py::none(), "at"_a = py::none(),
+        "scale"_a = loop.workspace.scale, "turn"_a = py::none(), "stiffness"_a = coupling.stiffness,
+        "turn_stiffness"_a = coupling.turn_stiffness, "damping"_a = coupling.damping,
+        "turn_damping"_a = coupling.turn_damping, "tolerance"_a = loop.carving.tolerance, "memory"_a = py::none(),
+        "max_force"_a = loop.limits.wrench.linear, "max_torque"_a = loop.limits.wrench.angular,
+        "max_power"_a = loop.limits.power, "ramp"_a = loop.safety.ramp,
+        "dead_man_mask"_a = loop.workspace.dead_man_mask, "clutch_mask"_a = loop.workspace.clutch_mask,
+        "budget"_a = kAutomatic, "undo"_a = usual.undo);
+}
+
+/// The mode of all its strokes.
 session::StrokeMode stroke_mode(const SharedSession& self) {
   if (self.mode == sweep::CarveMode::Add) return session::StrokeMode::Build;
   return self.mask ? session::StrokeMode::Beside : session::StrokeMode::Remove;
@@ -233,7 +182,7 @@ void record(SharedSession& self, const std::filesystem::path& path, const py::di
   self.sink = std::move(sink);
 }
 
-FrameView view(SharedSession& self, session::SessionFrame&& frame) {
+FrameView with_last(SharedSession& self, session::SessionFrame&& frame) {
   if (!frame.ticks.empty()) self.last = frame.ticks.back();
   return {std::move(frame), self.last};
 }
@@ -241,7 +190,7 @@ FrameView view(SharedSession& self, session::SessionFrame&& frame) {
 FrameView frame(SharedSession& self) {
   const NoGil release;
   const Using use(self);
-  return view(self, self.session->frame(use.volume));
+  return with_last(self, self.session->frame(use.volume));
 }
 
 FrameView stop(SharedSession& self) {
@@ -251,7 +200,7 @@ FrameView stop(SharedSession& self) {
   const auto close = [&] { kept = !self.sink || self.sink->close(); };
   FrameView out;
   try {
-    out = view(self, self.session->stop(use.volume));
+    out = with_last(self, self.session->stop(use.volume));
   } catch (...) {
     if (!self.session->running()) close();
     throw;
@@ -273,135 +222,77 @@ session::SculptLoop& running(SharedSession& self) {
   return *self.session->loop();
 }
 
-void bind_frame(py::module_& m) {
-  using F = FrameView;
-  using T = session::SculptTick;
-  py::class_<F>(m, "SessionFrame", R"(What happened between two calls of Session.frame: one row for each step.
-
-Forces and torques act on the hand, about the grip's point, in the device's frame; those on the tool act on it, about its
-tip, in the part's.)")
-      .def_property_readonly(
-          "tiles",
-          [](const F& f) {
-            std::vector<std::int32_t> out;
-            for (const auto& p : f.frame.tiles)
-              out.insert(out.end(), {static_cast<std::int32_t>(p.grid), static_cast<std::int32_t>(p.tile)});
-            return take<std::int32_t>(std::move(out), 2);
-          },
-          "(k, 2): number of the grid and of the tile in it, for each tile that changed.")
-      .def_property_readonly(
-          "times", [](const F& f) { return f.column([](const T& t) { return t.time; }); }, "(n,) s since the start.")
-      .def_property_readonly(
-          "poses", [](const F& f) { return f.poses([](const T& t) { return t.tool; }); },
-          "(n, 6) of the tool, at each step's end.")
-      .def_property_readonly(
-          "starts", [](const F& f) { return f.poses([](const T& t) { return t.from; }); },
-          "(n, 6) of the tool, at each step's begin: not where the last one left it where it was placed anew.")
-      .def_property_readonly(
-          "grips", [](const F& f) { return f.poses([](const T& t) { return t.grip; }); },
-          "(n, 6) of the grip, in the device's frame.")
-      .def_property_readonly(
-          "forces", [](const F& f) { return f.wrenches([](const T& t) { return t.wrench; }); },
-          "(n, 6): force (N) and torque (N·mm) that the device was told.")
-      .def_property_readonly(
-          "applied", [](const F& f) { return f.wrenches([](const T& t) { return t.applied; }); },
-          "(n, 6): what it had, where it says so; otherwise what it was told a step before.")
-      .def_property_readonly(
-          "tool_forces", [](const F& f) { return f.wrenches([](const T& t) { return t.on_tool; }); },
-          "(n, 6): force (N) and torque (N·mm) of the material on the tool, whatever the hand is given of them.")
-      .def_property_readonly(
-          "removed", [](const F& f) { return f.column([](const T& t) { return t.removed; }); },
-          "(n,) mm³; with mode \"add\" what was put on.")
-      .def_property_readonly(
-          "energy", [](const F& f) { return f.column([](const T& t) { return t.energy; }); },
-          "(n,) N·mm that may go to the hand: the account of passivity.")
-      .def_property_readonly(
-          "depth", [](const F& f) { return f.column([](const T& t) { return t.depth; }); },
-          "(n,) mm that the tool is at most in what it must not enter.")
-      .def_property_readonly(
-          "step_seconds", [](const F& f) { return f.column([](const T& t) { return t.seconds; }); },
-          "(n,) s of processor time.")
-      .def_property_readonly(
-          "dt", [](const F& f) { return f.column([](const T& t) { return t.dt; }); }, "(n,) s from step to step.")
-      .def_property_readonly(
-          "cutting", [](const F& f) { return f.column([](const T& t) { return t.cutting ? 1.0 : 0.0; }); },
-          "(n,) 1 in strokes, otherwise 0.")
-      .def_property_readonly(
-          "missed", [](const F& f) { return f.column([](const T& t) { return t.missed ? 1.0 : 0.0; }); },
-          "(n,) 1 where no step could be made and the force was held over.")
-      .def_property_readonly(
-          "tool", [](const F& f) { return from_poses({f.last.tool}).reshape({6}); }, "(6,) now.")
-      .def_property_readonly(
-          "grip", [](const F& f) { return from_poses({f.last.grip}).reshape({6}); }, "(6,) now.")
-      .def_property_readonly(
-          "force", [](const F& f) { return from_vec3(f.last.wrench.force); }, "(3,) N, now.")
-      .def_property_readonly(
-          "torque", [](const F& f) { return from_vec3(f.last.wrench.torque); }, "(3,) N·mm, now.")
-      .def_property_readonly(
-          "state", [](const F& f) { return name(f.last.state); },
-          "Of the force, now: off, homing, ready, ramp, active, degraded or tripped.")
-      .def_property_readonly(
-          "cause",
-          [](const F& f) {
-            return f.last.cause == haptics::Cause::None ? py::object(py::none())
-                                                        : py::object(py::str(sentence(f.last.cause)));
-          },
-          "Why the force was taken away and what to do, or None.")
-      .def_property_readonly(
-          "problem",
-          [](const F& f) { return f.last.problem ? py::object(py::str(f.last.problem)) : py::object(py::none()); },
-          "Why nothing is cut though the hand wants to, or None.")
-      .def_property_readonly(
-          "strokes", [](const F& f) { return f.frame.strokes; }, "That were begun since the start.")
-      .def_property_readonly("in_stroke", [](const F& f) { return f.frame.in_stroke; })
-      .def_property_readonly(
-          "untold", [](const F& f) { return f.frame.dropped_ticks; },
-          "Steps since the start that are in no frame: they were asked for too seldom (4096 are kept).")
-      .def("__len__", [](const F& f) { return f.frame.ticks.size(); });
-}
-
-void bind_material(py::module_& m) {
-  const haptics::Material usual;
-  py::class_<haptics::Material>(m, "Material", "What a stock or a fixture is made of, as far as a hand can feel it.")
-      .def(py::init([](double stiffness, double removal_constant, double damping, double density) {
-             const haptics::Material material{stiffness, removal_constant, damping, density};
-             material.validate("the material");
-             return material;
-           }),
-           py::kw_only(), "stiffness"_a = usual.stiffness, "removal_constant"_a = usual.removal_constant,
-           "damping"_a = usual.damping, "density"_a = usual.density)
-      .def_readonly("stiffness", &haptics::Material::stiffness,
-                    "Of its surface, N per mm of depth and mm²; of a fixture N per mm³ in the tool.")
-      .def_readonly("removal_constant", &haptics::Material::removal_constant,
-                    "N·s/mm³: force for volume removed per second.")
-      .def_readonly("damping", &haptics::Material::damping, "N·s/mm on a cutter in the cut.")
-      .def_readonly("density", &haptics::Material::density, "g/cm³.")
-      .def("mass", &haptics::Material::mass, "volume"_a, "g of so many mm³.");
-}
-
 }  // namespace
 
 void bind_session(py::module_& m) {
-  bind_material(m);
-  bind_frame(m);
-  py::class_<SharedSession>(m, "Session", R"(A pen, a tool and a stock: the tool follows the hand and cuts, a thousand
-times a second, in a thread of its own, and the hand feels it. Context manager: starts and stops.
+  py::class_<SharedSession> session(
+      m, "Session",
+      R"(A pen, a tool and a stock: the tool follows the hand and cuts a thousand times a second, and the hand feels it.
 
-The volume is the one that is shown: it follows with each call of ``frame``, between steps, and nobody else changes it
-while the session runs. The tool cuts while a button of ``dead_man_mask`` is held, and every check of the pen passes.
+The device's own thread cuts. ``volume`` is what is shown: each call of ``frame`` brings it up to date, between steps, and
+nothing else may change it while the session runs. The tool cuts while a button of ``dead_man_mask`` is held and every
+check of the pen passes. Context manager: starts and stops.
 
-pen: of ``riffler.pen.open``; None: a ``riffler.pen.Pointer`` of kind "mouse", see ``pen``. obstacles: a Collider to stay
-out of. protect: a volume of the same lower, upper, pitch and directions, or None; what lies in it stays as it is, and is
-as air to the tool. mode: "remove", or "add": the cutter puts on what it sweeps, all its length, within the volume's box;
-then it feels neither that nor the stock, only obstacles. Options: ``material`` (of the stock), ``at`` ((6,) where the tool
-stands at the start; for tablets, mice and recordings their own pose, otherwise 5 mm above the stock), ``scale`` and
-``turn`` ((3, 3); from the hand's motion to the tool's), ``stiffness`` (N/mm), ``turn_stiffness`` (N·mm/rad), ``damping``,
-``turn_damping`` (of the coupling between hand and tool), ``tolerance`` (mm, of cuts), ``memory`` (mm of way over which
-resistance is learnt; None: by tool and stock), ``max_force`` (N), ``max_torque`` (N·mm), ``max_power`` (N·mm/s), ``ramp``
-(s), ``dead_man_mask``, ``clutch_mask`` (of buttons), ``budget`` (s for a step; None: as long as it takes), ``undo`` (strokes
-that can be taken back).)")
-      .def(py::init(&make), "volume"_a, "tool"_a, "pen"_a = py::none(), py::kw_only(), "obstacles"_a = py::none(),
-           "protect"_a = py::none(), "mode"_a = "remove")
+Parameters
+----------
+volume : Volume
+    The stock.
+tool : Tool
+    The cutter.
+pen : PenDevice, optional
+    From ``riffler.pen.open``, or a ``riffler.pen.Pointer``; None: a Pointer of kind "mouse", then the session's ``pen``.
+obstacles : Collider, optional
+    Part and fixtures that the tool stays out of.
+protect : Volume, optional
+    Region that must not change, with the lower, upper, pitch and directions of ``volume``; air to the tool.
+mode : {"remove", "add"}
+    "add": the cutter adds what it sweeps, over its whole length and within the volume's box. The hand then feels neither
+    that nor the stock, only obstacles.
+material : Material, optional
+    What the stock is made of.
+at : array_like, shape (6,), optional
+    Pose of the tool at the start: tip in mm and axis. None: the hand's pose for tablets, mice and recordings, otherwise
+    5 mm above the middle of the stock.
+scale : float
+    mm of the tool per mm of the hand.
+turn : array_like, shape (3, 3), optional
+    Rotation from the hand's frame to the tool's; None: none.
+stiffness, turn_stiffness : float
+    Of the coupling between hand and tool, N/mm and N·mm/rad.
+damping, turn_damping : float
+    Of the coupling, N·s/mm and N·mm·s/rad.
+tolerance : float
+    mm, of the cuts, as in ``Volume.carve``.
+memory : float, optional
+    mm of travel over which the resistance is estimated; None: chosen by tool and stock.
+max_force, max_torque, max_power : float
+    Largest force (N), torque (N·mm) and power (N·mm/s) given to the hand.
+ramp : float
+    s from no force to full force, at the start and after interruptions.
+dead_man_mask, clutch_mask : int
+    Buttons, as bits: cut while one is held; move the hand without the tool.
+budget : float, "auto" or None
+    s for one step; None: as long as it takes, and steps are deterministic; "auto": 0.0004 for a device with motors, None
+    for others.
+undo : int
+    Number of strokes that can be undone.
+
+Raises
+------
+TypeError, ValueError
+    Naming the argument that is wrong.
+
+Examples
+--------
+>>> stock = riffler.Volume.block(lower=(0, 0, 0), upper=(20, 20, 10), pitch=0.5)
+>>> ball = riffler.Tool.ball(diameter=6, length=30)
+>>> with riffler.Session(stock, ball, at=(10, 10, 15, 0, 0, 1), max_force=3.0) as session:
+...     frame = session.frame()
+>>> frame.in_stroke
+False
+)");
+  bind_constructor(session);
+  session
       .def(
           "start",
           [](SharedSession& s) {

@@ -1,5 +1,7 @@
 // The extension module riffler._core. Not public: the names that riffler exports are.
 #include "bindings/bindings.hpp"
+#include "bindings/program_arguments.hpp"
+#include "bindings/session_frame.hpp"
 
 PYBIND11_MODULE(_core, m) {
   using namespace riffler;
@@ -18,13 +20,19 @@ PYBIND11_MODULE(_core, m) {
   bindings::bind_smooth_dabs(m);
   bindings::bind_mesher(m);
   bindings::bind_collide(m);
+  bindings::bind_machines(m);
+  bindings::bind_nc_types(m);
   bindings::bind_program(m);
+  bindings::bind_nc(m);
+  bindings::bind_program_paths(m);
   bindings::bind_program_file(m);
   bindings::bind_verify(m);
   bindings::bind_cluster(m);
   bindings::bind_pen(m);
   bindings::bind_pen_device(m);
   bindings::bind_journal(m);
+  bindings::bind_material(m);
+  bindings::bind_session_frame(m);
   bindings::bind_session(m);
   bindings::bind_path(m);
   bindings::bind_pencil(m);

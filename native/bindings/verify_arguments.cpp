@@ -1,28 +1,14 @@
 #include "bindings/verify_arguments.hpp"
 
-#include <limits>
-#include <map>
 #include <tuple>
 
+#include "bindings/program_arguments.hpp"
 #include "riffler/dexel/from_mesh/from_mesh.hpp"
 #include "riffler/nc/read/reader.hpp"
 
 namespace riffler::bindings {
 
 namespace {
-
-std::map<int, Tool> to_tools(const py::object& object) {
-  std::map<int, Tool> out;
-  if (object.is_none()) return out;
-  if (!py::isinstance<py::dict>(object)) throw py::value_error("tools must be a dict: number to Tool");
-  for (const auto& [key, value] : py::cast<py::dict>(object)) {
-    if (!py::isinstance<py::int_>(key) || !py::isinstance<Tool>(value) || py::cast<long long>(key) < 0 ||
-        py::cast<long long>(key) > std::numeric_limits<int>::max())
-      throw py::value_error("tools must be a dict: number to Tool");
-    out.emplace(py::cast<int>(key), py::cast<const Tool&>(value));
-  }
-  return out;
-}
 
 std::string fixture_name(std::size_t k) {
   return "fixtures, number " + std::to_string(k);
@@ -89,7 +75,8 @@ GivenArguments to_given(SharedVolume& stock, const py::object& part, const py::o
     mesh = py::cast<std::shared_ptr<Mesh>>(part);
   }
   std::vector<Fixture> all = to_fixtures(fixtures);
-  return {{Reading(stock).volume.snapshot(), std::move(mesh), {}, to_tools(tools), std::move(options)}, std::move(all)};
+  return {{Reading(stock).volume.snapshot(), std::move(mesh), {}, to_tools(tools, 0), std::move(options)},
+          std::move(all)};
 }
 
 verify::VerifyArguments to_arguments(const GivenArguments& given, const Progress& progress) {

@@ -87,7 +87,7 @@ class PenRun:
         self.state, self.strokes, self.in_stroke = frame.state, frame.strokes, frame.in_stroke
         if len(frame):
             self.pose, self.push = frame.tool, frame.tool_forces.mean(axis=0).reshape(2, 3)
-        self.dropped_ticks = frame.untold
+        self.dropped_ticks = frame.dropped_ticks
         self.force = float(np.linalg.norm(frame.force))
         self._collect(frame)
         health = self.device.health()["problem"] if self.session.running else None

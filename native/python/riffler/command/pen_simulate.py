@@ -195,7 +195,7 @@ class Log:
     def __init__(self) -> None:
         self.parts: dict[str, list[np.ndarray]] = {name: [] for name in self.COLUMNS}
         self.begin = self.now = time.monotonic()
-        self.state, self.strokes, self.untold = "off", 0, 0
+        self.state, self.strokes, self.dropped_ticks = "off", 0, 0
         self.why: str | None = None  # there is no force, or nothing is cut, now
         self.trips: dict[str, int] = {}
         self.removed = 0.0
@@ -204,7 +204,7 @@ class Log:
 
     def add(self, frame: SessionFrame) -> None:
         self.now = time.monotonic()
-        self.state, self.strokes, self.untold = frame.state, frame.strokes, frame.untold
+        self.state, self.strokes, self.dropped_ticks = frame.state, frame.strokes, frame.dropped_ticks
         self.why = frame.problem or (frame.cause if frame.state != "ready" else None)
         if not len(frame):
             return
@@ -232,7 +232,7 @@ class Log:
         seconds = float(times[-1]) if len(times) else 0.0
         return {
             "seconds": round(seconds, 3),
-            "steps": len(times) + self.untold,
+            "steps": len(times) + self.dropped_ticks,
             "machine_seconds": round(self.now - self.begin, 3),
             "missed": int(self.column("missed").sum()),
             "step_us": {"p50": round(float(p50), 1), "p99": round(float(p99), 1)},

@@ -4,4 +4,8 @@ from __future__ import annotations
 
 from ..deprecated import Old
 
-OLD = Old()
+OLD = Old(
+    attributes={
+        "SessionFrame": {"untold": "dropped_ticks"},
+    },
+)

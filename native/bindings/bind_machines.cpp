@@ -1,0 +1,95 @@
+// riffler.machines, riffler.machine_options, and the options of machines and posts.
+#include "bindings/program_arguments.hpp"
+#include "nc/machine/machines.hpp"
+#include "nc/machine/option_texts.hpp"
+
+namespace riffler::bindings {
+
+namespace {
+
+py::dict machine_list() {
+  py::dict out;
+  for (const base::DescriptionEntry& entry : nc::machines()) out[py::str(entry.name)] = entry.description;
+  return out;
+}
+
+py::object value_of(const nc::OptionValue& value) {
+  return std::visit([](const auto& v) -> py::object { return py::cast(v); }, value);
+}
+
+const char* name_of(nc::OptionFact::Kind kind) {
+  static constexpr const char* kNames[] = {"number", "positive", "numbers", "range", "flag", "word", "path"};
+  return kNames[static_cast<std::size_t>(kind)];
+}
+
+py::list option_list(const std::string& machine, const py::object& options) {
+  using namespace py::literals;
+  py::list out;
+  for (const nc::MachineOption& option : nc::machine_options(machine, to_options(options))) {
+    const nc::OptionFact& fact = option.fact;
+    out.append(py::dict("name"_a = fact.name, "kind"_a = name_of(fact.kind), "count"_a = fact.most,
+                        "unit"_a = option.unit, "words"_a = fact.words,
+                        "value"_a = fact.value ? value_of(*fact.value) : py::object(py::none()),
+                        "needed"_a = fact.needed, "own"_a = option.own, "about"_a = fact.about));
+  }
+  return out;
+}
+
+/// A dict of numbers, such as tool_diameters, as a list: each key before its value.
+std::vector<double> to_pairs(const py::dict& dict, const std::string& name) {
+  std::vector<double> out;
+  for (const auto& [key, value] : dict) {
+    try {
+      out.push_back(py::cast<double>(py::float_(py::reinterpret_borrow<py::object>(key))));
+      out.push_back(py::cast<double>(py::float_(py::reinterpret_borrow<py::object>(value))));
+    } catch (const py::error_already_set&) {
+      throw py::value_error("option " + name + " must have numbers only");
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+nc::Options to_options(const py::object& object) {
+  nc::Options out;
+  if (object.is_none()) return out;
+  if (!py::isinstance<py::dict>(object)) throw py::value_error("options must be a dict");
+  for (const auto& [key, value] : py::cast<py::dict>(object)) {
+    const std::string name = py::cast<std::string>(py::str(key));
+    if (py::isinstance<py::bool_>(value)) {
+      out[name] = py::cast<bool>(value);
+    } else if (py::isinstance<py::str>(value)) {
+      out[name] = py::cast<std::string>(value);
+    } else if (py::isinstance<py::dict>(value)) {
+      out[name] = to_pairs(py::reinterpret_borrow<py::dict>(value), name);
+    } else {
+      const Doubles array = to_doubles(value, "option " + name);
+      if (array.ndim() > 1)
+        throw py::value_error("option " + name + " must be a number, a list of them, a bool or a str");
+      if (array.ndim() == 0)
+        out[name] = *array.data();
+      else
+        out[name] = std::vector<double>(array.data(), array.data() + array.size());
+    }
+  }
+  return out;
+}
+
+void bind_machines(py::module_& m) {
+  m.def("machines", &machine_list,
+        "Machines that programs are written for and read from, ours and your own: name to description. A post has its "
+        "machine's name; the path of a .toml file that describes one will do as well.");
+
+  m.def(
+      "machine_options", &option_list, py::arg("machine"), py::arg("options") = py::none(),
+      R"(The options that a machine takes, its own first, and those of the code that is written for it: a list of dicts.
+
+``name``; ``kind``: "number", "positive", "numbers", "range" (two that grow), "flag" (a bool) or "word"; ``count`` of
+numbers; ``unit``: "mm", "deg", "mm/min", "deg/min" or ""; ``words``: of which it is one; ``value``: where it is not
+given, None where there is none then; ``needed``: it must be given, with these ``options``; ``own``: of this machine's
+file, the others are of many; ``about``: one sentence.
+ValueError for a machine that is not known, and for options that are wrong.)");
+}
+
+}  // namespace riffler::bindings
