@@ -30,7 +30,8 @@ struct ContactCase {
 using Rival = std::function<std::vector<Ask>(const ContactCase&)>;
 
 struct ContactOptions {
-  int squares = 316;  ///< 199 712 triangles; 100: 20 000
+  std::string part{};  ///< as for contact_part; empty: a sheet of valleys
+  int squares = 316;   ///< of that sheet: 199 712 triangles; 100: 20 000
   std::string tool = "long";
   int poses = 2000;
   std::uint64_t seed = 1;
