@@ -19,6 +19,7 @@ namespace riffler::bench {
 
 namespace {
 
+constexpr double kBudget = 200e-6, kDoubt = 0.05;  // s and mm: what a thousand looks a second allow
 constexpr int kBlock = 100;  // poses for which one question is asked before the next question's turn
 
 /// Writes an object's members in their order.
@@ -126,10 +127,11 @@ std::string contact_times(const ContactOptions& options, const std::vector<Rival
       if (options.part.empty() || ask.what != "signed distance") asks.push_back(std::move(ask));
   const std::vector<Timed> results = timed(asks, scene.poses, options.repeats);
 
-  double colliding = 0, holder = 0;
+  double colliding = 0, holder = 0, doubtful = 0;
   for (const Pose& pose : scene.poses)
     if (const collide::Collider::Nearest at = collider.nearest(assembly, pose); at.distance < 0)
       colliding += 1, holder += at.touch == collide::Touch::Holder;
+  for (const Pose& pose : scene.poses) doubtful += collider.query(assembly, pose, kBudget).missed_depth_bound > kDoubt;
   std::vector<std::string> rows;
   for (std::size_t a = 0; a < asks.size(); ++a)
     rows.push_back(Json()
@@ -144,6 +146,7 @@ std::string contact_times(const ContactOptions& options, const std::vector<Rival
       .number("tool_triangles", static_cast<double>(tool_mesh.triangles.size()))
       .number("colliding", colliding / options.poses)
       .number("holder", holder / options.poses)
+      .number("in_doubt", doubtful / options.poses)
       .objects("asked", rows)
       .object();
 }
