@@ -26,12 +26,19 @@ FIXES = [
     (r"^import typing$", "import typing\n_Found = typing.TypeVar('_Found')\n_Made = typing.TypeVar('_Made')"),
     (r"(?<=def __eq__\(self, )\w+: \w+", "other: object"),
     (r"(: [A-Z]\w+) = None", r"\1 | None = None"),  # pointers to what may be missing
+    (r"(?<=Callable\[\[float\], )typing\.Any", "object"),  # the generator writes object as Any
+    (r"(?<=Mapping\[str, )typing\.Any", "object"),
     (r"[ \t]+$", ""),
 ]
 
-# The types are in pybind11's docstrings; the signatures that inspect sees (native/bindings/hints.cpp) have none.
+# The types are in pybind11's docstrings; the signatures that inspect sees (native/bindings/hints.cpp) have none. Old
+# names are left out: an editor offers today's.
 GENERATOR = """
-import inspect
+import inspect, riffler
+for cls in vars(riffler._core).values():
+    for name, member in list(vars(cls).items()) if isinstance(cls, type) else []:
+        if isinstance(member, riffler.deprecated.OldAttribute):
+            delattr(cls, name)
 from pybind11_stubgen import main
 def refuse(function): raise TypeError
 inspect.getfullargspec = refuse

@@ -30,20 +30,27 @@ def open_device(what: str | None, **options: Any) -> pen.PenDevice:
         raise pen.PenError(f"{error}; {plugged()}") from None
 
 
+def geometry_of(device: pen.PenDevice) -> pen.PenGeometry:
+    """Its geometry; ValueError for devices without arms."""
+    if device.geometry is None:
+        raise ValueError(f"{device.kind} has no arms, so no geometry")
+    return device.geometry
+
+
 def first_plugged() -> str:
     """The path of the first device that opens."""
     for device in pen.devices():
-        if device["tried"] and device["problem"] is None:
-            return device["path"]
+        if device.was_opened and device.problem is None:
+            return device.path
     raise pen.PenError(f"no device to open; {plugged()}")
 
 
 def plugged() -> str:
     """What there is, and why some of it does not open, in one line."""
     found = [
-        f"{device['path']} ({device['name']}" + (f": {device['problem']})" if device["problem"] else ")")
+        f"{device.path} ({device.name}" + (f": {device.problem})" if device.problem else ")")
         for device in pen.devices()
-        if device["kind"]
+        if device.kind
     ]
     there = f"plugged in: {', '.join(found)}" if found else "no device of a kind that riffler knows is plugged in"
     return f'{there}; "simulated" needs none'

@@ -26,6 +26,7 @@ import numpy as np
 from .. import Material, Session, SessionFrame, Tool, pen
 from .arguments import JOURNALS, MESHES, VOLUMES, length, output_file
 from .console import Console, number
+from .devices import geometry_of
 from .live import FRAMES, History, chart, screen, width_of_terminal
 from .parser import Parser
 from .pen_carving import REMOVAL, TOOL, block_at, hand_at, table_at
@@ -87,7 +88,7 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
     data = log.summary() | {
         "stiffness": stiffness,
         "pitch": pitch,
-        "lost": link["lost"],
+        "lost": link.lost,
         "removed": before - block.volume,
     }
     written = {"plot": plot, "out": out, "journal": journal}
@@ -126,9 +127,10 @@ def homed(device: pen.PenDevice) -> np.ndarray:
     end = time.monotonic() + 5
     while not device.state().homed:
         if time.monotonic() > end:
-            raise pen.PenError(f"the simulated pen does not come up: {device.health()['problem'] or 'no report'}")
+            raise pen.PenError(f"the simulated pen does not come up: {device.health().problem or 'no report'}")
         time.sleep(0.01)
-    return device.geometry.forward([device.geometry.home])[0]
+    geometry = geometry_of(device)
+    return geometry.forward([geometry.home])[0]
 
 
 def come_to(device: pen.SimulatedPen, pose: np.ndarray) -> None:

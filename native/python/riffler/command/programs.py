@@ -27,7 +27,7 @@ def is_saved(path: Path) -> bool:
 
 def read_program(path: Path, machine: str, options: dict[str, Any] | None, console: Console) -> Program:
     """Loads a saved program or reads NC code for the machine; prints the notes of its reader on stderr."""
-    program = Program.load(path) if is_saved(path) else Program.read(path, machine, options)
+    program = Program.load(path) if is_saved(path) else Program.read(path, machine=machine, options=options)
     for note in program.notes:
         console.warning(f"{path.name}, line {note.line}: {note.message}")
     return program
