@@ -82,7 +82,7 @@ bench-docs:  ## Put figures and plots of the last `make bench` into the document
 	@$(ready)
 	$(python) tools/bench_docs.py out/bench
 
-lint:  ## Check style, layers, and that every header stands alone
+lint:  ## Check style, layers, types, and that every header stands alone
 	@$(ready) cpp-tests
 	@$(python) tools/test.py lint
 

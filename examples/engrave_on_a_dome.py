@@ -21,7 +21,7 @@ angle = 6 * np.pi * t
 spiral = np.column_stack([-14 + 13 * t * np.cos(angle), 13 * t * np.sin(angle), np.zeros(400)])
 wave = np.column_stack([3 + 26 * t, 8 * np.sin(4 * np.pi * t), np.zeros(400)])
 ball = riffler.Tool.ball(diameter=2, length=12).with_shank([(12, 1, 14, 3), (14, 3, 40, 3)])
-lines = plan.engrave(part, [spiral, wave], ball, depth=DEPTH, reach=30.0)
+lines = plan.engrave([spiral, wave], ball, part, depth=DEPTH, reach=30.0)
 
 volume = riffler.Volume.from_mesh(part, 0.2, "xyz")
 before = volume.volume

@@ -1,6 +1,6 @@
 """Record strokes in a journal, undo one, and carve the same volume again from the file, to the bit.
 
-Shows: Journal.set_stock, add_tool, add_stroke, write, read, replay and program.
+Shows: Journal.set_stock, add_tool, add_stroke, save, load, replay and program.
 """
 
 import numpy as np
@@ -22,7 +22,7 @@ def stroke(number, x, y, depth, seconds):
     poses = np.hstack([tips, np.tile([0.0, 0.0, 1.0], (len(x), 1))])
     cut = block.carve(tools[number], poses)
     removed = np.concatenate([[0], cut.removed])
-    journal.add_stroke(number, poses, np.linspace(0, seconds, len(x)), removed=removed)
+    journal.add_stroke(number, poses, times=np.linspace(0, seconds, len(x)), removed=removed)
     return poses
 
 
@@ -31,10 +31,10 @@ lines = [stroke(1, 35 + 22 * np.sin(2 * t), 25 + 15 * np.sin(3 * t), 2.5, second
 lines.append(stroke(2, 8 + 54 * t / t[-1], 6 + 0 * t, 2, seconds=2.0))
 kept = block.copy()
 lines.append(stroke(2, 35 + 20 * np.cos(t), 25 + 20 * np.sin(t), 5, seconds=3.0))
-journal.take_back()  # undo: the last stroke no longer counts
-journal.write("strokes.rjournal")
+journal.undo()  # undo: the last stroke no longer counts
+journal.save("strokes.rjournal")
 
-read = riffler.Journal.read("strokes.rjournal")
+read = riffler.Journal.load("strokes.rjournal")
 again = read.replay()
 program = read.program(spindle=12000)  # feeds follow from the recorded times
 program.write("strokes.ngc", post="3-axis")

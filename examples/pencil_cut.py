@@ -1,6 +1,6 @@
 """Plan a pencil cut: the path on which a ball cutter touches both walls of a valley, and its NC code.
 
-Shows: plan.pencil, PencilPath.oriented, plan.cutter_locations, Program.from_cl, Program.write.
+Shows: plan.pencil, PencilPath.orient, plan.cutter_locations, Program.from_cl, Program.write.
 """
 
 import numpy as np
@@ -24,7 +24,7 @@ print(f"centre to contact {reach.min():.4f} to {reach.max():.4f} mm; highest cen
 
 # The tool leans along the path: forwards at the beginning, upright in the middle. Where it would gouge it is lifted.
 angles = {0: -0.3, len(path) // 2: 0.0, len(path) - 1: 0.3}  # rad, by the point of the path
-lean = path.oriented({point: (np.sin(a), 0, np.cos(a)) for point, a in angles.items()})
+lean = path.orient({point: (np.sin(a), 0, np.cos(a)) for point, a in angles.items()})
 collider = riffler.Collider(part)
 poses, report = plan.cutter_locations(lean, ball, collider)
 program = riffler.Program.from_cl([poses], tools=[ball], feed=800, spindle=12000, collider=collider)

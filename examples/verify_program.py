@@ -31,6 +31,7 @@ for finding in report.findings:
     where = f"line {finding.line} ({code[finding.line - 1]})" if finding.line else "at the end"
     print(f"  {finding.kind}, {where}: {finding.value:.3f} {finding.unit}")
 
+assert report.deviation is not None  # there is a part
 mesh, distance = report.deviation  # mm at each vertex: above 0 rest material, below 0 gouged
 figure, ax = plt.subplots(figsize=(7, 4.6))
 view = View(mesh, azimuth=-60, elevation=55)

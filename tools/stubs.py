@@ -31,9 +31,14 @@ FIXES = [
     (r"[ \t]+$", ""),
 ]
 
-# The types are in pybind11's docstrings; the signatures that inspect sees (native/bindings/hints.cpp) have none.
+# The types are in pybind11's docstrings; the signatures that inspect sees (native/bindings/hints.cpp) have none. Old
+# names are left out: an editor offers today's.
 GENERATOR = """
-import inspect
+import inspect, riffler
+for cls in vars(riffler._core).values():
+    for name, member in list(vars(cls).items()) if isinstance(cls, type) else []:
+        if isinstance(member, riffler.deprecated.OldAttribute):
+            delattr(cls, name)
 from pybind11_stubgen import main
 def refuse(function): raise TypeError
 inspect.getfullargspec = refuse

@@ -54,7 +54,7 @@ def blender() -> None:
 
 
 def lint() -> None:
-    """Style, layers, words, commit messages, and that every header stands alone."""
+    """Style, layers, words, commit messages, types, and that every header stands alone."""
     run(PYTHON, "-m", "ruff", "check", ".")
     run(PYTHON, "-m", "ruff", "format", "--check", ".")
     sources = [path for folder in ("native", "device", "examples") for path in (ROOT / folder).rglob("*.[chp]*")]
@@ -63,6 +63,7 @@ def lint() -> None:
     run(PYTHON, "tools/check_layers.py")
     run(PYTHON, "tools/check_words.py")
     run(PYTHON, "tools/check_commits.py")
+    run(PYTHON, "tools/check_types.py")
     build_preset("release", "all_verify_interface_header_sets")
 
 

@@ -220,8 +220,8 @@ Examples
 
 void bind_frozen_surface(py::module_& m) {
   py::class_<SharedSurface> surface(m, "FrozenSurface",
-                                    "The surface of a ``Mesher`` as it was when ``freeze()`` was called, to be picked, "
-                                    "whatever becomes of the mesher.");
+                                    "The surface of a mesher at the time of `Mesher.freeze`, to be picked; it never "
+                                    "changes. See `Mesher.freeze`.");
   surface.def("pick", &pick_frozen, py::arg("origin"), py::arg("direction"), kPickText)
       .def_property_readonly(
           "triangles", [](const SharedSurface& self) { return self.surface.triangles(); }, "How many it has.")

@@ -78,8 +78,8 @@ void bind_any_shape(py::class_<Tool>& tool, const tool::CutterShape& shape) {
 }
 
 void bind_table(py::module_& m) {
-  py::class_<tool::CutterSize>(m, "ToolSize",
-                               "One size of a cutter shape. It means the same in every shape that has it.")
+  py::class_<tool::CutterSize>(
+      m, "ToolSize", "One size of a cutter shape. It means the same in every shape that has it. See `Tool.shapes`.")
       .def_readonly("name", &tool::CutterSize::name, "The argument's name, and the key in a tool's dict.")
       .def_property_readonly("unit", &unit_of, "\"mm\", \"rad\" or \"bool\".")
       .def_readonly("label", &tool::CutterSize::label, "Short name for a form.")
@@ -91,7 +91,8 @@ void bind_table(py::module_& m) {
           "largest", [](const tool::CutterSize& s) { return s.largest > 0 ? std::optional(s.largest) : std::nullopt; },
           "Largest multiple of the diameter that a form should offer, or None.")
       .def("__repr__", [](const tool::CutterSize& s) { return "<riffler.ToolSize " + std::string(s.name) + ">"; });
-  py::class_<tool::CutterShape>(m, "ToolShape", "A named cutter shape, one row of Tool.shapes().")
+  py::class_<tool::CutterShape>(m, "ToolShape",
+                                "A named cutter shape, one row of the table of cutters. See `Tool.shapes`.")
       .def_readonly("name", &tool::CutterShape::name,
                     "The kind of its tools, and the function of Tool that makes them.")
       .def_readonly("label", &tool::CutterShape::label, "Short name for a form.")

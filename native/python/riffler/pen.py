@@ -21,7 +21,7 @@ import atexit
 import os
 import weakref
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, Literal, overload
 
 from ._core import (
     Journal,
@@ -120,6 +120,24 @@ def kinds() -> dict[str, str]:
     return _pen_families()
 
 
+@overload
+def open(
+    what: Literal["simulated"], *, gravity: float | None = None, friction: float | None = None
+) -> SimulatedPen: ...
+@overload
+def open(
+    what: str | os.PathLike[str],
+    *,
+    speed: float | None = None,
+    bubble: float | None = None,
+    exponent: float | None = None,
+    turn_rate: float | None = None,
+    hold_orientation: bool | None = None,
+    signs: Sequence[int] | None = None,
+    geometry: str | None = None,
+    gravity: float | None = None,
+    friction: float | None = None,
+) -> PenDevice: ...
 @hinted("pen.open")
 def open(
     what: str | os.PathLike[str],

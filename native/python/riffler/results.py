@@ -156,7 +156,7 @@ class PickCounters(DictResult):
 
 @dataclass(frozen=True, eq=False)
 class Patch:
-    """The triangles of one or more bricks: `Mesher.patch`."""
+    """The triangles of one or more bricks. See `Mesher.patch`."""
 
     vertices: NDArray[np.float32]
     """(n, 3) mm."""

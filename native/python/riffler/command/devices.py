@@ -31,6 +31,13 @@ def open_device(what: str | None, **options: Any) -> pen.PenDevice:
         raise pen.PenError(f"{error}; {plugged()}") from None
 
 
+def geometry_of(device: pen.PenDevice) -> pen.PenGeometry:
+    """Its geometry; ValueError for devices without arms."""
+    if device.geometry is None:
+        raise ValueError(f"{device.kind} has no arms, so no geometry")
+    return device.geometry
+
+
 def first_plugged() -> str:
     """The path of the first device that opens."""
     for device in pen.devices():

@@ -25,7 +25,7 @@ import numpy as np
 from .. import pen
 from .arguments import length, output_file, whole
 from .console import Console
-from .devices import add_device, open_device
+from .devices import add_device, geometry_of, open_device
 from .live import FRAMES, Braille, Enter, polyline, screen
 from .parser import Parser
 from .pen_diagnosis import Joint, Postures, Verdict, bubble_of, joints, judge
@@ -82,7 +82,7 @@ def losses_of(texts: list[str], device: pen.PenDevice) -> dict[int, int]:
     """``L1=60`` as channel and counts."""
     if texts and not isinstance(device, pen.SimulatedPen):
         raise ValueError('--lose is for "simulated": other pens lose counts by themselves')
-    names = [c.name for c in device.geometry.channels] if texts else []
+    names = [c.name for c in geometry_of(device).channels] if texts else []
     found: dict[int, int] = {}
     for text in texts:
         name, _, counts = text.partition("=")
@@ -107,10 +107,10 @@ def wait_for(device: pen.PenDevice, what: Any, seconds: float = 2.0) -> None:
 def calibrate_pen(
     device: pen.PenDevice, losses: dict[int, int], seconds: float, yes: bool, console: Console
 ) -> tuple[dict[str, Any], list[tuple[str, str]], str, bool]:
-    geometry = device.geometry
-    simulated = isinstance(device, pen.SimulatedPen)
+    geometry = geometry_of(device)
     home = geometry.forward([geometry.home])[0]
-    if simulated:
+    simulated = isinstance(device, pen.SimulatedPen)
+    if isinstance(device, pen.SimulatedPen):
         device.aim(home)  # its own hand brings it there
     if not yes:
         say_home(geometry)

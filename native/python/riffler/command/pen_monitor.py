@@ -107,7 +107,7 @@ class Watch:
         self.history = {"position": History(SHOWN), "force": History(SHOWN)}
         self.charted = self.start
         self.first: np.ndarray | None = None
-        self.links: deque[tuple[float, dict[str, Any]]] = deque()  # of the last second
+        self.links: deque[tuple[float, pen.PenHealth]] = deque()  # of the last second
         self.seen = 0
         self.most = {"stretch_mm": 0.0, "speed_mm_s": 0.0, "force_N": 0.0, "age_s": 0.0}
         self.causes: list[str] = []

@@ -26,6 +26,7 @@ import numpy as np
 from .. import Material, Session, SessionFrame, Tool, pen
 from .arguments import JOURNALS, MESHES, VOLUMES, length, output_file
 from .console import Console, number
+from .devices import geometry_of
 from .live import FRAMES, History, chart, screen, width_of_terminal
 from .parser import Parser
 from .pen_carving import REMOVAL, TOOL, block_at, hand_at, table_at
@@ -130,7 +131,8 @@ def homed(device: pen.PenDevice) -> np.ndarray:
         if time.monotonic() > end:
             raise pen.PenError(f"the simulated pen does not come up: {device.health().problem or 'no report'}")
         time.sleep(0.01)
-    return device.geometry.forward([device.geometry.home])[0]
+    geometry = geometry_of(device)
+    return geometry.forward([geometry.home])[0]
 
 
 def come_to(device: pen.SimulatedPen, pose: np.ndarray) -> None:

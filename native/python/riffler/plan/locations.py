@@ -159,8 +159,8 @@ def cutter_locations(
     >>> cl.shape, report.ok
     ((2, 6), True)
     """
-    found = _core.cutter_locations(
-        path,
+    found = _core.cutter_locations(  # pyright: ignore[reportCallIssue] (an overload for each kind of path)
+        path,  # pyright: ignore[reportArgumentType]
         tool,
         collider,
         clearance=clearance,
