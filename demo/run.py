@@ -180,7 +180,7 @@ def main() -> int:
     figure = riffler.Mesh.read(out / "suzanne.stl")
     with stages("Suzanne: mesh to volume"):
         volume = riffler.Volume.from_mesh(figure, options.pitch, "xyz")
-    journal = riffler.Journal.read(ROOT / "demo" / "strokes.rjournal")
+    journal = riffler.Journal.load(ROOT / "demo" / "strokes.rjournal")
     with stages("Suzanne: carved, with force"):
         felt = carve_strokes(volume, journal, head)
     head.note("carving", f"{stages.last:.2f} s")
@@ -191,7 +191,7 @@ def main() -> int:
         skin_error(carved, figure, journal, head)
 
     with stages("strokes to NC code and back"):
-        journal.write(out / "strokes.rjournal")
+        journal.save(out / "strokes.rjournal")
         recorded = journal.program(spindle=12000.0)
         written = recorded.write(out / "strokes.ngc", post=POST, tolerance=TOLERANCE, options=TABLE)
         program = riffler.Program.read(out / "strokes.ngc", machine=POST, options=TABLE)

@@ -241,7 +241,7 @@ def main() -> None:
     parser.add_argument("out", type=Path)
     options = parser.parse_args()
     strokes = record(Surface.read(options.figure))
-    journal(strokes).write(options.out)
+    journal(strokes).save(options.out)
     print(f"{options.out}: {len(strokes)} strokes, {sum(len(s.poses) for s in strokes)} poses")
 
 

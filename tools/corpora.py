@@ -44,7 +44,7 @@ def problem(path: Path) -> str:
     for machine in machines(path.read_text(errors="replace")[:100_000]):
         try:
             pivot = {"rot_point": [0, 0, 0]} if machine.startswith("linuxcnc") else {}
-            program = riffler.Program.read(path, machine, pivot)
+            program = riffler.Program.read(path, machine=machine, options=pivot)
         except ValueError as error:
             first = first or str(error)
             if "the machine has no such axis" in str(error):

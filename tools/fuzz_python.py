@@ -45,7 +45,7 @@ def seed_plan() -> bytes:
     centres = np.array([[0.0, 0, 3], [1, 0, 3], [2, 0, 3]])
     contacts = np.stack([centres - [0, 0, 3], centres - [3, 0, 0]], axis=1)
     normals = np.broadcast_to([[[0, 0, 1.0], [1.0, 0, 0]]], (3, 2, 3))
-    path = plan.PencilPath(3, centres, contacts, normals).oriented({0: [0, 0, 1]})
+    path = plan.PencilPath(3, centres, contacts, normals).orient({0: [0, 0, 1]})
     cl = np.column_stack([centres, np.tile([0.0, 0, 1], (3, 1))])
     part = {"name": "part", "sha256": "0" * 64}
     tool, depths = riffler.Tool.ball(6, 40), {1: 0.25}

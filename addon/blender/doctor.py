@@ -1,6 +1,7 @@
 """A report on this computer for support requests."""
 
 import bpy
+from riffler import pen
 from riffler.command import doctor
 
 from ..common import diagnosis
@@ -40,7 +41,8 @@ class RIFFLER_OT_doctor(bpy.types.Operator):
     def execute(self, context):
         global last
         try:
-            rows = doctor.rows(doctor.report())
+            found = pen.devices()
+            rows = doctor.rows(doctor.report(found), found)
         except operator_parts.ERRORS as error:
             return operator_parts.fail(self, error)
         ours = facts()

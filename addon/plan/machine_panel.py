@@ -22,12 +22,12 @@ def draw_options(layout, context, name):
     column.use_property_split = True
     column.use_property_decorate = False
     for fact in listed:
-        if fact["needed"] and fact["name"] not in given:
+        if fact.needed and fact.name not in given:
             _ask(column, context, name, group, fact)
     for fact in listed:
-        if fact["name"] in given or (fact["own"] and not fact["needed"]):
+        if fact.name in given or (fact.own and not fact.needed):
             row = _field(column, group, fact)
-            if fact["name"] in given:
+            if fact.name in given:
                 _button(row, name, fact, "UNSET", text="", icon="X")
     op = layout.operator_menu_enum(machine_options.RIFFLER_OT_machine_option_add.bl_idname, "option", icon="ADD")
     op.machine = name
@@ -35,8 +35,8 @@ def draw_options(layout, context, name):
 
 def _field(layout, group, fact):
     """The row of an option's field. The name of a field with a unit is above it, since both do not fit into one row."""
-    key = machine_fields.identifier(fact["name"])
-    if not fact["unit"]:
+    key = machine_fields.identifier(fact.name)
+    if not fact.unit:
         row = layout.row(align=True)
         row.prop(group, key)
         return row
@@ -54,16 +54,16 @@ def _ask(layout, context, name, group, fact):
     lines(box, *wrapped(context, f"{needed}: {local(machine_fields.about(fact))}."), icon="ERROR")
     row = box.row(align=True)
     row.use_property_split = False
-    row.prop(group, machine_fields.identifier(fact["name"]), text="")
+    row.prop(group, machine_fields.identifier(fact.name), text="")
     row = box.row(align=True)
-    if fact["count"] == 3:
+    if fact.count == 3:
         _button(row, name, fact, "CURSOR", text="3D Cursor", icon="PIVOT_CURSOR")
     _button(row, name, fact, "GIVE", text="Use This", icon="CHECKMARK")
 
 
 def _button(layout, name, fact, how, **look):
     op = layout.operator(machine_options.RIFFLER_OT_machine_option.bl_idname, **look)
-    op.machine, op.option, op.how = name, fact["name"], how
+    op.machine, op.option, op.how = name, fact.name, how
     return op
 
 

@@ -14,15 +14,15 @@ FIRST = {"positive": 1000.0, "range": (-100.0, 100.0)}  # initial values of such
 
 def _field(fact):
     how = {"name": machine_fields.label(fact), "description": machine_fields.about(fact)}
-    kind, value = fact["kind"], fact["value"]
+    kind, value = fact.kind, fact.value
     if value is None:
-        value = FIRST.get(kind, (0.0,) * fact["count"] if fact["count"] > 1 else 0.0)
+        value = FIRST.get(kind, (0.0,) * fact.count if fact.count > 1 else 0.0)
     if kind == "flag":
         return BoolProperty(default=value, **how)
     if kind == "word":
-        return EnumProperty(items=[(word, word, "") for word in fact["words"]], default=value, **how)
+        return EnumProperty(items=[(word, word, "") for word in fact.words], default=value, **how)
     how |= {"default": value, "precision": 3, "min": 1e-3 if kind == "positive" else -1e6, "max": 1e6}
-    return FloatVectorProperty(size=fact["count"], **how) if fact["count"] > 1 else FloatProperty(**how)
+    return FloatVectorProperty(size=fact.count, **how) if fact.count > 1 else FloatProperty(**how)
 
 
 def _facts(machine):
@@ -34,7 +34,7 @@ def _facts(machine):
 
 
 def _group(machine):
-    own = {machine_fields.identifier(fact["name"]): _field(fact) for fact in _facts(machine)}
+    own = {machine_fields.identifier(fact.name): _field(fact) for fact in _facts(machine)}
     name = f"RifflerMachine_{machine_fields.machine_identifier(machine)}"
     return type(name, (bpy.types.PropertyGroup,), {"__annotations__": own, "__module__": __name__})
 
@@ -59,7 +59,7 @@ class RifflerMachines(bpy.types.PropertyGroup):
         """The options of a machine that the user has set, as riffler takes them."""
         own, found = self.of(machine), {}
         for fact in _facts(machine):
-            key = machine_fields.identifier(fact["name"])
+            key = machine_fields.identifier(fact.name)
             if own.is_property_set(key):
-                found[fact["name"]] = machine_fields.value(fact, getattr(own, key))
+                found[fact.name] = machine_fields.value(fact, getattr(own, key))
         return found

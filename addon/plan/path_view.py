@@ -101,10 +101,10 @@ def nearest(plan, view, at, reach=NEAR, hidden=None):
     origin, away = view.ray(*at)
     firsts = []
     for k, path in enumerate(plan.paths):
-        found = path.nearest(origin, away)
-        gap = float(np.hypot(*(view.project([found["point"]])[0] - at)))
+        found = path.nearest(origin, direction=away)
+        gap = float(np.hypot(*(view.project([found.point])[0] - at)))
         if gap <= reach:  # false for NaN, behind the viewer
-            firsts.append((gap, k, found["index"], found["side"]))
+            firsts.append((gap, k, found.index, found.side))
     firsts.sort()
     best, closest, left = None, reach, ASKED
     for gap, k, index, side in firsts:

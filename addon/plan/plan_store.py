@@ -111,7 +111,7 @@ def plan(ob):
         block = packed_images.read(ob.riffler.plan.store, "the plan")
         if sculpt_payload.content_id(block) != key:
             raise ValueError(f"{ob.name}: the plan's data in this .blend is damaged: its checksum does not match")
-        kept = _Kept(riffler.plan.loads(block, ob.name), len(block))
+        kept = _Kept(riffler.plan.loads(block, name=ob.name), len(block))
         _cache.put(key, kept)
     return kept.plan
 
@@ -151,7 +151,7 @@ def write(ob, plan):
     """Makes `plan` the object's content. It must not be changed afterwards."""
     if why := refusals.linked(ob):  # the file would load the library's plan again
         raise ValueError(why)
-    _write(ob, plan, riffler.plan.dumps(plan, texts(ob)))
+    _write(ob, plan, riffler.plan.dumps(plan, texts=texts(ob)))
 
 
 def _write(ob, plan, block):

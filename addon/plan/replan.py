@@ -112,8 +112,8 @@ def _nothing_plays(scene, plan_ob):
 
 def _oriented(path, wanted):
     if wanted:
-        return path.oriented(wanted, path.interpolation or "smooth")
-    return riffler.plan.PencilPath(path.radius, path.centres, path.contacts, path.normals, path.closed)
+        return path.orient(wanted, interpolation=path.interpolation or "smooth")
+    return riffler.plan.PencilPath(path.radius, path.centres, path.contacts, path.normals, closed=path.closed)
 
 
 def bake(scene, plan_ob, plan):

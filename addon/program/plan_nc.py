@@ -202,7 +202,7 @@ class RIFFLER_OT_plan_nc(GivenOptions, bpy.types.Operator, ExportHelper):
         return {"FINISHED"}
 
     def _tell(self, context, ob, path, written):
-        done = f"{bpy.path.basename(path)}: {units.counted(written['blocks'], 'block')}"
+        done = f"{bpy.path.basename(path)}: {units.counted(written.blocks, 'block')}"
         plan = plan_store.plan(ob)
         said = (programs.left_out(plan), fit_check.tool_note(context.scene.riffler.plan, plan.tool))
         notes = [note for note in said if note]
@@ -213,8 +213,8 @@ class RIFFLER_OT_plan_nc(GivenOptions, bpy.types.Operator, ExportHelper):
                 done = f"{done}. {difference}"
             else:
                 notes.append(str(difference))
-        if len(written["rewinds"]):
-            rows = ", ".join(str(int(r)) for r in np.atleast_1d(written["rewinds"])[:4])
+        if len(written.rewinds):
+            rows = ", ".join(str(int(r)) for r in np.atleast_1d(written.rewinds)[:4])
             notes.append(f"The tool leaves the material to turn an axis back, at rows {rows}")
         operator_parts.tell_all(self, done, notes)
 

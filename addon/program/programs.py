@@ -270,7 +270,8 @@ def _with_lines(program, plan, post, chosen):
     more = {"spindle": program.spindle, "tools": program.tools}
     more |= {"provenance": program.provenance, "notes": program.notes, "at_machine": program.at_machine}
     more |= {"via": program.via}
-    return riffler.Program(program.poses, program.feed, program.rapid, program.tool, lines, **more), text
+    more |= {"rapid": program.rapid, "tool": program.tool, "line": lines}
+    return riffler.Program(program.poses, program.feed, **more), text
 
 
 def _of_reading(chosen):
@@ -286,7 +287,9 @@ def _file(context, wanted):
     problems.check_source(path)
     saved = path.suffix.lower() == ".rprog"
     chosen = options(context.scene, wanted.machine, getattr(wanted, "options", ""))
-    program = riffler.Program.load(path) if saved else riffler.Program.read(path, wanted.machine, chosen)
+    program = (
+        riffler.Program.load(path) if saved else riffler.Program.read(path, machine=wanted.machine, options=chosen)
+    )
     if len(program.poses) < 2:
         raise ValueError(f"{path.name} has no moves")
     program = _with_tools(context, program, path.name)
@@ -317,7 +320,7 @@ def _with_tools(context, program, name):
     tools = {**program.tools, called[0]: riffler.Tool.from_dict(context.scene.riffler.plan.tool_dict())}
     number = np.where(program.tool == 0, called[0], program.tool) if called[0] else program.tool
     return riffler.Program(
-        program.poses, program.feed, program.rapid, number, program.line,
+        program.poses, program.feed, rapid=program.rapid, tool=number, line=program.line,
         spindle=program.spindle, tools=tools, provenance=program.provenance, notes=program.notes,
         at_machine=program.at_machine, via=program.via,
     )  # fmt: skip

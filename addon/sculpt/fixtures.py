@@ -41,13 +41,13 @@ def keeper(tool, collider):
     there is none."""
 
     def keep_out(poses, dt):
-        lifted, report = riffler.plan.lift(tool, poses, collider, tolerance=CLEAR)
-        free = np.flatnonzero(report["free"])
+        lifted, report = riffler.plan.lift(poses, tool, collider, tolerance=CLEAR)
+        free = np.flatnonzero(report.free)
         if not len(free):
             return None
         last = np.searchsorted(free, np.arange(len(poses)), side="right") - 1
         rows = free[np.maximum(last, 0)]
-        return _upright(lifted[rows], report["lift"][rows], dt, lambda way: collider.clearance(tool, way))
+        return _upright(lifted[rows], report.lift[rows], dt, lambda way: collider.clearance(tool, way))
 
     return keep_out
 

@@ -129,9 +129,9 @@ class RIFFLER_OT_cut_recording(FileWork, CutShell, bpy.types.Operator, ImportHel
             tool = self.tool_dict(context)
             cuts = [Cut(tool, cut.poses, cut.tolerance, cut.mode) for cut in cuts]
         volume = self._before.volume
-        if stock and not (np.allclose(stock["lower"], volume.lower) and np.allclose(stock["upper"], volume.upper)):
-            size = units.format_size(stock["upper"] - stock["lower"])
-            corner = ", ".join(units.trim(x) for x in stock["lower"])
+        if stock and not (np.allclose(stock.lower, volume.lower) and np.allclose(stock.upper, volume.upper)):
+            size = units.format_size(stock.upper - stock.lower)
+            corner = ", ".join(units.trim(x) for x in stock.lower)
             self.report({"WARNING"}, f"The recording was made on a stock of {size} from ({corner}), which this is not")
         return cuts
 

@@ -53,7 +53,7 @@ def along_curve(context, ob, curve, tool, axis, depth, follow, tolerance):
 def from_recording(path):
     """The strokes of a recording (.rjournal) as cuts, and its stock as a dictionary or None."""
     problems.check_source(path)
-    journal = riffler.Journal.read(path)
+    journal = riffler.Journal.load(path)
     tools = journal.tools
     cuts = [
         Cut(tools[s.tool], s.poses, s.tolerance, brush_of(s).cuts)
@@ -68,12 +68,12 @@ def from_recording(path):
 def stock_of_recording(path):
     """The volume that a recording begins with: its snapshot, a file next to it, or the full block."""
     problems.check_source(path)
-    stock = riffler.Journal.read(path).stock
+    stock = riffler.Journal.load(path).stock
     if stock is None:
         raise ValueError(f"{Path(path).name} does not name the stock it was made on")
-    if stock["snapshot"]:
-        return riffler.Volume.load(Path(path).with_name(stock["snapshot"]))
-    return riffler.Volume.block(stock["lower"], stock["upper"], stock["pitch"], stock["directions"])
+    if stock.snapshot:
+        return riffler.Volume.load(Path(path).with_name(stock.snapshot))
+    return riffler.Volume.block(stock.lower, stock.upper, stock.pitch, stock.directions)
 
 
 def to_recording(cuts, volume):

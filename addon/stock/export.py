@@ -169,7 +169,7 @@ class RIFFLER_OT_export_recording(Export, bpy.types.Operator):
     def write(self, context, ob, path):
         content = live_registry.content(ob)
         cuts = self.removing(ob, content)
-        cut_paths.to_recording(cuts, content.volume).write(path)
+        cut_paths.to_recording(cuts, content.volume).save(path)
         return units.counted(len(cuts), "stroke")
 
 

@@ -54,7 +54,7 @@ class RIFFLER_OT_recover(TakesJournal, long_work.LongWork, bpy.types.Operator):
         self._found, self._lock = self.take()
         try:
             strokes, self._cuts, self._shaped, self._states = _prepared(self._found)
-            task = riffler.submit(riffler.Journal.replay, strokes, self._found.folder, with_mask=True)
+            task = riffler.submit(riffler.Journal.replay_with_mask, strokes, self._found.folder)
         except BaseException:
             self._lock.release()
             raise
@@ -95,7 +95,7 @@ def _prepared(found):
     if not strokes.strokes:
         raise ValueError(f"the journal of {found.name} has no strokes: discard it")
     shaped, states = journal.shaped(found.folder, strokes), journal.states(found.folder, found.about, strokes)
-    if not (found.folder / journal.STOCK).exists() and strokes.stock and strokes.stock["snapshot"] == journal.STOCK:
+    if not (found.folder / journal.STOCK).exists() and strokes.stock and strokes.stock.snapshot == journal.STOCK:
         strokes = _on_what_the_file_has(found, strokes, states)
     return strokes, cuts, shaped, states
 
@@ -119,7 +119,7 @@ def _rest(folder, strokes, done, content):
         content.mask.save(folder / journal.MASK)
     v, out = content.volume, riffler.Journal()
     mask = journal.MASK if content.mask is not None else ""
-    out.set_stock(v.lower, v.upper, v.pitch, v.directions, journal.STOCK, mask=mask)
+    out.set_stock(v.lower, v.upper, v.pitch, v.directions, snapshot=journal.STOCK, mask=mask)
     for number, tool in strokes.tools.items():
         out.add_tool(number, tool)
     for s in strokes.strokes[done:]:

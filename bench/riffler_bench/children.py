@@ -10,6 +10,7 @@ import json
 import statistics
 import sys
 import time
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -84,14 +85,14 @@ def pencil(path: str, diameter: float, tolerance: float) -> dict[str, Any]:
     tool = Tool.ball(diameter, 5 * diameter)
     found, times = clock.timed(lambda: plan.pencil(part, tool, tolerance=tolerance), 1)
     whole = hashlib.sha256(b"".join(np.ascontiguousarray(p.centres).tobytes() for p in found)).hexdigest()
-    return {**times, "paths": len(found), "digest": whole, **found.stats}
+    return {**times, "paths": len(found), "digest": whole, **asdict(found.stats)}
 
 
 def drop(path: str, points: str, tool: dict[str, Any], result: str) -> dict[str, Any]:
     """A tool dropped on a part at many places (x, y): median times, the tree's building in them; heights as a file."""
     part = Mesh(np.load(f"{path}.vertices.npy"), np.load(f"{path}.triangles.npy"))
     where = np.pad(np.load(points), [(0, 0), (0, 1)])
-    (heights, _), times = clock.timed(lambda: plan.drop(Tool.from_dict(tool), where, part), 3)
+    (heights, _), times = clock.timed(lambda: plan.drop(where, Tool.from_dict(tool), part), 3)
     np.save(result, heights)
     return times
 

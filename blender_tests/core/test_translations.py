@@ -127,7 +127,7 @@ def of_machines():
     """(where, text) of the fields that are made from the core's description of each machine."""
     for machine in riffler.machines():
         for fact in riffler.machine_options(machine):
-            where = f"riffler.machine_options({machine!r}), {fact['name']}"
+            where = f"riffler.machine_options({machine!r}), {fact.name}"
             yield from ((where, text) for text in (machine_fields.label(fact), machine_fields.about(fact)))
 
 

@@ -116,7 +116,7 @@ def sessions(folder):
         if cuts := common.content(ob).cuts:
             break
     path = min(folder.glob("Stock *.rjournal"))
-    assert len(riffler.Journal.read(path).strokes) == len(cuts) > 0
+    assert len(riffler.Journal.load(path).strokes) == len(cuts) > 0
 
 
 SCENES = {"engrave.md": engrave, "planning.md": planning, "sessions.md": sessions}

@@ -67,7 +67,7 @@ def test_no_session_lets_more_force_through_than_was_allowed():
         forces = []
         for seconds in (4.0, 8.0, 16.0, 32.0):  # a busy computer cuts the force now and then
             bpy.ops.riffler.pen_sculpt(seconds=seconds, tool=common.BALL, record=True, folder=str(place), **device)
-            strokes = [s for p in place.glob("*.rjournal") for s in riffler.Journal.read(p).strokes]
+            strokes = [s for p in place.glob("*.rjournal") for s in riffler.Journal.load(p).strokes]
             forces = [np.linalg.norm(s.forces[:, :3], axis=1).max() for s in strokes if s.forces is not None and len(s)]
             if forces:
                 break

@@ -173,7 +173,7 @@ def recorded(path, ob):
     journal.add_tool(1, riffler.Tool.ball(6, 4).to_dict())
     z = volume.upper[2] - 1
     journal.add_stroke(1, [[10, 5, z, 0, 0, 1], [30, 5, z, 0, 0, 1]], mode="add")
-    journal.write(path)
+    journal.save(path)
 
 
 @common.core_bound
@@ -301,8 +301,8 @@ def test_a_mirrored_fixture_is_as_solid_as_any():
         jaw.scale = scale
         bpy.context.view_layer.update()
         solid = common.part("sculpt.fixtures").collider(bpy.context, jaws, common.part("sculpt.sculpts").from_world(ob))
-        _, report = riffler.plan.lift(riffler.Tool.ball(6, 30), pose, solid, tolerance=0.001)
-        assert not report["free"].any() or np.all(report["lift"] > 60), scale
+        _, report = riffler.plan.lift(pose, riffler.Tool.ball(6, 30), solid, tolerance=0.001)
+        assert not report.free.any() or np.all(report.lift > 60), scale
 
 
 def test_handles_of_a_mirrored_sculpt_are_as_large_as_of_any():

@@ -46,10 +46,10 @@ def ring(radius=20.0, count=90):
 def paths():
     """The step's valley, 60 mm straight, with two keys; and the ring with three."""
     (valley,) = riffler.plan.pencil(riffler.Mesh(*step()), TOOL)
-    valley = valley.oriented({0: (0, -0.6, 0.8), len(valley) - 1: (0.6, 0, 0.8)}, "smooth")
+    valley = valley.orient({0: (0, -0.6, 0.8), len(valley) - 1: (0.6, 0, 0.8)}, interpolation="smooth")
     loop = ring()
     axes = {k: loop.axis(k, 0.3, 0.2) for k in (0, 30, 60)}
-    return [valley, loop.oriented(axes, "slerp")]
+    return [valley, loop.orient(axes, interpolation="slerp")]
 
 
 def on_timeline(mm_per_unit=1.0, chosen=None, **more):

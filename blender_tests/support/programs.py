@@ -16,13 +16,13 @@ def valley(*axes):
     path = riffler.plan.pencil(riffler.Mesh(*plans.step()), plans.TOOL)[0].divided(1.0)
     places = np.linspace(0, len(path) - 1, len(axes)).astype(int)
     units = [np.array(axis, float) / np.linalg.norm(axis) for axis in axes]
-    return path.oriented(dict(zip(map(int, places), units, strict=True)), "slerp")
+    return path.orient(dict(zip(map(int, places), units, strict=True)), interpolation="slerp")
 
 
 def bare():
     """The step's path without keys."""
     path = valley(LEANING)
-    return riffler.plan.PencilPath(path.radius, path.centres, path.contacts, path.normals, path.closed)
+    return riffler.plan.PencilPath(path.radius, path.centres, path.contacts, path.normals, closed=path.closed)
 
 
 def plan(*paths, mm_per_unit=1.0, timeline=True):

@@ -54,14 +54,14 @@ def onto(part: riffler.Mesh, curves: list[np.ndarray]) -> list[np.ndarray]:
     needle = riffler.Tool.ball(diameter=0.02, length=1)
     laid = []
     for curve in curves:
-        heights, _ = plan.drop(needle, curve * [1, 1, 0] + [0, 0, 60], part, axis=(0, 0, 1))
+        heights, _ = plan.drop(curve * [1, 1, 0] + [0, 0, 60], needle, part, axis=(0, 0, 1))
         laid.append(np.column_stack([curve[:, :2], heights]))
     return laid
 
 
 def engraved(part: riffler.Mesh, name: str, pitch: float) -> riffler.Volume:
     volume = riffler.Volume.from_mesh(part, pitch, "xyz")
-    for found in plan.engrave(part, onto(part, strokes()), TOOLS[name], depth=DEPTHS[name]):
+    for found in plan.engrave(onto(part, strokes()), TOOLS[name], part, depth=DEPTHS[name]):
         volume.carve(TOOLS[name], found.poses)
     return volume
 

@@ -39,7 +39,7 @@ def keys_from_maps(path, collider, *, count: int = 8, tool=TOOL) -> dict[int, np
     """Orientations at a few points of the path: those that the map of free orientations suggests."""
     points = np.linspace(0, len(path), count, endpoint=not path.closed, dtype=int).clip(0, len(path) - 1)
     angles = np.radians(np.linspace(-60, 60, 17))
-    maps = plan.free_orientations(path, points, tool, collider, inclinations=angles, tilts=angles)
+    maps = plan.free_orientations(path, tool, collider, index=points, inclinations=angles, tilts=angles)
     for found in maps:
         if found.suggestion is None:
             raise SystemExit(f"point {found.index}: {found.reason}")

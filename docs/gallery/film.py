@@ -58,7 +58,7 @@ def film(pictures: list[Path], out: Path) -> None:
 
 def main() -> None:
     given = options(__doc__)
-    journal = riffler.Journal.read(ROOT / "demo/strokes.rjournal")
+    journal = riffler.Journal.load(ROOT / "demo/strokes.rjournal")
     rows = sum(len(stroke.poses) for stroke in journal.strokes)
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)

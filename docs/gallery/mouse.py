@@ -25,7 +25,7 @@ def main() -> None:
     picture.mesh(part)
     for path in paths:
         keys = keys_from_maps(path, collider)
-        oriented = path.oriented(keys, interpolation="smooth")
+        oriented = path.orient(keys, interpolation="smooth")
         cl, report = plan.cutter_locations(oriented, TOOL, collider)
         print(
             f"{len(keys)} keys, {len(path)} points: {report}; deepest before {depths(oriented, collider).max():.4f} mm"

@@ -47,7 +47,7 @@ def main() -> None:
     lean = {
         k: sum(path.normals[k]) / np.linalg.norm(sum(path.normals[k])) for k in range(0, len(path), len(path) // 12)
     }
-    first = path.oriented(lean, interpolation="smooth")
+    first = path.orient(lean, interpolation="smooth")
     entered = depths(first, all_of_it)
     print(f"without the vise: {depths(first, alone).max():.4f} mm deep; with it {entered.max():.2f} mm, ", end="")
     print(f"{(entered > 0.01).sum()} of {len(path)} points")
@@ -57,7 +57,7 @@ def main() -> None:
 
     # Keys stay 2 mm from the vise, so that what is interpolated between them does not enter it.
     keys = keys_from_maps(path, riffler.Collider(part, fixtures=vise(2.0)), count=24)
-    corrected = path.oriented(keys, interpolation="smooth")
+    corrected = path.orient(keys, interpolation="smooth")
     cl, report = plan.cutter_locations(corrected, TOOL, all_of_it)
     print(f"corrected: {report}, nowhere deeper than {-report.bound:.4f} mm")
     if not report.ok or len(report.lifted):

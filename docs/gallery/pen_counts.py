@@ -19,7 +19,7 @@ def postures(pen: PenGeometry, n: int) -> np.ndarray:
     axes = rng.normal(size=(n, 3))
     axes /= np.linalg.norm(axes, axis=1)[:, None]
     axes = axes[axes[:, 2] > 0.5]
-    places = rng.uniform(pen.limits["lower"], pen.limits["upper"], (len(axes), 3))
+    places = rng.uniform(pen.limits.lower, pen.limits.upper, (len(axes), 3))
     joints, reach = pen.inverse(np.column_stack([places, axes]))
     return pen.counts(joints[[pair == ("reached", "reached") for pair in reach]])
 
@@ -32,7 +32,7 @@ def main() -> None:
     noticed = pen.noticed_counts(counts)
     strokes = noticed[: len(counts) // STROKE * STROKE].reshape(-1, STROKE, 6).min(axis=1)
     print(f"{len(counts)} postures; rounding alone leaves {abs(pen.stretch(counts)).max():.3f} mm; noticed from")
-    print(f"{'':34}" + "".join(f"{c['name']:>6}" for c in pen.channels))
+    print(f"{'':34}" + "".join(f"{c.name:>6}" for c in pen.channels))
     rows = {
         "at home": pen.noticed_counts([pen.home])[0],
         "half of all postures": np.median(noticed, axis=0),

@@ -66,7 +66,7 @@ def milled(part: riffler.Mesh, tool: riffler.Tool, stepover: float, pitch: float
     x, y = np.meshgrid(np.arange(0.0, SIZE + 1e-9, stepover), lines)
     x[1::2] = x[1::2, ::-1]
     points = np.column_stack([x.ravel(), y.ravel(), np.full(x.size, 50.0)])
-    heights, _ = plan.drop(tool, points, part, axis=(0, 0, 1))
+    heights, _ = plan.drop(points, tool, part, axis=(0, 0, 1))
     points[:, 2] = np.where(np.isnan(heights), 0.0, heights)
     block.carve(tool, np.hstack([points, np.tile([0.0, 0.0, 1.0], (len(points), 1))]))
     return block, len(points) - 1

@@ -22,7 +22,7 @@ def finish(stock: riffler.Volume, part: riffler.Mesh, step: float) -> None:
     rows = []
     for k, y in enumerate(np.arange(lower[1] - 7, upper[1] + 7, step)):
         at = np.column_stack([x[:: -1 if k % 2 else 1], np.full(len(x), y), np.zeros(len(x))])
-        heights, _ = plan.drop(FINISHER, at, part)
+        heights, _ = plan.drop(at, FINISHER, part)
         at[:, 2] = np.where(np.isnan(heights), lower[2] - 1, heights)
         rows.append(np.hstack([at, np.tile([0.0, 0, 1], (len(at), 1))]))
     stock.carve(FINISHER, np.concatenate(rows))
@@ -39,7 +39,7 @@ def main() -> None:
 
     collider = riffler.Collider(part)
     for path in plan.pencil(part, TOOL):
-        oriented = path.oriented(keys_from_maps(path, collider, count=16), interpolation="smooth")
+        oriented = path.orient(keys_from_maps(path, collider, count=16), interpolation="smooth")
         cl, report = plan.cutter_locations(oriented, TOOL, collider)
         if not report.ok:
             raise SystemExit(f"a path is not free: {report}")

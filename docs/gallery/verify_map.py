@@ -37,7 +37,7 @@ def finishing(part: riffler.Mesh, tool: riffler.Tool, step: float) -> riffler.Pr
     rows = []
     for k, y in enumerate(np.arange(0, SIZE + OVER, OVER)):
         at = np.column_stack([x[:: -1 if k % 2 else 1], np.full(len(x), y), np.zeros(len(x))])
-        height, _ = plan.drop(tool, at, part)
+        height, _ = plan.drop(at, tool, part)
         at[:, 2] = np.where(np.isnan(height), 0, height) - (WRONG if 24 < y < 34 else 0)
         rows.append(np.hstack([at, np.tile([0.0, 0, 1], (len(at), 1))]))
     return riffler.Program(np.concatenate(rows), 1200.0, spindle=12000, tools={1: tool})

@@ -1,11 +1,10 @@
-// riffler.Journal, riffler.JournalWriter
+// riffler.Journal
 #include <variant>
 
 #include "bindings/bindings.hpp"
-#include "bindings/one_caller.hpp"
+#include "bindings/journal_records.hpp"
 #include "bindings/shared_volume.hpp"
 #include "bindings/task.hpp"
-#include "riffler/session/journal.hpp"
 #include "riffler/session/journal_file.hpp"
 #include "riffler/session/replay.hpp"
 
@@ -14,19 +13,6 @@ namespace riffler::bindings {
 namespace {
 
 using SharedJournal = std::shared_ptr<session::Journal>;
-
-/// Syncing waits for the disk without the GIL.
-struct SharedWriter : session::JournalWriter, Guarded {
-  using session::JournalWriter::JournalWriter;
-};
-
-/// Held while a journal is written to: nothing for one in memory, which never releases the GIL.
-OneCaller only_caller(SharedWriter& writer) {
-  return {writer, "the journal"};
-}
-std::monostate only_caller(const session::Journal&) {
-  return {};
-}
 
 /// Stroke `index` of a journal, which it keeps alive.
 struct StrokeView {
@@ -39,87 +25,28 @@ struct StrokeView {
   }
 };
 
-/// (n,), or empty for None.
-std::vector<double> to_column(const py::object& column, const char* name, std::size_t rows) {
-  if (column.is_none()) return {};
-  const auto array = Doubles::ensure(column);
-  if (!array || array.ndim() != 1) {
-    PyErr_Clear();
-    throw py::value_error(std::string(name) + " must have the shape (n,)");
-  }
-  // An empty column would mean that there is none.
-  if (static_cast<std::size_t>(array.size()) != rows)
-    throw py::value_error(std::string(name) + " must be as many as poses");
-  return {array.data(), array.data() + array.size()};
-}
-
-/// (n, 6), or empty for None.
-std::vector<Wrench> to_forces(const py::object& forces, std::size_t rows) {
-  if (forces.is_none()) return {};
-  const Doubles array = py::cast<Doubles>(forces);
-  if (check_rows(array, 6, "forces") != rows) throw py::value_error("forces must be as many as poses");
-  std::vector<Wrench> out(rows);
-  const double* p = array.data();
-  for (Wrench& wrench : out)
-    for (int k = 0; k < haptics::kCoordinates; ++k) wrench[k] = *p++;
-  return out;
-}
-
-/// A stroke without its name and tool.
-session::JournalStroke to_rows(const Doubles& poses, const py::object& times, const py::object& forces,
-                               const py::object& removed) {
-  session::JournalStroke out;
-  out.poses = to_poses(poses, "poses");
-  const std::size_t rows = out.poses.size();
-  out.times = to_column(times, "times", rows);
-  out.forces = to_forces(forces, rows);
-  out.removed = to_column(removed, "removed", rows);
-  return out;
-}
-
-session::JournalStock to_stock(const py::object& lower, const py::object& upper, double pitch,
-                               const std::string& directions, const std::string& snapshot, const std::string& mask) {
-  return {{to_vec3(lower, "lower"), to_vec3(upper, "upper")}, pitch, directions, snapshot, mask};
-}
-
-constexpr const char* kModes[session::kStrokeModes] = {"remove", "add", "mask", "unmask", "soften", "beside", "build"};
-
-session::StrokeMode to_stroke_mode(const std::string& name) {
-  for (std::uint32_t k = 0; k < session::kStrokeModes; ++k)
-    if (name == kModes[k]) return static_cast<session::StrokeMode>(k);
-  throw py::value_error(R"(mode must be "remove", "add", "mask", "unmask", "soften", "beside" or "build")");
-}
-
-py::object json() {
-  return py::module_::import("json");
-}
-
-py::dict tools(const session::Journal& journal) {
+ToolDictDict tools(const session::Journal& journal) {
   py::dict out;
   for (const auto& [number, text] : journal.tools()) out[py::int_(number)] = json().attr("loads")(text);
   return out;
 }
 
-py::object stock(const session::Journal& journal) {
+OptionalStock stock(const session::Journal& journal) {
   if (!journal.stock()) return py::none();
   const session::JournalStock& s = *journal.stock();
-  py::dict out;
-  out["lower"] = from_vec3(s.box.lower);
-  out["upper"] = from_vec3(s.box.upper);
-  out["pitch"] = s.pitch;
-  out["directions"] = s.directions;
-  out["snapshot"] = s.snapshot;
-  out["mask"] = s.mask;
-  return out;
+  using namespace py::literals;
+  return program_result("JournalStock", py::dict("lower"_a = from_vec3(s.box.lower), "upper"_a = from_vec3(s.box.upper),
+                                                 "pitch"_a = s.pitch, "directions"_a = s.directions,
+                                                 "snapshot"_a = s.snapshot, "mask"_a = s.mask));
 }
 
-py::dict notes(const session::Journal& journal) {
+StringDict notes(const session::Journal& journal) {
   py::dict out;
   for (const auto& [key, value] : journal.notes()) out[py::str(key)] = value;
   return out;
 }
 
-py::list strokes(const SharedJournal& journal) {
+StrokeList strokes(const SharedJournal& journal) {
   if (!journal) throw py::type_error("None is no Journal");
   py::list out;
   for (std::size_t k = 0; k < journal->strokes().size(); ++k) out.append(StrokeView{journal, k});
@@ -143,219 +70,221 @@ nc::Program program(const session::Journal& journal, const std::optional<double>
   return to_program(journal, tools_of(journal), {feed, spindle, {safe_height, clearance, {}}});
 }
 
-auto replayed(const session::Journal& journal, const std::optional<std::filesystem::path>& folder,
-              const py::object& progress, bool with_mask) {
-  // another thread may go on recording
-  const auto work = [copy = journal, tools = tools_of(journal), folder](const Progress& listener) {
+/// What is done of a replay, of a copy: another thread may continue to record.
+auto replay_work(const session::Journal& journal, const std::optional<std::filesystem::path>& folder) {
+  return [copy = journal, tools = tools_of(journal), folder](const Progress& listener) {
     return replay_all(copy, tools, folder.value_or(""), listener);
   };
-  return long_call(progress, work, [with_mask](session::Replayed&& found) -> py::object {
-    py::object volume = py::cast(std::make_shared<SharedVolume>(std::move(found.volume)));
-    if (!with_mask) return volume;
+}
+
+auto replayed(const session::Journal& journal, const std::optional<std::filesystem::path>& folder,
+              const ProgressLike& progress) {
+  return long_call(progress, replay_work(journal, folder),
+                   [](session::Replayed&& found) { return std::make_shared<SharedVolume>(std::move(found.volume)); });
+}
+
+auto replayed_with_mask(const session::Journal& journal, const std::optional<std::filesystem::path>& folder,
+                        const ProgressLike& progress) {
+  return long_call(progress, replay_work(journal, folder), [](session::Replayed&& found) -> VolumeAndMask {
     py::object mask = py::none();
     if (found.mask) mask = py::cast(std::make_shared<SharedVolume>(std::move(*found.mask)));
-    return py::make_tuple(volume, mask);
+    return py::make_tuple(std::make_shared<SharedVolume>(std::move(found.volume)), mask);
   });
 }
 
-void close(SharedWriter& writer) {
-  const OneCaller only = only_caller(writer);
-  writer.close();
+OptionalArray column(const std::vector<double>& values) {
+  if (values.empty()) return py::none();
+  return take<double>(std::vector<double>(values));
 }
 
-/// The functions that Journal and JournalWriter share.
-template <class Class>
-void add_records(Class& c) {
-  using T = typename Class::type;
-  c.def(
-       "set_stock",
-       [](T& self, const py::object& lower, const py::object& upper, double pitch, const std::string& directions,
-          const std::string& snapshot, const std::string& mask) {
-         [[maybe_unused]] const auto only = only_caller(self);
-         self.set_stock(to_stock(lower, upper, pitch, directions, snapshot, mask));
-       },
-       py::arg("lower"), py::arg("upper"), py::arg("pitch"), py::arg("directions") = "z", py::arg("snapshot") = "",
-       py::kw_only(), py::arg("mask") = "",
-       "The frame of the stock, the file name of its snapshot where it is not a full block, and that of what is "
-       "protected where something is. Once.")
-      .def(
-          "add_tool",
-          [](T& self, int number, const py::object& tool) {
-            const std::string text = tool_json(tool);
-            [[maybe_unused]] const auto only = only_caller(self);
-            self.add_tool(number, text);
+void bind_stroke(py::module_& m) {
+  py::class_<StrokeView>(m, "JournalStroke", "One stroke of a Journal.")
+      .def_property_readonly("poses", &poses, "(n, 6): tip in mm and unit axis; a copy.")
+      .def_property_readonly(
+          "times", [](const StrokeView& s) { return column(s.get().times); }, "(n,) s, or None.")
+      .def_property_readonly(
+          "forces",
+          [](const StrokeView& s) -> OptionalArray {
+            if (s.get().forces.empty()) return py::none();
+            return take<double>(std::vector<Wrench>(s.get().forces), 6);
           },
-          py::arg("number"), py::arg("tool"),
-          "A Tool, its dict or JSON text. The same number again is allowed for the same tool only.")
-      .def(
-          "add_note",
-          [](T& self, const std::string& key, const std::string& value) {
-            [[maybe_unused]] const auto only = only_caller(self);
-            self.add_note(key, value);
-          },
-          py::arg("key"), py::arg("value"), "Provenance.")
-      .def(
-          "add_stroke",
-          [](T& self, int tool, const Doubles& poses, const py::object& times, double tolerance,
-             const std::string& name, const py::object& forces, const py::object& removed, const std::string& mode,
-             double strength) {
-            session::JournalStroke stroke = to_rows(poses, times, forces, removed);
-            stroke.tool = tool, stroke.tolerance = tolerance, stroke.name = name, stroke.mode = to_stroke_mode(mode);
-            stroke.strength = strength;
-            [[maybe_unused]] const auto only = only_caller(self);
-            self.add_stroke(stroke);
-          },
-          py::arg("tool"), py::arg("poses"), py::arg("times") = py::none(), py::arg("tolerance") = 0.01,
-          py::arg("name") = "", py::kw_only(), py::arg("forces") = py::none(), py::arg("removed") = py::none(),
-          py::arg("mode") = "remove", py::arg("strength") = 0.5,
-          R"(A stroke with a tool that was added: poses (n, 6), n ≥ 1; each of the others may be None. times (n,) s that
-never fall; forces (n, 6) N, N·mm that the device was told to give the hand, about the grip; removed (n,) mm³ by the move that
-ends at the row. mode says what the tool does where it sweeps: "remove" and "add" material, but not where it is protected;
-"mask" and "unmask": protect it, or no longer; "soften": a dab of ``strength`` at each row's tip, as wide as the tool;
-"beside": remove as a Session does beside what is protected; "build": put on as a Session does. To replay to the bit what
-was put on, or cut beside a mask, by ``carve``, each carve has to be a stroke.)")
-      .def(
-          "extend_stroke",
-          [](T& self, const Doubles& poses, const py::object& times, const py::object& forces,
-             const py::object& removed) {
-            const session::JournalStroke more = to_rows(poses, times, forces, removed);
-            [[maybe_unused]] const auto only = only_caller(self);
-            self.extend_stroke(more.rows());
-          },
-          py::arg("poses"), py::arg("times") = py::none(), py::kw_only(), py::arg("forces") = py::none(),
-          py::arg("removed") = py::none(), "More rows for the last stroke, with the same columns.")
-      .def(
-          "take_back",
-          [](T& self, std::size_t n) {
-            [[maybe_unused]] const auto only = only_caller(self);
-            self.undo(n);
-          },
-          py::arg("n") = 1, "The last n strokes no longer count: undo.")
-      .def(
-          "bring_back",
-          [](T& self, std::size_t n) {
-            [[maybe_unused]] const auto only = only_caller(self);
-            self.redo(n);
-          },
-          py::arg("n") = 1, "The last n that were taken back count again: redo. A new stroke ends that.");
+          "(n, 6) N, N·mm about the grip, as sent to the device for the hand; or None.")
+      .def_property_readonly(
+          "removed", [](const StrokeView& s) { return column(s.get().removed); },
+          "(n,) mm³ by the move that ends at the row, or None.")
+      .def_property_readonly(
+          "tool", [](const StrokeView& s) { return s.get().tool; }, "Number of the tool.")
+      .def_property_readonly(
+          "tolerance", [](const StrokeView& s) { return s.get().tolerance; }, "mm.")
+      .def_property_readonly(
+          "name", [](const StrokeView& s) { return s.get().name; }, "For people.")
+      .def_property_readonly(
+          "mode", [](const StrokeView& s) { return stroke_mode_name(s.get().mode); },
+          R"("remove", "add", "mask", "unmask", "soften", "beside" or "build": see ``Journal.add_stroke``.)")
+      .def_property_readonly(
+          "strength", [](const StrokeView& s) { return s.get().strength; }, R"(0 to 1, for "soften".)")
+      .def("__len__", [](const StrokeView& s) { return s.get().poses.size(); });
 }
 
 }  // namespace
 
-std::string tool_json(const py::object& tool) {
-  py::object dict = tool;
-  if (py::isinstance<Tool>(tool)) dict = tool.attr("to_dict")();
-  if (py::isinstance<py::str>(tool)) dict = json().attr("loads")(tool);
-  if (!py::isinstance<py::dict>(dict)) throw py::value_error("tool must be a Tool, its dict or JSON text of it");
-  return py::cast<std::string>(json().attr("dumps")(dict));
-}
-
 void bind_journal(py::module_& m) {
-  py::class_<StrokeView>(m, "JournalStroke", "One stroke of a Journal.")
-      .def_property_readonly("poses", &poses, "(n, 6) copy.")
-      .def_property_readonly(
-          "times",
-          [](const StrokeView& s) -> py::object {
-            if (s.get().times.empty()) return py::none();
-            return take<double>(std::vector<double>(s.get().times));
-          },
-          "(n,) s, or None.")
-      .def_property_readonly(
-          "forces",
-          [](const StrokeView& s) -> py::object {
-            if (s.get().forces.empty()) return py::none();
-            return take<double>(std::vector<Wrench>(s.get().forces), 6);
-          },
-          "(n, 6) N, N·mm about the grip: what the device was told to give the hand; or None.")
-      .def_property_readonly(
-          "removed",
-          [](const StrokeView& s) -> py::object {
-            if (s.get().removed.empty()) return py::none();
-            return take<double>(std::vector<double>(s.get().removed));
-          },
-          "(n,) mm³ by the move that ends at the row, or None.")
-      .def_property_readonly("tool", [](const StrokeView& s) { return s.get().tool; })
-      .def_property_readonly(
-          "tolerance", [](const StrokeView& s) { return s.get().tolerance; }, "mm")
-      .def_property_readonly("name", [](const StrokeView& s) { return s.get().name; })
-      .def_property_readonly(
-          "mode", [](const StrokeView& s) { return kModes[static_cast<std::uint32_t>(s.get().mode)]; },
-          R"("remove", "add", "mask", "unmask", "soften", "beside" or "build".)")
-      .def_property_readonly(
-          "strength", [](const StrokeView& s) { return s.get().strength; }, "0 to 1, of one that softens.")
-      .def("__len__", [](const StrokeView& s) { return s.get().poses.size(); });
-
+  bind_stroke(m);
   py::class_<session::Journal, SharedJournal> journal(m, "Journal",
                                                       R"(What a session did: stock, tools, strokes as poses, notes.
 
-Replaying the strokes on the stock gives the session again. Files end in .rjournal.)");
+Replaying the strokes on the stock gives the session again. Files end in .rjournal.
+
+Examples
+--------
+>>> journal = riffler.Journal()
+>>> journal.set_stock((0, 0, 0), (20, 20, 10), 0.5)
+>>> journal.add_tool(1, riffler.Tool.ball(diameter=6, length=30))
+>>> journal.add_stroke(1, [(0, 10, 8, 0, 0, 1), (20, 10, 8, 0, 0, 1)])
+>>> journal.replay().volume < 20 * 20 * 10
+True
+)");
   journal.def(py::init<>())
       .def_static(
-          "read",
-          [](const std::filesystem::path& path, const py::object& progress) {
+          "load",
+          [](const std::filesystem::path& path, const ProgressLike& progress) {
             const Progress listener = to_progress(progress);
             const NoGil release;
             return session::read_journal(path, listener);
           },
           py::arg("path"), py::kw_only(), py::arg("progress") = py::none(),
-          R"(Reads a file. One that a crash has cut gives all whole records, and ``cut_at`` says where it was cut; a
-damaged record that others follow is a FormatError naming the byte.)")
+          R"(Reads a .rjournal file. One that a crash has cut gives all whole records; ``cut_at`` is where it was cut.
+
+Parameters
+----------
+path : path_like
+    The file.
+progress : callable, optional
+    Called with the finished share; returning False cancels.
+
+Returns
+-------
+Journal
+
+Raises
+------
+FormatError
+    Naming the byte of a damaged record that others follow.
+
+Examples
+--------
+>>> riffler.Journal().save(folder / "a.rjournal")
+>>> riffler.Journal.load(folder / "a.rjournal")
+<riffler.Journal: 0 strokes>
+)")
       .def(
-          "write",
+          "save",
           [](const session::Journal& self, const std::filesystem::path& path) {
-            const session::Journal copy = self;  // another thread may go on recording
+            const session::Journal copy = self;  // another thread may continue to record
             const NoGil release;
             write_journal(copy, path);
           },
-          py::arg("path"), "Writes the whole journal; the file is whole or not there.")
-      .def_property_readonly("stock", &stock, "dict: lower, upper, pitch, directions, snapshot, mask; or None.")
-      .def_property_readonly("tools", &tools, "dict: number to the tool's dict.")
-      .def_property_readonly("strokes", &strokes, "list of JournalStroke: those that count.")
-      .def_property_readonly("notes", &notes, "dict of strings; of a key given twice the later value.")
+          py::arg("path"), R"(Writes the whole journal; the file is whole or not there.
+
+Parameters
+----------
+path : path_like
+    The file.
+
+Examples
+--------
+>>> riffler.Journal().save(folder / "a.rjournal")
+)")
+      .def_property_readonly("stock", &stock, "Frame and files of the stock, or None.")
+      .def_property_readonly("tools", &tools, "Each tool's dict, by number.")
+      .def_property_readonly("strokes", &strokes, "The strokes that count.")
+      .def_property_readonly("notes", &notes, "Where the journal comes from; of a key given twice the later value.")
       .def_readonly("cut_at", &session::Journal::cut_at, "Byte at which the file had been cut, or None.")
-      .def("program", &program, py::arg("feed") = py::none(), py::arg("spindle") = 0.0, py::kw_only(),
+      .def("program", &program, py::kw_only(), py::arg("feed") = py::none(), py::arg("spindle") = 0.0,
            py::arg("safe_height") = py::none(), py::arg("clearance") = 10.0,
-           R"(The strokes as a Program, each one cut as in Program.from_cl. ``feed`` in mm/min; None: from the times,
-held within 1 to 100 000 mm/min. The stock counts as occupied. Strokes that do not remove are left out: no machine can make
-them.)")
-      .def(
-          "replay", &replayed, py::arg("folder") = py::none(), py::arg("progress") = py::none(), py::kw_only(),
-          py::arg("with_mask") = false,
-          R"(The Volume that the strokes leave of the stock, to the bit as the session left it: a block, or the snapshot
-in ``folder``. A row that stands where the row before stood is no move; a stroke that never moves cuts where it stands
-if it has two rows or more. ``with_mask``: a tuple of it and the Volume of what is protected, or None.)")
+           R"(The strokes as a Program, each one cut as in ``Program.from_cl``. The stock counts as occupied.
+
+Strokes that do not remove are left out: no machine can make them.
+
+Parameters
+----------
+feed : float, optional
+    mm/min; None: from the times, limited to 1 to 100 000 mm/min.
+spindle : float
+    rev/min.
+safe_height : float, optional
+    z (mm) above everything; None: ``clearance`` above everything.
+clearance : float
+    mm.
+
+Returns
+-------
+Program
+
+Examples
+--------
+>>> journal = riffler.Journal()
+>>> journal.add_tool(1, riffler.Tool.ball(diameter=6, length=30))
+>>> journal.add_stroke(1, [(0, 10, 8, 0, 0, 1), (20, 10, 8, 0, 0, 1)])
+>>> program = journal.program(feed=600, spindle=9000)
+>>> program.tools[1].diameter
+6.0
+)")
+      .def("replay", &replayed, py::arg("folder") = py::none(), py::kw_only(), py::arg("progress") = py::none(),
+           R"(What the strokes leave of the stock, to the bit as the session left it.
+
+A row that stands where the row before stood is no move; a stroke that never moves cuts where it stands if it has two rows
+or more.
+
+Parameters
+----------
+folder : path_like, optional
+    Where the snapshot of the stock lies, for a stock that is not a block.
+progress : callable, optional
+    Called with the finished share; returning False cancels.
+
+Returns
+-------
+Volume
+
+Examples
+--------
+>>> journal = riffler.Journal()
+>>> journal.set_stock((0, 0, 0), (20, 20, 10), 0.5)
+>>> journal.replay().volume
+4000.0
+)")
+      .def("replay_with_mask", &replayed_with_mask, py::arg("folder") = py::none(), py::kw_only(),
+           py::arg("progress") = py::none(),
+           R"(As ``replay``, with what is protected in the end.
+
+Parameters
+----------
+folder : path_like, optional
+    Where the snapshots of stock and mask lie.
+progress : callable, optional
+    Called with the finished share; returning False cancels.
+
+Returns
+-------
+stock : Volume
+mask : Volume or None
+
+Examples
+--------
+>>> journal = riffler.Journal()
+>>> journal.set_stock((0, 0, 0), (20, 20, 10), 0.5)
+>>> stock, mask = journal.replay_with_mask()
+>>> mask is None
+True
+)")
       .def("__repr__", [](const session::Journal& self) {
         const std::size_t n = self.strokes().size();
         return "<riffler.Journal: " + std::to_string(n) + (n == 1 ? " stroke>" : " strokes>");
       });
-  add_records(journal);
-
-  py::class_<SharedWriter> writer(m, "JournalWriter", R"(Appends to a journal file, record by record.
-
-Goes on with a file that is there, after cutting off a damaged tail, or begins a new one. Each record is handed to the
-system before the call returns. ``keep=False`` holds no strokes in memory, so that ``journal`` cannot be asked for: for
-long sessions. Context manager.)");
-  writer
-      .def(py::init([](const std::filesystem::path& path, bool keep) {
-             return std::make_unique<SharedWriter>(
-                 path, keep ? session::JournalWriter::Keep::Everything : session::JournalWriter::Keep::Rules);
-           }),
-           py::arg("path"), py::kw_only(), py::arg("keep") = true)
-      .def(
-          "sync",
-          [](SharedWriter& self) {
-            const OneCaller only = only_caller(self);
-            const NoGil release;
-            self.sync();
-          },
-          "Waits until the disk has it.")
-      .def("close", &close, "Ends writing; calls after it raise RuntimeError.")
-      .def_property_readonly(
-          "journal", [](const SharedWriter& self) { return std::make_shared<session::Journal>(self.journal()); },
-          "A copy of everything in the file.")
-      .def("__enter__", [](py::object self) { return self; })
-      .def("__exit__", [](SharedWriter& self, const py::args&) { close(self); });
-  add_records(writer);
+  // Nothing is held while a journal in memory is written to: it never releases the GIL.
+  add_records(journal, [](const session::Journal&) { return std::monostate(); });
+  bind_journal_writer(m);
 }
 
 }  // namespace riffler::bindings

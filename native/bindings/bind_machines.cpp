@@ -7,7 +7,7 @@ namespace riffler::bindings {
 
 namespace {
 
-py::dict machine_list() {
+StringDict machine_list() {
   py::dict out;
   for (const base::DescriptionEntry& entry : nc::machines()) out[py::str(entry.name)] = entry.description;
   return out;
@@ -22,15 +22,16 @@ const char* name_of(nc::OptionFact::Kind kind) {
   return kNames[static_cast<std::size_t>(kind)];
 }
 
-py::list option_list(const std::string& machine, const py::object& options) {
+MachineOptions option_list(const std::string& machine, const OptionsLike& options) {
   using namespace py::literals;
   py::list out;
   for (const nc::MachineOption& option : nc::machine_options(machine, to_options(options))) {
     const nc::OptionFact& fact = option.fact;
-    out.append(py::dict("name"_a = fact.name, "kind"_a = name_of(fact.kind), "count"_a = fact.most,
-                        "unit"_a = option.unit, "words"_a = fact.words,
-                        "value"_a = fact.value ? value_of(*fact.value) : py::object(py::none()),
-                        "needed"_a = fact.needed, "own"_a = option.own, "about"_a = fact.about));
+    out.append(program_result(
+        "MachineOption",
+        py::dict("name"_a = fact.name, "kind"_a = name_of(fact.kind), "count"_a = fact.most, "unit"_a = option.unit,
+                 "words"_a = fact.words, "value"_a = fact.value ? value_of(*fact.value) : py::object(py::none()),
+                 "needed"_a = fact.needed, "own"_a = option.own, "about"_a = fact.about)));
   }
   return out;
 }
@@ -77,19 +78,45 @@ nc::Options to_options(const py::object& object) {
 }
 
 void bind_machines(py::module_& m) {
-  m.def("machines", &machine_list,
-        "Machines that programs are written for and read from, ours and your own: name to description. A post has its "
-        "machine's name; the path of a .toml file that describes one will do as well.");
+  m.def("machines", &machine_list, R"(Machines that programs are written for and read from, riffler's and your own.
 
-  m.def(
-      "machine_options", &option_list, py::arg("machine"), py::arg("options") = py::none(),
-      R"(The options that a machine takes, its own first, and those of the code that is written for it: a list of dicts.
+A post has its machine's name. Where a machine is asked for, the path of a .toml file that describes one will do as well.
 
-``name``; ``kind``: "number", "positive", "numbers", "range" (two that grow), "flag" (a bool) or "word"; ``count`` of
-numbers; ``unit``: "mm", "deg", "mm/min", "deg/min" or ""; ``words``: of which it is one; ``value``: where it is not
-given, None where there is none then; ``needed``: it must be given, with these ``options``; ``own``: of this machine's
-file, the others are of many; ``about``: one sentence.
-ValueError for a machine that is not known, and for options that are wrong.)");
+Returns
+-------
+dict
+    Name to description.
+
+Examples
+--------
+>>> "linuxcnc-xyzac" in riffler.machines()
+True
+)");
+
+  m.def("machine_options", &option_list, py::arg("machine"), py::kw_only(), py::arg("options") = py::none(),
+        R"(The options that a machine takes, its own first, and those of the code that is written for it.
+
+Parameters
+----------
+machine : str
+    A name of ``machines``, or the path of a .toml file.
+options : dict, optional
+    Options that are given: others may be needed with them.
+
+Returns
+-------
+list of MachineOption
+
+Raises
+------
+ValueError
+    For a machine that is not known, and for options that are wrong.
+
+Examples
+--------
+>>> [option.name for option in riffler.machine_options("linuxcnc-xyzac") if option.own]
+['offset', 'rot_point', 'tool_offset']
+)");
 }
 
 }  // namespace riffler::bindings

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <memory>
 
-#include "bindings/bindings.hpp"
+#include "bindings/program_types.hpp"
 #include "plan/pick.hpp"
 #include "riffler/base/check.hpp"
 #include "riffler/plan/cc_frame.hpp"
@@ -50,7 +50,7 @@ Path make(double radius, const Doubles& centres, const Doubles& contacts, const 
   return out;
 }
 
-plan::OrientationKeys to_keys(const py::object& object) {
+plan::OrientationKeys to_keys(const KeysLike& object) {
   if (!py::isinstance<py::dict>(object)) throw py::value_error("keys must be a dict: index to axis");
   plan::OrientationKeys out;
   for (const auto& [key, value] : py::cast<py::dict>(object)) {
@@ -67,22 +67,22 @@ plan::OrientationKeys to_keys(const py::object& object) {
   return out;
 }
 
-py::dict from_keys(const plan::PencilPath& path) {
+ArrayDict from_keys(const plan::PencilPath& path) {
   py::dict out;
   for (const auto& [k, axis] : path.keys) out[py::int_(k)] = from_vec3(axis);
   return out;
 }
 
-Path orient(const plan::PencilPath& path, const py::object& keys, const std::string& interpolation,
-            const py::object& limit, bool project) {
+Path orient(const plan::PencilPath& path, const KeysLike& keys, const std::string& interpolation, const ConeLike& limit,
+            bool project) {
   return std::make_shared<plan::PencilPath>(
       oriented(path, to_keys(keys), plan::interpolation_named(interpolation), to_axis_limit(limit, project)));
 }
 
-py::dict from_picked(const plan::Picked& p) {
+NearestContactResult from_picked(const plan::Picked& p) {
   using namespace py::literals;
-  return py::dict("index"_a = p.index, "side"_a = p.side, "distance"_a = p.distance, "point"_a = from_vec3(p.point),
-                  "normal"_a = from_vec3(p.normal));
+  return program_result("NearestContact", py::dict("index"_a = p.index, "side"_a = p.side, "distance"_a = p.distance,
+                                                   "point"_a = from_vec3(p.point), "normal"_a = from_vec3(p.normal)));
 }
 
 /// (n, 3, 3): rows x, y, z.
@@ -115,50 +115,118 @@ std::optional<plan::AxisLimit> to_axis_limit(const py::object& object, bool proj
 }
 
 void bind_path(py::module_& m) {
-  py::class_<plan::PencilPath, Path>(
-      m, "PencilPath",
-      R"(A curve of ball centres along a part, with what the ball touches at each. See riffler.plan. Immutable.)")
+  py::class_<plan::PencilPath, Path>(m, "PencilPath",
+                                     R"(A curve of ball centres along a part, with what the ball touches. Immutable.
+
+Parameters
+----------
+radius : float
+    Radius of the ball, mm.
+centres : array_like, shape (n, 3)
+    mm.
+contacts : array_like, shape (n, 2, 3)
+    Points of the part that the ball touches, mm.
+normals : array_like, shape (n, 2, 3)
+    The part's unit normals there, out of the material.
+closed : bool
+    A loop: its last point is joined to its first.
+
+Examples
+--------
+>>> contacts = [[(x, -1.2, 1.6), (x, 1.2, 1.6)] for x in (0, 10)]
+>>> normals = [[(0, 0.6, 0.8), (0, -0.6, 0.8)]] * 2
+>>> path = riffler.plan.PencilPath(2.0, [(0, 0, 3.2), (10, 0, 3.2)], contacts, normals)
+>>> path.length
+10.0
+)")
       .def(py::init(&make), py::arg("radius"), py::arg("centres"), py::arg("contacts"), py::arg("normals"),
-           py::arg("closed") = false,
-           R"(centres (n, 3), contacts (n, 2, 3) mm and normals (n, 2, 3), unit, out of the material.)")
-      .def_readonly("radius", &plan::PencilPath::radius, "Of the ball, mm.")
+           py::kw_only(), py::arg("closed") = false)
+      .def_readonly("radius", &plan::PencilPath::radius, "Radius of the ball, mm.")
       .def_readonly("closed", &plan::PencilPath::closed, "A loop: its last point is joined to its first.")
-      .def_property_readonly("length", &plan::PencilPath::length, "mm, of the closing edge too.")
+      .def_property_readonly("length", &plan::PencilPath::length, "mm, with the closing edge.")
       .def_property_readonly(
-          "centres", [](const plan::PencilPath& p) { return from_vec3s(p.centres); }, "(n, 3) mm")
+          "centres", [](const plan::PencilPath& p) { return from_vec3s(p.centres); }, "(n, 3) mm.")
       .def_property_readonly(
-          "contacts", [](const plan::PencilPath& p) { return from_pairs(p.contacts); }, "(n, 2, 3) mm")
+          "contacts", [](const plan::PencilPath& p) { return from_pairs(p.contacts); }, "(n, 2, 3) mm.")
       .def_property_readonly(
           "normals", [](const plan::PencilPath& p) { return from_pairs(p.normals); },
           "(n, 2, 3): unit normals of the part at the contacts, out of the material.")
       .def_property_readonly(
           "axes", [](const plan::PencilPath& p) { return from_vec3s(p.axes); },
           "(n, 3): unit tool axes, tip to spindle; (0, 3) until the path is oriented.")
-      .def_property_readonly("keys", &from_keys, "dict: index to axis, of what the axes were interpolated from.")
-      .def_readonly("interpolation", &plan::PencilPath::interpolation, "How; empty until the path is oriented.")
+      .def_property_readonly("keys", &from_keys, "The axes that the others were interpolated from, by index.")
+      .def_readonly("interpolation", &plan::PencilPath::interpolation,
+                    "How the axes were interpolated; empty until the path is oriented.")
       .def_property_readonly("frames", &frames, R"((n, 3, 3): the rows x, y, z of the frame at every point.
 
 x is the feed, z halves the angle between the directions from the contacts to the ball's centre, y = z × x.)")
-      .def(
-          "oriented", &orient, py::arg("keys"), py::arg("interpolation") = "smooth", py::kw_only(),
-          py::arg("limit") = py::none(), py::arg("project") = false,
-          R"(A new path with tool axes at all points, interpolated from ``keys``: a dict of index (from 0) to unit axis.
+      .def("orient", &orient, py::arg("keys"), py::kw_only(), py::arg("interpolation") = "smooth",
+           py::arg("limit") = py::none(), py::arg("project") = false,
+           R"(A new path with tool axes at all points, interpolated from some.
 
-``interpolation``: ``"linear"``, straight between two axes by number of points and made unit, the source's (4.4)-(4.5);
-``"slerp"``, the great circle at constant rate by arc length; ``"smooth"``, by arc length with a continuous derivative,
-at most 1.7 times as fast as slerp. Constant before the first key and after the last; on a closed path also from the
-last to the first. To adjust an interpolated axis, make it a key: ``p.oriented({**p.keys, i: axis})``.
-``limit``: (axis, angle), the cone in which the machine's rotary axes keep the tool; an axis beyond it is a ValueError
-naming the first point, or is moved onto the cone with ``project=True``. ValueError names the point of a key that is
-outside the path, not a unit vector, or opposite to the key before it.)")
+To adjust an interpolated axis, make it a key: ``p.orient({**p.keys, i: axis})``.
+
+Parameters
+----------
+keys : dict
+    Index of a point, from 0, to unit axis. Axes are constant before the first key and after the last; on a closed path
+    they are also interpolated from the last to the first.
+interpolation : {"smooth", "slerp", "linear"}
+    "linear": straight between two axes by number of points and made unit, the source's (4.4)-(4.5); "slerp": the great
+    circle at constant rate by arc length; "smooth": by arc length with a continuous derivative, at most 1.7 times as
+    fast as slerp.
+limit : tuple of axis and angle, optional
+    The cone in which the machine's rotary axes keep the tool: unit axis, half angle in rad.
+project : bool
+    Moves an axis beyond ``limit`` onto the cone; otherwise it is an error.
+
+Returns
+-------
+PencilPath
+
+Raises
+------
+ValueError
+    Naming the first point beyond ``limit``, or the key that is outside the path, no unit vector, or opposite to the key
+    before it.
+
+Examples
+--------
+>>> part = riffler.shape.relief([[1, 1], [0, 0], [1, 1]], size=(30, 20), depth=10, sink=5)
+>>> (valley,) = riffler.plan.pencil(part, riffler.Tool.ball(diameter=4, length=20))
+>>> valley.divided(10).orient({0: (0, 0, 1), 3: (0.6, 0, 0.8)}).axes.shape
+(4, 3)
+)")
       .def(
           "with_axes",
-          [](const plan::PencilPath& p, const Doubles& axes, const py::object& keys, const std::string& interpolation) {
+          [](const plan::PencilPath& p, const Doubles& axes, const KeysLike& keys, const std::string& interpolation) {
             return std::make_shared<plan::PencilPath>(
                 with_axes(p, to_vec3s(axes, "axes"), to_keys(keys), interpolation));
           },
-          py::arg("axes"), py::arg("keys") = py::dict(), py::arg("interpolation") = "",
-          "A new path with these axes (n, 3), which came about elsewhere; keys and interpolation are kept beside them.")
+          py::arg("axes"), py::kw_only(), py::arg("keys") = py::dict(), py::arg("interpolation") = "",
+          R"(A new path with axes that were computed elsewhere.
+
+Parameters
+----------
+axes : array_like, shape (n, 3)
+    Unit tool axes, tip to spindle.
+keys : dict, optional
+    Index to axis; kept with the axes.
+interpolation : str
+    Kept likewise.
+
+Returns
+-------
+PencilPath
+
+Examples
+--------
+>>> part = riffler.shape.relief([[1, 1], [0, 0], [1, 1]], size=(30, 20), depth=10, sink=5)
+>>> (valley,) = riffler.plan.pencil(part, riffler.Tool.ball(diameter=4, length=20))
+>>> valley.with_axes([(0, 0, 1)] * len(valley)).axes
+array([[0., 0., 1.],
+       [0., 0., 1.]])
+)")
       .def(
           "axis",
           [](const plan::PencilPath& p, std::size_t index, double inclination, double tilt) {
@@ -166,34 +234,110 @@ outside the path, not a unit vector, or opposite to the key before it.)")
             return from_vec3(axis_of(frame_of(p, index), {inclination, tilt}));
           },
           py::arg("index"), py::arg("inclination"), py::arg("tilt"),
-          "Unit axis at a point that leans forward by ``inclination`` and to the left by ``tilt``, rad: "
-          "cos(tilt) (sin(inclination) x + cos(inclination) z) + sin(tilt) y.")
+          R"(Unit axis that leans from the frame's z at a point: the inverse of ``lean``.
+
+cos(tilt) (sin(inclination) x + cos(inclination) z) + sin(tilt) y.
+
+Parameters
+----------
+index : int
+    Number of the point, from 0.
+inclination, tilt : float
+    rad, forward and to the left.
+
+Returns
+-------
+ndarray, shape (3,)
+
+Examples
+--------
+>>> part = riffler.shape.relief([[1, 1], [0, 0], [1, 1]], size=(30, 20), depth=10, sink=5)
+>>> (valley,) = riffler.plan.pencil(part, riffler.Tool.ball(diameter=4, length=20))
+>>> valley.axis(0, 0.0, 0.0).round(6) + 0.0
+array([0., 0., 1.])
+)")
       .def(
           "lean",
-          [](const plan::PencilPath& p, std::size_t index, const py::object& axis) {
+          [](const plan::PencilPath& p, std::size_t index, const ArrayLike& axis) -> Angles {
             const plan::Lean lean = lean_of(frame_of(p, index), plan::unit_axis(to_vec3(axis, "axis"), "axis"));
             return py::make_tuple(lean.inclination, lean.tilt);
           },
-          py::arg("index"), py::arg("axis"), "(inclination, tilt) of an axis at a point, rad: the inverse of ``axis``.")
+          py::arg("index"), py::arg("axis"),
+          R"(Inclination and tilt of an axis at a point: the inverse of ``axis``.
+
+Parameters
+----------
+index : int
+    Number of the point, from 0.
+axis : array_like, shape (3,)
+    Unit axis.
+
+Returns
+-------
+inclination, tilt : float
+    rad.
+
+Examples
+--------
+>>> part = riffler.shape.relief([[1, 1], [0, 0], [1, 1]], size=(30, 20), depth=10, sink=5)
+>>> (valley,) = riffler.plan.pencil(part, riffler.Tool.ball(diameter=4, length=20))
+>>> inclination, tilt = valley.lean(0, valley.axis(0, 0.1, 0.2))
+>>> round(inclination, 6), round(tilt, 6)
+(0.1, 0.2)
+)")
       .def(
           "nearest",
-          [](const plan::PencilPath& p, const py::object& point, const py::object& direction) {
+          [](const plan::PencilPath& p, const ArrayLike& point, const OptionalArrayLike& direction) {
             const Vec3 at = to_vec3(point, "point");
             return from_picked(direction.is_none() ? nearest_contact(p, at)
                                                    : nearest_contact(p, at, to_vec3(direction, "direction")));
           },
-          py::arg("point"), py::arg("direction") = py::none(),
-          R"(The contact nearest to a point, or to the ray from it in a direction: what a pen or a mouse points at.
+          py::arg("point"), py::kw_only(), py::arg("direction") = py::none(),
+          R"(The contact nearest to a point, or to a ray: what a pen or a mouse points at.
 
-A dict: ``index`` of the path's point, ``side`` (0 or 1) of its two contacts, ``distance`` mm, ``point``, ``normal``.)")
+Parameters
+----------
+point : array_like, shape (3,)
+    mm.
+direction : array_like, shape (3,), optional
+    The ray's direction.
+
+Returns
+-------
+NearestContact
+
+Examples
+--------
+>>> part = riffler.shape.relief([[1, 1], [0, 0], [1, 1]], size=(30, 20), depth=10, sink=5)
+>>> (valley,) = riffler.plan.pencil(part, riffler.Tool.ball(diameter=4, length=20))
+>>> valley.nearest((1, 12, 2)).index in (0, 1)
+True
+)")
       .def(
           "divided",
           [](const plan::PencilPath& path, double step) {
             return std::make_shared<plan::PencilPath>(divided(path, step));
           },
           py::arg("step"),
-          "With further points, evenly between two that are more than ``step`` mm apart (a straight valley has only "
-          "its ends), so that keys can be set there. Without axes.")
+          R"(The path with further points, so that keys can be set there: a straight valley has only its ends.
+
+Parameters
+----------
+step : float
+    mm; points are inserted evenly between two that are further apart.
+
+Returns
+-------
+PencilPath
+    Without axes.
+
+Examples
+--------
+>>> part = riffler.shape.relief([[1, 1], [0, 0], [1, 1]], size=(30, 20), depth=10, sink=5)
+>>> (valley,) = riffler.plan.pencil(part, riffler.Tool.ball(diameter=4, length=20))
+>>> len(valley), len(valley.divided(10))
+(2, 4)
+)")
       .def("__len__", &plan::PencilPath::size);
 }
 

@@ -1,275 +1,10 @@
 // riffler.pen: what a pen is and how it moves.
-#include <array>
-#include <cmath>
-#include <limits>
-
-#include "bindings/bindings.hpp"
+#include "bindings/pen_calls.hpp"
 #include "pen/arms/pens.hpp"
-#include "pen/arms/redundancy.hpp"
-#include "pen/arms/wrench_split.hpp"
-#include "riffler/pen/arms/motors.hpp"
-#include "riffler/pen/capability.hpp"
 
 namespace riffler::bindings {
 
-namespace {
-
 using namespace py::literals;
-
-using Row = std::array<double, 6>;
-
-py::array_t<double> shaped(std::vector<Row>&& rows, const std::vector<py::ssize_t>& each) {
-  std::vector<py::ssize_t> shape{static_cast<py::ssize_t>(rows.size())};
-  shape.insert(shape.end(), each.begin(), each.end());
-  return take<double>(std::move(rows), 6).reshape(shape);
-}
-
-Vec3 vector_at(const double* p) {
-  return {p[0], p[1], p[2]};
-}
-
-Row row_of(const std::array<Vec3, 2>& pair) {
-  return {pair[0].x, pair[0].y, pair[0].z, pair[1].x, pair[1].y, pair[1].z};
-}
-
-std::vector<pen::EncoderCounts> to_counts(const Doubles& array) {
-  std::vector<pen::EncoderCounts> out(check_rows(array, pen::kPenChannels, "counts"));
-  const double* p = array.data();
-  for (std::size_t row = 0; row < out.size(); ++row)
-    for (std::int32_t& count : out[row]) {
-      const double value = *p++;
-      if (value != std::floor(value) || std::abs(value + 0.5) > 0x1p31)
-        throw py::value_error("counts, row " + std::to_string(row) + ": must be whole numbers of 32 bits");
-      count = static_cast<std::int32_t>(value);
-    }
-  return out;
-}
-
-std::vector<pen::JointAngles> to_joints(const Doubles& array, const char* name) {
-  std::vector<pen::JointAngles> out(check_rows(array, 6, name));
-  const double* p = array.data();
-  for (pen::JointAngles& row : out) row = {vector_at(p), vector_at(p + 3)}, p += 6;
-  return out;
-}
-
-std::vector<Wrench> to_wrenches(const Doubles& array) {
-  std::vector<Wrench> out(check_rows(array, 6, "wrenches"));
-  const double* p = array.data();
-  for (Wrench& row : out) row = {vector_at(p), vector_at(p + 3)}, p += 6;
-  return out;
-}
-
-void check_same(std::size_t rows, std::size_t expected, const char* name) {
-  if (rows != expected)
-    throw py::value_error(std::string(name) + " must have as many rows as counts: " + std::to_string(expected) +
-                          ", not " + std::to_string(rows));
-}
-
-/// One row of six numbers for each of `in`; `row` knows nothing of Python.
-template <class In, class F>
-std::vector<Row> rows_of(const std::vector<In>& in, const F& row) {
-  const NoGil release;
-  std::vector<Row> out;
-  out.reserve(in.size());
-  for (const In& one : in) out.push_back(row(one));
-  return out;
-}
-
-py::array_t<double> forward(const pen::PenKinematics& pen, const Doubles& counts) {
-  return shaped(rows_of(to_counts(counts),
-                        [&](const pen::EncoderCounts& raw) {
-                          const Pose pose = pen.posture(raw).pose;
-                          return row_of({pose.tip, pose.axis});
-                        }),
-                {6});
-}
-
-py::array_t<double> joints(const pen::PenKinematics& pen, const Doubles& counts) {
-  return shaped(rows_of(to_counts(counts), [&](const pen::EncoderCounts& raw) { return row_of(pen.angles(raw)); }),
-                {6});
-}
-
-py::array_t<std::int32_t> counts_of(const pen::PenKinematics& pen, const Doubles& angles) {
-  std::vector<pen::EncoderCounts> out;
-  for (const pen::JointAngles& row : to_joints(angles, "joints")) out.push_back(pen.counts(row));
-  return take<std::int32_t>(std::move(out), pen::kPenChannels);
-}
-
-pen::PenKinematics homed(const pen::PenKinematics& pen, const Doubles& counts, std::int32_t probe) {
-  const std::vector<pen::EncoderCounts> rows = to_counts(counts);
-  if (rows.size() != 1) throw py::value_error("counts must have one row: what the counters read at home");
-  pen::PenKinematics out = pen;
-  out.home_at(rows[0], probe);
-  return out;
-}
-
-py::array_t<double> ends(const pen::PenKinematics& pen, const Doubles& counts) {
-  return shaped(rows_of(to_counts(counts),
-                        [&](const pen::EncoderCounts& raw) {
-                          const pen::PenPosture posture = pen.posture(raw);
-                          return row_of({posture.arms[0].end, posture.arms[1].end});
-                        }),
-                {2, 3});
-}
-
-py::array_t<double> jacobian(const pen::PenKinematics& pen, const Doubles& counts) {
-  const std::vector<pen::EncoderCounts> rows = to_counts(counts);
-  py::array_t<double> out({static_cast<py::ssize_t>(rows.size()), py::ssize_t{2}, py::ssize_t{3}, py::ssize_t{3}});
-  double* p = out.mutable_data();
-  for (const pen::EncoderCounts& raw : rows)
-    for (const pen::ArmPosture& arm : pen.posture(raw).arms)
-      for (int row = 0; row < 3; ++row)
-        for (int joint = 0; joint < 3; ++joint) *p++ = arm.jacobian[joint][row];
-  return out;
-}
-
-py::array_t<double> stretch(const pen::PenKinematics& pen, const Doubles& counts) {
-  std::vector<double> out;
-  for (const pen::EncoderCounts& raw : to_counts(counts)) out.push_back(check_grip(pen, pen.posture(raw)).stretch);
-  return take<double>(std::move(out));
-}
-
-py::array_t<double> noticed(const pen::PenKinematics& pen, const Doubles& counts) {
-  return shaped(rows_of(to_counts(counts),
-                        [&](const pen::EncoderCounts& raw) {
-                          const auto found = noticed_counts(pen, pen.posture(raw));
-                          Row row{};
-                          for (std::size_t k = 0; k < row.size(); ++k) row[k] = std::max(found[k].few, found[k].many);
-                          return row;
-                        }),
-                {6});
-}
-
-const char* name_of(pen::ReachResult reach) {
-  switch (reach) {
-    case pen::ReachResult::Reached:
-      return "reached";
-    case pen::ReachResult::TooFar:
-      return "too far";
-    case pen::ReachResult::TooNear:
-      return "too near";
-    case pen::ReachResult::OnAxis:
-      return "on axis";
-    case pen::ReachResult::Limits:
-      return "limits";
-    default:
-      return "not finite";
-  }
-}
-
-py::tuple inverse(const pen::PenKinematics& pen, const Doubles& poses) {
-  std::vector<Row> angles;
-  py::list reach;
-  for (const Pose& pose : to_poses(poses, "poses")) {
-    const pen::PenInverse found = pen.inverse(pose);
-    angles.push_back(row_of(found.angles));
-    reach.append(py::make_tuple(name_of(found.reach[0]), name_of(found.reach[1])));
-  }
-  return py::make_tuple(shaped(std::move(angles), {6}), reach);
-}
-
-py::tuple split(const pen::PenKinematics&, const Doubles& wrenches, const Doubles& apart) {
-  const std::vector<Wrench> rows = to_wrenches(wrenches);
-  const std::vector<Vec3> between = to_vec3s(apart, "apart");
-  if (between.size() != rows.size())
-    throw py::value_error("apart must have as many rows as wrenches: " + std::to_string(rows.size()) + ", not " +
-                          std::to_string(between.size()));
-  std::vector<Row> forces;
-  std::vector<Vec3> missing;
-  for (std::size_t k = 0; k < rows.size(); ++k) {
-    const pen::WrenchSplit one = pen::split_wrench(rows[k], between[k]);
-    forces.push_back(row_of(one.forces)), missing.push_back(one.missing);
-  }
-  return py::make_tuple(shaped(std::move(forces), {2, 3}), from_vec3s(missing));
-}
-
-py::tuple efforts(const pen::PenKinematics& pen, const Doubles& counts, const Doubles& wrenches, const Doubles& at) {
-  const std::vector<pen::EncoderCounts> rows = to_counts(counts);
-  const std::vector<Wrench> wanted = to_wrenches(wrenches);
-  const std::vector<Vec3> points = to_vec3s(at, "at");
-  check_same(wanted.size(), rows.size(), "wrenches");
-  check_same(points.size(), rows.size(), "at");
-  std::vector<Row> torques;
-  std::vector<Vec3> missing;
-  for (std::size_t k = 0; k < rows.size(); ++k) {
-    const pen::PenEffort effort = pen_effort(pen, pen.posture(rows[k]), wanted[k], points[k]);
-    torques.push_back(row_of(effort.torques)), missing.push_back(effort.missing);
-  }
-  return py::make_tuple(shaped(std::move(torques), {6}), from_vec3s(missing));
-}
-
-template <class F>
-py::tuple commands(const pen::PenKinematics& pen, const Doubles& torques, const F& command) {
-  std::vector<std::array<std::int16_t, pen::kPenChannels>> values;
-  std::vector<double> scales;
-  for (const pen::JointAngles& row : to_joints(torques, "torques")) {
-    const pen::MotorCommands one = command(motor_torques(pen.geometry(), row));
-    values.push_back(one.values), scales.push_back(one.scale);
-  }
-  return py::make_tuple(take<std::int16_t>(std::move(values), pen::kPenChannels), take<double>(std::move(scales)));
-}
-
-py::tuple currents(const pen::PenKinematics& pen, const Doubles& torques) {
-  return commands(pen, torques,
-                  [&](const pen::MotorTorques& motors) { return motor_currents(pen.geometry(), motors); });
-}
-
-py::tuple steps(const pen::PenKinematics& pen, const Doubles& torques) {
-  const std::optional<pen::Converter>& converter = pen.geometry().converter;
-  if (!converter) throw py::value_error("pen " + pen.geometry().name + " has no [converter]");
-  return commands(pen, torques,
-                  [&](const pen::MotorTorques& motors) { return converter_steps(pen.geometry(), *converter, motors); });
-}
-
-py::dict diagnose(const pen::PenKinematics& pen, const Doubles& counts) {
-  pen::GripDiagnosis diagnosis(pen);
-  for (const pen::EncoderCounts& raw : to_counts(counts)) diagnosis.add(pen.posture(raw));
-  const pen::GripVerdict verdict = diagnosis.verdict();
-  constexpr const char* kFaults[] = {"none", "channel", "several", "unclear"};
-  py::dict out("fault"_a = kFaults[static_cast<std::size_t>(verdict.fault)], "postures"_a = diagnosis.postures());
-  if (verdict.fault == pen::GripFault::Channel)
-    out["channel"] = verdict.channel, out["counts"] = verdict.counts, out["left"] = verdict.left;
-  return out;
-}
-
-py::dict capability(const pen::PenKinematics& pen) {
-  const pen::DeviceCapability device = pen_capability(pen.geometry());
-  py::dict axes;
-  for (std::size_t k = 0; k < haptics::kCoordinates; ++k) {
-    const pen::CoordinateCapability& c = device.coordinates[k];
-    constexpr const char* kSensing[] = {"none", "position", "rate"};
-    axes[py::str(std::string(1, "xyzabc"[k]))] =
-        py::dict("sensing"_a = kSensing[static_cast<std::size_t>(c.sensing)], "pushes"_a = c.pushes, "low"_a = c.low,
-                 "high"_a = c.high, "resolution"_a = c.resolution, "peak"_a = c.peak, "continuous"_a = c.continuous);
-  }
-  return py::dict("name"_a = device.name, "text"_a = capability_text(device), "axes"_a = axes);
-}
-
-py::list channels(const pen::PenKinematics& pen) {
-  py::list out;
-  for (const pen::PenChannel& c : pen.geometry().channels)
-    out.append(py::dict("name"_a = std::string(c.arm == pen::Arm::R ? "R" : "L") + std::to_string(c.joint + 1),
-                        "steps"_a = c.steps, "ratio"_a = c.ratio, "sign"_a = c.sign, "home"_a = c.home, "low"_a = c.low,
-                        "high"_a = c.high, "torque_constant"_a = c.torque_constant, "peak_current"_a = c.peak_current,
-                        "continuous_current"_a = c.continuous_current, "coulomb"_a = c.coulomb, "viscous"_a = c.viscous,
-                        "gravity"_a = c.gravity, "inertia"_a = c.inertia, "resistance"_a = c.resistance));
-  return out;
-}
-
-py::dict limits(const pen::PenKinematics& pen) {
-  const pen::PenGeometry& g = pen.geometry();
-  return py::dict("lower"_a = from_vec3(g.workspace.lower), "upper"_a = from_vec3(g.workspace.upper),
-                  "elbow"_a = py::make_tuple(g.elbow_low, g.elbow_high), "force"_a = g.force, "torque"_a = g.torque,
-                  "speed"_a = g.speed, "turn_rate"_a = g.turn_rate);
-}
-
-py::dict pen_list() {
-  py::dict out;
-  for (const base::DescriptionEntry& entry : pen::pens()) out[py::str(entry.name)] = entry.description;
-  return out;
-}
-
-}  // namespace
 
 void bind_pen(py::module_& m) {
   py::class_<pen::PenKinematics>(m, "PenGeometry",
@@ -277,25 +12,52 @@ void bind_pen(py::module_& m) {
 
 Two arms, R and L, hold the two ends of a grip. Counts are the six counters in the device's own order (``channels``);
 joints are θ1 θ2 θ3 of R, then of L, in rad. Poses are the grip's pivot and the unit axis along it, away from the tool's
-tip. Arrays have one row per moment.)")
+tip. Arrays have one row per moment.
+
+Examples
+--------
+>>> pen = riffler.pen.PenGeometry.load("riffler")
+>>> pen.forward([pen.home]).shape
+(1, 6)
+)")
       .def_static(
           "load", [](const std::string& name) { return pen::PenKinematics(pen::load_pen(name)); }, "name"_a,
-          "A pen of ``riffler.pen.names()``, or one that a ``.toml`` file describes. FormatError names the file's "
-          "line; "
-          "ValueError the pens there are.")
+          R"(Reads the geometry of a pen.
+
+Parameters
+----------
+name : str
+    A name of ``riffler.pen.names()``, or the path of a .toml file.
+
+Returns
+-------
+PenGeometry
+
+Raises
+------
+FormatError
+    Naming the file's line.
+ValueError
+    With the pens there are.
+
+Examples
+--------
+>>> riffler.pen.PenGeometry.load("riffler").name
+'riffler'
+)")
       .def_property_readonly(
-          "name", [](const pen::PenKinematics& p) { return p.geometry().name; }, "Its file's name.")
+          "name", [](const pen::PenKinematics& p) { return p.geometry().name; }, "Name of its file.")
       .def_property_readonly(
           "description", [](const pen::PenKinematics& p) { return p.geometry().description; },
-          "What its file says of it.")
+          "Description in its file.")
       .def_property_readonly(
           "grip_length", [](const pen::PenKinematics& p) { return p.geometry().grip_length; },
           "mm, between the arms' ends.")
       .def_property_readonly(
           "grip_tolerance", [](const pen::PenKinematics& p) { return p.geometry().grip_tolerance; },
           "mm: a larger |stretch| is a lost count or a bad homing.")
-      .def_property_readonly("channels", &channels, "The six motors with their encoders, dicts in the device's order.")
-      .def_property_readonly("limits", &limits, "Workspace, elbow, force, torque, speeds: a dict; mm, rad, s, N.")
+      .def_property_readonly("channels", &channels, "The six motors with their encoders, in the device's order.")
+      .def_property_readonly("limits", &limits, "Workspace, elbow, force, torque, speeds.")
       .def_property_readonly(
           "home",
           [](const pen::PenKinematics& p) {
@@ -303,46 +65,317 @@ tip. Arrays have one row per moment.)")
             return take<std::int32_t>(std::move(one)).reshape({static_cast<py::ssize_t>(pen::kPenChannels)});
           },
           "(6,) int32: what the counters read in the home posture.")
-      .def("forward", &forward, "counts"_a, "(n, 6) poses of (n, 6) counts: (2.3) and (2.4).")
-      .def("joints", &joints, "counts"_a, "(n, 6) joint angles of (n, 6) counts: (2.9).")
-      .def("counts", &counts_of, "joints"_a, "(n, 6) int32: the nearest counts of (n, 6) joint angles.")
-      .def("homed", &homed, "counts"_a, "probe"_a = 0, R"(The same pen, homed by its readings instead of presets.
+      .def("forward", &forward, "counts"_a, R"(Poses of counts: (2.3) and (2.4) of the source.
 
-``counts``: (1, 6), what the counters read in the home posture, and ``probe`` what the seventh does. Counters may wrap.)")
+Parameters
+----------
+counts : array_like, shape (n, 6)
+    What the counters read, in the device's order.
+
+Returns
+-------
+ndarray, shape (n, 6)
+    The grip's pivot, mm, and the unit axis along it.
+
+Examples
+--------
+>>> pen = riffler.pen.PenGeometry.load("riffler")
+>>> pen.forward([pen.home]).shape
+(1, 6)
+)")
+      .def("joints", &joints, "counts"_a, R"(Joint angles of counts: (2.9) of the source.
+
+Parameters
+----------
+counts : array_like, shape (n, 6)
+    What the counters read, in the device's order.
+
+Returns
+-------
+ndarray, shape (n, 6)
+    θ1 θ2 θ3 of R, then of L, rad.
+
+Examples
+--------
+>>> pen = riffler.pen.PenGeometry.load("riffler")
+>>> pen.joints([pen.home]).shape
+(1, 6)
+)")
+      .def("counts", &counts_of, "joints"_a, R"(The nearest counts of joint angles.
+
+Parameters
+----------
+joints : array_like, shape (n, 6)
+    θ1 θ2 θ3 of R, then of L, rad.
+
+Returns
+-------
+ndarray of int32, shape (n, 6)
+
+Examples
+--------
+>>> pen = riffler.pen.PenGeometry.load("riffler")
+>>> bool((pen.counts(pen.joints([pen.home])) == pen.home).all())
+True
+)")
+      .def("homed", &homed, "counts"_a, py::kw_only(), "probe"_a = 0,
+           R"(The same pen, homed by its readings instead of presets. Counters may wrap.
+
+Parameters
+----------
+counts : array_like, shape (1, 6)
+    What the counters read in the home posture.
+probe : int
+    What the seventh counter reads there.
+
+Returns
+-------
+PenGeometry
+
+Examples
+--------
+>>> pen = riffler.pen.PenGeometry.load("riffler")
+>>> pen.homed([pen.home + 100]).name
+'riffler'
+)")
       .def("probe_angle", &pen::PenKinematics::probe_angle, "count"_a,
-           "rad: the grip's rotation about the pose's axis, turns added up, of the seventh counter.")
-      .def("ends", &ends, "counts"_a, "(n, 2, 3) mm: ends of R and of L in the arms' frame, (2.1) and (2.2).")
+           R"(The grip's rotation about the pose's axis, turns added up.
+
+Parameters
+----------
+count : int
+    What the seventh counter reads.
+
+Returns
+-------
+float
+    rad.
+
+Examples
+--------
+>>> pen = riffler.pen.PenGeometry.load("riffler")
+>>> pen.probe_angle(0)
+0.0
+)")
+      .def("ends", &ends, "counts"_a, R"(Ends of the arms in their frame: (2.1) and (2.2) of the source.
+
+Parameters
+----------
+counts : array_like, shape (n, 6)
+    What the counters read, in the device's order.
+
+Returns
+-------
+ndarray, shape (n, 2, 3)
+    Of R and of L, mm.
+
+Examples
+--------
+>>> pen = riffler.pen.PenGeometry.load("riffler")
+>>> pen.ends([pen.home]).shape
+(1, 2, 3)
+)")
       .def("jacobian", &jacobian, "counts"_a,
-           "(n, 2, 3, 3) mm/rad: of R and of L, the derivative of the end's x y z by its θ1 θ2 θ3 (2.7), (2.8).")
+           R"(Derivative of each arm's end by its joint angles: (2.7) and (2.8) of the source.
+
+Parameters
+----------
+counts : array_like, shape (n, 6)
+    What the counters read, in the device's order.
+
+Returns
+-------
+ndarray, shape (n, 2, 3, 3)
+    Of R and of L: x y z by θ1 θ2 θ3, mm/rad.
+
+Examples
+--------
+>>> pen = riffler.pen.PenGeometry.load("riffler")
+>>> pen.jacobian([pen.home]).shape
+(1, 2, 3, 3)
+)")
       .def("inverse", &inverse, "poses"_a, R"(Joint angles of poses.
 
-Returns (n, 6) joints and a list of pairs, of R and of L: "reached", "too far", "too near", "on axis" (of θ1, or folded),
-"limits" (the angles are beyond the joints' or the elbow's) or "not finite".)")
+Parameters
+----------
+poses : array_like, shape (n, 6)
+    The grip's pivot, mm, and the unit axis along it.
+
+Returns
+-------
+joints : ndarray, shape (n, 6)
+    rad.
+reach : list of tuple
+    Of R and of L: "reached", "too far", "too near", "on axis" (of θ1, or folded), "limits" (the angles are beyond the
+    joints' or the elbow's) or "not finite".
+
+Examples
+--------
+>>> pen = riffler.pen.PenGeometry.load("riffler")
+>>> joints, reach = pen.inverse(pen.forward([pen.home]))
+>>> reach
+[('reached', 'reached')]
+)")
       .def("split", &split, "wrenches"_a, "apart"_a, R"(What the arms push with for a force and a torque on the hand.
 
-``wrenches``: (n, 6), force in N and torque in N·mm about the grip's pivot; ``apart``: (n, 3), from R's end to L's.
-Returns (n, 2, 3) forces of R and of L, and (n, 3) the torque that cannot be felt: its part along the grip.)")
+Parameters
+----------
+wrenches : array_like, shape (n, 6)
+    Force, N, and torque about the grip's pivot, N·mm.
+apart : array_like, shape (n, 3)
+    From R's end to L's, mm.
+
+Returns
+-------
+forces : ndarray, shape (n, 2, 3)
+    Of R and of L, N.
+missing : ndarray, shape (n, 3)
+    The torque that cannot be felt: its part along the grip, N·mm.
+
+Examples
+--------
+>>> pen = riffler.pen.PenGeometry.load("riffler")
+>>> forces, missing = pen.split([(0, 0, 1, 0, 0, 0)], [(0, 0, 50)])
+>>> forces.sum(axis=1)
+array([[0., 0., 1.]])
+)")
       .def("efforts", &efforts, "counts"_a, "wrenches"_a, "at"_a, R"(Joint torques for a force and a torque on the hand.
 
-``wrenches``: (n, 6), about the points ``at`` (n, 3), both in the frame of poses. Returns (n, 6) joint torques in N·mm and
-the (n, 3) torque that cannot be felt.)")
-      .def("motor_currents", &currents, "torques"_a, R"(What the motors are told for (n, 6) joint torques, N·mm.
+Parameters
+----------
+counts : array_like, shape (n, 6)
+    What the counters read, in the device's order.
+wrenches : array_like, shape (n, 6)
+    Force, N, and torque, N·mm, in the frame of poses.
+at : array_like, shape (n, 3)
+    About which points the torques are, mm.
 
-Returns (n, 6) int16, mA in the device's order, and (n,) the factor that all six of a row were scaled by so that none
-passes its peak.)")
+Returns
+-------
+torques : ndarray, shape (n, 6)
+    Of the joints, N·mm.
+missing : ndarray, shape (n, 3)
+    The torque that cannot be felt, N·mm.
+
+Examples
+--------
+>>> pen = riffler.pen.PenGeometry.load("riffler")
+>>> torques, missing = pen.efforts([pen.home], [(0, 0, 1, 0, 0, 0)], pen.forward([pen.home])[:, :3])
+>>> torques.shape
+(1, 6)
+)")
+      .def("motor_currents", &currents, "torques"_a, R"(Motor currents for joint torques.
+
+Parameters
+----------
+torques : array_like, shape (n, 6)
+    Of the joints, N·mm.
+
+Returns
+-------
+currents : ndarray of int16, shape (n, 6)
+    mA, in the device's order.
+scale : ndarray, shape (n,)
+    The factor by which all six of a row were scaled, so that none passes its peak.
+
+Examples
+--------
+>>> pen = riffler.pen.PenGeometry.load("riffler")
+>>> currents, scale = pen.motor_currents([(1, 0, 0, 0, 0, 0)])
+>>> scale
+array([1.])
+)")
       .def("converter_steps", &steps, "torques"_a,
-           "As motor_currents, in the steps of the pen's digital to analogue converter.")
-      .def("stretch", &stretch, "counts"_a, "(n,) mm: by which the grip comes out longer than it is.")
-      .def("noticed_counts", &noticed, "counts"_a, R"((n, 6): how many counts each channel may be off before it shows.
+           R"(As ``motor_currents``, in the steps of the pen's digital to analogue converter.
 
-Whichever way it is off, all other channels being right; infinite where none shows, and 0 in rows that do not fit.)")
-      .def("diagnose", &diagnose, "counts"_a, R"(Which counter is wrong, from (n, 6) counts of different postures.
+Parameters
+----------
+torques : array_like, shape (n, 6)
+    Of the joints, N·mm.
 
-A dict: ``fault`` is "none", "channel" (then ``channel``, the ``counts`` that it reads too many, and ``left``, the mm that
-stay unexplained), "several" (bad homing, or another pen) or "unclear" (move the pen: twelve postures that differ by
-0.02 rad are needed).)")
-      .def("capability", &capability,
-           "What each coordinate senses and pushes: a dict with ``text`` and ``axes``, x y z a b c.");
+Returns
+-------
+steps : ndarray of int16, shape (n, 6)
+scale : ndarray, shape (n,)
+
+Raises
+------
+ValueError
+    For a pen without a converter.
+
+Examples
+--------
+>>> riffler.pen.PenGeometry.load("riffler").converter_steps([(1, 0, 0, 0, 0, 0)])
+Traceback (most recent call last):
+    ...
+ValueError: pen riffler has no [converter]
+)")
+      .def("stretch", &stretch, "counts"_a, R"(By how much the grip comes out longer than it is.
+
+Parameters
+----------
+counts : array_like, shape (n, 6)
+    What the counters read, in the device's order.
+
+Returns
+-------
+ndarray, shape (n,)
+    mm.
+
+Examples
+--------
+>>> pen = riffler.pen.PenGeometry.load("riffler")
+>>> pen.stretch([pen.home]).shape
+(1,)
+)")
+      .def("noticed_counts", &noticed, "counts"_a,
+           R"(How many counts each channel may be off, in either direction, before it shows, all others being right.
+
+Parameters
+----------
+counts : array_like, shape (n, 6)
+    What the counters read, in the device's order.
+
+Returns
+-------
+ndarray, shape (n, 6)
+    Infinite where none shows, and 0 in rows that do not fit.
+
+Examples
+--------
+>>> pen = riffler.pen.PenGeometry.load("riffler")
+>>> pen.noticed_counts([pen.home]).shape
+(1, 6)
+)")
+      .def("diagnose", &diagnose, "counts"_a, R"(Which counter is wrong, from counts of different postures.
+
+Parameters
+----------
+counts : array_like, shape (n, 6)
+    What the counters read, in the device's order.
+
+Returns
+-------
+riffler.pen.GripDiagnosis
+
+Examples
+--------
+>>> pen = riffler.pen.PenGeometry.load("riffler")
+>>> pen.diagnose([pen.home]).fault
+'unclear'
+)")
+      .def("capability", &capability, R"(What each coordinate senses and pushes.
+
+Returns
+-------
+riffler.pen.PenCapability
+
+Examples
+--------
+>>> pen = riffler.pen.PenGeometry.load("riffler")
+>>> pen.capability().axes["x"].sensing
+'position'
+)");
   m.def("_pens", &pen_list);
 }
 

@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "bindings/task.hpp"
+#include "bindings/typed.hpp"
 #include "plan/passes.hpp"
 #include "riffler/plan/pencil.hpp"
 #include "riffler/tool/tool.hpp"
@@ -40,7 +41,7 @@ void bind_pencil(py::module_& m) {
       "pencil",
       [](const std::shared_ptr<Mesh>& part, const Tool& tool, double tolerance, std::optional<double> bitangency_angle,
          double minimum_length, int passes, std::optional<double> stepover, double overthickness,
-         const py::object& progress) {
+         const ProgressLike& progress) {
         plan::PencilOptions options;
         options.tolerance = tolerance, options.bitangency_angle = bitangency_angle;
         options.minimum_length = minimum_length, options.passes = passes, options.stepover = stepover;

@@ -2,6 +2,7 @@
 #include <limits>
 #include <memory>
 
+#include "bindings/program_types.hpp"
 #include "bindings/task.hpp"
 #include "riffler/base/parallel.hpp"
 #include "riffler/collide/collider.hpp"
@@ -18,13 +19,6 @@ namespace {
 using namespace py::literals;
 using Path = std::shared_ptr<plan::PencilPath>;
 using Obstacle = std::shared_ptr<collide::Collider>;
-
-std::vector<Vec3> to_vec3s(const Doubles& array, const char* name) {
-  const std::size_t n = check_rows(array, 3, name);
-  std::vector<Vec3> out(n);
-  for (std::size_t i = 0; i < n; ++i) out[i] = {array.data()[3 * i], array.data()[3 * i + 1], array.data()[3 * i + 2]};
-  return out;
-}
 
 std::vector<Vec3> to_units(const Doubles& array, const char* name, std::size_t n) {
   std::vector<Vec3> out = to_vec3s(array, name);
@@ -43,7 +37,7 @@ std::vector<Pose> to_unit_poses(const Doubles& array) {
 }
 
 py::array_t<double> contact_locations(const Tool& tool, const Doubles& contacts, const Doubles& normals,
-                                      const Doubles& axes, const py::object& feeds) {
+                                      const Doubles& axes, const OptionalArrayLike& feeds) {
   const std::vector<Vec3> at = to_vec3s(contacts, "contacts");
   const std::vector<Vec3> n = to_units(normals, "normals", at.size()), o = to_units(axes, "axes", at.size());
   std::vector<Vec3> feed(at.size(), Vec3(0));
@@ -68,7 +62,7 @@ py::list names_of(const std::vector<collide::Touch>& touches) {
 }
 
 py::dict lift_all(const Tool& tool, const Doubles& array, const collide::Collider& collider, double clearance,
-                  double tolerance, double max_lift, int max_evaluations, const py::object& callable) {
+                  double tolerance, double max_lift, int max_evaluations, const ProgressLike& callable) {
   const std::vector<Pose> poses = to_unit_poses(array);
   const plan::LiftRule rule{clearance, tolerance, max_lift, max_evaluations};
   validate(rule);
@@ -97,8 +91,8 @@ py::dict lift_all(const Tool& tool, const Doubles& array, const collide::Collide
                   "evaluations"_a = take<int>(std::move(evaluations)));
 }
 
-py::tuple drop_all(const Tool& tool, const Doubles& array, const Mesh& part, const py::object& axis,
-                   const py::object& callable) {
+ArrayPair drop_all(const Tool& tool, const Doubles& array, const Mesh& part, const ArrayLike& axis,
+                   const ProgressLike& callable) {
   const std::vector<Vec3> points = to_vec3s(array, "points");
   const Vec3 up = plan::unit_axis(to_vec3(axis, "axis"), "axis");
   std::vector<double> heights(points.size(), std::numeric_limits<double>::quiet_NaN());
@@ -128,14 +122,14 @@ py::dict from_locations(const plan::CutterLocations& found) {
   return py::dict("cl"_a = take<double>(std::move(poses), 6), "points"_a = take<std::int64_t>(std::move(points)),
                   "lift"_a = take<double>(std::move(lift)), "before"_a = take<double>(std::move(before)),
                   "clearance"_a = take<double>(std::move(clearance)), "pieces"_a = names_of(touches),
-                  "blocked"_a = blocked, "unsafe"_a = unsafe, "least_clearance"_a = found.least_clearance,
+                  "blocked"_a = blocked, "unsafe"_a = unsafe, "min_clearance"_a = found.least_clearance,
                   "bound"_a = found.bound, "evaluations"_a = found.evaluations, "ok"_a = found.good());
 }
 
 /// `from`: a shared path or vector of poses.
 template <class From>
 auto locate(const std::shared_ptr<From>& from, const Tool& tool, const Obstacle& collider, double clearance,
-            double tolerance, double max_lift, int max_inserted, const py::object& progress) {
+            double tolerance, double max_lift, int max_inserted, const ProgressLike& progress) {
   plan::LocationRule rule;
   rule.clearance = clearance, rule.tolerance = tolerance, rule.max_lift = max_lift, rule.max_inserted = max_inserted;
   const auto work = [=](const Progress& listener) {
@@ -145,13 +139,13 @@ auto locate(const std::shared_ptr<From>& from, const Tool& tool, const Obstacle&
 }
 
 auto locate_poses(const Doubles& poses, const Tool& tool, const Obstacle& collider, double clearance, double tolerance,
-                  double max_lift, int max_inserted, const py::object& progress) {
+                  double max_lift, int max_inserted, const ProgressLike& progress) {
   const auto from = std::make_shared<const std::vector<Pose>>(to_unit_poses(poses));
   return locate(from, tool, collider, clearance, tolerance, max_lift, max_inserted, progress);
 }
 
 plan::MapRule to_rule(const std::vector<double>& inclinations, const std::vector<double>& tilts, double clearance,
-                      double tolerance, const py::object& limit) {
+                      double tolerance, const ConeLike& limit) {
   return {inclinations, tilts, clearance, tolerance, to_axis_limit(limit)};
 }
 
@@ -173,7 +167,7 @@ py::list from_maps(const std::vector<plan::OrientationMap>& found) {
 
 auto maps(const Path& path, const std::vector<std::size_t>& points, const Tool& tool, const Obstacle& collider,
           const std::vector<double>& inclinations, const std::vector<double>& tilts, double clearance, double tolerance,
-          const py::object& limit, const py::object& progress) {
+          const ConeLike& limit, const ProgressLike& progress) {
   const plan::MapRule rule = to_rule(inclinations, tilts, clearance, tolerance, limit);
   const auto work = [=](const Progress& listener) {
     return orientation_maps(*path, points, collide::Assembly(tool), *collider, rule, listener);
@@ -188,8 +182,8 @@ py::dict from_answer(plan::TiltAnswer&& found) {
 }
 
 auto choose(const Path& path, const Tool& tool, const Obstacle& collider, const std::vector<double>& inclinations,
-            const std::vector<double>& tilts, double clearance, double tolerance, const py::object& limit,
-            double max_change, double smoothness, const py::object& progress) {
+            const std::vector<double>& tilts, double clearance, double tolerance, const ConeLike& limit,
+            double max_change, double smoothness, const ProgressLike& progress) {
   const plan::TiltRule rule{to_rule(inclinations, tilts, clearance, tolerance, limit), max_change, smoothness};
   const auto work = [=](const Progress& listener) {
     return least_tilt(*path, collide::Assembly(tool), *collider, rule, listener);
@@ -210,9 +204,8 @@ void bind_plan(py::module_& m) {
         "clearance"_a, "tolerance"_a, "max_lift"_a, "max_inserted"_a, "progress"_a);
   m.def("orientation_maps", &maps, "path"_a.none(false), "points"_a, "tool"_a, "collider"_a.none(false), py::kw_only(),
         "inclinations"_a, "tilts"_a, "clearance"_a, "tolerance"_a, "limit"_a, "progress"_a);
-  m.def("least_tilt", &choose, "path"_a.none(false), "tool"_a, "collider"_a.none(false), py::kw_only(),
-        "inclinations"_a, "tilts"_a, "clearance"_a, "tolerance"_a, "limit"_a, "max_change"_a, "smoothness"_a,
-        "progress"_a);
+  m.def("min_tilt", &choose, "path"_a.none(false), "tool"_a, "collider"_a.none(false), py::kw_only(), "inclinations"_a,
+        "tilts"_a, "clearance"_a, "tolerance"_a, "limit"_a, "max_change"_a, "smoothness"_a, "progress"_a);
 }
 
 }  // namespace riffler::bindings

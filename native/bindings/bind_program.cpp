@@ -12,7 +12,7 @@ namespace {
 
 using Via = std::shared_ptr<const std::vector<Pose>>;
 
-std::map<std::size_t, Via> to_vias(const py::object& object, std::size_t rows) {
+std::map<std::size_t, Via> to_vias(const ViaLike& object, std::size_t rows) {
   std::map<std::size_t, Via> out;
   if (object.is_none()) return out;
   if (!py::isinstance<py::dict>(object)) throw py::value_error("via must be a dict: row to poses (k, 6)");
@@ -27,7 +27,7 @@ std::map<std::size_t, Via> to_vias(const py::object& object, std::size_t rows) {
   return out;
 }
 
-py::dict vias_of(const nc::Program& program) {
+ArrayDict vias_of(const nc::Program& program) {
   py::dict out;
   for (const auto& [row, via] : program.via()) {
     py::array_t<double> poses({static_cast<py::ssize_t>(via->size()), py::ssize_t{6}});
@@ -37,13 +37,13 @@ py::dict vias_of(const nc::Program& program) {
   return out;
 }
 
-nc::Program make_program(const Doubles& poses, const py::object& feed, const py::object& rapid, const py::object& tool,
-                         const py::object& line, const py::object& spindle, const py::object& tools,
-                         const py::object& provenance, const std::vector<nc::Note>& notes, const py::object& at_machine,
-                         const py::object& via) {
+nc::Program make_program(const Doubles& poses, const ArrayLike& feed, const ArrayLike& rapid, const ArrayLike& tool,
+                         const ArrayLike& line, const ArrayLike& spindle, const ToolsLike& tools,
+                         const StringsLike& provenance, const std::vector<nc::Note>& notes, const ArrayLike& at_machine,
+                         const ViaLike& via) {
   const std::vector<Pose> rows = to_poses(poses, "poses");
   const std::size_t n = rows.size();
-  const auto column = [&](const py::object& object, const char* name) { return to_column(object, n, name); };
+  const auto column = [&](const ArrayLike& object, const char* name) { return to_column(object, n, name); };
   const std::vector<double> feeds = column(feed, "feed"), rapids = column(rapid, "rapid"),
                             numbers = column(tool, "tool"), lines = column(line, "line"),
                             speeds = column(spindle, "spindle"), away = column(at_machine, "at_machine");
@@ -62,10 +62,10 @@ nc::Program make_program(const Doubles& poses, const py::object& feed, const py:
 
 /// A read-only view of a column of the program that `self` holds.
 template <class T, class V>
-py::array view(const py::object& self, const std::vector<V>& column, py::ssize_t wide = 0) {
+py::array_t<T> view(const py::object& self, const std::vector<V>& column, py::ssize_t wide = 0) {
   const auto n = static_cast<py::ssize_t>(column.size());
   const std::vector<py::ssize_t> shape = wide ? std::vector<py::ssize_t>{n, wide} : std::vector<py::ssize_t>{n};
-  py::array out(py::dtype::of<T>(), shape, reinterpret_cast<const T*>(column.data()), self);
+  py::array_t<T> out(shape, reinterpret_cast<const T*>(column.data()), self);
   out.attr("setflags")(py::arg("write") = false);
   return out;
 }
@@ -77,11 +77,11 @@ auto column_getter(const std::vector<V>& (nc::Program::*column)() const) {
   return [column](const py::object& self) { return view<V>(self, (py::cast<const nc::Program&>(self).*column)()); };
 }
 
-py::array poses(const py::object& self) {
+py::array_t<double> poses(const py::object& self) {
   return view<double>(self, py::cast<const nc::Program&>(self).poses(), 6);
 }
 
-py::list cuts(const py::object& self) {
+CutList cuts(const py::object& self) {
   py::list out;
   const auto& given = py::cast<const nc::Program&>(self);
   const py::object whole = given.via().empty() ? self : py::cast(followed(given));
@@ -92,13 +92,19 @@ py::list cuts(const py::object& self) {
   return out;
 }
 
-py::dict tools_of(const nc::Program& program) {
+ToolDict tools_of(const nc::Program& program) {
   py::dict out;
   for (const auto& [number, tool] : program.tools) out[py::int_(number)] = tool;
   return out;
 }
 
-nc::Program edited_transform(const nc::Program& program, const py::object& matrix) {
+StringDict provenance_of(const nc::Program& program) {
+  py::dict out;
+  for (const auto& [key, value] : program.provenance) out[py::str(key)] = value;
+  return out;
+}
+
+nc::Program edited_transform(const nc::Program& program, const ArrayLike& matrix) {
   const auto [turn, shift] = to_affine(matrix, "matrix");
   return transformed(program, turn, shift);
 }
@@ -112,26 +118,57 @@ std::string repr(const nc::Program& program) {
 }  // namespace
 
 void bind_program(py::module_& m) {
-  py::class_<nc::Program, std::shared_ptr<nc::Program>>(m, "Program",
-                                                        R"(Where the tool goes, how fast and with which tool; immutable.
+  ProgramClass(m, "Program", R"(Where the tool goes, how fast and with which tool; immutable.
 
 One row per move end. Between two rows the tip moves on a line and the axis on the great circle at constant rate, by way
 of the poses in ``via`` where there are any.
-``tools`` is a dict of the tools whose shape is known, by number; ``provenance`` a dict of strings that the header
-comment of the NC code repeats. Lengths in mm, feed in mm/min at the tip, spindle in rev/min.)")
-      .def(py::init(&make_program), py::arg("poses"), py::arg("feed"), py::arg("rapid") = false, py::arg("tool") = 1,
-           py::arg("line") = 0, py::arg("spindle") = 0.0, py::arg("tools") = py::none(),
-           py::arg("provenance") = py::none(), py::arg_v("notes", std::vector<nc::Note>(), "[]"),
-           py::arg("at_machine") = false, py::arg("via") = py::none(),
-           R"(From columns: poses (n, 6), everything else one value for all rows or (n,).
 
-ValueError names the row: not finite, not a unit axis, a feed of 0 where the tip moves, ``at_machine`` with another pose
-than the row before.)")
+Parameters
+----------
+poses : array_like, shape (n, 6)
+    Tip in mm and unit axis, tip to spindle.
+feed : array_like, shape (n,), or float
+    mm/min at the tip.
+rapid : array_like of bool, shape (n,), or bool
+    Rows that end a rapid.
+tool : array_like of int, shape (n,), or int
+    Tool numbers; 0: none.
+line : array_like of int, shape (n,), or int
+    Source lines from 1; 0: no source.
+spindle : array_like, shape (n,), or float
+    rev/min; negative counter-clockwise, 0 stopped.
+tools : dict, optional
+    Number to Tool, of the tools whose shape is known.
+provenance : dict, optional
+    Strings that the header comment of the NC code repeats.
+notes : list of Note
+    What the reader of NC code assumed or passed over.
+at_machine : array_like of bool, shape (n,), or bool
+    Rows that end at a position of the machine whose place in the part is not known.
+via : dict, optional
+    Row to poses (k, 6) on the way there.
+
+Raises
+------
+ValueError
+    Naming the row: not finite, not a unit axis, a feed of 0 where the tip moves, ``at_machine`` with another pose than
+    the row before.
+
+Examples
+--------
+>>> program = riffler.Program([(0, 0, 5, 0, 0, 1), (20, 0, 5, 0, 0, 1)], feed=600, rapid=[True, False])
+>>> program.feed
+array([  0., 600.])
+)")
+      .def(py::init(&make_program), py::arg("poses"), py::arg("feed"), py::kw_only(), py::arg("rapid") = false,
+           py::arg("tool") = 1, py::arg("line") = 0, py::arg("spindle") = 0.0, py::arg("tools") = py::none(),
+           py::arg("provenance") = py::none(), py::arg_v("notes", std::vector<nc::Note>(), "[]"),
+           py::arg("at_machine") = false, py::arg("via") = py::none())
       .def_property_readonly("poses", &poses, "(n, 6): tip xyz, unit axis xyz (tip to spindle). Read-only view.")
       .def_property_readonly("feed", column_getter(&nc::Program::feed), "(n,) mm/min at the tip; 0 for rapids.")
       .def_property_readonly(
           "rapid", [](const py::object& self) { return view<bool>(self, py::cast<const nc::Program&>(self).rapid()); },
-          "(n,) bool.")
+          "(n,) bool: rows that end a rapid.")
       .def_property_readonly(
           "at_machine",
           [](const py::object& self) { return view<bool>(self, py::cast<const nc::Program&>(self).at_machine()); },
@@ -141,31 +178,82 @@ than the row before.)")
       .def_property_readonly("line", column_getter(&nc::Program::line), "(n,) int32 source lines from 1; 0: no source.")
       .def_property_readonly("spindle", column_getter(&nc::Program::spindle),
                              "(n,) rev/min; negative counter-clockwise, 0 stopped.")
-      .def_property_readonly("tools", &tools_of, "dict: number to Tool, of the tools whose shape is known.")
-      .def_property_readonly(
-          "provenance",
-          [](const nc::Program& self) {
-            py::dict out;
-            for (const auto& [key, value] : self.provenance) out[py::str(key)] = value;
-            return out;
-          },
-          "dict of strings.")
+      .def_property_readonly("tools", &tools_of, "Tools whose shape is known, by number.")
+      .def_property_readonly("provenance", &provenance_of, "Strings that the header comment of the NC code repeats.")
       .def_property_readonly(
           "notes", [](const nc::Program& self) { return self.notes; },
-          "What the reader assumed or passed over: a list of Note. Programs that are made of numbers have none.")
+          "What the reader assumed or passed over. Programs that are made of numbers have none.")
       .def_property_readonly(
           "via", &vias_of,
-          "dict: row to (k, 6) poses on the way there, where rotary axes that turn evenly take the tool another way "
-          "than the "
-          "great circle: by more than 0.002 rad, in programs that were read without ``axis_tolerance``.")
+          "(k, 6) poses on the way to a row, by row: where rotary axes that turn evenly take the tool off the great "
+          "circle by more than 0.002 rad, in programs that were read without ``axis_tolerance``.")
       .def(
           "followed", [](const nc::Program& self) { return followed(self); },
-          "With the poses of ``via`` as rows of their own: between its rows the tool moves as the machine moves it.")
-      .def("trimmed", &nc::trimmed, py::arg("first"), py::arg("last"),
-           "Rows [first, last) as a program. The first of them is a rapid; an approach is yours to put before it.")
-      .def("transformed", &edited_transform, py::arg("matrix"),
-           "In another clamping: ``matrix`` (4, 4) turns and moves (mm) the part, without scale or mirror.")
-      .def("retimed", &nc::scale_feeds, py::arg("factor"), "Feeds times ``factor``; rapids as they are.")
+          R"(The program with the poses of ``via`` as rows of their own.
+
+Between its rows the tool moves as the machine moves it.
+
+Returns
+-------
+Program
+
+Examples
+--------
+>>> program = riffler.Program([(0, 0, 5, 0, 0, 1), (20, 0, 5, 0, 0, 1)], feed=600, rapid=[True, False])
+>>> len(program.followed())
+2
+)")
+      .def("trimmed", &nc::trimmed, py::arg("first"), py::arg("last"), R"(Some rows as a program.
+
+Parameters
+----------
+first, last : int
+    Rows ``first`` to ``last`` - 1. The first of them becomes a rapid; an approach is the caller's to put before it.
+
+Returns
+-------
+Program
+
+Examples
+--------
+>>> program = riffler.Program([(x, 0, 5, 0, 0, 1) for x in range(5)], feed=600)
+>>> len(program.trimmed(1, 4))
+3
+)")
+      .def("transformed", &edited_transform, py::arg("matrix"), R"(The program in another clamping.
+
+Parameters
+----------
+matrix : array_like, shape (4, 4)
+    Turns and moves (mm) the part, without scale or mirror.
+
+Returns
+-------
+Program
+
+Examples
+--------
+>>> program = riffler.Program([(x, 0, 5, 0, 0, 1) for x in range(5)], feed=600)
+>>> program.transformed(np.diag([-1, -1, 1, 1])).poses[1, :3]
+array([-1.,  0.,  5.])
+)")
+      .def("scale_feeds", &nc::scale_feeds, py::arg("factor"), R"(The program with other feeds; rapids are unchanged.
+
+Parameters
+----------
+factor : float
+    By which feeds are multiplied.
+
+Returns
+-------
+Program
+
+Examples
+--------
+>>> program = riffler.Program([(x, 0, 5, 0, 0, 1) for x in range(2)], feed=600)
+>>> program.scale_feeds(0.5).feed
+array([300., 300.])
+)")
       .def_static(
           "joined",
           [](const std::vector<std::reference_wrapper<const nc::Program>>& programs) {
@@ -173,14 +261,64 @@ than the row before.)")
             for (const nc::Program& program : programs) all.push_back(&program);
             return joined(all);
           },
-          py::arg("programs"), "One after the other. ValueError where one number stands for tools of two shapes.")
-      .def("retooled", &nc::renumber_tools, py::arg("numbers"),
-           "Tool numbers by a dict old: new; those that are not in it stay. ValueError where two shapes would share "
-           "one.")
-      .def("cuts", &cuts,
-           "For replay: a list of (tool number, poses (k, 6)), one per run of rows in the part with one tool, rapids "
-           "and the "
-           "poses of ``via`` included.")
+          py::arg("programs"), R"(Programs one after the other.
+
+Parameters
+----------
+programs : list of Program
+    In their order.
+
+Returns
+-------
+Program
+
+Raises
+------
+ValueError
+    Where one number stands for tools of two shapes.
+
+Examples
+--------
+>>> program = riffler.Program([(x, 0, 5, 0, 0, 1) for x in range(5)], feed=600)
+>>> len(riffler.Program.joined([program, program]))
+10
+)")
+      .def("renumber_tools", &nc::renumber_tools, py::arg("numbers"), R"(The program with other tool numbers.
+
+Parameters
+----------
+numbers : dict
+    Old number to new; a tool that is not in it keeps its number.
+
+Returns
+-------
+Program
+
+Raises
+------
+ValueError
+    Where two shapes would share a number.
+
+Examples
+--------
+>>> program = riffler.Program([(x, 0, 5, 0, 0, 1) for x in range(2)], feed=600, tool=1)
+>>> program.renumber_tools({1: 7}).tool
+array([7, 7], dtype=int32)
+)")
+      .def("cuts", &cuts, R"(The poses for a replay, tool by tool.
+
+Returns
+-------
+list of tuple
+    (tool number, poses (k, 6)), one for each run of rows in the part with one tool; rapids and the poses of ``via`` are
+    included.
+
+Examples
+--------
+>>> program = riffler.Program([(x, 0, 5, 0, 0, 1) for x in range(5)], feed=600, tool=3)
+>>> [(number, poses.shape) for number, poses in program.cuts()]
+[(3, (5, 6))]
+)")
       .def("__len__", &nc::Program::size)
       .def("__repr__", &repr);
 }

@@ -28,13 +28,13 @@ nc::Program program_of(const py::bytes& bytes) {
   return nc::parse_program(view, "program");
 }
 
-void save(const nc::Program& program, const std::filesystem::path& path, const py::object& progress) {
+void save(const nc::Program& program, const std::filesystem::path& path, const ProgressLike& progress) {
   const Progress listener = to_progress(progress);
   const NoGil release;
   save_program(program, path, listener);
 }
 
-nc::Program load(const std::filesystem::path& path, const py::object& progress) {
+nc::Program load(const std::filesystem::path& path, const ProgressLike& progress) {
   const Progress listener = to_progress(progress);
   const NoGil release;
   return nc::load_program(path, listener);
@@ -45,14 +45,85 @@ nc::Program load(const std::filesystem::path& path, const py::object& progress) 
 void bind_program_file(py::module_& m) {
   ProgramClass program = program_class(m);
   program
-      .def("save", &save, py::arg("path"), py::arg("progress") = py::none(),
-           R"(Writes a .rprog file, whole or not at all: everything to the bit, which NC code cannot keep.
+      .def("save", &save, py::arg("path"), py::kw_only(), py::arg("progress") = py::none(),
+           R"(Writes a .rprog file: everything to the bit, which NC code cannot keep.
 
-The same program gives the same bytes.)")
-      .def_static("load", &load, py::arg("path"), py::arg("progress") = py::none(),
-                  "Reads a .rprog file; FormatError naming the byte where it is damaged or not one.")
-      .def("to_bytes", &bytes_of, "The bytes of the .rprog file.")
-      .def_static("from_bytes", &program_of, py::arg("data"), "A program from the bytes of a .rprog file.")
+The file is whole or not there. The same program gives the same bytes.
+
+Parameters
+----------
+path : path_like
+    The file.
+progress : callable, optional
+    Called with the finished share; returning False cancels.
+
+Examples
+--------
+>>> program = riffler.Program([(x, 0, 5, 0, 0, 1) for x in range(5)], feed=600)
+>>> program.save(folder / "part.rprog")
+>>> len(riffler.Program.load(folder / "part.rprog"))
+5
+)")
+      .def_static("load", &load, py::arg("path"), py::kw_only(), py::arg("progress") = py::none(),
+                  R"(Reads a .rprog file.
+
+Parameters
+----------
+path : path_like
+    The file.
+progress : callable, optional
+    Called with the finished share; returning False cancels.
+
+Returns
+-------
+Program
+
+Raises
+------
+FormatError
+    Naming the byte where the file is damaged or not one.
+
+Examples
+--------
+>>> program = riffler.Program([(x, 0, 5, 0, 0, 1) for x in range(5)], feed=600)
+>>> program.save(folder / "part.rprog")
+>>> bool((riffler.Program.load(folder / "part.rprog").poses == program.poses).all())
+True
+)")
+      .def("to_bytes", &bytes_of, R"(The bytes of the .rprog file.
+
+Returns
+-------
+bytes
+
+Examples
+--------
+>>> program = riffler.Program([(x, 0, 5, 0, 0, 1) for x in range(5)], feed=600)
+>>> len(riffler.Program.from_bytes(program.to_bytes()))
+5
+)")
+      .def_static("from_bytes", &program_of, py::arg("data"), R"(A program from the bytes of a .rprog file.
+
+Parameters
+----------
+data : bytes
+    As ``to_bytes`` makes them.
+
+Returns
+-------
+Program
+
+Raises
+------
+FormatError
+    Naming the byte.
+
+Examples
+--------
+>>> program = riffler.Program([(x, 0, 5, 0, 0, 1) for x in range(5)], feed=600)
+>>> len(riffler.Program.from_bytes(program.to_bytes()))
+5
+)")
       .def(py::pickle(&bytes_of, &program_of));
 }
 

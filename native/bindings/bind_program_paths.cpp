@@ -11,7 +11,7 @@ namespace {
 
 /// The tool's number for every path: one tool for all or one each; equal tools share a number. A dict keeps its
 /// numbers.
-std::vector<int> number_tools(const py::object& object, std::size_t paths, std::map<int, Tool>& tools) {
+std::vector<int> number_tools(const ToolListLike& object, std::size_t paths, std::map<int, Tool>& tools) {
   if (object.is_none()) return std::vector<int>(paths, 1);
   std::vector<py::object> list;
   for (const py::handle& tool : object) {
@@ -44,11 +44,12 @@ py::object for_path(const py::object& object, std::size_t k, std::size_t paths, 
   return list[k];
 }
 
-nc::Program from_cl(const py::iterable& cl, const py::object& tools, const py::object& feed, const py::object& spindle,
-                    const std::optional<double>& safe_height, double clearance, const py::object& occupied,
-                    const py::object& provenance, const std::shared_ptr<collide::Collider>& collider,
-                    const std::optional<double>& retract, const py::object& direction,
-                    const std::optional<double>& lead_in, double contact_tolerance) {
+nc::Program from_cl(const ArraysLike& cl, const ToolListLike& tools, const PerPathLike& feed,
+                    const PerPathLike& spindle, const std::optional<double>& safe_height, double clearance,
+                    const CornersLike& occupied, const StringsLike& provenance,
+                    const std::shared_ptr<collide::Collider>& collider, const std::optional<double>& retract,
+                    const OptionalArrayLike& direction, const std::optional<double>& lead_in,
+                    double contact_tolerance) {
   std::vector<py::object> arrays;
   for (const py::handle& array : cl) arrays.push_back(py::reinterpret_borrow<py::object>(array));
   std::map<int, Tool> by_number;
@@ -83,25 +84,63 @@ nc::Program from_cl(const py::iterable& cl, const py::object& tools, const py::o
 
 void bind_program_paths(py::module_& m) {
   program_class(m).def_static(
-      "from_cl", &from_cl, py::arg("cl"), py::arg("tools"), py::arg("feed"), py::arg("spindle") = 0.0, py::kw_only(),
+      "from_cl", &from_cl, py::arg("cl"), py::arg("tools"), py::kw_only(), py::arg("feed"), py::arg("spindle") = 0.0,
       py::arg("safe_height") = py::none(), py::arg("clearance") = 10.0, py::arg("occupied") = py::none(),
       py::arg("provenance") = py::none(), py::arg("collider") = py::none(), py::arg("retract") = py::none(),
       py::arg("direction") = py::none(), py::arg("lead_in") = py::none(), py::arg("contact_tolerance") = 0.02,
-      R"(From cutter locations: every (n, 6) array is one cut.
+      R"(A program from cutter locations: every (n, 6) array is one cut.
 
-Its rows become feed moves in order, none merged. Before it a rapid at safe height to above its first point, along the
-tool's axis, and the feed in; after it a rapid out along the axis. ``tools``: one for all arrays or one for each
-(None: tool 1 of unknown shape). ``feed`` (mm/min at the tip) and ``spindle`` (rev/min, negative counter-clockwise): one
-for all, or a list of one for each array; a feed may be an array of one per row.
-``safe_height``: z (mm) above everything, the clearance plane; by default ``clearance`` (mm) above all tips and
-``occupied``, a pair of corners around stock, part and fixtures.
+Its rows become feed moves in order, none merged. Before a cut there is a rapid at safe height to above its first point,
+along the tool's axis, and the feed in; after it a rapid out along the axis. With a ``collider``, approaches, retracts and
+the moves between cuts are resolved with cutter, shank and holder: along the tool's axis where that is clear, otherwise by
+another link, the axis unchanged; such a link is fed, since it may cross stock.
 
-With a ``collider``, its part and fixtures are occupied too, and approaches, retracts and the moves between cuts are
-resolved with cutter, shank and holder: along the tool's axis where that is clear, otherwise by another way, the axis
-kept; such a way is fed, since it may cross stock. ``retract``: mm of the first stretch out of a cut; ``direction``: a
-unit vector, which way that goes. Not given, what is clear is looked for. ``lead_in``: mm before a cut that are fed, what
-is above it being air; not given, all of it is fed. ``contact_tolerance``: mm that a tool may enter part and fixtures by,
-as cuts touch the part. ValueError names the path, the row, the place and the remedy where nothing is clear.)");
+Parameters
+----------
+cl : list of array_like, shape (n, 6)
+    Tip in mm and unit axis, as ``riffler.plan.cutter_locations`` returns them.
+tools : list of Tool, or None
+    One for all arrays or one for each; None: tool 1 of unknown shape.
+feed : float or array_like, or a list of one for each array
+    mm/min at the tip; an array has one for each row.
+spindle : float, or a list of one for each array
+    rev/min; negative counter-clockwise.
+safe_height : float, optional
+    z (mm) above everything; None: ``clearance`` above all tips and ``occupied``.
+clearance : float
+    mm.
+occupied : tuple of two array_like, shape (3,), optional
+    Corners of a box around stock, part and fixtures, mm. Part and fixtures of ``collider`` are occupied, too.
+provenance : dict, optional
+    Strings for the header comment.
+collider : Collider, optional
+    Part and fixtures.
+retract : float, optional
+    mm of the first stretch out of a cut; None: what is clear is looked for.
+direction : array_like, shape (3,), optional
+    Unit vector of that stretch; None: likewise.
+lead_in : float, optional
+    mm before a cut that are fed, what is above them being air; None: all of it is fed.
+contact_tolerance : float
+    mm by which a tool may enter part and fixtures, as cuts touch the part.
+
+Returns
+-------
+Program
+
+Raises
+------
+ValueError
+    Naming the path, the row, the place and the remedy where nothing is clear.
+
+Examples
+--------
+>>> ball = riffler.Tool.ball(diameter=6, length=30)
+>>> cut = [(0, 0, 0, 0, 0, 1), (20, 0, 0, 0, 0, 1)]
+>>> program = riffler.Program.from_cl([cut], [ball], feed=600, spindle=12000)
+>>> int((~program.rapid).sum()), program.tools[1] == ball
+(2, True)
+)");
 }
 
 }  // namespace riffler::bindings

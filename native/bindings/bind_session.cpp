@@ -1,152 +1,14 @@
 // riffler.Session
-#include <memory>
-
-#include "bindings/bindings.hpp"
-#include "bindings/one_caller.hpp"
+#include "bindings/session_class.hpp"
 #include "bindings/session_frame.hpp"
-#include "bindings/shared_volume.hpp"
 #include "riffler/dexel/file/file.hpp"
-#include "riffler/haptics/material.hpp"
-#include "riffler/pen/pointer.hpp"
-#include "riffler/session/journal_sink.hpp"
-#include "riffler/session/session.hpp"
 
 namespace riffler::bindings {
 
 namespace {
 
 using namespace py::literals;
-using Obstacles = std::shared_ptr<collide::Collider>;
-
-/// A session with what it uses, which Python may have let go.
-struct SharedSession : Guarded {
-  std::shared_ptr<SharedVolume> volume;
-  std::shared_ptr<pen::Pen> pen;
-  Tool tool;
-  sweep::MoveCarver::Options carving;
-  sweep::CarveMode mode;
-  std::optional<Volume> mask{};
-  std::shared_ptr<session::JournalSink> sink;
-  std::unique_ptr<session::Session> session;
-  session::SculptTick last{};
-
-  SharedSession(std::shared_ptr<SharedVolume> v, std::shared_ptr<pen::Pen> p, const Tool& t,
-                const session::SessionSettings& settings)
-      : volume(std::move(v)), pen(std::move(p)), tool(t), carving(settings.loop.carving), mode(settings.mode) {}
-  ~SharedSession() {
-    const NoGil release;  // the thread of the device may be waiting for it
-    session.reset();
-    if (sink) sink->close();
-  }
-};
-
-/// One call at a time, and the volume is the session's meanwhile.
-struct Using {
-  explicit Using(SharedSession& s) : only(s, "the session"), writing(*s.volume), volume(writing.volume) {}
-  OneCaller only;
-  Writing writing;
-  Volume& volume;
-};
-
-Mat3 to_turn(const py::object& turn) {
-  if (turn.is_none()) return Mat3(1);
-  const auto rows = Doubles::ensure(turn);
-  if (!rows || rows.ndim() != 2 || rows.shape(0) != 3 || rows.shape(1) != 3) {
-    PyErr_Clear();
-    throw py::value_error("turn must have the shape (3, 3)");
-  }
-  Mat3 out;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) out[j][i] = rows.at(i, j);
-  return out;
-}
-
-std::optional<Pose> to_pose(const py::object& at) {
-  if (at.is_none()) return std::nullopt;
-  const auto row = Doubles::ensure(at);
-  if (!row || row.ndim() != 1 || row.size() != 6) {
-    PyErr_Clear();
-    throw py::value_error("at must be six numbers: tip and axis");
-  }
-  Pose pose{{row.at(0), row.at(1), row.at(2)}, {row.at(3), row.at(4), row.at(5)}};
-  const double length = glm::length(pose.axis);
-  if (!(length > 0) || !std::isfinite(length)) throw py::value_error("at: the axis must be finite, not zero");
-  pose.axis /= length;
-  return pose;
-}
-
-sweep::CarveMode to_mode(const std::string& mode) {
-  if (mode == "remove") return sweep::CarveMode::Remove;
-  if (mode == "add") return sweep::CarveMode::Add;
-  throw py::value_error("mode must be \"remove\" or \"add\", not \"" + mode + '"');
-}
-
-/// Set by Session where the device decides: 0.4 ms a step for a device with motors, none for others.
-constexpr const char* kAutomatic = "auto";
-
-std::optional<double> to_budget(const py::object& budget, const pen::Pen& pen) {
-  if (py::isinstance<py::str>(budget) && py::cast<std::string>(budget) == kAutomatic)
-    return pen.capability().has_force() ? std::optional(4e-4) : std::nullopt;
-  if (budget.is_none()) return std::nullopt;
-  try {
-    return py::cast<double>(budget);
-  } catch (const py::cast_error&) {
-    throw py::type_error("budget must be a number in s, None or \"auto\"");
-  }
-}
-
-std::unique_ptr<SharedSession> make(const std::shared_ptr<SharedVolume>& volume, const Tool& tool,
-                                    std::shared_ptr<pen::Pen> pen, const Obstacles& obstacles, SharedVolume* protect,
-                                    session::SessionSettings settings, const py::object& budget) {
-  if (!pen) pen = std::make_shared<pen::PointerPen>(pen::PointerPen::Kind::Mouse);
-  settings.loop.passivity = pen->passivity();
-  settings.loop.sculpt.budget = to_budget(budget, *pen);
-  settings.loop.wrench_extrapolator.most = settings.loop.limits.wrench;
-  settings.validate();
-  auto out = std::make_unique<SharedSession>(volume, pen, tool, settings);
-  const Volume state = Reading(*volume).volume.snapshot();
-  if (protect) out->mask = Reading(*protect).volume.snapshot();
-  out->session = std::make_unique<session::Session>(state, tool, std::move(pen), obstacles, settings,
-                                                    out->mask ? &*out->mask : nullptr);
-  return out;
-}
-
-/// Session's constructor, with a default for every setting.
-void bind_constructor(py::class_<SharedSession>& c) {
-  const session::SessionSettings usual;
-  const session::SculptLoopSettings& loop = usual.loop;
-  const haptics::CouplingSettings& coupling = loop.sculpt.coupling;
-  c.def(py::init([](const std::shared_ptr<SharedVolume>& volume, const Tool& tool, std::shared_ptr<pen::Pen> pen,
-                    const Obstacles& obstacles, SharedVolume* protect, const std::string& mode,
-                    const std::optional<haptics::Material>& material, const py::object& at, double scale,
-                    const py::object& turn, double stiffness, double turn_stiffness, double damping,
-                    double turn_damping, double tolerance, std::optional<double> memory, double max_force,
-                    double max_torque, double max_power, double ramp, std::uint32_t dead_man_mask,
-                    std::uint32_t clutch_mask, const py::object& budget, std::size_t undo) {
-          session::SessionSettings settings;
-          settings.mode = to_mode(mode), settings.start = to_pose(at), settings.undo = undo;
-          session::SculptLoopSettings& made = settings.loop;
-          made.sculpt.coupling.stiffness = stiffness, made.sculpt.coupling.turn_stiffness = turn_stiffness;
-          made.sculpt.coupling.damping = damping, made.sculpt.coupling.turn_damping = turn_damping;
-          made.sculpt.memory = memory, made.carving.tolerance = tolerance, made.safety.ramp = ramp;
-          made.limits.wrench = {max_force, max_torque}, made.limits.power = max_power;
-          made.workspace = {scale, to_turn(turn), clutch_mask, dead_man_mask};
-          if (material) {
-            material->validate("the stock");
-            made.carving.removal_constant = material->removal_constant, made.sculpt.damping = material->damping;
-          }
-          return make(volume, tool, std::move(pen), obstacles, protect, std::move(settings), budget);
-        }),
-        "volume"_a.none(false), "tool"_a, "pen"_a = py::none(), py::kw_only(), "obstacles"_a = py::none(),
-        "protect"_a = py::none(), "mode"_a = "remove", "material"_a = py::none(), "at"_a = py::none(),
-        "scale"_a = loop.workspace.scale, "turn"_a = py::none(), "stiffness"_a = coupling.stiffness,
-        "turn_stiffness"_a = coupling.turn_stiffness, "damping"_a = coupling.damping,
-        "turn_damping"_a = coupling.turn_damping, "tolerance"_a = loop.carving.tolerance, "memory"_a = py::none(),
-        "max_force"_a = loop.limits.wrench.linear, "max_torque"_a = loop.limits.wrench.angular,
-        "max_power"_a = loop.limits.power, "ramp"_a = loop.safety.ramp,
-        "dead_man_mask"_a = loop.workspace.dead_man_mask, "clutch_mask"_a = loop.workspace.clutch_mask,
-        "budget"_a = kAutomatic, "undo"_a = usual.undo);
-}
+RIFFLER_TYPED(VolumeResult, "Volume")
 
 /// The mode of all its strokes.
 session::StrokeMode stroke_mode(const SharedSession& self) {
@@ -222,76 +84,22 @@ session::SculptLoop& running(SharedSession& self) {
   return *self.session->loop();
 }
 
+TripList trips(SharedSession& s) {
+  py::list out;
+  if (!s.session->loop()) return out;
+  const py::object trip = py::module_::import("riffler.program_results").attr("Trip");
+  std::array<haptics::Trip, haptics::TripLog::kCapacity> trips{};
+  std::uint64_t from = 0;
+  const std::size_t n = s.session->loop()->trips().read(from, trips);
+  for (std::size_t k = 0; k < n; ++k)
+    out.append(trip(trips[k].time, name(trips[k].state), sentence(trips[k].cause), trips[k].value));
+  return out;
+}
+
 }  // namespace
 
 void bind_session(py::module_& m) {
-  py::class_<SharedSession> session(
-      m, "Session",
-      R"(A pen, a tool and a stock: the tool follows the hand and cuts a thousand times a second, and the hand feels it.
-
-The device's own thread cuts. ``volume`` is what is shown: each call of ``frame`` brings it up to date, between steps, and
-nothing else may change it while the session runs. The tool cuts while a button of ``dead_man_mask`` is held and every
-check of the pen passes. Context manager: starts and stops.
-
-Parameters
-----------
-volume : Volume
-    The stock.
-tool : Tool
-    The cutter.
-pen : PenDevice, optional
-    From ``riffler.pen.open``, or a ``riffler.pen.Pointer``; None: a Pointer of kind "mouse", then the session's ``pen``.
-obstacles : Collider, optional
-    Part and fixtures that the tool stays out of.
-protect : Volume, optional
-    Region that must not change, with the lower, upper, pitch and directions of ``volume``; air to the tool.
-mode : {"remove", "add"}
-    "add": the cutter adds what it sweeps, over its whole length and within the volume's box. The hand then feels neither
-    that nor the stock, only obstacles.
-material : Material, optional
-    What the stock is made of.
-at : array_like, shape (6,), optional
-    Pose of the tool at the start: tip in mm and axis. None: the hand's pose for tablets, mice and recordings, otherwise
-    5 mm above the middle of the stock.
-scale : float
-    mm of the tool per mm of the hand.
-turn : array_like, shape (3, 3), optional
-    Rotation from the hand's frame to the tool's; None: none.
-stiffness, turn_stiffness : float
-    Of the coupling between hand and tool, N/mm and N·mm/rad.
-damping, turn_damping : float
-    Of the coupling, N·s/mm and N·mm·s/rad.
-tolerance : float
-    mm, of the cuts, as in ``Volume.carve``.
-memory : float, optional
-    mm of travel over which the resistance is estimated; None: chosen by tool and stock.
-max_force, max_torque, max_power : float
-    Largest force (N), torque (N·mm) and power (N·mm/s) given to the hand.
-ramp : float
-    s from no force to full force, at the start and after interruptions.
-dead_man_mask, clutch_mask : int
-    Buttons, as bits: cut while one is held; move the hand without the tool.
-budget : float, "auto" or None
-    s for one step; None: as long as it takes, and steps are deterministic; "auto": 0.0004 for a device with motors, None
-    for others.
-undo : int
-    Number of strokes that can be undone.
-
-Raises
-------
-TypeError, ValueError
-    Naming the argument that is wrong.
-
-Examples
---------
->>> stock = riffler.Volume.block(lower=(0, 0, 0), upper=(20, 20, 10), pitch=0.5)
->>> ball = riffler.Tool.ball(diameter=6, length=30)
->>> with riffler.Session(stock, ball, at=(10, 10, 15, 0, 0, 1), max_force=3.0) as session:
-...     frame = session.frame()
->>> frame.in_stroke
-False
-)");
-  bind_constructor(session);
+  py::class_<SharedSession> session = bind_session_class(m);
   session
       .def(
           "start",
@@ -300,25 +108,128 @@ False
             const Using use(s);
             s.session->start();
           },
-          "The pen's thread sculpts from now on. Once.")
-      .def("stop", &stop, R"(No force any more, and everything that was cut is in the volume and, where there is one, in
-the journal on the disk. SessionFrame: what was not shown yet.)")
-      .def("frame", &frame, R"(Brings the volume up to date, and tells what happened since the last call: SessionFrame.
-Waits for the next step, 3 ms at most.)")
-      .def("journal", &record, "path"_a, "notes"_a = py::dict(), R"(Records every stroke: poses, times, forces, what was
-cut. Before ``start``; a new file, with the stock beside it (``NAME-stock.rvol``), and what is protected
-(``NAME-mask.rvol``). What is in it survives a crash but for the last second at most, and is replayed by
-``Session.replay``.)")
+          R"(Starts sculpting, in the pen's own thread. Call it once.
+
+Examples
+--------
+>>> stock = riffler.Volume.block(lower=(0, 0, 0), upper=(20, 20, 10), pitch=0.5)
+>>> session = riffler.Session(stock, riffler.Tool.ball(diameter=6, length=30))
+>>> session.start()
+>>> frame = session.stop()
+)")
+      .def("stop", &stop,
+           R"(Ends the force. Everything that was cut is in the volume and in the journal on the disk, if any.
+
+Returns
+-------
+SessionFrame
+    What was not shown yet.
+
+Raises
+------
+RuntimeError
+    If the journal is not complete on the disk; the session has stopped.
+
+Examples
+--------
+>>> stock = riffler.Volume.block(lower=(0, 0, 0), upper=(20, 20, 10), pitch=0.5)
+>>> session = riffler.Session(stock, riffler.Tool.ball(diameter=6, length=30))
+>>> session.start()
+>>> session.stop().strokes
+0
+)")
+      .def("frame", &frame, R"(Brings the volume up to date and returns what happened since the last call.
+
+Waits for the next step, 3 ms at most.
+
+Returns
+-------
+SessionFrame
+
+Examples
+--------
+>>> stock = riffler.Volume.block(lower=(0, 0, 0), upper=(20, 20, 10), pitch=0.5)
+>>> with riffler.Session(stock, riffler.Tool.ball(diameter=6, length=30)) as session:
+...     frame = session.frame()
+>>> frame.tiles.shape
+(0, 2)
+)")
+      .def("journal", &record, "path"_a, py::kw_only(), "notes"_a = py::dict(),
+           R"(Records every stroke in a new file: poses, times, forces, what was cut. Call it before ``start``.
+
+The stock lies next to it (``NAME-stock.rvol``), and what is protected (``NAME-mask.rvol``). What is in the file survives
+a crash but for the last second at most, and ``Session.replay`` replays it.
+
+Parameters
+----------
+path : path_like
+    The .rjournal file.
+notes : dict
+    Strings that the journal keeps.
+
+Raises
+------
+ValueError
+    If one of the files is there already.
+
+Examples
+--------
+>>> stock = riffler.Volume.block(lower=(0, 0, 0), upper=(20, 20, 10), pitch=0.5)
+>>> session = riffler.Session(stock, riffler.Tool.ball(diameter=6, length=30))
+>>> session.journal(folder / "first.rjournal", notes={"operator": "Ada"})
+>>> with session:
+...     frame = session.frame()
+>>> riffler.Session.replay(folder / "first.rjournal").volume
+4000.0
+)")
       .def("undo", &go<&session::Session::undo>,
-           R"(The last stroke did not happen, or the last few if they ended between two
-frames. How many that were; 0: there is none. RuntimeError in the middle of a stroke.)")
-      .def("redo", &go<&session::Session::redo>, "And happened, unless another was begun since.")
+           R"(Undoes the last stroke, or the last few if they ended between two frames.
+
+Returns
+-------
+int
+    How many strokes were undone; 0: there is none.
+
+Raises
+------
+RuntimeError
+    During a stroke.
+
+Examples
+--------
+>>> stock = riffler.Volume.block(lower=(0, 0, 0), upper=(20, 20, 10), pitch=0.5)
+>>> with riffler.Session(stock, riffler.Tool.ball(diameter=6, length=30)) as session:
+...     print(session.undo())
+0
+)")
+      .def("redo", &go<&session::Session::redo>, R"(Redoes what ``undo`` undid, unless a new stroke has begun.
+
+Returns
+-------
+int
+    How many strokes were redone.
+
+Examples
+--------
+>>> stock = riffler.Volume.block(lower=(0, 0, 0), upper=(20, 20, 10), pitch=0.5)
+>>> with riffler.Session(stock, riffler.Tool.ball(diameter=6, length=30)) as session:
+...     print(session.redo())
+0
+)")
       .def(
           "reset", [](SharedSession& s) { running(s).reset(); },
-          "Clears a trip that does not heal by itself: the frame's ``cause`` says what it was.")
+          R"(Clears a trip that does not heal by itself: ``SessionFrame.cause`` says what it was.
+
+Examples
+--------
+>>> stock = riffler.Volume.block(lower=(0, 0, 0), upper=(20, 20, 10), pitch=0.5)
+>>> with riffler.Session(stock, riffler.Tool.ball(diameter=6, length=30)) as session:
+...     session.reset()
+)")
       .def(
           "set_workspace",
-          [](SharedSession& s, double scale, const py::object& turn, std::uint32_t dead_man, std::uint32_t clutch) {
+          [](SharedSession& s, double scale, const OptionalArrayLike& turn, std::uint32_t dead_man,
+             std::uint32_t clutch) {
             const haptics::WorkspaceSettings settings{scale, to_turn(turn), clutch, dead_man};
             session::SculptLoop& loop = running(s);
             const NoGil release;
@@ -327,38 +238,66 @@ frames. How many that were; 0: there is none. RuntimeError in the middle of a st
           py::kw_only(), "scale"_a = 1.0, "turn"_a = py::none(),
           "dead_man_mask"_a = haptics::WorkspaceSettings().dead_man_mask,
           "clutch_mask"_a = haptics::WorkspaceSettings().clutch_mask,
-          "Another scale, view or buttons from the next step on. The tool does not jump.")
+          R"(Changes scale, view or buttons from the next step on. The tool does not jump.
+
+Parameters
+----------
+scale : float
+    mm of the tool per mm of the hand.
+turn : array_like, shape (3, 3), optional
+    Rotation from the hand's frame to the tool's; None: none.
+dead_man_mask, clutch_mask : int
+    Buttons, as bits: cut while one is held; move the hand without the tool.
+
+Examples
+--------
+>>> stock = riffler.Volume.block(lower=(0, 0, 0), upper=(20, 20, 10), pitch=0.5)
+>>> with riffler.Session(stock, riffler.Tool.ball(diameter=6, length=30)) as session:
+...     session.set_workspace(scale=0.5)
+)")
       .def_static(
           "replay",
-          [](const std::filesystem::path& path, const py::object& progress) {
-            const py::object journal = py::type::of<session::Journal>().attr("read")(path);
-            return journal.attr("replay")(path.parent_path(), progress);
+          [](const std::filesystem::path& path, const ProgressLike& progress) -> VolumeResult {
+            const py::object journal = py::type::of<session::Journal>().attr("load")(path);
+            return journal.attr("replay")(path.parent_path(), py::arg("progress") = progress);
           },
-          "path"_a, "progress"_a = py::none(),
-          "What the session left of its stock: a Volume, the same to the bit. Its stock lies beside the journal.")
-      .def_property_readonly("running", [](const SharedSession& s) { return s.session->running(); })
+          "path"_a, py::kw_only(), "progress"_a = py::none(),
+          R"(What a session left of its stock, the same to the bit. Its stock lies next to the journal.
+
+Parameters
+----------
+path : path_like
+    The .rjournal file.
+progress : callable, optional
+    Called with the finished share; returning False cancels.
+
+Returns
+-------
+Volume
+
+Examples
+--------
+>>> stock = riffler.Volume.block(lower=(0, 0, 0), upper=(20, 20, 10), pitch=0.5)
+>>> session = riffler.Session(stock, riffler.Tool.ball(diameter=6, length=30))
+>>> session.journal(folder / "first.rjournal")
+>>> with session:
+...     frame = session.frame()
+>>> riffler.Session.replay(folder / "first.rjournal").to_bytes() == stock.to_bytes()
+True
+)")
       .def_property_readonly(
-          "volume", [](const SharedSession& s) { return s.volume; }, "The one that is shown.")
+          "running", [](const SharedSession& s) { return s.session->running(); },
+          "Whether the session was started and not stopped.")
+      .def_property_readonly(
+          "volume", [](const SharedSession& s) { return s.volume; }, "What is shown.")
       .def_property_readonly(
           "pen", [](const SharedSession& s) { return s.pen; }, "The device.")
-      .def_property_readonly(
-          "trips",
-          [](SharedSession& s) {
-            py::list out;
-            if (!s.session->loop()) return out;
-            std::array<haptics::Trip, haptics::TripLog::kCapacity> trips{};
-            std::uint64_t from = 0;
-            const std::size_t n = s.session->loop()->trips().read(from, trips);
-            for (std::size_t k = 0; k < n; ++k)
-              out.append(py::make_tuple(trips[k].time, name(trips[k].state), sentence(trips[k].cause), trips[k].value));
-            return out;
-          },
-          "list of (time s, state, sentence, value): when the force was taken away, and why.")
+      .def_property_readonly("trips", &trips, "When the force was taken away, and why.")
       .def_property_readonly(
           "journal_problem",
-          [](const SharedSession& s) -> py::object {
+          [](const SharedSession& s) -> std::optional<std::string> {
             const std::string text = s.sink ? s.sink->problem() : "";
-            return text.empty() ? py::object(py::none()) : py::object(py::str(text));
+            return text.empty() ? std::nullopt : std::optional(text);
           },
           "Why strokes wait for the disk, or None.")
       .def(
@@ -368,10 +307,27 @@ frames. How many that were; 0: there is none. RuntimeError in the middle of a st
             return !s.sink || s.sink->written(seconds);
           },
           "seconds"_a = 2.0,
-          "Waits until all rows that were made so far are in the journal's file, which is some 50 ms behind. False: "
-          "not within so many seconds.")
+          R"(Waits until all rows that were made so far are in the journal's file, which is some 50 ms behind.
+
+Parameters
+----------
+seconds : float
+    How long to wait at most.
+
+Returns
+-------
+bool
+    False: they are not.
+
+Examples
+--------
+>>> stock = riffler.Volume.block(lower=(0, 0, 0), upper=(20, 20, 10), pitch=0.5)
+>>> session = riffler.Session(stock, riffler.Tool.ball(diameter=6, length=30))
+>>> session.journal_written()
+True
+)")
       .def("__enter__",
-           [](const py::object& self) {
+           [](const py::object& self) -> Self {
              self.attr("start")();
              return self;
            })

@@ -1,7 +1,7 @@
 // Strategies beside the pencil cut: engraving and swarf.
 #include <memory>
 
-#include "bindings/bindings.hpp"
+#include "bindings/program_types.hpp"
 #include "riffler/plan/engrave.hpp"
 #include "riffler/plan/swarf.hpp"
 
@@ -9,19 +9,19 @@ namespace riffler::bindings {
 
 namespace {
 
-std::vector<std::vector<Vec3>> to_curves(const py::sequence& sequence) {
+std::vector<std::vector<Vec3>> to_curves(const ArraysLike& arrays) {
   std::vector<std::vector<Vec3>> curves;
-  for (std::size_t c = 0; c < sequence.size(); ++c) {
-    const auto array = py::cast<Doubles>(sequence[c]);
-    const std::string name = "curves[" + std::to_string(c) + "]";
+  for (const py::handle curve : arrays) {
+    const auto array = py::cast<Doubles>(curve);
+    const std::string name = "curves[" + std::to_string(curves.size()) + "]";
     curves.push_back(to_vec3s(array, name.c_str()));
   }
   return curves;
 }
 
-py::list engraved(const Mesh& part, const py::sequence& sequence, const Tool& tool, const plan::EngraveOptions& options,
-                  const py::object& callable) {
-  const std::vector<std::vector<Vec3>> curves = to_curves(sequence);
+py::list engraved(const Mesh& part, const ArraysLike& arrays, const Tool& tool, const plan::EngraveOptions& options,
+                  const ProgressLike& callable) {
+  const std::vector<std::vector<Vec3>> curves = to_curves(arrays);
   const Progress progress = to_progress(callable);
   std::vector<plan::Engraved> found;
   {
@@ -35,7 +35,7 @@ py::list engraved(const Mesh& part, const py::sequence& sequence, const Tool& to
 }
 
 py::dict cut_with_flank(const plan::PencilPath& path, const Mesh& part, const Tool& tool,
-                        const plan::SwarfOptions& options, const py::object& callable) {
+                        const plan::SwarfOptions& options, const ProgressLike& callable) {
   const Progress progress = to_progress(callable);
   plan::Swarf found;
   {
@@ -55,8 +55,8 @@ py::dict cut_with_flank(const plan::PencilPath& path, const Mesh& part, const To
 void bind_strategies(py::module_& m) {
   m.def(
       "engrave",
-      [](const Mesh& part, const py::sequence& curves, const Tool& tool, double depth, double inclination, double tilt,
-         double tolerance, double turn, double crease, double reach, const py::object& progress) {
+      [](const Mesh& part, const ArraysLike& curves, const Tool& tool, double depth, double inclination, double tilt,
+         double tolerance, double turn, double crease, double reach, const ProgressLike& progress) {
         return engraved(part, curves, tool, {depth, inclination, tilt, tolerance, turn, crease, reach}, progress);
       },
       py::arg("part"), py::arg("curves"), py::arg("tool"), py::kw_only(), py::arg("depth"), py::arg("inclination"),
@@ -65,8 +65,9 @@ void bind_strategies(py::module_& m) {
   m.def(
       "swarf",
       [](const plan::PencilPath& path, const Mesh& part, const Tool& tool, int side, std::optional<double> height,
-         double tolerance,
-         const py::object& progress) { return cut_with_flank(path, part, tool, {side, height, tolerance}, progress); },
+         double tolerance, const ProgressLike& progress) {
+        return cut_with_flank(path, part, tool, {side, height, tolerance}, progress);
+      },
       py::arg("path"), py::arg("part"), py::arg("tool"), py::kw_only(), py::arg("side"), py::arg("height"),
       py::arg("tolerance"), py::arg("progress"), "For riffler.plan.swarf.");
 }

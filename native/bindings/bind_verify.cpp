@@ -50,7 +50,7 @@ std::unique_ptr<verify::SlabRun> make_run(const GivenArguments& given, const Pro
                                            base::part(progress, 0.05, 0.1));
 }
 
-auto verify(const py::object& program, GivenArguments given, const py::object& progress) {
+auto verify(const ProgramLike& program, GivenArguments given, const ProgressLike& progress) {
   if (py::isinstance<nc::Program>(program)) {
     const auto work = [given = std::move(given),
                        whole = py::cast<std::shared_ptr<nc::Program>>(program)](const Progress& listener) {
@@ -76,7 +76,7 @@ auto verify(const py::object& program, GivenArguments given, const py::object& p
 }
 
 auto run(const std::shared_ptr<SharedVerification>& self, const std::shared_ptr<nc::Program>& program,
-         const py::object& progress) {
+         const ProgressLike& progress) {
   const auto work = [self, program](const Progress& listener) {
     const OneCaller only(*self, "the verification");
     return self->verification.run(*program, listener);
@@ -94,7 +94,7 @@ py::object made_deviation(const verify::VerifyReport& report) {
   return py::make_tuple(std::make_shared<Mesh>(std::move(found.first)), take<double>(std::move(found.second)));
 }
 
-py::object deviation(SharedReport& self) {
+OptionalDeviation deviation(SharedReport& self) {
   if (!self.report.part) return py::none();
   return self.deviation.get([&] { return made_deviation(self.report); });
 }
@@ -109,7 +109,7 @@ py::object made_part_map(SharedReport& self) {
   return take<double>(std::move(found));
 }
 
-py::object part_map(SharedReport& self) {
+OptionalArray part_map(SharedReport& self) {
   if (!self.report.part) return py::none();
   return self.part_map.get([&] { return made_part_map(self); });
 }
@@ -168,7 +168,7 @@ py::dict to_dict(const SharedReport& self) {
   return d;
 }
 
-void bind_report(py::module_& m) {
+void bind_finding(py::module_& m) {
   py::class_<verify::Finding>(m, "Finding",
                               "One fault: neighbouring rows of a program with the same kind, tool and fixture.")
       .def_property_readonly(
@@ -176,71 +176,102 @@ void bind_report(py::module_& m) {
           R"("rapid", "holder", "shank", "fixture", "gouge", "rest", "spindle" (a feed move into material with a spindle
 that stands), "machine" (the machine cannot hold the row) or "unknown" (it could not be checked).)")
       .def_readonly("row", &verify::Finding::row, "First row; the move that ends there.")
-      .def_readonly("last_row", &verify::Finding::last_row)
+      .def_readonly("last_row", &verify::Finding::last_row, "Last row.")
       .def_readonly("line", &verify::Finding::line, "Source line of the first row from 1; 0: no source.")
-      .def_readonly("last_line", &verify::Finding::last_line)
+      .def_readonly("last_line", &verify::Finding::last_line, "Source line of the last row.")
       .def_readonly("tool", &verify::Finding::tool, "Tool number.")
       .def_property_readonly("member", &member_name,
-                             "What of the tool it was: cutter, shank, holder, or beyond where its description ends.")
+                             "Piece of the tool: cutter, shank, holder, or beyond where its description ends.")
       .def_property_readonly(
           "fixture", [](const verify::Finding& f) { return f.fixture < 0 ? std::optional<int>() : f.fixture; },
-          "Which of the fixtures it was, from 0, or None.")
+          "Number of the fixture, from 0, or None.")
       .def_readonly(
           "value", &verify::Finding::value,
           R"(How much, in ``unit``. rapid, spindle: mm³ that all rows took. holder, shank, fixture, unknown: mm³ in
 the way of the worst row (where a slab of the stock has been hit 256 times, only one further hit in sixteen is measured).
 gouge, rest: mm under or over the part's surface.)")
-      .def_property_readonly("unit", &verify::Finding::unit)
+      .def_property_readonly("unit", &verify::Finding::unit, "Unit of ``value``.")
       .def_property_readonly(
           "point", [](const verify::Finding& f) { return from_vec3(f.point); },
           "(3,) mm: the worst place, part coordinates.")
       .def_readonly("message", &verify::Finding::message, "One sentence: what happened and what to do.")
-      .def("to_dict", [](const verify::Finding& f) { return to_dict(f); })
+      .def(
+          "to_dict", [](const verify::Finding& f) { return to_dict(f); },
+          R"(For JSON: all attributes.
+
+Returns
+-------
+dict
+
+Examples
+--------
+>>> stock = riffler.Volume.block(lower=(0, 0, 0), upper=(20, 20, 10), pitch=0.5)
+>>> ball = riffler.Tool.ball(diameter=6, length=30)
+>>> program = riffler.Program([(0, 0, 8, 0, 0, 1), (20, 20, 8, 0, 0, 1)], 0, rapid=True, tools={1: ball})
+>>> riffler.verify(program, stock).findings[0].to_dict()["kind"]
+'rapid'
+)")
       .def("__repr__", [](const verify::Finding& f) {
         return "<riffler.Finding " + std::string(name_of(f.kind)) + ", rows " + std::to_string(f.row) + " to " +
                std::to_string(f.last_row) + ": " + f.message + ">";
       });
+}
 
+void bind_report(py::module_& m) {
   py::class_<SharedReport, std::shared_ptr<SharedReport>>(m, "VerifyReport", "What a verification found.")
       .def_property_readonly(
           "passed", [](const SharedReport& r) { return r.report.passed(); },
-          "True only where every check that was asked for could be made and found nothing.")
+          "True only where every requested check could be made and found nothing.")
       .def_property_readonly(
-          "findings", [](const SharedReport& r) { return r.report.findings; }, "list of Finding, by rows.")
+          "findings", [](const SharedReport& r) { return r.report.findings; }, "The faults, by rows.")
       .def_property_readonly(
           "not_checked", [](const SharedReport& r) { return r.report.not_checked; },
-          "list of sentences: what was not asked for, so does not fail.")
+          "Sentences: what was not requested, so does not fail.")
       .def_property_readonly(
           "removed", [](const SharedReport& r) { return take<double>(std::vector<double>(r.report.removed)); },
           "(n,) mm³ that each row's move took; row 0: 0.")
       .def_property_readonly(
           "seconds", [](const SharedReport& r) { return take<double>(std::vector<double>(r.report.seconds)); },
-          R"((n,) s: the tip's way at its feed, rapids at ``rapid_feed``; where the tip stands still, the axis' angle at
+          R"((n,) s: the tip's travel at its feed, rapids at ``rapid_feed``; where the tip stands still, the axis' angle at
 3600 deg/min. Acceleration and tool changes are left out.)")
       .def_property_readonly("rate", &rate, "(n,) mm³/min; 0 where a move takes no time.")
       .def_property_readonly(
           "time", [](const SharedReport& r) { return total_time(r.report); }, "s, all rows.")
       .def_property_readonly(
           "volume", [](const SharedReport& r) { return std::make_shared<SharedVolume>(r.report.volume.snapshot()); },
-          "The Volume that is left.")
+          "The material that is left.")
       .def_property_readonly(
           "deviation", &deviation,
-          R"((mesh of what is left, (vertices,) mm) or None without a part; made when first asked for.
+          R"((mesh of what is left, (vertices,) mm) or None without a part; computed at the first use.
 
 Distance of each vertex from the part's surface: positive where rest material stands on it, negative in gouges.)")
       .def_property_readonly("part_map", &part_map,
-                             R"((vertices of the part,) mm, or None without a part; made when first asked for.
+                             R"((vertices of the part,) mm, or None without a part; computed at the first use.
 
 Distance of each vertex of the part from the surface of what is left: positive where material covers it, negative where
 it is missing, -inf where nothing is left at all.)")
       .def_property_readonly(
-          "stats", [](const SharedReport& r) { return to_dict(r.report.stats); },
-          R"(dict of operation counts: ``moves``, (move, slab) pairs cut; ``slabs`` simulated; ``slabs_kept``, whose results
-of the run before were taken; ``snapshots_used``; ``probes``, batches tried with shank and holder or on a fixture, and
-``probed_moves`` in them; ``bisections`` of such batches; ``skipped``, (move, slab) pairs told apart by boxes alone.)")
+          "stats",
+          [](const SharedReport& r) -> VerifyCounters {
+            return program_result("VerifyStats", to_dict(r.report.stats));
+          },
+          "Operation counts.")
       .def(
           "to_dict", [](const SharedReport& r) { return to_dict(r); },
-          "For JSON: passed, findings, not_checked, rows, time, volume, removed (mm³ in sum), stats.")
+          R"(For JSON: passed, findings, not_checked, rows, time, volume, removed (mm³ in sum), stats.
+
+Returns
+-------
+dict
+
+Examples
+--------
+>>> stock = riffler.Volume.block(lower=(0, 0, 0), upper=(20, 20, 10), pitch=0.5)
+>>> ball = riffler.Tool.ball(diameter=6, length=30)
+>>> program = riffler.Program([(0, 0, 8, 0, 0, 1), (20, 20, 8, 0, 0, 1)], 600, spindle=9000, tools={1: ball})
+>>> riffler.verify(program, stock).to_dict()["rows"]
+2
+)")
       .def("__repr__", [](const SharedReport& r) {
         const std::size_t n = r.report.findings.size();
         return "<riffler.VerifyReport: " + std::to_string(r.report.removed.size()) + " rows, " +
@@ -248,45 +279,123 @@ of the run before were taken; ``snapshots_used``; ``probes``, batches tried with
       });
 }
 
+/// The arguments that verify and Verification share.
+constexpr const char* kParameters = R"(stock_volume : Volume
+    Not changed.
+part_mesh : Mesh, optional
+    For gouges and rest material.
+fixtures : list of Volume or Mesh
+    What the whole tool must stay clear of; a Mesh becomes a Volume at the stock's pitch.
+tools : dict, optional
+    Number to Tool; takes the place of the program's own.
+tolerance : float
+    mm, of cutting, as in ``Volume.carve``; less deep contact is none.
+gouge_tolerance : float
+    mm under the part's surface from which removed material is a gouge.
+rest_tolerance : float, optional
+    mm over the part's surface from which material is a finding; None: rest material is mapped, not judged.
+rapid_feed : float
+    mm/min, for the time.
+machine : str, optional
+    A name of ``machines`` on which the program is to run: the first row that its axes or their limits cannot hold is a
+    finding "machine".
+machine_options : dict, optional
+    Options of the machine; those of reading are ignored.
+machine_frame : array_like, shape (4, 4), optional
+    From the coordinates of stock and program to those in which the machine has the program, where they differ.
+progress : callable, optional
+    Called with the finished share, from 0 for each chunk; returning False cancels.
+)";
+
 }  // namespace
 
 void bind_verify(py::module_& m) {
+  bind_finding(m);
   bind_report(m);
   define_with_arguments([&](const auto&... arguments) {
-    m.def("verify", with_arguments<py::object>(&verify), py::arg("program"), arguments...,
-          R"(Runs a program on a stock and reports what goes wrong; the stock is not changed.
-
-``program``: a Program, or an iterable of Programs, each of which begins with the row at which the one before ended;
-nothing is kept of them but 16 bytes a row. ``part_mesh``: Mesh, for gouges and rest material. ``fixtures``: list of
-Volume or Mesh (which becomes a Volume at the stock's pitch). ``tools``: dict of number to Tool, before the program's own.
-
-``tolerance`` (mm): of cutting, as in Volume.carve; contact that is less deep is none. ``gouge_tolerance`` (mm): what is
-taken from the part deeper under its surface is a gouge. ``rest_tolerance`` (mm): what stands higher on the part is a
-finding; None: rest material is mapped, not judged. ``rapid_feed``: mm/min, for the time. ``machine``: a name of
-machines() on which it is to run, with ``machine_options`` (those of reading are passed over): the first row that its axes or their limits cannot hold is a
-finding "machine". ``machine_frame``: (4, 4), from the coordinates of stock and program to those in which the machine has the
-program, where they are others.
+    m.def("verify", with_arguments<ProgramLike>(&verify), py::arg("program"), arguments...,
+          (std::string(R"(Runs a program on a stock and reports what goes wrong; the stock is not changed.
 
 Rapids are cut too: a crash takes material. Shank and holder must stay clear of what is left of the stock when they come
 there, the whole tool of the fixtures. Where the description of a tool ends below material or a fixture that stands above
-or beside it, nobody knows what the spindle meets: a finding "unknown". ValueError naming number, row and line of a tool
-whose shape is not known. ``progress``: called with the finished share, of each chunk anew; returning False cancels.)");
+it or next to it, it is unknown what the spindle meets: a finding "unknown".
+
+Parameters
+----------
+program : Program, or an iterable of Programs
+    Each of several begins with the row at which the one before ended; only 16 bytes a row of them are kept.
+)") + kParameters +
+           R"(
+Returns
+-------
+VerifyReport
+
+Raises
+------
+ValueError
+    Naming number, row and line of a tool whose shape is not known.
+
+Examples
+--------
+>>> stock = riffler.Volume.block(lower=(0, 0, 0), upper=(20, 20, 10), pitch=0.5)
+>>> ball = riffler.Tool.ball(diameter=6, length=30)
+>>> cut = [(5, 10, 8, 0, 0, 1), (15, 10, 8, 0, 0, 1)]
+>>> program = riffler.Program.from_cl([cut], [ball], feed=600, spindle=9000)
+>>> riffler.verify(program, stock).findings
+[]
+)")
+              .c_str());
   });
   py::class_<SharedVerification, std::shared_ptr<SharedVerification>> verification(
       m, "Verification",
-      R"(Verifies a program again and again while it is edited.
+      (std::string(R"(Verifies a program again and again while it is edited.
 
-Arguments are those of ``verify``. ``run`` of a program that is like the one before does again only what differs: rows
-before the first difference come from snapshots, and parts of the stock that no differing move can touch stay as they
-are. The report is that of a fresh run, bit for bit.)");
+``run`` of a program that is like the one before repeats only what differs: rows before the first difference come from
+snapshots, and parts of the stock that no differing move can touch stay unchanged. The report is that of a fresh run, bit
+for bit.
+
+Parameters
+----------
+)") + kParameters +
+       R"(
+Examples
+--------
+>>> stock = riffler.Volume.block(lower=(0, 0, 0), upper=(20, 20, 10), pitch=0.5)
+>>> ball = riffler.Tool.ball(diameter=6, length=30)
+>>> verification = riffler.Verification(stock, tools={1: ball})
+>>> cut = [(5, 10, 8, 0, 0, 1), (15, 10, 8, 0, 0, 1)]
+>>> verification.run(riffler.Program.from_cl([cut], [ball], feed=600, spindle=9000)).findings
+[]
+)")
+          .c_str());
   define_with_arguments([&](const auto&... arguments) {
-    verification.def(py::init(with_arguments<>([](const GivenArguments& given, const py::object& progress) {
+    verification.def(py::init(with_arguments<>([](const GivenArguments& given, const ProgressLike& progress) {
                        return std::shared_ptr<SharedVerification>(make_of<SharedVerification>(given, progress));
                      })),
                      arguments...);
   });
-  verification.def("run", &run, py::arg("program").none(false), py::arg("progress") = py::none(),
-                   "The VerifyReport of a Program. After an error or Cancelled this is as it was before the call.");
+  verification.def("run", &run, py::arg("program").none(false), py::kw_only(), py::arg("progress") = py::none(),
+                   R"(Verifies a program. After an error or Cancelled the object is as it was before the call.
+
+Parameters
+----------
+program : Program
+    The program.
+progress : callable, optional
+    Called with the finished share; returning False cancels.
+
+Returns
+-------
+VerifyReport
+
+Examples
+--------
+>>> stock = riffler.Volume.block(lower=(0, 0, 0), upper=(20, 20, 10), pitch=0.5)
+>>> ball = riffler.Tool.ball(diameter=6, length=30)
+>>> program = riffler.Program.from_cl([[(5, 10, 8, 0, 0, 1)]], [ball], feed=600, spindle=9000)
+>>> riffler.Verification(stock).run(program).findings
+[]
+)");
 }
 
 }  // namespace riffler::bindings

@@ -34,7 +34,7 @@ int to_number(double value, const std::string& name, std::size_t row) {
   return static_cast<int>(value);
 }
 
-std::map<int, Tool> to_tools(const py::object& object, int lowest) {
+std::map<int, Tool> to_tools(const ToolsLike& object, int lowest) {
   std::map<int, Tool> out;
   if (object.is_none()) return out;
   constexpr const char* kExpected = "tools must be a dict: number to Tool";
@@ -48,7 +48,7 @@ std::map<int, Tool> to_tools(const py::object& object, int lowest) {
   return out;
 }
 
-nc::Provenance to_provenance(const py::object& object) {
+nc::Provenance to_provenance(const StringsLike& object) {
   nc::Provenance out;
   if (object.is_none()) return out;
   if (!py::isinstance<py::dict>(object)) throw py::value_error("provenance must be a dict of strings");

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "bindings/bindings.hpp"
+#include "bindings/program_types.hpp"
 #include "riffler/nc/program.hpp"
 
 namespace riffler::bindings {
@@ -32,9 +32,9 @@ std::vector<double> to_column(const py::handle& object, std::size_t rows, const 
 int to_number(double value, const std::string& name, std::size_t row);
 
 /// None, or a dict of number to Tool. ValueError for other types and for numbers below `lowest`.
-std::map<int, Tool> to_tools(const py::object& object, int lowest);
+std::map<int, Tool> to_tools(const ToolsLike& object, int lowest);
 
 /// None, or a dict, whose keys and values become strings.
-nc::Provenance to_provenance(const py::object& object);
+nc::Provenance to_provenance(const StringsLike& object);
 
 }  // namespace riffler::bindings

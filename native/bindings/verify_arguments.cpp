@@ -16,7 +16,7 @@ std::string fixture_name(std::size_t k) {
 
 using Fixture = std::variant<Volume, std::shared_ptr<const Mesh>>;
 
-std::vector<Fixture> to_fixtures(const py::object& object) {
+std::vector<Fixture> to_fixtures(const FixturesLike& object) {
   std::vector<Fixture> out;
   if (object.is_none()) return out;
   if (py::isinstance<SharedVolume>(object) || py::isinstance<Mesh>(object))
@@ -66,17 +66,11 @@ std::optional<verify::MachineChoice> to_machine(const GivenMachine& given) {
 
 }  // namespace
 
-GivenArguments to_given(SharedVolume& stock, const py::object& part, const py::object& fixtures,
-                        const py::object& tools, verify::VerifyOptions options, const GivenMachine& machine) {
+GivenArguments to_given(SharedVolume& stock, const std::shared_ptr<Mesh>& part, const FixturesLike& fixtures,
+                        const ToolsLike& tools, verify::VerifyOptions options, const GivenMachine& machine) {
   options.machine = to_machine(machine);
-  std::shared_ptr<const Mesh> mesh;
-  if (!part.is_none()) {
-    if (!py::isinstance<Mesh>(part)) throw py::value_error("part_mesh must be a Mesh or None");
-    mesh = py::cast<std::shared_ptr<Mesh>>(part);
-  }
   std::vector<Fixture> all = to_fixtures(fixtures);
-  return {{Reading(stock).volume.snapshot(), std::move(mesh), {}, to_tools(tools, 0), std::move(options)},
-          std::move(all)};
+  return {{Reading(stock).volume.snapshot(), part, {}, to_tools(tools, 0), std::move(options)}, std::move(all)};
 }
 
 verify::VerifyArguments to_arguments(const GivenArguments& given, const Progress& progress) {

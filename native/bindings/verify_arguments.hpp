@@ -7,7 +7,7 @@
 #include <variant>
 #include <vector>
 
-#include "bindings/bindings.hpp"
+#include "bindings/program_types.hpp"
 #include "bindings/shared_volume.hpp"
 #include "verify/scene.hpp"
 
@@ -22,20 +22,20 @@ struct GivenArguments {
 /// On what machine a program is to run.
 struct GivenMachine {
   const std::optional<std::string>& name;
-  const py::object& options;
-  const py::object& frame;
+  const OptionsLike& options;
+  const OptionalArrayLike& frame;
 };
 
 /// ValueError naming the one that is wrong. `options` has no machine yet.
-GivenArguments to_given(SharedVolume& stock, const py::object& part, const py::object& fixtures,
-                        const py::object& tools, verify::VerifyOptions options, const GivenMachine& machine);
+GivenArguments to_given(SharedVolume& stock, const std::shared_ptr<Mesh>& part, const FixturesLike& fixtures,
+                        const ToolsLike& tools, verify::VerifyOptions options, const GivenMachine& machine);
 
 /// Without the GIL. Meshes become volumes at the stock's pitch. std::invalid_argument naming the fixture.
 verify::VerifyArguments to_arguments(const GivenArguments& given, const Progress& progress);
 
 /// T(arguments, progress). Called with the GIL, which it releases.
 template <class T>
-std::unique_ptr<T> make_of(const GivenArguments& given, const py::object& progress) {
+std::unique_ptr<T> make_of(const GivenArguments& given, const ProgressLike& progress) {
   const Progress listener = to_progress(progress);
   const NoGil release;
   return std::make_unique<T>(to_arguments(given, base::part(listener, 0, 0.5)), base::part(listener, 0.5, 1));
@@ -44,10 +44,10 @@ std::unique_ptr<T> make_of(const GivenArguments& given, const py::object& progre
 /// A function of Python whose last arguments are those of riffler.verify: calls f(first…, given, progress).
 template <class... First, class F>
 auto with_arguments(const F& f) {
-  return [f](const First&... first, SharedVolume& stock, const py::object& part_mesh, const py::object& fixtures,
-             const py::object& tools, double tolerance, double gouge_tolerance,
+  return [f](const First&... first, SharedVolume& stock, const std::shared_ptr<Mesh>& part_mesh,
+             const FixturesLike& fixtures, const ToolsLike& tools, double tolerance, double gouge_tolerance,
              const std::optional<double>& rest_tolerance, double rapid_feed, const std::optional<std::string>& machine,
-             const py::object& machine_options, const py::object& machine_frame, const py::object& progress) {
+             const OptionsLike& machine_options, const OptionalArrayLike& machine_frame, const ProgressLike& progress) {
     return f(first...,
              to_given(stock, part_mesh, fixtures, tools, {tolerance, gouge_tolerance, rest_tolerance, rapid_feed, {}},
                       {machine, machine_options, machine_frame}),

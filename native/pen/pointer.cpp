@@ -18,17 +18,17 @@ void PointerFrame::validate() const {
   if (!(std::abs(glm::dot(right, up)) < kSlack)) fail("right and up must be perpendicular to each other");
   if (!(scale > 0 && std::isfinite(scale))) fail("scale must be positive");
   if (!(depth >= 0 && std::isfinite(depth))) fail("depth must not be negative");
-  if (!(most_tilt >= 0 && most_tilt < kPi / 2)) fail("most_tilt must be at least 0 and less than pi/2");
+  if (!(max_tilt >= 0 && max_tilt < kPi / 2)) fail("max_tilt must be at least 0 and less than pi/2");
 }
 
 Vec3 tilted_axis(const PointerFrame& frame, double tilt_x, double tilt_y) noexcept {
   const Vec3 upright = glm::cross(frame.right, frame.up);
   // Each tilt is the angle of the pen's projection on one plane: tangents add up.
   const auto slope = [&](double tilt) {
-    return std::isfinite(tilt) ? std::tan(std::clamp(tilt, -frame.most_tilt, frame.most_tilt)) : 0.0;
+    return std::isfinite(tilt) ? std::tan(std::clamp(tilt, -frame.max_tilt, frame.max_tilt)) : 0.0;
   };
   Vec2 lean(slope(tilt_x), slope(tilt_y));
-  const double most = std::tan(frame.most_tilt), length = glm::length(lean);
+  const double most = std::tan(frame.max_tilt), length = glm::length(lean);
   if (length > most) lean *= most / length;
   return glm::normalize(upright + lean.x * frame.right + lean.y * frame.up);
 }

@@ -56,7 +56,7 @@ class PenRun:
     @property
     def over(self) -> bool:
         """True when a recording has been played to its end."""
-        return self.device.kind == "recording" and self.device.health()["state"] == "stopped"
+        return self.device.kind == "recording" and self.device.health().state == "stopped"
 
     def halt(self) -> str:
         """Stops the device's forces and the session, and updates the volume. Returns the session's problem, or ""."""
@@ -72,7 +72,7 @@ class PenRun:
     @property
     def pushes(self) -> bool:
         """True if the device has motors, so that the hand feels the cut."""
-        return any(axis["pushes"] for axis in self.device.limits.values())
+        return any(axis.pushes for axis in self.device.limits.values())
 
     def close(self) -> None:
         self.device.stop()
@@ -90,7 +90,7 @@ class PenRun:
         self.dropped_ticks = frame.dropped_ticks
         self.force = float(np.linalg.norm(frame.force))
         self._collect(frame)
-        health = self.device.health()["problem"] if self.session.running else None
+        health = self.device.health().problem if self.session.running else None
         cause = frame.cause if frame.state not in ("ready", "ramp", "active") else None
         self.why = self.session.journal_problem or frame.problem or health or cause or ""
 

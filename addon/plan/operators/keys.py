@@ -186,7 +186,7 @@ def set_key(scene, ob, frame, quat=None, axis=None):
         axis = quaternions.axes_of(np.asarray(quat, float))
     wanted = key_orientations.change(plan.paths[path].keys, {**reading.keys[path], index: axis}).keys
     # The path's errors come before the change.
-    turned = plan.paths[path].oriented({**wanted, index: axis}, plan.paths[path].interpolation or "smooth")
+    turned = plan.paths[path].orient({**wanted, index: axis}, interpolation=plan.paths[path].interpolation or "smooth")
     others = np.abs(frames - frame) > 1e-4
     frames, quats = np.append(frames[others], frame), np.vstack([quats[others], quat])
     order = np.argsort(frames)

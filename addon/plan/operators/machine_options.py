@@ -21,7 +21,7 @@ class OfMachine:
 
     def fact(self, context):
         """The option's description. ValueError, which lists the options, for an unknown name."""
-        listed = {fact["name"]: fact for fact in machine_fields.facts(self.machine)}
+        listed = {fact.name: fact for fact in machine_fields.facts(self.machine)}
         if self.option not in listed:
             raise ValueError(f"{self.machine} has no option {self.option!r}: it has {', '.join(listed)}")
         return listed[self.option]
@@ -50,7 +50,7 @@ class RIFFLER_OT_machine_option(OfMachine, bpy.types.Operator):
     def execute(self, context):
         try:
             fact = self.fact(context)
-            if self.how == "CURSOR" and fact["count"] != 3:
+            if self.how == "CURSOR" and fact.count != 3:
                 raise ValueError(f"{self.option} is not a position: give a number")
         except operator_parts.ERRORS as error:
             return operator_parts.fail(self, error)
@@ -70,9 +70,9 @@ def _others(self, context):
     """The options that are not set."""
     given = {} if context is None else context.scene.riffler.machines.given(self.machine)
     _entries[:] = [
-        (fact["name"], machine_fields.label(fact), machine_fields.about(fact), k)
+        (fact.name, machine_fields.label(fact), machine_fields.about(fact), k)
         for k, fact in enumerate(machine_fields.facts(self.machine))
-        if fact["name"] not in given
+        if fact.name not in given
     ]
     return _entries
 

@@ -235,8 +235,8 @@ def divided(path, rate: float):
         return fine
     places = _places(path.centres, fine.centres)
     if not path.interpolation or not path.keys:  # axes from another source: each is a key
-        return fine.oriented({places[k]: axis for k, axis in enumerate(path.axes)}, "slerp")
-    return fine.oriented({places[k]: axis for k, axis in path.keys.items()}, path.interpolation)
+        return fine.orient({places[k]: axis for k, axis in enumerate(path.axes)}, interpolation="slerp")
+    return fine.orient({places[k]: axis for k, axis in path.keys.items()}, interpolation=path.interpolation)
 
 
 def _places(points: np.ndarray, fine: np.ndarray) -> list[int]:

@@ -25,26 +25,26 @@ def machine_identifier(name: str) -> str:
 
 def label(fact: dict) -> str:
     """“Max Rotary (deg/min)”."""
-    words = ABBREVIATIONS.get(fact["name"], fact["name"].replace("_", " ").title())
-    return f"{words} ({fact['unit']})" if fact["unit"] else words
+    words = ABBREVIATIONS.get(fact.name, fact.name.replace("_", " ").title())
+    return f"{words} ({fact.unit})" if fact.unit else words
 
 
 def about(fact: dict) -> str:
     """The tooltip: Blender adds the full stop."""
-    text = fact["about"]
+    text = fact.about
     return text[:1].upper() + text[1:]
 
 
 def value(fact: dict, found):
     """An option's value for riffler, from its field's value."""
-    if fact["kind"] in ("flag", "word"):
+    if fact.kind in ("flag", "word"):
         return found
-    return [units.clean(x) for x in found] if fact["count"] > 1 else units.clean(found)
+    return [units.clean(x) for x in found] if fact.count > 1 else units.clean(found)
 
 
 @lru_cache(maxsize=64)
 def _facts(machine: str, given: str) -> tuple[dict, ...]:
-    return tuple(riffler.machine_options(machine, json.loads(given)))
+    return tuple(riffler.machine_options(machine, options=json.loads(given)))
 
 
 def facts(machine: str, given: dict | None = None) -> tuple[dict, ...]:
@@ -54,11 +54,11 @@ def facts(machine: str, given: dict | None = None) -> tuple[dict, ...]:
 
 def missing(machine: str, given: dict) -> list[dict]:
     """Required options that are not set."""
-    return [fact for fact in facts(machine, given) if fact["needed"] and fact["name"] not in given]
+    return [fact for fact in facts(machine, given) if fact.needed and fact.name not in given]
 
 
 def check(machine: str, given: dict) -> None:
     """ValueError that names the missing option, and where to set it."""
     for fact in missing(machine, given):
-        place = ", or take the place of the 3D cursor there" if fact["count"] == 3 else ""
-        raise ValueError(f"{machine}: {label(fact)} is not set, {fact['about']}: set it in the panel Machine{place}")
+        place = ", or take the place of the 3D cursor there" if fact.count == 3 else ""
+        raise ValueError(f"{machine}: {label(fact)} is not set, {fact.about}: set it in the panel Machine{place}")

@@ -96,20 +96,24 @@ class Search:
         """Axes at the keys' points, which form a path of their own for that."""
         rule, some, path = self._rule, self._points, self._path
         closed = path.closed and len(some) > 2
-        few = riffler.plan.PencilPath(path.radius, path.centres[some], path.contacts[some], path.normals[some], closed)
+        few = riffler.plan.PencilPath(
+            path.radius, path.centres[some], path.contacts[some], path.normals[some], closed=closed
+        )
         sizes = {"tolerance": rule.tolerance, "limit": rule.limit, "max_change": math.pi, "smoothness": SMOOTH}
-        self._job = TaskJob(riffler.submit(riffler.plan.least_tilt, few, rule.tool, rule.collider, **sizes))
+        self._job = TaskJob(riffler.submit(riffler.plan.min_tilt, few, rule.tool, rule.collider, **sizes))
         self._taken = self._check
 
     def _check(self, found) -> None:
         """Checks whether the points between them are free as well."""
         oriented, report = found
         if oriented is None:
-            self.answer = Answer(None, self._points[report["point"]], report["reason"].partition(": ")[2])
+            self.answer = Answer(None, self._points[report.point], report.reason.partition(": ")[2])
             return
         keys = dict(zip(self._points, oriented.axes, strict=True))
         try:
-            self._keyed = self._path.oriented(keys, self._path.interpolation or "smooth", limit=self._rule.limit)
+            self._keyed = self._path.orient(
+                keys, interpolation=self._path.interpolation or "smooth", limit=self._rule.limit
+            )
         except ValueError as error:
             self.answer = Answer(None, self._points[0], str(error))
             return
@@ -136,7 +140,9 @@ class Given:
 
     def __init__(self, path, axis):
         (point,) = begun(path, 1)
-        self.answer = Answer(path.oriented({point: np.asarray(axis, float)}, path.interpolation or "smooth"))
+        self.answer = Answer(
+            path.orient({point: np.asarray(axis, float)}, interpolation=path.interpolation or "smooth")
+        )
 
     def step(self, budget: float) -> bool:
         return True

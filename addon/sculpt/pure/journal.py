@@ -106,7 +106,7 @@ class LiveJournal(StrokeJournal):
         self._tools: dict[str, int] = {}
         self._writer = riffler.JournalWriter(self.folder / STROKES, keep=False)
         v, mask = content.volume, MASK if content.mask is not None else ""
-        self._writer.set_stock(v.lower, v.upper, v.pitch, v.directions, STOCK, mask=mask)
+        self._writer.set_stock(v.lower, v.upper, v.pitch, v.directions, snapshot=STOCK, mask=mask)
         self._saving = [riffler.submit(riffler.Volume.save, v, self.folder / STOCK)]
         if mask:
             self._saving.append(riffler.submit(riffler.Volume.save, content.mask, self.folder / MASK))
@@ -128,7 +128,7 @@ class LiveJournal(StrokeJournal):
 
     def cancel(self) -> None:
         if self._open:
-            self._write(lambda: self._writer.take_back(self._open))
+            self._write(lambda: self._writer.undo(self._open))
             self._open = 0
 
     def go(self, token: str) -> bool:
@@ -139,9 +139,9 @@ class LiveJournal(StrokeJournal):
         at = self._tokens.index(token)
         n = self._counts[at] - self._counts[self._at]
         if n < 0:
-            self._write(lambda: self._writer.take_back(-n))
+            self._write(lambda: self._writer.undo(-n))
         elif n > 0:
-            self._write(lambda: self._writer.bring_back(n))
+            self._write(lambda: self._writer.redo(n))
         self._at = at
         return True
 
@@ -220,24 +220,25 @@ class SessionJournal(StrokeJournal):
 def write_recording(folder: Path, path: Path, notes: dict[str, str]) -> None:
     """Writes the journal of a session, without undone strokes, to a file of the user's, with its stock next to it.
     OSError, ValueError."""
-    journal, out = riffler.Journal.read(folder / STROKES), riffler.Journal()
+    journal, out = riffler.Journal.load(folder / STROKES), riffler.Journal()
     if not journal.strokes:
         return
     for key, value in {**journal.notes, **notes}.items():
         out.add_note(key, value)
     stock, names = journal.stock, {}
-    for what in ("snapshot", "mask"):
-        names[what] = f"{path.stem}-{'stock' if what == 'snapshot' else what}.rvol" if stock[what] else ""
-        if names[what]:
-            shutil.copyfile(folder / stock[what], path.with_name(names[what]))
-    out.set_stock(
-        stock["lower"], stock["upper"], stock["pitch"], stock["directions"], names["snapshot"], mask=names["mask"]
-    )
+    for what, name in (("stock", stock.snapshot), ("mask", stock.mask)):
+        names[what] = f"{path.stem}-{what}.rvol" if name else ""
+        if name:
+            shutil.copyfile(folder / name, path.with_name(names[what]))
+    out.set_stock(stock.lower, stock.upper, stock.pitch, stock.directions, snapshot=names["stock"], mask=names["mask"])
     for number, tool in journal.tools.items():
         out.add_tool(number, tool)
     for s in journal.strokes:
-        out.add_stroke(s.tool, s.poses, s.times, s.tolerance, s.name, forces=s.forces, removed=s.removed, mode=s.mode)
-    out.write(path)
+        out.add_stroke(
+            s.tool, s.poses, times=s.times, tolerance=s.tolerance, name=s.name, forces=s.forces, removed=s.removed,
+            mode=s.mode,
+        )  # fmt: skip
+    out.save(path)
 
 
 # ---------------------------------------------------------------------- after a crash
@@ -317,12 +318,12 @@ class Lock:
 def part_of(folder: Path, count: int | None = None) -> tuple[riffler.Journal, list[Cut]]:
     """The journal in `folder`, or its first `count` strokes, and all cuts up to there. ValueError names its problem,
     OSError what cannot be read."""
-    journal = riffler.Journal.read(folder / STROKES)
+    journal = riffler.Journal.load(folder / STROKES)
     extra = 0 if count is None else len(journal.strokes) - count
     if extra > 0:
-        journal.take_back(extra)
+        journal.undo(extra)
     elif extra < 0:  # undone strokes
-        journal.bring_back(-extra)
+        journal.redo(-extra)
     return journal, _before(folder)[0] + cuts_of(journal)
 
 
@@ -363,7 +364,7 @@ def cuts_of(journal: riffler.Journal) -> list[Cut]:
     separate."""
     cuts: list[Cut] = []
     rows: dict[tuple, list[np.ndarray]] = {}
-    tools, masked = journal.tools, bool(journal.stock and journal.stock["mask"])
+    tools, masked = journal.tools, bool(journal.stock and journal.stock.mask)
     for stroke in journal.strokes:
         brush = brush_of(stroke)
         masked |= brush.protects
@@ -386,5 +387,5 @@ def cuts_of(journal: riffler.Journal) -> list[Cut]:
 def replay(folder: Path, count: int | None = None) -> Content:
     """The result of the first `count` strokes of the journal in `folder`, or of all of them."""
     journal, cuts = part_of(folder, count)
-    volume, mask = journal.replay(folder, with_mask=True)
+    volume, mask = journal.replay_with_mask(folder)
     return Content(volume, cuts, mask, shaped(folder, journal))

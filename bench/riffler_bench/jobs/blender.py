@@ -300,7 +300,7 @@ def natively(table: Section, settings: Settings) -> None:
 
     cpu = time.process_time()
     found = timed("find", lambda: plan.pencil(part, TOOL, tolerance=0.01, minimum_length=LEAST))
-    paths = timed("keys", lambda: [path.oriented({0: UP}, interpolation="smooth") for path in found])
+    paths = timed("keys", lambda: [path.orient({0: UP}, interpolation="smooth") for path in found])
     with tempfile.TemporaryDirectory() as own:
         file = Path(own) / "native.ngc"
 
@@ -315,7 +315,7 @@ def natively(table: Section, settings: Settings) -> None:
             program = Program.from_cl(rows, tools=[TOOL], feed=800, spindle=12000, occupied=part.bounds)
             return program.write(file, post=POST, tolerance=0.01, options={"rot_point": [0, 0, -40]})
 
-        blocks = timed("nc", write)["blocks"]
+        blocks = timed("nc", write).blocks
         size = file.stat().st_size
     table.row(
         where="Python", paths=len(found), points=sum(map(len, paths)), blocks=blocks, bytes=size, **seconds,

@@ -199,17 +199,17 @@ def from_maps(scene: Scene, quick: bool) -> Oriented:
     angles, out = grid(quick), []
     for path in scene.paths:
         maps = plan.free_orientations(
-            path, key_points(path), scene.judge.tool, scene.collider, inclinations=angles, tilts=angles
+            path, scene.judge.tool, scene.collider, index=key_points(path), inclinations=angles, tilts=angles
         )
         keys = {found.index: found.suggestion for found in maps if found.suggestion is not None}
-        out.append(path.oriented(keys, interpolation="smooth") if keys else None)
+        out.append(path.orient(keys, interpolation="smooth") if keys else None)
     return out
 
 
 def least_tilt(scene: Scene, quick: bool) -> Oriented:
     angles = grid(quick)
     return [
-        plan.least_tilt(path, scene.judge.tool, scene.collider, inclinations=angles, tilts=angles)[0]
+        plan.min_tilt(path, scene.judge.tool, scene.collider, inclinations=angles, tilts=angles)[0]
         for path in scene.paths
     ]
 
@@ -226,7 +226,7 @@ def bad(scene: Scene, quick: bool) -> Oriented:
             across /= max(np.linalg.norm(across), 1e-300)
             axis = np.cos(radians(50)) * middle + sign * np.sin(radians(50)) * across
             keys[int(k)], sign = axis / np.linalg.norm(axis), -sign
-        out.append(path.oriented(keys, interpolation="smooth"))
+        out.append(path.orient(keys, interpolation="smooth"))
     return out
 
 
@@ -350,7 +350,7 @@ def touched(shape: Shape, count: int, rng: np.random.Generator) -> dict[str, flo
     lean[::100] = 0
     axes = np.cos(lean) * normals + np.sin(lean) * across
     axes /= np.linalg.norm(axes, axis=1)[:, None]
-    poses = plan.contact_locations(shape.tool, contacts, normals, axes, feeds)
+    poses = plan.contact_locations(contacts, normals, axes, shape.tool, feeds=feeds)
     # The plane: how far down the cutter reaches from its tip, against the tip's height.
     along = (axes * normals).sum(1)
     sideways = np.linalg.norm(normals - along[:, None] * axes, axis=1)

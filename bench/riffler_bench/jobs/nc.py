@@ -144,8 +144,8 @@ def write(out: Report, count: int, settings: Settings, folder: Path, progress: P
         figures, wrote = beside_interpreter(file, work, settings)
         figures.pop("ratio", None)
         table.row(
-            post=post, rows=len(program), blocks=wrote["blocks"], bytes=file.stat().st_size,
-            rate=wrote["blocks"] / figures["seconds"], **figures,
+            post=post, rows=len(program), blocks=wrote.blocks, bytes=file.stat().st_size,
+            rate=wrote.blocks / figures["seconds"], **figures,
         )  # fmt: skip
     table.notes.append("Lines over a sheet of 100 × 100 mm; on five axes the tool swings by ± 17°.")
 
@@ -219,4 +219,4 @@ def divided(post: str, poses: np.ndarray, tolerance: float, settings: Settings, 
 
     seconds, wrote = median(work, settings)
     found = nc_judge.between(nc_judge.joints_of(file.read_text()), poses, KINEMATICS[post])
-    return {"axis_tolerance": axis_tolerance, "blocks": wrote["blocks"], "seconds": seconds, **found}
+    return {"axis_tolerance": axis_tolerance, "blocks": wrote.blocks, "seconds": seconds, **found}

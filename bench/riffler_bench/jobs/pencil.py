@@ -203,7 +203,7 @@ def judged(out: Report, table: report.Section, c: Case, settings: Settings) -> d
         paths=f"{len(paths)} ({len(c.true)})",
         count=len(paths),
         points=sum(len(p.centres) for p in paths),
-        balls=paths.stats["balls"],
+        balls=paths.stats.balls,
         cpu_s=seconds,
         **figures(c, result),
         **near,

@@ -19,7 +19,7 @@ def path(points=11, closed=False, lean=0.6):
     contacts = np.stack([centres - [0, 0, 3], centres - [3, 0, 0]], axis=1)
     normals = np.broadcast_to([[[0.0, 0, 1], [1, 0, 0]]], (points, 2, 3))
     bare = riffler.plan.PencilPath(3.0, centres, contacts, normals, closed)
-    return bare.oriented({0: (lean, 0, math.sqrt(1 - lean**2))})
+    return bare.orient({0: (lean, 0, math.sqrt(1 - lean**2))})
 
 
 def rows_of(some):
@@ -122,9 +122,9 @@ def test_sizes_that_make_no_tool_are_refused():
 def test_machines_and_options_have_names_that_blender_takes():
     names = [machine_fields.machine_identifier(name) for name in ("tcp-bc", "tcp_bc", "3-axis", "my mill.v2")]
     assert len(set(names)) == 4 and all(name.replace("_", "").isalnum() for name in names)
-    fact = next(f for f in riffler.machine_options("linuxcnc-xyzac") if f["name"] == "max_rotary")
+    fact = next(f for f in riffler.machine_options("linuxcnc-xyzac") if f.name == "max_rotary")
     assert machine_fields.label(fact) == "Max Rotary (deg/min)" and machine_fields.about(fact)[0].isupper()
-    assert [f["name"] for f in machine_fields.missing("linuxcnc-xyzac", {})] == ["rot_point"]
+    assert [f.name for f in machine_fields.missing("linuxcnc-xyzac", {})] == ["rot_point"]
     assert machine_fields.missing("linuxcnc-xyzac", {"tcp": True}) == []
     with pytest.raises(ValueError, match=r"Rot Point \(mm\) is not set, .*3D cursor"):
         machine_fields.check("linuxcnc-xyzac", {})

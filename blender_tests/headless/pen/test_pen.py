@@ -40,7 +40,7 @@ def test_a_stroke_with_the_simulated_pen_is_in_volume_mesh_recording_and_cuts():
     nothing_is_left()
     (path,) = place.glob("*.rjournal")
     assert riffler.Session.replay(path).to_bytes() == content.volume.to_bytes()
-    strokes = riffler.Journal.read(path).strokes
+    strokes = riffler.Journal.load(path).strokes
     assert sum(c.moves for c in content.cuts) == sum((np.diff(s.poses, axis=0) != 0).any(axis=1).sum() for s in strokes)
     again = riffler.Volume.block((0, 0, 0), (60, 60, 20), 0.5, "z")
     for cut in content.cuts:

@@ -57,7 +57,7 @@ def test_a_recording_is_a_device_and_ends_by_itself():
     poses = np.c_[10 + 40 * x, 30 + 0 * x, 19 + 0 * x, 0 * x, 0 * x, 1 + 0 * x]
     journal.add_stroke(1, poses, times=2 * x)
     path = common.out("hand.rjournal")
-    journal.write(path)
+    journal.save(path)
     assert sculpt_for(60.0, device="recording", recording=path, stiffness=5.0) == {"FINISHED"}
     no_session()
     live().end_all()
@@ -349,7 +349,7 @@ def test_a_puck_carves_where_it_is_pushed_as_fast_as_its_curve_says():
         removed = json.loads(done.stdout.partition(report.MARK)[2].partition("\n")[0])["removed"]
         assert removed > 10, done.stdout[-2000:]
         (path,) = place.glob("*.rjournal")
-        strokes, replayed = riffler.Journal.read(path).strokes, riffler.Session.replay(path)
+        strokes, replayed = riffler.Journal.load(path).strokes, riffler.Session.replay(path)
     assert len(strokes) > 1, "the button was let go, and held again"
     rows = np.vstack([s.poses for s in strokes])
     assert np.abs(rows[:, 1:] - (*spacemouse_run.START[1:], 0, 0, 1)).max() < 0.01, (

@@ -211,7 +211,7 @@ def fixture(xs, ys, zs):
 
 def test_fixtures_count():
     part = plans.part_object()
-    ob = plans.on_timeline(chosen=[plans.paths()[0].oriented({0: (0, -0.6, 0.8)})])
+    ob = plans.on_timeline(chosen=[plans.paths()[0].orient({0: (0, -0.6, 0.8)})])
     fixture((20, 40), (0, 10), (8, 40))
     bpy.context.scene.riffler.plan.part = part
     bpy.ops.riffler.plan_check()
@@ -229,7 +229,7 @@ def looked_again():
 
 def test_marks_are_of_before_once_a_fixture_has_moved_until_it_is_looked_at_again():
     part = plans.part_object()
-    ob = plans.on_timeline(chosen=[plans.paths()[0].oriented({0: (0, -0.6, 0.8)})])
+    ob = plans.on_timeline(chosen=[plans.paths()[0].orient({0: (0, -0.6, 0.8)})])
     outdated = common.part("plan.collision_marks").outdated
     vise = fixture((20, 40), (0, 10), (8, 40))
     assert not outdated(ob)  # no marks were requested
@@ -255,7 +255,7 @@ def test_marks_are_of_before_once_a_fixture_has_moved_until_it_is_looked_at_agai
 
 def test_marks_of_a_file_that_is_opened_or_of_a_plan_that_is_renamed_are_looked_at_again():
     part = plans.part_object()
-    ob = plans.on_timeline(chosen=[plans.paths()[0].oriented({0: (0, -0.6, 0.8)})])
+    ob = plans.on_timeline(chosen=[plans.paths()[0].orient({0: (0, -0.6, 0.8)})])
     outdated = common.part("plan.collision_marks").outdated
     vise = fixture((20, 40), (0, 10), (8, 40))
     bpy.context.scene.riffler.plan.part = part

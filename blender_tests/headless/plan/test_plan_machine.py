@@ -24,8 +24,8 @@ def test_every_option_of_every_machine_is_a_field_with_its_unit():
     for machine in riffler.machines():
         group = machines().of(machine)
         for fact in riffler.machine_options(machine):
-            prop = group.bl_rna.properties[fields.identifier(fact["name"])]
-            assert prop.name.endswith(f"({fact['unit']})") if fact["unit"] else "(" not in prop.name, prop.name
+            prop = group.bl_rna.properties[fields.identifier(fact.name)]
+            assert prop.name.endswith(f"({fact.unit})") if fact.unit else "(" not in prop.name, prop.name
             assert prop.description == fields.about(fact)
         assert machines().given(machine) == {}, "no option is passed on before the user sets it"
 
@@ -42,7 +42,7 @@ def test_a_pivot_that_nobody_gave_is_asked_for():
     )  # fmt: skip
     assert not Path(path).exists() and programs.content(ob)
     (missing,) = common.part("plan.pure.machine_fields").missing("linuxcnc-xyzac", {})
-    assert missing["name"] == "rot_point"
+    assert missing.name == "rot_point"
     bpy.context.scene.cursor.location = (1, 2, -40)
     bpy.ops.riffler.machine_option(machine="linuxcnc-xyzac", option="rot_point", how="CURSOR")
     assert machines().given("linuxcnc-xyzac") == {"rot_point": [1, 2, -40]}

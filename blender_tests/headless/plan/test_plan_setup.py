@@ -41,7 +41,7 @@ def a_plan(name="part", points=5):
     centres = np.stack([3 + 0 * y, y, 3 + 0 * y], axis=1)
     contacts = np.stack([centres - [0, 0, 3], centres - [3, 0, 0]], axis=1)
     normals = np.broadcast_to([[[0.0, 0, 1], [1, 0, 0]]], (points, 2, 3))
-    path = riffler.plan.PencilPath(3.0, centres, contacts, normals, False)
+    path = riffler.plan.PencilPath(3.0, centres, contacts, normals, closed=False)
     return riffler.plan.Plan([path], riffler.Tool.ball(6, 30), part={"name": name}, tolerance=0.01)
 
 

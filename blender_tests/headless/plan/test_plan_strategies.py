@@ -45,7 +45,7 @@ def rows(ob):
 
 
 def lines(depth=0.3, points=LINE, tool=GRAVER):
-    return riffler.plan.engrave(riffler.Mesh(*plans.step()), [points], tool, depth=depth)
+    return riffler.plan.engrave([points], tool, riffler.Mesh(*plans.step()), depth=depth)
 
 
 def test_the_fields_are_those_of_the_table():

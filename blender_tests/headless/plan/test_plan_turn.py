@@ -51,7 +51,7 @@ def test_neighbours_are_oriented_anew():
     bpy.context.scene.frame_set(73)
     turn(inclination=0.4, tilt=0.0)
     path = paths(ob)[0]
-    again = path.oriented(dict(path.keys), path.interpolation)
+    again = path.orient(dict(path.keys), interpolation=path.interpolation)
     assert close(path.axes, again.axes, 1e-12) and np.abs(path.axes[40] - before[40]).max() > 0.01
     assert close(path.axes[[0, 144]], before[[0, 144]], 1e-9)
 
@@ -219,7 +219,8 @@ def test_a_map_is_made_when_somebody_looks_and_again_only_where_the_point_is_ano
     maps = looking.maps
     spot, known = ask()
     assert not known.old and looking.maps == maps + 1 and known.text.startswith("Free")
-    same = riffler.plan.free_orientations(spot.line, 72, plans.TOOL, riffler.Collider(riffler.Mesh(*plans.step())))
+    part = riffler.Collider(riffler.Mesh(*plans.step()))
+    same = riffler.plan.free_orientations(spot.line, plans.TOOL, part, index=72)
     assert np.array_equal(known.map.state, same.state) and known.map.state.shape == (21, 21)
     turn(inclination=float(known.map.inclinations[12]), tilt=float(known.map.tilts[3]))
     spot, known = ask()
@@ -333,7 +334,7 @@ def line(y, z, n=200):
     centres = np.c_[np.linspace(0, 60, n), np.full(n, y), np.full(n, z)]
     aside = np.array((0, 3.0, 0))
     contacts = np.stack([centres - aside, centres + aside], axis=1)
-    return riffler.plan.PencilPath(3.0, centres, contacts, np.tile((0, 0, 1.0), (n, 2, 1)), False)
+    return riffler.plan.PencilPath(3.0, centres, contacts, np.tile((0, 0, 1.0), (n, 2, 1)), closed=False)
 
 
 def test_a_contact_that_is_hidden_is_not_pointed_at():

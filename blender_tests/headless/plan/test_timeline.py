@@ -156,7 +156,7 @@ def test_a_key_is_added_by_its_curves():
     assert state(ob).changes[0].added == [72] and state(ob).baked == baked + 1, (state(ob).baked, baked)
     assert np.array_equal(after[1].axes, before[1].axes) and after[1].keys.keys() == before[1].keys.keys()
     assert close(seen(ob, 73)[1], np.array((0, -0.3, 1)) / np.sqrt(1.09))
-    reference = after[0].oriented({0: (0, -0.6, 0.8), 72: after[0].keys[72], 144: (0.6, 0, 0.8)}, "smooth")
+    reference = after[0].orient({0: (0, -0.6, 0.8), 72: after[0].keys[72], 144: (0.6, 0, 0.8)}, interpolation="smooth")
     assert close(after[0].axes, reference.axes, 1e-12)
     assert close(seen(ob, 37)[1], reference.axes[36])
 

@@ -491,4 +491,4 @@ def test_copies_by_symmetry_and_standing_rows_are_told_again_to_the_byte():
     content = run.persistence.journal.state(run.token)
     assert content.volume.to_bytes() == run.volume.to_bytes()
     assert content.mask.to_bytes() == run.mask.to_bytes()
-    assert riffler.Journal.read(run.persistence.journal.folder / "strokes.rjournal").stock["snapshot"] == "stock.rvol"
+    assert riffler.Journal.load(run.persistence.journal.folder / "strokes.rjournal").stock.snapshot == "stock.rvol"

@@ -5,14 +5,14 @@
 
 Pens of your own are ``.toml`` files, given by path or found in the folders of ``RIFFLER_PENS``.
 
-Devices that are plugged in are listed by ``devices`` and opened by ``open``; a recording opens as one, too::
+``devices`` lists the devices that are plugged in and ``open`` opens one; a recording opens as one, too::
 
     with riffler.pen.open("riffler-pen") as device:
         state = device.state()
         device.push([0.0, 0.0, 1.0])
 
 Without hardware there is ``riffler.pen.open("simulated")``: the same firmware and driver, arms and hand simulated.
-Tablet and mouse are a ``Pointer``, for whoever gets their events.
+Tablet and mouse are a ``Pointer``, which gets their events.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from __future__ import annotations
 import atexit
 import os
 import weakref
+from collections.abc import Sequence
 from typing import Any
 
 from ._core import (
@@ -36,13 +37,32 @@ from ._core import (
     _pens,
     _play_pen,
 )
+from .hints import hinted
+from .pen_results import (
+    CoordinateCapability,
+    DeviceInfo,
+    GripDiagnosis,
+    PenCapability,
+    PenChannel,
+    PenHealth,
+    PenLimits,
+    PushResult,
+)
 
 __all__ = [
+    "CoordinateCapability",
+    "DeviceInfo",
+    "GripDiagnosis",
+    "PenCapability",
+    "PenChannel",
     "PenDevice",
     "PenError",
     "PenGeometry",
+    "PenHealth",
+    "PenLimits",
     "PenState",
     "Pointer",
+    "PushResult",
     "SimulatedPen",
     "devices",
     "kinds",
@@ -54,41 +74,127 @@ _open_devices: weakref.WeakSet[PenDevice] = weakref.WeakSet()
 
 
 def names() -> dict[str, str]:
-    """Every pen that has a name, with its description: those that come with riffler, then the user's own."""
+    """Every pen that has a name: those that come with riffler, then the user's own.
+
+    Returns
+    -------
+    dict
+        Name to description.
+
+    Examples
+    --------
+    >>> "riffler" in riffler.pen.names()
+    True
+    """
     return _pens()
 
 
-def devices() -> list[dict[str, Any]]:
-    """Every HID device: path, name, maker, id (vendor:product), serial, kind (None: not for riffler), tried (it was
-    opened and asked who it is), problem (a few words) and text (why it does not open, and what to do), both None where
-    it does, capability and about."""
+def devices() -> list[DeviceInfo]:
+    """Every HID device of this computer; those of kinds that riffler knows are opened and asked what they are.
+
+    Returns
+    -------
+    list of DeviceInfo
+
+    Examples
+    --------
+    >>> all(device.path for device in riffler.pen.devices())
+    True
+    """
     return _pen_devices()
 
 
 def kinds() -> dict[str, str]:
-    """What ``open`` takes for devices, and what they are."""
+    """What ``open`` takes for devices.
+
+    Returns
+    -------
+    dict
+        Kind to description.
+
+    Examples
+    --------
+    >>> "simulated" in riffler.pen.kinds()
+    True
+    """
     return _pen_families()
 
 
-def open(what: str | os.PathLike[str], *, speed: float | None = None, **options: Any) -> PenDevice:
-    """Opens a device: a kind (the first that opens), a path of ``devices``, or a journal (``.rjournal``), which is
-    played from the first call of ``state`` on, ``speed`` times as fast as it was.
+@hinted("pen.open")
+def open(
+    what: str | os.PathLike[str],
+    *,
+    speed: float | None = None,
+    bubble: float | None = None,
+    exponent: float | None = None,
+    turn_rate: float | None = None,
+    hold_orientation: bool | None = None,
+    signs: Sequence[int] | None = None,
+    geometry: str | None = None,
+    gravity: float | None = None,
+    friction: float | None = None,
+) -> PenDevice:
+    """Opens a device.
 
-    Options of pucks: ``bubble`` (share of the deflection that is rest), ``exponent`` (of the response), ``speed`` (mm/s
-    at full deflection), ``turn_rate`` (rad/s), ``hold_orientation``, ``signs`` (six of -1, 0, 1). Option of "polhem":
-    ``geometry`` ("woodenhaptics" or "polhem-1"). Options of Riffler's pen and the simulated one: ``gravity`` and
-    ``friction``, shares (0 to 1, by themselves 0) of the arms' weight and friction that the motors make up for while
-    force is let through. PenError says exactly why a device does not open.
+    Parameters
+    ----------
+    what : str or path
+        A kind of ``kinds`` (the first device that opens), a path of ``devices``, or a journal (``.rjournal``), which is
+        played from the first call of ``state`` on.
+    speed : float, optional
+        Of pucks: mm/s at full deflection. Of a journal: how many times as fast as it was.
+    bubble : float, optional
+        Of pucks: share of the deflection that is rest.
+    exponent : float, optional
+        Of pucks: of the response.
+    turn_rate : float, optional
+        Of pucks: rad/s at full deflection.
+    hold_orientation : bool, optional
+        Of pucks: turns are ignored.
+    signs : list of int, optional
+        Of pucks: six of -1, 0, 1.
+    geometry : str, optional
+        Of "polhem": "woodenhaptics" or "polhem-1".
+    gravity, friction : float, optional
+        Of Riffler's pen and the simulated one: shares (0 to 1, 0 if not given) of the arms' weight and friction that
+        the motors make up for while force is let through.
+
+    Returns
+    -------
+    PenDevice
+
+    Raises
+    ------
+    PenError
+        With the exact reason why the device does not open, and what to do.
+
+    Examples
+    --------
+    >>> with riffler.pen.open("simulated") as pen:
+    ...     pen.state().pose.shape
+    (6,)
     """
     path = os.fspath(what)
+    given = {
+        "bubble": bubble,
+        "exponent": exponent,
+        "turn_rate": turn_rate,
+        "hold_orientation": hold_orientation,
+        "signs": signs,
+        "geometry": geometry,
+        "gravity": gravity,
+        "friction": friction,
+    }
+    options: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
     if path.endswith(".rjournal"):
         if options:
             raise ValueError(f"a recording has no option {min(options)!r}")
-        strokes = Journal.read(path).strokes
-        for number, stroke in enumerate(strokes):
+        strokes = []
+        for number, stroke in enumerate(Journal.load(path).strokes):
             if stroke.times is None:
                 raise ValueError(f"stroke {number} has no times: it cannot be played")
-        return _play_pen([(stroke.poses, stroke.times) for stroke in strokes], 1.0 if speed is None else speed)
+            strokes.append((stroke.poses, stroke.times))
+        return _play_pen(strokes, 1.0 if speed is None else speed)
     if speed is not None:
         options["speed"] = speed
     device = _open_pen(path, **options)
@@ -98,6 +204,6 @@ def open(what: str | os.PathLike[str], *, speed: float | None = None, **options:
 
 @atexit.register
 def _stop_all() -> None:
-    """A device that nobody stopped is told not to push before the process ends."""
+    """A device that is still open pushes no more when the process ends."""
     for device in list(_open_devices):
         device.stop()

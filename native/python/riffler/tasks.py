@@ -35,7 +35,7 @@ __all__ = [
 ]
 
 for _function in (
-    plan.pencil, plan.cutter_locations, plan.kept_locations, plan.free_orientations, plan.least_tilt
+    plan.pencil, plan.cutter_locations, plan.kept_locations, plan.free_orientations, plan.min_tilt
 ):  # fmt: skip
     runs_as_task(_function)  # pyright: ignore[reportArgumentType]
 
@@ -56,7 +56,7 @@ pencil = _task_of("pencil", plan.pencil, "plan.pencil")
 cutter_locations = _task_of("cutter_locations", plan.cutter_locations, "plan.cutter_locations")
 kept_locations = _task_of("kept_locations", plan.kept_locations, "plan.kept_locations")
 free_orientations = _task_of("free_orientations", plan.free_orientations, "plan.free_orientations")
-least_tilt = _task_of("least_tilt", plan.least_tilt, "plan.least_tilt")
+least_tilt = _task_of("least_tilt", plan.min_tilt, "plan.min_tilt")
 collider = _task_of("collider", Collider.made, "Collider")
 verify = _task_of("verify", verify, "verify")
 run = _task_of("run", Verification.run, "Verification.run")

@@ -119,7 +119,7 @@ TEST(Pointer, TiltsAreHeldFromTheHorizon) {
   for (int k = 0; k < 1000; ++k) {
     const Vec3 axis = tilted_axis(frame, 8 * random.uniform() - 4, 8 * random.uniform() - 4);
     EXPECT_NEAR(glm::length(axis), 1, 1e-12);
-    EXPECT_GE(axis.z, std::cos(frame.most_tilt) - 1e-12);
+    EXPECT_GE(axis.z, std::cos(frame.max_tilt) - 1e-12);
   }
   EXPECT_EQ(tilted_axis(frame, NAN, NAN), Vec3(0, 0, 1));
   EXPECT_EQ(tilted_axis(frame, 0, 0), Vec3(0, 0, 1));
@@ -146,8 +146,8 @@ TEST(Pointer, WrongFramesNameTheField) {
   EXPECT_NE(error_of([&] { frame.validate(); }).find("right and up"), std::string::npos);
   frame = {}, frame.scale = 0;
   EXPECT_NE(error_of([&] { frame.validate(); }).find("scale"), std::string::npos);
-  frame = {}, frame.most_tilt = 2;
-  EXPECT_NE(error_of([&] { frame.validate(); }).find("most_tilt"), std::string::npos);
+  frame = {}, frame.max_tilt = 2;
+  EXPECT_NE(error_of([&] { frame.validate(); }).find("max_tilt"), std::string::npos);
 }
 
 TEST(HidDescriptor, GivesTheSizesOfOurReports) {

@@ -40,7 +40,7 @@ CALLS = {
     "verify_tolerance": (lambda x: riffler.verify(PROGRAM, block(), tolerance=x), [*NEVER, 0.0, 1e-12]),
     "program_feed": (lambda x: riffler.Program(np.array(MOVE), x), [*NEVER, 0.0]),
     "verify_feed": (lambda x: riffler.verify(fed(x), block()), [5e-324, 1e-300]),
-    "retimed": (lambda x: PROGRAM.retimed(x), [*NEVER, 0.0]),
+    "scale_feeds": (lambda x: PROGRAM.scale_feeds(x), [*NEVER, 0.0]),
     "soften": (lambda x: block("xyz").smooth([5, 5, 10], x), [*NEVER, 0.0]),
     "soften_strength": (lambda x: block("xyz").smooth([5, 5, 10], 2, strength=x), [*NEVER, 1.5, -1]),
     "parts": (lambda x: block().parts(minimum=x), NEVER),
@@ -76,7 +76,7 @@ CORNER = corner()
 
 
 def located(**options):
-    upright = path().oriented({0: UP})
+    upright = path().orient({0: UP})
     return plan.cutter_locations(upright, BALL, riffler.Collider(CORNER), **options)
 
 
@@ -156,9 +156,9 @@ def test_progress_of_readers_can_cancel(tmp_path):
     with pytest.raises(riffler.Cancelled):
         riffler.Mesh.read(mesh, progress=lambda share: False)
     journal = riffler.Journal()
-    journal.write(tmp_path / "a.rjournal")
+    journal.save(tmp_path / "a.rjournal")
     shares = []
     journal.add_note("a", "b")
-    journal.write(tmp_path / "a.rjournal")
-    riffler.Journal.read(tmp_path / "a.rjournal", progress=shares.append)
+    journal.save(tmp_path / "a.rjournal")
+    riffler.Journal.load(tmp_path / "a.rjournal", progress=shares.append)
     assert shares

@@ -91,7 +91,7 @@ def test_objects_that_release_the_lock_are_guarded(tmp_path):
     for error in at_once(4, note):
         assert error is None or (isinstance(error, RuntimeError) and "another thread" in str(error))
     journal.close()
-    assert riffler.Journal.read(tmp_path / "j.rjournal").cut_at is None
+    assert riffler.Journal.load(tmp_path / "j.rjournal").cut_at is None
 
 
 def test_none_in_a_list_of_objects_is_a_type_error():
@@ -250,7 +250,7 @@ def test_a_forked_process_ends_while_sessions_tasks_and_pens_run(tmp_path):
         """
     )
     assert out.split()[0] == "0", out
-    assert riffler.Journal.read(tmp_path / "s.rjournal").cut_at is None
+    assert riffler.Journal.load(tmp_path / "s.rjournal").cut_at is None
 
 
 def test_worker_processes_that_fork_use_the_library_while_a_task_runs():
@@ -285,8 +285,8 @@ def test_a_session_whose_volume_was_carved_elsewhere_stops_and_keeps_its_ticks()
 @pytest.mark.parametrize(
     "call",
     [
-        lambda: riffler.Program.from_cl([[[0, 0, 0, *UP]]], None, 100, occupied=3),
-        lambda: riffler.Program.from_cl([[[0, 0, 0, *UP]]], None, 100, occupied=[[0, 0, 0]]),
+        lambda: riffler.Program.from_cl([[[0, 0, 0, *UP]]], None, feed=100, occupied=3),
+        lambda: riffler.Program.from_cl([[[0, 0, 0, *UP]]], None, feed=100, occupied=[[0, 0, 0]]),
         lambda: riffler.Program([[0, 0, 0, *UP]], 1.0, provenance={"a": "\ud800"}),
         lambda: riffler.Tool.from_dict({"kind": "\ud800", "diameter": 1, "length": 2}),
         lambda: riffler.Session(block(), BALL, dead_man_mask="x"),

@@ -54,7 +54,7 @@ def folder(tmp_path: Path) -> Path:
     mesh.write(tmp_path / "corner.stl")
     part = plan.part_of(riffler.Mesh.read(tmp_path / "corner.stl"), "corner.stl")
     plan.save(tmp_path / "plain.json", plan.Plan([CORNER], BALL, part=part, tolerance=0.01))
-    leaning = CORNER.oriented({0: (0.6, 0, 0.8)})
+    leaning = CORNER.orient({0: (0.6, 0, 0.8)})
     plan.save(tmp_path / "leaning.json", plan.Plan([leaning], BALL, part=part))
     program = riffler.Program.from_cl([swinging()], tools=[BALL], feed=800, spindle=12000)
     program.save(tmp_path / "p.rprog")
@@ -62,8 +62,8 @@ def folder(tmp_path: Path) -> Path:
     journal = riffler.Journal()
     journal.set_stock((0, -10, -5), (60, 10, 0), 0.5)
     journal.add_tool(3, BALL)
-    journal.add_stroke(3, swinging(), np.linspace(0, 6, 30))
-    journal.write(tmp_path / "s.rjournal")
+    journal.add_stroke(3, swinging(), times=np.linspace(0, 6, 30))
+    journal.save(tmp_path / "s.rjournal")
     (tmp_path / "empty.ngc").write_text("M2\n")
     (tmp_path / "bad.ngc").write_text("G21 G90\nG1 X9\n")
     plan.save(tmp_path / "none.json", plan.Plan([], BALL))
@@ -114,7 +114,7 @@ def test_axes_of_a_plan_and_of_the_command_line(folder):
 @pytest.mark.parametrize("more", [(), ("--part", "corner.stl")])
 def test_a_path_that_is_off_is_left_out(folder, more):
     part = plan.load(folder / "plain.json").part
-    away = CORNER.oriented({0: (0.6, 0, 0.8)})  # told apart by its axis
+    away = CORNER.orient({0: (0.6, 0, 0.8)})  # told apart by its axis
     both = plan.Plan([CORNER, away], BALL, part=part, off=frozenset({1}))
     plan.save(folder / "off.json", both)
     data = result("nc", "post", "off.json", "--feed", 700, *more, "--post", "tcp", "--out", "off.ngc", cwd=folder)
@@ -226,7 +226,7 @@ def test_a_saved_program_is_written_as_the_library_writes_it(folder):
 def test_a_recording_becomes_a_program(folder):
     data = result("nc", "post", "s.rjournal", "--spindle", -9000, "--out", "s.rprog", cwd=folder)
     program = riffler.Program.load(folder / "s.rprog")
-    wanted = riffler.Journal.read(folder / "s.rjournal").program(spindle=-9000)
+    wanted = riffler.Journal.load(folder / "s.rjournal").program(spindle=-9000)
     assert program.to_bytes() == wanted.to_bytes()
     assert data["tools"] == [3] and "blocks" not in data and data["post"] is None
     whole = (folder / "s.rjournal").read_bytes()

@@ -16,11 +16,11 @@ def session(tmp_path):
     poses = np.array([[3, 8, 9, 0, 0, 1], [10, 9, 7, 0, 0.6, 0.8], [10, 9, 7, 0, 0.6, 0.8], [17, 8, 9, 0, 0, 1.0]])
     aside = np.array([0, 1, 0, 0, 0, 0])
     with riffler.JournalWriter(tmp_path / "a.rjournal") as writer:
-        writer.set_stock(volume.lower, volume.upper, 0.5, volume.directions, "stock.rvol")
+        writer.set_stock(volume.lower, volume.upper, 0.5, volume.directions, snapshot="stock.rvol")
         writer.add_tool(1, tool)
         for k in range(3):
             writer.add_stroke(1, poses + 2 * k * aside)
-        writer.take_back()
+        writer.undo()
     for k in range(2):
         volume.carve(tool, poses[[0, 1, 3]] + 2 * k * aside)
     volume.save(tmp_path / "left.rvol")

@@ -20,7 +20,7 @@ BLENDER = ROOT / ".envs" / "bpy-4.5" / "bin" / "python"
 
 @pytest.fixture(scope="module")
 def journal():
-    return riffler.Journal.read(ROOT / "demo" / "strokes.rjournal")
+    return riffler.Journal.load(ROOT / "demo" / "strokes.rjournal")
 
 
 def test_letters_stand_between_their_lines_and_run_smoothly():

@@ -134,12 +134,17 @@ def test_a_result_that_was_a_dict_can_be_read_as_one():
         assert dataclasses.asdict(counts) == {"open_edges": 2, "total": 5.0}
 
 
+def _inside(name):
+    """A class that riffler.plan, riffler.pen or only the extension module has."""
+    return next(vars(m)[name] for m in (riffler.plan, riffler.pen, riffler._core) if name in vars(m))
+
+
 def test_every_old_name_leads_to_one_that_there_is():
     def lookup(path):
         found = riffler
         for part in path.split("."):
             found = getattr(found, part, None) if found is riffler else getattr(found, part)
-            found = getattr(riffler._core, part) if found is None else found
+            found = _inside(part) if found is None else found
         return found
 
     with warnings.catch_warnings():
@@ -150,4 +155,5 @@ def test_every_old_name_leads_to_one_that_there_is():
                 assert importlib.import_module(f"riffler.{module}".rstrip(".")) is not None
         for owner, names in old.ALL.attributes.items():
             for new in names.values():
-                assert hasattr(lookup(owner), new), f"{owner}.{new}"
+                fields = getattr(lookup(owner), "__dataclass_fields__", {})
+                assert new in fields or hasattr(lookup(owner), new), f"{owner}.{new}"

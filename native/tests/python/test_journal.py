@@ -27,25 +27,25 @@ def journal():
     j.add_note("artist", "Ünal")
     for k in range(3):
         poses, times = stroke(50 + k, k)
-        j.add_stroke(1 + k % 2, poses, times, tolerance=0.02, name=f"stroke {k}")
+        j.add_stroke(1 + k % 2, poses, times=times, tolerance=0.02, name=f"stroke {k}")
     return j
 
 
 def test_file_keeps_everything_to_the_bit(journal, tmp_path):
     file = tmp_path / "a.rjournal"
-    journal.write(file)
-    j = riffler.Journal.read(file)
+    journal.save(file)
+    j = riffler.Journal.load(file)
     assert j.cut_at is None and repr(j) == "<riffler.Journal: 3 strokes>"
     assert j.notes == {"artist": "Ünal"}
     assert j.tools == {1: BALL.to_dict(), 2: riffler.Tool.flat(4, 20).to_dict()}
-    assert j.stock["pitch"] == 0.5 and j.stock["directions"] == "xyz" and j.stock["snapshot"] == "stock.rvol"
-    assert j.stock["lower"].tolist() == [0, 0, 0] and j.stock["upper"].tolist() == [50, 40, 30]
+    assert j.stock.pitch == 0.5 and j.stock.directions == "xyz" and j.stock.snapshot == "stock.rvol"
+    assert j.stock.lower.tolist() == [0, 0, 0] and j.stock.upper.tolist() == [50, 40, 30]
     for k, s in enumerate(j.strokes):
         poses, times = stroke(50 + k, k)
         assert (s.tool, s.tolerance, s.name, len(s)) == (1 + k % 2, 0.02, f"stroke {k}", 50 + k)
         assert s.poses.tobytes() == poses.tobytes() and s.times.tobytes() == times.tobytes()
     first = file.read_bytes()
-    j.write(file)
+    j.save(file)
     assert file.read_bytes() == first
 
 
@@ -56,45 +56,45 @@ def test_forces_and_cuts_come_back_to_the_bit(tmp_path):
     forces, removed = rng.normal(size=(40, 6)), rng.uniform(size=40)
     with riffler.JournalWriter(file, keep=False) as w:
         w.add_tool(1, BALL)
-        w.add_stroke(1, poses[:10], times[:10], forces=forces[:10], removed=removed[:10])
-        w.extend_stroke(poses[10:], times[10:], forces=forces[10:], removed=removed[10:])
+        w.add_stroke(1, poses[:10], times=times[:10], forces=forces[:10], removed=removed[:10])
+        w.extend_stroke(poses[10:], times=times[10:], forces=forces[10:], removed=removed[10:])
         with pytest.raises(ValueError, match="forces must be as many as poses"):
-            w.extend_stroke(poses, times + 9, removed=removed)
+            w.extend_stroke(poses, times=times + 9, removed=removed)
         w.add_stroke(1, poses, removed=removed)
         with pytest.raises(ValueError, match="forces for a stroke that has none"):
             w.extend_stroke(poses, removed=removed, forces=forces)
         with pytest.raises(RuntimeError, match="does not keep"):
             _ = w.journal
-    felt, cut = riffler.Journal.read(file).strokes
+    felt, cut = riffler.Journal.load(file).strokes
     assert felt.forces.tobytes() == forces.tobytes() and felt.removed.tobytes() == removed.tobytes()
     assert cut.forces is None and cut.times is None and cut.removed.tobytes() == removed.tobytes()
 
 
 def test_strokes_are_taken_back_and_brought_back(journal, tmp_path):
     last = journal.strokes[2]
-    journal.take_back(2)
+    journal.undo(2)
     assert [s.name for s in journal.strokes] == ["stroke 0"]
     with pytest.raises(IndexError, match="taken back"):
         _ = last.poses
     assert len(journal.program()) == 52
-    journal.write(tmp_path / "a.rjournal")
-    read = riffler.Journal.read(tmp_path / "a.rjournal")
-    read.bring_back()
+    journal.save(tmp_path / "a.rjournal")
+    read = riffler.Journal.load(tmp_path / "a.rjournal")
+    read.redo()
     assert [s.name for s in read.strokes] == ["stroke 0", "stroke 1"]
     with riffler.JournalWriter(tmp_path / "a.rjournal") as w:
-        w.bring_back(2)
-        w.take_back()
+        w.redo(2)
+        w.undo()
         w.add_stroke(1, stroke(3)[0], name="last")
-    assert [s.name for s in riffler.Journal.read(tmp_path / "a.rjournal").strokes] == ["stroke 0", "stroke 1", "last"]
+    assert [s.name for s in riffler.Journal.load(tmp_path / "a.rjournal").strokes] == ["stroke 0", "stroke 1", "last"]
 
 
 def test_cut_file_gives_whole_strokes_and_says_where(journal, tmp_path):
     file = tmp_path / "a.rjournal"
-    journal.write(file)
+    journal.save(file)
     whole = file.read_bytes()
     for size in range(len(whole) - 1, 16, -37):
         file.write_bytes(whole[:size])
-        j = riffler.Journal.read(file)
+        j = riffler.Journal.load(file)
         assert len(j.strokes) < 3
         assert j.cut_at is None or j.cut_at < size
         for s, t in zip(j.strokes, journal.strokes, strict=False):
@@ -103,10 +103,10 @@ def test_cut_file_gives_whole_strokes_and_says_where(journal, tmp_path):
     damaged[40] ^= 1
     file.write_bytes(damaged)
     with pytest.raises(riffler.FormatError, match=r"^a\.rjournal, byte 16: "):
-        riffler.Journal.read(file)
+        riffler.Journal.load(file)
     file.write_bytes(b"not a journal at all")
     with pytest.raises(riffler.FormatError, match="byte 0"):
-        riffler.Journal.read(file)
+        riffler.Journal.load(file)
 
 
 def test_writer_goes_on_where_a_crash_cut(tmp_path):
@@ -115,10 +115,10 @@ def test_writer_goes_on_where_a_crash_cut(tmp_path):
     with riffler.JournalWriter(file) as w:
         w.set_stock((0, 0, 0), (50, 40, 30), 0.5)
         w.add_tool(1, json.dumps(BALL.to_dict()))
-        w.add_stroke(1, poses[:10], times[:10])
-        w.extend_stroke(poses[10:], times[10:])
+        w.add_stroke(1, poses[:10], times=times[:10])
+        w.extend_stroke(poses[10:], times=times[10:])
         w.sync()
-        assert len(riffler.Journal.read(file).strokes[0]) == 30, "there before the writer is closed"
+        assert len(riffler.Journal.load(file).strokes[0]) == 30, "there before the writer is closed"
         with pytest.raises(RuntimeError):
             riffler.JournalWriter(file)
     with pytest.raises(RuntimeError, match="closed"):
@@ -127,7 +127,7 @@ def test_writer_goes_on_where_a_crash_cut(tmp_path):
     with riffler.JournalWriter(file) as w:
         assert len(w.journal.strokes[0]) == 10
         w.add_stroke(1, poses)
-    j = riffler.Journal.read(file)
+    j = riffler.Journal.load(file)
     assert j.cut_at is None and [len(s) for s in j.strokes] == [10, 30] and j.strokes[1].times is None
 
 
@@ -144,14 +144,14 @@ def test_replay_gives_the_session_again(journal, tmp_path):
     session.save(tmp_path / "stock.rvol")
     for s in journal.strokes:
         session.carve(riffler.Tool.from_dict(journal.tools[s.tool]), s.poses, tolerance=s.tolerance)
-    journal.write(tmp_path / "a.rjournal")
+    journal.save(tmp_path / "a.rjournal")
     shares = []
-    left = riffler.Journal.read(tmp_path / "a.rjournal").replay(tmp_path, shares.append)
+    left = riffler.Journal.load(tmp_path / "a.rjournal").replay(tmp_path, progress=shares.append)
     assert left.volume < 50 * 40 * 30 and same(left, session)
     assert same(riffler.Session.replay(tmp_path / "a.rjournal"), session)
     assert shares == sorted(shares) and shares[-1] == 1
     with pytest.raises(riffler.Cancelled):
-        journal.replay(tmp_path, lambda share: share < 0.5)
+        journal.replay(tmp_path, progress=lambda share: share < 0.5)
     with pytest.raises(ValueError, match="name its folder"):
         journal.replay()
     with pytest.raises(riffler.FormatError, match=r"stock\.rvol"):
@@ -182,10 +182,10 @@ def test_program_has_the_strokes_with_their_tools_and_feeds(journal):
         (lambda j: j.add_stroke(1, np.zeros((0, 6))), "at least one pose"),
         (lambda j: j.add_stroke(1, np.zeros((2, 5))), "poses must have the shape"),
         (lambda j: j.add_stroke(1, np.zeros((2, 6))), "poses, row 0"),
-        (lambda j: j.add_stroke(1, stroke(3)[0], [1, 2]), "times must be as many"),
-        (lambda j: j.add_stroke(1, stroke(3)[0], []), "times must be as many"),
-        (lambda j: j.add_stroke(1, stroke(3)[0], [1, 2, np.nan]), "times, row 2"),
-        (lambda j: j.add_stroke(1, stroke(3)[0], [1, 3, 2]), "times, row 2"),
+        (lambda j: j.add_stroke(1, stroke(3)[0], times=[1, 2]), "times must be as many"),
+        (lambda j: j.add_stroke(1, stroke(3)[0], times=[]), "times must be as many"),
+        (lambda j: j.add_stroke(1, stroke(3)[0], times=[1, 2, np.nan]), "times, row 2"),
+        (lambda j: j.add_stroke(1, stroke(3)[0], times=[1, 3, 2]), "times, row 2"),
         (lambda j: j.add_stroke(1, stroke(3)[0], tolerance=0), "tolerance"),
         (lambda j: j.add_stroke(1, stroke(3)[0], forces=np.zeros((2, 6))), "forces must be as many"),
         (lambda j: j.add_stroke(1, stroke(3)[0], forces=np.zeros((3, 3))), "forces must have the shape"),
@@ -193,16 +193,16 @@ def test_program_has_the_strokes_with_their_tools_and_feeds(journal):
         (lambda j: j.add_stroke(1, stroke(3)[0], removed=[1, 2]), "removed must be as many"),
         (lambda j: j.add_stroke(1, stroke(3)[0], removed=[1, -2, 0]), "removed, row 1"),
         (lambda j: j.extend_stroke(stroke(3)[0]), "times must be as many"),
-        (lambda j: j.take_back(4), "from 1 to 3"),
-        (lambda j: j.take_back(0), "from 1 to 3"),
-        (lambda j: j.bring_back(), "no stroke to redo"),
+        (lambda j: j.undo(4), "from 1 to 3"),
+        (lambda j: j.undo(0), "from 1 to 3"),
+        (lambda j: j.redo(), "no stroke to redo"),
     ],
 )
 def test_what_is_wrong_is_named_and_changes_nothing(journal, tmp_path, call, message):
-    journal.write(tmp_path / "before")
+    journal.save(tmp_path / "before")
     with pytest.raises(ValueError, match=message):
         call(journal)
-    journal.write(tmp_path / "after")
+    journal.save(tmp_path / "after")
     assert (tmp_path / "before").read_bytes() == (tmp_path / "after").read_bytes()
 
 
@@ -220,7 +220,7 @@ def test_modes_and_masks_are_kept_and_replayed(tmp_path):
     mask.save(tmp_path / "mask.rvol")
     file = tmp_path / "a.rjournal"
     with riffler.JournalWriter(file, keep=False) as w:
-        w.set_stock(lower, upper, 0.5, "xyz", "stock.rvol", mask="mask.rvol")
+        w.set_stock(lower, upper, 0.5, "xyz", snapshot="stock.rvol", mask="mask.rvol")
         w.add_tool(1, tool)
         for mode, poses in lanes.items():
             w.add_stroke(1, poses, mode=mode, name=mode)
@@ -230,14 +230,14 @@ def test_modes_and_masks_are_kept_and_replayed(tmp_path):
     mask.carve(tool, lanes["unmask"])
     stock.carve(tool, lanes["remove"], protect=mask)
     stock.carve(tool, lanes["add"], protect=mask, mode="add")
-    j = riffler.Journal.read(file)
-    assert [s.mode for s in j.strokes] == list(lanes) and j.stock["mask"] == "mask.rvol"
+    j = riffler.Journal.load(file)
+    assert [s.mode for s in j.strokes] == list(lanes) and j.stock.mask == "mask.rvol"
     for volume, kept in (
-        j.replay(tmp_path, with_mask=True),
-        riffler.submit(riffler.Journal.replay, j, tmp_path, with_mask=True).result(),
+        j.replay_with_mask(tmp_path),
+        riffler.submit(riffler.Journal.replay_with_mask, j, tmp_path).result(),
     ):
         assert volume.to_bytes() == stock.to_bytes() and kept.to_bytes() == mask.to_bytes()
     assert j.replay(tmp_path).to_bytes() == stock.to_bytes()
-    assert riffler.Journal.read(file).replay(tmp_path, with_mask=True)[1].volume > 0
-    j.take_back(4)
-    assert j.replay(tmp_path, with_mask=True)[1].to_bytes() != mask.to_bytes()
+    assert riffler.Journal.load(file).replay_with_mask(tmp_path)[1].volume > 0
+    j.undo(4)
+    assert j.replay_with_mask(tmp_path)[1].to_bytes() != mask.to_bytes()

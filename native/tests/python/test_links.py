@@ -35,7 +35,7 @@ def clamp():
 
 
 def located(collider, axis=LEANING, tool=TOOL):
-    cl, report = plan.cutter_locations(VALLEY.divided(6).oriented({0: axis}), tool, collider)
+    cl, report = plan.cutter_locations(VALLEY.divided(6).orient({0: axis}), tool, collider)
     assert report.ok
     return cl
 
@@ -90,7 +90,7 @@ def test_a_plan_that_is_free_meets_a_clamp_on_its_way_in_and_is_led_round_it(tmp
         ):
             plain.write(file, post=name, options=options, collider=collider)
         assert not file.exists(), "nothing is written"
-        assert program.write(file, post=name, options=options, collider=collider, stock=stock)["blocks"] > len(cl)
+        assert program.write(file, post=name, options=options, collider=collider, stock=stock).blocks > len(cl)
         program.write(tmp_path / "again", post=name, options=options)
         assert file.read_bytes() == (tmp_path / "again").read_bytes(), "checking changes nothing"
     found = {f.kind for f in riffler.verify(plain, stock, part_mesh=PART, fixtures=[fixture]).findings}
@@ -152,7 +152,7 @@ def test_a_cut_that_collides_itself_is_named():
     said = r"^path 0, row 0: no approach is clear: the cut itself stands where the cutter meets the part, 0\.\d+ mm"
     with pytest.raises(ValueError, match=said + " deep.*plan.cutter_locations"):
         riffler.Program.from_cl([deep], tools=[TOOL], feed=800, collider=collider)
-    cl, _ = plan.cutter_locations(VALLEY.divided(6).oriented({0: LEANING}), TOOL, collider)
+    cl, _ = plan.cutter_locations(VALLEY.divided(6).orient({0: LEANING}), TOOL, collider)
     assert len(riffler.Program.from_cl([cl], tools=[TOOL], feed=800, collider=collider)) > len(cl)
     # One that only a program has: rows between which nobody looked.
     through = np.array([[30, -20, 30, 0, 0, 1], [30, 60, 10, 0, 0, 1.0]])

@@ -11,32 +11,32 @@ PROGRAM = riffler.Program.from_cl(
 
 
 def facts(machine, options=None):
-    return {fact["name"]: fact for fact in riffler.machine_options(machine, options)}
+    return {fact.name: fact for fact in riffler.machine_options(machine, options=options)}
 
 
 def some(fact):
     """A value of its kind."""
-    if fact["kind"] == "word":
-        return fact["words"][-1]
-    if fact["kind"] == "flag":
-        return not fact["value"]
-    return {"number": 5, "positive": 500.0, "numbers": [1, 2, 3], "range": [-90, 90]}[fact["kind"]]
+    if fact.kind == "word":
+        return fact.words[-1]
+    if fact.kind == "flag":
+        return not fact.value
+    return {"number": 5, "positive": 500.0, "numbers": [1, 2, 3], "range": [-90, 90]}[fact.kind]
 
 
 @pytest.mark.parametrize("machine", list(riffler.machines()))
 def test_each_option_is_described_and_taken(machine, tmp_path):
     listed = facts(machine)
-    needed = {name: some(fact) for name, fact in listed.items() if fact["needed"]}
+    needed = {name: some(fact) for name, fact in listed.items() if fact.needed}
     for name, fact in listed.items():
-        assert fact["kind"] in KINDS and fact["about"], name
-        assert fact["unit"] in ("", "mm", "deg", "mm/min", "deg/min")
-        if fact["kind"] in ("positive", "range"):
-            assert fact["unit"], f"{name}: a number of what?"
+        assert fact.kind in KINDS and fact.about, name
+        assert fact.unit in ("", "mm", "deg", "mm/min", "deg/min")
+        if fact.kind in ("positive", "range"):
+            assert fact.unit, f"{name}: a number of what?"
         given = {**needed, name: some(fact)}
         if machine.startswith(("heidenhain", "sinumerik")) and name == "tcp":
             given[name] = True
-        if fact["name"] == "tcp":  # joints may need more
-            given |= {n: some(f) for n, f in facts(machine, given).items() if f["needed"]}
+        if fact.name == "tcp":  # joints may need more
+            given |= {n: some(f) for n, f in facts(machine, given).items() if f.needed}
         PROGRAM.write(tmp_path / "p.nc", post=machine, options=given)
     with pytest.raises(ValueError, match="unknown option 'nonsense'; known: ") as error:
         PROGRAM.write(tmp_path / "q.nc", post=machine, options={**needed, "nonsense": 1})
@@ -49,23 +49,23 @@ def test_each_option_is_described_and_taken(machine, tmp_path):
 @pytest.mark.parametrize("machine", list(riffler.machines()))
 def test_values_are_those_that_count_where_none_is_given(machine, tmp_path):
     listed = facts(machine)
-    needed = {name: some(fact) for name, fact in listed.items() if fact["needed"]}
-    values = {name: fact["value"] for name, fact in listed.items() if fact["value"] is not None}
+    needed = {name: some(fact) for name, fact in listed.items() if fact.needed}
+    values = {name: fact.value for name, fact in listed.items() if fact.value is not None}
     PROGRAM.write(tmp_path / "a.nc", post=machine, options=needed)
     PROGRAM.write(tmp_path / "b.nc", post=machine, options={**values, **needed})
     assert (tmp_path / "a.nc").read_bytes() == (tmp_path / "b.nc").read_bytes()
 
 
 def test_what_must_be_given_depends_on_what_is_given():
-    assert facts("linuxcnc-xyzac")["rot_point"]["needed"]
-    assert not facts("linuxcnc-xyzac", {"tcp": True})["rot_point"]["needed"]
-    assert not facts("head-head")["pivot_length"]["needed"]
-    assert facts("head-head", {"tcp": False})["pivot_length"]["needed"]
+    assert facts("linuxcnc-xyzac")["rot_point"].needed
+    assert not facts("linuxcnc-xyzac", {"tcp": True})["rot_point"].needed
+    assert not facts("head-head")["pivot_length"].needed
+    assert facts("head-head", {"tcp": False})["pivot_length"].needed
     fact = facts("head-head")["pivot_length"]
-    assert (fact["kind"], fact["count"], fact["unit"], fact["value"]) == ("number", 1, "mm", None)
+    assert (fact.kind, fact.count, fact.unit, fact.value) == ("number", 1, "mm", None)
     rotation = facts("linuxcnc-xyzac")["limits_a"]
-    assert (rotation["kind"], rotation["count"], rotation["unit"]) == ("range", 2, "deg")
-    assert facts("linuxcnc-xyzac")["rate_c"]["unit"] == "deg/min" and facts("tcp")["rate_x"]["unit"] == "mm/min"
+    assert (rotation.kind, rotation.count, rotation.unit) == ("range", 2, "deg")
+    assert facts("linuxcnc-xyzac")["rate_c"].unit == "deg/min" and facts("tcp")["rate_x"].unit == "mm/min"
 
 
 def test_a_machine_of_one_s_own_lists_its_own_options_first(tmp_path, monkeypatch):
@@ -78,9 +78,9 @@ def test_a_machine_of_one_s_own_lists_its_own_options_first(tmp_path, monkeypatc
         "at = { table = [1, 1, 1], raised = [0, 0, 1], pivot = [0, 0, 1] }\n"
     )
     listed = riffler.machine_options("mill")
-    assert [fact["name"] for fact in listed[:3]] == ["pivot", "raised", "table"]
-    assert listed[0]["needed"] and listed[1]["value"] == 5 and listed[2]["value"] == [1, 2, 3]
-    assert listed[2]["about"] == "where the axes cross"
+    assert [fact.name for fact in listed[:3]] == ["pivot", "raised", "table"]
+    assert listed[0].needed and listed[1].value == 5 and listed[2].value == [1, 2, 3]
+    assert listed[2].about == "where the axes cross"
     with pytest.raises(ValueError, match="option pivot must be given: mm to the pivot"):
         PROGRAM.write(tmp_path / "p.nc", post="mill")
     (tmp_path / "mill.toml").write_text(
@@ -94,6 +94,6 @@ def test_wrong_machines_and_options_are_value_errors():
     with pytest.raises(ValueError, match="lathe"):
         riffler.machine_options("lathe")
     with pytest.raises(ValueError, match="rot_point must be three finite numbers"):
-        riffler.machine_options("linuxcnc-xyzac", {"rot_point": np.nan})
+        riffler.machine_options("linuxcnc-xyzac", options={"rot_point": np.nan})
     with pytest.raises(ValueError, match="unknown option 'pivot'"):
-        riffler.machine_options("tcp", {"pivot": 3})
+        riffler.machine_options("tcp", options={"pivot": 3})

@@ -55,8 +55,8 @@ def test_pens_have_names_and_home(pen):
     assert "two arms" in riffler.pen.names()["riffler"]
     assert pen.name == "riffler" and pen.description == riffler.pen.names()["riffler"]
     assert pen.home.dtype == np.int32 and np.array_equal(pen.home, HOME)
-    assert [c["name"] for c in pen.channels] == ["R2", "R3", "R1", "L2", "L3", "L1"]
-    assert pen.grip_length == 30 and pen.limits["force"] > 0
+    assert [c.name for c in pen.channels] == ["R2", "R3", "R1", "L2", "L3", "L1"]
+    assert pen.grip_length == 30 and pen.limits.force > 0
 
 
 def test_forward_is_the_serial_chain(pen):
@@ -140,11 +140,11 @@ def test_a_lost_count_is_noticed_and_found(pen):
     poses = np.column_stack([rng.uniform((130, -60, -200), (220, 60, -130), (200, 3)), axes])
     joints, reach = pen.inverse(poses)
     counts = pen.counts(joints)[[pair == ("reached", "reached") for pair in reach]]
-    assert pen.diagnose(counts)["fault"] == "none"
+    assert pen.diagnose(counts).fault == "none"
     counts[:, 4] += 80
     found = pen.diagnose(counts)
-    assert found["fault"] == "channel" and found["channel"] == 4
-    assert found["counts"] == pytest.approx(80, abs=2)
+    assert found.fault == "channel" and found.channel == 4
+    assert found.counts == pytest.approx(80, abs=2)
     noticed = pen.noticed_counts([HOME])
     assert noticed.shape == (1, 6) and noticed[0, 1] == pytest.approx(10.6, abs=0.1)
 
@@ -163,9 +163,9 @@ def test_a_pen_is_homed_by_what_its_counters_read(pen):
 
 def test_capability_says_what_cannot_be_felt(pen):
     capability = pen.capability()
-    assert capability["text"].endswith("the hand does not feel: torque about the grip's axis")
-    assert [capability["axes"][a]["pushes"] for a in "xyzabc"] == [True] * 5 + [False]
-    assert capability["axes"]["z"]["peak"] == pytest.approx(6, abs=1e-3)
+    assert capability.text.endswith("the hand does not feel: torque about the grip's axis")
+    assert [capability.axes[a].pushes for a in "xyzabc"] == [True] * 5 + [False]
+    assert capability.axes["z"].peak == pytest.approx(6, abs=1e-3)
 
 
 @pytest.mark.parametrize(

@@ -198,8 +198,8 @@ def test_monitor_plays_a_recording(tmp_path):
     journal.set_stock([0, 0, 0], [10, 10, 10], 1)
     journal.add_tool(1, riffler.Tool.ball(2, length=20))
     times = np.linspace(0, 0.5, 51)
-    journal.add_stroke(1, [[t, 0, 5, 0, 0, 1] for t in times], times.tolist())
-    journal.write(tmp_path / "a.rjournal")
+    journal.add_stroke(1, [[t, 0, 5, 0, 0, 1] for t in times], times=times.tolist())
+    journal.save(tmp_path / "a.rjournal")
     data = result("pen", "monitor", "a.rjournal", "--seconds", "1", cwd=tmp_path)
     assert data["device"] == "recording" and data["seen"] > 10
     assert data["pose"] == [0.5, 0, 5, 0, 0, 1]
@@ -284,13 +284,13 @@ def test_one_counter_that_is_off_is_found_in_every_joint(geometry, stroke):
             counts = stroke.copy()
             counts[:, k] += off
             found = judge(geometry, counts)
-            assert found.channels == (channel["name"],) and not found.fits and found.rms_after < 0.02
-            assert abs(found.home[k] - (channel["home"] - off)) <= 1
+            assert found.channels == (channel.name,) and not found.fits and found.rms_after < 0.02
+            assert abs(found.home[k] - (channel.home - off)) <= 1
     assert judge(geometry, stroke).fits
 
 
 def test_wrong_signs_and_exchanged_plugs_are_found(geometry, stroke):
-    names = [c["name"] for c in geometry.channels]
+    names = [c.name for c in geometry.channels]
     gone = stroke - geometry.home
     for k, name in enumerate(names):
         counts = gone.copy()
@@ -316,7 +316,7 @@ def test_postures_are_kept_where_a_joint_has_turned(geometry, stroke):
     for row in np.repeat(stroke, 3, axis=0):
         postures.add(row, 0.0)
     assert len(postures.kept) == len(stroke)
-    angles = {c["name"]: (c["sign"] * stroke[:, k] / c["steps"] * 2 * np.pi) for k, c in enumerate(geometry.channels)}
+    angles = {c.name: (c.sign * stroke[:, k] / c.steps * 2 * np.pi) for k, c in enumerate(geometry.channels)}
     for joint in joints(postures):
         assert (joint.low, joint.high) == pytest.approx((angles[joint.name].min(), angles[joint.name].max()))
         assert 5 < joint.noticed < 40 and not joint.beyond
@@ -370,7 +370,7 @@ def test_the_simulated_hand_carves(tmp_path):
     assert riffler.Volume.load(folder / "a.rvol").volume == pytest.approx(block - data["removed"], rel=1e-12)
     result("volume", "replay", "a.rjournal", "--out", "b.rvol", cwd=folder)
     assert (folder / "a.rvol").read_bytes() == (folder / "b.rvol").read_bytes()
-    strokes = riffler.Journal.read(folder / "a.rjournal").strokes
+    strokes = riffler.Journal.load(folder / "a.rjournal").strokes
     assert len(strokes) == data["strokes"] and all(len(stroke.poses) > 10 for stroke in strokes)
 
 

@@ -172,25 +172,25 @@ def test_a_recording_opens_as_a_device(tmp_path):
     journal = riffler.Journal()
     journal.set_stock([0, 0, 0], [10, 10, 10], 1)
     journal.add_tool(1, riffler.Tool.ball(2, length=20))
-    journal.add_stroke(1, [[0, 0, 5, 0, 0, 1], [9, 0, 5, 0, 0, 1]], [0.0, 1e-3])
+    journal.add_stroke(1, [[0, 0, 5, 0, 0, 1], [9, 0, 5, 0, 0, 1]], times=[0.0, 1e-3])
     path = tmp_path / "a.rjournal"
-    journal.write(path)
+    journal.save(path)
     with riffler.pen.open(path) as pen:
         assert pen.geometry is None
-        assert pen.kind == "recording" and pen.limits["x"]["senses"] == "position" and not pen.limits["x"]["pushes"]
+        assert pen.kind == "recording" and pen.limits["x"].senses == "position" and not pen.limits["x"].pushes
         assert pen.state().sequence == 1
-        while pen.health()["state"] != "stopped":
+        while pen.health().state != "stopped":
             pass
         state = pen.state()
         np.testing.assert_allclose(state.pose, [9, 0, 5, 0, 0, 1])
         assert state.buttons == 0 and state.age_s == pytest.approx(0, abs=0.1)
         answer = pen.push([0, 0, 1])
-        assert answer["reason"] == "the device has no motors for all of it" and answer["missing_force"][2] == 1
-        assert pen.push([0, 0, 0])["reason"] is None
+        assert answer.reason == "the device has no motors for all of it" and answer.missing_force[2] == 1
+        assert pen.push([0, 0, 0]).reason is None
     with pytest.raises(ValueError, match="no option"):
         riffler.pen.open(path, bubble=0.1)
     journal.add_stroke(1, [[0, 0, 5, 0, 0, 1]])
-    journal.write(path)
+    journal.save(path)
     with pytest.raises(ValueError, match="stroke 1 has no times"):
         riffler.pen.open(path)
 
@@ -218,7 +218,7 @@ def test_a_simulated_pen_opens_moves_and_goes_where_its_hand_is_told():
             device.aim(goal, grip=-1)
         device.wander()
         assert wait(lambda: not np.allclose(device.state().pose[:3], goal[:3], atol=3))
-    assert device.health()["state"] == "stopped"
+    assert device.health().state == "stopped"
 
 
 def test_a_pen_makes_up_for_its_weight_and_friction_where_it_is_told_to():
@@ -232,10 +232,10 @@ def test_a_pen_makes_up_for_its_weight_and_friction_where_it_is_told_to():
         rest = device.state().pose.copy()
         device.aim(rest)
         end = time.monotonic() + 20
-        while device.health()["force_state"] != "active" and time.monotonic() < end:
+        while device.health().force_state != "active" and time.monotonic() < end:
             device.push([0.0, 0.0, 0.0])
             time.sleep(0.005)
-        assert device.health()["force_state"] == "active"
+        assert device.health().force_state == "active"
 
 
 def test_a_pointer_becomes_poses():
@@ -246,7 +246,7 @@ def test_a_pointer_becomes_poses():
         "mouse",
         "tablet",
     )
-    assert tablet.limits["b"]["senses"] == "position" and riffler.pen.Pointer("mouse").limits["b"]["senses"] is None
+    assert tablet.limits["b"].senses == "position" and riffler.pen.Pointer("mouse").limits["b"].senses is None
     assert tablet.state().sequence == 0 and tablet.state().age_s == np.inf
     tablet.set_frame(origin=[10, 20, 30], right=[0, 1, 0], up=[0, 0, 1], scale=0.5, depth=4)
     assert tablet.give(6, -2, pressure=0.25, tilt_x=0.2, buttons=5, time=1.0)
@@ -259,7 +259,7 @@ def test_a_pointer_becomes_poses():
     for wrong in ({"time": 1.4}, {"time": np.nan}, {"time": 2, "pressure": np.inf}):
         assert not tablet.give(9, 9, **wrong)
     assert tablet.state().sequence == 2
-    assert tablet.push([0, 0, 1])["reason"] == "the device has no motors for all of it"
+    assert tablet.push([0, 0, 1]).reason == "the device has no motors for all of it"
 
 
 def test_a_pointer_says_what_is_wrong_and_stays_as_it_was():
@@ -272,7 +272,7 @@ def test_a_pointer_says_what_is_wrong_and_stays_as_it_was():
         ({"up": [1, 0, 0]}, "perpendicular"),
         ({"scale": 0}, "scale"),
         ({"depth": -1}, "depth"),
-        ({"most_tilt": 2}, "most_tilt"),
+        ({"max_tilt": 2}, "max_tilt"),
         ({"origin": [np.nan, 0, 0]}, "origin"),
         ({"origin": [1, 2]}, "origin"),
     ):

@@ -53,7 +53,7 @@ def test_the_inside_of_a_box_has_twelve_paths_that_meet():
 
 def test_convex_parts_have_none_and_say_why():
     paths = riffler.plan.pencil(box([0, 0, 0], [50, 40, 30]), BALL)
-    assert paths == [] and "reaches every point" in paths.reason and paths.stats["starts"] == 0
+    assert paths == [] and "reaches every point" in paths.reason and paths.stats.starts == 0
 
 
 def test_passes_lie_beside_the_valley():
@@ -110,11 +110,11 @@ def test_links_are_short():
         ends = [(paths[i].centres[0], paths[i].centres[-1])[:: -1 if turned else 1] for i, turned in order]
         return sum(np.linalg.norm(b[0] - a[1]) for a, b in itertools.pairwise(ends))
 
-    order = riffler.plan.linked(paths)
+    order = riffler.plan.order_paths(paths)
     assert sorted(i for i, _ in order) == list(range(len(paths)))
-    assert order == riffler.plan.linked(paths)
+    assert order == riffler.plan.order_paths(paths)
     assert air(order) < 0.5 * air([(i, False) for i in range(len(paths))])
-    assert riffler.plan.linked([]) == []
+    assert riffler.plan.order_paths([]) == []
 
 
 def test_analysis():

@@ -3,7 +3,7 @@
 import itertools
 import json
 import os
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
 
 import numpy as np
@@ -43,7 +43,7 @@ def corner(points=9, radius=3.0, closed=False):
     centres = np.stack([radius * ones, y, radius * ones], axis=1)
     contacts = np.stack([centres - [0, 0, radius], centres - [radius, 0, 0]], axis=1)
     normals = np.broadcast_to([[[0.0, 0, 1], [1, 0, 0]]], (points, 2, 3))
-    return plan.PencilPath(radius, centres, contacts, normals, closed)
+    return plan.PencilPath(radius, centres, contacts, normals, closed=closed)
 
 
 def leaning(angle):
@@ -102,11 +102,11 @@ def test_a_path_refuses_what_is_none(change, message):
 
 @pytest.mark.parametrize("rule", ["linear", "slerp", "smooth"])
 def test_keys_hold_to_the_bit_and_any_axis_can_become_one(rule):
-    path = corner().oriented({2: leaning(0.2), 6: leaning(1.0)}, rule)
+    path = corner().orient({2: leaning(0.2), 6: leaning(1.0)}, interpolation=rule)
     assert np.array_equal(path.axes[:3], [leaning(0.2)] * 3) and np.array_equal(path.axes[6:], [leaning(1.0)] * 3)
     assert np.allclose(np.linalg.norm(path.axes, axis=1), 1, atol=1e-15)
     assert np.allclose(path.axes[4], leaning(0.6), atol=1e-12)
-    adjusted = path.oriented({**path.keys, 4: leaning(0.3)}, rule)
+    adjusted = path.orient({**path.keys, 4: leaning(0.3)}, interpolation=rule)
     assert np.array_equal(adjusted.axes[4], leaning(0.3)) and sorted(adjusted.keys) == [2, 4, 6]
     assert sorted(path.keys) == [2, 6], "the path itself is unchanged"
 
@@ -130,11 +130,11 @@ def test_keys_hold_to_the_bit_and_any_axis_can_become_one(rule):
 )
 def test_orienting_refuses_by_name(keys, more, message):
     with pytest.raises(ValueError, match=message):
-        corner().oriented(keys, **more)
+        corner().orient(keys, **more)
 
 
 def test_a_limit_projects_when_asked():
-    path = corner().oriented({0: UP, 8: leaning(1.0)}, "slerp", limit=(UP, 0.5), project=True)
+    path = corner().orient({0: UP, 8: leaning(1.0)}, interpolation="slerp", limit=(UP, 0.5), project=True)
     assert np.allclose(path.axes[4:], leaning(0.5), atol=1e-12) and np.allclose(path.axes[2], leaning(0.25), atol=1e-12)
 
 
@@ -152,9 +152,9 @@ def test_frames_lean_and_axis():
 def test_the_nearest_contact_to_a_point_and_to_a_ray():
     path = corner()
     picked = path.nearest((3.2, 0.1, -1))
-    assert picked["index"] == 4 and picked["side"] == 0 and np.array_equal(picked["normal"], UP)
-    picked = path.nearest((20, 2.4, 3.1), (-1, 0, 0))
-    assert picked["index"] == 5 and picked["side"] == 1 and picked["distance"] == pytest.approx(np.hypot(0.1, 0.1))
+    assert picked.index == 4 and picked.side == 0 and np.array_equal(picked.normal, UP)
+    picked = path.nearest((20, 2.4, 3.1), direction=(-1, 0, 0))
+    assert picked.index == 5 and picked.side == 1 and picked.distance == pytest.approx(np.hypot(0.1, 0.1))
 
 
 # ---- contact to location, lift, drop
@@ -162,25 +162,25 @@ def test_the_nearest_contact_to_a_point_and_to_a_ray():
 
 def test_contact_locations_of_a_fillet_follow_the_corrected_formula():
     axis, normal = leaning(0.3), UP
-    pose = plan.contact_locations(riffler.Tool.fillet(8, 1, 30), [[1, 2, 3]], [normal], [axis])[0]
+    pose = plan.contact_locations([[1, 2, 3]], [normal], [axis], riffler.Tool.fillet(8, 1, 30))[0]
     across = normal - (normal @ axis) * axis
     assert np.allclose(pose[:3], np.array([1, 2, 3]) + normal + 3 * across / np.linalg.norm(across) - axis, atol=1e-12)
     with pytest.raises(ValueError, match="contacts, row 1: only the cutter's upper end"):
-        plan.contact_locations(riffler.Tool.flat(6, 20), np.zeros((2, 3)), [UP, UP], [UP, -UP])
+        plan.contact_locations(np.zeros((2, 3)), [UP, UP], [UP, -UP], riffler.Tool.flat(6, 20))
     with pytest.raises(ValueError, match="axes must have 1 rows"):
-        plan.contact_locations(riffler.Tool.flat(6, 20), np.zeros((1, 3)), [UP], [UP, UP])
+        plan.contact_locations(np.zeros((1, 3)), [UP], [UP, UP], riffler.Tool.flat(6, 20))
 
 
 def test_a_lift_leaves_free_poses_and_blocked_ones_alone():
     collider = riffler.Collider(mesh(FLOOR))
     poses = [[15, 0, 1, *UP], [15, 0, -2, *UP], [15, 0, -2, *leaning(0.5)]]
-    lifted, report = plan.lift(riffler.Tool.ball(6, 30), poses, collider)
+    lifted, report = plan.lift(poses, riffler.Tool.ball(6, 30), collider)
     expected = (3 - (-2 + 3 * np.cos(0.5))) / np.cos(0.5)
-    assert report["lift"] == pytest.approx([0, 2, expected], abs=1e-8) and report["free"].all()
+    assert report.lift == pytest.approx([0, 2, expected], abs=1e-8) and report.free.all()
     assert np.allclose(lifted[2, :3], [15, 0, -2] + expected * leaning(0.5))
-    assert report["before"][1] == pytest.approx(-2) and report["pieces"] == ["cutter"] * 3
-    same, report = plan.lift(riffler.Tool.ball(6, 30), poses, collider, max_lift=1)
-    assert report["free"].tolist() == [True, False, False] and np.array_equal(same, poses)
+    assert report.before[1] == pytest.approx(-2) and report.pieces == ["cutter"] * 3
+    same, report = plan.lift(poses, riffler.Tool.ball(6, 30), collider, max_lift=1)
+    assert report.free.tolist() == [True, False, False] and np.array_equal(same, poses)
 
 
 def test_drop_lands_where_opencamlib_does():
@@ -209,7 +209,7 @@ def test_drop_lands_where_opencamlib_does():
                 batch.appendPoint(ocl.CLPoint(float(x), float(y), low))
             batch.run()
             z = np.array([p.z for p in batch.getCLPoints()])
-            heights, contacts = plan.drop(ours, points, part)
+            heights, contacts = plan.drop(points, ours, part)
             met = ~np.isnan(heights)
             assert np.array_equal(met, z > low + 1e-9)
             off = heights[met] - z[met]
@@ -225,9 +225,9 @@ def test_drop_lands_where_opencamlib_does():
 
 
 def test_drop_gives_nan_beside_the_part():
-    heights, contacts = plan.drop(riffler.Tool.ball(6, 30), [[15, 0, 0], [100, 0, 0]], mesh(FLOOR))
+    heights, contacts = plan.drop([[15, 0, 0], [100, 0, 0]], riffler.Tool.ball(6, 30), mesh(FLOOR))
     assert heights[0] == 0 and np.isnan(heights[1]) and np.isnan(contacts[1]).all()
-    sideways, _ = plan.drop(riffler.Tool.ball(6, 30), [[0, 0, -2]], mesh(FLOOR), axis=(1, 0, 0))
+    sideways, _ = plan.drop([[0, 0, -2]], riffler.Tool.ball(6, 30), mesh(FLOOR), axis=(1, 0, 0))
     assert sideways[0] == 30
 
 
@@ -236,7 +236,7 @@ def test_drop_gives_nan_beside_the_part():
 
 def test_cutter_locations_go_into_a_program():
     tool = riffler.Tool.ball(6, 30)
-    path = corner().oriented({0: leaning(0.6), 8: leaning(0.9)})
+    path = corner().orient({0: leaning(0.6), 8: leaning(0.9)})
     cl, report = plan.cutter_locations(path, tool, riffler.Collider(mesh(FLOOR, WALL)))
     assert cl.shape == (9, 6) and report.ok and not len(report.lifted) and not len(report.inserted)
     assert np.allclose(cl[:, :3], path.centres - 3 * path.axes, atol=1e-12)
@@ -249,7 +249,7 @@ def test_cutter_locations_lift_over_a_fixture_and_say_so():
     tool = riffler.Tool.ball(6, 30)
     clamp = riffler.Volume.block((1, -2, 0), (20, 2, 6), 0.5)
     collider = riffler.Collider(mesh(FLOOR), fixtures=[clamp])
-    path = corner(5).oriented({0: leaning(0.6)})
+    path = corner(5).orient({0: leaning(0.6)})
     cl, report = plan.cutter_locations(path, tool, collider, tolerance=0.1)
     assert report.ok and report.bound >= -0.1
     assert report.depth_before.max() > 1 and "fixture" in [report.pieces[k] for k in report.lifted]
@@ -263,7 +263,7 @@ def test_cutter_locations_lift_over_a_fixture_and_say_so():
 
 
 def test_cutter_locations_are_the_same_for_any_number_of_threads(monkeypatch):
-    path = corner(5).oriented({0: leaning(0.3), 4: leaning(-0.2)})
+    path = corner(5).orient({0: leaning(0.3), 4: leaning(-0.2)})
     collider = riffler.Collider(mesh(FLOOR, WALL))
     results = []
     for threads in ("1", "3"):
@@ -274,7 +274,7 @@ def test_cutter_locations_are_the_same_for_any_number_of_threads(monkeypatch):
 
 def test_what_cannot_be_freed_is_reported_and_left_out():
     lid = box((-10, -3, 5), (30, 20, 300))
-    path = corner(5).oriented({0: UP})
+    path = corner(5).orient({0: UP})
     cl, report = plan.cutter_locations(path, riffler.Tool.ball(6, 20), riffler.Collider(mesh(FLOOR, lid)), max_lift=5)
     assert not report.ok and [k for k, _ in report.blocked] == [1, 2, 3, 4] and len(cl) == 1
     assert "the cutter meets the part" in report.blocked[0][1] and "not free within 5 mm" in report.blocked[0][1]
@@ -285,12 +285,12 @@ def test_cutter_locations_can_be_cancelled_and_refuse_a_path_without_axes():
     collider = riffler.Collider(mesh(FLOOR, WALL))
     with pytest.raises(riffler.Cancelled):
         plan.cutter_locations(
-            corner().oriented({0: UP}), riffler.Tool.ball(6, 30), collider, progress=lambda share: False
+            corner().orient({0: UP}), riffler.Tool.ball(6, 30), collider, progress=lambda share: False
         )
     with pytest.raises(ValueError, match="has no axes"):
         plan.cutter_locations(corner(), riffler.Tool.ball(6, 30), collider)
     with pytest.raises(ValueError, match="tolerance must be a positive length"):
-        plan.cutter_locations(corner().oriented({0: UP}), riffler.Tool.ball(6, 30), collider, tolerance=0)
+        plan.cutter_locations(corner().orient({0: UP}), riffler.Tool.ball(6, 30), collider, tolerance=0)
 
 
 # ---- free orientations
@@ -298,12 +298,12 @@ def test_cutter_locations_can_be_cancelled_and_refuse_a_path_without_axes():
 
 def test_the_map_in_a_corner_is_free_between_the_walls():
     collider = riffler.Collider(mesh(FLOOR, WALL))
-    found = plan.free_orientations(corner(), 4, riffler.Tool.ball(6, 20), collider)
+    found = plan.free_orientations(corner(), riffler.Tool.ball(6, 20), collider, index=4)
     assert found.clearance.shape == found.free.shape == (21, 21) and found.axes.shape == (21, 21, 3)
     inside = (found.axes[..., 0] >= 0) & (found.axes[..., 2] >= 0)
     assert found.free[inside].all() and not found.free[found.axes[..., 0] < -0.05].any()
     assert np.allclose(found.suggestion, np.sqrt([0.5, 0, 0.5])) and found.reason == ""
-    several = plan.free_orientations(corner(), [0, 4], riffler.Tool.ball(6, 20), collider, limit=(UP, 0.5))
+    several = plan.free_orientations(corner(), riffler.Tool.ball(6, 20), collider, index=[0, 4], limit=(UP, 0.5))
     assert [m.index for m in several] == [0, 4]
     beyond = np.arccos(np.clip(several[1].axes @ UP, -1, 1)) > 0.5 + 1e-9
     assert np.isnan(several[1].clearance[beyond]).all() and not several[1].free[beyond].any()
@@ -311,19 +311,19 @@ def test_the_map_in_a_corner_is_free_between_the_walls():
 
 def test_no_free_orientation_is_an_answer_with_its_reason():
     collider = riffler.Collider(mesh(FLOOR, WALL, box((-10, -20, 5), (30, 20, 12))))
-    found = plan.free_orientations(corner(), 4, riffler.Tool.ball(6, 20), collider)
+    found = plan.free_orientations(corner(), riffler.Tool.ball(6, 20), collider, index=4)
     assert found.suggestion is None and not found.free.any()
     assert found.reason.startswith("the cutter enters the part with every axis, at best by ")
-    path, report = plan.least_tilt(corner(), riffler.Tool.ball(6, 20), collider)
-    assert path is None and report["point"] == 0 and "no orientation is free" in report["reason"]
+    path, report = plan.min_tilt(corner(), riffler.Tool.ball(6, 20), collider)
+    assert path is None and report.point == 0 and "no orientation is free" in report.reason
 
 
 def test_least_tilt_leans_round_a_post():
     collider = riffler.Collider(mesh(FLOOR, WALL, box((10, -1, 8), (40, 1, 40))))
     tool = riffler.Tool.ball(6, 30)
     grid = np.linspace(-1, 1, 11)
-    path, report = plan.least_tilt(corner(), tool, collider, inclinations=grid, tilts=grid, max_change=0.5)
-    assert report["found"] and report["angles"][4] > 0.1
+    path, report = plan.min_tilt(corner(), tool, collider, inclinations=grid, tilts=grid, max_change=0.5)
+    assert report.found and report.angles[4] > 0.1
     changes = np.arccos(np.clip(np.sum(path.axes[1:] * path.axes[:-1], axis=1), -1, 1))
     assert changes.max() <= 0.5 + 1e-9
     for centre, axis in zip(path.centres, path.axes, strict=True):
@@ -341,14 +341,14 @@ def test_least_tilt_leans_round_a_post():
 )
 def test_maps_refuse_grids_without_meaning(more, message):
     with pytest.raises(ValueError, match=message):
-        plan.free_orientations(corner(), 4, riffler.Tool.ball(6, 20), riffler.Collider(mesh(FLOOR)), **more)
+        plan.free_orientations(corner(), riffler.Tool.ball(6, 20), riffler.Collider(mesh(FLOOR)), index=4, **more)
 
 
 def test_a_map_is_drawn(tmp_path):
     matplotlib = pytest.importorskip("matplotlib")
     matplotlib.use("Agg")
     found = plan.free_orientations(
-        corner(), 4, riffler.Tool.ball(6, 20), riffler.Collider(mesh(FLOOR, WALL)), limit=(UP, 1.0)
+        corner(), riffler.Tool.ball(6, 20), riffler.Collider(mesh(FLOOR, WALL)), index=4, limit=(UP, 1.0)
     )
     plan.draw_map(found).figure.savefig(tmp_path / "map.png")
     assert (tmp_path / "map.png").stat().st_size > 5000
@@ -360,7 +360,7 @@ def test_a_map_is_drawn(tmp_path):
 def some_plan():
     part = mesh(FLOOR, WALL)
     tool = riffler.Tool.ball(6, 30).with_holder([(40, 10, 60, 10)]).named("six")
-    path = corner().oriented({0: leaning(0.6), 8: leaning(0.9)}, limit=(UP, 0.8), project=True)
+    path = corner().orient({0: leaning(0.6), 8: leaning(0.9)}, limit=(UP, 0.8), project=True)
     cl, _ = plan.cutter_locations(path, tool, riffler.Collider(part))
     return plan.Plan(
         [path, corner(4, closed=True)],
@@ -447,7 +447,7 @@ def test_a_plan_is_the_same_as_bytes_and_as_a_file(tmp_path):
 @pytest.mark.parametrize(("data", "message"), [(b"{", "line 1"), (b"\xff\xfe", ""), (b"[]", "an object expected")])
 def test_bytes_that_are_no_plan_are_refused_by_their_name(data, message):
     with pytest.raises(riffler.FormatError, match=f"^the plan in Block: .*{message}"):
-        plan.loads(data, "the plan in Block")
+        plan.loads(data, name="the plan in Block")
     with pytest.raises(riffler.FormatError, match=r"^plan: "):
         plan.loads(data)
 
@@ -461,21 +461,21 @@ def test_a_plan_has_a_line_for_each_path():
 
 def test_of_plans_that_follow_one_another_only_other_paths_are_formatted():
     texts, before = plan.Texts(), some_plan()
-    assert plan.dumps(before, texts) == plan.dumps(before) and texts.made == 2
-    turned = before.paths[1].oriented({0: before.paths[1].axis(0, 0.1, 0)})
+    assert plan.dumps(before, texts=texts) == plan.dumps(before) and texts.made == 2
+    turned = before.paths[1].orient({0: before.paths[1].axis(0, 0.1, 0)})
     after = plan.Plan([before.paths[0], turned], before.tool, cl=[before.cl[0], None])
-    assert plan.dumps(after, texts) == plan.dumps(after) and texts.made == 3
+    assert plan.dumps(after, texts=texts) == plan.dumps(after) and texts.made == 3
     rows = np.array(before.cl[0]) + 1.0
     moved = plan.Plan([turned, before.paths[0]], before.tool, cl=[None, rows])  # another order, other locations
-    assert plan.dumps(moved, texts) == plan.dumps(moved) and texts.made == 4
-    assert plan.dumps(before, texts) == plan.dumps(before) and texts.made == 6  # only the last is kept
+    assert plan.dumps(moved, texts=texts) == plan.dumps(moved) and texts.made == 4
+    assert plan.dumps(before, texts=texts) == plan.dumps(before) and texts.made == 6  # only the last is kept
 
 
 def test_paths_that_are_off_come_back_off():
     texts, before = plan.Texts(), some_plan()
-    plan.dumps(before, texts)
+    plan.dumps(before, texts=texts)
     after = replace(before, off=frozenset({1}))
-    data = plan.dumps(after, texts)
+    data = plan.dumps(after, texts=texts)
     assert texts.made == 3 and plan.loads(data).off == {1} and data == plan.dumps(plan.loads(data))
     assert plan.loads(plan.dumps(before)).off == frozenset() and b'"off"' not in plan.dumps(before)
     with pytest.raises(ValueError, match="off: there is no path 2: the plan has 2, from 0"):
@@ -489,13 +489,10 @@ def test_a_plan_of_a_newer_version_says_so():
 
 
 def test_a_plan_that_cannot_be_saved_leaves_nothing(tmp_path):
-    broken = some_plan()
-    broken.cl = [np.full((2, 6), np.nan), None]
     with pytest.raises(ValueError, match=r"cl\[0\]"):
-        plan.save(tmp_path / "a.json", broken)
-    broken.cl = [None]
+        plan.save(tmp_path / "a.json", replace(some_plan(), cl=[np.full((2, 6), np.nan), None]))
     with pytest.raises(ValueError, match="cl: 2 expected"):
-        plan.save(tmp_path / "a.json", broken)
+        plan.save(tmp_path / "a.json", replace(some_plan(), cl=[None]))
     assert os.listdir(tmp_path) == []
 
 
@@ -511,7 +508,10 @@ def test_pencil_writes_a_plan(tmp_path, monkeypatch, capsys):
 
     def find(part, tool, **options):
         given.update(options, tool=tool)
-        return [corner(), corner(4, closed=True)]
+        areas = {"rest_area": 0.0, "rest_areas": [], "reference_area": 0.0, "reference_areas": []}
+        stats = dict.fromkeys(field.name for field in fields(plan.PencilStats))
+        paths = [corner(), corner(4, closed=True)]
+        return plan.PencilPaths({"paths": paths, "ends": [], "stats": stats, "reason": "", **areas})
 
     monkeypatch.setattr(pencil_strategy, "pencil", find)
     mesh(FLOOR, WALL).write(tmp_path / "part.stl")

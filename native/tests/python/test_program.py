@@ -277,10 +277,10 @@ def test_programs_are_edited_into_new_ones(ball):
     moved = p.transformed(turned)
     np.testing.assert_allclose(moved.poses[:, :3], p.poses[:, :3] @ turned[:3, :3].T + turned[:3, 3], atol=1e-12)
     np.testing.assert_allclose(moved.poses[:, 3:], p.poses[:, 3:] @ turned[:3, :3].T, atol=1e-15)
-    assert np.array_equal(p.retimed(0.5).feed, 0.5 * p.feed)
+    assert np.array_equal(p.scale_feeds(0.5).feed, 0.5 * p.feed)
     both = riffler.Program.joined([p, q])
     assert len(both) == len(p) + 7 and set(both.tools) == {1}
-    assert set(p.retooled({1: 4}).tool) == {4} and set(p.retooled({1: 4}).tools) == {4}
+    assert set(p.renumber_tools({1: 4}).tool) == {4} and set(p.renumber_tools({1: 4}).tools) == {4}
     with pytest.raises(ValueError, match="last row"):
         p.transformed(np.ones((4, 4)))
     with pytest.raises(ValueError, match="rows 5 to 2"):

@@ -19,8 +19,8 @@ def program(n=100, seed=0):
     axes /= np.linalg.norm(axes, axis=1)[:, None]
     rapid = rng.random(n) < 0.2
     return riffler.Program(
-        np.hstack([rng.normal(size=(n, 3)) * 50, axes]), np.where(rapid, 0, rng.uniform(1, 9e3, n)), rapid,
-        rng.integers(0, 4, n), rng.integers(0, 99, n), rng.normal(size=n) * 9e3,
+        np.hstack([rng.normal(size=(n, 3)) * 50, axes]), np.where(rapid, 0, rng.uniform(1, 9e3, n)), rapid=rapid,
+        tool=rng.integers(0, 4, n), line=rng.integers(0, 99, n), spindle=rng.normal(size=n) * 9e3,
         tools={1: riffler.Tool.ball(6, 30), 3: TOOL}, provenance={"part": "Ünal", "": "x"},
     )  # fmt: skip
 
@@ -56,9 +56,9 @@ def test_a_recording_becomes_a_program_and_a_file(tmp_path):
     journal.set_stock((0, -5, -5), (30, 5, 0), 0.5)
     journal.add_tool(2, TOOL)
     journal.add_note("artist", "Ünal")
-    journal.add_stroke(2, poses, 4 * t)
-    journal.write(tmp_path / "s.rjournal")
-    p = riffler.Journal.read(tmp_path / "s.rjournal").program(spindle=9000)
+    journal.add_stroke(2, poses, times=4 * t)
+    journal.save(tmp_path / "s.rjournal")
+    p = riffler.Journal.load(tmp_path / "s.rjournal").program(spindle=9000)
     cut = p.poses[~p.rapid]
     assert cut.tobytes() == poses.tobytes() and set(p.tool) == {2} and p.tools[2].to_dict() == TOOL.to_dict()
     way = np.linalg.norm(np.diff(poses[:, :3], axis=0), axis=1)

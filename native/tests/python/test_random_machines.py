@@ -103,7 +103,7 @@ def check(text, axes, limits, poses, rapid, tool, report, tolerance, axis_tolera
             assert ends[row] == ends[row - 1] + 1
             continue
         free = rapid[row] and min(a[2], b[2]) > highest
-        left = row in report["rewinds"] or row - 1 in report["rewinds"]
+        left = row in report.rewinds or row - 1 in report.rewinds
         for k in range(ends[row - 1], ends[row]):
             dense = forward(joints[k] + share * (joints[k + 1] - joints[k]), axes)
             tip, axis = aside(dense, a, b)

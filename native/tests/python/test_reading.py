@@ -107,10 +107,10 @@ def test_notes_stay_with_the_program(tmp_path):
     assert repr(program.notes[0]) == "<riffler.Note: line 2, coordinates: G60 was skipped, with its axis words>"
     program.save(tmp_path / "p.rprog")
     others = [
-        riffler.Program.load(tmp_path / "p.rprog"), pickle.loads(pickle.dumps(program)), program.retimed(2),
+        riffler.Program.load(tmp_path / "p.rprog"), pickle.loads(pickle.dumps(program)), program.scale_feeds(2),
         riffler.Program.joined([program]), program.trimmed(0, 2),
         list(riffler.Program.stream(file, options={"unknown": "skip"}))[-1],
-        riffler.Program(program.poses, program.feed, program.rapid, notes=program.notes),
+        riffler.Program(program.poses, program.feed, rapid=program.rapid, notes=program.notes),
     ]  # fmt: skip
     for other in others:
         assert [(note.kind, note.line) for note in other.notes] == said

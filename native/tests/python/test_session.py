@@ -42,7 +42,7 @@ def carve_with_the_simulated_pen(tmp_path, directions: str = "z"):
         session = riffler.Session(
             volume, BALL, pen, at=(0, 0, 1, 0, 0, 1), scale=0.5, material=riffler.Material(removal_constant=0.005)
         )
-        session.journal(tmp_path / "a.rjournal", {"who": "the tests"})
+        session.journal(tmp_path / "a.rjournal", notes={"who": "the tests"})
         with session:
             seen = frames(session, 20, lambda frame: frame.strokes >= 2)
     return volume, session, seen
@@ -54,7 +54,7 @@ def test_the_simulated_pen_carves_and_the_replay_is_the_same_to_the_bit(tmp_path
     assert volume.volume < stock().volume - 5
     assert not session.running
     assert same(volume, riffler.Session.replay(tmp_path / "a.rjournal"))
-    journal = riffler.Journal.read(tmp_path / "a.rjournal")
+    journal = riffler.Journal.load(tmp_path / "a.rjournal")
     assert journal.notes["who"] == "the tests"
     assert sum(s.removed.sum() for s in journal.strokes) == pytest.approx(stock().volume - volume.volume, rel=1e-9)
     assert any(np.abs(s.forces).max() > 0.01 for s in journal.strokes)
@@ -84,7 +84,7 @@ def test_what_a_frame_tells_fits_together(tmp_path):
 def test_a_recording_becomes_nc_code_and_a_session_again(tmp_path):
     """Record → NC → replay: the same tool over the program's own poses leaves the same volume within the tolerance."""
     volume, _, _ = carve_with_the_simulated_pen(tmp_path)
-    journal = riffler.Journal.read(tmp_path / "a.rjournal")
+    journal = riffler.Journal.load(tmp_path / "a.rjournal")
     program = journal.program(feed=600, spindle=10000)
     table = {"rot_point": [0, 0, 0]}
     program.write(tmp_path / "a.ngc", post="linuxcnc-xyzac", options=table | {"safe_start": False})
@@ -100,7 +100,7 @@ def test_a_recording_becomes_nc_code_and_a_session_again(tmp_path):
         riffler.pen.open(tmp_path / "a.rjournal") as pen,
         riffler.Session(again, BALL, pen, material=riffler.Material(removal_constant=1e-6)) as session,
     ):
-        frames(session, 30, lambda frame: pen.health()["state"] == "stopped")
+        frames(session, 30, lambda frame: pen.health().state == "stopped")
     assert again.volume == pytest.approx(volume.volume, abs=0.1 * (stock().volume - volume.volume))
 
 
@@ -137,7 +137,7 @@ def test_undo_and_redo_are_in_the_journal(tmp_path):
         assert session.redo() == 0
     assert volume.to_bytes() == third
     assert same(volume, riffler.Session.replay(tmp_path / "b.rjournal"))
-    assert len(riffler.Journal.read(tmp_path / "b.rjournal").strokes) == 2
+    assert len(riffler.Journal.load(tmp_path / "b.rjournal").strokes) == 2
 
 
 CHILD = """
@@ -171,7 +171,7 @@ def test_a_killed_session_loses_less_than_a_second(tmp_path):
     finally:
         child.send_signal(signal.SIGKILL)
         child.wait()
-    journal = riffler.Journal.read(path)
+    journal = riffler.Journal.load(path)
     kept = journal.strokes[-1].times[-1]
     print(f"kill -9 at {last:.3f} s, journal up to {kept:.3f} s")
     assert kept > last - 1
@@ -301,8 +301,8 @@ def test_what_is_protected_stays_to_the_bit_and_the_replay_too(tmp_path, directi
     was, beside = same_inside(mask, volume, before), volume.copy()
     beside.subtract(mask)
     assert beside.volume < before.volume - was.volume - 20
-    journal = riffler.Journal.read(tmp_path / "a.rjournal")
-    assert {s.mode for s in journal.strokes} == {"beside"} and journal.stock["mask"] == "a-mask.rvol"
+    journal = riffler.Journal.load(tmp_path / "a.rjournal")
+    assert {s.mode for s in journal.strokes} == {"beside"} and journal.stock.mask == "a-mask.rvol"
 
 
 @pytest.mark.parametrize("directions", ["z", "xyz"])
@@ -325,8 +325,8 @@ def test_what_is_put_on_is_not_felt_and_the_replay_is_the_same_to_the_bit(tmp_pa
     if masked:
         same_inside(mask, volume, before)
     assert not np.concatenate([frame.tool_forces for frame in seen]).any()
-    journal = riffler.Journal.read(tmp_path / "a.rjournal")
-    assert {s.mode for s in journal.strokes} == {"build"} and journal.stock["mask"] == ("a-mask.rvol" if masked else "")
+    journal = riffler.Journal.load(tmp_path / "a.rjournal")
+    assert {s.mode for s in journal.strokes} == {"build"} and journal.stock.mask == ("a-mask.rvol" if masked else "")
     put_on = sum(s.removed.sum() for s in journal.strokes)
     assert put_on == pytest.approx(volume.volume - before.volume, rel=1e-6)
 

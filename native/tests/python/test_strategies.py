@@ -82,10 +82,10 @@ def test_the_functions_give_what_the_strategies_give(folder):
     (path,) = plan.pencil(part, BALL)
     (same,) = plan.find("pencil", part, BALL).plan.paths
     assert np.array_equal(path.centres, same.centres)
-    (line,) = plan.engrave(part, [CURVE], GRAVER, depth=0.3)
+    (line,) = plan.engrave([CURVE], GRAVER, part, depth=0.3)
     found = plan.find("engrave", part, GRAVER, [CURVE])
     assert np.allclose(plan.poses_of(found.plan.paths[0]), line.poses, atol=1e-12) and found.plan.depths == {0: 0.3}
-    wall = max((plan.swarf(path, part, BALL, side) for side in (0, 1)), key=lambda w: w.path.axes[:, 2].mean())
+    wall = max((plan.swarf(path, BALL, part, side=side) for side in (0, 1)), key=lambda w: w.path.axes[:, 2].mean())
     (cut,) = plan.find("swarf", part, BALL, [path]).plan.paths
     assert np.array_equal(cut.axes, wall.path.axes) and np.allclose(cut.axes, (0, 0, 1), atol=1e-6)
     assert sorted(cut.keys) == list(range(len(cut)))
@@ -155,7 +155,7 @@ def test_an_engraved_plan_comes_back_with_its_poses(tool):
     data = plan.dumps(made)
     read = plan.loads(data)
     assert plan.dumps(read) == data and read.depths == {0: 0.3} and b'"version": 2' in data
-    (line,) = plan.engrave(step(), [CURVE], tool, depth=0.3)
+    (line,) = plan.engrave([CURVE], tool, step(), depth=0.3)
     assert np.allclose(plan.poses_of(read.paths[0]), line.poses, atol=1e-12)
     assert np.allclose(read.paths[0].contacts[:, 0], line.contacts) and read.deepest == 0.3
     assert replace(read, off=frozenset({0})).deepest == 0
@@ -191,12 +191,12 @@ def test_a_broken_depth_is_refused_by_its_place(text, message):
 
 def test_kept_locations_are_the_poses_and_find_what_a_shank_meets():
     made, collider = engraved(), riffler.Collider(step())
-    rows, report = plan.kept_locations(made.paths[0], 0.3, GRAVER, collider)
+    rows, report = plan.kept_locations(made.paths[0], GRAVER, collider, depth=0.3)
     assert report.ok and np.array_equal(rows, plan.poses_of(made.paths[0])) and not report.lift.any()
-    shallow = plan.kept_locations(made.paths[0], 0.2, GRAVER, collider)[1]
+    shallow = plan.kept_locations(made.paths[0], GRAVER, collider, depth=0.2)[1]
     assert len(shallow.blocked) == len(made.paths[0]) and "cutter meets the part" in shallow.blocked[0][1]
     wide = GRAVER.with_holder([(12, 15, 40, 15)])  # the wall is 8 to 15 mm away, and 16 mm high
-    report = plan.kept_locations(made.paths[0], 0.3, wide, collider)[1]
+    report = plan.kept_locations(made.paths[0], wide, collider, depth=0.3)[1]
     assert not report.ok and "holder meets the part" in report.blocked[0][1]
 
 
@@ -206,14 +206,14 @@ def test_chords_over_a_round_part_are_within_twice_the_tolerance():
     ring = np.column_stack([9 * np.cos(a), 9 * np.sin(a), np.full(80, 18.0)])
     for tolerance in (0.01, 0.05):
         found = plan.find("engrave", ball, GRAVER, [ring], tolerance=tolerance).plan
-        report = plan.kept_locations(found.paths[0], 0.3, GRAVER, riffler.Collider(ball), tolerance=tolerance)[1]
+        report = plan.kept_locations(found.paths[0], GRAVER, riffler.Collider(ball), depth=0.3, tolerance=tolerance)[1]
         assert report.ok and report.bound >= -0.3 - 2 * tolerance
 
 
 def test_locations_of_poses_are_those_of_the_path():
     part, collider = step(), riffler.Collider(step())
     (path,) = plan.pencil(part, BALL)
-    path = path.divided(5).oriented({0: (0, -0.6, 0.8)})
+    path = path.divided(5).orient({0: (0, -0.6, 0.8)})
     rows, report = plan.cutter_locations(path, BALL, collider)
     same, other = plan.cutter_locations(plan.poses_of(path), BALL, collider)
     assert np.allclose(rows, same, atol=1e-12) and np.array_equal(report.points, other.points)
@@ -235,7 +235,7 @@ def test_an_engraved_plan_becomes_code_that_cuts_as_deep_as_it_says(folder, caps
     assert "enters step.stl by up to 0.3 mm" in " ".join(capsys.readouterr().out.split())
     read = riffler.Program.read("a.ngc")
     cut = read.poses[(read.poses[:, 2] < 8)]
-    (line,) = plan.engrave(riffler.Mesh.read("step.stl"), [CURVE], Tool.ball(1, 10), depth=0.3)
+    (line,) = plan.engrave([CURVE], Tool.ball(1, 10), riffler.Mesh.read("step.stl"), depth=0.3)
     for row in line.poses:
         assert np.linalg.norm(cut[:, :3] - row[:3], axis=1).min() < 1e-3
     words = [

@@ -38,7 +38,7 @@ def valley(points):
     contacts = np.stack([centres - [0, 0, 3], centres - [3, 0, 0]], axis=1)
     normals = np.broadcast_to([[UP, [1.0, 0, 0]]], (points, 2, 3))
     path = plan.PencilPath(3, centres, contacts, normals)
-    return path.oriented({0: path.axis(0, 0.0, 0.3)})
+    return path.orient({0: path.axis(0, 0.0, 0.3)})
 
 
 def carved():
@@ -82,11 +82,11 @@ TEMPORARY = os.path.join(tempfile.mkdtemp(), "saved.rvol")
 WRITTEN = os.path.join(tempfile.mkdtemp(), "written.stl")
 # name: the plain call, its arguments and keywords
 CALLS = {
-    "pencil": (plan.pencil, (STEP, BALL, 0.01, 3), {"scallop": 0.1}),
+    "pencil": (plan.pencil, (STEP, BALL), {"passes": 3, "scallop": 0.1}),
     "cutter_locations": (plan.cutter_locations, (PATH, BALL, COLLIDER), {"clearance": 0.1}),
-    "kept_locations": (plan.kept_locations, (PATH, 0.1, BALL, COLLIDER), {"clearance": 0.1}),
-    "free_orientations": (plan.free_orientations, (PATH, [0, 4], BALL, COLLIDER), GRID),
-    "least_tilt": (plan.least_tilt, (PATH, BALL, COLLIDER), GRID | {"limit": (UP, 1.0)}),
+    "kept_locations": (plan.kept_locations, (PATH, BALL, COLLIDER), {"depth": 0.1, "clearance": 0.1}),
+    "free_orientations": (plan.free_orientations, (PATH, BALL, COLLIDER), GRID | {"index": [0, 4]}),
+    "min_tilt": (plan.min_tilt, (PATH, BALL, COLLIDER), GRID | {"limit": (UP, 1.0)}),
     "verify": (riffler.verify, (passes(), stock(), PART, [PART, VOLUME]), {"rest_tolerance": 0.1}),
     "run": (lambda *args, **kwargs: verification().run(*args, **kwargs), (passes(),), {}),
     "collider": (riffler.Collider.made, (STEP,), {"fixtures": [stock()], "spacing": 0.5}),
@@ -99,7 +99,8 @@ CALLS = {
     "resampled": (riffler.Volume.resample, (VOLUME, 0.4, "xyz"), {"lower": [0, 0, -1]}),
     "to_bytes": (riffler.Volume.to_bytes, (VOLUME,), {}),
     "save": (riffler.Volume.save, (VOLUME, TEMPORARY), {}),
-    "replay": (riffler.Journal.replay, (strokes(),), {"with_mask": True}),
+    "replay": (riffler.Journal.replay, (strokes(),), {}),
+    "replay_with_mask": (riffler.Journal.replay_with_mask, (strokes(),), {}),
     "decimate": (riffler.Mesh.decimate, (SURFACE,), {"triangles": 2000, "tolerance": 0.05}),
     "smooth": (riffler.Mesh.smooth, (SURFACE,), {"iterations": 5, "feature_angle": 0.7}),
     "deviation": (riffler.Mesh.deviation, (SURFACE, STEP), {"signed": True}),
@@ -183,10 +184,10 @@ def test_both_ways_say_the_same_of_bad_arguments():
     nothing = riffler.Mesh([], [])
     flat = riffler.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
     bad = {
-        "pencil": [(nothing, BALL), (STEP, BALL, -1.0), (None, BALL)],
+        "pencil": [(nothing, BALL), (None, BALL)],
         "cutter_locations": [(plan.PencilPath(3, [UP], [[UP, UP]], [[UP, UP]]), BALL, COLLIDER), (None, BALL, None)],
-        "free_orientations": [(PATH, 9, BALL, COLLIDER), (PATH, -1, BALL, COLLIDER), (PATH, 0, BALL, None)],
-        "least_tilt": [(PATH, BALL, None), (PATH, None, COLLIDER)],
+        "free_orientations": [(PATH, BALL, COLLIDER, 9), (PATH, BALL, COLLIDER, -1), (PATH, BALL, None, 0)],
+        "min_tilt": [(PATH, BALL, None), (PATH, None, COLLIDER)],
         "verify": [(passes(), stock(), flat, [flat]), (7, stock()), (None, stock()), (passes(), stock(), VOLUME)],
         "run": [(None,)],
         "from_mesh": [(flat, 1.0), (None, 1.0), (STEP, -1.0)],
@@ -197,10 +198,12 @@ def test_both_ways_say_the_same_of_bad_arguments():
     }
     for name, several in bad.items():
         for args in several:
+            more = {} if name != "free_orientations" else {"index": args[-1]}
+            given = args[:-1] if more else args
             with pytest.raises((ValueError, TypeError, RuntimeError)) as expected:
-                CALLS[name][0](*args)
+                CALLS[name][0](*given, **more)
             with pytest.raises(expected.type) as found:
-                started(name, *args).result()
+                started(name, *given, **more).result()
             if expected.type is not TypeError:
                 assert str(found.value) == str(expected.value)
 
@@ -320,17 +323,17 @@ def test_a_volume_may_be_carved_while_a_task_reads_it():
 
 def test_a_task_keeps_what_nobody_else_holds():
     path, collider, tool = valley(9), riffler.Collider(STEP), riffler.Tool.ball(6, 40)
-    task = riffler.submit(riffler.plan.free_orientations, path, [0, 4], tool, collider, **GRID)
+    task = riffler.submit(riffler.plan.free_orientations, path, tool, collider, index=[0, 4], **GRID)
     del path, collider, tool
     gc.collect()
-    assert bits(task.result()) == bits(plan.free_orientations(PATH, [0, 4], BALL, COLLIDER, **GRID))
+    assert bits(task.result()) == bits(plan.free_orientations(PATH, BALL, COLLIDER, index=[0, 4], **GRID))
 
 
 def test_arrays_may_be_written_once_the_task_is_made():
     inclinations, tilts = GRID["inclinations"].copy(), GRID["tilts"].copy()
-    task = riffler.submit(riffler.plan.least_tilt, PATH, BALL, COLLIDER, inclinations=inclinations, tilts=tilts)
+    task = riffler.submit(riffler.plan.min_tilt, PATH, BALL, COLLIDER, inclinations=inclinations, tilts=tilts)
     inclinations[:], tilts[:] = 7, 7
-    assert bits(task.result()) == bits(plan.least_tilt(PATH, BALL, COLLIDER, **GRID))
+    assert bits(task.result()) == bits(plan.min_tilt(PATH, BALL, COLLIDER, **GRID))
 
 
 def test_tasks_run_beside_each_other_and_beside_plain_calls():
@@ -519,12 +522,12 @@ def test_one_thread_is_one_thread(free_choice):
     wide = {"inclinations": angles, "tilts": angles}
     riffler.set_threads(1)
     before = threads_of_process()
-    task = riffler.submit(riffler.plan.free_orientations, valley(300), range(300), BALL, COLLIDER, **wide)
+    task = riffler.submit(riffler.plan.free_orientations, valley(300), BALL, COLLIDER, index=range(300), **wide)
     while task.progress() == 0:
         assert threads_of_process() <= before + 1
     del task
     riffler.set_threads(4)
-    task, most = riffler.submit(riffler.plan.free_orientations, valley(300), range(300), BALL, COLLIDER, **wide), 0
+    task, most = riffler.submit(plan.free_orientations, valley(300), BALL, COLLIDER, index=range(300), **wide), 0
     while most < before + 4 and not task.done():
         most = max(most, threads_of_process())
     assert most == before + 4  # the task's own and three beside it

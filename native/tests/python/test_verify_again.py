@@ -81,19 +81,19 @@ def test_an_edit_costs_what_it_touches():
     kept = riffler.Verification(stock)
     first = kept.run(program(path(tips), tool)).stats
     same = kept.run(program(path(tips), tool)).stats
-    assert same["moves"] == 0 and same["slabs_kept"] == 49 and first["slabs_kept"] == 0
+    assert same.moves == 0 and same.slabs_kept == 49 and first.slabs_kept == 0
     tips[len(tips) // 2, 2] -= 0.5
     report = kept.run(program(path(tips), tool))
-    assert report.stats["moves"] < 0.2 * first["moves"] and report.stats["slabs_kept"] >= 45
+    assert report.stats.moves < 0.2 * first.moves and report.stats.slabs_kept >= 45
     assert state(report) == state(riffler.verify(program(path(tips), tool), stock))
     # At the end of the program the snapshots help too.
     tips[-200, 2] -= 0.5
     report = kept.run(program(path(tips), tool))
-    assert report.stats["snapshots_used"] > 0 and report.stats["moves"] < 0.02 * first["moves"]
+    assert report.stats.snapshots_used > 0 and report.stats.moves < 0.02 * first.moves
     assert state(report) == state(riffler.verify(program(path(tips), tool), stock))
 
 
 def test_holders_above_the_stock_cost_nothing():
     tips = raster(100, 2, -2)
     stock = riffler.Volume.block([0, 0, -10], [100, 100, 0], 0.25)
-    assert riffler.verify(program(path(tips), held()), stock).stats["probes"] == 0
+    assert riffler.verify(program(path(tips), held()), stock).stats.probes == 0

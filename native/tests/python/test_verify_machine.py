@@ -110,8 +110,8 @@ def test_a_swing_of_the_rotary_axes_is_the_machines(tmp_path):
                 assert (hits[0].row, hits[0].line, hits[0].member) == (1, 4, "holder")
             assert len(report.removed) == len(report.seconds) == 3
             # In chunks, followed, and read with rows for the swing, it is the same.
-            chunks = [riffler.Program(program.poses[:2], program.feed[:2], program.rapid[:2], 1, program.line[:2],
-                                      spindle=1000, via=program.via), program.trimmed(1, 3)]  # fmt: skip
+            first = {"rapid": program.rapid[:2], "line": program.line[:2], "spindle": 1000, "via": program.via}
+            chunks = [riffler.Program(program.poses[:2], program.feed[:2], **first), program.trimmed(1, 3)]
             again = riffler.verify(chunks, block, None, [clamp], tools={1: tool}, machine="head-table")
             assert [(f.kind, f.row, f.value) for f in again.findings] == [
                 (f.kind, f.row, f.value) for f in report.findings

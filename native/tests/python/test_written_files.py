@@ -31,7 +31,7 @@ def a_plan(count=3):
 def write_journal(path):
     journal = riffler.Journal()
     journal.add_note("a", "b")
-    journal.write(path)
+    journal.save(path)
 
 
 WRITERS = {
@@ -93,7 +93,7 @@ def test_a_pipe_and_a_device_are_refused_and_stay(writer, tmp_path):
     assert sorted(os.listdir(tmp_path)) == [null.name, pipe.name]
 
 
-@pytest.mark.parametrize("read", [riffler.Mesh.read, riffler.Volume.load, riffler.Program.read, riffler.Journal.read])
+@pytest.mark.parametrize("read", [riffler.Mesh.read, riffler.Volume.load, riffler.Program.read, riffler.Journal.load])
 def test_reading_from_a_pipe_does_not_wait(read, tmp_path):
     end = {"Mesh": ".stl", "Volume": ".rvol"}.get(getattr(read, "__qualname__", "").split(".")[0], ".stl")
     os.mkfifo(tmp_path / f"pipe{end}")

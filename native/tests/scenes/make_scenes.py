@@ -32,7 +32,7 @@ class Scene:
     def __init__(self, name: str, lower, upper, pitch: float, directions: str = "xyz", snapshot: str = ""):
         self.journal = riffler.Journal()
         self.path = HERE / f"{name}.rjournal"
-        self.journal.set_stock(lower, upper, pitch, directions, snapshot)
+        self.journal.set_stock(lower, upper, pitch, directions, snapshot=snapshot)
         self.tools = 0
 
     def stroke(self, tool: riffler.Tool, rows: np.ndarray, tolerance: float = 0.01) -> None:
@@ -41,7 +41,7 @@ class Scene:
         self.journal.add_stroke(self.tools, rows, tolerance=tolerance)
 
     def write(self) -> None:
-        self.journal.write(self.path)
+        self.journal.save(self.path)
         print(f"{self.path.name}: {self.path.stat().st_size} bytes")
 
 
@@ -101,7 +101,7 @@ def degenerate() -> Scene:
 
 def pen() -> Scene:
     """Some strokes of the demonstration's recording."""
-    recording = riffler.Journal.read(ROOT / "demo" / "strokes.rjournal")
+    recording = riffler.Journal.load(ROOT / "demo" / "strokes.rjournal")
     chosen = recording.strokes[:3]
     rows = [np.asarray(stroke.poses)[:120] for stroke in chosen]
     tips = np.vstack(rows)[:, :3]

@@ -13,7 +13,7 @@ struct PointerFrame {
   Vec3 right{1, 0, 0}, up{0, 1, 0};  ///< orthogonal unit vectors
   double scale = 1;                  ///< mm per pointer unit
   double depth = 2;                  ///< mm into the plane (against right × up) at full pressure
-  double most_tilt = 1.0;  ///< rad: near the horizon tablets report invalid values, and beyond it the axis flips
+  double max_tilt = 1.0;  ///< rad: near the horizon tablets report invalid values, and beyond it the axis flips
 
   /// Throws std::invalid_argument naming the field.
   void validate() const;
@@ -28,7 +28,7 @@ struct PointerEvent {
   double time = 0;  ///< s on the caller's clock
 };
 
-/// Direction of the pen from its tip to its end: right × up, tilted. Tilts of ±90° or NaN are limited to `most_tilt`
+/// Direction of the pen from its tip to its end: right × up, tilted. Tilts of ±90° or NaN are limited to `max_tilt`
 /// from upright.
 Vec3 tilted_axis(const PointerFrame& frame, double tilt_x, double tilt_y) noexcept;
 

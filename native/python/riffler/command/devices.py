@@ -33,17 +33,17 @@ def open_device(what: str | None, **options: Any) -> pen.PenDevice:
 def first_plugged() -> str:
     """The path of the first device that opens."""
     for device in pen.devices():
-        if device["tried"] and device["problem"] is None:
-            return device["path"]
+        if device.was_opened and device.problem is None:
+            return device.path
     raise pen.PenError(f"no device to open; {plugged()}")
 
 
 def plugged() -> str:
     """What there is, and why some of it does not open, in one line."""
     found = [
-        f"{device['path']} ({device['name']}" + (f": {device['problem']})" if device["problem"] else ")")
+        f"{device.path} ({device.name}" + (f": {device.problem})" if device.problem else ")")
         for device in pen.devices()
-        if device["kind"]
+        if device.kind
     ]
     there = f"plugged in: {', '.join(found)}" if found else "no device of a kind that riffler knows is plugged in"
     return f'{there}; "simulated" needs none'

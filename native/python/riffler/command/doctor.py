@@ -18,7 +18,7 @@ import numpy as np
 from .. import __version__, _core, pen
 from .console import Console, number
 from .parser import Parser
-from .pen_list import describe
+from .pen_list import as_json, describe
 
 HELP = "versions, instruction set, devices found and why one did not open"
 
@@ -31,14 +31,15 @@ def add_arguments(parser: Parser) -> None:
 
 
 def run(arguments: argparse.Namespace, console: Console) -> int:
-    data = report()
-    console.result(data, "riffler doctor", rows(data))
+    found = pen.devices()
+    data = report(found)
+    console.result(data, "riffler doctor", rows(data, found))
     return 0
 
 
-def rows(data: dict[str, Any]) -> list[tuple[str, str]]:
+def rows(data: dict[str, Any], found: list[pen.DeviceInfo]) -> list[tuple[str, str]]:
     """A report as pairs for people: what it is, what was found."""
-    devices = [(d["path"], describe(d)) for d in data["devices"]]
+    devices = [(d.path, describe(d)) for d in found]
     memory = data["memory"]
     cpu = data["cpu"]
     return [
@@ -53,7 +54,7 @@ def rows(data: dict[str, Any]) -> list[tuple[str, str]]:
     ]
 
 
-def report() -> dict[str, Any]:
+def report(found: list[pen.DeviceInfo]) -> dict[str, Any]:
     return {
         "riffler": __version__,
         "compiler": _core.__compiler__,
@@ -64,7 +65,7 @@ def report() -> dict[str, Any]:
         "threads": _core.threads(),
         "memory": memory(),
         "bpy": bpy_version(),
-        "devices": pen.devices(),
+        "devices": [as_json(device) for device in found],
     }
 
 

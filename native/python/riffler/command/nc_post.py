@@ -10,12 +10,14 @@ from __future__ import annotations
 import argparse
 import math
 from collections.abc import Collection
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from .. import Collider, Journal, Program, Tool, _core, machines, plan
+from ..program_results import WriteReport
 from . import tools
 from .arguments import (
     CODE,
@@ -153,7 +155,7 @@ def read(arguments: argparse.Namespace, console: Console) -> tuple[Program, list
 def recorded(path: Path, arguments: argparse.Namespace) -> tuple[Program, list[str]]:
     feed = None if arguments.feed is None else length(arguments.feed, "--feed")
     spindle = 0.0 if arguments.spindle is None else finite(arguments.spindle, "--spindle")
-    journal = Journal.read(path)
+    journal = Journal.load(path)
     notes = [] if journal.cut_at is None else [f"the recording was cut at byte {journal.cut_at}: all whole strokes"]
     return journal.program(feed=feed, spindle=spindle, safe_height=height(arguments)), notes
 
@@ -176,7 +178,7 @@ def changed(program: Program, arguments: argparse.Namespace) -> Program:
         given = tools.assign(map(tools.parse, arguments.tool), np.asarray(program.tool)[1:], 0.0)
         known |= {n: tool for n, tool in given.items() if n > 0}
     return Program(
-        program.poses, feed, rapid, program.tool, program.line, spindle,
+        program.poses, feed, rapid=rapid, tool=program.tool, line=program.line, spindle=spindle,
         tools=known, provenance=program.provenance, notes=program.notes,
         at_machine=program.at_machine, via=program.via,
     )  # fmt: skip
@@ -211,7 +213,7 @@ def from_plan(
         collider=collider, contact_tolerance=max(TOUCHED, depth),
         provenance={"plan": name, "part": planned.part.get("name", ""), **planned.provenance},
     )  # fmt: skip
-    return (program.retooled({1: called}) if called != 1 else program), notes, collider, depth
+    return (program.renumber_tools({1: called}) if called != 1 else program), notes, collider, depth
 
 
 def chords(planned: plan.Plan) -> float:
@@ -282,7 +284,7 @@ def lifted(
             path = paths[k]
             if k in planned.depths:
                 depth = planned.depths[k]
-                rows, report = plan.kept_locations(path, depth, guarded, collider, tolerance=chords(planned))
+                rows, report = plan.kept_locations(path, guarded, collider, depth=depth, tolerance=chords(planned))
             else:
                 rows, report = plan.cutter_locations(path, guarded, collider, tolerance=LIFTED)
             if not report.ok:
@@ -355,8 +357,8 @@ def with_room(tool: Tool, arguments: argparse.Namespace) -> Tool:
 # ---- the report
 
 
-def summary(program: Program, report: dict[str, Any] | None) -> dict[str, Any]:
-    """``report``: what writing NC code says."""
+def summary(program: Program, report: WriteReport | None) -> dict[str, Any]:
+    """``report``: of the NC code, where some was written."""
     way = np.linalg.norm(np.diff(program.poses[:, :3], axis=0), axis=1)
     rapid, feed = np.asarray(program.rapid)[1:], np.asarray(program.feed)[1:]
     cutting = ~rapid & (feed > 0)
@@ -367,7 +369,7 @@ def summary(program: Program, report: dict[str, Any] | None) -> dict[str, Any]:
         "minutes": float((way[cutting] / feed[cutting]).sum()),
         "tools": sorted({int(n) for n in program.tool}),
     }
-    return data | ({} if report is None else report | {"subdivisions": report["blocks"] - len(program)})
+    return data | ({} if report is None else asdict(report) | {"subdivisions": report.blocks - len(program)})
 
 
 def rows(data: dict[str, Any]) -> list[tuple[str, str]]:

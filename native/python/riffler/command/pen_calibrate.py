@@ -63,10 +63,10 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
     # A puck's own response, whatever bubble it is given later: pens do not look at these.
     with open_device(arguments.device, bubble=0.0, exponent=1.0) as device:
         losses = losses_of(arguments.lose, device)
-        wait_for(device, lambda: math.isfinite(device.state().age_s) or device.limits["x"]["senses"] == "rate")
+        wait_for(device, lambda: math.isfinite(device.state().age_s) or device.limits["x"].senses == "rate")
         if device.geometry is not None:
             data, rows, title, right = calibrate_pen(device, losses, seconds, arguments.yes, console)
-        elif device.limits["x"]["senses"] == "rate":
+        elif device.limits["x"].senses == "rate":
             data, rows, title, right = calibrate_puck(device, min(seconds, REST), arguments.yes, console)
         else:
             raise ValueError(f"{device.kind} has nothing to calibrate: it has no homing and no bubble")
@@ -82,7 +82,7 @@ def losses_of(texts: list[str], device: pen.PenDevice) -> dict[int, int]:
     """``L1=60`` as channel and counts."""
     if texts and not isinstance(device, pen.SimulatedPen):
         raise ValueError('--lose is for "simulated": other pens lose counts by themselves')
-    names = [c["name"] for c in device.geometry.channels] if texts else []
+    names = [c.name for c in device.geometry.channels] if texts else []
     found: dict[int, int] = {}
     for text in texts:
         name, _, counts = text.partition("=")
@@ -97,7 +97,7 @@ def wait_for(device: pen.PenDevice, what: Any, seconds: float = 2.0) -> None:
     while not what():
         if time.monotonic() > end:
             health = device.health()
-            raise pen.PenError(f"{device.kind} sends nothing: {health['problem'] or 'plug it in again'}")
+            raise pen.PenError(f"{device.kind} sends nothing: {health.problem or 'plug it in again'}")
         time.sleep(0.01)
 
 
@@ -204,7 +204,7 @@ def move(
     with screen(console) as draw:
         while (now := time.monotonic()) - start < seconds and not (ended and ended.pressed.is_set()):
             state = device.state()
-            problem = device.health()["problem"]
+            problem = device.health().problem
             if problem:
                 raise pen.PenError(problem)
             if state.fault:
@@ -225,7 +225,7 @@ def tour(geometry: pen.PenGeometry, home: np.ndarray) -> Iterator[np.ndarray]:
     """Poses all over the box that the pen is used in, leaning to all sides, for ever; in the shipped pen's frame, which
     is that of its arms. Always the same ones."""
     random = np.random.default_rng(8)
-    lower, upper = np.array(geometry.limits["lower"]), np.array(geometry.limits["upper"])
+    lower, upper = np.array(geometry.limits.lower), np.array(geometry.limits.upper)
     while True:
         axis = home[3:] + np.append(random.normal(size=2) * 0.35, 0.0)
         pose = np.concatenate([random.uniform(lower, upper), axis / np.linalg.norm(axis)])
@@ -242,7 +242,7 @@ def progress(postures: Postures, stretch: float, left: float, yes: bool) -> Rend
     out.append(f"stretch {stretch:+7.3f} mm, at most {most:.3f} mm, {tolerance:g} mm allowed\n",
                style="not bold red" if most > tolerance else "not bold green")  # fmt: skip
     for joint, low, high in zip(postures.geometry.channels, postures.low, postures.high, strict=True):
-        out.append(f"{joint['name']}  {bar(low, high, joint['low'], joint['high'])}\n", style="not bold")
+        out.append(f"{joint.name}  {bar(low, high, joint.low, joint.high)}\n", style="not bold")
     end = "" if yes else "; Enter ends it"
     out.append(f"{len(postures.kept)} postures, {left:.0f} s left{end}", style="not bold dim")
     return out
@@ -265,7 +265,7 @@ def say_home(geometry: pen.PenGeometry) -> None:
         f"\nThe grip's middle stands {x:.1f} mm before the shoulders, {-z:.1f} mm below them, {y:.1f} mm beside them."
     )
     for channel, angle in zip(geometry.channels, np.degrees(home_angles(geometry)), strict=True):
-        print(f"  {channel['name']} {angle:7.2f}°  {MEANING[channel['name'][1]]}")
+        print(f"  {channel.name} {angle:7.2f}°  {MEANING[channel.name[1]]}")
 
 
 MEANING = {
@@ -276,7 +276,7 @@ MEANING = {
 
 
 def home_angles(geometry: pen.PenGeometry) -> list[float]:
-    return [c["sign"] * c["home"] / c["steps"] * 2 * math.pi for c in geometry.channels]
+    return [c.sign * c.home / c.steps * 2 * math.pi for c in geometry.channels]
 
 
 def side_view(geometry: pen.PenGeometry, columns: int = 36, rows: int = 16) -> list[str]:
@@ -315,7 +315,7 @@ def calibrate_puck(
     """What it says while nobody touches it: the bubble has to be larger."""
     if not yes:
         input("Let go of the puck, and press Enter. ")
-    full = device.limits["x"]["high"], device.limits["a"]["high"]
+    full = device.limits["x"].high, device.limits["a"].high
     shares, end = [], time.monotonic() + seconds
     while time.monotonic() < end:
         state = device.state()

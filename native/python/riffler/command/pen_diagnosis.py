@@ -22,7 +22,7 @@ class Postures:
         self.kept: list[np.ndarray] = []
         self.stretch: list[float] = []
         self.low, self.high = np.full(CHANNELS, np.inf), np.full(CHANNELS, -np.inf)
-        self._stray = np.array([STRAY * c["steps"] / (2 * np.pi) for c in geometry.channels])
+        self._stray = np.array([STRAY * c.steps / (2 * np.pi) for c in geometry.channels])
 
     def add(self, counts: np.ndarray, stretch: float) -> bool:
         if self.kept and not (np.abs(counts - self.kept[-1]) > self._stray).any():
@@ -75,22 +75,22 @@ class Verdict:
 
 def angles_of(geometry: pen.PenGeometry, counts: np.ndarray) -> np.ndarray:
     """Of one row, in the device's order of channels."""
-    return np.array([c["sign"] * n / c["steps"] * 2 * np.pi for c, n in zip(geometry.channels, counts, strict=True)])
+    return np.array([c.sign * n / c.steps * 2 * np.pi for c, n in zip(geometry.channels, counts, strict=True)])
 
 
 def joints(postures: Postures) -> list[Joint]:
     geometry = postures.geometry
     noticed = np.min(geometry.noticed_counts(postures.counts), axis=0) if postures.kept else np.full(CHANNELS, np.inf)
     return [
-        Joint(c["name"], float(low), float(high), (c["low"], c["high"]), float(counts))
+        Joint(c.name, float(low), float(high), (c.low, c.high), float(counts))
         for c, low, high, counts in zip(geometry.channels, postures.low, postures.high, noticed, strict=True)
     ]
 
 
 def judge(geometry: pen.PenGeometry, counts: np.ndarray) -> Verdict:
     """The simplest explanation: nothing is wrong, one counter is off, counts the wrong way, or two are exchanged."""
-    names = [c["name"] for c in geometry.channels]
-    home, sign = [c["home"] for c in geometry.channels], [c["sign"] for c in geometry.channels]
+    names = [c.name for c in geometry.channels]
+    home, sign = [c.home for c in geometry.channels], [c.sign for c in geometry.channels]
     stretch = geometry.stretch(counts)
     rms, most = _rms(stretch), float(np.abs(stretch).max())
 
@@ -100,17 +100,17 @@ def judge(geometry: pen.PenGeometry, counts: np.ndarray) -> Verdict:
     if most <= geometry.grip_tolerance:
         return verdict("the grip's length comes out in every posture", fits=True)
     found = geometry.diagnose(counts[np.unique(np.linspace(0, len(counts) - 1, TOLD).round().astype(int))])
-    if found["fault"] == "channel":
-        k, off = found["channel"], round(found["counts"])
+    if found.channel is not None and found.counts is not None and found.left is not None:
+        k, off = found.channel, round(found.counts)
         home[k] -= off
         return verdict(
             f"{names[k]} reads {abs(off)} counts too {'many' if off > 0 else 'few'}: home again. If it comes back, its "
             f"encoder loses counts (cable, dirt, speed); if it is the same again, the file's home of {names[k]} is "
             f"{home[k]}, not {home[k] + off}",
-            found["left"],
+            found.left,
             channels=(names[k],),
         )
-    if found["fault"] == "unclear":
+    if found.fault == "unclear":
         return verdict(
             "a counter is off, and the postures are too alike to tell which: lean the pen further, and begin anew"
         )

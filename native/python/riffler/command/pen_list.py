@@ -9,6 +9,7 @@ takes their kind.
 from __future__ import annotations
 
 import argparse
+from dataclasses import asdict
 from typing import Any
 
 from .. import pen
@@ -23,24 +24,29 @@ def add_arguments(parser: Parser) -> None:
 
 
 def run(arguments: argparse.Namespace, console: Console) -> int:
-    found = [device for device in pen.devices() if device["kind"]]
-    rows = [(device["path"], describe(device)) for device in found]
+    found = [device for device in pen.devices() if device.kind]
+    rows = [(device.path, describe(device)) for device in found]
     known = ", ".join(kind for kind in pen.kinds() if kind != "simulated")
     console.result(
-        {"devices": found, "kinds": pen.kinds()},
+        {"devices": [as_json(device) for device in found], "kinds": pen.kinds()},
         "pens",
         rows or [("none", f'no device of the kinds {known}; "simulated" needs none')],
     )
     return 0
 
 
-def describe(device: dict[str, Any]) -> str:
+def as_json(device: pen.DeviceInfo) -> dict[str, Any]:
+    """For --json, where `tried` says whether the device was opened and asked what it is."""
+    return {"tried" if key == "was_opened" else key: value for key, value in asdict(device).items()}
+
+
+def describe(device: pen.DeviceInfo) -> str:
     """One device in one line."""
-    name = f"{device['name']} {device['id']}"
-    if device["problem"]:
-        return f"{name}: {device['problem']}: {device['text']}"
-    if device["kind"] is None:
+    name = f"{device.name} {device.id}"
+    if device.problem:
+        return f"{name}: {device.problem}: {device.text}"
+    if device.kind is None:
         return f"{name}: can be opened"
-    if not device["tried"]:
-        return f'{name}: can be opened; if it is one, as "{device["kind"]}": {pen.kinds()[device["kind"]]}'
-    return f"{name}: {device['kind']}, {device['capability']}; {device['about']}"
+    if not device.was_opened:
+        return f'{name}: can be opened; if it is one, as "{device.kind}": {pen.kinds()[device.kind]}'
+    return f"{name}: {device.kind}, {device.capability}; {device.about}"

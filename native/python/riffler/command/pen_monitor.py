@@ -100,7 +100,7 @@ class Watch:
 
     def __init__(self, device: pen.PenDevice, write: Callable[[list[Any]], None] | None = None) -> None:
         self.device, self.write = device, write
-        self.pushes = any(axis["pushes"] for axis in device.limits.values())
+        self.pushes = any(axis.pushes for axis in device.limits.values())
         self.start = time.monotonic()
         self.state = device.state()
         self.sequence = 0
@@ -152,7 +152,7 @@ class Watch:
         self.links.append((now, self.health))
         while len(self.links) > 2 and self.links[1][0] < now - 1:
             self.links.popleft()
-        cause = self.health["cause"] if self.pushes else None
+        cause = self.health.cause if self.pushes else None
         if cause is not None and (not self.causes or self.causes[-1] != cause):
             self.causes.append(cause)
 
@@ -160,7 +160,7 @@ class Watch:
         """Counts a second, over the last one."""
         (before, first), (now, last) = self.links[0], self.links[-1]
         passed = now - before
-        return {key: (last[key] - first[key]) / passed if passed > 0 else 0.0 for key in LINK}
+        return {key: (getattr(last, key) - getattr(first, key)) / passed if passed > 0 else 0.0 for key in LINK}
 
     def line(self) -> str:
         """One line, for logs and pipes."""
@@ -170,13 +170,14 @@ class Watch:
         force = f"  {np.linalg.norm(state.applied[0]):5.2f} N" if self.pushes else ""
         return (
             f"{time.monotonic() - self.start:7.1f} s  {place} mm  {np.linalg.norm(state.velocity):6.1f} mm/s{force}"
-            f"  buttons {buttons(state.buttons)}  {self.states()}  {rates['reports']:.0f}/s, lost {health['lost']}, "
-            f"malformed {health['malformed']}, late {health[LATE]}" + (f"  {self.trouble()}" if self.trouble() else "")
+            f"  buttons {buttons(state.buttons)}  {self.states()}  {rates['reports']:.0f}/s, lost {health.lost}, "
+            f"malformed {health.malformed}, late {getattr(health, LATE)}"
+            + (f"  {self.trouble()}" if self.trouble() else "")
         )
 
     def states(self) -> str:
         """Of the link, and of the force where there can be one."""
-        return self.health["state"] + (f", force {self.health['force_state']}" if self.pushes else "")
+        return self.health.state + (f", force {self.health.force_state}" if self.pushes else "")
 
     def picture(self, width: int) -> RenderableType:
         from rich.console import Group
@@ -196,10 +197,10 @@ class Watch:
 
     def rows(self) -> list[tuple[str, str]]:
         state, health, rates = self.state, self.health, self.rates()
-        wanted, (force, torque) = health["force"], state.applied
-        link = [f"{health['reports']} reports, {rates['reports']:.0f}/s"]
+        wanted, (force, torque) = health.force, state.applied
+        link = [f"{health.reports} reports, {rates['reports']:.0f}/s"]
         for key, name in (("lost", "lost"), ("malformed", "malformed"), (LATE, "late"), ("superseded", "overtaken")):
-            link.append(f"{name} {health[key]}" + (f" ({rates[key]:.0f}/s)" if rates[key] else ""))
+            link.append(f"{name} {getattr(health, key)}" + (f" ({rates[key]:.0f}/s)" if rates[key] else ""))
         rows = [
             ("point", f"{vector(state.pose[:3])} mm"),
             ("axis", f"{vector(state.pose[3:])}   spin {math.degrees(state.spin):.1f}°"),
@@ -208,7 +209,7 @@ class Watch:
             *(
                 [
                     ("force", f"asked {vector(wanted)} N, felt {vector(force)} N"),
-                    ("torque", f"asked {vector(health['torque'])} N·mm, felt {vector(torque)} N·mm"),
+                    ("torque", f"asked {vector(health.torque)} N·mm, felt {vector(torque)} N·mm"),
                 ]
                 if self.pushes
                 else []
@@ -227,28 +228,28 @@ class Watch:
     def trouble(self) -> str:
         """What is wrong, and what to do."""
         state, health = self.state, self.health
-        if health["problem"]:
-            return health["problem"]
+        if health.problem:
+            return health.problem
         if state.fault:
             return f"the device reports fault {state.fault}: switch it off and on again (docs/device.md lists faults)"
         if not state.homed and self.device.geometry is not None:
             return "not homed: riffler pen calibrate"
-        return (health["cause"] or "") if self.pushes else ""
+        return (health.cause or "") if self.pushes else ""
 
     def summary(self) -> dict[str, Any]:
         seconds = time.monotonic() - self.start
         health = self.health
-        counts = {key: health[key] for key in LINK}
+        counts = {key: getattr(health, key) for key in LINK}
         return {
             "device": self.device.kind,
             "about": self.device.about,
             "seconds": round(seconds, 3),
             "seen": self.seen,
-            "reports_per_s": round(health["reports"] / seconds, 1),
-            "link": counts | {"connections": health["connections"], "attempts": health["attempts"]},
-            "state": health["state"],
-            "problem": health["problem"],
-            "force_state": health["force_state"] if self.pushes else None,
+            "reports_per_s": round(health.reports / seconds, 1),
+            "link": counts | {"connections": health.connections, "attempts": health.attempts},
+            "state": health.state,
+            "problem": health.problem,
+            "force_state": health.force_state if self.pushes else None,
             "causes": self.causes,
             "homed": self.state.homed,
             "fault": self.state.fault,

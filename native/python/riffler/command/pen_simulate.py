@@ -87,7 +87,7 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
     data = log.summary() | {
         "stiffness": stiffness,
         "pitch": pitch,
-        "lost": link["lost"],
+        "lost": link.lost,
         "removed": before - block.volume,
     }
     written = {"plot": plot, "out": out, "journal": journal}
@@ -126,7 +126,7 @@ def homed(device: pen.PenDevice) -> np.ndarray:
     end = time.monotonic() + 5
     while not device.state().homed:
         if time.monotonic() > end:
-            raise pen.PenError(f"the simulated pen does not come up: {device.health()['problem'] or 'no report'}")
+            raise pen.PenError(f"the simulated pen does not come up: {device.health().problem or 'no report'}")
         time.sleep(0.01)
     return device.geometry.forward([device.geometry.home])[0]
 

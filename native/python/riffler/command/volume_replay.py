@@ -27,9 +27,9 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
     path = input_file(arguments.journal, JOURNALS)
     out = output_file(arguments.out, MESHES + VOLUMES)
     with console.step("read"):
-        journal = Journal.read(path)
+        journal = Journal.load(path)
     with console.step("replay") as progress:
-        volume = journal.replay(Path(arguments.folder or path.parent), progress)
+        volume = journal.replay(Path(arguments.folder or path.parent), progress=progress)
     triangles = write_left(volume, out, console)
     strokes = journal.strokes
     data = {

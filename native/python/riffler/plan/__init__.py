@@ -1,12 +1,19 @@
 """Planning: parts looked at, strategies that find paths, tool orientations, cutter locations, plans as files."""
 
+from typing import TYPE_CHECKING
+
+from .. import deprecated, old
 from .._core import PencilPath
+from ..program_results import NearestContact
 from .analysis import analyse
 from .around import fixture_pitch, with_room
 from .curves import read_curves
-from .file import Plan, Texts, dumps, load, loads, part_of, save
+from .file import Texts, dumps, load, loads, save
 from .locations import (
+    BlockedPoint,
+    LiftReport,
     LocationReport,
+    UnsafeMove,
     contact_locations,
     cutter_locations,
     drop,
@@ -15,26 +22,33 @@ from .locations import (
     path_of_poses,
     poses_of,
 )
-from .orientations import FreeOrientations, draw_map, free_orientations, least_tilt
-from .path_order import linked
+from .model import Plan, part_of
+from .orientations import FreeOrientations, TiltReport, draw_map, free_orientations, min_tilt
+from .path_order import order_paths
 from .strategies import STRATEGIES, Found, Parameter, Strategy, find
 from .strategies.engrave import Engraved, engrave
-from .strategies.pencil import PencilPaths, pencil
+from .strategies.pencil import PencilPaths, PencilStats, pencil
 from .strategies.swarf import Swarf, swarf
 
 __all__ = [
     "STRATEGIES",
+    "BlockedPoint",
     "Engraved",
     "Found",
     "FreeOrientations",
+    "LiftReport",
     "LocationReport",
+    "NearestContact",
     "Parameter",
     "PencilPath",
     "PencilPaths",
+    "PencilStats",
     "Plan",
     "Strategy",
     "Swarf",
     "Texts",
+    "TiltReport",
+    "UnsafeMove",
     "analyse",
     "contact_locations",
     "cutter_locations",
@@ -46,11 +60,11 @@ __all__ = [
     "fixture_pitch",
     "free_orientations",
     "kept_locations",
-    "least_tilt",
     "lift",
-    "linked",
     "load",
     "loads",
+    "min_tilt",
+    "order_paths",
     "part_of",
     "path_of_poses",
     "pencil",
@@ -60,3 +74,6 @@ __all__ = [
     "swarf",
     "with_room",
 ]
+
+if not TYPE_CHECKING:
+    __getattr__ = deprecated.module_getattr("riffler.plan", old.ALL.modules.get("plan", {}))

@@ -11,13 +11,47 @@ FINEST = 500  # rays along a fixture's largest side at most
 
 
 def fixture_pitch(mesh: Mesh) -> float:
-    """The pitch (mm) at which a fixture's mesh becomes a volume: 0.5, coarser from 250 mm on."""
+    """The pitch at which a fixture's mesh becomes a volume: 0.5 mm, coarser from 250 mm on.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The fixture.
+
+    Returns
+    -------
+    float
+        mm.
+
+    Examples
+    --------
+    >>> riffler.plan.fixture_pitch(riffler.shape.relief([[1, 1], [1, 1]], size=(30, 20), depth=10))
+    0.5
+    """
     lower, upper = mesh.bounds
     return max(PITCH, float(np.max(upper - lower)) / FINEST)
 
 
 def with_room(tool: Tool, room: float) -> Tool:
-    """The tool with ``room`` (mm) more of shank and holder, those that it has, so that these keep clear by as much
-    while the cutter touches what it cuts. The same tool where it has neither, or for no room."""
+    """The tool with a larger shank and holder, so that these keep clear while the cutter touches what it cuts.
+
+    Parameters
+    ----------
+    tool : Tool
+        Cutter, with shank and holder or without.
+    room : float
+        mm.
+
+    Returns
+    -------
+    Tool
+        The same tool where it has neither, or for no room.
+
+    Examples
+    --------
+    >>> ball = riffler.Tool.ball(diameter=4, length=20)
+    >>> riffler.plan.with_room(ball, 2.0) is ball
+    True
+    """
     wanted = {piece: room for piece in ("shank", "holder") if getattr(tool, piece)}
     return tool.with_margins(**wanted) if room > 0 and wanted else tool

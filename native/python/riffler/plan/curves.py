@@ -3,22 +3,47 @@
 from __future__ import annotations
 
 import json
+import os
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .. import _core, files
+from ..hints import hinted
 
 FORMATS = (".obj", ".txt", ".xyz", ".csv", ".json")
 
 
-def read_curves(path) -> list[np.ndarray]:
-    """The curves of a file, (n, 3) arrays in mm.
+@hinted("plan.read_curves")
+def read_curves(path: str | os.PathLike[str]) -> list[NDArray[np.float64]]:
+    """The curves of a file.
 
-    ``.obj``: the polylines of its ``l`` elements; those that share an end are one curve. ``.txt``, ``.xyz``, ``.csv``:
-    x, y and z of a point on each line, with blanks, commas or semicolons between them; an empty line begins another
-    curve, ``#`` a comment. ``.json``: a list of curves, each a list of points [x, y, z]. FormatError names the file and
-    the place; ValueError for another kind of file.
+    Parameters
+    ----------
+    path : path_like
+        ``.obj``: the polylines of its ``l`` elements; those that share an end are one curve. ``.txt``, ``.xyz``,
+        ``.csv``: x, y and z of a point on each line, with blanks, commas or semicolons between them; an empty line
+        begins another curve, ``#`` a comment. ``.json``: a list of curves, each a list of points [x, y, z].
+
+    Returns
+    -------
+    list of ndarray, shape (n, 3)
+        mm.
+
+    Raises
+    ------
+    FormatError
+        Naming the file and the place.
+    ValueError
+        For another kind of file.
+
+    Examples
+    --------
+    >>> _ = (folder / "line.csv").write_text("0, 0, 5" + chr(10) + "9, 0, 5")
+    >>> riffler.plan.read_curves(folder / "line.csv")
+    [array([[0., 0., 5.],
+           [9., 0., 5.]])]
     """
     target = Path(path)
     kind = target.suffix.lower()

@@ -4,64 +4,39 @@ from __future__ import annotations
 
 import json
 import math
+import os
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass, field
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from .. import _core, files
+from ..hints import hinted
+from .model import Plan
+from .parsing import FORMAT, PLAIN, VERSION, WrongPlaceError, to_plan
 
-FORMAT, VERSION = "riffler-plan", 2
-PLAIN = 1  # the version of a plan without depths, which older readers read
-RULES = ("", "linear", "slerp", "smooth")
-
-
-@dataclass
-class Plan:
-    """Paths with the tool they are for, and how they came about.
-
-    ``cl``: for every path (n, 6) cutter locations, or None. ``part``: a dict with ``name`` and ``sha256``, as by
-    ``part_of``. ``tolerance``: mm. ``provenance``: a dict of strings. ``off``: numbers, from 0, of the paths that are
-    not to be cut. ``depths``: by number, from 0, the paths whose poses (``poses_of``) are what is to be cut, as by
-    engraving, and how far the cutter enters the part there, mm: they are never lifted, nor oriented.
-    """
-
-    paths: list
-    tool: _core.Tool
-    cl: list = field(default_factory=list)
-    part: dict = field(default_factory=dict)
-    tolerance: float | None = None
-    provenance: dict = field(default_factory=dict)
-    off: frozenset = frozenset()
-    depths: dict = field(default_factory=dict)
-
-    @property
-    def deepest(self) -> float:
-        """mm that the cutter enters the part by, as ``depths`` say of the paths that are on."""
-        return max((depth for k, depth in self.depths.items() if k not in self.off), default=0.0)
-
-    @property
-    def sources(self) -> list:
-        """Paths from which a strategy may start: those that are on and whose poses may be changed."""
-        return [path for k, path in enumerate(self.paths) if k not in self.off and k not in self.depths]
-
-
-def part_of(mesh, name: str) -> dict[str, str]:
-    """What a plan keeps of its part: its name and the hash of its vertices and triangles."""
-    import hashlib  # brings OpenSSL: 3 MB that only plan files need
-
-    digest = hashlib.sha256()
-    digest.update(np.ascontiguousarray(mesh.vertices, dtype="<f8").tobytes())
-    digest.update(np.ascontiguousarray(mesh.triangles, dtype="<i4").tobytes())
-    return {"name": str(name), "sha256": digest.hexdigest()}
+if TYPE_CHECKING:
+    from typing_extensions import Buffer  # typeshed's own; collections.abc has it from Python 3.12 on
 
 
 class Texts:
-    """The paths of the plan that ``dumps`` wrote last, as text: those that the next plan has as well, the same objects
-    with the same cutter locations, are not formatted again. ``made``: how many were. Arrays must not change meanwhile.
+    """A cache for ``dumps`` of plans that follow one another. Arrays of the plans must not change meanwhile.
+
+    Paths that the next plan has as well, the same objects with the same cutter locations, are not formatted again.
+
+    Attributes
+    ----------
+    made : int
+        How many paths were formatted.
+
+    Examples
+    --------
+    >>> texts = riffler.plan.Texts()
+    >>> data = riffler.plan.dumps(riffler.plan.Plan([], riffler.Tool.ball(diameter=4, length=20)), texts=texts)
+    >>> texts.made
+    0
     """
 
     def __init__(self) -> None:
@@ -85,9 +60,32 @@ class Texts:
         return [kept[key][2] for key in keys]
 
 
-def dumps(plan: Plan, texts: Texts | None = None) -> bytes:
-    """The plan as the bytes that ``save`` writes. ``texts``: of the plan before, for plans that follow one another.
-    ValueError for no plan."""
+@hinted("plan.dumps")
+def dumps(plan: Plan, *, texts: Texts | None = None) -> bytes:
+    """The plan as the bytes that ``save`` writes.
+
+    Parameters
+    ----------
+    plan : Plan
+        The plan.
+    texts : Texts, optional
+        A cache, for plans that follow one another.
+
+    Returns
+    -------
+    bytes
+
+    Raises
+    ------
+    ValueError
+        Naming what is no plan.
+
+    Examples
+    --------
+    >>> plan = riffler.plan.Plan([], riffler.Tool.ball(diameter=4, length=20))
+    >>> riffler.plan.loads(riffler.plan.dumps(plan)).tool == plan.tool
+    True
+    """
     cl = list(plan.cl) or [None] * len(plan.paths)
     if len(cl) != len(plan.paths):
         raise ValueError(f"cl: {len(plan.paths)} expected, one for each path, not {len(cl)}")
@@ -124,8 +122,30 @@ def _compact(value) -> str:
     return json.dumps(value, allow_nan=False, ensure_ascii=False)
 
 
-def save(path, plan: Plan) -> None:
-    """Writes a plan; the file is whole or not there. ValueError for no plan, RuntimeError with the system's reason."""
+@hinted("plan.save")
+def save(path: str | os.PathLike[str], plan: Plan) -> None:
+    """Writes a plan; the file is whole or not there.
+
+    Parameters
+    ----------
+    path : path_like
+        The .json file.
+    plan : Plan
+        The plan.
+
+    Raises
+    ------
+    ValueError
+        Naming what is no plan.
+    RuntimeError
+        With the system's reason.
+
+    Examples
+    --------
+    >>> riffler.plan.save(folder / "a.json", riffler.plan.Plan([], riffler.Tool.ball(diameter=4, length=20)))
+    >>> riffler.plan.load(folder / "a.json").paths
+    []
+    """
     files.write(path, dumps(plan))
 
 
@@ -153,148 +173,69 @@ def _from_path(path, cl, number: int, *, off: bool, depth: float | None) -> dict
     return out
 
 
-def loads(data, name: str = "plan") -> Plan:
-    """The plan of the bytes that ``dumps`` made. FormatError says ``name``, the place in it and what was expected."""
+@hinted("plan.loads")
+def loads(data: Buffer, *, name: str = "plan") -> Plan:
+    """The plan of the bytes that ``dumps`` made.
+
+    Parameters
+    ----------
+    data : bytes
+        The bytes.
+    name : str
+        Of the file, for messages.
+
+    Returns
+    -------
+    Plan
+
+    Raises
+    ------
+    FormatError
+        Naming ``name``, the place in it and what was expected.
+
+    Examples
+    --------
+    >>> plan = riffler.plan.Plan([], riffler.Tool.ball(diameter=4, length=20))
+    >>> riffler.plan.loads(riffler.plan.dumps(plan)).paths
+    []
+    """
     try:
         read = json.loads(bytes(data), parse_constant=_no_constant)
     except (ValueError, RecursionError) as error:  # of encoding and of JSON alike
         raise _core.FormatError(f"{name}: {error}") from None
     try:
-        return _to_plan(read)
-    except _WrongPlaceError as error:
+        return to_plan(read)
+    except WrongPlaceError as error:
         raise _core.FormatError(f"{name}: {error}") from None
 
 
-def load(path) -> Plan:
-    """Reads a plan. FormatError names the file and the place in it, and what was expected there."""
+@hinted("plan.load")
+def load(path: str | os.PathLike[str]) -> Plan:
+    """Reads a plan.
+
+    Parameters
+    ----------
+    path : path_like
+        The .json file.
+
+    Returns
+    -------
+    Plan
+
+    Raises
+    ------
+    FormatError
+        Naming the file and the place in it, and what was expected there.
+
+    Examples
+    --------
+    >>> riffler.plan.save(folder / "a.json", riffler.plan.Plan([], riffler.Tool.ball(diameter=4, length=20)))
+    >>> riffler.plan.load(folder / "a.json").tool.diameter
+    4.0
+    """
     target = Path(path)
-    return loads(files.read(target), target.name)
-
-
-class _WrongPlaceError(ValueError):
-    """What a place in the file should have been."""
+    return loads(files.read(target), name=target.name)
 
 
 def _no_constant(name: str) -> None:
     raise ValueError(f"{name} is not a number in JSON")
-
-
-def _get(table: Any, key: str, place: str) -> Any:
-    if not isinstance(table, dict):
-        raise _WrongPlaceError(f"{place or 'the file'}: an object expected")
-    if key not in table:
-        raise _WrongPlaceError(f"{place + '.' if place else ''}{key}: missing")
-    return table[key]
-
-
-def _number(value: Any, place: str) -> float:
-    try:
-        if not isinstance(value, bool) and isinstance(value, int | float) and math.isfinite(value):
-            return float(value)
-    except OverflowError:  # of a whole number
-        pass
-    raise _WrongPlaceError(f"{place}: a number expected")
-
-
-def _array(value: Any, shape: tuple[int, ...], place: str) -> np.ndarray:
-    """``shape``: -1 for any number of rows."""
-    wanted = ", ".join("n" if size < 0 else str(size) for size in shape)
-    if not isinstance(value, list):
-        raise _WrongPlaceError(f"{place}: an array ({wanted}) expected")
-    try:
-        array = np.array(value, dtype=float) if value else np.empty((0, *shape[1:]))
-    except (ValueError, TypeError, OverflowError):
-        raise _WrongPlaceError(f"{place}: an array ({wanted}) of numbers expected") from None
-    if array.ndim != len(shape) or any(want not in (-1, size) for want, size in zip(shape, array.shape, strict=True)):
-        raise _WrongPlaceError(f"{place}: the shape ({wanted}) expected, not {array.shape}")
-    if not np.isfinite(array).all():
-        raise _WrongPlaceError(f"{place}[{int(np.argwhere(~np.isfinite(array))[0][0])}]: not finite")
-    return array
-
-
-def _to_plan(data: Any) -> Plan:
-    if _get(data, "format", "") != FORMAT:
-        raise _WrongPlaceError(f'format: "{FORMAT}" expected')
-    version = _get(data, "version", "")
-    if isinstance(version, bool) or version not in (PLAIN, VERSION):
-        newer = ": a newer Riffler wrote it" if isinstance(version, int) and version > VERSION else ""
-        raise _WrongPlaceError(f"version: {PLAIN} or {VERSION} expected, not {version!r}{newer}")
-    if _get(data, "units", "") != {"length": "mm", "angle": "rad"}:
-        raise _WrongPlaceError('units: {"length": "mm", "angle": "rad"} expected')
-    try:
-        tool = _core.Tool.from_dict(_get(data, "tool", ""))
-    except (ValueError, TypeError) as error:
-        raise _WrongPlaceError(f"tool: {str(error).splitlines()[0]}") from None
-    tolerance = _get(data, "tolerance", "")
-    for name in ("part", "provenance"):
-        if not isinstance(_get(data, name, ""), dict):
-            raise _WrongPlaceError(f"{name}: an object expected")
-    paths = _get(data, "paths", "")
-    if not isinstance(paths, list):
-        raise _WrongPlaceError("paths: a list expected")
-    read = [_to_path(entry, f"paths[{k}]", version > PLAIN) for k, entry in enumerate(paths)]
-    return Plan(
-        paths=[path for path, *_ in read],
-        tool=tool,
-        cl=[cl for _, cl, *_ in read],
-        part=data["part"],
-        tolerance=None if tolerance is None else _number(tolerance, "tolerance"),
-        provenance=data["provenance"],
-        off=frozenset(k for k, (_, _, off, _) in enumerate(read) if off),
-        depths={k: depth for k, (*_, depth) in enumerate(read) if depth is not None},
-    )
-
-
-def _to_path(entry: Any, place: str, depths: bool) -> tuple[Any, np.ndarray | None, bool, float | None]:
-    """The path, its cutter locations, whether it is off, and its depth. `depths`: of a version that has them."""
-    centres = _array(_get(entry, "centres", place), (-1, 3), f"{place}.centres")
-    n = len(centres)
-    closed = _get(entry, "closed", place)
-    if not isinstance(closed, bool):
-        raise _WrongPlaceError(f"{place}.closed: true or false expected")
-    off = entry.get("off", False)
-    if not isinstance(off, bool):
-        raise _WrongPlaceError(f"{place}.off: true or false expected")
-    try:
-        path = _core.PencilPath(
-            _number(_get(entry, "radius", place), f"{place}.radius"),
-            centres,
-            _array(_get(entry, "contacts", place), (n, 2, 3), f"{place}.contacts"),
-            _array(_get(entry, "normals", place), (n, 2, 3), f"{place}.normals"),
-            closed,
-        )
-    except _WrongPlaceError:
-        raise
-    except ValueError as error:
-        raise _WrongPlaceError(f"{place}: {error}") from None
-    if "axes" in entry:
-        path = _with_axes(path, entry, place)
-    cl = _array(entry["cl"], (-1, 6), f"{place}.cl") if "cl" in entry else None
-    return path, cl, off, _depth(entry, path, place) if depths and "depth" in entry else None
-
-
-def _depth(entry: dict, path, place: str) -> float:
-    depth = _number(entry["depth"], f"{place}.depth")
-    if depth < 0 or not len(path.axes):
-        raise _WrongPlaceError(f"{place}.depth: {'not negative' if depth < 0 else 'axes beside it'} expected")
-    return depth
-
-
-def _with_axes(path, entry: dict, place: str):
-    rule = _get(entry, "interpolation", place)
-    if rule not in RULES:
-        raise _WrongPlaceError(f"{place}.interpolation: {', '.join(filter(None, RULES))} expected, not {rule!r}")
-    rows = _get(entry, "keys", place)
-    if not isinstance(rows, list):
-        raise _WrongPlaceError(f"{place}.keys: a list expected")
-    keys = {}
-    for k, row in enumerate(rows):
-        index = _get(row, "index", f"{place}.keys[{k}]")
-        if isinstance(index, bool) or not isinstance(index, int):
-            raise _WrongPlaceError(f"{place}.keys[{k}].index: a whole number expected")
-        keys[index] = _array(_get(row, "axis", f"{place}.keys[{k}]"), (3,), f"{place}.keys[{k}].axis")
-    axes = _array(entry["axes"], (len(path), 3), f"{place}.axes")
-    try:
-        return path.with_axes(axes, keys, rule)
-    except ValueError as error:
-        raise _WrongPlaceError(f"{place}: {error}") from None

@@ -2,63 +2,162 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from typing import NamedTuple
+
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from .. import _core
+from .._core import Collider, Mesh, PencilPath, Tool
+from ..arguments import Progress, then
+from ..deprecated import DictResult
+from ..hints import hinted
 from .around import with_room
 
 
-class LocationReport:
-    """What ``cutter_locations`` did. Arrays have one entry per row of ``cl``; clearances in mm, negative inside.
+class BlockedPoint(NamedTuple):
+    """A point of a path that no lift frees."""
 
-    ``points``: number of the path's point, -1 for a row that was inserted. ``lift``: mm along the axis. ``before``: the
-    clearance before the lift. ``clearance``: after it. ``pieces``: ``"cutter"``, ``"shank"``, ``"holder"`` or
-    ``"fixture"``: what was in the way, or is nearest. ``blocked``: a list of (point, reason) of the points that no lift
-    frees; they have no row. ``unsafe``: a list of (row, least clearance seen, bound, reason) of the ways from a row to
-    the next that were not made free. ``least_clearance``: over every pose that was looked at; ``bound``: nowhere along
-    the rows is the clearance less. ``evaluations``: of the clearance, and looks along
-    the way. ``ok``: nothing is blocked or unsafe.
+    point: int  #: number of the path's point
+    reason: str  #: what is in the way
+
+
+class UnsafeMove(NamedTuple):
+    """A move from one row to the next that was not made free."""
+
+    row: int  #: the row that the move starts at
+    clearance: float  #: mm: least clearance seen on it
+    bound: float  #: mm: nowhere on it is the clearance less
+    reason: str  #: what is in the way
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class LocationReport:
+    """What ``cutter_locations`` did. Arrays have one entry for each row of ``cl``; clearances are negative inside.
+
+    Attributes
+    ----------
+    points : ndarray, shape (n,)
+        Number of the path's point; -1 for a row that was inserted.
+    lift : ndarray, shape (n,)
+        mm along the tool's axis.
+    before, clearance : ndarray, shape (n,)
+        Clearance before and after the lift, mm.
+    pieces : list of str
+        "cutter", "shank", "holder" or "fixture": what was in the way, or is nearest.
+    blocked : list of BlockedPoint
+        Points that no lift frees; they have no row.
+    unsafe : list of UnsafeMove
+        Moves between two rows that were not made free.
+    min_clearance : float
+        Least clearance of all poses that were computed, mm.
+    bound : float
+        Nowhere along the rows is the clearance less, mm.
+    evaluations : int
+        Number of computed clearances.
+    ok : bool
+        Nothing is blocked or unsafe.
     """
 
-    def __init__(self, found: dict) -> None:
-        for name, value in found.items():
-            setattr(self, name, value)
+    points: NDArray[np.int64]
+    lift: NDArray[np.float64]
+    before: NDArray[np.float64]
+    clearance: NDArray[np.float64]
+    pieces: list[str]
+    blocked: list[BlockedPoint]
+    unsafe: list[UnsafeMove]
+    min_clearance: float
+    bound: float
+    evaluations: int
+    ok: bool
 
     @property
-    def depth_before(self) -> np.ndarray:
-        """mm that the tool entered part or fixtures before the lift."""
+    def depth_before(self) -> NDArray[np.float64]:
+        """(n,) mm by which the tool entered part or fixtures before the lift."""
         return np.maximum(0.0, -self.before)
 
     @property
-    def lifted(self) -> np.ndarray:
-        """Rows that were lifted."""
+    def lifted(self) -> NDArray[np.intp]:
+        """Numbers of the rows that were lifted."""
         return np.flatnonzero(self.lift > 0)
 
     @property
-    def inserted(self) -> np.ndarray:
-        """Rows that are not points of the path."""
+    def inserted(self) -> NDArray[np.intp]:
+        """Numbers of the rows that are not points of the path."""
         return np.flatnonzero(self.points < 0)
 
     def __repr__(self) -> str:
         rows = f"{len(self.points)} rows, {len(self.lifted)} lifted, {len(self.inserted)} inserted"
-        return f"<LocationReport: {rows}, {len(self.blocked)} points blocked, {len(self.unsafe)} ways unsafe>"
+        return f"<LocationReport: {rows}, {len(self.blocked)} points blocked, {len(self.unsafe)} moves unsafe>"
 
 
+def _locations(found: dict) -> tuple[NDArray[np.float64], LocationReport]:
+    cl = found.pop("cl")
+    blocked = [BlockedPoint(*one) for one in found.pop("blocked")]
+    unsafe = [UnsafeMove(*one) for one in found.pop("unsafe")]
+    return cl, LocationReport(**found, blocked=blocked, unsafe=unsafe)
+
+
+@hinted("plan.cutter_locations")
 def cutter_locations(
-    path, tool, collider, clearance=0.0, *, tolerance=0.01, max_lift=100.0, max_inserted=200, progress=None
-):
-    """Cutter locations along an oriented path: ``(cl, report)``, cl (n, 6) tip and unit axis, for ``Program.from_cl``.
+    path: PencilPath | ArrayLike,
+    tool: Tool,
+    collider: Collider,
+    *,
+    clearance: float = 0.0,
+    tolerance: float = 0.01,
+    max_lift: float = 100.0,
+    max_inserted: int = 200,
+    progress: Progress = None,
+) -> tuple[NDArray[np.float64], LocationReport]:
+    """Cutter locations along an oriented path, for ``Program.from_cl``.
 
-    The tool starts where its tip ball, or both its contacts, lie in the path, and is lifted along its own axis, as
-    little as it takes, where its clearance over part and fixtures is less than ``clearance``. Between rows the tip
+    The tool starts where its tip ball, or both its contacts, lie in the path. Where its clearance over part and
+    fixtures is less than ``clearance``, it is lifted along its own axis, by the least distance. Between rows the tip
     moves on a line and the axis on the great circle; that motion is checked with a bound, not by samples, and where it
-    gouges, rows are inserted and lifted. ``tolerance`` (mm) is how much less than ``clearance`` it may be: finishing
-    cuts touch the part everywhere. A closed path ends with its first row again. ``path`` may also be (n, 6) poses, tip
-    and unit axis, from which the tool starts instead.
+    gouges, rows are inserted and lifted. A closed path ends with its first row again.
 
-    What cannot be freed within ``max_lift`` (mm) or ``max_inserted`` rows between two points is in the report
-    (``report.ok`` is False then) and its points are not in ``cl``; it is never made to fit silently.
-    ValueError for a path without axes and for sizes without meaning.
+    Parameters
+    ----------
+    path : PencilPath or array_like, shape (n, 6)
+        An oriented path, or poses from which the tool starts: tip in mm and unit axis.
+    tool : Tool
+        Cutter, shank and holder.
+    collider : Collider
+        Part and fixtures.
+    clearance : float
+        mm to keep from part and fixtures.
+    tolerance : float
+        mm by which the clearance may be less than ``clearance``: finishing cuts touch the part everywhere.
+    max_lift : float
+        mm.
+    max_inserted : int
+        Largest number of rows inserted between two points.
+    progress : callable, optional
+        Called with the finished share; returning False cancels.
+
+    Returns
+    -------
+    cl : ndarray, shape (m, 6)
+        Tip in mm and unit axis.
+    report : LocationReport
+        What could not be freed within ``max_lift`` and ``max_inserted`` is listed here (``report.ok`` is False then),
+        and its points are not in ``cl``; it is never made to fit silently.
+
+    Raises
+    ------
+    ValueError
+        For a path without axes and for sizes without meaning.
+
+    Examples
+    --------
+    >>> part = riffler.shape.relief([[1, 1], [0, 0], [1, 1]], size=(30, 20), depth=10, sink=5)
+    >>> tool = riffler.Tool.ball(diameter=4, length=20)
+    >>> valley = riffler.plan.pencil(part, tool)[0].orient({0: (0, 0, 1)})
+    >>> cl, report = riffler.plan.cutter_locations(valley, tool, riffler.Collider(part))
+    >>> cl.shape, report.ok
+    ((2, 6), True)
     """
     found = _core.cutter_locations(
         path,
@@ -70,77 +169,291 @@ def cutter_locations(
         max_inserted=max_inserted,
         progress=progress,
     )
-    return _core.then(found, lambda found: (found.pop("cl"), LocationReport(found)))
+    return then(found, _locations)
 
 
-def path_of_poses(poses, contacts, normals, height):
-    """Poses (n, 6) as a path: its centres lie ``height`` mm above the tips, on the axes, and each of its contacts and
-    normals stands for both sides. ``poses_of`` gives the poses back, to rounding."""
-    poses = np.asarray(poses, dtype=float)
-    twice = [np.stack([rows, rows], axis=1) for rows in (contacts, normals)]
-    return _core.PencilPath(height, poses[:, :3] + height * poses[:, 3:], *twice).with_axes(poses[:, 3:])
+@hinted("plan.path_of_poses")
+def path_of_poses(poses: ArrayLike, contacts: ArrayLike, normals: ArrayLike, *, height: float) -> PencilPath:
+    """Poses as a path: its centres lie ``height`` mm above the tips, on the axes.
+
+    Each contact and each normal stands for both sides. ``poses_of`` gives the poses back, to rounding.
+
+    Parameters
+    ----------
+    poses : array_like, shape (n, 6)
+        Tip in mm and unit axis.
+    contacts, normals : array_like, shape (n, 3)
+        Points of the part, mm, and its unit normals there.
+    height : float
+        mm.
+
+    Returns
+    -------
+    PencilPath
+
+    Examples
+    --------
+    >>> poses = [(0, 0, 0, 0, 0, 1), (10, 0, 0, 0, 0, 1)]
+    >>> path = riffler.plan.path_of_poses(poses, [(0, 0, 0), (10, 0, 0)], [(0, 0, 1), (0, 0, 1)], height=2)
+    >>> bool((riffler.plan.poses_of(path) == poses).all())
+    True
+    """
+    rows = np.asarray(poses, dtype=float)
+    contacts, normals = (np.stack([each, each], axis=1) for each in map(np.asarray, (contacts, normals)))
+    return PencilPath(height, rows[:, :3] + height * rows[:, 3:], contacts, normals).with_axes(rows[:, 3:])
 
 
-def poses_of(path):
-    """(n, 6) tip and axis of a path whose centres lie its radius above the tips: of one by ``path_of_poses``, or of a
-    ball's."""
+@hinted("plan.poses_of")
+def poses_of(path: PencilPath) -> NDArray[np.float64]:
+    """The poses of a path whose centres lie its radius above the tips: one made by ``path_of_poses``, or a ball's.
+
+    Parameters
+    ----------
+    path : PencilPath
+        Oriented.
+
+    Returns
+    -------
+    ndarray, shape (n, 6)
+        Tip in mm and unit axis.
+
+    Examples
+    --------
+    >>> part = riffler.shape.relief([[1, 1], [0, 0], [1, 1]], size=(30, 20), depth=10, sink=5)
+    >>> valley = riffler.plan.pencil(part, riffler.Tool.ball(diameter=4, length=20))[0]
+    >>> riffler.plan.poses_of(valley.orient({0: (0, 0, 1)})).shape
+    (2, 6)
+    """
     return np.hstack([path.centres - path.radius * path.axes, path.axes])
 
 
-def kept_locations(path, depth, tool, collider, clearance=0.0, *, tolerance=0.01, progress=None):
+@hinted("plan.kept_locations")
+def kept_locations(
+    path: PencilPath,
+    tool: Tool,
+    collider: Collider,
+    *,
+    depth: float,
+    clearance: float = 0.0,
+    tolerance: float = 0.01,
+    progress: Progress = None,
+) -> tuple[NDArray[np.float64], LocationReport]:
     """``cutter_locations`` of a path in ``Plan.depths``: its own poses, checked and not lifted.
 
     The cutter enters the part by up to ``depth`` mm there, and by ``tolerance`` more at a point and twice that between
     two, since the path's chords are as far from the surface; shank and holder keep ``clearance`` from part and
     fixtures. (That the cutter enters a fixture by less than ``depth`` is not seen here.)
+
+    Parameters
+    ----------
+    path : PencilPath
+        As ``path_of_poses`` makes it.
+    tool : Tool
+        Cutter, shank and holder.
+    collider : Collider
+        Part and fixtures.
+    depth : float
+        mm that the cutter enters the part by.
+    clearance : float
+        mm, for shank and holder.
+    tolerance : float
+        mm.
+    progress : callable, optional
+        Called with the finished share; returning False cancels.
+
+    Returns
+    -------
+    cl : ndarray, shape (m, 6)
+        Tip in mm and unit axis.
+    report : LocationReport
+
+    Examples
+    --------
+    >>> part = riffler.shape.relief([[1, 1], [1, 1]], size=(30, 20), depth=10)
+    >>> tool = riffler.Tool.taper(tip_radius=0.2, half_angle=0.3, diameter=4, length=20)
+    >>> line = riffler.plan.engrave([[(5, 10, 10), (25, 10, 10)]], tool, part, depth=0.3)[0]
+    >>> path = riffler.plan.path_of_poses(line.poses, line.contacts, line.normals, height=1)
+    >>> cl, report = riffler.plan.kept_locations(path, tool, riffler.Collider(part), depth=0.3)
+    >>> report.ok
+    True
     """
     depth += tolerance
     body = with_room(tool, depth + clearance)
     return cutter_locations(
-        poses_of(path), body, collider, -depth, tolerance=tolerance, max_lift=0.0, progress=progress
+        poses_of(path), body, collider, clearance=-depth, tolerance=tolerance, max_lift=0.0, progress=progress
     )
 
 
-def contact_locations(tool, contacts, normals, axes, feeds=None):
-    """(n, 6) poses at which the cutter touches the tangent planes at ``contacts`` (n, 3) mm from outside.
+@hinted("plan.contact_locations")
+def contact_locations(
+    contacts: ArrayLike, normals: ArrayLike, axes: ArrayLike, tool: Tool, *, feeds: ArrayLike | None = None
+) -> NDArray[np.float64]:
+    """Poses at which the cutter touches tangent planes from outside.
 
-    ``normals`` and ``axes`` are (n, 3) unit vectors, ``feeds`` (n, 3) of any length: where axis and normal are parallel
-    the place on the contact circle is free, and lies ahead in the feed direction. Any profile, by its furthest point
-    against the normal; a hollow arc touches with its ends. ValueError names the row where only the cutter's upper end
-    could touch.
+    Works for any profile, by its furthest point against the normal; a hollow arc touches with its ends.
+
+    Parameters
+    ----------
+    contacts : array_like, shape (n, 3)
+        Points of the planes, mm.
+    normals, axes : array_like, shape (n, 3)
+        Unit normals of the planes and unit axes of the tool.
+    tool : Tool
+        The cutter.
+    feeds : array_like, shape (n, 3), optional
+        Feed directions, of any length. Where axis and normal are parallel the place on the contact circle is free, and
+        lies ahead in this direction.
+
+    Returns
+    -------
+    ndarray, shape (n, 6)
+        Tip in mm and unit axis.
+
+    Raises
+    ------
+    ValueError
+        Naming the row where only the cutter's upper end could touch.
+
+    Examples
+    --------
+    >>> ball = riffler.Tool.ball(diameter=4, length=20)
+    >>> riffler.plan.contact_locations([(1, 2, 3)], [(0, 0, 1)], [(0, 0, 1)], ball)
+    array([[1., 2., 3., 0., 0., 1.]])
     """
     return _core.contact_locations(tool, contacts, normals, axes, feeds)
 
 
-def lift(tool, poses, collider, clearance=0.0, *, tolerance=1e-9, max_lift=1000.0, max_evaluations=200, progress=None):
-    """The least lift along the tool's own axis at which each pose is free: ``(poses, report)``.
+@dataclass(frozen=True, eq=False)
+class LiftReport(DictResult):
+    """What ``lift`` did, pose by pose.
 
-    At every lower height the clearance over part and fixtures is less than ``clearance``; where it ends it is that,
-    within ``tolerance`` (mm). The report is a dict of arrays: ``lift`` mm, ``free``, ``before`` and ``clearance`` mm,
-    ``points`` (n, 3) and ``pieces`` (what was last in the way, or is nearest), ``evaluations``. A pose that is not free
-    within ``max_lift`` has ``free`` False and stays where it is.
+    Attributes
+    ----------
+    lift : ndarray, shape (n,)
+        mm along the tool's axis.
+    free : ndarray of bool, shape (n,)
+        False where the pose is not free within ``max_lift``; it stays where it was.
+    before, clearance : ndarray, shape (n,)
+        Clearance before and after the lift, mm.
+    points : ndarray, shape (n, 3)
+        Where the tool was last in the way, or is nearest, mm.
+    pieces : list of str
+        "cutter", "shank", "holder" or "fixture", for each of ``points``.
+    evaluations : ndarray of int, shape (n,)
+        Number of computed clearances.
     """
-    poses = np.array(poses, dtype=float)
-    report = _core.lift(
-        tool,
-        poses,
-        collider,
-        clearance=clearance,
-        tolerance=tolerance,
-        max_lift=max_lift,
-        max_evaluations=max_evaluations,
-        progress=progress,
+
+    lift: NDArray[np.float64]
+    free: NDArray[np.bool_]
+    before: NDArray[np.float64]
+    clearance: NDArray[np.float64]
+    points: NDArray[np.float64]
+    pieces: list[str]
+    evaluations: NDArray[np.int32]
+
+
+@hinted("plan.lift")
+def lift(
+    poses: ArrayLike,
+    tool: Tool,
+    collider: Collider,
+    *,
+    clearance: float = 0.0,
+    tolerance: float = 1e-9,
+    max_lift: float = 1000.0,
+    max_evaluations: int = 200,
+    progress: Progress = None,
+) -> tuple[NDArray[np.float64], LiftReport]:
+    """The least lift along the tool's own axis at which each pose is free.
+
+    At every lower height the clearance over part and fixtures is less than ``clearance``; where the lift ends it is
+    ``clearance``, within ``tolerance``.
+
+    Parameters
+    ----------
+    poses : array_like, shape (n, 6)
+        Tip in mm and axis.
+    tool : Tool
+        Cutter, shank and holder.
+    collider : Collider
+        Part and fixtures.
+    clearance, tolerance, max_lift : float
+        mm.
+    max_evaluations : int
+        Largest number of clearances computed for a pose.
+    progress : callable, optional
+        Called with the finished share; returning False cancels.
+
+    Returns
+    -------
+    poses : ndarray, shape (n, 6)
+        The lifted poses; one that is not free within ``max_lift`` stays where it is.
+    report : LiftReport
+
+    Examples
+    --------
+    >>> part = riffler.shape.relief([[1, 1], [1, 1]], size=(30, 20), depth=10)
+    >>> ball = riffler.Tool.ball(diameter=4, length=20)
+    >>> poses, report = riffler.plan.lift([(15, 10, 8, 0, 0, 1)], ball, riffler.Collider(part))
+    >>> report.lift.round(6), poses[:, 2].round(6)
+    (array([2.]), array([10.]))
+    """
+    lifted = np.array(poses, dtype=float)
+    report = LiftReport(
+        **_core.lift(
+            tool,
+            lifted,
+            collider,
+            clearance=clearance,
+            tolerance=tolerance,
+            max_lift=max_lift,
+            max_evaluations=max_evaluations,
+            progress=progress,
+        )
     )
-    rows = report["free"]
-    poses[rows, :3] += report["lift"][rows, None] * poses[rows, 3:]
-    return poses, report
+    rows = report.free
+    lifted[rows, :3] += report.lift[rows, None] * lifted[rows, 3:]
+    return lifted, report
 
 
-def drop(tool, points, part_mesh, axis=(0.0, 0.0, 1.0), progress=None):
-    """The tool comes down along ``axis`` until it first touches the part: ``(heights, contacts)``.
+@hinted("plan.drop")
+def drop(
+    points: ArrayLike,
+    tool: Tool,
+    part_mesh: Mesh,
+    *,
+    axis: ArrayLike = (0.0, 0.0, 1.0),
+    progress: Progress = None,
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """The tool comes down along ``axis`` until it first touches the part.
 
-    ``points`` (n, 3) mm are anywhere on the lines of the tips; ``heights`` (n,) mm of the tips along the axis,
-    ``contacts`` (n, 3) of the part; NaN where nothing is met. Exact to rounding but for hollow arcs, of which cones
-    stand for all but 1e-3 mm.
+    Exact to rounding, except for hollow arcs, which are replaced by cones to within 1e-3 mm.
+
+    Parameters
+    ----------
+    points : array_like, shape (n, 3)
+        Anywhere on the lines of the tips, mm.
+    tool : Tool
+        The cutter.
+    part_mesh : Mesh
+        The part.
+    axis : array_like, shape (3,)
+        Unit axis of the tool, tip to spindle.
+    progress : callable, optional
+        Called with the finished share; returning False cancels.
+
+    Returns
+    -------
+    heights : ndarray, shape (n,)
+        Tips along the axis, mm; NaN where the tool meets nothing.
+    contacts : ndarray, shape (n, 3)
+        Points of the part, mm; NaN likewise.
+
+    Examples
+    --------
+    >>> part = riffler.shape.relief([[1, 1], [1, 1]], size=(30, 20), depth=10)
+    >>> heights, contacts = riffler.plan.drop([(15, 10, 0)], riffler.Tool.ball(diameter=4, length=20), part)
+    >>> heights.round(6)
+    array([10.])
     """
     return _core.drop(tool, points, part_mesh, axis, progress)

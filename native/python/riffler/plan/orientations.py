@@ -3,106 +3,299 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, overload
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from .. import _core
+from .._core import Collider, PencilPath, Tool
+from ..arguments import Cone, Progress, then
+from ..deprecated import DictResult
+from ..hints import hinted
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 FREE, BLOCKED, BEYOND, UNREACHABLE = range(4)
 _WIDEST = math.radians(75)
 
 
-def _grid(angles, widest=_WIDEST, count=21) -> np.ndarray:
+def _grid(angles: ArrayLike | None, widest: float = _WIDEST, count: int = 21) -> NDArray[np.float64]:
     return np.linspace(-widest, widest, count) if angles is None else np.asarray(angles, dtype=float)
 
 
+@dataclass(frozen=True, eq=False, repr=False)
 class FreeOrientations:
     """The configuration space at one point of a path; arrays are (inclinations, tilts).
 
-    ``inclinations``, ``tilts``: rad. ``clearance``: mm, signed, NaN where nothing was computed. ``free``: bool.
-    ``state``: FREE, BLOCKED, BEYOND the machine's cone or UNREACHABLE for the cutter. ``pieces``: what is nearest or
-    deepest. ``axes`` (…, 3). ``suggestion``: the free axis that leans least, or None; ``reason`` then says what is in
-    the way, and by how much at least.
+    Attributes
+    ----------
+    index : int
+        Number of the path's point.
+    inclinations : ndarray, shape (n,)
+        rad.
+    tilts : ndarray, shape (m,)
+        rad.
+    clearance : ndarray, shape (n, m)
+        mm, negative inside; NaN where nothing was computed.
+    state : ndarray of uint8, shape (n, m)
+        FREE, BLOCKED, BEYOND the machine's cone, or UNREACHABLE for the cutter.
+    pieces : ndarray of str, shape (n, m)
+        What is nearest or deepest.
+    axes : ndarray, shape (n, m, 3)
+        Unit axes of the tool.
+    suggestion : ndarray, shape (3,), or None
+        The free axis with the smallest angle to the frame's z.
+    reason : str
+        Without a suggestion: what is in the way, and by how much at least.
     """
 
-    def __init__(self, index: int, inclinations: np.ndarray, tilts: np.ndarray, found: dict) -> None:
-        shape = len(inclinations), len(tilts)
-        self.index, self.inclinations, self.tilts = index, inclinations, tilts
-        self.clearance = found["clearance"].reshape(shape)
-        self.state = found["state"].reshape(shape)
-        self.free = self.state == FREE
-        self.pieces = np.array(found["pieces"]).reshape(shape)
-        self.axes = found["axes"].reshape(*shape, 3)
-        self.suggestion = found["suggestion"]
-        self.reason = found["reason"]
+    index: int
+    inclinations: NDArray[np.float64]
+    tilts: NDArray[np.float64]
+    clearance: NDArray[np.float64]
+    state: NDArray[np.uint8]
+    pieces: NDArray[np.str_]
+    axes: NDArray[np.float64]
+    suggestion: NDArray[np.float64] | None
+    reason: str
+
+    @property
+    def free(self) -> NDArray[np.bool_]:
+        """(n, m): True where ``state`` is FREE."""
+        return self.state == FREE
 
     def __repr__(self) -> str:
         return f"<FreeOrientations at point {self.index}: {int(self.free.sum())} of {self.free.size} free>"
 
 
-def free_orientations(
-    path, index, tool, collider, *, inclinations=None, tilts=None, clearance=0.0, tolerance=0.01, limit=None,
-    progress=None,
-):  # fmt: skip
-    """The free orientations at point ``index`` of a path, or, for a list of indices, a list of them.
+def _map(index: int, inclinations: NDArray[np.float64], tilts: NDArray[np.float64], found: dict) -> FreeOrientations:
+    shape = len(inclinations), len(tilts)
+    return FreeOrientations(
+        index,
+        inclinations,
+        tilts,
+        clearance=found["clearance"].reshape(shape),
+        state=found["state"].reshape(shape),
+        pieces=np.array(found["pieces"]).reshape(shape),
+        axes=found["axes"].reshape(*shape, 3),
+        suggestion=found["suggestion"],
+        reason=found["reason"],
+    )
 
-    The tool stands on the path with every axis of the grid ``inclinations`` × ``tilts`` (rad, ascending; by default 21
-    each within 75 degrees) about the path's frame there, and is free where its clearance over part and fixtures is at
-    least ``clearance`` - ``tolerance``. ``limit``: (axis, angle), the machine's cone; nothing is computed beyond it.
+
+@overload
+def free_orientations(
+    path: PencilPath, tool: Tool, collider: Collider, *, index: int, inclinations: ArrayLike | None = None,
+    tilts: ArrayLike | None = None, clearance: float = 0.0, tolerance: float = 0.01, limit: Cone | None = None,
+    progress: Progress = None,
+) -> FreeOrientations: ...  # fmt: skip
+@overload
+def free_orientations(
+    path: PencilPath, tool: Tool, collider: Collider, *, index: Sequence[int], inclinations: ArrayLike | None = None,
+    tilts: ArrayLike | None = None, clearance: float = 0.0, tolerance: float = 0.01, limit: Cone | None = None,
+    progress: Progress = None,
+) -> list[FreeOrientations]: ...  # fmt: skip
+@hinted("plan.free_orientations")
+def free_orientations(
+    path: PencilPath,
+    tool: Tool,
+    collider: Collider,
+    *,
+    index: int | Sequence[int],
+    inclinations: ArrayLike | None = None,
+    tilts: ArrayLike | None = None,
+    clearance: float = 0.0,
+    tolerance: float = 0.01,
+    limit: Cone | None = None,
+    progress: Progress = None,
+) -> FreeOrientations | list[FreeOrientations]:
+    """The free orientations at one point of a path, or at several.
+
+    The tool stands on the path with every axis of the grid ``inclinations`` × ``tilts`` about the path's frame there,
+    and is free where its clearance over part and fixtures is at least ``clearance`` - ``tolerance``.
+
+    Parameters
+    ----------
+    path : PencilPath
+        The path; it need not be oriented.
+    tool : Tool
+        Cutter, shank and holder.
+    collider : Collider
+        Part and fixtures.
+    index : int or list of int
+        Number of the path's point, from 0.
+    inclinations, tilts : array_like, optional
+        rad, ascending; None: 21 each within 75 degrees.
+    clearance, tolerance : float
+        mm.
+    limit : tuple of axis and angle, optional
+        The cone in which the machine keeps the tool: unit axis, half angle in rad. Nothing is computed beyond it.
+    progress : callable, optional
+        Called with the finished share; returning False cancels.
+
+    Returns
+    -------
+    FreeOrientations, or a list of one for each index
+
+    Raises
+    ------
+    ValueError
+        Naming the point that the path does not have, and sizes without meaning.
+
+    Examples
+    --------
+    >>> part = riffler.shape.relief([[1, 1], [0, 0], [1, 1]], size=(30, 20), depth=10, sink=5)
+    >>> tool = riffler.Tool.ball(diameter=4, length=20)
+    >>> valley = riffler.plan.pencil(part, tool)[0]
+    >>> found = riffler.plan.free_orientations(valley, tool, riffler.Collider(part), index=0)
+    >>> found.free.shape, found.suggestion.round(6) + 0.0
+    ((21, 21), array([0., 0., 1.]))
     """
-    inclinations, tilts = _grid(inclinations), _grid(tilts)
+    rows, columns = _grid(inclinations), _grid(tilts)
     single = np.ndim(index) == 0
-    points = [int(i) for i in ([index] if single else index)]
+    points = [int(i) for i in ([index] if single else index)]  # pyright: ignore[reportGeneralTypeIssues]
     if any(i < 0 for i in points):
         raise ValueError("index: begins at 0")
     found = _core.orientation_maps(
-        path, points, tool, collider, inclinations=inclinations, tilts=tilts, clearance=clearance,
+        path, points, tool, collider, inclinations=rows.tolist(), tilts=columns.tolist(), clearance=clearance,
         tolerance=tolerance, limit=limit, progress=progress,
     )  # fmt: skip
 
-    def maps(found):
-        made = [FreeOrientations(i, inclinations, tilts, one) for i, one in zip(points, found, strict=True)]
+    def maps(found: list) -> FreeOrientations | list[FreeOrientations]:
+        made = [_map(i, rows, columns, one) for i, one in zip(points, found, strict=True)]
         return made[0] if single else made
 
-    return _core.then(found, maps)
+    return then(found, maps)
 
 
-def least_tilt(
-    path, tool, collider, *, inclinations=None, tilts=None, clearance=0.0, tolerance=0.01, limit=None, max_change=None,
-    smoothness=4.0, progress=None,
-):  # fmt: skip
-    """The free orientations along a path that lean least: ``(oriented path or None, report)``.
+@dataclass(frozen=True, eq=False)
+class TiltReport(DictResult):
+    """What ``min_tilt`` found.
 
-    Of the maps of ``free_orientations`` at all points one free axis each is chosen, so that the sum of the squared
-    angles to the frame's z plus ``smoothness`` times that of the squared changes between neighbours is least, and no
-    change exceeds ``max_change`` (rad; by default one and a half diagonals of the grid). The least over the grid, by
-    dynamic programming; on a closed path the least for the first point's axis. The report is a dict: ``found``,
-    ``angles`` (n,) to z, ``cost``; where none is found, ``point`` and ``reason``: no orientation is free there, or none
-    that those before it lead to. What happens between points is for ``cutter_locations`` to check.
+    Attributes
+    ----------
+    found : bool
+        Whether there is a free axis at every point, within the largest change.
+    angles : ndarray, shape (n,)
+        rad between each axis and the frame's z.
+    cost : float
+        The sum that is least, rad².
+    point : int
+        Where nothing is found: the point without a free axis.
+    reason : str
+        Why: no orientation is free there, or none that those before it lead to.
     """
-    inclinations, tilts = _grid(inclinations), _grid(tilts)
+
+    found: bool
+    angles: NDArray[np.float64]
+    cost: float
+    point: int
+    reason: str
+
+
+@hinted("plan.min_tilt")
+def min_tilt(
+    path: PencilPath,
+    tool: Tool,
+    collider: Collider,
+    *,
+    inclinations: ArrayLike | None = None,
+    tilts: ArrayLike | None = None,
+    clearance: float = 0.0,
+    tolerance: float = 0.01,
+    limit: Cone | None = None,
+    max_change: float | None = None,
+    smoothness: float = 4.0,
+    progress: Progress = None,
+) -> tuple[PencilPath | None, TiltReport]:
+    """The free orientations along a path with the smallest tilt.
+
+    One free axis is chosen from each map of ``free_orientations``, so that the sum of the squared angles to the frame's
+    z, plus ``smoothness`` times that of the squared changes between neighbours, is least: over the grid, by dynamic
+    programming; on a closed path for the first point's axis. What happens between points is for ``cutter_locations``
+    to check.
+
+    Parameters
+    ----------
+    path : PencilPath
+        The path; it need not be oriented.
+    tool : Tool
+        Cutter, shank and holder.
+    collider : Collider
+        Part and fixtures.
+    inclinations, tilts : array_like, optional
+        rad, ascending; None: 21 each within 75 degrees.
+    clearance, tolerance : float
+        mm.
+    limit : tuple of axis and angle, optional
+        The cone in which the machine keeps the tool: unit axis, half angle in rad.
+    max_change : float, optional
+        Largest change between neighbours, rad; None: one and a half diagonals of the grid.
+    smoothness : float
+        Weight of the changes.
+    progress : callable, optional
+        Called with the finished share; returning False cancels.
+
+    Returns
+    -------
+    path : PencilPath or None
+        Oriented; None where nothing is found.
+    report : TiltReport
+
+    Examples
+    --------
+    >>> part = riffler.shape.relief([[1, 1], [0, 0], [1, 1]], size=(30, 20), depth=10, sink=5)
+    >>> tool = riffler.Tool.ball(diameter=4, length=20)
+    >>> valley = riffler.plan.pencil(part, tool)[0]
+    >>> oriented, report = riffler.plan.min_tilt(valley, tool, riffler.Collider(part))
+    >>> report.found, report.angles.round(6)
+    (True, array([0., 0.]))
+    """
+    rows, columns = _grid(inclinations), _grid(tilts)
     if max_change is None:
-        steps = [float(np.diff(angles).max()) if len(angles) > 1 else 0.0 for angles in (inclinations, tilts)]
+        steps = [float(np.diff(angles).max()) if len(angles) > 1 else 0.0 for angles in (rows, columns)]
         max_change = max(1.5 * math.hypot(*steps), 1e-3)
-    found = _core.least_tilt(
-        path, tool, collider, inclinations=inclinations, tilts=tilts, clearance=clearance, tolerance=tolerance,
-        limit=limit, max_change=max_change, smoothness=smoothness, progress=progress,
+    found = _core.min_tilt(
+        path, tool, collider, inclinations=rows.tolist(), tilts=columns.tolist(), clearance=clearance,
+        tolerance=tolerance, limit=limit, max_change=max_change, smoothness=smoothness, progress=progress,
     )  # fmt: skip
 
-    def oriented(report):
-        axes = report.pop("axes")
-        if not report["found"]:
-            return None, report
-        return path.oriented(dict(enumerate(axes)), "slerp"), report
+    def oriented(found: dict) -> tuple[PencilPath | None, TiltReport]:
+        axes = found.pop("axes")
+        report = TiltReport(**found)
+        return (path.orient(dict(enumerate(axes)), interpolation="slerp") if report.found else None), report
 
-    return _core.then(found, oriented)
+    return then(found, oriented)
 
 
-def draw_map(orientations: FreeOrientations, axes=None):
-    """Draws the map with matplotlib, which must be installed, into ``axes`` or a new figure; returns the axes.
+@hinted("plan.draw_map")
+def draw_map(orientations: FreeOrientations, *, axes: Axes | None = None) -> Axes:
+    """Draws the map with matplotlib, which must be installed.
 
     Clearance as colour, the border of the free region as a line, what was not computed hatched, a ring at the
     suggestion. Angles in degrees.
+
+    Parameters
+    ----------
+    orientations : FreeOrientations
+        The map of one point.
+    axes : matplotlib.axes.Axes, optional
+        Where to draw; None: into a new figure.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+
+    Examples
+    --------
+    ::
+
+        axes = riffler.plan.draw_map(riffler.plan.free_orientations(path, tool, collider, index=0))
+        axes.figure.savefig("map.png")
     """
     from matplotlib import colors, pyplot
 
@@ -110,7 +303,7 @@ def draw_map(orientations: FreeOrientations, axes=None):
         axes = pyplot.subplots(layout="constrained")[1]
     tilts, inclinations = np.degrees(orientations.tilts), np.degrees(orientations.inclinations)
     clearance = np.ma.masked_invalid(orientations.clearance)
-    most = max(float(np.abs(clearance).max()), 1e-6) if clearance.count() else 1.0
+    largest = max(float(np.abs(clearance).max()), 1e-6) if clearance.count() else 1.0
     axes.set_facecolor("0.85")
     shown = axes.pcolormesh(
         tilts,
@@ -118,7 +311,7 @@ def draw_map(orientations: FreeOrientations, axes=None):
         clearance,
         cmap="RdBu",
         shading="nearest",
-        norm=colors.SymLogNorm(0.01, vmin=-most, vmax=most),
+        norm=colors.SymLogNorm(0.01, vmin=-largest, vmax=largest),
     )
     axes.figure.colorbar(shown, ax=axes, label="clearance, mm")
     if len(tilts) > 1 and len(inclinations) > 1 and orientations.free.any() and not orientations.free.all():

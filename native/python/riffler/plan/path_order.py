@@ -1,14 +1,41 @@
 """An order of paths in which the moves between them are short."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
+
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .._core import PencilPath
+from ..hints import hinted
 
 
-def linked(paths, start=None):
-    """The paths in an order, and turned round, so that the moves between them are short: ``[(index, reversed), ...]``.
+@hinted("plan.order_paths")
+def order_paths(paths: Sequence[PencilPath], *, start: ArrayLike | None = None) -> list[tuple[int, bool]]:
+    """An order of the paths, and which are reversed, so that the moves between them are short.
 
-    From ``start`` (a point; otherwise the first path's beginning) always to the nearest end, then exchanges of two
-    moves as long as they shorten the way. The same input gives the same order. A loop begins and ends at its first
-    point.
+    From ``start`` always to the nearest end, then exchanges of two moves as long as they shorten the travel. The same
+    input gives the same order. A loop begins and ends at its first point.
+
+    Parameters
+    ----------
+    paths : list of PencilPath
+        The paths.
+    start : array_like, shape (3,), optional
+        Where the tool comes from, mm; None: the first path's first point.
+
+    Returns
+    -------
+    list of tuple
+        (number of the path, whether it is reversed), each path once.
+
+    Examples
+    --------
+    >>> part = riffler.shape.relief([[1, 1], [0, 0], [1, 1]], size=(30, 20), depth=10, sink=5)
+    >>> paths = riffler.plan.pencil(part, riffler.Tool.ball(diameter=4, length=20), passes=2, stepover=1)
+    >>> sorted(index for index, reversed in riffler.plan.order_paths(paths))
+    [0, 1, 2]
     """
     if not paths:
         return []
@@ -29,7 +56,9 @@ def linked(paths, start=None):
     return _exchanged(order, ends, None if start is None else at)
 
 
-def _exchanged(order, ends, start, rounds=20):
+def _exchanged(
+    order: list[tuple[int, bool]], ends: NDArray[np.float64], start: NDArray[np.float64] | None, rounds: int = 20
+) -> list[tuple[int, bool]]:
     """2-opt (Croes, Operations Research 6 (1958) 791): turns stretches of the order round while that shortens it."""
     index = np.array([i for i, _ in order])
     turned = np.array([int(t) for _, t in order])

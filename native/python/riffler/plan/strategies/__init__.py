@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import importlib
 import pkgutil
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
-from ..file import part_of
+from ..._core import Mesh, Tool
+from ...arguments import Progress
+from ...hints import hinted
+from ..model import part_of
 from .strategy import Found, Parameter, Strategy
 
 __all__ = ["STRATEGIES", "Found", "Parameter", "Strategy", "find", "of"]
@@ -29,22 +32,51 @@ def of(name: str) -> Strategy:
     return STRATEGIES[name]
 
 
+@hinted("plan.find")
 def find(
     strategy: str,
-    part_mesh: Any,
-    tool: Any,
+    part_mesh: Mesh,
+    tool: Tool,
     given: Sequence[Any] = (),
     *,
     name: str = "part",
-    progress: Callable[[float], Any] | None = None,
+    progress: Progress = None,
     **options: Any,
 ) -> Found:
-    """Plans by the strategy of that id, as ``riffler plan`` and Blender do: a ``Found`` with the ``plan``, the
-    ``reason`` where it has no paths, and ``notes``.
+    """Plans by the strategy of that id, as ``riffler plan`` and Blender do.
 
-    ``given``: the curves, (n, 3) arrays in mm, or the paths that the strategy starts from, where it needs some.
-    ``name``: the part's, for the plan. ``options``: the strategy's parameters; its default where one is not given, or
-    None. ValueError for an unknown strategy, unknown options, and bad input.
+    Parameters
+    ----------
+    strategy : str
+        An id of ``STRATEGIES``.
+    part_mesh : Mesh
+        The part.
+    tool : Tool
+        The cutter, with shank and holder.
+    given : list, optional
+        The curves, (n, 3) arrays in mm, or the paths that the strategy starts from, where it needs some.
+    name : str
+        The part's name, for the plan.
+    progress : callable, optional
+        Called with the finished share; returning False cancels.
+    **options
+        The strategy's parameters; its default where one is not given, or None.
+
+    Returns
+    -------
+    Found
+
+    Raises
+    ------
+    ValueError
+        For an unknown strategy, unknown options, and bad input.
+
+    Examples
+    --------
+    >>> part = riffler.shape.relief([[1, 1], [0, 0], [1, 1]], size=(30, 20), depth=10, sink=5)
+    >>> found = riffler.plan.find("pencil", part, riffler.Tool.ball(diameter=4, length=20), tolerance=0.02)
+    >>> len(found.plan.paths), found.reason
+    (1, '')
     """
     chosen = of(strategy)
     if chosen.needs != "part" and not len(given):

@@ -1,48 +1,101 @@
 """Engraving: curves laid on a part and cut to a depth, the tool's axis following the surface."""
 
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from ... import _core
-from ..file import Plan
+from ..._core import Mesh, Tool
+from ...arguments import Progress
+from ...hints import hinted
 from ..locations import path_of_poses
+from ..model import Plan
 from .strategy import Found, Parameter, Strategy
 
 
-@dataclass
+@dataclass(frozen=True, eq=False)
 class Engraved:
-    """One curve on the part: ``poses`` (n, 6) of the tool; ``contacts`` and ``normals`` (n, 3) of the surface there."""
+    """One curve on the part.
 
-    poses: np.ndarray
-    contacts: np.ndarray
-    normals: np.ndarray
+    Attributes
+    ----------
+    poses : ndarray, shape (n, 6)
+        Tip in mm and unit axis, for ``Program.from_cl``.
+    contacts, normals : ndarray, shape (n, 3)
+        Points of the surface, mm, and its unit normals there.
+    """
+
+    poses: NDArray[np.float64]
+    contacts: NDArray[np.float64]
+    normals: NDArray[np.float64]
 
 
+@hinted("plan.engrave")
 def engrave(
-    part_mesh,
-    curves,
-    tool,
-    depth=0.0,
-    progress=None,
+    curves: Sequence[ArrayLike],
+    tool: Tool,
+    part_mesh: Mesh,
     *,
-    inclination=0.0,
-    tilt=0.0,
-    tolerance=0.01,
-    turn=0.0873,
-    crease=0.5236,
-    reach=10.0,
-):
+    depth: float = 0.0,
+    inclination: float = 0.0,
+    tilt: float = 0.0,
+    tolerance: float = 0.01,
+    turn: float = 0.0873,
+    crease: float = 0.5236,
+    reach: float = 10.0,
+    progress: Progress = None,
+) -> list[Engraved]:
     """Lays curves on a part and cuts them ``depth`` mm deep, the tool's axis following the surface.
 
-    ``curves``: a sequence of (n, 3) arrays, mm, polylines that lie within ``reach`` mm of the part. Each is laid on the
-    part by nearest points and divided until its chords stay within ``tolerance`` mm of the surface and the axis turns
-    by less than ``turn`` rad from one point to the next. Faces that meet at less than ``crease`` rad are facets of one
-    round surface, over which normals vary smoothly. The axis leans by ``inclination`` forward and ``tilt`` to the left
-    of the normal, rad, and the cutter touches the plane that lies ``depth`` below the surface.
+    Each curve is laid on the part by nearest points and divided until its chords stay within ``tolerance`` of the
+    surface and the axis turns by less than ``turn`` from one point to the next. The cutter touches the plane that lies
+    ``depth`` below the surface.
 
-    Returns one ``Engraved`` for each curve; its ``poses`` go into ``riffler.Program.from_cl``. ValueError naming the
-    curve and its point.
+    Parameters
+    ----------
+    curves : list of array_like, shape (n, 3)
+        Polylines, mm, within ``reach`` of the part.
+    tool : Tool
+        The cutter.
+    part_mesh : Mesh
+        The part.
+    depth : float
+        mm below the surface; negative: the cutter stays above it.
+    inclination, tilt : float
+        rad by which the axis leans forward, along the curve, and to the left, from the surface's normal.
+    tolerance : float
+        mm.
+    turn : float
+        rad.
+    crease : float
+        rad; faces that meet at less are facets of one round surface, over which normals vary smoothly.
+    reach : float
+        mm.
+    progress : callable, optional
+        Called with the finished share; returning False cancels.
+
+    Returns
+    -------
+    list of Engraved
+        One for each curve.
+
+    Raises
+    ------
+    ValueError
+        Naming the curve and its point.
+
+    Examples
+    --------
+    >>> part = riffler.shape.relief([[1, 1], [1, 1]], size=(30, 20), depth=10)
+    >>> tool = riffler.Tool.taper(tip_radius=0.2, half_angle=0.3, diameter=4, length=20)
+    >>> (line,) = riffler.plan.engrave([[(5, 10, 10), (25, 10, 10)]], tool, part, depth=0.3)
+    >>> line.poses[0].round(6) + 0.0
+    array([ 5. , 10. ,  9.7,  0. ,  0. ,  1. ])
     """
     found = _core.engrave(
         part_mesh,
@@ -101,11 +154,13 @@ class Engrave(Strategy):
         ),
     )
 
-    def run(self, part_mesh, tool, given, options, progress=None):
+    def run(
+        self, part_mesh: Mesh, tool: Tool, given: Sequence[Any], options: Mapping[str, Any], progress: Progress = None
+    ) -> Found:
         depth = max(0.0, options["depth"])
-        lines = engrave(part_mesh, given, tool, progress=progress, **options)
+        lines = engrave(given, tool, part_mesh, progress=progress, **options)
         above = depth + ABOVE * tool.diameter
-        paths = [path_of_poses(line.poses, line.contacts, line.normals, above) for line in lines]
+        paths = [path_of_poses(line.poses, line.contacts, line.normals, height=above) for line in lines]
         depths = dict.fromkeys(range(len(paths)), depth)
         return Found(Plan(paths, tool, tolerance=options["tolerance"], depths=depths))
 

@@ -1,63 +1,134 @@
 """Pencil cuts: where a ball touches a part at two places at once."""
 
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
 from ... import _core
-from ..file import Plan
+from ..._core import Mesh, PencilPath, Tool
+from ...arguments import Progress, then
+from ...deprecated import DictResult
+from ...hints import hinted
+from ..model import Plan
 from .strategy import Found, Parameter, Strategy
 
 
-class PencilPaths(list):
-    """A list of ``PencilPath``; what was done to find them stands beside it.
+@dataclass(frozen=True)
+class PencilStats(DictResult):
+    """Counters of ``pencil``: balls laid into the part, and those that it ``entered``; ``starts`` of paths, and those
+    that were ``stuck`` or mere ``faceting``; ``edges``; ``traces`` with their ``steps``; paths that were ``cut``."""
 
-    ``ends``: a pair for each path, ``"part"``, ``"corner"``, ``"faded"``, ``"loop"``, ``"cut"``, ``"joined"`` where
-    another path continues or, for passes beside a valley, ``"pass"``; ``rest_area``: mm² that the tool's ball cannot
-    reach; ``rest_areas``: (k,) the same for each triangle; ``reference_area``, ``reference_areas``: the same for the
-    ball of ``reference_tool`` (or of ``overthickness``), what there is to be machined; without one those of the tool;
-    ``stats``: counters; ``reason``: why there are no paths, empty where there are some.
+    balls: int
+    entered: int
+    starts: int
+    stuck: int
+    faceting: int
+    edges: int
+    traces: int
+    steps: int
+    cut: int
+
+
+class PencilPaths(list[PencilPath]):
+    """A list of ``PencilPath``, with a report on how they were found.
+
+    Attributes
+    ----------
+    ends : list of tuple
+        For each path what it starts and ends at: "part", "corner", "faded", "loop", "cut", "joined" where another path
+        continues or, for passes beside a valley, "pass".
+    rest_area : float
+        mm² that the tool's ball cannot reach.
+    rest_areas : ndarray, shape (k,)
+        The same for each triangle of the part.
+    reference_area, reference_areas : float, ndarray of shape (k,)
+        The same for the ball of ``reference_tool`` (or of ``overthickness``): what there is to be machined. Without one
+        those of the tool.
+    stats : PencilStats
+        Counters.
+    reason : str
+        Why there are no paths; empty where there are some.
     """
 
-    def __init__(self, found):
+    def __init__(self, found: dict) -> None:
         super().__init__(found["paths"])
-        self.ends = found["ends"]
-        self.rest_area = found["rest_area"]
-        self.rest_areas = found["rest_areas"]
-        self.reference_area = found["reference_area"]
-        self.reference_areas = found["reference_areas"]
-        self.stats = found["stats"]
-        self.reason = found["reason"]
+        self.ends: list[tuple[str, str]] = found["ends"]
+        self.rest_area: float = found["rest_area"]
+        self.rest_areas: NDArray[np.float64] = found["rest_areas"]
+        self.reference_area: float = found["reference_area"]
+        self.reference_areas: NDArray[np.float64] = found["reference_areas"]
+        self.stats = PencilStats(**found["stats"])
+        self.reason: str = found["reason"]
 
 
+@hinted("plan.pencil")
 def pencil(
-    part_mesh,
-    tool,
-    tolerance=0.01,
-    passes=1,
-    progress=None,
+    part_mesh: Mesh,
+    tool: Tool,
     *,
-    bitangency_angle=None,
-    minimum_length=0.0,
-    stepover=None,
-    scallop=None,
-    overthickness=0.0,
-    reference_tool=None,
-):
-    """The valleys of ``part_mesh`` for the ball at the tool's tip, as ``PencilPaths``.
+    tolerance: float = 0.01,
+    passes: int = 1,
+    bitangency_angle: float | None = None,
+    minimum_length: float = 0.0,
+    stepover: float | None = None,
+    scallop: float | None = None,
+    overthickness: float = 0.0,
+    reference_tool: Tool | None = None,
+    progress: Progress = None,
+) -> PencilPaths:
+    """The valleys of a part for the ball at the tool's tip.
 
-    The curves of ball centres along which the ball touches the part at two places at once and enters it nowhere. A
-    valley counts where the ball's gap to its bottom exceeds ``tolerance`` (mm), to which the curves are traced; if
-    ``bitangency_angle`` (rad) is given, instead where the directions to both contacts differ by at least that. Paths
-    shorter than ``minimum_length`` (mm) are dropped.
+    The curves of ball centres along which the ball touches the part at two places at once and enters it nowhere.
 
-    With ``passes`` above 1 each valley is followed by passes - 1 curves on either side, ``stepover`` (mm) apart or as
-    far as leaves ridges of ``scallop`` (mm; the tolerance, if neither is given) on a plane; there both contacts are the
-    one point that the ball touches.
+    Parameters
+    ----------
+    part_mesh : Mesh
+        The part.
+    tool : Tool
+        A tool whose tip is a ball.
+    tolerance : float
+        mm to which the curves are traced. A valley counts where the ball's gap to its bottom exceeds it.
+    passes : int
+        Above 1, each valley is followed by passes - 1 curves on either side; there both contacts are the one point that
+        the ball touches.
+    bitangency_angle : float, optional
+        rad; a valley then counts where the directions to both contacts differ by at least that.
+    minimum_length : float
+        mm; shorter paths are dropped.
+    stepover : float, optional
+        mm between two passes.
+    scallop : float, optional
+        mm, instead of ``stepover``: height of the ridges that passes leave on a plane; None: the tolerance.
+    overthickness : float
+        mm; adds what a ball whose radius is larger by that much leaves behind: its valleys, with the tool's ball laid
+        into them, where that has none of its own, as in blends of its own radius or a larger one.
+    reference_tool : Tool, optional
+        A larger tool that has been there before; does the same for what its ball could not reach: rest machining,
+        corners included.
+    progress : callable, optional
+        Called with the finished share; returning False cancels.
 
-    ``overthickness`` (mm) adds what a ball whose radius is larger by that much leaves behind: its valleys, with the
-    tool's ball laid into them, where that has none of its own, as in blends of its own radius or a larger one.
-    ``reference_tool``, a larger one that has been there before, does the same for what its ball could not reach: rest
-    machining, corners included.
+    Returns
+    -------
+    PencilPaths
 
-    ``progress`` is called with the finished share and cancels by returning False. ValueError for an empty mesh, for
-    sizes that are not positive and finite, and for a tool or reference tool whose tip is no ball.
+    Raises
+    ------
+    ValueError
+        For an empty mesh, for sizes that are not positive and finite, and for a tool or reference tool whose tip is no
+        ball.
+
+    Examples
+    --------
+    >>> part = riffler.shape.relief([[1, 1], [0, 0], [1, 1]], size=(30, 20), depth=10, sink=5)
+    >>> paths = riffler.plan.pencil(part, riffler.Tool.ball(diameter=4, length=20))
+    >>> len(paths), round(paths[0].length, 3)
+    (1, 30.0)
     """
     if stepover is not None and scallop is not None:
         raise ValueError("stepover and scallop: only one of them")
@@ -82,7 +153,7 @@ def pencil(
         overthickness=overthickness,
         progress=progress,
     )
-    return _core.then(found, PencilPaths)
+    return then(found, PencilPaths)
 
 
 class Pencil(Strategy):
@@ -112,12 +183,14 @@ class Pencil(Strategy):
         Parameter("stepover", "Stepover", "Between two passes, in mm; 0: what leaves ridges of the tolerance", None),
     )
 
-    def check(self, tool, given):
+    def check(self, tool: Tool, given: Sequence[Any]) -> None:
         _core.tip_ball_radius(tool, "tool")
 
-    def run(self, part_mesh, tool, given, options, progress=None):
+    def run(
+        self, part_mesh: Mesh, tool: Tool, given: Sequence[Any], options: Mapping[str, Any], progress: Progress = None
+    ) -> Found:
         paths = pencil(part_mesh, tool, progress=progress, **options)
-        return Found(Plan(list(paths), tool, tolerance=options["tolerance"]), reason=getattr(paths, "reason", ""))
+        return Found(Plan(list(paths), tool, tolerance=options["tolerance"]), reason=paths.reason)
 
 
 STRATEGIES = (Pencil(),)

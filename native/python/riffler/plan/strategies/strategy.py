@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
-from ..file import Plan
+from ..._core import Mesh, Tool
+from ...arguments import Progress
+from ..model import Plan
 
 
 @dataclass(frozen=True)
@@ -30,10 +32,19 @@ class Parameter:
     choices: tuple[tuple[str, str, str], ...] = ()
 
 
-@dataclass
+@dataclass(frozen=True)
 class Found:
-    """What a strategy has found: a Plan; ``reason``: why it has no paths, empty where it has some; ``notes``: what else
-    one should know, as sentences."""
+    """What a strategy has found.
+
+    Attributes
+    ----------
+    plan : Plan
+        The paths.
+    reason : str
+        Why it has no paths; empty where it has some.
+    notes : list of str
+        What else the user should know, as sentences.
+    """
 
     plan: Plan
     reason: str = ""
@@ -58,16 +69,16 @@ class Strategy(ABC):
     @abstractmethod
     def run(
         self,
-        part_mesh: Any,
-        tool: Any,
+        part_mesh: Mesh,
+        tool: Tool,
         given: Sequence[Any],
         options: Mapping[str, Any],
-        progress: Callable[[float], Any] | None = None,
+        progress: Progress = None,
     ) -> Found:
         """``given``: the curves, (n, 3) arrays in mm, or the paths. ``options`` has every parameter but those that are
         None. ValueError for bad input, naming it."""
 
-    def check(self, tool: Any, given: Sequence[Any]) -> None:  # noqa: B027
+    def check(self, tool: Tool, given: Sequence[Any]) -> None:  # noqa: B027
         """ValueError for a tool that it cannot do with: known at once, before a long run."""
 
     def options(self, given: Mapping[str, Any]) -> dict[str, Any]:
@@ -84,6 +95,6 @@ class Strategy(ABC):
         return {key: value for key, value in out.items() if value is not None}
 
 
-def share_of(progress: Callable[[float], Any] | None, k: int, n: int) -> Callable[[float], Any] | None:
+def share_of(progress: Progress, k: int, n: int) -> Progress:
     """The progress of piece ``k`` of ``n``."""
     return None if progress is None else lambda share: progress((k + share) / n)

@@ -1,36 +1,92 @@
 """Swarf cuts: ruled walls above pencil paths, cut by the cutter's flank."""
 
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ... import _core
-from ..file import Plan
+from ..._core import Mesh, PencilPath, Tool
+from ...arguments import Progress
+from ...hints import hinted
+from ..model import Plan
 from .strategy import Found, Parameter, Strategy, share_of
 
 
-@dataclass
+@dataclass(frozen=True, eq=False)
 class Swarf:
     """A wall cut by the flank.
 
-    ``path`` has the axes; ``height`` (n,) mm is up to where along the axis there is wall, ``error`` (n,) mm how far it
-    is from the flank at most up to there (inf where nothing stands); ``fits``: runs (first, last) of points where that
-    is within the tolerance.
+    Attributes
+    ----------
+    path : PencilPath
+        With the axes.
+    height : ndarray, shape (n,)
+        mm along the axis up to which there is wall.
+    error : ndarray, shape (n,)
+        mm: largest distance between wall and flank up to there; inf where nothing stands.
+    fits : list of tuple
+        Runs (first, last) of points where ``error`` is within the tolerance.
     """
 
-    path: _core.PencilPath
-    height: np.ndarray
-    error: np.ndarray
-    fits: list
+    path: PencilPath
+    height: NDArray[np.float64]
+    error: NDArray[np.float64]
+    fits: list[tuple[int, int]]
 
 
-def swarf(path, part_mesh, tool, side=0, progress=None, *, height=None, tolerance=0.05):
+@hinted("plan.swarf")
+def swarf(
+    path: PencilPath,
+    tool: Tool,
+    part_mesh: Mesh,
+    *,
+    side: int = 0,
+    height: float | None = None,
+    tolerance: float = 0.05,
+    progress: Progress = None,
+) -> Swarf:
     """Axes along which the tool's flank cuts the wall above a pencil path, where the wall is ruled.
 
-    ``side``: which of the path's contacts is the wall's. ``height``: how much of the wall, mm from the ball's centre;
-    without it as far as wall and flank go. The cutter's end must be a ball of the path's radius, with a cylinder or a
-    cone above it. What the floor and the rest of the part say to it is for ``cutter_locations``. ValueError for a tool
-    or a height that does not fit.
+    Whether the tool gouges the floor or the rest of the part is for ``cutter_locations`` to check.
+
+    Parameters
+    ----------
+    path : PencilPath
+        A path of ``pencil``.
+    tool : Tool
+        Its end must be a ball of the path's radius, with a cylinder or a cone above it.
+    part_mesh : Mesh
+        The part.
+    side : {0, 1}
+        Which of the path's contacts is the wall's.
+    height : float, optional
+        mm of the wall, from the ball's centre; None: as far as wall and flank go.
+    tolerance : float
+        mm.
+    progress : callable, optional
+        Called with the finished share; returning False cancels.
+
+    Returns
+    -------
+    Swarf
+
+    Raises
+    ------
+    ValueError
+        For a tool or a height that does not fit.
+
+    Examples
+    --------
+    >>> part = riffler.shape.relief([[1, 1], [0, 0], [1, 1]], size=(30, 20), depth=10, sink=5)
+    >>> tool = riffler.Tool.ball(diameter=4, length=20)
+    >>> (valley,) = riffler.plan.pencil(part, tool)
+    >>> riffler.plan.swarf(valley, tool, part, side=0).fits
+    [(0, 1)]
     """
     found = _core.swarf(path, part_mesh, tool, side=side, height=height, tolerance=tolerance, progress=progress)
     return Swarf(**found)
@@ -72,18 +128,20 @@ class SwarfCuts(Strategy):
         ),
     )
 
-    def check(self, tool, given):
+    def check(self, tool: Tool, given: Sequence[Any]) -> None:
         radius = _core.tip_ball_radius(tool, "tool")
         others = [path.radius for path in given if abs(path.radius - radius) > 1e-9 * radius]
         if others:
             raise ValueError(f"tool: the paths are those of a ball of {2 * others[0]:g} mm, not of {2 * radius:g} mm")
 
-    def run(self, part_mesh, tool, given, options, progress=None):
+    def run(
+        self, part_mesh: Mesh, tool: Tool, given: Sequence[Any], options: Mapping[str, Any], progress: Progress = None
+    ) -> Found:
         options = dict(options)
         sides = {"first": (0,), "second": (1,)}.get(options.pop("side"), (0, 1))
         jobs = [(path, side) for path in given for side in sides]
         found = [
-            swarf(path, part_mesh, tool, side, share_of(progress, k, len(jobs)), **options)
+            swarf(path, tool, part_mesh, side=side, progress=share_of(progress, k, len(jobs)), **options)
             for k, (path, side) in enumerate(jobs)
         ]
         best = [max(found[k : k + len(sides)], key=_worth) for k in range(0, len(found), len(sides))]
@@ -96,14 +154,14 @@ class SwarfCuts(Strategy):
         return Found(Plan(paths, tool, tolerance=options["tolerance"]), reason, notes)
 
 
-def _worth(wall):
+def _worth(wall: Swarf) -> tuple[float, float]:
     """Length along which the flank fits, mm, then how upright the tool is there."""
     paths = _fitting(wall)
-    upright = np.mean(np.concatenate([p.axes[:, 2] for p in paths])) if paths else -1.0
+    upright = float(np.mean(np.concatenate([p.axes[:, 2] for p in paths]))) if paths else -1.0
     return round(sum(p.length for p in paths), 3), upright
 
 
-def _fitting(wall):
+def _fitting(wall: Swarf) -> list[PencilPath]:
     """Paths of the points where the flank fits. Each of their axes is a key."""
     path, fits = wall.path, list(wall.fits)
     rows = [np.arange(first, last + 1) for first, last in fits]
@@ -113,10 +171,10 @@ def _fitting(wall):
     return [_piece(path, run, path.closed and whole) for run in rows if len(run) > 1]
 
 
-def _piece(path, rows, closed):
+def _piece(path: PencilPath, rows: NDArray[np.int64], closed: bool) -> PencilPath:
     contacts, normals, axes = path.contacts[rows], path.normals[rows], path.axes[rows]
-    piece = _core.PencilPath(path.radius, path.centres[rows], contacts, normals, closed)
-    return piece.with_axes(axes, dict(enumerate(axes)), "slerp")
+    piece = PencilPath(path.radius, path.centres[rows], contacts, normals, closed=closed)
+    return piece.with_axes(axes, keys=dict(enumerate(axes)), interpolation="slerp")
 
 
 STRATEGIES = (SwarfCuts(),)

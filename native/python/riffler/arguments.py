@@ -1,0 +1,27 @@
+"""Types of arguments that many calls take, and how results that may be tasks are made."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import TypeAlias, TypeVar, cast
+
+from numpy.typing import ArrayLike
+
+from . import _core
+
+#: Called with the finished share, 0 to 1; the call is cancelled where it returns False.
+Progress: TypeAlias = Callable[[float], object] | None
+
+#: (axis, angle): a cone about a unit axis, with its half angle in rad.
+Cone: TypeAlias = tuple[ArrayLike, float]
+
+#: Options of machines and posts, by name.
+Options: TypeAlias = Mapping[str, float | bool | str | Sequence[float]]
+
+T = TypeVar("T")
+R = TypeVar("R")
+
+
+def then(found: T, convert: Callable[[T], R]) -> R:
+    """``convert(found)``; of a task, that its result will be converted."""
+    return cast(R, _core.then(found, convert))

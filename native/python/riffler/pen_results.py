@@ -1,0 +1,294 @@
+"""Results of pens: devices, their health and limits, the channels of a pen, and the diagnosis of a counter."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import ClassVar, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .deprecated import DictResult
+
+__all__ = [
+    "CoordinateCapability",
+    "DeviceInfo",
+    "GripDiagnosis",
+    "PenCapability",
+    "PenChannel",
+    "PenHealth",
+    "PenLimits",
+    "PushResult",
+]
+
+
+@dataclass(frozen=True)
+class DeviceInfo(DictResult):
+    """One HID device of this computer.
+
+    Attributes
+    ----------
+    path : str
+        What ``riffler.pen.open`` takes.
+    name, maker, serial : str
+        As the device reports them.
+    id : str
+        vendor:product, hexadecimal.
+    kind : str or None
+        Its kind in ``riffler.pen.kinds``; None: not for riffler.
+    was_opened : bool
+        It was opened and asked what it is.
+    problem : str or None
+        Why it does not open, in a few words; None where it opens.
+    text : str or None
+        Why it does not open, and what to do.
+    capability : str or None
+        What it senses and pushes.
+    about : str or None
+        What it reported about itself.
+    """
+
+    old_keys: ClassVar[Mapping[str, str]] = {"tried": "was_opened"}
+
+    path: str
+    name: str
+    maker: str
+    id: str
+    serial: str
+    kind: str | None
+    was_opened: bool
+    problem: str | None
+    text: str | None
+    capability: str | None
+    about: str | None
+
+
+@dataclass(frozen=True)
+class CoordinateCapability(DictResult):
+    """What a device senses and pushes along one coordinate: x, y, z in mm and N, or a turn in rad and N·mm.
+
+    Attributes
+    ----------
+    sensing : {"none", "position", "rate"}
+        What is sensed.
+    pushes : bool
+        It has a motor.
+    low, high : float
+        Range: mm or rad, or a second of them.
+    resolution : float
+        Smallest step of the sensor, likewise.
+    peak, continuous : float
+        Largest force or torque for a moment and for long.
+    """
+
+    sensing: Literal["none", "position", "rate"]
+    pushes: bool
+    low: float
+    high: float
+    resolution: float
+    peak: float
+    continuous: float
+
+    @property
+    def senses(self) -> Literal["position", "rate"] | None:
+        """``sensing``, or None for "none"."""
+        return None if self.sensing == "none" else self.sensing
+
+    def _as_dict(self) -> dict[str, object]:
+        return super()._as_dict() | {"senses": self.senses}
+
+
+@dataclass(frozen=True)
+class PenCapability(DictResult):
+    """What each coordinate of a pen senses and pushes.
+
+    Attributes
+    ----------
+    name : str
+        The pen.
+    text : str
+        All of it as text.
+    axes : dict
+        "x", "y", "z" and the turns "a", "b", "c", each a CoordinateCapability.
+    """
+
+    name: str
+    text: str
+    axes: dict[str, CoordinateCapability]
+
+
+@dataclass(frozen=True, eq=False)
+class PenHealth(DictResult):
+    """The connection to a device, its force, and counts since the start.
+
+    Attributes
+    ----------
+    state : str
+        Of the connection.
+    problem : str or None
+        What is wrong with it.
+    force_state : str
+        off, homing, ready, ramp, active, degraded or tripped.
+    cause : str or None
+        Why the force was taken away, and what to do.
+    fault : int
+        The device's own code, or 0.
+    homed : bool
+        Whether the pose is sure.
+    force, torque : ndarray, shape (3,)
+        As last sent to the device: N, N·mm.
+    reports, superseded, lost, malformed : int
+        Reports that were read; those that a newer one replaced before a step used them; sent and not received; invalid.
+    timeouts : int
+        Steps without a report.
+    writes : int
+        Reports that were sent.
+    read_errors, write_errors, silences : int
+        Errors that ended a connection.
+    connections, attempts : int
+        Connections, and attempts at one.
+    """
+
+    state: str
+    problem: str | None
+    force_state: str
+    cause: str | None
+    fault: int
+    homed: bool
+    force: NDArray[np.float64]
+    torque: NDArray[np.float64]
+    reports: int
+    superseded: int
+    lost: int
+    malformed: int
+    timeouts: int
+    writes: int
+    read_errors: int
+    write_errors: int
+    silences: int
+    connections: int
+    attempts: int
+
+
+@dataclass(frozen=True, eq=False)
+class PushResult(DictResult):
+    """What will be felt of a push.
+
+    Attributes
+    ----------
+    force, torque : ndarray, shape (3,)
+        What will be felt: N, N·mm.
+    missing_force, missing_torque : ndarray, shape (3,)
+        What the device cannot give.
+    reason : str or None
+        Why nothing is felt.
+    """
+
+    force: NDArray[np.float64]
+    torque: NDArray[np.float64]
+    missing_force: NDArray[np.float64]
+    missing_torque: NDArray[np.float64]
+    reason: str | None
+
+
+@dataclass(frozen=True)
+class PenChannel(DictResult):
+    """One motor of a pen with its encoder.
+
+    Attributes
+    ----------
+    name : str
+        Arm and joint: "R1" … "L3".
+    steps : float
+        Counts for one turn of the joint.
+    ratio : float
+        Turns of the motor for one of the joint.
+    sign : {-1, 1}
+        Sign of count and command for a positive rotation of the joint.
+    home : int
+        Count in the home posture.
+    low, high : float
+        Range of the joint, rad.
+    torque_constant : float
+        N·mm/A.
+    peak_current, continuous_current : float
+        A.
+    coulomb, viscous : float
+        Friction at the motor, N·mm and N·mm·s/rad.
+    gravity : float
+        N·mm at the joint while its link is horizontal.
+    inertia : float
+        kg·mm² at the joint.
+    resistance : float
+        Ω of the winding.
+    """
+
+    name: str
+    steps: float
+    ratio: float
+    sign: int
+    home: int
+    low: float
+    high: float
+    torque_constant: float
+    peak_current: float
+    continuous_current: float
+    coulomb: float
+    viscous: float
+    gravity: float
+    inertia: float
+    resistance: float
+
+
+@dataclass(frozen=True, eq=False)
+class PenLimits(DictResult):
+    """Limits of a pen.
+
+    Attributes
+    ----------
+    lower, upper : ndarray, shape (3,)
+        Corners of the workspace, mm.
+    elbow : tuple of float
+        Range of the elbows, rad.
+    force, torque : float
+        N, N·mm.
+    speed, turn_rate : float
+        mm/s, rad/s.
+    """
+
+    lower: NDArray[np.float64]
+    upper: NDArray[np.float64]
+    elbow: tuple[float, float]
+    force: float
+    torque: float
+    speed: float
+    turn_rate: float
+
+
+@dataclass(frozen=True)
+class GripDiagnosis(DictResult):
+    """Which counter of a pen is wrong.
+
+    Attributes
+    ----------
+    fault : {"none", "channel", "several", "unclear"}
+        "several": bad homing, or another pen; "unclear": twelve postures that differ by 0.02 rad are needed.
+    postures : int
+        Number of different postures.
+    channel : int or None
+        The wrong channel, for "channel".
+    counts : float or None
+        Its excess counts.
+    left : float or None
+        mm, root mean square: stretch of the grip that this does not explain.
+    """
+
+    fault: Literal["none", "channel", "several", "unclear"]
+    postures: int
+    channel: int | None = None
+    counts: float | None = None
+    left: float | None = None
+
+    def _as_dict(self) -> dict[str, object]:
+        return {key: value for key, value in super()._as_dict().items() if value is not None}

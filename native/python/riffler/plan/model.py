@@ -1,0 +1,95 @@
+"""Plans: paths with the tool they are for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .._core import Mesh, PencilPath, Tool
+from ..hints import hinted
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """Paths with the tool they are for, and how they came about.
+
+    Parameters
+    ----------
+    paths : list of PencilPath
+        The paths.
+    tool : Tool
+        Cutter, shank and holder.
+    cl : list, optional
+        For every path cutter locations, (n, 6), or None.
+    part : dict, optional
+        ``name`` and ``sha256``, as ``part_of`` makes it.
+    tolerance : float, optional
+        mm.
+    provenance : dict, optional
+        Strings.
+    off : frozenset of int
+        Numbers, from 0, of the paths that are not to be cut.
+    depths : dict, optional
+        By number, from 0: paths whose poses (``poses_of``) are what is to be cut, as by engraving, and how far the
+        cutter enters the part there, mm. They are never lifted, nor oriented.
+
+    Examples
+    --------
+    >>> part = riffler.shape.relief([[1, 1], [0, 0], [1, 1]], size=(30, 20), depth=10, sink=5)
+    >>> tool = riffler.Tool.ball(diameter=4, length=20)
+    >>> plan = riffler.plan.Plan(list(riffler.plan.pencil(part, tool)), tool, tolerance=0.01)
+    >>> riffler.plan.save(folder / "valleys.json", plan)
+    >>> len(riffler.plan.load(folder / "valleys.json").paths)
+    1
+    """
+
+    paths: list[PencilPath]
+    tool: Tool
+    cl: list[NDArray[np.float64] | None] = field(default_factory=list)
+    part: dict[str, str] = field(default_factory=dict)
+    tolerance: float | None = None
+    provenance: dict[str, str] = field(default_factory=dict)
+    off: frozenset[int] = frozenset()
+    depths: dict[int, float] = field(default_factory=dict)
+
+    @property
+    def deepest(self) -> float:
+        """mm by which the cutter enters the part at most, in the paths that are on."""
+        return max((depth for k, depth in self.depths.items() if k not in self.off), default=0.0)
+
+    @property
+    def sources(self) -> list[PencilPath]:
+        """Paths from which a strategy may start: those that are on and whose poses may be changed."""
+        return [path for k, path in enumerate(self.paths) if k not in self.off and k not in self.depths]
+
+
+@hinted("plan.part_of")
+def part_of(mesh: Mesh, name: str) -> dict[str, str]:
+    """What a plan keeps of its part.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The part.
+    name : str
+        Its name.
+
+    Returns
+    -------
+    dict
+        ``name``, and ``sha256``: the hash of vertices and triangles.
+
+    Examples
+    --------
+    >>> part = riffler.shape.relief([[1, 1], [1, 1]], size=(30, 20), depth=10)
+    >>> riffler.plan.part_of(part, "plate")["name"]
+    'plate'
+    """
+    import hashlib  # brings OpenSSL: 3 MB that only plan files need
+
+    digest = hashlib.sha256()
+    digest.update(np.ascontiguousarray(mesh.vertices, dtype="<f8").tobytes())
+    digest.update(np.ascontiguousarray(mesh.triangles, dtype="<i4").tobytes())
+    return {"name": str(name), "sha256": digest.hexdigest()}

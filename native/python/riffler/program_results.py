@@ -1,0 +1,180 @@
+"""Results of programs, machines, verifications, journals and sessions."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .deprecated import DictResult
+
+__all__ = ["JournalStock", "MachineOption", "NearestContact", "PolePassage", "Trip", "VerifyStats", "WriteReport"]
+
+
+@dataclass(frozen=True)
+class PolePassage(DictResult):
+    """Rows near the singular direction of a machine, where small turns of the tool are large turns of its axes.
+
+    Attributes
+    ----------
+    first_row, last_row : int
+        Rows of the program.
+    tool_degrees, rotary_degrees : float
+        How far the tool turns there, and the rotary axes.
+    slowed : float
+        Time of the slowest block, as a multiple of what its feed would take.
+    """
+
+    first_row: int
+    last_row: int
+    tool_degrees: float
+    rotary_degrees: float
+    slowed: float
+
+
+@dataclass(frozen=True)
+class WriteReport(DictResult):
+    """What ``Program.write`` wrote.
+
+    Attributes
+    ----------
+    blocks : int
+        Number of blocks.
+    slowed_blocks : int
+        Blocks that take longer than their feed asks.
+    rewinds : list of int
+        Rows at which the tool leaves the material because a limit makes an axis turn back.
+    pole_passages : list of PolePassage
+        Rows near the singular direction.
+    """
+
+    blocks: int
+    slowed_blocks: int
+    rewinds: list[int]
+    pole_passages: list[PolePassage]
+
+
+@dataclass(frozen=True)
+class MachineOption(DictResult):
+    """One option of a machine or of the code that is written for it.
+
+    Attributes
+    ----------
+    name : str
+        Its key in ``options``.
+    kind : str
+        "number", "positive", "numbers", "range" (two that grow), "flag" (a bool), "word" or "path".
+    count : int
+        How many numbers, at most.
+    unit : str
+        "mm", "deg", "mm/min", "deg/min" or "".
+    words : list of str
+        The values of a word.
+    value : float, bool, str, list or None
+        The value without the option; None where there is none.
+    needed : bool
+        It must be given, for these other options.
+    own : bool
+        An option of this machine's file; the others are those of many machines.
+    about : str
+        One sentence.
+    """
+
+    name: str
+    kind: str
+    count: int
+    unit: str
+    words: list[str]
+    value: float | bool | str | Sequence[float] | None
+    needed: bool
+    own: bool
+    about: str
+
+
+@dataclass(frozen=True)
+class VerifyStats(DictResult):
+    """Operation counts of a verification.
+
+    Attributes
+    ----------
+    moves : int
+        (move, slab) pairs that were cut.
+    slabs, slabs_kept : int
+        Slabs of the stock that were simulated, and those whose results of the run before were taken.
+    snapshots_used : int
+        Snapshots from which slabs started.
+    probes, probed_moves, bisections : int
+        Batches tried with shank and holder or on a fixture, moves in them, and bisections of such batches.
+    skipped : int
+        (move, slab) pairs that boxes alone keep apart.
+    """
+
+    moves: int
+    slabs: int
+    slabs_kept: int
+    snapshots_used: int
+    probes: int
+    probed_moves: int
+    bisections: int
+    skipped: int
+
+
+@dataclass(frozen=True, eq=False)
+class NearestContact(DictResult):
+    """The contact of a path that is nearest to a point or a ray.
+
+    Attributes
+    ----------
+    index : int
+        Number of the path's point.
+    side : {0, 1}
+        Which of its two contacts.
+    distance : float
+        mm.
+    point, normal : ndarray, shape (3,)
+        The contact, mm, and the part's unit normal there.
+    """
+
+    index: int
+    side: int
+    distance: float
+    point: NDArray[np.float64]
+    normal: NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class JournalStock(DictResult):
+    """The stock of a journal.
+
+    Attributes
+    ----------
+    lower, upper : ndarray, shape (3,)
+        Corners of its box, mm.
+    pitch : float
+        mm.
+    directions : str
+        "z" or "xyz".
+    snapshot : str
+        Name of the file with the stock; empty for a full block.
+    mask : str
+        Name of the file with what is protected; empty where nothing is.
+    """
+
+    lower: NDArray[np.float64]
+    upper: NDArray[np.float64]
+    pitch: float
+    directions: str
+    snapshot: str
+    mask: str
+
+
+class Trip(NamedTuple):
+    """One event in which a session took the force away."""
+
+    time: float  #: s since the start
+    state: str  #: of the force, from then on
+    sentence: str  #: why, and what to do
+    value: float  #: what was measured
