@@ -41,6 +41,7 @@ from ._core import (
     verify,
 )
 from .futures import Future, submit
+from .program_results import JournalStock, MachineOption, PolePassage, Trip, VerifyStats, WriteReport
 from .results import (
     Audit,
     Hit,
@@ -53,7 +54,6 @@ from .results import (
     VolumeCounters,
     VolumeReport,
 )
-from .program_results import JournalStock, MachineOption, PolePassage, Trip, VerifyStats, WriteReport
 
 __all__ = [
     "Audit",
@@ -76,10 +76,10 @@ __all__ = [
     "Mesh",
     "Mesher",
     "Nearest",
+    "Note",
     "Orientation",
     "Patch",
     "PickCounters",
-    "Note",
     "PolePassage",
     "Program",
     "ProgramStream",

@@ -5,12 +5,14 @@ import numpy
 import numpy.typing
 import os
 import pathlib
+import riffler.pen_results
+import riffler.program_results
 import riffler.results
 import typing
 _Found = typing.TypeVar('_Found')
 _Made = typing.TypeVar('_Made')
 import typing_extensions
-__all__: list[str] = ['AtomicFileWriter', 'Cancelled', 'Collider', 'Contact', 'Cut', 'Finding', 'FormatError', 'FrozenSurface', 'Journal', 'JournalStroke', 'JournalWriter', 'Material', 'Mesh', 'Mesher', 'NotATask', 'Note', 'PenDevice', 'PenError', 'PenGeometry', 'PenState', 'PencilPath', 'Pointer', 'Program', 'ProgramStream', 'Session', 'SessionFrame', 'SimulatedPen', 'SlabWorker', 'Smoothed', 'Snapshot', 'Task', 'Tool', 'ToolShape', 'ToolSize', 'Verification', 'VerifyPlan', 'VerifyReport', 'Volume', 'clear_drafts', 'contact_locations', 'cutter_locations', 'draft_prefix', 'drop', 'engrave', 'least_tilt', 'lift', 'machine_options', 'machines', 'orientation_maps', 'pencil', 'read_file', 'replace_file', 'replaceable', 'set_threads', 'stepover_of_scallop', 'swarf', 'then', 'threads', 'tip_ball_radius', 'verify']
+__all__: list[str] = ['AtomicFileWriter', 'Cancelled', 'Collider', 'Contact', 'Cut', 'Finding', 'FormatError', 'FrozenSurface', 'Journal', 'JournalStroke', 'JournalWriter', 'Material', 'Mesh', 'Mesher', 'NotATask', 'Note', 'PenDevice', 'PenError', 'PenGeometry', 'PenState', 'PencilPath', 'Pointer', 'Program', 'ProgramStream', 'Session', 'SessionFrame', 'SimulatedPen', 'SlabWorker', 'Smoothed', 'Snapshot', 'Task', 'Tool', 'ToolShape', 'ToolSize', 'Verification', 'VerifyPlan', 'VerifyReport', 'Volume', 'clear_drafts', 'contact_locations', 'cutter_locations', 'draft_prefix', 'drop', 'engrave', 'lift', 'machine_options', 'machines', 'min_tilt', 'orientation_maps', 'pencil', 'read_file', 'replace_file', 'replaceable', 'set_threads', 'stepover_of_scallop', 'swarf', 'then', 'threads', 'tip_ball_radius', 'verify']
 class FormatError(ValueError):
     """
     A file that is not what it should be: names the file, the line or byte, and what was expected.
@@ -2449,7 +2451,7 @@ class Collider:
         """
 class Note:
     """
-    What a reader of NC code assumed or passed over.
+    What a reader of NC code assumed or passed over: see `Program.read`.
     """
     def __repr__(self) -> str:
         ...
@@ -2468,9 +2470,9 @@ class Note:
         ...
 class ProgramStream:
     """
-    What Program.stream gives: an iterator of programs.
+    An iterator of programs: see `Program.stream`.
     """
-    def __iter__(self) -> typing.Any:
+    def __iter__(self) -> typing.Self:
         ...
     def __next__(self) -> Program:
         ...
@@ -2480,207 +2482,599 @@ class Program:
 
     One row per move end. Between two rows the tip moves on a line and the axis on the great circle at constant rate, by way
     of the poses in ``via`` where there are any.
-    ``tools`` is a dict of the tools whose shape is known, by number; ``provenance`` a dict of strings that the header
-    comment of the NC code repeats. Lengths in mm, feed in mm/min at the tip, spindle in rev/min.
+
+    Parameters
+    ----------
+    poses : array_like, shape (n, 6)
+        Tip in mm and unit axis, tip to spindle.
+    feed : array_like, shape (n,), or float
+        mm/min at the tip.
+    rapid : array_like of bool, shape (n,), or bool
+        Rows that end a rapid.
+    tool : array_like of int, shape (n,), or int
+        Tool numbers; 0: none.
+    line : array_like of int, shape (n,), or int
+        Source lines from 1; 0: no source.
+    spindle : array_like, shape (n,), or float
+        rev/min; negative counter-clockwise, 0 stopped.
+    tools : dict, optional
+        Number to Tool, of the tools whose shape is known.
+    provenance : dict, optional
+        Strings that the header comment of the NC code repeats.
+    notes : list of Note
+        What the reader of NC code assumed or passed over.
+    at_machine : array_like of bool, shape (n,), or bool
+        Rows that end at a position of the machine whose place in the part is not known.
+    via : dict, optional
+        Row to poses (k, 6) on the way there.
+
+    Raises
+    ------
+    ValueError
+        Naming the row: not finite, not a unit axis, a feed of 0 where the tip moves, ``at_machine`` with another pose than
+        the row before.
+
+    Examples
+    --------
+    >>> program = riffler.Program([(0, 0, 5, 0, 0, 1), (20, 0, 5, 0, 0, 1)], feed=600, rapid=[True, False])
+    >>> program.feed
+    array([  0., 600.])
     """
     @staticmethod
     def from_bytes(data: bytes) -> Program:
         """
         A program from the bytes of a .rprog file.
+
+        Parameters
+        ----------
+        data : bytes
+            As ``to_bytes`` makes them.
+
+        Returns
+        -------
+        Program
+
+        Raises
+        ------
+        FormatError
+            Naming the byte.
+
+        Examples
+        --------
+        >>> program = riffler.Program([(x, 0, 5, 0, 0, 1) for x in range(5)], feed=600)
+        >>> len(riffler.Program.from_bytes(program.to_bytes()))
+        5
         """
     @staticmethod
-    def from_cl(cl: collections.abc.Iterable, tools: typing.Any, feed: typing.Any, spindle: typing.Any = 0.0, *, safe_height: typing.SupportsFloat | None = None, clearance: typing.SupportsFloat = 10.0, occupied: typing.Any = None, provenance: typing.Any = None, collider: Collider | None = None, retract: typing.SupportsFloat | None = None, direction: typing.Any = None, lead_in: typing.SupportsFloat | None = None, contact_tolerance: typing.SupportsFloat = 0.02) -> Program:
+    def from_cl(cl: collections.abc.Iterable[numpy.typing.ArrayLike], tools: collections.abc.Iterable[Tool] | None, *, feed: numpy.typing.ArrayLike | collections.abc.Sequence[numpy.typing.ArrayLike], spindle: numpy.typing.ArrayLike | collections.abc.Sequence[numpy.typing.ArrayLike] = 0.0, safe_height: typing.SupportsFloat | None = None, clearance: typing.SupportsFloat = 10.0, occupied: tuple[numpy.typing.ArrayLike, numpy.typing.ArrayLike] | None = None, provenance: collections.abc.Mapping[str, object] | None = None, collider: Collider | None = None, retract: typing.SupportsFloat | None = None, direction: numpy.typing.ArrayLike | None = None, lead_in: typing.SupportsFloat | None = None, contact_tolerance: typing.SupportsFloat = 0.02) -> Program:
         """
-        From cutter locations: every (n, 6) array is one cut.
+        A program from cutter locations: every (n, 6) array is one cut.
 
-        Its rows become feed moves in order, none merged. Before it a rapid at safe height to above its first point, along the
-        tool's axis, and the feed in; after it a rapid out along the axis. ``tools``: one for all arrays or one for each
-        (None: tool 1 of unknown shape). ``feed`` (mm/min at the tip) and ``spindle`` (rev/min, negative counter-clockwise): one
-        for all, or a list of one for each array; a feed may be an array of one per row.
-        ``safe_height``: z (mm) above everything, the clearance plane; by default ``clearance`` (mm) above all tips and
-        ``occupied``, a pair of corners around stock, part and fixtures.
+        Its rows become feed moves in order, none merged. Before a cut there is a rapid at safe height to above its first point,
+        along the tool's axis, and the feed in; after it a rapid out along the axis. With a ``collider``, approaches, retracts and
+        the moves between cuts are resolved with cutter, shank and holder: along the tool's axis where that is clear, otherwise by
+        another link, the axis unchanged; such a link is fed, since it may cross stock.
 
-        With a ``collider``, its part and fixtures are occupied too, and approaches, retracts and the moves between cuts are
-        resolved with cutter, shank and holder: along the tool's axis where that is clear, otherwise by another way, the axis
-        kept; such a way is fed, since it may cross stock. ``retract``: mm of the first stretch out of a cut; ``direction``: a
-        unit vector, which way that goes. Not given, what is clear is looked for. ``lead_in``: mm before a cut that are fed, what
-        is above it being air; not given, all of it is fed. ``contact_tolerance``: mm that a tool may enter part and fixtures by,
-        as cuts touch the part. ValueError names the path, the row, the place and the remedy where nothing is clear.
+        Parameters
+        ----------
+        cl : list of array_like, shape (n, 6)
+            Tip in mm and unit axis, as ``riffler.plan.cutter_locations`` returns them.
+        tools : list of Tool, or None
+            One for all arrays or one for each; None: tool 1 of unknown shape.
+        feed : float or array_like, or a list of one for each array
+            mm/min at the tip; an array has one for each row.
+        spindle : float, or a list of one for each array
+            rev/min; negative counter-clockwise.
+        safe_height : float, optional
+            z (mm) above everything; None: ``clearance`` above all tips and ``occupied``.
+        clearance : float
+            mm.
+        occupied : tuple of two array_like, shape (3,), optional
+            Corners of a box around stock, part and fixtures, mm. Part and fixtures of ``collider`` are occupied, too.
+        provenance : dict, optional
+            Strings for the header comment.
+        collider : Collider, optional
+            Part and fixtures.
+        retract : float, optional
+            mm of the first stretch out of a cut; None: what is clear is looked for.
+        direction : array_like, shape (3,), optional
+            Unit vector of that stretch; None: likewise.
+        lead_in : float, optional
+            mm before a cut that are fed, what is above them being air; None: all of it is fed.
+        contact_tolerance : float
+            mm by which a tool may enter part and fixtures, as cuts touch the part.
+
+        Returns
+        -------
+        Program
+
+        Raises
+        ------
+        ValueError
+            Naming the path, the row, the place and the remedy where nothing is clear.
+
+        Examples
+        --------
+        >>> ball = riffler.Tool.ball(diameter=6, length=30)
+        >>> cut = [(0, 0, 0, 0, 0, 1), (20, 0, 0, 0, 0, 1)]
+        >>> program = riffler.Program.from_cl([cut], [ball], feed=600, spindle=12000)
+        >>> int((~program.rapid).sum()), program.tools[1] == ball
+        (2, True)
         """
     @staticmethod
     def joined(programs: collections.abc.Sequence[Program]) -> Program:
         """
-        One after the other. ValueError where one number stands for tools of two shapes.
-        """
-    @staticmethod
-    def load(path: os.PathLike | str | bytes, progress: typing.Any = None) -> Program:
-        """
-        Reads a .rprog file; FormatError naming the byte where it is damaged or not one.
-        """
-    @staticmethod
-    def read(path: os.PathLike | str | bytes, machine: str = 'tcp', options: typing.Any = None, *, progress: typing.Any = None) -> Program:
-        """
-        Reads NC code for ``machine``, a name of machines(), as its control has it: RS-274, APT, Heidenhain's Klartext or Sinumerik.
+        Programs one after the other.
 
-        Options: those of the machine; ``chord_tolerance`` (mm, default 0.002) for curves; ``axis_tolerance`` (rad): where it is
-        given, blocks whose rotary axes leave the great circle by more become several rows, otherwise a block is one row, and the
-        poses on its way are in ``via``;
-        ``block_delete`` (default True: lines that begin with / are passed over); ``unknown``: "error" or "skip" (what was skipped
-        is listed in ``notes`` and ``provenance``); ``cutter_compensation``: "error", "ignore" (points are those of the tool's
-        centre) or "offset" (points are the contour's, and the tool's centre goes beside it); ``tool_diameters`` for that, in mm: one
-        number, or a dict by the number of the offset D or of the tool; ``units``: "mm" or "inch", before the program says which; ``arc_tolerance`` (mm, default 0.005) by which an arc's
-        end may miss its circle; ``g54`` … ``g59``, ``g59_1`` … ``g59_3``, ``g28``, ``g30``: where on the machine work offsets and homes
-        lie, three to six numbers; ``subroutines``: a folder of files name.ngc; ``parameters``: a file of LinuxCNC's parameters;
-        ``max_turns`` of loops and calls (default 1e6). Poses are in the coordinates in which the first move is
-        programmed. FormatError names file, line and block; nothing that is not understood is skipped unasked.
+        Parameters
+        ----------
+        programs : list of Program
+            In their order.
+
+        Returns
+        -------
+        Program
+
+        Raises
+        ------
+        ValueError
+            Where one number stands for tools of two shapes.
+
+        Examples
+        --------
+        >>> program = riffler.Program([(x, 0, 5, 0, 0, 1) for x in range(5)], feed=600)
+        >>> len(riffler.Program.joined([program, program]))
+        10
         """
     @staticmethod
-    def stream(path: os.PathLike | str | bytes, machine: str = 'tcp', options: typing.Any = None, rows: typing.SupportsFloat = 65536) -> ProgramStream:
+    def load(path: os.PathLike | str | bytes, *, progress: collections.abc.Callable[[float], bool | None] | None = None) -> Program:
         """
-        Reads as ``read`` does, in memory that does not grow with the file: an iterator of programs of at most ``rows``
-        rows. Each after the first begins with the row at which the one before ended.
+        Reads a .rprog file.
+
+        Parameters
+        ----------
+        path : path_like
+            The file.
+        progress : callable, optional
+            Called with the finished share; returning False cancels.
+
+        Returns
+        -------
+        Program
+
+        Raises
+        ------
+        FormatError
+            Naming the byte where the file is damaged or not one.
+
+        Examples
+        --------
+        >>> program = riffler.Program([(x, 0, 5, 0, 0, 1) for x in range(5)], feed=600)
+        >>> program.save("part.rprog")
+        >>> bool((riffler.Program.load("part.rprog").poses == program.poses).all())
+        True
+        """
+    @staticmethod
+    def read(path: os.PathLike | str | bytes, *, machine: str = 'tcp', options: collections.abc.Mapping[str, float | bool | str | collections.abc.Sequence[float]] | None = None, progress: collections.abc.Callable[[float], bool | None] | None = None) -> Program:
+        """
+        Reads NC code as a machine's control has it: RS-274, APT, Heidenhain's Klartext or Sinumerik.
+
+        Poses are in the coordinates in which the first move is programmed. Whatever the reader does not understand is an error,
+        unless ``unknown`` is "skip".
+
+        Parameters
+        ----------
+        path : path_like
+            The file.
+        machine : str
+            A name of ``machines``, or the path of a .toml file.
+        options : dict, optional
+            Those of the machine, and of reading:
+
+            - ``chord_tolerance`` (mm, 0.002): for curves.
+            - ``axis_tolerance`` (rad): blocks whose rotary axes leave the great circle by more become several rows; without it a
+              block is one row, and the poses on its way are in ``via``.
+            - ``block_delete`` (True): lines that begin with / are passed over.
+            - ``unknown``: "error" or "skip"; ``notes`` and ``provenance`` list what was skipped.
+            - ``cutter_compensation``: "error", "ignore" (points are those of the tool's centre) or "offset" (points are the
+              contour's, and the tool's centre is offset from it); ``tool_diameters`` for that, mm: one number, or a dict by
+              the number of the offset D or of the tool.
+            - ``units``: "mm" or "inch", before the program declares them.
+            - ``arc_tolerance`` (mm, 0.005): by which an arc's end may miss its circle.
+            - ``g54`` … ``g59``, ``g59_1`` … ``g59_3``, ``g28``, ``g30``: where on the machine work offsets and homes lie, three to
+              six numbers.
+            - ``subroutines``: a folder of files name.ngc; ``parameters``: a file of LinuxCNC's parameters; ``max_turns`` (1e6) of
+              loops and calls.
+        progress : callable, optional
+            Called with the finished share; returning False cancels.
+
+        Returns
+        -------
+        Program
+
+        Raises
+        ------
+        FormatError
+            Naming file, line and block.
+        ValueError
+            Naming the option that is wrong.
+
+        Examples
+        --------
+        >>> text = "G21 G90\\nT1 M6\\nG1 X10 Y0 Z5 F600\\nX20\\nM2\\n"
+        >>> from pathlib import Path
+        >>> _ = Path("part.ngc").write_text(text)
+        >>> riffler.Program.read("part.ngc", machine="3-axis").poses[-1, :3]
+        array([20.,  0.,  5.])
+        """
+    @staticmethod
+    def retimed(*args, **kwargs):
+        """
+        scale_feeds(self: riffler._core.Program, factor: typing.SupportsFloat) -> riffler._core.Program
+
+        The program with other feeds; rapids are unchanged.
+
+        Parameters
+        ----------
+        factor : float
+            By which feeds are multiplied.
+
+        Returns
+        -------
+        Program
+
+        Examples
+        --------
+        >>> program = riffler.Program([(x, 0, 5, 0, 0, 1) for x in range(2)], feed=600)
+        >>> program.scale_feeds(0.5).feed
+        array([300., 300.])
+
+        """
+    @staticmethod
+    def retooled(*args, **kwargs):
+        """
+        renumber_tools(self: riffler._core.Program, numbers: collections.abc.Mapping[typing.SupportsInt, typing.SupportsInt]) -> riffler._core.Program
+
+        The program with other tool numbers.
+
+        Parameters
+        ----------
+        numbers : dict
+            Old number to new; a tool that is not in it keeps its number.
+
+        Returns
+        -------
+        Program
+
+        Raises
+        ------
+        ValueError
+            Where two shapes would share a number.
+
+        Examples
+        --------
+        >>> program = riffler.Program([(x, 0, 5, 0, 0, 1) for x in range(2)], feed=600, tool=1)
+        >>> program.renumber_tools({1: 7}).tool
+        array([7, 7], dtype=int32)
+
+        """
+    @staticmethod
+    def stream(path: os.PathLike | str | bytes, *, machine: str = 'tcp', options: collections.abc.Mapping[str, float | bool | str | collections.abc.Sequence[float]] | None = None, rows: typing.SupportsFloat = 65536) -> ProgramStream:
+        """
+        Reads as ``read`` does, in memory that does not grow with the file.
+
+        Parameters
+        ----------
+        path : path_like
+            The file.
+        machine : str
+            A name of ``machines``, or the path of a .toml file.
+        options : dict, optional
+            As for ``read``.
+        rows : int
+            Largest number of rows of a program.
+
+        Returns
+        -------
+        ProgramStream
+            An iterator of programs; each after the first begins with the row at which the one before ended.
+
+        Examples
+        --------
+        >>> text = "G21 G90\\nT1 M6\\nG1 X10 Y0 Z5 F600\\nX20\\nX30\\nM2\\n"
+        >>> from pathlib import Path
+        >>> _ = Path("part.ngc").write_text(text)
+        >>> [len(part) for part in riffler.Program.stream("part.ngc", machine="3-axis", rows=2)]
+        [2, 2]
         """
     def __getstate__(self) -> bytes:
         ...
-    def __init__(self, poses: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], feed: typing.Any, rapid: typing.Any = False, tool: typing.Any = 1, line: typing.Any = 0, spindle: typing.Any = 0.0, tools: typing.Any = None, provenance: typing.Any = None, notes: collections.abc.Sequence[Note] = [], at_machine: typing.Any = False, via: typing.Any = None) -> None:
-        """
-        From columns: poses (n, 6), everything else one value for all rows or (n,).
-
-        ValueError names the row: not finite, not a unit axis, a feed of 0 where the tip moves, ``at_machine`` with another pose
-        than the row before.
-        """
+    def __init__(self, poses: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], feed: numpy.typing.ArrayLike, *, rapid: numpy.typing.ArrayLike = False, tool: numpy.typing.ArrayLike = 1, line: numpy.typing.ArrayLike = 0, spindle: numpy.typing.ArrayLike = 0.0, tools: collections.abc.Mapping[int, Tool] | None = None, provenance: collections.abc.Mapping[str, object] | None = None, notes: collections.abc.Sequence[Note] = [], at_machine: numpy.typing.ArrayLike = False, via: collections.abc.Mapping[int, numpy.typing.ArrayLike] | None = None) -> None:
+        ...
     def __len__(self) -> int:
         ...
     def __repr__(self) -> str:
         ...
     def __setstate__(self, arg0: bytes) -> None:
         ...
-    def cuts(self) -> list:
+    def cuts(self) -> list[tuple[int, numpy.typing.NDArray[numpy.float64]]]:
         """
-        For replay: a list of (tool number, poses (k, 6)), one per run of rows in the part with one tool, rapids and the poses of ``via`` included.
+        The poses for a replay, tool by tool.
+
+        Returns
+        -------
+        list of tuple
+            (tool number, poses (k, 6)), one for each run of rows in the part with one tool; rapids and the poses of ``via`` are
+            included.
+
+        Examples
+        --------
+        >>> program = riffler.Program([(x, 0, 5, 0, 0, 1) for x in range(5)], feed=600, tool=3)
+        >>> [(number, poses.shape) for number, poses in program.cuts()]
+        [(3, (5, 6))]
         """
     def followed(self) -> Program:
         """
-        With the poses of ``via`` as rows of their own: between its rows the tool moves as the machine moves it.
-        """
-    def retimed(self, factor: typing.SupportsFloat) -> Program:
-        """
-        Feeds times ``factor``; rapids as they are.
-        """
-    def retooled(self, numbers: collections.abc.Mapping[typing.SupportsInt, typing.SupportsInt]) -> Program:
-        """
-        Tool numbers by a dict old: new; those that are not in it stay. ValueError where two shapes would share one.
-        """
-    def save(self, path: os.PathLike | str | bytes, progress: typing.Any = None) -> None:
-        """
-        Writes a .rprog file, whole or not at all: everything to the bit, which NC code cannot keep.
+        The program with the poses of ``via`` as rows of their own.
 
-        The same program gives the same bytes.
+        Between its rows the tool moves as the machine moves it.
+
+        Returns
+        -------
+        Program
+
+        Examples
+        --------
+        >>> program = riffler.Program([(0, 0, 5, 0, 0, 1), (20, 0, 5, 0, 0, 1)], feed=600, rapid=[True, False])
+        >>> len(program.followed())
+        2
+        """
+    def renumber_tools(self, numbers: collections.abc.Mapping[typing.SupportsInt, typing.SupportsInt]) -> Program:
+        """
+        The program with other tool numbers.
+
+        Parameters
+        ----------
+        numbers : dict
+            Old number to new; a tool that is not in it keeps its number.
+
+        Returns
+        -------
+        Program
+
+        Raises
+        ------
+        ValueError
+            Where two shapes would share a number.
+
+        Examples
+        --------
+        >>> program = riffler.Program([(x, 0, 5, 0, 0, 1) for x in range(2)], feed=600, tool=1)
+        >>> program.renumber_tools({1: 7}).tool
+        array([7, 7], dtype=int32)
+        """
+    def save(self, path: os.PathLike | str | bytes, *, progress: collections.abc.Callable[[float], bool | None] | None = None) -> None:
+        """
+        Writes a .rprog file: everything to the bit, which NC code cannot keep.
+
+        The file is whole or not there. The same program gives the same bytes.
+
+        Parameters
+        ----------
+        path : path_like
+            The file.
+        progress : callable, optional
+            Called with the finished share; returning False cancels.
+
+        Examples
+        --------
+        >>> program = riffler.Program([(x, 0, 5, 0, 0, 1) for x in range(5)], feed=600)
+        >>> program.save("part.rprog")
+        >>> len(riffler.Program.load("part.rprog"))
+        5
+        """
+    def scale_feeds(self, factor: typing.SupportsFloat) -> Program:
+        """
+        The program with other feeds; rapids are unchanged.
+
+        Parameters
+        ----------
+        factor : float
+            By which feeds are multiplied.
+
+        Returns
+        -------
+        Program
+
+        Examples
+        --------
+        >>> program = riffler.Program([(x, 0, 5, 0, 0, 1) for x in range(2)], feed=600)
+        >>> program.scale_feeds(0.5).feed
+        array([300., 300.])
         """
     def to_bytes(self) -> bytes:
         """
         The bytes of the .rprog file.
+
+        Returns
+        -------
+        bytes
+
+        Examples
+        --------
+        >>> program = riffler.Program([(x, 0, 5, 0, 0, 1) for x in range(5)], feed=600)
+        >>> len(riffler.Program.from_bytes(program.to_bytes()))
+        5
         """
-    def transformed(self, matrix: typing.Any) -> Program:
+    def transformed(self, matrix: numpy.typing.ArrayLike) -> Program:
         """
-        In another clamping: ``matrix`` (4, 4) turns and moves (mm) the part, without scale or mirror.
+        The program in another clamping.
+
+        Parameters
+        ----------
+        matrix : array_like, shape (4, 4)
+            Turns and moves (mm) the part, without scale or mirror.
+
+        Returns
+        -------
+        Program
+
+        Examples
+        --------
+        >>> program = riffler.Program([(x, 0, 5, 0, 0, 1) for x in range(5)], feed=600)
+        >>> program.transformed(np.diag([-1, -1, 1, 1])).poses[1, :3]
+        array([-1.,  0.,  5.])
         """
     def trimmed(self, first: typing.SupportsInt, last: typing.SupportsInt) -> Program:
         """
-        Rows [first, last) as a program. The first of them is a rapid; an approach is yours to put before it.
+        Some rows as a program.
+
+        Parameters
+        ----------
+        first, last : int
+            Rows ``first`` to ``last`` - 1. The first of them becomes a rapid; an approach is the caller's to put before it.
+
+        Returns
+        -------
+        Program
+
+        Examples
+        --------
+        >>> program = riffler.Program([(x, 0, 5, 0, 0, 1) for x in range(5)], feed=600)
+        >>> len(program.trimmed(1, 4))
+        3
         """
-    def write(self, path: os.PathLike | str | bytes, post: str = 'tcp', tolerance: typing.SupportsFloat = 0.01, axis_tolerance: typing.SupportsFloat = 0.00175, options: typing.Any = None, *, collider: Collider | None = None, stock: Volume | None = None, contact_tolerance: typing.SupportsFloat = 0.05) -> dict:
+    def write(self, path: os.PathLike | str | bytes, *, post: str = 'tcp', tolerance: typing.SupportsFloat = 0.01, axis_tolerance: typing.SupportsFloat = 0.00175, options: collections.abc.Mapping[str, float | bool | str | collections.abc.Sequence[float]] | None = None, collider: Collider | None = None, stock: Volume | None = None, contact_tolerance: typing.SupportsFloat = 0.05) -> riffler.program_results.WriteReport:
         """
-        Writes NC code; ``post`` is a name of machines(). The file is whole or not there.
+        Writes NC code; the file is whole or not there, and the same program gives the same bytes.
 
         Every row is the end of a block; more blocks come between two rows where machine axes that move linearly would take the
-        tip more than ``tolerance`` (mm) off the straight line or the axis more than ``axis_tolerance`` (rad) off the great
-        circle. The same program gives the same bytes.
+        tip more than ``tolerance`` off the straight line or the axis more than ``axis_tolerance`` off the great circle. Where a
+        rotary axis moves together with linear ones that are written as they stand, blocks are under G93, each with
+        F = 1 / minutes: the tip's travel at the feed, or longer where an axis's rate asks for it.
 
-        Options are the machine's (``rot_point``, ``offset``, ``tool_offset`` of LinuxCNC's tables, named as its pins;
-        ``pivot_length`` of heads), and of all: ``tcp`` (False: X Y Z are where the axes stand; True: the tip in part
-        coordinates), ``direction`` (``"linuxcnc"`` or ``"iso"``, of tables), ``limits_x`` … ``limits_c`` [low, high], ``rate_x`` …
-        ``rate_c``, ``max_rotary`` (deg/min), ``line_numbers``, ``coolant``, ``retract``, ``safe_height``, ``arcs``, ``vectors``: docs/machines.md. Where a
-        rotary axis moves beside linear ones that are written as they stand, blocks are under G93, each with F = 1 / minutes: the
-        tip's way at the feed, or longer where an axis's rate asks for it.
+        Parameters
+        ----------
+        path : path_like
+            The file.
+        post : str
+            A name of ``machines``, or the path of a .toml file.
+        tolerance : float
+            mm.
+        axis_tolerance : float
+            rad.
+        options : dict, optional
+            The machine's (``rot_point``, ``offset``, ``tool_offset`` of LinuxCNC's tables, named as its pins; ``pivot_length`` of
+            heads), and those of all: ``tcp`` (False: X Y Z are where the axes stand; True: the tip in part coordinates),
+            ``direction`` ("linuxcnc" or "iso", of tables), ``limits_x`` … ``limits_c`` [low, high], ``rate_x`` … ``rate_c``,
+            ``max_rotary`` (deg/min), ``line_numbers``, ``coolant``, ``retract``, ``safe_height``, ``arcs``, ``vectors``:
+            docs/machines.md and ``machine_options``.
+        collider : Collider, optional
+            Checks the machine's own motion, block by block as its axes make it, with cutter, shank and holder against part and
+            fixtures.
+        stock : Volume, optional
+            Runs that motion on it, as a verification does.
+        contact_tolerance : float
+            mm by which part and fixtures may be entered.
 
-        With a ``collider`` the machine's own motion is checked, block by block as its axes make it, with cutter, shank and
-        holder against part and fixtures; with a ``stock`` (a Volume) it is run on that, as a verification does. What enters them
-        by more than ``contact_tolerance`` (mm), a rapid in the stock, or shank or holder in it, is a ValueError with the row, the
-        place and the remedy, and nothing is written.
+        Returns
+        -------
+        WriteReport
 
-        Returns a dict: ``blocks``; ``slowed_blocks``, longer than their feed asks; ``rewinds``, the rows at which the tool leaves
-        the material because a limit asks to turn an axis back; ``pole_passages``, near the singular direction: a list of dicts of
-        ``first_row``, ``last_row``, ``tool_degrees``, ``rotary_degrees`` and ``slowed`` (the worst block's time by what its feed
-        would take).
+        Raises
+        ------
+        ValueError
+            With the row, the place and the remedy: what the machine cannot hold, what enters part or fixtures, a rapid in the
+            stock, or shank or holder in it. Nothing is written.
+
+        Examples
+        --------
+        >>> cut = [(0, 0, 0, 0, 0, 1), (20, 0, 0, 0, 0, 1)]
+        >>> program = riffler.Program.from_cl([cut], [riffler.Tool.ball(diameter=6, length=30)], feed=600)
+        >>> program.write("part.ngc", post="linuxcnc-xyzac", options={"rot_point": (0, 0, 0)}).rewinds
+        []
         """
     @property
-    def at_machine(self) -> numpy.ndarray:
+    def at_machine(self) -> numpy.typing.NDArray[numpy.bool]:
         """
         (n,) bool: rows that end at a position of the machine (G28, G30, G53) whose place in the part is not known. Their pose is that of the row before; the motions there and from there are neither cut nor compared.
         """
     @property
-    def feed(self) -> numpy.ndarray:
+    def feed(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         (n,) mm/min at the tip; 0 for rapids.
         """
     @property
-    def line(self) -> numpy.ndarray:
+    def line(self) -> numpy.typing.NDArray[numpy.int32]:
         """
         (n,) int32 source lines from 1; 0: no source.
         """
     @property
     def notes(self) -> list[Note]:
         """
-        What the reader assumed or passed over: a list of Note. Programs that are made of numbers have none.
+        What the reader assumed or passed over. Programs that are made of numbers have none.
         """
     @property
-    def poses(self) -> numpy.ndarray:
+    def poses(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         (n, 6): tip xyz, unit axis xyz (tip to spindle). Read-only view.
         """
     @property
-    def provenance(self) -> dict:
+    def provenance(self) -> dict[str, str]:
         """
-        dict of strings.
-        """
-    @property
-    def rapid(self) -> numpy.ndarray:
-        """
-        (n,) bool.
+        Strings that the header comment of the NC code repeats.
         """
     @property
-    def spindle(self) -> numpy.ndarray:
+    def rapid(self) -> numpy.typing.NDArray[numpy.bool]:
+        """
+        (n,) bool: rows that end a rapid.
+        """
+    @property
+    def spindle(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         (n,) rev/min; negative counter-clockwise, 0 stopped.
         """
     @property
-    def tool(self) -> numpy.ndarray:
+    def tool(self) -> numpy.typing.NDArray[numpy.int32]:
         """
         (n,) int32 tool numbers; 0: none.
         """
     @property
-    def tools(self) -> dict:
+    def tools(self) -> dict[int, Tool]:
         """
-        dict: number to Tool, of the tools whose shape is known.
+        Tools whose shape is known, by number.
         """
     @property
-    def via(self) -> dict:
+    def via(self) -> dict[int, numpy.typing.NDArray[numpy.float64]]:
         """
-        dict: row to (k, 6) poses on the way there, where rotary axes that turn evenly take the tool another way than the great circle: by more than 0.002 rad, in programs that were read without ``axis_tolerance``.
+        (k, 6) poses on the way to a row, by row: where rotary axes that turn evenly take the tool off the great circle by more than 0.002 rad, in programs that were read without ``axis_tolerance``.
         """
 class Finding:
     """
-    One fault: neighbouring rows of a program with the same kind, tool and fixture.
+    One fault, neighbouring rows of a program with the same kind, tool and fixture: see `verify`.
     """
     def __repr__(self) -> str:
         ...
     def to_dict(self) -> dict:
-        ...
+        """
+        For JSON: all attributes.
+
+        Returns
+        -------
+        dict
+
+        Examples
+        --------
+        >>> stock = riffler.Volume.block(lower=(0, 0, 0), upper=(20, 20, 10), pitch=0.5)
+        >>> ball = riffler.Tool.ball(diameter=6, length=30)
+        >>> program = riffler.Program([(0, 0, 8, 0, 0, 1), (20, 20, 8, 0, 0, 1)], 0, rapid=True, tools={1: ball})
+        >>> riffler.verify(program, stock).findings[0].to_dict()["kind"]
+        'rapid'
+        """
     @property
     def fixture(self) -> int | None:
         """
-        Which of the fixtures it was, from 0, or None.
+        Number of the fixture, from 0, or None.
         """
     @property
     def kind(self) -> str:
@@ -2690,10 +3084,14 @@ class Finding:
         """
     @property
     def last_line(self) -> int:
-        ...
+        """
+        Source line of the last row.
+        """
     @property
     def last_row(self) -> int:
-        ...
+        """
+        Last row.
+        """
     @property
     def line(self) -> int:
         """
@@ -2702,7 +3100,7 @@ class Finding:
     @property
     def member(self) -> str:
         """
-        What of the tool it was: cutter, shank, holder, or beyond where its description ends.
+        Piece of the tool: cutter, shank, holder, or beyond where its description ends.
         """
     @property
     def message(self) -> str:
@@ -2726,7 +3124,9 @@ class Finding:
         """
     @property
     def unit(self) -> str:
-        ...
+        """
+        Unit of ``value``.
+        """
     @property
     def value(self) -> float:
         """
@@ -2736,35 +3136,47 @@ class Finding:
         """
 class VerifyReport:
     """
-    What a verification found.
+    What a verification found: see `verify`.
     """
     def __repr__(self) -> str:
         ...
     def to_dict(self) -> dict:
         """
         For JSON: passed, findings, not_checked, rows, time, volume, removed (mm³ in sum), stats.
+
+        Returns
+        -------
+        dict
+
+        Examples
+        --------
+        >>> stock = riffler.Volume.block(lower=(0, 0, 0), upper=(20, 20, 10), pitch=0.5)
+        >>> ball = riffler.Tool.ball(diameter=6, length=30)
+        >>> program = riffler.Program([(0, 0, 8, 0, 0, 1), (20, 20, 8, 0, 0, 1)], 600, spindle=9000, tools={1: ball})
+        >>> riffler.verify(program, stock).to_dict()["rows"]
+        2
         """
     @property
-    def deviation(self) -> typing.Any:
+    def deviation(self) -> tuple[Mesh, numpy.typing.NDArray[numpy.float64]] | None:
         """
-        (mesh of what is left, (vertices,) mm) or None without a part; made when first asked for.
+        (mesh of what is left, (vertices,) mm) or None without a part; computed at the first use.
 
         Distance of each vertex from the part's surface: positive where rest material stands on it, negative in gouges.
         """
     @property
     def findings(self) -> list[Finding]:
         """
-        list of Finding, by rows.
+        The faults, by rows.
         """
     @property
     def not_checked(self) -> list[str]:
         """
-        list of sentences: what was not asked for, so does not fail.
+        Sentences: what was not requested, so does not fail.
         """
     @property
-    def part_map(self) -> typing.Any:
+    def part_map(self) -> numpy.typing.NDArray[numpy.float64] | None:
         """
-        (vertices of the part,) mm, or None without a part; made when first asked for.
+        (vertices of the part,) mm, or None without a part; computed at the first use.
 
         Distance of each vertex of the part from the surface of what is left: positive where material covers it, negative where
         it is missing, -inf where nothing is left at all.
@@ -2772,7 +3184,7 @@ class VerifyReport:
     @property
     def passed(self) -> bool:
         """
-        True only where every check that was asked for could be made and found nothing.
+        True only where every requested check could be made and found nothing.
         """
     @property
     def rate(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -2787,15 +3199,13 @@ class VerifyReport:
     @property
     def seconds(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n,) s: the tip's way at its feed, rapids at ``rapid_feed``; where the tip stands still, the axis' angle at
+        (n,) s: the tip's travel at its feed, rapids at ``rapid_feed``; where the tip stands still, the axis' angle at
         3600 deg/min. Acceleration and tool changes are left out.
         """
     @property
-    def stats(self) -> dict:
+    def stats(self) -> riffler.program_results.VerifyStats:
         """
-        dict of operation counts: ``moves``, (move, slab) pairs cut; ``slabs`` simulated; ``slabs_kept``, whose results
-        of the run before were taken; ``snapshots_used``; ``probes``, batches tried with shank and holder or on a fixture, and
-        ``probed_moves`` in them; ``bisections`` of such batches; ``skipped``, (move, slab) pairs told apart by boxes alone.
+        Operation counts.
         """
     @property
     def time(self) -> float:
@@ -2805,21 +3215,77 @@ class VerifyReport:
     @property
     def volume(self) -> Volume:
         """
-        The Volume that is left.
+        The material that is left.
         """
 class Verification:
     """
     Verifies a program again and again while it is edited.
 
-    Arguments are those of ``verify``. ``run`` of a program that is like the one before does again only what differs: rows
-    before the first difference come from snapshots, and parts of the stock that no differing move can touch stay as they
-    are. The report is that of a fresh run, bit for bit.
+    ``run`` of a program that is like the one before repeats only what differs: rows before the first difference come from
+    snapshots, and parts of the stock that no differing move can touch stay unchanged. The report is that of a fresh run, bit
+    for bit.
+
+    Parameters
+    ----------
+    stock_volume : Volume
+        Not changed.
+    part_mesh : Mesh, optional
+        For gouges and rest material.
+    fixtures : list of Volume or Mesh
+        What the whole tool must stay clear of; a Mesh becomes a Volume at the stock's pitch.
+    tools : dict, optional
+        Number to Tool; takes the place of the program's own.
+    tolerance : float
+        mm, of cutting, as in ``Volume.carve``; less deep contact is none.
+    gouge_tolerance : float
+        mm under the part's surface from which removed material is a gouge.
+    rest_tolerance : float, optional
+        mm over the part's surface from which material is a finding; None: rest material is mapped, not judged.
+    rapid_feed : float
+        mm/min, for the time.
+    machine : str, optional
+        A name of ``machines`` on which the program is to run: the first row that its axes or their limits cannot hold is a
+        finding "machine".
+    machine_options : dict, optional
+        Options of the machine; those of reading are ignored.
+    machine_frame : array_like, shape (4, 4), optional
+        From the coordinates of stock and program to those in which the machine has the program, where they differ.
+    progress : callable, optional
+        Called with the finished share, from 0 for each chunk; returning False cancels.
+
+    Examples
+    --------
+    >>> stock = riffler.Volume.block(lower=(0, 0, 0), upper=(20, 20, 10), pitch=0.5)
+    >>> ball = riffler.Tool.ball(diameter=6, length=30)
+    >>> verification = riffler.Verification(stock, tools={1: ball})
+    >>> cut = [(5, 10, 8, 0, 0, 1), (15, 10, 8, 0, 0, 1)]
+    >>> verification.run(riffler.Program.from_cl([cut], [ball], feed=600, spindle=9000)).findings
+    []
     """
-    def __init__(self, stock_volume: Volume, part_mesh: typing.Any = None, fixtures: typing.Any = (), *, tools: typing.Any = None, tolerance: typing.SupportsFloat = 0.01, gouge_tolerance: typing.SupportsFloat = 0.05, rest_tolerance: typing.SupportsFloat | None = None, rapid_feed: typing.SupportsFloat = 10000.0, machine: str | None = None, machine_options: typing.Any = None, machine_frame: typing.Any = None, progress: typing.Any = None) -> None:
+    def __init__(self, stock_volume: Volume, part_mesh: Mesh | None = None, fixtures: collections.abc.Iterable[Volume | Mesh] | None = (), *, tools: collections.abc.Mapping[int, Tool] | None = None, tolerance: typing.SupportsFloat = 0.01, gouge_tolerance: typing.SupportsFloat = 0.05, rest_tolerance: typing.SupportsFloat | None = None, rapid_feed: typing.SupportsFloat = 10000.0, machine: str | None = None, machine_options: collections.abc.Mapping[str, float | bool | str | collections.abc.Sequence[float]] | None = None, machine_frame: numpy.typing.ArrayLike | None = None, progress: collections.abc.Callable[[float], bool | None] | None = None) -> None:
         ...
-    def run(self, program: Program, progress: typing.Any = None) -> VerifyReport:
+    def run(self, program: Program, *, progress: collections.abc.Callable[[float], bool | None] | None = None) -> VerifyReport:
         """
-        The VerifyReport of a Program. After an error or Cancelled this is as it was before the call.
+        Verifies a program. After an error or Cancelled the object is as it was before the call.
+
+        Parameters
+        ----------
+        program : Program
+            The program.
+        progress : callable, optional
+            Called with the finished share; returning False cancels.
+
+        Returns
+        -------
+        VerifyReport
+
+        Examples
+        --------
+        >>> stock = riffler.Volume.block(lower=(0, 0, 0), upper=(20, 20, 10), pitch=0.5)
+        >>> ball = riffler.Tool.ball(diameter=6, length=30)
+        >>> program = riffler.Program.from_cl([[(5, 10, 8, 0, 0, 1)]], [ball], feed=600, spindle=9000)
+        >>> riffler.Verification(stock).run(program).findings
+        []
         """
 class SlabWorker:
     """
@@ -2835,7 +3301,7 @@ class VerifyPlan:
     """
     A verification whose slabs run elsewhere; arguments as of riffler.verify.
     """
-    def __init__(self, stock_volume: Volume, part_mesh: typing.Any = None, fixtures: typing.Any = (), *, tools: typing.Any = None, tolerance: typing.SupportsFloat = 0.01, gouge_tolerance: typing.SupportsFloat = 0.05, rest_tolerance: typing.SupportsFloat | None = None, rapid_feed: typing.SupportsFloat = 10000.0, machine: str | None = None, machine_options: typing.Any = None, machine_frame: typing.Any = None, progress: typing.Any = None) -> None:
+    def __init__(self, stock_volume: Volume, part_mesh: Mesh | None = None, fixtures: collections.abc.Iterable[Volume | Mesh] | None = (), *, tools: collections.abc.Mapping[int, Tool] | None = None, tolerance: typing.SupportsFloat = 0.01, gouge_tolerance: typing.SupportsFloat = 0.05, rest_tolerance: typing.SupportsFloat | None = None, rapid_feed: typing.SupportsFloat = 10000.0, machine: str | None = None, machine_options: collections.abc.Mapping[str, float | bool | str | collections.abc.Sequence[float]] | None = None, machine_frame: numpy.typing.ArrayLike | None = None, progress: collections.abc.Callable[[float], bool | None] | None = None) -> None:
         ...
     def accept(self, slab: typing.SupportsInt, result: bytes, last: bool) -> None:
         """
@@ -2864,105 +3330,386 @@ class PenGeometry:
     Two arms, R and L, hold the two ends of a grip. Counts are the six counters in the device's own order (``channels``);
     joints are θ1 θ2 θ3 of R, then of L, in rad. Poses are the grip's pivot and the unit axis along it, away from the tool's
     tip. Arrays have one row per moment.
+
+    Examples
+    --------
+    >>> pen = riffler.pen.PenGeometry.load("riffler")
+    >>> pen.forward([pen.home]).shape
+    (1, 6)
     """
     @staticmethod
     def load(name: str) -> PenGeometry:
         """
-        A pen of ``riffler.pen.names()``, or one that a ``.toml`` file describes. FormatError names the file's line; ValueError the pens there are.
+        Reads the geometry of a pen.
+
+        Parameters
+        ----------
+        name : str
+            A name of ``riffler.pen.names()``, or the path of a .toml file.
+
+        Returns
+        -------
+        PenGeometry
+
+        Raises
+        ------
+        FormatError
+            Naming the file's line.
+        ValueError
+            With the pens there are.
+
+        Examples
+        --------
+        >>> riffler.pen.PenGeometry.load("riffler").name
+        'riffler'
         """
-    def capability(self) -> dict:
+    def capability(self) -> riffler.pen_results.PenCapability:
         """
-        What each coordinate senses and pushes: a dict with ``text`` and ``axes``, x y z a b c.
+        What each coordinate senses and pushes.
+
+        Returns
+        -------
+        riffler.pen.PenCapability
+
+        Examples
+        --------
+        >>> pen = riffler.pen.PenGeometry.load("riffler")
+        >>> pen.capability().axes["x"].sensing
+        'position'
         """
-    def converter_steps(self, torques: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> tuple:
+    def converter_steps(self, torques: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> tuple[numpy.typing.NDArray[numpy.int16], numpy.typing.NDArray[numpy.float64]]:
         """
-        As motor_currents, in the steps of the pen's digital to analogue converter.
+        As ``motor_currents``, in the steps of the pen's digital to analogue converter.
+
+        Parameters
+        ----------
+        torques : array_like, shape (n, 6)
+            Of the joints, N·mm.
+
+        Returns
+        -------
+        steps : ndarray of int16, shape (n, 6)
+        scale : ndarray, shape (n,)
+
+        Raises
+        ------
+        ValueError
+            For a pen without a converter.
+
+        Examples
+        --------
+        >>> pen = riffler.pen.PenGeometry.load("riffler")
+        >>> steps, scale = pen.converter_steps([(1, 0, 0, 0, 0, 0)])
+        >>> steps.shape, scale
+        ((1, 6), array([1.]))
         """
     def counts(self, joints: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.int32]:
         """
-        (n, 6) int32: the nearest counts of (n, 6) joint angles.
-        """
-    def diagnose(self, counts: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> dict:
-        """
-        Which counter is wrong, from (n, 6) counts of different postures.
+        The nearest counts of joint angles.
 
-        A dict: ``fault`` is "none", "channel" (then ``channel``, the ``counts`` that it reads too many, and ``left``, the mm that
-        stay unexplained), "several" (bad homing, or another pen) or "unclear" (move the pen: twelve postures that differ by
-        0.02 rad are needed).
+        Parameters
+        ----------
+        joints : array_like, shape (n, 6)
+            θ1 θ2 θ3 of R, then of L, rad.
+
+        Returns
+        -------
+        ndarray of int32, shape (n, 6)
+
+        Examples
+        --------
+        >>> pen = riffler.pen.PenGeometry.load("riffler")
+        >>> bool((pen.counts(pen.joints([pen.home])) == pen.home).all())
+        True
         """
-    def efforts(self, counts: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], wrenches: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], at: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> tuple:
+    def diagnose(self, counts: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> riffler.pen_results.GripDiagnosis:
+        """
+        Which counter is wrong, from counts of different postures.
+
+        Parameters
+        ----------
+        counts : array_like, shape (n, 6)
+            What the counters read, in the device's order.
+
+        Returns
+        -------
+        riffler.pen.GripDiagnosis
+
+        Examples
+        --------
+        >>> pen = riffler.pen.PenGeometry.load("riffler")
+        >>> pen.diagnose([pen.home]).fault
+        'unclear'
+        """
+    def efforts(self, counts: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], wrenches: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], at: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
         """
         Joint torques for a force and a torque on the hand.
 
-        ``wrenches``: (n, 6), about the points ``at`` (n, 3), both in the frame of poses. Returns (n, 6) joint torques in N·mm and
-        the (n, 3) torque that cannot be felt.
+        Parameters
+        ----------
+        counts : array_like, shape (n, 6)
+            What the counters read, in the device's order.
+        wrenches : array_like, shape (n, 6)
+            Force, N, and torque, N·mm, in the frame of poses.
+        at : array_like, shape (n, 3)
+            About which points the torques are, mm.
+
+        Returns
+        -------
+        torques : ndarray, shape (n, 6)
+            Of the joints, N·mm.
+        missing : ndarray, shape (n, 3)
+            The torque that cannot be felt, N·mm.
+
+        Examples
+        --------
+        >>> pen = riffler.pen.PenGeometry.load("riffler")
+        >>> torques, missing = pen.efforts([pen.home], [(0, 0, 1, 0, 0, 0)], pen.forward([pen.home])[:, :3])
+        >>> torques.shape
+        (1, 6)
         """
     def ends(self, counts: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n, 2, 3) mm: ends of R and of L in the arms' frame, (2.1) and (2.2).
+        Ends of the arms in their frame: (2.1) and (2.2) of the source.
+
+        Parameters
+        ----------
+        counts : array_like, shape (n, 6)
+            What the counters read, in the device's order.
+
+        Returns
+        -------
+        ndarray, shape (n, 2, 3)
+            Of R and of L, mm.
+
+        Examples
+        --------
+        >>> pen = riffler.pen.PenGeometry.load("riffler")
+        >>> pen.ends([pen.home]).shape
+        (1, 2, 3)
         """
     def forward(self, counts: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n, 6) poses of (n, 6) counts: (2.3) and (2.4).
-        """
-    def homed(self, counts: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], probe: typing.SupportsInt = 0) -> PenGeometry:
-        """
-        The same pen, homed by its readings instead of presets.
+        Poses of counts: (2.3) and (2.4) of the source.
 
-        ``counts``: (1, 6), what the counters read in the home posture, and ``probe`` what the seventh does. Counters may wrap.
+        Parameters
+        ----------
+        counts : array_like, shape (n, 6)
+            What the counters read, in the device's order.
+
+        Returns
+        -------
+        ndarray, shape (n, 6)
+            The grip's pivot, mm, and the unit axis along it.
+
+        Examples
+        --------
+        >>> pen = riffler.pen.PenGeometry.load("riffler")
+        >>> pen.forward([pen.home]).shape
+        (1, 6)
         """
-    def inverse(self, poses: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> tuple:
+    def homed(self, counts: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], *, probe: typing.SupportsInt = 0) -> PenGeometry:
+        """
+        The same pen, homed by its readings instead of presets. Counters may wrap.
+
+        Parameters
+        ----------
+        counts : array_like, shape (1, 6)
+            What the counters read in the home posture.
+        probe : int
+            What the seventh counter reads there.
+
+        Returns
+        -------
+        PenGeometry
+
+        Examples
+        --------
+        >>> pen = riffler.pen.PenGeometry.load("riffler")
+        >>> pen.homed([pen.home + 100]).name
+        'riffler'
+        """
+    def inverse(self, poses: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> tuple[numpy.typing.NDArray[numpy.float64], list[tuple[str, str]]]:
         """
         Joint angles of poses.
 
-        Returns (n, 6) joints and a list of pairs, of R and of L: "reached", "too far", "too near", "on axis" (of θ1, or folded),
-        "limits" (the angles are beyond the joints' or the elbow's) or "not finite".
+        Parameters
+        ----------
+        poses : array_like, shape (n, 6)
+            The grip's pivot, mm, and the unit axis along it.
+
+        Returns
+        -------
+        joints : ndarray, shape (n, 6)
+            rad.
+        reach : list of tuple
+            Of R and of L: "reached", "too far", "too near", "on axis" (of θ1, or folded), "limits" (the angles are beyond the
+            joints' or the elbow's) or "not finite".
+
+        Examples
+        --------
+        >>> pen = riffler.pen.PenGeometry.load("riffler")
+        >>> joints, reach = pen.inverse(pen.forward([pen.home]))
+        >>> reach
+        [('reached', 'reached')]
         """
     def jacobian(self, counts: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n, 2, 3, 3) mm/rad: of R and of L, the derivative of the end's x y z by its θ1 θ2 θ3 (2.7), (2.8).
+        Derivative of each arm's end by its joint angles: (2.7) and (2.8) of the source.
+
+        Parameters
+        ----------
+        counts : array_like, shape (n, 6)
+            What the counters read, in the device's order.
+
+        Returns
+        -------
+        ndarray, shape (n, 2, 3, 3)
+            Of R and of L: x y z by θ1 θ2 θ3, mm/rad.
+
+        Examples
+        --------
+        >>> pen = riffler.pen.PenGeometry.load("riffler")
+        >>> pen.jacobian([pen.home]).shape
+        (1, 2, 3, 3)
         """
     def joints(self, counts: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n, 6) joint angles of (n, 6) counts: (2.9).
-        """
-    def motor_currents(self, torques: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> tuple:
-        """
-        What the motors are told for (n, 6) joint torques, N·mm.
+        Joint angles of counts: (2.9) of the source.
 
-        Returns (n, 6) int16, mA in the device's order, and (n,) the factor that all six of a row were scaled by so that none
-        passes its peak.
+        Parameters
+        ----------
+        counts : array_like, shape (n, 6)
+            What the counters read, in the device's order.
+
+        Returns
+        -------
+        ndarray, shape (n, 6)
+            θ1 θ2 θ3 of R, then of L, rad.
+
+        Examples
+        --------
+        >>> pen = riffler.pen.PenGeometry.load("riffler")
+        >>> pen.joints([pen.home]).shape
+        (1, 6)
+        """
+    def motor_currents(self, torques: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> tuple[numpy.typing.NDArray[numpy.int16], numpy.typing.NDArray[numpy.float64]]:
+        """
+        Motor currents for joint torques.
+
+        Parameters
+        ----------
+        torques : array_like, shape (n, 6)
+            Of the joints, N·mm.
+
+        Returns
+        -------
+        currents : ndarray of int16, shape (n, 6)
+            mA, in the device's order.
+        scale : ndarray, shape (n,)
+            The factor by which all six of a row were scaled, so that none passes its peak.
+
+        Examples
+        --------
+        >>> pen = riffler.pen.PenGeometry.load("riffler")
+        >>> currents, scale = pen.motor_currents([(1, 0, 0, 0, 0, 0)])
+        >>> scale
+        array([1.])
         """
     def noticed_counts(self, counts: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n, 6): how many counts each channel may be off before it shows.
+        How many counts each channel may be off, in either direction, before it shows, all others being right.
 
-        Whichever way it is off, all other channels being right; infinite where none shows, and 0 in rows that do not fit.
+        Parameters
+        ----------
+        counts : array_like, shape (n, 6)
+            What the counters read, in the device's order.
+
+        Returns
+        -------
+        ndarray, shape (n, 6)
+            Infinite where none shows, and 0 in rows that do not fit.
+
+        Examples
+        --------
+        >>> pen = riffler.pen.PenGeometry.load("riffler")
+        >>> pen.noticed_counts([pen.home]).shape
+        (1, 6)
         """
     def probe_angle(self, count: typing.SupportsInt) -> float:
         """
-        rad: the grip's rotation about the pose's axis, turns added up, of the seventh counter.
+        The grip's rotation about the pose's axis, turns added up.
+
+        Parameters
+        ----------
+        count : int
+            What the seventh counter reads.
+
+        Returns
+        -------
+        float
+            rad.
+
+        Examples
+        --------
+        >>> pen = riffler.pen.PenGeometry.load("riffler")
+        >>> pen.probe_angle(0)
+        0.0
         """
-    def split(self, wrenches: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], apart: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> tuple:
+    def split(self, wrenches: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], apart: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
         """
         What the arms push with for a force and a torque on the hand.
 
-        ``wrenches``: (n, 6), force in N and torque in N·mm about the grip's pivot; ``apart``: (n, 3), from R's end to L's.
-        Returns (n, 2, 3) forces of R and of L, and (n, 3) the torque that cannot be felt: its part along the grip.
+        Parameters
+        ----------
+        wrenches : array_like, shape (n, 6)
+            Force, N, and torque about the grip's pivot, N·mm.
+        apart : array_like, shape (n, 3)
+            From R's end to L's, mm.
+
+        Returns
+        -------
+        forces : ndarray, shape (n, 2, 3)
+            Of R and of L, N.
+        missing : ndarray, shape (n, 3)
+            The torque that cannot be felt: its part along the grip, N·mm.
+
+        Examples
+        --------
+        >>> pen = riffler.pen.PenGeometry.load("riffler")
+        >>> forces, missing = pen.split([(0, 0, 1, 0, 0, 0)], [(0, 0, 50)])
+        >>> forces.sum(axis=1)
+        array([[0., 0., 1.]])
         """
     def stretch(self, counts: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n,) mm: by which the grip comes out longer than it is.
+        By how much the grip comes out longer than it is.
+
+        Parameters
+        ----------
+        counts : array_like, shape (n, 6)
+            What the counters read, in the device's order.
+
+        Returns
+        -------
+        ndarray, shape (n,)
+            mm.
+
+        Examples
+        --------
+        >>> pen = riffler.pen.PenGeometry.load("riffler")
+        >>> pen.stretch([pen.home]).shape
+        (1,)
         """
     @property
-    def channels(self) -> list:
+    def channels(self) -> list[riffler.pen_results.PenChannel]:
         """
-        The six motors with their encoders, dicts in the device's order.
+        The six motors with their encoders, in the device's order.
         """
     @property
     def description(self) -> str:
         """
-        What its file says of it.
+        Description in its file.
         """
     @property
     def grip_length(self) -> float:
@@ -2980,14 +3727,14 @@ class PenGeometry:
         (6,) int32: what the counters read in the home posture.
         """
     @property
-    def limits(self) -> dict:
+    def limits(self) -> riffler.pen_results.PenLimits:
         """
-        Workspace, elbow, force, torque, speeds: a dict; mm, rad, s, N.
+        Workspace, elbow, force, torque, speeds.
         """
     @property
     def name(self) -> str:
         """
-        Its file's name.
+        Name of its file.
         """
 class PenError(RuntimeError):
     """
@@ -2995,7 +3742,7 @@ class PenError(RuntimeError):
     """
 class PenState:
     """
-    Where the hand was, as of one report.
+    Where the hand was, by one report: see `PenDevice.state`.
     """
     @property
     def age_s(self) -> float:
@@ -3003,9 +3750,9 @@ class PenState:
         s since it was measured; inf before the first report.
         """
     @property
-    def applied(self) -> tuple:
+    def applied(self) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
         """
-        (force, torque), N and N·mm: what the hand felt of the motors, where the device says so; zero elsewhere.
+        (force, torque), N and N·mm: of the motors on the hand, if the device reports it; otherwise zero.
         """
     @property
     def buttons(self) -> int:
@@ -3015,12 +3762,12 @@ class PenState:
     @property
     def counts(self) -> numpy.typing.NDArray[numpy.int32]:
         """
-        (6,) int32: the counters of a pen that has a geometry, in its order, as if homing had preset them.
+        (6,) int32: counters of a pen that has a geometry, in its order, as if homing had preset them.
         """
     @property
     def fault(self) -> int:
         """
-        The device's own code, or 0.
+        The device's own fault code, or 0.
         """
     @property
     def homed(self) -> bool:
@@ -3040,7 +3787,7 @@ class PenState:
     @property
     def sequence(self) -> int:
         """
-        Of the report; 0 before the first.
+        Number of the report; 0 before the first.
         """
     @property
     def spin(self) -> float:
@@ -3066,150 +3813,435 @@ class PenDevice:
     """
     A device that is open: a pen, a puck, a recording. Context manager.
 
-    Reports are read, and forces written, in a thread of its own; a device that goes away is looked for until it is back.
+    A thread of its own reads reports and writes forces; it looks for a device that goes away until it is back.
+
+    Examples
+    --------
+    >>> with riffler.pen.open("simulated") as pen:
+    ...     pen.kind
+    'simulated'
     """
-    def __enter__(self) -> typing.Any:
+    def __enter__(self) -> typing.Self:
         ...
     def __exit__(self, *args) -> None:
         ...
-    def health(self) -> dict:
+    def health(self) -> riffler.pen_results.PenHealth:
         """
-        dict: state, problem, force_state, cause, what was last pushed with, and counts since the start.
+        The connection, the force, and counts since the start.
+
+        Returns
+        -------
+        PenHealth
+
+        Examples
+        --------
+        >>> with riffler.pen.open("simulated") as pen:
+        ...     pen.health().malformed
+        0
         """
     def home(self) -> bool:
         """
-        The device stands in its home posture. False where nothing has to be homed.
+        Declares that the device stands in its home posture.
+
+        Returns
+        -------
+        bool
+            False where nothing has to be homed.
+
+        Examples
+        --------
+        >>> riffler.pen.Pointer("mouse").home()
+        False
         """
-    def push(self, force: typing.Any, torque: typing.Any = (0, 0, 0)) -> dict:
+    def push(self, force: numpy.typing.ArrayLike, torque: numpy.typing.ArrayLike = (0, 0, 0)) -> riffler.pen_results.PushResult:
         """
-        Pushes for 20 ms with a force (N) and a
-        torque (N·mm) about the grip's point. dict: force, torque that will be felt, missing_force, missing_torque, reason or
-        None.
+        Pushes for 20 ms.
+
+        Parameters
+        ----------
+        force : array_like, shape (3,)
+            N.
+        torque : array_like, shape (3,)
+            N·mm about the grip's point.
+
+        Returns
+        -------
+        PushResult
+
+        Examples
+        --------
+        >>> pointer = riffler.pen.Pointer("mouse")
+        >>> pointer.push((0, 0, 1)).reason
+        'the device has no motors for all of it'
         """
     def reset(self) -> None:
         """
-        Clears a trip that does not heal by itself: health()['cause'] says what it was.
+        Clears a trip that does not heal by itself: the cause is in ``health()``.
+
+        Examples
+        --------
+        >>> with riffler.pen.open("simulated") as pen:
+        ...     pen.reset()
         """
     def state(self) -> PenState:
         """
-        PenState: the newest sample.
+        The newest sample.
+
+        Returns
+        -------
+        PenState
+
+        Examples
+        --------
+        >>> with riffler.pen.open("simulated") as pen:
+        ...     pen.state().pose.shape
+        (6,)
         """
     def stop(self) -> bool:
         """
-        No force, and closed. False where the device could not be told in time.
+        Ends the force and closes the device.
+
+        Returns
+        -------
+        bool
+            False where the device could not be reached in time.
+
+        Examples
+        --------
+        >>> pen = riffler.pen.open("simulated")
+        >>> pen.stop()
+        True
         """
     @property
     def about(self) -> str:
-        ...
-    @property
-    def geometry(self) -> typing.Any:
         """
-        PenGeometry of a pen of two arms, with the currents that the device allows; None of everything else.
+        What it reported about itself.
+        """
+    @property
+    def geometry(self) -> PenGeometry | None:
+        """
+        Geometry of a pen of two arms, with the currents that the device allows; None for other devices.
         """
     @property
     def kind(self) -> str:
-        ...
-    @property
-    def limits(self) -> dict:
         """
-        dict: "x", "y", "z" and turns "a", "b", "c", each a dict of senses
-        ("position", "rate" or None), pushes, low, high, resolution (mm, rad, or a second of them), peak, continuous (N, N·mm).
+        Its kind in ``riffler.pen.kinds``.
+        """
+    @property
+    def limits(self) -> dict[str, riffler.pen_results.CoordinateCapability]:
+        """
+        What it senses and pushes along "x", "y", "z" and the turns "a", "b", "c".
         """
 class SimulatedPen(PenDevice):
     """
     A pen without hardware: arms, motors, firmware and cable are simulated, and a hand moves it.
+
+    Examples
+    --------
+    >>> with riffler.pen.open("simulated") as pen:
+    ...     isinstance(pen, riffler.pen.SimulatedPen)
+    True
     """
     def aim(self, pose: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], *, spin: typing.SupportsFloat = 0.0, grip: typing.SupportsFloat = 1.0, buttons: typing.SupportsInt = 0) -> None:
         """
-        The hand goes to `pose`, (6,) point and axis, at up to 300 mm/s and 5 rad/s, as far as the arms reach;
-        with `grip` below 1 it holds more loosely, with 0 not at all. `spin` in rad about the axis.
+        Moves the hand to a pose, at up to 300 mm/s and 5 rad/s, as far as the arms reach.
+
+        Parameters
+        ----------
+        pose : array_like, shape (6,)
+            Point, mm, and axis.
+        spin : float
+            rad about the axis.
+        grip : float
+            1: the hand holds firmly; less: more loosely; 0: not at all.
+        buttons : int
+            As bits; bit 0 is button 1.
+
+        Examples
+        --------
+        >>> with riffler.pen.open("simulated") as pen:
+        ...     pen.aim((0, 0, 0, 0, 0, 1), buttons=1)
         """
     def lose(self, channel: typing.SupportsInt, counts: typing.SupportsInt) -> None:
         """
-        A counter (0 to 5) loses so many counts in all, one by one: a fault to practise with.
+        Makes a counter lose counts, one by one: a fault to practise with.
+
+        Parameters
+        ----------
+        channel : int
+            0 to 5.
+        counts : int
+            How many in all.
+
+        Examples
+        --------
+        >>> with riffler.pen.open("simulated") as pen:
+        ...     pen.lose(0, 20)
         """
     def wander(self) -> None:
         """
-        The hand goes round on its own curve again.
+        Moves the hand round on its own curve again.
+
+        Examples
+        --------
+        >>> with riffler.pen.open("simulated") as pen:
+        ...     pen.wander()
         """
 class Pointer(PenDevice):
     """
-    A tablet or a mouse as a device: whoever gets its events gives them here, and they become poses.
+    A tablet or a mouse as a device: its events are given here, and become poses.
 
-    `kind` is "tablet" (senses point and axis) or "mouse" (the point only; its axis stands upright on the plane).
+    Parameters
+    ----------
+    kind : {"tablet", "mouse"}
+        A tablet senses point and axis, a mouse the point only; its axis stands upright on the plane.
+
+    Examples
+    --------
+    >>> pointer = riffler.pen.Pointer("tablet")
+    >>> pointer.give(3, 4, pressure=0.5, time=0.0)
+    True
     """
     def __init__(self, kind: str = 'tablet') -> None:
         ...
     def give(self, x: typing.SupportsFloat, y: typing.SupportsFloat, *, pressure: typing.SupportsFloat = 0.0, tilt_x: typing.SupportsFloat = 0.0, tilt_y: typing.SupportsFloat = 0.0, buttons: typing.SupportsInt = 0, time: typing.SupportsFloat) -> bool:
         """
-        An event: right and up in units of the frame, pressure 0 to 1, tilts (rad) by which the pen's end leans to
-        the right and up, buttons as bits, time in s of any clock. False, and it is left out, where a number is not finite or the
-        time is before the last event's.
+        Gives an event.
+
+        Parameters
+        ----------
+        x, y : float
+            Right and up, in units of the frame.
+        pressure : float
+            0 to 1.
+        tilt_x, tilt_y : float
+            rad by which the pen's end leans to the right and up.
+        buttons : int
+            As bits; bit 0 is button 1.
+        time : float
+            s of any clock.
+
+        Returns
+        -------
+        bool
+            False, and the event is left out, where a number is not finite or the time is before the last event's.
+
+        Examples
+        --------
+        >>> riffler.pen.Pointer("mouse").give(3, 4, time=0.0)
+        True
         """
-    def set_frame(self, *, origin: typing.Any = (0, 0, 0), right: typing.Any = (1, 0, 0), up: typing.Any = (0, 1, 0), scale: typing.SupportsFloat = 1.0, depth: typing.SupportsFloat = 2.0, most_tilt: typing.SupportsFloat = 1.0) -> None:
+    def set_frame(self, *, origin: numpy.typing.ArrayLike = (0, 0, 0), right: numpy.typing.ArrayLike = (1, 0, 0), up: numpy.typing.ArrayLike = (0, 1, 0), scale: typing.SupportsFloat = 1.0, depth: typing.SupportsFloat = 2.0, max_tilt: typing.SupportsFloat = 1.0) -> None:
         """
-        Where the pointer's plane lies, from the next event on: `origin`, (3,) mm, of pointer (0, 0); `right` and
-        `up`, (3,) unit vectors square to each other; `scale`, mm for a unit of the pointer; `depth`, mm into the plane at full
-        pressure; `most_tilt`, rad from upright, below pi/2. ValueError naming what cannot be; the frame is as before then.
+        Sets where the pointer's plane lies, from the next event on.
+
+        Parameters
+        ----------
+        origin : array_like, shape (3,)
+            mm, of pointer (0, 0).
+        right, up : array_like, shape (3,)
+            Unit vectors, square to each other.
+        scale : float
+            mm for a unit of the pointer.
+        depth : float
+            mm into the plane at full pressure.
+        max_tilt : float
+            rad from upright, below pi/2.
+
+        Raises
+        ------
+        ValueError
+            Naming what cannot be; the frame is as before then.
+
+        Examples
+        --------
+        >>> pointer = riffler.pen.Pointer("mouse")
+        >>> pointer.set_frame(origin=(0, 0, 10), scale=0.5)
         """
 class JournalStroke:
     """
-    One stroke of a Journal.
+    One stroke of a journal: see `Journal.add_stroke`.
     """
     def __len__(self) -> int:
         ...
     @property
-    def forces(self) -> typing.Any:
+    def forces(self) -> numpy.typing.NDArray[numpy.float64] | None:
         """
-        (n, 6) N, N·mm about the grip: what the device was told to give the hand; or None.
+        (n, 6) N, N·mm about the grip, as sent to the device for the hand; or None.
         """
     @property
     def mode(self) -> str:
         """
-        "remove", "add", "mask", "unmask", "soften", "beside" or "build".
+        "remove", "add", "mask", "unmask", "soften", "beside" or "build": see ``Journal.add_stroke``.
         """
     @property
     def name(self) -> str:
-        ...
+        """
+        For people.
+        """
     @property
     def poses(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n, 6) copy.
+        (n, 6): tip in mm and unit axis; a copy.
         """
     @property
-    def removed(self) -> typing.Any:
+    def removed(self) -> numpy.typing.NDArray[numpy.float64] | None:
         """
         (n,) mm³ by the move that ends at the row, or None.
         """
     @property
     def strength(self) -> float:
         """
-        0 to 1, of one that softens.
+        0 to 1, for "soften".
         """
     @property
-    def times(self) -> typing.Any:
+    def times(self) -> numpy.typing.NDArray[numpy.float64] | None:
         """
         (n,) s, or None.
         """
     @property
     def tolerance(self) -> float:
         """
-        mm
+        mm.
         """
     @property
     def tool(self) -> int:
-        ...
+        """
+        Number of the tool.
+        """
 class Journal:
     """
     What a session did: stock, tools, strokes as poses, notes.
 
     Replaying the strokes on the stock gives the session again. Files end in .rjournal.
+
+    Examples
+    --------
+    >>> journal = riffler.Journal()
+    >>> journal.set_stock((0, 0, 0), (20, 20, 10), 0.5)
+    >>> journal.add_tool(1, riffler.Tool.ball(diameter=6, length=30))
+    >>> journal.add_stroke(1, [(0, 10, 8, 0, 0, 1), (20, 10, 8, 0, 0, 1)])
+    >>> journal.replay().volume < 20 * 20 * 10
+    True
     """
     @staticmethod
-    def read(path: os.PathLike | str | bytes, *, progress: typing.Any = None) -> Journal:
+    def bring_back(*args, **kwargs):
         """
-        Reads a file. One that a crash has cut gives all whole records, and ``cut_at`` says where it was cut; a
-        damaged record that others follow is a FormatError naming the byte.
+        redo(self: riffler._core.Journal, n: typing.SupportsInt = 1) -> None
+
+        Redoes the last strokes that were undone, unless a new stroke has begun.
+
+        Parameters
+        ----------
+        n : int
+            How many.
+
+        Examples
+        --------
+        >>> journal = riffler.Journal()
+        >>> journal.add_tool(1, riffler.Tool.ball(diameter=6, length=30))
+        >>> journal.add_stroke(1, [(0, 10, 8, 0, 0, 1)])
+        >>> journal.undo()
+        >>> journal.redo()
+        >>> len(journal.strokes)
+        1
+
+        """
+    @staticmethod
+    def load(path: os.PathLike | str | bytes, *, progress: collections.abc.Callable[[float], bool | None] | None = None) -> Journal:
+        """
+        Reads a .rjournal file. One that a crash has cut gives all whole records; ``cut_at`` is where it was cut.
+
+        Parameters
+        ----------
+        path : path_like
+            The file.
+        progress : callable, optional
+            Called with the finished share; returning False cancels.
+
+        Returns
+        -------
+        Journal
+
+        Raises
+        ------
+        FormatError
+            Naming the byte of a damaged record that others follow.
+
+        Examples
+        --------
+        >>> riffler.Journal().save("a.rjournal")
+        >>> riffler.Journal.load("a.rjournal")
+        <riffler.Journal: 0 strokes>
+        """
+    @staticmethod
+    def read(*args, **kwargs):
+        """
+        load(path: os.PathLike | str | bytes, *, progress: collections.abc.Callable[[float], bool | None] | None = None) -> riffler._core.Journal
+
+        Reads a .rjournal file. One that a crash has cut gives all whole records; ``cut_at`` is where it was cut.
+
+        Parameters
+        ----------
+        path : path_like
+            The file.
+        progress : callable, optional
+            Called with the finished share; returning False cancels.
+
+        Returns
+        -------
+        Journal
+
+        Raises
+        ------
+        FormatError
+            Naming the byte of a damaged record that others follow.
+
+        Examples
+        --------
+        >>> riffler.Journal().save("a.rjournal")
+        >>> riffler.Journal.load("a.rjournal")
+        <riffler.Journal: 0 strokes>
+
+        """
+    @staticmethod
+    def take_back(*args, **kwargs):
+        """
+        undo(self: riffler._core.Journal, n: typing.SupportsInt = 1) -> None
+
+        Undoes the last strokes: they no longer count.
+
+        Parameters
+        ----------
+        n : int
+            How many.
+
+        Examples
+        --------
+        >>> journal = riffler.Journal()
+        >>> journal.add_tool(1, riffler.Tool.ball(diameter=6, length=30))
+        >>> journal.add_stroke(1, [(0, 10, 8, 0, 0, 1)])
+        >>> journal.undo()
+        >>> len(journal.strokes)
+        0
+
+        """
+    @staticmethod
+    def write(*args, **kwargs):
+        """
+        save(self: riffler._core.Journal, path: os.PathLike | str | bytes) -> None
+
+        Writes the whole journal; the file is whole or not there.
+
+        Parameters
+        ----------
+        path : path_like
+            The file.
+
+        Examples
+        --------
+        >>> riffler.Journal().save("a.rjournal")
+
         """
     def __init__(self) -> None:
         ...
@@ -3217,52 +4249,245 @@ class Journal:
         ...
     def add_note(self, key: str, value: str) -> None:
         """
-        Provenance.
+        Adds one key/value note on where the journal comes from.
+
+        Parameters
+        ----------
+        key, value : str
+            Of a key that is given twice the later value counts.
+
+        Examples
+        --------
+        >>> journal = riffler.Journal()
+        >>> journal.add_note("operator", "Ada")
+        >>> journal.notes
+        {'operator': 'Ada'}
         """
-    def add_stroke(self, tool: typing.SupportsInt, poses: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], times: typing.Any = None, tolerance: typing.SupportsFloat = 0.01, name: str = '', *, forces: typing.Any = None, removed: typing.Any = None, mode: str = 'remove', strength: typing.SupportsFloat = 0.5) -> None:
+    def add_stroke(self, tool: typing.SupportsInt, poses: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], *, times: numpy.typing.ArrayLike | None = None, tolerance: typing.SupportsFloat = 0.01, name: str = '', forces: numpy.typing.ArrayLike | None = None, removed: numpy.typing.ArrayLike | None = None, mode: str = 'remove', strength: typing.SupportsFloat = 0.5) -> None:
         """
-        A stroke with a tool that was added: poses (n, 6), n ≥ 1; each of the others may be None. times (n,) s that
-        never fall; forces (n, 6) N, N·mm that the device was told to give the hand, about the grip; removed (n,) mm³ by the move that
-        ends at the row. mode says what the tool does where it sweeps: "remove" and "add" material, but not where it is protected;
-        "mask" and "unmask": protect it, or no longer; "soften": a dab of ``strength`` at each row's tip, as wide as the tool;
-        "beside": remove as a Session does beside what is protected; "build": put on as a Session does. To replay to the bit what
-        was put on, or cut beside a mask, by ``carve``, each carve has to be a stroke.
+        Records a stroke. To replay to the bit what ``carve`` added, or cut next to a mask, each carve has to be a stroke.
+
+        Parameters
+        ----------
+        tool : int
+            Number of a tool that was added.
+        poses : array_like, shape (n, 6)
+            Tip in mm and unit axis, n at least 1.
+        times : array_like, shape (n,), optional
+            s, never falling.
+        tolerance : float
+            mm, as in ``Volume.carve``.
+        name : str
+            For people.
+        forces : array_like, shape (n, 6), optional
+            N and N·mm as sent to the device for the hand, about the grip.
+        removed : array_like, shape (n,), optional
+            mm³ by the move that ends at the row.
+        mode : {"remove", "add", "mask", "unmask", "soften", "beside", "build"}
+            What the tool does where it sweeps: "remove" and "add" material, but not where it is protected; "mask" and "unmask":
+            protect it, or no longer; "soften": a smoothing dab at each row's tip, as wide as the tool; "beside": remove as a
+            Session does next to what is protected; "build": add as a Session does.
+        strength : float
+            Of "soften", 0 to 1.
+
+        Examples
+        --------
+        >>> journal = riffler.Journal()
+        >>> journal.add_tool(1, riffler.Tool.ball(diameter=6, length=30))
+        >>> journal.add_stroke(1, [(0, 10, 8, 0, 0, 1), (20, 10, 8, 0, 0, 1)], times=(0, 1))
+        >>> len(journal.strokes)
+        1
         """
-    def add_tool(self, number: typing.SupportsInt, tool: typing.Any) -> None:
+    def add_tool(self, number: typing.SupportsInt, tool: Tool | collections.abc.Mapping[str, object] | str) -> None:
         """
-        A Tool, its dict or JSON text. The same number again is allowed for the same tool only.
+        Records a tool. The same number again is allowed for the same tool only.
+
+        Parameters
+        ----------
+        number : int
+            By which strokes name it.
+        tool : Tool, dict or str
+            A Tool, its dict or JSON text of it.
+
+        Examples
+        --------
+        >>> journal = riffler.Journal()
+        >>> journal.add_tool(1, riffler.Tool.ball(diameter=6, length=30))
+        >>> list(journal.tools)
+        [1]
         """
-    def bring_back(self, n: typing.SupportsInt = 1) -> None:
+    def extend_stroke(self, poses: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], *, times: numpy.typing.ArrayLike | None = None, forces: numpy.typing.ArrayLike | None = None, removed: numpy.typing.ArrayLike | None = None) -> None:
         """
-        The last n that were taken back count again: redo. A new stroke ends that.
+        Adds rows to the last stroke, with the same columns.
+
+        Parameters
+        ----------
+        poses : array_like, shape (n, 6)
+            Tip in mm and unit axis.
+        times, forces, removed : array_like, optional
+            As of ``add_stroke``.
+
+        Examples
+        --------
+        >>> journal = riffler.Journal()
+        >>> journal.add_tool(1, riffler.Tool.ball(diameter=6, length=30))
+        >>> journal.add_stroke(1, [(0, 10, 8, 0, 0, 1)])
+        >>> journal.extend_stroke([(20, 10, 8, 0, 0, 1)])
+        >>> len(journal.strokes[0])
+        2
         """
-    def extend_stroke(self, poses: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], times: typing.Any = None, *, forces: typing.Any = None, removed: typing.Any = None) -> None:
+    def program(self, *, feed: typing.SupportsFloat | None = None, spindle: typing.SupportsFloat = 0.0, safe_height: typing.SupportsFloat | None = None, clearance: typing.SupportsFloat = 10.0) -> Program:
         """
-        More rows for the last stroke, with the same columns.
+        The strokes as a Program, each one cut as in ``Program.from_cl``. The stock counts as occupied.
+
+        Strokes that do not remove are left out: no machine can make them.
+
+        Parameters
+        ----------
+        feed : float, optional
+            mm/min; None: from the times, limited to 1 to 100 000 mm/min.
+        spindle : float
+            rev/min.
+        safe_height : float, optional
+            z (mm) above everything; None: ``clearance`` above everything.
+        clearance : float
+            mm.
+
+        Returns
+        -------
+        Program
+
+        Examples
+        --------
+        >>> journal = riffler.Journal()
+        >>> journal.add_tool(1, riffler.Tool.ball(diameter=6, length=30))
+        >>> journal.add_stroke(1, [(0, 10, 8, 0, 0, 1), (20, 10, 8, 0, 0, 1)])
+        >>> program = journal.program(feed=600, spindle=9000)
+        >>> program.tools[1].diameter
+        6.0
         """
-    def program(self, feed: typing.SupportsFloat | None = None, spindle: typing.SupportsFloat = 0.0, *, safe_height: typing.SupportsFloat | None = None, clearance: typing.SupportsFloat = 10.0) -> Program:
+    def redo(self, n: typing.SupportsInt = 1) -> None:
         """
-        The strokes as a Program, each one cut as in Program.from_cl. ``feed`` in mm/min; None: from the times,
-        held within 1 to 100 000 mm/min. The stock counts as occupied. Strokes that do not remove are left out: no machine can make
-        them.
+        Redoes the last strokes that were undone, unless a new stroke has begun.
+
+        Parameters
+        ----------
+        n : int
+            How many.
+
+        Examples
+        --------
+        >>> journal = riffler.Journal()
+        >>> journal.add_tool(1, riffler.Tool.ball(diameter=6, length=30))
+        >>> journal.add_stroke(1, [(0, 10, 8, 0, 0, 1)])
+        >>> journal.undo()
+        >>> journal.redo()
+        >>> len(journal.strokes)
+        1
         """
-    def replay(self, folder: os.PathLike | str | bytes | None = None, progress: typing.Any = None, *, with_mask: bool = False) -> typing.Any:
+    def replay(self, folder: os.PathLike | str | bytes | None = None, *, progress: collections.abc.Callable[[float], bool | None] | None = None) -> Volume:
         """
-        The Volume that the strokes leave of the stock, to the bit as the session left it: a block, or the snapshot
-        in ``folder``. A row that stands where the row before stood is no move; a stroke that never moves cuts where it stands
-        if it has two rows or more. ``with_mask``: a tuple of it and the Volume of what is protected, or None.
+        What the strokes leave of the stock, to the bit as the session left it.
+
+        A row that stands where the row before stood is no move; a stroke that never moves cuts where it stands if it has two rows
+        or more.
+
+        Parameters
+        ----------
+        folder : path_like, optional
+            Where the snapshot of the stock lies, for a stock that is not a block.
+        progress : callable, optional
+            Called with the finished share; returning False cancels.
+
+        Returns
+        -------
+        Volume
+
+        Examples
+        --------
+        >>> journal = riffler.Journal()
+        >>> journal.set_stock((0, 0, 0), (20, 20, 10), 0.5)
+        >>> journal.replay().volume
+        4000.0
         """
-    def set_stock(self, lower: typing.Any, upper: typing.Any, pitch: typing.SupportsFloat, directions: str = 'z', snapshot: str = '', *, mask: str = '') -> None:
+    def replay_with_mask(self, folder: os.PathLike | str | bytes | None = None, *, progress: collections.abc.Callable[[float], bool | None] | None = None) -> tuple[Volume, Volume | None]:
         """
-        The frame of the stock, the file name of its snapshot where it is not a full block, and that of what is protected where something is. Once.
+        As ``replay``, with what is protected in the end.
+
+        Parameters
+        ----------
+        folder : path_like, optional
+            Where the snapshots of stock and mask lie.
+        progress : callable, optional
+            Called with the finished share; returning False cancels.
+
+        Returns
+        -------
+        stock : Volume
+        mask : Volume or None
+
+        Examples
+        --------
+        >>> journal = riffler.Journal()
+        >>> journal.set_stock((0, 0, 0), (20, 20, 10), 0.5)
+        >>> stock, mask = journal.replay_with_mask()
+        >>> mask is None
+        True
         """
-    def take_back(self, n: typing.SupportsInt = 1) -> None:
-        """
-        The last n strokes no longer count: undo.
-        """
-    def write(self, path: os.PathLike | str | bytes) -> None:
+    def save(self, path: os.PathLike | str | bytes) -> None:
         """
         Writes the whole journal; the file is whole or not there.
+
+        Parameters
+        ----------
+        path : path_like
+            The file.
+
+        Examples
+        --------
+        >>> riffler.Journal().save("a.rjournal")
+        """
+    def set_stock(self, lower: numpy.typing.ArrayLike, upper: numpy.typing.ArrayLike, pitch: typing.SupportsFloat, directions: str = 'z', *, snapshot: str = '', mask: str = '') -> None:
+        """
+        Records the frame of the stock. Call it once.
+
+        Parameters
+        ----------
+        lower, upper : array_like, shape (3,)
+            Corners of its box, mm.
+        pitch : float
+            mm.
+        directions : {"z", "xyz"}
+            As of the Volume.
+        snapshot : str
+            Name of the file with the stock, where it is not a full block.
+        mask : str
+            Name of the file with what is protected, where something is.
+
+        Examples
+        --------
+        >>> journal = riffler.Journal()
+        >>> journal.set_stock((0, 0, 0), (20, 20, 10), 0.5)
+        >>> journal.stock.pitch
+        0.5
+        """
+    def undo(self, n: typing.SupportsInt = 1) -> None:
+        """
+        Undoes the last strokes: they no longer count.
+
+        Parameters
+        ----------
+        n : int
+            How many.
+
+        Examples
+        --------
+        >>> journal = riffler.Journal()
+        >>> journal.add_tool(1, riffler.Tool.ball(diameter=6, length=30))
+        >>> journal.add_stroke(1, [(0, 10, 8, 0, 0, 1)])
+        >>> journal.undo()
+        >>> len(journal.strokes)
+        0
         """
     @property
     def cut_at(self) -> int | None:
@@ -3270,34 +4495,94 @@ class Journal:
         Byte at which the file had been cut, or None.
         """
     @property
-    def notes(self) -> dict:
+    def notes(self) -> dict[str, str]:
         """
-        dict of strings; of a key given twice the later value.
-        """
-    @property
-    def stock(self) -> typing.Any:
-        """
-        dict: lower, upper, pitch, directions, snapshot, mask; or None.
+        Where the journal comes from; of a key given twice the later value.
         """
     @property
-    def strokes(self) -> list:
+    def stock(self) -> riffler.program_results.JournalStock | None:
         """
-        list of JournalStroke: those that count.
+        Frame and files of the stock, or None.
         """
     @property
-    def tools(self) -> dict:
+    def strokes(self) -> list[JournalStroke]:
         """
-        dict: number to the tool's dict.
+        The strokes that count.
+        """
+    @property
+    def tools(self) -> dict[int, dict]:
+        """
+        Each tool's dict, by number.
         """
 class JournalWriter:
     """
-    Appends to a journal file, record by record.
+    Appends to a journal file, record by record. Context manager.
 
-    Goes on with a file that is there, after cutting off a damaged tail, or begins a new one. Each record is handed to the
-    system before the call returns. ``keep=False`` holds no strokes in memory, so that ``journal`` cannot be asked for: for
-    long sessions. Context manager.
+    Continues a file that is there, after cutting off a damaged tail, or begins a new one. Each record is handed to the
+    system before the call returns.
+
+    Parameters
+    ----------
+    path : path_like
+        The .rjournal file.
+    keep : bool
+        False: holds no strokes in memory, for long sessions; ``journal`` cannot be used then.
+
+    Examples
+    --------
+    >>> with riffler.JournalWriter("a.rjournal") as writer:
+    ...     writer.set_stock((0, 0, 0), (20, 20, 10), 0.5)
+    ...     writer.add_tool(1, riffler.Tool.ball(diameter=6, length=30))
+    ...     writer.add_stroke(1, [(0, 10, 8, 0, 0, 1), (20, 10, 8, 0, 0, 1)])
+    >>> len(riffler.Journal.load("a.rjournal").strokes)
+    1
     """
-    def __enter__(self) -> typing.Any:
+    @staticmethod
+    def bring_back(*args, **kwargs):
+        """
+        redo(self: riffler._core.JournalWriter, n: typing.SupportsInt = 1) -> None
+
+        Redoes the last strokes that were undone, unless a new stroke has begun.
+
+        Parameters
+        ----------
+        n : int
+            How many.
+
+        Examples
+        --------
+        >>> journal = riffler.Journal()
+        >>> journal.add_tool(1, riffler.Tool.ball(diameter=6, length=30))
+        >>> journal.add_stroke(1, [(0, 10, 8, 0, 0, 1)])
+        >>> journal.undo()
+        >>> journal.redo()
+        >>> len(journal.strokes)
+        1
+
+        """
+    @staticmethod
+    def take_back(*args, **kwargs):
+        """
+        undo(self: riffler._core.JournalWriter, n: typing.SupportsInt = 1) -> None
+
+        Undoes the last strokes: they no longer count.
+
+        Parameters
+        ----------
+        n : int
+            How many.
+
+        Examples
+        --------
+        >>> journal = riffler.Journal()
+        >>> journal.add_tool(1, riffler.Tool.ball(diameter=6, length=30))
+        >>> journal.add_stroke(1, [(0, 10, 8, 0, 0, 1)])
+        >>> journal.undo()
+        >>> len(journal.strokes)
+        0
+
+        """
+    def __enter__(self) -> typing.Self:
         ...
     def __exit__(self, *args) -> None:
         ...
@@ -3305,44 +4590,171 @@ class JournalWriter:
         ...
     def add_note(self, key: str, value: str) -> None:
         """
-        Provenance.
+        Adds one key/value note on where the journal comes from.
+
+        Parameters
+        ----------
+        key, value : str
+            Of a key that is given twice the later value counts.
+
+        Examples
+        --------
+        >>> journal = riffler.Journal()
+        >>> journal.add_note("operator", "Ada")
+        >>> journal.notes
+        {'operator': 'Ada'}
         """
-    def add_stroke(self, tool: typing.SupportsInt, poses: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], times: typing.Any = None, tolerance: typing.SupportsFloat = 0.01, name: str = '', *, forces: typing.Any = None, removed: typing.Any = None, mode: str = 'remove', strength: typing.SupportsFloat = 0.5) -> None:
+    def add_stroke(self, tool: typing.SupportsInt, poses: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], *, times: numpy.typing.ArrayLike | None = None, tolerance: typing.SupportsFloat = 0.01, name: str = '', forces: numpy.typing.ArrayLike | None = None, removed: numpy.typing.ArrayLike | None = None, mode: str = 'remove', strength: typing.SupportsFloat = 0.5) -> None:
         """
-        A stroke with a tool that was added: poses (n, 6), n ≥ 1; each of the others may be None. times (n,) s that
-        never fall; forces (n, 6) N, N·mm that the device was told to give the hand, about the grip; removed (n,) mm³ by the move that
-        ends at the row. mode says what the tool does where it sweeps: "remove" and "add" material, but not where it is protected;
-        "mask" and "unmask": protect it, or no longer; "soften": a dab of ``strength`` at each row's tip, as wide as the tool;
-        "beside": remove as a Session does beside what is protected; "build": put on as a Session does. To replay to the bit what
-        was put on, or cut beside a mask, by ``carve``, each carve has to be a stroke.
+        Records a stroke. To replay to the bit what ``carve`` added, or cut next to a mask, each carve has to be a stroke.
+
+        Parameters
+        ----------
+        tool : int
+            Number of a tool that was added.
+        poses : array_like, shape (n, 6)
+            Tip in mm and unit axis, n at least 1.
+        times : array_like, shape (n,), optional
+            s, never falling.
+        tolerance : float
+            mm, as in ``Volume.carve``.
+        name : str
+            For people.
+        forces : array_like, shape (n, 6), optional
+            N and N·mm as sent to the device for the hand, about the grip.
+        removed : array_like, shape (n,), optional
+            mm³ by the move that ends at the row.
+        mode : {"remove", "add", "mask", "unmask", "soften", "beside", "build"}
+            What the tool does where it sweeps: "remove" and "add" material, but not where it is protected; "mask" and "unmask":
+            protect it, or no longer; "soften": a smoothing dab at each row's tip, as wide as the tool; "beside": remove as a
+            Session does next to what is protected; "build": add as a Session does.
+        strength : float
+            Of "soften", 0 to 1.
+
+        Examples
+        --------
+        >>> journal = riffler.Journal()
+        >>> journal.add_tool(1, riffler.Tool.ball(diameter=6, length=30))
+        >>> journal.add_stroke(1, [(0, 10, 8, 0, 0, 1), (20, 10, 8, 0, 0, 1)], times=(0, 1))
+        >>> len(journal.strokes)
+        1
         """
-    def add_tool(self, number: typing.SupportsInt, tool: typing.Any) -> None:
+    def add_tool(self, number: typing.SupportsInt, tool: Tool | collections.abc.Mapping[str, object] | str) -> None:
         """
-        A Tool, its dict or JSON text. The same number again is allowed for the same tool only.
-        """
-    def bring_back(self, n: typing.SupportsInt = 1) -> None:
-        """
-        The last n that were taken back count again: redo. A new stroke ends that.
+        Records a tool. The same number again is allowed for the same tool only.
+
+        Parameters
+        ----------
+        number : int
+            By which strokes name it.
+        tool : Tool, dict or str
+            A Tool, its dict or JSON text of it.
+
+        Examples
+        --------
+        >>> journal = riffler.Journal()
+        >>> journal.add_tool(1, riffler.Tool.ball(diameter=6, length=30))
+        >>> list(journal.tools)
+        [1]
         """
     def close(self) -> None:
         """
         Ends writing; calls after it raise RuntimeError.
+
+        Examples
+        --------
+        >>> writer = riffler.JournalWriter("a.rjournal")
+        >>> writer.close()
         """
-    def extend_stroke(self, poses: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], times: typing.Any = None, *, forces: typing.Any = None, removed: typing.Any = None) -> None:
+    def extend_stroke(self, poses: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], *, times: numpy.typing.ArrayLike | None = None, forces: numpy.typing.ArrayLike | None = None, removed: numpy.typing.ArrayLike | None = None) -> None:
         """
-        More rows for the last stroke, with the same columns.
+        Adds rows to the last stroke, with the same columns.
+
+        Parameters
+        ----------
+        poses : array_like, shape (n, 6)
+            Tip in mm and unit axis.
+        times, forces, removed : array_like, optional
+            As of ``add_stroke``.
+
+        Examples
+        --------
+        >>> journal = riffler.Journal()
+        >>> journal.add_tool(1, riffler.Tool.ball(diameter=6, length=30))
+        >>> journal.add_stroke(1, [(0, 10, 8, 0, 0, 1)])
+        >>> journal.extend_stroke([(20, 10, 8, 0, 0, 1)])
+        >>> len(journal.strokes[0])
+        2
         """
-    def set_stock(self, lower: typing.Any, upper: typing.Any, pitch: typing.SupportsFloat, directions: str = 'z', snapshot: str = '', *, mask: str = '') -> None:
+    def redo(self, n: typing.SupportsInt = 1) -> None:
         """
-        The frame of the stock, the file name of its snapshot where it is not a full block, and that of what is protected where something is. Once.
+        Redoes the last strokes that were undone, unless a new stroke has begun.
+
+        Parameters
+        ----------
+        n : int
+            How many.
+
+        Examples
+        --------
+        >>> journal = riffler.Journal()
+        >>> journal.add_tool(1, riffler.Tool.ball(diameter=6, length=30))
+        >>> journal.add_stroke(1, [(0, 10, 8, 0, 0, 1)])
+        >>> journal.undo()
+        >>> journal.redo()
+        >>> len(journal.strokes)
+        1
+        """
+    def set_stock(self, lower: numpy.typing.ArrayLike, upper: numpy.typing.ArrayLike, pitch: typing.SupportsFloat, directions: str = 'z', *, snapshot: str = '', mask: str = '') -> None:
+        """
+        Records the frame of the stock. Call it once.
+
+        Parameters
+        ----------
+        lower, upper : array_like, shape (3,)
+            Corners of its box, mm.
+        pitch : float
+            mm.
+        directions : {"z", "xyz"}
+            As of the Volume.
+        snapshot : str
+            Name of the file with the stock, where it is not a full block.
+        mask : str
+            Name of the file with what is protected, where something is.
+
+        Examples
+        --------
+        >>> journal = riffler.Journal()
+        >>> journal.set_stock((0, 0, 0), (20, 20, 10), 0.5)
+        >>> journal.stock.pitch
+        0.5
         """
     def sync(self) -> None:
         """
-        Waits until the disk has it.
+        Waits until the disk has everything.
+
+        Examples
+        --------
+        >>> with riffler.JournalWriter("a.rjournal") as writer:
+        ...     writer.sync()
         """
-    def take_back(self, n: typing.SupportsInt = 1) -> None:
+    def undo(self, n: typing.SupportsInt = 1) -> None:
         """
-        The last n strokes no longer count: undo.
+        Undoes the last strokes: they no longer count.
+
+        Parameters
+        ----------
+        n : int
+            How many.
+
+        Examples
+        --------
+        >>> journal = riffler.Journal()
+        >>> journal.add_tool(1, riffler.Tool.ball(diameter=6, length=30))
+        >>> journal.add_stroke(1, [(0, 10, 8, 0, 0, 1)])
+        >>> journal.undo()
+        >>> len(journal.strokes)
+        0
         """
     @property
     def journal(self) -> Journal:
@@ -3352,12 +4764,44 @@ class JournalWriter:
 class Material:
     """
     What a stock or a fixture is made of, as far as a hand can feel it.
+
+    Parameters
+    ----------
+    stiffness : float
+        N per mm of depth and mm² of surface; for a fixture N per mm³ in the tool.
+    removal_constant : float
+        N·s/mm³: force for volume removed per second.
+    damping : float
+        N·s/mm on a cutter in the cut.
+    density : float
+        g/cm³.
+
+    Examples
+    --------
+    >>> wood = riffler.Material(removal_constant=0.03, density=0.7)
+    >>> wood.mass(1000)
+    0.7
     """
     def __init__(self, *, stiffness: typing.SupportsFloat = 1.0, removal_constant: typing.SupportsFloat = 0.05, damping: typing.SupportsFloat = 0.0, density: typing.SupportsFloat = 1.0) -> None:
         ...
     def mass(self, volume: typing.SupportsFloat) -> float:
         """
-        g of so many mm³.
+        Mass of a volume.
+
+        Parameters
+        ----------
+        volume : float
+            mm³.
+
+        Returns
+        -------
+        float
+            g.
+
+        Examples
+        --------
+        >>> riffler.Material(density=0.7).mass(1000)
+        0.7
         """
     @property
     def damping(self) -> float:
@@ -3381,7 +4825,7 @@ class Material:
         """
 class SessionFrame:
     """
-    What happened between two calls of ``Session.frame``: one row for each step.
+    What happened between two calls of ``Session.frame``, one row for each step: see `Session.frame`.
 
     Forces and torques act on the hand, about the grip's point, in the device's frame; those on the tool act on it, about its
     tip, in the part's.
@@ -3583,60 +5027,206 @@ class Session:
     False
     """
     @staticmethod
-    def replay(path: os.PathLike | str | bytes, progress: typing.Any = None) -> typing.Any:
+    def replay(path: os.PathLike | str | bytes, *, progress: collections.abc.Callable[[float], bool | None] | None = None) -> Volume:
         """
-        What the session left of its stock: a Volume, the same to the bit. Its stock lies beside the journal.
+        What a session left of its stock, the same to the bit. Its stock lies next to the journal.
+
+        Parameters
+        ----------
+        path : path_like
+            The .rjournal file.
+        progress : callable, optional
+            Called with the finished share; returning False cancels.
+
+        Returns
+        -------
+        Volume
+
+        Examples
+        --------
+        >>> stock = riffler.Volume.block(lower=(0, 0, 0), upper=(20, 20, 10), pitch=0.5)
+        >>> session = riffler.Session(stock, riffler.Tool.ball(diameter=6, length=30))
+        >>> session.journal("first.rjournal")
+        >>> with session:
+        ...     frame = session.frame()
+        >>> riffler.Session.replay("first.rjournal").to_bytes() == stock.to_bytes()
+        True
         """
-    def __enter__(self) -> typing.Any:
+    def __enter__(self) -> typing.Self:
         ...
     def __exit__(self, *args) -> None:
         ...
-    def __init__(self, volume: Volume, tool: Tool, pen: PenDevice | None = None, *, obstacles: Collider | None = None, protect: Volume | None = None, mode: str = 'remove', material: Material | None = None, at: typing.Any = None, scale: typing.SupportsFloat = 1.0, turn: typing.Any = None, stiffness: typing.SupportsFloat = 1.0, turn_stiffness: typing.SupportsFloat = 2000.0, damping: typing.SupportsFloat = 0.001, turn_damping: typing.SupportsFloat = 2.0, tolerance: typing.SupportsFloat = 0.01, memory: typing.SupportsFloat | None = None, max_force: typing.SupportsFloat = 5.0, max_torque: typing.SupportsFloat = 300.0, max_power: typing.SupportsFloat = 2000.0, ramp: typing.SupportsFloat = 0.5, dead_man_mask: typing.SupportsInt = 1, clutch_mask: typing.SupportsInt = 2, budget: typing.Any = 'auto', undo: typing.SupportsInt = 64) -> None:
+    def __init__(self, volume: Volume, tool: Tool, pen: PenDevice | None = None, *, obstacles: Collider | None = None, protect: Volume | None = None, mode: str = 'remove', material: Material | None = None, at: numpy.typing.ArrayLike | None = None, scale: typing.SupportsFloat = 1.0, turn: numpy.typing.ArrayLike | None = None, stiffness: typing.SupportsFloat = 1.0, turn_stiffness: typing.SupportsFloat = 2000.0, damping: typing.SupportsFloat = 0.001, turn_damping: typing.SupportsFloat = 2.0, tolerance: typing.SupportsFloat = 0.01, memory: typing.SupportsFloat | None = None, max_force: typing.SupportsFloat = 5.0, max_torque: typing.SupportsFloat = 300.0, max_power: typing.SupportsFloat = 2000.0, ramp: typing.SupportsFloat = 0.5, dead_man_mask: typing.SupportsInt = 1, clutch_mask: typing.SupportsInt = 2, budget: float | typing.Literal['auto'] | None = 'auto', undo: typing.SupportsInt = 64) -> None:
         ...
     def frame(self) -> SessionFrame:
         """
-        Brings the volume up to date, and tells what happened since the last call: SessionFrame.
+        Brings the volume up to date and returns what happened since the last call.
+
         Waits for the next step, 3 ms at most.
+
+        Returns
+        -------
+        SessionFrame
+
+        Examples
+        --------
+        >>> stock = riffler.Volume.block(lower=(0, 0, 0), upper=(20, 20, 10), pitch=0.5)
+        >>> with riffler.Session(stock, riffler.Tool.ball(diameter=6, length=30)) as session:
+        ...     frame = session.frame()
+        >>> frame.tiles.shape
+        (0, 2)
         """
-    def journal(self, path: os.PathLike | str | bytes, notes: dict = {}) -> None:
+    def journal(self, path: os.PathLike | str | bytes, *, notes: dict = {}) -> None:
         """
-        Records every stroke: poses, times, forces, what was
-        cut. Before ``start``; a new file, with the stock beside it (``NAME-stock.rvol``), and what is protected
-        (``NAME-mask.rvol``). What is in it survives a crash but for the last second at most, and is replayed by
-        ``Session.replay``.
+        Records every stroke in a new file: poses, times, forces, what was cut. Call it before ``start``.
+
+        The stock lies next to it (``NAME-stock.rvol``), and what is protected (``NAME-mask.rvol``). What is in the file survives
+        a crash but for the last second at most, and ``Session.replay`` replays it.
+
+        Parameters
+        ----------
+        path : path_like
+            The .rjournal file.
+        notes : dict
+            Strings that the journal keeps.
+
+        Raises
+        ------
+        ValueError
+            If one of the files is there already.
+
+        Examples
+        --------
+        >>> stock = riffler.Volume.block(lower=(0, 0, 0), upper=(20, 20, 10), pitch=0.5)
+        >>> session = riffler.Session(stock, riffler.Tool.ball(diameter=6, length=30))
+        >>> session.journal("first.rjournal", notes={"operator": "Ada"})
+        >>> with session:
+        ...     frame = session.frame()
+        >>> riffler.Session.replay("first.rjournal").volume
+        4000.0
         """
     def journal_written(self, seconds: typing.SupportsFloat = 2.0) -> bool:
         """
-        Waits until all rows that were made so far are in the journal's file, which is some 50 ms behind. False: not within so many seconds.
+        Waits until all rows that were made so far are in the journal's file, which is some 50 ms behind.
+
+        Parameters
+        ----------
+        seconds : float
+            How long to wait at most.
+
+        Returns
+        -------
+        bool
+            False: they are not.
+
+        Examples
+        --------
+        >>> stock = riffler.Volume.block(lower=(0, 0, 0), upper=(20, 20, 10), pitch=0.5)
+        >>> session = riffler.Session(stock, riffler.Tool.ball(diameter=6, length=30))
+        >>> session.journal_written()
+        True
         """
     def redo(self) -> int:
         """
-        And happened, unless another was begun since.
+        Redoes what ``undo`` undid, unless a new stroke has begun.
+
+        Returns
+        -------
+        int
+            How many strokes were redone.
+
+        Examples
+        --------
+        >>> stock = riffler.Volume.block(lower=(0, 0, 0), upper=(20, 20, 10), pitch=0.5)
+        >>> with riffler.Session(stock, riffler.Tool.ball(diameter=6, length=30)) as session:
+        ...     print(session.redo())
+        0
         """
     def reset(self) -> None:
         """
-        Clears a trip that does not heal by itself: the frame's ``cause`` says what it was.
+        Clears a trip that does not heal by itself: ``SessionFrame.cause`` says what it was.
+
+        Examples
+        --------
+        >>> stock = riffler.Volume.block(lower=(0, 0, 0), upper=(20, 20, 10), pitch=0.5)
+        >>> with riffler.Session(stock, riffler.Tool.ball(diameter=6, length=30)) as session:
+        ...     session.reset()
         """
-    def set_workspace(self, *, scale: typing.SupportsFloat = 1.0, turn: typing.Any = None, dead_man_mask: typing.SupportsInt = 1, clutch_mask: typing.SupportsInt = 2) -> None:
+    def set_workspace(self, *, scale: typing.SupportsFloat = 1.0, turn: numpy.typing.ArrayLike | None = None, dead_man_mask: typing.SupportsInt = 1, clutch_mask: typing.SupportsInt = 2) -> None:
         """
-        Another scale, view or buttons from the next step on. The tool does not jump.
+        Changes scale, view or buttons from the next step on. The tool does not jump.
+
+        Parameters
+        ----------
+        scale : float
+            mm of the tool per mm of the hand.
+        turn : array_like, shape (3, 3), optional
+            Rotation from the hand's frame to the tool's; None: none.
+        dead_man_mask, clutch_mask : int
+            Buttons, as bits: cut while one is held; move the hand without the tool.
+
+        Examples
+        --------
+        >>> stock = riffler.Volume.block(lower=(0, 0, 0), upper=(20, 20, 10), pitch=0.5)
+        >>> with riffler.Session(stock, riffler.Tool.ball(diameter=6, length=30)) as session:
+        ...     session.set_workspace(scale=0.5)
         """
     def start(self) -> None:
         """
-        The pen's thread sculpts from now on. Once.
+        Starts sculpting, in the pen's own thread. Call it once.
+
+        Examples
+        --------
+        >>> stock = riffler.Volume.block(lower=(0, 0, 0), upper=(20, 20, 10), pitch=0.5)
+        >>> session = riffler.Session(stock, riffler.Tool.ball(diameter=6, length=30))
+        >>> session.start()
+        >>> frame = session.stop()
         """
     def stop(self) -> SessionFrame:
         """
-        No force any more, and everything that was cut is in the volume and, where there is one, in
-        the journal on the disk. SessionFrame: what was not shown yet.
+        Ends the force. Everything that was cut is in the volume and in the journal on the disk, if any.
+
+        Returns
+        -------
+        SessionFrame
+            What was not shown yet.
+
+        Raises
+        ------
+        RuntimeError
+            If the journal is not complete on the disk; the session has stopped.
+
+        Examples
+        --------
+        >>> stock = riffler.Volume.block(lower=(0, 0, 0), upper=(20, 20, 10), pitch=0.5)
+        >>> session = riffler.Session(stock, riffler.Tool.ball(diameter=6, length=30))
+        >>> session.start()
+        >>> session.stop().strokes
+        0
         """
     def undo(self) -> int:
         """
-        The last stroke did not happen, or the last few if they ended between two
-        frames. How many that were; 0: there is none. RuntimeError in the middle of a stroke.
+        Undoes the last stroke, or the last few if they ended between two frames.
+
+        Returns
+        -------
+        int
+            How many strokes were undone; 0: there is none.
+
+        Raises
+        ------
+        RuntimeError
+            During a stroke.
+
+        Examples
+        --------
+        >>> stock = riffler.Volume.block(lower=(0, 0, 0), upper=(20, 20, 10), pitch=0.5)
+        >>> with riffler.Session(stock, riffler.Tool.ball(diameter=6, length=30)) as session:
+        ...     print(session.undo())
+        0
         """
     @property
-    def journal_problem(self) -> typing.Any:
+    def journal_problem(self) -> str | None:
         """
         Why strokes wait for the disk, or None.
         """
@@ -3647,60 +5237,241 @@ class Session:
         """
     @property
     def running(self) -> bool:
-        ...
-    @property
-    def trips(self) -> list:
         """
-        list of (time s, state, sentence, value): when the force was taken away, and why.
+        Whether the session was started and not stopped.
+        """
+    @property
+    def trips(self) -> list[riffler.program_results.Trip]:
+        """
+        When the force was taken away, and why.
         """
     @property
     def volume(self) -> Volume:
         """
-        The one that is shown.
+        What is shown.
         """
 class PencilPath:
     """
-    A curve of ball centres along a part, with what the ball touches at each. See riffler.plan. Immutable.
+    A curve of ball centres along a part, with what the ball touches. Immutable.
+
+    Parameters
+    ----------
+    radius : float
+        Radius of the ball, mm.
+    centres : array_like, shape (n, 3)
+        mm.
+    contacts : array_like, shape (n, 2, 3)
+        Points of the part that the ball touches, mm.
+    normals : array_like, shape (n, 2, 3)
+        The part's unit normals there, out of the material.
+    closed : bool
+        A loop: its last point is joined to its first.
+
+    Examples
+    --------
+    >>> contacts = [[(x, -1.2, 1.6), (x, 1.2, 1.6)] for x in (0, 10)]
+    >>> normals = [[(0, 0.6, 0.8), (0, -0.6, 0.8)]] * 2
+    >>> path = riffler.plan.PencilPath(2.0, [(0, 0, 3.2), (10, 0, 3.2)], contacts, normals)
+    >>> path.length
+    10.0
     """
-    def __init__(self, radius: typing.SupportsFloat, centres: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], contacts: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], normals: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], closed: bool = False) -> None:
+    @staticmethod
+    def oriented(*args, **kwargs):
         """
-        centres (n, 3), contacts (n, 2, 3) mm and normals (n, 2, 3), unit, out of the material.
+        orient(self: riffler._core.PencilPath, keys: collections.abc.Mapping[int, numpy.typing.ArrayLike], *, interpolation: str = 'smooth', limit: tuple[numpy.typing.ArrayLike, float] | None = None, project: bool = False) -> riffler._core.PencilPath
+
+        A new path with tool axes at all points, interpolated from some.
+
+        To adjust an interpolated axis, make it a key: ``p.orient({**p.keys, i: axis})``.
+
+        Parameters
+        ----------
+        keys : dict
+            Index of a point, from 0, to unit axis. Axes are constant before the first key and after the last; on a closed path
+            they are also interpolated from the last to the first.
+        interpolation : {"smooth", "slerp", "linear"}
+            "linear": straight between two axes by number of points and made unit, the source's (4.4)-(4.5); "slerp": the great
+            circle at constant rate by arc length; "smooth": by arc length with a continuous derivative, at most 1.7 times as
+            fast as slerp.
+        limit : tuple of axis and angle, optional
+            The cone in which the machine's rotary axes keep the tool: unit axis, half angle in rad.
+        project : bool
+            Moves an axis beyond ``limit`` onto the cone; otherwise it is an error.
+
+        Returns
+        -------
+        PencilPath
+
+        Raises
+        ------
+        ValueError
+            Naming the first point beyond ``limit``, or the key that is outside the path, no unit vector, or opposite to the key
+            before it.
+
+        Examples
+        --------
+        >>> part = riffler.shape.relief([[1, 1], [0, 0], [1, 1]], size=(30, 20), depth=10, sink=5)
+        >>> (valley,) = riffler.plan.pencil(part, riffler.Tool.ball(diameter=4, length=20))
+        >>> valley.divided(10).orient({0: (0, 0, 1), 3: (0.6, 0, 0.8)}).axes.shape
+        (4, 3)
+
         """
+    def __init__(self, radius: typing.SupportsFloat, centres: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], contacts: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], normals: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], *, closed: bool = False) -> None:
+        ...
     def __len__(self) -> int:
         ...
     def axis(self, index: typing.SupportsInt, inclination: typing.SupportsFloat, tilt: typing.SupportsFloat) -> numpy.typing.NDArray[numpy.float64]:
         """
-        Unit axis at a point that leans forward by ``inclination`` and to the left by ``tilt``, rad: cos(tilt) (sin(inclination) x + cos(inclination) z) + sin(tilt) y.
+        Unit axis that leans from the frame's z at a point: the inverse of ``lean``.
+
+        cos(tilt) (sin(inclination) x + cos(inclination) z) + sin(tilt) y.
+
+        Parameters
+        ----------
+        index : int
+            Number of the point, from 0.
+        inclination, tilt : float
+            rad, forward and to the left.
+
+        Returns
+        -------
+        ndarray, shape (3,)
+
+        Examples
+        --------
+        >>> part = riffler.shape.relief([[1, 1], [0, 0], [1, 1]], size=(30, 20), depth=10, sink=5)
+        >>> (valley,) = riffler.plan.pencil(part, riffler.Tool.ball(diameter=4, length=20))
+        >>> valley.axis(0, 0.0, 0.0).round(6) + 0.0
+        array([0., 0., 1.])
         """
     def divided(self, step: typing.SupportsFloat) -> PencilPath:
         """
-        With further points, evenly between two that are more than ``step`` mm apart (a straight valley has only its ends), so that keys can be set there. Without axes.
-        """
-    def lean(self, index: typing.SupportsInt, axis: typing.Any) -> tuple:
-        """
-        (inclination, tilt) of an axis at a point, rad: the inverse of ``axis``.
-        """
-    def nearest(self, point: typing.Any, direction: typing.Any = None) -> dict:
-        """
-        The contact nearest to a point, or to the ray from it in a direction: what a pen or a mouse points at.
+        The path with further points, so that keys can be set there: a straight valley has only its ends.
 
-        A dict: ``index`` of the path's point, ``side`` (0 or 1) of its two contacts, ``distance`` mm, ``point``, ``normal``.
-        """
-    def oriented(self, keys: typing.Any, interpolation: str = 'smooth', *, limit: typing.Any = None, project: bool = False) -> PencilPath:
-        """
-        A new path with tool axes at all points, interpolated from ``keys``: a dict of index (from 0) to unit axis.
+        Parameters
+        ----------
+        step : float
+            mm; points are inserted evenly between two that are further apart.
 
-        ``interpolation``: ``"linear"``, straight between two axes by number of points and made unit, the source's (4.4)-(4.5);
-        ``"slerp"``, the great circle at constant rate by arc length; ``"smooth"``, by arc length with a continuous derivative,
-        at most 1.7 times as fast as slerp. Constant before the first key and after the last; on a closed path also from the
-        last to the first. To adjust an interpolated axis, make it a key: ``p.oriented({**p.keys, i: axis})``.
-        ``limit``: (axis, angle), the cone in which the machine's rotary axes keep the tool; an axis beyond it is a ValueError
-        naming the first point, or is moved onto the cone with ``project=True``. ValueError names the point of a key that is
-        outside the path, not a unit vector, or opposite to the key before it.
+        Returns
+        -------
+        PencilPath
+            Without axes.
+
+        Examples
+        --------
+        >>> part = riffler.shape.relief([[1, 1], [0, 0], [1, 1]], size=(30, 20), depth=10, sink=5)
+        >>> (valley,) = riffler.plan.pencil(part, riffler.Tool.ball(diameter=4, length=20))
+        >>> len(valley), len(valley.divided(10))
+        (2, 4)
         """
-    def with_axes(self, axes: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], keys: typing.Any = {}, interpolation: str = '') -> PencilPath:
+    def lean(self, index: typing.SupportsInt, axis: numpy.typing.ArrayLike) -> tuple[float, float]:
         """
-        A new path with these axes (n, 3), which came about elsewhere; keys and interpolation are kept beside them.
+        Inclination and tilt of an axis at a point: the inverse of ``axis``.
+
+        Parameters
+        ----------
+        index : int
+            Number of the point, from 0.
+        axis : array_like, shape (3,)
+            Unit axis.
+
+        Returns
+        -------
+        inclination, tilt : float
+            rad.
+
+        Examples
+        --------
+        >>> part = riffler.shape.relief([[1, 1], [0, 0], [1, 1]], size=(30, 20), depth=10, sink=5)
+        >>> (valley,) = riffler.plan.pencil(part, riffler.Tool.ball(diameter=4, length=20))
+        >>> inclination, tilt = valley.lean(0, valley.axis(0, 0.1, 0.2))
+        >>> round(inclination, 6), round(tilt, 6)
+        (0.1, 0.2)
+        """
+    def nearest(self, point: numpy.typing.ArrayLike, *, direction: numpy.typing.ArrayLike | None = None) -> riffler.program_results.NearestContact:
+        """
+        The contact nearest to a point, or to a ray: what a pen or a mouse points at.
+
+        Parameters
+        ----------
+        point : array_like, shape (3,)
+            mm.
+        direction : array_like, shape (3,), optional
+            The ray's direction.
+
+        Returns
+        -------
+        NearestContact
+
+        Examples
+        --------
+        >>> part = riffler.shape.relief([[1, 1], [0, 0], [1, 1]], size=(30, 20), depth=10, sink=5)
+        >>> (valley,) = riffler.plan.pencil(part, riffler.Tool.ball(diameter=4, length=20))
+        >>> valley.nearest((1, 12, 2)).index in (0, 1)
+        True
+        """
+    def orient(self, keys: collections.abc.Mapping[int, numpy.typing.ArrayLike], *, interpolation: str = 'smooth', limit: tuple[numpy.typing.ArrayLike, float] | None = None, project: bool = False) -> PencilPath:
+        """
+        A new path with tool axes at all points, interpolated from some.
+
+        To adjust an interpolated axis, make it a key: ``p.orient({**p.keys, i: axis})``.
+
+        Parameters
+        ----------
+        keys : dict
+            Index of a point, from 0, to unit axis. Axes are constant before the first key and after the last; on a closed path
+            they are also interpolated from the last to the first.
+        interpolation : {"smooth", "slerp", "linear"}
+            "linear": straight between two axes by number of points and made unit, the source's (4.4)-(4.5); "slerp": the great
+            circle at constant rate by arc length; "smooth": by arc length with a continuous derivative, at most 1.7 times as
+            fast as slerp.
+        limit : tuple of axis and angle, optional
+            The cone in which the machine's rotary axes keep the tool: unit axis, half angle in rad.
+        project : bool
+            Moves an axis beyond ``limit`` onto the cone; otherwise it is an error.
+
+        Returns
+        -------
+        PencilPath
+
+        Raises
+        ------
+        ValueError
+            Naming the first point beyond ``limit``, or the key that is outside the path, no unit vector, or opposite to the key
+            before it.
+
+        Examples
+        --------
+        >>> part = riffler.shape.relief([[1, 1], [0, 0], [1, 1]], size=(30, 20), depth=10, sink=5)
+        >>> (valley,) = riffler.plan.pencil(part, riffler.Tool.ball(diameter=4, length=20))
+        >>> valley.divided(10).orient({0: (0, 0, 1), 3: (0.6, 0, 0.8)}).axes.shape
+        (4, 3)
+        """
+    def with_axes(self, axes: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], *, keys: collections.abc.Mapping[int, numpy.typing.ArrayLike] = {}, interpolation: str = '') -> PencilPath:
+        """
+        A new path with axes that were computed elsewhere.
+
+        Parameters
+        ----------
+        axes : array_like, shape (n, 3)
+            Unit tool axes, tip to spindle.
+        keys : dict, optional
+            Index to axis; kept with the axes.
+        interpolation : str
+            Kept likewise.
+
+        Returns
+        -------
+        PencilPath
+
+        Examples
+        --------
+        >>> part = riffler.shape.relief([[1, 1], [0, 0], [1, 1]], size=(30, 20), depth=10, sink=5)
+        >>> (valley,) = riffler.plan.pencil(part, riffler.Tool.ball(diameter=4, length=20))
+        >>> valley.with_axes([(0, 0, 1)] * len(valley)).axes
+        array([[0., 0., 1.],
+               [0., 0., 1.]])
         """
     @property
     def axes(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -3710,7 +5481,7 @@ class PencilPath:
     @property
     def centres(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n, 3) mm
+        (n, 3) mm.
         """
     @property
     def closed(self) -> bool:
@@ -3720,7 +5491,7 @@ class PencilPath:
     @property
     def contacts(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n, 2, 3) mm
+        (n, 2, 3) mm.
         """
     @property
     def frames(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -3732,17 +5503,17 @@ class PencilPath:
     @property
     def interpolation(self) -> str:
         """
-        How; empty until the path is oriented.
+        How the axes were interpolated; empty until the path is oriented.
         """
     @property
-    def keys(self) -> dict:
+    def keys(self) -> dict[int, numpy.typing.NDArray[numpy.float64]]:
         """
-        dict: index to axis, of what the axes were interpolated from.
+        The axes that the others were interpolated from, by index.
         """
     @property
     def length(self) -> float:
         """
-        mm, of the closing edge too.
+        mm, with the closing edge.
         """
     @property
     def normals(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -3752,15 +5523,15 @@ class PencilPath:
     @property
     def radius(self) -> float:
         """
-        Of the ball, mm.
+        Radius of the ball, mm.
         """
 def _open_pen(what: str, *, geometry: str = 'woodenhaptics', bubble: typing.SupportsFloat = 0.08, exponent: typing.SupportsFloat = 2.0, speed: typing.SupportsFloat = 60.0, turn_rate: typing.SupportsFloat = 1.5, hold_orientation: bool = False, signs: typing.Annotated[collections.abc.Sequence[typing.SupportsInt], "FixedSize(6)"] = [1, 1, 1, 1, 1, 1], gravity: typing.SupportsFloat = 0.0, friction: typing.SupportsFloat = 0.0) -> PenDevice:
     ...
-def _pen_devices() -> list:
+def _pen_devices() -> list[riffler.pen_results.DeviceInfo]:
     ...
-def _pen_families() -> dict:
+def _pen_families() -> dict[str, str]:
     ...
-def _pens() -> dict:
+def _pens() -> dict[str, str]:
     ...
 def _play_pen(strokes: collections.abc.Sequence[tuple[typing.Annotated[numpy.typing.ArrayLike, numpy.float64], collections.abc.Sequence[typing.SupportsFloat]]], speed: typing.SupportsFloat) -> PenDevice:
     ...
@@ -3768,45 +5539,72 @@ def clear_drafts(path: os.PathLike | str | bytes) -> None:
     """
     Removes drafts of ``path`` that nobody has locked: processes that were killed left them.
     """
-def contact_locations(tool: Tool, contacts: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], normals: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], axes: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], feeds: typing.Any) -> numpy.typing.NDArray[numpy.float64]:
+def contact_locations(tool: Tool, contacts: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], normals: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], axes: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], feeds: numpy.typing.ArrayLike | None) -> numpy.typing.NDArray[numpy.float64]:
     ...
 @typing.overload
-def cutter_locations(path: PencilPath, tool: Tool, collider: Collider, *, clearance: typing.SupportsFloat, tolerance: typing.SupportsFloat, max_lift: typing.SupportsFloat, max_inserted: typing.SupportsInt, progress: typing.Any) -> dict:
+def cutter_locations(path: PencilPath, tool: Tool, collider: Collider, *, clearance: typing.SupportsFloat, tolerance: typing.SupportsFloat, max_lift: typing.SupportsFloat, max_inserted: typing.SupportsInt, progress: collections.abc.Callable[[float], bool | None] | None) -> dict:
     ...
 @typing.overload
-def cutter_locations(path: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], tool: Tool, collider: Collider, *, clearance: typing.SupportsFloat, tolerance: typing.SupportsFloat, max_lift: typing.SupportsFloat, max_inserted: typing.SupportsInt, progress: typing.Any) -> dict:
+def cutter_locations(path: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], tool: Tool, collider: Collider, *, clearance: typing.SupportsFloat, tolerance: typing.SupportsFloat, max_lift: typing.SupportsFloat, max_inserted: typing.SupportsInt, progress: collections.abc.Callable[[float], bool | None] | None) -> dict:
     ...
 def draft_prefix(path: os.PathLike | str | bytes) -> pathlib.Path:
     """
     Path with which the names of drafts of ``path`` begin.
     """
-def drop(tool: Tool, points: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], part: Mesh, axis: typing.Any, progress: typing.Any) -> tuple:
+def drop(tool: Tool, points: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], part: Mesh, axis: numpy.typing.ArrayLike, progress: collections.abc.Callable[[float], bool | None] | None) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
     ...
-def engrave(part: Mesh, curves: collections.abc.Sequence, tool: Tool, *, depth: typing.SupportsFloat, inclination: typing.SupportsFloat, tilt: typing.SupportsFloat, tolerance: typing.SupportsFloat, turn: typing.SupportsFloat, crease: typing.SupportsFloat, reach: typing.SupportsFloat, progress: typing.Any) -> list:
+def engrave(part: Mesh, curves: collections.abc.Iterable[numpy.typing.ArrayLike], tool: Tool, *, depth: typing.SupportsFloat, inclination: typing.SupportsFloat, tilt: typing.SupportsFloat, tolerance: typing.SupportsFloat, turn: typing.SupportsFloat, crease: typing.SupportsFloat, reach: typing.SupportsFloat, progress: collections.abc.Callable[[float], bool | None] | None) -> list:
     """
     For riffler.plan.engrave.
     """
-def least_tilt(path: PencilPath, tool: Tool, collider: Collider, *, inclinations: collections.abc.Sequence[typing.SupportsFloat], tilts: collections.abc.Sequence[typing.SupportsFloat], clearance: typing.SupportsFloat, tolerance: typing.SupportsFloat, limit: typing.Any, max_change: typing.SupportsFloat, smoothness: typing.SupportsFloat, progress: typing.Any) -> dict:
+def lift(tool: Tool, poses: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], collider: Collider, *, clearance: typing.SupportsFloat, tolerance: typing.SupportsFloat, max_lift: typing.SupportsFloat, max_evaluations: typing.SupportsInt, progress: collections.abc.Callable[[float], bool | None] | None) -> dict:
     ...
-def lift(tool: Tool, poses: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], collider: Collider, *, clearance: typing.SupportsFloat, tolerance: typing.SupportsFloat, max_lift: typing.SupportsFloat, max_evaluations: typing.SupportsInt, progress: typing.Any) -> dict:
-    ...
-def machine_options(machine: str, options: typing.Any = None) -> list:
+def machine_options(machine: str, *, options: collections.abc.Mapping[str, float | bool | str | collections.abc.Sequence[float]] | None = None) -> list[riffler.program_results.MachineOption]:
     """
-    The options that a machine takes, its own first, and those of the code that is written for it: a list of dicts.
+    The options that a machine takes, its own first, and those of the code that is written for it.
 
-    ``name``; ``kind``: "number", "positive", "numbers", "range" (two that grow), "flag" (a bool) or "word"; ``count`` of
-    numbers; ``unit``: "mm", "deg", "mm/min", "deg/min" or ""; ``words``: of which it is one; ``value``: where it is not
-    given, None where there is none then; ``needed``: it must be given, with these ``options``; ``own``: of this machine's
-    file, the others are of many; ``about``: one sentence.
-    ValueError for a machine that is not known, and for options that are wrong.
+    Parameters
+    ----------
+    machine : str
+        A name of ``machines``, or the path of a .toml file.
+    options : dict, optional
+        Options that are given: others may be needed with them.
+
+    Returns
+    -------
+    list of MachineOption
+
+    Raises
+    ------
+    ValueError
+        For a machine that is not known, and for options that are wrong.
+
+    Examples
+    --------
+    >>> [option.name for option in riffler.machine_options("linuxcnc-xyzac") if option.own]
+    ['offset', 'rot_point', 'tool_offset']
     """
-def machines() -> dict:
+def machines() -> dict[str, str]:
     """
-    Machines that programs are written for and read from, ours and your own: name to description. A post has its machine's name; the path of a .toml file that describes one will do as well.
+    Machines that programs are written for and read from, riffler's and your own.
+
+    A post has its machine's name. Where a machine is asked for, the path of a .toml file that describes one will do as well.
+
+    Returns
+    -------
+    dict
+        Name to description.
+
+    Examples
+    --------
+    >>> "linuxcnc-xyzac" in riffler.machines()
+    True
     """
-def orientation_maps(path: PencilPath, points: collections.abc.Sequence[typing.SupportsInt], tool: Tool, collider: Collider, *, inclinations: collections.abc.Sequence[typing.SupportsFloat], tilts: collections.abc.Sequence[typing.SupportsFloat], clearance: typing.SupportsFloat, tolerance: typing.SupportsFloat, limit: typing.Any, progress: typing.Any) -> list:
+def min_tilt(path: PencilPath, tool: Tool, collider: Collider, *, inclinations: collections.abc.Sequence[typing.SupportsFloat], tilts: collections.abc.Sequence[typing.SupportsFloat], clearance: typing.SupportsFloat, tolerance: typing.SupportsFloat, limit: tuple[numpy.typing.ArrayLike, float] | None, max_change: typing.SupportsFloat, smoothness: typing.SupportsFloat, progress: collections.abc.Callable[[float], bool | None] | None) -> dict:
     ...
-def pencil(part: Mesh, tool: Tool, *, tolerance: typing.SupportsFloat, bitangency_angle: typing.SupportsFloat | None, minimum_length: typing.SupportsFloat, passes: typing.SupportsInt, stepover: typing.SupportsFloat | None, overthickness: typing.SupportsFloat, progress: typing.Any) -> dict:
+def orientation_maps(path: PencilPath, points: collections.abc.Sequence[typing.SupportsInt], tool: Tool, collider: Collider, *, inclinations: collections.abc.Sequence[typing.SupportsFloat], tilts: collections.abc.Sequence[typing.SupportsFloat], clearance: typing.SupportsFloat, tolerance: typing.SupportsFloat, limit: tuple[numpy.typing.ArrayLike, float] | None, progress: collections.abc.Callable[[float], bool | None] | None) -> list:
+    ...
+def pencil(part: Mesh, tool: Tool, *, tolerance: typing.SupportsFloat, bitangency_angle: typing.SupportsFloat | None, minimum_length: typing.SupportsFloat, passes: typing.SupportsInt, stepover: typing.SupportsFloat | None, overthickness: typing.SupportsFloat, progress: collections.abc.Callable[[float], bool | None] | None) -> dict:
     """
     For riffler.plan.pencil.
     """
@@ -3847,7 +5645,7 @@ def set_threads(n: typing.SupportsInt | None) -> None:
     """
 def stepover_of_scallop(radius: typing.SupportsFloat, height: typing.SupportsFloat) -> float:
     ...
-def swarf(path: PencilPath, part: Mesh, tool: Tool, *, side: typing.SupportsInt, height: typing.SupportsFloat | None, tolerance: typing.SupportsFloat, progress: typing.Any) -> dict:
+def swarf(path: PencilPath, part: Mesh, tool: Tool, *, side: typing.SupportsInt, height: typing.SupportsFloat | None, tolerance: typing.SupportsFloat, progress: collections.abc.Callable[[float], bool | None] | None) -> dict:
     """
     For riffler.plan.swarf.
     """
@@ -3875,25 +5673,61 @@ def tip_ball_radius(tool: Tool, name: str) -> float:
     """
     Radius (mm) of the ball at the tip of ``tool``; ValueError naming the argument ``name`` where there is none.
     """
-def verify(program: typing.Any, stock_volume: Volume, part_mesh: typing.Any = None, fixtures: typing.Any = (), *, tools: typing.Any = None, tolerance: typing.SupportsFloat = 0.01, gouge_tolerance: typing.SupportsFloat = 0.05, rest_tolerance: typing.SupportsFloat | None = None, rapid_feed: typing.SupportsFloat = 10000.0, machine: str | None = None, machine_options: typing.Any = None, machine_frame: typing.Any = None, progress: typing.Any = None) -> VerifyReport:
+def verify(program: Program | collections.abc.Iterable[Program], stock_volume: Volume, part_mesh: Mesh | None = None, fixtures: collections.abc.Iterable[Volume | Mesh] | None = (), *, tools: collections.abc.Mapping[int, Tool] | None = None, tolerance: typing.SupportsFloat = 0.01, gouge_tolerance: typing.SupportsFloat = 0.05, rest_tolerance: typing.SupportsFloat | None = None, rapid_feed: typing.SupportsFloat = 10000.0, machine: str | None = None, machine_options: collections.abc.Mapping[str, float | bool | str | collections.abc.Sequence[float]] | None = None, machine_frame: numpy.typing.ArrayLike | None = None, progress: collections.abc.Callable[[float], bool | None] | None = None) -> VerifyReport:
     """
     Runs a program on a stock and reports what goes wrong; the stock is not changed.
 
-    ``program``: a Program, or an iterable of Programs, each of which begins with the row at which the one before ended;
-    nothing is kept of them but 16 bytes a row. ``part_mesh``: Mesh, for gouges and rest material. ``fixtures``: list of
-    Volume or Mesh (which becomes a Volume at the stock's pitch). ``tools``: dict of number to Tool, before the program's own.
-
-    ``tolerance`` (mm): of cutting, as in Volume.carve; contact that is less deep is none. ``gouge_tolerance`` (mm): what is
-    taken from the part deeper under its surface is a gouge. ``rest_tolerance`` (mm): what stands higher on the part is a
-    finding; None: rest material is mapped, not judged. ``rapid_feed``: mm/min, for the time. ``machine``: a name of
-    machines() on which it is to run, with ``machine_options`` (those of reading are passed over): the first row that its axes or their limits cannot hold is a
-    finding "machine". ``machine_frame``: (4, 4), from the coordinates of stock and program to those in which the machine has the
-    program, where they are others.
-
     Rapids are cut too: a crash takes material. Shank and holder must stay clear of what is left of the stock when they come
     there, the whole tool of the fixtures. Where the description of a tool ends below material or a fixture that stands above
-    or beside it, nobody knows what the spindle meets: a finding "unknown". ValueError naming number, row and line of a tool
-    whose shape is not known. ``progress``: called with the finished share, of each chunk anew; returning False cancels.
+    it or next to it, it is unknown what the spindle meets: a finding "unknown".
+
+    Parameters
+    ----------
+    program : Program, or an iterable of Programs
+        Each of several begins with the row at which the one before ended; only 16 bytes a row of them are kept.
+    stock_volume : Volume
+        Not changed.
+    part_mesh : Mesh, optional
+        For gouges and rest material.
+    fixtures : list of Volume or Mesh
+        What the whole tool must stay clear of; a Mesh becomes a Volume at the stock's pitch.
+    tools : dict, optional
+        Number to Tool; takes the place of the program's own.
+    tolerance : float
+        mm, of cutting, as in ``Volume.carve``; less deep contact is none.
+    gouge_tolerance : float
+        mm under the part's surface from which removed material is a gouge.
+    rest_tolerance : float, optional
+        mm over the part's surface from which material is a finding; None: rest material is mapped, not judged.
+    rapid_feed : float
+        mm/min, for the time.
+    machine : str, optional
+        A name of ``machines`` on which the program is to run: the first row that its axes or their limits cannot hold is a
+        finding "machine".
+    machine_options : dict, optional
+        Options of the machine; those of reading are ignored.
+    machine_frame : array_like, shape (4, 4), optional
+        From the coordinates of stock and program to those in which the machine has the program, where they differ.
+    progress : callable, optional
+        Called with the finished share, from 0 for each chunk; returning False cancels.
+
+    Returns
+    -------
+    VerifyReport
+
+    Raises
+    ------
+    ValueError
+        Naming number, row and line of a tool whose shape is not known.
+
+    Examples
+    --------
+    >>> stock = riffler.Volume.block(lower=(0, 0, 0), upper=(20, 20, 10), pitch=0.5)
+    >>> ball = riffler.Tool.ball(diameter=6, length=30)
+    >>> cut = [(5, 10, 8, 0, 0, 1), (15, 10, 8, 0, 0, 1)]
+    >>> program = riffler.Program.from_cl([cut], [ball], feed=600, spindle=9000)
+    >>> riffler.verify(program, stock).findings
+    []
     """
 __compiler__: str
 __version__: str

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from . import _core
 
 #: Called with the finished share, 0 to 1; the call is cancelled where it returns False.
-Progress: TypeAlias = Callable[[float], object] | None
+Progress: TypeAlias = Callable[[float], bool | None] | None
 
 #: (axis, angle): a cone about a unit axis, with its half angle in rad.
 Cone: TypeAlias = tuple[ArrayLike, float]
