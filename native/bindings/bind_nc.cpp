@@ -49,7 +49,7 @@ WriteReport write(const nc::Program& self, const std::filesystem::path& path, co
 }  // namespace
 
 void bind_nc_types(py::module_& m) {
-  py::class_<nc::Note>(m, "Note", "What a reader of NC code assumed or passed over.")
+  py::class_<nc::Note>(m, "Note", "What a reader of NC code assumed or passed over: see `Program.read`.")
       .def_readonly(
           "kind", &nc::Note::kind,
           "\"skipped\", \"coordinates\" (what follows may be elsewhere), \"work offset\", \"units\", "

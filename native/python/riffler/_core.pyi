@@ -2240,7 +2240,7 @@ class Collider:
         """
 class Note:
     """
-    What a reader of NC code assumed or passed over.
+    What a reader of NC code assumed or passed over: see `Program.read`.
     """
     def __repr__(self) -> str:
         ...
@@ -2787,7 +2787,7 @@ class Program:
         """
 class Finding:
     """
-    One fault: neighbouring rows of a program with the same kind, tool and fixture.
+    One fault, neighbouring rows of a program with the same kind, tool and fixture: see `verify`.
     """
     def __repr__(self) -> str:
         ...
@@ -2872,7 +2872,7 @@ class Finding:
         """
 class VerifyReport:
     """
-    What a verification found.
+    What a verification found: see `verify`.
     """
     def __repr__(self) -> str:
         ...
@@ -3796,7 +3796,7 @@ class Pointer(PenDevice):
         """
 class JournalStroke:
     """
-    One stroke of a Journal.
+    One stroke of a journal: see `Journal.add_stroke`.
     """
     def __len__(self) -> int:
         ...
@@ -4363,12 +4363,44 @@ class JournalWriter:
 class Material:
     """
     What a stock or a fixture is made of, as far as a hand can feel it.
+
+    Parameters
+    ----------
+    stiffness : float
+        N per mm of depth and mm² of surface; for a fixture N per mm³ in the tool.
+    removal_constant : float
+        N·s/mm³: force for volume removed per second.
+    damping : float
+        N·s/mm on a cutter in the cut.
+    density : float
+        g/cm³.
+
+    Examples
+    --------
+    >>> wood = riffler.Material(removal_constant=0.03, density=0.7)
+    >>> wood.mass(1000)
+    0.7
     """
     def __init__(self, *, stiffness: typing.SupportsFloat = 1.0, removal_constant: typing.SupportsFloat = 0.05, damping: typing.SupportsFloat = 0.0, density: typing.SupportsFloat = 1.0) -> None:
         ...
     def mass(self, volume: typing.SupportsFloat) -> float:
         """
-        g of so many mm³.
+        Mass of a volume.
+
+        Parameters
+        ----------
+        volume : float
+            mm³.
+
+        Returns
+        -------
+        float
+            g.
+
+        Examples
+        --------
+        >>> riffler.Material(density=0.7).mass(1000)
+        0.7
         """
     @property
     def damping(self) -> float:
@@ -4392,7 +4424,7 @@ class Material:
         """
 class SessionFrame:
     """
-    What happened between two calls of ``Session.frame``: one row for each step.
+    What happened between two calls of ``Session.frame``, one row for each step: see `Session.frame`.
 
     Forces and torques act on the hand, about the grip's point, in the device's frame; those on the tool act on it, about its
     tip, in the part's.
