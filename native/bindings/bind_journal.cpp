@@ -173,8 +173,8 @@ FormatError
 
 Examples
 --------
->>> riffler.Journal().save(folder / "a.rjournal")
->>> riffler.Journal.load(folder / "a.rjournal")
+>>> riffler.Journal().save("a.rjournal")
+>>> riffler.Journal.load("a.rjournal")
 <riffler.Journal: 0 strokes>
 )")
       .def(
@@ -193,7 +193,7 @@ path : path_like
 
 Examples
 --------
->>> riffler.Journal().save(folder / "a.rjournal")
+>>> riffler.Journal().save("a.rjournal")
 )")
       .def_property_readonly("stock", &stock, "Frame and files of the stock, or None.")
       .def_property_readonly("tools", &tools, "Each tool's dict, by number.")

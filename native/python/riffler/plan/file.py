@@ -142,8 +142,8 @@ def save(path: str | os.PathLike[str], plan: Plan) -> None:
 
     Examples
     --------
-    >>> riffler.plan.save(folder / "a.json", riffler.plan.Plan([], riffler.Tool.ball(diameter=4, length=20)))
-    >>> riffler.plan.load(folder / "a.json").paths
+    >>> riffler.plan.save("a.json", riffler.plan.Plan([], riffler.Tool.ball(diameter=4, length=20)))
+    >>> riffler.plan.load("a.json").paths
     []
     """
     files.write(path, dumps(plan))
@@ -229,8 +229,8 @@ def load(path: str | os.PathLike[str]) -> Plan:
 
     Examples
     --------
-    >>> riffler.plan.save(folder / "a.json", riffler.plan.Plan([], riffler.Tool.ball(diameter=4, length=20)))
-    >>> riffler.plan.load(folder / "a.json").tool.diameter
+    >>> riffler.plan.save("a.json", riffler.plan.Plan([], riffler.Tool.ball(diameter=4, length=20)))
+    >>> riffler.plan.load("a.json").tool.diameter
     4.0
     """
     target = Path(path)
