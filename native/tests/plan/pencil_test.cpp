@@ -83,9 +83,9 @@ TEST(Pencil, TheOrderOfTrianglesDoesNotDecideWhereAPathBegins) {
     ASSERT_EQ(a.paths.size(), 1U);
     ASSERT_EQ(b.paths.size(), 1U);
     EXPECT_LT(a.paths[0].centres.front().x, a.paths[0].centres.back().x);
-    EXPECT_LT(glm::distance(a.paths[0].centres.front(), b.paths[0].centres.front()), 1e-6);
-    EXPECT_LT(glm::distance(a.paths[0].contacts.front()[0], b.paths[0].contacts.front()[0]), 1e-6);
-    EXPECT_LT(glm::distance(a.paths[0].contacts.back()[1], b.paths[0].contacts.back()[1]), 1e-6);
+    EXPECT_LT(glm::distance(a.paths[0].centres.front(), b.paths[0].centres.front()), 1e-5);
+    EXPECT_LT(glm::distance(a.paths[0].contacts.front()[0], b.paths[0].contacts.front()[0]), 1e-5);
+    EXPECT_LT(glm::distance(a.paths[0].contacts.back()[1], b.paths[0].contacts.back()[1]), 1e-5);
   }
 }
 
