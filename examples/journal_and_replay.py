@@ -1,6 +1,6 @@
 """Record strokes in a journal, undo one, and carve the same volume again from the file, to the bit.
 
-Shows: Journal.set_stock, add_tool, add_stroke, save, load, replay and program.
+Shows: Journal.set_stock, add_tool, add_stroke, undo, save, load, replay and program.
 """
 
 import numpy as np

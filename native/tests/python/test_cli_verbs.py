@@ -27,14 +27,14 @@ def folder(tmp_path, monkeypatch):
     mesh.write("box.stl")
     riffler.Mesh(mesh.vertices, mesh.triangles[1:]).write("open.stl")
     step = riffler.Volume.block((0, 0, 0), (20, 15, 10), 0.5, "xyz")
-    step.subtract(_corner())
+    step -= _corner()
     step.to_mesh().write("step.stl")
     journal = riffler.Journal()
     journal.set_stock((0, 0, 0), (20, 15, 10), 0.5)
     journal.add_tool(3, riffler.Tool.ball(6, 30))
     poses = np.column_stack([np.linspace(0, 20, 9), np.full(9, 7.0), np.full(9, 8.0), *np.tile([[0], [0], [1]], 9)])
-    journal.add_stroke(3, poses, np.linspace(0, 2, 9))
-    journal.write("s.rjournal")
+    journal.add_stroke(3, poses, times=np.linspace(0, 2, 9))
+    journal.save("s.rjournal")
     return tmp_path
 
 
