@@ -4,6 +4,7 @@ import json
 import subprocess
 
 import pytest
+
 from shell import PYTHON, ROOT
 
 CHECKER = ROOT / ".envs" / "types" / "bin" / "basedpyright"
