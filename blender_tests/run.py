@@ -336,9 +336,6 @@ def windowed(bench: Bench, arguments) -> list[Callable[[], None]]:
         return []
     # The tutorials take longest: first, so that none is left over for the end.
     scripts = [file for kind in ("tutorial", "window") for file in sorted((HERE / "windowed").glob(f"{kind}_*.py"))]
-    if application.extensions:
-        scripts = [script for script in scripts if script.stem != "tutorial_pencil_cut"]
-        bench.tally.skip("tutorial_pencil_cut", "its path begins where Blender 3.4 joins the part's two objects")
     chosen = [script for script in scripts if arguments.only in script.stem]
     return [
         partial(window.run, bench, application, mode, script, FIRST_DISPLAY + 10 * k) for k, script in enumerate(chosen)

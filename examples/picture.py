@@ -2,6 +2,7 @@
 the end of each ray is the surface that the viewer sees. Needs matplotlib."""
 
 import matplotlib
+from matplotlib import cm, colors
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
@@ -64,12 +65,10 @@ class View:
         image = np.asarray(colour) * ((0.35 + 0.68 * light) * (1 - hollow))[..., None]
         return np.where(np.isnan(self.depth)[..., None], 1.0, np.clip(image, 0, 1))
 
-    def show(self, ax, colour=CLAY, values=None, limits=None, cmap="RdBu"):
+    def show(self, ax, colour=CLAY, values=None, limits=(0, 1), cmap="RdBu"):
         """Draws the mesh; with `values`, an image of View.values, coloured by them. Returns what a colour bar needs."""
-        scale = None
+        scale = cm.ScalarMappable(colors.Normalize(*limits), cmap)
         if values is not None:
-            low, high = limits or (None, None)
-            scale = ScalarMappable(Normalize(low, high), cmap)
             colour = scale.to_rgba(values)[..., :3]
         n, m = (size // 2 * 2 for size in self.depth.shape)
         image = self.shaded(colour)[:n, :m].reshape(n // 2, 2, m // 2, 2, 3).mean((1, 3))

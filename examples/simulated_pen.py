@@ -36,7 +36,7 @@ with riffler.pen.open("simulated") as pen:
             time.sleep(0.03)
             frame = session.frame()
             rows.append(np.column_stack([frame.times, frame.poses[:, :3], frame.applied[:, :3]]))
-            state = frame.state
+        state = session.frame().state
 
 times, tips, force = (part.squeeze() for part in np.split(np.concatenate(rows), [1, 4], axis=1))
 again = riffler.Session.replay("pen.rjournal")

@@ -1,33 +1,41 @@
 """Does the tutorials in Blender's window, and puts the pictures that they take into docs/images/tutorials.
 
-tools/tutorials.py [NAME ...]      (all without arguments; NAME as in tutorial_NAME.py; "session": docs/sessions.md,
-                                   "cube": docs/first-chip.md)
+tools/tutorials.py [--suite sid] [NAME ...]      (all without NAME, which is as in tutorial_NAME.py; "session":
+                                                 docs/sessions.md, "cube": docs/first-chip.md; --suite: in the Blender
+                                                 of a chroot of tools/blenders.py, for pictures of the newest)
 """
 
 from __future__ import annotations
 
+import argparse
 import shutil
-import sys
 
 from shell import PYTHON, ROOT, StepError, main, run, say
 
-TAKEN = ROOT / "out" / "blender" / "tutorials"
 PLACE = ROOT / "docs" / "images" / "tutorials"
 ALSO = {"session": "window_pen", "cube": "window_cube"}  # pictures that a test takes on its way
 
 
 def entry() -> None:
-    shutil.rmtree(TAKEN, ignore_errors=True)
-    for name in sys.argv[1:] or ["", *ALSO]:
-        only = ALSO.get(name, f"tutorial_{name}")
-        run(PYTHON, "blender_tests/run.py", "--mode", "source", "--no-headless", "--only", only)
-    taken = sorted(TAKEN.glob("*.png"))
-    if not taken:
-        raise StepError("no picture was taken: is there a Blender with a window here?")
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("names", nargs="*")
+    parser.add_argument("--suite")
+    given = parser.parse_args()
+    out = ROOT / "out" / "blender"
+    program, taken = ["blender_tests/run.py", "--mode", "source"], out / "tutorials"
+    if given.suite:
+        program, taken = ["tools/blenders.py", given.suite], out / given.suite / "tutorials"
     PLACE.mkdir(parents=True, exist_ok=True)
-    for picture in taken:
-        shutil.copy(picture, PLACE)
-    say(f"{len(taken)} pictures in {PLACE.relative_to(ROOT)}")
+    count = 0
+    for name in given.names or ["", *ALSO]:
+        shutil.rmtree(taken, ignore_errors=True)
+        run(PYTHON, *program, "--no-headless", "--only", ALSO.get(name, f"tutorial_{name}"))
+        for picture in sorted(taken.glob("*.png")):
+            shutil.copy(picture, PLACE)
+            count += 1
+    if not count:
+        raise StepError("no picture was taken: is there a Blender with a window here?")
+    say(f"{count} pictures in {PLACE.relative_to(ROOT)}")
 
 
 if __name__ == "__main__":

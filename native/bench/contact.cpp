@@ -11,12 +11,13 @@
 int main(int argc, char** argv) {
   using namespace riffler::bench;
   if (argc != 5) {
-    std::fputs("riffler_contact SQUARES long|short POSES REPEATS\n", stderr);
+    std::fputs("riffler_contact SQUARES|PART long|short|plain POSES REPEATS\n", stderr);
     return 2;
   }
   try {
     ContactOptions options;
     options.squares = std::atoi(argv[1]), options.tool = argv[2];
+    if (options.squares < 1) options.part = argv[1];
     options.poses = std::atoi(argv[3]), options.repeats = std::atoi(argv[4]);
     std::vector<Rival> rivals;
 #ifdef RIFFLER_FCL

@@ -50,9 +50,13 @@ struct Shape {
 
 /// The same four as for FCL; a cone's tip is above in Coal, and below in a tool.
 std::vector<Shape> shapes(const Tool& tool) {
-  const tool::Frustum &shank = tool.shank()[0], &taper = tool.shank()[1], &holder = tool.holder()[0];
-  const double r = tool.diameter() / 2, cone = taper.r1 * (taper.z1 - taper.z0) / (taper.r1 - taper.r0);
+  const double r = tool.diameter() / 2;
   const auto up = [](double z) { return coal::Transform3s(coal::Vec3s(0, 0, z)); };
+  if (tool.shank().empty())
+    return {{std::make_shared<coal::Sphere>(r), up(r)},
+            {std::make_shared<coal::Cylinder>(r, tool.length() - r), up((r + tool.length()) / 2)}};
+  const tool::Frustum &shank = tool.shank()[0], &taper = tool.shank()[1], &holder = tool.holder()[0];
+  const double cone = taper.r1 * (taper.z1 - taper.z0) / (taper.r1 - taper.r0);
   const coal::Transform3s over(Eigen::AngleAxisd(kPi, Eigen::Vector3d::UnitX()).toRotationMatrix(),
                                coal::Vec3s(0, 0, taper.z1 - cone / 2));
   return {{std::make_shared<coal::Sphere>(r), up(r)},

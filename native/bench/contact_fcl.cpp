@@ -54,8 +54,11 @@ std::shared_ptr<fcl::CollisionGeometryd> cylinder(double r, double length) {
 /// Ball, cutter's cylinder with the shank's, taper, holder: the same solid, since the taper's whole cone reaches no
 /// further than the shank.
 std::vector<Shape> shapes(const Tool& tool) {
+  const double r = tool.diameter() / 2;
+  if (tool.shank().empty())
+    return {{std::make_shared<fcl::Sphered>(r), r}, {cylinder(r, tool.length() - r), (r + tool.length()) / 2}};
   const tool::Frustum &shank = tool.shank()[0], &taper = tool.shank()[1], &holder = tool.holder()[0];
-  const double r = tool.diameter() / 2, cone = taper.r1 * (taper.z1 - taper.z0) / (taper.r1 - taper.r0);
+  const double cone = taper.r1 * (taper.z1 - taper.z0) / (taper.r1 - taper.r0);
   return {{std::make_shared<fcl::Sphered>(r), r},
           {cylinder(r, shank.z1 - r), (r + shank.z1) / 2},
           {std::make_shared<fcl::Coned>(taper.r1, cone), taper.z1 - cone / 2},

@@ -30,7 +30,8 @@ struct ContactCase {
 using Rival = std::function<std::vector<Ask>(const ContactCase&)>;
 
 struct ContactOptions {
-  int squares = 316;  ///< 199 712 triangles; 100: 20 000
+  std::string part{};  ///< as for contact_part; empty: a sheet of valleys
+  int squares = 316;   ///< of that sheet: 199 712 triangles; 100: 20 000
   std::string tool = "long";
   int poses = 2000;
   std::uint64_t seed = 1;
@@ -38,7 +39,8 @@ struct ContactOptions {
 };
 
 /// All questions in turn, by blocks of poses, one thread: JSON with processor times of every pose (µs) and answers, and
-/// the share of the poses that collide and of those whose holder is deepest.
+/// the share of the poses that collide, of those whose holder is deepest, and of those whose depth is in doubt by more
+/// than 0.05 mm after 200 µs.
 std::string contact_times(const ContactOptions& options, const std::vector<Rival>& rivals = {});
 
 /// Queries with budgets (s) beside those without: JSON with time, missed depth and its bound for every pose.

@@ -71,7 +71,8 @@ double valley_height(const Mesh& sheet, int squares, double x, double y) {
 
 std::vector<ContactTool> contact_tools() {
   return {{"long", cutters::ball(6, 20).with_shank({{20, 3, 40, 3}, {40, 3, 60, 10}}).with_holder({{60, 20, 100, 20}})},
-          {"short", cutters::ball(6, 6).with_shank({{6, 3, 8, 3}, {8, 3, 10, 8}}).with_holder({{10, 20, 50, 20}})}};
+          {"short", cutters::ball(6, 6).with_shank({{6, 3, 8, 3}, {8, 3, 10, 8}}).with_holder({{10, 20, 50, 20}})},
+          {"plain", cutters::ball(6, 30)}};
 }
 
 std::vector<Pose> contact_poses(const Mesh& sheet, int squares, int count, std::uint64_t seed) {

@@ -23,7 +23,8 @@ struct ContactTool {
   std::string name;
   Tool tool;
 };
-/// Ball R3, shank, taper and holder R20: one whose holder stands too high to touch the part, and one whose holder hits.
+/// Ball R3, shank, taper and holder R20: one whose holder stands too high to touch the part, and one whose holder hits;
+/// and "plain", a ball R3 × 30 alone.
 std::vector<ContactTool> contact_tools();
 
 /// `count` poses: the tip 0.3 mm below to 2 mm above the sheet, the axis tilted from z by up to 30°, in any direction.

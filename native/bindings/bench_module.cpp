@@ -1,6 +1,7 @@
 // The extension module riffler_bench._bench: scenes, yardstick and reference of `riffler bench`. It reads the objects
 // of riffler._core, so both modules must be of one version.
 #include "bench/capsule_loop.hpp"
+#include "bench/contact_parts.hpp"
 #include "bench/contact_run.hpp"
 #include "bench/haptic_run.hpp"
 #include "bench/mesh_distance.hpp"
@@ -72,11 +73,15 @@ void bind_contact(py::module_& m) {
   using Unlocked = py::call_guard<NoGil>;
   m.def(
       "contact_times",
-      [](int squares, const std::string& tool, int poses, int repeats) {
-        return bench::contact_times(contact_options(squares, tool, poses, repeats));
+      [](int squares, const std::string& tool, int poses, int repeats, const std::string& part) {
+        bench::ContactOptions options = contact_options(squares, tool, poses, repeats);
+        options.part = part;
+        return bench::contact_times(options);
       },
-      py::arg("squares"), py::arg("tool"), py::arg("poses"), py::arg("repeats"), Unlocked(),
-      "Times of queries on COL's scene, without others: JSON (native/bench/contact_run.hpp).");
+      py::arg("squares"), py::arg("tool"), py::arg("poses"), py::arg("repeats"), py::arg("part") = "", Unlocked(),
+      "Times of queries on COL's scene, or on the part of that name (native/bench/contact_parts.hpp), without others: "
+      "JSON (native/bench/contact_run.hpp).");
+  m.def("contact_part_names", &bench::contact_part_names, "Parts that contact_times makes itself.");
   m.def(
       "contact_budgets",
       [](int squares, const std::string& tool, int poses, const std::vector<double>& budgets) {

@@ -19,6 +19,7 @@ namespace riffler::collide {
 
 namespace {
 
+constexpr double kPieces = 32;  // length of the pieces of large triangles, in units of the chosen point spacing
 constexpr double kBoxes = 1.5;  // side of a fixture's boxes, in units of the part's point spacing
 constexpr double kNone = -std::numeric_limits<double>::infinity();
 
@@ -51,19 +52,24 @@ Mesh mesh_of(const Volume& volume, std::size_t index) {
 struct Collider::Data {
   Surface part;
   SamplePoints points;
+  std::optional<Surface> pieces;  // of the part, where it has large triangles
   std::vector<Fixture> fixtures;
   std::vector<double> stiffness;         // one per fixture
   std::vector<const Surface*> surfaces;  // the part's is first
+  std::vector<const Surface*> searched;  // the same, the part in pieces
   Settings settings;
   Box3 box;                      // box around all surfaces
   mutable std::once_flag asked;  // winding is computed on the first query for a side of the part
   mutable std::optional<WindingNumber> winding;
 
   Data(const Mesh& mesh, const Settings& s)
-      : part(mesh), points(part, s.spacing), settings(s), box(mesh::bounds(mesh)) {}
+      : part(mesh), points(part, s.spacing), settings(s), box(mesh::bounds(mesh)) {
+    const double most = kPieces * chosen_spacing(part, 0);
+    if (is_longer(mesh, most)) pieces.emplace(divided(mesh, most));
+  }
 
   NearestSearch::Found search(const Assembly& assembly, const ToolFrame& frame, bool all, Deadline deadline,
-                              Counts& counts, double enough = kNone, double loose = 0) const;
+                              Counts& counts, double enough = kNone, double loose = 0, double below = -kNone) const;
 };
 
 Collider::Collider(const Mesh& part, std::vector<Volume> fixtures, const Settings& settings) {
@@ -82,6 +88,8 @@ Collider::Collider(const Mesh& part, std::vector<Volume> fixtures, const Setting
     }
   data_->surfaces.push_back(&data_->part);
   for (const Fixture& f : data_->fixtures) data_->surfaces.push_back(&f.surface());
+  data_->searched = data_->surfaces;
+  if (data_->pieces) data_->searched.front() = &*data_->pieces;
 }
 Collider::~Collider() = default;
 Collider::Collider(Collider&&) noexcept = default;
@@ -89,10 +97,11 @@ Collider& Collider::operator=(Collider&&) noexcept = default;
 
 /// Smallest distance from the part, or from part and fixtures.
 NearestSearch::Found Collider::Data::search(const Assembly& assembly, const ToolFrame& frame, bool all,
-                                            Deadline deadline, Counts& counts, double enough, double loose) const {
-  const std::span<const Surface* const> some(surfaces.data(), all ? surfaces.size() : 1);
+                                            Deadline deadline, Counts& counts, double enough, double loose,
+                                            double below) const {
+  const std::span<const Surface* const> some(searched.data(), all ? searched.size() : 1);
   NearestSearch search(assembly, frame);
-  search.enough(enough), search.loose(loose);
+  search.enough(enough), search.loose(loose), search.below(below);
   NearestSearch::Found found = search(some, deadline, counts);
   if (!all) return found;
   for (std::size_t i = 0; i < fixtures.size(); ++i) {
@@ -157,7 +166,7 @@ void Collider::query(const Assembly& assembly, const Pose& pose, std::optional<d
                   : Deadline();
   };
   const ToolFrame frame(pose);
-  const NearestSearch::Found found = data_->search(assembly, frame, true, until(0.6), counts, kNone, loose);
+  const NearestSearch::Found found = data_->search(assembly, frame, true, until(0.6), counts, kNone, loose, 0);
   out.force = out.torque = Vec3(0), out.stiffness = {};
   out.points.clear(), out.touches.clear();
   out.depth = std::max(0.0, -found.least.distance), out.checked = found.checked;
@@ -169,7 +178,8 @@ void Collider::query(const Assembly& assembly, const Pose& pose, std::optional<d
   out.touches.push_back(found.surface > 0 ? Touch::Fixture : static_cast<Touch>(assembly.part_at(found.least.point.z)));
   const Settings& s = data_->settings;
   Deadline deadline = until(1);
-  add_force(assembly, frame, data_->points, {s.stiffness, s.holder_stiffness}, s.coarse, deadline, out, counts);
+  add_force(assembly, frame, data_->points, {s.stiffness, s.holder_stiffness}, s.coarse, s.spacing == 0, deadline, out,
+            counts);
   for (std::size_t i = 0; i < data_->fixtures.size(); ++i)
     if (const Fixture& f = data_->fixtures[i]; f.near(assembly, frame, 0))
       f.add_force(assembly, frame, data_->stiffness[i], deadline, out, counts);

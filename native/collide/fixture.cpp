@@ -14,31 +14,6 @@ double distance_at(const Assembly& assembly, const Vec3& q) {
   return assembly.outline().nearest(std::sqrt(q.x * q.x + q.y * q.y), q.z).distance;
 }
 
-/// The same surface with no edge longer than `most`, because one plane is a poor bound for a long triangle along a
-/// tool. Neighbouring triangles need not share the new vertices.
-Mesh divided(const Mesh& mesh, double most) {
-  Mesh out;
-  std::vector<Corners> left;
-  for (const Vec3i& t : mesh.triangles) {
-    left.push_back({mesh.vertices[t.x], mesh.vertices[t.y], mesh.vertices[t.z]});
-    while (!left.empty()) {
-      Corners c = left.back();
-      left.pop_back();
-      const double ab = glm::length(c.b - c.a), bc = glm::length(c.c - c.b), ca = glm::length(c.a - c.c);
-      const double longest = std::max({ab, bc, ca});
-      if (longest <= most) {
-        const int n = static_cast<int>(out.vertices.size());
-        out.vertices.insert(out.vertices.end(), {c.a, c.b, c.c}), out.triangles.emplace_back(n, n + 1, n + 2);
-        continue;
-      }
-      if (longest != ab) c = longest == bc ? Corners{c.b, c.c, c.a} : Corners{c.c, c.a, c.b};
-      const Vec3 m = 0.5 * (c.a + c.b);
-      left.push_back({c.a, m, c.c}), left.push_back({m, c.b, c.c});
-    }
-  }
-  return out;
-}
-
 /// Sums the force over boxes of material: k times their volume inside the tool, towards the axis point at the centre of
 /// cutter, shank or holder.
 class FixtureSum {
@@ -190,7 +165,7 @@ class FixtureSum {
       const double whole = late ? std::clamp(0.5 - 0.5 * distance[k] / s.radius, 0.0, 1.0) : together(s, distance[k]);
       sum.add(s.centre - frame_.tip, n.weight * whole * boxes.volume[k]);
       if (!late && whole < 1)
-        nodes_.push_back({base::kLanes * n.group + 1 + static_cast<std::size_t>(k), n.weight * (1 - whole)});
+        nodes_.push_back({tree.first_child(n.group) + static_cast<std::size_t>(k), n.weight * (1 - whole)});
     }
     push(sum);
   }

@@ -3,25 +3,29 @@
 #include <algorithm>
 #include <cmath>
 
-#include "collide/outline_lanes.hpp"
+#include "collide/force_lanes.hpp"
 #include "riffler/base/block_pool.hpp"
 
 namespace riffler::collide {
 
 namespace {
 
+// Of the cutter's diameter. Across a piece with this radius the depth differs from a plane by 1e-4 of the diameter.
+constexpr double kSmall = 0.01;
+
 class ForceSum {
  public:
   ForceSum(const Assembly& assembly, const ToolFrame& frame, const SamplePoints& points, const Stiffness& stiffness,
-           double coarse, Contact& contact)
+           double coarse, bool merge, Contact& contact)
       : assembly_(assembly),
         frame_(frame),
         points_(points),
-        stiffness_(stiffness),
+        ramp_{stiffness, 0, points.spacing()},
         widest_(0.5 * coarse * points.spacing()),
+        small_(merge ? kSmall * assembly.tool().diameter() : 0),
         contact_(contact) {
     for (const Assembly::HeightBand& s : assembly.stretches())
-      if (s.part == tool::Part::Cutter) cutter_top_ = s.high;
+      if (s.part == tool::Part::Cutter) ramp_.top = s.high;
   }
 
   void run(Deadline& deadline, Counts& counts) {
@@ -32,8 +36,9 @@ class ForceSum {
       if (deadline.passed())
         add(n.parent, n.child, n.distance, n.weight);
       else
-        open(base::kLanes * n.parent + 1 + static_cast<std::size_t>(n.child), n.weight, counts);
+        open(points_.tree().first_child(n.parent) + static_cast<std::size_t>(n.child), n.weight, counts);
     }
+    sums_.add_to(contact_);
   }
 
  private:
@@ -43,9 +48,10 @@ class ForceSum {
     double distance, weight;
   };
 
-  /// Weight, 0 to 1, of a node as a substitute for its points; in between, both count in part. It depends on the
-  /// distance from the cutter, approximated by a cylinder.
+  /// Weight, 0 to 1, of a node as a substitute for its points; in between, both count in part. It depends on the node's
+  /// size, and on its distance from the cutter, approximated by a cylinder.
   double share(const BoundingSphere& s) const {
+    if (s.radius <= small_) return 1;
     if (s.radius > widest_) return 0;
     const Vec3 p = frame_.to_tool(s.centre);
     const double past = std::max(
@@ -53,37 +59,43 @@ class ForceSum {
     return std::clamp(past / (4 * widest_) - 1, 0.0, 1.0);
   }
 
-  double stiffness_at(double z) const {
-    // A ramp as long as the point spacing, so that the force has no step at the end of the cutter.
-    const double above = std::clamp((z - cutter_top_) / points_.spacing() + 0.5, 0.0, 1.0);
-    return stiffness_.cutter + above * (stiffness_.holder - stiffness_.cutter);
-  }
-
   void add(std::size_t group, int k, double distance, double weight) {
     if (distance >= 0) return;
     const Vec3 point = points_.tree().group(group).sphere(k).centre;
     const double z = glm::dot(point - frame_.tip, frame_.axis);
-    const Vec3 force = -distance * weight * stiffness_at(z) * points_.areas(group).area[k];
+    const Vec3 force = -distance * weight * ramp_.at(z) * points_.areas(group).area[k];
     contact_.push(point - frame_.tip, force);
     if (const double size = glm::length(force); size > 0)
       contact_.resist(point - frame_.tip, force / size, size / -distance);
+    keep(point, z, weight);
+  }
+
+  void keep(const Vec3& point, double z, double weight) {
     if (weight < 0.5) return;
     contact_.points.push_back(point), contact_.touches.push_back(static_cast<Touch>(assembly_.part_at(z)));
   }
 
+  void add_items(std::size_t group, double weight, Counts& counts) {
+    const SphereGroup& spheres = points_.tree().group(group);
+    double distance[base::kLanes];
+    add_points(assembly_.lane_edges(), frame_, spheres, points_.areas(group), ramp_, weight, distance, sums_);
+    counts.points += base::kLanes;
+    for (int k = 0; k < base::kLanes; ++k)
+      if (distance[k] < 0 && spheres.radius[k] >= 0) {
+        const Vec3 point = spheres.sphere(k).centre;
+        keep(point, glm::dot(point - frame_.tip, frame_.axis), weight);
+      }
+  }
+
   void open(std::size_t group, double weight, Counts& counts) {
     const SphereTree& tree = points_.tree();
+    if (tree.holds_items(group)) return add_items(group, weight, counts);
     const SphereGroup& spheres = tree.group(group);
     double distance[base::kLanes];
     centre_distances(assembly_.lane_edges(), frame_, spheres, distance);
-    const bool items = tree.holds_items(group);
-    (items ? counts.points : counts.nodes) += base::kLanes;
+    counts.nodes += base::kLanes;
     for (int k = 0; k < base::kLanes; ++k) {
       if (!(distance[k] < spheres.radius[k])) continue;
-      if (items) {
-        add(group, k, distance[k], weight);
-        continue;
-      }
       const double coarse = weight * share(spheres.sphere(k));
       if (coarse > 0) add(group, k, distance[k], coarse);
       if (coarse < weight) stack_.push_back({group, k, distance[k], weight - coarse});
@@ -93,8 +105,9 @@ class ForceSum {
   const Assembly& assembly_;
   const ToolFrame& frame_;
   const SamplePoints& points_;
-  Stiffness stiffness_;
-  double widest_, cutter_top_ = 0;
+  StiffnessRamp ramp_;
+  double widest_, small_;  // mm: largest radius of nodes that may represent their points, and that always do
+  ForceSums sums_;
   Contact& contact_;
   base::BlockVector<Node> stack_;
 };
@@ -102,8 +115,8 @@ class ForceSum {
 }  // namespace
 
 void add_force(const Assembly& assembly, const ToolFrame& frame, const SamplePoints& points, const Stiffness& stiffness,
-               double coarse, Deadline& deadline, Contact& contact, Counts& counts) {
-  if (points.size() > 0) ForceSum(assembly, frame, points, stiffness, coarse, contact).run(deadline, counts);
+               double coarse, bool merge, Deadline& deadline, Contact& contact, Counts& counts) {
+  if (points.size() > 0) ForceSum(assembly, frame, points, stiffness, coarse, merge, contact).run(deadline, counts);
 }
 
 }  // namespace riffler::collide

@@ -16,9 +16,9 @@ struct Stiffness {
 
 /// Adds ∫ k · depth · n dA over the surface inside the tool, the torque about the tip, and the points summed. The sum
 /// is continuous in the pose: depths are, and the weights of points depend on their distance from the cutter, not on
-/// contact. Away from the cutter, nodes up to `coarse` spacings wide represent their points. After the deadline, nodes
-/// of any width do.
+/// contact. Away from the cutter, nodes up to `coarse` spacings wide represent their points; with `merge`, so do nodes
+/// that are small for the cutter, a hundredth of its diameter. After the deadline, nodes of any width do.
 void add_force(const Assembly& assembly, const ToolFrame& frame, const SamplePoints& points, const Stiffness& stiffness,
-               double coarse, Deadline& deadline, Contact& contact, Counts& counts);
+               double coarse, bool merge, Deadline& deadline, Contact& contact, Counts& counts);
 
 }  // namespace riffler::collide

@@ -129,10 +129,11 @@ MaterialBoxes::MaterialBoxes(const std::vector<Piece>& pieces, double spacing)
   boxes_.resize(tree_.groups());
   for (std::size_t g = tree_.groups(); g-- > 0;)
     for (int k = 0; k < base::kLanes; ++k) {
+      if (tree_.group(g).radius[k] < 0) continue;
       if (!tree_.holds_items(g)) {
-        for (const double v : boxes_[base::kLanes * g + 1 + static_cast<std::size_t>(k)].volume)
+        for (const double v : boxes_[tree_.first_child(g) + static_cast<std::size_t>(k)].volume)
           boxes_[g].volume[k] += v;
-      } else if (tree_.group(g).radius[k] >= 0) {
+      } else {
         const Piece& piece = pieces[tree_.order()[tree_.first_item(g) + static_cast<std::size_t>(k)]];
         for (int i = 0; i < 3; ++i) boxes_[g].half[i][k] = 0.5 * piece.box.size()[i];
         boxes_[g].volume[k] = piece.volume;

@@ -20,21 +20,46 @@ void NearestSearch::push(const Entry& e) {
 void NearestSearch::open(const Surface& surface, const Entry& e, Counts& counts) {
   const SphereTree& tree = surface.tree();
   const SphereGroup& spheres = tree.group(e.index);
-  double distance[base::kLanes], low[base::kLanes];
-  centre_distances(assembly_.lane_edges(), frame_, spheres, distance);
+  LanePlaces places;
   counts.nodes += base::kLanes;
-  // Every sphere contains a point of the surface.
-  for (int k = 0; k < base::kLanes; ++k) limit_ = std::min(limit_, distance[k] + std::abs(spheres.radius[k]));
   const bool items = tree.holds_items(e.index);
-  const std::size_t first = items ? tree.first_item(e.index) : base::kLanes * e.index + 1;
-  if (items)
-    triangle_bounds(assembly_.runs(), assembly_.lane_edges(), frame_, spheres, &surface.corners(first), nullptr,
-                    distance, low);
-  else
-    for (int k = 0; k < base::kLanes; ++k) low[k] = distance[k] - spheres.radius[k];
+  const std::size_t first = items ? tree.first_item(e.index) : tree.first_child(e.index);
+  if (items) {
+    look_closely(surface, spheres, first, places, e.surface);
+  } else {
+    double high[base::kLanes];
+    box_bounds(assembly_.runs(), assembly_.lane_edges(), frame_, surface.boxes(e.index), places.low, high);
+    for (int k = 0; k < base::kLanes; ++k)  // every box contains a point of the surface
+      if (spheres.radius[k] >= 0) limit_ = std::min(limit_, high[k]);
+  }
   for (int k = 0; k < base::kLanes; ++k)
     if (spheres.radius[k] >= 0)
-      push({low[k], static_cast<std::uint32_t>(first + k), e.surface, items ? Entry::Triangle : Entry::Group});
+      push({places.low[k], static_cast<std::uint32_t>(first + k), e.surface, items ? Entry::Triangle : Entry::Group});
+}
+
+/// Bounds the triangles of a group, and where that leaves some open, finds their lowest places.
+void NearestSearch::look_closely(const Surface& surface, const SphereGroup& spheres, std::size_t first,
+                                 LanePlaces& places, std::size_t which) {
+  const Corners* corners = &surface.corners(first);
+  centre_distances(assembly_.lane_edges(), frame_, spheres, places.distance);
+  for (int k = 0; k < base::kLanes; ++k)  // every sphere contains a point of the surface
+    if (spheres.radius[k] >= 0) limit_ = std::min(limit_, places.distance[k] + spheres.radius[k]);
+  triangle_bounds(assembly_.runs(), assembly_.lane_edges(), frame_, spheres, corners, nullptr, places.distance,
+                  places.low);
+  const double enough = triangles_.least().distance - slack_;
+  const auto is_open = [&](int k) { return spheres.radius[k] >= 0 && places.low[k] < enough; };
+  bool open = false;
+  for (int k = 0; k < base::kLanes; ++k) open = open || is_open(k);
+  if (!open) return;
+  lowest_places(assembly_.runs(), assembly_.lane_edges(), frame_, corners, enough, 0.5 * slack_, places);
+  int lowest = -1;
+  for (int k = 0; k < base::kLanes; ++k)
+    if (spheres.radius[k] >= 0 && (lowest < 0 || places.distance[k] < places.distance[lowest])) lowest = k;
+  const double before = triangles_.least().distance;
+  if (!(places.distance[lowest] < before)) return;
+  triangles_.visit(frame_.seen(Vec3(places.x[lowest], places.y[lowest], places.z[lowest])));
+  if (triangles_.least().distance < before) best_surface_ = which;
+  limit_ = std::min(limit_, triangles_.least().distance);
 }
 
 void NearestSearch::test(const Surface& surface, const Entry& e, Deadline& deadline, Counts& counts) {

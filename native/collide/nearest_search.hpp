@@ -29,6 +29,8 @@ class NearestSearch {
   void enough(double distance) { enough_ = distance, triangles_.enough(distance); }
   /// Allows the result to exceed the smallest distance by up to `by` (mm); counted in the slack.
   void loose(double by) { loose_ = by, triangles_.loose(by); }
+  /// Searches only for places nearer than `distance` (mm); without one, that is the distance found, at no place.
+  void below(double distance) { limit_ = distance, triangles_.below(distance); }
   Found operator()(std::span<const Surface* const> surfaces, Deadline deadline, Counts& counts);
 
  private:
@@ -48,6 +50,8 @@ class NearestSearch {
 
   void push(const Entry& e);
   void open(const Surface& surface, const Entry& e, Counts& counts);
+  void look_closely(const Surface& surface, const SphereGroup& spheres, std::size_t first, LanePlaces& places,
+                    std::size_t which);
   void test(const Surface& surface, const Entry& e, Deadline& deadline, Counts& counts);
 
   const Assembly& assembly_;

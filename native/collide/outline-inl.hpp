@@ -32,14 +32,16 @@ HWY_INLINE M in_sector(const LaneEdge& e, V x, V y) {
               hn::Ge(mul(x, set(e.last[1])), mul(y, set(e.last[0]))));
 }
 
-/// Centres of spheres in the tool's half-plane.
+/// Points, such as the centres of spheres, in the tool's half-plane.
 struct Centres {
   V x, y, h;  // relative to the tip, in part directions
   V u, v, rho, z;
 
-  HWY_INLINE Centres(const ToolFrame& frame, const SphereGroup& spheres, int k) {
-    x = sub(hn::Load(kD, spheres.x + k), set(frame.tip.x)), y = sub(hn::Load(kD, spheres.y + k), set(frame.tip.y));
-    h = sub(hn::Load(kD, spheres.z + k), set(frame.tip.z));
+  HWY_INLINE Centres(const ToolFrame& frame, const SphereGroup& spheres, int k)
+      : Centres(frame, sub(hn::Load(kD, spheres.x + k), set(frame.tip.x)),
+                sub(hn::Load(kD, spheres.y + k), set(frame.tip.y)),
+                sub(hn::Load(kD, spheres.z + k), set(frame.tip.z))) {}
+  HWY_INLINE Centres(const ToolFrame& frame, V px, V py, V pz) : x(px), y(py), h(pz) {
     u = dot(x, y, h, frame.u), v = dot(x, y, h, frame.v), z = dot(x, y, h, frame.axis);
     rho = sqrt(squared(u, v));
   }

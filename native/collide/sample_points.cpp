@@ -4,12 +4,17 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "collide/pieces.hpp"
+#include "geom/math.hpp"
 #include "riffler/base/check.hpp"
 #include "riffler/base/parallel.hpp"
 
 namespace riffler::collide {
 
 namespace {
+
+constexpr double kSquare = 0.7;  // circumradius of a square with side 1
+constexpr double kTooMany = 3;   // points per square of the spacing
 
 Vec3 area_of(const Corners& t) {
   return 0.5 * glm::cross(t.b - t.a, t.c - t.a);
@@ -19,18 +24,6 @@ double area_of(const Surface& surface) {
   double sum = 0;
   for (std::size_t i = 0; i < surface.size(); ++i) sum += glm::length(area_of(surface.corners(i)));
   return sum;
-}
-
-/// Halves the longest side until none is longer than `most`, or the piece's area is negligible: otherwise needles would
-/// become millions of pieces without area.
-template <class Visit>
-void split(const Corners& t, double most, const Visit& visit) {
-  const double ab = glm::length(t.b - t.a), bc = glm::length(t.c - t.b), ca = glm::length(t.a - t.c);
-  const double longest = std::max({ab, bc, ca});
-  if (longest <= most || 32 * glm::length(area_of(t)) <= most * most) return visit(t);
-  const Corners r = ab == longest ? t : bc == longest ? Corners{t.b, t.c, t.a} : Corners{t.c, t.a, t.b};
-  const Vec3 m = 0.5 * (r.a + r.b);
-  split({r.a, m, r.c}, most, visit), split({m, r.b, r.c}, most, visit);
 }
 
 }  // namespace
@@ -45,33 +38,38 @@ double chosen_spacing(const Surface& surface, double spacing) {
   return spacing;
 }
 
+/// A node's centre is the centroid of what it holds.
+SphereTree SamplePoints::tree_over(const std::vector<Piece>& pieces) {
+  return SphereTree({pieces.size(),
+                     [&](std::size_t i) {
+                       Box3 box;
+                       box.add(pieces[i].centroid);
+                       return box;
+                     },
+                     [&](std::size_t i) { return BoundingSphere{pieces[i].centroid, 0}; },
+                     [&](std::size_t i, const Vec3& p) { return glm::length(pieces[i].centroid - p); },
+                     [&](std::span<const std::uint32_t> some) {
+                       Vec3 sum(0);
+                       double size = 0;
+                       for (const std::uint32_t i : some)
+                         sum += pieces[i].size * (pieces[i].centroid - pieces[some[0]].centroid),
+                             size += pieces[i].size;
+                       return pieces[some[0]].centroid + (size > 0 ? sum / size : Vec3(0));
+                     }});
+}
+
 SamplePoints::SamplePoints(const Surface& surface, double spacing)
     : SamplePoints(pieces_of(surface, chosen_spacing(surface, spacing)), chosen_spacing(surface, spacing)) {}
 
-SamplePoints::SamplePoints(std::vector<Piece> pieces, double spacing)
-    : spacing_(spacing),
-      tree_({pieces.size(),
-             [&](std::size_t i) {
-               Box3 box;
-               box.add(pieces[i].centroid);
-               return box;
-             },
-             [&](std::size_t i) { return BoundingSphere{pieces[i].centroid, 0}; },
-             [&](std::size_t i, const Vec3& p) { return glm::length(pieces[i].centroid - p); },
-             [&](std::span<const std::uint32_t> some) {
-               Vec3 sum(0);
-               double size = 0;
-               for (const std::uint32_t i : some)
-                 sum += pieces[i].size * (pieces[i].centroid - pieces[some[0]].centroid), size += pieces[i].size;
-               return pieces[some[0]].centroid + (size > 0 ? sum / size : Vec3(0));
-             }}) {
+SamplePoints::SamplePoints(std::vector<Piece> pieces, double spacing) : spacing_(spacing), tree_(tree_over(pieces)) {
   areas_.resize(tree_.groups());
   for (std::size_t g = tree_.groups(); g-- > 0;)
     for (int k = 0; k < base::kLanes; ++k) {
       if (tree_.holds_items(g)) {
         if (tree_.group(g).radius[k] >= 0) areas_[g].area[k] = pieces[tree_.order()[tree_.first_item(g) + k]].area;
       } else {
-        for (const Vec3& a : areas_[base::kLanes * g + 1 + k].area) areas_[g].area[k] += a;
+        if (tree_.group(g).radius[k] >= 0)
+          for (const Vec3& a : areas_[tree_.first_child(g) + k].area) areas_[g].area[k] += a;
       }
     }
 }
@@ -82,13 +80,15 @@ void SamplePoints::gather(const Surface& surface, std::size_t group, double spac
     const double radius = tree.group(group).radius[k];
     if (radius < 0) continue;
     const bool item = tree.holds_items(group);
-    const std::size_t child = item ? tree.first_item(group) + k : base::kLanes * group + 1 + k;
+    const std::size_t child = (item ? tree.first_item(group) : tree.first_child(group)) + k;
     if (item) {
-      split(surface.corners(child), 2 * spacing, [&](const Corners& t) {
-        const Vec3 a = area_of(t);
-        if (a != Vec3(0)) out.push_back({(t.a + t.b + t.c) / 3.0, a, glm::length(a)});
-      });
-    } else if (radius > 0.7 * spacing) {  // circumradius of a square with side `spacing`
+      // Pieces of negligible area are not cut: otherwise needles would become millions of points without area.
+      cut_into_pieces(collide::Piece(surface.corners(child)), 2 * spacing, 0.25 * spacing * spacing, kInfinity,
+                      [&](const auto& piece) {
+                        const Vec3 a = piece.area();
+                        if (a != Vec3(0)) out.push_back({piece.centroid(), a, glm::length(a)});
+                      });
+    } else if (radius > kSquare * spacing) {
       gather(surface, child, spacing, out);
     } else {
       Vec3 area(0), sum(0);
@@ -111,6 +111,36 @@ void SamplePoints::gather(const Surface& surface, std::size_t group, double spac
 std::vector<SamplePoints::Piece> SamplePoints::pieces_of(const Surface& surface, double spacing) {
   std::vector<Piece> out;
   gather(surface, 0, spacing, out);
+  // Narrow triangles next to each other leave many more points than their area needs.
+  const double needed = area_of(surface) / (spacing * spacing);
+  if (static_cast<double>(out.size()) > kTooMany * needed + base::kLanes) out = merged(out, spacing);
+  return out;
+}
+
+/// Pieces as close together as those of one square of the spacing become one.
+std::vector<SamplePoints::Piece> SamplePoints::merged(const std::vector<Piece>& pieces, double spacing) {
+  const SphereTree tree = tree_over(pieces);
+  std::vector<Piece> out;
+  std::vector<std::size_t> open{0};
+  while (!open.empty()) {
+    const std::size_t group = open.back();
+    open.pop_back();
+    for (int k = 0; k < base::kLanes; ++k) {
+      const double radius = tree.group(group).radius[k];
+      if (radius < 0) continue;
+      const std::size_t child = tree.first_child(group) + k;
+      if (tree.holds_items(group)) {
+        out.push_back(pieces[tree.order()[tree.first_item(group) + k]]);
+      } else if (radius > kSquare * spacing) {
+        open.push_back(child);
+      } else {
+        Piece sum{tree.group(group).sphere(k).centre, Vec3(0), 0};
+        for (std::size_t i = tree.first_under(child); i < tree.first_under(child) + tree.under(child); ++i)
+          sum.area += pieces[tree.order()[i]].area, sum.size += pieces[tree.order()[i]].size;
+        out.push_back(sum);
+      }
+    }
+  }
   return out;
 }
 

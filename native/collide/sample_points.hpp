@@ -31,6 +31,8 @@ class SamplePoints {
   };
   SamplePoints(std::vector<Piece> pieces, double spacing);
   static std::vector<Piece> pieces_of(const Surface& surface, double spacing);
+  static std::vector<Piece> merged(const std::vector<Piece>& pieces, double spacing);
+  static SphereTree tree_over(const std::vector<Piece>& pieces);
   static void gather(const Surface& surface, std::size_t group, double spacing, std::vector<Piece>& out);
 
   double spacing_;

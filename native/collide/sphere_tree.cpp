@@ -48,23 +48,30 @@ BoundingSphere round_triangle(const Vec3& a, const Vec3& b, const Vec3& c) {
 
 SphereTree::SphereTree(const Items& items) : order_(items.count) {
   std::iota(order_.begin(), order_.end(), 0U);
-  std::size_t leaves = 1;
-  while (items.count > base::kLanes * leaves) first_leaf_ += leaves, leaves *= base::kLanes, ++levels_;
-  groups_.resize(first_leaf_ + leaves);
+  std::size_t all = 0;  // halvings
+  while (items.count > std::size_t{base::kLanes} << all) ++all;
+  levels_ = (all + 2) / 3;
+  if (levels_ > 0) first_halvings_ = all - 3 * (levels_ - 1), widest_ = std::size_t{1} << first_halvings_;
+  for (std::size_t level = 0; level < levels_; ++level) first_leaf_ += std::size_t{1} << halvings(level);
+  groups_.resize(first_leaf_ + (std::size_t{1} << all));
   sort(items);
   bound(items);
 }
 
+std::pair<std::size_t, std::size_t> SphereTree::whereabouts(std::size_t g) const {
+  std::size_t level = 0, begin = 0;
+  while (g >= begin + (std::size_t{1} << halvings(level))) begin += std::size_t{1} << halvings(level), ++level;
+  return {level, g - begin};
+}
+
 std::size_t SphereTree::first_under(std::size_t g) const {
-  std::size_t level = 0, begin = 0, wide = 1;
-  while (g >= begin + wide) begin += wide, wide *= base::kLanes, ++level;
-  return first(level, g - begin);
+  const auto [level, place] = whereabouts(g);
+  return first(level, place);
 }
 
 std::size_t SphereTree::under(std::size_t g) const {
-  std::size_t level = 0, begin = 0, wide = 1;
-  while (g >= begin + wide) begin += wide, wide *= base::kLanes, ++level;
-  return first(level, g - begin + 1) - first(level, g - begin);
+  const auto [level, place] = whereabouts(g);
+  return first(level, place + 1) - first(level, place);
 }
 
 void SphereTree::sort(const Items& items) {
@@ -76,7 +83,7 @@ void SphereTree::sort(const Items& items) {
       centres[i] = 0.5 * (box.lower + box.upper);
     }
   });
-  geom::sort_by_medians(order_, 3 * levels_, centres);  // eight children: three halvings
+  geom::sort_by_medians(order_, halvings(levels_), centres);
 }
 
 void SphereTree::bound(const Items& items) {
@@ -92,20 +99,21 @@ void SphereTree::bound(const Items& items) {
       }
     }
   });
-  std::size_t begin = 0, wide = 1;
+  std::size_t begin = 1;
   for (std::size_t level = 1; level <= levels_; ++level) {
-    base::parallel_for(wide * base::kLanes, 64, [&](std::size_t from, std::size_t to) {
+    const std::size_t nodes = std::size_t{1} << halvings(level);
+    base::parallel_for(nodes, 64, [&](std::size_t from, std::size_t to) {
       for (std::size_t place = from; place < to; ++place) {
         const std::size_t low = first(level, place);
         const std::span<const std::uint32_t> some(order_.data() + low, first(level, place + 1) - low);
         const Vec3 centre = items.centre ? items.centre(some) : middle_of_box(items, some);
         double radius = 0;
         for (const std::uint32_t i : some) radius = std::max(radius, items.reach(i, centre));
-        groups_[begin + place / base::kLanes].put(static_cast<int>(place % base::kLanes),
-                                                  {centre, grown(radius, centre)});
+        const auto [above, child] = parent(begin + place);
+        groups_[above].put(child, {centre, grown(radius, centre)});
       }
     });
-    begin += wide, wide *= base::kLanes;
+    begin += nodes;
   }
 }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "base/lanes.hpp"
@@ -27,8 +28,8 @@ struct alignas(64) SphereGroup {
   BoundingSphere sphere(int k) const { return {{x[k], y[k], z[k]}, radius[k]}; }
 };
 
-/// A complete tree: group g has the child groups 8 g + 1 … 8 g + 8, and the groups of the last level hold the items.
-/// The same for any number of threads.
+/// A complete tree: every group has eight child groups, but the first may have two or four, so that the groups of the
+/// last level, which hold the items, are at least half full. The same for any number of threads.
 class SphereTree {
  public:
   /// The items of the tree. The functions are called from several threads.
@@ -48,6 +49,13 @@ class SphereTree {
   /// Place of the first item of a leaf group; the items of a group are consecutive.
   std::size_t first_item(std::size_t g) const { return first(levels_, g - first_leaf_); }
   std::size_t groups() const { return groups_.size(); }
+  /// The first child group of a group; the others follow it.
+  std::size_t first_child(std::size_t g) const { return g == 0 ? 1 : 1 + widest_ + base::kLanes * (g - 1); }
+  /// The group above a group that is not the first, and which of its children the group is.
+  std::pair<std::size_t, int> parent(std::size_t g) const {
+    if (g <= widest_) return {0, static_cast<int>(g - 1)};
+    return {1 + (g - 1 - widest_) / base::kLanes, static_cast<int>((g - 1 - widest_) % base::kLanes)};
+  }
   /// Number of items below a group, and the place of the first.
   std::size_t under(std::size_t g) const;
   std::size_t first_under(std::size_t g) const;
@@ -56,12 +64,17 @@ class SphereTree {
   std::size_t nbytes() const { return groups_.size() * sizeof(SphereGroup) + order_.size() * sizeof(std::uint32_t); }
 
  private:
-  /// First place of node `place` of a level; level l has 8^l nodes.
-  std::size_t first(std::size_t level, std::size_t place) const { return (place * order_.size()) >> (3 * level); }
+  /// First place of node `place` of a level.
+  std::size_t first(std::size_t level, std::size_t place) const { return (place * order_.size()) >> halvings(level); }
+  /// A level has 2^halvings nodes.
+  std::size_t halvings(std::size_t level) const { return level == 0 ? 0 : first_halvings_ + 3 * (level - 1); }
+  /// Level and place of a group.
+  std::pair<std::size_t, std::size_t> whereabouts(std::size_t g) const;
   void sort(const Items& items);
   void bound(const Items& items);
 
-  std::size_t levels_ = 0, first_leaf_ = 0;
+  std::size_t levels_ = 0, first_leaf_ = 0, first_halvings_ = 0;
+  std::size_t widest_ = 0;  // child groups of the first group
   std::vector<SphereGroup> groups_;
   std::vector<std::uint32_t> order_;
 };

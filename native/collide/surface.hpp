@@ -3,11 +3,21 @@
 
 #include <vector>
 
+#include "collide/oriented_boxes.hpp"
 #include "collide/sphere_tree.hpp"
 #include "collide/triangle_search.hpp"
 #include "riffler/mesh/mesh.hpp"
 
 namespace riffler::collide {
+
+/// The same surface with large triangles cut into pieces no longer than `most` (mm): one plane is a poor bound for a
+/// large triangle where a tool changes its shape. Pieces with less area than most² / 4 may be four times as long.
+/// Neighbouring pieces need not share the new vertices. Where there would be kMorePieces more than twice the triangles,
+/// `most` is doubled until there are not.
+Mesh divided(const Mesh& mesh, double most);
+constexpr std::size_t kMorePieces = 50'000;
+/// Whether the mesh has an edge longer than `most` (mm).
+bool is_longer(const Mesh& mesh, double most);
 
 class Surface {
  public:
@@ -16,6 +26,8 @@ class Surface {
   const SphereTree& tree() const { return tree_; }
   /// Corners by place in the tree. The kLanes places after the last are readable too.
   const Corners& corners(std::size_t place) const { return corners_[place]; }
+  /// Of the children of a group that holds no items.
+  const OrientedBoxes& boxes(std::size_t group) const { return boxes_[group]; }
   std::size_t size() const { return tree_.size(); }
 
  private:
@@ -24,6 +36,7 @@ class Surface {
 
   SphereTree tree_;
   std::vector<Corners> corners_;
+  std::vector<OrientedBoxes> boxes_;
 };
 
 }  // namespace riffler::collide

@@ -60,8 +60,8 @@ bool SweptSearch::halve(const Surface& surface, Entry e) {
 }
 
 void SweptSearch::look_again(const Surface& surface, Entry& e) {
-  const SphereGroup& siblings = surface.tree().group((e.index - 1) / base::kLanes);
-  const int k = static_cast<int>((e.index - 1) % base::kLanes);
+  const auto [above, k] = surface.tree().parent(e.index);
+  const SphereGroup& siblings = surface.tree().group(above);
   const MoveInterval& s = stretches_[e.stretch];
   double distance[base::kLanes];
   centre_distances(assembly_.lane_edges(), s.frame, siblings, distance);
@@ -94,7 +94,7 @@ void SweptSearch::open(const Surface& surface, const Entry& e) {
   double distance[base::kLanes], low[base::kLanes];
   centre_distances(assembly_.lane_edges(), s.frame, spheres, distance);
   const bool items = tree.holds_items(e.index);
-  const std::size_t first = items ? tree.first_item(e.index) : base::kLanes * e.index + 1;
+  const std::size_t first = items ? tree.first_item(e.index) : tree.first_child(e.index);
   if (items)
     triangle_bounds(assembly_.runs(), assembly_.lane_edges(), s.frame, spheres, &surface.corners(first), &s.drift,
                     distance, low);

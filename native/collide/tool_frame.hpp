@@ -14,10 +14,9 @@ struct ToolFrame {
   /// tip is not finite.
   explicit ToolFrame(const Pose& pose);
 
-  Vec3 to_tool(const Vec3& p) const {
-    const Vec3 d = p - tip;
-    return {glm::dot(d, u), glm::dot(d, v), glm::dot(d, axis)};
-  }
+  Vec3 to_tool(const Vec3& p) const { return seen(p - tip); }
+  /// Rotates a direction from the part's frame to the tool's.
+  Vec3 seen(const Vec3& d) const { return {glm::dot(d, u), glm::dot(d, v), glm::dot(d, axis)}; }
   Vec3 to_part(const Vec3& q) const { return tip + turned(q); }
   /// Rotates a direction from the part's frame to the tool's.
   Vec3 turned(const Vec3& d) const { return d.x * u + d.y * v + d.z * axis; }

@@ -84,7 +84,9 @@ Vec3 least_place(const Quadratic& f, const Quadratic& g, const Vec3& middle, con
   for (int k = 0; k < 40; ++k) {
     const double share = 0.5 * (low + high);
     place = least_place(mix(f, g, share), middle, t);
-    (f(place - middle) > g(place - middle) ? high : low) = share;
+    const double here = f(place - middle), there = g(place - middle);
+    if (std::abs(here - there) <= 1e-15 * std::abs(here)) return place;
+    (here > there ? high : low) = share;
   }
   // A flat mean has many minima: the one sought lies between those of slightly larger weights of either function.
   const Vec3 p = least_place(mix(f, g, low), middle, t), q = least_place(mix(f, g, high), middle, t);

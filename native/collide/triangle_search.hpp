@@ -40,10 +40,14 @@ class TriangleSearch {
   double bound(const Corners& t);
   /// The same for all times of an interval, evaluated at its middle: a few evaluations, which may lower the minimum.
   double bound(const Corners& t, const Drift& drift);
+  /// Evaluates at a place of a triangle, which may lower the minimum.
+  void visit(const Vec3& place) { look(place); }
   /// `low`: a known lower bound on the triangle. Stops at the deadline.
   void search(const Corners& t, double low, Deadline& deadline);
   /// Allows a search to stop at any place below `distance` (mm).
   void enough(double distance) { enough_ = distance; }
+  /// Starts with a minimum of `distance` (mm), at no place.
+  void below(double distance) { least_.distance = distance; }
   /// Allows the search to miss places that are lower by less than `by` (mm).
   void loose(double by) { loose_ = by; }
 

@@ -8,7 +8,7 @@ namespace riffler::collide {
 
 namespace {
 
-constexpr double kFar = 4;  // distance from a sphere's centre, in radii, beyond which its content is taken as a dipole
+constexpr double kFar = 5;  // distance from a sphere's centre, in radii, beyond which its content is taken as a dipole
 
 /// Half the solid angle, as the argument of a complex number (van Oosterom and Strackee, IEEE Trans. Biomed. Eng. 30(2)
 /// (1983) 125).
@@ -37,7 +37,7 @@ WindingNumber::WindingNumber(const Surface& surface) : surface_(surface), dipole
         const Vec3 area = 0.5 * glm::cross(t.b - t.a, t.c - t.a);
         d.add(area, (t.a + t.b + t.c) / 3.0, glm::length(area));
       } else {
-        for (const Dipole& below : dipoles_[base::kLanes * g + 1 + static_cast<std::size_t>(k)])
+        for (const Dipole& below : dipoles_[tree.first_child(g) + static_cast<std::size_t>(k)])
           d.add(below.area, below.middle, below.size);
       }
     }
@@ -62,7 +62,7 @@ double WindingNumber::operator()(const Vec3& p) const {
       } else if (items) {
         near += half_angle(surface_.corners(tree.first_item(g) + static_cast<std::size_t>(k)), p);
       } else {
-        open.push_back(base::kLanes * g + 1 + static_cast<std::size_t>(k));
+        open.push_back(tree.first_child(g) + static_cast<std::size_t>(k));
       }
     }
   }

@@ -313,6 +313,31 @@ void add_rest(const Mesh& part, const RollingBall& ball, const PencilOptions& op
   additions.add(largest.valleys);
 }
 
+/// Whether an open path ends at a smaller x than it begins; at equal x (within `same`, mm) y decides, then z. A loop:
+/// whether it runs clockwise, seen along the axis from which it is widest.
+bool is_backwards(const Valley& valley, double same) {
+  const std::vector<Station>& s = valley.stations;
+  if (valley.closed()) {
+    Vec3 area(0);
+    for (std::size_t k = 1; k < s.size(); ++k)
+      area += glm::cross(s[k - 1].centre - s[0].centre, s[k].centre - s[0].centre);
+    const Vec3 size = glm::abs(area);
+    return area[size.z >= size.x && size.z >= size.y ? 2 : size.y >= size.x ? 1 : 0] < 0;
+  }
+  const Vec3 way = s.back().centre - s.front().centre;
+  for (int axis = 0; axis < 3; ++axis)
+    if (std::abs(way[axis]) > same) return way[axis] < 0;
+  return false;
+}
+
+/// The order of a mesh's triangles, which changes when objects are joined, must not decide where a tool begins.
+void set_direction(Valley& valley, double same) {
+  if (!is_backwards(valley, same)) return;
+  std::reverse(valley.stations.begin(), valley.stations.end());
+  for (Station& station : valley.stations) station = exchanged(station);
+  std::swap(valley.ends[0], valley.ends[1]);
+}
+
 }  // namespace
 
 double bitangency_angle_of_gap(double radius, double gap) {
@@ -347,6 +372,7 @@ PencilResult pencil(const Mesh& given, double radius, const PencilOptions& optio
   if (options.overthickness > 0) add_rest(part, ball, options, own.valleys, result, base::part(progress, share, 0.95));
   const double stepover = options.stepover.value_or(stepover_of_scallop(radius, std::min(radius, options.tolerance)));
   for (Valley& valley : own.valleys) {
+    set_direction(valley, 1e-6 * radius);
     const std::vector<PencilPath> passes =
         passes_beside(ball, valley, options.passes - 1, stepover, base::part(progress, 0.95, 1));
     simplify(valley, options.tolerance);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geom/math.hpp"
 #include "riffler/tool/cutters.hpp"
 
 namespace riffler::stress {
@@ -94,10 +95,47 @@ Mesh flat(Random& random) {
   return out;
 }
 
+/// The side of a cylinder about z, facing outwards or, as a bore, inwards.
+Mesh tube(int sides, double radius, double height, bool bore) {
+  Mesh out;
+  for (int j = 0; j < 2; ++j)
+    for (int i = 0; i < sides; ++i) {
+      const double a = 2 * kPi * i / sides;
+      out.vertices.push_back({radius * std::cos(a), radius * std::sin(a), height * j});
+    }
+  for (int i = 0; i < sides; ++i) {
+    const int p = i, q = (i + 1) % sides;
+    const int first = bore ? q + sides : q, second = bore ? q : q + sides;
+    out.triangles.push_back({p, first, second});
+    out.triangles.push_back(bore ? Vec3i(p, p + sides, q + sides) : Vec3i(p, q + sides, p + sides));
+  }
+  return out;
+}
+
+Mesh prism(Random& random) {
+  const int sides = 3 + random.below(30);
+  Mesh out = tube(sides, random.uniform(5, 30), random.uniform(5, 60), false);
+  for (int i = 1; i + 1 < sides; ++i)
+    out.triangles.push_back({0, i + 1, i}), out.triangles.push_back({sides, sides + i, sides + i + 1});
+  return out;
+}
+
+Mesh needles(Random& random) {
+  const int strips = 10 + random.below(400);
+  const double wide = random.power_of_ten(-3, 0), length = random.uniform(5, 80), high = random.uniform(0, 2);
+  Mesh out;
+  for (int i = 0; i <= strips; ++i)
+    for (const double y : {0.0, length}) out.vertices.push_back({wide * i, y, high * std::sin(0.4 * wide * i)});
+  for (int i = 0; i < 2 * strips; i += 2)
+    out.triangles.push_back({i, i + 2, i + 3}), out.triangles.push_back({i, i + 3, i + 1});
+  return out;
+}
+
 }  // namespace
 
 const char* name(ContactScene scene) {
-  constexpr const char* kNames[] = {"sheet", "soup", "blocks", "spikes", "far away", "flat"};
+  constexpr const char* kNames[] = {"sheet", "soup", "blocks", "spikes", "far away",
+                                    "flat",  "bore", "prism",  "needles"};
   return kNames[static_cast<int>(scene)];
 }
 
@@ -113,6 +151,12 @@ Mesh draw_part(Random& random, ContactScene scene) {
       return sheet(random, {1e5 * random.sign(), 1e5 * random.sign(), 1e5 * random.sign()});
     case ContactScene::Flat:
       return flat(random);
+    case ContactScene::Bore:
+      return tube(360, 20, 60, true);
+    case ContactScene::Prism:
+      return prism(random);
+    case ContactScene::Needles:
+      return needles(random);
     default:
       return sheet(random, {0, 0, 0});
   }

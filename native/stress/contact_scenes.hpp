@@ -17,6 +17,9 @@ enum class ContactScene {
   Spikes,   ///< a fan of needles that meet in one vertex
   FarAway,  ///< a sheet at coordinates of 1e5 mm
   Flat,     ///< one plane in large triangles, so that tools touch it exactly
+  Bore,     ///< a cylinder from within, its triangles as long as it
+  Prism,    ///< a block with few sides, or a box of 12 triangles
+  Needles,  ///< a wavy sheet of narrow strips
   kCount
 };
 const char* name(ContactScene scene);

@@ -20,6 +20,8 @@ TOOLS = ("long", "short")
 BUDGETS = (5e-6, 10e-6, 20e-6, 50e-6, 100e-6, 200e-6)  # s
 TARGETS = {"mean_us": 80, "p99_us": 350, "clearance_us": 100, "mean_ratio": 0.55, "p99_ratio": 0.35}
 FCL = "FCL OBB, tool mesh"
+CAD_PARTS = ("fandisk", "ktoolcav", "ktoolcor", "spider")  # files that are looked for among the models
+PLAIN = ("bore", "wall")  # where a shank would be as wide as the bore
 ROUNDING = 1e-9  # mm
 CURVE = np.linspace(0, 1, 201)  # shares at which times are kept for the plot
 
@@ -27,7 +29,8 @@ CURVE = np.linspace(0, 1, 201)  # shares at which times are kept for the plot
 def run(settings: Settings, progress: Progress = None) -> Report:
     out = Report("col", {"targets": TARGETS})
     done = progress or (lambda share: None)
-    times(out, settings, lambda share: done(0.5 * share))
+    times(out, settings, lambda share: done(0.4 * share))
+    parts(out, settings, lambda share: done(0.4 + 0.15 * share))
     budgets(out, settings)
     done(0.6)
     errors(out, settings, lambda share: done(0.6 + 0.35 * share))
@@ -108,6 +111,68 @@ def add_times(out: Report, table: report.Section, figures: dict[str, Any], tool:
             disagree=int(np.sum(hits != overlaps[: len(us)])), overlaps=int(overlaps[: len(us)].sum()),
             times_us=np.quantile(us, CURVE).round(3).tolist(),
         )  # fmt: skip
+
+
+# ---- parts as CAD programs write them
+
+
+def parts(out: Report, settings: Settings, progress: Any) -> None:
+    table = out.section(
+        "parts",
+        "Long triangles, needles and few large ones: processor time of one pose, one thread",
+        Column("part", "part"),
+        Column("triangles", "triangles"),
+        Column("tool", "tool"),
+        Column("touching", "touching", lambda x: f"{100 * x:.0f} %"),
+        Column("depth, force and torque: mean", "mean_s", report.micro),
+        Column("99 %", "p99_s", report.micro),
+        Column("signed distance: mean", "distance_s", report.micro),
+        Column("in doubt after 200 µs", "in_doubt", lambda x: f"{100 * x:.1f} %"),
+        Column("FCL, all contacts: mean", "fcl_s", report.micro),
+        Column("99 %", "fcl_p99_s", report.micro),
+        Column("Riffler ÷ FCL: mean", "mean_ratio", report.ratio),
+        Column("99 %", "p99_ratio", report.ratio),
+    )
+    found = (
+        sorted(p for name in CAD_PARTS for p in [settings.models / f"{name}.stl"] if p.exists())
+        if settings.models
+        else []
+    )
+    named = [*core.contact_part_names(), *map(str, found)]
+    poses, repeats = (20, 1) if settings.quick else (500, 3)
+    cases = [(part, tool) for part in named for tool in (("plain",) if part in PLAIN else ("plain", "long"))]
+    for done, (part, tool) in enumerate(cases):
+        progress(done / len(cases))
+        try:
+            figures = program(settings, "riffler_contact", part, tool, poses, repeats)
+        except LeftOutError:
+            figures = json.loads(core.contact_times(1, tool, poses, repeats, part))
+        add_part(table, figures, part.rpartition("/")[2].removesuffix(".stl"), tool)
+    if len(found) < len(CAD_PARTS):
+        table.notes.append("Left out: " + ", ".join(sorted(set(CAD_PARTS) - {p.stem for p in found})) + " (--models).")
+    table.notes.append(
+        "Half of the poses on parts from files are on the pencil paths of the ball, the others anywhere on the part: "
+        "from 2 mm above to 0.3 mm deep. Bore and wall are one cylinder, R20 × 60 of 360 facets, with the tool along "
+        "it. In doubt: a depth that may be more than 0.05 mm larger than the answer. FCL: oriented boxes, tool as a "
+        "mesh."
+    )
+
+
+def add_part(table: report.Section, figures: dict[str, Any], part: str, tool: str) -> None:
+    asked = {(row["engine"], row["what"]): row["us"] for row in figures["asked"]}
+    ours = asked["Riffler", "depth, force and torque"]
+    row: dict[str, Any] = {
+        "mean_s": 1e-6 * statistics.mean(ours),
+        "p99_s": 1e-6 * quantile(ours, 0.99),
+        "distance_s": 1e-6 * statistics.mean(asked["Riffler", "signed distance"]),
+    }
+    if theirs := asked.get((FCL, "all contacts")):
+        row |= {"fcl_s": 1e-6 * statistics.mean(theirs), "fcl_p99_s": 1e-6 * quantile(theirs, 0.99)}
+        row |= {"mean_ratio": row["mean_s"] / row["fcl_s"], "p99_ratio": row["p99_s"] / row["fcl_p99_s"]}
+    table.row(
+        part=part, tool=tool, triangles=figures["triangles"], touching=figures["colliding"],
+        in_doubt=figures["in_doubt"], **row,
+    )  # fmt: skip
 
 
 # ---- budgets

@@ -41,7 +41,7 @@ def main(argv: list[str] | None = None) -> int:
 def dispatch(words: list[str], console: Console) -> int:
     """Finds the verb and runs it; an old name is answered on stderr with the new one."""
     if words[:1] == ["--version"]:
-        print(f"riffler {__version__}")
+        console.result({"riffler": __version__}, f"riffler {__version__}", [])
         return 0
     found = verbs.find(words)
     if found.verb is None:

@@ -199,8 +199,8 @@ TEST(Collider, ForceConvergesToTheIntegralOfDepthOverTheSurface) {
   const Mesh mesh = wavy(20, 10);
   const Assembly assembly(cutters::ball(6, 30));
   Random random(7);
-  double last = 1;
-  for (const double spacing : {0.4, 0.2, 0.1}) {
+  std::vector<double> errors;
+  for (const double spacing : {0.4, 0.2, 0.1, 0.05}) {
     const Collider collider(mesh, {}, {.spacing = spacing});
     double worst = 0;
     random = Random(7);
@@ -210,10 +210,12 @@ TEST(Collider, ForceConvergesToTheIntegralOfDepthOverTheSurface) {
       const Vec3 expected = dense_force(mesh, assembly.outline(), pose, 60);
       if (glm::length(expected) > 0.1) worst = std::max(worst, glm::length(c.force - expected) / glm::length(expected));
     }
-    EXPECT_LT(worst, last * 0.7) << spacing;
-    last = worst;
+    errors.push_back(worst);
   }
-  EXPECT_LT(last, 2e-3);
+  // The worst of a few poses does not fall steadily; over three halvings it does.
+  EXPECT_LT(errors.front(), 1e-2);
+  EXPECT_LT(errors.back(), 0.25 * errors.front());
+  EXPECT_LT(errors.back(), 1e-3);
 }
 
 TEST(Collider, DenseTrianglesAreGatheredAndLargeOnesSplit) {

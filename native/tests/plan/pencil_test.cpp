@@ -72,6 +72,23 @@ TEST(Pencil, GroovesOfTwoPlanesGiveTheirLineHoweverTheyAreTurnedAndMeshed) {
       }
 }
 
+TEST(Pencil, TheOrderOfTrianglesDoesNotDecideWhereAPathBegins) {
+  // Joining objects in another order gives the same part with its triangles in another order.
+  const PartPlacement turned = PartPlacement::about({0.2, 1, 0.4}, 2.5, {5, -3, 2});
+  for (const Mesh& given : {groove(kPi / 2), turned(groove(kPi / 2)), turned(subdivided(groove(kPi / 2), 2))}) {
+    Mesh other = given;
+    std::reverse(other.triangles.begin(), other.triangles.end());
+    for (Vec3i& t : other.triangles) t = {t.y, t.z, t.x};
+    const PencilResult a = pencil(given, 3), b = pencil(other, 3);
+    ASSERT_EQ(a.paths.size(), 1U);
+    ASSERT_EQ(b.paths.size(), 1U);
+    EXPECT_LT(a.paths[0].centres.front().x, a.paths[0].centres.back().x);
+    EXPECT_LT(glm::distance(a.paths[0].centres.front(), b.paths[0].centres.front()), 1e-6);
+    EXPECT_LT(glm::distance(a.paths[0].contacts.front()[0], b.paths[0].contacts.front()[0]), 1e-6);
+    EXPECT_LT(glm::distance(a.paths[0].contacts.back()[1], b.paths[0].contacts.back()[1]), 1e-6);
+  }
+}
+
 TEST(Pencil, GapsWithinTheToleranceAreFaceting) {
   const double radius = 3, gap = 0.01;  // 171 degrees: 0.0093 mm
   for (const double degrees : {171.0, 175.0, 179.9}) {

@@ -267,6 +267,9 @@ def test_contact_is_measured_judged_and_compared(quick):
         assert row["points"] >= 20_000 and row["outside"] == 0
         assert -1e-9 <= row["sampled_min_mm"] <= row["sampled_max_mm"] <= row["spacing_mm"]
     assert all(row["violated"] == 0 for row in rows(quick, "col", "budgets"))
+    parts = rows(quick, "col", "parts")
+    assert {row["part"] for row in parts} >= {"bore", "wall", "box", "prism", "needles"}
+    assert all(row["in_doubt"] < 1 and row["mean_s"] > 0 for row in parts)
     steps = rows(quick, "col", "slide")
     assert [round(row["step_mm"], 3) for row in steps] == [0.08, 0.04, 0.02]
     assert max(steps[0]["reference_z_N"]) > 0 and max(steps[0]["reference_x_N"]) > 0

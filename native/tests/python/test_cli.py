@@ -98,18 +98,9 @@ def test_carve_starts_from_files(folder):
                    "--out", "a.rvol", cwd=folder)  # fmt: skip
     assert first["removed"] == pytest.approx(20 * 4 * 6)
     again = result(
-        "volume",
-        "carve",
-        "--stock",
-        "a.rvol",
-        "--tool",
-        "flat:6",
-        "--program",
-        "slot.ngc",
-        "--out",
-        "b.stl",
+        "volume", "carve", "--stock", "a.rvol", "--tool", "flat:6", "--program", "slot.ngc", "--out", "b.stl",
         cwd=folder,
-    )
+    )  # fmt: skip
     assert again["removed"] == pytest.approx(20 * 2 * 6)
     carve = ("volume", "carve", "--stock", "a.rvol", "--tool", "flat:6", "--program", "slot.ngc", "--out", "c.stl")
     for option in (("--pitch", "0.4"), ("--directions", "z"), ("--origin", "0,0,0")):

@@ -124,14 +124,18 @@ def typed(command, folder, lines):
 
 def test_bash_completes_as_one_types(folder):
     keys = ["source ./.bash; " + SHOW, "riffler vol\tfr\tbo\t--pi\t0.5 --dir\txy\t\n"]
-    assert SHOWN in typed(["bash", "--norc", "--noprofile", "-i"], folder, keys)
+    keys += ["riffler mesh audit two\t--js\t\n"]
+    shown = typed(["bash", "--norc", "--noprofile", "-i"], folder, keys)
+    assert SHOWN in shown and "<mesh><audit><two words.stl><--json>" in shown
 
 
 def test_zsh_completes_as_one_types(folder):
     need("zsh")
     keys = ["PS1='READY '\n", "autoload -Uz compinit; compinit -u -D; source ./.zsh; " + SHOW]
     keys += ["riffler vol\tfr\tbox\t--pi\t0.5 --dir\txy\t\n"]
-    assert SHOWN in typed(["zsh", "-f", "-i"], folder, keys)
+    keys += ["riffler mesh audit two\t--js\t\n"]
+    shown = typed(["zsh", "-f", "-i"], folder, keys)
+    assert SHOWN in shown and "<mesh><audit><two words.stl><--json>" in shown
 
 
 def test_the_scripts_have_every_verb_and_option():

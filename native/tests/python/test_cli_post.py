@@ -251,18 +251,9 @@ def test_feed_spindle_and_tools_of_the_command_line_stand(folder):
 @linuxcnc.needed
 def test_what_it_writes_is_read_by_linuxcnc(folder):
     result(
-        "nc",
-        "post",
-        "leaning.json",
-        "--feed",
-        700,
-        "--post",
-        "linuxcnc-xyzac",
-        *TABLE_WORDS,
-        "--out",
-        "p.ngc",
+        "nc", "post", "leaning.json", "--feed", 700, "--post", "linuxcnc-xyzac", *TABLE_WORDS, "--out", "p.ngc",
         cwd=folder,
-    )
+    )  # fmt: skip
     moves = linuxcnc.interpreted(folder / "p.ngc")
     at = nc_judge.poses(moves.joints, nc_judge.tilting_table("A", TABLE["rot_point"], TABLE["offset"]))
     wanted = np.array([[3 - 3 * 0.6, y, 3 - 3 * 0.8, 0.6, 0, 0.8] for y in (0, 4, 9)])

@@ -191,8 +191,18 @@ WRONG = {
     "two programs": (["nc", "verify", "a.ngc", "--program", "b.ngc", *STOCK], "one program expected, not both b.ngc"),
     "no file": (["mesh", "audit"], "MESH is missing: a file, alone or after --mesh"),
     "no option's value": (["volume", "to-mesh", "box.rvol", "--out"], "--out"),
-    "choice": (["volume", "from-mesh", "box.stl", "--directions", "xy", "--out", "a.rvol"], "choose from"),
-    "shell": (["completion", "tcsh"], "choose from"),
+    "choice": (
+        ["volume", "from-mesh", "box.stl", "--directions", "xy", "--out", "a.rvol"],
+        "--directions xy: z or xyz expected; did you mean xyz?",
+    ),
+    "shell": (["completion", "tcsh"], "SHELL tcsh: bash or zsh or fish expected"),
+    "machine": (["nc", "verify", "slot.ngc", *STOCK, "--machine", "3-axes"], "did you mean 3-axis?"),
+    "post": (
+        ["nc", "post", "s.rjournal", "--post", "linuxcnc_xyzac", "--out", "a.ngc"],
+        "did you mean linuxcnc-xyzac?",
+    ),
+    "tool": (["plan", "pencil", "step.stl", "--tool", "bal:6", "--out", "a.json"], "did you mean ball?"),
+    "device": (["pen", "monitor", "simulate"], "did you mean simulated?"),
     "decimate how far": (["mesh", "decimate", "box.stl", "--out", "a.stl"], "--tolerance or --triangles expected"),
 }
 

@@ -288,19 +288,8 @@ def test_damaged_packets_are_refused_and_change_nothing():
 def test_the_command_says_the_same_with_a_scheduler(tmp_path, workers):
     code = ["G21 G90 G94", "T1 M6", "M3 S8000", "G0 X-10 Y10 Z25", "G1 Z17 F500", "X50", "X20 Y15", "G0 X5", "M30"]
     (tmp_path / "p.ngc").write_text("\n".join(code) + "\n")
-    words = [
-        "nc",
-        "verify",
-        "p.ngc",
-        "--stock",
-        "40x30x20",
-        "--pitch",
-        "0.5",
-        "--tool",
-        "ball:6:30",
-        "--out",
-        "left.rvol",
-    ]
+    block = ["--stock", "40x30x20", "--pitch", "0.5", "--tool", "ball:6:30"]
+    words = ["nc", "verify", "p.ngc", *block, "--out", "left.rvol"]
     left, said = [], []
     for more in ([], ["--scheduler", workers.scheduler.address]):
         said.append(result(*words, *more, cwd=tmp_path, status=1))

@@ -261,18 +261,8 @@ def test_an_engraved_plan_becomes_code_that_cuts_as_deep_as_it_says(folder, caps
 def test_a_shank_that_would_hit_is_refused_and_nothing_is_lifted(folder, capsys):
     assert command(plan.STRATEGIES["engrave"]) == 0
     words = [
-        "nc",
-        "post",
-        "out.json",
-        "--part",
-        "step.stl",
-        "--holder",
-        "12:15:40:15",
-        "--post",
-        "tcp",
-        "--out",
-        "a.ngc",
-    ]
+        "nc", "post", "out.json", "--part", "step.stl", "--holder", "12:15:40:15", "--post", "tcp", "--out", "a.ngc",
+    ]  # fmt: skip
     capsys.readouterr()
     assert main([*words, "--json"]) == 2
     said = json.loads(capsys.readouterr().out)["error"]
@@ -283,18 +273,8 @@ def test_a_shank_that_would_hit_is_refused_and_nothing_is_lifted(folder, capsys)
 def test_a_fixture_that_the_cutter_enters_less_deep_than_the_part_is_refused(folder, capsys):
     assert command(plan.STRATEGIES["engrave"]) == 0
     words = [
-        "nc",
-        "post",
-        "out.json",
-        "--part",
-        "step.stl",
-        "--fixture",
-        "block.rvol",
-        "--post",
-        "tcp",
-        "--out",
-        "a.ngc",
-    ]
+        "nc", "post", "out.json", "--part", "step.stl", "--fixture", "block.rvol", "--post", "tcp", "--out", "a.ngc",
+    ]  # fmt: skip
     for y, status in ((12.6, 0), (12.4, 2)):  # the groove's edge is at 12.5
         riffler.Volume.block([28, y, 8], [32, 16, 12], 0.1, "xyz").save("block.rvol")
         capsys.readouterr()

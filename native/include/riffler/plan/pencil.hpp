@@ -69,9 +69,11 @@ double bitangency_angle_of_gap(double radius, double gap);
 double tip_ball_radius(const Tool& tool, std::string_view name);
 
 /// All valleys of `part` for a ball of `radius` (mm). Paths end at the part's border or at three-contact points, each
-/// valley once. With an overthickness, balls of radii between the two are tried as well where the larger ball leaves
-/// blends, so that paths in a blend extend towards its corners. Throws std::invalid_argument for an empty or invalid
-/// mesh and for sizes that are not positive and finite.
+/// valley once; an open path begins at its end with the smaller x, then y, then z, and a loop runs counter-clockwise,
+/// seen along the axis from which it is widest: the mesh's order of triangles does not decide. With an overthickness,
+/// balls of radii between the two are tried as well where the larger ball leaves blends, so that paths in a blend
+/// extend towards its corners. Throws std::invalid_argument for an empty or invalid mesh and for sizes that are not
+/// positive and finite.
 PencilResult pencil(const Mesh& part, double radius, const PencilOptions& options = {}, const Progress& progress = {});
 
 }  // namespace riffler::plan

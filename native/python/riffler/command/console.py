@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 import os
 import sys
@@ -25,8 +26,8 @@ class Console:
         self.written: str | None = None
         for stream in (sys.stdout, sys.stderr):
             # A terminal without Unicode shows "?" for "³" instead of failing.
-            if reconfigure := getattr(stream, "reconfigure", None):
-                reconfigure(errors="replace")
+            if isinstance(stream, io.TextIOWrapper):
+                stream.reconfigure(errors="replace")
 
     def error(self, message: str) -> None:
         line = " ".join(message.split())

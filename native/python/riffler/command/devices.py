@@ -6,7 +6,7 @@ from typing import Any
 
 from .. import pen
 from .arguments import JOURNALS
-from .parser import Parser
+from .parser import Parser, hint
 
 
 def add_device(parser: Parser) -> None:
@@ -23,7 +23,8 @@ def open_device(what: str | None, **options: Any) -> pen.PenDevice:
     known = pen.kinds()
     path = any(mark in what for mark in "/\\:") or what.endswith(".rjournal")
     if what not in known and not path:
-        raise ValueError(f"no device {what!r}: {', '.join(known)}, a path of riffler pen list, or a .rjournal expected")
+        raise ValueError(f"no device {what!r}: {', '.join(known)}, a path of riffler pen list, or a .rjournal expected"
+                         + hint(what, known))  # fmt: skip
     try:
         return pen.open(what, **options)
     except pen.PenError as error:

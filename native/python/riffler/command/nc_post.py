@@ -3,6 +3,12 @@
 riffler nc post pencil.json --feed 800 --post linuxcnc-xyzac --post-option rot_point=0,0,-40 --out p.ngc
 riffler nc post p.ngc --machine tcp --post linuxcnc-xyzac --post-option rot_point=0,0,-40 --out q.ngc
 riffler nc post session.rjournal --out session.rprog
+
+files:
+  .json      a plan, as riffler plan writes it: its cutter locations; or its paths, the ball's tip on them
+  .rjournal  a recording; without --feed as fast as the hand was
+  .rprog     a program to the bit; --out may be one, too
+  others     NC code, written for --machine
 """
 
 from __future__ import annotations
@@ -33,18 +39,11 @@ from .arguments import (
 )
 from .console import Console, number, times
 from .parser import Parser
-from .programs import add_machine, read_program
+from .programs import add_machine, machine_name, read_program
 from .shapes import read_part
 from .surroundings import add_fixtures, add_rods, fixture, fixtures_alone, rods, with_rods
 
 HELP = "write NC code for a machine"
-__doc__ = f"""{__doc__}
-files:
-  .json      a plan, as riffler plan writes it: its cutter locations; or its paths, the ball's tip on them
-  .rjournal  a recording; without --feed as fast as the hand was
-  .rprog     a program to the bit; --out may be one, too
-  others     NC code, written for --machine
-"""
 AXIS_TOLERANCE = 0.00175  # rad
 LIFTED = 0.01  # mm that the tool may enter the part of a plan
 TOUCHED = 0.02  # mm, on approaches and retracts
@@ -81,7 +80,8 @@ def add_arguments(parser: Parser) -> None:
 def run(arguments: argparse.Namespace, console: Console) -> int:
     out = output_file(arguments.out, CODE + PROGRAMS)
     saved = out.suffix.lower() in PROGRAMS
-    if not saved and arguments.post is None:
+    post = None if arguments.post is None else machine_name(arguments.post, "--post")
+    if not saved and post is None:
         raise ValueError("--post: a machine's name expected; riffler nc machines lists them")
     if saved and (arguments.post is not None or arguments.post_option):
         raise ValueError(f"--out {out.name}: a .rprog file is for no machine, leave --post and --post-option out")
@@ -97,7 +97,7 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
         raise ValueError(f"{Path(arguments.program).name}: nothing moves in it")
     with console.step("write"), console.writing(out) as beside:
         how["collider"], how["contact_tolerance"] = collider, max(WRITTEN, depth)
-        report = program.save(beside) if saved else program.write(beside, post=str(arguments.post), **how)
+        report = program.save(beside) if post is None else program.write(beside, post=post, **how)
     data = summary(program, report) | {"post": arguments.post, "notes": notes}
     data |= {"out": str(out), "bytes": out.stat().st_size, "seconds": console.seconds}
     console.result(data, f"{out.name} written", rows(data))
@@ -134,6 +134,8 @@ def read(arguments: argparse.Namespace, console: Console) -> tuple[Program, list
             raise ValueError(f"--{name.replace('_', '-')}: only for {' and '.join(kinds)} files{instead}")
         if name in OF_A_PART and arguments.part is None:
             raise ValueError(f"--{name.replace('_', '-')}: only with --part")
+    if arguments.machine is not None:
+        machine_name(arguments.machine, "--machine")
     if code and arguments.machine is None:
         raise ValueError(f"--machine: say for which machine {path.name} was written")
     if not code and (arguments.machine is not None or arguments.machine_option):
@@ -148,7 +150,7 @@ def read(arguments: argparse.Namespace, console: Console) -> tuple[Program, list
             program, notes = recorded(path, arguments)
         else:
             how = machine_options(arguments.machine_option, "--machine-option")
-            program = read_program(path, str(arguments.machine), how, console)
+            program = read_program(path, arguments.machine or "tcp", how, console)
     return changed(program, arguments), notes, None, 0.0
 
 

@@ -25,7 +25,7 @@ from .arguments import (
 from .console import Console, number, times
 from .deviation_map import LEGEND, write_map
 from .parser import Parser
-from .programs import add_machine, add_program, is_saved, read_program
+from .programs import add_machine, add_program, is_saved, machine_name, read_program
 from .shapes import read_part, to_mesh, write_mesh, write_volume
 from .stock import add_stock, stock
 from .surroundings import add_fixtures, add_rods, fixture, rods, with_rods
@@ -71,7 +71,7 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
     path = Path(arguments.program)
     how = machine_options(arguments.machine_option, "--machine-option")
     with console.step("program"):
-        program = read_program(path, arguments.machine or "tcp", how, console)
+        program = read_program(path, machine_name(arguments.machine or "tcp", "--machine"), how, console)
     volume = stock(arguments, console)
     reach = float(np.linalg.norm(volume.upper - volume.lower))
     by_number = with_rods(tools.assign(wanted, np.asarray(program.tool)[1:], reach), around)
@@ -92,7 +92,8 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
             write_mesh(to_mesh(report.volume, console, out), out, console)
     if coloured is not None and report.deviation is not None:
         with console.step("map"), console.writing(coloured) as beside:
-            write_map(beside, *report.deviation, scale)
+            mesh, distance = report.deviation
+            write_map(beside, mesh, distance, scale)
 
     blocks = [] if is_saved(path) else path.read_text(encoding="utf-8", errors="replace").splitlines()
     data = {

@@ -89,8 +89,14 @@ class Parser(argparse.ArgumentParser):
 
     def refuse(self, flag: str) -> NoReturn:
         """UsageError for an unknown option."""
-        near = nearest(flag, self._option_string_actions)
-        self.error(f"no option {flag}" + (f"; did you mean {near}?" if near else ""))
+        self.error(f"no option {flag}{hint(flag, self._option_string_actions)}")
+
+    def _check_value(self, action: argparse.Action, value: Any) -> None:
+        """Says which word is meant where a choice is none; called by argparse."""
+        if action.choices is not None and value not in action.choices:
+            known = list(map(str, action.choices))
+            name = action.option_strings[0] if action.option_strings else str(action.metavar)
+            self.error(f"{name} {value}: {' or '.join(known)} expected{hint(value, known)}")
 
     def shorten_usage(self) -> None:
         """Only what has to be given, and ``[options]`` for the rest: it fits a line."""
@@ -115,6 +121,12 @@ def joined(words: Iterable[str]) -> list[str]:
         else:
             out.append(word)
     return out
+
+
+def hint(word: str, known: Iterable[str]) -> str:
+    """``; did you mean …?`` with the nearest known word; empty where none is like it."""
+    near = nearest(word, known)
+    return f"; did you mean {near}?" if near else ""
 
 
 def nearest(word: str, known: Iterable[str]) -> str | None:

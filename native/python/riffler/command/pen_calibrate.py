@@ -120,10 +120,9 @@ def calibrate_pen(
     if not device.home():
         raise pen.PenError(f"{device.kind} cannot be homed")
     wait_for(device, lambda: device.state().homed)
-    if isinstance(device, pen.SimulatedPen):  # others have been refused
+    if losses and isinstance(device, pen.SimulatedPen):
         for channel, counts in losses.items():
             device.lose(channel, counts)
-    if losses:
         time.sleep(0.25e-3 * max(losses.values()) + 0.1)  # one by one
 
     postures = Postures(geometry)

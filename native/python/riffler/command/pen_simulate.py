@@ -60,7 +60,9 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
         need_matplotlib()
     window = open_window() if arguments.window else None
     log = Log()
-    with pen.open("simulated") as device:
+    device = pen.open("simulated")
+    assert isinstance(device, pen.SimulatedPen)
+    with device:
         home = homed(device)
         block = block_at(home, pitch)
         before = block.volume

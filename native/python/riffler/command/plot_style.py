@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from matplotlib.axis import Axis
+from matplotlib.axis import XAxis, YAxis
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 INK, GRID, TARGET = "#22262b", "#e3dfd6", "#c8553d"
@@ -26,7 +26,7 @@ STYLE = {
 }
 
 
-def logarithmic(axis: Axis, sub: bool = False) -> None:
+def logarithmic(axis: XAxis | YAxis, sub: bool = False) -> None:
     """A log scale with plain numbers, at 2 and 5 too where `sub`."""
     axis.axes.set(**{f"{axis.axis_name}scale": "log"})  # pyright: ignore[reportAttributeAccessIssue]
     axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))

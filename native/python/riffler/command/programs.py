@@ -8,7 +8,7 @@ from typing import Any
 from .. import Program, machines
 from .arguments import CODE, PROGRAMS, add_machine_option
 from .console import Console
-from .parser import Parser
+from .parser import Parser, hint
 
 
 def add_program(parser: Parser) -> None:
@@ -19,6 +19,15 @@ def add_machine(parser: Parser, about: str = 'what the program\'s axes mean (def
     parser.add_argument("--machine", metavar="NAME", help=about)
     parser.offer("machine", machines())
     add_machine_option(parser)
+
+
+def machine_name(text: str, flag: str) -> str:
+    """A machine's name, or the path of a file that describes one; ValueError names the nearest known machine."""
+    known = machines()
+    if text not in known and not text.lower().endswith(".toml"):
+        instead = "riffler nc machines lists all, or give the path of a .toml file that describes yours"
+        raise ValueError(f"{flag} {text}: no such machine; {instead}{hint(text, known)}")
+    return text
 
 
 def is_saved(path: Path) -> bool:

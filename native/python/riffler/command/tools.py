@@ -14,7 +14,7 @@ import numpy as np
 
 from .. import Tool
 from .arguments import finite
-from .parser import Parser
+from .parser import Parser, hint
 
 # Sizes in the order of the command line. The length comes last and may be left out; flags are false.
 SIZES = {
@@ -66,7 +66,7 @@ def _maker(form: str, text: str) -> Callable[[float], Tool]:
     kind, *numbers = form.split(":")
     sizes = SIZES.get(kind)
     if sizes is None:
-        raise ValueError(f"--tool {text}: {', '.join(SIZES)} or a .json or .toml file expected")
+        raise ValueError(f"--tool {text}: {', '.join(SIZES)} or a .json or .toml file expected{hint(kind, SIZES)}")
     if len(numbers) not in (len(sizes), len(sizes) + 1):
         raise ValueError(f"--tool {text}: {_form(kind)} expected")
     entry: dict[str, Any] = {"kind": kind.replace("-", "_"), "name": form}

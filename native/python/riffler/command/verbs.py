@@ -165,7 +165,12 @@ def _refuse(word: str, group: str) -> NoReturn:
 
 def overview() -> str:
     """The help of ``riffler`` itself."""
-    lines = ["usage: riffler GROUP VERB [options]", "", "Dexel volumes, carving, five-axis programs and pens.", ""]
+    lines: list[str] = [
+        "usage: riffler GROUP VERB [options]",
+        "",
+        "Dexel volumes, carving, five-axis programs and pens.",
+        "",
+    ]
     for group, about in GROUPS.items():
         lines += [f"  {group:<12}{about}", f"  {'':<12}{', '.join(of(group))}"]
     lines += [f"  {name:<12}{verb.load().HELP}" for name, verb in ALONE.items()]
@@ -175,10 +180,16 @@ def overview() -> str:
 
 def overview_of(group: str) -> str:
     """The help of a group."""
-    lines = [f"usage: riffler {group} VERB [options]", "", f"{GROUPS[group][:1].upper()}{GROUPS[group][1:]}.", ""]
+    lines: list[str] = [
+        f"usage: riffler {group} VERB [options]",
+        "",
+        f"{GROUPS[group][:1].upper()}{GROUPS[group][1:]}.",
+        "",
+    ]
     lines += [f"  {name:<12}{verb.load().HELP}" for name, verb in of(group).items()]
     return "\n".join([*lines, "", f"riffler {group} VERB --help shows the options.", *_epilog()])
 
 
 def _epilog() -> list[str]:
-    return [*EPILOG.replace("; exit", ";\nexit").splitlines()]
+    lengths, _, statuses = EPILOG.partition("; ")
+    return [f"{lengths};", statuses]

@@ -15,7 +15,7 @@ from . import tools
 from .arguments import MESHES, VOLUMES, length, machine_options, output_file
 from .console import Console, number, times
 from .parser import Parser
-from .programs import add_machine, add_program, read_program
+from .programs import add_machine, add_program, machine_name, read_program
 from .shapes import rays, write_left
 from .stock import add_stock, stock
 
@@ -36,9 +36,10 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
     tolerance = length(arguments.tolerance, "--tolerance")
     out = output_file(arguments.out, MESHES + VOLUMES)
     wanted = [tools.parse(text) for text in arguments.tool]
+    machine = machine_name(arguments.machine or "tcp", "--machine")
     with console.step("program"):
         how = machine_options(arguments.machine_option, "--machine-option")
-        program = read_program(Path(arguments.program), arguments.machine or "tcp", how, console).followed()
+        program = read_program(Path(arguments.program), machine, how, console).followed()
         poses = np.asarray(program.poses)
         called = called_in_part(program)
         rapid = np.asarray(program.rapid)[1:]
@@ -100,12 +101,11 @@ def carve(
                 continue  # nothing is in the spindle yet
 
             def share(done: float, first: int = first, last: int = last) -> None:
-                if progress:
+                if progress is not None:
                     progress((first + done * (last - first)) / len(removed))
 
-            cut = volume.carve(
-                by_number[tool], poses[first : last + 1], tolerance=tolerance, progress=share if progress else None
-            )
+            watched = None if progress is None else share
+            cut = volume.carve(by_number[tool], poses[first : last + 1], tolerance=tolerance, progress=watched)
             removed[first:last] = cut.removed
     return removed
 

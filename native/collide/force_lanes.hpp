@@ -1,0 +1,40 @@
+// The force of several sample points at a time, in vector lanes chosen at run time.
+#pragma once
+
+#include <span>
+
+#include "collide/force.hpp"
+#include "collide/outline_lanes.hpp"
+#include "collide/sample_points.hpp"
+#include "collide/tool_frame.hpp"
+
+namespace riffler::collide {
+
+/// Sums of force (N), torque about the tip (N·mm) and stiffness, in part directions, lane by lane: their order, and so
+/// their rounding, is the same for every instruction set.
+struct ForceSums {
+  static constexpr int kTriangle = 21;  // of the symmetric 6 × 6 matrix: the columns of each row up to the diagonal
+  double force[3][base::kLanes]{}, torque[3][base::kLanes]{}, stiffness[kTriangle][base::kLanes]{};
+
+  void add_to(Contact& contact) const;
+};
+
+/// k of (4.7) by height: that of the cutter, that of the holder above it, and a ramp as long as the point spacing, so
+/// that the force has no step at the end of the cutter.
+struct StiffnessRamp {
+  Stiffness stiffness;
+  double top, length;  ///< mm: end of the cutter, length of the ramp
+
+  double at(double z) const {
+    const double above = std::min(std::max((z - top) / length + 0.5, 0.0), 1.0);
+    return stiffness.cutter + above * (stiffness.holder - stiffness.cutter);
+  }
+};
+
+/// Adds the points of a group that lie inside the tool, each with the weight `weight`. distance[k]: the signed distance
+/// of point k, mm.
+void add_points(std::span<const LaneEdge> outline, const ToolFrame& frame, const SphereGroup& points,
+                const SamplePoints::AreaGroup& areas, const StiffnessRamp& ramp, double weight, double* distance,
+                ForceSums& sums);
+
+}  // namespace riffler::collide
