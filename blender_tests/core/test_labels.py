@@ -8,7 +8,7 @@ import addon
 ADDON = Path(addon.__file__).parent
 SAID_OTHERWISE = {
     ("plan/machine_panel.py", "key"): "a label in the same row",
-    ("plan/machine_panel.py", "machine_fields.identifier(fact['name'])"): "a label in the same row",
+    ("plan/machine_panel.py", "machine_fields.identifier(fact.name)"): "a label in the same row",
     ("stock/panel.py", "size"): "a line above it",
     ("stock/panel.py", "recording"): "the source that is chosen above it",
     ("plan/paths_panel.py", "on"): "the path's name in the same row",

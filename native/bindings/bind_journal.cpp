@@ -98,7 +98,7 @@ OptionalArray column(const std::vector<double>& values) {
 }
 
 void bind_stroke(py::module_& m) {
-  py::class_<StrokeView>(m, "JournalStroke", "One stroke of a Journal.")
+  py::class_<StrokeView>(m, "JournalStroke", "One stroke of a journal: see `Journal.add_stroke`.")
       .def_property_readonly("poses", &poses, "(n, 6): tip in mm and unit axis; a copy.")
       .def_property_readonly(
           "times", [](const StrokeView& s) { return column(s.get().times); }, "(n,) s, or None.")
@@ -173,8 +173,8 @@ FormatError
 
 Examples
 --------
->>> riffler.Journal().save(folder / "a.rjournal")
->>> riffler.Journal.load(folder / "a.rjournal")
+>>> riffler.Journal().save("a.rjournal")
+>>> riffler.Journal.load("a.rjournal")
 <riffler.Journal: 0 strokes>
 )")
       .def(
@@ -193,7 +193,7 @@ path : path_like
 
 Examples
 --------
->>> riffler.Journal().save(folder / "a.rjournal")
+>>> riffler.Journal().save("a.rjournal")
 )")
       .def_property_readonly("stock", &stock, "Frame and files of the stock, or None.")
       .def_property_readonly("tools", &tools, "Each tool's dict, by number.")

@@ -39,11 +39,11 @@ keep : bool
 
 Examples
 --------
->>> with riffler.JournalWriter(folder / "a.rjournal") as writer:
+>>> with riffler.JournalWriter("a.rjournal") as writer:
 ...     writer.set_stock((0, 0, 0), (20, 20, 10), 0.5)
 ...     writer.add_tool(1, riffler.Tool.ball(diameter=6, length=30))
 ...     writer.add_stroke(1, [(0, 10, 8, 0, 0, 1), (20, 10, 8, 0, 0, 1)])
->>> len(riffler.Journal.load(folder / "a.rjournal").strokes)
+>>> len(riffler.Journal.load("a.rjournal").strokes)
 1
 )");
   writer
@@ -63,14 +63,14 @@ Examples
 
 Examples
 --------
->>> with riffler.JournalWriter(folder / "a.rjournal") as writer:
+>>> with riffler.JournalWriter("a.rjournal") as writer:
 ...     writer.sync()
 )")
       .def("close", &close, R"(Ends writing; calls after it raise RuntimeError.
 
 Examples
 --------
->>> writer = riffler.JournalWriter(folder / "a.rjournal")
+>>> writer = riffler.JournalWriter("a.rjournal")
 >>> writer.close()
 )")
       .def_property_readonly(

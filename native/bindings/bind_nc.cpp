@@ -49,7 +49,7 @@ WriteReport write(const nc::Program& self, const std::filesystem::path& path, co
 }  // namespace
 
 void bind_nc_types(py::module_& m) {
-  py::class_<nc::Note>(m, "Note", "What a reader of NC code assumed or passed over.")
+  py::class_<nc::Note>(m, "Note", "What a reader of NC code assumed or passed over: see `Program.read`.")
       .def_readonly(
           "kind", &nc::Note::kind,
           "\"skipped\", \"coordinates\" (what follows may be elsewhere), \"work offset\", \"units\", "
@@ -61,7 +61,7 @@ void bind_nc_types(py::module_& m) {
         return "<riffler.Note: line " + std::to_string(n.line) + ", " + n.kind + ": " + n.message + ">";
       });
 
-  py::class_<SharedStream>(m, "ProgramStream", "What ``Program.stream`` returns: an iterator of programs.")
+  py::class_<SharedStream>(m, "ProgramStream", "An iterator of programs: see `Program.stream`.")
       .def("__iter__", [](const py::object& self) -> Self { return self; })
       .def("__next__", [](SharedStream& self) {
         const OneCaller only(self, "the stream");
@@ -133,8 +133,9 @@ ValueError
 Examples
 --------
 >>> text = "G21 G90\nT1 M6\nG1 X10 Y0 Z5 F600\nX20\nM2\n"
->>> _ = (folder / "part.ngc").write_text(text)
->>> riffler.Program.read(folder / "part.ngc", machine="3-axis").poses[-1, :3]
+>>> from pathlib import Path
+>>> _ = Path("part.ngc").write_text(text)
+>>> riffler.Program.read("part.ngc", machine="3-axis").poses[-1, :3]
 array([20.,  0.,  5.])
 )")
       .def_static(
@@ -168,8 +169,9 @@ ProgramStream
 Examples
 --------
 >>> text = "G21 G90\nT1 M6\nG1 X10 Y0 Z5 F600\nX20\nX30\nM2\n"
->>> _ = (folder / "part.ngc").write_text(text)
->>> [len(part) for part in riffler.Program.stream(folder / "part.ngc", machine="3-axis", rows=2)]
+>>> from pathlib import Path
+>>> _ = Path("part.ngc").write_text(text)
+>>> [len(part) for part in riffler.Program.stream("part.ngc", machine="3-axis", rows=2)]
 [2, 2]
 )")
       .def("write", &write, py::arg("path"), py::kw_only(), py::arg("post") = "tcp", py::arg("tolerance") = 0.01,
@@ -220,7 +222,7 @@ Examples
 --------
 >>> cut = [(0, 0, 0, 0, 0, 1), (20, 0, 0, 0, 0, 1)]
 >>> program = riffler.Program.from_cl([cut], [riffler.Tool.ball(diameter=6, length=30)], feed=600)
->>> program.write(folder / "part.ngc", post="linuxcnc-xyzac", options={"rot_point": (0, 0, 0)}).rewinds
+>>> program.write("part.ngc", post="linuxcnc-xyzac", options={"rot_point": (0, 0, 0)}).rewinds
 []
 )");
 }

@@ -60,8 +60,8 @@ progress : callable, optional
 Examples
 --------
 >>> program = riffler.Program([(x, 0, 5, 0, 0, 1) for x in range(5)], feed=600)
->>> program.save(folder / "part.rprog")
->>> len(riffler.Program.load(folder / "part.rprog"))
+>>> program.save("part.rprog")
+>>> len(riffler.Program.load("part.rprog"))
 5
 )")
       .def_static("load", &load, py::arg("path"), py::kw_only(), py::arg("progress") = py::none(),
@@ -86,8 +86,8 @@ FormatError
 Examples
 --------
 >>> program = riffler.Program([(x, 0, 5, 0, 0, 1) for x in range(5)], feed=600)
->>> program.save(folder / "part.rprog")
->>> bool((riffler.Program.load(folder / "part.rprog").poses == program.poses).all())
+>>> program.save("part.rprog")
+>>> bool((riffler.Program.load("part.rprog").poses == program.poses).all())
 True
 )")
       .def("to_bytes", &bytes_of, R"(The bytes of the .rprog file.

@@ -176,10 +176,10 @@ Examples
 --------
 >>> stock = riffler.Volume.block(lower=(0, 0, 0), upper=(20, 20, 10), pitch=0.5)
 >>> session = riffler.Session(stock, riffler.Tool.ball(diameter=6, length=30))
->>> session.journal(folder / "first.rjournal", notes={"operator": "Ada"})
+>>> session.journal("first.rjournal", notes={"operator": "Ada"})
 >>> with session:
 ...     frame = session.frame()
->>> riffler.Session.replay(folder / "first.rjournal").volume
+>>> riffler.Session.replay("first.rjournal").volume
 4000.0
 )")
       .def("undo", &go<&session::Session::undo>,
@@ -279,10 +279,10 @@ Examples
 --------
 >>> stock = riffler.Volume.block(lower=(0, 0, 0), upper=(20, 20, 10), pitch=0.5)
 >>> session = riffler.Session(stock, riffler.Tool.ball(diameter=6, length=30))
->>> session.journal(folder / "first.rjournal")
+>>> session.journal("first.rjournal")
 >>> with session:
 ...     frame = session.frame()
->>> riffler.Session.replay(folder / "first.rjournal").to_bytes() == stock.to_bytes()
+>>> riffler.Session.replay("first.rjournal").to_bytes() == stock.to_bytes()
 True
 )")
       .def_property_readonly(

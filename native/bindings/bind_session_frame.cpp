@@ -21,7 +21,8 @@ py::array_t<double> rows(const F& f, const Get& get) {
 }  // namespace
 
 void bind_session_frame(py::module_& m) {
-  py::class_<F>(m, "SessionFrame", R"(What happened between two calls of ``Session.frame``: one row for each step.
+  py::class_<F>(m, "SessionFrame",
+                R"(What happened between two calls of ``Session.frame``, one row for each step: see `Session.frame`.
 
 Forces and torques act on the hand, about the grip's point, in the device's frame; those on the tool act on it, about its
 tip, in the part's.)")

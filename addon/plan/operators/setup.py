@@ -24,9 +24,9 @@ def surfaces(context):
 def described(mesh):
     """Assessment of a part before planning: the report's level, and its text."""
     found = riffler.plan.analyse(mesh)
-    size = units.format_size(found["bounds"][1] - found["bounds"][0])
-    facts = f"{size}, {units.counted(found['triangles'], 'triangle')}"
-    return "WARNING" if found["warnings"] else "INFO", "; ".join([facts, *found["warnings"]])
+    size = units.format_size(found.bounds[1] - found.bounds[0])
+    facts = f"{size}, {units.counted(found.triangles, 'triangle')}"
+    return "WARNING" if found.warnings else "INFO", "; ".join([facts, *found.warnings])
 
 
 def _editable(cls, collection):

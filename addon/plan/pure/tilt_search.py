@@ -1,5 +1,5 @@
 """Finds few keys along a path with which the tool is collision-free at each of its points: the orientations of least
-tilt from the middle between the two walls, from the maps of free orientations (riffler.plan.least_tilt), and more keys
+tilt from the middle between the two walls, from the maps of free orientations (riffler.plan.min_tilt), and more keys
 only where points between them collide.
 
 Moves between points are not checked here: on a curved path they dip into the part by the chord error, and only

@@ -207,8 +207,8 @@ class Divided:
         parts = [np.linspace(a, b, max(1, int(np.ceil((b - a) / step))) + 1)[:-1] for a, b in pairwise(xs)]
         return Divided(np.append(np.concatenate(parts), xs[-1]))
 
-    def oriented(self, of, rule):
-        return Divided(self.centres[:, 0], np.zeros((len(self), 3)), dict(of), rule)
+    def orient(self, of, *, interpolation):
+        return Divided(self.centres[:, 0], np.zeros((len(self), 3)), dict(of), interpolation)
 
 
 def test_a_divided_path_has_its_keys_where_they_were():

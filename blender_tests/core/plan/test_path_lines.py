@@ -18,7 +18,7 @@ def path(points=11, closed=False, lean=0.6):
     centres = np.stack([3 + 0 * y, y, 3 + 0 * y], axis=1)
     contacts = np.stack([centres - [0, 0, 3], centres - [3, 0, 0]], axis=1)
     normals = np.broadcast_to([[[0.0, 0, 1], [1, 0, 0]]], (points, 2, 3))
-    bare = riffler.plan.PencilPath(3.0, centres, contacts, normals, closed)
+    bare = riffler.plan.PencilPath(3.0, centres, contacts, normals, closed=closed)
     return bare.orient({0: (lean, 0, math.sqrt(1 - lean**2))})
 
 

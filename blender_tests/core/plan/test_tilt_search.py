@@ -104,7 +104,7 @@ def test_first_keys():
     around = np.exp(2j * np.pi * np.arange(60) / 60)
     centres = 20 * np.c_[around.real, around.imag, np.zeros(60)]
     loop = riffler.plan.PencilPath(
-        3.0, centres, np.stack([0.85 * centres, centres - [0, 0, 3]], axis=1), path.normals[:60], True
+        3.0, centres, np.stack([0.85 * centres, centres - [0, 0, 3]], axis=1), path.normals[:60], closed=True
     )
     assert tilt_search.begun(loop, 1) == [0] and tilt_search.begun(loop, 4) == [0, 15, 30, 45]
 

@@ -33,8 +33,8 @@ def folder(tmp_path, monkeypatch):
     journal.set_stock((0, 0, 0), (20, 15, 10), 0.5)
     journal.add_tool(3, riffler.Tool.ball(6, 30))
     poses = np.column_stack([np.linspace(0, 20, 9), np.full(9, 7.0), np.full(9, 8.0), *np.tile([[0], [0], [1]], 9)])
-    journal.add_stroke(3, poses, np.linspace(0, 2, 9))
-    journal.write("s.rjournal")
+    journal.add_stroke(3, poses, times=np.linspace(0, 2, 9))
+    journal.save("s.rjournal")
     return tmp_path
 
 

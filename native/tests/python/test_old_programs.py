@@ -204,3 +204,31 @@ def test_wrong_arguments_name_the_right_ones():
         riffler.Session(riffler.Volume.block((0, 0, 0), (9, 9, 9), 1), BALL, max_force="hard")
     with pytest.raises(TypeError, match=r"plan.cutter_locations: collider is missing: a Collider"):
         plan.cutter_locations(UPRIGHT, BALL)
+
+
+def test_old_forms_of_pens():
+    pointer = riffler.pen.Pointer("mouse")
+    with pytest.warns(DeprecationWarning, match=r"Pointer.set_frame\(most_tilt=…\) is deprecated, use max_tilt=…"):
+        pointer.set_frame(most_tilt=0.5)
+    with pytest.warns(DeprecationWarning, match=r'CoordinateCapability\["senses"\]'):
+        assert pointer.limits["x"]["senses"] == "position"
+    assert pointer.limits["a"].senses is None and pointer.limits["a"].sensing == "none"
+    with pytest.warns(DeprecationWarning, match=r'PenHealth\["problem"\] is deprecated, use PenHealth.problem'):
+        assert pointer.health()["problem"] is None
+    with pytest.warns(DeprecationWarning, match=r"PushResult.reason"):
+        assert "no motors" in pointer.push((0, 0, 1))["reason"]
+    pen = riffler.pen.PenGeometry.load("riffler")
+    with pytest.warns(DeprecationWarning, match=r"PenLimits.lower"):
+        assert pen.limits["lower"].shape == (3,)
+    with pytest.warns(DeprecationWarning, match=r"PenChannel.name"):
+        assert pen.channels[0]["name"] == pen.channels[0].name
+    with pytest.warns(DeprecationWarning):
+        assert "channel" not in pen.diagnose([pen.home])
+    with pytest.warns(DeprecationWarning, match="probe by position"):
+        assert pen.homed([pen.home], 0).name == "riffler"
+
+
+def test_an_old_analysis_is_read_as_a_dict():
+    report = plan.analyse(FLAT)
+    with pytest.warns(DeprecationWarning, match=r"PartReport.closed"):
+        assert report["closed"] is True

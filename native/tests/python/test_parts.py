@@ -55,7 +55,7 @@ def test_a_turned_part_is_the_same_to_all_that_takes_solids():
 
     assert found(bad) == found(CUBE) and any(kind == "gouge" for kind, _ in found(bad))
     said = riffler.plan.analyse(bad)
-    assert said["turned"] == 6 and said["closed"] and "6 triangles faced the other way" in said["warnings"][0]
+    assert said.turned == 6 and said.closed and "6 triangles faced the other way" in said.warnings[0]
 
 
 @pytest.mark.parametrize("pitch", [1, 0.37, 3.7, 9.9, 0.5])

@@ -119,13 +119,13 @@ def test_links_are_short():
 
 def test_analysis():
     part = riffler.plan.analyse(box([0, 0, 0], [50, 40, 30]))
-    assert part["closed"] and part["outward"] and part["units"] == "mm" and part["warnings"] == []
-    assert part["volume"] == pytest.approx(60000) and part["components"] == 1 and part["degenerate_share"] == 0
+    assert part.closed and part.outward and part.units == "mm" and part.warnings == ()
+    assert part.volume == pytest.approx(60000) and part.components == 1 and part.degenerate_share == 0
     inside = riffler.plan.analyse(box([0, 0, 0], [0.05, 0.04, 0.03], inside_out=True))
-    assert inside["outward"] is False and inside["units"] == "m" and len(inside["warnings"]) == 2
+    assert inside.outward is False and inside.units == "m" and len(inside.warnings) == 2
     whole = box([0, 0, 0], [50, 40, 30])
     opened = riffler.plan.analyse(riffler.Mesh(whole.vertices, whole.triangles[1:]))
-    assert not opened["closed"] and opened["open_edges"] == 3 and opened["outward"] is None
+    assert not opened.closed and opened.open_edges == 3 and opened.outward is None
 
 
 def test_progress_cancels():

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 from .. import deprecated, old
 from .._core import PencilPath
 from ..program_results import NearestContact
-from .analysis import analyse
+from .analysis import PartReport, analyse
 from .around import fixture_pitch, with_room
 from .curves import read_curves
 from .file import Texts, dumps, load, loads, save
@@ -40,6 +40,7 @@ __all__ = [
     "LocationReport",
     "NearestContact",
     "Parameter",
+    "PartReport",
     "PencilPath",
     "PencilPaths",
     "PencilStats",

@@ -1,43 +1,95 @@
 """What a part is worth before it is planned on."""
 
-import dataclasses
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass, replace
+from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
+from .._core import Mesh
+from ..hints import hinted
 from ..mesh_notes import notes_on
+from ..results import Audit
 
 
-def analyse(mesh):
-    """A report on a part: ``mesh.audit()`` and what follows from it.
+@dataclass(frozen=True, eq=False)
+class PartReport(Audit):
+    """What `analyse` found: the counts of `Mesh.audit`, what was turned for it, and what follows."""
 
-    The audit is that of ``mesh.orient(hollow=True)``, as which plans take the part; its counts of what was turned are
-    there, too. Adds to the audit's counts: ``triangles``, ``area`` (mm²), ``bounds`` ((2, 3) mm), ``closed`` (no open
-    and no non-manifold edges), ``degenerate_share`` (of the triangles), ``outward`` (True where the normals point out
-    of the material, False where they point in; None for open parts, where the volume's sign says nothing), ``units``
-    (what the size suggests: "mm", "inch", "m" or "micrometre") and ``warnings``, a list of sentences. ValueError
-    without triangles.
+    triangles: int
+    """All triangles."""
+    area: float
+    """mm²."""
+    bounds: NDArray[np.float64]
+    """(2, 3): lower and upper corner, mm."""
+    closed: bool
+    """No open and no non-manifold edges."""
+    degenerate_share: float
+    """Share of the triangles that have no area."""
+    outward: bool | None
+    """Whether normals point out of the material; None for open parts, where the volume's sign says nothing."""
+    turned: int
+    """Triangles that were turned."""
+    turned_shells: int
+    """Closed pieces that faced inwards as a whole."""
+    left_out: int
+    """Repeated triangles that tear the surface open."""
+    one_sided: int
+    """Pieces with one side only."""
+    units: Literal["mm", "inch", "m", "micrometre"]
+    """What the size suggests."""
+    warnings: tuple[str, ...]
+    """Sentences."""
+
+
+@hinted("plan.analyse")
+def analyse(mesh: Mesh) -> PartReport:
+    """A report on a part, as plans take it: after ``mesh.orient(hollow=True)``.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The part.
+
+    Returns
+    -------
+    PartReport
+
+    Raises
+    ------
+    ValueError
+        For a mesh without triangles.
+
+    Examples
+    --------
+    >>> report = riffler.plan.analyse(riffler.shape.relief([[1, 1], [1, 1]], size=(30, 20), depth=10))
+    >>> report.closed, report.units, report.warnings
+    (True, 'mm', ())
     """
     bounds = mesh.bounds
     oriented, repairs = mesh.orient_with_report(hollow=True)
-    report = dataclasses.asdict(oriented.audit())
+    audit = oriented.audit()
     count = len(mesh.triangles)
-    size = float(np.max(bounds[1] - bounds[0]))
-    closed = report["open_edges"] == 0 and report["nonmanifold_edges"] == 0
-    report.update(
+    closed = audit.open_edges == 0 and audit.nonmanifold_edges == 0
+    report = PartReport(
+        **asdict(audit),
+        **asdict(repairs),
         triangles=count,
         area=mesh.area,
         bounds=bounds,
         closed=closed,
-        degenerate_share=report["degenerate"] / count,
-        outward=bool(report["volume"] > 0) if closed and report["volume"] != 0 else None,
-        **dataclasses.asdict(repairs),
-        units=_units_of(size),
+        degenerate_share=audit.degenerate / count,
+        outward=bool(audit.volume > 0) if closed and audit.volume != 0 else None,
+        units=_units_of(float(np.max(bounds[1] - bounds[0]))),
+        warnings=(),
     )
-    report["warnings"] = list(_warnings(report, size))
-    return report
+    return replace(report, warnings=tuple(_warnings(report)))
 
 
-def _units_of(size):
+def _units_of(size: float) -> Literal["mm", "inch", "m", "micrometre"]:
     """Parts that people mill are some 10 mm to 2 m long; what is outside that was probably drawn in another unit."""
     if size < 0.5:
         return "m"
@@ -46,16 +98,17 @@ def _units_of(size):
     return "mm" if size < 5000 else "micrometre"
 
 
-def _warnings(report, size):
-    yield from notes_on(report)
-    if not report["closed"]:
+def _warnings(report: PartReport) -> Iterator[str]:
+    yield from notes_on(asdict(report))
+    if not report.closed:
         yield (
-            f"the part is not closed: {report['open_edges']} open and "
-            f"{report['nonmanifold_edges']} non-manifold edges; paths end at open ones"
+            f"the part is not closed: {report.open_edges} open and "
+            f"{report.nonmanifold_edges} non-manifold edges; paths end at open ones"
         )
-    if report["outward"] is False:
+    if report.outward is False:
         yield "the normals point into the material: valleys are looked for on the wrong side"
-    if report["degenerate"]:
-        yield f"{report['degenerate']} of {report['triangles']} triangles have no area; they are used as lines"
-    if report["units"] != "mm":
-        yield f"the largest side is {size:g}: lengths are taken as mm, but it looks like {report['units']}"
+    if report.degenerate:
+        yield f"{report.degenerate} of {report.triangles} triangles have no area; they are used as lines"
+    if report.units != "mm":
+        size = float(np.max(report.bounds[1] - report.bounds[0]))
+        yield f"the largest side is {size:g}: lengths are taken as mm, but it looks like {report.units}"

@@ -40,8 +40,9 @@ def read_curves(path: str | os.PathLike[str]) -> list[NDArray[np.float64]]:
 
     Examples
     --------
-    >>> _ = (folder / "line.csv").write_text("0, 0, 5" + chr(10) + "9, 0, 5")
-    >>> riffler.plan.read_curves(folder / "line.csv")
+    >>> from pathlib import Path
+    >>> _ = Path("line.csv").write_text("0, 0, 5" + chr(10) + "9, 0, 5")
+    >>> riffler.plan.read_curves("line.csv")
     [array([[0., 0., 5.],
            [9., 0., 5.]])]
     """

@@ -44,7 +44,7 @@ class Texts:
         # Has the objects, so that their ids stay theirs.
         self._kept: dict[tuple[int, int, bool, float | None], tuple[Any, Any, bytes]] = {}
 
-    def of(
+    def _of(
         self, paths: list, cl: list, off: Collection[int] = (), depths: Mapping[int, float] = MappingProxyType({})
     ) -> list[bytes]:
         each = enumerate(zip(paths, cl, strict=True))
@@ -101,7 +101,7 @@ def dumps(plan: Plan, *, texts: Texts | None = None) -> bytes:
         "tool": plan.tool.to_dict(),
         "tolerance": plan.tolerance,
     }
-    entries = (texts or Texts()).of(plan.paths, cl, plan.off, plan.depths)
+    entries = (texts or Texts())._of(plan.paths, cl, plan.off, plan.depths)
     lines = [f" {_compact(name)}: {_compact(value)}" for name, value in data.items()]
     head = '{{\n{},\n "paths": [\n'.format(",\n".join(lines))
     return b"".join((head.encode(), b",\n".join(entries), b"\n ]\n}\n"))
@@ -142,8 +142,8 @@ def save(path: str | os.PathLike[str], plan: Plan) -> None:
 
     Examples
     --------
-    >>> riffler.plan.save(folder / "a.json", riffler.plan.Plan([], riffler.Tool.ball(diameter=4, length=20)))
-    >>> riffler.plan.load(folder / "a.json").paths
+    >>> riffler.plan.save("a.json", riffler.plan.Plan([], riffler.Tool.ball(diameter=4, length=20)))
+    >>> riffler.plan.load("a.json").paths
     []
     """
     files.write(path, dumps(plan))
@@ -229,8 +229,8 @@ def load(path: str | os.PathLike[str]) -> Plan:
 
     Examples
     --------
-    >>> riffler.plan.save(folder / "a.json", riffler.plan.Plan([], riffler.Tool.ball(diameter=4, length=20)))
-    >>> riffler.plan.load(folder / "a.json").tool.diameter
+    >>> riffler.plan.save("a.json", riffler.plan.Plan([], riffler.Tool.ball(diameter=4, length=20)))
+    >>> riffler.plan.load("a.json").tool.diameter
     4.0
     """
     target = Path(path)

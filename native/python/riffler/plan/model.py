@@ -40,8 +40,8 @@ class Plan:
     >>> part = riffler.shape.relief([[1, 1], [0, 0], [1, 1]], size=(30, 20), depth=10, sink=5)
     >>> tool = riffler.Tool.ball(diameter=4, length=20)
     >>> plan = riffler.plan.Plan(list(riffler.plan.pencil(part, tool)), tool, tolerance=0.01)
-    >>> riffler.plan.save(folder / "valleys.json", plan)
-    >>> len(riffler.plan.load(folder / "valleys.json").paths)
+    >>> riffler.plan.save("valleys.json", plan)
+    >>> len(riffler.plan.load("valleys.json").paths)
     1
     """
 

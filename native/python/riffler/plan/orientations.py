@@ -29,7 +29,7 @@ def _grid(angles: ArrayLike | None, widest: float = _WIDEST, count: int = 21) ->
 
 @dataclass(frozen=True, eq=False, repr=False)
 class FreeOrientations:
-    """The configuration space at one point of a path; arrays are (inclinations, tilts).
+    """The configuration space at one point of a path: see `free_orientations`. Arrays are (inclinations, tilts).
 
     Attributes
     ----------
@@ -282,7 +282,7 @@ def draw_map(orientations: FreeOrientations, *, axes: Axes | None = None) -> Axe
     Parameters
     ----------
     orientations : FreeOrientations
-        The map of one point.
+        The map of one point: see `free_orientations`.
     axes : matplotlib.axes.Axes, optional
         Where to draw; None: into a new figure.
 

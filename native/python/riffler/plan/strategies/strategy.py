@@ -16,16 +16,31 @@ from ..model import Plan
 class Parameter:
     """One setting of a strategy: an option of the command line, a field of a panel.
 
-    ``key``: its name as an argument. ``default``: None where leaving it out means something, which ``help`` says; a
-    panel shows 0 then. ``unit``: ``"mm"``, ``"rad"`` (degrees on the command line and in panels), or ``""`` for a whole
-    number. ``low``, ``high``: what a field can be set to; with ``low`` from 0 on a value that is given must be
-    positive. ``choices``: (value, label, help) of each, for a word.
+    Parameters
+    ----------
+    key : str
+        Its name as an argument.
+    label, help : str
+        For people.
+    default : float, int, str or None
+        None where leaving it out means something, which ``help`` says; a panel shows 0 then.
+    unit : str
+        "mm", "rad" (degrees on the command line and in panels), or "" for a whole number.
+    low, high : float
+        Range of a field; with ``low`` from 0 on a value that is given must be positive.
+    choices : tuple
+        (value, label, help) of each, for a word.
+
+    Examples
+    --------
+    >>> riffler.plan.Parameter("reach", "Reach", "Largest distance from the part, in mm", 10.0, low=1e-3).unit
+    'mm'
     """
 
     key: str
     label: str
     help: str
-    default: Any
+    default: float | str | None
     unit: str = "mm"
     low: float = 0.0
     high: float = 1e5
@@ -34,7 +49,7 @@ class Parameter:
 
 @dataclass(frozen=True)
 class Found:
-    """What a strategy has found.
+    """What a strategy has found: see `find`.
 
     Attributes
     ----------
@@ -52,8 +67,11 @@ class Found:
 
 
 class Strategy(ABC):
-    """How paths come about. A module of this package defines one and lists it in STRATEGIES; ``riffler plan``, the
-    panel of the Blender extension and ``riffler.plan.find`` read the table of them all (strategies/__init__.py)."""
+    """How paths come about: see `find`.
+
+    A module of this package defines one and lists it in STRATEGIES; ``riffler plan``, the panel of the Blender
+    extension and ``riffler.plan.find`` read the table of them all (strategies/__init__.py).
+    """
 
     id: ClassVar[str] = ""  # its name in commands and scripts
     place: ClassVar[int] = 0  # in lists: the smallest first
@@ -75,15 +93,60 @@ class Strategy(ABC):
         options: Mapping[str, Any],
         progress: Progress = None,
     ) -> Found:
-        """``given``: the curves, (n, 3) arrays in mm, or the paths. ``options`` has every parameter but those that are
-        None. ValueError for bad input, naming it."""
+        """Plans, for `find`.
+
+        Parameters
+        ----------
+        part_mesh : Mesh
+            The part.
+        tool : Tool
+            The cutter.
+        given : list
+            The curves, (n, 3) arrays in mm, or the paths.
+        options : dict
+            Every parameter but those that are None.
+        progress : callable, optional
+            Called with the finished share; returning False cancels.
+
+        Raises
+        ------
+        ValueError
+            Naming what is wrong. See `find`.
+        """
 
     def check(self, tool: Tool, given: Sequence[Any]) -> None:  # noqa: B027
-        """ValueError for a tool that it cannot do with: known at once, before a long run."""
+        """Refuses a tool that the strategy cannot use: known at once, before a long run. See `find`.
+
+        Parameters
+        ----------
+        tool : Tool
+            The cutter.
+        given : list
+            As for ``run``.
+        """
 
     def options(self, given: Mapping[str, Any]) -> dict[str, Any]:
-        """All parameters with their defaults, without those that are None. ValueError for unknown ones and for words
-        that are none of the choices."""
+        """All parameters with their defaults, without those that are None.
+
+        Parameters
+        ----------
+        given : dict
+            Parameters by name.
+
+        Returns
+        -------
+        dict
+
+        Raises
+        ------
+        ValueError
+            For unknown ones and for words that are none of the choices.
+
+        Examples
+        --------
+        >>> riffler.plan.STRATEGIES["pencil"].options({"passes": 3})
+        {'tolerance': 0.01, 'passes': 3}
+        """
         known = {p.key: p for p in self.parameters}
         if strange := [key for key in given if key not in known]:
             raise ValueError(f"{strange[0]}: {self.id} has {', '.join(known)}")

@@ -19,7 +19,7 @@ from .strategy import Found, Parameter, Strategy, share_of
 
 @dataclass(frozen=True, eq=False)
 class Swarf:
-    """A wall cut by the flank.
+    """A wall cut by the flank: see `swarf`.
 
     Attributes
     ----------
