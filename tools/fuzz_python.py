@@ -55,7 +55,7 @@ def seed_plan() -> bytes:
 def read_plan(data: bytes) -> None:
     from riffler import plan
 
-    plan.dumps(plan.loads(data, "fuzz"))
+    plan.dumps(plan.loads(data, name="fuzz"))
 
 
 def seed_curves() -> bytes:

@@ -26,8 +26,7 @@ FIXES = [
     (r"^import typing$", "import typing\n_Found = typing.TypeVar('_Found')\n_Made = typing.TypeVar('_Made')"),
     (r"(?<=def __eq__\(self, )\w+: \w+", "other: object"),
     (r"(: [A-Z]\w+) = None", r"\1 | None = None"),  # pointers to what may be missing
-    (r"(?<=Callable\[\[float\], )typing\.Any", "object"),  # the generator writes object as Any
-    (r"(?<=Mapping\[str, )typing\.Any", "object"),
+    (r"(?<=Mapping\[str, )typing\.Any", "object"),  # the generator writes object as Any
     (r"[ \t]+$", ""),
 ]
 

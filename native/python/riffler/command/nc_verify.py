@@ -90,10 +90,9 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
             write_volume(report.volume, out, console)
         else:
             write_mesh(to_mesh(report.volume, console, out), out, console)
-    if coloured is not None and report.deviation is not None:
+    if coloured is not None and (found := report.deviation) is not None:
         with console.step("map"), console.writing(coloured) as beside:
-            mesh, distance = report.deviation
-            write_map(beside, mesh, distance, scale)
+            write_map(beside, *found, scale)
 
     blocks = [] if is_saved(path) else path.read_text(encoding="utf-8", errors="replace").splitlines()
     data = {

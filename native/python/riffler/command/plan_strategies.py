@@ -97,7 +97,8 @@ def add_option(parser: Parser, parameter: plan.Parameter) -> None:
 
 
 def shown(parameter: plan.Parameter) -> float:
-    return math.degrees(parameter.default) if parameter.unit == "rad" else parameter.default
+    default = float(parameter.default or 0)
+    return math.degrees(default) if parameter.unit == "rad" else default
 
 
 def value_of(parameter: plan.Parameter, text: str | None) -> Any:
