@@ -18,14 +18,6 @@ struct SharedVerification : Guarded {
   verify::Verification verification;
 };
 
-}  // namespace
-
-std::shared_ptr<SharedReport> share(verify::VerifyReport&& report) {
-  return std::make_shared<SharedReport>(std::move(report));
-}
-
-namespace {
-
 /// Chunk by chunk; of how many there are nothing is known, so progress is that of each.
 verify::VerifyReport run_stream(verify::SlabRun& run, const py::iterable& chunks, const Progress& progress) {
   for (const py::handle& item : chunks) {
@@ -308,6 +300,10 @@ progress : callable, optional
 )";
 
 }  // namespace
+
+std::shared_ptr<SharedReport> share(verify::VerifyReport&& report) {
+  return std::make_shared<SharedReport>(std::move(report));
+}
 
 void bind_verify(py::module_& m) {
   bind_finding(m);
