@@ -7,6 +7,8 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 import riffler
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
 
 CLAY, STEEL, INK = (0.80, 0.71, 0.60), (0.66, 0.72, 0.78), "#22262b"
 BLUE, RED, GREEN, ORANGE = "#2f6690", "#c8553d", "#3f7d4f", "#d08c2a"
