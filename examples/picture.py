@@ -2,12 +2,13 @@
 the end of each ray is the surface that the viewer sees. Needs matplotlib."""
 
 import matplotlib
-from matplotlib import cm, colors
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 import riffler
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
 
 CLAY, STEEL, INK = (0.80, 0.71, 0.60), (0.66, 0.72, 0.78), "#22262b"
 BLUE, RED, GREEN, ORANGE = "#2f6690", "#c8553d", "#3f7d4f", "#d08c2a"
@@ -65,7 +66,7 @@ class View:
 
     def show(self, ax, colour=CLAY, values=None, limits=(0, 1), cmap="RdBu"):
         """Draws the mesh; with `values`, an image of View.values, coloured by them. Returns what a colour bar needs."""
-        scale = cm.ScalarMappable(colors.Normalize(*limits), cmap)
+        scale = ScalarMappable(Normalize(*limits), cmap)
         if values is not None:
             colour = scale.to_rgba(values)[..., :3]
         n, m = (size // 2 * 2 for size in self.depth.shape)

@@ -1,6 +1,6 @@
 """Smooth a carved surface with a round brush, and protect a part of it with a mask.
 
-Shows: Volume.carve, Volume.smooth with protect, Volume.intersect.
+Shows: Volume.carve, Volume.cylinder as a mask, Volume.smooth with protect.
 """
 
 import numpy as np

@@ -2,17 +2,13 @@
 #pragma once
 
 #include "collide/deadline.hpp"
+#include "collide/force_lanes.hpp"
 #include "collide/sample_points.hpp"
 #include "collide/tool_frame.hpp"
 #include "riffler/collide/assembly.hpp"
 #include "riffler/collide/contact.hpp"
 
 namespace riffler::collide {
-
-/// k of (4.7), N per mm of depth and mm² of surface: weak for tracing with the cutter, strong for collisions (4.4.3).
-struct Stiffness {
-  double cutter, holder;  // holder: also for the shank
-};
 
 /// Adds ∫ k · depth · n dA over the surface inside the tool, the torque about the tip, and the points summed. The sum
 /// is continuous in the pose: depths are, and the weights of points depend on their distance from the cutter, not on

@@ -1,14 +1,20 @@
 // The force of several sample points at a time, in vector lanes chosen at run time.
 #pragma once
 
+#include <algorithm>
 #include <span>
 
-#include "collide/force.hpp"
 #include "collide/outline_lanes.hpp"
 #include "collide/sample_points.hpp"
 #include "collide/tool_frame.hpp"
+#include "riffler/collide/contact.hpp"
 
 namespace riffler::collide {
+
+/// k of (4.7), N per mm of depth and mm² of surface: weak for tracing with the cutter, strong for collisions (4.4.3).
+struct Stiffness {
+  double cutter, holder;  // holder: also for the shank
+};
 
 /// Sums of force (N), torque about the tip (N·mm) and stiffness, in part directions, lane by lane: their order, and so
 /// their rounding, is the same for every instruction set.

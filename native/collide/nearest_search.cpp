@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "collide/lowest_places.hpp"
 #include "collide/outline_lanes.hpp"
 
 namespace riffler::collide {

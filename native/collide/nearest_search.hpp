@@ -4,6 +4,7 @@
 #include <span>
 
 #include "collide/deadline.hpp"
+#include "collide/lowest_places.hpp"
 #include "collide/surface.hpp"
 #include "riffler/base/block_pool.hpp"
 #include "riffler/collide/assembly.hpp"

@@ -16,7 +16,7 @@ struct alignas(64) OrientedBoxes {
 };
 
 /// One entry for each node above the leaves; `corners`: by place in the tree. The axes are the coordinate axes, or the
-/// principal axes of the corners, whichever makes the boxes smaller. The same for any number of threads.
+/// principal axes of the corners where those make the boxes smaller. The same for any number of threads.
 std::vector<OrientedBoxes> oriented_boxes(const SphereTree& tree, const std::vector<Corners>& corners);
 
 }  // namespace riffler::collide

@@ -26,7 +26,7 @@ class Surface {
   const SphereTree& tree() const { return tree_; }
   /// Corners by place in the tree. The kLanes places after the last are readable too.
   const Corners& corners(std::size_t place) const { return corners_[place]; }
-  /// Of the children of a group that holds no items.
+  /// The boxes of the children of a group that holds no items.
   const OrientedBoxes& boxes(std::size_t group) const { return boxes_[group]; }
   std::size_t size() const { return tree_.size(); }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "collide/lowest_places.hpp"
 #include "collide/oriented_boxes.hpp"
 #include "collide/outline_lanes.hpp"
 #include "collide/pieces.hpp"
