@@ -41,7 +41,7 @@ back = riffler.Program.read("rosette.ngc", machine="my-mill", options=options).p
 error = max(np.linalg.norm(back[:, :3] - pose[:3], axis=1).min() for pose in path)
 code = Path("rosette.ngc").read_text()
 blocks = np.array([[float(x) for x in found] for found in re.findall(r" B(\S+) C(\S+)", code)])
-print(f"{written['blocks']} blocks, B from {blocks[:, 0].min():.2f} to {blocks[:, 0].max():.2f} deg")
+print(f"{written.blocks} blocks, B from {blocks[:, 0].min():.2f} to {blocks[:, 0].max():.2f} deg")
 print(f"read back: every point within {error:.1e} mm")
 
 figure, (left, right) = plt.subplots(1, 2, figsize=(7, 3.2))

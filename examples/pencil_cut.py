@@ -29,7 +29,7 @@ collider = riffler.Collider(part)
 poses, report = plan.cutter_locations(lean, ball, collider)
 program = riffler.Program.from_cl([poses], tools=[ball], feed=800, spindle=12000, collider=collider)
 written = program.write("pencil.ngc", post="tcp", collider=collider)
-print(f"pencil.ngc: {written['blocks']} blocks, free of gouges: {report.ok}")
+print(f"pencil.ngc: {written.blocks} blocks, free of gouges: {report.ok}")
 
 figure, ax = plt.subplots(figsize=(7, 4.4))
 view = View(part, azimuth=-50, elevation=48)

@@ -98,7 +98,7 @@ OptionalArray column(const std::vector<double>& values) {
 }
 
 void bind_stroke(py::module_& m) {
-  py::class_<StrokeView>(m, "JournalStroke", "One stroke of a Journal.")
+  py::class_<StrokeView>(m, "JournalStroke", "One stroke of a journal: see `Journal.add_stroke`.")
       .def_property_readonly("poses", &poses, "(n, 6): tip in mm and unit axis; a copy.")
       .def_property_readonly(
           "times", [](const StrokeView& s) { return column(s.get().times); }, "(n,) s, or None.")

@@ -61,7 +61,7 @@ void bind_nc_types(py::module_& m) {
         return "<riffler.Note: line " + std::to_string(n.line) + ", " + n.kind + ": " + n.message + ">";
       });
 
-  py::class_<SharedStream>(m, "ProgramStream", "What ``Program.stream`` returns: an iterator of programs.")
+  py::class_<SharedStream>(m, "ProgramStream", "An iterator of programs: see `Program.stream`.")
       .def("__iter__", [](const py::object& self) -> Self { return self; })
       .def("__next__", [](SharedStream& self) {
         const OneCaller only(self, "the stream");

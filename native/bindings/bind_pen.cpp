@@ -305,10 +305,10 @@ ValueError
 
 Examples
 --------
->>> riffler.pen.PenGeometry.load("riffler").converter_steps([(1, 0, 0, 0, 0, 0)])
-Traceback (most recent call last):
-    ...
-ValueError: pen riffler has no [converter]
+>>> pen = riffler.pen.PenGeometry.load("riffler")
+>>> steps, scale = pen.converter_steps([(1, 0, 0, 0, 0, 0)])
+>>> steps.shape, scale
+((1, 6), array([1.]))
 )")
       .def("stretch", &stretch, "counts"_a, R"(By how much the grip comes out longer than it is.
 

@@ -126,7 +126,7 @@ struct State {
 };
 
 void bind_state(py::module_& m) {
-  py::class_<State>(m, "PenState", "Where the hand was, by one report.")
+  py::class_<State>(m, "PenState", "Where the hand was, by one report: see `PenDevice.state`.")
       .def_property_readonly(
           "pose", [](const State& s) { return from_poses({s.sample.pose}).reshape({6}); },
           "(6,): point and axis of the grip.")

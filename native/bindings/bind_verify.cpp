@@ -18,14 +18,6 @@ struct SharedVerification : Guarded {
   verify::Verification verification;
 };
 
-}  // namespace
-
-std::shared_ptr<SharedReport> share(verify::VerifyReport&& report) {
-  return std::make_shared<SharedReport>(std::move(report));
-}
-
-namespace {
-
 /// Chunk by chunk; of how many there are nothing is known, so progress is that of each.
 verify::VerifyReport run_stream(verify::SlabRun& run, const py::iterable& chunks, const Progress& progress) {
   for (const py::handle& item : chunks) {
@@ -169,8 +161,8 @@ py::dict to_dict(const SharedReport& self) {
 }
 
 void bind_finding(py::module_& m) {
-  py::class_<verify::Finding>(m, "Finding",
-                              "One fault: neighbouring rows of a program with the same kind, tool and fixture.")
+  py::class_<verify::Finding>(
+      m, "Finding", "One fault, neighbouring rows of a program with the same kind, tool and fixture: see `verify`.")
       .def_property_readonly(
           "kind", [](const verify::Finding& f) { return name_of(f.kind); },
           R"("rapid", "holder", "shank", "fixture", "gouge", "rest", "spindle" (a feed move into material with a spindle
@@ -218,7 +210,7 @@ Examples
 }
 
 void bind_report(py::module_& m) {
-  py::class_<SharedReport, std::shared_ptr<SharedReport>>(m, "VerifyReport", "What a verification found.")
+  py::class_<SharedReport, std::shared_ptr<SharedReport>>(m, "VerifyReport", "What a verification found: see `verify`.")
       .def_property_readonly(
           "passed", [](const SharedReport& r) { return r.report.passed(); },
           "True only where every requested check could be made and found nothing.")
@@ -308,6 +300,10 @@ progress : callable, optional
 )";
 
 }  // namespace
+
+std::shared_ptr<SharedReport> share(verify::VerifyReport&& report) {
+  return std::make_shared<SharedReport>(std::move(report));
+}
 
 void bind_verify(py::module_& m) {
   bind_finding(m);

@@ -2259,7 +2259,7 @@ class Note:
         ...
 class ProgramStream:
     """
-    What ``Program.stream`` returns: an iterator of programs.
+    An iterator of programs: see `Program.stream`.
     """
     def __iter__(self) -> typing.Self:
         ...
@@ -2439,8 +2439,8 @@ class Program:
         Examples
         --------
         >>> program = riffler.Program([(x, 0, 5, 0, 0, 1) for x in range(5)], feed=600)
-        >>> program.save(folder / "part.rprog")
-        >>> bool((riffler.Program.load(folder / "part.rprog").poses == program.poses).all())
+        >>> program.save("part.rprog")
+        >>> bool((riffler.Program.load("part.rprog").poses == program.poses).all())
         True
         """
     @staticmethod
@@ -2491,8 +2491,9 @@ class Program:
         Examples
         --------
         >>> text = "G21 G90\\nT1 M6\\nG1 X10 Y0 Z5 F600\\nX20\\nM2\\n"
-        >>> _ = (folder / "part.ngc").write_text(text)
-        >>> riffler.Program.read(folder / "part.ngc", machine="3-axis").poses[-1, :3]
+        >>> from pathlib import Path
+        >>> _ = Path("part.ngc").write_text(text)
+        >>> riffler.Program.read("part.ngc", machine="3-axis").poses[-1, :3]
         array([20.,  0.,  5.])
         """
     @staticmethod
@@ -2519,8 +2520,9 @@ class Program:
         Examples
         --------
         >>> text = "G21 G90\\nT1 M6\\nG1 X10 Y0 Z5 F600\\nX20\\nX30\\nM2\\n"
-        >>> _ = (folder / "part.ngc").write_text(text)
-        >>> [len(part) for part in riffler.Program.stream(folder / "part.ngc", machine="3-axis", rows=2)]
+        >>> from pathlib import Path
+        >>> _ = Path("part.ngc").write_text(text)
+        >>> [len(part) for part in riffler.Program.stream("part.ngc", machine="3-axis", rows=2)]
         [2, 2]
         """
     def __getstate__(self) -> bytes:
@@ -2605,8 +2607,8 @@ class Program:
         Examples
         --------
         >>> program = riffler.Program([(x, 0, 5, 0, 0, 1) for x in range(5)], feed=600)
-        >>> program.save(folder / "part.rprog")
-        >>> len(riffler.Program.load(folder / "part.rprog"))
+        >>> program.save("part.rprog")
+        >>> len(riffler.Program.load("part.rprog"))
         5
         """
     def scale_feeds(self, factor: typing.SupportsFloat) -> Program:
@@ -2727,7 +2729,7 @@ class Program:
         --------
         >>> cut = [(0, 0, 0, 0, 0, 1), (20, 0, 0, 0, 0, 1)]
         >>> program = riffler.Program.from_cl([cut], [riffler.Tool.ball(diameter=6, length=30)], feed=600)
-        >>> program.write(folder / "part.ngc", post="linuxcnc-xyzac", options={"rot_point": (0, 0, 0)}).rewinds
+        >>> program.write("part.ngc", post="linuxcnc-xyzac", options={"rot_point": (0, 0, 0)}).rewinds
         []
         """
     @property
@@ -3134,10 +3136,10 @@ class PenGeometry:
 
         Examples
         --------
-        >>> riffler.pen.PenGeometry.load("riffler").converter_steps([(1, 0, 0, 0, 0, 0)])
-        Traceback (most recent call last):
-            ...
-        ValueError: pen riffler has no [converter]
+        >>> pen = riffler.pen.PenGeometry.load("riffler")
+        >>> steps, scale = pen.converter_steps([(1, 0, 0, 0, 0, 0)])
+        >>> steps.shape, scale
+        ((1, 6), array([1.]))
         """
     def counts(self, joints: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.int32]:
         """
@@ -3478,7 +3480,7 @@ class PenError(RuntimeError):
     """
 class PenState:
     """
-    Where the hand was, by one report.
+    Where the hand was, by one report: see `PenDevice.state`.
     """
     @property
     def age_s(self) -> float:
@@ -3883,8 +3885,8 @@ class Journal:
 
         Examples
         --------
-        >>> riffler.Journal().save(folder / "a.rjournal")
-        >>> riffler.Journal.load(folder / "a.rjournal")
+        >>> riffler.Journal().save("a.rjournal")
+        >>> riffler.Journal.load("a.rjournal")
         <riffler.Journal: 0 strokes>
         """
     def __init__(self) -> None:
@@ -4089,7 +4091,7 @@ class Journal:
 
         Examples
         --------
-        >>> riffler.Journal().save(folder / "a.rjournal")
+        >>> riffler.Journal().save("a.rjournal")
         """
     def set_stock(self, lower: numpy.typing.ArrayLike, upper: numpy.typing.ArrayLike, pitch: typing.SupportsFloat, directions: str = 'z', *, snapshot: str = '', mask: str = '') -> None:
         """
@@ -4174,11 +4176,11 @@ class JournalWriter:
 
     Examples
     --------
-    >>> with riffler.JournalWriter(folder / "a.rjournal") as writer:
+    >>> with riffler.JournalWriter("a.rjournal") as writer:
     ...     writer.set_stock((0, 0, 0), (20, 20, 10), 0.5)
     ...     writer.add_tool(1, riffler.Tool.ball(diameter=6, length=30))
     ...     writer.add_stroke(1, [(0, 10, 8, 0, 0, 1), (20, 10, 8, 0, 0, 1)])
-    >>> len(riffler.Journal.load(folder / "a.rjournal").strokes)
+    >>> len(riffler.Journal.load("a.rjournal").strokes)
     1
     """
     def __enter__(self) -> typing.Self:
@@ -4262,7 +4264,7 @@ class JournalWriter:
 
         Examples
         --------
-        >>> writer = riffler.JournalWriter(folder / "a.rjournal")
+        >>> writer = riffler.JournalWriter("a.rjournal")
         >>> writer.close()
         """
     def extend_stroke(self, poses: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], *, times: numpy.typing.ArrayLike | None = None, forces: numpy.typing.ArrayLike | None = None, removed: numpy.typing.ArrayLike | None = None) -> None:
@@ -4334,7 +4336,7 @@ class JournalWriter:
 
         Examples
         --------
-        >>> with riffler.JournalWriter(folder / "a.rjournal") as writer:
+        >>> with riffler.JournalWriter("a.rjournal") as writer:
         ...     writer.sync()
         """
     def undo(self, n: typing.SupportsInt = 1) -> None:
@@ -4640,10 +4642,10 @@ class Session:
         --------
         >>> stock = riffler.Volume.block(lower=(0, 0, 0), upper=(20, 20, 10), pitch=0.5)
         >>> session = riffler.Session(stock, riffler.Tool.ball(diameter=6, length=30))
-        >>> session.journal(folder / "first.rjournal")
+        >>> session.journal("first.rjournal")
         >>> with session:
         ...     frame = session.frame()
-        >>> riffler.Session.replay(folder / "first.rjournal").to_bytes() == stock.to_bytes()
+        >>> riffler.Session.replay("first.rjournal").to_bytes() == stock.to_bytes()
         True
         """
     def __enter__(self) -> typing.Self:
@@ -4693,10 +4695,10 @@ class Session:
         --------
         >>> stock = riffler.Volume.block(lower=(0, 0, 0), upper=(20, 20, 10), pitch=0.5)
         >>> session = riffler.Session(stock, riffler.Tool.ball(diameter=6, length=30))
-        >>> session.journal(folder / "first.rjournal", notes={"operator": "Ada"})
+        >>> session.journal("first.rjournal", notes={"operator": "Ada"})
         >>> with session:
         ...     frame = session.frame()
-        >>> riffler.Session.replay(folder / "first.rjournal").volume
+        >>> riffler.Session.replay("first.rjournal").volume
         4000.0
         """
     def journal_written(self, seconds: typing.SupportsFloat = 2.0) -> bool:

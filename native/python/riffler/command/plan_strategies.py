@@ -97,6 +97,8 @@ def add_option(parser: Parser, parameter: plan.Parameter) -> None:
 
 
 def shown(parameter: plan.Parameter) -> float:
+    """The default of a number, in the unit of the command line."""
+    assert isinstance(parameter.default, int | float)
     return math.degrees(parameter.default) if parameter.unit == "rad" else parameter.default
 
 

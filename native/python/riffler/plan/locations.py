@@ -34,7 +34,9 @@ class UnsafeMove(NamedTuple):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class LocationReport:
-    """What ``cutter_locations`` did. Arrays have one entry for each row of ``cl``; clearances are negative inside.
+    """What was done to a path: see `cutter_locations`.
+
+    Arrays have one entry for each row of ``cl``; clearances are negative inside.
 
     Attributes
     ----------

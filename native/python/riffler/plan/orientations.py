@@ -282,7 +282,7 @@ def draw_map(orientations: FreeOrientations, *, axes: Axes | None = None) -> Axe
     Parameters
     ----------
     orientations : FreeOrientations
-        The map of one point.
+        The map of one point: see `free_orientations`.
     axes : matplotlib.axes.Axes, optional
         Where to draw; None: into a new figure.
 

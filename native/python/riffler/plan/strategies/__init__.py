@@ -59,7 +59,7 @@ def find(
         The part's name, for the plan.
     progress : callable, optional
         Called with the finished share; returning False cancels.
-    **options
+    options : keyword arguments
         The strategy's parameters; its default where one is not given, or None.
 
     Returns

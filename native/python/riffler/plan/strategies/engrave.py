@@ -20,7 +20,7 @@ from .strategy import Found, Parameter, Strategy
 
 @dataclass(frozen=True, eq=False)
 class Engraved:
-    """One curve on the part.
+    """One curve on the part: see `engrave`.
 
     Attributes
     ----------

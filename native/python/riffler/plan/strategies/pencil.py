@@ -35,7 +35,7 @@ class PencilStats(DictResult):
 
 
 class PencilPaths(list[PencilPath]):
-    """A list of ``PencilPath``, with a report on how they were found.
+    """A list of ``PencilPath``, with a report on how they were found: see `pencil`.
 
     Attributes
     ----------
