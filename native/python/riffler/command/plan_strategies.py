@@ -97,8 +97,9 @@ def add_option(parser: Parser, parameter: plan.Parameter) -> None:
 
 
 def shown(parameter: plan.Parameter) -> float:
-    default = float(parameter.default or 0)
-    return math.degrees(default) if parameter.unit == "rad" else default
+    """The default of a number, in the unit of the command line."""
+    assert isinstance(parameter.default, int | float)
+    return math.degrees(parameter.default) if parameter.unit == "rad" else parameter.default
 
 
 def value_of(parameter: plan.Parameter, text: str | None) -> Any:
