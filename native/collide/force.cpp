@@ -10,7 +10,8 @@ namespace riffler::collide {
 
 namespace {
 
-// In units of the cutter's diameter. Across a piece with this radius the depth differs from a plane by 1e-4 of the diameter.
+// In units of the cutter's diameter. Across a piece with this radius the depth differs from a plane by 1e-4 of the
+// diameter.
 constexpr double kSmall = 0.01;
 
 class ForceSum {
