@@ -90,16 +90,15 @@ def add_option(parser: Parser, parameter: plan.Parameter) -> None:
             flag, choices=words, default=parameter.default, help=f"{about} (default {parameter.default}); {meanings}"
         )
         return
-    if parameter.default is not None:
-        about += f" (default {shown(parameter):g})"
+    if isinstance(parameter.default, int | float):
+        about += f" (default {shown(parameter.default, parameter.unit):g})"
     metavar = {"mm": "MM", "rad": "DEG"}.get(parameter.unit, "N")
     parser.add_argument(flag, metavar=metavar, help=about.replace("%", "%%"))
 
 
-def shown(parameter: plan.Parameter) -> float:
-    """The default of a number, in the unit of the command line."""
-    assert isinstance(parameter.default, int | float)
-    return math.degrees(parameter.default) if parameter.unit == "rad" else parameter.default
+def shown(value: float, unit: str) -> float:
+    """A parameter's value as the command line has it: angles in degrees."""
+    return math.degrees(value) if unit == "rad" else value
 
 
 def value_of(parameter: plan.Parameter, text: str | None) -> Any:
