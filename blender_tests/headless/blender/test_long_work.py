@@ -106,11 +106,12 @@ def test_a_verification_is_made_on_a_thread():
     programs.stock()
     threads, plain = [], riffler.Verification
 
-    def noted(*given, **more):
-        threads.append(threading.current_thread())
-        return plain(*given, **more)
+    class Noted(riffler.Verification):
+        def __init__(self, *given, **more):
+            threads.append(threading.current_thread())
+            super().__init__(*given, **more)
 
-    riffler.Verification = noted
+    riffler.Verification = Noted
     try:
         bpy.ops.riffler.verify(source="PLAN")
         bpy.ops.riffler.verify(source="PLAN")  # which is ready

@@ -85,7 +85,7 @@ def test_scrubbing_moves_the_tool_along_the_paths():
         ob = plans.on_timeline(scale)
         for frame in (1, 17, 40.5, 100.25, 145):
             tip, axis = seen(ob, frame)
-            wanted = np.array([60 - 60 * (frame - 1) / 144, 17, 11])
+            wanted = np.array([60 * (frame - 1) / 144, 17, 11])
             assert close(tip + 3 * axis, wanted, 2e-4), (scale, frame, tip + 3 * axis)
         ring = tracks(ob)[1]
         for share in (0, 0.1, 0.35, 0.8, 1):

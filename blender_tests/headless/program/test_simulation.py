@@ -76,8 +76,8 @@ def test_the_stock_is_cut_where_the_tool_is_seen():
         tip, axis = keyframed_plan.seen(bpy.data.objects["Riffler Plan"], frame)
         _, pose = now().prefix.pose(now().prefix.row)
         assert np.linalg.norm(pose[:3] - tip) <= 60 / 144 + 1e-3 and np.abs(pose[3:] - axis).max() < 1e-3
-        # a quarter of a millimetre above the step's floor, under the ball: it goes from x = 60 to 0
-        behind, ahead = ((tip[0] + 6, 17, 8.25), (tip[0] - 6, 17, 8.25))
+        # a quarter of a millimetre above the step's floor, under the ball: it goes from x = 0 to 60
+        behind, ahead = ((tip[0] - 6, 17, 8.25), (tip[0] + 6, 17, 8.25))
         assert list(now().prefix.volume.contains(np.array([behind, ahead]))) == [False, True]
 
 

@@ -139,7 +139,8 @@ def test_the_same_is_found_wherever_the_stock_stands():
     bpy.ops.riffler.verify(source="FILE", filepath=path)
     second = findings()
     assert [e["kind"] for e in first] == [e["kind"] for e in second]
-    assert np.allclose(first[0]["place"], second[0]["place"], atol=1.0)
+    # The slip is four millimetres long and equally deep: rounding decides which of its places is named.
+    assert np.allclose(first[0]["place"], second[0]["place"], atol=2.0)
     assert abs(first[0]["row"] - second[0]["row"]) <= 2
 
 

@@ -159,7 +159,8 @@ def test_a_mesh_whose_work_is_cancelled_or_fails_leaves_nothing_behind():
         assert seen() == before, error
     nothing = riffler.Volume.block((0, 0, 0), (10, 10, 10), 0.5, "z")
     nothing.subtract(nothing.copy())
-    with operator_task.meshes_taken_by(operator_task.Task(looks=2, outcome=nothing)):
+    _, report = riffler.Volume.from_mesh_with_report(riffler.Volume.block((0, 0, 0), (10, 10, 10), 0.5).to_mesh(), 0.5)
+    with operator_task.meshes_taken_by(operator_task.Task(looks=2, outcome=(nothing, report))):
         common.refused(of_mesh, "has no volume at this pitch")
     assert seen() == before
     assert of_mesh() == {"FINISHED"} and bpy.context.object.name.endswith("Stock")

@@ -15,8 +15,7 @@ TEST(ContactStress, HoldsForPartsFromTheDegenerateLimits) {
   for (std::size_t k = 0; k < results.scenes.size(); ++k) {
     const ContactTally& t = results.scenes[k];
     EXPECT_EQ(t.poses, kPosesOfSession);
-    EXPECT_GT(3 * t.touching, kPosesOfSession)
-        << name(static_cast<ContactScene>(k)) << ": hardly anything touches";
+    EXPECT_GT(3 * t.touching, kPosesOfSession) << name(static_cast<ContactScene>(k)) << ": hardly anything touches";
     EXPECT_LT(t.touching, t.poses) << name(static_cast<ContactScene>(k)) << ": nothing is free";
     EXPECT_GT(t.judged, 0);
   }
