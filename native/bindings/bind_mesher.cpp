@@ -358,7 +358,7 @@ Examples
 ((210, 3), (416, 3), (1248, 3))
 )")
       .def("pick", &pick_live, py::arg("origin"), py::arg("direction"), kPickText)
-      .def("freeze", &freeze, R"(The surface as it is now, to be picked while the mesher follows the volume.
+      .def("freeze", &freeze, R"(Copies the current surface, for picking while the mesher follows the volume.
 
 A stroke that follows the surface on which it began does not climb into its own groove. What did not change since the
 last call is shared; the first call looks at all triangles.

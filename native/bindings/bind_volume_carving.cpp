@@ -109,7 +109,7 @@ void bind_snapshots(VolumeClass& volume) {
 Returns
 -------
 Snapshot
-    Of this volume as it is now.
+    The state of this volume at the call.
 
 Examples
 --------

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bindings/bindings.hpp"
+#include "bindings/results.hpp"
 #include "bindings/typed.hpp"
 
 namespace riffler::bindings {
@@ -53,11 +54,11 @@ RIFFLER_TYPED(DiagnosisResult, "riffler.pen_results.GripDiagnosis")
 
 /// A result that is a dataclass of riffler.program_results, with the fields of a dict.
 inline py::object program_result(const char* name, const py::dict& fields) {
-  return py::module_::import("riffler.program_results").attr(name)(**fields);
+  return make_result(name, fields, "riffler.program_results");
 }
 /// The same of riffler.pen_results.
 inline py::object pen_result(const char* name, const py::dict& fields) {
-  return py::module_::import("riffler.pen_results").attr(name)(**fields);
+  return make_result(name, fields, "riffler.pen_results");
 }
 
 }  // namespace riffler::bindings

@@ -17,9 +17,9 @@ RIFFLER_TYPED(PatchResult, "riffler.results.Patch")
 RIFFLER_TYPED(PickResult, "riffler.results.Hit | riffler.results.Hits | None")
 RIFFLER_TYPED(NearestResult, "riffler.results.Nearest")
 
-/// riffler.results.<name>(**fields)
-inline py::object make_result(const char* name, const py::dict& fields) {
-  return py::module_::import("riffler.results").attr(name)(**fields);
+/// <module>.<name>(**fields): a dataclass.
+inline py::object make_result(const char* name, const py::dict& fields, const char* module = "riffler.results") {
+  return py::module_::import(module).attr(name)(**fields);
 }
 
 }  // namespace riffler::bindings

@@ -23,8 +23,7 @@ struct Drift {
   /// The same drift, from part directions to tool directions.
   Drift in(const ToolFrame& f) const {
     Drift out;
-    out.way = {glm::dot(way, f.u), glm::dot(way, f.v), glm::dot(way, f.axis)};
-    out.turn = {glm::dot(turn, f.u), glm::dot(turn, f.v), glm::dot(turn, f.axis)};
+    out.way = f.seen(way), out.turn = f.seen(turn);
     out.reach = reach;
     return out;
   }

@@ -18,7 +18,7 @@ struct ToolFrame {
   /// Rotates a direction from the part's frame to the tool's.
   Vec3 seen(const Vec3& d) const { return {glm::dot(d, u), glm::dot(d, v), glm::dot(d, axis)}; }
   Vec3 to_part(const Vec3& q) const { return tip + turned(q); }
-  /// Rotates a direction from the part's frame to the tool's.
+  /// Rotates a direction from the tool's frame to the part's.
   Vec3 turned(const Vec3& d) const { return d.x * u + d.y * v + d.z * axis; }
 };
 

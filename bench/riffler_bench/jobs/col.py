@@ -133,11 +133,8 @@ def parts(out: Report, settings: Settings, progress: Any) -> None:
         Column("Riffler ÷ FCL: mean", "mean_ratio", report.ratio),
         Column("99 %", "p99_ratio", report.ratio),
     )
-    found = (
-        sorted(p for name in CAD_PARTS for p in [settings.models / f"{name}.stl"] if p.exists())
-        if settings.models
-        else []
-    )
+    paths = [settings.models / f"{name}.stl" for name in CAD_PARTS] if settings.models else []
+    found = [path for path in paths if path.exists()]
     named = [*core.contact_part_names(), *map(str, found)]
     poses, repeats = (20, 1) if settings.quick else (500, 3)
     cases = [(part, tool) for part in named for tool in (("plain",) if part in PLAIN else ("plain", "long"))]

@@ -1545,7 +1545,7 @@ class Volume:
         Returns
         -------
         Snapshot
-            Of this volume as it is now.
+            The state of this volume at the call.
 
         Examples
         --------
@@ -1867,7 +1867,7 @@ class Mesher:
         ...
     def freeze(self) -> FrozenSurface:
         """
-        The surface as it is now, to be picked while the mesher follows the volume.
+        Copies the current surface, for picking while the mesher follows the volume.
 
         A stroke that follows the surface on which it began does not climb into its own groove. What did not change since the
         last call is shared; the first call looks at all triangles.
