@@ -10,6 +10,7 @@ one after the other, lanes beside each other.
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import sys
 import threading
@@ -24,6 +25,9 @@ from shell import PYTHON, ROOT, StepError, cores, main, run, say
 
 LOGS = ROOT / "build" / "tests"
 HEARTBEAT = 30  # s
+# What names a failure in the output of pytest, GoogleTest, the compiler, Blender's tests and the tools' own checks.
+FAILURE = re.compile(r"^(FAILED|ERROR|E  )|\[  FAILED  \]|error\b|Error\b|\bFAILED\b")
+FAILURES_SHOWN = 25
 
 
 def cpp() -> None:
@@ -182,6 +186,14 @@ def run_stages(names: list[str]) -> list[Result]:
     return [results[name] for name in names]
 
 
+def failures(text: str) -> list[str]:
+    """The last lines that name a failure, each once; without any, the last lines. They are printed behind the table: of
+    a long log often only the end is kept."""
+    lines = [line.rstrip()[:200] for line in text.splitlines()]
+    found = dict.fromkeys(line for line in lines if FAILURE.search(line))
+    return list(found or lines)[-FAILURES_SHOWN:]
+
+
 def entry() -> None:
     names = sys.argv[1:]
     if names[:1] == ["--one"]:
@@ -200,6 +212,11 @@ def entry() -> None:
     for result in results:
         print(f"{result.name:<10} {result.outcome:<8} {result.seconds:7.1f} s")
     print(f"{'total':<19} {time.monotonic() - start:7.1f} s", flush=True)
+    for result in results:
+        log = LOGS / f"{result.name}.log"
+        if result.outcome == "FAILED" and len(results) > 1:
+            say(f"tests: {result.name} failed; in {log}")
+            print(*failures(log.read_text(errors="replace")), sep="\n", flush=True)
     if any(result.outcome == "FAILED" for result in results):
         sys.exit(1)
 

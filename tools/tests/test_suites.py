@@ -46,10 +46,15 @@ def test_all_run_to_the_end_and_one_that_fails_fails_the_whole(tmp_path):
     done = suites(tmp_path)
     assert done.returncode == 1
     assert rows(done)[:4] == [["fine", "passed"], ["broken", "FAILED"], ["crashed", "FAILED"], ["later", "passed"]]
+    # At the end, behind the table: what failed, and the lines that say so.
+    end = done.stdout.rpartition("total")[2]
+    for name, text in (("broken", "it broke"), ("crashed", "ValueError: it crashed")):
+        assert f"==> tests: {name} failed; in " in end and end.count(text) == 1
+    assert "fine" not in end
     begun = [line.split()[-1] for line in done.stdout.splitlines() if re.fullmatch(r"==> tests: \w+", line)]
     assert begun[0] == "first" and begun[-2:] == ["last", "results"]
     for text in ("fine, it printed", "it broke", "ValueError: it crashed"):
-        assert done.stdout.count(text) == 1
+        assert done.stdout.count(text) == 1 + (text != "fine, it printed")
     assert "unasked" not in done.stdout
     assert "tests: running: " in done.stdout
 
