@@ -96,25 +96,26 @@ def test_fish_offers(folder, case):
 
 
 # In place of riffler: its arguments, so that they are seen however the line was drawn.
-SHOW = "riffler() { printf '<%s>' \"$@\"; }; PS1='READY '\n"
+SHOW = "riffler() { printf '<%s>' \"$@\"; }\n"
 SHOWN = "<volume><from-mesh><box.stl><--pitch><0.5><--directions><xyz>"
 
 
 def typed(command, folder, lines):
-    """What an interactive shell shows after lines of keys, each typed at its prompt."""
+    """What an interactive shell shows after lines of keys. Each is typed when the one before has been executed: a word
+    has appeared that the terminal's echo of its command does not contain."""
     pid, terminal = pty.fork()
     if pid == 0:
         os.chdir(folder)
-        os.execvpe(command[0], command, os.environ | {"TERM": "dumb", "PS1": "READY ", "HOME": str(folder)})
+        os.execvpe(command[0], command, os.environ | {"TERM": "dumb", "HOME": str(folder)})
     seen = b""
     try:
-        for line in [*lines, ""]:
-            fresh, end = b"", time.monotonic() + 20
-            while b"READY " not in fresh.replace(b"PS1='READY '", b"") and time.monotonic() < end:
+        for k, line in enumerate(["", *lines]):
+            os.write(terminal, f"{line}echo do''ne{k}\n".encode())
+            end = time.monotonic() + 60
+            while f"done{k}".encode() not in seen:
+                assert time.monotonic() < end, f"{command[0]} did not execute {line!r}: {seen!r}"
                 if select.select([terminal], [], [], 0.1)[0]:
-                    fresh += os.read(terminal, 65536)
-            seen += fresh
-            os.write(terminal, line.encode())
+                    seen += os.read(terminal, 65536)
     finally:
         os.kill(pid, 9)
         os.waitpid(pid, 0)
@@ -131,7 +132,7 @@ def test_bash_completes_as_one_types(folder):
 
 def test_zsh_completes_as_one_types(folder):
     need("zsh")
-    keys = ["PS1='READY '\n", "autoload -Uz compinit; compinit -u -D; source ./.zsh; " + SHOW]
+    keys = ["autoload -Uz compinit; compinit -u -D; source ./.zsh; " + SHOW]
     keys += ["riffler vol\tfr\tbox\t--pi\t0.5 --dir\txy\t\n"]
     keys += ["riffler mesh audit two\t--js\t\n"]
     shown = typed(["zsh", "-f", "-i"], folder, keys)
