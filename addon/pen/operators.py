@@ -11,7 +11,6 @@ import riffler
 from ..blender import handlers, operator_parts, preferences_access, views
 from ..common import problems, units
 from ..sculpt import brushes, draw_pace, fixtures, force_view, sculpt_work, sculpts, undo_states
-from ..sculpt.pure import reach
 from ..translations import local
 from . import properties
 from . import session as pen_session
@@ -138,7 +137,7 @@ class RIFFLER_OT_pen_sculpt(sculpt_work.TakesTool, properties.PenSettings, bpy.t
     def execute(self, context):
         """Runs the session for `seconds`, in one call."""
         if pen_session.running is not None:
-            return _stop(self)
+            return stop(self)
         if not self.seconds > 0:
             return operator_parts.fail(
                 self, ValueError("seconds: give the duration, as there is no window to end the session in")
@@ -152,7 +151,7 @@ class RIFFLER_OT_pen_sculpt(sculpt_work.TakesTool, properties.PenSettings, bpy.t
             session.finish()
         except operator_parts.ERRORS as error:
             session.fail(error)
-        return _said(self, session)
+        return tell(self, session)
 
     def invoke(self, context, event):
         global _shown
@@ -227,7 +226,7 @@ def _tell(session):
     state = bpy.context.window_manager.riffler
     state.force, state.text, state.why = told
     why = f"    {run.why}" if run.why else ""
-    _status(f"Riffler: {hand}, {text}    Esc: end    Ctrl Z: undo a stroke{why}")
+    say(f"Riffler: {hand}, {text}    Esc: end    Ctrl Z: undo a stroke{why}")
     views.redraw_sidebars(bpy.context)
 
 
@@ -235,7 +234,7 @@ def _strokes(session):
     return units.counted(session.count, "stroke")
 
 
-def _status(text):
+def say(text):
     """Sets the status text of every window: a timer has no window of its own."""
     for window in bpy.context.window_manager.windows:
         window.workspace.status_text_set(text)
@@ -249,35 +248,24 @@ def _leave():
         _shown = None
         force_view.end()
     draw_pace.end()
-    _status(None)
+    say(None)
     views.redraw_sidebars(bpy.context)
 
 
-def _stop(operator):
+def stop(operator):
     session = pen_session.running
     try:
         session.finish()
     except operator_parts.ERRORS as error:
         session.fail(error)
-    return _said(operator, session)
+    return tell(operator, session)
 
 
-def _said(operator, session):
+def tell(operator, session):
     """Reports what the session has done, or that it has done nothing."""
-    problem = session.problem or session.run.why
-    brush = brushes.of(session.mode)
-    done = brush.done
-    if not session.count:
-        why = problem or brush.no_stroke
-        operator.report({"WARNING"}, f"Nothing was {done} in {session.seconds:.1f} s: {why}")
-        return {"CANCELLED"}
-    note = f"; {session.problem}" if session.problem else ""
-    changed = units.format_volume(session.changed)
-    text = f"{done.capitalize()} {changed} in {_strokes(session)}, {session.seconds:.1f} s{note}"
-    if session.live.cut_off:
-        operator.report({"WARNING"}, local(reach.CUT_OFF))
-    operator.report({"WARNING"} if session.problem else {"INFO"}, text)
-    return {"FINISHED"}
+    level, text, done = session.summary()
+    operator.report({level}, text)
+    return {"FINISHED"} if done else {"CANCELLED"}
 
 
 class PenRuns:
@@ -285,7 +273,7 @@ class PenRuns:
 
     @classmethod
     def poll(cls, context):
-        return pen_session.running is not None or operator_parts.deny(cls, "No pen is sculpting")
+        return pen_session.running is not None or operator_parts.deny(cls, "No pen session is running")
 
 
 class RIFFLER_OT_pen_stop(PenRuns, bpy.types.Operator):
@@ -296,7 +284,7 @@ class RIFFLER_OT_pen_stop(PenRuns, bpy.types.Operator):
     bl_options = set()
 
     def execute(self, context):
-        _stop(self)
+        stop(self)
         return {"FINISHED"}
 
 

@@ -22,10 +22,21 @@ STARTS = (
 )
 
 
+DEVICE = EnumProperty(name="Device", items=CHOICES, default=PREFERRED, description="Input device")
+SCALE = length("Scale", 1.0, "Distance that the tool moves, per distance of the hand", 1e-3, 100.0)
+
+
+class DeviceSettings:
+    """Of every session; the fields are those of PenSettings."""
+
+    device: DEVICE
+    scale: SCALE
+
+
 class PenSettings:
     """Shared by the panel's settings and the operator."""
 
-    device: EnumProperty(name="Device", items=CHOICES, default=PREFERRED, description="Input device")
+    device: DEVICE
     recording: StringProperty(
         name="Recording", subtype="FILE_PATH", description="Recording (.rjournal) that plays as a device"
     )
@@ -33,7 +44,7 @@ class PenSettings:
         name="Start", items=STARTS, default="ABOVE", description="Position of the tool when the session starts"
     )
     gap: length("Gap", 1.0, "Distance from the top of the stock to the tool tip at the start, in mm", 0.0, 1e4)
-    scale: length("Scale", 1.0, "Distance that the tool moves, per distance of the hand", 1e-3, 100.0)
+    scale: SCALE
     stiffness: length("Stiffness", 1.0, "Stiffness of the coupling between hand and tool, in N/mm", 1e-3, 100.0)
     removal_constant: FloatProperty(
         name="Resistance",

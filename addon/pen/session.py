@@ -13,15 +13,16 @@ from pathlib import Path
 
 import bpy
 
-from ..common import tool_solid
-from ..sculpt import live_registry
-from ..sculpt.pure import journal
+from ..common import tool_solid, units
+from ..sculpt import brushes, live_registry
+from ..sculpt.pure import journal, reach
 from ..sculpt.undo_states import SPARE, snapshots
+from ..translations import local
 from .pure import pen_run
 
 LABEL = "Pen Stroke"
 
-running = None  # only one at a time: one hand, one device
+running = None  # only one at a time, of any kind: one hand, one device
 
 
 class PenSession:
@@ -31,6 +32,7 @@ class PenSession:
 
     def __init__(self, context, ob, device, tool, options, recordings=None, ended=lambda: None):
         global running
+        self.contact = None  # (path, point) of a session that turns a plan's tool
         self._begin, self._recordings, self._on_end = time.perf_counter(), recordings, ended
         self.ended = False
         self.problem, self.count = "", 0  # problem of the session; number of strokes
@@ -197,6 +199,19 @@ class PenSession:
             state = bpy.context.window_manager.riffler
             state.sculpting, state.force, state.why = False, "", ""
             self._on_end()
+
+    def summary(self):
+        """(level of the report, text, whether anything was done)."""
+        brush = brushes.of(self.mode)
+        if not self.count:
+            why = self.problem or self.run.why or brush.no_stroke
+            return "WARNING", f"Nothing was {brush.done} in {self.seconds:.1f} s: {why}", False
+        note = f"; {self.problem}" if self.problem else ""
+        changed, strokes = units.format_volume(self.changed), units.counted(self.count, "stroke")
+        text = f"{brush.done.capitalize()} {changed} in {strokes}, {self.seconds:.1f} s{note}"
+        if self.live.cut_off:
+            text = f"{text}. {local(reach.CUT_OFF)}"
+        return ("WARNING" if self.problem or self.live.cut_off else "INFO"), text, True
 
     def fail(self, error):
         """Ends the session after an error elsewhere; changes that belong to no state yet are undone."""

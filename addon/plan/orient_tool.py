@@ -24,6 +24,7 @@ class PlanTool(bpy.types.WorkSpaceTool):
     bl_keymap = (
         ("riffler.plan_turn", {"type": "LEFTMOUSE", "value": "PRESS"}, {"properties": [("handle", "MAP")]}),
         ("riffler.plan_point", {"type": "LEFTMOUSE", "value": "PRESS"}, None),
+        ("riffler.pen_stop", {"type": "ESC", "value": "PRESS"}, None),
         ("riffler.plan_point_key", {"type": "LEFTMOUSE", "value": "PRESS", "ctrl": True}, None),
     )
 

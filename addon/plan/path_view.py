@@ -172,6 +172,11 @@ def at_tool(context):
     session, ob = pen_session.running, current_pose.plan_object(context)
     if session is None or session.run.pose is None or ob is None:
         return None
+    if session.contact is not None:
+        k, index = session.contact
+        path = plan_store.plan(ob).paths[k]
+        gaps = np.linalg.norm(path.contacts[index] - session.run.pose[:3], axis=1)
+        return _found(k, path, index, int(np.argmin(gaps)))
     tip = (session.live.to_world @ np.append(session.run.pose[:3], 1.0))[:3] * scene_units.mm_per_unit(context.scene)
     return beside(plan_store.plan(ob), tip, session.diameter)
 

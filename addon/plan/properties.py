@@ -55,6 +55,11 @@ class RifflerPlan(FindSettings, bpy.types.PropertyGroup):
         description="The finished part, as it lies in the scene",
     )
     sized: StringProperty(description="Part, and its unit, whose size was confirmed")
+    slide: BoolProperty(
+        name="Slide along Path",
+        default=True,
+        description="With a pen, the tool follows the hand along the path; otherwise it turns where it is",
+    )
     fixtures: PointerProperty(
         name="Fixtures",
         type=bpy.types.Collection,

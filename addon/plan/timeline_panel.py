@@ -2,10 +2,12 @@
 
 import bpy
 
-from ..blender.panel_parts import lines, wrapped
+from ..blender.panel_parts import give, lines, wrapped
 from ..common import units
+from ..pen import operators as pen_operators
+from ..pen import properties as pen_properties
 from . import collision_marks, current_pose, plan_states, timeline
-from .operators import keys, least_tilt
+from .operators import keys, least_tilt, orient_by_pen
 from .panel import OfPlan
 
 
@@ -31,6 +33,7 @@ class RIFFLER_PT_timeline(OfPlan, bpy.types.Panel):
             icon = "CHECKMARK" if now.difference.small else "ERROR"
             lines(layout, *wrapped(context, str(now.difference)), icon=icon)
         self._turn(layout, context)
+        self._pen(layout, context)
         layout.operator(keys.RIFFLER_OT_plan_check.bl_idname, icon="MOD_PHYSICS")
         if collision_marks.outdated(ob):
             lines(layout, *wrapped(context, "The marks of collisions may be out of date."), icon="INFO")
@@ -47,6 +50,20 @@ class RIFFLER_PT_timeline(OfPlan, bpy.types.Panel):
             ).name = current_pose.TOOL
             return
         layout.row(align=True).prop(context.scene.riffler.plan, "show")
+
+    def _pen(self, layout, context):
+        settings, state = context.scene.riffler.pen, context.window_manager.riffler
+        if state.sculpting:
+            layout.operator(pen_operators.RIFFLER_OT_pen_stop.bl_idname, icon="CANCEL", depress=True)
+            lines(layout, state.force, state.text)
+            if state.why:
+                lines(layout, *wrapped(context, state.why), icon="INFO")
+            return
+        row = layout.row(align=True)
+        op = row.operator(orient_by_pen.RIFFLER_OT_plan_pen.bl_idname, icon="STYLUS_PRESSURE")
+        give(op, settings, pen_properties.DeviceSettings)
+        op.slide = context.scene.riffler.plan.slide
+        row.prop(context.scene.riffler.plan, "slide", text="", icon="DRIVER_DISTANCE")
 
 
 def draw_header(context, layout):

@@ -10,6 +10,29 @@
 
 namespace riffler::bindings {
 
+plan::OrientationKeys to_keys(const KeysLike& object) {
+  if (!py::isinstance<py::dict>(object)) throw py::value_error("keys must be a dict: index to axis");
+  plan::OrientationKeys out;
+  for (const auto& [key, value] : py::cast<py::dict>(object)) {
+    const std::string name = "keys, point " + py::cast<std::string>(py::str(key));
+    const auto index = py::reinterpret_steal<py::object>(PyNumber_Index(key.ptr()));
+    if (!index) {
+      PyErr_Clear();
+      throw py::value_error(name + ": the index must be a whole number");
+    }
+    const Vec3 axis = to_vec3(py::reinterpret_borrow<py::object>(value), name.c_str());
+    if (index < py::int_(0)) throw py::value_error(name + ": indices begin at 0");
+    out[py::cast<std::size_t>(index)] = axis;
+  }
+  return out;
+}
+
+ArrayDict from_keys(const plan::OrientationKeys& keys) {
+  py::dict out;
+  for (const auto& [k, axis] : keys) out[py::int_(k)] = from_vec3(axis);
+  return out;
+}
+
 namespace {
 
 using Pairs = std::vector<std::array<Vec3, 2>>;
@@ -47,29 +70,6 @@ Path make(double radius, const Doubles& centres, const Doubles& contacts, const 
   out->contacts = to_pairs(contacts, n, "contacts"), out->normals = to_pairs(normals, n, "normals");
   for (std::size_t k = 0; k < n; ++k)
     for (Vec3& normal : out->normals[k]) normal = plan::unit_axis(normal, "normals, row " + std::to_string(k));
-  return out;
-}
-
-plan::OrientationKeys to_keys(const KeysLike& object) {
-  if (!py::isinstance<py::dict>(object)) throw py::value_error("keys must be a dict: index to axis");
-  plan::OrientationKeys out;
-  for (const auto& [key, value] : py::cast<py::dict>(object)) {
-    const std::string name = "keys, point " + py::cast<std::string>(py::str(key));
-    const auto index = py::reinterpret_steal<py::object>(PyNumber_Index(key.ptr()));
-    if (!index) {
-      PyErr_Clear();
-      throw py::value_error(name + ": the index must be a whole number");
-    }
-    const Vec3 axis = to_vec3(py::reinterpret_borrow<py::object>(value), name.c_str());
-    if (index < py::int_(0)) throw py::value_error(name + ": indices begin at 0");
-    out[py::cast<std::size_t>(index)] = axis;
-  }
-  return out;
-}
-
-ArrayDict from_keys(const plan::PencilPath& path) {
-  py::dict out;
-  for (const auto& [k, axis] : path.keys) out[py::int_(k)] = from_vec3(axis);
   return out;
 }
 
@@ -154,7 +154,9 @@ Examples
       .def_property_readonly(
           "axes", [](const plan::PencilPath& p) { return from_vec3s(p.axes); },
           "(n, 3): unit tool axes, tip to spindle; (0, 3) until the path is oriented.")
-      .def_property_readonly("keys", &from_keys, "The axes that the others were interpolated from, by index.")
+      .def_property_readonly(
+          "keys", [](const plan::PencilPath& p) { return from_keys({p.keys.begin(), p.keys.end()}); },
+          "The axes that the others were interpolated from, by index.")
       .def_readonly("interpolation", &plan::PencilPath::interpolation,
                     "How the axes were interpolated; empty until the path is oriented.")
       .def_property_readonly("frames", &frames, R"((n, 3, 3): the rows x, y, z of the frame at every point.

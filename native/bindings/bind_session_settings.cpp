@@ -20,6 +20,17 @@ Mat3 to_turn(const OptionalArrayLike& turn) {
   return out;
 }
 
+std::optional<double> to_budget(const BudgetLike& budget, const pen::Pen& pen) {
+  if (py::isinstance<py::str>(budget) && py::cast<std::string>(budget) == kAutomaticBudget)
+    return pen.capability().has_force() ? std::optional(4e-4) : std::nullopt;
+  if (budget.is_none()) return std::nullopt;
+  try {
+    return py::cast<double>(budget);
+  } catch (const py::cast_error&) {
+    throw py::type_error("budget must be a number in s, None or \"auto\"");
+  }
+}
+
 namespace {
 
 std::optional<Pose> to_pose(const OptionalArrayLike& at) {
@@ -40,20 +51,6 @@ sweep::CarveMode to_mode(const std::string& mode) {
   if (mode == "remove") return sweep::CarveMode::Remove;
   if (mode == "add") return sweep::CarveMode::Add;
   throw py::value_error("mode must be \"remove\" or \"add\", not \"" + mode + '"');
-}
-
-/// Set by Session where the device decides: 0.4 ms a step for a device with motors, none for others.
-constexpr const char* kAutomatic = "auto";
-
-std::optional<double> to_budget(const BudgetLike& budget, const pen::Pen& pen) {
-  if (py::isinstance<py::str>(budget) && py::cast<std::string>(budget) == kAutomatic)
-    return pen.capability().has_force() ? std::optional(4e-4) : std::nullopt;
-  if (budget.is_none()) return std::nullopt;
-  try {
-    return py::cast<double>(budget);
-  } catch (const py::cast_error&) {
-    throw py::type_error("budget must be a number in s, None or \"auto\"");
-  }
 }
 
 std::unique_ptr<SharedSession> make(const std::shared_ptr<SharedVolume>& volume, const Tool& tool,
@@ -106,7 +103,7 @@ void bind_constructor(py::class_<SharedSession>& c) {
         "max_force"_a = loop.limits.wrench.linear, "max_torque"_a = loop.limits.wrench.angular,
         "max_power"_a = loop.limits.power, "ramp"_a = loop.safety.ramp,
         "dead_man_mask"_a = loop.workspace.dead_man_mask, "clutch_mask"_a = loop.workspace.clutch_mask,
-        "budget"_a = kAutomatic, "undo"_a = usual.undo);
+        "budget"_a = kAutomaticBudget, "undo"_a = usual.undo);
 }
 
 }  // namespace

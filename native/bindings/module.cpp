@@ -35,6 +35,7 @@ PYBIND11_MODULE(_core, m) {
   bindings::bind_session_frame(m);
   bindings::bind_session(m);
   bindings::bind_path(m);
+  bindings::bind_orient(m);
   bindings::bind_pencil(m);
   bindings::bind_strategies(m);
   bindings::bind_plan(m);

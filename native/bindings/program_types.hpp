@@ -43,6 +43,11 @@ RIFFLER_TYPED(VerifyCounters, "riffler.program_results.VerifyStats")
 RIFFLER_TYPED(NearestContactResult, "riffler.program_results.NearestContact")
 RIFFLER_TYPED(OptionalStock, "riffler.program_results.JournalStock | None")
 RIFFLER_TYPED(TripList, "list[riffler.program_results.Trip]")
+RIFFLER_TYPED(KeyChanges, "tuple[riffler.program_results.KeyChange, ...]")
+
+/// Index to axis; ValueError naming the point.
+plan::OrientationKeys to_keys(const KeysLike& object);
+ArrayDict from_keys(const plan::OrientationKeys& keys);
 RIFFLER_TYPED(DeviceList, "list[riffler.pen_results.DeviceInfo]")
 RIFFLER_TYPED(CoordinateDict, "dict[str, riffler.pen_results.CoordinateCapability]")
 RIFFLER_TYPED(CapabilityResult, "riffler.pen_results.PenCapability")

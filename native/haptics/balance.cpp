@@ -1,5 +1,6 @@
 #include "riffler/haptics/balance.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "geom/math.hpp"
@@ -8,7 +9,7 @@ namespace riffler::haptics {
 
 namespace {
 
-constexpr std::size_t kFree = 5;
+constexpr std::size_t kMostFreedoms = 5;  // a body of revolution has three translations and two rotations
 
 /// Derivative of e_i · (v + ω × arm) with respect to coordinate k of (v, ω).
 double moved_by(std::size_t i, std::size_t k, const Vec3& arm) {
@@ -42,28 +43,33 @@ void Balance::add_contact(const Wrench& wrench, const collide::ContactStiffness&
 }
 
 Twist Balance::solve() const {
-  // Three translations and the two rotations orthogonal to the axis: basis · coordinates.
   const Vec3 u = geom::any_perpendicular(axis_), v = glm::cross(axis_, u);
-  double basis[6][kFree]{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    basis[i][i] = 1;
-    basis[i + 3][3] = u[static_cast<int>(i)], basis[i + 3][4] = v[static_cast<int>(i)];
-  }
-  double a[kFree][kFree]{}, x[kFree]{};
-  for (std::size_t r = 0; r < kFree; ++r) {
-    for (std::size_t i = 0; i < 6; ++i) x[r] += basis[i][r] * pull_[static_cast<int>(i)];
-    for (std::size_t c = 0; c < kFree; ++c)
+  const std::array<Twist, kMostFreedoms> freedoms{Twist{{1, 0, 0}, {}}, Twist{{0, 1, 0}, {}}, Twist{{0, 0, 1}, {}},
+                                                  Twist{{}, u}, Twist{{}, v}};
+  return solve(freedoms);
+}
+
+Twist Balance::solve(std::span<const Twist> freedoms, const Twist& given) const {
+  Wrench pull = pull_;
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < 6; ++j) pull[i] -= matrix_[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] * given[j];
+  const std::size_t free = std::min(freedoms.size(), kMostFreedoms);
+  double a[kMostFreedoms][kMostFreedoms]{}, x[kMostFreedoms]{};
+  for (std::size_t r = 0; r < free; ++r) {
+    for (int i = 0; i < 6; ++i) x[r] += freedoms[r][i] * pull[i];
+    for (std::size_t c = 0; c < free; ++c)
       for (std::size_t i = 0; i < 6; ++i)
-        for (std::size_t j = 0; j < 6; ++j) a[r][c] += basis[i][r] * matrix_[i][j] * basis[j][c];
+        for (std::size_t j = 0; j < 6; ++j)
+          a[r][c] += freedoms[r][static_cast<int>(i)] * matrix_[i][j] * freedoms[c][static_cast<int>(j)];
   }
   // In-place Cholesky decomposition. A coordinate that nothing holds stays 0.
-  for (std::size_t j = 0; j < kFree; ++j) {
+  for (std::size_t j = 0; j < free; ++j) {
     const double before = a[j][j];
     for (std::size_t k = 0; k < j; ++k) a[j][j] -= a[j][k] * a[j][k];
     const bool held = a[j][j] > 1e-14 * before;
     const double root = held ? std::sqrt(a[j][j]) : 1;
     a[j][j] = root;
-    for (std::size_t i = j + 1; i < kFree; ++i) {
+    for (std::size_t i = j + 1; i < free; ++i) {
       for (std::size_t k = 0; k < j; ++k) a[i][j] -= a[i][k] * a[j][k];
       a[i][j] = held ? a[i][j] / root : 0;
     }
@@ -71,11 +77,12 @@ Twist Balance::solve() const {
     for (std::size_t k = 0; k < j && held; ++k) x[j] -= a[j][k] * x[k];
     x[j] /= root;
   }
-  for (std::size_t j = kFree; j-- > 0;) {
-    for (std::size_t k = j + 1; k < kFree; ++k) x[j] -= a[k][j] * x[k];
+  for (std::size_t j = free; j-- > 0;) {
+    for (std::size_t k = j + 1; k < free; ++k) x[j] -= a[k][j] * x[k];
     x[j] /= a[j][j];
   }
-  const Twist out{{x[0], x[1], x[2]}, x[3] * u + x[4] * v};
+  Twist out = given;
+  for (std::size_t j = 0; j < free; ++j) out = out + x[j] * freedoms[j];
   return finite(out) ? out : Twist{};
 }
 

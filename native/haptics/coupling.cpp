@@ -74,6 +74,13 @@ void CouplingSettings::validate() const {
   base::require_between(max_turn, 0, kPi / 2, "max_turn");
 }
 
+CouplingSettings CouplingSettings::at_tool(double scale) const {
+  CouplingSettings out = *this;
+  out.stiffness /= scale * scale, out.damping /= scale * scale;
+  out.max_stretch *= scale;
+  return out;
+}
+
 double CouplingSettings::capacity(double longest) const {
   return stiffness * spring(longest, max_stretch, std::numeric_limits<double>::infinity()).energy +
          turn_stiffness * spring(kPi, max_turn, kPi).energy;

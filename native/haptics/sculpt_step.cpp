@@ -54,6 +54,12 @@ Wrench times(const collide::ContactStiffness& k, const Twist& way) {
   return out;
 }
 
+collide::ContactStiffness scaled(collide::ContactStiffness k, double factor) {
+  for (auto& row : k)
+    for (double& value : row) value *= factor;
+  return k;
+}
+
 }  // namespace
 
 void SculptSettings::validate() const {
@@ -64,6 +70,7 @@ void SculptSettings::validate() const {
   base::require_not_negative(damping, "damping");
   base::require_between(parts, 1, 64, "parts");
   base::require_between(queries, 1, 64, "queries");
+  base::require_positive(firmness, "firmness");
   base::require_not_negative(settled, "settled");
   base::require_positive(most.linear, "most.linear");
   base::require_between(most.angular, 0, 1, "most.angular");
@@ -82,12 +89,13 @@ struct SculptStep::Part {
 };
 
 SculptStep::SculptStep(const SculptSettings& settings, const Tool& tool, sweep::MoveCarver* stock,
-                       const collide::Collider* obstacles)
+                       const collide::Collider* obstacles, Guide* guide)
     : settings_(settings),
       assembly_(tool),
       cutting_reach_(std::max(tool.length(), 0.5 * tool.diameter())),
       stock_(stock),
       obstacles_(obstacles),
+      guide_(guide),
       resistance_((settings.validate(), settings.memory.value_or(stock ? memory_for(stock->pitch()) : 1)),
                   settings.damping) {
   if (!obstacles) return;
@@ -103,10 +111,30 @@ void SculptStep::set_coupling(const CouplingSettings& coupling) {
 }
 
 void SculptStep::place(const Pose& pose) {
-  tool_ = grip_ = pose;
+  tool_ = grip_ = guide_ ? guide_->settled(pose) : pose;
   rate_ = {}, slowing_ = {};
   fresh_ = true, touching_ = false, bound_ = 0;
   resistance_.forget();
+}
+
+Twist SculptStep::solved(const Balance& balance) const {
+  if (!guide_) return balance.solve();
+  const Guide::Freedoms f = guide_->freedoms();
+  if (f.back == 0 && f.on == 0) return balance.solve(f.turns);
+  const std::array<Twist, 3> all{f.turns[0], f.turns[1], f.slide};
+  const Twist way = balance.solve(all);
+  // What is left of the displacement without its turns is the slide. A tool that would leave the curve stops at its end
+  // and turns there by what balances with that.
+  Vec3 rest = way.linear;
+  for (const Twist& turn : f.turns) rest -= glm::dot(way.angular, turn.angular) * turn.linear;
+  const double slide = glm::dot(rest, f.slide.linear), most = std::clamp(slide, -f.back, f.on);
+  return most == slide ? way : balance.solve(f.turns, most * f.slide);
+}
+
+/// The tool's pose after a displacement: the guide is curved, the displacement straight.
+Pose SculptStep::reached(const Twist& way) const {
+  const Pose to = moved(tool_, way);
+  return guide_ ? guide_->settled(to) : to;
 }
 
 /// The equilibrium of all known forces, as a displacement of the tool.
@@ -122,17 +150,18 @@ Twist SculptStep::balanced(const Part& part) const {
                      stiffness(glm::length(pull.on_tool.torque), glm::length(far.angular), c.turn_stiffness), far);
   balance.add_damper({ahead.translation, c.damping, c.turn_damping}, part.moving);
   balance.add_damper(resistance_.damper());
-  Twist way = balance.solve();
+  Twist way = solved(balance);
   if (touching_) {
-    const Wrench contact{contact_.force, contact_.torque};
+    const Wrench contact = settings_.firmness * Wrench{contact_.force, contact_.torque};
+    const collide::ContactStiffness stiffness_there = scaled(contact_.stiffness, settings_.firmness);
     const Twist from_asked = way_between(tool_, asked_);
-    balance.add_contact(contact + times(contact_.stiffness, from_asked), contact_.stiffness);
-    balance.add_contact({}, slowing_);
-    const Twist kept = balance.solve();
+    balance.add_contact(contact + times(stiffness_there, from_asked), stiffness_there);
+    balance.add_contact({}, scaled(slowing_, settings_.firmness));
+    const Twist kept = solved(balance);
     // Contacts push but do not pull. When the hand lifts the tool off, the tool goes only to where the contact force
     // ends, unless it is free there.
     const auto push = [&](const Twist& w) {
-      return glm::dot((contact - times(contact_.stiffness, w - from_asked)).force, contact.force);
+      return glm::dot((contact - times(stiffness_there, w - from_asked)).force, contact.force);
     };
     const double held = push(kept), off = push(way);
     if (held >= 0)
@@ -145,7 +174,7 @@ Twist SculptStep::balanced(const Part& part) const {
 
 /// Queries the contact at the end of that displacement; false if the result misses too much.
 bool SculptStep::look(const Twist& way, const Part& part, Result& result) {
-  asked_ = moved(tool_, way);
+  asked_ = reached(way);
   obstacles_->query(assembly_, asked_, part.budget, contact_, 0.1 * settings_.missed);
   touching_ = contact_.depth > 0;
   // The pushing direction need not be the tool's normal, which makes a stiff contact oscillate. Adding the recent
@@ -222,8 +251,9 @@ SculptStep::Result SculptStep::step(const Pose& grip, const Twist& twist, double
       const double left = *settings_.budget - seconds_since(start) - cut_seconds_;
       part.budget = std::max(0.0, left / settings_.queries);
     }
-    const Twist way = advance(part, result);
-    const Pose to = moved(tool_, way);
+    Twist way = advance(part, result);
+    const Pose to = reached(way);
+    if (guide_) way = way_between(tool_, to);
     if (cutting)
       cut(to, way, part.dt, result);
     else

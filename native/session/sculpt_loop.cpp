@@ -13,28 +13,6 @@
 
 namespace riffler::session {
 
-namespace {
-
-/// In these states the device knows its pose and its data are fresh.
-bool sure(haptics::ForceState state) {
-  return state == haptics::ForceState::Ready || lets_force_through(state);
-}
-
-/// The coupling at the tool that the hand feels as `at_hand`: displacements are `scale` times as long there, and forces
-/// come back times the scale.
-haptics::CouplingSettings at_tool(haptics::CouplingSettings at_hand, double scale) {
-  at_hand.stiffness /= scale * scale, at_hand.damping /= scale * scale;
-  at_hand.max_stretch *= scale;
-  return at_hand;
-}
-
-haptics::SculptSettings at_tool(haptics::SculptSettings settings, double scale) {
-  settings.coupling = at_tool(settings.coupling, scale);
-  return settings;
-}
-
-}  // namespace
-
 void SculptLoopSettings::validate() const {
   sculpt.validate();
   base::require_tolerance(carving.tolerance);
@@ -51,8 +29,14 @@ struct SculptLoop::Scene {
   Scene(const SculptLoopSettings& s, const Volume& stock, const Tool& tool, const collide::Collider* obstacles)
       : volume(stock),
         carver(volume, tool, s.carving),
-        step(at_tool(s.sculpt, s.workspace.scale), tool, &carver, obstacles),
+        step(scaled(s), tool, &carver, obstacles),
         workspace(s.workspace) {}
+
+  static haptics::SculptSettings scaled(const SculptLoopSettings& s) {
+    haptics::SculptSettings out = s.sculpt;
+    out.coupling = out.coupling.at_tool(s.workspace.scale);
+    return out;
+  }
 
   Volume volume;
   sweep::MoveCarver carver;
@@ -64,18 +48,14 @@ SculptLoop::SculptLoop(const SculptLoopSettings& settings, const Volume& stock, 
                        const collide::Collider* obstacles, const pen::DeviceCapability& device,
                        const std::optional<Pose>& start, StrokeSink* sink)
     : settings_((settings.validate(), settings)),
-      device_(device),
       sink_(sink),
-      safety_(settings.safety),
-      passivity_(settings.passivity),
+      gate_(settings.limits, settings.passivity, settings.safety, device),
       wrench_extrapolator_(settings.wrench_extrapolator),
       last_tool_(start.value_or(Pose{})),
       absolute_(!start),
       scene_(std::make_unique<Scene>(settings, stock, tool, obstacles)),
       exchange_(stock),
-      dead_man_mask_(settings.workspace.dead_man_mask) {
-  safety_.switch_on();
-}
+      dead_man_mask_(settings.workspace.dead_man_mask) {}
 
 SculptLoop::~SculptLoop() = default;
 
@@ -84,37 +64,15 @@ haptics::SafeWrench SculptLoop::step(const pen::PenSample& sample, double now, d
   SculptTick tick;
   if (dt > 0) time_ += dt;
   tick.time = time_, tick.dt = dt, tick.grip = sample.pose;
-  if (reset_.exchange(false)) safety_.reset();
-  if (dt == 0) {  // a new connection: the hand may have moved anywhere
-    safety_.interrupt();
-    has_grip_ = placed_ = false;
-  }
+  if (reset_.exchange(false)) gate_.reset();
+  if (dt == 0) placed_ = false;  // a new connection: the hand may have moved anywhere
   const std::uint32_t dead_man_mask = dead_man_mask_.load();
-  const haptics::ForceState state =
-      safety_.observe({.dt = dt,
-                       .age = now - sample.time,
-                       .pose = sample.pose,
-                       .twist = {sample.velocity, sample.turning},
-                       .redundancy = sample.stretch,
-                       .homed = sample.homed,
-                       .dead_man = dead_man_mask == 0 || (sample.buttons & dead_man_mask) != 0,
-                       .device_fault = sample.fault,
-                       .device_late = sample.late});
-  tick.applied = sample.says_applied ? sample.applied : held_;
-  if (sure(state)) {
-    if (has_grip_) {
-      const haptics::PoseError moved = haptics::pose_error(sample.pose, last_grip_);
-      passivity_.observe(tick.applied, {moved.translation, moved.rotation}, dt);
-    }
-    last_grip_ = sample.pose, has_grip_ = true;
-  } else {
-    has_grip_ = false;
-  }
+  gate_.begin(sample, now, dt, dead_man_mask == 0 || (sample.buttons & dead_man_mask) != 0);
+  tick.applied = gate_.applied();
   const Wrench wanted = sculpt(sample, dt, tick);
-  const haptics::SafeWrench safe = safety_.release(rendered(sample, wanted, dt));
-  held_ = safe.wrench();
-  tick.wrench = held_, tick.energy = passivity_.energy();
-  tick.state = safety_.state(), tick.cause = safety_.cause();
+  const haptics::SafeWrench safe = gate_.release(sample, wanted, dt);
+  tick.wrench = gate_.held(), tick.energy = gate_.energy();
+  tick.state = gate_.state(), tick.cause = gate_.cause();
   if (tick.cutting && sink_) sink_->row(tick.time, tick.tool, tick.wrench, tick.removed);
   tick.seconds = base::thread_seconds() - start;
   if (!ticks_.put(tick)) dropped_ticks_.fetch_add(1, std::memory_order_relaxed);
@@ -128,7 +86,7 @@ Wrench SculptLoop::sculpt(const pen::PenSample& sample, double dt, SculptTick& t
   const std::unique_lock lock(mutex_, std::try_to_lock);
   if (!lock) return missed(dt, nullptr, tick);
   Scene& scene = *scene_;
-  const haptics::ForceState state = safety_.state();
+  const haptics::ForceState state = gate_.state();
   Wrench out;
   if (!in_stroke_) tell_undo();
   if (!sure(state)) {
@@ -169,6 +127,8 @@ Wrench SculptLoop::follow(Scene& scene, const pen::PenSample& sample, double dt,
     last_tool_ = tick.tool = r.tool;
     tick.on_tool = r.on_tool;
     tick.removed = r.removed, tick.depth = r.depth_bound, tick.cutting = in_stroke_;
+    tick.held = r.held;
+    if (r.held) tick.problem = haptics::SculptStep::kHeldText;
     return wrench_extrapolator_.stepped(scene.workspace.to_grip(r.on_grip), dt);
   } catch (const std::bad_alloc&) {
     return missed(dt, "there is no memory for the next cut", tick);
@@ -180,15 +140,6 @@ Wrench SculptLoop::follow(Scene& scene, const pen::PenSample& sample, double dt,
 Wrench SculptLoop::missed(double dt, const char* why, SculptTick& tick) noexcept {
   tick.missed = true, tick.problem = why;
   return wrench_extrapolator_.missed(dt);
-}
-
-/// Limits and passivity controller, in the order of haptics/safety.hpp.
-Wrench SculptLoop::rendered(const pen::PenSample& sample, const Wrench& wanted, double dt) noexcept {
-  const haptics::Capability push = pushed(device_, sample.pose.axis);
-  slewed_ = limited(settings_.limits, push, slewed_, lets_force_through(safety_.state()) ? wanted : Wrench{},
-                    {sample.velocity, sample.turning}, dt);
-  const Wrench borne = passivity_.control(slewed_, push);
-  return magnitude_gain(settings_.limits, borne) * borne;
 }
 
 /// Begins with the move that has just removed something, from the tool's pose before it.
@@ -244,7 +195,7 @@ void SculptLoop::tell_undo() noexcept {
 void SculptLoop::set_workspace(const haptics::WorkspaceSettings& settings) {
   const std::lock_guard lock(mutex_);
   scene_->workspace.set(settings);
-  scene_->step.set_coupling(at_tool(settings_.sculpt.coupling, settings.scale));
+  scene_->step.set_coupling(settings_.sculpt.coupling.at_tool(settings.scale));
   dead_man_mask_.store(settings.dead_man_mask);
 }
 

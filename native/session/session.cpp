@@ -1,8 +1,6 @@
 #include "riffler/session/session.hpp"
 
 #include <algorithm>
-#include <atomic>
-#include <chrono>
 #include <iterator>
 #include <span>
 #include <stdexcept>
@@ -10,17 +8,14 @@
 #include <utility>
 
 #include "base/own_thread.hpp"
-#include "pen/driver.hpp"
 #include "riffler/base/block_pool.hpp"
 #include "session/masked_stock.hpp"
+#include "session/step_thread.hpp"
 
 namespace riffler::session {
 
 namespace {
 
-using Seconds = std::chrono::duration<double>;
-
-constexpr double kTick = 1e-3;  // s
 // Memory for a tile of three directions with many spans, and the number of tiles that the steps of one frame may cut
 // for the first time.
 constexpr std::size_t kLargestBlock = 1 << 17, kBlocks = 64;
@@ -28,14 +23,6 @@ constexpr std::size_t kLargestBlock = 1 << 17, kBlocks = 64;
 /// Adding material meets no resistance: a force would be that of milling air.
 SculptLoopSettings for_mode(SculptLoopSettings settings, sweep::CarveMode mode) {
   if (mode == sweep::CarveMode::Add) settings.carving.removal_constant = settings.sculpt.damping = 0;
-  return settings;
-}
-
-SculptLoopSettings for_device(SculptLoopSettings settings, const pen::DeviceCapability& device) {
-  if (device.has_force()) return settings;
-  // A mouse may jump, since nothing pushes the hand.
-  settings.safety.jump = settings.safety.overspeed = {1e9, 1e9};
-  settings.safety.fresh = 1e9;
   return settings;
 }
 
@@ -71,7 +58,6 @@ struct Session::Core {
   };
 
   std::optional<Pose> start_pose() const;
-  void poll() noexcept;
   TileExchange::Mark follow(Volume& shown, std::vector<TileExchange::Place>& places);
   void take_ticks(SessionFrame& frame);
   void look(Volume& shown, SessionFrame& frame);
@@ -85,9 +71,8 @@ struct Session::Core {
   std::shared_ptr<StrokeSink> sink_;
   std::shared_ptr<SculptLoop> loop_;
   State state_ = State::New;
-  base::OwnThread poller_;
+  StepThread ticks_;
   base::HomeProcess home_;
-  std::atomic<bool> ending_{false};
   base::BlockReserve reserve_;
 
   std::optional<MaskedStock> masked_stock_;  // unless the loop cuts the stock itself
@@ -108,7 +93,8 @@ Session::Core::Core(const Volume& stock, const Tool& tool, std::shared_ptr<pen::
       obstacles_(std::move(obstacles)),
       shown_(stock.revision()) {
   if (!pen_) throw std::invalid_argument("a session needs a device");
-  settings_.loop = for_device(for_mode(settings_.loop, settings.mode), pen_->capability());
+  settings_.loop = for_mode(settings_.loop, settings.mode);
+  settings_.loop.safety = for_device(settings_.loop.safety, pen_->capability());
   if (protect || settings.mode == sweep::CarveMode::Add)
     left_ = masked_stock_.emplace(stock, settings.mode, protect).volume();
   moments_.push_back({0, stock, left_});
@@ -142,29 +128,15 @@ void Session::Core::start() {
   loop_ = std::make_shared<SculptLoop>(settings_.loop, moments_[0].cut(), tool_, obstacles_.get(), pen_->capability(),
                                        start_pose(), sink_.get());
   reserve_.fill(kLargestBlock, kBlocks);
-  if (!pen_->set_step(loop_)) poller_ = base::OwnThread([this] { poll(); });
+  ticks_.start(*pen_, loop_);
   state_ = State::Running;
-}
-
-/// The thread for a device without its own.
-void Session::Core::poll() noexcept {
-  const auto tick = std::chrono::duration_cast<std::chrono::steady_clock::duration>(Seconds(kTick));
-  auto next = std::chrono::steady_clock::now();
-  for (double last = pen::steady_seconds(); !ending_.load();) {
-    const double now = pen::steady_seconds();
-    loop_->step(pen_->newest(), pen_->now(), now - std::exchange(last, now));
-    next = std::max(next + tick, std::chrono::steady_clock::now());
-    std::this_thread::sleep_until(next);
-  }
 }
 
 SessionFrame Session::Core::stop(Volume& shown) {
   if (state_ != State::Running) return std::exchange(kept_, {});
   home_.check("the session");
   SessionFrame frame = std::exchange(kept_, {});
-  pen_->set_step(nullptr);
-  ending_ = true;
-  poller_.join();
+  ticks_.stop(*pen_);
   loop_->finish();
   state_ = State::Ended;
   try {

@@ -271,7 +271,7 @@ def test_what_has_no_home_is_not_homed_and_buttons_of_a_session_need_one():
     no_session()
     for name in ("pen_home", "pen_reset", "pen_stop"):
         assert not getattr(bpy.ops.riffler, name).poll()
-        common.refused(getattr(bpy.ops.riffler, name), "No pen is sculpting")
+        common.refused(getattr(bpy.ops.riffler, name), "No pen session is running")
     live().end_all()
     assert now() == first
     nothing_is_left()

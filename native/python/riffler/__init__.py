@@ -21,6 +21,8 @@ from ._core import (
     Mesh,
     Mesher,
     Note,
+    OrientFrame,
+    OrientSession,
     Program,
     ProgramStream,
     Session,
@@ -41,7 +43,7 @@ from ._core import (
     verify,
 )
 from .futures import Future, submit
-from .program_results import JournalStock, MachineOption, PolePassage, Trip, VerifyStats, WriteReport
+from .program_results import JournalStock, KeyChange, MachineOption, PolePassage, Trip, VerifyStats, WriteReport
 from .results import (
     Audit,
     Hit,
@@ -71,12 +73,15 @@ __all__ = [
     "JournalStock",
     "JournalStroke",
     "JournalWriter",
+    "KeyChange",
     "MachineOption",
     "Material",
     "Mesh",
     "Mesher",
     "Nearest",
     "Note",
+    "OrientFrame",
+    "OrientSession",
     "Orientation",
     "Patch",
     "PickCounters",

@@ -11,7 +11,16 @@ from numpy.typing import NDArray
 
 from .deprecated import DictResult
 
-__all__ = ["JournalStock", "MachineOption", "NearestContact", "PolePassage", "Trip", "VerifyStats", "WriteReport"]
+__all__ = [
+    "JournalStock",
+    "KeyChange",
+    "MachineOption",
+    "NearestContact",
+    "PolePassage",
+    "Trip",
+    "VerifyStats",
+    "WriteReport",
+]
 
 
 @dataclass(frozen=True)
@@ -169,6 +178,22 @@ class JournalStock(DictResult):
     directions: str
     snapshot: str
     mask: str
+
+
+@dataclass(frozen=True, eq=False)
+class KeyChange:
+    """What a press of a button did in an OrientSession."""
+
+    time: float
+    """s since the start."""
+    point: int
+    """Of the path."""
+    axis: NDArray[np.float64]
+    """(3,): of the key that was set or deleted."""
+    deleted: bool
+    """Whether it was deleted."""
+    refused: str | None
+    """Why nothing was changed, or None."""
 
 
 class Trip(NamedTuple):

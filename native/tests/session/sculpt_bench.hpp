@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "pen/simulated/simulated_bench.hpp"
 #include "riffler/session/journal_rules.hpp"
 #include "riffler/session/sculpt_loop.hpp"
+#include "session/pen_bench.hpp"
 
 namespace riffler::test {
 
@@ -55,13 +55,13 @@ inline Volume carved_again(const Volume& stock, const Tool& tool, const std::vec
 }
 
 /// Homed; the hand follows `path`, whose poses are the pen's.
-struct SculptBench {
+struct SculptBench : PenBench {
   SculptBench(pen::HandPath path, const Volume& stock, const Tool& tool,
               const session::SculptLoopSettings& settings = {}, session::StrokeSink* sink = nullptr,
               const collide::Collider* obstacles = nullptr, const Pose& start = {{0, 0, 3}, {0, 0, 1}})
-      : pen(std::make_shared<pen::SimulatedPen>(pen::SimulatedPenSettings(), std::move(path))),
+      : PenBench(std::move(path)),
         loop(of_this_pen(settings), stock, tool, obstacles, model.capability(), start, sink) {
-    model.home();
+    drive(loop);
   }
 
   session::SculptLoopSettings of_this_pen(session::SculptLoopSettings settings) const {
@@ -72,36 +72,14 @@ struct SculptBench {
   /// Ticks for so long since the end of the last run, each given to visit.
   template <class Visit>
   void run(double seconds, const Visit& visit) {
-    end += seconds;
-    while (clock->now() < end) {
-      driver.tick();
-      pen->advance(std::llround(1e6 * clock->now()));
-      for (session::SculptTick tick; loop.take(tick);) visit(tick);
-    }
+    ticks<session::SculptTick>(loop, seconds, visit);
   }
   void run(double seconds) {
     run(seconds, [](const session::SculptTick&) {});
   }
 
-  /// The host does nothing for so long.
-  void alone(double seconds) {
-    clock->wait(seconds);
-    pen->advance(std::llround(1e6 * clock->now()));
-  }
-
-  double end = 0;
-  std::shared_ptr<pen::SimulatedPen> pen;
-  std::shared_ptr<pen::SimulatedClock> clock = std::make_shared<pen::SimulatedClock>();
-  std::unique_ptr<pen::Transport> transport = std::make_unique<pen::SimulatedTransport>(pen, clock);
-  pen::RifflerModel model{*transport};
-  SimulatedConnector connector{pen, clock, model};
   session::SculptLoop loop;
-  pen::DriverLoop driver{model, loop, connector, *clock, std::move(transport)};
 };
-
-inline Pose pen_home() {
-  return pen::SimulatedPen(pen::SimulatedPenSettings()).arms().posture().pose;
-}
 
 /// From a second on the grip circles 3 to 5 mm deeper than it began, and the button is held for two of every three
 /// seconds; the tool leans a little.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 
 #include "riffler/collide/contact.hpp"
 #include "riffler/haptics/resistance.hpp"
@@ -27,6 +28,9 @@ class Balance {
 
   /// Displacement of the tip and rotation over the step. Zero where nothing holds the body or an input is not finite.
   Twist solve() const;
+  /// As above, for a body that makes the displacement `given` and, beyond it, only those in `freedoms` and their sums: at
+  /// most five of them.
+  Twist solve(std::span<const Twist> freedoms, const Twist& given = {}) const;
 
  private:
   Vec3 axis_;

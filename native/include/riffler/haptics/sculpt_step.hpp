@@ -6,6 +6,7 @@
 #include "riffler/collide/collider.hpp"
 #include "riffler/haptics/balance.hpp"
 #include "riffler/haptics/coupling.hpp"
+#include "riffler/haptics/guide.hpp"
 #include "riffler/haptics/settings.hpp"
 #include "riffler/sweep/move_carver.hpp"
 
@@ -18,6 +19,7 @@ struct SculptSettings {
   double damping = 0;              ///< N·s/mm on a cutter while it cuts: Material::damping of its stock
   int parts = 1;                   ///< parts of a step, each with its own cut
   int queries = 2;                 ///< obstacle queries per part, at most
+  double firmness = 1;             ///< contacts hold the tool by so many times their force; the hand feels the coupling
   double settled = 1e-3;           ///< mm: no further query for a pose that the last one changed by less
   Bounds rest{0.02, 2e-3};         ///< mm, rad: largest move from rest per part while the grip stands still
   Bounds most{2, 0.2};             ///< mm, rad: largest move of the tool per step
@@ -35,6 +37,9 @@ struct SculptSettings {
 /// in as deep as the surface's own stiffness lets it.
 class SculptStep {
  public:
+  /// What users are told where Result::held is true.
+  static constexpr const char* kHeldText = "the tool waits: how deep it is in the obstacles was not found in time";
+
   /// The result of one step.
   struct Result {
     Wrench on_grip;          ///< N, N·mm about the grip's point, from the coupling
@@ -48,9 +53,10 @@ class SculptStep {
   };
 
   /// Throws std::invalid_argument for invalid settings. `stock`: the carver of the stock, with this same tool;
-  /// `obstacles`: what the tool stays out of. Either may be null; both must outlive this object.
+  /// `obstacles`: what the tool stays out of; `guide`: what it cannot leave. Each may be null; all must outlive this
+  /// object.
   SculptStep(const SculptSettings& settings, const Tool& tool, sweep::MoveCarver* stock,
-             const collide::Collider* obstacles);
+             const collide::Collider* obstacles, Guide* guide = nullptr);
 
   /// Places tool and grip at `pose`, at rest. Stock inside the tool there is removed by the next cut without force.
   void place(const Pose& pose);
@@ -71,6 +77,8 @@ class SculptStep {
  private:
   struct Part;
   Twist balanced(const Part& part) const;
+  Twist solved(const Balance& balance) const;
+  Pose reached(const Twist& way) const;
   Bounds most_of(const Pose& grip, double share, double dt) const;
   Twist advance(const Part& part, Result& result);
   bool look(const Twist& way, const Part& part, Result& result);
@@ -81,6 +89,7 @@ class SculptStep {
   double cutting_reach_;
   sweep::MoveCarver* stock_;
   const collide::Collider* obstacles_;
+  Guide* guide_;
   Resistance resistance_;
   Pose tool_, grip_;
   Twist rate_;  // mm/s, rad/s: of the tool

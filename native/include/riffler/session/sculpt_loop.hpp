@@ -17,6 +17,7 @@
 #include "riffler/haptics/wrench_extrapolator.hpp"
 #include "riffler/pen/capability.hpp"
 #include "riffler/pen/pen_step.hpp"
+#include "riffler/session/force_gate.hpp"
 #include "riffler/session/stroke_sink.hpp"
 #include "riffler/session/tile_exchange.hpp"
 
@@ -53,6 +54,7 @@ struct SculptTick {
   haptics::Cause cause = haptics::Cause::None;
   bool cutting = false;           ///< in a stroke
   bool missed = false;            ///< no step was made; the force was extrapolated
+  bool held = false;              ///< the tool did not move: the depth in the obstacles was not found in time
   const char* problem = nullptr;  ///< why nothing was cut despite the request, or why no step was made
 };
 
@@ -97,7 +99,7 @@ class SculptLoop final : public pen::PenStep {
 
   /// Clears a trip in the next tick.
   void reset() noexcept { reset_.store(true); }
-  const haptics::TripLog& trips() const noexcept { return safety_.log(); }
+  const haptics::TripLog& trips() const noexcept { return gate_.trips(); }
   /// Ends the last stroke and informs the sink. Call it after the last step.
   void finish() noexcept;
 
@@ -107,24 +109,19 @@ class SculptLoop final : public pen::PenStep {
   void place(Scene& scene, const pen::PenSample& sample) noexcept;
   Wrench follow(Scene& scene, const pen::PenSample& sample, double dt, bool cutting, SculptTick& tick) noexcept;
   Wrench missed(double dt, const char* why, SculptTick& tick) noexcept;
-  Wrench rendered(const pen::PenSample& sample, const Wrench& wanted, double dt) noexcept;
   void begin_stroke(double dt) noexcept;
   void end_stroke() noexcept;
   void tell_undo() noexcept;
 
   SculptLoopSettings settings_;
-  pen::DeviceCapability device_;
   StrokeSink* sink_;
 
   // Used by the device's thread only.
-  haptics::Safety safety_;
-  haptics::Passivity passivity_;
+  ForceGate gate_;
   haptics::WrenchExtrapolator wrench_extrapolator_;
-  Wrench slewed_, held_;  // wrench before the passivity controller, and wrench released
-  Pose last_grip_;
   Pose last_tool_;
   double time_ = 0, owed_ = 0;  // s; the second: time since the last completed step
-  bool has_grip_ = false, placed_ = false, absolute_;
+  bool placed_ = false, absolute_;
 
   // Protected by the mutex; the device's thread only tries to lock it.
   std::mutex mutex_;

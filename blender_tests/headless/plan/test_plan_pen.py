@@ -1,0 +1,172 @@
+"""Orient by Pen without a window: the tool follows a device, buttons set and delete keys, undo, ends, refusals."""
+
+import time
+
+import bpy
+import numpy as np
+import riffler
+
+from support import common, plans
+from support.keyframed_plan import close, indices, pair, paths, state
+
+UP = (0.0, 0.0, 1.0)
+
+
+def sessions():
+    return common.part("pen.session")
+
+
+def part():
+    return common.part("plan.pen_orientation")
+
+
+def scene():
+    """A plan on the timeline, on its part, at the middle of its first path."""
+    ob = plans.on_timeline()
+    bpy.context.scene.riffler.plan.part = plans.part_object()
+    bpy.context.scene.frame_set(73)
+    return ob
+
+
+class Tablet:
+    """A session whose device is a tablet that a test moves over the path, at the height of the tool's tip."""
+
+    def __init__(self, ob, **options):
+        self.pen, self._time, self.buttons = riffler.pen.Pointer("tablet"), 0.0, 0
+        self.pen.set_frame(origin=(0, 0, 8), depth=0.001)
+        context = bpy.context
+        spot = common.part("plan.current_pose").spot(context.scene, ob)
+        near = common.part("plan.obstacles").now(context, ob)
+        self.at(30.0, -0.5)
+        self.session = part().PenOrientation(context, spot, near, self.pen, options)
+        self.to(30.0, -0.5)
+
+    def at(self, x, lean):
+        """The pen at x, its end leaning by `lean` (rad) towards the wall."""
+        self._time += 0.004
+        self.pen.give(x, 17.0, tilt_y=lean, buttons=self.buttons, time=self._time)
+        time.sleep(0.004)
+
+    def to(self, x, lean, buttons=0):
+        """Goes there in small steps, then presses and releases."""
+        before = getattr(self, "last", (x, lean))
+        for t in np.linspace(0, 1, 40):
+            self.at(*(np.array(before) + t * np.subtract((x, lean), before)))
+        self.last = (x, lean)
+        time.sleep(0.1)
+        for self.buttons in [buttons, 0] if buttons else []:
+            self.at(x, lean)
+            time.sleep(0.03)
+        return self.session.look()
+
+    @property
+    def axis(self):
+        return self.session.run.pose[3:]
+
+
+def ended(ob=None):
+    assert sessions().running is None and not bpy.context.window_manager.riffler.sculpting
+    assert common.part("plan.current_pose").held is None
+    if ob is not None:
+        tool = pair(ob)[0]
+        assert all(c.influence == 1 for c in tool.constraints)
+
+
+def test_the_tool_follows_and_buttons_set_replace_and_delete_keys():
+    ob = scene()
+    ends = indices(ob)[0]
+    hand = Tablet(ob)
+    assert close(hand.axis, (0, np.sin(-0.5), np.cos(0.5)), 0.02)
+    hand.to(20.0, -0.7, buttons=1)
+    point = hand.session.run.point
+    assert abs(paths(ob)[0].centres[point][0] - 20) < 0.3
+    assert indices(ob)[0] == sorted([*ends, point]) and not state(ob).problems
+    assert close(paths(ob)[0].keys[point], hand.axis, 0.02)
+    # Blender shows the frame and the tool of that point.
+    tool, track = (
+        pair(ob)[0],
+        common.part("plan.replan").layout_of(ob, common.part("plan.plan_store").plan(ob)).tracks[0],
+    )
+    assert abs(bpy.context.scene.frame_current_final - track.frame_of(point)) < 1e-3
+    bpy.context.view_layer.update()
+    shown = np.array(tool.evaluated_get(bpy.context.evaluated_depsgraph_get()).matrix_world)
+    assert close(shown[:3, 2], hand.axis, 1e-5) and close(shown[:3, 3], hand.session.run.pose[:3], 1e-4)
+    hand.to(20.0, -0.3, buttons=1)
+    assert indices(ob)[0] == sorted([*ends, point]) and close(paths(ob)[0].keys[point], hand.axis, 0.02)
+    hand.to(21.0, -0.3, buttons=2)
+    assert indices(ob)[0] == ends
+    hand.to(30.0, -0.3, buttons=2)
+    assert "no key here" in hand.session.problem and indices(ob)[0] == ends
+    hand.session.finish()
+    _, text, done = hand.session.summary()
+    assert done and "2 keys set, 1 key deleted" in text, text
+    ended(ob)
+
+
+def test_the_axis_stops_where_the_holder_hits_the_wall():
+    ob = scene()
+    hand = Tablet(ob)
+    hand.to(30.0, 0.9)
+    time.sleep(0.2)
+    hand.session.look()
+    # The cutter's side lies on the wall: it can lean no further than upright, up to what the wall yields.
+    assert abs(hand.axis[1]) < 0.06, hand.axis
+    assert hand.session.run.touching is not None
+    assert "by" in hand.session.state() or "Free" in hand.session.state()
+    hand.to(30.0, -0.4)
+    assert close(hand.axis, (0, np.sin(-0.4), np.cos(0.4)), 0.03)
+    hand.session.finish()
+    ended(ob)
+
+
+def test_undo_takes_a_key_back_and_the_session_goes_on():
+    ob = scene()
+    name, ends = ob.name, indices(ob)[0]
+    common.push("timeline")
+    hand = Tablet(ob)
+    hand.to(20.0, -0.7, buttons=1)
+    assert len(indices(ob)[0]) == 3
+    bpy.ops.ed.undo()
+    bpy.context.view_layer.update()
+    ob = bpy.data.objects[name]
+    assert indices(ob)[0] == ends
+    assert hand.session.look() and set(hand.session.run.session.keys) == set(ends)
+    hand.to(40.0, -0.6, buttons=1)
+    assert len(indices(ob)[0]) == 3
+    hand.session.finish()
+    ended(ob)
+
+
+def test_a_plan_that_is_removed_ends_the_session_with_a_sentence():
+    ob = scene()
+    hand = Tablet(ob)
+    bpy.data.objects.remove(ob)
+    assert not hand.session.look()
+    assert "its path was deleted" in hand.session.summary()[1]
+    ended()
+
+
+def test_the_simulated_pen_turns_the_tool_for_some_seconds():
+    ob = scene()
+    before = paths(ob)[0].axes[72].copy()
+    for seconds in (4.0, 8.0, 16.0):
+        said = bpy.ops.riffler.plan_pen("EXEC_DEFAULT", True, device="simulated", seconds=seconds)
+        ended(ob)
+        if said == {"FINISHED"}:
+            break
+    assert said == {"FINISHED"}  # the simulated hand holds its button on every other round
+    assert len(indices(ob)[0]) >= 3 and not close(paths(ob)[0].axes[72], before, 1e-9)
+
+
+def test_what_cannot_be_turned_is_refused_by_name():
+    ob = scene()
+    operator = bpy.ops.riffler.plan_pen
+    common.refused(operator, "duration")
+    bpy.context.scene.frame_set(100000)
+    common.refused(lambda: operator(seconds=0.1), "on no path")
+    bpy.context.scene.frame_set(73)
+    bpy.context.scene.riffler.plan.part = None
+    ob.riffler.plan.part = None
+    common.refused(lambda: operator(seconds=0.1), "part")
+    bpy.ops.riffler.plan_pen.poll()
+    ended(ob)

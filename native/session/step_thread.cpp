@@ -1,0 +1,46 @@
+#include "session/step_thread.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+#include <utility>
+
+#include "pen/driver.hpp"
+
+namespace riffler::session {
+
+namespace {
+
+using Seconds = std::chrono::duration<double>;
+
+constexpr double kTick = 1e-3;  // s
+
+}  // namespace
+
+void StepThread::start(pen::Pen& pen, std::shared_ptr<pen::PenStep> step) {
+  ending_ = false;
+  if (!pen.set_step(step)) poller_ = base::OwnThread([this, &pen, step] { poll(pen, *step); });
+}
+
+void StepThread::stop(pen::Pen& pen) {
+  pen.set_step(nullptr);
+  ending_ = true;
+  poller_.join();
+}
+
+StepThread::~StepThread() {
+  ending_ = true;
+}
+
+void StepThread::poll(pen::Pen& pen, pen::PenStep& step) noexcept {
+  const auto tick = std::chrono::duration_cast<std::chrono::steady_clock::duration>(Seconds(kTick));
+  auto next = std::chrono::steady_clock::now();
+  for (double last = pen::steady_seconds(); !ending_.load();) {
+    const double now = pen::steady_seconds();
+    step.step(pen.newest(), pen.now(), now - std::exchange(last, now));
+    next = std::max(next + tick, std::chrono::steady_clock::now());
+    std::this_thread::sleep_until(next);
+  }
+}
+
+}  // namespace riffler::session

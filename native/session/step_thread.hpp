@@ -1,0 +1,28 @@
+// Runs the step of a loop: in the device's own thread, or in one that polls the device.
+#pragma once
+
+#include <atomic>
+#include <memory>
+
+#include "base/own_thread.hpp"
+#include "riffler/pen/device.hpp"
+
+namespace riffler::session {
+
+/// Starts and stops the ticks of one step. Functions are for one thread.
+class StepThread {
+ public:
+  /// In the device's thread, or, if it has none, a thousand times a second. `pen` must outlive the ticks.
+  void start(pen::Pen& pen, std::shared_ptr<pen::PenStep> step);
+  /// On return the step is no longer called.
+  void stop(pen::Pen& pen);
+  ~StepThread();
+
+ private:
+  void poll(pen::Pen& pen, pen::PenStep& step) noexcept;
+
+  std::atomic<bool> ending_{false};
+  base::OwnThread poller_;
+};
+
+}  // namespace riffler::session
