@@ -151,37 +151,8 @@ tip, in the part's.)")
       .def("__len__", [](const F& f) { return f.frame.ticks.size(); });
 }
 
-void bind_constructor(py::class_<SharedOrientSession>& c) {
-  const session::OrientSessionSettings usual;
-  const session::OrientSettings& loop = usual.loop;
-  const haptics::CouplingSettings& coupling = loop.step.coupling;
-  c.def(py::init([](const Path& path, const Tool& tool, const Obstacles& part, const std::shared_ptr<pen::Pen>& pen,
-                    std::size_t point, const OptionalArrayLike& axis, bool slide, const std::string& interpolation,
-                    const ConeLike& limit, double reach, double scale, const OptionalArrayLike& turn, double stiffness,
-                    double turn_stiffness, double max_force, double max_torque, double max_power, double ramp,
-                    std::uint32_t set_mask, std::uint32_t delete_mask, std::uint32_t dead_man_mask,
-                    std::uint32_t clutch_mask, const BudgetLike& budget) {
-          session::OrientSessionSettings settings;
-          settings.point = point, settings.reach = reach;
-          if (!axis.is_none()) settings.axis = to_vec3(axis, "axis");
-          settings.interpolation = plan::interpolation_named(interpolation);
-          settings.limit = to_axis_limit(limit);
-          session::OrientSettings& made = settings.loop;
-          made.slides = slide, made.set_mask = set_mask, made.delete_mask = delete_mask;
-          made.step.coupling.stiffness = stiffness, made.step.coupling.turn_stiffness = turn_stiffness;
-          made.limits.wrench = {max_force, max_torque}, made.limits.power = max_power, made.safety.ramp = ramp;
-          made.workspace = {scale, to_turn(turn), clutch_mask, dead_man_mask};
-          return make(path, tool, part, pen, std::move(settings), budget);
-        }),
-        "path"_a.none(false), "tool"_a, "part"_a.none(false), "pen"_a.none(false), py::kw_only(),
-        "point"_a = usual.point, "axis"_a = py::none(), "slide"_a = loop.slides, "interpolation"_a = "smooth",
-        "limit"_a = py::none(), "reach"_a = usual.reach, "scale"_a = loop.workspace.scale, "turn"_a = py::none(),
-        "stiffness"_a = coupling.stiffness, "turn_stiffness"_a = coupling.turn_stiffness,
-        "max_force"_a = loop.limits.wrench.linear, "max_torque"_a = loop.limits.wrench.angular,
-        "max_power"_a = loop.limits.power, "ramp"_a = loop.safety.ramp, "set_mask"_a = loop.set_mask,
-        "delete_mask"_a = loop.delete_mask, "dead_man_mask"_a = loop.workspace.dead_man_mask,
-        "clutch_mask"_a = loop.workspace.clutch_mask, "budget"_a = kAutomaticBudget,
-        R"(A pen turns a tool on a path, and its buttons set key orientations there: planning by feel.
+constexpr const char* kOrientSession =
+    R"(A pen turns a tool on a path, and its buttons set key orientations there: planning by feel.
 
 The cutter stays on the path, its axis follows the hand, and stops where cutter, shank or holder touch part or fixtures:
 the hand feels a torque away from what is hit, and a weak pull towards the path. Devices without torque get the force of
@@ -233,22 +204,53 @@ TypeError, ValueError
 
 Examples
 --------
->>> ball = riffler.Tool.ball(diameter=6, length=30)
->>> part = riffler.shape.relief([[1, 1, 0], [1, 0, 0], [0, 0, 0]], size=(40, 40), depth=20)
->>> path = riffler.plan.pencil(part, ball).paths[0]
+>>> ball = riffler.Tool.ball(diameter=4, length=20)
+>>> part = riffler.shape.relief([[1, 1], [0, 0], [1, 1]], size=(30, 20), depth=10, sink=5)
+>>> path = riffler.plan.pencil(part, ball)[0]
 >>> pen = riffler.pen.open("simulated")
 >>> with riffler.OrientSession(path, ball, riffler.Collider(part), pen) as session:
 ...     frame = session.frame()
 >>> session.keys
 {}
-)");
+)";
+
+void bind_constructor(py::class_<SharedOrientSession>& c) {
+  const session::OrientSessionSettings usual;
+  const session::OrientSettings& loop = usual.loop;
+  const haptics::CouplingSettings& coupling = loop.step.coupling;
+  c.def(py::init([](const Path& path, const Tool& tool, const Obstacles& part, const std::shared_ptr<pen::Pen>& pen,
+                    std::size_t point, const OptionalArrayLike& axis, bool slide, const std::string& interpolation,
+                    const ConeLike& limit, double reach, double scale, const OptionalArrayLike& turn, double stiffness,
+                    double turn_stiffness, double max_force, double max_torque, double max_power, double ramp,
+                    std::uint32_t set_mask, std::uint32_t delete_mask, std::uint32_t dead_man_mask,
+                    std::uint32_t clutch_mask, const BudgetLike& budget) {
+          session::OrientSessionSettings settings;
+          settings.point = point, settings.reach = reach;
+          if (!axis.is_none()) settings.axis = to_vec3(axis, "axis");
+          settings.interpolation = plan::interpolation_named(interpolation);
+          settings.limit = to_axis_limit(limit);
+          session::OrientSettings& made = settings.loop;
+          made.slides = slide, made.set_mask = set_mask, made.delete_mask = delete_mask;
+          made.step.coupling.stiffness = stiffness, made.step.coupling.turn_stiffness = turn_stiffness;
+          made.limits.wrench = {max_force, max_torque}, made.limits.power = max_power, made.safety.ramp = ramp;
+          made.workspace = {scale, to_turn(turn), clutch_mask, dead_man_mask};
+          return make(path, tool, part, pen, std::move(settings), budget);
+        }),
+        "path"_a.none(false), "tool"_a, "part"_a.none(false), "pen"_a.none(false), py::kw_only(),
+        "point"_a = usual.point, "axis"_a = py::none(), "slide"_a = loop.slides, "interpolation"_a = "smooth",
+        "limit"_a = py::none(), "reach"_a = usual.reach, "scale"_a = loop.workspace.scale, "turn"_a = py::none(),
+        "stiffness"_a = coupling.stiffness, "turn_stiffness"_a = coupling.turn_stiffness,
+        "max_force"_a = loop.limits.wrench.linear, "max_torque"_a = loop.limits.wrench.angular,
+        "max_power"_a = loop.limits.power, "ramp"_a = loop.safety.ramp, "set_mask"_a = loop.set_mask,
+        "delete_mask"_a = loop.delete_mask, "dead_man_mask"_a = loop.workspace.dead_man_mask,
+        "clutch_mask"_a = loop.workspace.clutch_mask, "budget"_a = kAutomaticBudget);
 }
 
 }  // namespace
 
 void bind_orient(py::module_& m) {
   bind_frame(m);
-  py::class_<SharedOrientSession> c(m, "OrientSession");
+  py::class_<SharedOrientSession> c(m, "OrientSession", kOrientSession);
   bind_constructor(c);
   c.def(
        "start",
@@ -261,9 +263,9 @@ void bind_orient(py::module_& m) {
 
 Examples
 --------
->>> ball = riffler.Tool.ball(diameter=6, length=30)
->>> part = riffler.shape.relief([[1, 1, 0], [1, 0, 0], [0, 0, 0]], size=(40, 40), depth=20)
->>> path = riffler.plan.pencil(part, ball).paths[0]
+>>> ball = riffler.Tool.ball(diameter=4, length=20)
+>>> part = riffler.shape.relief([[1, 1], [0, 0], [1, 1]], size=(30, 20), depth=10, sink=5)
+>>> path = riffler.plan.pencil(part, ball)[0]
 >>> pen = riffler.pen.Pointer("tablet")
 >>> session = riffler.OrientSession(path, ball, riffler.Collider(part), pen)
 >>> session.start()
@@ -280,9 +282,9 @@ OrientFrame
 
 Examples
 --------
->>> ball = riffler.Tool.ball(diameter=6, length=30)
->>> part = riffler.shape.relief([[1, 1, 0], [1, 0, 0], [0, 0, 0]], size=(40, 40), depth=20)
->>> path = riffler.plan.pencil(part, ball).paths[0]
+>>> ball = riffler.Tool.ball(diameter=4, length=20)
+>>> part = riffler.shape.relief([[1, 1], [0, 0], [1, 1]], size=(30, 20), depth=10, sink=5)
+>>> path = riffler.plan.pencil(part, ball)[0]
 >>> pen = riffler.pen.Pointer("tablet")
 >>> session = riffler.OrientSession(path, ball, riffler.Collider(part), pen)
 >>> session.start()
@@ -304,9 +306,9 @@ RuntimeError
 
 Examples
 --------
->>> ball = riffler.Tool.ball(diameter=6, length=30)
->>> part = riffler.shape.relief([[1, 1, 0], [1, 0, 0], [0, 0, 0]], size=(40, 40), depth=20)
->>> path = riffler.plan.pencil(part, ball).paths[0]
+>>> ball = riffler.Tool.ball(diameter=4, length=20)
+>>> part = riffler.shape.relief([[1, 1], [0, 0], [1, 1]], size=(30, 20), depth=10, sink=5)
+>>> path = riffler.plan.pencil(part, ball)[0]
 >>> pen = riffler.pen.Pointer("tablet")
 >>> session = riffler.OrientSession(path, ball, riffler.Collider(part), pen)
 >>> with session:
@@ -336,13 +338,13 @@ ValueError
 
 Examples
 --------
->>> ball = riffler.Tool.ball(diameter=6, length=30)
->>> part = riffler.shape.relief([[1, 1, 0], [1, 0, 0], [0, 0, 0]], size=(40, 40), depth=20)
->>> path = riffler.plan.pencil(part, ball).paths[0]
+>>> ball = riffler.Tool.ball(diameter=4, length=20)
+>>> part = riffler.shape.relief([[1, 1], [0, 0], [1, 1]], size=(30, 20), depth=10, sink=5)
+>>> path = riffler.plan.pencil(part, ball)[0]
 >>> pen = riffler.pen.Pointer("tablet")
 >>> session = riffler.OrientSession(path, ball, riffler.Collider(part), pen)
 >>> session.set_keys({0: (0, 0.6, 0.8)})
->>> session.path.axes[5]
+>>> session.path.axes[1]
 array([0. , 0.6, 0.8])
 )")
       .def(
@@ -361,12 +363,12 @@ point : int
 
 Examples
 --------
->>> ball = riffler.Tool.ball(diameter=6, length=30)
->>> part = riffler.shape.relief([[1, 1, 0], [1, 0, 0], [0, 0, 0]], size=(40, 40), depth=20)
->>> path = riffler.plan.pencil(part, ball).paths[0]
+>>> ball = riffler.Tool.ball(diameter=4, length=20)
+>>> part = riffler.shape.relief([[1, 1], [0, 0], [1, 1]], size=(30, 20), depth=10, sink=5)
+>>> path = riffler.plan.pencil(part, ball)[0]
 >>> pen = riffler.pen.Pointer("tablet")
 >>> session = riffler.OrientSession(path, ball, riffler.Collider(part), pen)
->>> session.go_to(3)
+>>> session.go_to(1)
 )")
       .def(
           "set_slide", [](SharedOrientSession& s, bool slide) { s.session->loop().set_slides(slide); }, "slide"_a,
@@ -378,9 +380,9 @@ slide : bool
 
 Examples
 --------
->>> ball = riffler.Tool.ball(diameter=6, length=30)
->>> part = riffler.shape.relief([[1, 1, 0], [1, 0, 0], [0, 0, 0]], size=(40, 40), depth=20)
->>> path = riffler.plan.pencil(part, ball).paths[0]
+>>> ball = riffler.Tool.ball(diameter=4, length=20)
+>>> part = riffler.shape.relief([[1, 1], [0, 0], [1, 1]], size=(30, 20), depth=10, sink=5)
+>>> path = riffler.plan.pencil(part, ball)[0]
 >>> pen = riffler.pen.Pointer("tablet")
 >>> session = riffler.OrientSession(path, ball, riffler.Collider(part), pen)
 >>> session.set_slide(False)
@@ -407,9 +409,9 @@ clutch_mask : int
 
 Examples
 --------
->>> ball = riffler.Tool.ball(diameter=6, length=30)
->>> part = riffler.shape.relief([[1, 1, 0], [1, 0, 0], [0, 0, 0]], size=(40, 40), depth=20)
->>> path = riffler.plan.pencil(part, ball).paths[0]
+>>> ball = riffler.Tool.ball(diameter=4, length=20)
+>>> part = riffler.shape.relief([[1, 1], [0, 0], [1, 1]], size=(30, 20), depth=10, sink=5)
+>>> path = riffler.plan.pencil(part, ball)[0]
 >>> pen = riffler.pen.Pointer("tablet")
 >>> session = riffler.OrientSession(path, ball, riffler.Collider(part), pen)
 >>> session.set_workspace(scale=0.5)
@@ -420,9 +422,9 @@ Examples
 
 Examples
 --------
->>> ball = riffler.Tool.ball(diameter=6, length=30)
->>> part = riffler.shape.relief([[1, 1, 0], [1, 0, 0], [0, 0, 0]], size=(40, 40), depth=20)
->>> path = riffler.plan.pencil(part, ball).paths[0]
+>>> ball = riffler.Tool.ball(diameter=4, length=20)
+>>> part = riffler.shape.relief([[1, 1], [0, 0], [1, 1]], size=(30, 20), depth=10, sink=5)
+>>> path = riffler.plan.pencil(part, ball)[0]
 >>> pen = riffler.pen.Pointer("tablet")
 >>> session = riffler.OrientSession(path, ball, riffler.Collider(part), pen)
 >>> session.reset()

@@ -12,7 +12,7 @@ import typing
 _Found = typing.TypeVar('_Found')
 _Made = typing.TypeVar('_Made')
 import typing_extensions
-__all__: list[str] = ['AtomicFileWriter', 'Cancelled', 'Collider', 'Contact', 'Cut', 'Finding', 'FormatError', 'FrozenSurface', 'Journal', 'JournalStroke', 'JournalWriter', 'Material', 'Mesh', 'Mesher', 'NotATask', 'Note', 'PenDevice', 'PenError', 'PenGeometry', 'PenState', 'PencilPath', 'Pointer', 'Program', 'ProgramStream', 'Session', 'SessionFrame', 'SimulatedPen', 'SlabWorker', 'Smoothed', 'Snapshot', 'Task', 'Tool', 'ToolShape', 'ToolSize', 'Verification', 'VerifyPlan', 'VerifyReport', 'Volume', 'clear_drafts', 'contact_locations', 'cutter_locations', 'draft_prefix', 'drop', 'engrave', 'lift', 'machine_options', 'machines', 'min_tilt', 'orientation_maps', 'pencil', 'read_file', 'replace_file', 'replaceable', 'set_threads', 'stepover_of_scallop', 'swarf', 'then', 'threads', 'tip_ball_radius', 'verify']
+__all__: list[str] = ['AtomicFileWriter', 'Cancelled', 'Collider', 'Contact', 'Cut', 'Finding', 'FormatError', 'FrozenSurface', 'Journal', 'JournalStroke', 'JournalWriter', 'Material', 'Mesh', 'Mesher', 'NotATask', 'Note', 'OrientFrame', 'OrientSession', 'PenDevice', 'PenError', 'PenGeometry', 'PenState', 'PencilPath', 'Pointer', 'Program', 'ProgramStream', 'Session', 'SessionFrame', 'SimulatedPen', 'SlabWorker', 'Smoothed', 'Snapshot', 'Task', 'Tool', 'ToolShape', 'ToolSize', 'Verification', 'VerifyPlan', 'VerifyReport', 'Volume', 'clear_drafts', 'contact_locations', 'cutter_locations', 'draft_prefix', 'drop', 'engrave', 'lift', 'machine_options', 'machines', 'min_tilt', 'orientation_maps', 'pencil', 'read_file', 'replace_file', 'replaceable', 'set_threads', 'stepover_of_scallop', 'swarf', 'then', 'threads', 'tip_ball_radius', 'verify']
 class FormatError(ValueError):
     """
     A file that is not what it should be: names the file, the line or byte, and what was expected.
@@ -5079,6 +5079,368 @@ class PencilPath:
     def radius(self) -> float:
         """
         Radius of the ball, mm.
+        """
+class OrientFrame:
+    """
+    What happened between two calls of ``OrientSession.frame``, one row for each step.
+
+    Forces and torques act on the hand, about the grip's point, in the device's frame; those on the tool act on it, about its
+    tip, in the part's.
+    """
+    def __len__(self) -> int:
+        ...
+    @property
+    def cause(self) -> str | None:
+        """
+        Why the force was taken away and what to do, or None.
+        """
+    @property
+    def changes(self) -> tuple[riffler.program_results.KeyChange, ...]:
+        """
+        What the presses of buttons did, in their order: KeyChange.
+        """
+    @property
+    def depth(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n,) mm that the tool is at most in part and fixtures.
+        """
+    @property
+    def dropped_ticks(self) -> int:
+        """
+        Steps since the start that are in no frame, because frames were too rare: 4096 are kept.
+        """
+    @property
+    def energy(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n,) N·mm that may go to the hand: the account of passivity.
+        """
+    @property
+    def force(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (3,) N, now.
+        """
+    @property
+    def forces(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, 6): force (N) and torque (N·mm), as sent to the device.
+        """
+    @property
+    def grip(self) -> numpy.ndarray:
+        """
+        (6,) now.
+        """
+    @property
+    def grips(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, 6) of the grip, in the device's frame.
+        """
+    @property
+    def held(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n,) 1 where the tool waited because its depth was not found in time.
+        """
+    @property
+    def missed(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n,) 1 where no step could be made and the force was held over.
+        """
+    @property
+    def poses(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, 6) of the tool, at each step's end.
+        """
+    @property
+    def problem(self) -> str | None:
+        """
+        Why the tool does not follow the hand, or None.
+        """
+    @property
+    def state(self) -> str:
+        """
+        Force state now: off, homing, ready, ramp, active, degraded or tripped.
+        """
+    @property
+    def station(self) -> float:
+        """
+        Place on the path now: a point index with a fraction.
+        """
+    @property
+    def stations(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n,) places on the path: point indices with fractions.
+        """
+    @property
+    def step_seconds(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n,) s of processor time.
+        """
+    @property
+    def times(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n,) s since the start.
+        """
+    @property
+    def tool(self) -> numpy.ndarray:
+        """
+        (6,) now.
+        """
+    @property
+    def tool_forces(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (n, 6): force (N) and torque (N·mm) of part and fixtures on the tool, before limits.
+        """
+    @property
+    def torque(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (3,) N·mm, now.
+        """
+    @property
+    def touching(self) -> str | None:
+        """
+        What is deepest in contact now: cutter, shank, holder, fixture (with any part of the tool), or None.
+        """
+class OrientSession:
+    """
+    A pen turns a tool on a path, and its buttons set key orientations there: planning by feel.
+
+    The cutter stays on the path, its axis follows the hand, and stops where cutter, shank or holder touch part or fixtures:
+    the hand feels a torque away from what is hit, and a weak pull towards the path. Devices without torque get the force of
+    the contact instead; those without motors move the tool alone. Context manager: starts and stops.
+
+    Parameters
+    ----------
+    path : PencilPath
+        Path to be oriented. Its keys are the first ones.
+    tool : Tool
+        Cutter, with shank and holder.
+    part : Collider
+        Part and fixtures.
+    pen : PenDevice
+        From ``riffler.pen.open``, or a ``riffler.pen.Pointer``.
+    point : int
+        Index of the path's point at which the tool starts.
+    axis : array_like, shape (3,), optional
+        Axis of the tool at the start; None: the path's there, or, if it has none, halfway between the walls that it touches.
+    slide : bool
+        Whether the tool follows the hand along the path; otherwise it rests at its point.
+    interpolation : {"smooth", "slerp", "linear"}
+        How axes between keys are found, as in ``PencilPath.orient``.
+    limit : (axis, angle), optional
+        Cone in which the machine allows keys, rad; a key beyond it is refused.
+    reach : float
+        mm along the path within which the second button finds a key to delete.
+    scale : float
+        mm of the tool per mm of the hand.
+    turn : array_like, shape (3, 3), optional
+        Rotation from the hand's frame to the tool's; None: none.
+    stiffness, turn_stiffness : float
+        Of the coupling between hand and tool, N/mm and N·mm/rad.
+    max_force, max_torque, max_power : float
+        Largest force (N), torque (N·mm) and power (N·mm/s) given to the hand.
+    ramp : float
+        s from no force to full force, at the start and after interruptions.
+    set_mask, delete_mask : int
+        Buttons, as bits: set a key where the tool is, replacing one at the same point; delete the nearest key.
+    dead_man_mask, clutch_mask : int
+        Buttons, as bits: force only while one is held (0: always); move the hand without the tool.
+    budget : float, "auto" or None
+        s for one step; None: as long as it takes; "auto": 0.0004 for a device with motors, None for others.
+
+    Raises
+    ------
+    TypeError, ValueError
+        Naming the argument that is wrong.
+
+    Examples
+    --------
+    >>> ball = riffler.Tool.ball(diameter=4, length=20)
+    >>> part = riffler.shape.relief([[1, 1], [0, 0], [1, 1]], size=(30, 20), depth=10, sink=5)
+    >>> path = riffler.plan.pencil(part, ball)[0]
+    >>> pen = riffler.pen.open("simulated")
+    >>> with riffler.OrientSession(path, ball, riffler.Collider(part), pen) as session:
+    ...     frame = session.frame()
+    >>> session.keys
+    {}
+    """
+    def __enter__(self) -> typing.Self:
+        ...
+    def __exit__(self, *args) -> None:
+        ...
+    def __init__(self, path: PencilPath, tool: Tool, part: Collider, pen: PenDevice, *, point: typing.SupportsInt = 0, axis: numpy.typing.ArrayLike | None = None, slide: bool = True, interpolation: str = 'smooth', limit: tuple[numpy.typing.ArrayLike, float] | None = None, reach: typing.SupportsFloat = 2.0, scale: typing.SupportsFloat = 1.0, turn: numpy.typing.ArrayLike | None = None, stiffness: typing.SupportsFloat = 0.3, turn_stiffness: typing.SupportsFloat = 2000.0, max_force: typing.SupportsFloat = 5.0, max_torque: typing.SupportsFloat = 300.0, max_power: typing.SupportsFloat = 2000.0, ramp: typing.SupportsFloat = 0.5, set_mask: typing.SupportsInt = 1, delete_mask: typing.SupportsInt = 2, dead_man_mask: typing.SupportsInt = 0, clutch_mask: typing.SupportsInt = 4, budget: float | typing.Literal['auto'] | None = 'auto') -> None:
+        ...
+    def frame(self) -> OrientFrame:
+        """
+        Applies the presses since the last call to the keys, and returns what happened.
+
+        Returns
+        -------
+        OrientFrame
+
+        Raises
+        ------
+        RuntimeError
+            If the session does not run.
+
+        Examples
+        --------
+        >>> ball = riffler.Tool.ball(diameter=4, length=20)
+        >>> part = riffler.shape.relief([[1, 1], [0, 0], [1, 1]], size=(30, 20), depth=10, sink=5)
+        >>> path = riffler.plan.pencil(part, ball)[0]
+        >>> pen = riffler.pen.Pointer("tablet")
+        >>> session = riffler.OrientSession(path, ball, riffler.Collider(part), pen)
+        >>> with session:
+        ...     frame = session.frame()
+        >>> frame.changes
+        ()
+        """
+    def go_to(self, point: typing.SupportsInt) -> None:
+        """
+        Moves the tool to a point of the path, with the axis that it has; the hand does not feel a jump.
+
+        Parameters
+        ----------
+        point : int
+            From 0.
+
+        Examples
+        --------
+        >>> ball = riffler.Tool.ball(diameter=4, length=20)
+        >>> part = riffler.shape.relief([[1, 1], [0, 0], [1, 1]], size=(30, 20), depth=10, sink=5)
+        >>> path = riffler.plan.pencil(part, ball)[0]
+        >>> pen = riffler.pen.Pointer("tablet")
+        >>> session = riffler.OrientSession(path, ball, riffler.Collider(part), pen)
+        >>> session.go_to(1)
+        """
+    def reset(self) -> None:
+        """
+        Clears a trip that does not heal by itself: ``OrientFrame.cause`` gives its reason.
+
+        Examples
+        --------
+        >>> ball = riffler.Tool.ball(diameter=4, length=20)
+        >>> part = riffler.shape.relief([[1, 1], [0, 0], [1, 1]], size=(30, 20), depth=10, sink=5)
+        >>> path = riffler.plan.pencil(part, ball)[0]
+        >>> pen = riffler.pen.Pointer("tablet")
+        >>> session = riffler.OrientSession(path, ball, riffler.Collider(part), pen)
+        >>> session.reset()
+        """
+    def set_keys(self, keys: collections.abc.Mapping[int, numpy.typing.ArrayLike]) -> None:
+        """
+        Replaces all keys, also while the session runs.
+
+        Parameters
+        ----------
+        keys : mapping of int to array_like, shape (3,)
+            Point index to axis, as in ``PencilPath.orient``; empty: none.
+
+        Raises
+        ------
+        ValueError
+            Naming the point; nothing is changed then.
+
+        Examples
+        --------
+        >>> ball = riffler.Tool.ball(diameter=4, length=20)
+        >>> part = riffler.shape.relief([[1, 1], [0, 0], [1, 1]], size=(30, 20), depth=10, sink=5)
+        >>> path = riffler.plan.pencil(part, ball)[0]
+        >>> pen = riffler.pen.Pointer("tablet")
+        >>> session = riffler.OrientSession(path, ball, riffler.Collider(part), pen)
+        >>> session.set_keys({0: (0, 0.6, 0.8)})
+        >>> session.path.axes[1]
+        array([0. , 0.6, 0.8])
+        """
+    def set_slide(self, slide: bool) -> None:
+        """
+        Lets the tool follow the hand along the path, or rest at its place.
+
+        Parameters
+        ----------
+        slide : bool
+
+        Examples
+        --------
+        >>> ball = riffler.Tool.ball(diameter=4, length=20)
+        >>> part = riffler.shape.relief([[1, 1], [0, 0], [1, 1]], size=(30, 20), depth=10, sink=5)
+        >>> path = riffler.plan.pencil(part, ball)[0]
+        >>> pen = riffler.pen.Pointer("tablet")
+        >>> session = riffler.OrientSession(path, ball, riffler.Collider(part), pen)
+        >>> session.set_slide(False)
+        """
+    def set_workspace(self, *, scale: typing.SupportsFloat = 1.0, turn: numpy.typing.ArrayLike | None = None, clutch_mask: typing.SupportsInt = 4) -> None:
+        """
+        Changes scale, view or clutch from the next step on. The tool does not jump.
+
+        Parameters
+        ----------
+        scale : float
+            mm of the tool per mm of the hand.
+        turn : array_like, shape (3, 3), optional
+            Rotation from the hand's frame to the tool's; None: none.
+        clutch_mask : int
+            Buttons, as bits: move the hand without the tool.
+
+        Examples
+        --------
+        >>> ball = riffler.Tool.ball(diameter=4, length=20)
+        >>> part = riffler.shape.relief([[1, 1], [0, 0], [1, 1]], size=(30, 20), depth=10, sink=5)
+        >>> path = riffler.plan.pencil(part, ball)[0]
+        >>> pen = riffler.pen.Pointer("tablet")
+        >>> session = riffler.OrientSession(path, ball, riffler.Collider(part), pen)
+        >>> session.set_workspace(scale=0.5)
+        """
+    def start(self) -> None:
+        """
+        Starts, in the pen's own thread. Call it once.
+
+        Examples
+        --------
+        >>> ball = riffler.Tool.ball(diameter=4, length=20)
+        >>> part = riffler.shape.relief([[1, 1], [0, 0], [1, 1]], size=(30, 20), depth=10, sink=5)
+        >>> path = riffler.plan.pencil(part, ball)[0]
+        >>> pen = riffler.pen.Pointer("tablet")
+        >>> session = riffler.OrientSession(path, ball, riffler.Collider(part), pen)
+        >>> session.start()
+        >>> frame = session.stop()
+        """
+    def stop(self) -> OrientFrame:
+        """
+        Ends the force.
+
+        Returns
+        -------
+        OrientFrame
+            What no frame has returned.
+
+        Examples
+        --------
+        >>> ball = riffler.Tool.ball(diameter=4, length=20)
+        >>> part = riffler.shape.relief([[1, 1], [0, 0], [1, 1]], size=(30, 20), depth=10, sink=5)
+        >>> path = riffler.plan.pencil(part, ball)[0]
+        >>> pen = riffler.pen.Pointer("tablet")
+        >>> session = riffler.OrientSession(path, ball, riffler.Collider(part), pen)
+        >>> session.start()
+        >>> session.stop().changes
+        ()
+        """
+    @property
+    def keys(self) -> dict[int, numpy.typing.NDArray[numpy.float64]]:
+        """
+        Point index to axis (3,): the keys after the last frame.
+        """
+    @property
+    def path(self) -> PencilPath:
+        """
+        PencilPath with axes between the keys; without keys, as given.
+        """
+    @property
+    def pen(self) -> PenDevice:
+        """
+        The device.
+        """
+    @property
+    def running(self) -> bool:
+        """
+        Whether the session was started and not stopped.
         """
 def _open_pen(what: str, *, geometry: str = 'woodenhaptics', bubble: typing.SupportsFloat = 0.08, exponent: typing.SupportsFloat = 2.0, speed: typing.SupportsFloat = 60.0, turn_rate: typing.SupportsFloat = 1.5, hold_orientation: bool = False, signs: typing.Annotated[collections.abc.Sequence[typing.SupportsInt], "FixedSize(6)"] = [1, 1, 1, 1, 1, 1], gravity: typing.SupportsFloat = 0.0, friction: typing.SupportsFloat = 0.0) -> PenDevice:
     ...

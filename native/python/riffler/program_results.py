@@ -182,7 +182,14 @@ class JournalStock(DictResult):
 
 @dataclass(frozen=True, eq=False)
 class KeyChange:
-    """What a press of a button did in an OrientSession."""
+    """What a press of a button did in an OrientSession.
+
+    Examples
+    --------
+    >>> change = riffler.KeyChange(time=1.5, point=4, axis=(0, 0, 1), deleted=False, refused=None)
+    >>> change.point
+    4
+    """
 
     time: float
     """s since the start."""
