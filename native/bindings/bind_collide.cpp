@@ -14,6 +14,7 @@ namespace riffler::bindings {
 
 namespace {
 
+RIFFLER_TYPED(PushLike, "typing.Literal['normal', 'centre']")
 RIFFLER_TYPED(StiffnessLike,
               "float | riffler._core.Material | collections.abc.Sequence[float | riffler._core.Material]")
 
@@ -57,9 +58,17 @@ double to_stiffness(const py::handle& object) {
 
 using ColliderPtr = std::shared_ptr<collide::Collider>;
 
+collide::Collider::FixturePush to_push(const PushLike& push) {
+  const std::string name = py::isinstance<py::str>(push) ? py::cast<std::string>(push) : "";
+  if (name == "normal") return collide::Collider::FixturePush::Normal;
+  if (name == "centre") return collide::Collider::FixturePush::Centre;
+  throw py::value_error("fixture_push must be \"normal\" or \"centre\", not " + py::cast<std::string>(py::repr(push)));
+}
+
 collide::Collider::Settings settings_of(const std::optional<double>& spacing, double stiffness, double holder_stiffness,
-                                        const StiffnessLike& fixture_stiffness) {
+                                        const StiffnessLike& fixture_stiffness, const PushLike& fixture_push) {
   collide::Collider::Settings settings;
+  settings.fixture_push = to_push(fixture_push);
   if (spacing && !(*spacing > 0)) throw py::value_error("spacing must be positive");
   if (spacing) settings.spacing = *spacing;
   settings.stiffness = stiffness, settings.holder_stiffness = holder_stiffness;
@@ -72,27 +81,28 @@ collide::Collider::Settings settings_of(const std::optional<double>& spacing, do
 
 auto made(const std::shared_ptr<Mesh>& part, const std::vector<SharedVolume*>& fixtures,
           const std::optional<double>& spacing, double stiffness, double holder_stiffness,
-          const StiffnessLike& fixture_stiffness, const ProgressLike& progress) {
+          const StiffnessLike& fixture_stiffness, const PushLike& fixture_push, const ProgressLike& progress) {
   std::vector<Volume> volumes;
   for (SharedVolume* v : fixtures) {
     if (!v) throw py::value_error("fixtures, volume " + std::to_string(volumes.size()) + ": None");
     volumes.push_back(Reading(*v).volume.snapshot());
   }
-  const auto work =
-      [part, volumes = std::move(volumes),
-       settings = settings_of(spacing, stiffness, holder_stiffness, fixture_stiffness)](const Progress& listener) {
-        base::report(listener, 0);
-        auto collider = std::make_shared<collide::Collider>(*part, volumes, settings);
-        base::report(listener, 1);
-        return collider;
-      };
+  const auto work = [part, volumes = std::move(volumes),
+                     settings = settings_of(spacing, stiffness, holder_stiffness, fixture_stiffness, fixture_push)](
+                        const Progress& listener) {
+    base::report(listener, 0);
+    auto collider = std::make_shared<collide::Collider>(*part, volumes, settings);
+    base::report(listener, 1);
+    return collider;
+  };
   return long_call(progress, work, Identity());
 }
 
 ColliderPtr make(const std::shared_ptr<Mesh>& part, const std::vector<SharedVolume*>& fixtures,
                  const std::optional<double>& spacing, double stiffness, double holder_stiffness,
-                 const StiffnessLike& fixture_stiffness) {
-  return made(part, fixtures, spacing, stiffness, holder_stiffness, fixture_stiffness, ProgressLike(py::none()))
+                 const StiffnessLike& fixture_stiffness, const PushLike& fixture_push) {
+  return made(part, fixtures, spacing, stiffness, holder_stiffness, fixture_stiffness, fixture_push,
+              ProgressLike(py::none()))
       .cast<ColliderPtr>();
 }
 
@@ -214,6 +224,9 @@ holder_stiffness : float, N per mm of depth and mm² of surface
     Against shank and holder.
 fixture_stiffness : float, N per mm³ of a fixture in the tool, or a Material, or a list of one for each fixture
     Against the whole tool.
+fixture_push : {"normal", "centre"}
+    Direction in which a fixture pushes: off the wall that the tool touches, or, as in the dissertation, towards the middle
+    of cutter, shank or holder, which slides the tool along a wall.
 
 Raises
 ------
@@ -229,10 +242,11 @@ Examples
 )")
       .def(py::init(&make), py::arg("part").none(false), py::kw_only(), py::arg("fixtures") = py::list(),
            py::arg("spacing") = py::none(), py::arg("stiffness") = 1.0, py::arg("holder_stiffness") = 10.0,
-           py::arg("fixture_stiffness") = 10.0)
+           py::arg("fixture_stiffness") = 10.0, py::arg("fixture_push") = "normal")
       .def_static("made", &made, py::arg("part").none(false), py::kw_only(), py::arg("fixtures") = py::list(),
                   py::arg("spacing") = py::none(), py::arg("stiffness") = 1.0, py::arg("holder_stiffness") = 10.0,
-                  py::arg("fixture_stiffness") = 10.0, py::arg("progress") = py::none(),
+                  py::arg("fixture_stiffness") = 10.0, py::arg("fixture_push") = "normal",
+                  py::arg("progress") = py::none(),
                   R"(The same as ``Collider(…)``, as a function with progress: what `riffler.submit` calls.
 
 Parameters
@@ -249,6 +263,9 @@ holder_stiffness : float, N per mm of depth and mm² of surface
     Against shank and holder.
 fixture_stiffness : float, N per mm³ of a fixture in the tool, or a Material, or a list of one for each fixture
     Against the whole tool.
+fixture_push : {"normal", "centre"}
+    Direction in which a fixture pushes: off the wall that the tool touches, or, as in the dissertation, towards the middle
+    of cutter, shank or holder, which slides the tool along a wall.
 progress : callable or None
     Called at the beginning and at the end only.
 

@@ -182,7 +182,7 @@ void Collider::query(const Assembly& assembly, const Pose& pose, std::optional<d
             counts);
   for (std::size_t i = 0; i < data_->fixtures.size(); ++i)
     if (const Fixture& f = data_->fixtures[i]; f.near(assembly, frame, 0))
-      f.add_force(assembly, frame, data_->stiffness[i], deadline, out, counts);
+      f.add_force(assembly, frame, data_->stiffness[i], s.fixture_push == FixturePush::Centre, deadline, out, counts);
 }
 
 Swept Collider::sweep(const Assembly& assembly, const Motion& motion, double wanted, std::size_t most) const {

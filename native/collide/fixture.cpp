@@ -14,16 +14,17 @@ double distance_at(const Assembly& assembly, const Vec3& q) {
   return assembly.outline().nearest(std::sqrt(q.x * q.x + q.y * q.y), q.z).distance;
 }
 
-/// Sums the force over boxes of material: k times their volume inside the tool, towards the axis point at the centre of
-/// cutter, shank or holder.
+/// Sums the force over boxes of material: k times their volume inside the tool, against the tool's normal there or
+/// towards the axis point at the centre of cutter, shank or holder.
 class FixtureSum {
  public:
   FixtureSum(const Assembly& assembly, const ToolFrame& frame, const MaterialBoxes& boxes, double stiffness,
-             Contact& contact)
+             bool to_centre, Contact& contact)
       : assembly_(assembly),
         frame_(frame),
         boxes_(boxes),
         stiffness_(stiffness),
+        to_centre_(to_centre),
         contact_(contact),
         widest_(0.5 * boxes.spacing() * (1 + 1e-9)) {
     nodes_.reserve(512), pieces_.reserve(512);
@@ -57,10 +58,10 @@ class FixtureSum {
   };
   /// Sums over the boxes of one group.
   struct Push {
-    double volume = 0, area = 0;  // mm³ inside the tool, mm² of its surface in the material
-    Vec3 middle{0}, normal{0};    // weighted by volume, weighted by area
+    double volume = 0, area = 0;            // mm³ inside the tool, mm² of its surface in the material
+    Vec3 middle{0}, outward{0}, normal{0};  // weighted by volume: place, the tool's normal; the normal by area
 
-    void add(const Vec3& at, double v) { volume += v, middle += v * at; }
+    void add(const Vec3& at, const Vec3& n, double v) { volume += v, middle += v * at, outward += v * n; }
   };
 
   /// Height of the point on the axis towards which material at height z is pushed: the centre of cutter, shank or
@@ -94,8 +95,16 @@ class FixtureSum {
 
   void push(const Push& sum) {
     if (!(sum.volume > 0)) return;
-    const Vec3 arm = sum.middle / sum.volume, at = frame_.to_tool(frame_.tip + arm);
-    const Vec3 towards = frame_.turned(Vec3(0, 0, target(at.z)) - at);
+    const Vec3 arm = sum.middle / sum.volume;
+    contact_.points.push_back(frame_.tip + arm), contact_.touches.push_back(Touch::Fixture);
+    if (!to_centre_) {
+      contact_.push(arm, -stiffness_ * sum.outward);
+      // When the tool moves by δ, its volume in the material grows by area (normal · δ) and pushes against the normal.
+      if (const double normal = glm::length(sum.normal); normal > 0)
+        contact_.resist(arm, sum.normal / normal, stiffness_ * sum.area);
+      return;
+    }
+    const Vec3 at = frame_.to_tool(frame_.tip + arm), towards = frame_.turned(Vec3(0, 0, target(at.z)) - at);
     // Exactly at the centre there is no direction.
     const Vec3 way = towards / std::max(glm::length(towards), boxes_.spacing());
     contact_.push(arm, stiffness_ * sum.volume * way);
@@ -105,7 +114,17 @@ class FixtureSum {
     contact_.resist(arm, way, stiffness_ * sum.area);
     if (const double normal = glm::length(sum.normal); normal > 0)
       contact_.resist(arm, sum.normal / normal, stiffness_ * sum.area);
-    contact_.points.push_back(frame_.tip + arm), contact_.touches.push_back(Touch::Fixture);
+  }
+
+  /// The tool's normal nearest to a place, or zero on the axis and other places without one direction.
+  Vec3 outward_at(const Vec3& place) const {
+    const Vec3 q = frame_.to_tool(place);
+    const double rho = std::sqrt(q.x * q.x + q.y * q.y);
+    const tool::Outline::Nearest nearest = assembly_.outline().nearest(rho, q.z);
+    const Vec2 away = (nearest.distance < 0 ? 1.0 : -1.0) * (nearest.point - Vec2(rho, q.z));
+    const double length = glm::length(away);
+    if (!(length > 0) || !(rho > 0)) return Vec3(0);
+    return frame_.turned(Vec3(away.x * q.x / rho, away.x * q.y / rho, away.y)) / length;
   }
 
   void look(const SphereGroup& spheres, const BoxGroup& boxes, double weight, Deadline& deadline, Counts& counts) {
@@ -124,8 +143,9 @@ class FixtureSum {
         if (rest == 0) continue;
       }
       const double volume = rest * boxes.volume[k], area = volume * at.rise[k];
-      sum.add(middle - frame_.tip, at.share[k] * volume);
-      sum.area += area, sum.normal += area * Vec3(at.normal[0][k], at.normal[1][k], at.normal[2][k]);
+      const Vec3 normal(at.normal[0][k], at.normal[1][k], at.normal[2][k]);
+      sum.add(middle - frame_.tip, normal, at.share[k] * volume);
+      sum.area += area, sum.normal += area * normal;
     }
     push(sum);
   }
@@ -163,7 +183,8 @@ class FixtureSum {
       const BoundingSphere s = spheres.sphere(k);
       if (!(distance[k] < s.radius)) continue;
       const double whole = late ? std::clamp(0.5 - 0.5 * distance[k] / s.radius, 0.0, 1.0) : together(s, distance[k]);
-      sum.add(s.centre - frame_.tip, n.weight * whole * boxes.volume[k]);
+      if (whole > 0)
+        sum.add(s.centre - frame_.tip, to_centre_ ? Vec3(0) : outward_at(s.centre), n.weight * whole * boxes.volume[k]);
       if (!late && whole < 1)
         nodes_.push_back({tree.first_child(n.group) + static_cast<std::size_t>(k), n.weight * (1 - whole)});
     }
@@ -174,6 +195,7 @@ class FixtureSum {
   const ToolFrame& frame_;
   const MaterialBoxes& boxes_;
   double stiffness_;
+  bool to_centre_;
   Contact& contact_;
   double widest_;  // mm: largest half side of a box
   base::BlockVector<Node> nodes_;
@@ -197,9 +219,9 @@ bool Fixture::near(const Assembly& assembly, const ToolFrame& frame, double dist
   return distance_at(assembly, frame.to_tool(whole_.centre)) - whole_.radius < distance;
 }
 
-void Fixture::add_force(const Assembly& assembly, const ToolFrame& frame, double stiffness, Deadline& deadline,
-                        Contact& contact, Counts& counts) const {
-  if (boxes_.size() > 0) FixtureSum(assembly, frame, boxes_, stiffness, contact).run(deadline, counts);
+void Fixture::add_force(const Assembly& assembly, const ToolFrame& frame, double stiffness, bool to_centre,
+                        Deadline& deadline, Contact& contact, Counts& counts) const {
+  if (boxes_.size() > 0) FixtureSum(assembly, frame, boxes_, stiffness, to_centre, contact).run(deadline, counts);
 }
 
 }  // namespace riffler::collide

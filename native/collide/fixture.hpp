@@ -26,12 +26,13 @@ class Fixture {
   /// Whether any of it may be nearer to the tool than `distance` (mm).
   bool near(const Assembly& assembly, const ToolFrame& frame, double distance) const;
 
-  /// Adds the force of the material inside the tool: k times its volume, each box towards the centre of the part of the
-  /// tool that contains it (cutter, shank or holder). This is (4.9)–(4.11) with dexels cut into short boxes, so that
-  /// the direction of the rays does not matter. The tool takes the part of each box (collide/material_boxes.hpp) behind
-  /// its tangent plane: the force is continuous, and so is its derivative except for faces that approach flat. Torque
-  /// is about the tip. After the deadline, nodes of any size represent their contents.
-  void add_force(const Assembly& assembly, const ToolFrame& frame, double stiffness, Deadline& deadline,
+  /// Adds the force of the material inside the tool: k times its volume. Each box pushes against the normal of the
+  /// tool's surface nearest to it, or, with `to_centre`, towards the centre of the part of the tool that contains it
+  /// (cutter, shank or holder). The latter is (4.9)–(4.11) with dexels cut into short boxes, so that the direction of
+  /// the rays does not matter. The tool takes the part of each box (collide/material_boxes.hpp) behind its tangent
+  /// plane: the force is continuous, and so is its derivative except for faces that approach flat. Torque is about the
+  /// tip. After the deadline, nodes of any size represent their contents.
+  void add_force(const Assembly& assembly, const ToolFrame& frame, double stiffness, bool to_centre, Deadline& deadline,
                  Contact& contact, Counts& counts) const;
 
  private:

@@ -197,8 +197,13 @@ Twist SculptStep::advance(const Part& part, Result& result) {
     }
     const Twist before = way;
     if (touching_) {
-      // Bounded by the same distance again from the queried pose, plus the depth found there.
-      const Bounds most{part.most.linear + contact_.depth, part.most.angular + contact_.depth / assembly_.max_radius()};
+      // Bounded by the same distance again from the queried pose, plus the depth found there. On a guide a light touch
+      // may leave the tool free to go far: no further than it can leave without a query, when none is left.
+      Bounds most{part.most.linear + contact_.depth, part.most.angular + contact_.depth / assembly_.max_radius()};
+      if (guide_ && k + 1 == settings_.queries) {
+        const double room = settings_.missed + contact_.depth;
+        most = {std::min(most.linear, room), std::min(most.angular, room / assembly_.reach())};
+      }
       way = before + within(balanced(part) - before, most);
     }
     const double change = size(way - before);

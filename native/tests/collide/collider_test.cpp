@@ -315,7 +315,7 @@ TEST(Collider, EachFixtureMayHaveAStiffnessOfItsOwn) {
 
 TEST(Collider, FixturesPushByTheirVolumeInTheTool) {
   const Collider collider(box({-500, 0, 0}, {-490, 1, 1}), {block({0, 0, 0}, {20, 20, 10}, 0.5, "z")},
-                          {.fixture_stiffness = 2});
+                          {.fixture_stiffness = 2, .fixture_push = Collider::FixturePush::Centre});
   const Assembly flat(cutters::flat(6, 30));
   const Contact c = collider.query(flat, {{10, 10, 8}, {0, 0, 1}});
   // A cylinder 2 mm deep in it: all of it points to the middle of the cutter, 14 to 16 mm above, mostly upwards.

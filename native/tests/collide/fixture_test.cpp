@@ -18,11 +18,13 @@ using stress::Random;
 constexpr double kStiffness = 10;
 const Box3 kBlock{{0, 0, 0}, {30, 20, 10}};
 
-Collider beside(const Box3& box, double pitch, double spacing, const char* directions = "z") {
+using Push = Collider::FixturePush;
+
+Collider beside(const Box3& box, double pitch, double spacing, const char* directions = "z", Push push = Push::Centre) {
   Mesh far_away;
   far_away.vertices = {{1e4, 0, 0}, {1e4 + 1, 0, 0}, {1e4, 1, 0}}, far_away.triangles = {{0, 1, 2}};
   return Collider(far_away, {Volume::block({box, pitch, directions})},
-                  {.spacing = spacing, .fixture_stiffness = kStiffness});
+                  {.spacing = spacing, .fixture_stiffness = kStiffness, .fixture_push = push});
 }
 
 Pose leaning(Random& random, const Vec3& tip, double most) {
@@ -78,6 +80,78 @@ TEST(Fixture, ForceIsThatOfTheVolumeInTheToolForAnyPitch) {
     EXPECT_LT(sum / count, 0.015) << pitch;
     RecordProperty("worst_at_" + std::to_string(pitch), std::to_string(worst));
   }
+}
+
+/// The normal nearest to a place inside a long tool, in closed form.
+using NormalOf = Vec3 (*)(const Vec3& from_tip, const Vec3& axis);
+
+Vec3 normal_of_ball(const Vec3& d, const Vec3& axis) {
+  const double z = glm::dot(d, axis);
+  return glm::normalize(d - std::max(z, 3.0) * axis);
+}
+
+Vec3 normal_of_flat(const Vec3& d, const Vec3& axis) {
+  const double z = glm::dot(d, axis);
+  const Vec3 out = d - z * axis;
+  return z < 4 - glm::length(out) ? -axis : glm::normalize(out);
+}
+
+/// Force and torque about the tip: k times the volume in the tool, each point h apart against the tool's normal there.
+Contact dense_wrench(const Assembly& assembly, NormalOf normal, const Pose& pose, const Box3& box, double h) {
+  Contact sum;
+  const Vec3 n = glm::round(box.size() / h);
+  for (int i = 0; i < n.x; ++i)
+    for (int j = 0; j < n.y; ++j)
+      for (int k = 0; k < n.z; ++k) {
+        const Vec3 d = box.lower + h * Vec3(i + 0.5, j + 0.5, k + 0.5) - pose.tip;
+        const double z = glm::dot(d, pose.axis);
+        if (!assembly.outline().inside(glm::length(d - z * pose.axis), z)) continue;
+        const Vec3 force = -kStiffness * h * h * h * normal(d, pose.axis);
+        sum.force += force, sum.torque += glm::cross(d, force), sum.depth += glm::length(force);
+      }
+  return sum;
+}
+
+TEST(Fixture, PushesAgainstTheToolsNormalsWithForceAndTorqueOfItsVolume) {
+  struct Case {
+    Assembly tool;
+    NormalOf normal;
+  };
+  const std::vector<Case> cases{{Assembly(cutters::ball(6, 4000)), normal_of_ball},
+                                {Assembly(cutters::flat(8, 4000)), normal_of_flat}};
+  for (const double pitch : {0.5, 0.2}) {
+    const Collider collider = beside(kBlock, pitch, 0.3, "z", Push::Normal);
+    Random random(5);
+    double worst = 0, worst_torque = 0;
+    int count = 0;
+    for (int n = 0; n < test::cases(60); ++n) {
+      const Case& c = cases[n % 2];
+      const Pose pose =
+          leaning(random, {random.uniform(-12, 40), random.uniform(-12, 30), random.uniform(-12, 10)}, 0.5);
+      const Contact found = collider.query(c.tool, pose);
+      if (found.depth < 0.2) continue;
+      const Contact exact = dense_wrench(c.tool, c.normal, pose, kBlock, 0.1);
+      // Relative to what the parts push with where they do not cancel each other, and to that at their distance.
+      const double lever = glm::length(0.5 * (kBlock.lower + kBlock.upper) - pose.tip) + 10;
+      worst = std::max(worst, glm::length(found.force - exact.force) / exact.depth);
+      worst_torque = std::max(worst_torque, glm::length(found.torque - exact.torque) / (exact.depth * lever));
+      ++count;
+    }
+    EXPECT_GT(count, test::kSanitized ? 3 : 20);
+    EXPECT_LT(worst, 0.06) << pitch;
+    EXPECT_LT(worst_torque, 0.06) << pitch;
+    RecordProperty("worst_at_" + std::to_string(pitch), std::to_string(worst));
+  }
+}
+
+TEST(Fixture, AWallPushesAToolOffItselfAndNotAlongItself) {
+  const Assembly tool(held(cutters::flat(6, 20)));
+  const Pose beside_wall{{-2.6, 10, -6}, {0, 0, 1}};
+  const Contact normal = beside(kBlock, 0.25, 0.3, "z", Push::Normal).query(tool, beside_wall);
+  const Contact centre = beside(kBlock, 0.25, 0.3, "z", Push::Centre).query(tool, beside_wall);
+  EXPECT_LT(normal.force.x, -60);
+  EXPECT_LT(std::abs(normal.force.z), 0.02 * std::abs(normal.force.x));
+  EXPECT_GT(std::abs(centre.force.z), 0.2 * std::abs(centre.force.x));  // the law of the source
 }
 
 TEST(Fixture, AFlatEndIsPushedByItsAreaTimesItsDepthFromTheFirstTouch) {

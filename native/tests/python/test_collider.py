@@ -115,6 +115,8 @@ def test_each_fixture_may_have_a_material(part, tool):
         riffler.Collider(part, fixtures=[vise, clamp], fixture_stiffness=[1])
     with pytest.raises(TypeError, match="a number or a Material"):
         riffler.Collider(part, fixtures=[vise, clamp], fixture_stiffness="hard")
+    with pytest.raises(ValueError, match="fixture_push"):
+        riffler.Collider(part, fixtures=[vise], fixture_push="up")
 
 
 def test_threads_get_the_same_answers(part, tool):
@@ -136,3 +138,13 @@ def test_threads_get_the_same_answers(part, tool):
 
 def test_repr_says_what_it_is_made_of(part):
     assert "12 triangles" in repr(riffler.Collider(part, spacing=0.5))
+
+
+def test_a_fixture_pushes_off_its_wall_or_as_in_the_dissertation():
+    part = riffler.Mesh([(1e4, 0, 0), (1e4 + 1, 0, 0), (1e4, 1, 0)], [(0, 1, 2)])
+    wall = riffler.Volume.block((0, 0, 0), (30, 20, 10), 0.25)
+    tool, pose = riffler.Tool.flat(6, 20), (-2.6, 10, -6, 0, 0, 1)
+    off = riffler.Collider(part, fixtures=[wall]).query(tool, pose).force
+    along = riffler.Collider(part, fixtures=[wall], fixture_push="centre").query(tool, pose).force
+    assert off[0] < -60 and abs(off[2]) < 0.02 * abs(off[0])
+    assert abs(along[2]) > 0.2 * abs(along[0])

@@ -254,7 +254,7 @@ TEST(OrientLoop, MinutesOfPlanningByFeelGiveTheHandNoEnergy) {
   EXPECT_GE(least, 0);
   EXPECT_GT(touched, test::kSanitized ? 100 : 5000);
   EXPECT_EQ(through, 0);
-  EXPECT_LT(deepest, 1.5);
+  EXPECT_LT(deepest, 1.2);
   EXPECT_EQ(lied, 0);  // the depth told is a bound
   int presses = 0;
   for (KeyPress press; bench.loop.take(press);) ++presses;

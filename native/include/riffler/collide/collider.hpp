@@ -19,6 +19,11 @@ namespace riffler::collide {
 /// 1e-6).
 class Collider {
  public:
+  /// Direction in which the material of a fixture pushes the tool.
+  enum class FixturePush : unsigned char {
+    Normal,  ///< against the normal of the tool's surface nearest to it: off the wall that it touches
+    Centre,  ///< towards the middle of cutter, shank or holder (4.10), which slides a tool along a wall lengthways
+  };
   /// Point spacing and stiffnesses of the force model (4.4).
   struct Settings {
     double spacing = 0;            ///< distance of the sample points on the part, mm; 0: √(part area / 100 000)
@@ -30,6 +35,7 @@ class Collider {
     double fixture_stiffness = 10;
     std::vector<double> stiffness_of_each{};  ///< one value per fixture, overriding fixture_stiffness; empty: all
                                               ///< fixtures use fixture_stiffness
+    FixturePush fixture_push = FixturePush::Normal;
   };
   /// `part` is treated as a solid: its triangles are oriented by the rules of mesh/orient.hpp, and a cavity in
   /// unbounded material stays a cavity. Fixture volumes share their tiles with the caller. Empty fixtures are ignored.
