@@ -296,7 +296,7 @@ def test_wrong_signs_and_exchanged_plugs_are_found(geometry, stroke):
         counts = gone.copy()
         counts[:, k] *= -1
         found = judge(geometry, geometry.home + counts)
-        assert found.channels == (name,) and found.sign[k] == -1 and "wrong way" in found.text
+        assert found.channels == (name,) and found.sign[k] == -1 and "wrong direction" in found.text
     for a, b in ((0, 1), (1, 4), (2, 5), (3, 4)):
         counts = gone.copy()
         counts[:, [a, b]] = counts[:, [b, a]]
