@@ -388,7 +388,7 @@ def test_ctrl_c_leaves_nothing_behind(folder):
     before = sorted(p.name for p in folder.iterdir())
     command = [*RIFFLER, "volume", "carve", "--stock", "90x60x30", "--pitch", "0.2", *TOOL, "--program",
                "long.ngc", "--out", "part.stl"]  # fmt: skip
-    # Tests that run in the background may have been told to ignore it.
+    # Tests that run in the background may have been set to ignore it.
     heed = partial(signal.signal, signal.SIGINT, signal.SIG_DFL)
     with subprocess.Popen(
         command, cwd=folder, env=ENVIRONMENT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, preexec_fn=heed

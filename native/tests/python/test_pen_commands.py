@@ -59,7 +59,7 @@ def in_terminal(*words: object, keys: dict[float, bytes], cwd) -> tuple[str, int
         except BlockingIOError:
             time.sleep(0.02)
             continue
-        except OSError:  # nobody holds the other end any more
+        except OSError:  # the other end is closed
             break
         if not piece:
             break

@@ -93,7 +93,7 @@ TEST(Description, SaysWhatItsFileAndOptionsSay) {
   EXPECT_EQ(own.ranges[0].low, -100);
   EXPECT_EQ(own.ranges[0].rate, 5000);
   EXPECT_EQ(own.ranges[3].high, 120);
-  EXPECT_EQ(own.ranges[3].rate, 3600) << "of tables whose words are joints, where nothing else is said";
+  EXPECT_EQ(own.ranges[3].rate, 3600) << "the default of tables whose words are joints";
   EXPECT_FALSE(own.ranges[5].limited());
   EXPECT_EQ(own.control.start, std::vector<std::string>{"G53 G0 Z0"});
 

@@ -62,7 +62,7 @@ TEST(Writer, EveryRowEndsABlockAndBlocksKeepToTheMove) {
         return glm::length(pose.tip - wanted.tip) < 1e-5 && angle(pose.axis, wanted.axis) < 2e-6;
       };
       while (block < blocks.size() && !ends_here(blocks[block])) ++block;
-      ASSERT_LT(block, blocks.size()) << "row " << row << " is nobody's end";
+      ASSERT_LT(block, blocks.size()) << "row " << row << " ends no block";
       ++block;
       if (row == 0) continue;
       const Motion motion(p.poses()[row - 1], wanted);
