@@ -298,7 +298,11 @@ BAD = {
     "no post": (["p.rprog", *OUT], "--post"),
     "unknown post": (["p.rprog", "--post", "lathe", *OUT], "lathe"),
     "post for a .rprog": (["p.rprog", *POST, "--out", "b.rprog"], "leave --post"),
-    "option": (["p.rprog", *POST, "--post-option", "speed=3", *OUT], "unknown option 'speed'"),
+    "option": (["p.rprog", *POST, "--post-option", "speed=3", *OUT], "unknown option 'speed'; known: "),
+    "misspelt option": (
+        ["p.rprog", *POST, "--post-option", "max_rotry=3", *OUT],
+        "unknown option 'max_rotry'; did you mean max_rotary? known: ",
+    ),
     "option without value": (
         ["p.rprog", *POST, "--post-option", "max_rotary", *OUT],
         "--post-option max_rotary: KEY=VALUE",

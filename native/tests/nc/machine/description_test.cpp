@@ -156,6 +156,8 @@ TEST(Description, NamesTheLineThatIsWrong) {
   EXPECT_EQ(error("description = \"x\"\ncontrol = \"siemens\""),
             "mill.toml, line 2: control must be one of rs274, heidenhain, sinumerik, apt");
   EXPECT_EQ(error(kMill, {{"pivot", 1.0}}).substr(0, 36), "machine mill: unknown option 'pivot'");
+  EXPECT_TRUE(
+      error(kMill, {{"raisd", 1.0}}).starts_with("machine mill: unknown option 'raisd'; did you mean raised? known: "));
   EXPECT_EQ(error(kMill, {{"limits_x", 1.0}}), "machine mill: option limits_x must be two finite ascending numbers");
 }
 
