@@ -1,4 +1,4 @@
-"""The whole way once, on real input: Suzanne, recorded pen strokes, STL, NC code, a replay elsewhere, a picture.
+"""The whole workflow once, on real input: Suzanne, recorded pen strokes, STL, NC code, a replay elsewhere, a picture.
 
     python demo/run.py --out out/demo --blender-python .envs/bpy-4.5/bin/python
 

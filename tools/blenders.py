@@ -37,7 +37,7 @@ CHROOTS = [
     # It moves on every day; a copy of it stands still, and Blender 5 has one more package that it does not insist on.
     Chroot("sid", (*PACKAGES, "python3-cattr"), frozen_release=True),
 ]
-# Releases that move may stop working any day: their reason goes on the screen, and the rest goes on.
+# Rolling releases may stop working any day: the run prints the reason and continues with the others.
 BEST_EFFORT = {"sid"}
 # Tools without machine code, of the versions that .venv has: no index is asked from within.
 LENT = ("auditwheel", "elftools", "pyelftools", "packaging", "pathspec", "pybind11", "scikit_build_core")
@@ -91,7 +91,7 @@ def build(place: Chroot) -> None:
     shutil.rmtree(out, ignore_errors=True)
     place.put(files())
     lend(place)
-    # Warnings of compilers that nobody here has seen yet are not errors.
+    # Warnings of compilers that the project has not been built with before are not errors.
     settings = {"CMAKE_ARGS": "-DRIFFLER_WERROR=OFF"}
     settings |= {k: os.environ[k] for k in ("CMAKE_BUILD_PARALLEL_LEVEL",) if k in os.environ}
     place.run(".venv/bin/python", "tools/wheel.py", "build/repaired", **settings)

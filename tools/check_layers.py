@@ -21,7 +21,7 @@ GIVEN_TO_ALL = re.compile(r"\s*(?:using \w+::\w+|namespace \w+ = \w+::\w+)\s*$")
 # What a topic's file may say outside of every namespace: macros, types of C libraries, specialisations for std.
 OUTSIDE = re.compile(r"\s*[A-Z][A-Z_]*\(.*\)\s*$|\s*struct [a-z_]+_\s*$|\s*template <>\s*struct std::", re.S)
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
-# Folders beside the topics, and which topics and other such folders they may include. The reference must not share code
+# Folders outside the topics, and the topics and other such folders they may include. The reference must not share code
 # with what it judges; `None` is every topic.
 BESIDE: dict[str, tuple[list[str] | None, list[str]]] = {
     "reference": (["base", "geom", "tool"], []),

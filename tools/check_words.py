@@ -1,8 +1,9 @@
 """Counts words that make the project's text hard to read, in comments, docstrings, messages and documents, and holds
-every file to its count in tools/words_allowed.txt: a count may only shrink.
+every file to its count in tools/words_allowed.txt: none for a file that the list does not name, or without a list. A
+count may only shrink.
 
     tools/check_words.py                   fails where a file has more of them than allowed, or fewer: shrink the list
-    tools/check_words.py --update          shrinks the list; refuses to let it grow
+    tools/check_words.py --update          shrinks the list, and removes an empty one; refuses to let it grow
     tools/check_words.py --show [PATH ...] prints each one: file, line, what to write instead
 
 What to write: name the thing, then say what it does; active voice, present tense, one idea a sentence.
@@ -64,8 +65,13 @@ def blank(text: str) -> str:
     return re.sub(r"[^\n]", " ", text)
 
 
+def without_code(text: str) -> str:
+    """The same text with spaces for what stands in backticks: names are no prose."""
+    return re.sub(r"`[^`\n]*`", lambda m: "`" + " " * (len(m[0]) - 2) + "`", text)
+
+
 def prose_of_markdown(text: str) -> Iterator[tuple[int, str]]:
-    yield 1, re.sub(r"`[^`\n]*`", lambda m: "`" + " " * (len(m[0]) - 2) + "`", FENCE.sub(lambda m: blank(m[0]), text))
+    yield 1, FENCE.sub(lambda m: blank(m[0]), text)
 
 
 def joined(comments: Iterator[tuple[int, str]]) -> Iterator[tuple[int, str]]:
@@ -106,7 +112,7 @@ PROSE = {".md": prose_of_markdown, ".py": prose_of_python} | dict.fromkeys((".c"
 def hits_in(path: str, text: str) -> Iterator[Hit]:
     for first, prose in PROSE[Path(path).suffix](text):
         # One space for each line break, so that a sentence's start is seen across lines.
-        flat = prose.replace("\n", " ") if not path.endswith(".md") else prose
+        flat = without_code(prose.replace("\n", " ") if not path.endswith(".md") else prose)
         for match in PATTERN.finditer(flat):
             yield Hit(path, first + prose.count("\n", 0, match.start()), match[0].strip(), ADVICE[match.lastindex - 1])
 
@@ -154,9 +160,12 @@ def problems(found: list[Hit], allowed: dict[str, int]) -> list[str]:
 
 def update(found: list[Hit], allowed: dict[str, int]) -> None:
     now = counts(found)
-    if grown := [path for path, count in now.items() if ALLOWED.exists() and count > allowed.get(path, 0)]:
+    if grown := [path for path, count in now.items() if count > allowed.get(path, 0)]:
         raise StepError("the list may only shrink; more words than allowed in " + ", ".join(sorted(grown)))
-    ALLOWED.write_text("".join(f"{count} {path}\n" for path, count in sorted(now.items())))
+    if now:
+        ALLOWED.write_text("".join(f"{count} {path}\n" for path, count in sorted(now.items())))
+    else:
+        ALLOWED.unlink(missing_ok=True)
 
 
 def entry() -> None:

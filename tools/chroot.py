@@ -127,8 +127,8 @@ class Chroot:
         succeed(*self.command(*map(str, words), network=network, **variables))
 
     def put(self, files: Iterable[Path]) -> None:
-        """The project's files as they are now; what changed gets the present time, so that builds there see it, and
-        what was put there once and is gone here goes there too."""
+        """Copies the project's present files; those that changed get the present time, so that builds there see it, and
+        files that an earlier call copied and that are gone here are removed."""
         listing = self.project / ".riffler-files"
         wanted = {path.relative_to(ROOT): path for path in files}
         before = set(map(Path, listing.read_text().split("\n"))) if listing.exists() else set()
@@ -156,7 +156,7 @@ def succeed(*words: str) -> None:
 
 
 def remove(folder: Path) -> None:
-    """Never through a mount: somebody may have put one there by hand."""
+    """Deletes a folder, but never through a mount, which a user may have made by hand."""
     if not folder.exists():
         return
     for line in Path("/proc/self/mounts").read_text().splitlines():

@@ -1,4 +1,4 @@
-"""Close-ups of Riffler's meshes beside OpenVDB's at the same pitch: docs/images/close-ups/*.jpg.
+"""Close-ups of Riffler's meshes next to OpenVDB's at the same pitch: docs/images/close-ups/*.jpg.
 
     tools/close_ups.py --models FOLDER [--programs build/bench/native/bench] [--blender .envs/bpy-4.5/bin/python]
 
@@ -106,7 +106,7 @@ def field(volume: Volume, truth: Mesh) -> np.ndarray:
     rays = np.repeat(np.arange(counts.size), counts.ravel())
     for ray, (near, far) in zip(rays, spans, strict=True):
         inside[ray, (z > near) & (z < far)] = True
-    # Room outside, so that a level set finds its way round.
+    # Room outside, so that the level set closes around the part.
     inside = np.pad(inside.reshape(n), ROOM)
     n = inside.shape
     close = np.zeros(n, bool)

@@ -62,7 +62,7 @@ def types_environment() -> Path:
 
 
 def make_environment(path: Path, requirements: Path, fallback: list[str] | None = None) -> None:
-    """An environment with exactly what `requirements` pins. Made anew if that changed or was not finished, so that what
+    """An environment with exactly what `requirements` pins. Rebuilt if that changed or was not finished, so that what
     is pinned is what is there; packages that another checkout has installed are linked."""
     pip_requirements = REQUIREMENTS / "pip.txt"
     key = digest([requirements, pip_requirements], sys.version, sys.base_prefix)

@@ -1,6 +1,6 @@
 """Runs a GoogleTest program's tests in a process for every few of them, as many processes at once as there are cores.
 
-Where a process takes long to start and to end, as under the sanitizers, one for each test (ctest's way) costs as much
+Where a process takes long to start and to end, as under the sanitizers, one for each test (as ctest does) costs as much
 as the tests. A batch that fails is shown with all that it printed; tests that a crash kept from running have failed.
 """
 

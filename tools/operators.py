@@ -1,9 +1,9 @@
-"""Writes docs/operators.md: the add-on's operators for scripts, as they are registered in Blender, and the settings of
+"""Writes docs/operators.md: the add-on's operators for scripts, as Blender registers them, and the settings of
 the scene that they go by. blender_tests/headless/test_operators.py holds the page against each Blender.
 
     tools/operators.py
 
-Run by any Python it goes on in that of Blender 4.5.
+Any Python can run it: it starts itself again in that of Blender 4.5.
 """
 
 from __future__ import annotations
@@ -41,10 +41,10 @@ TOPICS = {
                                   "simulate_stop", "verify", "verify_clear",
                                   "finding_go"],
 }  # fmt: skip
-# Groups of bpy.context.scene.riffler that operators go by beside what they are given, and the operator whose settings a
-# group has, too: those only fill in its button. The other groups have nothing else.
+# Groups of bpy.context.scene.riffler that operators use in addition to their arguments, and the operator whose settings
+# a group has, too: those only fill in its button. The other groups have nothing else.
 GROUPS = {
-    "tool": ("", "The cutter, of whoever is not given one."),
+    "tool": ("", "The cutter of operators that are not given one."),
     "sculpt": ("", "How strokes are made, and what keeps tools out."),
     "plan": ("plan_find", "What the tab *Riffler Plan* plans on, and with what."),
     "verify": ("verify", "The stock that is simulated and verified, and what was found."),
@@ -58,19 +58,19 @@ What the add-on does, a script can ask for: `bpy.ops.riffler.new_stock(size=(60,
 examples, which the tests run, in [planning](planning.md#in-blender), [sessions](sessions.md#in-blender) and
 [engraving](engrave.md#with-another-tool).
 
-- Lengths are in mm whatever the scene's units, angles in rad; what is in Blender units says so. Objects and pictures
+- Lengths are in mm in scenes of any unit, angles in rad; what is in Blender units says so. Objects and pictures
   are given by name.
 - What is not given has the default below, not what a panel shows: panels hand their settings to their buttons. The
   cutter, and how strokes are made, are the [scene's](#settings-of-the-scene).
 - Sculpts and plans are meant by the active object. Most operators want Object Mode, and nothing long that runs.
-- A call returns when all is done. With `"INVOKE_DEFAULT"` as its first argument it does what a button does: long work
-  goes on in the background and Esc cancels it, files are asked for.
+- A call returns when all is done. With `"INVOKE_DEFAULT"` as its first argument it works as a button does: long work
+  runs in the background and Esc cancels it, files are asked for.
 - What is refused, and what fails, is a `RuntimeError` with the words of the status bar, and has changed nothing
   ([troubleshooting](troubleshooting.md)). `{"CANCELLED"}` without an error: there was nothing to do.
 - *Refused in an empty scene* is what is missing there; `bpy.ops.riffler.….poll()` says whether anything is now.
 """
 INTERNAL = "A panel's button: Blender's search does not list it."
-MANY = 4  # entries of a list that are said once, and referred to afterwards
+MANY = 4  # entries from which on a list is printed once, and referred to afterwards
 
 
 def plain(text: str) -> str:

@@ -30,7 +30,7 @@ def other_wheels() -> list[Path]:
         if is_stamped(path.parent / STAMP, key()):
             found.append(path)
         else:
-            say(f"{path.relative_to(ROOT)} is of other sources, left out: `make test-blenders` builds it anew")
+            say(f"{path.relative_to(ROOT)} is of other sources, left out: `make test-blenders` rebuilds it")
     return found
 
 

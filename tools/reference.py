@@ -34,7 +34,7 @@ PAGES = {
                                               "FormatError"]),
 }  # fmt: skip
 
-# What pybind11 writes for arguments that Python converts, in the words of who calls.
+# What pybind11 writes for arguments that Python converts, in the caller's words.
 PLAIN = [
     (r"typing\.Annotated\[numpy\.typing\.ArrayLike, [\w.]+(, \"[^\"]*\")?\]", "array"),
     (r"typing\.Supports(Float|Int|Index)( \| typing\.Supports(Float|Int|Index))*", lambda m: m[1].lower()),

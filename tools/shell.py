@@ -23,7 +23,7 @@ def cores() -> int:
 
 
 class StepError(Exception):
-    """A step that cannot go on; the text says what to do about it."""
+    """A step that cannot continue; the text says what to do about it."""
 
 
 def say(text: str) -> None:

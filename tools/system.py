@@ -114,7 +114,7 @@ BLENDER_MODULE = [
     }.items()
 ]  # fmt: skip
 
-# Of umockdev's headers only pkg-config tells: they lie in a folder of its own.
+# Only pkg-config finds umockdev's headers: they lie in a folder of its own.
 UMOCKDEV = Need("umockdev", "umockdev", "https://github.com/martinpitt/umockdev", program("umockdev-wrapper"))
 CPP_TESTS = [
     Need("GoogleTest", "libgtest-dev", "https://github.com/google/googletest", header("gtest/gtest.h")),
@@ -124,7 +124,7 @@ CPP_TESTS = [
 
 BLENDER_WINDOW = [
     Need("Blender with a window", "blender", "https://www.blender.org/download/", program("blender")),
-    Need("numpy beside that Blender", "python3-numpy", "https://numpy.org", numpy_for_packaged_blender),
+    Need("numpy for that Blender", "python3-numpy", "https://numpy.org", numpy_for_packaged_blender),
     Need("a virtual display: xvfb-run", "xvfb", "your X server's packages", program("xvfb-run")),
     Need("xauth", "xauth", "your X server's packages", program("xauth")),
     Need("OpenGL in software", "libgl1-mesa-dri", "https://mesa3d.org", library("libGLX_mesa.so.0")),
@@ -134,7 +134,7 @@ BLENDER_WINDOW = [
 ]
 CHROOTS = [Need("debootstrap", "debootstrap", "https://wiki.debian.org/Debootstrap", program("debootstrap"))]
 
-# What LinuxCNC's interpreter links beside what is unpacked with it (tools/linuxcnc.py).
+# What LinuxCNC's interpreter links in addition to what is unpacked with it (tools/linuxcnc.py).
 LINUXCNC = [
     Need("shared library of Python 3.11", "libpython3.11", "your Python's packages", library("libpython3.11.so.1.0")),
     Need("libedit", "libedit2", "https://thrysoee.dk/editline", library("libedit.so.2")),

@@ -2,9 +2,9 @@
 
     tools/test.py [SUITE ...]      cpp python tools docs blender (all of these without arguments), lint, asan, sanitize
 
-One suite alone prints as it goes. Of several, what each prints comes when it ends, whole, and a line every half minute
+One suite alone prints as it goes. Several print their output whole, each when it ends, and a line every half minute
 says what runs; the full texts stay in build/tests. Stages come one after the other. In a stage, suites of one lane run
-one after the other, lanes beside each other.
+one after the other, lanes in parallel.
 """
 
 from __future__ import annotations
@@ -165,7 +165,7 @@ def run_beside(name: str, progress: Progress) -> Result:
 
 
 def run_stages(names: list[str]) -> list[Result]:
-    """All suites, the lanes of a stage beside each other; results in the order of `names`."""
+    """All suites, the lanes of a stage in parallel; results in the order of `names`."""
     LOGS.mkdir(parents=True, exist_ok=True)
     progress, results, over = Progress(), {}, threading.Event()
 

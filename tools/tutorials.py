@@ -13,7 +13,7 @@ import shutil
 from shell import PYTHON, ROOT, StepError, main, run, say
 
 PLACE = ROOT / "docs" / "images" / "tutorials"
-ALSO = {"session": "window_pen", "cube": "window_cube"}  # pictures that a test takes on its way
+ALSO = {"session": "window_pen", "cube": "window_cube"}  # pictures that a test takes as it runs
 
 
 def entry() -> None:

@@ -19,8 +19,8 @@ from shell import PYTHON, ROOT, StepError, digest, is_stamped, main, run, say, t
 
 @dataclass(frozen=True)
 class Distribution:
-    """One of our wheels: `project` has its pyproject.toml, `parts` are the folders of native/ that go into it besides
-    the core's topics."""
+    """One of our wheels: `project` has its pyproject.toml, `parts` are the folders of native/ that go into it, in
+    addition to the core's topics."""
 
     name: str
     project: Path

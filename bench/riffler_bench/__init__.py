@@ -1,4 +1,4 @@
-"""What ``riffler bench`` runs: run time, error and memory of carving and meshing, beside rivals and a yardstick.
+"""What ``riffler bench`` runs: run time, error and memory of carving and meshing, against rivals and a yardstick.
 
 Every job is a module in ``jobs`` with ``run(settings, progress) -> Report`` and, where it has plots, a function of its
 name in ``plots``. Times are processor time on one thread unless a table says otherwise, and are quoted as ratios to the

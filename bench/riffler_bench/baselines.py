@@ -1,4 +1,4 @@
-"""The two ways in which open systems find pencil curves, written anew to be measured beside riffler's.
+"""The two methods by which open systems find pencil curves, rewritten here to be compared with riffler's.
 
 ``creases``: edges whose two triangles stand at more than a threshold to each other, hollow side out; the ball's centre
 lies on their bisector. ``height_map``: the ball is dropped along z on every pixel, and where the map of its heights
@@ -61,7 +61,7 @@ class HeightMap:
 
     lower: np.ndarray
     heights: np.ndarray
-    bend: np.ndarray  # second difference, mm, the largest of four ways
+    bend: np.ndarray  # second difference, mm, the largest of four directions
     way: np.ndarray
 
     @staticmethod
@@ -86,7 +86,7 @@ class HeightMap:
         bends = np.full((len(WAYS), *top.shape), -np.inf)
         for k, (i, j) in enumerate(WAYS):
             before, after = shifted_by(heights, -i, -j), shifted_by(heights, i, j)
-            bends[k] = (before + after - 2 * heights) / (i * i + j * j)  # of one pixel's way
+            bends[k] = (before + after - 2 * heights) / (i * i + j * j)  # for steps of one pixel
         bends = np.where(np.isnan(bends), -np.inf, bends)
         way = bends.argmax(0)
         return HeightMap(np.asarray(volume.lower), heights, bends.max(0), way)

@@ -82,7 +82,7 @@ def found(settings: Settings) -> list[Blender]:
 def folder() -> Path:
     """The add-on of the checkout that holds this package or the working directory."""
     if (found := checkout()) is None:
-        raise LeftOutError("no add-on is beside this package or in the working directory: measure in a checkout")
+        raise LeftOutError("found no add-on next to this package or in the working directory: measure in a checkout")
     return found / "addon"
 
 

@@ -1,4 +1,4 @@
-"""What runs in a process of its own, so that its memory can be told: python -m riffler_bench.children WORK ARGUMENTS.
+"""Measurements in a process of their own, to measure its memory: python -m riffler_bench.children WORK ARGUMENTS.
 
 Prints the result as one line of JSON, with the process's peak memory.
 """
@@ -71,7 +71,7 @@ def rays(path: str, side: int, repeats: int) -> dict[str, Any]:
 
 
 def decimate(path: str, wanted: int, repeats: int) -> dict[str, Any]:
-    """A part to `wanted` triangles: median times; the result beside it."""
+    """A part to `wanted` triangles: median times; saves the result next to it."""
     part = Mesh(np.load(f"{path}.vertices.npy"), np.load(f"{path}.triangles.npy"))
     less, times = clock.timed(lambda: part.decimate(triangles=wanted), repeats)
     np.save(f"{path}.out.vertices.npy", less.vertices)
@@ -149,7 +149,7 @@ def verified(
 
 
 def verified_stream(rows: int, lines: int, pitch: float, chunk: int) -> dict[str, Any]:
-    """The waves on three axes, verified as they are made, `chunk` rows at a time; 0: made first, and in one piece."""
+    """The waves on three axes, verified while they are made, `chunk` rows at a time; 0: made whole, then verified."""
     stock, before = waves.stock(pitch), clock.peak_bytes()
 
     def work() -> VerifyReport:

@@ -86,7 +86,7 @@ def budgets(data: Data) -> Figure:
 
 
 def slide(data: Data) -> Figure:
-    """Force against position over an edge, beside the integral."""
+    """Force against position over an edge, with the exact integral."""
     row = min(rows(data, "slide"), key=lambda r: r["step_mm"])
     figure, axis = plt.subplots(figsize=(8.5, 4.6))
     x = np.array(row["x_mm"])

@@ -94,8 +94,8 @@ def apart(points: np.ndarray, begin: np.ndarray, end: np.ndarray) -> tuple[np.nd
 
 @dataclass(frozen=True)
 class Agreement:
-    """What lies between curves that were found and those that are true, all in mm. `missed` is the length of true ones
-    farther than `limit` from any that was found, `false` the other way round."""
+    """How far the curves found and the true ones differ, all in mm. `missed` is the length of true curves
+    farther than `limit` from any found one, `false` the length of found ones farther than that from any true one."""
 
     hausdorff: float | None  # None where only one of the sets is empty
     mean: float | None

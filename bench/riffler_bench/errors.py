@@ -1,4 +1,4 @@
-"""Measured error of a carve: random rays beside the independent reference."""
+"""Measured error of a carve: random rays compared with the independent reference."""
 
 from __future__ import annotations
 

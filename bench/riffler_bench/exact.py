@@ -2,7 +2,7 @@
 by, and the fields that rivals mesh.
 
 A ball end mill that reaches out of the block takes, on a straight move, a vertical half-strip grown by the ball's
-radius: the strip stands on the way of the ball's centre. The part is the block less 200 of those.
+radius: the strip stands on the path of the ball's centre. The part is the block less 200 of those.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ def cuts(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     moves = np.clip(near[:, None] + np.arange(-WINDOW, WINDOW + 1), 0, scenes.MOVES - 1)
     a, way = c[moves], c[moves + 1] - c[moves]
     length = np.hypot(way[..., 0], way[..., 1])
-    # In the strip's plane: s along the way in the level, z up; q is square to the plane.
+    # In the strip's plane: s along the move, level, z up; q is square to the plane.
     along = way[..., :2] / length[..., None]
     off = points[:, None] - a
     s = off[..., 0] * along[..., 0] + off[..., 1] * along[..., 1]
@@ -89,7 +89,7 @@ def beyond(points: np.ndarray, least: np.ndarray) -> np.ndarray:
     """How far points outside the part are from it; `least`: their bound.
 
     A point that breaks one limit alone is as far as that says. The others are near an edge: the nearest point that
-    keeps all limits is sought with their tangent planes, which are laid anew until nothing is broken.
+    keeps all limits is sought with their tangent planes, which are updated until no limit is broken.
     """
     level, normals = limits(points)
     rows = np.arange(len(points))

@@ -34,7 +34,7 @@ def stages(data: Data) -> Figure | None:
         shown |= bars(axis, table)
         axis.set_title("in a window: event to picture" if window else "without a window, nothing drawn", loc="left")
         axis.set_xlabel("wall time of an event  ms")
-    title(figure, data, "An event of a stroke: Riffler beside Blender's sculpt mode", f"{data['cores']} cores")
+    title(figure, data, "An event of a stroke: Riffler against Blender's sculpt mode", f"{data['cores']} cores")
     figure.tight_layout(rect=(0, 0.13, 1, 0.97))
     handles = [plt.Rectangle((0, 0), 1, 1, color=colour(key), label=STAGES[key]) for key in STAGES if key in shown]
     figure.legend(handles=handles, loc="lower right", ncols=3 if len(named) == 1 else 5, bbox_to_anchor=(1.0, 0.025))

@@ -1,4 +1,4 @@
-"""Clocks: processor time beside the yardstick, and whole processes of their own where memory counts."""
+"""Clocks: processor time against the yardstick, and whole processes of their own where memory counts."""
 
 from __future__ import annotations
 
@@ -102,7 +102,7 @@ class Timing:
 
 
 class Yardstick:
-    """The capsule loop of one pitch, and what is measured beside it."""
+    """The capsule loop of one pitch, and the work that is timed in turn with it."""
 
     def __init__(self, pitch: float, quick: bool) -> None:
         self._loop = core.CapsuleLoop(pitch)

@@ -103,8 +103,8 @@ def between(
 ) -> dict[str, float]:
     """How far blocks are off the poses ``wanted`` at which they end (``at_mm``, ``at_rad``) and, with all axes moving
     evenly from block to block, off the lines and great circles between them (``tip_mm``, ``axis_rad``). ``tied`` (n,):
-    on the way to which of them the tool must keep to the great circle; None: all. ``tools`` (n,): with which they are
-    reached; where one is changed, nobody knows from where the next comes, and the way is not judged."""
+    poses that the tool must reach along the great circle; None: all. ``tools`` (n,): the tool of each pose;
+    the move after a tool change begins at an unknown place and is not judged."""
     at = poses(joints, axes)
     found = ends(at, wanted)
     off = at[found] - wanted
@@ -161,7 +161,7 @@ def interpreted(program: Path) -> tuple[float, np.ndarray]:
         start = child_seconds()
         done = subprocess.run(
             [rs274, "-t", table, "-g", program.resolve(), out],
-            # It keeps its tools in a file of the home directory: runs beside each other must not share one.
+            # It keeps its tools in a file of the home directory: runs at the same time must not share one.
             env=os.environ | {"LD_LIBRARY_PATH": libraries, "HOME": folder},
             capture_output=True, text=True, check=False,
         )  # fmt: skip

@@ -93,7 +93,7 @@ def sheet(count: int, tilted: bool) -> np.ndarray:
 
 
 def paths(count: int) -> dict[str, np.ndarray]:
-    """(n, 6) poses: ways of the tool's axis that ask much of rotary tables."""
+    """(n, 6) poses: paths of the tool's axis that ask much of rotary tables."""
     t = np.linspace(0, 1, count)[:, None]
     one = np.ones_like(t)
     wave = np.hstack([80 * t, 20 * np.sin(9 * t), -5 * t])

@@ -80,7 +80,7 @@ def digest(paths) -> str:
 
 def contacts(paths, true: list[valleys.Curve]) -> dict[str, float]:
     """The farthest that a contact is from that of the true curve, sides kept along each path, and the largest angle
-    between a normal and the way from contact to centre."""
+    between a normal and the direction from contact to centre."""
     apart, angle = 0.0, 0.0
     every = [Segments.of([c.centres], [c.closed]) for c in true]
     for p in paths:

@@ -177,7 +177,7 @@ def b200(data: Data) -> Figure:
         axis.grid(axis="x", visible=False)
         axis.margins(y=0.12)
     axes.flat[0].set_ylabel("time ÷ plain capsule loop")
-    title(figure, data, "Straight moves (B200): time of one move beside the plain capsule loop in the same run")
+    title(figure, data, "Straight moves (B200): time of one move against the plain capsule loop in the same run")
     figure.tight_layout(rect=(0, 0.06, 1, 0.97))
     marks = [
         Line2D([], [], color=TARGET, linestyle=":", label="target for z"),
@@ -242,7 +242,7 @@ def force(data: Data) -> Figure:
         line[-1].legend()
     for axis in axes[-1][:-1]:
         axis.set_xlabel("time  s")
-    axes[-1][-1].set_xlabel("way of a step ÷ h")
+    axes[-1][-1].set_xlabel("length of a step ÷ h")
     axes[0][0].legend(loc="lower right")
     title(figure, data, "Force of one straight stroke at different rates and pitches, unfiltered")
     figure.tight_layout(rect=(0, 0.02, 1, 0.97))
@@ -297,7 +297,7 @@ def pitch(data: Data) -> Figure:
 
 
 def mesh(data: Data) -> Figure:
-    """Error of B200's mesh against pitch, and against the time that it takes, beside others."""
+    """Error of B200's mesh against pitch, and against the time that it takes, with those of others."""
     figure, (left, right) = plt.subplots(1, 2, figsize=(12, 5.2))
     table = rows(data, "error")
     for directions, (colour, mark) in colours(values(table, "directions")).items():

@@ -42,7 +42,7 @@ def title(figure: Figure, data: Data, text: str, threads: str = "one thread") ->
 
 
 def target(axis: Axes, x: float | None = None, y: float | None = None, text: str = "target") -> None:
-    """A line at a target, named beside it; with an empty text, by the figure's legend."""
+    """A line at a target, labelled next to it; with an empty text, by the figure's legend."""
     if x is not None:
         axis.axvline(x, color=TARGET, linewidth=1, linestyle=":")
         axis.annotate(text, (x, 1), xycoords=("data", "axes fraction"), rotation=90, va="top", ha="right",

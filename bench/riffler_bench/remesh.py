@@ -1,4 +1,4 @@
-"""Surfaces with two parameters as closed triangle meshes, in three ways; every vertex is on the exact surface.
+"""Surfaces with two parameters as closed triangle meshes of three kinds; every vertex is on the exact surface.
 
 "coarse": as few rows as the surface's bends allow, evenly. "fine": rows 0.6 mm apart, every vertex moved at random
 along the surface, each square cut along its shorter diagonal as Delaunay would. "needles": rows at random distances

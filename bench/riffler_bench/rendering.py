@@ -53,7 +53,7 @@ def times(out: Report, settings: Settings) -> None:
 def errors(out: Report, settings: Settings) -> None:
     table = out.section(
         "force_error",
-        "Force on the hand beside that of very small steps",
+        "Force on the hand against that of very small steps",
         Column("scene", "scene"),
         Column("scheme", "scheme"),
         Column("mean of a step", "mean_s", report.micro),

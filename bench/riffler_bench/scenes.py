@@ -57,7 +57,7 @@ def motions() -> list[Motion]:
         for angle in (1, 10, 60, 120):
             half = math.radians(angle) / 2
             axes = np.array([turned(-half), turned(half)])
-            # The tip's chord runs through the block at the same height, whatever the angle.
+            # The tip's chord runs through the block at the same height for every angle.
             tips = middle + np.array([0, 0, arm * math.cos(half)]) - arm * axes
             out.append(Motion(f"{angle}° about {about}", np.concatenate([tips, axes], 1), angle, about))
     straight = {

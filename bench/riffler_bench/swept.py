@@ -1,4 +1,4 @@
-"""Paths judged from outside: the motion between rows evaluated anew, and how deep surfaces enter the tool then."""
+"""Paths judged from outside: evaluates the motion between rows again, and how deep surfaces enter the tool on it."""
 
 from __future__ import annotations
 

@@ -95,7 +95,7 @@ def along(centre: tuple[float, float], *contacts: tuple[float, float]) -> Curve:
 
 
 def valley(angle: float) -> Curve:
-    """Of two planes that meet at the origin, alike on both sides."""
+    """The valley of two planes that meet at the origin, alike on both sides."""
     half = radians(angle) / 2
     foot = R / tan(half)
     return along((0, R / sin(half)), *((side * foot * sin(half), foot * cos(half)) for side in (-1, 1)))
@@ -176,7 +176,8 @@ def rounds(rows: list[Callable[[np.ndarray], np.ndarray]], lengths: list[float])
 
 
 def on_slope(radius: float, wall: float, slope: float) -> Curve:
-    """The ball beside a cylinder of radius `wall` about z, at `radius` from it, on a plane that rises with x."""
+    """The ball that touches a cylinder of radius `wall` about z, and a plane that rises with x; its centre is `radius`
+    from the cylinder's axis."""
     t = 2 * pi * np.arange(6000) / 6000
     x, y = np.cos(t), np.sin(t)
     normal = np.array([-slope, 0, 1]) / np.hypot(slope, 1)
@@ -280,7 +281,7 @@ def pit(steep: float) -> Part:
     for k in range(3):
         faces = normals[[k, k - 1]]
         begin = meet @ edges[k]
-        # A contact's share of the two edges of its face grows with the way along one of them; on the rim it is `reach`.
+        # A contact's share of its face's two edges grows with the distance along one of them; on the rim it is `reach`.
         foot = meet - R * faces[0]
         shares = np.linalg.lstsq(np.stack([edges[k], edges[(k + 1) % 3]], 1), foot, rcond=None)[0]
         far = meet + (reach - shares.sum()) * edges[k]

@@ -17,7 +17,7 @@ OVER = 1.0  # mm that the first and the last line, and the ends of all, lie beyo
 # mm from the lowest that the ball is asked to go down to the part. It is 0.12 mm lower where the waves are steep.
 ALLOWANCE = 0.2
 REST = 0.5  # mm that may stand on the part: ALLOWANCE, and the cusps between lines up to 2.5 mm apart
-CHORD = 1e-7  # mm: how far the way of a turning ball's centre may be from the chords that stand for it
+CHORD = 1e-7  # mm: how far the path of a turning ball's centre may be from the chords that stand for it
 WINDOW = 2.0  # mm: points so close together are compared with the same moves
 
 
@@ -103,7 +103,7 @@ def contents(found: VerifyReport) -> tuple[bytes, ...]:
 
 
 def ways(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Begins and ends (m, 3) of straight ways of the ball's centre on the moves between poses: where the axis turns,
+    """Begins and ends (m, 3) of straight paths of the ball's centre on the moves between poses: where the axis turns,
     chords within CHORD of tip + R · axis, the tip on a line and the axis on the great circle at constant rate."""
     a, b = rows[:-1], rows[1:]
     turn = np.arctan2(np.linalg.norm(np.cross(a[:, 3:], b[:, 3:]), axis=1), (a[:, 3:] * b[:, 3:]).sum(1))
@@ -121,11 +121,11 @@ def ways(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 def lowest(begin: np.ndarray, end: np.ndarray, x: np.ndarray, y: np.ndarray) -> np.ndarray:
     """(points,): the least height that the lower half of a ball reaches over each point (x, y) on any of the straight
-    ways of its centre; inf where none comes.
+    paths of its centre; inf where none comes.
 
     Over a point, c(t) − √(R² − d(t)²) is convex: c is linear, and −√ of a concave function is convex. With the
-    way's slope m and the point p beside its line in the plan, its least is where the centre has w = m √((R² − p²) /
-    (1 + m²)) still to go to the point's foot, or at the end that is nearer to that.
+    path's slope m and the point's distance p from it in plan, the least is where the centre has w = m √((R² − p²) /
+    (1 + m²)) left to the point's foot, or at the end that is nearer to that.
     """
     way = end - begin
     length = np.hypot(way[:, 0], way[:, 1])

@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "base/io.hpp"
+#include "base/nearest_word.hpp"
 
 namespace riffler::base {
 
@@ -102,13 +103,16 @@ DescriptionText find_description(const DescriptionCatalog& shelf, std::string_vi
   if (const ShippedText* found = shipped(shelf, name))
     return {std::string(name), std::string(name) + ".toml", std::string(found->toml)};
   if (name.ends_with(".toml")) return read(fs::path(name));
-  std::string known;
-  for (const ShippedText& s : shelf.shipped) known += (known.empty() ? "" : ", ") + std::string(s.name);
+  std::vector<std::string> names;
+  for (const ShippedText& s : shelf.shipped) names.emplace_back(s.name);
   for (const fs::path& path : own_files(shelf)) {
     if (path.stem() == name) return read(path);
-    known += ", " + path.stem().string();
+    names.push_back(path.stem().string());
   }
-  throw std::invalid_argument("unknown " + what + "; known: " + known +
+  std::string known;
+  for (const std::string& n : names) known += (known.empty() ? "" : ", ") + n;
+  const std::string hint = nearest_word_hint(name, names);
+  throw std::invalid_argument("unknown " + what + hint + (hint.empty() ? "; " : " ") + "known: " + known +
                               ", or the path of a .toml file that describes your " + shelf.kind);
 }
 

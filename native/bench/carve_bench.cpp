@@ -1,4 +1,4 @@
-// Carving speed on B200 and B5X beside the yardstick in the same run. Quote the ratio, not the time. `riffler bench`
+// Carving speed on B200 and B5X against the yardstick in the same run. Quote the ratio, not the time. `riffler bench`
 // measures the same through Python, with errors; this is for profilers.
 #include <benchmark/benchmark.h>
 

@@ -1,4 +1,4 @@
-// COL beside FCL and Coal in one process; see usage(). Prints JSON.
+// COL against FCL and Coal in one process; see usage(). Prints JSON.
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>

@@ -43,10 +43,10 @@ struct ContactOptions {
 /// than 0.05 mm after 200 µs.
 std::string contact_times(const ContactOptions& options, const std::vector<Rival>& rivals = {});
 
-/// Queries with budgets (s) beside those without: JSON with time, missed depth and its bound for every pose.
+/// Queries with budgets (s), compared with those without: JSON with time, missed depth and its bound for every pose.
 std::string contact_budgets(const ContactOptions& options, const std::vector<double>& budgets);
 
-/// Depths beside the independent reference: JSON with differences from the least over `points` points spread over the
+/// Depths against the independent reference: JSON with differences from the least over `points` points spread over the
 /// part at `options.poses` poses, and from the bracket over all triangles, to `gap`, at `brackets` of them.
 std::string contact_errors(const ContactOptions& options, std::size_t points, int brackets, double gap);
 

@@ -116,7 +116,7 @@ class Comparison {
     return out;
   }
 
-  /// Whether some ray one tolerance beside has no exact end within two tolerances.
+  /// Whether some ray one tolerance away has no exact end within two tolerances.
   bool moves_with_the_ray(const SweptPath::Near& near, const Vec3& p, const Vec3& d) const {
     for (const Vec3& side : {Vec3{1, 0, 0}, Vec3{-1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, -1, 0}})
       if (crossing(near, p + tolerance_ * world(side), d, reach_) > 2 * tolerance_) return true;

@@ -29,7 +29,7 @@ struct SweepErrors {
 };
 
 /// Compares `rays` rays of every direction of `volume`, a block that the cutter of `tool` carved along `poses`. Three
-/// quarters of the rays, chosen at random by `seed`, are cut, the others lie beside cut ones: lost slivers would be
+/// quarters of the rays, chosen at random by `seed`, are cut, the others lie next to cut ones: lost slivers would be
 /// there. The same for any number of threads.
 SweepErrors sweep_errors(const Volume& volume, const Tool& tool, std::span<const Pose> poses, double tolerance,
                          int rays, std::uint64_t seed);

@@ -95,7 +95,7 @@ void bind_contact(py::module_& m) {
         return bench::contact_errors(contact_options(squares, tool, poses), points, brackets, gap);
       },
       py::arg("squares"), py::arg("tool"), py::arg("poses"), py::arg("points"), py::arg("brackets"), py::arg("gap"),
-      Unlocked(), "Depths beside the independent reference: JSON.");
+      Unlocked(), "Depths against the independent reference: JSON.");
   m.def("contact_slide", &bench::contact_slide, py::arg("steps"), Unlocked(),
         "Force on a ball that slides over an edge: JSON.");
   m.def(

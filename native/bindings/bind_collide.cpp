@@ -24,7 +24,7 @@ bool same(const std::vector<tool::Frustum>& a, const std::vector<tool::Frustum>&
   });
 }
 
-/// Of the same shape, whatever they are called.
+/// Whether two tools have the same shape; their names do not matter.
 bool same(const Tool& a, const Tool& b) {
   const auto &s = a.profile().segments(), &t = b.profile().segments();
   return std::equal(s.begin(), s.end(), t.begin(), t.end(),
@@ -368,7 +368,8 @@ Examples
 (2.0, 'cutter')
 )")
       .def_property_readonly(
-          "spacing", [](const collide::Collider& self) { return self.spacing(); }, "Of the points on the part, mm.")
+          "spacing", [](const collide::Collider& self) { return self.spacing(); },
+          "Spacing of the points on the part, mm.")
       .def("__repr__", &describe);
 }
 

@@ -10,7 +10,8 @@ void bind_files(py::module_& m) {
 
 Links are followed; permissions and owner of a file that is there are kept; RuntimeError for what is no regular file.)")
       .def(py::init<const std::filesystem::path&>(), py::arg("path"))
-      .def("fileno", &base::AtomicFileWriter::descriptor, "Of the draft, which is written to; -1 after ``commit``.")
+      .def("fileno", &base::AtomicFileWriter::descriptor,
+           "File descriptor of the draft, which is written to; -1 after ``commit``.")
       .def(
           "commit",
           [](base::AtomicFileWriter& self) {
@@ -36,7 +37,7 @@ Links are followed; permissions and owner of a file that is there are kept; Runt
         "``draft``, on the same file system, takes the place of ``path`` as an AtomicFileWriter's does.");
   m.def("draft_prefix", &base::draft_prefix, py::arg("path"), "Path with which the names of drafts of ``path`` begin.");
   m.def("clear_drafts", &base::clear_drafts, py::arg("path"),
-        "Removes drafts of ``path`` that nobody has locked: processes that were killed left them.");
+        "Removes drafts of ``path`` that no process has locked: processes that were killed left them.");
 }
 
 }  // namespace riffler::bindings

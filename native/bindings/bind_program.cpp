@@ -185,7 +185,7 @@ array([  0., 600.])
           "What the reader assumed or passed over. Programs that are made of numbers have none.")
       .def_property_readonly(
           "via", &vias_of,
-          "(k, 6) poses on the way to a row, by row: where rotary axes that turn evenly take the tool off the great "
+          "(k, 6) poses on the move to a row, by row: where rotary axes that turn evenly take the tool off the great "
           "circle by more than 0.002 rad, in programs that were read without ``axis_tolerance``.")
       .def(
           "followed", [](const nc::Program& self) { return followed(self); },

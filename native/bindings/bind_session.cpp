@@ -16,7 +16,7 @@ session::StrokeMode stroke_mode(const SharedSession& self) {
   return self.mask ? session::StrokeMode::Beside : session::StrokeMode::Remove;
 }
 
-/// Stock and tool stand at the journal's beginning; every stroke follows as it is made.
+/// Writes stock and tool at the journal's beginning, then the strokes during the session.
 void record(SharedSession& self, const std::filesystem::path& path, const py::dict& notes) {
   const Using use(self);
   if (self.sink) throw std::runtime_error("the session has a journal already");

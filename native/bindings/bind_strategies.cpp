@@ -1,4 +1,4 @@
-// Strategies beside the pencil cut: engraving and swarf.
+// Strategies other than the pencil cut: engraving and swarf.
 #include <memory>
 
 #include "bindings/program_types.hpp"

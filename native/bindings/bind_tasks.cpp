@@ -9,7 +9,7 @@ namespace riffler::bindings {
 
 namespace {
 
-/// Of all tasks there are, under the GIL.
+/// All tasks there are; used under the GIL.
 std::vector<std::weak_ptr<base::Background>>& running() {
   static std::vector<std::weak_ptr<base::Background>> all;
   return all;
@@ -88,8 +88,8 @@ nothing. A Task that nobody holds any more is cancelled and waited for; so are a
       .def("cancel", &Task::cancel,
            "Asks the call to end with Cancelled, and does not wait; without effect where it has ended.")
       .def("result", &Task::result,
-           "What the call returns, the same object each time; waits for it, other threads go on. Raises what the call "
-           "raises, Cancelled after ``cancel``. Ctrl-C ends the waiting, not the call.")
+           "What the call returns, the same object each time; waits for it without blocking other threads. Raises what "
+           "the call raises, Cancelled after ``cancel``. Ctrl-C ends the waiting, not the call.")
       .def("wait", &Task::wait, py::arg("timeout") = py::none(),
            "Waits until the call has ended, or for so many seconds; whether it has. Other threads run meanwhile.")
       .def("__repr__", [](const Task& t) {

@@ -25,7 +25,7 @@ namespace py = pybind11;
 void bind_errors(py::module_& m);
 /// The same translation for another extension module: `core` is riffler._core, which has the exceptions.
 void translate_errors(const py::module_& core);
-/// Of all classes of the module: an object that `__new__` made without `__init__` is a TypeError wherever it is used.
+/// For all classes of the module: any use of an object that `__new__` made without `__init__` is a TypeError.
 void refuse_objects_without_init(const py::module_& m);
 /// A call of any function of the module whose arguments do not fit is answered by riffler.hints.
 void answer_misfits(const py::module_& m);
@@ -100,10 +100,10 @@ PyObject*& task_request();
 PyObject*& task_refusal();
 
 /// A Python callable as Progress, for calls that released the GIL: takes it back, lets Ctrl-C through, and cancels
-/// where the callable returns False (None and anything else go on). Empty for None, but Ctrl-C still works.
+/// where the callable returns False (None and anything else continue). Empty for None, but Ctrl-C still works.
 Progress to_progress(const py::object& callable);
 
-/// Of machines and posts, from a dict or None: numbers, lists of them, bools, texts.
+/// Options of machines and posts, from a dict or None: numbers, lists of them, bools, texts.
 nc::Options to_options(const py::object& object);
 
 }  // namespace riffler::bindings

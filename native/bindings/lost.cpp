@@ -58,7 +58,7 @@ Lost lost_in(const Volume& volume, const dexel::MissedMaterial& missed) {
 Lost lost_by_meshing(const Volume& volume, std::size_t triangles) {
   Lost out = thin_in(volume);
   if (triangles > 0 || !(out.of > 0)) return out;
-  // Crumbs of less than a pitch all around may lie beside each other.
+  // Crumbs of less than a pitch all around may lie next to each other.
   out.volume = std::max(out.volume, out.of);
   if (out.box.empty()) out.box = volume.frame().box;
   out.note = format("nothing of the %.6g mm³ of material is thick enough for a mesh at the pitch of %.6g mm: ", out.of,

@@ -1,4 +1,4 @@
-// What thin material loses on its way from a mesh to a volume and back, for Python.
+// Thin material that gets lost from a mesh to a volume and back, for Python.
 #pragma once
 
 #include "bindings/bindings.hpp"
@@ -15,9 +15,9 @@ struct Lost {
   std::string note;           ///< a sentence where it is worth one, otherwise empty
 };
 
-/// Of a volume that was made of a mesh: what its rays miss, or what its own mesh will lack.
+/// For a volume that was made of a mesh: what its rays miss, or what its own mesh will lack.
 Lost lost_in(const Volume& volume, const dexel::MissedMaterial& missed);
-/// Of a volume whose mesh has so many triangles.
+/// For a volume whose mesh has so many triangles.
 Lost lost_by_meshing(const Volume& volume, std::size_t triangles);
 
 /// The note, where there is one, as a Python warning.

@@ -32,7 +32,7 @@ std::vector<Fixture> to_fixtures(const FixturesLike& object) {
   return out;
 }
 
-/// Volumes as they are; meshes at the stock's pitch.
+/// Volumes unchanged; meshes as volumes at the stock's pitch.
 std::vector<Volume> to_volumes(const std::vector<Fixture>& fixtures, double pitch, const Progress& progress) {
   std::vector<Volume> out;
   for (std::size_t k = 0; k < fixtures.size(); ++k) {

@@ -22,7 +22,7 @@
 #include "fuzz/targets.hpp"
 #include "riffler/base/parallel.hpp"
 
-// Of the sanitizers' runtime, where there is one.
+// Part of the sanitizers' runtime, where there is one.
 extern "C" [[gnu::weak]] void __sanitizer_set_death_callback(void (*callback)());
 
 namespace riffler::fuzz {
@@ -141,7 +141,7 @@ int entry(int count, char** words) {
     return 0;
   }
   const Target& chosen = target(given.target);
-  base::set_thread_count(1);  // branches are told apart by the order in which they are taken
+  base::set_thread_count(1);  // branches are distinguished by the order in which they are taken
   fs::create_directories(given.values.at("--found"));
   found_path = (fs::path(given.values.at("--found")) / (given.target + "-" + std::to_string(getpid()))).string();
   std::signal(SIGALRM, &too_slow);

@@ -13,7 +13,7 @@ void set(Bytes& bytes, std::size_t at, T value) {
   std::memcpy(bytes.data() + at, &value, sizeof value);
 }
 
-/// Of .rvol and .rprog: a header with the file's length at 16 and its checksum in its last four bytes, then pieces with
+/// .rvol and .rprog: a header with the file's length at 16 and its checksum in its last four bytes, then pieces with
 /// their payload's length somewhere in their head and a checksum of head and payload in its last four bytes.
 void repair_pieces(Bytes& bytes, std::size_t header, std::size_t head, std::size_t length_at) {
   if (bytes.size() < header) return;

@@ -31,7 +31,7 @@ void require(bool good, const char* what) {
   if (!good) throw Broken(what);
 }
 
-/// Calls `read`, which may refuse the bytes in the ways that readers promise.
+/// Calls `read`, which may refuse the bytes with the errors that readers promise.
 template <class Read>
 void reading(const Read& read) {
   try {
@@ -120,7 +120,7 @@ void hid(View bytes) {
   }
 }
 
-/// Of a packet: its messages name the packet's kind.
+/// Reads a packet: messages name the packet's kind.
 template <class Read>
 void packet(const Read& read) {
   try {

@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "base/nearest_word.hpp"
+
 namespace riffler::nc {
 
 std::optional<OptionValue> OptionReader::take(OptionFact fact) {
@@ -119,9 +121,15 @@ std::string OptionReader::path(const std::string& name) {
 
 void OptionReader::done() const {
   if (options_.empty()) return;
+  const std::string& wrong = options_.begin()->first;
+  std::vector<std::string> names;
   std::string known;
-  for (const OptionFact& fact : facts_) known += (known.empty() ? "" : ", ") + fact.name;
-  throw std::invalid_argument(owner_ + ": unknown option '" + options_.begin()->first + "'; " +
+  for (const OptionFact& fact : facts_) {
+    names.push_back(fact.name);
+    known += (known.empty() ? "" : ", ") + fact.name;
+  }
+  const std::string hint = base::nearest_word_hint(wrong, names);
+  throw std::invalid_argument(owner_ + ": unknown option '" + wrong + "'" + hint + (hint.empty() ? "; " : " ") +
                               (known.empty() ? "it takes none" : "known: " + known));
 }
 

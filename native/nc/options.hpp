@@ -67,7 +67,7 @@ class OptionReader {
   /// A path; empty if not given.
   std::string path(const std::string& name);
 
-  /// Throws std::invalid_argument naming an option that was not taken, and the known ones.
+  /// Throws std::invalid_argument naming an option that was not taken, the nearest known one, and all known ones.
   void done() const;
 
  private:

@@ -111,7 +111,7 @@ std::optional<Vec2> AssemblyDistance::foot(const Edge& e, const Vec2& p) {
   const double length = glm::length(d);
   if (length == 0) return e.from;  // all of the arc is as near
   const Vec2 at = *e.centre + d * (e.radius / length);
-  // By the angle: at a ball's tip heights of the circle are alike to rounding while the way along it is not.
+  // By the angle: at a ball's tip heights on the circle are equal to rounding while distances along it are not.
   const auto turn = [&](const Vec2& from, const Vec2& to) {
     return e.side * std::atan2(from.x * to.y - from.y * to.x, glm::dot(from, to));
   };
@@ -181,8 +181,8 @@ bool AssemblyDistance::beyond(const Vec3& p, double radius, const Pose& pose) co
 }
 
 /// Let the nearest edge, of a convex solid, be on the union's surface as far around the foot of p as the feet of all
-/// points within `radius` can be, and no other solid be so near. Then those in the tool are in that solid, at most as
-/// deep as they are below the edge carried on; and the signed distance to that, a cone, a ball or the outside of a
+/// points within `radius` can be, and no other solid be so near. Then the points in the tool are in that solid, and no
+/// deeper in it than below the edge carried on; and the signed distance to that, a cone, a ball or the outside of a
 /// ring, is convex, so it is nowhere below its tangent plane at p. The least of that is at a corner of the triangle.
 std::optional<double> AssemblyDistance::tangent_bound(const Corners& triangle, const Vec3& p, double radius,
                                                       const Pose& pose) const {

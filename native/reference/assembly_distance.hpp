@@ -12,7 +12,7 @@
 
 namespace riffler::reference {
 
-/// Of a triangle.
+/// Corners of a triangle.
 using Corners = std::array<Vec3, 3>;
 
 /// Distance to the union of the solids. Outside it is the least of theirs. Inside, the nearest point of the union's

@@ -104,7 +104,7 @@ void CutterDistance::add_slices(const Edge& e) {
   }
 }
 
-/// Whether the outline never turns back on its way from the axis round to the axis.
+/// Whether the outline never turns back between its two ends on the axis.
 bool CutterDistance::convex(const std::vector<Edge>& edges) {
   double heading = 0;
   const auto turns_on = [&](const Vec2& way) {

@@ -18,8 +18,8 @@ struct SpreadPoints {
 };
 SpreadPoints spread_points(std::span<const Corners> triangles, std::size_t count);
 
-/// The least over the points: the surface's is at most that, and at least that less the spacing, since the distance
-/// changes by no more than the way.
+/// The least distance over the points: the surface's is at most that, and at least that less the spacing, since
+/// a distance changes by no more than the point moves.
 double least_over(std::span<const Vec3> points, const AssemblyDistance& tool, const Pose& pose);
 
 /// The surface's least distance lies in it.

@@ -40,7 +40,7 @@ class Search {
     if (bound > out_.attained + gap_) cells_.push({bound, t});
   }
   Entry run(std::size_t most) {
-    most += looked_;  // beside the first look at every triangle
+    most += looked_;  // in addition to the first look at every triangle
     while (!cells_.empty() && cells_.top().bound > out_.attained + gap_ && looked_ < most) {
       const auto [a, b, c] = cells_.top().corners;
       cells_.pop();

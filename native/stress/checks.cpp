@@ -119,7 +119,7 @@ Allowed allowed_error(const Stage& stage, const Move& move) {
   const double most =
       std::max({glm::length(box.lower), glm::length(box.upper), glm::length(move.from.tip), glm::length(move.to.tip)});
   const double way = glm::length(move.to.tip - move.from.tip), radius = stage.tool.profile().max_radius();
-  // Rays stand 6e-10 pitches beside their places; the rest is rounding, of sizes, of coordinates and along the way.
+  // Rays stand 6e-10 pitches off their places; the rest is rounding of sizes, of coordinates and along the move.
   const double rounding = 3e-9 * (radius + stage.frame.pitch) + 1.5e-14 * most + 3e-11 * way;
   double hollow = 0, apex = 0;
   Vec2 start{0, 0};

@@ -39,7 +39,7 @@ struct Comparison {
   Problem problem;
 };
 
-/// Of up to `rays` rays that the move changed, and some others: the new ends are within the tolerance, along the ray
+/// Checks up to `rays` rays that the move changed, and some others: new ends are within the tolerance, along the ray
 /// or, where the ray grazes, in space; and the middles of all spans and gaps, and random points, are on the right side.
 Comparison compare_with_reference(Random& random, const Stage& stage, const Move& move, const Volume& before,
                                   const Volume& after, int rays);

@@ -9,7 +9,7 @@ namespace riffler::stress {
 
 namespace {
 
-constexpr double kGrazing = 2.23606797749979;  // √5: where the way along the ray is longer than so many times that
+constexpr double kGrazing = 2.23606797749979;  // √5: where the distance along the ray is more than this times that
                                                // in space, an end is measured in space
 
 struct RayName {

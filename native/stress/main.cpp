@@ -32,7 +32,7 @@ void usage() {
       "  --cutter NAME      one cutter only\n"
       "  --session N        one session of it only, with every move compared: what a failure's reproducer says\n"
       "  --journal FILE     with --session: write it as a .rjournal, a stroke a move\n"
-      "  --first-session N  start there, to go on with a run that was cut short; a session has 16 moves (0)\n"
+      "  --first-session N  start there, to continue a run that was cut short; a session has 16 moves (0)\n"
       "  --compare-every N  moves from one comparison with the reference to the next (8)\n"
       "  --table            errors by cutter and kind of degeneracy\n"
       "Cutters:");

@@ -66,7 +66,7 @@ Volume contradictory(Random& random) {
   return volume;
 }
 
-/// Spans on every ray round the lattice points that are inside; `cut`: share of the way to the next one.
+/// Spans on every ray round the lattice points that are inside; `cut`: share of the distance to the next one.
 template <class Inside>
 Volume from_points(const dexel::Frame& frame, double cut, const Inside& inside) {
   Volume volume(frame);
@@ -143,7 +143,7 @@ Vec3 point_in(Random& random, const Box3& box) {
   return box.lower + Vec3(random.uniform(), random.uniform(), random.uniform()) * box.size();
 }
 
-/// On the lattice or half-way between its planes.
+/// On the lattice or halfway between its planes.
 Vec3 snapped(Random& random, const Place& place) {
   Vec3 p;
   for (int k = 0; k < 3; ++k) p[k] = place.frame.box.lower[k] + place.h / 2 * random.below(2 * place.cells[k] + 1);

@@ -12,10 +12,10 @@ enum class MeshScene {
   Contradictory,  ///< the grids know nothing of each other; ends anywhere, often on lattice planes
   Signs,          ///< lattice points in and out at random, alike in all grids
   Checkerboard,   ///< in and out by turns, with some points turned round
-  OneUlp,         ///< gaps and spans of one step of a double, and ends one step beside lattice planes
+  OneUlp,         ///< gaps and spans of one step of a double, and ends one step off lattice planes
   Islands,        ///< a few rays that hit anything, of one grid or of all
   Solids,         ///< spheres, half-spaces, boxes turned or not, put together
-  Coincident,     ///< boxes that share faces, edges and corners, on lattice planes and half-way between
+  Coincident,     ///< boxes that share faces, edges and corners, on lattice planes and halfway between
   Thin,           ///< walls, gaps and steps thinner than the pitch
   Booleans,       ///< volumes added, taken away and met
   Carved,         ///< moves of every cutter, from the degenerate limits

@@ -62,7 +62,7 @@ class Drawer {
   const Volume& now_;
 };
 
-/// The cutter's side, or a flat face, exactly in a plane of rays; the way a whole number of pitches, or none.
+/// The cutter's side, or a flat face, exactly in a plane of rays; the move is a whole number of pitches, or 0.
 void Drawer::walls_on_rays(Pose& from, Pose& to) {
   const Vec3 axis = random_.along_rays();
   const int k = axis.x != 0 ? 0 : axis.y != 0 ? 1 : 2;
@@ -74,7 +74,7 @@ void Drawer::walls_on_rays(Pose& from, Pose& to) {
   to.tip[random_.below(3)] += pitch_ * (random_.below(13) - 6);
 }
 
-/// One ray touches the cutter's side, for a way that keeps it there or leaves it.
+/// One ray touches the cutter's side, on a move that keeps it there or leaves it.
 void Drawer::tangent_to_ray(Pose& from, Pose& to) {
   const int k = random_.below(3);
   Vec3 ray{0};
@@ -88,7 +88,7 @@ void Drawer::tangent_to_ray(Pose& from, Pose& to) {
   to = {from.tip + random_.uniform(-2, 2) * radius_ * random_.one_of(ways), axis};
 }
 
-/// Tip and way on the lattice of half pitches, axis along rays.
+/// Tip and move on the lattice of half pitches, axis along rays.
 void Drawer::on_lattice(Pose& from, Pose& to) {
   from.axis = to.axis = random_.along_rays();
   for (int k = 0; k < 3; ++k) {
@@ -221,8 +221,8 @@ Kind draw_kind(Random& random, bool first) {
 
 const char* name(Kind kind) {
   constexpr const char* kNames[] = {
-      "no way",         "tiny way",       "way along rays",  "axis along rays", "both along rays", "walls on rays",
-      "tangent to ray", "on the lattice", "tip on surface",  "long way",        "straight",        "tiny angle",
+      "no move",        "tiny move",      "move along rays", "axis along rays", "both along rays", "walls on rays",
+      "tangent to ray", "on the lattice", "tip on surface",  "long move",       "straight",        "tiny angle",
       "turning",        "about a pivot",  "edge-on to rays", "near antipodal",  "far outside",     "repeated"};
   static_assert(std::size(kNames) == static_cast<std::size_t>(Kind::kCount));
   return kNames[static_cast<int>(kind)];

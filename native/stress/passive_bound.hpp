@@ -1,4 +1,4 @@
-// The stiffest virtual wall that a device renders without giving energy to the hand, whatever the hand does.
+// The stiffest virtual wall that a device renders without giving energy to the hand, for any motion of the hand.
 #pragma once
 
 namespace riffler::haptics {

@@ -87,12 +87,11 @@ class CarvingSession {
     return p;
   }
 
-  /// All moves, and the ways between them, in one go: the same bytes with 1 thread and with 4.
+  /// All moves, and the moves between them, in one go: the same bytes with 1 thread and with 4.
   Problem check_threads() const {
     std::vector<Pose> poses;
     for (const Move& m : moves_) {
-      if (m.kind == Kind::FarOutside || m.kind == Kind::LongWay)
-        continue;  // the ways to them would be most of the work
+      if (m.kind == Kind::FarOutside || m.kind == Kind::LongWay) continue;  // moves to them would be most of the work
       if (!poses.empty() && glm::dot(poses.back().axis, m.from.axis) < -0.999) continue;
       poses.push_back(m.from), poses.push_back(m.to);
     }

@@ -14,7 +14,7 @@ namespace riffler::stress {
 
 struct Options {
   std::uint64_t seed = 1;
-  std::uint64_t first_session = 0;  ///< a run that was cut short goes on from here
+  std::uint64_t first_session = 0;  ///< a run that was cut short continues from here
   int compare_every = 8;            ///< moves, at random, from one comparison with the reference to the next; 0: never
   int compared_rays = 10;           ///< of those that a compared move changed
   int threads_every = 8;            ///< sessions until one is carved again in one go, with 1 and with 4 threads

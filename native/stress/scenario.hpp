@@ -59,7 +59,7 @@ struct Move {
   double tolerance;  ///< mm
 };
 
-/// `now`: the stock as it is; `before`: earlier moves of the session.
+/// `now`: the present stock; `before`: earlier moves of the session.
 Move draw_move(Random& random, const Stage& stage, const Volume& now, std::span<const Move> before);
 
 }  // namespace riffler::stress

@@ -1,5 +1,5 @@
 // Minutes of sculpting with the simulated pen, as fast as the machine computes: what a session costs, and whether it
-// could go on for ever.
+// could run for ever.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ struct SculptingOptions {
   bool controlled = true;        ///< by passivity
   std::int64_t jitter_us = 200;  ///< of the cable
   double warm = 30;              ///< s after which nothing may be asked of the system
-  /// Calls of operator new in this thread so far, where somebody counts them.
+  /// Calls of operator new in this thread so far, in programs that count them.
   std::function<long()> allocations = [] { return 0L; };
   std::function<void(double)> progress = [](double) {};  ///< share that is done
 };

@@ -1,4 +1,4 @@
-// Volumes filled ray by ray: from solids whose rays are computed exactly, or from whatever a function says.
+// Volumes filled ray by ray: from solids whose rays are computed exactly, or from a function.
 #pragma once
 
 #include <algorithm>

@@ -108,8 +108,8 @@ CoupledScene coupled_scene(std::uint64_t seed) {
 }
 
 WallHand guide(const WallDevice& device, const Column& direction) {
-  // Springs against every way but `direction`, in coordinates where rad count as lengths; far stiffer than any wall
-  // here.
+  // Springs against all directions but `direction`, in coordinates where rad count as lengths; far stiffer than any
+  // wall here.
   const int n = device.coordinates();
   Column u = direction;
   for (int i = 3; i < n; ++i) u[static_cast<std::size_t>(i)] *= kLever;

@@ -33,7 +33,7 @@ struct CoupledScene {
 };
 CoupledScene coupled_scene(std::uint64_t seed);
 
-/// A hand that lets the device slide along `direction` and no other way.
+/// A hand that lets the device slide along `direction` only.
 WallHand guide(const WallDevice& device, const Column& direction);
 
 /// A hand on a one-sided wall. One that strikes presses, wavers, and lets go at random; one that does not presses with

@@ -65,7 +65,7 @@ class WallSimulation {
   WallSimulation(const WallDevice& device, const WallHand& hand, const SimulatedWall& wall,
                  const std::optional<haptics::PassivitySettings>& settings = {});
   void place(const Column& position, const Column& velocity);
-  /// Samples, then goes on by one period with the force held and `hand` (N, N·mm).
+  /// Samples, then advances by one period with the force held and `hand` (N, N·mm).
   void tick(const Column& hand);
 
   const Column& position() const { return position_; }

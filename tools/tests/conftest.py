@@ -1,4 +1,4 @@
-"""tools/ are scripts beside each other, not a package: the tests import them as they import each other."""
+"""tools/ are scripts in one folder, not a package: the tests import them as they import each other."""
 
 import sys
 from pathlib import Path

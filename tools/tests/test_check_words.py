@@ -15,6 +15,7 @@ char c = '"';  // a way
 PYTHON = """'''Used by whoever calls.'''
 way = "way"
 x = f"goes on {way}"  # what of it
+y = 1  # mm, along `way`
 """
 MARKDOWN = """# T
 
@@ -59,12 +60,34 @@ def test_more_than_allowed_fails_with_the_places_and_fewer_asks_to_shrink_the_li
     assert "--update" in check_words.problems([], {"gone.md": 1})[0]
 
 
-def test_the_list_cannot_grow(tmp_path, monkeypatch):
-    listed = tmp_path / "allowed.txt"
-    listed.write_text("2 a.md\n")
-    monkeypatch.setattr(check_words, "ALLOWED", listed)
+@pytest.fixture
+def listed(tmp_path, monkeypatch):
+    """The path of a list that does not exist."""
+    monkeypatch.setattr(check_words, "ALLOWED", tmp_path / "allowed.txt")
+    return check_words.ALLOWED
+
+
+def test_the_list_shrinks_until_it_is_gone_and_cannot_grow(listed):
+    listed.write_text("2 a.md\n1 b.md\n")
     hits = list(check_words.hits_in("a.md", "nobody\n"))
     check_words.update(hits, check_words.read_allowed())
     assert listed.read_text() == "1 a.md\n"
     with pytest.raises(StepError, match=r"only shrink.*a\.md"):
         check_words.update(hits * 2, check_words.read_allowed())
+    assert listed.read_text() == "1 a.md\n"
+    check_words.update([], check_words.read_allowed())
+    assert not listed.exists()
+
+
+@pytest.mark.parametrize("text", [None, "", "\n"])
+def test_without_a_list_or_with_an_empty_one_no_word_is_allowed(listed, text):
+    if text is not None:
+        listed.write_text(text)
+    allowed = check_words.read_allowed()
+    hits = list(check_words.hits_in("a.md", "nobody\n"))
+    assert allowed == {} and check_words.problems([], allowed) == []
+    assert check_words.problems(hits, allowed)[-1] == "a.md: 1 words of the list, 0 allowed"
+    with pytest.raises(StepError, match=r"only shrink.*a\.md"):
+        check_words.update(hits, allowed)
+    check_words.update([], allowed)
+    assert not listed.exists()

@@ -19,7 +19,7 @@ PROGRAM = "#!{python}\nimport sys\nsys.path.insert(0, '')\nimport thing\nprint(t
 
 
 class Checkouts:
-    """Checkouts beside each other, with a pip that installs one module and one program, and counts."""
+    """Several checkouts, with a pip that installs one module and one program, and counts."""
 
     def __init__(self, folder, monkeypatch):
         self.folder, self.monkeypatch, self.installed = folder, monkeypatch, 0

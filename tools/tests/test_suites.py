@@ -1,4 +1,4 @@
-"""The suites run beside each other: all to the end, each one's output whole, the exit code that of the worst."""
+"""The suites run in parallel: all to the end, each one's output whole, the exit code that of the worst."""
 
 import re
 import subprocess

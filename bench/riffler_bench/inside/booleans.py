@@ -12,7 +12,7 @@ WAY = 20.0  # mm
 
 
 def capsule(segments=64):
-    """Vertices and triangles of a ball's way along x, its lowest line DEPTH below the block's top: rings about x."""
+    """Vertices and triangles of a ball's sweep along x, its lowest line DEPTH below the block's top: rings about x."""
     quarter = np.linspace(0, np.pi / 2, segments // 4 + 1)
     x = np.concatenate([-WAY / 2 - RADIUS * np.cos(quarter[1:]), WAY / 2 + RADIUS * np.sin(quarter[:-1])])
     r = np.concatenate([RADIUS * np.sin(quarter[1:]), RADIUS * np.cos(quarter[:-1])])
@@ -48,7 +48,7 @@ def solvers():
 
 
 def modifier(solver, side, repeats):
-    """The modifier's evaluation, again and again: the tool is moved by nothing, and its object told to have changed."""
+    """Evaluates the modifier repeatedly: moves the tool by nothing and tags its object as changed."""
     ob = block(side)
     before = host.enclosed(*host.numbers(ob.data))
     mesh = bpy.data.meshes.new("Capsule")
@@ -64,7 +64,7 @@ def modifier(solver, side, repeats):
         ob.update_tag(refresh={"DATA"})
         bpy.context.view_layer.update()
 
-    evaluated()  # the first builds the graph anew
+    evaluated()  # the first builds the whole graph
     for _ in range(repeats):
         times.of("evaluation", evaluated)
     result = ob.evaluated_get(bpy.context.evaluated_depsgraph_get())

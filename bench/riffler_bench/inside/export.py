@@ -1,5 +1,5 @@
-"""A sculpt as a binary STL: by the add-on's operator, straight from the volume, and by Blender's own, from its mesh; to
-the same folder, in turn, each told by its time, bytes and facets."""
+"""Exports a sculpt as a binary STL: with the add-on's operator, from the volume, and with Blender's own, from its mesh;
+to the same folder, in turn. Reports time, bytes and facets of each."""
 
 from pathlib import Path
 

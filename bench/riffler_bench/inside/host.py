@@ -130,7 +130,7 @@ def enclosed(co, tri):
 
 
 def plain(name, co, tri):
-    """A mesh object that is nobody's sculpt, active and alone in the scene."""
+    """A mesh object that is no sculpt, active and alone in the scene."""
     for ob in list(bpy.data.objects):
         bpy.data.objects.remove(ob)
     mesh = bpy.data.meshes.new(name)

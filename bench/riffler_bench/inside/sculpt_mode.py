@@ -1,5 +1,5 @@
 """Blender's own sculpt mode at the same work: its draw brush, as wide as the add-on's tool, along the same lines on a
-mesh of as many triangles: as it is, and with dynamic topology."""
+mesh of as many triangles: with fixed and with dynamic topology."""
 
 import bpy
 import host
@@ -54,8 +54,8 @@ def brush(scale=1.0):
 
 
 def moved(ob, side, way, scale=1.0):
-    """What finished strokes of `way` mm have left of the mesh, out of sculpt mode: how deep, how long, and how many
-    triangles. A brush that did not go all the way has measured nothing."""
+    """Leaves sculpt mode and measures what strokes `way` mm long did to the mesh: depth, length and number of
+    triangles. Raises RuntimeError for strokes shorter than that."""
     bpy.ops.object.mode_set(mode="OBJECT")
     evaluated = ob.evaluated_get(bpy.context.evaluated_depsgraph_get())
     mesh = evaluated.to_mesh()

@@ -16,7 +16,7 @@ STAGES = ("cut", "follow", "mesh", "transfer", "depsgraph", "draw", "event", "ot
 
 
 def removed(length):
-    """Closed form: half a ball's segment at either end of a groove, and its section along the way between them."""
+    """Closed form: half a ball's segment at either end of a groove, and the groove's section between them."""
     half = np.arccos((RADIUS - DEPTH) / RADIUS)
     cap = np.pi * DEPTH**2 * (3 * RADIUS - DEPTH) / 3
     return length * RADIUS**2 * (half - np.sin(half) * np.cos(half)) + cap
@@ -56,7 +56,7 @@ class Looks:
         live.stages.take_counts()
 
     def watch(self, brush):
-        """Of a Brush that the add-on has made."""
+        """Times the calls of a Brush that the add-on has made."""
         add, look = brush.add, brush.look
 
         def timed(sample):
@@ -187,7 +187,7 @@ def headless(side, strokes, events):
 
 
 def windowed(side, strokes, events):
-    """By a mouse that Blender is told of: from each event to the picture that shows what it did."""
+    """Strokes by simulated mouse events: measures from each event to the picture that shows its cut."""
     from view import View
 
     ob, live, began = sculpt(side)

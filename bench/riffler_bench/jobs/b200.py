@@ -1,4 +1,4 @@
-"""B200: 200 straight ramping moves through a block, every named cutter, beside the yardstick and beside rivals."""
+"""B200: 200 straight ramping moves through a block, every named cutter, compared with the yardstick and with rivals."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def carve(out: Report, settings: Settings, pitches: tuple[float, ...], progress:
 def others(out: Report, settings: Settings) -> None:
     table = out.section(
         "rivals",
-        "B200 beside others, wall time",
+        "B200 against others, wall time",
         Column("engine", "engine"),
         Column("one move, median", "us_per_move", lambda us: report.micro(us / 1e6)),
         Column("triangles", "triangles", report.mega),

@@ -173,7 +173,7 @@ def order(out: Report) -> None:
                 time_by_tolerance=slope(mine, "move_s"),
                 tenfold=time[0.001] / time[0.01] if {0.001, 0.01} <= time.keys() else None,
             )
-    table.notes.append("Least squares over all tolerances. Target for 0.001 beside 0.01: at most 1.4 ×.")
+    table.notes.append("Least squares over all tolerances. Target for 0.001 against 0.01: at most 1.4 ×.")
 
 
 def slope(rows: list[dict[str, Any]], key: str) -> float | None:

@@ -1,5 +1,5 @@
-"""The add-on in Blender: what a stroke takes from the event to the picture, stage by stage, beside Blender's own sculpt
-mode and its boolean modifier; a large surface to an STL; a part to NC code."""
+"""The add-on in Blender: how long a stroke takes from the event to the picture, stage by stage, compared with Blender's
+own sculpt mode and its boolean modifier; a large surface to an STL; a part to NC code."""
 
 from __future__ import annotations
 
@@ -334,7 +334,7 @@ def notes(out: Report, tables: tuple[Section, ...], load: float) -> None:
         "earlier pictures and the wait for the next look, of which 30 are made a second. Without a window an event "
         "ends when Blender's dependency graph is up to date; in a window it ends when a "
         "pixel of the new picture has been read back. Anti-aliasing is off. "
-        "Blender makes a batch anew for each chunk that "
+        "Blender makes a new batch for each chunk that "
         "has changed. Exact: the closed form of the groove.",
         f"Load of the machine before and after: {load:.1f} and {out.settings['load_after']:.1f}; two busy threads got "
         f"{out.settings['cores_free']:.2f} processors. "
@@ -360,5 +360,5 @@ def notes(out: Report, tables: tuple[Section, ...], load: float) -> None:
     )
     planned.notes.append(
         f"{MODEL} scaled to 100 mm, ball Ø6, valleys of {LEAST:g} mm or more, one upright key a path, {POST}. Once, "
-        "wall time. In Blender paths have a point a frame besides, curves and a timeline."
+        "wall time. In Blender paths also get a point a frame, curves and a timeline."
     )

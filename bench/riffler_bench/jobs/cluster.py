@@ -1,4 +1,4 @@
-"""Verification on a cluster of one and two worker processes of this machine, beside the same without a cluster:
+"""Verification on a cluster of one and two worker processes of this machine, compared with the same without a cluster:
 seconds, bytes moved, and what a slab costs more."""
 
 from __future__ import annotations
@@ -103,7 +103,7 @@ def run(settings: Settings, progress: Progress = None) -> Report:
                 distributed.Client(local, set_as_default=False) as client,
             ):
                 client.wait_for_workers(count, timeout=60)
-                client.run(eval, cluster.VERSION_OF)  # so that nobody waits for an import
+                client.run(eval, cluster.VERSION_OF)  # imports riffler before the clock starts
                 found, figures = on_workers(client, program, stock)
             same = waves.contents(found) == expected
             out.check(same, f"{name}, {count} workers: other bytes")

@@ -1,5 +1,5 @@
-"""COL: a tool with its holder against a part with sharp valleys: depth, force and signed distance beside FCL and Coal;
-budgets and what they miss; depths beside the independent reference; the force over an edge."""
+"""COL: a tool with its holder against a part with sharp valleys: depth, force and signed distance, against FCL and
+Coal; budgets and what they miss; depths compared with the independent reference; the force over an edge."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def run(settings: Settings, progress: Progress = None) -> Report:
     return out
 
 
-# ---- time, beside others
+# ---- time, against others
 
 
 def times(out: Report, settings: Settings, progress: Any) -> None:
@@ -215,7 +215,7 @@ def budgets(out: Report, settings: Settings) -> None:
 def errors(out: Report, settings: Settings, progress: Any) -> None:
     table = out.section(
         "errors",
-        "Signed distances beside the independent reference",
+        "Signed distances against the independent reference",
         Column("triangles", "triangles"),
         Column("tool", "tool"),
         Column("poses", "poses"),

@@ -1,4 +1,4 @@
-"""Half a million triangles to a tenth: time, distance of the surfaces from each other, defects, beside others."""
+"""Half a million triangles to a tenth: time, distance of the surfaces from each other, defects, against others."""
 
 from __future__ import annotations
 

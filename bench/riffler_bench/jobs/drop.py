@@ -1,4 +1,4 @@
-"""The drop cutter beside OpenCAMLib's: where cutters come to rest on parts from above, and how many points a second."""
+"""The drop cutter against OpenCAMLib's: where cutters come to rest on parts from above, and points a second."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def run(settings: Settings, progress: Progress = None) -> Report:
         Column("99.9 % within mm", "most_mm", report.mm),
         Column("over 1e-6 mm", "over"),
         Column("one finds nothing", "alone"),
-        Column("Riffler there beside the closed form mm", "mine_mm", report.mm),
+        Column("Riffler there, off the closed form mm", "mine_mm", report.mm),
         Column("OpenCAMLib there", "theirs_mm", report.mm),
         Column("", "note"),
     )

@@ -1,4 +1,4 @@
-"""A mesh that follows strokes: time of an update beside that of the whole mesh."""
+"""A mesh that follows strokes: time of an update compared with that of the whole mesh."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Continuity of the force: one straight stroke, sampled at different rates and pitches, beside its closed form."""
+"""Continuity of the force: one straight stroke, sampled at different rates and pitches, against its closed form."""
 
 from __future__ import annotations
 

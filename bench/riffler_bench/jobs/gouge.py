@@ -72,7 +72,7 @@ def swept(out: Report, settings: Settings, progress: Progress) -> None:
         Column("by at most mm", "lift_mm", report.three),
         Column("inserted", "inserted"),
         Column("blocked", "blocked"),
-        Column("ways unsafe", "unsafe"),
+        Column("moves unsafe", "unsafe"),
         Column("deepest at the points before mm", "before_mm", report.mm),
         Column("judged at", "judged", lambda n: f"{n} poses"),
         Column("deepest after mm", "after_mm", report.mm),
@@ -112,7 +112,7 @@ def swept(out: Report, settings: Settings, progress: Progress) -> None:
     table.notes += notes(most, table.rows)
     times.notes.append(
         "All with one thread: finding all paths, the maps of free orientations, and the cutter locations. Looks: "
-        "clearances of part and jaws at a pose, and groups of bounds or triangles along a way; the locations' time for "
+        "clearances of part and jaws at a pose, and groups of bounds or triangles on a move; the locations' time for "
         "each."
     )
 
@@ -120,8 +120,8 @@ def swept(out: Report, settings: Settings, progress: Progress) -> None:
 def notes(most: float, rows: list[dict[str, Any]]) -> list[str]:
     why = [f"{row['part']}, {row['rule']}: {row['reasons']}" for row in rows if row.get("reasons")]
     return [
-        f"Parts are scaled to {SIZE:g} mm. Of the valleys of {LEAST:g} mm or more, with {np.degrees(SHARP):g}° or more "
-        f"between the directions to both contacts, the longest are taken until they are {most:g} mm together. Cutter "
+        f"Parts are scaled to {SIZE:g} mm. Valleys are {LEAST:g} mm or more long, with {np.degrees(SHARP):g}° or more "
+        f"between the directions to both contacts; the longest are taken until they add up to {most:g} mm. Cutter "
         "to 22 mm, shank R3 to 34, taper to R8 at 42, holder R13 to R16 from there to 70. Two jaws 16 mm thick, dexels "
         "2 mm apart, hold the part over 40 % of its height, below where most valleys open to.",
         "*Before*: the deepest entry of the surface of part or jaws into cutter, shank or holder where the tool stands "
@@ -168,7 +168,7 @@ def vise(part: Mesh, paths: list[Any]) -> list[Box]:
     first, last = (lower.copy(), upper.copy()), (lower.copy(), upper.copy())
     first[0][across], first[1][across] = lower[across] - 16, lower[across]
     last[0][across], last[1][across] = upper[across], upper[across] + 16
-    # Whole dexels: a volume's grid is the nearest number of them, and may else end beside the box.
+    # Whole dexels: a volume's grid has the nearest whole number, and otherwise may not end at the box.
     return [Box(low, low + PITCH * np.ceil((high - low) / PITCH)) for low, high in (first, last)]
 
 
@@ -277,7 +277,7 @@ def planned(scene: Scene, rule: str, quick: bool) -> Rows:
 
 
 def judged(out: Report, part: str, rule: str, scene: Scene, rows: Rows) -> None:
-    """Adds what the judge finds; entries on ways that the report calls unsafe count against its bound only."""
+    """Adds what the judge finds; entries on moves that the report calls unsafe count against its bound only."""
     where, judge = f"{part}, {rule}", scene.judge
     before, after, proven, poses, lost = [0.0], 0.0, 0.0, 0, 0
     series, start = {"after_place_mm": [], "after_entry_mm": [], "before_place_mm": [], "before_entry_mm": []}, 0.0

@@ -1,5 +1,5 @@
 """Haptic step: a Ø20 ball, 0.5 mm a step, one call a step with force and torque, as a pen makes it; the whole step with
-coupling, cut, contact and fixtures; its force beside that of very small steps and of interpolation; and minutes of a
+coupling, cut, contact and fixtures; its force against that of very small steps and of interpolation; and minutes of a
 session."""
 
 from __future__ import annotations

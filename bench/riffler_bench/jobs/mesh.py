@@ -1,4 +1,4 @@
-"""Volume to mesh: time, defects and error of B200's mesh, sharp edges of turned boxes, beside what meshes fields; and
+"""Volume to mesh: time, defects and error of B200's mesh, sharp edges of turned boxes, against field meshers; and
 error against pitch."""
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ def run(settings: Settings, progress: Progress = None) -> Report:
     return out
 
 
-# ---- B200 beside others
+# ---- B200 against others
 
 
 def b200(out: Report, settings: Settings, folder: Path, progress: Progress) -> None:

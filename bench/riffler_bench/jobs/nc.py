@@ -1,4 +1,4 @@
-"""NC code: blocks read and written a second beside LinuxCNC's interpreter, and how many blocks it takes for the tip to
+"""NC code: blocks read and written a second against LinuxCNC's interpreter, and how many blocks it takes for the tip to
 stay within a tolerance between them."""
 
 from __future__ import annotations
@@ -109,7 +109,7 @@ def read(out: Report, count: int, settings: Settings, folder: Path, progress: Pr
         )  # fmt: skip
     table.notes.append(
         "Program.read from the file to rows, arcs as chords within 0.002 mm, and rs274 -g from its start to canonical "
-        "moves in a file, in turn; medians of five. Ends off: tips and axes of the rows beside what the blocks were "
+        "moves in a file, in turn; medians of five. Ends off: tips and axes of the rows against what the blocks were "
         "made from."
     )
 

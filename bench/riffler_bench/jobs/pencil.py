@@ -1,4 +1,4 @@
-"""Pencil curves against their closed forms (PEN), beside creases and the height map's second difference; run time
+"""Pencil curves compared with their closed forms (PEN), creases and the height map's second difference; run time
 against tolerance, and at 200 000 triangles."""
 
 from __future__ import annotations

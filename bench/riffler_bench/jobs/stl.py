@@ -1,5 +1,5 @@
-"""Parts to volumes: rays a second, odd rays and volume beside ray casters; the volume of open parts beside the winding
-number's."""
+"""Parts to volumes: rays a second, odd rays and volume, compared with ray casters; the volume of open parts, compared
+with the winding number's."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def run(settings: Settings, progress: Progress = None) -> Report:
     return out
 
 
-# ---- rays beside others
+# ---- rays against others
 
 
 def rays(out: Report, settings: Settings, progress: Progress) -> None:
@@ -67,7 +67,7 @@ def rays(out: Report, settings: Settings, progress: Progress) -> None:
         Column("of it before the first ray", "build_s", report.micro),
         Column("rays or points a second", "rate", report.mega),
         Column("odd rays", "odd"),
-        Column("volume beside the mesh's", "difference", report.percent),
+        Column("volume against the mesh's", "difference", report.percent),
         Column("peak memory", "peak_bytes", report.megabytes),
     )
     made = 20_000 if settings.quick else 1_000_000
@@ -145,7 +145,7 @@ def openings(out: Report, settings: Settings, progress: Progress) -> None:
         Column("open edges", "open_edges"),
         Column("rays", "side", lambda n: f"{n}²"),
         Column("processor time", "cpu_s", report.micro),
-        Column("volume beside the whole part's", "difference", report.percent),
+        Column("volume against the whole part's", "difference", report.percent),
         Column("peak memory", "peak_bytes", report.megabytes),
     )
     many, few, side = (20_000, 10_000, 64) if settings.quick else (1_000_000, 200_000, 1024)

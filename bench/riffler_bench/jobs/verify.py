@@ -1,4 +1,4 @@
-"""Verification: run time and memory against pitch beside the error of what is left; long programs on one and two
+"""Verification: run time and memory against pitch, with the error of what is left; long programs on one and two
 threads; after an edit; and in a stream."""
 
 from __future__ import annotations
@@ -123,7 +123,7 @@ def gouges(out: Report, settings: Settings) -> None:
             out.check(rows == dips, f"gouges, h = {pitch:g}: found at rows {rows} instead of {dips}")
     table.notes.append(
         "A ball of 6 mm on an oblique line over a flat part; every 20th row is too low. The deepest point lies up to "
-        "h ÷ √2 beside a ray, where the ball is h² ÷ 4 R higher; depths are told to 1 %."
+        "h ÷ √2 from a ray, where the ball is h² ÷ 4 R higher; depths are reported to 1 %."
     )
 
 
@@ -198,14 +198,14 @@ def holder(out: Report, settings: Settings) -> None:
     rows, pitch = (2_000, 0.5) if settings.quick else (50_000, 0.1)
     table = out.section(
         "holder",
-        f"Holders beside walls, h = {pitch:g} mm, one thread",
+        f"Holders next to walls, h = {pitch:g} mm, one thread",
         Column("holder", "holder"),
         Column("blocks", "rows", report.grouped),
         Column("hits found in", "hits", report.grouped),
         Column("time", "cpu_s", report.micro),
         Column("blocks/s", "rate", report.grouped),
         Column("tried with shank and holder", "probes", report.grouped),
-        Column("told apart by boxes", "skipped", report.grouped),
+        Column("ruled out by boxes", "skipped", report.grouped),
     )
     holders = {
         "above the walls": (31, 20, False),
@@ -311,6 +311,6 @@ def memory(out: Report, settings: Settings, progress: Progress) -> None:
         out.check(figures["passed"], f"{what}: something was found")
         out.check(figures["off"] < 1e-9, f"{what}: removed is {figures['off']} off what the volume lost")
     table.notes.append(
-        "Of a stream its removed volumes and seconds are kept, 16 bytes a block, and 8 more while one of the two "
+        "A stream keeps its removed volumes and seconds, 16 bytes a block, and 8 more while one of the two "
         "arrays is moved to grow; the volume that is cut comes on top of that."
     )

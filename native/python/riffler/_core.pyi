@@ -38,7 +38,7 @@ class Task:
         """
     def result(self) -> object:
         """
-        What the call returns, the same object each time; waits for it, other threads go on. Raises what the call raises, Cancelled after ``cancel``. Ctrl-C ends the waiting, not the call.
+        What the call returns, the same object each time; waits for it without blocking other threads. Raises what the call raises, Cancelled after ``cancel``. Ctrl-C ends the waiting, not the call.
         """
     def wait(self, timeout: typing.SupportsFloat | None = None) -> bool:
         """
@@ -68,7 +68,7 @@ class AtomicFileWriter:
         """
     def fileno(self) -> int:
         """
-        Of the draft, which is written to; -1 after ``commit``.
+        File descriptor of the draft, which is written to; -1 after ``commit``.
         """
 class Mesh:
     """
@@ -2236,7 +2236,7 @@ class Collider:
     @property
     def spacing(self) -> float:
         """
-        Of the points on the part, mm.
+        Spacing of the points on the part, mm.
         """
 class Note:
     """
@@ -2785,7 +2785,7 @@ class Program:
     @property
     def via(self) -> dict[int, numpy.typing.NDArray[numpy.float64]]:
         """
-        (k, 6) poses on the way to a row, by row: where rotary axes that turn evenly take the tool off the great circle by more than 0.002 rad, in programs that were read without ``axis_tolerance``.
+        (k, 6) poses on the move to a row, by row: where rotary axes that turn evenly take the tool off the great circle by more than 0.002 rad, in programs that were read without ``axis_tolerance``.
         """
 class Finding:
     """
@@ -5454,7 +5454,7 @@ def _play_pen(strokes: collections.abc.Sequence[tuple[typing.Annotated[numpy.typ
     ...
 def clear_drafts(path: os.PathLike | str | bytes) -> None:
     """
-    Removes drafts of ``path`` that nobody has locked: processes that were killed left them.
+    Removes drafts of ``path`` that no process has locked: processes that were killed left them.
     """
 def contact_locations(tool: Tool, contacts: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], normals: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], axes: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], feeds: numpy.typing.ArrayLike | None) -> numpy.typing.NDArray[numpy.float64]:
     ...

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 __all__ = ["verify"]
 
 MOVES = 1 << 18  # of a task, about: 60 MB on the worker; a slab with more of them is run piece by piece
-PER_THREAD = 2  # slabs under way: one that runs and one that waits beside it
+PER_THREAD = 2  # slabs in the cluster: one that runs and one that waits
 AHEAD = 8  # times as many slabs may be done while one before them is not: what they took is kept in memory
 PATIENCE = 5.0  # s: for the scheduler, and for a first worker
 WITHOUT_WORKERS = 60.0  # s: workers that die may be started again
@@ -139,7 +139,7 @@ def verify(
 
 
 def sort_moves(program: Program | Iterable[Program], plan: VerifyPlan, spool: Spool, told: _Told) -> None:
-    """All chunks into the spool. Of how many there are nothing is known, so each brings half of what is left."""
+    """All chunks into the spool. Their number is unknown, so progress rises by half of what is left with each."""
     if not isinstance(program, Program) and not isinstance(program, Iterable):
         raise ValueError("program must be a Program or an iterable of Programs")
     begin, end = 0.05, 0.15
@@ -310,7 +310,7 @@ class Traffic:
 
 @dataclass
 class Slab:
-    """One under way."""
+    """A slab in the cluster."""
 
     number: int
     pieces: Iterator[tuple[list[bytes], int, bool]]
@@ -429,7 +429,7 @@ class Slabs:
         except distributed.CancelledError as error:
             raise ConnectionError(f"{address_of(self.client)}: the scheduler has given the work up") from error
         except FormatError as error:
-            raise RuntimeError(f"slab {slab.number}: damaged on its way ({error})") from error
+            raise RuntimeError(f"slab {slab.number}: damaged in transit ({error})") from error
 
 
 @contextmanager

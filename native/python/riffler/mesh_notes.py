@@ -19,7 +19,7 @@ def notes_on(report: Orientation | SurfaceReport | Mapping[str, object]) -> list
     facts: Mapping[str, Any] = report if isinstance(report, Mapping) else vars(report)
     notes = []
     if n := facts.get("turned", 0):
-        notes.append(_count(n, "triangle faced", "triangles faced") + " the other way than those around: turned")
+        notes.append(_count(n, "triangle faced", "triangles faced") + " opposite to those around: turned")
     if n := facts.get("turned_shells", facts.get("flipped_shells", 0)):
         notes.append(_count(n, "shell was", "shells were") + " inside out: turned outwards")
     if n := facts.get("left_out", 0):

@@ -160,17 +160,17 @@ def open(
         A kind of ``kinds`` (the first device that opens), a path of ``devices``, or a journal (``.rjournal``), which is
         played from the first call of ``state`` on.
     speed : float, optional
-        Of pucks: mm/s at full deflection. Of a journal: how many times as fast as it was.
+        Pucks: mm/s at full deflection. Journals: how many times as fast as recorded.
     bubble : float, optional
-        Of pucks: share of the deflection that is rest.
+        Pucks: share of the deflection that counts as rest.
     exponent : float, optional
-        Of pucks: of the response.
+        Pucks: exponent of the response.
     turn_rate : float, optional
-        Of pucks: rad/s at full deflection.
+        Pucks: rad/s at full deflection.
     hold_orientation : bool, optional
-        Of pucks: turns are ignored.
+        Pucks: turns are ignored.
     signs : list of int, optional
-        Of pucks: six of -1, 0, 1.
+        Pucks: six of -1, 0, 1.
     geometry : str, optional
         Of "polhem": "woodenhaptics" or "polhem-1".
     gravity, friction : float, optional

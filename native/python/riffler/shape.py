@@ -123,7 +123,7 @@ def extrude(outlines: ArrayLike | Sequence[ArrayLike], direction: ArrayLike) -> 
     Parameters
     ----------
     outlines : array_like of shape (n, 3), mm, or a list of such
-        Corners. For several that lie inside one another the turn decides: one that turns the opposite way is a hole.
+        Corners. For several that lie inside one another the turn decides: one with the opposite turn is a hole.
     direction : array_like of shape (3,), mm
         Of any length but 0.
 

@@ -42,8 +42,8 @@ def library() -> Any:
 
 
 class LocaleKeeper:
-    """lib3mf leaves the whole process in the locale "C" when it reads and writes: text in other languages would no
-    longer be read as what it is. Of several threads the first one keeps the locale, and the last one brings it back.
+    """Keeps the process's locale. lib3mf leaves the whole process in the locale "C" when it reads and writes, in which
+    text in other languages would be misread. The first of several threads stores the locale, the last one restores it.
     """
 
     def __init__(self) -> None:
@@ -78,7 +78,7 @@ def read(path: str) -> tuple[np.ndarray, np.ndarray]:
         reader = model.QueryReader("3mf")
         with LOCALE:
             reader.ReadFromBuffer((ctypes.c_uint8 * len(data)).from_buffer_copy(data) if data else [])
-        # lib3mf goes on without what it does not know: a misspelt triangle would be missing, a misspelt unit be mm.
+        # lib3mf skips what it does not know: a misspelt triangle would be missing, a misspelt unit be mm.
         # What stands in a namespace of its own, as slicers' additions do, is no reason to warn.
         if reader.GetWarningCount():
             raise FormatError(f"{name}: {reader.GetWarning(0)[1]} Expected what 3MF's core specification has")
@@ -105,7 +105,7 @@ ATTRIBUTE = re.compile(rb"""(?:^|[\s:])(id|objectid|path)\s*=\s*(?:"([^"]*)"|'([
 def check_copies(data: bytes, name: str) -> None:
     """FormatError for a package that asks for more copies than can be made.
 
-    lib3mf follows components while it reads, as often as they are placed: it must not be given such a file.
+    lib3mf follows a component while it reads, once for each placement: it must not be given such a file.
     """
     count = copies(tags(data, name), name)
     if count > MOST_PLACED:
@@ -196,7 +196,7 @@ class Build:
             self._triangles += len(triangles)
             if self._triangles > MOST_TRIANGLES:
                 raise FormatError(f"{self.name}: more than {MOST_TRIANGLES} triangles to build, copies counted")
-            if np.linalg.det(place[:3]) < 0:  # mirrored: seen from outside the other way round
+            if np.linalg.det(place[:3]) < 0:  # mirrored: the corners' order is reversed
                 triangles = triangles[:, ::-1]
             yield vertices @ place[:3] + place[3], triangles
         elif thing.IsComponentsObject():

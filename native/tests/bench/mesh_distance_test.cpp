@@ -1,4 +1,4 @@
-// The judge of meshes, beside a look at every triangle.
+// The judge of meshes, compared with a look at every triangle.
 #include "bench/mesh_distance.hpp"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ double by_every_triangle(const Vec3& p, const Mesh& mesh) {
 
 TEST(MeshDistance, IsThatOfTheNearestTriangle) {
   stress::Random random(5);
-  for (const double thin : {1.0, 1e-3, 40.0}) {  // large flat triangles beside short ones, and slivers
+  for (const double thin : {1.0, 1e-3, 40.0}) {  // large flat triangles next to short ones, and slivers
     Mesh mesh = mesh::sphere_mesh(1, 3);
     for (Vec3& v : mesh.vertices) v.z *= thin;
     const int base = static_cast<int>(mesh.vertices.size());

@@ -103,7 +103,7 @@ TEST(Collider, NearestIsOnThePartAndNoOtherPointIsNearer) {
 }
 
 TEST(Collider, KeepsADistanceExactlyWhereTheLeastOneDoesAndLooksNoDeeper) {
-  // A holder deep in a block of long triangles, and beside it, and all that lies between.
+  // A holder deep in a block of long triangles, next to the block, and everywhere between.
   Mesh part;
   for (int k = 0; k <= 40; ++k)
     for (const double y : {-60.0, 60.0}) part.vertices.emplace_back(k - 20.0, y, 3 * std::sin(0.9 * k));

@@ -1,4 +1,4 @@
-// The force of fixtures beside volumes in closed form and integrated point by point.
+// The force of fixtures compared with volumes in closed form and integrated point by point.
 #include "collide/fixture.hpp"
 #include "geom/math.hpp"
 
@@ -156,7 +156,7 @@ TEST(Fixture, AWallPushesAToolOffItselfAndNotAlongItself) {
 
 TEST(Fixture, AFlatEndIsPushedByItsAreaTimesItsDepthFromTheFirstTouch) {
   // Where dexels came in as wholes, half a pitch of a wall was missing, and a shallow end had no force at all.
-  const Assembly flat(cutters::flat(6, 4000));  // whose middle is so far up that all of it pushes that way
+  const Assembly flat(cutters::flat(6, 4000));  // whose middle is so far up that all of it pushes in one direction
   for (const double pitch : {0.5, 0.13}) {
     if (test::kSanitized && pitch < 0.2) continue;
     const Collider collider = beside(kBlock, pitch, 0.3);

@@ -186,7 +186,7 @@ TEST(TriangleSearch, StopsAtTheDeadlineWithABoundThatHolds) {
 }
 
 TEST(OutlineRuns, AndOutlineAndLanesDistancesAtTheTipOfABallAreRoundingSmallOnItsSurface) {
-  // There heights on the circle differ by less than rounding, and told by them the foot was the tip, as far off as ρ.
+  // There heights on the circle differ by less than rounding: judged by them, the foot was the tip, as far off as ρ.
   for (const Tool& tool : {cutters::taper(0.5, 0.2, 8, 40, true), cutters::taper(1, 0.4, 8, 40, true),
                            cutters::ball(6, 30), cutters::ball(0.7, 30), cutters::taper(0.2, 0.2, 2, 8, true)}) {
     const tool::Outline outline(tool);

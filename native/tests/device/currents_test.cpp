@@ -82,7 +82,7 @@ TEST(PenCurrents, ShortStepsReachTheRateOfLongOnes) {
   }
 }
 
-/// Of the first motor, mA².
+/// Heat of the first motor, mA².
 double heat(const Pen& pen) {
   return static_cast<double>(pen.pen.heat_q12[0]) / 4096;
 }

@@ -1,4 +1,4 @@
-// Injected faults: each takes all force away in the step that sees it, is told with its joint, stays until the host
+// Injected faults: each takes all force away in the step that sees it, is reported with its joint, stays until the host
 // disables and the cause is gone, and force comes back through the ramp only.
 #include <gtest/gtest.h>
 
@@ -129,7 +129,7 @@ std::vector<Injection> injections() {
   };
 }
 
-/// The two that need a current other than the one that the motors were told.
+/// The two faults that need a current other than the commanded one.
 void inject(const Injection& injection, Pen& pen) {
   if (injection.fault == RIFFLER_PEN_OVER_CURRENT) {
     pen.send(true, kCommand);
@@ -195,7 +195,7 @@ TEST(PenFaults, EachStaysUntilTheHostDisablesAndTheCauseIsGone) {
     ASSERT_EQ(pen.state(), RIFFLER_PEN_FAULT);
     for (int k = 0; k < 100; ++k) {
       pen.turn(true, kCommand);
-      ASSERT_EQ(pen.fault(), injection.fault) << "a host that goes on enabling has not seen it";
+      ASSERT_EQ(pen.fault(), injection.fault) << "a host that keeps enabling has not seen it";
       ASSERT_EQ(pen.currents(), Currents{});
     }
     const bool cause_stays = pen.sensors.stopped || pen.sensors.encoder_errors || pen.sensors.driver_faults ||
@@ -236,7 +236,7 @@ TEST(PenFaults, LateReportsDecayForceBeforeTheyTrip) {
   }
 }
 
-/// A hand on the grip: joints give way by current over stiffness, once what they changed by is beyond their friction.
+/// A hand on the grip: joints yield by current over stiffness, once the change of that exceeds their friction.
 struct LeaningHand {
   double counts_per_ma, friction_ma;
   std::array<double, RIFFLER_PEN_JOINTS> at{};

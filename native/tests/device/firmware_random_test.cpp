@@ -47,7 +47,7 @@ class Judge {
     ASSERT_FALSE(pen.drive.power && pen.drive.brake);
     ASSERT_TRUE(!pen.drive.brake || pen.state() == RIFFLER_PEN_FAULT);
     ASSERT_TRUE(!pushes || age_ < limits_.watchdog_us) << "force without a report in the watchdog's time";
-    ASSERT_TRUE(!(pushed_ && pushes && disabled_)) << "force goes on after a report that disables";
+    ASSERT_TRUE(!(pushed_ && pushes && disabled_)) << "force continues after a report that disables";
     ASSERT_TRUE(!pushes || pushed_ || (armed_ && !any)) << "force began without a disable, or not from nothing";
     if (pushed_ && !pushes) armed_ = disabled_;
     ASSERT_EQ(pen.state() == RIFFLER_PEN_FAULT, pen.fault() != RIFFLER_PEN_NO_FAULT);
@@ -145,7 +145,7 @@ TEST(PenFirmwareRandom, AMillionStepsKeepEveryPromise) {
       if (testing::Test::HasFatalFailure()) FAIL() << "run " << run << ", step " << k;
       if (pen.state() == RIFFLER_PEN_FAULT && before != RIFFLER_PEN_FAULT) ++faults[pen.fault()];
       ++visits[pen.state()];
-      if (random.one_in(50)) {  // whatever it was, it is mended
+      if (random.one_in(50)) {  // mends any fault
         s.encoder_errors = s.driver_faults = 0;
         s.stopped = 0;
         for (std::int16_t& t : s.temperature_dc) t = 250;

@@ -127,7 +127,7 @@ inline riffler_pen_limits random_limits(stress::Random& random) {
 }
 
 /// A pen on a virtual clock with a host that counts its reports. Its sensors are those of a pen in a hand: counters
-/// move, and currents are what the motors were told.
+/// move, and currents are what the motors were commanded.
 class Pen {
  public:
   explicit Pen(const riffler_pen_config& config = reference()) {

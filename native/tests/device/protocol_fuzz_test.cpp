@@ -8,7 +8,7 @@
 namespace riffler::device::protocol_fuzz_test {
 namespace {
 
-/// One of the ways in which reports arrive broken.
+/// Damages a report in one of several forms.
 void damage(Bytes& bytes, stress::Random& random) {
   const auto at = [&] { return static_cast<std::size_t>(random.below(static_cast<int>(bytes.size()))); };
   if (bytes.empty()) bytes.push_back(0);

@@ -1,4 +1,4 @@
-// Boxes and pitches that make no sense: refused by whatever makes a volume, with field, value and remedy.
+// Boxes and pitches that make no sense: refused by everything that makes a volume, with field, value and remedy.
 #include <gtest/gtest.h>
 
 #include <cmath>

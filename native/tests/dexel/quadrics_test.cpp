@@ -14,7 +14,7 @@
 namespace riffler::dexel::quadrics_test {
 namespace {
 
-/// mm: by 0.25 · 5e-10 rays stand beside their places, and doubles of 1e5 are 1.5e-11 apart.
+/// mm: by 0.25 · 5e-10 rays stand off their places, and doubles of 1e5 are 1.5e-11 apart.
 constexpr double kOff = 3e-10;
 
 using Distance = std::function<double(const Vec3&)>;

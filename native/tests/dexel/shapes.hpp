@@ -132,7 +132,7 @@ inline Agreement compare(const Mesh& mesh, const Volume& volume, int points, std
   return result;
 }
 
-/// RIFFLER_MODELS, or else shared/models beside the repository, sought from the working directory upwards.
+/// RIFFLER_MODELS, or else shared/models next to the repository, sought from the working directory upwards.
 inline std::filesystem::path model_path(const std::string& name) {
   std::filesystem::path models = "../shared/models";
   if (const char* folder = std::getenv("RIFFLER_MODELS")) {

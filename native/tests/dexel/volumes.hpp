@@ -107,7 +107,7 @@ inline ::testing::AssertionResult same_rays(const Volume& a, const Volume& b) {
   return ::testing::AssertionSuccess();
 }
 
-/// The same spans, whatever their normals.
+/// The same spans; normals may differ.
 inline ::testing::AssertionResult same_spans(const Volume& a, const Volume& b) {
   for (std::size_t g = 0; g < a.grids().size(); ++g)
     for (std::size_t t = 0; t < a.grids()[g].tile_count(); ++t)

@@ -278,7 +278,7 @@ TEST(SculptStep, ATracedPlaneHoldsTheToolWhereCouplingAndSurfaceBalance) {
       EXPECT_LE(r.queries, 2);
     });
     EXPECT_NEAR(still.force.z, 1 - low, 5e-3) << stiffness;
-    EXPECT_LT(largest, 1.01 * (1 - low) + 0.005) << "no blow on the way";
+    EXPECT_LT(largest, 1.01 * (1 - low) + 0.005) << "no blow before it rests";
     EXPECT_LT(aside, 0.02) << stiffness;
     EXPECT_LT(glm::length(still.torque), 0.05);
   }

@@ -46,7 +46,7 @@ TEST(WrenchExtrapolator, GoesOnForAWhileAndIsGoneInTime) {
   WrenchExtrapolator held;
   held.stepped({{0.99, 0, 0}, {}}, 1e-3);
   held.stepped({{1, 0, 0}, {}}, 1e-3);
-  // 10 N/s goes on: after 1 ms three quarters of 10 mN · 2 ms / 2, and 5 % of the fade.
+  // 10 N/s continues: after 1 ms three quarters of 10 mN · 2 ms / 2, and 5 % of the fade.
   EXPECT_NEAR(held.missed(1e-3).force.x, 0.95 * 1.0075, 1e-12);
   for (int k = 0; k < 18; ++k) EXPECT_GT(held.missed(1e-3).force.x, 0);
   EXPECT_NEAR(held.age(), 19e-3, 1e-12);

@@ -1,4 +1,4 @@
-// How often a thread of this program has asked for memory, in whatever language.
+// How often a thread of this program has asked for memory, C code included.
 #pragma once
 
 namespace riffler::test {

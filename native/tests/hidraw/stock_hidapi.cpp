@@ -82,7 +82,7 @@ Bytes pen_report(std::uint16_t sequence) {
   return bytes;
 }
 
-/// The device at the far end: sends reports as fast as they are read, and keeps what it is told.
+/// The device at the far end: sends reports as fast as the host reads them, and keeps the reports that it gets.
 class FarEnd {
  public:
   FarEnd(VirtualBus& bus, const std::string& path) : fd_(dup(bus.device_end(path))) {
@@ -109,7 +109,7 @@ class FarEnd {
     ASSERT_EQ(::send(fd_, report.data(), report.size(), MSG_NOSIGNAL), static_cast<ssize_t>(report.size()));
   }
 
-  /// All reports that it was told.
+  /// All reports that it got.
   const std::vector<Bytes>& leave() {
     done_ = true;
     if (listener_.joinable()) listener_.join();
@@ -261,7 +261,7 @@ TEST_F(StockHidapi, StreamsAPuckOfSplitReports) {
   stream(*pen, path, [](int k) { return puck_report(static_cast<std::uint8_t>(1 + k % 2), {200, 0, 0}); });
   EXPECT_GT(pen->newest().velocity.x, 0);
   EXPECT_GT(pen->newest().pose.tip.x, 0);
-  EXPECT_EQ(told.size(), 0U) << "a puck is told nothing";
+  EXPECT_EQ(told.size(), 0U) << "a puck gets no reports";
 }
 
 TEST_F(StockHidapi, StreamsAPuckOfJoinedReports) {
@@ -322,7 +322,7 @@ TEST_F(StockHidapi, PermissionDeniedNamesTheRule) {
   chmod(bus->file(path).c_str(), 0600);
   std::string text;
   pen::OpenProblem problem = pen::OpenProblem::None;
-  // Of this thread only: as somebody who is not root.
+  // In this thread only: as a user other than root.
   std::thread([&] {
     if (geteuid() == 0)
       setfsuid(65534);
@@ -359,7 +359,7 @@ TEST_F(StockHidapi, ADeviceThatAnotherProgramDrivesIsBusy) {
 TEST_F(StockHidapi, APenOfAnotherVersionIsNamed) {
   VirtualSpec spec = pen_spec();
   spec.features[RIFFLER_PEN_IDENTITY_ID][RIFFLER_PEN_IDENTITY_MAJOR] = 2;
-  spec.descriptor.back() = 0xC1;  // and whatever else is new in it
+  spec.descriptor.back() = 0xC1;  // and another descriptor
   const std::string path = bus->plug(spec);
   std::string text;
   EXPECT_EQ(problem_of([&] { pen::open_pen(path); }, text), pen::OpenProblem::OtherVersion);

@@ -122,7 +122,7 @@ void VirtualBus::connect(const std::string& path, int fd) {
   if (!sysfs_.contains(path)) return;
   int pair[2];
   if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, pair) != 0) return;
-  // umockdev goes on to know the number for its ioctls.
+  // umockdev still knows the number for its ioctls.
   dup2(pair[0], fd);
   close(pair[0]);
   const auto [end, first] = ends_.try_emplace(path, pair[1]);

@@ -31,7 +31,7 @@ class VirtualBus {
 
   /// The path: /dev/hidraw0 and so on, never one again.
   std::string plug(const VirtualSpec& spec);
-  /// As the kernel does it: the files go, and whoever has the device open reads errors.
+  /// As the kernel does it: the files go, and processes that have the device open read errors.
   void unplug(const std::string& path);
 
   /// The device's end of the newest connection: a packet for each report. −1 if there was none.

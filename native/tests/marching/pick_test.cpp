@@ -167,7 +167,7 @@ std::vector<Vec3> not_on_the_rim(const Mesh& mesh, const Vec3& eye) {
   return out;
 }
 
-/// From within a closed surface there is no way out, to whichever edge or vertex one looks.
+/// No ray from within a closed surface gets out, aimed at any edge or vertex.
 TEST(Pick, LetsNoRayOutThroughEdgesAndVertices) {
   for (const Scene& scene : test::scenes()) {
     if (scene.name == "rays that contradict each other") continue;  // where is inside?

@@ -228,7 +228,7 @@ TEST(Audit, VerticesAFewUlpsApartLeaveNothingOpen) {
   EXPECT_EQ(a.components, 1U);
   mesh.vertices.back().x = 1e-12;
   EXPECT_GT(audit(mesh).open_edges, 0U);
-  // Equal vertices are told apart: that is for whoever reads files to weld.
+  // Equal vertices count as two: welding them is the file readers' job.
   mesh.vertices.back() = mesh.vertices[0];
   EXPECT_GT(audit(mesh).open_edges, 0U);
 }

@@ -82,7 +82,7 @@ TEST(Orient, TurnsShellsOutwardsButNotCavities) {
   // A pocket modelled as a box that lies against the top stays; one that sticks out is a body of its own.
   EXPECT_FALSE(orient(joined(kCube, flipped(box({2, 2, 5}, {8, 8, 10})))).any);
   EXPECT_TRUE(orient(joined(kCube, flipped(box({2, 2, 5}, {8, 8, 11})))).any);
-  // Both pieces turned, beside each other.
+  // Both pieces turned, next to each other.
   r = orient(joined(flipped(kCube), flipped(box({20, 0, 0}, {30, 10, 10}))));
   EXPECT_NEAR(volume(r.mesh), 2000, 1e-9);
 }

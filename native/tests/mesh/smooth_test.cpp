@@ -42,7 +42,7 @@ TEST(Smooth, KeepsTheVolume) {
     EXPECT_NEAR(volume(smooth(rough, n)) / volume(rough), 1, 1e-6);
     EXPECT_NEAR(volume(smooth(rough, n, 0.03)) / volume(rough), 1, 1e-6);
   }
-  // Of two bodies the one that is smooth is not paid for the other.
+  // A smooth body does not change to make up for the volume of the rough one.
   Mesh both_bodies = both(box_mesh({20, 0, 0}, {24, 5, 6}), rough);
   const Mesh result = smooth(both_bodies, 20);
   for (std::size_t v = 0; v < 8; ++v) EXPECT_EQ(result.vertices[v], both_bodies.vertices[v]);

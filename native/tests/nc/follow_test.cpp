@@ -1,4 +1,4 @@
-// The motion between rows is the machine's: rotary axes turn evenly, which is another way than the great circle.
+// The motion between rows is the machine's: rotary axes turn evenly, off the great circle.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,7 +16,7 @@ namespace {
 
 using test::read_nc_text;
 
-/// Of a head that tilts by B about y on a table that turns by C: the tool's axis, seen from the part.
+/// The tool's axis, seen from the part, with a head that tilts by B about y over a table that turns by C.
 Vec3 axis_at(double b, double c) {
   const double s = std::sin(b * kDegree);
   return {s * std::cos(c * kDegree), -s * std::sin(c * kDegree), std::cos(b * kDegree)};
@@ -61,7 +61,7 @@ TEST(Follow, WhatKeepsToTheGreatCircleHasNone) {
   const Program turn = read_nc_text("G21 F100\nG1 X0 Y0 Z20 B45 C0\nC360", "head-table");
   EXPECT_GT(turn.via().at(1)->size(), 10U);
   EXPECT_LT(off(turn, 45, 360), 0.0021);
-  EXPECT_TRUE(read_nc_text("G21 G1 B45 C170 F100", "head-table").via().empty()) << "from where, nobody knows";
+  EXPECT_TRUE(read_nc_text("G21 G1 B45 C170 F100", "head-table").via().empty()) << "the start is unknown";
 }
 
 TEST(Follow, AnOptionMakesRowsOfThem) {
@@ -106,7 +106,7 @@ TEST(Follow, IsWrittenAsTheMachineMoved) {
   WriteOptions how;
   how.post = "head-table";
   const Program back = read_nc_text(to_nc(p, how), "head-table");
-  // Somewhere on its way the tool leans along −y or +y, as the swing has it, not over the top.
+  // On its path the tool leans along −y or +y, as the swing does, instead of passing over the top.
   double side = 0, top = 0;
   const Program whole = followed(back);
   for (const Pose& pose : whole.poses()) side = std::max(side, std::abs(pose.axis.y)), top = std::max(top, pose.axis.z);

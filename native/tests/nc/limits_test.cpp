@@ -128,7 +128,7 @@ TEST(Limits, AreMetInTheMiddleOfAMoveWhereAPartOfATurnIsAllThereIs) {
 }
 
 TEST(Limits, ChangeTheBranchWhereTheTiltingAxisGoesOneWayOnly) {
-  // A swing through the pole: A cannot go on below −5°, so C turns half round there.
+  // A swing through the pole: A cannot turn below −5°, so C turns half round there.
   CutterPath path{{}, {600}, 8000, 1};
   for (int k = -10; k <= 10; ++k) path.poses.push_back({{1.0 * k, 0, 0}, tilted(3 * k, 77)});
   const Program p = program_from_paths(std::vector{path}, {});
@@ -153,8 +153,8 @@ TEST(Limits, BesideThePoleTheToolLeavesToChangeTheBranch) {
   EXPECT_EQ(rewinds(way), 1);
 }
 
-/// Of all ways over the places (A, C + 360° m) and (−A, C + 180° + 360° m) of every row that leave at rows only: the
-/// least number of leavings; −1 where there is no such way. No move passes the pole.
+/// The least number of rows at which the tool leaves, over all paths through the places (A, C + 360° m) and
+/// (−A, C + 180° + 360° m) of every row that leave at rows only; −1 where there is none. No move passes the pole.
 int least_leavings(const std::vector<double>& tilt, const std::vector<double>& around, double a_low, double a_high,
                    double c_low, double c_high) {
   constexpr int kNone = 1000, kTurns = 6;
@@ -243,7 +243,7 @@ TEST(Limits, AreKeptByAnAxisThatIsFreeThroughout) {
 }
 
 TEST(Limits, LeaveAsSeldomAsAllTurnsOfAWideRangeAllow) {
-  // C goes on by 350° and then back by 1070°: within ±720° only where it begins a turn up, neither at the nearest turn
+  // C turns on by 350° and then back by 1070°: within ±720° only where it begins a turn up, neither at the nearest turn
   // nor at the ends.
   CutterPath path{{}, {600}, 8000, 1};
   for (int k = 0; k <= 142; ++k) {

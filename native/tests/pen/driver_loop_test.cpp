@@ -256,7 +256,7 @@ TEST(DriverLoop, GoesOnWhereTheDeviceIsPluggedInAgain) {
   b.pen.device.gone = b.clock.time;
   b.run(1);
   EXPECT_EQ(b.loop.status().state == LinkState::Connected, false);
-  // Another life: counters and clock of the pen begin anew.
+  // Another life: counters and clock of the pen start from zero.
   b.pen.device.gone = 1e300;
   b.pen.device.events.clear();
   b.pen.power_on();
@@ -267,7 +267,7 @@ TEST(DriverLoop, GoesOnWhereTheDeviceIsPluggedInAgain) {
   EXPECT_EQ(b.counts().connections, 2U);
   EXPECT_GT(b.counts().reports, before + 500);
   EXPECT_EQ(b.loop.status().problem, OpenProblem::None);
-  EXPECT_FALSE(b.loop.status().sample.homed) << "it was without power: nobody knows where it stands";
+  EXPECT_FALSE(b.loop.status().sample.homed) << "it was without power: its posture is unknown";
   EXPECT_FALSE(b.pen.pushes()) << "or in which direction it would push";
   b.model.home();
   b.run(3);

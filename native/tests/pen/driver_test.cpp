@@ -46,7 +46,7 @@ class PlugTransport final : public Transport {
   std::shared_ptr<Plug> plug_;
 };
 
-/// One byte each way: 1 pushes, 0 does not.
+/// One byte in each direction: 1 pushes, 0 does not.
 class ByteModel final : public HidModel {
  public:
   ByteModel() { capability_.coordinates[0].pushes = true; }
@@ -272,7 +272,7 @@ TEST(Driver, AStepThatWasReplacedIsNotCalledWhateverHappensMeanwhile) {
     std::this_thread::sleep_for(2ms);
   }
   EXPECT_TRUE(pen->stop());
-  EXPECT_TRUE(pen->set_step(nullptr)) << "nobody calls it, and nobody waits";
+  EXPECT_TRUE(pen->set_step(nullptr)) << "after stop there is no call to wait for";
   steps.back()->gone = true;
   pen.reset();
   int calls = 0;
@@ -334,7 +334,7 @@ TEST(Published, ReadersNeverSeeAMixture) {
   std::atomic<int> torn{0}, changes{0};
   std::thread reader([&] {
     std::uint64_t last = 0;
-    // Until it has seen the writer at work, whenever the system lets both run.
+    // Until it has seen the writer at work, which depends on when the system runs both.
     const auto end = std::chrono::steady_clock::now() + 20s;
     while (changes < 100 && std::chrono::steady_clock::now() < end) {
       const Four f = published.get();

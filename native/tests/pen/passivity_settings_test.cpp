@@ -58,7 +58,7 @@ Margin least_margin(const PenGeometry& pen, const haptics::PassivitySettings& s,
     }
     out.damping = std::min(out.damping, damped / damp_credit);
     out.friction = std::min(out.friction, rubbed / rub_credit);
-    // Half a count of every joint, whichever way.
+    // Half a count of every joint, in either direction.
     Vec3 ends[2] = {Vec3(0), Vec3(0)};
     const Vec3 along = direction();
     for (const PenChannel& c : pen.channels) {

@@ -167,7 +167,7 @@ TEST(OrientationMap, SaysWhatIsInTheWayWhereNothingIsFree) {
 }
 
 TEST(LeastTilt, LeansJustAsFarAsAWallAsks) {
-  // A post beside the middle of the path: leaning away from it there, upright (as far as free) at the ends.
+  // A post next to the middle of the path: leaning away from it there, upright (as far as free) at the ends.
   const Corner c = corner(3, 4, 9);
   TiltRule rule;
   rule.map = coarse();
@@ -175,7 +175,7 @@ TEST(LeastTilt, LeansJustAsFarAsAWallAsks) {
   const collide::Assembly ball(cutters::ball(6, 30));
   const TiltAnswer answer = least_tilt(c.path, ball, collide::Collider(c.part), rule);
   ASSERT_TRUE(answer.found) << answer.reason;
-  for (const double angle : answer.angles) EXPECT_LT(angle, 1e-12) << "nothing is in the way of the bisector";
+  for (const double angle : answer.angles) EXPECT_LT(angle, 1e-12) << "the bisector is free";
   EXPECT_LT(answer.cost, 1e-20);
   const Mesh post = both(c.part, mesh::box_mesh({10, -1, 8}, {40, 1, 40}));
   const TiltAnswer around = least_tilt(c.path, ball, collide::Collider(post), rule);

@@ -94,7 +94,7 @@ TEST(Lift, StopsInTheFirstFreePlaceUnderARoof) {
   const Lift l = lift(collider, stub, {{0, 0, -1}, kUp}, {});
   EXPECT_TRUE(l.free);
   EXPECT_NEAR(l.height, 1, 1e-6);
-  // 13 mm long it does not fit, and comes out above the roof; not within 10 mm, which is said.
+  // 13 mm long it does not fit, and comes out above the roof; within 10 mm it does not, which is reported.
   const collide::Assembly longer(cutters::flat(6, 13));
   const Lift over = lift(collider, longer, {{0, 0, -1}, kUp}, {});
   EXPECT_TRUE(over.free);
@@ -154,7 +154,7 @@ TEST(Lift, SaysWhichPieceIsInTheWay) {
   EXPECT_EQ(g.touch, collide::Touch::Fixture);
 }
 
-/// Of the rolling hills, densely: points against the cutter by the independent reference.
+/// Over rolling hills, at dense points: against the cutter by the independent reference.
 TEST(Lift, IsTheLeastFreeHeightOfADenseSearch) {
   const Mesh hills =
       mesh::sheet_mesh(12, 30, [](double x, double y) { return 2 * std::sin(0.5 * x) * std::cos(0.4 * y); });

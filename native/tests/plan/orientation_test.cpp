@@ -87,7 +87,7 @@ TEST(Orientation, GoesRoundALoop) {
   const OrientationKeys keys{{2, leaning(0.1)}, {6, leaning(0.5)}};
   for (const Interpolation rule : kRules) {
     const PencilPath p = oriented(ring_path(8), keys, rule);
-    EXPECT_LT(glm::length(p.axes[0] - p.axes[4]), 1e-12) << "half way between, both ways";
+    EXPECT_LT(glm::length(p.axes[0] - p.axes[4]), 1e-12) << "in the middle between keys, in both directions";
     EXPECT_LT(glm::length(p.axes[7] - p.axes[5]), 1e-12);
   }
 }
@@ -151,7 +151,7 @@ TEST(SmoothAxes, HasNoJumpInItsDerivativeAtKeys) {
     const bool loop = n % 2;
     const SmoothAxes curve = random_curve(random, loop ? 0.8 : 2.8, loop, places, axes);
     for (std::size_t k = 0; k < places.size(); ++k) {
-      // One-sided differences: their difference goes to zero with the step, whatever the second derivatives are.
+      // One-sided differences: their difference goes to zero with the step, for any second derivatives.
       const auto jump = [&](double h) {
         const Vec3 before = (curve.at(places[k]) - curve.at(places[k] - h)) / h;
         return glm::length((curve.at(places[k] + h) - curve.at(places[k])) / h - before);

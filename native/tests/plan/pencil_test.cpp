@@ -20,7 +20,7 @@ double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
   return glm::length(p - a - t * (b - a));
 }
 
-/// Hausdorff distance between a path and a segment: both ways over points that are dense enough on straight pieces.
+/// Hausdorff distance between a path and a segment, in both directions over points dense enough on straight pieces.
 double hausdorff(const PencilPath& path, const Vec3& a, const Vec3& b) {
   double most = 0;
   for (const Vec3& c : path.centres) most = std::max(most, distance_to_segment(c, a, b));
@@ -283,7 +283,7 @@ TEST(Pencil, RestInABlendRunsOnTowardsItsCorners) {
     }
   EXPECT_LT(low, radius + 0.6);
   EXPECT_GT(high, length - radius - 0.6);
-  // Its line is covered once: no second path beside the first.
+  // Its line is covered once: no second path next to the first.
   double along = 0;
   for (const PencilPath& path : found.paths)
     for (std::size_t k = 1; k < path.size(); ++k) {
@@ -374,7 +374,7 @@ TEST(Pencil, CracksDoubledAndDegenerateTrianglesChangeNothing) {
   const double z = -8 + 3 * std::sqrt(2.0);
   const Mesh part = subdivided(groove(kPi / 2), 2);
   Mesh spoilt = part;
-  for (const Vec3i& t : part.triangles) {  // zero area, needles, doubled walls, both ways round
+  for (const Vec3i& t : part.triangles) {  // zero area, needles, doubled walls, in both orientations
     spoilt.triangles.push_back(t), spoilt.triangles.emplace_back(t.x, t.x, t.y),
         spoilt.triangles.emplace_back(t.z, t.z, t.z);
   }

@@ -25,7 +25,7 @@ Mesh sheet(const std::function<Vec3(double, double)>& at, int nu, int nv) {
   return mesh;
 }
 
-/// Points of a path along x beside a wall through the x axis that leans back by `draft`, above a floor far away.
+/// Points of a path along x at a wall through the x axis that leans back by `draft`, above a floor far away.
 PencilPath straight_path(double radius, double draft, int points) {
   PencilPath path;
   path.radius = radius;

@@ -65,7 +65,7 @@ def output(path: Path, *options: str) -> str:
     libraries = f"{FOLDER}/usr/lib:{FOLDER}/usr/lib/x86_64-linux-gnu"
     done = subprocess.run(
         [PROGRAM, *options, "-t", table, "-g", path, out],
-        # It keeps its tools in a file of the home directory: one for each run, or runs beside each other mix them up.
+        # It keeps its tools in a file of the home directory: one for each run, or runs at the same time mix them up.
         env=os.environ | {"LD_LIBRARY_PATH": libraries, "HOME": str(path.parent)},
         capture_output=True, text=True, timeout=120, check=False, cwd=path.parent,
     )  # fmt: skip
@@ -108,7 +108,7 @@ def between(joints: np.ndarray, parts: int) -> np.ndarray:
 @dataclass
 class Call:
     """A canonical move in machine coordinates, mm and degrees: its ends (6,); feed in mm/min, NaN for rapids; the
-    printed digits' error, mm. Of arcs: the axes (u, v) of the plane, the centre in it, and the signed sweep (rad)."""
+    printed digits' error, mm. For arcs: the axes (u, v) of the plane, the centre in it, and the signed sweep (rad)."""
 
     start: np.ndarray
     end: np.ndarray

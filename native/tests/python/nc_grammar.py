@@ -47,7 +47,7 @@ class Grammar:
         return self.rng.choice([text, text.rstrip("0") if "." in text else text, text.replace("0.", ".", 1)])
 
     def to(self, axis: int, by: float) -> str:
-        """The word that moves an axis by so much, whatever the distance mode."""
+        """The word that moves an axis by so much, in either distance mode."""
         if self.absolute:
             return f"{LETTERS[axis]}[#{5420 + axis} + {by:.6f}]"
         return f"{LETTERS[axis]}{by:.6f}"

@@ -151,7 +151,7 @@ def test_damaged_3mf_is_a_format_error_or_a_valid_mesh(tmp_path_factory, data):
     except riffler.FormatError as error:
         assert "bad.3mf" in str(error)
     else:
-        # An element whose name was damaged is one of somebody else's.
+        # An element whose name was damaged belongs to another namespace.
         assert 0 < len(mesh.triangles) <= 24 and np.isfinite(mesh.vertices).all()
         assert mesh.triangles.max() < len(mesh.vertices)
 

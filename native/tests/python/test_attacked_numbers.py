@@ -91,7 +91,7 @@ def test_numbers_that_cannot_be_meant_are_refused_by_name(name):
 
 
 def interrupted(script, seconds=30):
-    """Seconds until a script that would go on for long has ended, after a Ctrl-C."""
+    """Seconds until a script that would run for long has ended, after a Ctrl-C."""
     code = f"""
         import _thread, signal, threading, time
         signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs ignore it

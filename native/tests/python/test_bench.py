@@ -175,7 +175,7 @@ def test_distances_of_curves_are_those_of_every_point_from_every_segment():
     np.testing.assert_allclose(distance, every.min(1), rtol=1e-12)
     at = segments.begin[which] + share[:, None] * way[which]
     np.testing.assert_allclose(np.linalg.norm(points - at, axis=1), distance, rtol=1e-9)
-    # A line against one beside it that is longer at one end, and against nothing.
+    # A line against one next to it that is longer at one end, and against nothing.
     line = curves.Segments(np.array([[0.0, 0, 0]]), np.array([[10.0, 0, 0]]))
     longer = curves.Segments(np.array([[0.0, 0, 0.01]]), np.array([[12.0, 0, 0.01]]))
     result = curves.compare(longer, line, 0.02)
@@ -222,7 +222,7 @@ def test_the_exact_part_is_what_it_is_described_as():
         (50, 5, 29.5): 0.5,
     }
     np.testing.assert_allclose(exact.from_surface(np.array(list(points))), list(points.values()), atol=2e-3)
-    # Near the groove, beside a search for the nearest of the points that are inside or outside by the cutter's
+    # Near the groove, compared with a search for the nearest of the points that are inside or outside by the cutter's
     # definition alone: balls and cylinders above them at very many places of the path.
     t = np.linspace(0, scenes.MOVES, 40 * scenes.MOVES + 1)
     path = np.stack([np.interp(t, np.arange(scenes.MOVES + 1), exact.centres()[:, k]) for k in range(3)], 1)
@@ -298,7 +298,7 @@ def test_a_tool_that_gouges_between_its_rows_is_seen():
     poses, moves = swept.dense(rows, 0.05, 0.01)
     assert len(poses) == 401 and set(moves) == {0}
     entry = judge.entries(poses)
-    # In the middle of the way the jaw's top, 10 mm up the cutter, reaches its axis.
+    # In the middle of the move the jaw's top, 10 mm up the cutter, reaches its axis.
     assert judge.entries(rows)[:, 0].max() == 0
     assert entry[:, 0].max() == pytest.approx(3, abs=2e-3) and np.all(entry[:, 1] >= entry[:, 0])
     assert swept.surface([jaw]).volume == pytest.approx(10 * 20 * 20)
@@ -373,7 +373,7 @@ def test_what_a_ball_leaves_is_what_a_height_map_says():
     points = np.stack(np.broadcast_arrays(heights.x, heights.y), -1).reshape(-1, 2)
     left = waves.left(scenes.upright(tips), points).reshape(heights.z.shape)
     np.testing.assert_allclose(left, heights.z, atol=1e-7)
-    # Turning about a tip that moves: balls at very many places of the way.
+    # Turning about a tip that moves: balls at very many places of the path.
     turning = np.array([[10.0, 8, -4, *scenes.unit([0.5, -0.2, 1])], [14.0, 11, -5, 0, 0, 1]])
     centres = (poses := swept.dense(turning, 1e-3, 1e-3)[0])[:, :3] + waves.RADIUS * poses[:, 3:]
     near = points[np.linalg.norm(points - [12, 9.5], axis=1) < 4]
@@ -419,7 +419,7 @@ def test_the_add_on_is_measured_in_blender(tmp_path):
     done = bench("blender", "--quick", "--json", "--out", out, "--blender", BPY, cwd=ROOT)  # the add-on is there
     assert done.returncode == 0, done.stderr
     (stroke,) = rows(out, "blender", "stroke")
-    # 1.2 mm of a ball's way touch as many tiles whatever the size of the sculpt, with those at whose borders it went.
+    # 1.2 mm of a ball's path touch as many tiles in sculpts of any size, counting those whose borders it passed.
     assert stroke["events"] == 30 and 1 <= stroke["bricks"] < 12 and 0 < stroke["moved"] < stroke["triangles"] / 3
     assert abs(stroke["removed_over"]) < 0.01 and 0 < stroke["p50_s"] <= stroke["p95_s"]
     (undo,) = rows(out, "blender", "undo")

@@ -171,7 +171,7 @@ def test_convert_and_mesh(folder):
     assert (data["lower"], data["upper"]) == ([0, 0, 0], [20, 15, 10])
     data = result("volume", "to-mesh", "box.rvol", "--out", "again.stl", cwd=folder)
     assert stl_volume((folder / "again.stl").read_bytes()) == pytest.approx(20 * 15 * 10, rel=1e-5)
-    few = result("volume", "to-mesh", "box.rvol", "--out", "few.stl", "--decimate", 0.01, cwd=folder)
+    few = result("volume", "to-mesh", "box.rvol", "--out", "few.stl", "--tolerance", 0.01, cwd=folder)
     assert few["triangles_before_decimation"] == data["triangles"]
     assert few["triangles"] < data["triangles"] / 10
     assert result("mesh", "audit", "few.stl", cwd=folder)["closed"]
@@ -291,7 +291,7 @@ BAD = {
     "convert: out nowhere": (["volume", "from-mesh", "box.stl", "--pitch", 1, "--out", "no/a.rvol"], "no folder"),
     "mesh: not a volume": (["volume", "to-mesh", "text.rvol", "--out", "a.stl"], "text.rvol, byte 0"),
     "mesh: missing": (["volume", "to-mesh", "nowhere.rvol", "--out", "a.stl"], "nowhere.rvol: No such file"),
-    "mesh: tolerance": (["volume", "to-mesh", "text.rvol", "--out", "a.stl", "--decimate", "-2"], "--decimate"),
+    "mesh: tolerance": (["volume", "to-mesh", "text.rvol", "--out", "a.stl", "--tolerance", "-2"], "--tolerance"),
 }
 TOOL = ("--tool", "ball:6")
 BAD_CARVES = {
@@ -388,7 +388,7 @@ def test_ctrl_c_leaves_nothing_behind(folder):
     before = sorted(p.name for p in folder.iterdir())
     command = [*RIFFLER, "volume", "carve", "--stock", "90x60x30", "--pitch", "0.2", *TOOL, "--program",
                "long.ngc", "--out", "part.stl"]  # fmt: skip
-    # Tests that run in the background may have been told to ignore it.
+    # Tests that run in the background may have been set to ignore it.
     heed = partial(signal.signal, signal.SIGINT, signal.SIG_DFL)
     with subprocess.Popen(
         command, cwd=folder, env=ENVIRONMENT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, preexec_fn=heed

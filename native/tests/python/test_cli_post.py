@@ -114,7 +114,7 @@ def test_axes_of_a_plan_and_of_the_command_line(folder):
 @pytest.mark.parametrize("more", [(), ("--part", "corner.stl")])
 def test_a_path_that_is_off_is_left_out(folder, more):
     part = plan.load(folder / "plain.json").part
-    away = CORNER.orient({0: (0.6, 0, 0.8)})  # told apart by its axis
+    away = CORNER.orient({0: (0.6, 0, 0.8)})  # recognised by its axis
     both = plan.Plan([CORNER, away], BALL, part=part, off=frozenset({1}))
     plan.save(folder / "off.json", both)
     data = result("nc", "post", "off.json", "--feed", 700, *more, "--post", "tcp", "--out", "off.ngc", cwd=folder)
@@ -298,7 +298,11 @@ BAD = {
     "no post": (["p.rprog", *OUT], "--post"),
     "unknown post": (["p.rprog", "--post", "lathe", *OUT], "lathe"),
     "post for a .rprog": (["p.rprog", *POST, "--out", "b.rprog"], "leave --post"),
-    "option": (["p.rprog", *POST, "--post-option", "speed=3", *OUT], "unknown option 'speed'"),
+    "option": (["p.rprog", *POST, "--post-option", "speed=3", *OUT], "unknown option 'speed'; known: "),
+    "misspelt option": (
+        ["p.rprog", *POST, "--post-option", "max_rotry=3", *OUT],
+        "unknown option 'max_rotry'; did you mean max_rotary? known: ",
+    ),
     "option without value": (
         ["p.rprog", *POST, "--post-option", "max_rotary", *OUT],
         "--post-option max_rotary: KEY=VALUE",

@@ -9,7 +9,7 @@ import pytest
 import riffler
 from commands import result
 from riffler import cli
-from riffler.command import console, verbs
+from riffler.command import completion, console, verbs
 
 SLOT = "G21 G90 G94\nG0 X-10 Y10 Z5\nG1 Z4 F500\nX50\nG0 Z20\nM30\n"
 STOCK = ("--stock", "40x20x10", "--pitch", "0.5", "--tool", "flat:6:20")
@@ -50,10 +50,10 @@ def _corner():
 OLD = {
     "carve": (["--program", "slot.ngc", *STOCK, "--out", "a.stl"], 0, "a.stl"),
     "convert": (["box.stl", "--pitch", "0.5", "--out", "a.rvol"], 0, "a.rvol"),
-    "mesh": (["box.rvol", "--out", "a.stl", "--decimate", "0.01"], 0, "a.stl"),
+    "mesh": (["box.rvol", "--out", "a.stl", "--tolerance", "0.01"], 0, "a.stl"),
     "audit": (["open.stl"], 1, None),
     "pencil": (["step.stl", *BALL, "--out", "a.json"], 0, "a.json"),
-    "post": (["s.rjournal", "--post", "tcp", "--option", "safe_start=false", "--out", "a.ngc"], 0, "a.ngc"),
+    "post": (["s.rjournal", "--post", "tcp", "--post-option", "safe_start=false", "--out", "a.ngc"], 0, "a.ngc"),
     "verify": (["slot.ngc", *STOCK], 1, None),
     "replay": (["s.rjournal", "--out", "a.rvol"], 0, "a.rvol"),
     "machines": ([], 0, None),
@@ -106,6 +106,50 @@ def test_mesh_is_a_group_and_still_the_old_verb(folder, capsys, words):
     assert cli.main(words) == 0
     assert "riffler volume to-mesh" in capsys.readouterr().err
     assert riffler.Mesh.read("a.stl").audit().open_edges == 0
+
+
+# Verb, its words, the old name of an option, today's, and values.
+OLD_OPTIONS = [
+    ("volume to-mesh", ["box.rvol", "--out", "a.stl"], "--decimate", "--tolerance", ["0.01"]),
+    ("nc post", ["s.rjournal", "--post", "tcp", "--out", "a.ngc"], "--option", "--post-option",
+     ["safe_start=false", "line_numbers=10"]),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("more", [[], ["--json"]], ids=["table", "json"])
+@pytest.mark.parametrize("verb, words, old, new, values", OLD_OPTIONS, ids=lambda x: x if isinstance(x, str) else "")
+def test_an_old_option_does_the_same_and_warns_once_on_stderr(
+    folder, capsys, monkeypatch, verb, words, old, new, values, more
+):
+    monkeypatch.setattr(console.time, "perf_counter", lambda: 0.0)
+    base, file = [*verb.split(), *words, *more], words[-1]
+    without = run(base, capsys, folder, file)
+    before = run([*base, *(word for value in values for word in (old, value))], capsys, folder, file)
+    mixed = run([*base, f"{old}={values[0]}", *(f"{new}={value}" for value in values[1:])], capsys, folder, file)
+    after = run([*base, *(word for value in values for word in (new, value))], capsys, folder, file)
+    assert before[0] == mixed[0] == after[0] == 0
+    assert before[1] == mixed[1] == after[1]
+    assert before[3] == mixed[3] == after[3] != without[3]
+    assert before[2] == mixed[2] == f"riffler: riffler {verb} {old} is an old name of {new}\n" + after[2]
+    assert "old name" not in after[2]
+
+
+def test_an_option_is_given_once_by_either_name(folder, capsys):
+    for words in (["--decimate", "0.1", "--tolerance", "0.2"], ["--tolerance", "0.1", "--decimate", "0.2"]):
+        assert cli.main(["volume", "to-mesh", "box.rvol", "--out", "a.stl", *words]) == 2
+        assert "one tolerance expected, not both 0.1 and 0.2" in capsys.readouterr().err
+    assert not (folder / "a.stl").exists()
+
+
+@pytest.mark.parametrize("verb, words, old, new, values", OLD_OPTIONS, ids=lambda x: x if isinstance(x, str) else "")
+def test_help_hints_and_completion_have_only_todays_names(capsys, monkeypatch, verb, words, old, new, values):
+    text = "\n".join(screen([*verb.split(), "--help"], capsys, monkeypatch))
+    assert f"{new} " in text and f"{old} " not in text
+    assert cli.main([*verb.split(), *words, old[:-1], values[0]]) == 2
+    assert f"no option {old[:-1]}; did you mean {new}?" in capsys.readouterr().err
+    (entry,) = (entry for entry in completion.entries() if entry.path == verb)
+    flags = {flag for option in entry.options for flag in option.flags}
+    assert new in flags and old not in flags
 
 
 def test_the_old_verb_mesh_still_refuses_what_is_no_volume(folder, capsys):

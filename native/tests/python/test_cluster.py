@@ -19,7 +19,7 @@ distributed = pytest.importorskip("distributed", reason="no clusters: distribute
 
 @pytest.fixture(scope="module")
 def workers():
-    """Two processes of one thread each; Dask starts one anew when it dies."""
+    """Two processes of one thread each; Dask restarts one that dies."""
     with distributed.LocalCluster(
         n_workers=2, threads_per_worker=1, processes=True, dashboard_address=":0", host="127.0.0.1"
     ) as local, distributed.Client(local, set_as_default=False) as client:  # fmt: skip

@@ -48,7 +48,7 @@ def test_a_query_gives_force_torque_depth_and_points(part, tool):
 
 
 def test_stiffness_scales_the_force_and_the_holder_has_its_own(part, tool):
-    at = pose(22, 0, -40)  # the shank beside the block, the holder over its edge
+    at = pose(22, 0, -40)  # the shank next to the block, the holder over its edge
     weak = riffler.Collider(part, holder_stiffness=1).query(tool, at)
     strong = riffler.Collider(part, holder_stiffness=10).query(tool, at)
     assert weak.parts[0] == "holder"

@@ -1,4 +1,4 @@
-"""The path of the tool's centre beside a contour, against LinuxCNC's interpreter and against the contour itself."""
+"""The path of the tool's centre along a contour, against LinuxCNC's interpreter and against the contour itself."""
 
 import random
 

@@ -83,7 +83,7 @@ def test_boxes_of_any_size_keep_all_their_rays_and_hold_what_was_asked():
 
 
 def block_in(box, lower, upper, pitch, directions):
-    """A block as it is in a box that was larger from the start, cut out by planes."""
+    """The same block in a box that was larger from the start, cut out by planes."""
     volume = riffler.Volume.block(*box, pitch, directions)
     for k in range(3):
         volume.clip(lower, -np.eye(3)[k]).clip(upper, np.eye(3)[k])

@@ -74,12 +74,12 @@ def test_a_plan_that_is_free_meets_a_clamp_on_its_way_in_and_is_led_round_it(tmp
     cl = located(collider)
     inside = np.array([-40, -75, 60]) + 0.1, np.array([100, -58, 90]) - 0.1
     plain = riffler.Program.from_cl([cl], tools=[TOOL], feed=800, spindle=9000, safe_height=150)
-    assert enters(plain, *inside), "the scene is as it is meant to be"
+    assert enters(plain, *inside), "the scene has an obstacle"
     program = riffler.Program.from_cl([cl], tools=[TOOL], feed=800, spindle=9000, collider=collider)
     assert not enters(program, *inside)
     rows = [int(np.abs(program.poses - row).max(axis=1).argmin()) for row in cl]
     assert np.array_equal(program.poses[rows], cl) and not program.rapid[rows].any()
-    # What is not a way along the axis may cross stock: it is fed, up to above everything.
+    # A path off the axis may cross stock: it is fed, up to above everything.
     across = np.flatnonzero(program.rapid)
     assert (program.poses[across, 2] > 89.9).all()
     stock = riffler.Volume.from_mesh(PART, 0.5)
@@ -154,7 +154,7 @@ def test_a_cut_that_collides_itself_is_named():
         riffler.Program.from_cl([deep], tools=[TOOL], feed=800, collider=collider)
     cl, _ = plan.cutter_locations(VALLEY.divided(6).orient({0: LEANING}), TOOL, collider)
     assert len(riffler.Program.from_cl([cl], tools=[TOOL], feed=800, collider=collider)) > len(cl)
-    # One that only a program has: rows between which nobody looked.
+    # One that only a program has: rows between which no check looked.
     through = np.array([[30, -20, 30, 0, 0, 1], [30, 60, 10, 0, 0, 1.0]])
     program = riffler.Program(through, 500, tools={1: TOOL})
     with pytest.raises(ValueError, match=r"^poses, row 1: on the feed move there the \w+ meets the part"):
@@ -206,7 +206,7 @@ def test_it_is_the_machines_own_motion_that_is_checked(tmp_path):
     lean = np.radians(60)
     rows = [[0, 0, 120, 0, s * np.sin(lean), np.cos(lean)] for s in (-1, 1)]
     program = riffler.Program(np.array(rows), 0, rapid=True, tools={1: TOOL})
-    posts = [block([x, -6, 100], [x + 25, 6, 180]) for x in (35, -60)]  # whichever way it turns
+    posts = [block([x, -6, 100], [x + 25, 6, 180]) for x in (35, -60)]  # for either direction of turning
     collider = riffler.Collider(PART, fixtures=posts)
     between = riffler.Program(np.array([rows[0], [0, 0, 120, 0, 0, 1], rows[1]]), 0, rapid=True, tools={1: TOOL})
     file = tmp_path / "p.ngc"

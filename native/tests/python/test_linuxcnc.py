@@ -59,7 +59,7 @@ def path(name):
             np.hstack([np.sin(7 * t), np.sin(5 * t) - 0.3, one]),
         ),
         "through the pole": (np.hstack([60 * t, 0 * t, 0 * t]), np.hstack([t - 0.5, 0.02 * (t - 0.5), one])),
-        "beside the pole": (np.hstack([60 * t, 5 * t, 0 * t]), np.hstack([t - 0.5, 1e-3 * one, one])),
+        "near the pole": (np.hstack([60 * t, 5 * t, 0 * t]), np.hstack([t - 0.5, 1e-3 * one, one])),
         "wound up": (
             np.hstack([20 * np.cos(15 * t), 20 * np.sin(15 * t), -9 * t]),
             np.hstack([np.cos(15 * t), np.sin(15 * t), 2 * one]),
@@ -73,12 +73,12 @@ def path(name):
     return np.hstack([tips, normed(axes)])
 
 
-PATHS = ["smooth", "through the pole", "beside the pole", "wound up", "turning in place", "long and straight"]
+PATHS = ["smooth", "through the pole", "near the pole", "wound up", "turning in place", "long and straight"]
 
 
 def written(tmp_path, poses, post, tolerance=0.01, **options):
     tool = riffler.Tool.ball(6, 30)
-    # One pose a move: what has no length of its own still has the feed of those beside it.
+    # One pose a move: what has no length of its own still has the feed of its neighbours.
     program = riffler.Program.from_cl([poses], tools=[tool], feed=600, spindle=8000)
     file = tmp_path / "p.ngc"
     name, own, _ = POSTS[post]
@@ -213,7 +213,7 @@ def test_where_a_limit_is_met_the_tool_turns_back_above_the_part(tmp_path):
 
 
 def along(call, parts=12):
-    """Joints (parts + 1, 6) on the way of a canonical move."""
+    """Joints (parts + 1, 6) on the path of a canonical move."""
     share = np.linspace(0, 1, parts + 1)[:, None]
     out = call.start + share * (call.end - call.start)
     if call.plane is not None:

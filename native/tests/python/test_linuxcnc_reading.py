@@ -80,7 +80,7 @@ def compare(program, calls, first):
         np.testing.assert_allclose(last[3:], axis_of(end), atol=1e-5, err_msg=str(call))
     while row < len(program) and np.abs(program.poses[row] - last).max() < 1e-6:
         row += 1
-    assert row == len(program), f"row {row} of {len(program)} is nobody's"
+    assert row == len(program), f"row {row} of {len(program)} was not reached"
 
 
 def zeros(folder):

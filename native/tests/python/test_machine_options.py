@@ -95,5 +95,29 @@ def test_wrong_machines_and_options_are_value_errors():
         riffler.machine_options("lathe")
     with pytest.raises(ValueError, match="rot_point must be three finite numbers"):
         riffler.machine_options("linuxcnc-xyzac", options={"rot_point": np.nan})
-    with pytest.raises(ValueError, match="unknown option 'pivot'"):
+    with pytest.raises(ValueError, match="unknown option 'pivot'; known: "):
         riffler.machine_options("tcp", options={"pivot": 3})
+
+
+@pytest.mark.parametrize(
+    "machine, wrong, meant",
+    [
+        ("tcp", "max_rotaryy", "max_rotary"),
+        ("tcp", "safe-height", "safe_height"),
+        ("linuxcnc-xyzac", "rotpoint", "rot_point"),
+        ("head-table", "limits_q", "limits_x"),
+        ("heidenhain", "vector", "vectors"),
+    ],
+)
+def test_a_misspelt_option_is_answered_with_the_nearest_one(machine, wrong, meant, tmp_path):
+    file, needed = tmp_path / "p.nc", {name: some(fact) for name, fact in facts(machine).items() if fact.needed}
+    PROGRAM.write(file, post=machine, options=needed)
+    for call in (
+        lambda: riffler.machine_options(machine, options={wrong: 1}),
+        lambda: PROGRAM.write(tmp_path / "q.nc", post=machine, options={**needed, wrong: 1}),
+        lambda: riffler.Program.read(file, machine=machine, options={**needed, wrong: 1}),
+    ):
+        with pytest.raises(ValueError, match=rf"{machine}: unknown option '{wrong}'; did you mean {meant}\? known: "):
+            call()
+    with pytest.raises(ValueError, match=r"unknown \w+ tpc; did you mean tcp\? known: "):
+        riffler.machine_options("tpc")

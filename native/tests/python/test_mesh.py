@@ -257,7 +257,7 @@ def test_smooth_moves_vertices_by_at_most_the_tolerance():
     moved = np.linalg.norm(result.vertices - rough.vertices, axis=1)
     assert 0.0149 < moved.max() <= 0.015 + 1e-12
     assert np.array_equal(result.triangles, rough.triangles)
-    # Of the roughness across the surface at least a third is gone.
+    # At least a third of the roughness across the surface is gone.
     assert np.abs(rough.smooth().deviation(mesh)).mean() < np.abs(rough.deviation(mesh)).mean() / 1.5
     with pytest.raises(ValueError, match="iterations"):
         rough.smooth(iterations=-1)

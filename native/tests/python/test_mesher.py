@@ -55,7 +55,7 @@ def sorted_corners(vertices, triangles):
 
 
 def whole_normals(vertices, triangles, sharp):
-    """Of all corners (3 k, 3), from the whole mesh: pairs of corners at one vertex, all at once."""
+    """Normals of all corners (3 k, 3), from the whole mesh: pairs of corners at one vertex, all at once."""
     p = vertices[triangles].astype(float)
     normals = np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0])
     normals /= np.linalg.norm(normals, axis=1)[:, None]
@@ -104,7 +104,7 @@ def test_a_patch_has_the_normals_of_the_whole_mesh(degrees):
 
 
 def keys(vertices, triangles):
-    """Of all corners: the vertex's place, and the places of the triangle's others."""
+    """For all corners: the vertex's place, and the places of the triangle's others."""
     corners = vertices[triangles]
     return corners.reshape(-1, 3), np.repeat(corners.reshape(-1, 1, 9), 3, axis=1).reshape(-1, 9)
 

@@ -55,7 +55,7 @@ def test_a_turned_part_is_the_same_to_all_that_takes_solids():
 
     assert found(bad) == found(CUBE) and any(kind == "gouge" for kind, _ in found(bad))
     said = riffler.plan.analyse(bad)
-    assert said.turned == 6 and said.closed and "6 triangles faced the other way" in said.warnings[0]
+    assert said.turned == 6 and said.closed and "6 triangles faced opposite to those around" in said.warnings[0]
 
 
 @pytest.mark.parametrize("pitch", [1, 0.37, 3.7, 9.9, 0.5])
@@ -171,12 +171,12 @@ def test_commands_tell_what_is_lost(tmp_path):
 def test_commands_tell_what_is_turned(tmp_path):
     write_parts(tmp_path)
     done = riffle("volume", "carve", "--stock", "turned.stl", *CARVE, cwd=tmp_path)
-    assert done.returncode == 0 and "turned.stl: 6 triangles faced the other way" in done.stderr
+    assert done.returncode == 0 and "turned.stl: 6 triangles faced opposite to those around" in done.stderr
     done = riffle(
         "nc", "verify", "p.ngc", "--stock", "20x20x10", "--pitch", 1, "--tool", "ball:4:30",
         "--part", "turned.stl", "--fixture", "turned.stl", cwd=tmp_path,
     )  # fmt: skip
-    assert done.stderr.count("turned.stl: 6 triangles faced the other way") == 2
+    assert done.stderr.count("turned.stl: 6 triangles faced opposite to those around") == 2
     done = riffle("plan", "pencil", "turned.stl", "--tool", "ball:4", "--out", "plan.json", cwd=tmp_path)
     assert done.returncode == 0 and "6 triangles" in done.stderr and " 0: " in done.stdout
 

@@ -59,7 +59,7 @@ def in_terminal(*words: object, keys: dict[float, bytes], cwd) -> tuple[str, int
         except BlockingIOError:
             time.sleep(0.02)
             continue
-        except OSError:  # nobody holds the other end any more
+        except OSError:  # the other end is closed
             break
         if not piece:
             break
@@ -296,7 +296,7 @@ def test_wrong_signs_and_exchanged_plugs_are_found(geometry, stroke):
         counts = gone.copy()
         counts[:, k] *= -1
         found = judge(geometry, geometry.home + counts)
-        assert found.channels == (name,) and found.sign[k] == -1 and "wrong way" in found.text
+        assert found.channels == (name,) and found.sign[k] == -1 and "wrong direction" in found.text
     for a, b in ((0, 1), (1, 4), (2, 5), (3, 4)):
         counts = gone.copy()
         counts[:, [a, b]] = counts[:, [b, a]]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import riffler
 
-SHIFT = 5e-10  # pitches: by so much rays stand beside their places
+SHIFT = 5e-10  # pitches: by so much rays stand off their places
 AXES = [(0, 0, 1), (0, 0, -3), (1, 0, 0), (0, 1, 0), (1, 2, 3), (-1, 1, 0), (1e-12, 0, 1), (0, 1, 1e-12), (1, 1e-9, 0)]
 CYCLIC = {"x": (1, 2, 0), "y": (2, 0, 1), "z": (0, 1, 2)}  # axes of u, v and of the ray itself
 
@@ -43,7 +43,7 @@ class Bar:
         return along, points - self.centre - along[..., None] * self.axis
 
     def distance(self, points):
-        """Signed; only a bound outside beside the rims, where it is not asked."""
+        """Signed; only a bound outside next to the rims, where no test uses it."""
         along, off = self._split(points)
         return np.maximum(np.linalg.norm(off, axis=-1) - self.radius, abs(along) - self.height / 2)
 
@@ -148,7 +148,7 @@ def test_volumes_converge_as_the_pitch_halves(make):
 
 @pytest.mark.parametrize("directions, share", [("z", 0.75), ("xyz", None)])
 @pytest.mark.parametrize(
-    "solid, of_three",  # vertices within this part of a pitch; beside a curved rim they are less exact
+    "solid, of_three",  # vertices within this part of a pitch; next to a curved rim they are less exact
     [
         (Ball((0.1, 0.2, 0.3), 8.0), 1e-4),
         (Bar((0.1, 0.2, 0.3), 5, 9, (0, 0, 1)), 0.02),
@@ -223,8 +223,8 @@ def test_rays_that_touch_or_run_in_the_side():
 
 @pytest.mark.parametrize("directions", ["z", "xyz"])
 def test_a_ray_on_the_boxs_side_or_alone_beyond_it_stands_for_what_is_within(directions):
-    """Of 10.5 pitches the last ray is on the side; of 0.2, across a plate, the only one is beyond it. As from_mesh has
-    it."""
+    """Across 10.5 pitches the last ray is on the side; across 0.2, through a plate, the only one is beyond it. The same
+    as from_mesh."""
     lying = riffler.Volume.cylinder((0, 0, 0), 5, 10.5, 1, directions, axis=(1, 0, 0))
     shorter = riffler.Volume.cylinder((0, 0, 0), 5, 10, 1, directions, axis=(1, 0, 0))
     assert lying.volume == pytest.approx(1.05 * shorter.volume, rel=1e-12)

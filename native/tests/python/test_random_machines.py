@@ -49,7 +49,7 @@ def program(random, most):
         arounds = around + np.cumsum(random.normal(size=n) * 0.4)
     elif kind == 1:  # round and round
         tilts, arounds = np.full(n, tilt), around + random.uniform(-1.5, 1.5) * np.arange(n)
-    else:  # through the pole, beside it by up to 6°, or from one side to the other in one move
+    else:  # through the pole, past it by up to 6°, or from one side to the other in one move
         way = np.linspace(-1, 1, n) if kind == 2 else random.choice([-1, 1], n) * random.uniform(0.1, 1, n)
         way, aside = way * np.tan(min(most, 1.2)), random.choice([0, 10 ** random.uniform(-9, -1)])
         tilts = np.arctan(np.hypot(way, aside))

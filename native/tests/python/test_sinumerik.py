@@ -1,4 +1,4 @@
-"""Sinumerik programs from Python: files, subprograms beside them, streams, notes in a verification."""
+"""Sinumerik programs from Python: files, subprograms next to them, streams, notes in a verification."""
 
 import numpy as np
 import pytest

@@ -134,13 +134,13 @@ def bits(thing):
 
 @functools.cache
 def expected_bits(name):
-    """Of the plain call; made once."""
+    """The bits of the plain call's result; computed once."""
     call, args, kwargs = CALLS[name]
     return bits(call(*args, **kwargs))
 
 
 def endless():
-    """A call that nobody would wait for, in short steps."""
+    """A call that takes practically for ever, in short steps."""
     return riffler.submit(SURFACE.smooth, iterations=2_000_000_000)
 
 
@@ -455,7 +455,7 @@ EXITS = {
     "from a function": "def f():\n    held = endless()\n    sys.exit(0)\nf()",
     "in a thread's hands": "t = threading.Thread(target=lambda held: time.sleep(0.2), args=[endless()]); t.start()",
     "many": "tasks_ = [endless() for _ in range(8)]; tasks_[3].cancel()",
-    "with a result nobody asked for": "task = riffler.submit(test_tasks.VOLUME.to_bytes); time.sleep(0.2)",
+    "with a result not asked for": "task = riffler.submit(test_tasks.VOLUME.to_bytes); time.sleep(0.2)",
     "started late": "import atexit; atexit.register(lambda: globals().update(late=endless()))",
 }
 
@@ -529,5 +529,5 @@ def test_one_thread_is_one_thread(free_choice):
     task, most = riffler.submit(plan.free_orientations, valley(300), BALL, COLLIDER, index=range(300), **wide), 0
     while most < before + 4 and not task.done():
         most = max(most, threads_of_process())
-    assert most == before + 4  # the task's own and three beside it
+    assert most == before + 4  # the task's own and three more
     del task

@@ -116,7 +116,7 @@ def test_gouges_of_random_programs_are_as_deep_as_the_height_map_says(cutter):
     for row in range(1, len(tips)):
         before = heights.z.copy()
         lost = heights.cut(profile, tips[row - 1], tips[row]) > 1e-6
-        # Half-way down the part is farthest from its top and its bottom.
+        # Halfway down the part is farthest from its top and its bottom.
         deepest = np.clip(-6.5, heights.z, np.minimum(before, -3))
         depth = np.minimum(side, np.minimum(-3 - deepest, deepest + 10))
         wanted[row] = depth[lost].max(initial=0)

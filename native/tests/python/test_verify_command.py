@@ -60,7 +60,7 @@ def test_what_was_passed_over_is_said_and_skipped_coordinates_never_pass(folder,
     status, data = run(capsys, "odd.ngc", *WORDS, *skip)
     assert status == 1 and data["findings"] == [] and not data["passed"]
     assert "line 9: G187" in data["not_checked"]
-    # Without coordinates nothing is uncertain; every option of reading may be given beside a machine's own.
+    # Without coordinates nothing is uncertain; every option of reading may be given along with a machine's own.
     (folder / "fine.ngc").write_text(good.replace("G0 Z40", "G187 P1\nG0 Z40\nM30\nM30"))
     more = ["--machine-option", "block_delete=true", "--machine-option", "chord_tolerance=0.01"]
     status, data = run(capsys, "fine.ngc", *WORDS, *skip, *more)

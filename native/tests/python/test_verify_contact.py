@@ -34,7 +34,7 @@ def test_holder_hits_on_the_right_line_and_not_one_move_earlier():
     assert rows(report, "holder") == [11, 12, 13, 14]
     (found,) = [f for f in report.findings if f.kind == "holder"]
     assert (found.line, found.last_line, found.tool, found.member) == (111, 114, 1, "holder")
-    # The worst row is the last, from x = 23 to 24: rays within 10 mm of that way, half a millimetre of each.
+    # The worst row is the last, from x = 23 to 24: rays within 10 mm of that move, half a millimetre of each.
     x, y = np.meshgrid(30.125 + 0.25 * np.arange(40), 0.125 + 0.25 * np.arange(160), indexing="ij")
     inside = np.hypot(np.maximum(x - 24, 0), y - 20) < 10
     assert found.value == pytest.approx(inside.sum() * 0.5 * 0.25**2, rel=1e-9)
@@ -172,6 +172,6 @@ def test_fixtures_are_met_by_cutter_and_holder_on_the_right_rows():
     assert (found.fixture, found.member) == (1, "cutter") and "fixture 2" in found.message
     over = path(line_of_moves([5, 20, 8], [45, 20, 8], 1.0))  # its tip just touches the clamp's top
     assert riffler.verify(program(over, held()), stock, None, [vise, clamp]).passed
-    tall = box_mesh([40, 15, -10], [50, 25, 19.5])  # below the holder's face by half a millimetre, beside the shank
+    tall = box_mesh([40, 15, -10], [50, 25, 19.5])  # below the holder's face by half a millimetre, next to the shank
     report = riffler.verify(program(path([[5, 20, -1], [31, 20, -1]]), held()), stock, None, [tall])
     assert kinds(report) == ["fixture"] and report.findings[0].member == "holder"

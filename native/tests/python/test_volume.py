@@ -93,7 +93,7 @@ def test_a_box_or_pitch_that_makes_no_sense_is_refused_by_whatever_makes_a_volum
 
 @pytest.mark.parametrize("directions", ["z", "xyz"])
 def test_a_plate_thinner_than_the_pitch_is_a_volume_and_a_mesh(directions):
-    """No ray stands within it; the lone one beside it stands for it. Walls beside rays are found within half a pitch,
+    """No ray stands within it; the lone one next to it stands for it. Walls between rays are found within half a pitch,
     those that rays end at exactly."""
     low, high = [0, 0, 0], [0.4, 10, 10]
     mesh = box_mesh(low, high)

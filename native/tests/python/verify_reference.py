@@ -39,9 +39,9 @@ class HeightMap:
         self.bottom, self.pitch = lower[2], pitch
 
     def under(self, profile, a, b):
-        """The least height of the cutter's lower side over each ray on the way from a to b; inf beside it.
+        """The least height of the cutter's lower side over each ray on the move from a to b; inf elsewhere.
 
-        z + f(distance from the axis) is convex along the way, as f is convex and grows: golden section finds its least.
+        z + f(distance from the axis) is convex on the move, as f is convex and grows: golden section finds its least.
         """
         radius, corner = profile
         a, b = np.asarray(a, float), np.asarray(b, float)

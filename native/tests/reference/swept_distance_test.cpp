@@ -126,7 +126,7 @@ TEST(SweptDistance, FindsWhatPassesInAMoment) {
     const Vec3 p = point(random, 2);
     EXPECT_NEAR(swept(p), -0.01, 1e-9);
   }
-  // The same turning, with its edge on the way.
+  // The same while turning, with its edge in the path.
   const SweptDistance turning(tool.profile(), Motion({{0, 0, -2000}, {0, 0, 1}}, {{0, 0, 2000}, unit(1, 0, 0.3)}));
   for (int k = 0; k < 50; ++k) EXPECT_LT(turning(point(random, 1)), -0.0099);
 }

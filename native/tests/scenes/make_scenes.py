@@ -1,9 +1,9 @@
-"""Makes the journals of this folder anew: inputs that stay as they are, so run it to add a scene, not to mend a hash.
+"""Makes the journals of this folder again: inputs that must not change, so run it to add a scene, not to mend a hash.
 
 PYTHONPATH=native/python python native/tests/scenes/make_scenes.py
 
 Others are sessions in which the stress run once found something, written by riffler_stress --journal:
-- long-fillet (fillet, seed 11, session 529): a way of 14 m left one ray short;
+- long-fillet (fillet, seed 11, session 529): a move of 14 m left one ray short;
 - shank-below (taper-ball, seed 3, session 10): a piece whose neighbour stays below the stock lost its lower end;
 - disc-far (disc, seed 101, session 5632): a force that was not a number.
 """
@@ -46,7 +46,7 @@ class Scene:
 
 
 def straight() -> Scene:
-    """Ramps, level ways and plunges, with every named cutter."""
+    """Ramps, level moves and plunges, with every named cutter."""
     scene = Scene("straight", (0, 0, 0), (36, 22, 10), 0.25)
     a = np.linspace(0, 1, 41)[:, None]
     wave = np.hstack([4 + 28 * a, 11 + 7 * np.sin(9 * a), 8 - 3 * a])
@@ -59,7 +59,7 @@ def straight() -> Scene:
 
 
 def five_axis() -> Scene:
-    """The axis swings along the way."""
+    """The axis swings along the path."""
     scene = Scene("five-axis", (0, 0, 0), (36, 22, 10), 0.3)
     a = np.linspace(0, 1, 31)[:, None]
     tips = np.hstack([4 + 28 * a, 11 + 5 * np.sin(9 * a), 7 - 2 * a])
@@ -83,7 +83,7 @@ def great_turns() -> Scene:
 
 
 def degenerate() -> Scene:
-    """Far from the origin: walls on rays, ways of no length and of 1e-12 mm, angles of 1e-9, a thin disc edge-on."""
+    """Far from the origin: walls on rays, moves of no length and of 1e-12 mm, angles of 1e-9, a thin disc edge-on."""
     far = np.array([1e5, -1e5, 1e5])
     scene = Scene("degenerate", far, far + np.array([20, 18, 12]), 0.5)
     on_rays = np.array([[5.25, 6.25, 6], [12.25, 6.25, 6], [12.25, 6.25, 6], [12.25, 11.25, 6]])

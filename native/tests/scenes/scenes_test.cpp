@@ -1,5 +1,5 @@
 // Replayed journals give the bytes that they gave when hashes.txt was written. A change of the engine that is meant to
-// change bits writes it anew with `make scenes`; the number of spans and the volume beside each hash show how much
+// change bits rewrites it with `make scenes`; the number of spans and the volume next to each hash show how much
 // changed. Turning moves use the C library's sine and cosine, which may differ in the last bit between its versions.
 #include <gtest/gtest.h>
 

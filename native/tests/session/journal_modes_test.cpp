@@ -50,7 +50,7 @@ std::vector<Pose> wander(std::mt19937& random, int rows) {
   return out;
 }
 
-/// What somebody who works at a volume does, without a journal.
+/// Works on a volume as a session does, without a journal.
 struct Clay {
   Volume volume = Volume::block({kBox, 0.4, "xyz"});
   std::optional<Volume> mask;

@@ -155,7 +155,7 @@ TEST(JournalStream, SaysWhenWhatWasThereIsInTheFile) {
   ASSERT_TRUE(s.stream.begin(1, 0.01, row(0)));
   for (int k = 1; k < 40; ++k) ASSERT_TRUE(s.stream.put(row(k)));
   s.stream.end();
-  EXPECT_FALSE(s.stream.written(0.01)) << "nobody writes";
+  EXPECT_FALSE(s.stream.written(0.01)) << "no writer runs";
   s.stream.start();
   ASSERT_TRUE(s.stream.written(60));
   expect_rows(s.read().strokes()[0], 0, 40);

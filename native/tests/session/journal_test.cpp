@@ -181,7 +181,7 @@ TEST(Journal, CutAnywhereGivesAllWholeRecords) {
     before = records;
     for (std::size_t k = 0; k < j.strokes().size(); ++k) expect_same(j.strokes()[k], whole.strokes()[k]);
     EXPECT_EQ(j.cut_at.value_or(size), to_bytes(j).size());
-    EXPECT_EQ(j.cut_at.has_value(), to_bytes(j).size() < size) << "a cut that nobody was told of";
+    EXPECT_EQ(j.cut_at.has_value(), to_bytes(j).size() < size) << "a cut without a report";
   }
   EXPECT_EQ(before, 8U);
   for (std::size_t size = 0; size < 16; ++size)

@@ -1,4 +1,4 @@
-// A session that puts on, or that cuts beside what is protected: what may be cut and what is shown, strokes on disk,
+// A session that adds, or that cuts next to what is protected: what may be cut and what is shown, strokes on disk,
 // undo.
 #include "session/masked_stock.hpp"
 
@@ -186,7 +186,7 @@ TEST(MaskedStock, WithoutAMaskTheReplayOfWhatWasPutOnHasTheSameBytesToo) {
   }
 }
 
-/// Why such strokes have a kind of their own: a carve that adds begins anew, and what is thinner than 1e-9 h is lost.
+/// Why such strokes have a kind of their own: a carve that adds starts over, and what is thinner than 1e-9 h is lost.
 TEST(MaskedStock, AStrokeThatGoesDeeperByNextToNothingIsInTheReplay) {
   for (const char* directions : {"z", "xyz"}) {
     std::mt19937 random(17);

@@ -92,7 +92,7 @@ TEST(Replay, LeavesTheBytesThatMovesOneByOneLeft) {
 
 TEST(Replay, LeavesTheBytesThatAHandLeftThroughTheHapticStep) {
   // A hand that rests for half a second, presses, slides and rests again: the spring comes to rest by ever smaller
-  // ways.
+  // displacements.
   Volume session = Volume::block({kBox, 0.4, "xyz"});
   sweep::MoveCarver carver(session, kTools.at(1), {.tolerance = 0.01, .removal_constant = 1e-3});
   haptics::SculptStep step(haptics::SculptSettings(), kTools.at(1), &carver, nullptr);

@@ -18,7 +18,7 @@ inline Volume sculpt_stock(double pitch = 0.25, const char* directions = "z") {
   return Volume::block({kStock, pitch, directions});
 }
 
-/// What a sink was told.
+/// A sink that keeps what it gets.
 class RememberingSink final : public session::StrokeSink {
  public:
   struct Stroke {

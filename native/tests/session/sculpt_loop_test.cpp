@@ -134,7 +134,7 @@ TEST(SculptLoop, AfterATripTheToolGoesOnFromWhereItWasAndCutsNoWayBetween) {
   EXPECT_TRUE(bench.loop.trips().count() > 0);
   bench.pen->on_sense = nullptr;
   bench.run(0.3, [&](const SculptTick& tick) {
-    EXPECT_EQ(tick.tool.tip, tool.tip);  // until somebody has looked at it
+    EXPECT_EQ(tick.tool.tip, tool.tip);  // until the trip is cleared
     EXPECT_EQ(tick.wrench, Wrench{});
   });
   bench.loop.reset();
@@ -169,7 +169,7 @@ TEST(SculptLoop, TheClutchLiftsTheToolOffTheHand) {
   EXPECT_NEAR(tool.tip.x, 2.5, 0.25);  // half of the five millimetres before the clutch, behind the hand's wish
 }
 
-/// Against a plate the hand feels the coupling's stiffness, whatever the scale.
+/// Against a plate the hand feels the coupling's stiffness at every scale.
 TEST(SculptLoop, TheHandFeelsTheSameStiffnessAtEveryScale) {
   const Mesh plate = test::box_mesh({-60, -60, -11}, {60, 60, -1});
   const collide::Collider obstacles(plate, {}, {.spacing = 0.3, .stiffness = 1e3});
@@ -231,7 +231,7 @@ TEST(SculptLoop, AConnectionInAStrokeBeginsAnotherWhereTheHandIsThen) {
     EXPECT_EQ(sink.strokes.size(), 2U);
     EXPECT_EQ(loop.trips().count(), 0U);
     EXPECT_TRUE(test::same_spans(shown, test::carved_again(stock, kBall, sink.strokes)));
-    EXPECT_EQ(shown.grids()[0].ray(60, 59)[0].far, 0) << "a way that nobody made was cut";  // at x = 0.25
+    EXPECT_EQ(shown.grids()[0].ray(60, 59)[0].far, 0) << "a path that the tool did not take was cut";  // at x = 0.25
   }
 }
 

@@ -3,7 +3,7 @@
 
 namespace riffler::test {
 
-/// Calls of operator new by this thread so far, whoever made them: allocations.cpp replaces it in the whole program.
+/// Calls of operator new by this thread so far, from all code: allocations.cpp replaces it in the whole program.
 long allocations();
 
 }  // namespace riffler::test

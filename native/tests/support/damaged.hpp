@@ -1,4 +1,4 @@
-// Text as it is after an accident: what readers must survive.
+// Text as an accident leaves it: what readers must survive.
 #pragma once
 
 #include <random>

@@ -10,7 +10,7 @@ inline constexpr bool kSanitized = true;
 inline constexpr bool kSanitized = false;
 #endif
 
-/// Of `all` cases: all, or a quarter under a sanitizer.
+/// How many of `all` cases to run: all, or a quarter under a sanitizer.
 constexpr int cases(int all) {
   return kSanitized ? (all + 3) / 4 : all;
 }

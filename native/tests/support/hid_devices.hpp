@@ -33,7 +33,7 @@ inline Bytes puck_descriptor(bool joined) {
   return out;
 }
 
-/// "Raw HID" of Teensy boards: 64 bytes both ways, no numbers.
+/// "Raw HID" of Teensy boards: 64 bytes in both directions, no report numbers.
 inline Bytes teensy_descriptor() {
   return {0x06, 0xAB, 0xFF, 0x0A, 0x00, 0x02, 0xA1, 0x01, 0x75, 8,    0x15, 0x00, 0x26, 0xFF,
           0x00, 0x95, 64,   0x09, 0x01, 0x81, 0x02, 0x95, 64,   0x09, 0x02, 0x91, 0x02, 0xC0};
@@ -69,7 +69,7 @@ inline Bytes puck_report(std::uint8_t number, const std::vector<int>& values) {
   return bytes;
 }
 
-/// Of WoodenHaptics and Polhem: six counters and a flag, in 64 bytes.
+/// A report of WoodenHaptics and Polhem: six counters and a flag, in 64 bytes.
 inline Bytes polhem_report(const std::vector<int>& values) {
   Bytes bytes(64);
   put_values(bytes, 0, values);

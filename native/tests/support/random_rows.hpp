@@ -34,8 +34,8 @@ inline nc::Options with_needed(const std::string& name, nc::Options options) {
   return options;
 }
 
-/// Every shipped machine: as it is, with its words the other way round, with limits, and with what posts can be asked
-/// for.
+/// Every shipped machine: with its defaults, with tip words for joint words or joint words for tip words, with limits,
+/// and with options of posts.
 inline std::vector<nc::WriteOptions> all_machines() {
   std::vector<nc::WriteOptions> out;
   for (const base::ShippedText& text : nc::shipped_machines()) {

@@ -1,4 +1,4 @@
-// Adding material and carving beside a mask, judged by the swept solid's distance and by booleans of whole volumes.
+// Adding material and carving next to a mask, judged by the swept solid's distance and by booleans of whole volumes.
 #include "sweep/cut_region.hpp"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ std::vector<Pose> path() {
   return {{{3, 4, 9}, unit(0, 0, 1)}, {{20, 7, 6}, unit(0, 0, 1)}, {{18, 19, 8}, unit(0.4, -0.2, 1)}};
 }
 
-/// Without rotation, where every end is exact and none depends on what lies beside it.
+/// Without rotation, where every end is exact and none depends on its neighbours.
 std::vector<Pose> straight_path() {
   const Vec3 lean = unit(0.3, -0.2, 1);
   return {{{3, 4, 9}, lean}, {{20, 7, 6}, lean}, {{18, 19, 8}, lean}};

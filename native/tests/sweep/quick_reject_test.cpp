@@ -1,4 +1,4 @@
-// Rays out of a step's reach are told at a first look; those within it never are.
+// Rays out of a step's reach are rejected at a first look; those within it never are.
 #include "sweep/quick_reject.hpp"
 
 #include <gtest/gtest.h>

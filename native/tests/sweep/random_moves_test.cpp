@@ -39,7 +39,7 @@ Tool any_cutter(Random& random) {
   }
 }
 
-/// A move that turns by 0.001 to 3.1 rad about any axis, with a way of some millimetres or none.
+/// A move that turns by 0.001 to 3.1 rad about any axis, over a distance of some millimetres or none.
 std::pair<Pose, Pose> any_move(Random& random) {
   const Vec3 from = random() % 4 == 0 ? Vec3(0, 0, 1) : direction(random);
   const Vec3 about = glm::normalize(glm::cross(from, direction(random)));

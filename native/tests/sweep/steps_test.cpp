@@ -1,4 +1,4 @@
-// How a cutter is taken apart before it is swept, and what of a move is looked at.
+// How a cutter is taken apart before it is swept, and which part of a move is looked at.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -122,7 +122,7 @@ TEST(Carve, AMoveThatComesFromFarAwayIsExactWhereItMatters) {
   const Tool tool = cutters::cone_end(1.1, 2.5, 0.4, 20, 90);
   const Pose from{{18749528.76, -2756265.76, 73167652.37}, {-1, 0, 0}};
   const Pose to{{-3950480.9, 583834.13, -15415761.98}, {-1, 0, 0}};
-  // The way is shifted so that it passes through the block.
+  // The path is shifted so that it passes through the block.
   const double t = from.tip.z / (from.tip.z - to.tip.z);
   const Vec3 shift = Vec3(40, 20, 20) - (from.tip + t * (to.tip - from.tip));
   const Pose a{from.tip + shift, from.axis}, b{to.tip + shift, to.axis};
@@ -176,7 +176,7 @@ TEST(Carve, ATurnOnALongWayIsWorkOnlyWhereTheToolPasses) {
 }
 
 TEST(Carve, APieceThatCannotReachLeavesItsNeighbourBounded) {
-  // The shank stays below the block, the cone above it does not: on the way up, rays enter through the shank.
+  // The shank stays below the block, the cone above it does not: as it moves up, rays enter through the shank.
   const Tool tool = cutters::profile(
       {{{0.49131754498843011, 0.40722570406334546}, Vec2(0, 0.5)}, {{3, 13.692798960188219}, {}}}, 35.017852589786258);
   const Vec3 axis(-0.87353197686686335, -0.22275330595436235, -0.43280809844256862);
@@ -199,7 +199,7 @@ TEST(Carve, APieceThatCannotReachLeavesItsNeighbourBounded) {
 }
 
 TEST(Carve, ATurningToolThatGrazesARayAllAlongDoesNotCombIt) {
-  // Turning about y leaves the disc's reach along y as it is; chords are 5e-5 mm, one after the other for 90 mm.
+  // Turning about y leaves the disc's reach along y unchanged; chords are 5e-5 mm, one after the other for 90 mm.
   const double h = 0.5, beside = 3 - 1e-10;
   Volume volume = Volume::block({{{0, 0, 0}, {100, 8, 4}}, h, "x"});
   const dexel::Grid& grid = volume.grids()[0];

@@ -81,7 +81,7 @@ TEST(Outline, OfAnAssemblyIsThatOfTheUnionOfItsPieces) {
     const Outline::Nearest found = outline.nearest(p.x, p.y);
     if (std::abs(found.distance) < 1e-9) continue;
     ASSERT_EQ(found.distance < 0, in_pieces(tool, p)) << p.x << " " << p.y;
-    // Nothing of the other side is nearer than the foot, and beside that there is some.
+    // No point of the other side is nearer than the foot, and next to the foot there are some.
     const auto other_side = [&](const Vec2& centre, double most) {
       const double angle = 6.3 * share(random), reach = most * share(random);
       const Vec2 q = centre + reach * Vec2(std::cos(angle), std::sin(angle));

@@ -47,7 +47,7 @@ TEST(Edit, DeletingAppendingAndEmptyProgramsAreCovered) {
   EXPECT_EQ(edit_between(program({0, 1, 2}), program({})).before, (Rows{1, 2}));
   EXPECT_EQ(edit_between(program({}), program({0, 1, 2})).now, (Rows{1, 2}));
   EXPECT_TRUE(edit_between(program({}), program({0})).now.empty());
-  // Of equal moves only so many are counted from the end as there are.
+  // No move counts both from the beginning and from the end.
   const ProgramEdit edit = edit_between(program({0, 0, 0}), program({0, 0, 0, 0}));
   EXPECT_TRUE(edit.before.empty());
   EXPECT_EQ(edit.now, (Rows{3}));

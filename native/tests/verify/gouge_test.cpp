@@ -1,4 +1,4 @@
-// How deep under a part's surface a cut goes, beside the closed form of a box.
+// How deep under a part's surface a cut goes, compared with the closed form of a box.
 #include "verify/gouge.hpp"
 
 #include <gtest/gtest.h>
@@ -32,7 +32,7 @@ TEST(PartSurface, TheDeepestOfManyPiecesIsThatOfDensePointsToAPercent) {
   for (int k = 0; k < 200; ++k) {
     PartSurface::Deepest worst;
     double most = 0;
-    for (int n = 0; n < 12; ++n) {  // shallow ones after deep ones, and the other way round
+    for (int n = 0; n < 12; ++n) {  // shallow ones after deep ones, and deep ones after shallow ones
       const auto point = [&] { return kLower + Vec3(share(random), share(random), share(random)) * (kUpper - kLower); };
       const Vec3 a = point(), b = n % 3 == 0 ? a : point();
       surface.look_deeper(a, b, worst);

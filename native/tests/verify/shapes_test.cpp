@@ -58,7 +58,7 @@ TEST(ToolShapes, ProbesAreSmallerByTheToleranceAndNeverNothing) {
       EXPECT_LT(max_radius(real) - max_radius(small), 0.025);
     }
   }
-  // Beyond the holder the tool goes on, a pitch wider than the widest of it.
+  // Beyond the holder the tool continues, a pitch wider than its widest part.
   EXPECT_EQ(shapes.probes[2].member, Member::Beyond);
   EXPECT_EQ(bottom(shapes.probes[2].real[0].pieces[0]), 40);
   EXPECT_EQ(max_radius(shapes.probes[2].real[0].pieces[0]), 20.25);

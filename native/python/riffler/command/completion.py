@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 from . import completion_scripts, verbs
 from .console import Console
-from .parser import Offer, Parser
+from .parser import Offer, Parser, Renamed
 
 HELP = "print a completion script for bash, zsh or fish"
 SHELLS = {
@@ -75,6 +75,8 @@ def entry(verb: verbs.Verb) -> Entry:
     parser = verb.parser()
     options, values = [], []
     for action in parser._actions:
+        if isinstance(action, Renamed):
+            continue
         if action.option_strings:
             flags = tuple(flag for flag in action.option_strings if flag.startswith("--"))
             value = None if action.nargs == 0 else _value(parser, action)

@@ -81,8 +81,8 @@ class Console:
 
     @contextmanager
     def step(self, name: str) -> Iterator[Callable[[float], None] | None]:
-        """Times a step of the work; yields the callable that its ``progress=`` wants, or None where nobody watches
-        or the terminal cannot draw over what it has."""
+        """Times a step of the work; yields the callable that its ``progress=`` wants, or None where no terminal
+        shows it or the terminal cannot redraw a line."""
         start = time.perf_counter()
         if sys.stderr.isatty() and os.environ.get("TERM") not in ("dumb", "unknown"):
             from rich.console import Console as Rich

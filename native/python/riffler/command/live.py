@@ -22,7 +22,7 @@ FRAMES = 10  # drawn a second: more is not read, and terminals over a network do
 # Bits of the eight dots of a braille character (Unicode 16, block 2800), of its two columns from the top down.
 DOTS = ((0x01, 0x02, 0x04, 0x40), (0x08, 0x10, 0x20, 0x80))
 COLOURS = ("cyan", "magenta", "yellow", "green", "red", "blue")
-SCALE = 9  # characters that the numbers beside a chart take
+SCALE = 9  # characters that the numbers next to a chart take
 
 
 class Braille:
@@ -161,7 +161,7 @@ def width_of_terminal() -> int:
 
 
 class Enter:
-    """Whether somebody pressed Enter since this was made; a thread of its own waits for it."""
+    """Whether the user pressed Enter since this was made; a thread of its own waits for it."""
 
     def __init__(self) -> None:
         self.pressed = threading.Event()

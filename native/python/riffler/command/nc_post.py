@@ -58,7 +58,8 @@ def add_arguments(parser: Parser) -> None:
     parser.add_argument("--post", metavar="NAME", help="the machine; riffler nc machines lists them")
     parser.offer("post", machines())
     about = "of the post; may be repeated"
-    parser.add_argument("--post-option", "--option", action="append", default=[], metavar="KEY=VALUE", help=about)
+    option = parser.add_argument("--post-option", action="append", default=[], metavar="KEY=VALUE", help=about)
+    parser.add_old_name("--option", option)
     parser.add_argument("--tolerance", metavar="MM", default="0.01", help="of the tip between blocks (default 0.01)")
     parser.add_argument("--axis-tolerance", metavar="DEG", help="of the tool's axis between blocks (default 0.1)")
     parser.add_argument("--feed", metavar="F", help="mm/min at the tip (default of a plan 500)")

@@ -39,6 +39,22 @@ class Once(argparse.Action):
         setattr(namespace, self.dest, values)
 
 
+class Renamed(argparse.Action):
+    """An option by its old name: does what the option of today's name does, and the parser keeps both names for a
+    note."""
+
+    def __init__(self, option_strings: Sequence[str], dest: str, today: argparse.Action, **more: Any) -> None:
+        super().__init__(option_strings, dest, **more)
+        self.today = today
+        self.new = today.option_strings[0]
+
+    def __call__(self, parser: argparse.ArgumentParser, namespace: argparse.Namespace, values: Any,
+                 option_string: str | None = None) -> None:  # fmt: skip
+        self.today(parser, namespace, values, option_string)
+        if isinstance(parser, Parser) and option_string is not None:
+            parser.renamed[option_string] = self.new
+
+
 class Parser(argparse.ArgumentParser):
     """The arguments of one verb. Raises UsageError instead of printing usage and exiting."""
 
@@ -49,6 +65,7 @@ class Parser(argparse.ArgumentParser):
         )  # fmt: skip
         self.inputs: dict[str, bool] = {}  # by name: whether it must be given
         self.offers: dict[str, Offer] = {}  # by the argument's dest
+        self.renamed: dict[str, str] = {}  # old names that the command line used: today's
 
     def add_input(self, name: str, help: str, suffixes: Iterable[str] = (), *, flags: Sequence[str] = (),
                   required: bool = True, words: Iterable[str] = ()) -> None:  # fmt: skip
@@ -65,6 +82,13 @@ class Parser(argparse.ArgumentParser):
         """An option whose value is a file with one of the suffixes."""
         action = self.add_argument(flag, metavar="FILE", help=help, **more)
         self.offers[action.dest] = Offer(tuple(suffixes))
+
+    def add_old_name(self, old: str, today: argparse.Action) -> None:
+        """The old name of an option with a value: it still works, and neither the help nor completion shows it."""
+        self.add_argument(
+            old, dest=today.dest, action=Renamed, today=today, metavar=today.metavar, default=argparse.SUPPRESS,
+            help=argparse.SUPPRESS,
+        )  # fmt: skip
 
     def offer(self, dest: str, words: Iterable[str] = (), suffixes: Iterable[str] = ()) -> None:
         """What shell completion offers for the argument."""
@@ -89,7 +113,10 @@ class Parser(argparse.ArgumentParser):
 
     def refuse(self, flag: str) -> NoReturn:
         """UsageError for an unknown option."""
-        self.error(f"no option {flag}{hint(flag, self._option_string_actions)}")
+        near = nearest(flag, self._option_string_actions)
+        action = self._option_string_actions.get(near or "")
+        near = action.new if isinstance(action, Renamed) else near
+        self.error(f"no option {flag}{f'; did you mean {near}?' if near else ''}")
 
     def _check_value(self, action: argparse.Action, value: Any) -> None:
         """Says which word is meant where a choice is none; called by argparse."""

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 HELP = "home a pen, find lost counts and wrong signs; noise of a puck"
 
-ENOUGH = 0.3  # share of a joint's way that it should have gone
+ENOUGH = 0.3  # share of its range that a joint should have moved
 FEWEST = 20  # postures, of a judgement
 REST = 5.0  # s that a puck is left alone
 
@@ -60,7 +60,7 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
         raise ValueError("pen calibrate asks questions: run it in a terminal and without --json, or with --yes")
     if str(arguments.device).endswith(".rjournal"):
         raise ValueError("a recording has nothing to calibrate")
-    # A puck's own response, whatever bubble it is given later: pens do not look at these.
+    # A puck's own response, without the bubble that it gets later; pens ignore both arguments.
     with open_device(arguments.device, bubble=0.0, exponent=1.0) as device:
         losses = losses_of(arguments.lose, device)
         wait_for(device, lambda: math.isfinite(device.state().age_s) or device.limits["x"].senses == "rate")
@@ -196,7 +196,7 @@ def move(
     device: pen.PenDevice, postures: Postures, seconds: float, yes: bool, console: Console,
     hand: Iterator[np.ndarray] | None,
 ) -> None:  # fmt: skip
-    """Collects postures until the time is over or somebody presses Enter; `hand` says where a simulated one goes."""
+    """Collects postures until the time is over or the user presses Enter; `hand` says where a simulated one goes."""
     ended = None if yes else Enter()
     start = time.monotonic()
     shown = turned = -math.inf
@@ -207,9 +207,9 @@ def move(
             if problem:
                 raise pen.PenError(problem)
             if state.fault:
-                raise pen.PenError(f"the pen reports fault {state.fault}: switch it off and on again, and begin anew")
+                raise pen.PenError(f"the pen reports fault {state.fault}: switch it off and on, then calibrate again")
             if not state.homed:
-                raise pen.PenError("the pen lost its power, and its counts with it: begin anew")
+                raise pen.PenError("the pen lost its power, and its counts with it: calibrate again")
             postures.add(state.counts, state.stretch)
             if hand is not None and isinstance(device, pen.SimulatedPen) and now - turned > 0.3:
                 turned = now
@@ -248,7 +248,7 @@ def progress(postures: Postures, stretch: float, left: float, yes: bool) -> Rend
 
 
 def bar(low: float, high: float, first: float, last: float, width: int = 40) -> str:
-    """How much of the way from first to last has been gone."""
+    """The part of the range from first to last that was covered."""
     if not low <= high:
         return "·" * width
     a, b = ((v - first) / (last - first) * width for v in (low, high))
@@ -261,7 +261,7 @@ def say_home(geometry: pen.PenGeometry) -> None:
     print(f"Home posture of {geometry.name}, from the side, hand on the right:\n")
     print("\n".join(side_view(geometry)))
     print(
-        f"\nThe grip's middle stands {x:.1f} mm before the shoulders, {-z:.1f} mm below them, {y:.1f} mm beside them."
+        f"\nThe grip's middle stands {x:.1f} mm before the shoulders, {-z:.1f} mm below them, {y:.1f} mm to the side."
     )
     for channel, angle in zip(geometry.channels, np.degrees(home_angles(geometry)), strict=True):
         print(f"  {channel.name} {angle:7.2f}°  {MEANING[channel.name[1]]}")
@@ -311,7 +311,7 @@ def side_view(geometry: pen.PenGeometry, columns: int = 36, rows: int = 16) -> l
 def calibrate_puck(
     device: pen.PenDevice, seconds: float, yes: bool, console: Console
 ) -> tuple[dict[str, Any], list[tuple[str, str]], str, bool]:
-    """What it says while nobody touches it: the bubble has to be larger."""
+    """Measures a puck at rest, untouched: the bubble has to be larger than its noise."""
     if not yes:
         input("Let go of the puck, and press Enter. ")
     full = device.limits["x"].high, device.limits["a"].high
@@ -335,7 +335,7 @@ def calibrate_puck(
         ("bubble", f'{bubble:g}: riffler.pen.open("{device.kind}", bubble={bubble:g})'),
     ]
     if not right:
-        rows.append(("verdict", "somebody touched it, or its zero has drifted: plug it in again without touching it"))
+        rows.append(("verdict", "it was touched, or its zero has drifted: plug it in again without touching it"))
     return data, rows, f"{device.kind}: {'at rest' if right else 'NOT at rest'}", right
 
 

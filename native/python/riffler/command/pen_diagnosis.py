@@ -50,7 +50,7 @@ class Joint:
 
     @property
     def share(self) -> float:
-        """Of the way between its limits, that it went."""
+        """The share of the range between its limits that it covered."""
         return (self.high - self.low) / (self.limits[1] - self.limits[0])
 
     @property
@@ -74,7 +74,7 @@ class Verdict:
 
 
 def angles_of(geometry: pen.PenGeometry, counts: np.ndarray) -> np.ndarray:
-    """Of one row, in the device's order of channels."""
+    """Angles of one row (rad), in the device's order of channels."""
     return np.array([c.sign * n / c.steps * 2 * np.pi for c, n in zip(geometry.channels, counts, strict=True)])
 
 
@@ -88,7 +88,7 @@ def joints(postures: Postures) -> list[Joint]:
 
 
 def judge(geometry: pen.PenGeometry, counts: np.ndarray) -> Verdict:
-    """The simplest explanation: nothing is wrong, one counter is off, counts the wrong way, or two are exchanged."""
+    """The simplest explanation: nothing is wrong, one counter is off, has the wrong sign, or two are exchanged."""
     names = [c.name for c in geometry.channels]
     home, sign = [c.home for c in geometry.channels], [c.sign for c in geometry.channels]
     stretch = geometry.stretch(counts)
@@ -112,7 +112,7 @@ def judge(geometry: pen.PenGeometry, counts: np.ndarray) -> Verdict:
         )
     if found.fault == "unclear":
         return verdict(
-            "a counter is off, and the postures are too alike to tell which: lean the pen further, and begin anew"
+            "a counter is off, and the postures are too alike to tell which: lean the pen further, and calibrate again"
         )
     after, change = min(_wirings(geometry, counts, home), key=lambda found: found[0])
     if after > geometry.grip_tolerance / 2:
@@ -123,7 +123,8 @@ def judge(geometry: pen.PenGeometry, counts: np.ndarray) -> Verdict:
     if len(change) == 1:
         (k,) = change
         sign[k], home[k] = -sign[k], -home[k]
-        return verdict(f"{names[k]} counts the wrong way: turn its sign in the file", after, channels=(names[k],))
+        text = f"{names[k]} counts in the wrong direction: turn its sign in the file"
+        return verdict(text, after, channels=(names[k],))
     a, b = change
     return verdict(
         f"{names[a]} and {names[b]} are exchanged: their plugs, or their places in the file's order",
@@ -135,7 +136,7 @@ def judge(geometry: pen.PenGeometry, counts: np.ndarray) -> Verdict:
 def _wirings(geometry: pen.PenGeometry, counts: np.ndarray, home: list[int]) -> list[tuple[float, tuple[int, ...]]]:
     """What each wrong sign, and each pair of exchanged plugs, would leave of the stretch: mm, and the channels.
 
-    Both leave the home posture as it is, so they turn what a counter went from there.
+    Both leave the home posture unchanged, so they turn the counter's change since then.
     """
     gone = counts - np.array(home)
     out: list[tuple[float, tuple[int, ...]]] = []
@@ -155,7 +156,7 @@ def _rms(values: np.ndarray) -> float:
 
 
 def bubble_of(shares: np.ndarray) -> float:
-    """The bubble for a puck that nobody touches: half as much again as its noise, and one step of its sensor (1/350),
+    """The bubble for an untouched puck: half as much again as its noise, and one step of its sensor (1/350),
     rounded up to a hundredth. `shares` are lengths of deflections, as shares of the full one."""
     most = float(np.max(shares, initial=0.0))
     return min(0.99, float(np.ceil(100 * (1.5 * most + 1 / 350)) / 100))

@@ -4,7 +4,7 @@ riffler pen monitor                        the first device that opens
 riffler pen monitor simulated --seconds 10
 riffler pen monitor --csv pen.csv          a row for each report
 
-Ctrl-C ends it. Nothing is pushed, and the device is told so at the end. Where the output is no terminal there is a line
+Ctrl-C ends it. No force is commanded, and at the end the device gets zero force. Without a terminal there is a line
 a second.
 """
 
@@ -176,7 +176,7 @@ class Watch:
         )
 
     def states(self) -> str:
-        """Of the link, and of the force where there can be one."""
+        """State of the link, and of the force where there can be one."""
         return self.health.state + (f", force {self.health.force_state}" if self.pushes else "")
 
     def picture(self, width: int) -> RenderableType:

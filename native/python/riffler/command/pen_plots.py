@@ -81,7 +81,7 @@ class Window:
         self.next = 0.0
 
     def show(self, log: Log) -> bool:
-        """False where somebody closed it."""
+        """False once the window is closed."""
         if not self.plt.fignum_exists(self.figure.number):
             return False
         began = time.monotonic()

@@ -32,7 +32,7 @@ def from_mesh(
 
 
 def read_part(path: Path, console: Console, hollow: bool = False) -> Mesh:
-    """A mesh file, as it is: plans know a part by its sum. Prints what is turned where it is taken as a solid."""
+    """A mesh file, unchanged: plans know a part by its checksum. Prints what is turned where it is taken as a solid."""
     mesh = Mesh.read(path)
     _, report = mesh.orient_with_report(hollow=hollow)
     tell(path.name, report, console)

@@ -58,8 +58,12 @@ class Verb:
         return parser
 
     def run(self, words: list[str], console: Console) -> int:
-        """Exit status of the verb with the words after its name."""
-        return self.load().run(self.parser().parse(words), console)
+        """Exit status of the verb with the words after its name; old names of options are answered on stderr."""
+        parser = self.parser()
+        arguments = parser.parse(words)
+        for old, new in parser.renamed.items():
+            console.warning(f"riffler {self.path} {old} is an old name of {new}")
+        return self.load().run(arguments, console)
 
 
 def _module(name: str) -> Callable[[], Any]:

@@ -1,6 +1,6 @@
 """Turn a dexel volume into a closed mesh.
 
-riffler volume to-mesh part.rvol --out part.stl [--decimate 0.01]
+riffler volume to-mesh part.rvol --out part.stl [--tolerance 0.01]
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ import argparse
 from .. import Volume
 from .arguments import MESHES, VOLUMES, input_file, length, output_file
 from .console import Console, number, times
-from .parser import Parser
+from .parser import Once, Parser
 from .shapes import to_mesh, write_mesh
 
 HELP = "turn a dexel volume into a closed mesh"
@@ -19,11 +19,13 @@ HELP = "turn a dexel volume into a closed mesh"
 def add_arguments(parser: Parser) -> None:
     parser.add_input("volume", ".rvol", VOLUMES)
     parser.add_file("--out", ".stl, .obj, .ply or .3mf", MESHES, required=True)
-    parser.add_argument("--decimate", metavar="MM", help="leave out triangles as long as the surface moves no further")
+    about = "leave out triangles as long as the surface moves no further"
+    tolerance = parser.add_argument("--tolerance", metavar="MM", action=Once, help=about)
+    parser.add_old_name("--decimate", tolerance)
 
 
 def run(arguments: argparse.Namespace, console: Console) -> int:
-    tolerance = None if arguments.decimate is None else length(arguments.decimate, "--decimate")
+    tolerance = None if arguments.tolerance is None else length(arguments.tolerance, "--tolerance")
     path = input_file(arguments.volume, VOLUMES)
     out = output_file(arguments.out, MESHES)
     with console.step("read") as progress:

@@ -20,7 +20,7 @@ class BlockedPoint(NamedTuple):
     """A point of a path that no lift frees."""
 
     point: int  #: number of the path's point
-    reason: str  #: what is in the way
+    reason: str  #: what the tool hits
 
 
 class UnsafeMove(NamedTuple):
@@ -29,7 +29,7 @@ class UnsafeMove(NamedTuple):
     row: int  #: the row that the move starts at
     clearance: float  #: mm: least clearance seen on it
     bound: float  #: mm: nowhere on it is the clearance less
-    reason: str  #: what is in the way
+    reason: str  #: what the tool may hit
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -47,7 +47,7 @@ class LocationReport:
     before, clearance : ndarray, shape (n,)
         Clearance before and after the lift, mm.
     pieces : list of str
-        "cutter", "shank", "holder" or "fixture": what was in the way, or is nearest.
+        "cutter", "shank", "holder" or "fixture": what collided, or is nearest.
     blocked : list of BlockedPoint
         Points that no lift frees; they have no row.
     unsafe : list of UnsafeMove
@@ -338,7 +338,7 @@ class LiftReport(DictResult):
     before, clearance : ndarray, shape (n,)
         Clearance before and after the lift, mm.
     points : ndarray, shape (n, 3)
-        Where the tool was last in the way, or is nearest, mm.
+        Where the tool last collided, or is nearest, mm.
     pieces : list of str
         "cutter", "shank", "holder" or "fixture", for each of ``points``.
     evaluations : ndarray of int, shape (n,)

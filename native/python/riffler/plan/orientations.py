@@ -50,7 +50,7 @@ class FreeOrientations:
     suggestion : ndarray, shape (3,), or None
         The free axis with the smallest angle to the frame's z.
     reason : str
-        Without a suggestion: what is in the way, and by how much at least.
+        Without a suggestion: what collides, and by how much at least.
     """
 
     index: int

@@ -75,7 +75,7 @@ TEST(Boundary, CracksOfRoundingAreJoined) {
   for (std::size_t k = 0; k < torn.vertices.size(); ++k)
     farthest = std::max(farthest, glm::length(joined.vertices[k] - torn.vertices[k]));
   EXPECT_LE(farthest, 1e-5);
-  // A tolerance below the cracks' width leaves the mesh as it is.
+  // A tolerance below the cracks' width leaves the mesh unchanged.
   EXPECT_FALSE(join_cracks(torn, boundary, 1e-9));
   const Frame frame = frame_of(solid, 64, "z");
   EXPECT_NEAR(from_mesh(torn, frame).volume() / from_mesh(solid, frame).volume(), 1, 1e-6);
@@ -287,7 +287,7 @@ TEST(FromOpenMesh, NormalsInTheOpeningPointOut) {
 }
 
 TEST(FromOpenMesh, ColumnsAlongVerticalBoundaries) {
-  // A box without one wall: boundary edges stand exactly on rays, and a hair beside them.
+  // A box without one wall: boundary edges stand exactly on rays, and a hair off them.
   for (const double beside : {0.0, 5e-8, 1e-6, 1e-3, -1e-7}) {
     Mesh mesh = box({beside, 0, 0}, {10 + beside, 8, 6});
     mesh.triangles.resize(10);  // without the wall at the upper x

@@ -100,7 +100,7 @@ TEST(MeshReport, CountsTrianglesAndEdges) {
   EXPECT_EQ(report.openings, 0);
 }
 
-/// A band around z, turned half a circle on its way for each of `half_turns`.
+/// A band around z, twisted by half a turn for each of `half_turns`.
 Mesh band(int half_turns, int n, int across) {
   Mesh m;
   for (int i = 0; i < n; ++i)

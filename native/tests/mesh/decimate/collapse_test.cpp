@@ -1,4 +1,4 @@
-// What one edge collapse leaves of the half-edges, beside OpenMesh's own collapse.
+// What one edge collapse leaves of the half-edges, compared with OpenMesh's own collapse.
 #include "mesh/decimate/collapse.hpp"
 
 #include <gtest/gtest.h>

@@ -41,7 +41,7 @@ std::string ascii_ply(const Mesh& mesh) {
   return text;
 }
 
-/// One of the ways in which files break.
+/// Damages a file in one of several forms.
 void damage(Bytes& bytes, std::mt19937& random) {
   static const std::string kWords[] = {"nan", "-1", "1e999", "4294967295", " ",      "\n",
                                        "\\",  "0",  "/",     "solid",      "element"};

@@ -93,7 +93,7 @@ TEST(Description, SaysWhatItsFileAndOptionsSay) {
   EXPECT_EQ(own.ranges[0].low, -100);
   EXPECT_EQ(own.ranges[0].rate, 5000);
   EXPECT_EQ(own.ranges[3].high, 120);
-  EXPECT_EQ(own.ranges[3].rate, 3600) << "of tables whose words are joints, where nothing else is said";
+  EXPECT_EQ(own.ranges[3].rate, 3600) << "the default of tables whose words are joints";
   EXPECT_FALSE(own.ranges[5].limited());
   EXPECT_EQ(own.control.start, std::vector<std::string>{"G53 G0 Z0"});
 
@@ -156,6 +156,8 @@ TEST(Description, NamesTheLineThatIsWrong) {
   EXPECT_EQ(error("description = \"x\"\ncontrol = \"siemens\""),
             "mill.toml, line 2: control must be one of rs274, heidenhain, sinumerik, apt");
   EXPECT_EQ(error(kMill, {{"pivot", 1.0}}).substr(0, 36), "machine mill: unknown option 'pivot'");
+  EXPECT_TRUE(
+      error(kMill, {{"raisd", 1.0}}).starts_with("machine mill: unknown option 'raisd'; did you mean raised? known: "));
   EXPECT_EQ(error(kMill, {{"limits_x", 1.0}}), "machine mill: option limits_x must be two finite ascending numbers");
 }
 

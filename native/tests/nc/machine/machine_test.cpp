@@ -57,7 +57,7 @@ TEST(LinuxCncMachines, StandWhereItsKinematicsPutThem) {
     const Pose a = linuxcnc("linuxcnc-xyzac", options)->pose(ac), b = linuxcnc("linuxcnc-xyzbc", options)->pose(bc);
     EXPECT_LT(glm::length(a.tip - xyzac_forward(ac, p, d.y, d.z + tool)), 1e-11);
     EXPECT_LT(glm::length(b.tip - xyzbc_forward(bc, p, d.x, d.z + tool)), 1e-11);
-    // The axis is the way that the tip goes when Z does.
+    // The axis is the direction in which the tip moves with Z.
     Joints up = ac;
     up[2] += 1;
     EXPECT_LT(glm::length(a.axis - (xyzac_forward(up, p, d.y, d.z) - xyzac_forward(ac, p, d.y, d.z))), 1e-12);

@@ -71,8 +71,8 @@ TEST(NcControlFlow, FindsSubroutinesInFilesBesideTheProgramAndInTheirFolder) {
   namespace fs = std::filesystem;
   const fs::path folder = fs::temp_directory_path() / ("riffler_subs_" + std::to_string(getpid()));
   fs::create_directories(folder / "subs");
-  std::ofstream(folder / "main.ngc") << "G0 X1\n\no<beside> call [2]\no<other> call\nX9\nM2\n";
-  std::ofstream(folder / "beside.ngc") << "(a file)\no<beside> sub\nX#1\no<beside> endsub\nM2\n";
+  std::ofstream(folder / "main.ngc") << "G0 X1\n\no<near> call [2]\no<other> call\nX9\nM2\n";
+  std::ofstream(folder / "near.ngc") << "(a file)\no<near> sub\nX#1\no<near> endsub\nM2\n";
   std::ofstream(folder / "subs" / "other.ngc")
       << "o<other> sub\no<inner> call\no<other> endsub\no<inner> sub\nX5\no<inner> endsub";
   const Program p = read_nc(folder / "main.ngc", {"tcp", {{"subroutines", (folder / "subs").string()}}});
@@ -80,12 +80,12 @@ TEST(NcControlFlow, FindsSubroutinesInFilesBesideTheProgramAndInTheirFolder) {
   for (const Pose& pose : p.poses()) x.push_back(pose.tip.x);
   EXPECT_EQ(x, (Xs{1, 2, 5, 9}));
   EXPECT_EQ(p.line(), (std::vector<std::int32_t>{1, 3, 4, 5})) << "lines of the program";
-  std::ofstream(folder / "beside.ngc") << "o<beside> sub\nX\no<beside> endsub";
+  std::ofstream(folder / "near.ngc") << "o<near> sub\nX\no<near> endsub";
   try {
     read_nc(folder / "main.ngc");
     ADD_FAILURE();
   } catch (const FormatError& e) {
-    EXPECT_EQ(std::string(e.what()), "beside.ngc, line 2: expected a number after X [X]");
+    EXPECT_EQ(std::string(e.what()), "near.ngc, line 2: expected a number after X [X]");
   }
   fs::remove_all(folder);
 }

@@ -20,7 +20,7 @@ double number(const std::string& text) {
 TEST(NcCursor, ReadsNumbersToTheLastBit) {
   std::mt19937_64 random(7);
   for (int round = 0; round < 200'000; ++round) {
-    // Up to 20 digits with the point anywhere: what the quick way takes, and what it leaves to the library.
+    // Up to 20 digits with the point anywhere: what the quick parser takes, and what it leaves to the library.
     std::string text = round % 3 == 0 ? "-" : round % 3 == 1 ? "+" : "";
     const std::size_t digits = 1 + random() % 20, point = random() % (digits + 1);
     for (std::size_t k = 0; k < digits; ++k) {

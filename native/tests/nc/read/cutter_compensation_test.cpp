@@ -1,4 +1,4 @@
-// The path of the tool's centre beside a contour. tests/python compares it with LinuxCNC's interpreter and with the
+// The path of the tool's centre along a contour. tests/python compares it with LinuxCNC's interpreter and with the
 // contour itself.
 #include <gtest/gtest.h>
 
@@ -65,7 +65,7 @@ constexpr const char* kStart = "G0 X-5 Y0 Z0\nG41 D1\n";
 TEST(CutterCompensation, WithoutMotionInThePlaneGoesBesideTheSamePoint) {
   expect_tips(read(std::string(kStart) + "G1 X0\nZ-1\nX0 Y0\nX10\nG40\nG1 X15"),
               {{-5, 0, 0}, {0, 1, 0}, {0, 1, -1}, {0, 1, -1}, {10, 1, -1}, {15, 0, -1}});
-  // Before the first move in the plane there is nothing to be beside.
+  // Before the first move in the plane there is no side to be on.
   expect_tips(read(std::string(kStart) + "G1 Z-1\nX0\nG40"), {{-5, 0, 0}, {-5, 0, -1}, {0, 1, -1}});
 }
 

@@ -20,7 +20,7 @@ Program read(const std::string& blocks, Options options = {}, const std::string&
   return test::read_nc_text("0 BEGIN PGM T MM\n" + blocks + "\nEND PGM T MM\n", machine, std::move(options));
 }
 
-/// What is said of the blocks, whose first is line 2.
+/// The error for the blocks, whose first is line 2.
 std::string error(const std::string& blocks, Options options = {}, const std::string& machine = "heidenhain") {
   return test::nc_error("0 BEGIN PGM T MM\n" + blocks + "\nEND PGM T MM\n", machine, std::move(options));
 }
@@ -119,7 +119,7 @@ TEST(HeidenhainReader, ReadsBackWhatThePostWrites) {
         const Program q = test::read_nc_text(text, machine, options.options);
         expect_holds(p, q, machine + (vectors ? " by vectors" : " by angles"));
         EXPECT_TRUE(q.notes.empty());
-        // What was read is written again as it was: nothing is lost on the way.
+        // What was read is written again unchanged: nothing is lost.
         Program again = q;
         again.tools = p.tools, again.provenance = p.provenance;
         expect_holds(q, test::read_nc_text(to_nc(again, options), machine, options.options), machine + ", again");
@@ -370,7 +370,7 @@ TEST(HeidenhainReader, PassesOverWhatMovesNothing) {
                                   "CYCL DEF 19.0 PLANE\nCYCL DEF 19.1"})
     EXPECT_EQ(tips(read(quiet + "\n" + plain)), tips(read(plain))) << quiet;
   EXPECT_EQ(tips(read("/L X7 FMAX\n" + plain, {{"block_delete", true}})), tips(read(plain)));
-  EXPECT_EQ(tips(read("/5 L X7 Y7 Z7 FMAX\n" + plain)).size(), 3U) << "the control passes over them only when told";
+  EXPECT_EQ(tips(read("/5 L X7 Y7 Z7 FMAX\n" + plain)).size(), 3U) << "the control skips them only on request";
   const Program skipped = read("CYCL DEF 301 OWN ~\n Q1=2\nOWNWORD 5\n" + plain, {{"unknown", std::string("skip")}});
   EXPECT_EQ(tips(skipped), tips(read(plain)));
   EXPECT_EQ(kinds(skipped), (std::vector<std::string>{"skipped", "skipped"}));

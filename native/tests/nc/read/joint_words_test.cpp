@@ -23,7 +23,7 @@ double word(const NcBlockEnd& a, const NcBlockEnd& b, char letter, double s) {
 }
 
 /// The pose at share `s` of a block: all axes move evenly, then the part is turned back by A and C, as
-/// test::axis_of does it with whole matrices; LinuxCNC's tables turn the other way.
+/// test::axis_of does it with whole matrices; LinuxCNC's tables turn in the opposite direction.
 Pose xyzac_pose(const NcBlockEnd& a, const NcBlockEnd& b, double s) {
   const Vec3 centre(12, -7, 30), tilt = centre + Vec3(0, 4, -25);
   const double alpha = word(a, b, 'A', s) * kDegree, gamma = word(a, b, 'C', s) * kDegree;

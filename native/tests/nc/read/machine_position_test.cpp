@@ -1,4 +1,4 @@
-// Positions of the machine and work offsets: what of a program lies in the part, and what is said where nobody knows.
+// Positions of the machine and work offsets: which moves lie in the part, and what is reported where that is unknown.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -67,7 +67,7 @@ TEST(MachinePositions, AreNoPlacesOfThePart) {
                                              {{10, 20, -1}, false},
                                              {{30, 20, -1}, false},
                                              {{30, 20, 15}, false},
-                                             {{30, 20, 15}, false},  // G28's point on the way: where it is
+                                             {{30, 20, 15}, false},  // G28's intermediate point: where it is
                                              {{30, 20, 15}, true},
                                              {{30, 20, 15}, true},
                                              {{30, 20, 15}, true}}));
@@ -85,18 +85,18 @@ TEST(MachinePositions, EndWhereEveryAxisHasACoordinateAgain) {
                                                               {{5, 6, 7}, false},
                                                               {{8, 6, 7}, false}}));
   EXPECT_EQ(rows(there + "G91 Z-5\nG90 Z4").back(), (Row{{1, 2, 4}, false}));
-  // The point on the way to a home is one of the part.
+  // The intermediate point before a home is one of the part.
   EXPECT_EQ(rows("G0 X1 Y2 Z3\nG28 Z9")[1], (Row{{1, 2, 9}, false}));
 }
 
 TEST(MachinePositions, AreKnownWhereOptionsSayWhereTheyAre) {
   const Options offsets{{"g54", Numbers{100, 50, -200}}};
   EXPECT_EQ(rows("G0 X0 Y0 Z0\nG53 G0 X110 Z-150", offsets)[1], (Row{{10, 0, 50}, false}));
-  EXPECT_TRUE(rows("G0 X0 Y0 Z0\nG28", offsets)[1].away) << "where the home is was not said";
+  EXPECT_TRUE(rows("G0 X0 Y0 Z0\nG28", offsets)[1].away) << "the home's place is unknown";
   Options homes = offsets;
   homes["g28"] = Numbers{0, 0, 0};
   EXPECT_EQ(rows("G0 X0 Y0 Z0\nG28", homes)[1], (Row{{-100, -50, 200}, false}));
-  EXPECT_TRUE(rows("G0 X0 Y0 Z0\nG28", {{"g28", Numbers{0, 0, 0}}})[1].away) << "where the part is was not said";
+  EXPECT_TRUE(rows("G0 X0 Y0 Z0\nG28", {{"g28", Numbers{0, 0, 0}}})[1].away) << "the part's place is unknown";
   // The program may say it itself: G10 of the offset, G28.1 of the home.
   EXPECT_EQ(rows("G10 L2 P1 X5 Y0 Z7\nG0 X0 Y0 Z0\nG53 G0 Z0")[1], (Row{{0, 0, -7}, false}));
   EXPECT_EQ(rows("G0 X4 Y5 Z6\nG28.1\nX0 Y0 Z0\nG28")[2], (Row{{4, 5, 6}, false}));
@@ -121,7 +121,7 @@ TEST(MachinePositions, AreNoStartOfACut) {
   EXPECT_NE(arc.find("an arc or a spline where Z stands at a machine position: move there by absolute words"),
             arc.npos);
   EXPECT_EQ(nc_error(there + "Z3\nG2 X5 I2 F100"), "no error");
-  // Cycles: from R on all is known under G99; G98 would come back to where nobody knows.
+  // Cycles: from R on all is known under G99; G98 would come back to an unknown place.
   const Program cycle = read_nc_text("G21 " + there + "G99 G81 X5 Y6 Z-4 R2 F100\nX7");
   EXPECT_EQ(rows(cycle)[3], (Row{{5, 6, 2}, false}));
   EXPECT_EQ(cycle.poses()[4].tip, Vec3(5, 6, -4));
@@ -151,7 +151,7 @@ TEST(MachinePositions, StayWithTheProgram) {
   Program other;
   other.append({{{1, 2, 3}, {0, 0, 1}}, 0, 0, 1, 0, true});
   EXPECT_THROW(other.append({{{1, 2, 4}, {0, 0, 1}}, 0, 0, 1, 0, true, true}), std::invalid_argument);
-  // Of two programs the second comes from where nobody knows.
+  // The second of two programs starts at an unknown place.
   const Program later = read_nc_text("G21 G0 Z9\nX1 Y2\nG1 X5 F100");
   const Program* both[] = {&p, &later};
   const Program one = joined(both);
@@ -166,7 +166,7 @@ TEST(MachinePositions, AreWrittenAsSafeHeight) {
   const Program back = read_nc_text(text, "3-axis");
   std::vector<Vec3> tips;
   for (const Pose& pose : back.poses()) tips.push_back(pose.tip);
-  // Up where it is, across at that height, down where the program goes on.
+  // Up where it is, across at that height, down where the program continues.
   EXPECT_EQ(tips, (std::vector<Vec3>{
                       {0, 0, 30}, {0, 0, -5}, {50, 0, -5}, {50, 0, 30}, {80, 40, 30}, {80, 40, 2}, {80, 40, -5}}))
       << text;

@@ -1,4 +1,4 @@
-// Mutated programs: whatever the text is, the reader gives a valid program or one FormatError.
+// Mutated programs: for any text the reader gives a valid program or one FormatError.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -193,7 +193,7 @@ TEST(Reader, SkipsUnknownWordsWhereItIsToldToAndListsThem) {
   const Program p = read("G0 X1 U7\nG1 X2 F10\nG187 P1 E0.1\nG60 X9\nG60 G1 X3\nM97 P5\nX4", "tcp",
                          {{"unknown", std::string("skip")}});
   ASSERT_EQ(p.size(), 4U);
-  EXPECT_EQ(p.poses()[2].tip.x, 3) << "G60 takes its block's words with it where no motion stands beside it";
+  EXPECT_EQ(p.poses()[2].tip.x, 3) << "G60 takes its block's words with it in a block without a motion";
   EXPECT_EQ(p.provenance[1].first, "skipped");
   EXPECT_EQ(
       p.provenance[1].second,

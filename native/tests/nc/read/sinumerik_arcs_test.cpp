@@ -25,7 +25,7 @@ std::string error(const std::string& text) {
   return test::nc_error(text, "sinumerik", kMetric);
 }
 
-/// Of a path that begins in (10, 0, 0).
+/// A program whose path begins in (10, 0, 0).
 Program from_ten(const std::string& text) {
   return read("G0 X10 Y0 Z0 F100\n" + text);
 }

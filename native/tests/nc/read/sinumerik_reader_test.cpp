@@ -42,7 +42,7 @@ void expect_near(const Vec3& is, const Vec3& wanted, double most = 1e-9) {
   EXPECT_LE(glm::length(is - wanted), most) << is.x << ' ' << is.y << ' ' << is.z;
 }
 
-/// Of a program whose lines begin with `set`, which stands in the place X=1 Y=2 Z=3 of its coordinates.
+/// The place in the part of X=1 Y=2 Z=3 in the coordinates that `set` makes.
 Vec3 place_after(const std::string& set) {
   const Program p = read("G0 X0 Y0 Z0\n" + set + "\nG0 X1 Y2 Z3\n");
   return p.poses().back().tip;
@@ -95,7 +95,7 @@ TEST(SinumerikReader, PutsFramesIntoTheirOrder) {
   expect_near(place_after("ROT Y90"), {3, 2, -1});
   expect_near(place_after("ROT RPL=90"), {-2, 1, 3});
   expect_near(place_after("G18\nROT RPL=90"), {3, 2, -1});
-  // About Z, then about the new Y, then about the new X: the point goes the other way.
+  // About Z, then about the new Y, then about the new X: the point is turned in the opposite order.
   expect_near(place_after("ROT X90 Z90"), place_after("ROT Z90\nAROT X90"));
   expect_near(place_after("ROT X90 Y90 Z90"), place_after("ROT Z90\nAROT Y90\nAROT X90"));
   for (const char* reset : {"TRANS", "ROT", "SCALE", "MIRROR", "TRANS X0 Y0 Z0"})

@@ -390,7 +390,7 @@ TEST(ArcFit, CodeMadeOfThePiecesFollowsTheRun) {
   }
 }
 
-/// The least number of pieces over all ways to cut the run, each piece tried by itself.
+/// The least number of pieces over all divisions of the run, each piece tried by itself.
 std::size_t fewest(std::span<const Vec3> points, double tolerance) {
   std::vector<std::size_t> best(points.size(), points.size());
   best[0] = 0;

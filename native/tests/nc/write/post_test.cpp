@@ -64,7 +64,7 @@ TEST(Rs274Post, SwitchesCoolantAndRetractsWhereItIsAsked) {
   EXPECT_EQ(retracts, 3U) << "before everything, before the second tool, after everything";
   EXPECT_NE(text.find("M8\nG0 A"), text.npos);
   EXPECT_NE(text.find("M9\nG49\nG53 G0 Z-2.5\nM30\n"), text.npos);
-  // After it, all words are said again.
+  // After it, all words are written again.
   EXPECT_NE(text.find("G43.4 H1\nG0 X"), text.npos);
 }
 
@@ -111,7 +111,7 @@ TEST(Rs274Post, ReadsBackWithoutTheBlocksThatBringATool) {
       for (std::size_t k = 0; k < q.size(); ++k) {
         if (q.at_machine()[k]) continue;
         const Vec3& tip = q.poses()[k].tip;
-        // Every row of the code is on the way to the row of the program that comes next.
+        // Every row of the code is on the move to the program's next row.
         const Vec3 from = p.poses()[row > 0 ? row - 1 : 0].tip, way = p.poses()[row].tip - from;
         const double length2 = glm::dot(way, way);
         const double t = length2 > 0 ? std::clamp(glm::dot(tip - from, way) / length2, 0.0, 1.0) : 0;
@@ -147,7 +147,7 @@ TEST(Rs274Post, MakesArcsOfStraightRunsWithinTheTolerance) {
     EXPECT_LT(lines(curved).size() + 250, lines(straight).size()) << post;
     EXPECT_NE(curved.find("G3 X"), curved.npos);
     const Program q = parse_nc(curved, "p.ngc", {post, options});
-    // Every row of either is beside a move of the other.
+    // Every row of either is near a move of the other.
     const auto beside = [](const Program& a, const Program& b) {
       double worst = 0;
       for (std::size_t row = 0; row < a.size(); ++row) {

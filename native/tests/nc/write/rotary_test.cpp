@@ -245,8 +245,8 @@ Machine nutating() {
 }
 
 TEST(ChooseJoints, CountsWholeTurnsAlongTheGreatCircleBesideThePole) {
-  // One long move beside the pole turns C by more than half a turn where the other axis leans: the nearest turn of its
-  // end is not where the way leads.
+  // One long move past the pole turns C by more than half a turn where the other axis leans: the nearest turn of its
+  // end is not where the path leads.
   const Machine machine = nutating();
   std::mt19937 random(3);
   std::uniform_real_distribution<double> unit;

@@ -1,4 +1,4 @@
-// What a machine cannot run: the check that writes nothing beside the writer, on random rows on every machine.
+// What a machine cannot run: the check that writes nothing agrees with the writer, on random rows on every machine.
 #include "nc/write/row_check.hpp"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ namespace {
 using test::on_machine;
 using test::tilted;
 
-/// What was said of a program: nothing, or argument, row and reason.
+/// The error for a program: empty, or argument, row and reason.
 struct Said {
   std::string name;
   std::size_t row = 0;

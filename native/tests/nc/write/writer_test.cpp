@@ -62,7 +62,7 @@ TEST(Writer, EveryRowEndsABlockAndBlocksKeepToTheMove) {
         return glm::length(pose.tip - wanted.tip) < 1e-5 && angle(pose.axis, wanted.axis) < 2e-6;
       };
       while (block < blocks.size() && !ends_here(blocks[block])) ++block;
-      ASSERT_LT(block, blocks.size()) << "row " << row << " is nobody's end";
+      ASSERT_LT(block, blocks.size()) << "row " << row << " ends no block";
       ++block;
       if (row == 0) continue;
       const Motion motion(p.poses()[row - 1], wanted);
@@ -178,6 +178,10 @@ TEST(Writer, NamesWhatIsWrong) {
   WriteOptions options;
   options.post = "lathe";
   EXPECT_TRUE(error_of(p, options).starts_with("unknown post lathe; known: tcp, tcp-bc, linuxcnc-xyzac, "));
+  options.post = "linuxcnc_xyzab";
+  EXPECT_TRUE(error_of(p, options)
+                  .starts_with("unknown post linuxcnc_xyzab; did you mean linuxcnc-xyzac? known: tcp, tcp-bc, "))
+      << error_of(p, options);
   options = {};
   options.options["offset"] = 1.0;
   EXPECT_EQ(
@@ -185,6 +189,11 @@ TEST(Writer, NamesWhatIsWrong) {
       "post tcp: unknown option 'offset'; known: tcp, max_rotary, limits_x, rate_x, limits_y, rate_y, limits_z, "
       "rate_z, limits_a, rate_a, limits_c, rate_c, tool_length, feed, rapids, line_numbers, coolant, vectors, retract, "
       "safe_start, safe_height, arcs");
+  options.options = {{"safe_hight", 30.0}};
+  EXPECT_TRUE(
+      error_of(p, options)
+          .starts_with("post tcp: unknown option 'safe_hight'; did you mean safe_height? known: tcp, max_rotary, "))
+      << error_of(p, options);
   options = {};
   options.tolerance = 0;
   EXPECT_NE(error_of(p, options).find("tolerance"), std::string::npos);

@@ -26,7 +26,7 @@ Mat3 about_z(double angle) {
   return Mat3(Vec3(std::cos(angle), std::sin(angle), 0), Vec3(-std::sin(angle), std::cos(angle), 0), Vec3(0, 0, 1));
 }
 
-/// The chain as it is built: turn about the upright, then each link turned about the arm's level cross axis (forwards
+/// The chain as built: turn about the upright, then each link turned about the arm's level cross axis (forwards
 /// is about −y), each from its own zero, hanging and level, since a parallelogram keeps the fore arm's direction.
 Vec3 end_by_chain(const ArmLinks& links, const Vec3& angles) {
   const Vec3 upper = about_y(-angles.y) * Vec3(0, 0, -links.upper), fore = about_y(-angles.z) * Vec3(links.fore, 0, 0);

@@ -53,7 +53,7 @@ TEST(GripCheck, EveryLostCountIsFoundBeyondTheStatedNumber) {
         int first = 1;
         while (first < 4000 && fits(pen, counts, channel, way * first)) ++first;
         if (first < 4000) {
-          EXPECT_EQ(first, static_cast<int>(std::floor(least)) + 1) << "channel " << channel << " way " << way;
+          EXPECT_EQ(first, static_cast<int>(std::floor(least)) + 1) << "channel " << channel << " sign " << way;
           ++found;
         } else {
           EXPECT_GT(least, 3998);

@@ -125,7 +125,7 @@ TEST(WrenchSplit, WhatTheHandFeelsOfTheEffortIsWhatWasAskedForLessWhatIsMissing)
     EXPECT_LT(glm::length(felt.force - asked.force), 1e-10);
     EXPECT_LT(glm::length(felt.torque + effort.missing - asked.torque), 1e-9);
   }
-  // A straight arm could bear anything, and is said to bear nothing.
+  // A straight arm could bear any force; felt_wrench counts none.
   const PenKinematics pen(load_pen("riffler"));
   const PenPosture straight = pen.posture(JointAngles{Vec3(0, 0, -1.5707963267948966), Vec3(0, 0.3, 0.1)});
   const Wrench felt = felt_wrench(pen, straight, {Vec3(5, 5, 5), Vec3(0)});

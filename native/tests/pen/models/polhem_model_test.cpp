@@ -101,7 +101,7 @@ TEST(Polhem, MotorsBalanceTheForceByVirtualWork) {
   const Vec3 at = arm.model->sample(0).pose.tip;
   std::vector<int> counts{300, -1500, 5000, 0, 0, 0, 0};
   for (std::size_t j = 0; j < 3; ++j) {
-    // A count of one motor: its torque times its turn is the force times the way.
+    // A count of one motor: its torque times its turn is the force times the displacement.
     auto there = counts;
     there[j] += 1;
     arm.model->take(polhem_report(there), 2e-3);

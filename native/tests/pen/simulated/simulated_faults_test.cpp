@@ -40,7 +40,7 @@ TEST_P(SimulatedBoardFault, TakesTheForceAwayAndItComesBackByTheRamp) {
   EXPECT_TRUE(t.tripped_by(haptics::Cause::DeviceFault));
   t.mend();
   t.bench.run(0.5);
-  EXPECT_EQ(t.current, 0);  // until somebody has looked at it
+  EXPECT_EQ(t.current, 0);  // until the trip is cleared
   t.bench.step.safety.reset();
   t.comes_back();
 }
@@ -68,7 +68,7 @@ TEST(SimulatedFault, ACounterThatJumpsFarIsFoundByTheFirmwareAndThePoseStaysInDo
   t.falsify([](riffler_pen_sensors& s) { s.counters[1] += 5000; });
   t.goes_dead(3e-4);
   EXPECT_EQ(t.bench.pen->firmware().fault_count, 1);
-  // The firmware goes on from the new count; the host sees two ends too far apart, which does not heal by itself.
+  // The firmware continues from the new count; the host sees two ends too far apart, which does not heal by itself.
   t.mend();
   t.bench.run(2);
   EXPECT_EQ(t.bench.step.safety.state(), haptics::ForceState::Tripped);
@@ -86,7 +86,7 @@ TEST(SimulatedFault, ACounterThatJumpsALittleIsFoundByTheHost) {
   EXPECT_EQ(t.cause(), haptics::Cause::Redundancy);
   t.mend();
   t.bench.run(1);
-  EXPECT_EQ(t.current, 0);  // until somebody says that it is right again
+  EXPECT_EQ(t.current, 0);  // until the trip is cleared
   t.bench.step.safety.reset();
   t.comes_back();
 }

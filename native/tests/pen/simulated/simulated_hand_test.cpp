@@ -18,7 +18,7 @@ PenGeometry frictionless() {
   return pen;
 }
 
-/// `seconds` of arms and hand alone, with a wrench besides.
+/// `seconds` of arms and hand alone, with one more wrench.
 struct Held {
   Held(const HandSettings& settings, HandPath path, const PenGeometry& geometry = frictionless())
       : arms(geometry), home(arms.posture().pose), hand(settings, std::move(path), home) {}

@@ -33,7 +33,7 @@ TEST(SimulatedFault, LateTicksFadeTheForceAndFromTheWatchdogOnTakeItAway) {
     t.bench.run(0.06);
     if (late > 0.021) {
       EXPECT_EQ(least, 0);
-      EXPECT_LE(t.last_pushed, t.injected + kWatchdog + 2e-3);  // two reports were on the way
+      EXPECT_LE(t.last_pushed, t.injected + kWatchdog + 2e-3);  // two reports were in transit
       EXPECT_EQ(t.faults, std::set<int>{RIFFLER_PEN_WATCHDOG});
       EXPECT_TRUE(t.tripped_by(haptics::Cause::DeviceLate));  // the pen's word comes before the host's own finding
     } else if (late > 0.003) {

@@ -39,7 +39,7 @@ TEST(SimulatedPen, AThousandReportsASecondAreAnsweredAndPush) {
   EXPECT_EQ(b.pen->firmware().state, RIFFLER_PEN_ACTIVE);
   EXPECT_EQ(b.pen->firmware().link.refused_count, 0);
   EXPECT_EQ(b.step.safety.state(), haptics::ForceState::Active);
-  // The hand is a spring: it gives way by force over stiffness, but for what friction keeps.
+  // The hand is a spring: it yields by force over stiffness, less what friction keeps.
   const double way = b.pen->arms().posture().pose.tip.z - b.home.tip.z;
   EXPECT_GT(way, 1.0);
   EXPECT_LT(way, 2.1);
@@ -148,7 +148,7 @@ TEST(SimulatedPen, TheHostSeesTheGripAsItWasALatencyAgo) {
 TEST(SimulatedPen, AServoInTheHostStepsAsTheSampledClosedFormDoes) {
   SimulatedPenSettings settings = frictionless();
   const Pose home = SimulatedPen(settings).arms().posture().pose;
-  SimulatedBench b(settings, hand_at(home, 0));  // nobody holds it
+  SimulatedBench b(settings, hand_at(home, 0));  // no hand holds it
   // Wrench per acceleration along x: kinetic energy's derivative, measured by pushing from rest with each coordinate.
   PenDynamics arms(settings.geometry);
   constexpr double kTime = 1e-6;
@@ -222,7 +222,7 @@ TEST(SimulatedPen, GravityCompensationInTheHostHoldsThePenStill) {
     const Wrench bears = wrench_of(forces, posture.apart);
     return Wrench{host.from_base(bears.force), host.from_base(bears.torque)};
   };
-  // Until the force has come up somebody holds it.
+  // A hand holds it until the force has come up.
   b.pen->hand().follow([home](double t) { return HandWish{.pose = home, .grip = t < 1.5 ? 1.0 : 0.0}; });
   b.run(1.6);
   const Vec3 start = b.pen->arms().posture().pose.tip;

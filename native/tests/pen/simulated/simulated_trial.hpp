@@ -42,7 +42,7 @@ struct Trial {
       const double now = 1e-6 * static_cast<double>(bench.pen->time_us());
       if (most > 0) last_pushed = now;
       if (most == 0) risen_from = now;
-      // Of a ramp of half a second a share of the time has passed, in two gates one after the other.
+      // The force may be as large as the share of the ramp's half second that has passed, in two gates in series.
       steepest = std::max(steepest, most - full * std::min(1.0, (now - risen_from) / 0.4));
       current = most;
     };
@@ -63,8 +63,8 @@ struct Trial {
     EXPECT_LE(last_pushed, injected + within);
     EXPECT_EQ(current, 0);
   }
-  /// The fault is gone: force comes back by the ramp, to what it was; after what does not heal by itself, once somebody
-  /// has looked at it.
+  /// The fault is gone: force comes back by the ramp, to what it was; a fault that does not heal by itself needs its
+  /// trip to be cleared first.
   void comes_back(double settles = 0.1) {
     bench.run(settles);
     steepest = 0;
@@ -77,7 +77,7 @@ struct Trial {
     EXPECT_LE(steepest, 0.05 * full) << "faster than the ramp";
     EXPECT_EQ(bench.step.pushed_while_tripped, 0);
   }
-  /// The same, and nobody has to look: somebody was late, and is not any more.
+  /// The same for a fault that heals by itself: a part was late and is late no more, and no trip has to be cleared.
   void heals_by_itself() {
     bench.run(0.1);
     EXPECT_TRUE(haptics::heals(cause())) << sentence(cause());

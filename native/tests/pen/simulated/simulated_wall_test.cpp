@@ -24,7 +24,7 @@ struct Wall {
   bool controlled;        // by passivity
   std::int64_t jitter;    // µs
   bool applied;           // the account is kept by what the motors had, or by what was asked for
-  double latency = 2e-3;  // s: that it is told of
+  double latency = 2e-3;  // s: that the controller knows of
 };
 
 struct Touch {
@@ -85,13 +85,13 @@ Touch touch(const Wall& wall) {
   return out;
 }
 
-/// Nothing but the reserve and, where the cable is later than it is told to be, what it holds back.
+/// No more than the reserve and, where the cable's delay exceeds the known latency, what is still on it.
 TEST(SimulatedPenWall, MotorsNeverGiveMoreThanTheyTookWithTheControllerOnWhatTheyWereTold) {
   for (const double stiffness : {1.0, 3.0, 10.0, 30.0}) {
     if (test::kSanitized && stiffness < 30) continue;
     const Touch prompt = touch({stiffness, true, 0, true}), late = touch({stiffness, true, 1500, true});
     EXPECT_LT(prompt.gained, 1.2) << stiffness;
-    EXPECT_LT(prompt.deepest, 1.4) << stiffness << ": the wall gave way";
+    EXPECT_LT(prompt.deepest, 1.4) << stiffness << ": the wall yielded";
     EXPECT_LT(late.gained, 3) << stiffness;
     EXPECT_GT(std::min(prompt.account, late.account), 0) << stiffness;
     EXPECT_EQ(prompt.trips + late.trips, 0U);
@@ -110,7 +110,7 @@ TEST(SimulatedPenWall, WithoutTheControllerAStiffWallGivesMuch) {
   for (const double stiffness : {10.0, 30.0}) EXPECT_GT(touch({stiffness, false, 0, false}).gained, 100);
 }
 
-/// Of a wall that the pen bears by itself the controller leaves everything.
+/// The controller leaves a wall unchanged that the pen bears by itself.
 TEST(SimulatedPenWall, ASoftWallIsLeftAlone) {
   const Touch with = touch({1, true, 0, true}), without = touch({1, false, 0, true});
   EXPECT_EQ(with.gained, without.gained);

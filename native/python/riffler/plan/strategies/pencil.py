@@ -41,7 +41,7 @@ class PencilPaths(list[PencilPath]):
     ----------
     ends : list of tuple
         For each path what it starts and ends at: "part", "corner", "faded", "loop", "cut", "joined" where another path
-        continues or, for passes beside a valley, "pass".
+        continues or, for passes parallel to a valley, "pass".
     rest_area : float
         mm² that the tool's ball cannot reach.
     rest_areas : ndarray, shape (k,)
@@ -165,7 +165,7 @@ class Pencil(Strategy):
         Parameter(
             "tolerance",
             "Tolerance",
-            "Of the paths, in mm; a valley that is no deeper below the ball is taken for a faceted one",
+            "Largest error of the paths, in mm; a valley that is no deeper below the ball is taken for a faceted one",
             0.01,
             low=1e-4,
             high=10.0,

@@ -80,7 +80,7 @@ class Strategy(ABC):
     description: ClassVar[str] = ""
     summary: ClassVar[str] = ""  # of the command, a verb in front
     nothing: ClassVar[str] = "path"  # what there is none of, where nothing was found
-    needs: ClassVar[str] = "part"  # beside part and tool: "curves", "paths" of a plan, or "part" for nothing
+    needs: ClassVar[str] = "part"  # in addition to part and tool: "curves", "paths" of a plan, or "part" for nothing
     missing: ClassVar[str] = ""  # what to do in Blender where curves or paths are missing
     parameters: ClassVar[tuple[Parameter, ...]] = ()
 
