@@ -192,6 +192,8 @@ const char* problem_text(OpenProblem problem) noexcept {
       return "no answer";
     case OpenProblem::BadContent:
       return "contradicts itself";
+    case OpenProblem::NotRunning:
+      return "not running";
     case OpenProblem::Other:
       break;
   }

@@ -20,6 +20,7 @@ enum class OpenProblem : unsigned char {
   OtherVersion,     // another protocol version
   NoAnswer,         // a required report is not answered
   BadContent,       // the report's content is invalid
+  NotRunning,       // the service that drives the device does not run
   Other,            // see the text
 };
 
