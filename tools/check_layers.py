@@ -46,6 +46,7 @@ FOLDERS = {
     "pen/arms": [],
     "pen/haply": ["pen", "pen/hid", "pen/link", "pen/service"],
     "pen/hid": ["pen/link"],
+    "pen/library": ["pen", "pen/hid", "pen/link"],
     "pen/link": [],
     "pen/models": ["pen", "pen/arms", "pen/hid"],
     "pen/service": ["pen/hid", "pen/link"],

@@ -8,6 +8,7 @@
 #include "pen/driven_pen.hpp"
 #include "pen/haply/haply_devices.hpp"
 #include "pen/hid/hid_handle.hpp"
+#include "pen/library/dhd_devices.hpp"
 #include "pen/models/polhem_model.hpp"
 #include "pen/models/riffler_model.hpp"
 #include "pen/models/spacemouse_model.hpp"
@@ -77,6 +78,9 @@ constexpr HidFamily kHidFamilies[] = {
 };
 constexpr VendorFamily kVendorFamilies[] = {
     {{kHaplyKind, "Haply Inverse3, with three motors"}, find_haply, open_haply},
+    {{kForceDimensionKind, "Force Dimension omega, delta and sigma, Novint Falcon"},
+     find_force_dimension,
+     open_force_dimension},
 };
 
 /// Opens `info` and reads its identity. Throws OpenError with the path in front.

@@ -1,9 +1,12 @@
-"""Devices behind their maker's program, through the command line and Python."""
+"""Devices behind their maker's program or library, through the command line and Python."""
 
 from __future__ import annotations
 
 import json
+import shutil
+import subprocess
 import time
+from pathlib import Path
 
 import pytest
 import riffler
@@ -87,3 +90,63 @@ def test_another_version_is_named(monkeypatch):
         monkeypatch.setenv("RIFFLER_HAPLY_PORT", str(service.server_address[1]))
         with pytest.raises(riffler.pen.PenError, match=r"has version 4\.1; Riffler speaks with 3\.1"):
             riffler.pen.open("haply")
+
+
+@pytest.fixture(scope="session")
+def stubs(tmp_path_factory):
+    """Folder with the stubs of makers' libraries, compiled as their users' would be."""
+    compiler = shutil.which("c++")
+    if compiler is None:
+        pytest.skip("no C++ compiler for the stubs of makers' libraries")
+    folder, tests = tmp_path_factory.mktemp("stubs"), Path(__file__).parents[1]
+    for name in ("dhd",):
+        source = tests / "pen" / "library" / f"stub_{name}.cpp"
+        command = [
+            compiler,
+            "-std=c++20",
+            "-shared",
+            "-fPIC",
+            "-pthread",
+            "-I",
+            tests,
+            source,
+            "-o",
+            folder / f"{name}.so",
+        ]
+        subprocess.run(command, check=True)
+    return folder
+
+
+@pytest.mark.parametrize(
+    ("kind", "variable", "stub", "name", "pose"),
+    [
+        ("force-dimension", "RIFFLER_LIBDHD", "dhd.so", "sigma.7", [20, -10, 30, 0, -1, 0]),
+    ],
+)
+def test_arms_behind_a_library_are_listed_and_monitored(stubs, tmp_path, kind, variable, stub, name, pose):
+    chosen = {variable: str(stubs / stub)}
+    data = json.loads(riffle("pen", "list", "--json", cwd=tmp_path, **chosen).stdout)
+    (found,) = (device for device in data["devices"] if device["kind"] == kind)
+    assert found["path"].startswith(kind) and found["name"] == name and found["problem"] is None
+    assert "pushes x y z" in found["capability"] and kind not in data["unavailable"]
+    assert name in riffle("doctor", cwd=tmp_path, **chosen).stdout
+    done = riffle("pen", "monitor", found["path"], "--seconds", "0.5", "--json", cwd=tmp_path, **chosen)
+    assert done.returncode == 0, done.stderr
+    monitored = json.loads(done.stdout)
+    assert monitored["pose"] == pytest.approx(pose) and monitored["link"]["reports"] > 20
+    assert monitored["link"]["malformed"] == 0
+
+
+@pytest.mark.parametrize(
+    ("kind", "variable", "remedy"),
+    [
+        ("force-dimension", "RIFFLER_LIBDHD", "install Force Dimension's SDK"),
+    ],
+)
+def test_a_missing_library_says_which_to_install(tmp_path, kind, variable, remedy):
+    missing = {variable: str(tmp_path / "missing.so")}
+    unavailable = json.loads(riffle("pen", "list", "--json", cwd=tmp_path, **missing).stdout)["unavailable"]
+    assert "not installed" in unavailable[kind] and "no such file" in unavailable[kind] and remedy in unavailable[kind]
+    assert remedy in flat(riffle("pen", "list", cwd=tmp_path, **missing).stdout)
+    opened = riffle("pen", "monitor", kind, "--seconds", "1", cwd=tmp_path, **missing)
+    assert opened.returncode != 0 and variable in opened.stderr

@@ -1,0 +1,8 @@
+// Paths of the stubs of makers' libraries.
+#pragma once
+
+namespace riffler::test {
+
+const char* stub_dhd_path();
+
+}  // namespace riffler::test
