@@ -9,6 +9,7 @@
 #include "pen/haply/haply_devices.hpp"
 #include "pen/hid/hid_handle.hpp"
 #include "pen/library/dhd_devices.hpp"
+#include "pen/library/hd_devices.hpp"
 #include "pen/models/polhem_model.hpp"
 #include "pen/models/riffler_model.hpp"
 #include "pen/models/spacemouse_model.hpp"
@@ -81,6 +82,7 @@ constexpr VendorFamily kVendorFamilies[] = {
     {{kForceDimensionKind, "Force Dimension omega, delta and sigma, Novint Falcon"},
      find_force_dimension,
      open_force_dimension},
+    {{kTouchKind, "3D Systems Touch (Phantom Omni), with three motors"}, find_touch, open_touch},
 };
 
 /// Opens `info` and reads its identity. Throws OpenError with the path in front.

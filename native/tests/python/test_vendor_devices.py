@@ -99,7 +99,7 @@ def stubs(tmp_path_factory):
     if compiler is None:
         pytest.skip("no C++ compiler for the stubs of makers' libraries")
     folder, tests = tmp_path_factory.mktemp("stubs"), Path(__file__).parents[1]
-    for name in ("dhd",):
+    for name in ("dhd", "hd"):
         source = tests / "pen" / "library" / f"stub_{name}.cpp"
         command = [
             compiler,
@@ -121,6 +121,7 @@ def stubs(tmp_path_factory):
     ("kind", "variable", "stub", "name", "pose"),
     [
         ("force-dimension", "RIFFLER_LIBDHD", "dhd.so", "sigma.7", [20, -10, 30, 0, -1, 0]),
+        ("touch", "RIFFLER_LIBHD", "hd.so", "Touch", [10, -30, 20, 0, -1, 0]),
     ],
 )
 def test_arms_behind_a_library_are_listed_and_monitored(stubs, tmp_path, kind, variable, stub, name, pose):
@@ -141,6 +142,7 @@ def test_arms_behind_a_library_are_listed_and_monitored(stubs, tmp_path, kind, v
     ("kind", "variable", "remedy"),
     [
         ("force-dimension", "RIFFLER_LIBDHD", "install Force Dimension's SDK"),
+        ("touch", "RIFFLER_LIBHD", "install 3D Systems' OpenHaptics"),
     ],
 )
 def test_a_missing_library_says_which_to_install(tmp_path, kind, variable, remedy):

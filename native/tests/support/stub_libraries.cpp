@@ -7,4 +7,8 @@ const char* stub_dhd_path() {
   return RIFFLER_STUB_DHD;
 }
 
+const char* stub_hd_path() {
+  return RIFFLER_STUB_HD;
+}
+
 }  // namespace riffler::test

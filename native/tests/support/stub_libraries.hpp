@@ -4,5 +4,6 @@
 namespace riffler::test {
 
 const char* stub_dhd_path();
+const char* stub_hd_path();
 
 }  // namespace riffler::test
