@@ -140,6 +140,21 @@ std::unique_ptr<Pen> open_kind(const HidFamily& family, const PenOptions& option
   throw first.value_or(OpenError(OpenProblem::NoFile, std::string("no ") + family.kind + " is plugged in"));
 }
 
+/// The path of another interface of the same device that is of this family; empty if there is none. A receiver has
+/// several, of which one has the reports.
+std::string other_interface(const HidFamily& family, const HidInfo& info, const PenOptions& options) {
+  for (const HidInfo& other : list_hid()) {
+    const bool same = other.vendor == info.vendor && other.product == info.product && other.serial == info.serial;
+    if (!same || other.path == info.path || !family.matches(other)) continue;
+    try {
+      open_model(family, other, options);
+      return other.path;
+    } catch (const OpenError&) {  // not this one either
+    }
+  }
+  return {};
+}
+
 std::unique_ptr<Pen> open_path(std::string_view path, const PenOptions& options) {
   HidInfo asked;
   asked.path = path;
@@ -154,7 +169,14 @@ std::unique_ptr<Pen> open_path(std::string_view path, const PenOptions& options)
                       info.path + ": " + info.id() +
                           " is a number that many boards have; if it is one of these, open it as \"" + family->kind +
                           "\": " + family->what);
-    return open_one(*family, info, options);
+    try {
+      return open_one(*family, info, options);
+    } catch (const OpenError& error) {
+      if (error.problem() != OpenProblem::WrongDescriptor) throw;
+      const std::string other = other_interface(*family, info, options);
+      if (other.empty()) throw;
+      throw OpenError(error.problem(), std::string(error.what()) + "; the interface that has the reports is " + other);
+    }
   }
   HidHandle(asked, Sharing::Shared);  // throws with the reason
   throw OpenError(OpenProblem::UnknownDevice, asked.path + ": the system does not list it as a HID device");
@@ -180,6 +202,24 @@ FoundDevice find_hid(const HidInfo& info) {
     found.text = error.what();
   }
   return found;
+}
+
+/// An interface without the reports is no broken device if another one of the same device has them: it is then as any
+/// other HID device, of no family.
+void leave_other_interfaces(std::vector<FoundDevice>& all) {
+  const auto has_reports = [&](const FoundDevice& wrong) {
+    return std::any_of(all.begin(), all.end(), [&](const FoundDevice& f) {
+      return f.family == wrong.family && f.was_opened && f.problem == OpenProblem::None && f.id == wrong.id &&
+             f.serial == wrong.serial;
+    });
+  };
+  for (FoundDevice& found : all) {
+    if (found.problem != OpenProblem::WrongDescriptor || !has_reports(found)) continue;
+    found.family = nullptr;
+    found.was_opened = false;
+    found.problem = OpenProblem::None;
+    found.text.clear();
+  }
 }
 
 std::vector<FoundDevice> find_vendor_devices() {
@@ -208,6 +248,7 @@ const PenFamily* family_of(const HidInfo& info) {
 std::vector<FoundDevice> find_devices() {
   std::vector<FoundDevice> out;
   for (const HidInfo& info : list_hid()) out.push_back(find_hid(info));
+  leave_other_interfaces(out);
   for (FoundDevice& found : find_vendor_devices())
     if (found.is_there) out.push_back(std::move(found));
   return out;
