@@ -10,6 +10,7 @@
 #include "pen/fake_link.hpp"
 #include "riffler/pen/hid/open_error.hpp"
 #include "stress/random.hpp"
+#include "support/allocations.hpp"
 
 namespace riffler::pen::haply_model_test {
 namespace {
@@ -208,6 +209,19 @@ TEST(HaplyModel, OtherVersionsBusyAndMissingArmsAreRefused) {
   Text busy;
   busy.status = R"(,"status":{"in_use":true})";
   EXPECT_EQ(problem_of(busy, {3, 5}, "A"), OpenProblem::Busy);
+}
+
+TEST(HaplyModel, ReportsAndCommandsAllocateNothing) {
+  Desk desk;
+  const std::string text = Text{}.text();
+  const haptics::SafeWrench safe = let_through({{0.3, -0.2, 1}, {}});
+  const long before = test::allocations();
+  for (int k = 0; k < 1000; ++k) {
+    desk.take(text, 1e-3 * k);
+    desk.model.push(safe, 1e-3 * k, desk.bytes);
+  }
+  EXPECT_EQ(test::allocations(), before);
+  EXPECT_EQ(desk.model.sample(1).sequence, 1000U);
 }
 
 TEST(HaplyModel, AnyRotationGivesAUnitAxisAndAFiniteRate) {

@@ -14,6 +14,7 @@
 #include "pen/service/http.hpp"
 #include "pen/service/web_socket_server.hpp"
 #include "riffler/pen/hid/open_error.hpp"
+#include "support/allocations.hpp"
 
 namespace riffler::pen::web_socket_test {
 namespace {
@@ -70,6 +71,20 @@ TEST(WebSocket, EchoesThroughAServer) {
     EXPECT_EQ(text_of(socket), std::string(n, 'e'));
   }
   EXPECT_EQ(text_of(socket, 0), "");
+}
+
+TEST(WebSocket, AnOpenOneAllocatesNothing) {
+  LoopbackServer server(opening([](Peer& peer, test::ClientFrames& frames) {
+    while (const auto frame = next(peer, frames))
+      if (frame->opcode == 1) peer.send(server_frame("", 0x89) + server_frame(frame->payload));
+  }));
+  WebSocket socket(server.port(), 2);
+  std::vector<std::uint8_t> bytes(1000, 'x'), answer(2000);
+  const long before = test::allocations();
+  int answers = 0;
+  for (int k = 0; k < 200; ++k) answers += socket.write(bytes) && socket.read(answer, 2) == 1000;
+  EXPECT_EQ(test::allocations(), before);
+  EXPECT_EQ(answers, 200);
 }
 
 TEST(WebSocket, TheFirstMessageMayComeWithTheAnswer) {
