@@ -16,6 +16,9 @@ HID = (
     " the report below. If the system refuses access, the report has the line that grants it, "
     "and the file for that line."
 )
+SERVICES = (
+    "Haply's Inverse3 is reached through its maker's service on this computer (127.0.0.1), never through the internet."
+)
 SPACEMOUSE = (
     "Blender also reads the SpaceMouse: the view may turn while you sculpt. Preferences > Input"
     " > NDOF sets what Blender does with it."
@@ -111,7 +114,7 @@ class RifflerPreferences(bpy.types.AddonPreferences):
             most.prop(self, name)
         notes = column.column(align=True)
         notes.scale_y = 0.8
-        for text in (local(HID), local(SPACEMOUSE)):
+        for text in (local(HID), local(SERVICES), local(SPACEMOUSE)):
             for k, line in enumerate(diagnosis.wrap(text, width)):
                 notes.label(text=line, icon="INFO" if k == 0 else "BLANK1")
 

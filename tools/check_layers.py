@@ -44,9 +44,13 @@ FOLDERS = {
     "nc/read": ["nc", "nc/machine"],
     "nc/write": ["nc", "nc/machine"],
     "pen/arms": [],
-    "pen/hid": [],
+    "pen/haply": ["pen", "pen/hid", "pen/link", "pen/service"],
+    "pen/hid": ["pen/link"],
+    "pen/library": ["pen", "pen/hid", "pen/link"],
+    "pen/link": [],
     "pen/models": ["pen", "pen/arms", "pen/hid"],
-    "pen/simulated": ["pen", "pen/arms", "pen/hid", "pen/models"],
+    "pen/service": ["pen/hid", "pen/link"],
+    "pen/simulated": ["pen", "pen/arms", "pen/hid", "pen/link", "pen/models"],
 }
 # Topics that may include the pen's protocol and firmware.
 USES_DEVICE = {"pen"}

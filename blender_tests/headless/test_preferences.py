@@ -2,6 +2,7 @@
 
 import contextlib
 import importlib.util
+import json
 import shutil
 from pathlib import Path
 
@@ -44,6 +45,14 @@ def test_the_preferences_are_the_addons_in_whatever_way_it_was_installed():
         found == common.part("blender.preferences_access").preferences()
         and type(found).__name__ == "RifflerPreferences"
     )
+
+
+def test_every_kind_of_device_can_be_chosen_and_is_described_in_german():
+    found = bpy.context.preferences.addons[common.MODULE].preferences
+    choices = {item.identifier: item for item in found.bl_rna.properties["device"].enum_items}
+    assert set(riffler.pen.kinds()) == set(choices) and "haply" in choices
+    german = json.loads((Path(common.part("translations").__file__).parent / "de.json").read_text())
+    assert all(item.description in german for item in choices.values())
 
 
 def test_limits_come_as_they_are_in_the_core():

@@ -25,11 +25,11 @@ py::object or_none(const std::string& text) {
 
 py::object info_of(const pen::FoundDevice& found) {
   py::dict out;
-  out["path"] = found.info.path;
-  out["name"] = found.info.name.empty() ? "unnamed device" : found.info.name;
-  out["maker"] = found.info.maker;
-  out["id"] = found.info.id();
-  out["serial"] = found.info.serial;
+  out["path"] = found.path;
+  out["name"] = found.name.empty() ? "unnamed device" : found.name;
+  out["maker"] = found.maker;
+  out["id"] = found.id;
+  out["serial"] = found.serial;
   out["kind"] = found.family == nullptr ? py::object(py::none()) : py::object(py::str(found.family->kind));
   out["was_opened"] = found.was_opened;
   out["problem"] = found.problem == pen::OpenProblem::None ? py::object(py::none())
@@ -51,9 +51,21 @@ DeviceList devices() {
   return out;
 }
 
+StringDict unavailable() {
+  std::vector<pen::FoundDevice> found;
+  {
+    const NoGil release;
+    found = pen::find_unavailable();
+  }
+  py::dict out;
+  for (const pen::FoundDevice& family : found)
+    out[family.family->kind] = std::string(problem_text(family.problem)) + ": " + family.text;
+  return out;
+}
+
 StringDict families() {
   py::dict out;
-  for (const pen::PenFamily& family : pen::pen_families()) out[family.kind] = family.what;
+  for (const pen::PenFamily* const family : pen::pen_families()) out[family->kind] = family->what;
   out[pen::kSimulatedKind] = pen::kSimulatedWhat;
   return out;
 }
@@ -280,6 +292,7 @@ void bind_pen_device(py::module_& m) {
   bind_pointers(m);
   m.def("_pen_devices", &devices);
   m.def("_pen_families", &families);
+  m.def("_pen_unavailable", &unavailable);
   const pen::RateSettings rate;
   m.def("_open_pen", &open_device, "what"_a, py::kw_only(), "geometry"_a = "woodenhaptics", "bubble"_a = rate.bubble,
         "exponent"_a = rate.exponent, "speed"_a = rate.speed, "turn_rate"_a = rate.turn_rate,

@@ -11,7 +11,9 @@
 #include "nc/machine/description.hpp"
 #include "nc/machine/machine.hpp"
 #include "pen/arms/description.hpp"
+#include "pen/haply/haply_message.hpp"
 #include "pen/hid/hid_descriptor.hpp"
+#include "pen/service/frame_reader.hpp"
 #include "riffler/base/error.hpp"
 #include "riffler/dexel/file/file.hpp"
 #include "riffler/nc/program_file.hpp"
@@ -120,6 +122,35 @@ void hid(View bytes) {
   }
 }
 
+void haply(View bytes) {
+  pen::HaplyMessage message;
+  if (!pen::read_haply_message(text_of(bytes), message)) return;
+  for (const pen::HaplyEntry& entry : message.all()) {
+    require(!entry.id.empty() && entry.id.size() <= pen::kLongestHaplyName, "a device without a name");
+    require(!entry.position || glm::length(*entry.position) <= 2, "a position that no arm has");
+    require(!entry.velocity || geom::finite(*entry.velocity), "a velocity that is not finite");
+  }
+}
+
+/// As a socket gives them: at first a few, then the rest.
+void frames(View bytes) {
+  pen::FrameReader reader(1000);
+  for (std::size_t at = 0, piece = 7; at < bytes.size(); piece = 400) {
+    const auto space = reader.space();
+    const std::size_t n = std::min({piece, bytes.size() - at, space.size()});
+    if (n == 0) break;
+    std::copy_n(bytes.begin() + static_cast<std::ptrdiff_t>(at), n, space.begin());
+    reader.received(n);
+    at += n;
+    using Event = pen::FrameReader::Event;
+    Event event = reader.next();
+    for (; event == Event::Message || event == Event::Ping; event = reader.next())
+      require(reader.payload().size() <= 1000, "a message longer than the bound");
+    if (event != Event::More) break;
+    require(!reader.space().empty(), "no room for a frame's end");
+  }
+}
+
 /// Reads a packet: messages name the packet's kind.
 template <class Read>
 void packet(const Read& read) {
@@ -159,6 +190,8 @@ const Target kTargets[] = {
     {"machine", &machine, &machine_samples, nullptr},
     {"pen", &pen, &pen_samples, nullptr},
     {"hid", &hid, &nothing, nullptr},
+    {"haply", &haply, &nothing, nullptr},
+    {"frames", &frames, &nothing, nullptr},
     {"packet", &packets, &packet_samples, &repair_packet},
 };
 

@@ -40,7 +40,7 @@ double steady_seconds() noexcept {
 
 /// State of both threads. Both hold a reference, so that it outlives a driver whose threads do not end in time.
 struct Driver::Shared final : Connector, Clock {
-  Shared(std::shared_ptr<HidModel> m, std::shared_ptr<PenStep> s, std::unique_ptr<Transport> transport, Open o,
+  Shared(std::shared_ptr<PenModel> m, std::shared_ptr<PenStep> s, std::unique_ptr<Transport> transport, Open o,
          const DriverSettings& settings, std::shared_ptr<Clock> c)
       : model(std::move(m)),
         step(std::move(s)),
@@ -110,7 +110,7 @@ struct Driver::Shared final : Connector, Clock {
     changed.notify_all();
   }
 
-  const std::shared_ptr<HidModel> model;
+  const std::shared_ptr<PenModel> model;
   const std::shared_ptr<PenStep> step;
   const Open open;
   const std::shared_ptr<Clock> clock;
@@ -127,7 +127,7 @@ struct Driver::Shared final : Connector, Clock {
   DriverLoop loop;  // last, because it uses the other members
 };
 
-Driver::Driver(std::shared_ptr<HidModel> model, std::shared_ptr<PenStep> step, std::unique_ptr<Transport> transport,
+Driver::Driver(std::shared_ptr<PenModel> model, std::shared_ptr<PenStep> step, std::unique_ptr<Transport> transport,
                Open open, const DriverSettings& settings, std::shared_ptr<Clock> clock)
     : shared_(std::make_shared<Shared>(std::move(model), std::move(step), std::move(transport), std::move(open),
                                        settings, std::move(clock))) {

@@ -19,7 +19,7 @@ class Driver {
   /// Starts the threads. `transport`: as in DriverLoop. `clock`: the device's own, read only by the driver's thread;
   /// null: the system clock. Throws std::invalid_argument for invalid settings, std::system_error if no thread can be
   /// created.
-  Driver(std::shared_ptr<HidModel> model, std::shared_ptr<PenStep> step, std::unique_ptr<Transport> transport,
+  Driver(std::shared_ptr<PenModel> model, std::shared_ptr<PenStep> step, std::unique_ptr<Transport> transport,
          Open open, const DriverSettings& settings = {}, std::shared_ptr<Clock> clock = nullptr);
   /// As stop().
   ~Driver();

@@ -17,9 +17,15 @@ void DriverSettings::validate() const {
   if (longest_retry < first_retry) throw std::invalid_argument("longest_retry of the driver is less than first_retry");
 }
 
-DriverLoop::DriverLoop(HidModel& model, PenStep& step, Connector& connector, Clock& clock,
+DriverLoop::DriverLoop(PenModel& model, PenStep& step, Connector& connector, Clock& clock,
                        std::unique_ptr<Transport> transport, const DriverSettings& settings)
-    : model_(model), step_(step), connector_(connector), clock_(clock), settings_(settings) {
+    : model_(model),
+      step_(step),
+      connector_(connector),
+      clock_(clock),
+      settings_(settings),
+      read_(model.sizes().read),
+      write_(model.sizes().write) {
   settings_.validate();
   status_.retry = settings_.first_retry;
   next_attempt_ = clock_.now();
@@ -82,12 +88,12 @@ bool DriverLoop::drain() noexcept {
   unsigned reports = 0, reads = 0;
   double wait = settings_.read_timeout;
   for (; reads < settings_.most_reads; ++reads, wait = 0) {
-    const int n = transport_->read(buffer_, wait);
+    const int n = transport_->read(read_, wait);
     if (n < 0) return false;
     if (n == 0) break;
     const double now = clock_.now();
-    const auto size = std::min(static_cast<std::size_t>(n), buffer_.size());
-    const Taken taken = model_.take(std::span(buffer_).first(size), now);
+    const auto size = std::min(static_cast<std::size_t>(n), read_.size());
+    const Taken taken = model_.take(std::span(read_).first(size), now);
     reports += taken.reports;
     counts.lost += taken.lost;
     counts.old += taken.old;
@@ -103,21 +109,19 @@ bool DriverLoop::drain() noexcept {
 
 /// False if the device is gone.
 bool DriverLoop::put(const haptics::SafeWrench& safe, double now) noexcept {
-  std::array<std::uint8_t, 65> bytes{};
   status_.wrench = safe.wrench();
-  const std::size_t size = model_.push(safe, now, bytes);
+  const std::size_t size = model_.push(safe, now, write_);
   if (size == 0) return true;
   ++status_.counts.writes;
-  return transport_->write(std::span(bytes).first(size));
+  return transport_->write(std::span(write_).first(size));
 }
 
 /// If this fails, nothing more can be done: the device's watchdog does the rest.
 void DriverLoop::release() noexcept {
-  std::array<std::uint8_t, 65> bytes{};
-  const std::size_t size = model_.release(clock_.now(), bytes);
+  const std::size_t size = model_.release(clock_.now(), write_);
   if (size == 0) return;
   ++status_.counts.writes;
-  transport_->write(std::span(bytes).first(size));
+  transport_->write(std::span(write_).first(size));
 }
 
 void DriverLoop::lose(std::uint32_t& count) noexcept {

@@ -1,11 +1,12 @@
 // The work of the driver's thread without the thread: successive calls of tick(), on any clock.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
+#include <vector>
 
-#include "pen/hid_model.hpp"
+#include "pen/link/transport.hpp"
+#include "pen/pen_model.hpp"
 #include "riffler/haptics/safety.hpp"
 #include "riffler/pen/driver_settings.hpp"
 #include "riffler/pen/hid/open_error.hpp"
@@ -28,8 +29,8 @@ class Connector {
 
 class DriverLoop {
  public:
-  /// `transport`: open, and checked by the model; or null: the first attempt follows at once. Keeps references.
-  DriverLoop(HidModel& model, PenStep& step, Connector& connector, Clock& clock, std::unique_ptr<Transport> transport,
+  /// `transport`: open and checked; or null: the first attempt follows at once. Keeps references.
+  DriverLoop(PenModel& model, PenStep& step, Connector& connector, Clock& clock, std::unique_ptr<Transport> transport,
              const DriverSettings& settings = {});
   /// As stop().
   ~DriverLoop();
@@ -55,7 +56,7 @@ class DriverLoop {
   void look() noexcept;
   void publish() noexcept { published_.set(status_); }
 
-  HidModel& model_;
+  PenModel& model_;
   PenStep& step_;
   Connector& connector_;
   Clock& clock_;
@@ -63,7 +64,7 @@ class DriverLoop {
   std::unique_ptr<Transport> transport_;
   LinkStatus status_;
   Published<LinkStatus> published_;
-  std::array<std::uint8_t, kLongestRead> buffer_{};
+  std::vector<std::uint8_t> read_, write_;  // the longest messages
   double heard_ = 0, stepped_ = 0, next_attempt_ = 0;
   bool has_stepped_ = false;
 };

@@ -192,6 +192,14 @@ const char* problem_text(OpenProblem problem) noexcept {
       return "no answer";
     case OpenProblem::BadContent:
       return "contradicts itself";
+    case OpenProblem::NotRunning:
+      return "not running";
+    case OpenProblem::NotInstalled:
+      return "not installed";
+    case OpenProblem::NotChosen:
+      return "not chosen";
+    case OpenProblem::WrongLibrary:
+      return "wrong library";
     case OpenProblem::Other:
       break;
   }

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "pen/hid/transport.hpp"
+#include "pen/hid/hid_transport.hpp"
 #include "riffler/pen/hid/hid_list.hpp"
 #include "riffler/pen/hid/open_error.hpp"
 
@@ -17,7 +17,7 @@ namespace riffler::pen {
 /// Whether other programs may use the device at the same time.
 enum class Sharing : unsigned char { Exclusive, Shared };
 
-class HidHandle final : public Transport {
+class HidHandle final : public HidTransport {
  public:
   /// Opens the device at `info.path`. Throws OpenError with the exact reason; the text names the udev rule to install
   /// if that helps. hidraw lets any number of programs open a device, and two that push would fight: an exclusive

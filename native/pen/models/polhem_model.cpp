@@ -116,7 +116,7 @@ PolhemPosture polhem_posture(const PolhemGeometry& g, const Vec3& angles) noexce
   return out;
 }
 
-PolhemModel::PolhemModel(Transport& transport, const PolhemGeometry& geometry)
+PolhemModel::PolhemModel(HidTransport& transport, const PolhemGeometry& geometry)
     : geometry_(geometry), capability_(capability_of(geometry)) {
   check(transport);
 }
@@ -125,7 +125,7 @@ std::string PolhemModel::about() const {
   return std::string("geometry ") + geometry_.name + ", three motors; the wrist's encoders are not used";
 }
 
-void PolhemModel::check(Transport& transport) {
+void PolhemModel::check(HidTransport& transport) {
   HidReports reports;
   try {
     reports = parse_descriptor(transport.descriptor());

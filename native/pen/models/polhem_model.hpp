@@ -43,12 +43,12 @@ PolhemPosture polhem_posture(const PolhemGeometry& geometry, const Vec3& angles)
 class PolhemModel final : public HidModel {
  public:
   /// Throws OpenError unless the descriptor has unnumbered reports of at least 14 bytes in both directions.
-  PolhemModel(Transport& transport, const PolhemGeometry& geometry);
+  PolhemModel(HidTransport& transport, const PolhemGeometry& geometry);
 
   const DeviceCapability& capability() const noexcept override { return capability_; }
   double period() const noexcept override { return 1e-3; }
   std::string about() const override;
-  void check(Transport& transport) override;
+  void check(HidTransport& transport) override;
   /// Makes the firmware preset its counters.
   bool home() noexcept override;
 

@@ -26,7 +26,7 @@ std::string version_text(const riffler_pen_identity& identity) {
 }
 
 template <std::size_t N>
-std::span<const std::uint8_t> feature(Transport& transport, std::uint8_t id, std::array<std::uint8_t, N>& bytes) {
+std::span<const std::uint8_t> feature(HidTransport& transport, std::uint8_t id, std::array<std::uint8_t, N>& bytes) {
   bytes[0] = id;
   const int n = transport.get_feature(bytes);
   if (n < 0)
@@ -35,7 +35,7 @@ std::span<const std::uint8_t> feature(Transport& transport, std::uint8_t id, std
   return std::span(bytes).first(std::min(static_cast<std::size_t>(n), N));
 }
 
-riffler_pen_identity ask_identity(Transport& transport) {
+riffler_pen_identity ask_identity(HidTransport& transport) {
   std::array<std::uint8_t, RIFFLER_PEN_IDENTITY_SIZE> bytes{};
   const auto report = feature(transport, RIFFLER_PEN_IDENTITY_ID, bytes);
   riffler_pen_identity identity{};
@@ -56,7 +56,7 @@ riffler_pen_identity ask_identity(Transport& transport) {
   return identity;
 }
 
-riffler_pen_limits ask_limits(Transport& transport) {
+riffler_pen_limits ask_limits(HidTransport& transport) {
   std::array<std::uint8_t, RIFFLER_PEN_LIMITS_SIZE> bytes{};
   const auto report = feature(transport, RIFFLER_PEN_LIMITS_ID, bytes);
   riffler_pen_limits limits{};
@@ -95,7 +95,7 @@ PenGeometry geometry_of(const riffler_pen_identity& identity, const riffler_pen_
   }
 }
 
-riffler_pen_identity checked_identity(Transport& transport) {
+riffler_pen_identity checked_identity(HidTransport& transport) {
   // In this order: a pen with another protocol version may have another descriptor too, and the version is the useful
   // message.
   const riffler_pen_identity identity = ask_identity(transport);
@@ -105,7 +105,7 @@ riffler_pen_identity checked_identity(Transport& transport) {
 
 }  // namespace
 
-RifflerModel::RifflerModel(Transport& transport, const Compensation& share)
+RifflerModel::RifflerModel(HidTransport& transport, const Compensation& share)
     : share_((share.validate(), share)),
       identity_(checked_identity(transport)),
       limits_(ask_limits(transport)),
@@ -120,7 +120,7 @@ std::string RifflerModel::about() const {
          std::to_string((500000 + limits_.period_us / 2) / limits_.period_us * 2) + " reports a second";
 }
 
-void RifflerModel::check(Transport& transport) {
+void RifflerModel::check(HidTransport& transport) {
   const riffler_pen_identity identity = checked_identity(transport);
   const riffler_pen_limits limits = ask_limits(transport);
   const bool same = std::string_view(identity.geometry) == identity_.geometry &&

@@ -16,14 +16,14 @@ class RifflerModel final : public HidModel {
  public:
   /// Reads the pen's identity. Throws OpenError for a device that is no Riffler pen, another protocol version, a
   /// different descriptor, impossible limits, or an unknown geometry. Throws std::invalid_argument for invalid shares.
-  explicit RifflerModel(Transport& transport, const Compensation& share = {});
+  explicit RifflerModel(HidTransport& transport, const Compensation& share = {});
 
   const DeviceCapability& capability() const noexcept override { return capability_; }
   double period() const noexcept override { return 1e-6 * limits_.period_us; }
   haptics::PassivitySettings passivity() const override { return passivity_settings(geometry_, share_); }
   std::string about() const override;
   const PenGeometry* geometry() const noexcept override { return &geometry_; }
-  void check(Transport& transport) override;
+  void check(HidTransport& transport) override;
   /// Counters start at the posture at power-on: the user must hold the pen in its home posture and confirm it.
   bool home() noexcept override;
 

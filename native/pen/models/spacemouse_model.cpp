@@ -74,7 +74,7 @@ const char* spacemouse_name(std::uint16_t vendor, std::uint16_t product) noexcep
   return nullptr;
 }
 
-SpaceMouseModel::SpaceMouseModel(Transport& transport, const HidInfo& info, const RateSettings& settings)
+SpaceMouseModel::SpaceMouseModel(HidTransport& transport, const HidInfo& info, const RateSettings& settings)
     : control_(settings) {
   const char* const name = spacemouse_name(info.vendor, info.product);
   capability_ = rate_capability(name != nullptr ? name : "SpaceMouse", settings);
@@ -85,7 +85,7 @@ std::string SpaceMouseModel::about() const {
   return "sets speeds; no force";
 }
 
-void SpaceMouseModel::check(Transport& transport) {
+void SpaceMouseModel::check(HidTransport& transport) {
   HidReports reports;
   try {
     reports = parse_descriptor(transport.descriptor());

@@ -20,14 +20,14 @@ class SpaceMouseModel final : public HidModel {
  public:
   /// Throws OpenError unless the descriptor is that of a multi-axis controller: some receivers have other collections
   /// on separate interfaces.
-  SpaceMouseModel(Transport& transport, const HidInfo& info, const RateSettings& settings = {});
+  SpaceMouseModel(HidTransport& transport, const HidInfo& info, const RateSettings& settings = {});
 
   const DeviceCapability& capability() const noexcept override { return capability_; }
   /// An untouched puck is silent.
   double period() const noexcept override { return 0; }
   std::string about() const override;
   /// Checks the descriptor.
-  void check(Transport& transport) override;
+  void check(HidTransport& transport) override;
 
   void begin(double now) noexcept override;
   Taken take(std::span<const std::uint8_t> bytes, double now) noexcept override;

@@ -67,10 +67,10 @@ std::unique_ptr<SimulatedDevice> SimulatedDevice::open(const SimulatedPenSetting
 }
 
 SimulatedDevice::SimulatedDevice(std::shared_ptr<Hand> hand, std::shared_ptr<Losses> losses,
-                                 std::shared_ptr<HidModel> model, std::unique_ptr<Transport> transport,
+                                 std::shared_ptr<PenModel> model, std::unique_ptr<Transport> transport,
                                  Driver::Open open, const DriverSettings& driver,
                                  std::shared_ptr<StallTolerantClock> clock)
-    : HidPen(kSimulatedKind, std::move(model), std::move(transport), std::move(open), driver, clock),
+    : DrivenPen(kSimulatedKind, std::move(model), std::move(transport), std::move(open), driver, clock),
       hand_(std::move(hand)),
       losses_(std::move(losses)),
       clock_(std::move(clock)) {}

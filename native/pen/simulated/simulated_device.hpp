@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "pen/hid_pen.hpp"
+#include "pen/driven_pen.hpp"
 #include "pen/simulated/simulated_pen.hpp"
 #include "pen/simulated/stall_tolerant_clock.hpp"
 #include "riffler/pen/arms/compensation.hpp"
@@ -14,7 +14,7 @@ inline constexpr const char* kSimulatedKind = "simulated";
 inline constexpr const char* kSimulatedWhat = "Riffler pen without hardware, moved by a simulated hand";
 
 /// Uses a StallTolerantClock: a busy machine must not take the force away from the hand that it simulates.
-class SimulatedDevice final : public HidPen {
+class SimulatedDevice final : public DrivenPen {
  public:
   /// A homed pen. Its hand moves on a curve (hand_on_a_curve) until it gets a target.
   static std::unique_ptr<SimulatedDevice> open(const SimulatedPenSettings& settings = {},
@@ -36,7 +36,7 @@ class SimulatedDevice final : public HidPen {
  private:
   struct Hand;
   struct Losses;
-  SimulatedDevice(std::shared_ptr<Hand> hand, std::shared_ptr<Losses> losses, std::shared_ptr<HidModel> model,
+  SimulatedDevice(std::shared_ptr<Hand> hand, std::shared_ptr<Losses> losses, std::shared_ptr<PenModel> model,
                   std::unique_ptr<Transport> transport, Driver::Open open, const DriverSettings& driver,
                   std::shared_ptr<StallTolerantClock> clock);
 

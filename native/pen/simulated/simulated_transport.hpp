@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "pen/hid/transport.hpp"
+#include "pen/hid/hid_transport.hpp"
 #include "pen/simulated/simulated_pen.hpp"
 
 namespace riffler::pen {
@@ -21,7 +21,7 @@ class SimulatedClock final : public Clock {
 
 /// The pen's time follows the clock, from the creation of the transport: reads and writes advance it. All consecutive
 /// transports of a pen share pen and clock.
-class SimulatedTransport final : public Transport {
+class SimulatedTransport final : public HidTransport {
  public:
   /// `start`: the clock's time (s) at the pen's time 0.
   SimulatedTransport(std::shared_ptr<SimulatedPen> pen, std::shared_ptr<Clock> clock, double start = 0);

@@ -4,7 +4,7 @@
 #include <atomic>
 #include <functional>
 
-#include "pen/hid/transport.hpp"
+#include "pen/link/transport.hpp"
 
 namespace riffler::pen {
 

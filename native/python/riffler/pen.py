@@ -34,6 +34,7 @@ from ._core import (
     _open_pen,
     _pen_devices,
     _pen_families,
+    _pen_unavailable,
     _pens,
     _play_pen,
 )
@@ -68,6 +69,7 @@ __all__ = [
     "kinds",
     "names",
     "open",
+    "unavailable",
 ]
 
 _open_devices: weakref.WeakSet[PenDevice] = weakref.WeakSet()
@@ -90,7 +92,9 @@ def names() -> dict[str, str]:
 
 
 def devices() -> list[DeviceInfo]:
-    """Every HID device of this computer; those of kinds that riffler knows are opened and asked what they are.
+    """Every HID device of this computer, and every device that a maker's service reports.
+
+    Devices of kinds that riffler knows are opened and asked what they are.
 
     Returns
     -------
@@ -118,6 +122,22 @@ def kinds() -> dict[str, str]:
     True
     """
     return _pen_families()
+
+
+def unavailable() -> dict[str, str]:
+    """Kinds that find no device because a program or library of their maker is missing.
+
+    Returns
+    -------
+    dict
+        Kind to reason and remedy.
+
+    Examples
+    --------
+    >>> set(riffler.pen.unavailable()) <= set(riffler.pen.kinds())
+    True
+    """
+    return _pen_unavailable()
 
 
 @overload

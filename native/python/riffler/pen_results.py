@@ -25,7 +25,7 @@ __all__ = [
 
 @dataclass(frozen=True)
 class DeviceInfo(DictResult):
-    """One HID device of this computer.
+    """One device of this computer.
 
     Attributes
     ----------
@@ -34,7 +34,7 @@ class DeviceInfo(DictResult):
     name, maker, serial : str
         As the device reports them.
     id : str
-        vendor:product, hexadecimal.
+        vendor:product, hexadecimal; empty for devices that are no HID devices.
     kind : str or None
         Its kind in ``riffler.pen.kinds``; None: not for riffler.
     was_opened : bool

@@ -397,6 +397,37 @@ TEST_F(StockHidapi, PathsThatAreNoDevicesSaySo) {
   EXPECT_EQ(text, "no spacemouse is plugged in");
 }
 
+/// The Universal Receiver: an interface without reports, one with a multi-axis collection that sends nothing of a
+/// motion, and the puck's.
+TEST_F(StockHidapi, OfAReceiverTheInterfaceWithTheReportsIsOpened) {
+  VirtualSpec keyboard = puck_spec(true), buttons = puck_spec(true), puck = puck_spec(true);
+  keyboard.product = buttons.product = puck.product = 0xC652;
+  keyboard.descriptor = {0x05, 0x01, 0x09, 0x06, 0xA1, 0x01, 0xC0};
+  buttons.descriptor = {0x05, 0x01, 0x09, 0x08, 0xA1, 0x01, 0x85, 3,    0x05, 0x09, 0x19, 1,   0x29,
+                        2,    0x15, 0,    0x25, 1,    0x75, 1,    0x95, 16,   0x81, 0x02, 0xC0};
+  bus->plug(keyboard);
+  const std::string silent = bus->plug(buttons), sends = bus->plug(puck);
+  const auto pen = pen::open_pen("spacemouse", patient());
+  {
+    FarEnd far(*bus, sends);
+    far.send(puck_report(1, {350, 0, 0, 0, 0, 0}));
+    EXPECT_TRUE(eventually([&] { return pen->newest().sequence == 1; }));
+  }
+  EXPECT_GT(pen->newest().velocity.x, 0);
+  pen->stop();
+  std::string text;
+  EXPECT_EQ(problem_of([&] { pen::open_pen(silent); }, text), pen::OpenProblem::WrongDescriptor);
+  EXPECT_NE(text.find("the interface that has the reports is " + sends), std::string::npos) << text;
+  const std::vector<pen::FoundDevice> found = pen::find_devices();
+  ASSERT_EQ(found.size(), 3U);
+  for (const pen::FoundDevice& one : found) {
+    EXPECT_EQ(one.problem, pen::OpenProblem::None) << one.text;
+    EXPECT_EQ(one.family != nullptr, one.path == sends) << one.path;
+  }
+  bus->unplug(sends);
+  EXPECT_EQ(pen::find_devices()[1].problem, pen::OpenProblem::WrongDescriptor) << "alone it is a puck that is wrong";
+}
+
 TEST_F(StockHidapi, FindsEveryDeviceAndSaysWhatItIs) {
   bus->plug(pen_spec());
   bus->plug(puck_spec(false));

@@ -28,7 +28,7 @@ struct Bench {
   FirmwarePen pen{clock};
   FakeConnector connector{pen.device};
   ConstantPush push;
-  std::unique_ptr<Transport> transport = std::make_unique<FakeTransport>(pen.device);
+  std::unique_ptr<HidTransport> transport = std::make_unique<FakeTransport>(pen.device);
   RifflerModel model{*transport};
   DriverLoop loop{model, push, connector, clock, std::move(transport)};
 
@@ -205,8 +205,6 @@ TEST(DriverLoop, AFailedReadOfADeviceThatStillListensSendsTheZero) {
       device.written.emplace_back(bytes.begin(), bytes.end());
       return true;
     }
-    int get_feature(std::span<std::uint8_t>) noexcept override { return -1; }
-    std::span<const std::uint8_t> descriptor() const noexcept override { return {}; }
     test::FakeDevice& device;
   };
   DriverLoop loop(b.model, b.push, b.connector, b.clock, std::make_unique<FailingRead>(b.pen.device));

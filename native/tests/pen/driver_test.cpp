@@ -8,7 +8,7 @@
 #include <functional>
 #include <thread>
 
-#include "pen/hid_pen.hpp"
+#include "pen/driven_pen.hpp"
 #include "riffler/pen/published.hpp"
 
 namespace riffler::pen::driver_test {
@@ -39,20 +39,17 @@ class PlugTransport final : public Transport {
     if (bytes[0] == 0) ++plug_->released;
     return plug_->in;
   }
-  int get_feature(std::span<std::uint8_t>) noexcept override { return -1; }
-  std::span<const std::uint8_t> descriptor() const noexcept override { return {}; }
 
  private:
   std::shared_ptr<Plug> plug_;
 };
 
 /// One byte in each direction: 1 pushes, 0 does not.
-class ByteModel final : public HidModel {
+class ByteModel final : public PenModel {
  public:
   ByteModel() { capability_.coordinates[0].pushes = true; }
   const DeviceCapability& capability() const noexcept override { return capability_; }
   double period() const noexcept override { return 1e-3; }
-  void check(Transport&) override {}
   void begin(double) noexcept override {}
   Taken take(std::span<const std::uint8_t> bytes, double now) noexcept override {
     sample_.sequence += bytes.size();
@@ -87,15 +84,15 @@ bool eventually(const std::function<bool()>& what, std::chrono::seconds within =
   return what();
 }
 
-std::unique_ptr<HidPen> pen_on(const std::shared_ptr<Plug>& plug) {
+std::unique_ptr<DrivenPen> pen_on(const std::shared_ptr<Plug>& plug) {
   const auto open = [plug]() -> std::unique_ptr<Transport> {
     if (!plug->in) throw OpenError(OpenProblem::NoFile, "it is not plugged in");
     return std::make_unique<PlugTransport>(plug);
   };
   DriverSettings settings;
   settings.silence = 10;  // a busy machine does not make the device go away
-  return std::make_unique<HidPen>("test", std::make_shared<ByteModel>(), std::make_unique<PlugTransport>(plug), open,
-                                  settings);
+  return std::make_unique<DrivenPen>("test", std::make_shared<ByteModel>(), std::make_unique<PlugTransport>(plug), open,
+                                     settings);
 }
 
 TEST(Driver, ReadsStepsAndWritesInAThreadOfItsOwn) {

@@ -10,6 +10,7 @@
 
 #include "device/firmware/pen_firmware.h"
 #include "pen/driver_loop.hpp"
+#include "pen/hid/hid_transport.hpp"
 
 namespace riffler::test {
 
@@ -43,7 +44,7 @@ struct FakeDevice {
   void send(double time, Report bytes) { events.push_back({time, std::move(bytes)}); }
 };
 
-class FakeTransport final : public pen::Transport {
+class FakeTransport final : public pen::HidTransport {
  public:
   explicit FakeTransport(FakeDevice& device) : device_(device) { ++device_.open; }
   ~FakeTransport() override { --device_.open; }

@@ -45,7 +45,7 @@ struct PenBench {
   double end = 0;
   std::shared_ptr<pen::SimulatedPen> pen;
   std::shared_ptr<pen::SimulatedClock> clock = std::make_shared<pen::SimulatedClock>();
-  std::unique_ptr<pen::Transport> transport = std::make_unique<pen::SimulatedTransport>(pen, clock);
+  std::unique_ptr<pen::HidTransport> transport = std::make_unique<pen::SimulatedTransport>(pen, clock);
   pen::RifflerModel model{*transport};
   SimulatedConnector connector{pen, clock, model};
   std::optional<pen::DriverLoop> driver;

@@ -51,6 +51,7 @@ def rows(data: dict[str, Any], found: list[pen.DeviceInfo]) -> list[tuple[str, s
         ("memory", f"{gigabytes(memory['available'])} free of {gigabytes(memory['total'])}"),
         ("Blender", data["bpy"] or "no bpy in this Python"),
         *(devices or [("devices", "no HID device (/dev/hidraw*)")]),
+        *data["unavailable"].items(),
     ]
 
 
@@ -66,6 +67,7 @@ def report(found: list[pen.DeviceInfo]) -> dict[str, Any]:
         "memory": memory(),
         "bpy": bpy_version(),
         "devices": [as_json(device) for device in found],
+        "unavailable": pen.unavailable(),
     }
 
 

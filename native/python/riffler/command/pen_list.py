@@ -27,10 +27,12 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
     found = [device for device in pen.devices() if device.kind]
     rows = [(device.path, describe(device)) for device in found]
     known = ", ".join(kind for kind in pen.kinds() if kind != "simulated")
+    unavailable = pen.unavailable()
+    rows = rows or [("none", f'no device of the kinds {known}; "simulated" needs none')]
     console.result(
-        {"devices": [as_json(device) for device in found], "kinds": pen.kinds()},
+        {"devices": [as_json(device) for device in found], "kinds": pen.kinds(), "unavailable": unavailable},
         "pens",
-        rows or [("none", f'no device of the kinds {known}; "simulated" needs none')],
+        [*rows, *unavailable.items()],
     )
     return 0
 
@@ -42,7 +44,7 @@ def as_json(device: pen.DeviceInfo) -> dict[str, Any]:
 
 def describe(device: pen.DeviceInfo) -> str:
     """One device in one line."""
-    name = f"{device.name} {device.id}"
+    name = " ".join(filter(None, (device.name, device.id)))
     if device.problem:
         return f"{name}: {device.problem}: {device.text}"
     if device.kind is None:

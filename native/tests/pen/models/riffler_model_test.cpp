@@ -105,7 +105,7 @@ struct Driven : Bench {
   Driven() { model.home(); }
   FakeConnector connector{pen.device};
   ConstantPush push;
-  std::unique_ptr<Transport> transport = std::make_unique<FakeTransport>(pen.device);
+  std::unique_ptr<HidTransport> transport = std::make_unique<FakeTransport>(pen.device);
   RifflerModel model{*transport};
   DriverLoop loop{model, push, connector, clock, std::move(transport)};
 

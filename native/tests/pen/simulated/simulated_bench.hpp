@@ -98,7 +98,7 @@ struct SimulatedBench {
   std::shared_ptr<pen::SimulatedPen> pen;
   std::shared_ptr<pen::SimulatedClock> clock = std::make_shared<pen::SimulatedClock>();
   GatedStep step;
-  std::unique_ptr<pen::Transport> transport = std::make_unique<pen::SimulatedTransport>(pen, clock);
+  std::unique_ptr<pen::HidTransport> transport = std::make_unique<pen::SimulatedTransport>(pen, clock);
   pen::RifflerModel model;
   SimulatedConnector connector{pen, clock, model};
   pen::DriverLoop loop{model, step, connector, *clock, std::move(transport)};

@@ -20,6 +20,10 @@ enum class OpenProblem : unsigned char {
   OtherVersion,     // another protocol version
   NoAnswer,         // a required report is not answered
   BadContent,       // the report's content is invalid
+  NotRunning,       // the service that drives the device does not run
+  NotInstalled,     // the library that drives the device is not there
+  NotChosen,        // the library is there, and its user has not asked for it
+  WrongLibrary,     // the library cannot be loaded, or lacks a function
   Other,            // see the text
 };
 

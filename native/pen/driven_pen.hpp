@@ -1,4 +1,4 @@
-// A HID device behind the common interface of devices: a model, run by the driver.
+// A device behind the common interface of devices: a model, run by the driver.
 #pragma once
 
 #include <atomic>
@@ -61,12 +61,12 @@ class StepSwitch final : public PenStep {
   double missed_ = 0;   // s: ticks missed since its last call; used by the driver's thread
 };
 
-class HidPen : public Pen {
+class DrivenPen : public Pen {
  public:
-  /// `transport`: open and checked by the model; `open` finds, opens and checks the device again. `clock`: as in
+  /// `transport`: open and checked; `open` finds, opens and checks the device again. `clock`: as in
   /// Driver; a subclass that passes one overrides now().
-  HidPen(std::string kind, std::shared_ptr<HidModel> model, std::unique_ptr<Transport> transport, Driver::Open open,
-         const DriverSettings& settings = {}, std::shared_ptr<Clock> clock = nullptr);
+  DrivenPen(std::string kind, std::shared_ptr<PenModel> model, std::unique_ptr<Transport> transport, Driver::Open open,
+            const DriverSettings& settings = {}, std::shared_ptr<Clock> clock = nullptr);
 
   std::string kind() const override { return kind_; }
   const DeviceCapability& capability() const noexcept override { return model_->capability(); }
@@ -90,7 +90,7 @@ class HidPen : public Pen {
 
  private:
   std::string kind_;
-  std::shared_ptr<HidModel> model_;
+  std::shared_ptr<PenModel> model_;
   std::shared_ptr<HeldPush> held_;
   std::shared_ptr<StepSwitch> switch_;
   std::atomic<bool> pushes_{true};  // the active step is held_

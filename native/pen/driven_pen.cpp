@@ -1,4 +1,4 @@
-#include "pen/hid_pen.hpp"
+#include "pen/driven_pen.hpp"
 
 #include <utility>
 
@@ -48,21 +48,21 @@ haptics::SafeWrench StepSwitch::step(const PenSample& sample, double now, double
   return step_->step(sample, now, std::exchange(begins_, false) ? 0 : since);
 }
 
-HidPen::HidPen(std::string kind, std::shared_ptr<HidModel> model, std::unique_ptr<Transport> transport,
-               Driver::Open open, const DriverSettings& settings, std::shared_ptr<Clock> clock)
+DrivenPen::DrivenPen(std::string kind, std::shared_ptr<PenModel> model, std::unique_ptr<Transport> transport,
+                     Driver::Open open, const DriverSettings& settings, std::shared_ptr<Clock> clock)
     : kind_(std::move(kind)),
       model_(std::move(model)),
       held_(std::make_shared<HeldPush>()),
       switch_(std::make_shared<StepSwitch>(held_)),
       driver_(model_, switch_, std::move(transport), std::move(open), settings, std::move(clock)) {}
 
-bool HidPen::set_step(std::shared_ptr<PenStep> step) {
+bool DrivenPen::set_step(std::shared_ptr<PenStep> step) {
   pushes_ = step == nullptr;
   switch_->set(step ? std::move(step) : held_);
   return true;
 }
 
-PushAnswer HidPen::push(const Wrench& wrench) noexcept {
+PushAnswer DrivenPen::push(const Wrench& wrench) noexcept {
   if (!finite(wrench)) {
     if (pushes_) held_->ask({}, now());
     return {{}, {}, NotPushed::BadWrench};

@@ -1,0 +1,103 @@
+// 3D Systems' OpenHaptics: the documented functions of libHD that Riffler calls, and an arm that it drives.
+//
+// Names, signatures and constants are those of the maker's published headers HD/hdDevice.h, hdScheduler.h and
+// hdDefines.h (OpenHaptics 3.0 to 3.5, https://support.3dsystems.com). The library is proprietary: it is not shipped,
+// and only loaded where its user has pointed to it or opens such a device. Its axes are x right, y up, z towards the
+// user; lengths in mm.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "pen/library/arm_state.hpp"
+#include "pen/library/shared_library.hpp"
+#include "pen/link/transport.hpp"
+#include "riffler/pen/published.hpp"
+
+namespace riffler::pen {
+
+/// HDErrorInfo.
+struct HdError {
+  unsigned code;
+  int internal;
+  unsigned device;
+};
+
+/// The functions of libHD.
+struct HdFunctions {
+  using Callback = unsigned (*)(void* data);
+  unsigned (*init_device)(const char* name);
+  void (*disable_device)(unsigned device);
+  void (*begin_frame)(unsigned device);
+  void (*end_frame)(unsigned device);
+  void (*make_current)(unsigned device);
+  HdError (*get_error)();
+  const char* (*get_error_string)(unsigned code);
+  void (*enable)(unsigned capability);
+  void (*disable)(unsigned capability);
+  unsigned char (*is_enabled)(unsigned capability);
+  void (*get_doubles)(unsigned name, double* values);
+  void (*get_integers)(unsigned name, int* values);
+  const char* (*get_string)(unsigned name);
+  void (*set_doubles)(unsigned name, const double* values);
+  unsigned (*check_calibration)();
+  void (*update_calibration)(unsigned style);
+  void (*start_scheduler)();
+  void (*stop_scheduler)();
+  unsigned long (*schedule)(Callback callback, void* data, unsigned short priority);
+  void (*unschedule)(unsigned long handle);
+
+  explicit HdFunctions(const SharedLibrary& library);
+};
+
+/// An arm that is open; one in a process, since the library has one scheduler. The library's own thread (1 kHz) reads
+/// the arm and sends it the newest command, or zero force if that is older than kHeld; the driver's thread only
+/// exchanges values with it, without locks.
+class HdArm final : public Transport {
+ public:
+  static constexpr double kHeld = 0.02;  // s for which a command holds
+
+  /// Opens the arm with that name in the maker's configuration; empty: the default one. Throws OpenError with the
+  /// library's own words; Busy if this process has an arm open already.
+  HdArm(std::shared_ptr<const HdFunctions> functions, const std::string& name);
+  HdArm(const HdArm&) = delete;
+  HdArm& operator=(const HdArm&) = delete;
+  /// Ends the force and closes the arm.
+  ~HdArm() override;
+
+  const ArmTraits& traits() const { return traits_; }
+  /// Starts the library's thread and lets commands push from now on. Throws OpenError.
+  void enable();
+
+  int read(std::span<std::uint8_t> bytes, double seconds) noexcept override;
+  bool write(std::span<const std::uint8_t> bytes) noexcept override;
+
+ private:
+  struct Reading {
+    ArmState state;
+    std::uint64_t number = 0;
+    bool gone = false;
+  };
+  struct Command {
+    ArmCommand wrench;
+    double time = -1e300;  // s of the steady clock
+  };
+  static unsigned serve(void* arm) noexcept;
+  void tick() noexcept;
+  void check() noexcept;
+  void throw_error(const char* what) const;
+
+  std::shared_ptr<const HdFunctions> hd_;
+  unsigned device_ = 0;
+  ArmTraits traits_;
+  unsigned long scheduled_ = 0;
+  bool enabled_ = false;
+  std::uint64_t seen_ = 0;  // number of the last reading that was read
+  Published<Command> command_;
+  Published<Reading> reading_;
+  Reading next_;  // used by the library's thread
+};
+
+}  // namespace riffler::pen

@@ -1,0 +1,30 @@
+// A TCP connection to a program on this computer.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <utility>
+
+namespace riffler::pen {
+
+/// Connects to 127.0.0.1 only. Used by one thread at a time. Nothing here waits longer than the given time.
+class LoopbackSocket {
+ public:
+  /// Throws OpenError: NotRunning if no program listens at the port, NoAnswer if it does not accept within `seconds`.
+  LoopbackSocket(std::uint16_t port, double seconds);
+  LoopbackSocket(LoopbackSocket&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
+  LoopbackSocket& operator=(LoopbackSocket&&) = delete;
+  ~LoopbackSocket();
+
+  /// Waits up to `seconds` (0: not at all) and reads what has arrived. Returns its size, 0 if nothing arrived, −1 if
+  /// the other program has closed the connection or it is broken.
+  int read(std::span<std::uint8_t> bytes, double seconds) noexcept;
+  /// False if the connection is closed or broken, or if not all bytes could be sent within `seconds`.
+  bool write(std::span<const std::uint8_t> bytes, double seconds) noexcept;
+
+ private:
+  bool wait(short events, double seconds) noexcept;
+  int fd_ = -1;
+};
+
+}  // namespace riffler::pen
