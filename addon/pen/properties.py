@@ -27,7 +27,7 @@ SCALE = length("Scale", 1.0, "Distance that the tool moves, per distance of the 
 
 
 class DeviceSettings:
-    """Of every session; the fields are those of PenSettings."""
+    """Settings of every session; the fields are those of PenSettings."""
 
     device: DEVICE
     scale: SCALE

@@ -1,7 +1,7 @@
 """The session of a device with a plan: the hand turns the tool at its contact, the buttons set and delete key
 orientations, and a timer shows it all thirty times a second.
 
-Each key is one undo step of Blender's. Undo, redo and edits on the timeline go on meanwhile: the session takes the keys
+Each key is one undo step of Blender's. Undo, redo and edits on the timeline work meanwhile: the session takes the keys
 that the plan has. It ends when its path is gone.
 """
 

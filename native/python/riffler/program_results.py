@@ -194,7 +194,7 @@ class KeyChange:
     time: float
     """s since the start."""
     point: int
-    """Of the path."""
+    """Point of the path, from 0."""
     axis: NDArray[np.float64]
     """(3,): of the key that was set or deleted."""
     deleted: bool

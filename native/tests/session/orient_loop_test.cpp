@@ -132,7 +132,7 @@ TEST(OrientLoop, TheToolSlidesWithTheHandAlongThePathToItsEnd) {
   EXPECT_NEAR(last.station, 36, 1e-3);
 }
 
-TEST(OrientLoop, EachPressIsToldOnceWithThePlaceAndAxisThatTheUserSees) {
+TEST(OrientLoop, EachPressIsReportedOnceWithThePlaceAndAxisThatTheUserSees) {
   OrientBench bench([home = test::pen_home()](double t) {
     pen::HandWish wish{.pose = home};
     // Held at the start: no press. Then the first button twice, and the second.
@@ -222,7 +222,7 @@ TEST(OrientLoop, AStepInContactAllocatesNothing) {
   EXPECT_EQ(test::allocations() - before, 0);
 }
 
-/// Two minutes of planning by feel beside a clamp: random turns and slides into part and fixture. The account of energy
+/// Two minutes of planning by feel next to a clamp: random turns and slides into part and fixture. The account of energy
 /// never falls below zero, and no tick leaves the tool deeper than the walls yield.
 TEST(OrientLoop, MinutesOfPlanningByFeelGiveTheHandNoEnergy) {
   std::vector<Volume> clamp;
@@ -255,7 +255,7 @@ TEST(OrientLoop, MinutesOfPlanningByFeelGiveTheHandNoEnergy) {
   EXPECT_GT(touched, test::kSanitized ? 100 : 5000);
   EXPECT_EQ(through, 0);
   EXPECT_LT(deepest, 1.2);
-  EXPECT_EQ(lied, 0);  // the depth told is a bound
+  EXPECT_EQ(lied, 0);  // the reported depth is a bound
   int presses = 0;
   for (KeyPress press; bench.loop.take(press);) ++presses;
   EXPECT_GT(presses, 3);

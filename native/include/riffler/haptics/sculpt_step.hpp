@@ -37,7 +37,7 @@ struct SculptSettings {
 /// in as deep as the surface's own stiffness lets it.
 class SculptStep {
  public:
-  /// What users are told where Result::held is true.
+  /// Text for users where Result::held is true.
   static constexpr const char* kHeldText = "the tool waits: how deep it is in the obstacles was not found in time";
 
   /// The result of one step.
