@@ -9,6 +9,7 @@
 #include "pen/models/polhem_model.hpp"
 #include "pen/models/riffler_model.hpp"
 #include "pen/models/spacemouse_model.hpp"
+#include "pen/simulated/random_pen.hpp"
 #include "pen/simulated/simulated_device.hpp"
 
 namespace riffler::pen {
@@ -104,6 +105,12 @@ std::unique_ptr<Pen> open_kind(const PenFamily& family, const PenOptions& option
   throw first.value_or(OpenError(OpenProblem::NoFile, std::string("no ") + family.kind + " is plugged in"));
 }
 
+std::unique_ptr<Pen> open_simulated(const PenOptions& options) {
+  SimulatedPenSettings settings;
+  if (options.seed) settings.geometry = random_pen(settings.geometry, *options.seed);
+  return SimulatedDevice::open(settings, options.driver, options.compensation, options.real_time);
+}
+
 std::unique_ptr<Pen> open_path(std::string_view path, const PenOptions& options) {
   HidInfo asked;
   asked.path = path;
@@ -160,7 +167,7 @@ std::vector<FoundDevice> find_devices() {
 }
 
 std::unique_ptr<Pen> open_pen(std::string_view what, const PenOptions& options) {
-  if (what == kSimulatedKind) return SimulatedDevice::open({}, options.driver, options.compensation);
+  if (what == kSimulatedKind) return open_simulated(options);
   if (const PenFamily* const family = family_named(what)) return open_kind(*family, options);
   return open_path(what, options);
 }

@@ -11,6 +11,10 @@ base::DescriptionCatalog shelf() {
   return {"pen", "RIFFLER_PENS", "pens", shipped_pens(), pen_summary};
 }
 
+base::DescriptionText find_pen(std::string_view name) {
+  return find_description(shelf(), name, "pen '" + std::string(name) + "'");
+}
+
 }  // namespace
 
 std::vector<base::DescriptionEntry> pens() {
@@ -18,8 +22,12 @@ std::vector<base::DescriptionEntry> pens() {
 }
 
 PenGeometry load_pen(std::string_view name) {
-  const base::DescriptionText found = find_description(shelf(), name, "pen '" + std::string(name) + "'");
+  const base::DescriptionText found = find_pen(name);
   return describe_pen(found.toml, found.file, found.name);
+}
+
+std::string pen_text(std::string_view name) {
+  return find_pen(name).toml;
 }
 
 }  // namespace riffler::pen

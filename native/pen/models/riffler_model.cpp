@@ -203,6 +203,7 @@ void RifflerModel::place(const riffler_pen_input& report, double now) noexcept {
   sample_.turning = speed.twist.angular;
   sample_.stretch = check_grip(kinematics_, posture_).stretch;
   sample_.says_applied = true;
+  std::copy(std::begin(report.applied), std::end(report.applied), sample_.currents.begin());
   sample_.applied = felt_wrench(kinematics_, posture_, joint_torques(geometry_, applied_wrench(report)));
   sample_.time = now;
   sample_.buttons = report.buttons;

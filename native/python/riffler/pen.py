@@ -122,7 +122,12 @@ def kinds() -> dict[str, str]:
 
 @overload
 def open(
-    what: Literal["simulated"], *, gravity: float | None = None, friction: float | None = None
+    what: Literal["simulated"],
+    *,
+    gravity: float | None = None,
+    friction: float | None = None,
+    seed: int | None = None,
+    real_time: bool | None = None,
 ) -> SimulatedPen: ...
 @overload
 def open(
@@ -137,6 +142,8 @@ def open(
     geometry: str | None = None,
     gravity: float | None = None,
     friction: float | None = None,
+    seed: int | None = None,
+    real_time: bool | None = None,
 ) -> PenDevice: ...
 @hinted("pen.open")
 def open(
@@ -151,6 +158,8 @@ def open(
     geometry: str | None = None,
     gravity: float | None = None,
     friction: float | None = None,
+    seed: int | None = None,
+    real_time: bool | None = None,
 ) -> PenDevice:
     """Opens a device.
 
@@ -176,6 +185,10 @@ def open(
     gravity, friction : float, optional
         Of Riffler's pen and the simulated one: shares (0 to 1, 0 if not given) of the arms' weight and friction that
         the motors make up for while force is let through.
+    seed : int, optional
+        Of the simulated pen: its true motors, friction and weights are drawn around the described ones.
+    real_time : bool, optional
+        Of the simulated pen: False, and its clock runs as fast as the machine computes, for tests.
 
     Returns
     -------
@@ -202,6 +215,8 @@ def open(
         "geometry": geometry,
         "gravity": gravity,
         "friction": friction,
+        "seed": seed,
+        "real_time": real_time,
     }
     options: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
     if path.endswith(".rjournal"):

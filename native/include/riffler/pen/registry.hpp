@@ -1,7 +1,9 @@
 // The HID devices that Riffler supports: finding and opening them.
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -24,6 +26,8 @@ struct PenOptions {
   RateSettings rate{};                     ///< for pucks
   std::string geometry = "woodenhaptics";  ///< for the Polhem protocol: "woodenhaptics" or "polhem-1"
   Compensation compensation{};             ///< for Riffler's pen, including the simulated one
+  std::optional<std::uint64_t> seed{};     ///< for the simulated pen: true values drawn at random around the described
+  bool real_time = true;                   ///< for the simulated pen: false, as fast as the machine computes
   DriverSettings driver{};
 };
 

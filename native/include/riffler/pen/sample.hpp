@@ -29,6 +29,8 @@ struct PenSample {
   /// For a device with a PenGeometry: the counts that its counters would read if homing had preset them, in device
   /// order.
   std::array<std::int32_t, 6> counts{};
+  /// For the same devices: mA that the motors applied when the report was sent, in device order.
+  std::array<std::int16_t, 6> currents{};
   bool homed = false;    ///< the device knows its pose
   bool powered = false;  ///< the device is ready to push
 };
