@@ -60,7 +60,8 @@ StringDict families() {
 
 SharedPen open_device(const std::string& what, const std::string& geometry, double bubble, double exponent,
                       double speed, double turn_rate, bool hold_orientation, const std::array<int, 6>& signs,
-                      double gravity, double friction, std::optional<std::uint64_t> seed, bool real_time) {
+                      std::optional<double> gravity, std::optional<double> friction, std::optional<std::uint64_t> seed,
+                      bool real_time) {
   pen::PenOptions options;
   options.geometry = geometry;
   options.rate = {bubble, exponent, speed, turn_rate, hold_orientation, false, signs};
@@ -285,8 +286,8 @@ void bind_pen_device(py::module_& m) {
   const pen::RateSettings rate;
   m.def("_open_pen", &open_device, "what"_a, py::kw_only(), "geometry"_a = "woodenhaptics", "bubble"_a = rate.bubble,
         "exponent"_a = rate.exponent, "speed"_a = rate.speed, "turn_rate"_a = rate.turn_rate,
-        "hold_orientation"_a = rate.hold_orientation, "signs"_a = rate.signs, "gravity"_a = 0.0, "friction"_a = 0.0,
-        "seed"_a = std::optional<std::uint64_t>(), "real_time"_a = true);
+        "hold_orientation"_a = rate.hold_orientation, "signs"_a = rate.signs, "gravity"_a = std::optional<double>(),
+        "friction"_a = std::optional<double>(), "seed"_a = std::optional<std::uint64_t>(), "real_time"_a = true);
   m.def("_play_pen", &play, "strokes"_a, "speed"_a);
 }
 

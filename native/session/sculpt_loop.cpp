@@ -104,8 +104,9 @@ haptics::SafeWrench SculptLoop::step(const pen::PenSample& sample, double now, d
   if (sure(state)) {
     if (has_grip_) {
       const haptics::PoseError moved = haptics::pose_error(sample.pose, last_grip_);
-      passivity_.observe(tick.applied, {moved.translation, moved.rotation}, dt);
+      passivity_.observe(tick.applied, {moved.translation, moved.rotation}, dt, sample.dissipated - dissipated_);
     }
+    dissipated_ = sample.dissipated;
     last_grip_ = sample.pose, has_grip_ = true;
   } else {
     has_grip_ = false;

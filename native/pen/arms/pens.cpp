@@ -1,5 +1,8 @@
 #include "pen/arms/pens.hpp"
 
+#include <filesystem>
+#include <system_error>
+
 #include "pen/arms/description.hpp"
 #include "pen/arms/shipped_pens.hpp"
 
@@ -24,6 +27,14 @@ std::vector<base::DescriptionEntry> pens() {
 PenGeometry load_pen(std::string_view name) {
   const base::DescriptionText found = find_pen(name);
   return describe_pen(found.toml, found.file, found.name);
+}
+
+bool is_own_pen(std::string_view name) {
+  for (const std::filesystem::path& folder : own_folders(shelf())) {
+    std::error_code none;
+    if (std::filesystem::is_regular_file(folder / (std::string(name) + ".toml"), none)) return true;
+  }
+  return false;
 }
 
 std::string pen_text(std::string_view name) {

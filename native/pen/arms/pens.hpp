@@ -18,6 +18,9 @@ std::vector<base::DescriptionEntry> pens();
 /// of describe_pen.
 PenGeometry load_pen(std::string_view name);
 
+/// Whether the user's own files have a pen of this name.
+bool is_own_pen(std::string_view name);
+
 /// The TOML text that load_pen reads. Throws std::invalid_argument as above.
 std::string pen_text(std::string_view name);
 

@@ -64,8 +64,8 @@ struct SimulatedDevice::Hung {
 };
 
 std::unique_ptr<SimulatedDevice> SimulatedDevice::open(const SimulatedPenSettings& settings,
-                                                       const DriverSettings& driver, const Compensation& compensation,
-                                                       bool real_time) {
+                                                       const DriverSettings& driver,
+                                                       const CompensationShares& compensation, bool real_time) {
   auto hand = std::make_shared<Hand>();
   auto pen = std::make_shared<SimulatedPen>(settings);
   hand->curve = hand_on_a_curve(pen->arms().posture().pose);

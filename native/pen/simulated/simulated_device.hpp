@@ -20,8 +20,8 @@ class SimulatedDevice final : public HidPen {
   /// runs as fast as the machine computes, which takes a whole processor, and push(), which holds for 20 ms of that
   /// clock, is of no use.
   static std::unique_ptr<SimulatedDevice> open(const SimulatedPenSettings& settings = {},
-                                               const DriverSettings& driver = {}, const Compensation& compensation = {},
-                                               bool real_time = true);
+                                               const DriverSettings& driver = {},
+                                               const CompensationShares& compensation = {}, bool real_time = true);
 
   /// The pen as it really is; geometry() is what its host believes.
   const PenGeometry& truth() const noexcept { return truth_; }

@@ -5129,7 +5129,7 @@ class PencilPath:
         """
         Radius of the ball, mm.
         """
-def _open_pen(what: str, *, geometry: str = 'woodenhaptics', bubble: typing.SupportsFloat = 0.08, exponent: typing.SupportsFloat = 2.0, speed: typing.SupportsFloat = 60.0, turn_rate: typing.SupportsFloat = 1.5, hold_orientation: bool = False, signs: typing.Annotated[collections.abc.Sequence[typing.SupportsInt], "FixedSize(6)"] = [1, 1, 1, 1, 1, 1], gravity: typing.SupportsFloat = 0.0, friction: typing.SupportsFloat = 0.0, seed: typing.SupportsInt | None = None, real_time: bool = True) -> PenDevice:
+def _open_pen(what: str, *, geometry: str = 'woodenhaptics', bubble: typing.SupportsFloat = 0.08, exponent: typing.SupportsFloat = 2.0, speed: typing.SupportsFloat = 60.0, turn_rate: typing.SupportsFloat = 1.5, hold_orientation: bool = False, signs: typing.Annotated[collections.abc.Sequence[typing.SupportsInt], "FixedSize(6)"] = [1, 1, 1, 1, 1, 1], gravity: typing.SupportsFloat | None = None, friction: typing.SupportsFloat | None = None, seed: typing.SupportsInt | None = None, real_time: bool = True) -> PenDevice:
     ...
 def _pen_devices() -> list[riffler.pen_results.DeviceInfo]:
     ...

@@ -183,8 +183,8 @@ def open(
     geometry : str, optional
         Of "polhem": "woodenhaptics" or "polhem-1".
     gravity, friction : float, optional
-        Of Riffler's pen and the simulated one: shares (0 to 1, 0 if not given) of the arms' weight and friction that
-        the motors make up for while force is let through.
+        Of Riffler's pen and the simulated one: shares (0 to 1) of the arms' weight and friction that the motors make up
+        for while force is let through. If not given, 1 and 0.5 for a pen that was identified, and 0 for another.
     seed : int, optional
         Of the simulated pen: its true motors, friction and weights are drawn around the described ones.
     real_time : bool, optional

@@ -120,7 +120,8 @@ class SculptLoop final : public pen::PenStep {
   haptics::Safety safety_;
   haptics::Passivity passivity_;
   haptics::WrenchExtrapolator wrench_extrapolator_;
-  Wrench slewed_, held_;  // wrench before the passivity controller, and wrench released
+  double dissipated_ = 0;  // PenSample::dissipated of the last tick
+  Wrench slewed_, held_;   // wrench before the passivity controller, and wrench released
   Pose last_grip_;
   Pose last_tool_;
   double time_ = 0, owed_ = 0;  // s; the second: time since the last completed step

@@ -114,8 +114,8 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
 
 def open_pen(what: str | None, seed: int | None) -> pen.PenDevice:
     if what == "simulated":
-        return open_device(what, seed=seed, real_time=False)
-    return open_device(what)
+        return open_device(what, seed=seed, real_time=False, gravity=0.0, friction=0.0)
+    return open_device(what, gravity=0.0, friction=0.0)
 
 
 def grip_half(geometry: pen.PenGeometry) -> float:
