@@ -23,6 +23,7 @@ namespace {
 
 constexpr double kMass = 1.5e-4;  // N·s²/mm: 150 g
 constexpr double kPeriod = 1e-3;
+constexpr double kStrike = 50;  // mm/s: speed at which a wall is struck for its hardness
 
 /// A JSON array of objects, one a line.
 class Rows {
@@ -100,11 +101,14 @@ void sessions(const char* name, const WallDevice& device, const Column& normal, 
     const SimulatedWall wall{normal, times * bound, 0, true, 10};
     const Session session{20'000, 2, 7, false, guide};
     const SessionResult off = press(device, wall, session, {}), on = press(device, wall, session, settings);
-    rows.add(
-        R"({"times": %.9g, "off": {"gained": %.9g, "delivered": %.9g, "speed": %.9g, "depth": %.9g},)"
-        R"( "on": {"gained": %.9g, "delivered": %.9g, "speed": %.9g, "depth": %.9g, "least": %.9g, "unforeseen": %ld}})",
-        times, off.gained, off.delivered, off.speed, off.depth, on.gained, on.delivered, on.speed, on.depth,
-        on.least_energy, on.unforeseen);
+    const double hard_off = perceptual_hardness(device, wall, guide, kStrike, {});
+    const double hard_on = perceptual_hardness(device, wall, guide, kStrike, settings);
+    rows.add(R"({"times": %.9g, "stiffness": %.9g,)"
+             R"( "off": {"gained": %.9g, "delivered": %.9g, "speed": %.9g, "depth": %.9g, "hardness": %.9g},)"
+             R"( "on": {"gained": %.9g, "delivered": %.9g, "speed": %.9g, "depth": %.9g, "hardness": %.9g,)"
+             R"( "least": %.9g, "unforeseen": %ld}})",
+             times, wall.stiffness, off.gained, off.delivered, off.speed, off.depth, hard_off, on.gained, on.delivered,
+             on.speed, on.depth, hard_on, on.least_energy, on.unforeseen);
   }
 }
 
