@@ -32,7 +32,9 @@ REACH = 3  # times WIDTH, to each side
 EVERY = 10  # samples between two rows of the fit
 # Periods by which the mean time of a stated current is before the counts of its report, with its standard uncertainty:
 # the pen takes a host's command in its first turn after a frame (docs/device.md), and an amplifier takes some time.
-LEAD, LEAD_ERROR = 0.25, 0.05
+LEAD, LEAD_ERROR = 0.25, 0.1
+STUCK = 2.0  # times the median residual of its kind: beyond it a joint stuck in a sweep, which is left out
+MODEL_ERROR = 0.001  # relative standard uncertainty: noise of counts and currents in the unknowns' own columns
 SLOWEST = 0.06  # rad/s of every joint: below it a joint may stick, and the direction of its friction is not certain
 FEWEST = 20  # sweeps from which the scatter of the result can be judged
 NORMAL = 1.96  # standard uncertainties to each side of a 95 % interval
@@ -94,7 +96,13 @@ def identify(
     values, scatter, rows, residual = _fitted(geometry, free, loaded, weight.force, weight.hook, LEAD)
     hooked, *_ = _fitted(geometry, free, loaded, weight.force, weight.hook + weight.hook_error, LEAD, scatter=False)
     led, *_ = _fitted(geometry, free, loaded, weight.force, weight.hook, LEAD + LEAD_ERROR, scatter=False)
-    errors = np.sqrt(scatter**2 + (hooked - values) ** 2 + (led - values) ** 2 + (weight.relative_error * values) ** 2)
+    errors = np.sqrt(
+        scatter**2
+        + (hooked - values) ** 2
+        + (led - values) ** 2
+        + (weight.relative_error * values) ** 2
+        + (MODEL_ERROR * values) ** 2
+    )
     return Identified(_by_name(geometry, values), _by_name(geometry, errors), rows, residual)
 
 
@@ -128,20 +136,26 @@ def _fitted(
     kinds = np.array([kind for kind, *_ in parts])
     shares, left = np.ones(len(parts)), [b for *_, b in parts]
     normal, side, unknowns = solved(shares, squares, sides)
-    for _ in range(2):  # the noise of each kind of sweep, and with it its weight in the sum
+    for _ in range(4):  # the noise of each kind of sweep, and with it its weight in the sum
         left = [b - a @ (scale * unknowns) for _, a, b in parts]
+        noise = np.array([np.sqrt(np.mean(part**2)) for part in left])
         for kind in set(kinds):
-            mine = np.flatnonzero(kinds == kind)
-            shares[mine] = 1 / np.mean(np.concatenate([left[k] for k in mine]) ** 2)
+            mine = kinds == kind
+            usual = float(np.median(noise[mine]))
+            shares[mine] = np.where(noise[mine] > STUCK * usual, 0.0, 1 / usual**2)
         normal, side, unknowns = solved(shares, squares, sides)
     residual = float(np.sqrt(np.mean(np.concatenate(left) ** 2)))
     rows = sum(len(b) for *_, b in parts)
     if not scatter:
         return unknowns * scale, np.zeros(UNKNOWNS), rows, residual
     # Residuals within a sweep are alike, so sweeps are what the scatter is judged by.
-    n = len(parts)
+    used = shares > 0
+    n = int(used.sum())
     without = np.array(
-        [np.linalg.solve(normal - w * a, side - w * b) for w, a, b in zip(shares, squares, sides, strict=True)]
+        [
+            np.linalg.solve(normal - w * a, side - w * b)
+            for w, a, b in zip(shares[used], squares[used], sides[used], strict=True)
+        ]
     )
     errors = np.sqrt((n - 1) / n * ((without - without.mean(axis=0)) ** 2).sum(axis=0))
     return unknowns * scale, errors * scale, rows, residual
