@@ -77,6 +77,20 @@ def session_table(data: dict) -> str:
     return table(head, rows)
 
 
+def hardness_table(data: dict) -> str:
+    rows = []
+    for times in (0.25, 0.5, 1.0, 2.0, 5.0, 15.0, 30.0, 100.0):
+        cells = [f"{times:g}"]
+        for name in ("one_session", "five_session"):
+            r = next(r for r in data[name] if r["times"] == times)
+            cells += [f"{r['stiffness']:.2f}", f"{r['off']['hardness']:.2f}", f"{r['on']['hardness']:.2f}"]
+        rows.append(cells)
+    head = ["K ÷ bound"]
+    for name in ("one", "five"):
+        head += [f"{name}: K, N/mm", "H off", "H on"]
+    return table(head, rows)
+
+
 def touched_table(rows: list[dict]) -> str:
     return table(
         ["K, N/mm", "nothing credited", "half", "all"],
@@ -168,6 +182,7 @@ def main() -> None:
             "pen": pen_table(data["pen"]),
             "agreement": agreement_table(data),
             "sessions": session_table(data),
+            "hardness": hardness_table(data),
             "touched": touched_table(data["touched"]),
         }
     )

@@ -56,6 +56,9 @@ Examples
       .def_property_readonly(
           "grip_tolerance", [](const pen::PenKinematics& p) { return p.geometry().grip_tolerance; },
           "mm: a larger |stretch| is a lost count or a bad homing.")
+      .def_property_readonly(
+          "tip", [](const pen::PenKinematics& p) { return p.geometry().tip == pen::Arm::R ? "R" : "L"; },
+          "The arm whose end is at the tool's tip.")
       .def_property_readonly("channels", &channels, "The six motors with their encoders, in the device's order.")
       .def_property_readonly("limits", &limits, "Workspace, elbow, force, torque, speeds.")
       .def_property_readonly(
@@ -377,6 +380,7 @@ Examples
 'position'
 )");
   m.def("_pens", &pen_list);
+  m.def("_pen_text", &pen::pen_text, "name"_a);
 }
 
 }  // namespace riffler::bindings

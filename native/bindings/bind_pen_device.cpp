@@ -72,13 +72,15 @@ StringDict families() {
 
 SharedPen open_device(const std::string& what, const std::string& geometry, double bubble, double exponent,
                       double speed, double turn_rate, bool hold_orientation, const std::array<int, 6>& signs,
-                      double gravity, double friction) {
+                      std::optional<double> gravity, std::optional<double> friction, std::optional<std::uint64_t> seed,
+                      bool real_time) {
   pen::PenOptions options;
   options.geometry = geometry;
   options.rate = {bubble, exponent, speed, turn_rate, hold_orientation, false, signs};
   options.rate.validate();
   options.compensation = {gravity, friction};
   options.compensation.validate();
+  options.seed = seed, options.real_time = real_time;
   const NoGil release;
   return open_pen(what, options);
 }
@@ -290,13 +292,15 @@ void bind_pen_device(py::module_& m) {
   bind_state(m);
   bind_device(m);
   bind_pointers(m);
+  bind_pose_follower(m);
   m.def("_pen_devices", &devices);
   m.def("_pen_families", &families);
   m.def("_pen_unavailable", &unavailable);
   const pen::RateSettings rate;
   m.def("_open_pen", &open_device, "what"_a, py::kw_only(), "geometry"_a = "woodenhaptics", "bubble"_a = rate.bubble,
         "exponent"_a = rate.exponent, "speed"_a = rate.speed, "turn_rate"_a = rate.turn_rate,
-        "hold_orientation"_a = rate.hold_orientation, "signs"_a = rate.signs, "gravity"_a = 0.0, "friction"_a = 0.0);
+        "hold_orientation"_a = rate.hold_orientation, "signs"_a = rate.signs, "gravity"_a = std::optional<double>(),
+        "friction"_a = std::optional<double>(), "seed"_a = std::optional<std::uint64_t>(), "real_time"_a = true);
   m.def("_play_pen", &play, "strokes"_a, "speed"_a);
 }
 

@@ -3,6 +3,7 @@
 
 #include "bindings/pen_calls.hpp"
 #include "pen/simulated/simulated_device.hpp"
+#include "riffler/pen/arms/kinematics.hpp"
 #include "riffler/pen/pointer.hpp"
 
 namespace riffler::bindings {
@@ -67,7 +68,25 @@ Examples
 --------
 >>> with riffler.pen.open("simulated") as pen:
 ...     pen.lose(0, 20)
-)");
+)")
+      .def("hang", &pen::SimulatedDevice::hang, "mass"_a, "hook"_a = 15.0,
+           R"(Hangs a weight on the grip by a thread.
+
+Parameters
+----------
+mass : float
+    kg; 0 takes it off.
+hook : float
+    mm from the grip's point towards the tool's tip, along the grip.
+
+Examples
+--------
+>>> with riffler.pen.open("simulated") as pen:
+...     pen.hang(0.2)
+)")
+      .def_property_readonly(
+          "truth", [](const pen::SimulatedDevice& p) { return pen::PenKinematics(p.truth()); },
+          "PenGeometry of the simulated arms and motors; ``geometry`` is what the host knows of them.");
 }
 
 pen::PointerFrame to_frame(const ArrayLike& origin, const ArrayLike& right, const ArrayLike& up, double scale,

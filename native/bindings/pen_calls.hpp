@@ -29,6 +29,8 @@ DiagnosisResult diagnose(const pen::PenKinematics& pen, const Doubles& counts);
 
 /// Devices without hardware, after PenDevice.
 void bind_pointers(py::module_& m);
+/// The motion of `riffler pen identify`, after PenDevice.
+void bind_pose_follower(py::module_& m);
 
 /// What a device senses and pushes, by the letter of the coordinate.
 CoordinateDict to_axes(const pen::DeviceCapability& device);

@@ -53,12 +53,13 @@ double Passivity::dissipated(const Twist& displacement, double dt) {
   return sum;
 }
 
-void Passivity::observe(const Wrench& held, const Twist& displacement, double dt) {
+void Passivity::observe(const Wrench& held, const Twist& displacement, double dt, double lost) {
   if (!finite(held) || !finite(displacement) || !std::isfinite(dt)) {
     rate_ = {};
     return;
   }
   energy_ += dissipated(displacement, dt) - power(held, displacement);
+  if (lost > 0 && std::isfinite(lost)) energy_ += lost;
   // Cap the credit, never the debt. Energy not stored in an object was dissipated, by friction or cutting, and must not
   // pay for a later fault: no object stores more than `storage`, and none stores anything while the wrench is zero.
   energy_ = std::min(energy_, held == Wrench{} ? settings_.reserve : settings_.storage);

@@ -106,6 +106,8 @@ haptics::PassivitySettings passivity_settings(const PenGeometry& pen, const Comp
   out.latency = kLatency;
   // The pivot is midway between the ends, the axis along their difference.
   out.resolution = {0.5 * sum, sum / pen.grip_length};
+  // What an identified pen's friction takes is credited as it happens: PenSample::dissipated.
+  if (pen.uncertainty) return out;
   // The ends move at v ± w, w = ω × r with |r| half the grip: |v + w|² + |v − w|² = 2 |v|² + 2 |w|².
   out.device_damping = {2 * damps, 2 * damps * half * half};
   // v + w| + |v − w| ≥ 2 max(|v|, |w|) ≥ |v| + |w|; the sum of the magnitudes of three coordinates is at most √3 times

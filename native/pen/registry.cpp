@@ -13,6 +13,7 @@
 #include "pen/models/polhem_model.hpp"
 #include "pen/models/riffler_model.hpp"
 #include "pen/models/spacemouse_model.hpp"
+#include "pen/simulated/random_pen.hpp"
 #include "pen/simulated/simulated_device.hpp"
 
 namespace riffler::pen {
@@ -155,6 +156,12 @@ std::string other_interface(const HidFamily& family, const HidInfo& info, const 
   return {};
 }
 
+std::unique_ptr<Pen> open_simulated(const PenOptions& options) {
+  SimulatedPenSettings settings;
+  if (options.seed) settings.geometry = random_pen(settings.geometry, *options.seed);
+  return SimulatedDevice::open(settings, options.driver, options.compensation, options.real_time);
+}
+
 std::unique_ptr<Pen> open_path(std::string_view path, const PenOptions& options) {
   HidInfo asked;
   asked.path = path;
@@ -261,7 +268,7 @@ std::vector<FoundDevice> find_unavailable() {
 }
 
 std::unique_ptr<Pen> open_pen(std::string_view what, const PenOptions& options) {
-  if (what == kSimulatedKind) return SimulatedDevice::open({}, options.driver, options.compensation);
+  if (what == kSimulatedKind) return open_simulated(options);
   if (const HidFamily* const family = named(kHidFamilies, what)) return open_kind(*family, options);
   const std::size_t colon = std::min(what.find(':'), what.size());
   if (const VendorFamily* const family = named(kVendorFamilies, what.substr(0, colon)))

@@ -38,8 +38,9 @@ haptics::ForceState ForceGate::begin(const pen::PenSample& sample, double now, d
   }
   if (has_grip_) {
     const haptics::PoseError moved = haptics::pose_error(sample.pose, last_grip_);
-    passivity_.observe(applied_, {moved.translation, moved.rotation}, dt);
+    passivity_.observe(applied_, {moved.translation, moved.rotation}, dt, sample.dissipated - dissipated_);
   }
+  dissipated_ = sample.dissipated;
   last_grip_ = sample.pose, has_grip_ = true;
   return state;
 }

@@ -196,4 +196,39 @@ SessionResult press(const WallDevice& device, const SimulatedWall& wall, const S
   return result;
 }
 
+namespace {
+
+/// One strike, with the contact `phase` periods after a sample.
+double strike(const WallDevice& device, const SimulatedWall& wall, const WallHand& guide, double speed, double phase,
+              const std::optional<haptics::PassivitySettings>& settings) {
+  constexpr int kRun = 10, kInContact = 20;  // periods
+  Column towards = inverse(device.damping) * wall.normal;
+  towards = scaled(1 / dot(wall.normal, towards), towards);
+  const Column zero(wall.normal.size(), 0.0);
+  WallSimulation simulation(device, guide, wall, settings);
+  simulation.place(scaled(-(kRun + phase) * speed * device.period, towards), scaled(speed, towards));
+  double steepest = 0, last = 0, entered = 0;
+  for (int contact = 0; contact < kInContact;) {
+    const double depth = dot(wall.normal, simulation.position());
+    if (contact == 0) entered = dot(wall.normal, simulation.velocity());
+    if (!(entered > 0)) return 0;  // came to rest before the wall
+    contact += contact > 0 || depth > 0;
+    simulation.tick(zero);
+    const double force = -dot(simulation.rendered().held(), towards);
+    steepest = std::max(steepest, (force - last) / device.period);
+    last = force;
+  }
+  return steepest / entered;
+}
+
+}  // namespace
+
+double perceptual_hardness(const WallDevice& device, const SimulatedWall& wall, const WallHand& guide, double speed,
+                           const std::optional<haptics::PassivitySettings>& settings) {
+  constexpr int kPhases = 16;
+  double sum = 0;
+  for (int k = 0; k < kPhases; ++k) sum += strike(device, wall, guide, speed, (k + 0.5) / kPhases, settings);
+  return sum / kPhases;
+}
+
 }  // namespace riffler::stress

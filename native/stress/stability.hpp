@@ -59,4 +59,10 @@ struct SessionResult {
 SessionResult press(const WallDevice& device, const SimulatedWall& wall, const Session& session,
                     const std::optional<haptics::PassivitySettings>& settings);
 
+/// N/mm: perceptual hardness, (2.14) of the source, of a wall that the device strikes with `speed` (mm/s of depth)
+/// along damping⁻¹ · normal: the steepest rise of the wall's force in one period, of the first twenty in contact, over
+/// the speed at contact. Mean of contacts spread evenly between two samples.
+double perceptual_hardness(const WallDevice& device, const SimulatedWall& wall, const WallHand& guide, double speed,
+                           const std::optional<haptics::PassivitySettings>& settings);
+
 }  // namespace riffler::stress

@@ -1,10 +1,17 @@
 // Prints, as JSON, what docs/stability.md shows: boundaries in theory and in simulation, and sessions with and without
 // the passivity controller. `docs/gallery/stability.py` draws it.
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <exception>
 #include <limits>
+#include <stdexcept>
 #include <string>
+#include <vector>
 
+#include "pen/arms/joint_losses.hpp"
+#include "pen/arms/pens.hpp"
+#include "riffler/pen/passivity_settings.hpp"
 #include "stress/arguments.hpp"
 #include "stress/passive_bound.hpp"
 #include "stress/stability.hpp"
@@ -16,6 +23,7 @@ namespace {
 
 constexpr double kMass = 1.5e-4;  // N·s²/mm: 150 g
 constexpr double kPeriod = 1e-3;
+constexpr double kStrike = 50;  // mm/s: speed at which a wall is struck for its hardness
 
 /// A JSON array of objects, one a line.
 class Rows {
@@ -93,11 +101,14 @@ void sessions(const char* name, const WallDevice& device, const Column& normal, 
     const SimulatedWall wall{normal, times * bound, 0, true, 10};
     const Session session{20'000, 2, 7, false, guide};
     const SessionResult off = press(device, wall, session, {}), on = press(device, wall, session, settings);
-    rows.add(
-        R"({"times": %.9g, "off": {"gained": %.9g, "delivered": %.9g, "speed": %.9g, "depth": %.9g},)"
-        R"( "on": {"gained": %.9g, "delivered": %.9g, "speed": %.9g, "depth": %.9g, "least": %.9g, "unforeseen": %ld}})",
-        times, off.gained, off.delivered, off.speed, off.depth, on.gained, on.delivered, on.speed, on.depth,
-        on.least_energy, on.unforeseen);
+    const double hard_off = perceptual_hardness(device, wall, guide, kStrike, {});
+    const double hard_on = perceptual_hardness(device, wall, guide, kStrike, settings);
+    rows.add(R"({"times": %.9g, "stiffness": %.9g,)"
+             R"( "off": {"gained": %.9g, "delivered": %.9g, "speed": %.9g, "depth": %.9g, "hardness": %.9g},)"
+             R"( "on": {"gained": %.9g, "delivered": %.9g, "speed": %.9g, "depth": %.9g, "hardness": %.9g,)"
+             R"( "least": %.9g, "unforeseen": %ld}})",
+             times, wall.stiffness, off.gained, off.delivered, off.speed, off.depth, hard_off, on.gained, on.delivered,
+             on.speed, on.depth, hard_on, on.least_energy, on.unforeseen);
   }
 }
 
@@ -119,8 +130,15 @@ void touched(double damping, double friction) {
   }
 }
 
+void pen_row(Rows& rows, const char* place, double step, double damping, double friction) {
+  const haptics::PassiveStiffness k = haptics::passive_stiffness({kPeriod, damping, friction, step});
+  rows.add(
+      R"({"place": "%s", "step": %.9g, "damping": %.9g, "friction": %.9g, "sampling": %.9g, "quantisation": %.9g})",
+      place, step, damping, friction, k.sampling, k.quantisation);
+}
+
 /// The shipped pen: steps of its encoders, 48 000 and 70 000 counts a turn on arms of 180 mm, at the end of an arm.
-void pen(double damping, double friction) {
+void shipped_pen(double damping, double friction) {
   struct Place {
     const char* name;
     double step;
@@ -131,14 +149,53 @@ void pen(double damping, double friction) {
                          Place{"arm, about Z, home (70000 counts, 180 mm)", kTurn / 70'000 * 180},
                          Place{"arm, about Z, stretched (70000 counts, 360 mm)", kTurn / 70'000 * 360},
                          Place{"middle of the grip, one joint of six", 0.5 * kTurn / 48'000 * 180}}) {
-    const haptics::PassiveStiffness k = haptics::passive_stiffness({kPeriod, damping, friction, p.step});
-    rows.add(
-        R"({"place": "%s", "step": %.9g, "damping": %.9g, "friction": %.9g, "sampling": %.9g, "quantisation": %.9g})",
-        p.name, p.step, damping, friction, k.sampling, k.quantisation);
+    pen_row(rows, p.name, p.step, damping, friction);
   }
 }
 
+/// Eigenvalue of a symmetric, positive matrix, the smallest: by iteration with its inverse.
+double least_eigenvalue(const Mat3& matrix) {
+  const Mat3 inverse = glm::inverse(matrix);
+  Vec3 v(0.5, 0.6, 0.7);
+  for (int k = 0; k < 200; ++k) v = glm::normalize(inverse * v);
+  return glm::dot(v, matrix * v);
+}
+
+/// An identified pen: the damping of its grip by posture, in the direction that is damped least.
+void identified_pen(const std::string& name) {
+  pen::PenGeometry geometry = pen::load_pen(name);
+  if (!geometry.uncertainty) throw std::invalid_argument(name + " was not identified: run riffler pen identify");
+  const pen::PenKinematics kinematics(geometry);
+  const auto damping = [&](const Pose& pose) {
+    return least_eigenvalue(pivot_damping(kinematics, kinematics.posture(kinematics.inverse(pose).angles)));
+  };
+  const Pose home = kinematics.posture(kinematics.home_angles()).pose;
+  std::vector<double> found;
+  Random random(1);
+  const Box3& box = geometry.workspace;
+  while (found.size() < 2000) {
+    const Vec3 share(random.uniform(), random.uniform(), random.uniform());
+    Pose pose{geometry.turn * (box.lower + share * (box.upper - box.lower)) + geometry.origin,
+              glm::normalize(home.axis + 0.5 * random.uniform() * random.direction())};
+    if (kinematics.inverse(pose).reached()) found.push_back(damping(pose));
+  }
+  std::sort(found.begin(), found.end());
+  for (std::size_t k = 0; k < pen::kPenChannels; ++k) {
+    const pen::CertainFriction certain = certain_friction(geometry, k);
+    geometry.channels[k].coulomb = certain.coulomb, geometry.channels[k].viscous = certain.viscous;
+  }
+  geometry.uncertainty.reset();
+  const haptics::PassivitySettings worst = passivity_settings(geometry);
+  const double step = worst.resolution.linear, friction = std::sqrt(3) * worst.device_friction.linear;
+  Rows rows("pen");
+  const auto row = [&](const char* place, double b) { pen_row(rows, place, step, b, friction); };
+  row("home posture", damping(home));
+  row("median of 2000 postures", found[found.size() / 2]);
+  row("worst of 2000 postures", found.front());
+}
+
 struct Arguments {
+  std::string geometry;
   double damping = 2e-3, friction = 0.2;
   bool pen_only = false, help = false;
 };
@@ -148,7 +205,9 @@ Arguments parse(int argc, char** argv) {
   each_option(argc, argv, [&](std::string_view option, const char* value) {
     if (option == "--pen") return out.pen_only = true, Takes::Flag;
     if (option == "--help") return out.help = true, Takes::Flag;
-    if (option == "--damping")
+    if (option == "--geometry")
+      out.geometry = value == nullptr ? "" : value;
+    else if (option == "--damping")
       out.damping = number(option, value);
     else if (option == "--friction")
       out.friction = number(option, value);
@@ -165,13 +224,19 @@ int main(int argc, char** argv) {
   try {
     const Arguments arguments = parse(argc, argv);
     if (arguments.help) {
-      std::puts("riffler_stability [--pen] [--damping N·s/mm] [--friction N]\n  --pen  the table of the pen alone");
+      std::puts(
+          "riffler_stability [--pen] [--damping N·s/mm] [--friction N] [--geometry PEN]\n"
+          "  --pen       the table of the pen alone\n"
+          "  --geometry  as --pen, of an identified pen, by posture: a name or a .toml file");
       return 0;
     }
     const double damping = arguments.damping, friction = arguments.friction;
     std::printf("{");
-    pen(damping, friction);
-    if (!arguments.pen_only) {
+    if (!arguments.geometry.empty())
+      identified_pen(arguments.geometry);
+    else
+      shipped_pen(damping, friction);
+    if (!arguments.pen_only && arguments.geometry.empty()) {
       sampling(), wall_damping(), quantisation(), five_coordinates(), touched(damping, friction);
       haptics::PassivitySettings settings;
       settings.jitter = 0;

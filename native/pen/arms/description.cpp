@@ -32,7 +32,7 @@ class PenReader : base::TomlReader {
   std::string summary() { return text(root(), "description"); }
 
   PenGeometry describe(const std::string& name) {
-    allow(root(), {"description", "base", "arms", "grip", "probe", "channels", "converter", "limits"});
+    allow(root(), {"description", "base", "arms", "grip", "probe", "channels", "converter", "uncertainty", "limits"});
     pen_.name = name;
     pen_.description = summary();
     base(section("base"));
@@ -41,6 +41,7 @@ class PenReader : base::TomlReader {
     probe(section("probe"));
     channels(section("channels"));
     if (root().get("converter")) converter(section("converter"));
+    if (root().get("uncertainty")) uncertainty(section("uncertainty"));
     limits(section("limits"));
     check_home();
     return pen_;
@@ -199,6 +200,22 @@ class PenReader : base::TomlReader {
       if (here) fail(list[k], "order has " + name + " twice");
       here = true;
     }
+  }
+
+  void uncertainty(const toml::table& table) {
+    allow(table, {"torque_constant", "coulomb", "viscous", "gravity"});
+    PenUncertainty out;
+    const auto each = [&](std::string_view key, std::array<double, kPenChannels>& values) {
+      const toml::array& list = six(table, key);
+      for (std::size_t k = 0; k < kPenChannels; ++k) {
+        const std::string entry = std::string(key) + ", entry " + std::to_string(k + 1);
+        values[k] = number(list[k], entry);
+        if (values[k] < 0) fail(list[k], entry + " must not be negative");
+      }
+    };
+    each("torque_constant", out.torque_constant), each("coulomb", out.coulomb);
+    each("viscous", out.viscous), each("gravity", out.gravity);
+    pen_.uncertainty = out;
   }
 
   void converter(const toml::table& table) {

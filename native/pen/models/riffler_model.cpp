@@ -82,7 +82,8 @@ PenGeometry geometry_of(const riffler_pen_identity& identity, const riffler_pen_
     // A name in Riffler's own folder, never a path chosen by the device.
     if (std::string_view(identity.geometry).find_first_of("/\\") != std::string_view::npos)
       throw std::invalid_argument("the name of a geometry must not contain a folder");
-    PenGeometry geometry = load_pen(identity.geometry);
+    const std::string own = std::string(identity.geometry) + "-" + identity.serial;
+    PenGeometry geometry = load_pen(is_own_pen(own) ? own : identity.geometry);
     for (std::size_t k = 0; k < kPenChannels; ++k) {
       PenChannel& channel = geometry.channels[k];
       channel.peak_current = std::min(channel.peak_current, 1e-3 * limits.peak_ma[k]);
@@ -105,14 +106,15 @@ riffler_pen_identity checked_identity(HidTransport& transport) {
 
 }  // namespace
 
-RifflerModel::RifflerModel(HidTransport& transport, const Compensation& share)
-    : share_((share.validate(), share)),
-      identity_(checked_identity(transport)),
+RifflerModel::RifflerModel(HidTransport& transport, const CompensationShares& share)
+    : identity_((share.validate(), checked_identity(transport))),
       limits_(ask_limits(transport)),
       geometry_(geometry_of(identity_, limits_)),
+      share_(share.of(geometry_)),
       capability_(pen_capability(geometry_)),
       kinematics_(geometry_),
-      speed_(geometry_) {}
+      speed_(geometry_),
+      losses_(geometry_, share_) {}
 
 std::string RifflerModel::about() const {
   return "protocol " + version_text(identity_) + ", firmware " + std::to_string(identity_.firmware) + ", geometry " +
@@ -140,6 +142,7 @@ bool RifflerModel::home() noexcept {
 void RifflerModel::begin(double) noexcept {
   heard_ = false;
   speed_.clear();
+  losses_.clear();
   sample_.velocity = sample_.turning = Vec3(0);
   sample_.powered = false;
 }
@@ -194,6 +197,7 @@ void RifflerModel::place(const riffler_pen_input& report, double now) noexcept {
     sample_.homed = true;
   }
   speed_.add(raw, device_time_);
+  sample_.dissipated += losses_.add(raw, device_time_);
   posture_ = kinematics_.posture(raw);
   const PenSpeed speed = kinematics_.speed(posture_, speed_.rates());
   sample_.pose = posture_.pose;
@@ -203,6 +207,7 @@ void RifflerModel::place(const riffler_pen_input& report, double now) noexcept {
   sample_.turning = speed.twist.angular;
   sample_.stretch = check_grip(kinematics_, posture_).stretch;
   sample_.says_applied = true;
+  std::copy(std::begin(report.applied), std::end(report.applied), sample_.currents.begin());
   sample_.applied = felt_wrench(kinematics_, posture_, joint_torques(geometry_, applied_wrench(report)));
   sample_.time = now;
   sample_.buttons = report.buttons;

@@ -6,6 +6,7 @@
 
 #include "device/protocol/pen_protocol.h"
 #include "pen/arms/count_speed.hpp"
+#include "pen/arms/joint_losses.hpp"
 #include "pen/hid_model.hpp"
 #include "riffler/pen/arms/compensation.hpp"
 #include "riffler/pen/arms/kinematics.hpp"
@@ -16,7 +17,8 @@ class RifflerModel final : public HidModel {
  public:
   /// Reads the pen's identity. Throws OpenError for a device that is no Riffler pen, another protocol version, a
   /// different descriptor, impossible limits, or an unknown geometry. Throws std::invalid_argument for invalid shares.
-  explicit RifflerModel(HidTransport& transport, const Compensation& share = {});
+  /// The geometry is the file GEOMETRY-SERIAL of the user's own pens if there is one, else the one that the pen names.
+  explicit RifflerModel(HidTransport& transport, const CompensationShares& share = {});
 
   const DeviceCapability& capability() const noexcept override { return capability_; }
   double period() const noexcept override { return 1e-6 * limits_.period_us; }
@@ -44,13 +46,14 @@ class RifflerModel final : public HidModel {
   MotorTorques applied_wrench(const riffler_pen_input& report) const noexcept;
   std::size_t send(riffler_pen_output report, double now, std::span<std::uint8_t> bytes) noexcept;
 
-  Compensation share_;
   riffler_pen_identity identity_{};
   riffler_pen_limits limits_{};
   PenGeometry geometry_;
+  Compensation share_;
   DeviceCapability capability_;
   PenKinematics kinematics_;
   CountSpeed speed_;
+  JointLosses losses_;
   PenPosture posture_{};
   PenSample sample_{};
   riffler_pen_input last_{};

@@ -13,6 +13,18 @@
 
 namespace riffler::pen {
 
+namespace {
+
+constexpr double kStall = 5e-4;  // s by which StallTolerantClock may advance between two reads
+
+/// A clock that advances only by waiting.
+StallTolerantClock::System as_fast_as_possible() {
+  const auto time = std::make_shared<double>(0);
+  return {[time] { return *time; }, [time](double seconds) { *time += seconds; }};
+}
+
+}  // namespace
+
 /// The hand's commanded target and its autonomous motion.
 struct SimulatedDevice::Hand {
   struct Told {
@@ -43,15 +55,30 @@ struct SimulatedDevice::Losses {
   }
 };
 
+/// The weight that hangs on the grip.
+struct SimulatedDevice::Hung {
+  struct Told {
+    double mass = 0, hook = 0;
+  };
+  Published<Told> told;
+};
+
 std::unique_ptr<SimulatedDevice> SimulatedDevice::open(const SimulatedPenSettings& settings,
-                                                       const DriverSettings& driver, const Compensation& compensation) {
+                                                       const DriverSettings& driver,
+                                                       const CompensationShares& compensation, bool real_time) {
   auto hand = std::make_shared<Hand>();
   auto pen = std::make_shared<SimulatedPen>(settings);
   hand->curve = hand_on_a_curve(pen->arms().posture().pose);
   pen->hand().follow([hand](double seconds) { return hand->wish(seconds); });
   auto losses = std::make_shared<Losses>();
   pen->on_sense = [losses](riffler_pen_sensors& sensors) { losses->take(sensors); };
-  const auto clock = std::make_shared<StallTolerantClock>();
+  auto hung = std::make_shared<Hung>();
+  pen->on_turn = [hung, pen = pen.get()] {
+    const Hung::Told now = hung->told.get();
+    pen->weight().hang(now.mass, now.hook);
+  };
+  const auto clock = real_time ? std::make_shared<StallTolerantClock>()
+                               : std::make_shared<StallTolerantClock>(kStall, as_fast_as_possible());
   const double start = clock->now();
   auto transport = std::make_unique<SimulatedTransport>(pen, clock, start);
   auto model = std::make_shared<RifflerModel>(*transport, compensation);
@@ -62,17 +89,20 @@ std::unique_ptr<SimulatedDevice> SimulatedDevice::open(const SimulatedPenSetting
     model->check(*next);
     return next;
   };
-  return std::unique_ptr<SimulatedDevice>(new SimulatedDevice(std::move(hand), std::move(losses), std::move(model),
-                                                              std::move(transport), std::move(again), driver, clock));
+  return std::unique_ptr<SimulatedDevice>(new SimulatedDevice(settings.geometry, std::move(hand), std::move(losses),
+                                                              std::move(hung), std::move(model), std::move(transport),
+                                                              std::move(again), driver, clock));
 }
 
-SimulatedDevice::SimulatedDevice(std::shared_ptr<Hand> hand, std::shared_ptr<Losses> losses,
-                                 std::shared_ptr<PenModel> model, std::unique_ptr<Transport> transport,
-                                 Driver::Open open, const DriverSettings& driver,
+SimulatedDevice::SimulatedDevice(const PenGeometry& truth, std::shared_ptr<Hand> hand, std::shared_ptr<Losses> losses,
+                                 std::shared_ptr<Hung> hung, std::shared_ptr<PenModel> model,
+                                 std::unique_ptr<Transport> transport, Driver::Open open, const DriverSettings& driver,
                                  std::shared_ptr<StallTolerantClock> clock)
     : DrivenPen(kSimulatedKind, std::move(model), std::move(transport), std::move(open), driver, clock),
+      truth_(truth),
       hand_(std::move(hand)),
       losses_(std::move(losses)),
+      hung_(std::move(hung)),
       clock_(std::move(clock)) {}
 
 void SimulatedDevice::aim(const HandWish& wish) {
@@ -93,6 +123,11 @@ void SimulatedDevice::wander() noexcept {
 void SimulatedDevice::lose(std::size_t channel, std::int32_t counts) {
   if (channel >= kPenChannels) throw std::invalid_argument("channel must be 0 to 5, not " + std::to_string(channel));
   losses_->told[channel].store(counts, std::memory_order_relaxed);
+}
+
+void SimulatedDevice::hang(double mass, double hook) {
+  SimulatedWeight().hang(mass, hook);  // checks
+  hung_->told.set({mass, hook});
 }
 
 }  // namespace riffler::pen

@@ -16,10 +16,15 @@ inline constexpr const char* kSimulatedWhat = "Riffler pen without hardware, mov
 /// Uses a StallTolerantClock: a busy machine must not take the force away from the hand that it simulates.
 class SimulatedDevice final : public DrivenPen {
  public:
-  /// A homed pen. Its hand moves on a curve (hand_on_a_curve) until it gets a target.
+  /// A homed pen. Its hand moves on a curve (hand_on_a_curve) until it gets a target. Not in `real_time`, its clock
+  /// runs as fast as the machine computes, which takes a whole processor, and push(), which holds for 20 ms of that
+  /// clock, is of no use.
   static std::unique_ptr<SimulatedDevice> open(const SimulatedPenSettings& settings = {},
                                                const DriverSettings& driver = {},
-                                               const Compensation& compensation = {});
+                                               const CompensationShares& compensation = {}, bool real_time = true);
+
+  /// The pen as it really is; geometry() is what its host believes.
+  const PenGeometry& truth() const noexcept { return truth_; }
 
   double now() const noexcept override { return clock_->last(); }
 
@@ -32,16 +37,21 @@ class SimulatedDevice final : public DrivenPen {
   /// Makes a counter read `counts` too few from now on, as an encoder that loses them one by one; relative to the
   /// original pen, not to earlier losses. Any thread. Throws std::invalid_argument for an unknown channel.
   void lose(std::size_t channel, std::int32_t counts);
+  /// Hangs a weight on the grip as SimulatedWeight::hang, and with its exceptions. By the thread of aim().
+  void hang(double mass, double hook);
 
  private:
   struct Hand;
+  struct Hung;
   struct Losses;
-  SimulatedDevice(std::shared_ptr<Hand> hand, std::shared_ptr<Losses> losses, std::shared_ptr<PenModel> model,
-                  std::unique_ptr<Transport> transport, Driver::Open open, const DriverSettings& driver,
-                  std::shared_ptr<StallTolerantClock> clock);
+  SimulatedDevice(const PenGeometry& truth, std::shared_ptr<Hand> hand, std::shared_ptr<Losses> losses,
+                  std::shared_ptr<Hung> hung, std::shared_ptr<PenModel> model, std::unique_ptr<Transport> transport,
+                  Driver::Open open, const DriverSettings& driver, std::shared_ptr<StallTolerantClock> clock);
 
+  PenGeometry truth_;
   std::shared_ptr<Hand> hand_;
   std::shared_ptr<Losses> losses_;
+  std::shared_ptr<Hung> hung_;
   std::shared_ptr<StallTolerantClock> clock_;
 };
 

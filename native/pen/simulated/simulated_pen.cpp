@@ -117,7 +117,7 @@ void SimulatedPen::move() {
   load.brake = drive_.brake != 0;
   for (int k = 0; k < settings_.parts; ++k) {
     PenLoad now = load;
-    now.wrench = extra;
+    now.wrench = extra + weight_.pull(arms_.kinematics(), arms_.posture(), arms_.speed(), part);
     hand_.hold(arms_, 1e-6 * static_cast<double>(time_us_) + k * part, part, now);
     arms_.step(now, part);
   }

@@ -8,6 +8,7 @@
 #include "device/firmware/pen_board.h"
 #include "pen/simulated/simulated_cable.hpp"
 #include "pen/simulated/simulated_hand.hpp"
+#include "pen/simulated/simulated_weight.hpp"
 
 namespace riffler::pen {
 
@@ -41,6 +42,7 @@ class SimulatedPen {
   PenDynamics& arms() { return arms_; }
   const PenDynamics& arms() const { return arms_; }
   SimulatedHand& hand() { return hand_; }
+  SimulatedWeight& weight() { return weight_; }
   SimulatedCable& cable() { return cable_; }
   const riffler_pen_firmware& firmware() const { return loop_.pen; }
   const riffler_pen_config& config() const { return settings_.config; }
@@ -73,6 +75,7 @@ class SimulatedPen {
   SimulatedPenSettings settings_;
   PenDynamics arms_;
   SimulatedHand hand_;
+  SimulatedWeight weight_;
   SimulatedCable cable_;
   riffler_pen_loop loop_{};
   riffler_pen_drive drive_{};

@@ -2098,6 +2098,9 @@ class Collider:
         Against shank and holder.
     fixture_stiffness : float, N per mm³ of a fixture in the tool, or a Material, or a list of one for each fixture
         Against the whole tool.
+    fixture_push : {"normal", "centre"}
+        Direction in which a fixture pushes: off the wall that the tool touches, or, as in the dissertation, towards the middle
+        of cutter, shank or holder, which slides the tool along a wall.
 
     Raises
     ------
@@ -2112,7 +2115,7 @@ class Collider:
     [2.0]
     """
     @staticmethod
-    def made(part: Mesh, *, fixtures: collections.abc.Sequence[Volume] = [], spacing: typing.SupportsFloat | None = None, stiffness: typing.SupportsFloat = 1.0, holder_stiffness: typing.SupportsFloat = 10.0, fixture_stiffness: float | Material | collections.abc.Sequence[float | Material] = 10.0, progress: collections.abc.Callable[[float], bool | None] | None = None) -> Collider:
+    def made(part: Mesh, *, fixtures: collections.abc.Sequence[Volume] = [], spacing: typing.SupportsFloat | None = None, stiffness: typing.SupportsFloat = 1.0, holder_stiffness: typing.SupportsFloat = 10.0, fixture_stiffness: float | Material | collections.abc.Sequence[float | Material] = 10.0, fixture_push: typing.Literal['normal', 'centre'] = 'normal', progress: collections.abc.Callable[[float], bool | None] | None = None) -> Collider:
         """
         The same as ``Collider(…)``, as a function with progress: what `riffler.submit` calls.
 
@@ -2130,6 +2133,9 @@ class Collider:
             Against shank and holder.
         fixture_stiffness : float, N per mm³ of a fixture in the tool, or a Material, or a list of one for each fixture
             Against the whole tool.
+        fixture_push : {"normal", "centre"}
+            Direction in which a fixture pushes: off the wall that the tool touches, or, as in the dissertation, towards the middle
+            of cutter, shank or holder, which slides the tool along a wall.
         progress : callable or None
             Called at the beginning and at the end only.
 
@@ -2144,7 +2150,7 @@ class Collider:
         >>> riffler.submit(riffler.Collider, part, spacing=0.5).result().spacing
         0.5
         """
-    def __init__(self, part: Mesh, *, fixtures: collections.abc.Sequence[Volume] = [], spacing: typing.SupportsFloat | None = None, stiffness: typing.SupportsFloat = 1.0, holder_stiffness: typing.SupportsFloat = 10.0, fixture_stiffness: float | Material | collections.abc.Sequence[float | Material] = 10.0) -> None:
+    def __init__(self, part: Mesh, *, fixtures: collections.abc.Sequence[Volume] = [], spacing: typing.SupportsFloat | None = None, stiffness: typing.SupportsFloat = 1.0, holder_stiffness: typing.SupportsFloat = 10.0, fixture_stiffness: float | Material | collections.abc.Sequence[float | Material] = 10.0, fixture_push: typing.Literal['normal', 'centre'] = 'normal') -> None:
         ...
     def __repr__(self) -> str:
         ...
@@ -3474,6 +3480,11 @@ class PenGeometry:
         """
         Name of its file.
         """
+    @property
+    def tip(self) -> str:
+        """
+        The arm whose end is at the tool's tip.
+        """
 class PenError(RuntimeError):
     """
     A device that does not open: says exactly why, and what to do.
@@ -3700,6 +3711,22 @@ class SimulatedPen(PenDevice):
         >>> with riffler.pen.open("simulated") as pen:
         ...     pen.aim((0, 0, 0, 0, 0, 1), buttons=1)
         """
+    def hang(self, mass: typing.SupportsFloat, hook: typing.SupportsFloat = 15.0) -> None:
+        """
+        Hangs a weight on the grip by a thread.
+
+        Parameters
+        ----------
+        mass : float
+            kg; 0 takes it off.
+        hook : float
+            mm from the grip's point towards the tool's tip, along the grip.
+
+        Examples
+        --------
+        >>> with riffler.pen.open("simulated") as pen:
+        ...     pen.hang(0.2)
+        """
     def lose(self, channel: typing.SupportsInt, counts: typing.SupportsInt) -> None:
         """
         Makes a counter lose counts, one by one: a fault to practise with.
@@ -3724,6 +3751,11 @@ class SimulatedPen(PenDevice):
         --------
         >>> with riffler.pen.open("simulated") as pen:
         ...     pen.wander()
+        """
+    @property
+    def truth(self) -> PenGeometry:
+        """
+        PenGeometry of the simulated arms and motors; ``geometry`` is what the host knows of them.
         """
 class Pointer(PenDevice):
     """
@@ -3796,6 +3828,29 @@ class Pointer(PenDevice):
         >>> pointer = riffler.pen.Pointer("mouse")
         >>> pointer.set_frame(origin=(0, 0, 10), scale=0.5)
         """
+class _PoseFollower:
+    """
+    Leads the grip of an open pen along a path: pen/pose_follower.hpp.
+    """
+    def __init__(self, device: PenDevice, times: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], poses: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], wrenches: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], *, leads: bool = True, gravity: typing.SupportsFloat = 1.0, weight: typing.SupportsFloat = 0.0, hook: typing.SupportsFloat = 0.0) -> None:
+        ...
+    def alive(self) -> None:
+        ...
+    def end(self) -> None:
+        ...
+    def records(self) -> tuple:
+        ...
+    def stop(self) -> None:
+        ...
+    @property
+    def state(self) -> str:
+        ...
+    @property
+    def time(self) -> float:
+        ...
+    @property
+    def why(self) -> typing.Any:
+        ...
 class JournalStroke:
     """
     One stroke of a journal: see `Journal.add_stroke`.
@@ -5442,11 +5497,13 @@ class OrientSession:
         """
         Whether the session was started and not stopped.
         """
-def _open_pen(what: str, *, geometry: str = 'woodenhaptics', bubble: typing.SupportsFloat = 0.08, exponent: typing.SupportsFloat = 2.0, speed: typing.SupportsFloat = 60.0, turn_rate: typing.SupportsFloat = 1.5, hold_orientation: bool = False, signs: typing.Annotated[collections.abc.Sequence[typing.SupportsInt], "FixedSize(6)"] = [1, 1, 1, 1, 1, 1], gravity: typing.SupportsFloat = 0.0, friction: typing.SupportsFloat = 0.0) -> PenDevice:
+def _open_pen(what: str, *, geometry: str = 'woodenhaptics', bubble: typing.SupportsFloat = 0.08, exponent: typing.SupportsFloat = 2.0, speed: typing.SupportsFloat = 60.0, turn_rate: typing.SupportsFloat = 1.5, hold_orientation: bool = False, signs: typing.Annotated[collections.abc.Sequence[typing.SupportsInt], "FixedSize(6)"] = [1, 1, 1, 1, 1, 1], gravity: typing.SupportsFloat | None = None, friction: typing.SupportsFloat | None = None, seed: typing.SupportsInt | None = None, real_time: bool = True) -> PenDevice:
     ...
 def _pen_devices() -> list[riffler.pen_results.DeviceInfo]:
     ...
 def _pen_families() -> dict[str, str]:
+    ...
+def _pen_text(name: str) -> str:
     ...
 def _pen_unavailable() -> dict[str, str]:
     ...

@@ -142,7 +142,12 @@ def unavailable() -> dict[str, str]:
 
 @overload
 def open(
-    what: Literal["simulated"], *, gravity: float | None = None, friction: float | None = None
+    what: Literal["simulated"],
+    *,
+    gravity: float | None = None,
+    friction: float | None = None,
+    seed: int | None = None,
+    real_time: bool | None = None,
 ) -> SimulatedPen: ...
 @overload
 def open(
@@ -157,6 +162,8 @@ def open(
     geometry: str | None = None,
     gravity: float | None = None,
     friction: float | None = None,
+    seed: int | None = None,
+    real_time: bool | None = None,
 ) -> PenDevice: ...
 @hinted("pen.open")
 def open(
@@ -171,6 +178,8 @@ def open(
     geometry: str | None = None,
     gravity: float | None = None,
     friction: float | None = None,
+    seed: int | None = None,
+    real_time: bool | None = None,
 ) -> PenDevice:
     """Opens a device.
 
@@ -194,8 +203,12 @@ def open(
     geometry : str, optional
         Of "polhem": "woodenhaptics" or "polhem-1".
     gravity, friction : float, optional
-        Of Riffler's pen and the simulated one: shares (0 to 1, 0 if not given) of the arms' weight and friction that
-        the motors make up for while force is let through.
+        Of Riffler's pen and the simulated one: shares (0 to 1) of the arms' weight and friction that the motors make up
+        for while force is let through. If not given, 1 and 0.5 for a pen that was identified, and 0 for another.
+    seed : int, optional
+        Of the simulated pen: its true motors, friction and weights are drawn around the described ones.
+    real_time : bool, optional
+        Of the simulated pen: False, and its clock runs as fast as the machine computes, for tests.
 
     Returns
     -------
@@ -222,6 +235,8 @@ def open(
         "geometry": geometry,
         "gravity": gravity,
         "friction": friction,
+        "seed": seed,
+        "real_time": real_time,
     }
     options: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
     if path.endswith(".rjournal"):

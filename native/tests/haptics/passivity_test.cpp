@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "riffler/haptics/coupling.hpp"
 #include "stress/passive_bound.hpp"
 #include "stress/stability.hpp"
@@ -274,6 +276,22 @@ TEST(PassiveBound, IsTheLesserOfSamplingAndQuantisation) {
   EXPECT_EQ(passive_stiffness({1e-3, 2e-3, 0, 0}).quantisation, INFINITY);
   EXPECT_EQ(test::error_of([] { passive_stiffness({0, 1, 1, 1}); }), "period must be positive");
   EXPECT_EQ(test::error_of([] { passive_stiffness({1e-3, 1, -1, 1}); }), "friction must not be negative");
+}
+
+TEST(Passivity, WhatTheDeviceTookByItselfIsCreditedUpToWhatObjectsStore) {
+  PassivitySettings settings;
+  settings.device_damping = settings.device_friction = {0, 0};
+  Passivity passivity(settings);
+  const Wrench pull{{-1, 0, 0}, {}};
+  passivity.observe(pull, {{0, 0, 0}, {}}, 1e-3, 3);
+  EXPECT_DOUBLE_EQ(passivity.energy(), settings.reserve + 3);
+  passivity.observe(pull, {{0, 0, 0}, {}}, 1e-3, -5);
+  passivity.observe(pull, {{0, 0, 0}, {}}, 1e-3, std::numeric_limits<double>::quiet_NaN());
+  EXPECT_DOUBLE_EQ(passivity.energy(), settings.reserve + 3) << "a device never gives by friction";
+  passivity.observe(pull, {{0, 0, 0}, {}}, 1e-3, 1e6);
+  EXPECT_EQ(passivity.energy(), settings.storage);
+  passivity.observe({}, {{0, 0, 0}, {}}, 1e-3, 1);
+  EXPECT_EQ(passivity.energy(), settings.reserve) << "without contact nothing is stored";
 }
 
 }  // namespace

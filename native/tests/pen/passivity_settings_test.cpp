@@ -107,6 +107,18 @@ TEST(PassivitySettings, WhatIsNotSaidIsNothing) {
   EXPECT_EQ(s.device_damping.linear + s.device_friction.linear, 0);
 }
 
+/// A pen that was identified gets its credit by what its joints really did: nothing is credited twice.
+TEST(PassivitySettings, OfAnIdentifiedPenHaveNoLossesOfTheirOwn) {
+  PenGeometry pen = load_pen("riffler");
+  const haptics::PassivitySettings before = passivity_settings(pen);
+  pen.uncertainty.emplace();
+  const haptics::PassivitySettings s = passivity_settings(pen);
+  EXPECT_EQ(s.device_damping.linear + s.device_damping.angular, 0);
+  EXPECT_EQ(s.device_friction.linear + s.device_friction.angular, 0);
+  EXPECT_EQ(s.resolution.linear, before.resolution.linear);
+  EXPECT_EQ(s.latency, before.latency);
+}
+
 /// By hand: an arm that is as straight as its elbow lets it be, 8.75 · 1.5 N·mm about the upright axis.
 TEST(PassivitySettings, FrictionOfTheShippedPenIsThatAboutTheUprightAxisOfTheStretchedArm) {
   const double reach = std::sqrt(2 * 180 * 180 * (1 + std::sin(1.2)));

@@ -100,5 +100,33 @@ TEST(Stability, EncoderStepsOfFiveCoordinatesAddUp) {
   }
 }
 
+/// A soft spring's force rises by K v; damping of the wall adds its whole force in one period, B/T. A heavy device
+/// keeps its speed.
+TEST(PerceptualHardness, IsTheStiffnessOfASpringAndGrowsWithTheDampingOfTheWall) {
+  const WallDevice heavy = wall_device(10, 1e-3);
+  EXPECT_NEAR(perceptual_hardness(heavy, {{1.0}, 3, 0, true}, {}, 20, {}), 3, 0.03);
+  EXPECT_NEAR(perceptual_hardness(heavy, {{1.0}, 3, 0, true}, {}, 100, {}), 3, 0.03) << "at any speed";
+  // The first sample in contact has K times its depth, half a period's on average, and B v all at once.
+  EXPECT_NEAR(perceptual_hardness(heavy, {{1.0}, 0.1, 1e-3, true}, {}, 20, {}), 1 + 0.05, 0.02);
+  // A light device is stopped within a period, and a wall that may push no further is no harder.
+  const WallDevice light = wall_device(1.5e-4, 2e-3);
+  EXPECT_LT(perceptual_hardness(light, {{1.0}, 400, 0, true}, {}, 20, {}), 400);
+  EXPECT_NEAR(perceptual_hardness(heavy, {{1.0}, 1e4, 0, true, 0.1}, {}, 20, {}), 0.1 / 1e-3 / 20, 0.02);
+}
+
+/// The controller does not change a wall within its bound, and takes hardness from one far above it where the reserve
+/// does not pay for the first contact: with a hand that may accelerate twice as much, and no damping credited.
+TEST(PerceptualHardness, OfAWallWithinItsBoundIsUntouchedByTheController) {
+  const WallDevice device = wall_device(1.5e-4, 2e-3);
+  haptics::PassivitySettings settings;
+  settings.jitter = 0, settings.acceleration = {2e5, 0}, settings.resolution = {0, 0};
+  const auto hardness = [&](double stiffness, bool on) {
+    const SimulatedWall wall{{1.0}, stiffness, 0, true, 10};
+    return perceptual_hardness(device, wall, {}, 50, on ? std::optional(settings) : std::nullopt);
+  };
+  EXPECT_EQ(hardness(2, true), hardness(2, false));
+  EXPECT_LT(hardness(400, true), 0.9 * hardness(400, false));
+}
+
 }  // namespace
 }  // namespace riffler::stress::stability_test

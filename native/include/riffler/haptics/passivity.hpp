@@ -50,8 +50,9 @@ class Passivity {
 
   /// Records the hold that ends now. `held`: the wrench that the motors really applied; `displacement` of the grip
   /// during the hold, about the same pivot; `dt`: s. Values that are not finite are not recorded, and the grip counts
-  /// as at rest.
-  void observe(const Wrench& held, const Twist& displacement, double dt);
+  /// as at rest. `dissipated`: N·mm that the device itself certainly took from the motion during the hold, in addition
+  /// to device_damping and device_friction; below zero or not finite counts as zero.
+  void observe(const Wrench& held, const Twist& displacement, double dt, double dissipated = 0);
 
   /// The wrench to hold next. Returns `wanted` if the account covers it, otherwise `wanted` with the damping needed, up
   /// to max_damping; if that is not enough, `wanted` shrinks, to zero at worst. Damping is injected only where the

@@ -12,7 +12,8 @@ haptics::PassivitySettings passivity_settings(const DeviceCapability& device);
 
 /// For a two-arm pen: bounds that hold in every posture within its joint and elbow limits and in all directions.
 /// Resolution from the counts of all six joints together; damping and friction as described for the motors, minus the
-/// compensated fraction. Most postures are better than these bounds: docs/stability.md.
+/// compensated fraction. Most postures are better than these bounds: docs/stability.md. Damping and friction are 0 for
+/// a pen that was identified: what they take in the posture of the moment is in PenSample::dissipated.
 haptics::PassivitySettings passivity_settings(const PenGeometry& pen, const Compensation& share = {});
 
 }  // namespace riffler::pen

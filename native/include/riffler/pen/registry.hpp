@@ -1,6 +1,7 @@
 // The devices that Riffler supports: finding and opening them.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string_view>
 #include <vector>

@@ -26,9 +26,14 @@ struct PenSample {
   /// an account of energy right.
   Wrench applied{};
   bool says_applied = false;
+  /// N·mm since opening that the friction of the device's own joints certainly took from motion; grows. 0 for a device
+  /// whose friction was not identified (PassivitySettings then has what is known).
+  double dissipated = 0;
   /// For a device with a PenGeometry: the counts that its counters would read if homing had preset them, in device
   /// order.
   std::array<std::int32_t, 6> counts{};
+  /// For the same devices: mA that the motors applied when the report was sent, in device order.
+  std::array<std::int16_t, 6> currents{};
   bool homed = false;    ///< the device knows its pose
   bool powered = false;  ///< the device is ready to push
 };

@@ -49,6 +49,7 @@ class ForceGate {
   pen::DeviceCapability device_;
   haptics::Safety safety_;
   haptics::Passivity passivity_;
+  double dissipated_ = 0;           // PenSample::dissipated of the last tick
   Wrench slewed_, held_, applied_;  // slewed_: before the passivity controller
   Pose last_grip_;
   bool has_grip_ = false;

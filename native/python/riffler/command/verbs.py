@@ -92,6 +92,7 @@ VERBS = (
     Verb("pen", "list", _module("pen_list")),
     Verb("pen", "monitor", _module("pen_monitor")),
     Verb("pen", "calibrate", _module("pen_calibrate")),
+    Verb("pen", "identify", _module("pen_identify")),
     Verb("pen", "simulate", _module("pen_simulate")),
     Verb("", "doctor", _module("doctor")),
     Verb("", "bench", _module("bench")),

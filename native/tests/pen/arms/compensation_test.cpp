@@ -67,6 +67,22 @@ TEST(Compensation, WhatIsBeyondThePeaksIsLessByOneFactor) {
   }
 }
 
+TEST(Compensation, OfAPenThatWasIdentifiedIsOnUnlessItIsGivenAndLeavesWhatIsNotCertain) {
+  PenGeometry pen = load_pen("riffler");
+  EXPECT_EQ(CompensationShares().of(pen).gravity, 0);
+  EXPECT_EQ(CompensationShares().of(pen).friction, 0);
+  const JointAngles angles{Vec3(0.1, 0.5, 0.2), Vec3(0.1, 0.5, 0.2)}, rates{Vec3(2), Vec3(2)};
+  const MotorTorques assumed = compensation_torques(pen, {0, 0.5}, angles, rates);
+  pen.uncertainty.emplace();
+  EXPECT_EQ(CompensationShares().of(pen).gravity, 1);
+  EXPECT_EQ(CompensationShares().of(pen).friction, 0.5);
+  EXPECT_EQ(CompensationShares(std::nullopt, 0.2).of(pen).friction, 0.2);
+  EXPECT_EQ(CompensationShares(0, std::nullopt).of(pen).gravity, 0);
+  for (std::size_t k = 0; k < kPenChannels; ++k) pen.uncertainty->coulomb[k] = 0.1 * pen.channels[k].coulomb;
+  const MotorTorques certain = compensation_torques(pen, {0, 0.5}, angles, rates);
+  for (std::size_t k = 0; k < kPenChannels; ++k) EXPECT_NEAR(certain[k], 0.804 * assumed[k], 1e-12);
+}
+
 /// A hand that lets go after two seconds, and how far the pen has sagged after another.
 double sag(double gravity, bool holds = true) {
   const Pose home = SimulatedPen(SimulatedPenSettings()).arms().posture().pose;

@@ -233,5 +233,23 @@ TEST(Pens, AreFoundByNameAndByPath) {
   std::filesystem::remove_all(folder);
 }
 
+TEST(PenDescription, UncertaintiesAreThereForAPenThatWasIdentified) {
+  EXPECT_FALSE(describe_pen(shipped(), "pen.toml", "pen").uncertainty);
+  const std::string table =
+      "[uncertainty]\ntorque_constant = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6]\ncoulomb = [1, 1, 1, 1, 1, 1]\n"
+      "viscous = [0, 0, 0, 0, 0, 1e-4]\ngravity = [1, 2, 0, 3, 4, 0]\n";
+  const PenGeometry pen = describe_pen(shipped() + table, "pen.toml", "pen");
+  ASSERT_TRUE(pen.uncertainty);
+  EXPECT_EQ(pen.uncertainty->torque_constant[5], 0.6);
+  EXPECT_EQ(pen.uncertainty->viscous[5], 1e-4);
+  EXPECT_EQ(pen.uncertainty->gravity[3], 3);
+  const auto end = [](const std::string& text) { return text.substr(std::min(text.size(), text.find(": ") + 2)); };
+  EXPECT_EQ(end(error(shipped() + table + "mass = 1\n")).substr(0, 7), "unknown");
+  EXPECT_EQ(end(error(shipped() + "[uncertainty]\ntorque_constant = [-1, 0, 0, 0, 0, 0]\n")),
+            "torque_constant, entry 1 must not be negative");
+  EXPECT_EQ(end(error(shipped() + "[uncertainty]\ntorque_constant = [1]\n")),
+            "torque_constant must be a list of six, one for each of order");
+}
+
 }  // namespace
 }  // namespace riffler::pen::pen_description_test

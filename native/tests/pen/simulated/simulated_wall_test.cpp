@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "geom/math.hpp"
+#include "pen/arms/joint_losses.hpp"
 #include "pen/arms/pens.hpp"
 #include "pen/simulated/simulated_bench.hpp"
 #include "riffler/haptics/limits.hpp"
@@ -20,15 +21,17 @@ namespace {
 using test::SimulatedBench;
 
 struct Wall {
-  double stiffness;       // N/mm
-  bool controlled;        // by passivity
-  std::int64_t jitter;    // µs
-  bool applied;           // the account is kept by what the motors had, or by what was asked for
-  double latency = 2e-3;  // s: that the controller knows of
+  double stiffness;         // N/mm
+  bool controlled;          // by passivity
+  std::int64_t jitter;      // µs
+  bool applied;             // the account is kept by what the motors had, or by what was asked for
+  double latency = 2e-3;    // s: that the controller knows of
+  bool identified = false;  // the account is credited with what the joints' friction takes
 };
 
 struct Touch {
   double gained = 0;       // N·mm: the most that the wall was ahead of the hand, as the true motion of the arms has it
+  double reached = 0;      // N·mm: the same less what friction took of it: the most that the hand could get
   double account = 1e300;  // the controller's least
   double deepest = 0, speed = 0;  // mm, mm/s root mean square of the last second
   std::uint64_t trips = 0;
@@ -48,7 +51,15 @@ Touch touch(const Wall& wall) {
   const PenKinematics host(load_pen("riffler"));
   const DeviceCapability device = pen_capability(host.geometry());
   const haptics::LimitSettings limits;
-  haptics::PassivitySettings counted = passivity_settings(host.geometry());
+  PenGeometry known = host.geometry();
+  if (wall.identified) {
+    known.uncertainty.emplace();
+    for (std::size_t k = 0; k < kPenChannels; ++k)
+      known.uncertainty->coulomb[k] = 0.01 * known.channels[k].coulomb,
+      known.uncertainty->viscous[k] = 0.02 * known.channels[k].viscous;
+  }
+  JointLosses losses(known, {});
+  haptics::PassivitySettings counted = passivity_settings(known);
   counted.latency = wall.latency;
   haptics::Passivity passivity(counted);
   Pose last = home;
@@ -57,8 +68,9 @@ Touch touch(const Wall& wall) {
   b.step.law = [&](const PenSample& s, double, double dt) {
     const Twist moved{s.pose.tip - last.tip, turn_between(last.axis, s.pose.axis)};
     last = s.pose;
+    const double dissipated = losses.add(s.counts, s.time);
     if (!s.homed) return Wrench{};
-    passivity.observe(wall.applied ? s.applied : held, moved, dt);
+    passivity.observe(wall.applied ? s.applied : held, moved, dt, dissipated);
     out.account = std::min(out.account, passivity.energy());
     const double depth = surface - s.pose.tip.z;
     out.deepest = std::max(out.deepest, depth);
@@ -72,8 +84,9 @@ Touch touch(const Wall& wall) {
   double square = 0;
   long late = 0;
   b.pen->on_turn = [&] {
-    const double work = b.pen->arms().energy().motors;
-    out.gained = std::max(out.gained, work);
+    const PenEnergy energy = b.pen->arms().energy();
+    out.gained = std::max(out.gained, energy.motors);
+    out.reached = std::max(out.reached, energy.motors - energy.lost);
     if (b.pen->time_us() > 11'000'000) {
       const double v = b.pen->arms().speed().twist.linear.z;
       square += v * v, ++late;
@@ -95,6 +108,18 @@ TEST(SimulatedPenWall, MotorsNeverGiveMoreThanTheyTookWithTheControllerOnWhatThe
     EXPECT_LT(late.gained, 3) << stiffness;
     EXPECT_GT(std::min(prompt.account, late.account), 0) << stiffness;
     EXPECT_EQ(prompt.trips + late.trips, 0U);
+  }
+}
+
+/// Friction that was identified pays for hard walls: the hand gets as little as before, and they yield less.
+TEST(SimulatedPenWall, IdentifiedFrictionMakesHardWallsHarderAndGivesTheHandNothing) {
+  for (const double stiffness : {3.0, 10.0, 30.0}) {
+    if (test::kSanitized && stiffness < 30) continue;
+    const Touch before = touch({stiffness, true, 0, true}), with = touch({stiffness, true, 0, true, 2e-3, true});
+    EXPECT_LT(with.reached, 1.2) << stiffness;
+    EXPECT_LT(with.deepest, before.deepest + 1e-3) << stiffness;
+    EXPECT_GT(with.account, 0) << stiffness;
+    EXPECT_EQ(with.trips, 0U);
   }
 }
 

@@ -1,6 +1,8 @@
 // Motor torques in addition to the requested wrench: compensation of the arms' weight and friction.
 #pragma once
 
+#include <optional>
+
 #include "riffler/pen/arms/motors.hpp"
 
 namespace riffler::pen {
@@ -19,8 +21,25 @@ struct Compensation {
   void validate() const;
 };
 
+/// Shares as a user gives them: those that are not given follow from what is known of the pen.
+struct CompensationShares {
+  std::optional<double> gravity{}, friction{};
+
+  CompensationShares() = default;
+  CompensationShares(std::optional<double> of_gravity, std::optional<double> of_friction)
+      : gravity(of_gravity), friction(of_friction) {}
+  CompensationShares(const Compensation& given) : gravity(given.gravity), friction(given.friction) {}
+
+  /// Throws std::invalid_argument naming the field.
+  void validate() const;
+  /// Where nothing is given: all of the weight and half of the friction of a pen that was identified, nothing of one
+  /// that was not.
+  Compensation of(const PenGeometry& pen) const noexcept;
+};
+
 /// Torques (N·mm) at the motors, in the device's order, for joint angles (rad) and rates (rad/s). If a motor would
-/// exceed its peak, all torques are scaled down by one factor.
+/// exceed its peak, all torques are scaled down by one factor. For an identified pen, the share of friction is
+/// one of the part that is certainly there (certain_friction).
 MotorTorques compensation_torques(const PenGeometry& pen, const Compensation& share, const JointAngles& angles,
                                   const JointAngles& rates) noexcept;
 

@@ -54,6 +54,11 @@ struct Converter {
   int highest() const { return (1 << (bits - 1)) - 1; }
 };
 
+/// Standard uncertainties of values that were identified on the pen, in the device's order and the units of PenChannel.
+struct PenUncertainty {
+  std::array<double, kPenChannels> torque_constant{}, coulomb{}, viscous{}, gravity{};
+};
+
 /// A pen of two arms with three joints each, and a grip between the arms' ends.
 struct PenGeometry {
   std::string name, description;
@@ -68,11 +73,12 @@ struct PenGeometry {
   int probe_sign = 1;
   std::array<PenChannel, kPenChannels> channels{};  // in the device's order
   std::optional<Converter> converter;
-  double elbow_low = 0, elbow_high = 0;  // rad: θ2 − θ3
-  Box3 workspace{};                      // of the grip's middle, base frame, mm
-  double force = 0, torque = 0;          // N, N·mm: limits on the hand
-  double speed = 0, turn_rate = 0;       // mm/s, rad/s
-  double friction_speed = 0;             // rad/s at the motor
+  std::optional<PenUncertainty> uncertainty;  // of a pen that was identified; without it its values are assumptions
+  double elbow_low = 0, elbow_high = 0;       // rad: θ2 − θ3
+  Box3 workspace{};                           // of the grip's middle, base frame, mm
+  double force = 0, torque = 0;               // N, N·mm: limits on the hand
+  double speed = 0, turn_rate = 0;            // mm/s, rad/s
+  double friction_speed = 0;                  // rad/s at the motor
 };
 
 }  // namespace riffler::pen

@@ -1,0 +1,265 @@
+"""Least squares for a pen's motors, friction and weights from recorded sweeps, with the covariance of the result.
+
+A joint in motion obeys, with every torque divided by its gear ratio so that it is at the motor,
+
+    K i = c sgn(q') + v q' + (g w(q) + I q'' + m J_m' r'' + j J_a' a'' / |a|² − J_h' f + λ s) / ratio
+
+K, c, v are the motor's torque constant, Coulomb and viscous friction; g is the moment of the weight, w is sin θ2 or
+cos θ3, I the joint's inertia, m and j the grip's mass and inertia, r its middle, a the vector between its ends, f the
+force of a hung weight, λ the unknown tension in the grip and s the gradient of the grip's length. Projecting on the
+five directions square to s removes λ. What remains is linear in 30 unknowns; f is the only known right side, so the
+hung weight alone sets the scale of all of them. Counts and currents pass the same low-pass filter, whose derivatives
+give speeds and accelerations, so that filtering does not bias the equation. The currents that a report states act from
+three quarters of a period before its counts to a quarter after them; a shift of half a millisecond would look like a
+tenth of the viscous friction.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from .. import pen
+
+GRAVITY = 9.80665  # m/s²
+LOCAL_GRAVITY = 0.0015  # relative standard uncertainty: 9.78 m/s² at the equator, 9.83 at the poles
+JOINTS = ("R1", "R2", "R3", "L1", "L2", "L3")  # in the order of PenGeometry.joints
+UNKNOWNS = 30  # K, c, v of six channels, g of four joints, I of six, m and j
+WIDTH = 0.013  # s: standard deviation of the low-pass filter
+REACH = 3  # times WIDTH, to each side
+EVERY = 10  # samples between two rows of the fit
+# Periods by which the mean time of a stated current is before the counts of its report, with its standard uncertainty:
+# the pen takes a host's command in its first turn after a frame (docs/device.md), and an amplifier takes some time.
+LEAD, LEAD_ERROR = 0.25, 0.1
+STUCK = 2.0  # times the median residual of its kind: beyond it a joint stuck in a sweep, which is left out
+MODEL_ERROR = 0.001  # relative standard uncertainty: noise of counts and currents in the unknowns' own columns
+SLOWEST = 0.06  # rad/s of every joint: below it a joint may stick, and the direction of its friction is not certain
+FEWEST = 20  # sweeps from which the scatter of the result can be judged
+NORMAL = 1.96  # standard uncertainties to each side of a 95 % interval
+NAMES = ("torque_constant", "coulomb", "viscous", "gravity")
+
+
+class IdentifyError(ValueError):
+    """The sweeps do not determine the values."""
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """One recorded motion between two postures."""
+
+    counts: np.ndarray  # (n, 6) as if homing had preset them
+    currents: np.ndarray  # (n, 6) A, applied by the motors
+    period: float  # s between two rows
+    kind: str = ""  # sweeps of one kind have noise of one size
+
+
+@dataclass(frozen=True)
+class HungWeight:
+    """What hangs on the grip, with standard uncertainties."""
+
+    mass: float  # kg
+    mass_error: float
+    hook: float  # mm from the grip's middle towards the tool's tip
+    hook_error: float
+
+    @property
+    def force(self) -> float:
+        """N."""
+        return self.mass * GRAVITY
+
+    @property
+    def relative_error(self) -> float:
+        """Standard uncertainty of the force: mass and local gravity."""
+        return float(np.hypot(self.mass_error / self.mass, LOCAL_GRAVITY))
+
+
+@dataclass(frozen=True)
+class Identified:
+    """Values and their standard uncertainties by name of ``NAMES``, (6,) in the device's order of channels."""
+
+    values: dict[str, np.ndarray]
+    uncertainty: dict[str, np.ndarray]
+    rows: int
+    residual: float  # N·mm at the motor, root mean square
+
+    def covers(self, name: str, truth: np.ndarray) -> np.ndarray:
+        """Whether the true values lie within the 95 % intervals."""
+        return np.abs(self.values[name] - truth) <= NORMAL * self.uncertainty[name]
+
+
+def identify(
+    geometry: pen.PenGeometry, free: Sequence[Sweep], loaded: Sequence[Sweep], weight: HungWeight
+) -> Identified:
+    """The fit to sweeps without and with the hung weight. IdentifyError if they do not determine all values."""
+    values, scatter, rows, residual = _fitted(geometry, free, loaded, weight.force, weight.hook, LEAD)
+    hooked, *_ = _fitted(geometry, free, loaded, weight.force, weight.hook + weight.hook_error, LEAD, scatter=False)
+    led, *_ = _fitted(geometry, free, loaded, weight.force, weight.hook, LEAD + LEAD_ERROR, scatter=False)
+    errors = np.sqrt(
+        scatter**2
+        + (hooked - values) ** 2
+        + (led - values) ** 2
+        + (weight.relative_error * values) ** 2
+        + (MODEL_ERROR * values) ** 2
+    )
+    return Identified(_by_name(geometry, values), _by_name(geometry, errors), rows, residual)
+
+
+def _by_name(geometry: pen.PenGeometry, unknowns: np.ndarray) -> dict[str, np.ndarray]:
+    gravity = np.zeros(6)
+    gravity[_weighted(geometry)] = unknowns[18:22]
+    return dict(zip(NAMES, [unknowns[:6], unknowns[6:12], unknowns[12:18], gravity], strict=True))
+
+
+def _weighted(geometry: pen.PenGeometry) -> list[int]:
+    """Channels of joints that the weight turns: all but joints 1, whose axes are vertical."""
+    return [k for k, c in enumerate(geometry.channels) if c.name[1] != "1"]
+
+
+def _fitted(
+    geometry: pen.PenGeometry, free: Sequence[Sweep], loaded: Sequence[Sweep], force: float, hook: float,
+    lead: float, scatter: bool = True,
+) -> tuple[np.ndarray, np.ndarray, int, float]:  # fmt: skip
+    """Unknowns, their standard uncertainties by the jackknife over sweeps, rows, and the residual."""
+    parts = [(s.kind, *rows_of(geometry, s, 0.0, hook, lead)) for s in free]
+    parts += [(s.kind, *rows_of(geometry, s, force, hook, lead)) for s in loaded]
+    parts = [part for part in parts if len(part[2])]
+    if len(parts) < FEWEST or not any(part[2].any() for part in parts):
+        raise IdentifyError(
+            f"only {len(parts)} sweeps have all joints in motion, {FEWEST} are needed, some of them with the weight: "
+            "the grip was held, or the motors did not move it"
+        )
+    scale = 1 / np.sqrt(sum((a**2).sum(axis=0) for _, a, _ in parts) + 1e-300)
+    squares = np.array([(a * scale).T @ (a * scale) for _, a, _ in parts])
+    sides = np.array([(a * scale).T @ b for _, a, b in parts])
+    kinds = np.array([kind for kind, *_ in parts])
+    shares, left = np.ones(len(parts)), [b for *_, b in parts]
+    normal, side, unknowns = solved(shares, squares, sides)
+    for _ in range(4):  # the noise of each kind of sweep, and with it its weight in the sum
+        left = [b - a @ (scale * unknowns) for _, a, b in parts]
+        noise = np.array([np.sqrt(np.mean(part**2)) for part in left])
+        for kind in set(kinds):
+            mine = kinds == kind
+            usual = float(np.median(noise[mine]))
+            shares[mine] = np.where(noise[mine] > STUCK * usual, 0.0, 1 / usual**2)
+        normal, side, unknowns = solved(shares, squares, sides)
+    residual = float(np.sqrt(np.mean(np.concatenate(left) ** 2)))
+    rows = sum(len(b) for *_, b in parts)
+    if not scatter:
+        return unknowns * scale, np.zeros(UNKNOWNS), rows, residual
+    # Residuals within a sweep are alike, so sweeps are what the scatter is judged by.
+    used = shares > 0
+    n = int(used.sum())
+    without = np.array(
+        [
+            np.linalg.solve(normal - w * a, side - w * b)
+            for w, a, b in zip(shares[used], squares[used], sides[used], strict=True)
+        ]
+    )
+    errors = np.sqrt((n - 1) / n * ((without - without.mean(axis=0)) ** 2).sum(axis=0))
+    return unknowns * scale, errors * scale, rows, residual
+
+
+def solved(shares: np.ndarray, squares: np.ndarray, sides: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The normal equations of the weighted sum of all sweeps, and their solution."""
+    normal, side = np.tensordot(shares, squares, 1), shares @ sides
+    if np.linalg.cond(normal) > 1e10:
+        raise IdentifyError(
+            "the sweeps do not tell all values apart: the weight does not hang at the tool's tip, or the grip does "
+            "not lean"
+        )
+    return normal, side, np.linalg.solve(normal, side)
+
+
+def low_pass(period: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Weights of a Gaussian low-pass filter, and of its first and second derivative by time."""
+    half = int(np.ceil(REACH * WIDTH / period))
+    t = np.arange(-half, half + 1) * period
+    value = np.exp(-0.5 * (t / WIDTH) ** 2)
+    value /= value.sum()
+    slope = t * value
+    slope /= (t * slope).sum()
+    curve = (t**2 - WIDTH**2) * value
+    curve -= curve.mean()
+    curve /= 0.5 * (t**2 * curve).sum()
+    return value, slope, curve
+
+
+def filtered(samples: np.ndarray, kernel: np.ndarray) -> np.ndarray:
+    """The weighted sums over the first axis of (n, …) samples; a kernel's length less one shorter."""
+    flat = samples.reshape(len(samples), -1)
+    out = np.stack([np.convolve(column, kernel[::-1], "valid") for column in flat.T], axis=1)
+    return out.reshape(len(out), *samples.shape[1:])
+
+
+def _usable(rates: np.ndarray, half: int) -> np.ndarray:
+    """Rows of `rates` around which, for half a filter's length, every joint turns on in its direction."""
+    at = [rates[k : len(rates) - 2 * half + k] for k in (0, half // 2, half, half + half // 2, 2 * half)]
+    fast = np.minimum.reduce([np.abs(r) for r in at]) > SLOWEST
+    one_way = np.abs(sum(np.sign(r) for r in at)) == len(at)
+    return np.flatnonzero((fast & one_way).all(axis=1))[::EVERY] + half
+
+
+def rows_of(
+    geometry: pen.PenGeometry, sweep: Sweep, force: float, hook: float, lead: float = LEAD
+) -> tuple[np.ndarray, np.ndarray]:
+    """Equations of a sweep, (n, 30) and (n,); ``force``: N of the hung weight, ``hook``: mm from the grip's middle
+    towards the tool's tip at which it hangs."""
+    value, slope, curve = low_pass(sweep.period)
+    half = len(value) // 2
+    if len(sweep.counts) <= 4 * half + 1:
+        return np.zeros((0, UNKNOWNS)), np.zeros(0)
+    angles, ends = geometry.joints(sweep.counts), geometry.ends(sweep.counts)
+    rates = filtered(angles, slope)
+    row = _usable(rates, half)
+    if not len(row):
+        return np.zeros((0, UNKNOWNS)), np.zeros(0)
+    n, centre = len(row), row + half
+    mean, rates, bends = filtered(angles, value)[row], rates[row], filtered(angles, curve)[row]
+    speeding, amperes = filtered(ends, curve)[row], filtered(sweep.currents, value + lead * sweep.period * slope)[row]
+
+    arms = np.moveaxis(geometry.jacobian(sweep.counts[centre]), 1, 2)  # (n, xyz, arm, θ)
+    middle = 0.5 * arms.reshape(n, 3, 6)
+    apart = np.concatenate([-arms[:, :, 0], arms[:, :, 1]], axis=2)
+    along = ends[centre, 1] - ends[centre, 0]
+    length = np.linalg.norm(along, axis=1)[:, None]
+    of_middle, of_apart = speeding.mean(axis=1), speeding[:, 1] - speeding[:, 0]
+    towards_tip = (1.0 if geometry.tip == "L" else -1.0) * hook / length
+    # A weight on a thread follows vertical motion. It swings otherwise, which the mean of a sweep leaves out.
+    rising = of_middle[:, 2] + (towards_tip * of_apart)[:, 2]
+    down = -force * (1 + 1e-3 * rising / GRAVITY)
+    lever = middle[:, 2] + towards_tip * apart[:, 2]
+
+    order = [JOINTS.index(c.name) for c in geometry.channels]
+    ratio = np.array([c.ratio for c in geometry.channels])
+    by_joint = np.empty(6)
+    by_joint[order] = ratio
+    matrix = np.zeros((n, 6, UNKNOWNS))
+    for k, (joint, c) in enumerate(zip(order, geometry.channels, strict=True)):
+        matrix[:, joint, k] = c.sign * amperes[:, k]
+        matrix[:, joint, 6 + k] = -np.sign(rates[:, joint])
+        matrix[:, joint, 12 + k] = -rates[:, joint] * ratio[k]
+    for g, k in enumerate(_weighted(geometry)):
+        turn = mean[:, order[k]]
+        lying = np.sin(turn) if geometry.channels[k].name[1] == "2" else np.cos(turn)
+        matrix[:, order[k], 18 + g] = -lying / ratio[k]
+    for joint in range(6):  # 1e-3: kg·mm² to N·mm·s²
+        matrix[:, joint, 22 + joint] = -1e-3 * bends[:, joint] / by_joint[joint]
+    matrix[:, :, 28] = -1e-3 * np.einsum("nxk,nx->nk", middle, of_middle) / by_joint
+    matrix[:, :, 29] = -1e-3 * np.einsum("nxk,nx->nk", apart, of_apart) / length**2 / by_joint
+    known = -lever * down[:, None] / by_joint
+
+    basis = square_to(np.einsum("nxk,nx->nk", apart, along / length) / by_joint)
+    return (
+        np.einsum("nkj,nkp->njp", basis, matrix).reshape(5 * n, UNKNOWNS),
+        np.einsum("nkj,nk->nj", basis, known).reshape(5 * n),
+    )
+
+
+def square_to(vectors: np.ndarray) -> np.ndarray:
+    """(n, 6, 5): orthonormal columns square to each of (n, 6) vectors, by Householder's reflection."""
+    mirror = vectors / np.linalg.norm(vectors, axis=1)[:, None]
+    mirror[:, 0] += np.where(mirror[:, 0] < 0, -1.0, 1.0)
+    mirror /= np.linalg.norm(mirror, axis=1)[:, None]
+    return (np.eye(6) - 2 * mirror[:, :, None] * mirror[:, None, :])[:, :, 1:]

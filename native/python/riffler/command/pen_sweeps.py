@@ -1,0 +1,293 @@
+"""The motions of `riffler pen identify`: paths of the grip, driving them, and what is recorded.
+
+The grip is led by a weak spring (0.3 N/mm) that moves along the path; every force passes the limits and the safety gate
+of all forces. The gate's dead-man switch is this program: it has to report itself several times a second.
+"""
+
+from __future__ import annotations
+
+import queue
+import sys
+import threading
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import pairwise, product
+
+import numpy as np
+
+from .. import pen
+from .._core import _PoseFollower
+from .pen_fit import JOINTS, HungWeight, Sweep
+
+LEAN = 0.35  # of the grip from home, standard deviation along two axes
+MARGIN = 0.15  # share of the workspace's box that paths keep off each side
+PEAK = 1.875  # peak speed of a quintic, in terms of its mean
+SLOW, FAST = 0.35, 2.0  # rad/s of the fastest joint
+TOP_SPEED = 300.0  # mm/s of the grip
+SHORTEST = 0.4  # rad that some joint turns in a sweep
+HOLD = 1.5  # s that the grip is held at the start, and the hand lets go
+WIGGLE = 1.2  # s of a push to and fro
+PUSH, TWIST = 0.8, 12.0  # N, N·mm of these
+
+
+class MotionStoppedError(RuntimeError):
+    """The motion was stopped, or stopped itself."""
+
+
+@dataclass(frozen=True)
+class Path:
+    """Poses, times and extra wrenches of a motion; sweeps are between the keys from ``first`` on."""
+
+    times: np.ndarray
+    poses: np.ndarray
+    wrenches: np.ndarray
+    first: int
+
+    @property
+    def seconds(self) -> float:
+        return float(self.times[-1] - self.times[0])
+
+
+def home_of(geometry: pen.PenGeometry) -> np.ndarray:
+    return geometry.forward([geometry.home])[0]
+
+
+def sweeps(geometry: pen.PenGeometry, number: int, rate: float, seed: int) -> Path:
+    """Home, ``number`` postures all over the middle of the workspace, and home again; the fastest joint at ``rate``.
+
+    In every sweep the joints turn at different speeds, so that no two columns of the fit are alike.
+    """
+    random = np.random.default_rng(seed)
+    home = home_of(geometry)
+    lower, upper = np.array(geometry.limits.lower), np.array(geometry.limits.upper)
+    lower, upper = lower + MARGIN * (upper - lower), upper - MARGIN * (upper - lower)
+    # The box is in the arms' frame, which need not be that of poses: offsets are from home, in both.
+    middle = geometry.ends([geometry.home])[0].mean(axis=0)
+    turn = base_axes(geometry)
+    poses = [home]
+    for _ in range(200 * number):
+        if len(poses) == number + 1:
+            break
+        axis = home[3:] + turn @ np.append(random.normal(size=2) * LEAN, 0.0)
+        place = home[:3] + turn @ (random.uniform(lower, upper) - middle)
+        pose = np.concatenate([place, axis / np.linalg.norm(axis)])
+        if farthest(geometry, poses[-1], pose) >= SHORTEST and reaches(geometry, poses[-1], pose):
+            poses.append(pose)
+    if len(poses) < number + 1:
+        raise ValueError(f"{geometry.name} has too little room for sweeps: are its limits right?")
+    poses.append(home)
+    times, first = [0.0, HOLD], 1
+    for a, b in pairwise(poses):
+        slow = PEAK * farthest(geometry, a, b) / rate
+        times.append(times[-1] + max(slow, PEAK * float(np.linalg.norm(b[:3] - a[:3])) / TOP_SPEED, 0.3))
+    return Path(np.array(times), np.array([home, *poses]), np.zeros((len(times), 6)), first)
+
+
+def base_axes(geometry: pen.PenGeometry) -> np.ndarray:
+    """(3, 3): the axes of the arms' frame as columns in the frame of poses, by the motion of the pivot."""
+    counts = np.array([geometry.home] * 4)
+    counts[1:] += (np.eye(6)[[0, 1, 2]] * 2000).astype(counts.dtype)
+    ours, its = geometry.ends(counts).mean(axis=1), geometry.forward(counts)[:, :3]
+    a, b = (ours[1:] - ours[0]).T, (its[1:] - its[0]).T
+    left, _, right = np.linalg.svd(b @ np.linalg.inv(a))
+    return left @ right
+
+
+def farthest(geometry: pen.PenGeometry, a: np.ndarray, b: np.ndarray) -> float:
+    """rad that the joint turns that turns furthest."""
+    joints, _ = geometry.inverse([a, b])
+    return float(np.abs(joints[1] - joints[0]).max())
+
+
+def reaches(geometry: pen.PenGeometry, a: np.ndarray, b: np.ndarray) -> bool:
+    """Whether both arms reach all poses from a to b."""
+    between = a + np.linspace(0, 1, 15)[:, None] * (b - a)
+    between[:, 3:] /= np.linalg.norm(between[:, 3:], axis=1)[:, None]
+    return all(found == ("reached", "reached") for found in geometry.inverse(between)[1])
+
+
+def wiggles(geometry: pen.PenGeometry) -> Path:
+    """Pushes to and fro along the three axes of the arms' frame and turns about two, with the grip at home, held."""
+    home, turn = home_of(geometry), base_axes(geometry)
+    across = np.linalg.svd(home[None, 3:])[2][1:]  # square to the grip
+    wrenches = [np.concatenate([PUSH * axis, np.zeros(3)]) for axis in turn.T]
+    wrenches += [np.concatenate([np.zeros(3), TWIST * axis]) for axis in across]
+    times, rows = [0.0, 1.0], [np.zeros(6), np.zeros(6)]
+    for wrench in wrenches:
+        for share in (1.0, -1.0, 0.0):
+            times.append(times[-1] + WIGGLE / 3)
+            rows.append(share * wrench)
+    return Path(np.array(times), np.array([home] * len(times)), np.array(rows), 1)
+
+
+class Keyboard:
+    """Lines from the terminal: answers to questions, and Enter while the pen moves, which stops it."""
+
+    def __init__(self, asks: bool) -> None:
+        self.lines: queue.Queue[str] = queue.Queue()
+        self.asks = asks
+        if asks:
+            threading.Thread(target=self._read, daemon=True).start()
+
+    def _read(self) -> None:
+        for line in sys.stdin:
+            self.lines.put(line.strip())
+
+    def ask(self, text: str, waiting: Callable[[], None] = lambda: None) -> str:
+        """The answer; ``waiting`` is called meanwhile. Nothing is asked with --yes."""
+        if not self.asks:
+            return ""
+        self.forget()
+        print(text, end="", flush=True)
+        while True:
+            waiting()
+            try:
+                return self.lines.get(timeout=0.05)
+            except queue.Empty:
+                continue
+
+    def forget(self) -> None:
+        while not self.lines.empty():
+            self.lines.get()
+
+    def pressed(self) -> bool:
+        return not self.lines.empty()
+
+
+@dataclass(frozen=True)
+class Record:
+    """What was recorded on a path."""
+
+    sequence: np.ndarray  # (n,) numbers of the reports
+    times: np.ndarray  # (n,) s on the path
+    counts: np.ndarray  # (n, 6)
+    currents: np.ndarray  # (n, 6) A
+    free_from: float = 0.0  # s on the path from which on no hand holds the grip
+
+
+def drive(
+    device: pen.PenDevice,
+    path: Path,
+    keyboard: Keyboard,
+    *,
+    leads: bool = True,
+    weight: HungWeight | None = None,
+    shown: Callable[[float], None] = lambda _: None,
+) -> Record:
+    """Moves along the path. MotionStoppedError if it did not end."""
+    hook, force = (0.0, 0.0) if weight is None else (weight.hook, weight.force)
+    keyboard.forget()
+    wait_for_no_fault(device)
+    follower = _PoseFollower(
+        device, path.times, path.poses, path.wrenches, leads=leads, gravity=float(leads), weight=force, hook=hook
+    )
+    try:
+        free_from = watch(device, follower, path, keyboard, leads, shown)
+        if leads:
+            take_hold(device, keyboard, follower)
+        sequence, times, counts, currents = follower.records()
+    finally:
+        follower.end()
+    return Record(sequence, times, counts, 1e-3 * currents, free_from)
+
+
+def wait_for_no_fault(device: pen.PenDevice) -> None:
+    """A device that has stopped by itself clears its fault once nothing is pushed."""
+    end = time.monotonic() + 2
+    while device.state().fault:
+        if time.monotonic() > end:
+            raise MotionStoppedError(f"the pen reports fault {device.state().fault}: switch it off and on again")
+        time.sleep(0.01)
+
+
+def watch(
+    device: pen.PenDevice, follower: _PoseFollower, path: Path, keyboard: Keyboard, leads: bool,
+    shown: Callable[[float], None],
+) -> float:  # fmt: skip
+    """Waits for the end of the path; `free_from` of its record. The simulated hand lets go when the path begins."""
+    simulated = device if leads and isinstance(device, pen.SimulatedPen) else None
+    begun, free_from = time.monotonic(), 0.0
+    while (state := follower.state) != "holding":
+        follower.alive()
+        if keyboard.pressed():
+            follower.stop()
+            raise MotionStoppedError("stopped by Enter")
+        if state == "stopped" and follower.time >= path.seconds:
+            break  # the pen itself ends a long hold at the end
+        if state == "stopped":
+            raise MotionStoppedError(str(follower.why))
+        if state == "waiting" and time.monotonic() - begun > 5:
+            raise MotionStoppedError(follower.why or device.health().problem or "the pen lets no force through")
+        if simulated is not None and state == "moving" and not free_from:
+            simulated.aim(home_of(simulated.truth), grip=0.0)
+            time.sleep(0.002)
+            free_from = follower.time + 0.5
+        shown(follower.time)
+        time.sleep(0.002 if simulated else 0.02)
+    return free_from
+
+
+def take_hold(device: pen.PenDevice, keyboard: Keyboard, follower: _PoseFollower) -> None:
+    """Holds the grip at home until the hand has it."""
+    if isinstance(device, pen.SimulatedPen):
+        device.aim(home_of(device.truth))
+        time.sleep(0.05)
+    keyboard.ask("It holds itself. Take the grip in your hand; Enter switches the motors off. ", follower.alive)
+
+
+def cut(path: Path, record: Record, kind: str) -> list[Sweep]:
+    """The sweeps of a record, without those in which the grip was held or reports were lost."""
+    out = []
+    for start, end in zip(path.times[path.first : -1], path.times[path.first + 1 :], strict=True):
+        mine = (record.times >= start) & (record.times < end)
+        steps = np.diff(record.sequence[mine].astype(np.int64))
+        if start >= record.free_from and len(steps) and (steps == 1).all():
+            within = record.times[mine]
+            period = float((within[-1] - within[0]) / len(steps))
+            out.append(Sweep(record.counts[mine], record.currents[mine], period, kind))
+    return out
+
+
+def reversed_motors(geometry: pen.PenGeometry, counts: np.ndarray, currents: np.ndarray) -> list[str]:
+    """Joints whose motor turns against its encoder, by the record of `wiggles`.
+
+    A held grip moves where it is pushed, by a distance that only the hand knows. The result is the combination of
+    reversed motors that explains the motion best.
+    """
+    home = np.array([geometry.home])
+    jacobian, ends = geometry.jacobian(home)[0], geometry.ends(home)[0]
+    apart = ends[1] - ends[0]
+    length = float(np.linalg.norm(apart))
+    order = [JOINTS.index(c.name) for c in geometry.channels]
+    torques = np.empty((len(counts), 6))
+    for k, (joint, c) in enumerate(zip(order, geometry.channels, strict=True)):
+        torques[:, joint] = c.sign * c.ratio * c.torque_constant * currents[:, k]
+    # Each joint's share of the force on the grip, and of the turning force at its ends: (n, joint, 2, xyz).
+    shares = np.empty((len(counts), 6, 2, 3))
+    for joint in range(6):
+        arm, k = divmod(joint, 3)
+        force = torques[:, joint, None] * np.linalg.inv(jacobian[arm])[k]
+        shares[:, joint, 0], shares[:, joint, 1] = force, (force if arm else -force) / length
+    moved = geometry.ends(counts)
+    motion = np.stack([moved.mean(axis=1), (moved[:, 1] - moved[:, 0]) / length], axis=1)
+    along = apart / length
+    square = np.eye(3) - np.outer(along, along)
+    shares[:, :, 1], motion[:, 1] = shares[:, :, 1] @ square, motion[:, 1] @ square
+    shares, motion = shares - shares.mean(axis=0), motion - motion.mean(axis=0)
+    if np.abs(motion[:, 0]).max() < 0.1:
+        raise MotionStoppedError(
+            "the grip did not move when it was pushed: are the motors connected, and is it held too firmly?"
+        )
+
+    def agreement(signs: Sequence[float]) -> float:
+        """Correlation of push and motion: of translation and of rotation, the mean of both."""
+        push = np.einsum("njdx,j->ndx", shares, np.array(signs))
+        each = [
+            float((push[:, d] * motion[:, d]).sum() / np.sqrt((push[:, d] ** 2).sum() * (motion[:, d] ** 2).sum()))
+            for d in (0, 1)
+        ]
+        return sum(each) / 2
+
+    best = max(product((1.0, -1.0), repeat=6), key=agreement)
+    return [name for name, sign in zip(JOINTS, best, strict=True) if sign < 0]
