@@ -77,7 +77,19 @@ void bind_frame(py::module_& m) {
                 R"(What happened between two calls of ``OrientSession.frame``, one row for each step.
 
 Forces and torques act on the hand, about the grip's point, in the device's frame; those on the tool act on it, about its
-tip, in the part's.)")
+tip, in the part's.
+
+Examples
+--------
+>>> ball = riffler.Tool.ball(diameter=4, length=20)
+>>> part = riffler.shape.relief([[1, 1], [0, 0], [1, 1]], size=(30, 20), depth=10, sink=5)
+>>> path = riffler.plan.pencil(part, ball)[0]
+>>> pen = riffler.pen.Pointer("tablet")
+>>> with riffler.OrientSession(path, ball, riffler.Collider(part), pen) as session:
+...     frame = session.frame()
+>>> frame.touching is None
+True
+)")
       .def_property_readonly("changes", &changes, "What the presses of buttons did, in their order: KeyChange.")
       .def_property_readonly(
           "times", [](const F& f) { return rows(f, [](const T& t) { return t.time; }); }, "(n,) s since the start.")

@@ -5141,6 +5141,17 @@ class OrientFrame:
 
     Forces and torques act on the hand, about the grip's point, in the device's frame; those on the tool act on it, about its
     tip, in the part's.
+
+    Examples
+    --------
+    >>> ball = riffler.Tool.ball(diameter=4, length=20)
+    >>> part = riffler.shape.relief([[1, 1], [0, 0], [1, 1]], size=(30, 20), depth=10, sink=5)
+    >>> path = riffler.plan.pencil(part, ball)[0]
+    >>> pen = riffler.pen.Pointer("tablet")
+    >>> with riffler.OrientSession(path, ball, riffler.Collider(part), pen) as session:
+    ...     frame = session.frame()
+    >>> frame.touching is None
+    True
     """
     def __len__(self) -> int:
         ...

@@ -222,8 +222,8 @@ TEST(OrientLoop, AStepInContactAllocatesNothing) {
   EXPECT_EQ(test::allocations() - before, 0);
 }
 
-/// Two minutes of planning by feel next to a clamp: random turns and slides into part and fixture. The account of energy
-/// never falls below zero, and no tick leaves the tool deeper than the walls yield.
+/// Two minutes of planning by feel next to a clamp: random turns and slides into part and fixture. The account of
+/// energy never falls below zero, and no tick leaves the tool deeper than the walls yield.
 TEST(OrientLoop, MinutesOfPlanningByFeelGiveTheHandNoEnergy) {
   std::vector<Volume> clamp;
   clamp.push_back(Volume::block({{{10, 14, 8}, {30, 30, 40}}, 0.5, "xyz"}));

@@ -28,8 +28,8 @@ class Balance {
 
   /// Displacement of the tip and rotation over the step. Zero where nothing holds the body or an input is not finite.
   Twist solve() const;
-  /// As above, for a body that makes the displacement `given` and, beyond it, only those in `freedoms` and their sums: at
-  /// most five of them.
+  /// As above, for a body that makes the displacement `given` and, beyond it, only those in `freedoms` and their sums:
+  /// at most five of them.
   Twist solve(std::span<const Twist> freedoms, const Twist& given = {}) const;
 
  private:

@@ -18,8 +18,8 @@ struct CouplingSettings {
 
   /// Throws std::invalid_argument naming the field.
   void validate() const;
-  /// The coupling at the tool that the hand feels as this one: there displacements are `scale` times as long, and forces
-  /// come back times the scale.
+  /// The coupling at the tool that the hand feels as this one: there displacements are `scale` times as long, and
+  /// forces come back times the scale.
   CouplingSettings at_tool(double scale) const;
   /// Largest energy that the spring stores, N·mm, for a stretch of `longest` mm and the worst rotation.
   double capacity(double longest) const;

@@ -10,8 +10,8 @@
 #include <cstdlib>
 #include <filesystem>
 #include <span>
-#include <vector>
 #include <string>
+#include <vector>
 
 #include "base/io.hpp"
 #include "geom/math.hpp"

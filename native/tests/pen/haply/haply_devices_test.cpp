@@ -72,6 +72,8 @@ TEST_F(Haply, OpensReadsAndPushes) {
   EXPECT_TRUE(sample.homed && sample.powered);
   EXPECT_EQ(pen->status().counts.malformed, 0U);
   EXPECT_TRUE(pen->stop());
+  // The command is sent; the service's thread reads it later.
+  for (int k = 0; k < 1000 && service.force() != 0; ++k) std::this_thread::sleep_for(1ms);
   EXPECT_EQ(service.force(), 0);
   EXPECT_EQ(service.with([](State& s) { return s.wrong_commands; }), 0);
 }
