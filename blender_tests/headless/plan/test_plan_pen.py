@@ -54,10 +54,24 @@ class Tablet:
             self.at(*(np.array(before) + t * np.subtract((x, lean), before)))
         self.last = (x, lean)
         time.sleep(0.1)
-        for self.buttons in [buttons, 0] if buttons else []:
-            self.at(x, lean)
-            time.sleep(0.03)
-        return self.session.look()
+        self.session.look()
+        if buttons:
+            self._press(x, lean, buttons)
+
+    def _press(self, x, lean, buttons):
+        """Held until it counts: on a busy machine the session's thread may come late."""
+        run, seen = self.session.run, []
+        look = run.look
+        run.look = lambda: seen.append(look()) or seen[-1]
+        self.buttons, end = buttons, time.monotonic() + 10
+        self.at(x, lean)
+        while not any(seen) and time.monotonic() < end:
+            self.session.look()
+            time.sleep(0.02)
+        run.look, self.buttons = look, 0
+        self.at(x, lean)
+        time.sleep(0.05)
+        self.session.look()
 
     @property
     def axis(self):

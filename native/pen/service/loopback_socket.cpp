@@ -7,6 +7,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <string>
@@ -76,6 +77,13 @@ int LoopbackSocket::read(std::span<std::uint8_t> bytes, double seconds) noexcept
     if (errno != EAGAIN && errno != EWOULDBLOCK) return -1;
     if (waited || seconds <= 0 || !wait(POLLIN, seconds)) return 0;
   }
+}
+
+void LoopbackSocket::finish(double seconds) noexcept {
+  if (::shutdown(fd_, SHUT_WR) != 0) return;
+  std::array<std::uint8_t, 1024> rest{};
+  for (const Deadline deadline(seconds); deadline.left() > 0;)
+    if (read(rest, deadline.left()) < 0) return;
 }
 
 bool LoopbackSocket::write(std::span<const std::uint8_t> bytes, double seconds) noexcept {

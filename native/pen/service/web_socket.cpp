@@ -14,6 +14,7 @@ namespace riffler::pen {
 namespace {
 
 constexpr double kSendTime = 0.01;  // s
+constexpr double kLeaveTime = 0.2;  // s
 constexpr std::uint16_t kNormal = 1000, kProtocolError = 1002;
 constexpr const char* kGuid = "258EAFA5-E914-47DA-95CA-C5AB0DC85B11";  // RFC 6455, 1.3
 
@@ -67,7 +68,10 @@ WebSocket::WebSocket(std::uint16_t port, double seconds)
 }
 
 WebSocket::~WebSocket() {
+  if (!open_) return;
   close(kNormal);
+  // The last message may be the one that ends the force.
+  socket_.finish(kLeaveTime);
 }
 
 void WebSocket::handshake(std::uint16_t port, double seconds) {

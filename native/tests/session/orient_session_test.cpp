@@ -41,10 +41,16 @@ struct TabletBench {
   /// Moves there in small steps, then presses.
   void press(double x, double angle, std::uint32_t buttons) {
     for (int k = 0; k < 25; ++k) at(x, angle), nap(0.004);
-    at(x, angle, buttons), nap(0.02);
-    at(x, angle), nap(0.02);
-    const OrientFrame frame = session->frame();
-    changes.insert(changes.end(), frame.changes.begin(), frame.changes.end());
+    nap(0.03);
+    at(x, angle, buttons);
+    // Held until it counts: on a busy machine the session's thread may come late.
+    for (int k = 0; k < 500; ++k) {
+      const OrientFrame frame = session->frame();
+      changes.insert(changes.end(), frame.changes.begin(), frame.changes.end());
+      if (!frame.changes.empty()) break;
+      nap(0.01);
+    }
+    at(x, angle), nap(0.03);
   }
   static void nap(double seconds) { std::this_thread::sleep_for(std::chrono::duration<double>(seconds)); }
 

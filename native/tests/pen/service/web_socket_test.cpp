@@ -87,6 +87,28 @@ TEST(WebSocket, AnOpenOneAllocatesNothing) {
   EXPECT_EQ(answers, 200);
 }
 
+/// A client that closes while bytes of the server are unread would reset the connection, and the server would lose what
+/// it has not read yet.
+TEST(WebSocket, TheLastMessageArrivesThoughAnswersAreLeftUnread) {
+  for (int k = 0; k < 20; ++k) {
+    std::atomic<bool> last{false};
+    {
+      LoopbackServer server(opening([&](Peer& peer, test::ClientFrames& frames) {
+        for (int n = 0; n < 50; ++n) peer.send(server_frame(std::string(1000, 's')));
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        while (const auto frame = next(peer, frames)) {
+          last = last || frame->payload == "stop";
+          if (frame->opcode == 8) break;
+        }
+      }));
+      WebSocket socket(server.port(), 2);
+      EXPECT_EQ(text_of(socket).size(), 1000U);
+      EXPECT_TRUE(send(socket, "stop"));
+    }
+    EXPECT_TRUE(last) << k;
+  }
+}
+
 TEST(WebSocket, TheFirstMessageMayComeWithTheAnswer) {
   LoopbackServer server([](Peer& peer) {
     peer.send(test::upgrade_answer(peer.read_until("\r\n\r\n")) + server_frame("first") + server_frame("second"));
