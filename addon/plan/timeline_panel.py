@@ -59,11 +59,10 @@ class RIFFLER_PT_timeline(OfPlan, bpy.types.Panel):
             if state.why:
                 lines(layout, *wrapped(context, state.why), icon="INFO")
             return
-        row = layout.row(align=True)
-        op = row.operator(orient_by_pen.RIFFLER_OT_plan_pen.bl_idname, icon="STYLUS_PRESSURE")
+        op = layout.operator(orient_by_pen.RIFFLER_OT_plan_pen.bl_idname, icon="STYLUS_PRESSURE")
         give(op, settings, pen_properties.DeviceSettings)
         op.slide = context.scene.riffler.plan.slide
-        row.prop(context.scene.riffler.plan, "slide", text="", icon="DRIVER_DISTANCE")
+        layout.prop(context.scene.riffler.plan, "slide")
 
 
 def draw_header(context, layout):

@@ -58,7 +58,8 @@ def test_the_contact_at_a_device_s_tool_is_the_nearest_within_its_diameter():
             path = rng.integers(len(contacts))
             tip = contacts[path][rng.integers(len(contacts[path]))] + rng.normal(0, 3, 3)
             run = SimpleNamespace(pose=np.array([*tip, 0, 0, 1.0]))
-            sessions.running = SimpleNamespace(run=run, live=SimpleNamespace(to_world=to_world), diameter=6.0)
+            live = SimpleNamespace(to_world=to_world)
+            sessions.running = SimpleNamespace(run=run, live=live, diameter=6.0, contact=None)
             gaps = [np.linalg.norm(c - tip, axis=1) for c in contacts]
             least, found = min(g.min() for g in gaps), drawing.at_tool(bpy.context)
             assert (found is None) == (least > 6)

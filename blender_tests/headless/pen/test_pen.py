@@ -279,12 +279,12 @@ def test_putting_on_where_the_box_is_full_says_so():
     before = now()
     heard = []
     operators = common.part("pen.operators")
-    said = operators._said
-    operators._said = lambda operator, session: said(Heard(heard), session)
+    said = operators.tell
+    operators.tell = lambda operator, session: said(Heard(heard), session)
     try:
         assert sculpt_for(0.5, mode="ADD") == {"CANCELLED"}
     finally:
-        operators._said = said
+        operators.tell = said
     assert "Nothing was added" in heard[0], heard
     live().end_all()
     assert now_of(ob) == before
