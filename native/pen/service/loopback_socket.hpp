@@ -21,9 +21,9 @@ class LoopbackSocket {
   int read(std::span<std::uint8_t> bytes, double seconds) noexcept;
   /// False if the connection is closed or broken, or if not all bytes could be sent within `seconds`.
   bool write(std::span<const std::uint8_t> bytes, double seconds) noexcept;
-  /// Ends what this side sends, and waits up to `seconds` for the other program to read it and to close. Closing at once
-  /// resets the connection where bytes have arrived that nothing read, and the other program may lose what it has not
-  /// read yet (RFC 1122, 4.2.2.13).
+  /// Ends what this side sends, and waits up to `seconds` for the other program to read it and to close. Closing at
+  /// once resets the connection where bytes have arrived that nothing read, and the other program may lose what it has
+  /// not read yet (RFC 1122, 4.2.2.13).
   void finish(double seconds) noexcept;
 
  private:
