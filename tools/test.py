@@ -26,7 +26,7 @@ from shell import PYTHON, ROOT, StepError, cores, main, run, say
 LOGS = ROOT / "build" / "tests"
 HEARTBEAT = 30  # s
 # What names a failure in the output of pytest, GoogleTest, the compiler, Blender's tests and the tools' own checks.
-FAILURE = re.compile(r"^(FAILED|ERROR|E  )|\[  FAILED  \]|error\b|Error\b|\bFAILED\b")
+FAILURE = re.compile(r"^(FAILED|ERROR|E  |  failed )|\[  FAILED  \]|[Ee]rror: |\bFAILED\b")
 FAILURES_SHOWN = 25
 
 
