@@ -105,6 +105,7 @@ def recordings(settings):
     return folder
 
 
+NO_SECONDS = "seconds: give the duration, as there is no window to end the session in"
 NO_COPIES = "Mirror and Radial apply to strokes of the pointer only: a pen session makes no copies"
 
 
@@ -139,19 +140,10 @@ class RIFFLER_OT_pen_sculpt(sculpt_work.TakesTool, properties.PenSettings, bpy.t
         if pen_session.running is not None:
             return stop(self)
         if not self.seconds > 0:
-            return operator_parts.fail(
-                self, ValueError("seconds: give the duration, as there is no window to end the session in")
-            )
+            return operator_parts.fail(self, ValueError(NO_SECONDS))
         if not self._start(context):
             return {"CANCELLED"}
-        session, end = pen_session.running, time.monotonic() + self.seconds
-        try:
-            while time.monotonic() < end and session.look():
-                time.sleep(FRAME)
-            session.finish()
-        except operator_parts.ERRORS as error:
-            session.fail(error)
-        return tell(self, session)
+        return run_through(self, pen_session.running)
 
     def invoke(self, context, event):
         global _shown
@@ -186,6 +178,18 @@ class RIFFLER_OT_pen_sculpt(sculpt_work.TakesTool, properties.PenSettings, bpy.t
         bpy.ops.ed.undo_push(message=self.bl_label)
         _tell(pen_session.running)
         return True
+
+
+def run_through(operator, session):
+    """Polls the session for the operator's `seconds`, ends it, and reports what it has done."""
+    end = time.monotonic() + operator.seconds
+    try:
+        while time.monotonic() < end and session.look():
+            time.sleep(FRAME)
+        session.finish()
+    except operator_parts.ERRORS as error:
+        session.fail(error)
+    return tell(operator, session)
 
 
 def _take_up_tool(context):

@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 import riffler
 
+from .device_run import DeviceRun
+
 
 def journal_name(name: str, when) -> str:
     """A file name from a sculpt's name and a date, valid on any file system."""
@@ -12,7 +14,7 @@ def journal_name(name: str, when) -> str:
     return f"{kept or 'sculpt'} {when:%Y-%m-%d %H-%M-%S}.rjournal"
 
 
-class PenRun:
+class PenRun(DeviceRun):
     """A device and its sessions, one after the other, each with a volume that nothing else changes meanwhile:
     `prepare`, `start`, `look` about thirty times a second, `halt`; finally `close`.
 
@@ -42,16 +44,10 @@ class PenRun:
     def start(self) -> None:
         self.session.start()
 
-    @property
-    def running(self) -> bool:
-        return self.session is not None and self.session.running
-
     def look(self) -> None:
         """Brings the volume up to date."""
         self._take(self.session.frame())
-        # A simulated hand presses no button to confirm an error.
-        if self.state == "tripped" and self.device.kind == "simulated" and not self.device.state().fault:
-            self.session.reset()
+        self.heal()
 
     @property
     def over(self) -> bool:
@@ -69,14 +65,6 @@ class PenRun:
             self.in_stroke, self.push = False, np.zeros((2, 3))
         return ""
 
-    @property
-    def pushes(self) -> bool:
-        """True if the device has motors, so that the hand feels the cut."""
-        return any(axis.pushes for axis in self.device.limits.values())
-
-    def close(self) -> None:
-        self.device.stop()
-
     def taken_rows(self) -> list[np.ndarray]:
         """(n, 6) of each stroke finished since the last call."""
         rows = [np.array(stroke) for stroke in self._rows if len(stroke) > 1]
@@ -86,13 +74,11 @@ class PenRun:
     def _take(self, frame) -> None:
         self.state, self.strokes, self.in_stroke = frame.state, frame.strokes, frame.in_stroke
         if len(frame):
-            self.pose, self.push = frame.tool, frame.tool_forces.mean(axis=0).reshape(2, 3)
+            self.pose, self.push = frame.tool, self.mean_push(frame)
         self.dropped_ticks = frame.dropped_ticks
         self.force = float(np.linalg.norm(frame.force))
         self._collect(frame)
-        health = self.device.health().problem if self.session.running else None
-        cause = frame.cause if frame.state not in ("ready", "ramp", "active") else None
-        self.why = self.session.journal_problem or frame.problem or health or cause or ""
+        self.why = self.session.journal_problem or self.reason(frame)
 
     def _collect(self, frame) -> None:
         """Collects a stroke for a journal: from the pose before the first move that removes material."""

@@ -17,8 +17,6 @@ from ..pen_orientation import PenOrientation
 from . import keys
 from .plan_work import PlanWork, part_poll, timeline_poll
 
-FRAME = 1 / 30  # s between two polls
-TELL = 0.2  # s between two updates of the text
 HELP = "Button 1: set a key    Button 2: delete it    Esc: end"
 
 _shown = None  # arrows and gauge (sculpt/force_view.py)
@@ -60,23 +58,14 @@ class RIFFLER_OT_plan_pen(pen_properties.DeviceSettings, PlanWork, bpy.types.Ope
         if pen_session.running is not None:
             return pen_operators.stop(self)
         if not self.seconds > 0:
-            return operator_parts.fail(
-                self, ValueError("seconds: give the duration, as there is no window to end the session in")
-            )
+            return operator_parts.fail(self, ValueError(pen_operators.NO_SECONDS))
         try:
             ob, _ = self.take(context)
             self._spot(context, ob)
             session = self._start(context, obstacles.now(context, ob))
         except (*operator_parts.ERRORS, TypeError) as error:
             return operator_parts.fail(self, error)
-        end = time.monotonic() + self.seconds
-        try:
-            while time.monotonic() < end and session.look():
-                time.sleep(FRAME)
-            session.finish()
-        except operator_parts.ERRORS as error:
-            session.fail(error)
-        return pen_operators.tell(self, session)
+        return pen_operators.run_through(self, session)
 
     def invoke(self, context, event):
         if pen_session.running is not None or self.seconds > 0 or bpy.app.background or context.window is None:
@@ -96,7 +85,7 @@ class RIFFLER_OT_plan_pen(pen_properties.DeviceSettings, PlanWork, bpy.types.Ope
             mm = scene_units.mm_per_unit(context.scene)
             limit = scene_units.clean(context.scene.riffler.sculpt.limit)
             _shown = force_view.begin(limit, session.tool.diameter / 2, np.diag([1 / mm, 1 / mm, 1 / mm, 1.0]))
-        bpy.app.timers.register(_look, first_interval=FRAME)
+        bpy.app.timers.register(_look, first_interval=pen_operators.FRAME)
         return {"FINISHED"}
 
     def _spot(self, context, ob):
@@ -125,7 +114,7 @@ def _look():
     try:
         if session.look():
             _tell(session)
-            return FRAME
+            return pen_operators.FRAME
     except operator_parts.ERRORS as error:
         session.fail(error)
     level, text, _ = session.summary()
@@ -140,7 +129,7 @@ def _tell(session):
         _shown.pose, (_shown.force, _shown.torque) = run.pose, run.push
     hand = f"Hand: {run.state}, {run.force:.2f} N, {run.torque:.0f} N·mm"
     told = hand, session.state(), session.problem or run.why
-    if told == _told or time.perf_counter() - _told_at < TELL:
+    if told == _told or time.perf_counter() - _told_at < pen_operators.TELL:
         return
     _told, _told_at = told, time.perf_counter()
     state = bpy.context.window_manager.riffler

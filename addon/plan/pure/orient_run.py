@@ -5,8 +5,10 @@ from __future__ import annotations
 import numpy as np
 import riffler
 
+from ...pen.pure.device_run import DeviceRun
 
-class OrientRun:
+
+class OrientRun(DeviceRun):
     """An open device and its session on one path: `start`, `look` about thirty times a second, `halt`; finally `close`.
 
     `options` are riffler.OrientSession's.
@@ -26,25 +28,14 @@ class OrientRun:
         self.session.start()
 
     @property
-    def running(self) -> bool:
-        return self.session.running
-
-    @property
     def point(self) -> int:
         """The nearest point of the path."""
         return round(self.station) % self._points
 
-    @property
-    def pushes(self) -> bool:
-        """True if the device has motors."""
-        return any(axis.pushes for axis in self.device.limits.values())
-
     def look(self) -> tuple[riffler.KeyChange, ...]:
         """Updates what is shown, and returns what the buttons did."""
         changes = self._take(self.session.frame())
-        # A simulated hand presses no button to confirm an error.
-        if self.state == "tripped" and self.device.kind == "simulated" and not self.device.state().fault:
-            self.session.reset()
+        self.heal()
         return changes
 
     def halt(self) -> tuple[riffler.KeyChange, ...]:
@@ -55,16 +46,11 @@ class OrientRun:
         self.push = np.zeros((2, 3))
         return changes
 
-    def close(self) -> None:
-        self.device.stop()
-
     def _take(self, frame) -> tuple[riffler.KeyChange, ...]:
         self.state, self.touching = frame.state, frame.touching
         if len(frame):
             self.pose, self.station = frame.tool, frame.station
-            self.push = frame.tool_forces.mean(axis=0).reshape(2, 3)
+            self.push = self.mean_push(frame)
         self.force, self.torque = float(np.linalg.norm(frame.force)), float(np.linalg.norm(frame.torque))
-        health = self.device.health().problem if self.session.running else None
-        cause = frame.cause if frame.state not in ("ready", "ramp", "active") else None
-        self.why = frame.problem or health or cause or ""
+        self.why = self.reason(frame)
         return frame.changes
