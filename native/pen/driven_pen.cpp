@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "pen/observation.hpp"
+
 namespace riffler::pen {
 
 namespace {
@@ -19,15 +21,7 @@ haptics::SafeWrench HeldPush::step(const PenSample& sample, double now, double d
   const bool fresh = now - asked.time <= kHeld;
   if (dt == 0) safety_.interrupt();
   if (reset_.exchange(false)) safety_.reset();
-  safety_.observe({.dt = dt,
-                   .age = now - sample.time,
-                   .pose = sample.pose,
-                   .twist = {sample.velocity, sample.turning},
-                   .redundancy = sample.stretch,
-                   .homed = sample.homed,
-                   .dead_man = fresh,
-                   .device_fault = sample.fault,
-                   .device_late = sample.late});
+  safety_.observe(observation_of(sample, now, dt, fresh));
   const haptics::SafeWrench safe = safety_.release(fresh ? asked.wrench : Wrench{});
   state_.store(safety_.state());
   cause_.store(safety_.cause());

@@ -1,5 +1,6 @@
 #include "riffler/session/force_gate.hpp"
 
+#include "pen/observation.hpp"
 #include "riffler/haptics/coupling.hpp"
 
 namespace riffler::session {
@@ -22,15 +23,7 @@ haptics::ForceState ForceGate::begin(const pen::PenSample& sample, double now, d
     safety_.interrupt();
     has_grip_ = false;
   }
-  const haptics::ForceState state = safety_.observe({.dt = dt,
-                                                     .age = now - sample.time,
-                                                     .pose = sample.pose,
-                                                     .twist = {sample.velocity, sample.turning},
-                                                     .redundancy = sample.stretch,
-                                                     .homed = sample.homed,
-                                                     .dead_man = dead_man,
-                                                     .device_fault = sample.fault,
-                                                     .device_late = sample.late});
+  const haptics::ForceState state = safety_.observe(pen::observation_of(sample, now, dt, dead_man));
   applied_ = sample.says_applied ? sample.applied : held_;
   if (!sure(state)) {
     has_grip_ = false;

@@ -127,9 +127,11 @@ def _tell(session):
     run = session.run
     if _shown is not None and run.pose is not None:
         _shown.pose, (_shown.force, _shown.torque) = run.pose, run.push
+    if time.perf_counter() - _told_at < pen_operators.TELL:  # the state's distances cost more than the text
+        return
     hand = f"Hand: {run.state}, {run.force:.2f} N, {run.torque:.0f} N·mm"
     told = hand, session.state(), session.problem or run.why
-    if told == _told or time.perf_counter() - _told_at < pen_operators.TELL:
+    if told == _told:
         return
     _told, _told_at = told, time.perf_counter()
     state = bpy.context.window_manager.riffler

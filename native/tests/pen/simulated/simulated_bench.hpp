@@ -7,6 +7,7 @@
 
 #include "pen/driver_loop.hpp"
 #include "pen/models/riffler_model.hpp"
+#include "pen/observation.hpp"
 #include "pen/simulated/simulated_transport.hpp"
 #include "riffler/haptics/safety.hpp"
 
@@ -20,15 +21,7 @@ class GatedStep final : public pen::PenStep {
   explicit GatedStep(const haptics::SafetySettings& settings = {}) : safety(settings) { safety.switch_on(); }
   haptics::SafeWrench step(const pen::PenSample& sample, double now, double dt) noexcept override {
     ++steps, last = sample;
-    safety.observe({.dt = dt,
-                    .age = now - sample.time,
-                    .pose = sample.pose,
-                    .twist = {sample.velocity, sample.turning},
-                    .redundancy = sample.stretch,
-                    .homed = sample.homed,
-                    .dead_man = holds,
-                    .device_fault = sample.fault,
-                    .device_late = sample.late});
+    safety.observe(pen::observation_of(sample, now, dt, holds));
     const haptics::SafeWrench safe = safety.release(law(sample, now, dt));
     // A tick that finds a fault pushes with nothing.
     if (safety.state() == haptics::ForceState::Tripped && !(safe.wrench() == Wrench{})) ++pushed_while_tripped;
