@@ -12,7 +12,7 @@ from ...pen import operators as pen_operators
 from ...pen import properties as pen_properties
 from ...pen import session as pen_session
 from ...sculpt import force_view
-from .. import current_pose, obstacles, plan_store, replan
+from .. import current_pose, obstacles, plan_store
 from ..pen_orientation import PenOrientation
 from . import keys
 from .plan_work import PlanWork, part_poll, timeline_poll
@@ -89,11 +89,7 @@ class RIFFLER_OT_plan_pen(pen_properties.DeviceSettings, PlanWork, bpy.types.Ope
         return {"FINISHED"}
 
     def _spot(self, context, ob):
-        spot = current_pose.spot(context.scene, ob)
-        if spot is None:
-            layout = replan.layout_of(ob, plan_store.plan(ob))
-            frame = context.scene.frame_current_final
-            raise ValueError(f"Frame {frame:g} is on no path: go to one between {keys.ranges(layout)}")
+        spot, _ = keys.spot_at(context, ob)
         plan_store.refuse_turning(spot.plan, spot.path)
         return spot
 
