@@ -126,7 +126,7 @@ def test_the_axis_stops_where_the_holder_hits_the_wall():
     # The cutter's side lies on the wall: it can lean no further than upright, up to what the wall yields.
     assert abs(hand.axis[1]) < 0.06, hand.axis
     assert hand.session.run.touching is not None
-    assert "by" in hand.session.state() or "Free" in hand.session.state()
+    assert not hand.session.state().free and "hits Step by" in str(hand.session.state())
     hand.to(30.0, -0.4)
     assert close(hand.axis, (0, np.sin(-0.4), np.cos(0.4)), 0.03)
     hand.session.finish()
@@ -175,6 +175,7 @@ def test_what_cannot_be_turned_is_refused_by_name():
     ob = scene()
     operator = bpy.ops.riffler.plan_pen
     common.refused(operator, "duration")
+    common.refused(lambda: operator(device="pointer", seconds=0.1), "in a window only")
     bpy.context.scene.frame_set(100000)
     common.refused(lambda: operator(seconds=0.1), "on no path")
     bpy.context.scene.frame_set(73)
