@@ -173,7 +173,22 @@ def _leave():
     views.redraw_sidebars(bpy.context)
 
 
+@bpy.app.handlers.persistent
+def _before_load(*_):
+    """Blender removes the timer, and with it what would end the session."""
+    if isinstance(pen_session.running, PenOrientation):
+        pen_session.running.drop()
+
+
+_HANDLERS = {"load_pre": _before_load}
+
+
+def attach():
+    handlers.listen(_HANDLERS)
+
+
 def detach():
+    handlers.ignore(_HANDLERS)
     handlers.stop(_look)
     handlers.stop(_hush)
 

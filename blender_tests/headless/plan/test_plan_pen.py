@@ -160,6 +160,15 @@ def test_a_plan_that_is_removed_ends_the_session_with_a_sentence():
     ended()
 
 
+def test_another_file_ends_the_session():
+    ob = scene()
+    hand = Tablet(ob)
+    run = hand.session.run
+    bpy.ops.wm.read_homefile(use_empty=True)
+    ended()
+    assert not run.running and hand.session.ended
+
+
 def test_the_simulated_pen_turns_the_tool_for_some_seconds():
     ob = scene()
     for seconds in (4.0, 8.0, 16.0):
