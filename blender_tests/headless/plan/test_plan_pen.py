@@ -1,12 +1,14 @@
 """Orient by Pen without a window: the tool follows a device, buttons set and delete keys, undo, ends, refusals."""
 
+import tempfile
 import time
+from pathlib import Path
 
 import bpy
 import numpy as np
 import riffler
 
-from support import common, plans
+from support import common, plans, spacemouse_run
 from support.keyframed_plan import close, indices, pair, paths, state
 
 UP = (0.0, 0.0, 1.0)
@@ -178,6 +180,16 @@ def test_the_simulated_pen_turns_the_tool_for_some_seconds():
             break
     assert said == {"FINISHED"}  # the simulated hand holds its button on every other round
     assert indices(ob)[0] == [0, 72, 144], indices(ob)
+
+
+@common.core_bound
+def test_a_puck_slides_the_tool_along_its_path_and_sets_keys():
+    """A SpaceMouse of umockdev, pushed to the right: along the path."""
+    with tempfile.TemporaryDirectory() as name:
+        found = spacemouse_run.reported(Path(name), "planned")
+    places = list(found["keys"].values())
+    assert found["said"] == ["FINISHED"] and len(places) > 1, found
+    assert places[-1][0] > places[0][0] + 1 and np.ptp(np.array(places)[:, 1:], axis=0).max() < 0.02, found
 
 
 def test_what_cannot_be_turned_is_refused_by_name():
