@@ -91,6 +91,7 @@ SECTIONS = (
             "operators.keys",
             "operators.least_tilt",
             "operators.turn",
+            "operators.orient_by_pointer",
             "operators.orient_by_pen",
             "panel",
             "paths_panel",

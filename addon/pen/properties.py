@@ -22,15 +22,29 @@ STARTS = (
 )
 
 
+# A plan's tool is also turned by what the sculpt tools serve themselves.
+POINTER = "pointer"
+TURNING = (
+    CHOICES[0],
+    (
+        POINTER,
+        "Mouse or Tablet",
+        "A tablet's pen leans the tool as it leans itself; the mouse drags the tool's end",
+        "NONE",
+        stored_number(POINTER),
+    ),
+    *DEVICES[:-1],
+)
+
+
 DEVICE = EnumProperty(name="Device", items=CHOICES, default=PREFERRED, description="Input device")
 SCALE = length("Scale", 1.0, "Distance that the tool moves, per distance of the hand", 1e-3, 100.0)
 
 
-class DeviceSettings:
-    """Settings of every session; the fields are those of PenSettings."""
+class TurningDevice:
+    """The device that turns a plan's tool."""
 
-    device: DEVICE
-    scale: SCALE
+    device: EnumProperty(name="Device", items=TURNING, default=PREFERRED, description="What turns the tool")
 
 
 class PenSettings:

@@ -4,6 +4,7 @@ markers. The markers and the request are stored in the file; the results of the 
 import bpy
 import numpy as np
 
+from ..blender import views
 from . import obstacles, plan_store, timeline
 from .plan_states import on_timeline, rendering, scene_of, state
 from .pure import collisions, motion
@@ -56,6 +57,7 @@ def show(scene, plan_ob, job=None):
     clearances = job.clearances + np.concatenate([np.empty(0), *deep])
     now.colliding = collisions.runs(frames, clearances, -tolerance, ends)
     timeline.mark(scene, collisions.union(state(p).colliding for p in on_timeline() if scene.objects.get(p.name) == p))
+    views.redraw()
     return now.colliding
 
 

@@ -38,6 +38,7 @@ class Spot:
 
 
 held = None  # the axis while the user turns the tool, for what is drawn next to it
+said = None  # (what the tool touches or is next to, whether it is free) while a device turns it, likewise
 
 
 def plan_object(context):

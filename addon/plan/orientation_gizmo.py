@@ -7,6 +7,7 @@ from mathutils import Matrix, Vector
 
 from ..blender import scene_units
 from ..common import glyphs
+from ..pen import session as pen_session
 from . import current_pose
 from .pure import tool_rotation
 
@@ -28,7 +29,8 @@ class RIFFLER_GGT_orientation(bpy.types.GizmoGroup):
 
     @classmethod
     def poll(cls, context):
-        return context.mode == "OBJECT" and current_pose.seen(context) is not None
+        # A device that turns the tool leaves nothing to drag.
+        return context.mode == "OBJECT" and pen_session.running is None and current_pose.seen(context) is not None
 
     def setup(self, context):
         self._handles = {handle: self._handle(handle) for handle in tool_rotation.HANDLES}

@@ -62,11 +62,12 @@ def _draw():
     grid = grid_of(known.map, zoom)
     place = corner(context, grid)
     angles = spot.line.lean(spot.index, current_pose.held if current_pose.held is not None else spot.axis)
-    # while the tool is turned, the header shows its clearance
-    state = "" if current_pose.held is not None else known.text
+    state, free = known.text, known.free
+    if current_pose.held is not None:  # while a handle turns the tool, the header shows its clearance
+        state, free = current_pose.said or ("", True)
     _back(grid, place, zoom, 2 if state else 1)
     _map(known, grid, place, spot, angles, zoom)
-    _labels(known, state, grid, place, angles, zoom)
+    _labels((state, free), grid, place, angles, zoom)
 
 
 def _back(grid, place, zoom, lines):
@@ -120,15 +121,15 @@ def _ring(name, centre, radius, width, colour):
     batches.draw(kept.get(name, (points.tobytes(), width), make), colour)
 
 
-def _labels(known, state, grid, place, angles, zoom):
-    (x, y), (width, height) = place, grid.size
+def _labels(found, grid, place, angles, zoom):
+    (state, free), (x, y), (width, height) = found, place, grid.size
     middle = x + width / 2
     said = [
         (tool_rotation.said(*angles), middle, y + height + 8 * zoom, TEXT, True),
         ("tilt →    inclination ↑", middle, y - 15 * zoom, EDGE, True),
     ]
     if state:
-        said.append((state, middle, y + height + (8 + LINE) * zoom, TEXT if known.free else ALARM, True))
+        said.append((state, middle, y + height + (8 + LINE) * zoom, TEXT if free else ALARM, True))
     _write(said, zoom)
 
 

@@ -18,6 +18,7 @@ from .operators import keys
 from .pure import tool_rotation
 from .pure.orient_run import OrientRun
 
+READ = 5.0  # s for which the reason of a refused press is shown
 STEP = "Set Key Orientation", "Delete Key Orientation"
 
 
@@ -26,9 +27,11 @@ class PenOrientation:
     riffler.OrientSession's. `ended` is called after its end, for any reason. ValueError, OSError, RuntimeError if it
     cannot start; then nothing has changed, and the device is closed."""
 
+    help = "Button 1: set a key    Button 2: delete it    Esc: end"
+
     def __init__(self, context, spot, near, device, options, ended=lambda: None):
         self._begin, self._on_end = time.perf_counter(), ended
-        self.ended, self.problem = False, ""
+        self.ended, self.problem, self._refused = False, "", 0.0  # the last: when a press was refused
         self.set, self.deleted = 0, 0  # keys
         self.near, self._scene, self._ob = near, context.scene.name, spot.ob.name
         self.path, self.tool, self._line = spot.path, spot.plan.tool, spot.line
@@ -85,6 +88,8 @@ class PenOrientation:
             self.finish()
             return False
         self._take_over_keys(spot)
+        if self.problem and time.perf_counter() - self._refused > READ:
+            self.problem = ""
         for change in self.run.look():
             self._apply(change)
         if self.run.pose is not None:
@@ -108,20 +113,22 @@ class PenOrientation:
         current_pose.held = self.run.pose[3:]
         current_pose.hand(scene, spot, self.run.pose)
 
+    def angles(self):
+        """The tool's angles, in words."""
+        return tool_rotation.said(*self._line.lean(self.run.point, self.run.pose[3:]))
+
     def state(self):
-        """What is written next to the tool: its angles, and what it touches or how far it is from that."""
+        """The plan.pure.clearance.State of the tool, or None before it has a pose, and after its path is gone."""
         spot = self.spot()
         if spot is None or self.run.pose is None:
-            return ""
-        angles = tool_rotation.said(*spot.line.lean(spot.index, self.run.pose[3:]))
+            return None
         room = scene_units.clean(self.scene.riffler.plan.clearance)
-        found = self.near.state(self.tool, self.run.pose, spot.plan.tolerance or 0.01, room)
-        return f"{angles}: {found}"
+        return self.near.state(self.tool, self.run.pose, spot.plan.tolerance or 0.01, room)
 
     # ------------------------------------------------------------------ keys
     def _apply(self, change):
         """One press of a button: a key of the plan, and an undo step."""
-        self.problem = change.refused or ""
+        self.problem, self._refused = change.refused or "", time.perf_counter()
         spot = self.spot()
         if change.refused or spot is None:
             return
@@ -175,7 +182,7 @@ class PenOrientation:
             self.run.halt()
         finally:
             self.run.close()
-            current_pose.held = None
+            current_pose.held = current_pose.said = None
             if self.ob is not None and timeline.pair(self.ob) is not None:
                 current_pose.release(self.scene, self.ob)
             state = bpy.context.window_manager.riffler

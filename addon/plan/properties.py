@@ -17,6 +17,7 @@ from bpy.props import (
 from ..blender.fields import length
 from ..blender.object_surfaces import WITH_SURFACE
 from ..common import json_object, presets
+from ..pen.properties import TurningDevice
 from . import strategy_fields
 from .machines import MACHINES
 
@@ -45,7 +46,7 @@ def _named(settings, context):
     replan.name_paths(settings.id_data)
 
 
-class RifflerPlan(FindSettings, bpy.types.PropertyGroup):
+class RifflerPlan(FindSettings, TurningDevice, bpy.types.PropertyGroup):
     """On a scene. The tool is stored whole, so that a plan can be made again without the tool's file."""
 
     part: PointerProperty(
@@ -58,7 +59,7 @@ class RifflerPlan(FindSettings, bpy.types.PropertyGroup):
     slide: BoolProperty(
         name="Slide along Path",
         default=True,
-        description="With a pen, the tool follows the hand along the path; otherwise it turns where it is",
+        description="The tool follows the hand along the path; otherwise it turns where it is",
     )
     fixtures: PointerProperty(
         name="Fixtures",

@@ -4,6 +4,7 @@ import bpy
 
 from ..blender.panel_parts import give, lines, wrapped
 from ..common import units
+from ..common.problems import capitalised
 from ..pen import operators as pen_operators
 from ..pen import properties as pen_properties
 from . import collision_marks, current_pose, plan_states, timeline
@@ -38,7 +39,7 @@ class RIFFLER_PT_timeline(OfPlan, bpy.types.Panel):
         if collision_marks.outdated(ob):
             lines(layout, *wrapped(context, "The marks of collisions may be out of date."), icon="INFO")
         for first, last in now.colliding[:4]:
-            lines(layout, f"Collides at frames {first} to {last}", icon="ERROR")
+            lines(layout, *wrapped(context, f"Collides at frames {first} to {last}"), icon="ERROR")
         if len(now.colliding) > 4:
             lines(layout, f"and {units.counted(len(now.colliding) - 4, 'time')} more", icon="BLANK1")
 
@@ -52,17 +53,21 @@ class RIFFLER_PT_timeline(OfPlan, bpy.types.Panel):
         layout.row(align=True).prop(context.scene.riffler.plan, "show")
 
     def _pen(self, layout, context):
-        settings, state = context.scene.riffler.pen, context.window_manager.riffler
+        state = context.window_manager.riffler
         if state.sculpting:
             layout.operator(pen_operators.RIFFLER_OT_pen_stop.bl_idname, icon="CANCEL", depress=True)
-            lines(layout, state.force, state.text)
+            lines(layout, *filter(None, state.force.split(", ", 1)), *wrapped(context, state.text))
             if state.why:
-                lines(layout, *wrapped(context, state.why), icon="INFO")
+                lines(layout, *wrapped(context, capitalised(state.why)), icon="INFO")
             return
+        settings = context.scene.riffler.plan
         op = layout.operator(orient_by_pen.RIFFLER_OT_plan_pen.bl_idname, icon="STYLUS_PRESSURE")
-        give(op, settings, pen_properties.DeviceSettings)
-        op.slide = context.scene.riffler.plan.slide
-        layout.prop(context.scene.riffler.plan, "slide")
+        give(op, settings, pen_properties.TurningDevice)
+        op.slide, op.scale = settings.slide, context.scene.riffler.pen.scale
+        column = layout.column()
+        column.use_property_split, column.use_property_decorate = True, False
+        column.prop(settings, "device")
+        layout.prop(settings, "slide")
 
 
 def draw_header(context, layout):

@@ -6,8 +6,9 @@ import numpy as np
 
 from ..blender import bars, batches, scene_units, views
 from ..common import glyphs, units
-from ..plan import path_rows, plan_store
+from ..plan import collision_marks, path_rows, plan_states, plan_store, replan, timeline
 from ..plan.pure import path_lines
+from ..sculpt import force_view
 from ..translations import local
 from . import programs
 from .pure import program_timeline
@@ -15,6 +16,7 @@ from .pure import program_timeline
 CLASSES = ()
 # Label, colour and width in pixels of each kind; the order is that of plan/pure/path_lines.py.
 LOOK = {
+    "collides": ("Collides", (1.0, 0.25, 0.2, 1.0), 4.0),
     "blocked": ("Blocked", (1.0, 0.25, 0.2, 1.0), 4.0),
     "lifted": ("Lifted", (1.0, 0.75, 0.1, 1.0), 4.0),
     "cut": ("Cut", (0.25, 0.9, 0.4, 1.0), 4.0),
@@ -32,7 +34,8 @@ CORNER = (20.0, 60.0)  # of its foot, from the toolbar and from the bottom: the 
 kept = batches.Batches()
 _drawn = [None, ()]  # the signature of the content of `kept`, and its kinds
 _in_views = views.InViews()
-_paths = {}  # cached lines of single paths: (id of the path, of its rows, state) → path, rows, {kind: segments}
+# Cached lines of single paths: (id of the path, of its rows, state, colliding points) → path, rows, {kind: segments}.
+_paths = {}
 
 
 def lines(context, ob):
@@ -40,18 +43,27 @@ def lines(context, ob):
     plan, found = plan_store.plan(ob), {}
     cl = list(plan.cl) or [None] * len(plan.paths)
     states = [row.state for row in ob.riffler.plan.rows] or ["unplanned"] * len(plan.paths)
-    for path, rows, state in zip(plan.paths, cl, states, strict=True):
-        for kind, some in _of_path(path, rows, state).items():
+    for k, (path, rows, state) in enumerate(zip(plan.paths, cl, states, strict=True)):
+        for kind, some in _of_path(path, rows, state, _hits(ob, plan, k)).items():
             found.setdefault(kind, []).append(some)
     out = {kind: np.concatenate(some) for kind, some in found.items()}
     return out | _links(context, ob, plan)
 
 
-def _of_path(path, rows, state):
-    key = id(path), id(rows), state
+def _hits(ob, plan, number):
+    """Bytes: for each point of a path, and of a loop for the first once more, whether the marks of collisions have
+    it."""
+    if timeline.pair(ob) is None or not collision_marks.asked(ob) or not replan.fits(ob, plan):
+        return b""
+    track = replan.layout_of(ob, plan).tracks[number]
+    return path_lines.hits(track.frames, plan_states.state(ob).colliding).tobytes()
+
+
+def _of_path(path, rows, state, hits):
+    key = id(path), id(rows), state, hits
     if key not in _paths:
         # holds the objects, so that their ids stay unique
-        _paths[key] = path, rows, path_lines.of_path(path, rows, state)
+        _paths[key] = path, rows, path_lines.of_path(path, rows, state, np.frombuffer(hits, bool))
     return _paths[key][2]
 
 
@@ -69,7 +81,8 @@ def signature(context, ob):
     """A value that changes with the lines."""
     program = programs.made_of(context, ob)
     states = "".join(row.state[0] for row in ob.riffler.plan.rows)
-    return plan_store.identity(ob), states, id(program), scene_units.mm_per_unit(context.scene)
+    colliding = tuple(plan_states.state(ob).colliding) if collision_marks.asked(ob) else ()
+    return plan_store.identity(ob), states, id(program), colliding, scene_units.mm_per_unit(context.scene)
 
 
 def shown(context):
@@ -138,7 +151,7 @@ def _draw_legend():
         return
     zoom = context.preferences.system.ui_scale
     tools = next((r.width for r in context.area.regions if r.type == "TOOLS" and r.width > 1), 0)
-    x, y = tools + CORNER[0] * zoom, CORNER[1] * zoom
+    x, y = tools + CORNER[0] * zoom, max(CORNER[1], force_view.foot()) * zoom
     listed = entries(ob, _drawn[1])
     import blf
 

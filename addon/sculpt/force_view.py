@@ -16,6 +16,7 @@ from ..common import glyphs, scale, units
 FORCE, TORQUE, BEYOND = (0.98, 0.62, 0.12), (0.25, 0.62, 0.98), (0.95, 0.15, 0.12)
 LENGTH, WIDTH = 140.0, 6.0  # pixels: length of an arrow at the limit, and width of its shaft
 CORNER, BESIDE = (24.0, 60.0), 92.0  # pixels from the region's lower left, next to the toolbar; from gauge to gauge
+TALL = 150.0  # pixels: a gauge with its title
 
 kept = batches.Batches()
 _in_views = views.InViews()
@@ -50,6 +51,11 @@ def begin(limit, lever, to_world):
     for draw, when in ((_draw_arrows, "POST_VIEW"), (_draw_gauges, "POST_PIXEL")):
         _in_views.add(draw, when)
     return _shown
+
+
+def foot():
+    """Pixels from the region's bottom, at a scale of 1, above which the gauges leave room for others."""
+    return CORNER[1] + TALL if _shown is not None else 0.0
 
 
 def end():

@@ -1,7 +1,10 @@
 """Runs in a Blender of its own, where umockdev has connected a SpaceMouse that is pushed to the right, button 1 held
-most of the time: it sculpts through the add-on, and reports the result. `command` is the command line for that."""
+most of the time: it sculpts through the add-on, or turns a plan's tool, and reports the result. `reported` starts
+that."""
 
+import json
 import os
+import shutil
 import struct
 import sys
 from pathlib import Path
@@ -9,7 +12,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 import bpy
 
-from support import common, harness, report
+from support import common, environments, harness, plans, report
 
 # A multi-axis controller: report 1 has its six axes, of 16 bits each, and report 3 its buttons.
 DESCRIPTOR = bytes.fromhex(
@@ -83,8 +86,45 @@ def command(folder):
     return ["umockdev-run", *plugged.split(), "--", sys.executable, __file__]
 
 
+def reported(folder, work):
+    """What the Blender reports after the work "sculpted" or "planned", in an empty folder. Counts as skipped where it
+    cannot run."""
+    if bpy.app.binary_path:
+        raise common.Skip("an application's jemalloc and umockdev wait for each other; wheels have none")
+    if shutil.which("umockdev-run") is None:
+        raise common.Skip("umockdev is not installed (Debian: umockdev)")
+    (folder / "scripts" / "addons").mkdir(parents=True)
+    (folder / "job.json").write_text(json.dumps({**common.JOB, "recordings": str(folder), "work": work}))
+    variables = {
+        "RIFFLER_TEST_JOB": str(folder / "job.json"),
+        "BLENDER_USER_RESOURCES": str(folder),
+        "BLENDER_USER_SCRIPTS": str(folder / "scripts"),
+    }
+    done = environments.execute(command(folder), variables, 120)
+    assert report.MARK in done.stdout, done.stdout[-2000:]
+    return json.loads(done.stdout.partition(report.MARK)[2].partition("\n")[0])
+
+
 def main():
     common.JOB, common.MODULE = harness.job, harness.install()
+    report.say(**{"sculpted": sculpted, "planned": planned}[harness.job["work"]]())
+    sys.stdout.flush()
+    os._exit(0)
+
+
+def planned():
+    """Turns the tool of a plan from the middle of its path, for two presses of the button."""
+    ob = plans.on_timeline(chosen=plans.paths()[:1])
+    bpy.context.scene.riffler.plan.part = plans.part_object()
+    bpy.context.scene.frame_set(73)
+    begun = list(common.part("plan.plan_store").plan(ob).paths[0].keys)
+    said = bpy.ops.riffler.plan_pen(device="spacemouse", seconds=4.0, scale=0.2)
+    path = common.part("plan.plan_store").plan(ob).paths[0]
+    keys = {k: (*path.centres[k], *axis) for k, axis in path.keys.items() if k not in begun}
+    return {"said": list(said), "keys": {str(k): list(map(float, at)) for k, at in sorted(keys.items())}}
+
+
+def sculpted():
     common.scale(1)
     ob = common.stock(size=(60, 60, 20), pitch=0.5, directions="xyz", origin="CORNER")
     bpy.context.scene.cursor.location = START
@@ -100,9 +140,7 @@ def main():
         seconds=5.0,
     )
     common.part("sculpt.live_registry").end_all()
-    report.say(removed=60 * 60 * 20 - common.content(ob).volume.volume)
-    sys.stdout.flush()
-    os._exit(0)
+    return {"removed": 60 * 60 * 20 - common.content(ob).volume.volume}
 
 
 if __name__ == "__main__":

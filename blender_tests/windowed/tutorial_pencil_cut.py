@@ -83,7 +83,8 @@ def made_stock(screen, part):
     return stock
 
 
-def set_up(screen, part, clamp):
+def set_up(screen, part, clamp, name="pencil-cut-1"):
+    """Part, fixture and tool by their buttons; `name`: of the picture, or ""."""
     settings = bpy.context.scene.riffler.plan
     lessons.activate(part)
     yield from lessons.press(screen, "riffler.plan_part", share=0.785)
@@ -98,10 +99,12 @@ def set_up(screen, part, clamp):
     lessons.activate(part)
     screen.to_view()
     yield 0.5
-    yield from lessons.picture(screen, "pencil-cut-1", lessons.view_box(screen))
+    if name:
+        yield from lessons.picture(screen, name, lessons.view_box(screen))
 
 
-def searched(screen):
+def searched(screen, name="pencil-cut-2"):
+    """The plan's object; `name`: of the picture, or ""."""
     yield from lessons.press(screen, "riffler.plan_find")
     yield lambda: lessons.idle() and len(lessons.module("plan.plan_store").in_scene(bpy.context.scene)) == 1
     (ob,) = lessons.module("plan.plan_store").in_scene(bpy.context.scene)
@@ -111,7 +114,8 @@ def searched(screen):
     assert len(paths) == 1, [p.length for p in paths]
     screen.to_view()
     yield 0.5
-    yield from lessons.picture(screen, "pencil-cut-2", lessons.view_box(screen))
+    if name:
+        yield from lessons.picture(screen, name, lessons.view_box(screen))
     return ob
 
 

@@ -84,6 +84,21 @@ Examples
 >>> with riffler.pen.open("simulated") as pen:
 ...     pen.hang(0.2)
 )")
+      .def("unplug", &pen::SimulatedDevice::unplug, R"(Pulls the cable out: a fault to practise with.
+
+Examples
+--------
+>>> with riffler.pen.open("simulated") as pen:
+...     pen.unplug()
+)")
+      .def("plug", &pen::SimulatedDevice::plug, R"(Puts the cable in again; the pen then connects by itself.
+
+Examples
+--------
+>>> with riffler.pen.open("simulated") as pen:
+...     pen.unplug()
+...     pen.plug()
+)")
       .def_property_readonly(
           "truth", [](const pen::SimulatedDevice& p) { return pen::PenKinematics(p.truth()); },
           "PenGeometry of the simulated arms and motors; ``geometry`` is what the host knows of them.");

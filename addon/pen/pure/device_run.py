@@ -19,6 +19,11 @@ class DeviceRun:
         """True if the device has motors, so that the hand feels something."""
         return any(axis.pushes for axis in self.device.limits.values())
 
+    @property
+    def gone(self) -> bool:
+        """True while the device is not connected. It takes no steps then, and the last frame's force is not one."""
+        return self.running and self.device.health().state in ("waiting", "connecting")
+
     def close(self) -> None:
         self.device.stop()
 

@@ -77,6 +77,8 @@ class PenRun(DeviceRun):
             self.pose, self.push = frame.tool, self.mean_push(frame)
         self.dropped_ticks = frame.dropped_ticks
         self.force = float(np.linalg.norm(frame.force))
+        if self.gone:
+            self.state, self.force, self.push = "off", 0.0, np.zeros((2, 3))
         self._collect(frame)
         self.why = self.session.journal_problem or self.reason(frame)
 

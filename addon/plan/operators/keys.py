@@ -11,6 +11,7 @@ from ...common import quaternions, units
 from ...common.job import AfterJob
 from .. import (
     collision_marks,
+    current_pose,
     fit_check,
     obstacles,
     path_curves,
@@ -157,9 +158,24 @@ def frame_of(layout, path, point):
     return track.frame_of(point)
 
 
-def ranges(layout):
-    shown = ", ".join(f"{t.first} and {t.last}" for t in layout.tracks[:3])
-    return shown + (" …" if len(layout.tracks) > 3 else "")
+def on_no_path(layout, frame):
+    """The ValueError that names a frame between the paths, and where they are."""
+    ranges = ", ".join(f"{t.first} and {t.last}" for t in layout.tracks[:3])
+    more = " …" if len(layout.tracks) > 3 else ""
+    return ValueError(f"Frame {frame:g} is on no path: go to one between {ranges}{more}")
+
+
+def spot_at(context, ob, path=0, point=0):
+    """The current_pose.Spot at the scene's frame, or of a path (from 1) and a point, and its frame. ValueError."""
+    plan = plan_store.plan(ob)
+    if not replan.fits(ob, plan):
+        raise ValueError(replan.OTHER_PATHS)
+    layout = replan.layout_of(ob, plan)
+    frame = frame_of(layout, path, point) if path else context.scene.frame_current_final
+    found = current_pose.spot(context.scene, ob, frame)
+    if found is None:
+        raise on_no_path(layout, frame)
+    return found, frame
 
 
 def set_key(scene, ob, frame, quat=None, axis=None):
@@ -173,7 +189,7 @@ def set_key(scene, ob, frame, quat=None, axis=None):
     frames, quats = timeline.read_keys(tool)
     layout = replan.layout_of(ob, plan)
     if layout.at(frame) is None:
-        raise ValueError(f"Frame {frame:g} is on no path: go to one between {ranges(layout)}")
+        raise on_no_path(layout, frame)
     reading = key_orientations.read(layout, frames, quats)
     path, index, _ = layout.place(frame)
     plan_store.refuse_turning(plan, path)

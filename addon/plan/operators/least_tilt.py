@@ -104,7 +104,7 @@ class RIFFLER_OT_plan_least_tilt(TimelineWork, bpy.types.Operator):
         if self.paths == "FRAME":
             layout, frame = replan.layout_of(ob, plan), context.scene.frame_current_final
             if layout.at(frame) is None:
-                raise ValueError(f"Frame {frame:g} is on no path: go to one between {keys.ranges(layout)}")
+                raise keys.on_no_path(layout, frame)
             plan_store.refuse_turning(plan, layout.at(frame))
             return [layout.at(frame)]
         if self.paths == "SELECTED":

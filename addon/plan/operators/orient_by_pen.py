@@ -1,29 +1,32 @@
-"""Turns the plan's tool with a pen or another device (plan/pen_orientation.py), polled thirty times a second; what the
-tool touches and the force on it are drawn."""
+"""Turns the plan's tool with a pen, mouse, tablet or another device (plan/pen_orientation.py), polled thirty times a
+second; what the tool touches and the force on it are drawn."""
 
 import time
 
 import bpy
 import numpy as np
 
-from ...blender import operator_parts, preferences_access, scene_units, views
+from ...blender import handlers, operator_parts, preferences_access, scene_units, views
 from ...common.job import AfterJob, DoneJob
 from ...pen import operators as pen_operators
 from ...pen import properties as pen_properties
 from ...pen import session as pen_session
 from ...sculpt import force_view
-from .. import current_pose, obstacles, plan_store, replan
+from .. import current_pose, obstacles, plan_store
 from ..pen_orientation import PenOrientation
+from ..pointer_orientation import PointerOrientation
 from . import keys
 from .plan_work import PlanWork, part_poll, timeline_poll
 
-HELP = "Button 1: set a key    Button 2: delete it    Esc: end"
+NO_EVENTS = "device: mouse and tablet turn the tool in a window only, until Esc; choose another device for a script"
+READ = 15.0  # s for which a message stays
+MOST_TORQUE = 300.0  # N·mm: a session's largest, unless the preferences name one
 
 _shown = None  # arrows and gauge (sculpt/force_view.py)
 _told, _told_at = (), 0.0
 
 
-class RIFFLER_OT_plan_pen(pen_properties.DeviceSettings, PlanWork, bpy.types.Operator):
+class RIFFLER_OT_plan_pen(pen_properties.TurningDevice, PlanWork, bpy.types.Operator):
     """Turn the plan's tool with a pen or another device: the cutter stays on the path, the hand feels what shank and
     holder hit; the first button sets a key orientation, the second deletes it
     """
@@ -34,6 +37,7 @@ class RIFFLER_OT_plan_pen(pen_properties.DeviceSettings, PlanWork, bpy.types.Ope
     doing = "Looking at part and fixtures"
     cancelled = "Looking at part and fixtures was cancelled"
 
+    scale: pen_properties.SCALE
     slide: bpy.props.BoolProperty(
         name="Slide along Path",
         default=True,
@@ -59,6 +63,8 @@ class RIFFLER_OT_plan_pen(pen_properties.DeviceSettings, PlanWork, bpy.types.Ope
             return pen_operators.stop(self)
         if not self.seconds > 0:
             return operator_parts.fail(self, ValueError(pen_operators.NO_SECONDS))
+        if self.device == pen_properties.POINTER:
+            return operator_parts.fail(self, ValueError(NO_EVENTS))
         try:
             ob, _ = self.take(context)
             self._spot(context, ob)
@@ -78,32 +84,38 @@ class RIFFLER_OT_plan_pen(pen_properties.DeviceSettings, PlanWork, bpy.types.Ope
         return AfterJob(obstacles.take(context, ob), DoneJob)
 
     def finish(self, context, job):
-        global _shown
         session = self._start(context, job.result)
         bpy.ops.wm.tool_set_by_id(name=current_pose.TOOL, space_type="VIEW_3D")
-        if session.run.pushes:
-            mm = scene_units.mm_per_unit(context.scene)
-            limit = scene_units.clean(context.scene.riffler.sculpt.limit)
-            _shown = force_view.begin(limit, session.tool.diameter / 2, np.diag([1 / mm, 1 / mm, 1 / mm, 1.0]))
+        _show_force(context, session.tool.diameter)
         bpy.app.timers.register(_look, first_interval=pen_operators.FRAME)
+        if self.device == pen_properties.POINTER:
+            bpy.ops.riffler.plan_pointer("INVOKE_DEFAULT")
         return {"FINISHED"}
 
     def _spot(self, context, ob):
-        spot = current_pose.spot(context.scene, ob)
-        if spot is None:
-            layout = replan.layout_of(ob, plan_store.plan(ob))
-            frame = context.scene.frame_current_final
-            raise ValueError(f"Frame {frame:g} is on no path: go to one between {keys.ranges(layout)}")
+        spot, _ = keys.spot_at(context, ob)
         plan_store.refuse_turning(spot.plan, spot.path)
         return spot
 
     def _start(self, context, near):
         spot = self._spot(context, self.ob)
-        options = {"slide": self.slide, "scale": scene_units.clean(self.scale), **preferences_access.limits()}
-        device = pen_operators.open_device(self)
-        session = PenOrientation(context, spot, near, device, options, _leave)
+        options = {"slide": self.slide, **preferences_access.limits()}
+        if self.device == pen_properties.POINTER:
+            session = PointerOrientation(context, spot, near, options, _leave)
+        else:
+            options["scale"] = scene_units.clean(self.scale)
+            session = PenOrientation(context, spot, near, pen_operators.open_device(self), options, _leave)
         _tell(session)
         return session
+
+
+def _show_force(context, diameter):
+    """Arrows and gauges of what the tool touches. Their marks: the largest torque that the hand gets, and the force
+    that has it a tool's diameter from the tip."""
+    global _shown
+    torque = preferences_access.limits().get("max_torque") or MOST_TORQUE
+    mm = scene_units.mm_per_unit(context.scene)
+    _shown = force_view.begin(torque / diameter, diameter, np.diag([1 / mm, 1 / mm, 1 / mm, 1.0]))
 
 
 def _look():
@@ -118,8 +130,16 @@ def _look():
     except operator_parts.ERRORS as error:
         session.fail(error)
     level, text, _ = session.summary()
-    pen_operators.say(f"Riffler: {text}" if level == "WARNING" else None)
+    if level == "WARNING":  # outside an operator there are no reports
+        pen_operators.say(f"Riffler: {text}")
+        bpy.app.timers.register(_hush, first_interval=READ)
     return None
+
+
+def _hush():
+    """Timer function: removes the message of a session that has ended by itself."""
+    if pen_session.running is None:
+        pen_operators.say(None)
 
 
 def _tell(session):
@@ -129,15 +149,16 @@ def _tell(session):
         _shown.pose, (_shown.force, _shown.torque) = run.pose, run.push
     if time.perf_counter() - _told_at < pen_operators.TELL:  # the state's distances cost more than the text
         return
-    hand = f"Hand: {run.state}, {run.force:.2f} N, {run.torque:.0f} N·mm"
-    told = hand, session.state(), session.problem or run.why
+    found, why = session.state(), run.why or session.problem
+    current_pose.said = (str(found), found.free) if found is not None else None
+    hand = f"Hand: {run.state}, {run.force:.2f} N, {run.torque:.0f} N·mm" if run.pushes else ""
+    told = hand, f"{session.angles()}: {found}" if found is not None else "", why
     if told == _told:
         return
     _told, _told_at = told, time.perf_counter()
     state = bpy.context.window_manager.riffler
     state.force, state.text, state.why = told
-    why = f"    {told[2]}" if told[2] else ""
-    pen_operators.say(f"Riffler: {hand}    {told[1]}    {HELP}{why}")
+    pen_operators.say("Riffler: " + "    ".join(filter(None, (*told[:2], session.help, why))))
     views.redraw_sidebars(bpy.context)
 
 
@@ -150,6 +171,26 @@ def _leave():
         force_view.end()
     pen_operators.say(None)
     views.redraw_sidebars(bpy.context)
+
+
+@bpy.app.handlers.persistent
+def _before_load(*_):
+    """Blender removes the timer, and with it what would end the session."""
+    if isinstance(pen_session.running, PenOrientation):
+        pen_session.running.drop()
+
+
+_HANDLERS = {"load_pre": _before_load}
+
+
+def attach():
+    handlers.listen(_HANDLERS)
+
+
+def detach():
+    handlers.ignore(_HANDLERS)
+    handlers.stop(_look)
+    handlers.stop(_hush)
 
 
 CLASSES = (RIFFLER_OT_plan_pen,)

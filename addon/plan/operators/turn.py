@@ -19,7 +19,6 @@ from .. import (
     path_view,
     plan_states,
     plan_store,
-    replan,
     timeline,
 )
 from ..current_pose import plan_object
@@ -37,19 +36,6 @@ HANDLES = (
 BUDGET = 2000.0  # µs for the force at each move of the pointer
 _held = None  # the operator that turns the tool in a window, or None
 HELP = "Ctrl: steps of 5°    Shift: slowly    Numbers: degrees    Esc: as it was"
-
-
-def _spot(context, ob, path=0, point=0):
-    """The spot at the scene's frame, or of a path (from 1) and a point, and its frame. ValueError."""
-    plan = plan_store.plan(ob)
-    if not replan.fits(ob, plan):
-        raise ValueError(replan.OTHER_PATHS)
-    layout = replan.layout_of(ob, plan)
-    frame = keys.frame_of(layout, path, point) if path else context.scene.frame_current_final
-    found = current_pose.spot(context.scene, ob, frame)
-    if found is None:
-        raise ValueError(f"Frame {frame:g} is on no path: go to one between {keys.ranges(layout)}")
-    return found, frame
 
 
 class RIFFLER_OT_plan_turn(bpy.types.Operator):
@@ -92,7 +78,7 @@ class RIFFLER_OT_plan_turn(bpy.types.Operator):
     def execute(self, context):
         try:
             ob = plan_object(context)
-            spot, frame = _spot(context, ob, self.path, self.point)
+            spot, frame = keys.spot_at(context, ob, self.path, self.point)
             angles = tool_rotation.cleaned(self.inclination), tool_rotation.cleaned(self.tilt)
             if self.relative:
                 angles = tool_rotation.within(*np.add(spot.line.lean(spot.index, spot.axis), angles))
@@ -125,7 +111,7 @@ class RIFFLER_OT_plan_turn(bpy.types.Operator):
             return self.execute(context)
         try:
             ob = plan_object(context)
-            spot, _ = _spot(context, ob)
+            spot, _ = keys.spot_at(context, ob)
             plan_store.refuse_turning(spot.plan, spot.path)
             view = current_pose.sight(context, context.region, context.region_data)
             radius = current_pose.reach(context, view, spot.centre)
@@ -259,7 +245,7 @@ class PointsAt:
         return found is not None
 
     def _go(self, context):
-        spot, frame = _spot(context, plan_object(context), self.path, self.point)
+        spot, frame = keys.spot_at(context, plan_object(context), self.path, self.point)
         timeline.go_to(context.scene, frame)
         return spot, frame
 
@@ -294,7 +280,7 @@ class RIFFLER_OT_plan_point_key(PointsAt, PlanWork, bpy.types.Operator):
 
     def begin(self, context):
         ob, _ = self.take(context)
-        self._spot, self._frame = _spot(context, ob, self.path, self.point)
+        self._spot, self._frame = keys.spot_at(context, ob, self.path, self.point)
         plan_store.refuse_turning(self._spot.plan, self._spot.path)
         if obstacles.part_of(context.scene, ob) is None:
             return DoneJob(None)

@@ -52,5 +52,7 @@ class OrientRun(DeviceRun):
             self.pose, self.station = frame.tool, frame.station
             self.push = self.mean_push(frame)
         self.force, self.torque = float(np.linalg.norm(frame.force)), float(np.linalg.norm(frame.torque))
+        if self.gone:
+            self.state, self.force, self.torque, self.push = "off", 0.0, 0.0, np.zeros((2, 3))
         self.why = self.reason(frame)
         return frame.changes

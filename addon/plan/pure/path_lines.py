@@ -10,18 +10,31 @@ import numpy as np
 from . import motion
 
 # In a legend's order: problems first, then what is written, then what is not.
-KINDS = ("blocked", "lifted", "cut", "lead", "retract", "rapid", "keyed", "unplanned", "off")
+KINDS = ("collides", "blocked", "lifted", "cut", "lead", "retract", "rapid", "keyed", "unplanned", "off")
 LIFTED = 1e-3  # mm: smaller lifts are rounding
 
 
-def of_path(path, rows, state: str) -> dict[str, np.ndarray]:
-    """{kind: segments} of one path in a state of plan/path_rows.py; `rows`: its cutter locations, or None."""
+def of_path(path, rows, state: str, hits=()) -> dict[str, np.ndarray]:
+    """{kind: segments} of one path in a state of plan/path_rows.py; `rows`: its cutter locations, or None; `hits`: for
+    each point, and of a loop for the first once more, whether the tool collides there, or empty."""
     if state != "free" or rows is None or not len(rows):
         line = np.vstack([path.centres, path.centres[:1]]) if path.closed else path.centres
-        return {state: pieces(line)}
+        both = pieces(line)
+        if state not in ("keyed", "unplanned") or len(hits) != len(line):
+            return {state: both}
+        off = np.asarray(hits[:-1]) | np.asarray(hits[1:])
+        return {state: both[~off], "collides": both[off]}
     line, high = centres(rows, path.radius), lifts(path, rows) > LIFTED
     both, off = pieces(line), high[:-1] | high[1:]
     return {"cut": both[~off], "lifted": both[off]}
+
+
+def hits(frames: np.ndarray, runs) -> np.ndarray:
+    """Which frames (n,) lie in runs of whole frames (first, last)."""
+    found = np.zeros(len(frames), bool)
+    for first, last in runs:
+        found |= (frames >= first - 1e-6) & (frames <= last + 1e-6)
+    return found
 
 
 def centres(rows: np.ndarray, radius: float) -> np.ndarray:

@@ -46,6 +46,19 @@ class View(NamedTuple):
     back: np.ndarray
 
 
+def leaning(view: View, tilt) -> np.ndarray:
+    """The unit axis of a pen on the view, upright at a tilt of 0; `tilt` as in Sample."""
+    lean = np.asarray(tilt, float) * (np.pi / 2)
+    lean = np.where(np.isfinite(lean), lean, 0.0)
+    angle = float(np.hypot(*lean))
+    if angle < 1e-12:
+        return view.back
+    lean /= angle
+    angle = min(angle, MOST_TILT)
+    across = lean[0] * view.right + lean[1] * view.up
+    return np.cos(angle) * view.back + np.sin(angle) * across
+
+
 @dataclass(frozen=True)
 class Settings:
     depth: float = 0.5  # mm below the surface, along its normal
@@ -190,15 +203,7 @@ class StrokeMaker:
             return normal
         if kind == "UP":
             return np.array([0.0, 0.0, 1.0])
-        lean = np.array([sample.tilt_x, sample.tilt_y]) * (np.pi / 2) if kind == "TILT" else np.zeros(2)
-        lean = np.where(np.isfinite(lean), lean, 0.0)
-        angle = float(np.hypot(*lean))
-        if angle < 1e-12:
-            return self.view.back
-        lean /= angle
-        angle = min(angle, MOST_TILT)
-        across = lean[0] * self.view.right + lean[1] * self.view.up
-        return np.cos(angle) * self.view.back + np.sin(angle) * across
+        return leaning(self.view, (sample.tilt_x, sample.tilt_y) if kind == "TILT" else (0.0, 0.0))
 
     def _pose(self, point, normal, axis, depth) -> np.ndarray:
         """The cutter's outermost point against the normal is `depth` below `point`."""

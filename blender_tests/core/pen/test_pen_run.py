@@ -87,3 +87,31 @@ def test_the_rows_of_a_run_and_its_journal_tell_the_same_and_states_are_known_af
     kept.delete()
     run.close()
     assert not kept.folder.exists()
+
+
+def test_an_unplugged_pen_has_no_force_and_a_reason_and_gets_its_force_again():
+    device = riffler.pen.open("simulated")
+    box = ((-40, -40, -40), (40, 40, 0), 1.0, "z")
+    run = pen_run.PenRun(device, BALL, {"at": [0, 0, 1, 0, 0, 1], "ramp": 0.05})
+    run.prepare(riffler.Volume.block(*box))
+    run.start()
+
+    def looks_until(what):
+        end = time.monotonic() + 20
+        while not what() and time.monotonic() < end:
+            time.sleep(0.02)
+            run.look()
+        assert what(), (run.state, run.force, run.why)
+
+    try:
+        looks_until(lambda: run.state in ("ready", "ramp", "active") and run.pose is not None)
+        run.force = 1.0  # as of a frame in contact
+        device.unplug()
+        looks_until(lambda: run.why == "the simulated pen is unplugged; plug it in again")
+        assert run.gone and run.state == "off" and run.force == 0 and not run.push.any()
+        device.plug()
+        looks_until(lambda: run.state in ("ready", "ramp", "active") and run.why == "")
+        assert not run.gone
+    finally:
+        run.halt()
+        run.close()

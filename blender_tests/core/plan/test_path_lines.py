@@ -54,6 +54,20 @@ def test_what_is_not_cut_is_one_line_along_the_centres(state):
     assert len(loop) == 11 and np.array_equal(loop[-1, 1], loop[0, 0])
 
 
+def test_stretches_that_collide_are_lines_of_their_own():
+    hits = path_lines.hits(np.arange(1.0, 12.0), [(3, 5), (9, 9)])
+    assert hits.tolist() == [False, False, True, True, True, False, False, False, True, False, False]
+    found = path_lines.of_path(path(), None, "keyed", hits)
+    assert len(found["collides"]) == 6 and len(found["keyed"]) == 4
+    line = path_lines.of_path(path(), None, "keyed")["keyed"]
+    assert np.array_equal(found["collides"], line[[1, 2, 3, 4, 7, 8]])
+    assert np.array_equal(found["keyed"], line[[0, 5, 6, 9]])
+    loop = path(closed=True)
+    assert list(path_lines.of_path(loop, None, "keyed", np.ones(11, bool))) == ["keyed"], "of another path"
+    assert len(path_lines.of_path(loop, None, "keyed", np.ones(12, bool))["collides"]) == 11
+    assert list(path_lines.of_path(path(), None, "blocked", hits)) == ["blocked"]
+
+
 def test_ways_between_cuts_are_lead_ins_rapids_and_retracts():
     tool = riffler.Tool.ball(6, 30)
     cuts = [rows_of(path(lean=0.0)), rows_of(path(lean=0.0)) + np.array([40, 0, 0, 0, 0, 0])]

@@ -1,12 +1,14 @@
 """Orient by Pen without a window: the tool follows a device, buttons set and delete keys, undo, ends, refusals."""
 
+import tempfile
 import time
+from pathlib import Path
 
 import bpy
 import numpy as np
 import riffler
 
-from support import common, plans
+from support import common, plans, spacemouse_run
 from support.keyframed_plan import close, indices, pair, paths, state
 
 UP = (0.0, 0.0, 1.0)
@@ -126,7 +128,7 @@ def test_the_axis_stops_where_the_holder_hits_the_wall():
     # The cutter's side lies on the wall: it can lean no further than upright, up to what the wall yields.
     assert abs(hand.axis[1]) < 0.06, hand.axis
     assert hand.session.run.touching is not None
-    assert "by" in hand.session.state() or "Free" in hand.session.state()
+    assert not hand.session.state().free and "hits Step by" in str(hand.session.state())
     hand.to(30.0, -0.4)
     assert close(hand.axis, (0, np.sin(-0.4), np.cos(0.4)), 0.03)
     hand.session.finish()
@@ -160,6 +162,15 @@ def test_a_plan_that_is_removed_ends_the_session_with_a_sentence():
     ended()
 
 
+def test_another_file_ends_the_session():
+    ob = scene()
+    hand = Tablet(ob)
+    run = hand.session.run
+    bpy.ops.wm.read_homefile(use_empty=True)
+    ended()
+    assert not run.running and hand.session.ended
+
+
 def test_the_simulated_pen_turns_the_tool_for_some_seconds():
     ob = scene()
     for seconds in (4.0, 8.0, 16.0):
@@ -171,10 +182,21 @@ def test_the_simulated_pen_turns_the_tool_for_some_seconds():
     assert indices(ob)[0] == [0, 72, 144], indices(ob)
 
 
+@common.core_bound
+def test_a_puck_slides_the_tool_along_its_path_and_sets_keys():
+    """A SpaceMouse of umockdev, pushed to the right: along the path."""
+    with tempfile.TemporaryDirectory() as name:
+        found = spacemouse_run.reported(Path(name), "planned")
+    places = list(found["keys"].values())
+    assert found["said"] == ["FINISHED"] and len(places) > 1, found
+    assert places[-1][0] > places[0][0] + 1 and np.ptp(np.array(places)[:, 1:], axis=0).max() < 0.02, found
+
+
 def test_what_cannot_be_turned_is_refused_by_name():
     ob = scene()
     operator = bpy.ops.riffler.plan_pen
     common.refused(operator, "duration")
+    common.refused(lambda: operator(device="pointer", seconds=0.1), "in a window only")
     bpy.context.scene.frame_set(100000)
     common.refused(lambda: operator(seconds=0.1), "on no path")
     bpy.context.scene.frame_set(73)

@@ -10,6 +10,7 @@
 #include "pen/models/riffler_model.hpp"
 #include "pen/simulated/simulated_transport.hpp"
 #include "riffler/base/check.hpp"
+#include "riffler/pen/hid/open_error.hpp"
 
 namespace riffler::pen {
 
@@ -55,12 +56,27 @@ struct SimulatedDevice::Losses {
   }
 };
 
-/// The weight that hangs on the grip.
-struct SimulatedDevice::Hung {
+/// What hangs on the pen: a weight on its grip, and its cable.
+struct SimulatedDevice::Load {
   struct Told {
     double mass = 0, hook = 0;
   };
   Published<Told> told;
+  std::atomic<bool> plugged{true};
+
+  void turn(SimulatedPen& pen) {
+    const Told now = told.get();
+    pen.weight().hang(now.mass, now.hook);
+    connect(pen);
+  }
+  void connect(SimulatedPen& pen) {
+    const bool wanted = plugged.load(std::memory_order_relaxed);
+    if (wanted == pen.plugged()) return;
+    if (wanted)
+      pen.plug();
+    else
+      pen.unplug();
+  }
 };
 
 std::unique_ptr<SimulatedDevice> SimulatedDevice::open(const SimulatedPenSettings& settings,
@@ -72,11 +88,8 @@ std::unique_ptr<SimulatedDevice> SimulatedDevice::open(const SimulatedPenSetting
   pen->hand().follow([hand](double seconds) { return hand->wish(seconds); });
   auto losses = std::make_shared<Losses>();
   pen->on_sense = [losses](riffler_pen_sensors& sensors) { losses->take(sensors); };
-  auto hung = std::make_shared<Hung>();
-  pen->on_turn = [hung, pen = pen.get()] {
-    const Hung::Told now = hung->told.get();
-    pen->weight().hang(now.mass, now.hook);
-  };
+  auto load = std::make_shared<Load>();
+  pen->on_turn = [load, pen = pen.get()] { load->turn(*pen); };
   const auto clock = real_time ? std::make_shared<StallTolerantClock>()
                                : std::make_shared<StallTolerantClock>(kStall, as_fast_as_possible());
   const double start = clock->now();
@@ -84,25 +97,27 @@ std::unique_ptr<SimulatedDevice> SimulatedDevice::open(const SimulatedPenSetting
   auto model = std::make_shared<RifflerModel>(*transport, compensation);
   // It starts in its home posture, and the hand rests there for longer than the first report takes.
   model->home();
-  auto again = [pen, clock, start, model]() -> std::unique_ptr<Transport> {
+  auto again = [pen, clock, start, model, load]() -> std::unique_ptr<Transport> {
+    load->connect(*pen);  // nothing advances a pen without a transport
+    if (!pen->plugged()) throw OpenError(OpenProblem::NoFile, "the simulated pen is unplugged; plug it in again");
     auto next = std::make_unique<SimulatedTransport>(pen, clock, start);
     model->check(*next);
     return next;
   };
   return std::unique_ptr<SimulatedDevice>(new SimulatedDevice(settings.geometry, std::move(hand), std::move(losses),
-                                                              std::move(hung), std::move(model), std::move(transport),
+                                                              std::move(load), std::move(model), std::move(transport),
                                                               std::move(again), driver, clock));
 }
 
 SimulatedDevice::SimulatedDevice(const PenGeometry& truth, std::shared_ptr<Hand> hand, std::shared_ptr<Losses> losses,
-                                 std::shared_ptr<Hung> hung, std::shared_ptr<PenModel> model,
+                                 std::shared_ptr<Load> load, std::shared_ptr<PenModel> model,
                                  std::unique_ptr<Transport> transport, Driver::Open open, const DriverSettings& driver,
                                  std::shared_ptr<StallTolerantClock> clock)
     : DrivenPen(kSimulatedKind, std::move(model), std::move(transport), std::move(open), driver, clock),
       truth_(truth),
       hand_(std::move(hand)),
       losses_(std::move(losses)),
-      hung_(std::move(hung)),
+      load_(std::move(load)),
       clock_(std::move(clock)) {}
 
 void SimulatedDevice::aim(const HandWish& wish) {
@@ -127,7 +142,15 @@ void SimulatedDevice::lose(std::size_t channel, std::int32_t counts) {
 
 void SimulatedDevice::hang(double mass, double hook) {
   SimulatedWeight().hang(mass, hook);  // checks
-  hung_->told.set({mass, hook});
+  load_->told.set({mass, hook});
+}
+
+void SimulatedDevice::unplug() noexcept {
+  load_->plugged.store(false, std::memory_order_relaxed);
+}
+
+void SimulatedDevice::plug() noexcept {
+  load_->plugged.store(true, std::memory_order_relaxed);
 }
 
 }  // namespace riffler::pen

@@ -39,19 +39,22 @@ class SimulatedDevice final : public DrivenPen {
   void lose(std::size_t channel, std::int32_t counts);
   /// Hangs a weight on the grip as SimulatedWeight::hang, and with its exceptions. By the thread of aim().
   void hang(double mass, double hook);
+  /// Pulls the cable out, or puts it in again: the driver then connects by itself. Any thread; never waits.
+  void unplug() noexcept;
+  void plug() noexcept;
 
  private:
   struct Hand;
-  struct Hung;
+  struct Load;
   struct Losses;
   SimulatedDevice(const PenGeometry& truth, std::shared_ptr<Hand> hand, std::shared_ptr<Losses> losses,
-                  std::shared_ptr<Hung> hung, std::shared_ptr<PenModel> model, std::unique_ptr<Transport> transport,
+                  std::shared_ptr<Load> load, std::shared_ptr<PenModel> model, std::unique_ptr<Transport> transport,
                   Driver::Open open, const DriverSettings& driver, std::shared_ptr<StallTolerantClock> clock);
 
   PenGeometry truth_;
   std::shared_ptr<Hand> hand_;
   std::shared_ptr<Losses> losses_;
-  std::shared_ptr<Hung> hung_;
+  std::shared_ptr<Load> load_;
   std::shared_ptr<StallTolerantClock> clock_;
 };
 

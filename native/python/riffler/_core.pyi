@@ -3743,6 +3743,25 @@ class SimulatedPen(PenDevice):
         >>> with riffler.pen.open("simulated") as pen:
         ...     pen.lose(0, 20)
         """
+    def plug(self) -> None:
+        """
+        Puts the cable in again; the pen then connects by itself.
+
+        Examples
+        --------
+        >>> with riffler.pen.open("simulated") as pen:
+        ...     pen.unplug()
+        ...     pen.plug()
+        """
+    def unplug(self) -> None:
+        """
+        Pulls the cable out: a fault to practise with.
+
+        Examples
+        --------
+        >>> with riffler.pen.open("simulated") as pen:
+        ...     pen.unplug()
+        """
     def wander(self) -> None:
         """
         Moves the hand round on its own curve again.

@@ -6,7 +6,17 @@ import pytest
 from sources import ROOT, spoken
 
 DOCS = ROOT / "docs"
-PAGES = ["first-chip", "relief", "engrave", "connect-a-pen", "pencil-cut", "planning", "sessions", "troubleshooting"]
+PAGES = [
+    "first-chip",
+    "relief",
+    "engrave",
+    "connect-a-pen",
+    "pencil-cut",
+    "plan-by-feel",
+    "planning",
+    "sessions",
+    "troubleshooting",
+]
 # What is Blender's own, and what objects are called in a tutorial.
 BLENDERS = {
     *(

@@ -303,3 +303,14 @@ def test_a_pens_counts_are_those_of_its_geometry():
         assert abs(device.state().stretch) > 1
         with pytest.raises(ValueError, match="channel must be 0 to 5, not 7"):
             device.lose(7, 1)
+
+
+def test_an_unplugged_pen_is_named_and_connects_by_itself():
+    unplugged = "the simulated pen is unplugged; plug it in again"
+    with riffler.pen.open("simulated") as device:
+        for pull, state, problem in ((device.unplug, "waiting", unplugged), (device.plug, "connected", None)):
+            pull()
+            end = time.monotonic() + 20
+            while (device.health().state, device.health().problem) != (state, problem) and time.monotonic() < end:
+                time.sleep(0.01)
+            assert (device.health().state, device.health().problem) == (state, problem)

@@ -97,6 +97,21 @@ TEST(SimulatedDevice, LosesCountsAndTheGripShowsIt) {
   EXPECT_EQ(test::error_of([&] { pen->lose(6, 1); }), "channel must be 0 to 5, not 6");
 }
 
+TEST(SimulatedDevice, UnpluggedItIsGoneAndPluggedInItComesBack) {
+  const auto pen = SimulatedDevice::open();
+  ASSERT_TRUE(comes_true([&] { return pen->newest().homed; }));
+  for (int round = 0; round < 2; ++round) {
+    pen->unplug();
+    EXPECT_TRUE(comes_true([&] { return pen->status().state != LinkState::Connected; }));
+    const auto seen = pen->newest().sequence;
+    EXPECT_TRUE(comes_true([&] { return pen->status().problem == OpenProblem::NoFile; }));
+    EXPECT_EQ(pen->newest().sequence, seen);
+    pen->plug();
+    EXPECT_TRUE(
+        comes_true([&] { return pen->status().state == LinkState::Connected && pen->newest().sequence > seen; }));
+  }
+}
+
 TEST(SimulatedDevice, WishesThatCannotBeAreRefused) {
   const auto pen = SimulatedDevice::open();
   const auto refused = [&](const HandWish& wish) { return test::error_of([&] { pen->aim(wish); }); };
