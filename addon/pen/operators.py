@@ -171,7 +171,7 @@ class RIFFLER_OT_pen_sculpt(sculpt_work.TakesTool, properties.PenSettings, bpy.t
             tool = brush.cutter(riffler.Tool.from_dict(self.tool_dict(context)), depth)
             folder, options = recordings(self), session_options(context, ob, self, brush)
             device = open_device(self)
-            pen_session.PenSession(context, ob, device, tool, options, folder, _leave)
+            pen_session.PenSession(context, ob, device, tool, options, folder, _leave, view=self.axes == "VIEW")
         except (*operator_parts.ERRORS, TypeError) as error:
             operator_parts.fail(self, error)
             return False

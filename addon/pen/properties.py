@@ -22,8 +22,14 @@ STARTS = (
 )
 
 
+AXES = (
+    ("STOCK", "Fixed", "The device's axes are those of the stock, or of the scene for a plan"),
+    ("VIEW", "View", "Right, up and away of the hand are those of the 3D view; they follow it between strokes"),
+)
+
 DEVICE = EnumProperty(name="Device", items=CHOICES, default=PREFERRED, description="Input device")
 SCALE = length("Scale", 1.0, "Distance that the tool moves, per distance of the hand", 1e-3, 100.0)
+TURN = EnumProperty(name="Axes", items=AXES, default="STOCK", description="How the hand's directions move the tool")
 
 
 class DeviceSettings:
@@ -31,6 +37,7 @@ class DeviceSettings:
 
     device: DEVICE
     scale: SCALE
+    axes: TURN
 
 
 class PenSettings:
@@ -45,6 +52,7 @@ class PenSettings:
     )
     gap: length("Gap", 1.0, "Distance from the top of the stock to the tool tip at the start, in mm", 0.0, 1e4)
     scale: SCALE
+    axes: TURN
     stiffness: length("Stiffness", 1.0, "Stiffness of the coupling between hand and tool, in N/mm", 1e-3, 100.0)
     removal_constant: FloatProperty(
         name="Resistance",

@@ -10,7 +10,7 @@ import time
 import bpy
 import numpy as np
 
-from ..blender import scene_units
+from ..blender import scene_units, views
 from ..common import units
 from ..pen import session as pen_session
 from . import collision_marks, current_pose, plan_store, replan, timeline
@@ -23,10 +23,10 @@ STEP = "Set Key Orientation", "Delete Key Orientation"
 
 class PenOrientation:
     """A session of the open `device` with the path of `spot`; `near`: plan.pure.clearance.Surroundings; `options`:
-    riffler.OrientSession's. `ended` is called after its end, for any reason. ValueError, OSError, RuntimeError if it
-    cannot start; then nothing has changed, and the device is closed."""
+    riffler.OrientSession's; `view`: the device's axes follow the 3D view. `ended` is called after its end, for any
+    reason. ValueError, OSError, RuntimeError if it cannot start; then nothing has changed, and the device is closed."""
 
-    def __init__(self, context, spot, near, device, options, ended=lambda: None):
+    def __init__(self, context, spot, near, device, options, ended=lambda: None, view=False):
         self._begin, self._on_end = time.perf_counter(), ended
         self.ended, self.problem = False, ""
         self.set, self.deleted = 0, 0  # keys
@@ -36,8 +36,9 @@ class PenOrientation:
         self._interpolation = spot.line.interpolation or "smooth"
         options = {"point": spot.index, "axis": spot.axis, "interpolation": self._interpolation, **options}
         try:
-            self.run = OrientRun(device, spot.line, self.tool, near.collider, options)
+            self.run = OrientRun(device, spot.line, self.tool, near.collider, options, view)
             self.run.start()
+            self._turn()
         except BaseException:
             device.stop()
             raise
@@ -75,6 +76,9 @@ class PenOrientation:
             return None
         return current_pose.Spot(ob, plan, self.path, self.run.point)
 
+    def _turn(self):
+        self.run.turn(views.facing(), np.eye(3), self.run.touching is not None)
+
     def look(self):
         """Shows what the hand did since the last call. False if the session has ended."""
         if self.ended:
@@ -85,6 +89,7 @@ class PenOrientation:
             self.finish()
             return False
         self._take_over_keys(spot)
+        self._turn()
         for change in self.run.look():
             self._apply(change)
         if self.run.pose is not None:

@@ -101,7 +101,7 @@ class RIFFLER_OT_plan_pen(pen_properties.DeviceSettings, PlanWork, bpy.types.Ope
         spot = self._spot(context, self.ob)
         options = {"slide": self.slide, "scale": scene_units.clean(self.scale), **preferences_access.limits()}
         device = pen_operators.open_device(self)
-        session = PenOrientation(context, spot, near, device, options, _leave)
+        session = PenOrientation(context, spot, near, device, options, _leave, view=self.axes == "VIEW")
         _tell(session)
         return session
 
