@@ -58,7 +58,7 @@ def session_options(context, ob, settings, brush):
     }
     if settings.device == properties.RECORDING:
         return options  # a recording's poses are in the stock's frame
-    options["scale"] = clean(settings.scale)
+    options["scale"], options["pivot"] = clean(settings.scale), clean(settings.pivot)
     if settings.start == "CURSOR":
         world = np.append(context.scene.cursor.location, 1.0)
         tip = (sculpts.from_world(ob) @ world)[:3]

@@ -29,6 +29,13 @@ AXES = (
 
 DEVICE = EnumProperty(name="Device", items=CHOICES, default=PREFERRED, description="Input device")
 SCALE = length("Scale", 1.0, "Distance that the tool moves, per distance of the hand", 1e-3, 100.0)
+PIVOT = length(
+    "Pivot",
+    0.0,
+    "Distance from the tip to the point about which the hand turns the tool and feels its torque, in mm; 0: the tip",
+    0.0,
+    1000.0,
+)
 TURN = EnumProperty(name="Axes", items=AXES, default="STOCK", description="How the hand's directions move the tool")
 
 
@@ -38,6 +45,7 @@ class DeviceSettings:
     device: DEVICE
     scale: SCALE
     axes: TURN
+    pivot: PIVOT
 
 
 class PenSettings:
@@ -53,6 +61,7 @@ class PenSettings:
     gap: length("Gap", 1.0, "Distance from the top of the stock to the tool tip at the start, in mm", 0.0, 1e4)
     scale: SCALE
     axes: TURN
+    pivot: PIVOT
     stiffness: length("Stiffness", 1.0, "Stiffness of the coupling between hand and tool, in N/mm", 1e-3, 100.0)
     removal_constant: FloatProperty(
         name="Resistance",

@@ -99,7 +99,9 @@ class RIFFLER_OT_plan_pen(pen_properties.DeviceSettings, PlanWork, bpy.types.Ope
 
     def _start(self, context, near):
         spot = self._spot(context, self.ob)
-        options = {"slide": self.slide, "scale": scene_units.clean(self.scale), **preferences_access.limits()}
+        clean = scene_units.clean
+        options = {"slide": self.slide, "scale": clean(self.scale), "pivot": clean(self.pivot)}
+        options |= preferences_access.limits()
         device = pen_operators.open_device(self)
         session = PenOrientation(context, spot, near, device, options, _leave, view=self.axes == "VIEW")
         _tell(session)
