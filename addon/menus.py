@@ -4,7 +4,7 @@ import bpy
 
 from .blender.panel_parts import give
 from .plan import properties as plan_properties
-from .plan.operators import find, least_tilt, setup
+from .plan.operators import find, from_strokes, least_tilt, setup
 from .sculpt import first_stroke, persistence
 from .stock import clay, cut, export, new_stock, protection, recover, result, solid
 from .stock import properties as stock_properties
@@ -43,6 +43,7 @@ class RIFFLER_MT_object(bpy.types.Menu):
         layout.operator(setup.RIFFLER_OT_plan_part.bl_idname)
         layout.operator(setup.RIFFLER_OT_plan_fixtures_add.bl_idname)
         give(layout.operator(find.RIFFLER_OT_plan_find.bl_idname), settings.plan, plan_properties.FindSettings)
+        layout.operator(from_strokes.RIFFLER_OT_plan_from_strokes.bl_idname)
         layout.operator_menu_enum(least_tilt.RIFFLER_OT_plan_least_tilt.bl_idname, "paths")
         if persistence.crashed():
             layout.separator()

@@ -84,6 +84,7 @@ SECTIONS = (
             "operators.machine_options",
             "operators.setup",
             "operators.find",
+            "operators.from_strokes",
             "operators.change_tool",
             "operators.scene_unit",
             "operators.watch",

@@ -34,7 +34,7 @@ TOPICS = {
     "Recovery and reports": ["recover", "discard_journal", "dismiss", "doctor"],
     "Plans": ["plan_part", "plan_fixtures_add", "plan_fixtures_remove", "plan_tool", "plan_tool_open", "plan_tool_save",
               "plan_use_tool",
-              "plan_assembly", "plan_find", "plan_show", "plan_switch", "plan_delete_paths"],
+              "plan_assembly", "plan_find", "plan_from_strokes", "plan_show", "plan_switch", "plan_delete_paths"],
     "Orientations": ["plan_to_timeline", "plan_key", "plan_key_delete", "plan_key_jump", "plan_least_tilt",
                      "plan_check", "plan_point", "plan_point_key", "plan_turn", "plan_pen", "plan_pointer"],
     "Programs and verification": ["plan_resolve", "plan_nc", "machine_option", "machine_option_add", "simulate",

@@ -1,6 +1,7 @@
 """The 3D views, of all screens or of those in windows, and drawing in them."""
 
 import bpy
+import numpy as np
 
 
 def views():
@@ -9,6 +10,23 @@ def views():
         for k, area in enumerate(screen.areas):
             if area.type == "VIEW_3D":
                 yield screen.name, k, area.spaces.active
+
+
+def facing():
+    """(3, 3): right, up and towards the viewer in the world, as rows, of the largest 3D view in the windows; without a
+    window of any screen. None if there is no 3D view."""
+    screens = [window.screen for window in bpy.context.window_manager.windows] or list(bpy.data.screens)
+    areas = [area for screen in screens for area in screen.areas if area.type == "VIEW_3D"]
+    if not areas:
+        return None
+    space = max(areas, key=lambda area: area.width * area.height).spaces.active
+    region = space.region_3d
+    if region is None:
+        return None
+    # not its view_matrix, which is that of the last drawing
+    camera = space.camera if region.view_perspective == "CAMERA" else None
+    axes = camera.matrix_world.to_3x3() if camera is not None else region.view_rotation.to_matrix()
+    return np.array(axes).T
 
 
 def redraw():

@@ -58,7 +58,7 @@ def session_options(context, ob, settings, brush):
     }
     if settings.device == properties.RECORDING:
         return options  # a recording's poses are in the stock's frame
-    options["scale"] = clean(settings.scale)
+    options["scale"], options["pivot"] = clean(settings.scale), clean(settings.pivot)
     if settings.start == "CURSOR":
         world = np.append(context.scene.cursor.location, 1.0)
         tip = (sculpts.from_world(ob) @ world)[:3]
@@ -171,7 +171,7 @@ class RIFFLER_OT_pen_sculpt(sculpt_work.TakesTool, properties.PenSettings, bpy.t
             tool = brush.cutter(riffler.Tool.from_dict(self.tool_dict(context)), depth)
             folder, options = recordings(self), session_options(context, ob, self, brush)
             device = open_device(self)
-            pen_session.PenSession(context, ob, device, tool, options, folder, _leave)
+            pen_session.PenSession(context, ob, device, tool, options, folder, _leave, view=self.axes == "VIEW")
         except (*operator_parts.ERRORS, TypeError) as error:
             operator_parts.fail(self, error)
             return False

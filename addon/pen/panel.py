@@ -48,6 +48,8 @@ class RIFFLER_PT_pen(Sidebar, bpy.types.Panel):
             if settings.start == "ABOVE":
                 column.prop(settings, "gap")
             column.prop(settings, "scale")
+            column.prop(settings, "axes")
+            column.prop(settings, "pivot")
         group = column.column(align=True)
         group.prop(settings, "stiffness")
         group.prop(settings, "removal_constant")

@@ -22,6 +22,11 @@ STARTS = (
 )
 
 
+AXES = (
+    ("STOCK", "Fixed", "The device's axes are those of the stock, or of the scene for a plan"),
+    ("VIEW", "View", "Right, up and away of the hand are those of the 3D view; they follow it between strokes"),
+)
+
 # A plan's tool is also turned by what the sculpt tools serve themselves.
 POINTER = "pointer"
 TURNING = (
@@ -36,15 +41,30 @@ TURNING = (
     *DEVICES[:-1],
 )
 
-
 DEVICE = EnumProperty(name="Device", items=CHOICES, default=PREFERRED, description="Input device")
 SCALE = length("Scale", 1.0, "Distance that the tool moves, per distance of the hand", 1e-3, 100.0)
+PIVOT = length(
+    "Pivot",
+    0.0,
+    "Distance from the tip to the point about which the hand turns the tool and feels its torque, in mm; 0: the tip",
+    0.0,
+    1000.0,
+)
+TURN = EnumProperty(name="Axes", items=AXES, default="STOCK", description="How the hand's directions move the tool")
 
 
 class TurningDevice:
     """The device that turns a plan's tool."""
 
     device: EnumProperty(name="Device", items=TURNING, default=PREFERRED, description="What turns the tool")
+
+
+class HandSettings:
+    """How the hand leads a tool; the fields are those of PenSettings."""
+
+    scale: SCALE
+    axes: TURN
+    pivot: PIVOT
 
 
 class PenSettings:
@@ -59,6 +79,8 @@ class PenSettings:
     )
     gap: length("Gap", 1.0, "Distance from the top of the stock to the tool tip at the start, in mm", 0.0, 1e4)
     scale: SCALE
+    axes: TURN
+    pivot: PIVOT
     stiffness: length("Stiffness", 1.0, "Stiffness of the coupling between hand and tool, in N/mm", 1e-3, 100.0)
     removal_constant: FloatProperty(
         name="Resistance",

@@ -13,8 +13,9 @@ from pathlib import Path
 
 import bpy
 
+from ..blender import views
 from ..common import tool_solid, units
-from ..sculpt import brushes, live_registry
+from ..sculpt import brushes, live_registry, sculpts
 from ..sculpt.pure import journal, reach
 from ..sculpt.undo_states import SPARE, snapshots
 from ..translations import local
@@ -27,10 +28,11 @@ running = None  # only one at a time, of any kind: one hand, one device
 
 class PenSession:
     """A session of the open `device` with the sculpt `ob`; `tool`: riffler.Tool. `options`: riffler.Session's.
-    `recordings`: the folder for a recording, or None. `ended` is called after its end, for any reason. ValueError,
-    OSError, RuntimeError if it cannot start; then nothing has changed, and the device is closed."""
+    `recordings`: the folder for a recording, or None. `ended` is called after its end, for any reason. `view`: the
+    device's axes follow the 3D view. ValueError, OSError, RuntimeError if it cannot start; then nothing has changed,
+    and the device is closed."""
 
-    def __init__(self, context, ob, device, tool, options, recordings=None, ended=lambda: None):
+    def __init__(self, context, ob, device, tool, options, recordings=None, ended=lambda: None, view=False):
         global running
         self.contact = None  # (path, point) of a session that turns a plan's tool
         self._begin, self._recordings, self._on_end = time.perf_counter(), recordings, ended
@@ -38,6 +40,7 @@ class PenSession:
         self.problem, self.count = "", 0  # problem of the session; number of strokes
         self._tool, self.mode = tool, options.get("mode", "remove")
         self.run = pen_run.PenRun(device, tool, {**options, "undo": context.preferences.edit.undo_steps + SPARE})
+        self.run.turns_with(view, options)
         fresh = live_registry.of(ob) is None
         self.live = None
         try:
@@ -60,12 +63,16 @@ class PenSession:
     def _take_up(self):
         """Starts a native session with the current volume."""
         work = self.live
+        self._turn()
         _ = work.mesher  # creates the mesher before the volume changes
         session = self.run.prepare(work.volume, work.mask)
         self._seen, self._strokes = work.volume.revision, 0
         self._states, self._at = [self._seen], 0  # revisions in the session's own undo
         work.persistence.begin_session(work.object, work.token, snapshots.get(work.token).content, session)
         self.run.start()
+
+    def _turn(self):
+        self.run.turn(views.facing(), sculpts.from_world(self.live.object)[:3, :3])
 
     # ------------------------------------------------------------------ while it runs
     @property
@@ -91,6 +98,7 @@ class PenSession:
             return False
         if not self.run.running:
             self._take_up()
+        self._turn()
         over = self.run.over
         self.run.look()
         self._follow()

@@ -9,10 +9,11 @@ import riffler
 from ..blender import object_surfaces, operator_parts, scene_units, versions
 from ..blender.panel_parts import Sidebar, give, lines, wrapped
 from ..common import presets, units
+from ..sculpt import sculpts
 from ..translations import local
 from . import fit_check, obstacles, plan_store, properties, strategy_fields, tool_icons, tool_libraries
 from .current_pose import plan_object
-from .operators import change_tool, find, scene_unit, setup, watch
+from .operators import change_tool, find, from_strokes, scene_unit, setup, watch
 from .pure import size_guess, tool_library
 
 PICTURE = 4.5  # height of a tool's picture, in lines
@@ -74,6 +75,8 @@ class RIFFLER_PT_plan(Tab, bpy.types.Panel):
         self._find(layout, context, "")
         if ob is not None:
             self._find(layout, context, ob.name)
+        if sculpts.active(context) is not None:
+            layout.operator(from_strokes.RIFFLER_OT_plan_from_strokes.bl_idname, icon="GREASEPENCIL")
 
     def _plan(self, layout, context, ob):
         p = ob.riffler.plan

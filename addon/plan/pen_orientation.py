@@ -10,7 +10,7 @@ import time
 import bpy
 import numpy as np
 
-from ..blender import scene_units
+from ..blender import scene_units, views
 from ..common import units
 from ..pen import session as pen_session
 from . import collision_marks, current_pose, plan_store, replan, timeline
@@ -24,12 +24,12 @@ STEP = "Set Key Orientation", "Delete Key Orientation"
 
 class PenOrientation:
     """A session of the open `device` with the path of `spot`; `near`: plan.pure.clearance.Surroundings; `options`:
-    riffler.OrientSession's. `ended` is called after its end, for any reason. ValueError, OSError, RuntimeError if it
-    cannot start; then nothing has changed, and the device is closed."""
+    riffler.OrientSession's; `view`: the device's axes follow the 3D view. `ended` is called after its end, for any
+    reason. ValueError, OSError, RuntimeError if it cannot start; then nothing has changed, and the device is closed."""
 
     help = "Button 1: set a key    Button 2: delete it    Esc: end"
 
-    def __init__(self, context, spot, near, device, options, ended=lambda: None):
+    def __init__(self, context, spot, near, device, options, ended=lambda: None, view=False):
         self._begin, self._on_end = time.perf_counter(), ended
         self.ended, self.problem, self._refused = False, "", 0.0  # the last: when a press was refused
         self.set, self.deleted = 0, 0  # keys
@@ -39,8 +39,9 @@ class PenOrientation:
         self._interpolation = spot.line.interpolation or "smooth"
         options = {"point": spot.index, "axis": spot.axis, "interpolation": self._interpolation, **options}
         try:
-            self.run = OrientRun(device, spot.line, self.tool, near.collider, options)
+            self.run = OrientRun(device, spot.line, self.tool, near.collider, options, view)
             self.run.start()
+            self._turn()
         except BaseException:
             device.stop()
             raise
@@ -78,6 +79,9 @@ class PenOrientation:
             return None
         return current_pose.Spot(ob, plan, self.path, self.run.point)
 
+    def _turn(self):
+        self.run.turn(views.facing(), np.eye(3), self.run.touching is not None)
+
     def look(self):
         """Shows what the hand did since the last call. False if the session has ended."""
         if self.ended:
@@ -90,6 +94,7 @@ class PenOrientation:
         self._take_over_keys(spot)
         if self.problem and time.perf_counter() - self._refused > READ:
             self.problem = ""
+        self._turn()
         for change in self.run.look():
             self._apply(change)
         if self.run.pose is not None:

@@ -63,7 +63,8 @@ class RIFFLER_PT_timeline(OfPlan, bpy.types.Panel):
         settings = context.scene.riffler.plan
         op = layout.operator(orient_by_pen.RIFFLER_OT_plan_pen.bl_idname, icon="STYLUS_PRESSURE")
         give(op, settings, pen_properties.TurningDevice)
-        op.slide, op.scale = settings.slide, context.scene.riffler.pen.scale
+        give(op, context.scene.riffler.pen, pen_properties.HandSettings)
+        op.slide = settings.slide
         column = layout.column()
         column.use_property_split, column.use_property_decorate = True, False
         column.prop(settings, "device")

@@ -191,7 +191,7 @@ def take(context, wanted):
     content = live_registry.content(ob)
     found = _plan(context) if wanted.source == "PLAN" else _file(context, wanted)
     in_stock = wanted.source == "FILE" and wanted.frame == "STOCK"
-    to_world = _rigid(context, ob)
+    to_world = sculpts.rigid_to_world(context, ob)
     if not in_stock:
         found.program = found.program.transformed(np.linalg.inv(to_world))
     found.in_machine = in_stock
@@ -202,19 +202,6 @@ def take(context, wanted):
 def _noted(setup, ob):
     setup.notes = tuple(filter(None, (*setup.notes, refusals.modified(ob))))
     return setup
-
-
-def _rigid(context, ob):
-    """The stock's frame in the scene, as a rotation and a translation: programs are in millimetres."""
-    refusals.refuse(context, ob)
-    if why := refusals.scaled(ob):
-        raise ValueError(why)
-    matrix = sculpts.to_world_mm(ob, context.scene)
-    u, size, v = np.linalg.svd(matrix[:3, :3])
-    if np.abs(size - 1).max() > 1e-4:
-        raise ValueError(f"{ob.name} is shown in other units than the scene's: use Rebuild Mesh first")
-    matrix[:3, :3] = u @ v
-    return matrix
 
 
 def _new(name, program, where, **more):
@@ -229,7 +216,8 @@ def _cuts(context, ob):
     )
     out = _new(f"{ob.name}'s cuts", program, _timed(context.scene, program), machine=settings.post, in_machine=True)
     out.stock = riffler.Volume.block(v.lower, v.upper, v.pitch, v.directions)
-    out.sculpt, out.to_world, out.notes = ob.name, _rigid(context, ob), tuple(cut_program.not_in_cuts(content))
+    out.sculpt, out.to_world = ob.name, sculpts.rigid_to_world(context, ob)
+    out.notes = tuple(cut_program.not_in_cuts(content))
     return out
 
 

@@ -217,6 +217,20 @@ def to_world_mm(ob, scene):
     return m
 
 
+def rigid_to_world(context, ob):
+    """`to_world_mm` as a rotation and a translation, for programs and plans, which are in millimetres. ValueError with
+    the remedy if it scales."""
+    refusals.refuse(context, ob)
+    if why := refusals.scaled(ob):
+        raise ValueError(why)
+    matrix = to_world_mm(ob, context.scene)
+    u, size, v = np.linalg.svd(matrix[:3, :3])
+    if np.abs(size - 1).max() > 1e-4:
+        raise ValueError(f"{ob.name} is shown in other units than the scene's: use Rebuild Mesh first")
+    matrix[:3, :3] = u @ v
+    return matrix
+
+
 def from_world(ob):
     """(4, 4): Blender units in the world → millimetres in the sculpt's frame. ValueError if it has none."""
     if why := refusals.flat(ob):

@@ -206,6 +206,9 @@ set_mask, delete_mask : int
     Buttons, as bits: set a key where the tool is, replacing one at the same point; delete the nearest key.
 dead_man_mask, clutch_mask : int
     Buttons, as bits: force only while one is held (0: always); move the hand without the tool.
+pivot : float
+    mm above the tip, on the tool's axis: the point that the grip leads, about which the hand turns the tool and feels its
+    torque. 0: the tip. Without effect for devices in the part's frame.
 budget : float, "auto" or None
     s for one step; None: as long as it takes; "auto": 0.0004 for a device with motors, None for others.
 
@@ -235,7 +238,7 @@ void bind_constructor(py::class_<SharedOrientSession>& c) {
                     const ConeLike& limit, double reach, double scale, const OptionalArrayLike& turn, double stiffness,
                     double turn_stiffness, double max_force, double max_torque, double max_power, double ramp,
                     std::uint32_t set_mask, std::uint32_t delete_mask, std::uint32_t dead_man_mask,
-                    std::uint32_t clutch_mask, const BudgetLike& budget) {
+                    std::uint32_t clutch_mask, double pivot, const BudgetLike& budget) {
           session::OrientSessionSettings settings;
           settings.point = point, settings.reach = reach;
           if (!axis.is_none()) settings.axis = to_vec3(axis, "axis");
@@ -245,7 +248,7 @@ void bind_constructor(py::class_<SharedOrientSession>& c) {
           made.slides = slide, made.set_mask = set_mask, made.delete_mask = delete_mask;
           made.step.coupling.stiffness = stiffness, made.step.coupling.turn_stiffness = turn_stiffness;
           made.limits.wrench = {max_force, max_torque}, made.limits.power = max_power, made.safety.ramp = ramp;
-          made.workspace = {scale, to_turn(turn), clutch_mask, dead_man_mask};
+          made.workspace = {scale, to_turn(turn), clutch_mask, dead_man_mask, pivot};
           return make(path, tool, part, pen, std::move(settings), budget);
         }),
         "path"_a.none(false), "tool"_a, "part"_a.none(false), "pen"_a.none(false), py::kw_only(),
@@ -255,7 +258,7 @@ void bind_constructor(py::class_<SharedOrientSession>& c) {
         "max_force"_a = loop.limits.wrench.linear, "max_torque"_a = loop.limits.wrench.angular,
         "max_power"_a = loop.limits.power, "ramp"_a = loop.safety.ramp, "set_mask"_a = loop.set_mask,
         "delete_mask"_a = loop.delete_mask, "dead_man_mask"_a = loop.workspace.dead_man_mask,
-        "clutch_mask"_a = loop.workspace.clutch_mask, "budget"_a = kAutomaticBudget);
+        "clutch_mask"_a = loop.workspace.clutch_mask, "pivot"_a = loop.workspace.pivot, "budget"_a = kAutomaticBudget);
 }
 
 }  // namespace
@@ -401,13 +404,13 @@ Examples
 )")
       .def(
           "set_workspace",
-          [](SharedOrientSession& s, double scale, const OptionalArrayLike& turn, std::uint32_t clutch) {
-            const haptics::WorkspaceSettings settings{scale, to_turn(turn), clutch, 0};
+          [](SharedOrientSession& s, double scale, const OptionalArrayLike& turn, std::uint32_t clutch, double pivot) {
+            const haptics::WorkspaceSettings settings{scale, to_turn(turn), clutch, 0, pivot};
             const NoGil release;
             s.session->loop().set_workspace(settings);
           },
           py::kw_only(), "scale"_a = 1.0, "turn"_a = py::none(),
-          "clutch_mask"_a = session::OrientSettings().workspace.clutch_mask,
+          "clutch_mask"_a = session::OrientSettings().workspace.clutch_mask, "pivot"_a = 0.0,
           R"(Changes scale, view or clutch from the next step on. The tool does not jump.
 
 Parameters
@@ -418,6 +421,9 @@ turn : array_like, shape (3, 3), optional
     Rotation from the hand's frame to the tool's; None: none.
 clutch_mask : int
     Buttons, as bits: move the hand without the tool.
+pivot : float
+    mm above the tip, on the tool's axis: the point that the grip leads, about which the hand turns the tool and feels its
+    torque. 0: the tip. Without effect for devices in the part's frame.
 
 Examples
 --------

@@ -229,15 +229,15 @@ Examples
       .def(
           "set_workspace",
           [](SharedSession& s, double scale, const OptionalArrayLike& turn, std::uint32_t dead_man,
-             std::uint32_t clutch) {
-            const haptics::WorkspaceSettings settings{scale, to_turn(turn), clutch, dead_man};
+             std::uint32_t clutch, double pivot) {
+            const haptics::WorkspaceSettings settings{scale, to_turn(turn), clutch, dead_man, pivot};
             session::SculptLoop& loop = running(s);
             const NoGil release;
             loop.set_workspace(settings);
           },
           py::kw_only(), "scale"_a = 1.0, "turn"_a = py::none(),
           "dead_man_mask"_a = haptics::WorkspaceSettings().dead_man_mask,
-          "clutch_mask"_a = haptics::WorkspaceSettings().clutch_mask,
+          "clutch_mask"_a = haptics::WorkspaceSettings().clutch_mask, "pivot"_a = 0.0,
           R"(Changes scale, view or buttons from the next step on. The tool does not jump.
 
 Parameters
@@ -248,6 +248,9 @@ turn : array_like, shape (3, 3), optional
     Rotation from the hand's frame to the tool's; None: none.
 dead_man_mask, clutch_mask : int
     Buttons, as bits: cut while one is held; move the hand without the tool.
+pivot : float
+    mm above the tip, on the tool's axis: the point that the grip leads, about which the hand turns the tool and feels its
+    torque. 0: the tip. Without effect for devices in the part's frame.
 
 Examples
 --------

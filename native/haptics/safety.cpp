@@ -10,6 +10,7 @@ namespace riffler::haptics {
 
 void SafetySettings::validate() const {
   base::require_positive(ramp, "ramp");
+  base::require_positive(fall, "fall");
   base::require_positive(fresh, "fresh");
   base::require_positive(fade, "fade");
   base::require_not_negative(rest, "rest");
@@ -77,6 +78,8 @@ ForceState Safety::observe(const Observation& now) {
   if (lets_force_through(state_)) {
     move_gain(now.dt, freshness(now));
     permitted_ = true;
+  } else if (state_ == ForceState::Ready) {
+    fall(now.dt, freshness(now));
   }
   return state_;
 }
@@ -103,13 +106,16 @@ void Safety::let_go(const Observation& now) {
   if (!now.dead_man && lets_force_through(state_)) {
     log_.add({time_, state_, Cause::NoDeadMan, 0});
     cause_ = Cause::NoDeadMan;
+    falling_ = gain_;
   }
+  if (now.dead_man && falling()) return;
   apply(now.dead_man ? ForceEvent::Press : ForceEvent::Release);
 }
 
 void Safety::interrupt() {
   placed_ = false;
   apply(ForceEvent::Release);
+  falling_ = 0;
 }
 
 /// Raises the gain along the ramp; lowers it at once to the freshness.
@@ -121,9 +127,17 @@ void Safety::move_gain(double dt, double freshness) {
   if (gain_ >= 1) apply(ForceEvent::Risen);
 }
 
+/// Lowers the gain of a force after the dead-man switch; a late tick lowers it further.
+void Safety::fall(double dt, double freshness) {
+  falling_ = std::clamp(falling_ - dt / settings_.fall, 0.0, freshness);
+  gain_ = falling_;
+  permitted_ = falling();
+}
+
 void Safety::apply(ForceEvent event) {
   state_ = next(state_, event);
   if (!lets_force_through(state_)) gain_ = 0, permitted_ = false;
+  if (state_ == ForceState::Off || state_ == ForceState::Homing || state_ == ForceState::Tripped) falling_ = 0;
   if (state_ == ForceState::Off) cause_ = Cause::None;
 }
 

@@ -1,6 +1,8 @@
 #include "riffler/haptics/workspace.hpp"
 
 #include <cmath>
+#include <stdexcept>
+#include <string>
 
 #include "riffler/haptics/coupling.hpp"
 #include "riffler/haptics/settings.hpp"
@@ -8,6 +10,8 @@
 namespace riffler::haptics {
 
 namespace {
+
+constexpr double kFarthestPivot = 1000;  // mm
 
 /// Rotation matrix of a rotation vector (Rodrigues).
 Mat3 rotation(const Vec3& turn) {
@@ -22,6 +26,8 @@ Mat3 rotation(const Vec3& turn) {
 
 void WorkspaceSettings::validate() const {
   base::require_positive(scale, "scale");
+  if (!(std::abs(pivot) <= kFarthestPivot))
+    throw std::invalid_argument("pivot must be at most " + std::to_string(static_cast<int>(kFarthestPivot)) + " mm");
   const Mat3 square = glm::transpose(turn) * turn - Mat3(1);
   double off = 0;
   for (int i = 0; i < 3; ++i) off += glm::length(square[i]);
@@ -63,20 +69,27 @@ Pose Workspace::target(const Pose& grip, std::uint32_t buttons) {
   // While the clutch is pressed, update the pair; the tick of the release still belongs to it.
   if (!begun_ || clutch || clutched_) pair_here();
   begun_ = true, clutched_ = clutch;
-  target_.tip = target_pair_.tip + settings_.scale * (settings_.turn * (grip.tip - grip_pair_.tip));
+  const Vec3 pivot = target_pair_.tip + settings_.pivot * target_pair_.axis +
+                     settings_.scale * (settings_.turn * (grip.tip - grip_pair_.tip));
   target_.axis = glm::normalize(aslant_ * (settings_.turn * grip.axis));
+  target_.tip = pivot - settings_.pivot * target_.axis;
   return target_;
 }
 
 Twist Workspace::to_target(const Twist& grip) const {
   if (clutched_) return {};
-  return {settings_.scale * (settings_.turn * grip.linear), aslant_ * (settings_.turn * grip.angular)};
+  const Vec3 angular = aslant_ * (settings_.turn * grip.angular);
+  // From the pivot to the tip, which the axis carries round it.
+  return {settings_.scale * (settings_.turn * grip.linear) - settings_.pivot * glm::cross(angular, target_.axis),
+          angular};
 }
 
 Wrench Workspace::to_grip(const Wrench& w) const {
   if (clutched_) return {};
   const Mat3 back = glm::transpose(settings_.turn);
-  return {settings_.scale * (back * w.force), back * (glm::transpose(aslant_) * w.torque)};
+  // The transpose of to_target, so that hand and tool exchange the same power.
+  const Vec3 torque = w.torque - settings_.pivot * glm::cross(target_.axis, w.force);
+  return {settings_.scale * (back * w.force), back * (glm::transpose(aslant_) * torque)};
 }
 
 }  // namespace riffler::haptics

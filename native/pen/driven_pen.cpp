@@ -22,7 +22,8 @@ haptics::SafeWrench HeldPush::step(const PenSample& sample, double now, double d
   if (dt == 0) safety_.interrupt();
   if (reset_.exchange(false)) safety_.reset();
   safety_.observe(observation_of(sample, now, dt, fresh));
-  const haptics::SafeWrench safe = safety_.release(fresh ? asked.wrench : Wrench{});
+  // A wrench that no program renews ends at once; Safety's fall is for a hand that lets go.
+  const haptics::SafeWrench safe = fresh ? safety_.release(asked.wrench) : haptics::SafeWrench{};
   state_.store(safety_.state());
   cause_.store(safety_.cause());
   return safe;

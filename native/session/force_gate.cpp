@@ -23,7 +23,7 @@ haptics::ForceState ForceGate::begin(const pen::PenSample& sample, double now, d
     safety_.interrupt();
     has_grip_ = false;
   }
-  const haptics::ForceState state = safety_.observe(pen::observation_of(sample, now, dt, dead_man));
+  const haptics::ForceState state = safety_.observe(pen::observation_of(sample, now, dt, dead_man && !let_go_.load()));
   applied_ = sample.says_applied ? sample.applied : held_;
   if (!sure(state)) {
     has_grip_ = false;
@@ -40,11 +40,12 @@ haptics::ForceState ForceGate::begin(const pen::PenSample& sample, double now, d
 
 haptics::SafeWrench ForceGate::release(const pen::PenSample& sample, const Wrench& wanted, double dt) {
   const haptics::Capability push = pushed(device_, sample.pose.axis);
-  slewed_ = limited(limits_, push, slewed_, lets_force_through(safety_.state()) ? wanted : Wrench{},
-                    {sample.velocity, sample.turning}, dt);
+  if (!safety_.falling()) wanted_ = lets_force_through(safety_.state()) ? wanted : Wrench{};
+  slewed_ = limited(limits_, push, slewed_, wanted_, {sample.velocity, sample.turning}, dt);
   const Wrench borne = passivity_.control(slewed_, push);
   const haptics::SafeWrench safe = safety_.release(magnitude_gain(limits_, borne) * borne);
   held_ = safe.wrench();
+  quiet_.store(!safe.open() || held_ == Wrench{});
   return safe;
 }
 

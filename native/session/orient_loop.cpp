@@ -40,8 +40,9 @@ void OrientSettings::validate() const {
 }
 
 struct OrientLoop::Scene {
-  Scene(const OrientSettings& s, const Tool& tool, const PathGuide& on, const collide::Collider& obstacles)
-      : guide(on), step(scaled(s), tool, nullptr, &obstacles, &guide), workspace(s.workspace) {
+  Scene(const OrientSettings& s, const Tool& tool, const PathGuide& on, const collide::Collider& obstacles,
+        bool absolute)
+      : guide(on), step(scaled(s), tool, nullptr, &obstacles, &guide), workspace(s.workspace.for_device(absolute)) {
     guide.set_slides(s.slides);
   }
   Scene(const Scene&) = delete;
@@ -66,7 +67,7 @@ OrientLoop::OrientLoop(const OrientSettings& settings, const Tool& tool, const P
       last_tool_(guide.pose()),
       last_station_(guide.station()),
       absolute_(absolute),
-      scene_(std::make_unique<Scene>(settings, tool, guide, obstacles)) {}
+      scene_(std::make_unique<Scene>(settings, tool, guide, obstacles, absolute)) {}
 
 OrientLoop::~OrientLoop() = default;
 
@@ -158,7 +159,7 @@ void OrientLoop::set_workspace(const haptics::WorkspaceSettings& settings) {
   changed.workspace.dead_man_mask = settings_.workspace.dead_man_mask;
   changed.validate();
   const std::lock_guard lock(mutex_);
-  scene_->workspace.set(changed.workspace);
+  scene_->workspace.set(changed.workspace.for_device(absolute_));
   scene_->step.set_coupling(settings_.step.coupling.at_tool(settings.scale));
 }
 

@@ -83,7 +83,7 @@ OrientSession::Core::~Core() {
     static_cast<void>(new std::shared_ptr<pen::Pen>(std::move(pen_)));
     return;
   }
-  if (state_ == State::Running) ticks_.stop(*pen_);
+  if (state_ == State::Running) ticks_.stop(*pen_, *loop_, settings_.loop.safety.fall);
 }
 
 void OrientSession::Core::set_keys(const plan::OrientationKeys& keys) {
@@ -161,7 +161,7 @@ bool OrientSession::running() const noexcept {
 OrientFrame OrientSession::stop() {
   if (running()) {
     core_->home_.check("the session");
-    core_->ticks_.stop(*core_->pen_);
+    core_->ticks_.stop(*core_->pen_, *core_->loop_, core_->settings_.loop.safety.fall);
     core_->state_ = Core::State::Ended;
   }
   return core_->taken();

@@ -26,11 +26,12 @@ void SculptLoopSettings::validate() const {
 
 /// The objects being worked on.
 struct SculptLoop::Scene {
-  Scene(const SculptLoopSettings& s, const Volume& stock, const Tool& tool, const collide::Collider* obstacles)
+  Scene(const SculptLoopSettings& s, const Volume& stock, const Tool& tool, const collide::Collider* obstacles,
+        bool absolute)
       : volume(stock),
         carver(volume, tool, s.carving),
         step(scaled(s), tool, &carver, obstacles),
-        workspace(s.workspace) {}
+        workspace(s.workspace.for_device(absolute)) {}
 
   static haptics::SculptSettings scaled(const SculptLoopSettings& s) {
     haptics::SculptSettings out = s.sculpt;
@@ -53,7 +54,7 @@ SculptLoop::SculptLoop(const SculptLoopSettings& settings, const Volume& stock, 
       wrench_extrapolator_(settings.wrench_extrapolator),
       last_tool_(start.value_or(Pose{})),
       absolute_(!start),
-      scene_(std::make_unique<Scene>(settings, stock, tool, obstacles)),
+      scene_(std::make_unique<Scene>(settings, stock, tool, obstacles, absolute_)),
       exchange_(stock),
       dead_man_mask_(settings.workspace.dead_man_mask) {}
 
@@ -194,7 +195,7 @@ void SculptLoop::tell_undo() noexcept {
 
 void SculptLoop::set_workspace(const haptics::WorkspaceSettings& settings) {
   const std::lock_guard lock(mutex_);
-  scene_->workspace.set(settings);
+  scene_->workspace.set(settings.for_device(absolute_));
   scene_->step.set_coupling(settings_.sculpt.coupling.at_tool(settings.scale));
   dead_man_mask_.store(settings.dead_man_mask);
 }

@@ -136,7 +136,7 @@ SessionFrame Session::Core::stop(Volume& shown) {
   if (state_ != State::Running) return std::exchange(kept_, {});
   home_.check("the session");
   SessionFrame frame = std::exchange(kept_, {});
-  ticks_.stop(*pen_);
+  ticks_.stop(*pen_, *loop_, settings_.loop.safety.fall);
   loop_->finish();
   state_ = State::Ended;
   try {

@@ -13,13 +13,19 @@ namespace {
 
 using Seconds = std::chrono::duration<double>;
 
-constexpr double kTick = 1e-3;  // s
+constexpr double kTick = 1e-3;   // s
+constexpr double kLater = 0.03;  // s that a device may be late with the ticks in which a force falls
 
 }  // namespace
 
 void StepThread::start(pen::Pen& pen, std::shared_ptr<pen::PenStep> step) {
   ending_ = false;
   if (!pen.set_step(step)) poller_ = base::OwnThread([this, &pen, step] { poll(pen, *step); });
+}
+
+void StepThread::wait(double fall, const std::function<bool()>& quiet) {
+  for (double waited = 0; !quiet() && waited < fall + kLater; waited += kTick)
+    std::this_thread::sleep_for(Seconds(kTick));
 }
 
 void StepThread::stop(pen::Pen& pen) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <memory>
 
 #include "base/own_thread.hpp"
@@ -14,11 +15,19 @@ class StepThread {
  public:
   /// In the device's thread, or, if it has none, a thousand times a second. `pen` must outlive the ticks.
   void start(pen::Pen& pen, std::shared_ptr<pen::PenStep> step);
-  /// On return the step is no longer called.
-  void stop(pen::Pen& pen);
+  /// On return the step is no longer called. The force of `loop` falls to zero first, if its device takes no longer
+  /// than `fall` (s) and some ticks for that; otherwise it ends with the step.
+  template <class Loop>
+  void stop(pen::Pen& pen, Loop& loop, double fall) {
+    loop.let_go();
+    wait(fall, [&loop] { return loop.quiet(); });
+    stop(pen);
+  }
   ~StepThread();
 
  private:
+  void stop(pen::Pen& pen);
+  static void wait(double fall, const std::function<bool()>& quiet);
   void poll(pen::Pen& pen, pen::PenStep& step) noexcept;
 
   std::atomic<bool> ending_{false};

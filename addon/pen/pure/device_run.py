@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 import numpy as np
+import riffler
+
+from .view_turn import ViewTurn
 
 
 class DeviceRun:
     """Mixin: `device` is open, `session` is riffler's, and `state` that of the force as of the last frame."""
 
     device, session, state = None, None, "off"
+    axes = None  # view_turn.ViewTurn; None: the device's axes are those of the tool's frame
+    workspace: ClassVar[dict] = {}  # of riffler.Session.set_workspace, for a turn
 
     @property
     def running(self) -> bool:
@@ -23,6 +30,23 @@ class DeviceRun:
     def gone(self) -> bool:
         """True while the device is not connected. It takes no steps then, and the last frame's force is not one."""
         return self.running and self.device.health().state in ("waiting", "connecting")
+
+    def turns_with(self, view: bool, options: dict) -> None:
+        """Call it before the session is made, with its options. `view`: the device's axes follow a view (`turn`). A
+        recording, and a pointer, have the frame of the tool."""
+        self.workspace = {key: options[key] for key in ("scale", "pivot") if key in options}
+        if view and not isinstance(self.device, riffler.pen.Pointer) and self.device.kind != "recording":
+            self.axes = ViewTurn(self.device.kind)
+
+    def turn(self, view: np.ndarray | None, to_frame: np.ndarray, touching: bool = False) -> None:
+        """The view is now so, as blender/views.py has it; `to_frame`: world → the tool's frame. Takes effect between
+        strokes (pen/pure/view_turn.py)."""
+        if self.axes is None or view is None:
+            return
+        held = self.running and (touching or self.device.state().buttons != 0)
+        turn = self.axes.follow(view, to_frame, held)
+        if turn is not None and self.running:
+            self.session.set_workspace(**self.workspace, turn=turn)
 
     def close(self) -> None:
         self.device.stop()

@@ -36,6 +36,8 @@ class PenRun(DeviceRun):
         """Makes the session, which can be given a journal before it starts."""
         if self.pose is not None and "at" in self._options:
             self._options["at"] = self.pose
+        if self.axes is not None and self.axes.turn is not None:
+            self._options["turn"] = self.axes.turn
         self.session = riffler.Session(volume, self._tool, self.device, protect=mask, **self._options)
         self.strokes, self.in_stroke, self.dropped_ticks, self._open = 0, False, 0, False
         self._rows.clear()

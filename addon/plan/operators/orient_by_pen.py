@@ -26,7 +26,7 @@ _shown = None  # arrows and gauge (sculpt/force_view.py)
 _told, _told_at = (), 0.0
 
 
-class RIFFLER_OT_plan_pen(pen_properties.TurningDevice, PlanWork, bpy.types.Operator):
+class RIFFLER_OT_plan_pen(pen_properties.TurningDevice, pen_properties.HandSettings, PlanWork, bpy.types.Operator):
     """Turn the plan's tool with a pen or another device: the cutter stays on the path, the hand feels what shank and
     holder hit; the first button sets a key orientation, the second deletes it
     """
@@ -37,7 +37,6 @@ class RIFFLER_OT_plan_pen(pen_properties.TurningDevice, PlanWork, bpy.types.Oper
     doing = "Looking at part and fixtures"
     cancelled = "Looking at part and fixtures was cancelled"
 
-    scale: pen_properties.SCALE
     slide: bpy.props.BoolProperty(
         name="Slide along Path",
         default=True,
@@ -103,8 +102,10 @@ class RIFFLER_OT_plan_pen(pen_properties.TurningDevice, PlanWork, bpy.types.Oper
         if self.device == pen_properties.POINTER:
             session = PointerOrientation(context, spot, near, options, _leave)
         else:
-            options["scale"] = scene_units.clean(self.scale)
-            session = PenOrientation(context, spot, near, pen_operators.open_device(self), options, _leave)
+            clean = scene_units.clean
+            options |= {"scale": clean(self.scale), "pivot": clean(self.pivot)}
+            device = pen_operators.open_device(self)
+            session = PenOrientation(context, spot, near, device, options, _leave, view=self.axes == "VIEW")
         _tell(session)
         return session
 

@@ -11,11 +11,12 @@ from ...pen.pure.device_run import DeviceRun
 class OrientRun(DeviceRun):
     """An open device and its session on one path: `start`, `look` about thirty times a second, `halt`; finally `close`.
 
-    `options` are riffler.OrientSession's.
+    `options` are riffler.OrientSession's; `view`: the device's axes follow a view.
     """
 
-    def __init__(self, device, path, tool, collider, options):
+    def __init__(self, device, path, tool, collider, options, view=False):
         self.device = device
+        self.turns_with(view, options)
         self.session = riffler.OrientSession(path, tool, collider, device, **options)
         self.pose: np.ndarray | None = None  # (6,) pose of the tool, mm
         self.station = 0.0  # place on the path: a point index with a fraction

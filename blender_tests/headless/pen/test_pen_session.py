@@ -347,3 +347,70 @@ def test_a_puck_carves_where_it_is_pushed_as_fast_as_its_curve_says():
     )  # bubble, exponent: defaults of riffler.pen.open
     assert seconds > 0.5 and abs(way / seconds / speed - 1) < 0.05, (way, seconds, speed)
     assert np.isclose(removed, 60 * 60 * 20 - replayed.volume)
+
+
+def turned_view(angle):
+    """Turns the 3D view about the world's z; returns its axes."""
+    from mathutils import Quaternion
+
+    views = common.part("blender.views")
+    for _, _, space in views.views():
+        space.region_3d.view_rotation = Quaternion((0, 0, 1), angle)
+        space.region_3d.view_perspective = "PERSP"
+    return views.facing()
+
+
+def test_the_pen_s_axes_follow_the_view_between_strokes():
+    ob = sculpt()
+    ob.rotation_euler = (0, 0, 0.5)
+    bpy.context.view_layer.update()
+    begun = turned_view(0.0)
+    assert begun is not None and np.allclose(begun, np.eye(3), atol=1e-6), "the view from the top"
+    device = riffler.pen.open("simulated")
+    tool = riffler.Tool.ball(6, 30)
+    at = [30, 30, 40, 0, 0, 1]
+    session = sessions().PenSession(bpy.context, ob, device, tool, {"at": at, "scale": 0.5}, view=True)
+    pure = common.part("pen.pure.view_turn")
+    to_frame = common.part("sculpt.sculpts").from_world(ob)[:3, :3]
+    try:
+        assert np.allclose(session.run.axes.turn, pure.turn_of("simulated", begun, to_frame), atol=1e-6)
+        home = device.state().pose
+        device.aim(home, buttons=1)
+        until(lambda: device.state().buttons == 1)
+        view = turned_view(1.0)
+        before = session.run.axes.turn
+        for _ in range(5):
+            assert session.look()
+        assert session.run.axes.turn is before, "not while the button is held"
+        device.aim(home, buttons=0)
+        until(lambda: device.state().buttons == 0)
+        tool = session.run.pose
+        assert session.look()
+        assert np.allclose(session.run.axes.turn, pure.turn_of("simulated", view, to_frame), atol=1e-6)
+        until(lambda: session.look() and np.abs(session.run.pose[:3] - tool[:3]).max() < 1.0)
+    finally:
+        session.finish()
+    assert sculpt_for(0.2, gap=500.0, axes="VIEW") == {"CANCELLED"}
+    camera = bpy.data.objects.new("Eye", bpy.data.cameras.new("Eye"))
+    bpy.context.collection.objects.link(camera)
+    camera.rotation_euler = (np.pi / 2, 0, 0)
+    bpy.context.view_layer.update()
+    for _, _, space in common.part("blender.views").views():
+        space.camera, space.region_3d.view_perspective = camera, "CAMERA"
+    assert np.allclose(common.part("blender.views").facing(), [(1, 0, 0), (0, 0, 1), (0, -1, 0)], atol=1e-6), "its own"
+    no_session()
+
+
+def until(done, seconds=20.0):
+    end = time.monotonic() + seconds
+    while not done():
+        assert time.monotonic() < end, "nothing came of it"
+        time.sleep(0.02)
+
+
+def test_a_pointer_and_a_recording_keep_their_own_frame():
+    ob = sculpt()
+    hand = Hand(ob)
+    hand.session.run.turns_with(True, {})
+    assert hand.session.run.axes is None
+    hand.session.finish()

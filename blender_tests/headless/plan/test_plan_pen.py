@@ -205,3 +205,30 @@ def test_what_cannot_be_turned_is_refused_by_name():
     common.refused(lambda: operator(seconds=0.1), "part")
     bpy.ops.riffler.plan_pen.poll()
     ended(ob)
+
+
+def test_the_hand_s_axes_are_those_of_the_view_while_nothing_is_touched_or_pressed():
+    ob = scene()
+    views = common.part("blender.views")
+    context = bpy.context
+    for _, _, space in views.views():
+        space.region_3d.view_perspective, space.region_3d.view_rotation = "PERSP", (1, 0, 0, 0)
+    spot = common.part("plan.current_pose").spot(context.scene, ob)
+    near = common.part("plan.obstacles").now(context, ob)
+    device = riffler.pen.open("simulated")
+    session = part().PenOrientation(context, spot, near, device, {"slide": False}, view=True)
+    try:
+        turn_of = common.part("pen.pure.view_turn").turn_of
+        assert np.allclose(session.run.axes.turn, turn_of("simulated", np.eye(3), np.eye(3)), atol=1e-6)
+        for _, _, space in views.views():
+            space.region_3d.view_rotation = (0.8, 0, 0, 0.6)
+        begun, session.run.touching = session.run.axes.turn, "shank"
+        session._turn()
+        assert session.run.axes.turn is begun, "not while the tool touches something"
+        session.run.touching = None
+        session._turn()
+        assert np.allclose(session.run.axes.turn, turn_of("simulated", views.facing(), np.eye(3)), atol=1e-6)
+    finally:
+        session.finish()
+    assert bpy.ops.riffler.plan_pen(seconds=0.2, device="simulated", axes="VIEW") in ({"CANCELLED"}, {"FINISHED"})
+    assert sessions().running is None

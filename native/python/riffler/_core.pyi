@@ -4676,6 +4676,9 @@ class Session:
         s from no force to full force, at the start and after interruptions.
     dead_man_mask, clutch_mask : int
         Buttons, as bits: cut while one is held; move the hand without the tool.
+    pivot : float
+        mm above the tip, on the tool's axis: the point that the grip leads, about which the hand turns the tool and feels its
+        torque. 0: the tip. Without effect for devices in the part's frame.
     budget : float, "auto" or None
         s for one step; None: as long as it takes, and steps are deterministic; "auto": 0.0004 for a device with motors, None
         for others.
@@ -4726,7 +4729,7 @@ class Session:
         ...
     def __exit__(self, *args) -> None:
         ...
-    def __init__(self, volume: Volume, tool: Tool, pen: PenDevice | None = None, *, obstacles: Collider | None = None, protect: Volume | None = None, mode: str = 'remove', material: Material | None = None, at: numpy.typing.ArrayLike | None = None, scale: typing.SupportsFloat = 1.0, turn: numpy.typing.ArrayLike | None = None, stiffness: typing.SupportsFloat = 1.0, turn_stiffness: typing.SupportsFloat = 2000.0, damping: typing.SupportsFloat = 0.001, turn_damping: typing.SupportsFloat = 2.0, tolerance: typing.SupportsFloat = 0.01, memory: typing.SupportsFloat | None = None, max_force: typing.SupportsFloat = 5.0, max_torque: typing.SupportsFloat = 300.0, max_power: typing.SupportsFloat = 2000.0, ramp: typing.SupportsFloat = 0.5, dead_man_mask: typing.SupportsInt = 1, clutch_mask: typing.SupportsInt = 2, budget: float | typing.Literal['auto'] | None = 'auto', undo: typing.SupportsInt = 64) -> None:
+    def __init__(self, volume: Volume, tool: Tool, pen: PenDevice | None = None, *, obstacles: Collider | None = None, protect: Volume | None = None, mode: str = 'remove', material: Material | None = None, at: numpy.typing.ArrayLike | None = None, scale: typing.SupportsFloat = 1.0, turn: numpy.typing.ArrayLike | None = None, stiffness: typing.SupportsFloat = 1.0, turn_stiffness: typing.SupportsFloat = 2000.0, damping: typing.SupportsFloat = 0.001, turn_damping: typing.SupportsFloat = 2.0, tolerance: typing.SupportsFloat = 0.01, memory: typing.SupportsFloat | None = None, max_force: typing.SupportsFloat = 5.0, max_torque: typing.SupportsFloat = 300.0, max_power: typing.SupportsFloat = 2000.0, ramp: typing.SupportsFloat = 0.5, dead_man_mask: typing.SupportsInt = 1, clutch_mask: typing.SupportsInt = 2, pivot: typing.SupportsFloat = 0.0, budget: float | typing.Literal['auto'] | None = 'auto', undo: typing.SupportsInt = 64) -> None:
         ...
     def frame(self) -> SessionFrame:
         """
@@ -4822,7 +4825,7 @@ class Session:
         >>> with riffler.Session(stock, riffler.Tool.ball(diameter=6, length=30)) as session:
         ...     session.reset()
         """
-    def set_workspace(self, *, scale: typing.SupportsFloat = 1.0, turn: numpy.typing.ArrayLike | None = None, dead_man_mask: typing.SupportsInt = 1, clutch_mask: typing.SupportsInt = 2) -> None:
+    def set_workspace(self, *, scale: typing.SupportsFloat = 1.0, turn: numpy.typing.ArrayLike | None = None, dead_man_mask: typing.SupportsInt = 1, clutch_mask: typing.SupportsInt = 2, pivot: typing.SupportsFloat = 0.0) -> None:
         """
         Changes scale, view or buttons from the next step on. The tool does not jump.
 
@@ -4834,6 +4837,9 @@ class Session:
             Rotation from the hand's frame to the tool's; None: none.
         dead_man_mask, clutch_mask : int
             Buttons, as bits: cut while one is held; move the hand without the tool.
+        pivot : float
+            mm above the tip, on the tool's axis: the point that the grip leads, about which the hand turns the tool and feels its
+            torque. 0: the tip. Without effect for devices in the part's frame.
 
         Examples
         --------
@@ -5328,6 +5334,9 @@ class OrientSession:
         Buttons, as bits: set a key where the tool is, replacing one at the same point; delete the nearest key.
     dead_man_mask, clutch_mask : int
         Buttons, as bits: force only while one is held (0: always); move the hand without the tool.
+    pivot : float
+        mm above the tip, on the tool's axis: the point that the grip leads, about which the hand turns the tool and feels its
+        torque. 0: the tip. Without effect for devices in the part's frame.
     budget : float, "auto" or None
         s for one step; None: as long as it takes; "auto": 0.0004 for a device with motors, None for others.
 
@@ -5351,7 +5360,7 @@ class OrientSession:
         ...
     def __exit__(self, *args) -> None:
         ...
-    def __init__(self, path: PencilPath, tool: Tool, part: Collider, pen: PenDevice, *, point: typing.SupportsInt = 0, axis: numpy.typing.ArrayLike | None = None, slide: bool = True, interpolation: str = 'smooth', limit: tuple[numpy.typing.ArrayLike, float] | None = None, reach: typing.SupportsFloat = 2.0, scale: typing.SupportsFloat = 1.0, turn: numpy.typing.ArrayLike | None = None, stiffness: typing.SupportsFloat = 0.3, turn_stiffness: typing.SupportsFloat = 2000.0, max_force: typing.SupportsFloat = 5.0, max_torque: typing.SupportsFloat = 300.0, max_power: typing.SupportsFloat = 2000.0, ramp: typing.SupportsFloat = 0.5, set_mask: typing.SupportsInt = 1, delete_mask: typing.SupportsInt = 2, dead_man_mask: typing.SupportsInt = 0, clutch_mask: typing.SupportsInt = 4, budget: float | typing.Literal['auto'] | None = 'auto') -> None:
+    def __init__(self, path: PencilPath, tool: Tool, part: Collider, pen: PenDevice, *, point: typing.SupportsInt = 0, axis: numpy.typing.ArrayLike | None = None, slide: bool = True, interpolation: str = 'smooth', limit: tuple[numpy.typing.ArrayLike, float] | None = None, reach: typing.SupportsFloat = 2.0, scale: typing.SupportsFloat = 1.0, turn: numpy.typing.ArrayLike | None = None, stiffness: typing.SupportsFloat = 0.3, turn_stiffness: typing.SupportsFloat = 2000.0, max_force: typing.SupportsFloat = 5.0, max_torque: typing.SupportsFloat = 300.0, max_power: typing.SupportsFloat = 2000.0, ramp: typing.SupportsFloat = 0.5, set_mask: typing.SupportsInt = 1, delete_mask: typing.SupportsInt = 2, dead_man_mask: typing.SupportsInt = 0, clutch_mask: typing.SupportsInt = 4, pivot: typing.SupportsFloat = 0.0, budget: float | typing.Literal['auto'] | None = 'auto') -> None:
         ...
     def frame(self) -> OrientFrame:
         """
@@ -5451,7 +5460,7 @@ class OrientSession:
         >>> session = riffler.OrientSession(path, ball, riffler.Collider(part), pen)
         >>> session.set_slide(False)
         """
-    def set_workspace(self, *, scale: typing.SupportsFloat = 1.0, turn: numpy.typing.ArrayLike | None = None, clutch_mask: typing.SupportsInt = 4) -> None:
+    def set_workspace(self, *, scale: typing.SupportsFloat = 1.0, turn: numpy.typing.ArrayLike | None = None, clutch_mask: typing.SupportsInt = 4, pivot: typing.SupportsFloat = 0.0) -> None:
         """
         Changes scale, view or clutch from the next step on. The tool does not jump.
 
@@ -5463,6 +5472,9 @@ class OrientSession:
             Rotation from the hand's frame to the tool's; None: none.
         clutch_mask : int
             Buttons, as bits: move the hand without the tool.
+        pivot : float
+            mm above the tip, on the tool's axis: the point that the grip leads, about which the hand turns the tool and feels its
+            torque. 0: the tip. Without effect for devices in the part's frame.
 
         Examples
         --------

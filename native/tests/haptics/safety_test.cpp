@@ -125,6 +125,10 @@ TEST(Safety, WhatPassesTellsHowFarTheGateIsOpen) {
   Observation o = good();
   o.dead_man = false;
   r.safety.observe(o);
+  const SafeWrench falls = r.safety.release({{1, 0, 0}, {}});
+  EXPECT_TRUE(falls.open());
+  EXPECT_EQ(falls.wrench().force.x, falls.gain());
+  for (int k = 0; k < 20; ++k) r.safety.observe(o);
   EXPECT_FALSE(r.safety.release({{1, 0, 0}, {}}).open());
   r.safety.observe(good());
   const SafeWrench ramp = r.safety.release({{1, 0, 0}, {}});
@@ -284,16 +288,66 @@ TEST(Safety, NoTimeIsNoFaultAndNoProgress) {
   EXPECT_EQ(safety.state(), ForceState::Ramp);
 }
 
-TEST(Safety, LettingGoStopsAtOnceAndPressingAgainRamps) {
+TEST(Safety, LettingGoEndsTheForceWithoutAJumpAndPressingAgainRamps) {
   Running r;
   Observation o = good();
   o.dead_man = false;
+  const double step = 3 * 1e-3 / SafetySettings{}.fall;
+  for (int k = 1; k <= 19; ++k) {
+    EXPECT_NEAR(glm::length(r.tick(o).force), 3 - k * step, 1e-12);
+    EXPECT_TRUE(r.safety.falling());
+  }
+  r.tick(o);
   EXPECT_EQ(r.tick(o), Wrench{});
+  EXPECT_FALSE(r.safety.falling());
   EXPECT_EQ(r.safety.state(), ForceState::Ready);
   EXPECT_EQ(r.safety.cause(), Cause::NoDeadMan);
   EXPECT_EQ(r.last_trip().cause, Cause::NoDeadMan);
   EXPECT_NEAR(glm::length(r.tick(good()).force), 3 * 2e-3, 1e-12);
   EXPECT_EQ(r.safety.cause(), Cause::None);
+}
+
+TEST(Safety, LettingGoDuringTheRampFallsFromThere) {
+  Safety safety{SafetySettings{}};
+  safety.switch_on();
+  for (int k = 0; k < 100; ++k) safety.observe(good());
+  const double gain = safety.gain();
+  EXPECT_NEAR(gain, 0.2, 1e-12);
+  Observation o = good();
+  o.dead_man = false;
+  for (double last = gain; safety.observe(o), safety.falling(); last = safety.gain())
+    EXPECT_NEAR(last - safety.gain(), 1e-3 / SafetySettings{}.fall, 1e-12);
+}
+
+TEST(Safety, APressWaitsForTheEndOfAFall) {
+  Running r;
+  Observation o = good();
+  o.dead_man = false;
+  double last = glm::length(r.tick(o).force);
+  for (int k = 0; k < 40; ++k) {
+    const double force = glm::length(r.tick(good()).force);
+    EXPECT_LE(std::abs(force - last), 3 * 1e-3 / SafetySettings{}.fall + 1e-12);
+    last = force;
+  }
+  EXPECT_EQ(r.safety.state(), ForceState::Ramp);
+}
+
+TEST(Safety, AFailedCheckEndsAFallAtOnce) {
+  for (const Fault& fault : faults()) {
+    Running r;
+    Observation o = good();
+    o.dead_man = false;
+    ASSERT_FALSE(r.tick(o) == Wrench{});
+    fault.spoil(o);
+    EXPECT_EQ(r.tick(o), Wrench{}) << sentence(fault.cause);
+    EXPECT_FALSE(r.safety.falling());
+    EXPECT_EQ(r.safety.state(), ForceState::Tripped);
+  }
+  Running r;
+  Observation o = good();
+  o.dead_man = false;
+  r.tick(o), r.safety.interrupt();
+  EXPECT_EQ(r.tick(o), Wrench{}) << "after a gap";
 }
 
 TEST(Safety, AMoveThatTheSpeedExplainsIsNoJump) {
@@ -335,7 +389,8 @@ TEST(Safety, WhateverHappensForceMeansThatEveryCheckPassed) {
   Safety safety(quick);
   Vec3 tip{0}, last_tip{0};
   bool last_known = false;
-  long forces = 0, trips = 0;
+  long forces = 0, trips = 0, falling = 0;
+  double last_gain = 0;
   const std::vector<Fault> kinds = faults();
   for (int k = 0; k < 300'000; ++k) {
     if (random.one_in(200)) safety.switch_on();
@@ -354,8 +409,12 @@ TEST(Safety, WhateverHappensForceMeansThatEveryCheckPassed) {
     const Wrench w = safety.release(wanted).wrench();
     if (!(w == Wrench{})) {
       ++forces;
-      ASSERT_TRUE(lets_force_through(state) && lets_force_through(safety.state()));
-      ASSERT_TRUE(finite(w) && finite(wanted) && o.dead_man && o.homed && !o.device_fault && o.dt >= 0);
+      const bool falls = safety.falling();
+      falling += falls;
+      ASSERT_TRUE(falls ? state == ForceState::Ready : lets_force_through(state) && o.dead_man);
+      ASSERT_TRUE(!falls || safety.gain() <= last_gain);
+      ASSERT_EQ(state, safety.state());
+      ASSERT_TRUE(finite(w) && finite(wanted) && o.homed && !o.device_fault && o.dt >= 0);
       ASSERT_TRUE(geom::finite(o.pose.tip) && geom::finite(o.pose.axis) && finite(o.twist));
       ASSERT_LT(std::max(o.age, o.dt), s.fresh + s.fade);
       ASSERT_LT(glm::length(o.twist.linear), s.overspeed.linear);
@@ -366,12 +425,14 @@ TEST(Safety, WhateverHappensForceMeansThatEveryCheckPassed) {
       }
       ASSERT_LE(glm::length(w.force), safety.gain() * 3 + 1e-12);
     }
+    last_gain = safety.gain();
     // Where it was while off or not homed says nothing.
     if (geom::finite(o.pose.tip)) last_tip = o.pose.tip, last_known = o.homed && state != ForceState::Off;
     last_known = last_known && state != ForceState::Off;
     trips += state == ForceState::Tripped;
   }
   EXPECT_GT(forces, 10'000);
+  EXPECT_GT(falling, 1'000);
   EXPECT_GT(trips, 10'000);
   EXPECT_GT(safety.log().count(), 1000u);
 }

@@ -355,3 +355,40 @@ def test_the_force_on_the_tool_is_the_materials(tmp_path):
     assert len(cut) > 20
     assert np.allclose(np.linalg.norm(force[cut, :3], axis=1), 0.005 * removed[cut] / dt[cut], rtol=0.5)
     assert (np.einsum("ij,ij->i", force[cut, :3], (ends - starts)[cut, :3]) < 0).mean() > 0.95
+
+
+def at_rest(session):
+    """The tool's pose once it stands still."""
+    last, end = None, time.monotonic() + 20
+    while time.monotonic() < end:
+        time.sleep(0.15)
+        frame = session.frame()
+        if len(frame) and last is not None and np.abs(frame.tool - last).max() < 0.01:
+            return frame.tool
+        last = frame.tool if len(frame) else last
+    raise AssertionError("the tool does not come to rest")
+
+
+@pytest.mark.parametrize("pivot", [0.0, 30.0])
+def test_a_hand_that_turns_turns_the_tool_about_the_pivot(pivot):
+    with riffler.pen.open("simulated") as pen:
+        at = (0, 0, 30, 0, 0, 1)
+        with riffler.Session(stock(1.0), BALL, pen, at=at, pivot=pivot, turn_stiffness=2e4) as session:
+            end = time.monotonic() + 20
+            while not pen.state().homed and time.monotonic() < end:
+                time.sleep(0.01)
+            pen.aim(pen.state().pose)
+            before, held = at_rest(session), pen.state().pose
+            pen.aim([*held[:3], np.sin(0.3), 0, np.cos(0.3)])
+            after, turned = at_rest(session), pen.state().pose
+    angle = np.arccos(np.clip(before[3:] @ after[3:], -1, 1))
+    assert angle > 0.15, "the hand has turned"
+    point = after[:3] + pivot * after[3:] - (before[:3] + pivot * before[3:])
+    assert np.abs(point - (np.subtract(turned, held))[:3]).max() < 0.5, "the pivot goes where the grip's point goes"
+    if pivot:
+        assert np.linalg.norm(after[:3] - before[:3]) > 0.5 * pivot * angle, "and the tip swings about it"
+
+
+def test_a_pivot_that_is_none_is_named():
+    with pytest.raises(ValueError, match="pivot must be at most 1000 mm"):
+        riffler.Session(stock(1.0), BALL, pivot=float("nan"))

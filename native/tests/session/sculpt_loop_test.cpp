@@ -3,9 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <iterator>
 #include <numbers>
 #include <optional>
 #include <thread>
+#include <vector>
 
 #include "dexel/volumes.hpp"
 #include "pen/arms/pens.hpp"
@@ -51,6 +54,52 @@ TEST(SculptLoop, CutsWhileTheButtonIsHeldAndWhatItToldTheSinkGivesTheSameBytes) 
   }
 }
 
+/// The ticks of 80 ms from the one on in which the force is to end: by the button, or by the session.
+std::vector<SculptTick> ending(bool by_button) {
+  const double end = 2.6;
+  SculptLoopSettings settings;
+  settings.carving.removal_constant = 0.02;
+  SculptBench bench(
+      [hand = sculpting_hand(), by_button, end](double t) {
+        pen::HandWish wish = hand(t);
+        wish.buttons = t > 1 && !(by_button && t > end) ? 1 : 0;
+        return wish;
+      },
+      test::sculpt_stock(0.5), kBall, settings);
+  std::vector<SculptTick> out;
+  bench.run(end - 0.02, [&](const SculptTick& tick) { out = {tick}; });
+  bench.run(0.02, [&](const SculptTick& tick) { out.push_back(tick); });
+  EXPECT_FALSE(bench.loop.quiet());
+  if (!by_button) bench.loop.let_go();
+  bench.run(0.08, [&](const SculptTick& tick) { out.push_back(tick); });
+  EXPECT_TRUE(bench.loop.quiet());
+  return out;
+}
+
+TEST(SculptLoop, AForceThatTheButtonOrTheSessionEndsFallsWithoutAJump) {
+  const double fall = haptics::SafetySettings{}.fall;
+  for (const bool by_button : {true, false}) {
+    const std::vector<SculptTick> ticks = ending(by_button);
+    const auto end =
+        std::ranges::find_if(ticks, [](const SculptTick& tick) { return tick.state == haptics::ForceState::Ready; });
+    ASSERT_TRUE(end != ticks.begin() && end != ticks.end());
+    const Wrench full = std::prev(end)->wrench;
+    const double force = glm::length(full.force), torque = glm::length(full.torque);
+    EXPECT_GT(force, 0.3);
+    double fell = 0;
+    for (auto tick = end; tick != ticks.end(); ++tick) {
+      const Wrench before = std::prev(tick)->wrench;
+      EXPECT_LE(glm::length(tick->wrench.force - before.force), 1.02 * force * tick->dt / fall + 1e-12);
+      EXPECT_LE(glm::length(tick->wrench.torque - before.torque), 1.02 * torque * tick->dt / fall + 1e-12);
+      EXPECT_TRUE(!tick->cutting && tick->removed == 0) << "only the force ends later";
+      if (fell > fall) {
+        EXPECT_EQ(tick->wrench, Wrench{});
+      }
+      fell += tick->dt;
+    }
+  }
+}
+
 TEST(SculptLoop, GivesTheSameBytesFromRunToRunWhoeverLooks) {
   const Volume stock = test::sculpt_stock();
   const auto result = [&](int frames) {
@@ -93,13 +142,14 @@ TEST(SculptLoop, TheHandFeelsTheCutAndNothingInTheAir) {
   SculptLoopSettings settings;
   settings.carving.removal_constant = settings.sculpt.damping = 0.05;
   SculptBench bench(sculpting_hand(6), test::sculpt_stock(), kBall, settings);
-  double cut = 0, air = 0, worst = 0;
+  double cut = 0, air = 0, worst = 0, since = 0;
   int wrong = 0;
   bench.run(6, [&](const SculptTick& tick) {
     const double force = glm::length(tick.wrench.force);
     (tick.cutting && tick.removed > 0 ? cut : air) = std::max(tick.cutting && tick.removed > 0 ? cut : air, force);
     worst = std::min(worst, tick.energy);
-    wrong += !lets_force_through(tick.state) && force > 0;
+    since = lets_force_through(tick.state) ? 0 : since + tick.dt;  // s in which the last force may fall
+    wrong += since > settings.safety.fall + tick.dt && force > 0;
   });
   EXPECT_EQ(wrong, 0);
   EXPECT_GT(cut, 0.2);

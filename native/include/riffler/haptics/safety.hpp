@@ -38,6 +38,7 @@ namespace riffler::haptics {
 /// Thresholds and times of the safety checks.
 struct SafetySettings {
   double ramp = 0.5;                ///< s from zero to full force, at the start and after every interruption
+  double fall = 20e-3;              ///< s from full force to zero after the dead-man switch is released
   double fresh = 3e-3;              ///< s: data up to this age, and ticks up to this late, count as fresh
   double fade = 17e-3;              ///< s: after `fresh` the force falls linearly, to zero and a trip at fresh + fade
   double rest = 0.5;                ///< s for which all checks must pass after a self-healing trip
@@ -91,7 +92,8 @@ class Safety {
   /// Runs all checks of the tick, before anything is computed from its data. Returns the state after them.
   ForceState observe(const Observation& now);
 
-  /// `wanted` times the gain. Zero unless `observe` was called since the last release, passed, and lets force through.
+  /// `wanted` times the gain. Zero unless `observe` was called since the last release, passed, and lets force through
+  /// or a force fall.
   /// A wrench that is not finite or exceeds the ceiling causes a trip, and the result is zero.
   SafeWrench release(const Wrench& wanted);
 
@@ -105,6 +107,9 @@ class Safety {
 
   ForceState state() const { return state_; }
   double gain() const { return gain_; }
+  /// The dead-man switch was released, and the last force falls to zero within `fall`: it does not end with a blow. All
+  /// other checks continue, and a failed one removes it in the same tick. A press counts only after the fall.
+  bool falling() const { return falling_ > 0; }
   /// Cause of the last trip or stop; None once force is let through again.
   Cause cause() const { return cause_; }
   /// Trips, and stops by the dead-man switch. Any thread may read it.
@@ -124,11 +129,12 @@ class Safety {
   void let_go(const Observation& now);
   void rest(double dt);
   void move_gain(double dt, double freshness);
+  void fall(double dt, double freshness);
 
   SafetySettings settings_;
   ForceState state_ = ForceState::Off;
   Cause cause_ = Cause::None;
-  double gain_ = 0, rested_ = 0, time_ = 0;
+  double gain_ = 0, falling_ = 0, rested_ = 0, time_ = 0;  // falling_: gain of a force that falls
   bool permitted_ = false, placed_ = false;
   Pose last_{};
   TripLog log_;

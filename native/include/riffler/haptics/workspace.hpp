@@ -14,14 +14,22 @@ struct WorkspaceSettings {
   Mat3 turn{1};                     ///< orthonormal, right-handed: the grip's frame → the part's
   std::uint32_t clutch_mask = 2;    ///< any of these buttons is the clutch; 0: no clutch
   std::uint32_t dead_man_mask = 1;  ///< any of these buttons is the dead-man switch; 0: no dead-man switch
+  double pivot = 0;                 ///< mm above the tip, on the tool's axis: the point that follows the grip's (4.6)
 
   /// Throws std::invalid_argument naming the field.
   void validate() const;
+  /// `absolute`: a device whose poses are the tool's, such as a tablet: it leads the tip.
+  WorkspaceSettings for_device(bool absolute) const {
+    WorkspaceSettings out = *this;
+    if (absolute) out.pivot = 0;
+    return out;
+  }
 };
 
 /// The tool's target follows the grip, rotated and scaled about a pair of corresponding poses. Every change makes the
 /// last grip and the last target the new pair, so the target never jumps: not when the clutch is pressed or released,
-/// nor when scale or view change. While the clutch is pressed the target stands still. Afterwards grip and target may
+/// nor when scale or view change. The grip's point leads the point `pivot` above the tip: the tool turns about it, and
+/// the hand's torque is about it. While the clutch is pressed the target stands still. Afterwards grip and target may
 /// differ in orientation; both then make the same rotations.
 class Workspace {
  public:

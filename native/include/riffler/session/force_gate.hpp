@@ -2,6 +2,8 @@
 // haptics/safety.hpp.
 #pragma once
 
+#include <atomic>
+
 #include "riffler/haptics/limits.hpp"
 #include "riffler/haptics/passivity.hpp"
 #include "riffler/haptics/safety.hpp"
@@ -28,8 +30,13 @@ class ForceGate {
   /// Runs the checks of the tick and settles the energy of the wrench held since the last one. `dt` = 0: a new
   /// connection, before which the hand may have moved anywhere. Returns the force state.
   haptics::ForceState begin(const pen::PenSample& sample, double now, double dt, bool dead_man);
-  /// The wrench to hold until the next tick, for the `wanted` one.
+  /// The wrench to hold until the next tick, for the `wanted` one; while a force falls (Safety::falling), for the last
+  /// that was wanted before.
   haptics::SafeWrench release(const pen::PenSample& sample, const Wrench& wanted, double dt);
+  /// Any thread: from the next tick on the dead-man switch counts as released.
+  void let_go() noexcept { let_go_.store(true); }
+  /// Any thread: no force was released in the last tick.
+  bool quiet() const noexcept { return quiet_.load(); }
   /// Clears a trip that does not heal by itself.
   void reset() { safety_.reset(); }
 
@@ -49,10 +56,11 @@ class ForceGate {
   pen::DeviceCapability device_;
   haptics::Safety safety_;
   haptics::Passivity passivity_;
-  double dissipated_ = 0;           // PenSample::dissipated of the last tick
-  Wrench slewed_, held_, applied_;  // slewed_: before the passivity controller
+  double dissipated_ = 0;                    // PenSample::dissipated of the last tick
+  Wrench wanted_, slewed_, held_, applied_;  // slewed_: before the passivity controller
   Pose last_grip_;
   bool has_grip_ = false;
+  std::atomic<bool> let_go_{false}, quiet_{true};
 };
 
 }  // namespace riffler::session

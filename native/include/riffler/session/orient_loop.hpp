@@ -96,6 +96,9 @@ class OrientLoop final : public pen::PenStep {
 
   /// Clears a trip in the next tick.
   void reset() noexcept { reset_.store(true); }
+  /// From the next tick on the dead-man switch counts as released: the force falls to zero, and then it is `quiet`.
+  void let_go() noexcept { gate_.let_go(); }
+  bool quiet() const noexcept { return gate_.quiet(); }
   const haptics::TripLog& trips() const noexcept { return gate_.trips(); }
 
  private:

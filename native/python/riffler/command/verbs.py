@@ -17,7 +17,7 @@ from .parser import EPILOG, Parser, UsageError, nearest
 GROUPS = {
     "mesh": "triangle meshes: files of .stl, .obj, .ply and .3mf",
     "volume": "dexel volumes: stock, carving, and what is left",
-    "plan": "paths on a part by a strategy, as a plan",
+    "plan": "paths on a part by a strategy, or of a recording, as a plan",
     "nc": "programs of machines: write, check, list",
     "pen": "pens and other devices",
 }
@@ -85,6 +85,7 @@ VERBS = (
     Verb("volume", "replay", _module("volume_replay"), "replay"),
     Verb("volume", "to-mesh", _module("volume_to_mesh"), "mesh"),
     *(Verb("plan", name, partial(_strategy, name), "pencil" if name == "pencil" else "") for name in STRATEGIES),
+    Verb("plan", "from-recording", _module("plan_from_recording")),
     Verb("nc", "post", _module("nc_post"), "post"),
     Verb("nc", "verify", _module("nc_verify"), "verify"),
     Verb("nc", "machines", _module("nc_machines"), "machines"),
@@ -191,7 +192,8 @@ def overview_of(group: str) -> str:
         f"{GROUPS[group][:1].upper()}{GROUPS[group][1:]}.",
         "",
     ]
-    lines += [f"  {name:<12}{verb.load().HELP}" for name, verb in of(group).items()]
+    width = max(12, *(len(name) + 2 for name in of(group)))
+    lines += [f"  {name:<{width}}{verb.load().HELP}" for name, verb in of(group).items()]
     return "\n".join([*lines, "", f"riffler {group} VERB --help shows the options.", *_epilog()])
 
 

@@ -25,6 +25,7 @@ from .locations import (
 from .model import Plan, part_of
 from .orientations import FreeOrientations, TiltReport, draw_map, free_orientations, min_tilt
 from .path_order import order_paths
+from .recorded import NoPathError, Recorded, StrokePath, from_recording, path_of_stroke
 from .strategies import STRATEGIES, Found, Parameter, Strategy, find
 from .strategies.engrave import Engraved, engrave
 from .strategies.pencil import PencilPaths, PencilStats, pencil
@@ -39,13 +40,16 @@ __all__ = [
     "LiftReport",
     "LocationReport",
     "NearestContact",
+    "NoPathError",
     "Parameter",
     "PartReport",
     "PencilPath",
     "PencilPaths",
     "PencilStats",
     "Plan",
+    "Recorded",
     "Strategy",
+    "StrokePath",
     "Swarf",
     "Texts",
     "TiltReport",
@@ -60,6 +64,7 @@ __all__ = [
     "find",
     "fixture_pitch",
     "free_orientations",
+    "from_recording",
     "kept_locations",
     "lift",
     "load",
@@ -68,6 +73,7 @@ __all__ = [
     "order_paths",
     "part_of",
     "path_of_poses",
+    "path_of_stroke",
     "pencil",
     "poses_of",
     "read_curves",

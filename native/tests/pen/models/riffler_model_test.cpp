@@ -162,6 +162,8 @@ TEST(RifflerModel, TheMotorsAreOnAsLongAsTheGateIsOpen) {
   for (std::size_t k = 0; k < soon.size(); ++k) EXPECT_NEAR(soon[k], d.pen.drive.current_ma[k], 2) << "without a ramp";
   d.push.holds = false;
   d.run(0.005);
+  EXPECT_EQ(d.pen.firmware.state, RIFFLER_PEN_ACTIVE) << "while the force falls";
+  d.run(haptics::SafetySettings{}.fall);
   EXPECT_EQ(d.pen.firmware.state, RIFFLER_PEN_IDLE);
   EXPECT_EQ(d.pen.firmware.fault_count, 0);
 }
