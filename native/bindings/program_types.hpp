@@ -39,6 +39,7 @@ RIFFLER_TYPED(OptionalGeometry, "PenGeometry | None")
 
 RIFFLER_TYPED(WriteReport, "riffler.program_results.WriteReport")
 RIFFLER_TYPED(MachineOptions, "list[riffler.program_results.MachineOption]")
+RIFFLER_TYPED(MachineTextsResult, "riffler.program_results.MachineTexts")
 RIFFLER_TYPED(VerifyCounters, "riffler.program_results.VerifyStats")
 RIFFLER_TYPED(NearestContactResult, "riffler.program_results.NearestContact")
 RIFFLER_TYPED(OptionalStock, "riffler.program_results.JournalStock | None")
