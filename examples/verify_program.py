@@ -39,7 +39,7 @@ view = View(mesh, azimuth=-60, elevation=55)
 scale = view.show(ax, values=view.values(mesh, distance), limits=(-0.5, 0.5))
 for k, finding in enumerate(report.findings):
     text = f"{finding.kind}, line {finding.line}" if finding.line else finding.kind
-    view.label(ax, finding.point, text, away=(0, 34 + 16 * (k % 2)))
+    view.label(ax, finding.point, text, away=(0, 34 + 16 * k))
 figure.colorbar(scale, ax=ax, shrink=0.7, label="mm: red gouged, blue rest material")
 ax.set_title("What the program leaves, compared with the part", loc="left")
 save(figure, "verify_program.png")
