@@ -7,7 +7,7 @@ import numpy as np
 import riffler
 from picture import STEEL, View, plt, save
 
-PITCH = 0.25  # mm between rays
+PITCH = 0.4  # mm between rays
 R, r = 20.0, 8.0  # mm, of the ring
 
 

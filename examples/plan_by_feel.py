@@ -25,8 +25,8 @@ with riffler.pen.open("simulated") as pen:
     session = riffler.OrientSession(edge, tool, felt, pen, axis=home[3:], ramp=0.2)
     rows, wishes = [], []
     with session:
-        for t in np.arange(0, 9.0, 0.03):  # along the edge; before, at and behind the clamp the hand leans to its side
-            along = np.interp(t, [0.8, 8.5], [2, 56])
+        for t in np.arange(0, 6.0, 0.03):  # along the edge; before, at and behind the clamp the hand leans to its side
+            along = np.interp(t, [0.6, 5.7], [2, 56])
             lean = np.interp(along, [2, 8, 15, 22, 28, 31, 37, 44, 52], [0, 0.6, 0.6, 0.1, 0.6, 0.6, 0.1, 0.6, 0.6])
             press = np.abs(along - np.array([10, 20.5, 29.5, 38.5, 50])).min() < 0.5  # button 1 sets a key
             pen.aim(np.r_[np.add(home[:3], [along, 0, 0]), 0, -np.sin(lean), np.cos(lean)], buttons=int(press))
@@ -59,5 +59,5 @@ for point in sorted({*range(0, len(path), 2), *session.keys}):
 above.set_title("Tool axes past the clamp; red: keys set with the pen's button", loc="left")
 below.plot(stations, lean, color=BLUE, label="the tool leans, degrees")
 below.plot(*np.degrees(np.array(wishes) * [[np.pi / 180, 1]]).T, color=ORANGE, label="the hand, degrees")
-below.legend(title="by the point of the path", frameon=False, ncols=2)
+below.legend(title="by the point of the path", frameon=False, ncols=2, loc="lower center", bbox_to_anchor=(0.5, 1))
 save(figure, "plan_by_feel.png")

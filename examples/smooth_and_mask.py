@@ -17,7 +17,7 @@ before = block.copy()
 
 # The mask is a volume on the same grid: what lies in it stays, material and air. Here it is a cylinder in the middle.
 mask = riffler.Volume.cylinder((30, 20, 5), 11, 30, PITCH, "xyz", lower=LOWER, upper=UPPER)
-x, y = np.meshgrid(np.arange(8, 53, 2.0), np.arange(8, 33, 2.0))
+x, y = np.meshgrid(np.arange(8, 53, 3.0), np.arange(8, 33, 3.0))
 dabs = np.column_stack([x.ravel(), y.ravel(), np.full(x.size, 7.3)])
 for _ in range(3):
     block.smooth(dabs, radius=5, strength=1.0, protect=mask)

@@ -109,6 +109,17 @@ NO_SECONDS = "seconds: give the duration, as there is no window to end the sessi
 NO_COPIES = "Mirror and Radial apply to strokes of the pointer only: a pen session makes no copies"
 
 
+def seconds_field():
+    """The duration of a session without a window."""
+    return bpy.props.FloatProperty(
+        name="Seconds",
+        min=0.0,
+        max=86400.0,
+        options={"HIDDEN", "SKIP_SAVE"},
+        description="Duration of the session when a script calls the operator, in s",
+    )
+
+
 class RIFFLER_OT_pen_sculpt(sculpt_work.TakesTool, properties.PenSettings, bpy.types.Operator):
     """Sculpt with a pen or another device, until Esc or until the operator is called again"""
 
@@ -123,13 +134,7 @@ class RIFFLER_OT_pen_sculpt(sculpt_work.TakesTool, properties.PenSettings, bpy.t
         options={"SKIP_SAVE"},
         description="Whether the session removes or adds material",
     )
-    seconds: bpy.props.FloatProperty(
-        name="Seconds",
-        min=0.0,
-        max=86400.0,
-        options={"HIDDEN", "SKIP_SAVE"},
-        description="Duration of the session when a script calls the operator, in s",
-    )
+    seconds: seconds_field()
 
     @classmethod
     def poll(cls, context):

@@ -3,7 +3,7 @@
 import bpy
 
 from ..blender.panel_parts import lines, wrapped
-from ..translations import local
+from ..translations import in_contexts, local
 from .operators import machine_options
 from .panel import Tab
 from .pure import machine_fields
@@ -91,3 +91,12 @@ class RIFFLER_PT_plan_machine(Tab, bpy.types.Panel):
 
 
 CLASSES = (RIFFLER_PT_plan_machine,)
+
+
+def attach():
+    found = machine_fields.translations()
+    bpy.app.translations.register(__name__, {code: in_contexts(texts) for code, texts in found.items()})
+
+
+def detach():
+    bpy.app.translations.unregister(__name__)

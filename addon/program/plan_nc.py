@@ -15,11 +15,9 @@ from ..plan import findings, fit_check, obstacles, plan_states, plan_store, repl
 from ..plan.current_pose import plan_object
 from ..plan.machines import MACHINES
 from ..plan.operators.plan_work import PlanWork, part_poll, plan_poll
-from ..plan.pure import location_messages
+from ..plan.pure import location_messages, machine_fields
 from . import programs
 from .properties import GivenOptions
-
-EXTENSIONS = {"heidenhain": ".h", "heidenhain-bc": ".h", "sinumerik": ".mpf", "sinumerik-bc": ".mpf", "apt": ".apt"}
 
 
 class RIFFLER_OT_plan_resolve(PlanWork, bpy.types.Operator):
@@ -142,7 +140,7 @@ class RIFFLER_OT_plan_nc(GivenOptions, bpy.types.Operator, ExportHelper):
     bl_idname = "riffler.plan_nc"
     bl_label = "Write NC"
 
-    filter_glob: StringProperty(default="*.ngc;*.nc;*.tap;*.h;*.mpf;*.apt", options={"HIDDEN"})
+    filter_glob: StringProperty(default=machine_fields.file_filter("*.nc;*.tap"), options={"HIDDEN"})
     post: EnumProperty(
         name="Machine",
         items=MACHINES,
@@ -159,7 +157,7 @@ class RIFFLER_OT_plan_nc(GivenOptions, bpy.types.Operator, ExportHelper):
 
     @property
     def filename_ext(self):
-        return EXTENSIONS.get(self.post, ".ngc")
+        return machine_fields.extension(self.post)
 
     @classmethod
     def poll(cls, context):

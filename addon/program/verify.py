@@ -100,10 +100,10 @@ class RIFFLER_OT_verify(LongWork, properties.VerifySettings, properties.GivenOpt
         if ob is None or self.coloured == "NONE":
             return []
         if self.coloured == "LEFT":
-            mesh, distance = report.deviation
+            mesh, distance = report.stock_deviation()
             ob = _left(context, mesh, stock)
         else:
-            distance = np.asarray(report.part_map)
+            distance = np.asarray(report.part_deviation())
             own = ob.type == "MESH" and len(ob.data.vertices) == len(distance)
             if not own or ob.library or ob.data.library:
                 why = f"{ob.name} is not coloured, since it is not a plain mesh of this file"

@@ -24,8 +24,13 @@ def table():
     found = {}
     for path in sorted(FOLDER.glob("*.json")):
         texts = json.loads(path.read_text(encoding="utf-8"))
-        found[path.stem] = {(context, text): said for text, said in texts.items() for context in CONTEXTS}
+        found[path.stem] = in_contexts(texts)
     return found
+
+
+def in_contexts(texts):
+    """{(context, text): translation} from {text: translation}."""
+    return {(context, text): said for text, said in texts.items() for context in CONTEXTS}
 
 
 def local(text):

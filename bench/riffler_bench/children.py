@@ -140,7 +140,7 @@ def verified(
     }
     if part:
         start = time.perf_counter()
-        distance = found.deviation[1]
+        distance = found.stock_deviation()[1]
         out |= {"map_s": time.perf_counter() - start, "lowest_mm": float(distance.min())}
         out["triangles"] = len(part.triangles)
     if tops:

@@ -167,10 +167,15 @@ def shown(tree):
                     yield from texts(inner.value)
 
 
+def of_descriptions():
+    for name, text in riffler.machines().items():
+        yield f"riffler.machines()[{name!r}]", text
+
+
 def found():
     """{text: its place}"""
-    said = {text: f"riffler.machines()[{name!r}]" for name, text in riffler.machines().items()}
-    for where, text in (*of_machines(), *of_shapes(), *of_strategies()):
+    said = {}
+    for where, text in (*of_shapes(), *of_strategies()):
         said.setdefault(text, where)
     for path, tree in sources():
         for line, text in shown(tree):
@@ -224,6 +229,27 @@ def test_every_fixed_text_has_its_german():
     assert len(said) > 500
     without = [f"{where}: {text!r}" for text, where in said.items() if text not in TABLE]
     assert not without, "addon/translations/de.json lacks\n" + "\n".join(without)
+
+
+def test_every_text_of_a_machine_has_its_german_in_the_machines_file_or_the_table():
+    both = {**TABLE, **machine_fields.translations()["de"]}
+    said = [*of_descriptions(), *of_machines()]
+    assert len(said) > 100
+    without = [f"{where}: {text!r}" for where, text in said if text not in both]
+    assert not without, "[translations.de] of the machine's file lacks\n" + "\n".join(without)
+    assert machine_fields.translations()["de"]["Pivot Length (mm)"] == "Pivotlänge (mm)"
+
+
+def test_a_user_s_machine_brings_its_own_german(tmp_path, monkeypatch):
+    monkeypatch.setenv("RIFFLER_MACHINES", str(tmp_path))
+    (tmp_path / "broken.toml").write_text("description = 3")
+    (tmp_path / "mill.toml").write_text(
+        'description = "my mill"\n[options]\nrise = { value = 5, about = "height of the vice" }\n'
+        '[translations.de]\ndescription = "Meine Fräse"\nrise = { name = "Höhe", about = "höhe des Schraubstocks" }\n'
+    )
+    table = machine_fields.translations()["de"]
+    assert table["my mill"] == "Meine Fräse"
+    assert (table["Rise (mm)"], table["Height of the vice"]) == ("Höhe (mm)", "Höhe des Schraubstocks")
 
 
 def test_the_table_is_sorted_and_ends_sentences_as_the_original():

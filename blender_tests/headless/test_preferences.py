@@ -323,6 +323,7 @@ def test_a_blender_in_german_speaks_german():
         assert bpy.app.translations.pgettext_iface("New Stock", "Operator") == "Neues Rohteil"
         own = common.part("translations").CONTEXT  # in Blender's own catalogue a pitch is a slope
         assert bpy.app.translations.pgettext_iface("Pitch", own) == "Raster"
+        assert bpy.app.translations.pgettext_iface("Pivot Length (mm)", own) == "Pivotlänge (mm)"  # a machine's file
         common.refused(bpy.ops.riffler.relief, "Ein Bild wählen")  # reports, which Blender does not look up
     finally:
         view.language = before

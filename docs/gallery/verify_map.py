@@ -49,7 +49,7 @@ def draw(report: riffler.VerifyReport) -> None:
     mpl.use("Agg")
     import matplotlib.pyplot as plt
 
-    mesh, distance = report.deviation
+    mesh, distance = report.stock_deviation()
     vertices = mesh.vertices
     upper = vertices[mesh.triangles].mean(axis=1)[:, 2] > -9.5
     figure, axis = plt.subplots(figsize=(6.6, 5.6), dpi=100)

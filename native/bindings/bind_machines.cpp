@@ -2,6 +2,7 @@
 #include "bindings/program_arguments.hpp"
 #include "nc/machine/machines.hpp"
 #include "nc/machine/option_texts.hpp"
+#include "nc/machine/post_options.hpp"
 
 namespace riffler::bindings {
 
@@ -34,6 +35,14 @@ MachineOptions option_list(const std::string& machine, const OptionsLike& option
                  "needed"_a = fact.needed, "own"_a = option.own, "about"_a = fact.about)));
   }
   return out;
+}
+
+MachineTextsResult texts(const std::string& machine) {
+  using namespace py::literals;
+  const nc::MachineTexts found = nc::texts_of_machine(machine);
+  return program_result("MachineTexts", py::dict("description"_a = found.summary, "language"_a = found.language,
+                                                 "extension"_a = nc::file_extension(found.language),
+                                                 "translations"_a = found.translations));
 }
 
 /// A dict of numbers, such as tool_diameters, as a list: each key before its value.
@@ -91,6 +100,29 @@ Examples
 --------
 >>> "linuxcnc-xyzac" in riffler.machines()
 True
+)");
+
+  m.def("machine_texts", &texts, py::arg("machine"),
+        R"(The texts of a machine's file, and the language of its control.
+
+Parameters
+----------
+machine : str
+    A name of ``machines``, or the path of a .toml file.
+
+Returns
+-------
+MachineTexts
+
+Raises
+------
+ValueError
+    For a machine that is not known, and a file that cannot be read.
+
+Examples
+--------
+>>> riffler.machine_texts("heidenhain").extension
+'.h'
 )");
 
   m.def("machine_options", &option_list, py::arg("machine"), py::kw_only(), py::arg("options") = py::none(),

@@ -25,20 +25,6 @@ struct SharedOrientSession : Guarded {
   }
 };
 
-struct OrientView {
-  session::OrientFrame frame;
-  session::OrientTick last;
-};
-
-/// One value of `get` per tick, as rows of `columns` numbers, or as a column for 0.
-template <std::size_t columns = 0, class Get>
-py::array_t<double> rows(const OrientView& f, const Get& get) {
-  std::vector<std::invoke_result_t<Get, const session::OrientTick&>> out;
-  out.reserve(f.frame.ticks.size());
-  for (const session::OrientTick& tick : f.frame.ticks) out.push_back(get(tick));
-  return take<double>(std::move(out), columns);
-}
-
 std::unique_ptr<SharedOrientSession> make(const Path& path, const Tool& tool, const Obstacles& part,
                                           std::shared_ptr<pen::Pen> pen, session::OrientSessionSettings settings,
                                           const BudgetLike& budget) {
@@ -73,8 +59,8 @@ KeyChanges changes(const OrientView& f) {
 void bind_frame(py::module_& m) {
   using F = OrientView;
   using T = session::OrientTick;
-  py::class_<F>(m, "OrientFrame",
-                R"(What happened between two calls of ``OrientSession.frame``, one row for each step.
+  py::class_<F> c(m, "OrientFrame",
+                  R"(What happened between two calls of ``OrientSession.frame``, one row for each step.
 
 Forces and torques act on the hand, about the grip's point, in the device's frame; those on the tool act on it, about its
 tip, in the part's.
@@ -89,78 +75,26 @@ Examples
 ...     frame = session.frame()
 >>> frame.touching is None
 True
-)")
-      .def_property_readonly("changes", &changes, "What the presses of buttons did, in their order: KeyChange.")
-      .def_property_readonly(
-          "times", [](const F& f) { return rows(f, [](const T& t) { return t.time; }); }, "(n,) s since the start.")
-      .def_property_readonly(
-          "poses", [](const F& f) { return rows<6>(f, [](const T& t) { return t.tool; }); },
-          "(n, 6) of the tool, at each step's end.")
-      .def_property_readonly(
-          "grips", [](const F& f) { return rows<6>(f, [](const T& t) { return t.grip; }); },
-          "(n, 6) of the grip, in the device's frame.")
+)");
+  c.def_property_readonly("changes", &changes, "What the presses of buttons did, in their order: KeyChange.")
       .def_property_readonly(
           "stations", [](const F& f) { return rows(f, [](const T& t) { return t.station; }); },
           "(n,) places on the path: point indices with fractions.")
       .def_property_readonly(
-          "forces", [](const F& f) { return rows<6>(f, [](const T& t) { return t.wrench; }); },
-          "(n, 6): force (N) and torque (N·mm), as sent to the device.")
-      .def_property_readonly(
-          "tool_forces", [](const F& f) { return rows<6>(f, [](const T& t) { return t.on_tool; }); },
-          "(n, 6): force (N) and torque (N·mm) of part and fixtures on the tool, before limits.")
-      .def_property_readonly(
-          "depth", [](const F& f) { return rows(f, [](const T& t) { return t.depth; }); },
-          "(n,) mm that the tool is at most in part and fixtures.")
-      .def_property_readonly(
-          "energy", [](const F& f) { return rows(f, [](const T& t) { return t.energy; }); },
-          "(n,) N·mm that may go to the hand: the account of passivity.")
-      .def_property_readonly(
-          "step_seconds", [](const F& f) { return rows(f, [](const T& t) { return t.seconds; }); },
-          "(n,) s of processor time.")
-      .def_property_readonly(
-          "missed", [](const F& f) { return rows(f, [](const T& t) { return t.missed ? 1.0 : 0.0; }); },
-          "(n,) 1 where no step could be made and the force was held over.")
-      .def_property_readonly(
           "held", [](const F& f) { return rows(f, [](const T& t) { return t.held ? 1.0 : 0.0; }); },
           "(n,) 1 where the tool waited because its depth was not found in time.")
       .def_property_readonly(
-          "tool", [](const F& f) { return from_poses({f.last.tool}).reshape({6}); }, "(6,) now.")
-      .def_property_readonly(
-          "grip", [](const F& f) { return from_poses({f.last.grip}).reshape({6}); }, "(6,) now.")
-      .def_property_readonly(
           "station", [](const F& f) { return f.last.station; }, "Place on the path now: a point index with a fraction.")
-      .def_property_readonly(
-          "force", [](const F& f) { return from_vec3(f.last.wrench.force); }, "(3,) N, now.")
-      .def_property_readonly(
-          "torque", [](const F& f) { return from_vec3(f.last.wrench.torque); }, "(3,) N·mm, now.")
       .def_property_readonly(
           "touching",
           [](const F& f) -> std::optional<std::string> {
             if (!f.last.touch) return {};
             return name_of(*f.last.touch);
           },
-          "What is deepest in contact now: cutter, shank, holder, fixture (with any part of the tool), or None.")
-      .def_property_readonly(
-          "state", [](const F& f) { return name(f.last.state); },
-          "Force state now: off, homing, ready, ramp, active, degraded or tripped.")
-      .def_property_readonly(
-          "cause",
-          [](const F& f) -> std::optional<std::string> {
-            if (f.last.cause == haptics::Cause::None) return {};
-            return sentence(f.last.cause);
-          },
-          "Why the force was taken away and what to do, or None.")
-      .def_property_readonly(
-          "problem",
-          [](const F& f) -> std::optional<std::string> {
-            if (!f.last.problem) return {};
-            return f.last.problem;
-          },
-          "Why the tool does not follow the hand, or None.")
-      .def_property_readonly(
-          "dropped_ticks", [](const F& f) { return f.frame.dropped_ticks; },
-          "Steps since the start that are in no frame, because frames were too rare: 4096 are kept.")
-      .def("__len__", [](const F& f) { return f.frame.ticks.size(); });
+          "What is deepest in contact now: cutter, shank, holder, fixture (with any part of the tool), or None.");
+  bind_ticks(
+      c, {"(n, 6): force (N) and torque (N·mm) of part and fixtures on the tool, before limits.",
+          "(n,) mm that the tool is at most in part and fixtures.", "Why the tool does not follow the hand, or None."});
 }
 
 constexpr const char* kOrientSession =

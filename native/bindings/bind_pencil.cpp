@@ -1,8 +1,8 @@
 // Pencil cuts.
 #include <memory>
 
+#include "bindings/program_types.hpp"
 #include "bindings/task.hpp"
-#include "bindings/typed.hpp"
 #include "plan/passes.hpp"
 #include "riffler/plan/pencil.hpp"
 #include "riffler/tool/tool.hpp"
@@ -11,24 +11,26 @@ namespace riffler::bindings {
 
 namespace {
 
-py::dict to_dict(const plan::PencilStats& s) {
+py::object from_stats(const plan::PencilStats& s) {
   using namespace py::literals;
-  return py::dict("balls"_a = s.balls, "entered"_a = s.entered, "starts"_a = s.starts, "stuck"_a = s.stuck,
-                  "faceting"_a = s.faceting, "edges"_a = s.edges, "traces"_a = s.traces, "steps"_a = s.steps,
-                  "cut"_a = s.cut);
+  return plan_result("strategies.pencil", "PencilStats",
+                     py::dict("balls"_a = s.balls, "entered"_a = s.entered, "starts"_a = s.starts, "stuck"_a = s.stuck,
+                              "faceting"_a = s.faceting, "edges"_a = s.edges, "traces"_a = s.traces,
+                              "steps"_a = s.steps, "cut"_a = s.cut));
 }
 
-py::dict to_dict(plan::PencilResult&& result) {
+PencilResult from_result(plan::PencilResult&& result) {
   py::list paths;
   for (plan::PencilPath& path : result.paths) paths.append(std::make_shared<plan::PencilPath>(std::move(path)));
   py::list ends;
   for (const auto& [first, last] : result.ends) ends.append(py::make_tuple(first, last));
   using namespace py::literals;
-  return py::dict("paths"_a = paths, "ends"_a = ends, "rest_area"_a = result.rest_area,
-                  "rest_areas"_a = take<double>(std::move(result.rest_areas)),
-                  "reference_area"_a = result.reference_area,
-                  "reference_areas"_a = take<double>(std::move(result.reference_areas)),
-                  "stats"_a = to_dict(result.stats), "reason"_a = result.reason);
+  return plan_result(
+      "strategies.pencil", "PencilPaths",
+      py::dict("paths"_a = paths, "ends"_a = ends, "rest_area"_a = result.rest_area,
+               "rest_areas"_a = take<double>(std::move(result.rest_areas)), "reference_area"_a = result.reference_area,
+               "reference_areas"_a = take<double>(std::move(result.reference_areas)),
+               "stats"_a = from_stats(result.stats), "reason"_a = result.reason));
 }
 
 }  // namespace
@@ -49,7 +51,7 @@ void bind_pencil(py::module_& m) {
         const auto work = [part, radius = plan::tip_ball_radius(tool, "tool"), options](const Progress& listener) {
           return pencil(*part, radius, options, listener);
         };
-        return long_call(progress, work, [](plan::PencilResult&& found) { return to_dict(std::move(found)); });
+        return long_call(progress, work, [](plan::PencilResult&& found) { return from_result(std::move(found)); });
       },
       py::arg("part").none(false), py::arg("tool"), py::kw_only(), py::arg("tolerance"), py::arg("bitangency_angle"),
       py::arg("minimum_length"), py::arg("passes"), py::arg("stepover"), py::arg("overthickness"), py::arg("progress"),

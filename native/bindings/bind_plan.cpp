@@ -61,8 +61,8 @@ py::list names_of(const std::vector<collide::Touch>& touches) {
   return out;
 }
 
-py::dict lift_all(const Tool& tool, const Doubles& array, const collide::Collider& collider, double clearance,
-                  double tolerance, double max_lift, int max_evaluations, const ProgressLike& callable) {
+LiftResult lift_all(const Tool& tool, const Doubles& array, const collide::Collider& collider, double clearance,
+                    double tolerance, double max_lift, int max_evaluations, const ProgressLike& callable) {
   const std::vector<Pose> poses = to_unit_poses(array);
   const plan::LiftRule rule{clearance, tolerance, max_lift, max_evaluations};
   validate(rule);
@@ -85,10 +85,11 @@ py::dict lift_all(const Tool& tool, const Doubles& array, const collide::Collide
     height.push_back(l.height), before.push_back(l.before), after.push_back(l.clearance);
     free.push_back(l.free), evaluations.push_back(l.evaluations), points.push_back(l.point), touches.push_back(l.touch);
   }
-  return py::dict("lift"_a = take<double>(std::move(height)), "free"_a = take<bool>(std::move(free)),
-                  "before"_a = take<double>(std::move(before)), "clearance"_a = take<double>(std::move(after)),
-                  "points"_a = from_vec3s(points), "pieces"_a = names_of(touches),
-                  "evaluations"_a = take<int>(std::move(evaluations)));
+  return plan_result("locations", "LiftReport",
+                     py::dict("lift"_a = take<double>(std::move(height)), "free"_a = take<bool>(std::move(free)),
+                              "before"_a = take<double>(std::move(before)),
+                              "clearance"_a = take<double>(std::move(after)), "points"_a = from_vec3s(points),
+                              "pieces"_a = names_of(touches), "evaluations"_a = take<int>(std::move(evaluations))));
 }
 
 ArrayPair drop_all(const Tool& tool, const Doubles& array, const Mesh& part, const ArrayLike& axis,
@@ -107,7 +108,7 @@ ArrayPair drop_all(const Tool& tool, const Doubles& array, const Mesh& part, con
   return py::make_tuple(take<double>(std::move(heights)), from_vec3s(contacts));
 }
 
-py::dict from_locations(const plan::CutterLocations& found) {
+LocationsResult from_locations(const plan::CutterLocations& found) {
   std::vector<Pose> poses;
   std::vector<std::int64_t> points;
   std::vector<double> lift, before, clearance;
@@ -116,14 +117,19 @@ py::dict from_locations(const plan::CutterLocations& found) {
     poses.push_back(row.pose), points.push_back(row.point), lift.push_back(row.lift), before.push_back(row.before);
     clearance.push_back(row.clearance), touches.push_back(row.touch);
   }
+  const py::module_ module = py::module_::import("riffler.plan.locations");
+  const py::object blocked_point = module.attr("BlockedPoint"), unsafe_move = module.attr("UnsafeMove");
   py::list blocked, unsafe;
-  for (const plan::BlockedPoint& b : found.blocked) blocked.append(py::make_tuple(b.point, b.reason));
-  for (const plan::UnsafeWay& u : found.unsafe) unsafe.append(py::make_tuple(u.row, u.clearance, u.bound, u.reason));
-  return py::dict("cl"_a = take<double>(std::move(poses), 6), "points"_a = take<std::int64_t>(std::move(points)),
-                  "lift"_a = take<double>(std::move(lift)), "before"_a = take<double>(std::move(before)),
-                  "clearance"_a = take<double>(std::move(clearance)), "pieces"_a = names_of(touches),
-                  "blocked"_a = blocked, "unsafe"_a = unsafe, "min_clearance"_a = found.least_clearance,
-                  "bound"_a = found.bound, "evaluations"_a = found.evaluations, "ok"_a = found.good());
+  for (const plan::BlockedPoint& b : found.blocked) blocked.append(blocked_point(b.point, b.reason));
+  for (const plan::UnsafeWay& u : found.unsafe) unsafe.append(unsafe_move(u.row, u.clearance, u.bound, u.reason));
+  const py::object report =
+      plan_result("locations", "LocationReport",
+                  py::dict("points"_a = take<std::int64_t>(std::move(points)), "lift"_a = take<double>(std::move(lift)),
+                           "before"_a = take<double>(std::move(before)),
+                           "clearance"_a = take<double>(std::move(clearance)), "pieces"_a = names_of(touches),
+                           "blocked"_a = blocked, "unsafe"_a = unsafe, "min_clearance"_a = found.least_clearance,
+                           "bound"_a = found.bound, "evaluations"_a = found.evaluations, "ok"_a = found.good()));
+  return py::make_tuple(take<double>(std::move(poses), 6), report);
 }
 
 /// `from`: a shared path or vector of poses.
@@ -149,17 +155,19 @@ plan::MapRule to_rule(const std::vector<double>& inclinations, const std::vector
   return {inclinations, tilts, clearance, tolerance, to_axis_limit(limit)};
 }
 
-py::dict from_map(const plan::OrientationMap& map) {
+py::object from_map(const plan::OrientationMap& map) {
   std::vector<std::uint8_t> states;
   for (const plan::OrientationMap::State s : map.state) states.push_back(static_cast<std::uint8_t>(s));
   const std::optional<std::size_t> least = map.least_tilt();
-  return py::dict("axes"_a = from_vec3s(map.axes), "clearance"_a = take<double>(std::vector<double>(map.clearance)),
-                  "state"_a = take<std::uint8_t>(std::move(states)), "pieces"_a = names_of(map.touch),
-                  "suggestion"_a = least ? py::object(from_vec3(map.axes[*least])) : py::object(py::none()),
-                  "reason"_a = map.why_none());
+  return plan_result(
+      "orientations", "MapValues",
+      py::dict("axes"_a = from_vec3s(map.axes), "clearance"_a = take<double>(std::vector<double>(map.clearance)),
+               "state"_a = take<std::uint8_t>(std::move(states)), "pieces"_a = names_of(map.touch),
+               "suggestion"_a = least ? py::object(from_vec3(map.axes[*least])) : py::object(py::none()),
+               "reason"_a = map.why_none()));
 }
 
-py::list from_maps(const std::vector<plan::OrientationMap>& found) {
+MapResults from_maps(const std::vector<plan::OrientationMap>& found) {
   py::list out;
   for (const plan::OrientationMap& map : found) out.append(from_map(map));
   return out;
@@ -175,10 +183,12 @@ auto maps(const Path& path, const std::vector<std::size_t>& points, const Tool& 
   return long_call(progress, work, &from_maps);
 }
 
-py::dict from_answer(plan::TiltAnswer&& found) {
-  return py::dict("found"_a = found.found, "axes"_a = from_vec3s(found.axes),
-                  "angles"_a = take<double>(std::move(found.angles)), "cost"_a = found.cost, "point"_a = found.point,
-                  "reason"_a = found.reason);
+TiltResult from_answer(plan::TiltAnswer&& found) {
+  const py::object report =
+      plan_result("orientations", "TiltReport",
+                  py::dict("found"_a = found.found, "angles"_a = take<double>(std::move(found.angles)),
+                           "cost"_a = found.cost, "point"_a = found.point, "reason"_a = found.reason));
+  return py::make_tuple(from_vec3s(found.axes), report);
 }
 
 auto choose(const Path& path, const Tool& tool, const Obstacle& collider, const std::vector<double>& inclinations,

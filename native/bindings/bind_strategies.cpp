@@ -34,8 +34,8 @@ py::list engraved(const Mesh& part, const ArraysLike& arrays, const Tool& tool, 
   return out;
 }
 
-py::dict cut_with_flank(const plan::PencilPath& path, const Mesh& part, const Tool& tool,
-                        const plan::SwarfOptions& options, const ProgressLike& callable) {
+SwarfResult cut_with_flank(const plan::PencilPath& path, const Mesh& part, const Tool& tool,
+                           const plan::SwarfOptions& options, const ProgressLike& callable) {
   const Progress progress = to_progress(callable);
   plan::Swarf found;
   {
@@ -45,9 +45,10 @@ py::dict cut_with_flank(const plan::PencilPath& path, const Mesh& part, const To
   py::list fits;
   for (const auto& [first, last] : found.fits) fits.append(py::make_tuple(first, last));
   using namespace py::literals;
-  return py::dict("path"_a = std::make_shared<plan::PencilPath>(std::move(found.path)),
-                  "height"_a = take<double>(std::move(found.height)), "error"_a = take<double>(std::move(found.error)),
-                  "fits"_a = fits);
+  return plan_result("strategies.swarf", "Swarf",
+                     py::dict("path"_a = std::make_shared<plan::PencilPath>(std::move(found.path)),
+                              "height"_a = take<double>(std::move(found.height)),
+                              "error"_a = take<double>(std::move(found.error)), "fits"_a = fits));
 }
 
 }  // namespace

@@ -86,13 +86,13 @@ py::object made_deviation(const verify::VerifyReport& report) {
   return py::make_tuple(std::make_shared<Mesh>(std::move(found.first)), take<double>(std::move(found.second)));
 }
 
-OptionalDeviation deviation(SharedReport& self) {
+OptionalDeviation stock_deviation(SharedReport& self) {
   if (!self.report.part) return py::none();
-  return self.deviation.get([&] { return made_deviation(self.report); });
+  return self.stock_deviation.get([&] { return made_deviation(self.report); });
 }
 
-py::object made_part_map(SharedReport& self) {
-  const auto left = py::cast<std::shared_ptr<Mesh>>(py::tuple(deviation(self))[0]);
+py::object made_part_deviation(SharedReport& self) {
+  const auto left = py::cast<std::shared_ptr<Mesh>>(py::tuple(stock_deviation(self))[0]);
   std::vector<double> found;
   {
     const NoGil release;
@@ -101,9 +101,9 @@ py::object made_part_map(SharedReport& self) {
   return take<double>(std::move(found));
 }
 
-OptionalArray part_map(SharedReport& self) {
+OptionalArray part_deviation(SharedReport& self) {
   if (!self.report.part) return py::none();
-  return self.part_map.get([&] { return made_part_map(self); });
+  return self.part_deviation.get([&] { return made_part_deviation(self); });
 }
 
 py::array_t<double> rate(const SharedReport& self) {
@@ -232,16 +232,41 @@ void bind_report(py::module_& m) {
       .def_property_readonly(
           "volume", [](const SharedReport& r) { return std::make_shared<SharedVolume>(r.report.volume.snapshot()); },
           "The material that is left.")
-      .def_property_readonly(
-          "deviation", &deviation,
-          R"((mesh of what is left, (vertices,) mm) or None without a part; computed at the first use.
+      .def("stock_deviation", &stock_deviation,
+           R"(Meshes what is left and measures it against the part, at the first call; later calls return the same.
 
-Distance of each vertex from the part's surface: positive where rest material stands on it, negative in gouges.)")
-      .def_property_readonly("part_map", &part_map,
-                             R"((vertices of the part,) mm, or None without a part; computed at the first use.
+Returns
+-------
+tuple of Mesh and ndarray, shape (vertices,), or None
+    What is left, and mm from each of its vertices to the part's surface: positive where rest material stands on it,
+    negative in gouges. None without a part.
 
-Distance of each vertex of the part from the surface of what is left: positive where material covers it, negative where
-it is missing, -inf where nothing is left at all.)")
+Examples
+--------
+>>> stock = riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5, directions="xyz")
+>>> program = riffler.Program([[10, 10, 20, 0, 0, 1]], feed=600)
+>>> report = riffler.verify(program, stock, part_mesh=stock.to_mesh())
+>>> mesh, distance = report.stock_deviation()
+>>> bool(abs(distance).max() < 1e-6)
+True
+)")
+      .def("part_deviation", &part_deviation,
+           R"(Measures the part against what is left, at the first call; later calls return the same.
+
+Returns
+-------
+ndarray, shape (vertices,), or None
+    mm from each vertex of the part to the surface of what is left: positive where material covers it, negative where it
+    is missing, -inf where nothing is left at all. None without a part.
+
+Examples
+--------
+>>> stock = riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5, directions="xyz")
+>>> program = riffler.Program([[10, 10, 20, 0, 0, 1]], feed=600)
+>>> report = riffler.verify(program, stock, part_mesh=stock.to_mesh())
+>>> bool(abs(report.part_deviation()).max() < 1e-6)
+True
+)")
       .def_property_readonly(
           "stats",
           [](const SharedReport& r) -> VerifyCounters {

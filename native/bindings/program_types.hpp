@@ -39,11 +39,19 @@ RIFFLER_TYPED(OptionalGeometry, "PenGeometry | None")
 
 RIFFLER_TYPED(WriteReport, "riffler.program_results.WriteReport")
 RIFFLER_TYPED(MachineOptions, "list[riffler.program_results.MachineOption]")
+RIFFLER_TYPED(MachineTextsResult, "riffler.program_results.MachineTexts")
 RIFFLER_TYPED(VerifyCounters, "riffler.program_results.VerifyStats")
 RIFFLER_TYPED(NearestContactResult, "riffler.program_results.NearestContact")
 RIFFLER_TYPED(OptionalStock, "riffler.program_results.JournalStock | None")
 RIFFLER_TYPED(TripList, "list[riffler.program_results.Trip]")
 RIFFLER_TYPED(KeyChanges, "tuple[riffler.program_results.KeyChange, ...]")
+
+RIFFLER_TYPED(LiftResult, "riffler.plan.locations.LiftReport")
+RIFFLER_TYPED(LocationsResult, "tuple[numpy.typing.NDArray[numpy.float64], riffler.plan.locations.LocationReport]")
+RIFFLER_TYPED(MapResults, "list[riffler.plan.orientations.MapValues]")
+RIFFLER_TYPED(TiltResult, "tuple[numpy.typing.NDArray[numpy.float64], riffler.plan.orientations.TiltReport]")
+RIFFLER_TYPED(PencilResult, "riffler.plan.strategies.pencil.PencilPaths")
+RIFFLER_TYPED(SwarfResult, "riffler.plan.strategies.swarf.Swarf")
 
 /// Index to axis; ValueError naming the point.
 plan::OrientationKeys to_keys(const KeysLike& object);
@@ -60,6 +68,10 @@ RIFFLER_TYPED(DiagnosisResult, "riffler.pen_results.GripDiagnosis")
 /// A result that is a dataclass of riffler.program_results, with the fields of a dict.
 inline py::object program_result(const char* name, const py::dict& fields) {
   return make_result(name, fields, "riffler.program_results");
+}
+/// The same of the module `module`, below riffler.plan.
+inline py::object plan_result(const char* module, const char* name, const py::dict& fields) {
+  return make_result(name, fields, (std::string("riffler.plan.") + module).c_str());
 }
 /// The same of riffler.pen_results.
 inline py::object pen_result(const char* name, const py::dict& fields) {

@@ -7,7 +7,6 @@
 namespace riffler::bindings {
 
 RIFFLER_TYPED(AuditResult, "riffler.results.Audit")
-RIFFLER_TYPED(OrientationResult, "riffler.results.Orientation")
 RIFFLER_TYPED(MeshAndOrientation, "tuple[riffler._core.Mesh, riffler.results.Orientation]")
 RIFFLER_TYPED(VolumeAndReport, "tuple[riffler._core.Volume, riffler.results.VolumeReport]")
 RIFFLER_TYPED(MeshAndReport, "tuple[riffler._core.Mesh, riffler.results.SurfaceReport]")

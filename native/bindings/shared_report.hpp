@@ -12,7 +12,7 @@ namespace riffler::bindings {
 struct SharedReport {
   explicit SharedReport(verify::VerifyReport&& r) : report(std::move(r)) {}
   const verify::VerifyReport report;
-  LazyObject deviation, part_map;
+  LazyObject stock_deviation, part_deviation;
 };
 std::shared_ptr<SharedReport> share(verify::VerifyReport&& report);
 

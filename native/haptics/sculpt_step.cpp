@@ -62,6 +62,12 @@ collide::ContactStiffness scaled(collide::ContactStiffness k, double factor) {
 
 }  // namespace
 
+SculptSettings SculptSettings::at_tool(double scale) const {
+  SculptSettings out = *this;
+  out.coupling = coupling.at_tool(scale);
+  return out;
+}
+
 void SculptSettings::validate() const {
   coupling.validate();
   base::require_positive(coupling.stiffness, "coupling.stiffness");

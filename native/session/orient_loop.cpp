@@ -42,16 +42,12 @@ void OrientSettings::validate() const {
 struct OrientLoop::Scene {
   Scene(const OrientSettings& s, const Tool& tool, const PathGuide& on, const collide::Collider& obstacles,
         bool absolute)
-      : guide(on), step(scaled(s), tool, nullptr, &obstacles, &guide), workspace(s.workspace.for_device(absolute)) {
+      : guide(on),
+        step(s.step.at_tool(s.workspace.scale), tool, nullptr, &obstacles, &guide),
+        workspace(s.workspace.for_device(absolute)) {
     guide.set_slides(s.slides);
   }
   Scene(const Scene&) = delete;
-
-  static haptics::SculptSettings scaled(const OrientSettings& s) {
-    haptics::SculptSettings out = s.step;
-    out.coupling = out.coupling.at_tool(s.workspace.scale);
-    return out;
-  }
 
   PathGuide guide;
   haptics::SculptStep step;
@@ -60,33 +56,22 @@ struct OrientLoop::Scene {
 
 OrientLoop::OrientLoop(const OrientSettings& settings, const Tool& tool, const PathGuide& guide,
                        const collide::Collider& obstacles, const pen::DeviceCapability& device, bool absolute)
-    : settings_((settings.validate(), settings)),
+    : PenLoop((settings.validate(), settings), device, guide.pose(), absolute),
+      settings_(settings),
       torque_(has_torque(device)),
-      gate_(settings.limits, settings.passivity, settings.safety, device),
-      wrench_extrapolator_(settings.wrench_extrapolator),
-      last_tool_(guide.pose()),
       last_station_(guide.station()),
-      absolute_(absolute),
       scene_(std::make_unique<Scene>(settings, tool, guide, obstacles, absolute)) {}
 
 OrientLoop::~OrientLoop() = default;
 
 haptics::SafeWrench OrientLoop::step(const pen::PenSample& sample, double now, double dt) noexcept {
   const double start = base::thread_seconds();
-  OrientTick tick;
-  if (dt > 0) time_ += dt;
-  tick.time = time_, tick.dt = dt, tick.grip = sample.pose;
-  if (reset_.exchange(false)) gate_.reset();
-  if (dt == 0) placed_ = false;  // a new connection: the hand may have moved anywhere
-  const std::uint32_t dead_man = settings_.workspace.dead_man_mask;
-  gate_.begin(sample, now, dt, dead_man == 0 || (sample.buttons & dead_man) != 0);
+  OrientTick tick = begin(sample, now, dt, settings_.workspace.dead_man_mask);
   const Wrench wanted = follow(sample, dt, tick);
-  const haptics::SafeWrench safe = gate_.release(sample, wanted, dt);
-  tick.wrench = gate_.held(), tick.energy = gate_.energy();
-  tick.state = gate_.state(), tick.cause = gate_.cause();
+  const haptics::SafeWrench safe = release(sample, wanted, dt, tick);
   press(sample.buttons, tick);
   tick.seconds = base::thread_seconds() - start;
-  if (!ticks_.put(tick)) dropped_ticks_.fetch_add(1, std::memory_order_relaxed);
+  put(tick);
   return safe;
 }
 
@@ -124,11 +109,6 @@ Wrench OrientLoop::follow(const pen::PenSample& sample, double dt, OrientTick& t
   } catch (const std::exception&) {
     return missed(dt, "the step failed", tick);
   }
-}
-
-Wrench OrientLoop::missed(double dt, const char* why, OrientTick& tick) noexcept {
-  tick.missed = true, tick.problem = why;
-  return wrench_extrapolator_.missed(dt);
 }
 
 /// Only while the device knows its pose: a key must be where the user sees the tool.

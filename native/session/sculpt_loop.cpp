@@ -30,14 +30,8 @@ struct SculptLoop::Scene {
         bool absolute)
       : volume(stock),
         carver(volume, tool, s.carving),
-        step(scaled(s), tool, &carver, obstacles),
+        step(s.sculpt.at_tool(s.workspace.scale), tool, &carver, obstacles),
         workspace(s.workspace.for_device(absolute)) {}
-
-  static haptics::SculptSettings scaled(const SculptLoopSettings& s) {
-    haptics::SculptSettings out = s.sculpt;
-    out.coupling = out.coupling.at_tool(s.workspace.scale);
-    return out;
-  }
 
   Volume volume;
   sweep::MoveCarver carver;
@@ -48,13 +42,10 @@ struct SculptLoop::Scene {
 SculptLoop::SculptLoop(const SculptLoopSettings& settings, const Volume& stock, const Tool& tool,
                        const collide::Collider* obstacles, const pen::DeviceCapability& device,
                        const std::optional<Pose>& start, StrokeSink* sink)
-    : settings_((settings.validate(), settings)),
+    : PenLoop((settings.validate(), settings), device, start.value_or(Pose{}), !start),
+      settings_(settings),
       sink_(sink),
-      gate_(settings.limits, settings.passivity, settings.safety, device),
-      wrench_extrapolator_(settings.wrench_extrapolator),
-      last_tool_(start.value_or(Pose{})),
-      absolute_(!start),
-      scene_(std::make_unique<Scene>(settings, stock, tool, obstacles, absolute_)),
+      scene_(std::make_unique<Scene>(settings, stock, tool, obstacles, !start)),
       exchange_(stock),
       dead_man_mask_(settings.workspace.dead_man_mask) {}
 
@@ -62,21 +53,13 @@ SculptLoop::~SculptLoop() = default;
 
 haptics::SafeWrench SculptLoop::step(const pen::PenSample& sample, double now, double dt) noexcept {
   const double start = base::thread_seconds();
-  SculptTick tick;
-  if (dt > 0) time_ += dt;
-  tick.time = time_, tick.dt = dt, tick.grip = sample.pose;
-  if (reset_.exchange(false)) gate_.reset();
-  if (dt == 0) placed_ = false;  // a new connection: the hand may have moved anywhere
-  const std::uint32_t dead_man_mask = dead_man_mask_.load();
-  gate_.begin(sample, now, dt, dead_man_mask == 0 || (sample.buttons & dead_man_mask) != 0);
+  SculptTick tick = begin(sample, now, dt, dead_man_mask_.load());
   tick.applied = gate_.applied();
   const Wrench wanted = sculpt(sample, dt, tick);
-  const haptics::SafeWrench safe = gate_.release(sample, wanted, dt);
-  tick.wrench = gate_.held(), tick.energy = gate_.energy();
-  tick.state = gate_.state(), tick.cause = gate_.cause();
+  const haptics::SafeWrench safe = release(sample, wanted, dt, tick);
   if (tick.cutting && sink_) sink_->row(tick.time, tick.tool, tick.wrench, tick.removed);
   tick.seconds = base::thread_seconds() - start;
-  if (!ticks_.put(tick)) dropped_ticks_.fetch_add(1, std::memory_order_relaxed);
+  put(tick);
   return safe;
 }
 
@@ -136,11 +119,6 @@ Wrench SculptLoop::follow(Scene& scene, const pen::PenSample& sample, double dt,
   } catch (const std::exception&) {
     return missed(dt, "the step failed", tick);
   }
-}
-
-Wrench SculptLoop::missed(double dt, const char* why, SculptTick& tick) noexcept {
-  tick.missed = true, tick.problem = why;
-  return wrench_extrapolator_.missed(dt);
 }
 
 /// Begins with the move that has just removed something, from the tool's pose before it.

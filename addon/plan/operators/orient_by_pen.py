@@ -42,13 +42,7 @@ class RIFFLER_OT_plan_pen(pen_properties.TurningDevice, pen_properties.HandSetti
         default=True,
         description="The tool follows the hand along the path; otherwise it turns where it is",
     )
-    seconds: bpy.props.FloatProperty(
-        name="Seconds",
-        min=0.0,
-        max=86400.0,
-        options={"HIDDEN", "SKIP_SAVE"},
-        description="Duration of the session when a script calls the operator, in s",
-    )
+    seconds: pen_operators.seconds_field()
 
     @classmethod
     def poll(cls, context):

@@ -25,13 +25,19 @@ def machine_identifier(name: str) -> str:
 
 def label(fact: dict) -> str:
     """“Max Rotary (deg/min)”."""
-    words = ABBREVIATIONS.get(fact.name, fact.name.replace("_", " ").title())
-    return f"{words} ({fact.unit})" if fact.unit else words
+    return _with_unit(ABBREVIATIONS.get(fact.name, fact.name.replace("_", " ").title()), fact.unit)
+
+
+def _with_unit(words: str, unit: str) -> str:
+    return f"{words} ({unit})" if unit else words
 
 
 def about(fact: dict) -> str:
     """The tooltip: Blender adds the full stop."""
-    text = fact.about
+    return _capital(fact.about)
+
+
+def _capital(text: str) -> str:
     return text[:1].upper() + text[1:]
 
 
@@ -40,6 +46,39 @@ def value(fact: dict, found):
     if fact.kind in ("flag", "word"):
         return found
     return [units.clean(x) for x in found] if fact.count > 1 else units.clean(found)
+
+
+def translations() -> dict[str, dict[str, str]]:
+    """By language code: shown texts to translations, from the machines' files."""
+    found: dict[str, dict[str, str]] = {}
+    for machine in riffler.machines():
+        try:
+            texts, listed = riffler.machine_texts(machine), facts(machine)
+        except ValueError:
+            continue  # a user's file that cannot be read; using that machine reports the error
+        for language, own in texts.translations.items():
+            table = found.setdefault(language, {})
+            if texts.description in own:
+                table[texts.description] = own[texts.description]
+            for fact in listed:
+                if fact.own and fact.name in own:
+                    table[label(fact)] = _with_unit(own[fact.name], fact.unit)
+                if fact.own and fact.about in own:
+                    table[about(fact)] = _capital(own[fact.about])
+    return found
+
+
+def extension(machine: str) -> str:
+    """The usual extension of a machine's files; ".ngc" for a file that cannot be read."""
+    try:
+        return riffler.machine_texts(machine).extension
+    except ValueError:
+        return ".ngc"
+
+
+def file_filter(others: str) -> str:
+    """Patterns of a file selector: files of all machines, and others."""
+    return ";".join([*dict.fromkeys(f"*{extension(machine)}" for machine in riffler.machines()), others])
 
 
 @lru_cache(maxsize=64)

@@ -68,7 +68,3 @@ def ray_count(size, pitch: float, directions: str) -> int:
     nx, ny, nz = (max(1, math.floor(s / pitch + 0.5)) for s in size)
     across = {"x": ny * nz, "y": nz * nx, "z": nx * ny}
     return sum(across[d] for d in directions)
-
-
-def stock_bytes(size, pitch: float, directions: str) -> int:
-    return BYTES_PER_RAY * ray_count(size, pitch, directions)

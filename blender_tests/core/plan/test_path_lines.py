@@ -144,3 +144,12 @@ def test_machines_and_options_have_names_that_blender_takes():
         machine_fields.check("linuxcnc-xyzac", {})
     with pytest.raises(ValueError, match=r"Pivot Length \(mm\) is not set, .*panel Machine$"):
         machine_fields.check("head-head", {"tcp": False})
+
+
+def test_files_have_the_extension_of_the_machine_s_control(tmp_path, monkeypatch):
+    monkeypatch.setenv("RIFFLER_MACHINES", str(tmp_path))
+    (tmp_path / "mill.toml").write_text('description = "mill"\ncontrol = "sinumerik"\n')
+    (tmp_path / "broken.toml").write_text("description = 3")
+    found = [machine_fields.extension(m) for m in ("tcp", "heidenhain-bc", "apt", "mill", "broken")]
+    assert found == [".ngc", ".h", ".apt", ".mpf", ".ngc"]
+    assert machine_fields.file_filter("*.nc;*.tap") == "*.ngc;*.h;*.mpf;*.apt;*.nc;*.tap"

@@ -18,12 +18,14 @@ class Describer : base::TomlReader {
  public:
   Describer(std::string_view text, const std::string& file) : base::TomlReader(text, file) {}
 
-  std::string summary() { return text(root(), "description"); }
+  std::string summary() const { return text(root(), "description"); }
+
+  MachineTexts texts() const { return {summary(), language(), translations()}; }
 
   MachineDescription describe(const std::string& name, OptionReader& options) {
     allow(root(), {"description", "control", "words", "direction", "tool_length", "feed", "note", "options", "rotary",
-                   "axis", "start", "end", "retract", "coolant", "rapids"});
-    summary();
+                   "axis", "start", "end", "retract", "coolant", "rapids", "translations"});
+    texts();
     MachineDescription out;
     out.name = name;
     out.tip_words = word(root(), "words", {"tip", "joints"}, "tip") == "tip";
@@ -40,6 +42,36 @@ class Describer : base::TomlReader {
   }
 
  private:
+  std::string language() const { return word(root(), "control", {kLanguages.begin(), kLanguages.end()}, "rs274"); }
+
+  std::map<std::string, std::map<std::string, std::string>> translations() const {
+    std::map<std::string, std::map<std::string, std::string>> out;
+    if (!root().get("translations")) return out;
+    for (const auto& [code, texts] : needed_table(root(), "translations")) {
+      if (!texts.is_table()) fail(texts, "translations must be tables [translations.LANGUAGE]");
+      std::map<std::string, std::string>& own = out[std::string(code.str())];
+      for (const auto& [key, node] : *texts.as_table()) {
+        if (key.str() == "description")
+          own[summary()] = text(*texts.as_table(), "description");
+        else
+          translate_option(node, std::string(key.str()), own);
+      }
+    }
+    return out;
+  }
+
+  void translate_option(const toml::node& node, const std::string& name,
+                        std::map<std::string, std::string>& own) const {
+    const toml::node* declared = root().at_path("options").is_table() ? root()["options"][name].node() : nullptr;
+    if (!declared) fail(node, "translations: there is no option " + name);
+    if (!node.is_table()) fail(node, name + " must be a table of name and about");
+    const toml::table& texts = *node.as_table();
+    allow(texts, {"name", "about"});
+    own[name] = text(texts, "name");
+    if (!declared->is_table() || !declared->as_table()->get("about")) return;
+    own[text(*declared->as_table(), "about")] = text(texts, "about");
+  }
+
   /// −1 if the caller reverses the rotation of tables relative to the file.
   double table_sign(OptionReader& options) const {
     if (!root().get("direction")) return 1;
@@ -144,7 +176,7 @@ class Describer : base::TomlReader {
 
   void control(MachineDescription& out, OptionReader& options) const {
     Control& c = out.control;
-    c.language = word(root(), "control", {kLanguages.begin(), kLanguages.end()}, "rs274");
+    c.language = language();
     const std::string own = word(root(), "tool_length", {"G43", "G43.4"}, "G43");
     if (c.language == "rs274") c.tool_length = options.word("tool_length", {"G43", "G43.4"}, own);
     const std::string feed =
@@ -186,6 +218,10 @@ class Describer : base::TomlReader {
 MachineDescription describe_machine(std::string_view toml, const std::string& file, const std::string& name,
                                     OptionReader& options) {
   return Describer(toml, file).describe(name, options);
+}
+
+MachineTexts machine_texts(std::string_view toml, const std::string& file) {
+  return Describer(toml, file).texts();
 }
 
 std::string machine_summary(std::string_view toml, const std::string& file) {

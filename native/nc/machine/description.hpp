@@ -1,6 +1,7 @@
 // Machines described in TOML; docs/machines.md lists the keys.
 #pragma once
 
+#include <map>
 #include <string>
 #include <string_view>
 
@@ -15,6 +16,17 @@ namespace riffler::nc {
 /// file and line for faults in the text, std::invalid_argument for options that are wrong or missing.
 MachineDescription describe_machine(std::string_view toml, const std::string& file, const std::string& name,
                                     OptionReader& options);
+
+/// The texts of a description, for lists and panels.
+struct MachineTexts {
+  std::string summary;   ///< the one-line summary
+  std::string language;  ///< one of kLanguages
+  /// By language code ("de"): texts of the file, and names of its options, to their translations.
+  std::map<std::string, std::map<std::string, std::string>> translations;
+};
+
+/// Throws FormatError as above.
+MachineTexts machine_texts(std::string_view toml, const std::string& file);
 
 /// The one-line summary for lists. Throws FormatError as above.
 std::string machine_summary(std::string_view toml, const std::string& file);

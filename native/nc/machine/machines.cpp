@@ -2,7 +2,6 @@
 
 #include <stdexcept>
 
-#include "nc/machine/description.hpp"
 #include "nc/machine/shipped_machines.hpp"
 
 namespace riffler::nc {
@@ -37,6 +36,11 @@ std::string machines_with(char axis, std::string_view language) {
 std::unique_ptr<Machine> make_machine(std::string_view name, OptionReader& options) {
   const base::DescriptionText found = find_description(shelf(), name, options.owner());
   return std::make_unique<Machine>(describe_machine(found.toml, found.file, found.name, options));
+}
+
+MachineTexts texts_of_machine(std::string_view name) {
+  const base::DescriptionText found = find_description(shelf(), name, "machine " + std::string(name));
+  return machine_texts(found.toml, found.file);
 }
 
 std::string machines_of_language(std::string_view language) {

@@ -4,6 +4,7 @@
 #include <memory>
 #include <string_view>
 
+#include "nc/machine/description.hpp"
 #include "nc/machine/machine.hpp"
 #include "nc/options.hpp"
 #include "riffler/nc/machine/machine_list.hpp"
@@ -13,5 +14,8 @@ namespace riffler::nc {
 /// `name`: from machines(), or the path of a .toml file. Options that the machine does not take remain in `options`.
 /// Throws std::invalid_argument listing the known names, and errors of describe_machine.
 std::unique_ptr<Machine> make_machine(std::string_view name, OptionReader& options);
+
+/// The texts of the same machine. Throws as make_machine.
+MachineTexts texts_of_machine(std::string_view name);
 
 }  // namespace riffler::nc

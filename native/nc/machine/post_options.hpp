@@ -10,13 +10,22 @@
 
 namespace riffler::nc {
 
-/// The languages that a control may read. `make_<language>` in nc/write/post_<language>.cpp makes the post: a new
-/// language needs a word here, a post and a machine file.
-#define RIFFLER_LANGUAGES(X) X(rs274) X(heidenhain) X(sinumerik) X(apt)
+/// The languages that a control may read, each with the usual extension of its files. `make_<language>` in
+/// nc/write/post_<language>.cpp makes the post: a new language needs an entry here, a post and a machine file.
+#define RIFFLER_LANGUAGES(X) X(rs274, ".ngc") X(heidenhain, ".h") X(sinumerik, ".mpf") X(apt, ".apt")
 
-#define RIFFLER_LANGUAGE_NAME(name) std::string_view(#name),
+#define RIFFLER_LANGUAGE_NAME(name, extension) std::string_view(#name),
 inline constexpr std::array kLanguages{RIFFLER_LANGUAGES(RIFFLER_LANGUAGE_NAME)};
 #undef RIFFLER_LANGUAGE_NAME
+
+/// The usual extension of files in one of kLanguages, with its dot; empty for another word.
+constexpr std::string_view file_extension(std::string_view language) {
+#define RIFFLER_LANGUAGE_EXTENSION(name, extension) \
+  if (language == #name) return extension;
+  RIFFLER_LANGUAGES(RIFFLER_LANGUAGE_EXTENSION)
+#undef RIFFLER_LANGUAGE_EXTENSION
+  return {};
+}
 
 /// Layout of the text, for every post.
 struct PostOptions {

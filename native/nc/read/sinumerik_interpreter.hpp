@@ -186,7 +186,6 @@ class SinumerikInterpreter {
   bool by_machine_ = false, homes_ = false, dwells_ = false, bounds_ = false, taps_ = false, returns_ = false;
 
   SinumerikFrame swivel_, programmed_, frame_;  // frame_: both combined
-  bool swivelled_ = false;
   std::optional<Joints> swivel_joints_;
   Vec3 at_{0};       // program coordinates, mm
   Joints rotary_{};  // deg; X Y Z without meaning

@@ -45,7 +45,8 @@ class Post : public BlockSink {
 /// Throws std::invalid_argument for a machine with an unknown language.
 std::unique_ptr<Post> make_post(const Machine& machine, PostOptions options);
 
-#define RIFFLER_DECLARE_POST(name) std::unique_ptr<Post> make_##name(const Machine& machine, PostOptions options);
+#define RIFFLER_DECLARE_POST(name, extension) \
+  std::unique_ptr<Post> make_##name(const Machine& machine, PostOptions options);
 RIFFLER_LANGUAGES(RIFFLER_DECLARE_POST)
 #undef RIFFLER_DECLARE_POST
 

@@ -13,7 +13,7 @@ struct PostLanguage {
   std::unique_ptr<Post> (*make)(const Machine& machine, PostOptions options);
 };
 
-#define RIFFLER_POST(name) {#name, make_##name},
+#define RIFFLER_POST(name, extension) {#name, make_##name},
 constexpr PostLanguage kPosts[] = {RIFFLER_LANGUAGES(RIFFLER_POST)};
 #undef RIFFLER_POST
 

@@ -37,13 +37,23 @@ from ._core import (
     Volume,
     __version__,
     machine_options,
+    machine_texts,
     machines,
     set_threads,
     threads,
     verify,
 )
 from .futures import Future, submit
-from .program_results import JournalStock, KeyChange, MachineOption, PolePassage, Trip, VerifyStats, WriteReport
+from .program_results import (
+    JournalStock,
+    KeyChange,
+    MachineOption,
+    MachineTexts,
+    PolePassage,
+    Trip,
+    VerifyStats,
+    WriteReport,
+)
 from .results import (
     Audit,
     Hit,
@@ -75,6 +85,7 @@ __all__ = [
     "JournalWriter",
     "KeyChange",
     "MachineOption",
+    "MachineTexts",
     "Material",
     "Mesh",
     "Mesher",
@@ -107,6 +118,7 @@ __all__ = [
     "__version__",
     "cluster",
     "machine_options",
+    "machine_texts",
     "machines",
     "pen",
     "plan",

@@ -6,13 +6,17 @@ import numpy.typing
 import os
 import pathlib
 import riffler.pen_results
+import riffler.plan.locations
+import riffler.plan.orientations
+import riffler.plan.strategies.pencil
+import riffler.plan.strategies.swarf
 import riffler.program_results
 import riffler.results
 import typing
 _Found = typing.TypeVar('_Found')
 _Made = typing.TypeVar('_Made')
 import typing_extensions
-__all__: list[str] = ['AtomicFileWriter', 'Cancelled', 'Collider', 'Contact', 'Cut', 'Finding', 'FormatError', 'FrozenSurface', 'Journal', 'JournalStroke', 'JournalWriter', 'Material', 'Mesh', 'Mesher', 'NotATask', 'Note', 'OrientFrame', 'OrientSession', 'PenDevice', 'PenError', 'PenGeometry', 'PenState', 'PencilPath', 'Pointer', 'Program', 'ProgramStream', 'Session', 'SessionFrame', 'SimulatedPen', 'SlabWorker', 'Smoothed', 'Snapshot', 'Task', 'Tool', 'ToolShape', 'ToolSize', 'Verification', 'VerifyPlan', 'VerifyReport', 'Volume', 'clear_drafts', 'contact_locations', 'cutter_locations', 'draft_prefix', 'drop', 'engrave', 'lift', 'machine_options', 'machines', 'min_tilt', 'orientation_maps', 'pencil', 'read_file', 'replace_file', 'replaceable', 'set_threads', 'stepover_of_scallop', 'swarf', 'then', 'threads', 'tip_ball_radius', 'verify']
+__all__: list[str] = ['AtomicFileWriter', 'Cancelled', 'Collider', 'Contact', 'Cut', 'Finding', 'FormatError', 'FrozenSurface', 'Journal', 'JournalStroke', 'JournalWriter', 'Material', 'Mesh', 'Mesher', 'NotATask', 'Note', 'OrientFrame', 'OrientSession', 'PenDevice', 'PenError', 'PenGeometry', 'PenState', 'PencilPath', 'Pointer', 'Program', 'ProgramStream', 'Session', 'SessionFrame', 'SimulatedPen', 'SlabWorker', 'Smoothed', 'Snapshot', 'Task', 'Tool', 'ToolShape', 'ToolSize', 'Verification', 'VerifyPlan', 'VerifyReport', 'Volume', 'clear_drafts', 'contact_locations', 'cutter_locations', 'draft_prefix', 'drop', 'engrave', 'lift', 'machine_options', 'machine_texts', 'machines', 'min_tilt', 'orientation_maps', 'pencil', 'read_file', 'replace_file', 'replaceable', 'set_threads', 'stepover_of_scallop', 'swarf', 'then', 'threads', 'tip_ball_radius', 'verify']
 class FormatError(ValueError):
     """
     A file that is not what it should be: names the file, the line or byte, and what was expected.
@@ -2884,6 +2888,43 @@ class VerifyReport:
     """
     def __repr__(self) -> str:
         ...
+    def part_deviation(self) -> numpy.typing.NDArray[numpy.float64] | None:
+        """
+        Measures the part against what is left, at the first call; later calls return the same.
+
+        Returns
+        -------
+        ndarray, shape (vertices,), or None
+            mm from each vertex of the part to the surface of what is left: positive where material covers it, negative where it
+            is missing, -inf where nothing is left at all. None without a part.
+
+        Examples
+        --------
+        >>> stock = riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5, directions="xyz")
+        >>> program = riffler.Program([[10, 10, 20, 0, 0, 1]], feed=600)
+        >>> report = riffler.verify(program, stock, part_mesh=stock.to_mesh())
+        >>> bool(abs(report.part_deviation()).max() < 1e-6)
+        True
+        """
+    def stock_deviation(self) -> tuple[Mesh, numpy.typing.NDArray[numpy.float64]] | None:
+        """
+        Meshes what is left and measures it against the part, at the first call; later calls return the same.
+
+        Returns
+        -------
+        tuple of Mesh and ndarray, shape (vertices,), or None
+            What is left, and mm from each of its vertices to the part's surface: positive where rest material stands on it,
+            negative in gouges. None without a part.
+
+        Examples
+        --------
+        >>> stock = riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5, directions="xyz")
+        >>> program = riffler.Program([[10, 10, 20, 0, 0, 1]], feed=600)
+        >>> report = riffler.verify(program, stock, part_mesh=stock.to_mesh())
+        >>> mesh, distance = report.stock_deviation()
+        >>> bool(abs(distance).max() < 1e-6)
+        True
+        """
     def to_dict(self) -> dict:
         """
         For JSON: passed, findings, not_checked, rows, time, volume, removed (mm³ in sum), stats.
@@ -2901,13 +2942,6 @@ class VerifyReport:
         2
         """
     @property
-    def deviation(self) -> tuple[Mesh, numpy.typing.NDArray[numpy.float64]] | None:
-        """
-        (mesh of what is left, (vertices,) mm) or None without a part; computed at the first use.
-
-        Distance of each vertex from the part's surface: positive where rest material stands on it, negative in gouges.
-        """
-    @property
     def findings(self) -> list[Finding]:
         """
         The faults, by rows.
@@ -2916,14 +2950,6 @@ class VerifyReport:
     def not_checked(self) -> list[str]:
         """
         Sentences: what was not requested, so does not fail.
-        """
-    @property
-    def part_map(self) -> numpy.typing.NDArray[numpy.float64] | None:
-        """
-        (vertices of the part,) mm, or None without a part; computed at the first use.
-
-        Distance of each vertex of the part from the surface of what is left: positive where material covers it, negative where
-        it is missing, -inf where nothing is left at all.
         """
     @property
     def passed(self) -> bool:
@@ -5560,10 +5586,10 @@ def clear_drafts(path: os.PathLike | str | bytes) -> None:
 def contact_locations(tool: Tool, contacts: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], normals: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], axes: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], feeds: numpy.typing.ArrayLike | None) -> numpy.typing.NDArray[numpy.float64]:
     ...
 @typing.overload
-def cutter_locations(path: PencilPath, tool: Tool, collider: Collider, *, clearance: typing.SupportsFloat, tolerance: typing.SupportsFloat, max_lift: typing.SupportsFloat, max_inserted: typing.SupportsInt, progress: collections.abc.Callable[[float], bool | None] | None) -> dict:
+def cutter_locations(path: PencilPath, tool: Tool, collider: Collider, *, clearance: typing.SupportsFloat, tolerance: typing.SupportsFloat, max_lift: typing.SupportsFloat, max_inserted: typing.SupportsInt, progress: collections.abc.Callable[[float], bool | None] | None) -> tuple[numpy.typing.NDArray[numpy.float64], riffler.plan.locations.LocationReport]:
     ...
 @typing.overload
-def cutter_locations(path: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], tool: Tool, collider: Collider, *, clearance: typing.SupportsFloat, tolerance: typing.SupportsFloat, max_lift: typing.SupportsFloat, max_inserted: typing.SupportsInt, progress: collections.abc.Callable[[float], bool | None] | None) -> dict:
+def cutter_locations(path: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], tool: Tool, collider: Collider, *, clearance: typing.SupportsFloat, tolerance: typing.SupportsFloat, max_lift: typing.SupportsFloat, max_inserted: typing.SupportsInt, progress: collections.abc.Callable[[float], bool | None] | None) -> tuple[numpy.typing.NDArray[numpy.float64], riffler.plan.locations.LocationReport]:
     ...
 def draft_prefix(path: os.PathLike | str | bytes) -> pathlib.Path:
     """
@@ -5575,7 +5601,7 @@ def engrave(part: Mesh, curves: collections.abc.Iterable[numpy.typing.ArrayLike]
     """
     For riffler.plan.engrave.
     """
-def lift(tool: Tool, poses: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], collider: Collider, *, clearance: typing.SupportsFloat, tolerance: typing.SupportsFloat, max_lift: typing.SupportsFloat, max_evaluations: typing.SupportsInt, progress: collections.abc.Callable[[float], bool | None] | None) -> dict:
+def lift(tool: Tool, poses: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], collider: Collider, *, clearance: typing.SupportsFloat, tolerance: typing.SupportsFloat, max_lift: typing.SupportsFloat, max_evaluations: typing.SupportsInt, progress: collections.abc.Callable[[float], bool | None] | None) -> riffler.plan.locations.LiftReport:
     ...
 def machine_options(machine: str, *, options: collections.abc.Mapping[str, float | bool | str | collections.abc.Sequence[float]] | None = None) -> list[riffler.program_results.MachineOption]:
     """
@@ -5602,6 +5628,29 @@ def machine_options(machine: str, *, options: collections.abc.Mapping[str, float
     >>> [option.name for option in riffler.machine_options("linuxcnc-xyzac") if option.own]
     ['offset', 'rot_point', 'tool_offset']
     """
+def machine_texts(machine: str) -> riffler.program_results.MachineTexts:
+    """
+    The texts of a machine's file, and the language of its control.
+
+    Parameters
+    ----------
+    machine : str
+        A name of ``machines``, or the path of a .toml file.
+
+    Returns
+    -------
+    MachineTexts
+
+    Raises
+    ------
+    ValueError
+        For a machine that is not known, and a file that cannot be read.
+
+    Examples
+    --------
+    >>> riffler.machine_texts("heidenhain").extension
+    '.h'
+    """
 def machines() -> dict[str, str]:
     """
     Machines that programs are written for and read from, riffler's and your own.
@@ -5618,11 +5667,11 @@ def machines() -> dict[str, str]:
     >>> "linuxcnc-xyzac" in riffler.machines()
     True
     """
-def min_tilt(path: PencilPath, tool: Tool, collider: Collider, *, inclinations: collections.abc.Sequence[typing.SupportsFloat], tilts: collections.abc.Sequence[typing.SupportsFloat], clearance: typing.SupportsFloat, tolerance: typing.SupportsFloat, limit: tuple[numpy.typing.ArrayLike, float] | None, max_change: typing.SupportsFloat, smoothness: typing.SupportsFloat, progress: collections.abc.Callable[[float], bool | None] | None) -> dict:
+def min_tilt(path: PencilPath, tool: Tool, collider: Collider, *, inclinations: collections.abc.Sequence[typing.SupportsFloat], tilts: collections.abc.Sequence[typing.SupportsFloat], clearance: typing.SupportsFloat, tolerance: typing.SupportsFloat, limit: tuple[numpy.typing.ArrayLike, float] | None, max_change: typing.SupportsFloat, smoothness: typing.SupportsFloat, progress: collections.abc.Callable[[float], bool | None] | None) -> tuple[numpy.typing.NDArray[numpy.float64], riffler.plan.orientations.TiltReport]:
     ...
-def orientation_maps(path: PencilPath, points: collections.abc.Sequence[typing.SupportsInt], tool: Tool, collider: Collider, *, inclinations: collections.abc.Sequence[typing.SupportsFloat], tilts: collections.abc.Sequence[typing.SupportsFloat], clearance: typing.SupportsFloat, tolerance: typing.SupportsFloat, limit: tuple[numpy.typing.ArrayLike, float] | None, progress: collections.abc.Callable[[float], bool | None] | None) -> list:
+def orientation_maps(path: PencilPath, points: collections.abc.Sequence[typing.SupportsInt], tool: Tool, collider: Collider, *, inclinations: collections.abc.Sequence[typing.SupportsFloat], tilts: collections.abc.Sequence[typing.SupportsFloat], clearance: typing.SupportsFloat, tolerance: typing.SupportsFloat, limit: tuple[numpy.typing.ArrayLike, float] | None, progress: collections.abc.Callable[[float], bool | None] | None) -> list[riffler.plan.orientations.MapValues]:
     ...
-def pencil(part: Mesh, tool: Tool, *, tolerance: typing.SupportsFloat, bitangency_angle: typing.SupportsFloat | None, minimum_length: typing.SupportsFloat, passes: typing.SupportsInt, stepover: typing.SupportsFloat | None, overthickness: typing.SupportsFloat, progress: collections.abc.Callable[[float], bool | None] | None) -> dict:
+def pencil(part: Mesh, tool: Tool, *, tolerance: typing.SupportsFloat, bitangency_angle: typing.SupportsFloat | None, minimum_length: typing.SupportsFloat, passes: typing.SupportsInt, stepover: typing.SupportsFloat | None, overthickness: typing.SupportsFloat, progress: collections.abc.Callable[[float], bool | None] | None) -> riffler.plan.strategies.pencil.PencilPaths:
     """
     For riffler.plan.pencil.
     """
@@ -5663,7 +5712,7 @@ def set_threads(n: typing.SupportsInt | None) -> None:
     """
 def stepover_of_scallop(radius: typing.SupportsFloat, height: typing.SupportsFloat) -> float:
     ...
-def swarf(path: PencilPath, part: Mesh, tool: Tool, *, side: typing.SupportsInt, height: typing.SupportsFloat | None, tolerance: typing.SupportsFloat, progress: collections.abc.Callable[[float], bool | None] | None) -> dict:
+def swarf(path: PencilPath, part: Mesh, tool: Tool, *, side: typing.SupportsInt, height: typing.SupportsFloat | None, tolerance: typing.SupportsFloat, progress: collections.abc.Callable[[float], bool | None] | None) -> riffler.plan.strategies.swarf.Swarf:
     """
     For riffler.plan.swarf.
     """

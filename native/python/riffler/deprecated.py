@@ -46,7 +46,7 @@ class Old:
 
     #: module ("" is riffler itself): old name → new name, or what to use now and the name of what the old one gives
     modules: dict[str, dict[str, str | tuple[str, str]]] = field(default_factory=dict)
-    #: class: old attribute or method → new one of the same kind
+    #: class: old attribute or method → new one of the same kind, or "name()": a method in place of an attribute
     attributes: dict[str, dict[str, str]] = field(default_factory=dict)
     #: callable: old keyword → new keyword
     keywords: dict[str, dict[str, str]] = field(default_factory=dict)
@@ -77,7 +77,8 @@ class OldAttribute:
 
     def __get__(self, instance: object | None, owner: type) -> object:
         warn(f"{self.owner}.{self.old}", f"{self.owner}.{self.new}")
-        return getattr(owner if instance is None else instance, self.new)
+        found = getattr(owner if instance is None else instance, self.new.removesuffix("()"))
+        return found() if instance is not None and self.new.endswith("()") else found
 
 
 def install(attributes: Mapping[str, Mapping[str, str]], classes: Mapping[str, type]) -> None:

@@ -15,6 +15,7 @@ __all__ = [
     "JournalStock",
     "KeyChange",
     "MachineOption",
+    "MachineTexts",
     "NearestContact",
     "PolePassage",
     "Trip",
@@ -101,6 +102,33 @@ class MachineOption(DictResult):
     needed: bool
     own: bool
     about: str
+
+
+@dataclass(frozen=True)
+class MachineTexts:
+    """The texts of a machine's file.
+
+    Attributes
+    ----------
+    description : str
+        One line for lists.
+    language : str
+        The language that its control reads: "rs274", "heidenhain", …
+    extension : str
+        The usual extension of files in that language, with its dot.
+    translations : dict
+        By language code, such as "de": a dict from texts of the file and names of its options to their translations.
+
+    Examples
+    --------
+    >>> riffler.machine_texts("head-head").translations["de"]["pivot_length"]
+    'Pivotlänge'
+    """
+
+    description: str
+    language: str
+    extension: str
+    translations: dict[str, dict[str, str]]
 
 
 @dataclass(frozen=True)

@@ -33,8 +33,6 @@ class HitLanes : private AxisView {
   }
 
  private:
-  static constexpr double kArrived = 1e-13;  // convergence limit of Newton's method, relative to the size
-
   void add(M hit, RayIntervals s) {
     out_.near = min(out_.near, pick(hit, s.near, set(kInfinity)));
     out_.far = max(out_.far, pick(hit, s.far, set(-kInfinity)));

@@ -54,12 +54,12 @@ def at_once(count, work):
 def test_maps_of_a_report_are_made_once_whoever_asks():
     part = block().to_mesh()
     report = riffler.verify(PASSES, block("xyz", 0.4), part)
-    maps = at_once(4, lambda: report.part_map)
+    maps = at_once(4, report.part_deviation)
     assert all(found is maps[0] for found in maps) and maps[0].shape == (len(part.vertices),)
-    deviations = at_once(4, lambda: report.deviation)
+    deviations = at_once(4, report.stock_deviation)
     assert all(found is deviations[0] for found in deviations)
     again = riffler.verify(PASSES, block("xyz", 0.4), part)
-    assert np.array_equal(again.part_map, maps[0])
+    assert np.array_equal(again.part_deviation(), maps[0])
 
 
 def test_a_stream_is_for_one_thread_at_a_time(tmp_path):

@@ -154,6 +154,6 @@ def test_every_old_name_leads_to_one_that_there_is():
                 assert lookup(new if "." in new or not module else f"{module}.{new}") is not None
                 assert importlib.import_module(f"riffler.{module}".rstrip(".")) is not None
         for owner, names in old.ALL.attributes.items():
-            for new in names.values():
+            for new in (name.removesuffix("()") for name in names.values()):
                 fields = getattr(lookup(owner), "__dataclass_fields__", {})
                 assert new in fields or hasattr(lookup(owner), new), f"{owner}.{new}"

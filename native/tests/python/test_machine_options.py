@@ -90,6 +90,26 @@ def test_a_machine_of_one_s_own_lists_its_own_options_first(tmp_path, monkeypatc
         riffler.machine_options("mill")
 
 
+def test_a_machine_s_file_has_its_texts_and_its_control_s_language(tmp_path):
+    extensions = {"rs274": ".ngc", "heidenhain": ".h", "sinumerik": ".mpf", "apt": ".apt"}
+    for machine, description in riffler.machines().items():
+        texts = riffler.machine_texts(machine)
+        assert texts.description == description
+        assert texts.extension == extensions[texts.language]
+        assert texts.translations["de"][description], machine
+        own = {fact.name for fact in riffler.machine_options(machine) if fact.own}
+        assert own <= set(texts.translations["de"]), machine
+    file = tmp_path / "mill.toml"
+    file.write_text('description = "mill"\ncontrol = "apt"\n[translations.fr]\ndescription = "fraiseuse"\n')
+    texts = riffler.machine_texts(str(file))
+    assert (texts.extension, texts.translations) == (".apt", {"fr": {"mill": "fraiseuse"}})
+    file.write_text('description = "mill"\n[translations.fr]\nhauteur = 3\n')
+    with pytest.raises(riffler.FormatError, match=r"mill.toml, line 3: translations: there is no option hauteur"):
+        riffler.machine_texts(str(file))
+    with pytest.raises(ValueError, match="unknown machine lathe"):
+        riffler.machine_texts("lathe")
+
+
 def test_wrong_machines_and_options_are_value_errors():
     with pytest.raises(ValueError, match="lathe"):
         riffler.machine_options("lathe")

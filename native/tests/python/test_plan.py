@@ -509,9 +509,8 @@ def test_pencil_writes_a_plan(tmp_path, monkeypatch, capsys):
     def find(part, tool, **options):
         given.update(options, tool=tool)
         areas = {"rest_area": 0.0, "rest_areas": [], "reference_area": 0.0, "reference_areas": []}
-        stats = dict.fromkeys(field.name for field in fields(plan.PencilStats))
-        paths = [corner(), corner(4, closed=True)]
-        return plan.PencilPaths({"paths": paths, "ends": [], "stats": stats, "reason": "", **areas})
+        stats = plan.PencilStats(*[0] * len(fields(plan.PencilStats)))
+        return plan.PencilPaths([corner(), corner(4, closed=True)], ends=[], stats=stats, reason="", **areas)
 
     monkeypatch.setattr(pencil_strategy, "pencil", find)
     mesh(FLOOR, WALL).write(tmp_path / "part.stl")

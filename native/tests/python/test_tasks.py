@@ -121,7 +121,16 @@ def bits(thing):
     if isinstance(thing, plan.PencilPath):
         return bits((thing.centres, thing.contacts, thing.normals, thing.axes))
     if isinstance(thing, riffler.VerifyReport):
-        return bits((thing.to_dict(), thing.removed, thing.seconds, thing.volume, thing.deviation, thing.part_map))
+        return bits(
+            (
+                thing.to_dict(),
+                thing.removed,
+                thing.seconds,
+                thing.volume,
+                thing.stock_deviation(),
+                thing.part_deviation(),
+            )
+        )
     if isinstance(thing, np.ndarray):
         return thing.dtype.str, thing.shape, thing.tobytes()
     if isinstance(thing, dict):

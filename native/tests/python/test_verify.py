@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import riffler
+from riffler import deprecated
 from verify_reference import (
     UP,
     HeightMap,
@@ -96,7 +97,7 @@ def test_a_gouge_of_known_depth_is_found_on_its_lines(directions):
     # The move into the depth and the move out of it gouge too.
     assert (found.row, found.last_row, found.line, found.last_line) == (25, 31, 125, 131)
     assert found.value == pytest.approx(0.2, abs=0.004) and found.unit == "mm"
-    mesh, distance = report.deviation
+    mesh, distance = report.stock_deviation()
     assert len(distance) == len(mesh.vertices) and distance.min() == pytest.approx(-0.2, abs=0.01)
     finer = riffler.verify(program(path(tips), riffler.Tool.flat(6, 30)), stock, part, gouge_tolerance=0.25)
     assert finer.passed
@@ -147,7 +148,7 @@ def test_rest_material_is_mapped_with_the_height_of_the_cusps():
         tips += [[-5, y, -5], [35, y, -5]][:: 1 if k % 2 == 0 else -1]
     whole = program(path(tips), riffler.Tool.ball(6, 30))
     report = riffler.verify(whole, stock, part)
-    mesh, distance = report.deviation
+    mesh, distance = report.stock_deviation()
     assert tops(report.volume)[10:-10, 10:-10].max() == pytest.approx(cusp - 5, abs=1e-6)
     # Between the rays the mesh cuts the cusps off, by half a pitch times their slope.
     slack = 0.1 * (over / 2) / (radius - cusp) + 0.005
@@ -159,17 +160,27 @@ def test_rest_material_is_mapped_with_the_height_of_the_cusps():
     assert kinds(judged) == ["rest"] and judged.findings[0].value == pytest.approx(cusp, abs=1e-6)
 
 
+def test_old_attributes_of_a_report_give_what_the_methods_do():
+    block = riffler.Volume.block((0, 0, 0), (10, 10, 5), 0.5, "xyz")
+    report = riffler.verify(riffler.Program([[5, 5, 9, 0, 0, 1]], feed=600), block, block.to_mesh())
+    deprecated.forget()
+    with pytest.warns(DeprecationWarning, match=r"VerifyReport.deviation is deprecated, use .*stock_deviation\(\)"):
+        assert report.deviation is report.stock_deviation()
+    with pytest.warns(DeprecationWarning, match=r"VerifyReport.part_map is deprecated, use .*part_deviation\(\)"):
+        assert report.part_map is report.part_deviation()
+
+
 def test_the_part_map_says_what_covers_the_part():
     part = box_mesh([0, 0, -10], [30, 30, -5])
     stock = riffler.Volume.block([0, 0, -10], [30, 30, 0], 0.5)
     report = riffler.verify(program(path([[-20, 0, 9], [-20, 0, 10]]), riffler.Tool.ball(6, 30)), stock, part)
     top = part.vertices[:, 2] > -6
-    assert report.part_map.shape == (8,) and np.abs(report.part_map[~top]).max() < 0.3
+    assert report.part_deviation().shape == (8,) and np.abs(report.part_deviation()[~top]).max() < 0.3
     empty = riffler.Volume.block([100, 100, 100], [101, 101, 101], 0.5)
     nothing = riffler.verify(
         program(path([[100.5, 100.5, 90], [100.5, 100.5, 110]]), riffler.Tool.flat(6, 30)), empty, part
     )
-    assert np.all(nothing.part_map == -np.inf) and len(nothing.deviation[1]) == 0
+    assert np.all(nothing.part_deviation() == -np.inf) and len(nothing.stock_deviation()[1]) == 0
 
 
 def test_a_stock_that_lacks_some_of_the_part_is_said_so_before_the_first_move():

@@ -28,6 +28,8 @@ struct SculptSettings {
 
   /// Throws std::invalid_argument naming the field.
   void validate() const;
+  /// These settings for a tool that moves `scale` times as far as the hand.
+  SculptSettings at_tool(double scale) const;
 };
 
 /// The tool is massless: at the end of every part of a step, the pull of the coupling, the material's resistance and

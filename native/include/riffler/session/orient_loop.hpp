@@ -10,10 +10,8 @@
 #include "riffler/base/ring.hpp"
 #include "riffler/haptics/sculpt_step.hpp"
 #include "riffler/haptics/workspace.hpp"
-#include "riffler/haptics/wrench_extrapolator.hpp"
-#include "riffler/pen/pen_step.hpp"
-#include "riffler/session/force_gate.hpp"
 #include "riffler/session/path_guide.hpp"
+#include "riffler/session/pen_loop.hpp"
 
 namespace riffler::session {
 
@@ -65,9 +63,9 @@ struct KeyPress {
 
 /// The loop of an OrientSession. The force is the pull of a spring between hand and tool: the tool stands on the path,
 /// and its axis stops where shank, holder or cutter touch. Devices without torque get the contact's force instead.
-class OrientLoop final : public pen::PenStep {
+class OrientLoop final : public PenLoop<OrientTick> {
  public:
-  static constexpr std::size_t kTicks = 4096, kPresses = 64;  ///< capacity of the queues for the display
+  static constexpr std::size_t kPresses = 64;  ///< capacity of the queue of presses for the display
 
   /// Validates the settings. `obstacles` must outlive this object. `absolute`: the tool's first axis is that of the
   /// hand; otherwise it keeps that of `guide` and turns with the hand from there.
@@ -80,11 +78,10 @@ class OrientLoop final : public pen::PenStep {
 
   // By the displaying thread. None of these waits longer than one step takes.
 
-  /// The next tick, or press, not taken yet; false if there is none.
-  bool take(OrientTick& tick) noexcept { return ticks_.take(tick); }
+  using PenLoop::take;
+  /// The next press not taken yet; false if there is none.
   bool take(KeyPress& press) noexcept { return presses_.take(press); }
-  /// Number of ticks, and of presses, lost because the queue was full.
-  std::uint64_t dropped_ticks() const noexcept { return dropped_ticks_.load(); }
+  /// Number of presses lost because the queue was full.
   std::uint64_t dropped_presses() const noexcept { return dropped_presses_.load(); }
   /// Moves the tool to a point of the path. Throws std::invalid_argument and then changes nothing.
   void go_to(std::size_t point);
@@ -92,40 +89,23 @@ class OrientLoop final : public pen::PenStep {
   /// Sets frame, scale and clutch of the device. Throws std::invalid_argument and then changes nothing.
   void set_workspace(const haptics::WorkspaceSettings& settings);
 
-  // By any thread.
-
-  /// Clears a trip in the next tick.
-  void reset() noexcept { reset_.store(true); }
-  /// From the next tick on the dead-man switch counts as released: the force falls to zero, and then it is `quiet`.
-  void let_go() noexcept { gate_.let_go(); }
-  bool quiet() const noexcept { return gate_.quiet(); }
-  const haptics::TripLog& trips() const noexcept { return gate_.trips(); }
-
  private:
   struct Scene;
   Wrench follow(const pen::PenSample& sample, double dt, OrientTick& tick) noexcept;
-  Wrench missed(double dt, const char* why, OrientTick& tick) noexcept;
   void press(std::uint32_t buttons, const OrientTick& tick) noexcept;
 
   OrientSettings settings_;
   bool torque_;  // the device renders some
 
   // Used by the device's thread only.
-  ForceGate gate_;
-  haptics::WrenchExtrapolator wrench_extrapolator_;
-  double time_ = 0, owed_ = 0;   // s; the second: time since the last completed step
   std::uint32_t buttons_ = ~0u;  // of the last tick; what is held at the start is no press
-  Pose last_tool_;
   double last_station_ = 0;
-  bool placed_ = false, absolute_;
 
   std::mutex mutex_;  // of the scene; the device's thread only tries to lock it
   std::unique_ptr<Scene> scene_;
 
-  base::Ring<OrientTick> ticks_{kTicks};
   base::Ring<KeyPress> presses_{kPresses};
-  std::atomic<std::uint64_t> dropped_ticks_{0}, dropped_presses_{0};
-  std::atomic<bool> reset_{false};
+  std::atomic<std::uint64_t> dropped_presses_{0};
 };
 
 }  // namespace riffler::session

@@ -8,16 +8,13 @@
 #include <optional>
 #include <vector>
 
-#include "riffler/base/ring.hpp"
 #include "riffler/haptics/limits.hpp"
 #include "riffler/haptics/passivity.hpp"
 #include "riffler/haptics/safety.hpp"
 #include "riffler/haptics/sculpt_step.hpp"
 #include "riffler/haptics/workspace.hpp"
-#include "riffler/haptics/wrench_extrapolator.hpp"
 #include "riffler/pen/capability.hpp"
-#include "riffler/pen/pen_step.hpp"
-#include "riffler/session/force_gate.hpp"
+#include "riffler/session/pen_loop.hpp"
 #include "riffler/session/stroke_sink.hpp"
 #include "riffler/session/tile_exchange.hpp"
 
@@ -62,10 +59,9 @@ struct SculptTick {
 /// has passed. A stroke lasts from the first move that removes something to the end of that condition. The force is
 /// computed in each tick from the volume. If a step cannot be made, WrenchExtrapolator continues the force. If a step
 /// takes longer than its tick, the device keeps its last wrench, and the next tick turns from there at a limited rate.
-class SculptLoop final : public pen::PenStep {
+class SculptLoop final : public PenLoop<SculptTick> {
  public:
   using Place = TileExchange::Place;
-  static constexpr std::size_t kTicks = 4096;  ///< capacity of the queue of ticks for the display
 
   /// Validates the settings. `obstacles` and `sink` may be null, and must outlive this object. `start`: pose of the
   /// tool when the hand's pose is first known; when the hand's pose returns after a loss, the tool continues where it
@@ -85,25 +81,13 @@ class SculptLoop final : public pen::PenStep {
   /// within `patience` (s), copies everything cut so far; otherwise the state after a step that began later than this
   /// call. Appends the places of the changed tiles to `places`.
   TileExchange::Mark show(Volume& shown, std::vector<Place>& places, double patience = 3e-3);
-  /// The next tick not taken yet; false if there is none.
-  bool take(SculptTick& tick) noexcept { return ticks_.take(tick); }
-  /// Number of ticks lost because the queue was full.
-  std::uint64_t dropped_ticks() const noexcept { return dropped_ticks_.load(); }
   /// Replaces the volume by another of the same frame. `strokes`: number of strokes undone (negative) or redone
   /// (positive) by that. During a stroke returns false and changes nothing.
   bool replace(const Volume& volume, std::int64_t strokes);
   /// Sets frame, scale and switches of the device. Throws std::invalid_argument and then changes nothing.
   void set_workspace(const haptics::WorkspaceSettings& settings);
 
-  // By any thread.
-
-  /// Clears a trip in the next tick.
-  void reset() noexcept { reset_.store(true); }
-  /// From the next tick on the dead-man switch counts as released: the force falls to zero, and then it is `quiet`.
-  void let_go() noexcept { gate_.let_go(); }
-  bool quiet() const noexcept { return gate_.quiet(); }
-  const haptics::TripLog& trips() const noexcept { return gate_.trips(); }
-  /// Ends the last stroke and informs the sink. Call it after the last step.
+  /// Ends the last stroke and informs the sink. By any thread, after the last step.
   void finish() noexcept;
 
  private:
@@ -111,20 +95,12 @@ class SculptLoop final : public pen::PenStep {
   Wrench sculpt(const pen::PenSample& sample, double dt, SculptTick& tick) noexcept;
   void place(Scene& scene, const pen::PenSample& sample) noexcept;
   Wrench follow(Scene& scene, const pen::PenSample& sample, double dt, bool cutting, SculptTick& tick) noexcept;
-  Wrench missed(double dt, const char* why, SculptTick& tick) noexcept;
   void begin_stroke(double dt) noexcept;
   void end_stroke() noexcept;
   void tell_undo() noexcept;
 
   SculptLoopSettings settings_;
   StrokeSink* sink_;
-
-  // Used by the device's thread only.
-  ForceGate gate_;
-  haptics::WrenchExtrapolator wrench_extrapolator_;
-  Pose last_tool_;
-  double time_ = 0, owed_ = 0;  // s; the second: time since the last completed step
-  bool placed_ = false, absolute_;
 
   // Protected by the mutex; the device's thread only tries to lock it.
   std::mutex mutex_;
@@ -134,10 +110,7 @@ class SculptLoop final : public pen::PenStep {
   bool in_stroke_ = false;
 
   TileExchange exchange_;
-  base::Ring<SculptTick> ticks_{kTicks};
-  std::atomic<std::uint64_t> dropped_ticks_{0};
   std::atomic<std::uint32_t> dead_man_mask_;
-  std::atomic<bool> reset_{false};
 };
 
 }  // namespace riffler::session

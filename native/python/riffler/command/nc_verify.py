@@ -90,7 +90,7 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
             write_volume(report.volume, out, console)
         else:
             write_mesh(to_mesh(report.volume, console, out), out, console)
-    if coloured is not None and (found := report.deviation) is not None:
+    if coloured is not None and (found := report.stock_deviation()) is not None:
         with console.step("map"), console.writing(coloured) as beside:
             write_map(beside, *found, scale)
 

@@ -36,6 +36,7 @@ OLD = Old(
         "PencilPath": {"oriented": "orient"},
         "Program": {"retimed": "scale_feeds", "retooled": "renumber_tools"},
         "SessionFrame": {"untold": "dropped_ticks"},
+        "VerifyReport": {"deviation": "stock_deviation()", "part_map": "part_deviation()"},
     },
     keywords={
         "Pointer.set_frame": {"most_tilt": "max_tilt"},

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .. import _core
 from .._core import Collider, Mesh, PencilPath, Tool
-from ..arguments import Progress, then
+from ..arguments import Progress
 from ..deprecated import DictResult
 from ..hints import hinted
 from .around import with_room
@@ -94,13 +94,6 @@ class LocationReport:
         return f"<LocationReport: {rows}, {len(self.blocked)} points blocked, {len(self.unsafe)} moves unsafe>"
 
 
-def _locations(found: dict) -> tuple[NDArray[np.float64], LocationReport]:
-    cl = found.pop("cl")
-    blocked = [BlockedPoint(*one) for one in found.pop("blocked")]
-    unsafe = [UnsafeMove(*one) for one in found.pop("unsafe")]
-    return cl, LocationReport(**found, blocked=blocked, unsafe=unsafe)
-
-
 @hinted("plan.cutter_locations")
 def cutter_locations(
     path: PencilPath | ArrayLike,
@@ -161,7 +154,7 @@ def cutter_locations(
     >>> cl.shape, report.ok
     ((2, 6), True)
     """
-    found = _core.cutter_locations(  # pyright: ignore[reportCallIssue] (an overload for each kind of path)
+    return _core.cutter_locations(  # pyright: ignore[reportCallIssue] (an overload for each kind of path)
         path,  # pyright: ignore[reportArgumentType]
         tool,
         collider,
@@ -171,7 +164,6 @@ def cutter_locations(
         max_inserted=max_inserted,
         progress=progress,
     )
-    return then(found, _locations)
 
 
 @hinted("plan.path_of_poses")
@@ -401,17 +393,15 @@ def lift(
     (array([2.]), array([10.]))
     """
     lifted = np.array(poses, dtype=float)
-    report = LiftReport(
-        **_core.lift(
-            tool,
-            lifted,
-            collider,
-            clearance=clearance,
-            tolerance=tolerance,
-            max_lift=max_lift,
-            max_evaluations=max_evaluations,
-            progress=progress,
-        )
+    report = _core.lift(
+        tool,
+        lifted,
+        collider,
+        clearance=clearance,
+        tolerance=tolerance,
+        max_lift=max_lift,
+        max_evaluations=max_evaluations,
+        progress=progress,
     )
     rows = report.free
     lifted[rows, :3] += report.lift[rows, None] * lifted[rows, 3:]

@@ -72,18 +72,32 @@ class FreeOrientations:
         return f"<FreeOrientations at point {self.index}: {int(self.free.sum())} of {self.free.size} free>"
 
 
-def _map(index: int, inclinations: NDArray[np.float64], tilts: NDArray[np.float64], found: dict) -> FreeOrientations:
+@dataclass(frozen=True, eq=False)
+class MapValues:
+    """What the core computes of one point: the fields of `FreeOrientations`, not yet in the grid's shape."""
+
+    axes: NDArray[np.float64]
+    clearance: NDArray[np.float64]
+    state: NDArray[np.uint8]
+    pieces: list[str]
+    suggestion: NDArray[np.float64] | None
+    reason: str
+
+
+def _map(
+    index: int, inclinations: NDArray[np.float64], tilts: NDArray[np.float64], found: MapValues
+) -> FreeOrientations:
     shape = len(inclinations), len(tilts)
     return FreeOrientations(
         index,
         inclinations,
         tilts,
-        clearance=found["clearance"].reshape(shape),
-        state=found["state"].reshape(shape),
-        pieces=np.array(found["pieces"]).reshape(shape),
-        axes=found["axes"].reshape(*shape, 3),
-        suggestion=found["suggestion"],
-        reason=found["reason"],
+        clearance=found.clearance.reshape(shape),
+        state=found.state.reshape(shape),
+        pieces=np.array(found.pieces).reshape(shape),
+        axes=found.axes.reshape(*shape, 3),
+        suggestion=found.suggestion,
+        reason=found.reason,
     )
 
 
@@ -165,7 +179,7 @@ def free_orientations(
         tolerance=tolerance, limit=limit, progress=progress,
     )  # fmt: skip
 
-    def maps(found: list) -> FreeOrientations | list[FreeOrientations]:
+    def maps(found: list[MapValues]) -> FreeOrientations | list[FreeOrientations]:
         made = [_map(i, rows, columns, one) for i, one in zip(points, found, strict=True)]
         return made[0] if single else made
 
@@ -264,9 +278,8 @@ def min_tilt(
         tolerance=tolerance, limit=limit, max_change=max_change, smoothness=smoothness, progress=progress,
     )  # fmt: skip
 
-    def oriented(found: dict) -> tuple[PencilPath | None, TiltReport]:
-        axes = found.pop("axes")
-        report = TiltReport(**found)
+    def oriented(found: tuple[NDArray[np.float64], TiltReport]) -> tuple[PencilPath | None, TiltReport]:
+        axes, report = found
         return (path.orient(dict(enumerate(axes)), interpolation="slerp") if report.found else None), report
 
     return then(found, oriented)

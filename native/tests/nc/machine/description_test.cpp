@@ -3,11 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <random>
+#include <set>
 #include <stdexcept>
 
 #include "base/io.hpp"
@@ -188,6 +190,52 @@ TEST(Description, AsksForWhatJointsNeed) {
               "post head-head: option pivot_length must be given: mm from the tip to the head's "
               "pivot, along the tool's axis");
   }
+}
+
+TEST(Description, TranslatesItsOwnTexts) {
+  std::string file = kMill;
+  file.replace(file.find("raised = 5"), 10, "raised = { value = 5, about = \"height\" }");
+  const std::string german = "\n[translations.de]\ndescription = \"meine Fräse\"\n";
+  const MachineTexts texts = machine_texts(
+      file + german + "raised = { name = \"Höhe\", about = \"Höhe über dem Tisch\" }\ntable = { name = \"Tisch\" }",
+      "mill.toml");
+  EXPECT_EQ(texts.summary, "my mill");
+  EXPECT_EQ(texts.language, "rs274");
+  const std::map<std::string, std::string> expected{
+      {"my mill", "meine Fräse"}, {"raised", "Höhe"}, {"height", "Höhe über dem Tisch"}, {"table", "Tisch"}};
+  EXPECT_EQ(texts.translations.at("de"), expected);
+  EXPECT_EQ(texts.translations.size(), 1u);
+  EXPECT_TRUE(machine_texts(kMill, "mill.toml").translations.empty());
+}
+
+TEST(Description, NamesTheLineOfATranslationThatFitsNothing) {
+  std::string file = kMill;
+  file.replace(file.find("raised = 5"), 10, "raised = { value = 5, about = \"height\" }");
+  const auto line = std::to_string(std::count(file.begin(), file.end(), '\n') + 2);
+  const std::map<std::string, std::string> faults{
+      {"risen = { name = \"Höhe\" }", "translations: there is no option risen"},
+      {"raised = \"Höhe\"", "raised must be a table of name and about"},
+      {"raised = { name = \"Höhe\" }", "about is missing"},
+      {"raised = { name = \"Höhe\", unit = \"mm\" }", "unknown key unit"},
+      {"description = 3", "description must be a text"}};
+  for (const auto& [text, message] : faults) {
+    try {
+      describe(file + "[translations.de]\n" + text);
+      FAIL() << text;
+    } catch (const FormatError& e) {
+      EXPECT_EQ(std::string(e.what()), "mill.toml, line " + line + ": " + message);
+    }
+  }
+  EXPECT_THROW(describe(file + "[translations]\nde = 3"), FormatError);
+}
+
+TEST(Languages, EachHasItsOwnFileExtension) {
+  std::set<std::string_view> all;
+  for (const std::string_view language : kLanguages) {
+    EXPECT_TRUE(file_extension(language).starts_with('.')) << language;
+    EXPECT_TRUE(all.insert(file_extension(language)).second) << language;
+  }
+  EXPECT_EQ(file_extension("fanuc"), "");
 }
 
 TEST(Description, MayNotGiveEverybodysOptionsAnotherMeaning) {

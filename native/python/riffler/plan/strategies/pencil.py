@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ... import _core
 from ..._core import Mesh, PencilPath, Tool
-from ...arguments import Progress, then
+from ...arguments import Progress
 from ...deprecated import DictResult
 from ...hints import hinted
 from ..model import Plan
@@ -55,15 +55,23 @@ class PencilPaths(list[PencilPath]):
         Why there are no paths; empty where there are some.
     """
 
-    def __init__(self, found: dict) -> None:
-        super().__init__(found["paths"])
-        self.ends: list[tuple[str, str]] = found["ends"]
-        self.rest_area: float = found["rest_area"]
-        self.rest_areas: NDArray[np.float64] = found["rest_areas"]
-        self.reference_area: float = found["reference_area"]
-        self.reference_areas: NDArray[np.float64] = found["reference_areas"]
-        self.stats = PencilStats(**found["stats"])
-        self.reason: str = found["reason"]
+    def __init__(
+        self,
+        paths: Iterable[PencilPath],
+        *,
+        ends: list[tuple[str, str]],
+        rest_area: float,
+        rest_areas: NDArray[np.float64],
+        reference_area: float,
+        reference_areas: NDArray[np.float64],
+        stats: PencilStats,
+        reason: str,
+    ) -> None:
+        super().__init__(paths)
+        self.ends = ends
+        self.rest_area, self.rest_areas = rest_area, rest_areas
+        self.reference_area, self.reference_areas = reference_area, reference_areas
+        self.stats, self.reason = stats, reason
 
 
 @hinted("plan.pencil")
@@ -142,7 +150,7 @@ def pencil(
         if larger <= radius:
             raise ValueError(f"reference_tool must have a ball larger than {2 * radius:g} mm, not {2 * larger:g}")
         overthickness = max(overthickness, larger - radius)
-    found = _core.pencil(
+    return _core.pencil(
         part_mesh,
         tool,
         tolerance=tolerance,
@@ -153,7 +161,6 @@ def pencil(
         overthickness=overthickness,
         progress=progress,
     )
-    return then(found, PencilPaths)
 
 
 class Pencil(Strategy):

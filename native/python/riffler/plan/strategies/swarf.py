@@ -88,8 +88,7 @@ def swarf(
     >>> riffler.plan.swarf(valley, tool, part, side=0).fits
     [(0, 1)]
     """
-    found = _core.swarf(path, part_mesh, tool, side=side, height=height, tolerance=tolerance, progress=progress)
-    return Swarf(**found)
+    return _core.swarf(path, part_mesh, tool, side=side, height=height, tolerance=tolerance, progress=progress)
 
 
 SIDES = (

@@ -1,0 +1,13 @@
+# Drops a compiler launcher that is not there: a build folder remembers the ccache of its last configuration.
+foreach(language C CXX)
+  if(CMAKE_${language}_COMPILER_LAUNCHER)
+    list(GET CMAKE_${language}_COMPILER_LAUNCHER 0 launcher)
+    unset(launcher_path)
+    find_program(launcher_path NAMES ${launcher} PATHS ENV PATH NO_DEFAULT_PATH NO_CACHE)
+    if(NOT launcher_path)
+      message(STATUS "There is no ${launcher}: builds without a compiler cache, so every ${language} source is compiled")
+      unset(CMAKE_${language}_COMPILER_LAUNCHER)
+      unset(CMAKE_${language}_COMPILER_LAUNCHER CACHE)
+    endif()
+  endif()
+endforeach()
