@@ -109,6 +109,7 @@ class SculptLoop final : public pen::PenStep {
   void place(Scene& scene, const pen::PenSample& sample) noexcept;
   Wrench follow(Scene& scene, const pen::PenSample& sample, double dt, bool cutting, SculptTick& tick) noexcept;
   Wrench missed(double dt, const char* why, SculptTick& tick) noexcept;
+  void serve(Scene& scene);
   void begin_stroke(double dt) noexcept;
   void end_stroke() noexcept;
   void tell_undo() noexcept;
