@@ -29,9 +29,14 @@ struct SculptLoop::Scene {
   Scene(const SculptLoopSettings& s, const Volume& stock, const Tool& tool, const collide::Collider* obstacles,
         bool absolute)
       : volume(stock),
-        carver(volume, tool, s.carving),
+        carver(volume, tool, deferred(s.carving)),
         step(s.sculpt.at_tool(s.workspace.scale), tool, &carver, obstacles),
         workspace(s.workspace.for_device(absolute)) {}
+
+  static sweep::MoveCarver::Options deferred(sweep::MoveCarver::Options carving) {
+    carving.deferred = true;  // the display asks 30 times a second, the pen cuts 1000 times
+    return carving;
+  }
 
   Volume volume;
   sweep::MoveCarver carver;
@@ -83,8 +88,26 @@ Wrench SculptLoop::sculpt(const pen::PenSample& sample, double dt, SculptTick& t
     if (!(wants && room)) end_stroke();
     out = follow(scene, sample, dt, wants && room, tick);
   }
-  exchange_.serve(scene.volume, {strokes_, in_stroke_});
+  if (exchange_.asked()) {
+    try {
+      serve(scene);
+    } catch (const std::exception&) {  // no memory: the next step tries again
+    }
+  }
   return out;
+}
+
+/// Hands over the changes. If it throws, some tiles may wait for the next time.
+void SculptLoop::serve(Scene& scene) {
+  const auto changed = [&] { exchange_.changed(scene.carver.replaced()); };
+  try {
+    scene.carver.publish();
+  } catch (...) {
+    changed();
+    throw;
+  }
+  changed();
+  exchange_.serve(scene.volume, {strokes_, in_stroke_});
 }
 
 /// Places the tool at the hand's current pose; the path to it is not cut.
@@ -104,10 +127,8 @@ Wrench SculptLoop::follow(Scene& scene, const pen::PenSample& sample, double dt,
     tick.from = last_tool_;
     const haptics::SculptStep::Result r = scene.step.step(target, twist, owed_, cutting);
     owed_ = 0;
-    if (r.cuts > 0 && !scene.carver.replaced().empty()) {
-      exchange_.changed(scene.carver.replaced());
-      if (!in_stroke_) begin_stroke(dt);
-    }
+    if (r.cuts > 0) exchange_.changed(scene.carver.replaced());
+    if (r.cuts > 0 && scene.carver.cut_something() && !in_stroke_) begin_stroke(dt);
     last_tool_ = tick.tool = r.tool;
     tick.on_tool = r.on_tool;
     tick.removed = r.removed, tick.depth = r.depth_bound, tick.cutting = in_stroke_;
@@ -115,6 +136,7 @@ Wrench SculptLoop::follow(Scene& scene, const pen::PenSample& sample, double dt,
     if (r.held) tick.problem = haptics::SculptStep::kHeldText;
     return wrench_extrapolator_.stepped(scene.workspace.to_grip(r.on_grip), dt);
   } catch (const std::bad_alloc&) {
+    exchange_.changed(scene.carver.replaced());
     return missed(dt, "there is no memory for the next cut", tick);
   } catch (const std::exception&) {
     return missed(dt, "the step failed", tick);
@@ -146,7 +168,7 @@ TileExchange::Mark SculptLoop::show(Volume& shown, std::vector<Place>& places, d
   }
   // No steps, or a long step: between two steps a direct copy is as good.
   const std::lock_guard lock(mutex_);
-  exchange_.serve(scene_->volume, {strokes_, in_stroke_});
+  serve(*scene_);
   exchange_.take(shown, places, mark);
   return mark;
 }
@@ -154,6 +176,7 @@ TileExchange::Mark SculptLoop::show(Volume& shown, std::vector<Place>& places, d
 bool SculptLoop::replace(const Volume& volume, std::int64_t strokes) {
   const std::lock_guard lock(mutex_);
   if (in_stroke_) return false;
+  scene_->carver.forget();
   scene_->volume.restore(volume);
   brought_back_ += strokes;
   return true;

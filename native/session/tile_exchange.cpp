@@ -24,7 +24,7 @@ void TileExchange::changed(std::span<const Place> places) noexcept {
 }
 
 void TileExchange::serve(const Volume& cut, const Mark& mark) noexcept {
-  if (state_.load(std::memory_order_acquire) != State::Asked) return;
+  if (!asked()) return;
   for (const Place& place : list_) {
     box_.push_back({place, cut.grids()[place.grid].shared_tile(place.tile)});
     dirty_[first_[place.grid] + place.tile] = false;

@@ -14,6 +14,7 @@
 #include "riffler/dexel/stats.hpp"
 #include "riffler/sweep/carve_options.hpp"
 #include "sweep/cut_region.hpp"
+#include "sweep/open_tiles.hpp"
 #include "sweep/steps.hpp"
 #include "sweep/tile_cutter.hpp"
 
@@ -61,12 +62,16 @@ class GridCarver {
     region_ = &region;
   }
 
+  /// Keeps tiles open between runs; the grid has the result after `pack`. Only for moves in real time, without region.
+  /// `size`: mm, the tool's; asks for the memory of as many tiles as it covers.
+  void keep_open(double size);
+
   /// Move m of `moves` goes to poses[end(m)] from the pose before it. Holds only one batch in memory, regardless of the
   /// length of the program.
   template <class End, class Done>
   void run(std::span<const ConvexGroup> cutter, std::span<const Pose> poses, std::size_t moves, const End& end,
            const Done& moves_done) {
-    steps_.clear(), motions_.clear();  // left over from a run that failed
+    begin_run();
     Pose from;
     std::size_t last = 0;
     for (std::size_t m = 0; m < moves; ++m) {
@@ -81,14 +86,27 @@ class GridCarver {
     flush();
   }
 
+  /// With keep_open: gives the grid what runs have cut from open tiles. Tiles that the last run did not look at are
+  /// closed.
+  void pack();
+  /// Same for a few tiles that the tool has left.
+  void pack_left();
+  /// Closes open tiles without packing them.
+  void forget();
+  /// Whether the last run has cut something.
+  bool cut_something() const { return cut_something_; }
+
   dexel::Stats take_stats() { return std::exchange(stats_, {}); }
 
  private:
   struct Work {  // one tile and its steps in the batch
     std::size_t tile, begin, end;
+    OpenTile* rays;  // null: opened for this batch only
     TileResult done;
+    std::shared_ptr<const dexel::Tile> packed;
   };
 
+  void begin_run();
   void add(std::span<const ConvexGroup> cutter, const Pose& from, const Pose& to, std::uint32_t move);
   bool full() const;
   void flush();
@@ -96,7 +114,12 @@ class GridCarver {
   void open_tiles();
   void assign();
   void sort_pairs(std::size_t first, std::size_t last);
+  bool may_touch(const Work& work) const;
   void cut_tile(Work& work) const;
+  void cut_open(Work& work, OpenTile& rays) const;
+  std::shared_ptr<const dexel::Tile> packed(OpenTile& rays, std::size_t tile) const;
+  void replace(std::size_t tile, std::shared_ptr<const dexel::Tile> packed);
+  void pack(std::size_t entry);
   void collect(Work& w);
 
   dexel::Grid& grid_;
@@ -105,8 +128,13 @@ class GridCarver {
   Cut& cut_;
   Rollback* rollback_;
   GridRegion* region_ = nullptr;
-  std::deque<Motion> motions_;  // of the batch, in the grid's cyclic frame; steps point to them
+  std::deque<Motion, base::BlockAllocator<Motion>>
+      motions_;  // of the batch, in the grid's cyclic frame; steps point to them
   base::BlockVector<Step> steps_;
+  std::size_t cut_steps_ = 0;  // those of the batch that are cut already
+  bool keeps_ = false, cut_something_ = false;
+  std::uint64_t run_ = 0;  // number of the last run
+  OpenTiles open_;
   base::BlockVector<std::pair<std::size_t, std::size_t>> pairs_, sorted_;  // (tile, step)
   base::BlockVector<std::uint32_t> starts_;
   base::BlockVector<Work> work_;

@@ -8,6 +8,7 @@
 #include <hwy/highway.h>
 // clang-format on
 
+#include "sweep/lanes/normal_lanes-inl.hpp"
 #include "sweep/lanes/straight_lanes-inl.hpp"
 #include "sweep/lanes/turning_lanes-inl.hpp"
 
@@ -22,6 +23,10 @@ void CutTurning(const TurningBody& body, RayWindow& window) {
   cut_turning_lanes(body, window);
 }
 
+void ComputeNormals(const SweptSurface& surface, SweptEnds& ends) {
+  normal_lanes(surface, ends);
+}
+
 }  // namespace riffler::sweep::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -33,6 +38,7 @@ namespace riffler::sweep {
 
 HWY_EXPORT(CutStraight);
 HWY_EXPORT(CutTurning);
+HWY_EXPORT(ComputeNormals);
 
 void cut_straight(const StraightBody& body, RayWindow& window) {
   HWY_DYNAMIC_DISPATCH(CutStraight)(body, window);
@@ -40,6 +46,10 @@ void cut_straight(const StraightBody& body, RayWindow& window) {
 
 void cut_turning(const TurningBody& body, RayWindow& window) {
   HWY_DYNAMIC_DISPATCH(CutTurning)(body, window);
+}
+
+void compute_normals(const SweptSurface& surface, SweptEnds& ends) {
+  HWY_DYNAMIC_DISPATCH(ComputeNormals)(surface, ends);
 }
 
 std::vector<std::string> instruction_sets() {

@@ -8,6 +8,7 @@
 
 #include "sweep/ray_window.hpp"
 #include "sweep/straight_part.hpp"
+#include "sweep/swept_normals.hpp"
 #include "sweep/turning_part.hpp"
 
 namespace riffler::sweep {
@@ -16,6 +17,9 @@ namespace riffler::sweep {
 void cut_straight(const StraightBody& body, RayWindow& window);
 /// Same for a turning part.
 void cut_turning(const TurningBody& body, RayWindow& window);
+
+/// Computes the normals of padded ends (swept_normals.hpp).
+void compute_normals(const SweptSurface& surface, SweptEnds& ends);
 
 /// Names of the instruction sets that this machine supports, best first.
 std::vector<std::string> instruction_sets();

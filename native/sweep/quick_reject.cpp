@@ -9,6 +9,10 @@ namespace {
 /// Relative to the size: far more than the rounding error of a kernel's hits and than the gaps between the pieces of a
 /// group, and far too little to matter.
 constexpr double kMargin = 1e-8;
+
+double widest_radius(const PieceShape& s) {
+  return s.round && s.zc > s.z0 && s.zc < s.z1 ? std::max(s.e, 0.0) + s.r : std::max(s.r0, s.r1);
+}
 }  // namespace
 
 QuickReject::QuickReject(const StraightBody& b) {
@@ -25,20 +29,25 @@ QuickReject::QuickReject(const StraightBody& b) {
   if (ball) {
     // In a convex group, the flank next to the ball leans downwards most.
     lean = b.count > 1 ? std::max(next.slope * next.cosine, 0.0) : 0;
-    kind = b.count == 1 || (b.tilt == 0 && b.oz > 0 && lean == 0) ? Kind::Ball : Kind::BallAndFlank;
-    for (int i = 0; i < 3; ++i) from[i] = start[i], way[i] = along[i], axis[i] = up[i];
-    per_square = b.way > 0 ? 1 / (b.way * b.way) : 0;
-    square = first.r * first.r + kMargin * first.r * (first.r + b.way);
+    alone = b.count == 1;
+    kind = alone || (b.tilt == 0 && b.oz > 0 && lean == 0) ? Kind::Ball : Kind::BallAndFlank;
+    for (int i = 0; i < 3; ++i) centre.from[i] = start[i], centre.way[i] = along[i], centre.axis[i] = up[i];
+    centre.per_square = b.way > 0 ? 1 / (b.way * b.way) : 0;
+    centre.square = first.r * first.r + kMargin * first.r * (first.r + b.way);
   } else if (b.tilt > 0 && b.oz > 0) {  // an upright tool's end is as low as the footprint: no planes
     kind = Kind::Planes;
     set_plane(0, start, up), set_plane(1, start + along, up);
     slack = kMargin * (size + b.way), per_depth = kMargin;
   }
+  double widest = 0;
+  for (std::size_t k = 0; k < b.count; ++k) widest = std::max(widest, widest_radius(b.pieces[k]));
+  set_tube({start, up}, along, widest, size + b.way);
 }
 
 QuickReject::QuickReject(const ConvexGroup& group, const Motion& motion, double t0, double t1,
                          const Footprint& footprint) {
   const Pose poses[2] = {motion.at(t0), motion.at(t1)};
+  set_turning_tube(group, motion, t0, t1);
   if (!(poses[0].axis.z > 0 && poses[1].axis.z > 0)) return;
   kind = Kind::Planes;
   double height = std::numeric_limits<double>::infinity();
@@ -58,6 +67,32 @@ QuickReject::QuickReject(const ConvexGroup& group, const Motion& motion, double 
   per_depth = angle * angle / 8 + kMargin;
   slack =
       angle * moved / 4 + per_depth * (beside + std::abs(height) + std::abs(foot[1][2] - foot[0][2])) + kMargin * moved;
+}
+
+/// The tool's line without ends has the axis of the middle of the step; elsewhere each of its points is off that line
+/// by at most the angle between times its distance from the tip.
+void QuickReject::set_turning_tube(const ConvexGroup& group, const Motion& motion, double t0, double t1) {
+  double widest = 0, size = 0;
+  for (const tool::Piece& piece : group.all()) {
+    widest = std::max(widest, max_radius(piece));
+    size = std::max({size, std::abs(bottom(piece)), std::abs(top(piece))});
+  }
+  const double half = motion.angle() * (t1 - t0) / 2;
+  const Vec3 way = motion.tip(t1) - motion.tip(t0);
+  set_tube({motion.tip(t0), motion.axis((t0 + t1) / 2)}, way, widest + half * (size + widest), size + glm::length(way));
+}
+
+void QuickReject::set_tube(const Pose& from, const Vec3& way, double radius, double size) {
+  // Along the axis, rays leave the tube nowhere.
+  constexpr double kParallel = 0.9;
+  has_tube = std::abs(from.axis.z) < kParallel;
+  if (!has_tube) return;
+  const Vec3 across = way - glm::dot(way, from.axis) * from.axis;
+  for (int i = 0; i < 3; ++i) tube.from[i] = from.tip[i], tube.way[i] = across[i], tube.axis[i] = from.axis[i];
+  const double square = glm::dot(across, across);
+  tube.per_square = square > 0 ? 1 / square : 0;
+  tube.square = radius * radius + kMargin * (radius + size) * (radius + size);
+  tube.endless = true;
 }
 
 void QuickReject::set_plane(int k, const Vec3& at, const Vec3& up) {

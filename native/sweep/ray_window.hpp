@@ -5,6 +5,7 @@
 
 #include "base/lanes.hpp"
 #include "riffler/dexel/tile.hpp"
+#include "sweep/open_tile.hpp"
 #include "sweep/quick_reject.hpp"
 
 namespace riffler::sweep {
@@ -33,10 +34,11 @@ struct ForceLaw {
 };
 
 struct RayWindow {
-  // The tile (tile_cut.hpp): each ray's only span, or the hull of its spans.
-  const dexel::Span* rays;
-  dexel::Span* opened;        ///< the same for writing; if null, call `open` first
-  const std::uint32_t* many;  ///< bit b of word a: the ray in row a, column b has several spans
+  // The tile (open_tile.hpp).
+  const dexel::Span* rays;  ///< the plane `first`, for reading
+  const RayPlanes* planes;  ///< all planes
+  bool opened;              ///< whether they may be written; if not, call `open` first
+  double step;              ///< origin of the ends that arise at the beginning of the motion (open_tile.hpp)
   double u[dexel::kTileSide];
   alignas(64) double v[dexel::kTileSide + base::kLanes];
   bool uneven;  ///< some cells are no squares of the pitch; their areas are share_u × share_v squares
@@ -49,17 +51,16 @@ struct RayWindow {
   double low, high;
   QuickReject look;
   // Options.
-  bool in_place;    ///< cut single spans here; otherwise pass every cut to `cut`
+  bool with_times;  ///< the times at which ends arise are needed, for normals
   bool measured;    ///< sum up the removed lengths
   bool with_force;  ///< and their directions
   const ForceLaw* law;
   void* self;
-  void (*open)(void* self);                             ///< sets `rays` and `opened`
+  void (*open)(void* self);                             ///< sets `rays`, `planes` and `opened`
   void (*cut)(void* self, int ray, const RayCut& cut);  ///< cuts that are not made here
   RemovedSums* sums;
   // Results.
   std::uint64_t tested = 0, changed = 0, hits = 0;
-  bool emptied = false;  ///< some rays have become empty
 };
 
 }  // namespace riffler::sweep

@@ -32,6 +32,11 @@ struct Step {
   std::variant<StraightPart, TurningPart> body;
 };
 
+/// The convex group of pieces that a step sweeps.
+inline const ConvexGroup& group_of(const Step& step) {
+  return std::visit([](const auto& part) -> const ConvexGroup& { return part.group; }, step.body);
+}
+
 /// A pose in the cyclic frame of a grid whose rays run along `axis`, with a unit axis. Adding 0.0 removes the sign of
 /// zeros, which differs in a mirrored pose; no cut may depend on it.
 inline Pose to_local(Axis axis, const Pose& p) {

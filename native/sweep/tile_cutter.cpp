@@ -5,19 +5,20 @@
 #include <numeric>
 
 #include "sweep/kernels.hpp"
-#include "sweep/swept_normal.hpp"
 
 namespace riffler::sweep {
 
-TileCutter::TileCutter(const dexel::Grid& grid, std::size_t tile, bool measured, const CarveOptions& options)
+TileCutter::TileCutter(const dexel::Grid& grid, std::size_t tile, OpenTile& rays, bool measured,
+                       const CarveOptions& options)
     : grid_(grid),
       options_(options),
       first_row_(static_cast<int>(tile) / grid.tiles_v() * dexel::kTileSide),
       first_column_(static_cast<int>(tile) % grid.tiles_v() * dexel::kTileSide),
-      rays_(grid.tile(tile), grid.has_normals(), 1e-9 * grid.pitch()),
+      rays_(rays),
       window_{} {
   RayWindow& w = window_;
-  w.rays = rays_.rays(), w.many = rays_.many();
+  w.rays = rays_.first(), w.planes = &rays_.planes();
+  w.opened = rays_.changed();
   for (int k = 0; k < dexel::kTileSide; ++k) w.u[k] = grid.shifted_u(first_row_ + k);
   for (int k = 0; k < dexel::kTileSide + base::kLanes; ++k) w.v[k] = grid.shifted_v(first_column_ + k);
   w.uneven = (first_row_ + dexel::kTileSide >= grid.nu() && !grid.even_u()) ||
@@ -30,7 +31,7 @@ TileCutter::TileCutter(const dexel::Grid& grid, std::size_t tile, bool measured,
       w.share_v[k] = grid.width_v(std::min(first_column_ + k, grid.nv() - 1)) / grid.pitch();
     }
   w.thinnest = 1e-9 * grid.pitch();
-  w.in_place = !grid.has_normals(), w.measured = measured, w.with_force = measured && !options.dt.empty();
+  w.with_times = grid.has_normals(), w.measured = measured, w.with_force = measured && !options.dt.empty();
   w.self = this, w.sums = &sums_, w.law = &law_;
   w.cut = [](void* self, int ray, const RayCut& cut) { static_cast<TileCutter*>(self)->cut_one(ray, cut); };
   w.open = [](void* self) { static_cast<TileCutter*>(self)->open(); };
@@ -76,20 +77,14 @@ void TileCutter::set_motion(const Motion& motion) {
   law_.speed = glm::length(to - from);
 }
 
-void TileCutter::set_shapes(const Step& step) {
-  const ConvexGroup& group = std::visit([](const auto& part) -> const ConvexGroup& { return part.group; }, step.body);
-  shape_count_ = group.count;
-  std::transform(group.pieces.begin(), group.pieces.begin() + group.count, shapes_.begin(), shape_of);
-}
-
-void TileCutter::cut(const Step& step) {
+void TileCutter::cut(const Step& step, std::size_t number) {
   step_ = &step;
   if (motion_ != step.motion) set_motion(*step.motion);
   if (!set_window(step.footprint)) return;
   result_.stats.tiles_visited += step.move != last_move_;
   last_move_ = step.move;
-  if (grid_.has_normals()) set_shapes(step);
   RayWindow& w = window_;
+  w.step = 2 * static_cast<double>(number);
   w.tested = w.changed = w.hits = 0;
   if (const auto* part = std::get_if<TurningPart>(&step.body)) {
     w.look = QuickReject(part->group, *step.motion, part->t0, part->t1, step.footprint);
@@ -104,21 +99,15 @@ void TileCutter::cut(const Step& step) {
 }
 
 void TileCutter::open() {
-  window_.opened = rays_.open();
-  window_.rays = rays_.rays();
+  rays_.open();
+  window_.rays = rays_.first(), window_.opened = true;
 }
 
-/// Makes the cuts that the kernel passes on: rays with several spans, splits, and all cuts of a grid with normals.
+/// Makes the cuts that the kernel passes on: rays with more than two spans, before or after.
 void TileCutter::cut_one(int ray, const RayCut& cut) {
   const int row = ray / dexel::kTileSide, column = ray % dexel::kTileSide;
   const double u = window_.u[row], v = window_.v[column];
   const int slot = (column - window_.first[row]) % base::kLanes;
-  const auto normal_at = [&](double end) {
-    const std::span<const PieceShape> group(shapes_.data(), shape_count_);
-    const Vec3 n = swept_normal(group, *motion_, {u, v, end}, end == cut.near ? cut.near_t : cut.far_t);
-    // The material's new surface faces the tool.
-    return dexel::PackedNormal::pack(to_world(grid_.axis(), -n));
-  };
   const auto removed = [&](double low, double high) {
     if (!window_.measured) return;
     const double length = (high - low) * (window_.uneven ? window_.share_u[row] * window_.share_v[column] : 1);
@@ -131,8 +120,11 @@ void TileCutter::cut_one(int ray, const RayCut& cut) {
     for (int i = 0; i < 3; ++i)
       sums_.direction[i][slot] += length * direction[i], sums_.moment[i][slot] += length * moment[i];
   };
-  rays_.subtract(ray, {cut.near, cut.far}, normal_at, removed);
-  window_.rays = rays_.rays();
+  const auto origin = [&](double t) { return window_.step + std::round(t / Origins::kUnit) * Origins::kUnit; };
+  // The new near end is at the far end of the cut.
+  if (!rays_.subtract(ray, {cut.near, cut.far}, {origin(cut.far_t), origin(cut.near_t)}, removed)) return;
+  ++window_.changed;
+  window_.rays = rays_.first(), window_.opened = rays_.changed();
 }
 
 /// (3.18)–(3.24) with k per volume and second.
@@ -154,11 +146,6 @@ void TileCutter::add_share() {
 }
 
 TileResult TileCutter::finish() {
-  if (window_.emptied) rays_.emptied();
-  result_.tile = rays_.finish();
-  if (!result_.tile) return std::move(result_);
-  result_.stats.tiles_changed = 1;
-  result_.stats.bytes_copied = result_.tile->nbytes();
   return std::move(result_);
 }
 

@@ -1,7 +1,6 @@
 // Cuts one tile with one step after another.
 #pragma once
 
-#include <array>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -9,8 +8,9 @@
 #include "riffler/dexel/grid.hpp"
 #include "riffler/dexel/stats.hpp"
 #include "riffler/sweep/carve_options.hpp"
+#include "sweep/open_tile.hpp"
+#include "sweep/ray_window.hpp"
 #include "sweep/steps.hpp"
-#include "sweep/tile_cut.hpp"
 
 namespace riffler::sweep {
 
@@ -22,22 +22,21 @@ struct Share {
 };
 
 struct TileResult {
-  std::shared_ptr<dexel::Tile> tile;  ///< the new tile; null if nothing was cut
   base::BlockVector<Share> shares;
   dexel::Stats stats;
 };
 
 class TileCutter {
  public:
-  /// `measured`: whether removed material counts towards Cut::removed.
-  TileCutter(const dexel::Grid& grid, std::size_t tile, bool measured, const CarveOptions& options);
+  /// Cuts `rays`, tile number `tile` of the grid. `measured`: whether removed material counts towards Cut::removed.
+  TileCutter(const dexel::Grid& grid, std::size_t tile, OpenTile& rays, bool measured, const CarveOptions& options);
 
-  void cut(const Step& step);
+  /// Cuts with step number `number` of the carver's steps.
+  void cut(const Step& step, std::size_t number);
   TileResult finish();
 
  private:
   void set_motion(const Motion& motion);
-  void set_shapes(const Step& step);
   bool set_window(const Footprint& footprint);
   void open();
   void cut_one(int ray, const RayCut& cut);
@@ -46,15 +45,13 @@ class TileCutter {
   const dexel::Grid& grid_;
   const CarveOptions& options_;
   int first_row_, first_column_;  // of the tile, in the grid
-  TileCut rays_;
+  OpenTile& rays_;
   RayWindow window_;
   RemovedSums sums_;
   ForceLaw law_{};
   TileResult result_;
   std::uint32_t last_move_ = ~0U;
   const Step* step_ = nullptr;
-  std::array<PieceShape, ConvexGroup::kMax> shapes_;  // of the step, if normals are stored
-  std::size_t shape_count_ = 0;
   const Motion* motion_ = nullptr;
 };
 

@@ -17,11 +17,15 @@ using namespace base::HWY_NAMESPACE;
 
 /// A group of neighbouring rays in one row.
 struct Group {
-  int ray;      // index of the first ray in the tile
-  int slot;     // slot in the sums
-  V v;          // v of the rays; the row has one u
-  V near, far;  // the rays' material
-  M active;     // lanes that the step may touch
+  int ray;            // index of the first ray in the tile
+  int slot;           // slot in the sums
+  V v;                // v of the rays; the row has one u
+  V low, high;        // hull of the rays' material
+  V near, first_far;  // the first span in the planes
+  V last_near, far;   // the second one; the first again in lanes without
+  unsigned two = 0;   // lanes with a second one
+  unsigned many = 0;  // lanes with others that are not in the planes
+  M active;           // lanes that the step may touch
 };
 
 /// Rays in a tool's frame: the point at height s above the tip is (x + s tilt, y, z + s oz).
@@ -29,75 +33,135 @@ struct SectionRays {
   V x, y, z;
 };
 
-/// Loads the group's material. At the end of a tile, fewer rays than lanes may remain.
-HWY_INLINE void load_material(const RayWindow& w, Group& g) {
+/// Loads the spans of a plane. At the end of a tile that is read in place, fewer rays than lanes may remain.
+HWY_INLINE void load_spans(const dexel::Span* plane, int ray, V& near, V& far) {
   static_assert(sizeof(dexel::Span) == 2 * sizeof(double));
-  const dexel::Span* rays = w.rays + g.ray;
+  const dexel::Span* rays = plane + ray;
   dexel::Span last[base::kLanes];
-  if (g.ray + lanes() > dexel::kTileRays) {
+  if (ray + lanes() > dexel::kTileRays) {
     for (int k = 0; k < lanes(); ++k)
-      last[k] = g.ray + k < dexel::kTileRays ? rays[k] : dexel::Span{kInfinity, -kInfinity};
+      last[k] = ray + k < dexel::kTileRays ? rays[k] : dexel::Span{kInfinity, -kInfinity};
     rays = last;
   }
   const double* ends = &rays->near;
 #if HWY_TARGET == HWY_SCALAR
-  hn::LoadInterleaved2(kD, ends, g.near, g.far);
+  hn::LoadInterleaved2(kD, ends, near, far);
 #else
   // needs fewer shuffles than LoadInterleaved2
   const V low = hn::LoadU(kD, ends), high = hn::LoadU(kD, ends + lanes());
-  g.near = hn::ConcatEven(kD, high, low), g.far = hn::ConcatOdd(kD, high, low);
+  near = hn::ConcatEven(kD, high, low), far = hn::ConcatOdd(kD, high, low);
 #endif
 }
 
-HWY_INLINE void store_material(RayWindow& w, int ray, V near, V far) {
-  if (!w.opened) w.open(w.self);
-  dexel::Span* rays = w.opened + ray;
-  if (ray + lanes() <= dexel::kTileRays) return hn::StoreInterleaved2(near, far, kD, &rays->near);
-  dexel::Span last[base::kLanes];
-  hn::StoreInterleaved2(near, far, kD, &last->near);
-  for (int k = 0; ray + k < dexel::kTileRays; ++k) rays[k] = last[k];
+HWY_INLINE void load_material(const RayWindow& w, Group& g) {
+  const int row = g.ray / dexel::kTileSide, column = g.ray % dexel::kTileSide;
+  const unsigned all = (1U << lanes()) - 1;
+  g.two = (w.planes->two[row] >> column) & all, g.many = (w.planes->many[row] >> column) & all;
+  load_spans(w.rays, g.ray, g.near, g.first_far);
+  g.low = g.last_near = g.near, g.high = g.far = g.first_far;
+  if (!g.two) return;
+  V near, far;
+  load_spans(w.planes->last, g.ray, near, far);
+  const M two = from_bits(g.two);
+  g.last_near = pick(two, near, g.last_near), g.high = g.far = pick(two, far, g.far);
+  if (!g.many) return;
+  const M many = from_bits(g.many);
+  load_spans(w.planes->hull, g.ray, near, far);
+  g.low = pick(many, near, g.low), g.high = pick(many, far, g.high);
 }
 
 HWY_INLINE Group group_at(const RayWindow& w, int row, int column) {
-  Group g{row * dexel::kTileSide + column,
-          (column - w.first[row]) % base::kLanes,
-          hn::LoadU(kD, w.v + column),
-          zero(),
-          zero(),
-          no_lane()};
+  Group g;
+  g.ray = row * dexel::kTileSide + column, g.slot = (column - w.first[row]) % base::kLanes;
+  g.v = hn::LoadU(kD, w.v + column), g.active = no_lane();
   load_material(w, g);
   return g;
 }
 
-/// Lanes for which the quick reject shows that all material is out of reach.
-template <bool kFlank>
-HWY_INLINE M under_ball(const QuickReject& look, double u, const Group& g) {
-  const V x = set(u - look.from[0]), y = hn::Sub(g.v, set(look.from[1])), z = hn::Sub(g.far, set(look.from[2]));
+/// Distance of points at height s on the rays from a swept line or centre: its square, and its sign along the rays.
+struct Aside {
+  V square, along;
+  V a, b;  // with `along`, the vector from the nearest position of the line or centre
+};
+HWY_INLINE Aside aside(const SweptLine& line, double u, V v, V s) {
+  const V x = set(u - line.from[0]), y = hn::Sub(v, set(line.from[1])), z = hn::Sub(s, set(line.from[2]));
   const auto dot = [](V a, V b, V c, const double* d) {
     return hn::Add(hn::Add(hn::Mul(a, set(d[0])), hn::Mul(b, set(d[1]))), hn::Mul(c, set(d[2])));
   };
-  const V t = min(max(hn::Mul(dot(x, y, z, look.way), set(look.per_square)), zero()), set(1));
-  const auto off = [&](V p, int i) { return hn::Sub(p, hn::Mul(t, set(look.way[i]))); };
+  const V t = min(max(hn::Mul(dot(x, y, z, line.way), set(line.per_square)), zero()), set(1));
+  V rise = zero();
+  if (line.endless) rise = dot(x, y, z, line.axis);
+  const auto off = [&](V p, int i) {
+    const V moved = hn::Sub(p, hn::Mul(t, set(line.way[i])));
+    return line.endless ? hn::Sub(moved, hn::Mul(rise, set(line.axis[i]))) : moved;
+  };
   const V a = off(x, 0), b = off(y, 1), c = off(z, 2);
-  const V square = hn::Add(hn::Add(hn::Mul(a, a), hn::Mul(b, b)), hn::Mul(c, c));
-  const M out = both(hn::Ge(square, set(look.square)), hn::Le(c, zero()));
-  if (!kFlank) return out;
-  const V rise = dot(a, b, c, look.axis);
-  return both(out,
-              both(hn::Le(rise, zero()), hn::Ge(hn::Mul(rise, rise), hn::Mul(square, set(look.lean * look.lean)))));
+  return {hn::Add(hn::Add(hn::Mul(a, a), hn::Mul(b, b)), hn::Mul(c, c)), c, a, b};
 }
-HWY_INLINE M under_planes(const QuickReject& look, double u, const Group& g) {
+
+/// Lanes for which the quick reject shows that everything below s (kSide −1) or above it (1) is out of reach.
+template <int kSide>
+HWY_INLINE M outward(V along) {
+  return kSide < 0 ? hn::Le(along, zero()) : hn::Ge(along, zero());
+}
+template <int kSide, bool kFlank>
+HWY_INLINE M off_ball(const QuickReject& look, double u, V v, V s) {
+  const Aside p = aside(look.centre, u, v, s);
+  const M out = both(hn::Ge(p.square, set(look.centre.square)), outward<kSide>(p.along));
+  if (!kFlank) return out;
+  const double* axis = look.centre.axis;
+  const V rise =
+      hn::Add(hn::Add(hn::Mul(p.a, set(axis[0])), hn::Mul(p.b, set(axis[1]))), hn::Mul(p.along, set(axis[2])));
+  return both(out,
+              both(hn::Le(rise, zero()), hn::Ge(hn::Mul(rise, rise), hn::Mul(p.square, set(look.lean * look.lean)))));
+}
+template <int kSide>
+HWY_INLINE M off_tube(const QuickReject& look, double u, V v, V s) {
+  const Aside p = aside(look.tube, u, v, s);
+  return both(hn::Ge(p.square, set(look.tube.square)), outward<kSide>(p.along));
+}
+HWY_INLINE M under_planes(const QuickReject& look, double u, V v, V s) {
   V most = set(-kInfinity);
   for (int k = 0; k < 2; ++k) {
     const double* foot = look.foot[k];
     const double* n = look.normal[k];
-    const V z = hn::Sub(g.far, set(foot[2]));
-    const V h = hn::Add(hn::Add(set((u - foot[0]) * n[0]), hn::Mul(hn::Sub(g.v, set(foot[1])), set(n[1]))),
+    const V z = hn::Sub(s, set(foot[2]));
+    const V h = hn::Add(hn::Add(set((u - foot[0]) * n[0]), hn::Mul(hn::Sub(v, set(foot[1])), set(n[1]))),
                         hn::Mul(z, set(n[2])));
     most = max(most, hn::Add(h, hn::Mul(abs(z), set(look.per_depth))));
   }
   return hn::Lt(most, set(-look.slack));
 }
+
+/// Both tests of one kind of quick reject, and the tube where there is one.
+template <QuickReject::Kind kKind>
+struct Look {
+  const QuickReject& look;
+
+  template <int kSide>
+  HWY_INLINE M out(double u, V v, V s) const {
+    M m = no_lane();
+    if constexpr (kKind == QuickReject::Kind::Ball)
+      m = kSide < 0 || look.alone ? off_ball<kSide, false>(look, u, v, s) : off_ball<kSide, true>(look, u, v, s);
+    if constexpr (kKind == QuickReject::Kind::BallAndFlank) m = off_ball<kSide, true>(look, u, v, s);
+    if constexpr (kKind == QuickReject::Kind::Planes && kSide < 0) m = under_planes(look, u, v, s);
+    return look.has_tube ? either(m, off_tube<kSide>(look, u, v, s)) : m;
+  }
+
+  /// Lanes of `there` whose material is out of reach.
+  HWY_INLINE M rejected(const RayWindow& w, double u, const Group& g, M there) const {
+    const M under = out<-1>(u, g.v, g.first_far);
+    const M rest = without(there, under);
+    if (!g.two && (!look.has_tube || none(rest))) return under;
+    const M over = out<1>(u, g.v, g.last_near);  // of the only span, if there is one
+    const M one = either(under, over);
+    if (!g.two) return one;
+    const M first = either(under, hn::Le(g.first_far, set(w.low)));
+    const M last = either(over, hn::Ge(g.last_near, set(w.high)));
+    const M two = from_bits(g.two);
+    return either(both(two, both(first, last)), without(one, two));
+  }
+};
 
 /// A group that the step may touch: its first ray and its active lanes.
 struct Candidate {
@@ -105,17 +169,18 @@ struct Candidate {
   std::uint8_t active;
 };
 
-/// The groups of the window that have material at its heights and that `under` does not reject.
-template <class Under>
-HWY_INLINE int find_groups(RayWindow& w, const Under& under, Candidate* out) {
+/// The groups of the window that have material at its heights and that `look` does not reject.
+template <class Look>
+HWY_INLINE int find_groups(RayWindow& w, const Look& look, Candidate* out) {
   const V low = set(w.low), high = set(w.high);
   int n = 0;
   for (int a = w.first_row; a <= w.last_row; ++a)
     for (int b = w.first[a]; b < w.end[a]; b += lanes()) {
       const Group g = group_at(w, a, b);
       const M inside = hn::FirstN(kD, static_cast<std::size_t>(w.end[a] - b));
-      const M there = both(inside, both(hn::Lt(g.near, high), hn::Gt(g.far, low)));
-      const unsigned active = bits(without(there, under(w.u[a], g)));
+      const M there = both(inside, both(hn::Lt(g.low, high), hn::Gt(g.high, low)));
+      if (none(there)) continue;
+      const unsigned active = bits(without(there, look.rejected(w, w.u[a], g, there)));
       out[n] = {static_cast<std::uint16_t>(g.ray), static_cast<std::uint8_t>(active)};
       n += active != 0;
       w.tested += static_cast<unsigned>(std::popcount(active));
@@ -126,20 +191,21 @@ HWY_INLINE int find_groups(RayWindow& w, const Under& under, Candidate* out) {
 /// Calls body(u, group) for all groups that the step may touch.
 template <class Body>
 HWY_INLINE void for_groups(RayWindow& w, const Body& body) {
+  using Kind = QuickReject::Kind;
   Candidate found[dexel::kTileRays];
   int n = 0;
   switch (w.look.kind) {
-    case QuickReject::Kind::None:
-      n = find_groups(w, [](double, const Group&) { return no_lane(); }, found);
+    case Kind::None:
+      n = find_groups(w, Look<Kind::None>{w.look}, found);
       break;
-    case QuickReject::Kind::Ball:
-      n = find_groups(w, [&](double u, const Group& g) { return under_ball<false>(w.look, u, g); }, found);
+    case Kind::Ball:
+      n = find_groups(w, Look<Kind::Ball>{w.look}, found);
       break;
-    case QuickReject::Kind::BallAndFlank:
-      n = find_groups(w, [&](double u, const Group& g) { return under_ball<true>(w.look, u, g); }, found);
+    case Kind::BallAndFlank:
+      n = find_groups(w, Look<Kind::BallAndFlank>{w.look}, found);
       break;
-    case QuickReject::Kind::Planes:
-      n = find_groups(w, [&](double u, const Group& g) { return under_planes(w.look, u, g); }, found);
+    case Kind::Planes:
+      n = find_groups(w, Look<Kind::Planes>{w.look}, found);
       break;
   }
   for (int k = 0; k < n; ++k) {
@@ -186,45 +252,158 @@ HWY_INLINE void add_force(RayWindow& w, const V (&p)[3], const V (&force)[3], in
   }
 }
 
-/// Removes `cut` in the lanes of `mask`. `t_near` and `t_far`: the motion's t at its two ends.
-HWY_INLINE void subtract(RayWindow& w, double u, const Group& g, M mask, RayIntervals cut, V t_near, V t_far) {
-  // Ignore a cut thinner than the minimum thickness: it would leave two spans that touch.
-  const M touched = both(both(mask, hn::Gt(hn::Sub(cut.far, cut.near), set(w.thinnest))),
-                         both(hn::Lt(cut.near, g.far), hn::Gt(cut.far, g.near)));
-  if (none(touched)) return;
-  w.changed += hn::CountTrue(kD, touched);
-  const V thinnest = set(w.thinnest);
-  const M below = hn::Gt(hn::Sub(cut.near, g.near), thinnest), above = hn::Gt(hn::Sub(g.far, cut.far), thinnest);
+/// Adds pieces of removed material, [low, high] in the lanes of `mask`, to the sums. `t`: the motion's t at their
+/// middle.
+HWY_INLINE void add_removed(RayWindow& w, double u, const Group& g, M mask, V low, V high, V t) {
   const int a = g.ray / dexel::kTileSide, b = g.ray % dexel::kTileSide;
-  const M many = from_bits((w.many[a] >> b) & ((1U << lanes()) - 1));
-  const M simple = w.in_place ? without(without(touched, many), both(below, above)) : no_lane();
-  const V low = pick(below, cut.near, g.near), high = pick(above, cut.far, g.far);
-  if (!none(simple)) {
-    const M gone = without(without(simple, below), above);
-    const V near = pick(gone, set(kInfinity), pick(above, cut.far, g.near));
-    const V far = pick(gone, set(-kInfinity), pick(below, cut.near, g.far));
-    store_material(w, g.ray, pick(simple, near, g.near), pick(simple, far, g.far));
-    w.emptied = w.emptied || !none(gone);
-    if (w.measured) {
-      V length = hn::IfThenElseZero(simple, hn::Sub(high, low));
-      if (w.uneven) length = hn::Mul(length, hn::Mul(set(w.share_u[a]), hn::LoadU(kD, w.share_v + b)));
-      add_to(w.sums->length, g.slot, length);
-      // Lanes without removed material may hold infinities.
-      const V middle = hn::IfThenElseZero(simple, hn::Mul(set(0.5), hn::Add(low, high)));
-      if (w.with_force) {
-        const V p[3] = {set(u), g.v, middle};
-        V force[3];
-        if (w.law->turns) {
-          force_at(*w.law, p, length, hn::Mul(set(0.5), hn::Add(t_near, t_far)), force);
-          add_force(w, p, force, g.slot);
-        } else {
-          force_along(*w.law, length, force);
-          add_force(w, p, force, g.slot);
-        }
+  V length = hn::IfThenElseZero(mask, hn::Sub(high, low));
+  if (w.uneven) length = hn::Mul(length, hn::Mul(set(w.share_u[a]), hn::LoadU(kD, w.share_v + b)));
+  add_to(w.sums->length, g.slot, length);
+  if (!w.with_force) return;
+  // Lanes without removed material may hold infinities.
+  const V middle = hn::IfThenElseZero(mask, hn::Mul(set(0.5), hn::Add(low, high)));
+  const V p[3] = {set(u), g.v, middle};
+  V force[3];
+  if (w.law->turns) {
+    force_at(*w.law, p, length, t, force);
+    add_force(w, p, force, g.slot);
+  } else {
+    force_along(*w.law, length, force);
+    add_force(w, p, force, g.slot);
+  }
+}
+
+/// Origins of new ends (open_tile.hpp) that arise at the motion's time t.
+HWY_INLINE V origin_at(const RayWindow& w, V t) {
+  if (!w.with_times) return t;
+  const V whole = set(1.5 * (1ULL << 52) * Origins::kUnit);  // adding it rounds to multiples of the unit
+  return hn::Add(hn::Sub(hn::Add(t, whole), whole), set(w.step));
+}
+
+/// What a cut leaves of one span of each ray.
+struct Remains {
+  Remains(V near, V far, const RayIntervals& cut, V thinnest)
+      : below(hn::Gt(hn::Sub(cut.near, near), thinnest)), above(hn::Gt(hn::Sub(far, cut.far), thinnest)) {}
+  M split() const { return both(below, above); }
+  M none() const { return hn::Not(either(below, above)); }
+  /// What is left where the span stays one; nothing left is [∞, −∞].
+  RayIntervals one(V near, V far, const RayIntervals& cut) const {
+    const M gone = none();
+    return {pick(gone, set(kInfinity), pick(above, cut.far, near)),
+            pick(gone, set(-kInfinity), pick(below, cut.near, far))};
+  }
+  M below, above;
+};
+
+/// Replaces spans of a plane in the lanes of `mask`; ends that are new in lanes of `near` and `far` get these origins.
+HWY_INLINE void store_spans(dexel::Span* plane, int ray, V near, V far) {
+  hn::StoreInterleaved2(near, far, kD, &plane[ray].near);
+}
+HWY_INLINE void store_origins(Origins* plane, int ray, M near, V near_origin, M far, V far_origin) {
+  if (!plane) return;
+  static_assert(sizeof(Origins) == 2 * sizeof(double));
+  V n, f;
+  hn::LoadInterleaved2(kD, &plane[ray].near, n, f);
+  hn::StoreInterleaved2(pick(near, near_origin, n), pick(far, far_origin, f), kD, &plane[ray].near);
+}
+
+/// The rays of `lanes` lose their first span: the second takes its place.
+inline void shift(const RayPlanes& planes, int ray, unsigned lanes) {
+  for (; lanes; lanes &= lanes - 1) {
+    const int r = ray + std::countr_zero(lanes);
+    planes.first[r] = planes.last[r];
+    if (!planes.first_origins) continue;
+    planes.first_origins[r] = planes.last_origins[r], planes.first_normals[r] = planes.last_normals[r];
+  }
+}
+
+/// Notes in which lanes of a group a cut has changed something, split the only span, and left nothing of the first or
+/// of the last span.
+inline void count_spans(const RayPlanes& planes, const Group& g, unsigned changed, unsigned splits, unsigned first_gone,
+                        unsigned last_gone) {
+  shift(planes, g.ray, first_gone & g.two & ~last_gone);
+  const unsigned two = (g.two | splits) & ~(first_gone | last_gone);
+  const int row = g.ray / dexel::kTileSide, column = g.ray % dexel::kTileSide;
+  const std::uint32_t all = ((1U << lanes()) - 1) << column;
+  planes.two[row] = (planes.two[row] & ~all) | ((two << column) & all);
+  planes.pending[row] |= changed << column;
+}
+
+/// A cut of the rays of a group, with the motion's t at its two ends, and the origins of the ends that it makes.
+struct GroupCut {
+  RayIntervals at;
+  V t_near, t_far;
+  V near_origin, far_origin;  // of a new near end, at `at.far`; of a new far end
+};
+
+/// Cuts the first spans in the lanes of `mask`; those in `splits` become two.
+HWY_INLINE void cut_first(RayWindow& w, double u, const Group& g, M mask, M splits, const Remains& r,
+                          const GroupCut& cut) {
+  const RayPlanes& planes = *w.planes;
+  if (w.measured)
+    add_removed(w, u, g, mask, pick(r.below, cut.at.near, g.near), pick(r.above, cut.at.far, g.first_far),
+                hn::Mul(set(0.5), hn::Add(cut.t_near, cut.t_far)));
+  if (!none(splits)) {
+    V near, far;
+    load_spans(planes.last, g.ray, near, far);
+    store_spans(planes.last, g.ray, pick(splits, cut.at.far, near), pick(splits, g.first_far, far));
+    if (planes.first_origins) {
+      V n, f;
+      hn::LoadInterleaved2(kD, &planes.first_origins[g.ray].near, n, f);
+      store_origins(planes.last_origins, g.ray, splits, cut.near_origin, splits, f);
+      for (unsigned m = bits(splits); m; m &= m - 1) {
+        const int ray = g.ray + std::countr_zero(m);
+        planes.last_normals[ray] = planes.first_normals[ray];
       }
     }
   }
-  const unsigned rest = bits(without(touched, simple));
+  const RayIntervals left = r.one(g.near, g.first_far, cut.at);
+  const V near = pick(without(mask, splits), left.near, g.near);
+  store_spans(planes.first, g.ray, near, pick(mask, left.far, g.first_far));
+  store_origins(planes.first_origins, g.ray, both(without(mask, splits), r.above), cut.near_origin, both(mask, r.below),
+                cut.far_origin);
+}
+
+/// Cuts the last spans in the lanes of `mask`.
+HWY_INLINE void cut_last(RayWindow& w, double u, const Group& g, M mask, const Remains& r, const GroupCut& cut) {
+  const RayPlanes& planes = *w.planes;
+  if (w.measured)
+    add_removed(w, u, g, mask, pick(r.below, cut.at.near, g.last_near), pick(r.above, cut.at.far, g.far),
+                hn::Mul(set(0.5), hn::Add(cut.t_near, cut.t_far)));
+  const RayIntervals left = r.one(g.last_near, g.far, cut.at);
+  V near, far;
+  load_spans(planes.last, g.ray, near, far);
+  store_spans(planes.last, g.ray, pick(mask, left.near, near), pick(mask, left.far, far));
+  store_origins(planes.last_origins, g.ray, both(mask, r.above), cut.near_origin, both(mask, r.below), cut.far_origin);
+}
+
+/// Removes `cut` in the lanes of `mask`. `t_near` and `t_far`: the motion's t at its two ends.
+HWY_INLINE void subtract(RayWindow& w, double u, const Group& g, M mask, RayIntervals cut, V t_near, V t_far) {
+  // Ignore a cut thinner than the minimum thickness: it would leave two spans that touch.
+  const M thick = both(mask, hn::Gt(hn::Sub(cut.far, cut.near), set(w.thinnest)));
+  const M touched = both(thick, both(hn::Lt(cut.near, g.high), hn::Gt(cut.far, g.low)));
+  if (none(touched)) return;
+  const M two = from_bits(g.two);
+  const M in_first = both(touched, both(hn::Lt(cut.near, g.first_far), hn::Gt(cut.far, g.near)));
+  const M in_last = both(touched, both(two, both(hn::Lt(cut.near, g.far), hn::Gt(cut.far, g.last_near))));
+  const Remains first(g.near, g.first_far, cut, set(w.thinnest)), last(g.last_near, g.far, cut, set(w.thinnest));
+  // A cut that both spans in the planes survive does not reach any other.
+  const M beyond = both(touched, without(from_bits(g.many), both(first.below, last.above)));
+  const M changed = either(either(in_first, in_last), beyond);
+  if (none(changed)) return;
+  // A third span leaves the planes.
+  const M third = both(two, either(both(in_first, first.split()), both(in_last, last.split())));
+  const unsigned rest = bits(both(changed, either(beyond, third)));
+  const M here = from_bits(bits(changed) & ~rest);
+  if (!none(here)) {
+    w.changed += hn::CountTrue(kD, here);
+    if (!w.opened) w.open(w.self);
+    const GroupCut made{cut, t_near, t_far, origin_at(w, t_far), origin_at(w, t_near)};
+    const M a = both(here, in_first), b = both(here, in_last), splits = both(a, first.split());
+    if (!none(a)) cut_first(w, u, g, a, splits, first, made);
+    if (!none(b)) cut_last(w, u, g, b, last, made);
+    count_spans(*w.planes, g, bits(here), bits(splits), bits(both(a, first.none())), bits(both(b, last.none())));
+  }
   if (!rest) return;
   double near[base::kLanes], far[base::kLanes], tn[base::kLanes], tf[base::kLanes];
   hn::StoreU(cut.near, kD, near), hn::StoreU(cut.far, kD, far), hn::StoreU(t_near, kD, tn), hn::StoreU(t_far, kD, tf);

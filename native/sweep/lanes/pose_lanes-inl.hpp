@@ -25,13 +25,18 @@ HWY_INLINE V series(V q, const double (&k)[5]) {
   return sum;
 }
 
+/// Of angles up to 1/8, where truncating the series costs less than 1e-16.
+HWY_INLINE V cosine(V turn) {
+  return series(hn::Mul(turn, turn), {1, -1.0 / 2, 1.0 / 24, -1.0 / 720, 1.0 / 40320});
+}
+HWY_INLINE V sine(V turn) {
+  return hn::Mul(turn, series(hn::Mul(turn, turn), {1, -1.0 / 6, 1.0 / 120, -1.0 / 5040, 1.0 / 362880}));
+}
+
 /// The poses at `t`, relative to the rays (u, v).
 HWY_INLINE Pose pose_at(const TurningBody& body, V u, V v, V t) {
   const V turn = hn::Mul(set(body.angle), hn::Sub(t, set(body.middle)));
-  // |turn| ≤ 1/8 (steps.cpp), so truncating the series costs less than 1e-16.
-  const V q = hn::Mul(turn, turn);
-  const V c = series(q, {1, -1.0 / 2, 1.0 / 24, -1.0 / 720, 1.0 / 40320});
-  const V s = hn::Mul(turn, series(q, {1, -1.0 / 6, 1.0 / 120, -1.0 / 5040, 1.0 / 362880}));
+  const V c = cosine(turn), s = sine(turn);  // |turn| ≤ 1/8 (steps.cpp)
   const auto axis = [&](int i) { return hn::Add(hn::Mul(c, set(body.axis[i])), hn::Mul(s, set(body.side[i]))); };
   const auto tip = [&](int i) { return hn::Add(set(body.tip[i]), hn::Mul(t, set(body.way[i]))); };
   return {{axis(0), axis(1), axis(2)}, {hn::Sub(u, tip(0)), hn::Sub(v, tip(1)), hn::Neg(tip(2))}};

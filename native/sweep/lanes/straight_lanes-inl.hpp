@@ -263,18 +263,17 @@ void cut_straight_with(const StraightBody& body, RayWindow& w) {
   for_groups(w, [&](double u, Group& g) {
     w.hits += hn::CountTrue(kD, g.active);
     StraightLanes<kWays> lanes(body, u, g.v);
-    lanes.find(g.active, hn::Sub(max(g.near, set(w.low)), tip), hn::Sub(min(g.far, set(w.high)), tip));
+    lanes.find(g.active, hn::Sub(max(g.low, set(w.low)), tip), hn::Sub(min(g.high, set(w.high)), tip));
     const RayIntervals cut{hn::Add(lanes.ends().near, tip), hn::Add(lanes.ends().far, tip)};
     subtract(w, u, g, g.active, cut, lanes.near_time(), lanes.far_time());
   });
 }
 
 inline void cut_straight_lanes(const StraightBody& body, RayWindow& w) {
-  // Only normals need the tool's position at each end.
-  if (w.in_place)
-    cut_straight_with<false>(body, w);
-  else
+  if (w.with_times)
     cut_straight_with<true>(body, w);
+  else
+    cut_straight_with<false>(body, w);
 }
 
 }  // namespace riffler::sweep::HWY_NAMESPACE

@@ -77,8 +77,8 @@ class TurningLanes {
       Ray ray{hn::Add(set(g.ray), index),
               set(u),
               g.v,
-              hn::Sub(max(g.near, set(w_.low)), origin),
-              hn::Sub(min(g.far, set(w_.high)), origin),
+              hn::Sub(max(g.low, set(w_.low)), origin),
+              hn::Sub(min(g.high, set(w_.high)), origin),
               set(1)};
       look(ray, g.active);
     });
@@ -267,19 +267,15 @@ class TurningLanes {
     // std::stable_sort would allocate memory.
     std::sort(earlier_.begin(), earlier_.end(),
               [](const Cut& a, const Cut& b) { return a.ray != b.ray ? a.ray < b.ray : a.number < b.number; });
-    for (const Cut& c : earlier_) {
-      const bool thick = c.cut.far - c.cut.near > w_.thinnest;
-      if (!thick || c.cut.near >= w_.rays[c.ray].far || c.cut.far <= w_.rays[c.ray].near) continue;
-      ++w_.changed, w_.cut(w_.self, c.ray, c.cut);
-    }
+    for (const Cut& c : earlier_)
+      if (c.cut.far - c.cut.near > w_.thinnest) w_.cut(w_.self, c.ray, c.cut);
     for (int a = w_.first_row; a <= w_.last_row; ++a)
       for (int b = w_.first[a]; b < w_.end[a]; b += lanes()) {
         const unsigned taken = (taken_[a] >> b) & ((1U << lanes()) - 1);
         if (!taken) continue;
         const int ray = a * dexel::kTileSide + b;
         const M mask = from_bits(taken);
-        Group g{ray, (b - w_.first[a]) % base::kLanes, hn::LoadU(kD, w_.v + b), zero(), zero(), mask};
-        load_material(w_, g);
+        const Group g = group_at(w_, a, b);
         // The other lanes' entries were never written, and zero times an arbitrary value need not be zero.
         const auto load = [&](const double* from) { return hn::IfThenElseZero(mask, hn::LoadU(kD, from + ray)); };
         subtract(w_, w_.u[a], g, mask, {load(near_), load(far_)}, load(t_near_), load(t_far_));

@@ -45,10 +45,57 @@ TEST(MoveCarver, LeavesAndSaysWhatCarveDoesOfEachMove) {
       }
 }
 
+TEST(MoveCarver, DeferredLeavesTheSameBitsWheneverItPublishes) {
+  for (const char* directions : {"z", "xyz"})
+    for (const double lean : {0.0, 0.6})
+      for (const Tool& tool : {cutters::ball(20, 40), cutters::fillet(12, 2, 40), cutters::flat(10, 30)}) {
+        Volume at_once = Volume::block({kBox, 0.5, directions}), deferred = at_once;
+        MoveCarver now(at_once, tool, {}), later(deferred, tool, {.deferred = true});
+        for (int k = 0; k < 120; ++k) {
+          // Now and then the tool is somewhere else, and comes back.
+          const int at = k % 40 < 30 ? 3 * k : 3 * k + 700;
+          const MoveCarver::Taken a = now.move(on_spiral(at, lean), on_spiral(at + 3, lean), 0.001);
+          const MoveCarver::Taken b = later.move(on_spiral(at, lean), on_spiral(at + 3, lean), 0.001);
+          ASSERT_EQ(a.removed, b.removed);
+          ASSERT_EQ(a.force, b.force);
+          ASSERT_EQ(a.torque, b.torque);
+          ASSERT_EQ(now.cut_something(), later.cut_something());
+          if (k % 17 != 16) continue;
+          later.publish();
+          ASSERT_TRUE(test::same_rays(at_once, deferred)) << directions << lean << tool.kind() << k;
+        }
+        later.publish();
+        EXPECT_TRUE(test::same_rays(at_once, deferred)) << directions << lean << tool.kind();
+        later.publish();
+        EXPECT_TRUE(later.replaced().empty());
+      }
+}
+
+TEST(MoveCarver, ForgetsWhatIsNotPublished) {
+  Volume volume = Volume::block({kBox, 0.5, "xyz"});
+  MoveCarver carver(volume, cutters::ball(20, 40), {.deferred = true});
+  carver.move(on_spiral(0, 0), on_spiral(20, 0), 0.001);
+  carver.publish();
+  const Volume published = volume;
+  carver.move(on_spiral(20, 0), on_spiral(40, 0), 0.001);
+  EXPECT_TRUE(carver.cut_something());
+  carver.forget();
+  carver.publish();
+  EXPECT_TRUE(test::same_rays(volume, published));
+  // A volume that was restored is cut as it is then, though the carver had its tiles open.
+  carver.move(on_spiral(20, 0), on_spiral(40, 0), 0.001);
+  carver.publish();
+  const Volume cut = volume;
+  volume.restore(published);
+  carver.move(on_spiral(20, 0), on_spiral(40, 0), 0.001);
+  carver.publish();
+  EXPECT_TRUE(test::same_rays(volume, cut));
+}
+
 /// Calls of operator new in moves from `warm` on. Between them another thread does what a display does every fifty
 /// milliseconds: it looks at a snapshot, and makes memory ready for tiles that are cut for the first time.
-std::uint64_t allocations(Volume& volume, double lean, int moves, int warm) {
-  MoveCarver carver(volume, cutters::ball(20, 40), {});
+std::uint64_t allocations(Volume& volume, double lean, int moves, int warm, bool deferred) {
+  MoveCarver carver(volume, cutters::ball(20, 40), {.deferred = deferred});
   base::BlockReserve reserve;
   std::uint64_t count = 0;
   for (int k = 0; k < moves; ++k) {
@@ -59,19 +106,21 @@ std::uint64_t allocations(Volume& volume, double lean, int moves, int warm) {
       }).join();
     const std::uint64_t before = test::allocations();
     carver.move(on_spiral(k, lean), on_spiral(k + 1, lean), 0.001);
+    if (deferred && k % 50 == 49) carver.publish();
     if (k >= warm) count += test::allocations() - before;
   }
   return count;
 }
 
 TEST(MoveCarver, AsksForNoMemoryOnceItIsWarm) {
-  for (const char* directions : {"z", "xyz"})
-    for (const double lean : {0.0, 0.6}) {
-      Volume volume = Volume::block({kBox, directions[1] ? 0.4 : 0.1, directions});
-      const double before = volume.volume();
-      EXPECT_EQ(allocations(volume, lean, 400, 100), 0U) << directions << ' ' << lean;
-      EXPECT_LT(volume.volume(), before - 1000);
-    }
+  for (const bool deferred : {false, true})
+    for (const char* directions : {"z", "xyz"})
+      for (const double lean : {0.0, 0.6}) {
+        Volume volume = Volume::block({kBox, directions[1] ? 0.4 : 0.1, directions});
+        const double before = volume.volume();
+        EXPECT_EQ(allocations(volume, lean, 400, 100, deferred), 0U) << directions << ' ' << lean << deferred;
+        EXPECT_LT(volume.volume(), before - 1000);
+      }
 }
 
 TEST(MoveCarver, BadInputChangesNothing) {

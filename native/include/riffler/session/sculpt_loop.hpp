@@ -95,6 +95,7 @@ class SculptLoop final : public PenLoop<SculptTick> {
   Wrench sculpt(const pen::PenSample& sample, double dt, SculptTick& tick) noexcept;
   void place(Scene& scene, const pen::PenSample& sample) noexcept;
   Wrench follow(Scene& scene, const pen::PenSample& sample, double dt, bool cutting, SculptTick& tick) noexcept;
+  void serve(Scene& scene);
   void begin_stroke(double dt) noexcept;
   void end_stroke() noexcept;
   void tell_undo() noexcept;

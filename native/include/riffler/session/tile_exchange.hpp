@@ -29,6 +29,8 @@ class TileExchange {
 
   /// Marks tiles as changed.
   void changed(std::span<const Place> places) noexcept;
+  /// Whether the other thread has requested a hand-over.
+  bool asked() const noexcept { return state_.load(std::memory_order_acquire) == State::Asked; }
   /// After each step: hands over the changes if the other thread has requested them.
   void serve(const Volume& cut, const Mark& mark) noexcept;
 

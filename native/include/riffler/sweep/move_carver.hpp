@@ -12,13 +12,16 @@
 namespace riffler::sweep {
 
 /// Real-time `carve`, one move per call: bit-identical volume and result. Allocates no memory from the system after the
-/// first move, as long as moves keep their size and the tiles that they replace are freed (block_pool.hpp): a step of
+/// first moves, as long as moves keep their size and the tiles that they replace are freed (block_pool.hpp): a step of
 /// the pen has a deadline.
 class MoveCarver {
  public:
   struct Options {
     double tolerance = 0.01;         ///< mm, as in CarveOptions
     double removal_constant = 0.05;  ///< N·s/mm³
+    /// Whether the volume gets what was cut only in `publish`. Tiles stay open until then, so a move takes a fraction
+    /// of the time.
+    bool deferred = false;
   };
   /// Result of one move.
   struct Taken {
@@ -33,7 +36,15 @@ class MoveCarver {
   ~MoveCarver();
 
   /// Carves one move of duration `dt` (s). Throws std::invalid_argument as `carve` does; the volume is then unchanged.
+  /// If memory runs out (std::bad_alloc), deferred material may be cut in part; the same move, repeated, completes it.
   Taken move(const Pose& from, const Pose& to, double dt);
+  /// Whether the last move cut something.
+  bool cut_something() const;
+
+  /// Deferred: gives the volume what moves have cut since the last call. May throw std::bad_alloc.
+  void publish();
+  /// Deferred: forgets what is not published. Call it before the volume is changed by somebody else.
+  void forget() noexcept;
 
   /// Pitch of the volume, mm.
   double pitch() const;
@@ -43,7 +54,7 @@ class MoveCarver {
     std::uint32_t grid, tile;
     friend bool operator==(const Place&, const Place&) = default;
   };
-  /// The tiles that the last move replaced.
+  /// The tiles that the last call of `move` or `publish` replaced.
   std::span<const Place> replaced() const;
 
  private:

@@ -1,0 +1,149 @@
+// Normals of a swept volume at ends of rays, many ends at a time.
+#if defined(RIFFLER_SWEEP_NORMAL_LANES_INL_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef RIFFLER_SWEEP_NORMAL_LANES_INL_HPP
+#undef RIFFLER_SWEEP_NORMAL_LANES_INL_HPP
+#else
+#define RIFFLER_SWEEP_NORMAL_LANES_INL_HPP
+#endif
+
+#include "sweep/lanes/pose_lanes-inl.hpp"
+#include "sweep/lanes/vector_lanes-inl.hpp"
+#include "sweep/swept_normals.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace riffler::sweep::HWY_NAMESPACE {
+
+using namespace base::HWY_NAMESPACE;
+
+/// A normal of a tool's surface: components away from its axis and along it.
+struct Across {
+  V out, up;
+};
+HWY_INLINE Across choose(M m, const Across& yes, const Across& no) {
+  return {pick(m, yes.out, no.out), pick(m, yes.up, no.up)};
+}
+
+/// The two surfaces of a group nearest to the points of its half-plane: their normals and distances.
+struct Nearest {
+  Across normal, second;
+  V off, second_off;
+
+  HWY_INLINE void add(const Across& n, V aside, V past) {
+    const V distance = sqrt(hn::Add(hn::Mul(aside, aside), hn::Mul(past, past)));
+    const M nearer = hn::Lt(distance, off), next = hn::Lt(distance, second_off);
+    second = choose(nearer, normal, choose(next, n, second));
+    second_off = pick(nearer, off, pick(next, distance, second_off));
+    normal = choose(nearer, n, normal), off = pick(nearer, distance, off);
+  }
+};
+
+/// Distance outside a range, 0 inside it.
+HWY_INLINE V beyond(V x, double low, double high) {
+  return max(max(zero(), hn::Sub(set(low), x)), hn::Sub(x, set(high)));
+}
+
+HWY_INLINE Nearest nearest(const SweptSurface& surface, V rho, V z) {
+  const Across up{zero(), set(1)};
+  Nearest out{up, up, set(kInfinity), set(kInfinity)};
+  for (std::size_t k = 0; k < surface.count; ++k) {
+    const PieceShape& s = surface.pieces[k];
+    const V past = beyond(z, s.z0, s.z1);
+    if (s.round) {
+      const V x = max(hn::Sub(rho, set(s.e)), zero()), y = hn::Sub(z, set(s.zc));
+      const V length = sqrt(hn::Add(hn::Mul(x, x), hn::Mul(y, y)));
+      const M good = hn::Gt(length, zero());
+      const V whole = pick(good, length, set(1));
+      out.add({pick(good, hn::Div(x, whole), set(1)), hn::Div(y, whole)}, hn::Sub(length, set(s.r)), past);
+    } else {
+      const V wall = hn::Add(set(s.r0), hn::Mul(set(s.slope), hn::Sub(z, set(s.z0))));
+      out.add({set(s.cosine), set(-s.slope * s.cosine)}, hn::Mul(hn::Sub(rho, wall), set(s.cosine)), past);
+    }
+    if (k == 0 && s.cut0) out.add({zero(), set(-1)}, hn::Sub(z, set(s.z0)), beyond(rho, 0, s.r0));
+    if (k + 1 == surface.count && s.cut1) out.add({zero(), set(1)}, hn::Sub(z, set(s.z1)), beyond(rho, 0, s.r1));
+  }
+  return out;
+}
+
+HWY_INLINE V3 axis_at(const SweptSurface& b, const SweptEnds& ends, std::size_t k, V t) {
+  if (b.wide)
+    return {hn::LoadU(kD, &ends.axis[0][k]), hn::LoadU(kD, &ends.axis[1][k]), hn::LoadU(kD, &ends.axis[2][k])};
+  if (b.angle == 0) return {set(b.axis[0]), set(b.axis[1]), set(b.axis[2])};
+  const V turn = hn::Mul(set(b.angle), hn::Sub(t, set(b.middle)));
+  const V c = cosine(turn), s = sine(turn);
+  const auto at = [&](int i) { return hn::Add(hn::Mul(c, set(b.axis[i])), hn::Mul(s, set(b.side[i]))); };
+  return {at(0), at(1), at(2)};
+}
+
+/// The outward unit normal of the swept volume.
+HWY_INLINE V3 swept_normal(const SweptSurface& b, const SweptEnds& ends, std::size_t k) {
+  const V t = hn::LoadU(kD, &ends.t[k]);
+  const V3 axis = axis_at(b, ends, k, t);
+  const auto from_tip = [&](const auto& p, int i) {
+    return hn::Sub(hn::LoadU(kD, &p[k]), hn::Add(set(b.tip[i]), hn::Mul(t, set(b.way[i]))));
+  };
+  const V3 w{from_tip(ends.u, 0), from_tip(ends.v, 1), from_tip(ends.s, 2)};
+  const V z = dot(w, axis);
+  const V3 aside = less(w, z, axis);
+  const V rho = sqrt(dot(aside, aside));
+  const M off_axis = hn::Gt(rho, zero());
+  // On the axis any direction will do.
+  const double any[3] = {std::abs(b.axis[0]) < 0.5 ? 1.0 : 0.0, std::abs(b.axis[0]) < 0.5 ? 0.0 : 1.0, 0};
+  const V whole = pick(off_axis, rho, set(1));
+  const V3 radial = choose(off_axis, {hn::Div(aside.x, whole), hn::Div(aside.y, whole), hn::Div(aside.z, whole)},
+                           unit(cross(axis, any)));
+  const Nearest at = nearest(b, rho, z);
+  const auto in_space = [&](const Across& n) {
+    const V3 out = scaled(radial, n.out), up = scaled(axis, n.up);
+    return V3{hn::Add(out.x, up.x), hn::Add(out.y, up.y), hn::Add(out.z, up.z)};
+  };
+  const V3 n = in_space(at.normal), back = cross(w, b.spin);
+  const V3 velocity{hn::Sub(set(b.way[0]), back.x), hn::Sub(set(b.way[1]), back.y), hn::Sub(set(b.way[2]), back.z)};
+  const V square = dot(velocity, velocity), speed = sqrt(square), slide = dot(n, velocity);
+  const V rounding = set(1e-9);
+  const M still = hn::Not(hn::Gt(abs(slide), zero()));
+  const M ends_there = either(either(hn::Le(t, rounding), hn::Ge(t, hn::Sub(set(1), rounding))), still);
+  if (none(hn::Not(ends_there))) return n;
+  // During the move the swept surface is where n · v = 0 (3.1); on an edge, for a normal between those of its two
+  // sides. On a smooth side, t is nearly right; remove what remains of n · v.
+  const M close = hn::Le(at.second_off, hn::Add(at.off, hn::Mul(rounding, hn::Add(rho, abs(z)))));
+  const M edge = both(close, hn::Lt(hn::Mul(slide, dot(in_space(at.second), velocity)), zero()));
+  const M smooth = without(hn::Le(abs(slide), hn::Mul(set(0.15), speed)), edge);
+  const V3 level = unit(less(n, hn::Div(slide, pick(still, set(1), square)), velocity));
+  const V3 around{hn::Sub(hn::Mul(axis.y, aside.z), hn::Mul(axis.z, aside.y)),
+                  hn::Sub(hn::Mul(axis.z, aside.x), hn::Mul(axis.x, aside.z)),
+                  hn::Sub(hn::Mul(axis.x, aside.y), hn::Mul(axis.y, aside.x))};
+  const V3 swept{hn::Sub(hn::Mul(around.y, velocity.z), hn::Mul(around.z, velocity.y)),
+                 hn::Sub(hn::Mul(around.z, velocity.x), hn::Mul(around.x, velocity.z)),
+                 hn::Sub(hn::Mul(around.x, velocity.y), hn::Mul(around.y, velocity.x))};
+  const V length = sqrt(dot(swept, swept));
+  const M firm = hn::Gt(length, hn::Mul(hn::Mul(rounding, speed), rho));
+  const V sign = with_sign(set(1), dot(swept, aside));
+  const V3 turned = choose(firm, scaled(swept, hn::Div(sign, pick(firm, length, set(1)))), n);
+  return choose(ends_there, n, choose(smooth, level, turned));
+}
+
+/// The octahedral map (span.hpp) of the normals out of the material, in the world.
+HWY_INLINE void map_normal(const V3& swept, int world, V& u, V& v) {
+  const V local[3] = {swept.x, swept.y, swept.z};
+  const V3 n{local[world % 3], local[(world + 1) % 3], local[(world + 2) % 3]};
+  const V sum = hn::Add(hn::Add(abs(n.x), abs(n.y)), abs(n.z));
+  // The material's new surface faces the tool.
+  u = hn::Div(hn::Neg(n.x), sum), v = hn::Div(hn::Neg(n.y), sum);
+  const M below = hn::Gt(n.z, zero());
+  const V folded_u = hn::Mul(hn::Sub(set(1), abs(v)), pick(hn::Lt(u, zero()), set(-1), set(1)));
+  const V folded_v = hn::Mul(hn::Sub(set(1), abs(u)), pick(hn::Lt(v, zero()), set(-1), set(1)));
+  u = pick(below, folded_u, u), v = pick(below, folded_v, v);
+}
+
+inline void normal_lanes(const SweptSurface& surface, SweptEnds& ends) {
+  for (std::size_t k = 0; k < ends.u.size(); k += static_cast<std::size_t>(lanes())) {
+    V u, v;
+    map_normal(swept_normal(surface, ends, k), surface.world, u, v);
+    hn::StoreU(u, kD, &ends.map[0][k]), hn::StoreU(v, kD, &ends.map[1][k]);
+  }
+}
+
+}  // namespace riffler::sweep::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,64 @@
+#include "sweep/swept_normals.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sweep/kernels.hpp"
+
+namespace riffler::sweep {
+
+namespace {
+
+/// The times between which a step moves.
+Interval times(const Step& step) {
+  if (const auto* part = std::get_if<TurningPart>(&step.body)) return {part->t0, part->t1};
+  const StraightBody& body = std::get<StraightPart>(step.body).body;
+  return {body.t0, body.t0 + body.way * body.per_way};
+}
+
+}  // namespace
+
+SweptSurface::SweptSurface(const Step& step, Axis grid) {
+  const ConvexGroup& group = group_of(step);
+  count = group.count;
+  std::transform(group.pieces.begin(), group.pieces.begin() + group.count, pieces.begin(), shape_of);
+  const Motion& motion = *step.motion;
+  const Interval t = times(step);
+  angle = motion.angle(), middle = (t.near + t.far) / 2;
+  constexpr double kSeries = 0.125;  // rad, where the kernel's series ends below 1e-16 (pose_lanes-inl.hpp)
+  wide = angle * (t.far - t.near) / 2 > kSeries;
+  const Vec3 from = motion.from().tip, to = motion.to().tip, turn = motion.rotation(), now = motion.axis(middle);
+  const Vec3 sideways = angle > 0 ? glm::cross(turn / angle, now) : Vec3(0);
+  for (int i = 0; i < 3; ++i) {
+    tip[i] = from[i], way[i] = to[i] - from[i], spin[i] = turn[i];
+    axis[i] = now[i], side[i] = sideways[i];
+  }
+  world = (2 - static_cast<int>(grid)) % 3;
+}
+
+void SweptEnds::clear() {
+  count = 0;
+  for (auto* array : {&u, &v, &s, &t, &axis[0], &axis[1], &axis[2]}) array->clear();
+}
+
+void SweptEnds::add(double u_at, double v_at, double s_at, double t_at) {
+  u.push_back(u_at), v.push_back(v_at), s.push_back(s_at), t.push_back(t_at);
+  ++count;
+}
+
+void swept_normals(const SweptSurface& surface, const Motion& motion, SweptEnds& ends) {
+  while (ends.u.size() % base::kLanes) {  // copies of the last end
+    for (auto* array : {&ends.u, &ends.v, &ends.s, &ends.t}) array->push_back(array->back());
+  }
+  for (auto& array : ends.map) array.resize(ends.u.size());
+  if (surface.wide) {
+    for (auto& array : ends.axis) array.resize(ends.u.size());
+    for (std::size_t k = 0; k < ends.u.size(); ++k) {
+      const Vec3 axis = motion.axis(ends.t[k]);
+      for (int i = 0; i < 3; ++i) ends.axis[i][k] = axis[i];
+    }
+  }
+  compute_normals(surface, ends);
+}
+
+}  // namespace riffler::sweep
