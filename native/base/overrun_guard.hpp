@@ -22,7 +22,7 @@ class OverrunGuard {
   OverrunGuard(const OverrunGuard&) = delete;
   OverrunGuard& operator=(const OverrunGuard&) = delete;
 
-  /// False if the thread is not guarded: another one of its kind is in the way, or the system refuses the limit.
+  /// False if the thread is not guarded: too many are already, or the system refuses the limit.
   bool guards() const { return slot_.has_value(); }
   /// Lowers the hard limit of the whole process, at which the system ends it; it cannot be raised again. rtkit asks
   /// for that. False if the system refuses it.

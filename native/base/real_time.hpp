@@ -39,7 +39,7 @@ struct RealTimeSettings {
 
 /// Gives the thread that creates it real-time priority (SCHED_RR) if the system grants it, for as long as it exists;
 /// that thread must destroy it. What it got is in the report, which must outlive this object. Without a grant nothing
-/// changes, nor with RIFFLER_REAL_TIME=0. rtkit is asked by a thread of its own, so this one goes on at once.
+/// changes, nor with RIFFLER_REAL_TIME=0. rtkit is asked by a thread of its own, so this one does not wait.
 class RealTimeScope {
  public:
   explicit RealTimeScope(PriorityReport& report, const RealTimeSettings& settings = {});

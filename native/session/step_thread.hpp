@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "base/own_thread.hpp"
+#include "base/real_time.hpp"
 #include "riffler/pen/device.hpp"
 
 namespace riffler::session {
@@ -17,11 +18,15 @@ class StepThread {
   /// On return the step is no longer called.
   void stop(pen::Pen& pen);
   ~StepThread();
+  /// How the system runs the thread of the steps.
+  base::ThreadPriority priority(const pen::Pen& pen) const;
 
  private:
   void poll(pen::Pen& pen, pen::PenStep& step) noexcept;
 
   std::atomic<bool> ending_{false};
+  bool polls_ = false;
+  base::PriorityReport priority_;
   base::OwnThread poller_;
 };
 
