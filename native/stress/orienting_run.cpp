@@ -19,7 +19,7 @@ namespace riffler::stress {
 namespace {
 
 constexpr int kStepsPerFrame = 33;  // steps
-constexpr int kDepth = 16;  // steps between two searches for the true depth
+constexpr int kDepth = 16;          // steps between two searches for the true depth
 constexpr double kRadius = 3, kFrom = 2, kTo = 38, kLength = 40;
 
 /// Extruded along x: floor at z = 0 for y > 0, wall at y = 0 up to z = 60.
