@@ -309,6 +309,12 @@ class ThreadPriority:
         What was granted, or why nothing was.
     remedy : str
         How to have it granted; empty if there is nothing to do.
+
+    Examples
+    --------
+    >>> granted = riffler.pen.real_time()
+    >>> granted.text.startswith("real time" if granted.level else "normal")
+    True
     """
 
     level: int
