@@ -44,8 +44,11 @@ test-blenders:  ## Build wheels for newer Blenders in chroots of Debian, test on
 	@$(ready)
 	@$(python) tools/blenders.py $(SUITES)
 
-soak:  ## Make STROKES strokes and UNDOS steps of undo, call operators at random in EXAMPLES runs, from SEED, in Blender
+soak:  ## Plan by feel for ten minutes; make STROKES strokes and UNDOS steps of undo, EXAMPLES runs of operators, from SEED, in Blender
 	@$(ready) test
+	@$(ready) cpp-tests
+	$(python) tools/preset.py release riffler_tests
+	RIFFLER_LONG=1 build/release/native/tests/riffler_tests --gtest_filter='Orienting.*'
 	$(python) blender_tests/run.py --soak --seed $(or $(SEED),1) $(if $(STROKES),--strokes $(STROKES)) \
 	  $(if $(UNDOS),--undos $(UNDOS)) $(if $(EXAMPLES),--examples $(EXAMPLES))
 

@@ -1,15 +1,20 @@
 #include "bench/haptic_run.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <stdexcept>
 
 #include "base/own_thread.hpp"
+#include "bench/contact_parts.hpp"
 #include "bench/contact_scene.hpp"
 #include "bench/interpolated_wrench.hpp"
 #include "riffler/base/check.hpp"
 #include "riffler/haptics/sculpt_step.hpp"
+#include "riffler/mesh/io/io.hpp"
+#include "riffler/plan/pencil.hpp"
 #include "riffler/tool/cutters.hpp"
 
 namespace riffler::bench {
@@ -81,12 +86,95 @@ HapticScene trace(double pitch, bool fixture) {
   return s;
 }
 
+constexpr double kTraceSpeed = 50, kPressed = 1, kFileSize = 100;  // mm/s, mm, mm
+
+/// The pose of a ball whose centre is there, pressed against `from`.
+Pose pressed(const Tool& ball, const Vec3& centre, const Vec3& from, const Vec3& axis) {
+  return {centre - kPressed * from - 0.5 * ball.diameter() * axis, axis};
+}
+
+/// Round and down in the bore, the axis nearly along it.
+HapticScene bore_scene() {
+  HapticScene s{contact_tools()[0].tool, {}, {}, {}, {}};
+  s.collider = std::make_unique<collide::Collider>(contact_part_mesh("bore"));
+  s.grip = [ball = s.tool](double t) {
+    const double room = kBoreRadius - 0.5 * ball.diameter(), angle = kTraceSpeed * t / room;
+    const Vec3 from(-std::cos(angle), -std::sin(angle), 0);
+    return pressed(ball, Vec3(0, 0, 50 - 8 * t) - room * from, from, glm::normalize(0.1 * from + Vec3(0, 0, 1)));
+  };
+  return s;
+}
+
+/// A corner in the path of the ball's centre, and the direction from the part there.
+struct TraceCorner {
+  Vec3 centre, from;
+};
+
+/// Along straight lines from corner to corner, at one speed.
+std::function<Pose(double)> along(const Tool& ball, std::vector<TraceCorner> corners) {
+  return [ball, corners = std::move(corners)](double t) {
+    double left = kTraceSpeed * t;
+    std::size_t k = 0;
+    for (; k + 2 < corners.size(); ++k) {
+      const double length = glm::length(corners[k + 1].centre - corners[k].centre);
+      if (left <= length) break;
+      left -= length;
+    }
+    const TraceCorner &a = corners[k], &b = corners[k + 1];
+    const double share = std::min(1.0, left / std::max(1e-9, glm::length(b.centre - a.centre)));
+    const Vec3 from = glm::normalize(a.from + share * (b.from - a.from));
+    return pressed(ball, a.centre + share * (b.centre - a.centre), from, glm::normalize(from + Vec3(0.02, 0.01, 0.3)));
+  };
+}
+
+/// Twice around the upper edges of the box of 60 × 40 × 30 mm, which a ball touches at both sides of each edge.
+HapticScene box_scene() {
+  HapticScene s{contact_tools()[0].tool, {}, {}, {}, {}};
+  s.collider = std::make_unique<collide::Collider>(contact_part_mesh("box"));
+  std::vector<TraceCorner> corners;
+  const double r = 0.5 * s.tool.diameter() / std::sqrt(3.0);
+  for (int k = 0; k <= 8; ++k) {
+    const int at = k % 4;
+    const double x = at == 1 || at == 2 ? 1 : -1, y = at >= 2 ? 1 : -1;
+    const Vec3 from = glm::normalize(Vec3(x, y, 1));
+    corners.push_back({Vec3(30 + 30 * x, 20 + 20 * y, 30) + r * Vec3(x, y, 1), from});
+  }
+  s.grip = along(s.tool, std::move(corners));
+  return s;
+}
+
+/// Along the pencil paths of a part that is made 100 mm long, the longest first.
+HapticScene traced_file(const std::string& name) {
+  HapticScene s{contact_tools()[0].tool, {}, {}, {}, {}};
+  Mesh part = mesh::read_mesh(name);
+  Box3 box;
+  for (const Vec3& v : part.vertices) box.add(v);
+  const Vec3 size = box.size();
+  const double scale = kFileSize / std::max({size.x, size.y, size.z});
+  for (Vec3& v : part.vertices) v = scale * (v - box.lower);
+  std::vector<plan::PencilPath> paths = plan::pencil(part, 0.5 * s.tool.diameter()).paths;
+  if (paths.empty()) throw std::invalid_argument("scene: " + name + " has no valley for the ball");
+  std::ranges::sort(paths, std::ranges::greater{}, &plan::PencilPath::length);
+  std::vector<TraceCorner> corners;
+  for (const plan::PencilPath& path : paths)
+    for (std::size_t k = 0; k < path.size(); ++k) {
+      const Vec3 sum = path.normals[k][0] + path.normals[k][1];
+      corners.push_back({path.centres[k], glm::length(sum) > 1e-3 ? glm::normalize(sum) : path.normals[k][0]});
+    }
+  s.collider = std::make_unique<collide::Collider>(part);
+  s.grip = along(s.tool, std::move(corners));
+  return s;
+}
+
 HapticScene scene_of(const HapticOptions& o) {
   if (o.scene == "cut") return cut(o.pitch);
   if (o.scene == "wave") return wave(o.pitch, o.speed);
   if (o.scene == "slot") return slot(o.pitch, o.speed, cutters::flat(6, 40));
   if (o.scene == "groove") return slot(o.pitch, o.speed, cutters::fillet(6, 1, 40));
   if (o.scene == "trace" || o.scene == "fixture") return trace(o.pitch, o.scene == "fixture");
+  if (o.scene == "bore") return bore_scene();
+  if (o.scene == "box") return box_scene();
+  if (std::filesystem::exists(o.scene)) return traced_file(o.scene);
   throw std::invalid_argument("scene: there is no \"" + o.scene + '"');
 }
 

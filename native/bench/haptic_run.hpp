@@ -14,7 +14,9 @@ struct HapticOptions {
   /// into a block and out of it, at up to 40 mm/s. "slot": a Ø6 flat end,
   /// sideways into a block, 1 to 3 mm deep, that leans to and fro. "groove": a Ø6 bull nose there. "trace": COL's ball
   /// over its part of 200 000 triangles, pressed 1 mm below it, 0.05 mm a step. "fixture": the same past a block of
-  /// dexels, which its holder meets.
+  /// dexels, which its holder meets. "bore": a Ø6 ball round and down in a bore of 720 triangles as long as it. "box":
+  /// along the upper edges and over the corners of a box of 12 triangles. Any file of a mesh: made 100 mm long, along
+  /// its pencil paths. In these three the ball is pressed 1 mm into the part, 0.05 mm a step.
   std::string scene = "cut";
   double pitch = 0.1;  ///< mm, of the stock or the fixture
   int steps = 600;     ///< ms of the stroke

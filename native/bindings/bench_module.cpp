@@ -1,5 +1,6 @@
 // The extension module riffler_bench._bench: scenes, yardstick and reference of `riffler bench`. It reads the objects
 // of riffler._core, so both modules must be of one version.
+#include "bench/busy_session.hpp"
 #include "bench/capsule_loop.hpp"
 #include "bench/contact_parts.hpp"
 #include "bench/contact_run.hpp"
@@ -124,6 +125,17 @@ py::dict haptic_run(const std::string& scene, double pitch, int steps, int parts
                   py::arg("touching") = run.touching, py::arg("held") = run.held);
 }
 
+py::dict busy_session(double seconds, int load, bool real_time) {
+  bench::BusyRun run;
+  {
+    const NoGil release;
+    run = bench::busy_session({seconds, load, real_time});
+  }
+  return py::dict(py::arg("step") = take<double>(std::move(run.step)),
+                  py::arg("period") = take<double>(std::move(run.period)), py::arg("level") = run.priority.level,
+                  py::arg("priority") = run.priority.text);
+}
+
 py::dict mesh_stress(std::uint64_t volumes, std::uint64_t seed, const py::object& progress) {
   stress::MeshOptions options;
   options.seed = seed;
@@ -192,6 +204,9 @@ or, where it grazes, in space; ``grazes`` (n,); ``points`` compared and how many
       R"(A stroke of the haptic step (native/bench/haptic_run.hpp): a dict of ``seconds`` of processor time of every step,
 ``force`` (n, 3) N on the hand and ``grip`` (n, 3) mm at every ms, mm³ ``removed``, and the shares of steps ``touching``
 and ``held`` for want of time. ``period`` above 1: a step every so many ms and straight lines between.)");
+  m.def("busy_session", &busy_session, py::arg("seconds") = 5.0, py::arg("load") = 4, py::arg("real_time") = true,
+        R"(A session in real time while ``load`` threads compute (native/bench/busy_session.hpp): a dict of ``step`` and
+``period`` (n,), s of the clock on the wall, the ``level`` of real-time priority, 0 for none, and ``priority`` in words.)");
   m.def("sculpting", &sculpting, py::arg("seconds") = 600.0, py::arg("pitch") = 0.25, py::arg("directions") = "z",
         py::arg("stiffness") = 1.0, py::arg("controlled") = true, py::arg("jitter_us") = 200,
         R"(Minutes of sculpting with the simulated pen on a virtual clock (native/stress/sculpting_run.hpp): a dict of

@@ -391,6 +391,9 @@ Examples
           "running", [](const SharedOrientSession& s) { return s.session->running(); },
           "Whether the session was started and not stopped.")
       .def_property_readonly(
+          "priority", [](const SharedOrientSession& s) { return to_priority(s.session->priority()); },
+          "How the system runs the thread of the steps: ThreadPriority.")
+      .def_property_readonly(
           "pen", [](const SharedOrientSession& s) { return s.pen; }, "The device.")
       .def("__enter__",
            [](const py::object& self) -> Self {

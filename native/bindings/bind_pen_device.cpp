@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 
+#include "base/real_time.hpp"
 #include "bindings/pen_calls.hpp"
 #include "pen/simulated/simulated_device.hpp"
 #include "riffler/pen/arms/kinematics.hpp"
@@ -200,6 +201,9 @@ Examples
       .def_property_readonly(
           "limits", [](const pen::Pen& p) { return to_axes(p.capability()); },
           R"(What it senses and pushes along "x", "y", "z" and the turns "a", "b", "c".)")
+      .def_property_readonly(
+          "priority", [](const pen::Pen& p) { return to_priority(p.priority()); },
+          "How the system runs the device's thread: ThreadPriority.")
       .def(
           "state", [](const pen::Pen& p) { return State{p.newest(), p.age()}; }, R"(The newest sample.
 
@@ -296,6 +300,14 @@ void bind_pen_device(py::module_& m) {
   m.def("_pen_devices", &devices);
   m.def("_pen_families", &families);
   m.def("_pen_unavailable", &unavailable);
+  m.def("_pen_real_time", [] {
+    base::ThreadPriority found;
+    {
+      const NoGil release;  // rtkit may take a second
+      found = base::probe_real_time();
+    }
+    return to_priority(found);
+  });
   const pen::RateSettings rate;
   m.def("_open_pen", &open_device, "what"_a, py::kw_only(), "geometry"_a = "woodenhaptics", "bubble"_a = rate.bubble,
         "exponent"_a = rate.exponent, "speed"_a = rate.speed, "turn_rate"_a = rate.turn_rate,

@@ -292,6 +292,9 @@ True
           "running", [](const SharedSession& s) { return s.session->running(); },
           "Whether the session was started and not stopped.")
       .def_property_readonly(
+          "priority", [](const SharedSession& s) { return to_priority(s.session->priority()); },
+          "How the system runs the thread of the steps: ThreadPriority.")
+      .def_property_readonly(
           "volume", [](const SharedSession& s) { return s.volume; }, "What is shown.")
       .def_property_readonly(
           "pen", [](const SharedSession& s) { return s.pen; }, "The device.")

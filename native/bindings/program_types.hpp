@@ -4,6 +4,7 @@
 #include "bindings/bindings.hpp"
 #include "bindings/results.hpp"
 #include "bindings/typed.hpp"
+#include "riffler/base/thread_priority.hpp"
 
 namespace riffler::bindings {
 
@@ -60,6 +61,7 @@ RIFFLER_TYPED(DeviceList, "list[riffler.pen_results.DeviceInfo]")
 RIFFLER_TYPED(CoordinateDict, "dict[str, riffler.pen_results.CoordinateCapability]")
 RIFFLER_TYPED(CapabilityResult, "riffler.pen_results.PenCapability")
 RIFFLER_TYPED(HealthResult, "riffler.pen_results.PenHealth")
+RIFFLER_TYPED(PriorityResult, "riffler.pen_results.ThreadPriority")
 RIFFLER_TYPED(PushResult, "riffler.pen_results.PushResult")
 RIFFLER_TYPED(ChannelList, "list[riffler.pen_results.PenChannel]")
 RIFFLER_TYPED(LimitsResult, "riffler.pen_results.PenLimits")
@@ -76,6 +78,13 @@ inline py::object plan_result(const char* module, const char* name, const py::di
 /// The same of riffler.pen_results.
 inline py::object pen_result(const char* name, const py::dict& fields) {
   return make_result(name, fields, "riffler.pen_results");
+}
+
+inline PriorityResult to_priority(const base::ThreadPriority& priority) {
+  const char* const by[] = {nullptr, "system", "rtkit"};
+  return pen_result("ThreadPriority",
+                    py::dict(py::arg("level") = priority.level, py::arg("by") = by[static_cast<int>(priority.by)],
+                             py::arg("text") = priority.text, py::arg("remedy") = priority.remedy));
 }
 
 }  // namespace riffler::bindings

@@ -35,6 +35,10 @@ PushAnswer Pen::push(const Wrench& wrench) noexcept {
   return {{}, wrench, asks ? NotPushed::NoMotors : NotPushed::None};
 }
 
+base::ThreadPriority Pen::priority() const {
+  return {0, base::ThreadPriority::By::Nobody, "normal: the device has no thread of its own"};
+}
+
 LinkStatus Pen::status() const noexcept {
   LinkStatus out;
   out.state = LinkState::Connected;

@@ -86,6 +86,7 @@ class DrivenPen : public Pen {
   haptics::Cause cause() const noexcept override { return pushes_ ? held_->cause() : haptics::Cause::None; }
   LinkStatus status() const noexcept override { return driver_.status(); }
   std::string problem() const override { return driver_.problem(); }
+  base::ThreadPriority priority() const override { return driver_.priority(); }
   bool stop() override { return driver_.stop(); }
 
  private:

@@ -10,13 +10,15 @@
 #include <thread>
 #include <utility>
 
+#include "base/real_time.hpp"
+
 namespace riffler::pen {
 namespace {
 
 using Seconds = std::chrono::duration<double>;
 
 /// Blocks signals: a signal delivered to this thread would end its poll() with an error, which hidapi takes as a
-/// disconnect.
+/// disconnect. base::OverrunGuard lets its own through, which arrives only while the thread computes.
 class WithoutSignals {
  public:
   WithoutSignals() {
@@ -46,6 +48,7 @@ struct Driver::Shared final : Connector, Clock {
         step(std::move(s)),
         open(std::move(o)),
         clock(std::move(c)),
+        real_time(settings.real_time),
         loop(*model, *step, *this, *this, std::move(transport), settings) {}
 
   // Connector; called by the driver's thread while it has no device.
@@ -72,8 +75,12 @@ struct Driver::Shared final : Connector, Clock {
   }
 
   void drive() {
-    while (!stopping.load()) loop.tick();
-    loop.stop();
+    {
+      std::optional<base::RealTimeScope> scope;
+      if (real_time) scope.emplace(priority);
+      while (!stopping.load()) loop.tick();
+      loop.stop();
+    }
     ended();
   }
 
@@ -114,6 +121,8 @@ struct Driver::Shared final : Connector, Clock {
   const std::shared_ptr<PenStep> step;
   const Open open;
   const std::shared_ptr<Clock> clock;
+  const bool real_time;
+  base::PriorityReport priority;
   std::atomic<bool> stopping{false};
 
   mutable std::mutex mutex;
@@ -161,6 +170,10 @@ std::string Driver::problem() const {
   if (!home_.here()) return "the device is driven by the process that this one was forked from";
   const std::lock_guard lock(shared_->mutex);
   return shared_->text;
+}
+
+base::ThreadPriority Driver::priority() const {
+  return shared_->priority.get();
 }
 
 }  // namespace riffler::pen

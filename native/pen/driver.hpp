@@ -7,6 +7,7 @@
 
 #include "base/own_thread.hpp"
 #include "pen/driver_loop.hpp"
+#include "riffler/base/thread_priority.hpp"
 
 namespace riffler::pen {
 
@@ -35,6 +36,8 @@ class Driver {
   LinkStatus status() const noexcept;
   /// Why the last attempt to connect failed, or empty. Any thread but the driver's.
   std::string problem() const;
+  /// How the system runs the driver's thread. Any other thread.
+  base::ThreadPriority priority() const;
 
  private:
   struct Shared;

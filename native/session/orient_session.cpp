@@ -158,6 +158,10 @@ bool OrientSession::running() const noexcept {
   return core_->state_ == Core::State::Running;
 }
 
+base::ThreadPriority OrientSession::priority() const {
+  return core_->ticks_.priority(*core_->pen_);
+}
+
 OrientFrame OrientSession::stop() {
   if (running()) {
     core_->home_.check("the session");

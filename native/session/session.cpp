@@ -247,6 +247,10 @@ bool Session::running() const noexcept {
   return core_->state_ == Core::State::Running;
 }
 
+base::ThreadPriority Session::priority() const {
+  return core_->ticks_.priority(*core_->pen_);
+}
+
 SessionFrame Session::stop(Volume& shown) {
   return core_->stop(shown);
 }

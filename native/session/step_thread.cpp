@@ -20,7 +20,8 @@ constexpr double kLater = 0.03;  // s that a device may be late with the ticks i
 
 void StepThread::start(pen::Pen& pen, std::shared_ptr<pen::PenStep> step) {
   ending_ = false;
-  if (!pen.set_step(step)) poller_ = base::OwnThread([this, &pen, step] { poll(pen, *step); });
+  polls_ = !pen.set_step(step);
+  if (polls_) poller_ = base::OwnThread([this, &pen, step] { poll(pen, *step); });
 }
 
 void StepThread::wait(double fall, const std::function<bool()>& quiet) {
@@ -38,8 +39,14 @@ StepThread::~StepThread() {
   ending_ = true;
 }
 
+base::ThreadPriority StepThread::priority(const pen::Pen& pen) const {
+  return polls_ ? priority_.get() : pen.priority();
+}
+
+/// A step of a device without force may take as long as it likes: the guard then makes this thread a normal one.
 void StepThread::poll(pen::Pen& pen, pen::PenStep& step) noexcept {
   const auto tick = std::chrono::duration_cast<std::chrono::steady_clock::duration>(Seconds(kTick));
+  const base::RealTimeScope scope(priority_);
   auto next = std::chrono::steady_clock::now();
   for (double last = pen::steady_seconds(); !ending_.load();) {
     const double now = pen::steady_seconds();

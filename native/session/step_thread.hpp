@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "base/own_thread.hpp"
+#include "base/real_time.hpp"
 #include "riffler/pen/device.hpp"
 
 namespace riffler::session {
@@ -24,6 +25,8 @@ class StepThread {
     stop(pen);
   }
   ~StepThread();
+  /// How the system runs the thread of the steps.
+  base::ThreadPriority priority(const pen::Pen& pen) const;
 
  private:
   void stop(pen::Pen& pen);
@@ -31,6 +34,8 @@ class StepThread {
   void poll(pen::Pen& pen, pen::PenStep& step) noexcept;
 
   std::atomic<bool> ending_{false};
+  bool polls_ = false;
+  base::PriorityReport priority_;
   base::OwnThread poller_;
 };
 

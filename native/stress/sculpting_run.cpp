@@ -2,16 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <memory>
 
-#include "pen/driver_loop.hpp"
 #include "pen/models/riffler_model.hpp"
 #include "pen/simulated/simulated_transport.hpp"
 #include "riffler/marching/mesher.hpp"
 #include "riffler/session/journal_rules.hpp"
 #include "riffler/tool/cutters.hpp"
 #include "stress/checks.hpp"
+#include "stress/pen_run.hpp"
 
 namespace riffler::stress {
 
@@ -19,12 +18,6 @@ namespace {
 
 const Box3 kBox{{-40, -40, -30}, {40, 40, 0}};
 constexpr int kFrame = 33;  // steps
-
-double resident_mb() {
-  long pages = 0, resident = 0;
-  std::ifstream("/proc/self/statm") >> pages >> resident;
-  return static_cast<double>(resident) * 4096e-6;
-}
 
 /// Over ±15 mm of the pen, twice as much of the tool, by frequencies that never meet again; deeper and deeper.
 pen::HandPath wandering(const Pose& home, double seconds) {
@@ -39,49 +32,6 @@ pen::HandPath wandering(const Pose& home, double seconds) {
     return wish;
   };
 }
-
-/// The loop, and what each of its steps asked the system for.
-class Counted final : public pen::PenStep {
- public:
-  Counted(session::SculptLoop& loop, const SculptingOptions& options, SculptingRun& run)
-      : loop_(loop), options_(options), run_(run) {}
-  haptics::SafeWrench step(const pen::PenSample& sample, double now, double dt) noexcept override {
-    const long calls = options_.allocations();
-    const std::uint64_t blocks = base::blocks_from_system();
-    const haptics::SafeWrench out = loop_.step(sample, now, dt);
-    if (now > options_.warm) {
-      run_.allocations += options_.allocations() - calls;
-      run_.from_system += base::blocks_from_system() - blocks;
-    }
-    return out;
-  }
-
- private:
-  session::SculptLoop& loop_;
-  const SculptingOptions& options_;
-  SculptingRun& run_;
-};
-
-/// What the hand gains in one contact, from motors without current to motors without current: between two nothing is
-/// stored, so no spring gives back in one what it took in another.
-struct Contacts {
-  double gained = 0, before = 0;
-  std::int64_t pushed_us = 0;
-
-  void add(const pen::SimulatedPen& pen) {
-    const pen::PenEnergy energy = pen.arms().energy();
-    const double net = energy.motors - energy.lost;
-    if (pen.pushes()) pushed_us = pen.time_us();
-    if (pen.time_us() - pushed_us > 10'000) before = net;
-    gained = std::max(gained, net - before);
-  }
-};
-
-/// The simulated pen is never gone.
-struct NoConnector final : pen::Connector {
-  void begin() noexcept override {}
-  Answer poll(std::unique_ptr<pen::Transport>&, pen::OpenProblem&) noexcept override { return Answer::Pending; }
-};
 
 /// Every move once more, by itself, as a journal's replay would.
 class Again final : public session::StrokeSink {
@@ -151,10 +101,11 @@ SculptingRun sculpting_run(const SculptingOptions& options) {
   if (!options.controlled) settings.passivity.reserve = settings.passivity.storage = 1e9;
   Again again(stock, ball, settings.carving);
   session::SculptLoop loop(settings, stock, ball, nullptr, model.capability(), Pose{{0, 0, 3}, {0, 0, 1}}, &again);
-  Counted counted(loop, options, run);
-  NoConnector connector;
+  StepCosts costs;
+  CountedStep counted(loop, options.allocations, options.warm, costs);
+  NeverGone connector;
   pen::DriverLoop driver(model, counted, connector, *clock, std::move(transport));
-  Contacts contacts;
+  ContactGain contacts;
   pen->on_turn = [&] { contacts.add(*pen); };
 
   Volume shown = stock;
@@ -184,6 +135,7 @@ SculptingRun sculpting_run(const SculptingOptions& options) {
   take_ticks(loop, options, run);
   run.resident.push_back(resident_mb());
   run.gained = contacts.gained, run.given = -pen->arms().energy().motors;
+  run.allocations = costs.allocations, run.from_system = costs.from_system;
   run.trips = loop.trips().count();
   run.replayed = check_same_bytes(shown, again.volume).empty();
   mesher.update(shown);

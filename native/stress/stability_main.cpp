@@ -5,14 +5,14 @@
 #include <cstdio>
 #include <exception>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "pen/arms/joint_losses.hpp"
 #include "pen/arms/pens.hpp"
-#include "riffler/pen/passivity_settings.hpp"
 #include "stress/arguments.hpp"
+#include "stress/identified_damping.hpp"
 #include "stress/passive_bound.hpp"
 #include "stress/stability.hpp"
 
@@ -153,45 +153,14 @@ void shipped_pen(double damping, double friction) {
   }
 }
 
-/// Eigenvalue of a symmetric, positive matrix, the smallest: by iteration with its inverse.
-double least_eigenvalue(const Mat3& matrix) {
-  const Mat3 inverse = glm::inverse(matrix);
-  Vec3 v(0.5, 0.6, 0.7);
-  for (int k = 0; k < 200; ++k) v = glm::normalize(inverse * v);
-  return glm::dot(v, matrix * v);
-}
-
 /// An identified pen: the damping of its grip by posture, in the direction that is damped least.
-void identified_pen(const std::string& name) {
-  pen::PenGeometry geometry = pen::load_pen(name);
-  if (!geometry.uncertainty) throw std::invalid_argument(name + " was not identified: run riffler pen identify");
-  const pen::PenKinematics kinematics(geometry);
-  const auto damping = [&](const Pose& pose) {
-    return least_eigenvalue(pivot_damping(kinematics, kinematics.posture(kinematics.inverse(pose).angles)));
-  };
-  const Pose home = kinematics.posture(kinematics.home_angles()).pose;
-  std::vector<double> found;
-  Random random(1);
-  const Box3& box = geometry.workspace;
-  while (found.size() < 2000) {
-    const Vec3 share(random.uniform(), random.uniform(), random.uniform());
-    Pose pose{geometry.turn * (box.lower + share * (box.upper - box.lower)) + geometry.origin,
-              glm::normalize(home.axis + 0.5 * random.uniform() * random.direction())};
-    if (kinematics.inverse(pose).reached()) found.push_back(damping(pose));
-  }
-  std::sort(found.begin(), found.end());
-  for (std::size_t k = 0; k < pen::kPenChannels; ++k) {
-    const pen::CertainFriction certain = certain_friction(geometry, k);
-    geometry.channels[k].coulomb = certain.coulomb, geometry.channels[k].viscous = certain.viscous;
-  }
-  geometry.uncertainty.reset();
-  const haptics::PassivitySettings worst = passivity_settings(geometry);
-  const double step = worst.resolution.linear, friction = std::sqrt(3) * worst.device_friction.linear;
+void identified_pen(const IdentifiedDamping& pen) {
   Rows rows("pen");
-  const auto row = [&](const char* place, double b) { pen_row(rows, place, step, b, friction); };
-  row("home posture", damping(home));
-  row("median of 2000 postures", found[found.size() / 2]);
-  row("worst of 2000 postures", found.front());
+  const auto row = [&](const char* place, double b) { pen_row(rows, place, pen.step, b, pen.friction); };
+  const std::string of = " of " + std::to_string(pen.postures) + " postures";
+  row("home posture", pen.home);
+  row(("median" + of).c_str(), pen.median);
+  row(("worst" + of).c_str(), pen.worst);
 }
 
 struct Arguments {
@@ -231,12 +200,14 @@ int main(int argc, char** argv) {
       return 0;
     }
     const double damping = arguments.damping, friction = arguments.friction;
+    std::optional<IdentifiedDamping> identified;  // before anything is printed
+    if (!arguments.geometry.empty()) identified = identified_damping(pen::load_pen(arguments.geometry));
     std::printf("{");
-    if (!arguments.geometry.empty())
-      identified_pen(arguments.geometry);
+    if (identified)
+      identified_pen(*identified);
     else
       shipped_pen(damping, friction);
-    if (!arguments.pen_only && arguments.geometry.empty()) {
+    if (!arguments.pen_only && !identified) {
       sampling(), wall_damping(), quantisation(), five_coordinates(), touched(damping, friction);
       haptics::PassivitySettings settings;
       settings.jitter = 0;

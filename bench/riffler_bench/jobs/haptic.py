@@ -1,6 +1,6 @@
 """Haptic step: a Ø20 ball, 0.5 mm a step, one call a step with force and torque, as a pen makes it; the whole step with
-coupling, cut, contact and fixtures; its force against that of very small steps and of interpolation; and minutes of a
-session."""
+coupling, cut, contact and fixtures; its force against that of very small steps and of interpolation; minutes of a
+session; and a session on a busy machine, with and without real-time priority."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import time
 import numpy as np
 from riffler import Tool, Volume
 
-from .. import rendering, report, scenes, sculpting
+from .. import busy, rendering, report, scenes, sculpting
 from ..measure import Progress, Settings, quantile, steady, watched
 from ..report import Column, Report
 
@@ -59,6 +59,7 @@ def run(settings: Settings, progress: Progress = None) -> Report:
     rendering.times(out, settings)
     rendering.errors(out, settings)
     sculpting.sessions(out, settings)
+    busy.sessions(out, settings)
     return out
 
 

@@ -104,9 +104,11 @@ std::unique_ptr<SimulatedDevice> SimulatedDevice::open(const SimulatedPenSetting
     model->check(*next);
     return next;
   };
+  DriverSettings driving = driver;
+  driving.real_time = driving.real_time && real_time;  // a clock that does not wait would take the machine
   return std::unique_ptr<SimulatedDevice>(new SimulatedDevice(settings.geometry, std::move(hand), std::move(losses),
                                                               std::move(load), std::move(model), std::move(transport),
-                                                              std::move(again), driver, clock));
+                                                              std::move(again), driving, clock));
 }
 
 SimulatedDevice::SimulatedDevice(const PenGeometry& truth, std::shared_ptr<Hand> hand, std::shared_ptr<Losses> losses,

@@ -3707,6 +3707,11 @@ class PenDevice:
         """
         What it senses and pushes along "x", "y", "z" and the turns "a", "b", "c".
         """
+    @property
+    def priority(self) -> riffler.pen_results.ThreadPriority:
+        """
+        How the system runs the device's thread: ThreadPriority.
+        """
 class SimulatedPen(PenDevice):
     """
     A pen without hardware: arms, motors, firmware and cable are simulated, and a hand moves it.
@@ -4938,6 +4943,11 @@ class Session:
         The device.
         """
     @property
+    def priority(self) -> riffler.pen_results.ThreadPriority:
+        """
+        How the system runs the thread of the steps: ThreadPriority.
+        """
+    @property
     def running(self) -> bool:
         """
         Whether the session was started and not stopped.
@@ -5561,6 +5571,11 @@ class OrientSession:
         The device.
         """
     @property
+    def priority(self) -> riffler.pen_results.ThreadPriority:
+        """
+        How the system runs the thread of the steps: ThreadPriority.
+        """
+    @property
     def running(self) -> bool:
         """
         Whether the session was started and not stopped.
@@ -5570,6 +5585,8 @@ def _open_pen(what: str, *, geometry: str = 'woodenhaptics', bubble: typing.Supp
 def _pen_devices() -> list[riffler.pen_results.DeviceInfo]:
     ...
 def _pen_families() -> dict[str, str]:
+    ...
+def _pen_real_time() -> riffler.pen_results.ThreadPriority:
     ...
 def _pen_text(name: str) -> str:
     ...

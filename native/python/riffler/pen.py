@@ -34,6 +34,7 @@ from ._core import (
     _open_pen,
     _pen_devices,
     _pen_families,
+    _pen_real_time,
     _pen_unavailable,
     _pens,
     _play_pen,
@@ -48,6 +49,7 @@ from .pen_results import (
     PenHealth,
     PenLimits,
     PushResult,
+    ThreadPriority,
 )
 
 __all__ = [
@@ -65,10 +67,12 @@ __all__ = [
     "Pointer",
     "PushResult",
     "SimulatedPen",
+    "ThreadPriority",
     "devices",
     "kinds",
     "names",
     "open",
+    "real_time",
     "unavailable",
 ]
 
@@ -138,6 +142,24 @@ def unavailable() -> dict[str, str]:
     True
     """
     return _pen_unavailable()
+
+
+def real_time() -> ThreadPriority:
+    """What the system would grant the thread of a device that is opened now.
+
+    Devices and sessions ask for it by themselves: see ``PenDevice.priority`` and ``Session.priority``. Takes up to a
+    second where a service does not answer.
+
+    Returns
+    -------
+    ThreadPriority
+
+    Examples
+    --------
+    >>> riffler.pen.real_time().text.startswith(("real time", "normal"))
+    True
+    """
+    return _pen_real_time()
 
 
 @overload

@@ -20,6 +20,7 @@ __all__ = [
     "PenHealth",
     "PenLimits",
     "PushResult",
+    "ThreadPriority",
 ]
 
 
@@ -292,3 +293,31 @@ class GripDiagnosis(DictResult):
 
     def _as_dict(self) -> dict[str, object]:
         return {key: value for key, value in super()._as_dict().items() if value is not None}
+
+
+@dataclass(frozen=True)
+class ThreadPriority:
+    """What a thread was granted that asked the system for real-time priority.
+
+    Attributes
+    ----------
+    level : int
+        1 to 99: it runs before all normal threads; 0: a normal thread.
+    by : str or None
+        Who granted it: "system" or "rtkit".
+    text : str
+        What was granted, or why nothing was.
+    remedy : str
+        How to have it granted; empty if there is nothing to do.
+
+    Examples
+    --------
+    >>> granted = riffler.pen.real_time()
+    >>> granted.text.startswith("real time" if granted.level else "normal")
+    True
+    """
+
+    level: int
+    by: Literal["system", "rtkit"] | None
+    text: str
+    remedy: str

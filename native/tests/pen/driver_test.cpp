@@ -8,7 +8,9 @@
 #include <functional>
 #include <thread>
 
+#include "base/real_time.hpp"
 #include "pen/driven_pen.hpp"
+#include "pen/simulated/simulated_device.hpp"
 #include "riffler/pen/published.hpp"
 
 namespace riffler::pen::driver_test {
@@ -120,6 +122,22 @@ TEST(Driver, EveryCopyOfTheSampleIsWhole) {
     });
   for (std::thread& reader : readers) reader.join();
   EXPECT_EQ(torn, 0);
+}
+
+TEST(Driver, AsksForRealTimeAndSaysWhatItGot) {
+  const auto plug = std::make_shared<Plug>();
+  const auto pen = pen_on(plug);
+  ASSERT_TRUE(eventually([&] { return pen->newest().sequence > 0; }));
+  const base::ThreadPriority could = base::probe_real_time();
+  // rtkit may take its time.
+  EXPECT_TRUE(eventually([&] { return pen->priority().level == could.level; })) << pen->priority().text;
+  EXPECT_EQ(pen->priority().by, could.by);
+}
+
+TEST(Driver, StaysNormalWhereItsClockDoesNotWait) {
+  const auto pen = SimulatedDevice::open({}, {}, {}, false);
+  EXPECT_TRUE(eventually([&] { return pen->newest().sequence > 100; }));
+  EXPECT_EQ(pen->priority().text, "normal: real time was not asked for");
 }
 
 TEST(Driver, PushHoldsForAMomentOnly) {

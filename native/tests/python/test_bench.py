@@ -446,6 +446,20 @@ def test_haptic_work_does_not_follow_the_grid(quick):
     assert len(small["times_s"]) == small["count"]
 
 
+def test_haptic_scenes_touch_parts_of_long_triangles(quick):
+    touching = {row["scene"]: row["touching"] for row in rows(quick, "haptic", "rendered")}
+    assert touching["bore"] == touching["box"] == 1
+
+
+def test_a_busy_machine_is_measured_with_and_without_real_time(quick):
+    normal, asked = rows(quick, "haptic", "busy")
+    assert normal["level"] == 0 and asked["level"] == riffler.pen.real_time().level
+    for row in (normal, asked):
+        assert row["count"] > 10
+        assert row["p50_s"] <= row["p99_s"] <= row["p999_s"] <= row["max_s"]
+        assert row["late_p50_s"] <= row["late_p99_s"] <= row["late_p999_s"] <= row["late_max_s"]
+
+
 def test_plots_are_drawn_from_the_figures(quick):
     pytest.importorskip("matplotlib")
     done = bench("--redraw", "--out", quick, "--json", cwd=quick)

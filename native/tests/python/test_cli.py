@@ -210,6 +210,11 @@ def test_doctor_tells_of_the_machine(folder):
     assert data["python"] == ".".join(map(str, sys.version_info[:3]))
     assert data["threads"] >= 1 and data["memory"]["available"] > 0
     assert isinstance(data["devices"], list)
+    granted = data["real_time"]
+    assert granted["text"].startswith("real time" if granted["level"] else "normal")
+    assert granted["level"] or "limits.d" in granted["remedy"]
+    off = json.loads(riffle("doctor", "--json", cwd=folder, RIFFLER_REAL_TIME="0").stdout)["real_time"]
+    assert off == {"level": 0, "by": None, "text": "normal: RIFFLER_REAL_TIME is 0", "remedy": ""}
     done = riffle("doctor", cwd=folder, RIFFLER_THREADS="3")
     assert done.returncode == 0 and done.stderr == ""
     assert any(line.split() == ["threads", "3"] for line in done.stdout.splitlines())

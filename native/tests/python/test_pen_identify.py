@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import riffler
 from commands import result, riffle
+from riffler.command import pen_identify
 from riffler.command.pen_fit import (
     NAMES,
     WIDTH,
@@ -20,10 +21,22 @@ from riffler.command.pen_fit import (
     low_pass,
     square_to,
 )
-from riffler.command.pen_identify import BARS, begin, covered, identified, real, rewritten, truth_of
+from riffler.command.pen_identify import (
+    BARS,
+    Motion,
+    begin,
+    covered,
+    identified,
+    real,
+    rewritten,
+    swept,
+    truth_of,
+)
 from riffler.command.pen_sweeps import (
+    SLOW,
     Keyboard,
     MotionStoppedError,
+    MotionTrippedError,
     Record,
     base_axes,
     cut,
@@ -153,6 +166,34 @@ def test_enter_stops_the_motion(geometry):
         while np.linalg.norm(device.health().force) > 0 and time.monotonic() < end:
             time.sleep(0.01)
         assert np.linalg.norm(device.health().force) == 0
+
+
+def test_a_motion_that_stops_itself_is_made_on_another_path(geometry, monkeypatch):
+    motion = Motion(geometry, 3, SLOW, (1, 2, 3))
+    made = []
+
+    def sticks_twice(device, path, *rest):
+        made.append(path)
+        if len(made) < 3:
+            raise MotionTrippedError("The grip moved faster than is safe.")
+        return ["sweeps"]
+
+    monkeypatch.setattr(pen_identify, "swept_once", sticks_twice)
+    assert swept(None, motion, "slow", Keyboard(False), None, None) == ["sweeps"]
+    assert len({path.times[-1] for path in made}) == 3, "three paths"
+    made.clear()
+    motion.seeds = (1, 2)
+    with pytest.raises(MotionStoppedError, match="on 2 paths: does a joint stick"):
+        swept(None, motion, "slow", Keyboard(False), None, None)
+
+
+def test_enter_is_no_reason_for_another_path(geometry, monkeypatch):
+    def stopped(*_):
+        raise MotionStoppedError("stopped by Enter")
+
+    monkeypatch.setattr(pen_identify, "swept_once", stopped)
+    with pytest.raises(MotionStoppedError, match=r"^stopped by Enter$"):
+        swept(None, Motion(geometry, 3, SLOW, (1, 2)), "slow", Keyboard(False), None, None)
 
 
 def test_sweeps_with_lost_reports_are_left_out(geometry):

@@ -62,6 +62,19 @@ def test_the_simulated_pen_carves_and_the_replay_is_the_same_to_the_bit(tmp_path
     assert 0 < told <= stock().volume - volume.volume + 1e-6
 
 
+def test_a_session_says_how_the_system_runs_its_thread():
+    could = riffler.pen.real_time()
+    # In the device's thread, and in one of the session's own.
+    for pen in (riffler.pen.open("simulated"), riffler.pen.Pointer("tablet")):
+        session = riffler.Session(stock(), BALL, pen, at=(0, 0, 5, 0, 0, 1))
+        assert session.priority.level in (0, could.level)
+        with session:
+            frames(session, 20, lambda _, session=session: session.priority.level == could.level)
+            assert (session.priority.level, session.priority.by) == (could.level, could.by)
+            assert session.priority.text.startswith("real time" if could.level else "normal")
+        pen.stop()
+
+
 def test_what_a_frame_tells_fits_together(tmp_path):
     _, _, seen = carve_with_the_simulated_pen(tmp_path)
     times = np.concatenate([frame.times for frame in seen])

@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "riffler/base/thread_priority.hpp"
 #include "riffler/haptics/states.hpp"
 #include "riffler/pen/capability.hpp"
 #include "riffler/pen/link_status.hpp"
@@ -85,6 +86,8 @@ class Pen {
   virtual LinkStatus status() const noexcept;
   /// Why the device is not available, or empty.
   virtual std::string problem() const { return {}; }
+  /// How the system runs the device's own thread, in which forces are computed. Never call it from that thread.
+  virtual base::ThreadPriority priority() const;
   /// Stops pushing and closes the device. False if the device did not accept the stop in time.
   virtual bool stop() { return true; }
 };

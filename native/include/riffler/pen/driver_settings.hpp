@@ -11,6 +11,7 @@ struct DriverSettings {
   double longest_retry = 2;    ///< … up to this
   double poll = 0.01;          ///< s between two polls for the device
   unsigned most_reads = 256;   ///< per tick: a flooding device cannot delay the step
+  bool real_time = true;       ///< asks for real-time priority; false for a thread that does not wait for a clock
 
   /// Throws std::invalid_argument naming the field.
   void validate() const;

@@ -56,6 +56,8 @@ class OrientSession {
   /// Starts, in the device's own thread, or in one that polls it a thousand times a second. Call it once.
   void start();
   bool running() const noexcept;
+  /// How the system runs the thread of the steps.
+  base::ThreadPriority priority() const;
   /// Ends the force and returns what no frame has returned. Throws std::runtime_error in a process forked while the
   /// session ran, as frame() does.
   OrientFrame stop();

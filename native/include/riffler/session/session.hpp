@@ -58,6 +58,8 @@ class Session {
   void start();
   /// Whether the session was started and not stopped.
   bool running() const noexcept;
+  /// How the system runs the thread of the steps.
+  base::ThreadPriority priority() const;
   /// Stops the device and brings `shown` up to date. If it is not running, only returns
   /// what earlier calls left. If `shown` was changed by something
   /// else, throws as frame(), but the session has stopped all the same, and the next call returns its last ticks.

@@ -10,6 +10,7 @@ import importlib.metadata
 import importlib.util
 import os
 import platform
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -50,6 +51,7 @@ def rows(data: dict[str, Any], found: list[pen.DeviceInfo]) -> list[tuple[str, s
         ("threads", number(data["threads"])),
         ("memory", f"{gigabytes(memory['available'])} free of {gigabytes(memory['total'])}"),
         ("Blender", data["bpy"] or "no bpy in this Python"),
+        ("real time", " — ".join(filter(None, (data["real_time"]["text"], data["real_time"]["remedy"])))),
         *(devices or [("devices", "no HID device (/dev/hidraw*)")]),
         *data["unavailable"].items(),
     ]
@@ -65,6 +67,7 @@ def report(found: list[pen.DeviceInfo]) -> dict[str, Any]:
         "cpu": cpu(),
         "threads": _core.threads(),
         "memory": memory(),
+        "real_time": asdict(pen.real_time()),
         "bpy": bpy_version(),
         "devices": [as_json(device) for device in found],
         "unavailable": pen.unavailable(),

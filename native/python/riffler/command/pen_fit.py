@@ -33,9 +33,13 @@ EVERY = 10  # samples between two rows of the fit
 # Periods by which the mean time of a stated current is before the counts of its report, with its standard uncertainty:
 # the pen takes a host's command in its first turn after a frame (docs/device.md), and an amplifier takes some time.
 LEAD, LEAD_ERROR = 0.25, 0.1
+QUIETEST = 0.5  # times the median residual of its kind: no sweep counts for more than that makes it
 STUCK = 2.0  # times the median residual of its kind: beyond it a joint stuck in a sweep, which is left out
 MODEL_ERROR = 0.001  # relative standard uncertainty: noise of counts and currents in the unknowns' own columns
-SLOWEST = 0.06  # rad/s of every joint: below it a joint may stick, and the direction of its friction is not certain
+# rad/s of every joint. Below it a joint sticks and slips while its filtered speed looks steady: friction is then less
+# than the dry one, which looks like viscous friction, in all sweeps alike. With 0.06, that of L2 was up to 15 % off.
+# What is left of it there is little compared with the weight, which would lose half of its rows.
+SLOWEST, SLOWEST_LOADED = 0.1, 0.06
 FEWEST = 20  # sweeps from which the scatter of the result can be judged
 NORMAL = 1.96  # standard uncertainties to each side of a 95 % interval
 NAMES = ("torque_constant", "coulomb", "viscous", "gravity")
@@ -133,16 +137,19 @@ def _fitted(
     scale = 1 / np.sqrt(sum((a**2).sum(axis=0) for _, a, _ in parts) + 1e-300)
     squares = np.array([(a * scale).T @ (a * scale) for _, a, _ in parts])
     sides = np.array([(a * scale).T @ b for _, a, b in parts])
-    kinds = np.array([kind for kind, *_ in parts])
+    kinds, loaded_kinds = np.array([kind for kind, *_ in parts]), {s.kind for s in loaded}
     shares, left = np.ones(len(parts)), [b for *_, b in parts]
     normal, side, unknowns = solved(shares, squares, sides)
-    for _ in range(4):  # the noise of each kind of sweep, and with it its weight in the sum
+    for _ in range(6):  # the noise, of each free sweep or of all loaded ones, and with it their weight in the sum
         left = [b - a @ (scale * unknowns) for _, a, b in parts]
         noise = np.array([np.sqrt(np.mean(part**2)) for part in left])
         for kind in set(kinds):
             mine = kinds == kind
             usual = float(np.median(noise[mine]))
-            shares[mine] = np.where(noise[mine] > STUCK * usual, 0.0, 1 / usual**2)
+            counts_as = np.full(int(mine.sum()), usual)
+            if kind not in loaded_kinds:
+                counts_as = np.maximum(noise[mine], QUIETEST * usual)
+            shares[mine] = np.where(noise[mine] > STUCK * usual, 0.0, counts_as**-2.0)
         normal, side, unknowns = solved(shares, squares, sides)
     residual = float(np.sqrt(np.mean(np.concatenate(left) ** 2)))
     rows = sum(len(b) for *_, b in parts)
@@ -193,10 +200,10 @@ def filtered(samples: np.ndarray, kernel: np.ndarray) -> np.ndarray:
     return out.reshape(len(out), *samples.shape[1:])
 
 
-def _usable(rates: np.ndarray, half: int) -> np.ndarray:
+def _usable(rates: np.ndarray, half: int, slowest: float) -> np.ndarray:
     """Rows of `rates` around which, for half a filter's length, every joint turns on in its direction."""
     at = [rates[k : len(rates) - 2 * half + k] for k in (0, half // 2, half, half + half // 2, 2 * half)]
-    fast = np.minimum.reduce([np.abs(r) for r in at]) > SLOWEST
+    fast = np.minimum.reduce([np.abs(r) for r in at]) > slowest
     one_way = np.abs(sum(np.sign(r) for r in at)) == len(at)
     return np.flatnonzero((fast & one_way).all(axis=1))[::EVERY] + half
 
@@ -212,7 +219,7 @@ def rows_of(
         return np.zeros((0, UNKNOWNS)), np.zeros(0)
     angles, ends = geometry.joints(sweep.counts), geometry.ends(sweep.counts)
     rates = filtered(angles, slope)
-    row = _usable(rates, half)
+    row = _usable(rates, half, SLOWEST_LOADED if force else SLOWEST)
     if not len(row):
         return np.zeros((0, UNKNOWNS)), np.zeros(0)
     n, centre = len(row), row + half

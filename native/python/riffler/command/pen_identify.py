@@ -16,6 +16,7 @@ import re
 import sys
 import time
 import tomllib
+from collections.abc import Iterator, Sequence
 from contextlib import nullcontext
 from typing import Any
 
@@ -35,6 +36,7 @@ from .pen_sweeps import (
     SLOW,
     Keyboard,
     MotionStoppedError,
+    MotionTrippedError,
     Path,
     base_axes,
     cut,
@@ -48,6 +50,8 @@ from .pen_sweeps import (
 HELP = "torque constants, weight and friction of a pen, by a known weight"
 
 SLOW_SWEEPS, FAST_SWEEPS = 24, 160
+# Sweeps, rad/s of the fastest joint, and seeds of paths of the slow, the fast and the loaded motion.
+MOTIONS = ((SLOW_SWEEPS, SLOW, (1, 11, 21)), (FAST_SWEEPS, FAST, (2, 12, 22)), (SLOW_SWEEPS, SLOW, (3, 13, 23)))
 UNITS = {
     "torque_constant": "N·mm/A",
     "coulomb": "N·mm",
@@ -97,7 +101,7 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
         hook = grip_half(geometry) if arguments.hook is None else length(arguments.hook, "--hook")
         grams = GRAMS if simulated and arguments.mass is None else ask_mass(arguments.mass, keyboard)
         weight = HungWeight(1e-3 * grams, 1e-3 * step / np.sqrt(12), hook, HOOK_ERROR)
-        check_weight(geometry, weight, sweeps(geometry, SLOW_SWEEPS, SLOW, 3))
+        check_weight(geometry, weight, Motion(geometry, *MOTIONS[2]).first)
         found = identified(device, weight, keyboard, seed, console)
         truth = device.truth if isinstance(device, pen.SimulatedPen) else None
     data, rows = report(geometry, found, truth)
@@ -175,9 +179,7 @@ def identified(
     if not any(axis.pushes for axis in geometry.capability().axes.values()):
         raise ValueError(f"{device.kind} has no motors")
     begin(device, keyboard)
-    slow = sweeps(geometry, SLOW_SWEEPS, SLOW, 1)
-    fast = sweeps(geometry, FAST_SWEEPS, FAST, 2)
-    loaded = sweeps(geometry, SLOW_SWEEPS, SLOW, 3)
+    slow, fast, loaded = (Motion(geometry, number, rate, seeds) for number, rate, seeds in MOTIONS)
     say = (lambda text: None) if not keyboard.asks else print
 
     say(f"\nFirst the directions, in {wiggles(geometry).seconds:.0f} s: hold the grip loosely, and let it be pushed by "
@@ -190,9 +192,9 @@ def identified(
                                  "motor, or the encoder's tracks, and start again")  # fmt: skip
 
     free: list[Sweep] = []
-    for path, kind, how in ((slow, "slow", "slowly"), (fast, "fast", f"at up to {FAST:g} rad/s, 300 mm/s")):
-        say(f"\nNow the pen moves by itself, {how}, for {path.seconds:.0f} s. Clear the room around its arms.")
-        free += swept(device, path, kind, keyboard, None, console)
+    for motion, kind, how in ((slow, "slow", "slowly"), (fast, "fast", f"at up to {FAST:g} rad/s, 300 mm/s")):
+        say(f"\nNow the pen moves by itself, {how}, for {motion.seconds:.0f} s. Clear the room around its arms.")
+        free += swept(device, motion, kind, keyboard, None, console)
     say(
         f"\nHang {1e3 * weight.mass:g} g by a thread on the grip, {weight.hook:g} mm from its middle towards the "
         f"tool's tip:\nthe end of arm {geometry.tip}. Then the pen moves slowly for {loaded.seconds:.0f} s."
@@ -227,10 +229,47 @@ def agree(keyboard: Keyboard) -> None:
         raise MotionStoppedError("not agreed; nothing moved")
 
 
+class Motion:
+    """A motion on the first of several paths; another one where the pen sticks on it."""
+
+    def __init__(self, geometry: pen.PenGeometry, number: int, rate: float, seeds: Sequence[int]) -> None:
+        self._path = lambda seed: sweeps(geometry, number, rate, seed)
+        self.seeds = seeds
+        self.first = self._path(seeds[0])
+
+    @property
+    def seconds(self) -> float:
+        return self.first.seconds
+
+    def paths(self) -> Iterator[Path]:
+        yield self.first
+        yield from map(self._path, self.seeds[1:])
+
+
 def swept(
+    device: pen.PenDevice, motion: Motion, kind: str, keyboard: Keyboard, weight: HungWeight | None,
+    console: Console | None,
+) -> list[Sweep]:  # fmt: skip
+    """One motion with its question. One that stops itself is made again on another path."""
+    why: MotionTrippedError | None = None
+    for path in motion.paths():
+        if why is not None and keyboard.asks:
+            print(f"\nThe motion stopped itself: {why} It begins again on another path.")
+        try:
+            return swept_once(device, path, kind, keyboard, weight, console)
+        except MotionTrippedError as error:
+            why = error
+    raise MotionStoppedError(
+        f"{why} That happened on {len(motion.seeds)} paths: does a joint stick, or something touch the arms?"
+    )
+
+
+def swept_once(
     device: pen.PenDevice, path: Path, kind: str, keyboard: Keyboard, weight: HungWeight | None, console: Console | None
 ) -> list[Sweep]:
-    """One motion with its question."""
+    if isinstance(device, pen.SimulatedPen):
+        device.aim(home_of(device.truth))
+        time.sleep(0.1)
     if keyboard.asks:
         print("Hold the grip in its home posture; let go when it holds itself, after about a second.")
     agree(keyboard)

@@ -217,6 +217,7 @@ class Watch:
             ("state", f"{self.states()}, {'homed' if state.homed else 'not homed'}"),
             ("cause", self.trouble() or "none"),
             ("link", ", ".join(link)),
+            ("thread", self.device.priority.text),
             ("age", f"{1e3 * state.age_s:.1f} ms, at most {1e3 * self.most['age_s']:.1f} ms"),
         ]
         if self.device.geometry is not None:
