@@ -142,21 +142,18 @@ const std::vector<std::string>& contact_part_names() {
   return kNames;
 }
 
+Mesh contact_mesh(const std::string& name) {
+  if (name == "bore" || name == "wall") return tube(360, name == "bore" ? 1 : 40, true);
+  if (name == "prism") return capped(tube(32, 1, false), 32);
+  if (name == "box") return box();
+  if (name == "needles") return needles();
+  if (std::filesystem::exists(name)) return mesh::read_mesh(name);
+  throw std::invalid_argument("part: there is no \"" + name + "\", neither a part nor a file");
+}
+
 ContactPart contact_part(const std::string& name, const Tool& tool, int count, std::uint64_t seed) {
-  ContactPart out;
-  bool along_z = false;
-  if (name == "bore" || name == "wall")
-    out.mesh = tube(360, name == "bore" ? 1 : 40, true), along_z = true;
-  else if (name == "prism")
-    out.mesh = capped(tube(32, 1, false), 32);
-  else if (name == "box")
-    out.mesh = box();
-  else if (name == "needles")
-    out.mesh = needles();
-  else if (std::filesystem::exists(name))
-    out.mesh = mesh::read_mesh(name);
-  else
-    throw std::invalid_argument("part: there is no \"" + name + "\", neither a part nor a file");
+  ContactPart out{contact_mesh(name), {}};
+  const bool along_z = name == "bore" || name == "wall";
   Uniform uniform(seed);
   const collide::Collider collider(out.mesh);
   const collide::Assembly assembly(tool);

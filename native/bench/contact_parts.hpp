@@ -22,6 +22,10 @@ struct ContactPart {
 /// triangles 0.01 mm wide and 60 mm long).
 const std::vector<std::string>& contact_part_names();
 
+/// A part by one of these names, or from an STL, OBJ or PLY file. Throws std::invalid_argument for a name that is
+/// neither.
+Mesh contact_mesh(const std::string& name);
+
 /// `name`: one of contact_part_names, or the path of an STL, OBJ or PLY file. `count` poses of `tool`: half of them, on
 /// parts with valleys, on the pencil paths of a ball of the tool's diameter, up to 0.3 mm deep and tilted by up to 20°
 /// from the valley's middle; the others at random places of the surface, from 2 mm above to 0.3 mm deep, tilted by up
