@@ -58,7 +58,7 @@ stress:  ## Carve MOVES random moves per cutter, mesh VOLUMES random volumes, ho
 	build/release/native/stress/riffler_stress --table --moves $(or $(MOVES),20000) --seed $(or $(SEED),1)
 	build/release/native/stress/riffler_mesh_stress --volumes $(or $(VOLUMES),100000) --seed $(or $(SEED),1)
 	build/release/native/stress/riffler_contact_stress --poses $(or $(POSES),1000000) --seed $(or $(SEED),1)
-	RIFFLER_LONG=1 build/release/native/tests/riffler_tests --gtest_filter='Sculpting.*'
+	RIFFLER_LONG=1 build/release/native/tests/riffler_tests --gtest_filter='Sculpting.*:LedAlongWalls.*'
 	RIFFLER_LONG=1 $(python) -m pytest -q native/tests/python/test_tasks.py -k many_tasks
 
 fuzz:  ## Fuzz every reader of files for SECONDS each, from SEED, under the sanitizers (TARGETS="rs274 ply" for some): build/fuzz

@@ -142,7 +142,7 @@ const std::vector<std::string>& contact_part_names() {
   return kNames;
 }
 
-Mesh contact_part_mesh(const std::string& name) {
+Mesh contact_mesh(const std::string& name) {
   if (name == "bore" || name == "wall") return tube(360, name == "bore" ? 1 : 40, true);
   if (name == "prism") return capped(tube(32, 1, false), 32);
   if (name == "box") return box();
@@ -152,8 +152,7 @@ Mesh contact_part_mesh(const std::string& name) {
 }
 
 ContactPart contact_part(const std::string& name, const Tool& tool, int count, std::uint64_t seed) {
-  ContactPart out;
-  out.mesh = contact_part_mesh(name);
+  ContactPart out{contact_mesh(name), {}};
   const bool along_z = name == "bore" || name == "wall";
   Uniform uniform(seed);
   const collide::Collider collider(out.mesh);

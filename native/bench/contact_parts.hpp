@@ -23,8 +23,9 @@ struct ContactPart {
 const std::vector<std::string>& contact_part_names();
 
 constexpr double kBoreRadius = 20;  ///< mm; the bore is about z, from z = 0 to 60
-/// The mesh of that part, or of that file. Throws std::invalid_argument for a name that is neither.
-Mesh contact_part_mesh(const std::string& name);
+/// A part by one of these names, or from an STL, OBJ or PLY file. Throws std::invalid_argument for a name that is
+/// neither.
+Mesh contact_mesh(const std::string& name);
 
 /// `name`: one of contact_part_names, or the path of an STL, OBJ or PLY file. `count` poses of `tool`: half of them, on
 /// parts with valleys, on the pencil paths of a ball of the tool's diameter, up to 0.3 mm deep and tilted by up to 20°

@@ -96,7 +96,7 @@ Pose pressed(const Tool& ball, const Vec3& centre, const Vec3& from, const Vec3&
 /// Round and down in the bore, the axis nearly along it.
 HapticScene bore_scene() {
   HapticScene s{contact_tools()[0].tool, {}, {}, {}, {}};
-  s.collider = std::make_unique<collide::Collider>(contact_part_mesh("bore"));
+  s.collider = std::make_unique<collide::Collider>(contact_mesh("bore"));
   s.grip = [ball = s.tool](double t) {
     const double room = kBoreRadius - 0.5 * ball.diameter(), angle = kTraceSpeed * t / room;
     const Vec3 from(-std::cos(angle), -std::sin(angle), 0);
@@ -130,7 +130,7 @@ std::function<Pose(double)> along(const Tool& ball, std::vector<TraceCorner> cor
 /// Twice around the upper edges of the box of 60 × 40 × 30 mm, which a ball touches at both sides of each edge.
 HapticScene box_scene() {
   HapticScene s{contact_tools()[0].tool, {}, {}, {}, {}};
-  s.collider = std::make_unique<collide::Collider>(contact_part_mesh("box"));
+  s.collider = std::make_unique<collide::Collider>(contact_mesh("box"));
   std::vector<TraceCorner> corners;
   const double r = 0.5 * s.tool.diameter() / std::sqrt(3.0);
   for (int k = 0; k <= 8; ++k) {

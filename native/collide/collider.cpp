@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "collide/drift.hpp"
 #include "collide/fixture.hpp"
 #include "collide/force.hpp"
 #include "collide/nearest_search.hpp"
@@ -53,6 +54,7 @@ struct Collider::Data {
   Surface part;
   SamplePoints points;
   std::optional<Surface> pieces;  // of the part, where it has large triangles
+  double longest = 0;             // mm: of these pieces
   std::vector<Fixture> fixtures;
   std::vector<double> stiffness;         // one per fixture
   std::vector<const Surface*> surfaces;  // the part's is first
@@ -64,8 +66,8 @@ struct Collider::Data {
 
   Data(const Mesh& mesh, const Settings& s)
       : part(mesh), points(part, s.spacing), settings(s), box(mesh::bounds(mesh)) {
-    const double most = kPieces * chosen_spacing(part, 0);
-    if (is_longer(mesh, most)) pieces.emplace(divided(mesh, most));
+    longest = kPieces * chosen_spacing(part, 0);
+    if (is_longer(mesh, longest)) pieces.emplace(divided(mesh, longest));
   }
 
   NearestSearch::Found search(const Assembly& assembly, const ToolFrame& frame, bool all, Deadline deadline,
@@ -126,10 +128,10 @@ double Collider::clearance(const Assembly& assembly, const Pose& pose, Counts& c
   return data_->search(assembly, ToolFrame(pose), false, {}, counts).least.distance;
 }
 
-Collider::Nearest Collider::nearest(const Assembly& assembly, const Pose& pose) const {
+Collider::Nearest Collider::nearest(const Assembly& assembly, const Pose& pose, double loose) const {
   const ToolFrame frame(pose);
   Counts counts;
-  const NearestSearch::Found found = data_->search(assembly, frame, true, {}, counts);
+  const NearestSearch::Found found = data_->search(assembly, frame, true, {}, counts, kNone, loose);
   return {found.least.distance, frame.to_part(found.least.point),
           found.surface > 0 ? Touch::Fixture : static_cast<Touch>(found.least.part)};
 }
@@ -186,7 +188,10 @@ void Collider::query(const Assembly& assembly, const Pose& pose, std::optional<d
 }
 
 Swept Collider::sweep(const Assembly& assembly, const Motion& motion, double wanted, std::size_t most) const {
-  return SweptSearch(assembly, motion, wanted, most)(data_->surfaces);
+  // From a piece far ahead of the tool a plane faces along the motion: for long motions whole triangles are better.
+  const Drift drift(motion, 1, assembly.reach());
+  const bool is_long = drift.most(assembly.reach()) > data_->longest;
+  return SweptSearch(assembly, motion, wanted, most)(is_long ? data_->surfaces : data_->searched);
 }
 
 bool Collider::inside_part(const Vec3& p) const {

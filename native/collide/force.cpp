@@ -64,7 +64,7 @@ class ForceSum {
     if (distance >= 0) return;
     const Vec3 point = points_.tree().group(group).sphere(k).centre;
     const double z = glm::dot(point - frame_.tip, frame_.axis);
-    const Vec3 force = -distance * weight * ramp_.at(z) * points_.areas(group).area[k];
+    const Vec3 force = -distance * weight * ramp_.at(z) * points_.areas(group).area(k);
     contact_.push(point - frame_.tip, force);
     if (const double size = glm::length(force); size > 0)
       contact_.resist(point - frame_.tip, force / size, size / -distance);
@@ -99,7 +99,10 @@ class ForceSum {
       if (!(distance[k] < spheres.radius[k])) continue;
       const double coarse = weight * share(spheres.sphere(k));
       if (coarse > 0) add(group, k, distance[k], coarse);
-      if (coarse < weight) stack_.push_back({group, k, distance[k], weight - coarse});
+      if (coarse < weight) {
+        stack_.push_back({group, k, distance[k], weight - coarse});
+        points_.fetch(tree.first_child(group) + static_cast<std::size_t>(k));
+      }
     }
   }
 

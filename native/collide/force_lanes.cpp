@@ -49,9 +49,6 @@ HWY_INLINE void add_force(const Centres& at, M in, V depth, V stiffness, const V
 void AddPoints(std::span<const LaneEdge> outline, const ToolFrame& frame, const SphereGroup& points,
                const SamplePoints::AreaGroup& areas, const StiffnessRamp& ramp, double weight, double* distance,
                ForceSums& sums) {
-  static_assert(sizeof(areas.area) == 3 * base::kLanes * sizeof(double));
-  const hn::RebindToSigned<Lanes> kI;
-  const auto places = hn::Mul(hn::Iota(kI, 0), hn::Set(kI, 3));
   for (int k = 0; k < base::kLanes; k += lanes()) {
     const Centres at(frame, points, k);
     Points inside(at.rho, at.z);
@@ -60,9 +57,7 @@ void AddPoints(std::span<const LaneEdge> outline, const ToolFrame& frame, const 
     hn::StoreU(d, kD, distance + k);
     const M in = both(hn::Lt(d, zero()), hn::Ge(hn::Load(kD, points.radius + k), zero()));
     if (none(in)) continue;
-    const double* first = &areas.area[k].x;
-    const V area[3] = {hn::GatherIndex(kD, first, places), hn::GatherIndex(kD, first + 1, places),
-                       hn::GatherIndex(kD, first + 2, places)};
+    const V area[3] = {hn::Load(kD, areas.x + k), hn::Load(kD, areas.y + k), hn::Load(kD, areas.z + k)};
     const V above = min(max(add(hn::Div(sub(at.z, set(ramp.top)), set(ramp.length)), set(0.5)), zero()), set(1));
     const V k_at = add(set(ramp.stiffness.cutter), mul(above, set(ramp.stiffness.holder - ramp.stiffness.cutter)));
     add_force(at, in, hn::Neg(d), mul(set(weight), k_at), area, sums, k);

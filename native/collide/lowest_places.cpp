@@ -138,18 +138,20 @@ void LowestPlaces(const OutlineRuns& runs, std::span<const LaneEdge> outline, co
       const RunBound runs_at(frame, at, from, from.farthest(zero(), zero(), zero()), distance, nullptr);
       Plane steepest;
       steepest.distance = set(kInfinity);
-      V bound = set(kInfinity), ridge_x = x, ridge_y = y, ridge_z = z;
+      LeastOfRuns least;
+      V ridge_x = x, ridge_y = y, ridge_z = z;
       M on_ridge = no_lane();
       for (std::size_t j = 0; j < runs.size(); ++j) {
         const OutlineRuns::Run& run = runs.all()[j];
         if (run.reach < kInfinity) {
-          bound = min(bound, runs_at.by_ball(outline[run.first]));
+          least.add_run(runs_at.by_ball(outline[run.first]));
           continue;
         }
         const Plane plane = runs_at.plane_of(run, outline);
-        V by_run = runs_at.by_plane(run, plane);
+        V by_run = runs_at.by_plane(plane);
+        M holds = runs_at.holds(run);
         if (j < kKept) {
-          const CornerValues values = runs_at.at_corners(run, plane);
+          const CornerValues values = runs_at.at_corners(plane);
           if (step > 0) {
             const Ridge ridge(kept[j], values, corners);
             const M higher = hn::Gt(ridge.value, by_run);
@@ -161,13 +163,13 @@ void LowestPlaces(const OutlineRuns& runs, std::span<const LaneEdge> outline, co
           }
           kept[j] = values;
         }
-        bound = min(bound, by_run);
+        least.add_run(by_run, holds);
         const M nearest = hn::Lt(plane.distance, steepest.distance);
         steepest.distance = pick(nearest, plane.distance, steepest.distance);
         steepest.out = pick(nearest, plane.out, steepest.out), steepest.up = pick(nearest, plane.up, steepest.up);
         steepest.curvature = pick(nearest, plane.curvature, steepest.curvature);
       }
-      low = pick(active, max(low, max(bound, runs_at.by_sphere())), low);
+      low = pick(active, max(low, max(least.bound(), runs_at.by_sphere())), low);
       active = both(active, both(hn::Lt(low, set(enough)), hn::Lt(low, sub(best, set(slack)))));
       if (none(active) || step + 1 == kSteps) break;
       Quadratic(frame, runs_at.radial(), at.rho, steepest).lowest(corners, from, x, y, z);

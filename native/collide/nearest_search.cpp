@@ -29,7 +29,7 @@ void NearestSearch::open(const Surface& surface, const Entry& e, Counts& counts)
     look_closely(surface, spheres, first, places, e.surface);
   } else {
     double high[base::kLanes];
-    box_bounds(assembly_.runs(), assembly_.lane_edges(), frame_, surface.boxes(e.index), places.low, high);
+    box_bounds(assembly_.runs(), assembly_.lane_edges(), frame_, surface.boxes(e.index), nullptr, places.low, high);
     for (int k = 0; k < base::kLanes; ++k)  // every box contains a point of the surface
       if (spheres.radius[k] >= 0) limit_ = std::min(limit_, high[k]);
   }

@@ -120,21 +120,57 @@ struct CornerValues {
   HWY_INLINE CornerValues() : x(zero()), y(zero()), z(zero()) { at[0] = at[1] = at[2] = set(-kInfinity); }
 };
 
-/// The boxes of a group, seen from their centres: bounds for FromPoints' functions.
-struct FromCentres {
+/// The boxes of a group, seen from points of theirs: bounds for FromPoints' functions. The points are the centres, but
+/// along sides that are long for the tool they are opposite the tool's axis, since a plane that touches the tool far
+/// from where the box is nearest bounds nothing.
+struct FromBoxes {
   const OrientedBoxes& boxes;
-  V half[3], reach;
+  V half[3], off[3], reach;  // off: of the points from the centres, along the axes
+  V x, y, z;                 // the points, relative to the tip
 
-  HWY_INLINE FromCentres(const OrientedBoxes& b, int k) : boxes(b) {
-    for (int i = 0; i < 3; ++i) half[i] = hn::Load(kD, b.half[i] + k);
-    reach = sqrt(add(squared(half[0], half[1]), mul(half[2], half[2])));
+  HWY_INLINE FromBoxes(const OrientedBoxes& b, int k, const ToolFrame& frame, std::span<const LaneEdge> outline)
+      : boxes(b) {
+    const LaneEdge& end = outline.front();
+    const double lowest = end.arc ? end.centre[1] : end.from[1], highest = std::max(lowest, outline.back().to[1]);
+    double width = 0;
+    for (const LaneEdge& e : outline) width = std::max(width, e.to[0]);
+    const V cx = sub(hn::Load(kD, b.x + k), set(frame.tip.x)), cy = sub(hn::Load(kD, b.y + k), set(frame.tip.y)),
+            cz = sub(hn::Load(kD, b.z + k), set(frame.tip.z));
+    x = cx, y = cy, z = cz;
+    for (int i = 0; i < 3; ++i) half[i] = hn::Load(kD, b.half[i] + k), off[i] = zero();
+    for (int turn = 0; turn < 2; ++turn) {
+      const V along = min(max(dot(x, y, z, frame.axis), set(lowest)), set(highest));
+      const V wx = sub(mul(along, set(frame.axis.x)), cx), wy = sub(mul(along, set(frame.axis.y)), cy),
+              wz = sub(mul(along, set(frame.axis.z)), cz);
+      x = cx, y = cy, z = cz;
+      for (int i = 0; i < 3; ++i) {
+        const Vec3& a = b.axis[i];
+        const V there = min(max(dot(wx, wy, wz, a), hn::Neg(half[i])), half[i]);
+        off[i] = pick(hn::Gt(half[i], set(kLong * width)), there, zero());
+        x = add(x, mul(off[i], set(a.x))), y = add(y, mul(off[i], set(a.y))), z = add(z, mul(off[i], set(a.z)));
+      }
+    }
+    const V across = add(half[0], abs(off[0])), up = add(half[1], abs(off[1])), deep = add(half[2], abs(off[2]));
+    reach = mul(sqrt(add(squared(across, up), mul(deep, deep))), set(1 + 1e-14));
   }
   HWY_INLINE V farthest(V px, V py, V pz) const { return add(sqrt(add(squared(px, py), mul(pz, pz))), reach); }
   HWY_INLINE V least(V dx, V dy, V dz) const {
     V low = zero();
-    for (int i = 0; i < 3; ++i) low = sub(low, mul(abs(dot(dx, dy, dz, boxes.axis[i])), half[i]));
+    for (int i = 0; i < 3; ++i) {
+      const V slope = dot(dx, dy, dz, boxes.axis[i]);
+      low = sub(low, add(mul(abs(slope), half[i]), mul(slope, off[i])));
+    }
     return low;
   }
+  /// Largest size of the component of offsets from the point along a direction.
+  HWY_INLINE V widest(V dx, V dy, V dz) const {
+    V wide = zero();
+    for (int i = 0; i < 3; ++i) wide = add(wide, mul(abs(dot(dx, dy, dz, boxes.axis[i])), add(half[i], abs(off[i]))));
+    return wide;
+  }
+
+ private:
+  static constexpr double kLong = 0.5;  // times the tool's radius
 };
 
 /// Whether everything within `radius` of a point lies behind the end of a run.
@@ -143,6 +179,28 @@ HWY_INLINE M behind(const OutlineRuns::End& end, const Centres& at, V radius) {
       add(mul(sub(at.rho, set(end.point.x)), set(end.way.x)), mul(sub(at.z, set(end.point.y)), set(end.way.y)));
   return end.open ? hn::Le(add(past, radius), zero()) : hn::Le(radius, set(kInfinity));
 }
+
+/// Combines the bounds of a tool's runs. A run's plane bounds how far its convex solid C is. Below the plane it bounds
+/// the depth in C, which is the depth in the tool if all feet lie on the run ("holds"), or if every other run's solid
+/// is at least as far as the plane is deep: then the way out of C leaves the tool.
+class LeastOfRuns {
+ public:
+  HWY_INLINE LeastOfRuns() : held_(set(kInfinity)), least_(set(kInfinity)), second_(set(kInfinity)) {}
+
+  HWY_INLINE void add_run(V bound, M holds) {
+    held_ = min(held_, pick(either(holds, hn::Ge(bound, zero())), bound, set(-kInfinity)));
+    second_ = min(second_, max(least_, bound)), least_ = min(least_, bound);
+  }
+  /// `bound`: of a run whose bound always holds, −∞ if there is none.
+  HWY_INLINE void add_run(V bound) {
+    held_ = min(held_, bound);
+    second_ = min(second_, max(least_, bound)), least_ = min(least_, bound);
+  }
+  HWY_INLINE V bound() const { return max(held_, pick(hn::Ge(second_, hn::Neg(least_)), least_, set(-kInfinity))); }
+
+ private:
+  V held_, least_, second_;
+};
 
 /// The radial direction in space, 0 on the axis.
 struct Radial {
@@ -175,7 +233,7 @@ struct Drifts {
 };
 
 /// Smallest bound, by planes or a ball, of the distance at the corners, which bounds the distance on the whole triangle
-/// or box; −∞ if there is no bound. `Extent`: FromPoints or FromCentres.
+/// or box; −∞ if there is no bound. `Extent`: FromPoints or FromBoxes.
 template <class Extent>
 class RunBound {
  public:
@@ -204,12 +262,12 @@ class RunBound {
     return plane;
   }
 
-  HWY_INLINE V by_plane(const OutlineRuns::Run& run, const Plane& plane) const {
+  /// Bounds nothing but how far a run's convex solid is, or how deep below the plane: see LeastOfRuns.
+  HWY_INLINE V by_plane(const Plane& plane) const {
     const V x = in_space(plane.out, radial_.x, plane.up, frame_.axis.x),
             y = in_space(plane.out, radial_.y, plane.up, frame_.axis.y),
             z = in_space(plane.out, radial_.z, plane.up, frame_.axis.z);
-    const V bound = add(plane.distance, extent(x, y, z));
-    return pick(either(holds(run), hn::Ge(bound, zero())), bound, set(-kInfinity));
+    return add(plane.distance, extent(x, y, z));
   }
 
   /// Where the tangent planes of a run bound the distance wherever they lie.
@@ -220,17 +278,15 @@ class RunBound {
     return either(outside_, own);
   }
 
-  /// The plane's values at the corners, −∞ where it bounds nothing.
-  HWY_INLINE CornerValues at_corners(const OutlineRuns::Run& run, const Plane& plane) const {
+  /// The plane's values at the corners.
+  HWY_INLINE CornerValues at_corners(const Plane& plane) const {
     const V x = in_space(plane.out, radial_.x, plane.up, frame_.axis.x),
             y = in_space(plane.out, radial_.y, plane.up, frame_.axis.y),
             z = in_space(plane.out, radial_.z, plane.up, frame_.axis.z);
-    const M valid = holds(run);
     CornerValues out;
     out.x = x, out.y = y, out.z = z;
     for (int i = 0; i < 3; ++i)
-      out.at[i] =
-          pick(valid, add(plane.distance, dot3(x, y, z, corners_.x[i], corners_.y[i], corners_.z[i])), set(-kInfinity));
+      out.at[i] = add(plane.distance, dot3(x, y, z, corners_.x[i], corners_.y[i], corners_.z[i]));
     return out;
   }
 
@@ -262,17 +318,11 @@ class RunBound {
     return out;
   }
 
-  HWY_INLINE V extent(V x, V y, V z) const {
-    if constexpr (std::is_same_v<Extent, FromPoints>)
-      if (drifts_) return least_drifting(x, y, z);
-    return corners_.least(x, y, z);
-  }
+  HWY_INLINE V extent(V x, V y, V z) const { return drifts_ ? least_drifting(x, y, z) : corners_.least(x, y, z); }
 
   /// Lowest value of the corners along a direction with drift: a corner's displacement along the direction is that of
   /// the centre plus a term from its offset.
-  HWY_INLINE V least_drifting(V x, V y, V z) const
-    requires std::is_same_v<Extent, FromPoints>
-  {
+  HWY_INLINE V least_drifting(V x, V y, V z) const {
     const Drift& d = drifts_->drift;
     // (turn × q) · g = (g × turn) · q
     const V hx = sub(mul(y, set(d.turn.z)), mul(z, set(d.turn.y))),
@@ -280,10 +330,14 @@ class RunBound {
             hz = sub(mul(x, set(d.turn.y)), mul(y, set(d.turn.x)));
     const V centre = add(dot(x, y, z, d.way), dot3(hx, hy, hz, at_.x, at_.y, at_.h));
     V low = set(kInfinity);
-    for (int i = 0; i < 3; ++i) {
-      const V down = dot3(x, y, z, corners_.x[i], corners_.y[i], corners_.z[i]);
-      const V along = add(centre, dot3(hx, hy, hz, corners_.x[i], corners_.y[i], corners_.z[i]));
-      low = min(low, sub(down, abs(along)));
+    if constexpr (std::is_same_v<Extent, FromPoints>) {
+      for (int i = 0; i < 3; ++i) {
+        const V down = dot3(x, y, z, corners_.x[i], corners_.y[i], corners_.z[i]);
+        const V along = add(centre, dot3(hx, hy, hz, corners_.x[i], corners_.y[i], corners_.z[i]));
+        low = min(low, sub(down, abs(along)));
+      }
+    } else {
+      low = sub(corners_.least(x, y, z), add(abs(centre), corners_.widest(hx, hy, hz)));
     }
     return sub(low, drifts_->second_order(far_));
   }

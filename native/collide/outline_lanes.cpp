@@ -34,30 +34,29 @@ void TriangleBounds(const OutlineRuns& runs, std::span<const LaneEdge> outline, 
                              hn::Load(kD, spheres.z + k));
     const RunBound runs_at(frame, at, corners, hn::Load(kD, spheres.radius + k), hn::LoadU(kD, distance + k),
                            drift ? &drifts : nullptr);
-    V bound = set(kInfinity);
+    LeastOfRuns least;
     for (const OutlineRuns::Run& run : runs.all())
-      bound = min(bound, run.reach < kInfinity ? runs_at.by_ball(outline[run.first])
-                                               : runs_at.by_plane(run, runs_at.plane_of(run, outline)));
-    hn::StoreU(max(bound, runs_at.by_sphere()), kD, low + k);
+      run.reach < kInfinity ? least.add_run(runs_at.by_ball(outline[run.first]))
+                            : least.add_run(runs_at.by_plane(runs_at.plane_of(run, outline)), runs_at.holds(run));
+    hn::StoreU(max(least.bound(), runs_at.by_sphere()), kD, low + k);
   }
 }
 
 void BoxBounds(const OutlineRuns& runs, std::span<const LaneEdge> outline, const ToolFrame& frame,
-               const OrientedBoxes& boxes, double* low, double* high) {
+               const OrientedBoxes& boxes, const Drift* drift, double* low, double* high) {
+  const Drifts drifts(drift ? *drift : Drift());
   for (int k = 0; k < base::kLanes; k += lanes()) {
-    const Centres at(frame, sub(hn::Load(kD, boxes.x + k), set(frame.tip.x)),
-                     sub(hn::Load(kD, boxes.y + k), set(frame.tip.y)),
-                     sub(hn::Load(kD, boxes.z + k), set(frame.tip.z)));
+    const FromBoxes extent(boxes, k, frame, outline);
+    const Centres at(frame, extent.x, extent.y, extent.z);
     Points points(at.rho, at.z);
     for (const LaneEdge& e : outline) e.arc ? points.add_arc(e) : points.add_line(e);
     const V distance = points.distance();
-    const FromCentres extent(boxes, k);
-    const RunBound runs_at(frame, at, extent, extent.reach, distance, nullptr);
-    V bound = set(kInfinity);
+    const RunBound runs_at(frame, at, extent, extent.reach, distance, drift ? &drifts : nullptr);
+    LeastOfRuns least;
     for (const OutlineRuns::Run& run : runs.all())
-      bound = min(bound, run.reach < kInfinity ? runs_at.by_ball(outline[run.first])
-                                               : runs_at.by_plane(run, runs_at.plane_of(run, outline)));
-    hn::StoreU(max(bound, runs_at.by_sphere()), kD, low + k);
+      run.reach < kInfinity ? least.add_run(runs_at.by_ball(outline[run.first]))
+                            : least.add_run(runs_at.by_plane(runs_at.plane_of(run, outline)), runs_at.holds(run));
+    hn::StoreU(max(least.bound(), runs_at.by_sphere()), kD, low + k);
     hn::StoreU(add(distance, extent.reach), kD, high + k);
   }
 }
@@ -106,8 +105,8 @@ void triangle_bounds(const OutlineRuns& runs, std::span<const LaneEdge> outline,
 }
 
 void box_bounds(const OutlineRuns& runs, std::span<const LaneEdge> outline, const ToolFrame& frame,
-                const OrientedBoxes& boxes, double* low, double* high) {
-  HWY_DYNAMIC_DISPATCH(BoxBounds)(runs, outline, frame, boxes, low, high);
+                const OrientedBoxes& boxes, const Drift* drift, double* low, double* high) {
+  HWY_DYNAMIC_DISPATCH(BoxBounds)(runs, outline, frame, boxes, drift, low, high);
 }
 
 }  // namespace riffler::collide

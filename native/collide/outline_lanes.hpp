@@ -39,8 +39,9 @@ void triangle_bounds(const OutlineRuns& runs, std::span<const LaneEdge> outline,
                      double* low);
 
 /// low[k] and high[k]: lower and upper bound of the lowest signed distance in box k, by its sphere and by tangent
-/// planes as in triangle_bounds. A box without extent has the centre alone.
+/// planes as in triangle_bounds; with `drift`, the lower one is over the interval. A box without extent has the centre
+/// alone.
 void box_bounds(const OutlineRuns& runs, std::span<const LaneEdge> outline, const ToolFrame& frame,
-                const OrientedBoxes& boxes, double* low, double* high);
+                const OrientedBoxes& boxes, const Drift* drift, double* low, double* high);
 
 }  // namespace riffler::collide

@@ -66,10 +66,10 @@ SamplePoints::SamplePoints(std::vector<Piece> pieces, double spacing) : spacing_
   for (std::size_t g = tree_.groups(); g-- > 0;)
     for (int k = 0; k < base::kLanes; ++k) {
       if (tree_.holds_items(g)) {
-        if (tree_.group(g).radius[k] >= 0) areas_[g].area[k] = pieces[tree_.order()[tree_.first_item(g) + k]].area;
+        if (tree_.group(g).radius[k] >= 0) areas_[g].add(k, pieces[tree_.order()[tree_.first_item(g) + k]].area);
       } else {
         if (tree_.group(g).radius[k] >= 0)
-          for (const Vec3& a : areas_[tree_.first_child(g) + k].area) areas_[g].area[k] += a;
+          for (int i = 0; i < base::kLanes; ++i) areas_[g].add(k, areas_[tree_.first_child(g) + k].area(i));
       }
     }
 }

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "base/fetch.hpp"
 #include "collide/surface.hpp"
 
 namespace riffler::collide {
@@ -11,9 +12,12 @@ namespace riffler::collide {
 /// vector of its piece (out of the material) at its centroid, and so does every tree node: a coarser set of points.
 class SamplePoints {
  public:
-  /// Area vectors of the eight children of a node, mm².
-  struct AreaGroup {
-    Vec3 area[base::kLanes]{};
+  /// Area vectors of the eight children of a node, mm², by coordinates for vector lanes.
+  struct alignas(64) AreaGroup {
+    double x[base::kLanes]{}, y[base::kLanes]{}, z[base::kLanes]{};
+
+    Vec3 area(int k) const { return {x[k], y[k], z[k]}; }
+    void add(int k, const Vec3& a) { x[k] += a.x, y[k] += a.y, z[k] += a.z; }
   };
   /// `spacing` 0 selects the square root of a hundred-thousandth of the area. Throws std::invalid_argument for a
   /// spacing that is negative, not finite, or so small that it would need more than 50 million points.
@@ -23,6 +27,8 @@ class SamplePoints {
   std::size_t size() const { return tree_.size(); }
   const SphereTree& tree() const { return tree_; }
   const AreaGroup& areas(std::size_t group) const { return areas_[group]; }
+  /// Fetches a group's spheres and areas, which is to be read soon, into the cache.
+  void fetch(std::size_t group) const { base::fetch(tree_.group(group)), base::fetch(areas_[group]); }
 
  private:
   struct Piece {

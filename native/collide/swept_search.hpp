@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "collide/drift.hpp"
+#include "collide/lowest_places.hpp"
 #include "collide/surface.hpp"
 #include "collide/triangle_search.hpp"
 #include "riffler/collide/assembly.hpp"
@@ -17,7 +18,9 @@ namespace riffler::collide {
 /// Branch and bound over the part and over time together: what is far from the whole motion is dismissed for the whole
 /// motion, and only what the tool passes closely is examined in ever shorter intervals. Over an interval, a point's
 /// distance falls by at most its drift along the tangent plane's normal (collide/drift.hpp). Surfaces along which the
-/// tool slides, as in finishing, therefore need few intervals.
+/// tool slides, as in finishing, therefore need few intervals. The triangles of a group are examined together: their
+/// lowest places at the middle of the interval (collide/lowest_places.hpp), and there the tangent planes with the
+/// drift.
 class SweptSearch {
  public:
   SweptSearch(const Assembly& assembly, const Motion& motion, double wanted, std::size_t most);
@@ -34,11 +37,12 @@ class SweptSearch {
   };
   struct Entry {
     double low, radius, drifts;  // of its sphere; the last: how much nearer the tool may come in half the interval
-    double distance;             // of the sphere's centre at the middle of the interval
+    double high;                 // some place of it is no farther at the middle of the interval
     std::uint32_t index;         // index of a group, or place of a triangle
     std::uint32_t stretch;
     std::uint16_t surface;
-    enum Kind : std::uint16_t { Group, Triangle } kind;
+    std::uint8_t open;  // bit k: triangle k of a group at the lowest level is not dismissed yet
+    enum Kind : std::uint8_t { Group, Leaf, Triangle } kind;
     bool operator<(const Entry& o) const { return low > o.low; }  // smallest bound first
   };
 
@@ -48,6 +52,9 @@ class SweptSearch {
   bool is_better_halved(const Entry& e) const;
   void look_again(const Surface& surface, Entry& e);
   void open(const Surface& surface, const Entry& e);
+  void open_leaf(const Surface& surface, const Entry& e);
+  void look_closely(const MoveInterval& s, const Corners* triangles, double enough, LanePlaces& places, double* low);
+  void visit(const Entry& e, const LanePlaces& places, unsigned some);
   void test(const Surface& surface, const Entry& e);
   void attained(const Entry& e);
 

@@ -164,6 +164,13 @@ double TriangleSearch::run_bound(std::size_t run, const Corners& t, const Look& 
   return from.at.distance < 0 ? std::max(by_steps, least_of_greater(first, outer)) : by_steps;
 }
 
+/// How far a run's solid is at least, or how deep the triangle is at most below one of its planes.
+double TriangleSearch::solid_bound(std::size_t run, const Corners& t, const Look& from, double radius) const {
+  const OutlineRuns::RunAt& at = at_[run];
+  if (at.hollow) return !at.inside && at.closed.distance >= radius ? at.closed.distance - radius : -kInfinity;
+  return least_of_greater(plane(at.behind[0], t, from), plane(at.behind[1], t, from));
+}
+
 /// From the corners alone: ρ is convex. Where a larger ρ could leave the sector, its maximum is at a corner; where a
 /// smaller ρ could, it is at least the component along the radial direction.
 bool TriangleSearch::in_sector(std::size_t run, const Corners& t, const Look& from) const {
@@ -177,8 +184,14 @@ bool TriangleSearch::in_sector(std::size_t run, const Corners& t, const Look& fr
 double TriangleSearch::lower(const Corners& t, const Look& from) const {
   const double radius = farthest(t, from.point) + std::max({drift_of(t.a), drift_of(t.b), drift_of(t.c)});
   const std::array<double, 3> by_surface = outer(t, from, radius);
-  double by_runs = kInfinity;
-  for (std::size_t j = 0; j < runs_.size(); ++j) by_runs = std::min(by_runs, run_bound(j, t, from, radius, by_surface));
+  double by_runs = kInfinity, least = kInfinity, second = kInfinity;
+  for (std::size_t j = 0; j < runs_.size(); ++j) {
+    by_runs = std::min(by_runs, run_bound(j, t, from, radius, by_surface));
+    const double far = solid_bound(j, t, from, radius);
+    second = std::min(second, std::max(least, far)), least = std::min(least, far);
+  }
+  // Below one run's plane the way out of its solid leaves the tool where the others are at least as far.
+  if (second >= -least) by_runs = std::max(by_runs, least);
   return std::max(by_runs, from.at.distance - radius);
 }
 

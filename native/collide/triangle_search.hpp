@@ -85,6 +85,7 @@ class TriangleSearch {
   std::array<double, 3> plane(const OutlineRuns::Slope& s, const Corners& t, const Look& from) const;
   std::array<double, 3> ball(const OutlineRuns::Slope& s, const Corners& t, const Look& from) const;
   std::array<double, 3> outer(const Corners& t, const Look& from, double radius) const;
+  double solid_bound(std::size_t run, const Corners& t, const Look& from, double radius) const;
   double run_bound(std::size_t run, const Corners& t, const Look& from, double radius,
                    const std::array<double, 3>& outer) const;
   Look downhill(const Corners& t, Look from);

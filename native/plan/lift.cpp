@@ -14,6 +14,7 @@ namespace riffler::plan {
 namespace {
 
 constexpr int kLooksAReport = 16;
+constexpr double kLoose = 0.1;  // of the depth found at the height before
 
 class Climb {
  public:
@@ -55,7 +56,11 @@ class Climb {
   void look(double h) {
     at_ = h;
     if (out_.evaluations % kLooksAReport == 0) base::still_wanted();
-    now_ = collider_.nearest(assembly_, {pose_.tip + h * pose_.axis, pose_.axis});
+    const Pose pose{pose_.tip + h * pose_.axis, pose_.axis};
+    // Any point that blocks a height serves to climb. Where the nearest was deep, it need not be the deepest.
+    const double loose = out_.evaluations > 0 ? kLoose * (rule_.clearance - now_.distance) : 0;
+    now_ = collider_.nearest(assembly_, pose, std::max(loose, 0.0));
+    if (loose > 0 && !(now_.distance < rule_.clearance - rule_.tolerance)) now_ = collider_.nearest(assembly_, pose);
     if (++out_.evaluations == 1) out_.before = now_.distance;
   }
 

@@ -73,7 +73,8 @@ class Collider {
     Vec3 point;   ///< on the part or fixture
     Touch touch;  ///< part of the tool that is closest, or Fixture
   };
-  Nearest nearest(const Assembly& assembly, const Pose& pose) const;
+  /// `loose` (mm): the distance may exceed the smallest by as much, in much less time deep in the material.
+  Nearest nearest(const Assembly& assembly, const Pose& pose, double loose = 0) const;
   /// Whether the distance of `nearest` is at least `wanted` (mm). Stops at the first place with less: finding the
   /// minimum takes a hundred times longer where a holder stands inside the part.
   bool keeps(const Assembly& assembly, const Pose& pose, double wanted) const;
