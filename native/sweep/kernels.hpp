@@ -18,7 +18,8 @@ void cut_straight(const StraightBody& body, RayWindow& window);
 /// Same for a turning part.
 void cut_turning(const TurningBody& body, RayWindow& window);
 
-/// Computes the normals of padded ends (swept_normals.hpp).
+/// Computes the normals out of the material, which face the tool, of complete ends (swept_normals.hpp). The ends may be
+/// inaccurate by a tolerance.
 void compute_normals(const SweptSurface& surface, SweptEnds& ends);
 
 /// Names of the instruction sets that this machine supports, best first.

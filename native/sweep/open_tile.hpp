@@ -32,8 +32,8 @@ struct RayPlanes {
 };
 
 /// A ray has its only span, or the first of two, in the plane `first`, and the second in the plane `last`, with a bit
-/// in `two`. Of more spans, those at both sides of the gap where the last cut was are in the planes, and the others in
-/// a pool, with a bit in `many`, too. An empty ray has near > far in `first`, so no cut touches it. A tile with one
+/// in `two`. If there are more, those at both sides of the gap where the last cut was are in the planes, and the others
+/// in a pool, with a bit in `many`, too. An empty ray has near > far in `first`, so no cut touches it. A tile with one
 /// span in each ray is read in place until something of it is cut: a tool passes over most tiles without removing
 /// anything.
 class OpenTile {
@@ -104,7 +104,7 @@ class OpenTile {
       pending_[row] = 0;
     }
   }
-  /// Packs the result, with a new revision, and goes on from it. All normals must be stored.
+  /// Packs the result, with a new revision, and continues from it. All normals must be stored.
   std::shared_ptr<const dexel::Tile> pack();
 
  private:

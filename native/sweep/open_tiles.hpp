@@ -11,7 +11,7 @@
 namespace riffler::sweep {
 
 /// A tool that advances by a fraction of its diameter cuts nearly the same tiles in every move: they stay open, so that
-/// they are unpacked and packed, and their normals are computed, only when somebody looks.
+/// they are unpacked and packed, and their normals are computed, only when the volume is needed.
 class OpenTiles {
  public:
   struct Entry {

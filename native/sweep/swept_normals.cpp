@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sweep/kernels.hpp"
+#include "base/lanes.hpp"
 
 namespace riffler::sweep {
 
@@ -46,19 +46,16 @@ void SweptEnds::add(double u_at, double v_at, double s_at, double t_at) {
   ++count;
 }
 
-void swept_normals(const SweptSurface& surface, const Motion& motion, SweptEnds& ends) {
-  while (ends.u.size() % base::kLanes) {  // copies of the last end
-    for (auto* array : {&ends.u, &ends.v, &ends.s, &ends.t}) array->push_back(array->back());
+void SweptEnds::complete(const SweptSurface& surface, const Motion& motion) {
+  while (u.size() % base::kLanes)
+    for (auto* array : {&u, &v, &s, &t}) array->push_back(array->back());
+  for (auto& array : map) array.resize(u.size());
+  if (!surface.wide) return;
+  for (auto& array : axis) array.resize(u.size());
+  for (std::size_t k = 0; k < u.size(); ++k) {
+    const Vec3 at = motion.axis(t[k]);
+    for (int i = 0; i < 3; ++i) axis[i][k] = at[i];
   }
-  for (auto& array : ends.map) array.resize(ends.u.size());
-  if (surface.wide) {
-    for (auto& array : ends.axis) array.resize(ends.u.size());
-    for (std::size_t k = 0; k < ends.u.size(); ++k) {
-      const Vec3 axis = motion.axis(ends.t[k]);
-      for (int i = 0; i < 3; ++i) ends.axis[i][k] = axis[i];
-    }
-  }
-  compute_normals(surface, ends);
 }
 
 }  // namespace riffler::sweep

@@ -17,7 +17,7 @@ struct SweptSurface {
 
   std::size_t count;
   std::array<PieceShape, ConvexGroup::kMax> pieces;
-  double tip[3], way[3], spin[3];  ///< at time t the tip is at tip + t way; a point p moves with way + spin × (p − tip)
+  double tip[3], way[3], spin[3];  ///< the tip at t = 0, its displacement, and the rotation vector
   double axis[3], side[3];         ///< axis(t) = cos θ axis + sin θ side, θ = angle (t − middle)
   double angle, middle;
   bool wide;  ///< θ is too large for the kernel's series: it gets the axes
@@ -33,10 +33,8 @@ struct SweptEnds {
   std::size_t count = 0;
   void clear();
   void add(double u_at, double v_at, double s_at, double t_at);
+  /// Fills the last group of lanes, and the axes if the step of `motion` is wide. At least one end must be there.
+  void complete(const SweptSurface& surface, const Motion& motion);
 };
-
-/// Computes the normals out of the material, which face the tool. Ends may be inaccurate by a tolerance. `ends` is
-/// padded for the kernel.
-void swept_normals(const SweptSurface& surface, const Motion& motion, SweptEnds& ends);
 
 }  // namespace riffler::sweep

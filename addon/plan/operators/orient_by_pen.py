@@ -26,7 +26,7 @@ _shown = None  # arrows and gauge (sculpt/force_view.py)
 _told, _told_at = (), 0.0
 
 
-class RIFFLER_OT_plan_pen(pen_properties.TurningDevice, pen_properties.HandSettings, PlanWork, bpy.types.Operator):
+class RIFFLER_OT_plan_pen(pen_properties.HandSettings, pen_properties.TurningDevice, PlanWork, bpy.types.Operator):
     """Turn the plan's tool with a pen or another device: the cutter stays on the path, the hand feels what shank and
     holder hit; the first button sets a key orientation, the second deletes it
     """

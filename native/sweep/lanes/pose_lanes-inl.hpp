@@ -25,7 +25,7 @@ HWY_INLINE V series(V q, const double (&k)[5]) {
   return sum;
 }
 
-/// Of angles up to 1/8, where truncating the series costs less than 1e-16.
+/// Angles are at most 1/8, so truncating the series costs less than 1e-16.
 HWY_INLINE V cosine(V turn) {
   return series(hn::Mul(turn, turn), {1, -1.0 / 2, 1.0 / 24, -1.0 / 720, 1.0 / 40320});
 }

@@ -82,7 +82,7 @@ TEST(MoveCarver, ForgetsWhatIsNotPublished) {
   carver.forget();
   carver.publish();
   EXPECT_TRUE(test::same_rays(volume, published));
-  // A volume that was restored is cut as it is then, though the carver had its tiles open.
+  // The carver's tiles are still open; it opens those of the restored volume instead.
   carver.move(on_spiral(20, 0), on_spiral(40, 0), 0.001);
   carver.publish();
   const Volume cut = volume;

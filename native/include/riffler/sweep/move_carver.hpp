@@ -43,7 +43,7 @@ class MoveCarver {
 
   /// Deferred: gives the volume what moves have cut since the last call. May throw std::bad_alloc.
   void publish();
-  /// Deferred: forgets what is not published. Call it before the volume is changed by somebody else.
+  /// Deferred: forgets what is not published. Call it before other code changes the volume.
   void forget() noexcept;
 
   /// Pitch of the volume, mm.
