@@ -13,9 +13,10 @@ CASES = (
     {"pitch": 0.25, "directions": "z"},
     {"pitch": 0.15, "directions": "z"},
     {"pitch": 0.4, "directions": "xyz"},
+    {"pitch": 0.2, "directions": "xyz"},
     {"pitch": 0.25, "directions": "z", "stiffness": 10.0, "jitter_us": 1500},
 )
-MINUTES = 600.0, 60.0, 60.0, 60.0
+MINUTES = 600.0, 60.0, 60.0, 60.0, 60.0
 
 
 def sessions(out: Report, settings: Settings) -> None:

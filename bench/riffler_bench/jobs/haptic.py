@@ -10,7 +10,7 @@ import time
 import numpy as np
 from riffler import Tool, Volume
 
-from .. import busy, rendering, report, scenes, sculpting
+from .. import busy, directions, rendering, report, scenes, sculpting
 from ..measure import Progress, Settings, quantile, steady, watched
 from ..report import Column, Report
 
@@ -58,6 +58,7 @@ def run(settings: Settings, progress: Progress = None) -> Report:
     )
     rendering.times(out, settings)
     rendering.errors(out, settings)
+    directions.strokes(out, settings, progress)
     sculpting.sessions(out, settings)
     busy.sessions(out, settings)
     return out

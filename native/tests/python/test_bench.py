@@ -451,6 +451,12 @@ def test_haptic_scenes_touch_parts_of_long_triangles(quick):
     assert touching["bore"] == touching["box"] == 1
 
 
+def test_three_directions_are_measured_beside_one(quick):
+    for row in rows(quick, "haptic", "directions"):
+        assert row["ratio"] == pytest.approx(row["xyz_s"] / row["z_s"]) and 0 < row["xyz_s"] <= row["p99_s"]
+        assert 1 < row["work"] < 10
+
+
 def test_a_busy_machine_is_measured_with_and_without_real_time(quick):
     normal, asked = rows(quick, "haptic", "busy")
     assert normal["level"] == 0 and asked["level"] == riffler.pen.real_time().level
