@@ -366,7 +366,7 @@ TEST(SculptStep, AQueryThatRunsOutOfTimeLeavesTheToolAndTheHandIsPulledBack) {
 /// The cuts of a large ball are far over the budget; the time that they leave to queries is none.
 TEST(SculptStep, AToolThatIsHeldAfterASlowCutIsNotHeldForEver) {
   const Tool ball = cutters::ball(30, 60);
-  Volume volume = block(0.2, "xyz");
+  Volume volume = block(0.1, "xyz");
   sweep::MoveCarver carver(volume, ball, {});
   const collide::Collider part(box({0, 0, -18}, {40, 40, -15.02}), {}, {.spacing = 0.1});
   SculptSettings settings = springs_only();

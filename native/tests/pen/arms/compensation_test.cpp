@@ -113,6 +113,8 @@ TEST(Compensation, GrowsWithTheGateAndEndsWithIt) {
   EXPECT_LT(rising, full / 2);
   b.step.holds = false;
   b.run(0.01);
+  EXPECT_LT(greatest(b), full) << "it falls with the force";
+  b.run(0.02);
   EXPECT_EQ(greatest(b), 0);
 }
 
