@@ -33,7 +33,7 @@ void GridCarver::keep_open(double size) {
   const auto tiles = [&](int all) {
     return std::min(all, 2 + static_cast<int>(size / (grid_.pitch() * dexel::kTileSide)));
   };
-  const int most = grid_.has_normals() ? 64 : 128;  // some 10 MB
+  const int most = grid_.has_normals() ? 48 : 128;  // some 10 MB
   open_.reserve(grid_, static_cast<std::size_t>(std::min(tiles(grid_.tiles_u()) * tiles(grid_.tiles_v()), most)));
   steps_.reserve(2 * kBatch);
   keeps_ = true;

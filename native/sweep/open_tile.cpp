@@ -48,7 +48,7 @@ void OpenTile::reserve(bool with_normals) {
   hull_.resize(kRoom);
   if (!with_normals) return;  // seen from one direction, few rays have more than two spans
   places_.resize(dexel::kTileRays);
-  pool_.reserve(2 * dexel::kTileRays);
+  pool_.reserve(4 * dexel::kTileRays), kept_.reserve(64);
 }
 
 void OpenTile::unpack() {
@@ -108,7 +108,7 @@ OpenTile::Place& OpenTile::place(int r, std::uint32_t n) {
 /// Closes the gaps in the pool, but keeps nothing of ray r.
 void OpenTile::tidy(int except) {
   thread_local base::BlockVector<Piece> tight;
-  tight.clear();
+  tight.clear(), tight.reserve(pool_.capacity());
   for (int r = 0; r < dexel::kTileRays; ++r) {
     Place& at = places_[r];
     if (!is(many_, r) || r == except) {

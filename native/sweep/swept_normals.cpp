@@ -36,6 +36,10 @@ SweptSurface::SweptSurface(const Step& step, Axis grid) {
   world = (2 - static_cast<int>(grid)) % 3;
 }
 
+void SweptEnds::reserve(std::size_t ends) {
+  for (auto* array : {&u, &v, &s, &t, &map[0], &map[1]}) array->reserve(ends + base::kLanes);
+}
+
 void SweptEnds::clear() {
   count = 0;
   for (auto* array : {&u, &v, &s, &t, &axis[0], &axis[1], &axis[2]}) array->clear();

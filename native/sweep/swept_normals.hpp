@@ -31,6 +31,7 @@ struct SweptEnds {
   base::BlockVector<double> map[2];   ///< result: octahedral map of the normals, −1 … 1 (span.hpp)
 
   std::size_t count = 0;
+  void reserve(std::size_t ends);
   void clear();
   void add(double u_at, double v_at, double s_at, double t_at);
   /// Fills the last group of lanes, and the axes if the step of `motion` is wide. At least one end must be there.

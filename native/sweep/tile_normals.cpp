@@ -22,6 +22,13 @@ struct NormalScratch {
   base::BlockVector<Unresolved> found, sorted;
   base::BlockVector<std::uint32_t> starts;
   SweptEnds ends;
+
+  /// For the first use: as much as a rough tile needs, so that a pen's step seldom has to ask for more.
+  void reserve() {
+    constexpr std::size_t kEnds = 4 * dexel::kTileRays;
+    found.reserve(kEnds), sorted.reserve(kEnds), starts.reserve(kEnds);
+    ends.reserve(kEnds);
+  }
 };
 
 /// Sorts by step with a counting sort: a tile has many ends of few steps.
@@ -51,6 +58,7 @@ void store_normals(OpenTile& rays, const dexel::Grid& grid, std::size_t tile, st
   thread_local NormalScratch scratch;
   const int row = static_cast<int>(tile) / grid.tiles_v() * dexel::kTileSide;
   const int column = static_cast<int>(tile) % grid.tiles_v() * dexel::kTileSide;
+  scratch.reserve();
   scratch.found.clear();
   rays.take_unresolved([&](int r, double s, double origin, dexel::PackedNormal& normal) {
     const auto step = static_cast<std::size_t>(origin / 2);
