@@ -64,8 +64,12 @@ FrustumList from_frusta(const std::vector<tool::Frustum>& pieces) {
 
 py::list from_segments(const tool::Profile& profile) {
   py::list out;
-  for (const tool::ProfileSegment& s : profile.segments())
-    out.append(s.centre ? py::make_tuple(s.to.x, s.to.y, s.centre->x, s.centre->y) : py::make_tuple(s.to.x, s.to.y));
+  for (const tool::ProfileSegment& s : profile.segments()) {
+    if (s.centre)
+      out.append(py::make_tuple(s.to.x, s.to.y, s.centre->x, s.centre->y));
+    else
+      out.append(py::make_tuple(s.to.x, s.to.y));
+  }
   return out;
 }
 
