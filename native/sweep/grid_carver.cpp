@@ -17,6 +17,11 @@ constexpr std::size_t kBatch = 512;
 /// Number of rays below which starting threads costs more than it gains.
 constexpr double kSerialRays = 1e5;
 
+/// Whether a tool at these heights does not stay above or below a tile's material.
+bool meets(const dexel::Tile& tile, const Interval& heights) {
+  return tile.reach.near < heights.far && tile.reach.far > heights.near;
+}
+
 }  // namespace
 
 void GridCarver::add(std::span<const ConvexGroup> cutter, const Pose& from, const Pose& to, std::uint32_t move) {
@@ -118,13 +123,9 @@ void GridCarver::sort_pairs(std::size_t first, std::size_t last) {
   pairs_.swap(sorted_);
 }
 
-/// Whether the tool does not stay above or below the tile's material.
 bool GridCarver::may_touch(const Work& work) const {
-  const Interval& reach = grid_.tile(work.tile).reach;
-  for (std::size_t k = work.begin; k < work.end; ++k) {
-    const Interval& height = steps_[pairs_[k].second].footprint.height();
-    if (reach.near < height.far && reach.far > height.near) return true;
-  }
+  for (std::size_t k = work.begin; k < work.end; ++k)
+    if (meets(grid_.tile(work.tile), steps_[pairs_[k].second].footprint.height())) return true;
   return false;
 }
 
@@ -133,20 +134,18 @@ void GridCarver::cut_tile(Work& work) const {
   if (work.rays) return cut_open(work, *work.rays);
   if (keeps_ || !may_touch(work)) return;
   thread_local OpenTile rays;
-  rays.begin(grid_.shared_tile(work.tile), grid_.has_normals(), 1e-9 * grid_.pitch());
+  rays.begin(grid_, work.tile);
   cut_open(work, rays);
   if (rays.changed()) work.packed = packed(rays, work.tile);
   rays.end();
 }
 
 void GridCarver::cut_open(Work& work, OpenTile& rays) const {
-  const Interval& reach = grid_.tile(work.tile).reach;
   std::optional<TileCutter> cutter;
   for (std::size_t k = work.begin; k < work.end; ++k) {
     const std::size_t number = pairs_[k].second;
     const Step& step = steps_[number];
-    const Interval& height = step.footprint.height();
-    if (!(reach.near < height.far && reach.far > height.near)) continue;
+    if (!meets(grid_.tile(work.tile), step.footprint.height())) continue;
     if (!cutter) cutter.emplace(grid_, work.tile, rays, measured_, options_);
     cutter->cut(step, number);
   }

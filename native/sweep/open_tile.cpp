@@ -26,16 +26,17 @@ Interval hull(std::span<const dexel::Span> spans, const Interval& before) {
 
 }  // namespace
 
-void OpenTile::begin(std::shared_ptr<const dexel::Tile> tile, bool with_normals, double thinnest) {
-  source_ = std::move(tile);
-  with_normals_ = with_normals, changed_ = false;
-  thinnest_ = thinnest;
+void OpenTile::begin(const dexel::Grid& grid, std::size_t tile) {
+  end();
+  with_normals_ = grid.has_normals();
+  thinnest_ = thinnest(grid);
   planes_ = {};
   planes_.two = two_, planes_.many = many_, planes_.pending = pending_;
   std::fill(std::begin(two_), std::end(two_), 0U), std::fill(std::begin(many_), std::end(many_), 0U);
   std::fill(std::begin(pending_), std::end(pending_), 0U);
   pool_.clear();
-  if (!source_->offset.one_each()) unpack();
+  if (!grid.tile(tile).offset.one_each()) unpack(grid.tile(tile));
+  source_ = grid.shared_tile(tile);
 }
 
 void OpenTile::Plane::reserve(bool with_normals) {
@@ -51,7 +52,7 @@ void OpenTile::reserve(bool with_normals) {
   pool_.reserve(4 * dexel::kTileRays), kept_.reserve(64);
 }
 
-void OpenTile::unpack() {
+void OpenTile::unpack(const dexel::Tile& tile) {
   first_.reserve(with_normals_), last_.reserve(with_normals_);
   hull_.resize(kRoom);
   planes_.hull = hull_.data();
@@ -61,7 +62,6 @@ void OpenTile::unpack() {
     planes_.first_normals = first_.normals.data(), planes_.last_normals = last_.normals.data();
     std::fill_n(first_.origins.data(), dexel::kTileRays, Origins{});
   }
-  const dexel::Tile& tile = *source_;
   if (tile.offset.one_each()) {
     std::copy_n(tile.spans.data(), dexel::kTileRays, first_.spans.data());
     if (with_normals_) std::copy_n(tile.normals.data(), dexel::kTileRays, first_.normals.data());
@@ -87,7 +87,7 @@ const RayPlanes& OpenTile::open() {
   return planes_;
 }
 
-/// The place of ray r, with room for n pieces.
+/// The place of ray r, with room for n pieces. If it throws, every ray has what it had.
 OpenTile::Place& OpenTile::place(int r, std::uint32_t n) {
   constexpr std::size_t kFirst = 512;
   if (pool_.empty()) {
@@ -98,20 +98,20 @@ OpenTile::Place& OpenTile::place(int r, std::uint32_t n) {
   if (n <= at.room) return at;
   // More for a ray that grows again, so that all its places together are a few times the last one.
   const std::uint32_t room = at.room > 0 ? n + n / 2 : n;
-  at = {};
-  if (pool_.size() + room > pool_.capacity()) tidy(r);
-  at.begin = static_cast<std::uint32_t>(pool_.size()), at.room = room;
+  if (pool_.size() + room > pool_.capacity()) tidy();
+  const auto begin = static_cast<std::uint32_t>(pool_.size());
   pool_.resize(pool_.size() + room);
+  at = {begin, 0, room, 0};
   return at;
 }
 
-/// Closes the gaps in the pool, but keeps nothing of ray r.
-void OpenTile::tidy(int except) {
+/// Closes the gaps in the pool.
+void OpenTile::tidy() {
   thread_local base::BlockVector<Piece> tight;
   tight.clear(), tight.reserve(pool_.capacity());
   for (int r = 0; r < dexel::kTileRays; ++r) {
     Place& at = places_[r];
-    if (!is(many_, r) || r == except) {
+    if (!is(many_, r)) {
       at = {};
       continue;
     }
@@ -149,7 +149,7 @@ void OpenTile::store(int r, const Interval& cut) {
   const auto n = static_cast<std::uint32_t>(kept_.size());
   std::uint32_t pair = 0;
   while (pair + 2 < n && kept_[pair + 1].span.near < cut.near) ++pair;
-  put(r, kept_.data(), n, n > 1 ? pair : 0);
+  put(r, kept_.data(), n, pair);
   if (with_normals_) pending_[r / dexel::kTileSide] |= bit(r);
 }
 
@@ -193,6 +193,7 @@ std::shared_ptr<const dexel::Tile> OpenTile::pack() {
   tile->reach = hull(tile->spans, source_->reach);
   tile->revision = dexel::next_revision();
   changed_ = false;
+  std::fill(std::begin(pending_), std::end(pending_), 0U);
   source_ = tile;
   return tile;
 }

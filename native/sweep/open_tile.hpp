@@ -8,7 +8,7 @@
 
 #include "base/lanes.hpp"
 #include "riffler/base/block_pool.hpp"
-#include "riffler/dexel/tile.hpp"
+#include "riffler/dexel/grid.hpp"
 #include "riffler/geom/interval.hpp"
 
 namespace riffler::sweep {
@@ -42,8 +42,11 @@ class OpenTile {
   OpenTile(const OpenTile&) = delete;
   OpenTile& operator=(const OpenTile&) = delete;
 
-  /// Begins with a tile. Remaining spans thinner than `thinnest` (mm) will vanish.
-  void begin(std::shared_ptr<const dexel::Tile> tile, bool with_normals, double thinnest);
+  /// Remaining spans thinner than this (mm) vanish.
+  static double thinnest(const dexel::Grid& grid) { return 1e-9 * grid.pitch(); }
+
+  /// Begins with tile number `tile` of the grid. If it throws, no tile is open.
+  void begin(const dexel::Grid& grid, std::size_t tile);
   /// The tile that it began with, or that it was packed into.
   const std::shared_ptr<const dexel::Tile>& source() const { return source_; }
   /// Whether something was cut since then.
@@ -81,17 +84,17 @@ class OpenTile {
     return any;
   }
 
-  /// Calls visit(ray, s, origin, normal) for each end, at height s, whose normal is not stored yet. `visit` may keep
-  /// the reference to store it, and counts it as stored.
+  /// Calls visit(ray, s, origin, normal) for each end, at height s, whose normal is not stored yet. Both are
+  /// references, valid until the next cut: after storing the normal, set the origin to kStored.
   template <class Visit>
-  void take_unresolved(const Visit& visit) {
+  void each_unresolved(const Visit& visit) {
     const auto end = [&](int r, double s, double& origin, dexel::PackedNormal& n) {
-      if (origin >= 0) visit(r, s, origin, n), origin = Origins::kStored;
+      if (origin >= 0) visit(r, s, origin, n);
     };
     const auto span = [&](int r, const dexel::Span& s, Origins& origins, dexel::SpanNormals& n) {
       end(r, s.near, origins.near, n.near), end(r, s.far, origins.far, n.far);
     };
-    for (int row = 0; planes_.first_origins && row < dexel::kTileSide; ++row) {
+    for (int row = 0; planes_.first_origins && row < dexel::kTileSide; ++row)
       for (std::uint32_t left = pending_[row]; left; left &= left - 1) {
         const int r = row * dexel::kTileSide + std::countr_zero(left);
         if (first_.spans[r].near < first_.spans[r].far) span(r, first_.spans[r], first_.origins[r], first_.normals[r]);
@@ -101,8 +104,6 @@ class OpenTile {
         for (std::uint32_t k = 0; k < at.count; ++k)
           if (Piece& p = pool_[at.begin + k]; k - at.pair > 1) span(r, p.span, p.origins, p.normals);
       }
-      pending_[row] = 0;
-    }
   }
   /// Packs the result, with a new revision, and continues from it. All normals must be stored.
   std::shared_ptr<const dexel::Tile> pack();
@@ -148,11 +149,11 @@ class OpenTile {
   }
 
   void open_planes() {
-    if (!planes_.first) unpack();
+    if (!planes_.first) unpack(*source_);
   }
-  void unpack();
+  void unpack(const dexel::Tile& tile);
   Place& place(int r, std::uint32_t n);
-  void tidy(int except);
+  void tidy();
   void put(int r, const Piece* pieces, std::uint32_t n, std::uint32_t pair);
   void store(int r, const Interval& cut);
   std::uint32_t count(int r) const;

@@ -22,8 +22,7 @@ OpenTile& OpenTiles::open(const dexel::Grid& grid, std::size_t tile, std::uint64
   }
   Entry& entry = entries_[places_[tile] - 1];
   entry.used = move;
-  if (entry.rays->source() != grid.shared_tile(tile))
-    entry.rays->begin(grid.shared_tile(tile), grid.has_normals(), 1e-9 * grid.pitch());
+  if (entry.rays->source() != grid.shared_tile(tile)) entry.rays->begin(grid, tile);
   return *entry.rays;
 }
 

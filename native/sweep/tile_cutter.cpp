@@ -30,7 +30,7 @@ TileCutter::TileCutter(const dexel::Grid& grid, std::size_t tile, OpenTile& rays
       w.share_u[k] = grid.width_u(std::min(first_row_ + k, grid.nu() - 1)) / grid.pitch();
       w.share_v[k] = grid.width_v(std::min(first_column_ + k, grid.nv() - 1)) / grid.pitch();
     }
-  w.thinnest = 1e-9 * grid.pitch();
+  w.thinnest = OpenTile::thinnest(grid);
   w.with_times = grid.has_normals(), w.measured = measured, w.with_force = measured && !options.dt.empty();
   w.self = this, w.sums = &sums_, w.law = &law_;
   w.cut = [](void* self, int ray, const RayCut& cut) { static_cast<TileCutter*>(self)->cut_one(ray, cut); };

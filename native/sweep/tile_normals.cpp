@@ -14,6 +14,7 @@ namespace {
 struct Unresolved {
   std::size_t step;
   double u, v, s, t;
+  double* origin;
   dexel::PackedNormal* normal;
 };
 
@@ -60,11 +61,11 @@ void store_normals(OpenTile& rays, const dexel::Grid& grid, std::size_t tile, st
   const int column = static_cast<int>(tile) % grid.tiles_v() * dexel::kTileSide;
   scratch.reserve();
   scratch.found.clear();
-  rays.take_unresolved([&](int r, double s, double origin, dexel::PackedNormal& normal) {
+  rays.each_unresolved([&](int r, double s, double& origin, dexel::PackedNormal& normal) {
     const auto step = static_cast<std::size_t>(origin / 2);
     scratch.found.push_back({step, grid.shifted_u(row + r / dexel::kTileSide),
                              grid.shifted_v(column + r % dexel::kTileSide), s, origin - 2 * static_cast<double>(step),
-                             &normal});
+                             &origin, &normal});
   });
   if (scratch.found.empty()) return;
   sort_by_step(scratch);
@@ -77,8 +78,10 @@ void store_normals(OpenTile& rays, const dexel::Grid& grid, std::size_t tile, st
     const SweptSurface surface(steps[step], grid.axis());
     scratch.ends.complete(surface, *steps[step].motion);
     compute_normals(surface, scratch.ends);
-    for (std::size_t k = begin; k < end; ++k)
+    for (std::size_t k = begin; k < end; ++k) {
       *sorted[k].normal = packed(scratch.ends.map[0][k - begin], scratch.ends.map[1][k - begin]);
+      *sorted[k].origin = Origins::kStored;
+    }
   }
 }
 

@@ -295,10 +295,10 @@ struct Remains {
   M below, above;
 };
 
-/// Replaces spans of a plane in the lanes of `mask`; ends that are new in lanes of `near` and `far` get these origins.
 HWY_INLINE void store_spans(dexel::Span* plane, int ray, V near, V far) {
   hn::StoreInterleaved2(near, far, kD, &plane[ray].near);
 }
+/// Ends that are new in lanes of `near` and `far` get these origins.
 HWY_INLINE void store_origins(Origins* plane, int ray, M near, V near_origin, M far, V far_origin) {
   if (!plane) return;
   static_assert(sizeof(Origins) == 2 * sizeof(double));
