@@ -27,6 +27,7 @@ LOGS = ROOT / "build" / "tests"
 HEARTBEAT = 30  # s
 # What names a failure in the output of pytest, GoogleTest, the compiler, Blender's tests and the tools' own checks.
 FAILURE = re.compile(r"^(FAILED|ERROR|E  |  failed )|\[  FAILED  \]|[Ee]rror: |\bFAILED\b")
+REASON = " " * 6  # begins the lines of a reason (blender_tests/run.py)
 FAILURES_SHOWN = 25
 
 
@@ -187,10 +188,14 @@ def run_stages(names: list[str]) -> list[Result]:
 
 
 def failures(text: str) -> list[str]:
-    """The last lines that name a failure, each once; without any, the last lines. They are printed behind the table: of
-    a long log often only the end is kept."""
+    """The last lines that name a failure with the indented lines under them, which say why, each once; without any, the
+    last lines. They are printed behind the table: of a long log often only the end is kept."""
     lines = [line.rstrip()[:200] for line in text.splitlines()]
-    found = dict.fromkeys(line for line in lines if FAILURE.search(line))
+    found, under = {}, False
+    for line in lines:
+        under = bool(FAILURE.search(line)) or (under and line.startswith(REASON))
+        if under:
+            found[line] = None
     return list(found or lines)[-FAILURES_SHOWN:]
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 import shell
+import test
 
 TOOLS = Path(__file__).resolve().parents[1]
 SCRIPT = """
@@ -89,3 +90,9 @@ def test_a_stamp_is_of_its_key_and_a_digest_of_names_and_contents(tmp_path, monk
     assert not shell.is_stamped(stamp, before)
     shell.write_stamp(stamp, before)
     assert shell.is_stamped(stamp, before) and not shell.is_stamped(stamp, "")
+
+
+def test_the_reason_under_a_failure_is_repeated_with_it():
+    reasons = ["      Traceback (most recent call last):", "      AssertionError: ('cutter', 'free')"]
+    log = ["  passed    1.00 s  fine", "  failed   window_feel", *reasons, "2 passed", "      not a reason"]
+    assert test.failures("\n".join(log)) == log[1:4]
