@@ -129,7 +129,7 @@ def felt(screen):
     said = None
 
     def shown():
-        """The panel, the sentence beside the tool and the map are of the wall."""
+        """The panel, the sentence next to the tool and the map are of the wall."""
         nonlocal said
         said = module("plan.current_pose").said
         known = found._known

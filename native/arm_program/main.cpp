@@ -2,7 +2,7 @@
 // (pen/library/arm_process.hpp).
 //
 // Additional permission under GNU GPL version 3, section 7: this program may be combined with the library of an arm's
-// maker that its user has chosen (libdhd, libHD), and the result conveyed, whatever the terms of that library are.
+// maker that its user has chosen (libdhd, libHD), and the result conveyed under any terms of that library.
 #include <cstdio>
 #include <exception>
 #include <string>
@@ -55,7 +55,7 @@ int main(int count, char** words) {
     if (count >= 5) return riffler::arm_program::run({words + 1, words + count});
     std::fputs("riffler-arm drives a haptic arm for Riffler, which starts it: see riffler pen list\n", stderr);
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "riffler-arm: Riffler starts this program, nobody else: %s\n", error.what());
+    std::fprintf(stderr, "riffler-arm: only Riffler can start this program: %s\n", error.what());
   }
   return 2;
 }

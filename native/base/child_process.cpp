@@ -106,7 +106,7 @@ bool ChildProcess::ended() noexcept {
   pid_t found = 0;
   do found = ::waitpid(id_, &status_, WNOHANG);
   while (found < 0 && errno == EINTR);
-  // Where the process ignores the ends of its children, nobody knows how this one ended.
+  // Where the process ignores the ends of its children, how this one ended is unknown.
   ended_ = found != 0;
   return ended_;
 }

@@ -32,7 +32,7 @@ class SharedMemory {
 
 /// Waits until the word is not `seen` any more, at most `seconds`; may return early. The word lies in shared memory.
 void wait_for_change(const std::atomic<std::uint32_t>& word, std::uint32_t seen, double seconds) noexcept;
-/// Changes the word and wakes whoever waits for it, in any process.
+/// Changes the word and wakes all threads that wait for it, in any process.
 void change(std::atomic<std::uint32_t>& word) noexcept;
 
 }  // namespace riffler::base

@@ -47,7 +47,7 @@ class ArmProcess final : public Transport {
   ArmProcess& operator=(const ArmProcess&) = delete;
 
   const ArmTraits& traits() const { return traits_; }
-  /// Of the program, for tests.
+  /// Identifier of the program, for tests.
   pid_t process() const noexcept { return program_->id(); }
 
   int read(std::span<std::uint8_t> bytes, double seconds) noexcept override;
