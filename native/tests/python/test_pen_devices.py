@@ -325,7 +325,7 @@ def test_a_makers_library_is_loaded_by_another_program(monkeypatch):
         ("RIFFLER_LIBHD", "touch", "hdInitDevice"),
     ):
         monkeypatch.setenv(variable, libc)
-        with pytest.raises(OSError, match=f"it has no function {function}; is it of another version?"):
+        with pytest.raises(riffler.pen.PenError, match=f"it has no function {function}; is it of another version?"):
             riffler.pen.open(kind)
 
 
