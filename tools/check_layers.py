@@ -24,6 +24,7 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 # Folders outside the topics, and the topics and other such folders they may include. The reference must not share code
 # with what it judges; `None` is every topic.
 BESIDE: dict[str, tuple[list[str] | None, list[str]]] = {
+    "arm_program": (["base", "geom", "pen"], []),
     "reference": (["base", "geom", "tool"], []),
     "bench": (None, ["reference"]),
     "stress": (None, ["reference"]),

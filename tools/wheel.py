@@ -35,10 +35,10 @@ class Distribution:
         return f"{self.name.replace('-', '_')}-*.whl"
 
 
-RIFFLER = Distribution("riffler", ROOT, frozenset({"python", "bindings"}))
+RIFFLER = Distribution("riffler", ROOT, frozenset({"python", "bindings", "arm_program"}))
 BENCH = Distribution("riffler-bench", ROOT / "bench", frozenset({"bindings", "bench", "stress", "reference"}))
 # Folders of native/ that are no topics of the core.
-BESIDE = frozenset({"tests", "fuzz", "python", "bindings", "bench", "stress", "reference"})
+BESIDE = frozenset({"arm_program", "tests", "fuzz", "python", "bindings", "bench", "stress", "reference"})
 # Every Linux has these; anything else that the module links must lie inside the wheel.
 SYSTEM_LIBRARIES = ("linux-vdso.so", "libstdc++.so", "libgcc_s.so", "libc.so", "libm.so", "libz.so", "/lib64/ld-linux",
                     "libpthread.so", "libdl.so", "librt.so")  # fmt: skip
@@ -100,10 +100,10 @@ def repaired_wheel(wheel: Path, folder: Path) -> Path:
 
 
 def check_self_contained(wheel: Path) -> None:
-    """StepError if a module in the wheel takes a library from outside that a system may lack."""
+    """StepError if a module or program in the wheel takes a library from outside that a system may lack."""
     with tempfile.TemporaryDirectory() as folder:
         zipfile.ZipFile(wheel).extractall(folder)
-        for module in Path(folder).rglob("*.so*"):
+        for module in [*Path(folder).rglob("*.so*"), *Path(folder).rglob("riffler-arm")]:
             listing = subprocess.run(["ldd", module], capture_output=True, text=True, check=True).stdout
             for line in listing.splitlines():
                 name, _, found = (part.strip() for part in line.partition("=>"))

@@ -1,6 +1,8 @@
 """A device sculpts: its strokes, their undo, what they leave unchanged, and their journal."""
 
 import json
+import os
+from pathlib import Path
 
 import bpy
 import numpy as np
@@ -347,3 +349,17 @@ def test_a_state_that_memory_has_no_more_is_told_by_the_sessions_journal():
     hand.session.finish()
     live().end_all()
     nothing_is_left()
+
+
+def test_a_makers_library_is_loaded_by_a_program_of_the_installed_extension():
+    """The C library stands for one of another version. Blender's unpacking may take the permission to execute."""
+    libc = next(line.split()[-1] for line in Path("/proc/self/maps").read_text().splitlines() if "/libc.so" in line)
+    os.environ["RIFFLER_LIBHD"] = libc
+    try:
+        riffler.pen.open("touch")
+    except riffler.pen.PenError as error:
+        assert "it has no function hdInitDevice" in str(error), error
+    else:
+        raise AssertionError("the C library drives no arm")
+    finally:
+        del os.environ["RIFFLER_LIBHD"]

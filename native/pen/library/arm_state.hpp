@@ -1,5 +1,5 @@
-// The messages between the driver and a maker's library: what the library reports of an arm, and the wrench for it.
-// They never leave the process.
+// The messages between the driver and the program that drives an arm by its maker's library: what the library reports
+// of the arm, and the wrench for it.
 #pragma once
 
 #include <cstddef>

@@ -5,7 +5,8 @@
 
 #include "pen/driven_pen.hpp"
 #include "pen/library/arm_model.hpp"
-#include "pen/library/hd_library.hpp"
+#include "pen/library/arm_process.hpp"
+#include "pen/library/library_place.hpp"
 #include "riffler/pen/hid/open_error.hpp"
 
 namespace riffler::pen {
@@ -14,21 +15,16 @@ namespace {
 constexpr const char* kHdVariable = "RIFFLER_LIBHD";
 constexpr const char* kInstallHd =
     "install 3D Systems' OpenHaptics and Touch driver (https://support.3dsystems.com) and set RIFFLER_LIBHD to the "
-    "whole "
-    "path of its libHD.so";
+    "whole path of its libHD.so";
 
 LibraryPlace hd_place() {
   return find_library(kHdVariable, {"libHD.so"});
 }
 
-std::shared_ptr<const HdFunctions> load_hd() {
+ArmLibrary hd_library() {
   const LibraryPlace place = hd_place();
   if (place.path.empty()) throw OpenError(OpenProblem::NotInstalled, std::string("there is no libHD; ") + kInstallHd);
-  try {
-    return std::make_shared<HdFunctions>(SharedLibrary(place.path));
-  } catch (const OpenError& error) {
-    throw OpenError(error.problem(), std::string(error.what()) + "; " + kInstallHd);
-  }
+  return {"hd", place.path, kInstallHd};
 }
 
 FoundDevice touch_entry() {
@@ -48,12 +44,14 @@ std::vector<FoundDevice> find_touch() {
     if (!place.path.empty() && !place.chosen)
       throw OpenError(OpenProblem::NotChosen, place.path + " is there; open the arm as \"touch\", or set " +
                                                   kHdVariable + " to that path to have it listed");
-    const std::shared_ptr<const HdFunctions> hd = load_hd();
+    const std::vector<FoundArm> found = list_arms(hd_library());
     out.was_opened = true;
-    const HdArm arm(hd, "");
-    const ArmModel model(arm.traits());
-    out.name = arm.traits().name;
-    out.serial = arm.traits().serial;
+    if (found.empty()) throw OpenError(OpenProblem::NoFile, "the library finds no arm");
+    const FoundArm& arm = found.front();
+    if (arm.problem != OpenProblem::None) throw OpenError(arm.problem, arm.text);
+    const ArmModel model(arm.traits);
+    out.name = arm.traits.name;
+    out.serial = arm.traits.serial;
     out.capability = capability_text(model.capability());
     out.about = model.about();
   } catch (const OpenError& error) {
@@ -66,14 +64,11 @@ std::vector<FoundDevice> find_touch() {
 }
 
 std::unique_ptr<Pen> open_touch(std::string_view name, const PenOptions& options) {
-  const std::shared_ptr<const HdFunctions> hd = load_hd();
-  auto arm = std::make_unique<HdArm>(hd, std::string(name));
-  arm->enable();
+  const ArmLibrary library = hd_library();
+  auto arm = std::make_unique<ArmProcess>(library, std::string(name));
   auto model = std::make_shared<ArmModel>(arm->traits());
-  auto again = [hd, name = std::string(name)]() -> std::unique_ptr<Transport> {
-    auto next = std::make_unique<HdArm>(hd, name);
-    next->enable();
-    return next;
+  auto again = [library, name = std::string(name)]() -> std::unique_ptr<Transport> {
+    return std::make_unique<ArmProcess>(library, name);
   };
   return std::make_unique<DrivenPen>(kTouchKind, std::move(model), std::move(arm), std::move(again), options.driver);
 }

@@ -8,6 +8,7 @@ import struct
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -314,3 +315,22 @@ def test_an_unplugged_pen_is_named_and_connects_by_itself():
             while (device.health().state, device.health().problem) != (state, problem) and time.monotonic() < end:
                 time.sleep(0.01)
             assert (device.health().state, device.health().problem) == (state, problem)
+
+
+def test_a_makers_library_is_loaded_by_another_program(monkeypatch):
+    """The C library stands for one of another version: the installed program loads it, and this process does not."""
+    libc = next(line.split()[-1] for line in Path("/proc/self/maps").read_text().splitlines() if "/libc.so" in line)
+    for variable, kind, function in (
+        ("RIFFLER_LIBDHD", "force-dimension", "dhdGetDeviceCount"),
+        ("RIFFLER_LIBHD", "touch", "hdInitDevice"),
+    ):
+        monkeypatch.setenv(variable, libc)
+        with pytest.raises(riffler.pen.PenError, match=f"it has no function {function}; is it of another version?"):
+            riffler.pen.open(kind)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="the program is started on Linux only")
+def test_the_program_for_makers_libraries_is_for_riffler_alone():
+    program = Path(riffler._core.__file__).with_name("riffler-arm")
+    done = subprocess.run([program], capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 2 and "riffler pen list" in done.stderr

@@ -1,4 +1,4 @@
-// The one source that knows where the stubs of makers' libraries are built.
+// The one source that knows where the stubs of makers' libraries, and the program that loads them, are built.
 #include "support/stub_libraries.hpp"
 
 namespace riffler::test {
@@ -9,6 +9,10 @@ const char* stub_dhd_path() {
 
 const char* stub_hd_path() {
   return RIFFLER_STUB_HD;
+}
+
+const char* arm_program_path() {
+  return RIFFLER_ARM;
 }
 
 }  // namespace riffler::test

@@ -28,25 +28,15 @@ class ForceDimension : public ::testing::Test {
  protected:
   void SetUp() override {
     ::setenv("RIFFLER_LIBDHD", test::stub_dhd_path(), 1);
-    handle_ = ::dlopen(test::stub_dhd_path(), RTLD_NOW | RTLD_LOCAL);
-    ASSERT_NE(handle_, nullptr) << ::dlerror();
-    get_ = reinterpret_cast<StubDhd* (*)()>(::dlsym(handle_, test::kStubDhd));
-    StubDhd& stub = *get_();
-    stub.count = 1;
-    for (int k = 0; k < 2; ++k) {
-      StubArm& a = stub.arms[k];
-      a.position[0] = 0.01, a.position[1] = 0.02, a.position[2] = 0.03;
-      for (int j = 0; j < 9; ++j) a.frame[j] = j % 4 == 0 ? 1 : 0;
-      for (auto& v : a.velocity) v = 0;
-      a.serial = 1001 + k, a.buttons = 0, a.watchdog = 0, a.commands = 0;
-      a.plugged = a.wrist = a.active = a.power = true;
-      a.reset = a.button_off = a.error = false;
-    }
+    for (int k = 0; k < 2; ++k) arm(k).serial = 1001 + k;
   }
   void TearDown() override { ::unsetenv("RIFFLER_LIBDHD"); }
 
-  StubDhd& stub() { return *get_(); }
-  StubArm& arm(int number = 0) { return get_()->arms[number]; }
+  StubDhd& stub() { return *state_; }
+  StubArm& arm(int number = 0) {
+    test::watch(state_->arms[number]);
+    return state_->arms[number];
+  }
   bool push_until(Pen& pen, const std::function<bool()>& done, const Wrench& wrench = {{0, 0, 1}, {}}) {
     return test::push_until(pen, done, wrench, answer);
   }
@@ -54,8 +44,7 @@ class ForceDimension : public ::testing::Test {
     return push_until(pen, [&] { return arm(number).force[2] > 0.95; });
   }
 
-  void* handle_ = nullptr;
-  StubDhd* (*get_)() = nullptr;
+  const test::StubState<StubDhd> state_;
   PushAnswer answer;
 };
 
@@ -239,7 +228,6 @@ TEST_F(ForceDimension, AMissingOrWrongLibrarySaysWhichFileToInstall) {
 /// A library that lies where the system has its own is named, and not loaded by a search.
 TEST_F(ForceDimension, ALibraryThatItsUserHasNotChosenIsNotLoaded) {
   ::unsetenv("RIFFLER_LIBDHD");
-  // A folder of its own: a library that is loaded stays loaded.
   std::string folder = ::testing::TempDir() + "riffler_libdhd_XXXXXX";
   ASSERT_NE(::mkdtemp(folder.data()), nullptr);
   std::filesystem::copy_file(test::stub_dhd_path(), folder + "/libdhd.so.3");
@@ -252,7 +240,7 @@ TEST_F(ForceDimension, ALibraryThatItsUserHasNotChosenIsNotLoaded) {
   EXPECT_EQ(found[0].problem, OpenProblem::NotChosen);
   EXPECT_NE(found[0].text.find(folder + "/libdhd.so.3 is there; open the arm as \"force-dimension\""),
             std::string::npos);
-  EXPECT_EQ(::dlopen((folder + "/libdhd.so.3").c_str(), RTLD_NOW | RTLD_NOLOAD), nullptr) << "it was not loaded";
+  EXPECT_EQ(arm().opened, 0) << "it was not loaded";
   EXPECT_EQ(open_pen("force-dimension")->kind(), "force-dimension");
   ::setenv("LD_LIBRARY_PATH", kept.c_str(), 1);
 }

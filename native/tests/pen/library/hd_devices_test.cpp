@@ -1,7 +1,6 @@
 // 3D Systems' Touch through a stub of its library, which has a thread of its own, with the faults of each.
 #include "pen/library/hd_devices.hpp"
 
-#include <dlfcn.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,23 +18,12 @@ namespace {
 
 using namespace std::chrono_literals;
 using test::open_problem;
+using test::StubHd;
 using test::StubTouch;
 
 class Touch : public ::testing::Test {
  protected:
-  void SetUp() override {
-    ::setenv("RIFFLER_LIBHD", test::stub_hd_path(), 1);
-    void* const handle = ::dlopen(test::stub_hd_path(), RTLD_NOW | RTLD_LOCAL);
-    ASSERT_NE(handle, nullptr) << ::dlerror();
-    stub = reinterpret_cast<StubTouch* (*)()>(::dlsym(handle, test::kStubHd))();
-    stub->position[0] = 10, stub->position[1] = 20, stub->position[2] = 30;
-    for (int k = 0; k < 16; ++k) stub->transform[k] = k % 5 == 0 ? 1 : 0;
-    for (auto& v : stub->velocity) v = 0;
-    stub->buttons = 0, stub->calibration = 0x5000, stub->updates = 0, stub->error = 0;
-    stub->max_force = 3.3, stub->continuous = 0.88;
-    stub->plugged = true, stub->stalled = false;
-    stub->frames = 0, stub->outside = 0;
-  }
+  void SetUp() override { ::setenv("RIFFLER_LIBHD", test::stub_hd_path(), 1); }
   void TearDown() override { ::unsetenv("RIFFLER_LIBHD"); }
 
   bool push_until(Pen& pen, const std::function<bool()>& done, const Wrench& wrench = {{0, 0, 1}, {}}) {
@@ -46,7 +34,8 @@ class Touch : public ::testing::Test {
     return push_until(pen, [&] { return stub->force[1] > 0.95; });
   }
 
-  StubTouch* stub = nullptr;
+  const test::StubState<StubHd> state_;
+  StubTouch* const stub = &state_->arms[0];
   PushAnswer answer;
 };
 
@@ -97,7 +86,7 @@ TEST_F(Touch, WhatTheLibraryCannotSayIsTheWeakestArm) {
 
 TEST_F(Touch, TheNameOfAnArmIsPassedOn) {
   open_pen("touch:Left Device");
-  EXPECT_STREQ(stub->name, "Left Device");
+  EXPECT_STREQ(state_->arms[1].name, "Left Device");
   open_pen("touch");
   EXPECT_STREQ(stub->name, "");
 }
@@ -175,15 +164,16 @@ TEST_F(Touch, AnArmWhoseForceIsSwitchedOffIsResetAndRampsAgain) {
   EXPECT_LT(stub->force[1], 0.5);
 }
 
-TEST_F(Touch, OneArmInAProcess) {
+TEST_F(Touch, AnArmIsOpenOnceAndTwoAtTheSameTime) {
   const auto pen = open_pen("touch");
-  EXPECT_NE(open_problem([] { open_pen("touch"); }).find("busy: Riffler itself has an arm of this kind open"),
-            std::string::npos);
+  EXPECT_NE(open_problem([] { open_pen("touch"); }).find("busy: Riffler itself has the arm open"), std::string::npos);
   ASSERT_TRUE(pushes(*pen));
   const std::vector<FoundDevice> found = find_touch();
   ASSERT_EQ(found.size(), 1U);
   EXPECT_TRUE(found[0].is_there);
   EXPECT_EQ(found[0].problem, OpenProblem::Busy);
+  const auto other = open_pen("touch:Left Device");
+  EXPECT_TRUE(push_until(*other, [&] { return state_->arms[1].force[0] > 0.95; }, {{1, 0, 0}, {}}));
   EXPECT_TRUE(pushes(*pen));
 }
 

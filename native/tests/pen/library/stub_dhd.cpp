@@ -1,13 +1,17 @@
-// A stub with the names of Force Dimension's libdhd that Riffler calls, for tests: two arms in memory. Names and
-// meanings are those of the maker's published header (Haptic SDK 3.7); nothing else of it is here.
+// A stub with the names of Force Dimension's libdhd that Riffler calls, for tests: two arms in memory that the test
+// shares. Names and meanings are those of the maker's published header (Haptic SDK 3.7); nothing else of it is here.
 #include "pen/library/stub_dhd.hpp"
+
+#include <thread>
+
+#include "pen/library/stub_state.hpp"
 
 using riffler::test::StubArm;
 using riffler::test::StubDhd;
 
 namespace {
 
-StubDhd stub;
+StubDhd& stub = riffler::test::stub_state<StubDhd>();
 thread_local const char* last_error = "no error";
 
 int refuse(const char* why) {
@@ -19,18 +23,9 @@ int refuse(const char* why) {
 StubArm* arm_of(char id) {
   if (id < 0 || id >= stub.count) return nullptr;
   StubArm& arm = stub.arms[static_cast<int>(id)];
+  if (arm.crashes.exchange(false)) std::abort();
+  while (arm.hangs) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   return arm.open && arm.plugged ? &arm : nullptr;
-}
-
-long long now_ns() {
-  return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
-}
-
-/// The arm's own watchdog ends the force.
-void watch(StubArm& arm) {
-  if (arm.watchdog > 0 && now_ns() - arm.commanded > 125'000LL * arm.watchdog)
-    for (auto* values : {arm.force, arm.torque})
-      for (int k = 0; k < 3; ++k) values[k] = 0;
 }
 
 int give(const std::atomic<double>* from, double* x, double* y, double* z) {
@@ -41,11 +36,6 @@ int give(const std::atomic<double>* from, double* x, double* y, double* z) {
 }  // namespace
 
 #define STUB extern "C" __attribute__((visibility("default")))
-
-STUB StubDhd* riffler_stub_dhd() {
-  for (StubArm& arm : stub.arms) watch(arm);
-  return &stub;
-}
 
 STUB int dhdGetDeviceCount() {
   return stub.count;
@@ -140,7 +130,7 @@ STUB int dhdSetForceAndTorqueAndGripperForce(double fx, double fy, double fz, do
     arm->force[k] = arm->enabled ? values[k] : 0;
     arm->torque[k] = arm->enabled ? values[3 + k] : 0;
   }
-  arm->commanded = now_ns();
+  arm->commanded = riffler::test::stub_now();
   ++arm->commands;
   return 2;  // DHD_MOTOR_SATURATED
 }

@@ -15,16 +15,26 @@ struct StubArm {
   std::atomic<int> serial{0}, watchdog{0};  // watchdog: multiples of 125 µs
   std::atomic<bool> plugged{true}, wrist{true}, active{true}, open{false}, enabled{false};
   std::atomic<bool> power{true}, reset{false}, button_off{false}, error{false};
-  std::atomic<long long> commanded{0};  // ns of the steady clock
+  std::atomic<bool> crashes{false}, hangs{false};  // the next call
+  std::atomic<long long> commanded{0};             // ns of the steady clock
   std::atomic<int> commands{0}, opened{0};
 };
 
+inline long long stub_now() {
+  return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
+}
+
+/// The arm's own watchdog ends the force.
+inline void watch(StubArm& arm) {
+  if (arm.watchdog > 0 && stub_now() - arm.commanded > 125'000LL * arm.watchdog)
+    for (auto* values : {arm.force, arm.torque})
+      for (int k = 0; k < 3; ++k) values[k] = 0;
+}
+
 struct StubDhd {
+  static constexpr const char* kVariable = "RIFFLER_STUB_DHD";  // names the file in which it lies
   std::atomic<int> count{1};
   StubArm arms[2];
 };
-
-/// The name of the function in the stub that gives its StubDhd.
-inline constexpr const char* kStubDhd = "riffler_stub_dhd";
 
 }  // namespace riffler::test

@@ -17,7 +17,9 @@ struct StubTouch {
   char name[64] = "";                      // asked of hdInitDevice
 };
 
-/// The name of the function in the stub that gives its StubTouch.
-inline constexpr const char* kStubHd = "riffler_stub_hd";
+struct StubHd {
+  static constexpr const char* kVariable = "RIFFLER_STUB_HD";  // names the file in which it lies
+  StubTouch arms[2];                                           // the second is "Left Device"
+};
 
 }  // namespace riffler::test

@@ -1,18 +1,18 @@
-#include "pen/library/dhd_library.hpp"
+#include "arm_program/dhd_arm.hpp"
 
 #include <algorithm>
 #include <array>
-#include <chrono>
-#include <cstring>
-#include <mutex>
-#include <set>
-#include <thread>
 #include <utility>
 
+#include "pen/library/arm_channel.hpp"
 #include "riffler/pen/hid/open_error.hpp"
 
-namespace riffler::pen {
+namespace riffler::arm_program {
 namespace {
+
+using pen::channel_now;
+using pen::OpenError;
+using pen::OpenProblem;
 
 // dhdc.h; the array of the status may grow in later versions.
 enum DhdStatus : std::size_t { kPower = 0, kConnected = 1, kReset = 3, kForce = 5, kError = 9, kForceOffCause = 14 };
@@ -22,32 +22,6 @@ constexpr double kStatusPeriod = 0.02;  // s: the status is another message on t
 // What the arms may be asked for at most: below what their makers state for the weakest of each family, in every
 // posture. Torque: of the wrists that have motors.
 constexpr double kDhdForce = 8, kDhdTorque = 150;  // N, N·mm
-
-/// Arms that this process has open: the library would give the same arm twice.
-class OpenNumbers {
- public:
-  bool take(int number) {
-    const std::lock_guard lock(mutex_);
-    return open_.insert(number).second;
-  }
-  void give_back(int number) {
-    const std::lock_guard lock(mutex_);
-    open_.erase(number);
-  }
-
- private:
-  std::mutex mutex_;
-  std::set<int> open_;
-};
-
-OpenNumbers& open_numbers() {
-  static OpenNumbers numbers;
-  return numbers;
-}
-
-double dhd_now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 /// From the library's axes to Riffler's: a quarter turn about z.
 Vec3 from_dhd(double x, double y, double z) {
@@ -84,18 +58,10 @@ void DhdArm::fail(const char* what) const {
   throw OpenError(OpenProblem::Other, std::string(what) + ": " + (why == nullptr ? "no reason given" : why));
 }
 
-DhdArm::DhdArm(std::shared_ptr<const DhdFunctions> functions, int number)
-    : dhd_(std::move(functions)), number_(number) {
-  if (!open_numbers().take(number))
-    throw OpenError(OpenProblem::Busy, "Riffler itself has the arm open; end that session first");
-  try {
-    const int id = dhd_->open_id(static_cast<char>(number));
-    if (id < 0) fail("the library cannot open the arm");
-    id_ = static_cast<char>(id);
-  } catch (...) {
-    open_numbers().give_back(number);
-    throw;
-  }
+DhdArm::DhdArm(std::shared_ptr<const DhdFunctions> functions, int number) : dhd_(std::move(functions)) {
+  const int id = dhd_->open_id(static_cast<char>(number));
+  if (id < 0) fail("the library cannot open the arm");
+  id_ = static_cast<char>(id);
   const char* const name = dhd_->get_system_name(id_);
   traits_.name = name == nullptr ? "Force Dimension arm" : name;
   unsigned short serial = 0;
@@ -115,7 +81,6 @@ DhdArm::~DhdArm() {
     dhd_->enable_force(0, id_);
   }
   dhd_->close(id_);
-  open_numbers().give_back(number_);
 }
 
 void DhdArm::enable() {
@@ -136,21 +101,21 @@ bool DhdArm::read_status() noexcept {
   return status[kConnected] != 0;
 }
 
-int DhdArm::read(std::span<std::uint8_t> bytes, double seconds) noexcept {
-  double now = dhd_now();
-  if (now < next_) {
-    if (now + seconds < next_) return 0;
-    std::this_thread::sleep_for(std::chrono::duration<double>(next_ - now));
-    now = dhd_now();
-  }
+double DhdArm::due() const noexcept {
+  return next_ - channel_now();
+}
+
+Reading DhdArm::read(pen::ArmState& state) noexcept {
+  const double now = channel_now();
+  if (now < next_) return Reading::None;
   next_ = std::max(next_ + kPeriod, now);
   std::array<double, 3> p{}, v{};
   double frame[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  if (dhd_->get_position(&p[0], &p[1], &p[2], id_) < 0) return -1;
-  if (dhd_->get_linear_velocity(&v[0], &v[1], &v[2], id_) < 0) return -1;
-  if (traits_.own_axis != Vec3(0) && dhd_->get_orientation_frame(frame, id_) < 0) return -1;
+  if (dhd_->get_position(&p[0], &p[1], &p[2], id_) < 0) return Reading::Gone;
+  if (dhd_->get_linear_velocity(&v[0], &v[1], &v[2], id_) < 0) return Reading::Gone;
+  if (traits_.own_axis != Vec3(0) && dhd_->get_orientation_frame(frame, id_) < 0) return Reading::Gone;
   if (now >= status_due_) {
-    if (!read_status()) return -1;
+    if (!read_status()) return Reading::Gone;
     status_due_ = now + kStatusPeriod;
   }
   constexpr double kMillimetres = 1000;  // in a metre
@@ -158,18 +123,48 @@ int DhdArm::read(std::span<std::uint8_t> bytes, double seconds) noexcept {
   state_.velocity = kMillimetres * from_dhd(v[0], v[1], v[2]);
   for (int k = 0; k < 3; ++k) state_.frame[k] = from_dhd(frame[0][k], frame[1][k], frame[2][k]);
   state_.buttons = dhd_->get_button_mask(id_);
-  if (bytes.size() < sizeof state_) return -1;
-  std::memcpy(bytes.data(), &state_, sizeof state_);
-  return static_cast<int>(sizeof state_);
+  state = state_;
+  return Reading::New;
 }
 
-bool DhdArm::write(std::span<const std::uint8_t> bytes) noexcept {
-  ArmCommand command;
-  if (bytes.size() != sizeof command) return false;
-  std::memcpy(&command, bytes.data(), sizeof command);
+bool DhdArm::push(const pen::ArmCommand& command) noexcept {
   constexpr double kNewtonMetres = 1e-3;  // in a N·mm
   const Vec3 f = to_dhd(command.force), t = kNewtonMetres * to_dhd(command.torque);
   return dhd_->set_force(f.x, f.y, f.z, t.x, t.y, t.z, 0, id_) >= 0;
 }
 
-}  // namespace riffler::pen
+namespace {
+
+/// The arms of a library by their numbers from 0; names are serial numbers.
+class DhdLibrary final : public Library {
+ public:
+  explicit DhdLibrary(const std::string& path) : dhd_(std::make_shared<DhdFunctions>(SharedLibrary(path))) {}
+
+  std::vector<std::string> keys(const std::string&) override {
+    std::vector<std::string> out;
+    for (int number = 0, count = dhd_->get_device_count(); number < count; ++number)
+      out.push_back(std::to_string(number));
+    return out;
+  }
+  std::unique_ptr<LibraryArm> open(const std::string& key) override {
+    return std::make_unique<DhdArm>(dhd_, std::stoi(key));
+  }
+  bool is(const pen::ArmTraits& traits, const std::string& name) const override {
+    return name.empty() || traits.serial == name;
+  }
+  std::string none(const std::string& name) const override {
+    return name.empty() ? "no arm is plugged in and switched on"
+                        : "no arm with the serial number " + name + " is plugged in";
+  }
+
+ private:
+  std::shared_ptr<const DhdFunctions> dhd_;
+};
+
+}  // namespace
+
+std::unique_ptr<Library> load_dhd(const std::string& path) {
+  return std::make_unique<DhdLibrary>(path);
+}
+
+}  // namespace riffler::arm_program

@@ -1,18 +1,16 @@
-#include "pen/library/hd_library.hpp"
+#include "arm_program/hd_arm.hpp"
 
 #include <array>
-#include <atomic>
-#include <chrono>
-#include <cmath>
-#include <cstring>
-#include <thread>
 #include <utility>
 
-#include "pen/link/deadline.hpp"
 #include "riffler/pen/hid/open_error.hpp"
 
-namespace riffler::pen {
+namespace riffler::arm_program {
 namespace {
+
+using pen::channel_now;
+using pen::OpenError;
+using pen::OpenProblem;
 
 // hdDefines.h.
 enum HdName : unsigned {
@@ -33,13 +31,6 @@ constexpr unsigned kHdCalibrated = 0x5000, kHdNeedsUpdate = 0x5001, kHdInvalid =
 constexpr unsigned kHdForceErrors = 0x0200, kHdDeviceErrors = 0x0300, kHdClass = 0xFF00;
 constexpr unsigned short kHdPriority = 0x7FFF;  // the default
 constexpr std::uint64_t kCheckEvery = 50;       // ticks between two checks of the calibration
-constexpr double kPoll = 1e-4;                  // s: a new reading is at most this old when the driver sees it
-
-std::atomic_flag hd_in_use = ATOMIC_FLAG_INIT;
-
-double hd_now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 /// From the library's axes to Riffler's: a quarter turn about x.
 Vec3 from_hd(const double* v) {
@@ -88,18 +79,11 @@ void HdArm::throw_error(const char* what) const {
 }
 
 HdArm::HdArm(std::shared_ptr<const HdFunctions> functions, const std::string& name) : hd_(std::move(functions)) {
-  if (hd_in_use.test_and_set())
-    throw OpenError(OpenProblem::Busy, "Riffler itself has an arm of this kind open; end that session first");
-  try {
-    while (hd_->get_error().code != 0) {  // errors of an earlier arm
-    }
-    device_ = hd_->init_device(name.empty() ? nullptr : name.c_str());
-    throw_error("the library cannot open the arm");
-    if (device_ == kHdInvalid) throw OpenError(OpenProblem::NoFile, "the library finds no arm");
-  } catch (...) {
-    hd_in_use.clear();
-    throw;
+  while (hd_->get_error().code != 0) {  // errors of an earlier arm
   }
+  device_ = hd_->init_device(name.empty() ? nullptr : name.c_str());
+  throw_error("the library cannot open the arm");
+  if (device_ == kHdInvalid) throw OpenError(OpenProblem::NoFile, "the library finds no arm");
   traits_.name = text_or(hd_->get_string(kHdModel), "3D Systems arm");
   traits_.serial = text_or(hd_->get_string(kHdSerial), "");
   traits_.own_axis = Vec3(0, 0, 1);
@@ -124,7 +108,6 @@ HdArm::~HdArm() {
     hd_->disable(kHdForceOutput);
   }
   hd_->disable_device(device_);
-  hd_in_use.clear();
 }
 
 void HdArm::enable() {
@@ -161,8 +144,8 @@ void HdArm::check() noexcept {
 
 /// In the library's thread.
 void HdArm::tick() noexcept {
-  const Command command = command_.get();
-  const bool fresh = hd_now() - command.time <= kHeld;
+  const pen::TimedCommand command = command_.get();
+  const bool fresh = channel_now() - command.time <= kHeld;
   const std::array<double, 3> force = to_hd(fresh ? command.wrench.force : Vec3(0));
   std::array<double, 3> position{}, velocity{};
   std::array<double, 16> transform{};
@@ -184,29 +167,40 @@ void HdArm::tick() noexcept {
   reading_.set(next_);
 }
 
-int HdArm::read(std::span<std::uint8_t> bytes, double seconds) noexcept {
-  const Deadline deadline(seconds);
-  for (;;) {
-    const Reading reading = reading_.get();
-    if (reading.gone || bytes.size() < sizeof reading.state) return -1;
-    if (reading.number != seen_) {
-      seen_ = reading.number;
-      std::memcpy(bytes.data(), &reading.state, sizeof reading.state);
-      return static_cast<int>(sizeof reading.state);
-    }
-    const double left = deadline.left();
-    if (left <= 0) return 0;
-    std::this_thread::sleep_for(std::chrono::duration<double>(std::min(left, kPoll)));
-  }
+Reading HdArm::read(pen::ArmState& state) noexcept {
+  const Taken taken = reading_.get();
+  if (taken.gone) return Reading::Gone;
+  if (taken.number == seen_) return Reading::None;
+  seen_ = taken.number;
+  state = taken.state;
+  return Reading::New;
 }
 
-bool HdArm::write(std::span<const std::uint8_t> bytes) noexcept {
-  Command command;
-  if (bytes.size() != sizeof command.wrench) return false;
-  std::memcpy(&command.wrench, bytes.data(), sizeof command.wrench);
-  command.time = hd_now();
-  command_.set(command);
+bool HdArm::push(const pen::ArmCommand& command) noexcept {
+  command_.set({command, channel_now()});
   return !reading_.get().gone;
 }
 
-}  // namespace riffler::pen
+namespace {
+
+/// The arms of the maker's configuration, by their names there.
+class HdLibrary final : public Library {
+ public:
+  explicit HdLibrary(const std::string& path) : hd_(std::make_shared<HdFunctions>(SharedLibrary(path))) {}
+
+  std::vector<std::string> keys(const std::string& name) override { return {name}; }
+  std::unique_ptr<LibraryArm> open(const std::string& key) override { return std::make_unique<HdArm>(hd_, key); }
+  bool is(const pen::ArmTraits&, const std::string&) const override { return true; }
+  std::string none(const std::string&) const override { return "the library finds no arm"; }
+
+ private:
+  std::shared_ptr<const HdFunctions> hd_;
+};
+
+}  // namespace
+
+std::unique_ptr<Library> load_hd(const std::string& path) {
+  return std::make_unique<HdLibrary>(path);
+}
+
+}  // namespace riffler::arm_program

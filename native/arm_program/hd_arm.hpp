@@ -6,17 +6,16 @@
 // user; lengths in mm.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <string>
 
-#include "pen/library/arm_state.hpp"
-#include "pen/library/shared_library.hpp"
-#include "pen/link/transport.hpp"
+#include "arm_program/library_arm.hpp"
+#include "arm_program/shared_library.hpp"
+#include "pen/library/arm_channel.hpp"
 #include "riffler/pen/published.hpp"
 
-namespace riffler::pen {
+namespace riffler::arm_program {
 
 /// HDErrorInfo.
 struct HdError {
@@ -52,37 +51,32 @@ struct HdFunctions {
   explicit HdFunctions(const SharedLibrary& library);
 };
 
-/// An arm that is open; one in a process, since the library has one scheduler. The library's own thread (1 kHz) reads
-/// the arm and sends it the newest command, or zero force if that is older than kHeld; the driver's thread only
+/// An arm that is open; one in a program, since the library has one scheduler. The library's own thread (1 kHz) reads
+/// the arm and sends it the newest command, or zero force if that is older than kHeld; the program's loop only
 /// exchanges values with it, without locks.
-class HdArm final : public Transport {
+class HdArm final : public LibraryArm {
  public:
-  static constexpr double kHeld = 0.02;  // s for which a command holds
+  static constexpr double kHeld = pen::ArmChannel::kHeld;
 
   /// Opens the arm with that name in the maker's configuration; empty: the default one. Throws OpenError with the
-  /// library's own words; Busy if this process has an arm open already.
+  /// library's own words.
   HdArm(std::shared_ptr<const HdFunctions> functions, const std::string& name);
   HdArm(const HdArm&) = delete;
   HdArm& operator=(const HdArm&) = delete;
-  /// Ends the force and closes the arm.
   ~HdArm() override;
 
-  const ArmTraits& traits() const { return traits_; }
-  /// Starts the library's thread and lets commands push from now on. Throws OpenError.
-  void enable();
-
-  int read(std::span<std::uint8_t> bytes, double seconds) noexcept override;
-  bool write(std::span<const std::uint8_t> bytes) noexcept override;
+  const pen::ArmTraits& traits() const override { return traits_; }
+  /// Starts the library's thread, too.
+  void enable() override;
+  double due() const noexcept override { return 1e-4; }  // a new reading is at most this old when it is read
+  Reading read(pen::ArmState& state) noexcept override;
+  bool push(const pen::ArmCommand& command) noexcept override;
 
  private:
-  struct Reading {
-    ArmState state;
+  struct Taken {
+    pen::ArmState state;
     std::uint64_t number = 0;
     bool gone = false;
-  };
-  struct Command {
-    ArmCommand wrench;
-    double time = -1e300;  // s of the steady clock
   };
   static unsigned serve(void* arm) noexcept;
   void tick() noexcept;
@@ -91,13 +85,13 @@ class HdArm final : public Transport {
 
   std::shared_ptr<const HdFunctions> hd_;
   unsigned device_ = 0;
-  ArmTraits traits_;
+  pen::ArmTraits traits_;
   unsigned long scheduled_ = 0;
   bool enabled_ = false;
   std::uint64_t seen_ = 0;  // number of the last reading that was read
-  Published<Command> command_;
-  Published<Reading> reading_;
-  Reading next_;  // used by the library's thread
+  pen::Published<pen::TimedCommand> command_;
+  pen::Published<Taken> reading_;
+  Taken next_;  // used by the library's thread
 };
 
-}  // namespace riffler::pen
+}  // namespace riffler::arm_program

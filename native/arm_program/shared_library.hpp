@@ -1,20 +1,9 @@
 // A maker's library, opened at run time: nothing is linked, and nothing is loaded before its user asks for it.
 #pragma once
 
-#include <initializer_list>
 #include <string>
 
-namespace riffler::pen {
-
-/// Where a library lies, and whether the user has pointed to it.
-struct LibraryPlace {
-  std::string path;     // empty: it was not found
-  bool chosen = false;  // by the environment variable
-};
-
-/// The file that the environment variable names, or else the first of `names` in the folders of LD_LIBRARY_PATH and of
-/// the system. Looks for files only; loads nothing.
-LibraryPlace find_library(const char* variable, std::initializer_list<const char*> names);
+namespace riffler::arm_program {
 
 /// Stays loaded until the process ends: such libraries have threads of their own.
 class SharedLibrary {
@@ -43,4 +32,4 @@ class SharedLibrary {
   void* handle_ = nullptr;
 };
 
-}  // namespace riffler::pen
+}  // namespace riffler::arm_program

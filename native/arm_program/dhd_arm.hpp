@@ -7,13 +7,11 @@
 
 #include <memory>
 #include <string>
-#include <vector>
 
-#include "pen/library/arm_state.hpp"
-#include "pen/library/shared_library.hpp"
-#include "pen/link/transport.hpp"
+#include "arm_program/library_arm.hpp"
+#include "arm_program/shared_library.hpp"
 
-namespace riffler::pen {
+namespace riffler::arm_program {
 
 /// The functions of libdhd. An ID is a char there.
 struct DhdFunctions {
@@ -37,37 +35,33 @@ struct DhdFunctions {
   explicit DhdFunctions(const SharedLibrary& library);
 };
 
-/// An arm that is open. Its destructor ends the force and closes the arm.
-class DhdArm final : public Transport {
+class DhdArm final : public LibraryArm {
  public:
   static constexpr double kPeriod = 1e-3;    // s between two readings
   static constexpr double kWatchdog = 0.02;  // s without a command after which the arm itself ends the force
 
-  /// Opens the arm with that number, from 0. Throws OpenError with the library's own words; Busy also if this process
-  /// has it open already.
+  /// Opens the arm with that number, from 0. Throws OpenError with the library's own words.
   DhdArm(std::shared_ptr<const DhdFunctions> functions, int number);
   DhdArm(const DhdArm&) = delete;
   DhdArm& operator=(const DhdArm&) = delete;
   ~DhdArm() override;
 
-  const ArmTraits& traits() const { return traits_; }
-  /// Lets commands push from now on, after one for zero force. Throws OpenError.
-  void enable();
-
-  int read(std::span<std::uint8_t> bytes, double seconds) noexcept override;
-  bool write(std::span<const std::uint8_t> bytes) noexcept override;
+  const pen::ArmTraits& traits() const override { return traits_; }
+  void enable() override;
+  double due() const noexcept override;
+  Reading read(pen::ArmState& state) noexcept override;
+  bool push(const pen::ArmCommand& command) noexcept override;
 
  private:
   bool read_status() noexcept;
   [[noreturn]] void fail(const char* what) const;
 
   std::shared_ptr<const DhdFunctions> dhd_;
-  int number_;
   char id_ = -1;
-  ArmTraits traits_;
-  ArmState state_;
+  pen::ArmTraits traits_;
+  pen::ArmState state_;
   double next_ = 0, status_due_ = 0;  // s of the steady clock
   bool enabled_ = false;
 };
 
-}  // namespace riffler::pen
+}  // namespace riffler::arm_program

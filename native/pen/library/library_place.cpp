@@ -1,16 +1,12 @@
-#include "pen/library/shared_library.hpp"
+#include "pen/library/library_place.hpp"
 
-#include <dlfcn.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cstdlib>
 #include <iterator>
 #include <string_view>
-#include <utility>
 #include <vector>
-
-#include "riffler/pen/hid/open_error.hpp"
 
 namespace riffler::pen {
 namespace {
@@ -40,30 +36,6 @@ LibraryPlace find_library(const char* variable, std::initializer_list<const char
     for (const char* const name : names)
       if (const std::string path = folder + "/" + name; ::access(path.c_str(), R_OK) == 0) return {path, false};
   return {};
-}
-
-SharedLibrary::SharedLibrary(std::string path) : path_(std::move(path)) {
-  // Without a folder the system would look for the name elsewhere than its user may think.
-  if (!path_.starts_with('/'))
-    throw OpenError(OpenProblem::NotInstalled, path_ + ": give the library's whole path, which begins with /");
-  if (::access(path_.c_str(), F_OK) != 0) throw OpenError(OpenProblem::NotInstalled, path_ + ": no such file");
-  handle_ = ::dlopen(path_.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
-  if (handle_ == nullptr) {
-    const char* const why = ::dlerror();
-    throw OpenError(OpenProblem::WrongLibrary,
-                    path_ + ": the system cannot load it: " + (why == nullptr ? "no reason given" : why));
-  }
-}
-
-void* SharedLibrary::symbol(const char* name) const {
-  return ::dlsym(handle_, name);
-}
-
-void* SharedLibrary::required(const char* name) const {
-  void* const found = symbol(name);
-  if (found == nullptr)
-    throw OpenError(OpenProblem::WrongLibrary, path_ + ": it has no function " + name + "; is it of another version?");
-  return found;
 }
 
 }  // namespace riffler::pen
