@@ -7,6 +7,7 @@
 #include "bindings/task.hpp"
 #include "riffler/session/journal_file.hpp"
 #include "riffler/session/replay.hpp"
+#include "session/stroke_search.hpp"
 
 namespace riffler::bindings {
 
@@ -90,6 +91,16 @@ auto replayed_with_mask(const session::Journal& journal, const std::optional<std
     if (found.mask) mask = py::cast(std::make_shared<SharedVolume>(std::move(*found.mask)));
     return py::make_tuple(std::make_shared<SharedVolume>(std::move(found.volume)), mask);
   });
+}
+
+auto strokes_at(const session::Journal& journal, const Doubles& points, double tolerance,
+                const ProgressLike& progress) {
+  const auto work = [copy = journal, tools = tools_of(journal), places = to_vec3s(points, "points"),
+                     tolerance](const Progress& listener) {
+    return session::stroke_search(copy, tools, tolerance).find(places, listener);
+  };
+  return long_call(progress, work,
+                   [](std::vector<std::int32_t>&& found) { return take<std::int32_t>(std::move(found)); });
 }
 
 OptionalArray column(const std::vector<double>& values) {
@@ -253,6 +264,34 @@ Examples
 >>> journal.set_stock((0, 0, 0), (20, 20, 10), 0.5)
 >>> journal.replay().volume
 4000.0
+)")
+      .def("strokes_at", &strokes_at, py::arg("points"), py::kw_only(), py::arg("tolerance") = 0.05,
+           py::arg("progress") = py::none(),
+           R"(Which stroke made the surface at each point.
+
+Parameters
+----------
+points : array_like, shape (n, 3)
+    mm: places on what the strokes leave, such as vertices of its mesh.
+tolerance : float
+    mm that a point may be off the surface; a quarter of the pitch fits vertices of a mesh.
+progress : callable, optional
+    Called with the finished share; returning False cancels.
+
+Returns
+-------
+ndarray, shape (n,)
+    The place in ``strokes`` of the one that swept along the point, the first if several did; -1 where none did: the
+    stock's own surface, and what was smoothed.
+
+Examples
+--------
+>>> journal = riffler.Journal()
+>>> journal.set_stock((0, 0, 0), (20, 20, 10), 0.5)
+>>> journal.add_tool(1, riffler.Tool.ball(diameter=6, length=30))
+>>> journal.add_stroke(1, [(0, 10, 8, 0, 0, 1), (20, 10, 8, 0, 0, 1)])
+>>> journal.strokes_at([(10, 10, 8), (10, 2, 10)])
+array([ 0, -1], dtype=int32)
 )")
       .def("replay_with_mask", &replayed_with_mask, py::arg("folder") = py::none(), py::kw_only(),
            py::arg("progress") = py::none(),

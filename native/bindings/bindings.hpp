@@ -37,6 +37,7 @@ void bind_smooth_dabs(py::module_& m);
 void bind_mesher(py::module_& m);
 void bind_program(py::module_& m);
 void bind_program_file(py::module_& m);
+void bind_cut_search(py::module_& m);
 void bind_verify(py::module_& m);
 void bind_cluster(py::module_& m);
 void bind_pen(py::module_& m);

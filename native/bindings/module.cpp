@@ -26,6 +26,7 @@ PYBIND11_MODULE(_core, m) {
   bindings::bind_nc(m);
   bindings::bind_program_paths(m);
   bindings::bind_program_file(m);
+  bindings::bind_cut_search(m);
   bindings::bind_verify(m);
   bindings::bind_cluster(m);
   bindings::bind_pen(m);
