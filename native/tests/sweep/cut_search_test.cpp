@@ -125,14 +125,19 @@ TEST(CutSearch, FindsTheMoveThatLastChangedEachRay) {
       if (tops[r].z < 0) continue;  // nothing is left of the ray
       stock += maker[r] < 0;
       if (found[r] == maker[r]) continue;
+      ASSERT_GE(found[r], 0) << "seed " << seed << ", ray " << r;
+      const SearchedMove& move = moves[static_cast<std::size_t>(found[r] / 10)];
+      const double distance =
+          std::abs(swept_distance(tool::Outline(tools[move.tool]), Motion(move.from, move.to), tops[r], 1e300, 1e-6));
+      // The stock's own surface at the edge of a groove.
+      if (maker[r] < 0) {
+        EXPECT_LE(distance, kTolerance);
+        continue;
+      }
       // An earlier move came within the band of equals: consecutive moves touch where they meet.
       ++other;
-      ASSERT_GE(found[r], 0) << "seed " << seed << ", ray " << r;
       EXPECT_LT(found[r], maker[r]);
-      const SearchedMove& move = moves[static_cast<std::size_t>(found[r] / 10)];
-      EXPECT_LT(
-          std::abs(swept_distance(tool::Outline(tools[move.tool]), Motion(move.from, move.to), tops[r], 1e300, 1e-6)),
-          0.1 * kTolerance);
+      EXPECT_LT(distance, 0.1 * kTolerance);
     }
     EXPECT_GT(stock, 20U);
     EXPECT_LT(other, found.size() / 10);
