@@ -10,7 +10,10 @@ from .views import views
 DISTANCE = "riffler_deviation"  # mm
 COLOUR = "riffler_deviation_colour"
 ERROR = "riffler_error"  # on a mesh made from a sculpt: mm, the largest distance from it
-SCALE = "riffler_deviation_scale"  # on the mesh: distance of full colours, mm; present if a legend is drawn
+# On the mesh while it is coloured: the distance of full colours, mm; 0: the colours are of rows or tools.
+SCALE = "riffler_deviation_scale"
+# On the faces: which row of the program made them, its line and its tool; −1: the stock's own surface.
+ROW, LINE, TOOL = "riffler_row", "riffler_line", "riffler_tool"
 
 _undone = False  # True after an undo removed the last colours, which a redo may restore
 
@@ -24,23 +27,33 @@ def show_distance(mesh, distance, scale):
     mesh[SCALE] = float(scale)
 
 
-def hide_distance(mesh):
-    """True if the mesh showed distances."""
-    for name in (DISTANCE, COLOUR):
+def show_cuts(mesh, cuts, shown):
+    """Stores `cuts`, {ROW, LINE, TOOL: (faces,)}, as attributes of the faces, and their colours `shown` (faces, 4)."""
+    for name, values in cuts.items():
+        _put(mesh, name, "INT", "value", np.asarray(values, np.int32), "FACE")
+    corners = np.repeat(np.asarray(shown, np.float32), 3, axis=0)
+    _put(mesh, COLOUR, "FLOAT_COLOR", "color", corners, "CORNER")
+    mesh.color_attributes.active_color = mesh.color_attributes[COLOUR]
+    mesh[SCALE] = 0.0
+
+
+def hide_colours(mesh):
+    """True if the mesh showed distances or cuts."""
+    for name in (DISTANCE, COLOUR, ROW, LINE, TOOL):
         if name in mesh.attributes:
             mesh.attributes.remove(mesh.attributes[name])
     return mesh.pop(SCALE, None) is not None
 
 
-def coloured(mesh):
+def shows_distance(mesh):
     """Whether the mesh shows distances. An edit of the mesh may have removed the colours but not the scale."""
-    return SCALE in mesh and COLOUR in mesh.attributes
+    return mesh.get(SCALE, 0.0) > 0 and COLOUR in mesh.attributes
 
 
-def _put(mesh, name, kind, field, values):
+def _put(mesh, name, kind, field, values, domain="POINT"):
     if name in mesh.attributes:
         mesh.attributes.remove(mesh.attributes[name])
-    mesh.attributes.new(name, kind, "POINT").data.foreach_set(field, np.ascontiguousarray(values).ravel())
+    mesh.attributes.new(name, kind, domain).data.foreach_set(field, np.ascontiguousarray(values).ravel())
 
 
 # ------------------------------------------------------------------ how the views show them

@@ -42,6 +42,8 @@ class GivenOptions:
 COLOURED = (
     ("PART", "Part", "At the part's own vertices: of a mesh that is fine enough"),
     ("LEFT", "Remaining Stock", "A mesh of the stock after the program, at the stock's pitch"),
+    ("LINE", "Program Lines", "The remaining stock by the lines that cut it, from blue for the first to yellow"),
+    ("TOOL", "Tools", "The remaining stock by the tools that cut it"),
     ("NONE", "Nothing", "The findings only"),
 )
 
@@ -55,7 +57,7 @@ class VerifySettings(ProgramSettings):
         name="Colour",
         items=COLOURED,
         default="PART",
-        description="What to colour by the distance between the part and the remaining material",
+        description="What to colour, by the distance between the part and the remaining material or by what cut it",
     )
     scale: length("Colour Range", 0.5, "Distance at which colours reach full strength, in mm", 1e-5)
 

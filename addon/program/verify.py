@@ -11,7 +11,7 @@ from bpy.props import BoolProperty, EnumProperty, IntProperty
 
 from ..blender import attributes, handlers, meshes, object_surfaces, operator_parts, scene_units
 from ..blender.long_work import LongWork
-from ..common import poses, units
+from ..common import colours, poses, units
 from ..common.job import ChainJob, ThreadTask
 from ..plan import findings, obstacles, plan_store
 from ..plan.pure.clearance import check_fixture
@@ -21,6 +21,7 @@ from . import programs, properties, simulation
 from .pure import finding_titles
 
 MOST = 1000  # rows in the list
+CUTS = ("LINE", "TOOL")  # colours by what cut
 _last = None  # the last verification: an edited program is verified again only where it differs
 
 
@@ -63,9 +64,11 @@ class RIFFLER_OT_verify(LongWork, properties.VerifySettings, properties.GivenOpt
             limits["rest_tolerance"] = None
         if setup.machine:
             limits.update(machine=setup.machine, machine_options=setup.options, machine_frame=setup.to_machine.tolist())
+        by_cuts = self.coloured in CUTS
         return ChainJob(
             lambda _: ThreadTask(lambda progress: _verification(setup, part, fixtures, limits, progress)),
             lambda verification: riffler.submit(riffler.Verification.run, verification, setup.program),
+            lambda report: ThreadTask(lambda progress: (report, _cuts(setup, report, progress) if by_cuts else None)),
         )
 
     def lost(self, context):
@@ -74,13 +77,13 @@ class RIFFLER_OT_verify(LongWork, properties.VerifySettings, properties.GivenOpt
         return ""
 
     def finish(self, context, job):
-        report, setup = job.result, self._setup
+        (report, cuts), setup = job.result, self._setup
         settings = context.scene.riffler.verify
         found = report.findings
         findings.write(settings.findings, [_entry(f, setup) for f in found[:MOST]])
         settings.index = -1
         kept = _show_text(settings, setup)
-        coloured = self._colour(context, report)
+        coloured = self._colour_cuts(context, cuts) if cuts else self._colour(context, report)
         more = " ".join([*report.not_checked, *coloured, *kept])
         if found:
             settings.said = f"{setup.name}: {units.counted(len(found), 'finding')}"
@@ -115,8 +118,34 @@ class RIFFLER_OT_verify(LongWork, properties.VerifySettings, properties.GivenOpt
             _hide(context, [other for other in (stock, part) if other != ob])
         return []
 
+    def _colour_cuts(self, context, cuts):
+        """Shows on the remaining stock which lines or tools cut it; returns no reasons why not."""
+        surface, values = cuts
+        stock, part = context.scene.objects[self._setup.sculpt], context.scene.objects.get(self._part)
+        _clear(context)
+        ob = _left(context, surface, stock)
+        rows, tools = values[attributes.ROW], values[attributes.TOOL]
+        by_line = self.coloured == "LINE"
+        shown = colours.of_sequence(rows, len(self._setup.program.poses)) if by_line else colours.of_kinds(tools)
+        attributes.show_cuts(ob.data, values, shown)
+        attributes.shade_by_attribute()
+        if self.hide:
+            _hide(context, [other for other in (stock, part) if other is not None])
+        return []
+
     def draw(self, context):
         operator_parts.draw_fields(self, ("source", "gouge", "rest", "coloured", "scale", "hide"))
+
+
+def _cuts(setup, report, progress):
+    """The remaining stock's surface, and which row, line and tool made each of its faces. Runs off Blender's thread."""
+    surface = report.volume.to_mesh()
+    corners = np.asarray(surface.vertices)[np.asarray(surface.triangles)]
+    pitch = setup.stock.pitch
+    rows = np.asarray(setup.program.rows_at(corners.mean(axis=1), tolerance=0.25 * pitch, progress=progress))
+    made = rows >= 0
+    lines, tools = (np.where(made, np.asarray(column)[rows], -1) for column in (setup.program.line, setup.program.tool))
+    return surface, {attributes.ROW: rows, attributes.LINE: lines, attributes.TOOL: tools}
 
 
 def _show_text(settings, setup):
@@ -151,7 +180,7 @@ def _clear(context):
     settings = context.scene.riffler.verify
     for ob in context.scene.objects:
         if ob.type == "MESH" and attributes.SCALE in ob.data and not ob.data.library:
-            attributes.hide_distance(ob.data)
+            attributes.hide_colours(ob.data)
     attributes.settle()
     for name in settings.hidden.split("\n"):
         ob = context.scene.objects.get(name)

@@ -133,7 +133,7 @@ def facts(content):
 def show(mesh, surface, mm_per_unit, mask=None):
     """Fills the mesh from a surface in millimetres; faces within `mask`, a volume, are shown as protected. Deviation
     colours are removed, since they belong to the previous surface."""
-    if attributes.hide_distance(mesh):
+    if attributes.hide_colours(mesh):
         attributes.settle()
     meshes.fill(mesh, np.asarray(surface.vertices) / mm_per_unit, surface.triangles)
     mask_display.show(mesh, mask, np.asarray(surface.vertices), np.asarray(surface.triangles))

@@ -16,7 +16,7 @@ def mesh_of(context):
     """The mesh whose colours the legend explains, or None."""
     own = context.scene.riffler
     for ob in (context.object, own.verify.left, own.plan.part):
-        if ob is not None and ob.type == "MESH" and attributes.coloured(ob.data) and ob.visible_get():
+        if ob is not None and ob.type == "MESH" and attributes.shows_distance(ob.data) and ob.visible_get():
             return ob.data
     return None
 

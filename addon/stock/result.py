@@ -188,7 +188,7 @@ class RIFFLER_OT_hide_deviation(bpy.types.Operator):
         return True
 
     def execute(self, context):
-        attributes.hide_distance(context.object.data)
+        attributes.hide_colours(context.object.data)
         attributes.settle()
         return {"FINISHED"}
 

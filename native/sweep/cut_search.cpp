@@ -26,7 +26,7 @@ tool::Outline cutter_outline(const Tool& tool) {
   return tool::Outline(Tool(tool.kind(), tool.parameters(), tool.profile()));
 }
 
-/// Of the swept cutter. On a great circle a point at height h is at most h (1 − cos(angle / 2)) off its chord.
+/// Bounds the swept cutter. On a great circle a point at height h is at most h (1 − cos(angle / 2)) off its chord.
 Box3 swept_box(const SearchedMove& move, const Motion& motion, const Tool& tool) {
   Box3 box;
   for (const Pose& pose : {move.from, move.to}) box.add(pose.tip), box.add(pose.tip + tool.length() * pose.axis);
@@ -40,6 +40,7 @@ Box3 swept_box(const SearchedMove& move, const Motion& motion, const Tool& tool)
 struct CutSearch::Core {
   std::vector<tool::Outline> outlines;
   std::vector<SearchedMove> moves;
+  std::vector<Motion> motions;
   double tolerance;
   std::vector<std::uint32_t> order;  // of the leaves
   std::size_t levels = 0;
@@ -59,7 +60,7 @@ void CutSearch::Core::build(const std::vector<Tool>& tools) {
   std::vector<Vec3> centres(n);
   base::parallel_for(n, 1 << 12, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
-      own[k] = swept_box(moves[k], Motion(moves[k].from, moves[k].to), tools[moves[k].tool]);
+      own[k] = swept_box(moves[k], motions[k], tools[moves[k].tool]);
       centres[k] = 0.5 * (own[k].lower + own[k].upper);
     }
   });
@@ -119,6 +120,7 @@ CutSearch::CutSearch(std::vector<Tool> tools, std::vector<SearchedMove> moves, d
     if (move.tool >= tools.size())
       throw std::invalid_argument("moves: there is no tool " + std::to_string(move.tool) + " in the list");
     check_path(std::vector<Pose>{move.from, move.to});
+    core->motions.emplace_back(move.from, move.to);
   }
   core->moves = std::move(moves);
   core->tolerance = tolerance;

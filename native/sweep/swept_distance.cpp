@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <utility>
 
 namespace riffler::sweep {
 namespace {
@@ -21,30 +21,30 @@ double speed_at(const Motion& motion, const Vec3& p) {
   return glm::length(travel) + motion.angle() * reach;
 }
 
+/// A span of time and the distance at its middle.
 struct Span {
-  double begin, end;
-  double low;  // no distance within it is less
+  double middle, half;
+  double distance;
 };
 
 }  // namespace
 
 double swept_distance(const tool::Outline& cutter, const Motion& motion, const Vec3& p, double enough, double slack) {
   const double speed = speed_at(motion, p);
-  double best = std::min(distance_at(cutter, motion, p, 0), distance_at(cutter, motion, p, 1));
+  double best = distance_at(cutter, motion, p, 0.5);
   // Halves, the more promising one first: at most one span of each size waits.
   std::array<Span, 64> stack;
   std::size_t depth = 0;
-  stack[depth++] = {0, 1, best - speed};
+  stack[depth++] = {0.5, 0.5, best};
   while (depth > 0) {
     const Span span = stack[--depth];
-    if (span.low >= std::min(best - slack, enough)) continue;
-    const double middle = 0.5 * (span.begin + span.end), quarter = 0.25 * (span.end - span.begin);
-    best = std::min(best, distance_at(cutter, motion, p, middle));
-    if (speed * quarter <= slack || depth + 2 > stack.size()) continue;
-    Span first{span.begin, middle, distance_at(cutter, motion, p, span.begin + quarter) - speed * quarter};
-    Span second{middle, span.end, distance_at(cutter, motion, p, span.end - quarter) - speed * quarter};
-    best = std::min({best, first.low + speed * quarter, second.low + speed * quarter});
-    if (first.low < second.low) std::swap(first, second);
+    const double reach = speed * span.half;  // no distance within the span is smaller by more than this
+    if (reach <= slack || span.distance - reach >= std::min(best - slack, enough) || depth + 2 > stack.size()) continue;
+    const double half = 0.5 * span.half;
+    Span first{span.middle - half, half, distance_at(cutter, motion, p, span.middle - half)};
+    Span second{span.middle + half, half, distance_at(cutter, motion, p, span.middle + half)};
+    best = std::min({best, first.distance, second.distance});
+    if (first.distance < second.distance) std::swap(first, second);
     stack[depth++] = first;
     stack[depth++] = second;
   }

@@ -166,6 +166,40 @@ def test_what_is_left_is_shown_with_its_distances():
     assert "Stock Left" not in bpy.data.objects and not stock.hide_get() and not part.hide_get()
 
 
+def test_what_is_left_is_coloured_by_the_lines_and_tools_that_cut_it():
+    stock = prepared()
+    path, _ = nc()
+    bpy.ops.riffler.verify(source="FILE", filepath=path, coloured="LINE")
+    mesh = programs.settings().left.data
+    read = {
+        name: np.array([v.value for v in mesh.attributes[name].data])
+        for name in ("riffler_row", "riffler_line", "riffler_tool")
+    }
+    centres = np.array([np.array(face.center) for face in mesh.polygons])
+    # The ball's centre runs 3 mm off floor and wall, along x; elsewhere is the stock's own surface.
+    off = np.abs(np.hypot(centres[:, 1] - 17, centres[:, 2] - 11) - 3)
+    inside = np.abs(centres[:, 0] - 30) < 15
+    cut = inside & (off < 0.01)
+    own = inside & (off > 0.2)
+    assert cut.sum() > 100 and (read["riffler_row"][cut] > 0).all() and (read["riffler_row"][own] == -1).all()
+    program = riffler.Program.read(path)
+    assert (read["riffler_line"][cut] == np.asarray(program.line)[read["riffler_row"][cut]]).all()
+    # Rows lie along the path: the move passes the face, up to what the band of equals allows.
+    tips = np.asarray(program.poses)[read["riffler_row"][cut], 0]
+    before = np.asarray(program.poses)[read["riffler_row"][cut] - 1, 0]
+    low, high = np.minimum(tips, before), np.maximum(tips, before)
+    assert ((centres[cut, 0] > low - 0.4) & (centres[cut, 0] < high + 0.4)).all()
+    assert mesh.color_attributes.active_color.domain == "CORNER" and stock.hide_get()
+    legend = common.part("blender.attributes")
+    assert not legend.shows_distance(mesh), "no legend of distances"
+    bpy.ops.riffler.verify(source="FILE", filepath=path, coloured="TOOL")
+    mesh = programs.settings().left.data
+    colours = np.array([tuple(c.color) for c in mesh.color_attributes["riffler_deviation_colour"].data])[::3]
+    assert len({tuple(c) for c in colours[cut].round(4)}) == 1 and not np.allclose(colours[cut][0], colours[own][0])
+    bpy.ops.riffler.verify_clear()
+    assert "Stock Left" not in bpy.data.objects and not stock.hide_get()
+
+
 @common.core_bound
 def test_fixtures_are_hit():
     prepared()

@@ -2601,6 +2601,36 @@ class Program:
         >>> program.renumber_tools({1: 7}).tool
         array([7, 7], dtype=int32)
         """
+    def rows_at(self, points: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], *, tools: collections.abc.Mapping[int, Tool] | None = None, tolerance: typing.SupportsFloat = 0.05, progress: collections.abc.Callable[[float], bool | None] | None = None) -> numpy.typing.NDArray[numpy.int32]:
+        """
+        Which row made the surface at each point.
+
+        The swept bodies of all moves are searched; nothing has to be stored while cutting. ``program.line`` and ``program.tool`` of
+        the rows are the lines and tools that made a surface.
+
+        Parameters
+        ----------
+        points : array_like, shape (n, 3)
+            mm: places on what the program leaves, such as vertices of its mesh.
+        tools : dict, optional
+            Number to Tool; takes the place of the program's own.
+        tolerance : float
+            mm that a point may be off the surface; a quarter of the pitch fits vertices of a mesh.
+        progress : callable, optional
+            Called with the finished share; returning False cancels.
+
+        Returns
+        -------
+        ndarray, shape (n,)
+            The row whose move swept along the point, the first if several did; -1 where none did: the stock's own surface.
+
+        Examples
+        --------
+        >>> ball = riffler.Tool.ball(diameter=6, length=30)
+        >>> program = riffler.Program([(0, 0, 8, 0, 0, 1), (20, 0, 8, 0, 0, 1), (20, 9, 8, 0, 0, 1)], 600, tools={1: ball})
+        >>> program.rows_at([(10, 0, 8), (20, 5, 8), (10, 20, 10)])
+        array([ 1,  2, -1], dtype=int32)
+        """
     def save(self, path: os.PathLike | str | bytes, *, progress: collections.abc.Callable[[float], bool | None] | None = None) -> None:
         """
         Writes a .rprog file: everything to the bit, which NC code cannot keep.
@@ -4221,6 +4251,34 @@ class Journal:
         >>> journal.set_stock((0, 0, 0), (20, 20, 10), 0.5)
         >>> journal.stock.pitch
         0.5
+        """
+    def strokes_at(self, points: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], *, tolerance: typing.SupportsFloat = 0.05, progress: collections.abc.Callable[[float], bool | None] | None = None) -> numpy.typing.NDArray[numpy.int32]:
+        """
+        Which stroke made the surface at each point.
+
+        Parameters
+        ----------
+        points : array_like, shape (n, 3)
+            mm: places on what the strokes leave, such as vertices of its mesh.
+        tolerance : float
+            mm that a point may be off the surface; a quarter of the pitch fits vertices of a mesh.
+        progress : callable, optional
+            Called with the finished share; returning False cancels.
+
+        Returns
+        -------
+        ndarray, shape (n,)
+            The place in ``strokes`` of the one that swept along the point, the first if several did; -1 where none did: the
+            stock's own surface, and what was smoothed.
+
+        Examples
+        --------
+        >>> journal = riffler.Journal()
+        >>> journal.set_stock((0, 0, 0), (20, 20, 10), 0.5)
+        >>> journal.add_tool(1, riffler.Tool.ball(diameter=6, length=30))
+        >>> journal.add_stroke(1, [(0, 10, 8, 0, 0, 1), (20, 10, 8, 0, 0, 1)])
+        >>> journal.strokes_at([(10, 10, 8), (10, 2, 10)])
+        array([ 0, -1], dtype=int32)
         """
     def undo(self, n: typing.SupportsInt = 1) -> None:
         """

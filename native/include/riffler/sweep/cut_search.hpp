@@ -1,4 +1,4 @@
-// Which move made a surface. Nothing is stored while cutting: the moves are searched when somebody asks.
+// Which move made a surface. Nothing is stored while cutting: the moves are searched when a caller asks.
 #pragma once
 
 #include <cstdint>
