@@ -220,20 +220,22 @@ void GridCarver::forget() {
   drop_steps();
 }
 
-/// Begins a round of calls of `advance` with all steps so far.
+/// Begins a round of calls of `advance` with all steps so far. Where the tool will find material is not known, but
+/// all tiles together mostly cost as much as in the round before. A round has a few calls less than moves, so that
+/// publishing, which also packs, finds less to cut.
 void GridCarver::plan(bool publish) {
-  constexpr std::uint64_t kRound = 8, kPublish = 12;               // calls
-  constexpr std::size_t kStep = 100, kPack = 1000, kLeast = 8000;  // rays that take as long; of a call at least
+  constexpr std::uint64_t kRound = 6, kMost = 16, kPublish = 16;  // calls
+  constexpr std::size_t kLeast = 2500;                            // a call's budget, at least
   assign();
   plan_tiles_without_steps();
-  cost_ = 0;
+  std::size_t cost = 0;
   for (Work& w : work_) {
-    w.step_cost = kStep + (open_.is_open(w.tile) ? open_.entry(open_.index(w.tile)).tested : 0);
-    w.pack_cost = publish || w.begin == w.end ? kPack : 0;
-    cost_ += w.cost();
+    w.first = w.begin, w.tested = 0;
+    w.packs = publish || w.begin == w.end;
+    const std::size_t tested = open_.is_open(w.tile) ? open_.entry(open_.index(w.tile)).tested : 0;
+    cost += (w.end - w.begin) * (kStepCost + tested) + (w.packs ? kPackCost : 0);
   }
-  const std::uint64_t most = publish ? kPublish : std::max(kRound, run_ - planned_);
-  calls_ = std::clamp<std::uint64_t>(cost_ / kLeast, 1, most);
+  budget_ = std::max(kLeast, cost / (publish ? kPublish : std::clamp((run_ - planned_) * 4 / 5, kRound, kMost)));
   planned_ = run_;
 }
 
@@ -249,34 +251,38 @@ void GridCarver::plan_tiles_without_steps() {
 
 void GridCarver::advance() {
   if (next_ == work_.size() && !publishing_) plan(false);
-  const std::size_t left = calls_ > 1 ? cost_ - cost_ / calls_ : 0;
-  if (calls_ > 1) --calls_;
-  while (next_ < work_.size() && cost_ > left) {
+  std::size_t spent = std::exchange(overspent_, 0);
+  while (next_ < work_.size() && spent < budget_) {
     Work& w = work_[next_];
-    const std::size_t before = w.cost(), wanted = 1 + (cost_ - left) / w.step_cost;
-    advance(w, std::min(w.end - w.begin, wanted));
+    spent += advance(w);
     if (w.begin == w.end) ++next_;
-    cost_ -= before - (w.begin == w.end ? 0 : w.cost());
   }
+  if (spent > budget_) overspent_ = std::min(spent - budget_, budget_ / 2);
   if (publishing_ && next_ == work_.size()) end_publish();
 }
 
-/// Cuts one tile with the next `count` steps of its work, and packs it after the last one if the grid is to have it.
-void GridCarver::advance(Work& work, std::size_t count) {
-  const bool pack = work.pack_cost > 0, left = work.begin == work.end;
-  Work now{work.tile, work.begin, work.begin + count, nullptr, {}, {}};
+/// Cuts one tile with the next steps of its work, and packs it after the last one if the grid is to have it. Returns
+/// the cost.
+std::size_t GridCarver::advance(Work& work) {
+  constexpr std::size_t kSteps = 2;
+  const bool left = work.begin == work.end;
+  Work now{work.tile, work.begin, std::min(work.begin + kSteps, work.end), nullptr, {}, {}};
+  std::size_t cost = 0;
   if (may_touch(now)) {
     now.rays = &open_.open(grid_, now.tile, run_);
     cut_tile(now);
-    open_.entry(open_.index(now.tile)).tested = now.done.stats.rays_tested / count;
+    work.tested += now.done.stats.rays_tested;
+    cost += (now.end - now.begin) * kStepCost + now.done.stats.rays_tested;
     collect(now);
   }
   work.begin = now.end;
-  if (work.begin < work.end || !pack || !open_.is_open(work.tile)) return;
-  const std::size_t entry = open_.index(work.tile);
-  OpenTile& rays = *open_.entry(entry).rays;
-  if (rays.changed()) replace(work.tile, packed(rays, work.tile));
-  if (left) open_.close(entry);
+  if (work.begin < work.end || !open_.is_open(work.tile)) return cost;
+  const std::size_t index = open_.index(work.tile);
+  OpenTiles::Entry& entry = open_.entry(index);
+  if (!left) entry.tested = work.tested / (work.end - work.first);
+  if (work.packs && entry.rays->changed()) replace(work.tile, packed(*entry.rays, work.tile)), cost += kPackCost;
+  if (left) open_.close(index);
+  return cost;
 }
 
 void GridCarver::begin_publish() {

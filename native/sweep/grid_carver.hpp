@@ -91,8 +91,8 @@ class GridCarver {
   void put_off(bool yes) { puts_off_ = yes; }
   /// Whether steps were put off that are not cut yet.
   bool behind() const { return next_ < work_.size() || cut_steps_ < steps_.size(); }
-  /// Cuts a part of what was put off: with the steps of some eight moves in as many calls, so that all calls take about
-  /// as long, and a tile is cut with several steps at once, in their order.
+  /// Cuts a part of what was put off: with the steps of some eight moves in nearly as many calls, so that all calls
+  /// take about as long.
   void advance();
   /// From now on, `advance` also packs what it cuts, and leaves alone what later runs put off.
   void begin_publish();
@@ -119,11 +119,11 @@ class GridCarver {
     OpenTile* rays;  // null: opened for this batch only
     TileResult done;
     std::shared_ptr<const dexel::Tile> packed;
-    // Measures of the time that a step and the packing take, in rays tested; 0 if nothing is put off.
-    std::size_t step_cost = 0, pack_cost = 0;
-
-    std::size_t cost() const { return (end - begin) * step_cost + pack_cost; }
+    bool packs = false;                 // after its last step
+    std::size_t first = 0, tested = 0;  // where `begin` was in plan(), and rays tested since
   };
+  // Time that a step of a tile and its packing take, in rays tested that take as long.
+  static constexpr std::size_t kStepCost = 100, kPackCost = 1000;
 
   void begin_run();
   void add(std::span<const ConvexGroup> cutter, const Pose& from, const Pose& to, std::uint32_t move);
@@ -141,7 +141,7 @@ class GridCarver {
   void pack(std::size_t entry);
   void plan(bool publish);
   void plan_tiles_without_steps();
-  void advance(Work& work, std::size_t most);
+  std::size_t advance(Work& work);
   void end_publish();
   void drop_steps();
   void collect(Work& w);
@@ -159,10 +159,10 @@ class GridCarver {
   std::size_t run_steps_ = 0;  // those before the last run
   bool keeps_ = false, cut_something_ = false;
   bool puts_off_ = false, publishing_ = false;
-  std::size_t next_ = 0;                 // index in `work_` of the first tile that is not done
-  std::size_t cost_ = 0, calls_ = 0;     // of the round: cost and calls of `advance` that are left
-  std::size_t published_motions_ = 0;    // those that end_publish drops
-  std::uint64_t run_ = 0, planned_ = 0;  // numbers of the last run, and of that before the round
+  std::size_t next_ = 0;                    // index in `work_` of the first tile that is not done
+  std::size_t budget_ = 0, overspent_ = 0;  // cost of a call of `advance`
+  std::size_t published_motions_ = 0;       // those that end_publish drops
+  std::uint64_t run_ = 0, planned_ = 0;     // numbers of the last run, and of that before the round
   OpenTiles open_;
   base::BlockVector<std::pair<std::size_t, std::size_t>> pairs_, sorted_;  // (tile, step)
   base::BlockVector<std::uint32_t> starts_;

@@ -17,7 +17,7 @@ class OpenTiles {
   struct Entry {
     std::size_t tile;
     std::uint64_t used;  ///< number of the move that last looked at it
-    std::size_t tested;  ///< rays tested in one of its last steps
+    std::size_t tested;  ///< rays tested in one of the last steps that were put off, as a mean
     std::unique_ptr<OpenTile> rays;
   };
 

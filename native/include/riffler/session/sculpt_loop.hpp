@@ -75,7 +75,7 @@ class SculptLoop final : public PenLoop<SculptTick> {
   /// By the thread of the device. After warm-up it neither allocates nor waits.
   haptics::SafeWrench step(const pen::PenSample& sample, double now, double dt) noexcept override;
 
-  // By the displaying thread. `show` waits for some fifteen steps, the others no longer than one step takes.
+  // By the displaying thread. `show` waits for up to twenty steps, the others no longer than one step takes.
 
   /// Copies what was cut into `shown`, a volume of the same frame that nothing else changes. If the loop makes no step
   /// within `patience` (s), copies everything cut so far; otherwise the state after a step that began later than this
