@@ -45,6 +45,8 @@ class HomeOnly {
   }
 
   bool here() const noexcept { return home_.here(); }
+  /// False after a move from it; it may then only be destroyed or assigned to.
+  explicit operator bool() const noexcept { return value_ != nullptr; }
   T& operator*() const noexcept { return *value_; }
   T* operator->() const noexcept { return value_.get(); }
 
@@ -64,9 +66,9 @@ class OwnThread {
   ~OwnThread() { join(); }
 
   void join() noexcept {
-    if (thread_.here() && thread_->joinable()) thread_->join();
+    if (thread_.here() && joinable()) thread_->join();
   }
-  bool joinable() const noexcept { return thread_->joinable(); }
+  bool joinable() const noexcept { return thread_ && thread_->joinable(); }
 
  private:
   HomeOnly<std::thread> thread_;

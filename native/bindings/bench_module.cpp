@@ -126,11 +126,12 @@ py::dict haptic_run(const std::string& scene, double pitch, int steps, int parts
                   py::arg("touching") = run.touching, py::arg("held") = run.held);
 }
 
-py::dict direction_run(const std::string& directions, double pitch, bool turning, int steps, int shown) {
+py::dict direction_run(const Doubles& array, const std::string& directions, double pitch, int shown) {
+  const bench::DirectionOptions options{to_poses(array, "poses"), directions, pitch, shown};
   bench::DirectionRun run;
   {
     const NoGil release;
-    run = bench::direction_run({directions, pitch, turning, steps, shown});
+    run = bench::direction_run(options);
   }
   return py::dict(py::arg("seconds") = take<double>(std::move(run.seconds)), py::arg("removed") = run.removed,
                   py::arg("tested") = run.tested, py::arg("changed") = run.changed);
@@ -216,9 +217,9 @@ or, where it grazes, in space; ``grazes`` (n,); ``points`` compared and how many
 ``force`` (n, 3) N on the hand and ``grip`` (n, 3) mm at every ms, mm³ ``removed``, and the shares of steps ``touching``
 and ``held`` for want of time. ``period`` above 1: a step every so many ms and straight lines between.)");
   m.def(
-      "direction_run", &direction_run, py::arg("directions"), py::arg("pitch") = 0.2, py::arg("turning") = false,
-      py::arg("steps") = 400, py::arg("shown") = 33,
-      R"(A spiral of a Ø20 ball with rays in these directions (native/bench/direction_run.hpp): a dict of ``seconds`` of
+      "direction_run", &direction_run, py::arg("poses"), py::arg("directions"), py::arg("pitch") = 0.2,
+      py::arg("shown") = 33,
+      R"(A stroke of a Ø20 ball with rays in these directions (native/bench/direction_run.hpp): a dict of ``seconds`` of
 processor time of every step, mm³ ``removed``, and the rays ``tested`` and ``changed``.)");
   m.def("busy_session", &busy_session, py::arg("seconds") = 5.0, py::arg("load") = 4, py::arg("real_time") = true,
         R"(A session in real time while ``load`` threads compute (native/bench/busy_session.hpp): a dict of ``step`` and

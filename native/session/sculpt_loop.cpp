@@ -97,17 +97,22 @@ Wrench SculptLoop::sculpt(const pen::PenSample& sample, double dt, SculptTick& t
   return out;
 }
 
-/// Hands over the changes. If it throws, some tiles may wait for the next time.
-void SculptLoop::serve(Scene& scene) {
+/// Prepares a part of the changes; hands over all after the last part, and returns true. If it throws, some tiles may
+/// wait for the next time.
+bool SculptLoop::serve(Scene& scene) {
   const auto changed = [&] { exchange_.changed(scene.carver.replaced()); };
+  if (!scene.carver.publishing()) serving_ = {strokes_, in_stroke_};
+  bool done = false;
   try {
-    scene.carver.publish();
+    done = scene.carver.publish_part();
   } catch (...) {
     changed();
     throw;
   }
   changed();
-  exchange_.serve(scene.volume, {strokes_, in_stroke_});
+  if (done) exchange_.serve(scene.volume, serving_);
+  served_.fetch_add(1, std::memory_order_relaxed);
+  return done;
 }
 
 /// Places the tool at the hand's current pose; the path to it is not cut.
@@ -162,13 +167,16 @@ TileExchange::Mark SculptLoop::show(Volume& shown, std::vector<Place>& places, d
   TileExchange::Mark mark;
   exchange_.take(shown, places, mark);  // left over from an earlier call that timed out
   exchange_.ask();
+  std::uint32_t served = served_.load(std::memory_order_relaxed);
   for (double waited = 0; waited < patience; waited += kNap) {
     if (exchange_.take(shown, places, mark)) return mark;
+    if (const std::uint32_t now = served_.load(std::memory_order_relaxed); now != served) served = now, waited = 0;
     std::this_thread::sleep_for(std::chrono::duration<double>(kNap));
   }
   // No steps, or a long step: between two steps a direct copy is as good.
   const std::lock_guard lock(mutex_);
-  serve(*scene_);
+  while (!serve(*scene_)) {
+  }
   exchange_.take(shown, places, mark);
   return mark;
 }

@@ -47,31 +47,36 @@ void GridCarver::keep_open(double size) {
 void GridCarver::begin_run() {
   ++run_;
   cut_something_ = false;
-  if (!keeps_) steps_.clear(), motions_.clear();  // left over from a run that failed
-  cut_steps_ = steps_.size();
+  if (!keeps_) drop_steps();  // left over from a run that failed
+  run_steps_ = steps_.size();
 }
 
 void GridCarver::flush() {
-  if (cut_steps_ < steps_.size()) cut_steps();
-  stats_.steps += steps_.size() - cut_steps_;
-  cut_steps_ = steps_.size();
-  if (!keeps_ || full()) pack();
+  if (puts_off_ && rays(run_steps_) < kSerialRays) return;
+  cut_steps();
+  if (!keeps_) pack();
+}
+
+/// Number of rays under the steps from this one on.
+double GridCarver::rays(std::size_t first_step) const {
+  double area = 0;
+  for (std::size_t k = first_step; k < steps_.size(); ++k)
+    area += steps_[k].footprint.rows().length() * steps_[k].footprint.columns().length();
+  return area / (grid_.pitch() * grid_.pitch());
 }
 
 void GridCarver::cut_steps() {
+  if (!behind()) return;
+  const double many = rays(cut_steps_);
   assign();
   if (region_) open_tiles();
-  double rays = 0;
-  for (std::size_t k = cut_steps_; k < steps_.size(); ++k)
-    rays += steps_[k].footprint.rows().length() * steps_[k].footprint.columns().length();
-  rays /= grid_.pitch() * grid_.pitch();
   if (keeps_)
     for (Work& w : work_)
       if (may_touch(w)) w.rays = &open_.open(grid_, w.tile, run_);
   const auto body = [this](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) cut_tile(work_[k]);
   };
-  if (rays < kSerialRays)
+  if (many < kSerialRays)
     body(0, work_.size());
   else
     base::parallel_for(work_.size(), 1, body);
@@ -87,10 +92,18 @@ void GridCarver::open_tiles() {
   region_->open(tiles);
 }
 
-/// Lists the batch's tiles with the steps that may touch them, both ascending.
+/// Lists the batch's tiles with the steps that may touch them, both ascending: new steps, and what is left of earlier
+/// ones.
 void GridCarver::assign() {
-  pairs_.clear(), work_.clear();
-  std::size_t first = std::numeric_limits<std::size_t>::max(), last = 0;
+  std::size_t first = std::numeric_limits<std::size_t>::max(), last = 0, left = 0;
+  for (; next_ < work_.size(); ++next_) {
+    const Work& w = work_[next_];
+    std::copy(pairs_.begin() + w.begin, pairs_.begin() + w.end, pairs_.begin() + left);
+    left += w.end - w.begin;
+  }
+  pairs_.resize(left);
+  work_.clear(), next_ = 0;
+  if (left > 0) first = pairs_.front().first, last = pairs_.back().first;
   for (std::size_t k = cut_steps_; k < steps_.size(); ++k) {
     const TileBlock under = tiles_under(grid_, steps_[k].footprint);
     if (under.empty()) continue;
@@ -99,6 +112,8 @@ void GridCarver::assign() {
     first = std::min(first, grid_.tile_index(under.row, under.column));
     last = std::max(last, grid_.tile_index(under.last_row, under.last_column));
   }
+  stats_.steps += steps_.size() - cut_steps_;
+  cut_steps_ = steps_.size();
   sort_pairs(first, last);
   for (std::size_t k = 0; k < pairs_.size(); ++k) {
     if (work_.empty() || work_.back().tile != pairs_[k].first)
@@ -181,9 +196,15 @@ void GridCarver::pack(std::size_t entry) {
 }
 
 void GridCarver::pack() {
+  cut_steps();
   for (std::size_t k = open_.entries().size(); k-- > 0;) pack(k);
-  steps_.clear(), motions_.clear();
-  cut_steps_ = 0;
+  drop_steps();
+}
+
+void GridCarver::drop_steps() {
+  steps_.clear(), motions_.clear(), work_.clear();
+  cut_steps_ = next_ = 0;
+  publishing_ = false;
 }
 
 void GridCarver::pack_left() {
@@ -196,7 +217,87 @@ void GridCarver::pack_left() {
 
 void GridCarver::forget() {
   open_.clear();
-  steps_.clear(), motions_.clear();
+  drop_steps();
+}
+
+/// Begins a round of calls of `advance` with all steps so far. Where the tool will find material is not known, but
+/// all tiles together mostly cost as much as in the round before. A round has a few calls less than moves, so that
+/// publishing, which also packs, finds less to cut.
+void GridCarver::plan(bool publish) {
+  constexpr std::uint64_t kRound = 6, kMost = 16, kPublish = 16;  // calls
+  constexpr std::size_t kLeast = 2500;                            // a call's budget, at least
+  assign();
+  plan_tiles_without_steps();
+  std::size_t cost = 0;
+  for (Work& w : work_) {
+    w.first = w.begin, w.tested = 0;
+    w.packs = publish || w.begin == w.end;
+    const std::size_t tested = open_.is_open(w.tile) ? open_.entry(open_.index(w.tile)).tested : 0;
+    cost += (w.end - w.begin) * (kStepCost + tested) + (w.packs ? kPackCost : 0);
+  }
+  budget_ = std::max(kLeast, cost / (publish ? kPublish : std::clamp((run_ - planned_) * 4 / 5, kRound, kMost)));
+  planned_ = run_;
+}
+
+/// Tiles that the tool has left are packed, too.
+void GridCarver::plan_tiles_without_steps() {
+  const std::size_t count = work_.size();
+  for (const OpenTiles::Entry& e : open_.entries()) {
+    const auto before = [](const Work& w, std::size_t tile) { return w.tile < tile; };
+    const auto end = work_.begin() + count, at = std::lower_bound(work_.begin(), end, e.tile, before);
+    if (at == end || at->tile != e.tile) work_.push_back({e.tile, 0, 0, nullptr, {}, {}});
+  }
+}
+
+void GridCarver::advance() {
+  if (next_ == work_.size() && !publishing_) plan(false);
+  std::size_t spent = std::exchange(overspent_, 0);
+  while (next_ < work_.size() && spent < budget_) {
+    Work& w = work_[next_];
+    spent += advance(w);
+    if (w.begin == w.end) ++next_;
+  }
+  if (spent > budget_) overspent_ = std::min(spent - budget_, budget_ / 2);
+  if (publishing_ && next_ == work_.size()) end_publish();
+}
+
+/// Cuts one tile with the next steps of its work, and packs it after the last one if the grid is to have it. Returns
+/// the cost.
+std::size_t GridCarver::advance(Work& work) {
+  constexpr std::size_t kSteps = 2;
+  const bool left = work.begin == work.end;
+  Work now{work.tile, work.begin, std::min(work.begin + kSteps, work.end), nullptr, {}, {}};
+  std::size_t cost = 0;
+  if (may_touch(now)) {
+    now.rays = &open_.open(grid_, now.tile, run_);
+    cut_tile(now);
+    work.tested += now.done.stats.rays_tested;
+    cost += (now.end - now.begin) * kStepCost + now.done.stats.rays_tested;
+    collect(now);
+  }
+  work.begin = now.end;
+  if (work.begin < work.end || !open_.is_open(work.tile)) return cost;
+  const std::size_t index = open_.index(work.tile);
+  OpenTiles::Entry& entry = open_.entry(index);
+  if (!left) entry.tested = work.tested / (work.end - work.first);
+  if (work.packs && entry.rays->changed()) replace(work.tile, packed(*entry.rays, work.tile)), cost += kPackCost;
+  if (left) open_.close(index);
+  return cost;
+}
+
+void GridCarver::begin_publish() {
+  plan(true);
+  publishing_ = true;
+  published_motions_ = motions_.size();
+  if (work_.empty()) end_publish();
+}
+
+/// Every normal of the steps that are cut is stored; those that were put off since become the first.
+void GridCarver::end_publish() {
+  publishing_ = false;
+  work_.clear(), next_ = 0;
+  steps_.erase(steps_.begin(), steps_.begin() + cut_steps_);
+  motions_.erase(motions_.begin(), motions_.begin() + published_motions_);
   cut_steps_ = 0;
 }
 

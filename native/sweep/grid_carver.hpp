@@ -86,8 +86,23 @@ class GridCarver {
     flush();
   }
 
-  /// With keep_open: gives the grid what runs have cut from open tiles. Tiles that the last run did not look at are
-  /// closed.
+  /// With keep_open: whether runs only note their steps, and `advance` cuts with them. For a grid that nothing is
+  /// measured in. A move that covers very many rays is cut at once, in all threads.
+  void put_off(bool yes) { puts_off_ = yes; }
+  /// Whether steps were put off that are not cut yet.
+  bool behind() const { return next_ < work_.size() || cut_steps_ < steps_.size(); }
+  /// Cuts a part of what was put off: with the steps of some eight moves in nearly as many calls, so that all calls
+  /// take about as long.
+  void advance();
+  /// From now on, `advance` also packs what it cuts, and leaves alone what later runs put off.
+  void begin_publish();
+  /// Whether `advance` has still to pack something.
+  bool publishing() const { return publishing_; }
+  /// Whether there are so many steps that all must be packed.
+  bool full() const;
+
+  /// With keep_open: gives the grid what runs have cut from open tiles, after cutting what was put off. Tiles that the
+  /// last run did not look at are closed.
   void pack();
   /// Same for a few tiles that the tool has left.
   void pack_left();
@@ -104,13 +119,17 @@ class GridCarver {
     OpenTile* rays;  // null: opened for this batch only
     TileResult done;
     std::shared_ptr<const dexel::Tile> packed;
+    bool packs = false;                 // after its last step
+    std::size_t first = 0, tested = 0;  // where `begin` was in plan(), and rays tested since
   };
+  // Time that a step of a tile and its packing take, in rays tested that take as long.
+  static constexpr std::size_t kStepCost = 100, kPackCost = 1000;
 
   void begin_run();
   void add(std::span<const ConvexGroup> cutter, const Pose& from, const Pose& to, std::uint32_t move);
-  bool full() const;
   void flush();
   void cut_steps();
+  double rays(std::size_t first_step) const;
   void open_tiles();
   void assign();
   void sort_pairs(std::size_t first, std::size_t last);
@@ -120,6 +139,11 @@ class GridCarver {
   std::shared_ptr<const dexel::Tile> packed(OpenTile& rays, std::size_t tile) const;
   void replace(std::size_t tile, std::shared_ptr<const dexel::Tile> packed);
   void pack(std::size_t entry);
+  void plan(bool publish);
+  void plan_tiles_without_steps();
+  std::size_t advance(Work& work);
+  void end_publish();
+  void drop_steps();
   void collect(Work& w);
 
   dexel::Grid& grid_;
@@ -131,9 +155,14 @@ class GridCarver {
   std::deque<Motion, base::BlockAllocator<Motion>>
       motions_;  // of the batch, in the grid's cyclic frame; steps point to them
   base::BlockVector<Step> steps_;
-  std::size_t cut_steps_ = 0;  // those of the batch that are cut already
+  std::size_t cut_steps_ = 0;  // those of the batch that are cut already, or in `work_`
+  std::size_t run_steps_ = 0;  // those before the last run
   bool keeps_ = false, cut_something_ = false;
-  std::uint64_t run_ = 0;  // number of the last run
+  bool puts_off_ = false, publishing_ = false;
+  std::size_t next_ = 0;                    // index in `work_` of the first tile that is not done
+  std::size_t budget_ = 0, overspent_ = 0;  // cost of a call of `advance`
+  std::size_t published_motions_ = 0;       // those that end_publish drops
+  std::uint64_t run_ = 0, planned_ = 0;     // numbers of the last run, and of that before the round
   OpenTiles open_;
   base::BlockVector<std::pair<std::size_t, std::size_t>> pairs_, sorted_;  // (tile, step)
   base::BlockVector<std::uint32_t> starts_;

@@ -16,7 +16,7 @@ void OpenTiles::reserve(const dexel::Grid& grid, std::size_t count) {
 OpenTile& OpenTiles::open(const dexel::Grid& grid, std::size_t tile, std::uint64_t move) {
   if (places_[tile] == 0) {
     if (spare_.empty()) spare_.push_back(std::make_unique<OpenTile>());
-    entries_.push_back({tile, move, std::move(spare_.back())});
+    entries_.push_back({tile, move, 0, std::move(spare_.back())});
     spare_.pop_back();
     places_[tile] = static_cast<std::uint32_t>(entries_.size());
   }

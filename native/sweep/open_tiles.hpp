@@ -17,6 +17,7 @@ class OpenTiles {
   struct Entry {
     std::size_t tile;
     std::uint64_t used;  ///< number of the move that last looked at it
+    std::size_t tested;  ///< rays tested in one of the last steps that were put off, as a mean
     std::unique_ptr<OpenTile> rays;
   };
 
@@ -26,6 +27,9 @@ class OpenTiles {
   OpenTile& open(const dexel::Grid& grid, std::size_t tile, std::uint64_t move);
   const std::vector<Entry>& entries() const { return entries_; }
   Entry& entry(std::size_t k) { return entries_[k]; }
+  /// Index of the entry of tile number `tile`, which is open.
+  std::size_t index(std::size_t tile) const { return places_[tile] - 1; }
+  bool is_open(std::size_t tile) const { return places_[tile] != 0; }
   /// Closes entry k; the last entry takes its place.
   void close(std::size_t k);
   /// Closes all tiles. What was cut from them since they were packed is lost.

@@ -377,12 +377,26 @@ HWY_INLINE void cut_last(RayWindow& w, double u, const Group& g, M mask, const R
   store_origins(planes.last_origins, g.ray, both(mask, r.above), cut.near_origin, both(mask, r.below), cut.far_origin);
 }
 
+/// Removes `cut` in the lanes of `mask`, which it meets, from rays of which none has two spans.
+HWY_INLINE void subtract_from_one(RayWindow& w, double u, const Group& g, M mask, const RayIntervals& cut, V t_near,
+                                  V t_far) {
+  w.changed += hn::CountTrue(kD, mask);
+  if (!w.opened) w.open(w.self);
+  const Remains r(g.near, g.first_far, cut, set(w.thinnest));
+  const M splits = both(mask, r.split());
+  cut_first(w, u, g, mask, splits, r, {cut, t_near, t_far, origin_at(w, t_far), origin_at(w, t_near)});
+  const int row = g.ray / dexel::kTileSide, column = g.ray % dexel::kTileSide;
+  w.planes->two[row] |= static_cast<std::uint32_t>(bits(splits)) << column;
+  w.planes->pending[row] |= static_cast<std::uint32_t>(bits(mask)) << column;
+}
+
 /// Removes `cut` in the lanes of `mask`. `t_near` and `t_far`: the motion's t at its two ends.
 HWY_INLINE void subtract(RayWindow& w, double u, const Group& g, M mask, RayIntervals cut, V t_near, V t_far) {
   // Ignore a cut thinner than the minimum thickness: it would leave two spans that touch.
   const M thick = both(mask, hn::Gt(hn::Sub(cut.far, cut.near), set(w.thinnest)));
   const M touched = both(thick, both(hn::Lt(cut.near, g.high), hn::Gt(cut.far, g.low)));
   if (none(touched)) return;
+  if (!g.two) return subtract_from_one(w, u, g, touched, cut, t_near, t_far);
   const M two = from_bits(g.two);
   const M in_first = both(touched, both(hn::Lt(cut.near, g.first_far), hn::Gt(cut.far, g.near)));
   const M in_last = both(touched, both(two, both(hn::Lt(cut.near, g.far), hn::Gt(cut.far, g.last_near))));

@@ -75,11 +75,12 @@ class SculptLoop final : public PenLoop<SculptTick> {
   /// By the thread of the device. After warm-up it neither allocates nor waits.
   haptics::SafeWrench step(const pen::PenSample& sample, double now, double dt) noexcept override;
 
-  // By the displaying thread. None of these waits longer than one step takes.
+  // By the displaying thread. `show` waits for up to twenty steps, the others no longer than one step takes.
 
   /// Copies what was cut into `shown`, a volume of the same frame that nothing else changes. If the loop makes no step
   /// within `patience` (s), copies everything cut so far; otherwise the state after a step that began later than this
-  /// call. Appends the places of the changed tiles to `places`.
+  /// call; the steps after that one prepare the tiles, a part each. Appends the places of the changed tiles to
+  /// `places`.
   TileExchange::Mark show(Volume& shown, std::vector<Place>& places, double patience = 3e-3);
   /// Replaces the volume by another of the same frame. `strokes`: number of strokes undone (negative) or redone
   /// (positive) by that. During a stroke returns false and changes nothing.
@@ -95,7 +96,7 @@ class SculptLoop final : public PenLoop<SculptTick> {
   Wrench sculpt(const pen::PenSample& sample, double dt, SculptTick& tick) noexcept;
   void place(Scene& scene, const pen::PenSample& sample) noexcept;
   Wrench follow(Scene& scene, const pen::PenSample& sample, double dt, bool cutting, SculptTick& tick) noexcept;
-  void serve(Scene& scene);
+  bool serve(Scene& scene);
   void begin_stroke(double dt) noexcept;
   void end_stroke() noexcept;
   void tell_undo() noexcept;
@@ -111,6 +112,8 @@ class SculptLoop final : public PenLoop<SculptTick> {
   bool in_stroke_ = false;
 
   TileExchange exchange_;
+  TileExchange::Mark serving_;            // of the state that is being prepared
+  std::atomic<std::uint32_t> served_{0};  // parts of states prepared
   std::atomic<std::uint32_t> dead_man_mask_;
 };
 

@@ -38,11 +38,17 @@ class MoveCarver {
   /// Carves one move of duration `dt` (s). Throws std::invalid_argument as `carve` does; the volume is then unchanged.
   /// If memory runs out (std::bad_alloc), deferred material may be cut in part; the same move, repeated, completes it.
   Taken move(const Pose& from, const Pose& to, double dt);
-  /// Whether the last move cut something.
+  /// Whether the last move cut something. Deferred: also where it follows close on a move that did.
   bool cut_something() const;
 
   /// Deferred: gives the volume what moves have cut since the last call. May throw std::bad_alloc.
   void publish();
+  /// Deferred: same, a part in each call, so that no step of a pen takes much longer than the others. Call it once a
+  /// step until it returns true. `publishing` is true from the call on that fixes what is published: the volume finally
+  /// has all that was cut before that call, and nothing that was cut since. Until then it may have that in some places
+  /// only. May throw std::bad_alloc; the next call continues.
+  bool publish_part();
+  bool publishing() const;
   /// Deferred: forgets what is not published. Call it before other code changes the volume.
   void forget() noexcept;
 
@@ -54,7 +60,7 @@ class MoveCarver {
     std::uint32_t grid, tile;
     friend bool operator==(const Place&, const Place&) = default;
   };
-  /// The tiles that the last call of `move` or `publish` replaced.
+  /// The tiles that the last call of `move`, `publish` or `publish_part` replaced.
   std::span<const Place> replaced() const;
 
  private:
