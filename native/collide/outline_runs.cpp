@@ -36,7 +36,7 @@ bool goes_on(const tool::OutlineEdge& a, const tool::OutlineEdge& b) {
 struct OutlineRuns::Foot {
   Vec2 point{0}, normal{0};
   double distance = kInfinity;
-  bool at_end = false;
+  bool at_end = false, between = false;  // between: at an end where the run continues
   double margin = -1;  // mm to the normals at the edge's ends off the axis; −1 if the foot is at an end
   const tool::OutlineEdge* edge = nullptr;
 
@@ -133,12 +133,16 @@ void OutlineRuns::look(const Run& run, const Vec2& p, RunAt& out, Foot& nearest,
   out.behind = {Slope{-kInfinity, {0, 0}}, Slope{-kInfinity, {0, 0}}};
   out.facing = out.behind[0], out.margin = -1;
   for (std::size_t i = run.first; i < run.last; ++i) {
-    const Foot f = foot_on(edges_[i], p);
+    Foot f = foot_on(edges_[i], p);
     if (f.distance < own.distance) own = f;
-    if (f.distance < nearest.distance)
-      second = nearest, nearest = f;
-    else if (f.distance < second.distance && f.point != nearest.point)
+    // Where two edges of a run meet, the solid is convex, and no point inside has its foot there.
+    f.between = f.at_end && (f.point == edges_[i].from ? i > run.first : i + 1 < run.last);
+    if (f.distance < nearest.distance) {
+      if (!nearest.between) second = nearest;
+      nearest = f;
+    } else if (f.distance < second.distance && f.point != nearest.point && !f.between) {
       second = f;
+    }
     // Signed distance to the half-space that touches the edge at its foot: at most that of K.
     Slope s{glm::dot(p - f.point, f.normal), f.normal, 0, run.reach};
     if (out.hollow) {  // also outside its sector, where rounding requires it

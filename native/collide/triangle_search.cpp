@@ -264,10 +264,14 @@ void TriangleSearch::push(const Cell& cell) {
 
 void TriangleSearch::search(const Corners& t, double low_of_all, Deadline& deadline) {
   const double near = std::max(slack(size_of(t)), loose_);
-  const std::size_t most = cells_ + kMaxCells;
+  const std::size_t before = cells_;
+  const auto enough_cells = [&] {
+    return cells_ > before + kMaxCells &&
+           (heap_.front().low >= least_.distance - kLeftOut || cells_ > before + kMostCells);
+  };
   heap_.assign(1, {t, low_of_all});
   while (!heap_.empty() && heap_.front().low < least_.distance - near && least_.distance >= enough_) {
-    if (cells_ > most || deadline.passed()) {
+    if (enough_cells() || deadline.passed()) {
       left_ = std::min(left_, heap_.front().low);
       return;
     }

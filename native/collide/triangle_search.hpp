@@ -51,10 +51,11 @@ class TriangleSearch {
   /// Allows the search to miss places that are lower by less than `by` (mm).
   void loose(double by) { loose_ = by; }
 
-  /// Lower bound over all triangles: the minimum, or less if kMaxCells or the time ran out. The cell limit is reached
-  /// deep inside a tool where three of its surfaces are equally near.
+  /// Lower bound over all triangles: the minimum; by up to kLeftOut less if a triangle took kMaxCells, as deep inside a
+  /// tool where three of its surfaces are equally near; less still if the time ran out, or one took kMostCells.
   double low() const { return std::min(left_, least_.distance); }
-  static constexpr std::size_t kMaxCells = 50000;
+  static constexpr std::size_t kMaxCells = 50'000, kMostCells = 20 * kMaxCells;
+  static constexpr double kLeftOut = 1e-3;  // mm
 
   std::size_t cells() const { return cells_; }
 

@@ -7,10 +7,17 @@
 
 namespace riffler::haptics {
 
+namespace {
+
+constexpr double kMeanPeriods = 3;  // of the mean rate
+
+}  // namespace
+
 void PassivitySettings::validate() const {
   base::require_positive(period, "period");
   base::require_between(jitter, 0, period, "jitter");
   base::require_between(latency, 0, 8 * period, "latency");
+  require_not_negative(device_rate, "device_rate");
   require_not_negative(acceleration, "acceleration");
   require_not_negative(resolution, "resolution");
   require_not_negative(max_damping, "max_damping");
@@ -28,7 +35,8 @@ Passivity::Passivity(const PassivitySettings& settings) : settings_(settings) {
 
 void Passivity::reset() {
   energy_ = settings_.reserve;
-  rate_ = {};
+  rate_ = mean_rate_ = {};
+  applied_ = {};
   last_dt_ = settings_.period;
   way_ = {}, way_time_ = {};
   kept_ = 1, damped_ = 0;
@@ -55,7 +63,8 @@ double Passivity::dissipated(const Twist& displacement, double dt) {
 
 void Passivity::observe(const Wrench& held, const Twist& displacement, double dt, double lost) {
   if (!finite(held) || !finite(displacement) || !std::isfinite(dt)) {
-    rate_ = {};
+    rate_ = mean_rate_ = {};
+    applied_ = finite(held) ? held : Wrench{};
     return;
   }
   energy_ += dissipated(displacement, dt) - power(held, displacement);
@@ -63,7 +72,12 @@ void Passivity::observe(const Wrench& held, const Twist& displacement, double dt
   // Cap the credit, never the debt. Energy not stored in an object was dissipated, by friction or cutting, and must not
   // pay for a later fault: no object stores more than `storage`, and none stores anything while the wrench is zero.
   energy_ = std::min(energy_, held == Wrench{} ? settings_.reserve : settings_.storage);
-  if (dt > 0) rate_ = 1 / dt * displacement, last_dt_ = dt;
+  applied_ = held;
+  if (!(dt > 0)) return;
+  rate_ = 1 / dt * displacement, last_dt_ = dt;
+  // A short tick after a late one has a large rate, but little weight.
+  const double share = 1 / (dt + kMeanPeriods * settings_.period);
+  mean_rate_ = (1 - share * dt) * mean_rate_ + share * displacement;
 }
 
 double Passivity::unsure(int k, double rate, std::size_t ahead) const {
@@ -75,16 +89,37 @@ double Passivity::unsure(int k, double rate, std::size_t ahead) const {
          settings_.resolution[k] * (1 + hold / last_dt_) + settings_.jitter * std::abs(rate);
 }
 
-/// A wrench scaled down after the controller delivers no more than this, since negative deliveries count as zero.
-double Passivity::on_the_way(const Capability& device) const {
+double Passivity::duration(const Wrench& change) const {
+  const auto seconds = [](const Vec3& way, double rate) { return rate > 0 ? glm::length(way) / rate : 0; };
+  return seconds(change.force, settings_.device_rate.linear) + seconds(change.torque, settings_.device_rate.angular);
+}
+
+/// What the device applies a hold later.
+Wrench Passivity::followed(const Wrench& applied, const Wrench& wanted) const {
+  const Wrench change = wanted - applied;
+  const double time = duration(change);
+  return time <= settings_.period ? wanted : applied + settings_.period / time * change;
+}
+
+double Passivity::fall(const Wrench& applied) const {
+  return std::max(0.0, power(applied, mean_rate_)) * duration(applied) / 2;
+}
+
+/// The device applies each wrench, or still approaches it. A wrench scaled down after the controller delivers no
+/// more than this, since negative deliveries count as zero.
+double Passivity::on_the_way(const Capability& device, Wrench& applied) const {
   const Twist rate{rate_.linear * device.axes, rate_.angular * device.axes};
+  const auto delivered = [&](const Wrench& held, std::size_t n) {
+    const Wrench force{held.force * device.axes, held.torque * device.axes};
+    double sum = 0;
+    for (int k = 0; k < kCoordinates; ++k)
+      sum += force[k] * rate[k] * settings_.period + std::abs(force[k]) * unsure(k, rate[k], n);
+    return sum;
+  };
   double sum = 0;
   for (std::size_t n = 0; n < waiting_; ++n) {
-    const Wrench force{on_the_way_[n].force * device.axes, on_the_way_[n].torque * device.axes};
-    double delivered = 0;
-    for (int k = 0; k < kCoordinates; ++k)
-      delivered += force[k] * rate[k] * settings_.period + std::abs(force[k]) * unsure(k, rate[k], n);
-    sum += std::max(0.0, delivered);
+    applied = followed(applied, on_the_way_[n]);
+    sum += std::max({0.0, delivered(on_the_way_[n], n), delivered(applied, n)});
   }
   return sum;
 }
@@ -96,9 +131,11 @@ Wrench Passivity::control(const Wrench& wanted, const Capability& device) {
   const Wrench force{local(wanted.force), local(wanted.torque)};
   const Twist rate{local(rate_.linear), local(rate_.angular)};
 
-  // Largest energy that `wanted` can deliver during its hold, and smallest energy that full damping takes from the
-  // hand.
-  double delivered = 0, taken = 0;
+  // Largest energy that `wanted` can deliver during its hold and more than zero while the device lets it fall, and
+  // smallest energy that full damping takes from the hand.
+  Wrench applied = applied_;
+  const double in_transit = on_the_way(device, applied), falls = fall(applied);
+  double delivered = fall(followed(applied, wanted)) - falls, taken = 0;
   Wrench damping;
   for (int k = 0; k < kCoordinates; ++k) {
     const double off = unsure(k, rate[k], waiting_);
@@ -109,7 +146,7 @@ Wrench Passivity::control(const Wrench& wanted, const Capability& device) {
     taken += std::abs(damping[k]) * sure;
   }
   // The energy of a sum is at most the sum of energies, so kept · delivered − damped · taken is an upper bound.
-  const double held = energy_ - on_the_way(device);
+  const double held = energy_ - in_transit - falls;
   kept_ = 1, damped_ = 0;
   Wrench out = wanted;
   if (delivered > held) {

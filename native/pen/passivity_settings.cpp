@@ -116,4 +116,15 @@ haptics::PassivitySettings passivity_settings(const PenGeometry& pen, const Comp
   return out;
 }
 
+/// A force f at an arm's end takes the torque |J_k| f of a joint at most. Each arm carries half of the hand's force,
+/// and the torque divided by the grip's length.
+haptics::Bounds slowest_change(const PenGeometry& pen, double currents) {
+  double least = std::numeric_limits<double>::infinity();  // N at an arm's end per A
+  for (const PenChannel& c : pen.channels) {
+    const double lever = bounds_of(pen, c.arm).lever[static_cast<std::size_t>(c.joint)];
+    least = std::min(least, c.torque_constant * c.ratio / lever);
+  }
+  return {2 * least * currents, pen.grip_length * least * currents};
+}
+
 }  // namespace riffler::pen

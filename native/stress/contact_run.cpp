@@ -14,9 +14,9 @@ namespace {
 
 constexpr std::size_t kPosesKept = 100;
 constexpr std::uint64_t kContactStream = 0x636F6E74;
-constexpr double kBracket = 1e-3;    // mm, of the reference
-constexpr double kLeftOut = 1.5e-3;  // mm, without a budget: "about 1e-3", see Contact::missed_depth_bound
-constexpr double kPoints = 4000;     // of the force: as many as by default take far longer to prepare than to use
+constexpr double kBracket = 1e-3;  // mm, of the reference
+constexpr double kLeftOut = 1e-3;  // mm, without a budget: see Contact::missed_depth_bound
+constexpr double kPoints = 4000;   // of the force: as many as by default take far longer to prepare than to use
 
 /// What one session holds against what.
 struct ContactSession {

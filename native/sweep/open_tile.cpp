@@ -48,8 +48,7 @@ void OpenTile::reserve(bool with_normals) {
   first_.reserve(with_normals), last_.reserve(with_normals);
   hull_.resize(kRoom);
   if (!with_normals) return;  // seen from one direction, few rays have more than two spans
-  places_.resize(dexel::kTileRays);
-  pool_.reserve(4 * dexel::kTileRays), kept_.reserve(64);
+  pool_.reserve(), kept_.reserve(64);
 }
 
 void OpenTile::unpack(const dexel::Tile& tile) {
@@ -87,41 +86,6 @@ const RayPlanes& OpenTile::open() {
   return planes_;
 }
 
-/// The place of ray r, with room for n pieces. If it throws, every ray has what it had.
-OpenTile::Place& OpenTile::place(int r, std::uint32_t n) {
-  constexpr std::size_t kFirst = 512;
-  if (pool_.empty()) {
-    places_.assign(dexel::kTileRays, {});
-    pool_.reserve(kFirst);
-  }
-  Place& at = places_[r];
-  if (n <= at.room) return at;
-  // More for a ray that grows again, so that all its places together are a few times the last one.
-  const std::uint32_t room = at.room > 0 ? n + n / 2 : n;
-  if (pool_.size() + room > pool_.capacity()) tidy();
-  const auto begin = static_cast<std::uint32_t>(pool_.size());
-  pool_.resize(pool_.size() + room);
-  at = {begin, 0, room, 0};
-  return at;
-}
-
-/// Closes the gaps in the pool.
-void OpenTile::tidy() {
-  thread_local base::BlockVector<Piece> tight;
-  tight.clear(), tight.reserve(pool_.capacity());
-  for (int r = 0; r < dexel::kTileRays; ++r) {
-    Place& at = places_[r];
-    if (!is(many_, r)) {
-      at = {};
-      continue;
-    }
-    const auto begin = pool_.begin() + at.begin;
-    at.begin = static_cast<std::uint32_t>(tight.size()), at.room = at.count;
-    tight.insert(tight.end(), begin, begin + at.count);
-  }
-  pool_.assign(tight.begin(), tight.end());
-}
-
 void OpenTile::put(int r, const Piece* pieces, std::uint32_t n, std::uint32_t pair) {
   std::uint32_t &two = two_[r / dexel::kTileSide], &many = many_[r / dexel::kTileSide];
   const auto into = [&](Plane& plane, const Piece& p) {
@@ -129,10 +93,10 @@ void OpenTile::put(int r, const Piece* pieces, std::uint32_t n, std::uint32_t pa
     if (with_normals_) plane.normals[r] = p.normals, plane.origins[r] = p.origins;
   };
   if (n > 2) {
-    Place& at = place(r, n);
+    PiecePool::Place& at = pool_.room(r, n, many_);
     at.count = n, at.pair = pair;
     hull_[r] = {pieces[0].span.near, pieces[n - 1].span.far};
-    std::copy(pieces, pieces + n, pool_.begin() + at.begin);
+    std::copy(pieces, pieces + n, pool_.pieces(at));
   }
   two = n > 1 ? two | bit(r) : two & ~bit(r);
   many = n > 2 ? many | bit(r) : many & ~bit(r);
@@ -154,7 +118,7 @@ void OpenTile::store(int r, const Interval& cut) {
 }
 
 std::uint32_t OpenTile::count(int r) const {
-  if (is(many_, r)) return places_[r].count;
+  if (is(many_, r)) return pool_.at(r).count;
   return is(two_, r) ? 2U : (first_.spans[r].near < first_.spans[r].far ? 1U : 0U);
 }
 

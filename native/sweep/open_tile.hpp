@@ -10,17 +10,9 @@
 #include "riffler/base/block_pool.hpp"
 #include "riffler/dexel/grid.hpp"
 #include "riffler/geom/interval.hpp"
+#include "sweep/piece_pool.hpp"
 
 namespace riffler::sweep {
-
-/// Origins of both ends of a span. An end that a cut has made holds 2 k + t: it arose in step k of the carver's steps
-/// at the motion's time t, in units of 2^-30. Its normal is computed when the tile is packed, because most ends are cut
-/// away before. kStored: the normal is stored.
-struct Origins {
-  static constexpr double kStored = -1;
-  static constexpr double kUnit = 1.0 / (1 << 30);
-  double near = kStored, far = kStored;
-};
 
 /// The arrays of an OpenTile, for the kernels. Each has room for `kLanes` more rays.
 struct RayPlanes {
@@ -100,9 +92,10 @@ class OpenTile {
         if (first_.spans[r].near < first_.spans[r].far) span(r, first_.spans[r], first_.origins[r], first_.normals[r]);
         if (is(two_, r)) span(r, last_.spans[r], last_.origins[r], last_.normals[r]);
         if (!is(many_, r)) continue;
-        const Place at = places_[r];
+        const PiecePool::Place at = pool_.at(r);
+        Piece* const pieces = pool_.pieces(at);
         for (std::uint32_t k = 0; k < at.count; ++k)
-          if (Piece& p = pool_[at.begin + k]; k - at.pair > 1) span(r, p.span, p.origins, p.normals);
+          if (Piece& p = pieces[k]; k - at.pair > 1) span(r, p.span, p.origins, p.normals);
       }
   }
   /// Packs the result, with a new revision, and continues from it. All normals must be stored.
@@ -113,14 +106,6 @@ class OpenTile {
   static constexpr int kRoom = dexel::kTileRays + base::kLanes;
   static constexpr std::uint32_t bit(int r) { return 1U << (r % dexel::kTileSide); }
 
-  struct Piece {
-    dexel::Span span;
-    dexel::SpanNormals normals;
-    Origins origins;
-  };
-  struct Place {  // of a ray's pieces in the pool; numbers `pair` and `pair` + 1 are in the planes
-    std::uint32_t begin, count, room, pair;
-  };
   struct Plane {
     base::BlockVector<dexel::Span> spans;
     base::BlockVector<Origins> origins;             // empty if the grid stores no normals
@@ -140,10 +125,11 @@ class OpenTile {
       if (is(two_, r)) visit(piece(last_, r, with_normals_));
       return;
     }
-    const Place at = places_[r];
+    const PiecePool::Place at = pool_.at(r);
+    const Piece* const pieces = pool_.pieces(at);
     for (std::uint32_t k = 0; k < at.count; ++k)
       if (k - at.pair > 1)  // unsigned: below the pair, too
-        visit(pool_[at.begin + k]);
+        visit(pieces[k]);
       else
         visit(piece(k == at.pair ? first_ : last_, r, with_normals_));
   }
@@ -152,8 +138,6 @@ class OpenTile {
     if (!planes_.first) unpack(*source_);
   }
   void unpack(const dexel::Tile& tile);
-  Place& place(int r, std::uint32_t n);
-  void tidy();
   void put(int r, const Piece* pieces, std::uint32_t n, std::uint32_t pair);
   void store(int r, const Interval& cut);
   std::uint32_t count(int r) const;
@@ -166,8 +150,7 @@ class OpenTile {
   std::uint32_t pending_[dexel::kTileSide];  // rays with ends whose normals are not stored yet
   Plane first_, last_;
   base::BlockVector<dexel::Span> hull_;
-  base::BlockVector<Place> places_;
-  base::BlockVector<Piece> pool_;  // rays that grew are at the end; their old places stay unused until it is full
+  PiecePool pool_;  // of rays in many_
   base::BlockVector<Piece> kept_;
 };
 

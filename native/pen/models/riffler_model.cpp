@@ -116,6 +116,12 @@ RifflerModel::RifflerModel(HidTransport& transport, const CompensationShares& sh
       speed_(geometry_),
       losses_(geometry_, share_) {}
 
+haptics::PassivitySettings RifflerModel::passivity() const {
+  haptics::PassivitySettings out = passivity_settings(geometry_, share_);
+  out.device_rate = slowest_change(geometry_, limits_.rate_ma_per_ms);  // mA/ms = A/s
+  return out;
+}
+
 std::string RifflerModel::about() const {
   return "protocol " + version_text(identity_) + ", firmware " + std::to_string(identity_.firmware) + ", geometry " +
          identity_.geometry + ", serial " + identity_.serial + ", " +

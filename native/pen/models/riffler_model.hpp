@@ -22,7 +22,7 @@ class RifflerModel final : public HidModel {
 
   const DeviceCapability& capability() const noexcept override { return capability_; }
   double period() const noexcept override { return 1e-6 * limits_.period_us; }
-  haptics::PassivitySettings passivity() const override { return passivity_settings(geometry_, share_); }
+  haptics::PassivitySettings passivity() const override;
   std::string about() const override;
   const PenGeometry* geometry() const noexcept override { return &geometry_; }
   void check(HidTransport& transport) override;

@@ -119,6 +119,35 @@ TEST(PassivitySettings, OfAnIdentifiedPenHaveNoLossesOfTheirOwn) {
   EXPECT_EQ(s.latency, before.latency);
 }
 
+/// Currents that change at 100 A/s change any wrench at least this fast, in every posture, and in some not much faster.
+TEST(PassivitySettings, AWrenchFollowsItsCurrentsNoSlowerThanTheSlowestChange) {
+  const PenGeometry pen = load_pen("riffler");
+  const haptics::Bounds slowest = slowest_change(pen, 100);
+  stress::Random random(3);
+  const PenKinematics kinematics(pen);
+  double force = kInfinity, torque = kInfinity;  // per s
+  for (int n = 0; n < 20'000; ++n) {
+    const PenPosture posture = kinematics.posture(random_angles(pen, random));
+    const Vec3 f = random.direction();  // of the force, or at right angles to a grip of any direction
+    for (const bool turns : {false, true}) {
+      // 1 N on the hand, or 1 N·mm
+      double farthest = 0;
+      for (const PenChannel& c : pen.channels) {
+        const double sign = c.arm == Arm::R ? 1 : -1;
+        const Vec3 end = turns ? sign / pen.grip_length * f : 0.5 * f;
+        const double joint = glm::dot(posture.arms[index(c.arm)].jacobian[c.joint], end);
+        farthest = std::max(farthest, std::abs(joint) / (c.torque_constant * c.ratio));
+      }
+      double& least = turns ? torque : force;
+      least = std::min(least, 100 / farthest);
+    }
+  }
+  EXPECT_GE(force, slowest.linear);
+  EXPECT_LT(force, 1.6 * slowest.linear);
+  EXPECT_GE(torque, slowest.angular);
+  EXPECT_LT(torque, 1.6 * slowest.angular);
+}
+
 /// By hand: an arm that is as straight as its elbow lets it be, 8.75 · 1.5 N·mm about the upright axis.
 TEST(PassivitySettings, FrictionOfTheShippedPenIsThatAboutTheUprightAxisOfTheStretchedArm) {
   const double reach = std::sqrt(2 * 180 * 180 * (1 + std::sin(1.2)));

@@ -36,8 +36,8 @@ struct Contact {
   /// max(0, −clearance) over part and fixtures, mm; the true depth is at most `depth` + `missed_depth_bound`.
   double depth = 0;
   /// Bound on the depth that the search missed, mm. Without a budget this is rounding, 1e-10 mm and more far from the
-  /// origin, but up to about 1e-3 mm deep inside a tool where three of its surfaces are equally near and the search
-  /// stops at its cell limit. The clock is read at every eighth search step, so a short budget may be exceeded.
+  /// origin, but up to 1e-3 mm deep inside a tool where three of its surfaces are equally near and proving less would
+  /// take very long. The clock is read at every eighth search step, so a short budget may be exceeded.
   double missed_depth_bound = 0;
   double checked = 1;          ///< share of the candidates that were examined, 0 to 1
   std::vector<Vec3> points;    ///< contact points, deepest first; empty without contact

@@ -28,6 +28,9 @@ struct PassivitySettings {
   /// s from passing a wrench to the end of the hold with it, as accounted; at most 8 periods. Wrenches in transit count
   /// against the account; the longer the delay, the less certain the hand's position and the softer a wall can be.
   double latency = 0;
+  /// N/s, N·mm/s: the device's own limit on changes; what it applies follows a new wrench at least this fast. 0: at
+  /// once. A force that falls so slowly delivers energy after the controller has asked for zero, so that counts, too.
+  Bounds device_rate{0, 0};
   Bounds acceleration{1e5, 1e3};  ///< mm/s², rad/s²: bound on the grip's acceleration per coordinate
   Bounds resolution{0.03, 2e-3};  ///< mm, rad: resolution of the measured position
   Bounds max_damping{2e-3, 2};    ///< N·s/mm, N·mm·s/rad: largest injected damping
@@ -72,13 +75,21 @@ class Passivity {
   /// Uncertainty of coordinate k (mm or rad) at the end of the hold that begins after `ahead` others, about the
   /// position that its rate predicts.
   double unsure(int k, double rate, std::size_t ahead) const;
-  /// Energy that wrenches in transit may still deliver, N·mm.
-  double on_the_way(const Capability& device) const;
+  /// Energy that wrenches in transit may still deliver, N·mm. Moves `applied` from what the device applies now to what
+  /// it applies then.
+  double on_the_way(const Capability& device, Wrench& applied) const;
+  /// s that the device takes for a change.
+  double duration(const Wrench& change) const;
+  Wrench followed(const Wrench& applied, const Wrench& wanted) const;
+  /// Energy that a wrench delivers while the device lets it fall to zero, at the mean rate: an estimate.
+  double fall(const Wrench& applied) const;
   double dissipated(const Twist& displacement, double dt);
 
   PassivitySettings settings_;
   double energy_;
-  Twist rate_{};  // mean over the last tick
+  Twist rate_{};       // mean over the last tick
+  Twist mean_rate_{};  // mean over a few ticks
+  Wrench applied_{};   // in the last hold
   double last_dt_;
   Twist way_{};  // per coordinate: displacement and time since the device's own dissipation was last credited
   std::array<double, kCoordinates> way_time_{};

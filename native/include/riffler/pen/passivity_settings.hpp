@@ -16,4 +16,8 @@ haptics::PassivitySettings passivity_settings(const DeviceCapability& device);
 /// a pen that was identified: what they take in the posture of the moment is in PenSample::dissipated.
 haptics::PassivitySettings passivity_settings(const PenGeometry& pen, const Compensation& share = {});
 
+/// N/s and N·mm/s by which the wrench of a two-arm pen changes at least, in every posture, while the current that has
+/// farthest to go changes by `currents`, A/s, and the others in proportion: the limit of the pen's firmware.
+haptics::Bounds slowest_change(const PenGeometry& pen, double currents);
+
 }  // namespace riffler::pen

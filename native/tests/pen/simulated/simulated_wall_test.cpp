@@ -61,6 +61,7 @@ Touch touch(const Wall& wall) {
   JointLosses losses(known, {});
   haptics::PassivitySettings counted = passivity_settings(known);
   counted.latency = wall.latency;
+  if (wall.applied && wall.latency > 0) counted.device_rate = slowest_change(known, 100);
   haptics::Passivity passivity(counted);
   Pose last = home;
   Wrench held, rates;
