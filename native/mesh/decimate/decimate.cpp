@@ -13,6 +13,7 @@
 #include "mesh/decimate/collapse.hpp"
 #include "mesh/decimate/edge_costs.hpp"
 #include "mesh/decimate/edge_queue.hpp"
+#include "mesh/decimate/flat_pass.hpp"
 #include "mesh/decimate/half_edge.hpp"
 #include "mesh/decimate/map_check.hpp"
 #include "mesh/decimate/patches.hpp"
@@ -30,6 +31,9 @@ using OpenMesh::VertexHandle;
 
 // Fits the private cache of a core.
 constexpr std::size_t kPatchVertices = 8192;
+
+// Share of the tolerance by which vertices of a plane may miss it.
+constexpr double kSlack = 1.0 / 512;
 
 void check_limits(const DecimateLimits& limits) {
   if (!limits.triangles && !limits.tolerance) throw std::invalid_argument("decimate needs triangles or tolerance");
@@ -217,6 +221,41 @@ void keep(const HalfEdges& half_edges, std::vector<int> far, int attempt, std::v
   base::sort_unique(kept);
 }
 
+/// What is left to do once coordinates and limits are known.
+struct Reduction {
+  const Mesh& mesh;
+  const Mesh& local;  // in float32's coordinates, relative to `centre`
+  Vec3 centre;
+  double grain, tolerance;
+  std::size_t target;
+  bool bounded;
+
+  Mesh run(const Progress& progress) const {
+    std::vector<int> kept;  // vertices that stay because the tolerance could not be proven otherwise
+    double done = 0;
+    for (int attempt = 0;; ++attempt) {
+      // The first attempt is usually the last: reserve a tenth of the remaining progress for further ones.
+      const double end = bounded ? done + 0.9 * (1 - done) : 1, proof = bounded ? 0.2 : 0;
+      const Progress loop = base::part(progress, done, end - proof * (end - done));
+      const Progress proving = base::part(progress, end - proof * (end - done), end);
+      HalfEdges half_edges(local, base::part(loop, 0, 0.1));
+      for (const int v : kept) half_edges.mesh.status(VertexHandle(v)).set_locked(true);
+      EdgeCosts costs(half_edges, centre, grain, base::part(loop, 0.1, 0.18));
+      std::optional<Traces> traces;
+      if (bounded) traces.emplace(half_edges, base::part(loop, 0.18, 0.2));
+      const Surface surface{half_edges, costs, traces ? &*traces : nullptr, tolerance};
+      Decimation(surface, target, loop).run();
+      std::vector<int> far;
+      if (traces) far = MapCheck(*traces, tolerance).far_vertices(proving);
+      if (far.empty()) return half_edges.to_mesh(mesh, local, centre);
+      const std::size_t before = kept.size();
+      keep(half_edges, std::move(far), attempt, kept);
+      if (kept.size() == before) return mesh;
+      done = end;
+    }
+  }
+};
+
 }  // namespace
 
 Mesh decimate(const Mesh& mesh, const DecimateLimits& limits, const Progress& progress) {
@@ -237,30 +276,14 @@ Mesh decimate(const Mesh& mesh, const DecimateLimits& limits, const Progress& pr
   // If float32 is too coarse for the tolerance, vertices do not move.
   const bool may_move = !limits.tolerance || tolerance > 16 * reach;
   if (may_move) tolerance -= reach;
+  const double grain = may_move ? std::ldexp(largest, -24) : std::numeric_limits<double>::infinity();
+  if (!limits.tolerance || limits.triangles)
+    return Reduction{mesh, local, centre, grain, tolerance, target, limits.tolerance.has_value()}.run(progress);
 
-  std::vector<int> kept;  // vertices that stay because the tolerance could not be proven otherwise
-  double done = 0;
-  for (int attempt = 0;; ++attempt) {
-    // The first attempt is usually the last: reserve a tenth of the remaining progress for further ones.
-    const double end = limits.tolerance ? done + 0.9 * (1 - done) : 1, proof = limits.tolerance ? 0.2 : 0;
-    const Progress loop = base::part(progress, done, end - proof * (end - done));
-    const Progress proving = base::part(progress, end - proof * (end - done), end);
-    HalfEdges half_edges(local, base::part(loop, 0, 0.1));
-    for (const int v : kept) half_edges.mesh.status(VertexHandle(v)).set_locked(true);
-    const double grain = may_move ? std::ldexp(largest, -24) : std::numeric_limits<double>::infinity();
-    EdgeCosts costs(half_edges, centre, grain, base::part(loop, 0.1, 0.18));
-    std::optional<Traces> traces;
-    if (limits.tolerance) traces.emplace(half_edges, base::part(loop, 0.18, 0.2));
-    const Surface surface{half_edges, costs, traces ? &*traces : nullptr, tolerance};
-    Decimation(surface, target, loop).run();
-    std::vector<int> far;
-    if (traces) far = MapCheck(*traces, tolerance).far_vertices(proving);
-    if (far.empty()) return half_edges.to_mesh(mesh, local, centre);
-    const std::size_t before = kept.size();
-    keep(half_edges, std::move(far), attempt, kept);
-    if (kept.size() == before) return mesh;
-    done = end;
-  }
+  Mesh left = mesh;
+  tolerance -= remove_inside_planes(left, local, kSlack * tolerance, base::part(progress, 0, 0.2));
+  const Progress rest = base::part(progress, 0.2, 1);
+  return Reduction{left, local, centre, grain, tolerance, target, true}.run(rest);
 }
 
 }  // namespace riffler::mesh

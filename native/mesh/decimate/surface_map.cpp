@@ -17,7 +17,7 @@ using OpenMesh::VertexHandle;
 /// Maximum number of divisions of a triangle and its edges.
 constexpr int kDepth = 24;
 /// Maximum number of pieces: a triangle usually lies over a few faces; one that needs more is not mapped.
-constexpr std::size_t kMaxImages = 4096;
+constexpr std::size_t kMaxImages = 256;
 
 Vec3 nearest_of_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
   const Vec3 ab = b - a;
