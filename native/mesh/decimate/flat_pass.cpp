@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -18,7 +19,7 @@ constexpr std::size_t kBrick = 1 << 14;
 /// Bricks along a side of the box, at most.
 constexpr int kMostAlong = 128;
 /// Triangles that a thread sorts into bricks at a time.
-constexpr std::size_t kRange = 1 << 16;
+constexpr std::size_t kSorted = 1 << 16;
 
 /// The triangles by brick: cubes of a grid, or parts of one that holds too many.
 class Bricks {
@@ -27,12 +28,12 @@ class Bricks {
   Bricks(const Mesh& mesh, double shift, const Progress& progress) : triangles_(mesh.triangles.size()) {
     set_grid(bounds(mesh), shift);
     std::vector<int> cube(triangles_.size());
-    const std::size_t ranges = (triangles_.size() + kRange - 1) / kRange, cubes = cubes_;
+    const std::size_t ranges = (triangles_.size() + kSorted - 1) / kSorted, cubes = cubes_;
     std::vector<int> at(ranges * cubes, 0);  // of each range and cube: first the number, then the place of the next one
     base::parallel_for(
-        triangles_.size(), kRange,
+        triangles_.size(), kSorted,
         [&](std::size_t begin, std::size_t end) {
-          for (std::size_t t = begin; t < end; ++t) ++at[begin / kRange * cubes + (cube[t] = cube_of(mesh, t))];
+          for (std::size_t t = begin; t < end; ++t) ++at[begin / kSorted * cubes + (cube[t] = cube_of(mesh, t))];
         },
         base::part(progress, 0, 0.5));
     begin_.push_back(0);
@@ -49,10 +50,10 @@ class Bricks {
         begin_.push_back(first + static_cast<int>(static_cast<std::int64_t>(sum - first) * k / parts));
     }
     base::parallel_for(
-        triangles_.size(), kRange,
+        triangles_.size(), kSorted,
         [&](std::size_t begin, std::size_t end) {
           for (std::size_t t = begin; t < end; ++t)
-            triangles_[at[begin / kRange * cubes + cube[t]]++] = static_cast<int>(t);
+            triangles_[at[begin / kSorted * cubes + cube[t]]++] = static_cast<int>(t);
         },
         base::part(progress, 0.5, 1));
   }
@@ -109,53 +110,48 @@ void drop_triangles(Triangles& triangles) {
                   triangles.end());
 }
 
-/// Drops the vertices that no triangle uses from both meshes.
-void drop_vertices(Mesh& exact, Mesh& local) {
-  std::vector<int> number(exact.vertices.size(), -1);
-  for (const Vec3i& t : local.triangles)
+/// Drops the vertices that no triangle uses. Returns where the others come from.
+std::vector<int> drop_vertices(Mesh& mesh) {
+  std::vector<int> number(mesh.vertices.size(), -1), source;
+  for (const Vec3i& t : mesh.triangles)
     for (int k = 0; k < 3; ++k) number[t[k]] = 0;
-  int next = 0;
   for (std::size_t v = 0; v < number.size(); ++v) {
     if (number[v] < 0) continue;
-    exact.vertices[next] = exact.vertices[v], local.vertices[next] = local.vertices[v];
-    number[v] = next++;
+    number[v] = static_cast<int>(source.size());
+    mesh.vertices[source.size()] = mesh.vertices[v];
+    source.push_back(static_cast<int>(v));
   }
-  exact.vertices.resize(next), local.vertices.resize(next);
-  for (Vec3i& t : local.triangles) t = {number[t.x], number[t.y], number[t.z]};
-  exact.triangles = local.triangles;
+  mesh.vertices.resize(source.size());
+  for (Vec3i& t : mesh.triangles) t = {number[t.x], number[t.y], number[t.z]};
+  return source;
 }
 
 }  // namespace
 
-double remove_inside_planes(Mesh& exact, Mesh& local, double slack, const Progress& progress) {
-  double moved = 0;
-  const std::size_t start = local.triangles.size();
-  // Each pass has larger bricks at other places, so that what lay between two bricks lies inside of one.
-  for (int pass = 0; pass < kFlatPasses && local.triangles.size() > 1; ++pass) {
-    const double begin = pass == 0 ? 0 : 0.5 + 0.25 * (pass - 1), end = pass == 0 ? 0.5 : begin + 0.25;
-    const Bricks bricks(local, 0.5 * (pass % 2), base::part(progress, begin, begin + 0.2 * (end - begin)));
-    const std::vector<std::uint8_t> uses = corners_at(local);
-    std::vector<double> far(bricks.size(), 0);
+FlatPass remove_inside_planes(Mesh& mesh, double slack, const Progress& progress) {
+  FlatPass result;
+  // Each turn has larger bricks at other places, so that what lay between two bricks lies inside of one.
+  for (int turn = 0; turn < kFlatTurns && mesh.triangles.size() > 1; ++turn) {
+    const Progress now = base::part(progress, turn == 0 ? 0 : 0.5 + 0.2 * (turn - 1), 0.5 + 0.2 * turn);
+    const Bricks bricks(mesh, 0.5 * (turn % 2), base::part(now, 0, 0.2));
+    const std::vector<std::uint8_t> uses = corners_at(mesh);
+    std::vector<double> moved(bricks.size(), 0);
     std::vector<std::size_t> lost(bricks.size(), 0);
-    base::parallel_for(
-        bricks.size(), 1,
-        [&](std::size_t i, std::size_t) {
-          FlatBrick brick(local.vertices, local.triangles, bricks[i], uses);
-          lost[i] = brick.run(slack);
-          if (lost[i] == 0) return;
-          brick.store(local.triangles);
-          far[i] = brick.moved();
-        },
-        base::part(progress, begin + 0.2 * (end - begin), end));
-    moved += *std::max_element(far.begin(), far.end());
-    std::size_t all = 0;
-    for (const std::size_t n : lost) all += n;
-    drop_triangles(local.triangles);
-    if (all < local.triangles.size() / 16) break;
+    const auto run = [&](std::size_t i, std::size_t) {
+      FlatBrick brick(mesh.vertices, mesh.triangles, bricks[i], uses);
+      lost[i] = brick.run(slack);
+      if (lost[i] == 0) return;
+      brick.store(mesh.triangles);
+      moved[i] = brick.moved();
+    };
+    base::parallel_for(bricks.size(), 1, run, base::part(now, 0.2, 1));
+    result.moved += *std::max_element(moved.begin(), moved.end());
+    drop_triangles(mesh.triangles);
+    if (std::accumulate(lost.begin(), lost.end(), std::size_t{0}) < mesh.triangles.size() / 16) break;
   }
-  if (local.triangles.size() < start) drop_vertices(exact, local);
+  result.source = drop_vertices(mesh);
   base::report(progress, 1);
-  return moved;
+  return result;
 }
 
 }  // namespace riffler::mesh

@@ -103,12 +103,12 @@ std::vector<int> grown(std::vector<int> seeds, std::size_t n, const std::vector<
 
 }  // namespace
 
-MapCheck::MapCheck(const Traces& traces, double tolerance)
+MapCheck::MapCheck(const Traces& traces, double tolerance, const Progress& progress)
     : traces_(traces),
       half_edges_(traces.half_edges),
       mesh_(traces.half_edges.mesh),
       tolerance_(tolerance),
-      map_(traces, tolerance),
+      map_(traces, tolerance, progress),
       hole_(traces.half_edges.corner.size() / 3, 0),
       sheets_(mesh_.n_faces()) {}
 

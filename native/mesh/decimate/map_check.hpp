@@ -23,7 +23,7 @@ namespace riffler::mesh {
 class MapCheck {
  public:
   /// Construct after the last collapse; `traces` must outlive the object.
-  MapCheck(const Traces& traces, double tolerance);
+  MapCheck(const Traces& traces, double tolerance, const Progress& progress = {});
 
   /// Old vertices around places that are, or may be, farther from the other surface than the tolerance. Empty if the
   /// tolerance holds.
