@@ -84,12 +84,12 @@ void NearSurface::cut(const Piece& piece, const Vec3& at, const Vec3& unit, Piec
   }
 }
 
-/// Whether the part of the piece over the triangle is near it; then the parts beside it are still open.
+/// Whether the part of the piece over the triangle is near it; then the parts around it are still open.
 bool NearSurface::cut_along(const Piece& piece, int triangle, std::vector<Piece>& open) const {
   const Corners& t = triangles_[triangle];
   const Vec3 normal = glm::cross(t[1] - t[0], t[2] - t[0]);
   Piece inside = piece, in = piece, out = piece;
-  Piece beside[3];
+  Piece around[3];
   int count = 0;
   for (int k = 0; k < 3; ++k) {
     const Vec3 inward = glm::cross(normal, t[(k + 1) % 3] - t[k]);
@@ -98,10 +98,10 @@ bool NearSurface::cut_along(const Piece& piece, int triangle, std::vector<Piece>
     cut(inside, t[k], inward / length, in, out);
     if (!has_width(in)) return false;
     inside = in;
-    if (has_width(out)) beside[count++] = out;
+    if (has_width(out)) around[count++] = out;
   }
   if (!near_triangle(inside, triangle)) return false;
-  open.insert(open.end(), beside, beside + count);
+  open.insert(open.end(), around, around + count);
   return true;
 }
 

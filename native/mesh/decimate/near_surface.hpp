@@ -17,7 +17,7 @@ Mesh mesh_of(const std::vector<Corners>& triangles);
 ///
 /// The points near one triangle form a convex set, so a convex piece is near if its corners are near one triangle. A
 /// piece that is not is cut along the edges of the triangle nearest to its centre: what lies over that triangle is
-/// tested again, and so are the up to three parts beside it. Where a surface is flat, that takes about as many pieces
+/// tested again, and so are the up to three parts around it. Where a surface is flat, that takes about as many pieces
 /// as triangles lie under the piece, however thin they are; where it is not, pieces are halved.
 class NearSurface {
  public:
@@ -29,10 +29,11 @@ class NearSurface {
 
  private:
   static constexpr double kGrain = 1e-9;
-  static constexpr int kCorners = 12, kHalvings = 24;
+  static constexpr int kCorners = 12;  // of a piece that is cut, at most
+  static constexpr int kHalvings = 24;
   /// A convex polygon.
   struct Piece {
-    std::array<Vec3, kCorners> point;
+    std::array<Vec3, 2 * kCorners> point;  // a cut of a piece that rounding made concave may add several
     int corners = 0;
     int hint = -1;  // a triangle nearby
     int halvings = 0;

@@ -156,7 +156,7 @@ TEST(FlatPass, ACarvedBlockIsTheSameForAnyNumberOfThreads) {
   EXPECT_NEAR(volume(results[0]), volume(mesh), 1e-6);
 }
 
-/// The map between the surfaces has holes in flats beside curves; those made whole flats count as far, and 231 892
+/// The map between the surfaces has holes in flats next to curves; those made whole flats count as far, and 231 892
 /// triangles stay after nine attempts.
 TEST(Decimate, FlatsBesideCurvesAreProvenAtOnce) {
   if (test::kSanitized) GTEST_SKIP() << "takes minutes there";
@@ -173,7 +173,7 @@ TEST(Decimate, FlatsBesideCurvesAreProvenAtOnce) {
   EXPECT_LE(one_way(result, mesh), 0.005);
 }
 
-/// How long a cancelled call goes on, as triangles for each report: no time, which depends on the machine.
+/// How long a cancelled call continues, as triangles for each report: no time, which depends on the machine.
 TEST(Decimate, ReportsAfterAFewThousandTriangles) {
   const Mesh mesh = carved(test::kSanitized ? 1 : 0.4);
   setenv("RIFFLER_THREADS", "1", 1);

@@ -41,7 +41,7 @@ TEST(NearSurface, ATriangleOverThinFacesTakesFewPieces) {
       for (Vec3& p : off) p.z += 0.2 * tolerance;
       EXPECT_FALSE(surface.holds(off, 100 * n)) << n;
       off = place;
-      off[0].y -= 3;  // beside the square
+      off[0].y -= 3;  // next to the square
       EXPECT_FALSE(surface.holds(off, 100 * n)) << n;
     }
   }
