@@ -13,6 +13,7 @@
 #include "mesh/decimate/collapse.hpp"
 #include "mesh/decimate/edge_costs.hpp"
 #include "mesh/decimate/edge_queue.hpp"
+#include "mesh/decimate/flat_pass.hpp"
 #include "mesh/decimate/half_edge.hpp"
 #include "mesh/decimate/map_check.hpp"
 #include "mesh/decimate/patches.hpp"
@@ -31,17 +32,48 @@ using OpenMesh::VertexHandle;
 // Fits the private cache of a core.
 constexpr std::size_t kPatchVertices = 8192;
 
+// Vertices or triangles that one thread prepares at a time.
+constexpr std::size_t kPrepared = 1 << 16;
+
+// Share of the tolerance by which vertices of a plane may miss it.
+constexpr double kSlack = 1.0 / 512;
+
 void check_limits(const DecimateLimits& limits) {
   if (!limits.triangles && !limits.tolerance) throw std::invalid_argument("decimate needs triangles or tolerance");
   if (limits.tolerance && !(*limits.tolerance >= 0 && std::isfinite(*limits.tolerance)))
     throw std::invalid_argument("tolerance must be finite and not negative, not " + std::to_string(*limits.tolerance));
 }
 
-/// The tolerance that the rounded surface must keep so that the unrounded one keeps `tolerance`.
-double left_after_rounding(double tolerance, const Mesh& mesh) {
-  double largest = 0;
-  for (const Vec3& v : mesh.vertices) largest = std::max(largest, glm::length(geom::to_float32(v) - v));
-  return std::max(0.0, tolerance - 2 * largest);
+/// A mesh in float32's coordinates, relative to `centre`.
+struct Rounded {
+  Mesh mesh;
+  double largest = 0;  // mm, the largest distance by which rounding moves a vertex
+};
+
+Rounded rounded(const Mesh& mesh, const Vec3& centre, const Progress& progress) {
+  Rounded result;
+  result.mesh.vertices.resize(mesh.vertices.size()), result.mesh.triangles.resize(mesh.triangles.size());
+  std::vector<double> largest((mesh.vertices.size() + kPrepared - 1) / kPrepared, 0);
+  base::parallel_for(
+      mesh.vertices.size(), kPrepared,
+      [&](std::size_t begin, std::size_t end) {
+        double square = 0;
+        for (std::size_t v = begin; v < end; ++v) {
+          const Vec3 p = geom::to_float32(mesh.vertices[v]), off = p - mesh.vertices[v];
+          square = std::max(square, glm::dot(off, off));
+          result.mesh.vertices[v] = p - centre;
+        }
+        largest[begin / kPrepared] = std::sqrt(square);
+      },
+      base::part(progress, 0, 0.7));
+  base::parallel_for(
+      mesh.triangles.size(), kPrepared,
+      [&](std::size_t begin, std::size_t end) {
+        std::copy(&mesh.triangles[begin], mesh.triangles.data() + end, &result.mesh.triangles[begin]);
+      },
+      base::part(progress, 0.7, 1));
+  result.largest = *std::max_element(largest.begin(), largest.end());
+  return result;
 }
 
 /// Data shared by all patches.
@@ -217,6 +249,42 @@ void keep(const HalfEdges& half_edges, std::vector<int> far, int attempt, std::v
   base::sort_unique(kept);
 }
 
+/// What is left to do once coordinates and limits are known.
+struct Reduction {
+  const Mesh& mesh;
+  const Mesh& local;  // in float32's coordinates, relative to `centre`
+  Vec3 centre;
+  double grain, tolerance;
+  std::size_t target;
+  bool bounded;
+
+  Mesh run(const Progress& progress) const {
+    std::vector<int> kept;  // vertices that stay because the tolerance could not be proven otherwise
+    double done = 0;
+    for (int attempt = 0;; ++attempt) {
+      // The first attempt is usually the last: reserve a tenth of the remaining progress for further ones.
+      const double end = bounded ? done + 0.9 * (1 - done) : 1, proof = bounded ? 0.2 : 0;
+      const Progress loop = base::part(progress, done, end - proof * (end - done));
+      const Progress proving = base::part(progress, end - proof * (end - done), end);
+      HalfEdges half_edges(local, base::part(loop, 0, 0.1));
+      for (const int v : kept) half_edges.mesh.status(VertexHandle(v)).set_locked(true);
+      EdgeCosts costs(half_edges, centre, grain, base::part(loop, 0.1, 0.18));
+      std::optional<Traces> traces;
+      if (bounded) traces.emplace(half_edges, base::part(loop, 0.18, 0.2));
+      const Surface surface{half_edges, costs, traces ? &*traces : nullptr, tolerance};
+      Decimation(surface, target, loop).run();
+      std::vector<int> far;
+      if (traces)
+        far = MapCheck(*traces, tolerance, base::part(proving, 0, 0.3)).far_vertices(base::part(proving, 0.3, 1));
+      if (far.empty()) return half_edges.to_mesh(mesh, local, centre);
+      const std::size_t before = kept.size();
+      keep(half_edges, std::move(far), attempt, kept);
+      if (kept.size() == before) return mesh;
+      done = end;
+    }
+  }
+};
+
 }  // namespace
 
 Mesh decimate(const Mesh& mesh, const DecimateLimits& limits, const Progress& progress) {
@@ -229,38 +297,25 @@ Mesh decimate(const Mesh& mesh, const DecimateLimits& limits, const Progress& pr
   // same as in the file, and quadrics keep their digits far from the origin.
   const Box3 box = bounds(mesh);
   const Vec3 centre = geom::to_float32(0.5 * box.lower + 0.5 * box.upper);
-  Mesh local = mesh;
-  for (Vec3& v : local.vertices) v = geom::to_float32(v) - centre;
+  auto [local, rounding] = rounded(mesh, centre, base::part(progress, 0, 0.04));
   const Vec3 corner = glm::max(glm::abs(box.lower), glm::abs(box.upper));
   const double largest = std::max({corner.x, corner.y, corner.z}), reach = separation_reach(largest);
-  double tolerance = limits.tolerance ? left_after_rounding(*limits.tolerance, mesh) : 0;
+  // Both surfaces differ from their rounded ones.
+  double tolerance = limits.tolerance ? std::max(0.0, *limits.tolerance - 2 * rounding) : 0;
   // If float32 is too coarse for the tolerance, vertices do not move.
   const bool may_move = !limits.tolerance || tolerance > 16 * reach;
   if (may_move) tolerance -= reach;
+  const double grain = may_move ? std::ldexp(largest, -24) : std::numeric_limits<double>::infinity();
+  const Progress rest = base::part(progress, 0.04, 1);
+  if (!limits.tolerance || limits.triangles)
+    return Reduction{mesh, local, centre, grain, tolerance, target, limits.tolerance.has_value()}.run(rest);
 
-  std::vector<int> kept;  // vertices that stay because the tolerance could not be proven otherwise
-  double done = 0;
-  for (int attempt = 0;; ++attempt) {
-    // The first attempt is usually the last: reserve a tenth of the remaining progress for further ones.
-    const double end = limits.tolerance ? done + 0.9 * (1 - done) : 1, proof = limits.tolerance ? 0.2 : 0;
-    const Progress loop = base::part(progress, done, end - proof * (end - done));
-    const Progress proving = base::part(progress, end - proof * (end - done), end);
-    HalfEdges half_edges(local, base::part(loop, 0, 0.1));
-    for (const int v : kept) half_edges.mesh.status(VertexHandle(v)).set_locked(true);
-    const double grain = may_move ? std::ldexp(largest, -24) : std::numeric_limits<double>::infinity();
-    EdgeCosts costs(half_edges, centre, grain, base::part(loop, 0.1, 0.18));
-    std::optional<Traces> traces;
-    if (limits.tolerance) traces.emplace(half_edges, base::part(loop, 0.18, 0.2));
-    const Surface surface{half_edges, costs, traces ? &*traces : nullptr, tolerance};
-    Decimation(surface, target, loop).run();
-    std::vector<int> far;
-    if (traces) far = MapCheck(*traces, tolerance).far_vertices(proving);
-    if (far.empty()) return half_edges.to_mesh(mesh, local, centre);
-    const std::size_t before = kept.size();
-    keep(half_edges, std::move(far), attempt, kept);
-    if (kept.size() == before) return mesh;
-    done = end;
-  }
+  FlatPass flats = remove_inside_planes(local, kSlack * tolerance, base::part(rest, 0, 0.2));
+  Mesh left;
+  for (const int v : flats.source) left.vertices.push_back(mesh.vertices[v]);
+  left.triangles = local.triangles;
+  const Progress reducing = base::part(rest, 0.2, 1);
+  return Reduction{left, local, centre, grain, tolerance - flats.moved, target, true}.run(reducing);
 }
 
 }  // namespace riffler::mesh

@@ -1,8 +1,10 @@
 #include "mesh/decimate/map_check.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "base/sort_unique.hpp"
+#include "mesh/decimate/near_surface.hpp"
 #include "riffler/base/parallel.hpp"
 
 namespace riffler::mesh {
@@ -14,8 +16,8 @@ using OpenMesh::HalfedgeHandle;
 using Image = SurfaceMap::Image;
 using Segment = SurfaceMap::Segment;
 
-/// Maximum number of halvings of a triangle that is compared piece by piece.
-constexpr int kNearDepth = 24;
+/// Maximum number of halvings of a face along the rims in it.
+constexpr int kRimDepth = 24;
 
 /// Maximum number of its pieces, because a depth of 24 does not limit the work; a triangle that needs more counts as
 /// far.
@@ -76,21 +78,11 @@ bool touches(const Segment& s, const Vec3& lower, const Vec3& upper, double slac
          glm::all(glm::greaterThanEqual(glm::max(s.a, s.b) + slack, lower));
 }
 
-Mesh mesh_of(const std::vector<std::array<Vec3, 3>>& triangles) {
-  Mesh mesh;
-  for (const std::array<Vec3, 3>& t : triangles) {
-    const int first = static_cast<int>(mesh.vertices.size());
-    mesh.vertices.insert(mesh.vertices.end(), t.begin(), t.end());
-    mesh.triangles.emplace_back(first, first + 1, first + 2);
-  }
-  return mesh;
-}
-
 /// Grows from `seeds` to neighbours, and continues from those within `reach` of `place`. Returns the seeds and these,
 /// in order. for_each_neighbour(t, visit) calls visit(neighbour).
 template <class Points, class Neighbours>
-std::vector<int> grown(std::vector<int> seeds, std::size_t n, const std::vector<std::array<Vec3, 3>>& place,
-                       double reach, const Points& points, const Neighbours& for_each_neighbour) {
+std::vector<int> grown(std::vector<int> seeds, std::size_t n, const std::vector<Corners>& place, double reach,
+                       const Points& points, const Neighbours& for_each_neighbour) {
   base::sort_unique(seeds);
   std::vector<char> seen(n, 0);
   for (const int t : seeds) seen[t] = 1;
@@ -99,7 +91,7 @@ std::vector<int> grown(std::vector<int> seeds, std::size_t n, const std::vector<
     for_each_neighbour(seeds[next], [&](int t) {
       if (seen[t]) return;
       seen[t] = 1;
-      const std::array<Vec3, 3> p = points(t);
+      const Corners p = points(t);
       const Vec3 centre = (p[0] + p[1] + p[2]) / 3.0;
       const double radius =
           std::max({glm::length(p[0] - centre), glm::length(p[1] - centre), glm::length(p[2] - centre)});
@@ -111,12 +103,12 @@ std::vector<int> grown(std::vector<int> seeds, std::size_t n, const std::vector<
 
 }  // namespace
 
-MapCheck::MapCheck(const Traces& traces, double tolerance)
+MapCheck::MapCheck(const Traces& traces, double tolerance, const Progress& progress)
     : traces_(traces),
       half_edges_(traces.half_edges),
       mesh_(traces.half_edges.mesh),
       tolerance_(tolerance),
-      map_(traces, tolerance),
+      map_(traces, tolerance, progress),
       hole_(traces.half_edges.corner.size() / 3, 0),
       sheets_(mesh_.n_faces()) {}
 
@@ -129,7 +121,7 @@ std::vector<int> MapCheck::far_vertices(const Progress& progress) {
   return result;
 }
 
-MapCheck::Corners MapCheck::old_points(int t) const {
+Corners MapCheck::old_points(int t) const {
   const auto point = [&](int k) { return traces_.old[half_edges_.corner[3 * t + k]].point; };
   return {point(0), point(1), point(2)};
 }
@@ -210,11 +202,10 @@ std::vector<char> MapCheck::near(const std::vector<Corners>& place, const std::v
                                  const Progress& progress) const {
   std::vector<char> result(place.size(), 0);
   if (surface.empty()) return result;
-  const Closest closest(mesh_of(surface));
+  const NearSurface other(surface, tolerance_);
   const auto look = [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      int pieces = kMaxPieces;
-      result[i] = triangle_near(closest, place[i][0], place[i][1], place[i][2], -1, kNearDepth, pieces);
+      result[i] = other.holds(place[i], kMaxPieces);
       base::still_wanted();
     }
   };
@@ -244,9 +235,11 @@ void MapCheck::check_faces(std::vector<int>& far, const Progress& progress) cons
   base::report(progress, 0);
   std::vector<Doubt> doubt = doubts();
   // Large pieces along the rims first: hardly any of them is too far, which would require separating the covered part.
-  for (const double smallest : {kCoarse * tolerance_, tolerance_}) {
-    const double begin = smallest > tolerance_ ? 0.2 : 0.6;
-    const std::vector<char> is_near = faces_near(doubt, smallest, base::part(progress, begin, begin + 0.4));
+  // Then whole faces: thin ones need many pieces along a rim, but few where the old triangles are large.
+  double begin = 0.2;
+  for (const double smallest : {kCoarse * tolerance_, std::numeric_limits<double>::infinity(), tolerance_}) {
+    const std::vector<char> is_near = faces_near(doubt, smallest, base::part(progress, begin, begin + 0.25));
+    begin += 0.25;
     std::size_t left = 0;
     for (std::size_t i = 0; i < doubt.size(); ++i)
       if (!is_near[i]) std::swap(doubt[left++], doubt[i]);
@@ -276,7 +269,7 @@ std::vector<char> MapCheck::faces_near(const std::vector<Doubt>& doubt, double s
     for (std::size_t i = begin; i < end; ++i) {
       int left = most;
       const Corners whole = map_.points_of(doubt[i].face);
-      if (!add_uncovered(doubt[i], doubt[i].rim, whole, smallest, kNearDepth, left, pieces[i]))
+      if (!add_uncovered(doubt[i], doubt[i].rim, whole, smallest, kRimDepth, left, pieces[i]))
         pieces[i].clear(), result[i] = 0;
       base::still_wanted();
     }
@@ -326,30 +319,6 @@ bool MapCheck::add_uncovered(const Doubt& doubt, const std::vector<Segment>& rim
   const Vec3 &a = p[longest], &b = p[(longest + 1) % 3], &tip = p[(longest + 2) % 3], half = 0.5 * (a + b);
   return add_uncovered(doubt, crossing, {a, half, tip}, smallest, depth - 1, left, pieces) &&
          add_uncovered(doubt, crossing, {half, b, tip}, smallest, depth - 1, left, pieces);
-}
-
-/// Points near one triangle form a convex set, so a triangle is halved if it is not entirely near one triangle. `hint`
-/// is a nearby triangle, or -1.
-bool MapCheck::triangle_near(const Closest& closest, const Vec3& a, const Vec3& b, const Vec3& c, int hint, int depth,
-                             int& pieces) const {
-  if (pieces-- <= 0) return false;
-  const Vec3 centre = (a + b + c) / 3.0;
-  double limit = tolerance_;
-  if (hint >= 0) limit = std::min(limit, closest.distance_to(hint, centre));
-  // slightly enlarged, so that the search finds the hint itself again
-  const Closest::Hit hit = closest(centre, limit * (1 + 1e-12));
-  if (!(hit.distance <= tolerance_)) return false;
-  if (closest.distance_to(hit.triangle, a) <= tolerance_ && closest.distance_to(hit.triangle, b) <= tolerance_ &&
-      closest.distance_to(hit.triangle, c) <= tolerance_)
-    return true;
-  if (depth == 0) return false;
-  const auto halves = [&](const Vec3& p, const Vec3& q, const Vec3& tip) {
-    const Vec3 half = 0.5 * (p + q);
-    return triangle_near(closest, p, half, tip, hit.triangle, depth - 1, pieces) &&
-           triangle_near(closest, half, q, tip, hit.triangle, depth - 1, pieces);
-  };
-  const double ab = glm::length(b - a), bc = glm::length(c - b), ca = glm::length(a - c);
-  return ab >= bc && ab >= ca ? halves(a, b, c) : bc >= ca ? halves(b, c, a) : halves(c, a, b);
 }
 
 }  // namespace riffler::mesh

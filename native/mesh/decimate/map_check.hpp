@@ -5,7 +5,7 @@
 #include <atomic>
 #include <vector>
 
-#include "mesh/closest.hpp"
+#include "mesh/decimate/near_surface.hpp"
 #include "mesh/decimate/surface_map.hpp"
 #include "riffler/base/progress.hpp"
 
@@ -23,14 +23,13 @@ namespace riffler::mesh {
 class MapCheck {
  public:
   /// Construct after the last collapse; `traces` must outlive the object.
-  MapCheck(const Traces& traces, double tolerance);
+  MapCheck(const Traces& traces, double tolerance, const Progress& progress = {});
 
   /// Old vertices around places that are, or may be, farther from the other surface than the tolerance. Empty if the
   /// tolerance holds.
   std::vector<int> far_vertices(const Progress& progress = {});
 
  private:
-  using Corners = std::array<Vec3, 3>;
   /// A face that may not be covered, and the rims of holes in it.
   struct Doubt {
     int face;
@@ -51,8 +50,6 @@ class MapCheck {
   std::vector<int> old_triangles_near(const std::vector<Corners>& place, std::vector<int> seeds) const;
   std::vector<char> near(const std::vector<Corners>& place, const std::vector<Corners>& surface,
                          const Progress& progress) const;
-  bool triangle_near(const Closest& closest, const Vec3& a, const Vec3& b, const Vec3& c, int hint, int depth,
-                     int& pieces) const;
 
   const Traces& traces_;
   const HalfEdges& half_edges_;

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <limits>
 
+#include "base/sort_unique.hpp"
 #include "mesh/closest.hpp"
+#include "riffler/base/parallel.hpp"
 
 namespace riffler::mesh {
 
@@ -17,7 +19,9 @@ using OpenMesh::VertexHandle;
 /// Maximum number of divisions of a triangle and its edges.
 constexpr int kDepth = 24;
 /// Maximum number of pieces: a triangle usually lies over a few faces; one that needs more is not mapped.
-constexpr std::size_t kMaxImages = 4096;
+constexpr std::size_t kMaxImages = 256;
+/// Faces and vertices that are placed between two reports of progress.
+constexpr std::size_t kPlaced = 1 << 12;
 
 Vec3 nearest_of_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
   const Vec3 ab = b - a;
@@ -42,7 +46,7 @@ bool comes_before(const Vec3& a, const Vec3& b) {
 
 }  // namespace
 
-SurfaceMap::SurfaceMap(const Traces& traces, double tolerance)
+SurfaceMap::SurfaceMap(const Traces& traces, double tolerance, const Progress& progress)
     : traces_(traces),
       half_edges_(traces.half_edges),
       mesh_(traces.half_edges.mesh),
@@ -50,36 +54,41 @@ SurfaceMap::SurfaceMap(const Traces& traces, double tolerance)
       corners_(mesh_.n_faces()),
       spot_(traces.old.size()) {
   take_corners();
-  place_vertices();
-  place_dropped_vertices();
-  place_others();
+  place_vertices(base::part(progress, 0.1, 0.5));
+  place_dropped_vertices(base::part(progress, 0.5, 0.8));
+  place_others(base::part(progress, 0.8, 1));
 }
 
 void SurfaceMap::take_corners() {
-  for (const FaceHandle face : mesh_.all_faces()) {
-    if (mesh_.status(face).deleted()) continue;
-    HalfedgeHandle half = mesh_.halfedge_handle(face);
-    for (int& corner : corners_[face.idx()]) {
-      corner = mesh_.from_vertex_handle(half).idx();
-      half = mesh_.next_halfedge_handle(half);
+  base::parallel_for(corners_.size(), kPlaced, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t f = begin; f < end; ++f) {
+      const FaceHandle face(static_cast<int>(f));
+      if (mesh_.status(face).deleted()) continue;
+      HalfedgeHandle half = mesh_.halfedge_handle(face);
+      for (int& corner : corners_[f]) {
+        corner = mesh_.from_vertex_handle(half).idx();
+        half = mesh_.next_halfedge_handle(half);
+      }
     }
-  }
+  });
 }
 
 /// Places the old vertices that still exist, and those that the checks of the collapses have recorded.
-void SurfaceMap::place_vertices() {
+void SurfaceMap::place_vertices(const Progress& progress) {
   const auto face_beside = [&](HalfedgeHandle half) {
     return mesh_.face_handle(mesh_.is_boundary(half) ? mesh_.opposite_halfedge_handle(half) : half).idx();
   };
-  for (const FaceHandle face : mesh_.all_faces()) {
-    if (mesh_.status(face).deleted()) continue;
-    const std::array<int, 3>& c = corners_[face.idx()];
-    const auto point = [&](int k) { return to_vec3(mesh_.point(VertexHandle(c[k]))); };
-    for (int v = traces_.in_face[face.idx()]; v >= 0; v = traces_.old[v].next) {
-      const Vec3& p = traces_.old[v].point;
-      spot_[v] = {p, closest_on_triangle(p, point(0), point(1), point(2)).point, face.idx()};
+  const auto place_in_faces = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t f = begin; f < end; ++f) {
+      if (mesh_.status(FaceHandle(static_cast<int>(f))).deleted()) continue;
+      const Corners c = points_of(static_cast<int>(f));
+      for (int v = traces_.in_face[f]; v >= 0; v = traces_.old[v].next) {
+        const Vec3& p = traces_.old[v].point;
+        spot_[v] = {p, closest_on_triangle(p, c[0], c[1], c[2]).point, static_cast<int>(f)};
+      }
     }
-  }
+  };
+  base::parallel_for(corners_.size(), kPlaced, place_in_faces, progress);
   for (const EdgeHandle edge : mesh_.all_edges()) {
     if (mesh_.status(edge).deleted()) continue;
     const HalfedgeHandle half = mesh_.halfedge_handle(edge, 0);
@@ -98,7 +107,7 @@ void SurfaceMap::place_vertices() {
 }
 
 /// Places the others from neighbour to neighbour.
-void SurfaceMap::place_dropped_vertices() {
+void SurfaceMap::place_dropped_vertices(const Progress& progress) {
   const int triangles = static_cast<int>(half_edges_.corner.size() / 3);
   const auto corner = [&](int t, int k) { return half_edges_.corner[3 * t + k]; };
   std::vector<int> open;
@@ -110,6 +119,7 @@ void SurfaceMap::place_dropped_vertices() {
   for (int t = 0; t < triangles; ++t)
     if (corner(t, 0) >= 0) may_be_open(t);
   for (std::size_t next = 0; next < open.size(); ++next) {
+    if (next % kPlaced == 0) base::report(progress, static_cast<double>(next) / static_cast<double>(open.size()) / 2);
     const int t = open[next];
     bool any = false;
     for (int k = 0; k < 3; ++k) {
@@ -128,7 +138,7 @@ void SurfaceMap::place_dropped_vertices() {
 }
 
 /// Places the remaining ones at the nearest point of the whole surface.
-void SurfaceMap::place_others() {
+void SurfaceMap::place_others(const Progress& progress) {
   std::vector<int> others;
   for (std::size_t half = 0; half < half_edges_.corner.size(); ++half)
     if (const int v = half_edges_.corner[half]; v >= 0 && spot_[v].face < 0) others.push_back(v);
@@ -137,11 +147,15 @@ void SurfaceMap::place_others() {
   std::vector<int> face;  // of each triangle of the new surface
   for (const FaceHandle f : mesh_.all_faces())
     if (!mesh_.status(f).deleted()) face.push_back(f.idx());
-  for (const int v : others) {
-    const Vec3& p = traces_.old[v].point;
-    if (const Closest::Hit hit = closest(p, tolerance_); hit.triangle >= 0)
-      spot_[v] = {p, hit.point, face[hit.triangle]};
-  }
+  base::sort_unique(others);
+  const auto place = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Vec3& p = traces_.old[others[i]].point;
+      if (const Closest::Hit hit = closest(p, tolerance_); hit.triangle >= 0)
+        spot_[others[i]] = {p, hit.point, face[hit.triangle]};
+    }
+  };
+  base::parallel_for(others.size(), 256, place, progress);
 }
 
 /// The remaining faces, with all vertices.
@@ -154,7 +168,7 @@ Mesh SurfaceMap::new_surface() const {
   return now;
 }
 
-std::array<Vec3, 3> SurfaceMap::points_of(int face) const {
+Corners SurfaceMap::points_of(int face) const {
   const std::array<int, 3>& c = corners_[face];
   const auto point = [&](int k) { return to_vec3(mesh_.point(VertexHandle(c[k]))); };
   return {point(0), point(1), point(2)};

@@ -6,7 +6,9 @@
 #include <utility>
 #include <vector>
 
+#include "mesh/decimate/near_surface.hpp"
 #include "mesh/decimate/tolerance_check.hpp"
+#include "riffler/base/progress.hpp"
 
 namespace riffler::mesh {
 
@@ -34,7 +36,7 @@ class SurfaceMap {
   };
 
   /// Construct after the last collapse; `traces` must outlive the object.
-  SurfaceMap(const Traces& traces, double tolerance);
+  SurfaceMap(const Traces& traces, double tolerance, const Progress& progress = {});
 
   /// The image of an old triangle. Returns false if it is a hole.
   bool map_triangle(std::size_t t, std::vector<Image>& images) const;
@@ -45,7 +47,7 @@ class SurfaceMap {
   int face_of(int vertex) const { return spot_[vertex].face; }
   /// Vertices of a new face, and their positions.
   const std::array<int, 3>& corners(int face) const { return corners_[face]; }
-  std::array<Vec3, 3> points_of(int face) const;
+  Corners points_of(int face) const;
   /// The remaining faces, with all vertices.
   Mesh new_surface() const;
 
@@ -63,9 +65,9 @@ class SurfaceMap {
   };
 
   void take_corners();
-  void place_vertices();
-  void place_dropped_vertices();
-  void place_others();
+  void place_vertices(const Progress& progress);
+  void place_dropped_vertices(const Progress& progress);
+  void place_others(const Progress& progress);
 
   bool is_near(const Spot& spot) const;
   Spot nearest(const Vec3& p, int face) const;
