@@ -97,8 +97,8 @@ Mesh to_mesh(const Volume& volume, const Progress& progress) {
 
 Mesh to_mesh(const Volume& volume, double tolerance, const Progress& progress) {
   if (!(tolerance >= 0 && std::isfinite(tolerance)))
-    throw std::invalid_argument("tolerance: " + std::to_string(tolerance) +
-                                " mm; a mesh needs a finite distance of 0 or more (0: all triangles)");
+    throw std::invalid_argument("tolerance must be finite and not negative, not " + std::to_string(tolerance) +
+                                " mm; 0 keeps all triangles");
   MeshState state(volume, false, base::part(progress, 0, 0.6));
   if (tolerance < state.lattice.step()) return state.take();
   return state.take(tolerance, base::part(progress, 0.6, 1));

@@ -9,7 +9,8 @@ namespace riffler::marching {
 
 namespace {
 
-constexpr double kTouching = -0.98;       // cosine of two triangles that all but lie on each other
+constexpr double kTouching = -0.98;   // cosine of two triangles that all but lie on each other
+constexpr double kNear = 1e-4;        // weight of a target's distance compared with its height
 constexpr int kLevels = 8;            // of the error, from the cheapest merges to the dearest
 constexpr double kFlat = 1.0 / 4096;  // error that needs no closer look, over the tolerance
 
@@ -137,11 +138,12 @@ bool StarCollapser::merge(std::int32_t from, double limit, int most_faces) {
     if (s < 0 || stars_[s].locked) continue;
     const int faces = stars_[s].count + count_ - 4;
     if (faces < 3 || faces > most_faces) continue;
-    targets[many++] = {squared(sides_[n].pa), n};
+    // Along a groove nothing is lost; where all is flat the nearest is best.
+    const Vec3& p = sides_[n].pa;
+    targets[many++] = {std::abs(glm::dot(p, direction_)) + kNear * glm::length(p), n};
   }
-  std::sort(targets.begin(), targets.begin() + many, [](const Target& a, const Target& b) {
-    return a.length != b.length ? a.length < b.length : a.side < b.side;
-  });
+  std::sort(targets.begin(), targets.begin() + many,
+            [](const Target& a, const Target& b) { return a.guess != b.guess ? a.guess < b.guess : a.side < b.side; });
   const bool flat = slab_ <= tolerance_ * kFlat && base_ + slab_ <= most_error_;
   double best = std::numeric_limits<double>::infinity();
   int taken = -1;
@@ -197,7 +199,8 @@ bool StarCollapser::folds(std::int32_t from, const Side& to) const {
       for (int m = 0; m < stars_[s].count; ++m) {
         const Face& face = faces_[around(s)[m]];
         const auto has = [&](std::int32_t v) { return face.v.x == v || face.v.y == v || face.v.z == v; };
-        if (has(side.a) && has(side.b) && !has(stars_[from].vertex) && glm::dot(face.normal, cross) < kTouching * length)
+        if (has(side.a) && has(side.b) && !has(stars_[from].vertex) &&
+            glm::dot(face.normal, cross) < kTouching * length)
           return true;
       }
     }

@@ -13,7 +13,7 @@ namespace riffler::marching {
 struct AdaptiveMesh {
   const mesh::Vertices& vertices;
   mesh::Triangles& triangles;
-  /// Of each triangle, mm: an upper bound of how far a point of it is from its point of the first surface.
+  /// For each triangle, mm: an upper bound of the distance of its points from their points on the first surface.
   base::BulkVector<float>& errors;
 };
 
@@ -84,8 +84,8 @@ class StarCollapser {
     Vec3 normal;
   };
   struct Target {
-    double length;  // squared
-    int side;       // its a is the vertex to merge into
+    double guess;  // of the error
+    int side;      // its a is the vertex to merge into
   };
 
   std::int32_t slot(std::int32_t v) const {
