@@ -76,23 +76,25 @@ auto volume_from_mesh_with_report(const std::shared_ptr<Mesh>& mesh, double pitc
 
 using MeshOfVolume = std::pair<std::shared_ptr<Mesh>, Lost>;
 
-auto meshing_of(SharedVolume& self) {
-  return [state = Reading(self).volume.snapshot()](const Progress& listener) {
-    MeshOfVolume out{std::make_shared<Mesh>(marching::to_mesh(state, listener)), {}};
+auto meshing_of(SharedVolume& self, const std::optional<double>& tolerance) {
+  return [state = Reading(self).volume.snapshot(), tolerance](const Progress& listener) {
+    Mesh mesh = tolerance ? marching::to_mesh(state, *tolerance, listener) : marching::to_mesh(state, listener);
+    MeshOfVolume out{std::make_shared<Mesh>(std::move(mesh)), {}};
     out.second = lost_by_meshing(state, out.first->triangles.size());
     return out;
   };
 }
 
-auto volume_to_mesh(SharedVolume& self, const ProgressLike& progress) {
-  return long_call(progress, meshing_of(self), [](MeshOfVolume&& made) {
+auto volume_to_mesh(SharedVolume& self, const std::optional<double>& tolerance, const ProgressLike& progress) {
+  return long_call(progress, meshing_of(self, tolerance), [](MeshOfVolume&& made) {
     warn(made.second);
     return made.first;
   });
 }
 
-auto volume_to_mesh_with_report(SharedVolume& self, const ProgressLike& progress) {
-  return long_call(progress, meshing_of(self), [](MeshOfVolume&& made) {
+auto volume_to_mesh_with_report(SharedVolume& self, const std::optional<double>& tolerance,
+                                const ProgressLike& progress) {
+  return long_call(progress, meshing_of(self, tolerance), [](MeshOfVolume&& made) {
     py::dict fields;
     put(made.second, fields);
     return MeshAndReport(py::make_tuple(made.first, make_result("SurfaceReport", fields)));
@@ -180,7 +182,8 @@ Examples
 >>> report.open_edges, report.lost_note
 (0, '')
 )")
-      .def("to_mesh", &volume_to_mesh, py::kw_only(), py::arg("progress") = py::none(),
+      .def("to_mesh", &volume_to_mesh, py::kw_only(), py::arg("tolerance") = py::none(),
+           py::arg("progress") = py::none(),
            R"(The surface: closed, outward, two-manifold, and still so in a binary STL.
 
 Material thinner than the pitch is no part of it: where that is worth a sentence, it is a UserWarning;
@@ -188,6 +191,11 @@ Material thinner than the pitch is no part of it: where that is worth a sentence
 
 Parameters
 ----------
+tolerance : float, mm, or None
+    Leaves out the triangles that the shape does not need: no point of the mesh is farther than this from the surface of
+    all triangles, and the reverse. It is as closed and as sharp at edges, and its vertices are some of theirs. None, or
+    less than the step of float32 at the box's largest coordinate (0 too): all triangles. More than the size of the part
+    keeps at least four triangles of each shell.
 progress : callable or None
     Called with the finished share; returning False cancels.
 
@@ -198,6 +206,8 @@ Mesh
 
 Raises
 ------
+ValueError
+    A tolerance that is negative or not finite.
 Cancelled
     ``progress`` returned False.
 
@@ -205,12 +215,21 @@ Examples
 --------
 >>> riffler.Volume.block((0, 0, 0), (4, 3, 2), pitch=0.5).to_mesh().audit().open_edges
 0
+>>> volume = riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.25, directions="xyz")
+>>> len(volume.to_mesh().triangles) > 100 * len(volume.to_mesh(tolerance=0.02).triangles)
+True
 )")
-      .def("to_mesh_with_report", &volume_to_mesh_with_report, py::kw_only(), py::arg("progress") = py::none(),
+      .def("to_mesh_with_report", &volume_to_mesh_with_report, py::kw_only(), py::arg("tolerance") = py::none(),
+           py::arg("progress") = py::none(),
            R"(The same as `to_mesh`, with what is no part of the mesh since it is thinner than the pitch.
 
 Parameters
 ----------
+tolerance : float, mm, or None
+    Leaves out the triangles that the shape does not need: no point of the mesh is farther than this from the surface of
+    all triangles, and the reverse. It is as closed and as sharp at edges, and its vertices are some of theirs. None, or
+    less than the step of float32 at the box's largest coordinate (0 too): all triangles. More than the size of the part
+    keeps at least four triangles of each shell.
 progress : callable or None
     Called with the finished share; returning False cancels.
 
@@ -221,6 +240,8 @@ Returns
 
 Raises
 ------
+ValueError
+    A tolerance that is negative or not finite.
 Cancelled
     ``progress`` returned False.
 

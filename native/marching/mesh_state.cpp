@@ -1,10 +1,12 @@
 #include "marching/mesh_state.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <limits>
 #include <stdexcept>
 
 #include "base/sort_unique.hpp"
+#include "marching/adaptive.hpp"
 #include "riffler/base/parallel.hpp"
 
 namespace riffler::marching {
@@ -91,6 +93,60 @@ Mesh MeshState::take() {
   base::parallel_for(mesh.vertices.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) mesh.vertices[n] = to_world(lattice.axis(), mesh.vertices[n]);
   });
+  return mesh;
+}
+
+Mesh MeshState::take(double tolerance, const Progress& progress) {
+  const std::vector<std::size_t> all = active_bricks();
+  base::BulkVector<std::uint8_t> fixed(surface.mesh.vertices.size());
+  std::fill(fixed.begin(), fixed.end(), std::uint8_t{0});
+  simplify(surface, all, tolerance, fixed, base::part(progress, 0, 0.9));
+  while (fix_folds(surface, all, fixed)) {
+    build({});
+    simplify(surface, all, tolerance, fixed, {});
+  }
+  // New numbers: first of each brick's vertices and triangles, then of each vertex.
+  std::vector<std::size_t> vertex(all.size() + 1, 0), triangle(all.size() + 1, 0);
+  base::BulkVector<std::int32_t> number(surface.mesh.vertices.size());
+  const auto each = [&](const auto& body) {
+    base::parallel_for(all.size(), 8, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t n = begin; n < end; ++n) body(n, *bricks.active(all[n]));
+    });
+  };
+  const auto for_triangles = [&](const ActiveBrick& brick, const auto& body) {
+    for (std::size_t t = 2 * brick.first_edge; t < 2 * (brick.first_edge + brick.edges()); ++t)
+      if (surface.mesh.triangles[t].x >= 0) body(surface.mesh.triangles[t]);
+  };
+  each([&](std::size_t, const ActiveBrick& brick) {
+    std::fill_n(number.begin() + static_cast<std::ptrdiff_t>(brick.first_vertex), brick.vertices(), -1);
+  });
+  // A vertex may have triangles of other bricks only. Bricks that mark the same vertex write the same value.
+  each([&](std::size_t n, const ActiveBrick& brick) {
+    for_triangles(brick, [&](const Vec3i& v) {
+      ++triangle[n + 1];
+      for (const std::int32_t c : {v.x, v.y, v.z}) std::atomic_ref(number[c]).store(0, std::memory_order_relaxed);
+    });
+  });
+  each([&](std::size_t n, const ActiveBrick& brick) {
+    for (std::size_t v = 0; v < brick.vertices(); ++v)
+      if (number[brick.first_vertex + v] == 0) ++vertex[n + 1];
+  });
+  for (std::size_t n = 0; n < all.size(); ++n) vertex[n + 1] += vertex[n], triangle[n + 1] += triangle[n];
+  Mesh mesh;
+  mesh.vertices.resize(vertex.back()), mesh.triangles.resize(triangle.back());
+  each([&](std::size_t n, const ActiveBrick& brick) {
+    std::size_t next = vertex[n];
+    for (std::size_t v = brick.first_vertex; v < brick.first_vertex + brick.vertices(); ++v) {
+      if (number[v] < 0) continue;
+      mesh.vertices[next] = to_world(lattice.axis(), surface.mesh.vertices[v]);
+      number[v] = static_cast<std::int32_t>(next++);
+    }
+  });
+  each([&](std::size_t n, const ActiveBrick& brick) {
+    std::size_t next = triangle[n];
+    for_triangles(brick, [&](const Vec3i& v) { mesh.triangles[next++] = {number[v.x], number[v.y], number[v.z]}; });
+  });
+  base::report(progress, 1);
   return mesh;
 }
 

@@ -28,6 +28,8 @@ struct MeshState {
   Mesh compact() const;
   /// Same for a state that was never updated; the state is consumed.
   Mesh take();
+  /// Same, without the triangles that are not needed for `tolerance` (mm, > 0).
+  Mesh take(double tolerance, const Progress& progress);
 
  private:
   void build(const Progress& progress);

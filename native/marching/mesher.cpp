@@ -1,5 +1,9 @@
 #include "riffler/marching/mesher.hpp"
 
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
 #include "marching/corner_normals.hpp"
 #include "marching/facets.hpp"
 #include "marching/first_hit.hpp"
@@ -89,6 +93,15 @@ FrozenSurface Mesher::freeze(PickStats& stats) {
 
 Mesh to_mesh(const Volume& volume, const Progress& progress) {
   return MeshState(volume, false, progress).take();
+}
+
+Mesh to_mesh(const Volume& volume, double tolerance, const Progress& progress) {
+  if (!(tolerance >= 0 && std::isfinite(tolerance)))
+    throw std::invalid_argument("tolerance must be finite and not negative, not " + std::to_string(tolerance) +
+                                " mm; 0 keeps all triangles");
+  MeshState state(volume, false, base::part(progress, 0, 0.6));
+  if (tolerance < state.lattice.step()) return state.take();
+  return state.take(tolerance, base::part(progress, 0.6, 1));
 }
 
 }  // namespace riffler::marching

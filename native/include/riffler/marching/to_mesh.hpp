@@ -19,4 +19,12 @@ namespace riffler::marching {
 /// the pitch is kept, one of its faces displaced by up to half a pitch; a gap along a ray thinner than that may close.
 Mesh to_mesh(const Volume& volume, const Progress& progress = {});
 
+/// The same surface without the triangles that its shape does not need: no point of it is farther than `tolerance` (mm)
+/// from that of `to_mesh(volume)`, and the reverse. Its vertices are some of that mesh's, and it is closed, outward,
+/// two-manifold and sharp at edges like that one, also in a binary STL. The bytes are the same for any number of
+/// threads. A tolerance below the step of float32 at the box's largest coordinate, 0 included, gives all triangles; one
+/// larger than the part keeps each shell with at least four. Throws std::invalid_argument for a tolerance that is
+/// negative or not finite.
+Mesh to_mesh(const Volume& volume, double tolerance, const Progress& progress = {});
+
 }  // namespace riffler::marching

@@ -1,0 +1,313 @@
+#include "marching/star_collapse.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace riffler::marching {
+
+namespace {
+
+constexpr double kTouching = -0.98;   // cosine of two triangles that all but lie on each other
+constexpr double kNear = 1e-4;        // weight of a target's distance compared with its height
+constexpr int kLevels = 8;            // of the error, from the cheapest merges to the dearest
+constexpr double kFlat = 1.0 / 4096;  // error that needs no closer look, over the tolerance
+
+double squared(const Vec3& a) {
+  return glm::dot(a, a);
+}
+
+double turn(const Vec3& a, const Vec3& b) {
+  return a.x * b.y - a.y * b.x;
+}
+
+}  // namespace
+
+float StarCollapser::rounded_up(double x) {
+  const auto f = static_cast<float>(x);
+  return static_cast<double>(f) >= x ? f : std::nextafter(f, std::numeric_limits<float>::infinity());
+}
+
+std::int32_t StarCollapser::seen(std::int32_t v) {
+  const std::int32_t s = slot(v);
+  if (s != kUnseen) return s;
+  stars_.push_back({v, 0, false, false, 0, 0});
+  around_.resize(around_.size() + kMostFaces);
+  return slot_[static_cast<std::size_t>(v - first_)] = static_cast<std::int32_t>(stars_.size() - 1);
+}
+
+void StarCollapser::add(std::uint32_t triangle) {
+  const Vec3i& v = mesh_.triangles[triangle];
+  const std::int32_t slots[3] = {seen(v.x), seen(v.y), seen(v.z)};
+  if (slots[0] < 0 && slots[1] < 0 && slots[2] < 0) return;
+  const auto face = static_cast<std::int32_t>(faces_.size());
+  const Vec3 &a = mesh_.vertices[v.x], &b = mesh_.vertices[v.y], &c = mesh_.vertices[v.z];
+  faces_.push_back({v, triangle, glm::normalize(glm::cross(b - a, c - a)), mesh_.errors[triangle], 0});
+  for (const std::int32_t s : slots) {
+    if (s < 0) continue;
+    Star& star = stars_[s];
+    if (star.count == kMostFaces)
+      star.locked = true;
+    else
+      around(s)[star.count++] = face;
+  }
+}
+
+void StarCollapser::run() {
+  if (wide_) {
+    block_.clear();
+    for (std::size_t k = 0; k < stars_.size(); ++k)
+      if (!stars_[k].locked) block_.push_back(static_cast<std::int32_t>(k));
+    flatten(block_.data(), block_.data() + block_.size());
+  }
+  // Cheap merges first, and at first none that makes a large fan.
+  sweep(most_error_ / 1024, 12);
+  for (Star& star : stars_) star.needs = 0;
+  for (int level = 1; level <= kLevels; ++level) sweep(most_error_ * level / kLevels, wide_ ? 24 : kMostFaces);
+  for (const Face& face : faces_) {
+    mesh_.triangles[face.triangle] = face.v;
+    mesh_.errors[face.triangle] = face.error;
+  }
+}
+
+/// Merges until nothing can be merged within `limit`. Starts with vertices that are far from each other.
+void StarCollapser::sweep(double limit, int most_faces) {
+  const std::size_t n = stars_.size();
+  queue_.clear();
+  std::size_t stride = n * 5 / 8 | 1;
+  while (n > 0 && std::gcd(stride, n) != 1) stride += 2;
+  for (std::size_t k = 0, at = 0; k < n; ++k, at = (at + stride) % n) {
+    Star& star = stars_[at];
+    star.queued = star.count > 0 && !star.locked && star.needs <= limit;
+    if (star.queued) queue_.push_back(static_cast<std::int32_t>(at));
+  }
+  for (std::size_t k = 0; k < queue_.size(); ++k) {
+    stars_[queue_[k]].queued = false;
+    merge(queue_[k], limit, most_faces);
+  }
+}
+
+/// Reads the faces around a vertex; false if they have no common direction or their error leaves no room.
+bool StarCollapser::gather(std::int32_t from, double limit) {
+  const Star& star = stars_[from];
+  const std::int32_t* const around_from = around(from);
+  count_ = star.count;
+  const Vec3& p = mesh_.vertices[star.vertex];
+  Vec3 sum(0);
+  float worst = 0;
+  for (int n = 0; n < count_; ++n) {
+    const Face& face = faces_[around_from[n]];
+    Side& side = sides_[n];
+    if (face.v.x == star.vertex)
+      side.a = face.v.y, side.b = face.v.z;
+    else if (face.v.y == star.vertex)
+      side.a = face.v.z, side.b = face.v.x;
+    else
+      side.a = face.v.x, side.b = face.v.y;
+    side.pa = mesh_.vertices[side.a] - p, side.pb = mesh_.vertices[side.b] - p;
+    side.normal = face.normal;
+    sum += face.normal;
+    worst = std::max(worst, face.error);
+  }
+  base_ = worst;
+  if (!(base_ < limit)) return false;
+  const double length = glm::length(sum);
+  if (!(length > kFacing * count_)) return false;
+  direction_ = sum / length;
+  double low = 0, high = 0;
+  for (int n = 0; n < count_; ++n) {
+    if (!(glm::dot(sides_[n].normal, direction_) > kFacing)) return false;
+    const double h = glm::dot(sides_[n].pa, direction_);
+    low = std::min(low, h), high = std::max(high, h);
+  }
+  slab_ = high - low;
+  flat_[0].z = std::numeric_limits<double>::infinity();  // not computed yet
+  return true;
+}
+
+bool StarCollapser::merge(std::int32_t from, double limit, int most_faces) {
+  Star& star = stars_[from];
+  if (star.count < 3 || star.needs > limit) return false;
+  star.needs = std::numeric_limits<double>::infinity();
+  if (!gather(from, most_error_)) return false;
+  std::array<Target, kMostFaces> targets;
+  int many = 0;
+  for (int n = 0; n < count_; ++n) {
+    const std::int32_t s = slot(sides_[n].a);
+    if (s < 0 || stars_[s].locked) continue;
+    const int faces = stars_[s].count + count_ - 4;
+    if (faces < 3 || faces > most_faces) continue;
+    // Along a groove nothing is lost; where all is flat the nearest is best.
+    const Vec3& p = sides_[n].pa;
+    targets[many++] = {std::abs(glm::dot(p, direction_)) + kNear * glm::length(p), n};
+  }
+  std::sort(targets.begin(), targets.begin() + many,
+            [](const Target& a, const Target& b) { return a.guess != b.guess ? a.guess < b.guess : a.side < b.side; });
+  const bool flat = slab_ <= tolerance_ * kFlat && base_ + slab_ <= most_error_;
+  double best = std::numeric_limits<double>::infinity();
+  int taken = -1;
+  for (int n = 0; n < many; ++n) {
+    const Side& to = sides_[targets[n].side];
+    if (!keeps_shape(to)) continue;
+    const double error = flat ? slab_ : error_of(to, std::min(best, most_error_ - base_));
+    if (!(base_ + error <= most_error_) || !(error < best)) continue;
+    std::int32_t x = -1, y = to.b;
+    for (int m = 0; m < count_; ++m)
+      if (sides_[m].b == to.a) x = sides_[m].a;
+    if (!keeps_manifold(from, slot(to.a), x, y)) continue;
+    best = error, taken = targets[n].side;
+    if (error <= tolerance_ * kFlat) break;
+  }
+  if (taken < 0) return false;
+  if (base_ + best > limit) {
+    star.needs = base_ + best;
+    return false;
+  }
+  if (folds(from, sides_[taken])) return false;
+  commit(from, slot(sides_[taken].a), best, limit);
+  return true;
+}
+
+/// Whether the new triangles face along the direction, turn little and are not too thin.
+bool StarCollapser::keeps_shape(const Side& to) {
+  for (int n = 0; n < count_; ++n) {
+    const Side& side = sides_[n];
+    if (side.a == to.a || side.b == to.a) continue;
+    const Vec3 a = side.pa - to.pa, b = side.pb - to.pa;
+    const Vec3 cross = glm::cross(a, b);
+    const double area = squared(cross);
+    const double longest = std::max({squared(a), squared(b), squared(a - b)});
+    if (!(area > kThinnest * kThinnest * longest * longest)) return false;
+    const double facing = glm::dot(cross, direction_), turned = glm::dot(cross, side.normal);
+    if (!(facing > 0 && facing * facing > kFacing * kFacing * area)) return false;
+    if (!(turned > 0 && turned * turned > kTurn * kTurn * area)) return false;
+  }
+  return true;
+}
+
+/// Whether a new triangle would lie on its neighbour across a side that has a vertex of the group.
+bool StarCollapser::folds(std::int32_t from, const Side& to) const {
+  for (int n = 0; n < count_; ++n) {
+    const Side& side = sides_[n];
+    if (side.a == to.a || side.b == to.a) continue;
+    const Vec3 cross = glm::cross(side.pa - to.pa, side.pb - to.pa);
+    const double length = glm::length(cross);
+    for (const std::int32_t end : {side.a, side.b}) {
+      const std::int32_t s = slot(end);
+      if (s < 0) continue;
+      for (int m = 0; m < stars_[s].count; ++m) {
+        const Face& face = faces_[around(s)[m]];
+        const auto has = [&](std::int32_t v) { return face.v.x == v || face.v.y == v || face.v.z == v; };
+        if (has(side.a) && has(side.b) && !has(stars_[from].vertex) &&
+            glm::dot(face.normal, cross) < kTouching * length)
+          return true;
+      }
+    }
+  }
+  return false;
+}
+
+bool StarCollapser::keeps_manifold(std::int32_t from, std::int32_t to, std::int32_t x, std::int32_t y) const {
+  for (int n = 0; n < stars_[to].count; ++n) {
+    const Vec3i& v = faces_[around(to)[n]].v;
+    const auto has = [&](std::int32_t w) { return v.x == w || v.y == w || v.z == w; };
+    if (has(x) && has(y)) return false;  // of a tetrahedron
+    for (const std::int32_t w : {v.x, v.y, v.z}) {
+      if (w == x || w == y || w == stars_[to].vertex || w == stars_[from].vertex) continue;
+      for (int m = 0; m < count_; ++m)
+        if (sides_[m].a == w) return false;
+    }
+  }
+  // A vertex with three faces would keep two.
+  for (const std::int32_t apex : {x, y})
+    if (const std::int32_t s = slot(apex); s >= 0 && !stars_[s].locked && stars_[s].count < 4) return false;
+  return true;
+}
+
+/// The largest distance of the old and the new triangles along the direction, or any distance above `enough`.
+double StarCollapser::error_of(const Side& to, double enough) {
+  if (flat_[0].z == std::numeric_limits<double>::infinity()) {
+    const Vec3& n = direction_;
+    const Vec3 e = glm::normalize(std::abs(n.x) < 0.6 ? Vec3(0, n.z, -n.y) : Vec3(-n.z, 0, n.x));
+    const Vec3 f = glm::cross(n, e);
+    for (int k = 0; k < count_; ++k) {
+      const Vec3& p = sides_[k].pa;
+      flat_[k] = {glm::dot(p, e), glm::dot(p, f), glm::dot(p, n)};
+    }
+  }
+  const auto index = static_cast<int>(&to - sides_.data());
+  const Vec3& u = flat_[index];
+  double error = 0;
+  bool covered = false;
+  for (int k = 0; k < count_; ++k) {
+    if (sides_[k].a == to.a || sides_[k].b == to.a) continue;
+    int next = 0;
+    while (sides_[next].a != sides_[k].b) ++next;
+    const Vec3 &a = flat_[k], &b = flat_[next];
+    // The old vertex, at the origin, over the new triangle (u, a, b).
+    const double wu = turn(a, b), wa = turn(b, u), wb = turn(u, a);
+    const double sum = wu + wa + wb;
+    if (wu >= 0 && wa >= 0 && wb >= 0 && sum > 0) {
+      error = std::max(error, std::abs(wu * u.z + wa * a.z + wb * b.z) / sum);
+      covered = true;
+    }
+    if (error > enough) return error;
+    // The new edge from u to a over the old edges from the origin.
+    const Vec3 d = a - u;
+    for (int m = 0; m < count_; ++m) {
+      if (m == k || m == index) continue;
+      const Vec3& q = flat_[m];
+      const double across = turn(q, d);
+      if (across == 0) continue;
+      const double s = turn(u, d) / across, r = turn(u, q) / across;
+      if (s > 0 && s < 1 && r > 0 && r < 1) error = std::max(error, std::abs(u.z + r * d.z - s * q.z));
+    }
+  }
+  return covered ? error : slab_;
+}
+
+void StarCollapser::drop(std::int32_t vertex, std::int32_t face) {
+  const std::int32_t s = slot(vertex);
+  if (s < 0 || stars_[s].locked) return;
+  std::int32_t* const faces = around(s);
+  std::int32_t* const end = faces + stars_[s].count--;
+  std::int32_t* const at = std::find(faces, end, face);
+  std::copy(at + 1, end, at);
+}
+
+void StarCollapser::commit(std::int32_t from, std::int32_t to, double error, double limit) {
+  const std::int32_t* const gone = around(from);
+  const std::int32_t kept = stars_[to].vertex;
+  const float bound = rounded_up(base_ + error);
+  stars_[from].count = 0;
+  for (int n = 0; n < count_; ++n) {
+    const std::int32_t f = gone[n];
+    const Side& side = sides_[n];
+    if (side.a != kept && side.b != kept) continue;
+    drop(side.a, f), drop(side.b, f);
+    faces_[f].v = Vec3i(-1);
+  }
+  for (int n = 0; n < count_; ++n) {
+    const std::int32_t f = gone[n];
+    Face& face = faces_[f];
+    const Side& side = sides_[n];
+    if (side.a == kept || side.b == kept) continue;
+    face.v = {kept, side.a, side.b};
+    const Vec3 &p = mesh_.vertices[kept], &a = mesh_.vertices[side.a], &b = mesh_.vertices[side.b];
+    face.normal = glm::normalize(glm::cross(a - p, b - p));
+    face.error = bound;
+    around(to)[stars_[to].count++] = f;
+  }
+  const auto again = [&](std::int32_t s) {
+    if (s < 0) return;
+    Star& star = stars_[s];
+    if (star.needs == std::numeric_limits<double>::infinity()) star.needs = limit * 1.001;
+    if (star.needs > limit || star.queued || star.locked) return;
+    star.queued = true;
+    queue_.push_back(s);
+  };
+  for (int n = 0; n < count_; ++n) again(slot(sides_[n].a));
+}
+
+}  // namespace riffler::marching

@@ -1,0 +1,148 @@
+// Removes vertices of a mesh one at a time, and keeps the surface within a proven distance of the first one.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "riffler/mesh/mesh.hpp"
+
+namespace riffler::marching {
+
+/// A mesh whose triangles lose vertices. A removed triangle has −1 for all its vertices.
+struct AdaptiveMesh {
+  const mesh::Vertices& vertices;
+  mesh::Triangles& triangles;
+  /// For each triangle, mm: an upper bound of the distance of its points from their points on the first surface.
+  base::BulkVector<float>& errors;
+};
+
+/// Merges vertices of one group into others of the group, which do not move. The triangles around the group's vertices
+/// are copied first, so that the work stays in the inner caches.
+///
+/// The bound. A merge replaces the triangles around a vertex by others with the same border. It is allowed only if one
+/// direction exists along which all old and all new triangles face outward: then both are graphs over one polygon, and
+/// moving each point along that direction maps one onto the other, in both directions. The distance of the two graphs
+/// is linear between the points where their edges cross, so its maximum is found exactly, and the bounds of the merges
+/// add up. The composition of all these maps takes the first surface onto the last and back.
+///
+/// The topology. A merge is allowed only if the two vertices have exactly two common neighbours (the link condition),
+/// so a two-manifold stays one of the same genus. Every new edge starts at a vertex of the group, whose triangles only
+/// this group changes: groups without a common triangle may be processed in parallel and in any order.
+class StarCollapser {
+ public:
+  /// `tolerance`: mm, > 0.
+  StarCollapser(const AdaptiveMesh& mesh, double tolerance) : mesh_(mesh), tolerance_(tolerance) {}
+
+  /// Starts a group: vertices first … first + count − 1 with `in_group(vertex)`. It may use `share` of the tolerance.
+  template <class InGroup>
+  void begin(std::int32_t first, std::size_t count, double share, InGroup&& in_group) {
+    most_error_ = share * tolerance_, wide_ = share == 1;
+    first_ = first;
+    slot_.assign(count, kForeign);
+    for (std::size_t v = 0; v < count; ++v)
+      if (in_group(first + static_cast<std::int32_t>(v))) slot_[v] = kUnseen;
+    stamp_ = 0;
+    stars_.clear(), faces_.clear(), around_.clear();
+  }
+  /// Adds a triangle that may have a vertex of the group; each at most once.
+  void add(std::uint32_t triangle);
+  /// Merges what can be merged, and writes the triangles back.
+  void run();
+
+ private:
+  static constexpr std::int32_t kForeign = -2, kUnseen = -1;
+  static constexpr int kMostFaces = 80;
+  // All old and new triangles are within 60° of the common direction, and a triangle turns by at most 32°, so that
+  // sharp edges stay and no two triangles fold onto each other.
+  static constexpr double kFacing = 0.5, kTurn = 0.85;
+  // Least height of a new triangle over its longest side: enough for a reliable normal.
+  static constexpr double kThinnest = 2e-3;
+
+  static float rounded_up(double x);
+
+  struct Face {
+    Vec3i v;
+    std::uint32_t triangle;
+    Vec3 normal;  // unit
+    float error;
+    std::int32_t stamp;  // the last block that it was seen in
+  };
+  /// A vertex of the group and the faces around it.
+  struct Star {
+    std::int32_t vertex;
+    std::uint8_t count;  // 0: merged into another
+    bool locked;         // has more faces than there is room for
+    bool queued;
+    std::int32_t stamp;  // the last block that it belonged to
+    double needs;        // lower bound of the error of its next merge, mm
+  };
+  /// A face around the vertex that is to go: the edge opposite to it, from a to b, relative to the vertex.
+  struct Side {
+    std::int32_t a, b;
+    Vec3 pa, pb;
+    Vec3 normal;
+  };
+  struct Target {
+    double guess;  // of the error
+    int side;      // its a is the vertex to merge into
+  };
+
+  std::int32_t slot(std::int32_t v) const {
+    const std::size_t local = static_cast<std::size_t>(static_cast<std::int64_t>(v) - first_);
+    return local < slot_.size() ? slot_[local] : kForeign;
+  }
+  std::int32_t* around(std::int32_t s) { return around_.data() + static_cast<std::ptrdiff_t>(s) * kMostFaces; }
+  const std::int32_t* around(std::int32_t s) const {
+    return around_.data() + static_cast<std::ptrdiff_t>(s) * kMostFaces;
+  }
+  std::int32_t seen(std::int32_t v);
+  bool gather(std::int32_t from, double limit);
+  bool merge(std::int32_t from, double limit, int most_faces);
+  struct Flat {
+    Vec3 direction;
+    double slab, error;
+  };
+  void flatten(std::int32_t* begin, std::int32_t* end);
+  bool is_flat(const std::int32_t* begin, const std::int32_t* end, Flat& flat);
+  bool find_rim(const std::int32_t* begin, const std::int32_t* end);
+  bool fits_rim() const;
+  bool fan(const std::int32_t* begin, const std::int32_t* end, const Flat& flat);
+  bool keeps_manifold(std::int32_t from, std::int32_t to, std::int32_t x, std::int32_t y) const;
+  bool keeps_shape(const Side& to);
+  bool folds(std::int32_t from, const Side& to) const;
+  double error_of(const Side& to, double enough);
+  void commit(std::int32_t from, std::int32_t to, double error, double limit);
+  void drop(std::int32_t vertex, std::int32_t face);
+  void sweep(double limit, int most_faces);
+
+  AdaptiveMesh mesh_;
+  double tolerance_;
+  double most_error_ = 0;  // of this group
+  bool wide_ = false;      // the group fills an area: look for flat blocks
+  std::int32_t first_ = 0;
+  std::vector<std::int32_t> slot_;  // of the vertices from first_ on
+  std::vector<Star> stars_;
+  std::vector<std::int32_t> around_;  // kMostFaces places for each star
+  std::vector<Face> faces_;
+  std::vector<std::int32_t> queue_;
+  // The block of flat triangles under examination:
+  struct RimEdge {
+    std::int32_t a, b;
+    bool operator<(const RimEdge& o) const { return a < o.a; }
+  };
+  std::vector<std::int32_t> block_;
+  std::vector<std::int32_t> inside_;  // its faces
+  std::vector<RimEdge> rim_;          // of the block, by a
+  std::int32_t stamp_ = 0;
+  // The vertex under examination:
+  std::array<Side, kMostFaces> sides_;
+  int count_ = 0;
+  Vec3 direction_{0};
+  double base_ = 0, slab_ = 0;
+  std::array<Vec3, kMostFaces> new_normals_;
+  // The same in the frame of the direction; the third coordinate is the height.
+  std::array<Vec3, kMostFaces> flat_;
+};
+
+}  // namespace riffler::marching
