@@ -62,5 +62,27 @@ TEST(Sculpting, ThreeDirectionsAStiffCouplingAndALateCableMakeNoEnergyEither) {
   EXPECT_GT(run.account, 0);
 }
 
+TEST(Sculpting, AHandThatTouchesWhatItCarvesGetsNoEnergyAndNoStepIsLong) {
+  const double seconds = test::kSanitized ? 20 : std::getenv("RIFFLER_LONG") ? 600 : 60;
+  for (const char* directions : {"z", "xyz"}) {
+    stress::SculptingRun run = stress::sculpting_run({.seconds = seconds,
+                                                      .pitch = 0.2,
+                                                      .directions = directions,
+                                                      .touch = true,
+                                                      .warm = std::min(20.0, seconds / 2),
+                                                      .allocations = &test::allocations});
+    print((std::string("touching, ") + directions).c_str(), run);
+    EXPECT_LE(run.allocations, 1) << directions << ": a thread's first tidy of an open tile (OpenTile::tidy)";
+    EXPECT_TRUE(run.replayed) << directions;
+    EXPECT_EQ(run.missed, 0U) << directions;
+    EXPECT_GT(static_cast<double>(run.touched), 100 * seconds) << directions;
+    EXPECT_LT(run.gained, 1.1) << directions;
+    EXPECT_GT(run.account, -10) << directions;
+    if (test::kSanitized) continue;
+    const auto at = static_cast<std::size_t>(0.99 * static_cast<double>(run.step_seconds.size()));
+    EXPECT_LT(run.step_seconds[at], 1e-3F) << directions;  // sorted by print
+  }
+}
+
 }  // namespace
 }  // namespace riffler::session::sculpting_stress_test
