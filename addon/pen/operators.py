@@ -228,12 +228,12 @@ def _tell(session):
     what = f" {brush.done}" if brush.puts_on else ""
     hand = f"Hand: {run.state}, {run.force:.2f} N"
     text = f"{units.format_volume(session.changed)}{what} in {_strokes(session)}"
-    told = hand, text, run.why
+    told = hand, text, run.why, run.thread
     if told == _told or time.perf_counter() - _told_at < TELL:
         return
     _told, _told_at = told, time.perf_counter()
     state = bpy.context.window_manager.riffler
-    state.force, state.text, state.why = told
+    state.force, state.text, state.why, state.thread = told
     why = f"    {run.why}" if run.why else ""
     say(f"Riffler: {hand}, {text}    Esc: end    Ctrl Z: undo a stroke{why}")
     views.redraw_sidebars(bpy.context)

@@ -31,6 +31,8 @@ class RIFFLER_PT_pen(Sidebar, bpy.types.Panel):
         lines(layout, state.force, state.text)
         if state.why:
             lines(layout, *wrapped(context, state.why), icon="INFO")
+        if state.thread:
+            lines(layout, *wrapped(context, state.thread))
         row = layout.row(align=True)
         row.operator(operators.RIFFLER_OT_pen_home.bl_idname)
         row.operator(operators.RIFFLER_OT_pen_reset.bl_idname)

@@ -110,3 +110,4 @@ class PenProgress:
     sculpting: BoolProperty()
     force: StringProperty()
     why: StringProperty()
+    thread: StringProperty()  # how the system runs the thread of the forces
