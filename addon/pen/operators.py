@@ -59,6 +59,7 @@ def session_options(context, ob, settings, brush):
     if settings.device == properties.RECORDING:
         return options  # a recording's poses are in the stock's frame
     options["scale"], options["pivot"] = clean(settings.scale), clean(settings.pivot)
+    options["touch"] = settings.touch and not brush.puts_on  # what is added is never felt
     if settings.start == "CURSOR":
         world = np.append(context.scene.cursor.location, 1.0)
         tip = (sculpts.from_world(ob) @ world)[:3]
@@ -84,7 +85,9 @@ def device_of(settings):
 
 def open_device(settings):
     if settings.device != properties.RECORDING:
-        return riffler.pen.open(device_of(settings))
+        kind = device_of(settings)
+        one = not settings.which or kind in properties.ONE_OF_A_KIND
+        return riffler.pen.open(kind if one else f"{kind}:{settings.which}")
     if not settings.recording.endswith(".rjournal"):
         raise ValueError("choose a recording (.rjournal) to play")
     path = bpy.path.abspath(settings.recording)
