@@ -59,6 +59,7 @@ def session_options(context, ob, settings, brush):
     if settings.device == properties.RECORDING:
         return options  # a recording's poses are in the stock's frame
     options["scale"], options["pivot"] = clean(settings.scale), clean(settings.pivot)
+    options["touch"] = settings.touch and not brush.puts_on  # what is added is never felt
     if settings.start == "CURSOR":
         world = np.append(context.scene.cursor.location, 1.0)
         tip = (sculpts.from_world(ob) @ world)[:3]
@@ -84,7 +85,9 @@ def device_of(settings):
 
 def open_device(settings):
     if settings.device != properties.RECORDING:
-        return riffler.pen.open(device_of(settings))
+        kind = device_of(settings)
+        one = not settings.which or kind in properties.ONE_OF_A_KIND
+        return riffler.pen.open(kind if one else f"{kind}:{settings.which}")
     if not settings.recording.endswith(".rjournal"):
         raise ValueError("choose a recording (.rjournal) to play")
     path = bpy.path.abspath(settings.recording)
@@ -228,12 +231,12 @@ def _tell(session):
     what = f" {brush.done}" if brush.puts_on else ""
     hand = f"Hand: {run.state}, {run.force:.2f} N"
     text = f"{units.format_volume(session.changed)}{what} in {_strokes(session)}"
-    told = hand, text, run.why
+    told = hand, text, run.why, run.thread
     if told == _told or time.perf_counter() - _told_at < TELL:
         return
     _told, _told_at = told, time.perf_counter()
     state = bpy.context.window_manager.riffler
-    state.force, state.text, state.why = told
+    state.force, state.text, state.why, state.thread = told
     why = f"    {run.why}" if run.why else ""
     say(f"Riffler: {hand}, {text}    Esc: end    Ctrl Z: undo a stroke{why}")
     views.redraw_sidebars(bpy.context)

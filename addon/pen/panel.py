@@ -31,6 +31,8 @@ class RIFFLER_PT_pen(Sidebar, bpy.types.Panel):
         lines(layout, state.force, state.text)
         if state.why:
             lines(layout, *wrapped(context, state.why), icon="INFO")
+        if state.thread:
+            lines(layout, *wrapped(context, state.thread))
         row = layout.row(align=True)
         row.operator(operators.RIFFLER_OT_pen_home.bl_idname)
         row.operator(operators.RIFFLER_OT_pen_reset.bl_idname)
@@ -44,12 +46,15 @@ class RIFFLER_PT_pen(Sidebar, bpy.types.Panel):
         if settings.device == properties.RECORDING:
             column.prop(settings, "recording")
         else:
+            if operators.device_of(settings) not in properties.ONE_OF_A_KIND:
+                column.prop(settings, "which")
             column.prop(settings, "start")
             if settings.start == "ABOVE":
                 column.prop(settings, "gap")
             column.prop(settings, "scale")
             column.prop(settings, "axes")
             column.prop(settings, "pivot")
+            column.prop(settings, "touch")
         group = column.column(align=True)
         group.prop(settings, "stiffness")
         group.prop(settings, "removal_constant")

@@ -7,6 +7,7 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, StringProperty
 from ..blender.fields import length, stored_number
 
 RECORDING = "recording"
+ONE_OF_A_KIND = (RECORDING, "simulated")
 DEVICES = tuple(
     (kind, kind.replace("-", " ").capitalize(), what, "NONE", stored_number(kind))
     for kind, what in {
@@ -50,6 +51,11 @@ PIVOT = length(
     0.0,
     1000.0,
 )
+WHICH = StringProperty(
+    name="Which",
+    description="One of several devices of this kind: its number in riffler pen list, its serial number or a part of "
+    "its name; empty: the first that opens",
+)
 TURN = EnumProperty(name="Axes", items=AXES, default="STOCK", description="How the hand's directions move the tool")
 
 
@@ -62,6 +68,7 @@ class TurningDevice:
 class HandSettings:
     """How the hand leads a tool; the fields are those of PenSettings."""
 
+    which: WHICH
     scale: SCALE
     axes: TURN
     pivot: PIVOT
@@ -71,6 +78,7 @@ class PenSettings:
     """Shared by the panel's settings and the operator."""
 
     device: DEVICE
+    which: WHICH
     recording: StringProperty(
         name="Recording", subtype="FILE_PATH", description="Recording (.rjournal) that plays as a device"
     )
@@ -81,6 +89,12 @@ class PenSettings:
     scale: SCALE
     axes: TURN
     pivot: PIVOT
+    touch: BoolProperty(
+        name="Touch the Stock",
+        default=False,
+        description="Keep the tool out of the stock while button 1 is up, and push the hand back with 1.5 N at most: "
+        "force then acts without a button",
+    )
     stiffness: length("Stiffness", 1.0, "Stiffness of the coupling between hand and tool, in N/mm", 1e-3, 100.0)
     removal_constant: FloatProperty(
         name="Resistance",
@@ -110,3 +124,4 @@ class PenProgress:
     sculpting: BoolProperty()
     force: StringProperty()
     why: StringProperty()
+    thread: StringProperty()  # how the system runs the thread of the forces

@@ -205,7 +205,7 @@ class PenSession:
             if running is self:
                 running = None
             state = bpy.context.window_manager.riffler
-            state.sculpting, state.force, state.why = False, "", ""
+            state.sculpting, state.force, state.why, state.thread = False, "", "", ""
             self._on_end()
 
     def summary(self):

@@ -191,7 +191,7 @@ class PenOrientation:
             if self.ob is not None and timeline.pair(self.ob) is not None:
                 current_pose.release(self.scene, self.ob)
             state = bpy.context.window_manager.riffler
-            state.sculpting, state.force, state.why = False, "", ""
+            state.sculpting, state.force, state.why, state.thread = False, "", "", ""
             self._on_end()
 
     def fail(self, error):

@@ -59,6 +59,8 @@ class RIFFLER_PT_timeline(OfPlan, bpy.types.Panel):
             lines(layout, *filter(None, state.force.split(", ", 1)), *wrapped(context, state.text))
             if state.why:
                 lines(layout, *wrapped(context, capitalised(state.why)), icon="INFO")
+            if state.thread:
+                lines(layout, *wrapped(context, state.thread))
             return
         settings = context.scene.riffler.plan
         op = layout.operator(orient_by_pen.RIFFLER_OT_plan_pen.bl_idname, icon="STYLUS_PRESSURE")

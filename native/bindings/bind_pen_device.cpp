@@ -31,6 +31,7 @@ py::object info_of(const pen::FoundDevice& found) {
   out["maker"] = found.maker;
   out["id"] = found.id;
   out["serial"] = found.serial;
+  out["choice"] = or_none(found.choice);
   out["kind"] = found.family == nullptr ? py::object(py::none()) : py::object(py::str(found.family->kind));
   out["was_opened"] = found.was_opened;
   out["problem"] = found.problem == pen::OpenProblem::None ? py::object(py::none())

@@ -80,7 +80,8 @@ void bind_constructor(py::class_<SharedSession>& c) {
                     const OptionalArrayLike& turn, double stiffness, double turn_stiffness, double damping,
                     double turn_damping, double tolerance, std::optional<double> memory, double max_force,
                     double max_torque, double max_power, double ramp, std::uint32_t dead_man_mask,
-                    std::uint32_t clutch_mask, double pivot, const BudgetLike& budget, std::size_t undo) {
+                    std::uint32_t clutch_mask, double pivot, bool touch, double touch_force, std::uint32_t touch_mask,
+                    const BudgetLike& budget, std::size_t undo) {
           session::SessionSettings settings;
           settings.mode = to_mode(mode), settings.start = to_pose(at), settings.undo = undo;
           session::SculptLoopSettings& made = settings.loop;
@@ -89,6 +90,7 @@ void bind_constructor(py::class_<SharedSession>& c) {
           made.sculpt.memory = memory, made.carving.tolerance = tolerance, made.safety.ramp = ramp;
           made.limits.wrench = {max_force, max_torque}, made.limits.power = max_power;
           made.workspace = {scale, to_turn(turn), clutch_mask, dead_man_mask, pivot};
+          made.touch = touch, made.touch_force = touch_force, made.touch_mask = touch_mask;
           if (material) {
             material->validate("the stock");
             made.carving.removal_constant = material->removal_constant, made.sculpt.damping = material->damping;
@@ -103,7 +105,8 @@ void bind_constructor(py::class_<SharedSession>& c) {
         "max_force"_a = loop.limits.wrench.linear, "max_torque"_a = loop.limits.wrench.angular,
         "max_power"_a = loop.limits.power, "ramp"_a = loop.safety.ramp,
         "dead_man_mask"_a = loop.workspace.dead_man_mask, "clutch_mask"_a = loop.workspace.clutch_mask,
-        "pivot"_a = loop.workspace.pivot, "budget"_a = kAutomaticBudget, "undo"_a = usual.undo);
+        "pivot"_a = loop.workspace.pivot, "touch"_a = loop.touch, "touch_force"_a = loop.touch_force,
+        "touch_mask"_a = loop.touch_mask, "budget"_a = kAutomaticBudget, "undo"_a = usual.undo);
 }
 
 }  // namespace
@@ -158,6 +161,13 @@ dead_man_mask, clutch_mask : int
 pivot : float
     mm above the tip, on the tool's axis: the point that the grip leads, about which the hand turns the tool and feels its
     torque. 0: the tip. Without effect for devices in the part's frame.
+touch : bool
+    Keep the tool out of the stock while no button of ``dead_man_mask`` is held, so that the hand feels what it carves; the
+    button then only cuts. Not with the mode "add".
+touch_force : float
+    Largest force of that on the hand, N; its torque is limited in proportion.
+touch_mask : int
+    Buttons, as bits, of which one must be held for it; 0: none, so that force acts whenever the checks of the pen pass.
 budget : float, "auto" or None
     s for one step; None: as long as it takes, and steps are deterministic; "auto": 0.0004 for a device with motors, None
     for others.

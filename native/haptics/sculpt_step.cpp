@@ -76,6 +76,7 @@ void SculptSettings::validate() const {
   base::require_not_negative(damping, "damping");
   base::require_between(parts, 1, 64, "parts");
   base::require_between(queries, 1, 64, "queries");
+  base::require_positive(touch_stiffness, "touch_stiffness");
   base::require_positive(firmness, "firmness");
   base::require_not_negative(settled, "settled");
   base::require_positive(most.linear, "most.linear");
@@ -91,19 +92,22 @@ struct SculptStep::Part {
   Twist moving;  // of the grip, about its own point
   double dt;
   Bounds most;                   // of the tool's motion
+  bool touches;                  // the stock
   std::optional<double> budget;  // s for queries
 };
 
 SculptStep::SculptStep(const SculptSettings& settings, const Tool& tool, sweep::MoveCarver* stock,
-                       const collide::Collider* obstacles, Guide* guide)
+                       const collide::Collider* obstacles, Guide* guide, const Volume* touched)
     : settings_(settings),
       assembly_(tool),
       cutting_reach_(std::max(tool.length(), 0.5 * tool.diameter())),
       stock_(stock),
       obstacles_(obstacles),
       guide_(guide),
+      touched_(touched),
       resistance_((settings.validate(), settings.memory.value_or(stock ? memory_for(stock->pitch()) : 1)),
                   settings.damping) {
+  if (touched) stock_contact_.emplace(tool);
   if (!obstacles) return;
   assembly_.deepest();  // computed now rather than in a step
   contact_.points.reserve(kPoints), contact_.touches.reserve(kPoints);
@@ -119,7 +123,7 @@ void SculptStep::set_coupling(const CouplingSettings& coupling) {
 void SculptStep::place(const Pose& pose) {
   tool_ = grip_ = guide_ ? guide_->settled(pose) : pose;
   rate_ = {}, slowing_ = {};
-  fresh_ = true, touching_ = false, bound_ = 0;
+  fresh_ = true, touching_ = felt_ = false, bound_ = sunk_ = 0;
   resistance_.forget();
 }
 
@@ -178,34 +182,69 @@ Twist SculptStep::balanced(const Part& part) const {
   return way;
 }
 
+/// Queries the obstacles; false if the result misses too much.
+bool SculptStep::look_at_obstacles(const Part& part) {
+  if (!obstacles_) {
+    contact_.force = contact_.torque = Vec3(0), contact_.stiffness = {};
+    return true;
+  }
+  obstacles_->query(assembly_, asked_, part.budget, contact_, 0.1 * settings_.missed);
+  return contact_.missed_depth_bound <= settings_.missed;
+}
+
+/// Adds the contact with the stock; false if the tool would go too deep into it for a query.
+bool SculptStep::look_at_stock() {
+  const auto overlap = stock_contact_->add(*touched_, asked_, settings_.touch_stiffness, contact_);
+  sunk_ = overlap.depth();
+  // From where it is now the tool is judged again: within the material it passes as through air.
+  if (!overlap.complete) felt_ = false;
+  return overlap.complete;
+}
+
+/// Before a step without cutting. Columns as wide as their cells overhang by an eighth of the pitch, on average, into
+/// the tool that has just cut them.
+void SculptStep::begin_touch() {
+  if (felt_) return;
+  const auto overlap = stock_contact_->add(*touched_, tool_, 0, contact_);
+  felt_ = overlap.complete && overlap.depth() <= 0.3 * touched_->frame().pitch;
+}
+
+/// Before a step that cuts: what was touched is air.
+void SculptStep::end_touch() {
+  if (sunk_ > 0) touching_ = false, slowing_ = {};
+  felt_ = false, sunk_ = 0;
+}
+
 /// Queries the contact at the end of that displacement; false if the result misses too much.
 bool SculptStep::look(const Twist& way, const Part& part, Result& result) {
   asked_ = reached(way);
-  obstacles_->query(assembly_, asked_, part.budget, contact_, 0.1 * settings_.missed);
-  touching_ = contact_.depth > 0;
+  const bool known = look_at_obstacles(part), out = !part.touches || look_at_stock();
+  touching_ = contact_.depth > 0 || sunk_ > 0;
+  result.touching |= sunk_ > 0, result.held |= !known;
   // The pushing direction need not be the tool's normal, which makes a stiff contact oscillate. Adding the recent
   // resistance as damping along the same directions stops that.
   for (std::size_t i = 0; i < 6; ++i)
     for (std::size_t j = 0; j < 6; ++j)
       slowing_[i][j] = touching_ ? 0.75 * slowing_[i][j] + 0.25 * contact_.stiffness[i][j] : 0;
   ++result.queries;
-  return contact_.missed_depth_bound <= settings_.missed;
+  return known && out;
 }
 
 Twist SculptStep::advance(const Part& part, Result& result) {
   Twist way = within(balanced(part), part.most);
-  if (!obstacles_) return way;
+  if (!obstacles_ && !part.touches) return way;
   const auto size = [&](const Twist& w) { return glm::length(w.linear) + glm::length(w.angular) * assembly_.reach(); };
   for (int k = 0; k < settings_.queries; ++k) {
     if (!look(way, part, result)) {
-      result.held = true, touching_ = false;
+      touching_ = false, sunk_ = 0;
       return {};
     }
     const Twist before = way;
     if (touching_) {
       // Bounded by the same distance again from the queried pose, plus the depth found there. On a guide a light touch
       // may leave the tool free to go far: no further than it can leave without a query, when none is left.
-      Bounds most{part.most.linear + contact_.depth, part.most.angular + contact_.depth / assembly_.max_radius()};
+      const double depth = contact_.depth + sunk_;
+      Bounds most{part.most.linear + depth, part.most.angular + depth / assembly_.max_radius()};
       if (guide_ && k + 1 == settings_.queries) {
         const double room = settings_.missed + contact_.depth;
         most = {std::min(most.linear, room), std::min(most.angular, room / assembly_.reach())};
@@ -214,7 +253,7 @@ Twist SculptStep::advance(const Part& part, Result& result) {
     }
     const double change = size(way - before);
     // A distance changes by at most the displacement of the tool's points.
-    bound_ = contact_.depth + contact_.missed_depth_bound + change;
+    if (obstacles_) bound_ = contact_.depth + contact_.missed_depth_bound + change;
     if (change <= settings_.settled) break;
   }
   return way;
@@ -254,10 +293,11 @@ SculptStep::Result SculptStep::step(const Pose& grip, const Twist& twist, double
   if (!usable(grip) || !finite(twist) || !(dt > 0) || !std::isfinite(dt)) return result;
   const Clock::time_point start = Clock::now();
   const Pose last = grip_;
+  if (touched_) cutting ? end_touch() : begin_touch();
   double gone = 0;
   for (int parts = settings_.parts, k = 1; k <= parts; ++k) {
     const double share = (1 - gone) / (parts - k + 1);
-    Part part{between(last, grip, gone + share), twist, share * dt, most_of(grip, share, dt), {}};
+    Part part{between(last, grip, gone + share), twist, share * dt, most_of(grip, share, dt), touched_ && felt_, {}};
     if (settings_.budget) {
       const double left = *settings_.budget - seconds_since(start) - cut_seconds_;
       part.budget = std::max(0.0, left / settings_.queries);

@@ -7,6 +7,7 @@
 
 #include "pen/driven_pen.hpp"
 #include "pen/haply/haply_devices.hpp"
+#include "pen/hid/hid_choice.hpp"
 #include "pen/hid/hid_handle.hpp"
 #include "pen/library/dhd_devices.hpp"
 #include "pen/library/hd_devices.hpp"
@@ -141,6 +142,33 @@ std::unique_ptr<Pen> open_kind(const HidFamily& family, const PenOptions& option
   throw first.value_or(OpenError(OpenProblem::NoFile, std::string("no ") + family.kind + " is plugged in"));
 }
 
+/// The devices of a family, without interfaces that lack the reports.
+std::vector<HidInfo> devices_of(const HidFamily& family, const PenOptions& options) {
+  std::vector<HidInfo> out;
+  for (const HidInfo& info : list_hid()) {
+    if (!family.matches(info)) continue;
+    try {
+      if (family.opened_by_search) open_model(family, info, options);
+    } catch (const OpenError& error) {
+      if (error.problem() == OpenProblem::WrongDescriptor) continue;
+    }
+    out.push_back(info);
+  }
+  return out;
+}
+
+/// Opens the one device that `which` names.
+std::unique_ptr<Pen> open_chosen(const HidFamily& family, std::string_view which, const PenOptions& options) {
+  const std::vector<HidInfo> all = devices_of(family, options);
+  if (all.empty()) throw OpenError(OpenProblem::NoFile, std::string("no ") + family.kind + " is plugged in");
+  const std::vector<std::size_t> fit = chosen(all, which);
+  if (fit.size() == 1) return open_one(family, all[fit[0]], options);
+  const std::string asked = std::string(family.kind) + ":" + std::string(which);
+  const std::string there = "take the number, the serial number or a part of the name of one: " + numbered(all);
+  if (fit.empty()) throw OpenError(OpenProblem::NoFile, asked + ": there is no such device; " + there);
+  throw OpenError(OpenProblem::Ambiguous, asked + " is " + std::to_string(fit.size()) + " devices; " + there);
+}
+
 /// The path of another interface of the same device that is of this family; empty if there is none. A receiver has
 /// several, of which one has the reports.
 std::string other_interface(const HidFamily& family, const HidInfo& info, const PenOptions& options) {
@@ -229,6 +257,20 @@ void leave_other_interfaces(std::vector<FoundDevice>& all) {
   }
 }
 
+/// Where there are several of a kind, what chooses each.
+void give_choices(std::vector<FoundDevice>& all) {
+  for (const HidFamily& family : kHidFamilies) {
+    const auto of_family = [&](const FoundDevice& found) { return found.family == &family; };
+    const auto counts = [&](const FoundDevice& found) {
+      return of_family(found) && found.problem != OpenProblem::WrongDescriptor;
+    };
+    if (std::ranges::count_if(all, counts) < 2) continue;
+    int number = 0;
+    for (FoundDevice& found : all)
+      if (counts(found)) found.choice = std::string(family.kind) + ":" + std::to_string(++number);
+  }
+}
+
 std::vector<FoundDevice> find_vendor_devices() {
   std::vector<FoundDevice> out;
   for (const VendorFamily& family : kVendorFamilies)
@@ -256,6 +298,7 @@ std::vector<FoundDevice> find_devices() {
   std::vector<FoundDevice> out;
   for (const HidInfo& info : list_hid()) out.push_back(find_hid(info));
   leave_other_interfaces(out);
+  give_choices(out);
   for (FoundDevice& found : find_vendor_devices())
     if (found.is_there) out.push_back(std::move(found));
   return out;
@@ -271,6 +314,8 @@ std::unique_ptr<Pen> open_pen(std::string_view what, const PenOptions& options) 
   if (what == kSimulatedKind) return open_simulated(options);
   if (const HidFamily* const family = named(kHidFamilies, what)) return open_kind(*family, options);
   const std::size_t colon = std::min(what.find(':'), what.size());
+  if (const HidFamily* const family = named(kHidFamilies, what.substr(0, colon)))
+    return open_chosen(*family, what.substr(colon + 1), options);
   if (const VendorFamily* const family = named(kVendorFamilies, what.substr(0, colon)))
     return family->open(what.substr(std::min(colon + 1, what.size())), options);
   return open_path(what, options);

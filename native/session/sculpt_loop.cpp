@@ -1,5 +1,6 @@
 #include "riffler/session/sculpt_loop.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <new>
@@ -22,6 +23,7 @@ void SculptLoopSettings::validate() const {
   safety.validate();
   wrench_extrapolator.validate();
   workspace.validate();
+  base::require_positive(touch_force, "touch_force");
 }
 
 /// The objects being worked on.
@@ -30,7 +32,7 @@ struct SculptLoop::Scene {
         bool absolute)
       : volume(stock),
         carver(volume, tool, deferred(s.carving)),
-        step(s.sculpt.at_tool(s.workspace.scale), tool, &carver, obstacles),
+        step(s.sculpt.at_tool(s.workspace.scale), tool, &carver, obstacles, nullptr, s.touch ? &volume : nullptr),
         workspace(s.workspace.for_device(absolute)) {}
 
   static sweep::MoveCarver::Options deferred(sweep::MoveCarver::Options carving) {
@@ -51,6 +53,7 @@ SculptLoop::SculptLoop(const SculptLoopSettings& settings, const Volume& stock, 
       settings_(settings),
       sink_(sink),
       scene_(std::make_unique<Scene>(settings, stock, tool, obstacles, !start)),
+      touch_share_(std::min(1.0, settings.touch_force / settings.limits.wrench.linear)),
       exchange_(stock),
       dead_man_mask_(settings.workspace.dead_man_mask) {}
 
@@ -58,7 +61,7 @@ SculptLoop::~SculptLoop() = default;
 
 haptics::SafeWrench SculptLoop::step(const pen::PenSample& sample, double now, double dt) noexcept {
   const double start = base::thread_seconds();
-  SculptTick tick = begin(sample, now, dt, dead_man_mask_.load());
+  SculptTick tick = begin(sample, now, dt, force_mask());
   tick.applied = gate_.applied();
   const Wrench wanted = sculpt(sample, dt, tick);
   const haptics::SafeWrench safe = release(sample, wanted, dt, tick);
@@ -66,6 +69,13 @@ haptics::SafeWrench SculptLoop::step(const pen::PenSample& sample, double now, d
   tick.seconds = base::thread_seconds() - start;
   put(tick);
   return safe;
+}
+
+/// Buttons of which one must be held for force; 0: none.
+std::uint32_t SculptLoop::force_mask() const noexcept {
+  const std::uint32_t mask = dead_man_mask_.load();
+  if (!settings_.touch) return mask;
+  return settings_.touch_mask == 0 ? 0 : mask | settings_.touch_mask;
 }
 
 /// The tool's step, and the resulting wrench on the hand.
@@ -83,7 +93,9 @@ Wrench SculptLoop::sculpt(const pen::PenSample& sample, double dt, SculptTick& t
     placed_ = false;
   } else {
     if (!std::exchange(placed_, true)) place(scene, sample);
-    const bool wants = lets_force_through(state), room = !sink_ || sink_->room();
+    const std::uint32_t mask = dead_man_mask_.load();
+    const bool wants = lets_force_through(state) && (mask == 0 || (sample.buttons & mask) != 0),
+               room = !sink_ || sink_->room();
     if (wants && !room) tick.problem = "the journal has no room, so nothing is cut";
     if (!(wants && room)) end_stroke();
     out = follow(scene, sample, dt, wants && room, tick);
@@ -130,22 +142,41 @@ Wrench SculptLoop::follow(Scene& scene, const pen::PenSample& sample, double dt,
     const Pose target = scene.workspace.target(sample.pose, sample.buttons);
     const Twist twist = scene.workspace.to_target({sample.velocity, sample.turning});
     tick.from = last_tool_;
+    if (settings_.touch && !cutting && unpublished_) {
+      scene.carver.publish();
+      exchange_.changed(scene.carver.replaced());
+      unpublished_ = false;
+    }
     const haptics::SculptStep::Result r = scene.step.step(target, twist, owed_, cutting);
     owed_ = 0;
-    if (r.cuts > 0) exchange_.changed(scene.carver.replaced());
+    if (r.cuts > 0) exchange_.changed(scene.carver.replaced()), unpublished_ = true;
     if (r.cuts > 0 && scene.carver.cut_something() && !in_stroke_) begin_stroke(dt);
     last_tool_ = tick.tool = r.tool;
     tick.on_tool = r.on_tool;
     tick.removed = r.removed, tick.depth = r.depth_bound, tick.cutting = in_stroke_;
     tick.held = r.held;
     if (r.held) tick.problem = haptics::SculptStep::kHeldText;
-    return wrench_extrapolator_.stepped(scene.workspace.to_grip(r.on_grip), dt);
+    return wrench_extrapolator_.stepped(limited_touch(scene.workspace.to_grip(r.on_grip), dt, cutting), dt);
   } catch (const std::bad_alloc&) {
     exchange_.changed(scene.carver.replaced());
     return missed(dt, "there is no memory for the next cut", tick);
   } catch (const std::exception&) {
     return missed(dt, "the step failed", tick);
   }
+}
+
+/// The wrench, within the limits of touching while nothing is cut. They change as slowly as a force rises and falls.
+Wrench SculptLoop::limited_touch(const Wrench& on_hand, double dt, bool cutting) noexcept {
+  if (!settings_.touch || !(dt > 0)) return on_hand;
+  const haptics::Bounds& most = settings_.limits.wrench;
+  const double least = std::min(1.0, settings_.touch_force / most.linear);
+  touch_share_ = cutting ? std::min(1.0, touch_share_ + dt / settings_.safety.ramp)
+                         : std::max(least, touch_share_ - dt / settings_.safety.fall);
+  const double force = glm::length(on_hand.force), torque = glm::length(on_hand.torque);
+  double share = 1;
+  if (force > touch_share_ * most.linear) share = touch_share_ * most.linear / force;
+  if (torque > touch_share_ * most.angular) share = std::min(share, touch_share_ * most.angular / torque);
+  return share * on_hand;
 }
 
 /// Begins with the move that has just removed something, from the tool's pose before it.
@@ -186,6 +217,8 @@ bool SculptLoop::replace(const Volume& volume, std::int64_t strokes) {
   if (in_stroke_) return false;
   scene_->carver.forget();
   scene_->volume.restore(volume);
+  scene_->step.refilled();
+  unpublished_ = false;
   brought_back_ += strokes;
   return true;
 }

@@ -30,6 +30,8 @@ SculptLoopSettings for_mode(SculptLoopSettings settings, sweep::CarveMode mode) 
 
 void SessionSettings::validate() const {
   loop.validate();
+  if (loop.touch && mode == sweep::CarveMode::Add)
+    throw std::invalid_argument("touch: a session that adds material feels none of it: leave touch off");
   if (start && !(geom::finite(start->tip) && std::abs(glm::length(start->axis) - 1) < 1e-6))
     throw std::invalid_argument("start must be a finite point and an axis of unit length");
 }

@@ -20,15 +20,15 @@ const Box3 kBox{{-40, -40, -30}, {40, 40, 0}};
 constexpr int kFrame = 33;  // steps
 
 /// Over ±15 mm of the pen, twice as much of the tool, by frequencies that never meet again; deeper and deeper.
-pen::HandPath wandering(const Pose& home, double seconds) {
-  return [home, seconds](double t) {
+pen::HandPath wandering(const Pose& home, double seconds, double pressed) {
+  return [home, seconds, pressed](double t) {
     const double s = std::max(0.0, t - 1);
     pen::HandWish wish{.pose = home};
     wish.pose.tip += Vec3(15 * std::sin(0.9 * s), 15 * std::sin(1.13 * s + 1) - 15 * std::sin(1.0),
                           -3 - 5 * s / seconds + 2 * std::sin(2.3 * s));
     const Vec3 lean(0.2 * std::sin(0.7 * s), 0.2 * std::sin(0.41 * s), 0);
     wish.pose.axis = glm::normalize(home.axis + std::min(1.0, s) * lean);
-    wish.buttons = s > 0 && std::fmod(s, 3) < 2.4 ? 1 : 0;
+    wish.buttons = s > 0 && std::fmod(s, 3) < pressed ? 1 : 0;
     return wish;
   };
 }
@@ -70,6 +70,7 @@ void take_ticks(session::SculptLoop& loop, const SculptingOptions& options, Scul
   for (session::SculptTick tick; loop.take(tick);) {
     ++run.steps, run.missed += tick.missed;
     run.removed += tick.removed;
+    run.touched += !tick.cutting && glm::length(tick.wrench.force) > 0.2;
     run.account = std::min(run.account, tick.energy);
     run.greatest = std::max(run.greatest, glm::length(tick.applied.force));
     if (tick.time > options.warm) run.step_seconds.push_back(static_cast<float>(tick.seconds));
@@ -85,7 +86,8 @@ SculptingRun sculpting_run(const SculptingOptions& options) {
   pen::SimulatedPenSettings simulated;
   simulated.cable.jitter_us = options.jitter_us;
   const Pose home = pen::SimulatedPen(simulated).arms().posture().pose;
-  const auto pen = std::make_shared<pen::SimulatedPen>(simulated, wandering(home, options.seconds));
+  const auto pen =
+      std::make_shared<pen::SimulatedPen>(simulated, wandering(home, options.seconds, options.touch ? 1.0 : 2.4));
   const auto clock = std::make_shared<pen::SimulatedClock>();
   auto transport = std::make_unique<pen::SimulatedTransport>(pen, clock);
   pen::RifflerModel model(*transport);
@@ -98,6 +100,7 @@ SculptingRun sculpting_run(const SculptingOptions& options) {
   settings.carving.removal_constant = 0.01;
   settings.sculpt.coupling.stiffness = options.stiffness;
   settings.passivity = model.passivity();
+  settings.touch = options.touch;
   if (!options.controlled) settings.passivity.reserve = settings.passivity.storage = 1e9;
   Again again(stock, ball, settings.carving);
   session::SculptLoop loop(settings, stock, ball, nullptr, model.capability(), Pose{{0, 0, 3}, {0, 0, 1}}, &again);

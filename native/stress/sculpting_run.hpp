@@ -17,6 +17,7 @@ struct SculptingOptions {
   std::string directions = "z";
   double stiffness = 1;          ///< N/mm, of the coupling
   bool controlled = true;        ///< by passivity
+  bool touch = false;            ///< the hand feels the stock between strokes, which are shorter then
   std::int64_t jitter_us = 200;  ///< of the cable
   double warm = 30;              ///< s after which nothing may be asked of the system
   /// Calls of operator new in this thread so far, in programs that count them.
@@ -34,6 +35,7 @@ struct SculptingRun {
   double account = 0;   ///< N·mm: the least that the account held
   double greatest = 0;  ///< N: of the force that the hand felt
   std::uint64_t steps = 0, strokes = 0, trips = 0, missed = 0, frames = 0, tiles = 0;
+  std::uint64_t touched = 0;      ///< steps in which the hand felt the stock without a cut
   std::uint64_t from_system = 0;  ///< blocks, in steps after the warm-up
   long allocations = 0;           ///< calls of operator new in steps after the warm-up
   bool replayed = false;          ///< what is shown at the end is what its moves leave, to the bit

@@ -31,6 +31,14 @@ class DeviceRun:
         """True while the device is not connected. It takes no steps then, and the last frame's force is not one."""
         return self.running and self.device.health().state in ("waiting", "connecting")
 
+    @property
+    def thread(self) -> str:
+        """How the system runs the thread of a device with motors, and how to have it run better; otherwise ""."""
+        if not self.running or not self.pushes:
+            return ""
+        granted = self.session.priority
+        return " — ".join(filter(None, (f"Thread: {granted.text}", granted.remedy)))
+
     def turns_with(self, view: bool, options: dict) -> None:
         """Call it before the session is made, with its options. `view`: the device's axes follow a view (`turn`). A
         recording, and a pointer, have the frame of the tool."""

@@ -147,12 +147,12 @@ def _tell(session):
     found, why = session.state(), run.why or session.problem
     current_pose.said = (str(found), found.free) if found is not None else None
     hand = f"Hand: {run.state}, {run.force:.2f} N, {run.torque:.0f} N·mm" if run.pushes else ""
-    told = hand, f"{session.angles()}: {found}" if found is not None else "", why
+    told = hand, f"{session.angles()}: {found}" if found is not None else "", why, run.thread
     if told == _told:
         return
     _told, _told_at = told, time.perf_counter()
     state = bpy.context.window_manager.riffler
-    state.force, state.text, state.why = told
+    state.force, state.text, state.why, state.thread = told
     pen_operators.say("Riffler: " + "    ".join(filter(None, (*told[:2], session.help, why))))
     views.redraw_sidebars(bpy.context)
 

@@ -89,6 +89,16 @@ def test_the_rows_of_a_run_and_its_journal_tell_the_same_and_states_are_known_af
     assert not kept.folder.exists()
 
 
+def test_the_thread_of_a_device_without_motors_is_not_told():
+    run = pen_run.PenRun(riffler.pen.Pointer("mouse"), BALL, {})
+    assert run.thread == "", "no session yet"
+    run.prepare(riffler.Volume.block((0, 0, 0), (10, 10, 10), 1.0))
+    run.start()
+    assert run.running and run.thread == ""
+    run.halt()
+    run.close()
+
+
 def test_an_unplugged_pen_has_no_force_and_a_reason_and_gets_its_force_again():
     device = riffler.pen.open("simulated")
     box = ((-40, -40, -40), (40, 40, 0), 1.0, "z")
@@ -112,6 +122,8 @@ def test_an_unplugged_pen_has_no_force_and_a_reason_and_gets_its_force_again():
         device.plug()
         looks_until(lambda: run.state in ("ready", "ramp", "active") and run.why == "")
         assert not run.gone
+        granted = run.session.priority
+        assert run.thread.startswith(f"Thread: {granted.text}") and granted.remedy in run.thread
     finally:
         run.halt()
         run.close()

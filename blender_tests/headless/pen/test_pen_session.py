@@ -280,6 +280,7 @@ def test_what_is_refused_changes_nothing():
     key, co = common.part("sculpt.sculpt_store").identity(ob.data), common.coordinates(ob.data)
     for settings, word in (
         ({"device": "riffler-pen"}, "plugged in"),
+        ({"device": "spacemouse", "which": "2"}, "no spacemouse is plugged in"),
         ({"device": "recording", "recording": ""}, "recording"),
         ({"device": "recording", "recording": "/nowhere/x.rjournal"}, "x.rjournal"),
         ({"record": True, "folder": "//"}, "save the .blend"),
@@ -358,6 +359,44 @@ def turned_view(angle):
         space.region_3d.view_rotation = Quaternion((0, 0, 1), angle)
         space.region_3d.view_perspective = "PERSP"
     return views.facing()
+
+
+def test_a_hand_that_touches_the_stock_stays_on_it_and_cuts_nothing():
+    ob = sculpt("xyz")
+    before = common.content(ob).volume.volume
+    operators = common.part("pen.operators")
+    brushes = common.part("sculpt.brushes")
+    settings = bpy.context.scene.riffler.pen
+    settings.device = "simulated"
+    settings.touch, settings.gap = True, 1.0
+    try:
+        options = operators.session_options(bpy.context, ob, settings, brushes.of("remove"))
+        assert options["touch"] is True
+        assert not operators.session_options(bpy.context, ob, settings, brushes.of("add"))["touch"]
+        device = operators.open_device(settings)
+        session = sessions().PenSession(bpy.context, ob, device, riffler.Tool.ball(6, 30), options)
+    finally:
+        settings.property_unset("touch")
+        settings.property_unset("gap")
+        settings.property_unset("device")
+    try:
+        until(lambda: session.look() and device.state().homed and session.run.pose is not None)
+        device.aim(device.state().pose)
+        time.sleep(0.3)
+        home = device.state().pose
+        device.aim(home + np.array([0, 0, -4.0, 0, 0, 0]))
+        until(lambda: session.look() and session.run.force > 0.5)
+        for _ in range(20):
+            time.sleep(0.02)
+            assert session.look() and session.run.pose[2] > 19.5, "the top is at 20"
+        assert session.run.thread.startswith("Thread: ")
+        operators._tell(session)
+        assert bpy.context.window_manager.riffler.thread == session.run.thread
+    finally:
+        session.finish()
+    assert common.content(ob).volume.volume == before
+    assert bpy.context.window_manager.riffler.thread == ""
+    no_session()
 
 
 def test_the_pen_s_axes_follow_the_view_between_strokes():

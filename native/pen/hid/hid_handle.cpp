@@ -182,6 +182,8 @@ const char* problem_text(OpenProblem problem) noexcept {
       return "unplugged";
     case OpenProblem::NotHid:
       return "not a HID device";
+    case OpenProblem::Ambiguous:
+      return "several of that name";
     case OpenProblem::UnknownDevice:
       return "unknown device";
     case OpenProblem::WrongDescriptor:

@@ -4785,6 +4785,13 @@ class Session:
     pivot : float
         mm above the tip, on the tool's axis: the point that the grip leads, about which the hand turns the tool and feels its
         torque. 0: the tip. Without effect for devices in the part's frame.
+    touch : bool
+        Keep the tool out of the stock while no button of ``dead_man_mask`` is held, so that the hand feels what it carves; the
+        button then only cuts. Not with the mode "add".
+    touch_force : float
+        Largest force of that on the hand, N; its torque is limited in proportion.
+    touch_mask : int
+        Buttons, as bits, of which one must be held for it; 0: none, so that force acts whenever the checks of the pen pass.
     budget : float, "auto" or None
         s for one step; None: as long as it takes, and steps are deterministic; "auto": 0.0004 for a device with motors, None
         for others.
@@ -4835,7 +4842,7 @@ class Session:
         ...
     def __exit__(self, *args) -> None:
         ...
-    def __init__(self, volume: Volume, tool: Tool, pen: PenDevice | None = None, *, obstacles: Collider | None = None, protect: Volume | None = None, mode: str = 'remove', material: Material | None = None, at: numpy.typing.ArrayLike | None = None, scale: typing.SupportsFloat = 1.0, turn: numpy.typing.ArrayLike | None = None, stiffness: typing.SupportsFloat = 1.0, turn_stiffness: typing.SupportsFloat = 2000.0, damping: typing.SupportsFloat = 0.001, turn_damping: typing.SupportsFloat = 2.0, tolerance: typing.SupportsFloat = 0.01, memory: typing.SupportsFloat | None = None, max_force: typing.SupportsFloat = 5.0, max_torque: typing.SupportsFloat = 300.0, max_power: typing.SupportsFloat = 2000.0, ramp: typing.SupportsFloat = 0.5, dead_man_mask: typing.SupportsInt = 1, clutch_mask: typing.SupportsInt = 2, pivot: typing.SupportsFloat = 0.0, budget: float | typing.Literal['auto'] | None = 'auto', undo: typing.SupportsInt = 64) -> None:
+    def __init__(self, volume: Volume, tool: Tool, pen: PenDevice | None = None, *, obstacles: Collider | None = None, protect: Volume | None = None, mode: str = 'remove', material: Material | None = None, at: numpy.typing.ArrayLike | None = None, scale: typing.SupportsFloat = 1.0, turn: numpy.typing.ArrayLike | None = None, stiffness: typing.SupportsFloat = 1.0, turn_stiffness: typing.SupportsFloat = 2000.0, damping: typing.SupportsFloat = 0.001, turn_damping: typing.SupportsFloat = 2.0, tolerance: typing.SupportsFloat = 0.01, memory: typing.SupportsFloat | None = None, max_force: typing.SupportsFloat = 5.0, max_torque: typing.SupportsFloat = 300.0, max_power: typing.SupportsFloat = 2000.0, ramp: typing.SupportsFloat = 0.5, dead_man_mask: typing.SupportsInt = 1, clutch_mask: typing.SupportsInt = 2, pivot: typing.SupportsFloat = 0.0, touch: bool = False, touch_force: typing.SupportsFloat = 1.5, touch_mask: typing.SupportsInt = 0, budget: float | typing.Literal['auto'] | None = 'auto', undo: typing.SupportsInt = 64) -> None:
         ...
     def frame(self) -> SessionFrame:
         """

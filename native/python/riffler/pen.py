@@ -208,8 +208,9 @@ def open(
     Parameters
     ----------
     what : str or path
-        A kind of ``kinds`` (the first device that opens), a path of ``devices``, or a journal (``.rjournal``), which is
-        played from the first call of ``state`` on.
+        A kind of ``kinds`` (the first device that opens), a kind and which of several ("spacemouse:2", by its number in
+        ``riffler pen list``, its serial number or a part of its name), a path of ``devices``, or a journal
+        (``.rjournal``), which is played from the first call of ``state`` on.
     speed : float, optional
         Pucks: mm/s at full deflection. Journals: how many times as fast as recorded.
     bubble : float, optional

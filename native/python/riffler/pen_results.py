@@ -38,6 +38,8 @@ class DeviceInfo(DictResult):
         vendor:product, hexadecimal; empty for devices that are no HID devices.
     kind : str or None
         Its kind in ``riffler.pen.kinds``; None: not for riffler.
+    choice : str or None
+        What ``riffler.pen.open`` also takes, "kind:number", where there are several of a kind; otherwise None.
     was_opened : bool
         It was opened and asked what it is.
     problem : str or None
@@ -58,6 +60,7 @@ class DeviceInfo(DictResult):
     id: str
     serial: str
     kind: str | None
+    choice: str | None
     was_opened: bool
     problem: str | None
     text: str | None

@@ -108,6 +108,41 @@ def test_a_puck_is_listed_with_what_it_can_do(plugged):
 
 
 @virtual
+def test_of_several_pucks_one_is_chosen_by_number_or_name(plugged):
+    """As at a Universal Receiver: one interface for each puck, another without its reports."""
+    devices = [
+        (0x256F, 0xC652, "Universal Receiver", PUCK),
+        (0x256F, 0xC652, "Universal Receiver", PUCK[:6] + b"\xc0"),
+        (0x256F, 0xC652, "Universal Receiver", PUCK),
+        (0x256F, 0xC635, "SpaceMouse Compact", PUCK),
+    ]
+    found = listed(plugged("pen", "list", "--json", devices=devices))
+    assert [(f["path"], f["choice"]) for f in found if f["choice"]] == [
+        ("/dev/hidraw0", "spacemouse:1"), ("/dev/hidraw2", "spacemouse:2"), ("/dev/hidraw3", "spacemouse:3")
+    ]  # fmt: skip
+    assert '"spacemouse:2", Universal Receiver' in plugged("pen", "list", devices=devices).stdout
+
+    def opened(which):
+        return plugged("pen", "calibrate", which, "--yes", "--seconds", "0.3", "--json", devices=devices)
+
+    for which in ("spacemouse", "spacemouse:2", "spacemouse:compact"):
+        done = opened(which)
+        assert done.returncode == 0 and json.loads(done.stdout)["device"] == "spacemouse", done.stderr
+
+    def refused(which):
+        done = opened(which)
+        assert done.returncode != 0
+        return str(json.loads(done.stdout))
+
+    text = refused("spacemouse:receiver")
+    assert "spacemouse:receiver is 2 devices; take the number, the serial number or a part of the name" in text
+    assert '2: "Universal Receiver" at /dev/hidraw2' in text
+    assert "spacemouse:7: there is no such device" in refused("spacemouse:7")
+    (one,) = listed(plugged("pen", "list", "--json", devices=devices[3:]))
+    assert one["choice"] is None
+
+
+@virtual
 def test_each_reason_is_told(plugged):
     identity = (b"\x03RPen" + bytes([7, 0, 0, 1, 0]) + b"riffler".ljust(24, b"\0") + b"12".ljust(16, b"\0")).ljust(50)
     devices = [

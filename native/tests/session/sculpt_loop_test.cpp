@@ -345,6 +345,67 @@ TEST(SculptLoop, StepsThatCannotBeMadeAreHeldOverWithoutAJump) {
   RecordProperty("missed", missed);
 }
 
+/// Presses `depth` mm into the stock with the pen, then cuts, then presses again.
+pen::HandPath pressing_hand(double depth, std::uint32_t touching, std::uint32_t cutting) {
+  return [home = pen_home(), depth, touching, cutting](double t) {
+    pen::HandWish wish{.pose = home, .buttons = t < 1 ? 0 : t > 3 && t < 4 ? cutting : touching};
+    wish.pose.tip.z -= (3 + depth) * std::clamp(t - 1, 0.0, 1.0);
+    wish.pose.tip.x += 4 * std::clamp(t - 3, 0.0, 3.0);
+    return wish;
+  };
+}
+
+struct Pressed {
+  double before = 0, cut = 0, after = 0, jump = 0;  // N: means while touching, cutting, touching again; in a tick
+  double removed = 0, largest = 0;
+};
+
+Pressed pressed(const SculptLoopSettings& settings, std::uint32_t touching, std::uint32_t cutting, double depth = 1) {
+  SculptBench bench(pressing_hand(depth, touching, cutting), test::sculpt_stock(0.2, "xyz"), kBall, settings);
+  Pressed out;
+  double last = 0;
+  bench.run(6, [&](const SculptTick& tick) {
+    const double force = glm::length(tick.wrench.force), t = tick.time;
+    out.jump = std::max(out.jump, std::abs(force - last)), last = force;
+    if (t > 2.5 && t < 3) out.before += 1e-3 / 0.5 * force;
+    if (t > 3.5 && t < 4) out.cut += 1e-3 / 0.5 * force;
+    if (t > 5 && t < 6) out.after += 1e-3 * force;
+    if (t < 3 || t > 4.1) {
+      EXPECT_EQ(tick.removed, 0) << t;
+      out.largest = std::max(out.largest, force);
+    }
+    out.removed += tick.removed;
+  });
+  return out;
+}
+
+TEST(SculptLoop, WithTouchTheButtonOnlyCutsAndTheHandFeelsTheStockBeforeAndAfter) {
+  SculptLoopSettings settings;
+  settings.carving.removal_constant = 0.01;
+  const Pressed without = pressed(settings, 0, 1);
+  EXPECT_LT(without.before + without.after, 1e-9);
+  settings.touch = true;
+  const Pressed with = pressed(settings, 0, 1);
+  EXPECT_GT(with.before, 0.2);
+  EXPECT_GT(with.after, 0.1);
+  EXPECT_GT(with.removed, 5);
+  EXPECT_LT(with.jump, 0.25) << "no faster than a force that is let go";
+  // Pressed hard it is weak, and stays so.
+  const Pressed hard = pressed(settings, 0, 1, 12);
+  EXPECT_LT(hard.largest, 1.5 + 1e-9);
+  EXPECT_GT(hard.largest, 1.4);
+  settings.touch_force = 0.5;
+  EXPECT_LT(pressed(settings, 0, 1).largest, 0.5 + 1e-9);
+}
+
+TEST(SculptLoop, AButtonOfTheTouchMaskHasToBeHeldForThat) {
+  SculptLoopSettings settings;
+  settings.touch = true, settings.touch_mask = 4;
+  EXPECT_EQ(pressed(settings, 0, 1).before, 0);
+  EXPECT_GT(pressed(settings, 4, 5).before, 0.2);
+  EXPECT_EQ(pressed(settings, 4, 4).removed, 0) << "that button does not cut";
+}
+
 TEST(SculptLoop, BadSettingsAreNamed) {
   const auto make = [](const SculptLoopSettings& s) {
     SculptLoop(s, test::sculpt_stock(1), kBall, nullptr, pen_capability(pen::load_pen("riffler")), Pose{});
@@ -352,6 +413,9 @@ TEST(SculptLoop, BadSettingsAreNamed) {
   SculptLoopSettings s;
   s.sculpt.parts = 2;
   EXPECT_NE(test::error_of([&] { make(s); }).find("parts must be 1"), std::string::npos);
+  s = {};
+  s.touch_force = 0;
+  EXPECT_NE(test::error_of([&] { make(s); }).find("touch_force"), std::string::npos);
   s = {};
   s.workspace.scale = 0;
   EXPECT_NE(test::error_of([&] { make(s); }).find("scale"), std::string::npos);

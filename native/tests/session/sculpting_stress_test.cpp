@@ -72,5 +72,24 @@ TEST(Sculpting, AStiffCouplingOnALateCableLeavesNoDebtWhileTheMotorsLetTheForceF
   EXPECT_GT(run.greatest, 3) << "the wall is still there";
 }
 
+TEST(Sculpting, AHandThatTouchesWhatItCarvesGetsNoEnergy) {
+  const double seconds = test::kSanitized ? 20 : std::getenv("RIFFLER_LONG") ? 600 : 30;
+  for (const char* directions : {"z", "xyz"}) {
+    stress::SculptingRun run = stress::sculpting_run({.seconds = seconds,
+                                                      .pitch = 0.2,
+                                                      .directions = directions,
+                                                      .touch = true,
+                                                      .warm = seconds / 2,
+                                                      .allocations = &test::allocations});
+    print((std::string("touching, ") + directions).c_str(), run);
+    EXPECT_LE(run.allocations, 1) << directions << ": a thread's first tidy of an open tile (OpenTile::tidy)";
+    EXPECT_TRUE(run.replayed) << directions;
+    EXPECT_EQ(run.missed, 0U) << directions;
+    EXPECT_GT(static_cast<double>(run.touched), 100 * seconds) << directions;
+    EXPECT_LT(run.gained, 1.1) << directions;
+    EXPECT_GT(run.account, -10) << directions;
+  }
+}
+
 }  // namespace
 }  // namespace riffler::session::sculpting_stress_test

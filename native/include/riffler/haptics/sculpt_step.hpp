@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "riffler/collide/collider.hpp"
+#include "riffler/collide/stock_contact.hpp"
 #include "riffler/haptics/balance.hpp"
 #include "riffler/haptics/coupling.hpp"
 #include "riffler/haptics/guide.hpp"
@@ -19,6 +20,7 @@ struct SculptSettings {
   double damping = 0;              ///< N·s/mm on a cutter while it cuts: Material::damping of its stock
   int parts = 1;                   ///< parts of a step, each with its own cut
   int queries = 2;                 ///< obstacle queries per part, at most
+  double touch_stiffness = 10;     ///< N/mm³: of the stock that a tool touches without cutting (StockContact)
   double firmness = 1;             ///< contacts hold the tool by so many times their force; the hand feels the coupling
   double settled = 1e-3;           ///< mm: no further query for a pose that the last one changed by less
   Bounds rest{0.02, 2e-3};         ///< mm, rad: largest move from rest per part while the grip stands still
@@ -50,23 +52,29 @@ class SculptStep {
     double removed = 0;      ///< mm³
     double depth_bound = 0;  ///< mm: upper bound of the tool's depth in obstacles
     int cuts = 0, queries = 0;
+    bool touching = false;   ///< the tool touched the stock without cutting
     bool held = false;       ///< a query ran out of time and the tool did not move
     bool shortened = false;  ///< parts were merged to keep the budget
   };
 
   /// Throws std::invalid_argument for invalid settings. `stock`: the carver of the stock, with this same tool;
-  /// `obstacles`: what the tool stays out of; `guide`: what it cannot leave. Each may be null; all must outlive this
-  /// object.
+  /// `obstacles`: what the tool stays out of; `guide`: what it cannot leave; `touched`: the stock as an obstacle while
+  /// the tool does not cut. Each may be null; all must outlive this object.
   SculptStep(const SculptSettings& settings, const Tool& tool, sweep::MoveCarver* stock,
-             const collide::Collider* obstacles, Guide* guide = nullptr);
+             const collide::Collider* obstacles, Guide* guide = nullptr, const Volume* touched = nullptr);
 
   /// Places tool and grip at `pose`, at rest. Stock inside the tool there is removed by the next cut without force.
   void place(const Pose& pose);
 
   /// Moves the grip to pose `grip` in the part frame (Workspace) within `dt` s, with twist `twist` about its point at
   /// the end. The first call after `place` starts from the placed pose. For dt ≤ 0 or values that are not finite
-  /// nothing moves and the force is zero. Without `cutting` the stock has no effect.
+  /// nothing moves and the force is zero. Without `cutting` the tool stays out of `touched`, which must hold what was
+  /// cut so far (MoveCarver::publish), and otherwise passes through the stock. A tool that begins within the material,
+  /// as after an undo, passes through it until it has left it.
   Result step(const Pose& grip, const Twist& twist, double dt, bool cutting = true);
+
+  /// Call it when `touched` has got new material where the tool may be.
+  void refilled() { felt_ = false; }
 
   /// Throws std::invalid_argument naming the field and then changes nothing.
   void set_coupling(const CouplingSettings& coupling);
@@ -84,6 +92,10 @@ class SculptStep {
   Bounds most_of(const Pose& grip, double share, double dt) const;
   Twist advance(const Part& part, Result& result);
   bool look(const Twist& way, const Part& part, Result& result);
+  bool look_at_obstacles(const Part& part);
+  bool look_at_stock();
+  void begin_touch();
+  void end_touch();
   void cut(const Pose& to, const Twist& way, double dt, Result& result);
 
   SculptSettings settings_;
@@ -92,6 +104,8 @@ class SculptStep {
   sweep::MoveCarver* stock_;
   const collide::Collider* obstacles_;
   Guide* guide_;
+  const Volume* touched_;
+  std::optional<collide::StockContact> stock_contact_;
   Resistance resistance_;
   Pose tool_, grip_;
   Twist rate_;  // mm/s, rad/s: of the tool
@@ -99,6 +113,8 @@ class SculptStep {
   collide::Contact contact_;
   Pose asked_;  // pose of contact_
   bool touching_ = false;
+  bool felt_ = false;  // the stock counts: the tool was out of it
+  double sunk_ = 0;    // mm: mean depth of the stock in the tool at asked_
   collide::ContactStiffness slowing_{};
   double bound_ = 0;        // mm: upper bound of the depth at tool_
   double cut_seconds_ = 0;  // s: measured duration of the last cut

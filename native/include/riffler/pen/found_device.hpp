@@ -17,7 +17,8 @@ struct PenFamily {
 struct FoundDevice {
   std::string path;  ///< what open_pen takes
   std::string name, maker, serial;
-  std::string id;                     ///< vendor:product of a HID device, otherwise empty
+  std::string choice;  ///< "kind:number", which open_pen takes, where there are several HID devices of a kind
+  std::string id;      ///< vendor:product of a HID device, otherwise empty
   const PenFamily* family = nullptr;  ///< null: not supported by Riffler
   /// False: no device, but the reason why this family finds none, such as a service that does not run.
   bool is_there = true;

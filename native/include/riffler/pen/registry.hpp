@@ -25,7 +25,8 @@ std::vector<FoundDevice> find_devices();
 /// remedy.
 std::vector<FoundDevice> find_unavailable();
 
-/// Opens a device. `what`: a path or a kind; a kind opens the first device that can be opened. "simulated" is always
+/// Opens a device. `what`: a path or a kind; a kind opens the first device that can be opened, and "kind:which" the one
+/// with that number among those of the kind, that serial number, or that part of its name. "simulated" is always
 /// available. Throws OpenError; for a kind, the error of the device that came closest to opening.
 std::unique_ptr<Pen> open_pen(std::string_view what, const PenOptions& options = {});
 

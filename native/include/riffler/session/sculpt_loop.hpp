@@ -29,6 +29,11 @@ struct SculptLoopSettings {
   haptics::SafetySettings safety;
   haptics::WrenchExtrapolatorSettings wrench_extrapolator;
   haptics::WorkspaceSettings workspace;
+  /// While no button of the dead-man mask is held, the stock is an obstacle, and the hand feels it with `touch_force`
+  /// (N) at most, and a torque limited in proportion.
+  bool touch = false;
+  double touch_force = 1.5;
+  std::uint32_t touch_mask = 0;  ///< buttons of which one must be held for that; 0: none
 
   /// Throws std::invalid_argument naming the field.
   void validate() const;
@@ -56,9 +61,10 @@ struct SculptTick {
 };
 
 /// The tool follows the hand, stays out of the obstacles, and cuts while the dead-man switch is held and every check
-/// has passed. A stroke lasts from the first move that removes something to the end of that condition. The force is
-/// computed in each tick from the volume. If a step cannot be made, WrenchExtrapolator continues the force. If a step
-/// takes longer than its tick, the device keeps its last wrench, and the next tick turns from there at a limited rate.
+/// has passed. With `touch` the button only cuts: without it the tool stays out of the stock. A stroke lasts from the
+/// first move that removes something to the end of that condition. The force is computed in each tick from the volume.
+/// If a step cannot be made, WrenchExtrapolator continues the force. If a step takes longer than its tick, the device
+/// keeps its last wrench, and the next tick turns from there at a limited rate.
 class SculptLoop final : public PenLoop<SculptTick> {
  public:
   using Place = TileExchange::Place;
@@ -100,6 +106,8 @@ class SculptLoop final : public PenLoop<SculptTick> {
   void begin_stroke(double dt) noexcept;
   void end_stroke() noexcept;
   void tell_undo() noexcept;
+  std::uint32_t force_mask() const noexcept;
+  Wrench limited_touch(const Wrench& on_hand, double dt, bool cutting) noexcept;
 
   SculptLoopSettings settings_;
   StrokeSink* sink_;
@@ -110,6 +118,8 @@ class SculptLoop final : public PenLoop<SculptTick> {
   std::uint64_t strokes_ = 0;
   std::int64_t brought_back_ = 0;  // not reported to the sink yet
   bool in_stroke_ = false;
+  bool unpublished_ = false;  // the carver has cut since it last published
+  double touch_share_;        // of the limits of force and torque, 0 to 1
 
   TileExchange exchange_;
   TileExchange::Mark serving_;            // of the state that is being prepared

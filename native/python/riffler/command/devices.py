@@ -12,7 +12,10 @@ from .parser import Parser, hint
 def add_device(parser: Parser) -> None:
     """The device of a command: by default the first that opens."""
     known = pen.kinds()
-    about = f"{', '.join(known)}, a path of riffler pen list, or a .rjournal; default: the first plugged in that opens"
+    about = (
+        f"{', '.join(known)}, also one of several (spacemouse:2), a path of riffler pen list, or a .rjournal; "
+        "default: the first plugged in that opens"
+    )
     parser.add_input("device", about, JOURNALS, required=False, words=known)
 
 

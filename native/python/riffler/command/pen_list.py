@@ -25,7 +25,7 @@ def add_arguments(parser: Parser) -> None:
 
 def run(arguments: argparse.Namespace, console: Console) -> int:
     found = [device for device in pen.devices() if device.kind]
-    rows = [(device.path, describe(device)) for device in found]
+    rows = [(device.path, chosen_by(device) + describe(device)) for device in found]
     known = ", ".join(kind for kind in pen.kinds() if kind != "simulated")
     unavailable = pen.unavailable()
     rows = rows or [("none", f'no device of the kinds {known}; "simulated" needs none')]
@@ -40,6 +40,11 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
 def as_json(device: pen.DeviceInfo) -> dict[str, Any]:
     """For --json, where `tried` says whether the device was opened and asked what it is."""
     return {"tried" if key == "was_opened" else key: value for key, value in asdict(device).items()}
+
+
+def chosen_by(device: pen.DeviceInfo) -> str:
+    """What chooses it among several of its kind."""
+    return f'"{device.choice}", ' if device.choice else ""
 
 
 def describe(device: pen.DeviceInfo) -> str:

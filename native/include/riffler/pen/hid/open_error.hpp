@@ -16,6 +16,7 @@ enum class OpenProblem : unsigned char {
   Unplugged,        // disconnected while opening
   NotHid,           // the path is not a HID device
   UnknownDevice,    // no device family matches
+  Ambiguous,        // several devices match
   WrongDescriptor,  // the report descriptor does not match the claimed device
   OtherVersion,     // another protocol version
   NoAnswer,         // a required report is not answered
