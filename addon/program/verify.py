@@ -64,12 +64,13 @@ class RIFFLER_OT_verify(LongWork, properties.VerifySettings, properties.GivenOpt
             limits["rest_tolerance"] = None
         if setup.machine:
             limits.update(machine=setup.machine, machine_options=setup.options, machine_frame=setup.to_machine.tolist())
-        by_cuts = self.coloured in CUTS
-        return ChainJob(
+        steps = [
             lambda _: ThreadTask(lambda progress: _verification(setup, part, fixtures, limits, progress)),
             lambda verification: riffler.submit(riffler.Verification.run, verification, setup.program),
-            lambda report: ThreadTask(lambda progress: (report, _cuts(setup, report, progress) if by_cuts else None)),
-        )
+        ]
+        if self.coloured in CUTS:
+            steps.append(lambda report: ThreadTask(lambda progress: (report, _cuts(setup, report, progress))))
+        return ChainJob(*steps)
 
     def lost(self, context):
         if context.scene.objects.get(self._setup.sculpt) is None:
@@ -77,7 +78,8 @@ class RIFFLER_OT_verify(LongWork, properties.VerifySettings, properties.GivenOpt
         return ""
 
     def finish(self, context, job):
-        (report, cuts), setup = job.result, self._setup
+        report, cuts = job.result if self.coloured in CUTS else (job.result, None)
+        setup = self._setup
         settings = context.scene.riffler.verify
         found = report.findings
         findings.write(settings.findings, [_entry(f, setup) for f in found[:MOST]])

@@ -7,23 +7,19 @@
 
 #include "base/real_time.hpp"
 #include "base/shared_memory.hpp"
+#include "base/steady_clock.hpp"
 #include "riffler/pen/hid/open_error.hpp"
 
 namespace riffler::arm_program {
 namespace {
 
+using base::steady_seconds;
 using pen::ArmChannel;
-using pen::channel_now;
 using pen::OpenError;
 using pen::OpenProblem;
 
 constexpr double kLongestWait = 0.005;  // s: a command ends, and Riffler's end is seen, that much too late at most
 constexpr double kOrphanCheck = 0.1;    // s
-
-void set_phase(ArmChannel& channel, ArmChannel::Phase phase) {
-  channel.phase.store(phase, std::memory_order_release);
-  base::change(channel.news);
-}
 
 std::unique_ptr<LibraryArm> open_key(Library& library, const std::string& key, const std::vector<std::string>& held) {
   if (std::find(held.begin(), held.end(), key) != held.end())
@@ -66,7 +62,7 @@ class Commands {
   }
 
  private:
-  bool fresh() const noexcept { return channel_now() - command_.time <= ArmChannel::kHeld; }
+  bool fresh() const noexcept { return steady_seconds() - command_.time <= ArmChannel::kHeld; }
 
   const ArmChannel& channel_;
   pen::TimedCommand command_;
@@ -78,7 +74,7 @@ class Commands {
 class Parent {
  public:
   bool runs() noexcept {
-    const double now = channel_now();
+    const double now = steady_seconds();
     if (now < due_) return runs_;
     due_ = now + kOrphanCheck;
     return runs_ = ::getppid() == process_;
@@ -91,6 +87,11 @@ class Parent {
 };
 
 }  // namespace
+
+void set_phase(ArmChannel& channel, ArmChannel::Phase phase) {
+  channel.phase.store(phase, std::memory_order_release);
+  base::change(channel.news);
+}
 
 void list(Library& library, const std::vector<std::string>& held, ArmChannel& channel) {
   for (const std::string& key : library.keys("")) {

@@ -9,6 +9,9 @@
 
 namespace riffler::arm_program {
 
+/// Tells Riffler, after what the phase speaks of was written.
+void set_phase(pen::ArmChannel& channel, pen::ArmChannel::Phase phase);
+
 /// Describes each arm in the channel. `held`: keys of those that Riffler has open, which are not opened again.
 void list(Library& library, const std::vector<std::string>& held, pen::ArmChannel& channel);
 

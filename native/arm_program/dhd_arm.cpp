@@ -4,13 +4,13 @@
 #include <array>
 #include <utility>
 
-#include "pen/library/arm_channel.hpp"
+#include "base/steady_clock.hpp"
 #include "riffler/pen/hid/open_error.hpp"
 
 namespace riffler::arm_program {
 namespace {
 
-using pen::channel_now;
+using base::steady_seconds;
 using pen::OpenError;
 using pen::OpenProblem;
 
@@ -102,11 +102,11 @@ bool DhdArm::read_status() noexcept {
 }
 
 double DhdArm::due() const noexcept {
-  return next_ - channel_now();
+  return next_ - steady_seconds();
 }
 
 Reading DhdArm::read(pen::ArmState& state) noexcept {
-  const double now = channel_now();
+  const double now = steady_seconds();
   if (now < next_) return Reading::None;
   next_ = std::max(next_ + kPeriod, now);
   std::array<double, 3> p{}, v{};

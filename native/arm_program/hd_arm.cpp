@@ -3,12 +3,13 @@
 #include <array>
 #include <utility>
 
+#include "base/steady_clock.hpp"
 #include "riffler/pen/hid/open_error.hpp"
 
 namespace riffler::arm_program {
 namespace {
 
-using pen::channel_now;
+using base::steady_seconds;
 using pen::OpenError;
 using pen::OpenProblem;
 
@@ -145,7 +146,7 @@ void HdArm::check() noexcept {
 /// In the library's thread.
 void HdArm::tick() noexcept {
   const pen::TimedCommand command = command_.get();
-  const bool fresh = channel_now() - command.time <= kHeld;
+  const bool fresh = steady_seconds() - command.time <= kHeld;
   const std::array<double, 3> force = to_hd(fresh ? command.wrench.force : Vec3(0));
   std::array<double, 3> position{}, velocity{};
   std::array<double, 16> transform{};
@@ -177,7 +178,7 @@ Reading HdArm::read(pen::ArmState& state) noexcept {
 }
 
 bool HdArm::push(const pen::ArmCommand& command) noexcept {
-  command_.set({command, channel_now()});
+  command_.set({command, steady_seconds()});
   return !reading_.get().gone;
 }
 

@@ -24,8 +24,7 @@ std::unique_ptr<Library> load(const std::string& kind, const std::string& path) 
 void fail(pen::ArmChannel& channel, pen::OpenProblem problem, const char* text) {
   channel.problem = problem;
   channel.text.set(text);
-  channel.phase.store(pen::ArmChannel::Phase::Failed, std::memory_order_release);
-  base::change(channel.news);
+  set_phase(channel, pen::ArmChannel::Phase::Failed);
 }
 
 int run(const std::vector<std::string>& words) {

@@ -6,6 +6,7 @@
 
 #include "collide/box_lanes.hpp"
 #include "collide/tool_frame.hpp"
+#include "tool/cutter_only.hpp"
 
 namespace riffler::collide {
 
@@ -13,10 +14,6 @@ namespace {
 
 constexpr double kNone = -std::numeric_limits<double>::infinity();
 constexpr int kMostParts = 4;  // of a cell along u and v
-
-Tool bare(const Tool& tool) {
-  return Tool(tool.kind(), tool.parameters(), tool.profile());
-}
 
 /// Cells along one coordinate of a grid that may meet [low, high].
 std::pair<int, int> cells(double low, double high, double lower, double pitch, int n) {
@@ -173,7 +170,7 @@ class Rays {
 }  // namespace
 
 StockContact::StockContact(const Tool& tool)
-    : cutter_(bare(tool)),
+    : cutter_(tool::cutter_only(tool)),
       radius_(cutter_.max_radius()),
       length_(tool.length()),
       flat_(std::numeric_limits<double>::infinity()) {

@@ -36,10 +36,6 @@ class WithoutSignals {
 
 }  // namespace
 
-double steady_seconds() noexcept {
-  return Seconds(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
 /// State of both threads. Both hold a reference, so that it outlives a driver whose threads do not end in time.
 struct Driver::Shared final : Connector, Clock {
   Shared(std::shared_ptr<PenModel> m, std::shared_ptr<PenStep> s, std::unique_ptr<Transport> transport, Open o,

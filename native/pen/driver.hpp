@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/own_thread.hpp"
+#include "base/steady_clock.hpp"
 #include "pen/driver_loop.hpp"
 #include "riffler/base/thread_priority.hpp"
 
@@ -45,7 +46,6 @@ class Driver {
   base::HomeProcess home_;
 };
 
-/// Time of std::chrono::steady_clock, s.
-double steady_seconds() noexcept;
+using base::steady_seconds;
 
 }  // namespace riffler::pen

@@ -12,6 +12,7 @@
 #include "riffler/base/parallel.hpp"
 #include "riffler/sweep/carve.hpp"
 #include "sweep/swept_distance.hpp"
+#include "tool/cutter_only.hpp"
 
 namespace riffler::sweep {
 namespace {
@@ -20,11 +21,6 @@ constexpr std::size_t kLeaf = 4;  // moves in a leaf of the tree, at most
 constexpr double kAsNear = 0.05;  // of the tolerance: moves that are as near as the nearest one
 constexpr double kSlack = 0.02;   // of the tolerance, for each distance
 constexpr std::size_t kPointsAtOnce = 256;
-
-/// A tool without shank and holder, which cut nothing.
-tool::Outline cutter_outline(const Tool& tool) {
-  return tool::Outline(Tool(tool.kind(), tool.parameters(), tool.profile()));
-}
 
 /// Bounds the swept cutter. On a great circle a point at height h is at most h (1 − cos(angle / 2)) off its chord.
 Box3 swept_box(const SearchedMove& move, const Motion& motion, const Tool& tool) {
@@ -115,7 +111,7 @@ std::int32_t CutSearch::Core::find(const Vec3& p, std::vector<std::pair<std::uin
 CutSearch::CutSearch(std::vector<Tool> tools, std::vector<SearchedMove> moves, double tolerance) {
   base::require_length(tolerance, "tolerance");
   auto core = std::make_unique<Core>();
-  for (const Tool& tool : tools) core->outlines.push_back(cutter_outline(tool));
+  for (const Tool& tool : tools) core->outlines.emplace_back(tool::cutter_only(tool));
   for (const SearchedMove& move : moves) {
     if (move.tool >= tools.size())
       throw std::invalid_argument("moves: there is no tool " + std::to_string(move.tool) + " in the list");

@@ -1,7 +1,5 @@
 #include "pen/library/arm_channel.hpp"
 
-#include <chrono>
-
 namespace riffler::pen {
 
 void SharedArm::set(const ArmTraits& traits) noexcept {
@@ -16,10 +14,6 @@ ArmTraits SharedArm::traits() const {
   out.own_axis = own_axis, out.lower = lower, out.upper = upper;
   out.force = force, out.continuous = continuous, out.torque = torque;
   return out;
-}
-
-double channel_now() noexcept {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
 }  // namespace riffler::pen

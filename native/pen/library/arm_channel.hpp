@@ -44,7 +44,7 @@ struct SharedArm {
   ArmTraits traits() const;
 };
 
-/// A command and when it was given, s of the steady clock, which is the same one in all processes.
+/// A command and when it was given, by base::steady_seconds.
 struct TimedCommand {
   ArmCommand wrench;
   double time = -1e300;
@@ -78,8 +78,5 @@ struct ArmChannel {
   std::atomic<bool> end{false};
   base::SequenceLock<TimedCommand> command;
 };
-
-/// s of the steady clock.
-double channel_now() noexcept;
 
 }  // namespace riffler::pen

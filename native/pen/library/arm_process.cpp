@@ -8,6 +8,7 @@
 #include <system_error>
 #include <utility>
 
+#include "base/steady_clock.hpp"
 #include "pen/library/arm_program_file.hpp"
 #include "pen/link/deadline.hpp"
 
@@ -137,7 +138,7 @@ bool ArmProcess::write(std::span<const std::uint8_t> bytes) noexcept {
   TimedCommand command;
   if (bytes.size() != sizeof command.wrench) return false;
   std::memcpy(&command.wrench, bytes.data(), sizeof command.wrench);
-  command.time = channel_now();
+  command.time = base::steady_seconds();
   channel().command.store(command, channel().command.ticket() + 2);
   base::change(channel().wishes);
   return channel().phase.load(std::memory_order_acquire) == Phase::Open;
