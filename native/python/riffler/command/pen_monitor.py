@@ -81,6 +81,8 @@ def follow(watch: Watch, seconds: float, draw: Callable[[Any], None] | None, pla
     except KeyboardInterrupt:
         pass
     watch.look(time.monotonic())
+    if draw is not None and not plain:
+        draw(watch.picture(width_of_terminal()))  # what stays in the terminal has every report
 
 
 @contextmanager

@@ -146,16 +146,19 @@ def come_to(device: pen.SimulatedPen, pose: np.ndarray) -> None:
 def carve(
     device: pen.SimulatedPen, home: np.ndarray, session: Session, log: Log, seconds: float, live: Any, window: Any
 ) -> None:
-    """Moves the hand, and shows what happens, until the time is over; Ctrl-C ends it sooner."""
+    """Moves the hand, and shows what happens, until the time is over; Ctrl-C ends it sooner.
+
+    The last picture has all frames: it stays in the terminal, and a busy machine may have had no time for another.
+    """
     start = time.monotonic()
-    shown = start
-    try:
-        with live as draw, Hand(device, home):
-            show: Callable[[Log], bool] | None = None
-            if window is not None:
-                show = window.show
-            elif draw is not None:
-                show = lambda log: draw(log.picture(width_of_terminal())) or True  # noqa: E731
+    shown = -np.inf
+    with live as draw, Hand(device, home):
+        show: Callable[[Log], bool] | None = None
+        if window is not None:
+            show = window.show
+        elif draw is not None:
+            show = lambda log: draw(log.picture(width_of_terminal())) or True  # noqa: E731
+        try:
             while (now := time.monotonic()) - start < seconds:
                 log.add(session.frame())
                 if log.state == "tripped" and not device.state().fault:
@@ -163,10 +166,12 @@ def carve(
                 if show is not None and now - shown > 1 / FRAMES:
                     shown = now
                     if not show(log):
-                        break
+                        return
                 time.sleep(0.01)
-    except KeyboardInterrupt:
-        pass
+        except KeyboardInterrupt:
+            pass
+        if show is not None:
+            show(log)
 
 
 class Hand:
