@@ -1,7 +1,10 @@
 #include "collide/force.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <span>
 
 #include "collide/force_lanes.hpp"
 #include "riffler/base/block_pool.hpp"
@@ -13,6 +16,7 @@ namespace {
 // In units of the cutter's diameter. Across a piece with this radius the depth differs from a plane by 1e-4 of the
 // diameter.
 constexpr double kSmall = 0.01;
+constexpr std::size_t kUsual = 512;  // points of a contact that need no second allocation
 
 class ForceSum {
  public:
@@ -30,7 +34,13 @@ class ForceSum {
   }
 
   void run(Deadline& deadline, Counts& counts) {
-    open(0, 1, counts);
+    contact_.points.reserve(kUsual), contact_.touches.reserve(kUsual);
+    if (points_.tree().holds_items(0)) {
+      take(0, 1, found_[0]);
+      add_items({found_.data(), 1}, counts);
+    } else {
+      open(0, 1, counts);
+    }
     while (!stack_.empty()) {
       const Node n = stack_.back();
       stack_.pop_back();
@@ -54,10 +64,12 @@ class ForceSum {
   double share(const BoundingSphere& s) const {
     if (s.radius <= small_) return 1;
     if (s.radius > widest_) return 0;
-    const Vec3 p = frame_.to_tool(s.centre);
-    const double past = std::max(
-        {std::sqrt(p.x * p.x + p.y * p.y) - 0.5 * assembly_.tool().diameter(), p.z - assembly_.tool().length(), -p.z});
-    return std::clamp(past / (4 * widest_) - 1, 0.0, 1.0);
+    const Vec3 p = s.centre - frame_.tip;
+    const double z = glm::dot(p, frame_.axis), above = std::max(z - assembly_.tool().length(), -z);
+    const double square = glm::dot(p, p) - z * z, radius = 0.5 * assembly_.tool().diameter(), near = 4 * widest_;
+    if (above <= near && square <= (radius + near) * (radius + near)) return 0;
+    const double past = std::max(std::sqrt(std::max(square, 0.0)) - radius, above);
+    return std::clamp(past / near - 1, 0.0, 1.0);
   }
 
   void add(std::size_t group, int k, double distance, double weight) {
@@ -76,34 +88,43 @@ class ForceSum {
     contact_.points.push_back(point), contact_.touches.push_back(static_cast<Touch>(assembly_.part_at(z)));
   }
 
-  void add_items(std::size_t group, double weight, Counts& counts) {
-    const SphereGroup& spheres = points_.tree().group(group);
-    double distance[base::kLanes];
-    add_points(assembly_.lane_edges(), frame_, spheres, points_.areas(group), ramp_, weight, distance, sums_);
-    counts.points += base::kLanes;
-    for (int k = 0; k < base::kLanes; ++k)
-      if (distance[k] < 0 && spheres.radius[k] >= 0) {
-        const Vec3 point = spheres.sphere(k).centre;
-        keep(point, glm::dot(point - frame_.tip, frame_.axis), weight);
+  /// All items of the nodes that are left of a group.
+  void add_items(std::span<PointGroup> groups, Counts& counts) {
+    add_points(assembly_.lane_edges(), frame_, groups, ramp_, sums_);
+    counts.points += groups.size() * base::kLanes;
+    for (const PointGroup& g : groups)
+      for (unsigned left = g.inside; left != 0; left &= left - 1) {
+        const int k = std::countr_zero(left);
+        keep(g.points->sphere(k).centre, g.z[k], g.weight);
       }
+  }
+
+  void take(std::size_t group, double weight, PointGroup& out) const {
+    out.points = &points_.tree().group(group), out.areas = &points_.areas(group), out.weight = weight;
   }
 
   void open(std::size_t group, double weight, Counts& counts) {
     const SphereTree& tree = points_.tree();
-    if (tree.holds_items(group)) return add_items(group, weight, counts);
     const SphereGroup& spheres = tree.group(group);
     double distance[base::kLanes];
     centre_distances(assembly_.lane_edges(), frame_, spheres, distance);
     counts.nodes += base::kLanes;
+    const std::size_t first = tree.first_child(group);
+    const bool above_items = tree.holds_items(first);
+    std::size_t found = 0;
     for (int k = 0; k < base::kLanes; ++k) {
       if (!(distance[k] < spheres.radius[k])) continue;
       const double coarse = weight * share(spheres.sphere(k));
       if (coarse > 0) add(group, k, distance[k], coarse);
-      if (coarse < weight) {
+      if (!(coarse < weight)) continue;
+      const std::size_t child = first + static_cast<std::size_t>(k);
+      points_.fetch(child);
+      if (above_items)
+        take(child, weight - coarse, found_[found++]);
+      else
         stack_.push_back({group, k, distance[k], weight - coarse});
-        points_.fetch(tree.first_child(group) + static_cast<std::size_t>(k));
-      }
     }
+    if (found > 0) add_items({found_.data(), found}, counts);
   }
 
   const Assembly& assembly_;
@@ -114,6 +135,7 @@ class ForceSum {
   ForceSums sums_;
   Contact& contact_;
   base::BlockVector<Node> stack_;
+  std::array<PointGroup, base::kLanes> found_;  // whose points are added together
 };
 
 }  // namespace

@@ -37,10 +37,18 @@ struct StiffnessRamp {
   }
 };
 
-/// Adds the points of a group that lie inside the tool, each with the weight `weight`. distance[k]: the signed distance
-/// of point k, mm.
-void add_points(std::span<const LaneEdge> outline, const ToolFrame& frame, const SphereGroup& points,
-                const SamplePoints::AreaGroup& areas, const StiffnessRamp& ramp, double weight, double* distance,
-                ForceSums& sums);
+/// Up to eight points, and which of them lie inside the tool.
+struct PointGroup {
+  const SphereGroup* points;
+  const SamplePoints::AreaGroup* areas;
+  double weight;                ///< of each point
+  unsigned inside;              ///< a bit for each point
+  double z[base::kLanes];       ///< mm above the tip
+  double square[base::kLanes];  ///< mm²: of the depth
+};
+
+/// Adds the points of the groups that lie inside the tool, and fills the groups' results.
+void add_points(std::span<const LaneEdge> outline, const ToolFrame& frame, std::span<PointGroup> groups,
+                const StiffnessRamp& ramp, ForceSums& sums);
 
 }  // namespace riffler::collide

@@ -63,7 +63,7 @@ SamplePoints::SamplePoints(const Surface& surface, double spacing)
 
 SamplePoints::SamplePoints(std::vector<Piece> pieces, double spacing) : spacing_(spacing), tree_(tree_over(pieces)) {
   areas_.resize(tree_.groups());
-  for (std::size_t g = tree_.groups(); g-- > 0;)
+  for (std::size_t g = tree_.groups(); g-- > 0;) {
     for (int k = 0; k < base::kLanes; ++k) {
       if (tree_.holds_items(g)) {
         if (tree_.group(g).radius[k] >= 0) areas_[g].add(k, pieces[tree_.order()[tree_.first_item(g) + k]].area);
@@ -72,6 +72,15 @@ SamplePoints::SamplePoints(std::vector<Piece> pieces, double spacing) : spacing_
           for (int i = 0; i < base::kLanes; ++i) areas_[g].add(k, areas_[tree_.first_child(g) + k].area(i));
       }
     }
+    areas_[g].measure();
+  }
+}
+
+void SamplePoints::AreaGroup::measure() {
+  for (int k = 0; k < base::kLanes; ++k) {
+    const double size = glm::length(area(k));
+    per_size[k] = size > 0 ? 1 / size : 0;
+  }
 }
 
 void SamplePoints::gather(const Surface& surface, std::size_t group, double spacing, std::vector<Piece>& out) {

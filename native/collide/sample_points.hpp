@@ -12,12 +12,14 @@ namespace riffler::collide {
 /// vector of its piece (out of the material) at its centroid, and so does every tree node: a coarser set of points.
 class SamplePoints {
  public:
-  /// Area vectors of the eight children of a node, mm², by coordinates for vector lanes.
+  /// Area vectors of the eight children of a node, mm², by coordinates for vector lanes; and 1 over the size of each, 0
+  /// for an area of nothing.
   struct alignas(64) AreaGroup {
-    double x[base::kLanes]{}, y[base::kLanes]{}, z[base::kLanes]{};
+    double x[base::kLanes]{}, y[base::kLanes]{}, z[base::kLanes]{}, per_size[base::kLanes]{};
 
     Vec3 area(int k) const { return {x[k], y[k], z[k]}; }
     void add(int k, const Vec3& a) { x[k] += a.x, y[k] += a.y, z[k] += a.z; }
+    void measure();
   };
   /// `spacing` 0 selects the square root of a hundred-thousandth of the area. Throws std::invalid_argument for a
   /// spacing that is negative, not finite, or so small that it would need more than 50 million points.
