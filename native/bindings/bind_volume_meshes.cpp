@@ -74,21 +74,28 @@ auto volume_from_mesh_with_report(const std::shared_ptr<Mesh>& mesh, double pitc
   });
 }
 
-using MeshOfVolume = std::pair<std::shared_ptr<Mesh>, Lost>;
+struct MeshOfVolume {
+  std::shared_ptr<Mesh> mesh;
+  std::size_t all = 0;  // triangles without a tolerance
+  Lost lost;
+};
 
 auto meshing_of(SharedVolume& self, const std::optional<double>& tolerance) {
   return [state = Reading(self).volume.snapshot(), tolerance](const Progress& listener) {
-    Mesh mesh = tolerance ? marching::to_mesh(state, *tolerance, listener) : marching::to_mesh(state, listener);
-    MeshOfVolume out{std::make_shared<Mesh>(std::move(mesh)), {}};
-    out.second = lost_by_meshing(state, out.first->triangles.size());
+    MeshOfVolume out;
+    Mesh mesh =
+        tolerance ? marching::to_mesh(state, *tolerance, listener, &out.all) : marching::to_mesh(state, listener);
+    if (!tolerance) out.all = mesh.triangles.size();
+    out.lost = lost_by_meshing(state, mesh.triangles.size());
+    out.mesh = std::make_shared<Mesh>(std::move(mesh));
     return out;
   };
 }
 
 auto volume_to_mesh(SharedVolume& self, const std::optional<double>& tolerance, const ProgressLike& progress) {
   return long_call(progress, meshing_of(self, tolerance), [](MeshOfVolume&& made) {
-    warn(made.second);
-    return made.first;
+    warn(made.lost);
+    return made.mesh;
   });
 }
 
@@ -96,8 +103,9 @@ auto volume_to_mesh_with_report(SharedVolume& self, const std::optional<double>&
                                 const ProgressLike& progress) {
   return long_call(progress, meshing_of(self, tolerance), [](MeshOfVolume&& made) {
     py::dict fields;
-    put(made.second, fields);
-    return MeshAndReport(py::make_tuple(made.first, make_result("SurfaceReport", fields)));
+    put(made.lost, fields);
+    fields["all_triangles"] = made.all;
+    return MeshAndReport(py::make_tuple(made.mesh, make_result("SurfaceReport", fields)));
   });
 }
 
@@ -248,8 +256,8 @@ Cancelled
 Examples
 --------
 >>> mesh, report = riffler.Volume.block((0, 0, 0), (4, 3, 2), pitch=0.5).to_mesh_with_report()
->>> report.lost, report.lost_box
-(0.0, None)
+>>> report.lost, report.lost_box, report.all_triangles == len(mesh.triangles)
+(0.0, None, True)
 )");
 }
 

@@ -95,11 +95,12 @@ Mesh to_mesh(const Volume& volume, const Progress& progress) {
   return MeshState(volume, false, progress).take();
 }
 
-Mesh to_mesh(const Volume& volume, double tolerance, const Progress& progress) {
+Mesh to_mesh(const Volume& volume, double tolerance, const Progress& progress, std::size_t* all) {
   if (!(tolerance >= 0 && std::isfinite(tolerance)))
     throw std::invalid_argument("tolerance must be finite and not negative, not " + std::to_string(tolerance) +
                                 " mm; 0 keeps all triangles");
   MeshState state(volume, false, base::part(progress, 0, 0.6));
+  if (all) *all = state.surface.mesh.triangles.size();
   if (tolerance < state.lattice.step()) return state.take();
   return state.take(tolerance, base::part(progress, 0.6, 1));
 }

@@ -1691,8 +1691,8 @@ class Volume:
         Examples
         --------
         >>> mesh, report = riffler.Volume.block((0, 0, 0), (4, 3, 2), pitch=0.5).to_mesh_with_report()
-        >>> report.lost, report.lost_box
-        (0.0, None)
+        >>> report.lost, report.lost_box, report.all_triangles == len(mesh.triangles)
+        (0.0, None, True)
         """
     @property
     def counters(self) -> riffler.results.VolumeCounters:

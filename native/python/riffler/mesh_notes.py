@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from .results import Orientation, SurfaceReport
+from .results import LostReport, Orientation
 
 
 def _count(n: int, one: str, many: str) -> str:
     return f"{n:,} {one if n == 1 else many}".replace(",", "\u2009")
 
 
-def notes_on(report: Orientation | SurfaceReport | Mapping[str, object]) -> list[str]:
+def notes_on(report: Orientation | LostReport | Mapping[str, object]) -> list[str]:
     """Sentences on a report of `Mesh.orient_with_report`, `Volume.from_mesh_with_report`, `plan.analyse` or
     `Volume.to_mesh_with_report`: triangles and shells that were turned, repeated triangles, surfaces of one side,
     material thinner than the pitch."""

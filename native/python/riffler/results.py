@@ -67,8 +67,8 @@ class Orientation(DictResult):
 
 
 @dataclass(frozen=True)
-class SurfaceReport(DictResult):
-    """What is no part of the mesh of `Volume.to_mesh_with_report`, since it is thinner than the pitch."""
+class LostReport(DictResult):
+    """What is no part of a volume's mesh, since it is thinner than the pitch."""
 
     lost: float
     """mm³."""
@@ -81,7 +81,15 @@ class SurfaceReport(DictResult):
 
 
 @dataclass(frozen=True)
-class VolumeReport(SurfaceReport):
+class SurfaceReport(LostReport):
+    """What is no part of the mesh of `Volume.to_mesh_with_report`, and how large it is without a tolerance."""
+
+    all_triangles: int
+    """Triangles without a tolerance."""
+
+
+@dataclass(frozen=True)
+class VolumeReport(LostReport):
     """What was wrong with the mesh of `Volume.from_mesh_with_report`, and what rays miss or a mesh of it will lack."""
 
     triangles: int

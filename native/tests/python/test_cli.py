@@ -172,9 +172,37 @@ def test_convert_and_mesh(folder):
     data = result("volume", "to-mesh", "box.rvol", "--out", "again.stl", cwd=folder)
     assert stl_volume((folder / "again.stl").read_bytes()) == pytest.approx(20 * 15 * 10, rel=1e-5)
     few = result("volume", "to-mesh", "box.rvol", "--out", "few.stl", "--tolerance", 0.01, cwd=folder)
-    assert few["triangles_before_decimation"] == data["triangles"]
-    assert few["triangles"] < data["triangles"] / 10
+    assert few["triangles_before_decimation"] == few["all_triangles"] == data["all_triangles"]
+    assert few["triangles"] == 12 < data["triangles"] < data["all_triangles"] / 10
     assert result("mesh", "audit", "few.stl", cwd=folder)["closed"]
+
+
+def test_detail_is_a_tenth_of_the_pitch_a_length_or_all(folder):
+    carve = [*CARVE, "--tool", "ball:6"]
+    full = result(*carve, "--detail", "all", "--out", "full.stl", cwd=folder)
+    assert full["mesh_tolerance"] is None and full["all_triangles"] == full["triangles"]
+    mesh = riffler.Mesh.read(folder / "full.stl")
+    meshed = [full["triangles"]]
+    for detail, tolerance in ([], 0.05), (["--detail", 0.002], 0.002):
+        data = result(*carve, *detail, "--out", "part.stl", cwd=folder)
+        assert data["mesh_tolerance"] == tolerance and data["all_triangles"] == full["triangles"]
+        part = riffler.Mesh.read(folder / "part.stl")
+        assert len(part.triangles) == data["triangles"]
+        assert np.abs(part.deviation(mesh)).max() <= 1e-5 and np.abs(mesh.deviation(part)).max() <= tolerance + 1e-5
+        meshed.insert(0, data["triangles"])
+    assert meshed[0] > meshed[1], "the smaller tolerance needs more"
+    assert max(meshed[:2]) < meshed[2] / 3
+    shown = riffle(*carve, "--out", "part.stl", cwd=folder).stdout
+    assert "within 0.05 mm (--detail all for all)" in shown
+
+
+@pytest.mark.parametrize("detail", ["0", "-1", "nan", "fine"])
+def test_bad_detail_names_the_way_to_all_triangles(folder, detail):
+    done = riffle(*CARVE, "--tool", "ball:6", "--out", "none.stl", "--detail", detail, cwd=folder)
+    assert done.returncode == 2 and "--detail" in done.stderr and "--detail all writes all triangles" in done.stderr
+    assert not (folder / "none.stl").exists()
+    done = riffle("volume", "to-mesh", "a.rvol", "--out", "a.stl", "--detail", "1", "--tolerance", "1", cwd=folder)
+    assert done.returncode == 2 and "not both" in done.stderr
 
 
 def test_convert_tells_what_was_wrong_with_the_mesh(folder):

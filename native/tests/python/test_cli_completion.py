@@ -68,6 +68,7 @@ CASES = {
     "no verb like it": ("riffler mesh x", set()),
     "options": ("riffler mesh decimate --t", {"--tolerance", "--triangles"}),
     "option's words": ("riffler volume from-mesh --directions ", {"z", "xyz"}),
+    "detail": ("riffler volume carve --detail ", {"all"}),
     "machines": ("riffler nc post --post linuxcnc-xyza", {"linuxcnc-xyzac"}),
     "meshes": ("riffler mesh audit ", MESHES),
     "a mesh by its beginning": ("riffler mesh audit bo", {"box.stl"}),

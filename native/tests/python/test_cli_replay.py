@@ -39,7 +39,7 @@ def test_replay_meshes_and_takes_a_cut_journal_as_far_as_it_goes(session):
     (session / "b" / "cut.rjournal").write_bytes(whole[:-1])
     data = result("volume", "replay", "b/cut.rjournal", "--folder", ".", "--out", "out.stl", cwd=session)
     assert (data["strokes"], data["cut_at"]) == (3, len(whole) - 28), "up to the last stroke, which is not taken back"
-    assert len(riffler.Mesh.read(session / "out.stl").triangles) == data["triangles"] > 1000
+    assert len(riffler.Mesh.read(session / "out.stl").triangles) == data["triangles"] < data["all_triangles"]
     assert (
         "cut at byte"
         in riffle("volume", "replay", "b/cut.rjournal", "--folder", ".", "--out", "o.rvol", cwd=session).stdout

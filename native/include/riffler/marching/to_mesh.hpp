@@ -1,6 +1,8 @@
 // Converts a volume to a closed, outward, two-manifold mesh.
 #pragma once
 
+#include <cstddef>
+
 #include "riffler/base/progress.hpp"
 #include "riffler/dexel/volume.hpp"
 #include "riffler/mesh/mesh.hpp"
@@ -23,8 +25,8 @@ Mesh to_mesh(const Volume& volume, const Progress& progress = {});
 /// from that of `to_mesh(volume)`, and the reverse. Its vertices are some of that mesh's, and it is closed, outward,
 /// two-manifold and sharp at edges like that one, also in a binary STL. The bytes are the same for any number of
 /// threads. A tolerance below the step of float32 at the box's largest coordinate, 0 included, gives all triangles; one
-/// larger than the part keeps each shell with at least four. Throws std::invalid_argument for a tolerance that is
-/// negative or not finite.
-Mesh to_mesh(const Volume& volume, double tolerance, const Progress& progress = {});
+/// larger than the part keeps each shell with at least four. `all`, where given, becomes the number of triangles of
+/// `to_mesh(volume)`. Throws std::invalid_argument for a tolerance that is negative or not finite.
+Mesh to_mesh(const Volume& volume, double tolerance, const Progress& progress = {}, std::size_t* all = nullptr);
 
 }  // namespace riffler::marching

@@ -40,6 +40,11 @@ class Console:
         """Worth knowing, nothing wrong; on stderr, where ``--json`` leaves it too."""
         print(f"riffler: {message}", file=sys.stderr)
 
+    def announce(self, message: str) -> None:
+        """Says what is about to happen, where progress is shown."""
+        if self._shows_progress():
+            print(f"riffler: {message}", file=sys.stderr)
+
     def result(self, data: Mapping[str, Any], title: str, rows: Rows) -> None:
         """``data`` as JSON or ``rows`` as a table."""
         if self.json_output:
@@ -84,7 +89,7 @@ class Console:
         """Times a step of the work; yields the callable that its ``progress=`` wants, or None where no terminal
         shows it or the terminal cannot redraw a line."""
         start = time.perf_counter()
-        if sys.stderr.isatty() and os.environ.get("TERM") not in ("dumb", "unknown"):
+        if self._shows_progress():
             from rich.console import Console as Rich
             from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
 
@@ -108,6 +113,10 @@ class Console:
 
         with files.drafting(out, written) as beside:
             yield beside
+
+    @staticmethod
+    def _shows_progress() -> bool:
+        return sys.stderr.isatty() and os.environ.get("TERM") not in ("dumb", "unknown")
 
     @staticmethod
     def _print_json(data: Mapping[str, Any]) -> None:

@@ -23,10 +23,11 @@ from .arguments import (
     output_file,
 )
 from .console import Console, number, times
+from .detail import NOT_MESHED, add_detail, detail_of
 from .deviation_map import LEGEND, write_map
 from .parser import Parser
 from .programs import add_machine, add_program, is_saved, machine_name, read_program
-from .shapes import read_part, to_mesh, write_mesh, write_volume
+from .shapes import read_part, write_left
 from .stock import add_stock, stock
 from .surroundings import add_fixtures, add_rods, fixture, rods, with_rods
 
@@ -49,6 +50,7 @@ def add_arguments(parser: Parser) -> None:
     parser.add_argument("--rapid-feed", default="10000", metavar="MM/MIN", help="for the time (default 10000)")
     parser.add_argument("--scheduler", metavar="ADDRESS", help="run it on a Dask cluster: tcp://host:8786")
     parser.add_file("--out", "what is left: .stl, .obj, .ply, .3mf or .rvol", MESHES + VOLUMES)
+    add_detail(parser)
     parser.add_file("--map", f".ply of what is left, coloured: {LEGEND}", MAPS)
     parser.add_argument("--map-scale", default="0.5", metavar="MM", help="distance of the full colours (default 0.5)")
 
@@ -60,6 +62,7 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
         "rest_tolerance": None if arguments.rest is None else length(arguments.rest, "--rest"),
         "rapid_feed": length(arguments.rapid_feed, "--rapid-feed"),
     }
+    detail = detail_of(arguments)
     scale = length(arguments.map_scale, "--map-scale")
     out = None if arguments.out is None else output_file(arguments.out, MESHES + VOLUMES)
     coloured = None if arguments.map is None else output_file(arguments.map, MAPS)
@@ -85,11 +88,7 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
             report = verify(program, volume, part, fixtures, **options)
         else:
             report = cluster.verify(program, volume, part, fixtures, scheduler=arguments.scheduler, **options)
-    if out is not None:
-        if out.suffix.lower() in VOLUMES:
-            write_volume(report.volume, out, console)
-        else:
-            write_mesh(to_mesh(report.volume, console, out), out, console)
+    written = None if out is None else write_left(report.volume, out, console, detail)
     if coloured is not None and (found := report.stock_deviation()) is not None:
         with console.step("map"), console.writing(coloured) as beside:
             write_map(beside, *found, scale)
@@ -100,6 +99,7 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
         **report.to_dict(),
         "tools": {str(n): tool.to_dict() for n, tool in by_number.items()},
         "out": None if out is None else str(out),
+        **(written.to_dict() if written else NOT_MESHED),
         "map": None if coloured is None else str(coloured),
         "seconds": console.seconds,
     }

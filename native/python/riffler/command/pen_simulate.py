@@ -18,7 +18,6 @@ import threading
 import time
 from collections.abc import Callable
 from contextlib import nullcontext
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -26,11 +25,12 @@ import numpy as np
 from .. import Material, Session, SessionFrame, Tool, pen
 from .arguments import JOURNALS, MESHES, VOLUMES, length, output_file
 from .console import Console, number
+from .detail import add_detail, detail_of
 from .devices import geometry_of
 from .live import FRAMES, History, chart, screen, width_of_terminal
 from .parser import Parser
 from .pen_carving import REMOVAL, TOOL, block_at, hand_at, table_at
-from .shapes import write_mesh, write_volume
+from .shapes import write_left
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -46,12 +46,14 @@ def add_arguments(parser: Parser) -> None:
     parser.add_file("--plot", "a .png of the whole run; needs matplotlib", (".png",))
     parser.add_argument("--window", action="store_true", help="plots in a window while it runs; needs matplotlib")
     parser.add_file("--journal", "a new .rjournal of the strokes; riffler nc post takes it", JOURNALS)
+    add_detail(parser)
     parser.add_file("--out", "what is left: .stl, .obj, .ply, .3mf or .rvol", MESHES + VOLUMES)
 
 
 def run(arguments: argparse.Namespace, console: Console) -> int:
     seconds = length(arguments.seconds, "--seconds")
     stiffness = length(arguments.stiffness, "--stiffness")
+    detail = detail_of(arguments)
     pitch = length(arguments.pitch, "--pitch")
     plot = None if arguments.plot is None else output_file(arguments.plot, (".png",), "--plot")
     out = None if arguments.out is None else output_file(arguments.out, MESHES + VOLUMES)
@@ -102,17 +104,10 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
                 beside, dpi=120, facecolor="white", format="png"
             )
     if out is not None:
-        write(block, out, console)
+        write_left(block, out, console, detail)
     data |= {key: None if path is None else str(path) for key, path in written.items()}
     console.result(data, f"simulated pen, {data['seconds']:.1f} s", table(data))
     return 0
-
-
-def write(block: Any, out: Path, console: Console) -> None:
-    if out.suffix.lower() in VOLUMES:
-        write_volume(block, out, console)
-    else:
-        write_mesh(block.to_mesh(), out, console)
 
 
 def trips(session: Session) -> dict[str, int]:

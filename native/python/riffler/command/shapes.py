@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from .. import Mesh, Orientation, SurfaceReport, Volume, VolumeReport
+from .. import Mesh, Orientation, Volume, VolumeReport
 from ..mesh_notes import notes_on
+from ..results import LostReport
 from .arguments import VOLUMES
 from .console import Console
+from .detail import Detail, Written, announce
 
 
 def from_mesh(
@@ -39,21 +41,23 @@ def read_part(path: Path, console: Console, hollow: bool = False) -> Mesh:
     return mesh
 
 
-def to_mesh(volume: Volume, console: Console, out: Path) -> Mesh:
+def to_mesh(volume: Volume, console: Console, out: Path, detail: Detail) -> tuple[Mesh, Written]:
     """The mesh of a volume that is to be written to ``out``; prints on stderr what is too thin for it. ValueError where
     that is everything."""
+    tolerance = detail.of(volume)
     with console.step("mesh") as progress:
-        mesh, report = volume.to_mesh_with_report(progress=progress)
+        mesh, report = volume.to_mesh_with_report(tolerance=tolerance, progress=progress)
     if len(mesh.triangles):
         tell(out.name, report, console)
+        announce(out, len(mesh.triangles), report, tolerance, console)
     elif report.lost_note:
         raise ValueError(f"{out.name} not written: {report.lost_note}")
     else:
         console.warning(f"{out.name}: no material is left, so the mesh has no triangles")
-    return mesh
+    return mesh, Written(len(mesh.triangles), report.all_triangles, tolerance)
 
 
-def tell(name: str, report: Orientation | SurfaceReport, console: Console) -> None:
+def tell(name: str, report: Orientation | LostReport, console: Console) -> None:
     for note in notes_on(report):
         console.warning(f"{name}: {note}")
 
@@ -74,9 +78,11 @@ def rays(volume: Volume) -> int:
     return int(volume.rays)
 
 
-def write_left(volume: Volume, path: Path, console: Console) -> int | None:
-    """What is left, as a volume or as its mesh, by the file's suffix; the number of triangles of a mesh."""
+def write_left(volume: Volume, path: Path, console: Console, detail: Detail) -> Written | None:
+    """What is left, as a volume or as its mesh, by the file's suffix; None for a volume."""
     if path.suffix.lower() in VOLUMES:
         write_volume(volume, path, console)
         return None
-    return write_mesh(to_mesh(volume, console, path), path, console)
+    mesh, written = to_mesh(volume, console, path, detail)
+    write_mesh(mesh, path, console)
+    return written

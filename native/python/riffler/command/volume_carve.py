@@ -14,6 +14,7 @@ from .. import Program, Tool, Volume
 from . import tools
 from .arguments import MESHES, VOLUMES, length, machine_options, output_file
 from .console import Console, number, times
+from .detail import NOT_MESHED, Written, add_detail, detail_of
 from .parser import Parser
 from .programs import add_machine, add_program, machine_name, read_program
 from .shapes import rays, write_left
@@ -29,11 +30,13 @@ def add_arguments(parser: Parser) -> None:
     tools.add_tools(parser)
     add_machine(parser)
     parser.add_argument("--tolerance", default="0.01", metavar="MM", help="of moves that turn the tool (default 0.01)")
+    add_detail(parser)
     parser.add_file("--out", "what is left: .stl, .obj, .ply, .3mf or .rvol", MESHES + VOLUMES, required=True)
 
 
 def run(arguments: argparse.Namespace, console: Console) -> int:
     tolerance = length(arguments.tolerance, "--tolerance")
+    detail = detail_of(arguments)
     out = output_file(arguments.out, MESHES + VOLUMES)
     wanted = [tools.parse(text) for text in arguments.tool]
     machine = machine_name(arguments.machine or "tcp", "--machine")
@@ -53,7 +56,7 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
     removed = carve(volume, poses, called, by_number, tolerance, console)
     after = volume.volume
 
-    triangles = write_left(volume, out, console)
+    written = write_left(volume, out, console, detail)
 
     data = {
         "out": str(out),
@@ -68,11 +71,11 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
         "volume": after,
         "removed": float(removed.sum()),
         "removed_by_rapids": float(removed[rapid].sum()),
-        "triangles": triangles,
+        **(written.to_dict() if written else NOT_MESHED),
         "bytes": out.stat().st_size,
         "seconds": console.seconds,
     }
-    console.result(data, f"{out.name} written", table(data))
+    console.result(data, f"{out.name} written", table(data, written))
     return 0
 
 
@@ -110,7 +113,7 @@ def carve(
     return removed
 
 
-def table(data: dict) -> list[tuple[str, str]]:
+def table(data: dict, written: Written | None) -> list[tuple[str, str]]:
     rows = [
         ("rays", f"{number(data['rays'])} ({data['directions']}, pitch {data['pitch']:g} mm)"),
         ("moves", number(data["moves"])),
@@ -124,6 +127,6 @@ def table(data: dict) -> list[tuple[str, str]]:
         rows.insert(
             2, ("", f"{number(data['moves_without_tool'])} of them before the first tool is called: not carved")
         )
-    if data["triangles"] is not None:
-        rows.append(("triangles", number(data["triangles"])))
+    if written is not None:
+        rows.append(("triangles", str(written)))
     return [*rows, ("file", number(data["bytes"], "bytes")), ("times", times(data["seconds"]))]

@@ -11,6 +11,7 @@ from pathlib import Path
 from .. import Journal
 from .arguments import JOURNALS, MESHES, VOLUMES, input_file, output_file
 from .console import Console, number, times
+from .detail import NOT_MESHED, Written, add_detail, detail_of
 from .parser import Parser
 from .shapes import rays, write_left
 
@@ -20,17 +21,19 @@ HELP = "carve what a session carved"
 def add_arguments(parser: Parser) -> None:
     parser.add_input("journal", ".rjournal", JOURNALS)
     parser.add_argument("--folder", metavar="DIR", help="of the stock's snapshot (default: where the journal is)")
+    add_detail(parser)
     parser.add_file("--out", ".stl, .obj, .ply, .3mf or .rvol", MESHES + VOLUMES, required=True)
 
 
 def run(arguments: argparse.Namespace, console: Console) -> int:
     path = input_file(arguments.journal, JOURNALS)
+    detail = detail_of(arguments)
     out = output_file(arguments.out, MESHES + VOLUMES)
     with console.step("read"):
         journal = Journal.load(path)
     with console.step("replay") as progress:
         volume = journal.replay(Path(arguments.folder or path.parent), progress=progress)
-    triangles = write_left(volume, out, console)
+    written = write_left(volume, out, console, detail)
     strokes = journal.strokes
     data = {
         "out": str(out),
@@ -41,15 +44,15 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
         "directions": volume.directions,
         "rays": rays(volume),
         "volume": volume.volume,
-        "triangles": triangles,
+        **(written.to_dict() if written else NOT_MESHED),
         "bytes": out.stat().st_size,
         "seconds": console.seconds,
     }
-    console.result(data, f"{out.name} written", table(data))
+    console.result(data, f"{out.name} written", table(data, written))
     return 0
 
 
-def table(data: dict) -> list[tuple[str, str]]:
+def table(data: dict, written: Written | None) -> list[tuple[str, str]]:
     rows = [
         ("strokes", f"{number(data['strokes'])}, {number(data['rows'])} rows"),
         ("rays", f"{number(data['rays'])} ({data['directions']}, pitch {data['pitch']:g} mm)"),
@@ -57,6 +60,6 @@ def table(data: dict) -> list[tuple[str, str]]:
     ]
     if data["cut_at"] is not None:
         rows.insert(1, ("", f"the recording was cut at byte {data['cut_at']}: all whole strokes"))
-    if data["triangles"] is not None:
-        rows.append(("triangles", number(data["triangles"])))
+    if written is not None:
+        rows.append(("triangles", str(written)))
     return [*rows, ("file", number(data["bytes"], "bytes")), ("times", times(data["seconds"]))]
