@@ -7,6 +7,7 @@ from bpy_extras.io_utils import ExportHelper
 from riffler import threemf_writer
 
 from ..blender import operator_parts
+from ..blender.fields import length
 from ..blender.file_work import FileWork
 from ..common import poses, problems, units
 from ..common.job import AfterJob, PiecesJob, TaskJob
@@ -44,6 +45,13 @@ class Export(ExportHelper):
         return cuts
 
 
+DETAIL = (
+    ("NEEDED", "As Needed", "Triangles where the shape needs them: a flat face has few"),
+    ("ALL", "All", "Two triangles for each cell of the surface, as the sculpt shows"),
+)
+SHARE = 0.1  # of the pitch: the tolerance that 0 stands for
+
+
 class ExportSurface(FileWork):
     """Mixin of the operators that write the surface, by `job`, completely or not at all. `in_background`: that of the
     job."""
@@ -58,6 +66,22 @@ class ExportSurface(FileWork):
         default=True,
         description="Apply the object's transform; off: as milled, in the stock's own coordinates",
     )
+
+    detail: bpy.props.EnumProperty(name="Triangles", items=DETAIL, default="NEEDED", description="What is written")
+    tolerance: length(
+        "Tolerance", 0.0, "Largest distance from the surface of all triangles, in mm; 0: a tenth of the pitch", 0.0
+    )
+
+    def draw(self, context):
+        layout = self.layout
+        layout.use_property_split = True
+        layout.prop(self, "world")
+        layout.prop(self, "detail")
+        row = layout.row()
+        row.enabled = self.detail == "NEEDED"
+        row.prop(self, "tolerance")
+        if (ob := sculpts.active(context)) is not None:
+            layout.label(text=f"{local('All')}: {_amount(_triangles(ob.data), self.filename_ext)}", translate=False)
 
     @classmethod
     def poll(cls, context):
@@ -74,18 +98,23 @@ class ExportSurface(FileWork):
         matrix = sculpts.to_world_mm(ob, context.scene) if self.world else np.eye(4)
         name = ob.name
 
+        # a copy, so that sculpting can continue meanwhile
+        volume = live_registry.content(ob).volume.copy()
+        tolerance = None
+        if self.detail == "NEEDED":
+            tolerance = units.clean(self.tolerance) or SHARE * volume.pitch
+
         def write(made):
             surface, report = made
             self._thin = report.lost_note
             if not len(surface.triangles):
                 raise ValueError(self._thin or "the sculpt has no material left")
             surface = placed(surface, matrix)
-            self._done = _said(surface)
+            self._done = _said(surface, report.all_triangles, tolerance, self.filename_ext)
             return self.job(surface, path, name)
 
-        # a copy, so that sculpting can continue meanwhile
-        volume = live_registry.content(ob).volume.copy()
-        return AfterJob(riffler.submit(volume.to_mesh_with_report), write, self.in_background)
+        task = riffler.submit(volume.to_mesh_with_report, tolerance=tolerance)
+        return AfterJob(task, write, self.in_background)
 
     def finish(self, context, job):
         name = bpy.path.basename(self.filepath)
@@ -95,9 +124,23 @@ class ExportSurface(FileWork):
         return {"FINISHED"}
 
 
-def _said(surface):
+def _triangles(mesh):
+    """The triangles that a mesh's faces have."""
+    return len(mesh.loops) - 2 * len(mesh.polygons)
+
+
+def _amount(triangles, suffix):
+    """How many they are; with the size of an STL, which follows from it."""
+    size = f", {units.format_bytes(84 + 50 * triangles)}" if suffix == ".stl" else ""
+    return units.counted(triangles, "triangle") + size
+
+
+def _said(surface, all_triangles, tolerance, suffix):
     lower, upper = surface.bounds
-    return f"{units.counted(len(surface.triangles), 'triangle')}, {units.format_size(upper - lower)}"
+    said = f"{_amount(len(surface.triangles), suffix)}, {units.format_size(upper - lower)}"
+    if tolerance is None:
+        return said
+    return f"{said}; within {units.trim(tolerance, 6)} mm of all {_amount(all_triangles, suffix)}"
 
 
 class RIFFLER_OT_export_stl(ExportSurface, bpy.types.Operator, ExportHelper):
@@ -111,7 +154,7 @@ class RIFFLER_OT_export_stl(ExportSurface, bpy.types.Operator, ExportHelper):
     in_background = True
 
     def job(self, surface, path, name):
-        return TaskJob(riffler.submit(riffler.Mesh.write, surface, path))
+        return TaskJob(riffler.submit(riffler.Mesh.write, surface, path), self._done)
 
 
 class RIFFLER_OT_export_3mf(ExportSurface, bpy.types.Operator, ExportHelper):

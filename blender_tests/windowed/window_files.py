@@ -21,9 +21,9 @@ def selectors():
     return [(w, a) for w in bpy.context.window_manager.windows for a in w.screen.areas if a.type == "FILE_BROWSER"]
 
 
-def choose(screen, operator, path, name=None, **more):
+def choose(screen, operator, path, name=None, shot="", **more):
     """The operator's button, the file in the selector that opens, and its button: steps to `yield from`. `name`: if not
-    that of the path."""
+    that of the path. `shot`: the name of a picture of the selector."""
     path = Path(path)
     with screen.override():
         assert operator("INVOKE_DEFAULT", **more) == {"RUNNING_MODAL"}
@@ -33,6 +33,8 @@ def choose(screen, operator, path, name=None, **more):
     params = area.spaces.active.params
     params.directory, params.filename = str(path.parent).encode(), path.name if name is None else name
     yield 0.5
+    if shot:
+        screen.shot(shot)
     region = next(r for r in area.regions if r.type == "WINDOW")
     with bpy.context.temp_override(window=window, area=area, region=region):
         bpy.ops.file.execute("INVOKE_DEFAULT")
@@ -143,10 +145,10 @@ def written(screen):
     for operator in (bpy.ops.riffler.export_stl, bpy.ops.riffler.export_3mf):
         path = Path(common.out(f"chosen.{operator.idname()[-3:]}"))
         path.unlink(missing_ok=True)
-        yield from choose(screen, operator, path)
+        yield from choose(screen, operator, path, shot=operator.idname()[-10:])
         yield path.exists
         yield lambda: not running()
-        assert path.stat().st_size > 1_000_000
+        assert path.stat().st_size > 5_000
 
 
 def cancelled(screen):

@@ -517,7 +517,7 @@ def test_what_needs_the_sculpt_gets_what_is_shown():
     last = stroke(name, 3)
     path = common.out("live.stl")
     bpy.context.view_layer.objects.active = bpy.data.objects[name]
-    assert bpy.ops.riffler.export_stl(filepath=path) == {"FINISHED"}
+    assert bpy.ops.riffler.export_stl(filepath=path, detail="ALL") == {"FINISHED"}
     volume = live().of(bpy.data.objects[name]).volume
     assert riffler.Mesh.read(path).volume == close_to(volume.to_mesh().volume)
     assert volume.to_bytes() == last

@@ -5,6 +5,7 @@ from pathlib import Path
 import bpy
 import mathutils
 import numpy as np
+import riffler
 
 from support import common
 
@@ -92,6 +93,36 @@ def test_the_stl_is_closed():
         backward = edges[:, 1] * len(corners) + edges[:, 0]
         assert len(np.unique(forward)) == len(forward)
         assert np.array_equal(np.sort(forward), np.sort(backward))
+
+
+def spaced(n):
+    return f"{n:,}".replace(",", "\u00a0")
+
+
+def test_triangles_are_where_the_shape_needs_them_or_all():
+    common.scale(1)
+    ob = cut_stock(1.0, "xyz")
+    all_triangles = len(common.content(ob).volume.to_mesh().triangles)
+    pitch = common.content(ob).volume.pitch
+    sizes = {}
+    for name, settings, tolerance in (
+        ("all", {"detail": "ALL"}, None),
+        ("tenth", {}, 0.1 * pitch),
+        ("near", {"tolerance": 0.002}, 0.002),
+    ):
+        path = common.out(f"{name}.stl")
+        said = common.printed(
+            lambda path=path, settings=settings: bpy.ops.riffler.export_stl(filepath=path, **settings)
+        )
+        sizes[name] = len(common.read_stl(path))
+        assert f"{spaced(sizes[name])} triangles, " in said
+        assert Path(path).stat().st_size == 84 + 50 * sizes[name]
+        assert ("within" in said) == (tolerance is not None)
+        if tolerance is not None:
+            assert f"within {tolerance:g} mm of all {spaced(all_triangles)} triangles, " in said
+    assert sizes["all"] == all_triangles > 10 * sizes["near"] > 10 * sizes["tenth"] > 0
+    full, few = (riffler.Mesh.read(common.out(f"{name}.stl")) for name in ("all", "tenth"))
+    assert np.abs(few.deviation(full)).max() < 1e-4 and np.abs(full.deviation(few)).max() < 0.1 * pitch + 1e-4
 
 
 def test_a_changed_scene_scale_changes_what_is_exported_and_is_said():
