@@ -80,8 +80,18 @@ class ExportSurface(FileWork):
         row = layout.row()
         row.enabled = self.detail == "NEEDED"
         row.prop(self, "tolerance")
-        if (ob := sculpts.active(context)) is not None:
-            layout.label(text=f"{local('All')}: {_amount(_triangles(ob.data), self.filename_ext)}", translate=False)
+        if (ob := sculpts.active(context)) is None:
+            return
+        if self.detail == "NEEDED":
+            within = units.trim(self.within(ob.data.riffler.pitch), 6)
+            layout.label(text=f"{local('Tolerance')}: {within} mm", translate=False)
+        layout.label(text=f"{local('All')}: {_amount(_triangles(ob.data), self.filename_ext)}", translate=False)
+
+    def within(self, pitch):
+        """The tolerance in mm; None for all triangles."""
+        if self.detail == "ALL":
+            return None
+        return units.clean(self.tolerance) or SHARE * pitch
 
     @classmethod
     def poll(cls, context):
@@ -100,9 +110,7 @@ class ExportSurface(FileWork):
 
         # a copy, so that sculpting can continue meanwhile
         volume = live_registry.content(ob).volume.copy()
-        tolerance = None
-        if self.detail == "NEEDED":
-            tolerance = units.clean(self.tolerance) or SHARE * volume.pitch
+        tolerance = self.within(volume.pitch)
 
         def write(made):
             surface, report = made
