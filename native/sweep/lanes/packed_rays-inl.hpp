@@ -83,6 +83,7 @@ class PackedRays {
   template <class Look>
   HWY_INLINE void find(const RayWindow& w, const Look& look) {
     const V low = set(w.low), high = set(w.high), index = hn::Iota(kD, 0);
+    int count = 0, groups = 0;
     for (int a = w.first_row; a <= w.last_row; ++a)
       for (int b = w.first[a]; b < w.end[a]; b += lanes()) {
         const Group g = group_at(w, a, b);
@@ -91,15 +92,16 @@ class PackedRays {
         if (none(there)) continue;
         const unsigned active = bits(without(there, look.rejected(w, w.u[a], g, there)));
         if (!active) continue;
-        found_[groups_++] = {static_cast<std::uint16_t>(g.ray), static_cast<std::uint8_t>(active)};
+        found_[groups++] = {static_cast<std::uint16_t>(g.ray), static_cast<std::uint8_t>(active)};
         const auto order = hn::SetTableIndices(kD, kGathered[active].data());
         const auto put = [&](int field, V x) {
-          hn::StoreU(hn::TableLookupLanes(x, order), kD, fields_[field] + count_);
+          hn::StoreU(hn::TableLookupLanes(x, order), kD, fields_[field] + count);
         };
-        hn::StoreU(set(w.u[a]), kD, fields_[0] + count_);
+        hn::StoreU(set(w.u[a]), kD, fields_[0] + count);
         put(1, g.v), put(2, max(g.low, low)), put(3, min(g.high, high)), put(4, hn::Add(set(g.ray), index));
-        count_ += std::popcount(active);
+        count += std::popcount(active);
       }
+    count_ = count, groups_ = groups;
   }
 
   int count_ = 0, groups_ = 0;

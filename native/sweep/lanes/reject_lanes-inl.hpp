@@ -86,19 +86,34 @@ struct Look {
 
   /// Lanes of `there` whose material is out of reach.
   HWY_INLINE M rejected(const RayWindow& w, double u, const Group& g, M there) const {
+    const M m = g.two ? rejected_two(w, u, g, there) : rejected_one(w, u, g, there);
+    if (!look.has_planes) return m;
+    // The highest and the lowest point of the material at the step's heights are below the tool's lower end.
+    const V low = max(g.low, set(w.low)), high = min(g.high, set(w.high));
+    M rest = without(there, m);
+    if (kKind == QuickReject::Kind::Planes) rest = both(rest, hn::Lt(high, g.high));
+    if (none(rest)) return m;
+    const M below = under_planes(look, u, g.v, high);
+    if (none(both(rest, below))) return m;
+    return either(m, both(rest, both(below, under_planes(look, u, g.v, low))));
+  }
+
+ private:
+  HWY_INLINE M rejected_one(const RayWindow& w, double u, const Group& g, M there) const {
+    M m = no_lane();
+    if (ends_before(g.first_far, set(w.high), there)) m = out<-1>(u, g.v, g.first_far, there);
+    const M rest = without(there, m);
+    return look.has_tube && ends_before(set(w.low), g.near, rest) ? either(m, out<1>(u, g.v, g.near, rest)) : m;
+  }
+
+  HWY_INLINE M rejected_two(const RayWindow& w, double u, const Group& g, M there) const {
     const V low = set(w.low), high = set(w.high);
-    if (!g.two) {
-      M m = no_lane();
-      if (ends_before(g.first_far, high, there)) m = out<-1>(u, g.v, g.first_far, there);
-      const M rest = without(there, m);
-      return look.has_tube && ends_before(low, g.near, rest) ? either(m, out<1>(u, g.v, g.near, rest)) : m;
-    }
     const M two = from_bits(g.two);
     const M first_free = hn::Le(g.first_far, low), last_free = both(two, hn::Ge(g.last_near, high));
     const M under = out<-1>(u, g.v, g.first_far, without(there, first_free));
     const M over = out<1>(u, g.v, g.last_near, without(there, last_free));
     M m =
-        either(both(either(under, first_free), both(two, either(over, last_free))), without(either(under, over), two));
+        either(both(two, both(either(under, first_free), either(over, last_free))), without(either(under, over), two));
     // Or both spans are on the same side of the tool.
     const M rest = without(both(there, two), m);
     if (ends_before(g.high, high, rest)) m = either(m, both(two, out<-1>(u, g.v, g.high, rest)));
@@ -106,7 +121,6 @@ struct Look {
     return m;
   }
 
- private:
   /// Whether a < b in a lane of the mask. Spans that reach beyond the step's heights are hardly ever out of reach.
   static bool ends_before(V a, V b, M mask) { return !none(both(mask, hn::Lt(a, b))); }
 };
