@@ -109,8 +109,8 @@ def streamed(moves: int, calls: int) -> dict[str, Any]:
     return {"wall_s": wall, "cpu_s": cpu, "removed": removed, "lost": before - volume.volume, "rays": volume.rays}
 
 
-def s500k(moves: int, ramping: bool) -> dict[str, Any]:
-    volume = Volume.block(*scenes.S500K_BLOCK, 0.5)
+def s500k(moves: int, ramping: bool, directions: str = "z") -> dict[str, Any]:
+    volume = Volume.block(*scenes.S500K_BLOCK, 0.5, directions)
     poses, tool = scenes.s500k(moves, ramping), Tool.flat(6, 30)
     before = volume.volume
     wall, cpu = time.perf_counter(), time.process_time()
@@ -146,6 +146,21 @@ def verified(
     if tops:
         np.save(tops, waves.tops(found.volume))
     return out
+
+
+def verified_both(rows: int, lines: int, tilted: bool, pitch: float, turns: int) -> dict[str, Any]:
+    """The waves verified with rays in one direction and in three, in turn: median processor times and their ratio."""
+    program = waves.program(rows, lines, tilted)
+    seconds, reports = {"z": [], "xyz": []}, {}
+    for _ in range(turns):
+        for directions, times in seconds.items():
+            stock = waves.stock(pitch, directions)
+            reports[directions], took = clock.timed(lambda stock=stock: verify(program, stock), 1)
+            times.append(took["cpu_s"])
+    z, xyz = (statistics.median(times) for times in seconds.values())
+    ratio = statistics.median(b / a for a, b in zip(*seconds.values(), strict=True))
+    same = bool(np.array_equal(reports["z"].removed, reports["xyz"].removed))
+    return {"z_s": z, "xyz_s": xyz, "ratio": ratio, "same": same, "passed": reports["xyz"].passed}
 
 
 def verified_stream(rows: int, lines: int, pitch: float, chunk: int) -> dict[str, Any]:
@@ -206,6 +221,7 @@ WORK = {
     "s500k": s500k,
     "streamed": streamed,
     "verified": verified,
+    "verified_both": verified_both,
     "verified_stream": verified_stream,
     "edited": edited,
     "files": files,

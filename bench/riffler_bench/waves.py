@@ -59,8 +59,8 @@ def chunks(rows: int, lines: int, tilted: bool, size: int) -> Iterator[Program]:
         yield as_program(poses(rows, lines, tilted, first, min(first + size + 1, rows)), first)
 
 
-def stock(pitch: float) -> Volume:
-    return Volume.block([0, 0, -DEEP], [SIZE, SIZE, 0], pitch, "z")
+def stock(pitch: float, directions: str = "z") -> Volume:
+    return Volume.block([0, 0, -DEEP], [SIZE, SIZE, 0], pitch, directions)
 
 
 def part(cells: int) -> Mesh:

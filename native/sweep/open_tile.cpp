@@ -108,12 +108,23 @@ void OpenTile::put(int r, const Piece* pieces, std::uint32_t n, std::uint32_t pa
   if (n > 1) into(last_, pieces[pair + 1]);
 }
 
+/// Index in `kept_` of the first of the two spans at both sides of a cut.
+std::uint32_t OpenTile::pair_at(const Interval& cut) const {
+  std::uint32_t pair = 0;
+  while (pair + 2 < kept_.size() && kept_[pair + 1].span.near < cut.near) ++pair;
+  return pair;
+}
+
+/// A cut in a gap of ray r: the next ones, which mostly are in the same gap, find its two sides in the planes.
+void OpenTile::follow(int r, const Interval& cut) {
+  if (!is(many_, r)) return;
+  const std::uint32_t pair = pair_at(cut);
+  if (pair != pool_.at(r).pair) put(r, kept_.data(), static_cast<std::uint32_t>(kept_.size()), pair);
+}
+
 void OpenTile::store(int r, const Interval& cut) {
   changed_ = true;
-  const auto n = static_cast<std::uint32_t>(kept_.size());
-  std::uint32_t pair = 0;
-  while (pair + 2 < n && kept_[pair + 1].span.near < cut.near) ++pair;
-  put(r, kept_.data(), n, pair);
+  put(r, kept_.data(), static_cast<std::uint32_t>(kept_.size()), pair_at(cut));
   if (with_normals_) pending_[r / dexel::kTileSide] |= bit(r);
 }
 

@@ -24,10 +24,10 @@ struct RayPlanes {
 };
 
 /// A ray has its only span, or the first of two, in the plane `first`, and the second in the plane `last`, with a bit
-/// in `two`. If there are more, those at both sides of the gap where the last cut was are in the planes, and the others
-/// in a pool, with a bit in `many`, too. An empty ray has near > far in `first`, so no cut touches it. A tile with one
-/// span in each ray is read in place until something of it is cut: a tool passes over most tiles without removing
-/// anything.
+/// in `two`. If there are more, those at both sides of the gap where the tool was last are in the planes, and the
+/// others in a pool, with a bit in `many`, too. An empty ray has near > far in `first`, so no cut touches it. A tile
+/// with one span in each ray is read in place until something of it is cut: a tool passes over most tiles without
+/// removing anything.
 class OpenTile {
  public:
   OpenTile() = default;
@@ -72,7 +72,10 @@ class OpenTile {
       if (above) kept_.push_back({{cut.far, p.span.far}, p.normals, {origins.near, p.origins.far}});
       removed(below ? cut.near : p.span.near, above ? cut.far : p.span.far);
     });
-    if (any) store(r, cut);
+    if (any)
+      store(r, cut);
+    else
+      follow(r, cut);
     return any;
   }
 
@@ -140,6 +143,8 @@ class OpenTile {
   void unpack(const dexel::Tile& tile);
   void put(int r, const Piece* pieces, std::uint32_t n, std::uint32_t pair);
   void store(int r, const Interval& cut);
+  void follow(int r, const Interval& cut);
+  std::uint32_t pair_at(const Interval& cut) const;
   std::uint32_t count(int r) const;
 
   std::shared_ptr<const dexel::Tile> source_;

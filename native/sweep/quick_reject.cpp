@@ -34,8 +34,8 @@ QuickReject::QuickReject(const StraightBody& b) {
     for (int i = 0; i < 3; ++i) centre.from[i] = start[i], centre.way[i] = along[i], centre.axis[i] = up[i];
     centre.per_square = b.way > 0 ? 1 / (b.way * b.way) : 0;
     centre.square = first.r * first.r + kMargin * first.r * (first.r + b.way);
-  } else if (b.tilt > 0 && b.oz > 0) {  // an upright tool's end is as low as the footprint: no planes
-    kind = Kind::Planes;
+  } else if (b.tilt > 0) {  // an upright tool's end is as low as the footprint: no planes
+    if (b.oz > 0) kind = Kind::Planes;
     set_plane(0, start, up), set_plane(1, start + along, up);
     slack = kMargin * (size + b.way), per_depth = kMargin;
   }
@@ -48,8 +48,7 @@ QuickReject::QuickReject(const ConvexGroup& group, const Motion& motion, double 
                          const Footprint& footprint) {
   const Pose poses[2] = {motion.at(t0), motion.at(t1)};
   set_turning_tube(group, motion, t0, t1);
-  if (!(poses[0].axis.z > 0 && poses[1].axis.z > 0)) return;
-  kind = Kind::Planes;
+  if (poses[0].axis.z > 0 && poses[1].axis.z > 0) kind = Kind::Planes;
   double height = std::numeric_limits<double>::infinity();
   for (const tool::Piece& piece : group.all()) height = std::min(height, bottom(piece));
   const Interval &rows = footprint.rows(), &columns = footprint.columns();
@@ -96,6 +95,7 @@ void QuickReject::set_tube(const Pose& from, const Vec3& way, double radius, dou
 }
 
 void QuickReject::set_plane(int k, const Vec3& at, const Vec3& up) {
+  has_planes = true;
   for (int i = 0; i < 3; ++i) foot[k][i] = at[i], normal[k][i] = up[i];
 }
 

@@ -36,6 +36,7 @@ struct QuickReject {
   /// heights over both planes are less than −slack − per_depth × its distance from their feet along the rays.
   double foot[2][3], normal[2][3];
   double slack, per_depth;
+  bool has_planes = false;
 
   QuickReject() = default;
   explicit QuickReject(const StraightBody& body);

@@ -30,6 +30,7 @@ def carve(out: Report, settings: Settings, pitches: tuple[float, ...], progress:
     ]
     for kind, head in heads.items():
         columns += [Column(head, f"{kind}_s", report.micro), Column("÷ loop", f"{kind}_ratio", report.ratio)]
+    columns += [Column("tri-dexel ÷ z", "three_ratio", report.ratio)]
     columns += [Column("largest error mm", "max_mm", report.mm), Column("wrong points", "wrong")]
     table = out.section("carve", "B200, processor time of one move, median", *columns)
     cases = [(pitch, cutter) for pitch in pitches for cutter in scenes.cutters()]
@@ -41,13 +42,15 @@ def carve(out: Report, settings: Settings, pitches: tuple[float, ...], progress:
             figures[f"{kind}_s"] = timing.seconds / scenes.MOVES
             figures[f"{kind}_ratio"] = timing.ratio
             figures["loop_s"] = timing.loop / scenes.MOVES
+        figures["three_ratio"] = figures["tri_ratio"] / figures["plain_ratio"]
         # Straight moves are exact: the tolerance only says how finely the comparison looks.
         error = errors.measured(volume, cutter.tool, poses, 1e-4, 50 if settings.quick else 400)
         table.row(pitch=pitch, cutter=cutter.name, **figures, **error)
         out.check(error["max_mm"] <= 1e-6 and not error["wrong"], f"{cutter.name}, h = {pitch:g}: {error}")
     table.notes.append(
         "Loop: the yardstick, B200's ball on a plain height map. Target: at most 3 × the loop for any cutter in z, "
-        "force included. Errors are those of the tri-dexel volume; below 1e-9 mm they are those of the comparison."
+        "force included; tri-dexel at most 4 × z. "
+        "Errors are those of the tri-dexel volume; below 1e-9 mm they are those of the comparison."
     )
 
 

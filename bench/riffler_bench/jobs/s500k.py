@@ -20,6 +20,7 @@ def run(settings: Settings, progress: Progress = None) -> Report:
         Column("moves/s", "moves_per_s", lambda n: f"{n:,.0f}".replace(",", "\u2009")),
         Column("peak memory", "peak_bytes", report.megabytes),
         Column("removed mm³", "removed", lambda v: f"{v:.1f}"),
+        Column("÷ z", "ratio", report.ratio),
     )
     calls = 20
     cases = [(path, threads) for path in ("level", "ramping", f"ramping, {calls} calls") for threads in (1, None)]
@@ -37,5 +38,10 @@ def run(settings: Settings, progress: Progress = None) -> Report:
         )
         off = abs(r["removed"] - r["lost"])
         out.check(off <= 1e-9 * r["lost"], f"removed sums to {r['removed']}, the volume lost {r['lost']}")
+    for path in ("level", "ramping"):
+        one, three = (child("s500k", 1, moves=moves, ramping=path == "ramping", directions=d) for d in ("z", "xyz"))
+        ratio = three["cpu_s"] / one["cpu_s"]
+        table.row(path=f"{path}, xyz", threads="1", moves_per_s=moves / three["wall_s"], ratio=ratio, **three)
+        out.check(three["removed"] == one["removed"], f"{path}: z and xyz differ")
     table.notes.append("Memory is the peak of a whole process, with Python, numpy and the poses (24 MB).")
     return out

@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "sweep/lane_order.hpp"
 #include "sweep/lanes/lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -28,13 +29,11 @@ class LaneQueue {
   /// Adds the lanes of `mask`.
   void add(M mask, Item& item) {
     // Compress would be slower: on some processors it takes a hundred cycles.
-    std::int64_t places[base::kLanes] = {};
-    int added = 0;
-    for (unsigned m = bits(mask); m; m &= m - 1) places[added++] = std::countr_zero(m);
-    const auto order = hn::SetTableIndices(kD, places);
+    const unsigned added = bits(mask);
+    const auto order = hn::SetTableIndices(kD, kGathered[added].data());
     double* to = at_[0] + count_;
     each(item, [&](V& x) { hn::StoreU(hn::TableLookupLanes(x, order), kD, to), to += kRoom; });
-    count_ += added;
+    count_ += std::popcount(added);
   }
 
   /// Fills lanes of `idle` with queued items, as far as there are any. Returns these lanes.
@@ -42,9 +41,7 @@ class LaneQueue {
     unsigned wanted = bits(idle);
     while (std::popcount(wanted) > count_) wanted &= wanted - 1;
     count_ -= std::popcount(wanted);
-    std::int64_t rank[base::kLanes];
-    for (int k = 0; k < lanes(); ++k) rank[k] = std::popcount(wanted & ((1U << k) - 1));
-    const auto order = hn::SetTableIndices(kD, rank);
+    const auto order = hn::SetTableIndices(kD, kSpread[wanted].data());
     const M filled = from_bits(wanted);
     const double* from = at_[0] + count_;
     each(item, [&](V& x) { x = pick(filled, hn::TableLookupLanes(hn::LoadU(kD, from), order), x), from += kRoom; });

@@ -7,6 +7,7 @@
 #endif
 
 #include "sweep/lanes/cut_lanes-inl.hpp"
+#include "sweep/lanes/packed_rays-inl.hpp"
 #include "sweep/lanes/straight_round-inl.hpp"
 #include "sweep/straight_part.hpp"
 
@@ -15,15 +16,14 @@ namespace riffler::sweep::HWY_NAMESPACE {
 
 using namespace base::HWY_NAMESPACE;
 
-/// One group of rays, and the section of the body with each of them. kWays: whether to record the path length at which
+/// A vector of rays, and the section of the body with each of them. kWays: whether to record the path length at which
 /// each end arises.
 template <bool kWays>
 class StraightLanes {
  public:
-  StraightLanes(const StraightBody& body, double u, V v) : b_(body) {
-    const double du = u - b_.tip[0];
-    const V dv = hn::Sub(v, set(b_.tip[1]));
-    const auto along = [&](const double* e) { return hn::Add(set(du * e[0]), hn::Mul(dv, set(e[1]))); };
+  StraightLanes(const StraightBody& body, V u, V v) : b_(body) {
+    const V du = hn::Sub(u, set(b_.tip[0])), dv = hn::Sub(v, set(b_.tip[1]));
+    const auto along = [&](const double* e) { return hn::Add(hn::Mul(du, set(e[0])), hn::Mul(dv, set(e[1]))); };
     r_ = {along(b_.e1), along(b_.e2), along(b_.axis)};
   }
 
@@ -61,7 +61,7 @@ class StraightLanes {
   V far_time() const { return time(far_way_); }
 
  private:
-  V time(V way) const { return kWays ? hn::Add(set(b_.t0), hn::Mul(way, set(b_.per_way))) : set(b_.middle); }
+  V time(V way) const { return hn::Add(set(b_.t0), hn::Mul(way, set(b_.per_way))); }
 
   static V dot(V a, double x, V b, double y, V c, double z) {
     return hn::Add(hn::Add(hn::Mul(a, set(x)), hn::Mul(b, set(y))), hn::Mul(c, set(z)));
@@ -260,12 +260,17 @@ class StraightLanes {
 template <bool kWays>
 void cut_straight_with(const StraightBody& body, RayWindow& w) {
   const V tip = set(body.tip[2]);
-  for_groups(w, [&](double u, Group& g) {
-    w.hits += hn::CountTrue(kD, g.active);
-    StraightLanes<kWays> lanes(body, u, g.v);
-    lanes.find(g.active, hn::Sub(max(g.low, set(w.low)), tip), hn::Sub(min(g.high, set(w.high)), tip));
-    const RayIntervals cut{hn::Add(lanes.ends().near, tip), hn::Add(lanes.ends().far, tip)};
-    subtract(w, u, g, g.active, cut, lanes.near_time(), lanes.far_time());
+  PackedRays rays(w);
+  w.hits += static_cast<unsigned>(rays.count());
+  for (int k = 0; k < rays.count(); k += lanes()) {
+    StraightLanes<kWays> section(body, rays.u(k), rays.v(k));
+    section.find(rays.present(k), hn::Sub(rays.low(k), tip), hn::Sub(rays.high(k), tip));
+    rays.store(k, 0, hn::Add(section.ends().near, tip)), rays.store(k, 1, hn::Add(section.ends().far, tip));
+    if (kWays) rays.store(k, 2, section.near_time()), rays.store(k, 3, section.far_time());
+  }
+  const V middle = set(body.middle);
+  rays.each_group(w, [&](double u, const Group& g, const auto& result) {
+    subtract(w, u, g, g.active, {result(0), result(1)}, kWays ? result(2) : middle, kWays ? result(3) : middle);
   });
 }
 

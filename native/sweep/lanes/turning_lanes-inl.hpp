@@ -18,6 +18,7 @@
 #include "sweep/lanes/cut_lanes-inl.hpp"
 #include "sweep/lanes/hit_lanes-inl.hpp"
 #include "sweep/lanes/lane_queue-inl.hpp"
+#include "sweep/lanes/packed_rays-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace riffler::sweep::HWY_NAMESPACE {
@@ -71,17 +72,12 @@ class TurningLanes {
   TurningLanes(const TurningBody& body, RayWindow& window) : b_(body), w_(window), certificate_(body, window) {}
 
   void cut() {
-    const V index = hn::Iota(kD, 0);
-    for_groups(w_, [&](double u, const Group& g) {
-      const V origin = set(b_.origin);
-      Ray ray{hn::Add(set(g.ray), index),
-              set(u),
-              g.v,
-              hn::Sub(max(g.low, set(w_.low)), origin),
-              hn::Sub(min(g.high, set(w_.high)), origin),
-              set(1)};
-      look(ray, g.active);
-    });
+    const PackedRays rays(w_);
+    const V origin = set(b_.origin);
+    for (int k = 0; k < rays.count(); k += lanes()) {
+      Ray ray{rays.place(k), rays.u(k), rays.v(k), hn::Sub(rays.low(k), origin), hn::Sub(rays.high(k), origin), set(1)};
+      look(ray, rays.present(k));
+    }
     while (reached_.count() > 0) settle();
     refine();
     take();

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <vector>
+
 #include "riffler/sweep/carve.hpp"
 #include "riffler/tool/cutters.hpp"
 
@@ -68,6 +71,48 @@ TEST(QuickReject, AFlatEndThatTurnsAboveItsFloorTestsNoRayOfThat) {
   EXPECT_LT(above.rays_tested, 600U);  // of about 3000 in its footprint: those at its walls, which lean
   const dexel::Stats below = counted(volume, tool, swing(4.95));
   EXPECT_GT(below.rays_changed, 2500U);
+}
+
+/// A ball sunk to its centre in a stroke of a turning hand: its flank meets little of what the ball leaves, along any
+/// rays.
+TEST(QuickReject, AFlankThatTurnsTestsFewRaysBelowIt) {
+  for (const char* directions : {"x", "y", "z"}) {
+    Volume volume = Volume::block({{{0, 0, -15}, {60, 40, 0}}, 0.2, directions});
+    std::vector<Pose> poses;
+    for (int k = 0; k <= 40; ++k) {
+      const Vec3 axis = glm::normalize(Vec3(0.25 * std::sin(0.1 * k), 0.1, 1));
+      poses.push_back({Vec3(20 + 0.5 * k, 20, 0) - 10.0 * axis, axis});
+    }
+    const dexel::Stats stats = counted(volume, cutters::ball(20, 60), poses);
+    EXPECT_GT(stats.rays_changed, 50'000U) << directions;
+    EXPECT_LT(stats.rays_tested, 1.15 * static_cast<double>(stats.rays_changed)) << directions;
+  }
+}
+
+/// A tool goes along a slot between ribs, without touching them: each ray through it is tested at most once.
+TEST(QuickReject, ARayWithManySpansRemembersTheGapThatTheToolIsIn) {
+  const double pitch = 0.2;
+  Volume volume = Volume::block({{{0, 0, 0}, {60, 20, 10}}, pitch, "x"});
+  for (double x = 5; x < 60; x += 10)
+    carve(volume, cutters::flat(4, 30), {{{{x, -5, 6}, {0, 0, 1}}, {{x, 25, 6}, {0, 0, 1}}}});
+  std::vector<Pose> poses;
+  for (int k = 0; k <= 75; ++k) poses.push_back({{25, -5 + 0.4 * k, 6.1}, {0, 0, 1}});
+  const dexel::Stats stats = counted(volume, cutters::flat(3, 30), poses);
+  EXPECT_EQ(stats.rays_changed, 0U);
+  EXPECT_LE(stats.rays_tested, 20 / pitch * 4 / pitch);
+}
+
+/// Both spans of a ray lie on one side of the tool.
+TEST(QuickReject, ASlotBesideTheToolDoesNotMakeItTestARay) {
+  for (const double x : {2.0, 58.0}) {
+    Volume volume = Volume::block({{{0, 0, 0}, {60, 20, 10}}, 0.2, "x"});
+    const std::vector<Pose> step{{{x, -5, 6}, {0, 0, 1}}, {{x, 25, 6}, {0, 0, 1}}};
+    carve(volume, cutters::flat(4, 30), step);
+    carve(volume, cutters::flat(4, 30), {{{{30, -5, 6}, {0, 0, 1}}, {{30, 25, 6}, {0, 0, 1}}}});
+    const dexel::Stats stats = counted(volume, cutters::flat(3, 30), lifted(step, 0.1));
+    EXPECT_EQ(stats.rays_changed, 0U) << x;
+    EXPECT_EQ(stats.rays_tested, 0U) << x;
+  }
 }
 
 }  // namespace
