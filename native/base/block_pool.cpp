@@ -118,7 +118,7 @@ bool drop_another(Pool& all, std::size_t number) noexcept {
   return false;
 }
 
-/// Makes room in a full pool. Sizes that nobody asks for any more would otherwise fill it for ever, and each step of a
+/// Makes room in a full pool. Sizes that are no longer requested would otherwise fill it for ever, and each step of a
 /// pen would take its blocks from the system.
 void make_room(Pool& all, const SizeClass& size) noexcept {
   for (int k = 0; k < kDropped; ++k)

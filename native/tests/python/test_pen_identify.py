@@ -155,7 +155,7 @@ def test_a_tension_that_changes_does_not_look_like_friction(geometry, seed, monk
     sweep, unknowns = made_sweep(geometry, seed, lambda t: 1 + 0.3 * np.sin(3 * t))
 
     def off():
-        """Of the viscous friction, relative, by what the equations leave with the true unknowns."""
+        """Relative error of the viscous friction, by what the equations leave with the true unknowns."""
         matrix, side = rows_of(geometry, sweep, 0.0, 15.0, lead=0.0)
         assert len(side) >= 50
         friction, *_ = np.linalg.lstsq(matrix[:, 12:18], side - matrix @ unknowns, rcond=None)

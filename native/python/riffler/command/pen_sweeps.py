@@ -70,8 +70,8 @@ def home_of(geometry: pen.PenGeometry) -> np.ndarray:
 def sweeps(geometry: pen.PenGeometry, number: int, rate: float, seed: int) -> Path:
     """Home, ``number`` postures all over the middle of the workspace, and home again; the fastest joint at ``rate``.
 
-    In every sweep the joints turn at different speeds, so that no two columns of the fit are alike. Of several random
-    postures the next is the one whose sweep tells most.
+    In every sweep the joints turn at different speeds, so that no two columns of the fit are alike. The next posture is
+    the one of several random ones whose sweep tells most.
     """
     random = np.random.default_rng(seed)
     home = home_of(geometry)
@@ -137,7 +137,7 @@ def told(geometry: pen.PenGeometry, a: np.ndarray, b: np.ndarray, rate: float) -
 
 
 def reaches(geometry: pen.PenGeometry, a: np.ndarray, b: np.ndarray) -> bool:
-    """Whether both arms reach all poses from a to b, and neither is near to stretched or folded on the way."""
+    """Whether both arms reach all poses from a to b, and neither is near to stretched or folded between."""
     between = a + np.linspace(0, 1, 15)[:, None] * (b - a)
     between[:, 3:] /= np.linalg.norm(between[:, 3:], axis=1)[:, None]
     joints, found = geometry.inverse(between)
