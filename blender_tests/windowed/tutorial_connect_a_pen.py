@@ -14,7 +14,7 @@ SEEN = 0.12  # N: an arrow that is longer than its head
 
 
 def steps(screen):
-    lessons.only_open("RIFFLER_PT_sculpt", "RIFFLER_PT_tool", "RIFFLER_PT_pen")
+    lessons.only_open("RIFFLER_PT_sculpt", "RIFFLER_PT_pen")  # the session's panel takes the rest of the height
     yield from lessons.begin(screen, millimetres=False)
     yield from preferences(screen)
     name = lessons.block(screen, SIZE).name
@@ -42,7 +42,7 @@ def preferences(screen):
     region = next(r for r in area.regions if r.type == "WINDOW")
     # Above is the add-on's file, below are folders: of a computer, not of the page.
     top = area.y + area.height
-    yield from lessons.picture(screen, "connect-a-pen-1", (area.x + 172, top - 463, area.x + 1147, top - 254))
+    yield from lessons.picture(screen, "connect-a-pen-1", (area.x + 172, top - 481, area.x + 1147, top - 254))
     with bpy.context.temp_override(window=screen.window, area=area, region=region):
         assert bpy.ops.riffler.doctor("INVOKE_DEFAULT") == {"FINISHED"}
     report = bpy.data.texts["Riffler Doctor"].as_string()

@@ -11,6 +11,7 @@ namespace {
 
 constexpr int kSmallest = 5, kLargest = 17;                     // log2 of bytes; larger blocks come from the system
 constexpr std::size_t kKept = 2U << 20, kReserved = 32U << 20;  // bytes
+constexpr int kDropped = 8;                                     // blocks of other sizes at most that make room for one
 
 /// Size classes, four per factor of two: a block is at most a fifth larger than requested.
 struct SizeClass {
@@ -22,6 +23,11 @@ SizeClass size_class(std::size_t bytes) {
   const auto power = static_cast<std::size_t>(std::bit_width(last) - 1);
   const std::size_t quarter = (last >> (power - 2)) & 3;
   return {4 * (power - kSmallest) + quarter, (std::size_t{1} << power) + ((quarter + 1) << (power - 2))};
+}
+
+std::size_t bytes_of(std::size_t number) {
+  const std::size_t power = kSmallest + number / 4, quarter = number % 4;
+  return (std::size_t{1} << power) + ((quarter + 1) << (power - 2));
 }
 
 /// Free blocks of one size. An atomic exchange empties a slot, so each block has exactly one taker, and no taker reads
@@ -76,6 +82,7 @@ struct Pool {
   std::array<Shelf, 4 * (kLargest - kSmallest)> shelves;
   std::atomic<std::size_t> kept{0};  // bytes
   std::atomic<int> reserves{0};
+  std::atomic<std::size_t> dropping{0};  // the shelf that gives its blocks up next
 
   std::size_t most() const { return reserves.load(std::memory_order_relaxed) > 0 ? kReserved : kKept; }
 };
@@ -94,6 +101,28 @@ bool keep(Pool& all, const SizeClass& size, void* memory) noexcept {
     return true;
   all.kept.fetch_sub(size.bytes, std::memory_order_relaxed);
   return false;
+}
+
+/// Returns a block of another size to the system; false if there is none.
+bool drop_another(Pool& all, std::size_t number) noexcept {
+  for (std::size_t k = 0; k < all.shelves.size(); ++k) {
+    const std::size_t other = all.dropping.load(std::memory_order_relaxed) % all.shelves.size();
+    void* const memory = other == number ? nullptr : all.shelves[other].take();
+    if (memory) {
+      all.kept.fetch_sub(bytes_of(other), std::memory_order_relaxed);
+      ::operator delete(memory);
+      return true;
+    }
+    all.dropping.fetch_add(1, std::memory_order_relaxed);
+  }
+  return false;
+}
+
+/// Makes room in a full pool. Sizes that are no longer requested would otherwise fill it for ever, and each step of a
+/// pen would take its blocks from the system.
+void make_room(Pool& all, const SizeClass& size) noexcept {
+  for (int k = 0; k < kDropped; ++k)
+    if (all.kept.load(std::memory_order_relaxed) + size.bytes <= all.most() || !drop_another(all, size.number)) return;
 }
 
 /// Returns blocks to the system until at most `count` blocks of that size are left.
@@ -123,7 +152,9 @@ void* allocate_block(std::size_t bytes) {
 void free_block(void* memory, std::size_t bytes) noexcept {
   const SizeClass size = size_class(bytes);
   Pool& all = pool();
-  if (size.number >= all.shelves.size() || !keep(all, size, memory)) ::operator delete(memory);
+  if (size.number >= all.shelves.size()) return ::operator delete(memory);
+  make_room(all, size);
+  if (!keep(all, size, memory)) ::operator delete(memory);
 }
 
 BlockReserve::BlockReserve() noexcept {

@@ -91,5 +91,26 @@ TEST(BlockPool, KeepsNoMoreReadyThanItsShare) {
   EXPECT_LE(ready(), 2U << 20) << "without a reserve";
 }
 
+/// Otherwise what a program freed long ago decides whether a step of the pen asks the system.
+TEST(BlockPool, BlocksThatNobodyAsksForMakeRoom) {
+  {
+    const BlockReserve empties;
+  }
+  std::vector<std::pair<void*, std::size_t>> old;
+  for (std::size_t bytes = 1 << 16; bytes >= 32; bytes /= 2)
+    for (int k = 0; k < 60; ++k) old.emplace_back(allocate_block(bytes), bytes);
+  for (const auto& [memory, bytes] : old) free_block(memory, bytes);
+  for (const std::size_t bytes : {100U, 5000U, 1U << 17}) {
+    const auto turns = [bytes](int count) {
+      for (int k = 0; k < count; ++k) free_block(allocate_block(bytes), bytes);
+    };
+    turns(20);
+    const std::uint64_t before = blocks_from_system();
+    turns(100);
+    EXPECT_EQ(blocks_from_system(), before) << bytes;
+  }
+  EXPECT_LE(ready(), 2U << 20);
+}
+
 }  // namespace
 }  // namespace riffler::base::block_pool_test

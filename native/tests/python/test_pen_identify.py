@@ -2,23 +2,28 @@
 
 from __future__ import annotations
 
+import itertools
 import time
 import tomllib
+from contextlib import contextmanager
 
 import numpy as np
 import pytest
 import riffler
 from commands import result, riffle
-from riffler.command import pen_identify
+from riffler.command import pen_fit, pen_identify, pen_sweeps
 from riffler.command.pen_fit import (
+    JOINTS,
     NAMES,
     WIDTH,
     HungWeight,
     Identified,
     IdentifyError,
+    Sweep,
     filtered,
     identify,
     low_pass,
+    rows_of,
     square_to,
 )
 from riffler.command.pen_identify import (
@@ -33,6 +38,8 @@ from riffler.command.pen_identify import (
     truth_of,
 )
 from riffler.command.pen_sweeps import (
+    ELBOW,
+    FAST,
     SLOW,
     Keyboard,
     MotionStoppedError,
@@ -45,6 +52,7 @@ from riffler.command.pen_sweeps import (
     reaches,
     reversed_motors,
     sweeps,
+    told,
     wiggles,
 )
 
@@ -66,6 +74,17 @@ def found(geometry):
     return out
 
 
+class Results:
+    """A console that keeps what a command hands back."""
+
+    @contextmanager
+    def step(self, _):
+        yield None
+
+    def result(self, data, title, rows):
+        self.data = data
+
+
 def made_up() -> Identified:
     values = {name: np.arange(1.0, 7.0) for name in NAMES}
     values["torque_constant"] = np.arange(26.0, 32.0)
@@ -78,7 +97,7 @@ def made_up() -> Identified:
 
 def test_low_pass_and_its_derivatives_are_exact_for_parabolas():
     t = np.arange(200) * 1e-3
-    value, slope, curve = low_pass(1e-3)
+    value, slope, curve = low_pass(1e-3, WIDTH)
     half = len(value) // 2
     x = 3 + 5 * t - 40 * t**2
     np.testing.assert_allclose(filtered(x, slope), (5 - 80 * t)[half:-half], atol=1e-9)
@@ -93,6 +112,58 @@ def test_the_tension_of_the_grip_is_projected_away():
     np.testing.assert_allclose(np.einsum("nkj,nk->nj", basis, vectors), 0, atol=1e-12)
     squares = np.einsum("nki,nkj->nij", basis, basis)
     np.testing.assert_allclose(squares, np.broadcast_to(np.eye(5), (50, 5, 5)), atol=1e-12)
+
+
+def made_sweep(geometry, seed, tension):
+    """A smooth motion of all joints without inertia, with the currents that friction, weights and a tension of the grip
+    (N) ask for; and the unknowns that the fit should find."""
+    random = np.random.default_rng(seed)
+    t = np.arange(800) * 1e-3
+    signs, phase = np.sign(random.normal(size=6)), random.uniform(0.0, 0.3, 6)
+    pace = random.uniform(1.2, 2.0, 6)
+    joints = geometry.joints([geometry.home]) + signs * 0.2 * (1 - np.cos(pace * (t[:, None] + phase)))
+    rates = signs * 0.2 * pace * np.sin(pace * (t[:, None] + phase))
+    exact = np.empty_like(joints)
+    for k, c in enumerate(geometry.channels):
+        joint = JOINTS.index(c.name)
+        a = geometry.joints(np.array([geometry.home, geometry.home + 1000 * np.eye(6, dtype=int)[k]]))[:, joint]
+        exact[:, k] = geometry.home[k] + (joints[:, joint] - a[0]) * 1000 / (a[1] - a[0])
+    counts = np.rint(exact).astype(np.int32)
+    ends = geometry.ends(counts)
+    along = ends[:, 1] - ends[:, 0]
+    along /= np.linalg.norm(along, axis=1)[:, None]
+    arms = np.moveaxis(geometry.jacobian(counts), 1, 2)
+    apart = np.concatenate([-arms[:, :, 0], arms[:, :, 1]], axis=2)
+    pull = tension(t)[:, None] * np.einsum("nxk,nx->nk", apart, along)
+    currents, unknowns = np.empty_like(exact), np.zeros(30)
+    weighted = [k for k, c in enumerate(geometry.channels) if c.name[1] != "1"]
+    for k, c in enumerate(geometry.channels):
+        joint = JOINTS.index(c.name)
+        angle = joints[:, joint]
+        weight = {"1": 0 * angle, "2": np.sin(angle), "3": np.cos(angle)}[c.name[1]]
+        torque = c.coulomb * np.sign(rates[:, joint]) + c.viscous * c.ratio * rates[:, joint]
+        torque += (c.gravity * weight + pull[:, joint]) / c.ratio
+        currents[:, k] = c.sign * torque / c.torque_constant
+        unknowns[[k, 6 + k, 12 + k]] = c.torque_constant, c.coulomb, c.viscous
+        if k in weighted:
+            unknowns[18 + weighted.index(k)] = c.gravity
+    return Sweep(counts, currents, 1e-3, "fast"), unknowns
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_tension_that_changes_does_not_look_like_friction(geometry, seed, monkeypatch):
+    sweep, unknowns = made_sweep(geometry, seed, lambda t: 1 + 0.3 * np.sin(3 * t))
+
+    def off():
+        """Relative error of the viscous friction, by what the equations leave with the true unknowns."""
+        matrix, side = rows_of(geometry, sweep, 0.0, 15.0, lead=0.0)
+        assert len(side) >= 50
+        friction, *_ = np.linalg.lstsq(matrix[:, 12:18], side - matrix @ unknowns, rcond=None)
+        return np.abs(friction / unknowns[12:18]).max()
+
+    narrow = off()  # of a tension and a motion faster than those of a sweep
+    monkeypatch.setattr(pen_fit, "NARROW", 0.99 * WIDTH)  # the products behind the whole filter
+    assert off() > 10 * narrow
 
 
 def test_values_of_random_pens_are_within_the_bars(found):
@@ -133,9 +204,44 @@ def test_sweeps_stay_where_the_arms_reach_and_keep_their_speed(geometry, rate):
     joints, _ = geometry.inverse(path.poses)
     for k in range(path.first, len(path.times) - 1):
         assert reaches(geometry, path.poses[k], path.poses[k + 1])
+        assert np.abs(joints[k + 1, [1, 4]] - joints[k + 1, [2, 5]]).max() < ELBOW, "an arm is nearly straight"
         time = path.times[k + 1] - path.times[k]
         assert 1.875 * np.abs(joints[k + 1] - joints[k]).max() / time < rate * 1.001
         assert 1.875 * np.linalg.norm(path.poses[k + 1, :3] - path.poses[k, :3]) / time < 300.1
+
+
+def test_sweeps_are_those_that_tell_most_about_friction(geometry, monkeypatch):
+    def mean():
+        poses = sweeps(geometry, 40, FAST, 1).poses[1:-1]
+        return np.mean([told(geometry, a, b, FAST) for a, b in itertools.pairwise(poses)])
+
+    chosen = mean()
+    monkeypatch.setattr(pen_sweeps, "CANDIDATES", 1)
+    assert chosen > 2 * mean()
+
+
+def test_a_sweep_tells_nothing_where_a_joint_rests(geometry):
+    home = home_of(geometry)
+    lifted = home + np.array([0, 0, 20.0, 0, 0, 0])
+    assert told(geometry, home, lifted, FAST) == 0, "joints 1 rest"
+    one, other = sweeps(geometry, 3, FAST, 1).poses[2:4]
+    assert told(geometry, one, other, FAST) > 0
+    assert told(geometry, one, other, 0.05) == 0, "slower than the fit takes"
+
+
+def test_a_pen_that_sticks_does_not_end_the_others(monkeypatch):
+    def sticks_once(device, weight, keyboard, seed, console):
+        if seed == 5:
+            raise MotionStoppedError("a joint sticks.")
+        return Identified(
+            {name: truth_of(device.truth, name) for name in NAMES}, {name: np.ones(6) for name in NAMES}, 10, 0.1
+        )
+
+    monkeypatch.setattr(pen_identify, "identified", sticks_once)
+    console = Results()
+    assert pen_identify.many(4, 3, 0.1, console) == 1
+    assert console.data["stopped"] == {"5": "a joint sticks."}
+    assert sum(console.data["of"].values()) == 44 and console.data["share"] == 1
 
 
 def test_axes_of_the_arms_are_those_of_the_shipped_pens_poses(geometry):

@@ -14,7 +14,8 @@ namespace riffler::base {
 /// Returns a block of at least `bytes` bytes, from the pool or else from the system. Any thread may free it. Takes no
 /// lock, so it never waits for another thread. Throws std::bad_alloc.
 void* allocate_block(std::size_t bytes);
-/// Returns a block to the pool or the system. `bytes` is the size given to allocate_block.
+/// Returns a block to the pool or the system. `bytes` is the size given to allocate_block. A full pool gives up blocks
+/// of other sizes for it.
 void free_block(void* memory, std::size_t bytes) noexcept;
 
 /// While any BlockReserve exists, the pool keeps up to 32 MB of freed blocks; otherwise up to 2 MB.

@@ -8,10 +8,14 @@ K, c, v are the motor's torque constant, Coulomb and viscous friction; g is the 
 cos θ3, I the joint's inertia, m and j the grip's mass and inertia, r its middle, a the vector between its ends, f the
 force of a hung weight, λ the unknown tension in the grip and s the gradient of the grip's length. Projecting on the
 five directions square to s removes λ. What remains is linear in 30 unknowns; f is the only known right side, so the
-hung weight alone sets the scale of all of them. Counts and currents pass the same low-pass filter, whose derivatives
-give speeds and accelerations, so that filtering does not bias the equation. The currents that a report states act from
-three quarters of a period before its counts to a quarter after them; a shift of half a millisecond would look like a
-tenth of the viscous friction.
+hung weight alone sets the scale of all of them.
+
+Counts and currents pass the same low-pass filter, whose derivatives give speeds and accelerations. That does not bias
+what is linear in them. Products are not: the mean of λ s over the filter's length is not the mean of λ times that of s,
+and dry friction, which turns λ with the speed, made that difference look like 2 % of the viscous friction. So a narrow
+filter stands before all products and the projection, and the rest of the filter behind them. The currents that a report
+states act from three quarters of a period before its counts to a quarter after them; a shift of half a millisecond
+would look like a tenth of the viscous friction.
 """
 
 from __future__ import annotations
@@ -28,6 +32,7 @@ LOCAL_GRAVITY = 0.0015  # relative standard uncertainty: 9.78 m/s² at the equat
 JOINTS = ("R1", "R2", "R3", "L1", "L2", "L3")  # in the order of PenGeometry.joints
 UNKNOWNS = 30  # K, c, v of six channels, g of four joints, I of six, m and j
 WIDTH = 0.013  # s: standard deviation of the low-pass filter
+NARROW = 0.003  # s: of its first part, which all products of two filtered values stand behind
 REACH = 3  # times WIDTH, to each side
 EVERY = 10  # samples between two rows of the fit
 # Periods by which the mean time of a stated current is before the counts of its report, with its standard uncertainty:
@@ -179,15 +184,16 @@ def solved(shares: np.ndarray, squares: np.ndarray, sides: np.ndarray) -> tuple[
     return normal, side, np.linalg.solve(normal, side)
 
 
-def low_pass(period: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Weights of a Gaussian low-pass filter, and of its first and second derivative by time."""
-    half = int(np.ceil(REACH * WIDTH / period))
+def low_pass(period: float, width: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Weights of a Gaussian low-pass filter of the standard deviation ``width``, and of its first and second derivative
+    by time."""
+    half = int(np.ceil(REACH * width / period))
     t = np.arange(-half, half + 1) * period
-    value = np.exp(-0.5 * (t / WIDTH) ** 2)
+    value = np.exp(-0.5 * (t / width) ** 2)
     value /= value.sum()
     slope = t * value
     slope /= (t * slope).sum()
-    curve = (t**2 - WIDTH**2) * value
+    curve = (t**2 - width**2) * value
     curve -= curve.mean()
     curve /= 0.5 * (t**2 * curve).sum()
     return value, slope, curve
@@ -200,12 +206,17 @@ def filtered(samples: np.ndarray, kernel: np.ndarray) -> np.ndarray:
     return out.reshape(len(out), *samples.shape[1:])
 
 
-def _usable(rates: np.ndarray, half: int, slowest: float) -> np.ndarray:
-    """Rows of `rates` around which, for half a filter's length, every joint turns on in its direction."""
+def _usable(angles: np.ndarray, period: float, slowest: float) -> np.ndarray:
+    """Samples of (n, 6) angles around which, for a filter's length, every joint turns on in its direction."""
+    _, slope, _ = low_pass(period, WIDTH)
+    half = len(slope) // 2
+    if len(angles) <= 4 * half + 1:
+        return np.zeros(0, int)
+    rates = filtered(angles, slope)
     at = [rates[k : len(rates) - 2 * half + k] for k in (0, half // 2, half, half + half // 2, 2 * half)]
     fast = np.minimum.reduce([np.abs(r) for r in at]) > slowest
     one_way = np.abs(sum(np.sign(r) for r in at)) == len(at)
-    return np.flatnonzero((fast & one_way).all(axis=1))[::EVERY] + half
+    return np.flatnonzero((fast & one_way).all(axis=1))[::EVERY] + 2 * half
 
 
 def rows_of(
@@ -213,23 +224,38 @@ def rows_of(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Equations of a sweep, (n, 30) and (n,); ``force``: N of the hung weight, ``hook``: mm from the grip's middle
     towards the tool's tip at which it hangs."""
-    value, slope, curve = low_pass(sweep.period)
-    half = len(value) // 2
-    if len(sweep.counts) <= 4 * half + 1:
+    centre = _usable(geometry.joints(sweep.counts), sweep.period, SLOWEST_LOADED if force else SLOWEST)
+    if not len(centre):
         return np.zeros((0, UNKNOWNS)), np.zeros(0)
-    angles, ends = geometry.joints(sweep.counts), geometry.ends(sweep.counts)
-    rates = filtered(angles, slope)
-    row = _usable(rates, half, SLOWEST_LOADED if force else SLOWEST)
-    if not len(row):
-        return np.zeros((0, UNKNOWNS)), np.zeros(0)
-    n, centre = len(row), row + half
-    mean, rates, bends = filtered(angles, value)[row], rates[row], filtered(angles, curve)[row]
-    speeding, amperes = filtered(ends, curve)[row], filtered(sweep.currents, value + lead * sweep.period * slope)[row]
+    equations, gradient, first = _equations(geometry, sweep, force, hook, lead)
+    rest, _, _ = low_pass(sweep.period, np.sqrt(WIDTH**2 - NARROW**2))
+    n, half = len(equations), len(rest) // 2
+    weights = np.zeros((len(centre), n))
+    for row, at in zip(weights, centre - first, strict=True):
+        row[at - half : at + half + 1] = rest
+    flat = weights @ equations.reshape(n, -1)
+    basis = square_to(gradient[centre - first])
+    out = np.einsum("nkj,nkp->njp", basis, flat.reshape(len(centre), 6, UNKNOWNS + 1)).reshape(-1, UNKNOWNS + 1)
+    return out[:, :UNKNOWNS], out[:, UNKNOWNS]
 
-    arms = np.moveaxis(geometry.jacobian(sweep.counts[centre]), 1, 2)  # (n, xyz, arm, θ)
+
+def _equations(
+    geometry: pen.PenGeometry, sweep: Sweep, force: float, hook: float, lead: float
+) -> tuple[np.ndarray, np.ndarray, int]:
+    """The six joints' equations at each sample, (n, 6, 31) with the known side last and no part along the gradient of
+    the grip's length; that gradient, (n, 6); and the number of the first of these samples."""
+    value, slope, curve = low_pass(sweep.period, NARROW)
+    first = len(value) // 2
+    counts = sweep.counts[first : len(sweep.counts) - first]
+    angles, ends = geometry.joints(sweep.counts), geometry.ends(sweep.counts)
+    mean, rates, bends = (filtered(angles, kernel) for kernel in (value, slope, curve))
+    speeding, amperes = filtered(ends, curve), filtered(sweep.currents, value + lead * sweep.period * slope)
+    n, ends = len(counts), ends[first : first + len(counts)]
+
+    arms = np.moveaxis(geometry.jacobian(counts), 1, 2)  # (n, xyz, arm, θ)
     middle = 0.5 * arms.reshape(n, 3, 6)
     apart = np.concatenate([-arms[:, :, 0], arms[:, :, 1]], axis=2)
-    along = ends[centre, 1] - ends[centre, 0]
+    along = ends[:, 1] - ends[:, 0]
     length = np.linalg.norm(along, axis=1)[:, None]
     of_middle, of_apart = speeding.mean(axis=1), speeding[:, 1] - speeding[:, 0]
     towards_tip = (1.0 if geometry.tip == "L" else -1.0) * hook / length
@@ -242,7 +268,7 @@ def rows_of(
     ratio = np.array([c.ratio for c in geometry.channels])
     by_joint = np.empty(6)
     by_joint[order] = ratio
-    matrix = np.zeros((n, 6, UNKNOWNS))
+    matrix = np.zeros((n, 6, UNKNOWNS + 1))
     for k, (joint, c) in enumerate(zip(order, geometry.channels, strict=True)):
         matrix[:, joint, k] = c.sign * amperes[:, k]
         matrix[:, joint, 6 + k] = -np.sign(rates[:, joint])
@@ -255,13 +281,12 @@ def rows_of(
         matrix[:, joint, 22 + joint] = -1e-3 * bends[:, joint] / by_joint[joint]
     matrix[:, :, 28] = -1e-3 * np.einsum("nxk,nx->nk", middle, of_middle) / by_joint
     matrix[:, :, 29] = -1e-3 * np.einsum("nxk,nx->nk", apart, of_apart) / length**2 / by_joint
-    known = -lever * down[:, None] / by_joint
+    matrix[:, :, 30] = -lever * down[:, None] / by_joint
 
-    basis = square_to(np.einsum("nxk,nx->nk", apart, along / length) / by_joint)
-    return (
-        np.einsum("nkj,nkp->njp", basis, matrix).reshape(5 * n, UNKNOWNS),
-        np.einsum("nkj,nk->nj", basis, known).reshape(5 * n),
-    )
+    gradient = np.einsum("nxk,nx->nk", apart, along / length) / by_joint
+    unit = gradient / np.linalg.norm(gradient, axis=1)[:, None]
+    matrix -= unit[:, :, None] * np.einsum("nk,nkp->np", unit, matrix)[:, None, :]
+    return matrix, gradient, first
 
 
 def square_to(vectors: np.ndarray) -> np.ndarray:

@@ -392,13 +392,18 @@ def many(first: int, pens: int, step: float, console: Console) -> int:
     total = dict.fromkeys(NAMES, 0)
     worst = dict.fromkeys(NAMES, 0.0)
     beyond = dict.fromkeys(NAMES, 0)
+    stopped: dict[str, str] = {}
     with console.step(f"{pens} pens") as draw:
         for seed in range(first, first + pens):
             with open_pen("simulated", seed) as device:
                 assert isinstance(device, pen.SimulatedPen)
                 weight = HungWeight(1e-3 * GRAMS, 1e-3 * step / np.sqrt(12), grip_half(device.truth), HOOK_ERROR)
-                found = identified(device, weight, Keyboard(False), seed, None)
                 truth = device.truth
+                try:
+                    found = identified(device, weight, Keyboard(False), seed, None)
+                except MotionStoppedError as error:
+                    stopped[str(seed)] = str(error)
+                    continue
             for name in NAMES:
                 mine, true = real(truth, name), truth_of(truth, name)
                 off = np.abs(found.values[name] / np.where(mine, true, 1.0) - 1)[mine]
@@ -408,6 +413,8 @@ def many(first: int, pens: int, step: float, console: Console) -> int:
                 beyond[name] += int((off > BARS[name]).sum())
             if draw is not None:
                 draw((seed - first + 1) / pens)
+    if len(stopped) == pens:
+        raise MotionStoppedError(next(iter(stopped.values())))
     rows = [
         (name, f"{inside[name]} of {total[name]} within the 95 % interval ({100 * inside[name] / total[name]:.1f} %); "
                f"off by {100 * worst[name]:.2f} % at most, {beyond[name]} by more than {100 * BARS[name]:g} %")
@@ -415,6 +422,8 @@ def many(first: int, pens: int, step: float, console: Console) -> int:
     ]  # fmt: skip
     share = sum(inside.values()) / sum(total.values())
     rows.append(("all", f"{100 * share:.1f} % of the true values are within the stated interval"))
-    data = {"pens": pens, "inside": inside, "of": total, "worst": worst, "beyond": beyond, "share": round(share, 4)}
+    rows += [("stopped", f"seed {seed}: {why}") for seed, why in stopped.items()]
+    data = {"pens": pens, "inside": inside, "of": total, "worst": worst, "beyond": beyond, "share": round(share, 4),
+            "stopped": stopped}  # fmt: skip
     console.result(data, f"{pens} simulated pens", rows)
-    return 0
+    return 1 if stopped else 0

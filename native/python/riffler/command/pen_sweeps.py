@@ -18,7 +18,7 @@ import numpy as np
 
 from .. import pen
 from .._core import _PoseFollower
-from .pen_fit import JOINTS, HungWeight, Sweep
+from .pen_fit import JOINTS, SLOWEST, HungWeight, Sweep
 
 LEAN = 0.35  # of the grip from home, standard deviation along two axes
 MARGIN = 0.15  # share of the workspace's box that paths keep off each side
@@ -26,6 +26,10 @@ PEAK = 1.875  # peak speed of a quintic, in terms of its mean
 SLOW, FAST = 0.35, 2.0  # rad/s of the fastest joint
 TOP_SPEED = 300.0  # mm/s of the grip
 SHORTEST = 0.4  # rad that some joint turns in a sweep
+# rad of joint 2 minus joint 3, which is 0 at a right angle. The dry friction of an arm that is nearly straight holds
+# the grip against the spring, until it comes loose faster than is safe.
+ELBOW = 0.5
+CANDIDATES = 12  # postures to which the next sweep may lead: it takes the one that tells most
 LATEST = 0.8  # s after which the simulated hand must not let go: the grip would be off the path, and snap back
 TRIES = 20  # of a motion of the simulated pen on a machine so busy that its hand is late
 HOLD = 1.5  # s that the grip is held at the start, and the hand lets go
@@ -66,7 +70,8 @@ def home_of(geometry: pen.PenGeometry) -> np.ndarray:
 def sweeps(geometry: pen.PenGeometry, number: int, rate: float, seed: int) -> Path:
     """Home, ``number`` postures all over the middle of the workspace, and home again; the fastest joint at ``rate``.
 
-    In every sweep the joints turn at different speeds, so that no two columns of the fit are alike.
+    In every sweep the joints turn at different speeds, so that no two columns of the fit are alike. The next posture is
+    the one of several random ones whose sweep tells most.
     """
     random = np.random.default_rng(seed)
     home = home_of(geometry)
@@ -76,21 +81,25 @@ def sweeps(geometry: pen.PenGeometry, number: int, rate: float, seed: int) -> Pa
     middle = geometry.ends([geometry.home])[0].mean(axis=0)
     turn = base_axes(geometry)
     poses = [home]
-    for _ in range(200 * number):
-        if len(poses) == number + 1:
+    for _ in range(number):
+        tried: list[tuple[float, np.ndarray]] = []
+        for _ in range(200 * CANDIDATES):
+            axis = home[3:] + turn @ np.append(random.normal(size=2) * LEAN, 0.0)
+            place = home[:3] + turn @ (random.uniform(lower, upper) - middle)
+            pose = np.concatenate([place, axis / np.linalg.norm(axis)])
+            if farthest(geometry, poses[-1], pose) >= SHORTEST and reaches(geometry, poses[-1], pose):
+                tried.append((told(geometry, poses[-1], pose, rate), pose))
+            if len(tried) == CANDIDATES:
+                break
+        if not tried:
             break
-        axis = home[3:] + turn @ np.append(random.normal(size=2) * LEAN, 0.0)
-        place = home[:3] + turn @ (random.uniform(lower, upper) - middle)
-        pose = np.concatenate([place, axis / np.linalg.norm(axis)])
-        if farthest(geometry, poses[-1], pose) >= SHORTEST and reaches(geometry, poses[-1], pose):
-            poses.append(pose)
+        poses.append(max(tried, key=lambda one: one[0])[1])
     if len(poses) < number + 1:
         raise ValueError(f"{geometry.name} has too little room for sweeps: are its limits right?")
     poses.append(home)
     times, first = [0.0, HOLD], 1
     for a, b in pairwise(poses):
-        slow = PEAK * farthest(geometry, a, b) / rate
-        times.append(times[-1] + max(slow, PEAK * float(np.linalg.norm(b[:3] - a[:3])) / TOP_SPEED, 0.3))
+        times.append(times[-1] + duration(geometry, a, b, rate))
     return Path(np.array(times), np.array([home, *poses]), np.zeros((len(times), 6)), first)
 
 
@@ -110,11 +119,32 @@ def farthest(geometry: pen.PenGeometry, a: np.ndarray, b: np.ndarray) -> float:
     return float(np.abs(joints[1] - joints[0]).max())
 
 
+def duration(geometry: pen.PenGeometry, a: np.ndarray, b: np.ndarray, rate: float) -> float:
+    """s of a sweep from a to b whose fastest joint turns at ``rate``."""
+    slow = PEAK * farthest(geometry, a, b) / rate
+    return max(slow, PEAK * float(np.linalg.norm(b[:3] - a[:3])) / TOP_SPEED, 0.3)
+
+
+def told(geometry: pen.PenGeometry, a: np.ndarray, b: np.ndarray, rate: float) -> float:
+    """How much a sweep from a to b tells about friction: the mean square of the slowest joint's speed, rad²/s², over
+    the time in which no joint is too slow for the fit."""
+    u = np.linspace(0, 1, 41)
+    between = a + (u**3 * (10 + u * (6 * u - 15)))[:, None] * (b - a)
+    between[:, 3:] /= np.linalg.norm(between[:, 3:], axis=1)[:, None]
+    joints, _ = geometry.inverse(between)
+    slowest = np.abs(np.diff(joints, axis=0)).min(axis=1) * (len(u) - 1) / duration(geometry, a, b, rate)
+    return float(np.where(slowest > SLOWEST, slowest**2, 0.0).mean())
+
+
 def reaches(geometry: pen.PenGeometry, a: np.ndarray, b: np.ndarray) -> bool:
-    """Whether both arms reach all poses from a to b."""
+    """Whether both arms reach all poses from a to b, and neither is near to stretched or folded between."""
     between = a + np.linspace(0, 1, 15)[:, None] * (b - a)
     between[:, 3:] /= np.linalg.norm(between[:, 3:], axis=1)[:, None]
-    return all(found == ("reached", "reached") for found in geometry.inverse(between)[1])
+    joints, found = geometry.inverse(between)
+    if any(one != ("reached", "reached") for one in found):
+        return False
+    elbows = joints[:, [1, 4]] - joints[:, [2, 5]]
+    return bool(np.abs(elbows).max() <= ELBOW)
 
 
 def wiggles(geometry: pen.PenGeometry) -> Path:
