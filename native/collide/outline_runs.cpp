@@ -30,6 +30,11 @@ bool goes_on(const tool::OutlineEdge& a, const tool::OutlineEdge& b) {
   return a.to == b.from && !hollow(a) && !hollow(b) && area(tangent(a, a.to), tangent(b, b.from)) >= -1e-12;
 }
 
+/// Edges that meet smoothly share a plane; a second plane must differ from the first.
+bool differ(const OutlineRuns::Slope& a, const OutlineRuns::Slope& b) {
+  return glm::dot(a.normal, b.normal) < 1 - 1e-6;
+}
+
 }  // namespace
 
 /// The nearest point of an edge, with the edge's normal there, out of the solid.
@@ -127,11 +132,20 @@ double OutlineRuns::reach_at(const Run& run, const Slope& closed, const Vec2& fo
   return std::max(reach, run.reach);
 }
 
+void OutlineRuns::add_facing(const Slope& slope, double margin, RunAt& out) {
+  if (slope.distance > out.facing[0].distance) {
+    if (differ(slope, out.facing[0])) out.facing[1] = out.facing[0], out.margin[1] = out.margin[0];
+    out.facing[0] = slope, out.margin[0] = margin;
+  } else if (slope.distance > out.facing[1].distance && differ(slope, out.facing[0])) {
+    out.facing[1] = slope, out.margin[1] = margin;
+  }
+}
+
 void OutlineRuns::look(const Run& run, const Vec2& p, RunAt& out, Foot& nearest, Foot& second) const {
   Foot own;
   out.inside = holds(run, p), out.hollow = run.reach < kInfinity;
   out.behind = {Slope{-kInfinity, {0, 0}}, Slope{-kInfinity, {0, 0}}};
-  out.facing = out.behind[0], out.margin = -1;
+  out.facing = out.behind, out.margin = {-1, -1};
   for (std::size_t i = run.first; i < run.last; ++i) {
     Foot f = foot_on(edges_[i], p);
     if (f.distance < own.distance) own = f;
@@ -151,13 +165,11 @@ void OutlineRuns::look(const Run& run, const Vec2& p, RunAt& out, Foot& nearest,
       if (length > 0) s = {run.reach - length, to_centre / length, 0, run.reach};
     }
     if (edges_[i].bulge > 0 && !f.at_end) s.curvature = 1 / std::max(edges_[i].bulge + s.distance, 1e-9);
-    if (!edges_[i].centre && f.margin >= 0 && s.distance > out.facing.distance) out.facing = s, out.margin = f.margin;
-    // Edges that meet smoothly share a plane; the second plane must differ.
-    const auto differs = [&](const Slope& o) { return glm::dot(o.normal, s.normal) < 1 - 1e-6; };
+    if (!edges_[i].centre && f.margin >= 0) add_facing(s, f.margin, out);
     if (s.distance > out.behind[0].distance) {
-      if (differs(out.behind[0])) out.behind[1] = out.behind[0];
+      if (differ(s, out.behind[0])) out.behind[1] = out.behind[0];
       out.behind[0] = s;
-    } else if (s.distance > out.behind[1].distance && differs(out.behind[0])) {
+    } else if (s.distance > out.behind[1].distance && differ(s, out.behind[0])) {
       out.behind[1] = s;
     }
   }

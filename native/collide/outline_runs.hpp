@@ -43,8 +43,10 @@ class OutlineRuns {
     std::array<Slope, 2> behind;  ///< distance to K: at the point's foot, and at the next nearest edge (twice the same:
                                   ///< none); for a hollow, R − |q − c|
     double from_run;              ///< distance from the run's edges, mm
-    Slope facing;                 ///< distance to the nearest straight edge that has the point's foot between its ends
-    double margin;                ///< distance of the foot from those ends, mm
+    /// Distance to the nearest straight edge that has the point's foot between its ends, and to the next nearest in
+    /// another direction (−∞: none).
+    std::array<Slope, 2> facing;
+    std::array<double, 2> margin;  ///< distance of the feet from those ends, mm; −1: none
   };
   /// Signed distance from the whole tool.
   struct At : Slope {
@@ -94,6 +96,7 @@ class OutlineRuns {
  private:
   struct Foot;
 
+  static void add_facing(const Slope& slope, double margin, RunAt& out);
   double reach_at(const Run& run, const Slope& closed, const Vec2& foot) const;
   bool holds(const Run& run, const Vec2& p) const;
   Foot foot_on(const tool::OutlineEdge& e, const Vec2& p) const;

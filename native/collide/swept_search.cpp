@@ -1,6 +1,7 @@
 #include "collide/swept_search.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -13,15 +14,21 @@ namespace riffler::collide {
 namespace {
 
 constexpr std::size_t kLooksAReport = 64;
-constexpr double kShortest = 1e-12;  // of the motion's duration: shorter intervals are not halved
+constexpr double kShortest = 1e-12;    // of the motion's duration: shorter intervals are not halved
+constexpr double kLooseInSpace = 0.5;  // of a margin: a triangle whose bound leaves out more is divided
+constexpr double kSmallest = 1e-9;     // of a triangle's distance from the origin: smaller ones are not divided
+
+bool is_divisible(const Corners& t) {
+  const double longest = std::max({glm::length(t.b - t.a), glm::length(t.c - t.b), glm::length(t.a - t.c)});
+  return longest > kSmallest * (1 + glm::length(t.a));
+}
 
 /// Spheres about places of triangles that contain the triangles.
 SphereGroup spheres_about(const LanePlaces& places, const Vec3& tip, const Corners* triangles) {
   SphereGroup out;
   for (int k = 0; k < base::kLanes; ++k) {
     const Vec3 at = tip + Vec3(places.x[k], places.y[k], places.z[k]);
-    const Corners& c = triangles[k];
-    const double radius = std::max({glm::length(c.a - at), glm::length(c.b - at), glm::length(c.c - at)});
+    const double radius = farthest(triangles[k], at);
     out.put(k, {at, radius * (1 + 1e-14) + 1e-15 * (std::abs(at.x) + std::abs(at.y) + std::abs(at.z))});
   }
   return out;
@@ -153,88 +160,71 @@ void SweptSearch::visit(const Entry& e, const LanePlaces& places, unsigned some)
   attained(e);
 }
 
-/// Dismisses triangles of a group; what is open then and clear at the middle of the interval is left to shorter
-/// intervals, and what is not shown to be clear even there to `test`.
+/// Dismisses triangles of a group by their spheres and the planes there, before their lowest places are searched.
 void SweptSearch::open_leaf(const Surface& surface, const Entry& e) {
   const SphereTree& tree = surface.tree();
   const SphereGroup& spheres = tree.group(e.index);
   const MoveInterval& s = stretches_[e.stretch];
-  const std::size_t first = tree.first_item(e.index);
-  const Corners* corners = &surface.corners(first);
-  LanePlaces places;
-  double low[base::kLanes], by_planes[base::kLanes], drifts[base::kLanes];
-  unsigned open = e.open;
-  for (int k = 0; k < base::kLanes && e.kind == Entry::Group; ++k) open |= spheres.radius[k] >= 0 ? 1U << k : 0;
-  const auto is_open = [&](int k) { return (open >> k & 1U) != 0; };
-  const auto dismiss = [&] {
-    for (int k = 0; k < base::kLanes; ++k)
-      if (is_open(k) && (low[k] = std::max(low[k], e.low)) >= wanted_)
-        out_.bound = std::min(out_.bound, low[k]), open &= ~(1U << k);
-  };
-  centre_distances(assembly_.lane_edges(), s.frame, spheres, places.distance);
-  triangle_bounds(assembly_.runs(), assembly_.lane_edges(), s.frame, spheres, corners, &s.drift, places.distance, low);
-  dismiss();
-  if (open == 0) return;
-  double most = 0;
-  for (int k = 0; k < base::kLanes; ++k) {
-    if (!is_open(k)) continue;
-    drifts[k] = s.drift.nearer(glm::length(spheres.sphere(k).centre - s.frame.tip) + spheres.radius[k]);
-    most = std::max(most, drifts[k]);
-  }
-  look_closely(s, corners, wanted_ + most, places, by_planes);
-  visit(e, places, open);
-  for (int k = 0; k < base::kLanes; ++k)
-    if (is_open(k)) low[k] = std::max({low[k], by_planes[k], places.low[k] - drifts[k]});
-  dismiss();
-  Entry rest{kInfinity, e.radius, most, 0, e.index, e.stretch, e.surface, 0, Entry::Leaf};
-  for (int k = 0; k < base::kLanes; ++k) {
-    if (!is_open(k)) continue;
-    if (places.low[k] >= wanted_)
-      rest.open |= static_cast<std::uint8_t>(1U << k), rest.low = std::min(rest.low, low[k]);
-    else
-      push({low[k], spheres.radius[k], drifts[k], 0, static_cast<std::uint32_t>(first + static_cast<std::size_t>(k)),
-            e.stretch, e.surface, 0, Entry::Triangle});
-  }
-  if (rest.open == 0) return;
-  if (out_.clearance < wanted_) return push(rest);
-  if (!halve(surface, rest)) out_.bound = std::min(out_.bound, rest.low);  // only rounding is left
+  const Corners* corners = &surface.corners(tree.first_item(e.index));
+  Entry all = e;
+  all.kind = Entry::Leaf;
+  for (int k = 0; k < base::kLanes && e.kind == Entry::Group; ++k)
+    if (spheres.radius[k] >= 0) all.open |= static_cast<std::uint8_t>(1U << k);
+  double distance[base::kLanes], low[base::kLanes];
+  centre_distances(assembly_.lane_edges(), s.frame, spheres, distance);
+  triangle_bounds(assembly_.runs(), assembly_.lane_edges(), s.frame, spheres, corners, &s.drift, distance, low);
+  dismiss(all, low);
+  if (all.open != 0) open_triangles(surface, all, corners, low);
 }
 
-/// A plane says little about a large triangle where the tool changes its shape: pieces of it are looked at first.
-void SweptSearch::test(const Surface& surface, const Entry& e) {
-  const MoveInterval& s = stretches_[e.stretch];
-  const Corners& c = surface.corners(e.index);
-  Corners pieces[base::kLanes];
-  divide(c, pieces);
-  LanePlaces places;
-  double low[base::kLanes];
-  look_closely(s, pieces, wanted_ + e.drifts, places, low);
-  visit(e, places, (1U << base::kLanes) - 1);
-  double still = kInfinity, moving = kInfinity;
+/// Raises bounds to the entry's own, and closes those of its triangles that are far enough away.
+void SweptSearch::dismiss(Entry& e, double* low) {
   for (int k = 0; k < base::kLanes; ++k)
-    still = std::min(still, places.low[k]), moving = std::min(moving, std::max(low[k], places.low[k] - e.drifts));
-  Entry next = e;
-  next.low = std::max(e.low, moving);
-  if (out_.clearance < wanted_ || next.low >= wanted_) return push(next);
-  if (still < wanted_) {
-    const Corners t{s.frame.to_tool(c.a), s.frame.to_tool(c.b), s.frame.to_tool(c.c)};
-    search_.forget();
-    next.low = std::max(next.low, search_.bound(t, s.drift.in(s.frame)));
-    attained(e);
-    if (out_.clearance < wanted_ || next.low >= wanted_) return push(next);
-    // The clearance reached is the smallest one, or nearly: the drift of the whole tool may now be small enough.
-    // Whether it is does not take the exact clearance.
-    const double near = TriangleSearch::slack(glm::length(t.a) + e.radius), needed = wanted_ + e.drifts + 2 * near;
-    if (search_.least().distance >= needed) {
-      Deadline none;
-      search_.below(needed), search_.enough(needed);
-      search_.search(t, -kInfinity, none);
-      if (search_.least().distance < needed) attained(e);
-      next.low = std::max(next.low, search_.low() - near - e.drifts);
-      if (out_.clearance < wanted_ || next.low >= wanted_) return push(next);
-    }
+    if ((e.open >> k & 1U) && (low[k] = std::max(low[k], e.low)) >= wanted_)
+      out_.bound = std::min(out_.bound, low[k]), e.open &= static_cast<std::uint8_t>(~(1U << k));
+}
+
+/// Looks at the lowest places of some triangles or pieces. What stays open is left to shorter intervals where its bound
+/// at the middle of the interval is near its distance, and otherwise divided.
+void SweptSearch::open_triangles(const Surface& surface, Entry e, const Corners* corners, double* low) {
+  const MoveInterval& s = stretches_[e.stretch];
+  double drifts[base::kLanes], by_planes[base::kLanes], most = 0;
+  for (int k = 0; k < base::kLanes; ++k)
+    if (e.open >> k & 1U) most = std::max(most, drifts[k] = s.drift.nearer(farthest(corners[k], s.frame.tip)));
+  LanePlaces places;
+  look_closely(s, corners, wanted_ + most, places, by_planes);
+  visit(e, places, e.open);
+  for (int k = 0; k < base::kLanes; ++k)
+    if (e.open >> k & 1U) low[k] = std::max({low[k], by_planes[k], places.low[k] - drifts[k]});
+  dismiss(e, low);
+  if (e.open == 0) return;
+  if (out_.clearance < wanted_) return push(e);
+  Entry later = e;
+  later.open = 0, later.low = kInfinity;
+  for (int k = 0; k < base::kLanes; ++k) {
+    if (!(e.open >> k & 1U)) continue;
+    if (places.distance[k] - places.low[k] > kLooseInSpace * (places.distance[k] - wanted_) && is_divisible(corners[k]))
+      push(in_pieces(e, corners[k], low[k]));
+    else
+      later.open |= static_cast<std::uint8_t>(1U << k), later.low = std::min(later.low, low[k]);
   }
-  if (!halve(surface, next)) out_.bound = std::min(out_.bound, next.low);  // only rounding is left
+  if (later.open != 0 && !halve(surface, later)) out_.bound = std::min(out_.bound, later.low);  // only rounding is left
+}
+
+void SweptSearch::open_pieces(const Surface& surface, const Entry& e) {
+  const std::array<Corners, base::kLanes> corners = pieces_[e.index];  // a copy, since the pieces grow
+  double low[base::kLanes];
+  std::fill_n(low, base::kLanes, e.low);
+  open_triangles(surface, e, corners.data(), low);
+}
+
+/// The pieces of a triangle of an entry.
+SweptSearch::Entry SweptSearch::in_pieces(const Entry& e, const Corners& triangle, double low) {
+  divide(triangle, pieces_.emplace_back().data());
+  Entry out = e;
+  out.kind = Entry::Pieces, out.index = static_cast<std::uint32_t>(pieces_.size() - 1);
+  out.open = (1U << base::kLanes) - 1, out.low = low;
+  return out;
 }
 
 Swept SweptSearch::operator()(std::span<const Surface* const> surfaces) {
@@ -247,7 +237,7 @@ Swept SweptSearch::operator()(std::span<const Surface* const> surfaces) {
     const Surface& surface = *surfaces[e.surface];
     if (is_better_halved(e) && halve(surface, e)) continue;
     if (++out_.evaluations % kLooksAReport == 0) base::still_wanted();
-    e.kind == Entry::Triangle ? test(surface, e) : open(surface, e);
+    e.kind == Entry::Pieces ? open_pieces(surface, e) : open(surface, e);
   }
   if (!heap_.empty()) out_.bound = std::min(out_.bound, heap_.front().low);
   out_.bound = std::min(out_.bound, out_.clearance);

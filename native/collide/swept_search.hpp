@@ -1,6 +1,7 @@
 // Searches for the place and time at which a moving tool comes too near to surfaces.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -20,7 +21,8 @@ namespace riffler::collide {
 /// distance falls by at most its drift along the tangent plane's normal (collide/drift.hpp). Surfaces along which the
 /// tool slides, as in finishing, therefore need few intervals. The triangles of a group are examined together: their
 /// lowest places at the middle of the interval (collide/lowest_places.hpp), and there the tangent planes with the
-/// drift.
+/// drift. What stays open is divided in space where its bound is loose even at the middle of the interval, as along
+/// needles where the tool changes its shape, and in time where it is not.
 class SweptSearch {
  public:
   SweptSearch(const Assembly& assembly, const Motion& motion, double wanted, std::size_t most);
@@ -38,11 +40,11 @@ class SweptSearch {
   struct Entry {
     double low, radius, drifts;  // of its sphere; the last: how much nearer the tool may come in half the interval
     double high;                 // some place of it is no farther at the middle of the interval
-    std::uint32_t index;         // index of a group, or place of a triangle
+    std::uint32_t index;         // of a group, or of pieces
     std::uint32_t stretch;
     std::uint16_t surface;
-    std::uint8_t open;  // bit k: triangle k of a group at the lowest level is not dismissed yet
-    enum Kind : std::uint8_t { Group, Leaf, Triangle } kind;
+    std::uint8_t open;  // bit k: triangle k of a group at the lowest level, or piece k, is not dismissed yet
+    enum Kind : std::uint8_t { Group, Leaf, Pieces } kind;
     bool operator<(const Entry& o) const { return low > o.low; }  // smallest bound first
   };
 
@@ -55,7 +57,10 @@ class SweptSearch {
   void open_leaf(const Surface& surface, const Entry& e);
   void look_closely(const MoveInterval& s, const Corners* triangles, double enough, LanePlaces& places, double* low);
   void visit(const Entry& e, const LanePlaces& places, unsigned some);
-  void test(const Surface& surface, const Entry& e);
+  void dismiss(Entry& e, double* low);
+  void open_triangles(const Surface& surface, Entry e, const Corners* corners, double* low);
+  void open_pieces(const Surface& surface, const Entry& e);
+  Entry in_pieces(const Entry& e, const Corners& triangle, double low);
   void attained(const Entry& e);
 
   const Assembly& assembly_;
@@ -63,6 +68,7 @@ class SweptSearch {
   double wanted_;
   std::size_t most_;
   std::vector<MoveInterval> stretches_;
+  std::vector<std::array<Corners, base::kLanes>> pieces_;
   std::vector<Entry> heap_;
   TriangleSearch search_;
   Swept out_;

@@ -11,11 +11,6 @@ namespace riffler::collide {
 
 namespace {
 
-double farthest(const Corners& t, const Vec3& p) {
-  const auto square = [&](const Vec3& q) { return glm::dot(q - p, q - p); };
-  return std::sqrt(std::max({square(t.a), square(t.b), square(t.c)}));
-}
-
 double size_of(const Corners& t) {
   double size = 0;
   for (const Vec3& p : {t.a, t.b, t.c}) size = std::max({size, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
@@ -74,24 +69,35 @@ Vec3 least_place(const Quadratic& q, const Vec3& middle, const Corners& t) {
   return best;
 }
 
-/// Minimum of the maximum of two quadratics: the weighted mean of both whose minimum lies where they are equal.
+/// Minimum of the maximum of two quadratics: the weighted mean of both whose minimum lies where they are equal. The
+/// weight is found by false position with a halved end (Dowell and Jarratt, BIT 11 (1971) 168), and by halving where
+/// that is slow.
 Vec3 least_place(const Quadratic& f, const Quadratic& g, const Vec3& middle, const Corners& t) {
-  double low = 0, high = 1;
-  Vec3 place = least_place(f, middle, t);
-  if (f(place - middle) >= g(place - middle)) return place;
-  place = least_place(g, middle, t);
-  if (g(place - middle) >= f(place - middle)) return place;
-  for (int k = 0; k < 40; ++k) {
-    const double share = 0.5 * (low + high);
-    place = least_place(mix(f, g, share), middle, t);
-    const double here = f(place - middle), there = g(place - middle);
-    if (std::abs(here - there) <= 1e-15 * std::abs(here)) return place;
-    (here > there ? high : low) = share;
+  constexpr int kMost = 40;
+  struct End {
+    double share, ahead;  // of g; how much greater f is at the place
+    Vec3 place;
+  };
+  const auto ahead = [&](const Vec3& p) { return f(p - middle) - g(p - middle); };
+  End low{0, 0, least_place(f, middle, t)}, high{1, 0, least_place(g, middle, t)};
+  if ((low.ahead = ahead(low.place)) >= 0) return low.place;
+  if ((high.ahead = ahead(high.place)) <= 0) return high.place;
+  double by_low = low.ahead, by_high = high.ahead, before = 1;
+  for (int k = 0, side = 0; k < kMost; ++k) {
+    const double width = high.share - low.share, part = std::clamp(by_low / (by_low - by_high), 0.01, 0.99);
+    const bool slow = k % 2 == 1 && width > 0.5 * before;
+    if (k % 2 == 1) before = width;
+    const double share = low.share + (slow ? 0.5 : part) * width;
+    const Vec3 place = least_place(mix(f, g, share), middle, t);
+    const double by = ahead(place);
+    if (std::abs(by) <= 1e-13 * std::abs(f(place - middle))) return place;
+    if (by > 0)
+      by_low *= side > 0 ? 0.5 : 1, high = {share, by, place}, by_high = by, side = 1;
+    else
+      by_high *= side < 0 ? 0.5 : 1, low = {share, by, place}, by_low = by, side = -1;
   }
   // A flat mean has many minima: the one sought lies between those of slightly larger weights of either function.
-  const Vec3 p = least_place(mix(f, g, low), middle, t), q = least_place(mix(f, g, high), middle, t);
-  const double here = f(p - middle) - g(p - middle), there = f(q - middle) - g(q - middle);
-  return here == there ? p : p + std::clamp(here / (here - there), 0.0, 1.0) * (q - p);
+  return low.place + low.ahead / (low.ahead - high.ahead) * (high.place - low.place);
 }
 
 }  // namespace
@@ -156,7 +162,10 @@ double TriangleSearch::run_bound(std::size_t run, const Corners& t, const Look& 
   if (!runs_.behind_ends(run, at, from.place, radius) && !(at.hollow && in_sector(run, t, from))) {
     if (!at.inside)
       if (const double by_closed = closed(); by_closed >= 0) return by_closed;
-    return least_of_greater(outer, at.margin >= radius ? plane(at.facing, t, from) : outer);
+    if (at.margin[0] < radius) return std::min({outer[0], outer[1], outer[2]});
+    const std::array<double, 3> first = plane(at.facing[0], t, from);
+    const double by_first = least_of_greater(outer, first);
+    return at.margin[1] < radius ? by_first : std::max(by_first, least_of_greater(first, plane(at.facing[1], t, from)));
   }
   if (at.hollow) return least_of_greater(ball(at.behind[0], t, from), outer);
   const std::array<double, 3> first = plane(at.behind[0], t, from);

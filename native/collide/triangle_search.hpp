@@ -1,7 +1,9 @@
 // Smallest signed distance between a tool and a triangle.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 
 #include "collide/deadline.hpp"
@@ -16,6 +18,12 @@ namespace riffler::collide {
 struct Corners {
   Vec3 a, b, c;
 };
+
+/// Largest distance of a triangle's points from a point.
+inline double farthest(const Corners& t, const Vec3& p) {
+  const auto square = [&](const Vec3& q) { return glm::dot(q - p, q - p); };
+  return std::sqrt(std::max({square(t.a), square(t.b), square(t.c)}));
+}
 
 /// Branch and bound, exact up to rounding. Descends to the minimum of the distance on a cell; then the tangent planes
 /// of the tool's runs (outline_runs.hpp) prove that nothing is lower, or the cell is halved. Keeps the minimum over all

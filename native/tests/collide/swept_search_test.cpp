@@ -92,16 +92,57 @@ TEST(SweptSearch, OfALongRapidPastASmallPartTakesFewLooks) {
 }
 
 /// How much of the surface is how deep in the tool, by branch and bound that shares no code, at many poses.
-double least_clearance(const Mesh& mesh, const Tool& tool, const Motion& motion, int poses) {
+double least_clearance(const Mesh& mesh, const Tool& tool, const Motion& motion, int poses, std::size_t most = 4000) {
   std::vector<reference::Corners> triangles;
   for (const Vec3i& t : mesh.triangles)
     triangles.push_back({mesh.vertices[t.x], mesh.vertices[t.y], mesh.vertices[t.z]});
   std::vector<Pose> at;
   for (int k = 0; k <= poses; ++k) at.push_back(motion.at(static_cast<double>(k) / poses));
   double least = std::numeric_limits<double>::infinity();
-  for (const reference::Entry& e : reference::entries(triangles, reference::AssemblyDistance(tool), at, 1e-6, 4000))
+  for (const reference::Entry& e : reference::entries(triangles, reference::AssemblyDistance(tool), at, 1e-6, most))
     least = std::min(least, -e.attained);
   return least;
+}
+
+/// Half a cone of long needles, from a base of radius 40 mm to its apex.
+Mesh cone_of_needles(int count) {
+  Mesh cone;
+  cone.vertices = {{0, 0, -20}, {0, 0, 60}};
+  for (int k = 0; k <= count; ++k) {
+    const double a = kPi * k / count;
+    cone.vertices.emplace_back(40 * std::cos(a), -40 * std::sin(a), -20);
+  }
+  for (int k = 0; k < count; ++k)
+    cone.triangles.emplace_back(1, 3 + k, 2 + k), cone.triangles.emplace_back(0, 2 + k, 3 + k);
+  cone.triangles.emplace_back(1, 0, 2 + count), cone.triangles.emplace_back(1, 2, 0);
+  return cone;
+}
+
+TEST(SweptSearch, DividesNeedlesThatGoOnPastAHollowOfTheTool) {
+  // The tool slides up a needle on its ball and its holder's edge. A plane at the ball bounds nothing where the needle
+  // passes the neck, so that shorter intervals alone do not help.
+  const Tool tool = cutters::ball(6, 22).with_shank({{22, 3, 34, 3}, {34, 3, 42, 8}}).with_holder({{42, 13, 70, 16}});
+  const Assembly assembly(tool);
+  const Mesh mesh = cone_of_needles(60);
+  const Collider collider(mesh);
+  const Vec3 base(0, -40, -20), along = glm::normalize(Vec3(0, 40, 80)), out = glm::normalize(Vec3(0, -80, 40));
+  Random random(900);
+  for (int n = 0; n < 8; ++n) {
+    const auto pose = [&](double up) {
+      const double lean = std::atan2(10, 39) + random.uniform(-1e-3, 1e-3);
+      const Vec3 axis = std::cos(lean) * along + std::sin(lean) * out;
+      return Pose{base + up * along + (3 - random.uniform(1e-3, 0.01)) * out - 3.0 * axis, axis};
+    };
+    const double up = random.uniform(4, 10);
+    const Motion motion(pose(up), pose(up + random.uniform(0.5, 8)));
+    const double least = least_clearance(mesh, tool, motion, 40, 100000);
+    ASSERT_LT(least, 0) << n;
+    const Swept below = collider.sweep(assembly, motion, least - 0.005, 100000);
+    EXPECT_EQ(below.answer, Answer::Clear) << n;
+    EXPECT_LE(below.bound, least + 1e-6) << n;
+    EXPECT_LT(below.evaluations, 3000U) << n;
+    EXPECT_EQ(collider.sweep(assembly, motion, least + 1e-3, 100000).answer, Answer::Gouges) << n;
+  }
 }
 
 TEST(SweptSearch, IsNeverClearWhereAPoseOfTheMotionIsNearer) {

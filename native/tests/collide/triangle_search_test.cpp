@@ -64,6 +64,14 @@ double off_triangle(const Vec3& p, const Corners& t) {
   double least = glm::length(mesh::closest_on_triangle(p, t.a, t.b, t.c).point - p);
   for (const auto& [a, b] : {std::pair(t.a, t.b), std::pair(t.b, t.c), std::pair(t.c, t.a)})
     least = std::min(least, glm::length(mesh::closest_on_triangle(p, a, b, b).point - p));
+  // In the middle of a needle: across it, from its side to the other two.
+  for (const auto& [a, b, c] : {Corners{t.a, t.b, t.c}, Corners{t.b, t.c, t.a}, Corners{t.c, t.a, t.b}}) {
+    const double square = glm::dot(b - a, b - a), at = glm::dot(p - a, b - a), tip = glm::dot(c - a, b - a);
+    if (!(at > 0 && at < square && tip > 0 && tip < square)) continue;
+    const Vec3 other = at < tip ? a + at / tip * (c - a) : c + (at - tip) / (square - tip) * (b - c);
+    least =
+        std::min(least, glm::length(mesh::closest_on_triangle(p, a + at / square * (b - a), other, other).point - p));
+  }
   return least;
 }
 
@@ -149,6 +157,23 @@ Corners triangle_through(const tool::Outline& outline, Random& random) {
   const Vec2 top = outline.edges().back().to;
   const Vec3 p(0, 0, random.uniform(0, top.y)), u = random.direction(), v = random.direction();
   return {p + 9.0 * u, p + 9.0 * v, p - 9.0 * u - 9.0 * v};
+}
+
+TEST(TriangleSearch, OfTwoSidesThatAreEquallyNearInAHolderTakesFewCells) {
+  // Where the top and the side of a holder are equally near, a plane of the nearer side alone left 50 000 cells open.
+  const tool::Outline outline(cutters::ball(6, 22).with_holder({{42, 13, 70, 16}}));
+  const OutlineRuns runs(outline.edges());
+  Random random(500);
+  for (int n = 0; n < 200; ++n) {
+    const Vec3 p = Vec3(0, 0, random.uniform(55.5, 57)) + 0.2 * random.direction();
+    const Vec3 u = random.direction(), v = random.direction();
+    const Corners t{p + 9.0 * u, p + 9.0 * v, p - 9.0 * u - 9.0 * v};
+    TriangleSearch search(runs);
+    search_all(search, t);
+    ASSERT_LE(search.low(), sampled(outline, t, random) + 1e-9) << n;
+    ASSERT_NEAR(search.low(), search.least().distance, 1e-9) << n;
+    EXPECT_LT(search.cells(), 5000U) << n;
+  }
 }
 
 TEST(TriangleSearch, DepthsInHollowsAreTheLeastThoughTheToolGoesOnBehindTheirEnds) {
