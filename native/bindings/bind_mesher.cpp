@@ -270,7 +270,7 @@ gives. It keeps a snapshot of the volume, which shares its tiles.
 
 With a tolerance, patches and `mesh` have only the triangles that the shape needs. The mesher keeps the full mesh too,
 for the next update: `pick` and `freeze` find the full surface, and ``patch(normals=...)`` takes its normals, so that a
-long triangle is shaded like the small ones that it replaces. BYTES
+long triangle is shaded like the small ones that it replaces. It takes about a third more memory than without a tolerance.
 
 Parameters
 ----------

@@ -147,18 +147,4 @@ std::vector<VertexName> AdaptiveState::folds_of(const Layer& layer, std::size_t 
   return out;
 }
 
-std::size_t AdaptiveState::nbytes() const {
-  std::size_t sum = groups_.nbytes() + shown_.size() * sizeof(Result);
-  std::vector<const GroupResult*> results;
-  for (const Layer& layer : layers_) {
-    sum += layer.results.size() * sizeof(layer.results[0]);
-    for (const auto& of_brick : layer.results)
-      for (const Result& result : of_brick)
-        if (result) results.push_back(result.get());
-  }
-  base::sort_unique(results);
-  for (const GroupResult* const result : results) sum += result->nbytes();
-  return sum;
-}
-
 }  // namespace riffler::marching

@@ -34,7 +34,6 @@ class AdaptiveState {
     const Vec3i at = surface_.bricks.place(brick);
     for (std::size_t t = 0; t < shown_[brick]->triangles.size(); ++t) body(numbers(at, shown_[brick]->corners(t)));
   }
-  std::size_t nbytes() const;
 
  private:
   using Result = std::shared_ptr<const GroupResult>;

@@ -115,10 +115,4 @@ bool GroupResult::same_at(int side, const GroupResult& other) const {
   return true;
 }
 
-std::size_t GroupResult::nbytes() const {
-  return sizeof(GroupResult) + sizeof(std::uint32_t) * (places.size() + folded.size()) +
-         sizeof(VertexName) * names.size() + sizeof(Vec3i) * triangles.size() + sizeof(float) * errors.size() +
-         sizeof(Rim) * rim.size();
-}
-
 }  // namespace riffler::marching

@@ -108,7 +108,6 @@ struct GroupResult {
   }
   /// Whether two results leave the same triangles in the brick at a side, by names.
   bool same_at(int side, const GroupResult& other) const;
-  std::size_t nbytes() const;
 
  private:
   void find_rim(const GroupInput& input);

@@ -82,12 +82,4 @@ BorderTriangles VertexGroups::list_border(const ActiveBrick& brick) const {
   return out;
 }
 
-std::size_t VertexGroups::nbytes() const {
-  std::size_t sum = group_.size();
-  for (const auto& border : borders_)
-    if (border)
-      sum += sizeof(BorderTriangles) + sizeof(std::uint32_t) * (border->triangles.size() + border->places.size());
-  return sum;
-}
-
 }  // namespace riffler::marching

@@ -59,7 +59,6 @@ class VertexGroups {
   int of(std::size_t vertex) const { return group_[vertex]; }
   /// Of an active brick that was sorted.
   const BorderTriangles& border(std::size_t brick) const { return *borders_[brick]; }
-  std::size_t nbytes() const;
 
  private:
   void sort_vertices(const ActiveBrick& brick);

@@ -30,7 +30,7 @@ TEST(AdaptiveMesher, FollowsACarvedBlock) {
       EXPECT_LT(mesher.triangles(), 2000U);
       Patches patches(mesher);
       Random random(7);
-      for (int stroke = 0; stroke < test::cases(15); ++stroke) {
+      for (int stroke = 0; stroke < test::cases(8); ++stroke) {
         carve_at_random(volume, stroke, random);
         const std::vector<std::size_t> changed = mesher.update(volume);
         const std::string what =
@@ -39,7 +39,7 @@ TEST(AdaptiveMesher, FollowsACarvedBlock) {
         expect_mesh(mesher, whole, what);
         EXPECT_EQ(mesher.triangles(), whole.triangles.size()) << what;
         patches.update(mesher, changed);
-        if (stroke % 5 == 4) {
+        if (stroke % 4 == 3) {
           patches.expect_same(whole, what);
           EXPECT_TRUE(float_audit(whole).clean()) << what;
           expect_mesh(Mesher(volume, tolerance), whole, what + ", a new mesher");
@@ -53,12 +53,12 @@ TEST(AdaptiveMesher, FollowsACarvedBlock) {
 /// Rays that contradict each other: folds across the borders of groups, so several layers of fixed vertices.
 TEST(AdaptiveMesher, FollowsGridsThatContradictEachOther) {
   for (unsigned seed = 0; seed < 8; ++seed) {
-    if (test::kSanitized && seed % 4 != 3) continue;
+    if (test::kSanitized && seed != 3) continue;
     Random random(300 + seed);
     const double h = 0.25, offset = seed % 4 == 3 ? 4e5 : 0;
     const Vec3 lower(offset, 0, -offset);
-    const Vec3 size = seed % 2 ? Vec3(random.uniform(14, 20), random.uniform(6, 20), random.uniform(6, 18))
-                               : Vec3(random.uniform(40, 50), random.uniform(4, 9), random.uniform(4, 9));
+    const Vec3 size = seed % 2 ? Vec3(random.uniform(9, 15), random.uniform(6, 12), random.uniform(6, 12))
+                               : Vec3(random.uniform(30, 36), random.uniform(4, 6), random.uniform(4, 6));
     Volume volume({{lower, lower + size}, h, seed % 3 ? "xyz" : "z"});
     const double share = random.one_in(2) ? random.uniform(0, 0.1) : random.uniform(0, 1);
     const Solid base = turned_box(lower + size / 2.0, size * 0.4, random_turn(random));
@@ -73,7 +73,7 @@ TEST(AdaptiveMesher, FollowsGridsThatContradictEachOther) {
     Mesher mesher(volume, tolerance);
     Patches patches(mesher);
     const std::string what = "seed " + std::to_string(seed);
-    for (int step = 0; step < test::cases(8); ++step) {
+    for (int step = 0; step < test::cases(3); ++step) {
       dexel::Grid& grid =
           volume.grids()[static_cast<std::size_t>(random.below(static_cast<int>(volume.grids().size())))];
       const int i0 = random.below(grid.nu()), j0 = random.below(grid.nv());

@@ -23,7 +23,8 @@ class Mesher {
   /// Meshes the whole volume. Throws as to_mesh does.
   explicit Mesher(const Volume& volume, const Progress& progress = {});
   /// Leaves out the triangles that are not needed for `tolerance` (mm), as to_mesh(volume, tolerance) does, whose mesh
-  /// it keeps bit for bit. The full mesh stays in memory, for the next update and for picking.
+  /// it keeps bit for bit. The full mesh stays in memory, for the next update and for picking; it all takes about
+  /// 10 bytes for each triangle of the full mesh more than without a tolerance.
   Mesher(const Volume& volume, double tolerance, const Progress& progress = {});
   ~Mesher();
   Mesher(Mesher&&) noexcept;
