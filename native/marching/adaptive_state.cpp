@@ -4,7 +4,6 @@
 
 #include "base/sort_unique.hpp"
 #include "marching/adaptive.hpp"
-#include "marching/adaptive_turns.hpp"
 
 namespace riffler::marching {
 
@@ -58,11 +57,6 @@ void AdaptiveState::simplify(const std::vector<std::size_t>& changed, const Prog
     was = std::move(fixed);
     follow(n + 1, is_new ? std::vector<std::size_t>{} : changed, owners, {});
   }
-}
-
-void AdaptiveState::follow(std::size_t layer, const std::vector<std::size_t>& changed,
-                           const std::vector<std::size_t>& owners, const Progress& progress) {
-  find_folds(layers_[layer], Turns(*this, layer, changed, owners).run(layers_[layer], progress));
 }
 
 /// The vertices to be fixed in the next layer.

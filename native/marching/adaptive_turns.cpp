@@ -7,6 +7,11 @@
 
 namespace riffler::marching {
 
+void AdaptiveState::follow(std::size_t layer, const std::vector<std::size_t>& changed,
+                           const std::vector<std::size_t>& owners, const Progress& progress) {
+  find_folds(layers_[layer], Turns(*this, layer, changed, owners).run(layers_[layer], progress));
+}
+
 AdaptiveState::Turns::Turns(const AdaptiveState& state, std::size_t layer, const std::vector<std::size_t>& changed,
                             const std::vector<std::size_t>& owners)
     : state_(state),

@@ -57,7 +57,7 @@ class VertexGroups {
   void sort(const std::vector<std::size_t>& bricks, const Progress& progress);
 
   int of(std::size_t vertex) const { return group_[vertex]; }
-  /// Of an active brick that was sorted.
+  /// The brick must be active and sorted.
   const BorderTriangles& border(std::size_t brick) const { return *borders_[brick]; }
 
  private:
