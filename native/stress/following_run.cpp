@@ -72,7 +72,7 @@ FollowedSeries follow_series(std::uint64_t seed, std::uint64_t number, long stro
   const Vec3 size(random.uniform(5, 34), random.uniform(5, 18), random.uniform(5, 12));
   Volume volume = Volume::block({{Vec3(0), size}, pitch, random.one_in(4) ? "z" : "xyz"});
   FollowedSeries out;
-  marching::Mesher mesher(volume, tolerance);
+  marching::Mesher mesher(volume, tolerance), full(volume);
   std::map<std::size_t, marching::MeshPatch> patches;
   for (const std::size_t n : mesher.patches()) patches[n] = mesher.patch(n);
   const auto fail = [&](const char* what) {
@@ -86,6 +86,10 @@ FollowedSeries follow_series(std::uint64_t seed, std::uint64_t number, long stro
     if (random.one_in(8)) volume = before;  // taken back
     ++out.strokes;
     for (const std::size_t n : mesher.update(volume)) patches[n] = mesher.patch(n);
+    full.update(volume);
+    const Mesh all = marching::to_mesh(volume), followed = full.mesh();
+    if (followed.vertices != all.vertices || followed.triangles != all.triangles)
+      return fail("without a tolerance, the mesher's mesh is not to_mesh's");
     const Mesh expected = marching::to_mesh(volume, tolerance), mesh = mesher.mesh();
     if (mesh.vertices != expected.vertices || mesh.triangles != expected.triangles)
       return fail("the mesher's mesh is not to_mesh's");
