@@ -110,6 +110,73 @@ Corners corners_of(const Vec3& a, const Vec3& b, const Vec3& c) {
   return out;
 }
 
+/// The mean of the fan's normals within an angle of `own`, or `own` if there is none.
+Vec3f mean_near(std::span<const Wedge> fan, const Vec3& own, double least) {
+  const bool flat = own == Vec3(0.0);
+  Vec3 sum(0.0);
+  for (const Wedge& w : fan)
+    if (flat || glm::dot(w.normal, own) >= least) sum += w.angle * w.normal;
+  const double size = glm::length(sum);
+  return Vec3f(size > 0 ? sum / size : own);
+}
+
+/// The normals of an adaptive patch, from the triangles of the full mesh around its vertices.
+base::BulkVector<Vec3f> adaptive_normals(const MeshState& state, const MeshPatch& patch, double least) {
+  struct Found {
+    Vec3i triangle;
+    std::array<std::int64_t, 3> vertex;
+  };
+  // Patch numbers by full number, ascending.
+  std::vector<std::pair<std::int32_t, std::int64_t>> sorted;
+  for (std::size_t v = 0; v < patch.numbers.size(); ++v)
+    sorted.emplace_back(patch.numbers[v], static_cast<std::int64_t>(v));
+  std::sort(sorted.begin(), sorted.end());
+  const Mesh& mesh = state.surface.mesh;
+  std::vector<std::size_t> bricks = beside(state.bricks, patch.bricks);
+  bricks.insert(bricks.end(), patch.bricks.begin(), patch.bricks.end());
+  std::vector<Found> found;
+  Fans fans(patch.vertices.size());
+  std::vector<std::int64_t> of_brick;
+  for (const std::size_t n : bricks) {
+    const ActiveBrick& brick = *state.bricks.active(n);
+    const auto lookup = [&](std::int32_t v) {
+      const auto at = std::lower_bound(sorted.begin(), sorted.end(), std::pair{v, std::int64_t{0}});
+      return at != sorted.end() && at->first == v ? at->second : -1;
+    };
+    const auto first = static_cast<std::int32_t>(brick.first_vertex);
+    of_brick.assign(brick.vertices(), -1);
+    for (auto at = std::lower_bound(sorted.begin(), sorted.end(), std::pair{first, std::int64_t{0}});
+         at != sorted.end() && static_cast<std::size_t>(at->first - first) < of_brick.size(); ++at)
+      of_brick[static_cast<std::size_t>(at->first - first)] = at->second;
+    const auto number = [&](std::int32_t v) {
+      const std::size_t k = static_cast<std::size_t>(v) - brick.first_vertex;  // large for the vertices before it
+      return k < of_brick.size() ? of_brick[k] : lookup(v);
+    };
+    for (std::size_t t = 2 * brick.first_edge; t < 2 * (brick.first_edge + brick.edges()); ++t) {
+      const Vec3i& triangle = mesh.triangles[t];
+      const Found one{triangle, {number(triangle.x), number(triangle.y), number(triangle.z)}};
+      if (std::max({one.vertex[0], one.vertex[1], one.vertex[2]}) < 0) continue;
+      found.push_back(one);
+      for (const std::int64_t v : one.vertex)
+        if (v >= 0) fans.count(static_cast<std::size_t>(v));
+    }
+  }
+  fans.reserve();
+  const auto place = [&](std::int32_t v) { return Vec3(Vec3f(to_world(state.lattice.axis(), mesh.vertices[v]))); };
+  for (const Found& one : found) {
+    const Corners corners = corners_of(place(one.triangle.x), place(one.triangle.y), place(one.triangle.z));
+    for (int c = 0; c < 3; ++c)
+      if (one.vertex[c] >= 0) fans.add(static_cast<std::size_t>(one.vertex[c]), {corners.normal, corners.angle[c]});
+  }
+  base::BulkVector<Vec3f> out(3 * patch.triangles.size());
+  for (std::size_t t = 0; t < patch.triangles.size(); ++t) {
+    const Vec3i& v = patch.triangles[t];
+    const Vec3 own = corners_of(Vec3(patch.vertices[v.x]), Vec3(patch.vertices[v.y]), Vec3(patch.vertices[v.z])).normal;
+    for (int c = 0; c < 3; ++c) out[3 * t + c] = mean_near(fans.at(static_cast<std::size_t>(v[c])), own, least);
+  }
+  return out;
+}
+
 }  // namespace
 
 base::BulkVector<Vec3f> corner_normals(const MeshState& state, std::span<const std::size_t> bricks,
@@ -118,6 +185,7 @@ base::BulkVector<Vec3f> corner_normals(const MeshState& state, std::span<const s
     Vec3i triangle;
     std::array<std::int64_t, 3> vertex;
   };
+  if (state.adaptive) return adaptive_normals(state, patch, std::cos(sharp));
   const Mesh& mesh = state.surface.mesh;
   const Numbers numbers(state, patch);
   std::vector<Outside> outside;
@@ -160,15 +228,8 @@ base::BulkVector<Vec3f> corner_normals(const MeshState& state, std::span<const s
   out.resize(3 * patch.triangles.size());
   const double least = std::cos(sharp);
   for (std::size_t t = 0; t < patch.triangles.size(); ++t)
-    for (int c = 0; c < 3; ++c) {
-      const Vec3& own = normals[t];
-      const bool flat = own == Vec3(0.0);
-      Vec3 sum(0.0);
-      for (const Wedge& w : fans.at(static_cast<std::size_t>(patch.triangles[t][c])))
-        if (flat || glm::dot(w.normal, own) >= least) sum += w.angle * w.normal;
-      const double size = glm::length(sum);
-      out[3 * t + c] = Vec3f(size > 0 ? sum / size : own);
-    }
+    for (int c = 0; c < 3; ++c)
+      out[3 * t + c] = mean_near(fans.at(static_cast<std::size_t>(patch.triangles[t][c])), normals[t], least);
   return out;
 }
 

@@ -100,11 +100,23 @@ Mesh MeshState::take(double tolerance, const Progress& progress) {
   const std::vector<std::size_t> all = active_bricks();
   base::BulkVector<std::uint8_t> fixed(surface.mesh.vertices.size());
   std::fill(fixed.begin(), fixed.end(), std::uint8_t{0});
-  simplify(surface, all, tolerance, fixed, base::part(progress, 0, 0.9));
+  marching::simplify(surface, all, tolerance, fixed, base::part(progress, 0, 0.9));
   while (fix_folds(surface, all, fixed)) {
     build({});
-    simplify(surface, all, tolerance, fixed, {});
+    marching::simplify(surface, all, tolerance, fixed, {});
   }
+  Mesh mesh = renumbered(all, [&](std::size_t n, const auto& body) {
+    const ActiveBrick& brick = *bricks.active(n);
+    for (std::size_t t = 2 * brick.first_edge; t < 2 * (brick.first_edge + brick.edges()); ++t)
+      if (surface.mesh.triangles[t].x >= 0) body(surface.mesh.triangles[t]);
+  });
+  base::report(progress, 1);
+  return mesh;
+}
+
+/// The mesh of these triangles, which need not use all vertices: `for_triangles(brick, body)` calls body(triangle).
+template <class ForTriangles>
+Mesh MeshState::renumbered(const std::vector<std::size_t>& all, const ForTriangles& for_triangles) const {
   // New numbers: first of each brick's vertices and triangles, then of each vertex.
   std::vector<std::size_t> vertex(all.size() + 1, 0), triangle(all.size() + 1, 0);
   base::BulkVector<std::int32_t> number(surface.mesh.vertices.size());
@@ -113,16 +125,12 @@ Mesh MeshState::take(double tolerance, const Progress& progress) {
       for (std::size_t n = begin; n < end; ++n) body(n, *bricks.active(all[n]));
     });
   };
-  const auto for_triangles = [&](const ActiveBrick& brick, const auto& body) {
-    for (std::size_t t = 2 * brick.first_edge; t < 2 * (brick.first_edge + brick.edges()); ++t)
-      if (surface.mesh.triangles[t].x >= 0) body(surface.mesh.triangles[t]);
-  };
   each([&](std::size_t, const ActiveBrick& brick) {
     std::fill_n(number.begin() + static_cast<std::ptrdiff_t>(brick.first_vertex), brick.vertices(), -1);
   });
   // A vertex may have triangles of other bricks only. Bricks that mark the same vertex write the same value.
-  each([&](std::size_t n, const ActiveBrick& brick) {
-    for_triangles(brick, [&](const Vec3i& v) {
+  each([&](std::size_t n, const ActiveBrick&) {
+    for_triangles(all[n], [&](const Vec3i& v) {
       ++triangle[n + 1];
       for (const std::int32_t c : {v.x, v.y, v.z}) std::atomic_ref(number[c]).store(0, std::memory_order_relaxed);
     });
@@ -142,15 +150,19 @@ Mesh MeshState::take(double tolerance, const Progress& progress) {
       number[v] = static_cast<std::int32_t>(next++);
     }
   });
-  each([&](std::size_t n, const ActiveBrick& brick) {
+  each([&](std::size_t n, const ActiveBrick&) {
     std::size_t next = triangle[n];
-    for_triangles(brick, [&](const Vec3i& v) { mesh.triangles[next++] = {number[v.x], number[v.y], number[v.z]}; });
+    for_triangles(all[n], [&](const Vec3i& v) { mesh.triangles[next++] = {number[v.x], number[v.y], number[v.z]}; });
   });
-  base::report(progress, 1);
   return mesh;
 }
 
 Mesh MeshState::compact() const {
+  if (!adaptive) return compact_full();
+  return renumbered(active_bricks(), [&](std::size_t n, const auto& body) { adaptive->for_triangles(n, body); });
+}
+
+Mesh MeshState::compact_full() const {
   const std::vector<std::size_t> all = active_bricks();
   std::vector<std::size_t> vertex(all.size() + 1, 0), quad(all.size() + 1, 0);
   for (std::size_t n = 0; n < all.size(); ++n) {
@@ -181,13 +193,26 @@ Mesh MeshState::compact() const {
   return mesh;
 }
 
+void MeshState::simplify(double tolerance, const Progress& progress) {
+  adaptive = std::make_unique<AdaptiveState>(surface, tolerance);
+  adaptive->build(active_bricks(), progress);
+  base::report(progress, 1);
+}
+
+std::size_t MeshState::triangles(std::size_t brick) const {
+  if (adaptive) return adaptive->count(brick);
+  const ActiveBrick* const active = bricks.active(brick);
+  return active ? 2 * active->edges() : 0;
+}
+
 // Following a volume.
 
 std::vector<std::size_t> MeshState::update(const Volume& now) {
   if (!(now.frame() == volume.frame()))
     throw std::invalid_argument("a mesher follows volumes of one box, pitch and directions");
   std::vector<std::size_t> changed;
-  if (broken_) {
+  const bool rebuilt = broken_;
+  if (rebuilt) {
     changed = active_bricks();
     facets.assign(bricks.size(), nullptr);
     follow(now);
@@ -200,9 +225,13 @@ std::vector<std::size_t> MeshState::update(const Volume& now) {
     follow(now);
     if (!changes.empty()) changed = mesh_again(changes);
   }
-  broken_ = false;
   base::sort_unique(changed);
   for (const std::size_t n : changed) facets[n].reset();
+  if (adaptive && rebuilt)
+    adaptive->build(active_bricks(), {});
+  else if (adaptive)
+    changed = adaptive->update(changed);
+  broken_ = false;
   return changed;
 }
 

@@ -1,8 +1,11 @@
 // The state of a Mesher.
 #pragma once
 
+#include <memory>
+#include <optional>
 #include <vector>
 
+#include "marching/adaptive_state.hpp"
 #include "marching/changes.hpp"
 #include "marching/signs.hpp"
 #include "marching/slots.hpp"
@@ -18,12 +21,19 @@ struct MeshState {
   Surface surface;               // entries of bricks without a surface are meaningless
   FrozenSurface::Bricks facets;  // of the bricks that were queried and have not changed since
 
+  /// The triangles that a tolerance leaves; null: all of them.
+  std::unique_ptr<AdaptiveState> adaptive;
+
   /// `room`: reserve space for bricks to grow; only address space until it is used.
   MeshState(const Volume& volume, bool room, const Progress& progress);
+  /// Leaves out the triangles that are not needed for `tolerance` (mm, > 0), now and after each update.
+  void simplify(double tolerance, const Progress& progress);
   std::vector<std::size_t> update(const Volume& now);
   /// Throws std::runtime_error after an update that threw, because the state is then no mesh.
   void check_whole() const;
   std::vector<std::size_t> active_bricks() const;
+  /// Number of a brick's triangles.
+  std::size_t triangles(std::size_t brick) const;
   /// The mesh without the gaps between bricks, in the world frame.
   Mesh compact() const;
   /// Same for a state that was never updated; the state is consumed.
@@ -32,6 +42,9 @@ struct MeshState {
   Mesh take(double tolerance, const Progress& progress);
 
  private:
+  template <class ForTriangles>
+  Mesh renumbered(const std::vector<std::size_t>& all, const ForTriangles& for_triangles) const;
+  Mesh compact_full() const;
   void build(const Progress& progress);
   void follow(const Volume& now);
   std::vector<std::size_t> mesh_again(const Changes& changes);

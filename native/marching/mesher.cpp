@@ -24,10 +24,27 @@ void prepare(MeshState& state, std::size_t brick) {
   state.facets[brick] = std::make_shared<const Facets>(state.surface, *state.bricks.active(brick));
 }
 
+void check_tolerance(double tolerance) {
+  if (!(tolerance >= 0 && std::isfinite(tolerance)))
+    throw std::invalid_argument("tolerance must be finite and not negative, not " + std::to_string(tolerance) +
+                                " mm; 0 keeps all triangles");
+}
+
+/// Whether a tolerance is coarser than the places that vertices may take.
+bool is_usable(double tolerance, const MeshState& state) {
+  return tolerance >= state.lattice.step();
+}
+
 }  // namespace
 
 Mesher::Mesher(const Volume& volume, const Progress& progress)
     : state_(std::make_unique<MeshState>(volume, true, progress)) {}
+Mesher::Mesher(const Volume& volume, double tolerance, const Progress& progress) {
+  check_tolerance(tolerance);
+  state_ = std::make_unique<MeshState>(volume, true, base::part(progress, 0, 0.4));
+  if (is_usable(tolerance, *state_)) state_->simplify(tolerance, base::part(progress, 0.4, 1));
+  base::report(progress, 1);
+}
 Mesher::~Mesher() = default;
 Mesher::Mesher(Mesher&&) noexcept = default;
 Mesher& Mesher::operator=(Mesher&&) noexcept = default;
@@ -40,15 +57,15 @@ std::vector<std::size_t> Mesher::patches() const {
   state_->check_whole();
   std::vector<std::size_t> out;
   for (const std::size_t n : state_->active_bricks())
-    if (state_->bricks.active(n)->edges() > 0) out.push_back(n);
+    if (state_->triangles(n) > 0) out.push_back(n);
   return out;
 }
 
 std::size_t Mesher::triangles() const {
   state_->check_whole();
-  std::size_t quads = 0;
-  for (const std::size_t n : state_->active_bricks()) quads += state_->bricks.active(n)->edges();
-  return 2 * quads;
+  std::size_t sum = 0;
+  for (const std::size_t n : state_->active_bricks()) sum += state_->triangles(n);
+  return sum;
 }
 
 Vec3i Mesher::shape() const {
@@ -96,12 +113,10 @@ Mesh to_mesh(const Volume& volume, const Progress& progress) {
 }
 
 Mesh to_mesh(const Volume& volume, double tolerance, const Progress& progress, std::size_t* all) {
-  if (!(tolerance >= 0 && std::isfinite(tolerance)))
-    throw std::invalid_argument("tolerance must be finite and not negative, not " + std::to_string(tolerance) +
-                                " mm; 0 keeps all triangles");
+  check_tolerance(tolerance);
   MeshState state(volume, false, base::part(progress, 0, 0.6));
   if (all) *all = state.surface.mesh.triangles.size();
-  if (tolerance < state.lattice.step()) return state.take();
+  if (!is_usable(tolerance, state)) return state.take();
   return state.take(tolerance, base::part(progress, 0.6, 1));
 }
 

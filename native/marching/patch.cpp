@@ -29,14 +29,12 @@ std::vector<const ActiveBrick*> active_of(const MeshState& state, std::span<cons
                             std::to_string(state.bricks.size()));
   std::vector<const ActiveBrick*> out;
   for (const std::size_t n : bricks)
-    if (const ActiveBrick* const active = state.bricks.active(n); active && active->edges() > 0)
-      out.push_back(active), found.push_back(n);
+    if (state.triangles(n) > 0) out.push_back(state.bricks.active(n)), found.push_back(n);
   return out;
 }
 
-}  // namespace
-
-MeshPatch patch_of(const MeshState& state, std::span<const std::size_t> bricks) {
+/// A patch with all triangles.
+MeshPatch full_patch(const MeshState& state, std::span<const std::size_t> bricks) {
   MeshPatch out;
   const std::vector<const ActiveBrick*> active = active_of(state, bricks, out.bricks);
   std::vector<Own> own;
@@ -86,6 +84,48 @@ MeshPatch patch_of(const MeshState& state, std::span<const std::size_t> bricks) 
     for (std::int32_t v = o.first; v < o.end; ++v) place(v);
   for (const std::int32_t v : foreign) place(v);
   return out;
+}
+
+/// A patch with the triangles that a tolerance leaves, and only the vertices that they use.
+MeshPatch adaptive_patch(const MeshState& state, std::span<const std::size_t> bricks) {
+  MeshPatch out;
+  const std::vector<const ActiveBrick*> active = active_of(state, bricks, out.bricks);
+  std::vector<std::int32_t> used;
+  for (const std::size_t n : out.bricks)
+    state.adaptive->for_triangles(n, [&](const Vec3i& t) {
+      out.triangles.push_back(t);
+      used.insert(used.end(), {t.x, t.y, t.z});
+    });
+  base::sort_unique(used);
+  std::vector<std::int32_t> number(used.size(), -1);
+  const auto place = [&](std::int32_t v) {
+    out.vertices.emplace_back(to_world(state.lattice.axis(), state.surface.mesh.vertices[v]));
+  };
+  for (const ActiveBrick* const brick : active) {
+    const auto begin = std::lower_bound(used.begin(), used.end(), static_cast<std::int32_t>(brick->first_vertex));
+    const auto end =
+        std::lower_bound(begin, used.end(), static_cast<std::int32_t>(brick->first_vertex + brick->vertices()));
+    for (auto v = begin; v != end; ++v) {
+      number[static_cast<std::size_t>(v - used.begin())] = static_cast<std::int32_t>(out.vertices.size());
+      out.numbers.push_back(*v), place(*v);
+    }
+  }
+  out.own = out.vertices.size();
+  for (std::size_t n = 0; n < used.size(); ++n) {
+    if (number[n] >= 0) continue;
+    number[n] = static_cast<std::int32_t>(out.vertices.size());
+    out.foreign.push_back(used[n]), out.numbers.push_back(used[n]), place(used[n]);
+  }
+  for (Vec3i& t : out.triangles)
+    for (int c = 0; c < 3; ++c)
+      t[c] = number[static_cast<std::size_t>(std::lower_bound(used.begin(), used.end(), t[c]) - used.begin())];
+  return out;
+}
+
+}  // namespace
+
+MeshPatch patch_of(const MeshState& state, std::span<const std::size_t> bricks) {
+  return state.adaptive ? adaptive_patch(state, bricks) : full_patch(state, bricks);
 }
 
 }  // namespace riffler::marching

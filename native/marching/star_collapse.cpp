@@ -62,6 +62,7 @@ void StarCollapser::run() {
     flatten(block_.data(), block_.data() + block_.size());
   }
   // Cheap merges first, and at first none that makes a large fan.
+  spread();
   sweep(most_error_ / 1024, 12);
   for (Star& star : stars_) star.needs = 0;
   for (int level = 1; level <= kLevels; ++level) sweep(most_error_ * level / kLevels, wide_ ? 24 : kMostFaces);
@@ -71,16 +72,27 @@ void StarCollapser::run() {
   }
 }
 
-/// Merges until nothing can be merged within `limit`. Starts with vertices that are far from each other.
-void StarCollapser::sweep(double limit, int most_faces) {
+/// Lists the stars so that vertices next to each other are far apart in the list.
+void StarCollapser::spread() {
+  order_.clear();
   const std::size_t n = stars_.size();
-  queue_.clear();
   std::size_t stride = n * 5 / 8 | 1;
   while (n > 0 && std::gcd(stride, n) != 1) stride += 2;
-  for (std::size_t k = 0, at = 0; k < n; ++k, at = (at + stride) % n) {
-    Star& star = stars_[at];
-    star.queued = star.count > 0 && !star.locked && star.needs <= limit;
-    if (star.queued) queue_.push_back(static_cast<std::int32_t>(at));
+  for (std::size_t k = 0, at = 0; k < n; ++k) {
+    if (stars_[at].count > 0 && !stars_[at].locked) order_.push_back(static_cast<std::int32_t>(at));
+    at += stride;
+    if (at >= n) at %= n;
+  }
+}
+
+/// Merges until nothing can be merged within `limit`.
+void StarCollapser::sweep(double limit, int most_faces) {
+  queue_.clear();
+  std::erase_if(order_, [&](std::int32_t s) { return stars_[s].count == 0; });
+  for (const std::int32_t s : order_) {
+    Star& star = stars_[s];
+    star.queued = star.needs <= limit;
+    if (star.queued) queue_.push_back(s);
   }
   for (std::size_t k = 0; k < queue_.size(); ++k) {
     stars_[queue_[k]].queued = false;
@@ -122,7 +134,7 @@ bool StarCollapser::gather(std::int32_t from, double limit) {
     low = std::min(low, h), high = std::max(high, h);
   }
   slab_ = high - low;
-  flat_[0].z = std::numeric_limits<double>::infinity();  // not computed yet
+  has_ring_ = false;
   return true;
 }
 
@@ -145,13 +157,16 @@ bool StarCollapser::merge(std::int32_t from, double limit, int most_faces) {
   std::sort(targets.begin(), targets.begin() + many,
             [](const Target& a, const Target& b) { return a.guess != b.guess ? a.guess < b.guess : a.side < b.side; });
   const bool flat = slab_ <= tolerance_ * kFlat && base_ + slab_ <= most_error_;
-  double best = std::numeric_limits<double>::infinity();
+  double best = std::numeric_limits<double>::infinity(), lowest = best;
   int taken = -1;
   for (int n = 0; n < many; ++n) {
     const Side& to = sides_[targets[n].side];
-    if (!keeps_shape(to)) continue;
-    const double error = flat ? slab_ : error_of(to, std::min(best, most_error_ - base_));
-    if (!(base_ + error <= most_error_) || !(error < best)) continue;
+    const double error = flat ? slab_ : error_of(to, std::min(best, limit - base_));
+    if (!(base_ + error <= limit)) {
+      lowest = std::min(lowest, error);
+      continue;
+    }
+    if (!(error < best) || !keeps_shape(to)) continue;
     std::int32_t x = -1, y = to.b;
     for (int m = 0; m < count_; ++m)
       if (sides_[m].b == to.a) x = sides_[m].a;
@@ -159,9 +174,8 @@ bool StarCollapser::merge(std::int32_t from, double limit, int most_faces) {
     best = error, taken = targets[n].side;
     if (error <= tolerance_ * kFlat) break;
   }
-  if (taken < 0) return false;
-  if (base_ + best > limit) {
-    star.needs = base_ + best;
+  if (taken < 0) {
+    if (base_ + lowest <= most_error_) star.needs = base_ + lowest;
     return false;
   }
   if (folds(from, sides_[taken])) return false;
@@ -193,28 +207,33 @@ bool StarCollapser::folds(std::int32_t from, const Side& to) const {
     if (side.a == to.a || side.b == to.a) continue;
     const Vec3 cross = glm::cross(side.pa - to.pa, side.pb - to.pa);
     const double length = glm::length(cross);
-    for (const std::int32_t end : {side.a, side.b}) {
-      const std::int32_t s = slot(end);
-      if (s < 0) continue;
+    const auto faces_away = [&](std::int32_t s, bool& found) {
+      if (s < 0) return false;
       for (int m = 0; m < stars_[s].count; ++m) {
         const Face& face = faces_[around(s)[m]];
         const auto has = [&](std::int32_t v) { return face.v.x == v || face.v.y == v || face.v.z == v; };
-        if (has(side.a) && has(side.b) && !has(stars_[from].vertex) &&
-            glm::dot(face.normal, cross) < kTouching * length)
-          return true;
+        if (!has(side.a) || !has(side.b) || has(stars_[from].vertex)) continue;
+        found = true;
+        return glm::dot(face.normal, cross) < kTouching * length;
       }
-    }
+      return false;
+    };
+    bool found = false;
+    if (faces_away(slot(side.a), found) || (!found && faces_away(slot(side.b), found))) return true;
   }
   return false;
 }
 
 bool StarCollapser::keeps_manifold(std::int32_t from, std::int32_t to, std::int32_t x, std::int32_t y) const {
+  // Most of the other vertex's neighbours differ from all of this one's in the last bits.
+  std::uint64_t near = 0;
+  for (int n = 0; n < count_; ++n) near |= std::uint64_t{1} << (sides_[n].a & 63);
   for (int n = 0; n < stars_[to].count; ++n) {
     const Vec3i& v = faces_[around(to)[n]].v;
     const auto has = [&](std::int32_t w) { return v.x == w || v.y == w || v.z == w; };
     if (has(x) && has(y)) return false;  // of a tetrahedron
     for (const std::int32_t w : {v.x, v.y, v.z}) {
-      if (w == x || w == y || w == stars_[to].vertex || w == stars_[from].vertex) continue;
+      if (!(near >> (w & 63) & 1) || w == x || w == y || w == stars_[to].vertex || w == stars_[from].vertex) continue;
       for (int m = 0; m < count_; ++m)
         if (sides_[m].a == w) return false;
     }
@@ -225,46 +244,54 @@ bool StarCollapser::keeps_manifold(std::int32_t from, std::int32_t to, std::int3
   return true;
 }
 
-/// The largest distance of the old and the new triangles along the direction, or any distance above `enough`.
-double StarCollapser::error_of(const Side& to, double enough) {
-  if (flat_[0].z == std::numeric_limits<double>::infinity()) {
-    const Vec3& n = direction_;
-    const Vec3 e = glm::normalize(std::abs(n.x) < 0.6 ? Vec3(0, n.z, -n.y) : Vec3(-n.z, 0, n.x));
-    const Vec3 f = glm::cross(n, e);
-    for (int k = 0; k < count_; ++k) {
-      const Vec3& p = sides_[k].pa;
-      flat_[k] = {glm::dot(p, e), glm::dot(p, f), glm::dot(p, n)};
-    }
-  }
-  const auto index = static_cast<int>(&to - sides_.data());
-  const Vec3& u = flat_[index];
-  double error = 0;
-  bool covered = false;
-  for (int k = 0; k < count_; ++k) {
-    if (sides_[k].a == to.a || sides_[k].b == to.a) continue;
+/// Lists the vertices around the old one in order, twice, in the frame of the direction.
+void StarCollapser::turn_ring() {
+  const Vec3& n = direction_;
+  const Vec3 e = glm::normalize(std::abs(n.x) < 0.6 ? Vec3(0, n.z, -n.y) : Vec3(-n.z, 0, n.x));
+  const Vec3 f = glm::cross(n, e);
+  for (int k = 0, side = 0; k < count_; ++k) {
+    const Vec3& p = sides_[side].pa;
+    ring_[k] = ring_[k + count_] = {glm::dot(p, e), glm::dot(p, f), glm::dot(p, n)};
+    place_in_ring_[side] = k;
     int next = 0;
-    while (sides_[next].a != sides_[k].b) ++next;
-    const Vec3 &a = flat_[k], &b = flat_[next];
-    // The old vertex, at the origin, over the new triangle (u, a, b).
-    const double wu = turn(a, b), wa = turn(b, u), wb = turn(u, a);
+    while (next < count_ && sides_[next].a != sides_[side].b) ++next;
+    side = next;
+  }
+  has_ring_ = true;
+}
+
+/// The largest distance of the old and the new triangles along the direction, or any distance above `enough`. All old
+/// and new triangles must face along it.
+double StarCollapser::error_of(const Side& to, double enough) {
+  if (!has_ring_) turn_ring();
+  // The new triangles are (q[0], q[k], q[k + 1]), the old ones (0, q[k], q[k + 1]).
+  const Vec3* const q = ring_.data() + place_in_ring_[&to - sides_.data()];
+  const Vec3& u = q[0];
+  std::array<double, kMostFaces> turned;
+  for (int k = 1; k < count_; ++k) turned[k] = turn(u, q[k]);
+  // The old vertex over its new triangle: the cheapest test first.
+  double error = slab_;
+  bool covered = false;
+  for (int k = 1; k + 1 < count_ && !covered; ++k) {
+    if (!(turned[k] >= 0 && turned[k + 1] <= 0)) continue;
+    const double wu = turn(q[k], q[k + 1]), wa = -turned[k + 1], wb = turned[k];
     const double sum = wu + wa + wb;
-    if (wu >= 0 && wa >= 0 && wb >= 0 && sum > 0) {
-      error = std::max(error, std::abs(wu * u.z + wa * a.z + wb * b.z) / sum);
-      covered = true;
-    }
-    if (error > enough) return error;
-    // The new edge from u to a over the old edges from the origin.
-    const Vec3 d = a - u;
-    for (int m = 0; m < count_; ++m) {
-      if (m == k || m == index) continue;
-      const Vec3& q = flat_[m];
-      const double across = turn(q, d);
+    if (!(wu >= 0 && sum > 0)) continue;
+    error = std::abs(wu * u.z + wa * q[k].z + wb * q[k + 1].z) / sum;
+    covered = true;
+  }
+  if (!covered) return error;
+  // Each new edge crosses the old ones on its side of the old vertex.
+  for (int k = 2; k + 1 < count_ && !(error > enough); ++k) {
+    const bool left = turned[k] > 0;
+    const double rise = q[k].z - u.z;
+    for (int m = left ? 1 : k + 1; m < (left ? k : count_); ++m) {
+      const double across = turn(q[m], q[k]) + turned[m];
       if (across == 0) continue;
-      const double s = turn(u, d) / across, r = turn(u, q) / across;
-      if (s > 0 && s < 1 && r > 0 && r < 1) error = std::max(error, std::abs(u.z + r * d.z - s * q.z));
+      error = std::max(error, std::abs(u.z + (turned[m] * rise - turned[k] * q[m].z) / across));
     }
   }
-  return covered ? error : slab_;
+  return error;
 }
 
 void StarCollapser::drop(std::int32_t vertex, std::int32_t face) {

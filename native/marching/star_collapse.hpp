@@ -111,9 +111,11 @@ class StarCollapser {
   bool keeps_manifold(std::int32_t from, std::int32_t to, std::int32_t x, std::int32_t y) const;
   bool keeps_shape(const Side& to);
   bool folds(std::int32_t from, const Side& to) const;
+  void turn_ring();
   double error_of(const Side& to, double enough);
   void commit(std::int32_t from, std::int32_t to, double error, double limit);
   void drop(std::int32_t vertex, std::int32_t face);
+  void spread();
   void sweep(double limit, int most_faces);
 
   AdaptiveMesh mesh_;
@@ -125,7 +127,7 @@ class StarCollapser {
   std::vector<Star> stars_;
   std::vector<std::int32_t> around_;  // kMostFaces places for each star
   std::vector<Face> faces_;
-  std::vector<std::int32_t> queue_;
+  std::vector<std::int32_t> order_, queue_;
   // The block of flat triangles under examination:
   struct RimEdge {
     std::int32_t a, b;
@@ -140,9 +142,10 @@ class StarCollapser {
   int count_ = 0;
   Vec3 direction_{0};
   double base_ = 0, slab_ = 0;
-  std::array<Vec3, kMostFaces> new_normals_;
-  // The same in the frame of the direction; the third coordinate is the height.
-  std::array<Vec3, kMostFaces> flat_;
+  // The vertices around it in the frame of the direction, twice; the third coordinate is the height.
+  std::array<Vec3, 2 * kMostFaces> ring_;
+  std::array<int, kMostFaces> place_in_ring_;  // of the start of each side
+  bool has_ring_ = false;
 };
 
 }  // namespace riffler::marching

@@ -1,4 +1,5 @@
-// Meshes random volumes from the degenerate limits and checks each mesh; see usage().
+// Meshes random volumes from the degenerate limits and checks each mesh, and lets a mesher follow random strokes; see
+// usage().
 #include <chrono>
 #include <cstdio>
 #include <cstring>
@@ -8,6 +9,7 @@
 
 #include "riffler/dexel/file/file.hpp"
 #include "stress/arguments.hpp"
+#include "stress/following_run.hpp"
 #include "stress/mesh_run.hpp"
 
 using namespace riffler::stress;
@@ -19,6 +21,7 @@ struct Arguments {
   std::uint64_t volumes = 20000;
   double seconds = 0;
   std::optional<std::uint64_t> volume;
+  std::optional<std::uint64_t> strokes;
   std::optional<std::string> save;
 };
 
@@ -28,6 +31,7 @@ void usage() {
       "  --volumes N   (20000)\n"
       "  --seconds N   stops after so many, if that is earlier\n"
       "  --seed N      (1)\n"
+      "  --strokes N   instead of meshing volumes: follow so many strokes with a tolerance\n"
       "  --volume N    this one alone: what a failure's reproducer says\n"
       "  --save FILE   with --volume: write it as .rvol; if it fails, the least of it that does, for "
       "native/tests/marching");
@@ -42,6 +46,8 @@ Arguments parse(int argc, char** argv) {
       out.seconds = static_cast<double>(whole_number(option, value));
     else if (option == "--seed")
       out.options.seed = whole_number(option, value);
+    else if (option == "--strokes")
+      out.strokes = whole_number(option, value);
     else if (option == "--volume")
       out.volume = whole_number(option, value);
     else if (option == "--save" && value)
@@ -81,6 +87,23 @@ int run_one(const Arguments& arguments) {
   return !problem.empty();
 }
 
+int run_strokes(const Arguments& arguments) {
+  using Clock = std::chrono::steady_clock;
+  const auto start = Clock::now();
+  long made = 0;
+  const std::string problem =
+      follow_strokes(arguments.options.seed, static_cast<long>(*arguments.strokes), [&](long strokes) {
+        made = strokes;
+        const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+        return arguments.seconds <= 0 || seconds < arguments.seconds;
+      });
+  if (problem.empty())
+    std::printf("%ld strokes followed, seed %llu\n", made, static_cast<unsigned long long>(arguments.options.seed));
+  else
+    std::printf("FAILED: %s\n", problem.c_str());
+  return !problem.empty();
+}
+
 int run_all(const Arguments& arguments) {
   using Clock = std::chrono::steady_clock;
   const auto start = Clock::now();
@@ -115,6 +138,7 @@ int main(int argc, char** argv) {
   try {
     if (argc > 1 && std::strcmp(argv[1], "--help") == 0) return usage(), 0;
     const Arguments arguments = parse(argc, argv);
+    if (arguments.strokes) return run_strokes(arguments);
     return arguments.volume ? run_one(arguments) : run_all(arguments);
   } catch (const std::exception& e) {
     std::fprintf(stderr, "riffler_mesh_stress: %s\n", e.what());

@@ -1866,12 +1866,20 @@ class Mesher:
     The mesh of a volume that keeps changing, in bricks of 32 × 32 × 32 cells.
 
     ``Mesher(volume)`` meshes all of it; ``update(volume)`` meshes again only where it was changed. What a mesher holds is
-    always, bit for bit, what ``volume.to_mesh()`` gives. It keeps a snapshot of the volume, which shares its tiles.
+    always, bit for bit, what ``volume.to_mesh()`` gives; with a tolerance, what ``volume.to_mesh(tolerance=tolerance)``
+    gives. It keeps a snapshot of the volume, which shares its tiles.
+
+    With a tolerance, patches and `mesh` have only the triangles that the shape needs. The mesher keeps the full mesh too,
+    for the next update: `pick` and `freeze` find the full surface, and ``patch(normals=...)`` takes its normals, so that a
+    long triangle is shaded like the small ones that it replaces. It takes about a third more memory than without a tolerance.
 
     Parameters
     ----------
     volume : Volume
         What is meshed first.
+    tolerance : float, mm, or None
+        Leaves out triangles that the shape does not need within this distance, with the rules of `Volume.to_mesh`: 0, or
+        less than the step of float32 at the part's coordinates, keeps all of them. None: all of them.
     progress : callable or None
         Called with the finished share; returning False cancels.
 
@@ -1883,8 +1891,15 @@ class Mesher:
     >>> changed = mesher.update(volume)
     >>> len(mesher.mesh().triangles) == len(volume.to_mesh().triangles)
     True
+    >>> riffler.Mesher(volume, tolerance=0.05).triangles < 0.1 * mesher.triangles
+    True
+
+    Raises
+    ------
+    ValueError
+        A tolerance that is negative or not finite.
     """
-    def __init__(self, volume: Volume, *, progress: collections.abc.Callable[[float], bool | None] | None = None) -> None:
+    def __init__(self, volume: Volume, *, tolerance: typing.SupportsFloat | None = None, progress: collections.abc.Callable[[float], bool | None] | None = None) -> None:
         ...
     def freeze(self) -> FrozenSurface:
         """
@@ -1906,7 +1921,7 @@ class Mesher:
         """
     def mesh(self) -> Mesh:
         """
-        The whole mesh, the same as ``to_mesh()`` of the volume.
+        The whole mesh, the same as ``to_mesh()`` of the volume, with the mesher's tolerance.
 
         Returns
         -------
@@ -1923,7 +1938,7 @@ class Mesher:
         The triangles of a brick, or of several without seams between them.
 
         The brick's own vertices come first, then those of its neighbours that its triangles touch; what two patches share has
-        the same coordinates in both, bit for bit.
+        the same coordinates in both, bit for bit. With a tolerance, own vertices without a triangle of the patch are left out.
 
         Parameters
         ----------
@@ -1934,7 +1949,8 @@ class Mesher:
             ``.corner_edge``.
         normals : float, rad, or None
             Asks for normals of the triangles' corners on the whole mesh: the mean of the triangles around the vertex, in
-            whatever brick, whose normals are within this angle of the corner's own.
+            whatever brick, whose normals are within this angle of the corner's own. With a tolerance, the mean of those of the
+            full mesh.
 
         Returns
         -------

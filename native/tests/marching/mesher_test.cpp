@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <map>
 
 #include "riffler/marching/to_mesh.hpp"
 #include "riffler/sweep/carve.hpp"
@@ -11,61 +10,17 @@
 #include "stress/float_audit.hpp"
 #include "stress/mesh_scenes.hpp"
 #include "support/effort.hpp"
+#include "tests/marching/followed.hpp"
 
 namespace riffler::marching::mesher_test {
 namespace {
 
 using namespace stress;
 
-/// The mesher has what meshing the whole volume gives, and says so of each patch.
+/// The mesher has what meshing the whole volume gives.
 void expect_same(const Mesher& mesher, const Volume& volume, const std::string& what) {
-  const Mesh whole = to_mesh(volume), followed = mesher.mesh();
-  ASSERT_EQ(followed.vertices.size(), whole.vertices.size()) << what;
-  ASSERT_EQ(followed.triangles.size(), whole.triangles.size()) << what;
-  std::size_t vertices = 0, triangles = 0;
-  for (std::size_t n = 0; n < whole.vertices.size(); ++n) vertices += followed.vertices[n] != whole.vertices[n];
-  for (std::size_t n = 0; n < whole.triangles.size(); ++n) triangles += followed.triangles[n] != whole.triangles[n];
-  EXPECT_EQ(vertices, 0U) << what << ", of " << whole.vertices.size();
-  EXPECT_EQ(triangles, 0U) << what << ", of " << whole.triangles.size();
+  expect_mesh(mesher, to_mesh(volume), what);
 }
-
-/// Copies of patches, brought up to date by what `update` names, put together again by equal places.
-class Patches {
- public:
-  explicit Patches(const Mesher& mesher) {
-    for (const std::size_t n : mesher.patches()) patches_[n] = mesher.patch(n);
-  }
-  void update(const Mesher& mesher, const std::vector<std::size_t>& changed) {
-    for (const std::size_t n : changed) patches_[n] = mesher.patch(n);
-  }
-  void expect_same(const Mesh& whole, const std::string& what) const {
-    std::map<std::array<float, 3>, int> numbers;
-    for (const Vec3& v : whole.vertices) {
-      const Vec3f f(v);
-      numbers.emplace(std::array{f.x, f.y, f.z}, static_cast<int>(numbers.size()));
-    }
-    std::vector<std::array<int, 3>> triangles, expected;
-    for (const auto& [brick, patch] : patches_)
-      for (const Vec3i& t : patch.triangles) {
-        std::array<int, 3> triangle;
-        for (int c = 0; c < 3; ++c) {
-          const Vec3f& v = patch.vertices[t[c]];
-          const auto found = numbers.find({v.x, v.y, v.z});
-          ASSERT_NE(found, numbers.end()) << what << ": brick " << brick << " has a vertex that the mesh has not";
-          triangle[c] = found->second;
-        }
-        triangles.push_back(triangle);
-      }
-    for (const Vec3i& t : whole.triangles) expected.push_back({t.x, t.y, t.z});
-    std::sort(triangles.begin(), triangles.end());
-    std::sort(expected.begin(), expected.end());
-    EXPECT_EQ(triangles.size(), expected.size()) << what;
-    EXPECT_TRUE(triangles == expected) << what;
-  }
-
- private:
-  std::map<std::size_t, MeshPatch> patches_;
-};
 
 TEST(Mesher, FollowsACarvedBlock) {
   for (const char* directions : {"xyz", "z", "x"}) {
@@ -74,15 +29,7 @@ TEST(Mesher, FollowsACarvedBlock) {
     Patches patches(mesher);
     Random random(7);
     for (int stroke = 0; stroke < test::cases(25); ++stroke) {
-      const Tool tools[] = {cutters::ball(3, 40), cutters::flat(2.5, 40), cutters::taper(0.4, 0.3, 4, 40)};
-      const auto pose = [&] {
-        Vec3 axis = random.direction();
-        axis.z = std::abs(axis.z) + 0.3;
-        return Pose{{random.uniform(0, 30), random.uniform(0, 24), random.uniform(12, 22)}, glm::normalize(axis)};
-      };
-      Pose from = pose(), to = from;
-      to.tip += 2.0 * random.direction();
-      sweep::carve(volume, tools[stroke % 3], std::array{from, to});
+      carve_at_random(volume, stroke, random);
       const std::vector<std::size_t> changed = mesher.update(volume);
       const std::string what = std::string(directions) + ", stroke " + std::to_string(stroke);
       expect_same(mesher, volume, what);

@@ -49,6 +49,42 @@ def test_patches_are_the_mesh():
     assert np.array_equal(corners[np.lexsort(corners.T)], expected[np.lexsort(expected.T)])
 
 
+def test_with_a_tolerance_it_follows_to_mesh_with_that_tolerance():
+    volume = carved()
+    mesher = riffler.Mesher(volume, tolerance=0.02)
+    full = riffler.Mesher(volume)
+    assert mesher.triangles < full.triangles / 20
+    patches = {n: mesher.patch(n) for n in mesher.patches()}
+    for x in (8, 12):
+        stroke(volume, x, 7)
+        changed = mesher.update(volume)
+        assert 0 < len(changed) < 20
+        for n in changed:
+            patches[n] = mesher.patch(n)
+    full.update(volume)
+    whole = volume.to_mesh(tolerance=0.02)
+    assert np.array_equal(mesher.mesh().vertices, whole.vertices)
+    assert np.array_equal(mesher.mesh().triangles, whole.triangles)
+    assert mesher.triangles == len(whole.triangles)
+    corners = np.concatenate([p.vertices[p.triangles].reshape(-1, 9) for p in patches.values()])
+    assert np.array_equal(corners[np.lexsort(corners.T)], sorted_corners(whole.vertices, whole.triangles))
+    together = mesher.patch(mesher.patches(), edges=True, normals=0.5)
+    assert len(together.vertices) == len(whole.vertices)
+    assert together.normals.shape == (3 * len(together.triangles), 3)
+    assert mesher.pick([8, 7, 30], [0, 0, -1]).point.tolist() == full.pick([8, 7, 30], [0, 0, -1]).point.tolist()
+
+
+def test_a_tolerance_of_no_use_keeps_all_triangles_and_a_bad_one_is_an_error():
+    volume = carved()
+    for tolerance in (None, 0, 1e-7):
+        assert riffler.Mesher(volume, tolerance=tolerance).triangles == len(volume.to_mesh().triangles)
+    for tolerance in (-1, float("nan"), float("inf")):
+        with pytest.raises(ValueError, match="tolerance must be finite and not negative"):
+            riffler.Mesher(volume, tolerance=tolerance)
+    with pytest.raises(riffler.Cancelled):
+        riffler.Mesher(volume, tolerance=0.02, progress=lambda share: share < 0.7)
+
+
 def sorted_corners(vertices, triangles):
     corners = vertices[triangles].reshape(-1, 9).astype(np.float32)
     return corners[np.lexsort(corners.T)]

@@ -17,7 +17,8 @@ struct MeshPatch {
   mesh::Triangles triangles;
   std::size_t own = 0;                ///< number of vertices that belong to the bricks themselves
   std::vector<std::size_t> bricks;    ///< the requested bricks that have triangles, in order
-  std::vector<std::int32_t> foreign;  ///< numbers in the whole mesh of the other bricks' vertices, ascending
+  std::vector<std::int32_t> foreign;  ///< numbers in the mesher's full mesh of the other bricks' vertices, ascending
+  std::vector<std::int32_t> numbers;  ///< of a mesher with a tolerance: the same of all vertices
 };
 
 struct MeshState;
