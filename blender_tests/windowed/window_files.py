@@ -156,7 +156,8 @@ def cancelled(screen):
     path = Path(common.out("chosen.3mf"))
     # Other windows write into the same folder.
     before, beside = path.read_bytes(), set(path.parent.glob("*chosen*"))
-    yield from choose(screen, bpy.ops.riffler.export_3mf, path, check_existing=False)
+    # All triangles: few are written before the driver looks again.
+    yield from choose(screen, bpy.ops.riffler.export_3mf, path, check_existing=False, detail="ALL")
     yield lambda: running() == "Exporting"
     assert not bpy.ops.riffler.export_stl.poll()  # one long work at a time
     screen.key("ESC")
