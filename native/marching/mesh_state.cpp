@@ -243,9 +243,14 @@ void MeshState::check_whole() const {
 
 std::vector<std::size_t> MeshState::mesh_again(const Changes& changes) {
   read_signs_again(changes.sign_bricks);
-  std::vector<std::size_t> changed, fresh;
+  std::vector<std::size_t> changed, fresh, pulling;
+  std::vector<Vec3i> undone;  // cells whose vertices were pulled and are no longer
   for (const std::size_t n : changes.mesh_bricks) {
     if (bricks.active(n)) changed.push_back(n);
+    if (const ActiveBrick* const old = bricks.active(n); old && !old->pulled.empty()) {
+      pulling.push_back(n);
+      for (const MovedVertex& p : old->pulled) undone.push_back(p.at.cell);
+    }
     place_again(n);
     if (bricks.active(n)) changed.push_back(n), fresh.push_back(n);
   }
@@ -262,10 +267,15 @@ std::vector<std::size_t> MeshState::mesh_again(const Changes& changes) {
     fresh.push_back(n);
   }
   base::sort_unique(fresh);
-  choose_again(fresh, unsettled);
-  std::vector<std::size_t> others = unfold_again(fresh);
+  for (const BrickSnapshot& u : unsettled) undone.insert(undone.end(), u.pulled.begin(), u.pulled.end());
+  choose_again(fresh, undone);
+  std::vector<std::size_t> others = unfold_again(fresh, undone);
   for (const BrickSnapshot& u : unsettled)
     if (moved(u)) others.push_back(u.brick);
+  // The next bricks have quads at vertices that were pulled, or are now.
+  others.insert(others.end(), pulling.begin(), pulling.end());
+  for (const std::size_t n : changes.mesh_bricks)
+    if (bricks.active(n) && !bricks.active(n)->pulled.empty()) others.push_back(n);
   base::sort_unique(others);
   others = around(others, 0, 1);
   changed.insert(changed.end(), others.begin(), others.end());
@@ -339,7 +349,7 @@ bool MeshState::moved(const BrickSnapshot& was) const {
 
 /// Chooses candidates in new bricks. The choices in the next bricks do not depend on the change, because it is too far
 /// away (a choice reaches at most eight cells, one per group), but they are repeated in their turn.
-void MeshState::choose_again(const std::vector<std::size_t>& fresh, const std::vector<BrickSnapshot>& unsettled) {
+void MeshState::choose_again(const std::vector<std::size_t>& fresh, const std::vector<Vec3i>& undone) {
   const std::vector<std::size_t> ring = without(around(fresh, -1, 1), fresh);
   const std::vector<VertexChoice*> known = undecided(surface, ring);
   std::vector<std::pair<std::int32_t, Vec3>> pulled;
@@ -354,27 +364,61 @@ void MeshState::choose_again(const std::vector<std::size_t>& fresh, const std::v
   choose_candidates(surface, undecided(surface, fresh), known, {});
   for (const auto& [vertex, place] : pulled) surface.mesh.vertices[vertex] = place;
   // New quads treated their corners as undecided, and other quads lost what their diagonals were chosen for.
-  for (const BrickSnapshot& u : unsettled) cells.insert(cells.end(), u.pulled.begin(), u.pulled.end());
+  cells.insert(cells.end(), undone.begin(), undone.end());
   for (const QuadRef& ref : quads_near(surface, cells, kAnyMark)) surface.split(ref, surface.hits);
 }
 
-/// Unfolds new bricks, and those whose folds are entangled with theirs. Returns the latter.
-std::vector<std::size_t> MeshState::unfold_again(const std::vector<std::size_t>& fresh) {
+/// The bricks that are not in the region and have a vertex that was pulled near one of these cells: a fold that moved
+/// both started in one of the two, and may be gone.
+std::vector<std::size_t> MeshState::entangled(const std::vector<Vec3i>& cells, const Region& region) const {
+  constexpr int kReach = 2;  // cells between corners of two quads with a common side
+  std::vector<std::size_t> out;
+  for (const Vec3i& cell : cells)
+    for (int corner = 0; corner < 8; ++corner) {
+      const Vec3i far = cell + kReach * Vec3i(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
+      if (far.x < 0 || far.y < 0 || far.z < 0) continue;
+      const Vec3i at(far.x / kBrickSide, far.y / kBrickSide, far.z / kBrickSide);
+      const ActiveBrick* const brick = bricks.active(at.x, at.y, at.z);
+      if (!brick || region.has(bricks.index(at.x, at.y, at.z))) continue;
+      const auto near = [&](const MovedVertex& p) {
+        const Vec3i off = glm::abs(p.at.cell - cell);
+        return std::max({off.x, off.y, off.z}) <= kReach;
+      };
+      if (std::any_of(brick->pulled.begin(), brick->pulled.end(), near)) out.push_back(bricks.index(at.x, at.y, at.z));
+    }
+  base::sort_unique(out);
+  return out;
+}
+
+/// Unfolds new bricks, and those whose folds are entangled with theirs. Returns the latter. `undone`: the cells whose
+/// vertices were pulled and are no longer.
+std::vector<std::size_t> MeshState::unfold_again(const std::vector<std::size_t>& fresh,
+                                                 const std::vector<Vec3i>& undone) {
   Region region;
   region.bricks.assign(bricks.size(), false);
-  std::vector<std::size_t> bricks_in = fresh;
+  std::vector<std::size_t> bricks_in = fresh, next = fresh;
+  std::vector<Vec3i> loose = undone;
   for (;;) {
-    for (const std::size_t n : bricks_in) region.bricks[n] = true;
     std::vector<Vec3i> cells;
-    for (const std::size_t n : bricks_in) {
-      const std::vector<Vec3i> undone = undo_unfold(surface, n);
-      cells.insert(cells.end(), undone.begin(), undone.end());
+    while (!next.empty()) {
+      for (const std::size_t n : next) region.bricks[n] = true;
+      for (const std::size_t n : bricks_in) {
+        const std::vector<Vec3i> more = undo_unfold(surface, n);
+        cells.insert(cells.end(), more.begin(), more.end());
+        loose.insert(loose.end(), more.begin(), more.end());
+      }
+      next = entangled(loose, region);
+      bricks_in.insert(bricks_in.end(), next.begin(), next.end());
+      loose.clear();
     }
+    base::sort_unique(bricks_in);
     for (const QuadRef& ref : quads_near(surface, cells, kAnyMark)) surface.split(ref, surface.hits);
     region.missing.clear();
     unfold(surface, quads_to_look_at(around(bricks_in, -1, 1)), region, {});
     if (region.missing.empty()) return without(bricks_in, fresh);
-    bricks_in.insert(bricks_in.end(), region.missing.begin(), region.missing.end());
+    next = region.missing;
+    base::sort_unique(next);
+    bricks_in.insert(bricks_in.end(), next.begin(), next.end());
     base::sort_unique(bricks_in);
   }
 }

@@ -62,8 +62,9 @@ struct MeshState {
   };
   BrickSnapshot unsettle(std::size_t brick);
   bool moved(const BrickSnapshot& was) const;
-  void choose_again(const std::vector<std::size_t>& fresh, const std::vector<BrickSnapshot>& unsettled);
-  std::vector<std::size_t> unfold_again(const std::vector<std::size_t>& fresh);
+  void choose_again(const std::vector<std::size_t>& fresh, const std::vector<Vec3i>& undone);
+  std::vector<std::size_t> entangled(const std::vector<Vec3i>& cells, const Region& region) const;
+  std::vector<std::size_t> unfold_again(const std::vector<std::size_t>& fresh, const std::vector<Vec3i>& undone);
   std::vector<QuadRef> quads_to_look_at(const std::vector<std::size_t>& list);
 
   SignReader reader_;

@@ -14,8 +14,9 @@ struct FollowedSeries {
 };
 
 /// Series number `number`, which depends on nothing but the seed and the number: up to `strokes` strokes on a volume
-/// drawn at random. After each the mesher's mesh and the patches that it names are compared with to_mesh(tolerance).
-FollowedSeries follow_series(std::uint64_t seed, std::uint64_t number, long strokes);
+/// drawn at random. After each the mesher's mesh is compared with to_mesh's; and, unless `tolerant` is false, that of a
+/// mesher with a tolerance, and the patches that it names, with to_mesh(tolerance).
+FollowedSeries follow_series(std::uint64_t seed, std::uint64_t number, long strokes, bool tolerant = true);
 
 /// Series until `strokes` strokes were made. `progress`, called after each series, may stop the run by returning false.
 /// Returns the first problem, or nothing.

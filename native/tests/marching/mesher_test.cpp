@@ -8,6 +8,7 @@
 #include "riffler/sweep/carve.hpp"
 #include "riffler/tool/cutters.hpp"
 #include "stress/float_audit.hpp"
+#include "stress/following_run.hpp"
 #include "stress/mesh_scenes.hpp"
 #include "support/effort.hpp"
 #include "tests/marching/followed.hpp"
@@ -131,6 +132,13 @@ TEST(Mesher, FollowsIntoEmptinessAndBack) {
   EXPECT_TRUE(mesher.patches().empty());
   mesher.update(block);
   expect_same(mesher, block, "back");
+}
+
+// Its last stroke ends a fold of one brick whose vertices belong to quads of the next, which does not change.
+TEST(Mesher, SplitsQuadsOfTheNextBrickAgainWhereAFoldEnds) {
+  const stress::FollowedSeries series = stress::follow_series(1, 5, 45, false);
+  EXPECT_EQ(series.problem, "");
+  EXPECT_EQ(series.strokes, 45);
 }
 
 }  // namespace
