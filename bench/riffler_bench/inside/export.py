@@ -37,7 +37,7 @@ def export(side, folder, repeats):
     ours, theirs = (str(Path(folder) / name) for name in ("riffler.stl", "blender.stl"))
     name, export_theirs = blenders(theirs)
     works = {
-        "riffler.export_stl": (ours, lambda: bpy.ops.riffler.export_stl(filepath=ours)),
+        "riffler.export_stl": (ours, lambda: bpy.ops.riffler.export_stl(filepath=ours, detail="ALL")),
         name: (theirs, export_theirs),
     }
     times, rows = host.Times(), []

@@ -229,11 +229,8 @@ def rows_of(
         return np.zeros((0, UNKNOWNS)), np.zeros(0)
     equations, gradient, first = _equations(geometry, sweep, force, hook, lead)
     rest, _, _ = low_pass(sweep.period, np.sqrt(WIDTH**2 - NARROW**2))
-    n, half = len(equations), len(rest) // 2
-    weights = np.zeros((len(centre), n))
-    for row, at in zip(weights, centre - first, strict=True):
-        row[at - half : at + half + 1] = rest
-    flat = weights @ equations.reshape(n, -1)
+    samples, half = equations.reshape(len(equations), -1), len(rest) // 2
+    flat = np.array([rest @ samples[at - half : at + half + 1] for at in centre - first])
     basis = square_to(gradient[centre - first])
     out = np.einsum("nkj,nkp->njp", basis, flat.reshape(len(centre), 6, UNKNOWNS + 1)).reshape(-1, UNKNOWNS + 1)
     return out[:, :UNKNOWNS], out[:, UNKNOWNS]
