@@ -58,8 +58,10 @@ HWY_INLINE void add_force(const Arms& at, M in, V depth, V stiffness, const V (&
   for (int i = 0; i < 3; ++i)
     add_at(sums.force[i] + k, mul(factor, w[i])), add_at(sums.torque[i] + k, mul(factor, w[i + 3]));
   int place = 0;
+#pragma GCC unroll 6  // else `w` is in memory
   for (int i = 0; i < 6; ++i) {
     const V row = mul(per_mm, w[i]);
+#pragma GCC unroll 6
     for (int j = 0; j <= i; ++j) add_at(sums.stiffness[place++] + k, mul(row, w[j]));
   }
 }
