@@ -167,6 +167,10 @@ AdaptiveState::Result AdaptiveState::Turns::result(const Layer& layer, std::size
   input.clear();
   if (!(group == 0 ? gather_inside(brick, input) : gather_border(at, group, input))) return nullptr;
   mark_movable(layer, brick, group, input);
+  if (!state_.follows_) {
+    input.simplify(collapser, group);
+    return std::make_shared<const GroupResult>(GroupResult::of(input, group == 0));
+  }
   input.hash();
   if (before_)
     if (const Result& same = before_->results[brick][group]; same && same->made_from == input.digest) return same;
