@@ -165,8 +165,9 @@ bool StarCollapser::merge(std::int32_t from, double limit, int most_faces) {
   int taken = -1;
   for (int n = 0; n < many; ++n) {
     const Side& to = sides_[targets[n].side];
-    const double error = flat ? slab_ : error_of(to, limit - base_);
-    if (!(base_ + error <= limit)) {
+    // Above the room that is left, the error may be incomplete, also where the sum rounds down to the limit.
+    const double room = limit - base_, error = flat ? slab_ : error_of(to, room);
+    if (!(error <= room && base_ + error <= limit)) {
       lowest = std::min(lowest, error);
       continue;
     }
