@@ -117,7 +117,8 @@ Mesh to_mesh(const Volume& volume, double tolerance, const Progress& progress, s
   MeshState state(volume, false, base::part(progress, 0, 0.6));
   if (all) *all = state.surface.mesh.triangles.size();
   if (!is_usable(tolerance, state)) return state.take();
-  return state.take(tolerance, base::part(progress, 0.6, 1));
+  state.simplify(tolerance, base::part(progress, 0.6, 1));
+  return state.compact();
 }
 
 }  // namespace riffler::marching
