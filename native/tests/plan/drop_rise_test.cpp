@@ -55,7 +55,7 @@ TEST(DropRise, FindsANeedleBetweenTwoSamples) {
   needle.triangles.push_back(Vec3i(n, n + 1, n + 2));
   const DropCutter drop(needle, cutters::ball(0.01, 20));
   EXPECT_NEAR(drop.rise({-9, 0, 0}, {9, 0, 0}, 0.01).above, 5, 1e-5);
-  EXPECT_EQ(drop.rise({-9, 1, 0}, {9, 1, 0}, 0.01).above, 0.01) << "no more than asked beside it";
+  EXPECT_EQ(drop.rise({-9, 1, 0}, {9, 1, 0}, 0.01).above, 0.01) << "no more than asked where it is not met";
 }
 
 TEST(DropRise, HeightOnATriangleIsNowhereAboveTheSurface) {

@@ -1,4 +1,4 @@
-#include "riffler/plan/drop.hpp"
+#include "plan/drop_core.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -6,7 +6,6 @@
 #include <stdexcept>
 
 #include "geom/median_tree.hpp"
-#include "plan/drop_core.hpp"
 #include "plan/grown_piece.hpp"
 #include "riffler/base/check.hpp"
 #include "riffler/base/parallel.hpp"
