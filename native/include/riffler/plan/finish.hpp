@@ -18,7 +18,7 @@ namespace riffler::plan {
 struct SetupScene {
   Mesh part;
   std::vector<Mesh> fixtures;
-  Volume stock;          ///< as it is when the operation begins
+  Volume stock;          ///< at the beginning of the operation
   Vec3 axis{0, 0, 1};    ///< unit vector from tip to spindle
   double clearance = 5;  ///< mm above part, stock and fixtures along the axis: rapids across happen there
 };
@@ -63,7 +63,7 @@ std::vector<std::string> finish_patterns();
 
 /// Plans one operation. Rows are curves of the exact drop surface of the whole tool over part and fixtures: no point of
 /// a cut or link is more than `tolerance` below it, by a bound (DropCutter::rise). Rows end where the tool leaves the
-/// part: a wall without a floor beside it is left to an outline. Throws std::invalid_argument naming the option, and
+/// part: a wall without a floor next to it is left to an outline. Throws std::invalid_argument naming the option, and
 /// for a cutter that stands on its side or has an undercut as its widest place.
 FinishResult finish(const SetupScene& scene, const Tool& tool, const FinishOptions& options,
                     const Progress& progress = {});
