@@ -5716,6 +5716,14 @@ def engrave(part: Mesh, curves: collections.abc.Iterable[numpy.typing.ArrayLike]
     """
     For riffler.plan.engrave.
     """
+def finish(part: Mesh, fixtures: collections.abc.Sequence[Mesh], stock: Volume, tool: Tool, *, axis: numpy.typing.ArrayLike, clearance: typing.SupportsFloat, pattern: str, cusp: typing.SupportsFloat, tolerance: typing.SupportsFloat, allowance: typing.SupportsFloat, angle: typing.SupportsFloat, min_slope: typing.SupportsFloat, max_slope: typing.SupportsFloat, region: collections.abc.Iterable[numpy.typing.ArrayLike], feed: typing.SupportsFloat, plunge: typing.SupportsFloat, progress: collections.abc.Callable[[float], bool | None] | None) -> dict[str, typing.Any]:
+    """
+    For riffler.plan.finish.
+    """
+def finish_patterns() -> list[str]:
+    """
+    For riffler.plan.finish.
+    """
 def lift(tool: Tool, poses: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], collider: Collider, *, clearance: typing.SupportsFloat, tolerance: typing.SupportsFloat, max_lift: typing.SupportsFloat, max_evaluations: typing.SupportsInt, progress: collections.abc.Callable[[float], bool | None] | None) -> riffler.plan.locations.LiftReport:
     ...
 def machine_options(machine: str, *, options: collections.abc.Mapping[str, float | bool | str | collections.abc.Sequence[float]] | None = None) -> list[riffler.program_results.MachineOption]:
