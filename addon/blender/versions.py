@@ -122,32 +122,15 @@ def write_material_indices(mesh, indices):
 
 
 def shade_chunk(mesh, angle, smooth=None, normals=None):
-    """Like `shade_by_angle`, for a mesh that changes all the time or is part of a larger one. `normals`: (corners, 3)
-    float32 of the whole mesh. Before 4.5 they take long, unless the mesh is small: without them, `smooth` says, if
-    SMOOTH_BY_POLYGON, which triangles are smooth. Auto smooth computes normals again at each undo: 27 of 60 ms for four
-    chunks of 12 000 triangles."""
-    if normals is not None:
-        _take_normals(mesh, normals)
+    """Like `shade_by_angle`, for a mesh that changes all the time and is part of a larger one. `normals`, if
+    OWN_NORMALS: (corners, 3) float32 of the whole mesh. `smooth`, if SMOOTH_BY_POLYGON: which triangles are smooth.
+    Auto smooth computes normals again at each undo: 27 of 60 ms for four chunks of 12 000 triangles."""
+    if OWN_NORMALS:
+        mesh.attributes.new("custom_normal", "FLOAT_VECTOR", "CORNER").data.foreach_set("vector", normals.ravel())
     elif SMOOTH_BY_POLYGON:
-        mesh.use_auto_smooth = False
         mesh.polygons.foreach_set("use_smooth", smooth)
     else:
         mesh.set_sharp_from_angle(angle=angle)
-
-
-def _take_normals(mesh, normals):
-    """Before 4.5 Blender turns them into angles; before 4.1 auto smooth shows them."""
-    import math
-
-    import numpy as np
-
-    if OWN_NORMALS:
-        mesh.attributes.new("custom_normal", "FLOAT_VECTOR", "CORNER").data.foreach_set("vector", normals.ravel())
-        return
-    if SMOOTH_BY_POLYGON:
-        mesh.polygons.foreach_set("use_smooth", np.ones(len(mesh.polygons), bool))
-        mesh.use_auto_smooth, mesh.auto_smooth_angle = True, math.pi
-    mesh.normals_split_custom_set(normals)
 
 
 def lighten(mesh):

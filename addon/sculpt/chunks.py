@@ -188,7 +188,7 @@ class Chunks:
 
 def _patch(mesher, bricks):
     """Vertices, triangles, edges and shading of a chunk, in the form of meshes.fill."""
-    if versions.OWN_NORMALS or mesher.tolerance:  # long triangles need the normals of all that they stand for
+    if versions.OWN_NORMALS:
         patch = mesher.patch(bricks, edges=True, normals=meshes.SHARP_ANGLE)
         return *_arrays(patch), {"normals": patch.normals}
     if not versions.SMOOTH_BY_POLYGON:

@@ -59,7 +59,7 @@ class ShownSurface:
 
     def _with_borders(self, bricks):
         """Adds bricks with unchanged triangles whose normals at the border to a changed one differ."""
-        if not (versions.OWN_NORMALS or self._mesher.tolerance) or not len(bricks):
+        if not versions.OWN_NORMALS or not len(bricks):
             return bricks
         shape = self._mesher.shape
         swept = {brick for extent in self.reached for brick in blocks.within(shape, *extent)}

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import riffler
 
-from ..blender import meshes
+from ..blender import meshes, versions
 
 DETAIL = (
     ("NEEDED", "As Needed", "Triangles where the shape needs them: a flat face has few"),
@@ -31,8 +31,8 @@ class Surface:
 
 def within(detail, pitch, mask=None):
     """mm that the triangles that a sculpt shows may be from all of them; None: all are shown, as the user wants it
-    (`detail`), or to mark those under the mask."""
-    return None if detail == "ALL" or mask is not None else SHARE * pitch
+    (`detail`), to mark those under the mask, or since this Blender takes no normals for large ones."""
+    return None if detail == "ALL" or mask is not None or not versions.OWN_NORMALS else SHARE * pitch
 
 
 def of_volume(volume, tolerance, progress=None):

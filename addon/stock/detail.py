@@ -2,7 +2,7 @@
 
 import bpy
 
-from ..blender import attributes
+from ..blender import attributes, versions
 from ..common import units
 from ..common.job import TaskJob, ThreadTask
 from ..sculpt import live_registry, mask_display, sculpts, surfaces
@@ -44,7 +44,9 @@ class RIFFLER_OT_detail(SculptWork, bpy.types.Operator):
 
 
 def choose(row, ob):
-    """The choice for a sculpt."""
+    """The choice for a sculpt, if there is one (surfaces.within)."""
+    if not versions.OWN_NORMALS:
+        return
     row = row.row(align=True)
     row.alignment = "RIGHT"
     for key, name, _ in surfaces.DETAIL:
@@ -54,7 +56,7 @@ def choose(row, ob):
 
 def all_for(ob):
     """Why a sculpt shows all triangles though the user wants those that it needs; otherwise ""."""
-    if ob.data.riffler.detail == "ALL":
+    if ob.data.riffler.detail == "ALL" or not versions.OWN_NORMALS:
         return ""
     run = live_registry.of(ob)
     if run is not None:

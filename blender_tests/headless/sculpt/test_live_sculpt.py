@@ -91,14 +91,14 @@ def test_chunks_are_smooth_from_the_start_and_have_the_normals_of_the_whole():
             if k is not None:
                 stroke(name, k)
             shaded_as_the_whole(run)
-        assert (run.mesher.triangles < 0.1 * run.mesher.all_triangles) == (detail == "NEEDED")
+        few = detail == "NEEDED" and common.part("blender.versions").OWN_NORMALS
+        assert (run.mesher.triangles < 0.1 * run.mesher.all_triangles) == few
         live().end_all()
 
 
 def shaded_as_the_whole(run):
     """With all triangles, before 4.5 Blender makes the normals at a chunk's border from the chunk's own triangles;
-    before 4.1 triangles at sharp edges are flat, and all others smooth. With those that the shape needs, before 4.5 it
-    takes normals that differ by less than a degree for the same."""
+    before 4.1 triangles at sharp edges are flat, and all others smooth."""
     meshes, versions = common.part("blender.meshes"), common.part("blender.versions")
     objects = [ob for ob in common.part("sculpt.chunks").collection_of(run.mark).objects if "riffler_chunk" in ob]
     filled = [ob.data for ob in objects if len(ob.data.polygons)]
@@ -106,10 +106,9 @@ def shaded_as_the_whole(run):
         smooth = np.empty(len(mesh.polygons), bool)
         mesh.polygons.foreach_get("use_smooth", smooth)
         assert smooth.mean() > (0.8 if versions.SMOOTH_BY_POLYGON else 0.999)
-    within = run.mesher.tolerance
-    if not (versions.OWN_NORMALS or within):
+    if not versions.OWN_NORMALS:
         return
-    whole = riffler.Mesher(run.volume, tolerance=within)
+    whole = riffler.Mesher(run.volume, tolerance=run.mesher.tolerance)
     patch = whole.patch(whole.patches(), normals=meshes.SHARP_ANGLE)
     vertices, triangles, normals = patch.vertices, patch.triangles, patch.normals
     expected = dict(zip(corner_keys(vertices / run.mm, triangles), normals, strict=True))
@@ -119,7 +118,7 @@ def shaded_as_the_whole(run):
         mesh.loops.foreach_get("vertex_index", corners)
         keys = corner_keys(common.coordinates(mesh), corners.reshape(-1, 3))
         off = np.linalg.norm(shown - [expected[key] for key in keys], axis=1)
-        assert np.degrees(off.max()) < (0.01 if versions.OWN_NORMALS else 1)
+        assert np.degrees(off.max()) < 0.01
 
 
 def test_chunks_hang_on_one_go_where_the_sculpt_goes_and_stay_there_without_it():
