@@ -27,6 +27,8 @@ class AdaptiveState {
   /// Follows a change of the full mesh in these bricks. Returns the bricks whose triangles left differ now, ascending.
   std::vector<std::size_t> update(const std::vector<std::size_t>& changed);
 
+  /// mm.
+  double tolerance() const { return tolerance_; }
   /// Number of a brick's triangles.
   std::size_t count(std::size_t brick) const { return shown_[brick] ? shown_[brick]->triangles.size() : 0; }
   /// Calls body(triangle) for a brick's triangles, in order; vertices by their numbers in the full mesh.

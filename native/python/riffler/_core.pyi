@@ -1950,7 +1950,7 @@ class Mesher:
         normals : float, rad, or None
             Asks for normals of the triangles' corners on the whole mesh: the mean of the triangles around the vertex, in
             whatever brick, whose normals are within this angle of the corner's own. With a tolerance, the mean of those of the
-            full mesh.
+            full mesh that bend no more than the surface under the triangle does.
 
         Returns
         -------
@@ -2059,6 +2059,11 @@ class Mesher:
         []
         """
     @property
+    def all_triangles(self) -> int:
+        """
+        How many the full mesh has: as many as `triangles` without a tolerance.
+        """
+    @property
     def counters(self) -> riffler.results.PickCounters:
         """
         PickCounters: the work of picking since it was made, or since `take_counters`. Reading them changes nothing.
@@ -2067,6 +2072,11 @@ class Mesher:
     def shape(self) -> tuple[int, int, int]:
         """
         Bricks along each axis, with triangles or without: brick n stands at ``numpy.unravel_index(n, shape)``.
+        """
+    @property
+    def tolerance(self) -> float | None:
+        """
+        The tolerance that it was made with, mm; None: all triangles.
         """
     @property
     def triangles(self) -> int:
