@@ -52,8 +52,8 @@ struct History::Core {
   void store(HistoryRun& run) noexcept;
   void number() noexcept;
   void limit_memory() noexcept;
-  VersionCost cost(std::size_t grid, std::size_t tile) const {
-    return cost_of(versions[grid][tile], &base.grids()[grid].tile(tile));
+  VersionCost cost(std::size_t grid, std::size_t tile, std::size_t from = 0) const {
+    return cost_of(versions[grid][tile], &base.grids()[grid].tile(tile), from);
   }
 
   Volume base, now;
@@ -120,12 +120,13 @@ void History::Core::store(HistoryRun& run) noexcept {
   stats.tiles_restored = stats.tiles_changed = 0;
   for (TileRerun& t : run.tiles()) {
     TileVersions& of_tile = versions[t.grid][t.tile];
-    held -= cost(t.grid, t.tile).bytes;
+    const std::size_t from = stats.stride > 1 ? 0 : t.first;  // a stride may drop earlier versions, too
+    held -= cost(t.grid, t.tile, from).bytes;
     of_tile.resize(t.first);
     of_tile.insert(of_tile.end(), std::make_move_iterator(t.tail.begin()), std::make_move_iterator(t.tail.end()));
     if (!of_tile.empty()) of_tile.back().tile = t.last;
     if (stats.stride > 1) thin(of_tile, stats.stride);
-    held += cost(t.grid, t.tile).bytes;
+    held += cost(t.grid, t.tile, from).bytes;
     stats.tiles_restored += t.restored;
     dexel::Grid& grid = now.grids()[t.grid];
     if (grid.shared_tile(t.tile) == t.last) continue;

@@ -163,6 +163,19 @@ std::vector<HistoryRun::Unit> HistoryRun::units() const {
   return out;
 }
 
+/// Whether there is so little to carve that starting threads costs more than it gains.
+bool HistoryRun::small() const {
+  constexpr std::size_t kMoves = 400;  // (move, tile) pairs
+  std::size_t moves = 0;
+  for (const TileRerun& t : tiles_)
+    for (std::size_t k = t.next; k < t.first + t.tail.size(); ++k) {
+      const TouchedTiles& touched = stroke_at(t, k).touched[t.grid];
+      for (const MoveRun& run : touched.of(touched.index(t.tile))) moves += run.end - run.first;
+      if (moves > kMoves) return false;
+    }
+  return true;
+}
+
 /// Takes the tiles of one unit through their strokes. Returns the keys of the strokes that carved something.
 std::vector<std::size_t> HistoryRun::run_unit(const Unit& unit, HistoryRunStats& stats) {
   std::vector<Visit> visits;
@@ -241,6 +254,8 @@ void HistoryRun::run(const Progress& progress) {
   const std::vector<Unit> all = units();
   std::vector<std::vector<std::size_t>> keys(all.size());
   std::vector<HistoryRunStats> stats(all.size());
+  std::optional<base::SerialScope> alone;
+  if (small()) alone.emplace();
   base::parallel_for(
       all.size(), 1,
       [&](std::size_t begin, std::size_t end) {

@@ -68,6 +68,7 @@ class HistoryRun {
   void list_tiles(std::size_t grid);
   void begin(std::size_t grid, std::size_t tile, const PreparedStroke* out, const PreparedStroke* in);
   std::vector<Unit> units() const;
+  bool small() const;
   std::vector<std::size_t> run_unit(const Unit& unit, HistoryRunStats& stats);
   const PreparedStroke& stroke_at(const TileRerun& tile, std::size_t k) const;
   std::size_t key(const PreparedStroke& stroke) const;

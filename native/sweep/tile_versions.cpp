@@ -31,10 +31,13 @@ void thin(TileVersions& versions, std::size_t stride) noexcept {
   }
 }
 
-VersionCost cost_of(const TileVersions& versions, const dexel::Tile* base) {
+VersionCost cost_of(const TileVersions& versions, const dexel::Tile* base, std::size_t from) {
   VersionCost cost;
   const dexel::Tile* last = base;
-  for (const TileVersion& v : versions) {
+  for (std::size_t k = from; k > 0 && last == base; --k)
+    if (versions[k - 1].tile) last = versions[k - 1].tile.get();
+  for (std::size_t k = from; k < versions.size(); ++k) {
+    const TileVersion& v = versions[k];
     if (!v.tile || v.tile.get() == last || v.tile.get() == base) continue;
     last = v.tile.get();
     ++cost.count, cost.bytes += last->nbytes();

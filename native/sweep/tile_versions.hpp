@@ -37,10 +37,11 @@ bool same_bytes(const dexel::Tile& a, const dexel::Tile& b);
 /// stroke left unchanged costs nothing and stays. Keeps the last one.
 void thin(TileVersions& versions, std::size_t stride) noexcept;
 
-/// Number and bytes of the kept versions. `base` is the tile before all strokes, which costs nothing.
+/// Number and bytes of the kept versions from number `from` on. `base` is the tile before all strokes, which costs
+/// nothing.
 struct VersionCost {
   std::size_t count = 0, bytes = 0;
 };
-VersionCost cost_of(const TileVersions& versions, const dexel::Tile* base);
+VersionCost cost_of(const TileVersions& versions, const dexel::Tile* base, std::size_t from = 0);
 
 }  // namespace riffler::sweep
