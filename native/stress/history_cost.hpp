@@ -1,4 +1,4 @@
-// What an edit of a history costs beside carving all strokes again.
+// What an edit of a history costs, compared with carving all strokes again.
 #pragma once
 
 #include <cstddef>
