@@ -17,7 +17,7 @@ from shell import StepError
 # Page: title, and what is on it. Every public name of riffler stands on exactly one, which `write` checks.
 PAGES = {
     "volumes": ("Volumes", ["Volume", "Cut", "Smoothed", "Snapshot", "VolumeReport", "SurfaceReport",
-                            "VolumeCounters"]),
+                            "VolumeCounters", "History", "HistoryStroke", "HistoryStats"]),
     "tools": ("Tools", ["Tool", "ToolShape", "ToolSize"]),
     "meshes": ("Meshes", ["Mesh", "Audit", "Orientation", "Mesher", "Patch", "Hit", "Hits", "FrozenSurface",
                           "PickCounters", "shape"]),

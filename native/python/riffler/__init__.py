@@ -14,6 +14,7 @@ from ._core import (
     Finding,
     FormatError,
     FrozenSurface,
+    History,
     Journal,
     JournalStroke,
     JournalWriter,
@@ -56,6 +57,8 @@ from .program_results import (
 )
 from .results import (
     Audit,
+    HistoryStats,
+    HistoryStroke,
     Hit,
     Hits,
     Nearest,
@@ -77,6 +80,9 @@ __all__ = [
     "FormatError",
     "FrozenSurface",
     "Future",
+    "History",
+    "HistoryStats",
+    "HistoryStroke",
     "Hit",
     "Hits",
     "Journal",

@@ -16,7 +16,7 @@ import typing
 _Found = typing.TypeVar('_Found')
 _Made = typing.TypeVar('_Made')
 import typing_extensions
-__all__: list[str] = ['AtomicFileWriter', 'Cancelled', 'Collider', 'Contact', 'Cut', 'Finding', 'FormatError', 'FrozenSurface', 'Journal', 'JournalStroke', 'JournalWriter', 'Material', 'Mesh', 'Mesher', 'NotATask', 'Note', 'OrientFrame', 'OrientSession', 'PenDevice', 'PenError', 'PenGeometry', 'PenState', 'PencilPath', 'Pointer', 'Program', 'ProgramStream', 'Session', 'SessionFrame', 'SimulatedPen', 'SlabWorker', 'Smoothed', 'Snapshot', 'Task', 'Tool', 'ToolShape', 'ToolSize', 'Verification', 'VerifyPlan', 'VerifyReport', 'Volume', 'clear_drafts', 'contact_locations', 'cutter_locations', 'draft_prefix', 'drop', 'engrave', 'lift', 'machine_options', 'machine_texts', 'machines', 'min_tilt', 'orientation_maps', 'pencil', 'read_file', 'replace_file', 'replaceable', 'set_threads', 'stepover_of_scallop', 'swarf', 'then', 'threads', 'tip_ball_radius', 'verify']
+__all__: list[str] = ['AtomicFileWriter', 'Cancelled', 'Collider', 'Contact', 'Cut', 'Finding', 'FormatError', 'FrozenSurface', 'History', 'Journal', 'JournalStroke', 'JournalWriter', 'Material', 'Mesh', 'Mesher', 'NotATask', 'Note', 'OrientFrame', 'OrientSession', 'PenDevice', 'PenError', 'PenGeometry', 'PenState', 'PencilPath', 'Pointer', 'Program', 'ProgramStream', 'Session', 'SessionFrame', 'SimulatedPen', 'SlabWorker', 'Smoothed', 'Snapshot', 'Task', 'Tool', 'ToolShape', 'ToolSize', 'Verification', 'VerifyPlan', 'VerifyReport', 'Volume', 'clear_drafts', 'contact_locations', 'cutter_locations', 'draft_prefix', 'drop', 'engrave', 'lift', 'machine_options', 'machine_texts', 'machines', 'min_tilt', 'orientation_maps', 'pencil', 'read_file', 'replace_file', 'replaceable', 'set_threads', 'stepover_of_scallop', 'swarf', 'then', 'threads', 'tip_ball_radius', 'verify']
 class FormatError(ValueError):
     """
     A file that is not what it should be: names the file, the line or byte, and what was expected.
@@ -1794,6 +1794,309 @@ class Smoothed:
     def removed(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         (n,) mm³ taken away.
+        """
+class History:
+    """
+    A base volume and strokes in order that stay editable.
+
+    ``h.volume`` is always, byte for byte, what ``base.carve(...)`` with the enabled strokes in order gives. Each tile keeps
+    its versions after the strokes that touch it. An edit sets the tiles that its stroke touches back to the version before
+    it, and carves only the later strokes that touch these tiles, only there; it stops where a tile has its old content again.
+
+    The base is a snapshot: carving the volume later does not change the history. An edit that fails or is cancelled leaves
+    everything unchanged. Edits release Python's lock and use the number of threads of any long call.
+
+    Parameters
+    ----------
+    base : Volume
+        What the strokes are carved into.
+    memory_limit : int, bytes
+        For the versions of tiles, about 25 kB each with rays in three directions. Beyond it, the history keeps every second,
+        fourth, … version of a tile, and an edit carves up to as many more strokes there. An edit needs as much again while it
+        runs.
+
+    Examples
+    --------
+    >>> block = riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5, directions="xyz")
+    >>> history = riffler.History(block)
+    >>> ball = riffler.Tool.ball(6, 30)
+    >>> first = history.add(ball, [[5, 10, 8, 0, 0, 1], [15, 10, 8, 0, 0, 1]])
+    >>> second = history.add(ball, [[10, 5, 8, 0, 0, 1], [10, 15, 8, 0, 0, 1]])
+    >>> history.replace(first, poses=[[5, 12, 7, 0, 0, 1], [15, 12, 7, 0, 0, 1]])
+    >>> cut = block.carve(ball, [[5, 12, 7, 0, 0, 1], [15, 12, 7, 0, 0, 1]])
+    >>> cut = block.carve(ball, [[10, 5, 8, 0, 0, 1], [10, 15, 8, 0, 0, 1]])
+    >>> history.volume.to_bytes() == block.to_bytes()
+    True
+    """
+    def __init__(self, base: Volume, *, memory_limit: typing.SupportsInt = 536870912) -> None:
+        ...
+    def __len__(self) -> int:
+        ...
+    def add(self, tool: Tool, poses: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], *, mode: str = 'remove', tolerance: typing.SupportsFloat = 0.01, protect: Volume | None = None, progress: collections.abc.Callable[[float], bool | None] | None = None) -> int:
+        """
+        Adds a stroke at the end: what ``volume.carve`` with the same arguments does.
+
+        Parameters
+        ----------
+        tool : Tool
+            Its cutter is swept.
+        poses : array_like of shape (n, 6), tip in mm and unit axis
+            Tip xyz, then unit axis xyz from the tip to the spindle; n - 1 moves.
+        mode : "remove" or "add"
+            "add" puts material on wherever the cutter sweeps within the volume's box.
+        tolerance : float, mm
+            For moves that turn the axis; others are exact.
+        protect : Volume or None
+            Of the base's lower, upper, pitch and directions; what lies in it stays unchanged by this stroke. Kept as a snapshot.
+        progress : callable or None
+            Called with the finished share; returning False cancels.
+
+        Returns
+        -------
+        int
+            The stroke's id, for the other calls. An id is never given again.
+
+        Raises
+        ------
+        ValueError
+            The history has no such stroke; or names argument and row: no poses, a shape, an axis that is no unit vector, opposite
+            axes, a protected volume with another grid. The history is unchanged.
+        Cancelled
+            ``progress`` returned False; the history is unchanged.
+
+        Examples
+        --------
+        >>> block = riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5)
+        >>> history = riffler.History(block)
+        >>> history.add(riffler.Tool.ball(6, 30), [[5, 10, 8, 0, 0, 1], [15, 10, 8, 0, 0, 1]])
+        1
+        """
+    def enable(self, stroke: typing.SupportsInt, enabled: bool = True, *, progress: collections.abc.Callable[[float], bool | None] | None = None) -> None:
+        """
+        Enables or disables a stroke. A disabled stroke keeps its place and cuts nothing.
+
+        Parameters
+        ----------
+        stroke : int
+            Its id.
+        enabled : bool
+            False disables it.
+        progress : callable or None
+            Called with the finished share; returning False cancels.
+
+        Raises
+        ------
+        ValueError
+            The history has no such stroke; or names argument and row: no poses, a shape, an axis that is no unit vector, opposite
+            axes, a protected volume with another grid. The history is unchanged.
+        Cancelled
+            ``progress`` returned False; the history is unchanged.
+
+        Examples
+        --------
+        >>> history = riffler.History(riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5))
+        >>> stroke = history.add(riffler.Tool.flat(6, 30), [[-5, 10, 8, 0, 0, 1], [25, 10, 8, 0, 0, 1]])
+        >>> history.enable(stroke, False)
+        >>> history.volume.volume
+        4000.0
+        """
+    def insert(self, tool: Tool, poses: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], *, before: typing.SupportsInt, mode: str = 'remove', tolerance: typing.SupportsFloat = 0.01, protect: Volume | None = None, progress: collections.abc.Callable[[float], bool | None] | None = None) -> int:
+        """
+        Adds a stroke before another one; see `add`.
+
+        Parameters
+        ----------
+        tool : Tool
+            Its cutter is swept.
+        poses : array_like of shape (n, 6), tip in mm and unit axis
+            As for `add`.
+        before : int
+            Id of the stroke that follows the new one.
+        mode : "remove" or "add"
+            As for `add`.
+        tolerance : float, mm
+            For moves that turn the axis; others are exact.
+        protect : Volume or None
+            As for `add`.
+        progress : callable or None
+            Called with the finished share; returning False cancels.
+
+        Returns
+        -------
+        int
+            The new stroke's id.
+
+        Raises
+        ------
+        ValueError
+            The history has no such stroke; or names argument and row: no poses, a shape, an axis that is no unit vector, opposite
+            axes, a protected volume with another grid. The history is unchanged.
+        Cancelled
+            ``progress`` returned False; the history is unchanged.
+
+        Examples
+        --------
+        >>> history = riffler.History(riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5))
+        >>> ball = riffler.Tool.ball(6, 30)
+        >>> last = history.add(ball, [[5, 10, 8, 0, 0, 1], [15, 10, 8, 0, 0, 1]])
+        >>> first = history.insert(ball, [[5, 5, 8, 0, 0, 1], [15, 5, 8, 0, 0, 1]], before=last)
+        >>> history.ids == [first, last]
+        True
+        """
+    def move(self, stroke: typing.SupportsInt, *, before: typing.SupportsInt | None, progress: collections.abc.Callable[[float], bool | None] | None = None) -> None:
+        """
+        Moves a stroke to another place in the order.
+
+        Parameters
+        ----------
+        stroke : int
+            Its id.
+        before : int or None
+            Id of the stroke that follows it then; None: it becomes the last one. Its own id: nothing changes.
+        progress : callable or None
+            Called with the finished share; returning False cancels.
+
+        Raises
+        ------
+        ValueError
+            The history has no such stroke; or names argument and row: no poses, a shape, an axis that is no unit vector, opposite
+            axes, a protected volume with another grid. The history is unchanged.
+        Cancelled
+            ``progress`` returned False; the history is unchanged.
+
+        Examples
+        --------
+        >>> history = riffler.History(riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5))
+        >>> poses = [[-5, 10, 8, 0, 0, 1], [25, 10, 8, 0, 0, 1]]
+        >>> cut = history.add(riffler.Tool.flat(6, 30), poses)
+        >>> fill = history.add(riffler.Tool.flat(4, 30), poses, mode="add")
+        >>> history.move(cut, before=None)
+        >>> history.ids == [fill, cut], round(history.volume.volume, 6)
+        (True, 3760.0)
+        """
+    def remove(self, stroke: typing.SupportsInt, *, progress: collections.abc.Callable[[float], bool | None] | None = None) -> None:
+        """
+        Removes a stroke for good; `enable` can bring a disabled stroke back.
+
+        Parameters
+        ----------
+        stroke : int
+            Its id.
+        progress : callable or None
+            Called with the finished share; returning False cancels.
+
+        Raises
+        ------
+        ValueError
+            The history has no such stroke; or names argument and row: no poses, a shape, an axis that is no unit vector, opposite
+            axes, a protected volume with another grid. The history is unchanged.
+        Cancelled
+            ``progress`` returned False; the history is unchanged.
+
+        Examples
+        --------
+        >>> history = riffler.History(riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5))
+        >>> stroke = history.add(riffler.Tool.flat(6, 30), [[-5, 10, 8, 0, 0, 1], [25, 10, 8, 0, 0, 1]])
+        >>> history.remove(stroke)
+        >>> history.volume.volume, history.ids
+        (4000.0, [])
+        """
+    def replace(self, stroke: typing.SupportsInt, *, tool: Tool | None = None, poses: typing.Annotated[numpy.typing.ArrayLike, numpy.float64] | None = None, mode: str | None = None, tolerance: typing.SupportsFloat | None = None, protect: Volume | None = None, progress: collections.abc.Callable[[float], bool | None] | None = None) -> None:
+        """
+        Changes a stroke. It keeps its id, its place in the order, and whether it is enabled.
+
+        Parameters
+        ----------
+        stroke : int
+            Its id.
+        tool : Tool or None
+            None: unchanged.
+        poses : array_like of shape (n, 6), tip in mm and unit axis, or None
+            None: unchanged.
+        mode : "remove", "add" or None
+            None: unchanged.
+        tolerance : float, mm, or None
+            None: unchanged.
+        protect : Volume or None
+            None: unchanged; an empty volume protects nothing.
+        progress : callable or None
+            Called with the finished share; returning False cancels.
+
+        Raises
+        ------
+        ValueError
+            The history has no such stroke; or names argument and row: no poses, a shape, an axis that is no unit vector, opposite
+            axes, a protected volume with another grid. The history is unchanged.
+        Cancelled
+            ``progress`` returned False; the history is unchanged.
+
+        Examples
+        --------
+        >>> history = riffler.History(riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5))
+        >>> stroke = history.add(riffler.Tool.flat(6, 30), [[-5, 10, 8, 0, 0, 1], [25, 10, 8, 0, 0, 1]])
+        >>> history.replace(stroke, tool=riffler.Tool.flat(4, 30))
+        >>> round(history.volume.volume, 6)
+        3840.0
+        """
+    def stats(self) -> riffler.results.HistoryStats:
+        """
+        The work of the last edit, and what the history holds.
+
+        Returns
+        -------
+        HistoryStats
+            An edit restores only tiles that the edited stroke touches, and runs only strokes that touch those, only there.
+
+        Examples
+        --------
+        >>> history = riffler.History(riffler.Volume.block((0, 0, 0), (80, 20, 10), pitch=0.5))
+        >>> ball = riffler.Tool.ball(6, 30)
+        >>> left = history.add(ball, [[5, 8, 8, 0, 0, 1], [8, 8, 8, 0, 0, 1]])
+        >>> right = history.add(ball, [[70, 8, 8, 0, 0, 1], [74, 8, 8, 0, 0, 1]])
+        >>> history.replace(left, poses=[[5, 8, 7, 0, 0, 1], [8, 8, 7, 0, 0, 1]])
+        >>> history.stats().tiles_restored, history.stats().strokes_run
+        (1, 1)
+        """
+    def stroke(self, stroke: typing.SupportsInt) -> riffler.results.HistoryStroke:
+        """
+        A stroke's content.
+
+        Parameters
+        ----------
+        stroke : int
+            Its id.
+
+        Returns
+        -------
+        HistoryStroke
+            A copy.
+
+        Raises
+        ------
+        ValueError
+            The history has no such stroke.
+
+        Examples
+        --------
+        >>> history = riffler.History(riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5))
+        >>> stroke = history.add(riffler.Tool.ball(6, 30), [[5, 10, 8, 0, 0, 1], [15, 10, 8, 0, 0, 1]])
+        >>> history.stroke(stroke).mode, history.stroke(stroke).poses.shape, history.stroke(stroke).enabled
+        ('remove', (2, 6), True)
+        """
+    @property
+    def base(self) -> Volume:
+        """
+        Volume: the base before all strokes; an independent volume that shares its tiles.
+        """
+    @property
+    def ids(self) -> list[int]:
+        """
+        list of int: the ids of all strokes in order, disabled ones included.
+        """
+    @property
+    def volume(self) -> Volume:
+        """
+        Volume: the base with the enabled strokes. An independent volume that shares its tiles: costs pointers only.
         """
 class FrozenSurface:
     """
