@@ -1,4 +1,4 @@
-// Rational B-spline (NURBS) patches as they are given.
+// Rational B-spline (NURBS) patches, as arrays describe them.
 #pragma once
 
 #include <cstddef>
