@@ -20,7 +20,7 @@ PAGES = {
                             "VolumeCounters", "History", "HistoryStroke", "HistoryStats"]),
     "tools": ("Tools", ["Tool", "ToolShape", "ToolSize"]),
     "meshes": ("Meshes", ["Mesh", "Audit", "Orientation", "Mesher", "Patch", "Hit", "Hits", "FrozenSurface",
-                          "PickCounters", "shape"]),
+                          "Surface", "PickCounters", "shape"]),
     "contact": ("Contact", ["Collider", "Contact", "Nearest"]),
     "planning": ("Planning", ["plan"]),
     "programs": ("Programs and verification", ["Program", "ProgramStream", "Note", "WriteReport", "PolePassage",

@@ -3,6 +3,7 @@
 #include "bindings/history_class.hpp"
 #include "bindings/program_arguments.hpp"
 #include "bindings/session_frame.hpp"
+#include "bindings/surface_class.hpp"
 
 PYBIND11_MODULE(_core, m) {
   using namespace riffler;
@@ -16,6 +17,7 @@ PYBIND11_MODULE(_core, m) {
   bindings::bind_tasks(m);
   bindings::bind_files(m);
   bindings::bind_mesh(m);
+  bindings::bind_surface(m);
   bindings::bind_tool(m);
   bindings::bind_volume(m);
   bindings::bind_smooth_dabs(m);

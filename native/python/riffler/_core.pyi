@@ -16,7 +16,11 @@ import typing
 _Found = typing.TypeVar('_Found')
 _Made = typing.TypeVar('_Made')
 import typing_extensions
+<<<<<<< HEAD
 __all__: list[str] = ['AtomicFileWriter', 'Cancelled', 'Collider', 'Contact', 'Cut', 'Finding', 'FormatError', 'FrozenSurface', 'History', 'Journal', 'JournalStroke', 'JournalWriter', 'Material', 'Mesh', 'Mesher', 'NotATask', 'Note', 'OrientFrame', 'OrientSession', 'PenDevice', 'PenError', 'PenGeometry', 'PenState', 'PencilPath', 'Pointer', 'Program', 'ProgramStream', 'Session', 'SessionFrame', 'SimulatedPen', 'SlabWorker', 'Smoothed', 'Snapshot', 'Task', 'Tool', 'ToolShape', 'ToolSize', 'Verification', 'VerifyPlan', 'VerifyReport', 'Volume', 'clear_drafts', 'contact_locations', 'cutter_locations', 'draft_prefix', 'drop', 'engrave', 'lift', 'machine_options', 'machine_texts', 'machines', 'min_tilt', 'orientation_maps', 'pencil', 'read_file', 'replace_file', 'replaceable', 'set_threads', 'stepover_of_scallop', 'swarf', 'then', 'threads', 'tip_ball_radius', 'verify']
+=======
+__all__: list[str] = ['AtomicFileWriter', 'Cancelled', 'Collider', 'Contact', 'Cut', 'Finding', 'FormatError', 'FrozenSurface', 'Journal', 'JournalStroke', 'JournalWriter', 'Material', 'Mesh', 'Mesher', 'NotATask', 'Note', 'OrientFrame', 'OrientSession', 'PenDevice', 'PenError', 'PenGeometry', 'PenState', 'PencilPath', 'Pointer', 'Program', 'ProgramStream', 'Session', 'SessionFrame', 'SimulatedPen', 'SlabWorker', 'Smoothed', 'Snapshot', 'Surface', 'Task', 'Tool', 'ToolShape', 'ToolSize', 'Verification', 'VerifyPlan', 'VerifyReport', 'Volume', 'clear_drafts', 'contact_locations', 'cutter_locations', 'draft_prefix', 'drop', 'engrave', 'lift', 'machine_options', 'machine_texts', 'machines', 'min_tilt', 'orientation_maps', 'pencil', 'read_file', 'replace_file', 'replaceable', 'set_threads', 'stepover_of_scallop', 'swarf', 'then', 'threads', 'tip_ball_radius', 'verify']
+>>>>>>> e575762aec36b9f0a76c630906e575af8eb1e79c
 class FormatError(ValueError):
     """
     A file that is not what it should be: names the file, the line or byte, and what was expected.
@@ -366,6 +370,217 @@ class Mesh:
     def volume(self) -> float:
         """
         mm³, signed; of a closed mesh.
+        """
+class Surface:
+    """
+    An exact surface of rational B-spline (NURBS) patches, mm. It never changes.
+
+    `Surface.nurbs` makes a surface of one patch; this makes one of several, which need not be connected.
+
+    Parameters
+    ----------
+    surfaces : list of Surface
+        Their patches, in this order.
+
+    Raises
+    ------
+    ValueError
+        No surface.
+
+    Examples
+    --------
+    >>> flat = riffler.Surface.nurbs([[[0, 0, 0], [0, 5, 0]], [[4, 0, 0], [4, 5, 0]]], [[1, 1], [1, 1]],
+    ...                              [0, 0, 1, 1], [0, 0, 1, 1], 1, 1)
+    >>> wall = riffler.Surface.nurbs([[[0, 0, 0], [4, 0, 0]], [[0, 0, 3], [4, 0, 3]]], [[1, 1], [1, 1]],
+    ...                              [0, 0, 1, 1], [0, 0, 1, 1], 1, 1)
+    >>> riffler.Surface([flat, wall])
+    <riffler.Surface: 2 patches>
+    """
+    @staticmethod
+    def nurbs(points: numpy.typing.ArrayLike, weights: numpy.typing.ArrayLike, knots_u: numpy.typing.ArrayLike, knots_v: numpy.typing.ArrayLike, degree_u: typing.SupportsInt, degree_v: typing.SupportsInt) -> Surface:
+        """
+        A surface of one patch.
+
+        Parameters
+        ----------
+        points : array_like of shape (nu, nv, 3), mm
+            Control points, not multiplied by the weights.
+        weights : array_like of shape (nu, nv)
+            Positive, with a ratio of at most 1e12.
+        knots_u : array_like of nu + degree_u + 1 numbers
+            Not decreasing; the patch's domain begins at knot degree_u and ends at knot nu.
+        knots_v : array_like of nv + degree_v + 1 numbers
+            Likewise.
+        degree_u, degree_v : int, 1 to 15
+            Degrees of the polynomials.
+
+        Returns
+        -------
+        Surface
+            Its normals are in the direction of dS/du × dS/dv.
+
+        Raises
+        ------
+        ValueError
+            Names argument and row: a wrong shape or number of knots, knots that decrease or tear the surface, a weight that is
+            not positive, a degree out of range, a number that is not finite.
+
+        Examples
+        --------
+        >>> r = 0.5 ** 0.5
+        >>> quarter = riffler.Surface.nurbs([[[5, 0, 0], [5, 0, 9]], [[5, 5, 0], [5, 5, 9]], [[0, 5, 0], [0, 5, 9]]],
+        ...                                 [[1, 1], [r, r], [1, 1]], [0, 0, 0, 1, 1, 1], [0, 0, 1, 1], 2, 1)
+        >>> points, normals, distance = quarter.closest([[6, 8, 4]])  # of a cylinder of radius 5
+        >>> points.round(9).tolist(), distance.round(9).tolist()
+        ([[3.0, 4.0, 4.0]], [5.0])
+        """
+    def __copy__(self) -> Surface:
+        ...
+    def __deepcopy__(self, memo: dict) -> Surface:
+        ...
+    def __init__(self, surfaces: collections.abc.Sequence[Surface]) -> None:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def closest(self, points: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], *, progress: collections.abc.Callable[[float], bool | None] | None = None) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+        """
+        The nearest point of the surface to each point, of all patches: never a local minimum.
+
+        No point of the surface is nearer than the returned distance by more than 1e-9 mm, or 1e-13 of the largest coordinate of
+        surface and points if that is more: bounds from the control points prove it.
+
+        Parameters
+        ----------
+        points : array_like of shape (n, 3), mm
+            Anywhere.
+        progress : callable or None
+            Called with the finished share; returning False cancels.
+
+        Returns
+        -------
+        (points, normals, distance) : ndarrays of shape (n, 3), (n, 3) and (n,), float64
+            The nearest points, mm; the surface's unit normals there, as by `evaluate`; the distances, mm, not negative.
+
+        Raises
+        ------
+        ValueError
+            Names the row of a point that is not finite.
+        Cancelled
+            ``progress`` returned False.
+
+        Examples
+        --------
+        >>> flat = riffler.Surface.nurbs([[[0, 0, 0], [0, 5, 0]], [[4, 0, 0], [4, 5, 0]]], [[1, 1], [1, 1]],
+        ...                              [0, 0, 1, 1], [0, 0, 1, 1], 1, 1)
+        >>> points, normals, distance = flat.closest([[1, 2, 3], [7, 5, 4]])
+        >>> points.round(9).tolist(), distance.round(9).tolist()
+        ([[1.0, 2.0, 0.0], [4.0, 5.0, 0.0]], [3.0, 5.0])
+        """
+    def domain(self, patch: typing.SupportsInt = 0) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        The domain of a patch.
+
+        Parameters
+        ----------
+        patch : int
+            Which patch, counted from 0.
+
+        Returns
+        -------
+        ndarray of shape (2, 2), float64
+            Least and largest (u, v).
+
+        Raises
+        ------
+        ValueError
+            The patch does not exist.
+
+        Examples
+        --------
+        >>> flat = riffler.Surface.nurbs([[[0, 0, 0], [0, 5, 0]], [[4, 0, 0], [4, 5, 0]]], [[1, 1], [1, 1]],
+        ...                              [0, 0, 1, 1], [2, 2, 3, 3], 1, 1)
+        >>> flat.domain().tolist()
+        [[0.0, 2.0], [1.0, 3.0]]
+        """
+    def evaluate(self, uv: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], *, patch: typing.SupportsInt = 0, progress: collections.abc.Callable[[float], bool | None] | None = None) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+        """
+        Points and unit normals at parameters.
+
+        In a pole, where a derivative is 0, the normal is the limit of those inside the patch. It is 0 where the patch has no
+        area.
+
+        Parameters
+        ----------
+        uv : array_like of shape (n, 2)
+            Parameters, within the domain of the patch.
+        patch : int
+            Which patch, counted from 0.
+        progress : callable or None
+            Called with the finished share; returning False cancels.
+
+        Returns
+        -------
+        (points, normals) : ndarrays of shape (n, 3), float64
+            mm, and unit vectors in the direction of dS/du × dS/dv.
+
+        Raises
+        ------
+        ValueError
+            Names the row of parameters that are not in the domain, or a patch that does not exist.
+        Cancelled
+            ``progress`` returned False.
+
+        Examples
+        --------
+        >>> flat = riffler.Surface.nurbs([[[0, 0, 0], [0, 5, 0]], [[4, 0, 0], [4, 5, 0]]], [[1, 1], [1, 1]],
+        ...                              [0, 0, 1, 1], [0, 0, 1, 1], 1, 1)
+        >>> points, normals = flat.evaluate([[0.5, 0.2]])
+        >>> points.tolist(), normals.tolist()
+        ([[2.0, 1.0, 0.0]], [[0.0, 0.0, 1.0]])
+        """
+    def to_mesh(self, tolerance: typing.SupportsFloat, *, progress: collections.abc.Callable[[float], bool | None] | None = None) -> Mesh:
+        """
+        Triangles within a tolerance of the surface, and the surface within it of them.
+
+        Bounds of second derivatives prove it; vertices lie on the surface. Seams of closed patches, and patches that have an
+        edge in common (the same curve with the same parameters), share vertices, and a pole is one vertex: what is closed stays
+        closed.
+
+        Parameters
+        ----------
+        tolerance : float, mm
+            At least 1e-8, and 1e-10 of the largest coordinate.
+        progress : callable or None
+            Called with the finished share; returning False cancels.
+
+        Returns
+        -------
+        Mesh
+            Counter-clockwise seen from the side of the normals.
+
+        Raises
+        ------
+        ValueError
+            A tolerance that is too small, or that makes more than 50 million triangles.
+        Cancelled
+            ``progress`` returned False.
+
+        Examples
+        --------
+        >>> flat = riffler.Surface.nurbs([[[0, 0, 0], [0, 5, 0]], [[4, 0, 0], [4, 5, 0]]], [[1, 1], [1, 1]],
+        ...                              [0, 0, 1, 1], [0, 0, 1, 1], 1, 1)
+        >>> flat.to_mesh(0.01)
+        <riffler.Mesh: 4 vertices, 2 triangles>
+        """
+    @property
+    def bounds(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (2, 3) float64, mm: lower and upper corner of the control points' box, which contains the surface.
+        """
+    @property
+    def patch_count(self) -> int:
+        """
+        How many patches it has.
         """
 class Tool:
     """
