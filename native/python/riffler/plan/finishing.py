@@ -85,7 +85,7 @@ def finish(
 
     Examples
     --------
-    >>> part = riffler.shape.relief([[1, 3], [2, 1]], size=(20, 20), depth=10)
+    >>> part = riffler.shape.relief([[0.3, 1.0], [0.6, 0.3]], size=(20, 20), depth=10)
     >>> setup = riffler.plan.Setup(part, riffler.Volume.block((0, 0, 0), (20, 20, 12), pitch=0.5))
     >>> op = riffler.plan.finish(setup, riffler.Tool.ball(diameter=6, length=30), cusp=0.05, angle=0.5)
     >>> op.poses.shape[1], op.reason, op.report.air_mm < op.report.cut_mm

@@ -47,7 +47,7 @@ class Setup:
 
     Examples
     --------
-    >>> part = riffler.shape.relief([[1, 3], [2, 1]], size=(20, 20), depth=10)
+    >>> part = riffler.shape.relief([[0.3, 1.0], [0.6, 0.3]], size=(20, 20), depth=10)
     >>> stock = riffler.Volume.block((0, 0, 0), (20, 20, 12), pitch=0.5)
     >>> setup = riffler.plan.Setup(part, stock)
     >>> setup.clearance, setup.machine
@@ -89,7 +89,7 @@ class Setup:
 
         Examples
         --------
-        >>> part = riffler.shape.relief([[1, 3], [2, 1]], size=(20, 20), depth=10)
+        >>> part = riffler.shape.relief([[0.3, 1.0], [0.6, 0.3]], size=(20, 20), depth=10)
         >>> setup = riffler.plan.Setup(part, riffler.Volume.block((0, 0, 0), (20, 20, 12), pitch=0.5))
         >>> round(setup.stock.volume)
         4800
@@ -113,7 +113,7 @@ class Setup:
 
         Examples
         --------
-        >>> part = riffler.shape.relief([[1, 3], [2, 1]], size=(20, 20), depth=10)
+        >>> part = riffler.shape.relief([[0.3, 1.0], [0.6, 0.3]], size=(20, 20), depth=10)
         >>> setup = riffler.plan.Setup(part, riffler.Volume.block((0, 0, 0), (20, 20, 12), pitch=0.5))
         >>> setup.apply(riffler.plan.finish(setup, riffler.Tool.ball(diameter=6, length=30), cusp=0.1))
         >>> setup.stock.volume < 4800
@@ -139,7 +139,7 @@ class Setup:
 
         Examples
         --------
-        >>> part = riffler.shape.relief([[1, 3], [2, 1]], size=(20, 20), depth=10)
+        >>> part = riffler.shape.relief([[0.3, 1.0], [0.6, 0.3]], size=(20, 20), depth=10)
         >>> setup = riffler.plan.Setup(part, riffler.Volume.block((0, 0, 0), (20, 20, 12), pitch=0.5))
         >>> op = riffler.plan.finish(setup, riffler.Tool.ball(diameter=6, length=30), cusp=0.1)
         >>> setup.apply(op)
@@ -206,7 +206,7 @@ def program(setup: Setup, operations: Iterable[Operation], *, progress: Progress
 
     Examples
     --------
-    >>> part = riffler.shape.relief([[1, 3], [2, 1]], size=(20, 20), depth=10)
+    >>> part = riffler.shape.relief([[0.3, 1.0], [0.6, 0.3]], size=(20, 20), depth=10)
     >>> setup = riffler.plan.Setup(part, riffler.Volume.block((0, 0, 0), (20, 20, 12), pitch=0.5))
     >>> op = riffler.plan.finish(setup, riffler.Tool.ball(diameter=6, length=30), cusp=0.1, feed=800)
     >>> program = riffler.plan.program(setup, [op])
