@@ -47,22 +47,26 @@ HistoryStroke to_stroke(const Tool& tool, const Doubles& poses, const std::strin
   return {tool, to_poses(poses, "poses"), to_mode(mode), tolerance, snapshot_of(protect)};
 }
 
-StrokeId add(SharedHistory& self, const Tool& tool, const Doubles& poses, const std::string& mode, double tolerance,
-             SharedVolume* protect, const ProgressLike& progress) {
-  HistoryStroke stroke = to_stroke(tool, poses, mode, tolerance, protect);
+/// Runs an edit, body(history, progress), without Python's lock, and alone.
+template <class Body>
+auto edited(SharedHistory& self, const ProgressLike& progress, const Body& body) {
   const Progress listener = to_progress(progress);
   const NoGil release;
   const auto held = lock(self);
-  return self.history.add(std::move(stroke), listener);
+  return body(self.history, listener);
+}
+
+StrokeId add(SharedHistory& self, const Tool& tool, const Doubles& poses, const std::string& mode, double tolerance,
+             SharedVolume* protect, const ProgressLike& progress) {
+  HistoryStroke stroke = to_stroke(tool, poses, mode, tolerance, protect);
+  return edited(self, progress, [&](sweep::History& h, const Progress& p) { return h.add(std::move(stroke), p); });
 }
 
 StrokeId insert(SharedHistory& self, const Tool& tool, const Doubles& poses, StrokeId before, const std::string& mode,
                 double tolerance, SharedVolume* protect, const ProgressLike& progress) {
   HistoryStroke stroke = to_stroke(tool, poses, mode, tolerance, protect);
-  const Progress listener = to_progress(progress);
-  const NoGil release;
-  const auto held = lock(self);
-  return self.history.insert(std::move(stroke), before, listener);
+  return edited(self, progress,
+                [&](sweep::History& h, const Progress& p) { return h.insert(std::move(stroke), before, p); });
 }
 
 void replace(SharedHistory& self, StrokeId id, const Tool* tool, const std::optional<Doubles>& poses,
@@ -74,31 +78,19 @@ void replace(SharedHistory& self, StrokeId id, const Tool* tool, const std::opti
   if (mode) stroke.mode = to_mode(*mode);
   if (tolerance) stroke.tolerance = *tolerance;
   if (protect) stroke.protect = snapshot_of(protect);
-  const Progress listener = to_progress(progress);
-  const NoGil release;
-  const auto held = lock(self);
-  self.history.replace(id, std::move(stroke), listener);
+  edited(self, progress, [&](sweep::History& h, const Progress& p) { h.replace(id, std::move(stroke), p); });
 }
 
 void remove(SharedHistory& self, StrokeId id, const ProgressLike& progress) {
-  const Progress listener = to_progress(progress);
-  const NoGil release;
-  const auto held = lock(self);
-  self.history.remove(id, listener);
+  edited(self, progress, [&](sweep::History& h, const Progress& p) { h.remove(id, p); });
 }
 
 void move(SharedHistory& self, StrokeId id, std::optional<StrokeId> before, const ProgressLike& progress) {
-  const Progress listener = to_progress(progress);
-  const NoGil release;
-  const auto held = lock(self);
-  self.history.move(id, before, listener);
+  edited(self, progress, [&](sweep::History& h, const Progress& p) { h.move(id, before, p); });
 }
 
 void enable(SharedHistory& self, StrokeId id, bool enabled, const ProgressLike& progress) {
-  const Progress listener = to_progress(progress);
-  const NoGil release;
-  const auto held = lock(self);
-  self.history.enable(id, enabled, listener);
+  edited(self, progress, [&](sweep::History& h, const Progress& p) { h.enable(id, enabled, p); });
 }
 
 HistoryStrokeResult stroke(SharedHistory& self, StrokeId id) {

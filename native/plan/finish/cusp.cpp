@@ -2,14 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "geom/math.hpp"
 
 namespace riffler::plan {
 
 namespace {
 
 constexpr int kPoints = 256, kBisections = 48;
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
@@ -18,13 +18,13 @@ CutterProfile::CutterProfile(const Tool& tool) {
   for (const LowerSide& side : sides_) radius_ = std::max(radius_, side.rim());
   // Dense near the rim, where a ball is steep.
   for (int k = 0; k <= kPoints; ++k) {
-    const double rho = radius_ * std::sin(1.5707963267948966 * k / kPoints);
+    const double rho = radius_ * std::sin(kPi / 2 * k / kPoints);
     points_.emplace_back(rho, height(std::min(rho, radius_)));
   }
 }
 
 double CutterProfile::height(double rho) const {
-  double least = kInfinite;
+  double least = kInfinity;
   for (const LowerSide& side : sides_)
     if (rho <= side.rim() * (1 + 1e-12)) least = std::min(least, side.height(std::min(rho, side.rim())));
   return least;
@@ -34,11 +34,9 @@ double CutterProfile::ridge(double across, double up) const {
   across = std::abs(across), up = std::abs(up);
   if (across == 0) return 0;
   // The higher cutter stands to the right. The ridge's top lies where both lower sides have one height.
-  double low = 0, high = across;
-  if (across > 2 * radius_) return kInfinite;
+  if (across > 2 * radius_) return kInfinity;
   const auto above = [&](double x) { return height(x) - up - height(std::abs(x - across)); };
-  const double first = std::max(0.0, across - radius_), last = std::min(radius_, across);
-  low = first, high = last;
+  double low = std::max(0.0, across - radius_), high = std::min(radius_, across);
   Vec2 top;
   if (above(high) < 0) {
     top = {high, up + height(std::abs(high - across))};  // on the lower cutter's flank
@@ -51,7 +49,7 @@ double CutterProfile::ridge(double across, double up) const {
   }
   // The tangent of both is parallel to the line from one tip to the other.
   const Vec2 normal = Vec2(-up, across) / std::hypot(up, across);
-  double least = kInfinite;
+  double least = kInfinity;
   for (const Vec2& p : points_) least = std::min({least, glm::dot(normal, p), glm::dot(normal, Vec2(-p.x, p.y))});
   return std::max(0.0, glm::dot(normal, top) - least);
 }

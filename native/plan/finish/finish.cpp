@@ -6,6 +6,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "geom/math.hpp"
 #include "plan/finish/order.hpp"
 #include "plan/finish/patterns.hpp"
 #include "riffler/base/check.hpp"
@@ -18,24 +19,25 @@ namespace riffler::plan {
 
 namespace {
 
-constexpr double kQuarter = 1.5707963267948966;
 constexpr double kAbove = 1;           // mm above the stock at which a rapid down ends
 constexpr double kDirectSpacings = 3;  // links at feed are at most so many spacings of rows long, or the tool's radius
 
-void check(const FinishOptions& o, const Tool& tool) {
-  const auto good = [](const Pattern& p, const std::string& name) { return name == p.name; };
+const Pattern& pattern_named(const std::string& name) {
   const auto& table = patterns();
-  if (std::none_of(table.begin(), table.end(), [&](const Pattern& p) { return good(p, o.pattern); })) {
-    std::string names;
-    for (const Pattern& p : table) names += (names.empty() ? "" : ", ") + std::string(p.name);
-    throw std::invalid_argument("pattern must be one of " + names + ", not '" + o.pattern + "'");
-  }
+  const auto found = std::find_if(table.begin(), table.end(), [&](const Pattern& p) { return name == p.name; });
+  if (found != table.end()) return *found;
+  std::string names;
+  for (const Pattern& p : table) names += (names.empty() ? "" : ", ") + std::string(p.name);
+  throw std::invalid_argument("pattern must be one of " + names + ", not '" + name + "'");
+}
+
+void check(const FinishOptions& o, const Tool& tool) {
   base::require_length(o.cusp, "cusp");
   base::require_tolerance(o.tolerance);
   base::require_tolerance_for(o.tolerance, tool.length() + tool.diameter());
   base::require_not_negative(o.allowance, "allowance", base::kFiniteAndNotNegative);
   base::require_angle(o.angle, "angle");
-  if (!(o.min_slope >= 0 && o.min_slope <= o.max_slope && o.max_slope <= kQuarter + 1e-9))
+  if (!(o.min_slope >= 0 && o.min_slope <= o.max_slope && o.max_slope <= kPi / 2 + 1e-9))
     throw std::invalid_argument("slopes must be two angles in rad, 0 ≤ smaller ≤ larger ≤ π/2");
   base::require_positive(o.feed, "feed", base::kPositiveAndFinite);
   base::require_positive(o.plunge, "plunge", base::kPositiveAndFinite);
@@ -45,9 +47,8 @@ void check(const FinishOptions& o, const Tool& tool) {
       throw std::invalid_argument(
           "tolerance must be at least 0.004 mm for a profile with arcs: concave ones are cut "
           "as cones within 0.001 mm");
-  const auto& segments = tool.profile().segments();
   double widest = 0;
-  for (const tool::ProfileSegment& s : segments) {
+  for (const tool::ProfileSegment& s : tool.profile().segments()) {
     if (s.to.x < widest - 1e-9)
       throw std::invalid_argument(
           "tool: " + tool.name() +
@@ -174,6 +175,7 @@ std::string why_empty(const PatternRows& rows, const FinishOptions& options) {
 }  // namespace
 
 FinishResult finish(const SetupScene& scene, const Tool& tool, const FinishOptions& options, const Progress& progress) {
+  const Pattern& pattern = pattern_named(options.pattern);
   check(options, tool);
   base::require_length(scene.clearance, "clearance");
   validate(scene.part);
@@ -184,9 +186,7 @@ FinishResult finish(const SetupScene& scene, const Tool& tool, const FinishOptio
   for (const Mesh& one : scene.fixtures) validate(one), fixtures.push_back(turned(one, frame));
   const FinishSurface surface(part, fixtures, tool, options, region_in(options.region, frame));
   const CutterProfile profile(tool);
-  const auto pattern =
-      std::find_if(patterns().begin(), patterns().end(), [&](const Pattern& p) { return options.pattern == p.name; });
-  PatternRows rows = pattern->rows({surface, profile, tool, options, mesh::bounds(part)}, base::part(progress, 0, 0.8));
+  PatternRows rows = pattern.rows({surface, profile, tool, options, mesh::bounds(part)}, base::part(progress, 0, 0.8));
   FinishResult out;
   out.blocked = rows.blocked, out.rows = rows.rows, out.added = rows.added;
   for (BlockedPlace& one : out.blocked) one.place = frame * one.place;

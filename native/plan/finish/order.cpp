@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
+
+#include "geom/math.hpp"
 
 namespace riffler::plan {
 
@@ -41,7 +42,7 @@ std::vector<CutPiece> in_short_order(std::vector<CutPiece> pieces) {
   for (std::size_t done = 0; done < n; ++done) {
     std::size_t best = 0;
     bool turned = false;
-    double least = std::numeric_limits<double>::infinity();
+    double least = kInfinity;
     const auto look = [&](std::size_t k) {
       const CutPiece& piece = pieces[k - 1];
       for (const bool back : {false, true}) {

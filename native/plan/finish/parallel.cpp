@@ -5,10 +5,10 @@
 // whether X and Y are cut there at all (borders).
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <stdexcept>
 
+#include "geom/math.hpp"
 #include "plan/finish/patterns.hpp"
 #include "riffler/base/parallel.hpp"
 #include "riffler/tool/outline.hpp"
@@ -30,7 +30,7 @@ struct Row {
 /// The nearest place of a row to `p` among those within `window` along x; none if it is not cut there.
 std::optional<Vec3> nearest_on(const Row& row, const Vec3& p, double window) {
   std::optional<Vec3> best;
-  double least = std::numeric_limits<double>::infinity();
+  double least = kInfinity;
   for (const std::vector<Vec3>& piece : row.pieces) {
     if (piece.back().x < p.x - window || piece.front().x > p.x + window) continue;
     auto it =
@@ -127,13 +127,13 @@ class Filler {
   }
 
   double ridge_to(const std::optional<Vec3>& row, const Vec3& p) const {
-    if (!row) return std::numeric_limits<double>::infinity();
+    if (!row) return kInfinity;
     return scene_.profile.ridge(2 * std::hypot(p.x - row->x, p.y - row->y), 2 * (p.z - row->z));
   }
 
   /// How far M's contact stands off the cutter on the nearest places of both rows.
   double standing(const SurfacePoint& m, const std::optional<Vec3>& on_x, const std::optional<Vec3>& on_y) const {
-    double least = std::numeric_limits<double>::infinity();
+    double least = kInfinity;
     for (const std::optional<Vec3>& tip : {on_x, on_y}) {
       if (!tip) continue;
       const Vec3 off = m.landing.point - *tip;

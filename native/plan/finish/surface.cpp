@@ -143,15 +143,10 @@ bool FinishSurface::wanted(const SurfacePoint& p) const {
 
 /// Whether a ball rests on an edge, with its normal far from that of the face.
 bool FinishSurface::rolls(const SurfacePoint& p) const {
-  if (!p.landing.touches || blocked(p)) return false;
-  Vec3 towards;
-  if (ball_ > 0) {
-    towards = p.tip + Vec3(0, 0, ball_ - options_.allowance) - p.landing.point;
-    if (glm::length(towards) > ball_ * (1 + 1e-6) + 2 * tolerance_) return false;  // higher up on the cutter
-  } else {
-    return false;
-  }
+  if (!(ball_ > 0) || !p.landing.touches || blocked(p)) return false;
+  const Vec3 towards = p.tip + Vec3(0, 0, ball_ - options_.allowance) - p.landing.point;
   const double size = glm::length(towards);
+  if (size > ball_ * (1 + 1e-6) + 2 * tolerance_) return false;  // higher up on the cutter
   return size > 0 &&
          glm::dot(towards / size, normals_[static_cast<std::size_t>(p.landing.triangle)]) < std::cos(kRolling);
 }
