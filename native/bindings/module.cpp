@@ -44,7 +44,7 @@ PYBIND11_MODULE(_core, m) {
   bindings::bind_pencil(m);
   bindings::bind_strategies(m);
   bindings::bind_plan(m);
-  bindings::bind_finish(m);
+  bindings::bind_operations(m);
   bindings::refuse_objects_without_init(m);
   bindings::answer_misfits(m);
 }

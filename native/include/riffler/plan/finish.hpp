@@ -1,27 +1,14 @@
 // Finishing in three axes: rows on a part's offset surface, with the links between them, as one operation.
 #pragma once
 
-#include <array>
-#include <cstdint>
 #include <string>
 #include <vector>
 
 #include "riffler/base/progress.hpp"
-#include "riffler/dexel/volume.hpp"
-#include "riffler/geom/pose.hpp"
-#include "riffler/mesh/mesh.hpp"
+#include "riffler/plan/operation.hpp"
 #include "riffler/tool/tool.hpp"
 
 namespace riffler::plan {
-
-/// What an operation works on: one frame, mm.
-struct SetupScene {
-  Mesh part;
-  std::vector<Mesh> fixtures;
-  Volume stock;          ///< at the beginning of the operation
-  Vec3 axis{0, 0, 1};    ///< unit vector from tip to spindle
-  double clearance = 5;  ///< mm above part, stock and fixtures along the axis: rapids across happen there
-};
 
 /// Options of finish.
 struct FinishOptions {
@@ -36,23 +23,8 @@ struct FinishOptions {
   double plunge = 300;                                   ///< mm/min of leads
 };
 
-/// What a row of an operation is.
-enum class MoveKind : std::uint8_t { Rapid, Lead, Cut, Link };
-
-/// Why and where the tool does not cut.
-struct BlockedPlace {
-  std::string reason;
-  Vec3 place{0};      ///< tip of the tool at the first of these places, mm
-  double length = 0;  ///< mm of rows that are left out
-};
-
-/// An operation: it begins and ends on the clearance plane.
-struct FinishResult {
-  std::vector<Pose> poses;
-  std::vector<MoveKind> kinds;  ///< of the move that ends at the pose
-  std::vector<double> feeds;    ///< mm/min; 0 for rapids
-  std::vector<BlockedPlace> blocked;
-  std::string reason;  ///< why there are no poses; empty if there are some
+/// The operation, and counts.
+struct FinishResult : Operation {
   /// Rows cut, rows added between those of equal spacing, links at feed, links over the clearance plane, and points of
   /// the offset surface computed.
   std::size_t rows = 0, added = 0, direct = 0, retracts = 0, drops = 0;

@@ -28,6 +28,7 @@ from .operations import Blocked, Operation, OperationReport
 from .orientations import FreeOrientations, TiltReport, draw_map, free_orientations, min_tilt
 from .path_order import order_paths
 from .recorded import NoPathError, Recorded, StrokePath, from_recording, path_of_stroke
+from .roughing import rough
 from .setups import Setup, program
 from .strategies import STRATEGIES, Found, Parameter, Strategy, find
 from .strategies.engrave import Engraved, engrave
@@ -87,6 +88,7 @@ __all__ = [
     "poses_of",
     "program",
     "read_curves",
+    "rough",
     "save",
     "swarf",
     "with_room",

@@ -13,11 +13,10 @@ from .. import _core
 from .._core import Tool
 from ..arguments import Progress, then
 from ..hints import hinted
-from .operations import Blocked, Operation, report_of
+from .operations import Operation, operation_of
 from .setups import Setup
 
 PATTERNS: tuple[str, ...] = tuple(_core.finish_patterns())
-COUNTS = ("rows", "added", "direct", "retracts", "drops")
 
 
 @hinted("plan.finish")
@@ -91,7 +90,6 @@ def finish(
     >>> op.poses.shape[1], op.reason, op.report.air_mm < op.report.cut_mm
     (6, '', True)
     """
-    pitch = setup.stock.pitch
     low, high = (float(x) for x in slopes)
     found = _core.finish(
         setup.part,
@@ -114,9 +112,6 @@ def finish(
     )
 
     def made(parts: dict[str, Any]) -> Operation:
-        blocked = tuple(Blocked(*one) for one in parts["blocked"])
-        arrays = parts["poses"], parts["kind"], parts["feed"]
-        report = report_of(*arrays, parts["removed"], pitch, blocked, {key: parts[key] for key in COUNTS})
-        return Operation(*arrays, tool, report, parts["reason"], float(spindle), float(tolerance))
+        return operation_of(parts, tool, setup.stock.pitch, spindle, tolerance)
 
     return then(found, made)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,7 +51,8 @@ class OperationReport:
     blocked : tuple of Blocked
         What could not be reached.
     stats : dict
-        Counts: rows, rows added between those of equal spacing, direct links, retracts, points of the drop surface.
+        Counts: direct links, retracts, points of the drop surface; rows, and those added between rows of equal spacing;
+        levels, rings in them, helices.
     """
 
     time_s: float = 0.0
@@ -111,11 +113,12 @@ def report_of(
     pitch: float,
     blocked: tuple[Blocked, ...],
     stats: Mapping[str, int],
+    engagement: float | None = None,
 ) -> OperationReport:
     """The report of an operation whose move to pose k + 1 removes ``removed[k]`` mm³ of a stock with rays ``pitch`` mm
     apart: moves that fit between two rays are in air only in a longer run of such moves."""
     if not len(poses):
-        return OperationReport(blocked=blocked, stats=stats)
+        return OperationReport(blocked=blocked, stats=stats, largest_engagement=engagement)
     length, rapid = lengths_of(poses), kind == RAPID
     idle = np.concatenate([[True], removed <= 0]) & ~rapid
     run = np.cumsum(np.diff(idle, prepend=False) != 0)  # odd numbers are runs of idle moves
@@ -124,6 +127,15 @@ def report_of(
         time_s=float(60 * np.sum(length / np.where(rapid, RAPID_FEED, feed))),
         cut_mm=float(np.sum(length[kind == CUT])),
         air_mm=float(np.sum(length[idle])),
+        largest_engagement=engagement,
         blocked=blocked,
         stats=stats,
     )
+
+
+def operation_of(parts: dict[str, Any], tool: Tool, pitch: float, spindle: float, tolerance: float) -> Operation:
+    """An operation from what the core has planned on a stock with rays ``pitch`` mm apart."""
+    blocked = tuple(Blocked(*one) for one in parts["blocked"])
+    arrays = parts["poses"], parts["kind"], parts["feed"]
+    report = report_of(*arrays, parts["removed"], pitch, blocked, parts["counts"], parts["engagement"])
+    return Operation(*arrays, tool, report, parts["reason"], float(spindle), float(tolerance))

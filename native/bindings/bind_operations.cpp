@@ -1,11 +1,14 @@
-// Operations on a part: finishing. For riffler.plan, which describes it.
+// Operations on a part: roughing and finishing. For riffler.plan, which describes it.
 #include <memory>
+#include <optional>
+#include <utility>
 
 #include "bindings/program_types.hpp"
 #include "bindings/shared_volume.hpp"
 #include "bindings/task.hpp"
 #include "riffler/plan/cc_frame.hpp"
 #include "riffler/plan/finish.hpp"
+#include "riffler/plan/rough.hpp"
 #include "riffler/sweep/carve.hpp"
 
 namespace riffler::bindings {
@@ -18,24 +21,27 @@ using namespace py::literals;
 
 constexpr double kPlanned = 0.85;  // of the progress
 
-/// The operation, and what each of its moves takes off the stock, mm³.
+/// The operation, its counts, and what each of its moves takes off the stock, mm³.
 struct Planned {
-  plan::FinishResult operation;
+  plan::Operation operation;
+  std::vector<std::pair<const char*, std::size_t>> counts;
+  std::optional<double> engagement;
   std::vector<double> removed;
 };
 
 OperationParts from_planned(Planned&& planned) {
-  plan::FinishResult& found = planned.operation;
+  plan::Operation& found = planned.operation;
   std::vector<std::uint8_t> kinds;
   for (const plan::MoveKind kind : found.kinds) kinds.push_back(static_cast<std::uint8_t>(kind));
   py::list blocked;
   for (const plan::BlockedPlace& one : found.blocked)
     blocked.append(py::make_tuple(one.reason, from_vec3(one.place), one.length));
+  py::dict counts;
+  for (const auto& [name, count] : planned.counts) counts[name] = count;
   return py::dict("poses"_a = from_poses(found.poses), "kind"_a = take<std::uint8_t>(std::move(kinds)),
                   "feed"_a = take<double>(std::move(found.feeds)),
                   "removed"_a = take<double>(std::move(planned.removed)), "blocked"_a = blocked,
-                  "reason"_a = found.reason, "rows"_a = found.rows, "added"_a = found.added, "direct"_a = found.direct,
-                  "retracts"_a = found.retracts, "drops"_a = found.drops);
+                  "reason"_a = found.reason, "counts"_a = counts, "engagement"_a = planned.engagement);
 }
 
 std::vector<std::vector<Vec3>> to_region(const ArraysLike& arrays) {
@@ -45,14 +51,39 @@ std::vector<std::vector<Vec3>> to_region(const ArraysLike& arrays) {
   return curves;
 }
 
-auto finish_part(const std::shared_ptr<Mesh>& part, const std::vector<std::shared_ptr<Mesh>>& fixtures,
-                 SharedVolume& stock, const Tool& tool, const ArrayLike& axis, double clearance,
-                 const plan::FinishOptions& options, const ProgressLike& progress) {
+Planned planned(plan::FinishResult&& found) {
+  return {std::move(found),
+          {{"rows", found.rows},
+           {"added", found.added},
+           {"direct", found.direct},
+           {"retracts", found.retracts},
+           {"drops", found.drops}},
+          {},
+          {}};
+}
+
+Planned planned(plan::RoughResult&& found) {
+  return {std::move(found),
+          {{"levels", found.levels},
+           {"rings", found.rings},
+           {"helices", found.helices},
+           {"direct", found.direct},
+           {"retracts", found.retracts},
+           {"drops", found.drops}},
+          found.engagement,
+          {}};
+}
+
+/// Plans with plan(scene, progress), and carves a copy of the stock with what comes of it.
+template <class Plan>
+auto operation(const std::shared_ptr<Mesh>& part, const std::vector<std::shared_ptr<Mesh>>& fixtures,
+               SharedVolume& stock, const Tool& tool, const ArrayLike& axis, double clearance,
+               const ProgressLike& progress, const Plan& plan_it) {
   auto scene = std::make_shared<plan::SetupScene>(plan::SetupScene{
       *part, {}, Reading(stock).volume.snapshot(), plan::unit_axis(to_vec3(axis, "axis"), "axis"), clearance});
   for (const auto& one : fixtures) scene->fixtures.push_back(*one);
   const auto work = [=](const Progress& listener) {
-    Planned out{finish(*scene, tool, options, base::part(listener, 0, kPlanned)), {}};
+    Planned out = planned(plan_it(*scene, base::part(listener, 0, kPlanned)));
     if (!out.operation.poses.empty()) {
       Volume left = scene->stock.snapshot();
       sweep::CarveOptions how;
@@ -67,7 +98,7 @@ auto finish_part(const std::shared_ptr<Mesh>& part, const std::vector<std::share
 
 }  // namespace
 
-void bind_finish(py::module_& m) {
+void bind_operations(py::module_& m) {
   m.def(
       "finish",
       [](const std::shared_ptr<Mesh>& part, const std::vector<std::shared_ptr<Mesh>>& fixtures, SharedVolume& stock,
@@ -79,11 +110,29 @@ void bind_finish(py::module_& m) {
         options.allowance = allowance, options.angle = angle, options.min_slope = min_slope;
         options.max_slope = max_slope, options.region = to_region(region), options.feed = feed;
         options.plunge = plunge;
-        return finish_part(part, fixtures, stock, tool, axis, clearance, options, progress);
+        return operation(part, fixtures, stock, tool, axis, clearance, progress,
+                         [=](const plan::SetupScene& scene, const Progress& listener) {
+                           return plan::finish(scene, tool, options, listener);
+                         });
       },
       "part"_a.none(false), "fixtures"_a, "stock"_a, "tool"_a, py::kw_only(), "axis"_a, "clearance"_a, "pattern"_a,
       "cusp"_a, "tolerance"_a, "allowance"_a, "angle"_a, "min_slope"_a, "max_slope"_a, "region"_a, "feed"_a, "plunge"_a,
       "progress"_a, "For riffler.plan.finish.");
+  m.def(
+      "rough",
+      [](const std::shared_ptr<Mesh>& part, const std::vector<std::shared_ptr<Mesh>>& fixtures, SharedVolume& stock,
+         const Tool& tool, const ArrayLike& axis, double clearance, double stepdown, double engagement,
+         double allowance, double tolerance, double slope, bool climb, double feed, double plunge,
+         const ProgressLike& progress) {
+        const plan::RoughOptions options{stepdown, engagement, allowance, tolerance, slope, climb, feed, plunge};
+        return operation(part, fixtures, stock, tool, axis, clearance, progress,
+                         [=](const plan::SetupScene& scene, const Progress& listener) {
+                           return plan::rough(scene, tool, options, listener);
+                         });
+      },
+      "part"_a.none(false), "fixtures"_a, "stock"_a, "tool"_a, py::kw_only(), "axis"_a, "clearance"_a, "stepdown"_a,
+      "engagement"_a, "allowance"_a, "tolerance"_a, "slope"_a, "climb"_a, "feed"_a, "plunge"_a, "progress"_a,
+      "For riffler.plan.rough.");
   m.def("finish_patterns", &plan::finish_patterns, "For riffler.plan.finish.");
 }
 

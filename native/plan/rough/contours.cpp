@@ -1,0 +1,137 @@
+#include "plan/rough/contours.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace riffler::plan {
+
+namespace {
+
+/// The edges of the grid that a curve crosses, and for each the one that follows. Edge 2 k leads from place k along x,
+/// 2 k + 1 along y.
+class Crossings {
+ public:
+  Crossings(const PlaceGrid& grid, const Field& field, double value)
+      : grid_(grid), field_(field), value_(value), next_(2 * grid.size(), kNone), before_(2 * grid.size(), kNone) {
+    for (int row = 0; row + 1 < grid.rows; ++row)
+      for (int column = 0; column + 1 < grid.columns; ++column) add_cell(column, row);
+  }
+
+  /// Calls visit(edges, closed) for each curve.
+  template <class Visit>
+  void each(const Visit& visit) {
+    std::vector<std::size_t> edges;
+    const auto follow = [&](std::size_t first) {
+      edges.clear();
+      std::size_t at = first;
+      while (at != kNone) {
+        edges.push_back(at);
+        const std::size_t next = std::exchange(next_[at], kNone);
+        at = next == first ? kNone : next;
+      }
+    };
+    for (std::size_t e = 0; e < next_.size(); ++e)
+      if (next_[e] != kNone && before_[e] == kNone) follow(e), visit(edges, false);
+    for (std::size_t e = 0; e < next_.size(); ++e)
+      if (next_[e] != kNone) follow(e), visit(edges, true);
+  }
+  /// Both ends of an edge, the one with less first.
+  std::pair<std::size_t, std::size_t> ends(std::size_t edge) const {
+    const std::size_t a = edge / 2, b = a + (edge % 2 ? static_cast<std::size_t>(grid_.columns) : 1);
+    return less(a) ? std::pair(a, b) : std::pair(b, a);
+  }
+
+ private:
+  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+
+  bool less(std::size_t k) const { return field_[k] < value_; }
+
+  /// Around a cell, counter-clockwise, a curve enters where the field stops being less, and leaves where it begins.
+  void add_cell(int column, int row) {
+    const std::array<std::size_t, 4> k{grid_.index(column, row), grid_.index(column + 1, row),
+                                       grid_.index(column + 1, row + 1), grid_.index(column, row + 1)};
+    double sum = 0;
+    for (const std::size_t place : k) {
+      if (!std::isfinite(field_[place])) return;
+      sum += field_[place];
+    }
+    const std::array<std::size_t, 4> edge{2 * k[0], 2 * k[1] + 1, 2 * k[3], 2 * k[0] + 1};
+    std::array<std::size_t, 2> in{}, out{};
+    std::size_t ins = 0, outs = 0;
+    bool first_in = false;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const bool here = less(k[i]), there = less(k[(i + 1) % 4]);
+      if (here && !there) in[ins++] = edge[i], first_in = first_in || outs == 0;
+      if (!here && there) out[outs++] = edge[i];
+    }
+    if (ins == 0) return;
+    if (ins == 1) return join(in[0], out[0]);
+    // Two curves: around the places that are not less if the middle is, else around the others.
+    const bool near = (sum / 4 < value_) == first_in;
+    join(in[0], out[near ? 0 : 1]), join(in[1], out[near ? 1 : 0]);
+  }
+  void join(std::size_t from, std::size_t to) { next_[from] = to, before_[to] = from; }
+
+  const PlaceGrid& grid_;
+  const Field& field_;
+  double value_;
+  std::vector<std::size_t> next_, before_;
+};
+
+double distance_to_line(const Vec2& p, const Vec2& a, const Vec2& b) {
+  const Vec2 way = b - a;
+  const double square = glm::dot(way, way);
+  const double s = square > 0 ? std::clamp(glm::dot(p - a, way) / square, 0.0, 1.0) : 0;
+  return glm::length(p - (a + s * way));
+}
+
+}  // namespace
+
+std::vector<Curve> contours(const PlaceGrid& grid, const Field& field, double value,
+                            const std::function<Vec2(std::size_t, std::size_t)>& crossing) {
+  Crossings crossings(grid, field, value);
+  std::vector<Curve> out;
+  crossings.each([&](const std::vector<std::size_t>& edges, bool closed) {
+    Curve& curve = out.emplace_back(Curve{{}, closed});
+    for (const std::size_t e : edges) {
+      const auto [less, more] = crossings.ends(e);
+      const double share = (value - field[less]) / (field[more] - field[less]);
+      curve.points.push_back(crossing ? crossing(less, more) : glm::mix(grid.place(less), grid.place(more), share));
+    }
+  });
+  return out;
+}
+
+Curve simplified(const Curve& curve, double tolerance) {
+  std::vector<Vec2> p = curve.points;
+  if (curve.closed && !p.empty()) p.push_back(p.front());
+  if (p.size() < 3) return curve;
+  std::vector<char> keep(p.size(), 0);
+  keep.front() = keep.back() = 1;
+  std::vector<std::pair<std::size_t, std::size_t>> open;
+  const auto halve = [&](std::size_t a, std::size_t b) {
+    if (b > a + 1) open.emplace_back(a, b);
+  };
+  if (curve.closed)
+    keep[p.size() / 2] = 1, halve(0, p.size() / 2), halve(p.size() / 2, p.size() - 1);
+  else
+    halve(0, p.size() - 1);
+  while (!open.empty()) {
+    const auto [a, b] = open.back();
+    open.pop_back();
+    std::size_t far = a;
+    double most = tolerance;
+    for (std::size_t k = a + 1; k < b; ++k)
+      if (const double d = distance_to_line(p[k], p[a], p[b]); d > most) most = d, far = k;
+    if (far == a) continue;
+    keep[far] = 1, halve(a, far), halve(far, b);
+  }
+  Curve out{{}, curve.closed};
+  for (std::size_t k = 0; k + (curve.closed ? 1 : 0) < p.size(); ++k)
+    if (keep[k]) out.points.push_back(p[k]);
+  return out;
+}
+
+}  // namespace riffler::plan

@@ -1,0 +1,121 @@
+#include "plan/rough/passes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "geom/math.hpp"
+
+namespace riffler::plan {
+
+namespace {
+
+constexpr double kMore = 1.5;  // spacings: cells are cleared as far as that
+
+/// The points of a curve one after the other, and the length up to each.
+class Track {
+ public:
+  Track(std::vector<Vec2> points, const PassScene& scene) : points_(std::move(points)), scene_(scene) {
+    at_.push_back(0);
+    for (std::size_t k = 1; k < points_.size(); ++k)
+      at_.push_back(at_.back() + glm::length(points_[k] - points_[k - 1]));
+  }
+  std::size_t size() const { return points_.size(); }
+  double at(std::size_t k) const { return at_[k]; }
+  const Vec2& point(std::size_t k) const { return points_[k]; }
+  double length() const { return at_.back(); }
+  /// The first point at least `length` from the start.
+  std::size_t beyond(double length) const {
+    return std::min(points_.size() - 1,
+                    static_cast<std::size_t>(std::lower_bound(at_.begin(), at_.end(), length) - at_.begin()));
+  }
+  /// Point k, moved to the cleared side by a share of the step and a little, as far as the cutter may be there.
+  Vec2 beside(std::size_t k, double share) const {
+    const Vec2 along = points_[std::min(k + 2, points_.size() - 1)] - points_[k < 2 ? 0 : k - 2];
+    const double size = glm::length(along);
+    if (!(size > 0) || share <= 0) return points_[k];
+    const Vec2 aside = scene_.side * Vec2(-along.y, along.x) / size;
+    const double most = scene_.step + kMore * scene_.grid.spacing;
+    for (double by = share * most; by > 0.1 * scene_.grid.spacing; by *= 0.7)
+      if (const Vec2 p = points_[k] + by * aside; scene_.in[scene_.grid.nearest(p)]) return p;
+    return points_[k];
+  }
+
+ private:
+  std::vector<Vec2> points_;
+  std::vector<double> at_;
+  const PassScene& scene_;
+};
+
+/// How far off the curve a ramp is after a share of its length.
+double beside_after(double share) {
+  return 0.5 + 0.5 * std::cos(kPi * std::clamp(share, 0.0, 1.0));
+}
+
+/// The whole of a closed curve.
+void add_round(const Curve& curve, const PassScene& scene, std::vector<Pass>& out) {
+  std::vector<Vec2> points = curve.points;
+  points.insert(points.end(), curve.points.begin(), curve.points.end());
+  const Track track(std::move(points), scene);
+  const std::size_t n = curve.points.size();
+  const double ramp = std::min(scene.ramp, 0.5 * track.at(n));
+  Pass pass;
+  for (std::size_t k = 0; k <= n + track.beyond(ramp); ++k)
+    if (k < track.size()) pass.path.push_back(track.beside(k, beside_after(track.at(k) / ramp)));
+  out.push_back(std::move(pass));
+}
+
+/// Points first … last of a track; `walled`: the cutter touches something at the first one already.
+void add_part(const Track& track, bool walled, const PassScene& scene, std::vector<Pass>& out) {
+  Pass pass;
+  if (!walled || track.size() < 3) {
+    for (std::size_t k = 0; k < track.size(); ++k) pass.path.push_back(track.point(k));
+    out.push_back(std::move(pass));
+    return;
+  }
+  const double ramp = std::min(scene.ramp, 0.5 * track.length());
+  const std::size_t begin = track.beyond(2 * ramp), full = track.beyond(ramp);
+  for (std::size_t k = begin + 1; k-- > 0;)
+    pass.path.push_back(track.beside(k, beside_after((track.at(begin) - track.at(k)) / ramp)));
+  out.push_back(std::move(pass));
+  Pass rest{{}, static_cast<int>(out.size()) - 1};
+  for (std::size_t k = full > 0 ? full - 1 : 0; k < track.size(); ++k) rest.path.push_back(track.point(k));
+  if (rest.path.size() > 1) out.push_back(std::move(rest));
+}
+
+}  // namespace
+
+void passes_along(const Curve& curve, const Layer& layer, const PassScene& scene, std::vector<Pass>& out) {
+  std::vector<Vec2> points = curve.points;
+  if (points.size() < 2) return;
+  std::vector<char> active;
+  for (const Vec2& p : points) active.push_back(layer.touches(p));
+  if (curve.closed) {
+    const auto idle = std::find(active.begin(), active.end(), 0) - active.begin();
+    if (idle == static_cast<std::ptrdiff_t>(active.size())) return add_round(curve, scene, out);
+    std::rotate(points.begin(), points.begin() + idle, points.end());
+    std::rotate(active.begin(), active.begin() + idle, active.end());
+    points.push_back(points.front()), active.push_back(0);
+  }
+  for (std::size_t k = 0; k < points.size();) {
+    if (!active[k]) {
+      ++k;
+      continue;
+    }
+    std::size_t last = k;
+    double idle = 0;  // length since the last active point
+    for (std::size_t i = k + 1; i < points.size() && idle <= scene.radius; ++i) {
+      idle = active[i] ? 0 : idle + glm::length(points[i] - points[i - 1]);
+      if (active[i]) last = i;
+    }
+    std::size_t first = k;
+    for (double back = 0; first > 0 && !active[first - 1] && back < 0.5 * scene.radius; --first)
+      back += glm::length(points[first] - points[first - 1]);
+    const std::size_t end = std::min(last + 2, points.size());
+    const auto at = [&](std::size_t i) { return points.begin() + static_cast<std::ptrdiff_t>(i); };
+    if (end - first > 1) add_part(Track({at(first), at(end)}, scene), active[first], scene, out);
+    k = last + 1;
+  }
+}
+
+}  // namespace riffler::plan

@@ -1,0 +1,105 @@
+"""Roughing: the stock cleared in layers, with a bounded width of cut."""
+
+from __future__ import annotations
+
+from math import radians
+from typing import Any
+
+from .. import _core
+from .._core import Tool
+from ..arguments import Progress, then
+from ..hints import hinted
+from .operations import Operation, operation_of
+from .setups import Setup
+
+
+@hinted("plan.rough")
+def rough(
+    setup: Setup,
+    tool: Tool,
+    *,
+    stepdown: float = 2.0,
+    engagement: float = 0.4,
+    allowance: float = 0.3,
+    tolerance: float = 0.05,
+    slope: float = radians(3),
+    climb: bool = True,
+    feed: float = 1200.0,
+    plunge: float | None = None,
+    spindle: float = 12000.0,
+    progress: Progress = None,
+) -> Operation:
+    """Clears the set-up's stock in layers, as far as the whole tool can go without meeting part or fixtures.
+
+    A layer is cleared from where it is open, or from a helix, outwards: a ring is a step further along the cleared
+    places than the one before, so that no cut is wider than ``engagement`` asks, corners included. A pass along the
+    borders of what can be reached ends the layer. What an earlier operation has cleared is not cut again.
+
+    Parameters
+    ----------
+    setup : Setup
+        Part, stock left so far, fixtures, axis.
+    tool : Tool
+        A cutter that does not narrow above its widest place: flat, fillet, ball, taper or a profile like them.
+    stepdown : float
+        mm, height of a layer.
+    engagement : float
+        Largest width of cut as a share of the cutter's diameter, from 0.02 to 1. Moves that cut wider, where a narrow
+        slot is entered, are leads, at ``plunge``.
+    allowance : float
+        mm that stay on the part.
+    tolerance : float
+        mm, of curves. Up to half of it stays in addition to ``allowance``.
+    slope : float
+        rad, of helices.
+    climb : bool
+        Whether material lies to the right of the motion, as it should for a spindle that turns clockwise.
+    feed : float
+        mm/min of cuts and links.
+    plunge : float, optional
+        mm/min of leads; by default a third of ``feed``.
+    spindle : float
+        rev/min; negative counter-clockwise.
+    progress : callable, optional
+        Called with the finished share; returning False cancels.
+
+    Returns
+    -------
+    Operation
+        Without poses, and with the reason, where nothing can be reached.
+
+    Raises
+    ------
+    ValueError
+        Naming the argument.
+
+    Examples
+    --------
+    >>> part = riffler.shape.relief([[0.3, 1.0], [0.6, 0.3]], size=(20, 20), depth=10)
+    >>> setup = riffler.plan.Setup(part, riffler.Volume.block((0, 0, 0), (20, 20, 12), pitch=0.5))
+    >>> op = riffler.plan.rough(setup, riffler.Tool.flat(diameter=6, length=20), stepdown=2)
+    >>> op.report.largest_engagement <= 0.4
+    True
+    """
+    found = _core.rough(
+        setup.part,
+        setup.obstacles,
+        setup.stock,
+        tool,
+        axis=setup.axis,
+        clearance=setup.clearance,
+        stepdown=stepdown,
+        engagement=engagement,
+        allowance=allowance,
+        tolerance=tolerance,
+        slope=slope,
+        climb=climb,
+        feed=feed,
+        plunge=feed / 3 if plunge is None else plunge,
+        progress=progress,
+    )
+
+    def made(parts: dict[str, Any]) -> Operation:
+        return operation_of(parts, tool, setup.stock.pitch, spindle, tolerance)
+
+    return then(found, made)
