@@ -52,10 +52,11 @@ soak:  ## Plan by feel for ten minutes; make STROKES strokes and UNDOS steps of 
 	$(python) blender_tests/run.py --soak --seed $(or $(SEED),1) $(if $(STROKES),--strokes $(STROKES)) \
 	  $(if $(UNDOS),--undos $(UNDOS)) $(if $(EXAMPLES),--examples $(EXAMPLES))
 
-stress:  ## Carve MOVES random moves per cutter, mesh VOLUMES random volumes, follow STROKES strokes, hold tools at POSES, from SEED, and check each
+stress:  ## Carve MOVES random moves per cutter, edit histories EDITS times, mesh VOLUMES random volumes, follow STROKES strokes, hold tools at POSES, from SEED, and check each
 	@$(ready) cpp-tests
-	$(python) tools/preset.py release riffler_stress riffler_mesh_stress riffler_contact_stress riffler_tests
+	$(python) tools/preset.py release riffler_stress riffler_history_stress riffler_mesh_stress riffler_contact_stress riffler_tests
 	build/release/native/stress/riffler_stress --table --moves $(or $(MOVES),20000) --seed $(or $(SEED),1)
+	build/release/native/stress/riffler_history_stress --edits $(or $(EDITS),1000) --seed $(or $(SEED),1)
 	build/release/native/stress/riffler_mesh_stress --volumes $(or $(VOLUMES),100000) --seed $(or $(SEED),1)
 	build/release/native/stress/riffler_mesh_stress --strokes $(or $(STROKES),10000) --seed $(or $(SEED),1)
 	build/release/native/stress/riffler_contact_stress --poses $(or $(POSES),1000000) --seed $(or $(SEED),1)

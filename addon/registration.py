@@ -62,6 +62,7 @@ SECTIONS = (
             "relief",
             "result",
             "export",
+            "detail",
             "millimetres",
             "recover",
             "deviation_legend",

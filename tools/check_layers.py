@@ -53,6 +53,8 @@ FOLDERS = {
     "nc/machine": ["nc"],
     "nc/read": ["nc", "nc/machine"],
     "nc/write": ["nc", "nc/machine"],
+    "plan": [],
+    "plan/finish": ["plan"],
     "pen/arms": [],
     "pen/haply": ["pen", "pen/hid", "pen/link", "pen/service"],
     "pen/hid": ["pen/link"],

@@ -17,10 +17,10 @@ from shell import StepError
 # Page: title, and what is on it. Every public name of riffler stands on exactly one, which `write` checks.
 PAGES = {
     "volumes": ("Volumes", ["Volume", "Cut", "Smoothed", "Snapshot", "VolumeReport", "SurfaceReport",
-                            "VolumeCounters"]),
+                            "VolumeCounters", "History", "HistoryStroke", "HistoryStats"]),
     "tools": ("Tools", ["Tool", "ToolShape", "ToolSize"]),
     "meshes": ("Meshes", ["Mesh", "Audit", "Orientation", "Mesher", "Patch", "Hit", "Hits", "FrozenSurface",
-                          "PickCounters", "shape"]),
+                          "Surface", "PickCounters", "shape"]),
     "contact": ("Contact", ["Collider", "Contact", "Nearest"]),
     "planning": ("Planning", ["plan"]),
     "programs": ("Programs and verification", ["Program", "ProgramStream", "Note", "WriteReport", "PolePassage",

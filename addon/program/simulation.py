@@ -15,7 +15,7 @@ from ..blender import handlers, operator_parts
 from ..common import tool_solid, units
 from ..common.problems import said
 from ..plan import plan_states, plan_store, replan, timeline
-from ..sculpt import chunks, sculpts, undo_states
+from ..sculpt import chunks, sculpts, surfaces, undo_states
 from . import programs, properties
 from .pure.program_prefix import ProgramPrefix
 
@@ -37,7 +37,8 @@ class Simulation:
         )
         self._plan, self._identity = setup.plan, _identity(setup.plan)
         self.prefix = ProgramPrefix(setup.stock, setup.runs)
-        self._mesher = riffler.Mesher(self.prefix.volume)
+        volume = self.prefix.volume
+        self._mesher = riffler.Mesher(volume, tolerance=surfaces.within(ob.data.riffler.detail, volume.pitch))
         self.mark = sculpts.new_mark(ob)
         self.chunks = chunks.Chunks(context, ob, self._mesher.shape, sculpts.shown_mm_per_unit(ob.data))
         try:

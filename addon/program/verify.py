@@ -113,6 +113,9 @@ class RIFFLER_OT_verify(LongWork, properties.VerifySettings, properties.GivenOpt
             if not own or ob.library or ob.data.library:
                 why = f"{ob.name} is not coloured, since it is not a plain mesh of this file"
                 return [f"{why}: colour Remaining Stock instead."]
+        if sculpts.is_sculpt(ob) and ob.data.riffler.shown_within:
+            why = f"{ob.name} is not coloured, since it shows only the triangles that its shape needs"
+            return [f"{why}: show all of them, or colour Remaining Stock."]
         attributes.show_distance(ob.data, distance, scene_units.clean(self.scale))
         attributes.shade_by_attribute()
         if self.hide:
@@ -183,6 +186,8 @@ def _clear(context):
     for ob in context.scene.objects:
         if ob.type == "MESH" and attributes.SCALE in ob.data and not ob.data.library:
             attributes.hide_colours(ob.data)
+            if sculpts.is_sculpt(ob):
+                sculpts.show_needed(ob.data)
     attributes.settle()
     for name in settings.hidden.split("\n"):
         ob = context.scene.objects.get(name)

@@ -17,7 +17,7 @@ import riffler
 from ..blender import refusals, versions
 from ..common.contents import Content
 from ..common.poses import moving
-from . import brushes, chunks, idle_detection, persistence, sculpt_store, sculpts, undo_states
+from . import brushes, chunks, idle_detection, persistence, sculpt_store, sculpts, surfaces, undo_states
 from .pure import reach, symmetry
 from .pure.stages import Stages
 from .pure.stroke_record import StrokeRecord
@@ -37,8 +37,10 @@ class LiveSculpt:
         content = sculpt_store.content(ob.data)
         sculpts.new_mark(ob)
         self._take(ob, content)
-        mesher = riffler.Mesher(self.volume)
-        self._show_in(chunks.Chunks(context, ob, mesher.shape, self.mm), mesher)
+        mesher = riffler.Mesher(
+            self.volume, tolerance=surfaces.within(ob.data.riffler.detail, self.volume.pitch, self.mask)
+        )
+        self._show_in(ob, chunks.Chunks(context, ob, mesher.shape, self.mm), mesher)
         try:
             self.chunks.update(mesher, mesher.patches(), self.mask)
         except Exception:
@@ -54,7 +56,7 @@ class LiveSculpt:
         """A session of a sculpt whose chunks an undo has restored after its session had ended."""
         self = cls.__new__(cls)
         self._take(ob, state.content)
-        self._show_in(chunks.Chunks.found(ob, state.shape, self.mm))
+        self._show_in(ob, chunks.Chunks.found(ob, state.shape, self.mm))
         self.token = ob.riffler.token
         self.persistence = persistence.Persistence(ob, self.token)
         versions.lighten(ob.data)
@@ -78,8 +80,9 @@ class LiveSculpt:
         self._objects = -1  # number in the file at the last search for copies
         self.device = None  # pen/session.py: PenSession, while a device sculpts this
 
-    def _show_in(self, chunks, mesher=None):
-        self.chunks, self._surface = chunks, ShownSurface(chunks, self.stages, mesher)
+    def _show_in(self, ob, chunks, mesher=None):
+        within = surfaces.within(ob.data.riffler.detail, self.volume.pitch)
+        self.chunks, self._surface = chunks, ShownSurface(chunks, self.stages, within, mesher)
 
     # ------------------------------------------------------------------ where things are
     @property
@@ -127,7 +130,7 @@ class LiveSculpt:
 
     @property
     def mesher(self):
-        return self._surface.mesher(self.volume)
+        return self._surface.mesher(self.volume, self.mask)
 
     def freeze(self):
         """The current surface, for picking while the stroke changes it."""
@@ -312,8 +315,8 @@ class LiveSculpt:
         if ob is None:
             return
         if self._changed(ob):
-            content = self._content()
-            sculpts.commit(ob.data, content, self.mm, "" if self.in_stroke else self.token)
+            content, surface = self._content(), self._surface.whole(self.volume, self.mask)
+            sculpts.commit(ob.data, content, self.mm, "" if self.in_stroke else self.token, surface=surface)
             self._identity.written(ob)
         elif sculpts.behind(ob.data) or not ob.data.polygons:
             sculpts.refill(ob.data, self.mm)

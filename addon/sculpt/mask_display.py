@@ -42,6 +42,11 @@ def show(mesh, mask, co, tri):
     versions.write_material_indices(mesh, np.where(covered, slot, 0).astype(np.int32))
 
 
+def is_shown(mesh):
+    """Whether faces of the mesh have, or had, the mask's material."""
+    return NAME in mesh.materials
+
+
 def _material():
     material = bpy.data.materials.get(NAME)
     if material is None:

@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 
 from ..blender import attributes, meshes, refusals, scene_units
-from . import mask_display, sculpt_store
+from . import mask_display, sculpt_store, surfaces
 
 
 def is_sculpt(ob):
@@ -80,16 +80,21 @@ def take_looks(ob, other):
         ob.data.materials.append(material)
 
 
-def commit(mesh, content, mm_per_unit, token="", unseen=""):
+def commit(mesh, content, mm_per_unit, token="", unseen="", surface=None):
     """Makes `content` the mesh's and shows its volume. It must not be changed afterwards. Returns triangles. `unseen`:
-    the error if there would be none; without it the mesh may be empty."""
+    the error if there would be none; without it the mesh may be empty. `surface`: what is shown, if it is known."""
     _must_be_fillable(mesh)
-    surface = content.volume.to_mesh_with_report()[0]  # anything that can fail comes before the first change
+    surface = surface or surface_of(mesh, content)  # anything that can fail comes before the first change
     if unseen and not len(surface.triangles):
         raise ValueError(unseen)
     sculpt_store.write(mesh, content, token)
     _show_whole(mesh, content, surface, mm_per_unit)
     return len(surface.triangles)
+
+
+def surface_of(mesh, content):
+    """The surfaces.Surface that the mesh of a sculpt shows of a content."""
+    return surfaces.of_volume(content.volume, surfaces.within(mesh.riffler.detail, content.volume.pitch, content.mask))
 
 
 def _must_be_fillable(mesh):
@@ -131,14 +136,15 @@ def facts(content):
 
 
 def show(mesh, surface, mm_per_unit, mask=None):
-    """Fills the mesh from a surface in millimetres; faces within `mask`, a volume, are shown as protected. Deviation
-    colours are removed, since they belong to the previous surface."""
+    """Fills the mesh from a surfaces.Surface; faces within `mask`, a volume, are shown as protected. Deviation colours
+    are removed, since they belong to the previous surface."""
     if attributes.hide_colours(mesh):
         attributes.settle()
-    meshes.fill(mesh, np.asarray(surface.vertices) / mm_per_unit, surface.triangles)
-    mask_display.show(mesh, mask, np.asarray(surface.vertices), np.asarray(surface.triangles))
+    vertices, triangles = np.asarray(surface.vertices), np.asarray(surface.triangles)
+    meshes.fill(mesh, vertices / mm_per_unit, triangles, **surface.shading)
+    mask_display.show(mesh, mask, vertices, triangles)
     p = mesh.riffler
-    p.mm_per_unit = mm_per_unit
+    p.mm_per_unit, p.shown_within, p.all_triangles = mm_per_unit, surface.within or 0.0, surface.all_triangles
     p.shown, p.shown_at = _fingerprint(mesh)
     p.shown_crc = _checksum(mesh)
 
@@ -147,7 +153,35 @@ def refill(mesh, mm_per_unit):
     """Shows the stored volume again: after the mesh was edited, or the scene's units were changed."""
     _must_be_fillable(mesh)
     content = sculpt_store.content(mesh)
-    _show_whole(mesh, content, content.volume.to_mesh_with_report()[0], mm_per_unit)
+    _show_whole(mesh, content, surface_of(mesh, content), mm_per_unit)
+
+
+def show_all(mesh):
+    """Shows all triangles, for colours at their vertices, until the surface is shown again."""
+    show_whole(mesh, surfaces.of_volume(sculpt_store.content(mesh).volume, None))
+
+
+def show_whole(mesh, surface):
+    """Shows this Surface of its volume."""
+    _must_be_fillable(mesh)
+    _show_whole(mesh, sculpt_store.content(mesh), surface, shown_mm_per_unit(mesh))
+
+
+def show_needed(mesh):
+    """Undoes `show_all`, unless the user wants all triangles, or Blender's own tools have changed them."""
+    if mesh.riffler.detail != "ALL" and not mesh.library and not mesh.is_editmode and not changed(mesh):
+        refill(mesh, shown_mm_per_unit(mesh))
+
+
+def every_triangle(mesh):
+    """Vertices (V, 3) in Blender units and triangles (F, 3) that `show_all` would show."""
+    surface = surfaces.of_volume(sculpt_store.content(mesh).volume, None)
+    return surface.vertices / shown_mm_per_unit(mesh), surface.triangles
+
+
+def all_triangles(mesh):
+    """How many the mesh has, or would have if it showed all."""
+    return mesh.riffler.all_triangles or len(mesh.loops) - 2 * len(mesh.polygons)
 
 
 @contextmanager

@@ -1,18 +1,26 @@
-"""The displayed surface of a live sculpt: chunks, filled by a mesher of its volume."""
+"""The displayed surface of a live sculpt: chunks, filled by a mesher of its volume.
+
+The chunks have the triangles that the shape needs, or all of them, as surfaces.within says. With a mask they have all,
+since faces show it. So a sculpt with its first mask, or without its last, is meshed and filled again as a whole.
+"""
+
+import math
 
 import riffler
 
 from ..blender import versions
 from ..common import blocks
+from . import surfaces
 
 
 class ShownSurface:
-    """`chunks`: chunks.Chunks. `stages` measures the cost. Strokes add to `reached` and `masked` where material and
-    mask may have changed since the last update: extents in rays."""
+    """`chunks`: chunks.Chunks. `stages` measures the cost. `within`: that of surfaces.within, without a mask. Strokes
+    add to `reached` and `masked` where material and mask may have changed since the last update: extents in rays."""
 
-    def __init__(self, chunks, stages, mesher=None):
-        self.chunks, self._stages, self._mesher = chunks, stages, mesher
+    def __init__(self, chunks, stages, within, mesher=None):
+        self.chunks, self._stages, self._within, self._mesher = chunks, stages, within, mesher
         self._stale = False  # True if the mesher's state differs from the volume
+        self._refill = False  # True if the chunks were filled with more triangles than the mesher has, or with fewer
         self.reached, self.masked = [], []
 
     @property
@@ -22,12 +30,14 @@ class ShownSurface:
 
     def outdate(self):
         """The volume was replaced, and the chunks show the new one already."""
-        self._stale = True
+        self._stale, self._refill = True, False
 
-    def mesher(self, volume):
+    def mesher(self, volume, mask):
         """riffler.Mesher of the current volume, made on demand: undo alone does not need it, the next stroke does."""
-        if self._mesher is None:
-            self._mesher = riffler.Mesher(volume)
+        tolerance = self._within if mask is None else None
+        if self._mesher is None or self._mesher.tolerance != tolerance:
+            self._refill = self._mesher is not None and not self._stale
+            self._mesher = riffler.Mesher(volume, tolerance=tolerance)
         elif self._stale:
             self._mesher.update(volume)
         self._stale = False
@@ -36,12 +46,12 @@ class ShownSurface:
     def show(self, volume, mask, place):
         """Meshes what has changed since the last update, and fills its chunks. `place`: matrix of the sculpt."""
         with self._stages.of("mesh"):
-            mesher = self.mesher(volume)
+            mesher = self.mesher(volume, mask)
             bricks = mesher.update(volume)
         for extent in self.masked:  # there the surface is the same, but not its colour
             bricks = sorted({*bricks, *blocks.within(mesher.shape, *extent)})
-        bricks = self._with_borders(bricks)
-        self.masked, self.reached = [], []
+        bricks = range(math.prod(mesher.shape)) if self._refill else self._with_borders(bricks)
+        self.masked, self.reached, self._refill = [], [], False
         with self._stages.of("transfer"):
             self.chunks.update(mesher, bricks, mask, self._stages)
             self.chunks.place(place)
@@ -59,4 +69,12 @@ class ShownSurface:
         """Blender has restored the chunks' meshes after an undo; fills the rest."""
         stale = self.chunks.adopt(fillings)
         if stale:
-            self.chunks.update(self.mesher(volume), stale, mask, self._stages)
+            self.chunks.update(self.mesher(volume, mask), stale, mask, self._stages)
+
+    def whole(self, volume, mask):
+        """The surfaces.Surface of it all, if the triangles are those that the shape needs; None: not known."""
+        mesher = self.mesher(volume, mask)
+        if mesher.tolerance is None:
+            return None
+        mesher.update(volume)
+        return surfaces.of_mesher(mesher)

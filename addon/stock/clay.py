@@ -38,7 +38,7 @@ class RIFFLER_OT_resample(SculptWork, bpy.types.Operator):
         ob, self._before = self.take(context)
         volume, pitch = self._before.volume, scene_units.clean(self.pitch)
         wanted = volume.directions if self.directions == "KEEP" else self.directions
-        area = estimate.shown_area(len(ob.data.polygons), volume.pitch)
+        area = estimate.shown_area(sculpts.all_triangles(ob.data), volume.pitch)
         estimate.check_surface(ob.name, volume.upper - volume.lower, area, pitch)
         return TaskJob(riffler.submit(riffler.Volume.resample, volume, pitch, wanted))
 

@@ -34,8 +34,9 @@ class CutShell(sculpt_work.TakesTool, SculptWork):
         return CutJob(self._before.volume.copy(), cuts, riffler.Tool.from_dict, self._before.mask)
 
     def show(self, context, job):
-        mm = sculpts.shown_mm_per_unit(self.mesh)
-        sculpts.show(self.mesh, job.volume.to_mesh_with_report()[0], mm, self._before.mask)
+        now = replace(self._before, volume=job.volume)
+        surface = sculpts.surface_of(self.mesh, now)
+        sculpts.show(self.mesh, surface, sculpts.shown_mm_per_unit(self.mesh), now.mask)
 
     def restore(self, context):
         sculpts.refill(self.mesh, sculpts.shown_mm_per_unit(self.mesh))

@@ -12,6 +12,7 @@ from ..blender.file_work import FileWork
 from ..common import poses, problems, units
 from ..common.job import AfterJob, PiecesJob, TaskJob
 from ..sculpt import live_registry, sculpt_work, sculpts
+from ..sculpt.surfaces import DETAIL, SHARE
 from ..translations import local
 from . import cut_paths, cut_program, properties
 
@@ -43,13 +44,6 @@ class Export(ExportHelper):
         for said in cut_program.not_in_cuts(content):
             self.report({"WARNING"}, local(said))
         return cuts
-
-
-DETAIL = (
-    ("NEEDED", "As Needed", "Triangles where the shape needs them: a flat face has few"),
-    ("ALL", "All", "Two triangles for each cell of the surface, as the sculpt shows"),
-)
-SHARE = 0.1  # of the pitch: the tolerance that 0 stands for
 
 
 class ExportSurface(FileWork):
@@ -85,7 +79,8 @@ class ExportSurface(FileWork):
         if self.detail == "NEEDED":
             within = units.trim(self.within(ob.data.riffler.pitch), 6)
             layout.label(text=f"{local('Tolerance')}: {within} mm", translate=False)
-        layout.label(text=f"{local('All')}: {_amount(_triangles(ob.data), self.filename_ext)}", translate=False)
+        amount = _amount(sculpts.all_triangles(ob.data), self.filename_ext)
+        layout.label(text=f"{local('All')}: {amount}", translate=False)
 
     def within(self, pitch):
         """The tolerance in mm; None for all triangles."""
@@ -130,11 +125,6 @@ class ExportSurface(FileWork):
             self.report({"WARNING"}, f"{name}: {self._thin}")
         self.report({"INFO"}, f"{name}: {self._done}")
         return {"FINISHED"}
-
-
-def _triangles(mesh):
-    """The triangles that a mesh's faces have."""
-    return len(mesh.loops) - 2 * len(mesh.polygons)
 
 
 def _amount(triangles, suffix):

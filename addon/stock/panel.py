@@ -7,8 +7,8 @@ from ..blender import object_surfaces, refusals, scene_units
 from ..blender.panel_parts import Sidebar, at_work, give, lines
 from ..common import fitting, units
 from ..sculpt import first_stroke, live_registry, mesh_edits, sculpts
-from ..translations import CONTEXT
-from . import clay, cut, export, millimetres, new_stock, properties
+from ..translations import CONTEXT, local
+from . import clay, cut, detail, export, millimetres, new_stock, properties
 from .pure import estimate
 
 
@@ -33,7 +33,9 @@ class RIFFLER_PT_sculpt(Sidebar, bpy.types.Panel):
     def _facts(self, layout, ob):
         p = ob.data.riffler
         size = [u - low for low, u in zip(p.lower, p.upper, strict=True)]
-        layout.label(text=ob.name, icon="MOD_SOLIDIFY", translate=False)
+        row = layout.row()
+        row.label(text=ob.name, icon="MOD_SOLIDIFY", translate=False)
+        detail.choose(row, ob)
         run = live_registry.of(ob)
         facts = p if run is None else run.facts
         rays = "tri-dexel" if p.directions == "xyz" else f"rays along {p.directions}"
@@ -45,6 +47,8 @@ class RIFFLER_PT_sculpt(Sidebar, bpy.types.Panel):
             f"Cuts: {facts.cuts} ({units.counted(facts.moves, 'move')})",
             f"Memory: {units.format_bytes(facts.nbytes)}",
         )
+        if why := detail.all_for(ob):
+            layout.label(text=f"{local('Triangles')}: {local(why)}", icon="INFO", translate=False)
 
     def _warnings(self, layout, context, ob):
         mesh = ob.data

@@ -13,6 +13,7 @@ from bpy.props import (
 )
 
 from ..blender.fields import length
+from ..sculpt.surfaces import DETAIL
 
 # ---------------------------------------------------------------------- new stock
 DIRECTIONS = (
@@ -194,3 +195,6 @@ class RifflerMesh(bpy.types.PropertyGroup):
     nbytes: FloatProperty()
     cuts: IntProperty()
     moves: IntProperty()
+    detail: EnumProperty(name="Triangles", items=DETAIL, default="NEEDED", description="What the sculpt's mesh has")
+    shown_within: FloatProperty(description="How far the triangles may be from all of them, in mm; 0: all are there")
+    all_triangles: IntProperty(description="How many all are; 0 in files of older add-ons, which show all")

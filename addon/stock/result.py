@@ -99,12 +99,22 @@ def said_of(mesh):
 
 
 def _in_world(context, ob):
-    """In mm of the scene, vertex by vertex that of the evaluated mesh. ValueError if it is unknown."""
+    """In mm of the scene, vertex by vertex that of the evaluated mesh; a sculpt's with all triangles. ValueError if it
+    is unknown."""
     if why := refusals.disabled(ob, context.view_layer):
         raise ValueError(why)
     matrix = meshes.matrix(ob.matrix_world)
     matrix[:3] *= scene_units.mm_per_unit(context.scene)
+    if _shows_less(ob):
+        return riffler.Mesh(*object_surfaces.placed(*sculpts.every_triangle(ob.data), matrix))
     return object_surfaces.surface(ob, context.evaluated_depsgraph_get(), matrix)
+
+
+def _shows_less(ob):
+    """Whether it is a sculpt that shows only the triangles that its shape needs."""
+    if not sculpts.is_sculpt(ob) or ob.modifiers:
+        return False
+    return ob.data.riffler.shown_within > 0 and not sculpts.changed(ob.data)
 
 
 class RIFFLER_OT_show_deviation(LongWork, bpy.types.Operator):
@@ -149,9 +159,10 @@ class RIFFLER_OT_show_deviation(LongWork, bpy.types.Operator):
             raise ValueError(f"{name} has no surface: choose a mesh, curve, text, surface or metaball")
         self._object = ob.name
         own = _in_world(context, ob)
-        if sculpts.is_sculpt(ob) and not ob.modifiers and len(own.vertices) != len(ob.data.vertices):
+        same = _shows_less(ob) or len(own.vertices) == len(ob.data.vertices)  # all are shown with their colours
+        if sculpts.is_sculpt(ob) and not ob.modifiers and not same:
             raise ValueError("the mesh was edited: rebuild it first")
-        if len(own.vertices) != len(ob.data.vertices):
+        if not same:
             raise ValueError(f"{ob.name}: apply its modifiers first, since they change its vertices")
         return TaskJob(riffler.submit(riffler.Mesh.deviation, own, _in_world(context, reference), signed=True))
 
@@ -161,6 +172,8 @@ class RIFFLER_OT_show_deviation(LongWork, bpy.types.Operator):
 
     def finish(self, context, job):
         mesh, distance = bpy.data.objects[self._object].data, np.asarray(job.result)
+        if _shows_less(bpy.data.objects[self._object]):
+            sculpts.show_all(mesh)
         if len(distance) != len(mesh.vertices):
             raise ValueError("not coloured: the mesh was changed meanwhile")
         attributes.show_distance(mesh, distance, scene_units.clean(self.scale))
@@ -190,6 +203,8 @@ class RIFFLER_OT_hide_deviation(bpy.types.Operator):
     def execute(self, context):
         attributes.hide_colours(context.object.data)
         attributes.settle()
+        if sculpts.is_sculpt(context.object):
+            sculpts.show_needed(context.object.data)
         return {"FINISHED"}
 
 

@@ -25,7 +25,7 @@ FIELDS = {"name", "description"}
 TABLES = {"STATES", "KINDS", "LOOK"}  # names of tables of texts
 DRAWN = {"text", "heading"}
 OF_BRUSH = ("label", "description", "tip")  # fields of a brush
-SAID_BY = {"description", "unfit", "missing", "refusal"}  # functions that return a shown text
+SAID_BY = {"all_for", "description", "unfit", "missing", "refusal"}  # functions that return a shown text
 ENTRY = re.compile(r"[A-Z][A-Z0-9_]*")  # identifier of an enum entry
 
 

@@ -84,6 +84,17 @@ def coordinates(mesh):
     return co
 
 
+def corner_normals(mesh):
+    """(corners, 3) float32, as Blender shows them."""
+    normals = np.empty((len(mesh.loops), 3), np.float32)
+    if hasattr(mesh, "corner_normals"):
+        mesh.corner_normals.foreach_get("vector", normals.ravel())
+    else:
+        mesh.calc_normals_split()
+        mesh.loops.foreach_get("normal", normals.ravel())
+    return normals
+
+
 def triangles(mesh):
     tri = np.empty(3 * len(mesh.polygons), np.int32)
     mesh.loops.foreach_get("vertex_index", tri)

@@ -50,8 +50,13 @@ def shown(name):
     return rows[np.lexsort(rows.T)]
 
 
-def expected(volume):
-    mesh = volume.to_mesh()
+def surface(volume, mask=None, detail="NEEDED"):
+    """What a sculpt shows of its volume."""
+    return volume.to_mesh(tolerance=common.part("sculpt.surfaces").within(detail, volume.pitch, mask))
+
+
+def expected(volume, mask=None, detail="NEEDED"):
+    mesh = surface(volume, mask, detail)
     rows = np.asarray(mesh.vertices, np.float32)[np.asarray(mesh.triangles)].reshape(-1, 9)
     return rows[np.lexsort(rows.T)]
 
@@ -62,7 +67,9 @@ def same_triangles(a, b):
 
 
 def is_shown(name):
-    assert same_triangles(shown(name), expected(live().of(bpy.data.objects[name]).volume))
+    ob = bpy.data.objects[name]
+    run = live().of(ob)
+    assert same_triangles(shown(name), expected(run.volume, run.mask, ob.data.riffler.detail))
 
 
 def nothing_is_left():
@@ -75,7 +82,8 @@ def nothing_is_left():
 
 def matches_its_volume(name):
     ob = bpy.data.objects[name]
-    surface = common.content(ob).volume.to_mesh()
-    assert np.array_equal(common.coordinates(ob.data), np.asarray(surface.vertices, np.float32))
-    assert len(ob.data.polygons) == len(surface.triangles)
+    content = common.content(ob)
+    mesh = surface(content.volume, content.mask, ob.data.riffler.detail)
+    assert np.array_equal(common.coordinates(ob.data), np.asarray(mesh.vertices, np.float32))
+    assert len(ob.data.polygons) == len(mesh.triangles)
     assert not ob.hide_get()

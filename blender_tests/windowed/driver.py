@@ -55,14 +55,16 @@ class Screen:
         return [(kind, (p.x / w, 1 - (p.y + p.height) / h, (p.x + p.width) / w, 1 - p.y / h)) for kind, p in parts]
 
     def draw_smoothly(self, smoothly):
-        """Smooth edges and outlines take a software renderer two thirds of its time: they are used only for pictures in
-        documents."""
+        """Smooth edges, outlines and the floor's grid take a software renderer two thirds of its time: they are used
+        only for pictures in documents."""
         system = bpy.context.preferences.system
         system.viewport_aa = "FXAA" if smoothly else "OFF"  # the others draw several times
         system.use_overlay_smooth_wire = smoothly
         for area in self.window.screen.areas:
             if area.type == "VIEW_3D":
-                area.spaces.active.overlay.show_outline_selected = smoothly
+                overlay = area.spaces.active.overlay
+                overlay.show_outline_selected = overlay.show_floor = smoothly
+                overlay.show_axis_x = overlay.show_axis_y = smoothly
 
     def picture(self, name, vary=()):
         """A picture of the whole display, compared with its reference if there is one: steps to `yield from`. Panels

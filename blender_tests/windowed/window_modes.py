@@ -56,7 +56,7 @@ def groove(screen, y, places=2, **more):
 def in_mesh(y):
     """Whether the sculpt's own mesh has the groove at `y` (mm)."""
     co = common.coordinates(sculpt().data) * sculpt().data.riffler.mm_per_unit
-    near = co[(np.abs(co[:, 1] - y) < 1) & (np.abs(co[:, 0] - 30) < 5) & (co[:, 2] > 10)]
+    near = co[(np.abs(co[:, 1] - y) < 1) & (np.abs(co[:, 0] - 30) < 16) & (co[:, 2] > 10)]
     return abs(near[:, 2].min() - LOWEST) < 0.1
 
 
@@ -218,6 +218,8 @@ def at_the_box(screen):
     yield lambda: stroke.volume().to_bytes() == whole
     yield 0.5
     stroke.module("sculpt.live_registry").end_all()
+    with screen.override():
+        bpy.ops.riffler.detail(detail="ALL")  # whose vertices are on every edge
     yield 0.3
     mesh, mm, wanted = sculpt().data, sculpt().data.riffler.mm_per_unit, box() + 6
     inside = common.coordinates(mesh) * mm

@@ -75,7 +75,9 @@ def stroke_held(screen):
 def long_cut(screen):
     strokes.tool(screen, "riffler.carve")
     before = cut.state()
-    name = cut.spiral(6, 250_000, "Long")
+    # several seconds of cutting: a software renderer may draw for more than a second before progress is looked at
+    name = cut.spiral(6, 2_000_000, "Long")
+    bpy.data.objects[name].hide_set(True)
     bpy.context.view_layer.objects.active = bpy.data.objects["Stock"]
     with screen.override():
         assert bpy.ops.riffler.cut_curve("INVOKE_DEFAULT", True, curve=name, depth=6) == {"RUNNING_MODAL"}

@@ -15,9 +15,10 @@ namespace riffler::bindings {
 namespace {
 
 struct SharedMesher : Guarded {
-  explicit SharedMesher(marching::Mesher m) : mesher(std::move(m)) {}
+  SharedMesher(marching::Mesher m, const std::optional<double>& t) : mesher(std::move(m)), tolerance(t) {}
   marching::Mesher mesher;
-  marching::PickStats stats;  // since the last take_counters; under the GIL
+  std::optional<double> tolerance;  // as given
+  marching::PickStats stats;        // since the last take_counters; under the GIL
 };
 
 struct SharedSurface {
@@ -39,8 +40,8 @@ std::unique_ptr<SharedMesher> make(SharedVolume& volume, const std::optional<dou
   const Progress progress = to_progress(callable);
   const Volume state = state_of(volume);
   const NoGil release;
-  return std::make_unique<SharedMesher>(tolerance ? marching::Mesher(state, *tolerance, progress)
-                                                  : marching::Mesher(state, progress));
+  return std::make_unique<SharedMesher>(
+      tolerance ? marching::Mesher(state, *tolerance, progress) : marching::Mesher(state, progress), tolerance);
 }
 
 using BrickOrBricks = std::variant<std::size_t, std::vector<std::size_t>>;
@@ -356,7 +357,7 @@ edges : bool
 normals : float, rad, or None
     Asks for normals of the triangles' corners on the whole mesh: the mean of the triangles around the vertex, in
     whatever brick, whose normals are within this angle of the corner's own. With a tolerance, the mean of those of the
-    full mesh.
+    full mesh that bend no more than the surface under the triangle does.
 
 Returns
 -------
@@ -407,7 +408,12 @@ Examples
 0
 )")
       .def_property_readonly(
-          "triangles", [](SharedMesher& self) { return (lock(self), self.mesher.triangles()); }, "How many it has.");
+          "triangles", [](SharedMesher& self) { return (lock(self), self.mesher.triangles()); }, "How many it has.")
+      .def_property_readonly(
+          "all_triangles", [](SharedMesher& self) { return (lock(self), self.mesher.all_triangles()); },
+          "How many the full mesh has: as many as `triangles` without a tolerance.")
+      .def_readonly("tolerance", &SharedMesher::tolerance,
+                    "The tolerance that it was made with, mm; None: all triangles.");
   bind_counters(mesher);
 }
 

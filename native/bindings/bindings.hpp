@@ -49,6 +49,7 @@ void bind_path(py::module_& m);
 void bind_pencil(py::module_& m);
 void bind_strategies(py::module_& m);
 void bind_plan(py::module_& m);
+void bind_finish(py::module_& m);
 void bind_tasks(py::module_& m);
 
 /// A numpy array of doubles in C order; any array-like converts.

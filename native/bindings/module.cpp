@@ -1,7 +1,9 @@
 // The extension module riffler._core. Not public: the names that riffler exports are.
 #include "bindings/bindings.hpp"
+#include "bindings/history_class.hpp"
 #include "bindings/program_arguments.hpp"
 #include "bindings/session_frame.hpp"
+#include "bindings/surface_class.hpp"
 
 PYBIND11_MODULE(_core, m) {
   using namespace riffler;
@@ -15,9 +17,11 @@ PYBIND11_MODULE(_core, m) {
   bindings::bind_tasks(m);
   bindings::bind_files(m);
   bindings::bind_mesh(m);
+  bindings::bind_surface(m);
   bindings::bind_tool(m);
   bindings::bind_volume(m);
   bindings::bind_smooth_dabs(m);
+  bindings::bind_history(m);
   bindings::bind_mesher(m);
   bindings::bind_collide(m);
   bindings::bind_machines(m);
@@ -40,6 +44,7 @@ PYBIND11_MODULE(_core, m) {
   bindings::bind_pencil(m);
   bindings::bind_strategies(m);
   bindings::bind_plan(m);
+  bindings::bind_finish(m);
   bindings::refuse_objects_without_init(m);
   bindings::answer_misfits(m);
 }

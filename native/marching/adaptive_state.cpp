@@ -3,12 +3,11 @@
 #include <algorithm>
 
 #include "base/sort_unique.hpp"
-#include "marching/adaptive.hpp"
 
 namespace riffler::marching {
 
-AdaptiveState::AdaptiveState(const Surface& surface, double tolerance)
-    : surface_(surface), tolerance_(tolerance), groups_(surface) {}
+AdaptiveState::AdaptiveState(const Surface& surface, double tolerance, bool follows)
+    : surface_(surface), tolerance_(tolerance), follows_(follows), groups_(surface) {}
 
 void AdaptiveState::build(const std::vector<std::size_t>& all, const Progress& progress) {
   layers_.clear();
@@ -38,6 +37,7 @@ void AdaptiveState::simplify(const std::vector<std::size_t>& changed, const Prog
     if (surface_.bricks.active(n)) active.push_back(n);
   groups_.sort(active, base::part(progress, 0, 0.1));
   follow(0, changed, {}, base::part(progress, 0.1, 1));
+  if (!follows_) return fix_folds_in_place();
   for (std::size_t n = 0;; ++n) {
     FixedVertices fixed = fixed_after(layers_[n]);
     if (fixed == layers_[n].fixed) {
@@ -47,16 +47,33 @@ void AdaptiveState::simplify(const std::vector<std::size_t>& changed, const Prog
     const bool is_new = n + 1 == layers_.size();
     if (is_new) layers_.push_back(Layer(layers_[n]));
     FixedVertices& was = layers_[n + 1].fixed;
-    std::vector<std::size_t> owners;
-    const auto compare = [&](const FixedVertices& a, const FixedVertices& b) {
-      for (const auto& [brick, list] : a)
-        if (const auto there = b.find(brick); there == b.end() || there->second != list) owners.push_back(brick);
-    };
-    compare(was, fixed), compare(fixed, was);
-    base::sort_unique(owners);
+    const std::vector<std::size_t> owners = owners_of_changes(was, fixed);
     was = std::move(fixed);
     follow(n + 1, is_new ? std::vector<std::size_t>{} : changed, owners, {});
   }
+}
+
+/// Turns the one layer into the next until no more triangles fold.
+void AdaptiveState::fix_folds_in_place() {
+  for (Layer& layer = layers_.front();;) {
+    FixedVertices fixed = fixed_after(layer);
+    const std::vector<std::size_t> owners = owners_of_changes(layer.fixed, fixed);
+    if (owners.empty()) return;
+    layer.fixed = std::move(fixed);
+    follow(0, {}, owners, {});
+  }
+}
+
+/// The bricks that have not the same fixed vertices in both.
+std::vector<std::size_t> AdaptiveState::owners_of_changes(const FixedVertices& a, const FixedVertices& b) {
+  std::vector<std::size_t> out;
+  const auto compare = [&](const FixedVertices& one, const FixedVertices& other) {
+    for (const auto& [brick, list] : one)
+      if (const auto there = other.find(brick); there == other.end() || there->second != list) out.push_back(brick);
+  };
+  compare(a, b), compare(b, a);
+  base::sort_unique(out);
+  return out;
 }
 
 /// The vertices to be fixed in the next layer.

@@ -9,22 +9,26 @@
 
 namespace riffler::marching {
 
-/// The triangles left of each brick. They are those of `simplify`, bit for bit: each group's result depends only on its
-/// input, a digest of which is kept with it, so a group whose input is the same as before keeps its result.
+/// The triangles left of each brick. Each group's result depends only on its input, a digest of which is kept with it,
+/// so a group whose input is the same as before keeps its result.
 ///
-/// Triangles that fold across a border of groups fix their vertices (see fix_folds), and what is left with these fixed
-/// is a mesh of its own, the next layer. Nearly always there is only one. A layer shares the results that it has in
-/// common with the one before.
+/// A merge sees only the triangles around its group, so across the border of two groups triangles may fold. Their
+/// vertices are fixed then, and the groups that this concerns are simplified again: what is left is a mesh of its own,
+/// the next layer. In the end no triangle folds that did not in the full mesh: one whose vertices are all fixed has
+/// never changed. A layer shares the results that it has in common with the one before.
 class AdaptiveState {
  public:
-  /// `tolerance`: mm, > 0. The surface must outlive it.
-  AdaptiveState(const Surface& surface, double tolerance);
+  /// `tolerance`: mm, > 0. No point of the triangles left is farther than this from the full mesh, and the reverse.
+  /// The surface must outlive it. `follows`: updates will come; without them digests and earlier layers are not kept.
+  AdaptiveState(const Surface& surface, double tolerance, bool follows);
 
   /// Simplifies the whole mesh again.
   void build(const std::vector<std::size_t>& all, const Progress& progress);
   /// Follows a change of the full mesh in these bricks. Returns the bricks whose triangles left differ now, ascending.
   std::vector<std::size_t> update(const std::vector<std::size_t>& changed);
 
+  /// mm.
+  double tolerance() const { return tolerance_; }
   /// Number of a brick's triangles.
   std::size_t count(std::size_t brick) const { return shown_[brick] ? shown_[brick]->triangles.size() : 0; }
   /// Calls body(triangle) for a brick's triangles, in order; vertices by their numbers in the full mesh.
@@ -62,10 +66,13 @@ class AdaptiveState {
   void find_folds(Layer& layer, const std::vector<std::size_t>& renewed) const;
   std::vector<VertexName> folds_of(const Layer& layer, std::size_t brick, std::vector<std::size_t>& others) const;
   FixedVertices fixed_after(const Layer& layer) const;
+  static std::vector<std::size_t> owners_of_changes(const FixedVertices& a, const FixedVertices& b);
+  void fix_folds_in_place();
   void simplify(const std::vector<std::size_t>& changed, const Progress& progress);
 
   const Surface& surface_;
   double tolerance_;
+  bool follows_;
   VertexGroups groups_;
   std::vector<Layer> layers_;
   std::vector<Result> shown_;

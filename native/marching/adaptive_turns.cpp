@@ -46,7 +46,10 @@ std::vector<std::size_t> AdaptiveState::Turns::run(Layer& layer, const Progress&
     std::vector<Result> now(tasks.size());
     const double from = 0.05 * static_cast<double>(turn);
     base::parallel_for(
-        tasks.size(), tasks.size() > 64 ? 8 : 1,
+        tasks.size(),
+        tasks.size() > 1024 ? 32
+        : tasks.size() > 64 ? 8
+                            : 1,
         [&](std::size_t begin, std::size_t end) {
           GroupInput input;
           StarCollapser collapser({input.vertices, input.triangles, input.errors}, state_.tolerance_);
@@ -167,6 +170,10 @@ AdaptiveState::Result AdaptiveState::Turns::result(const Layer& layer, std::size
   input.clear();
   if (!(group == 0 ? gather_inside(brick, input) : gather_border(at, group, input))) return nullptr;
   mark_movable(layer, brick, group, input);
+  if (!state_.follows_) {
+    input.simplify(collapser, group);
+    return std::make_shared<const GroupResult>(GroupResult::of(input, group == 0));
+  }
   input.hash();
   if (before_)
     if (const Result& same = before_->results[brick][group]; same && same->made_from == input.digest) return same;
@@ -224,27 +231,26 @@ bool AdaptiveState::Turns::gather_inside(std::size_t brick, GroupInput& input) c
   const auto foreign = static_cast<std::int32_t>(input.names.size());
   for (const VertexName& v : input.names)
     input.vertices.push_back(mesh.vertices[static_cast<std::size_t>(state_.number(active.at, v))]);
-  for (std::size_t v = 0; v < active.vertices(); ++v) {
-    input.names.emplace_back(Vec3i(0), v);
-    input.vertices.push_back(mesh.vertices[active.first_vertex + v]);
-  }
+  input.names.resize(foreign + active.vertices());
+  for (std::size_t v = 0; v < active.vertices(); ++v) input.names[foreign + v] = {Vec3i(0), v};
+  const auto own_vertices = mesh.vertices.begin() + static_cast<std::ptrdiff_t>(active.first_vertex);
+  input.vertices.insert(input.vertices.end(), own_vertices,
+                        own_vertices + static_cast<std::ptrdiff_t>(active.vertices()));
   const auto number = [&](const VertexName& v) {
     if (own(v)) return foreign + static_cast<std::int32_t>(v.local());
     const auto end = input.names.begin() + foreign;
     return static_cast<std::int32_t>(std::lower_bound(input.names.begin(), end, v) - input.names.begin());
   };
   const Vec3i shift(foreign - static_cast<std::int32_t>(active.first_vertex));
-  std::size_t next = 0;
-  for (std::size_t t = 0; t < 2 * active.edges(); ++t) {
-    if (next == border.size() || border[next] != t) {
-      input.triangles.push_back(mesh.triangles[2 * active.first_edge + t] + shift);
-      input.errors.push_back(0);
-      continue;
-    }
-    const BorderFace& face = faces[next++];
-    input.triangles.push_back(face.removed ? Vec3i(-1)
-                                           : Vec3i(number(face.v[0]), number(face.v[1]), number(face.v[2])));
-    input.errors.push_back(face.error);
+  const std::size_t all = 2 * active.edges();
+  input.triangles.resize(all), input.errors.resize(all);
+  for (std::size_t t = 0; t < all; ++t)
+    input.triangles[t] = mesh.triangles[2 * active.first_edge + t] + shift, input.errors[t] = 0;
+  for (std::size_t n = 0; n < border.size(); ++n) {
+    const BorderFace& face = faces[n];
+    input.errors[border[n]] = face.error;
+    input.triangles[border[n]] =
+        face.removed ? Vec3i(-1) : Vec3i(number(face.v[0]), number(face.v[1]), number(face.v[2]));
   }
   std::fill(input.begin.begin() + 1, input.begin.end(), static_cast<std::uint32_t>(input.triangles.size()));
   return true;
@@ -253,11 +259,13 @@ bool AdaptiveState::Turns::gather_inside(std::size_t brick, GroupInput& input) c
 void AdaptiveState::Turns::mark_movable(const Layer& layer, std::size_t brick, int group, GroupInput& input) const {
   const std::size_t first = bricks_.active(brick)->first_vertex;
   const auto fixed = layer.fixed.find(brick);
-  for (const VertexName& v : input.names) {
+  input.movable.resize(input.names.size());
+  for (std::size_t n = 0; n < input.names.size(); ++n) {
+    const VertexName& v = input.names[n];
     const bool own = v.offset() == Vec3i(0) && state_.groups_.of(first + v.local()) == group;
     const bool stays =
         own && fixed != layer.fixed.end() && std::binary_search(fixed->second.begin(), fixed->second.end(), v.local());
-    input.movable.push_back(own && !stays);
+    input.movable[n] = own && !stays;
   }
 }
 

@@ -75,6 +75,7 @@ class Numbers {
 };
 
 /// Lists of wedges by vertex: counted first, then filled.
+template <class Wedge>
 class Fans {
  public:
   explicit Fans(std::size_t vertices) : begin_(vertices + 1, 0) {}
@@ -120,6 +121,60 @@ Vec3f mean_near(std::span<const Wedge> fan, const Vec3& own, double least) {
   return Vec3f(size > 0 ? sum / size : own);
 }
 
+/// A triangle of the full mesh at a vertex of an adaptive patch.
+struct FullWedge : Wedge {
+  Vec3 next, previous;  // its sides, from the vertex
+};
+
+/// The normal of a large triangle at one of its corners. Small triangles next to it, such as the wall of a shallow
+/// groove in flat ground, bend the light on one cell of the full mesh, and would do so on all of the large triangle. So
+/// a small one counts as far as the surface bends under the large one itself: its `bend` is the distance of the large
+/// one's corners from its plane.
+class CornerOfLarge {
+ public:
+  /// `next`, `previous`: the triangle's sides, from the corner; `own`: its normal.
+  CornerOfLarge(const Vec3& next, const Vec3& previous, const Vec3& own, double tolerance)
+      : next_(next), previous_(previous), own_(own), tolerance_(tolerance) {}
+
+  Vec3f normal(std::span<const FullWedge> fan, double least) const {
+    double most = 0;  // bend of the small triangles that it replaces here
+    for (const FullWedge& w : fan)
+      if (glm::dot(w.normal, own_) >= least && is_under(w)) most = std::max(most, bend(w));
+    Vec3 sum(0.0);
+    for (const FullWedge& w : fan)
+      if (own_ == Vec3(0.0) || (glm::dot(w.normal, own_) >= least && counts(w, most))) sum += w.angle * w.normal;
+    const double size = glm::length(sum);
+    return Vec3f(size > 0 ? sum / size : own_);
+  }
+
+ private:
+  /// Between 4, which the tolerance allows where a surface bends evenly, and more for the tilt of small triangles.
+  static constexpr double kMost = 6;
+  static constexpr double kMore = 2, kSlack = 0.25;
+  static constexpr double kLarge = 3;  // sizes of a small triangle
+
+  double bend(const FullWedge& w) const {
+    return std::max(std::abs(glm::dot(next_, w.normal)), std::abs(glm::dot(previous_, w.normal)));
+  }
+  static bool is_between(const Vec3& d, const Vec3& a, const Vec3& b, const Vec3& normal) {
+    return glm::dot(glm::cross(a, d), normal) >= 0 && glm::dot(glm::cross(d, b), normal) >= 0;
+  }
+  bool is_under(const FullWedge& w) const {
+    const Vec3 middle = glm::length(previous_) * next_ + glm::length(next_) * previous_;
+    return is_between(w.next + w.previous, next_, previous_, own_) || is_between(middle, w.next, w.previous, own_);
+  }
+  bool counts(const FullWedge& w, double most) const {
+    const double far = bend(w);
+    if (far > kMost * tolerance_) return false;
+    const double small = std::max(glm::dot(w.next, w.next), glm::dot(w.previous, w.previous));
+    const double large = std::max(glm::dot(next_, next_), glm::dot(previous_, previous_));
+    return large <= kLarge * kLarge * small || far <= kMore * most + kSlack * tolerance_;
+  }
+
+  Vec3 next_, previous_, own_;
+  double tolerance_;
+};
+
 /// The normals of an adaptive patch, from the triangles of the full mesh around its vertices.
 base::BulkVector<Vec3f> adaptive_normals(const MeshState& state, const MeshPatch& patch, double least) {
   struct Found {
@@ -135,7 +190,7 @@ base::BulkVector<Vec3f> adaptive_normals(const MeshState& state, const MeshPatch
   std::vector<std::size_t> bricks = beside(state.bricks, patch.bricks);
   bricks.insert(bricks.end(), patch.bricks.begin(), patch.bricks.end());
   std::vector<Found> found;
-  Fans fans(patch.vertices.size());
+  Fans<FullWedge> fans(patch.vertices.size());
   std::vector<std::int64_t> of_brick;
   for (const std::size_t n : bricks) {
     const ActiveBrick& brick = *state.bricks.active(n);
@@ -164,15 +219,21 @@ base::BulkVector<Vec3f> adaptive_normals(const MeshState& state, const MeshPatch
   fans.reserve();
   const auto place = [&](std::int32_t v) { return Vec3(Vec3f(to_world(state.lattice.axis(), mesh.vertices[v]))); };
   for (const Found& one : found) {
-    const Corners corners = corners_of(place(one.triangle.x), place(one.triangle.y), place(one.triangle.z));
+    const std::array<Vec3, 3> at{place(one.triangle.x), place(one.triangle.y), place(one.triangle.z)};
+    const Corners corners = corners_of(at[0], at[1], at[2]);
     for (int c = 0; c < 3; ++c)
-      if (one.vertex[c] >= 0) fans.add(static_cast<std::size_t>(one.vertex[c]), {corners.normal, corners.angle[c]});
+      if (one.vertex[c] >= 0)
+        fans.add(static_cast<std::size_t>(one.vertex[c]),
+                 {{corners.normal, corners.angle[c]}, at[(c + 1) % 3] - at[c], at[(c + 2) % 3] - at[c]});
   }
   base::BulkVector<Vec3f> out(3 * patch.triangles.size());
   for (std::size_t t = 0; t < patch.triangles.size(); ++t) {
     const Vec3i& v = patch.triangles[t];
-    const Vec3 own = corners_of(Vec3(patch.vertices[v.x]), Vec3(patch.vertices[v.y]), Vec3(patch.vertices[v.z])).normal;
-    for (int c = 0; c < 3; ++c) out[3 * t + c] = mean_near(fans.at(static_cast<std::size_t>(v[c])), own, least);
+    const std::array<Vec3, 3> at{Vec3(patch.vertices[v.x]), Vec3(patch.vertices[v.y]), Vec3(patch.vertices[v.z])};
+    const Vec3 own = corners_of(at[0], at[1], at[2]).normal;
+    for (int c = 0; c < 3; ++c)
+      out[3 * t + c] = CornerOfLarge(at[(c + 1) % 3] - at[c], at[(c + 2) % 3] - at[c], own, state.adaptive->tolerance())
+                           .normal(fans.at(static_cast<std::size_t>(v[c])), least);
   }
   return out;
 }
@@ -189,7 +250,7 @@ base::BulkVector<Vec3f> corner_normals(const MeshState& state, std::span<const s
   const Mesh& mesh = state.surface.mesh;
   const Numbers numbers(state, patch);
   std::vector<Outside> outside;
-  Fans fans(patch.vertices.size());
+  Fans<Wedge> fans(patch.vertices.size());
   for (const Vec3i& t : patch.triangles)
     for (int c = 0; c < 3; ++c) fans.count(static_cast<std::size_t>(t[c]));
   std::vector<std::int64_t> of_brick;

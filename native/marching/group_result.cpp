@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "marching/adaptive.hpp"
-
 namespace riffler::marching {
 
 void GroupInput::clear() {
@@ -113,6 +111,12 @@ bool GroupResult::same_at(int side, const GroupResult& other) const {
     if (errors[from + n] != other.errors[there + n] || corners(from + n) != other.corners(there + n)) return false;
   }
   return true;
+}
+
+bool lie_on(const mesh::Vertices& p, const Vec3i& one, const Vec3i& other) {
+  constexpr double kLyingOn = -0.9999;
+  const auto normal = [&](const Vec3i& v) { return glm::normalize(glm::cross(p[v.y] - p[v.x], p[v.z] - p[v.x])); };
+  return glm::dot(normal(one), normal(other)) < kLyingOn;
 }
 
 }  // namespace riffler::marching

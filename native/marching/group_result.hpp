@@ -113,4 +113,7 @@ struct GroupResult {
   void find_rim(const GroupInput& input);
 };
 
+/// Whether two triangles with a common side lie on each other.
+bool lie_on(const mesh::Vertices& vertices, const Vec3i& one, const Vec3i& other);
+
 }  // namespace riffler::marching

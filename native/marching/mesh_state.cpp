@@ -6,7 +6,6 @@
 #include <stdexcept>
 
 #include "base/sort_unique.hpp"
-#include "marching/adaptive.hpp"
 #include "riffler/base/parallel.hpp"
 
 namespace riffler::marching {
@@ -96,24 +95,6 @@ Mesh MeshState::take() {
   return mesh;
 }
 
-Mesh MeshState::take(double tolerance, const Progress& progress) {
-  const std::vector<std::size_t> all = active_bricks();
-  base::BulkVector<std::uint8_t> fixed(surface.mesh.vertices.size());
-  std::fill(fixed.begin(), fixed.end(), std::uint8_t{0});
-  marching::simplify(surface, all, tolerance, fixed, base::part(progress, 0, 0.9));
-  while (fix_folds(surface, all, fixed)) {
-    build({});
-    marching::simplify(surface, all, tolerance, fixed, {});
-  }
-  Mesh mesh = renumbered(all, [&](std::size_t n, const auto& body) {
-    const ActiveBrick& brick = *bricks.active(n);
-    for (std::size_t t = 2 * brick.first_edge; t < 2 * (brick.first_edge + brick.edges()); ++t)
-      if (surface.mesh.triangles[t].x >= 0) body(surface.mesh.triangles[t]);
-  });
-  base::report(progress, 1);
-  return mesh;
-}
-
 /// The mesh of these triangles, which need not use all vertices: `for_triangles(brick, body)` calls body(triangle).
 template <class ForTriangles>
 Mesh MeshState::renumbered(const std::vector<std::size_t>& all, const ForTriangles& for_triangles) const {
@@ -194,7 +175,7 @@ Mesh MeshState::compact_full() const {
 }
 
 void MeshState::simplify(double tolerance, const Progress& progress) {
-  adaptive = std::make_unique<AdaptiveState>(surface, tolerance);
+  adaptive = std::make_unique<AdaptiveState>(surface, tolerance, room_);
   adaptive->build(active_bricks(), progress);
   base::report(progress, 1);
 }

@@ -24,9 +24,9 @@ struct MeshState {
   /// The triangles that a tolerance leaves; null: all of them.
   std::unique_ptr<AdaptiveState> adaptive;
 
-  /// `room`: reserve space for bricks to grow; only address space until it is used.
+  /// `room`: reserve space for bricks to grow, for updates; only address space until it is used.
   MeshState(const Volume& volume, bool room, const Progress& progress);
-  /// Leaves out the triangles that are not needed for `tolerance` (mm, > 0), now and after each update.
+  /// Leaves out the triangles that are not needed for `tolerance` (mm, > 0), now and, with room, after each update.
   void simplify(double tolerance, const Progress& progress);
   std::vector<std::size_t> update(const Volume& now);
   /// Throws std::runtime_error after an update that threw, because the state is then no mesh.
@@ -38,8 +38,6 @@ struct MeshState {
   Mesh compact() const;
   /// Same for a state that was never updated; the state is consumed.
   Mesh take();
-  /// Same, without the triangles that are not needed for `tolerance` (mm, > 0).
-  Mesh take(double tolerance, const Progress& progress);
 
  private:
   template <class ForTriangles>

@@ -68,6 +68,13 @@ std::size_t Mesher::triangles() const {
   return sum;
 }
 
+std::size_t Mesher::all_triangles() const {
+  state_->check_whole();
+  std::size_t sum = 0;
+  for (const std::size_t n : state_->active_bricks()) sum += 2 * state_->bricks.active(n)->edges();
+  return sum;
+}
+
 Vec3i Mesher::shape() const {
   return {state_->bricks.count(0), state_->bricks.count(1), state_->bricks.count(2)};
 }
@@ -117,7 +124,8 @@ Mesh to_mesh(const Volume& volume, double tolerance, const Progress& progress, s
   MeshState state(volume, false, base::part(progress, 0, 0.6));
   if (all) *all = state.surface.mesh.triangles.size();
   if (!is_usable(tolerance, state)) return state.take();
-  return state.take(tolerance, base::part(progress, 0.6, 1));
+  state.simplify(tolerance, base::part(progress, 0.6, 1));
+  return state.compact();
 }
 
 }  // namespace riffler::marching

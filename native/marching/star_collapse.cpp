@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kTouching = -0.98;   // cosine of two triangles that all but lie on each other
 constexpr double kNear = 1e-4;        // weight of a target's distance compared with its height
+constexpr int kTargets = 3;           // looked at for each vertex, of the least guesses
 constexpr int kLevels = 8;            // of the error, from the cheapest merges to the dearest
 constexpr double kFlat = 1.0 / 4096;  // error that needs no closer look, over the tolerance
 
@@ -61,10 +62,8 @@ void StarCollapser::run() {
       if (!stars_[k].locked) block_.push_back(static_cast<std::int32_t>(k));
     flatten(block_.data(), block_.data() + block_.size());
   }
-  // Cheap merges first, and at first none that makes a large fan.
+  // Cheap merges first.
   spread();
-  sweep(most_error_ / 1024, 12);
-  for (Star& star : stars_) star.needs = 0;
   for (int level = 1; level <= kLevels; ++level) sweep(most_error_ * level / kLevels, wide_ ? 24 : kMostFaces);
   for (const Face& face : faces_) {
     mesh_.triangles[face.triangle] = face.v;
@@ -111,12 +110,10 @@ bool StarCollapser::gather(std::int32_t from, double limit) {
   for (int n = 0; n < count_; ++n) {
     const Face& face = faces_[around_from[n]];
     Side& side = sides_[n];
-    if (face.v.x == star.vertex)
-      side.a = face.v.y, side.b = face.v.z;
-    else if (face.v.y == star.vertex)
-      side.a = face.v.z, side.b = face.v.x;
-    else
-      side.a = face.v.x, side.b = face.v.y;
+    // Without branches, because which corner it is cannot be predicted.
+    const std::int32_t corners[5] = {face.v.x, face.v.y, face.v.z, face.v.x, face.v.y};
+    const int at = (face.v.y == star.vertex ? 1 : 0) + (face.v.z == star.vertex ? 2 : 0);
+    side.a = corners[at + 1], side.b = corners[at + 2];
     side.pa = mesh_.vertices[side.a] - p, side.pb = mesh_.vertices[side.b] - p;
     side.normal = face.normal;
     sum += face.normal;
@@ -127,13 +124,15 @@ bool StarCollapser::gather(std::int32_t from, double limit) {
   const double length = glm::length(sum);
   if (!(length > kFacing * count_)) return false;
   direction_ = sum / length;
-  double low = 0, high = 0;
+  double low = std::numeric_limits<double>::infinity(), high = -low;
   for (int n = 0; n < count_; ++n) {
     if (!(glm::dot(sides_[n].normal, direction_) > kFacing)) return false;
     const double h = glm::dot(sides_[n].pa, direction_);
+    sides_[n].height = h;
     low = std::min(low, h), high = std::max(high, h);
   }
-  slab_ = high - low;
+  slab_ = std::max(high, 0.0) - std::min(low, 0.0);
+  least_ = std::max({low, -high, 0.0});
   has_ring_ = false;
   return true;
 }
@@ -143,43 +142,49 @@ bool StarCollapser::merge(std::int32_t from, double limit, int most_faces) {
   if (star.count < 3 || star.needs > limit) return false;
   star.needs = std::numeric_limits<double>::infinity();
   if (!gather(from, most_error_)) return false;
-  std::array<Target, kMostFaces> targets;
+  if (!(base_ + least_ <= limit)) {
+    if (base_ + least_ <= most_error_) star.needs = base_ + least_;
+    return false;
+  }
+  // Along a groove nothing is lost; where all is flat the nearest is best.
+  std::array<Target, kTargets + 1> targets;
   int many = 0;
   for (int n = 0; n < count_; ++n) {
     const std::int32_t s = slot(sides_[n].a);
     if (s < 0 || stars_[s].locked) continue;
     const int faces = stars_[s].count + count_ - 4;
     if (faces < 3 || faces > most_faces) continue;
-    // Along a groove nothing is lost; where all is flat the nearest is best.
-    const Vec3& p = sides_[n].pa;
-    targets[many++] = {std::abs(glm::dot(p, direction_)) + kNear * glm::length(p), n};
+    const Target found{std::abs(sides_[n].height) + kNear * glm::length(sides_[n].pa), n};
+    int at = many;
+    for (; at > 0 && found.guess < targets[at - 1].guess; --at) targets[at] = targets[at - 1];
+    targets[at] = found;
+    many = std::min(many + 1, kTargets);
   }
-  std::sort(targets.begin(), targets.begin() + many,
-            [](const Target& a, const Target& b) { return a.guess != b.guess ? a.guess < b.guess : a.side < b.side; });
   const bool flat = slab_ <= tolerance_ * kFlat && base_ + slab_ <= most_error_;
-  double best = std::numeric_limits<double>::infinity(), lowest = best;
+  double error_taken = 0, lowest = std::numeric_limits<double>::infinity();
   int taken = -1;
   for (int n = 0; n < many; ++n) {
     const Side& to = sides_[targets[n].side];
-    const double error = flat ? slab_ : error_of(to, std::min(best, limit - base_));
-    if (!(base_ + error <= limit)) {
+    // Above the room that is left, the error may be incomplete, also where the sum rounds down to the limit.
+    const double room = limit - base_, error = flat ? slab_ : error_of(to, room);
+    if (!(error <= room && base_ + error <= limit)) {
       lowest = std::min(lowest, error);
       continue;
     }
-    if (!(error < best) || !keeps_shape(to)) continue;
+    if (!keeps_shape(to)) continue;
     std::int32_t x = -1, y = to.b;
     for (int m = 0; m < count_; ++m)
       if (sides_[m].b == to.a) x = sides_[m].a;
     if (!keeps_manifold(from, slot(to.a), x, y)) continue;
-    best = error, taken = targets[n].side;
-    if (error <= tolerance_ * kFlat) break;
+    error_taken = error, taken = targets[n].side;
+    break;
   }
   if (taken < 0) {
     if (base_ + lowest <= most_error_) star.needs = base_ + lowest;
     return false;
   }
   if (folds(from, sides_[taken])) return false;
-  commit(from, slot(sides_[taken].a), best, limit);
+  commit(from, slot(sides_[taken].a), error_taken, limit);
   return true;
 }
 
@@ -207,19 +212,20 @@ bool StarCollapser::folds(std::int32_t from, const Side& to) const {
     if (side.a == to.a || side.b == to.a) continue;
     const Vec3 cross = glm::cross(side.pa - to.pa, side.pb - to.pa);
     const double length = glm::length(cross);
-    const auto faces_away = [&](std::int32_t s, bool& found) {
+    // Looks among the faces around one end of the side for the other end.
+    const auto faces_away = [&](std::int32_t s, std::int32_t end, bool& found) {
       if (s < 0) return false;
       for (int m = 0; m < stars_[s].count; ++m) {
         const Face& face = faces_[around(s)[m]];
-        const auto has = [&](std::int32_t v) { return face.v.x == v || face.v.y == v || face.v.z == v; };
-        if (!has(side.a) || !has(side.b) || has(stars_[from].vertex)) continue;
+        const auto has = [&](std::int32_t v) { return (face.v.x == v) | (face.v.y == v) | (face.v.z == v); };
+        if (!has(end) || has(stars_[from].vertex)) continue;
         found = true;
         return glm::dot(face.normal, cross) < kTouching * length;
       }
       return false;
     };
     bool found = false;
-    if (faces_away(slot(side.a), found) || (!found && faces_away(slot(side.b), found))) return true;
+    if (faces_away(slot(side.a), side.b, found) || (!found && faces_away(slot(side.b), side.a, found))) return true;
   }
   return false;
 }
@@ -251,7 +257,7 @@ void StarCollapser::turn_ring() {
   const Vec3 f = glm::cross(n, e);
   for (int k = 0, side = 0; k < count_; ++k) {
     const Vec3& p = sides_[side].pa;
-    ring_[k] = ring_[k + count_] = {glm::dot(p, e), glm::dot(p, f), glm::dot(p, n)};
+    ring_[k] = ring_[k + count_] = {glm::dot(p, e), glm::dot(p, f), sides_[side].height};
     place_in_ring_[side] = k;
     int next = 0;
     while (next < count_ && sides_[next].a != sides_[side].b) ++next;
@@ -288,7 +294,8 @@ double StarCollapser::error_of(const Side& to, double enough) {
     for (int m = left ? 1 : k + 1; m < (left ? k : count_); ++m) {
       const double across = turn(q[m], q[k]) + turned[m];
       if (across == 0) continue;
-      error = std::max(error, std::abs(u.z + (turned[m] * rise - turned[k] * q[m].z) / across));
+      const double gap = std::abs(u.z * across + turned[m] * rise - turned[k] * q[m].z), width = std::abs(across);
+      if (gap > error * width) error = gap / width;
     }
   }
   return error;

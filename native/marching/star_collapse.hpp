@@ -82,6 +82,7 @@ class StarCollapser {
     std::int32_t a, b;
     Vec3 pa, pb;
     Vec3 normal;
+    double height;  // of a, along the common direction
   };
   struct Target {
     double guess;  // of the error
@@ -125,7 +126,7 @@ class StarCollapser {
   std::int32_t first_ = 0;
   std::vector<std::int32_t> slot_;  // of the vertices from first_ on
   std::vector<Star> stars_;
-  std::vector<std::int32_t> around_;  // kMostFaces places for each star
+  base::BulkVector<std::int32_t> around_;  // kMostFaces places for each star
   std::vector<Face> faces_;
   std::vector<std::int32_t> order_, queue_;
   // The block of flat triangles under examination:
@@ -142,6 +143,7 @@ class StarCollapser {
   int count_ = 0;
   Vec3 direction_{0};
   double base_ = 0, slab_ = 0;
+  double least_ = 0;  // lower bound of the error of any merge
   // The vertices around it in the frame of the direction, twice; the third coordinate is the height.
   std::array<Vec3, 2 * kMostFaces> ring_;
   std::array<int, kMostFaces> place_in_ring_;  // of the start of each side

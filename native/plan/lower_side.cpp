@@ -48,7 +48,8 @@ double LowerSide::best_on_line(double d, double slope) const {
     return std::min(most, half * slope / geom::hypot(1.0, slope));
   }
   // A torus or barrel: the slope along the line increases, so bracketed Newton iteration finds where it equals `slope`.
-  double low = 0, high = most, u = 0.5 * most;
+  // The bracket begins where the flat end stops: further in there is no arc.
+  double low = std::sqrt(std::max(0.0, (flat_ - d) * (flat_ + d))), high = most, u = 0.5 * (low + most);
   for (int n = 0; n < 100 && high - low > 1e-15 * most; ++n) {
     const double rho = geom::hypot(d, u), off = rho - centre_.x, down = std::sqrt((arc_ - off) * (arc_ + off));
     if (!(down > 0)) {

@@ -92,6 +92,21 @@ void GridCarver::open_tiles() {
   region_->open(tiles);
 }
 
+/// The part of a block that the carver may cut.
+TileBlock GridCarver::limited(const TileBlock& under) const {
+  if (!limit_) return under;
+  const TileBlock& to = limit_->first;
+  return {std::max(under.row, to.row), std::min(under.last_row, to.last_row), std::max(under.column, to.column),
+          std::min(under.last_column, to.last_column)};
+}
+
+/// Whether the carver must not cut this tile of that part.
+bool GridCarver::is_limited(int row, int column) const {
+  if (!limit_) return false;
+  const auto& [block, tiles] = *limit_;
+  return (tiles >> (8 * (row - block.row) + column - block.column) & 1) == 0;
+}
+
 /// Lists the batch's tiles with the steps that may touch them, both ascending: new steps, and what is left of earlier
 /// ones.
 void GridCarver::assign() {
@@ -105,10 +120,11 @@ void GridCarver::assign() {
   work_.clear(), next_ = 0;
   if (left > 0) first = pairs_.front().first, last = pairs_.back().first;
   for (std::size_t k = cut_steps_; k < steps_.size(); ++k) {
-    const TileBlock under = tiles_under(grid_, steps_[k].footprint);
+    const TileBlock under = limited(tiles_under(grid_, steps_[k].footprint));
     if (under.empty()) continue;
     for (int a = under.row; a <= under.last_row; ++a)
-      for (int b = under.column; b <= under.last_column; ++b) pairs_.emplace_back(grid_.tile_index(a, b), k);
+      for (int b = under.column; b <= under.last_column; ++b)
+        if (!is_limited(a, b)) pairs_.emplace_back(grid_.tile_index(a, b), k);
     first = std::min(first, grid_.tile_index(under.row, under.column));
     last = std::max(last, grid_.tile_index(under.last_row, under.last_column));
   }

@@ -5,6 +5,7 @@
 #include <deque>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -61,6 +62,10 @@ class GridCarver {
       : GridCarver(region.cuttable(), measured, options, cut, nullptr) {
     region_ = &region;
   }
+
+  /// Cuts only some tiles of a block of at most 8 × 8: that in row a, column b of the block if bit 8 a + b is set. The
+  /// result in these tiles is that of a run without a limit.
+  void limit_to(const TileBlock& block, std::uint64_t tiles) { limit_ = {block, tiles}; }
 
   /// Keeps tiles open between runs; the grid has the result after `pack`. Only for moves in real time, without region.
   /// `size`: mm, the tool's; asks for the memory of as many tiles as it covers.
@@ -129,6 +134,8 @@ class GridCarver {
   void add(std::span<const ConvexGroup> cutter, const Pose& from, const Pose& to, std::uint32_t move);
   void flush();
   void cut_steps();
+  TileBlock limited(const TileBlock& under) const;
+  bool is_limited(int row, int column) const;
   double rays(std::size_t first_step) const;
   void open_tiles();
   void assign();
@@ -152,6 +159,7 @@ class GridCarver {
   Cut& cut_;
   Rollback* rollback_;
   GridRegion* region_ = nullptr;
+  std::optional<std::pair<TileBlock, std::uint64_t>> limit_;
   std::deque<Motion, base::BlockAllocator<Motion>>
       motions_;  // of the batch, in the grid's cyclic frame; steps point to them
   base::BlockVector<Step> steps_;

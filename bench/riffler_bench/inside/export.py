@@ -33,6 +33,7 @@ def export(side, folder, repeats):
         bpy.data.objects.remove(ob)
     size = (side, side, HEIGHT)
     bpy.ops.riffler.new_stock(source="BLOCK", origin="CENTRE", size=size, pitch=PITCH, directions="xyz")
+    bpy.ops.riffler.detail(detail="ALL")  # Blender's own exporter writes the mesh
     ob = bpy.context.object
     ours, theirs = (str(Path(folder) / name) for name in ("riffler.stl", "blender.stl"))
     name, export_theirs = blenders(theirs)

@@ -29,13 +29,15 @@ def lines(side, strokes, events):
     return np.array([[(a, BETWEEN * (k - (strokes - 1) / 2)) for a in x] for k in range(strokes)])
 
 
-def sculpt(side):
-    """A square block, being worked at; its middle in the scene's. Seconds until it is shown."""
+def sculpt(side, detail="NEEDED"):
+    """A square block, being worked at; its middle in the scene's. Seconds until it is shown. `detail`: its triangles,
+    those that the shape needs or ALL."""
     for ob in list(bpy.data.objects):
         bpy.data.objects.remove(ob)
     size = (side, side, HEIGHT)
     bpy.ops.riffler.new_stock(source="BLOCK", origin="CENTRE", size=size, pitch=PITCH, directions="xyz")
     ob = bpy.context.object
+    ob.data.riffler.detail = detail
     settings = bpy.context.scene.riffler
     settings.tool.kind, settings.tool.diameter, settings.tool.length = "ball", 2 * RADIUS, BALL["length"]
     settings.sculpt.depth, settings.sculpt.pressure, settings.sculpt.axis = DEPTH, "NONE", "NORMAL"
@@ -150,16 +152,17 @@ def undone(times):
 
 def summed(looks, times, live, whole, expected, began, side):
     gone = whole - live.volume.volume
-    out = looks.figures() | {"begin_s": began, "side": side, "triangles": shown(live)}
+    out = looks.figures() | {"begin_s": began, "side": side, "triangles": live.mesher.all_triangles}
+    out["shown"] = shown(live)
     out |= {"removed_mm3": gone, "expected_mm3": expected, "removed_over": gone / expected - 1}
     for name in times.wall:
         out |= {f"{name}_s": times.medians(name)["wall_s"], f"{name}_cpu_s": times.medians(name)["cpu_s"]}
     return out
 
 
-def headless(side, strokes, events):
+def headless(side, strokes, events, detail="NEEDED"):
     """Without drawing: samples to the brush, a look, and Blender's dependency graph."""
-    _, live, began = sculpt(side)
+    _, live, began = sculpt(side, detail)
     core, sight = (
         host.part("sculpt.pure.brush_stroke"),
         host.part("sculpt.pure.view_rays").ViewRays(np.diag([0.02, 0.02, -0.001, 1.0]), (4000, 4000)),
@@ -186,11 +189,11 @@ def headless(side, strokes, events):
     return out | undone(times)
 
 
-def windowed(side, strokes, events):
+def windowed(side, strokes, events, detail="NEEDED"):
     """Strokes by simulated mouse events: measures from each event to the picture that shows its cut."""
     from view import View
 
-    ob, live, began = sculpt(side)
+    ob, live, began = sculpt(side, detail)
     view = View(side)
     view.area.spaces.active.overlay.show_outline_selected = False
     with view.override():

@@ -7,6 +7,7 @@ import os
 import tempfile
 import time
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -79,6 +80,7 @@ def stroke_table(out: Report) -> Section:
         "An event of a stroke, by stage, ms; medians",
         Column("Blender", "where"),
         Column("triangles", "triangles", report.grouped),
+        Column("shown", "shown", report.grouped),
         *(Column(name, f"{name}_s", milliseconds) for name in stages),
         Column("event to end, median", "p50_s", milliseconds),
         Column("95 %", "p95_s", milliseconds),
@@ -197,11 +199,13 @@ def strokes(out: Report, tables: tuple[Section, ...], blender: Blender, size: st
         how = {"strokes": 3 if quick else 4 if window else 5, "events": 10 if quick else 16 if window else 30}
         function = "windowed" if window else "headless"
 
-        def own(function=function, how=how, window=window) -> Row:
-            row = blender.run(f"stroke.{function}", window=window, side=side, **how)
+        def own(detail, function=function, how=how, window=window) -> Row:
+            row = blender.run(f"stroke.{function}", window=window, side=side, detail=detail, **how)
             return row | {"kilobytes": row["bytes"] / 1e3}
 
-        mine = asked(stroke, blender, {"where": where, "size": size, "window": window}, own)
+        begun = {"size": size, "window": window}
+        mine = asked(stroke, blender, {"where": where, **begun}, partial(own, "NEEDED"))
+        asked(stroke, blender, {"where": f"{where}, all triangles", **begun}, partial(own, "ALL"))
         if mine is not None:
             undo.row(**mine)
             error = mine["removed_over"]

@@ -129,7 +129,7 @@ def parts(out: Report, settings: Settings, progress: Any) -> None:
         Column("signed distance: mean", "distance_s", report.micro),
         Column("in doubt after 200 µs", "in_doubt", lambda x: f"{100 * x:.1f} %"),
         Column("FCL, all contacts: mean", "fcl_s", report.micro),
-        Column("99 %", "fcl_p99_s", report.micro),
+        Column("FCL, 99 %", "fcl_p99_s", report.micro),
         Column("Riffler ÷ FCL: mean", "mean_ratio", report.ratio),
         Column("99 %", "p99_ratio", report.ratio),
     )

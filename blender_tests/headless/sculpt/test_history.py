@@ -7,7 +7,7 @@ import numpy as np
 import riffler
 
 from support import common
-from support.sculpting import BALL, is_shown, live, matches_its_volume, nothing_is_left, sculpt, stroke, work
+from support.sculpting import BALL, is_shown, live, matches_its_volume, nothing_is_left, sculpt, stroke, surface, work
 
 
 def current(name):
@@ -282,9 +282,9 @@ def test_a_render_shows_the_last_stroke():
     for handler in bpy.app.handlers.render_init:
         if handler.__module__.endswith("sculpt.live_registry"):
             handler(bpy.context.scene)
-    surface = riffler.Volume.from_bytes(last).to_mesh()
     ob = bpy.data.objects[name]
-    assert np.array_equal(common.coordinates(ob.data), np.asarray(surface.vertices, np.float32))
+    shown = surface(riffler.Volume.from_bytes(last))
+    assert np.array_equal(common.coordinates(ob.data), np.asarray(shown.vertices, np.float32))
     assert not ob.hide_render and live().of(ob) is not None
     assert all(o.hide_render for o in bpy.data.objects if common.part("sculpt.chunks").NUMBER in o)
     second = stroke(name, 5)

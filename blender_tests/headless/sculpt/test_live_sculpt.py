@@ -83,17 +83,22 @@ def corner_keys(vertices, triangles):
 
 
 def test_chunks_are_smooth_from_the_start_and_have_the_normals_of_the_whole():
-    name = sculpt()
-    run = work(name)
-    for k in (None, 1, 7, 14):
-        if k is not None:
-            stroke(name, k)
-        shaded_as_the_whole(run)
+    for detail in ("NEEDED", "ALL"):
+        name = sculpt()
+        bpy.data.objects[name].data.riffler.detail = detail
+        run = work(name)
+        for k in (None, 1, 7, 14):
+            if k is not None:
+                stroke(name, k)
+            shaded_as_the_whole(run)
+        few = detail == "NEEDED" and common.part("blender.versions").OWN_NORMALS
+        assert (run.mesher.triangles < 0.1 * run.mesher.all_triangles) == few
+        live().end_all()
 
 
 def shaded_as_the_whole(run):
-    """Before 4.5 Blender makes the normals at a chunk's border from the chunk's own triangles; before 4.1 triangles at
-    sharp edges are flat, and all others smooth."""
+    """With all triangles, before 4.5 Blender makes the normals at a chunk's border from the chunk's own triangles;
+    before 4.1 triangles at sharp edges are flat, and all others smooth."""
     meshes, versions = common.part("blender.meshes"), common.part("blender.versions")
     objects = [ob for ob in common.part("sculpt.chunks").collection_of(run.mark).objects if "riffler_chunk" in ob]
     filled = [ob.data for ob in objects if len(ob.data.polygons)]
@@ -103,13 +108,12 @@ def shaded_as_the_whole(run):
         assert smooth.mean() > (0.8 if versions.SMOOTH_BY_POLYGON else 0.999)
     if not versions.OWN_NORMALS:
         return
-    whole = riffler.Mesher(run.volume)
+    whole = riffler.Mesher(run.volume, tolerance=run.mesher.tolerance)
     patch = whole.patch(whole.patches(), normals=meshes.SHARP_ANGLE)
     vertices, triangles, normals = patch.vertices, patch.triangles, patch.normals
     expected = dict(zip(corner_keys(vertices / run.mm, triangles), normals, strict=True))
     for mesh in filled:
-        shown = np.empty((len(mesh.loops), 3), np.float32)
-        mesh.corner_normals.foreach_get("vector", shown.ravel())
+        shown = common.corner_normals(mesh)
         corners = np.empty(len(mesh.loops), np.int32)
         mesh.loops.foreach_get("vertex_index", corners)
         keys = corner_keys(common.coordinates(mesh), corners.reshape(-1, 3))

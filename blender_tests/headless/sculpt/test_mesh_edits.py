@@ -11,10 +11,11 @@ LEFT_OUT = "without the edits"
 
 
 def ball():
-    """A sphere of radius 20 as a sculpt."""
+    """A sphere of radius 20 as a sculpt, with all triangles, as Blender's own tools need them."""
     common.scale(1)
     bpy.ops.mesh.primitive_uv_sphere_add(radius=20, segments=64, ring_count=32)
     bpy.ops.riffler.new_stock(source="OBJECT", pitch=0.5, directions="xyz")
+    bpy.ops.riffler.detail(detail="ALL")
     return bpy.context.object
 
 

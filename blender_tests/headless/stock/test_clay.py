@@ -6,6 +6,7 @@ import riffler
 from mathutils import Matrix, Vector
 
 from support import common
+from support.sculpting import surface
 
 SIZE = (40, 30, 20)
 
@@ -39,8 +40,8 @@ def circle(name, centre, radius, matrix=None):
 
 
 def matches(ob):
-    surface = volume(ob).to_mesh()
-    assert np.array_equal(common.coordinates(ob.data), np.asarray(surface.vertices, np.float32))
+    mesh = surface(volume(ob), common.content(ob).mask)
+    assert np.array_equal(common.coordinates(ob.data), np.asarray(mesh.vertices, np.float32))
 
 
 def test_pitch_there_and_back_keeps_the_shape():
@@ -78,6 +79,7 @@ def test_room_made_five_times_moves_no_vertex_of_a_groove():
     path = common.curve("C", [(5, 8, 18), (20, 17, 17), (35, 15, 18)], mm_per_unit=1.0)
     common.select(ob)
     bpy.ops.riffler.cut_curve(curve=path.name, tool=common.BALL)
+    bpy.ops.riffler.detail(detail="ALL")
     before, first = common.coordinates(ob.data), volume(ob)
     for _ in range(5):
         text = common.printed(lambda: bpy.ops.riffler.room(room=0.7))

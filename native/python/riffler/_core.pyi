@@ -16,7 +16,7 @@ import typing
 _Found = typing.TypeVar('_Found')
 _Made = typing.TypeVar('_Made')
 import typing_extensions
-__all__: list[str] = ['AtomicFileWriter', 'Cancelled', 'Collider', 'Contact', 'Cut', 'Finding', 'FormatError', 'FrozenSurface', 'Journal', 'JournalStroke', 'JournalWriter', 'Material', 'Mesh', 'Mesher', 'NotATask', 'Note', 'OrientFrame', 'OrientSession', 'PenDevice', 'PenError', 'PenGeometry', 'PenState', 'PencilPath', 'Pointer', 'Program', 'ProgramStream', 'Session', 'SessionFrame', 'SimulatedPen', 'SlabWorker', 'Smoothed', 'Snapshot', 'Task', 'Tool', 'ToolShape', 'ToolSize', 'Verification', 'VerifyPlan', 'VerifyReport', 'Volume', 'clear_drafts', 'contact_locations', 'cutter_locations', 'draft_prefix', 'drop', 'engrave', 'lift', 'machine_options', 'machine_texts', 'machines', 'min_tilt', 'orientation_maps', 'pencil', 'read_file', 'replace_file', 'replaceable', 'set_threads', 'stepover_of_scallop', 'swarf', 'then', 'threads', 'tip_ball_radius', 'verify']
+__all__: list[str] = ['AtomicFileWriter', 'Cancelled', 'Collider', 'Contact', 'Cut', 'Finding', 'FormatError', 'FrozenSurface', 'History', 'Journal', 'JournalStroke', 'JournalWriter', 'Material', 'Mesh', 'Mesher', 'NotATask', 'Note', 'OrientFrame', 'OrientSession', 'PenDevice', 'PenError', 'PenGeometry', 'PenState', 'PencilPath', 'Pointer', 'Program', 'ProgramStream', 'Session', 'SessionFrame', 'SimulatedPen', 'SlabWorker', 'Smoothed', 'Snapshot', 'Surface', 'Task', 'Tool', 'ToolShape', 'ToolSize', 'Verification', 'VerifyPlan', 'VerifyReport', 'Volume', 'clear_drafts', 'contact_locations', 'cutter_locations', 'draft_prefix', 'drop', 'engrave', 'finish', 'finish_patterns', 'lift', 'machine_options', 'machine_texts', 'machines', 'min_tilt', 'orientation_maps', 'pencil', 'read_file', 'replace_file', 'replaceable', 'set_threads', 'stepover_of_scallop', 'swarf', 'then', 'threads', 'tip_ball_radius', 'verify']
 class FormatError(ValueError):
     """
     A file that is not what it should be: names the file, the line or byte, and what was expected.
@@ -366,6 +366,217 @@ class Mesh:
     def volume(self) -> float:
         """
         mm³, signed; of a closed mesh.
+        """
+class Surface:
+    """
+    An exact surface of rational B-spline (NURBS) patches, mm. It never changes.
+
+    `Surface.nurbs` makes a surface of one patch; this makes one of several, which need not be connected.
+
+    Parameters
+    ----------
+    surfaces : list of Surface
+        Their patches, in this order.
+
+    Raises
+    ------
+    ValueError
+        No surface.
+
+    Examples
+    --------
+    >>> flat = riffler.Surface.nurbs([[[0, 0, 0], [0, 5, 0]], [[4, 0, 0], [4, 5, 0]]], [[1, 1], [1, 1]],
+    ...                              [0, 0, 1, 1], [0, 0, 1, 1], 1, 1)
+    >>> wall = riffler.Surface.nurbs([[[0, 0, 0], [4, 0, 0]], [[0, 0, 3], [4, 0, 3]]], [[1, 1], [1, 1]],
+    ...                              [0, 0, 1, 1], [0, 0, 1, 1], 1, 1)
+    >>> riffler.Surface([flat, wall])
+    <riffler.Surface: 2 patches>
+    """
+    @staticmethod
+    def nurbs(points: numpy.typing.ArrayLike, weights: numpy.typing.ArrayLike, knots_u: numpy.typing.ArrayLike, knots_v: numpy.typing.ArrayLike, degree_u: typing.SupportsInt, degree_v: typing.SupportsInt) -> Surface:
+        """
+        A surface of one patch.
+
+        Parameters
+        ----------
+        points : array_like of shape (nu, nv, 3), mm
+            Control points, not multiplied by the weights.
+        weights : array_like of shape (nu, nv)
+            Positive, with a ratio of at most 1e12.
+        knots_u : array_like of nu + degree_u + 1 numbers
+            Not decreasing; the patch's domain begins at knot degree_u and ends at knot nu.
+        knots_v : array_like of nv + degree_v + 1 numbers
+            Likewise.
+        degree_u, degree_v : int, 1 to 15
+            Degrees of the polynomials.
+
+        Returns
+        -------
+        Surface
+            Its normals are in the direction of dS/du × dS/dv.
+
+        Raises
+        ------
+        ValueError
+            Names argument and row: a wrong shape or number of knots, knots that decrease or tear the surface, a weight that is
+            not positive, a degree out of range, a number that is not finite.
+
+        Examples
+        --------
+        >>> r = 0.5 ** 0.5
+        >>> quarter = riffler.Surface.nurbs([[[5, 0, 0], [5, 0, 9]], [[5, 5, 0], [5, 5, 9]], [[0, 5, 0], [0, 5, 9]]],
+        ...                                 [[1, 1], [r, r], [1, 1]], [0, 0, 0, 1, 1, 1], [0, 0, 1, 1], 2, 1)
+        >>> points, normals, distance = quarter.closest([[6, 8, 4]])  # of a cylinder of radius 5
+        >>> points.round(9).tolist(), distance.round(9).tolist()
+        ([[3.0, 4.0, 4.0]], [5.0])
+        """
+    def __copy__(self) -> Surface:
+        ...
+    def __deepcopy__(self, memo: dict) -> Surface:
+        ...
+    def __init__(self, surfaces: collections.abc.Sequence[Surface]) -> None:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def closest(self, points: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], *, progress: collections.abc.Callable[[float], bool | None] | None = None) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+        """
+        The nearest point of the surface to each point, of all patches: never a local minimum.
+
+        No point of the surface is nearer than the returned distance by more than 1e-9 mm, or 1e-13 of the largest coordinate of
+        surface and points if that is more: bounds from the control points prove it.
+
+        Parameters
+        ----------
+        points : array_like of shape (n, 3), mm
+            Anywhere.
+        progress : callable or None
+            Called with the finished share; returning False cancels.
+
+        Returns
+        -------
+        (points, normals, distance) : ndarrays of shape (n, 3), (n, 3) and (n,), float64
+            The nearest points, mm; the surface's unit normals there, as by `evaluate`; the distances, mm, not negative.
+
+        Raises
+        ------
+        ValueError
+            Names the row of a point that is not finite.
+        Cancelled
+            ``progress`` returned False.
+
+        Examples
+        --------
+        >>> flat = riffler.Surface.nurbs([[[0, 0, 0], [0, 5, 0]], [[4, 0, 0], [4, 5, 0]]], [[1, 1], [1, 1]],
+        ...                              [0, 0, 1, 1], [0, 0, 1, 1], 1, 1)
+        >>> points, normals, distance = flat.closest([[1, 2, 3], [7, 5, 4]])
+        >>> points.round(9).tolist(), distance.round(9).tolist()
+        ([[1.0, 2.0, 0.0], [4.0, 5.0, 0.0]], [3.0, 5.0])
+        """
+    def domain(self, patch: typing.SupportsInt = 0) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        The domain of a patch.
+
+        Parameters
+        ----------
+        patch : int
+            Which patch, counted from 0.
+
+        Returns
+        -------
+        ndarray of shape (2, 2), float64
+            Least and largest (u, v).
+
+        Raises
+        ------
+        ValueError
+            The patch does not exist.
+
+        Examples
+        --------
+        >>> flat = riffler.Surface.nurbs([[[0, 0, 0], [0, 5, 0]], [[4, 0, 0], [4, 5, 0]]], [[1, 1], [1, 1]],
+        ...                              [0, 0, 1, 1], [2, 2, 3, 3], 1, 1)
+        >>> flat.domain().tolist()
+        [[0.0, 2.0], [1.0, 3.0]]
+        """
+    def evaluate(self, uv: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], *, patch: typing.SupportsInt = 0, progress: collections.abc.Callable[[float], bool | None] | None = None) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
+        """
+        Points and unit normals at parameters.
+
+        In a pole, where a derivative is 0, the normal is the limit of those inside the patch. It is 0 where the patch has no
+        area.
+
+        Parameters
+        ----------
+        uv : array_like of shape (n, 2)
+            Parameters, within the domain of the patch.
+        patch : int
+            Which patch, counted from 0.
+        progress : callable or None
+            Called with the finished share; returning False cancels.
+
+        Returns
+        -------
+        (points, normals) : ndarrays of shape (n, 3), float64
+            mm, and unit vectors in the direction of dS/du × dS/dv.
+
+        Raises
+        ------
+        ValueError
+            Names the row of parameters that are not in the domain, or a patch that does not exist.
+        Cancelled
+            ``progress`` returned False.
+
+        Examples
+        --------
+        >>> flat = riffler.Surface.nurbs([[[0, 0, 0], [0, 5, 0]], [[4, 0, 0], [4, 5, 0]]], [[1, 1], [1, 1]],
+        ...                              [0, 0, 1, 1], [0, 0, 1, 1], 1, 1)
+        >>> points, normals = flat.evaluate([[0.5, 0.2]])
+        >>> points.tolist(), normals.tolist()
+        ([[2.0, 1.0, 0.0]], [[0.0, 0.0, 1.0]])
+        """
+    def to_mesh(self, tolerance: typing.SupportsFloat, *, progress: collections.abc.Callable[[float], bool | None] | None = None) -> Mesh:
+        """
+        Triangles within a tolerance of the surface, and the surface within it of them.
+
+        Bounds of second derivatives prove it; vertices lie on the surface. Seams of closed patches, and patches that have an
+        edge in common (the same curve with the same parameters), share vertices, and a pole is one vertex: what is closed stays
+        closed.
+
+        Parameters
+        ----------
+        tolerance : float, mm
+            At least 1e-8, and 1e-10 of the largest coordinate.
+        progress : callable or None
+            Called with the finished share; returning False cancels.
+
+        Returns
+        -------
+        Mesh
+            Counter-clockwise seen from the side of the normals.
+
+        Raises
+        ------
+        ValueError
+            A tolerance that is too small, or that makes more than 50 million triangles.
+        Cancelled
+            ``progress`` returned False.
+
+        Examples
+        --------
+        >>> flat = riffler.Surface.nurbs([[[0, 0, 0], [0, 5, 0]], [[4, 0, 0], [4, 5, 0]]], [[1, 1], [1, 1]],
+        ...                              [0, 0, 1, 1], [0, 0, 1, 1], 1, 1)
+        >>> flat.to_mesh(0.01)
+        <riffler.Mesh: 4 vertices, 2 triangles>
+        """
+    @property
+    def bounds(self) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        (2, 3) float64, mm: lower and upper corner of the control points' box, which contains the surface.
+        """
+    @property
+    def patch_count(self) -> int:
+        """
+        How many patches it has.
         """
 class Tool:
     """
@@ -1795,6 +2006,309 @@ class Smoothed:
         """
         (n,) mm³ taken away.
         """
+class History:
+    """
+    A base volume and strokes in order that stay editable.
+
+    ``h.volume`` is always, byte for byte, what ``base.carve(...)`` with the enabled strokes in order gives. Each tile keeps
+    its versions after the strokes that touch it. An edit sets the tiles that its stroke touches back to the version before
+    it, and carves only the later strokes that touch these tiles, only there; it stops where a tile has its old content again.
+
+    The base is a snapshot: carving the volume later does not change the history. An edit that fails or is cancelled leaves
+    everything unchanged. Edits release Python's lock and use the number of threads of any long call.
+
+    Parameters
+    ----------
+    base : Volume
+        What the strokes are carved into.
+    memory_limit : int, bytes
+        For the versions of tiles, about 25 kB each with rays in three directions. Beyond it, the history keeps every second,
+        fourth, … version of a tile, and an edit carves up to as many more strokes there. An edit needs as much again while it
+        runs.
+
+    Examples
+    --------
+    >>> block = riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5, directions="xyz")
+    >>> history = riffler.History(block)
+    >>> ball = riffler.Tool.ball(6, 30)
+    >>> first = history.add(ball, [[5, 10, 8, 0, 0, 1], [15, 10, 8, 0, 0, 1]])
+    >>> second = history.add(ball, [[10, 5, 8, 0, 0, 1], [10, 15, 8, 0, 0, 1]])
+    >>> history.replace(first, poses=[[5, 12, 7, 0, 0, 1], [15, 12, 7, 0, 0, 1]])
+    >>> cut = block.carve(ball, [[5, 12, 7, 0, 0, 1], [15, 12, 7, 0, 0, 1]])
+    >>> cut = block.carve(ball, [[10, 5, 8, 0, 0, 1], [10, 15, 8, 0, 0, 1]])
+    >>> history.volume.to_bytes() == block.to_bytes()
+    True
+    """
+    def __init__(self, base: Volume, *, memory_limit: typing.SupportsInt = 536870912) -> None:
+        ...
+    def __len__(self) -> int:
+        ...
+    def add(self, tool: Tool, poses: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], *, mode: str = 'remove', tolerance: typing.SupportsFloat = 0.01, protect: Volume | None = None, progress: collections.abc.Callable[[float], bool | None] | None = None) -> int:
+        """
+        Adds a stroke at the end: what ``volume.carve`` with the same arguments does.
+
+        Parameters
+        ----------
+        tool : Tool
+            Its cutter is swept.
+        poses : array_like of shape (n, 6), tip in mm and unit axis
+            Tip xyz, then unit axis xyz from the tip to the spindle; n - 1 moves.
+        mode : "remove" or "add"
+            "add" puts material on wherever the cutter sweeps within the volume's box.
+        tolerance : float, mm
+            For moves that turn the axis; others are exact.
+        protect : Volume or None
+            Of the base's lower, upper, pitch and directions; what lies in it stays unchanged by this stroke. Kept as a snapshot.
+        progress : callable or None
+            Called with the finished share; returning False cancels.
+
+        Returns
+        -------
+        int
+            The stroke's id, for the other calls. An id is never given again.
+
+        Raises
+        ------
+        ValueError
+            The history has no such stroke; or names argument and row: no poses, a shape, an axis that is no unit vector, opposite
+            axes, a protected volume with another grid. The history is unchanged.
+        Cancelled
+            ``progress`` returned False; the history is unchanged.
+
+        Examples
+        --------
+        >>> block = riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5)
+        >>> history = riffler.History(block)
+        >>> history.add(riffler.Tool.ball(6, 30), [[5, 10, 8, 0, 0, 1], [15, 10, 8, 0, 0, 1]])
+        1
+        """
+    def enable(self, stroke: typing.SupportsInt, enabled: bool = True, *, progress: collections.abc.Callable[[float], bool | None] | None = None) -> None:
+        """
+        Enables or disables a stroke. A disabled stroke keeps its place and cuts nothing.
+
+        Parameters
+        ----------
+        stroke : int
+            Its id.
+        enabled : bool
+            False disables it.
+        progress : callable or None
+            Called with the finished share; returning False cancels.
+
+        Raises
+        ------
+        ValueError
+            The history has no such stroke; or names argument and row: no poses, a shape, an axis that is no unit vector, opposite
+            axes, a protected volume with another grid. The history is unchanged.
+        Cancelled
+            ``progress`` returned False; the history is unchanged.
+
+        Examples
+        --------
+        >>> history = riffler.History(riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5))
+        >>> stroke = history.add(riffler.Tool.flat(6, 30), [[-5, 10, 8, 0, 0, 1], [25, 10, 8, 0, 0, 1]])
+        >>> history.enable(stroke, False)
+        >>> history.volume.volume
+        4000.0
+        """
+    def insert(self, tool: Tool, poses: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], *, before: typing.SupportsInt, mode: str = 'remove', tolerance: typing.SupportsFloat = 0.01, protect: Volume | None = None, progress: collections.abc.Callable[[float], bool | None] | None = None) -> int:
+        """
+        Adds a stroke before another one; see `add`.
+
+        Parameters
+        ----------
+        tool : Tool
+            Its cutter is swept.
+        poses : array_like of shape (n, 6), tip in mm and unit axis
+            As for `add`.
+        before : int
+            Id of the stroke that follows the new one.
+        mode : "remove" or "add"
+            As for `add`.
+        tolerance : float, mm
+            For moves that turn the axis; others are exact.
+        protect : Volume or None
+            As for `add`.
+        progress : callable or None
+            Called with the finished share; returning False cancels.
+
+        Returns
+        -------
+        int
+            The new stroke's id.
+
+        Raises
+        ------
+        ValueError
+            The history has no such stroke; or names argument and row: no poses, a shape, an axis that is no unit vector, opposite
+            axes, a protected volume with another grid. The history is unchanged.
+        Cancelled
+            ``progress`` returned False; the history is unchanged.
+
+        Examples
+        --------
+        >>> history = riffler.History(riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5))
+        >>> ball = riffler.Tool.ball(6, 30)
+        >>> last = history.add(ball, [[5, 10, 8, 0, 0, 1], [15, 10, 8, 0, 0, 1]])
+        >>> first = history.insert(ball, [[5, 5, 8, 0, 0, 1], [15, 5, 8, 0, 0, 1]], before=last)
+        >>> history.ids == [first, last]
+        True
+        """
+    def move(self, stroke: typing.SupportsInt, *, before: typing.SupportsInt | None, progress: collections.abc.Callable[[float], bool | None] | None = None) -> None:
+        """
+        Moves a stroke to another place in the order.
+
+        Parameters
+        ----------
+        stroke : int
+            Its id.
+        before : int or None
+            Id of the stroke that follows it then; None: it becomes the last one. Its own id: nothing changes.
+        progress : callable or None
+            Called with the finished share; returning False cancels.
+
+        Raises
+        ------
+        ValueError
+            The history has no such stroke; or names argument and row: no poses, a shape, an axis that is no unit vector, opposite
+            axes, a protected volume with another grid. The history is unchanged.
+        Cancelled
+            ``progress`` returned False; the history is unchanged.
+
+        Examples
+        --------
+        >>> history = riffler.History(riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5))
+        >>> poses = [[-5, 10, 8, 0, 0, 1], [25, 10, 8, 0, 0, 1]]
+        >>> cut = history.add(riffler.Tool.flat(6, 30), poses)
+        >>> fill = history.add(riffler.Tool.flat(4, 30), poses, mode="add")
+        >>> history.move(cut, before=None)
+        >>> history.ids == [fill, cut], round(history.volume.volume, 6)
+        (True, 3760.0)
+        """
+    def remove(self, stroke: typing.SupportsInt, *, progress: collections.abc.Callable[[float], bool | None] | None = None) -> None:
+        """
+        Removes a stroke for good; `enable` can bring a disabled stroke back.
+
+        Parameters
+        ----------
+        stroke : int
+            Its id.
+        progress : callable or None
+            Called with the finished share; returning False cancels.
+
+        Raises
+        ------
+        ValueError
+            The history has no such stroke; or names argument and row: no poses, a shape, an axis that is no unit vector, opposite
+            axes, a protected volume with another grid. The history is unchanged.
+        Cancelled
+            ``progress`` returned False; the history is unchanged.
+
+        Examples
+        --------
+        >>> history = riffler.History(riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5))
+        >>> stroke = history.add(riffler.Tool.flat(6, 30), [[-5, 10, 8, 0, 0, 1], [25, 10, 8, 0, 0, 1]])
+        >>> history.remove(stroke)
+        >>> history.volume.volume, history.ids
+        (4000.0, [])
+        """
+    def replace(self, stroke: typing.SupportsInt, *, tool: Tool | None = None, poses: typing.Annotated[numpy.typing.ArrayLike, numpy.float64] | None = None, mode: str | None = None, tolerance: typing.SupportsFloat | None = None, protect: Volume | None = None, progress: collections.abc.Callable[[float], bool | None] | None = None) -> None:
+        """
+        Changes a stroke. It keeps its id, its place in the order, and whether it is enabled.
+
+        Parameters
+        ----------
+        stroke : int
+            Its id.
+        tool : Tool or None
+            None: unchanged.
+        poses : array_like of shape (n, 6), tip in mm and unit axis, or None
+            None: unchanged.
+        mode : "remove", "add" or None
+            None: unchanged.
+        tolerance : float, mm, or None
+            None: unchanged.
+        protect : Volume or None
+            None: unchanged; an empty volume protects nothing.
+        progress : callable or None
+            Called with the finished share; returning False cancels.
+
+        Raises
+        ------
+        ValueError
+            The history has no such stroke; or names argument and row: no poses, a shape, an axis that is no unit vector, opposite
+            axes, a protected volume with another grid. The history is unchanged.
+        Cancelled
+            ``progress`` returned False; the history is unchanged.
+
+        Examples
+        --------
+        >>> history = riffler.History(riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5))
+        >>> stroke = history.add(riffler.Tool.flat(6, 30), [[-5, 10, 8, 0, 0, 1], [25, 10, 8, 0, 0, 1]])
+        >>> history.replace(stroke, tool=riffler.Tool.flat(4, 30))
+        >>> round(history.volume.volume, 6)
+        3840.0
+        """
+    def stats(self) -> riffler.results.HistoryStats:
+        """
+        The work of the last edit, and what the history holds.
+
+        Returns
+        -------
+        HistoryStats
+            An edit restores only tiles that the edited stroke touches, and runs only strokes that touch those, only there.
+
+        Examples
+        --------
+        >>> history = riffler.History(riffler.Volume.block((0, 0, 0), (80, 20, 10), pitch=0.5))
+        >>> ball = riffler.Tool.ball(6, 30)
+        >>> left = history.add(ball, [[5, 8, 8, 0, 0, 1], [8, 8, 8, 0, 0, 1]])
+        >>> right = history.add(ball, [[70, 8, 8, 0, 0, 1], [74, 8, 8, 0, 0, 1]])
+        >>> history.replace(left, poses=[[5, 8, 7, 0, 0, 1], [8, 8, 7, 0, 0, 1]])
+        >>> history.stats().tiles_restored, history.stats().strokes_run
+        (1, 1)
+        """
+    def stroke(self, stroke: typing.SupportsInt) -> riffler.results.HistoryStroke:
+        """
+        A stroke's content.
+
+        Parameters
+        ----------
+        stroke : int
+            Its id.
+
+        Returns
+        -------
+        HistoryStroke
+            A copy.
+
+        Raises
+        ------
+        ValueError
+            The history has no such stroke.
+
+        Examples
+        --------
+        >>> history = riffler.History(riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5))
+        >>> stroke = history.add(riffler.Tool.ball(6, 30), [[5, 10, 8, 0, 0, 1], [15, 10, 8, 0, 0, 1]])
+        >>> history.stroke(stroke).mode, history.stroke(stroke).poses.shape, history.stroke(stroke).enabled
+        ('remove', (2, 6), True)
+        """
+    @property
+    def base(self) -> Volume:
+        """
+        Volume: the base before all strokes; an independent volume that shares its tiles.
+        """
+    @property
+    def ids(self) -> list[int]:
+        """
+        list of int: the ids of all strokes in order, disabled ones included.
+        """
+    @property
+    def volume(self) -> Volume:
+        """
+        Volume: the base with the enabled strokes. An independent volume that shares its tiles: costs pointers only.
+        """
 class FrozenSurface:
     """
     The surface of a mesher at the time of `Mesher.freeze`, to be picked; it never changes. See `Mesher.freeze`.
@@ -1950,7 +2464,7 @@ class Mesher:
         normals : float, rad, or None
             Asks for normals of the triangles' corners on the whole mesh: the mean of the triangles around the vertex, in
             whatever brick, whose normals are within this angle of the corner's own. With a tolerance, the mean of those of the
-            full mesh.
+            full mesh that bend no more than the surface under the triangle does.
 
         Returns
         -------
@@ -2059,6 +2573,11 @@ class Mesher:
         []
         """
     @property
+    def all_triangles(self) -> int:
+        """
+        How many the full mesh has: as many as `triangles` without a tolerance.
+        """
+    @property
     def counters(self) -> riffler.results.PickCounters:
         """
         PickCounters: the work of picking since it was made, or since `take_counters`. Reading them changes nothing.
@@ -2067,6 +2586,11 @@ class Mesher:
     def shape(self) -> tuple[int, int, int]:
         """
         Bricks along each axis, with triangles or without: brick n stands at ``numpy.unravel_index(n, shape)``.
+        """
+    @property
+    def tolerance(self) -> float | None:
+        """
+        The tolerance that it was made with, mm; None: all triangles.
         """
     @property
     def triangles(self) -> int:
@@ -5715,6 +6239,14 @@ def drop(tool: Tool, points: typing.Annotated[numpy.typing.ArrayLike, numpy.floa
 def engrave(part: Mesh, curves: collections.abc.Iterable[numpy.typing.ArrayLike], tool: Tool, *, depth: typing.SupportsFloat, inclination: typing.SupportsFloat, tilt: typing.SupportsFloat, tolerance: typing.SupportsFloat, turn: typing.SupportsFloat, crease: typing.SupportsFloat, reach: typing.SupportsFloat, progress: collections.abc.Callable[[float], bool | None] | None) -> list:
     """
     For riffler.plan.engrave.
+    """
+def finish(part: Mesh, fixtures: collections.abc.Sequence[Mesh], stock: Volume, tool: Tool, *, axis: numpy.typing.ArrayLike, clearance: typing.SupportsFloat, pattern: str, cusp: typing.SupportsFloat, tolerance: typing.SupportsFloat, allowance: typing.SupportsFloat, angle: typing.SupportsFloat, min_slope: typing.SupportsFloat, max_slope: typing.SupportsFloat, region: collections.abc.Iterable[numpy.typing.ArrayLike], feed: typing.SupportsFloat, plunge: typing.SupportsFloat, progress: collections.abc.Callable[[float], bool | None] | None) -> dict[str, typing.Any]:
+    """
+    For riffler.plan.finish.
+    """
+def finish_patterns() -> list[str]:
+    """
+    For riffler.plan.finish.
     """
 def lift(tool: Tool, poses: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], collider: Collider, *, clearance: typing.SupportsFloat, tolerance: typing.SupportsFloat, max_lift: typing.SupportsFloat, max_evaluations: typing.SupportsInt, progress: collections.abc.Callable[[float], bool | None] | None) -> riffler.plan.locations.LiftReport:
     ...

@@ -7,15 +7,20 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .deprecated import DictResult, warn
 
+if TYPE_CHECKING:
+    from ._core import Tool, Volume
+
 __all__ = [
     "Audit",
+    "HistoryStats",
+    "HistoryStroke",
     "Hit",
     "Hits",
     "Nearest",
@@ -146,6 +151,71 @@ class VolumeCounters(DictResult):
     """Triangles tested against rays or tools."""
     bytes_copied: int
     """Bytes of tiles copied when they were written."""
+
+
+@dataclass(frozen=True, eq=False)
+class HistoryStroke:
+    """A stroke of a history: `History.stroke`.
+
+    Examples
+    --------
+    >>> history = riffler.History(riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5))
+    >>> k = history.add(riffler.Tool.ball(6, 30), [[5, 10, 8, 0, 0, 1], [15, 10, 8, 0, 0, 1]], mode="add")
+    >>> stroke = history.stroke(k)
+    >>> stroke.mode, stroke.tolerance, stroke.enabled
+    ('add', 0.01, True)
+    """
+
+    id: int
+    """Its id."""
+    tool: Tool
+    """Its cutter is swept."""
+    poses: NDArray[np.float64]
+    """(n, 6): tip in mm, unit axis."""
+    mode: str
+    """"remove" or "add"."""
+    tolerance: float
+    """mm."""
+    protect: Volume | None
+    """What it leaves unchanged; None: nothing."""
+    enabled: bool
+    """Whether it is carved."""
+
+
+@dataclass(frozen=True)
+class HistoryStats:
+    """The work of a history's last edit, and what it holds: `History.stats`.
+
+    Examples
+    --------
+    >>> history = riffler.History(riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5))
+    >>> k = history.add(riffler.Tool.ball(6, 30), [[5, 10, 8, 0, 0, 1], [15, 10, 8, 0, 0, 1]])
+    >>> history.stats().strokes, history.stats().tiles_restored
+    (1, 0)
+    """
+
+    edits: int
+    """Edits that succeeded so far."""
+    tiles_restored: int
+    """Tiles that the last edit set back to an earlier version."""
+    strokes_run: int
+    """Strokes that the last edit carved, the new one included."""
+    tiles_run: int
+    """(stroke, tile) pairs that it carved."""
+    moves_run: int
+    """(move, block of 4 × 4 tiles) pairs that it carved."""
+    tiles_changed: int
+    """Tiles of the volume that it replaced."""
+    strokes: int
+    """Strokes in the history, disabled ones included."""
+    versions: int
+    """Versions of tiles that it holds."""
+    version_bytes: int
+    """Bytes of these versions."""
+    stroke_bytes: int
+    """Bytes of poses and of the lists of touched tiles."""
+    stride: int
+    """Strokes of a tile from one version held to the next."""
 
 
 @dataclass(frozen=True)

@@ -153,6 +153,35 @@ TEST(AdaptiveMesher, WithoutAUsableToleranceHasTheFullMeshOrThrows) {
     EXPECT_THROW(Mesher(volume, bad), std::invalid_argument) << bad;
 }
 
+/// Large triangles of flat ground are shaded flat next to a groove whose walls are too shallow for a sharp edge; the
+/// full mesh bends the light on a cell.
+TEST(AdaptiveMesher, ShadesFlatGroundFlatBesideShallowGrooves) {
+  Volume volume = Volume::block({{{-20, -20, -4}, {20, 20, 4}}, 0.25, "xyz"});
+  for (int k = 0; k < 4; ++k) {
+    std::vector<Pose> poses;
+    for (int n = 0; n <= 40; ++n)
+      poses.push_back({{-15 + 0.75 * n, -14 + 9 * k + 1.5 * std::sin(0.2 * n + k), 4 - 0.1 * (k + 1)}, {0, 0, 1}});
+    sweep::carve(volume, cutters::ball(6, 60), poses);
+  }
+  const Mesher mesher(volume, 0.025);
+  const MeshPatch patch = mesher.patch(mesher.patches());
+  const base::BulkVector<Vec3f> normals = mesher.corner_normals(patch, 0.35);
+  double flat = 0, bent = 0;
+  for (std::size_t t = 0; t < patch.triangles.size(); ++t) {
+    const auto place = [&](int c) { return Vec3(patch.vertices[patch.triangles[t][c]]); };
+    if (std::min({place(0).z, place(1).z, place(2).z}) < 4 - 1e-5) continue;
+    const double area = 0.5 * glm::length(glm::cross(place(1) - place(0), place(2) - place(0)));
+    flat += area;
+    for (int c = 0; c < 3; ++c)
+      if (normals[3 * t + c].z < std::cos(0.01F)) {
+        bent += area;
+        break;
+      }
+  }
+  EXPECT_GT(flat, 500);
+  EXPECT_LT(bent, 0.005 * flat);
+}
+
 /// A corner's normal is that of the full mesh there, not of the long triangles.
 TEST(AdaptiveMesher, HasTheNormalsOfTheFullMesh) {
   Volume volume = Volume::block({{{0, 0, 0}, {24, 24, 12}}, 0.25, "xyz"});

@@ -54,6 +54,8 @@ def test_with_a_tolerance_it_follows_to_mesh_with_that_tolerance():
     mesher = riffler.Mesher(volume, tolerance=0.02)
     full = riffler.Mesher(volume)
     assert mesher.triangles < full.triangles / 20
+    assert mesher.all_triangles == full.all_triangles == full.triangles
+    assert mesher.tolerance == 0.02 and full.tolerance is None
     patches = {n: mesher.patch(n) for n in mesher.patches()}
     for x in (8, 12):
         stroke(volume, x, 7)

@@ -67,17 +67,30 @@ def dense_path(path, step):
 def follows(one, other, apart, turn):
     """Whether both can be walked from start to end, never back, always within both bounds (discrete Fréchet)."""
     (p, a), (q, b) = one, other
-    reach = np.zeros(len(q), bool)
+    first, reach = 0, np.ones(1, bool)  # which places of `other` are reached, from the first such place to the last
     for i in range(len(p)):
-        free = (np.linalg.norm(q - p[i], axis=1) <= apart) & (angles(b, a[i]) <= turn)
-        seeds = free & (np.arange(len(q)) == 0) if i == 0 else free & (reach | np.append(False, reach[:-1]))
-        # within a run of free places everything behind its first seed can be reached
-        begin = np.maximum.accumulate(np.where(~free, np.arange(len(q)) + 1, 0))
-        seed = np.maximum.accumulate(np.where(seeds, np.arange(len(q)), -1))
-        reach = free & (seed >= begin)
-        if not reach.any():
+        seeds = reach if i == 0 else np.append(reach, False) | np.append(False, reach)
+        size = len(seeds) + 32
+        while True:  # only places not far behind the reached ones are looked at, and more if they all are free
+            near = slice(first, min(first + size, len(q)))
+            free = (np.linalg.norm(q[near] - p[i], axis=1) <= apart) & (angles(b[near], a[i]) <= turn)
+            now = reached(free, seeds[: len(free)])
+            if not now[-1] or near.stop == len(q):
+                break
+            size *= 2
+        if not now.any():
             return False
-    return bool(reach[-1])
+        there = np.flatnonzero(now)
+        first, reach = first + there[0], now[there[0] : there[-1] + 1]
+    return first + len(reach) == len(q)
+
+
+def reached(free, seeds):
+    """Within a run of free places everything from its first seed on."""
+    n = np.arange(len(free))
+    begin = np.maximum.accumulate(np.where(~free, n + 1, 0))
+    seed = np.maximum.accumulate(np.where(free & np.append(seeds, np.zeros(len(free) - len(seeds), bool)), n, -1))
+    return free & (seed >= begin)
 
 
 def check(poses, tool=BALL, radius=3.0, tolerance=0.01, angle=0.035):

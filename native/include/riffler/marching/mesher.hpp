@@ -47,12 +47,15 @@ class Mesher {
   MeshPatch patch(std::size_t brick) const { return patch(std::span(&brick, 1)); }
   /// Unit normals at the corners of a patch's triangles, 3 per triangle. Each is the mean over the triangles of the
   /// whole mesh that share the corner's vertex and whose normal is within `sharp` (rad) of the triangle's own; with a
-  /// tolerance, over those of the full mesh, so that long triangles are shaded like the small ones that they replace.
+  /// tolerance, over those of the full mesh that bend no more than the surface under the triangle does, so that long
+  /// triangles are shaded like the small ones that they replace, and not by the wall of a groove next to them.
   base::BulkVector<Vec3f> corner_normals(const MeshPatch& patch, double sharp) const;
   /// The whole mesh: the same as to_mesh of the volume, with the mesher's tolerance.
   Mesh mesh() const;
   /// Number of triangles of the whole mesh.
   std::size_t triangles() const;
+  /// Number of triangles of the full mesh: the same without a tolerance.
+  std::size_t all_triangles() const;
 
   /// The first point of the full surface along the ray from `origin` (mm) in `direction` (any length but 0), from
   /// outside or inside the material; nothing if there is none. No ray passes between adjacent triangles; a point on the

@@ -85,6 +85,7 @@ VERBS = (
     Verb("volume", "replay", _module("volume_replay"), "replay"),
     Verb("volume", "to-mesh", _module("volume_to_mesh"), "mesh"),
     *(Verb("plan", name, partial(_strategy, name), "pencil" if name == "pencil" else "") for name in STRATEGIES),
+    Verb("plan", "finish", _module("plan_finish")),
     Verb("plan", "from-recording", _module("plan_from_recording")),
     Verb("nc", "post", _module("nc_post"), "post"),
     Verb("nc", "verify", _module("nc_verify"), "verify"),

@@ -9,6 +9,7 @@ from .analysis import PartReport, analyse
 from .around import fixture_pitch, with_room
 from .curves import read_curves
 from .file import Texts, dumps, load, loads, save
+from .finishing import PATTERNS, finish
 from .locations import (
     BlockedPoint,
     LiftReport,
@@ -23,16 +24,20 @@ from .locations import (
     poses_of,
 )
 from .model import Plan, part_of
+from .operations import Blocked, Operation, OperationReport
 from .orientations import FreeOrientations, TiltReport, draw_map, free_orientations, min_tilt
 from .path_order import order_paths
 from .recorded import NoPathError, Recorded, StrokePath, from_recording, path_of_stroke
+from .setups import Setup, program
 from .strategies import STRATEGIES, Found, Parameter, Strategy, find
 from .strategies.engrave import Engraved, engrave
 from .strategies.pencil import PencilPaths, PencilStats, pencil
 from .strategies.swarf import Swarf, swarf
 
 __all__ = [
+    "PATTERNS",
     "STRATEGIES",
+    "Blocked",
     "BlockedPoint",
     "Engraved",
     "Found",
@@ -41,6 +46,8 @@ __all__ = [
     "LocationReport",
     "NearestContact",
     "NoPathError",
+    "Operation",
+    "OperationReport",
     "Parameter",
     "PartReport",
     "PencilPath",
@@ -48,6 +55,7 @@ __all__ = [
     "PencilStats",
     "Plan",
     "Recorded",
+    "Setup",
     "Strategy",
     "StrokePath",
     "Swarf",
@@ -62,6 +70,7 @@ __all__ = [
     "dumps",
     "engrave",
     "find",
+    "finish",
     "fixture_pitch",
     "free_orientations",
     "from_recording",
@@ -76,6 +85,7 @@ __all__ = [
     "path_of_stroke",
     "pencil",
     "poses_of",
+    "program",
     "read_curves",
     "save",
     "swarf",

@@ -1,4 +1,4 @@
-#include "riffler/plan/drop.hpp"
+#include "plan/drop_core.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -7,7 +7,8 @@
 
 #include "geom/hypot.hpp"
 #include "geom/median_tree.hpp"
-#include "plan/lower_side.hpp"
+#include "plan/grown_piece.hpp"
+#include "riffler/base/check.hpp"
 #include "riffler/base/parallel.hpp"
 #include "riffler/plan/cc_frame.hpp"
 
@@ -19,32 +20,15 @@ constexpr double kNowhere = -std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-struct DropCutter::Core {
-  struct Search;
-  Core(const Mesh& mesh, const Tool& tool, const Vec3& axis);
-  Landing drop(const Vec3& p, Stats* stats) const;
-
-  struct Triangle {
-    Vec3 a, b, c;
-  };
-
-  void build(const std::vector<Triangle>& all);
-  std::size_t first(std::size_t level, std::size_t place) const { return geom::first_item(count_, level, place); }
-
-  Mat3 turn_;                                            // columns: the tool's frame, with z along the axis
-  std::vector<std::pair<tool::Part, LowerSide>> sides_;  // one per piece of the assembly
-  std::size_t count_ = 0, levels_ = 0;  // the tree is complete; node i has the children 2 i + 1 and 2 i + 2
-  std::vector<Box3> boxes_;
-  std::vector<Triangle> triangles_;  // in the tool's frame, in leaf order
-};
-
-DropCutter::Core::Core(const Mesh& mesh, const Tool& tool, const Vec3& axis) {
+DropCutter::Core::Core(const Mesh& mesh, const Tool& tool, const Vec3& axis, double margin) {
   validate(mesh);
+  base::require_not_negative(margin, "margin", base::kFiniteAndNotNegative);
   if (mesh.empty()) throw std::invalid_argument("a part without triangles");
   // Along z, use the identity so that coordinates stay bit-identical.
   const CcFrame frame = axis == Vec3(0, 0, 1) ? CcFrame{} : cc_frame({1, 0, 0}, unit_axis(axis, "axis"));
   turn_ = Mat3(frame.x, frame.y, frame.z);
-  for (const tool::ToolPiece& p : tool.assembly()) sides_.emplace_back(p.part, LowerSide(p.piece));
+  for (const tool::ToolPiece& p : tool.assembly())
+    for (const tool::Piece& piece : grown_lower_side(p.piece, margin)) sides_.emplace_back(p.part, LowerSide(piece));
   std::vector<Triangle> all;
   all.reserve(mesh.triangles.size());
   for (const Vec3i& t : mesh.triangles)
@@ -74,7 +58,8 @@ void DropCutter::Core::build(const std::vector<Triangle>& all) {
     return box_of(at(leaf), at(leaf + 1));
   });
   triangles_.reserve(n);
-  for (const std::size_t t : order) triangles_.push_back(all[t]);
+  numbers_.reserve(n);
+  for (const std::size_t t : order) triangles_.push_back(all[t]), numbers_.push_back(static_cast<int>(t));
 }
 
 /// One descent, best boxes first.
@@ -83,7 +68,7 @@ struct DropCutter::Core::Search {
   Vec2 at;
   Stats counts{};
   LowerSide::Stop stop{kNowhere, Vec3(0), false};
-  std::size_t side = 0;
+  std::size_t side = 0, position = 0;
 
   /// Upper bound of the height at which a triangle in the box stops the tool.
   double bound(std::size_t node) {
@@ -106,7 +91,7 @@ struct DropCutter::Core::Search {
       for (std::size_t s = 0; s < tree.sides_.size(); ++s) {
         const double before = stop.tip;
         tree.sides_[s].second.meet(tri.a - shift, tri.b - shift, tri.c - shift, stop);
-        if (stop.touches && stop.tip != before) side = s;
+        if (stop.touches && stop.tip != before) side = s, position = t;
       }
     }
   }
@@ -125,11 +110,17 @@ DropCutter::Landing DropCutter::Core::drop(const Vec3& p, Stats* stats) const {
   if (search.bound(0) > kNowhere) search.descend(0, 0, 0);
   if (stats) stats->boxes += search.counts.boxes, stats->triangles += search.counts.triangles;
   if (!search.stop.touches) return {};
-  return {true, search.stop.tip, turn_ * (search.stop.point + Vec3(search.at, 0)), sides_[search.side].first};
+  return {true,
+          search.stop.tip,
+          turn_ * (search.stop.point + Vec3(search.at, 0)),
+          sides_[search.side].first,
+          numbers_[search.position],
+          search.side,
+          search.position};
 }
 
-DropCutter::DropCutter(const Mesh& mesh, const Tool& tool, const Vec3& axis)
-    : core_(std::make_shared<const Core>(mesh, tool, axis)) {}
+DropCutter::DropCutter(const Mesh& mesh, const Tool& tool, const Vec3& axis, double margin)
+    : core_(std::make_shared<const Core>(mesh, tool, axis, margin)) {}
 
 const Vec3& DropCutter::axis() const {
   return core_->turn_[2];

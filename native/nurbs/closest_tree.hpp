@@ -1,0 +1,91 @@
+// The nearest point of Bézier spans, proven to be the nearest of all.
+//
+// Lower bounds: a net is in the hull of its control points; and |S - p|² - τ² is, multiplied by w², a polynomial G
+// whose Bézier coefficients bound it. If all are ≥ 0, no point of the net is nearer to p than τ. If G is convex, its
+// tangent plane in any point bounds it as well, which ends the search next to the nearest point. Otherwise the net is
+// halved, across the direction in which G bends more. Nets that are equally near everywhere (a ball's around its
+// centre) have a constant G, and end the search at once.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "nurbs/bezier.hpp"
+
+namespace riffler::nurbs {
+
+/// A part of a span that bends little.
+struct BezierLeaf {
+  std::size_t span = 0;
+  Vec2 lower{0}, upper{1};  // in the span's unit square
+  Degrees degrees;
+  std::size_t net = 0;  // where its control points begin
+};
+
+/// A binary tree of boxes over the leaves of all spans.
+class ClosestTree {
+ public:
+  ClosestTree() = default;
+  explicit ClosestTree(const std::vector<BezierSpan>& spans);
+
+  const BezierLeaf& leaf(std::size_t i) const { return leaves_[i]; }
+
+ private:
+  friend class ClosestSearch;
+
+  std::vector<BezierLeaf> leaves_;
+  std::vector<Vec4> nets_;
+  std::vector<std::size_t> order_;  // of the leaves in the tree
+  std::size_t levels_ = 0;
+  std::vector<Box3> boxes_;  // of the nodes: node i has the children 2 i + 1 and 2 i + 2
+};
+
+/// The nearest point, with its parameters in the leaf's unit square.
+struct LeafFoot {
+  Vec3 point{0};
+  double distance = 0;
+  std::size_t leaf = 0;
+  Vec2 uv{0};
+};
+
+/// One thread's search with its memory.
+class ClosestSearch {
+ public:
+  explicit ClosestSearch(const ClosestTree& tree);
+  /// `scale`: the surface's largest coordinate, mm.
+  LeafFoot operator()(const Vec3& p, double scale);
+
+ private:
+  /// A part of a leaf whose net, relative to the query point, is on the stack.
+  struct Cell {
+    Vec2 lower, upper;  // in the leaf's unit square
+  };
+  /// G of a net: coefficients of degrees (2 p, 2 q).
+  struct Excess {
+    Degrees degrees;
+    std::vector<double> g;
+
+    double at(int i, int j) const { return g[degrees.at(i, j)]; }
+    bool positive() const;
+    Vec2 bend() const;
+    bool convex() const;
+  };
+
+  void search_leaf(std::size_t leaf);
+  bool excluded(const Vec4* net, const Degrees& degrees);
+  void set_excess(const Vec4* net, const Degrees& degrees);
+  bool excluded_by_convexity(const Vec4* net, const Degrees& degrees, const Vec2& at) const;
+  void improve(const Vec4* net, const Degrees& degrees, const Cell& cell, std::size_t leaf, Vec2& at);
+  /// Distance (mm) that the rest of the surface must be proven to have at least.
+  double goal() const { return best_.distance - slack_; }
+
+  const ClosestTree* tree_;
+  std::vector<Vec4> nets_;
+  std::vector<Cell> cells_;
+  Excess excess_;
+  Vec3 p_{0};
+  double slack_ = 0;
+  LeafFoot best_;
+};
+
+}  // namespace riffler::nurbs

@@ -1,0 +1,68 @@
+#include "plan/finish/cusp.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geom/hypot.hpp"
+#include "geom/math.hpp"
+
+namespace riffler::plan {
+
+namespace {
+
+constexpr int kPoints = 256, kBisections = 48;
+
+}  // namespace
+
+CutterProfile::CutterProfile(const Tool& tool) {
+  for (const tool::Piece& piece : tool.cutter()) sides_.emplace_back(piece);
+  for (const LowerSide& side : sides_) radius_ = std::max(radius_, side.rim());
+  // Dense near the rim, where a ball is steep.
+  for (int k = 0; k <= kPoints; ++k) {
+    const double rho = radius_ * std::sin(kPi / 2 * k / kPoints);
+    points_.emplace_back(rho, height(std::min(rho, radius_)));
+  }
+}
+
+double CutterProfile::height(double rho) const {
+  double least = kInfinity;
+  for (const LowerSide& side : sides_)
+    if (rho <= side.rim() * (1 + 1e-12)) least = std::min(least, side.height(std::min(rho, side.rim())));
+  return least;
+}
+
+double CutterProfile::ridge(double across, double up) const {
+  across = std::abs(across), up = std::abs(up);
+  if (across == 0) return 0;
+  // The higher cutter stands to the right. The ridge's top lies where both lower sides have one height.
+  if (across > 2 * radius_) return kInfinity;
+  const auto above = [&](double x) { return height(x) - up - height(std::abs(x - across)); };
+  double low = std::max(0.0, across - radius_), high = std::min(radius_, across);
+  Vec2 top;
+  if (above(high) < 0) {
+    top = {high, up + height(std::abs(high - across))};  // on the lower cutter's flank
+  } else {
+    for (int k = 0; k < kBisections; ++k) {
+      const double x = 0.5 * (low + high);
+      (above(x) < 0 ? low : high) = x;
+    }
+    top = {low, std::max(height(low), up + height(std::abs(low - across)))};
+  }
+  // The tangent of both is parallel to the line from one tip to the other.
+  const Vec2 normal = Vec2(-up, across) / geom::hypot(up, across);
+  double least = kInfinity;
+  for (const Vec2& p : points_) least = std::min({least, glm::dot(normal, p), glm::dot(normal, Vec2(-p.x, p.y))});
+  return std::max(0.0, glm::dot(normal, top) - least);
+}
+
+double CutterProfile::spacing(double cusp) const {
+  double low = 0, high = radius_;
+  if (ridge(high, 0) <= cusp) return high;
+  for (int k = 0; k < kBisections; ++k) {
+    const double d = 0.5 * (low + high);
+    (ridge(d, 0) <= cusp ? low : high) = d;
+  }
+  return low;
+}
+
+}  // namespace riffler::plan

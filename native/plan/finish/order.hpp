@@ -1,0 +1,15 @@
+// The order and direction in which pieces are cut.
+#pragma once
+
+#include <vector>
+
+#include "plan/finish/patterns.hpp"
+
+namespace riffler::plan {
+
+/// The pieces in an order with short distances between them: from the end of one to the nearest end of another. Starts
+/// at the first piece; `pieces` are sorted by rank, and places whose y differs by no more than their rank count as
+/// near.
+std::vector<CutPiece> in_short_order(std::vector<CutPiece> pieces);
+
+}  // namespace riffler::plan

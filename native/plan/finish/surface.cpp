@@ -1,0 +1,210 @@
+#include "plan/finish/surface.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "geom/hypot.hpp"
+#include "riffler/base/parallel.hpp"
+
+namespace riffler::plan {
+
+namespace {
+
+constexpr double kRows = 0.9;         // of the tolerance: the rest is for rounding, in the program's text too
+constexpr double kRolling = 0.5;      // rad between a face's normal and the tool's where the tool rolls over its edge
+constexpr double kSlopeSlack = 1e-6;  // rad
+constexpr std::size_t kMaxPoints = 20'000'000;
+constexpr const char* kBlocked[] = {"", "the shank meets the part", "the holder meets the part"};
+
+Mesh joined(const Mesh& part, const std::vector<Mesh>& fixtures) {
+  Mesh out = part;
+  for (const Mesh& one : fixtures) {
+    const int base = static_cast<int>(out.vertices.size());
+    for (const Vec3& v : one.vertices) out.vertices.push_back(v);
+    for (const Vec3i& t : one.triangles) out.triangles.push_back(t + Vec3i(base));
+  }
+  return out;
+}
+
+double ball_at_tip(const Tool& tool) {
+  const auto* round = std::get_if<tool::Round>(&tool.cutter().front());
+  return round && round->e == 0 && round->z0 <= 0 ? round->r : 0;
+}
+
+}  // namespace
+
+FinishSurface::FinishSurface(const Mesh& part, const std::vector<Mesh>& fixtures, const Tool& tool,
+                             const FinishOptions& options, std::vector<std::vector<Vec2>> region)
+    : mesh_(joined(part, fixtures)),
+      part_triangles_(part.triangles.size()),
+      drop_(mesh_, tool, {0, 0, 1}, options.allowance),
+      options_(options),
+      region_(std::move(region)),
+      tolerance_(kRows * options.tolerance),
+      low_(mesh::bounds(mesh_).lower.z - 1) {
+  if (const double r = ball_at_tip(tool); r > 0) ball_ = r + options.allowance;
+  for (const tool::ToolPiece& p : tool.assembly()) low_ -= std::max(0.0, tool::top(p.piece));
+  normals_.reserve(part_triangles_);
+  for (const Vec3i& t : part.triangles) {
+    const Vec3 n = glm::cross(part.vertices[t.y] - part.vertices[t.x], part.vertices[t.z] - part.vertices[t.x]);
+    const double size = glm::length(n);
+    normals_.push_back(size > 0 ? (n.z < 0 ? -n : n) / size : Vec3(0, 0, 1));
+  }
+}
+
+SurfacePoint FinishSurface::at(const Vec2& p) const {
+  drops_.fetch_add(1, std::memory_order_relaxed);
+  SurfacePoint out{Vec3(p, low_), drop_(Vec3(p, 0))};
+  if (out.landing.touches) out.tip.z = out.landing.height;
+  return out;
+}
+
+/// The share at which to divide a piece of a row; none if it is settled, and then what lies between is in `out`.
+std::optional<double> FinishSurface::split(const SurfacePoint& a, const SurfacePoint& b,
+                                           std::vector<SurfacePoint>& out) const {
+  const double length = geom::hypot(b.tip.x - a.tip.x, b.tip.y - a.tip.y);
+  const bool fine = length <= 0.5 * tolerance_;
+  const auto inside = [](double s) { return std::clamp(s, 0.02, 0.98); };
+  if (!a.landing.touches || !b.landing.touches) {
+    if (fine) return {};
+    if (a.landing.touches || b.landing.touches) return 0.5;
+    const DropCutter::Rise found = drop_.rise(a.tip, b.tip, 0);
+    if (!(found.above > 0)) return {};
+    return inside(found.at);
+  }
+  const DropCutter::Rise over = drop_.rise(a.tip, b.tip, tolerance_);
+  if (over.above > tolerance_) {
+    if (!fine) return inside(over.at);
+    const double top = std::max(a.tip.z, b.tip.z);
+    const Vec3 from(a.tip.x, a.tip.y, top), to(b.tip.x, b.tip.y, top);
+    const double z = top + drop_.rise(from, to, 0).above;
+    out.push_back({Vec3(a.tip.x, a.tip.y, z), a.landing}), out.push_back({Vec3(b.tip.x, b.tip.y, z), b.landing});
+    return {};
+  }
+  if (fine) return {};
+  // Below the move: the surface is nowhere lower than what each end's triangle alone leaves, which is concave.
+  const double at_b = b.tip.z - drop_.height_on(a.landing, b.tip), at_a = a.tip.z - drop_.height_on(b.landing, a.tip);
+  const bool far_b = !std::isfinite(at_b), far_a = !std::isfinite(at_a);
+  if (far_a && far_b) return 0.5;
+  const double depth = far_a ? at_b : far_b ? at_a : at_a + at_b > 0 ? at_a * at_b / (at_a + at_b) : 0;
+  if (depth <= tolerance_) return {};
+  return far_a || far_b ? 0.5 : inside(at_a / (at_a + at_b));
+}
+
+std::vector<SurfacePoint> FinishSurface::follow(const Vec2& from, const Vec2& to) const {
+  std::vector<SurfacePoint> out{at(from)};
+  if (from == to) return out;
+  std::vector<SurfacePoint> ahead{at(to)};
+  SurfacePoint here = out.front();
+  while (!ahead.empty()) {
+    if (const auto share = split(here, ahead.back(), out)) {
+      if (ahead.size() + out.size() > kMaxPoints)
+        throw std::invalid_argument("tolerance: a row of more than twenty million points; take a larger one");
+      if (out.size() % 256 == 0) base::still_wanted();
+      ahead.push_back(at(glm::mix(Vec2(here.tip), Vec2(ahead.back().tip), *share)));
+      continue;
+    }
+    SurfacePoint next = ahead.back();
+    ahead.pop_back();
+    next.gap = !here.landing.touches || !next.landing.touches;
+    out.push_back(next);
+    here = next;
+  }
+  return out;
+}
+
+bool FinishSurface::in_region(const Vec3& p) const {
+  if (region_.empty()) return true;
+  bool in = false;
+  for (const std::vector<Vec2>& curve : region_)
+    for (std::size_t k = 0, j = curve.size() - 1; k < curve.size(); j = k++) {
+      const Vec2 &a = curve[k], &b = curve[j];
+      if ((a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x)) in = !in;
+    }
+  return in;
+}
+
+bool FinishSurface::meant_slope(double slope) const {
+  return slope >= options_.min_slope - kSlopeSlack && slope <= options_.max_slope + kSlopeSlack;
+}
+
+const char* FinishSurface::blocked(const SurfacePoint& p) const {
+  if (!p.landing.touches) return nullptr;
+  if (static_cast<std::size_t>(p.landing.triangle) >= part_triangles_) return "the tool meets a fixture";
+  const auto part = static_cast<std::size_t>(p.landing.part);
+  return part ? kBlocked[part] : nullptr;
+}
+
+bool FinishSurface::wanted(const SurfacePoint& p) const {
+  if (!p.landing.touches || blocked(p) || !in_region(p.landing.point)) return false;
+  const Vec3& n = normals_[static_cast<std::size_t>(p.landing.triangle)];
+  return meant_slope(std::atan2(geom::hypot(n.x, n.y), n.z));
+}
+
+/// Whether a ball rests on an edge, with its normal far from that of the face.
+bool FinishSurface::rolls(const SurfacePoint& p) const {
+  if (!(ball_ > 0) || !p.landing.touches || blocked(p)) return false;
+  const Vec3 towards = p.tip + Vec3(0, 0, ball_ - options_.allowance) - p.landing.point;
+  const double size = glm::length(towards);
+  if (size > ball_ * (1 + 1e-6) + 2 * tolerance_) return false;  // higher up on the cutter
+  return size > 0 &&
+         glm::dot(towards / size, normals_[static_cast<std::size_t>(p.landing.triangle)]) < std::cos(kRolling);
+}
+
+/// Where between a wanted point and one that is not the row ends, within the tolerance.
+Vec3 FinishSurface::border(const SurfacePoint& in, const SurfacePoint& out) const {
+  double low = 0, high = 1;
+  const double length = glm::length(out.tip - in.tip);
+  while ((high - low) * length > tolerance_) {
+    const double middle = 0.5 * (low + high);
+    (wanted(at(Vec2(glm::mix(in.tip, out.tip, middle)))) ? low : high) = middle;
+  }
+  return glm::mix(in.tip, out.tip, low);
+}
+
+std::vector<std::vector<Vec3>> FinishSurface::meant_pieces(const std::vector<SurfacePoint>& points,
+                                                           std::vector<BlockedPlace>& blocked_places) const {
+  const std::size_t n = points.size();
+  std::vector<char> keep(n), rolling(n);
+  for (std::size_t k = 0; k < n; ++k) keep[k] = wanted(points[k]), rolling[k] = rolls(points[k]);
+  // Runs that roll over an edge stay only between faces that are meant.
+  for (std::size_t k = 0; k < n;) {
+    if (!rolling[k]) {
+      ++k;
+      continue;
+    }
+    std::size_t end = k;
+    while (end < n && rolling[end] && (end == k || !points[end].gap)) ++end;
+    const bool before = k > 0 && !points[k].gap && keep[k - 1] && !rolling[k - 1];
+    const bool after = end < n && !points[end].gap && keep[end] && !rolling[end];
+    for (std::size_t i = k; i < end; ++i) keep[i] = before && after;
+    k = end;
+  }
+  std::vector<std::vector<Vec3>> out;
+  std::vector<Vec3> piece;
+  const auto finish_piece = [&] {
+    if (piece.size() > 1) out.push_back(piece);
+    piece.clear();
+  };
+  for (std::size_t k = 0; k < n; ++k) {
+    const bool leads = k > 0 && !points[k].gap;
+    if (!leads) finish_piece();
+    if (leads && keep[k] && !keep[k - 1]) piece = {border(points[k], points[k - 1])};
+    if (leads && !keep[k] && keep[k - 1]) piece.push_back(border(points[k - 1], points[k])), finish_piece();
+    if (keep[k] && (piece.empty() || piece.back() != points[k].tip)) piece.push_back(points[k].tip);
+    if (const char* reason = leads ? blocked(points[k]) : nullptr) {
+      const auto same = std::find_if(blocked_places.begin(), blocked_places.end(),
+                                     [&](const BlockedPlace& b) { return b.reason == reason; });
+      const double length = glm::length(points[k].tip - points[k - 1].tip);
+      if (same == blocked_places.end())
+        blocked_places.push_back({reason, points[k].tip, length});
+      else
+        same->length += length;
+    }
+  }
+  finish_piece();
+  return out;
+}
+
+}  // namespace riffler::plan

@@ -1,0 +1,159 @@
+"""Finish a part from one side in rows, and write the program.
+
+riffler plan finish part.stl --tool ball:6 --cusp 0.02 --out part.ngc
+riffler plan finish part.stl --tool 2=flat:8 --stock 100x80x30 --pitch 0.25 --slopes 0,5 --out flats.ngc
+
+Without --stock it is the part's box with the allowance on top. The program is simulated on the stock before it is
+written: rapids in material, collisions of shank and holder, and gouges are errors with the place.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+from typing import Any
+
+import numpy as np
+
+from .. import Mesh, Volume, plan
+from . import tools
+from .arguments import CODE, MESHES, PROGRAMS, finite, input_file, is_solid, length, output_file
+from .console import Console, number, times
+from .parser import Parser
+from .programs import machine_name
+from .shapes import read_part
+from .stock import stock as read_stock
+from .surroundings import add_fixtures, add_rods, fixture, rods, with_rods
+
+HELP = "finish a part in rows, as NC code"
+RAYS = 400  # along the longest side of a stock without another pitch
+
+
+def add_arguments(parser: Parser) -> None:
+    parser.add_input("part", "the part: .stl, .obj, .ply or .3mf", MESHES, flags=("--mesh",))
+    tools.add_tool(parser, "the cutter, as in ball:6 or 2=ball:6", required=True)
+    parser.add_argument("--pattern", choices=plan.PATTERNS, default="parallel", help="of the rows (default parallel)")
+    for flag, default, about in (
+        ("--cusp", "0.01", "height of ridges that may stay"),
+        ("--tolerance", "0.005", "of the rows, above and below part and allowance"),
+        ("--allowance", "0", "that stays on the part"),
+        ("--clearance", "5", "of rapids across, above everything"),
+    ):
+        parser.add_argument(flag, metavar="MM", default=default, help=f"{about} (default {default})")
+    parser.add_argument("--angle", metavar="DEG", default="0", help="of the rows (default 0)")
+    parser.add_argument("--slopes", metavar="DEG,DEG", default="0,90", help="of the faces that are meant, from level")
+    parser.add_file("--region", "closed curves, seen from above: only faces inside", plan.curves.FORMATS)
+    parser.add_argument("--feed", metavar="F", default="1000", help="mm/min of cuts (default 1000)")
+    parser.add_argument("--plunge", metavar="F", help="mm/min of plunges (default a third of the feed)")
+    parser.add_argument("--spindle", metavar="S", default="12000", help="rev/min (default 12000)")
+    parser.add_argument("--stock", metavar="STOCK", help="WxDxH, a mesh or a .rvol file (default the part's box)")
+    parser.add_argument("--pitch", metavar="MM", help="distance of the stock's rays")
+    parser.add_argument("--origin", metavar="X,Y,Z", help="lower corner of a stock of given sizes")
+    parser.add_argument("--zero", metavar="X,Y,Z", help="where the program's zero lies (default 0,0,0)")
+    add_fixtures(parser)
+    add_rods(parser)
+    parser.add_argument("--post", metavar="NAME", default="3-axis", help="the machine (default 3-axis)")
+    parser.add_file("--out", "NC code (.ngc, .nc, …), or .rprog", CODE + PROGRAMS, required=True)
+
+
+def run(arguments: argparse.Namespace, console: Console) -> int:
+    path, out = input_file(arguments.part, MESHES), output_file(arguments.out, CODE + PROGRAMS)
+    post = machine_name(arguments.post, "--post")
+    asked, options = tools.parse(arguments.tool), options_of(arguments)
+    with console.step("read"):
+        part = read_part(path, console)
+        options["region"] = (
+            plan.read_curves(input_file(arguments.region, plan.curves.FORMATS)) if arguments.region else None
+        )
+    lower, upper = part.bounds
+    tool = with_rods({1: asked.make(float(max(upper - lower)))}, [(what, None, c) for what, _, c in rods(arguments)])[1]
+    stock = stock_of(arguments, part, options["allowance"], console)
+    setup = plan.Setup(
+        part,
+        stock,
+        [fixture(name, console, stock.pitch) for name in arguments.fixture],
+        clearance=length(arguments.clearance, "--clearance"),
+        machine=post,
+        origin=np.zeros(3) if arguments.zero is None else point(arguments.zero, "--zero"),
+    )
+    with console.step("finish") as progress:
+        op = plan.finish(setup, tool, arguments.pattern, progress=progress, **options)
+    if not len(op):
+        raise ValueError(f"{path.name}: {op.reason}")
+    with console.step("check") as progress:
+        program = plan.program(setup, [op], progress=progress)
+    with console.step("write"), console.writing(out) as beside:
+        if out.suffix.lower() in PROGRAMS:
+            program.save(beside)
+        else:
+            program.write(beside, post=post, tolerance=0.1 * op.tolerance)
+    data = summary(op) | {"part": str(path), "out": str(out), "bytes": out.stat().st_size, "seconds": console.seconds}
+    console.result(data, f"{out.name} written", rows(data))
+    return 0
+
+
+def options_of(arguments: argparse.Namespace) -> dict[str, Any]:
+    slopes = [math.radians(finite(x, "--slopes: angle")) for x in arguments.slopes.split(",")]
+    if len(slopes) != 2:
+        raise ValueError(f"--slopes {arguments.slopes}: two angles expected, as in 0,45")
+    allowance = finite(arguments.allowance, "--allowance")
+    return {
+        "cusp": length(arguments.cusp, "--cusp"),
+        "tolerance": length(arguments.tolerance, "--tolerance"),
+        "allowance": allowance,
+        "angle": math.radians(finite(arguments.angle, "--angle")),
+        "slopes": (slopes[0], min(slopes[1], math.pi / 2) if slopes[1] <= 90 else slopes[1]),
+        "feed": length(arguments.feed, "--feed"),
+        "plunge": None if arguments.plunge is None else length(arguments.plunge, "--plunge"),
+        "spindle": finite(arguments.spindle, "--spindle"),
+    }
+
+
+def point(text: str, flag: str) -> np.ndarray:
+    values = [finite(part, f"{flag}: coordinate") for part in text.split(",")]
+    if len(values) != 3:
+        raise ValueError(f"{flag} {text}: x,y,z expected")
+    return np.array(values)
+
+
+def stock_of(arguments: argparse.Namespace, part: Mesh, allowance: float, console: Console) -> Volume:
+    """The stock of ``--stock``, else the part's box with the allowance on top."""
+    lower, upper = part.bounds
+    upper = upper + np.array([0.0, 0.0, max(allowance, 0.0)])
+    pitch = float(max(upper - lower)) / RAYS
+    if arguments.stock is None:
+        if arguments.pitch is not None:
+            pitch = length(arguments.pitch, "--pitch")
+        return Volume.block(lower, np.maximum(upper, lower + pitch), pitch, "z")
+    if is_solid(arguments.stock) and arguments.pitch is None:
+        arguments.pitch = str(pitch)
+    arguments.directions = None if arguments.stock.lower().endswith(".rvol") else "z"
+    return read_stock(arguments, console)
+
+
+def summary(op: plan.Operation) -> dict[str, Any]:
+    report = op.report
+    blocked = [{"reason": b.reason, "place": b.place.tolist(), "length": b.length} for b in report.blocked]
+    return {
+        "tool": op.tool.to_dict(),
+        "poses": len(op),
+        "time_s": report.time_s,
+        "cut_mm": report.cut_mm,
+        "air_mm": report.air_mm,
+        "blocked": blocked,
+        "stats": dict(report.stats),
+    }
+
+
+def rows(data: dict[str, Any]) -> list[tuple[str, str]]:
+    stats = data["stats"]
+    return [
+        ("rows", f"{number(stats['rows'])}, {number(stats['added'])} more where it is steep"),
+        ("points", number(data["poses"])),
+        ("cut", f"{number(data['cut_mm'], 'mm')}, {number(data['air_mm'], 'mm')} at feed in air"),
+        ("links", f"{number(stats['direct'])} at feed, {number(stats['retracts'])} over the clearance plane"),
+        ("time", number(data["time_s"] / 60, "min")),
+        *(("blocked", f"{number(b['length'], 'mm')}: {b['reason']}") for b in data["blocked"]),
+        ("file", number(data["bytes"], "bytes")),
+        ("times", times(data["seconds"])),
+    ]

@@ -1,0 +1,122 @@
+"""Finishing: rows on the part's offset surface, in three axes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import pi
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from .. import _core
+from .._core import Tool
+from ..arguments import Progress, then
+from ..hints import hinted
+from .operations import Blocked, Operation, report_of
+from .setups import Setup
+
+PATTERNS: tuple[str, ...] = tuple(_core.finish_patterns())
+COUNTS = ("rows", "added", "direct", "retracts", "drops")
+
+
+@hinted("plan.finish")
+def finish(
+    setup: Setup,
+    tool: Tool,
+    pattern: str = "parallel",
+    *,
+    cusp: float = 0.01,
+    tolerance: float = 0.005,
+    allowance: float = 0.0,
+    angle: float = 0.0,
+    slopes: tuple[float, float] = (0.0, pi / 2),
+    region: Sequence[ArrayLike] | None = None,
+    feed: float = 1000.0,
+    plunge: float | None = None,
+    spindle: float = 12000.0,
+    progress: Progress = None,
+) -> Operation:
+    """Finishes the part with rows on its offset surface.
+
+    Rows are curves of the exact drop surface of cutter, shank and holder over part and fixtures; a bound, not samples,
+    keeps the moves between their points. Rows lie as far apart as ``cusp`` allows on level faces, with further ones
+    between where the part is steep or bent, or a border runs. Rows end where the tool leaves the part: a wall
+    without a floor next to it is left to an outline.
+
+    Parameters
+    ----------
+    setup : Setup
+        Part, stock left so far, fixtures, axis.
+    tool : Tool
+        A cutter that does not narrow above its widest place: ball, flat, fillet, taper or a profile like them.
+    pattern : str
+        "parallel": rows in planes at ``angle``.
+    cusp : float
+        mm, height of the ridges that may stay.
+    tolerance : float
+        mm: cuts are at most so far below part + allowance, and rows so far above it between their points.
+    allowance : float
+        mm that stay on the part.
+    angle : float
+        rad, of the rows about the axis.
+    slopes : tuple of two floats
+        rad from level, of the part's faces that are meant.
+    region : list of array_like, shape (k, 3), optional
+        Closed curves, seen along the axis; faces inside an odd number of them are meant. None: all.
+    feed : float
+        mm/min of cuts and links.
+    plunge : float, optional
+        mm/min of leads; by default a third of ``feed``.
+    spindle : float
+        rev/min; negative counter-clockwise.
+    progress : callable, optional
+        Called with the finished share; returning False cancels.
+
+    Returns
+    -------
+    Operation
+        Without poses, and with the reason, where nothing can be reached.
+
+    Raises
+    ------
+    ValueError
+        Naming the argument.
+
+    Examples
+    --------
+    >>> part = riffler.shape.relief([[0.3, 1.0], [0.6, 0.3]], size=(20, 20), depth=10)
+    >>> setup = riffler.plan.Setup(part, riffler.Volume.block((0, 0, 0), (20, 20, 12), pitch=0.5))
+    >>> op = riffler.plan.finish(setup, riffler.Tool.ball(diameter=6, length=30), cusp=0.05, angle=0.5)
+    >>> op.poses.shape[1], op.reason, op.report.air_mm < op.report.cut_mm
+    (6, '', True)
+    """
+    pitch = setup.stock.pitch
+    low, high = (float(x) for x in slopes)
+    found = _core.finish(
+        setup.part,
+        setup.obstacles,
+        setup.stock,
+        tool,
+        axis=setup.axis,
+        clearance=setup.clearance,
+        pattern=pattern,
+        cusp=cusp,
+        tolerance=tolerance,
+        allowance=allowance,
+        angle=angle,
+        min_slope=low,
+        max_slope=high,
+        region=[] if region is None else [np.asarray(curve, dtype=float) for curve in region],
+        feed=feed,
+        plunge=feed / 3 if plunge is None else plunge,
+        progress=progress,
+    )
+
+    def made(parts: dict[str, Any]) -> Operation:
+        blocked = tuple(Blocked(*one) for one in parts["blocked"])
+        arrays = parts["poses"], parts["kind"], parts["feed"]
+        report = report_of(*arrays, parts["removed"], pitch, blocked, {key: parts[key] for key in COUNTS})
+        return Operation(*arrays, tool, report, parts["reason"], float(spindle), float(tolerance))
+
+    return then(found, made)

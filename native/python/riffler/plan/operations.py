@@ -1,0 +1,129 @@
+"""Operations: what a tool does on a part in one set-up, with approaches, links and retracts."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .._core import Tool
+
+RAPID, LEAD, CUT, LINK = range(4)
+RAPID_FEED = 10000.0  # mm/min, for times, as in riffler.verify
+
+
+@dataclass(frozen=True, eq=False)
+class Blocked:
+    """Where the tool does not cut, and why: see `OperationReport`.
+
+    Attributes
+    ----------
+    reason : str
+        As "the holder meets the part".
+    place : ndarray, shape (3,)
+        Tip of the tool at the first of these places, mm.
+    length : float
+        mm of rows that are left out.
+    """
+
+    reason: str
+    place: NDArray[np.float64]
+    length: float
+
+
+@dataclass(frozen=True, eq=False)
+class OperationReport:
+    """What an operation does: see `Operation`.
+
+    Attributes
+    ----------
+    time_s : float
+        Seconds at the programmed feeds, rapids at 10 m/min.
+    cut_mm : float
+        Length of the cuts.
+    air_mm : float
+        Length of moves at feed that remove nothing of the stock, as its rays show it.
+    largest_engagement : float, optional
+        Largest radial width of cut as a share of the diameter; None for operations that do not bound it.
+    blocked : tuple of Blocked
+        What could not be reached.
+    stats : dict
+        Counts: rows, rows added between those of equal spacing, direct links, retracts, points of the drop surface.
+    """
+
+    time_s: float = 0.0
+    cut_mm: float = 0.0
+    air_mm: float = 0.0
+    largest_engagement: float | None = None
+    blocked: tuple[Blocked, ...] = ()
+    stats: Mapping[str, int] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, eq=False)
+class Operation:
+    """One operation of a set-up: see `finish`. It begins and ends on the clearance plane.
+
+    Attributes
+    ----------
+    poses : ndarray, shape (n, 6)
+        Tip in mm and unit axis, at the ends of its moves.
+    kind : ndarray of uint8, shape (n,)
+        Of the move to each pose: 0 rapid, 1 lead (plunge), 2 cut, 3 link at feed.
+    feed : ndarray, shape (n,)
+        mm/min; 0 for rapids.
+    tool : Tool
+        Cutter, shank and holder.
+    report : OperationReport
+        Times, lengths, what could not be reached.
+    reason : str
+        Why it has no poses; empty if it has some.
+    spindle : float
+        rev/min.
+    tolerance : float
+        mm that cuts may enter part + allowance.
+    """
+
+    poses: NDArray[np.float64]
+    kind: NDArray[np.uint8]
+    feed: NDArray[np.float64]
+    tool: Tool
+    report: OperationReport
+    reason: str = ""
+    spindle: float = 0.0
+    tolerance: float = 0.01
+
+    def __len__(self) -> int:
+        return len(self.poses)
+
+
+def lengths_of(poses: NDArray[np.float64]) -> NDArray[np.float64]:
+    """mm of the move to each pose; 0 for the first."""
+    return np.linalg.norm(np.diff(poses[:, :3], axis=0, prepend=poses[:1, :3]), axis=1)
+
+
+def report_of(
+    poses: NDArray[np.float64],
+    kind: NDArray[np.uint8],
+    feed: NDArray[np.float64],
+    removed: NDArray[np.float64],
+    pitch: float,
+    blocked: tuple[Blocked, ...],
+    stats: Mapping[str, int],
+) -> OperationReport:
+    """The report of an operation whose move to pose k + 1 removes ``removed[k]`` mm³ of a stock with rays ``pitch`` mm
+    apart: moves that fit between two rays are in air only in a longer run of such moves."""
+    if not len(poses):
+        return OperationReport(blocked=blocked, stats=stats)
+    length, rapid = lengths_of(poses), kind == RAPID
+    idle = np.concatenate([[True], removed <= 0]) & ~rapid
+    run = np.cumsum(np.diff(idle, prepend=False) != 0)  # odd numbers are runs of idle moves
+    idle &= np.bincount(run, weights=length)[run] > 2 * pitch
+    return OperationReport(
+        time_s=float(60 * np.sum(length / np.where(rapid, RAPID_FEED, feed))),
+        cut_mm=float(np.sum(length[kind == CUT])),
+        air_mm=float(np.sum(length[idle])),
+        blocked=blocked,
+        stats=stats,
+    )
