@@ -20,6 +20,15 @@ from shell import ROOT, StepError, main
 GIVEN_TO_ALL = re.compile(r"\s*(?:using \w+::\w+|namespace \w+ = \w+::\w+)\s*$")
 # What a topic's file may say outside of every namespace: macros, types of C libraries, specialisations for std.
 OUTSIDE = re.compile(r"\s*[A-Z][A-Z_]*\(.*\)\s*$|\s*struct [a-z_]+_\s*$|\s*template <>\s*struct std::", re.S)
+# Functions of the C library whose last bit is another one on another system, and what to call in their place.
+NOT_THE_SAME = {"std::hypot(": "geom::hypot"}
+# Headers of one kind of system, and where they may be used: base has the calls that the others need, the rest speaks to
+# devices, to programs of their makers, or tests on Linux alone.
+OF_A_SYSTEM = re.compile(
+    r"(?:sys|linux|net|netinet|arpa|asm)/|(?:alloca|dirent|dlfcn|fcntl|glob|grp|ifaddrs|link|malloc|netdb|poll|pthread"
+    r"|pwd|sched|semaphore|signal|spawn|strings|syslog|termios|ucontext|unistd|utime|windows|winsock2|io|process)\.h$"
+)
+SPEAKS_TO_THE_SYSTEM = {"base", "pen/hid", "pen/service", "pen/library", "arm_program", "fuzz", "tests"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 # Folders outside the topics, and the topics and other such folders they may include. The reference must not share code
 # with what it judges; `None` is every topic.
@@ -111,6 +120,29 @@ def core_problems(root: Path) -> list[str]:
                 problems.append(f"{place}: write the topic's folder: {topic}/{name}")
             elif quote == '"' and folder not in order[: rank + 1]:
                 problems.append(f"{place}: {topic} includes {name}, which is not above it")
+    return problems
+
+
+def bit_problems(root: Path) -> list[str]:
+    """The same bytes on every system. Tests and benchmarks, which only compare, may call what they like."""
+    problems = []
+    for folder in [*topics(root), PUBLIC.removeprefix("native/"), "reference", "stress", "bindings"]:
+        for place, line in lines(root, root / "native" / folder, ".cpp", ".hpp"):
+            problems += [
+                f"{place}: {name[:-1]} differs between systems: use {own}"
+                for name, own in NOT_THE_SAME.items()
+                if name in line
+            ]
+    return problems
+
+
+def system_problems(root: Path) -> list[str]:
+    """A port to another system has these folders to change, and no others."""
+    problems = []
+    for place, quote, name in includes(root, root / "native"):
+        path = in_core(place).split("/")
+        if quote == "<" and OF_A_SYSTEM.match(name) and not {path[0], "/".join(path[:2])} & SPEAKS_TO_THE_SYSTEM:
+            problems.append(f"{place}: <{name}> is of one kind of system: call it in native/base")
     return problems
 
 
@@ -237,6 +269,8 @@ def type_problems(root: Path) -> list[str]:
 
 CHECKS = [
     core_problems,
+    bit_problems,
+    system_problems,
     folder_problems,
     circle_problems,
     beside_problems,

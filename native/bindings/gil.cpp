@@ -1,13 +1,14 @@
 #include "bindings/gil.hpp"
 
-#include <unistd.h>
+#include <chrono>
+#include <thread>
 
 namespace riffler::bindings {
 
 namespace {
 
 [[noreturn]] void wait_for_the_end() noexcept {
-  while (true) pause();
+  while (true) std::this_thread::sleep_for(std::chrono::hours(1));
 }
 
 }  // namespace

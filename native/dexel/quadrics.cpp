@@ -9,6 +9,7 @@
 #include <string>
 
 #include "dexel/joiner.hpp"
+#include "geom/hypot.hpp"
 #include "geom/math.hpp"
 #include "riffler/base/check.hpp"
 #include "riffler/base/parallel.hpp"
@@ -36,7 +37,7 @@ class SphereRays {
 
   /// Returns false if the ray misses the sphere.
   bool cut(double u, double v, Chord& out) const {
-    const double x = u - centre_.x, y = v - centre_.y, d = std::hypot(x, y);
+    const double x = u - centre_.x, y = v - centre_.y, d = geom::hypot(x, y);
     if (!(d < radius_)) return false;
     const double half = half_chord(radius_, d);
     out = {centre_.z - half, centre_.z + half, Vec3(x, y, -half) / radius_, Vec3(x, y, half) / radius_};
@@ -65,7 +66,7 @@ class CylinderRays {
         axis_(to_local(axis, checked_axis(solid.axis))),
         radius_(solid.radius),
         half_height_(0.5 * solid.height),
-        lean_(std::hypot(axis_.x, axis_.y)),
+        lean_(geom::hypot(axis_.x, axis_.y)),
         across_(lean_ > 0 ? Vec3(-axis_.z * axis_.x / lean_, -axis_.z * axis_.y / lean_, lean_) : Vec3(0)),
         aside_(lean_ > 0 ? Vec3(-axis_.y / lean_, axis_.x / lean_, 0) : Vec3(0)) {}
 
@@ -73,7 +74,7 @@ class CylinderRays {
   bool cut(double u, double v, Chord& out) const {
     const Vec3 foot(u - centre_.x, v - centre_.y, 0);
     const double aside = glm::dot(foot, aside_);
-    if (!((lean_ > 0 ? std::abs(aside) : std::hypot(foot.x, foot.y)) < radius_)) return false;
+    if (!((lean_ > 0 ? std::abs(aside) : geom::hypot(foot.x, foot.y)) < radius_)) return false;
     const double half = half_chord(radius_, std::abs(aside)), middle = glm::dot(foot, across_);
     const Interval caps = between_caps(glm::dot(foot, axis_)),
                    side = lean_ > 0 ? Interval{(-half - middle) / lean_, (half - middle) / lean_} : kAll;
@@ -185,7 +186,7 @@ Box3 bounds(const Sphere& solid) {
 Box3 bounds(const Cylinder& solid) {
   base::require_length(solid.radius, "radius"), base::require_length(solid.height, "height");
   const Vec3 a = glm::abs(checked_axis(solid.axis));
-  const Vec3 disc(std::hypot(a.y, a.z), std::hypot(a.z, a.x), std::hypot(a.x, a.y));
+  const Vec3 disc(geom::hypot(a.y, a.z), geom::hypot(a.z, a.x), geom::hypot(a.x, a.y));
   return checked_box(solid.centre, 0.5 * solid.height * a + solid.radius * disc, "cylinder");
 }
 

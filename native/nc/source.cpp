@@ -21,7 +21,7 @@ void NcPlace::fail(const std::string& what) const {
 
 NcSource::NcSource(const std::filesystem::path& path, std::size_t window) : name_(path.filename().string()) {
   base::check_regular(path);
-  file_.reset(std::fopen(path.c_str(), "rb"));
+  file_ = base::open_input(path);
   if (!file_) throw FormatError(name_, "", std::string("cannot be opened: ") + std::strerror(errno));
   std::error_code unknown;
   if (const auto size = std::filesystem::file_size(path, unknown); !unknown) size_ = static_cast<double>(size);
@@ -68,7 +68,7 @@ void NcSource::go(const Mark& mark) {
     at_ = static_cast<std::size_t>(mark.offset - base_);
     return;
   }
-  if (fseeko(file_.get(), static_cast<off_t>(mark.offset), SEEK_SET) != 0)
+  if (!base::seek_input(file_.get(), mark.offset))
     throw FormatError(name_, "byte " + std::to_string(mark.offset), "cannot be read again: is it a pipe?");
   base_ = mark.offset, at_ = 0, window_ = {};
 }

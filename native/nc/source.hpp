@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <cstdio>
 #include <filesystem>
-#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "base/input_stream.hpp"
 
 namespace riffler::nc {
 
@@ -48,13 +48,10 @@ class NcSource {
   double share() const { return size_ > 0 ? std::min(1.0, static_cast<double>(base_ + at_) / size_) : 1; }
 
  private:
-  struct Close {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
   bool more();
 
   std::string name_;
-  std::unique_ptr<std::FILE, Close> file_;
+  base::InputStream file_;
   std::vector<char> buffer_;
   std::string_view window_;
   std::uint64_t base_ = 0;  // offset of the window in the text

@@ -1,38 +1,19 @@
 #include "pen/driver.hpp"
 
-#include <pthread.h>
-
 #include <chrono>
 #include <condition_variable>
-#include <csignal>
 #include <mutex>
 #include <optional>
 #include <thread>
 #include <utility>
 
 #include "base/real_time.hpp"
+#include "base/without_signals.hpp"
 
 namespace riffler::pen {
 namespace {
 
 using Seconds = std::chrono::duration<double>;
-
-/// Blocks signals: a signal delivered to this thread would end its poll() with an error, which hidapi takes as a
-/// disconnect. base::OverrunGuard lets its own through, which arrives only while the thread computes.
-class WithoutSignals {
- public:
-  WithoutSignals() {
-    sigset_t all;
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before_);
-  }
-  WithoutSignals(const WithoutSignals&) = delete;
-  WithoutSignals& operator=(const WithoutSignals&) = delete;
-  ~WithoutSignals() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
-
- private:
-  sigset_t before_;
-};
 
 }  // namespace
 
@@ -136,7 +117,9 @@ Driver::Driver(std::shared_ptr<PenModel> model, std::shared_ptr<PenStep> step, s
                Open open, const DriverSettings& settings, std::shared_ptr<Clock> clock)
     : shared_(std::make_shared<Shared>(std::move(model), std::move(step), std::move(transport), std::move(open),
                                        settings, std::move(clock))) {
-  const WithoutSignals masked;  // threads inherit it
+  // A signal would end a poll() of the threads with an error, which hidapi takes as a disconnect. base::OverrunGuard
+  // lets its own through, which arrives only while the thread computes.
+  const base::WithoutSignals masked;
   try {
     std::thread([s = shared_] { s->drive(); }).detach();
     std::thread([s = shared_] { s->connect(); }).detach();

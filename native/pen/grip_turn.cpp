@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geom/hypot.hpp"
 #include "geom/math.hpp"
 
 namespace riffler::pen {
@@ -30,7 +31,7 @@ Vec3 rotated(const UnitQuaternion& q, const Vec3& v) {
 void GripTurn::turn(const UnitQuaternion& q, double now, PenSample& sample) noexcept {
   const Vec3 axis = glm::normalize(rotated(q, own_)), before = sample.pose.axis;
   const double along = glm::dot(q.v, own_);
-  const double twist = std::hypot(q.w, along) > 1e-6 ? 2 * std::atan2(along, q.w) : twist_;
+  const double twist = geom::hypot(q.w, along) > 1e-6 ? 2 * std::atan2(along, q.w) : twist_;
   const double dt = now - time_;
   if (!turned_) {
     sample.spin = std::remainder(twist, kTwoPi);

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "geom/hypot.hpp"
 #include "geom/math.hpp"
 #include "riffler/pen/arms/geometry.hpp"
 
@@ -72,7 +73,7 @@ double friction(const ArmBounds& arm, const ArmTraits& joints) {
 
 /// Uncertainty (mm) of the end along any direction if all three joints are known to one count.
 double resolution(const ArmBounds& arm, const ArmTraits& joints) {
-  return std::hypot(arm.lever[0] * joints.step[0], arm.lever[1] * joints.step[1] + arm.lever[2] * joints.step[2]);
+  return geom::hypot(arm.lever[0] * joints.step[0], arm.lever[1] * joints.step[1] + arm.lever[2] * joints.step[2]);
 }
 
 /// s: one USB frame out, one frame in which the motors apply it, and one for the report

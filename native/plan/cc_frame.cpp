@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "geom/hypot.hpp"
+
 namespace riffler::plan {
 
 namespace {
@@ -51,7 +53,7 @@ Vec3 axis_of(const CcFrame& frame, const Lean& lean) {
 
 Lean lean_of(const CcFrame& frame, const Vec3& axis) {
   const double x = glm::dot(axis, frame.x), y = glm::dot(axis, frame.y), z = glm::dot(axis, frame.z);
-  const double flat = std::hypot(x, z);
+  const double flat = geom::hypot(x, z);
   return {flat > 1e-15 ? std::atan2(x, z) : 0.0, std::atan2(y, flat)};
 }
 

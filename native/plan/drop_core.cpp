@@ -5,6 +5,7 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "geom/hypot.hpp"
 #include "geom/median_tree.hpp"
 #include "plan/grown_piece.hpp"
 #include "riffler/base/check.hpp"
@@ -75,7 +76,7 @@ struct DropCutter::Core::Search {
     const Box3& box = tree.boxes_[node];
     const double x = std::max({box.lower.x - at.x, at.x - box.upper.x, 0.0});
     const double y = std::max({box.lower.y - at.y, at.y - box.upper.y, 0.0});
-    const double rho = std::hypot(x, y);
+    const double rho = geom::hypot(x, y);
     double least = std::numeric_limits<double>::infinity();
     for (const auto& [part, lower] : tree.sides_)
       if (rho <= lower.rim()) least = std::min(least, lower.height(rho));

@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 
+#include "geom/hypot.hpp"
 #include "plan/drop_core.hpp"
 #include "riffler/geom/interval.hpp"
 
@@ -120,7 +121,7 @@ struct RiseSearch {
   double length = 0, rim = 0;
 
   RiseSearch(const DropCutter::Core& core, const Vec3& a, const Vec3& b, double enough)
-      : tree(core), from(a), way(b - a), best(enough), length(std::hypot(way.x, way.y)) {
+      : tree(core), from(a), way(b - a), best(enough), length(geom::hypot(way.x, way.y)) {
     along = Vec2(way.x, way.y) / length, across = Vec2(-along.y, along.x);
     for (const auto& side : tree.sides_) rim = std::max(rim, side.second.rim());
   }
@@ -134,10 +135,10 @@ struct RiseSearch {
                  hv = half.x * std::abs(across.x) + half.y * std::abs(across.y);
     const double x0 = std::min(from.x, from.x + way.x), x1 = std::max(from.x, from.x + way.x);
     const double y0 = std::min(from.y, from.y + way.y), y1 = std::max(from.y, from.y + way.y);
-    const double gap = std::hypot(std::max({box.lower.x - x1, x0 - box.upper.x, 0.0}),
-                                  std::max({box.lower.y - y1, y0 - box.upper.y, 0.0}));
+    const double gap = geom::hypot(std::max({box.lower.x - x1, x0 - box.upper.x, 0.0}),
+                                   std::max({box.lower.y - y1, y0 - box.upper.y, 0.0}));
     const double aside = std::max(v - hv, 0.0), ahead = std::max({u - hu - length, -u - hu, 0.0});
-    const double rho = std::max(gap, std::hypot(aside, ahead));
+    const double rho = std::max(gap, geom::hypot(aside, ahead));
     double least = std::numeric_limits<double>::infinity();
     for (const auto& [part, lower] : tree.sides_)
       if (rho <= lower.rim()) least = std::min(least, lower.height(rho));

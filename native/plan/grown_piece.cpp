@@ -1,4 +1,5 @@
 #include "plan/grown_piece.hpp"
+#include "geom/hypot.hpp"
 
 #include <cmath>
 
@@ -14,7 +15,7 @@ tool::Piece rounded_disc(double r, double z, double margin) {
 void grow(const tool::Frustum& f, double margin, std::vector<tool::Piece>& out) {
   out.push_back(rounded_disc(f.r0, f.z0, margin));
   if (!(f.r1 > f.r0)) return;  // seen from below there is its lower end only
-  const double dr = f.r1 - f.r0, dz = f.z1 - f.z0, length = std::hypot(dr, dz);
+  const double dr = f.r1 - f.r0, dz = f.z1 - f.z0, length = geom::hypot(dr, dz);
   const double side = margin * dz / length, down = margin * dr / length;
   out.push_back(tool::Frustum{f.z0 - down, f.r0 + side, f.z1 - down, f.r1 + side});
   out.push_back(rounded_disc(f.r1, f.z1, margin));

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geom/hypot.hpp"
+
 namespace riffler::plan {
 
 LowerSide::LowerSide(const tool::Piece& piece) : bottom_(bottom(piece)), flat_(radius_at(piece, bottom_)), rim_(flat_) {
@@ -25,11 +27,11 @@ double LowerSide::height(double rho) const {
 
 double LowerSide::radius_of_slope(double slope) const {
   if (arc_ == 0) return slope > cone_ ? rim_ : flat_;
-  return std::clamp(centre_.x + arc_ * slope / std::hypot(1.0, slope), flat_, rim_);
+  return std::clamp(centre_.x + arc_ * slope / geom::hypot(1.0, slope), flat_, rim_);
 }
 
 void LowerSide::at(const Vec3& p, Stop& stop) const {
-  const double tip = p.z - height(std::min(std::hypot(p.x, p.y), rim_));
+  const double tip = p.z - height(std::min(geom::hypot(p.x, p.y), rim_));
   if (!stop.touches || tip > stop.tip) stop = {tip, p, true};
 }
 
@@ -43,13 +45,13 @@ double LowerSide::best_on_line(double d, double slope) const {
   if (arc_ == 0) return slope < cone_ ? std::min(most, d * slope / std::sqrt((cone_ - slope) * (cone_ + slope))) : most;
   if (centre_.x == 0) {
     const double half = std::sqrt(std::max(0.0, (arc_ - d) * (arc_ + d)));
-    return std::min(most, half * slope / std::hypot(1.0, slope));
+    return std::min(most, half * slope / geom::hypot(1.0, slope));
   }
   // A torus or barrel: the slope along the line increases, so bracketed Newton iteration finds where it equals `slope`.
   // The bracket begins where the flat end stops: further in there is no arc.
   double low = std::sqrt(std::max(0.0, (flat_ - d) * (flat_ + d))), high = most, u = 0.5 * (low + most);
   for (int n = 0; n < 100 && high - low > 1e-15 * most; ++n) {
-    const double rho = std::hypot(d, u), off = rho - centre_.x, down = std::sqrt((arc_ - off) * (arc_ + off));
+    const double rho = geom::hypot(d, u), off = rho - centre_.x, down = std::sqrt((arc_ - off) * (arc_ + off));
     if (!(down > 0)) {
       high = u, u = 0.5 * (low + high);
       continue;
@@ -80,13 +82,13 @@ void LowerSide::edge(const Vec3& a, const Vec3& b, Stop& stop) const {
   };
   if (d <= flat_) look(sign * std::sqrt((flat_ - d) * (flat_ + d)));
   if (rim_ > flat_)
-    if (const double u = best_on_line(d, std::abs(slope)); std::hypot(d, u) >= flat_) look(sign * u);
+    if (const double u = best_on_line(d, std::abs(slope)); geom::hypot(d, u) >= flat_) look(sign * u);
 }
 
 void LowerSide::facet(const Vec3& a, const Vec3& b, const Vec3& c, Stop& stop) const {
   Vec3 normal = glm::cross(b - a, c - a);
   if (normal.z < 0) normal = -normal;
-  const double across = std::hypot(normal.x, normal.y);
+  const double across = geom::hypot(normal.x, normal.y);
   if (!(normal.z > 1e-14 * across)) return;  // vertical or without area: its edges decide
   const double rho = across > 0 ? radius_of_slope(across / normal.z) : 0.0;
   const Vec2 p = across > 0 ? Vec2(normal.x, normal.y) * (-rho / across) : Vec2(0);

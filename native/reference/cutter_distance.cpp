@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geom/hypot.hpp"
+
 namespace riffler::reference {
 
 namespace {
@@ -75,7 +77,7 @@ CutterDistance::Edge CutterDistance::edge(const Vec2& from, const Vec2& to, cons
 }
 
 CutterDistance::CutterDistance(const tool::Profile& profile)
-    : reach_(std::hypot(profile.max_radius(), profile.length())) {
+    : reach_(geom::hypot(profile.max_radius(), profile.length())) {
   Vec2 from{0, 0};
   for (const tool::ProfileSegment& s : profile.segments()) {
     edges_.push_back(edge(from, s.to, s.centre));

@@ -1,17 +1,11 @@
 #include "riffler/session/journal_file.hpp"
 
-#include <fcntl.h>
-#include <sys/file.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
-#include <cerrno>
-#include <cstring>
 #include <optional>
 #include <stdexcept>
 #include <utility>
 
 #include "base/io.hpp"
+#include "base/locked_file.hpp"
 #include "riffler/base/error.hpp"
 #include "session/journal_records.hpp"
 
@@ -66,70 +60,29 @@ void write_journal(const Journal& journal, const std::filesystem::path& path) {
 
 // --- Appending ---
 
-namespace {
-
-[[noreturn]] void fail_system(const std::string& name, const char* what) {
-  throw std::runtime_error(name + ": " + what + ": " + std::strerror(errno));
-}
-
-/// Owns a file descriptor until released.
-class Descriptor {
- public:
-  explicit Descriptor(int fd) : fd_(fd) {}
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  ~Descriptor() {
-    if (fd_ >= 0) ::close(fd_);
-  }
-  int get() const { return fd_; }
-  int release() { return std::exchange(fd_, -1); }
-
- private:
-  int fd_;
+struct JournalWriter::File : base::LockedFile {
+  using LockedFile::LockedFile;
 };
 
-void write_at(int fd, View bytes, std::uint64_t at, const std::string& name) {
-  while (!bytes.empty()) {
-    const ssize_t n = pwrite(fd, bytes.data(), bytes.size(), static_cast<off_t>(at));
-    if (n < 0 && errno == EINTR) continue;
-    if (n == 0) errno = ENOSPC;  // no system does this, but none rules it out; retrying could loop for ever
-    if (n <= 0) fail_system(name, "cannot be written");
-    bytes = bytes.subspan(static_cast<std::size_t>(n));
-    at += static_cast<std::uint64_t>(n);
-  }
-}
-
-}  // namespace
-
 JournalWriter::JournalWriter(const std::filesystem::path& path, Keep keep) : name_(path.filename().string()) {
-  Descriptor file(open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666));
-  if (file.get() < 0) fail_system(name_, "cannot be opened for writing");
-  if (flock(file.get(), LOCK_EX | LOCK_NB) != 0) fail_system(name_, "is being written by another program");
-  struct stat status{};
-  if (fstat(file.get(), &status) != 0) fail_system(name_, "cannot be read");
-  if (!S_ISREG(status.st_mode))
-    throw std::runtime_error(name_ + ": is a pipe or a device, not a file: take another name");
+  file_ = std::make_unique<File>(path);
   Journal journal;
-  if (status.st_size == 0) {
-    append_to(file.get(), journal_header());
+  if (file_->size() == 0) {
+    append(journal_header());
   } else {
     const Bytes bytes = base::read_file(path);
     journal = parse_journal(bytes, name_);
     size_ = journal.cut_at.value_or(bytes.size());
-    if (journal.cut_at && ftruncate(file.get(), static_cast<off_t>(size_)) != 0)
-      fail_system(name_, "its cut tail cannot be removed");
+    if (journal.cut_at && !file_->cut(size_)) file_->fail("its cut tail cannot be removed");
   }
   rules_ = journal.rules();
   if (keep == Keep::Everything) journal_ = std::move(journal);
-  fd_ = file.release();
 }
 
-JournalWriter::~JournalWriter() {
-  close();
-}
+JournalWriter::~JournalWriter() = default;
 
 void JournalWriter::close() {
-  if (fd_ >= 0) ::close(std::exchange(fd_, -1));
+  file_.reset();
 }
 
 const Journal& JournalWriter::journal() const {
@@ -138,16 +91,12 @@ const Journal& JournalWriter::journal() const {
 }
 
 void JournalWriter::append(const std::vector<std::uint8_t>& bytes) {
-  if (fd_ < 0) throw std::runtime_error(name_ + ": closed");
-  append_to(fd_, bytes);
-}
-
-void JournalWriter::append_to(int fd, const std::vector<std::uint8_t>& bytes) {
+  if (!file_) throw std::runtime_error(name_ + ": closed");
   // On a full disk, half a record may be written: a truncated tail, which this removes or the next record overwrites.
-  const auto cut = [&] { torn_ = torn_ && ftruncate(fd, static_cast<off_t>(size_)) != 0; };
+  const auto cut = [&] { torn_ = torn_ && !file_->cut(size_); };
   cut();
   try {
-    write_at(fd, bytes, size_, name_);
+    file_->write_at(bytes, size_);
   } catch (...) {
     torn_ = true;
     cut();
@@ -196,8 +145,8 @@ void JournalWriter::redo(std::size_t n) {
 }
 
 void JournalWriter::sync() {
-  if (fd_ < 0) throw std::runtime_error(name_ + ": closed");
-  if (fdatasync(fd_) != 0) fail_system(name_, "cannot be flushed to the disk");
+  if (!file_) throw std::runtime_error(name_ + ": closed");
+  file_->flush();
 }
 
 }  // namespace riffler::session

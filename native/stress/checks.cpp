@@ -4,6 +4,8 @@
 #include <cmath>
 #include <sstream>
 
+#include "geom/hypot.hpp"
+
 namespace riffler::stress {
 
 namespace {
@@ -108,7 +110,7 @@ Problem check_same_bytes(const Volume& a, const Volume& b) {
 }
 
 bool out_of_reach(const Stage& stage, const Move& move) {
-  const double reach = std::hypot(stage.tool.length(), stage.tool.profile().max_radius());
+  const double reach = geom::hypot(stage.tool.length(), stage.tool.profile().max_radius());
   Box3 tips;
   tips.add(move.from.tip), tips.add(move.to.tip);
   return !tips.grown(1.001 * reach).overlaps(stage.frame.box);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geom/hypot.hpp"
+
 namespace riffler::sweep {
 
 namespace {
@@ -63,7 +65,7 @@ PieceShape shape_of(const tool::Piece& piece) {
   s.z0 = bottom(piece), s.z1 = top(piece);
   s.r0 = radius_at(piece, s.z0), s.r1 = radius_at(piece, s.z1);
   s.slope = std::holds_alternative<tool::Frustum>(piece) ? (s.r1 - s.r0) / (s.z1 - s.z0) : 0,
-  s.cosine = 1 / std::hypot(1.0, s.slope);
+  s.cosine = 1 / geom::hypot(1.0, s.slope);
   s.cut0 = s.cut1 = true;
   if (const auto* round = std::get_if<tool::Round>(&piece)) {
     s.round = true, s.e = round->e, s.zc = round->zc, s.r = round->r;

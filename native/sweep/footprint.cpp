@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geom/hypot.hpp"
+
 namespace riffler::sweep {
 
 Footprint::Footprint(std::span<const tool::Piece> pieces, std::initializer_list<Pose> poses, double slack) {
@@ -13,7 +15,7 @@ Footprint::Footprint(std::span<const tool::Piece> pieces, std::initializer_list<
     // For a complete ball only the centre matters.
     const bool ball = whole_ball(piece);
     for (const Pose& pose : poses) {
-      const double reach = ball ? hull.thickness : radius * std::hypot(pose.axis.x, pose.axis.y) + slack;
+      const double reach = ball ? hull.thickness : radius * geom::hypot(pose.axis.x, pose.axis.y) + slack;
       const auto add = [&](double z) {
         const Vec3 p = pose.tip + z * pose.axis;
         add_corner(hull, {p.x, p.y});

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geom/hypot.hpp"
+
 namespace riffler::sweep {
 
 namespace {
@@ -58,7 +60,7 @@ ConvexGroup reachable(std::span<const tool::Piece> pieces, double thinnest, cons
 double lever_of(const ConvexGroup& group) {
   double lever = 0;
   for (const tool::Piece& p : group.all())
-    lever = std::max(lever, std::hypot(std::max(std::abs(bottom(p)), std::abs(top(p))), max_radius(p)));
+    lever = std::max(lever, geom::hypot(std::max(std::abs(bottom(p)), std::abs(top(p))), max_radius(p)));
   return lever;
 }
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "geom/hypot.hpp"
+
 namespace riffler::sweep {
 
 namespace {
@@ -24,14 +26,14 @@ SweptShape swept_shape(const tool::Piece& piece, bool hidden0, bool hidden1) {
 }  // namespace
 
 SectionLine::SectionLine(double a, double b, double least) {
-  const double norm = std::hypot(a, b);
+  const double norm = geom::hypot(a, b);
   exists = norm >= least;
   if (exists) ds = -b / norm, dt = a / norm, per_norm = 1 / norm;
 }
 
 StraightBody::StraightBody(const ConvexGroup& group, const Pose& from, const Vec3& motion, double start, double end)
     : count(group.count),
-      tilt(std::hypot(from.axis.x, from.axis.y)),
+      tilt(geom::hypot(from.axis.x, from.axis.y)),
       oz(from.axis.z),
       way(glm::length(motion)),
       t0(start),

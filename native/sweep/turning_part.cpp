@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geom/hypot.hpp"
+
 namespace riffler::sweep {
 
 namespace {
@@ -57,7 +59,7 @@ TurningBody::TurningBody(const ConvexGroup& group, const Motion& motion, double 
     pieces[k] = shape_of(p);
     if (k > 0 && pieces[k - 1].z1 > pieces[k].z0) end_at(pieces[k - 1], p);
     leans = leans || pieces[k].slope != 0, widest = std::max(widest, max_radius(p));
-    lever = std::max(lever, std::hypot(std::max(std::abs(bottom(p)), std::abs(top(p))), max_radius(p)));
+    lever = std::max(lever, geom::hypot(std::max(std::abs(bottom(p)), std::abs(top(p))), max_radius(p)));
   }
   rim_count = find_rims({pieces.data(), count}, rims);
   const Vec3 velocity = motion.to().tip - motion.from().tip, o = motion.axis(middle), first = motion.from().tip;

@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "geom/hypot.hpp"
+
 namespace riffler::tool {
 
 namespace {
@@ -55,7 +57,7 @@ bool contains_rest(const Frustum& f, const Round& round) {
   if (round.e < 0 || std::abs(f.z0 - round.z1) > 1e-12 * round.r || round.zc + round.r > f.z1) return false;
   const double slope = (f.r1 - f.r0) / (f.z1 - f.z0);
   if (slope < 0) return false;
-  const double to_flank = (f.r0 + slope * (round.zc - f.z0) - round.e) / std::hypot(1.0, slope);
+  const double to_flank = (f.r0 + slope * (round.zc - f.z0) - round.e) / geom::hypot(1.0, slope);
   return to_flank >= round.r * (1 - 1e-12);
 }
 

@@ -1,34 +1,19 @@
 #include "verify/remote.hpp"
 
-#include <stdlib.h>
-#ifdef __GLIBC__
-#include <malloc.h>
-#endif
-
 #include <algorithm>
 #include <stdexcept>
 
+#include "base/freed_memory.hpp"
 #include "riffler/base/parallel.hpp"
 #include "verify/simulate.hpp"
 
 namespace riffler::verify {
 
-namespace {
-
-/// Dask starts its workers with MALLOC_TRIM_THRESHOLD_=65536: freed memory goes back to the system at once, and glibc
-/// no longer adapts to large temporary arrays, so each array over 128 kB is mapped again. The page faults take as long
-/// as the simulation. These are the limits to which glibc would adapt at most (man 3 mallopt).
-void reuse_freed_memory() {
-#ifdef __GLIBC__
-  mallopt(M_MMAP_THRESHOLD, 32 << 20);
-  mallopt(M_TRIM_THRESHOLD, 64 << 20);
-#endif
-}
-
-}  // namespace
-
 SlabWorker::SlabWorker(std::span<const std::uint8_t> context) : context_(context_of(context)) {
-  reuse_freed_memory();
+  // Dask starts its workers with MALLOC_TRIM_THRESHOLD_=65536: freed memory goes back to the system at once, and glibc
+  // no longer adapts to large temporary arrays, so each array over 128 kB is mapped again. The page faults take as long
+  // as the simulation.
+  base::reuse_freed_memory();
   if (context_.frames.empty()) throw std::invalid_argument("context: there is no stock");
   for (const Tool& tool : context_.tools)
     shapes_.emplace_back(tool, context_.tolerance, context_.reach, context_.frames[0].pitch);

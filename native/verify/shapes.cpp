@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geom/hypot.hpp"
+
 namespace riffler::verify {
 
 namespace {
@@ -65,7 +67,7 @@ Box3 Rod::swept(const Pose& from, const Pose& to, double top) const {
   // acceleration relative to the tip is at most lever φ².
   const double chord = glm::length(to.axis - from.axis);
   const double angle = 2 * std::asin(std::min(1.0, chord / 2)),
-               lever = std::hypot(std::max(std::abs(low), std::abs(end)), radius);
+               lever = geom::hypot(std::max(std::abs(low), std::abs(end)), radius);
   return box.grown(lever * angle * angle / 8 + 1e-9 * (1 + lever));
 }
 

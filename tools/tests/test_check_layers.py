@@ -29,6 +29,29 @@ def test_a_topic_below_is_refused(tree):
     ]
 
 
+def test_a_function_whose_bits_differ_between_systems_is_refused_in_the_core(tree):
+    tree("base/a.cpp", "const double d = std::hypot(x, y);\n")
+    tree("nc/b.cpp", "const double d = geom::hypot(x, y);\n")
+    tree("tests/nc/b_test.cpp", "const double d = std::hypot(x, y);\n")
+    assert check_layers.bit_problems(tree.root) == [
+        "native/base/a.cpp:1: std::hypot differs between systems: use geom::hypot"
+    ]
+
+
+def test_headers_of_one_system_are_for_base_and_devices(tree):
+    text = "#include <unistd.h>\n#include <sys/stat.h>\n#include <csignal>\n#include <zlib.h>\n"
+    for path in ("base/a.cpp", "pen/hid/b.cpp", "tests/nc/c_test.cpp", "include/riffler/base/d.hpp"):
+        tree(path, text)
+    assert check_layers.system_problems(tree.root) == []
+    tree("nc/a.cpp", text)
+    tree("include/riffler/pen/b.hpp", text)
+    assert check_layers.system_problems(tree.root) == [
+        f"native/{path}:{line}: <{name}> is of one kind of system: call it in native/base"
+        for path in ("include/riffler/pen/b.hpp", "nc/a.cpp")
+        for line, name in ((1, "unistd.h"), (2, "sys/stat.h"))
+    ]
+
+
 def test_reading_and_writing_meet_in_machine_only(tree):
     tree("nc/read/reader.cpp", '#include "nc/machine/machine.hpp"\n#include "nc/write/post.hpp"\n')
     tree("nc/program.hpp", '#include "nc/read/reader.hpp"\n')

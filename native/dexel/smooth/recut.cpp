@@ -1,6 +1,7 @@
 #include "dexel/smooth/recut.hpp"
 
 #include "dexel/joiner.hpp"
+#include "geom/hypot.hpp"
 
 namespace riffler::dexel {
 
@@ -33,7 +34,7 @@ std::shared_ptr<const Tile> Recutter::run(std::size_t tile, const Vec3& centre, 
     const std::span<const Span> ray = before->ray(r);
     const std::span<const SpanNormals> normals = before->ray_normals(r);
     bool anew = false;
-    if (i < grid_.nu() && j < grid_.nv() && std::hypot(grid_.u(i) - c.x, grid_.v(j) - c.y) <= radius) {
+    if (i < grid_.nu() && j < grid_.nv() && geom::hypot(grid_.u(i) - c.x, grid_.v(j) - c.y) <= radius) {
       const std::span<const Interval> changes = field_.look_along(grid_.u(i), grid_.v(j));
       if (!changes.empty()) ++stats.rays_tested, anew = recut(ray, normals, changes);
     }

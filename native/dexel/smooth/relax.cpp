@@ -3,6 +3,7 @@
 #include "dexel/smooth/relax.hpp"
 
 #include "dexel/joiner.hpp"
+#include "geom/hypot.hpp"
 #include "riffler/base/parallel.hpp"
 
 namespace riffler::dexel {
@@ -109,7 +110,7 @@ std::vector<MovedPoint> relax(const std::vector<EndPoint>& unsorted, double pitc
           const double share = p.held ? 0 : brush.share(p.place);
           if (share == 0) continue;
           const Plane plane = plane_around(p, points, columns, reach);
-          const double height = plane.height, way = share * height / std::hypot(1, height / farthest);
+          const double height = plane.height, way = share * height / geom::hypot(1, height / farthest);
           if (std::abs(way) < kSliver * pitch) continue;
           const Vec3 normal = p.normal + share * (plane.normal - p.normal);
           const double length = glm::length(normal);

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "geom/directions.hpp"
+#include "geom/hypot.hpp"
 #include "geom/math.hpp"
 #include "nc/number_text.hpp"
 
@@ -126,7 +127,7 @@ void Machine::cannot_reach() const {
 
 Machine::Turns Machine::angles(const Vec3& axis, int branch, const Turns& near, double free) const {
   if (seen_.empty()) {
-    if (!(axis.z > 0 && std::hypot(axis.x, axis.y) <= kSingle)) cannot_reach();
+    if (!(axis.z > 0 && geom::hypot(axis.x, axis.y) <= kSingle)) cannot_reach();
     return {};
   }
   if (seen_.size() == 1) {

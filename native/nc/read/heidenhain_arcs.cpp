@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "geom/hypot.hpp"
 #include "geom/math.hpp"
 #include "nc/limits.hpp"
 #include "nc/read/heidenhain_interpreter.hpp"
@@ -194,7 +195,7 @@ void HeidenhainInterpreter::round_rows(const Vec3& from, const Vec3& to, const A
   if (chords > kMaxChords) place_.fail("an arc with too many chords");
   const int x = static_cast<int>(u), y = static_cast<int>(v), w = 3 - x - y;
   rows_->curve(
-      in_part(from, rotary.first), chords, std::hypot(arc.length(), to[w] - from[w]),
+      in_part(from, rotary.first), chords, geom::hypot(arc.length(), to[w] - from[w]),
       [&](double t) {
         if (t == 1) return in_part(to, rotary.second);
         Joints turning = rotary.first;

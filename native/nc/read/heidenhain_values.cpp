@@ -3,6 +3,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "geom/hypot.hpp"
 #include "geom/math.hpp"
 #include "nc/read/maybe.hpp"
 
@@ -129,7 +130,7 @@ std::optional<double> HeidenhainValues::product(HeidenhainCursor& cursor, int de
     else if (cursor.take_if('/') || cursor.take_word("DIV"))
       value = both(value, power(cursor, depth), [](double a, double b) { return a / b; });
     else if (cursor.take_word("LEN"))
-      value = both(value, power(cursor, depth), [](double a, double b) { return std::hypot(a, b); });
+      value = both(value, power(cursor, depth), [](double a, double b) { return geom::hypot(a, b); });
     else if (cursor.take_word("ANG"))
       value = both(value, power(cursor, depth), [](double a, double b) {
         const double angle = std::atan2(a, b) / kDegree;

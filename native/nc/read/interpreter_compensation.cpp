@@ -3,6 +3,7 @@
 #include <cmath>
 #include <string>
 
+#include "geom/hypot.hpp"
 #include "nc/limits.hpp"
 #include "nc/read/interpreter.hpp"
 
@@ -102,8 +103,8 @@ void NcInterpreter::contour_to(const Joints& to, int code) {
   if (words.inverse_time) {
     // The duration is that of the programmed length.
     const auto [u, v, w] = modes_.plane;
-    const double along = arc ? arc->length() : std::hypot(to[u] - at_[u], to[v] - at_[v]);
-    words.feed = std::min(words.feed * std::hypot(along, to[w] - at_[w]), kMaxFeed);
+    const double along = arc ? arc->length() : geom::hypot(to[u] - at_[u], to[v] - at_[v]);
+    words.feed = std::min(words.feed * geom::hypot(along, to[w] - at_[w]), kMaxFeed);
     words.inverse_time = false;
   }
   moves_in_part(false);

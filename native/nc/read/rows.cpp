@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "geom/hypot.hpp"
 #include "geom/math.hpp"
 #include "nc/limits.hpp"
 #include "nc/number_text.hpp"
@@ -210,7 +211,7 @@ void NcRows::arc(const Joints& from, const Joints& to, const Arc& arc, std::size
   if (chords > kMaxChords) place_.fail("an arc with too many chords");
   const std::size_t w = 3 - u - v;
   curve(
-      from, chords, std::hypot(arc.length(), to[w] - from[w]),
+      from, chords, geom::hypot(arc.length(), to[w] - from[w]),
       [&](double t) {
         if (t == 1) return to;
         Joints joints;

@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "geom/hypot.hpp"
 #include "geom/math.hpp"
 #include "nc/limits.hpp"
 #include "nc/read/sinumerik_interpreter.hpp"
@@ -105,7 +106,7 @@ void SinumerikInterpreter::arc_to(const Vec3& to, const Arc& arc, const NcRowWor
   const int u = static_cast<int>(plane_[0]), v = static_cast<int>(plane_[1]), w = static_cast<int>(plane_[2]);
   const Vec3 from = at_;
   rows_->curve(
-      in_part(from, rotary_), chords, std::hypot(arc.length(), to[w] - from[w]),
+      in_part(from, rotary_), chords, geom::hypot(arc.length(), to[w] - from[w]),
       [&](double t) {
         Vec3 at = to;
         if (t < 1) {

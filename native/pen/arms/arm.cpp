@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geom/hypot.hpp"
+
 namespace riffler::pen {
 
 ArmPosture arm_posture(const ArmLinks& links, const Vec3& angles) noexcept {
@@ -24,7 +26,7 @@ double arm_dexterity(const ArmLinks& links, const Vec3& angles) noexcept {
 
 ArmInverse arm_angles(const ArmLinks& links, const Vec3& end) noexcept {
   ArmInverse inverse;
-  const double y = end.y - links.shoulder, out = std::hypot(end.x, y), distance = std::hypot(out, end.z);
+  const double y = end.y - links.shoulder, out = geom::hypot(end.x, y), distance = geom::hypot(out, end.z);
   if (!std::isfinite(distance)) return inverse;
   const double straight = links.upper + links.fore, folded = std::abs(links.upper - links.fore);
   inverse.reach = distance > straight ? ReachResult::TooFar

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "geom/hypot.hpp"
 #include "geom/math.hpp"
 
 namespace riffler::pen {
@@ -58,7 +59,7 @@ std::array<NoticedCounts, kPenChannels> noticed_counts(const PenKinematics& pen,
     // − φ).
     const Vec3 q = arm_of_circle(g.arms[arm], posture.angles[arm], moved.end, c.joint), t = moved.jacobian[c.joint];
     const Vec3 other = posture.arms[1 - arm].end - moved.end + q;
-    const double p = glm::dot(other, q), s = glm::dot(other, t), m = std::hypot(p, s), phase = std::atan2(s, p);
+    const double p = glm::dot(other, q), s = glm::dot(other, t), m = geom::hypot(p, s), phase = std::atan2(s, p);
     const double sum = glm::dot(other, other) + glm::dot(q, q);
     const auto counts = [&](double way) {
       const double angle = std::min(way_to_cosine(-phase, way, (sum - longest * longest) / (2 * m)),

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geom/hypot.hpp"
 #include "geom/math.hpp"
 
 namespace riffler::plan {
@@ -48,7 +49,7 @@ double CutterProfile::ridge(double across, double up) const {
     top = {low, std::max(height(low), up + height(std::abs(low - across)))};
   }
   // The tangent of both is parallel to the line from one tip to the other.
-  const Vec2 normal = Vec2(-up, across) / std::hypot(up, across);
+  const Vec2 normal = Vec2(-up, across) / geom::hypot(up, across);
   double least = kInfinity;
   for (const Vec2& p : points_) least = std::min({least, glm::dot(normal, p), glm::dot(normal, Vec2(-p.x, p.y))});
   return std::max(0.0, glm::dot(normal, top) - least);

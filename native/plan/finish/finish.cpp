@@ -6,6 +6,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "geom/hypot.hpp"
 #include "geom/math.hpp"
 #include "plan/finish/order.hpp"
 #include "plan/finish/patterns.hpp"
@@ -72,7 +73,7 @@ std::vector<std::vector<Vec3>> direct_links(const std::vector<CutPiece>& pieces,
       [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
           const Vec3 from = pieces[k].tips.back(), to = pieces[k + 1].tips.front();
-          if (std::hypot(to.x - from.x, to.y - from.y) > longest) continue;
+          if (geom::hypot(to.x - from.x, to.y - from.y) > longest) continue;
           const std::vector<SurfacePoint> way = surface.follow(Vec2(from), Vec2(to));
           const bool clear = std::all_of(way.begin(), way.end(), [&](const SurfacePoint& p) {
             return p.landing.touches && !p.gap && !surface.blocked(p);

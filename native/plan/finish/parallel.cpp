@@ -8,6 +8,7 @@
 #include <map>
 #include <stdexcept>
 
+#include "geom/hypot.hpp"
 #include "geom/math.hpp"
 #include "plan/finish/patterns.hpp"
 #include "riffler/base/parallel.hpp"
@@ -128,7 +129,7 @@ class Filler {
 
   double ridge_to(const std::optional<Vec3>& row, const Vec3& p) const {
     if (!row) return kInfinity;
-    return scene_.profile.ridge(2 * std::hypot(p.x - row->x, p.y - row->y), 2 * (p.z - row->z));
+    return scene_.profile.ridge(2 * geom::hypot(p.x - row->x, p.y - row->y), 2 * (p.z - row->z));
   }
 
   /// How far M's contact stands off the cutter on the nearest places of both rows.
@@ -137,7 +138,7 @@ class Filler {
     for (const std::optional<Vec3>& tip : {on_x, on_y}) {
       if (!tip) continue;
       const Vec3 off = m.landing.point - *tip;
-      least = std::min(least, outline_.nearest(std::hypot(off.x, off.y), off.z).distance - scene_.options.allowance);
+      least = std::min(least, outline_.nearest(geom::hypot(off.x, off.y), off.z).distance - scene_.options.allowance);
     }
     return least;
   }

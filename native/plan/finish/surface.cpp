@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "geom/hypot.hpp"
 #include "riffler/base/parallel.hpp"
 
 namespace riffler::plan {
@@ -62,7 +63,7 @@ SurfacePoint FinishSurface::at(const Vec2& p) const {
 /// The share at which to divide a piece of a row; none if it is settled, and then what lies between is in `out`.
 std::optional<double> FinishSurface::split(const SurfacePoint& a, const SurfacePoint& b,
                                            std::vector<SurfacePoint>& out) const {
-  const double length = std::hypot(b.tip.x - a.tip.x, b.tip.y - a.tip.y);
+  const double length = geom::hypot(b.tip.x - a.tip.x, b.tip.y - a.tip.y);
   const bool fine = length <= 0.5 * tolerance_;
   const auto inside = [](double s) { return std::clamp(s, 0.02, 0.98); };
   if (!a.landing.touches || !b.landing.touches) {
@@ -138,7 +139,7 @@ const char* FinishSurface::blocked(const SurfacePoint& p) const {
 bool FinishSurface::wanted(const SurfacePoint& p) const {
   if (!p.landing.touches || blocked(p) || !in_region(p.landing.point)) return false;
   const Vec3& n = normals_[static_cast<std::size_t>(p.landing.triangle)];
-  return meant_slope(std::atan2(std::hypot(n.x, n.y), n.z));
+  return meant_slope(std::atan2(geom::hypot(n.x, n.y), n.z));
 }
 
 /// Whether a ball rests on an edge, with its normal far from that of the face.

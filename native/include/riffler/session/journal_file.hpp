@@ -11,6 +11,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -68,17 +69,17 @@ class JournalWriter {
   const JournalRules& rules() const { return rules_; }
 
  private:
+  struct File;
   template <class Apply, class Record>
   void change(const Apply& apply, const Record& record);
   void append(const std::vector<std::uint8_t>& record);
-  void append_to(int fd, const std::vector<std::uint8_t>& bytes);
 
   std::string name_;
   JournalRules rules_;
   std::optional<Journal> journal_;
-  int fd_ = -1;
-  std::uint64_t size_ = 0;  // bytes of complete records
-  bool torn_ = false;       // a partial record may follow them
+  std::unique_ptr<File> file_;  // none once closed
+  std::uint64_t size_ = 0;      // bytes of complete records
+  bool torn_ = false;           // a partial record may follow them
 };
 
 }  // namespace riffler::session
