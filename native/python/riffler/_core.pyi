@@ -4668,7 +4668,7 @@ class JournalStroke:
     @property
     def poses(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n, 6): tip in mm and unit axis; a copy.
+        (n, 6): tip in mm and unit axis; of a hand tool (n, 9), with its forward direction. A copy.
         """
     @property
     def removed(self) -> numpy.typing.NDArray[numpy.float64] | None:
@@ -4766,7 +4766,7 @@ class Journal:
         tool : int
             Number of a tool that was added.
         poses : array_like, shape (n, 6)
-            Tip in mm and unit axis, n at least 1.
+            Tip in mm and unit axis, n at least 1. For a hand tool (n, 9), as in ``Volume.carve``.
         times : array_like, shape (n,), optional
             s, never falling.
         tolerance : float
@@ -4817,7 +4817,7 @@ class Journal:
         Parameters
         ----------
         poses : array_like, shape (n, 6)
-            Tip in mm and unit axis.
+            Tip in mm and unit axis; (n, 9) for a hand tool.
         times, forces, removed : array_like, optional
             As of ``add_stroke``.
 
@@ -5090,7 +5090,7 @@ class JournalWriter:
         tool : int
             Number of a tool that was added.
         poses : array_like, shape (n, 6)
-            Tip in mm and unit axis, n at least 1.
+            Tip in mm and unit axis, n at least 1. For a hand tool (n, 9), as in ``Volume.carve``.
         times : array_like, shape (n,), optional
             s, never falling.
         tolerance : float
@@ -5150,7 +5150,7 @@ class JournalWriter:
         Parameters
         ----------
         poses : array_like, shape (n, 6)
-            Tip in mm and unit axis.
+            Tip in mm and unit axis; (n, 9) for a hand tool.
         times, forces, removed : array_like, optional
             As of ``add_stroke``.
 

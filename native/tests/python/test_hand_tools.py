@@ -261,6 +261,41 @@ def test_a_history_of_hand_tools_gives_the_bytes_of_a_replay():
         history.replace(history.add(T.ball(6, 30), UPRIGHT), tool=CHISEL)
 
 
+def test_a_journal_keeps_the_roll(tmp_path):
+    turning = path((4, 6, 8), leaning(), [((5, 3, 0), (0, 0.2, 0.3)), ((0, 0, 0), (0, 0, 0.2))])
+    with riffler.JournalWriter(tmp_path / "a.rjournal") as writer:
+        writer.set_stock((0, 0, 0), (20, 20, 10), 0.4, "xyz")
+        writer.add_tool(1, CHISEL)
+        writer.add_tool(2, T.ball(6, 30))
+        writer.add_stroke(1, turning[:1], times=[0.0])
+        writer.extend_stroke(turning[1:], times=[1.0, 2.0])
+        writer.add_stroke(2, UPRIGHT)
+        for message, number, poses in (
+            (r"poses: tool 1 is a hand tool and needs the shape \(n, 9\)", 1, UPRIGHT),
+            (r"poses: tool 2 is a body of revolution and needs the shape \(n, 6\)", 2, STRAIGHT),
+            ("poses, row 1: the forward direction must be square", 1, POSES[list(POSES)[1]]),
+        ):
+            with pytest.raises(ValueError, match=message):
+                writer.add_stroke(number, poses)
+        with pytest.raises(ValueError, match="forward for a stroke that has none"):
+            writer.extend_stroke(STRAIGHT)
+    journal = riffler.Journal.load(tmp_path / "a.rjournal")
+    assert np.array_equal(journal.strokes[0].poses, turning) and journal.strokes[1].poses.shape == (2, 6)
+    volume = block()
+    volume.carve(CHISEL, turning)
+    volume.carve(T.ball(6, 30), UPRIGHT)
+    assert journal.replay().to_bytes() == volume.to_bytes()
+    journal.save(tmp_path / "b.rjournal")
+    assert riffler.Journal.load(tmp_path / "b.rjournal").replay().to_bytes() == volume.to_bytes()
+    for refuses, call in (
+        ("tool 1: a program", lambda: journal.program(feed=600)),
+        ("tool 1: the search for the stroke", lambda: journal.strokes_at([(10, 10, 8)])),
+        ("recording, tool 1: a plan", lambda: riffler.plan.from_recording(journal, tool=1)),
+    ):
+        with pytest.raises(ValueError, match=f'{refuses}.* cannot use the hand tool "chisel 6"'):
+            call()
+
+
 PART = riffler.Volume.block((0, 0, 0), (20, 20, 10), 1, "xyz").to_mesh()
 COLLIDER = riffler.Collider(PART)
 (VALLEY,) = riffler.plan.pencil(
@@ -286,6 +321,7 @@ REFUSING = {
     "plan.cutter_locations": lambda: riffler.plan.cutter_locations(VALLEY, CHISEL, COLLIDER),
     "plan.free_orientations": lambda: riffler.plan.free_orientations(VALLEY, CHISEL, COLLIDER, index=0),
     "plan.min_tilt": lambda: riffler.plan.min_tilt(VALLEY, CHISEL, COLLIDER),
+    "plan.path_of_stroke": lambda: riffler.plan.path_of_stroke(UPRIGHT, CHISEL),
     "plan.finish": lambda: riffler.plan.finish(riffler.plan.Setup(PART, block("z")), CHISEL, feed=600, spindle=9000),
     "with_shank": lambda: CHISEL.with_shank([(20, 3, 40, 3)]),
 }
