@@ -36,6 +36,7 @@ bool same(const Tool& a, const Tool& b) {
 
 /// The tool ready for contact: those asked for last are kept, for all colliders.
 std::shared_ptr<const collide::Assembly> prepared(const Tool& tool) {
+  tool.require_revolved("a collider");
   constexpr std::size_t kMax = 8;
   static std::mutex mutex;
   static std::vector<std::shared_ptr<const collide::Assembly>> kept;

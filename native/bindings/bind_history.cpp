@@ -44,7 +44,8 @@ std::unique_ptr<SharedHistory> make(SharedVolume& base, std::size_t memory_limit
 
 HistoryStroke to_stroke(const Tool& tool, const Doubles& poses, const std::string& mode, double tolerance,
                         SharedVolume* protect) {
-  return {tool, to_poses(poses, "poses"), to_mode(mode), tolerance, snapshot_of(protect)};
+  PosesOf path = to_poses_of(tool, poses, "poses");
+  return {tool, std::move(path.plain), to_mode(mode), tolerance, snapshot_of(protect), std::move(path.rolled)};
 }
 
 /// Runs an edit, body(history, progress), without Python's lock, and alone.
@@ -74,7 +75,10 @@ void replace(SharedHistory& self, StrokeId id, const Tool* tool, const std::opti
              const ProgressLike& progress) {
   HistoryStroke stroke = (lock(self), self.history.stroke(id));
   if (tool) stroke.tool = *tool;
-  if (poses) stroke.poses = to_poses(*poses, "poses");
+  if (poses) {
+    PosesOf path = to_poses_of(stroke.tool, *poses, "poses");
+    stroke.poses = std::move(path.plain), stroke.rolled = std::move(path.rolled);
+  }
   if (mode) stroke.mode = to_mode(*mode);
   if (tolerance) stroke.tolerance = *tolerance;
   if (protect) stroke.protect = snapshot_of(protect);
@@ -99,7 +103,8 @@ HistoryStrokeResult stroke(SharedHistory& self, StrokeId id) {
   using namespace py::literals;
   return make_result(
       "HistoryStroke",
-      py::dict("id"_a = id, "tool"_a = s.tool, "poses"_a = from_poses(s.poses),
+      py::dict("id"_a = id, "tool"_a = s.tool,
+               "poses"_a = s.tool.revolved() ? from_poses(s.poses) : from_poses(s.rolled),
                "mode"_a = s.mode == sweep::CarveMode::Add ? "add" : "remove", "tolerance"_a = s.tolerance,
                "protect"_a = s.protect ? py::cast(share(s.protect->snapshot())) : py::none(),
                "enabled"_a = self.history.enabled(id)));
@@ -142,7 +147,7 @@ Parameters
 tool : Tool
     Its cutter is swept.
 poses : array_like of shape (n, 6), tip in mm and unit axis
-    Tip xyz, then unit axis xyz from the tip to the spindle; n - 1 moves.
+    Tip xyz, then unit axis xyz from the tip to the spindle; n - 1 moves. For a hand tool (n, 9), as in `Volume.carve`.
 mode : "remove" or "add"
     "add" puts material on wherever the cutter sweeps within the volume's box.
 tolerance : float, mm

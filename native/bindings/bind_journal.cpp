@@ -55,7 +55,12 @@ StrokeList strokes(const SharedJournal& journal) {
 }
 
 py::array_t<double> poses(const StrokeView& stroke) {
-  return take<double>(std::vector<Pose>(stroke.get().poses), 6);
+  const session::JournalStroke& s = stroke.get();
+  if (s.forward.empty()) return from_poses(s.poses);
+  std::vector<RolledPose> rolled;
+  for (std::size_t row = 0; row < s.poses.size(); ++row)
+    rolled.push_back({s.poses[row].tip, s.poses[row].axis, s.forward[row]});
+  return from_poses(rolled);
 }
 
 std::map<int, Tool> tools_of(const session::Journal& journal) {
@@ -110,7 +115,9 @@ OptionalArray column(const std::vector<double>& values) {
 
 void bind_stroke(py::module_& m) {
   py::class_<StrokeView>(m, "JournalStroke", "One stroke of a journal: see `Journal.add_stroke`.")
-      .def_property_readonly("poses", &poses, "(n, 6): tip in mm and unit axis; a copy.")
+      .def_property_readonly(
+          "poses", &poses,
+          "(n, 6): tip in mm and unit axis; of a hand tool (n, 9), with its forward direction. A copy.")
       .def_property_readonly(
           "times", [](const StrokeView& s) { return column(s.get().times); }, "(n,) s, or None.")
       .def_property_readonly(

@@ -105,6 +105,7 @@ void bind_operations(py::module_& m) {
          const Tool& tool, const ArrayLike& axis, double clearance, const std::string& pattern, double cusp,
          double tolerance, double allowance, double angle, double min_slope, double max_slope, const ArraysLike& region,
          double feed, double plunge, const ProgressLike& progress) {
+        tool.require_revolved("plan.finish");
         plan::FinishOptions options;
         options.pattern = pattern, options.cusp = cusp, options.tolerance = tolerance;
         options.allowance = allowance, options.angle = angle, options.min_slope = min_slope;

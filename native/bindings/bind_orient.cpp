@@ -28,6 +28,7 @@ struct SharedOrientSession : Guarded {
 std::unique_ptr<SharedOrientSession> make(const Path& path, const Tool& tool, const Obstacles& part,
                                           std::shared_ptr<pen::Pen> pen, session::OrientSessionSettings settings,
                                           const BudgetLike& budget) {
+  tool.require_revolved("a session");
   settings.loop.passivity = pen->passivity();
   settings.loop.step.budget = to_budget(budget, *pen);
   settings.loop.wrench_extrapolator.most = settings.loop.limits.wrench;

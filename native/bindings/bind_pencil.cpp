@@ -37,6 +37,9 @@ PencilResult from_result(plan::PencilResult&& result) {
 
 void bind_pencil(py::module_& m) {
   m.def("stepover_of_scallop", &plan::stepover_of_scallop, py::arg("radius"), py::arg("height"));
+  m.def(
+      "require_revolved", [](const Tool& tool, const std::string& who) { tool.require_revolved(who); }, py::arg("tool"),
+      py::arg("who"), "ValueError for a hand tool, which ``who`` cannot use.");
   m.def("tip_ball_radius", &plan::tip_ball_radius, py::arg("tool"), py::arg("name"),
         "Radius (mm) of the ball at the tip of ``tool``; ValueError naming the argument ``name`` where there is none.");
   m.def(
@@ -44,6 +47,7 @@ void bind_pencil(py::module_& m) {
       [](const std::shared_ptr<Mesh>& part, const Tool& tool, double tolerance, std::optional<double> bitangency_angle,
          double minimum_length, int passes, std::optional<double> stepover, double overthickness,
          const ProgressLike& progress) {
+        tool.require_revolved("plan.pencil");
         plan::PencilOptions options;
         options.tolerance = tolerance, options.bitangency_angle = bitangency_angle;
         options.minimum_length = minimum_length, options.passes = passes, options.stepover = stepover;

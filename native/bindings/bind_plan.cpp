@@ -38,6 +38,7 @@ std::vector<Pose> to_unit_poses(const Doubles& array) {
 
 py::array_t<double> contact_locations(const Tool& tool, const Doubles& contacts, const Doubles& normals,
                                       const Doubles& axes, const OptionalArrayLike& feeds) {
+  tool.require_revolved("plan.contact_locations");
   const std::vector<Vec3> at = to_vec3s(contacts, "contacts");
   const std::vector<Vec3> n = to_units(normals, "normals", at.size()), o = to_units(axes, "axes", at.size());
   std::vector<Vec3> feed(at.size(), Vec3(0));
@@ -63,6 +64,7 @@ py::list names_of(const std::vector<collide::Touch>& touches) {
 
 LiftResult lift_all(const Tool& tool, const Doubles& array, const collide::Collider& collider, double clearance,
                     double tolerance, double max_lift, int max_evaluations, const ProgressLike& callable) {
+  tool.require_revolved("plan.lift");
   const std::vector<Pose> poses = to_unit_poses(array);
   const plan::LiftRule rule{clearance, tolerance, max_lift, max_evaluations};
   validate(rule);
@@ -94,6 +96,7 @@ LiftResult lift_all(const Tool& tool, const Doubles& array, const collide::Colli
 
 ArrayPair drop_all(const Tool& tool, const Doubles& array, const Mesh& part, const ArrayLike& axis,
                    const ProgressLike& callable) {
+  tool.require_revolved("plan.drop");
   const std::vector<Vec3> points = to_vec3s(array, "points");
   const Vec3 up = plan::unit_axis(to_vec3(axis, "axis"), "axis");
   std::vector<double> heights(points.size(), std::numeric_limits<double>::quiet_NaN());
@@ -136,6 +139,7 @@ LocationsResult from_locations(const plan::CutterLocations& found) {
 template <class From>
 auto locate(const std::shared_ptr<From>& from, const Tool& tool, const Obstacle& collider, double clearance,
             double tolerance, double max_lift, int max_inserted, const ProgressLike& progress) {
+  tool.require_revolved("plan.cutter_locations");
   plan::LocationRule rule;
   rule.clearance = clearance, rule.tolerance = tolerance, rule.max_lift = max_lift, rule.max_inserted = max_inserted;
   const auto work = [=](const Progress& listener) {
@@ -176,6 +180,7 @@ MapResults from_maps(const std::vector<plan::OrientationMap>& found) {
 auto maps(const Path& path, const std::vector<std::size_t>& points, const Tool& tool, const Obstacle& collider,
           const std::vector<double>& inclinations, const std::vector<double>& tilts, double clearance, double tolerance,
           const ConeLike& limit, const ProgressLike& progress) {
+  tool.require_revolved("plan.free_orientations");
   const plan::MapRule rule = to_rule(inclinations, tilts, clearance, tolerance, limit);
   const auto work = [=](const Progress& listener) {
     return orientation_maps(*path, points, collide::Assembly(tool), *collider, rule, listener);
@@ -194,6 +199,7 @@ TiltResult from_answer(plan::TiltAnswer&& found) {
 auto choose(const Path& path, const Tool& tool, const Obstacle& collider, const std::vector<double>& inclinations,
             const std::vector<double>& tilts, double clearance, double tolerance, const ConeLike& limit,
             double max_change, double smoothness, const ProgressLike& progress) {
+  tool.require_revolved("plan.min_tilt");
   const plan::TiltRule rule{to_rule(inclinations, tilts, clearance, tolerance, limit), max_change, smoothness};
   const auto work = [=](const Progress& listener) {
     return least_tilt(*path, collide::Assembly(tool), *collider, rule, listener);

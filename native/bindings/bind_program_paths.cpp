@@ -27,6 +27,7 @@ std::vector<int> number_tools(const ToolListLike& object, std::size_t paths, std
     std::size_t k = 0;
     while (k < different.size() && !different[k].equal(tool)) ++k;
     if (k == different.size()) {
+      py::cast<const Tool&>(tool).require_revolved("tools: a program");
       different.push_back(tool);
       tools.emplace(static_cast<int>(k) + 1, py::cast<const Tool&>(tool));
     }

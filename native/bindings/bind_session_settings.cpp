@@ -56,6 +56,7 @@ sweep::CarveMode to_mode(const std::string& mode) {
 std::unique_ptr<SharedSession> make(const std::shared_ptr<SharedVolume>& volume, const Tool& tool,
                                     std::shared_ptr<pen::Pen> pen, const Obstacles& obstacles, SharedVolume* protect,
                                     session::SessionSettings settings, const BudgetLike& budget) {
+  tool.require_revolved("a session");
   if (!pen) pen = std::make_shared<pen::PointerPen>(pen::PointerPen::Kind::Mouse);
   settings.loop.passivity = pen->passivity();
   settings.loop.sculpt.budget = to_budget(budget, *pen);

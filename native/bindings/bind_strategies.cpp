@@ -58,6 +58,7 @@ void bind_strategies(py::module_& m) {
       "engrave",
       [](const Mesh& part, const ArraysLike& curves, const Tool& tool, double depth, double inclination, double tilt,
          double tolerance, double turn, double crease, double reach, const ProgressLike& progress) {
+        tool.require_revolved("plan.engrave");
         return engraved(part, curves, tool, {depth, inclination, tilt, tolerance, turn, crease, reach}, progress);
       },
       py::arg("part"), py::arg("curves"), py::arg("tool"), py::kw_only(), py::arg("depth"), py::arg("inclination"),
@@ -67,6 +68,7 @@ void bind_strategies(py::module_& m) {
       "swarf",
       [](const plan::PencilPath& path, const Mesh& part, const Tool& tool, int side, std::optional<double> height,
          double tolerance, const ProgressLike& progress) {
+        tool.require_revolved("plan.swarf");
         return cut_with_flank(path, part, tool, {side, height, tolerance}, progress);
       },
       py::arg("path"), py::arg("part"), py::arg("tool"), py::kw_only(), py::arg("side"), py::arg("height"),

@@ -1,6 +1,8 @@
 // riffler.Tool
 #include <pybind11/typing.h>
 
+#include <functional>
+
 #include "bindings/bindings.hpp"
 #include "bindings/typed.hpp"
 #include "riffler/tool/cutters.hpp"
@@ -10,6 +12,11 @@ namespace riffler::bindings {
 
 /// The functions of Tool that make named cutters, and their table (bind_tool_shapes.cpp).
 void bind_tool_shapes(py::module_& m, py::class_<Tool>& tool);
+/// The functions of Tool that make hand tools (bind_hand_tools.cpp).
+void bind_hand_tools(py::class_<Tool>& tool);
+/// The hand tool of a dict of its kind and sizes; nothing for other kinds.
+std::optional<Tool> hand_tool_from(const std::string& kind, const std::function<double(const char*)>& size,
+                                   const std::function<py::object(const char*)>& object);
 
 namespace {
 
@@ -80,6 +87,15 @@ py::dict to_dict(const Tool& tool) {
   for (const auto& [key, value] : tool.parameters())
     d[py::str(key)] = is_flag(tool, key) ? py::object(py::bool_(value != 0)) : py::object(py::float_(value));
   if (tool.kind() == "profile") d["segments"] = from_segments(tool.profile());
+  if (tool.kind() == "convex") {
+    py::list hulls;
+    for (const tool::Hull& hull : tool.hulls()) {
+      py::list points;
+      for (const Vec3& p : hull.vertices) points.append(py::make_tuple(p.x, p.y, p.z));
+      hulls.append(points);
+    }
+    d["hulls"] = hulls;
+  }
   if (!tool.shank().empty()) d["shank"] = from_frusta(tool.shank());
   if (!tool.holder().empty()) d["holder"] = from_frusta(tool.holder());
   return d;
@@ -90,7 +106,7 @@ std::string kinds() {
   std::string out;
   for (const tool::CutterShape& shape : tool::cutter_shapes())
     out += (out.empty() ? "" : ", ") + std::string(shape.name);
-  return out + " or profile";
+  return out + ", profile, convex, chisel, gouge, v_tool or knife";
 }
 
 Tool from_dict(const py::dict& d) {
@@ -101,6 +117,7 @@ Tool from_dict(const py::dict& d) {
   const auto get = [&](const char* key) { return number(object(key), std::string("tool: ") + key); };
   const auto cutter = [&](const std::string& kind) -> Tool {
     if (kind == "profile") return cutters::profile(to_segments(object("segments")), get("length"));
+    if (const auto hand = hand_tool_from(kind, get, object)) return *hand;
     const tool::CutterShape* shape = tool::find_cutter_shape(kind);
     if (!shape) throw py::value_error("tool: kind must be " + kinds() + ", not \"" + kind + "\"");
     std::vector<double> sizes;
@@ -155,6 +172,7 @@ Examples
 True
 )");
   bind_tool_shapes(m, tool);
+  bind_hand_tools(tool);
   tool.def_static(
           "shapes",
           [] { return std::vector<tool::CutterShape>(tool::cutter_shapes().begin(), tool::cutter_shapes().end()); },
@@ -326,7 +344,8 @@ Examples
 'finisher'
 )")
       .def_property_readonly("name", &Tool::name, "In messages and tool libraries.")
-      .def_property_readonly("kind", &Tool::kind, "\"ball\", \"flat\" …, or \"profile\".")
+      .def_property_readonly("kind", &Tool::kind,
+                             "\"ball\", \"flat\" …, \"profile\", or a hand tool's: \"chisel\", …, \"convex\".")
       .def_property_readonly("diameter", &Tool::diameter, "Largest diameter of the cutter, mm.")
       .def_property_readonly("length", &Tool::length, "From the tip to the end of the cutter, mm.")
       .def_property_readonly(

@@ -33,15 +33,16 @@ sweep::CarveMode to_mode(const std::string& mode) {
 sweep::Cut carve_poses(SharedVolume& self, const Tool& tool, const Doubles& poses, double tolerance,
                        const OptionalArrayLike& dt, double removal_constant, const std::string& mode,
                        SharedVolume* protect, const ProgressLike& progress) {
-  const std::vector<Pose> path = to_poses(poses, "poses");
-  sweep::CarveOptions options{tolerance,        to_times(dt, path.empty() ? 0 : path.size() - 1),
+  const PosesOf path = to_poses_of(tool, poses, "poses");
+  sweep::CarveOptions options{tolerance,        to_times(dt, path.rows() == 0 ? 0 : path.rows() - 1),
                               removal_constant, to_progress(progress),
                               to_mode(mode),    nullptr};
   std::optional<Volume> kept;  // which may be `self`
   if (protect) options.protect = &kept.emplace(Reading(*protect).volume.snapshot());
   Writing writing(self);
   const NoGil release;
-  return sweep::carve(writing.volume, tool, path, options);
+  return tool.revolved() ? sweep::carve(writing.volume, tool, path.plain, options)
+                         : sweep::carve(writing.volume, tool, path.rolled, options);
 }
 
 /// v.subtract(w) and its like: changes v and returns it.
@@ -256,7 +257,8 @@ Parameters
 tool : Tool
     Its cutter is swept.
 poses : array_like of shape (n, 6), tip in mm and unit axis
-    Tip xyz, then unit axis xyz from the tip to the spindle; n - 1 moves.
+    Tip xyz, then unit axis xyz from the tip to the spindle; n - 1 moves. A hand tool (`Tool.convex` and its like) needs
+    the shape (n, 9): then its unit forward direction xyz, square to the axis.
 tolerance : float, mm
     For moves that turn the axis; others are exact.
 dt : array_like, a number or of shape (n - 1,), s, or None
@@ -278,8 +280,8 @@ Cut
 Raises
 ------
 ValueError
-    Names argument and row: a shape, an axis that is no unit vector, opposite axes; or the protected volume's grid is
-    another.
+    Names argument and row: a shape, an axis that is no unit vector, opposite axes, for a hand tool a forward direction
+    that is not square to the axis and a half turn; or the protected volume's grid is another.
 Cancelled
     ``progress`` returned False; the volume is as it was.
 

@@ -14,8 +14,10 @@
 #include "riffler/base/progress.hpp"
 #include "riffler/collide/contact.hpp"
 #include "riffler/geom/pose.hpp"
+#include "riffler/geom/rolled_pose.hpp"
 #include "riffler/geom/vec.hpp"
 #include "riffler/plan/orientation.hpp"
+#include "riffler/tool/tool.hpp"
 
 namespace riffler::bindings {
 
@@ -72,8 +74,20 @@ std::vector<Vec3> to_vec3s(const Doubles& array, const char* name);
 
 /// (n, 6): tip xyz, axis xyz; checked as by check_rows.
 std::vector<Pose> to_poses(const Doubles& array, const char* name);
-/// (n, 6) copy.
+/// (n, 9): tip xyz, axis xyz, forward xyz; checked as by check_rows.
+std::vector<RolledPose> to_rolled_poses(const Doubles& array, const char* name);
+/// Whether tools of this kind, as in Tool.to_dict(), are hand tools.
+bool is_hand_tool(const std::string& kind);
+/// (n, 6) for a tool of revolution, (n, 9) for a hand tool; the other one is empty.
+struct PosesOf {
+  std::vector<Pose> plain;
+  std::vector<RolledPose> rolled;
+  std::size_t rows() const { return plain.size() + rolled.size(); }
+};
+PosesOf to_poses_of(const Tool& tool, const Doubles& array, const char* name);
+/// (n, 6) and (n, 9) copies.
 py::array_t<double> from_poses(const std::vector<Pose>& poses);
+py::array_t<double> from_poses(const std::vector<RolledPose>& poses);
 
 /// A Tool, its dict, or JSON text of it → JSON text in one form.
 std::string tool_json(const py::object& tool);

@@ -89,6 +89,31 @@ std::vector<Pose> to_poses(const Doubles& array, const char* name) {
   return poses;
 }
 
+std::vector<RolledPose> to_rolled_poses(const Doubles& array, const char* name) {
+  const std::size_t n = check_rows(array, 9, name);
+  std::vector<RolledPose> poses(n);
+  const double* p = array.data();
+  for (std::size_t i = 0; i < n; ++i, p += 9) poses[i] = {{p[0], p[1], p[2]}, {p[3], p[4], p[5]}, {p[6], p[7], p[8]}};
+  return poses;
+}
+
+PosesOf to_poses_of(const Tool& tool, const Doubles& array, const char* name) {
+  const py::ssize_t columns = array.ndim() == 2 ? array.shape(1) : 0;
+  if (columns == 6 && !tool.revolved())
+    throw py::value_error(std::string(name) + ": the hand tool \"" + tool.name() +
+                          "\" needs the shape (n, 9): add its forward direction to tip and axis");
+  if (columns == 9 && tool.revolved())
+    throw py::value_error(std::string(name) + ": the tool \"" + tool.name() +
+                          "\" is a body of revolution and needs the shape (n, 6): leave out the forward direction");
+  if (tool.revolved()) return {to_poses(array, name), {}};
+  return {{}, to_rolled_poses(array, name)};
+}
+
+py::array_t<double> from_poses(const std::vector<RolledPose>& poses) {
+  static_assert(sizeof(RolledPose) == 9 * sizeof(double));
+  return take<double>(std::vector<RolledPose>(poses), 9);
+}
+
 PyObject*& task_request() {
   static PyObject* type = nullptr;
   return type;

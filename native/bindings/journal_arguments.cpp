@@ -37,7 +37,12 @@ constexpr const char* kModes[session::kStrokeModes] = {"remove", "add", "mask", 
 session::JournalStroke to_rows(const Doubles& poses, const OptionalArrayLike& times, const OptionalArrayLike& forces,
                                const OptionalArrayLike& removed) {
   session::JournalStroke out;
-  out.poses = to_poses(poses, "poses");
+  if (poses.ndim() == 2 && poses.shape(1) == 9) {
+    for (const RolledPose& pose : to_rolled_poses(poses, "poses"))
+      out.poses.push_back({pose.tip, pose.axis}), out.forward.push_back(pose.forward);
+  } else {
+    out.poses = to_poses(poses, "poses");
+  }
   const std::size_t rows = out.poses.size();
   out.times = to_column(times, "times", rows);
   out.forces = to_forces(forces, rows);
@@ -70,6 +75,21 @@ std::string tool_json(const py::object& tool) {
   if (py::isinstance<py::str>(tool)) dict = json().attr("loads")(tool);
   if (!py::isinstance<py::dict>(dict)) throw py::value_error("tool must be a Tool, its dict or JSON text of it");
   return py::cast<std::string>(json().attr("dumps")(dict));
+}
+
+void check_roll(const session::JournalRules& rules, const session::JournalStroke& stroke) {
+  const auto text = rules.tools().find(stroke.tool);
+  if (text == rules.tools().end()) return;  // the journal refuses it
+  const py::object dict = json().attr("loads")(text->second);
+  const py::object kind =
+      py::isinstance<py::dict>(dict) ? py::object(dict.attr("get")("kind")) : py::object(py::none());
+  const bool hand = py::isinstance<py::str>(kind) && is_hand_tool(py::cast<std::string>(kind));
+  if (hand != stroke.forward.empty()) return;
+  const std::string which = "poses: tool " + std::to_string(stroke.tool);
+  if (hand)
+    throw py::value_error(which +
+                          " is a hand tool and needs the shape (n, 9): add its forward direction to tip and axis");
+  throw py::value_error(which + " is a body of revolution and needs the shape (n, 6): leave out the forward direction");
 }
 
 }  // namespace riffler::bindings

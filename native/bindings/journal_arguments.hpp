@@ -14,6 +14,8 @@ py::object json();
 /// A stroke without its name and tool.
 session::JournalStroke to_rows(const Doubles& poses, const OptionalArrayLike& times, const OptionalArrayLike& forces,
                                const OptionalArrayLike& removed);
+/// Throws if a stroke of a hand tool has no forward directions, or one of another tool has.
+void check_roll(const session::JournalRules& rules, const session::JournalStroke& stroke);
 session::JournalStock to_stock(const ArrayLike& lower, const ArrayLike& upper, double pitch,
                                const std::string& directions, const std::string& snapshot, const std::string& mask);
 

@@ -94,6 +94,7 @@ Examples
             stroke.tool = tool, stroke.tolerance = tolerance, stroke.name = name, stroke.mode = to_stroke_mode(mode);
             stroke.strength = strength;
             [[maybe_unused]] const auto only = only_caller(self);
+            check_roll(self.rules(), stroke);
             self.add_stroke(stroke);
           },
           py::arg("tool"), py::arg("poses"), py::kw_only(), py::arg("times") = py::none(), py::arg("tolerance") = 0.01,
@@ -106,7 +107,7 @@ Parameters
 tool : int
     Number of a tool that was added.
 poses : array_like, shape (n, 6)
-    Tip in mm and unit axis, n at least 1.
+    Tip in mm and unit axis, n at least 1. For a hand tool (n, 9), as in ``Volume.carve``.
 times : array_like, shape (n,), optional
     s, never falling.
 tolerance : float
@@ -146,7 +147,7 @@ Examples
 Parameters
 ----------
 poses : array_like, shape (n, 6)
-    Tip in mm and unit axis.
+    Tip in mm and unit axis; (n, 9) for a hand tool.
 times, forces, removed : array_like, optional
     As of ``add_stroke``.
 

@@ -43,7 +43,9 @@ std::map<int, Tool> to_tools(const ToolsLike& object, int lowest) {
     if (!py::isinstance<py::int_>(key) || !py::isinstance<Tool>(value)) throw py::value_error(kExpected);
     const double number = py::cast<double>(key);
     if (number < lowest) throw py::value_error("tools: numbers begin at " + std::to_string(lowest));
-    out.emplace(to_number(number, "tools", out.size()), py::cast<const Tool&>(value));
+    const auto& tool = py::cast<const Tool&>(value);
+    tool.require_revolved("tools: a program");
+    out.emplace(to_number(number, "tools", out.size()), tool);
   }
   return out;
 }

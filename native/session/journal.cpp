@@ -64,6 +64,7 @@ std::vector<double> feeds(const JournalStroke& stroke, std::size_t index) {
 }  // namespace
 
 nc::Program to_program(const Journal& journal, std::map<int, Tool> tools, const JournalProgramOptions& options) {
+  for (const auto& [number, tool] : tools) tool.require_revolved("tool " + std::to_string(number) + ": a program");
   std::vector<nc::CutterPath> paths;
   const std::span<const JournalStroke> strokes = journal.strokes();
   for (std::size_t k = 0; k < strokes.size(); ++k) {

@@ -38,18 +38,25 @@ bool starts_with(View bytes, std::string_view text) {
 // byte planes, are mostly zeros, which zlib then packs. ---
 
 struct Column {
-  enum Of { kTip, kAxis, kTime, kForce, kTorque, kRemoved } of;
+  enum Of { kTip, kAxis, kForward, kTime, kForce, kTorque, kRemoved } of;
   int k = 0;  // component of a vector
 };
 
+/// Which optional columns there are.
+struct Optional {
+  bool times, forces, removed, forward;
+};
+
 /// The columns in file order.
-std::vector<Column> columns_of(bool times, bool forces, bool removed) {
+std::vector<Column> columns_of(const Optional& optional) {
+  const auto [times, forces, removed, forward] = optional;
   std::vector<Column> out;
   const auto vector = [&](Column::Of of) { out.insert(out.end(), {{of, 0}, {of, 1}, {of, 2}}); };
   vector(Column::kTip), vector(Column::kAxis);
   if (times) out.push_back({Column::kTime});
   if (forces) vector(Column::kForce), vector(Column::kTorque);
   if (removed) out.push_back({Column::kRemoved});
+  if (forward) vector(Column::kForward);
   return out;
 }
 
@@ -61,6 +68,8 @@ auto& value(Rows& rows, const Column& column, std::size_t row) {
       return rows.poses[row].tip[column.k];
     case Column::kAxis:
       return rows.poses[row].axis[column.k];
+    case Column::kForward:
+      return rows.forward[row][column.k];
     case Column::kForce:
       return rows.forces[row].force[column.k];
     case Column::kTorque:
@@ -75,11 +84,16 @@ auto& value(Rows& rows, const Column& column, std::size_t row) {
 
 // The set of columns: their number in the low byte, and a bit for each optional column. Times have no bit: the number
 // implies them.
-constexpr std::uint32_t kForces = 0x100, kRemoved = 0x200;
+constexpr std::uint32_t kForces = 0x100, kRemoved = 0x200, kForward = 0x400;
+
+std::uint32_t code_of(const Optional& optional) {
+  return static_cast<std::uint32_t>(columns_of(optional).size()) | (optional.forces ? kForces : 0) |
+         (optional.removed ? kRemoved : 0) | (optional.forward ? kForward : 0);
+}
 
 void put_rows(Bytes& out, const JournalRows& rows) {
-  const bool forces = !rows.forces.empty(), removed = !rows.removed.empty();
-  const std::vector<Column> columns = columns_of(!rows.times.empty(), forces, removed);
+  const Optional optional{!rows.times.empty(), !rows.forces.empty(), !rows.removed.empty(), !rows.forward.empty()};
+  const std::vector<Column> columns = columns_of(optional);
   const std::size_t n = rows.poses.size();
   Bytes planes(n * columns.size() * 8);
   for (std::size_t c = 0; c < columns.size(); ++c) {
@@ -97,17 +111,16 @@ void put_rows(Bytes& out, const JournalRows& rows) {
   if (compress2(packed.data(), &size, planes.data(), planes.size(), Z_DEFAULT_COMPRESSION) != Z_OK)
     throw std::runtime_error("zlib cannot compress");
   base::put(out, static_cast<std::uint64_t>(n));
-  base::put(out, static_cast<std::uint32_t>(columns.size()) | (forces ? kForces : 0) | (removed ? kRemoved : 0));
+  base::put(out, code_of(optional));
   base::put(out, static_cast<std::uint64_t>(size));
   out.insert(out.end(), packed.begin(), packed.begin() + static_cast<std::ptrdiff_t>(size));
 }
 
 /// The columns for a code in a file; a reader that does not know all of them must not guess.
 std::vector<Column> known_columns(std::uint32_t code) {
-  const bool forces = code & kForces, removed = code & kRemoved;
   for (const bool times : {false, true}) {
-    std::vector<Column> columns = columns_of(times, forces, removed);
-    if (code == (columns.size() | (forces ? kForces : 0) | (removed ? kRemoved : 0))) return columns;
+    const Optional optional{times, (code & kForces) != 0, (code & kRemoved) != 0, (code & kForward) != 0};
+    if (code == code_of(optional)) return columns_of(optional);
   }
   throw std::invalid_argument("a stroke with a wrong number of columns");
 }
@@ -130,6 +143,7 @@ void take_rows(base::ByteReader& from, JournalStroke& out) {
     if (column.of == Column::kTime) out.times.resize(rows);
     if (column.of == Column::kForce) out.forces.resize(rows);
     if (column.of == Column::kRemoved) out.removed.resize(rows);
+    if (column.of == Column::kForward) out.forward.resize(rows);
   }
   for (std::size_t c = 0; c < columns.size(); ++c) {
     std::uint64_t bits = 0;

@@ -39,6 +39,14 @@ void check_values(const JournalRows& rows, const double* last) {
   for (std::size_t row = 0; row < rows.removed.size(); ++row)
     if (!(std::isfinite(rows.removed[row]) && rows.removed[row] >= 0))
       fail(at("removed", row) + "must be finite and not negative");
+  for (std::size_t row = 0; row < rows.forward.size(); ++row) {
+    constexpr double kSquare = 1e-6;
+    const Vec3 &forward = rows.forward[row], &axis = rows.poses[row].axis;
+    if (!(std::abs(glm::length(forward) - 1) < kSquare))
+      fail(at("poses", row) + "the forward direction must be a unit vector");
+    if (!(std::abs(glm::dot(forward, axis)) < kSquare))
+      fail(at("poses", row) + "the forward direction must be square to the axis: subtract its share along the axis");
+  }
 }
 
 template <class T>
@@ -53,6 +61,7 @@ void JournalStroke::append(const JournalRows& rows) {
   append_to(times, rows.times);
   append_to(forces, rows.forces);
   append_to(removed, rows.removed);
+  append_to(forward, rows.forward);
 }
 
 void JournalRules::set_stock(const JournalStock& stock) {
@@ -83,9 +92,11 @@ void JournalRules::add_stroke(const JournalStroke& stroke) {
   check_length("times", stroke.times.size(), !stroke.times.empty(), rows);
   check_length("forces", stroke.forces.size(), !stroke.forces.empty(), rows);
   check_length("removed", stroke.removed.size(), !stroke.removed.empty(), rows);
+  check_length("forward", stroke.forward.size(), !stroke.forward.empty(), rows);
   check_values(stroke.rows(), nullptr);
   const bool timed = !stroke.times.empty();
-  last_ = {timed ? stroke.times.back() : 0, timed, !stroke.forces.empty(), !stroke.removed.empty()};
+  last_ = {timed ? stroke.times.back() : 0, timed, !stroke.forces.empty(), !stroke.removed.empty(),
+           !stroke.forward.empty()};
   ++counting_;
   taken_ = 0;
 }
@@ -97,6 +108,7 @@ void JournalRules::extend_stroke(const JournalRows& rows) {
   check_length("times", rows.times.size(), last_->timed, n);
   check_length("forces", rows.forces.size(), last_->forces, n);
   check_length("removed", rows.removed.size(), last_->removed, n);
+  check_length("forward", rows.forward.size(), last_->forward, n);
   check_values(rows, last_->timed ? &last_->time : nullptr);
   if (!rows.times.empty()) last_->time = rows.times.back();
 }

@@ -48,6 +48,13 @@ void apply_dabs(const JournalStroke& stroke, const Tool& tool, Replayed& to, con
   smooth_dabs(to.volume, centres, options);
 }
 
+void carve_stroke(Volume& volume, const Tool& tool, const JournalStroke& stroke, const sweep::CarveOptions& options) {
+  if (stroke.forward.empty())
+    sweep::carve(volume, tool, moves_of(stroke), options);
+  else
+    sweep::carve(volume, tool, rolled_moves_of(stroke), options);
+}
+
 /// A run of session strokes that cut a derived volume rather than the stock itself: all of one mode.
 struct Run {
   MaskedStock cuttable;
@@ -71,7 +78,7 @@ void apply_in_run(const JournalStroke& stroke, sweep::CarveMode mode, const Tool
   sweep::CarveOptions options;
   options.tolerance = stroke.tolerance;
   options.progress = progress;
-  sweep::carve(run->left, tool, moves_of(stroke), options);
+  carve_stroke(run->left, tool, stroke, options);
 }
 
 /// Sets the volume to the result of those strokes.
@@ -93,7 +100,7 @@ void apply(const JournalStroke& stroke, const Tool& tool, Replayed& to, std::opt
   if (masks && !to.mask) to.mask.emplace(to.volume.frame());
   if (stroke.mode == StrokeMode::Add || stroke.mode == StrokeMode::Mask) options.mode = sweep::CarveMode::Add;
   if (!masks && to.mask) options.protect = &*to.mask;
-  sweep::carve(masks ? *to.mask : to.volume, tool, moves_of(stroke), options);
+  carve_stroke(masks ? *to.mask : to.volume, tool, stroke, options);
 }
 
 }  // namespace
@@ -103,6 +110,17 @@ std::vector<Pose> moves_of(const JournalStroke& stroke) {
   for (const Pose& pose : stroke.poses)
     if (out.empty() || !stands(out.back(), pose)) out.push_back(pose);
   if (out.size() == 1 && stroke.poses.size() > 1) out.push_back(out[0]);
+  return out;
+}
+
+std::vector<RolledPose> rolled_moves_of(const JournalStroke& stroke) {
+  std::vector<RolledPose> out;
+  for (std::size_t row = 0; row < stroke.forward.size(); ++row) {
+    const RolledPose pose{stroke.poses[row].tip, stroke.poses[row].axis, stroke.forward[row]};
+    const bool moved = out.empty() || out.back().tip != pose.tip || out.back().axis != pose.axis;
+    if (moved || out.back().forward != pose.forward) out.push_back(pose);
+  }
+  if (out.size() == 1 && stroke.forward.size() > 1) out.push_back(out[0]);
   return out;
 }
 

@@ -1,5 +1,6 @@
 #include "session/stroke_search.hpp"
 
+#include <string>
 #include <utility>
 
 namespace riffler::session {
@@ -17,6 +18,7 @@ sweep::CutSearch stroke_search(const Journal& journal, const std::map<int, Tool>
   std::map<int, std::uint32_t> place;
   for (const auto& [number, tool] : tools) {
     place.emplace(number, static_cast<std::uint32_t>(shapes.size()));
+    tool.require_revolved("tool " + std::to_string(number) + ": the search for the stroke that made a surface");
     shapes.push_back(tool);
   }
   std::vector<sweep::SearchedMove> moves;

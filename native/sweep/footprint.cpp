@@ -38,6 +38,62 @@ Footprint::Footprint(std::span<const tool::Piece> pieces, std::initializer_list<
   }
 }
 
+Footprint::Footprint(std::span<const Vec3> points, double slack) : slack_(slack) {
+  thread_local base::BlockVector<Vec2> sorted;
+  sorted.clear();
+  for (const Vec3& p : points) {
+    rows_.include(p.x), columns_.include(p.y), height_.include(p.z);
+    sorted.push_back({p.x, p.y});
+  }
+  rows_ = {rows_.near - slack, rows_.far + slack}, columns_ = {columns_.near - slack, columns_.far + slack};
+  height_ = {height_.near - slack, height_.far + slack};
+  std::sort(sorted.begin(), sorted.end(),
+            [](const Vec2& a, const Vec2& b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
+  add_chain(sorted, 1);
+  below_ = polygon_.size();
+  add_chain(sorted, -1);
+}
+
+/// The hull's sides below (1) or above (-1) the points, which ascend along u. Sides at constant u are left out.
+void Footprint::add_chain(std::span<const Vec2> sorted, double side) {
+  thread_local base::BlockVector<Vec2> chain;
+  chain.clear();
+  for (const Vec2& p : sorted) {
+    if (!chain.empty() && chain.back().x == p.x) {
+      if (side * (p.y - chain.back().y) >= 0) continue;
+      chain.pop_back();
+    }
+    while (chain.size() > 1) {
+      const Vec2 a = chain[chain.size() - 2], b = chain.back();
+      if (side * ((b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x)) > 0) break;
+      chain.pop_back();
+    }
+    chain.push_back(p);
+  }
+  if (chain.size() == 1) polygon_.push_back({chain[0].x, chain[0].x, chain[0].x, chain[0].y, 0});
+  for (std::size_t k = 0; k + 1 < chain.size(); ++k) {
+    const Vec2 a = chain[k], b = chain[k + 1];
+    polygon_.push_back({a.x, b.x, a.x, a.y, (b.y - a.y) / (b.x - a.x)});
+  }
+}
+
+/// The rows of the hull of points. Over `slack` along u the range is that of the nearest row inside.
+void Footprint::polygon_rows(const double* u, int n, Rows& out) const {
+  for (std::size_t k = 0; k < polygon_.size(); ++k) {
+    const Side& s = polygon_[k];
+    for (int i = 0; i < n; ++i) {
+      // within [u - slack, u + slack], a side is lowest or highest at one of the two ends
+      if (u[i] + slack_ < s.from || u[i] - slack_ > s.to) continue;
+      const double a = std::clamp(u[i] - slack_, s.from, s.to), b = std::clamp(u[i] + slack_, s.from, s.to);
+      const double va = s.y + s.slope * (a - s.x), vb = s.y + s.slope * (b - s.x);
+      if (k < below_)
+        out.near[i] = std::min(out.near[i], std::min(va, vb) - slack_);
+      else
+        out.far[i] = std::max(out.far[i], std::max(va, vb) + slack_);
+    }
+  }
+}
+
 void Footprint::add_corner(Hull& hull, const Vec2& p) {
   for (int k = 0; k < hull.corners; ++k)
     if (hull.corner[k] == p) return;  // the other end of an axis parallel to the rays
@@ -69,6 +125,7 @@ void Footprint::add_sides(Hull& hull) {
 void Footprint::rows(const double* u, int n, Rows& out) const {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   std::fill_n(out.near, n, kInfinity), std::fill_n(out.far, n, -kInfinity);
+  if (!polygon_.empty()) return polygon_rows(u, n, out);
   double* const near = out.near;
   double* const far = out.far;
   const auto include = [=](int k, double low, double high) {

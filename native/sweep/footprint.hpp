@@ -4,6 +4,7 @@
 #include <initializer_list>
 #include <span>
 
+#include "riffler/base/block_pool.hpp"
 #include "riffler/dexel/tile.hpp"
 #include "riffler/geom/interval.hpp"
 #include "riffler/geom/pose.hpp"
@@ -13,11 +14,13 @@
 namespace riffler::sweep {
 
 /// For each piece, the convex hull of its axis at the given poses, thickened by its largest radius and projected along
-/// the rays (third coordinate of the cyclic frame).
+/// the rays (third coordinate of the cyclic frame). Or the convex hull of points, projected.
 class Footprint {
  public:
   /// At most two poses. `slack`: distance by which the motion between them may leave the hull, mm.
   Footprint(std::span<const tool::Piece> pieces, std::initializer_list<Pose> poses, double slack);
+  /// The convex hull of points, at most `slack` mm wider.
+  Footprint(std::span<const Vec3> points, double slack);
 
   /// Ranges of u, v and the third coordinate (not always tight).
   const Interval& rows() const { return rows_; }
@@ -44,10 +47,16 @@ class Footprint {
   };
   static void add_corner(Hull& hull, const Vec2& p);
   static void add_sides(Hull& hull);
+  void add_chain(std::span<const Vec2> sorted, double side);
+  void polygon_rows(const double* u, int n, Rows& out) const;
 
   std::size_t count_ = 0;
   Hull hulls_[ConvexGroup::kMax];
   Interval rows_, columns_, height_;
+  /// Sides of the hull of points: first those below, then those above.
+  base::BlockVector<Side> polygon_;
+  std::size_t below_ = 0;
+  double slack_ = 0;
 };
 
 }  // namespace riffler::sweep

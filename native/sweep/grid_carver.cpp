@@ -30,8 +30,15 @@ void GridCarver::add(std::span<const ConvexGroup> cutter, const Pose& from, cons
                 [this](Step&& step) { steps_.push_back(std::move(step)); });
 }
 
+void GridCarver::add(std::span<const tool::Hull> hulls, const RolledPose& from, const RolledPose& to,
+                     std::uint32_t move) {
+  const RolledMotion& motion = rolled_.emplace_back(from, to);
+  for_each_step(hulls, motion, move, grid_.box(), options_.tolerance,
+                [this](Step&& step) { steps_.push_back(std::move(step)); });
+}
+
 bool GridCarver::full() const {
-  return steps_.size() >= kBatch || motions_.size() >= kBatch;
+  return steps_.size() >= kBatch || motions_.size() >= kBatch || rolled_.size() >= kBatch;
 }
 
 void GridCarver::keep_open(double size) {
@@ -218,7 +225,7 @@ void GridCarver::pack() {
 }
 
 void GridCarver::drop_steps() {
-  steps_.clear(), motions_.clear(), work_.clear();
+  steps_.clear(), motions_.clear(), rolled_.clear(), work_.clear();
   cut_steps_ = next_ = 0;
   publishing_ = false;
 }

@@ -15,6 +15,7 @@
 #include "riffler/dexel/stats.hpp"
 #include "riffler/sweep/carve_options.hpp"
 #include "sweep/cut_region.hpp"
+#include "sweep/hull_steps.hpp"
 #include "sweep/open_tiles.hpp"
 #include "sweep/steps.hpp"
 #include "sweep/tile_cutter.hpp"
@@ -71,19 +72,20 @@ class GridCarver {
   /// `size`: mm, the tool's; asks for the memory of as many tiles as it covers.
   void keep_open(double size);
 
+  /// Sweeps the convex groups of a tool of revolution along `Pose`s, or the bodies of a hand tool along `RolledPose`s.
   /// Move m of `moves` goes to poses[end(m)] from the pose before it. Holds only one batch in memory, regardless of the
   /// length of the program.
-  template <class End, class Done>
-  void run(std::span<const ConvexGroup> cutter, std::span<const Pose> poses, std::size_t moves, const End& end,
+  template <class Body, class AnyPose, class End, class Done>
+  void run(std::span<const Body> cutter, std::span<const AnyPose> poses, std::size_t moves, const End& end,
            const Done& moves_done) {
     begin_run();
-    Pose from;
+    AnyPose from;
     std::size_t last = 0;
     for (std::size_t m = 0; m < moves; ++m) {
       const std::size_t e = end(m);
       if (m == 0 || last != e - 1) from = to_local(grid_.axis(), poses[e - 1]);
       last = e;
-      const Pose to = to_local(grid_.axis(), poses[e]);
+      const AnyPose to = to_local(grid_.axis(), poses[e]);
       add(cutter, from, to, static_cast<std::uint32_t>(m));
       if (full()) flush(), moves_done(m);
       from = to;
@@ -132,6 +134,7 @@ class GridCarver {
 
   void begin_run();
   void add(std::span<const ConvexGroup> cutter, const Pose& from, const Pose& to, std::uint32_t move);
+  void add(std::span<const tool::Hull> hulls, const RolledPose& from, const RolledPose& to, std::uint32_t move);
   void flush();
   void cut_steps();
   TileBlock limited(const TileBlock& under) const;
@@ -162,6 +165,7 @@ class GridCarver {
   std::optional<std::pair<TileBlock, std::uint64_t>> limit_;
   std::deque<Motion, base::BlockAllocator<Motion>>
       motions_;  // of the batch, in the grid's cyclic frame; steps point to them
+  std::deque<RolledMotion, base::BlockAllocator<RolledMotion>> rolled_;  // same, of hand tools
   base::BlockVector<Step> steps_;
   std::size_t cut_steps_ = 0;  // those of the batch that are cut already, or in `work_`
   std::size_t run_steps_ = 0;  // those before the last run

@@ -19,12 +19,14 @@ namespace {
 constexpr double kPrepared = 0.1;
 
 void check(const HistoryStroke& stroke, const Volume& base) {
-  if (stroke.poses.empty()) throw std::invalid_argument("poses: a stroke needs at least one pose");
-  check_path(stroke.poses);
+  check_poses_suit(stroke.tool, stroke.poses.size(), stroke.rolled.size());
+  const std::size_t rows = stroke.poses.size() + stroke.rolled.size();
+  if (rows == 0) throw std::invalid_argument("poses: a stroke needs at least one pose");
+  check_path(stroke.poses), check_path(stroke.rolled);
   base::require_tolerance(stroke.tolerance);
   base::require_tolerance_for(stroke.tolerance, std::max(stroke.tool.length(), stroke.tool.diameter()));
   if (stroke.protect) check_same_grid(base.frame(), stroke.protect->frame(), "protect");
-  if (stroke.poses.size() > UINT32_MAX) throw std::invalid_argument("poses: more than 4294967295 rows");
+  if (rows > UINT32_MAX) throw std::invalid_argument("poses: more than 4294967295 rows");
 }
 
 /// Makes room for `size` elements, and for more, so that growing one by one stays cheap.
@@ -93,12 +95,15 @@ std::unique_ptr<PreparedStroke> History::Core::prepare(StrokeId id, HistoryStrok
                                                        const Progress& progress) const {
   check(stroke, base);
   auto out = std::make_unique<PreparedStroke>(PreparedStroke{id, std::move(stroke), {}, {}, 0});
-  out->cutter = convex_groups(out->stroke.tool.cutter());
+  const HistoryStroke& s = out->stroke;
+  if (s.tool.revolved()) out->cutter = convex_groups(s.tool.cutter());
   const auto grids = static_cast<double>(base.grids().size());
   for (std::size_t g = 0; g < base.grids().size(); ++g) {
     const double share = static_cast<double>(g) / grids;
-    out->touched.push_back(touched_tiles(base.grids()[g], out->cutter, out->stroke.poses, out->stroke.tolerance,
-                                         base::part(progress, kPrepared * share, kPrepared * (share + 1 / grids))));
+    const Progress part = base::part(progress, kPrepared * share, kPrepared * (share + 1 / grids));
+    const dexel::Grid& grid = base.grids()[g];
+    out->touched.push_back(s.tool.revolved() ? touched_tiles(grid, out->cutter, s.poses, s.tolerance, part)
+                                             : touched_tiles(grid, s.tool.hulls(), s.rolled, s.tolerance, part));
   }
   return out;
 }
@@ -263,6 +268,7 @@ HistoryStats History::stats() const {
     }
   for (const Core::Entry& entry : core_->order) {
     out.stroke_bytes += entry.stroke->stroke.poses.capacity() * sizeof(Pose);
+    out.stroke_bytes += entry.stroke->stroke.rolled.capacity() * sizeof(RolledPose);
     for (const TouchedTiles& touched : entry.stroke->touched) out.stroke_bytes += touched.nbytes();
   }
   return out;

@@ -238,9 +238,12 @@ void HistoryRun::carve(const PreparedStroke& stroke, std::span<TileRerun* const>
   Cut unmeasured;
   GridCarver carver(work, false, options, unmeasured, nullptr);
   carver.limit_to(block, limit);
-  carver.run(
-      stroke.cutter, s.poses, ends.size(), [&](std::size_t m) { return ends[m]; },
-      [](std::size_t) { base::still_wanted(); });
+  const auto end = [&](std::size_t m) { return ends[m]; };
+  const auto done = [](std::size_t) { base::still_wanted(); };
+  if (s.tool.revolved())
+    carver.run(std::span(stroke.cutter), std::span(s.poses), ends.size(), end, done);
+  else
+    carver.run(std::span(s.tool.hulls()), std::span(s.rolled), ends.size(), end, done);
   for (std::size_t k = 0; k < tiles.size(); ++k) {
     TileRerun& t = *tiles[k];
     const TilePtr& rest = work.shared_tile(t.tile);

@@ -8,6 +8,7 @@
 #include <hwy/highway.h>
 // clang-format on
 
+#include "sweep/lanes/hull_lanes-inl.hpp"
 #include "sweep/lanes/normal_lanes-inl.hpp"
 #include "sweep/lanes/straight_lanes-inl.hpp"
 #include "sweep/lanes/turning_lanes-inl.hpp"
@@ -21,6 +22,10 @@ void CutStraight(const StraightBody& body, RayWindow& window) {
 
 void CutTurning(const TurningBody& body, RayWindow& window) {
   cut_turning_lanes(body, window);
+}
+
+void CutHull(const HullBody& body, RayWindow& window) {
+  cut_hull_lanes(body, window);
 }
 
 void ComputeNormals(const SweptSurface& surface, SweptEnds& ends) {
@@ -38,6 +43,7 @@ namespace riffler::sweep {
 
 HWY_EXPORT(CutStraight);
 HWY_EXPORT(CutTurning);
+HWY_EXPORT(CutHull);
 HWY_EXPORT(ComputeNormals);
 
 void cut_straight(const StraightBody& body, RayWindow& window) {
@@ -46,6 +52,10 @@ void cut_straight(const StraightBody& body, RayWindow& window) {
 
 void cut_turning(const TurningBody& body, RayWindow& window) {
   HWY_DYNAMIC_DISPATCH(CutTurning)(body, window);
+}
+
+void cut_hull(const HullBody& body, RayWindow& window) {
+  HWY_DYNAMIC_DISPATCH(CutHull)(body, window);
 }
 
 void compute_normals(const SweptSurface& surface, SweptEnds& ends) {

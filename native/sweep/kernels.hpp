@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "sweep/hull_part.hpp"
 #include "sweep/ray_window.hpp"
 #include "sweep/straight_part.hpp"
 #include "sweep/swept_normals.hpp"
@@ -17,6 +18,8 @@ namespace riffler::sweep {
 void cut_straight(const StraightBody& body, RayWindow& window);
 /// Same for a turning part.
 void cut_turning(const TurningBody& body, RayWindow& window);
+/// Same for a part of a hand tool's move.
+void cut_hull(const HullBody& body, RayWindow& window);
 
 /// Computes the normals out of the material, which face the tool, of complete ends (swept_normals.hpp). The ends may be
 /// inaccurate by a tolerance.

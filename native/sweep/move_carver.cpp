@@ -110,7 +110,8 @@ void MoveCarver::Core::move_one(GridCarver& carver, std::span<const Pose> poses)
   constexpr int kIdle = 16;  // moves
   const bool follows = deferred_ && &carver != &reference;
   carver.put_off(follows && (idle_ == 0 || (idle_ < kIdle && carver.behind())));
-  carver.run(cutter_, poses, 1, [](std::size_t) { return std::size_t{1}; }, [](std::size_t) {});
+  carver.run(
+      std::span<const ConvexGroup>(cutter_), poses, 1, [](std::size_t) { return std::size_t{1}; }, [](std::size_t) {});
   if (!follows) idle_ = reference.cut_something() ? 0 : std::min(idle_ + 1, kIdle);
   if (!deferred_) return carver.pack();
   if (asked_) return;

@@ -68,6 +68,9 @@ QuickReject::QuickReject(const ConvexGroup& group, const Motion& motion, double 
       angle * moved / 4 + per_depth * (beside + std::abs(height) + std::abs(foot[1][2] - foot[0][2])) + kMargin * moved;
 }
 
+/// A polytope's faces are as cheap as any test before them.
+QuickReject::QuickReject(const HullPart&) : lean(0), slack(0), per_depth(0) {}
+
 /// The tool's line without ends has the axis of the middle of the step; elsewhere each of its points is off that line
 /// by at most the angle between times its distance from the tip.
 void QuickReject::set_turning_tube(const ConvexGroup& group, const Motion& motion, double t0, double t1) {

@@ -7,6 +7,7 @@
 
 #include "riffler/geom/pose.hpp"
 #include "sweep/footprint.hpp"
+#include "sweep/hull_part.hpp"
 #include "sweep/straight_part.hpp"
 #include "sweep/turning_part.hpp"
 
@@ -41,6 +42,7 @@ struct QuickReject {
   QuickReject() = default;
   explicit QuickReject(const StraightBody& body);
   QuickReject(const ConvexGroup& group, const Motion& motion, double t0, double t1, const Footprint& footprint);
+  explicit QuickReject(const HullPart& part);
 
  private:
   void set_plane(int k, const Vec3& at, const Vec3& up);

@@ -9,6 +9,7 @@
 #include "riffler/dexel/grid.hpp"
 #include "riffler/geom/pose.hpp"
 #include "sweep/footprint.hpp"
+#include "sweep/hull_part.hpp"
 #include "sweep/straight_part.hpp"
 #include "sweep/turning_part.hpp"
 
@@ -29,12 +30,13 @@ struct Step {
   std::uint32_t move;
   const Motion* motion;
   Footprint footprint;
-  std::variant<StraightPart, TurningPart> body;
+  std::variant<StraightPart, TurningPart, HullPart> body;
 };
 
-/// The convex group of pieces that a step sweeps.
+/// The convex group of pieces that a step of a tool of revolution sweeps.
 inline const ConvexGroup& group_of(const Step& step) {
-  return std::visit([](const auto& part) -> const ConvexGroup& { return part.group; }, step.body);
+  const auto* turning = std::get_if<TurningPart>(&step.body);
+  return turning ? turning->group : std::get<StraightPart>(step.body).group;
 }
 
 /// A pose in the cyclic frame of a grid whose rays run along `axis`, with a unit axis. Adding 0.0 removes the sign of

@@ -12,6 +12,7 @@ TileCutter::TileCutter(const dexel::Grid& grid, std::size_t tile, OpenTile& rays
                        const CarveOptions& options)
     : grid_(grid),
       options_(options),
+      tile_(tile),
       first_row_(static_cast<int>(tile) / grid.tiles_v() * dexel::kTileSide),
       first_column_(static_cast<int>(tile) % grid.tiles_v() * dexel::kTileSide),
       rays_(rays),
@@ -66,6 +67,19 @@ bool TileCutter::set_window(const Footprint& footprint) {
   return any != 0;
 }
 
+/// A box around the window's rays at the heights that a step can reach, where the tile has material.
+Box3 TileCutter::within() const {
+  const RayWindow& w = window_;
+  std::uint8_t first = dexel::kTileSide, end = 0;
+  for (int k = w.first_row; k <= w.last_row; ++k) {
+    if (w.first[k] >= w.end[k]) continue;
+    first = std::min(first, w.first[k]), end = std::max(end, w.end[k]);
+  }
+  const Interval& material = grid_.tile(tile_).reach;
+  return {{w.u[w.first_row], w.v[first], std::max(w.low, material.near)},
+          {w.u[w.last_row], w.v[end - 1], std::min(w.high, material.far)}};
+}
+
 void TileCutter::set_motion(const Motion& motion) {
   motion_ = &motion;
   const Vec3 from = motion.from().tip, to = motion.to().tip, axis = motion.axis(0.5);
@@ -89,6 +103,10 @@ void TileCutter::cut(const Step& step, std::size_t number) {
   if (const auto* part = std::get_if<TurningPart>(&step.body)) {
     w.look = QuickReject(part->group, *step.motion, part->t0, part->t1, step.footprint);
     cut_turning(TurningBody(part->group, *step.motion, part->t0, part->t1, options_.tolerance), w);
+  } else if (const auto* hull = std::get_if<HullPart>(&step.body)) {
+    w.look = QuickReject(*hull);
+    const HullBody body(*hull, within());
+    if (!body.beside) cut_hull(body, w);
   } else {
     const StraightBody& body = std::get<StraightPart>(step.body).body;
     w.look = QuickReject(body);

@@ -38,12 +38,14 @@ class TileCutter {
  private:
   void set_motion(const Motion& motion);
   bool set_window(const Footprint& footprint);
+  Box3 within() const;
   void open();
   void cut_one(int ray, const RayCut& cut);
   void add_share();
 
   const dexel::Grid& grid_;
   const CarveOptions& options_;
+  std::size_t tile_;
   int first_row_, first_column_;  // of the tile, in the grid
   OpenTile& rays_;
   RayWindow window_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "sweep/hull_normals.hpp"
 #include "sweep/kernels.hpp"
 #include "sweep/swept_normals.hpp"
 
@@ -75,9 +76,13 @@ void store_normals(OpenTile& rays, const dexel::Grid& grid, std::size_t tile, st
     scratch.ends.clear();
     for (; end < sorted.size() && sorted[end].step == step; ++end)
       scratch.ends.add(sorted[end].u, sorted[end].v, sorted[end].s, sorted[end].t);
-    const SweptSurface surface(steps[step], grid.axis());
-    scratch.ends.complete(surface, *steps[step].motion);
-    compute_normals(surface, scratch.ends);
+    if (const auto* hull = std::get_if<HullPart>(&steps[step].body)) {
+      hull_normals(*hull, grid.axis(), scratch.ends);
+    } else {
+      const SweptSurface surface(steps[step], grid.axis());
+      scratch.ends.complete(surface, *steps[step].motion);
+      compute_normals(surface, scratch.ends);
+    }
     for (std::size_t k = begin; k < end; ++k) {
       *sorted[k].normal = packed(scratch.ends.map[0][k - begin], scratch.ends.map[1][k - begin]);
       *sorted[k].origin = Origins::kStored;

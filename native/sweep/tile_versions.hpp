@@ -16,7 +16,7 @@ namespace riffler::sweep {
 struct PreparedStroke {
   StrokeId id;
   HistoryStroke stroke;
-  std::vector<ConvexGroup> cutter;
+  std::vector<ConvexGroup> cutter;    ///< empty for a hand tool
   std::vector<TouchedTiles> touched;  ///< one per grid
   std::size_t rank;                   ///< its place in the history's order
 };

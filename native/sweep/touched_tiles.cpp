@@ -1,9 +1,11 @@
 #include "sweep/touched_tiles.hpp"
 
 #include <algorithm>
+#include <type_traits>
 #include <utility>
 
 #include "riffler/base/parallel.hpp"
+#include "sweep/hull_steps.hpp"
 #include "sweep/steps.hpp"
 
 namespace riffler::sweep {
@@ -55,11 +57,13 @@ void join(std::vector<TileRun>& runs) {
 }
 
 /// The tiles that moves first … end − 1 touch, sorted by tile, then by move.
-std::vector<TileRun> runs_of(const dexel::Grid& grid, std::span<const ConvexGroup> cutter, std::span<const Pose> poses,
+template <class Body, class AnyPose>
+std::vector<TileRun> runs_of(const dexel::Grid& grid, std::span<const Body> cutter, std::span<const AnyPose> poses,
                              double tolerance, MoveRun moves) {
+  using AnyMotion = std::conditional_t<std::is_same_v<AnyPose, Pose>, Motion, RolledMotion>;
   std::vector<TileRun> out;
   for (std::uint32_t m = moves.first; m < moves.end; ++m) {
-    const Motion motion(to_local(grid.axis(), poses[m]), to_local(grid.axis(), poses[m + 1]));
+    const AnyMotion motion(to_local(grid.axis(), poses[m]), to_local(grid.axis(), poses[m + 1]));
     for_each_step(cutter, motion, m, grid.box(), tolerance, [&](Step&& step) {
       each_tile_under(grid, step.footprint,
                       [&](std::size_t tile) { out.push_back({static_cast<std::uint32_t>(tile), {m, m + 1}}); });
@@ -70,18 +74,9 @@ std::vector<TileRun> runs_of(const dexel::Grid& grid, std::span<const ConvexGrou
   return out;
 }
 
-}  // namespace
-
-std::size_t TouchedTiles::index(std::size_t tile) const {
-  return static_cast<std::size_t>(std::ranges::lower_bound(tiles, tile) - tiles.begin());
-}
-
-std::size_t TouchedTiles::nbytes() const {
-  return tiles.capacity() * sizeof tiles[0] + begin.capacity() * sizeof begin[0] + runs.capacity() * sizeof runs[0];
-}
-
-TouchedTiles touched_tiles(const dexel::Grid& grid, std::span<const ConvexGroup> cutter, std::span<const Pose> poses,
-                           double tolerance, const Progress& progress) {
+template <class Body, class AnyPose>
+TouchedTiles touched_by(const dexel::Grid& grid, std::span<const Body> cutter, std::span<const AnyPose> poses,
+                        double tolerance, const Progress& progress) {
   constexpr std::size_t kChunk = 64;  // moves
   const std::size_t moves = poses.empty() ? 0 : poses.size() - 1;
   std::vector<std::vector<TileRun>> chunks((moves + kChunk - 1) / kChunk);
@@ -107,6 +102,26 @@ TouchedTiles touched_tiles(const dexel::Grid& grid, std::span<const ConvexGroup>
   }
   out.begin.push_back(static_cast<std::uint32_t>(out.runs.size()));
   return out;
+}
+
+}  // namespace
+
+std::size_t TouchedTiles::index(std::size_t tile) const {
+  return static_cast<std::size_t>(std::ranges::lower_bound(tiles, tile) - tiles.begin());
+}
+
+std::size_t TouchedTiles::nbytes() const {
+  return tiles.capacity() * sizeof tiles[0] + begin.capacity() * sizeof begin[0] + runs.capacity() * sizeof runs[0];
+}
+
+TouchedTiles touched_tiles(const dexel::Grid& grid, std::span<const ConvexGroup> cutter, std::span<const Pose> poses,
+                           double tolerance, const Progress& progress) {
+  return touched_by(grid, cutter, poses, tolerance, progress);
+}
+
+TouchedTiles touched_tiles(const dexel::Grid& grid, std::span<const tool::Hull> hulls,
+                           std::span<const RolledPose> poses, double tolerance, const Progress& progress) {
+  return touched_by(grid, hulls, poses, tolerance, progress);
 }
 
 }  // namespace riffler::sweep

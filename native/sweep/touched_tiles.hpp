@@ -8,6 +8,8 @@
 #include "riffler/base/progress.hpp"
 #include "riffler/dexel/grid.hpp"
 #include "riffler/geom/pose.hpp"
+#include "riffler/geom/rolled_pose.hpp"
+#include "riffler/tool/hull.hpp"
 #include "sweep/convex_group.hpp"
 
 namespace riffler::sweep {
@@ -34,5 +36,7 @@ struct TouchedTiles {
 /// Poses and tolerance as `carve` gets them, checked.
 TouchedTiles touched_tiles(const dexel::Grid& grid, std::span<const ConvexGroup> cutter, std::span<const Pose> poses,
                            double tolerance, const Progress& progress = {});
+TouchedTiles touched_tiles(const dexel::Grid& grid, std::span<const tool::Hull> hulls,
+                           std::span<const RolledPose> poses, double tolerance, const Progress& progress = {});
 
 }  // namespace riffler::sweep

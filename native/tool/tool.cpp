@@ -1,5 +1,6 @@
 #include "riffler/tool/tool.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -40,11 +41,60 @@ Tool::Tool(std::string kind, std::vector<std::pair<std::string, double>> paramet
     : kind_(std::move(kind)),
       parameters_(std::move(parameters)),
       profile_(std::move(profile)),
-      cutter_(profile_.pieces()) {
+      cutter_(profile_->pieces()) {
   name_ = kind_ + " " + short_number(diameter());
 }
 
+Tool::Tool(std::string kind, std::vector<std::pair<std::string, double>> parameters, std::vector<Hull> hulls)
+    : kind_(std::move(kind)),
+      parameters_(std::move(parameters)),
+      hulls_(std::make_shared<const std::vector<Hull>>(std::move(hulls))) {
+  const auto width =
+      std::find_if(parameters_.begin(), parameters_.end(), [](const auto& p) { return p.first == "width"; });
+  name_ = kind_ + " " + short_number(width == parameters_.end() ? diameter() : width->second);
+}
+
+const std::vector<Hull>& Tool::hulls() const {
+  static const std::vector<Hull> none;
+  return hulls_ ? *hulls_ : none;
+}
+
+void Tool::require_revolved(std::string_view who) const {
+  if (revolved()) return;
+  throw std::invalid_argument(
+      std::string(who) + " cannot use the hand tool \"" + name_ +
+      "\", which is no body of revolution: Volume.carve, History and Journal can; use a ball, a " +
+      "flat or another tool with a profile here");
+}
+
+const Profile& Tool::profile() const {
+  require_revolved("what needs a tool's profile");
+  return *profile_;
+}
+
+const std::vector<Piece>& Tool::cutter() const {
+  require_revolved("what needs a tool's profile");
+  return cutter_;
+}
+
+double Tool::diameter() const {
+  if (profile_) return 2 * profile_->max_radius();
+  double radius = 0;
+  for (const Hull& hull : *hulls_)
+    for (const Vec3& p : hull.vertices) radius = std::max(radius, std::hypot(p.x, p.y));
+  return 2 * radius;
+}
+
+double Tool::length() const {
+  if (profile_) return profile_->length();
+  double height = 0;
+  for (const Hull& hull : *hulls_)
+    for (const Vec3& p : hull.vertices) height = std::max(height, p.z);
+  return height;
+}
+
 Tool Tool::with_shank(const std::vector<Frustum>& pieces) const {
+  require_revolved("with_shank");
   check_frusta(pieces, "shank");
   Tool tool = *this;
   tool.shank_ = pieces;
@@ -52,6 +102,7 @@ Tool Tool::with_shank(const std::vector<Frustum>& pieces) const {
 }
 
 Tool Tool::with_holder(const std::vector<Frustum>& pieces) const {
+  require_revolved("with_holder");
   check_frusta(pieces, "holder");
   Tool tool = *this;
   tool.holder_ = pieces;
@@ -74,6 +125,7 @@ Tool Tool::named(std::string name) const {
 }
 
 std::vector<ToolPiece> Tool::assembly() const {
+  require_revolved("what needs a tool's profile");
   std::vector<ToolPiece> all;
   for (const Piece& p : cutter_) all.push_back({Part::Cutter, p});
   for (const Frustum& f : shank_) all.push_back({Part::Shank, f});

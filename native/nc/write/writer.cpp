@@ -34,6 +34,8 @@ std::vector<std::string> comments_on(const Program& program, const Machine& mach
 }  // namespace
 
 std::string to_nc(const Program& program, const WriteOptions& options, WriteReport* report) {
+  for (const auto& [number, tool] : program.tools)
+    tool.require_revolved("tool " + std::to_string(number) + ": an NC program");
   const RowCheck check(options);
   const std::unique_ptr<Post> post = check.make_post();
   WriteReport own;

@@ -16,7 +16,7 @@ import typing
 _Found = typing.TypeVar('_Found')
 _Made = typing.TypeVar('_Made')
 import typing_extensions
-__all__: list[str] = ['AtomicFileWriter', 'Cancelled', 'Collider', 'Contact', 'Cut', 'Finding', 'FormatError', 'FrozenSurface', 'History', 'Journal', 'JournalStroke', 'JournalWriter', 'Material', 'Mesh', 'Mesher', 'NotATask', 'Note', 'OrientFrame', 'OrientSession', 'PenDevice', 'PenError', 'PenGeometry', 'PenState', 'PencilPath', 'Pointer', 'Program', 'ProgramStream', 'Session', 'SessionFrame', 'SimulatedPen', 'SlabWorker', 'Smoothed', 'Snapshot', 'Surface', 'Task', 'Tool', 'ToolShape', 'ToolSize', 'Verification', 'VerifyPlan', 'VerifyReport', 'Volume', 'clear_drafts', 'contact_locations', 'cutter_locations', 'draft_prefix', 'drop', 'engrave', 'finish', 'finish_patterns', 'lift', 'machine_options', 'machine_texts', 'machines', 'min_tilt', 'orientation_maps', 'pencil', 'read_file', 'replace_file', 'replaceable', 'set_threads', 'stepover_of_scallop', 'swarf', 'then', 'threads', 'tip_ball_radius', 'verify']
+__all__: list[str] = ['AtomicFileWriter', 'Cancelled', 'Collider', 'Contact', 'Cut', 'Finding', 'FormatError', 'FrozenSurface', 'History', 'Journal', 'JournalStroke', 'JournalWriter', 'Material', 'Mesh', 'Mesher', 'NotATask', 'Note', 'OrientFrame', 'OrientSession', 'PenDevice', 'PenError', 'PenGeometry', 'PenState', 'PencilPath', 'Pointer', 'Program', 'ProgramStream', 'Session', 'SessionFrame', 'SimulatedPen', 'SlabWorker', 'Smoothed', 'Snapshot', 'Surface', 'Task', 'Tool', 'ToolShape', 'ToolSize', 'Verification', 'VerifyPlan', 'VerifyReport', 'Volume', 'clear_drafts', 'contact_locations', 'cutter_locations', 'draft_prefix', 'drop', 'engrave', 'finish', 'finish_patterns', 'lift', 'machine_options', 'machine_texts', 'machines', 'min_tilt', 'orientation_maps', 'pencil', 'read_file', 'replace_file', 'replaceable', 'require_revolved', 'set_threads', 'stepover_of_scallop', 'swarf', 'then', 'threads', 'tip_ball_radius', 'verify']
 class FormatError(ValueError):
     """
     A file that is not what it should be: names the file, the line or byte, and what was expected.
@@ -618,6 +618,37 @@ class Tool:
         'ball'
         """
     @staticmethod
+    def chisel(width: typing.SupportsFloat, thickness: typing.SupportsFloat, bevel: typing.SupportsFloat, length: typing.SupportsFloat, skew: typing.SupportsFloat = 0.0) -> Tool:
+        """
+        A hand tool: a flat blade with its edge across the tip, flat behind, ground in front.
+
+        Parameters
+        ----------
+        width, thickness : float, mm
+            Of the blade, across and along the cutting direction.
+        bevel : float, rad
+            Between the flat back and the ground face.
+        length : float, mm
+            From the tip to the upper end.
+        skew : float, rad
+            Turns the edge about the cutting direction; the tip stays its middle.
+
+        Returns
+        -------
+        Tool
+            For poses of shape (n, 9); see `convex`.
+
+        Raises
+        ------
+        ValueError
+            Names the size that is not positive or does not fit the others.
+
+        Examples
+        --------
+        >>> riffler.Tool.chisel(width=12, thickness=3, bevel=0.5, length=60).name
+        'chisel 12'
+        """
+    @staticmethod
     def cone_end(tip_half_angle: typing.SupportsFloat, tip_height: typing.SupportsFloat, half_angle: typing.SupportsFloat, diameter: typing.SupportsFloat, length: typing.SupportsFloat) -> Tool:
         """
         Sharp tip, a first cone, a second cone, then a cylinder.
@@ -649,6 +680,34 @@ class Tool:
         --------
         >>> riffler.Tool.cone_end(tip_half_angle=0.5235987755982988, tip_height=1.0, half_angle=0.08726646259971647, diameter=6.0, length=30.0).kind
         'cone_end'
+        """
+    @staticmethod
+    def convex(hulls: collections.abc.Sequence[numpy.typing.ArrayLike]) -> Tool:
+        """
+        A hand tool: the union of the convex hulls of points. No body of revolution, so its poses have a roll.
+
+        Parameters
+        ----------
+        hulls : list of array_like of shape (k, 3), mm
+            Points of each body, in the tool's frame: z from the tip to the handle, x the cutting direction, y across.
+
+        Returns
+        -------
+        Tool
+            For `Volume.carve` with poses of shape (n, 9); what needs a body of revolution refuses it.
+
+        Raises
+        ------
+        ValueError
+            Names the body: fewer than four points or more than 128, one that is not finite, or a flat body.
+
+        Examples
+        --------
+        >>> wedge = riffler.Tool.convex([[(0, -3, 0), (0, 3, 0), (2, -3, 4), (2, 3, 4), (0, -3, 20), (0, 3, 20)]])
+        >>> volume = riffler.Volume.block((0, 0, 0), (20, 20, 10), pitch=0.5)
+        >>> cut = volume.carve(wedge, [[5, 10, 8, 0, 0, 1, 1, 0, 0], [15, 10, 8, 0, 0, 1, 1, 0, 0]])
+        >>> cut.removed.round(3).tolist()
+        [126.0]
         """
     @staticmethod
     def fillet(diameter: typing.SupportsFloat, corner_radius: typing.SupportsFloat, length: typing.SupportsFloat) -> Tool:
@@ -732,6 +791,66 @@ class Tool:
         6.0
         """
     @staticmethod
+    def gouge(width: typing.SupportsFloat, radius: typing.SupportsFloat, bevel: typing.SupportsFloat, length: typing.SupportsFloat) -> Tool:
+        """
+        A hand tool: a blade with a round channel, filled up to the rims, so that the chip is taken out.
+
+        Parameters
+        ----------
+        width : float, mm
+            Between the rims; at most twice the radius.
+        radius : float, mm
+            Of the sweep. The arc is a polygon in it, within 0.01 mm or of 24 sides.
+        bevel : float, rad
+            Between the outer side and the ground end.
+        length : float, mm
+            From the tip to the upper end.
+
+        Returns
+        -------
+        Tool
+            For poses of shape (n, 9); see `convex`.
+
+        Raises
+        ------
+        ValueError
+            Names the size that is not positive or does not fit the others.
+
+        Examples
+        --------
+        >>> riffler.Tool.gouge(width=8, radius=5, bevel=0.6, length=60).diameter < 10
+        True
+        """
+    @staticmethod
+    def knife(width: typing.SupportsFloat, thickness: typing.SupportsFloat, edge_angle: typing.SupportsFloat, length: typing.SupportsFloat) -> Tool:
+        """
+        A hand tool: a blade whose edge runs up from the tip and leads in the cutting direction.
+
+        Parameters
+        ----------
+        width, thickness : float, mm
+            From edge to back, and across.
+        edge_angle : float, rad
+            Between the two sides of the edge.
+        length : float, mm
+            From the tip to the upper end; the back begins a width above the tip.
+
+        Returns
+        -------
+        Tool
+            For poses of shape (n, 9); see `convex`.
+
+        Raises
+        ------
+        ValueError
+            Names the size that is not positive or does not fit the others.
+
+        Examples
+        --------
+        >>> riffler.Tool.knife(width=10, thickness=2, edge_angle=0.5, length=60).length
+        60.0
+        """
+    @staticmethod
     def profile(segments: numpy.typing.ArrayLike | collections.abc.Sequence[collections.abc.Sequence[float]], length: typing.SupportsFloat) -> Tool:
         """
         A free profile from the tip (0, 0) upwards; a cylinder follows up to ``length``.
@@ -805,6 +924,37 @@ class Tool:
         --------
         >>> riffler.Tool.taper(tip_radius=0.5, half_angle=0.08726646259971647, diameter=6.0, length=30.0, flat_tip=False).kind
         'taper'
+        """
+    @staticmethod
+    def v_tool(angle: typing.SupportsFloat, width: typing.SupportsFloat, bevel: typing.SupportsFloat, length: typing.SupportsFloat) -> Tool:
+        """
+        A hand tool: two blades that meet at an angle, filled up to the rims; a parting tool.
+
+        Parameters
+        ----------
+        angle : float, rad
+            Between the blades.
+        width : float, mm
+            Between the rims.
+        bevel : float, rad
+            Between the line where the blades meet and the ground end.
+        length : float, mm
+            From the tip to the upper end.
+
+        Returns
+        -------
+        Tool
+            For poses of shape (n, 9); see `convex`.
+
+        Raises
+        ------
+        ValueError
+            Names the size that is not positive or does not fit the others.
+
+        Examples
+        --------
+        >>> [body.shape for body in riffler.Tool.v_tool(angle=1.0, width=8, bevel=0.6, length=60).hulls]
+        [(6, 3)]
         """
     def __eq__(self, other: object) -> bool:
         ...
@@ -960,9 +1110,14 @@ class Tool:
         Truncated cones (z0, r0, z1, r1), mm.
         """
     @property
+    def hulls(self) -> list[numpy.typing.NDArray[numpy.float64]]:
+        """
+        The corners of each convex body of a hand tool, mm: arrays of shape (k, 3). Empty for tools of revolution.
+        """
+    @property
     def kind(self) -> str:
         """
-        "ball", "flat" …, or "profile".
+        "ball", "flat" …, "profile", or a hand tool's: "chisel", …, "convex".
         """
     @property
     def length(self) -> float:
@@ -1397,7 +1552,8 @@ class Volume:
         tool : Tool
             Its cutter is swept.
         poses : array_like of shape (n, 6), tip in mm and unit axis
-            Tip xyz, then unit axis xyz from the tip to the spindle; n - 1 moves.
+            Tip xyz, then unit axis xyz from the tip to the spindle; n - 1 moves. A hand tool (`Tool.convex` and its like) needs
+            the shape (n, 9): then its unit forward direction xyz, square to the axis.
         tolerance : float, mm
             For moves that turn the axis; others are exact.
         dt : array_like, a number or of shape (n - 1,), s, or None
@@ -1419,8 +1575,8 @@ class Volume:
         Raises
         ------
         ValueError
-            Names argument and row: a shape, an axis that is no unit vector, opposite axes; or the protected volume's grid is
-            another.
+            Names argument and row: a shape, an axis that is no unit vector, opposite axes, for a hand tool a forward direction
+            that is not square to the axis and a half turn; or the protected volume's grid is another.
         Cancelled
             ``progress`` returned False; the volume is as it was.
 
@@ -2052,7 +2208,7 @@ class History:
         tool : Tool
             Its cutter is swept.
         poses : array_like of shape (n, 6), tip in mm and unit axis
-            Tip xyz, then unit axis xyz from the tip to the spindle; n - 1 moves.
+            Tip xyz, then unit axis xyz from the tip to the spindle; n - 1 moves. For a hand tool (n, 9), as in `Volume.carve`.
         mode : "remove" or "add"
             "add" puts material on wherever the cutter sweeps within the volume's box.
         tolerance : float, mm
@@ -4512,7 +4668,7 @@ class JournalStroke:
     @property
     def poses(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n, 6): tip in mm and unit axis; a copy.
+        (n, 6): tip in mm and unit axis; of a hand tool (n, 9), with its forward direction. A copy.
         """
     @property
     def removed(self) -> numpy.typing.NDArray[numpy.float64] | None:
@@ -4610,7 +4766,7 @@ class Journal:
         tool : int
             Number of a tool that was added.
         poses : array_like, shape (n, 6)
-            Tip in mm and unit axis, n at least 1.
+            Tip in mm and unit axis, n at least 1. For a hand tool (n, 9), as in ``Volume.carve``.
         times : array_like, shape (n,), optional
             s, never falling.
         tolerance : float
@@ -4661,7 +4817,7 @@ class Journal:
         Parameters
         ----------
         poses : array_like, shape (n, 6)
-            Tip in mm and unit axis.
+            Tip in mm and unit axis; (n, 9) for a hand tool.
         times, forces, removed : array_like, optional
             As of ``add_stroke``.
 
@@ -4934,7 +5090,7 @@ class JournalWriter:
         tool : int
             Number of a tool that was added.
         poses : array_like, shape (n, 6)
-            Tip in mm and unit axis, n at least 1.
+            Tip in mm and unit axis, n at least 1. For a hand tool (n, 9), as in ``Volume.carve``.
         times : array_like, shape (n,), optional
             s, never falling.
         tolerance : float
@@ -4994,7 +5150,7 @@ class JournalWriter:
         Parameters
         ----------
         poses : array_like, shape (n, 6)
-            Tip in mm and unit axis.
+            Tip in mm and unit axis; (n, 9) for a hand tool.
         times, forces, removed : array_like, optional
             As of ``add_stroke``.
 
@@ -6333,6 +6489,10 @@ def replace_file(draft: os.PathLike | str | bytes, path: os.PathLike | str | byt
 def replaceable(path: os.PathLike | str | bytes) -> pathlib.Path:
     """
     Where a path leads, links followed. RuntimeError for what is no regular file.
+    """
+def require_revolved(tool: Tool, who: str) -> None:
+    """
+    ValueError for a hand tool, which ``who`` cannot use.
     """
 def set_threads(n: typing.SupportsInt | None) -> None:
     """

@@ -171,7 +171,7 @@ class HistoryStroke:
     tool: Tool
     """Its cutter is swept."""
     poses: NDArray[np.float64]
-    """(n, 6): tip in mm, unit axis."""
+    """(n, 6): tip in mm, unit axis; (n, 9) of a hand tool, with its forward direction."""
     mode: str
     """"remove" or "add"."""
     tolerance: float

@@ -94,7 +94,7 @@ TEST(QuickReject, ARayWithManySpansRemembersTheGapThatTheToolIsIn) {
   const double pitch = 0.2;
   Volume volume = Volume::block({{{0, 0, 0}, {60, 20, 10}}, pitch, "x"});
   for (double x = 5; x < 60; x += 10)
-    carve(volume, cutters::flat(4, 30), {{{{x, -5, 6}, {0, 0, 1}}, {{x, 25, 6}, {0, 0, 1}}}});
+    carve(volume, cutters::flat(4, 30), std::vector<Pose>{{{x, -5, 6}, {0, 0, 1}}, {{x, 25, 6}, {0, 0, 1}}});
   std::vector<Pose> poses;
   for (int k = 0; k <= 75; ++k) poses.push_back({{25, -5 + 0.4 * k, 6.1}, {0, 0, 1}});
   const dexel::Stats stats = counted(volume, cutters::flat(3, 30), poses);
@@ -108,7 +108,7 @@ TEST(QuickReject, ASlotBesideTheToolDoesNotMakeItTestARay) {
     Volume volume = Volume::block({{{0, 0, 0}, {60, 20, 10}}, 0.2, "x"});
     const std::vector<Pose> step{{{x, -5, 6}, {0, 0, 1}}, {{x, 25, 6}, {0, 0, 1}}};
     carve(volume, cutters::flat(4, 30), step);
-    carve(volume, cutters::flat(4, 30), {{{{30, -5, 6}, {0, 0, 1}}, {{30, 25, 6}, {0, 0, 1}}}});
+    carve(volume, cutters::flat(4, 30), std::vector<Pose>{{{30, -5, 6}, {0, 0, 1}}, {{30, 25, 6}, {0, 0, 1}}});
     const dexel::Stats stats = counted(volume, cutters::flat(3, 30), lifted(step, 0.1));
     EXPECT_EQ(stats.rays_changed, 0U) << x;
     EXPECT_EQ(stats.rays_tested, 0U) << x;

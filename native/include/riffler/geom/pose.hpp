@@ -31,10 +31,15 @@ class Motion {
   /// Velocity of the tool's material point that is at `p` at time t, in mm per unit of t.
   Vec3 velocity(const Vec3& p, double t) const { return (to_.tip - from_.tip) + glm::cross(rotation_, p - tip(t)); }
 
+ protected:
+  /// Any rotation by `angle` about the unit vector `about` that takes one axis to the other, for tools that roll too.
+  Motion(const Pose& from, const Pose& to, const Vec3& about, double angle);
+
  private:
   Pose from_, to_;
   double angle_;
   Vec3 rotation_, side_;  // side_: unit vector in the plane of the great circle, normal to from_.axis
+  Vec3 mean_;             // centre of the circle on which the axis turns: zero for a great circle
 };
 
 /// The point at u in [0, 1] on the great circle from unit vector `a` to unit vector `b`. They must not be opposite.

@@ -37,6 +37,7 @@ struct JournalRows {
   std::span<const double> times{};    ///< s, non-decreasing
   std::span<const Wrench> forces{};   ///< N, N·mm requested from the device, on the hand, about the grip
   std::span<const double> removed{};  ///< mm³ removed (or added) by the move that ends at the row
+  std::span<const Vec3> forward{};    ///< unit vector square to the axis, of a hand tool
 };
 
 /// Whether a tool at `a` and a tool at `b` have exactly the same pose: no move.
@@ -57,8 +58,9 @@ struct JournalStroke {
   std::vector<double> removed{};
   StrokeMode mode = StrokeMode::Remove;
   double strength = 0.5;  ///< 0 … 1, for Soften
+  std::vector<Vec3> forward{};
 
-  JournalRows rows() const { return {poses, times, forces, removed}; }
+  JournalRows rows() const { return {poses, times, forces, removed, forward}; }
   /// Appends rows with the same columns.
   void append(const JournalRows& rows);
 };
@@ -85,7 +87,7 @@ class JournalRules {
  private:
   struct Last {  // last row of the stroke that may be extended
     double time;
-    bool timed, forces, removed;
+    bool timed, forces, removed, forward;
   };
   std::optional<JournalStock> stock_;
   std::map<int, std::string> tools_;

@@ -9,6 +9,7 @@
 
 #include "riffler/base/progress.hpp"
 #include "riffler/dexel/volume.hpp"
+#include "riffler/geom/rolled_pose.hpp"
 #include "riffler/session/journal.hpp"
 #include "riffler/tool/tool.hpp"
 
@@ -18,6 +19,8 @@ namespace riffler::session {
 /// already cut there. Exception: a stroke of two or more rows that never moves becomes one move, and the tool cuts
 /// where it stands. A single row cuts nothing, as a single pose does in `carve`.
 std::vector<Pose> moves_of(const JournalStroke& stroke);
+/// Same for a stroke of a hand tool, which has a forward direction in each row.
+std::vector<RolledPose> rolled_moves_of(const JournalStroke& stroke);
 
 /// The result of all strokes.
 struct Replayed {

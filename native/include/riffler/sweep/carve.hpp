@@ -5,6 +5,7 @@
 
 #include "riffler/dexel/volume.hpp"
 #include "riffler/geom/pose.hpp"
+#include "riffler/geom/rolled_pose.hpp"
 #include "riffler/sweep/carve_options.hpp"
 #include "riffler/tool/tool.hpp"
 
@@ -17,8 +18,16 @@ namespace riffler::sweep {
 /// Cancelled leaves the volume unchanged.
 Cut carve(Volume& volume, const Tool& tool, std::span<const Pose> poses, const CarveOptions& options = {});
 
+/// Carves with a hand tool (hand_tools.hpp): its frame turns between two poses by the shortest rotation at constant
+/// rate. Throws as the other one does, also for a forward vector that is not of length 1 or not square to the axis
+/// within 1e-6, for two poses that are a half turn apart, and for a tool of revolution; that one throws for hand tools.
+Cut carve(Volume& volume, const Tool& tool, std::span<const RolledPose> poses, const CarveOptions& options = {});
+
 /// Make the checks of `carve`: of the poses, and of the options for this many moves. Throw as `carve` does.
 void check_path(std::span<const Pose> poses);
+void check_path(std::span<const RolledPose> poses);
 void check_options(const CarveOptions& options, std::size_t moves);
+/// Throws if a hand tool is given poses without a roll, or another tool poses with one; numbers of rows.
+void check_poses_suit(const Tool& tool, std::size_t plain, std::size_t rolled);
 
 }  // namespace riffler::sweep

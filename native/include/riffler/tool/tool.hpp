@@ -1,10 +1,15 @@
-// A tool: a cutter, defined by its profile, with the shank and holder above it.
+// A tool: a cutter, defined by its profile, with the shank and holder above it; or a hand tool, a union of convex
+// bodies.
 #pragma once
 
+#include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
+#include "riffler/tool/hull.hpp"
 #include "riffler/tool/piece.hpp"
 #include "riffler/tool/profile.hpp"
 
@@ -25,8 +30,19 @@ class Tool {
  public:
   /// Makes a cutter from its profile. `kind` and `parameters` are stored for the JSON form ("ball", diameter, …).
   Tool(std::string kind, std::vector<std::pair<std::string, double>> parameters, Profile profile);
+  /// Makes a hand tool, the union of convex bodies (hand_tools.hpp). It has no profile, shank or holder.
+  Tool(std::string kind, std::vector<std::pair<std::string, double>> parameters, std::vector<Hull> hulls);
 
-  /// Copies with this shank or holder; heights in mm from the tip. Throw std::invalid_argument naming the bad piece.
+  /// Whether the tool is a body of revolution about its axis: all but hand tools are.
+  bool revolved() const { return !hulls_; }
+  /// The convex bodies of a hand tool; none of others.
+  const std::vector<Hull>& hulls() const;
+  /// Throws std::invalid_argument for a hand tool, naming `who` cannot use it, the tool, and what can be used instead.
+  /// What needs a profile or pieces need not call it: `profile`, `cutter` and `assembly` do.
+  void require_revolved(std::string_view who) const;
+
+  /// Copies with this shank or holder; heights in mm from the tip. Throw std::invalid_argument naming the bad piece,
+  /// and for hand tools.
   Tool with_shank(const std::vector<Frustum>& pieces) const;
   Tool with_holder(const std::vector<Frustum>& pieces) const;
   /// A copy with a wider shank and holder, for keeping them clear of what the cutter touches. Moves the sides out by
@@ -38,23 +54,25 @@ class Tool {
   const std::string& name() const { return name_; }
   const std::string& kind() const { return kind_; }
   const std::vector<std::pair<std::string, double>>& parameters() const { return parameters_; }
-  const Profile& profile() const { return profile_; }
-  /// Largest diameter of the cutter, and height of its upper end above the tip, mm.
-  double diameter() const { return 2 * profile_.max_radius(); }
-  double length() const { return profile_.length(); }
+  /// Throws std::invalid_argument for hand tools.
+  const Profile& profile() const;
+  /// Largest diameter of the cutter (of a hand tool: about its axis), and height of its upper end above the tip, mm.
+  double diameter() const;
+  double length() const;
 
-  /// The cutter's convex pieces, from the tip upwards.
-  const std::vector<Piece>& cutter() const { return cutter_; }
+  /// The cutter's convex pieces, from the tip upwards. Throws std::invalid_argument for hand tools.
+  const std::vector<Piece>& cutter() const;
   /// The pieces of shank and holder; heights are measured from the tip.
   const std::vector<Frustum>& shank() const { return shank_; }
   const std::vector<Frustum>& holder() const { return holder_; }
-  /// All pieces: cutter, shank, holder.
+  /// All pieces: cutter, shank, holder. Throws std::invalid_argument for hand tools.
   std::vector<ToolPiece> assembly() const;
 
  private:
   std::string name_, kind_;
   std::vector<std::pair<std::string, double>> parameters_;
-  Profile profile_;
+  std::optional<Profile> profile_;                  // of all but hand tools
+  std::shared_ptr<const std::vector<Hull>> hulls_;  // of hand tools
   std::vector<Piece> cutter_;
   std::vector<Frustum> shank_, holder_;
 };

@@ -62,6 +62,11 @@ def parse(text: str) -> ToolArgument:
 def _maker(form: str, text: str) -> Callable[[float], Tool]:
     if form.lower().endswith((".json", ".toml")):
         tool = Tool.from_dict(_read(Path(form)))
+        if tool.hulls:
+            raise ValueError(
+                f'--tool {text}: "{tool.name}" is a hand tool, and commands cut with tools of revolution;'
+                " use Volume.carve in Python, or a ball, a flat or another tool with a profile"
+            )
         return lambda _: tool
     kind, *numbers = form.split(":")
     sizes = SIZES.get(kind)

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from .. import _core
 from .._core import Mesh, PencilPath, Tool
 from ..hints import hinted
 
@@ -53,6 +54,9 @@ class Plan:
     provenance: dict[str, str] = field(default_factory=dict)
     off: frozenset[int] = frozenset()
     depths: dict[int, float] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        _core.require_revolved(self.tool, "tool: a plan")
 
     @property
     def deepest(self) -> float:

@@ -143,6 +143,7 @@ def path_of_stroke(
         raise ValueError(f"tolerance must be a positive length in mm, not {tolerance!r}")
     if not (math.isfinite(angle) and 0 < angle <= LARGEST):
         raise ValueError(f"angle must be positive and at most {LARGEST:g} rad, not {angle!r}")
+    _core.require_revolved(tool, "plan.path_of_stroke")
     rows = _checked(poses, name)
     radius = _ball_radius(tool)
     try:
@@ -208,6 +209,7 @@ def from_recording(
     number = _tool_of({strokes[k].tool for k in cuts}, tool, name)
     mine = [k for k in cuts if strokes[k].tool == number]
     cutter = Tool.from_dict(journal.tools[number])
+    _core.require_revolved(cutter, f"{name}, tool {number}: a plan")
     numbers, paths, still = [], [], 0
     for done, k in enumerate(mine):
         if progress is not None and progress(done / len(mine)) is False:

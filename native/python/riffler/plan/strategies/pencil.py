@@ -140,6 +140,9 @@ def pencil(
     """
     if stepover is not None and scallop is not None:
         raise ValueError("stepover and scallop: only one of them")
+    for known in (tool, reference_tool):
+        if known is not None:
+            _core.require_revolved(known, "plan.pencil")
     radius = _core.tip_ball_radius(tool, "tool")
     if scallop is not None:
         if not 0 < scallop <= radius:
