@@ -59,14 +59,14 @@ Examples
             const NoGil release;
             self.sync();
           },
-          R"(Waits until the disk has everything.
+          R"(Waits until everything is on the disk.
 
 Examples
 --------
 >>> with riffler.JournalWriter("a.rjournal") as writer:
 ...     writer.sync()
 )")
-      .def("close", &close, R"(Ends writing; calls after it raise RuntimeError.
+      .def("close", &close, R"(Closes the file; later calls raise RuntimeError.
 
 Examples
 --------

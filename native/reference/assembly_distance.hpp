@@ -27,9 +27,9 @@ class AssemblyDistance {
   double operator()(const Vec3& p, const Pose& pose) const;
   bool inside(double rho, double z) const;
 
-  /// How deep any point of the triangle is in the tool at most, ≥ 0, by a tangent: nothing where it does not tell.
-  /// `p` is a point of its plane, at most `radius` from every point of it. Second order in the radius where the
-  /// distance to `p` alone is first order, for surfaces that the tool touches.
+  /// Upper bound on the depth of the triangle's points in the tool, ≥ 0, from a tangent plane; no value where the
+  /// tangent gives no bound. `p` is a point of the triangle's plane, at most `radius` from every point of the triangle.
+  /// The bound's error is of second order in the radius; from the distance at `p` alone it would be of first order.
   std::optional<double> tangent_bound(const Corners& triangle, const Vec3& p, double radius, const Pose& pose) const;
   /// Whether nothing within `radius` of p is in the tool, by cylinders round its solids.
   bool beyond(const Vec3& p, double radius, const Pose& pose) const;

@@ -33,7 +33,7 @@ struct Replayed {
 Replayed replay_all(const Journal& journal, const std::map<int, Tool>& tools, const std::filesystem::path& folder = {},
                     const Progress& progress = {});
 
-/// As replay_all, for the stock alone.
+/// The stock of replay_all.
 Volume replay(const Journal& journal, const std::map<int, Tool>& tools, const std::filesystem::path& folder = {},
               const Progress& progress = {});
 
