@@ -16,7 +16,7 @@ namespace riffler::collide {
 
 /// An edge of an outline with precomputed data for distances.
 struct LaneEdge {
-  double from[2], to[2], way[2], per_square;  // way = to − from; per_square = 1 / |way|²
+  double from[2], to[2], way[2], per_square;  // the third is to − from, the last 1 over its square
   double normal[2];                           // of a line, pointing out of the solid
   double centre[2], first[2], last[2];        // of an arc; first, last: ends relative to the centre, times side
   double radius, side;                        // of an arc; side: 1 convex, −1 hollow

@@ -242,7 +242,8 @@ Twist SculptStep::advance(const Part& part, Result& result) {
     const Twist before = way;
     if (touching_) {
       // Bound the motion from the queried pose by the same distance again plus the depth found there. On a guide a
-      // light touch may leave the tool free to move far; without another query it may only move as far as it is free.
+      // light touch may leave the tool free to move far; without another query it moves no farther than that free
+      // distance.
       const double depth = contact_.depth + sunk_;
       Bounds most{part.most.linear + depth, part.most.angular + depth / assembly_.max_radius()};
       if (guide_ && k + 1 == settings_.queries) {

@@ -25,7 +25,8 @@ class AdaptiveState {
 
   /// Simplifies the whole mesh again.
   void build(const std::vector<std::size_t>& all, const Progress& progress);
-  /// Follows a change of the full mesh in these bricks. Returns the bricks whose remaining triangles changed, ascending.
+  /// Follows a change of the full mesh in these bricks. Returns the bricks whose remaining triangles changed,
+  /// ascending.
   std::vector<std::size_t> update(const std::vector<std::size_t>& changed);
 
   /// mm.

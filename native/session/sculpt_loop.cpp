@@ -165,7 +165,8 @@ Wrench SculptLoop::follow(Scene& scene, const pen::PenSample& sample, double dt,
   }
 }
 
-/// Limits the wrench while the tool touches without cutting. The limits change only as fast as a force may rise or fall.
+/// Limits the wrench while the tool touches without cutting. The limits change only as fast as a force may rise or
+/// fall.
 Wrench SculptLoop::limited_touch(const Wrench& on_hand, double dt, bool cutting) noexcept {
   if (!settings_.touch || !(dt > 0)) return on_hand;
   const haptics::Bounds& most = settings_.limits.wrench;

@@ -46,10 +46,11 @@ void print(SculptingRun& run) {
               quantile(0.99), quantile(0.999), quantile(1));
   std::printf("resident, MB:");
   for (const double mb : run.resident) std::printf(" %.1f", mb);
-  std::printf("\nmemory blocks taken from the system during steps: %lu; steps missed: %lu; trips: %lu\n", run.from_system, run.missed,
-              run.trips);
+  std::printf("\nmemory blocks taken from the system during steps: %lu; steps missed: %lu; trips: %lu\n",
+              run.from_system, run.missed, run.trips);
   std::printf(
-      "force up to %.2f N; motors absorbed %.1f N mm, and never gave out more than %.3f N mm of it again; account at least %.3f\n",
+      "force up to %.2f N; motors absorbed %.1f N mm, and never gave out more than %.3f N mm of it again; account at "
+      "least %.3f\n",
       run.greatest, run.given, run.gained, run.account);
   std::printf("replay gives the same bytes: %s\n", run.replayed ? "yes" : "NO");
 }

@@ -83,7 +83,8 @@ void WebSocket::handshake(std::uint16_t port, double seconds) {
     throw OpenError(OpenProblem::NoAnswer, "it does not take the request");
   std::string rest;
   check_answer(read_http_head(socket_, seconds, rest), key);
-  // The first frames may follow the head at once; they fit, as read_http_head reads less at a time than the reader holds.
+  // The first frames may follow the head at once; they fit, as read_http_head reads less at a time than the reader
+  // holds.
   const auto space = reader_.space();
   std::copy(rest.begin(), rest.end(), space.begin());
   reader_.received(rest.size());

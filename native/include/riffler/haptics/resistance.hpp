@@ -39,8 +39,8 @@ class Resistance {
   Damper damper() const { return {arm_, area_.mean() + damping_ * engaged_.mean(), turning_.mean()}; }
 
  private:
-  /// Mean per mm over the last `memory` mm of travel. After less travel the mean covers that travel, so a new cut counts
-  /// at once, but at least a fiftieth of `memory`, because a whole row of rays may be cut together.
+  /// Mean per mm over the last `memory` mm of travel. After less travel the mean covers that travel, so a new cut
+  /// counts at once, but at least a fiftieth of `memory`, because a whole row of rays may be cut together.
   struct PerWay {
     double sum = 0, way = 0;
 
