@@ -91,7 +91,7 @@ void DhdArm::enable() {
   if (dhd_->set_watchdog != nullptr) dhd_->set_watchdog(static_cast<unsigned char>(kWatchdog / 125e-6), id_);
 }
 
-/// False if the arm is gone.
+/// Reads the arm's status. False if it has been unplugged.
 bool DhdArm::read_status() noexcept {
   std::array<int, kStatusRoom> status{};
   if (dhd_->get_status(status.data(), id_) < 0) return false;

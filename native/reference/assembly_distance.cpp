@@ -13,7 +13,7 @@ AssemblyDistance::AssemblyDistance(const Tool& tool) {
   Vec2 from{0, 0};
   for (const tool::ProfileSegment& s : tool.profile().segments()) {
     Edge e{from, s.to, s.centre};
-    // Heights rise along an arc of a profile, so it is wholly on one side of its centre.
+    // Heights rise along an arc of a profile, so the arc is entirely on one side of its centre.
     if (s.centre)
       e.radius = glm::length(from - *s.centre), e.side = 0.5 * (from.x + s.to.x) >= s.centre->x ? 1.0 : -1.0;
     cutter.edges.push_back(e);
@@ -76,8 +76,8 @@ void AssemblyDistance::add_if_on_surface(const Vec2& q) {
   if (on_surface(q)) corners_.push_back(q);
 }
 
-/// Where two edges cross. A line against a line by Cramer's rule; against an arc by the quadratic of its circle; only
-/// the cutter has arcs, so two of them never meet here.
+/// Adds the crossings of two edges: of two lines by Cramer's rule, of a line and an arc from the quadratic equation of
+/// the circle. Only the cutter has arcs, so two arcs never meet here.
 void AssemblyDistance::add_crossings(const Edge& a, const Edge& b) {
   const Edge &line = a.centre ? b : a, &other = a.centre ? a : b;
   const Vec2 way = line.to - line.from;
@@ -193,7 +193,7 @@ std::optional<double> AssemblyDistance::tangent_bound(const Corners& triangle, c
   const Vec2 at{glm::length(out), z};
   const Nearest near = nearest(at.x, at.y);
   if (!near.edge || !near.solid->convex) return {};
-  double shift = radius, height;  // height: over the edge
+  double shift = radius, height;  // height: above the edge
   Vec2 normal;
   if (const Edge& e = *near.edge; e.centre) {
     const Vec2 from = at - *e.centre;

@@ -49,8 +49,8 @@ void print(SculptingRun& run) {
   std::printf("\nmemory blocks taken from the system during steps: %lu; steps missed: %lu; trips: %lu\n",
               run.from_system, run.missed, run.trips);
   std::printf(
-      "force up to %.2f N; motors absorbed %.1f N mm, and never gave out more than %.3f N mm of it again; account at "
-      "least %.3f\n",
+      "force up to %.2f N; motors took %.1f N mm from the hand, and gave it at most %.3f N mm in a contact; smallest "
+      "account %.3f\n",
       run.greatest, run.given, run.gained, run.account);
   std::printf("replay gives the same bytes: %s\n", run.replayed ? "yes" : "NO");
 }
