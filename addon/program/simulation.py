@@ -199,7 +199,7 @@ class RIFFLER_OT_simulate(properties.ProgramSettings, properties.GivenOptions, b
 
     bl_idname = "riffler.simulate"
     bl_label = "Simulate"
-    bl_options = {"REGISTER"}  # the display is no undo step
+    bl_options = {"REGISTER"}  # the display is not an undo step
 
     @classmethod
     def poll(cls, context):

@@ -48,7 +48,7 @@ StringDict notes(const session::Journal& journal) {
 }
 
 StrokeList strokes(const SharedJournal& journal) {
-  if (!journal) throw py::type_error("None is no Journal");
+  if (!journal) throw py::type_error("None is not a Journal");
   py::list out;
   for (std::size_t k = 0; k < journal->strokes().size(); ++k) out.append(StrokeView{journal, k});
   return out;
@@ -244,7 +244,7 @@ Examples
       .def("replay", &replayed, py::arg("folder") = py::none(), py::kw_only(), py::arg("progress") = py::none(),
            R"(What the strokes leave of the stock, to the bit as the session left it.
 
-A row that stands where the row before stood is no move; a stroke that never moves cuts where it stands if it has two rows
+A row with the same pose as the row before is not a move; a stroke that never moves cuts where it stands if it has two rows
 or more.
 
 Parameters

@@ -89,7 +89,7 @@ void bind_volume_edits(VolumeClass& volume) {
 
 Rays stay where they stand, and others, without material, are put next to them: each side of the box moves outward by
 whole pitches until it lies at or beyond that of ``lower`` to ``upper``, to 1e-6 of a pitch. A side that does already
-stays. Where a box's size is no whole number of pitches, an upper side may move one pitch more; ``volume`` then counts
+stays. Where a box's size is not a whole number of pitches, an upper side may move one pitch more; ``volume`` then counts
 the rays that were last with whole cells.
 
 Parameters

@@ -194,7 +194,7 @@ Examples
            py::arg("progress") = py::none(),
            R"(The surface: closed, outward, two-manifold, and still so in a binary STL.
 
-Material thinner than the pitch is no part of it: where that is worth a sentence, it is a UserWarning;
+Material thinner than the pitch is not part of it. A UserWarning reports more than crumbs of such material;
 `to_mesh_with_report` puts it into its report.
 
 Parameters
@@ -227,9 +227,10 @@ Examples
 >>> len(volume.to_mesh().triangles) > 100 * len(volume.to_mesh(tolerance=0.02).triangles)
 True
 )")
-      .def("to_mesh_with_report", &volume_to_mesh_with_report, py::kw_only(), py::arg("tolerance") = py::none(),
-           py::arg("progress") = py::none(),
-           R"(The same as `to_mesh`, with what is no part of the mesh since it is thinner than the pitch.
+      .def(
+          "to_mesh_with_report", &volume_to_mesh_with_report, py::kw_only(), py::arg("tolerance") = py::none(),
+          py::arg("progress") = py::none(),
+          R"(The same as `to_mesh`, with a report on material that is too thin for the pitch and so not part of the mesh.
 
 Parameters
 ----------

@@ -13,7 +13,7 @@ namespace riffler::bindings {
 
 namespace {
 
-/// A message may name a file whose name is no UTF-8: those bytes are written as \xNN.
+/// A message may name a file whose name is not UTF-8: those bytes are written as \xNN.
 void set(const py::handle& type, std::string_view message) {
   const auto text = py::reinterpret_steal<py::object>(
       PyUnicode_DecodeUTF8(message.data(), static_cast<py::ssize_t>(message.size()), "backslashreplace"));

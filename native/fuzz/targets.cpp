@@ -52,7 +52,8 @@ void check(const nc::Program& p) {
   }
 }
 
-/// Reads with coarse chords and few turns, because long runs from one block, such as kilometres of arcs, are no faults.
+/// Reads with coarse chords and few turns, because long runs from one block, such as kilometres of arcs, are not
+/// faults.
 void nc(View bytes, const char* machine, bool skips) {
   reading([&] {
     nc::ReadOptions options{machine, {{"chord_tolerance", 0.1}}};

@@ -62,7 +62,7 @@ class AtomicFileWriter:
     """
     A file that takes the place of ``path`` at ``commit``.
 
-    Links are followed; permissions and owner of a file that is there are kept; RuntimeError for what is no regular file.
+    Links are followed; permissions and owner of a file that is there are kept; RuntimeError if it is not a regular file.
     """
     def __init__(self, path: os.PathLike | str | bytes) -> None:
         ...
@@ -1502,7 +1502,7 @@ class Volume:
 
         Rays stay where they stand, and others, without material, are put next to them: each side of the box moves outward by
         whole pitches until it lies at or beyond that of ``lower`` to ``upper``, to 1e-6 of a pitch. A side that does already
-        stays. Where a box's size is no whole number of pitches, an upper side may move one pitch more; ``volume`` then counts
+        stays. Where a box's size is not a whole number of pitches, an upper side may move one pitch more; ``volume`` then counts
         the rays that were last with whole cells.
 
         Parameters
@@ -1840,7 +1840,7 @@ class Volume:
         """
         The surface: closed, outward, two-manifold, and still so in a binary STL.
 
-        Material thinner than the pitch is no part of it: where that is worth a sentence, it is a UserWarning;
+        Material thinner than the pitch is not part of it. A UserWarning reports more than crumbs of such material;
         `to_mesh_with_report` puts it into its report.
 
         Parameters
@@ -1875,7 +1875,7 @@ class Volume:
         """
     def to_mesh_with_report(self, *, tolerance: typing.SupportsFloat | None = None, progress: collections.abc.Callable[[float], bool | None] | None = None) -> tuple[Mesh, riffler.results.SurfaceReport]:
         """
-        The same as `to_mesh`, with what is no part of the mesh since it is thinner than the pitch.
+        The same as `to_mesh`, with a report on material that is too thin for the pitch and so not part of the mesh.
 
         Parameters
         ----------
@@ -4727,7 +4727,7 @@ class Journal:
         """
         What the strokes leave of the stock, to the bit as the session left it.
 
-        A row that stands where the row before stood is no move; a stroke that never moves cuts where it stands if it has two rows
+        A row with the same pose as the row before is not a move; a stroke that never moves cuts where it stands if it has two rows
         or more.
 
         Parameters
@@ -4980,7 +4980,7 @@ class JournalWriter:
         """
     def close(self) -> None:
         """
-        Ends writing; calls after it raise RuntimeError.
+        Closes the file; later calls raise RuntimeError.
 
         Examples
         --------
@@ -5052,7 +5052,7 @@ class JournalWriter:
         """
     def sync(self) -> None:
         """
-        Waits until the disk has everything.
+        Waits until everything is on the disk.
 
         Examples
         --------
@@ -6332,7 +6332,7 @@ def replace_file(draft: os.PathLike | str | bytes, path: os.PathLike | str | byt
     """
 def replaceable(path: os.PathLike | str | bytes) -> pathlib.Path:
     """
-    Where a path leads, links followed. RuntimeError for what is no regular file.
+    Where a path leads, links followed. RuntimeError if it is not a regular file.
     """
 def set_threads(n: typing.SupportsInt | None) -> None:
     """

@@ -26,7 +26,7 @@ def writing(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
     """A stream whose bytes become the file ``path`` at the end, or leave no trace after an error.
 
     Links are followed, and a file that is there keeps its permissions and its owner. OSError or RuntimeError with the
-    system's reason; RuntimeError for what is no regular file.
+    system's reason; RuntimeError if it is not a regular file.
     """
     draft = _core.AtomicFileWriter(path)
     with os.fdopen(os.dup(draft.fileno()), "wb") as stream:

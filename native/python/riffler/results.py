@@ -73,7 +73,7 @@ class Orientation(DictResult):
 
 @dataclass(frozen=True)
 class LostReport(DictResult):
-    """What is no part of a volume's mesh, since it is thinner than the pitch."""
+    """Material that is not part of a volume's mesh because it is thinner than the pitch."""
 
     lost: float
     """mm³."""
@@ -82,12 +82,12 @@ class LostReport(DictResult):
     lost_pitch: float | None
     """A pitch that keeps it, mm."""
     lost_note: str
-    """A sentence where there is more than crumbs, otherwise empty."""
+    """A sentence if there is more than crumbs, otherwise empty."""
 
 
 @dataclass(frozen=True)
 class SurfaceReport(LostReport):
-    """What is no part of the mesh of `Volume.to_mesh_with_report`, and how large it is without a tolerance."""
+    """The report of `Volume.to_mesh_with_report`: material that is not in the mesh, and the size without a tolerance."""
 
     all_triangles: int
     """Triangles without a tolerance."""

@@ -14,8 +14,8 @@
 
 namespace riffler::session {
 
-/// The poses to pass to `carve` for a stroke. A row with the same pose as the row before is no move, since the tool has
-/// already cut there. Exception: a stroke of two or more rows that never moves becomes one move, and the tool cuts
+/// The poses to pass to `carve` for a stroke. A row with the same pose as the row before is not a move, since the tool
+/// has already cut there. Exception: a stroke of two or more rows that never moves becomes one move, and the tool cuts
 /// where it stands. A single row cuts nothing, as a single pose does in `carve`.
 std::vector<Pose> moves_of(const JournalStroke& stroke);
 

@@ -124,7 +124,7 @@ def _index(entry: str, count: int, place: str) -> int:
         index = 0
     index = index - 1 if index > 0 else count + index
     if not 0 <= index < count:
-        raise _WrongPlaceError(f"{place}: {entry} is no vertex above it")
+        raise _WrongPlaceError(f"{place}: {entry} is not a vertex above it")
     return index
 
 

@@ -78,7 +78,7 @@ def dumps(plan: Plan, *, texts: Texts | None = None) -> bytes:
     Raises
     ------
     ValueError
-        Naming what is no plan.
+        Naming the fault, if it is not a plan.
 
     Examples
     --------
@@ -136,7 +136,7 @@ def save(path: str | os.PathLike[str], plan: Plan) -> None:
     Raises
     ------
     ValueError
-        Naming what is no plan.
+        Naming the fault, if it is not a plan.
     RuntimeError
         With the system's reason.
 

@@ -18,7 +18,7 @@ from .thinning import StandsStillError, Thinned, between, thin
 
 CUTS = ("remove", "beside")  # modes of strokes that a machine can make
 ANGLE = math.radians(2)
-LARGEST = 0.5  # rad: a larger angle between recorded and planned axes is no bound to speak of
+LARGEST = 0.5  # rad: a larger angle between recorded and planned axes gives no useful bound
 OPPOSITE = math.pi - 1e-6  # rad: as in PencilPath.orient
 ALONG = 0.05  # sine of the angle between axis and feed below which a ball plunges
 
@@ -165,8 +165,8 @@ def from_recording(
 ) -> Recorded:
     """A plan of a recording's strokes: a path for each, with keys where the axis bends, to be edited as any other.
 
-    What is not recorded as a stroke, with the button up, is no part of it. Strokes that do not remove are left out, as
-    no machine can make them, and so are those that stay in one place; ``notes`` counts them.
+    Motion with the button up is not recorded as a stroke and not part of the plan. Strokes that do not remove are left
+    out, as no machine can make them, and so are those that stay in one place; ``notes`` counts them.
 
     Parameters
     ----------
@@ -306,7 +306,7 @@ def _notes(left_out: dict[str, int], modes: list[str], paths: list[StrokePath], 
         notes.append(f"{_counted(count)} made next to protected material: the paths do not know that it was protected")
     if not paths[0].turns:
         notes.append(
-            f"the tip of {tool.name} is no ball: its paths keep the recorded poses, and keys do not turn the tool"
+            f"the tip of {tool.name} is not a ball: its paths keep the recorded poses, and keys do not turn the tool"
         )
     return notes
 

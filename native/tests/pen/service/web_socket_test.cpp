@@ -187,7 +187,7 @@ TEST(WebSocket, WhatIsNoWebSocketIsRefusedWithTheReason) {
   EXPECT_EQ(answer(""), "no answer: it closes the connection");
   EXPECT_EQ(answer("SSH-2.0-OpenSSH_9.2\r\n\r\n"),
             "contradicts itself: its answer is not HTTP: the status line is not that of HTTP/1.1");
-  EXPECT_EQ(answer(std::string(20'000, 'x')), "contradicts itself: its answer is no head of HTTP");
+  EXPECT_EQ(answer(std::string(20'000, 'x')), "contradicts itself: its answer is not an HTTP head");
   EXPECT_EQ(answer("HTTP/1.1 404 Not Found\r\n\r\n"), "contradicts itself: it opens no WebSocket: status 404");
   EXPECT_EQ(answer(head + "Upgrade: h2c\r\nConnection: Upgrade\r\n\r\n"),
             "contradicts itself: it upgrades the connection to something other than a WebSocket");
