@@ -10,7 +10,7 @@
 
 namespace riffler::bindings {
 
-RIFFLER_TYPED(OperationParts, "dict[str, typing.Any]")
+RIFFLER_TYPED(FinishedMoves, "riffler.plan.operations.FinishedMoves")
 
 namespace {
 
@@ -18,24 +18,27 @@ using namespace py::literals;
 
 constexpr double kPlanned = 0.85;  // of the progress
 
-/// The operation, and what each of its moves takes off the stock, mm³.
+/// The operation, and the volume that each of its moves removes from the stock, mm³.
 struct Planned {
   plan::FinishResult operation;
   std::vector<double> removed;
 };
 
-OperationParts from_planned(Planned&& planned) {
+FinishedMoves from_planned(Planned&& planned) {
   plan::FinishResult& found = planned.operation;
   std::vector<std::uint8_t> kinds;
   for (const plan::MoveKind kind : found.kinds) kinds.push_back(static_cast<std::uint8_t>(kind));
+  const py::object blocked_place = py::module_::import("riffler.plan.operations").attr("Blocked");
   py::list blocked;
   for (const plan::BlockedPlace& one : found.blocked)
-    blocked.append(py::make_tuple(one.reason, from_vec3(one.place), one.length));
-  return py::dict("poses"_a = from_poses(found.poses), "kind"_a = take<std::uint8_t>(std::move(kinds)),
-                  "feed"_a = take<double>(std::move(found.feeds)),
-                  "removed"_a = take<double>(std::move(planned.removed)), "blocked"_a = blocked,
-                  "reason"_a = found.reason, "rows"_a = found.rows, "added"_a = found.added, "direct"_a = found.direct,
-                  "retracts"_a = found.retracts, "drops"_a = found.drops);
+    blocked.append(blocked_place(one.reason, from_vec3(one.place), one.length));
+  return plan_result(
+      "operations", "FinishedMoves",
+      py::dict("poses"_a = from_poses(found.poses), "kind"_a = take<std::uint8_t>(std::move(kinds)),
+               "feed"_a = take<double>(std::move(found.feeds)), "removed"_a = take<double>(std::move(planned.removed)),
+               "blocked"_a = py::tuple(blocked), "reason"_a = found.reason,
+               "stats"_a = py::dict("rows"_a = found.rows, "added"_a = found.added, "direct"_a = found.direct,
+                                    "retracts"_a = found.retracts, "drops"_a = found.drops)));
 }
 
 std::vector<std::vector<Vec3>> to_region(const ArraysLike& arrays) {

@@ -7,6 +7,7 @@ import os
 import pathlib
 import riffler.pen_results
 import riffler.plan.locations
+import riffler.plan.operations
 import riffler.plan.orientations
 import riffler.plan.strategies.pencil
 import riffler.plan.strategies.swarf
@@ -4486,7 +4487,7 @@ class _PoseFollower:
     def time(self) -> float:
         ...
     @property
-    def why(self) -> typing.Any:
+    def why(self) -> str | None:
         ...
 class JournalStroke:
     """
@@ -6240,7 +6241,7 @@ def engrave(part: Mesh, curves: collections.abc.Iterable[numpy.typing.ArrayLike]
     """
     For riffler.plan.engrave.
     """
-def finish(part: Mesh, fixtures: collections.abc.Sequence[Mesh], stock: Volume, tool: Tool, *, axis: numpy.typing.ArrayLike, clearance: typing.SupportsFloat, pattern: str, cusp: typing.SupportsFloat, tolerance: typing.SupportsFloat, allowance: typing.SupportsFloat, angle: typing.SupportsFloat, min_slope: typing.SupportsFloat, max_slope: typing.SupportsFloat, region: collections.abc.Iterable[numpy.typing.ArrayLike], feed: typing.SupportsFloat, plunge: typing.SupportsFloat, progress: collections.abc.Callable[[float], bool | None] | None) -> dict[str, typing.Any]:
+def finish(part: Mesh, fixtures: collections.abc.Sequence[Mesh], stock: Volume, tool: Tool, *, axis: numpy.typing.ArrayLike, clearance: typing.SupportsFloat, pattern: str, cusp: typing.SupportsFloat, tolerance: typing.SupportsFloat, allowance: typing.SupportsFloat, angle: typing.SupportsFloat, min_slope: typing.SupportsFloat, max_slope: typing.SupportsFloat, region: collections.abc.Iterable[numpy.typing.ArrayLike], feed: typing.SupportsFloat, plunge: typing.SupportsFloat, progress: collections.abc.Callable[[float], bool | None] | None) -> riffler.plan.operations.FinishedMoves:
     """
     For riffler.plan.finish.
     """

@@ -87,7 +87,7 @@ class LostReport(DictResult):
 
 @dataclass(frozen=True)
 class SurfaceReport(LostReport):
-    """The report of `Volume.to_mesh_with_report`: material that is not in the mesh, and the size without a tolerance."""
+    """Report of `Volume.to_mesh_with_report`: material that is not in the mesh, and its size without a tolerance."""
 
     all_triangles: int
     """Triangles without a tolerance."""

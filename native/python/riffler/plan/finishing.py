@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import pi
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,11 +12,10 @@ from .. import _core
 from .._core import Tool
 from ..arguments import Progress, then
 from ..hints import hinted
-from .operations import Blocked, Operation, report_of
+from .operations import FinishedMoves, Operation, report_of
 from .setups import Setup
 
 PATTERNS: tuple[str, ...] = tuple(_core.finish_patterns())
-COUNTS = ("rows", "added", "direct", "retracts", "drops")
 
 
 @hinted("plan.finish")
@@ -113,10 +111,9 @@ def finish(
         progress=progress,
     )
 
-    def made(parts: dict[str, Any]) -> Operation:
-        blocked = tuple(Blocked(*one) for one in parts["blocked"])
-        arrays = parts["poses"], parts["kind"], parts["feed"]
-        report = report_of(*arrays, parts["removed"], pitch, blocked, {key: parts[key] for key in COUNTS})
-        return Operation(*arrays, tool, report, parts["reason"], float(spindle), float(tolerance))
+    def made(moves: FinishedMoves) -> Operation:
+        arrays = moves.poses, moves.kind, moves.feed
+        report = report_of(*arrays, moves.removed, pitch, moves.blocked, moves.stats)
+        return Operation(*arrays, tool, report, moves.reason, float(spindle), float(tolerance))
 
     return then(found, made)

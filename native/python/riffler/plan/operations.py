@@ -98,6 +98,20 @@ class Operation:
         return len(self.poses)
 
 
+@dataclass(frozen=True, eq=False)
+class FinishedMoves:
+    """Moves of a finishing operation, before its report: `poses`, `kind` and `feed` as in `Operation`, `removed` (n - 1,)
+    mm³ that each move removes from the stock, and `blocked`, `reason` and `stats`."""
+
+    poses: NDArray[np.float64]
+    kind: NDArray[np.uint8]
+    feed: NDArray[np.float64]
+    removed: NDArray[np.float64]
+    blocked: tuple[Blocked, ...]
+    reason: str
+    stats: Mapping[str, int]
+
+
 def lengths_of(poses: NDArray[np.float64]) -> NDArray[np.float64]:
     """mm of the move to each pose; 0 for the first."""
     return np.linalg.norm(np.diff(poses[:, :3], axis=0, prepend=poses[:1, :3]), axis=1)
