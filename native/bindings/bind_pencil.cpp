@@ -38,7 +38,8 @@ PencilResult from_result(plan::PencilResult&& result) {
 void bind_pencil(py::module_& m) {
   m.def("stepover_of_scallop", &plan::stepover_of_scallop, py::arg("radius"), py::arg("height"));
   m.def("tip_ball_radius", &plan::tip_ball_radius, py::arg("tool"), py::arg("name"),
-        "Radius (mm) of the ball at the tip of ``tool``; ValueError naming the argument ``name`` where there is none.");
+        "Radius (mm) of the ball at the tip of ``tool``; ValueError naming the argument ``name`` if the tip is not a "
+        "ball.");
   m.def(
       "pencil",
       [](const std::shared_ptr<Mesh>& part, const Tool& tool, double tolerance, std::optional<double> bitangency_angle,

@@ -192,11 +192,18 @@ class Future(Generic[R]):
         return True
 
     def cancelled(self) -> bool:
-        """Whether the call has ended by `Cancelled`. Examples: see `cancel`."""
+        """Whether the call has ended by `Cancelled`.
+
+        Examples
+        --------
+        >>> future = riffler.submit(riffler.Volume.block, (0, 0, 0), (4, 3, 2), 0.5)
+        >>> future.result().volume, future.cancelled()
+        (24.0, False)
+        """
         return self._task.done and isinstance(self.exception(), _core.Cancelled)
 
     def progress(self) -> float:
-        """The finished share, in [0, 1]: never falls, and 1 only where the call came to its end.
+        """The finished share, in [0, 1]. Never decreases; 1 only if the call has finished.
 
         Examples
         --------

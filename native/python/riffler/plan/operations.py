@@ -100,8 +100,8 @@ class Operation:
 
 @dataclass(frozen=True, eq=False)
 class FinishedMoves:
-    """Moves of a finishing operation, before its report: `poses`, `kind` and `feed` as in `Operation`, `removed` (n - 1,)
-    mm³ that each move removes from the stock, and `blocked`, `reason` and `stats`."""
+    """Moves of a finishing operation, before its report: `poses`, `kind` and `feed` as in `Operation`, the volumes
+    `removed` (n - 1,) mm³ by the moves, and `blocked`, `reason` and `stats`."""
 
     poses: NDArray[np.float64]
     kind: NDArray[np.uint8]

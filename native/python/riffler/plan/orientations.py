@@ -305,10 +305,11 @@ def draw_map(orientations: FreeOrientations, *, axes: Axes | None = None) -> Axe
 
     Examples
     --------
-    ::
-
-        axes = riffler.plan.draw_map(riffler.plan.free_orientations(path, tool, collider, index=0))
-        axes.figure.savefig("map.png")
+    >>> part = riffler.shape.relief([[1, 1], [0, 0], [1, 1]], size=(30, 20), depth=10, sink=5)
+    >>> tool = riffler.Tool.ball(diameter=4, length=20)
+    >>> valley = riffler.plan.pencil(part, tool)[0]
+    >>> axes = riffler.plan.draw_map(riffler.plan.free_orientations(valley, tool, riffler.Collider(part), index=0))
+    >>> axes.figure.savefig("map.png")
     """
     from matplotlib import colors, pyplot
 

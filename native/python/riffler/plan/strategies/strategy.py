@@ -67,7 +67,7 @@ class Found:
 
 
 class Strategy(ABC):
-    """How paths come about: see `find`.
+    """A method of finding paths: see `find`.
 
     A module of this package defines one and lists it in STRATEGIES; ``riffler plan``, the panel of the Blender
     extension and ``riffler.plan.find`` read the table of them all (strategies/__init__.py).
@@ -76,12 +76,12 @@ class Strategy(ABC):
     id: ClassVar[str] = ""  # its name in commands and scripts
     place: ClassVar[int] = 0  # in lists: the smallest first
     label: ClassVar[str] = ""
-    action: ClassVar[str] = ""  # what its button says
+    action: ClassVar[str] = ""  # text of its button
     description: ClassVar[str] = ""
     summary: ClassVar[str] = ""  # of the command, a verb in front
-    nothing: ClassVar[str] = "path"  # what there is none of, where nothing was found
+    nothing: ClassVar[str] = "path"  # noun for messages such as "no path found"
     needs: ClassVar[str] = "part"  # in addition to part and tool: "curves", "paths" of a plan, or "part" for nothing
-    missing: ClassVar[str] = ""  # what to do in Blender where curves or paths are missing
+    missing: ClassVar[str] = ""  # what to do in Blender if curves or paths are missing
     parameters: ClassVar[tuple[Parameter, ...]] = ()
 
     @abstractmethod
@@ -111,11 +111,19 @@ class Strategy(ABC):
         Raises
         ------
         ValueError
-            Naming what is wrong. See `find`.
+            Naming the faulty argument. See `find`.
+
+        Examples
+        --------
+        >>> part = riffler.shape.relief([[1, 1], [0, 0], [1, 1]], size=(30, 20), depth=10, sink=5)
+        >>> pencil = riffler.plan.STRATEGIES["pencil"]
+        >>> found = pencil.run(part, riffler.Tool.ball(diameter=4, length=20), [], pencil.options({}))
+        >>> len(found.plan.paths)
+        1
         """
 
     def check(self, tool: Tool, given: Sequence[Any]) -> None:  # noqa: B027
-        """Refuses a tool that the strategy cannot use: known at once, before a long run. See `find`.
+        """Raises ValueError for a tool that the strategy cannot use, at once instead of in a long run. See `find`.
 
         Parameters
         ----------
@@ -123,10 +131,14 @@ class Strategy(ABC):
             The cutter.
         given : list
             As for ``run``.
+
+        Examples
+        --------
+        >>> riffler.plan.STRATEGIES["engrave"].check(riffler.Tool.ball(diameter=1, length=10), [])
         """
 
     def options(self, given: Mapping[str, Any]) -> dict[str, Any]:
-        """All parameters with their defaults, without those that are None.
+        """The given parameters and the defaults of the others, without those that are None.
 
         Parameters
         ----------
@@ -140,7 +152,7 @@ class Strategy(ABC):
         Raises
         ------
         ValueError
-            For unknown ones and for words that are none of the choices.
+            For unknown parameters, and for words that are not among the choices.
 
         Examples
         --------
