@@ -1,4 +1,4 @@
-"""Operations: what a tool does on a part in one set-up, with approaches, links and retracts."""
+"""Operations of a tool on a part in one set-up, with approaches, links and retracts."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ RAPID_FEED = 10000.0  # mm/min, for times, as in riffler.verify
 
 @dataclass(frozen=True, eq=False)
 class Blocked:
-    """Where the tool does not cut, and why: see `OperationReport`.
+    """A place that the tool does not cut, with the reason: see `OperationReport`.
 
     Attributes
     ----------
@@ -25,7 +25,7 @@ class Blocked:
     place : ndarray, shape (3,)
         Tip of the tool at the first of these places, mm.
     length : float
-        mm of rows that are left out.
+        mm of omitted rows.
     """
 
     reason: str
@@ -35,7 +35,7 @@ class Blocked:
 
 @dataclass(frozen=True, eq=False)
 class OperationReport:
-    """What an operation does: see `Operation`.
+    """Times and lengths of an operation: see `Operation`.
 
     Attributes
     ----------
@@ -44,11 +44,11 @@ class OperationReport:
     cut_mm : float
         Length of the cuts.
     air_mm : float
-        Length of moves at feed that remove nothing of the stock, as its rays show it.
+        Length of moves at feed that remove no material from the rays of the stock.
     largest_engagement : float, optional
         Largest radial width of cut as a share of the diameter; None for operations that do not bound it.
     blocked : tuple of Blocked
-        What could not be reached.
+        Places that could not be reached.
     stats : dict
         Counts: rows, rows added between those of equal spacing, direct links, retracts, points of the drop surface.
     """
@@ -70,19 +70,19 @@ class Operation:
     poses : ndarray, shape (n, 6)
         Tip in mm and unit axis, at the ends of its moves.
     kind : ndarray of uint8, shape (n,)
-        Of the move to each pose: 0 rapid, 1 lead (plunge), 2 cut, 3 link at feed.
+        Kind of the move to each pose: 0 rapid, 1 lead (plunge), 2 cut, 3 link at feed.
     feed : ndarray, shape (n,)
         mm/min; 0 for rapids.
     tool : Tool
         Cutter, shank and holder.
     report : OperationReport
-        Times, lengths, what could not be reached.
+        Times, lengths, and unreached places.
     reason : str
         Why it has no poses; empty if it has some.
     spindle : float
         rev/min.
     tolerance : float
-        mm that cuts may enter part + allowance.
+        mm by which cuts may enter part + allowance.
     """
 
     poses: NDArray[np.float64]

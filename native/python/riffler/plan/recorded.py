@@ -1,4 +1,4 @@
-"""Plans from recorded strokes: the paths that a hand has found."""
+"""Plans from recorded strokes."""
 
 from __future__ import annotations
 
@@ -45,11 +45,11 @@ class StrokePath:
     path : PencilPath
         With axes: through keys, or of a tool without a ball tip the recorded poses.
     error : float
-        mm: the recorded ball's centre, or tip, is nowhere further from the path.
+        mm: largest distance of the recorded ball's centre, or tip, from the path.
     turn : float
-        rad: the recorded axis is nowhere further from the path's.
+        rad: largest angle between the recorded axis and the path's.
     poses : int
-        How many poses were recorded.
+        Number of recorded poses.
     turns : bool
         The path's axes follow its keys; False for a tool without a ball tip.
     """
@@ -74,7 +74,7 @@ class Recorded:
     paths : list of StrokePath
         The bounds of each path.
     notes : list of str
-        What else the user should know, as sentences.
+        Further notes for the user, as sentences.
     """
 
     plan: Plan
@@ -118,7 +118,7 @@ def path_of_stroke(
     angle : float
         rad: largest angle between their axes, at most 0.5.
     name : str
-        What errors call the poses.
+        Name of the poses in errors.
 
     Returns
     -------
@@ -127,7 +127,7 @@ def path_of_stroke(
     Raises
     ------
     ValueError
-        Naming the row: fewer than two poses, not finite, no unit axis, axes that are opposite to those before; and for
+        Naming the row: fewer than two poses, not finite, not a unit axis, an axis opposite to the one before; and for
         a motion that stays in one place.
 
     Examples

@@ -1,4 +1,4 @@
-"""What a strategy is. Command line and Blender read its parameters from here."""
+"""Base class of strategies. The command line and Blender read their parameters from it."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ class Parameter:
     key : str
         Its name as an argument.
     label, help : str
-        For people.
+        Label for users.
     default : float, int, str or None
-        None where leaving it out means something, which ``help`` says; a panel shows 0 then.
+        None if omitting it has a meaning, which ``help`` states; a panel then shows 0.
     unit : str
         "mm", "rad" (degrees on the command line and in panels), or "" for a whole number.
     low, high : float
@@ -49,16 +49,16 @@ class Parameter:
 
 @dataclass(frozen=True)
 class Found:
-    """What a strategy has found: see `find`.
+    """Result of a strategy: see `find`.
 
     Attributes
     ----------
     plan : Plan
         The paths.
     reason : str
-        Why it has no paths; empty where it has some.
+        Why it has no paths; empty if it has some.
     notes : list of str
-        What else the user should know, as sentences.
+        Further notes for the user, as sentences.
     """
 
     plan: Plan
