@@ -1,5 +1,5 @@
-"""Pictures of meshes for the examples. Riffler is the renderer: a volume of the turned mesh has one ray per pixel, and
-the end of each ray is the surface that the viewer sees. Needs matplotlib."""
+"""Pictures of meshes for the examples, rendered by Riffler: a volume of the turned mesh has one ray per pixel, and the
+end of each ray is the surface that the viewer sees. Needs matplotlib."""
 
 import matplotlib
 
@@ -37,7 +37,7 @@ class View:
         return seen[:, :2], seen[:, 2] > surface - 4 * self.pitch
 
     def values(self, mesh, values):
-        """An image of values at the mesh's vertices; pixels between vertices have the mean of their neighbours."""
+        """An image of values at the mesh's vertices; pixels between vertices get the mean of the nearest values."""
         seen = mesh.vertices @ self.axes
         pixel = np.clip(((seen - self.lower)[:, :2] / self.pitch).astype(int), 0, np.array(self.depth.shape) - 1)
         near = seen[:, 2] > self.depth[tuple(pixel.T)] - 6 * self.pitch
@@ -52,7 +52,7 @@ class View:
         """The image: light from the upper left, hollows darker, white around. `colour`: RGB, or one for each pixel."""
         step = np.diff(self.depth, axis=0, prepend=np.nan), np.diff(self.depth, axis=1, prepend=np.nan)
         slopes = []
-        for axis, before in enumerate(step):  # the smaller step of both sides: edges stay sharp
+        for axis, before in enumerate(step):  # take the smaller step of the two sides, so that edges stay sharp
             after = np.roll(before, -1, axis)
             take = np.abs(np.nan_to_num(after, nan=1e9)) < np.abs(np.nan_to_num(before, nan=1e9))
             slopes.append(np.nan_to_num(np.where(take, after, before)) / self.pitch)

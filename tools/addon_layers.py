@@ -61,7 +61,7 @@ def problems(root: Path = ROOT) -> list[str]:
     addon = root / "addon"
     order = [*BELOW, *sections(addon)]
     found = [
-        f"{addon.name}/{folder.name} is no section of registration.py"
+        f"{addon.name}/{folder.name} is not a section of registration.py"
         for folder in sorted(addon.iterdir())
         if folder.is_dir() and any(folder.rglob("*.py")) and folder.name not in [*order, "_vendor"]
     ]

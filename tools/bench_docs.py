@@ -53,7 +53,7 @@ def select(name: str, text: str, selection: str) -> str:
 
 
 def measured(folder: Path) -> dict[str, str]:
-    """Every table by its mark; a quick run is no measurement."""
+    """Every table by its mark; a quick run is not a measurement."""
     tables: dict[str, str] = {}
     for path in sorted(folder.glob("*.md")):
         data = json.loads(path.with_suffix(".json").read_text())

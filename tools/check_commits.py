@@ -29,7 +29,7 @@ def faults(message: str, merge: bool = False) -> Iterator[str]:
     if not match:
         yield "the subject must read 'area: Imperative sentence'"
     elif NOT_IMPERATIVE.fullmatch(match["verb"]) and match["verb"] not in IMPERATIVE:
-        yield f"{match['verb']!r} is no imperative: write what the commit does as an order"
+        yield f"{match['verb']!r} is not an imperative: write what the commit does as an order"
     if subject.endswith("."):
         yield "the subject ends without a full stop"
     if not rest.startswith("\n") or not rest.strip():

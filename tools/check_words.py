@@ -1,6 +1,5 @@
-"""Counts words that make the project's text hard to read, in comments, docstrings, messages and documents, and holds
-every file to its count in tools/words_allowed.txt: none for a file that the list does not name, or without a list. A
-count may only shrink.
+"""Counts words that make comments, docstrings, messages and documents hard to read. A file may have as many as
+tools/words_allowed.txt lists, and none if the list does not name it. Counts may only shrink.
 
     tools/check_words.py                   fails where a file has more of them than allowed, or fewer: shrink the list
     tools/check_words.py --update          shrinks the list, and removes an empty one; refuses to let it grow
@@ -22,7 +21,7 @@ from pathlib import Path
 from shell import ROOT, StepError, git, main
 
 ALLOWED = ROOT / "tools" / "words_allowed.txt"
-# What is looked for, and what stands there instead.
+# Each pattern to find, and the words to write instead.
 WORDS = {
     r"(?:^|(?<=[.:!?] ))Of (?!course)": "the subject first: 'Of the moves that …' -> 'Moves that …'",
     r"\banew\b": "again",
@@ -40,7 +39,7 @@ WORDS = {
 }
 PATTERN = re.compile("|".join(f"({pattern})" for pattern in WORDS), re.MULTILINE)
 ADVICE = tuple(WORDS.values())
-# Texts of others, generated ones, and this list's own files.
+# Third-party texts, generated files, and the files of this check.
 EXEMPT = re.compile(r"tools/(tests/test_)?check_words\.py|third_party/.*|LICENSE.*|.*\.pyi|docs/operators\.md")
 C_TOKEN = re.compile(r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\'', re.DOTALL)
 FENCE = re.compile(r"^```.*?^```", re.MULTILINE | re.DOTALL)
@@ -55,18 +54,18 @@ class Hit:
 
 
 def tracked() -> list[str]:
-    """Every file of the project: what git knows, and what is new and not ignored."""
+    """Every file of the project: tracked files, and new ones that are not ignored."""
     names = git("ls-files", "--cached", "--others", "--exclude-standard").splitlines()
     return [name for name in names if (ROOT / name).is_file()]
 
 
 def blank(text: str) -> str:
-    """The same lines without their characters, so that line numbers agree."""
+    """The same number of empty lines, so that line numbers agree."""
     return re.sub(r"[^\n]", " ", text)
 
 
 def without_code(text: str) -> str:
-    """The same text with spaces for what stands in backticks: names are no prose."""
+    """The same text with spaces between backticks, because names are not prose."""
     return re.sub(r"`[^`\n]*`", lambda m: "`" + " " * (len(m[0]) - 2) + "`", text)
 
 
@@ -75,7 +74,7 @@ def prose_of_markdown(text: str) -> Iterator[tuple[int, str]]:
 
 
 def joined(comments: Iterator[tuple[int, str]]) -> Iterator[tuple[int, str]]:
-    """Comments of one line each, those on consecutive lines as one text: a sentence may cross lines."""
+    """Joins comments on consecutive lines, because a sentence may span lines."""
     start, lines = 0, []
     for line, comment in comments:
         if lines and line != start + len(lines):
@@ -97,7 +96,7 @@ def prose_of_c(text: str) -> Iterator[tuple[int, str]]:
 
 
 def prose_of_python(text: str) -> Iterator[tuple[int, str]]:
-    """Comments, and string literals with a space, of which docstrings are some."""
+    """Comments, and string literals with a space, docstrings included."""
     tokens = [(t.start[0], t.type, t.string) for t in tokenize.generate_tokens(io.StringIO(text).readline)]
     yield from joined((line, token.lstrip("# ")) for line, kind, token in tokens if kind == tokenize.COMMENT)
     for line, kind, token in tokens:
@@ -122,7 +121,7 @@ def hits(paths: list[str]) -> list[Hit]:
 
 
 def checked(names: list[str]) -> list[str]:
-    """The files that have prose, of those that the project has, in the named folders."""
+    """The project's files with prose in the named folders, or everywhere."""
     return sorted(
         name
         for name in tracked()
@@ -145,7 +144,7 @@ def counts(found: list[Hit]) -> dict[str, int]:
 
 
 def problems(found: list[Hit], allowed: dict[str, int]) -> list[str]:
-    """What the check fails for; a file with more than its count is shown with all its words."""
+    """Reasons why the check fails. For a file with more words than allowed, lists all of them."""
     result = []
     now = counts(found)
     for path in sorted(now.keys() | allowed.keys()):

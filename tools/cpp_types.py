@@ -8,7 +8,7 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
-# What is no code: literals, comments, lines of the preprocessor.
+# Not code: literals, comments, lines of the preprocessor.
 NO_CODE = re.compile(
     r'R"(?P<tag>[^()\s\\]{0,16})\(.*?\)(?P=tag)"'
     r'|"(?:[^"\\\n]|\\.)*"'
@@ -31,7 +31,7 @@ def statements(text: str) -> Iterator[tuple[list[str], str, str]]:
     """Each statement, and each head of a block, outside of classes and functions: the names of the namespaces around it
     ("" for unnamed ones), its text, and `;` or `{`. Heads of namespaces are left out."""
     code = NO_CODE.sub(" ", text)
-    scopes: list[str | None] = []  # of each open brace the namespace; None where it is no namespace
+    scopes: list[str | None] = []  # of each open brace the namespace; None if it is not a namespace
     start = 0
     for at, char in enumerate(code):
         if char not in "{};":
@@ -52,7 +52,7 @@ def statements(text: str) -> Iterator[tuple[list[str], str, str]]:
 
 def defined(text: str) -> Iterator[tuple[str, str]]:
     """Namespace and name of each type and alias that `text` defines outside of unnamed namespaces, classes and
-    functions. Specialisations of templates are no new types."""
+    functions. Specialisations of templates are not new types."""
     for spaces, head, char in statements(text):
         match = (ALIAS if char == ";" else TYPE).match(TEMPLATE.sub("", head))
         if match and "" not in spaces and "::" not in match[1]:

@@ -56,7 +56,7 @@ def entry() -> None:
     known = [*native_targets(), *fuzz_python.TARGETS] if PROGRAM.exists() else [*fuzz_python.TARGETS]
     for target in given.targets:
         if target not in known:
-            raise StepError(f"there is no target {target}; there are {', '.join(known)}")
+            raise StepError(f"unknown target {target}; known: {', '.join(known)}")
     with ThreadPoolExecutor(cores()) as pool:
         good = list(pool.map(lambda target: fuzz(target, given.seconds, given.seed), given.targets or known))
     sys.exit(0 if all(good) else 1)

@@ -1,4 +1,4 @@
-"""Fuzzes one reader that is written in Python, by mutation alone:
+"""Fuzzes one of the readers written in Python, by mutation:
 
 tools/fuzz_python.py TARGET [--seconds 600] [--seed 1] [--found build/fuzz/found] [--again FILE]
 
@@ -34,7 +34,7 @@ WORDS = [
 
 
 class BrokenError(Exception):
-    """A reader took what it must not take."""
+    """A reader accepted input that it must refuse."""
 
 
 def seed_plan() -> bytes:
@@ -59,12 +59,12 @@ def read_plan(data: bytes) -> None:
 
 
 def seed_curves() -> bytes:
-    """What all kinds of files with curves have: each reads its own lines, or refuses the others."""
+    """Lines of all kinds of files with curves. Each reader accepts its own lines and refuses the others."""
     return b"v 0 0 0\nv 1 0 0\nv 1 1 0\nl 1 2\nl 2 3\nl -1 1\n\n0 0 0\n1, 2, 3 # a point\n\n[[[0, 0, 0], [1, 2, 3]]]\n"
 
 
 def read_curves(data: bytes) -> None:
-    """Each line by line and as a whole, so that every kind of file gets past what belongs to the others."""
+    """Reads the curves as each kind of file, without most lines of the other kinds."""
     import numpy as np
     import riffler
     from riffler import plan
@@ -84,7 +84,7 @@ def read_curves(data: bytes) -> None:
             except riffler.FormatError:
                 continue
             if not all(c.ndim == 2 and c.shape[1] == 3 and len(c) > 1 and np.isfinite(c).all() for c in curves):
-                raise BrokenError("curves that are none")
+                raise BrokenError("invalid curves were accepted")
 
 
 def seed_record() -> bytes:
@@ -103,7 +103,7 @@ def read_record(data: bytes) -> None:
 
     _, cuts, _, _ = sculpt_payload.decode(data)
     if not all(isinstance(cut.tool, dict) and cut.poses.shape[1] == 6 for cut in cuts):
-        raise BrokenError("a cut that is none")
+        raise BrokenError("an invalid cut was accepted")
 
 
 def seed_tools() -> bytes:
@@ -154,7 +154,7 @@ def packed(model: bytes) -> bytes:
 
 
 def read_threemf(data: bytes) -> None:
-    """The model in a sound package; a package of its own where the bytes are one."""
+    """Reads the bytes as the model in a valid package, or as a whole package if they are a zip file."""
     import riffler
 
     with tempfile.TemporaryDirectory() as folder:
@@ -162,7 +162,7 @@ def read_threemf(data: bytes) -> None:
         path.write_bytes(data if data.startswith(b"PK") else packed(data))
         mesh = riffler.Mesh.read(path)
     if not len(mesh.triangles):
-        raise BrokenError("a mesh without triangles")
+        raise BrokenError("a mesh without triangles was accepted")
 
 
 @dataclass(frozen=True)
@@ -214,7 +214,7 @@ def mutated(data: bytes, other: bytes, choose: random.Random) -> bytes:
 
 
 def check(name: str, data: bytes) -> None:
-    """ValueError, which FormatError is, is a refusal; any other error, and a long time, is a fault."""
+    """Runs a reader. A ValueError, such as FormatError, is a refusal; any other error or a long run is a fault."""
 
     def late(*_):
         raise BrokenError(f"an input took more than {SLOWEST} s")
@@ -244,7 +244,7 @@ def entry() -> None:
     choose = random.Random(given.seed)
     inputs = [data for _, data in beginnings(given.target)]
     given.found.mkdir(parents=True, exist_ok=True)
-    running = given.found / f"{given.target}-{os.getpid()}"  # stays where a library ends the process
+    running = given.found / f"{given.target}-{os.getpid()}"  # remains if a library ends the process
     end, runs = time.monotonic() + given.seconds, 0
     while time.monotonic() < end:
         data = mutated(choose.choice(inputs), choose.choice(inputs), choose)

@@ -1,4 +1,5 @@
-"""What the machine itself must have: checked for, installed by apt where that may be done, named where not."""
+"""Checks that the machine has the system packages that Riffler needs. Installs them with apt if allowed, else names
+them."""
 
 from __future__ import annotations
 
@@ -19,7 +20,7 @@ from shell import StepError, say
 
 @dataclass(frozen=True)
 class Need:
-    """One thing, how to see that it is there, Debian's package of it, and where everybody else finds it."""
+    """A system package: its name on Debian, its home page for other systems, and a test whether it is installed."""
 
     what: str
     package: str
@@ -30,13 +31,13 @@ class Need:
 
 @cache
 def compiler() -> str | None:
-    """The C++ compiler that CMake will take as well."""
+    """The C++ compiler that CMake will choose."""
     wanted = os.environ.get("CXX")
     return next((c for c in ([wanted] if wanted else ["c++", "g++", "clang++"]) if shutil.which(c)), None)
 
 
 def preprocesses(text: str) -> bool:
-    """Whether the compiler gets through `text` in C++20."""
+    """Whether the compiler preprocesses `text` as C++20 without an error."""
     if compiler() is None:
         return False
     command = [compiler(), "-std=c++20", "-x", "c++", "-E", "-o", os.devnull, "-"]
@@ -52,7 +53,7 @@ def program(name: str) -> Callable[[], bool]:
 
 
 def described(name: str) -> Callable[[], bool]:
-    """Whether pkg-config knows it."""
+    """A test whether pkg-config knows the package."""
     command = ["pkg-config", "--exists", name]
     return lambda: shutil.which("pkg-config") is not None and subprocess.run(command, check=False).returncode == 0
 
@@ -81,7 +82,8 @@ def python_environments() -> bool:
 
 
 def numpy_for_packaged_blender() -> bool:
-    """A distribution's Blender runs the distribution's Python and does not insist on numpy; others carry their own."""
+    """Whether a distribution's Blender finds numpy. It runs the distribution's Python and does not depend on numpy;
+    other Blenders include their own."""
     if shutil.which("blender") not in {None, "/usr/bin/blender"}:
         return True
     command = ["/usr/bin/python3", "-c", "import numpy"]
@@ -103,7 +105,7 @@ BUILD = [
     Need("ccache", "ccache", "https://ccache.dev", program("ccache"), "every checkout compiles everything itself"),
 ]  # fmt: skip
 
-# The bpy wheels link these and do not carry them (ldd on their libraries). They come with any desktop.
+# Libraries that the bpy wheels link but do not include (ldd lists them). Every desktop has them.
 BLENDER_MODULE = [
     Need(f"shared library {name}", package, "your desktop's X11 and OpenGL packages", library(name))
     for name, package in {
@@ -114,7 +116,7 @@ BLENDER_MODULE = [
     }.items()
 ]  # fmt: skip
 
-# Only pkg-config finds umockdev's headers: they lie in a folder of its own.
+# Only pkg-config finds umockdev's headers: they are in a folder of their own.
 UMOCKDEV = Need("umockdev", "umockdev", "https://github.com/martinpitt/umockdev", program("umockdev-wrapper"))
 CPP_TESTS = [
     Need("GoogleTest", "libgtest-dev", "https://github.com/google/googletest", header("gtest/gtest.h")),
@@ -134,7 +136,7 @@ BLENDER_WINDOW = [
 ]
 CHROOTS = [Need("debootstrap", "debootstrap", "https://wiki.debian.org/Debootstrap", program("debootstrap"))]
 
-# What LinuxCNC's interpreter links in addition to what is unpacked with it (tools/linuxcnc.py).
+# Libraries that LinuxCNC's interpreter links and tools/linuxcnc.py does not unpack with it.
 LINUXCNC = [
     Need("shared library of Python 3.11", "libpython3.11", "your Python's packages", library("libpython3.11.so.1.0")),
     Need("libedit", "libedit2", "https://thrysoee.dk/editline", library("libedit.so.2")),
@@ -147,8 +149,8 @@ BENCH = [
 
 
 def require(needs: list[Need]) -> None:
-    """Makes sure of every need: by apt as root on Debian and its kin, otherwise StepError with the exact list. What can
-    be done without is named, and what that costs."""
+    """Ensures that all packages are installed. As root on Debian and its derivatives, apt installs them; otherwise
+    raises StepError with the exact list. Names missing optional packages and what is lost without them."""
     missing = [need for need in needs if not need.found()]
     if not missing:
         return

@@ -10,9 +10,9 @@ from .views import views
 DISTANCE = "riffler_deviation"  # mm
 COLOUR = "riffler_deviation_colour"
 ERROR = "riffler_error"  # on a mesh made from a sculpt: mm, the largest distance from it
-# On the mesh while it is coloured: the distance of full colours, mm; 0: the colours are of rows or tools.
+# Property of a coloured mesh: distance (mm) at which colours reach full strength; 0 if they show rows or tools.
 SCALE = "riffler_deviation_scale"
-# On the faces: which row of the program made them, its line and its tool; −1: the stock's own surface.
+# Face attributes: the program's row that cut the face, its line and its tool; −1: surface of the uncut stock.
 ROW, LINE, TOOL = "riffler_row", "riffler_line", "riffler_tool"
 
 _undone = False  # True after an undo removed the last colours, which a redo may restore
@@ -38,7 +38,7 @@ def show_cuts(mesh, cuts, shown):
 
 
 def hide_colours(mesh):
-    """True if the mesh showed distances or cuts."""
+    """Removes all colours. True if the mesh showed distances or cuts."""
     for name in (DISTANCE, COLOUR, ROW, LINE, TOOL):
         if name in mesh.attributes:
             mesh.attributes.remove(mesh.attributes[name])
@@ -83,7 +83,7 @@ def settle():
 
 
 def follow():
-    """After undo or redo, which restore meshes but not views."""
+    """Updates views after undo or redo, which restore meshes only."""
     global _undone
     if settle():
         _undone = True

@@ -1,4 +1,4 @@
-"""What is registered if the native core does not load: a panel with the reason and the remedy."""
+"""Registered if the native core does not load: a panel with the reason and the remedy."""
 
 import bpy
 
@@ -9,7 +9,7 @@ _report = {"why": "", "facts": [], "steps": [], "text": ""}
 
 def set_error(error):
     _report.update(diagnosis.report(error, diagnosis.Machine.current(bpy.app.version_string)))
-    print(_report["text"])  # users are first asked for the console's text
+    print(_report["text"])  # support asks for the console's text first
 
 
 def text():
@@ -52,7 +52,7 @@ def _draw(layout, context):
     layout.label(text="Native core not loaded", icon="ERROR")
     for title, texts in (
         ("Why", [_report["why"]]),
-        ("How to mend it", _report["steps"]),
+        ("How to fix it", _report["steps"]),
         ("Facts", _report["facts"]),
     ):
         box = layout.box().column(align=True)

@@ -26,7 +26,7 @@ class Machine:
     processor: str
     python: str
     blender: str
-    system_python: bool = False  # Blender has no Python of its own, as in distributions
+    system_python: bool = False  # Blender uses the system's Python, as in distributions
     distribution: list[str] = field(default_factory=list)  # its name, and those of the distributions it derives from
 
     @classmethod
@@ -54,7 +54,7 @@ def mend(error: BaseException, machine: Machine, found: list[str]) -> list[str]:
     tag = "cp" + "".join(machine.python.split(".")[:2])
     steps = []
     if "is in use, this add-on is" in text:
-        steps.append("Restart Blender: it holds the core of before the update.")
+        steps.append("Restart Blender: it still uses the core from before the update.")
         steps.append("If that does not help, another riffler comes first on Python's path: remove it.")
     elif "GLIBC" in text or "CXXABI" in text or "GLIBCXX" in text:
         steps.append("The system's C library is older than the package needs: update the system, or build from source.")
@@ -70,7 +70,7 @@ def mend(error: BaseException, machine: Machine, found: list[str]) -> list[str]:
     elif isinstance(error, ModuleNotFoundError):
         steps.append("The package is not there: install Riffler from its zip (the source folder has no native core).")
     elif machine.system == "Darwin":
-        steps.append("macOS may hold the file in quarantine: allow it under System Settings, Privacy & Security.")
+        steps.append("macOS may have quarantined the file: allow it under System Settings, Privacy & Security.")
     elif machine.system == "Windows":
         steps.append("An older copy may still be in use, or a virus scanner holds the file: restart Blender.")
     if machine.processor.lower() not in ("x86_64", "amd64"):
@@ -82,7 +82,7 @@ def mend(error: BaseException, machine: Machine, found: list[str]) -> list[str]:
 def _with_numpy(machine: Machine) -> list[str]:
     """Steps to install numpy alone."""
     if not machine.system_python:
-        return ["numpy is missing or too old in this Python: install Blender from blender.org, which carries it."]
+        return ["numpy is missing or too old in this Python: install Blender from blender.org, which includes it."]
     install = next((NUMPY[name] for name in machine.distribution if name in NUMPY), "install its package of numpy")
     return [
         f"numpy is missing or too old in the system's Python, which this Blender uses: {install}",
@@ -102,12 +102,12 @@ def report(error: BaseException, machine: Machine, folders: list[str] | None = N
         f"Native module found: {', '.join(found) if found else 'none'}",
     ]
     steps = mend(error, machine, found)
-    text = "\n".join(["Riffler: the native core did not load", why, *facts, "How to mend it:", *steps])
+    text = "\n".join(["Riffler: the native core did not load", why, *facts, "How to fix it:", *steps])
     return {"why": why, "facts": facts, "steps": steps, "text": text}
 
 
 def folder(path: Path) -> str:
-    """Whether the folder can be written to; writes nothing."""
+    """The folder's path, with a note if it does not exist or cannot be written to. Writes nothing."""
     there = next(p for p in (path, *path.parents) if p.is_dir())
     if not os.access(there, os.W_OK):
         return f"{path}, which may not be written"
@@ -115,7 +115,7 @@ def folder(path: Path) -> str:
 
 
 def table(title: str, rows: list[tuple[str, str]]) -> str:
-    """Lines of two columns: the names of things, and their values."""
+    """A titled table of two columns, names and values."""
     width = max(len(name) for name, _ in rows)
     return "\n".join([title, *(f"{name:{width}}  {text}" for name, text in rows)]) + "\n"
 

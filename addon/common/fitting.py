@@ -1,4 +1,4 @@
-"""The unit, pitch and cutter that suit an object of a given size, to begin sculpting."""
+"""Unit, pitch and cutter for the start of sculpting, from an object's size."""
 
 from __future__ import annotations
 
@@ -69,5 +69,5 @@ def depth(diameter: float) -> float:
 
 
 def depth_suits(depth: float, diameter: float) -> bool:
-    """True if a stroke of that depth neither scratches nor buries the cutter."""
+    """True if a stroke of that depth is neither a scratch nor so deep that it buries the cutter."""
     return diameter / 12 <= depth <= diameter / 2

@@ -7,7 +7,7 @@ from typing import Any
 
 
 def loads(text: str | bytes | memoryview, what: str) -> dict[str, Any]:
-    """The object in the text. ValueError, which begins with `what`, if the text is no object, or is nested
+    """The object in the text. ValueError, which begins with `what`, if the text is not an object, or is nested
     too deeply."""
     try:
         found = json.loads(bytes(text) if isinstance(text, memoryview) else text)

@@ -1,5 +1,5 @@
 """Sculpting with a pen or another device: a session on the device's thread (pen/session.py), polled thirty times a
-second; the force on its tool is drawn, and its state is shown."""
+second. Draws the force on the tool and shows the session's state."""
 
 import time
 from pathlib import Path
@@ -26,7 +26,7 @@ MODES = (
 )
 
 _shown = None  # arrows and gauge (sculpt/force_view.py)
-_told, _told_at = (), 0.0  # the panel's text, and the time since when it is shown
+_told, _told_at = (), 0.0  # the panel's text, and the time of its last update
 
 
 def brush_of(context, choice):
@@ -59,7 +59,7 @@ def session_options(context, ob, settings, brush):
     if settings.device == properties.RECORDING:
         return options  # a recording's poses are in the stock's frame
     options["scale"], options["pivot"] = clean(settings.scale), clean(settings.pivot)
-    options["touch"] = settings.touch and not brush.puts_on  # what is added is never felt
+    options["touch"] = settings.touch and not brush.puts_on  # added material is never felt
     if settings.start == "CURSOR":
         world = np.append(context.scene.cursor.location, 1.0)
         tip = (sculpts.from_world(ob) @ world)[:3]
@@ -100,7 +100,7 @@ def recordings(settings):
     if not settings.record:
         return None
     if not settings.folder or (settings.folder.startswith("//") and not bpy.data.filepath):
-        raise ValueError("choose a folder for the recording, or save the .blend first: // is the folder that it is in")
+        raise ValueError("choose a folder for the recording, or save the .blend first: // stands for its folder")
     folder = Path(bpy.path.abspath(settings.folder))
     if not folder.is_dir():
         raise ValueError(f"there is no folder {folder} for the recording: choose another")
@@ -189,7 +189,7 @@ class RIFFLER_OT_pen_sculpt(sculpt_work.TakesTool, properties.PenSettings, bpy.t
 
 
 def run_through(operator, session):
-    """Polls the session for the operator's `seconds`, ends it, and reports what it has done."""
+    """Polls the session for the operator's `seconds`, ends it, and reports its result."""
     end = time.monotonic() + operator.seconds
     try:
         while time.monotonic() < end and session.look():
@@ -274,7 +274,7 @@ def stop(operator):
 
 
 def tell(operator, session):
-    """Reports what the session has done, or that it has done nothing."""
+    """Reports the session's result, or that it changed nothing."""
     level, text, done = session.summary()
     operator.report({level}, text)
     return {"FINISHED"} if done else {"CANCELLED"}
@@ -301,7 +301,7 @@ class RIFFLER_OT_pen_stop(PenRuns, bpy.types.Operator):
 
 
 class RIFFLER_OT_pen_home(PenRuns, bpy.types.Operator):
-    """Set the pen's counters: it stands in its home posture now"""
+    """Set the pen's counters to those of its home posture, in which it stands now"""
 
     bl_idname = "riffler.pen_home"
     bl_label = "Home"

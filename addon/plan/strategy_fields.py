@@ -1,4 +1,4 @@
-"""The strategies as fields: one choice, and their parameters, made from riffler's table (riffler.plan.STRATEGIES)."""
+"""Blender fields for the strategies, made from riffler.plan.STRATEGIES: one for the choice, one for each parameter."""
 
 from bpy.props import EnumProperty, IntProperty
 from riffler.plan import STRATEGIES
@@ -15,7 +15,7 @@ def _entries(choices):
 
 
 def identifier(strategy, parameter):
-    """The name of the field: `tolerance`, `engrave_depth`."""
+    """Name of a parameter's field, such as `tolerance` or `engrave_depth`."""
     return parameter.key if strategy.id == FIRST else f"{strategy.id}_{parameter.key}"
 
 
@@ -46,7 +46,7 @@ FIELDS = {"strategy": choice()} | {identifier(s, p): _field(p) for s in STRATEGI
 
 
 def chosen(settings):
-    """The riffler.plan.Strategy of settings that have the fields."""
+    """The riffler.plan.Strategy chosen in `settings`."""
     return STRATEGIES[settings.strategy.lower()]
 
 

@@ -1,1 +1,1 @@
-"""Programs of plans, files and cuts: written as NC code, simulated, verified."""
+"""Writes, simulates and verifies programs, made from plans, files or cuts."""

@@ -1,9 +1,9 @@
 """The simulation of a program: the stock at the row of the scene's current frame, shown in chunks like a live sculpt.
-The sculpt itself is hidden meanwhile and unchanged: a copy is carved.
+It carves a copy of the sculpt, which is hidden meanwhile.
 
-With a window a timer carves, some milliseconds at a time, so that scrubbing stays responsive; the stock catches up.
-Without a window timers never run, and it is carved at once. Nothing modal runs. Undo ends a simulation, since it may
-restore any part of the display; so do saving and loading a file.
+With a window a timer carves for a few milliseconds at a time, so scrubbing stays responsive and the stock catches up.
+Without a window timers never run, so the stock is carved at once. There is no modal operator. Undo ends a simulation,
+because it may restore any part of the display; saving or loading a file ends it too.
 """
 
 import time
@@ -83,7 +83,7 @@ class Simulation:
 
 
 def _identity(plan):
-    """The identity of the plan's object of that name."""
+    """The identity of the plan object with that name."""
     return plan_store.identity(bpy.data.objects.get(plan))
 
 
@@ -93,8 +93,8 @@ def active():
 
 
 def begin(context, setup):
-    """Shows `setup` at the current frame, in place of an earlier simulation. None if it stopped at once, which was
-    reported."""
+    """Shows `setup` at the current frame, in place of an earlier simulation. None if it stopped at once, with a
+    message."""
     global _now
     end()
     _now = Simulation(context, setup)
@@ -131,7 +131,7 @@ def _follow():
 
 
 def _tick():
-    """Timer function. Does nothing during a render, which reads what would change."""
+    """Timer function. Does nothing during a render, which reads the data that a simulation changes."""
     if _now is not None and bpy.app.is_job_running("RENDER"):
         return SHOWN
     return None if _now is None or _lot(BUDGET) else PAUSE
@@ -155,7 +155,7 @@ def _lot(budget):
 
 @bpy.app.handlers.persistent
 def _on_frame(scene, depsgraph=None):
-    """A render has a copy of the scene, and shows the sculpt itself."""
+    """Follows the frame, except in a render, which has a copy of the scene and shows the sculpt itself."""
     if _now is not None and scene.name == _now.scene and (depsgraph is None or depsgraph.mode == "VIEWPORT"):
         _follow()
 
@@ -199,7 +199,7 @@ class RIFFLER_OT_simulate(properties.ProgramSettings, properties.GivenOptions, b
 
     bl_idname = "riffler.simulate"
     bl_label = "Simulate"
-    bl_options = {"REGISTER"}  # the display is no undo step
+    bl_options = {"REGISTER"}  # the display is not an undo step
 
     @classmethod
     def poll(cls, context):

@@ -256,7 +256,7 @@ class RIFFLER_OT_finding_go(bpy.types.Operator):
 
     bl_idname = "riffler.finding_go"
     bl_label = "Go to Finding"
-    bl_options = {"REGISTER"}  # in Blender a change of frame or view is no undo step
+    bl_options = {"REGISTER"}  # in Blender a change of frame or view is not an undo step
 
     of: EnumProperty(
         name="List",

@@ -1,11 +1,11 @@
-"""The display of a live sculpt: about a hundred mesh objects, each with the triangles of some bricks.
+"""The display of a live sculpt: about a hundred mesh objects (chunks), each with the triangles of some bricks.
 
 Filling one mesh of half a million triangles takes a tenth of a second; filling a chunk takes time for its own triangles
-only. Chunks are Blender objects, so that the artist's materials, matcaps and overlays apply, and few, since Blender's
-undo costs time per object (docs/decisions.md). The sculpt itself is hidden meanwhile.
+only. Chunks are Blender objects, so that the artist's materials, matcaps and overlays apply. They are few, because
+Blender's undo costs time per object (docs/decisions.md). The sculpt itself is hidden meanwhile.
 
-Everything is in one collection, which names its sculpt: so leftovers in an undo step or in the file of a Blender that
-crashed are recognised and removed. The user's copies of objects in it stay: Blender has given them other names.
+Everything is in one collection, which names its sculpt, so that leftovers in an undo step or in the file of a Blender
+that crashed are recognised and removed. The user's copies of objects in it stay: Blender has given them other names.
 """
 
 import itertools
@@ -32,8 +32,8 @@ _fillings = itertools.count(1)
 
 
 class Chunks:
-    """The chunks of the sculpt `ob`, whose mesh has bricks in a lattice of `shape`. Holds names, no references, which
-    the next undo invalidates."""
+    """The chunks of the sculpt `ob`, whose mesh has bricks in a lattice of `shape`. Stores names instead of references,
+    which the next undo invalidates."""
 
     def __init__(self, context, ob, shape, mm_per_unit):
         self._take(ob, shape, mm_per_unit)
@@ -118,18 +118,18 @@ class Chunks:
             _draw_outlines(self._before.outlined, False)
 
     def give_back(self, name):
-        """If the user has removed the collection: restores what `sweep` would have restored."""
+        """Restores what `sweep` would have restored, after the user has removed the collection."""
         self.outline(True)
         _reveal(sculpts.marked(self._mark, name), self._before)
 
     @property
     def there(self):
-        """Whether the collection exists: an undo may have gone back to before it."""
+        """Whether the collection exists; an undo may have removed it."""
         return collection_of(self._mark) is not None
 
     # ------------------------------------------------------------------ the tool
     def show_tool(self, solid):
-        """`solid`: vertices (mm, the tip in the origin, the axis z) and triangles."""
+        """Shows the tool. `solid`: vertices (mm, tip at the origin, axis z) and triangles."""
         self._shown, self._tool_at = uuid.uuid4().hex, None
         ob = next(iter(self._tools()), None)
         if ob is not None:
@@ -147,7 +147,7 @@ class Chunks:
         self._tool = ob.name
 
     def place_tool(self, pose):
-        """`pose`: (6,) tip and axis, mm in the sculpt's frame."""
+        """Moves the tool to `pose`: (6,) tip and axis, mm in the sculpt's frame."""
         ob, sculpt = bpy.data.objects.get(self._tool), sculpts.marked(self._mark)
         if ob is not None and sculpt is not None:
             turn = Vector((0, 0, 1)).rotation_difference(Vector(pose[3:])).to_matrix().to_4x4()
@@ -157,7 +157,7 @@ class Chunks:
 
     @property
     def tool_there(self):
-        """Whether this has shown the tool: an undo may have gone back to before that."""
+        """Whether the tool's object exists; an undo may have removed it."""
         return any(ob.get(SHOWN) == self._shown for ob in self._tools())
 
     def hide_tool(self):
@@ -193,8 +193,8 @@ def _patch(mesher, bricks):
         return *_arrays(patch), {"normals": patch.normals}
     if not versions.SMOOTH_BY_POLYGON:
         return *_arrays(mesher.patch(bricks, edges=True)), {}
-    # Triangles at an edge are flat: the mean normals of their corners lean away from their own by half of the edge's
-    # angle.
+    # Triangles at a sharp edge are shaded flat: the mean normals of their corners deviate from the triangle's normal by
+    # half of the edge's angle.
     patch = mesher.patch(bricks, edges=True, normals=np.pi)
     corners = patch.vertices[patch.triangles]
     (a, b, c), (d, e, f) = (corners[:, 1] - corners[:, 0]).T, (corners[:, 2] - corners[:, 0]).T
@@ -214,8 +214,8 @@ def _new_collection(context, ob):
     collection["hidden"], collection["selected"] = ob.hide_get(), ob.select_get()
     collection["selectable"] = not ob.hide_select
     collection["scene"], collection["layer"] = context.scene.name, context.view_layer.name
-    # Views that draw an outline around every object would draw one around every chunk. The setting is stored here, so
-    # that it can be restored after a crash, too.
+    # Views that outline every object would outline every chunk. The setting is stored here so that it can be restored
+    # even after a crash.
     outlined = [f"{screen}/{k}" for screen, k, space in views() if space.shading.show_object_outline]
     collection["outlined"] = "\n".join(outlined)
     collection.hide_select = True
@@ -226,9 +226,8 @@ def _new_collection(context, ob):
 
 def hide(ob):
     """Hides the sculpt's own mesh, and lightens it where undo would read it each time. The object stays visible to
-    Blender, displayed only by its instances, of which it has none: a view does not treat a hidden object as the active
-    one, and its menu of modes would be empty. An object with children, or with instances of its own, is hidden by its
-    eye icon."""
+    Blender, but is displayed only by its instances, of which it has none. (A view does not treat a hidden object as the
+    active one, so its menu of modes would be empty.) An object with children or instances is hidden by its eye icon."""
     versions.lighten(ob.data)
     ob.select_set(False)
     if ob.hide_get():
@@ -285,7 +284,7 @@ def _reveal(ob, before):
 
 
 def _outline(places):
-    """Restores the views' outlines, unless another sculpt is shown in chunks, which restores them later."""
+    """Restores the views' outlines, unless another sculpt is shown in chunks; they are then restored after that one."""
     other = next((c for c in bpy.data.collections if MARK in c), None)
     if other is not None:
         other["outlined"] = "\n".join([other["outlined"], *places])
@@ -316,7 +315,7 @@ def shown():
 
 
 def _local_views():
-    """Local views of windows only: Blender crashes if an object is put into the local view of a screen without a
+    """The local views in windows. Blender crashes if an object is put into the local view of a screen without a
     window."""
     for window in bpy.context.window_manager.windows:
         for area in window.screen.areas:
@@ -341,7 +340,7 @@ def sweep(mark=None, name=""):
     for place in (bpy.data.meshes, bpy.data.materials):
         marked = [thing for thing in place if _is_marked(thing, mark)]
         for thing in (thing for thing in marked if thing.users):
-            del thing[MARK]  # a copy shows it: it belongs to the user now
+            del thing[MARK]  # a copy uses it: it belongs to the user now
         bpy.data.batch_remove([thing for thing in marked if not thing.users])
 
 
@@ -350,13 +349,13 @@ def _is_marked(thing, mark):
 
 
 def is_own(thing):
-    """True if the add-on has made the object or the collection, and it is no copy."""
+    """True if the add-on made the object or the collection itself, and it is not the user's copy."""
     return thing.get(MADE) == thing.name
 
 
 def _clear(collection):
-    """Removes the collection and the add-on's objects in it. A copy of the whole collection, as of a scene, has only
-    display objects."""
+    """Removes the collection and the add-on's objects in it. In a copied collection, as in a copied scene, all marked
+    objects are the add-on's."""
     pictures = [ob for ob in collection.objects if ob.data is not None and MARK in ob.data]
     if is_own(collection):
         pictures = [ob for ob in pictures if is_own(ob)]
@@ -369,7 +368,7 @@ def _clear(collection):
 
 
 def _remove(pictures):
-    """Removes the objects; their children, such as a copy of one, keep their place."""
+    """Removes the objects. Their children, such as a copy of one of them, keep their place."""
     gone = set(pictures)
     left = [(ob, ob.matrix_world.copy()) for ob in bpy.data.objects if ob.parent in gone and ob not in gone]
     bpy.data.batch_remove(gone)

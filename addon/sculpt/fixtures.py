@@ -15,7 +15,7 @@ _last = ("", None)  # the meshes' hash, and their collider: a stroke changes no 
 
 def collider(context, collection, to_mm, without=()):
     """riffler.Collider of the visible meshes of `collection`, or None if there are none. `to_mm`: (4, 4) world → mm;
-    `without`: names of objects that are no fixtures."""
+    `without`: names of objects to leave out."""
     global _last
     depsgraph = context.evaluated_depsgraph_get()
     vertices, triangles, count = [], [], 0

@@ -1,5 +1,4 @@
-"""The sculpt tool's cursor: the outline of the real cutter as a click would place it on the surface, its axis, and its
-point on the surface.
+"""The sculpt tool's cursor: the cutter's outline where a click would place it, its axis, and its point on the surface.
 
 Blender draws cursors over the finished view, so following the pointer does not redraw the sculpt.
 """
@@ -15,7 +14,7 @@ from .pure.view_rays import ViewRays
 # colours of planes perpendicular to x, y and z, as for Blender's axes
 AXES = ((1.0, 0.25, 0.3), (0.45, 0.8, 0.1), (0.25, 0.55, 1.0))
 SHADOW = (0.0, 0.0, 0.0, 0.55)
-SHOWN = 1.5  # diameters of the tool above its tip: more would cover the view
+SHOWN = 1.5  # length of the tool drawn above its tip, in diameters: more would cover the view
 
 kept = batches.Batches()
 pixels_per_mm = 10.0  # at the pointer's last place: for Blender's radial control, which has no place
@@ -29,7 +28,7 @@ def sight(region, space, run):
 
 
 def draw(context, brush, xy):
-    """`xy`: the pointer in the window."""
+    """Draws the cursor. `xy`: the pointer's pixel in the window."""
     region, space = context.region, context.region_data
     ob = sculpts.active(context)
     if region is None or space is None or context.window_manager.riffler.sculpting:
@@ -56,8 +55,7 @@ def draw(context, brush, xy):
 
 
 def _on_surface(context, brush, run, tool, at):
-    """None if nothing is under the pointer, and where a stroke would be refused with a message, which drawing does not
-    show."""
+    """The cursor on the surface. None if no surface is under the pointer or if a stroke there would be refused."""
     global pixels_per_mm
     settings = context.scene.riffler.sculpt
     try:
@@ -84,7 +82,7 @@ def tool_lines(cutter, pose, place, normal, view):
     size = float(np.linalg.norm(across))
     shown = glyphs.meridian(outline, SHOWN * cutter.diameter)
     out = []
-    if size > 0.05:  # seen along its axis a tool is only its ring
+    if size > 0.05:  # a tool seen along its axis shows only its ring
         out.append((pose[:3] + shown[:, :1] * (across / size) + shown[:, 1:] * axis, True, True))
     line = np.vstack([points for part, points in outline if part == "cutter"])
     radius, height = line[np.argmax(line[:, 0])]
@@ -96,7 +94,7 @@ def tool_lines(cutter, pose, place, normal, view):
 
 
 def _planes(context, ob, region, space, corner, zoom):
-    """Symmetry planes, as their outlines within the stock's box; and the axis of radial copies."""
+    """Draws the outlines of the symmetry planes within the stock's box, and the axis of radial copies."""
     settings, p = context.scene.riffler.sculpt, ob.data.riffler
     if not settings.mirror and settings.radial < 2:
         return
@@ -111,8 +109,8 @@ def _planes(context, ob, region, space, corner, zoom):
 
 
 def _before(context, region, space, at):
-    """Without an active sculpt: a ring as wide as the cutter would be on the active object if it became one
-    (common/fitting.py); without an object, a ring of fixed size."""
+    """Draws the cursor without an active sculpt: a ring as wide as the cutter that would suit the active object
+    (common/fitting.py), or of fixed size without an object."""
     ob, pixels = context.object, 0.0
     if ob is not None and ob.type in object_surfaces.WITH_SURFACE and min(ob.dimensions) > 0:
         middle = meshes.matrix(ob.matrix_world) @ np.append(np.mean(ob.bound_box, axis=0), 1.0)
@@ -128,7 +126,8 @@ def _ring(at, radius):
 
 
 def _beside(context, ob, region, space, at):
-    """Off the surface, and before the first stroke: a ring as wide as the tool at the sculpt's centre."""
+    """Draws the cursor off the surface and before the first stroke: a ring as wide as the tool at the sculpt's
+    centre."""
     global pixels_per_mm
     p = ob.data.riffler
     mm = sculpts.shown_mm_per_unit(ob.data)

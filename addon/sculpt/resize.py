@@ -37,7 +37,7 @@ class RIFFLER_OT_resize(bpy.types.Operator):
 
     bl_idname = "riffler.resize"
     bl_label = "Resize Cutter"
-    bl_options = set()  # settings of a brush are no undo steps
+    bl_options = set()  # settings of a brush are not undo steps
 
     field: EnumProperty(name="Field", items=FIELDS, default="RADIUS", options={"SKIP_SAVE"}, description="Size to set")
 

@@ -50,7 +50,7 @@ class ExportSurface(FileWork):
     """Mixin of the operators that write the surface, by `job`, completely or not at all. `in_background`: that of the
     job."""
 
-    bl_options = set()  # a written file is no undo step
+    bl_options = set()  # a written file is not an undo step
     helper = ExportHelper
     doing = "Exporting"
     cancelled = "Not exported: no file was written"

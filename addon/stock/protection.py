@@ -26,7 +26,7 @@ def said_of(content):
 
 
 class Masking(SculptWork):
-    """Mixin of operators that change the mask only: the job makes it, or None."""
+    """Mixin of operators that change only the mask. The job returns it, or None."""
 
     doing = "Masking"
     cancelled = "Not masked: the mask is unchanged"
@@ -46,7 +46,7 @@ class Masking(SculptWork):
 
 
 class RIFFLER_OT_mask_form(Masking, bpy.types.Operator):
-    """Protect what lies in a mesh object, or under the closed splines of a curve, seen along its own z"""
+    """Protect the material inside a mesh object, or under the closed splines of a curve, seen along its own z"""
 
     bl_idname = "riffler.mask_form"
     bl_label = "Mask from Object"

@@ -1,4 +1,4 @@
-"""Journals of a Blender that has crashed: recovers or discards them."""
+"""Recovers or discards the journals of a Blender that has crashed."""
 
 import bpy
 import riffler
@@ -13,7 +13,7 @@ from ..sculpt.pure import journal
 
 
 class TakesJournal:
-    """Mixin of operators on a journal that no process holds."""
+    """Mixin of operators on a journal that no process has locked."""
 
     journal: bpy.props.StringProperty(
         name="Journal", options={"SKIP_SAVE"}, description="Name of the journal's folder; empty: the newest journal"
@@ -31,7 +31,7 @@ class TakesJournal:
         """The journal, locked. ValueError if another process has it."""
         found = [f for f in persistence.crashed(look=True) if self.journal in ("", f.folder.name)]
         if not found:
-            raise ValueError(f"there is no journal {self.journal} that can be recovered".replace("  ", " "))
+            raise ValueError(f"no journal {self.journal} can be recovered".replace("  ", " "))
         lock = journal.Lock(found[0].folder)
         if not lock.held:
             raise ValueError(f"the journal of {found[0].name} is being recovered by another Blender")
@@ -86,8 +86,8 @@ class RIFFLER_OT_recover(TakesJournal, long_work.LongWork, bpy.types.Operator):
 
 
 def _prepared(found):
-    """The strokes still to be made, on a snapshot in the journal's folder, all cuts, whether other operations have
-    shaped it, too, and the tokens of the states that the journal knows, from the first to the last."""
+    """(journal of the strokes still to be made, which start from a snapshot in its folder; all cuts; whether other
+    operations have changed the sculpt too; tokens of the journal's states from first to last)."""
     try:
         strokes, cuts = journal.part_of(found.folder)
     except ValueError as error:
@@ -101,7 +101,7 @@ def _prepared(found):
 
 
 def _on_what_the_file_has(found, strokes, states):
-    """The crash came before the journal's initial state was written: it, or a later one, may be in this file."""
+    """Used if the crash came before the journal's initial state was written: this file may have it or a later one."""
     for ob in filter(sculpts.is_sculpt, bpy.data.objects):
         state = _state(ob, found.about, states)
         if state:
@@ -128,15 +128,15 @@ def _rest(folder, strokes, done, content):
 
 
 def _state(ob, about, states):
-    """The journal's state that the file has of the sculpt, or ""."""
+    """Token of the journal's state in which the sculpt is in this file, or ""."""
     if about.get("base") and sculpt_store.identity(ob.data) == about["base"]:
         return states[0]
     return sculpt_store.token(ob.data) if sculpt_store.token(ob.data) in states else ""
 
 
 def _target(about, states):
-    """The sculpt of which this file has a state of the journal, or None: a sculpt that other operations have changed
-    since is not used. Copies that share the state are ignored if the original exists."""
+    """The sculpt that is in one of the journal's states in this file, or None if other operations have changed it
+    since. Copies that share the state are ignored if the original exists."""
     found = [ob for ob in bpy.data.objects if sculpts.is_sculpt(ob) and _state(ob, about, states)]
     found = [ob for ob in found if not (ob.library or ob.data.library)]
     return next((ob for ob in found if ob.riffler.mark == about.get("mark")), found[0] if found else None)

@@ -12,11 +12,13 @@ from .report import grouped
 
 
 def col(data: Data) -> Figure:
-    """Share of poses that take longer than a time, for each part and tool; without force for others."""
+    """Share of poses that take longer than a time, for each part and tool. Rivals compute no force."""
     table = [row for row in rows(data, "times") if "times_us" in row]
     cases = list(dict.fromkeys((row["triangles"], row["tool"]) for row in table))
     wanted = [row for row in table if row["what"] in ("depth, force and torque", "all contacts", "first contact")]
-    names = [n for n in values(wanted, "engine") if n != "FCL OBBRSS, tool mesh"]  # as its OBB, but for the boxes
+    names = [
+        n for n in values(wanted, "engine") if n != "FCL OBBRSS, tool mesh"
+    ]  # differs from its OBB by the boxes only
     colour = colours(names)
     shape = (1, len(cases)) if len(cases) < 4 else (2, 2)
     figure, axes = plt.subplots(*shape, figsize=(12.5, 4.4 * shape[0]), squeeze=False, sharex=True, sharey=True)
@@ -48,11 +50,11 @@ def col(data: Data) -> Figure:
 
 
 def budgets(data: Data) -> Figure:
-    """What a budget misses: the largest and the mean missed depth and its bound against the time taken."""
+    """Largest and mean missed depth of queries with a budget, and their bounds, against the time taken."""
     table = rows(data, "budgets")
     sizes = values(table, "triangles")
     figure, axes = plt.subplots(1, len(sizes), figsize=(6.2 * len(sizes), 4.8), squeeze=False, sharey=True)
-    least = 1e-4  # mm: what is drawn at the bottom of the log axis is nothing
+    least = 1e-4  # mm: the bottom of the log axis, where 0 is drawn
     for axis, triangles in zip(axes.flat, sizes, strict=True):
         mine = pick(table, triangles=triangles)
         time = column(mine, "mean_s", 1e6)
@@ -71,7 +73,7 @@ def budgets(data: Data) -> Figure:
             text = "no limit" if row["budget_s"] >= 1 else f"{1e6 * row['budget_s']:g} µs"
             axis.annotate(text, (x, y), xytext=(3, 5), textcoords="offset points", fontsize=7.5)
         axis.axhline(least, color="#777777", linewidth=0.8, linestyle="--")
-        axis.annotate("nothing, or less", (0.01, least), xycoords=("axes fraction", "data"), xytext=(0, -10),
+        axis.annotate("0, or less than this", (0.01, least), xycoords=("axes fraction", "data"), xytext=(0, -10),
                       textcoords="offset points", fontsize=7.5, color="#777777")  # fmt: skip
         axis.set_title(f"{grouped(triangles)} triangles", fontsize=10, loc="left")
         axis.set(xlabel="mean processor time of a query  µs", ylim=(least / 2, 4 * top.max()))

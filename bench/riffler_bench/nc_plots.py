@@ -11,7 +11,7 @@ from .plotting import Data, colours, column, pick, rows, title, values
 
 
 def between(data: Data) -> Figure:
-    """Measured error against the tolerance asked for, and blocks and time against the error: one column a post."""
+    """Measured error against the requested tolerance, and blocks and time against the error: one column a post."""
     table = rows(data, "between")
     posts = values(table, "post")
     figure, axes = plt.subplots(3, len(posts), figsize=(4.1 * len(posts), 9.2), squeeze=False, sharey="row")

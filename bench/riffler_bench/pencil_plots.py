@@ -100,8 +100,8 @@ def tolerance(data: Data) -> Figure:
     left.plot(ends, ends, color=TARGET, linewidth=1, linestyle=":")
     left.annotate("allowed", (ends.prod() ** 0.5, ends.prod() ** 0.5), xytext=(2, 5), textcoords="offset points",
                   fontsize=8, color=TARGET)  # fmt: skip
-    left.set(xlabel="tolerance asked  mm", ylabel="Hausdorff distance from the exact curves  mm")
-    middle.set(xlabel="tolerance asked  mm", ylabel="processor time  ms")
+    left.set(xlabel="tolerance requested  mm", ylabel="Hausdorff distance from the exact curves  mm")
+    middle.set(xlabel="tolerance requested  mm", ylabel="processor time  ms")
     right.set(xlabel="processor time  ms", ylabel="Hausdorff distance from the exact curves  mm")
     seconds = column(table, "cpu_s")
     for axis, shown in ((left, ends), (middle, ends), (right, np.array([seconds.min(), seconds.max()]))):

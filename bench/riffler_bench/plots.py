@@ -1,4 +1,4 @@
-"""The plots of the jobs, from their JSON alone, so that they can be drawn again without measuring again."""
+"""The plots of the jobs, drawn from their JSON files without measuring again."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def b5x(data: Data) -> Figure:
         axis.set_ylabel("error  mm")
     marks = [
         Line2D(
-            [], [], color=INK, marker="_", linestyle="", markersize=12, markeredgewidth=1.6, label="tolerance asked"
+            [], [], color=INK, marker="_", linestyle="", markersize=12, markeredgewidth=1.6, label="tolerance requested"
         ),
         Line2D([], [], color=INK, marker="o", label="largest error"),
         Line2D([], [], color=INK, marker="o", linestyle="--", markerfacecolor="white", label="RMS error"),
@@ -82,7 +82,7 @@ def b5x(data: Data) -> Figure:
 
 
 def tolerance(data: Data) -> Figure:
-    """What a tolerance buys and costs: error and time against it, all cutters."""
+    """Error and time against the tolerance, for all cutters."""
     table = rows(data, "path")
     table = pick(table, pitch=values(table, "pitch")[0])
     figure, (left, right) = plt.subplots(1, 2, figsize=(12, 4.8))
@@ -97,7 +97,7 @@ def tolerance(data: Data) -> Figure:
     middle = np.sqrt(ends.prod())
     left.annotate("allowed", (middle, middle), xytext=(2, 4), textcoords="offset points", fontsize=8, color=TARGET)
     for axis in (left, right):
-        axis.set_xlabel("tolerance asked  mm")
+        axis.set_xlabel("tolerance requested  mm")
         logarithmic(axis.xaxis)
         logarithmic(axis.yaxis)
         axis.invert_xaxis()
@@ -108,13 +108,13 @@ def tolerance(data: Data) -> Figure:
                    xycoords=("axes fraction", "data"), xytext=(0, 3), textcoords="offset points", fontsize=7.5,
                    color="#777777")  # fmt: skip
     right.legend(loc="upper left", ncols=2)
-    title(figure, data, f"What a tolerance costs and what it gives (B5X, h = {table[0]['pitch']:g} mm)")
+    title(figure, data, f"Error and time of a tolerance (B5X, h = {table[0]['pitch']:g} mm)")
     figure.tight_layout(rect=(0, 0.02, 1, 0.97))
     return figure
 
 
 def single(data: Data) -> Figure | None:
-    """Single rotations: time against angle; and how much of the tolerance is used up, all motions and cutters."""
+    """Single rotations: time against angle, and the used share of the tolerance for all motions and cutters."""
     table = rows(data, "single")
     asked = 0.01
     figure, (left, right) = plt.subplots(1, 2, figsize=(12, 4.8))
@@ -156,7 +156,7 @@ def single(data: Data) -> Figure | None:
 
 
 def b200(data: Data) -> Figure:
-    """Bars: ratio to the yardstick for every cutter, pitch and kind."""
+    """Bars of the ratio to the yardstick for every cutter, pitch and kind."""
     table = rows(data, "carve")
     kinds = {"plain": "z", "force": "z, with force", "tri": "tri-dexel"}
     names, pitches = values(table, "cutter"), values(table, "pitch")
@@ -214,7 +214,7 @@ def haptic(data: Data) -> Figure | None:
 
 
 def force(data: Data) -> Figure:
-    """A part of the stroke at every rate, and ripple against step ÷ pitch."""
+    """Force over a part of the stroke at every rate, and ripple against step ÷ pitch."""
     table = rows(data, "stroke")
     names, rates, pitches = values(table, "cutter"), values(table, "rate"), values(table, "pitch")
     figure, axes = plt.subplots(2, len(pitches) + 1, figsize=(4.1 * (len(pitches) + 1), 6.8), squeeze=False)
@@ -297,7 +297,7 @@ def pitch(data: Data) -> Figure:
 
 
 def mesh(data: Data) -> Figure:
-    """Error of B200's mesh against pitch, and against the time that it takes, with those of others."""
+    """Error of B200's mesh against pitch, and against time together with rivals' meshes."""
     figure, (left, right) = plt.subplots(1, 2, figsize=(12, 5.2))
     table = rows(data, "error")
     for directions, (colour, mark) in colours(values(table, "directions")).items():

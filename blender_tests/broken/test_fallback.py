@@ -38,7 +38,7 @@ def check(source, *words):
     assert enable_with(source) == {"RIFFLER_PT_fallback", "RIFFLER_OT_copy_report"}
     assert not hasattr(bpy.types.Scene, "riffler")
     text = common.part("blender.fallback").text()
-    for word in (*words, bpy.app.version_string, sys.version.split()[0], "How to mend it"):
+    for word in (*words, bpy.app.version_string, sys.version.split()[0], "How to fix it"):
         assert word in text, (word, text)
     assert bpy.ops.riffler.copy_report() == {"FINISHED"}
     disable()
@@ -74,7 +74,11 @@ def test_another_package_of_that_name():
 
 
 def test_a_core_of_another_version():
-    check("__version__ = '9'", "riffler 9 is in use, this add-on is", "Restart Blender: it holds the core of before")
+    check(
+        "__version__ = '9'",
+        "riffler 9 is in use, this add-on is",
+        "Restart Blender: it still uses the core from before",
+    )
 
 
 def test_a_missing_package():

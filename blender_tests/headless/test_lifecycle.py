@@ -201,7 +201,7 @@ def test_an_update_that_finds_the_old_core_at_work_says_so():
         enable()
         fallback = common.part("blender.fallback")
         assert {n for n in dir(bpy.types) if n.startswith("RIFFLER_")} == {c.__name__ for c in fallback.CLASSES[:2]}
-        for words in (f"riffler 0.0.9 is in use, this add-on is {version}", "Restart Blender: it holds the core"):
+        for words in (f"riffler 0.0.9 is in use, this add-on is {version}", "Restart Blender: it still uses the core"):
             assert words in fallback.text(), fallback.text()
         disable()
         assert sys.modules["riffler"] is riffler, "a second core would have been loaded"

@@ -51,7 +51,7 @@ def without_numpy(screen, core):
         assert bpy.ops.riffler.copy_report() == {"FINISHED"}
     report = bpy.context.window_manager.clipboard
     assert "No module named 'numpy'" in report or "numpy" in report.splitlines()[1], report
-    remedy = report.partition("How to mend it:\n")[2]
+    remedy = report.partition("How to fix it:\n")[2]
     own = sys.prefix not in ("/usr", "/usr/local")
     words = ["Blender from blender.org"] if own else ["sudo apt install python3-numpy\n", "restart Blender"]
     assert all(word in remedy for word in words), remedy

@@ -174,7 +174,7 @@ def escape(screen):
 
 
 def hold_still(screen):
-    """A click on a dial turns nothing, and is no undo step."""
+    """A click on a dial turns nothing, and is not an undo step."""
     before, turn = line.key_frames(), module("plan.pure.tool_rotation")
     (at,) = on_dial(screen, turn.INCLINATION, [facing(screen, turn.INCLINATION, 1.0)], 1.0)
     yield from line.press(screen, "VIEW_3D", "Z", ctrl=True)  # the typed key

@@ -39,7 +39,7 @@ void run() {
   riffler::mesh::write_mesh(part, "groove.stl");
   std::printf("triangles %zu\n", part.triangles.size());
 
-  // A smaller ball comes down into the groove. Where does it stop?
+  // The height at which a smaller ball rests in the groove.
   const riffler::plan::DropCutter drop(part, riffler::cutters::ball(4, 30));
   std::printf("rests %.4f mm\n", drop({30, 20, 0}).height);
 

@@ -18,7 +18,7 @@ using pen::ArmChannel;
 using pen::OpenError;
 using pen::OpenProblem;
 
-constexpr double kLongestWait = 0.005;  // s: a command ends, and Riffler's end is seen, that much too late at most
+constexpr double kLongestWait = 0.005;  // s: largest delay in ending an old command and in noticing Riffler's exit
 constexpr double kOrphanCheck = 0.1;    // s
 
 std::unique_ptr<LibraryArm> open_key(Library& library, const std::string& key, const std::vector<std::string>& held) {
@@ -27,7 +27,7 @@ std::unique_ptr<LibraryArm> open_key(Library& library, const std::string& key, c
   return library.open(key);
 }
 
-/// The arm of that name and its key. Throws the error of the first that does not open.
+/// Opens the arm of that name and returns it with its key. Throws the error of the first arm that does not open.
 std::unique_ptr<LibraryArm> open_named(Library& library, const std::string& name, const std::vector<std::string>& held,
                                        std::string& key) {
   std::optional<OpenError> first;
@@ -44,7 +44,7 @@ std::unique_ptr<LibraryArm> open_named(Library& library, const std::string& name
   throw OpenError(OpenProblem::NoFile, library.none(name));
 }
 
-/// Newest command to the arm, and zero force once it is too old.
+/// Sends the newest command to the arm, and zero force once it is too old.
 class Commands {
  public:
   explicit Commands(const ArmChannel& channel) : channel_(channel) {}

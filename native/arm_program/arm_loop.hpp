@@ -1,4 +1,4 @@
-// The program's work: lists a library's arms, or opens one and exchanges readings and commands.
+// Main loop of riffler-arm: lists a library's arms, or opens one and exchanges readings and commands.
 #pragma once
 
 #include <string>
@@ -9,14 +9,14 @@
 
 namespace riffler::arm_program {
 
-/// Tells Riffler, after what the phase speaks of was written.
+/// Sets the phase for Riffler. Call it after writing the data that the phase announces.
 void set_phase(pen::ArmChannel& channel, pen::ArmChannel::Phase phase);
 
-/// Describes each arm in the channel. `held`: keys of those that Riffler has open, which are not opened again.
+/// Writes a description of each arm into the channel. `held`: keys of arms that Riffler has open; skips these.
 void list(Library& library, const std::vector<std::string>& held, pen::ArmChannel& channel);
 
-/// Opens the arm of that name, lets it push, and serves it until Riffler ends that, Riffler is gone, or the arm is.
-/// Throws OpenError.
+/// Opens the arm of that name, enables its force, and serves it until Riffler stops it or exits, or the arm is
+/// unplugged. Throws OpenError.
 void serve(Library& library, const std::string& name, const std::vector<std::string>& held, pen::ArmChannel& channel);
 
 }  // namespace riffler::arm_program

@@ -19,8 +19,8 @@ enum DhdStatus : std::size_t { kPower = 0, kConnected = 1, kReset = 3, kForce = 
 constexpr std::size_t kStatusRoom = 64;
 constexpr double kStatusPeriod = 0.02;  // s: the status is another message on the cable
 
-// What the arms may be asked for at most: below what their makers state for the weakest of each family, in every
-// posture. Torque: of the wrists that have motors.
+// Largest force and torque requested of an arm: below what the maker states for the weakest arm of each family in every
+// posture. The torque applies to wrists with motors.
 constexpr double kDhdForce = 8, kDhdTorque = 150;  // N, N·mm
 
 /// From the library's axes to Riffler's: a quarter turn about z.
@@ -87,11 +87,11 @@ void DhdArm::enable() {
   if (dhd_->set_force(0, 0, 0, 0, 0, 0, 0, id_) < 0) fail("the library does not take a force");
   if (dhd_->enable_force(1, id_) < 0) fail("the library cannot switch on the force");
   enabled_ = true;
-  // Not every arm has one; the library refuses it then.
+  // The library refuses this for an arm without a watchdog.
   if (dhd_->set_watchdog != nullptr) dhd_->set_watchdog(static_cast<unsigned char>(kWatchdog / 125e-6), id_);
 }
 
-/// False if the arm is gone.
+/// Reads the arm's status. False if it has been unplugged.
 bool DhdArm::read_status() noexcept {
   std::array<int, kStatusRoom> status{};
   if (dhd_->get_status(status.data(), id_) < 0) return false;
@@ -135,7 +135,7 @@ bool DhdArm::push(const pen::ArmCommand& command) noexcept {
 
 namespace {
 
-/// The arms of a library by their numbers from 0; names are serial numbers.
+/// The library's arms, numbered from 0; their names are serial numbers.
 class DhdLibrary final : public Library {
  public:
   explicit DhdLibrary(const std::string& path) : dhd_(std::make_shared<DhdFunctions>(SharedLibrary(path))) {}

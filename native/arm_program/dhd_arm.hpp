@@ -1,8 +1,8 @@
 // Force Dimension's libdhd: the documented functions that Riffler calls, and an arm that it drives.
 //
 // Names, signatures and constants are those of the maker's published header dhdc.h (Haptic SDK 3.2 to 3.17,
-// https://www.forcedimension.com/software/sdk). The library is proprietary: it is not shipped, and only loaded where
-// its user has pointed to it or opens such a device. Its axes are x towards the user, y right, z up; lengths in m.
+// https://www.forcedimension.com/software/sdk). The library is proprietary: Riffler does not ship it, and loads it only
+// if the user gives its path or opens such a device. Its axes are x towards the user, y right, z up; lengths in m.
 #pragma once
 
 #include <memory>
@@ -40,7 +40,7 @@ class DhdArm final : public LibraryArm {
   static constexpr double kPeriod = 1e-3;    // s between two readings
   static constexpr double kWatchdog = 0.02;  // s without a command after which the arm itself ends the force
 
-  /// Opens the arm with that number, from 0. Throws OpenError with the library's own words.
+  /// Opens the arm with that number, from 0. Throws OpenError with the library's error text.
   DhdArm(std::shared_ptr<const DhdFunctions> functions, int number);
   DhdArm(const DhdArm&) = delete;
   DhdArm& operator=(const DhdArm&) = delete;

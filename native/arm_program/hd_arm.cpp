@@ -90,7 +90,7 @@ HdArm::HdArm(std::shared_ptr<const HdFunctions> functions, const std::string& na
   traits_.own_axis = Vec3(0, 0, 1);
   hd_->get_doubles(kHdMaxForce, &traits_.force);
   hd_->get_doubles(kHdContinuousForce, &traits_.continuous);
-  // What the library cannot say is what the weakest arm of the family gives.
+  // If the library gives no value, take that of the family's weakest arm.
   if (!(traits_.force > 0 && traits_.force < 100)) traits_.force = 3;
   if (!(traits_.continuous > 0 && traits_.continuous <= traits_.force)) traits_.continuous = 0.8;
   std::array<double, 6> box{};
@@ -98,7 +98,7 @@ HdArm::HdArm(std::shared_ptr<const HdFunctions> functions, const std::string& na
   const Vec3 a = from_hd(box.data()), b = from_hd(box.data() + 3);
   traits_.lower = glm::min(a, b), traits_.upper = glm::max(a, b);
   traits_.about = "by OpenHaptics";
-  while (hd_->get_error().code != 0) {  // of what it cannot say
+  while (hd_->get_error().code != 0) {  // from queries that it does not support
   }
 }
 
@@ -126,12 +126,12 @@ unsigned HdArm::serve(void* arm) noexcept {
   return kHdContinue;
 }
 
-/// In the library's thread: calibration, errors, and whether the force is on.
+/// Checks calibration, errors, and whether the force is on. Runs on the library's thread.
 void HdArm::check() noexcept {
   const HdError error = hd_->get_error();
   const unsigned kind = error.code & kHdClass;
   if (kind == kHdDeviceErrors) next_.gone = true;
-  // The arm's own limits end the force: it must not return by itself.
+  // The arm's own limits ended the force, which must not return by itself.
   if (kind == kHdForceErrors) next_.state.fault = error.code;
   next_.state.powered = hd_->is_enabled(kHdForceOutput) != 0;
   if (next_.number % kCheckEvery != 1) return;
@@ -143,7 +143,7 @@ void HdArm::check() noexcept {
   hd_->update_calibration(static_cast<unsigned>(style));
 }
 
-/// In the library's thread.
+/// Runs on the library's thread.
 void HdArm::tick() noexcept {
   const pen::TimedCommand command = command_.get();
   const bool fresh = steady_seconds() - command.time <= kHeld;

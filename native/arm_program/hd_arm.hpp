@@ -1,9 +1,9 @@
 // 3D Systems' OpenHaptics: the documented functions of libHD that Riffler calls, and an arm that it drives.
 //
 // Names, signatures and constants are those of the maker's published headers HD/hdDevice.h, hdScheduler.h and
-// hdDefines.h (OpenHaptics 3.0 to 3.5, https://support.3dsystems.com). The library is proprietary: it is not shipped,
-// and only loaded where its user has pointed to it or opens such a device. Its axes are x right, y up, z towards the
-// user; lengths in mm.
+// hdDefines.h (OpenHaptics 3.0 to 3.5, https://support.3dsystems.com). The library is proprietary: Riffler does not
+// ship it, and loads it only if the user gives its path or opens such a device. Its axes are x right, y up, z towards
+// the user; lengths in mm.
 #pragma once
 
 #include <cstdint>
@@ -51,22 +51,22 @@ struct HdFunctions {
   explicit HdFunctions(const SharedLibrary& library);
 };
 
-/// An arm that is open; one in a program, since the library has one scheduler. The library's own thread (1 kHz) reads
-/// the arm and sends it the newest command, or zero force if that is older than kHeld; the program's loop only
-/// exchanges values with it, without locks.
+/// An open arm; a process can have only one, because the library has one scheduler. The library's own thread (1 kHz)
+/// reads the arm and sends it the newest command, or zero force if that is older than kHeld. The program's loop only
+/// exchanges values with that thread, without locks.
 class HdArm final : public LibraryArm {
  public:
   static constexpr double kHeld = pen::ArmChannel::kHeld;
 
   /// Opens the arm with that name in the maker's configuration; empty: the default one. Throws OpenError with the
-  /// library's own words.
+  /// library's error text.
   HdArm(std::shared_ptr<const HdFunctions> functions, const std::string& name);
   HdArm(const HdArm&) = delete;
   HdArm& operator=(const HdArm&) = delete;
   ~HdArm() override;
 
   const pen::ArmTraits& traits() const override { return traits_; }
-  /// Starts the library's thread, too.
+  /// Also starts the library's thread.
   void enable() override;
   double due() const noexcept override { return 1e-4; }  // a new reading is at most this old when it is read
   Reading read(pen::ArmState& state) noexcept override;

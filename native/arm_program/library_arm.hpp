@@ -1,4 +1,4 @@
-// A maker's library and an arm that it drives, as the program's loop uses them.
+// Interface of a maker's library and of an arm that it drives.
 #pragma once
 
 #include <memory>
@@ -11,35 +11,35 @@ namespace riffler::arm_program {
 
 enum class Reading { None, New, Gone };
 
-/// An arm that is open. Its destructor ends the force and closes the arm.
+/// An open arm. The destructor ends the force and closes the arm.
 class LibraryArm {
  public:
   virtual ~LibraryArm() = default;
   virtual const pen::ArmTraits& traits() const = 0;
-  /// Lets commands push from now on, after one for zero force. Throws OpenError.
+  /// Enables force, after a command of zero force. Throws OpenError.
   virtual void enable() = 0;
-  /// s until it is worth the while to read.
+  /// s until a new reading is due.
   virtual double due() const noexcept = 0;
-  /// Never waits.
+  /// Reads the arm's state without waiting.
   virtual Reading read(pen::ArmState& state) noexcept = 0;
-  /// False if the arm is gone.
+  /// Sends a command. False if the arm has been unplugged.
   virtual bool push(const pen::ArmCommand& command) noexcept = 0;
 };
 
 class Library {
  public:
   virtual ~Library() = default;
-  /// What it can try to open for that name (empty: any).
+  /// Keys of the arms that may have that name (empty: any arm).
   virtual std::vector<std::string> keys(const std::string& name) = 0;
-  /// Without force. Throws OpenError with the library's own words.
+  /// Opens an arm without force. Throws OpenError with the library's error text.
   virtual std::unique_ptr<LibraryArm> open(const std::string& key) = 0;
-  /// Whether an arm that was opened is the one of that name.
+  /// Whether an opened arm has that name.
   virtual bool is(const pen::ArmTraits& traits, const std::string& name) const = 0;
-  /// Why nothing was found: no key, or none of that name.
+  /// Message for a name that no arm has, or without any arm.
   virtual std::string none(const std::string& name) const = 0;
 };
 
-/// Throw OpenError if the file is not that library.
+/// Load a library. Throw OpenError if the file is not that library.
 std::unique_ptr<Library> load_dhd(const std::string& path);
 std::unique_ptr<Library> load_hd(const std::string& path);
 

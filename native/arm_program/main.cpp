@@ -18,7 +18,7 @@ namespace {
 std::unique_ptr<Library> load(const std::string& kind, const std::string& path) {
   if (kind == "dhd") return load_dhd(path);
   if (kind == "hd") return load_hd(path);
-  throw pen::OpenError(pen::OpenProblem::Other, "riffler-arm knows no library \"" + kind + "\"");
+  throw pen::OpenError(pen::OpenProblem::Other, "riffler-arm: unknown library \"" + kind + "\"");
 }
 
 void fail(pen::ArmChannel& channel, pen::OpenProblem problem, const char* text) {

@@ -13,7 +13,7 @@ using pen::OpenError;
 using pen::OpenProblem;
 
 SharedLibrary::SharedLibrary(std::string path) : path_(std::move(path)) {
-  // Without a folder the system would look for the name elsewhere than its user may think.
+  // For a name without a folder the system would search other folders than the user may expect.
   if (!path_.starts_with('/'))
     throw OpenError(OpenProblem::NotInstalled, path_ + ": give the library's whole path, which begins with /");
   if (::access(path_.c_str(), F_OK) != 0) throw OpenError(OpenProblem::NotInstalled, path_ + ": no such file");

@@ -1,11 +1,11 @@
-// A maker's library, opened at run time: nothing is linked, and nothing is loaded before its user asks for it.
+// A maker's library, loaded at run time when the user opens such a device; it is not linked.
 #pragma once
 
 #include <string>
 
 namespace riffler::arm_program {
 
-/// Stays loaded until the process ends: such libraries have threads of their own.
+/// The library stays loaded until the process ends, because it may have threads of its own.
 class SharedLibrary {
  public:
   /// Loads the file at `path`. Throws OpenError: NotInstalled if it is not there, WrongLibrary if the system cannot

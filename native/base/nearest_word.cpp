@@ -32,7 +32,7 @@ std::size_t edits_between(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::string nearest_word_hint(std::string_view word, std::span<const std::string> known) {
-  constexpr std::size_t kLongest = 100;  // a longer word is no misspelt name, and the table grows with its length
+  constexpr std::size_t kLongest = 100;  // a longer word is not a misspelt name, and the table grows with its length
   if (word.size() > kLongest) return "";
   const std::string* nearest = nullptr;
   std::size_t least = 0;

@@ -36,7 +36,7 @@ int level_within_limit(int wanted) {
   return static_cast<int>(std::min<rlim_t>(limit.rlim_cur, static_cast<rlim_t>(wanted)));
 }
 
-/// Asks the system; the level of what it grants, or 0 with its errno.
+/// Asks the system for a real-time level. Returns the granted level and 0, or 0 and the errno.
 std::pair<int, int> ask_system(int wanted) {
   const int error = schedule_thread(0, wanted);
   if (error == 0) return {wanted, 0};
@@ -81,7 +81,7 @@ RealTimeScope::RealTimeScope(PriorityReport& report, const RealTimeSettings& set
     cancel_ = std::make_unique<BusCancel>();
     asker_ = std::thread([this, settings, thread = thread_number()] { ask_rtkit(thread, settings); });
   } catch (const std::system_error&) {
-    // It stays as it was reported.
+    // No thread to ask rtkit: the report keeps the system's refusal.
   }
 }
 
@@ -102,7 +102,7 @@ void RealTimeScope::ask_rtkit(pid_t thread, const RealTimeSettings& settings) no
     const int level = std::min(settings.level, limits.level);
     if (!OverrunGuard::lower_hard_limit(limits.microseconds)) throw BusError("the system refuses rtkit's limit");
     rtkit.make_real_time(thread, level);
-    if (!is_real_time(thread)) throw BusError("rtkit agrees and changes nothing");
+    if (!is_real_time(thread)) throw BusError("rtkit agreed, but the thread has no real-time priority");
     report_.set(granted(level, ThreadPriority::By::Rtkit));
   } catch (const std::exception& error) {
     report_.set(refused(std::string("the system refuses real time; ") + error.what()));

@@ -19,7 +19,7 @@ namespace {
   throw std::system_error(errno, std::generic_category(), what);
 }
 
-/// std::atomic::wait would use a futex that only threads of one process share.
+/// Calls a futex that processes share; that of std::atomic::wait is private to one process.
 long shared_futex(const std::atomic<std::uint32_t>& word, int operation, std::uint32_t value, const timespec* limit) {
   static_assert(sizeof word == 4 && std::atomic<std::uint32_t>::is_always_lock_free);
   return ::syscall(SYS_futex, reinterpret_cast<const std::uint32_t*>(&word), operation, value, limit, nullptr, 0);

@@ -92,7 +92,7 @@ void SystemBus::connect(const std::string& address) {
   const std::string name = socket_name(address);
   sockaddr_un to{};
   to.sun_family = AF_UNIX;
-  if (name.empty() || name.size() >= sizeof to.sun_path) throw BusError(address + " is no address of a socket");
+  if (name.empty() || name.size() >= sizeof to.sun_path) throw BusError(address + " is not the address of a socket");
   std::memcpy(to.sun_path, name.data(), name.size());
   const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + name.size() + (name[0] == '\0' ? 0 : 1));
   fd_ = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);

@@ -1,5 +1,5 @@
-// B200 with a ball, from the block to its mesh, as a process without Python: what it costs in memory and time. Usage:
-// riffler_b200 PITCH DIRECTIONS; prints JSON.
+// Memory and time of B200 with a ball, from the block to its mesh, in a process without Python. Usage: riffler_b200
+// PITCH DIRECTIONS; prints JSON.
 #include <cstdio>
 #include <cstdlib>
 #include <exception>

@@ -41,7 +41,7 @@ class Load {
   std::vector<std::jthread> threads_;  // last, because they use the other members
 };
 
-/// The loop, and when each of its steps began and ended.
+/// A loop that records when each of its steps began and ended.
 class TimedLoop final : public pen::PenStep {
  public:
   TimedLoop(session::SculptLoop& loop, std::size_t most) : loop_(loop) { begins_.reserve(most), ends_.reserve(most); }
@@ -53,7 +53,7 @@ class TimedLoop final : public pen::PenStep {
     return out;
   }
 
-  /// Those from `from` (s, of the same clock) on. Call it when no step is made any more.
+  /// Writes the times from `from` (s, of the same clock) on. Call it after the last step.
   void put(double from, BusyRun& run) const {
     for (std::size_t k = 1; k < begins_.size(); ++k) {
       if (begins_[k - 1] < from) continue;

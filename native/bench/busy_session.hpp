@@ -1,4 +1,5 @@
-// A session with the simulated pen in real time while other threads keep the machine busy: how late its steps are.
+// Measures how late the steps of a session are while other threads keep the machine busy, with the simulated pen in
+// real time.
 #pragma once
 
 #include <vector>
@@ -14,12 +15,12 @@ struct BusyOptions {
 };
 
 struct BusyRun {
-  std::vector<double> step;    ///< s from the start of each step to its end, by the clock on the wall
+  std::vector<double> step;    ///< s from the start of each step to its end, of wall time
   std::vector<double> period;  ///< s from the start of a step to that of the next: 0.001 on an idle machine
   base::ThreadPriority priority;
 };
 
-/// A Ø6 ball carves a block by the pen's own motion, after the half second in which force ramps up.
+/// Carves a block with a Ø6 ball that follows the pen's own motion, after the half second in which force ramps up.
 BusyRun busy_session(const BusyOptions& options);
 
 }  // namespace riffler::bench

@@ -1,5 +1,6 @@
-// The yardstick: B200 on a plain height map, one thread. No dexels, no spans, no tool but the ball: what any engine has
-// to do at least. Times are quoted as ratios to this loop in the same run, since machines differ and are shared.
+// The yardstick of the bench: B200 on a plain height map in one thread, without dexels or spans, for a ball only. Every
+// engine has to do at least this work. Times are quoted as ratios to this loop in the same run, because machines differ
+// and are shared.
 #pragma once
 
 #include <vector>
@@ -10,11 +11,11 @@ class CapsuleLoop {
  public:
   /// Height map of B200's block; `pitch` in mm.
   explicit CapsuleLoop(double pitch);
-  /// The block as it was, not part of what is timed.
+  /// Restores the whole block. Not timed.
   void reset();
-  /// Takes the 200 capsules away.
+  /// Removes the 200 capsules.
   void run();
-  /// mm³ gone since the reset.
+  /// Volume removed since the reset, mm³.
   double removed() const;
   const std::vector<double>& heights() const { return top_; }
 

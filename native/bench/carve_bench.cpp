@@ -1,5 +1,5 @@
-// Carving speed on B200 and B5X against the yardstick in the same run. Quote the ratio, not the time. `riffler bench`
-// measures the same through Python, with errors; this is for profilers.
+// Carving time of B200 and B5X, and of the yardstick in the same run. Quote the ratio, not the time. For profilers;
+// `riffler bench` measures the same through Python, with errors.
 #include <benchmark/benchmark.h>
 
 #include <vector>

@@ -1,5 +1,5 @@
-// Coal (from PyPI, whose wheel has headers and library): the part as a tree of its boxes and spheres, the tool as one
-// too, or as four shapes.
+// Queries of Coal (the wheel on PyPI has headers and library): the part is a tree of Coal's boxes and spheres, the tool
+// another such tree or four shapes.
 #include <coal/BVH/BVH_model.h>
 #include <coal/collision.h>
 #include <coal/distance.h>
@@ -36,7 +36,7 @@ std::shared_ptr<Tree> tree(const Mesh& mesh) {
   return out;
 }
 
-/// The tool's frame: any turn about its axis.
+/// A frame of the tool; the rotation about its axis is arbitrary.
 coal::Transform3s place(const Pose& pose) {
   const Eigen::Quaterniond turn =
       Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), Eigen::Vector3d(to_coal(pose.axis)));
@@ -48,7 +48,7 @@ struct Shape {
   coal::Transform3s in_tool;
 };
 
-/// The same four as for FCL; a cone's tip is above in Coal, and below in a tool.
+/// The same four shapes as for FCL. A cone's tip is at the top in Coal, at the bottom in a tool.
 std::vector<Shape> shapes(const Tool& tool) {
   const double r = tool.diameter() / 2;
   const auto up = [](double z) { return coal::Transform3s(coal::Vec3s(0, 0, z)); };

@@ -1,4 +1,4 @@
-// FCL (Debian's libfcl-dev): the part and the tool as trees of oriented boxes, or the tool as four of its shapes.
+// Queries of FCL (Debian's libfcl-dev): part and tool are trees of oriented boxes, or the tool is four of FCL's shapes.
 #include <fcl/fcl.h>
 
 #include <memory>
@@ -34,7 +34,7 @@ std::shared_ptr<fcl::BVHModel<Box>> tree(const Mesh& mesh) {
   return out;
 }
 
-/// The tool's frame: any turn about its axis.
+/// A frame of the tool; the rotation about its axis is arbitrary.
 Place place(const Pose& pose) {
   Place out = Place::Identity();
   out.linear() = Eigen::Quaterniond::FromTwoVectors(Vector::UnitZ(), to_fcl(pose.axis)).toRotationMatrix();
@@ -51,8 +51,8 @@ std::shared_ptr<fcl::CollisionGeometryd> cylinder(double r, double length) {
   return std::make_shared<fcl::Cylinderd>(r, length);
 }
 
-/// Ball, cutter's cylinder with the shank's, taper, holder: the same solid, since the taper's whole cone reaches no
-/// further than the shank.
+/// Ball, cylinder of cutter and shank, taper and holder. Their union is the tool, because the taper's whole cone
+/// reaches no further than the shank.
 std::vector<Shape> shapes(const Tool& tool) {
   const double r = tool.diameter() / 2;
   if (tool.shank().empty())
@@ -65,7 +65,7 @@ std::vector<Shape> shapes(const Tool& tool) {
           {cylinder(holder.r0, holder.z1 - holder.z0), (holder.z0 + holder.z1) / 2}};
 }
 
-/// A cone's tip is above in FCL, and below in a tool.
+/// A cone's tip is at the top in FCL, at the bottom in a tool.
 Place at(const Place& tool, const Shape& shape) {
   Place out = tool * Eigen::Translation3d(0, 0, shape.middle);
   if (shape.geometry->getNodeType() == fcl::GEOM_CONE) out = out * Eigen::AngleAxisd(kPi, Vector::UnitX());

@@ -25,7 +25,7 @@ class Uniform {
     return from + static_cast<double>(bits_() >> 11) * 0x1p-53 * (to - from);
   }
 
-  /// A direction that differs from `axis` by up to `most` (rad).
+  /// A random direction within `most` (rad) of `axis`.
   Vec3 near(const Vec3& axis, double most) {
     const Vec3 u = geom::any_perpendicular(axis), v = glm::cross(axis, u);
     const double tilt = (*this)(0, most), way = (*this)(0, 2 * kPi);
@@ -148,7 +148,7 @@ Mesh contact_mesh(const std::string& name) {
   if (name == "box") return box();
   if (name == "needles") return needles();
   if (std::filesystem::exists(name)) return mesh::read_mesh(name);
-  throw std::invalid_argument("part: there is no \"" + name + "\", neither a part nor a file");
+  throw std::invalid_argument("part: \"" + name + "\" is neither a part's name nor a file");
 }
 
 ContactPart contact_part(const std::string& name, const Tool& tool, int count, std::uint64_t seed) {

@@ -1,4 +1,4 @@
-// Parts as CAD programs write them for COL: long triangles, needles, bores, and poses near them.
+// Parts of COL with triangles as CAD programs write them (long ones, needles, bores), and poses near these parts.
 #pragma once
 
 #include <cstdint>
@@ -23,8 +23,7 @@ struct ContactPart {
 const std::vector<std::string>& contact_part_names();
 
 constexpr double kBoreRadius = 20;  ///< mm; the bore is about z, from z = 0 to 60
-/// A part by one of these names, or from an STL, OBJ or PLY file. Throws std::invalid_argument for a name that is
-/// neither.
+/// The part of that name, or one from an STL, OBJ or PLY file. Throws std::invalid_argument for a name that is neither.
 Mesh contact_mesh(const std::string& name);
 
 /// `name`: one of contact_part_names, or the path of an STL, OBJ or PLY file. `count` poses of `tool`: half of them, on

@@ -1,4 +1,5 @@
-// What FCL and Coal are asked, each built where it is there. Both get triangles alone: no force, no depth.
+// Queries of FCL and Coal; each is built only where the library is installed. Both test triangles and return neither
+// force nor depth.
 #pragma once
 
 #include "bench/contact_run.hpp"

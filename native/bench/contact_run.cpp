@@ -19,8 +19,8 @@ namespace riffler::bench {
 
 namespace {
 
-constexpr double kBudget = 200e-6, kDoubt = 0.05;  // s and mm: what a thousand looks a second allow
-constexpr int kBlock = 100;  // poses for which one question is asked before the next question's turn
+constexpr double kBudget = 200e-6, kDoubt = 0.05;  // s and mm, for a thousand queries a second
+constexpr int kBlock = 100;                        // poses for which one query runs before the next query's turn
 
 /// Writes an object's members in their order.
 class Json {
@@ -72,7 +72,7 @@ struct Scene {
   static Tool named(const std::string& name) {
     for (const ContactTool& t : contact_tools())
       if (t.name == name) return t.tool;
-    throw std::invalid_argument("tool: there is no \"" + name + '"');
+    throw std::invalid_argument("tool: unknown tool \"" + name + '"');
   }
 };
 
@@ -123,7 +123,7 @@ std::string contact_times(const ContactOptions& options, const std::vector<Rival
   std::vector<Ask> asks = ours(collider, assembly, build_s);
   for (const Rival& rival : rivals)
     for (Ask& ask : rival({scene.part, scene.tool, tool_mesh}))
-      // FCL's signed distance ends the process at an assertion on triangles as long as these parts'.
+      // FCL's signed distance aborts at an assertion for triangles as long as those of these parts.
       if (options.part.empty() || ask.what != "signed distance") asks.push_back(std::move(ask));
   const std::vector<Timed> results = timed(asks, scene.poses, options.repeats);
 

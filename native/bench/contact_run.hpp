@@ -1,4 +1,4 @@
-// COL: how long it takes to hold a tool against a part, what was missed, and how a force changes over an edge.
+// COL: measures the time of contact queries, the depth that they miss, and the change of a force over an edge.
 #pragma once
 
 #include <array>
@@ -12,21 +12,21 @@
 
 namespace riffler::bench {
 
-/// One question that is asked at every pose, of ours or of another library.
+/// One query of Riffler or of another library, to be timed at every pose.
 struct Ask {
   std::string engine, what;
   std::function<double(const Pose&)> call;  ///< depth, distance or number of contacts
-  double build_s = 0;                       ///< processor time of what was prepared for it
-  int most = 1 << 30;                       ///< poses, where it is slow
+  double build_s = 0;                       ///< processor time of its preparation
+  int most = 1 << 30;                       ///< largest number of poses; set for slow queries
 };
 
-/// What others are given: the part, the tool as a mesh, and its solids.
+/// Input of other libraries: the part, and the tool as a mesh and as solids.
 struct ContactCase {
   const Mesh& part;
   const Tool& tool;
   const Mesh& tool_mesh;
 };
-/// The questions of one other library.
+/// Returns the queries of one other library.
 using Rival = std::function<std::vector<Ask>(const ContactCase&)>;
 
 struct ContactOptions {
@@ -35,27 +35,29 @@ struct ContactOptions {
   std::string tool = "long";
   int poses = 2000;
   std::uint64_t seed = 1;
-  int repeats = 3;  ///< of each question at each pose; the median counts
+  int repeats = 3;  ///< of each query at each pose; the median counts
 };
 
-/// All questions in turn, by blocks of poses, one thread: JSON with processor times of every pose (µs) and answers, and
-/// the share of the poses that collide, of those whose holder is deepest, and of those whose depth is in doubt by more
+/// Times all queries in turn, by blocks of poses, on one thread. Returns JSON with the processor time (µs) and result
+/// of every pose, and the shares of poses that collide, whose holder is deepest, and whose depth is uncertain by more
 /// than 0.05 mm after 200 µs.
 std::string contact_times(const ContactOptions& options, const std::vector<Rival>& rivals = {});
 
-/// Queries with budgets (s), compared with those without: JSON with time, missed depth and its bound for every pose.
+/// Compares queries with budgets (s) with those without. Returns JSON with time, missed depth and its bound for every
+/// pose.
 std::string contact_budgets(const ContactOptions& options, const std::vector<double>& budgets);
 
-/// Depths against the independent reference: JSON with differences from the least over `points` points spread over the
-/// part at `options.poses` poses, and from the bracket over all triangles, to `gap`, at `brackets` of them.
+/// Compares depths with the independent reference. Returns JSON with differences from the smallest distance of `points`
+/// points spread over the part at `options.poses` poses, and from the bracket over all triangles, to `gap`, at
+/// `brackets` of them.
 std::string contact_errors(const ContactOptions& options, std::size_t points, int brackets, double gap);
 
-/// A ball R3 slides off a plane over its edge, 0.2 mm deep: JSON with positions, forces and the integral of stiffness ×
-/// depth over the plane by the reference's distance.
+/// Slides a ball R3, 0.2 mm deep, off a plane over its edge. Returns JSON with positions, forces and the integral of
+/// stiffness × depth over the plane by the reference's distance.
 std::string contact_slide(int steps);
 
-/// How deep the mesh's surface enters the tool at each pose by the independent reference (reference/surface_entry.hpp):
-/// as attained and as proven, mm.
+/// Depth (mm) to which the mesh's surface enters the tool at each pose, by the independent reference
+/// (reference/surface_entry.hpp): the attained and the proven one.
 std::vector<std::array<double, 2>> contact_entries(const Mesh& mesh, const Tool& tool, std::span<const Pose> poses,
                                                    double gap);
 

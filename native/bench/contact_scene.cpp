@@ -19,7 +19,7 @@ double height(double x, double y) {
   return 4.2 * std::abs(std::sin(a)) + 2.5 * std::abs(std::sin(b)) + 1.1 * std::abs(std::sin(c));
 }
 
-/// Points of the outline from the axis round to the axis.
+/// Points of the outline, from the axis at the bottom to the axis at the top.
 std::vector<Vec2> corners_of(const tool::Outline& outline, int segments) {
   std::vector<Vec2> out;
   for (const tool::OutlineEdge& e : outline.edges()) {

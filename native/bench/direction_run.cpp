@@ -10,7 +10,7 @@ namespace riffler::bench {
 DirectionRun direction_run(const DirectionOptions& o) {
   Volume volume = Volume::block({{{0, 0, -15}, {80, 80, 0}}, o.pitch, o.directions});
   sweep::MoveCarver carver(volume, cutters::ball(20, 60), {.deferred = o.shown > 0});
-  base::BlockReserve reserve;  // as a session has it
+  base::BlockReserve reserve;  // as in a session
   DirectionRun out;
   bool asked = false;
   for (std::size_t k = 0; k + 1 < o.poses.size(); ++k) {

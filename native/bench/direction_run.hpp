@@ -1,4 +1,4 @@
-// A stroke through a block with rays in one direction or in three, as a session makes it.
+// Times a session's stroke through a block with rays in one direction or in three.
 #pragma once
 
 #include <cstdint>
@@ -9,16 +9,16 @@
 
 namespace riffler::bench {
 
-/// A Ø20 ball through a block of 80 × 80 × 15 mm whose top is at z = 0, a move of 1 ms from each pose to the next.
+/// A Ø20 ball moves through a block of 80 × 80 × 15 mm whose top is at z = 0, with a move of 1 ms between two poses.
 struct DirectionOptions {
   std::vector<Pose> poses;
   std::string directions = "xyz";
   double pitch = 0.2;  ///< mm
-  int shown = 33;      ///< steps from one look of the display to the next; 0: each step leaves a complete volume
+  int shown = 33;      ///< steps between two requests of the display; 0: each step leaves a complete volume
 };
 
 struct DirectionRun {
-  std::vector<double> seconds;            ///< of processor time, of every step with its part of what is published
+  std::vector<double> seconds;            ///< processor time of every step, with its share of publishing
   double removed = 0;                     ///< mm³
   std::uint64_t tested = 0, changed = 0;  ///< rays
 };

@@ -60,7 +60,7 @@ HapticScene wave(double pitch, double speed) {
   return s;
 }
 
-/// Sideways into a block, which it enters from the side, 1 to 3 mm deep, leaning to and fro.
+/// A tool that enters a block from the side, cuts a slot 1 to 3 mm deep and leans to and fro.
 HapticScene slot(double pitch, double speed, const Tool& tool) {
   HapticScene s{tool, {}, {}, {}, {}};
   s.add_stock({{0, 12, -20}, {40, 28, 0}}, pitch, 2e-3 / speed);
@@ -88,12 +88,12 @@ HapticScene trace(double pitch, bool fixture) {
 
 constexpr double kTraceSpeed = 50, kPressed = 1, kFileSize = 100;  // mm/s, mm, mm
 
-/// The pose of a ball whose centre is there, pressed against `from`.
+/// The pose of a ball whose centre is pressed kPressed mm from `centre` against the direction `from`.
 Pose pressed(const Tool& ball, const Vec3& centre, const Vec3& from, const Vec3& axis) {
   return {centre - kPressed * from - 0.5 * ball.diameter() * axis, axis};
 }
 
-/// Round and down in the bore, the axis nearly along it.
+/// A tool that circles down in the bore, its axis nearly along it.
 HapticScene bore_scene() {
   HapticScene s{contact_tools()[0].tool, {}, {}, {}, {}};
   s.collider = std::make_unique<collide::Collider>(contact_mesh("bore"));
@@ -105,12 +105,12 @@ HapticScene bore_scene() {
   return s;
 }
 
-/// A corner in the path of the ball's centre, and the direction from the part there.
+/// A corner of the path of the ball's centre, and the direction away from the part there.
 struct TraceCorner {
   Vec3 centre, from;
 };
 
-/// Along straight lines from corner to corner, at one speed.
+/// A motion along straight lines from corner to corner at constant speed.
 std::function<Pose(double)> along(const Tool& ball, std::vector<TraceCorner> corners) {
   return [ball, corners = std::move(corners)](double t) {
     double left = kTraceSpeed * t;
@@ -127,7 +127,7 @@ std::function<Pose(double)> along(const Tool& ball, std::vector<TraceCorner> cor
   };
 }
 
-/// Twice around the upper edges of the box of 60 × 40 × 30 mm, which a ball touches at both sides of each edge.
+/// A ball that goes twice around the upper edges of the box of 60 × 40 × 30 mm, touching both sides of each edge.
 HapticScene box_scene() {
   HapticScene s{contact_tools()[0].tool, {}, {}, {}, {}};
   s.collider = std::make_unique<collide::Collider>(contact_mesh("box"));
@@ -143,7 +143,7 @@ HapticScene box_scene() {
   return s;
 }
 
-/// Along the pencil paths of a part that is made 100 mm long, the longest first.
+/// A ball that follows the pencil paths of a part scaled to 100 mm length, the longest path first.
 HapticScene traced_file(const std::string& name) {
   HapticScene s{contact_tools()[0].tool, {}, {}, {}, {}};
   Mesh part = mesh::read_mesh(name);
@@ -175,7 +175,7 @@ HapticScene scene_of(const HapticOptions& o) {
   if (o.scene == "bore") return bore_scene();
   if (o.scene == "box") return box_scene();
   if (std::filesystem::exists(o.scene)) return traced_file(o.scene);
-  throw std::invalid_argument("scene: there is no \"" + o.scene + '"');
+  throw std::invalid_argument("scene: unknown scene \"" + o.scene + '"');
 }
 
 }  // namespace

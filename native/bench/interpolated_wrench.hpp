@@ -1,4 +1,4 @@
-// The source's scheme for forces between two steps, which haptic_run measures the loop against.
+// The source's scheme for forces between two steps, with which haptic_run compares the loop.
 #pragma once
 
 #include "riffler/haptics/wrench.hpp"
@@ -12,9 +12,9 @@ class InterpolatedWrench {
   /// period > 0, s.
   explicit InterpolatedWrench(double period) : period_(period) {}
 
-  /// Takes the wrench that has just been computed.
+  /// Sets the newly computed wrench.
   void computed(const Wrench& wrench) { from_ = at(), to_ = wrench, age_ = 0; }
-  /// Advances by dt (s) and returns the wrench there.
+  /// Advances by dt (s) and returns the interpolated wrench.
   Wrench tick(double dt) {
     age_ += dt;
     return at();

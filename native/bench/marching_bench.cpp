@@ -19,7 +19,7 @@ using bench::kMoves;
 
 constexpr double kRadius = 3;
 
-/// Where the line p + s d meets the ball's sweep from a to b; empty where it does not.
+/// Interval of s in which the line p + s d is in the ball's sweep from a to b; empty if they do not meet.
 Interval capsule(const Vec3& p, const Vec3& d, const Vec3& a, const Vec3& b) {
   Interval out;
   const auto ball = [&](const Vec3& c) {
@@ -41,7 +41,7 @@ Interval capsule(const Vec3& p, const Vec3& d, const Vec3& a, const Vec3& b) {
   return out;
 }
 
-/// The block's span on one ray less all moves, with normals.
+/// The block's span on one ray minus all moves, with normals.
 void cut_ray(const Vec3& p, const Vec3& d, const dexel::Span& block, dexel::TileBuilder& out) {
   struct Cut {
     Interval s;
@@ -97,7 +97,7 @@ void whole(benchmark::State& state) {
       benchmark::Counter(static_cast<double>(triangles), benchmark::Counter::kIsIterationInvariantRate);
 }
 
-/// A cut of one ball that a mesh follows.
+/// Times a mesh that follows a cut of one ball.
 void follow(benchmark::State& state) {
   const Volume volume = carved_block(pitch_of(state), directions_of(state));
   Volume cut = volume;

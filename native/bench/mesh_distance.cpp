@@ -57,7 +57,7 @@ Vec3i MeshDistance::cell_of(const Vec3& p) const {
 }
 
 void MeshDistance::insert(int triangle, const Vec3& a, const Vec3& b, const Vec3& c) {
-  // Halved across its longest side until its box is worth filling.
+  // Halve the triangle across its longest side until its box is small.
   const double ab = squared(b - a), bc = squared(c - b), ca = squared(a - c);
   if (const double longest = std::max({ab, bc, ca}); longest > 4 * side_ * side_) {
     if (longest > ab && longest == bc) return insert(triangle, b, c, a);
@@ -96,7 +96,7 @@ double MeshDistance::operator()(const Vec3& p) const {
         for (int k = middle.z - ring; k <= middle.z + ring; k += wall || ring == 0 ? 1 : 2 * ring)
           if (k >= 0 && k < counts_.z) least = in_cell({i, j, k}, p, least);
       }
-    // What lies beyond the rings that were looked at is as far as their wall, at least.
+    // Triangles beyond the examined rings are at least as far away as the rings' wall.
     double wall = std::numeric_limits<double>::infinity();
     for (int k = 0; k < 3; ++k) {
       if (middle[k] - ring > 0) wall = std::min(wall, p[k] - lower[k] + ring * side_);

@@ -1,5 +1,5 @@
-// Distance of points from a mesh, to judge meshes by: cells of triangles, every triangle near enough looked at. Shares
-// no code with native/mesh.
+// Distance of points from a mesh, as a reference for meshes: examines every triangle in the nearby cells of a grid.
+// Shares no code with native/mesh.
 #pragma once
 
 #include <span>
@@ -22,7 +22,7 @@ class MeshDistance {
  private:
   Vec3i cell_of(const Vec3& p) const;
   void insert(int triangle, const Vec3& a, const Vec3& b, const Vec3& c);
-  /// The least squared distance to the triangles of one cell, if less than `least`.
+  /// The smallest squared distance to the triangles of one cell, at most `least`.
   double in_cell(const Vec3i& cell, const Vec3& p, double least) const;
 
   const Mesh& mesh_;

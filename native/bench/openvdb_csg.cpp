@@ -1,5 +1,5 @@
-// A rival: B200's balls taken from a narrow-band level set one by one by OpenVDB's CSG, then meshed. Stamps, since it
-// has no swept volume of a ball. Usage: riffler_openvdb_csg PITCH; prints JSON.
+// A rival: subtracts B200's balls one by one from a narrow-band level set with OpenVDB's CSG, then meshes it. Balls,
+// because OpenVDB has no swept volume of a ball. Usage: riffler_openvdb_csg PITCH; prints JSON.
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/Composite.h>
 #include <openvdb/tools/LevelSetMeasure.h>

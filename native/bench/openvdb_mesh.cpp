@@ -1,7 +1,7 @@
-// A rival: OpenVDB's volumeToMesh of a field that others mesh too. Usage:
+// A rival: OpenVDB's volumeToMesh of a field that other rivals mesh too. Usage:
 //   riffler_openvdb_mesh FIELD NX NY NZ PITCH X Y Z THREADS REPEATS MESH
-// FIELD: float32, z fastest; its first value belongs to (X, Y, Z). The narrow band of 3 voxels is kept, as a level set
-// has it. Writes MESH as MESH.vertices (float32) and MESH.quads (int32), and prints JSON.
+// FIELD: float32, z fastest; its first value belongs to (X, Y, Z). Keeps the narrow band of 3 voxels, as in a level
+// set. Writes MESH as MESH.vertices (float32) and MESH.quads (int32), and prints JSON.
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/SignedFloodFill.h>
 #include <openvdb/tools/VolumeToMesh.h>

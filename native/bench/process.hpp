@@ -1,4 +1,4 @@
-// Clocks and memory of this process, for programs that are measured as a whole.
+// Clocks and memory of this process.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace riffler::bench {
 
-/// Seconds of wall and of processor time since it was made.
+/// Measures wall time and processor time (s) since its construction.
 class Stopwatch {
  public:
   double wall() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_).count(); }
@@ -26,7 +26,7 @@ inline double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-/// The most memory that this process has had, bytes; 0 where the system does not say.
+/// Peak memory of this process, bytes; 0 if the system does not report it.
 inline double peak_bytes() {
   std::ifstream status("/proc/self/status");
   for (std::string word; status >> word;)

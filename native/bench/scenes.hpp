@@ -17,8 +17,8 @@ inline const Vec3 kBlock{100, 60, 30};
 /// B200's ball centre after `k` moves.
 Vec3 centre(int k);
 
-/// Tool poses along the centres, each with the tool's point `centre_height` above its tip in the centre. The axis
-/// stands upright (B200), or, where `turning`, swings by 30° about x and by 20° about y, two periods of each (B5X).
+/// Tool poses along the centres: the tool's point `centre_height` above its tip is at the centre. The axis is upright
+/// (B200) or, if `turning`, swings by 30° about x and by 20° about y, two periods of each (B5X).
 std::vector<Pose> path(double centre_height, bool turning);
 
 /// A cutter and the height of the point that follows the path: the centre of the rounding at its end; 0 for a flat end,

@@ -13,10 +13,10 @@ namespace {
 
 using reference::SweptPath;
 
-/// Below, a ray grazes: moving it sideways moves its end more than twice as far. Sine of the angle to the surface,
-/// 1/√5.
+/// Sine of the angle to the surface, 1/√5, below which a ray grazes: moving it sideways moves its end more than twice
+/// as far.
 constexpr double kSteepest = 0.44721359549995793;
-constexpr int kPoints = 12;  // a ray
+constexpr int kPoints = 12;  // per ray
 
 struct Ray {
   const dexel::Grid* grid;
@@ -110,7 +110,7 @@ class Comparison {
     if (out.grazes) {
       const Vec3 normal{slope({1, 0, 0}), slope({0, 1, 0}), slope({0, 0, 1})};
       const double length = glm::length(normal);
-      // Where distances from two sides meet, there is no normal; the ray's own direction is one way to the surface.
+      // Where distances from two sides meet, there is no normal; then measure along the ray.
       out.space = length > 0.1 ? std::min(out.along, crossing(near, p, normal / length, reach_)) : out.along;
     }
     return out;

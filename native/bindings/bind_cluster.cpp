@@ -87,7 +87,7 @@ void bind_cluster(py::module_& m) {
       [&](const auto&... arguments) { bound.def(py::init(with_arguments<>(&make_of<SharedPlan>)), arguments...); });
   bound
       .def("add", &add, py::arg("program"), py::kw_only(), py::arg("progress") = py::none(),
-           "List of (slab, number of moves, bytes) of the chunk: what can touch each slab.")
+           "List of (slab, number of moves, bytes) of the chunk: the moves that can touch each slab.")
       .def(
           "context",
           [](SharedPlan& self) { return to_python(self.run([](verify::VerifyPlan& plan) { return plan.context(); })); },
@@ -112,7 +112,7 @@ void bind_cluster(py::module_& m) {
             const Progress listener = to_progress(progress);
             return share(self.run([&](verify::VerifyPlan& plan) { return plan.finish(listener); }));
           },
-          py::kw_only(), py::arg("progress") = py::none(), "The VerifyReport, once all slabs are there.");
+          py::kw_only(), py::arg("progress") = py::none(), "The VerifyReport, after the results of all slabs.");
 }
 
 }  // namespace riffler::bindings

@@ -166,14 +166,15 @@ std::string describe(const collide::Collider& self) {
 
 void bind_contact(py::module_& m) {
   py::class_<collide::Contact>(
-      m, "Contact", "What a tool meets at a pose: forces act on the tool, in the part's frame. See `Collider.query`.")
+      m, "Contact", "Contact of a tool at a pose. Forces act on the tool, in the part's frame. See `Collider.query`.")
       .def_property_readonly(
-          "force", [](const collide::Contact& c) { return from_vec3(c.force); }, "N, (3,): out of what is touched.")
+          "force", [](const collide::Contact& c) { return from_vec3(c.force); },
+          "N, (3,): pushes the tool out of contact.")
       .def_property_readonly(
           "torque", [](const collide::Contact& c) { return from_vec3(c.torque); }, "N·mm, (3,), about the tip.")
-      .def_readonly("depth", &collide::Contact::depth, "mm; 0 where nothing is touched.")
+      .def_readonly("depth", &collide::Contact::depth, "mm; 0 without contact.")
       .def_readonly("checked", &collide::Contact::checked,
-                    "Share of the candidate triangles that was looked at; 1 without a budget.")
+                    "Share of the candidate triangles that was examined; 1 without a budget.")
       .def_readonly("missed_depth_bound", &collide::Contact::missed_depth_bound,
                     "mm: the true depth is at most depth + missed_depth_bound.")
       .def_property_readonly(
@@ -206,7 +207,7 @@ void bind_collide(py::module_& m) {
   bind_contact(m);
   py::class_<collide::Collider, std::shared_ptr<collide::Collider>>(
       m, "Collider",
-      R"(A part and its fixtures, against which tools are held; immutable.
+      R"(A part and its fixtures, for contact and clearance of tools; immutable.
 
 A pose is 6 numbers: tip in mm, unit axis from the tip to the spindle. Calls may come from several threads; they release
 Python's lock.
@@ -216,9 +217,9 @@ Parameters
 part : Mesh
     The surface; an empty one is ignored.
 fixtures : list of Volume
-    Each of its own pitch; empty ones are ignored.
+    Each may have its own pitch; empty ones are ignored.
 spacing : float, mm, or None
-    Of the points on the part that forces are summed over. Default: √(area / 100 000).
+    Spacing of the points on the part over which forces are summed. Default: √(area / 100 000).
 stiffness : float, N per mm of depth and mm² of surface
     Against the cutter.
 holder_stiffness : float, N per mm of depth and mm² of surface
@@ -255,9 +256,9 @@ Parameters
 part : Mesh
     The surface; an empty one is ignored.
 fixtures : list of Volume
-    Each of its own pitch; empty ones are ignored.
+    Each may have its own pitch; empty ones are ignored.
 spacing : float, mm, or None
-    Of the points on the part that forces are summed over. Default: √(area / 100 000).
+    Spacing of the points on the part over which forces are summed. Default: √(area / 100 000).
 stiffness : float, N per mm of depth and mm² of surface
     Against the cutter.
 holder_stiffness : float, N per mm of depth and mm² of surface
@@ -282,26 +283,26 @@ Examples
 0.5
 )")
       .def("query", &query, py::arg("tool"), py::arg("pose"), py::kw_only(), py::arg("budget_us") = py::none(),
-           R"(Force, torque and depth of a tool in contact, and where they are.
+           R"(Force, torque, depth and points of a tool in contact.
 
 Parameters
 ----------
 tool : Tool
     Cutter, shank and holder.
 pose : array_like of shape (6,), tip in mm and unit axis
-    Where the tool is.
+    Poses of the tool.
 budget_us : float, µs, or None
-    After so long, what is left is only bounded: see ``checked`` and ``missed_depth_bound``.
+    Time after which the rest is only bounded: see ``checked`` and ``missed_depth_bound``.
 
 Returns
 -------
 Contact
-    With depth 0 where nothing touches.
+    A contact; its depth is 0 if nothing touches.
 
 Raises
 ------
 ValueError
-    Names the argument: no unit axis, a number that is not finite, a negative budget.
+    Names the argument: an axis that is not a unit vector, a number that is not finite, a negative budget.
 
 Examples
 --------
@@ -317,7 +318,7 @@ Examples
             return take<double>(clearances(self, tool, poses));
           },
           py::arg("tool"), py::arg("poses"),
-          R"(The least signed distance between the part's surface and a tool, pose by pose, on all threads.
+          R"(The smallest signed distance between the part's surface and a tool at each pose, on all threads.
 
 The tool is the union of cutter, shank and holder. Fixtures do not count.
 
@@ -326,7 +327,7 @@ Parameters
 tool : Tool
     Cutter, shank and holder.
 poses : array_like of shape (n, 6), tip in mm and unit axis
-    Where the tool is.
+    Poses of the tool.
 
 Returns
 -------
@@ -346,19 +347,19 @@ Examples
 [1.0, -1.0]
 )")
       .def("nearest", &nearest, py::arg("tool"), py::arg("pose"),
-           R"(What of part and fixtures is nearest to a tool.
+           R"(The point of part and fixtures that is nearest to a tool.
 
 Parameters
 ----------
 tool : Tool
     Cutter, shank and holder.
 pose : array_like of shape (6,), tip in mm and unit axis
-    Where the tool is.
+    Poses of the tool.
 
 Returns
 -------
 Nearest
-    Distance, point on part or fixture, and what of the tool it is next to, or "fixture".
+    Distance, point on part or fixture, and the nearest part of the tool, or "fixture".
 
 Examples
 --------

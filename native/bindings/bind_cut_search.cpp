@@ -22,7 +22,7 @@ auto rows_at(const std::shared_ptr<nc::Program>& program, const Doubles& points,
 void bind_cut_search(py::module_& m) {
   program_class(m).def("rows_at", &rows_at, py::arg("points"), py::kw_only(), py::arg("tools") = py::none(),
                        py::arg("tolerance") = 0.05, py::arg("progress") = py::none(),
-                       R"(Which row made the surface at each point.
+                       R"(The row that made the surface at each point.
 
 The swept bodies of all moves are searched; nothing has to be stored while cutting. ``program.line`` and ``program.tool`` of
 the rows are the lines and tools that made a surface.
@@ -30,7 +30,7 @@ the rows are the lines and tools that made a surface.
 Parameters
 ----------
 points : array_like, shape (n, 3)
-    mm: places on what the program leaves, such as vertices of its mesh.
+    mm: points on the surface that the program leaves, such as vertices of its mesh.
 tools : dict, optional
     Number to Tool; takes the place of the program's own.
 tolerance : float

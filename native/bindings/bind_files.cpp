@@ -6,9 +6,9 @@
 namespace riffler::bindings {
 
 void bind_files(py::module_& m) {
-  py::class_<base::AtomicFileWriter>(m, "AtomicFileWriter", R"(A file that takes the place of ``path`` at ``commit``.
+  py::class_<base::AtomicFileWriter>(m, "AtomicFileWriter", R"(A file that replaces ``path`` at ``commit``.
 
-Links are followed; permissions and owner of a file that is there are kept; RuntimeError for what is no regular file.)")
+Follows links; keeps permissions and owner of an existing file. RuntimeError if ``path`` is not a regular file.)")
       .def(py::init<const std::filesystem::path&>(), py::arg("path"))
       .def("fileno", &base::AtomicFileWriter::descriptor,
            "File descriptor of the draft, which is written to; -1 after ``commit``.")
@@ -30,11 +30,11 @@ Links are followed; permissions and owner of a file that is there are kept; Runt
         }
         return py::bytes(reinterpret_cast<const char*>(bytes.data()), bytes.size());
       },
-      py::arg("path"), "The file's bytes. FormatError where there is none, and for a folder, a pipe or a device.");
+      py::arg("path"), "The file's bytes. FormatError if there is no file, and for a folder, a pipe or a device.");
   m.def("replaceable", &base::replaceable, py::arg("path"),
-        "Where a path leads, links followed. RuntimeError for what is no regular file.");
+        "Target of a path after following links. RuntimeError if it is not a regular file.");
   m.def("replace_file", &base::replace_file, py::arg("draft"), py::arg("path"),
-        "``draft``, on the same file system, takes the place of ``path`` as an AtomicFileWriter's does.");
+        "Replaces ``path`` with ``draft``, on the same file system, like AtomicFileWriter.");
   m.def("draft_prefix", &base::draft_prefix, py::arg("path"), "Path with which the names of drafts of ``path`` begin.");
   m.def("clear_drafts", &base::clear_drafts, py::arg("path"),
         "Removes drafts of ``path`` that no process has locked: processes that were killed left them.");

@@ -127,7 +127,7 @@ const char* const kEditErrors = R"(
 Raises
 ------
 ValueError
-    The history has no such stroke; or names argument and row: no poses, a shape, an axis that is no unit vector, opposite
+    The history has no such stroke; or names argument and row: no poses, a wrong shape, an axis that is not a unit vector, opposite
     axes, a protected volume with another grid. The history is unchanged.
 Cancelled
     ``progress`` returned False; the history is unchanged.
@@ -140,7 +140,7 @@ std::string with_errors(const char* before, const char* after) {
 void bind_insertions(HistoryClass& history) {
   history.def("add", &add, py::arg("tool"), py::arg("poses"), py::kw_only(), py::arg("mode") = "remove",
               py::arg("tolerance") = 0.01, py::arg("protect") = py::none(), py::arg("progress") = py::none(),
-              with_errors(R"(Adds a stroke at the end: what ``volume.carve`` with the same arguments does.
+              with_errors(R"(Adds a stroke at the end. It carves like ``volume.carve`` with the same arguments.
 
 Parameters
 ----------
@@ -151,7 +151,7 @@ poses : array_like of shape (n, 6), tip in mm and unit axis
 mode : "remove" or "add"
     "add" puts material on wherever the cutter sweeps within the volume's box.
 tolerance : float, mm
-    For moves that turn the axis; others are exact.
+    Tolerance of moves that turn the axis; others are exact.
 protect : Volume or None
     Of the base's lower, upper, pitch and directions; what lies in it stays unchanged by this stroke. Kept as a snapshot.
 progress : callable or None
@@ -160,7 +160,7 @@ progress : callable or None
 Returns
 -------
 int
-    The stroke's id, for the other calls. An id is never given again.
+    The stroke's id, for the other calls. Ids are never reused.
 )",
                           R"(
 Examples
@@ -187,7 +187,7 @@ before : int
 mode : "remove" or "add"
     As for `add`.
 tolerance : float, mm
-    For moves that turn the axis; others are exact.
+    Tolerance of moves that turn the axis; others are exact.
 protect : Volume or None
     As for `add`.
 progress : callable or None
@@ -272,7 +272,7 @@ Parameters
 stroke : int
     Its id.
 before : int or None
-    Id of the stroke that follows it then; None: it becomes the last one. Its own id: nothing changes.
+    Id of the stroke to move it before; None: to the end. Its own id: no change.
 progress : callable or None
     Called with the finished share; returning False cancels.
 )",
@@ -350,12 +350,12 @@ Examples
 >>> history.stroke(stroke).mode, history.stroke(stroke).poses.shape, history.stroke(stroke).enabled
 ('remove', (2, 6), True)
 )")
-      .def("stats", &stats, R"(The work of the last edit, and what the history holds.
+      .def("stats", &stats, R"(The work of the last edit, and the size of the history.
 
 Returns
 -------
 HistoryStats
-    An edit restores only tiles that the edited stroke touches, and runs only strokes that touch those, only there.
+    An edit restores only the tiles that the edited stroke touches, and runs only later strokes, in these tiles.
 
 Examples
 --------
@@ -384,7 +384,7 @@ everything unchanged. Edits release Python's lock and use the number of threads 
 Parameters
 ----------
 base : Volume
-    What the strokes are carved into.
+    The volume that the strokes are carved into.
 memory_limit : int, bytes
     For the versions of tiles, about 25 kB each with rays in three directions. Beyond it, the history keeps every second,
     fourth, … version of a tile, and an edit carves up to as many more strokes there. An edit needs as much again while it

@@ -48,7 +48,7 @@ StringDict notes(const session::Journal& journal) {
 }
 
 StrokeList strokes(const SharedJournal& journal) {
-  if (!journal) throw py::type_error("None is no Journal");
+  if (!journal) throw py::type_error("None is not a Journal");
   py::list out;
   for (std::size_t k = 0; k < journal->strokes().size(); ++k) out.append(StrokeView{journal, k});
   return out;
@@ -135,7 +135,7 @@ void bind_stroke(py::module_& m) {
       .def_property_readonly(
           "tolerance", [](const StrokeView& s) { return s.get().tolerance; }, "mm.")
       .def_property_readonly(
-          "name", [](const StrokeView& s) { return s.get().name; }, "For people.")
+          "name", [](const StrokeView& s) { return s.get().name; }, "Name for users.")
       .def_property_readonly(
           "mode", [](const StrokeView& s) { return stroke_mode_name(s.get().mode); },
           R"("remove", "add", "mask", "unmask", "soften", "beside" or "build": see ``Journal.add_stroke``.)")
@@ -149,7 +149,7 @@ void bind_stroke(py::module_& m) {
 void bind_journal(py::module_& m) {
   bind_stroke(m);
   py::class_<session::Journal, SharedJournal> journal(m, "Journal",
-                                                      R"(What a session did: stock, tools, strokes as poses, notes.
+                                                      R"(Record of a session: stock, tools, strokes as poses, notes.
 
 Replaying the strokes on the stock gives the session again. Files end in .rjournal.
 
@@ -202,7 +202,7 @@ Examples
             const NoGil release;
             write_journal(copy, path);
           },
-          py::arg("path"), R"(Writes the whole journal; the file is whole or not there.
+          py::arg("path"), R"(Writes the journal: the whole file or none.
 
 Parameters
 ----------
@@ -216,7 +216,8 @@ Examples
       .def_property_readonly("stock", &stock, "Frame and files of the stock, or None.")
       .def_property_readonly("tools", &tools, "Each tool's dict, by number.")
       .def_property_readonly("strokes", &strokes, "The strokes that count.")
-      .def_property_readonly("notes", &notes, "Where the journal comes from; of a key given twice the later value.")
+      .def_property_readonly("notes", &notes,
+                             "Notes on where the journal comes from, by key; the later value of a key given twice.")
       .def_readonly("cut_at", &session::Journal::cut_at, "Byte at which the file had been cut, or None.")
       .def("program", &program, py::kw_only(), py::arg("feed") = py::none(), py::arg("spindle") = 0.0,
            py::arg("safe_height") = py::none(), py::arg("clearance") = 10.0,
@@ -249,15 +250,15 @@ Examples
 6.0
 )")
       .def("replay", &replayed, py::arg("folder") = py::none(), py::kw_only(), py::arg("progress") = py::none(),
-           R"(What the strokes leave of the stock, to the bit as the session left it.
+           R"(The stock after the strokes, to the bit as the session left it.
 
-A row that stands where the row before stood is no move; a stroke that never moves cuts where it stands if it has two rows
+A row with the same pose as the row before is not a move; a stroke that never moves cuts where it stands if it has two rows
 or more.
 
 Parameters
 ----------
 folder : path_like, optional
-    Where the snapshot of the stock lies, for a stock that is not a block.
+    Folder of the stock's snapshot, for a stock that is not a block.
 progress : callable, optional
     Called with the finished share; returning False cancels.
 
@@ -274,12 +275,12 @@ Examples
 )")
       .def("strokes_at", &strokes_at, py::arg("points"), py::kw_only(), py::arg("tolerance") = 0.05,
            py::arg("progress") = py::none(),
-           R"(Which stroke made the surface at each point.
+           R"(The stroke that made the surface at each point.
 
 Parameters
 ----------
 points : array_like, shape (n, 3)
-    mm: places on what the strokes leave, such as vertices of its mesh.
+    mm: points on the surface that the strokes leave, such as vertices of its mesh.
 tolerance : float
     mm that a point may be off the surface; a quarter of the pitch fits vertices of a mesh.
 progress : callable, optional
@@ -302,12 +303,12 @@ array([ 0, -1], dtype=int32)
 )")
       .def("replay_with_mask", &replayed_with_mask, py::arg("folder") = py::none(), py::kw_only(),
            py::arg("progress") = py::none(),
-           R"(As ``replay``, with what is protected in the end.
+           R"(As ``replay``, with the region that is protected at the end.
 
 Parameters
 ----------
 folder : path_like, optional
-    Where the snapshots of stock and mask lie.
+    Folder of the snapshots of stock and mask.
 progress : callable, optional
     Called with the finished share; returning False cancels.
 

@@ -27,7 +27,7 @@ void close(SharedWriter& writer) {
 void bind_journal_writer(py::module_& m) {
   py::class_<SharedWriter> writer(m, "JournalWriter", R"(Appends to a journal file, record by record. Context manager.
 
-Continues a file that is there, after cutting off a damaged tail, or begins a new one. Each record is handed to the
+Continues an existing file, after cutting off a damaged tail, or begins a new one. Each record is passed to the
 system before the call returns.
 
 Parameters
@@ -59,14 +59,14 @@ Examples
             const NoGil release;
             self.sync();
           },
-          R"(Waits until the disk has everything.
+          R"(Waits until everything is on the disk.
 
 Examples
 --------
 >>> with riffler.JournalWriter("a.rjournal") as writer:
 ...     writer.sync()
 )")
-      .def("close", &close, R"(Ends writing; calls after it raise RuntimeError.
+      .def("close", &close, R"(Closes the file; later calls raise RuntimeError.
 
 Examples
 --------

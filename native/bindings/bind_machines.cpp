@@ -87,9 +87,10 @@ nc::Options to_options(const py::object& object) {
 }
 
 void bind_machines(py::module_& m) {
-  m.def("machines", &machine_list, R"(Machines that programs are written for and read from, riffler's and your own.
+  m.def("machines", &machine_list,
+        R"(The machines that riffler can write and read programs for, shipped ones and your own.
 
-A post has its machine's name. Where a machine is asked for, the path of a .toml file that describes one will do as well.
+A post has its machine's name. Instead of a machine's name you can pass the path of a .toml file that describes one.
 
 Returns
 -------
@@ -117,7 +118,7 @@ MachineTexts
 Raises
 ------
 ValueError
-    For a machine that is not known, and a file that cannot be read.
+    For an unknown machine, and a file that cannot be read.
 
 Examples
 --------
@@ -133,7 +134,7 @@ Parameters
 machine : str
     A name of ``machines``, or the path of a .toml file.
 options : dict, optional
-    Options that are given: others may be needed with them.
+    Given options, which may make others required.
 
 Returns
 -------
@@ -142,7 +143,7 @@ list of MachineOption
 Raises
 ------
 ValueError
-    For a machine that is not known, and for options that are wrong.
+    For an unknown machine, and for wrong options.
 
 Examples
 --------

@@ -8,7 +8,7 @@ using namespace py::literals;
 
 void bind_material(py::module_& m) {
   const haptics::Material usual;
-  py::class_<haptics::Material>(m, "Material", R"(What a stock or a fixture is made of, as far as a hand can feel it.
+  py::class_<haptics::Material>(m, "Material", R"(Properties of a stock's or fixture's material that a hand can feel.
 
 Parameters
 ----------

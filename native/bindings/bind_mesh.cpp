@@ -149,7 +149,7 @@ Examples
   mesh.def_static("read", &read, "path"_a, py::kw_only(), "progress"_a = py::none(),
                   R"(Reads a .stl (binary or ASCII), .obj, .ply or .3mf file; equal vertices become one.
 
-A .3mf file gives everything that it says to build, placed, in mm whatever its unit; it needs the package lib3mf.
+From a .3mf file reads all build items, in place, converted to mm; this needs the package lib3mf.
 
 Parameters
 ----------
@@ -189,7 +189,7 @@ lib3mf, which reports no progress.
 Parameters
 ----------
 path : path_like, with one of these extensions
-    The file; one that is there is replaced.
+    The file; an existing one is replaced.
 progress : callable or None
     Called with the finished share; returning False cancels.
 
@@ -200,7 +200,7 @@ RuntimeError
 ValueError
     Another extension.
 Cancelled
-    ``progress`` returned False; no file is left, or the one that was there.
+    ``progress`` returned False. No file is written; an existing one is unchanged.
 
 Examples
 --------
@@ -219,7 +219,7 @@ Examples
       return measure(self);
     };
   };
-  mesh.def_property_readonly("volume", unlocked(&mesh::volume), "mm³, signed; of a closed mesh.");
+  mesh.def_property_readonly("volume", unlocked(&mesh::volume), "mm³, signed; defined for closed meshes.");
   mesh.def_property_readonly("area", unlocked(&mesh::area), "mm².");
   mesh.def_property_readonly("bounds", &bounds_array,
                              "(2, 3) float64, mm: lower and upper corner of the triangles' box. ValueError without "

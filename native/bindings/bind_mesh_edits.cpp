@@ -101,15 +101,15 @@ Examples
            "progress"_a = py::none(),
            R"(A mesh with fewer triangles.
 
-It is closed and two-manifold where this one is; sharp edges and borders stay. The vertices are some of the old ones,
-or, where that fits better, new ones between them.
+It is closed and two-manifold if this one is; sharp edges and borders stay. The vertices are some of the old ones,
+or, if that fits better, new ones between them.
 
 Parameters
 ----------
 triangles : int, how many triangles to keep, or None
-    Down to so many.
+    Number of triangles to stop at.
 tolerance : float, mm, or None
-    As far as old and new surface stay within it of each other. With both limits, until the first of them.
+    Largest distance between old and new surface. With both limits, decimation stops at the first one reached.
 progress : callable or None
     Called with the finished share; returning False cancels.
 
@@ -143,7 +143,7 @@ Parameters
 iterations : int, steps of the filter
     Not negative.
 tolerance : float, mm, or None
-    No vertex moves farther in all.
+    Largest total move of a vertex.
 feature_angle : float, rad
     Between the normals of an edge's two sides.
 progress : callable or None
@@ -170,12 +170,12 @@ True
 )");
   mesh.def("deviation", &deviation_array, "other"_a.none(false), py::kw_only(), "signed"_a = false,
            "progress"_a = py::none(),
-           R"(How far each vertex is from the surface of another mesh.
+           R"(Distance of each vertex from the surface of another mesh.
 
 Parameters
 ----------
 other : Mesh
-    The surface that is measured against.
+    The surface to measure from.
 signed : bool
     Whether distances inside of ``other`` are negative.
 progress : callable or None
@@ -227,7 +227,7 @@ Examples
 True
 )");
   mesh.def("orient_with_report", &orient_with_report, py::kw_only(), "hollow"_a = false,
-           R"(The same as `orient`, with what was wrong.
+           R"(The same as `orient`, with a report of the faults.
 
 Parameters
 ----------
@@ -237,7 +237,7 @@ hollow : bool
 Returns
 -------
 (Mesh, Orientation)
-    The mesh, and what was turned or left out.
+    The mesh, and the counts of turned and unused triangles.
 
 Examples
 --------

@@ -193,25 +193,25 @@ std::unique_ptr<SharedSurface> freeze(SharedMesher& self) {
 const char* const kPickText =
     R"(The first point of the surface along a ray, or along each of several.
 
-No ray falls through between triangles, and one that touches an edge hits it.
+No ray passes between two triangles, and a ray that touches an edge hits it.
 
 Parameters
 ----------
 origin : array_like of shape (3,) or (n, 3), mm
-    Where each ray begins.
+    Origin of each ray.
 direction : array_like of the same shape, of any length but 0
-    Where it goes.
+    Direction of each ray.
 
 Returns
 -------
 Hit, None or Hits
-    For one ray a Hit, or None. For (n, 3) arrays a Hits with arrays of n rows: where nothing is hit, ``distance`` is
+    For one ray a Hit, or None. For (n, 3) arrays a Hits with arrays of n rows: for a ray without a hit, ``distance`` is
     inf, ``brick`` -1, the rest NaN.
 
 Raises
 ------
 ValueError
-    Names argument and row: what is not finite, or a direction of length 0.
+    Names argument and row: a number that is not finite, or a direction of length 0.
 
 Examples
 --------
@@ -227,7 +227,7 @@ void bind_frozen_surface(py::module_& m) {
                                     "changes. See `Mesher.freeze`.");
   surface.def("pick", &pick_frozen, py::arg("origin"), py::arg("direction"), kPickText)
       .def_property_readonly(
-          "triangles", [](const SharedSurface& self) { return self.surface.triangles(); }, "How many it has.")
+          "triangles", [](const SharedSurface& self) { return self.surface.triangles(); }, "Number of triangles.")
       .def_property_readonly(
           "nbytes", [](const SharedSurface& self) { return self.surface.nbytes(); },
           "Bytes of its triangles, of which it shares those of bricks that did not change with the mesher.");
@@ -265,8 +265,8 @@ void bind_mesher(py::module_& m) {
   py::class_<SharedMesher> mesher(m, "Mesher",
                                   R"(The mesh of a volume that keeps changing, in bricks of 32 × 32 × 32 cells.
 
-``Mesher(volume)`` meshes all of it; ``update(volume)`` meshes again only where it was changed. What a mesher holds is
-always, bit for bit, what ``volume.to_mesh()`` gives; with a tolerance, what ``volume.to_mesh(tolerance=tolerance)``
+``Mesher(volume)`` meshes the volume; ``update(volume)`` meshes only its changes. The mesh is
+always, bit for bit, that of ``volume.to_mesh()``, with a tolerance that of ``volume.to_mesh(tolerance=tolerance)``.
 gives. It keeps a snapshot of the volume, which shares its tiles.
 
 With a tolerance, patches and `mesh` have only the triangles that the shape needs. The mesher keeps the full mesh too,
@@ -276,7 +276,7 @@ long triangle is shaded like the small ones that it replaces. It takes about a t
 Parameters
 ----------
 volume : Volume
-    What is meshed first.
+    The volume to mesh first.
 tolerance : float, mm, or None
     Leaves out triangles that the shape does not need within this distance, with the rules of `Volume.to_mesh`: 0, or
     less than the step of float32 at the part's coordinates, keeps all of them. None: all of them.
@@ -338,9 +338,9 @@ Examples
 >>> riffler.Mesher(riffler.Volume.block((0, 0, 0), (4, 3, 2), pitch=0.5)).patches()
 [0]
 )")
-      .def_property_readonly(
-          "shape", &shape,
-          "Bricks along each axis, with triangles or without: brick n stands at ``numpy.unravel_index(n, shape)``.")
+      .def_property_readonly("shape", &shape,
+                             "Number of bricks along each axis, with or without triangles: brick n is at "
+                             "``numpy.unravel_index(n, shape)``.")
       .def("patch", &patch, py::arg("bricks"), py::kw_only(), py::arg("edges") = false, py::arg("normals") = py::none(),
            R"(The triangles of a brick, or of several without seams between them.
 
@@ -362,14 +362,14 @@ normals : float, rad, or None
 Returns
 -------
 Patch
-    Without triangles where nothing is left.
+    Without triangles if the brick has none.
 
 Raises
 ------
 IndexError
     There is no such brick.
 ValueError
-    A brick is there twice.
+    A brick is given twice.
 
 Examples
 --------
@@ -408,10 +408,10 @@ Examples
 0
 )")
       .def_property_readonly(
-          "triangles", [](SharedMesher& self) { return (lock(self), self.mesher.triangles()); }, "How many it has.")
+          "triangles", [](SharedMesher& self) { return (lock(self), self.mesher.triangles()); }, "Number of triangles.")
       .def_property_readonly(
           "all_triangles", [](SharedMesher& self) { return (lock(self), self.mesher.all_triangles()); },
-          "How many the full mesh has: as many as `triangles` without a tolerance.")
+          "Number of triangles of the full mesh; without a tolerance the same as `triangles`.")
       .def_readonly("tolerance", &SharedMesher::tolerance,
                     "The tolerance that it was made with, mm; None: all triangles.");
   bind_counters(mesher);

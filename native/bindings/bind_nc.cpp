@@ -49,7 +49,7 @@ WriteReport write(const nc::Program& self, const std::filesystem::path& path, co
 }  // namespace
 
 void bind_nc_types(py::module_& m) {
-  py::class_<nc::Note>(m, "Note", "What a reader of NC code assumed or passed over: see `Program.read`.")
+  py::class_<nc::Note>(m, "Note", "An assumption of a reader of NC code, or code that it skipped: see `Program.read`.")
       .def_readonly(
           "kind", &nc::Note::kind,
           "\"skipped\", \"coordinates\" (what follows may be elsewhere), \"work offset\", \"units\", "
@@ -61,7 +61,7 @@ void bind_nc_types(py::module_& m) {
         return "<riffler.Note: line " + std::to_string(n.line) + ", " + n.kind + ": " + n.message + ">";
       });
 
-  py::class_<SharedStream>(m, "ProgramStream", "An iterator of programs: see `Program.stream`.")
+  py::class_<SharedStream>(m, "ProgramStream", "An iterator over programs: see `Program.stream`.")
       .def("__iter__", [](const py::object& self) -> Self { return self; })
       .def("__next__", [](SharedStream& self) {
         const OneCaller only(self, "the stream");
@@ -90,7 +90,7 @@ void bind_nc(py::module_& m) {
           py::arg("progress") = py::none(),
           R"(Reads NC code as a machine's control has it: RS-274, APT, Heidenhain's Klartext or Sinumerik.
 
-Poses are in the coordinates in which the first move is programmed. Whatever the reader does not understand is an error,
+Poses are in the coordinates in which the first move is programmed. Code that the reader does not understand is an error,
 unless ``unknown`` is "skip".
 
 Parameters
@@ -100,19 +100,19 @@ path : path_like
 machine : str
     A name of ``machines``, or the path of a .toml file.
 options : dict, optional
-    Those of the machine, and of reading:
+    Options of the machine, and of reading:
 
     - ``chord_tolerance`` (mm, 0.002): for curves.
     - ``axis_tolerance`` (rad): blocks whose rotary axes leave the great circle by more become several rows; without it a
-      block is one row, and the poses on its way are in ``via``.
-    - ``block_delete`` (True): lines that begin with / are passed over.
+      block is one row, and the poses in between are in ``via``.
+    - ``block_delete`` (True): skips lines that begin with /.
     - ``unknown``: "error" or "skip"; ``notes`` and ``provenance`` list what was skipped.
     - ``cutter_compensation``: "error", "ignore" (points are those of the tool's centre) or "offset" (points are the
       contour's, and the tool's centre is offset from it); ``tool_diameters`` for that, mm: one number, or a dict by
       the number of the offset D or of the tool.
     - ``units``: "mm" or "inch", before the program declares them.
     - ``arc_tolerance`` (mm, 0.005): by which an arc's end may miss its circle.
-    - ``g54`` … ``g59``, ``g59_1`` … ``g59_3``, ``g28``, ``g30``: where on the machine work offsets and homes lie, three to
+    - ``g54`` … ``g59``, ``g59_1`` … ``g59_3``, ``g28``, ``g30``: machine positions of work offsets and homes, three to
       six numbers.
     - ``subroutines``: a folder of files name.ngc; ``parameters``: a file of LinuxCNC's parameters; ``max_turns`` (1e6) of
       loops and calls.
@@ -177,7 +177,7 @@ Examples
       .def("write", &write, py::arg("path"), py::kw_only(), py::arg("post") = "tcp", py::arg("tolerance") = 0.01,
            py::arg("axis_tolerance") = 0.00175, py::arg("options") = py::none(), py::arg("collider") = py::none(),
            py::arg("stock") = py::none(), py::arg("contact_tolerance") = 0.05,
-           R"(Writes NC code; the file is whole or not there, and the same program gives the same bytes.
+           R"(Writes NC code: the whole file or none. The same program gives the same bytes.
 
 Every row is the end of a block; more blocks come between two rows where machine axes that move linearly would take the
 tip more than ``tolerance`` off the straight line or the axis more than ``axis_tolerance`` off the great circle. Where a
@@ -201,10 +201,10 @@ options : dict, optional
     ``max_rotary`` (deg/min), ``line_numbers``, ``coolant``, ``retract``, ``safe_height``, ``arcs``, ``vectors``:
     docs/machines.md and ``machine_options``.
 collider : Collider, optional
-    Checks the machine's own motion, block by block as its axes make it, with cutter, shank and holder against part and
+    Checks the machine's own motion between the ends of blocks, with cutter, shank and holder against part and
     fixtures.
 stock : Volume, optional
-    Runs that motion on it, as a verification does.
+    Stock to check that motion in, as in a verification.
 contact_tolerance : float
     mm by which part and fixtures may be entered.
 
@@ -215,7 +215,7 @@ WriteReport
 Raises
 ------
 ValueError
-    With the row, the place and the remedy: what the machine cannot hold, what enters part or fixtures, a rapid in the
+    Naming the row, the place and the remedy: a row that the machine cannot hold, a collision with part or fixtures, a rapid in the
     stock, or shank or holder in it. Nothing is written.
 
 Examples

@@ -13,7 +13,7 @@
 
 namespace riffler::bindings {
 
-RIFFLER_TYPED(OperationParts, "dict[str, typing.Any]")
+RIFFLER_TYPED(PlannedMoves, "riffler.plan.operations.PlannedMoves")
 
 namespace {
 
@@ -29,19 +29,21 @@ struct Planned {
   std::vector<double> removed;
 };
 
-OperationParts from_planned(Planned&& planned) {
+PlannedMoves from_planned(Planned&& planned) {
   plan::Operation& found = planned.operation;
   std::vector<std::uint8_t> kinds;
   for (const plan::MoveKind kind : found.kinds) kinds.push_back(static_cast<std::uint8_t>(kind));
+  const py::object blocked_place = py::module_::import("riffler.plan.operations").attr("Blocked");
   py::list blocked;
   for (const plan::BlockedPlace& one : found.blocked)
-    blocked.append(py::make_tuple(one.reason, from_vec3(one.place), one.length));
-  py::dict counts;
-  for (const auto& [name, count] : planned.counts) counts[name] = count;
-  return py::dict("poses"_a = from_poses(found.poses), "kind"_a = take<std::uint8_t>(std::move(kinds)),
-                  "feed"_a = take<double>(std::move(found.feeds)),
-                  "removed"_a = take<double>(std::move(planned.removed)), "blocked"_a = blocked,
-                  "reason"_a = found.reason, "counts"_a = counts, "engagement"_a = planned.engagement);
+    blocked.append(blocked_place(one.reason, from_vec3(one.place), one.length));
+  py::dict stats;
+  for (const auto& [name, count] : planned.counts) stats[name] = count;
+  return plan_result("operations", "PlannedMoves",
+                     py::dict("poses"_a = from_poses(found.poses), "kind"_a = take<std::uint8_t>(std::move(kinds)),
+                              "feed"_a = take<double>(std::move(found.feeds)),
+                              "removed"_a = take<double>(std::move(planned.removed)), "blocked"_a = py::tuple(blocked),
+                              "reason"_a = found.reason, "stats"_a = stats, "engagement"_a = planned.engagement));
 }
 
 std::vector<std::vector<Vec3>> to_region(const ArraysLike& arrays) {

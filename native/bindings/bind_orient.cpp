@@ -61,7 +61,7 @@ void bind_frame(py::module_& m) {
   using F = OrientView;
   using T = session::OrientTick;
   py::class_<F> c(m, "OrientFrame",
-                  R"(What happened between two calls of ``OrientSession.frame``, one row for each step.
+                  R"(The steps between two calls of ``OrientSession.frame``, one row for each.
 
 Forces and torques act on the hand, about the grip's point, in the device's frame; those on the tool act on it, about its
 tip, in the part's.
@@ -77,7 +77,7 @@ Examples
 >>> frame.touching is None
 True
 )");
-  c.def_property_readonly("changes", &changes, "What the presses of buttons did, in their order: KeyChange.")
+  c.def_property_readonly("changes", &changes, "Changes of keys by presses of buttons, in order: KeyChange.")
       .def_property_readonly(
           "stations", [](const F& f) { return rows(f, [](const T& t) { return t.station; }); },
           "(n,) places on the path: point indices with fractions.")
@@ -85,17 +85,19 @@ True
           "held", [](const F& f) { return rows(f, [](const T& t) { return t.held ? 1.0 : 0.0; }); },
           "(n,) 1 where the tool waited because its depth was not found in time.")
       .def_property_readonly(
-          "station", [](const F& f) { return f.last.station; }, "Place on the path now: a point index with a fraction.")
+          "station", [](const F& f) { return f.last.station; },
+          "Present place on the path: a point index with a fraction.")
       .def_property_readonly(
           "touching",
           [](const F& f) -> std::optional<std::string> {
             if (!f.last.touch) return {};
             return name_of(*f.last.touch);
           },
-          "What is deepest in contact now: cutter, shank, holder, fixture (with any part of the tool), or None.");
-  bind_ticks(
-      c, {"(n, 6): force (N) and torque (N·mm) of part and fixtures on the tool, before limits.",
-          "(n,) mm that the tool is at most in part and fixtures.", "Why the tool does not follow the hand, or None."});
+          "The part of the tool that is deepest in contact now (cutter, shank, holder), fixture (for any part of the "
+          "tool), or None.");
+  bind_ticks(c, {"(n, 6): force (N) and torque (N·mm) of part and fixtures on the tool, before limits.",
+                 "(n,) mm: largest depth of the tool in part and fixtures.",
+                 "Why the tool does not follow the hand, or None."});
 }
 
 constexpr const char* kOrientSession =
@@ -228,7 +230,7 @@ Examples
 Returns
 -------
 OrientFrame
-    What no frame has returned.
+    The steps since the last frame.
 
 Examples
 --------
@@ -371,7 +373,7 @@ Examples
 )")
       .def(
           "reset", [](SharedOrientSession& s) { s.session->loop().reset(); },
-          R"(Clears a trip that does not heal by itself: ``OrientFrame.cause`` gives its reason.
+          R"(Clears a trip that does not clear itself: ``OrientFrame.cause`` gives its reason.
 
 Examples
 --------

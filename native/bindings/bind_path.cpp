@@ -116,7 +116,7 @@ std::optional<plan::AxisLimit> to_axis_limit(const py::object& object, bool proj
 
 void bind_path(py::module_& m) {
   py::class_<plan::PencilPath, Path>(m, "PencilPath",
-                                     R"(A curve of ball centres along a part, with what the ball touches. Immutable.
+                                     R"(A curve of ball centres along a part, with the ball's contacts. Immutable.
 
 Parameters
 ----------
@@ -189,7 +189,7 @@ PencilPath
 Raises
 ------
 ValueError
-    Naming the first point beyond ``limit``, or the key that is outside the path, no unit vector, or opposite to the key
+    Naming the first point beyond ``limit``, or the key that is outside the path, not a unit vector, or opposite to the key
     before it.
 
 Examples
@@ -295,7 +295,7 @@ Examples
                                                    : nearest_contact(p, at, to_vec3(direction, "direction")));
           },
           py::arg("point"), py::kw_only(), py::arg("direction") = py::none(),
-          R"(The contact nearest to a point, or to a ray: what a pen or a mouse points at.
+          R"(The contact nearest to a point, or to a ray of a pen or mouse.
 
 Parameters
 ----------

@@ -8,7 +8,7 @@ using namespace py::literals;
 
 void bind_pen(py::module_& m) {
   py::class_<pen::PenKinematics>(m, "PenGeometry",
-                                 R"(A pen: its lengths, gears, encoders, motors and limits, and how it moves.
+                                 R"(A pen's lengths, gears, encoders, motors and limits, and its kinematics.
 
 Two arms, R and L, hold the two ends of a grip. Counts are the six counters in the device's own order (``channels``);
 joints are θ1 θ2 θ3 of R, then of L, in rad. Poses are the grip's pivot and the unit axis along it, away from the tool's
@@ -38,7 +38,7 @@ Raises
 FormatError
     Naming the file's line.
 ValueError
-    With the pens there are.
+    Listing the known pens.
 
 Examples
 --------
@@ -73,7 +73,7 @@ Examples
 Parameters
 ----------
 counts : array_like, shape (n, 6)
-    What the counters read, in the device's order.
+    Readings of the counters, in the device's order.
 
 Returns
 -------
@@ -91,7 +91,7 @@ Examples
 Parameters
 ----------
 counts : array_like, shape (n, 6)
-    What the counters read, in the device's order.
+    Readings of the counters, in the device's order.
 
 Returns
 -------
@@ -127,9 +127,9 @@ True
 Parameters
 ----------
 counts : array_like, shape (1, 6)
-    What the counters read in the home posture.
+    Readings of the counters in the home posture.
 probe : int
-    What the seventh counter reads there.
+    Reading of the seventh counter there.
 
 Returns
 -------
@@ -147,7 +147,7 @@ Examples
 Parameters
 ----------
 count : int
-    What the seventh counter reads.
+    Readings of the seventh counter.
 
 Returns
 -------
@@ -165,7 +165,7 @@ Examples
 Parameters
 ----------
 counts : array_like, shape (n, 6)
-    What the counters read, in the device's order.
+    Readings of the counters, in the device's order.
 
 Returns
 -------
@@ -184,7 +184,7 @@ Examples
 Parameters
 ----------
 counts : array_like, shape (n, 6)
-    What the counters read, in the device's order.
+    Readings of the counters, in the device's order.
 
 Returns
 -------
@@ -219,7 +219,7 @@ Examples
 >>> reach
 [('reached', 'reached')]
 )")
-      .def("split", &split, "wrenches"_a, "apart"_a, R"(What the arms push with for a force and a torque on the hand.
+      .def("split", &split, "wrenches"_a, "apart"_a, R"(Forces of the two arms for a force and a torque on the hand.
 
 Parameters
 ----------
@@ -247,11 +247,11 @@ array([[0., 0., 1.]])
 Parameters
 ----------
 counts : array_like, shape (n, 6)
-    What the counters read, in the device's order.
+    Readings of the counters, in the device's order.
 wrenches : array_like, shape (n, 6)
     Force, N, and torque, N·mm, in the frame of poses.
 at : array_like, shape (n, 3)
-    About which points the torques are, mm.
+    Points about which the torques act, mm.
 
 Returns
 -------
@@ -313,12 +313,12 @@ Examples
 >>> steps.shape, scale
 ((1, 6), array([1.]))
 )")
-      .def("stretch", &stretch, "counts"_a, R"(By how much the grip comes out longer than it is.
+      .def("stretch", &stretch, "counts"_a, R"(Error of the grip's length as computed from the counts, mm.
 
 Parameters
 ----------
 counts : array_like, shape (n, 6)
-    What the counters read, in the device's order.
+    Readings of the counters, in the device's order.
 
 Returns
 -------
@@ -331,18 +331,19 @@ Examples
 >>> pen.stretch([pen.home]).shape
 (1,)
 )")
-      .def("noticed_counts", &noticed, "counts"_a,
-           R"(How many counts each channel may be off, in either direction, before it shows, all others being right.
+      .def(
+          "noticed_counts", &noticed, "counts"_a,
+          R"(Number of counts by which each channel may be off, in either direction, before the error is detected, if all others are right.
 
 Parameters
 ----------
 counts : array_like, shape (n, 6)
-    What the counters read, in the device's order.
+    Readings of the counters, in the device's order.
 
 Returns
 -------
 ndarray, shape (n, 6)
-    Infinite where none shows, and 0 in rows that do not fit.
+    Infinite if no error is detected, 0 in rows that do not fit.
 
 Examples
 --------
@@ -355,7 +356,7 @@ Examples
 Parameters
 ----------
 counts : array_like, shape (n, 6)
-    What the counters read, in the device's order.
+    Readings of the counters, in the device's order.
 
 Returns
 -------

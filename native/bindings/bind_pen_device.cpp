@@ -142,7 +142,7 @@ struct State {
 };
 
 void bind_state(py::module_& m) {
-  py::class_<State>(m, "PenState", "Where the hand was, by one report: see `PenDevice.state`.")
+  py::class_<State>(m, "PenState", "State of the hand in one report: see `PenDevice.state`.")
       .def_property_readonly(
           "pose", [](const State& s) { return from_poses({s.sample.pose}).reshape({6}); },
           "(6,): point and axis of the grip.")
@@ -159,7 +159,7 @@ void bind_state(py::module_& m) {
       .def_property_readonly(
           "sequence", [](const State& s) { return s.sample.sequence; }, "Number of the report; 0 before the first.")
       .def_property_readonly(
-          "homed", [](const State& s) { return s.sample.homed; }, "Whether the pose is sure.")
+          "homed", [](const State& s) { return s.sample.homed; }, "Whether the pose is certain.")
       .def_property_readonly(
           "fault", [](const State& s) { return s.sample.fault; }, "The device's own fault code, or 0.")
       .def_property_readonly(
@@ -181,9 +181,9 @@ void bind_state(py::module_& m) {
 }
 
 void bind_device(py::module_& m) {
-  py::class_<pen::Pen, SharedPen>(m, "PenDevice", R"(A device that is open: a pen, a puck, a recording. Context manager.
+  py::class_<pen::Pen, SharedPen>(m, "PenDevice", R"(An open device: a pen, a puck, a recording. Context manager.
 
-A thread of its own reads reports and writes forces; it looks for a device that goes away until it is back.
+Its own thread reads reports and writes forces, and reconnects to a device that was unplugged.
 
 Examples
 --------
@@ -192,7 +192,7 @@ Examples
 'simulated'
 )")
       .def_property_readonly("kind", &pen::Pen::kind, "Its kind in ``riffler.pen.kinds``.")
-      .def_property_readonly("about", &pen::Pen::about, "What it reported about itself.")
+      .def_property_readonly("about", &pen::Pen::about, "The device's own description.")
       .def_property_readonly(
           "geometry",
           [](const pen::Pen& p) -> OptionalGeometry {
@@ -201,7 +201,7 @@ Examples
           "Geometry of a pen of two arms, with the currents that the device allows; None for other devices.")
       .def_property_readonly(
           "limits", [](const pen::Pen& p) { return to_axes(p.capability()); },
-          R"(What it senses and pushes along "x", "y", "z" and the turns "a", "b", "c".)")
+          R"(What the device senses and pushes along "x", "y", "z" and about the axes "a", "b", "c".)")
       .def_property_readonly(
           "priority", [](const pen::Pen& p) { return to_priority(p.priority()); },
           "How the system runs the device's thread: ThreadPriority.")
@@ -249,12 +249,12 @@ Examples
 >>> pointer.push((0, 0, 1)).reason
 'the device has no motors for all of it'
 )")
-      .def("home", &pen::Pen::home, R"(Declares that the device stands in its home posture.
+      .def("home", &pen::Pen::home, R"(Declares that the device is in its home posture.
 
 Returns
 -------
 bool
-    False where nothing has to be homed.
+    False for a device that needs no homing.
 
 Examples
 --------
@@ -262,7 +262,7 @@ Examples
 False
 )")
       .def("reset", &pen::Pen::reset,
-           R"(Clears a trip that does not heal by itself: the cause is in ``health()``.
+           R"(Clears a trip that does not clear itself: the cause is in ``health()``.
 
 Examples
 --------
@@ -274,7 +274,7 @@ Examples
 Returns
 -------
 bool
-    False where the device could not be reached in time.
+    False if the device could not be reached in time.
 
 Examples
 --------
@@ -293,7 +293,7 @@ True
 
 void bind_pen_device(py::module_& m) {
   py::register_exception<pen::OpenError>(m, "PenError", PyExc_RuntimeError).attr("__doc__") =
-      "A device that does not open: says exactly why, and what to do.";
+      "A device does not open. The message gives the reason and the remedy.";
   bind_state(m);
   bind_device(m);
   bind_pointers(m);

@@ -47,7 +47,7 @@ Examples
 >>> with riffler.pen.open("simulated") as pen:
 ...     pen.aim((0, 0, 0, 0, 0, 1), buttons=1)
 )")
-      .def("wander", &pen::SimulatedDevice::wander, R"(Moves the hand round on its own curve again.
+      .def("wander", &pen::SimulatedDevice::wander, R"(Moves the hand along its own closed curve again.
 
 Examples
 --------
@@ -62,7 +62,7 @@ Parameters
 channel : int
     0 to 5.
 counts : int
-    How many in all.
+    Total number of lost counts.
 
 Examples
 --------
@@ -101,7 +101,7 @@ Examples
 )")
       .def_property_readonly(
           "truth", [](const pen::SimulatedDevice& p) { return pen::PenKinematics(p.truth()); },
-          "PenGeometry of the simulated arms and motors; ``geometry`` is what the host knows of them.");
+          "PenGeometry of the simulated arms and motors; ``geometry`` has the values that the host assumes.");
 }
 
 pen::PointerFrame to_frame(const ArrayLike& origin, const ArrayLike& right, const ArrayLike& up, double scale,
@@ -119,7 +119,7 @@ void bind_pointer(py::module_& m) {
   const pen::PointerFrame frame;
   const py::tuple zero = py::make_tuple(0, 0, 0), along = py::make_tuple(1, 0, 0), across = py::make_tuple(0, 1, 0);
   py::class_<pen::PointerPen, pen::Pen, std::shared_ptr<pen::PointerPen>>(
-      m, "Pointer", R"(A tablet or a mouse as a device: its events are given here, and become poses.
+      m, "Pointer", R"(A tablet or a mouse as a device: `give` passes its events, which become poses.
 
 Parameters
 ----------
@@ -139,14 +139,14 @@ True
              double depth, double max_tilt) { p.set_frame(to_frame(origin, right, up, scale, depth, max_tilt)); },
           py::kw_only(), "origin"_a = zero, "right"_a = along, "up"_a = across, "scale"_a = frame.scale,
           "depth"_a = frame.depth, "max_tilt"_a = frame.max_tilt,
-          R"(Sets where the pointer's plane lies, from the next event on.
+          R"(Sets the position of the pointer's plane, from the next event on.
 
 Parameters
 ----------
 origin : array_like, shape (3,)
     mm, of pointer (0, 0).
 right, up : array_like, shape (3,)
-    Unit vectors, square to each other.
+    Unit vectors, perpendicular to each other.
 scale : float
     mm for a unit of the pointer.
 depth : float
@@ -157,7 +157,7 @@ max_tilt : float
 Raises
 ------
 ValueError
-    Naming what cannot be; the frame is as before then.
+    Naming the impossible value; the frame is then unchanged.
 
 Examples
 --------
@@ -187,7 +187,7 @@ time : float
 Returns
 -------
 bool
-    False, and the event is left out, where a number is not finite or the time is before the last event's.
+    False if the event is ignored: a number is not finite, or the time is before the last event's.
 
 Examples
 --------

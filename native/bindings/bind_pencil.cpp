@@ -41,7 +41,8 @@ void bind_pencil(py::module_& m) {
       "require_revolved", [](const Tool& tool, const std::string& who) { tool.require_revolved(who); }, py::arg("tool"),
       py::arg("who"), "ValueError for a hand tool, which ``who`` cannot use.");
   m.def("tip_ball_radius", &plan::tip_ball_radius, py::arg("tool"), py::arg("name"),
-        "Radius (mm) of the ball at the tip of ``tool``; ValueError naming the argument ``name`` where there is none.");
+        "Radius (mm) of the ball at the tip of ``tool``; ValueError naming the argument ``name`` if the tip is not a "
+        "ball.");
   m.def(
       "pencil",
       [](const std::shared_ptr<Mesh>& part, const Tool& tool, double tolerance, std::optional<double> bitangency_angle,

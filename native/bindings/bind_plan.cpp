@@ -1,4 +1,4 @@
-// Planning with a tool: lift, drop, cutter locations, free orientations. For riffler.plan, which describes them.
+// Planning with a tool: lift, drop, cutter locations, free orientations. The docstrings are in riffler.plan.
 #include <limits>
 #include <memory>
 

@@ -55,20 +55,21 @@ class Following {
   std::shared_ptr<pen::PoseFollower> step_;
 };
 
-py::object why(Following& f) {
+/// The reason why the grip is no longer led, or none.
+std::optional<std::string> why(Following& f) {
   switch (f.step().reason()) {
     case pen::FollowerStop::None:
-      return py::none();
+      return {};
     case pen::FollowerStop::Asked:
-      return py::str("stopped");
+      return "stopped";
     case pen::FollowerStop::Silent:
-      return py::str("the program did not answer for half a second");
+      return "the program did not answer for half a second";
     case pen::FollowerStop::Astray:
-      return py::str("the grip is too far from where it is led");
+      return "the grip is too far from its target";
     case pen::FollowerStop::Safety:
       break;
   }
-  return py::str(sentence(f.step().cause()));
+  return sentence(f.step().cause());
 }
 
 /// (n,) sequence numbers and s, (n, 6) counts and mA.

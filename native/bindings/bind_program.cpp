@@ -118,7 +118,7 @@ std::string repr(const nc::Program& program) {
 }  // namespace
 
 void bind_program(py::module_& m) {
-  ProgramClass(m, "Program", R"(Where the tool goes, how fast and with which tool; immutable.
+  ProgramClass(m, "Program", R"(A program: poses, feeds and tools; immutable.
 
 One row per move end. Between two rows the tip moves on a line and the axis on the great circle at constant rate, by way
 of the poses in ``via`` where there are any.
@@ -140,13 +140,13 @@ spindle : array_like, shape (n,), or float
 tools : dict, optional
     Number to Tool, of the tools whose shape is known.
 provenance : dict, optional
-    Strings that the header comment of the NC code repeats.
+    Strings that the NC code repeats in its header comment.
 notes : list of Note
-    What the reader of NC code assumed or passed over.
+    Assumptions of the reader of NC code, and skipped code.
 at_machine : array_like of bool, shape (n,), or bool
     Rows that end at a position of the machine whose place in the part is not known.
 via : dict, optional
-    Row to poses (k, 6) on the way there.
+    Row to poses (k, 6) on the move to it.
 
 Raises
 ------
@@ -179,10 +179,10 @@ array([  0., 600.])
       .def_property_readonly("spindle", column_getter(&nc::Program::spindle),
                              "(n,) rev/min; negative counter-clockwise, 0 stopped.")
       .def_property_readonly("tools", &tools_of, "Tools whose shape is known, by number.")
-      .def_property_readonly("provenance", &provenance_of, "Strings that the header comment of the NC code repeats.")
+      .def_property_readonly("provenance", &provenance_of, "Strings that the NC code repeats in its header comment.")
       .def_property_readonly(
           "notes", [](const nc::Program& self) { return self.notes; },
-          "What the reader assumed or passed over. Programs that are made of numbers have none.")
+          "Assumptions of the reader, and skipped code. Programs made from arrays have none.")
       .def_property_readonly(
           "via", &vias_of,
           "(k, 6) poses on the move to a row, by row: where rotary axes that turn evenly take the tool off the great "
@@ -191,7 +191,7 @@ array([  0., 600.])
           "followed", [](const nc::Program& self) { return followed(self); },
           R"(The program with the poses of ``via`` as rows of their own.
 
-Between its rows the tool moves as the machine moves it.
+Between its rows the tool moves as on the machine.
 
 Returns
 -------
@@ -208,7 +208,7 @@ Examples
 Parameters
 ----------
 first, last : int
-    Rows ``first`` to ``last`` - 1. The first of them becomes a rapid; an approach is the caller's to put before it.
+    Rows ``first`` to ``last`` - 1. The first of them becomes a rapid; the caller adds an approach before it.
 
 Returns
 -------
@@ -242,7 +242,7 @@ array([-1.,  0.,  5.])
 Parameters
 ----------
 factor : float
-    By which feeds are multiplied.
+    Factor on the feeds.
 
 Returns
 -------
@@ -275,7 +275,7 @@ Program
 Raises
 ------
 ValueError
-    Where one number stands for tools of two shapes.
+    If one number is used for two shapes.
 
 Examples
 --------
@@ -297,7 +297,7 @@ Program
 Raises
 ------
 ValueError
-    Where two shapes would share a number.
+    If two shapes would share a number.
 
 Examples
 --------

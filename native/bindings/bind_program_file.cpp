@@ -48,7 +48,7 @@ void bind_program_file(py::module_& m) {
       .def("save", &save, py::arg("path"), py::kw_only(), py::arg("progress") = py::none(),
            R"(Writes a .rprog file: everything to the bit, which NC code cannot keep.
 
-The file is whole or not there. The same program gives the same bytes.
+Writes the whole file or none. The same program gives the same bytes.
 
 Parameters
 ----------
@@ -81,7 +81,7 @@ Program
 Raises
 ------
 FormatError
-    Naming the byte where the file is damaged or not one.
+    Naming the byte, if the file is damaged or not a .rprog file.
 
 Examples
 --------

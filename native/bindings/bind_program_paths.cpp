@@ -117,11 +117,11 @@ provenance : dict, optional
 collider : Collider, optional
     Part and fixtures.
 retract : float, optional
-    mm of the first stretch out of a cut; None: what is clear is looked for.
+    mm of the first stretch out of a cut; None: searches a clear one.
 direction : array_like, shape (3,), optional
     Unit vector of that stretch; None: likewise.
 lead_in : float, optional
-    mm before a cut that are fed, what is above them being air; None: all of it is fed.
+    mm before a cut at feed, if everything above is air; None: the whole approach at feed.
 contact_tolerance : float
     mm by which a tool may enter part and fixtures, as cuts touch the part.
 
@@ -132,7 +132,7 @@ Program
 Raises
 ------
 ValueError
-    Naming the path, the row, the place and the remedy where nothing is clear.
+    Naming the path, the row, the place and the remedy if no link is clear.
 
 Examples
 --------

@@ -123,7 +123,7 @@ Examples
 Returns
 -------
 SessionFrame
-    What was not shown yet.
+    The steps since the last frame.
 
 Raises
 ------
@@ -157,7 +157,7 @@ Examples
       .def("journal", &record, "path"_a, py::kw_only(), "notes"_a = py::dict(),
            R"(Records every stroke in a new file: poses, times, forces, what was cut. Call it before ``start``.
 
-The stock lies next to it (``NAME-stock.rvol``), and what is protected (``NAME-mask.rvol``). What is in the file survives
+Writes the stock (``NAME-stock.rvol``) and the protected region (``NAME-mask.rvol``) next to it. The file survives
 a crash but for the last second at most, and ``Session.replay`` replays it.
 
 Parameters
@@ -202,7 +202,7 @@ Examples
 ...     print(session.undo())
 0
 )")
-      .def("redo", &go<&session::Session::redo>, R"(Redoes what ``undo`` undid, unless a new stroke has begun.
+      .def("redo", &go<&session::Session::redo>, R"(Redoes undone strokes, unless a new stroke has begun.
 
 Returns
 -------
@@ -218,7 +218,7 @@ Examples
 )")
       .def(
           "reset", [](SharedSession& s) { running(s).reset(); },
-          R"(Clears a trip that does not heal by itself: ``SessionFrame.cause`` says what it was.
+          R"(Clears a trip that does not clear itself: ``SessionFrame.cause`` gives its reason.
 
 Examples
 --------
@@ -265,7 +265,7 @@ Examples
             return journal.attr("replay")(path.parent_path(), py::arg("progress") = progress);
           },
           "path"_a, py::kw_only(), "progress"_a = py::none(),
-          R"(What a session left of its stock, the same to the bit. Its stock lies next to the journal.
+          R"(The stock of a session at its end, to the bit. The initial stock must be next to the journal.
 
 Parameters
 ----------
@@ -295,10 +295,10 @@ True
           "priority", [](const SharedSession& s) { return to_priority(s.session->priority()); },
           "How the system runs the thread of the steps: ThreadPriority.")
       .def_property_readonly(
-          "volume", [](const SharedSession& s) { return s.volume; }, "What is shown.")
+          "volume", [](const SharedSession& s) { return s.volume; }, "The displayed volume.")
       .def_property_readonly(
           "pen", [](const SharedSession& s) { return s.pen; }, "The device.")
-      .def_property_readonly("trips", &trips, "When the force was taken away, and why.")
+      .def_property_readonly("trips", &trips, "Times at which the force was removed, with the reasons.")
       .def_property_readonly(
           "journal_problem",
           [](const SharedSession& s) -> std::optional<std::string> {
@@ -318,12 +318,12 @@ True
 Parameters
 ----------
 seconds : float
-    How long to wait at most.
+    Longest time to wait.
 
 Returns
 -------
 bool
-    False: they are not.
+    False if some are not.
 
 Examples
 --------

@@ -8,7 +8,7 @@ void bind_session_frame(py::module_& m) {
   using F = FrameView;
   using T = session::SculptTick;
   py::class_<F> c(m, "SessionFrame",
-                  R"(What happened between two calls of ``Session.frame``, one row for each step: see `Session.frame`.
+                  R"(The steps between two calls of ``Session.frame``, one row for each: see `Session.frame`.
 
 Forces and torques act on the hand, about the grip's point, in the device's frame; those on the tool act on it, about its
 tip, in the part's.)");
@@ -39,8 +39,8 @@ tip, in the part's.)");
           "strokes", [](const F& f) { return f.frame.strokes; }, "Number of strokes begun since the start.")
       .def_property_readonly("in_stroke", [](const F& f) { return f.frame.in_stroke; });
   bind_ticks(c, {"(n, 6): force (N) and torque (N·mm) of the material on the tool, before limits.",
-                 "(n,) mm that the tool is at most in what it must not enter.",
-                 "Why nothing is cut though the hand wants to, or None."});
+                 "(n,) mm: largest depth of the tool in what it must not enter.",
+                 "Why the tool does not cut although the hand asks for it, or None."});
 }
 
 }  // namespace riffler::bindings

@@ -117,7 +117,7 @@ py::class_<SharedSession> bind_session_class(py::module_& m) {
       m, "Session",
       R"(A pen, a tool and a stock: the tool follows the hand and cuts a thousand times a second, and the hand feels it.
 
-The device's own thread cuts. ``volume`` is what is shown: each call of ``frame`` brings it up to date, between steps, and
+The device's own thread cuts. ``volume`` is the displayed volume: each call of ``frame`` brings it up to date, between steps, and
 nothing else may change it while the session runs. The tool cuts while a button of ``dead_man_mask`` is held and every
 check of the pen passes. Context manager: starts and stops.
 
@@ -130,14 +130,14 @@ tool : Tool
 pen : PenDevice, optional
     From ``riffler.pen.open``, or a ``riffler.pen.Pointer``; None: a Pointer of kind "mouse", then the session's ``pen``.
 obstacles : Collider, optional
-    Part and fixtures that the tool stays out of.
+    Part and fixtures that the tool does not enter.
 protect : Volume, optional
     Region that must not change, with the lower, upper, pitch and directions of ``volume``; air to the tool.
 mode : {"remove", "add"}
     "add": the cutter adds what it sweeps, over its whole length and within the volume's box. The hand then feels neither
     that nor the stock, only obstacles.
 material : Material, optional
-    What the stock is made of.
+    Material of the stock.
 at : array_like, shape (6,), optional
     Pose of the tool at the start: tip in mm and axis. None: the hand's pose for tablets, mice and recordings, otherwise
     5 mm above the middle of the stock.

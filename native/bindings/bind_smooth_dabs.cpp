@@ -30,13 +30,13 @@ dexel::SmoothResult smooth_brush(SharedVolume& self, const Doubles& centres, dou
 
 void bind_smooth_dabs(py::module_& m) {
   py::class_<dexel::SmoothResult>(
-      m, "Smoothed", "What each dab of a smooth brush did; arrays with one number per dab. See `Volume.smooth`.")
+      m, "Smoothed", "The effect of each dab of a smooth brush; arrays with one number per dab. See `Volume.smooth`.")
       .def_property_readonly(
           "removed", [](const dexel::SmoothResult& s) { return take<double>(std::vector<double>(s.removed)); },
-          "(n,) mm³ taken away.")
+          "(n,) mm³ removed.")
       .def_property_readonly(
           "added", [](const dexel::SmoothResult& s) { return take<double>(std::vector<double>(s.added)); },
-          "(n,) mm³ put on.")
+          "(n,) mm³ added.")
       .def("__len__", [](const dexel::SmoothResult& s) { return s.removed.size(); });
 
   py::reinterpret_borrow<VolumeClass>(m.attr("Volume"))
@@ -53,25 +53,25 @@ Parameters
 centres : array_like of shape (n, 3) or (3,), mm
     Centres of the dabs.
 radius : float, mm
-    Of the brush; what lies beyond it stays unchanged.
+    Radius of the brush; material beyond it is unchanged.
 strength : float, from 0 to 1
-    The share of the distance to the smoothed surface at the brush's centre, less towards its rim.
+    Blend factor at the brush's centre: 0 unchanged, 1 fully smoothed; less towards the rim.
 protect : Volume or None
-    Of the same lower, upper, pitch and directions; what lies in it stays unchanged, material and air.
+    Region that must not change, material and air; a volume with the same lower, upper, pitch and directions.
 progress : callable or None
     Called with the finished share; returning False cancels.
 
 Returns
 -------
 Smoothed
-    What each dab took away and put on.
+    The volumes that each dab removed and added.
 
 Raises
 ------
 ValueError
     The volume has one direction only; the protected volume's grid is another; names argument and row.
 Cancelled
-    ``progress`` returned False; the volume is as it was.
+    ``progress`` returned False; the volume is unchanged.
 
 Examples
 --------

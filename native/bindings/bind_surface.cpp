@@ -189,7 +189,7 @@ Examples
   surface.def("evaluate", &evaluate, "uv"_a, py::kw_only(), "patch"_a = 0, "progress"_a = py::none(),
               R"(Points and unit normals at parameters.
 
-In a pole, where a derivative is 0, the normal is the limit of those inside the patch. It is 0 where the patch has no
+At a pole, where a derivative is 0, the normal is the limit of those inside the patch. It is 0 where the patch has no
 area.
 
 Parameters
@@ -255,7 +255,7 @@ Examples
 ([[1.0, 2.0, 0.0], [4.0, 5.0, 0.0]], [3.0, 5.0])
 )");
   surface.def("to_mesh", &surface_to_mesh, "tolerance"_a, py::kw_only(), "progress"_a = py::none(),
-              R"(Triangles within a tolerance of the surface, and the surface within it of them.
+              R"(A mesh that deviates from the surface by at most a tolerance, in both directions.
 
 Bounds of second derivatives prove it; vertices lie on the surface. Seams of closed patches, and patches that have an
 edge in common (the same curve with the same parameters), share vertices, and a pole is one vertex: what is closed stays
@@ -298,7 +298,7 @@ patch : int
 Returns
 -------
 ndarray of shape (2, 2), float64
-    Least and largest (u, v).
+    Smallest and largest (u, v).
 
 Raises
 ------
@@ -313,7 +313,7 @@ Examples
 [[0.0, 2.0], [1.0, 3.0]]
 )");
   surface.def_property_readonly(
-      "patch_count", [](const Surface& self) { return self.patches().size(); }, "How many patches it has.");
+      "patch_count", [](const Surface& self) { return self.patches().size(); }, "Number of patches.");
   surface.def_property_readonly(
       "bounds",
       [](const Surface& self) {

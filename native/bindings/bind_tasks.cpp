@@ -75,23 +75,24 @@ void bind_tasks(py::module_& m) {
   static const py::handle not_a_task = PyErr_NewException("riffler._core.NotATask", PyExc_TypeError, nullptr);
   m.attr("NotATask") = not_a_task;
   py::class_<Task>(m, "Task",
-                   R"(A long call on a native thread, which runs no Python: what a riffler.Future waits for.
+                   R"(A long call on a native thread that runs no Python; a riffler.Future waits for it.
 
 What the call was given is taken when it is made, volumes by a snapshot; what is done with them afterwards changes
 nothing. A Task that nobody holds any more is cancelled and waited for; so are all when Python ends.)")
       .def_property_readonly(
           "share", [](const Task& t) { return t.background().share(); },
-          "The finished share, in [0, 1]: never goes back, and 1 only where the call came to its end.")
+          "The finished share, in [0, 1]. Never decreases; 1 only if the call has finished.")
       .def_property_readonly(
           "done", [](const Task& t) { return t.background().done(); },
-          "Whether ``result`` is there at once: the call has ended, by itself, by an error or cancelled.")
+          "Whether ``result`` returns at once: the call has finished, failed or been cancelled.")
       .def("cancel", &Task::cancel,
-           "Asks the call to end with Cancelled, and does not wait; without effect where it has ended.")
+           "Asks the call to end with Cancelled, and does not wait. No effect if the call has ended.")
       .def("result", &Task::result,
            "What the call returns, the same object each time; waits for it without blocking other threads. Raises what "
            "the call raises, Cancelled after ``cancel``. Ctrl-C ends the waiting, not the call.")
       .def("wait", &Task::wait, py::arg("timeout") = py::none(),
-           "Waits until the call has ended, or for so many seconds; whether it has. Other threads run meanwhile.")
+           "Waits until the call has ended, at most this many seconds. Returns whether it has ended. Other threads run "
+           "meanwhile.")
       .def("__repr__", [](const Task& t) {
         const base::Background& b = t.background();
         const int percent = static_cast<int>(100 * b.share());
@@ -109,9 +110,9 @@ nothing. A Task that nobody holds any more is cancelled and waited for; so are a
       py::arg("found"), py::arg("convert"), "convert(found); of a Task, that it will be done by its result().");
   py::module_::import("atexit").attr("register")(py::cpp_function(&end_all));
 
-  m.def("threads", &base::thread_count, R"(How many threads a parallel call uses.
+  m.def("threads", &base::thread_count, R"(Number of threads of a parallel call.
 
-That is what `set_threads` says, else RIFFLER_THREADS where that is set, else as many as the process may run on.
+The number given to `set_threads`, else RIFFLER_THREADS if set, else the number of processors that the process may use.
 
 Returns
 -------
@@ -125,14 +126,14 @@ True
 )");
   m.def(
       "set_threads", [](std::optional<int> n) { base::set_thread_count(n); }, py::arg("n"),
-      R"(Says how many threads parallel calls use from now on, in all of the process; those that run keep theirs.
+      R"(Sets the number of threads of parallel calls in the whole process. Running calls keep theirs.
 
 Results are the same bytes for any number.
 
 Parameters
 ----------
 n : int from 1 to 256, or None
-    None: RIFFLER_THREADS decides again, or the CPU affinity.
+    None: as set by RIFFLER_THREADS, or by the CPU affinity.
 
 Raises
 ------

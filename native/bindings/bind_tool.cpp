@@ -176,7 +176,7 @@ True
   tool.def_static(
           "shapes",
           [] { return std::vector<tool::CutterShape>(tool::cutter_shapes().begin(), tool::cutter_shapes().end()); },
-          R"(The named cutter shapes with their sizes, for forms: those that have a function here but `profile`.
+          R"(The named cutter shapes with their sizes, for forms: all that have a function here except `profile`.
 
 Returns
 -------
@@ -197,14 +197,14 @@ Examples
 Parameters
 ----------
 segments : list of rows of 2 or 4 numbers, mm
-    (radius, height) is a line to there, (radius, height, centre_radius, centre_height) an arc, the shorter way round.
+    (radius, height): a line to this point; (radius, height, centre_radius, centre_height): the shorter arc to it.
 length : float, mm
     Cutting length from the tip.
 
 Returns
 -------
 Tool
-    Without shank and holder.
+    A tool without shank and holder.
 
 Raises
 ------
@@ -221,12 +221,12 @@ Examples
 Parameters
 ----------
 d : dict with the keys of `to_dict`
-    Kind, its sizes, and where there are such name, shank and holder.
+    Kind and sizes; name, shank and holder if the tool has them.
 
 Returns
 -------
 Tool
-    Equal to the one that `to_dict` was called on.
+    Equal to the tool whose `to_dict` this is.
 
 Raises
 ------
@@ -302,14 +302,14 @@ Examples
 [(40.0, 15.0, 80.0, 20.0)]
 )")
       .def("with_margins", &Tool::with_margins, py::kw_only(), py::arg("shank") = 0.0, py::arg("holder") = 0.0,
-           R"(The same tool with wider shank and holder: to be planned and checked with, so that these keep clear.
+           R"(The same tool with a wider shank and holder, to plan and check with a safety margin.
 
-The ends of the holder move as well, those of the shank do not.
+The ends of the holder move too, those of the shank do not.
 
 Parameters
 ----------
 shank, holder : float, mm
-    By how much each is wider on every side.
+    Added width of each on every side.
 
 Returns
 -------
@@ -343,11 +343,11 @@ Examples
 >>> riffler.Tool.ball(6, 30).named("finisher").name
 'finisher'
 )")
-      .def_property_readonly("name", &Tool::name, "In messages and tool libraries.")
+      .def_property_readonly("name", &Tool::name, "Name in messages and tool libraries.")
       .def_property_readonly("kind", &Tool::kind,
                              "\"ball\", \"flat\" …, \"profile\", or a hand tool's: \"chisel\", …, \"convex\".")
       .def_property_readonly("diameter", &Tool::diameter, "Largest diameter of the cutter, mm.")
-      .def_property_readonly("length", &Tool::length, "From the tip to the end of the cutter, mm.")
+      .def_property_readonly("length", &Tool::length, "Length from the tip to the end of the cutter, mm.")
       .def_property_readonly(
           "shank", [](const Tool& t) { return from_frusta(t.shank()); }, "Truncated cones (z0, r0, z1, r1), mm.")
       .def_property_readonly(
@@ -355,12 +355,12 @@ Examples
       .def("outline", &outline, py::kw_only(), py::arg("tolerance") = 0.01,
            R"(The outline of cutter, shank and holder together, from the tip upwards, for drawing.
 
-What lies inside of another piece is left out.
+Parts inside another piece are left out.
 
 Parameters
 ----------
 tolerance : float, mm
-    How close polylines stay to arcs.
+    Largest distance of polylines from arcs.
 
 Returns
 -------

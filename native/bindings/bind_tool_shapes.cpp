@@ -40,7 +40,7 @@ std::string docstring(const tool::CutterShape& shape) {
     values += (values.empty() ? "" : ", ") + std::string(size.name) + "=" + example_value(size);
   }
   return out +
-         "\nReturns\n-------\nTool\n    Without shank and holder.\n\nRaises\n------\nValueError\n"
+         "\nReturns\n-------\nTool\n    A tool without shank and holder.\n\nRaises\n------\nValueError\n"
          "    Names the size that is not positive or does not fit the others.\n\nExamples\n--------\n>>> "
          "riffler.Tool." +
          shape.name + "(" + values + ").kind\n'" + shape.name + "'\n";

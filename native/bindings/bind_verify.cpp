@@ -186,7 +186,7 @@ gouge, rest: mm under or over the part's surface.)")
       .def_property_readonly(
           "point", [](const verify::Finding& f) { return from_vec3(f.point); },
           "(3,) mm: the worst place, part coordinates.")
-      .def_readonly("message", &verify::Finding::message, "One sentence: what happened and what to do.")
+      .def_readonly("message", &verify::Finding::message, "A sentence with the fault and the remedy.")
       .def(
           "to_dict", [](const verify::Finding& f) { return to_dict(f); },
           R"(For JSON: all attributes.
@@ -210,15 +210,16 @@ Examples
 }
 
 void bind_report(py::module_& m) {
-  py::class_<SharedReport, std::shared_ptr<SharedReport>>(m, "VerifyReport", "What a verification found: see `verify`.")
+  py::class_<SharedReport, std::shared_ptr<SharedReport>>(m, "VerifyReport",
+                                                          "The result of a verification: see `verify`.")
       .def_property_readonly(
           "passed", [](const SharedReport& r) { return r.report.passed(); },
-          "True only where every requested check could be made and found nothing.")
+          "True only if every requested check could be made and found nothing.")
       .def_property_readonly(
           "findings", [](const SharedReport& r) { return r.report.findings; }, "The faults, by rows.")
       .def_property_readonly(
           "not_checked", [](const SharedReport& r) { return r.report.not_checked; },
-          "Sentences: what was not requested, so does not fail.")
+          "Sentences on checks that were not requested and so cannot fail.")
       .def_property_readonly(
           "removed", [](const SharedReport& r) { return take<double>(std::vector<double>(r.report.removed)); },
           "(n,) mm³ that each row's move took; row 0: 0.")
@@ -232,13 +233,14 @@ void bind_report(py::module_& m) {
       .def_property_readonly(
           "volume", [](const SharedReport& r) { return std::make_shared<SharedVolume>(r.report.volume.snapshot()); },
           "The material that is left.")
-      .def("stock_deviation", &stock_deviation,
-           R"(Meshes what is left and measures it against the part, at the first call; later calls return the same.
+      .def(
+          "stock_deviation", &stock_deviation,
+          R"(Mesh of the remaining stock, and its distances from the part. Computed at the first call; later calls return the same.
 
 Returns
 -------
 tuple of Mesh and ndarray, shape (vertices,), or None
-    What is left, and mm from each of its vertices to the part's surface: positive where rest material stands on it,
+    The remaining stock, and mm from each of its vertices to the part's surface: positive in rest material,
     negative in gouges. None without a part.
 
 Examples
@@ -250,13 +252,14 @@ Examples
 >>> bool(abs(distance).max() < 1e-6)
 True
 )")
-      .def("part_deviation", &part_deviation,
-           R"(Measures the part against what is left, at the first call; later calls return the same.
+      .def(
+          "part_deviation", &part_deviation,
+          R"(Distance of the part's vertices from the remaining stock. Computed at the first call; later calls return the same.
 
 Returns
 -------
 ndarray, shape (vertices,), or None
-    mm from each vertex of the part to the surface of what is left: positive where material covers it, negative where it
+    mm from each vertex of the part to the surface of the remaining stock: positive where material covers it, negative where it
     is missing, -inf where nothing is left at all. None without a part.
 
 Examples
@@ -302,11 +305,11 @@ constexpr const char* kParameters = R"(stock_volume : Volume
 part_mesh : Mesh, optional
     For gouges and rest material.
 fixtures : list of Volume or Mesh
-    What the whole tool must stay clear of; a Mesh becomes a Volume at the stock's pitch.
+    Volumes or meshes that the whole tool must stay clear of; a Mesh becomes a Volume at the stock's pitch.
 tools : dict, optional
     Number to Tool; takes the place of the program's own.
 tolerance : float
-    mm, of cutting, as in ``Volume.carve``; less deep contact is none.
+    mm, of cutting, as in ``Volume.carve``; shallower contact does not count.
 gouge_tolerance : float
     mm under the part's surface from which removed material is a gouge.
 rest_tolerance : float, optional
@@ -319,7 +322,7 @@ machine : str, optional
 machine_options : dict, optional
     Options of the machine; those of reading are ignored.
 machine_frame : array_like, shape (4, 4), optional
-    From the coordinates of stock and program to those in which the machine has the program, where they differ.
+    Transform from the coordinates of stock and program to those of the program on the machine, if they differ.
 progress : callable, optional
     Called with the finished share, from 0 for each chunk; returning False cancels.
 )";
@@ -335,11 +338,11 @@ void bind_verify(py::module_& m) {
   bind_report(m);
   define_with_arguments([&](const auto&... arguments) {
     m.def("verify", with_arguments<ProgramLike>(&verify), py::arg("program"), arguments...,
-          (std::string(R"(Runs a program on a stock and reports what goes wrong; the stock is not changed.
+          (std::string(R"(Runs a program on a stock and reports faults. The stock is not changed.
 
-Rapids are cut too: a crash takes material. Shank and holder must stay clear of what is left of the stock when they come
-there, the whole tool of the fixtures. Where the description of a tool ends below material or a fixture that stands above
-it or next to it, it is unknown what the spindle meets: a finding "unknown".
+Rapids remove material too, as a crash would. Shank and holder must stay clear of the remaining stock when they come
+there, the whole tool of the fixtures. If the description of a tool ends below material or a fixture above
+or next to it, collisions of the spindle are unknown: a finding "unknown".
 
 Parameters
 ----------
@@ -354,7 +357,7 @@ VerifyReport
 Raises
 ------
 ValueError
-    Naming number, row and line of a tool whose shape is not known.
+    Naming number, row and line of a tool of unknown shape.
 
 Examples
 --------
@@ -396,7 +399,7 @@ Examples
                      arguments...);
   });
   verification.def("run", &run, py::arg("program").none(false), py::kw_only(), py::arg("progress") = py::none(),
-                   R"(Verifies a program. After an error or Cancelled the object is as it was before the call.
+                   R"(Verifies a program. After an error or Cancelled the object is unchanged.
 
 Parameters
 ----------

@@ -105,13 +105,14 @@ void bind_properties(VolumeClass& volume) {
           "(3,) mm: the box's corner with the largest coordinates.")
       .def_property_readonly(
           "volume", [](SharedVolume& v) { return Reading(v).volume.volume(); },
-          "mm³: lengths of the z rays × their areas (of the only rays, where there are no z rays). An area is h², but "
+          "mm³: sum of length × area of the z rays, or of the only rays if there are no z rays. The area is h², except "
           "for the last rays, whose cells end with the box.")
       .def_property_readonly(
           "nbytes", [](SharedVolume& v) { return Reading(v).volume.nbytes(); },
           "Bytes held, shared tiles counted once.")
       .def_property_readonly(
-          "revision", [](SharedVolume& v) { return Reading(v).volume.revision(); }, "Changes with the content.")
+          "revision", [](SharedVolume& v) { return Reading(v).volume.revision(); },
+          "Number that changes with the content.")
       .def_property_readonly("rays", &ray_count, "Number of rays, all directions.")
       .def_property_readonly("counters", &counters,
                              "VolumeCounters: the work since the volume was made, or since `take_counters`. Reading "
@@ -193,10 +194,10 @@ void bind_volume(py::module_& m) {
   VolumeClass volume(m, "Volume", R"(A dexel volume: material as spans along parallel rays.
 
 ``directions`` is "z" for one grid of rays or "xyz" for three (a tri-dexel volume, which also keeps the surface's
-normals and so its sharp edges). Ray (i, j) of "z" stands at lower + ((i + .5) h, (j + .5) h); "x" rays are indexed
+normals and so its sharp edges). Ray (i, j) of "z" is at lower + ((i + .5) h, (j + .5) h); "x" rays are indexed
 (y, z), "y" rays (z, x). Lengths in mm.
 
-Volumes are made by `block`, `empty`, `sphere`, `cylinder`, `from_mesh` and `load`. Operators of sets work on volumes
+Make volumes with `block`, `empty`, `sphere`, `cylinder`, `from_mesh` and `load`. Set operators work on volumes
 with the same lower, upper, pitch and directions: ``v | w``, ``v & w``, ``v - w`` give a new volume, ``v |= w``,
 ``v &= w``, ``v -= w`` change v.
 

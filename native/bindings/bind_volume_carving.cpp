@@ -76,8 +76,8 @@ auto in_place(dexel::Boolean op) {
 }
 
 void bind_cut(py::module_& m) {
-  py::class_<sweep::Cut>(m, "Cut",
-                         "What each move of a carve took away; arrays with one row per move. See `Volume.carve`.")
+  py::class_<sweep::Cut>(
+      m, "Cut", "The volume and force of each move of a carve; arrays with one row per move. See `Volume.carve`.")
       .def_property_readonly(
           "removed", [](const sweep::Cut& c) { return take<double>(std::vector<double>(c.removed)); }, "(n,) mm³.")
       .def_property_readonly(
@@ -105,7 +105,7 @@ void bind_snapshots(VolumeClass& volume) {
   volume
       .def(
           "snapshot", [](SharedVolume& v) { return Snapshot{Reading(v).volume.snapshot()}; },
-          R"(The state to come back to with `restore`; costs pointers only.
+          R"(The present state, for `restore`; costs pointers only.
 
 Returns
 -------
@@ -123,21 +123,26 @@ Examples
 )")
       .def(
           "restore", [](SharedVolume& v, const Snapshot& s) { Writing(v).volume.restore(s.volume); },
-          py::arg("snapshot"), R"(Back to a snapshot of this volume.
+          py::arg("snapshot"), R"(Restores a snapshot of this volume.
 
 Parameters
 ----------
 snapshot : Snapshot
-    What `snapshot` gave.
+    A result of `snapshot`.
 
 Raises
 ------
 ValueError
-    It is of a volume with another box, pitch or directions.
+    The snapshot is of a volume with another box, pitch or directions.
 
 Examples
 --------
-See `snapshot`.
+>>> volume = riffler.Volume.block((0, 0, 0), (4, 3, 2), pitch=0.5)
+>>> before = volume.snapshot()
+>>> half = volume.clip((2, 0, 0), (1, 0, 0))
+>>> volume.restore(before)
+>>> volume.volume
+24.0
 )")
       .def(
           "copy", [](SharedVolume& v) { return share(Reading(v).volume.snapshot()); },
@@ -160,7 +165,7 @@ True
 
 void bind_sets(VolumeClass& volume) {
   using dexel::Boolean;
-  const char* const kSubtract = R"(Takes the other volume's material away, in place: ``v -= other`` with progress.
+  const char* const kSubtract = R"(Removes the other volume's material, in place: ``v -= other`` with progress.
 
 Parameters
 ----------
@@ -208,7 +213,7 @@ Examples
 24.0
 )";
   const char* const kIntersect =
-      R"(Keeps what both volumes have, in place: ``v &= other`` with progress; see `subtract`.
+      R"(Keeps the material that both volumes have, in place: ``v &= other`` with progress; see `subtract`.
 
 Parameters
 ----------
@@ -250,7 +255,7 @@ void bind_volume_carving(py::module_& m, VolumeClass& volume) {
   volume.def("carve", &carve_poses, py::arg("tool"), py::arg("poses"), py::kw_only(), py::arg("tolerance") = 0.01,
              py::arg("dt") = py::none(), py::arg("removal_constant") = sweep::CarveOptions{}.removal_constant,
              py::arg("mode") = "remove", py::arg("protect") = py::none(), py::arg("progress") = py::none(),
-             R"(Takes away what the cutter sweeps along a path, or puts it on. Shank and holder never cut.
+             R"(Removes what the cutter sweeps along a path, or adds it. Shank and holder never cut.
 
 Parameters
 ----------
@@ -260,30 +265,30 @@ poses : array_like of shape (n, 6), tip in mm and unit axis
     Tip xyz, then unit axis xyz from the tip to the spindle; n - 1 moves. A hand tool (`Tool.convex` and its like) needs
     the shape (n, 9): then its unit forward direction xyz, square to the axis.
 tolerance : float, mm
-    For moves that turn the axis; others are exact.
+    Tolerance of moves that turn the axis; others are exact.
 dt : array_like, a number or of shape (n - 1,), s, or None
-    Duration of the moves: asks for force.
+    Duration of the moves; needed for force.
 removal_constant : float, N·s/mm³
     Force for each rate of removal.
 mode : "remove" or "add"
-    "add" puts material on wherever the cutter sweeps within the volume's box; ``removed`` is then what was put on.
+    "add" adds material wherever the cutter sweeps within the volume's box; ``removed`` then has the added volume.
 protect : Volume or None
-    Of the same lower, upper, pitch and directions; what lies in it stays unchanged, material and air.
+    Region that must not change, material and air; a volume with the same lower, upper, pitch and directions.
 progress : callable or None
     Called with the finished share; returning False cancels.
 
 Returns
 -------
 Cut
-    What each move took away.
+    The volume that each move removed.
 
 Raises
 ------
 ValueError
-    Names argument and row: a shape, an axis that is no unit vector, opposite axes, for a hand tool a forward direction
-    that is not square to the axis and a half turn; or the protected volume's grid is another.
+    Names argument and row: a wrong shape, an axis that is not a unit vector, opposite axes, for a hand tool a forward
+    direction that is not square to the axis and a half turn; or the protected volume's grid is another.
 Cancelled
-    ``progress`` returned False; the volume is as it was.
+    ``progress`` returned False; the volume is unchanged.
 
 Examples
 --------

@@ -87,15 +87,15 @@ void bind_volume_edits(VolumeClass& volume) {
            py::arg("progress") = py::none(),
            R"(This volume in a larger box: a new volume with the same spans and normals, bit for bit.
 
-Rays stay where they stand, and others, without material, are put next to them: each side of the box moves outward by
+Rays stay in place, and rays without material are added next to them: each side of the box moves outward by
 whole pitches until it lies at or beyond that of ``lower`` to ``upper``, to 1e-6 of a pitch. A side that does already
-stays. Where a box's size is no whole number of pitches, an upper side may move one pitch more; ``volume`` then counts
+stays. Where a box's size is not a whole number of pitches, an upper side may move one pitch more; ``volume`` then counts
 the rays that were last with whole cells.
 
 Parameters
 ----------
 lower, upper : array_like of shape (3,), mm, or None
-    The box that is wanted. Default: this volume's own.
+    The box to reach. Default: this volume's own.
 progress : callable or None
     Called with the finished share; returning False cancels.
 
@@ -118,14 +118,14 @@ Examples
 [6.0, 3.0, 2.0]
 )")
       .def("clip", &clip_volume, py::arg("point"), py::arg("normal"), py::kw_only(), py::arg("progress") = py::none(),
-           R"(Takes away what lies in front of a plane, in place: the new face looks out along its normal.
+           R"(Removes the material in front of a plane, in place; the plane's normal is that of the new face.
 
 Parameters
 ----------
 point : array_like of shape (3,), mm
-    On the plane.
+    A point on the plane.
 normal : array_like of shape (3,), of any length but 0
-    Points to what is taken away.
+    Points to the side that is removed.
 progress : callable or None
     Called with the finished share; returning False cancels.
 
@@ -148,9 +148,9 @@ Examples
 12.0
 )")
       .def("parts", &parts_of, py::kw_only(), py::arg("minimum") = 0.0, py::arg("progress") = py::none(),
-           R"(One volume on this one's grid for each piece that hangs together, the largest first.
+           R"(The connected pieces of this volume as volumes on the same grid, the largest first.
 
-Spans of neighbouring rays hang together where they overlap. The parts' volumes sum to this one's.
+Spans of neighbouring rays are connected where they overlap. The parts' volumes sum to this one's.
 
 Parameters
 ----------
@@ -178,8 +178,9 @@ Examples
 >>> [part.volume for part in volume.parts()]
 [2000.0, 1200.0]
 )")
-      .def("contains", &contains_points, py::arg("points"),
-           R"(Whether points lie in the material, by the nearest ray of each direction; of three, two decide.
+      .def(
+          "contains", &contains_points, py::arg("points"),
+          R"(Whether points are in the material, by the nearest ray of each direction; with three directions, by the majority.
 
 Parameters
 ----------
@@ -200,7 +201,7 @@ Examples
            py::arg("lower") = py::none(), py::arg("upper") = py::none(), py::arg("progress") = py::none(),
            R"(This volume at another pitch, with other directions or in another box: a new volume.
 
-Material outside of the new box is left out. The mesh of `to_mesh` is what is resampled, so a finer pitch brings no
+Material outside the new box is left out. Resamples the mesh of `to_mesh`, so a finer pitch brings no
 detail back. A volume with the same pitch, directions and box is a copy, bit for bit.
 
 Parameters

@@ -49,7 +49,7 @@ void bind_volume_files(VolumeClass& volume) {
 Parameters
 ----------
 path : path_like
-    The file; one that is there is replaced.
+    The file; an existing one is replaced.
 progress : callable or None
     Called with the finished share; returning False cancels.
 
@@ -84,13 +84,15 @@ Volume
 Raises
 ------
 FormatError
-    The file is damaged, or no .rvol file: names the byte.
+    The file is damaged or not a .rvol file. Names the byte.
 Cancelled
     ``progress`` returned False.
 
 Examples
 --------
-See `save`.
+>>> riffler.Volume.block((0, 0, 0), (4, 3, 2), pitch=0.5).save("block.rvol")
+>>> riffler.Volume.load("block.rvol").volume
+24.0
 )")
       .def("to_bytes", &volume_to_bytes, py::kw_only(), py::arg("progress") = py::none(),
            R"(The bytes of the .rvol file.
@@ -112,14 +114,14 @@ Examples
 24.0
 )")
       .def_static("from_bytes", &volume_from_bytes, py::arg("data"), py::kw_only(), py::arg("name") = "volume",
-                  R"(The volume whose `to_bytes` these are.
+                  R"(A volume from the bytes of `to_bytes`.
 
 Parameters
 ----------
 data : bytes, or another buffer
     Of a .rvol file.
 name : str
-    Stands in messages.
+    Name for messages.
 
 Returns
 -------
@@ -133,7 +135,9 @@ FormatError
 
 Examples
 --------
-See `to_bytes`.
+>>> data = riffler.Volume.block((0, 0, 0), (4, 3, 2), pitch=0.5).to_bytes()
+>>> riffler.Volume.from_bytes(data).volume
+24.0
 )")
       .def(py::pickle([](SharedVolume& v) { return py::bytes(volume_to_bytes(v, ProgressLike(py::none()))); },
                       [](const py::bytes& b) { return volume_from_bytes(py::buffer(b), "pickle"); }));

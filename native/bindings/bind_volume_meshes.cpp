@@ -119,19 +119,19 @@ void bind_volume_meshes(VolumeClass& volume) {
                   R"(The solid within a mesh: points whose absolute generalized winding number exceeds 1/2.
 
 Inside-out, overlapping, touching and open parts are fine, as are triangles that face against their neighbours and
-repeated ones (`Mesh.orient`). Material thinner than the pitch may be lost: where that is worth a sentence, it is a
+repeated ones (`Mesh.orient`). Material thinner than the pitch may be lost: more than crumbs of it raise a
 UserWarning; `from_mesh_with_report` puts it into its report.
 
 Parameters
 ----------
 mesh : Mesh
-    With some volume.
+    A mesh with a volume greater than 0.
 pitch : float, mm
     Distance of neighbouring rays.
 directions : "z" or "xyz"
     One grid of rays, or three.
 lower, upper : array_like of shape (3,), mm, or None
-    The volume's box; what lies outside of it is clipped. Default: the mesh's own.
+    The volume's box; material outside it is clipped. Default: the mesh's own.
 progress : callable or None
     Called with the finished share; returning False cancels.
 
@@ -156,18 +156,18 @@ Examples
       .def_static("from_mesh_with_report", &volume_from_mesh_with_report, py::arg("mesh").none(false), py::arg("pitch"),
                   py::arg("directions") = "z", py::kw_only(), py::arg("lower") = py::none(),
                   py::arg("upper") = py::none(), py::arg("progress") = py::none(),
-                  R"(The same as `from_mesh`, with what was wrong with the mesh and what was lost of it.
+                  R"(The same as `from_mesh`, with a report on the mesh's faults and the lost material.
 
 Parameters
 ----------
 mesh : Mesh
-    With some volume.
+    A mesh with a volume greater than 0.
 pitch : float, mm
     Distance of neighbouring rays.
 directions : "z" or "xyz"
     One grid of rays, or three.
 lower, upper : array_like of shape (3,), mm, or None
-    The volume's box; what lies outside of it is clipped. Default: the mesh's own.
+    The volume's box; material outside it is clipped. Default: the mesh's own.
 progress : callable or None
     Called with the finished share; returning False cancels.
 
@@ -194,13 +194,13 @@ Examples
            py::arg("progress") = py::none(),
            R"(The surface: closed, outward, two-manifold, and still so in a binary STL.
 
-Material thinner than the pitch is no part of it: where that is worth a sentence, it is a UserWarning;
+Material thinner than the pitch is not part of it. A UserWarning reports more than crumbs of such material;
 `to_mesh_with_report` puts it into its report.
 
 Parameters
 ----------
 tolerance : float, mm, or None
-    Leaves out the triangles that the shape does not need: no point of the mesh is farther than this from the surface of
+    Leaves out triangles that the shape does not need: no point of the mesh is farther than this from the surface of
     all triangles, and the reverse. It is as closed and as sharp at edges, and its vertices are some of theirs. None, or
     less than the step of float32 at the box's largest coordinate (0 too): all triangles. More than the size of the part
     keeps at least four triangles of each shell.
@@ -227,14 +227,15 @@ Examples
 >>> len(volume.to_mesh().triangles) > 100 * len(volume.to_mesh(tolerance=0.02).triangles)
 True
 )")
-      .def("to_mesh_with_report", &volume_to_mesh_with_report, py::kw_only(), py::arg("tolerance") = py::none(),
-           py::arg("progress") = py::none(),
-           R"(The same as `to_mesh`, with what is no part of the mesh since it is thinner than the pitch.
+      .def(
+          "to_mesh_with_report", &volume_to_mesh_with_report, py::kw_only(), py::arg("tolerance") = py::none(),
+          py::arg("progress") = py::none(),
+          R"(The same as `to_mesh`, with a report on material that is too thin for the pitch and so not part of the mesh.
 
 Parameters
 ----------
 tolerance : float, mm, or None
-    Leaves out the triangles that the shape does not need: no point of the mesh is farther than this from the surface of
+    Leaves out triangles that the shape does not need: no point of the mesh is farther than this from the surface of
     all triangles, and the reverse. It is as closed and as sharp at edges, and its vertices are some of theirs. None, or
     less than the step of float32 at the box's largest coordinate (0 too): all triangles. More than the size of the part
     keeps at least four triangles of each shell.

@@ -73,7 +73,7 @@ Examples
 24.0
 )")
       .def_static("empty", &empty, py::arg("lower"), py::arg("upper"), py::arg("pitch"), py::arg("directions") = "z",
-                  R"(A box without material: it holds only what is put on later (``carve``, ``|=``).
+                  R"(A box without material, to add material to (``carve`` with mode "add", ``|=``).
 
 Parameters
 ----------
@@ -104,7 +104,7 @@ Examples
                   py::arg("upper") = py::none(), py::arg("progress") = py::none(),
                   R"(A ball of material, made of exact rays: it has no facets.
 
-Each end of a span is where its ray crosses the sphere, to the rounding of doubles, and has the sphere's normal.
+Each end of a span is at the ray's intersection with the sphere, to rounding, with the sphere's normal.
 
 Parameters
 ----------
@@ -117,7 +117,7 @@ pitch : float, mm
 directions : "z" or "xyz"
     One grid of rays, or three.
 lower, upper : array_like of shape (3,), mm, or None
-    The volume's box; what lies outside of it is clipped. Default: the ball's own.
+    The volume's box; material outside it is clipped. Default: the ball's own.
 progress : callable or None
     Called with the finished share; returning False cancels.
 
@@ -129,7 +129,7 @@ Volume
 Raises
 ------
 ValueError
-    All rays of a direction miss a ball that lies in the box: the message has a pitch at which they do not.
+    All rays of a direction miss the ball. The message names a pitch at which they do not.
 Cancelled
     ``progress`` returned False.
 
@@ -162,7 +162,7 @@ directions : "z" or "xyz"
 axis : array_like of shape (3,), of any length but 0
     Direction of the axis.
 lower, upper : array_like of shape (3,), mm, or None
-    The volume's box; what lies outside of it is clipped. Default: the cylinder's own.
+    The volume's box; material outside it is clipped. Default: the cylinder's own.
 progress : callable or None
     Called with the finished share; returning False cancels.
 

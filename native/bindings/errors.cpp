@@ -13,7 +13,7 @@ namespace riffler::bindings {
 
 namespace {
 
-/// A message may name a file whose name is no UTF-8: those bytes are written as \xNN.
+/// A message may name a file whose name is not UTF-8: those bytes are written as \xNN.
 void set(const py::handle& type, std::string_view message) {
   const auto text = py::reinterpret_steal<py::object>(
       PyUnicode_DecodeUTF8(message.data(), static_cast<py::ssize_t>(message.size()), "backslashreplace"));
@@ -86,10 +86,9 @@ void* refuse_unmade(std::size_t) {
 
 void bind_errors(py::module_& m) {
   const auto format = py::register_exception<FormatError>(m, "FormatError", PyExc_ValueError);
-  format.attr("__doc__") =
-      "A file that is not what it should be: names the file, the line or byte, and what was expected.";
+  format.attr("__doc__") = "A file with invalid content. Names the file, the line or byte, and what was expected.";
   const auto cancel = py::register_exception<Cancelled>(m, "Cancelled", PyExc_RuntimeError);
-  cancel.attr("__doc__") = "A long call that its progress callback stopped; the object is as it was before.";
+  cancel.attr("__doc__") = "A long call was stopped by its progress callback. The object is unchanged.";
   translate_errors(m);
 }
 

@@ -66,7 +66,7 @@ class SignatureReader {
  public:
   explicit SignatureReader(std::string_view line) : line_(line) {}
 
-  /// "name(self, a, b=1)", or nothing where the line is no such signature.
+  /// "name(self, a, b=1)", or nothing if the line is not such a signature.
   std::string plain() {
     const std::size_t open = line_.find('(');
     if (open == std::string_view::npos) return {};
@@ -107,7 +107,7 @@ class SignatureReader {
       out += "=" + std::string(literal(argument.substr(equals + 3)));
   }
 
-  /// A default as Python's parser of such signatures takes it: what is no literal is written as "...".
+  /// A default as Python's parser of such signatures takes it: anything but a literal is written as "...".
   static std::string_view literal(std::string_view text) {
     const bool plain = text.find('<') == std::string_view::npos && text.find("inf") == std::string_view::npos &&
                        text.find("nan") == std::string_view::npos;

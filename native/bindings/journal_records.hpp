@@ -29,9 +29,9 @@ pitch : float
 directions : {"z", "xyz"}
     As of the Volume.
 snapshot : str
-    Name of the file with the stock, where it is not a full block.
+    Name of the file with the stock, if it is not a full block.
 mask : str
-    Name of the file with what is protected, where something is.
+    Name of the file with the protected region, if any.
 
 Examples
 --------
@@ -53,7 +53,7 @@ Examples
 Parameters
 ----------
 number : int
-    By which strokes name it.
+    Number by which strokes refer to it.
 tool : Tool, dict or str
     A Tool, its dict or JSON text of it.
 
@@ -76,7 +76,7 @@ Examples
 Parameters
 ----------
 key, value : str
-    Of a key that is given twice the later value counts.
+    If a key is given twice, the later value counts.
 
 Examples
 --------
@@ -100,12 +100,12 @@ Examples
           py::arg("tool"), py::arg("poses"), py::kw_only(), py::arg("times") = py::none(), py::arg("tolerance") = 0.01,
           py::arg("name") = "", py::arg("forces") = py::none(), py::arg("removed") = py::none(),
           py::arg("mode") = "remove", py::arg("strength") = 0.5,
-          R"(Records a stroke. To replay to the bit what ``carve`` added, or cut next to a mask, each carve has to be a stroke.
+          R"(Records a stroke. Replay is exact to the bit for ``carve`` in mode "add" or with a mask only if each carve is one stroke.
 
 Parameters
 ----------
 tool : int
-    Number of a tool that was added.
+    Number of an added tool.
 poses : array_like, shape (n, 6)
     Tip in mm and unit axis, n at least 1. For a hand tool (n, 9), as in ``Volume.carve``.
 times : array_like, shape (n,), optional
@@ -113,7 +113,7 @@ times : array_like, shape (n,), optional
 tolerance : float
     mm, as in ``Volume.carve``.
 name : str
-    For people.
+    Name for users.
 forces : array_like, shape (n, 6), optional
     N and N·mm as sent to the device for the hand, about the grip.
 removed : array_like, shape (n,), optional
@@ -171,7 +171,7 @@ Examples
 Parameters
 ----------
 n : int
-    How many.
+    Number of strokes.
 
 Examples
 --------
@@ -193,7 +193,7 @@ Examples
 Parameters
 ----------
 n : int
-    How many.
+    Number of strokes.
 
 Examples
 --------

@@ -22,7 +22,7 @@ void bind_program_paths(py::module_& m);
 /// The class, for the files that add a topic to it.
 ProgramClass program_class(const py::module_& m);
 
-/// ValueError naming `name` for what is no array of numbers.
+/// ValueError naming `name` for anything but an array of numbers.
 Doubles to_doubles(const py::handle& object, const std::string& name);
 
 /// One number for all rows, or one per row. A single number stays single where `spread` is false.

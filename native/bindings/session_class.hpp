@@ -49,7 +49,7 @@ Mat3 to_turn(const OptionalArrayLike& turn);
 
 /// Set where the device decides: 0.4 ms a step for a device with motors, none for others.
 inline constexpr const char* kAutomaticBudget = "auto";
-/// s for a step. TypeError for what is no number, None or "auto".
+/// s for a step. TypeError for anything but a number, None or "auto".
 std::optional<double> to_budget(const BudgetLike& budget, const pen::Pen& pen);
 
 /// The class with its constructor.

@@ -56,13 +56,13 @@ void bind_ticks(py::class_<F>& c, const FrameWords& words) {
           "(n, 6): force (N) and torque (N·mm), as sent to the device.")
       .def_property_readonly(
           "energy", [](const F& f) { return rows(f, [](const T& t) { return t.energy; }); },
-          "(n,) N·mm that may go to the hand: the account of passivity.")
+          "(n,) N·mm: the passivity account, the energy that may still go to the hand.")
       .def_property_readonly(
           "step_seconds", [](const F& f) { return rows(f, [](const T& t) { return t.seconds; }); },
           "(n,) s of processor time.")
       .def_property_readonly(
           "missed", [](const F& f) { return rows(f, [](const T& t) { return t.missed ? 1.0 : 0.0; }); },
-          "(n,) 1 where no step could be made and the force was held over.")
+          "(n,) 1 where a step was missed and the last force was held.")
       .def_property_readonly(
           "tool", [](const F& f) { return from_poses({f.last.tool}).reshape({6}); }, "(6,) now.")
       .def_property_readonly(
@@ -80,10 +80,10 @@ void bind_ticks(py::class_<F>& c, const FrameWords& words) {
             if (f.last.cause == haptics::Cause::None) return {};
             return sentence(f.last.cause);
           },
-          "Why the force was taken away and what to do, or None.")
+          "Why the force was removed and what to do, or None.")
       .def_property_readonly(
           "dropped_ticks", [](const F& f) { return f.frame.dropped_ticks; },
-          "Steps since the start that are in no frame, because frames were too rare: 4096 are kept.")
+          "Steps since the start that are missing in all frames because frames were too rare; 4096 are kept.")
       .def_property_readonly(
           "tool_forces", [](const F& f) { return rows<6>(f, [](const T& t) { return t.on_tool; }); }, words.tool_forces)
       .def_property_readonly(

@@ -17,8 +17,8 @@ namespace riffler::collide {
 /// An edge of an outline with precomputed data for distances.
 struct LaneEdge {
   double from[2], to[2], way[2], per_square;  // the third is to − from, the last 1 over its square
-  double normal[2];                           // of a line, out of the solid
-  double centre[2], first[2], last[2];        // of an arc; ends relative to the centre, times side
+  double normal[2];                           // of a line, pointing out of the solid
+  double centre[2], first[2], last[2];        // of an arc; first, last: ends relative to the centre, times side
   double radius, side;                        // of an arc; side: 1 convex, −1 hollow
   bool arc, rises;
 
@@ -29,18 +29,18 @@ struct LaneEdge {
 void centre_distances(std::span<const LaneEdge> outline, const ToolFrame& frame, const SphereGroup& spheres,
                       double* distance);
 
-/// low[k]: lower bound of the signed distance over triangle k, which sphere k encloses. From the sphere, and from a
-/// tangent plane of every run (outline_runs.hpp). The plane has the run's whole solid behind it, so it bounds the
-/// distance outside the tool; inside, it bounds the depth if all points concerned have their nearest points on the run
-/// and not beyond its ends. A hollow has a ball instead, which is useful only outside. With a `drift` (in part
-/// directions), the bound holds throughout the interval.
+/// low[k]: lower bound of the signed distance over triangle k, which sphere k encloses. It comes from the sphere and
+/// from a tangent plane of every run (outline_runs.hpp). The run's whole solid is behind the plane, so the plane bounds
+/// the distance outside the tool; inside, it bounds the depth if the nearest points of all points of the triangle are
+/// on the run and not beyond its ends. A hollow has a ball instead of a plane, which is useful only outside. With a
+/// `drift` (in part directions), the bound holds throughout the interval.
 void triangle_bounds(const OutlineRuns& runs, std::span<const LaneEdge> outline, const ToolFrame& frame,
                      const SphereGroup& spheres, const Corners* triangles, const Drift* drift, const double* distance,
                      double* low);
 
-/// low[k] and high[k]: lower and upper bound of the lowest signed distance in box k, by its sphere and by tangent
-/// planes as in triangle_bounds; with `drift`, the lower one is over the interval. A box without extent has the centre
-/// alone.
+/// low[k] and high[k]: lower and upper bound of the smallest signed distance in box k, from its sphere and from tangent
+/// planes as in triangle_bounds. With `drift`, low[k] holds throughout the interval. For a box without extent, both are
+/// the distance of its centre.
 void box_bounds(const OutlineRuns& runs, std::span<const LaneEdge> outline, const ToolFrame& frame,
                 const OrientedBoxes& boxes, const Drift* drift, double* low, double* high);
 

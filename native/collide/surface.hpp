@@ -10,10 +10,10 @@
 
 namespace riffler::collide {
 
-/// The same surface with large triangles cut into pieces no longer than `most` (mm): one plane is a poor bound for a
-/// large triangle where a tool changes its shape. Pieces with less area than most² / 4 may be four times as long.
-/// Neighbouring pieces need not share the new vertices. Where there would be kMorePieces more than twice the triangles,
-/// `most` is doubled until there are not.
+/// The same surface with large triangles cut into pieces no longer than `most` (mm), because one plane is a poor bound
+/// for a large triangle where the tool's shape changes. Pieces with less area than most² / 4 may be four times as long.
+/// Neighbouring pieces need not share the new vertices. Doubles `most` until the pieces number at most kMorePieces more
+/// than twice the triangles.
 Mesh divided(const Mesh& mesh, double most);
 constexpr std::size_t kMorePieces = 50'000;
 /// Whether the mesh has an edge longer than `most` (mm).

@@ -40,27 +40,28 @@ class TriangleSearch {
   explicit TriangleSearch(const OutlineRuns& runs) : runs_(runs), at_(runs.size()) {}
 
   const Least& least() const { return least_; }
-  /// A lower place is searched only if it is lower by more than this: 1e-10 mm, or rounding in coordinates of this
-  /// size.
+  /// Smallest improvement of the minimum that is worth searching for: 1e-10 mm plus the rounding of coordinates up to
+  /// `size` (mm).
   static double slack(double size) { return 1e-10 + 1e-15 * size; }
 
   /// A lower bound over the triangle from one evaluation at its centre, which may also lower the minimum.
   double bound(const Corners& t);
-  /// The same for all times of an interval, evaluated at its middle: a few evaluations, which may lower the minimum.
+  /// The same for all times of an interval, from a few evaluations at its middle, which may lower the minimum.
   double bound(const Corners& t, const Drift& drift);
   /// Evaluates at a place of a triangle, which may lower the minimum.
   void visit(const Vec3& place) { look(place); }
   /// `low`: a known lower bound on the triangle. Stops at the deadline.
   void search(const Corners& t, double low, Deadline& deadline);
-  /// Allows a search to stop at any place below `distance` (mm).
+  /// Allows a search to stop at the first place nearer than `distance` (mm).
   void enough(double distance) { enough_ = distance; }
   /// Starts with a minimum of `distance` (mm), at no place.
   void below(double distance) { least_.distance = distance; }
   /// Allows the search to miss places that are lower by less than `by` (mm).
   void loose(double by) { loose_ = by; }
 
-  /// Lower bound over all triangles: the minimum; by up to kLeftOut less if a triangle took kMaxCells, as deep inside a
-  /// tool where three of its surfaces are equally near; less still if the time ran out, or one took kMostCells.
+  /// Lower bound over all triangles: the minimum. Up to kLeftOut less if a triangle took kMaxCells, as happens deep
+  /// inside a tool where three of its surfaces are equally near; still less if the time ran out or a triangle took
+  /// kMostCells.
   double low() const { return std::min(left_, least_.distance); }
   static constexpr std::size_t kMaxCells = 50'000, kMostCells = 20 * kMaxCells;
   static constexpr double kLeftOut = 1e-3;  // mm

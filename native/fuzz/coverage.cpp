@@ -12,7 +12,8 @@ std::array<std::uint8_t, kPlaces> known;  // classes of counts, one bit each
 std::uint64_t found = 0;
 thread_local std::uintptr_t last = 0;
 
-/// 1, 2, 3, 4–7, 8–15, 16–31, 32–127, 128–255: to take a loop once more is news only at first (as AFL has it).
+/// Class of a count, as in AFL: 1, 2, 3, 4–7, 8–15, 16–31, 32–127, 128–255. One more turn of a loop is new only for
+/// small counts.
 std::uint8_t class_of(std::uint8_t count) {
   if (count < 4) return static_cast<std::uint8_t>(1U << (count - 1));
   const int power = std::bit_width(count) - 1;  // 2 to 7

@@ -1,15 +1,16 @@
-// Which branches of the library a run took, where it is compiled with -fsanitize-coverage=trace-pc (the preset fuzz).
+// Branch coverage of a run, if the library is compiled with -fsanitize-coverage=trace-pc (the preset fuzz).
 #pragma once
 
 #include <cstdint>
 
 namespace riffler::fuzz {
 
-/// Forgets what was taken.
+/// Clears the branches taken.
 void begin_coverage();
-/// Whether a branch was taken, or was taken so often, as never before in this process. Always false without coverage.
+/// Whether a branch was taken for the first time in this process, or more often than ever. Always false without
+/// coverage.
 bool is_new_coverage();
-/// How many there were so far.
+/// Number of times that coverage was new.
 std::uint64_t covered();
 
 }  // namespace riffler::fuzz

@@ -1,9 +1,9 @@
-// Fuzzes one reader for a time: riffler_fuzz TARGET --seconds 600 [--seed 1] [--folder native/fuzz] [--found
+// Fuzzes one reader for a given time: riffler_fuzz TARGET --seconds 600 [--seed 1] [--folder native/fuzz] [--found
 // build/fuzz]
 //
-// Begins with the samples that the library writes, the seeds and the inputs that were kept, and mutates what reaches
-// new branches. An input that breaks a reader (a sanitizer's report, an error of another kind, more than 10 s) is
-// written to the folder `found`, and the program ends with 1. `--again FILE` runs one input.
+// Begins with samples written by the library, the seeds and the kept inputs, and mutates inputs that reach new
+// branches. An input that breaks a reader (a sanitizer's report, an error of another kind, more than 10 s) is written
+// to the folder `found`, and the program ends with 1. `--again FILE` runs one input.
 #include <unistd.h>
 
 #include <chrono>
@@ -22,7 +22,7 @@
 #include "fuzz/targets.hpp"
 #include "riffler/base/parallel.hpp"
 
-// Part of the sanitizers' runtime, where there is one.
+// Part of the sanitizers' runtime, if linked.
 extern "C" [[gnu::weak]] void __sanitizer_set_death_callback(void (*callback)());
 
 namespace riffler::fuzz {
@@ -33,9 +33,9 @@ using Clock = std::chrono::steady_clock;
 
 constexpr unsigned kSlowest = 10;            // s of one input
 constexpr std::size_t kMaxBytes = 1 << 16;   // of one input
-constexpr std::size_t kMaxInputs = 1 << 16;  // that are held
+constexpr std::size_t kMaxInputs = 1 << 16;  // kept in memory
 
-/// The input that runs; `save` writes it before the process ends.
+/// The current input; `save` writes it before the process ends.
 Bytes running;
 std::string found_path;
 
@@ -60,7 +60,7 @@ Bytes read(const fs::path& path) {
 
 void run(const Target& target, const Bytes& bytes) {
   running = bytes;
-  running.shrink_to_fit();  // a byte read beyond the end is one that the sanitizer sees
+  running.shrink_to_fit();  // lets the sanitizer detect a read beyond the end
   alarm(kSlowest);
   try {
     target.run(running);
@@ -114,7 +114,7 @@ int fuzz(const Target& target, const Arguments& given) {
   const std::size_t first = inputs.size();
   std::uint64_t runs = 0;
   for (; Clock::now() < end; ++runs) {
-    // Half of the time one of the newest.
+    // Choose one of the newest half of the time.
     const std::size_t n = inputs.size(), recent = std::min<std::size_t>(n, 64);
     Bytes input = inputs[mutator.below(2) == 0 ? n - 1 - mutator.below(recent) : mutator.below(n)];
     mutator.mutate(input, inputs[mutator.below(n)], kMaxBytes);

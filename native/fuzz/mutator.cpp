@@ -135,14 +135,14 @@ void Mutator::change(Bytes& bytes, std::span<const std::uint8_t> other) {
     case 2:
       bytes.erase(begin, begin + static_cast<std::ptrdiff_t>(length));
       break;
-    case 3: {  // a piece again
+    case 3: {  // repeat a piece
       const Bytes piece(begin, begin + static_cast<std::ptrdiff_t>(length));
       const std::size_t times = below(8) == 0 ? 1 + below(64) : 1;
       for (std::size_t k = 0; k < times; ++k)
         bytes.insert(bytes.begin() + static_cast<std::ptrdiff_t>(at), piece.begin(), piece.end());
       break;
     }
-    case 4: {  // a piece of another
+    case 4: {  // insert a piece of another input
       const std::size_t from = below(other.size() + 1), size = std::min(other.size() - from, 1 + below(256));
       insert(other.begin() + static_cast<std::ptrdiff_t>(from),
              other.begin() + static_cast<std::ptrdiff_t>(from + size));
@@ -151,7 +151,7 @@ void Mutator::change(Bytes& bytes, std::span<const std::uint8_t> other) {
     case 5:
       bytes.resize(at);
       break;
-    case 6: {  // a number that is near an end of its range
+    case 6: {  // a number near an end of its range
       static constexpr std::uint64_t kEdges[] = {0,
                                                  1,
                                                  0x7F,
@@ -170,7 +170,7 @@ void Mutator::change(Bytes& bytes, std::span<const std::uint8_t> other) {
       for (std::size_t k = 0; k < size; ++k) bytes[at + k] = static_cast<std::uint8_t>(value >> (8 * k));
       break;
     }
-    case 7:  // another digit: most of these can still be read
+    case 7:  // another digit: most results are still valid
     case 8: {
       for (std::size_t k = at; k < std::min(bytes.size(), at + 64); ++k)
         if (bytes[k] >= '0' && bytes[k] <= '9') {
@@ -183,7 +183,7 @@ void Mutator::change(Bytes& bytes, std::span<const std::uint8_t> other) {
       std::fill(begin, begin + static_cast<std::ptrdiff_t>(length),
                 below(2) == 0 ? std::uint8_t{0} : std::uint8_t{0xFF});
       break;
-    case 10:  // two pieces change places
+    case 10:  // swap two pieces
       if (length > 1)
         std::rotate(begin, begin + static_cast<std::ptrdiff_t>(length / 2),
                     begin + static_cast<std::ptrdiff_t>(length));

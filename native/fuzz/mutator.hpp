@@ -1,4 +1,4 @@
-// Changes to bytes as files break, and as an attacker would make them.
+// Mutates bytes, like damaged files and like an attacker's.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ class Mutator {
  public:
   explicit Mutator(std::uint64_t seed) : random_(seed) {}
 
-  /// One to eight changes, with pieces of `other` and of the words that formats have. At most `most` bytes.
+  /// Makes one to eight changes, with pieces of `other` and words of the formats. Leaves at most `most` bytes.
   void mutate(std::vector<std::uint8_t>& bytes, std::span<const std::uint8_t> other, std::size_t most);
   std::size_t below(std::size_t n) { return n == 0 ? 0 : static_cast<std::size_t>(random_() % n); }
 

@@ -13,8 +13,9 @@ void set(Bytes& bytes, std::size_t at, T value) {
   std::memcpy(bytes.data() + at, &value, sizeof value);
 }
 
-/// .rvol and .rprog: a header with the file's length at 16 and its checksum in its last four bytes, then pieces with
-/// their payload's length somewhere in their head and a checksum of head and payload in its last four bytes.
+/// Repairs .rvol and .rprog files: a header with the file's length at byte 16 and its own checksum in its last four
+/// bytes, then pieces whose head has the payload's length at `length_at` and, in its last four bytes, a checksum of
+/// head and payload.
 void repair_pieces(Bytes& bytes, std::size_t header, std::size_t head, std::size_t length_at) {
   if (bytes.size() < header) return;
   for (std::size_t at = header; at + head <= bytes.size();) {

@@ -1,4 +1,4 @@
-// Lengths and checksums made right after a mutation, so that it reaches the reader behind them.
+// Corrects lengths and checksums after a mutation, so that the mutated bytes reach the reader behind the checks.
 #pragma once
 
 #include <cstdint>
@@ -6,7 +6,7 @@
 
 namespace riffler::fuzz {
 
-// Each leaves bytes alone that are too short for what it looks for.
+// Each leaves bytes unchanged that are too short for the format.
 void repair_volume(std::vector<std::uint8_t>& bytes);
 void repair_program(std::vector<std::uint8_t>& bytes);
 void repair_journal(std::vector<std::uint8_t>& bytes);

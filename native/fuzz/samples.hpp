@@ -1,4 +1,4 @@
-// Small files of every format that the library writes, to begin with.
+// First inputs: small files of every format that the library writes.
 #pragma once
 
 #include <cstdint>

@@ -47,12 +47,13 @@ void check(const nc::Program& p) {
   for (std::size_t row = 0; row < p.size(); ++row) {
     require(geom::finite(p.poses()[row].tip), "a tip that is not finite");
     require(std::abs(glm::length(p.poses()[row].axis) - 1) < 1e-9, "an axis that is not of unit length");
-    require(std::isfinite(p.feed()[row]) && p.feed()[row] >= 0, "a feed that is none");
-    require(std::isfinite(p.spindle()[row]), "a spindle speed that is none");
+    require(std::isfinite(p.feed()[row]) && p.feed()[row] >= 0, "an invalid feed");
+    require(std::isfinite(p.spindle()[row]), "an invalid spindle speed");
   }
 }
 
-/// Coarse chords and few turns: what is asked for in one block, kilometres of arcs, is not what is looked for.
+/// Reads with coarse chords and few turns, because long runs from one block, such as kilometres of arcs, are not
+/// faults.
 void nc(View bytes, const char* machine, bool skips) {
   reading([&] {
     nc::ReadOptions options{machine, {{"chord_tolerance", 0.1}}};
@@ -80,14 +81,16 @@ void program(View bytes) {
   reading([&] {
     const nc::Program read = nc::parse_program(bytes, "fuzz");
     check(read);
-    require(nc::parse_program(to_bytes(read), "fuzz").size() == read.size(), "a program that does not come back");
+    require(nc::parse_program(to_bytes(read), "fuzz").size() == read.size(),
+            "a program that differs after writing and reading");
   });
 }
 
 void volume(View bytes) {
   reading([&] {
     const Volume read = dexel::from_bytes(bytes, "fuzz");
-    require(to_bytes(dexel::from_bytes(to_bytes(read), "fuzz")) == to_bytes(read), "a volume that does not come back");
+    require(to_bytes(dexel::from_bytes(to_bytes(read), "fuzz")) == to_bytes(read),
+            "a volume that differs after writing and reading");
   });
 }
 
@@ -95,7 +98,7 @@ void journal(View bytes) {
   reading([&] {
     const session::Journal read = session::parse_journal(bytes, "fuzz");
     const session::Journal again = session::parse_journal(to_bytes(read), "fuzz");
-    require(again.strokes().size() == read.strokes().size(), "a journal that does not come back");
+    require(again.strokes().size() == read.strokes().size(), "a journal that differs after writing and reading");
   });
 }
 
@@ -105,7 +108,7 @@ void machine(View bytes) {
     try {
       nc::OptionReader options({}, "machine fuzz");
       describe_machine(text_of(bytes), "fuzz", "fuzz", options);
-    } catch (const std::invalid_argument&) {  // an option that has to be given
+    } catch (const std::invalid_argument&) {  // a required option is missing
     }
   });
 }
@@ -127,12 +130,12 @@ void haply(View bytes) {
   if (!pen::read_haply_message(text_of(bytes), message)) return;
   for (const pen::HaplyEntry& entry : message.all()) {
     require(!entry.id.empty() && entry.id.size() <= pen::kLongestHaplyName, "a device without a name");
-    require(!entry.position || glm::length(*entry.position) <= 2, "a position that no arm has");
+    require(!entry.position || glm::length(*entry.position) <= 2, "a position out of any arm's reach");
     require(!entry.velocity || geom::finite(*entry.velocity), "a velocity that is not finite");
   }
 }
 
-/// As a socket gives them: at first a few, then the rest.
+/// Reads frames in two pieces, as from a socket.
 void frames(View bytes) {
   pen::FrameReader reader(1000);
   for (std::size_t at = 0, piece = 7; at < bytes.size(); piece = 400) {
@@ -151,13 +154,13 @@ void frames(View bytes) {
   }
 }
 
-/// Reads a packet: messages name the packet's kind.
+/// Reads a packet, whose kind messages name.
 template <class Read>
 void packet(const Read& read) {
   try {
     read();
   } catch (const FormatError&) {
-  } catch (const std::invalid_argument&) {  // a tool that cannot be
+  } catch (const std::invalid_argument&) {  // an impossible tool
   }
 }
 
@@ -207,7 +210,7 @@ const Target& target(std::string_view name) {
     if (name == t.name) return t;
     known += std::string(known.empty() ? "" : ", ") + t.name;
   }
-  throw std::invalid_argument("there is no target \"" + std::string(name) + "\"; there are " + known);
+  throw std::invalid_argument("unknown target \"" + std::string(name) + "\"; known: " + known);
 }
 
 }  // namespace riffler::fuzz

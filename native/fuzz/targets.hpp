@@ -1,4 +1,4 @@
-// What is fuzzed: every reader of bytes that others make.
+// Targets of fuzzing: every reader of bytes from outside.
 #pragma once
 
 #include <cstdint>
@@ -13,24 +13,24 @@ namespace riffler::fuzz {
 using Bytes = std::vector<std::uint8_t>;
 using View = std::span<const std::uint8_t>;
 
-/// A reader took bytes and made something of them that must not be.
+/// A reader accepted bytes and returned an invalid result.
 class Broken : public std::logic_error {
  public:
   using std::logic_error::logic_error;
 };
 
 struct Target {
-  const char* name;  ///< also of its folders in native/fuzz/seeds and native/fuzz/kept
-  /// Reads. The errors that readers promise are fine; Broken and all others are not.
+  const char* name;  ///< also the name of its folders in native/fuzz/seeds and native/fuzz/kept
+  /// Runs the reader. Errors that readers promise are allowed; Broken and all others are failures.
   void (*run)(View bytes);
-  /// Files that the library itself writes, to begin with; more are in native/fuzz/seeds.
+  /// First inputs, written by the library itself; more are in native/fuzz/seeds.
   std::vector<Bytes> (*made)();
-  /// Makes the lengths and checksums right that a mutation has made wrong, where bytes have them; or null.
+  /// Corrects lengths and checksums after a mutation; null for formats without them.
   void (*repair)(Bytes& bytes);
 };
 
 std::span<const Target> targets();
-/// std::invalid_argument, naming those that there are.
+/// Throws std::invalid_argument listing the known targets.
 const Target& target(std::string_view name);
 
 }  // namespace riffler::fuzz

@@ -101,7 +101,7 @@ void Safety::rest(double dt) {
   if (heals(cause_) && rested_ >= settings_.rest) apply(ForceEvent::Rested);
 }
 
-/// The dead-man switch. Releasing it is no fault, so no rest is required: pressing it again begins the ramp.
+/// The dead-man switch. Releasing it is not a fault, so no rest is required: pressing it again begins the ramp.
 void Safety::let_go(const Observation& now) {
   if (!now.dead_man && lets_force_through(state_)) {
     log_.add({time_, state_, Cause::NoDeadMan, 0});

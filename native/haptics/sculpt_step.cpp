@@ -31,13 +31,13 @@ Twist way_between(const Pose& from, const Pose& to) {
   return {s.translation, s.rotation};
 }
 
-/// Interpolates between two poses of the grip; for opposite axes, the later one.
+/// Interpolates between two poses of the grip; returns the axis of the later one if the axes are opposite.
 Pose between(const Pose& from, const Pose& to, double t) {
   if (t >= 1 || glm::dot(from.axis, to.axis) < -0.99) return {glm::mix(from.tip, to.tip, std::min(t, 1.0)), to.axis};
   return Motion(from, to).at(t);
 }
 
-/// Scaled down to the bounds.
+/// Scales a displacement down to the bounds.
 Twist within(const Twist& way, const Bounds& most) {
   const auto factor = [](double length, double limit) { return length > limit ? limit / length : 1; };
   return std::min(factor(glm::length(way.linear), most.linear), factor(glm::length(way.angular), most.angular)) * way;
@@ -133,8 +133,8 @@ Twist SculptStep::solved(const Balance& balance) const {
   if (f.back == 0 && f.on == 0) return balance.solve(f.turns);
   const std::array<Twist, 3> all{f.turns[0], f.turns[1], f.slide};
   const Twist way = balance.solve(all);
-  // What is left of the displacement without its turns is the slide. A tool that would leave the curve stops at its end
-  // and turns there by what balances with that.
+  // The displacement without its turns is the slide. A tool that would leave the curve stops at its end and turns there
+  // to balance.
   Vec3 rest = way.linear;
   for (const Twist& turn : f.turns) rest -= glm::dot(way.angular, turn.angular) * turn.linear;
   const double slide = glm::dot(rest, f.slide.linear), most = std::clamp(slide, -f.back, f.on);
@@ -182,7 +182,7 @@ Twist SculptStep::balanced(const Part& part) const {
   return way;
 }
 
-/// Queries the obstacles; false if the result misses too much.
+/// Queries the obstacles. False if the query leaves too large a depth unchecked.
 bool SculptStep::look_at_obstacles(const Part& part) {
   if (!obstacles_) {
     contact_.force = contact_.torque = Vec3(0), contact_.stiffness = {};
@@ -192,30 +192,30 @@ bool SculptStep::look_at_obstacles(const Part& part) {
   return contact_.missed_depth_bound <= settings_.missed;
 }
 
-/// Adds the contact with the stock; false if the tool would go too deep into it for a query.
+/// Adds the contact with the stock. False if the tool is too deep in it to be queried.
 bool SculptStep::look_at_stock() {
   const auto overlap = stock_contact_->add(*touched_, asked_, settings_.touch_stiffness, contact_);
   sunk_ = overlap.depth();
-  // From where it is now the tool is judged again: within the material it passes as through air.
+  // The next step without cutting decides again whether the stock is felt; until then the tool passes through it.
   if (!overlap.complete) felt_ = false;
   return overlap.complete;
 }
 
-/// Before a step without cutting. Columns as wide as their cells overhang by an eighth of the pitch, on average, into
-/// the tool that has just cut them.
+/// Prepares a step without cutting: the stock is felt unless the tool is already deep in it. Columns are as wide as
+/// their cells, so they overhang into the tool that has just cut them, by an eighth of the pitch on average.
 void SculptStep::begin_touch() {
   if (felt_) return;
   const auto overlap = stock_contact_->add(*touched_, tool_, 0, contact_);
   felt_ = overlap.complete && overlap.depth() <= 0.3 * touched_->frame().pitch;
 }
 
-/// Before a step that cuts: what was touched is air.
+/// Prepares a step that cuts: the stock is not felt.
 void SculptStep::end_touch() {
   if (sunk_ > 0) touching_ = false, slowing_ = {};
   felt_ = false, sunk_ = 0;
 }
 
-/// Queries the contact at the end of that displacement; false if the result misses too much.
+/// Queries the contact at the end of a displacement. False if the query leaves too large a depth unchecked.
 bool SculptStep::look(const Twist& way, const Part& part, Result& result) {
   asked_ = reached(way);
   const bool known = look_at_obstacles(part), out = !part.touches || look_at_stock();
@@ -241,8 +241,9 @@ Twist SculptStep::advance(const Part& part, Result& result) {
     }
     const Twist before = way;
     if (touching_) {
-      // Bounded by the same distance again from the queried pose, plus the depth found there. On a guide a light touch
-      // may leave the tool free to go far: no further than it can leave without a query, when none is left.
+      // Bound the motion from the queried pose by the same distance again plus the depth found there. On a guide a
+      // light touch may leave the tool free to move far; without another query it moves no farther than that free
+      // distance.
       const double depth = contact_.depth + sunk_;
       Bounds most{part.most.linear + depth, part.most.angular + depth / assembly_.max_radius()};
       if (guide_ && k + 1 == settings_.queries) {
@@ -252,7 +253,7 @@ Twist SculptStep::advance(const Part& part, Result& result) {
       way = before + within(balanced(part) - before, most);
     }
     const double change = size(way - before);
-    // A distance changes by at most the displacement of the tool's points.
+    // Distances change by at most the displacement of the tool's points.
     if (obstacles_) bound_ = contact_.depth + contact_.missed_depth_bound + change;
     if (change <= settings_.settled) break;
   }
@@ -260,7 +261,7 @@ Twist SculptStep::advance(const Part& part, Result& result) {
 }
 
 void SculptStep::cut(const Pose& to, const Twist& way, double dt, Result& result) {
-  // Also reset for a tool at rest: otherwise, if a slow cut had left no time for queries, it would be held for ever.
+  // Also reset for a tool at rest: otherwise, after a slow cut that left no time for queries, it would stay held.
   cut_seconds_ = 0;
   // A tool at rest has already cut there; a journal replays only poses that differ.
   if (!stock_ || (to.tip == tool_.tip && to.axis == tool_.axis)) return;

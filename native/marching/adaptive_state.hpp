@@ -1,4 +1,4 @@
-// Keeps the triangles that a tolerance leaves up to date while the full mesh changes.
+// Keeps a mesh that is simplified within a tolerance up to date while the full mesh changes.
 #pragma once
 
 #include <map>
@@ -9,22 +9,24 @@
 
 namespace riffler::marching {
 
-/// The triangles left of each brick. Each group's result depends only on its input, a digest of which is kept with it,
-/// so a group whose input is the same as before keeps its result.
+/// The remaining triangles of each brick. A group's result depends only on its input. The result keeps a digest of that
+/// input, so a group whose input has not changed keeps its result.
 ///
-/// A merge sees only the triangles around its group, so across the border of two groups triangles may fold. Their
-/// vertices are fixed then, and the groups that this concerns are simplified again: what is left is a mesh of its own,
-/// the next layer. In the end no triangle folds that did not in the full mesh: one whose vertices are all fixed has
-/// never changed. A layer shares the results that it has in common with the one before.
+/// A merge sees only the triangles around its group, so triangles may fold across the border of two groups. Then the
+/// vertices of folded triangles are fixed and the groups concerned are simplified again; the resulting mesh is the next
+/// layer. In the last layer no triangle folds that did not fold in the full mesh, because a triangle with three fixed
+/// vertices never changes. A layer shares unchanged results with the layer before it.
 class AdaptiveState {
  public:
-  /// `tolerance`: mm, > 0. No point of the triangles left is farther than this from the full mesh, and the reverse.
-  /// The surface must outlive it. `follows`: updates will come; without them digests and earlier layers are not kept.
+  /// `tolerance`: mm, > 0: the largest distance between the remaining triangles and the full mesh, in both directions.
+  /// The surface must outlive this object. `follows`: update() will be called; false: keeps no digests and no earlier
+  /// layers.
   AdaptiveState(const Surface& surface, double tolerance, bool follows);
 
   /// Simplifies the whole mesh again.
   void build(const std::vector<std::size_t>& all, const Progress& progress);
-  /// Follows a change of the full mesh in these bricks. Returns the bricks whose triangles left differ now, ascending.
+  /// Follows a change of the full mesh in these bricks. Returns the bricks whose remaining triangles changed,
+  /// ascending.
   std::vector<std::size_t> update(const std::vector<std::size_t>& changed);
 
   /// mm.
@@ -43,11 +45,11 @@ class AdaptiveState {
   using Result = std::shared_ptr<const GroupResult>;
   using FixedVertices = std::map<std::size_t, std::vector<std::size_t>>;  // by brick, ascending
   struct Layer {
-    std::vector<std::array<Result, 7>> results;  // by brick and group; null if there is nothing to do
+    std::vector<std::array<Result, 7>> results;  // by brick and group; null for a group without triangles
     FixedVertices fixed;
     std::map<std::size_t, std::vector<VertexName>> folds;  // of each brick: the corners of its folded triangles
   };
-  /// The border triangles of a brick in the course of the turns.
+  /// The border triangles of a brick before a turn.
   struct BorderState {
     std::size_t turn = 0;
     std::vector<BorderFace> faces;

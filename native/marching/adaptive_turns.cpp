@@ -23,7 +23,7 @@ AdaptiveState::Turns::Turns(const AdaptiveState& state, std::size_t layer, const
   for (const std::size_t n : owners) touch(n, kOwner);
 }
 
-/// Marks a brick; a group may be concerned if it has a vertex or a triangle in it.
+/// Marks a brick. Makes candidates of the bricks whose groups may have a vertex or a triangle in it.
 void AdaptiveState::Turns::touch(std::size_t brick, std::uint8_t mark) {
   if ((marks_[brick] & mark) == mark) return;
   marks_[brick] |= mark;
@@ -81,7 +81,7 @@ bool AdaptiveState::Turns::is_due(const Vec3i& at, int group, const GroupResult*
   return false;
 }
 
-/// The active bricks whose group has to be looked at; forgets the results of bricks that are not active any more.
+/// The active bricks whose group must be simplified again. Drops the results of bricks that are no longer active.
 std::vector<std::size_t> AdaptiveState::Turns::due(Layer& layer, int group) {
   std::vector<std::size_t> out;
   for (std::size_t c = 0; c < candidates_.size(); ++c) {  // `keep` may add some
@@ -98,7 +98,7 @@ std::vector<std::size_t> AdaptiveState::Turns::due(Layer& layer, int group) {
   return out;
 }
 
-/// Marks what the change of a result touches.
+/// Marks the bricks that a changed result touches.
 void AdaptiveState::Turns::keep(std::size_t brick, int group, const Result& old, const Result& now) {
   if (old == now) return;
   if (group == 0) {
@@ -163,7 +163,7 @@ void AdaptiveState::Turns::advance(const Layer& layer, std::size_t brick, std::s
   }
 }
 
-/// The result of a group: an earlier one if its input is the same. Null without triangles.
+/// The result of a group: the earlier one if its input has not changed, null if it has no triangles.
 AdaptiveState::Result AdaptiveState::Turns::result(const Layer& layer, std::size_t brick, int group, GroupInput& input,
                                                    StarCollapser& collapser) const {
   const Vec3i at = bricks_.place(brick);

@@ -30,7 +30,7 @@ void check_tolerance(double tolerance) {
                                 " mm; 0 keeps all triangles");
 }
 
-/// Whether a tolerance is coarser than the places that vertices may take.
+/// Whether a tolerance is at least one step of the lattice on which vertices lie.
 bool is_usable(double tolerance, const MeshState& state) {
   return tolerance >= state.lattice.step();
 }

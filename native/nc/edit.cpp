@@ -109,7 +109,7 @@ Program renumber_tools(const Program& program, const std::map<int, int>& numbers
   };
   for (const auto& [from, to] : numbers)
     if (to < 1 || to > kMaxNumber)
-      throw std::invalid_argument("tool " + std::to_string(from) + ": " + std::to_string(to) + " is no tool number");
+      throw std::invalid_argument("tool " + std::to_string(from) + ": " + std::to_string(to) + " is not a tool number");
   std::map<int, Tool> tools;
   for (const auto& [number, tool] : program.tools) add_tool(tools, renamed(number), tool);
   Program out = copied(program, [&](Move& move) { move.tool = renamed(move.tool); });

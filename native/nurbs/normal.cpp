@@ -6,9 +6,9 @@ namespace riffler::nurbs {
 
 namespace {
 
-/// Sine of an angle that is rounding only.
+/// Sine of an angle below which two directions count as parallel.
 constexpr double kParallel = 1e-9;
-/// Rounding of a derivative, relative to the coordinates that it is made of, with four figures left to be right.
+/// A derivative shorter than this, relative to the coordinates it is computed from, has fewer than four correct digits.
 constexpr double kNoise = 1e-11;
 
 /// Makes n a unit vector, unless its length is 0 compared with `size`.
@@ -35,13 +35,13 @@ Vec3 normal_of(const Vec4* net, const Degrees& degrees, const Vec2& at) {
   const bool pole_v = sv <= kNoise * size * (degrees.v + std::abs(h.v.w) / h.s.w);
   Vec3 n = glm::cross(jet.u, jet.v);
   if (!pole_u && !pole_v && unit(n, su * sv)) return n;
-  // The first term of its series towards the middle of the net.
+  // Where the product vanishes, take its derivative towards the middle of the net.
   const Vec2 way = Vec2(0.5) - at;
   n = way.x * (glm::cross(jet.uu, jet.v) + glm::cross(jet.u, jet.uv)) +
       way.y * (glm::cross(jet.uv, jet.v) + glm::cross(jet.u, jet.vv));
   const double second = glm::length(jet.uu) + glm::length(jet.uv) + glm::length(jet.vv);
   if (pole_u != pole_v && unit(n, (su + sv) * second)) return n;
-  // A pole of a higher order, or next to one: the normal a little inside.
+  // At a pole of a higher order, or close to one, take the normal a little inside.
   for (const double share : {0.0, 1e-6, 1e-4, 1e-2, 0.1, 0.5, 1.0}) {
     const Jet3 inside = rational(jet_of(net, degrees, at + share * way));
     n = glm::cross(inside.u, inside.v);

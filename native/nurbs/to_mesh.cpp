@@ -21,7 +21,7 @@ namespace {
 constexpr std::size_t kMaxTriangles = 50'000'000;
 constexpr double kWeld = 1e-12;  // of the largest coordinate
 
-/// Along one line of a span: ascending places of vertices, and their numbers.
+/// The vertices on one line of a span: their places along it, ascending, and their numbers.
 using Line = std::vector<std::pair<std::int64_t, int>>;
 
 struct PlaceHash {
@@ -55,7 +55,7 @@ struct SpanVertices {
   }
 };
 
-/// A place on a span's side, from one along it.
+/// The place at `along` on a side of a span.
 Place on_side(int side, std::int64_t along) {
   switch (side) {
     case 0:
@@ -94,7 +94,7 @@ class Tessellation {
     throw std::invalid_argument("tolerance: the mesh would have more than 50 million triangles; give a larger one");
   }
 
-  /// A closed ring needs three parts, a span between two poles two.
+  /// Divides spans into cells. A closed ring needs at least three, a span between two poles two.
   void plan(const Progress& progress) {
     base::parallel_for(
         core_.spans.size(), 1,
@@ -174,7 +174,7 @@ class Tessellation {
     }
     for (int side = 0; side < 4; ++side) add_side(s, side);
     lines.sort();
-    // Triangles look at vertices of this span and of its edges only: other threads write others.
+    // Reads vertices of this span and its edges only, because other threads are writing those of other spans.
     std::vector<CornerOfCell> polygon;
     for (const MeshCell& cell : cells_[s]) {
       border(lines, cell, polygon);
@@ -183,7 +183,7 @@ class Tessellation {
     lines = SpanVertices(std::vector<MeshCell>());
   }
 
-  /// The vertices of a side; all of a pole's places are one.
+  /// Adds the vertices of a side; all places on a pole are one vertex.
   void add_side(std::size_t s, int side) {
     const EdgeUse use = edges_.of_span[s][static_cast<std::size_t>(side)];
     const SharedEdge& e = edge(use);
@@ -232,8 +232,9 @@ Mesh Surface::to_mesh(double tolerance, const Progress& progress) const {
   if (!(tolerance >= base::kMinToleranceOfSize * core_->scale))
     throw std::invalid_argument("tolerance must be at least 1e-10 of the largest coordinate, " +
                                 base::in_figures(base::kMinToleranceOfSize * core_->scale) + " mm, not " +
-                                base::in_figures(tolerance) + "; move the surface nearer to the origin, or give more");
-  // Rounding of coordinates, and curves that are the same to kWeld, take a twentieth at most.
+                                base::in_figures(tolerance) +
+                                "; move the surface nearer to the origin, or give a larger tolerance");
+  // Rounding, and edges that are joined within kWeld, use up a twentieth of the tolerance at most.
   return Tessellation(*core_, tolerance - 4 * kWeld * core_->scale).run(progress);
 }
 

@@ -98,7 +98,7 @@ bool DriverLoop::drain() noexcept {
     counts.lost += taken.lost;
     counts.old += taken.old;
     counts.malformed += taken.malformed;
-    // Invalid data is no sign of life: a device that sends nothing else counts as gone.
+    // Invalid data is not a sign of life: a device that sends nothing else counts as gone.
     if (taken.reports > 0) heard_ = now;
   }
   counts.reports += reports;

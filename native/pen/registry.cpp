@@ -198,7 +198,7 @@ std::unique_ptr<Pen> open_path(std::string_view path, const PenOptions& options)
     const HidFamily* const family = hid_family_of(info);
     if (family == nullptr)
       throw OpenError(OpenProblem::UnknownDevice,
-                      info.path + ": " + info.name + " (" + info.id() + ") is no device that Riffler knows");
+                      info.path + ": " + info.name + " (" + info.id() + ") is not a device that Riffler knows");
     if (!family->opened_by_search)
       throw OpenError(OpenProblem::UnknownDevice,
                       info.path + ": " + info.id() +
@@ -239,8 +239,8 @@ FoundDevice find_hid(const HidInfo& info) {
   return found;
 }
 
-/// An interface without the reports is no broken device if another one of the same device has them: it is then as any
-/// other HID device, of no family.
+/// An interface without the reports is not a broken device if another one of the same device has them: it is then as
+/// any other HID device, of no family.
 void leave_other_interfaces(std::vector<FoundDevice>& all) {
   const auto has_reports = [&](const FoundDevice& wrong) {
     return std::any_of(all.begin(), all.end(), [&](const FoundDevice& f) {

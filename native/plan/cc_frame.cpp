@@ -30,7 +30,7 @@ Vec3 coordinate_axis_far_from(const Vec3& n) {
   return out;
 }
 
-/// From the contact to the ball's centre; the part's normal if the two coincide.
+/// Direction from the contact to the ball's centre; the part's normal if the two coincide.
 Vec3 direction(const PencilPath& path, std::size_t k, int side) {
   const Vec3 way = path.centres[k] - path.contacts[k][side];
   const double length = glm::length(way);

@@ -349,7 +349,7 @@ double tip_ball_radius(const Tool& tool, std::string_view name) {
   if (radius > 0) return radius;
   throw std::invalid_argument(std::string(name) + ": pencil cuts are the paths of a ball, and the tip of a \"" +
                               tool.kind() +
-                              "\" cutter is no ball: take a ball end, a taper with a ball tip, or a profile that "
+                              "\" cutter is not a ball: take a ball end, a taper with a ball tip, or a profile that "
                               "begins with an arc about the axis");
 }
 

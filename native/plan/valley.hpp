@@ -13,8 +13,8 @@ namespace riffler::plan {
 struct ValleyRules {
   double tolerance;    ///< mm, of the polyline
   double jump;         ///< rad: sides that differ by less are facets of one side
-  double least_angle;  ///< rad between the directions to the two sides; less is no valley
-  double least_gap;    ///< mm between the ball and the valley's bottom; less is no valley; 0: any gap
+  double least_angle;  ///< rad, smallest angle of a valley between the directions to its two sides
+  double least_gap;    ///< mm, smallest gap of a valley between the ball and its bottom; 0: any gap
 };
 
 /// Why a valley ends.
@@ -37,12 +37,13 @@ class ValleyTracer {
  public:
   ValleyTracer(const RollingBall& ball, const ValleyRules& rules) : ball_(ball), rules_(rules) {}
 
-  /// The result of a start.
+  /// Result of start().
   enum class Found { Valley, NoSeat, TooFlat, NoFace };
-  /// From a place that the ball cannot reach to a seat: takes the ball of any size that touches there and at a second
-  /// place, and grows it to full size.
+  /// Finds a seat of the ball from a place that the ball cannot reach: takes a smaller ball that touches there and at a
+  /// second place, and grows it to full size.
   Found start(const Unreached& from, Station& station) const;
-  /// From a corner, along the edge of its free cone that sides `a` and `b` form; empty if that is no valley.
+  /// The first station from a corner along the edge of its free cone that sides `a` and `b` form; empty if that edge is
+  /// no valley.
   std::optional<Station> leave(const Vec3& corner, const Foot& a, const Foot& b, const Vec3& way) const;
 
   /// Traces in both directions from `seed`. `steps` counts the balls placed.
@@ -66,12 +67,12 @@ class ValleyTracer {
   ValleyRules rules_;
 };
 
-/// The valley of a larger ball with `ball` laid into it: within the plane across, as deep as it goes. Stations where it
-/// has no face to rest on are left out.
+/// Lays `ball` into the valley of a larger ball: at each station as deep as it goes in the plane across the valley.
+/// Leaves out stations where the ball has no face to rest on.
 Valley laid_into(const Valley& valley, const RollingBall& ball);
 
-/// Drops stations on straight lines between others, within `tolerance` / 4 for centres and `tolerance` for contacts
-/// (mm).
+/// Drops stations that lie on straight lines between others, to within `tolerance` / 4 (mm) for centres and `tolerance`
+/// for contacts.
 void simplify(Valley& valley, double tolerance);
 
 }  // namespace riffler::plan

@@ -13,7 +13,7 @@ AssemblyDistance::AssemblyDistance(const Tool& tool) {
   Vec2 from{0, 0};
   for (const tool::ProfileSegment& s : tool.profile().segments()) {
     Edge e{from, s.to, s.centre};
-    // Heights rise along an arc of a profile, so it is wholly on one side of its centre.
+    // Heights rise along an arc of a profile, so the arc is entirely on one side of its centre.
     if (s.centre)
       e.radius = glm::length(from - *s.centre), e.side = 0.5 * (from.x + s.to.x) >= s.centre->x ? 1.0 : -1.0;
     cutter.edges.push_back(e);
@@ -44,7 +44,7 @@ AssemblyDistance::AssemblyDistance(const Tool& tool) {
         for (const Edge& f : solids_[b].edges) add_crossings(e, f);
 }
 
-/// Heights never fall along a solid's outline, so it is all that is nearer to the axis at its height.
+/// Heights never fall along a solid's outline, so a point is inside if it is nearer to the axis than the outline.
 bool AssemblyDistance::inside(const Solid& solid, double rho, double z) {
   for (const Edge& e : solid.edges) {
     if (!(e.from.y < e.to.y) || z < e.from.y || z > e.to.y) continue;
@@ -76,8 +76,8 @@ void AssemblyDistance::add_if_on_surface(const Vec2& q) {
   if (on_surface(q)) corners_.push_back(q);
 }
 
-/// Where two edges cross. A line against a line by Cramer's rule; against an arc by the quadratic of its circle; only
-/// the cutter has arcs, so two of them never meet here.
+/// Adds the crossings of two edges: of two lines by Cramer's rule, of a line and an arc from the quadratic equation of
+/// the circle. Only the cutter has arcs, so two arcs never meet here.
 void AssemblyDistance::add_crossings(const Edge& a, const Edge& b) {
   const Edge &line = a.centre ? b : a, &other = a.centre ? a : b;
   const Vec2 way = line.to - line.from;
@@ -109,9 +109,9 @@ std::optional<Vec2> AssemblyDistance::foot(const Edge& e, const Vec2& p) {
   }
   const Vec2 d = p - *e.centre;
   const double length = glm::length(d);
-  if (length == 0) return e.from;  // all of the arc is as near
+  if (length == 0) return e.from;  // p is the centre: the whole arc is equally near
   const Vec2 at = *e.centre + d * (e.radius / length);
-  // By the angle: at a ball's tip heights on the circle are equal to rounding while distances along it are not.
+  // Compare angles: near a ball's tip, points of the circle that are apart have the same height up to rounding.
   const auto turn = [&](const Vec2& from, const Vec2& to) {
     return e.side * std::atan2(from.x * to.y - from.y * to.x, glm::dot(from, to));
   };
@@ -145,7 +145,7 @@ double AssemblyDistance::operator()(const Vec3& p, const Pose& pose) const {
   return distance(glm::length(d - z * pose.axis), z);
 }
 
-/// Every corner turns left, as do arcs that bulge.
+/// Whether every corner turns left, as convex arcs do.
 bool AssemblyDistance::convex(const std::vector<Edge>& edges) {
   const auto way = [](const Edge& e, const Vec2& at) {
     return e.centre ? Vec2(e.centre->y - at.y, at.x - e.centre->x) : e.to - e.from;
@@ -180,10 +180,11 @@ bool AssemblyDistance::beyond(const Vec3& p, double radius, const Pose& pose) co
   });
 }
 
-/// Let the nearest edge, of a convex solid, be on the union's surface as far around the foot of p as the feet of all
-/// points within `radius` can be, and no other solid be so near. Then the points in the tool are in that solid, and no
-/// deeper in it than below the edge carried on; and the signed distance to that, a cone, a ball or the outside of a
-/// ring, is convex, so it is nowhere below its tangent plane at p. The least of that is at a corner of the triangle.
+/// The bound exists if the edge nearest to p belongs to a convex solid, is on the union's surface around the foot of p
+/// as far as the feet of all points within `radius` can be, and no other solid is that near. Then all points of the
+/// triangle that are in the tool are in that solid, and no deeper than below the extended edge. The signed distance
+/// from the extended edge (a cone, a ball or the outside of a ring) is convex, so it is nowhere below its tangent plane
+/// at p, whose minimum over the triangle is at a corner.
 std::optional<double> AssemblyDistance::tangent_bound(const Corners& triangle, const Vec3& p, double radius,
                                                       const Pose& pose) const {
   const Vec3 d = p - pose.tip;
@@ -192,7 +193,7 @@ std::optional<double> AssemblyDistance::tangent_bound(const Corners& triangle, c
   const Vec2 at{glm::length(out), z};
   const Nearest near = nearest(at.x, at.y);
   if (!near.edge || !near.solid->convex) return {};
-  double shift = radius, height;  // height: over the edge
+  double shift = radius, height;  // height: above the edge
   Vec2 normal;
   if (const Edge& e = *near.edge; e.centre) {
     const Vec2 from = at - *e.centre;

@@ -13,7 +13,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-/// The nearest foot on the edges seen so far.
+/// The nearest foot on the edges examined so far.
 class CutterDistance::Search {
  public:
   Search(const Vec2& p, bool inside, double scale) : p_(p), inside_(inside), scale_(scale) {}
@@ -34,7 +34,8 @@ class CutterDistance::Search {
     return true;
   }
 
-  /// Heights rise along the arc and it stays on one side of its centre: nearest at the same angle if in range.
+  /// Heights rise along the arc and it stays on one side of its centre, so its nearest point is at the same angle, if
+  /// that is in the arc's range.
   bool add_arc(const Edge& e) {
     const Arc& arc = *e.arc;
     const Vec2 d = p_ - arc.centre;
@@ -90,7 +91,7 @@ CutterDistance::CutterDistance(const tool::Profile& profile)
     if (e.to.y > e.from.y) add_slices(e);
 }
 
-/// One slice, or several under a hollow arc: the shorter the arc, the nearer is the slice to its hull.
+/// Adds one slice, or several under a hollow arc: the shorter the arc, the closer the slice is to its hull.
 void CutterDistance::add_slices(const Edge& e) {
   const int parts = e.arc && e.arc->side < 0 ? 8 : 1;
   Vec2 from = e.from;
@@ -106,7 +107,7 @@ void CutterDistance::add_slices(const Edge& e) {
   }
 }
 
-/// Whether the outline never turns back between its two ends on the axis.
+/// Whether the outline turns only one way between its two ends on the axis.
 bool CutterDistance::convex(const std::vector<Edge>& edges) {
   double heading = 0;
   const auto turns_on = [&](const Vec2& way) {
@@ -146,7 +147,7 @@ Nearest CutterDistance::with_free_radius(double rho, double z, Nearest at) const
   if (!at.normal) return at;
   at.free_radius = convex_ ? kInfinity : 0;
   const Vec2 foot = Vec2(rho, z) - at.distance * *at.normal;
-  // The ball about the point itself, up to the foot, is free; one hardly larger would be of no use.
+  // The ball about the point itself, up to the foot, is free; a hardly larger one would not help.
   const double least = std::max({1.05 * at.distance, -0.25 * at.distance, 1e-3 * reach_});
   for (double radius = 8 * reach_; at.free_radius == 0 && radius > least; radius *= 0.6) {
     const Vec2 centre = foot + radius * *at.normal;
@@ -179,9 +180,9 @@ double CutterDistance::beside_hollow(const Edge& e, const Vec2& foot, const Vec2
     for (const double side : {1.0, -1.0})
       behind = std::min(behind, glm::dot(foot - Vec2(side * corner.x, corner.y), normal));
   if (behind > -1e-12 * reach_) return kInfinity;
-  // The slice lies outside of the arc's circle, and behind its flat end and, if the corner is its widest, within the
-  // cylinder there. Where normal = share · arc's + rest · either of theirs, any ball that touches with that share of
-  // the circle's curvature is free.
+  // The slice is outside the arc's circle, behind its flat end and, if the corner is its widest point, within the
+  // cylinder there. If normal = share · (normal of the arc) + rest · (normal of flat end or cylinder), every touching
+  // ball with `share` times the circle's curvature is free.
   const bool upper = glm::length(foot - e.to) < glm::length(foot - e.from);
   const Vec2 corner = upper ? e.to : e.from, to_centre = (e.arc->centre - corner) / e.arc->radius;
   const auto radius_with = [&](const Vec2& other) {

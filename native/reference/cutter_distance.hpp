@@ -1,4 +1,4 @@
-// Signed distance to a cutter at rest, from its profile alone: what the independent reference for carving stands on.
+// Signed distance to a cutter at rest, from its profile alone: the base of the independent reference for carving.
 #pragma once
 
 #include <array>
@@ -9,12 +9,12 @@
 
 namespace riffler::reference {
 
-/// Where the cutter's surface is nearest to a point of the (radius, height) half-plane.
+/// The point of the cutter's surface nearest to a point of the (radius, height) half-plane.
 struct Nearest {
   double distance;             ///< mm, negative inside
-  std::optional<Vec2> normal;  ///< gradient of the distance; nothing where rounding hides it (on an edge, a corner)
-  /// Radius of a ball that touches the cutter there from outside and does not enter it, or 0 where none was looked for
-  /// or found: the distance bends downwards no more than the distance from outside that ball. Infinity: a half-space.
+  std::optional<Vec2> normal;  ///< gradient of the distance; no value where rounding hides it (on an edge, a corner)
+  /// Radius of a ball that touches the cutter there from outside and does not enter it; infinity: a half-space; 0: none
+  /// searched or found. The distance bends downwards no more than the distance from the outside of that ball.
   double free_radius = 0;
 };
 
@@ -22,16 +22,16 @@ class CutterDistance {
  public:
   explicit CutterDistance(const tool::Profile& profile);
 
-  /// rho ≥ 0; without a free radius.
+  /// The nearest point to (rho, z), rho ≥ 0, without a free radius.
   Nearest nearest(double rho, double z) const;
   double distance(double rho, double z) const { return nearest(rho, z).distance; }
-  /// `at`, which is nearest(rho, z), with a free radius.
+  /// Adds the free radius to `at`, the result of nearest(rho, z).
   Nearest with_free_radius(double rho, double z, Nearest at) const;
 
-  /// What is between the heights of one step of the profile. Outside of the cutter its distance is the least of those
-  /// of its slices. A convex cutter is not sliced.
+  /// Number of slices; a slice is the part of the cutter between the heights of one step of the profile. Outside the
+  /// cutter, its distance is the smallest of its slices' distances. A convex cutter is not sliced.
   std::size_t slices() const { return slices_.size(); }
-  /// As if the cutter were slice k alone, for a point outside of it; with a free radius.
+  /// The nearest point of slice k alone, with a free radius, for a point outside the slice.
   Nearest nearest_in_slice(std::size_t k, double rho, double z) const;
 
   /// Largest distance of the cutter from its tip, mm.
@@ -46,7 +46,7 @@ class CutterDistance {
     Vec2 from, to;
     std::optional<Arc> arc;
     double length;     // of the chord
-    Vec2 way, normal;  // of the chord; the normal looks out of the cutter
+    Vec2 way, normal;  // of the chord; the normal points out of the cutter
   };
   class Search;
 

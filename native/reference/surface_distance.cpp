@@ -13,7 +13,7 @@ Vec3 middle(const Corners& t) {
   return (t[0] + t[1] + t[2]) / 3.0;
 }
 
-/// How far any point of the triangle is from its middle at most.
+/// Largest distance of the triangle's points from its middle.
 double radius(const Corners& t) {
   const Vec3 m = middle(t);
   return std::max({glm::length(t[0] - m), glm::length(t[1] - m), glm::length(t[2] - m)});
@@ -23,18 +23,18 @@ struct Cell {
   double lower;
   Corners corners;
   std::size_t triangle;
-  bool operator<(const Cell& o) const { return lower > o.lower; }  // the least is looked at first
+  bool operator<(const Cell& o) const { return lower > o.lower; }  // examine the smallest first
 };
 
-/// Nearest point of the triangle's plane region in barycentric coordinates that are not negative.
+/// The point of the triangle's plane at barycentric coordinates u and v.
 Vec3 at(const Corners& t, double u, double v) {
   return t[0] + u * (t[1] - t[0]) + v * (t[2] - t[0]);
 }
 
-/// Compass search in the triangle from `start`, halving its step: any value that it finds is attained.
+/// Compass search in the triangle with halving steps. All values that it finds are attained.
 double polished(const Corners& t, const AssemblyDistance& tool, const Pose& pose, double step, Vec3& point,
                 double value) {
-  // Barycentric coordinates of the start, by the normal equations.
+  // Barycentric coordinates of the start, from the normal equations.
   const Vec3 a = t[1] - t[0], b = t[2] - t[0], d = point - t[0];
   const double aa = glm::dot(a, a), ab = glm::dot(a, b), bb = glm::dot(b, b), det = aa * bb - ab * ab;
   if (!(det > 1e-14 * aa * bb)) return value;
@@ -64,7 +64,7 @@ SpreadPoints spread_points(std::span<const Corners> triangles, std::size_t count
     const double share = total > 0 ? area(t) / total * static_cast<double>(count) : 0;
     const int n = std::max(1, static_cast<int>(std::ceil(std::sqrt(share))));
     out.spacing = std::max(out.spacing, radius(t) / n);
-    // n² small triangles like the whole one: those upright, and those between them, which are turned about.
+    // n² small triangles similar to the whole one: upright ones, and inverted ones between them.
     const auto corner = [&](int i, int j) { return at(t, static_cast<double>(i) / n, static_cast<double>(j) / n); };
     for (int i = 0; i < n; ++i)
       for (int j = 0; i + j < n; ++j) {
@@ -108,7 +108,7 @@ SurfaceBracket least_distance(std::span<const Corners> triangles, const Assembly
     const Vec3 ab = 0.5 * (a + b), bc = 0.5 * (b + c), ca = 0.5 * (c + a);
     add({a, ab, ca}, cell.triangle), add({ab, b, bc}, cell.triangle), add({ca, bc, c}, cell.triangle);
     add({bc, ca, ab}, cell.triangle);
-    // Where the best came down by much, go to the bottom there: what lies above it need not be cut any further.
+    // After a large improvement, refine to the local minimum, so that cells above it need not be divided.
     if (out.upper < polished_at - gap)
       polished_at = out.upper = polished(triangles[best], tool, pose, radius(cell.corners), out.point, out.upper);
   }

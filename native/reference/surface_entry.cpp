@@ -12,10 +12,10 @@ namespace {
 struct DepthCell {
   double bound;  // of its depth
   Corners corners;
-  bool operator<(const DepthCell& o) const { return bound < o.bound; }  // the deepest is looked at first
+  bool operator<(const DepthCell& o) const { return bound < o.bound; }  // examine the deepest first
 };
 
-/// A point of the triangle from which all of it is near, and how near.
+/// Centre and radius of a ball around the triangle; the centre is on the triangle.
 struct Round {
   Vec3 middle;
   double radius;
@@ -40,14 +40,14 @@ class Search {
     if (bound > out_.attained + gap_) cells_.push({bound, t});
   }
   Entry run(std::size_t most) {
-    most += looked_;  // in addition to the first look at every triangle
+    most += looked_;  // in addition to the first examination of every triangle
     while (!cells_.empty() && cells_.top().bound > out_.attained + gap_ && looked_ < most) {
       const auto [a, b, c] = cells_.top().corners;
       cells_.pop();
       const Vec3 ab = 0.5 * (a + b), bc = 0.5 * (b + c), ca = 0.5 * (c + a);
       for (const Corners& t : {Corners{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {bc, ca, ab}}) add(t, Round(t));
     }
-    // What was left out at any time was no deeper than what was attained then, and the gap.
+    // A part left out at any time is no deeper than the depth attained then plus the gap.
     out_.bound = out_.attained + gap_;
     if (!cells_.empty()) out_.bound = std::max(out_.bound, cells_.top().bound);
     return out_;

@@ -1,4 +1,4 @@
-// How deep a surface of triangles enters a tool that stands at one pose after another: what paths are judged by.
+// Depth to which a triangle surface enters a tool at each of several poses: the reference for paths.
 #pragma once
 
 #include <span>
@@ -8,15 +8,15 @@
 
 namespace riffler::reference {
 
-/// Where the surface stays out, `attained` is 0 and `bound` the gap.
+/// Depth at one pose. If the surface stays outside the tool, `attained` is 0 and `bound` is the gap.
 struct Entry {
   double attained = 0;  ///< mm, at `point`
-  double bound = 0;     ///< nothing is deeper, mm
+  double bound = 0;     ///< upper bound on the depth, mm
   Vec3 point{0};
 };
 
-/// One for each pose, by branch and bound over every triangle until the two are at most `gap` apart, or `most`
-/// parts of them have been looked at for it: then the bound is what is proven so far. Parallel over poses.
+/// Computes one entry for each pose by branch and bound over every triangle, until `attained` and `bound` are at most
+/// `gap` apart. After `most` parts of triangles, returns the bound proven so far. Parallel over poses.
 std::vector<Entry> entries(std::span<const Corners> triangles, const AssemblyDistance& tool,
                            std::span<const Pose> poses, double gap, std::size_t most = 1'000'000);
 

@@ -8,14 +8,14 @@
 
 namespace riffler::reference {
 
-/// How the point moves in the tool's frame over an interval of half-width `half`.
+/// The point's motion in the tool's frame over an interval of half-width `half`.
 struct SweptDistance::Approach {
   Vec3 velocity, radial, axis;  // at its middle; radial: unit vector from the axis to the point
   double half, speed, acceleration;
 
-  /// The least that the distance can be, from its value in the middle alone.
+  /// Lower bound of the distance from its value in the middle alone.
   double by_speed(double distance) const { return distance - speed * half; }
-  /// The same from its slope, and from the free ball; never better than its tangent.
+  /// Lower bound from the slope and the free ball; never better than the tangent.
   double by_slope(const Nearest& at) const {
     const double bend = at.free_radius - at.distance;
     if (!at.normal || !(bend > 0)) return by_speed(at.distance);
@@ -24,8 +24,8 @@ struct SweptDistance::Approach {
   }
 };
 
-/// Outside of a cutter that is not convex: slice by slice. A bound below 0 holds if one slice alone can be met, since
-/// then the point leaves the cutter where it leaves that slice.
+/// Lower bound outside a cutter that is not convex, slice by slice. A bound below 0 is valid if only one slice can be
+/// met, because then the point leaves the cutter where it leaves that slice.
 double SweptDistance::by_slices(const Approach& approach, const Place& place, double best) const {
   double lower = std::numeric_limits<double>::infinity(), others = lower;
   for (std::size_t k = 0; k < cutter_->slices(); ++k) {
@@ -42,7 +42,7 @@ double SweptDistance::by_slices(const Approach& approach, const Place& place, do
   return lower >= 0 || others > -lower ? lower : -std::numeric_limits<double>::infinity();
 }
 
-/// `from_start`: the point, from the tip at t = 0. Differences first: coordinates far from the origin lose nothing.
+/// `from_start`: the point relative to the tip at t = 0. Subtracting first keeps full accuracy far from the origin.
 SweptDistance::Place SweptDistance::place(const Vec3& from_start, double t) const {
   const Vec3 w = from_start - t * (motion_.to().tip - motion_.from().tip), axis = motion_.axis(t);
   const double z = glm::dot(w, axis);
@@ -50,7 +50,7 @@ SweptDistance::Place SweptDistance::place(const Vec3& from_start, double t) cons
   return {w, axis, radial, glm::length(radial), z};
 }
 
-/// A bound above `above` is no better than another one above it.
+/// Any bound above `above` is good enough.
 SweptDistance::Node SweptDistance::node(const Vec3& from_start, double t, double half, double above,
                                         double& best) const {
   const Place here = place(from_start, t);
@@ -61,7 +61,7 @@ SweptDistance::Node SweptDistance::node(const Vec3& from_start, double t, double
   const Vec3 turning = glm::cross(turn, here.from_tip), bend = glm::cross(turn, way), velocity = way + turning;
   const double speed = std::max(glm::length(velocity - half * bend), glm::length(velocity + half * bend));
   double lower = at.distance - speed * half;
-  if (lower >= best || lower > above) return {t, half, lower};  // left out already
+  if (lower >= best || lower > above) return {t, half, lower};  // enough to leave it out
   const Approach approach{
       velocity,  here.rho > 0 ? here.radial / here.rho : geom::any_perpendicular(here.axis),
       here.axis, half,
@@ -90,8 +90,8 @@ Bracket SweptDistance::bracket(const Vec3& p, double gap, double below, double a
   }
 }
 
-/// No point of the cutter moves faster than its tip does and its farthest point turns; seen from near by, turning
-/// counts for less.
+/// No point of the cutter moves faster than the tip's speed plus the rotation of the farthest point; for nearby points
+/// the rotation counts less.
 double SweptDistance::lower_bound(const Vec3& p) const {
   const Place middle = place(p - motion_.from().tip, 0.5);
   const double way = glm::length(motion_.to().tip - motion_.from().tip);

@@ -1,6 +1,6 @@
-// The independent reference for carving: the least signed distance of a point from a moving cutter, with a bound on how
-// far from the least it may be. It shares nothing with the engine but what it is asked about, the profile and the
-// motion: no pieces, no steps, no intersections with rays.
+// The independent reference for carving: the smallest signed distance of a point from a moving cutter, with a bound on
+// its error. It shares only its input with the engine, the profile and the motion: no pieces, no steps, no
+// intersections with rays.
 #pragma once
 
 #include <limits>
@@ -12,7 +12,7 @@
 
 namespace riffler::reference {
 
-/// The least signed distance over the motion lies in it.
+/// An interval that contains the smallest signed distance over the motion.
 struct Bracket {
   double lower, upper;
   int poses;  ///< at which the distance was evaluated
@@ -24,28 +24,28 @@ struct Bracket {
 ///
 ///   f − L h   and   f − |f′| h − (A + L² / (ρ − f)) h² / 2,
 ///
-/// the second since the cutter lies outside of that ball, so the distance from all that is outside of it bounds the
-/// cutter's from below. Unlike samples, however dense, this cannot pass over a minimum.
+/// the second because the cutter is outside that ball, so the distance from the ball's outside bounds the
+/// cutter's distance from below. Unlike dense samples, this cannot miss a minimum.
 class SweptDistance {
  public:
   SweptDistance(const tool::Profile& profile, const Motion& motion)
       : SweptDistance(std::make_shared<const CutterDistance>(profile), motion) {}
-  /// Many moves of one cutter share it.
+  /// Many moves can share one cutter.
   SweptDistance(std::shared_ptr<const CutterDistance> cutter, const Motion& motion)
       : cutter_(std::move(cutter)), motion_(motion) {}
 
-  /// Until the bracket is no wider than `gap`, or all of it lies below `below` or above `above`. (Not narrower than
-  /// rounding, some 1e-15 of the sizes.)
+  /// Refines the bracket until it is at most `gap` wide, or entirely below `below` or above `above`. (It cannot become
+  /// narrower than rounding, about 1e-15 of the sizes.)
   Bracket bracket(const Vec3& p, double gap, double below, double above) const;
   Bracket bracket(const Vec3& p, double gap, double enough = std::numeric_limits<double>::infinity()) const {
     return bracket(p, gap, -enough, enough);
   }
 
-  /// Positive outside of the swept volume, and then the distance from it; negative inside: no deeper than the point's
-  /// depth in the swept volume, and as deep as it ever was in the tool. Within 1e-9 mm.
+  /// Outside the swept volume the distance from it. Inside negative: the largest depth of the point in the tool during
+  /// the motion, which is at most its depth in the swept volume. Accurate to 1e-9 mm.
   double operator()(const Vec3& p) const { return bracket(p, 1e-9).upper; }
 
-  /// No more than the least distance, from one pose: for telling what is far.
+  /// A lower bound on the smallest distance, from one pose: a fast test for far points.
   double lower_bound(const Vec3& p) const;
 
  private:
@@ -55,7 +55,7 @@ class SweptDistance {
   };
   struct Node {
     double t, half, lower;
-    bool operator<(const Node& o) const { return lower > o.lower; }  // the least lower bound is looked at first
+    bool operator<(const Node& o) const { return lower > o.lower; }  // examine the smallest lower bound first
   };
   struct Approach;
   Place place(const Vec3& from_start, double t) const;

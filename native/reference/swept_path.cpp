@@ -21,7 +21,7 @@ SweptPath::Near SweptPath::near(const Vec3& p, double reach) const {
   std::vector<std::pair<double, const SweptDistance*>> found;
   for (const SweptDistance& move : moves_)
     if (const double bound = move.lower_bound(p); bound < 2 * reach) found.emplace_back(bound, &move);
-  std::sort(found.begin(), found.end());  // the nearest first: what they leave is less
+  std::sort(found.begin(), found.end());  // the nearest first, because they exclude the most
   Near near;
   near.reach_ = reach;
   for (const auto& [bound, move] : found) near.moves_.push_back(move);

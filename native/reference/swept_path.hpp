@@ -1,4 +1,4 @@
-// The reference for a path of many moves: the least over them, found by branch and bound in the few that are near.
+// Reference distance from a path of many moves: the smallest over the moves near a point, found by branch and bound.
 #pragma once
 
 #include <span>
@@ -12,14 +12,14 @@ class SweptPath {
  public:
   SweptPath(const tool::Profile& profile, std::span<const Pose> poses);
 
-  /// The moves that count for points within `reach` of `p`, as long as distances above `reach` need no telling apart.
-  /// Every answer is right to 1e-10 mm.
+  /// The moves that can be within `reach` of points within `reach` of `p`. All distances are accurate to 1e-10 mm;
+  /// those above `reach` are not distinguished.
   class Near {
    public:
-    /// Signed distance of `q` from what the moves sweep, or `reach` if that is less: positive outside (then the true
-    /// distance), negative inside (then at most the true depth).
+    /// Signed distance of `q` from the swept volume, at most `reach`. Positive outside, and exact there; negative
+    /// inside, where its size is at most the true depth.
     double distance(const Vec3& q) const;
-    /// Whether a move reaches deeper than `depth` over q. Cheaper than the distance.
+    /// Whether q is deeper than `depth` in some move's swept volume. Cheaper than the distance.
     bool deeper(const Vec3& q, double depth) const { return below(q, -depth); }
     bool inside(const Vec3& q) const { return below(q, 0); }
     /// Whether q is further than `distance` (below `reach`) from everything swept.
@@ -32,7 +32,7 @@ class SweptPath {
     double reach_;
     std::vector<const SweptDistance*> moves_;  // the nearest first
   };
-  /// Valid as long as the path is.
+  /// Refers to this path, which must outlive it.
   Near near(const Vec3& p, double reach) const;
 
  private:

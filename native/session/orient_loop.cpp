@@ -17,10 +17,10 @@ bool has_torque(const pen::DeviceCapability& device) {
 }  // namespace
 
 OrientSettings::OrientSettings() {
-  // Tracing is weak, collision strong (4.4.3): 1.5 N draw the hand to the path at most.
+  // Guidance along the path is weak, collision strong (4.4.3): at most 1.5 N draw the hand to the path.
   step.coupling.stiffness = 0.3;
   step.firmness = 100;
-  // The torque stops growing where the pen's motors end: more would only press the tool deeper into what it hits.
+  // The torque stops growing at the limit of the pen's motors; more would only press the tool deeper into obstacles.
   step.coupling.max_turn = limits.wrench.angular / step.coupling.turn_stiffness;
   workspace.dead_man_mask = 0;
   workspace.clutch_mask = 4;
@@ -111,7 +111,7 @@ Wrench OrientLoop::follow(const pen::PenSample& sample, double dt, OrientTick& t
   }
 }
 
-/// Only while the device knows its pose: a key must be where the user sees the tool.
+/// Handles buttons. Call only while the device knows its pose: a key must be where the user sees the tool.
 void OrientLoop::press(std::uint32_t buttons, const OrientTick& tick) noexcept {
   const std::uint32_t pressed = buttons & ~std::exchange(buttons_, buttons);
   if (!sure(tick.state)) return;

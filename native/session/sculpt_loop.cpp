@@ -109,8 +109,8 @@ Wrench SculptLoop::sculpt(const pen::PenSample& sample, double dt, SculptTick& t
   return out;
 }
 
-/// Prepares a part of the changes; hands over all after the last part, and returns true. If it throws, some tiles may
-/// wait for the next time.
+/// Prepares one part of the changes for the display; after the last part hands over all and returns true. If it throws,
+/// some tiles may wait for the next call.
 bool SculptLoop::serve(Scene& scene) {
   const auto changed = [&] { exchange_.changed(scene.carver.replaced()); };
   if (!scene.carver.publishing()) serving_ = {strokes_, in_stroke_};
@@ -165,7 +165,8 @@ Wrench SculptLoop::follow(Scene& scene, const pen::PenSample& sample, double dt,
   }
 }
 
-/// The wrench, within the limits of touching while nothing is cut. They change as slowly as a force rises and falls.
+/// Limits the wrench while the tool touches without cutting. The limits change only as fast as a force may rise or
+/// fall.
 Wrench SculptLoop::limited_touch(const Wrench& on_hand, double dt, bool cutting) noexcept {
   if (!settings_.touch || !(dt > 0)) return on_hand;
   const haptics::Bounds& most = settings_.limits.wrench;
@@ -179,7 +180,7 @@ Wrench SculptLoop::limited_touch(const Wrench& on_hand, double dt, bool cutting)
   return share * on_hand;
 }
 
-/// Begins with the move that has just removed something, from the tool's pose before it.
+/// Begins a stroke with the move that has just removed material, from the tool's pose before that move.
 void SculptLoop::begin_stroke(double dt) noexcept {
   in_stroke_ = true, ++strokes_;
   if (sink_) sink_->begin(time_ - dt, last_tool_);
@@ -204,7 +205,7 @@ TileExchange::Mark SculptLoop::show(Volume& shown, std::vector<Place>& places, d
     if (const std::uint32_t now = served_.load(std::memory_order_relaxed); now != served) served = now, waited = 0;
     std::this_thread::sleep_for(std::chrono::duration<double>(kNap));
   }
-  // No steps, or a long step: between two steps a direct copy is as good.
+  // The loop is idle or in a long step: copy directly between two steps.
   const std::lock_guard lock(mutex_);
   while (!serve(*scene_)) {
   }
@@ -228,7 +229,7 @@ void SculptLoop::finish() noexcept {
   tell_undo();
 }
 
-/// In the thread that makes all other calls of the sink.
+/// Called on the thread that makes all other calls of the sink.
 void SculptLoop::tell_undo() noexcept {
   const std::int64_t strokes = std::exchange(brought_back_, 0);
   if (sink_ && strokes < 0) sink_->undo(static_cast<std::size_t>(-strokes));

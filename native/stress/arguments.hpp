@@ -1,4 +1,4 @@
-// What the command lines of the stress runs share.
+// Parsing of the stress runs' command lines.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace riffler::stress {
 
-/// A double as strtod reads all of `text`; std::invalid_argument naming the option.
+/// The number in `text`, all of which strtod must read. Throws std::invalid_argument naming the option.
 inline double number(std::string_view name, const char* text) {
   char* end = nullptr;
   const double value = text ? std::strtod(text, &end) : 0;
@@ -24,11 +24,11 @@ inline std::uint64_t whole_number(std::string_view name, const char* text) {
   return value;
 }
 
-/// What an option on the command line takes: itself alone, the word that follows too, or it is not known.
+/// Whether an option is a flag, has a value in the next word, or is unknown.
 enum class Takes { Flag, Value, Unknown };
 
-/// Calls `take(option, value)` for each option, with null for a value that is missing. std::invalid_argument naming an
-/// option that is not known, or whose value is missing.
+/// Calls `take(option, value)` for each option, with null for a missing value. Throws std::invalid_argument naming an
+/// option that is unknown or whose value is missing.
 template <class Take>
 void each_option(int argc, char** argv, Take&& take) {
   for (int k = 1; k < argc; ++k) {

@@ -40,7 +40,8 @@ Problem check_tile(const dexel::Grid& grid, std::size_t index) {
   const dexel::Tile& tile = grid.tile(index);
   if (tile.offset[0] != 0 || tile.offset[dexel::kTileRays] != tile.spans.size())
     return say("offsets do not fit the spans");
-  if (grid.has_normals() && tile.normals.size() != tile.spans.size()) return say("normals are not as many as spans");
+  if (grid.has_normals() && tile.normals.size() != tile.spans.size())
+    return say("the number of normals differs from that of spans");
   const int u = static_cast<int>(index) / grid.tiles_v() * dexel::kTileSide,
             v = static_cast<int>(index) % grid.tiles_v() * dexel::kTileSide;
   for (int r = 0; r < dexel::kTileRays; ++r) {
@@ -60,7 +61,7 @@ Problem check_subset(const dexel::Tile& before, const dexel::Tile& after) {
     for (const dexel::Span& s : after.ray(r)) {
       while (k < old.size() && old[k].far < s.far) ++k;
       if (k == old.size() || old[k].near > s.near)
-        return say("ray ", r, " of its tile: ", s.near, " … ", s.far, " holds material that was not there");
+        return say("ray ", r, " of its tile: ", s.near, " … ", s.far, " has material that was not there before");
     }
   }
   return {};
@@ -121,7 +122,7 @@ Allowed allowed_error(const Stage& stage, const Move& move) {
   const double most =
       std::max({glm::length(box.lower), glm::length(box.upper), glm::length(move.from.tip), glm::length(move.to.tip)});
   const double way = glm::length(move.to.tip - move.from.tip), radius = stage.tool.profile().max_radius();
-  // Rays stand 6e-10 pitches off their places; the rest is rounding of sizes, of coordinates and along the move.
+  // Rays are 6e-10 pitches off their places; the rest is rounding of sizes, of coordinates and along the move.
   const double rounding = 3e-9 * (radius + stage.frame.pitch) + 1.5e-14 * most + 3e-11 * way;
   double hollow = 0, apex = 0;
   Vec2 start{0, 0};

@@ -1,4 +1,4 @@
-// What must hold after every move.
+// Checks after every move of the stress run.
 #pragma once
 
 #include <string>
@@ -8,39 +8,40 @@
 
 namespace riffler::stress {
 
-/// Every check returns what is wrong, or nothing.
+/// Result of a check: a description of the fault, or empty.
 using Problem = std::string;
 
-/// Spans finite, longer than nothing, in order, apart, inside the box; the tile's reach covers them; normals are unit
-/// vectors; rays beyond the grid are empty. With `before`: every span lies in one that was there before. Tiles that
-/// both share are not looked at.
+/// Checks that spans are finite, not empty, in order, apart and inside the box, that the tile's reach covers them,
+/// normals are unit vectors, and rays beyond the grid are empty. With `before`, every span must be within one of
+/// `before`; tiles that both volumes share are skipped.
 Problem check_spans(const Volume& volume, const Volume* before = nullptr);
 
-/// What the move says it removed is what the volume lost, and the volume did not grow.
+/// Checks that the move removed as much as it reports, and that no grid grew.
 Problem check_removed(const Volume& before, const Volume& after, const sweep::Cut& cut);
 
-/// The same spans, normals and offsets, tile by tile.
+/// Checks that spans, normals and offsets are the same, tile by tile.
 Problem check_same_bytes(const Volume& a, const Volume& b);
 
-/// Whether the tool stays away from the stock for certain, by a ball about it.
+/// Whether the tool certainly stays away from the stock, from a ball around the tool.
 bool out_of_reach(const Stage& stage, const Move& move);
 
-/// How far an end of a span may be from the exact surface.
+/// Allowed distance of a span's end from the exact surface.
 struct Allowed {
-  double error;     ///< mm: the tolerance for moves that turn, what is left of hollow arcs, and rounding
-  bool along_rays;  ///< whether it is meant along the ray, where that does not graze
+  double error;     ///< mm: the tolerance for moves that turn, the error of hollow arcs, and rounding
+  bool along_rays;  ///< whether `error` is measured along the ray, unless the ray grazes
 };
 Allowed allowed_error(const Stage& stage, const Move& move);
 
-/// How the ends that a move made compare with the reference.
+/// Comparison of the ends that a move made with the reference.
 struct Comparison {
   long ends = 0, points = 0;
   double worst = 0;  ///< of error / allowed error, over all ends
   Problem problem;
 };
 
-/// Checks up to `rays` rays that the move changed, and some others: new ends are within the tolerance, along the ray
-/// or, where the ray grazes, in space; and the middles of all spans and gaps, and random points, are on the right side.
+/// Checks up to `rays` rays that the move changed, and some others. New ends must be within the tolerance, measured
+/// along the ray or, if the ray grazes, in space. The middles of all spans and gaps, and random points, must be on the
+/// right side.
 Comparison compare_with_reference(Random& random, const Stage& stage, const Move& move, const Volume& before,
                                   const Volume& after, int rays);
 

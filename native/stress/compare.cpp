@@ -25,7 +25,7 @@ bool is_end(std::span<const dexel::Span> ray, double s) {
   return std::any_of(ray.begin(), ray.end(), [s](const dexel::Span& x) { return s == x.near || s == x.far; });
 }
 
-/// Up to `count` rays that differ, chosen evenly, and a few that may not.
+/// Up to `count` changed rays, chosen evenly, and a few others.
 std::vector<RayName> choose_rays(Random& random, const Volume& before, const Volume& after, int count) {
   std::vector<RayName> changed, chosen;
   for (std::size_t g = 0; g < after.grids().size(); ++g) {
@@ -73,13 +73,13 @@ class RayComparison {
   }
 
  private:
-  /// Signed distance, as closely as the comparison with `allowed_` asks.
+  /// Signed distance, as accurate as the comparison with `allowed_` needs.
   double distance(double s) const {
     const Vec3 p = to_world(grid_.axis(), {grid_.u(ray_.i), grid_.v(ray_.j), s});
     return swept_.bracket(p, allowed_ / 50, 4 * allowed_).upper;
   }
 
-  /// Middles of spans and gaps, the ends' neighbourhood, and anywhere.
+  /// Places to check: middles of spans and gaps, places near ends, and random ones.
   std::vector<double> places(Random& random) const {
     const double lower = grid_.box().lower.z, upper = grid_.box().upper.z;
     std::vector<double> out;
@@ -105,8 +105,8 @@ class RayComparison {
     if (error > allowed_) fail(off < 0 ? "too little cut, the end" : "cut too deep, the end", end, error);
   }
 
-  /// Distance from an end, which is `off` mm outside of the swept volume, to the surface along the ray: into the
-  /// material if too little was cut, else away from it. Where the ray grazes, in space.
+  /// Distance along the ray from an end, which is `off` mm outside the swept volume, to the surface: into the material
+  /// if too little was cut, else away from it. If the ray grazes, the distance in space.
   double along(double end, bool near, double off) const {
     const double least = std::abs(off), furthest = kGrazing * least;
     if (furthest < allowed_ / 20) return least;
@@ -121,7 +121,7 @@ class RayComparison {
     ++out_.points;
     if (std::abs(off) <= allowed_) return;
     const bool solid = inside(after_, s);
-    if (off < 0 && solid) fail("lost to the cut, the point", s, off);
+    if (off < 0 && solid) fail("too little cut, the point", s, off);
     if (off > 0 && solid != inside(before_, s)) fail("cut too much, the point", s, off);
   }
 

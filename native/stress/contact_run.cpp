@@ -16,9 +16,9 @@ constexpr std::size_t kPosesKept = 100;
 constexpr std::uint64_t kContactStream = 0x636F6E74;
 constexpr double kBracket = 1e-3;  // mm, of the reference
 constexpr double kLeftOut = 1e-3;  // mm, without a budget: see Contact::missed_depth_bound
-constexpr double kPoints = 4000;   // of the force: as many as by default take far longer to prepare than to use
+constexpr double kPoints = 4000;   // of the force: the default number takes far longer to prepare than to use
 
-/// What one session holds against what.
+/// Part, tool and reference of one session.
 struct ContactSession {
   Random random;
   ContactScene scene;
@@ -57,7 +57,7 @@ struct ContactSession {
   }
 };
 
-/// What is wrong with the answers at one pose: nothing is the empty text.
+/// Checks the results at one pose. An empty text means no fault.
 class PoseCheck {
  public:
   PoseCheck(ContactSession& session, const Pose& pose, ContactTally& tally) : s_(session), pose_(pose), tally_(tally) {
@@ -75,7 +75,7 @@ class PoseCheck {
     if (!std::isfinite(clearance) || !std::isfinite(nearest.distance) || !geom::finite(nearest.point))
       say() << "distance " << clearance << ", nearest " << nearest.distance;
     if (nearest.distance > clearance + rounding_)
-      say() << "nearest " << nearest.distance << " is further than the part alone, " << clearance;
+      say() << "nearest " << nearest.distance << " is farther than the distance of the part alone, " << clearance;
     if (nearest.touch != collide::Touch::Fixture &&
         std::abs(s_.reference(nearest.point, pose_) - nearest.distance) > rounding_)
       say() << "nearest " << nearest.distance << " is not that of its point, " << s_.reference(nearest.point, pose_);

@@ -1,5 +1,5 @@
-// The stress run of contact: tools held against parts from the degenerate limits, with and without a budget, and every
-// answer checked.
+// The stress run of contact: queries of tools against parts from the degenerate limits, with and without a budget;
+// checks every result.
 #pragma once
 
 #include <array>
@@ -14,10 +14,10 @@ namespace riffler::stress {
 
 struct ContactOptions {
   std::uint64_t seed = 1;
-  int reference_every = 64;  ///< poses from one that the independent reference judges to the next
+  int reference_every = 64;  ///< poses between two comparisons with the independent reference
 };
 
-/// One part and one tool, and this many poses, each with one query, one distance and one query with a budget.
+/// Poses of a session with one part and one tool; each has one query, one distance and one query with a budget.
 constexpr long kPosesOfSession = 64;
 
 struct ContactFailure {
@@ -35,18 +35,20 @@ struct ContactTally {
 
 struct ContactResults {
   std::array<ContactTally, static_cast<std::size_t>(ContactScene::kCount)> scenes;
-  std::vector<ContactFailure> failures;  ///< the first of them
+  std::vector<ContactFailure> failures;  ///< the first few
   ContactTally total() const;
 };
 
-/// Adds session `session`, which depends on nothing but the seed and the number, but for what budgets leave out.
+/// Runs session `session` and adds its results. They depend only on the seed and the number, except for what budgets
+/// leave out.
 void run_contact_session(const ContactOptions& options, std::uint64_t session, ContactResults& out);
 
-/// Sessions from 0 on until `poses` poses are done. `progress`, called after each, may stop the run by returning false.
+/// Runs sessions from 0 on until `poses` poses are done. `progress` is called after each session and may stop the run
+/// by returning false.
 ContactResults run_contacts(const ContactOptions& options, long poses,
                             const std::function<bool(const ContactResults&)>& progress = {});
 
-/// The command that runs the failed session alone.
+/// The command that repeats the failed session.
 std::string reproducer(const ContactFailure& failure);
 
 }  // namespace riffler::stress

@@ -114,7 +114,8 @@ Mesh tube(int sides, double radius, double height, bool bore) {
 
 Mesh prism(Random& random) {
   const int sides = 3 + random.below(30);
-  const double height = random.uniform(5, 60), radius = random.uniform(5, 30);  // in this order for every compiler
+  const double height = random.uniform(5, 60),
+               radius = random.uniform(5, 30);  // separate statements, so that every compiler draws in this order
   Mesh out = tube(sides, radius, height, false);
   for (int i = 1; i + 1 < sides; ++i)
     out.triangles.push_back({0, i + 1, i}), out.triangles.push_back({sides, sides + i, sides + i + 1});

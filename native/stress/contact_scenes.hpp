@@ -1,4 +1,4 @@
-// Parts, tools and poses from the limits of contact: what the stress run of contact draws.
+// Random parts, tools and poses from the degenerate limits, for the stress run of contact.
 #pragma once
 
 #include <vector>
@@ -12,12 +12,12 @@ namespace riffler::stress {
 
 enum class ContactScene {
   Sheet,    ///< random heights over squares, open at its border
-  Soup,     ///< triangles anywhere: needles, without area, twice the same, walls that coincide
-  Blocks,   ///< boxes face to face, that share walls
+  Soup,     ///< random triangles: needles, without area, duplicates, coinciding walls
+  Blocks,   ///< boxes face to face, with shared walls
   Spikes,   ///< a fan of needles that meet in one vertex
   FarAway,  ///< a sheet at coordinates of 1e5 mm
   Flat,     ///< one plane in large triangles, so that tools touch it exactly
-  Bore,     ///< a cylinder from within, its triangles as long as it
+  Bore,     ///< a cylindrical hole whose triangles are as long as the hole
   Prism,    ///< a block with few sides, or a box of 12 triangles
   Needles,  ///< a wavy sheet of narrow strips
   kCount
@@ -25,9 +25,9 @@ enum class ContactScene {
 const char* name(ContactScene scene);
 
 Mesh draw_part(Random& random, ContactScene scene);
-/// A cutter of any kind, mostly with shank and holder.
+/// A random cutter of any kind, usually with shank and holder.
 Tool draw_tool(Random& random);
-/// Near the surface, tangent to it, deep in it, or far away.
+/// A random pose near the surface, tangent to it, deep in it, or far away.
 Pose draw_pose(Random& random, const Mesh& part, const Tool& tool);
 
 }  // namespace riffler::stress

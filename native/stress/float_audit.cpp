@@ -67,7 +67,7 @@ FloatAudit float_audit(const Mesh& mesh, double fold_cosine) {
       if (glm::dot(a, b) < fold_cosine * glm::length(a) * glm::length(b)) ++result.folds;
     }
   }
-  if (result.open || result.repeated) return result;  // fans mean nothing then
+  if (result.open || result.repeated) return result;  // fans are not defined then
   for (std::size_t begin = 0, v = 0; v < m.vertices.size(); ++v) {
     std::size_t end = begin;
     while (end < halves.size() && halves[end].from == static_cast<int>(v)) ++end;
@@ -77,7 +77,7 @@ FloatAudit float_audit(const Mesh& mesh, double fold_cosine) {
     }
     std::size_t steps = 0;
     const Half* half = &halves[begin];
-    do {  // the next triangle round v lies beyond the side that comes back to v
+    do {  // the next triangle around v is across the side that ends in v
       const Vec3i& t = m.triangles[half->triangle];
       const int c = t.x == half->from ? 0 : t.y == half->from ? 1 : 2;
       half = &*find(half->from, t[(c + 2) % 3]).first;

@@ -1,5 +1,5 @@
-// What a mesh is worth after a binary STL: an audit of its own, from float32 coordinates and nothing else. Where no
-// edge is open there is no T-junction: an edge that a vertex splits on one side only has no partner.
+// Audits a mesh as written to a binary STL, from float32 coordinates alone; independent of native/mesh. A mesh without
+// open edges has no T-junction, because an edge that a vertex splits on one side only has no partner.
 #pragma once
 
 #include <ostream>
@@ -9,10 +9,10 @@
 namespace riffler::stress {
 
 struct FloatAudit {
-  std::size_t inexact = 0;     // vertices that float32 does not hold
+  std::size_t inexact = 0;     // vertices that float32 cannot represent
   std::size_t merged = 0;      // vertices that share their place with another
   std::size_t open = 0;        // directed edges without exactly one partner in the other direction
-  std::size_t repeated = 0;    // directed edges that two triangles have
+  std::size_t repeated = 0;    // directed edges of two triangles
   std::size_t pinched = 0;     // vertices with more than one fan
   std::size_t duplicates = 0;  // triangles with the same three corners as another
   std::size_t degenerate = 0;  // triangles without area
@@ -30,7 +30,7 @@ inline std::ostream& operator<<(std::ostream& out, const FloatAudit& a) {
              << ", folds " << a.folds << ", unused " << a.unused;
 }
 
-/// Welds as a reader of the STL would: equal float32 triples are one vertex.
+/// Welds like a reader of the STL: equal float32 triples are one vertex.
 Mesh weld(const Mesh& mesh, FloatAudit& audit);
 
 FloatAudit float_audit(const Mesh& mesh, double fold_cosine = -0.99999);

@@ -19,7 +19,8 @@ namespace {
 constexpr std::uint64_t kFollowingStream = 0x666F6C6C;
 constexpr long kLongestSeries = 50;
 
-/// A stroke of a cutter through the box, or a patch of rays that contradict those of the other directions.
+/// Changes the volume by a stroke of a cutter through the box, or by a patch of rays that contradict those of the other
+/// directions.
 void change(Volume& volume, Random& random) {
   const Box3 box = volume.frame().box;
   const Vec3 size = box.upper - box.lower;
@@ -51,7 +52,7 @@ void add_corners(const marching::MeshPatch& patch, std::vector<Corners>& out) {
   }
 }
 
-/// Whether the patches kept so far are the mesh, triangle by triangle.
+/// Whether the patches kept so far form the mesh, triangle by triangle.
 bool same(const std::map<std::size_t, marching::MeshPatch>& patches, const Mesh& mesh) {
   std::vector<Corners> kept, expected;
   for (const auto& [brick, patch] : patches) add_corners(patch, kept);
@@ -83,23 +84,23 @@ FollowedSeries follow_series(std::uint64_t seed, std::uint64_t number, long stro
   for (; out.strokes < std::min(strokes, kLongestSeries);) {
     const Volume before = volume;
     change(volume, random);
-    if (random.one_in(8)) volume = before;  // taken back
+    if (random.one_in(8)) volume = before;  // undo
     ++out.strokes;
     full.update(volume);
     const Mesh all = marching::to_mesh(volume), followed = full.mesh();
     if (followed.vertices != all.vertices || followed.triangles != all.triangles)
-      return fail("without a tolerance, the mesher's mesh is not to_mesh's");
+      return fail("without a tolerance, the mesher's mesh differs from to_mesh's");
     if (!tolerant) continue;
     for (const std::size_t n : mesher.update(volume)) patches[n] = mesher.patch(n);
     const Mesh expected = marching::to_mesh(volume, tolerance), mesh = mesher.mesh();
     if (mesh.vertices != expected.vertices || mesh.triangles != expected.triangles)
-      return fail("the mesher's mesh is not to_mesh's");
-    if (!same(patches, expected)) return fail("the patches are not the mesh");
+      return fail("the mesher's mesh differs from to_mesh's");
+    if (!same(patches, expected)) return fail("the patches differ from the mesh");
   }
   if (!tolerant) return out;
   const Mesh fresh = marching::Mesher(volume, tolerance).mesh(), mesh = mesher.mesh();
   if (mesh.vertices != fresh.vertices || mesh.triangles != fresh.triangles)
-    return fail("the mesher's mesh is not a new mesher's");
+    return fail("the mesher's mesh differs from a new mesher's");
   return out;
 }
 

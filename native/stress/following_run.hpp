@@ -1,4 +1,4 @@
-// The following stress run: a mesher with a tolerance follows random strokes, and has to have the bytes of a new mesh.
+// The following stress run: a mesher follows random strokes; its mesh must have the bytes of a new one.
 #pragma once
 
 #include <cstdint>
@@ -7,19 +7,19 @@
 
 namespace riffler::stress {
 
-/// What a series of strokes on one volume came to.
+/// Result of a series of strokes on one volume.
 struct FollowedSeries {
   long strokes = 0;
   std::string problem;  ///< empty, or what failed and at which stroke
 };
 
-/// Series number `number`, which depends on nothing but the seed and the number: up to `strokes` strokes on a volume
-/// drawn at random. After each the mesher's mesh is compared with to_mesh's; and, unless `tolerant` is false, that of a
-/// mesher with a tolerance, and the patches that it names, with to_mesh(tolerance).
+/// Runs series number `number`, which depends only on the seed and the number: up to `strokes` strokes on a random
+/// volume. After each stroke compares the mesher's mesh with to_mesh's and, unless `tolerant` is false, the mesh and
+/// the changed patches of a mesher with a tolerance with to_mesh(tolerance).
 FollowedSeries follow_series(std::uint64_t seed, std::uint64_t number, long strokes, bool tolerant = true);
 
-/// Series until `strokes` strokes were made. `progress`, called after each series, may stop the run by returning false.
-/// Returns the first problem, or nothing.
+/// Runs series until `strokes` strokes are done. `progress` is called after each series and may stop the run by
+/// returning false. Returns the first problem, or an empty text.
 std::string follow_strokes(std::uint64_t seed, long strokes, const std::function<bool(long strokes)>& progress = {});
 
 }  // namespace riffler::stress

@@ -17,7 +17,7 @@ namespace {
 constexpr int kPoses = 24;
 constexpr double kSide = 120, kHeight = 30;  // mm
 
-/// s of processor time of the whole process.
+/// Processor time (s) of the whole process for a call.
 template <class Call>
 double seconds(const Call& call) {
   const std::clock_t begin = std::clock();
@@ -25,7 +25,7 @@ double seconds(const Call& call) {
   return static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
 }
 
-/// A bent groove of 35 mm, 1 to 2 mm deep; the tool leans by 0.2 rad and turns a little.
+/// A random bent groove of 35 mm, 1 to 2 mm deep; the tool leans by 0.2 rad and turns a little.
 sweep::HistoryStroke draw_stroke(Random& random) {
   sweep::HistoryStroke out{cutters::ball(6, 40), {}};
   Vec3 tip{random.uniform(0, kSide), random.uniform(0, kSide), kHeight - random.uniform(1, 2)};
@@ -71,7 +71,7 @@ HistoryCost history_cost(std::size_t strokes, const std::string& directions, dou
     cost.strokes_run = cost.tiles_run = cost.tiles_restored = 0;
     for (std::size_t n = 0; n < kEdits; ++n) cost.any += edit((2 * n + 1) * strokes / (2 * kEdits)) / kEdits;
     if (dexel::to_bytes(volume) != dexel::to_bytes(history.volume()))
-      throw std::runtime_error("not the bytes of a replay");
+      throw std::runtime_error("the volume differs from a replay");
   }
   for (double* s : {&cost.replay, &cost.first, &cost.any, &cost.last}) *s /= kRounds;
   for (double* n : {&cost.strokes_run, &cost.tiles_run, &cost.tiles_restored}) *n /= kEdits;

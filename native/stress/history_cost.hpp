@@ -1,4 +1,4 @@
-// What an edit of a history costs, compared with carving all strokes again.
+// Cost of an edit of a history, compared with carving all strokes again.
 #pragma once
 
 #include <cstddef>
@@ -16,8 +16,8 @@ struct HistoryCost {
   sweep::HistoryStats stats;                                  ///< after all edits
 };
 
-/// Edits one pose of strokes of 24 poses with a ball of Ø6 mm in a block of 120 × 120 × 30 mm, then back. Edits and
-/// replays alternate.
+/// Edits one pose of a stroke and restores it, for strokes of 24 poses with a ball of Ø6 mm in a block of
+/// 120 × 120 × 30 mm. Edits and replays alternate.
 HistoryCost history_cost(std::size_t strokes, const std::string& directions, double pitch, std::size_t memory_limit);
 
 }  // namespace riffler::stress

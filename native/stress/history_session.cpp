@@ -19,14 +19,14 @@ using sweep::History;
 using sweep::HistoryStroke;
 using sweep::StrokeId;
 
-/// A stroke as the session knows it.
+/// A stroke in the session's own list.
 struct Listed {
   StrokeId id;
   HistoryStroke stroke;
   bool enabled = true;
 };
 
-/// An edit of a history and of the list.
+/// An edit of a history and of the session's list.
 struct Edit {
   std::string name;
   std::function<void(History&, const Progress&)> of_history;
@@ -64,7 +64,7 @@ class Session {
   StrokeId next_ = 1;  // ids ascend from 1
 };
 
-/// A third of the sessions has some ten blocks of tiles; the others have the sizes of the run of carving.
+/// A third of the sessions have about ten blocks of tiles; the others have the sizes of the stress run of carving.
 Stage Session::draw() {
   Stage stage = draw_stage(random_, random_.one_of({"ball", "flat", "fillet", "taper-ball", "disc", "corner-rounder"}));
   if (stage.setting == Setting::Usual && random_.one_in(2))
@@ -87,8 +87,8 @@ Volume Session::draw_base() {
   return base;
 }
 
-/// A few moves from the degenerate limits, joined where their axes allow it; now and then the same again, a single
-/// pose, or one that touches no ray.
+/// A few moves from the degenerate limits, joined where their axes allow it; sometimes the same stroke again, a single
+/// pose, or a stroke that touches no ray.
 HistoryStroke Session::draw_stroke() {
   if (!list_.empty() && random_.one_in(10)) return list_[any()].stroke;
   HistoryStroke out{tools_[static_cast<std::size_t>(random_.below(3))], {}};
@@ -203,14 +203,14 @@ std::string Session::problem(History& history, const Edit& edit, const std::vect
     edit.of_history(history, {});
   }
   const Volume& now = history.volume();
-  if (dexel::to_bytes(now) != expected) return "not the bytes of a replay";
+  if (dexel::to_bytes(now) != expected) return "the volume differs from a replay";
   for (std::size_t g = 0; g < now.grids().size(); ++g)
     for (std::size_t t = 0; t < now.grids()[g].tile_count(); ++t) {
       const auto &a = before.grids()[g].shared_tile(t), &b = now.grids()[g].shared_tile(t);
-      if (a != b && same_material(*a, *b)) return "a tile was replaced whose content is the same";
+      if (a != b && same_material(*a, *b)) return "a tile was replaced although its content is the same";
     }
   const auto ids = history.ids();
-  if (!std::ranges::equal(ids, list_, {}, {}, &Listed::id)) return "not the order of the list";
+  if (!std::ranges::equal(ids, list_, {}, {}, &Listed::id)) return "the order differs from that of the list";
   return {};
 }
 

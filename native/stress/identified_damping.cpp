@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kTries = 50;  // poses drawn for each that must be reached
 
-/// Settings by the friction that is certainly there, as for a pen whose file had these values.
+/// Settings from the friction that is certain, as for a pen whose file has these values.
 haptics::PassivitySettings certain_settings(pen::PenGeometry geometry) {
   for (std::size_t k = 0; k < pen::kPenChannels; ++k) {
     const pen::CertainFriction certain = certain_friction(geometry, k);
@@ -28,8 +28,8 @@ haptics::PassivitySettings certain_settings(pen::PenGeometry geometry) {
 
 }  // namespace
 
-/// In closed form (O. K. Smith, "Eigenvalues of a symmetric 3 × 3 matrix", Comm. ACM 4(4), 1961), which a singular
-/// matrix does not trouble.
+/// In closed form (O. K. Smith, "Eigenvalues of a symmetric 3 × 3 matrix", Comm. ACM 4(4), 1961), which also works for
+/// singular matrices.
 double least_eigenvalue(const Mat3& m) {
   const double mean = (m[0][0] + m[1][1] + m[2][2]) / 3;
   const Mat3 off = m - mean * Mat3(1);

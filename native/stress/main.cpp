@@ -66,7 +66,7 @@ Arguments parse(int argc, char** argv) {
   if (out.session && !out.cutter) throw std::invalid_argument("--session needs --cutter");
   bool known = !out.cutter;
   for (const char* name : cutter_names()) known = known || *out.cutter == name;
-  if (!known) throw std::invalid_argument("there is no cutter " + *out.cutter);
+  if (!known) throw std::invalid_argument("unknown cutter " + *out.cutter);
   return out;
 }
 
@@ -80,7 +80,7 @@ void print_heading() {
               "worst", "failed");
 }
 
-/// Those from the number `first` on, at once: a long run may be cut short.
+/// Prints the failures from number `first` on at once, because a long run may be interrupted.
 void print_failures(const Results& results, std::size_t first = 0) {
   for (const Failure& f : std::span(results.failures).subspan(first))
     std::printf("FAILED: %s, move %d of session %llu: %s\n  again: %s\n", f.cutter.c_str(), f.move,
@@ -88,7 +88,7 @@ void print_failures(const Results& results, std::size_t first = 0) {
   std::fflush(stdout);
 }
 
-/// Tells how far a cutter has come, on the standard error, every other second.
+/// Prints a cutter's progress to standard error every two seconds.
 class Progress {
  public:
   Progress(std::string cutter, long moves) : cutter_(std::move(cutter)), moves_(moves) {}

@@ -1,4 +1,4 @@
-// Small dense matrices of run-time size, for simulations: enough to move a linear system exactly.
+// Small dense matrices of run-time size, with the functions needed to advance a linear system exactly.
 #pragma once
 
 #include <cmath>
@@ -64,7 +64,7 @@ inline Matrix transposed(const Matrix& m) {
   return t;
 }
 
-/// By Gauss and Jordan with row pivots.
+/// Gauss-Jordan elimination with row pivots.
 inline Matrix inverse(Matrix a) {
   const int n = a.rows();
   Matrix b = Matrix::identity(n);
@@ -85,7 +85,7 @@ inline Matrix inverse(Matrix a) {
   return b;
 }
 
-/// e^a: the Taylor series of a part that is small, squared until it is the whole.
+/// e^a, by scaling and squaring with a Taylor series.
 inline Matrix exponential(const Matrix& a) {
   int squarings = 0;
   double size = a.largest() * a.rows();

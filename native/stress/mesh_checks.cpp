@@ -14,7 +14,7 @@ namespace riffler::stress {
 
 namespace {
 
-/// Lattice points that two of three rays call inside, or that the only ray does.
+/// Lattice points that are inside by two of three rays, or by the only ray.
 class Points {
  public:
   explicit Points(const Volume& volume) {
@@ -31,7 +31,7 @@ class Points {
     if (i < 0 || j < 0 || k < 0 || i >= n_.x || j >= n_.y || k >= n_.z) return false;
     return votes_[(static_cast<std::size_t>(i) * n_.y + j) * n_.z + k] >= needed_;
   }
-  /// How many there are, and how many cells between points have some of their corners inside and some outside.
+  /// Number of points, and number of cells that have corners both inside and outside.
   std::pair<double, double> count() const {
     double points = 0, cells = 0;
     for (int i = -1; i < n_.x; ++i)
@@ -51,7 +51,7 @@ class Points {
   void vote(const dexel::Grid& grid, int i, int j, const dexel::Span& s) {
     const double h = grid.pitch();
     const int last = n_[static_cast<int>(grid.axis())] - 1;
-    // Where the box is one ray wide, the plane of points lies in its middle.
+    // If the box is one ray wide, the plane of points is in its middle.
     const double low = last == 0 ? (grid.box().lower.z + grid.box().upper.z - h) / 2 : grid.box().lower.z;
     const int from = std::max(0, static_cast<int>(std::clamp((s.near - low) / h - 0.5, -2.0, last + 2.0)));
     for (int k = from; k <= last && low + (k + 0.5) * h < s.far; ++k)
@@ -71,14 +71,14 @@ Problem check_volume(const Volume& volume, const Mesh& mesh) {
   const auto [points, cells] = Points(volume).count();
   const double h = volume.frame().pitch, cube = h * h * h;
   double allowed = 2 * cells * cube, expected = points * cube;
-  if (volume.grids().size() == 1) {  // floors between two points are kept: each of its ends is off by h/2 at most
-    // Its walls stand half a pitch from the rays, at the border, too.
+  if (volume.grids().size() == 1) {  // surfaces across the rays stay between two points: each end is off by at most h/2
+    // Walls are half a pitch from the rays, also at the border.
     expected = 0;
     for (std::size_t t = 0; t < volume.reference().tile_count(); ++t)
       for (const dexel::Span& s : volume.reference().tile(t).spans) expected += s.length() * h * h;
     allowed = static_cast<double>(volume.reference().span_count()) * cube;
   }
-  // Vertices lie on a grid of float32, which is coarse far from the origin.
+  // Vertices are on a float32 grid, which is coarse far from the origin.
   const Vec3 reach = glm::max(glm::abs(volume.frame().box.lower), glm::abs(volume.frame().box.upper)) + Vec3(h);
   const double step = std::exp2(std::ceil(std::log2(std::max({reach.x, reach.y, reach.z}))) - 24);
   allowed += 2 * step * area(mesh) + 1e-9 * cube;

@@ -1,4 +1,4 @@
-// What must hold for the mesh of any volume, and the least of a volume for which something does not.
+// Checks of a volume's mesh, and reduction of a volume that fails a check.
 #pragma once
 
 #include <functional>
@@ -7,12 +7,12 @@
 
 namespace riffler::stress {
 
-/// Meshes, rounds to float32 and welds: closed, two-manifold, no triangle without area, twice or folded onto another;
-/// volume within what the cells that the surface passes allow. `threads`: the same bytes
-/// with 1 thread and with 4. Says how many triangles there were.
+/// Meshes the volume, rounds to float32 and welds. Checks that the mesh is closed and two-manifold, without triangles
+/// that have no area, occur twice or fold onto another, and that its volume is within what the cells at the surface
+/// allow. `threads`: also checks that 1 and 4 threads give the same bytes. Writes the number of triangles.
 Problem check_mesh(const Volume& volume, bool threads, std::size_t* triangles = nullptr);
 
-/// The volume with as many spans taken away as `fails` allows it to stay wrong, one by one at the end.
+/// Removes spans from the volume, at the end one by one, while `fails` stays true.
 Volume minimised(const Volume& volume, const std::function<bool(const Volume&)>& fails);
 
 }  // namespace riffler::stress

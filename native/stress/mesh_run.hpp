@@ -1,4 +1,4 @@
-// The meshing stress run: volumes from the degenerate limits, each meshed and checked.
+// The meshing stress run: meshes volumes from the degenerate limits and checks each mesh.
 #pragma once
 
 #include <array>
@@ -14,10 +14,10 @@ namespace riffler::stress {
 
 struct MeshOptions {
   std::uint64_t seed = 1;
-  int threads_every = 16;  ///< volumes until one is meshed with 1 and with 4 threads
+  int threads_every = 16;  ///< volumes between two that are meshed with 1 and with 4 threads
 };
 
-/// A failed check, and what to draw again.
+/// A failed check, with the numbers that reproduce it.
 struct MeshFailure {
   std::uint64_t seed, number;
   MeshScene scene;
@@ -31,22 +31,22 @@ struct MeshTally {
 struct MeshResults {
   std::array<MeshTally, static_cast<std::size_t>(MeshScene::kCount)> scenes;
   long thread_checks = 0;
-  std::vector<MeshFailure> failures;  ///< the first of them
+  std::vector<MeshFailure> failures;  ///< the first few
   MeshTally total() const;
 };
 
-/// Volume number `number`, which depends on nothing but the seed and the number.
+/// Scene of volume number `number`, which depends only on the seed and the number.
 MeshScene mesh_scene(std::uint64_t number);
 Volume mesh_volume(std::uint64_t seed, std::uint64_t number);
 
 /// Adds volume `number` to the results.
 void run_volume(const MeshOptions& options, std::uint64_t number, MeshResults& out);
 
-/// Volumes 0 … `volumes` − 1. `progress`, called after every volume, may stop the run by returning false.
+/// Runs volumes 0 … `volumes` − 1. `progress` is called after each volume and may stop the run by returning false.
 MeshResults run_meshes(const MeshOptions& options, std::uint64_t volumes,
                        const std::function<bool(const MeshResults&)>& progress = {});
 
-/// The command that draws the failed volume alone, and writes the least of it that fails.
+/// The command that draws the failed volume again and writes the smallest part of it that fails.
 std::string reproducer(const MeshFailure& failure);
 
 }  // namespace riffler::stress

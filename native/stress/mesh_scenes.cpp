@@ -12,7 +12,7 @@ namespace riffler::stress {
 
 namespace {
 
-/// How far from the origin a volume can be meshed, in pitches; a little less for its own size.
+/// Largest distance from the origin at which a volume can be meshed, in pitches; a little less to allow for its size.
 constexpr double kFar = 0x1p21 - 100;
 
 struct Place {
@@ -47,7 +47,8 @@ Vec3 along(const dexel::Grid& grid) {
   return to_world(grid.axis(), Vec3(0, 0, 1));
 }
 
-/// Turned into spans with near < far and gaps between them; normals along the ray, or anything.
+/// Makes spans from random ends, with near < far and gaps between them; normals along the ray or, with `normals`,
+/// random.
 SolidSpans spans_from(std::vector<double> ends, const dexel::Grid& grid, Random* normals) {
   std::sort(ends.begin(), ends.end());
   SolidSpans out;
@@ -66,7 +67,7 @@ Volume contradictory(Random& random) {
   return volume;
 }
 
-/// Spans on every ray round the lattice points that are inside; `cut`: share of the distance to the next one.
+/// Sets spans on every ray around the lattice points that are inside. `cut`: share of the distance to the next point.
 template <class Inside>
 Volume from_points(const dexel::Frame& frame, double cut, const Inside& inside) {
   Volume volume(frame);
@@ -109,7 +110,7 @@ Volume one_ulp(Random& random) {
   const bool alike = random.one_in(2);
   const std::uint64_t seed = random.bits();
   fill(volume, [&](const dexel::Grid& grid, int i, int j) {
-    // The same planes on all rays, or others on each.
+    // The same planes on all rays, or different ones on each.
     Random own(seed, alike ? 0 : static_cast<std::uint64_t>(i), alike ? 0 : static_cast<std::uint64_t>(j));
     const double h = grid.pitch(), low = grid.box().lower.z, high = grid.box().upper.z;
     const auto step = [&](double at) { return own.one_in(3) ? at : std::nextafter(at, own.one_in(2) ? 1e30 : -1e30); };
@@ -143,7 +144,7 @@ Vec3 point_in(Random& random, const Box3& box) {
   return box.lower + Vec3(random.uniform(), random.uniform(), random.uniform()) * box.size();
 }
 
-/// On the lattice or halfway between its planes.
+/// A random point on the lattice or halfway between its planes.
 Vec3 snapped(Random& random, const Place& place) {
   Vec3 p;
   for (int k = 0; k < 3; ++k) p[k] = place.frame.box.lower[k] + place.h / 2 * random.below(2 * place.cells[k] + 1);

@@ -24,14 +24,14 @@ class Drawer {
   void draw(Kind kind, Pose& from, Pose& to);
 
  private:
-  /// In the stock or a little outside.
+  /// A random point in the stock or a little outside.
   Vec3 place() {
     const Vec3 margin = 0.1 * box_.size();
     Vec3 p;
     for (int k = 0; k < 3; ++k) p[k] = random_.uniform(box_.lower[k] - margin[k], box_.upper[k] + margin[k]);
     return p;
   }
-  /// Along any of the rays that run along `k`: its other two coordinates, and k in the middle.
+  /// A point on a random ray along direction `k`, in the middle of the box.
   Vec3 on_a_ray(int k) {
     Vec3 p = (box_.lower + box_.upper) / 2.0;
     for (int a = 1; a < 3; ++a) {
@@ -62,7 +62,7 @@ class Drawer {
   const Volume& now_;
 };
 
-/// The cutter's side, or a flat face, exactly in a plane of rays; the move is a whole number of pitches, or 0.
+/// Places the cutter's side, or a flat face, exactly in a plane of rays; the move is a whole number of pitches, or 0.
 void Drawer::walls_on_rays(Pose& from, Pose& to) {
   const Vec3 axis = random_.along_rays();
   const int k = axis.x != 0 ? 0 : axis.y != 0 ? 1 : 2;
@@ -74,7 +74,7 @@ void Drawer::walls_on_rays(Pose& from, Pose& to) {
   to.tip[random_.below(3)] += pitch_ * (random_.below(13) - 6);
 }
 
-/// One ray touches the cutter's side, on a move that keeps it there or leaves it.
+/// Makes one ray tangent to the cutter's side; the move keeps it tangent or leaves it.
 void Drawer::tangent_to_ray(Pose& from, Pose& to) {
   const int k = random_.below(3);
   Vec3 ray{0};
@@ -88,7 +88,7 @@ void Drawer::tangent_to_ray(Pose& from, Pose& to) {
   to = {from.tip + random_.uniform(-2, 2) * radius_ * random_.one_of(ways), axis};
 }
 
-/// Tip and move on the lattice of half pitches, axis along rays.
+/// Places tip and move on the lattice of half pitches, with the axis along rays.
 void Drawer::on_lattice(Pose& from, Pose& to) {
   from.axis = to.axis = random_.along_rays();
   for (int k = 0; k < 3; ++k) {
@@ -113,7 +113,7 @@ Vec3 Drawer::surface_point(int& along) {
   return {box_.upper.x, box_.upper.y, box_.upper.z};
 }
 
-/// The tip exactly on the stock's surface, moving within it, along the ray, or anyhow.
+/// Places the tip exactly on the stock's surface; the move is in the surface, along the ray, or random.
 void Drawer::on_surface(Pose& from, Pose& to) {
   int k = 2;
   from.tip = surface_point(k);
@@ -132,7 +132,7 @@ void Drawer::turn(Pose& from, Pose& to, double angle) {
   to = {from.tip + (random_.one_in(3) ? Vec3(0) : any_way()), turned(axis, random_.square_to(axis), angle)};
 }
 
-/// The tool turns about a point of its own axis, about a ball tip's centre for instance, or about a point high above.
+/// Turns the tool about a point of its axis, such as a ball tip's centre, or about a point high above.
 void Drawer::about_pivot(Pose& from, Pose& to) {
   turn(from, to, random_.power_of_ten(-3, 0.2));
   const double height = random_.one_of({0.0, 1.0, 2.0, 16.0}) * radius_;
@@ -140,7 +140,7 @@ void Drawer::about_pivot(Pose& from, Pose& to) {
   to.tip = pivot - height * to.axis;
 }
 
-/// The axis passes, reaches or leaves the plane square to a direction of rays.
+/// Makes the axis cross, reach or leave the plane perpendicular to a direction of rays.
 void Drawer::edge_on(Pose& from, Pose& to) {
   const Vec3 ray = random_.along_rays(), level = random_.square_to(ray);
   const double before = random_.one_in(4) ? 0 : -random_.power_of_ten(-6, -0.1),
@@ -212,7 +212,7 @@ Kind draw_kind(Random& random, bool first) {
   for (;;) {
     const Kind kind = static_cast<Kind>(random.below(static_cast<int>(Kind::kCount)));
     if (first && kind == Kind::Repeated) continue;
-    if (kind == Kind::NearAntipodal && !random.one_in(3)) continue;  // they cost much
+    if (kind == Kind::NearAntipodal && !random.one_in(3)) continue;  // these are slow
     return kind;
   }
 }
@@ -237,7 +237,7 @@ Move draw_move(Random& random, const Stage& stage, const Volume& now, std::span<
     return move;
   }
   Drawer(random, stage, now).draw(move.kind, move.from, move.to);
-  // A great turn of a long cutter at a fine tolerance is some thousand steps.
+  // A large turn of a long cutter at a fine tolerance takes thousands of steps.
   if (glm::dot(move.from.axis, move.to.axis) < 0.3)
     move.tolerance = std::min(std::max(move.tolerance, stage.tool.profile().max_radius() * 0.02), stage.finest);
   return move;

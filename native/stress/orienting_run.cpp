@@ -19,10 +19,10 @@ namespace riffler::stress {
 namespace {
 
 constexpr int kStepsPerFrame = 33;  // steps
-constexpr int kDepth = 16;          // steps between two searches for the true depth
+constexpr int kDepth = 16;          // steps between two computations of the true depth
 constexpr double kRadius = 3, kFrom = 2, kTo = 38, kLength = 40;
 
-/// Extruded along x: floor at z = 0 for y > 0, wall at y = 0 up to z = 60.
+/// An L extruded along x: floor at z = 0 for y > 0, wall at y = 0 up to z = 60.
 Mesh corner() {
   const Vec2 outline[] = {{80, 0}, {0, 0}, {0, 60}, {-20, 60}, {-20, -20}, {80, -20}};
   Mesh out;
@@ -50,7 +50,8 @@ plan::PencilPath edge() {
   return path;
 }
 
-/// To and fro by frequencies that never meet again; a button now and then, every third time the one that deletes.
+/// A hand that moves to and fro with incommensurate frequencies and presses a button now and then, every third time the
+/// one that deletes.
 pen::HandPath turning(const Pose& home) {
   return [home](double t) {
     const double s = std::max(0.0, t - 1);
@@ -63,7 +64,7 @@ pen::HandPath turning(const Pose& home) {
   };
 }
 
-/// The keys of the path, as a session has them.
+/// The keys of the path, as in a session.
 class Keys {
  public:
   explicit Keys(plan::PencilPath given) : given_(std::move(given)) {}
@@ -87,7 +88,7 @@ class Keys {
   plan::OrientationKeys keys_;
 };
 
-/// What the ticks of a frame were.
+/// Evaluates the ticks of a frame.
 class Watch {
  public:
   Watch(const collide::Collider& obstacles, const Tool& tool, double warm, OrientingRun& run)

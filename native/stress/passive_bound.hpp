@@ -12,7 +12,7 @@ struct DeviceTraits {
   double resolution;  ///< mm, step of the measured position
 };
 
-/// N/mm; 0 where the device is not passive at any stiffness. `sampling`: b > K T/2 + |B| for a wall K x + B ẋ with ẋ
+/// N/mm; 0 if the device is not passive at any stiffness. `sampling`: b > K T/2 + |B| for a wall K x + B ẋ with ẋ
 /// from the last two samples (Colgate and Schenkel 1997, (2.13) in methods). `quantisation`: K ≤ 2 f_c/Δ (Abbott and
 /// Okamura 2005), infinite for a step of zero. The wall is passive if it is no stiffer than either.
 struct PassiveStiffness {
@@ -21,7 +21,7 @@ struct PassiveStiffness {
   double least() const { return sampling < quantisation ? sampling : quantisation; }
 };
 
-/// std::invalid_argument naming the field. `wall_damping` is B, N·s/mm.
+/// `wall_damping`: B, N·s/mm. Throws std::invalid_argument naming the field.
 PassiveStiffness passive_stiffness(const DeviceTraits& device, double wall_damping = 0);
 
 }  // namespace riffler::haptics

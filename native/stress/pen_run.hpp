@@ -1,4 +1,4 @@
-// What minutes with the simulated pen share: a hand's gain, memory, and what each step asked the system for.
+// Common parts of long runs with the simulated pen: the energy that a hand gains, memory, and allocations in steps.
 #pragma once
 
 #include <algorithm>
@@ -12,20 +12,20 @@
 
 namespace riffler::stress {
 
-/// MB that the process holds.
+/// Resident memory of the process, MB.
 inline double resident_mb() {
   long pages = 0, resident = 0;
   std::ifstream("/proc/self/statm") >> pages >> resident;
   return static_cast<double>(resident) * 4096e-6;
 }
 
-/// Calls of operator new in steps after the warm-up, and blocks from the system.
+/// Calls of operator new and memory blocks taken from the system, in steps after the warm-up.
 struct StepCosts {
   long allocations = 0;
   std::uint64_t from_system = 0;
 };
 
-/// The loop, and what each of its steps asked the system for from `warm` (s) on.
+/// A loop that counts allocations in its steps from `warm` (s) on.
 class CountedStep final : public pen::PenStep {
  public:
   CountedStep(pen::PenStep& loop, std::function<long()> allocations, double warm, StepCosts& costs)
@@ -48,8 +48,8 @@ class CountedStep final : public pen::PenStep {
   StepCosts& costs_;
 };
 
-/// What the hand gains in one contact, from motors without current to motors without current: between two nothing is
-/// stored, so no spring gives back in one what it took in another.
+/// Energy that the hand gains in one contact, between two times at which the motors have no current. No energy is
+/// stored then, so a spring cannot return in one contact what it took in another.
 struct ContactGain {
   double gained = 0, before = 0;
   std::int64_t pushed_us = 0;
@@ -63,7 +63,7 @@ struct ContactGain {
   }
 };
 
-/// The simulated pen is never gone.
+/// A connector for the simulated pen, which never disconnects.
 struct NeverGone final : pen::Connector {
   void begin() noexcept override {}
   Answer poll(std::unique_ptr<pen::Transport>&, pen::OpenProblem&) noexcept override { return Answer::Pending; }

@@ -1,4 +1,4 @@
-// Random numbers from the library's generator but not its distributions, which differ between libraries.
+// Random numbers from the standard library's generator. Own distributions, because those of libraries differ.
 #pragma once
 
 #include <cstdint>
@@ -32,7 +32,7 @@ class Random {
     const double z = uniform(-1, 1), angle = uniform(0, 6.283185307179586), r = std::sqrt((1 - z) * (1 + z));
     return glm::normalize(Vec3(r * std::cos(angle), r * std::sin(angle), z));
   }
-  /// A unit vector square to `a`.
+  /// A unit vector perpendicular to `a`.
   Vec3 square_to(const Vec3& a) {
     for (;;) {
       const Vec3 c = glm::cross(a, direction());

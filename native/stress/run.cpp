@@ -12,7 +12,7 @@ namespace riffler::stress {
 namespace {
 
 constexpr std::size_t kSessionsKept = 20;
-constexpr int kRepeatEvery = 4;  // moves, until one is carved again at once
+constexpr int kRepeatEvery = 4;  // moves between two that are carved a second time
 constexpr std::uint64_t kJudge = 0x6A75646765;
 
 std::ostream& operator<<(std::ostream& out, const Vec3& v) {
@@ -35,7 +35,7 @@ std::string describe(const Stage& stage, const Move& move) {
   return out.str();
 }
 
-/// The tool's dict, as Python's Tool.from_dict reads it.
+/// The tool as JSON for Python's Tool.from_dict.
 std::string to_json(const Tool& tool) {
   std::ostringstream out;
   out.precision(17);
@@ -87,11 +87,12 @@ class CarvingSession {
     return p;
   }
 
-  /// All moves, and the moves between them, in one go: the same bytes with 1 thread and with 4.
+  /// Carves all moves and the moves between them in one call; 1 and 4 threads must give the same bytes.
   Problem check_threads() const {
     std::vector<Pose> poses;
     for (const Move& m : moves_) {
-      if (m.kind == Kind::FarOutside || m.kind == Kind::LongWay) continue;  // moves to them would be most of the work
+      if (m.kind == Kind::FarOutside || m.kind == Kind::LongWay)
+        continue;  // skip: moves there would take most of the time
       if (!poses.empty() && glm::dot(poses.back().axis, m.from.axis) < -0.999) continue;
       poses.push_back(m.from), poses.push_back(m.to);
     }
@@ -107,7 +108,7 @@ class CarvingSession {
     }
     if (cuts[0].removed != cuts[1].removed || cuts[0].force != cuts[1].force || cuts[0].torque != cuts[1].torque)
       return "4 threads give other forces or volumes than 1";
-    if (Problem p = check_spans(volumes[0]); !p.empty()) return "in one go: " + p;
+    if (Problem p = check_spans(volumes[0]); !p.empty()) return "in one call: " + p;
     const Problem p = check_same_bytes(volumes[0], volumes[1]);
     return p.empty() ? p : "4 threads give other bytes than 1: " + p;
   }
@@ -142,7 +143,7 @@ class CarvingSession {
     return p;
   }
 
-  /// What was removed once is not there to be removed again.
+  /// Repeats a move, which must remove almost nothing.
   Problem repeat(const Move& move) {
     const double before = volume_.volume();
     if (Problem p = carve_checked(move); !p.empty()) return "repeated: " + p;
@@ -154,7 +155,7 @@ class CarvingSession {
   }
 
   const Options& options_;
-  Random judge_, random_;  // what is compared does not change what is carved
+  Random judge_, random_;  // two streams, so that comparisons do not change what is carved
   Stage stage_;
   Volume volume_;
   double full_;

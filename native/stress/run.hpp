@@ -14,21 +14,21 @@ namespace riffler::stress {
 
 struct Options {
   std::uint64_t seed = 1;
-  std::uint64_t first_session = 0;  ///< a run that was cut short continues from here
-  int compare_every = 8;            ///< moves, at random, from one comparison with the reference to the next; 0: never
-  int compared_rays = 10;           ///< of those that a compared move changed
-  int threads_every = 8;            ///< sessions until one is carved again in one go, with 1 and with 4 threads
+  std::uint64_t first_session = 0;  ///< first session; continues an interrupted run
+  int compare_every = 8;            ///< mean number of moves between two comparisons with the reference; 0: none
+  int compared_rays = 10;           ///< number of changed rays that a comparison checks
+  int threads_every = 8;            ///< sessions between two that are carved again in one call, with 1 and 4 threads
 };
 
 inline constexpr int kMovesInSession = 16;
 
-/// A failed check, and how to see it again.
+/// A failed check, with the numbers that reproduce it.
 struct Failure {
   std::string cutter;
   std::uint64_t seed, session;
   int move;
   Kind kind;
-  std::string text;  ///< what is wrong, and the stock, the tool and the poses with all their digits
+  std::string text;  ///< the fault, and the stock, tool and poses with all digits
 };
 
 struct Tally {
@@ -41,22 +41,23 @@ struct Results {
   std::array<Tally, static_cast<std::size_t>(Kind::kCount)> kinds;
   std::array<Tally, static_cast<std::size_t>(Setting::kCount)> settings;
   long thread_checks = 0;
-  std::vector<Failure> failures;  ///< the first of them
+  std::vector<Failure> failures;  ///< the first few
   Tally total() const;
 };
 
-/// Session number `session` of a cutter depends on nothing but the seed, the cutter and the number. It ends with its
+/// Runs session number `session` of a cutter, which depends only on the seed, the cutter and the number. Ends at the
 /// first failure.
 void run_session(const Options& options, const std::string& cutter, std::uint64_t session, Results& out);
 
-/// Its stock, tool and moves, up to the first failure, one stroke a move.
+/// The session's stock, tool and moves up to the first failure, with one stroke per move.
 session::Journal session_journal(const Options& options, const std::string& cutter, std::uint64_t session);
 
-/// At least `moves` moves. `progress`, called after every session, may stop the run by returning false.
+/// Runs sessions for at least `moves` moves. `progress` is called after each session and may stop the run by returning
+/// false.
 Results run(const Options& options, const std::string& cutter, long moves,
             const std::function<bool(const Results&)>& progress = {});
 
-/// The command that runs the failed session alone.
+/// The command that repeats the failed session.
 std::string reproducer(const Failure& failure);
 
 }  // namespace riffler::stress

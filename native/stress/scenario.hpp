@@ -1,4 +1,4 @@
-// What the stress run carves: cutters, stocks and moves from the degenerate limits.
+// Random cutters, stocks and moves from the degenerate limits, for the stress run.
 #pragma once
 
 #include <span>
@@ -15,21 +15,21 @@ namespace riffler::stress {
 /// Names for the command line: ball, flat, fillet, …
 std::span<const char* const> cutter_names();
 
-/// What is extreme about a session's sizes and places.
+/// Extreme of a session's sizes and places.
 enum class Setting { Usual, TinyCutter, HugeCutter, FarFromOrigin, kCount };
 const char* name(Setting setting);
 
-/// A stock, a cutter for it, and the tolerance that its moves start from.
+/// A stock, a cutter for it, and the base tolerance of its moves.
 struct Stage {
   Setting setting;
   dexel::Frame frame;
   Tool tool;
   double tolerance;  ///< mm
-  double finest;     ///< mm: tolerances above it could not tell a cut from none, since the cutter is so thin
+  double finest;     ///< mm: largest useful tolerance; above it a cut with so thin a cutter could be lost
 };
 Stage draw_stage(Random& random, const std::string& cutter);
 
-/// What is degenerate about a move.
+/// Kind of degeneracy of a move.
 enum class Kind {
   Still,
   TinyWay,
@@ -59,7 +59,7 @@ struct Move {
   double tolerance;  ///< mm
 };
 
-/// `now`: the present stock; `before`: earlier moves of the session.
+/// Draws a move. `now`: the present stock; `before`: earlier moves of the session.
 Move draw_move(Random& random, const Stage& stage, const Volume& now, std::span<const Move> before);
 
 }  // namespace riffler::stress

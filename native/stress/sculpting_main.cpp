@@ -1,4 +1,4 @@
-// Ten minutes of sculpting with the simulated pen, or as many as one likes, and what they cost.
+// Sculpts with the simulated pen, for ten minutes unless --seconds is given, and prints the cost.
 #include <algorithm>
 #include <cstdio>
 #include <exception>
@@ -46,12 +46,13 @@ void print(SculptingRun& run) {
               quantile(0.99), quantile(0.999), quantile(1));
   std::printf("resident, MB:");
   for (const double mb : run.resident) std::printf(" %.1f", mb);
-  std::printf("\nblocks from the system in steps: %lu; steps missed: %lu; trips: %lu\n", run.from_system, run.missed,
-              run.trips);
+  std::printf("\nmemory blocks taken from the system during steps: %lu; steps missed: %lu; trips: %lu\n",
+              run.from_system, run.missed, run.trips);
   std::printf(
-      "force up to %.2f N; motors took %.1f N mm, and were never more than %.3f N mm ahead; account at least %.3f\n",
+      "force up to %.2f N; motors took %.1f N mm from the hand, and gave it at most %.3f N mm in a contact; smallest "
+      "account %.3f\n",
       run.greatest, run.given, run.gained, run.account);
-  std::printf("the same bytes once more: %s\n", run.replayed ? "yes" : "NO");
+  std::printf("replay gives the same bytes: %s\n", run.replayed ? "yes" : "NO");
 }
 
 }  // namespace

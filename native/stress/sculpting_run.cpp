@@ -19,7 +19,8 @@ namespace {
 const Box3 kBox{{-40, -40, -30}, {40, 40, 0}};
 constexpr int kFrame = 33;  // steps
 
-/// Over ±15 mm of the pen, twice as much of the tool, by frequencies that never meet again; deeper and deeper.
+/// A hand that wanders over ±15 mm of the pen, twice as much of the tool, with incommensurate frequencies, and ever
+/// deeper.
 pen::HandPath wandering(const Pose& home, double seconds, double pressed) {
   return [home, seconds, pressed](double t) {
     const double s = std::max(0.0, t - 1);
@@ -33,7 +34,7 @@ pen::HandPath wandering(const Pose& home, double seconds, double pressed) {
   };
 }
 
-/// Every move once more, by itself, as a journal's replay would.
+/// Carves every move a second time, one by one, like the replay of a journal.
 class Again final : public session::StrokeSink {
  public:
   Again(const Volume& stock, const Tool& tool, const sweep::MoveCarver::Options& options)
@@ -46,7 +47,7 @@ class Again final : public session::StrokeSink {
   void end() noexcept override {}
   void undo(std::size_t) noexcept override {}
   void redo(std::size_t) noexcept override {}
-  /// Not in the thread's step.
+  /// Call it outside the thread's step.
   void catch_up() {
     for (const auto& [from, to] : moves_)
       if (!session::stands(from, to)) carver_.move(from, to, 1e-3);

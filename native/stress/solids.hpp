@@ -18,7 +18,7 @@ struct SolidSpan {
   Vec3 near_normal, far_normal;
 };
 using SolidSpans = std::vector<SolidSpan>;
-/// Where a solid meets a line: origin, direction (unit) → sorted, disjoint cuts.
+/// A solid as a function from a line (origin, unit direction) to its sorted, disjoint spans on the line.
 using Solid = std::function<SolidSpans(const Vec3&, const Vec3&)>;
 
 constexpr double kFarAway = 1e9;
@@ -67,7 +67,7 @@ inline Solid combine(const Solid& a, const Solid& b, std::function<bool(bool, bo
       const bool next = rule(in[0], in[1]);
       if (next == now) continue;
       now = next;
-      // A solid that is taken away turns its normal.
+      // The normals of a subtracted solid are reversed.
       const bool turned = next != e.in;
       const Vec3 normal = turned ? -e.normal : e.normal;
       if (next)
@@ -89,7 +89,7 @@ inline Solid subtract(const Solid& a, const Solid& b) {
   return combine(a, b, [](bool x, bool y) { return x && !y; });
 }
 
-/// A box of half sides `half` about `centre`, its axes the columns of `turn`.
+/// A box with half sides `half` about `centre`; its axes are the columns of `turn`.
 inline Solid turned_box(const Vec3& centre, const Vec3& half, const Mat3& turn) {
   Solid box;
   for (int a = 0; a < 3; ++a)
@@ -104,7 +104,7 @@ inline Solid box(const Vec3& lower, const Vec3& upper) {
   return turned_box((lower + upper) / 2.0, (upper - lower) / 2.0, Mat3(1.0));
 }
 
-/// Any rotation.
+/// A random rotation.
 inline Mat3 random_turn(Random& random) {
   const Vec3 a = random.direction(), b = random.square_to(a);
   return Mat3(a, b, glm::cross(a, b));
@@ -114,14 +114,14 @@ inline dexel::SpanNormals packed(const SolidSpan& c) {
   return {dexel::PackedNormal::pack(c.near_normal), dexel::PackedNormal::pack(c.far_normal)};
 }
 
-/// Fills every grid of a volume: cuts(grid, i, j) gives each ray's, absolute along the ray; what sticks out of the box
-/// is cut off.
+/// Fills every grid of a volume: cuts(grid, i, j) returns the spans of a ray, in absolute coordinates along it; clips
+/// them to the box.
 inline void fill(Volume& volume, const std::function<SolidSpans(const dexel::Grid&, int, int)>& cuts) {
   for (dexel::Grid& grid : volume.grids())
     for (std::size_t t = 0; t < grid.tile_count(); ++t)
       grid.fill_tile(t, [&](int i, int j, dexel::TileBuilder& builder) {
         for (const SolidSpan& c : cuts(grid, i, j)) {
-          // Within the box to the last bit, which a solid's own arithmetic may miss.
+          // Clip to the box to the last bit, which a solid's own arithmetic may exceed.
           const dexel::Span span{std::max(c.near, grid.box().lower.z), std::min(c.far, grid.box().upper.z)};
           if (span.near < span.far) builder.add(span, packed(c));
         }

@@ -15,7 +15,8 @@ Column scaled(double s, Column c) {
   return c;
 }
 
-/// Smallest stiffness in [1e-6, 1e6] for which `active` holds, to 1e-4; `active` must hold above it.
+/// Smallest stiffness in [1e-6, 1e6] for which `active` holds, to 1e-4 of its value; `active` must hold for all larger
+/// ones.
 template <class Active>
 double bisect(const Active& active) {
   double low = std::log(1e-6), high = std::log(1e6);
@@ -52,7 +53,7 @@ double gained(const WallDevice& device, const SimulatedWall& wall, const Column&
   RenderedWall rendered(device, wall, {});
   Column last;
   double sum = 0;
-  // The second round of two, when what came before the path is forgotten.
+  // Sums over the second of two rounds, when the state before the first no longer matters.
   for (int k = 0; k <= 4 * ticks; ++k) {
     const int phase = k % (2 * ticks);
     const double s = (phase <= ticks ? phase : 2 * ticks - phase) * 2.0 / ticks - 1;
@@ -71,7 +72,7 @@ double gained(const WallDevice& device, const SimulatedWall& wall, const Column&
 
 double cunning_boundary(const WallDevice& device, double wall_damping, const Column& normal,
                         const std::vector<Column>& directions) {
-  // Without steps everything is linear, and one amplitude as good as any.
+  // Without encoder steps the system is linear, so one amplitude is enough.
   static constexpr double kAmplitudes[] = {1, 1e-3, 0.1, 0.4, 4, 32, 1e3};
   const bool stepless = *std::max_element(device.resolution.begin(), device.resolution.end()) == 0;
   return bisect([&](double stiffness) {
@@ -86,7 +87,7 @@ double cunning_boundary(const WallDevice& device, double wall_damping, const Col
 CoupledScene coupled_scene(std::uint64_t seed) {
   Random random(seed);
   constexpr int n = 5;
-  // Qᵀ Q + ½: positive definite, with eigenvalues that are some times apart.
+  // Qᵀ Q + ½: positive definite, with eigenvalues that differ by small factors.
   const auto definite = [&](double scale) {
     Matrix q(n, n);
     for (int i = 0; i < n; ++i)
@@ -126,7 +127,7 @@ WallHand guide(const WallDevice& device, const Column& direction) {
 
 namespace {
 
-/// What the hand does at a tick.
+/// The hand's motion at each tick.
 class Hand {
  public:
   Hand(const Session& session, const Column& normal) : session_(session), normal_(normal), random_(session.seed) {

@@ -1,4 +1,4 @@
-// Where a simulated device begins to give energy to the hand: the measured side of docs/stability.md.
+// Boundary from which a simulated device gives energy to the hand: the measurements of docs/stability.md.
 #pragma once
 
 #include <cstdint>
@@ -8,17 +8,18 @@
 
 namespace riffler::stress {
 
-/// The stiffness (N/mm) from which the device, struck once and then held by `hand`, swings up instead of calming down.
-/// Without friction and encoder steps; to 1e-3.
+/// The stiffness (N/mm) from which the oscillation of the device, struck once and then held by `hand`, grows instead of
+/// decaying. Without friction and encoder steps; to 1e-3.
 double swing_boundary(const WallDevice& device, const WallHand& hand, const Column& normal);
 
-/// N·mm that a hand gains by one round of a path, if it moves the device itself: what the wall delivers less what
-/// damping and friction take. The path is a triangle of 2 · `ticks` samples, `amplitude` to both sides of an edge
-/// between encoder steps.
+/// Energy (N·mm) that a hand gains in one round of a path on which it moves the device itself: what the wall delivers
+/// minus what damping and friction take. The path is a triangle wave of 2 · `ticks` samples, `amplitude` to both sides
+/// of an edge between encoder steps.
 double gained(const WallDevice& device, const SimulatedWall& wall, const Column& amplitude, int ticks);
 
-/// The stiffness from which some of many paths gains: of all lengths, and of amplitudes from a thousandth of an encoder
-/// step to a thousand steps, along each of `directions`. The most cunning hand, which is what passivity is about.
+/// The stiffness from which one of many paths gains energy: paths of all lengths, with amplitudes from a thousandth of
+/// an encoder step to a thousand steps, along each of `directions`. This is the most cunning hand, which passivity is
+/// about.
 double cunning_boundary(const WallDevice& device, double wall_damping, const Column& normal,
                         const std::vector<Column>& directions);
 
@@ -36,8 +37,8 @@ CoupledScene coupled_scene(std::uint64_t seed);
 /// A hand that lets the device slide along `direction` only.
 WallHand guide(const WallDevice& device, const Column& direction);
 
-/// A hand on a one-sided wall. One that strikes presses, wavers, and lets go at random; one that does not presses with
-/// all its push, from half a millimetre before the wall. Beyond its force it is a weak spring and damper.
+/// A hand on a one-sided wall. A striking hand presses, wavers and lets go at random; another one presses with its full
+/// push, from half a millimetre before the wall. In addition to its force the hand is a weak spring and damper.
 struct Session {
   long ticks = 100'000;
   double push = 2;  // N; in coordinates that are angles, times 20 mm

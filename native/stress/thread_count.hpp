@@ -1,4 +1,4 @@
-// The number of threads for a while.
+// Sets the number of threads within a scope.
 #pragma once
 
 #include <cstdlib>
@@ -6,7 +6,7 @@
 
 namespace riffler::stress {
 
-/// Sets RIFFLER_THREADS while it lives.
+/// Sets RIFFLER_THREADS during its lifetime.
 class ThreadCount {
  public:
   explicit ThreadCount(const char* count) {

@@ -30,7 +30,7 @@ struct SimulatedWall {
   Column normal;
   double stiffness = 0, damping = 0;
   bool one_sided = false;  // no force for d < 0
-  double most = 0;         // N: the wall's force goes no further; 0 is no limit
+  double most = 0;         // N: the wall's force goes no further; 0: no limit
 };
 
 /// What runs at samples: encoder, wall, and the passivity controller if there is one.

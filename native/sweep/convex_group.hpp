@@ -12,7 +12,7 @@ namespace riffler::sweep {
 /// Frustum or Round (piece.hpp) as plain numbers. All fields are set for both types unless stated otherwise.
 struct PieceShape {
   bool round, ball;       ///< ball: a Round that is a complete ball
-  bool cut0, cut1;        ///< whether it ends in a flat face at z0, at z1; a pole is no face
+  bool cut0, cut1;        ///< whether it ends in a flat face at z0, at z1; a pole is not a face
   double z0, r0, z1, r1;  ///< ends
   double slope, cosine;   ///< Frustum: dr/dz and 1 / √(1 + slope²)
   double e, zc, r;        ///< Round

@@ -28,7 +28,7 @@ Footprint::Footprint(std::span<const tool::Piece> pieces, std::initializer_list<
       else
         add(bottom(piece)), add(top(piece));
     }
-    // Seen along an upright axis, the flank covers the same disc as the ball below it.
+    // If the axis is parallel to the rays, the flank covers the same disc as the ball below it.
     const Hull* below = count_ > 1 ? &hulls_[count_ - 2] : nullptr;
     if (below && below->thickness == hull.thickness && below->corners == hull.corners &&
         std::equal(hull.corner, hull.corner + hull.corners, below->corner))

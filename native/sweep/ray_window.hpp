@@ -41,7 +41,7 @@ struct RayWindow {
   double step;              ///< origin of the ends that arise at the beginning of the motion (open_tile.hpp)
   double u[dexel::kTileSide];
   alignas(64) double v[dexel::kTileSide + base::kLanes];
-  bool uneven;  ///< some cells are no squares of the pitch; their areas are share_u × share_v squares
+  bool uneven;  ///< some cells are not squares of the pitch; their areas are share_u × share_v squares
   double share_u[dexel::kTileSide];
   alignas(64) double share_v[dexel::kTileSide + base::kLanes];
   double thinnest;  ///< mm; thinner remains vanish

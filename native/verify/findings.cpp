@@ -51,7 +51,7 @@ void FindingList::add(std::vector<Event> events, std::span<const std::int32_t> t
 
 void FindingList::add_row(const Event& e, std::int32_t tool, std::int32_t line) {
   const auto [open, added] = open_.try_emplace({e.kind, e.fixture}, findings_.size());
-  // What the stock lacks from the start is reported at row 0, which is no neighbour of a move.
+  // What the stock lacks from the start is reported at row 0, which is not a neighbour of a move.
   if (!added) {
     Finding& last = findings_[open->second];
     if (last.last_row + 1 == e.row && last.last_row > 0 && last.tool == tool) {

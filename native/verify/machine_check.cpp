@@ -13,7 +13,7 @@ std::optional<Finding> machine_fault(const nc::Program& program, std::int64_t fi
   const auto fault =
       moved ? check.first_fault(transformed(program, machine.turn, machine.shift)) : check.first_fault(program);
   if (!fault) return std::nullopt;
-  // An incomplete program is no fault of the machine.
+  // An incomplete program is not a fault of the machine.
   if (fault->name() != "poses") throw nc::RowError(*fault);
   Finding found{};
   found.kind = Kind::Machine;

@@ -104,7 +104,7 @@ void SlabRun::note_unchecked(VerifyReport& report) const {
   if (!options.machine) out.emplace_back("limits and reach: no machine was given");
   if (scene_->fixtures().empty()) out.emplace_back("fixtures: none were given");
   for (std::string& sentence : scene_->tools().not_described(rows_.tools())) out.push_back(std::move(sentence));
-  if (rows_.without_tool()) out.emplace_back("rapids before a tool is called: nothing is in the spindle yet");
+  if (rows_.without_tool()) out.emplace_back("rapids before a tool is called: the spindle is empty");
 }
 
 }  // namespace riffler::verify

@@ -12,7 +12,7 @@ namespace riffler::verify {
 
 namespace {
 
-/// The row before the first one that some slab has not simulated.
+/// The last row that all slabs have simulated.
 std::size_t done_by_all(const std::vector<SlabState>& slabs, std::size_t rows) {
   auto done = static_cast<std::int64_t>(rows);
   for (const SlabState& slab : slabs) done = std::clamp<std::int64_t>(slab.done, 0, done);
@@ -30,7 +30,7 @@ struct Verification::Core {
     std::vector<SlabState> slabs;
   };
 
-  /// Decides which slabs stay as they were, and the row from which the others must be rerun.
+  /// Decides which slabs keep their results, and the row from which the others must be rerun.
   std::vector<SlabState> resume(const RunRows& rows, VerifyStats& stats) const;
 
   std::shared_ptr<VerifyScene> scene_;

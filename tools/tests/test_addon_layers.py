@@ -66,7 +66,7 @@ def test_a_feature_uses_what_is_before_it_only(addon):
         ("sculpt/pure/rays.py", "from .. import panel", "a pure module imports sculpt.panel, which is not pure"),
         ("sculpt/brushes/carve.py", "from ...blender import views", "a pure module imports blender.views"),
         ("plan/panel.py", "from ..sculpt.gone import x", "addon/plan/panel.py:1: sculpt.gone is not there"),
-        ("other/thing.py", "x = 1", "addon/other is no section"),
+        ("other/thing.py", "x = 1", "addon/other is not a section"),
     ],
 )
 def test_what_breaks_a_layer_is_named(addon, file, text, said):

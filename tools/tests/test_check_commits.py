@@ -20,8 +20,8 @@ def test_an_area_and_an_order_with_a_body_pass(subject):
     [
         ("Count words" + BODY, "area: Imperative"),
         ("tools: count words" + BODY, "area: Imperative"),
-        ("tools: Counted words" + BODY, "no imperative"),
-        ("tools: Counting words" + BODY, "no imperative"),
+        ("tools: Counted words" + BODY, "not an imperative"),
+        ("tools: Counting words" + BODY, "not an imperative"),
         ("tools: Count words." + BODY, "full stop"),
         ("tools: " + "C" * 66 + BODY, "73 characters"),
         ("tools: Count words", "body"),

@@ -15,8 +15,8 @@ def journal_name(name: str, when) -> str:
 
 
 class PenRun(DeviceRun):
-    """A device and its sessions, one after the other, each with a volume that nothing else changes meanwhile:
-    `prepare`, `start`, `look` about thirty times a second, `halt`; finally `close`.
+    """A device and its sessions, one after the other. For each session call `prepare`, `start`, `look` about thirty
+    times a second and `halt`; at the end call `close`. Nothing else may change a session's volume.
 
     `options` are riffler.Session's. If they set the tool's pose (`at`), the next session starts from the last pose.
     """
@@ -68,7 +68,7 @@ class PenRun(DeviceRun):
         return ""
 
     def taken_rows(self) -> list[np.ndarray]:
-        """(n, 6) of each stroke finished since the last call."""
+        """The poses (n, 6) of each stroke finished since the last call."""
         rows = [np.array(stroke) for stroke in self._rows if len(stroke) > 1]
         self._rows.clear()
         return rows

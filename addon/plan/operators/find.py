@@ -27,7 +27,7 @@ from .. import (
 
 
 def missing(context, settings):
-    """The missing input of the chosen strategy, with the next step, or ""; cheap enough for a panel."""
+    """A message on the chosen strategy's missing input and the next step, or "". Cheap enough for a panel."""
     strategy, ob = strategy_fields.chosen(settings), plan_store.active(context)
     there = {
         "curves": given_curves.objects(context),
@@ -61,7 +61,7 @@ class RIFFLER_OT_plan_find(LongWork, properties.FindSettings, bpy.types.Operator
     def description(cls, context, properties):
         if not properties.replace:
             return local(strategy_fields.chosen(properties).description)
-        return f"Replace the paths of {properties.replace} and their orientations by what is found on its part now"
+        return f"Replace the paths of {properties.replace} and their orientations by paths found on its part again"
 
     @classmethod
     def poll(cls, context):
@@ -77,7 +77,7 @@ class RIFFLER_OT_plan_find(LongWork, properties.FindSettings, bpy.types.Operator
         """Asks the user for confirmation; a script gets none."""
         if asked := fit_check.size_question(context.scene):
             return operator_parts.fail(
-                self, ValueError(f"{asked} Choose it in the panel Part and Fixtures, also if it is right")
+                self, ValueError(f"{asked} Choose it in the panel Part and Fixtures, even if it is right")
             )
         return super().invoke(context, event)
 

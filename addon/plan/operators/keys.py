@@ -243,7 +243,7 @@ class RIFFLER_OT_plan_key_jump(bpy.types.Operator):
 
     bl_idname = "riffler.plan_key_jump"
     bl_label = "Jump to Key Orientation"
-    bl_options = {"REGISTER"}  # in Blender a change of frame is no undo step
+    bl_options = {"REGISTER"}  # in Blender a change of frame is not an undo step
 
     back: BoolProperty(name="Back", description="Go to the previous key")
 

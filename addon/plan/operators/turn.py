@@ -255,7 +255,7 @@ class RIFFLER_OT_plan_point(PointsAt, bpy.types.Operator):
 
     bl_idname = "riffler.plan_point"
     bl_label = "Go to Point of Path"
-    bl_options = {"REGISTER"}  # in Blender a change of frame is no undo step
+    bl_options = {"REGISTER"}  # in Blender a change of frame is not an undo step
 
     def execute(self, context):
         try:

@@ -171,4 +171,4 @@ class Making:
         try:
             return task.result()
         except ValueError as error:
-            raise _unfit(name, f"is no fixture, as {error}") from error
+            raise _unfit(name, f"cannot be a fixture, as {error}") from error

@@ -1,5 +1,5 @@
-"""Messages about cutter locations: where the tool was lifted, and where no collision-free location exists. In the form
-of plan/findings.py's lists."""
+"""Messages about cutter locations for the lists of plan/findings.py: where the tool was lifted, and where no
+collision-free location exists."""
 
 from __future__ import annotations
 
@@ -33,8 +33,8 @@ def entries(path: int, centres: np.ndarray, cl: np.ndarray, report) -> list[dict
 
 
 def left(reports, tolerance: float) -> str:
-    """A message about lifts on collision-free paths, or "": where the tool is lifted by more than the tolerance, it
-    leaves material on the path."""
+    """A message about lifts on collision-free paths, or "". A lift by more than the tolerance leaves material on the
+    path."""
     lifts = np.concatenate([np.empty(0), *(np.asarray(r.lift, float) for r in reports)])
     lifts = lifts[lifts > tolerance]
     if not len(lifts):
@@ -95,7 +95,7 @@ def _runs(rows):
 
 
 def _point(points, row):
-    """The path's point of a row, or the last one before it."""
+    """The path's point at a row, or the last point before the row."""
     known = np.asarray(points)[: row + 1]
     known = known[known >= 0]
     return int(known[-1]) if len(known) else 0

@@ -125,7 +125,7 @@ class Typed:
         return self._sign + self._digits
 
     def take(self, kind: str, character: str) -> bool:
-        """Handles an event's type and character; False if it is no part of a number."""
+        """Handles an event's type and character; False if it is not part of a number."""
         if kind == "BACK_SPACE":
             self._digits, self._sign = (self._digits[:-1], self._sign) if self._digits else ("", "")
         elif character and character in "0123456789":

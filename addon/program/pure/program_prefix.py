@@ -1,7 +1,7 @@
-"""The stock after any number of a program's rows: forwards by carving, backwards from snapshots.
+"""The stock after any number of a program's rows. Forwards it is carved, backwards it is restored from snapshots.
 
-The order of visits does not matter: at each row the stock equals, to the byte, the one that carving all rows up to it
-in one call makes.
+The order of visits does not matter: at each row the stock has the same bytes as after carving all rows up to it in one
+call.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ import time
 
 import numpy as np
 
-SNAPSHOTS = 64  # about so many are kept: a step back takes at most this fraction of the whole carving
+SNAPSHOTS = 64  # approximate number kept: a step back carves at most this fraction of the program again
 LEAST = 32  # rows between two snapshots
 
 

@@ -1,8 +1,8 @@
 """A stroke of a mouse or a tablet as tool poses: the tool follows the surface under the cursor.
 
-Nothing here knows Blender: a `pick` returns the surface at a place of the view, and the result is poses to carve, piece
-by piece as the pointer moves. The tool follows a smooth path through the samples (smooth_path.py), some pixels behind
-the pointer. The same samples on the same surface give the same poses.
+Independent of Blender: a `pick` returns the surface at a place of the view, and the result is poses to carve, piece by
+piece as the pointer moves. The tool follows a smooth path through the samples (smooth_path.py), some pixels behind the
+pointer. The same samples on the same surface give the same poses.
 """
 
 from __future__ import annotations
@@ -100,7 +100,7 @@ def support(outline: np.ndarray, axis: np.ndarray, towards: np.ndarray) -> np.nd
 
 @dataclass
 class StrokeMaker:
-    """Call `add` with samples as they come, then `end`, once; both return what to carve now."""
+    """Call `add` with each sample, then `end` once; both return the moves to carve now."""
 
     settings: Settings
     outline: np.ndarray  # (k, 2) radius and height of the cutter, mm, from riffler.Tool.outline
@@ -135,7 +135,7 @@ class StrokeMaker:
         return sample._replace(x=here.x + share * (sample.x - here.x), y=here.y + share * (sample.y - here.y))
 
     def _follow(self, end: bool = False) -> list[Piece]:
-        """Follows the final part of the path; not for less than half a spacing, except at the end."""
+        """Follows the final part of the path. Except at the end, waits until it is at least half a spacing long."""
         ready = self._path.ready
         if self._last is None:
             return self._pieces(self._places([0.0]))
@@ -156,10 +156,10 @@ class StrokeMaker:
         return [_Place(s, self.pick(s.x, s.y)) for s in samples]
 
     def _wanted(self, goal: _Place, pixels: float) -> float:
-        """Number of steps for the distance, so that the tool does not cut straight through what lies between."""
+        """Number of steps for the distance, so that the tool follows the surface between them."""
         last = self._last
         if last.hit is None or goal.hit is None:
-            return pixels  # onto the surface or off it: the edge may be at any of them
+            return pixels  # onto the surface or off it: the edge may be at any pixel
         pressed = abs(goal.sample.pressure - last.sample.pressure) if self.settings.pressure == "DEPTH" else 0.0
         way = np.linalg.norm(goal.hit.point - last.hit.point) + pressed * self.settings.depth
         return float(way / self.settings.spacing)
@@ -211,7 +211,7 @@ class StrokeMaker:
         return np.concatenate([tip, axis])
 
     def _seconds(self, way: float, sample: Sample, passed: float) -> float:
-        """Never 0: forces are per second."""
+        """Duration of a move, never 0 because forces are per second."""
         if self.settings.pressure == "FEED":
             return max(way, 1e-6) / (self.settings.feed * min(max(sample.pressure, 0.01), 1.0))
         return passed if passed > 0 else max(way, 1e-6) / self.settings.feed

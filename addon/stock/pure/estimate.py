@@ -6,19 +6,19 @@ import math
 
 from ...common import units
 
-# Bytes of a ray with one interval at most; the native core's own figure (its budget is tested there).
+# Bytes of a ray with at most one interval. The native core's tests hold it to this figure.
 BYTES_PER_RAY = 24
 # Above this many rays the panel warns: a fresh volume of this size takes about 2.4 GB and seconds to display.
 MANY_RAYS = 100_000_000
 
-# Maximal number of triangles of a sculpt's mesh. Blender's own arrays end at 178 million, after minutes: a size with so
-# many has usually confused metres and millimetres.
+# Largest number of triangles of a sculpt's mesh. Blender's own arrays end at 178 million, after minutes; a size that
+# needs more usually comes from confusing metres with millimetres.
 MOST_TRIANGLES = 50_000_000
 
 
 def check_surface(name: str, size, area: float, pitch: float, remedy: str = "take a coarser pitch") -> None:
-    """ValueError if a surface of `area` (mm²) is too large to display at `pitch` (mm): two triangles for each cell that
-    it crosses, and more for a sloping one."""
+    """ValueError if a surface of `area` (mm²) is too large to display at `pitch` (mm). It has two triangles for each
+    cell that it crosses, and more if it slopes."""
     triangles = 2 * area / pitch**2
     if triangles > MOST_TRIANGLES:
         raise ValueError(
@@ -46,7 +46,7 @@ def too_thin(name: str, pitch: float) -> str:
 
 
 def shown_area(triangles: int, pitch: float) -> float:
-    """mm² of a surface with so many triangles at `pitch`, as `check_surface` counts them."""
+    """Area (mm²) of a surface that has `triangles` at `pitch`, as `check_surface` counts them."""
     return 0.5 * triangles * pitch**2
 
 

@@ -1,4 +1,4 @@
-"""A mesh that follows strokes: time of an update compared with that of the whole mesh."""
+"""A mesh that follows strokes: the time of an update, and that of the whole mesh."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .. import report, scenes
 from ..measure import Progress, Settings, steady, watched
 from ..report import Column, Report
 
-TARGET = 1e-3  # s, a brick
+TARGET = 1e-3  # s per brick
 STROKES = {
     "in one tile, Ø1": (Tool.ball(1, 20), [[44, 12, 29.7], [44.2, 12, 29.7]]),
     "Ø6, 0.5 mm": (Tool.ball(6, 20), [[50, 15, 28.5], [50.5, 15, 28.5]]),
@@ -23,15 +23,15 @@ def run(settings: Settings, progress: Progress = None) -> Report:
     out = Report("follow", {"target_s": TARGET})
     table = out.section(
         "strokes",
-        "B200's mesh after one more stroke, one thread: processor time",
+        "Processor time of B200's mesh after another stroke, one thread",
         Column("directions", "directions"),
         Column("h mm", "pitch", report.pitch),
         Column("stroke", "stroke"),
-        Column("bricks in all", "bricks"),
-        Column("others now", "changed"),
-        Column("triangles in them", "triangles", report.mega),
+        Column("bricks", "bricks"),
+        Column("changed", "changed"),
+        Column("triangles in these", "triangles", report.mega),
         Column("update", "update_s", report.micro),
-        Column("of it, a brick", "brick_s", report.micro),
+        Column("update, a brick", "brick_s", report.micro),
         Column("their patches", "patches_s", report.micro),
         Column("whole mesh", "whole_s", report.micro),
     )
@@ -44,7 +44,7 @@ def run(settings: Settings, progress: Progress = None) -> Report:
             row = table.row(directions=directions, pitch=pitch, stroke=name, **timed(volume, tool, np.array(tips)))
             out.check(row["same"], f"{directions}, h = {pitch:g}, {name}: not the mesh of the whole volume")
     table.notes.append(
-        "Medians of a stroke and its undoing, in turn. A brick has 32 × 32 × 32 cells and some thousand triangles. "
+        "Medians over a stroke and its undo, in turn. A brick has 32 × 32 × 32 cells and some thousand triangles. "
         "Patches: float32 vertices and int32 triangles as numpy arrays. Target: 1 ms for a changed tile."
     )
     return out

@@ -48,7 +48,7 @@ def test_a_brush_has_all_that_lists_show(brush):
     assert brush.id and brush.label and brush.description and brush.place
     assert brushes.opposite(brush).id in brushes.BRUSHES
     assert brush.second in ("DEPTH", "STRENGTH") and brush.cuts in ("", "remove", "add")
-    assert not (brush.paints and (brush.cuts or brush.shapes or brush.session)), "a mask is no material"
+    assert not (brush.paints and (brush.cuts or brush.shapes or brush.session)), "a mask is not material"
     assert brush.cuts or not brush.session, "a session carves or puts on"
     assert bool(brush.tip) == bool(brush.icon), "a tool has an icon, and nothing else has"
     if not brush.tip:

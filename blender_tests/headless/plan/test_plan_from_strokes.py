@@ -97,7 +97,7 @@ def test_each_tool_has_a_plan_and_a_flat_one_keeps_its_poses():
     said = common.printed(lambda: made.extend(planned()))
     tools = {p.riffler.plan.tool: store().plan(p) for p in made}
     assert len(made) == 2 and {len(p.depths) for p in tools.values()} == {0, 1}
-    assert "is no ball" in said
+    assert "is not a ball" in said
 
 
 def test_a_recording_is_planned_without_a_sculpt():

@@ -117,7 +117,7 @@ def test_the_cutter_s_sizes_are_fields():
     scene.plan.tool = "no tool"
     assert cutter.diameter > 0
     cutter.diameter = 3
-    assert scene.plan.tool == "no tool", "what is no tool stays, and the panel says so"
+    assert scene.plan.tool == "no tool", "an invalid tool stays, and the panel says so"
 
 
 def test_a_flat_end_mill_finds_no_pencil_cuts():

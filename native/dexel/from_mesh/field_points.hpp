@@ -19,7 +19,7 @@ struct PathPoint {
   bool ends;    ///< the edge is the last of a piece (boundary_field.hpp)
   /// For the edge that ends here, if both its ends are finite: 1 / length² (0 for length 0), and half the length.
   double inverse_square, half_length;
-  /// For the piece that ends here: 1.5 times the area of a surface that it spans; infinity if the piece is no loop.
+  /// For the piece that ends here: 1.5 times the area of a surface that it spans; infinity if the piece is not a loop.
   double area;
 };
 

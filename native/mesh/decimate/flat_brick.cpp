@@ -119,7 +119,7 @@ std::size_t FlatBrick::run(double slack) {
   std::vector<int> open;
   for (int v = 0; v < static_cast<int>(vertex_.size()); ++v)
     if (flat_at_[v] >= 0) open.push_back(v);
-  // Vertices that go in the same round are no neighbours, which keeps triangles well shaped. A vertex stays open as
+  // Vertices that go in the same round are not neighbours, which keeps triangles well shaped. A vertex stays open as
   // long as a round changes something around it.
   std::size_t lost = 0;
   std::vector<int> later;

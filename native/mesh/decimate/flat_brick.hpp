@@ -17,8 +17,8 @@ namespace riffler::mesh {
 /// too. Then old and new fan are heights over the same polygon of the plane, so no point moves along the flat's main
 /// axis by more than 2 √3 times the flat's thickness, however many vertices go: see `moved`.
 ///
-/// Vertices with triangles outside of the brick do not go, nor do vertices at flats' edges, nor any whose fan is not
-/// one closed disk. Reads and writes nothing but its own triangles, so bricks can run in parallel.
+/// Vertices with triangles outside the brick stay, as do vertices at flats' edges and those whose fan is not one closed
+/// disk. Reads and writes only its own triangles, so bricks can run in parallel.
 class FlatBrick {
  public:
   /// `triangles` are those of `mesh` that belong to the brick; `uses` has the number of corners of the whole mesh at

@@ -8,18 +8,19 @@
 
 namespace riffler::mesh {
 
-/// What a pass over a mesh's planes did.
+/// Result of a pass over a mesh's planes.
 struct FlatPass {
-  double moved = 0;         // mm, the largest distance of a point from its place afterwards, in both directions
+  double moved = 0;         // mm, the largest distance between the old and the new surface, in both directions
   std::vector<int> source;  // vertex now → vertex before
 };
 
-/// Takes the vertices inside planes out of a valid mesh: most of what a volume's mesh has. That needs no queue, no
-/// costs and no traces, so it takes a fraction of the time. Edges and corners of planes stay, as do all vertices
-/// elsewhere. Triangles and vertices keep their order; vertices without triangles go. The bytes are the same for any
-/// number of threads.
+/// Removes the vertices inside planes from a valid mesh; most vertices of a volume's mesh are such. This needs no
+/// queue, no costs and no traces, so it takes a fraction of the time. Edges and corners of planes stay, as do all
+/// vertices elsewhere. Triangles and vertices keep their order; vertices without triangles are removed. The bytes are
+/// the same for any number of threads.
 ///
-/// A vertex may be `slack` (mm) from its plane: see FlatBrick for what that moves, at most kFlatTurns times.
+/// A vertex may be `slack` (mm) from its plane. FlatBrick says how far that moves points, in each of at most kFlatTurns
+/// turns.
 FlatPass remove_inside_planes(Mesh& mesh, double slack, const Progress& progress = {});
 
 inline constexpr int kFlatTurns = 3;

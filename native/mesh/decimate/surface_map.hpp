@@ -40,7 +40,7 @@ class SurfaceMap {
 
   /// The image of an old triangle. Returns false if it is a hole.
   bool map_triangle(std::size_t t, std::vector<Image>& images) const;
-  /// The image of an old half-edge whose triangle is no hole.
+  /// The image of an old half-edge whose triangle is not a hole.
   void map_edge(int half, std::vector<Segment>& segments) const;
 
   /// The face that an old vertex maps to; -1 if it is far from all faces.

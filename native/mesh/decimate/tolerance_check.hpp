@@ -27,7 +27,7 @@ namespace riffler::mesh {
 struct Traces {
   struct Anchor {
     Vec3 point;
-    int half;  // half-edge of the old surface that starts at the anchor or, if the anchor is no vertex, bounds its
+    int half;  // half-edge of the old surface that starts at the anchor or, if the anchor is not a vertex, bounds its
                // triangle
     bool vertex;
   };

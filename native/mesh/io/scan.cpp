@@ -30,8 +30,8 @@ std::optional<double> to_number(std::string_view token) {
   const auto [end, code] = std::from_chars(token.data(), token.data() + token.size(), value);
   if (end != token.data() + token.size()) return {};
   if (code == std::errc::result_out_of_range) {
-    // A value too small gives 0; one too large is no number. from_chars does not distinguish them. The exponent's sign
-    // does or, without an exponent, whether the number starts with 0.
+    // A value too small gives 0; one too large is not a number. from_chars does not distinguish them. The exponent's
+    // sign does or, without an exponent, whether the number starts with 0.
     const std::size_t e = token.find_first_of("eE");
     const bool small = e != token.npos ? token.substr(e + 1).starts_with('-') : token.find_first_of("123456789") > 1;
     return small ? std::optional(0.0) : std::nullopt;

@@ -45,7 +45,7 @@ bool NcControlFlow::advance(std::string_view& line) {
   return true;
 }
 
-/// A turn may skip a million lines, so the number of turns alone is no bound.
+/// A turn may skip a million lines, so the number of turns alone is not a bound.
 void NcControlFlow::count_line() {
   constexpr std::uint64_t kLinesAReport = 4096;
   if (place_.line > file().furthest)

@@ -13,7 +13,7 @@ namespace riffler::nc {
 namespace {
 
 constexpr double kMaxHoleStrokes = 100'000;
-/// mm: a smaller remainder is no separate peck.
+/// mm: a smaller remainder is not a separate peck.
 constexpr double kRest = 1e-9;
 
 class Hole {

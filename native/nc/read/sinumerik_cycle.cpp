@@ -11,7 +11,7 @@ namespace riffler::nc {
 namespace {
 
 constexpr double kMaxStrokes = 100'000;
-/// mm: a smaller remainder is no separate peck.
+/// mm: a smaller remainder is not a separate peck.
 constexpr double kNoPeck = 1e-9;
 
 /// Pitches of metric coarse threads (ISO 261), mm.

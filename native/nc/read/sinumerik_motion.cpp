@@ -248,7 +248,7 @@ void SinumerikInterpreter::vector_line(const SinumerikWords& words, bool rapid) 
     place_.fail("A3= B3= C3= under ORIMKS are in coordinates of the machine: have the post write ORIWKS");
   const Vec3 given(words.vector[0].value_or(0), words.vector[1].value_or(0), words.vector[2].value_or(0));
   const double length = glm::length(given);
-  if (!(length > 1e-6 && length < 1e6)) place_.fail("A3= B3= C3= are no direction");
+  if (!(length > 1e-6 && length < 1e6)) place_.fail("A3= B3= C3= are not a direction");
   const Vec3 axis = frame_.turn * (given / length);
   const NcRowWords row = row_words(rapid);
   const Vec3 from = at_, to = linear_target(words);

@@ -115,7 +115,7 @@ void SinumerikInterpreter::named(const std::string& name, SinumerikCursor& curso
   if (std::ranges::find(kBlocks, name) != std::end(kBlocks) || is_sinumerik_hole(number_of_cycle(name)))
     cursor.fail(name + " needs a block of its own");
   refuse(name);
-  if (!alone) cursor.fail(name + " needs a block of its own, or is no word that is read: correct it");
+  if (!alone) cursor.fail(name + " needs a block of its own, or is not a supported word: correct it");
   int times = 1;
   if (ahead.peek() == 'P' && ahead.at_address()) {
     ahead.take();

@@ -102,7 +102,7 @@ void SinumerikInterpreter::swivel(SinumerikCursor& cursor) {
   if (given.empty() || data == "0") return unswivel(retracts);
   const auto whole = [&](std::size_t k) {
     if (!(of(k) >= 0 && of(k) <= kMaxNumber && of(k) == std::floor(of(k))))
-      place_.fail("a number of CYCLE800 is no whole number, or negative");
+      place_.fail("a number of CYCLE800 is not a whole number, or is negative");
     return static_cast<int>(of(k));
   };
   const int state = whole(2), mode = whole(3), adds = state % 10;

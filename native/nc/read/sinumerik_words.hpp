@@ -38,7 +38,7 @@ struct SinumerikCode {
 
 class SinumerikWords {
  public:
-  /// Handles a name that is no word; the name has been consumed.
+  /// Handles a name that is not a word; the name has been consumed.
   using Other = std::function<void(const std::string& name, SinumerikCursor& cursor)>;
 
   /// Reads the words up to the end of the block, including assignments. Throws FormatError.

@@ -9,7 +9,7 @@ namespace riffler::pen {
 namespace {
 
 // Counts. Readings are rounded down, so those of a steady motion deviate by less than one. One that trembles at the
-// edge of a count deviates by exactly one, and is no motion.
+// edge of a count deviates by exactly one, and is not motion.
 constexpr double kOff = 1 + 1e-9;
 
 }  // namespace

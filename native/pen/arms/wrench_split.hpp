@@ -17,10 +17,9 @@ struct WrenchSplit {
 
 /// `wrench`: about the grip's pivot (the middle between the arms' ends); `apart` = r_L − r_R, mm, in the same frame.
 /// Each arm takes half the force, and the left one the couple force (τ × r)/|r|², the right one its opposite. Their
-/// torque r × (τ × r)/|r|² is exactly the component of τ perpendicular to the grip. Erratum: the source's (4.16)
-/// overstates it by |τ| over that component, and divides by zero if τ is along r. These are the
-/// smallest forces with this wrench: they do not squeeze the grip. Coinciding ends can bear no couple; all of τ is then
-/// missing.
+/// torque r × (τ × r)/|r|² is exactly the component of τ perpendicular to the grip. Erratum: (4.16) of the source is
+/// too large by the ratio of |τ| to that component, and divides by zero if τ is along r. These are the smallest forces
+/// with this wrench: they do not squeeze the grip. Coinciding ends can bear no couple, so all of τ is missing.
 WrenchSplit split_wrench(const Wrench& wrench, const Vec3& apart) noexcept;
 
 /// The wrench about the pivot that the hand feels from the arms' forces.

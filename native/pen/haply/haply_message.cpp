@@ -192,14 +192,14 @@ HaplyVersion read_haply_version(std::string_view text) {
       else
         json.skip();
     }
-  if (!json.done()) throw std::invalid_argument("its version is no JSON");
+  if (!json.done()) throw std::invalid_argument("its version is not JSON");
   if (name != "haply-inverse-service") throw std::invalid_argument("it does not call itself haply-inverse-service");
   HaplyVersion out;
   const char* const end = number.data() + number.size();
   const auto major = std::from_chars(number.data(), end, out.major);
   if (major.ec != std::errc() || major.ptr == end || *major.ptr != '.' ||
       std::from_chars(major.ptr + 1, end, out.minor).ec != std::errc())
-    throw std::invalid_argument("its version is no number");
+    throw std::invalid_argument("its version is not a number");
   return out;
 }
 

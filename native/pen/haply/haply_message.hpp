@@ -51,7 +51,7 @@ struct HaplyMessage {
   const HaplyEntry* named(bool is_grip, std::string_view id) const;
 };
 
-/// Decodes a message without allocating. False if it is no JSON, or a field that matters here has an impossible value:
+/// Decodes a message without allocating. False if it is not JSON, or a field that matters here has an impossible value:
 /// a wrong type, a position beyond 2 m, a speed beyond 100 m/s, a quaternion that is not of unit length, a name with
 /// other characters.
 bool read_haply_message(std::string_view json, HaplyMessage& message) noexcept;

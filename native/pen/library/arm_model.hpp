@@ -17,7 +17,7 @@ class ArmModel final : public PenModel {
   MessageSizes sizes() const noexcept override { return {sizeof(ArmState), sizeof(ArmCommand)}; }
 
   void begin(double now) noexcept override;
-  /// A reading that is not finite, or whose frame is no rotation, is malformed.
+  /// A reading that is not finite, or whose frame is not a rotation, is malformed.
   Taken take(std::span<const std::uint8_t> bytes, double now) noexcept override;
   PenSample sample(double) noexcept override { return sample_; }
   /// Force and torque are each reduced to the arm's limit in their own direction. Nothing before the arm is calibrated

@@ -35,7 +35,7 @@ class RifflerModel final : public HidModel {
   /// After a disabling report, the pen pushes only once enabled again. Reports therefore enable as long as the gate is
   /// open, so that a tool that leaves the material does not pass the firmware's ramp at the next contact, and never in
   /// a state in which the pen would not accept it. Compensation of weight and friction is scaled by the gate's gain, so
-  /// it too passes the checks and the ramp. PenSample::applied excludes it, since it is no part of the wrench.
+  /// it too passes the checks and the ramp. PenSample::applied excludes it, since it is not part of the wrench.
   std::size_t push(const haptics::SafeWrench& safe, double now, std::span<std::uint8_t> bytes) noexcept override;
   std::size_t release(double now, std::span<std::uint8_t> bytes) noexcept override;
 

@@ -84,7 +84,7 @@ HttpHead read_http_head(LoopbackSocket& socket, double seconds, std::string& res
   std::string text;
   std::size_t end = text.npos;
   while ((end = text.find(kHeadEnd)) == text.npos) {
-    if (text.size() > kLongestHead) throw OpenError(OpenProblem::BadContent, "its answer is no head of HTTP");
+    if (text.size() > kLongestHead) throw OpenError(OpenProblem::BadContent, "its answer is not an HTTP head");
     std::array<std::uint8_t, 1024> bytes{};
     const int n = socket.read(bytes, deadline.left());
     if (n < 0) throw OpenError(OpenProblem::NoAnswer, "it closes the connection");

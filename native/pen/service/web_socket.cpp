@@ -32,7 +32,7 @@ std::string lower(std::string_view text) {
   return out;
 }
 
-/// Whether a list with commas has this word, in any case of its letters.
+/// Whether a comma-separated list contains this word, ignoring case.
 bool has_word(std::string_view list, std::string_view word) {
   while (!list.empty()) {
     std::string_view one = list.substr(0, list.find(','));
@@ -44,13 +44,13 @@ bool has_word(std::string_view list, std::string_view word) {
   return false;
 }
 
-/// RFC 6455, 4.1, what the client checks.
+/// The checks that RFC 6455, 4.1, requires of a client.
 void check_answer(const HttpHead& head, const std::string& key) {
   const auto refuse = [](const std::string& why) { throw OpenError(OpenProblem::BadContent, why); };
   if (head.status != 101) refuse("it opens no WebSocket: status " + std::to_string(head.status));
   if (lower(head.field("upgrade")) != "websocket" || !has_word(head.field("connection"), "upgrade"))
-    refuse("it upgrades the connection to something else than a WebSocket");
-  if (head.field("sec-websocket-accept") != base64(sha1(key + kGuid))) refuse("it answers with another key");
+    refuse("it upgrades the connection to something other than a WebSocket");
+  if (head.field("sec-websocket-accept") != base64(sha1(key + kGuid))) refuse("it answers with a wrong key");
   for (const auto& [name, value] : head.fields)
     if (name == "sec-websocket-extensions" || name == "sec-websocket-protocol")
       refuse("it uses " + name + ", which was not asked for");
@@ -83,7 +83,8 @@ void WebSocket::handshake(std::uint16_t port, double seconds) {
     throw OpenError(OpenProblem::NoAnswer, "it does not take the request");
   std::string rest;
   check_answer(read_http_head(socket_, seconds, rest), key);
-  // Its first frames may follow at once; read_http_head reads less at once than the reader holds.
+  // The first frames may follow the head at once; they fit, as read_http_head reads less at a time than the reader
+  // holds.
   const auto space = reader_.space();
   std::copy(rest.begin(), rest.end(), space.begin());
   reader_.received(rest.size());
@@ -100,7 +101,7 @@ std::array<std::uint8_t, 4> WebSocket::next_mask() noexcept {
 bool WebSocket::send(Opcode opcode, std::span<const std::uint8_t> payload) noexcept {
   if (!open_ || payload.size() > kLongestMessage) return false;
   const std::size_t size = write_frame(opcode, payload, next_mask(), out_);
-  // After half a frame nothing else can be sent.
+  // After a partly sent frame nothing else can be sent.
   open_ = socket_.write(std::span(out_).first(size), kSendTime);
   return open_;
 }
@@ -119,7 +120,7 @@ int WebSocket::read(std::span<std::uint8_t> bytes, double seconds) noexcept {
       case FrameReader::Event::Message: {
         const auto message = reader_.payload();
         if (message.size() > bytes.size()) return close(kProtocolError), -1;
-        if (message.empty()) break;  // a message without bytes says nothing
+        if (message.empty()) break;  // an empty message has no content
         std::copy(message.begin(), message.end(), bytes.begin());
         return static_cast<int>(message.size());
       }

@@ -16,7 +16,7 @@ class WebSocket final : public Transport {
   static constexpr std::size_t kLongestMessage = 65536;  // bytes, in both directions
 
   /// Opens ws://127.0.0.1:port/. Throws OpenError: as LoopbackSocket; NoAnswer; BadContent if what listens there is no
-  /// WebSocket, or answers with another key, a protocol or an extension that was not asked for.
+  /// WebSocket, or answers with a wrong key, a protocol or an extension that was not asked for.
   WebSocket(std::uint16_t port, double seconds);
   /// Tells the service that the connection ends; does not wait for its answer.
   ~WebSocket() override;

@@ -28,13 +28,13 @@ struct SimulatedPenSettings {
 
 class SimulatedPen {
  public:
-  /// Powered, plugged in, in its home posture. With an empty path, the hand holds it there.
+  /// Starts powered, plugged in and in its home posture. With an empty path, the hand holds it there.
   explicit SimulatedPen(const SimulatedPenSettings& settings, HandPath path = nullptr);
   SimulatedPen(const SimulatedPen&) = delete;
   SimulatedPen& operator=(const SimulatedPen&) = delete;
 
   std::int64_t time_us() const { return time_us_; }
-  /// Executes all turns up to that time; nothing if it is past.
+  /// Executes all turns up to that time; none if it has passed.
   void advance(std::int64_t until_us);
   std::int64_t next_frame_us() const { return (time_us_ / kFrame + 1) * kFrame; }
   static constexpr std::int64_t kFrame = 1000;

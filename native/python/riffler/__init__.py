@@ -1,4 +1,4 @@
-"""Riffler: sculpt with a pen as if milling, plan five-axis pencil cuts, take STL and NC code away.
+"""Riffler: sculpt with a pen as if milling, plan five-axis pencil cuts, export STL files and NC code.
 
 Lengths in mm, angles in rad, times in s, forces in N. The names below are the public API; ``riffler._core`` is not.
 """

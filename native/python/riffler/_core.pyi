@@ -7,6 +7,7 @@ import os
 import pathlib
 import riffler.pen_results
 import riffler.plan.locations
+import riffler.plan.operations
 import riffler.plan.orientations
 import riffler.plan.strategies.pencil
 import riffler.plan.strategies.swarf
@@ -19,17 +20,17 @@ import typing_extensions
 __all__: list[str] = ['AtomicFileWriter', 'Cancelled', 'Collider', 'Contact', 'Cut', 'Finding', 'FormatError', 'FrozenSurface', 'History', 'Journal', 'JournalStroke', 'JournalWriter', 'Material', 'Mesh', 'Mesher', 'NotATask', 'Note', 'OrientFrame', 'OrientSession', 'PenDevice', 'PenError', 'PenGeometry', 'PenState', 'PencilPath', 'Pointer', 'Program', 'ProgramStream', 'Session', 'SessionFrame', 'SimulatedPen', 'SlabWorker', 'Smoothed', 'Snapshot', 'Surface', 'Task', 'Tool', 'ToolShape', 'ToolSize', 'Verification', 'VerifyPlan', 'VerifyReport', 'Volume', 'clear_drafts', 'contact_locations', 'cutter_locations', 'draft_prefix', 'drop', 'engrave', 'finish', 'finish_patterns', 'lift', 'machine_options', 'machine_texts', 'machines', 'min_tilt', 'orientation_maps', 'pencil', 'read_file', 'replace_file', 'replaceable', 'require_revolved', 'set_threads', 'stepover_of_scallop', 'swarf', 'then', 'threads', 'tip_ball_radius', 'verify']
 class FormatError(ValueError):
     """
-    A file that is not what it should be: names the file, the line or byte, and what was expected.
+    A file with invalid content. Names the file, the line or byte, and what was expected.
     """
 class Cancelled(RuntimeError):
     """
-    A long call that its progress callback stopped; the object is as it was before.
+    A long call was stopped by its progress callback. The object is unchanged.
     """
 class NotATask(TypeError):
     pass
 class Task:
     """
-    A long call on a native thread, which runs no Python: what a riffler.Future waits for.
+    A long call on a native thread that runs no Python; a riffler.Future waits for it.
 
     What the call was given is taken when it is made, volumes by a snapshot; what is done with them afterwards changes
     nothing. A Task that nobody holds any more is cancelled and waited for; so are all when Python ends.
@@ -38,7 +39,7 @@ class Task:
         ...
     def cancel(self) -> None:
         """
-        Asks the call to end with Cancelled, and does not wait; without effect where it has ended.
+        Asks the call to end with Cancelled, and does not wait. No effect if the call has ended.
         """
     def result(self) -> object:
         """
@@ -46,23 +47,23 @@ class Task:
         """
     def wait(self, timeout: typing.SupportsFloat | None = None) -> bool:
         """
-        Waits until the call has ended, or for so many seconds; whether it has. Other threads run meanwhile.
+        Waits until the call has ended, at most this many seconds. Returns whether it has ended. Other threads run meanwhile.
         """
     @property
     def done(self) -> bool:
         """
-        Whether ``result`` is there at once: the call has ended, by itself, by an error or cancelled.
+        Whether ``result`` returns at once: the call has finished, failed or been cancelled.
         """
     @property
     def share(self) -> float:
         """
-        The finished share, in [0, 1]: never goes back, and 1 only where the call came to its end.
+        The finished share, in [0, 1]. Never decreases; 1 only if the call has finished.
         """
 class AtomicFileWriter:
     """
-    A file that takes the place of ``path`` at ``commit``.
+    A file that replaces ``path`` at ``commit``.
 
-    Links are followed; permissions and owner of a file that is there are kept; RuntimeError for what is no regular file.
+    Follows links; keeps permissions and owner of an existing file. RuntimeError if ``path`` is not a regular file.
     """
     def __init__(self, path: os.PathLike | str | bytes) -> None:
         ...
@@ -101,7 +102,7 @@ class Mesh:
         """
         Reads a .stl (binary or ASCII), .obj, .ply or .3mf file; equal vertices become one.
 
-        A .3mf file gives everything that it says to build, placed, in mm whatever its unit; it needs the package lib3mf.
+        From a .3mf file reads all build items, in place, converted to mm; this needs the package lib3mf.
 
         Parameters
         ----------
@@ -169,15 +170,15 @@ class Mesh:
         """
         A mesh with fewer triangles.
 
-        It is closed and two-manifold where this one is; sharp edges and borders stay. The vertices are some of the old ones,
-        or, where that fits better, new ones between them.
+        It is closed and two-manifold if this one is; sharp edges and borders stay. The vertices are some of the old ones,
+        or, if that fits better, new ones between them.
 
         Parameters
         ----------
         triangles : int, how many triangles to keep, or None
-            Down to so many.
+            Number of triangles to stop at.
         tolerance : float, mm, or None
-            As far as old and new surface stay within it of each other. With both limits, until the first of them.
+            Largest distance between old and new surface. With both limits, decimation stops at the first one reached.
         progress : callable or None
             Called with the finished share; returning False cancels.
 
@@ -201,12 +202,12 @@ class Mesh:
         """
     def deviation(self, other: Mesh, *, signed: bool = False, progress: collections.abc.Callable[[float], bool | None] | None = None) -> numpy.typing.NDArray[numpy.float64]:
         """
-        How far each vertex is from the surface of another mesh.
+        Distance of each vertex from the surface of another mesh.
 
         Parameters
         ----------
         other : Mesh
-            The surface that is measured against.
+            The surface to measure from.
         signed : bool
             Whether distances inside of ``other`` are negative.
         progress : callable or None
@@ -258,7 +259,7 @@ class Mesh:
         """
     def orient_with_report(self, *, hollow: bool = False) -> tuple[Mesh, riffler.results.Orientation]:
         """
-        The same as `orient`, with what was wrong.
+        The same as `orient`, with a report of the faults.
 
         Parameters
         ----------
@@ -268,7 +269,7 @@ class Mesh:
         Returns
         -------
         (Mesh, Orientation)
-            The mesh, and what was turned or left out.
+            The mesh, and the counts of turned and unused triangles.
 
         Examples
         --------
@@ -290,7 +291,7 @@ class Mesh:
         iterations : int, steps of the filter
             Not negative.
         tolerance : float, mm, or None
-            No vertex moves farther in all.
+            Largest total move of a vertex.
         feature_angle : float, rad
             Between the normals of an edge's two sides.
         progress : callable or None
@@ -325,7 +326,7 @@ class Mesh:
         Parameters
         ----------
         path : path_like, with one of these extensions
-            The file; one that is there is replaced.
+            The file; an existing one is replaced.
         progress : callable or None
             Called with the finished share; returning False cancels.
 
@@ -336,7 +337,7 @@ class Mesh:
         ValueError
             Another extension.
         Cancelled
-            ``progress`` returned False; no file is left, or the one that was there.
+            ``progress`` returned False. No file is written; an existing one is unchanged.
 
         Examples
         --------
@@ -365,7 +366,7 @@ class Mesh:
     @property
     def volume(self) -> float:
         """
-        mm³, signed; of a closed mesh.
+        mm³, signed; defined for closed meshes.
         """
 class Surface:
     """
@@ -484,7 +485,7 @@ class Surface:
         Returns
         -------
         ndarray of shape (2, 2), float64
-            Least and largest (u, v).
+            Smallest and largest (u, v).
 
         Raises
         ------
@@ -502,7 +503,7 @@ class Surface:
         """
         Points and unit normals at parameters.
 
-        In a pole, where a derivative is 0, the normal is the limit of those inside the patch. It is 0 where the patch has no
+        At a pole, where a derivative is 0, the normal is the limit of those inside the patch. It is 0 where the patch has no
         area.
 
         Parameters
@@ -536,7 +537,7 @@ class Surface:
         """
     def to_mesh(self, tolerance: typing.SupportsFloat, *, progress: collections.abc.Callable[[float], bool | None] | None = None) -> Mesh:
         """
-        Triangles within a tolerance of the surface, and the surface within it of them.
+        A mesh that deviates from the surface by at most a tolerance, in both directions.
 
         Bounds of second derivatives prove it; vertices lie on the surface. Seams of closed patches, and patches that have an
         edge in common (the same curve with the same parameters), share vertices, and a pole is one vertex: what is closed stays
@@ -576,7 +577,7 @@ class Surface:
     @property
     def patch_count(self) -> int:
         """
-        How many patches it has.
+        Number of patches.
         """
 class Tool:
     """
@@ -605,7 +606,7 @@ class Tool:
         Returns
         -------
         Tool
-            Without shank and holder.
+            A tool without shank and holder.
 
         Raises
         ------
@@ -669,7 +670,7 @@ class Tool:
         Returns
         -------
         Tool
-            Without shank and holder.
+            A tool without shank and holder.
 
         Raises
         ------
@@ -726,7 +727,7 @@ class Tool:
         Returns
         -------
         Tool
-            Without shank and holder.
+            A tool without shank and holder.
 
         Raises
         ------
@@ -753,7 +754,7 @@ class Tool:
         Returns
         -------
         Tool
-            Without shank and holder.
+            A tool without shank and holder.
 
         Raises
         ------
@@ -773,12 +774,12 @@ class Tool:
         Parameters
         ----------
         d : dict with the keys of `to_dict`
-            Kind, its sizes, and where there are such name, shank and holder.
+            Kind and sizes; name, shank and holder if the tool has them.
 
         Returns
         -------
         Tool
-            Equal to the one that `to_dict` was called on.
+            Equal to the tool whose `to_dict` this is.
 
         Raises
         ------
@@ -858,14 +859,14 @@ class Tool:
         Parameters
         ----------
         segments : list of rows of 2 or 4 numbers, mm
-            (radius, height) is a line to there, (radius, height, centre_radius, centre_height) an arc, the shorter way round.
+            (radius, height): a line to this point; (radius, height, centre_radius, centre_height): the shorter arc to it.
         length : float, mm
             Cutting length from the tip.
 
         Returns
         -------
         Tool
-            Without shank and holder.
+            A tool without shank and holder.
 
         Raises
         ------
@@ -880,7 +881,7 @@ class Tool:
     @staticmethod
     def shapes() -> list[ToolShape]:
         """
-        The named cutter shapes with their sizes, for forms: those that have a function here but `profile`.
+        The named cutter shapes with their sizes, for forms: all that have a function here except `profile`.
 
         Returns
         -------
@@ -913,7 +914,7 @@ class Tool:
         Returns
         -------
         Tool
-            Without shank and holder.
+            A tool without shank and holder.
 
         Raises
         ------
@@ -989,12 +990,12 @@ class Tool:
         """
         The outline of cutter, shank and holder together, from the tip upwards, for drawing.
 
-        What lies inside of another piece is left out.
+        Parts inside another piece are left out.
 
         Parameters
         ----------
         tolerance : float, mm
-            How close polylines stay to arcs.
+            Largest distance of polylines from arcs.
 
         Returns
         -------
@@ -1051,14 +1052,14 @@ class Tool:
         """
     def with_margins(self, *, shank: typing.SupportsFloat = 0.0, holder: typing.SupportsFloat = 0.0) -> Tool:
         """
-        The same tool with wider shank and holder: to be planned and checked with, so that these keep clear.
+        The same tool with a wider shank and holder, to plan and check with a safety margin.
 
-        The ends of the holder move as well, those of the shank do not.
+        The ends of the holder move too, those of the shank do not.
 
         Parameters
         ----------
         shank, holder : float, mm
-            By how much each is wider on every side.
+            Added width of each on every side.
 
         Returns
         -------
@@ -1122,12 +1123,12 @@ class Tool:
     @property
     def length(self) -> float:
         """
-        From the tip to the end of the cutter, mm.
+        Length from the tip to the end of the cutter, mm.
         """
     @property
     def name(self) -> str:
         """
-        In messages and tool libraries.
+        Name in messages and tool libraries.
         """
     @property
     def shank(self) -> list[tuple[float, float, float, float]]:
@@ -1211,10 +1212,10 @@ class Volume:
     A dexel volume: material as spans along parallel rays.
 
     ``directions`` is "z" for one grid of rays or "xyz" for three (a tri-dexel volume, which also keeps the surface's
-    normals and so its sharp edges). Ray (i, j) of "z" stands at lower + ((i + .5) h, (j + .5) h); "x" rays are indexed
+    normals and so its sharp edges). Ray (i, j) of "z" is at lower + ((i + .5) h, (j + .5) h); "x" rays are indexed
     (y, z), "y" rays (z, x). Lengths in mm.
 
-    Volumes are made by `block`, `empty`, `sphere`, `cylinder`, `from_mesh` and `load`. Operators of sets work on volumes
+    Make volumes with `block`, `empty`, `sphere`, `cylinder`, `from_mesh` and `load`. Set operators work on volumes
     with the same lower, upper, pitch and directions: ``v | w``, ``v & w``, ``v - w`` give a new volume, ``v |= w``,
     ``v &= w``, ``v -= w`` change v.
 
@@ -1277,7 +1278,7 @@ class Volume:
         axis : array_like of shape (3,), of any length but 0
             Direction of the axis.
         lower, upper : array_like of shape (3,), mm, or None
-            The volume's box; what lies outside of it is clipped. Default: the cylinder's own.
+            The volume's box; material outside it is clipped. Default: the cylinder's own.
         progress : callable or None
             Called with the finished share; returning False cancels.
 
@@ -1302,7 +1303,7 @@ class Volume:
     @staticmethod
     def empty(lower: numpy.typing.ArrayLike, upper: numpy.typing.ArrayLike, pitch: typing.SupportsFloat, directions: str = 'z') -> Volume:
         """
-        A box without material: it holds only what is put on later (``carve``, ``|=``).
+        A box without material, to add material to (``carve`` with mode "add", ``|=``).
 
         Parameters
         ----------
@@ -1331,14 +1332,14 @@ class Volume:
     @staticmethod
     def from_bytes(data: typing_extensions.Buffer, *, name: str = 'volume') -> Volume:
         """
-        The volume whose `to_bytes` these are.
+        A volume from the bytes of `to_bytes`.
 
         Parameters
         ----------
         data : bytes, or another buffer
             Of a .rvol file.
         name : str
-            Stands in messages.
+            Name for messages.
 
         Returns
         -------
@@ -1352,7 +1353,9 @@ class Volume:
 
         Examples
         --------
-        See `to_bytes`.
+        >>> data = riffler.Volume.block((0, 0, 0), (4, 3, 2), pitch=0.5).to_bytes()
+        >>> riffler.Volume.from_bytes(data).volume
+        24.0
         """
     @staticmethod
     def from_mesh(mesh: Mesh, pitch: typing.SupportsFloat, directions: str = 'z', *, lower: numpy.typing.ArrayLike | None = None, upper: numpy.typing.ArrayLike | None = None, progress: collections.abc.Callable[[float], bool | None] | None = None) -> Volume:
@@ -1360,19 +1363,19 @@ class Volume:
         The solid within a mesh: points whose absolute generalized winding number exceeds 1/2.
 
         Inside-out, overlapping, touching and open parts are fine, as are triangles that face against their neighbours and
-        repeated ones (`Mesh.orient`). Material thinner than the pitch may be lost: where that is worth a sentence, it is a
+        repeated ones (`Mesh.orient`). Material thinner than the pitch may be lost: more than crumbs of it raise a
         UserWarning; `from_mesh_with_report` puts it into its report.
 
         Parameters
         ----------
         mesh : Mesh
-            With some volume.
+            A mesh with a volume greater than 0.
         pitch : float, mm
             Distance of neighbouring rays.
         directions : "z" or "xyz"
             One grid of rays, or three.
         lower, upper : array_like of shape (3,), mm, or None
-            The volume's box; what lies outside of it is clipped. Default: the mesh's own.
+            The volume's box; material outside it is clipped. Default: the mesh's own.
         progress : callable or None
             Called with the finished share; returning False cancels.
 
@@ -1397,18 +1400,18 @@ class Volume:
     @staticmethod
     def from_mesh_with_report(mesh: Mesh, pitch: typing.SupportsFloat, directions: str = 'z', *, lower: numpy.typing.ArrayLike | None = None, upper: numpy.typing.ArrayLike | None = None, progress: collections.abc.Callable[[float], bool | None] | None = None) -> tuple[Volume, riffler.results.VolumeReport]:
         """
-        The same as `from_mesh`, with what was wrong with the mesh and what was lost of it.
+        The same as `from_mesh`, with a report on the mesh's faults and the lost material.
 
         Parameters
         ----------
         mesh : Mesh
-            With some volume.
+            A mesh with a volume greater than 0.
         pitch : float, mm
             Distance of neighbouring rays.
         directions : "z" or "xyz"
             One grid of rays, or three.
         lower, upper : array_like of shape (3,), mm, or None
-            The volume's box; what lies outside of it is clipped. Default: the mesh's own.
+            The volume's box; material outside it is clipped. Default: the mesh's own.
         progress : callable or None
             Called with the finished share; returning False cancels.
 
@@ -1451,20 +1454,22 @@ class Volume:
         Raises
         ------
         FormatError
-            The file is damaged, or no .rvol file: names the byte.
+            The file is damaged or not a .rvol file. Names the byte.
         Cancelled
             ``progress`` returned False.
 
         Examples
         --------
-        See `save`.
+        >>> riffler.Volume.block((0, 0, 0), (4, 3, 2), pitch=0.5).save("block.rvol")
+        >>> riffler.Volume.load("block.rvol").volume
+        24.0
         """
     @staticmethod
     def sphere(centre: numpy.typing.ArrayLike, radius: typing.SupportsFloat, pitch: typing.SupportsFloat, directions: str = 'z', *, lower: numpy.typing.ArrayLike | None = None, upper: numpy.typing.ArrayLike | None = None, progress: collections.abc.Callable[[float], bool | None] | None = None) -> Volume:
         """
         A ball of material, made of exact rays: it has no facets.
 
-        Each end of a span is where its ray crosses the sphere, to the rounding of doubles, and has the sphere's normal.
+        Each end of a span is at the ray's intersection with the sphere, to rounding, with the sphere's normal.
 
         Parameters
         ----------
@@ -1477,7 +1482,7 @@ class Volume:
         directions : "z" or "xyz"
             One grid of rays, or three.
         lower, upper : array_like of shape (3,), mm, or None
-            The volume's box; what lies outside of it is clipped. Default: the ball's own.
+            The volume's box; material outside it is clipped. Default: the ball's own.
         progress : callable or None
             Called with the finished share; returning False cancels.
 
@@ -1489,7 +1494,7 @@ class Volume:
         Raises
         ------
         ValueError
-            All rays of a direction miss a ball that lies in the box: the message has a pitch at which they do not.
+            All rays of a direction miss the ball. The message names a pitch at which they do not.
         Cancelled
             ``progress`` returned False.
 
@@ -1545,7 +1550,7 @@ class Volume:
         """
     def carve(self, tool: Tool, poses: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], *, tolerance: typing.SupportsFloat = 0.01, dt: numpy.typing.ArrayLike | None = None, removal_constant: typing.SupportsFloat = 0.05, mode: str = 'remove', protect: Volume | None = None, progress: collections.abc.Callable[[float], bool | None] | None = None) -> Cut:
         """
-        Takes away what the cutter sweeps along a path, or puts it on. Shank and holder never cut.
+        Removes what the cutter sweeps along a path, or adds it. Shank and holder never cut.
 
         Parameters
         ----------
@@ -1555,30 +1560,32 @@ class Volume:
             Tip xyz, then unit axis xyz from the tip to the spindle; n - 1 moves. A hand tool (`Tool.convex` and its like) needs
             the shape (n, 9): then its unit forward direction xyz, square to the axis.
         tolerance : float, mm
-            For moves that turn the axis; others are exact.
+            Tolerance of moves that turn the axis; others are exact.
         dt : array_like, a number or of shape (n - 1,), s, or None
-            Duration of the moves: asks for force.
+            Duration of the moves; needed for force.
         removal_constant : float, N·s/mm³
             Force for each rate of removal.
         mode : "remove" or "add"
-            "add" puts material on wherever the cutter sweeps within the volume's box; ``removed`` is then what was put on.
+            "add" adds material wherever the cutter sweeps within the volume's box; ``removed`` then has the added volume.
         protect : Volume or None
-            Of the same lower, upper, pitch and directions; what lies in it stays unchanged, material and air.
+            Region that must not change, material and air; a volume with the same lower, upper, pitch and directions.
         progress : callable or None
             Called with the finished share; returning False cancels.
 
         Returns
         -------
         Cut
-            What each move took away.
+            The volume that each move removed.
 
         Raises
         ------
         ValueError
             Names argument and row: a shape, an axis that is no unit vector, opposite axes, for a hand tool a forward direction
             that is not square to the axis and a half turn; or the protected volume's grid is another.
+            Names argument and row: a wrong shape, an axis that is not a unit vector, opposite axes; or the protected volume's grid is
+            another.
         Cancelled
-            ``progress`` returned False; the volume is as it was.
+            ``progress`` returned False; the volume is unchanged.
 
         Examples
         --------
@@ -1589,14 +1596,14 @@ class Volume:
         """
     def clip(self, point: numpy.typing.ArrayLike, normal: numpy.typing.ArrayLike, *, progress: collections.abc.Callable[[float], bool | None] | None = None) -> Volume:
         """
-        Takes away what lies in front of a plane, in place: the new face looks out along its normal.
+        Removes the material in front of a plane, in place; the plane's normal is that of the new face.
 
         Parameters
         ----------
         point : array_like of shape (3,), mm
-            On the plane.
+            A point on the plane.
         normal : array_like of shape (3,), of any length but 0
-            Points to what is taken away.
+            Points to the side that is removed.
         progress : callable or None
             Called with the finished share; returning False cancels.
 
@@ -1620,7 +1627,7 @@ class Volume:
         """
     def contains(self, points: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.bool]:
         """
-        Whether points lie in the material, by the nearest ray of each direction; of three, two decide.
+        Whether points are in the material, by the nearest ray of each direction; with three directions, by the majority.
 
         Parameters
         ----------
@@ -1656,15 +1663,15 @@ class Volume:
         """
         This volume in a larger box: a new volume with the same spans and normals, bit for bit.
 
-        Rays stay where they stand, and others, without material, are put next to them: each side of the box moves outward by
+        Rays stay in place, and rays without material are added next to them: each side of the box moves outward by
         whole pitches until it lies at or beyond that of ``lower`` to ``upper``, to 1e-6 of a pitch. A side that does already
-        stays. Where a box's size is no whole number of pitches, an upper side may move one pitch more; ``volume`` then counts
+        stays. Where a box's size is not a whole number of pitches, an upper side may move one pitch more; ``volume`` then counts
         the rays that were last with whole cells.
 
         Parameters
         ----------
         lower, upper : array_like of shape (3,), mm, or None
-            The box that is wanted. Default: this volume's own.
+            The box to reach. Default: this volume's own.
         progress : callable or None
             Called with the finished share; returning False cancels.
 
@@ -1688,7 +1695,7 @@ class Volume:
         """
     def intersect(self, other: Volume, *, progress: collections.abc.Callable[[float], bool | None] | None = None) -> Volume:
         """
-        Keeps what both volumes have, in place: ``v &= other`` with progress; see `subtract`.
+        Keeps the material that both volumes have, in place: ``v &= other`` with progress; see `subtract`.
 
         Parameters
         ----------
@@ -1762,9 +1769,9 @@ class Volume:
         """
     def parts(self, *, minimum: typing.SupportsFloat = 0.0, progress: collections.abc.Callable[[float], bool | None] | None = None) -> list[Volume]:
         """
-        One volume on this one's grid for each piece that hangs together, the largest first.
+        The connected pieces of this volume as volumes on the same grid, the largest first.
 
-        Spans of neighbouring rays hang together where they overlap. The parts' volumes sum to this one's.
+        Spans of neighbouring rays are connected where they overlap. The parts' volumes sum to this one's.
 
         Parameters
         ----------
@@ -1796,7 +1803,7 @@ class Volume:
         """
         This volume at another pitch, with other directions or in another box: a new volume.
 
-        Material outside of the new box is left out. The mesh of `to_mesh` is what is resampled, so a finer pitch brings no
+        Material outside the new box is left out. Resamples the mesh of `to_mesh`, so a finer pitch brings no
         detail back. A volume with the same pitch, directions and box is a copy, bit for bit.
 
         Parameters
@@ -1830,21 +1837,26 @@ class Volume:
         """
     def restore(self, snapshot: Snapshot) -> None:
         """
-        Back to a snapshot of this volume.
+        Restores a snapshot of this volume.
 
         Parameters
         ----------
         snapshot : Snapshot
-            What `snapshot` gave.
+            A result of `snapshot`.
 
         Raises
         ------
         ValueError
-            It is of a volume with another box, pitch or directions.
+            The snapshot is of a volume with another box, pitch or directions.
 
         Examples
         --------
-        See `snapshot`.
+        >>> volume = riffler.Volume.block((0, 0, 0), (4, 3, 2), pitch=0.5)
+        >>> before = volume.snapshot()
+        >>> half = volume.clip((2, 0, 0), (1, 0, 0))
+        >>> volume.restore(before)
+        >>> volume.volume
+        24.0
         """
     def save(self, path: os.PathLike | str | bytes, *, progress: collections.abc.Callable[[float], bool | None] | None = None) -> None:
         """
@@ -1853,7 +1865,7 @@ class Volume:
         Parameters
         ----------
         path : path_like
-            The file; one that is there is replaced.
+            The file; an existing one is replaced.
         progress : callable or None
             Called with the finished share; returning False cancels.
 
@@ -1882,25 +1894,25 @@ class Volume:
         centres : array_like of shape (n, 3) or (3,), mm
             Centres of the dabs.
         radius : float, mm
-            Of the brush; what lies beyond it stays unchanged.
+            Radius of the brush; material beyond it is unchanged.
         strength : float, from 0 to 1
-            The share of the distance to the smoothed surface at the brush's centre, less towards its rim.
+            Blend factor at the brush's centre: 0 unchanged, 1 fully smoothed; less towards the rim.
         protect : Volume or None
-            Of the same lower, upper, pitch and directions; what lies in it stays unchanged, material and air.
+            Region that must not change, material and air; a volume with the same lower, upper, pitch and directions.
         progress : callable or None
             Called with the finished share; returning False cancels.
 
         Returns
         -------
         Smoothed
-            What each dab took away and put on.
+            The volumes that each dab removed and added.
 
         Raises
         ------
         ValueError
             The volume has one direction only; the protected volume's grid is another; names argument and row.
         Cancelled
-            ``progress`` returned False; the volume is as it was.
+            ``progress`` returned False; the volume is unchanged.
 
         Examples
         --------
@@ -1911,7 +1923,7 @@ class Volume:
         """
     def snapshot(self) -> Snapshot:
         """
-        The state to come back to with `restore`; costs pointers only.
+        The present state, for `restore`; costs pointers only.
 
         Returns
         -------
@@ -1929,7 +1941,7 @@ class Volume:
         """
     def subtract(self, other: Volume, *, progress: collections.abc.Callable[[float], bool | None] | None = None) -> Volume:
         """
-        Takes the other volume's material away, in place: ``v -= other`` with progress.
+        Removes the other volume's material, in place: ``v -= other`` with progress.
 
         Parameters
         ----------
@@ -1996,13 +2008,13 @@ class Volume:
         """
         The surface: closed, outward, two-manifold, and still so in a binary STL.
 
-        Material thinner than the pitch is no part of it: where that is worth a sentence, it is a UserWarning;
+        Material thinner than the pitch is not part of it. A UserWarning reports more than crumbs of such material;
         `to_mesh_with_report` puts it into its report.
 
         Parameters
         ----------
         tolerance : float, mm, or None
-            Leaves out the triangles that the shape does not need: no point of the mesh is farther than this from the surface of
+            Leaves out triangles that the shape does not need: no point of the mesh is farther than this from the surface of
             all triangles, and the reverse. It is as closed and as sharp at edges, and its vertices are some of theirs. None, or
             less than the step of float32 at the box's largest coordinate (0 too): all triangles. More than the size of the part
             keeps at least four triangles of each shell.
@@ -2031,12 +2043,12 @@ class Volume:
         """
     def to_mesh_with_report(self, *, tolerance: typing.SupportsFloat | None = None, progress: collections.abc.Callable[[float], bool | None] | None = None) -> tuple[Mesh, riffler.results.SurfaceReport]:
         """
-        The same as `to_mesh`, with what is no part of the mesh since it is thinner than the pitch.
+        The same as `to_mesh`, with a report on material that is too thin for the pitch and so not part of the mesh.
 
         Parameters
         ----------
         tolerance : float, mm, or None
-            Leaves out the triangles that the shape does not need: no point of the mesh is farther than this from the surface of
+            Leaves out triangles that the shape does not need: no point of the mesh is farther than this from the surface of
             all triangles, and the reverse. It is as closed and as sharp at edges, and its vertices are some of theirs. None, or
             less than the step of float32 at the box's largest coordinate (0 too): all triangles. More than the size of the part
             keeps at least four triangles of each shell.
@@ -2094,7 +2106,7 @@ class Volume:
     @property
     def revision(self) -> int:
         """
-        Changes with the content.
+        Number that changes with the content.
         """
     @property
     def upper(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -2104,11 +2116,11 @@ class Volume:
     @property
     def volume(self) -> float:
         """
-        mm³: lengths of the z rays × their areas (of the only rays, where there are no z rays). An area is h², but for the last rays, whose cells end with the box.
+        mm³: sum of length × area of the z rays, or of the only rays if there are no z rays. The area is h², except for the last rays, whose cells end with the box.
         """
 class Cut:
     """
-    What each move of a carve took away; arrays with one row per move. See `Volume.carve`.
+    The volume and force of each move of a carve; arrays with one row per move. See `Volume.carve`.
     """
     def __len__(self) -> int:
         ...
@@ -2148,19 +2160,19 @@ class Snapshot:
         """
 class Smoothed:
     """
-    What each dab of a smooth brush did; arrays with one number per dab. See `Volume.smooth`.
+    The effect of each dab of a smooth brush; arrays with one number per dab. See `Volume.smooth`.
     """
     def __len__(self) -> int:
         ...
     @property
     def added(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n,) mm³ put on.
+        (n,) mm³ added.
         """
     @property
     def removed(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n,) mm³ taken away.
+        (n,) mm³ removed.
         """
 class History:
     """
@@ -2176,7 +2188,7 @@ class History:
     Parameters
     ----------
     base : Volume
-        What the strokes are carved into.
+        The volume that the strokes are carved into.
     memory_limit : int, bytes
         For the versions of tiles, about 25 kB each with rays in three directions. Beyond it, the history keeps every second,
         fourth, … version of a tile, and an edit carves up to as many more strokes there. An edit needs as much again while it
@@ -2201,7 +2213,7 @@ class History:
         ...
     def add(self, tool: Tool, poses: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], *, mode: str = 'remove', tolerance: typing.SupportsFloat = 0.01, protect: Volume | None = None, progress: collections.abc.Callable[[float], bool | None] | None = None) -> int:
         """
-        Adds a stroke at the end: what ``volume.carve`` with the same arguments does.
+        Adds a stroke at the end. It carves like ``volume.carve`` with the same arguments.
 
         Parameters
         ----------
@@ -2212,7 +2224,7 @@ class History:
         mode : "remove" or "add"
             "add" puts material on wherever the cutter sweeps within the volume's box.
         tolerance : float, mm
-            For moves that turn the axis; others are exact.
+            Tolerance of moves that turn the axis; others are exact.
         protect : Volume or None
             Of the base's lower, upper, pitch and directions; what lies in it stays unchanged by this stroke. Kept as a snapshot.
         progress : callable or None
@@ -2221,12 +2233,12 @@ class History:
         Returns
         -------
         int
-            The stroke's id, for the other calls. An id is never given again.
+            The stroke's id, for the other calls. Ids are never reused.
 
         Raises
         ------
         ValueError
-            The history has no such stroke; or names argument and row: no poses, a shape, an axis that is no unit vector, opposite
+            The history has no such stroke; or names argument and row: no poses, a wrong shape, an axis that is not a unit vector, opposite
             axes, a protected volume with another grid. The history is unchanged.
         Cancelled
             ``progress`` returned False; the history is unchanged.
@@ -2254,7 +2266,7 @@ class History:
         Raises
         ------
         ValueError
-            The history has no such stroke; or names argument and row: no poses, a shape, an axis that is no unit vector, opposite
+            The history has no such stroke; or names argument and row: no poses, a wrong shape, an axis that is not a unit vector, opposite
             axes, a protected volume with another grid. The history is unchanged.
         Cancelled
             ``progress`` returned False; the history is unchanged.
@@ -2282,7 +2294,7 @@ class History:
         mode : "remove" or "add"
             As for `add`.
         tolerance : float, mm
-            For moves that turn the axis; others are exact.
+            Tolerance of moves that turn the axis; others are exact.
         protect : Volume or None
             As for `add`.
         progress : callable or None
@@ -2296,7 +2308,7 @@ class History:
         Raises
         ------
         ValueError
-            The history has no such stroke; or names argument and row: no poses, a shape, an axis that is no unit vector, opposite
+            The history has no such stroke; or names argument and row: no poses, a wrong shape, an axis that is not a unit vector, opposite
             axes, a protected volume with another grid. The history is unchanged.
         Cancelled
             ``progress`` returned False; the history is unchanged.
@@ -2319,14 +2331,14 @@ class History:
         stroke : int
             Its id.
         before : int or None
-            Id of the stroke that follows it then; None: it becomes the last one. Its own id: nothing changes.
+            Id of the stroke to move it before; None: to the end. Its own id: no change.
         progress : callable or None
             Called with the finished share; returning False cancels.
 
         Raises
         ------
         ValueError
-            The history has no such stroke; or names argument and row: no poses, a shape, an axis that is no unit vector, opposite
+            The history has no such stroke; or names argument and row: no poses, a wrong shape, an axis that is not a unit vector, opposite
             axes, a protected volume with another grid. The history is unchanged.
         Cancelled
             ``progress`` returned False; the history is unchanged.
@@ -2355,7 +2367,7 @@ class History:
         Raises
         ------
         ValueError
-            The history has no such stroke; or names argument and row: no poses, a shape, an axis that is no unit vector, opposite
+            The history has no such stroke; or names argument and row: no poses, a wrong shape, an axis that is not a unit vector, opposite
             axes, a protected volume with another grid. The history is unchanged.
         Cancelled
             ``progress`` returned False; the history is unchanged.
@@ -2392,7 +2404,7 @@ class History:
         Raises
         ------
         ValueError
-            The history has no such stroke; or names argument and row: no poses, a shape, an axis that is no unit vector, opposite
+            The history has no such stroke; or names argument and row: no poses, a wrong shape, an axis that is not a unit vector, opposite
             axes, a protected volume with another grid. The history is unchanged.
         Cancelled
             ``progress`` returned False; the history is unchanged.
@@ -2407,12 +2419,12 @@ class History:
         """
     def stats(self) -> riffler.results.HistoryStats:
         """
-        The work of the last edit, and what the history holds.
+        The work of the last edit, and the size of the history.
 
         Returns
         -------
         HistoryStats
-            An edit restores only tiles that the edited stroke touches, and runs only strokes that touch those, only there.
+            An edit restores only the tiles that the edited stroke touches, and runs only later strokes, in these tiles.
 
         Examples
         --------
@@ -2473,25 +2485,25 @@ class FrozenSurface:
         """
         The first point of the surface along a ray, or along each of several.
 
-        No ray falls through between triangles, and one that touches an edge hits it.
+        No ray passes between two triangles, and a ray that touches an edge hits it.
 
         Parameters
         ----------
         origin : array_like of shape (3,) or (n, 3), mm
-            Where each ray begins.
+            Origin of each ray.
         direction : array_like of the same shape, of any length but 0
-            Where it goes.
+            Direction of each ray.
 
         Returns
         -------
         Hit, None or Hits
-            For one ray a Hit, or None. For (n, 3) arrays a Hits with arrays of n rows: where nothing is hit, ``distance`` is
+            For one ray a Hit, or None. For (n, 3) arrays a Hits with arrays of n rows: for a ray without a hit, ``distance`` is
             inf, ``brick`` -1, the rest NaN.
 
         Raises
         ------
         ValueError
-            Names argument and row: what is not finite, or a direction of length 0.
+            Names argument and row: a number that is not finite, or a direction of length 0.
 
         Examples
         --------
@@ -2529,14 +2541,14 @@ class FrozenSurface:
     @property
     def triangles(self) -> int:
         """
-        How many it has.
+        Number of triangles.
         """
 class Mesher:
     """
     The mesh of a volume that keeps changing, in bricks of 32 × 32 × 32 cells.
 
-    ``Mesher(volume)`` meshes all of it; ``update(volume)`` meshes again only where it was changed. What a mesher holds is
-    always, bit for bit, what ``volume.to_mesh()`` gives; with a tolerance, what ``volume.to_mesh(tolerance=tolerance)``
+    ``Mesher(volume)`` meshes the volume; ``update(volume)`` meshes only its changes. The mesh is
+    always, bit for bit, that of ``volume.to_mesh()``, with a tolerance that of ``volume.to_mesh(tolerance=tolerance)``.
     gives. It keeps a snapshot of the volume, which shares its tiles.
 
     With a tolerance, patches and `mesh` have only the triangles that the shape needs. The mesher keeps the full mesh too,
@@ -2546,7 +2558,7 @@ class Mesher:
     Parameters
     ----------
     volume : Volume
-        What is meshed first.
+        The volume to mesh first.
     tolerance : float, mm, or None
         Leaves out triangles that the shape does not need within this distance, with the rules of `Volume.to_mesh`: 0, or
         less than the step of float32 at the part's coordinates, keeps all of them. None: all of them.
@@ -2625,14 +2637,14 @@ class Mesher:
         Returns
         -------
         Patch
-            Without triangles where nothing is left.
+            Without triangles if the brick has none.
 
         Raises
         ------
         IndexError
             There is no such brick.
         ValueError
-            A brick is there twice.
+            A brick is given twice.
 
         Examples
         --------
@@ -2659,25 +2671,25 @@ class Mesher:
         """
         The first point of the surface along a ray, or along each of several.
 
-        No ray falls through between triangles, and one that touches an edge hits it.
+        No ray passes between two triangles, and a ray that touches an edge hits it.
 
         Parameters
         ----------
         origin : array_like of shape (3,) or (n, 3), mm
-            Where each ray begins.
+            Origin of each ray.
         direction : array_like of the same shape, of any length but 0
-            Where it goes.
+            Direction of each ray.
 
         Returns
         -------
         Hit, None or Hits
-            For one ray a Hit, or None. For (n, 3) arrays a Hits with arrays of n rows: where nothing is hit, ``distance`` is
+            For one ray a Hit, or None. For (n, 3) arrays a Hits with arrays of n rows: for a ray without a hit, ``distance`` is
             inf, ``brick`` -1, the rest NaN.
 
         Raises
         ------
         ValueError
-            Names argument and row: what is not finite, or a direction of length 0.
+            Names argument and row: a number that is not finite, or a direction of length 0.
 
         Examples
         --------
@@ -2731,7 +2743,7 @@ class Mesher:
     @property
     def all_triangles(self) -> int:
         """
-        How many the full mesh has: as many as `triangles` without a tolerance.
+        Number of triangles of the full mesh; without a tolerance the same as `triangles`.
         """
     @property
     def counters(self) -> riffler.results.PickCounters:
@@ -2741,7 +2753,7 @@ class Mesher:
     @property
     def shape(self) -> tuple[int, int, int]:
         """
-        Bricks along each axis, with triangles or without: brick n stands at ``numpy.unravel_index(n, shape)``.
+        Number of bricks along each axis, with or without triangles: brick n is at ``numpy.unravel_index(n, shape)``.
         """
     @property
     def tolerance(self) -> float | None:
@@ -2751,28 +2763,28 @@ class Mesher:
     @property
     def triangles(self) -> int:
         """
-        How many it has.
+        Number of triangles.
         """
 class Contact:
     """
-    What a tool meets at a pose: forces act on the tool, in the part's frame. See `Collider.query`.
+    Contact of a tool at a pose. Forces act on the tool, in the part's frame. See `Collider.query`.
     """
     def __repr__(self) -> str:
         ...
     @property
     def checked(self) -> float:
         """
-        Share of the candidate triangles that was looked at; 1 without a budget.
+        Share of the candidate triangles that was examined; 1 without a budget.
         """
     @property
     def depth(self) -> float:
         """
-        mm; 0 where nothing is touched.
+        mm; 0 without contact.
         """
     @property
     def force(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        N, (3,): out of what is touched.
+        N, (3,): pushes the tool out of contact.
         """
     @property
     def missed_depth_bound(self) -> float:
@@ -2796,7 +2808,7 @@ class Contact:
         """
 class Collider:
     """
-    A part and its fixtures, against which tools are held; immutable.
+    A part and its fixtures, for contact and clearance of tools; immutable.
 
     A pose is 6 numbers: tip in mm, unit axis from the tip to the spindle. Calls may come from several threads; they release
     Python's lock.
@@ -2806,9 +2818,9 @@ class Collider:
     part : Mesh
         The surface; an empty one is ignored.
     fixtures : list of Volume
-        Each of its own pitch; empty ones are ignored.
+        Each may have its own pitch; empty ones are ignored.
     spacing : float, mm, or None
-        Of the points on the part that forces are summed over. Default: √(area / 100 000).
+        Spacing of the points on the part over which forces are summed. Default: √(area / 100 000).
     stiffness : float, N per mm of depth and mm² of surface
         Against the cutter.
     holder_stiffness : float, N per mm of depth and mm² of surface
@@ -2841,9 +2853,9 @@ class Collider:
         part : Mesh
             The surface; an empty one is ignored.
         fixtures : list of Volume
-            Each of its own pitch; empty ones are ignored.
+            Each may have its own pitch; empty ones are ignored.
         spacing : float, mm, or None
-            Of the points on the part that forces are summed over. Default: √(area / 100 000).
+            Spacing of the points on the part over which forces are summed. Default: √(area / 100 000).
         stiffness : float, N per mm of depth and mm² of surface
             Against the cutter.
         holder_stiffness : float, N per mm of depth and mm² of surface
@@ -2873,7 +2885,7 @@ class Collider:
         ...
     def clearance(self, tool: Tool, poses: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
         """
-        The least signed distance between the part's surface and a tool, pose by pose, on all threads.
+        The smallest signed distance between the part's surface and a tool at each pose, on all threads.
 
         The tool is the union of cutter, shank and holder. Fixtures do not count.
 
@@ -2882,7 +2894,7 @@ class Collider:
         tool : Tool
             Cutter, shank and holder.
         poses : array_like of shape (n, 6), tip in mm and unit axis
-            Where the tool is.
+            Poses of the tool.
 
         Returns
         -------
@@ -2903,19 +2915,19 @@ class Collider:
         """
     def nearest(self, tool: Tool, pose: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> riffler.results.Nearest:
         """
-        What of part and fixtures is nearest to a tool.
+        The point of part and fixtures that is nearest to a tool.
 
         Parameters
         ----------
         tool : Tool
             Cutter, shank and holder.
         pose : array_like of shape (6,), tip in mm and unit axis
-            Where the tool is.
+            Poses of the tool.
 
         Returns
         -------
         Nearest
-            Distance, point on part or fixture, and what of the tool it is next to, or "fixture".
+            Distance, point on part or fixture, and the nearest part of the tool, or "fixture".
 
         Examples
         --------
@@ -2927,26 +2939,26 @@ class Collider:
         """
     def query(self, tool: Tool, pose: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], *, budget_us: typing.SupportsFloat | None = None) -> Contact:
         """
-        Force, torque and depth of a tool in contact, and where they are.
+        Force, torque, depth and points of a tool in contact.
 
         Parameters
         ----------
         tool : Tool
             Cutter, shank and holder.
         pose : array_like of shape (6,), tip in mm and unit axis
-            Where the tool is.
+            Poses of the tool.
         budget_us : float, µs, or None
-            After so long, what is left is only bounded: see ``checked`` and ``missed_depth_bound``.
+            Time after which the rest is only bounded: see ``checked`` and ``missed_depth_bound``.
 
         Returns
         -------
         Contact
-            With depth 0 where nothing touches.
+            A contact; its depth is 0 if nothing touches.
 
         Raises
         ------
         ValueError
-            Names the argument: no unit axis, a number that is not finite, a negative budget.
+            Names the argument: an axis that is not a unit vector, a number that is not finite, a negative budget.
 
         Examples
         --------
@@ -2963,7 +2975,7 @@ class Collider:
         """
 class Note:
     """
-    What a reader of NC code assumed or passed over: see `Program.read`.
+    An assumption of a reader of NC code, or code that it skipped: see `Program.read`.
     """
     def __repr__(self) -> str:
         ...
@@ -2982,7 +2994,7 @@ class Note:
         ...
 class ProgramStream:
     """
-    An iterator of programs: see `Program.stream`.
+    An iterator over programs: see `Program.stream`.
     """
     def __iter__(self) -> typing.Self:
         ...
@@ -2990,7 +3002,7 @@ class ProgramStream:
         ...
 class Program:
     """
-    Where the tool goes, how fast and with which tool; immutable.
+    A program: poses, feeds and tools; immutable.
 
     One row per move end. Between two rows the tip moves on a line and the axis on the great circle at constant rate, by way
     of the poses in ``via`` where there are any.
@@ -3012,13 +3024,13 @@ class Program:
     tools : dict, optional
         Number to Tool, of the tools whose shape is known.
     provenance : dict, optional
-        Strings that the header comment of the NC code repeats.
+        Strings that the NC code repeats in its header comment.
     notes : list of Note
-        What the reader of NC code assumed or passed over.
+        Assumptions of the reader of NC code, and skipped code.
     at_machine : array_like of bool, shape (n,), or bool
         Rows that end at a position of the machine whose place in the part is not known.
     via : dict, optional
-        Row to poses (k, 6) on the way there.
+        Row to poses (k, 6) on the move to it.
 
     Raises
     ------
@@ -3088,11 +3100,11 @@ class Program:
         collider : Collider, optional
             Part and fixtures.
         retract : float, optional
-            mm of the first stretch out of a cut; None: what is clear is looked for.
+            mm of the first stretch out of a cut; None: searches a clear one.
         direction : array_like, shape (3,), optional
             Unit vector of that stretch; None: likewise.
         lead_in : float, optional
-            mm before a cut that are fed, what is above them being air; None: all of it is fed.
+            mm before a cut at feed, if everything above is air; None: the whole approach at feed.
         contact_tolerance : float
             mm by which a tool may enter part and fixtures, as cuts touch the part.
 
@@ -3103,7 +3115,7 @@ class Program:
         Raises
         ------
         ValueError
-            Naming the path, the row, the place and the remedy where nothing is clear.
+            Naming the path, the row, the place and the remedy if no link is clear.
 
         Examples
         --------
@@ -3130,7 +3142,7 @@ class Program:
         Raises
         ------
         ValueError
-            Where one number stands for tools of two shapes.
+            If one number is used for two shapes.
 
         Examples
         --------
@@ -3157,7 +3169,7 @@ class Program:
         Raises
         ------
         FormatError
-            Naming the byte where the file is damaged or not one.
+            Naming the byte, if the file is damaged or not a .rprog file.
 
         Examples
         --------
@@ -3171,7 +3183,7 @@ class Program:
         """
         Reads NC code as a machine's control has it: RS-274, APT, Heidenhain's Klartext or Sinumerik.
 
-        Poses are in the coordinates in which the first move is programmed. Whatever the reader does not understand is an error,
+        Poses are in the coordinates in which the first move is programmed. Code that the reader does not understand is an error,
         unless ``unknown`` is "skip".
 
         Parameters
@@ -3181,19 +3193,19 @@ class Program:
         machine : str
             A name of ``machines``, or the path of a .toml file.
         options : dict, optional
-            Those of the machine, and of reading:
+            Options of the machine, and of reading:
 
             - ``chord_tolerance`` (mm, 0.002): for curves.
             - ``axis_tolerance`` (rad): blocks whose rotary axes leave the great circle by more become several rows; without it a
-              block is one row, and the poses on its way are in ``via``.
-            - ``block_delete`` (True): lines that begin with / are passed over.
+              block is one row, and the poses in between are in ``via``.
+            - ``block_delete`` (True): skips lines that begin with /.
             - ``unknown``: "error" or "skip"; ``notes`` and ``provenance`` list what was skipped.
             - ``cutter_compensation``: "error", "ignore" (points are those of the tool's centre) or "offset" (points are the
               contour's, and the tool's centre is offset from it); ``tool_diameters`` for that, mm: one number, or a dict by
               the number of the offset D or of the tool.
             - ``units``: "mm" or "inch", before the program declares them.
             - ``arc_tolerance`` (mm, 0.005): by which an arc's end may miss its circle.
-            - ``g54`` … ``g59``, ``g59_1`` … ``g59_3``, ``g28``, ``g30``: where on the machine work offsets and homes lie, three to
+            - ``g54`` … ``g59``, ``g59_1`` … ``g59_3``, ``g28``, ``g30``: machine positions of work offsets and homes, three to
               six numbers.
             - ``subroutines``: a folder of files name.ngc; ``parameters``: a file of LinuxCNC's parameters; ``max_turns`` (1e6) of
               loops and calls.
@@ -3278,7 +3290,7 @@ class Program:
         """
         The program with the poses of ``via`` as rows of their own.
 
-        Between its rows the tool moves as the machine moves it.
+        Between its rows the tool moves as on the machine.
 
         Returns
         -------
@@ -3306,7 +3318,7 @@ class Program:
         Raises
         ------
         ValueError
-            Where two shapes would share a number.
+            If two shapes would share a number.
 
         Examples
         --------
@@ -3316,7 +3328,7 @@ class Program:
         """
     def rows_at(self, points: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], *, tools: collections.abc.Mapping[int, Tool] | None = None, tolerance: typing.SupportsFloat = 0.05, progress: collections.abc.Callable[[float], bool | None] | None = None) -> numpy.typing.NDArray[numpy.int32]:
         """
-        Which row made the surface at each point.
+        The row that made the surface at each point.
 
         The swept bodies of all moves are searched; nothing has to be stored while cutting. ``program.line`` and ``program.tool`` of
         the rows are the lines and tools that made a surface.
@@ -3324,7 +3336,7 @@ class Program:
         Parameters
         ----------
         points : array_like, shape (n, 3)
-            mm: places on what the program leaves, such as vertices of its mesh.
+            mm: points on the surface that the program leaves, such as vertices of its mesh.
         tools : dict, optional
             Number to Tool; takes the place of the program's own.
         tolerance : float
@@ -3348,7 +3360,7 @@ class Program:
         """
         Writes a .rprog file: everything to the bit, which NC code cannot keep.
 
-        The file is whole or not there. The same program gives the same bytes.
+        Writes the whole file or none. The same program gives the same bytes.
 
         Parameters
         ----------
@@ -3371,7 +3383,7 @@ class Program:
         Parameters
         ----------
         factor : float
-            By which feeds are multiplied.
+            Factor on the feeds.
 
         Returns
         -------
@@ -3423,7 +3435,7 @@ class Program:
         Parameters
         ----------
         first, last : int
-            Rows ``first`` to ``last`` - 1. The first of them becomes a rapid; an approach is the caller's to put before it.
+            Rows ``first`` to ``last`` - 1. The first of them becomes a rapid; the caller adds an approach before it.
 
         Returns
         -------
@@ -3437,7 +3449,7 @@ class Program:
         """
     def write(self, path: os.PathLike | str | bytes, *, post: str = 'tcp', tolerance: typing.SupportsFloat = 0.01, axis_tolerance: typing.SupportsFloat = 0.00175, options: collections.abc.Mapping[str, float | bool | str | collections.abc.Sequence[float]] | None = None, collider: Collider | None = None, stock: Volume | None = None, contact_tolerance: typing.SupportsFloat = 0.05) -> riffler.program_results.WriteReport:
         """
-        Writes NC code; the file is whole or not there, and the same program gives the same bytes.
+        Writes NC code: the whole file or none. The same program gives the same bytes.
 
         Every row is the end of a block; more blocks come between two rows where machine axes that move linearly would take the
         tip more than ``tolerance`` off the straight line or the axis more than ``axis_tolerance`` off the great circle. Where a
@@ -3461,10 +3473,10 @@ class Program:
             ``max_rotary`` (deg/min), ``line_numbers``, ``coolant``, ``retract``, ``safe_height``, ``arcs``, ``vectors``:
             docs/machines.md and ``machine_options``.
         collider : Collider, optional
-            Checks the machine's own motion, block by block as its axes make it, with cutter, shank and holder against part and
+            Checks the machine's own motion between the ends of blocks, with cutter, shank and holder against part and
             fixtures.
         stock : Volume, optional
-            Runs that motion on it, as a verification does.
+            Stock to check that motion in, as in a verification.
         contact_tolerance : float
             mm by which part and fixtures may be entered.
 
@@ -3475,7 +3487,7 @@ class Program:
         Raises
         ------
         ValueError
-            With the row, the place and the remedy: what the machine cannot hold, what enters part or fixtures, a rapid in the
+            Naming the row, the place and the remedy: a row that the machine cannot hold, a collision with part or fixtures, a rapid in the
             stock, or shank or holder in it. Nothing is written.
 
         Examples
@@ -3503,7 +3515,7 @@ class Program:
     @property
     def notes(self) -> list[Note]:
         """
-        What the reader assumed or passed over. Programs that are made of numbers have none.
+        Assumptions of the reader, and skipped code. Programs made from arrays have none.
         """
     @property
     def poses(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -3513,7 +3525,7 @@ class Program:
     @property
     def provenance(self) -> dict[str, str]:
         """
-        Strings that the header comment of the NC code repeats.
+        Strings that the NC code repeats in its header comment.
         """
     @property
     def rapid(self) -> numpy.typing.NDArray[numpy.bool]:
@@ -3596,7 +3608,7 @@ class Finding:
     @property
     def message(self) -> str:
         """
-        One sentence: what happened and what to do.
+        A sentence with the fault and the remedy.
         """
     @property
     def point(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -3627,18 +3639,18 @@ class Finding:
         """
 class VerifyReport:
     """
-    What a verification found: see `verify`.
+    The result of a verification: see `verify`.
     """
     def __repr__(self) -> str:
         ...
     def part_deviation(self) -> numpy.typing.NDArray[numpy.float64] | None:
         """
-        Measures the part against what is left, at the first call; later calls return the same.
+        Distance of the part's vertices from the remaining stock. Computed at the first call; later calls return the same.
 
         Returns
         -------
         ndarray, shape (vertices,), or None
-            mm from each vertex of the part to the surface of what is left: positive where material covers it, negative where it
+            mm from each vertex of the part to the surface of the remaining stock: positive where material covers it, negative where it
             is missing, -inf where nothing is left at all. None without a part.
 
         Examples
@@ -3651,12 +3663,12 @@ class VerifyReport:
         """
     def stock_deviation(self) -> tuple[Mesh, numpy.typing.NDArray[numpy.float64]] | None:
         """
-        Meshes what is left and measures it against the part, at the first call; later calls return the same.
+        Mesh of the remaining stock, and its distances from the part. Computed at the first call; later calls return the same.
 
         Returns
         -------
         tuple of Mesh and ndarray, shape (vertices,), or None
-            What is left, and mm from each of its vertices to the part's surface: positive where rest material stands on it,
+            The remaining stock, and mm from each of its vertices to the part's surface: positive in rest material,
             negative in gouges. None without a part.
 
         Examples
@@ -3692,12 +3704,12 @@ class VerifyReport:
     @property
     def not_checked(self) -> list[str]:
         """
-        Sentences: what was not requested, so does not fail.
+        Sentences on checks that were not requested and so cannot fail.
         """
     @property
     def passed(self) -> bool:
         """
-        True only where every requested check could be made and found nothing.
+        True only if every requested check could be made and found nothing.
         """
     @property
     def rate(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -3745,11 +3757,11 @@ class Verification:
     part_mesh : Mesh, optional
         For gouges and rest material.
     fixtures : list of Volume or Mesh
-        What the whole tool must stay clear of; a Mesh becomes a Volume at the stock's pitch.
+        Volumes or meshes that the whole tool must stay clear of; a Mesh becomes a Volume at the stock's pitch.
     tools : dict, optional
         Number to Tool; takes the place of the program's own.
     tolerance : float
-        mm, of cutting, as in ``Volume.carve``; less deep contact is none.
+        mm, of cutting, as in ``Volume.carve``; shallower contact does not count.
     gouge_tolerance : float
         mm under the part's surface from which removed material is a gouge.
     rest_tolerance : float, optional
@@ -3762,7 +3774,7 @@ class Verification:
     machine_options : dict, optional
         Options of the machine; those of reading are ignored.
     machine_frame : array_like, shape (4, 4), optional
-        From the coordinates of stock and program to those in which the machine has the program, where they differ.
+        Transform from the coordinates of stock and program to those of the program on the machine, if they differ.
     progress : callable, optional
         Called with the finished share, from 0 for each chunk; returning False cancels.
 
@@ -3779,7 +3791,7 @@ class Verification:
         ...
     def run(self, program: Program, *, progress: collections.abc.Callable[[float], bool | None] | None = None) -> VerifyReport:
         """
-        Verifies a program. After an error or Cancelled the object is as it was before the call.
+        Verifies a program. After an error or Cancelled the object is unchanged.
 
         Parameters
         ----------
@@ -3822,7 +3834,7 @@ class VerifyPlan:
         """
     def add(self, program: Program, *, progress: collections.abc.Callable[[float], bool | None] | None = None) -> list[tuple[int, int, bytes]]:
         """
-        List of (slab, number of moves, bytes) of the chunk: what can touch each slab.
+        List of (slab, number of moves, bytes) of the chunk: the moves that can touch each slab.
         """
     def context(self) -> bytes:
         """
@@ -3830,7 +3842,7 @@ class VerifyPlan:
         """
     def finish(self, *, progress: collections.abc.Callable[[float], bool | None] | None = None) -> VerifyReport:
         """
-        The VerifyReport, once all slabs are there.
+        The VerifyReport, after the results of all slabs.
         """
     def task(self, slab: typing.SupportsInt) -> bytes:
         """
@@ -3838,7 +3850,7 @@ class VerifyPlan:
         """
 class PenGeometry:
     """
-    A pen: its lengths, gears, encoders, motors and limits, and how it moves.
+    A pen's lengths, gears, encoders, motors and limits, and its kinematics.
 
     Two arms, R and L, hold the two ends of a grip. Counts are the six counters in the device's own order (``channels``);
     joints are θ1 θ2 θ3 of R, then of L, in rad. Poses are the grip's pivot and the unit axis along it, away from the tool's
@@ -3869,7 +3881,7 @@ class PenGeometry:
         FormatError
             Naming the file's line.
         ValueError
-            With the pens there are.
+            Listing the known pens.
 
         Examples
         --------
@@ -3942,7 +3954,7 @@ class PenGeometry:
         Parameters
         ----------
         counts : array_like, shape (n, 6)
-            What the counters read, in the device's order.
+            Readings of the counters, in the device's order.
 
         Returns
         -------
@@ -3961,11 +3973,11 @@ class PenGeometry:
         Parameters
         ----------
         counts : array_like, shape (n, 6)
-            What the counters read, in the device's order.
+            Readings of the counters, in the device's order.
         wrenches : array_like, shape (n, 6)
             Force, N, and torque, N·mm, in the frame of poses.
         at : array_like, shape (n, 3)
-            About which points the torques are, mm.
+            Points about which the torques act, mm.
 
         Returns
         -------
@@ -3988,7 +4000,7 @@ class PenGeometry:
         Parameters
         ----------
         counts : array_like, shape (n, 6)
-            What the counters read, in the device's order.
+            Readings of the counters, in the device's order.
 
         Returns
         -------
@@ -4008,7 +4020,7 @@ class PenGeometry:
         Parameters
         ----------
         counts : array_like, shape (n, 6)
-            What the counters read, in the device's order.
+            Readings of the counters, in the device's order.
 
         Returns
         -------
@@ -4028,9 +4040,9 @@ class PenGeometry:
         Parameters
         ----------
         counts : array_like, shape (1, 6)
-            What the counters read in the home posture.
+            Readings of the counters in the home posture.
         probe : int
-            What the seventh counter reads there.
+            Reading of the seventh counter there.
 
         Returns
         -------
@@ -4073,7 +4085,7 @@ class PenGeometry:
         Parameters
         ----------
         counts : array_like, shape (n, 6)
-            What the counters read, in the device's order.
+            Readings of the counters, in the device's order.
 
         Returns
         -------
@@ -4093,7 +4105,7 @@ class PenGeometry:
         Parameters
         ----------
         counts : array_like, shape (n, 6)
-            What the counters read, in the device's order.
+            Readings of the counters, in the device's order.
 
         Returns
         -------
@@ -4131,17 +4143,17 @@ class PenGeometry:
         """
     def noticed_counts(self, counts: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
         """
-        How many counts each channel may be off, in either direction, before it shows, all others being right.
+        Number of counts by which each channel may be off, in either direction, before the error is detected, if all others are right.
 
         Parameters
         ----------
         counts : array_like, shape (n, 6)
-            What the counters read, in the device's order.
+            Readings of the counters, in the device's order.
 
         Returns
         -------
         ndarray, shape (n, 6)
-            Infinite where none shows, and 0 in rows that do not fit.
+            Infinite if no error is detected, 0 in rows that do not fit.
 
         Examples
         --------
@@ -4156,7 +4168,7 @@ class PenGeometry:
         Parameters
         ----------
         count : int
-            What the seventh counter reads.
+            Readings of the seventh counter.
 
         Returns
         -------
@@ -4171,7 +4183,7 @@ class PenGeometry:
         """
     def split(self, wrenches: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], apart: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
         """
-        What the arms push with for a force and a torque on the hand.
+        Forces of the two arms for a force and a torque on the hand.
 
         Parameters
         ----------
@@ -4196,12 +4208,12 @@ class PenGeometry:
         """
     def stretch(self, counts: typing.Annotated[numpy.typing.ArrayLike, numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
         """
-        By how much the grip comes out longer than it is.
+        Error of the grip's length as computed from the counts, mm.
 
         Parameters
         ----------
         counts : array_like, shape (n, 6)
-            What the counters read, in the device's order.
+            Readings of the counters, in the device's order.
 
         Returns
         -------
@@ -4256,11 +4268,11 @@ class PenGeometry:
         """
 class PenError(RuntimeError):
     """
-    A device that does not open: says exactly why, and what to do.
+    A device does not open. The message gives the reason and the remedy.
     """
 class PenState:
     """
-    Where the hand was, by one report: see `PenDevice.state`.
+    State of the hand in one report: see `PenDevice.state`.
     """
     @property
     def age_s(self) -> float:
@@ -4290,7 +4302,7 @@ class PenState:
     @property
     def homed(self) -> bool:
         """
-        Whether the pose is sure.
+        Whether the pose is certain.
         """
     @property
     def pose(self) -> numpy.ndarray:
@@ -4329,9 +4341,9 @@ class PenState:
         """
 class PenDevice:
     """
-    A device that is open: a pen, a puck, a recording. Context manager.
+    An open device: a pen, a puck, a recording. Context manager.
 
-    A thread of its own reads reports and writes forces; it looks for a device that goes away until it is back.
+    Its own thread reads reports and writes forces, and reconnects to a device that was unplugged.
 
     Examples
     --------
@@ -4359,12 +4371,12 @@ class PenDevice:
         """
     def home(self) -> bool:
         """
-        Declares that the device stands in its home posture.
+        Declares that the device is in its home posture.
 
         Returns
         -------
         bool
-            False where nothing has to be homed.
+            False for a device that needs no homing.
 
         Examples
         --------
@@ -4394,7 +4406,7 @@ class PenDevice:
         """
     def reset(self) -> None:
         """
-        Clears a trip that does not heal by itself: the cause is in ``health()``.
+        Clears a trip that does not clear itself: the cause is in ``health()``.
 
         Examples
         --------
@@ -4422,7 +4434,7 @@ class PenDevice:
         Returns
         -------
         bool
-            False where the device could not be reached in time.
+            False if the device could not be reached in time.
 
         Examples
         --------
@@ -4433,7 +4445,7 @@ class PenDevice:
     @property
     def about(self) -> str:
         """
-        What it reported about itself.
+        The device's own description.
         """
     @property
     def geometry(self) -> PenGeometry | None:
@@ -4448,7 +4460,7 @@ class PenDevice:
     @property
     def limits(self) -> dict[str, riffler.pen_results.CoordinateCapability]:
         """
-        What it senses and pushes along "x", "y", "z" and the turns "a", "b", "c".
+        What the device senses and pushes along "x", "y", "z" and about the axes "a", "b", "c".
         """
     @property
     def priority(self) -> riffler.pen_results.ThreadPriority:
@@ -4510,7 +4522,7 @@ class SimulatedPen(PenDevice):
         channel : int
             0 to 5.
         counts : int
-            How many in all.
+            Total number of lost counts.
 
         Examples
         --------
@@ -4538,7 +4550,7 @@ class SimulatedPen(PenDevice):
         """
     def wander(self) -> None:
         """
-        Moves the hand round on its own curve again.
+        Moves the hand along its own closed curve again.
 
         Examples
         --------
@@ -4548,11 +4560,11 @@ class SimulatedPen(PenDevice):
     @property
     def truth(self) -> PenGeometry:
         """
-        PenGeometry of the simulated arms and motors; ``geometry`` is what the host knows of them.
+        PenGeometry of the simulated arms and motors; ``geometry`` has the values that the host assumes.
         """
 class Pointer(PenDevice):
     """
-    A tablet or a mouse as a device: its events are given here, and become poses.
+    A tablet or a mouse as a device: `give` passes its events, which become poses.
 
     Parameters
     ----------
@@ -4587,7 +4599,7 @@ class Pointer(PenDevice):
         Returns
         -------
         bool
-            False, and the event is left out, where a number is not finite or the time is before the last event's.
+            False if the event is ignored: a number is not finite, or the time is before the last event's.
 
         Examples
         --------
@@ -4596,14 +4608,14 @@ class Pointer(PenDevice):
         """
     def set_frame(self, *, origin: numpy.typing.ArrayLike = (0, 0, 0), right: numpy.typing.ArrayLike = (1, 0, 0), up: numpy.typing.ArrayLike = (0, 1, 0), scale: typing.SupportsFloat = 1.0, depth: typing.SupportsFloat = 2.0, max_tilt: typing.SupportsFloat = 1.0) -> None:
         """
-        Sets where the pointer's plane lies, from the next event on.
+        Sets the position of the pointer's plane, from the next event on.
 
         Parameters
         ----------
         origin : array_like, shape (3,)
             mm, of pointer (0, 0).
         right, up : array_like, shape (3,)
-            Unit vectors, square to each other.
+            Unit vectors, perpendicular to each other.
         scale : float
             mm for a unit of the pointer.
         depth : float
@@ -4614,7 +4626,7 @@ class Pointer(PenDevice):
         Raises
         ------
         ValueError
-            Naming what cannot be; the frame is as before then.
+            Naming the impossible value; the frame is then unchanged.
 
         Examples
         --------
@@ -4642,7 +4654,7 @@ class _PoseFollower:
     def time(self) -> float:
         ...
     @property
-    def why(self) -> typing.Any:
+    def why(self) -> str | None:
         ...
 class JournalStroke:
     """
@@ -4663,7 +4675,7 @@ class JournalStroke:
     @property
     def name(self) -> str:
         """
-        For people.
+        Name for users.
         """
     @property
     def poses(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -4697,7 +4709,7 @@ class JournalStroke:
         """
 class Journal:
     """
-    What a session did: stock, tools, strokes as poses, notes.
+    Record of a session: stock, tools, strokes as poses, notes.
 
     Replaying the strokes on the stock gives the session again. Files end in .rjournal.
 
@@ -4748,7 +4760,7 @@ class Journal:
         Parameters
         ----------
         key, value : str
-            Of a key that is given twice the later value counts.
+            If a key is given twice, the later value counts.
 
         Examples
         --------
@@ -4759,12 +4771,12 @@ class Journal:
         """
     def add_stroke(self, tool: typing.SupportsInt, poses: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], *, times: numpy.typing.ArrayLike | None = None, tolerance: typing.SupportsFloat = 0.01, name: str = '', forces: numpy.typing.ArrayLike | None = None, removed: numpy.typing.ArrayLike | None = None, mode: str = 'remove', strength: typing.SupportsFloat = 0.5) -> None:
         """
-        Records a stroke. To replay to the bit what ``carve`` added, or cut next to a mask, each carve has to be a stroke.
+        Records a stroke. Replay is exact to the bit for ``carve`` in mode "add" or with a mask only if each carve is one stroke.
 
         Parameters
         ----------
         tool : int
-            Number of a tool that was added.
+            Number of an added tool.
         poses : array_like, shape (n, 6)
             Tip in mm and unit axis, n at least 1. For a hand tool (n, 9), as in ``Volume.carve``.
         times : array_like, shape (n,), optional
@@ -4772,7 +4784,7 @@ class Journal:
         tolerance : float
             mm, as in ``Volume.carve``.
         name : str
-            For people.
+            Name for users.
         forces : array_like, shape (n, 6), optional
             N and N·mm as sent to the device for the hand, about the grip.
         removed : array_like, shape (n,), optional
@@ -4799,7 +4811,7 @@ class Journal:
         Parameters
         ----------
         number : int
-            By which strokes name it.
+            Number by which strokes refer to it.
         tool : Tool, dict or str
             A Tool, its dict or JSON text of it.
 
@@ -4867,7 +4879,7 @@ class Journal:
         Parameters
         ----------
         n : int
-            How many.
+            Number of strokes.
 
         Examples
         --------
@@ -4881,15 +4893,15 @@ class Journal:
         """
     def replay(self, folder: os.PathLike | str | bytes | None = None, *, progress: collections.abc.Callable[[float], bool | None] | None = None) -> Volume:
         """
-        What the strokes leave of the stock, to the bit as the session left it.
+        The stock after the strokes, to the bit as the session left it.
 
-        A row that stands where the row before stood is no move; a stroke that never moves cuts where it stands if it has two rows
+        A row with the same pose as the row before is not a move; a stroke that never moves cuts where it stands if it has two rows
         or more.
 
         Parameters
         ----------
         folder : path_like, optional
-            Where the snapshot of the stock lies, for a stock that is not a block.
+            Folder of the stock's snapshot, for a stock that is not a block.
         progress : callable, optional
             Called with the finished share; returning False cancels.
 
@@ -4906,12 +4918,12 @@ class Journal:
         """
     def replay_with_mask(self, folder: os.PathLike | str | bytes | None = None, *, progress: collections.abc.Callable[[float], bool | None] | None = None) -> tuple[Volume, Volume | None]:
         """
-        As ``replay``, with what is protected in the end.
+        As ``replay``, with the region that is protected at the end.
 
         Parameters
         ----------
         folder : path_like, optional
-            Where the snapshots of stock and mask lie.
+            Folder of the snapshots of stock and mask.
         progress : callable, optional
             Called with the finished share; returning False cancels.
 
@@ -4930,7 +4942,7 @@ class Journal:
         """
     def save(self, path: os.PathLike | str | bytes) -> None:
         """
-        Writes the whole journal; the file is whole or not there.
+        Writes the journal: the whole file or none.
 
         Parameters
         ----------
@@ -4954,9 +4966,9 @@ class Journal:
         directions : {"z", "xyz"}
             As of the Volume.
         snapshot : str
-            Name of the file with the stock, where it is not a full block.
+            Name of the file with the stock, if it is not a full block.
         mask : str
-            Name of the file with what is protected, where something is.
+            Name of the file with the protected region, if any.
 
         Examples
         --------
@@ -4967,12 +4979,12 @@ class Journal:
         """
     def strokes_at(self, points: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], *, tolerance: typing.SupportsFloat = 0.05, progress: collections.abc.Callable[[float], bool | None] | None = None) -> numpy.typing.NDArray[numpy.int32]:
         """
-        Which stroke made the surface at each point.
+        The stroke that made the surface at each point.
 
         Parameters
         ----------
         points : array_like, shape (n, 3)
-            mm: places on what the strokes leave, such as vertices of its mesh.
+            mm: points on the surface that the strokes leave, such as vertices of its mesh.
         tolerance : float
             mm that a point may be off the surface; a quarter of the pitch fits vertices of a mesh.
         progress : callable, optional
@@ -5000,7 +5012,7 @@ class Journal:
         Parameters
         ----------
         n : int
-            How many.
+            Number of strokes.
 
         Examples
         --------
@@ -5019,7 +5031,7 @@ class Journal:
     @property
     def notes(self) -> dict[str, str]:
         """
-        Where the journal comes from; of a key given twice the later value.
+        Notes on where the journal comes from, by key; the later value of a key given twice.
         """
     @property
     def stock(self) -> riffler.program_results.JournalStock | None:
@@ -5040,7 +5052,7 @@ class JournalWriter:
     """
     Appends to a journal file, record by record. Context manager.
 
-    Continues a file that is there, after cutting off a damaged tail, or begins a new one. Each record is handed to the
+    Continues an existing file, after cutting off a damaged tail, or begins a new one. Each record is passed to the
     system before the call returns.
 
     Parameters
@@ -5072,7 +5084,7 @@ class JournalWriter:
         Parameters
         ----------
         key, value : str
-            Of a key that is given twice the later value counts.
+            If a key is given twice, the later value counts.
 
         Examples
         --------
@@ -5083,12 +5095,12 @@ class JournalWriter:
         """
     def add_stroke(self, tool: typing.SupportsInt, poses: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], *, times: numpy.typing.ArrayLike | None = None, tolerance: typing.SupportsFloat = 0.01, name: str = '', forces: numpy.typing.ArrayLike | None = None, removed: numpy.typing.ArrayLike | None = None, mode: str = 'remove', strength: typing.SupportsFloat = 0.5) -> None:
         """
-        Records a stroke. To replay to the bit what ``carve`` added, or cut next to a mask, each carve has to be a stroke.
+        Records a stroke. Replay is exact to the bit for ``carve`` in mode "add" or with a mask only if each carve is one stroke.
 
         Parameters
         ----------
         tool : int
-            Number of a tool that was added.
+            Number of an added tool.
         poses : array_like, shape (n, 6)
             Tip in mm and unit axis, n at least 1. For a hand tool (n, 9), as in ``Volume.carve``.
         times : array_like, shape (n,), optional
@@ -5096,7 +5108,7 @@ class JournalWriter:
         tolerance : float
             mm, as in ``Volume.carve``.
         name : str
-            For people.
+            Name for users.
         forces : array_like, shape (n, 6), optional
             N and N·mm as sent to the device for the hand, about the grip.
         removed : array_like, shape (n,), optional
@@ -5123,7 +5135,7 @@ class JournalWriter:
         Parameters
         ----------
         number : int
-            By which strokes name it.
+            Number by which strokes refer to it.
         tool : Tool, dict or str
             A Tool, its dict or JSON text of it.
 
@@ -5136,7 +5148,7 @@ class JournalWriter:
         """
     def close(self) -> None:
         """
-        Ends writing; calls after it raise RuntimeError.
+        Closes the file; later calls raise RuntimeError.
 
         Examples
         --------
@@ -5170,7 +5182,7 @@ class JournalWriter:
         Parameters
         ----------
         n : int
-            How many.
+            Number of strokes.
 
         Examples
         --------
@@ -5195,9 +5207,9 @@ class JournalWriter:
         directions : {"z", "xyz"}
             As of the Volume.
         snapshot : str
-            Name of the file with the stock, where it is not a full block.
+            Name of the file with the stock, if it is not a full block.
         mask : str
-            Name of the file with what is protected, where something is.
+            Name of the file with the protected region, if any.
 
         Examples
         --------
@@ -5208,7 +5220,7 @@ class JournalWriter:
         """
     def sync(self) -> None:
         """
-        Waits until the disk has everything.
+        Waits until everything is on the disk.
 
         Examples
         --------
@@ -5222,7 +5234,7 @@ class JournalWriter:
         Parameters
         ----------
         n : int
-            How many.
+            Number of strokes.
 
         Examples
         --------
@@ -5240,7 +5252,7 @@ class JournalWriter:
         """
 class Material:
     """
-    What a stock or a fixture is made of, as far as a hand can feel it.
+    Properties of a stock's or fixture's material that a hand can feel.
 
     Parameters
     ----------
@@ -5302,7 +5314,7 @@ class Material:
         """
 class SessionFrame:
     """
-    What happened between two calls of ``Session.frame``, one row for each step: see `Session.frame`.
+    The steps between two calls of ``Session.frame``, one row for each: see `Session.frame`.
 
     Forces and torques act on the hand, about the grip's point, in the device's frame; those on the tool act on it, about its
     tip, in the part's.
@@ -5317,7 +5329,7 @@ class SessionFrame:
     @property
     def cause(self) -> str | None:
         """
-        Why the force was taken away and what to do, or None.
+        Why the force was removed and what to do, or None.
         """
     @property
     def cutting(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -5327,12 +5339,12 @@ class SessionFrame:
     @property
     def depth(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n,) mm that the tool is at most in what it must not enter.
+        (n,) mm: largest depth of the tool in what it must not enter.
         """
     @property
     def dropped_ticks(self) -> int:
         """
-        Steps since the start that are in no frame, because frames were too rare: 4096 are kept.
+        Steps since the start that are missing in all frames because frames were too rare; 4096 are kept.
         """
     @property
     def dt(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -5342,7 +5354,7 @@ class SessionFrame:
     @property
     def energy(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n,) N·mm that may go to the hand: the account of passivity.
+        (n,) N·mm: the passivity account, the energy that may still go to the hand.
         """
     @property
     def force(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -5370,7 +5382,7 @@ class SessionFrame:
     @property
     def missed(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n,) 1 where no step could be made and the force was held over.
+        (n,) 1 where a step was missed and the last force was held.
         """
     @property
     def poses(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -5380,7 +5392,7 @@ class SessionFrame:
     @property
     def problem(self) -> str | None:
         """
-        Why nothing is cut though the hand wants to, or None.
+        Why the tool does not cut although the hand asks for it, or None.
         """
     @property
     def removed(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -5436,7 +5448,7 @@ class Session:
     """
     A pen, a tool and a stock: the tool follows the hand and cuts a thousand times a second, and the hand feels it.
 
-    The device's own thread cuts. ``volume`` is what is shown: each call of ``frame`` brings it up to date, between steps, and
+    The device's own thread cuts. ``volume`` is the displayed volume: each call of ``frame`` brings it up to date, between steps, and
     nothing else may change it while the session runs. The tool cuts while a button of ``dead_man_mask`` is held and every
     check of the pen passes. Context manager: starts and stops.
 
@@ -5449,14 +5461,14 @@ class Session:
     pen : PenDevice, optional
         From ``riffler.pen.open``, or a ``riffler.pen.Pointer``; None: a Pointer of kind "mouse", then the session's ``pen``.
     obstacles : Collider, optional
-        Part and fixtures that the tool stays out of.
+        Part and fixtures that the tool does not enter.
     protect : Volume, optional
         Region that must not change, with the lower, upper, pitch and directions of ``volume``; air to the tool.
     mode : {"remove", "add"}
         "add": the cutter adds what it sweeps, over its whole length and within the volume's box. The hand then feels neither
         that nor the stock, only obstacles.
     material : Material, optional
-        What the stock is made of.
+        Material of the stock.
     at : array_like, shape (6,), optional
         Pose of the tool at the start: tip in mm and axis. None: the hand's pose for tablets, mice and recordings, otherwise
         5 mm above the middle of the stock.
@@ -5511,7 +5523,7 @@ class Session:
     @staticmethod
     def replay(path: os.PathLike | str | bytes, *, progress: collections.abc.Callable[[float], bool | None] | None = None) -> Volume:
         """
-        What a session left of its stock, the same to the bit. Its stock lies next to the journal.
+        The stock of a session at its end, to the bit. The initial stock must be next to the journal.
 
         Parameters
         ----------
@@ -5562,7 +5574,7 @@ class Session:
         """
         Records every stroke in a new file: poses, times, forces, what was cut. Call it before ``start``.
 
-        The stock lies next to it (``NAME-stock.rvol``), and what is protected (``NAME-mask.rvol``). What is in the file survives
+        Writes the stock (``NAME-stock.rvol``) and the protected region (``NAME-mask.rvol``) next to it. The file survives
         a crash but for the last second at most, and ``Session.replay`` replays it.
 
         Parameters
@@ -5594,12 +5606,12 @@ class Session:
         Parameters
         ----------
         seconds : float
-            How long to wait at most.
+            Longest time to wait.
 
         Returns
         -------
         bool
-            False: they are not.
+            False if some are not.
 
         Examples
         --------
@@ -5610,7 +5622,7 @@ class Session:
         """
     def redo(self) -> int:
         """
-        Redoes what ``undo`` undid, unless a new stroke has begun.
+        Redoes undone strokes, unless a new stroke has begun.
 
         Returns
         -------
@@ -5626,7 +5638,7 @@ class Session:
         """
     def reset(self) -> None:
         """
-        Clears a trip that does not heal by itself: ``SessionFrame.cause`` says what it was.
+        Clears a trip that does not clear itself: ``SessionFrame.cause`` gives its reason.
 
         Examples
         --------
@@ -5674,7 +5686,7 @@ class Session:
         Returns
         -------
         SessionFrame
-            What was not shown yet.
+            The steps since the last frame.
 
         Raises
         ------
@@ -5733,16 +5745,16 @@ class Session:
     @property
     def trips(self) -> list[riffler.program_results.Trip]:
         """
-        When the force was taken away, and why.
+        Times at which the force was removed, with the reasons.
         """
     @property
     def volume(self) -> Volume:
         """
-        What is shown.
+        The displayed volume.
         """
 class PencilPath:
     """
-    A curve of ball centres along a part, with what the ball touches. Immutable.
+    A curve of ball centres along a part, with the ball's contacts. Immutable.
 
     Parameters
     ----------
@@ -5840,7 +5852,7 @@ class PencilPath:
         """
     def nearest(self, point: numpy.typing.ArrayLike, *, direction: numpy.typing.ArrayLike | None = None) -> riffler.program_results.NearestContact:
         """
-        The contact nearest to a point, or to a ray: what a pen or a mouse points at.
+        The contact nearest to a point, or to a ray of a pen or mouse.
 
         Parameters
         ----------
@@ -5887,7 +5899,7 @@ class PencilPath:
         Raises
         ------
         ValueError
-            Naming the first point beyond ``limit``, or the key that is outside the path, no unit vector, or opposite to the key
+            Naming the first point beyond ``limit``, or the key that is outside the path, not a unit vector, or opposite to the key
             before it.
 
         Examples
@@ -5976,7 +5988,7 @@ class PencilPath:
         """
 class OrientFrame:
     """
-    What happened between two calls of ``OrientSession.frame``, one row for each step.
+    The steps between two calls of ``OrientSession.frame``, one row for each.
 
     Forces and torques act on the hand, about the grip's point, in the device's frame; those on the tool act on it, about its
     tip, in the part's.
@@ -5997,27 +6009,27 @@ class OrientFrame:
     @property
     def cause(self) -> str | None:
         """
-        Why the force was taken away and what to do, or None.
+        Why the force was removed and what to do, or None.
         """
     @property
     def changes(self) -> tuple[riffler.program_results.KeyChange, ...]:
         """
-        What the presses of buttons did, in their order: KeyChange.
+        Changes of keys by presses of buttons, in order: KeyChange.
         """
     @property
     def depth(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n,) mm that the tool is at most in part and fixtures.
+        (n,) mm: largest depth of the tool in part and fixtures.
         """
     @property
     def dropped_ticks(self) -> int:
         """
-        Steps since the start that are in no frame, because frames were too rare: 4096 are kept.
+        Steps since the start that are missing in all frames because frames were too rare; 4096 are kept.
         """
     @property
     def energy(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n,) N·mm that may go to the hand: the account of passivity.
+        (n,) N·mm: the passivity account, the energy that may still go to the hand.
         """
     @property
     def force(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -6047,7 +6059,7 @@ class OrientFrame:
     @property
     def missed(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        (n,) 1 where no step could be made and the force was held over.
+        (n,) 1 where a step was missed and the last force was held.
         """
     @property
     def poses(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -6067,7 +6079,7 @@ class OrientFrame:
     @property
     def station(self) -> float:
         """
-        Place on the path now: a point index with a fraction.
+        Present place on the path: a point index with a fraction.
         """
     @property
     def stations(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -6102,7 +6114,7 @@ class OrientFrame:
     @property
     def touching(self) -> str | None:
         """
-        What is deepest in contact now: cutter, shank, holder, fixture (with any part of the tool), or None.
+        The part of the tool that is deepest in contact now (cutter, shank, holder), fixture (for any part of the tool), or None.
         """
 class OrientSession:
     """
@@ -6221,7 +6233,7 @@ class OrientSession:
         """
     def reset(self) -> None:
         """
-        Clears a trip that does not heal by itself: ``OrientFrame.cause`` gives its reason.
+        Clears a trip that does not clear itself: ``OrientFrame.cause`` gives its reason.
 
         Examples
         --------
@@ -6320,7 +6332,7 @@ class OrientSession:
         Returns
         -------
         OrientFrame
-            What no frame has returned.
+            The steps since the last frame.
 
         Examples
         --------
@@ -6396,7 +6408,7 @@ def engrave(part: Mesh, curves: collections.abc.Iterable[numpy.typing.ArrayLike]
     """
     For riffler.plan.engrave.
     """
-def finish(part: Mesh, fixtures: collections.abc.Sequence[Mesh], stock: Volume, tool: Tool, *, axis: numpy.typing.ArrayLike, clearance: typing.SupportsFloat, pattern: str, cusp: typing.SupportsFloat, tolerance: typing.SupportsFloat, allowance: typing.SupportsFloat, angle: typing.SupportsFloat, min_slope: typing.SupportsFloat, max_slope: typing.SupportsFloat, region: collections.abc.Iterable[numpy.typing.ArrayLike], feed: typing.SupportsFloat, plunge: typing.SupportsFloat, progress: collections.abc.Callable[[float], bool | None] | None) -> dict[str, typing.Any]:
+def finish(part: Mesh, fixtures: collections.abc.Sequence[Mesh], stock: Volume, tool: Tool, *, axis: numpy.typing.ArrayLike, clearance: typing.SupportsFloat, pattern: str, cusp: typing.SupportsFloat, tolerance: typing.SupportsFloat, allowance: typing.SupportsFloat, angle: typing.SupportsFloat, min_slope: typing.SupportsFloat, max_slope: typing.SupportsFloat, region: collections.abc.Iterable[numpy.typing.ArrayLike], feed: typing.SupportsFloat, plunge: typing.SupportsFloat, progress: collections.abc.Callable[[float], bool | None] | None) -> riffler.plan.operations.FinishedMoves:
     """
     For riffler.plan.finish.
     """
@@ -6415,7 +6427,7 @@ def machine_options(machine: str, *, options: collections.abc.Mapping[str, float
     machine : str
         A name of ``machines``, or the path of a .toml file.
     options : dict, optional
-        Options that are given: others may be needed with them.
+        Given options, which may make others required.
 
     Returns
     -------
@@ -6424,7 +6436,7 @@ def machine_options(machine: str, *, options: collections.abc.Mapping[str, float
     Raises
     ------
     ValueError
-        For a machine that is not known, and for options that are wrong.
+        For an unknown machine, and for wrong options.
 
     Examples
     --------
@@ -6447,7 +6459,7 @@ def machine_texts(machine: str) -> riffler.program_results.MachineTexts:
     Raises
     ------
     ValueError
-        For a machine that is not known, and a file that cannot be read.
+        For an unknown machine, and a file that cannot be read.
 
     Examples
     --------
@@ -6456,9 +6468,9 @@ def machine_texts(machine: str) -> riffler.program_results.MachineTexts:
     """
 def machines() -> dict[str, str]:
     """
-    Machines that programs are written for and read from, riffler's and your own.
+    The machines that riffler can write and read programs for, shipped ones and your own.
 
-    A post has its machine's name. Where a machine is asked for, the path of a .toml file that describes one will do as well.
+    A post has its machine's name. Instead of a machine's name you can pass the path of a .toml file that describes one.
 
     Returns
     -------
@@ -6480,15 +6492,15 @@ def pencil(part: Mesh, tool: Tool, *, tolerance: typing.SupportsFloat, bitangenc
     """
 def read_file(path: os.PathLike | str | bytes) -> bytes:
     """
-    The file's bytes. FormatError where there is none, and for a folder, a pipe or a device.
+    The file's bytes. FormatError if there is no file, and for a folder, a pipe or a device.
     """
 def replace_file(draft: os.PathLike | str | bytes, path: os.PathLike | str | bytes) -> None:
     """
-    ``draft``, on the same file system, takes the place of ``path`` as an AtomicFileWriter's does.
+    Replaces ``path`` with ``draft``, on the same file system, like AtomicFileWriter.
     """
 def replaceable(path: os.PathLike | str | bytes) -> pathlib.Path:
     """
-    Where a path leads, links followed. RuntimeError for what is no regular file.
+    Target of a path after following links. RuntimeError if it is not a regular file.
     """
 def require_revolved(tool: Tool, who: str) -> None:
     """
@@ -6496,14 +6508,14 @@ def require_revolved(tool: Tool, who: str) -> None:
     """
 def set_threads(n: typing.SupportsInt | None) -> None:
     """
-    Says how many threads parallel calls use from now on, in all of the process; those that run keep theirs.
+    Sets the number of threads of parallel calls in the whole process. Running calls keep theirs.
 
     Results are the same bytes for any number.
 
     Parameters
     ----------
     n : int from 1 to 256, or None
-        None: RIFFLER_THREADS decides again, or the CPU affinity.
+        None: as set by RIFFLER_THREADS, or by the CPU affinity.
 
     Raises
     ------
@@ -6529,9 +6541,9 @@ def then(found: _Found, convert: collections.abc.Callable[[_Found], _Made]) -> _
     """
 def threads() -> int:
     """
-    How many threads a parallel call uses.
+    Number of threads of a parallel call.
 
-    That is what `set_threads` says, else RIFFLER_THREADS where that is set, else as many as the process may run on.
+    The number given to `set_threads`, else RIFFLER_THREADS if set, else the number of processors that the process may use.
 
     Returns
     -------
@@ -6545,15 +6557,15 @@ def threads() -> int:
     """
 def tip_ball_radius(tool: Tool, name: str) -> float:
     """
-    Radius (mm) of the ball at the tip of ``tool``; ValueError naming the argument ``name`` where there is none.
+    Radius (mm) of the ball at the tip of ``tool``; ValueError naming the argument ``name`` if the tip is not a ball.
     """
 def verify(program: Program | collections.abc.Iterable[Program], stock_volume: Volume, part_mesh: Mesh | None = None, fixtures: collections.abc.Iterable[Volume | Mesh] | None = (), *, tools: collections.abc.Mapping[int, Tool] | None = None, tolerance: typing.SupportsFloat = 0.01, gouge_tolerance: typing.SupportsFloat = 0.05, rest_tolerance: typing.SupportsFloat | None = None, rapid_feed: typing.SupportsFloat = 10000.0, machine: str | None = None, machine_options: collections.abc.Mapping[str, float | bool | str | collections.abc.Sequence[float]] | None = None, machine_frame: numpy.typing.ArrayLike | None = None, progress: collections.abc.Callable[[float], bool | None] | None = None) -> VerifyReport:
     """
-    Runs a program on a stock and reports what goes wrong; the stock is not changed.
+    Runs a program on a stock and reports faults. The stock is not changed.
 
-    Rapids are cut too: a crash takes material. Shank and holder must stay clear of what is left of the stock when they come
-    there, the whole tool of the fixtures. Where the description of a tool ends below material or a fixture that stands above
-    it or next to it, it is unknown what the spindle meets: a finding "unknown".
+    Rapids remove material too, as a crash would. Shank and holder must stay clear of the remaining stock when they come
+    there, the whole tool of the fixtures. If the description of a tool ends below material or a fixture above
+    or next to it, collisions of the spindle are unknown: a finding "unknown".
 
     Parameters
     ----------
@@ -6564,11 +6576,11 @@ def verify(program: Program | collections.abc.Iterable[Program], stock_volume: V
     part_mesh : Mesh, optional
         For gouges and rest material.
     fixtures : list of Volume or Mesh
-        What the whole tool must stay clear of; a Mesh becomes a Volume at the stock's pitch.
+        Volumes or meshes that the whole tool must stay clear of; a Mesh becomes a Volume at the stock's pitch.
     tools : dict, optional
         Number to Tool; takes the place of the program's own.
     tolerance : float
-        mm, of cutting, as in ``Volume.carve``; less deep contact is none.
+        mm, of cutting, as in ``Volume.carve``; shallower contact does not count.
     gouge_tolerance : float
         mm under the part's surface from which removed material is a gouge.
     rest_tolerance : float, optional
@@ -6581,7 +6593,7 @@ def verify(program: Program | collections.abc.Iterable[Program], stock_volume: V
     machine_options : dict, optional
         Options of the machine; those of reading are ignored.
     machine_frame : array_like, shape (4, 4), optional
-        From the coordinates of stock and program to those in which the machine has the program, where they differ.
+        Transform from the coordinates of stock and program to those of the program on the machine, if they differ.
     progress : callable, optional
         Called with the finished share, from 0 for each chunk; returning False cancels.
 
@@ -6592,7 +6604,7 @@ def verify(program: Program | collections.abc.Iterable[Program], stock_volume: V
     Raises
     ------
     ValueError
-        Naming number, row and line of a tool whose shape is not known.
+        Naming number, row and line of a tool of unknown shape.
 
     Examples
     --------

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from . import _core
 
-#: Called with the finished share, 0 to 1; the call is cancelled where it returns False.
+#: Called with the finished share, 0 to 1; returning False cancels the call.
 Progress: TypeAlias = Callable[[float], bool | None] | None
 
 #: (axis, angle): a cone about a unit axis, with its half angle in rad.
@@ -23,5 +23,5 @@ R = TypeVar("R")
 
 
 def then(found: T, convert: Callable[[T], R]) -> R:
-    """``convert(found)``; of a task, that its result will be converted."""
+    """``convert(found)``; for a task, a task whose result is converted."""
     return cast(R, _core.then(found, convert))

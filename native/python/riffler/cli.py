@@ -28,7 +28,7 @@ def main(argv: list[str] | None = None) -> int:
         console.error(f"interrupted, {done}")
         return 130
     except BrokenPipeError:
-        # Whoever read our output has seen enough; keep the interpreter from complaining about it at exit.
+        # The reader has closed our output; keep the interpreter from reporting this at exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
     except Exception as error:
@@ -53,7 +53,7 @@ def dispatch(words: list[str], console: Console) -> int:
 
 
 def explain(error: Exception) -> str:
-    """One line that says what is wrong."""
+    """The error as one line."""
     if isinstance(error, MemoryError):
         return "out of memory; take a coarser pitch or a smaller part"
     if isinstance(error, OSError) and error.strerror:

@@ -1,7 +1,7 @@
-"""Verification on a Dask cluster: slabs of the stock are simulated wherever a worker is free.
+"""Verification on a Dask cluster: free workers simulate slabs of the stock.
 
-The report is that of ``riffler.verify``, the same bytes. The cluster's machines need the same version of riffler, and
-nothing else of the job: each slab travels with its material, its share of the part and the moves that can touch it.
+The report has the same bytes as that of ``riffler.verify``. The cluster's machines need the same version of riffler
+and nothing else of the job: each slab travels with its material, its share of the part and the moves that can touch it.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ AHEAD = 8  # times as many slabs may be done while one before them is not: what 
 PATIENCE = 5.0  # s: for the scheduler, and for a first worker
 WITHOUT_WORKERS = 60.0  # s: workers that die may be started again
 RETRIES = 2  # of a slab whose worker fails; a worker that dies is Dask's own to deal with
-# A function of the standard library, so that a worker without riffler can say so.
+# A function of the standard library, so that a worker without riffler can report this.
 VERSION_OF = "__import__('riffler').__version__"
 
 
@@ -62,9 +62,9 @@ def verify(
 ) -> VerifyReport:
     """``riffler.verify`` on a cluster: same arguments, same report, same bytes.
 
-    Moves wait in a temporary file (TMPDIR); of the program 24 bytes a row are kept. A worker that dies costs the slabs
-    it was at: Dask gives them to another one. After an error, Ctrl-C, or a ``progress`` that raises or returns False,
-    nothing is left on the cluster.
+    Moves wait in a temporary file (TMPDIR); 24 bytes a row of the program stay in memory. If a worker dies, Dask gives
+    its slabs to another one. After an error, Ctrl-C, or a ``progress`` that raises or returns False, nothing is left on
+    the cluster.
 
     Parameters
     ----------
@@ -101,11 +101,11 @@ def verify(
     Raises
     ------
     ConnectionError
-        There is no scheduler, or no worker.
+        If there is no scheduler or no worker.
     RuntimeError
-        Names the worker that has another version of riffler, or none.
+        Naming the worker that has another version of riffler, or none.
     ValueError
-        As `riffler.verify`; and where the package distributed is missing.
+        As `riffler.verify`, and if the package distributed is missing.
     Cancelled
         ``progress`` returned False.
 
@@ -171,7 +171,7 @@ class _Told:
 
 
 def library() -> Any:
-    """distributed, or ValueError where it is missing."""
+    """The module distributed, or ValueError if it is missing."""
     try:
         import distributed
     except ImportError as error:
@@ -181,7 +181,7 @@ def library() -> Any:
 
 @contextmanager
 def _client(scheduler: str | Client) -> Iterator[Client]:
-    """A client that is given stays open."""
+    """A client; a given one stays open."""
     distributed = library()
     if isinstance(scheduler, distributed.Client):
         client: Client = scheduler  # pyright: ignore[reportAssignmentType]
@@ -200,7 +200,7 @@ def _client(scheduler: str | Client) -> Iterator[Client]:
 
 
 def address_of(client: Client) -> str:
-    """Where its scheduler is."""
+    """Address of its scheduler."""
     return str(client.scheduler.address)  # pyright: ignore[reportOptionalMemberAccess]
 
 
@@ -231,7 +231,7 @@ def _check_version(worker: str, version: str | Exception) -> None:
 
 
 class Context:
-    """What all slabs share. A task of its own makes it, so that Dask can make it again; workers send it to each other
+    """Data shared by all slabs. A task makes it, so that Dask can make it again; workers send it to each other
     as bytes."""
 
     def __init__(self, version: str, data: bytes) -> None:
@@ -243,7 +243,7 @@ class Context:
 
 
 def simulate(context: Context, task: bytes, moves: list[bytes]) -> bytes:
-    """On a worker: one slab, or some of its moves."""
+    """Runs one slab, or some of its moves, on a worker."""
     if context.worker is None:  # it came later than `check_versions`
         from distributed import get_worker
 
@@ -258,7 +258,7 @@ def simulate(context: Context, task: bytes, moves: list[bytes]) -> bytes:
 
 
 class Spool:
-    """Packets of moves, slab by slab, in a temporary file that is gone with the process."""
+    """Packets of moves, slab by slab, in a temporary file that disappears with the process."""
 
     def __init__(self) -> None:
         import tempfile  # brings hashlib, and that OpenSSL: 3 MB that only clusters need
@@ -299,7 +299,7 @@ class Spool:
 
 @dataclass
 class Traffic:
-    """What a run has moved, bytes."""
+    """Bytes that a run has moved."""
 
     tasks: int = 0
     slabs: int = 0
@@ -321,7 +321,7 @@ class Slab:
 
 @dataclass
 class Slabs:
-    """Runs all slabs of a plan on the cluster; none of them is left there at the end."""
+    """Runs all slabs of a plan on the cluster; leaves none there at the end."""
 
     client: Client
     plan: VerifyPlan
@@ -365,7 +365,7 @@ class Slabs:
                 self.progress(self.finished / self.spool.total)
 
     def look(self) -> None:
-        """How many threads there are now. ConnectionError where scheduler or workers are gone for good."""
+        """Number of threads at present. ConnectionError if scheduler or workers are lost for good."""
         now = time.monotonic()
         if now - self.looked < 1:
             return
@@ -434,7 +434,7 @@ class Slabs:
 
 @contextmanager
 def _large_tasks() -> Iterator[None]:
-    """Slabs travel in their tasks, because data that lie on a worker would be lost with it; Dask need not warn."""
+    """Silences Dask's warning about large tasks. Slabs are in their tasks, because a worker's data are lost with it."""
     from dask import config
 
     with config.set({"distributed.admin.large-graph-warning-threshold": "1 TB"}):

@@ -1,4 +1,4 @@
-"""Old names: they keep working, and each warns once with the name that took its place.
+"""Old names keep working; each warns once and names its replacement.
 
 The tables of old names are in `riffler.old`, one module per topic. Old attributes, methods and names of modules get a
 descriptor or a module's ``__getattr__``. Old keywords and positional arguments are translated where a call does not
@@ -55,12 +55,12 @@ class Old:
     #: callable: today's names of the arguments in an order that is another today, and whether a call uses that order,
     #: by its positional arguments (without ``self``)
     reordered: dict[str, tuple[tuple[str, ...], Callable[[tuple], bool]]] = field(default_factory=dict)
-    #: callable: keyword that is gone → function (call, args, kwargs) that makes the call in today's form and returns
-    #: what the old one did; it warns by itself
+    #: callable: removed keyword → function (call, args, kwargs) that makes the call in today's form and returns
+    #: the old call's result; it issues the warning itself
     adapted: dict[str, dict[str, Callable[[Callable, tuple, dict], object]]] = field(default_factory=dict)
 
     def merged(self, other: Old) -> Old:
-        """The tables of both."""
+        """The merged tables."""
 
         def both(a: dict, b: dict) -> dict:
             return a | {k: a[k] | v if k in a and isinstance(v, dict) else v for k, v in b.items()}
@@ -82,7 +82,7 @@ class OldAttribute:
 
 
 def install(attributes: Mapping[str, Mapping[str, str]], classes: Mapping[str, type]) -> None:
-    """Gives the classes their old attributes."""
+    """Adds the old attributes to the classes."""
     for owner, names in attributes.items():
         for old, new in names.items():
             setattr(classes[owner], old, OldAttribute(owner, old, new))
@@ -108,7 +108,7 @@ def module_getattr(module: str, names: Mapping[str, str | tuple[str, str]]) -> C
 
 
 class DictResult:
-    """What a result inherits that was a dict: it can still be read as one.
+    """Base of results that used to be dicts: they can still be read as one.
 
     ``old_keys`` names the keys whose attribute is called otherwise; every other key is the attribute's name.
     """

@@ -1,4 +1,4 @@
-"""Files that are whole or not there, for what Python writes. The library's own writers do the same."""
+"""Writes files whole or not at all, for Python code. The library's own writers do the same."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ from . import _core
 
 
 def read(path: str | os.PathLike[str]) -> bytes:
-    """A file's bytes. FormatError where it cannot be read, and for a folder, a pipe or a device."""
+    """A file's bytes. FormatError if it cannot be read, and for a folder, a pipe or a device."""
     return _core.read_file(path)
 
 
 @contextmanager
 def writing(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
-    """A stream whose bytes become the file ``path`` at the end, or leave no trace after an error.
+    """A stream whose bytes become the file ``path`` at the end; after an error nothing is written.
 
-    Links are followed, and a file that is there keeps its permissions and its owner. OSError or RuntimeError with the
-    system's reason; RuntimeError for what is no regular file.
+    Follows links; an existing file keeps its permissions and owner. OSError or RuntimeError with the
+    system's reason; RuntimeError if it is not a regular file.
     """
     draft = _core.AtomicFileWriter(path)
     with os.fdopen(os.dup(draft.fileno()), "wb") as stream:
@@ -35,15 +35,15 @@ def writing(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
 
 
 def write(path: str | os.PathLike[str], data: bytes) -> None:
-    """The same for bytes that are there."""
+    """The same for given bytes."""
     with writing(path) as stream:
         stream.write(data)
 
 
 @contextmanager
 def drafting(path: str | os.PathLike[str], done: Callable[[], None] = lambda: None) -> Iterator[Path]:
-    """A path to write to, of the same name in a folder of its own, whose file takes the place of ``path`` at the end:
-    for writers that want a name. ``done`` is called when it has, before Ctrl-C is heard again.
+    """A path to write to, with the same name in a folder of its own, whose file replaces ``path`` at the end:
+    for writers that need a path. ``done`` is called after that, before Ctrl-C has effect again.
 
     The folder is locked: one that a killed process left goes with the next draft.
     """
@@ -68,7 +68,7 @@ def drafting(path: str | os.PathLike[str], done: Callable[[], None] = lambda: No
 
 @contextmanager
 def uninterrupted() -> Iterator[None]:
-    """Ctrl-C is ignored; for moments only."""
+    """Ignores Ctrl-C; use it for moments only."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return

@@ -22,26 +22,26 @@ log = logging.getLogger("riffler")
 def submit(function: Callable[P, R], /, *args: P.args, **kwargs: P.kwargs) -> Future[R]:
     """Starts a long call on a thread of its own.
 
-    Most long calls of riffler run on a native thread that runs no Python: what they are given is taken at once, volumes
-    by a snapshot, and arguments that are wrong are raised here. Others (`Volume.carve`, `verify` of an iterable, your
-    own functions) run on a Python thread; they are cancelled by their ``progress``, where they have one.
+    Most long calls of riffler run on a native thread without Python: they copy their arguments at once, volumes
+    by a snapshot, and wrong arguments raise here. Others (`Volume.carve`, `verify` of an iterable, your
+    own functions) run on a Python thread; their ``progress``, if any, cancels them.
 
     Parameters
     ----------
     function : callable
-        A function or method of riffler, or another. Its ``progress`` belongs to the future.
+        A function or method, of riffler or your own. The future provides its ``progress``.
     *args, **kwargs
         Its arguments.
 
     Returns
     -------
     Future
-        Of what the function returns.
+        A future of the function's result.
 
     Raises
     ------
     ValueError, TypeError
-        Arguments of a native call that are wrong; those of others are raised by `Future.result`.
+        For wrong arguments of a native call; other calls raise them from `Future.result`.
 
     Examples
     --------
@@ -63,7 +63,7 @@ def submit(function: Callable[P, R], /, *args: P.args, **kwargs: P.kwargs) -> Fu
 
 
 def runs_as_task(function: Callable[P, R]) -> Callable[P, R]:
-    """Marks a function in Python that hands its ``progress`` to one native call, and converts by `_core.then`."""
+    """Marks a Python function that passes its ``progress`` to one native call and converts by `_core.then`."""
     function.__riffler_task__ = True  # pyright: ignore[reportFunctionMemberAccess]
     return function
 
@@ -77,7 +77,7 @@ def _can_be_a_task(call: Callable) -> bool:
 
 
 class Future(Generic[R]):
-    """A call that runs, or has ended; its interface is that of ``concurrent.futures.Future``, with `progress`.
+    """A running or finished call; its interface is that of ``concurrent.futures.Future``, with `progress`.
 
     A future that the program no longer holds is cancelled and waited for, unless it has callbacks; so are all when
     Python ends.
@@ -97,21 +97,21 @@ class Future(Generic[R]):
         self._watched = False
 
     def result(self, timeout: float | None = None) -> R:
-        """What the call returns, the same object each time; waits for it, other threads run meanwhile.
+        """The call's result, the same object each time. Waits for it; other threads run meanwhile.
 
         Parameters
         ----------
         timeout : float, s, or None
-            How long to wait.
+            Longest time to wait.
 
         Raises
         ------
         TimeoutError
-            The call has not ended by then.
+            If the call has not ended by then.
         Cancelled
             After `cancel`.
         Exception
-            What the call raises.
+            An exception of the call.
 
         Examples
         --------
@@ -122,17 +122,17 @@ class Future(Generic[R]):
         return self._task.result()  # pyright: ignore[reportReturnType]
 
     def exception(self, timeout: float | None = None) -> BaseException | None:
-        """What the call raised, or None; waits as `result` does.
+        """The call's exception, or None; waits as `result` does.
 
         Parameters
         ----------
         timeout : float, s, or None
-            How long to wait.
+            Longest time to wait.
 
         Raises
         ------
         TimeoutError
-            The call has not ended by then.
+            If the call has not ended by then.
 
         Examples
         --------
@@ -175,7 +175,7 @@ class Future(Generic[R]):
         return not self._task.done
 
     def cancel(self) -> bool:
-        """Asks the call to end with `Cancelled`, and does not wait. Whether it had not ended yet.
+        """Asks the call to end with `Cancelled`, and does not wait. Returns False if it has already ended.
 
         Examples
         --------
@@ -192,11 +192,18 @@ class Future(Generic[R]):
         return True
 
     def cancelled(self) -> bool:
-        """Whether the call has ended by `Cancelled`. Examples: see `cancel`."""
+        """Whether the call has ended by `Cancelled`.
+
+        Examples
+        --------
+        >>> future = riffler.submit(riffler.Volume.block, (0, 0, 0), (4, 3, 2), 0.5)
+        >>> future.result().volume, future.cancelled()
+        (24.0, False)
+        """
         return self._task.done and isinstance(self.exception(), _core.Cancelled)
 
     def progress(self) -> float:
-        """The finished share, in [0, 1]: never falls, and 1 only where the call came to its end.
+        """The finished share, in [0, 1]. Never decreases; 1 only if the call has finished.
 
         Examples
         --------
@@ -207,14 +214,14 @@ class Future(Generic[R]):
         return self._task.share
 
     def add_done_callback(self, callback: Callable[[Future[R]], object]) -> None:
-        """Calls ``callback(future)`` when the call has ended: on a thread of its own, or at once where it has.
+        """Calls ``callback(future)`` after the end of the call: on a thread of its own, or at once if it has ended.
 
-        What a callback raises is logged.
+        Exceptions of callbacks are logged.
 
         Parameters
         ----------
         callback : callable
-            Gets this future.
+            Function that is called with this future.
 
         Examples
         --------
@@ -269,7 +276,7 @@ class _Running(Protocol):
 
 
 class _Done:
-    """A call that found its result at once."""
+    """A call whose result was known at once."""
 
     share, done = 1.0, True
 
@@ -277,7 +284,7 @@ class _Done:
         self._found = found
 
     def cancel(self) -> None:
-        """Without effect: it has ended."""
+        """No effect: the call has ended."""
 
     def wait(self, timeout: float | None = None) -> bool:
         return True
@@ -287,7 +294,7 @@ class _Done:
 
 
 class _Outcome:
-    """What a thread leaves; the thread holds this and not the `_Thread`, which can so be dropped."""
+    """Result of a thread. The thread refers to this and not to the `_Thread`, so that the latter can be dropped."""
 
     def __init__(self) -> None:
         self.share, self.cancelled = 0.0, False
@@ -366,7 +373,7 @@ _threads: weakref.WeakSet[_Thread] = weakref.WeakSet()
 
 @atexit.register
 def _end_all() -> None:
-    """Before Python takes itself apart under a thread."""
+    """Ends all threads before Python shuts down."""
     running = list(_threads)
     for thread in running:
         thread.cancel()

@@ -1,8 +1,8 @@
-"""What a call gets whose arguments do not fit: an old form is translated, anything else is one TypeError that says what
+"""Handles calls with wrong arguments: translates old forms; for all others raises one TypeError that says what
 would fit.
 
-Functions of the extension module come here by themselves, from native/bindings/hints.cpp; functions in Python by
-`hinted`. Both only after a call has failed, so that calls that fit cost nothing. What an argument must be is read from
+Functions of the extension module call this from native/bindings/hints.cpp, functions in Python by
+`hinted`, both only after a call has failed, so that correct calls cost nothing. What an argument must be is read from
 the function's docstring (its section Parameters), or else from its annotation.
 """
 
@@ -29,7 +29,7 @@ LIMIT = 60  # characters of a value that a message shows
 
 @dataclass(frozen=True)
 class Argument:
-    """One argument of a callable, as its signature has it."""
+    """One argument of a callable, from its signature."""
 
     name: str
     annotation: str = ""
@@ -134,7 +134,7 @@ def _shown(name: str) -> str:
 
 
 def _translated(name: str, arguments: list[Argument], args: tuple, kwargs: dict) -> tuple[tuple, dict] | None:
-    """The call in today's form, or None where nothing of it is old. Warns."""
+    """The call in today's form, with a warning, or None if the call has no old parts."""
     tables, found = old.ALL, False
     first = int(bool(arguments) and arguments[0].name == "self")
     if name in tables.reordered and tables.reordered[name][1](args[first:]):
@@ -168,7 +168,7 @@ def _in_todays_order(name: str, order: tuple[str, ...], args: tuple, kwargs: dic
 
 
 def _explain(name: str, doc: str, arguments: list[Argument] | None, args: tuple, kwargs: dict) -> str:
-    """What is wrong with a call, and what would fit."""
+    """The fault of a call, and what would fit."""
     shown = _shown(name)
     if arguments is None:
         signatures = re.findall(r"^\d+\. \w+(\(.*)$", doc, re.MULTILINE)
@@ -221,7 +221,7 @@ def _listed(args: tuple, kwargs: dict) -> str:
 
 
 def _kind(value: object) -> str:
-    """A value's type, and the value where it is short and simple."""
+    """A value's type, and the value if it is short and simple."""
     if value is None:
         return "None"
     shape = getattr(value, "shape", None)
@@ -233,7 +233,7 @@ def _kind(value: object) -> str:
 
 
 def _documented(doc: str) -> dict[str, str]:
-    """What stands behind the colon of each argument in the section Parameters of a numpy docstring."""
+    """The text after the colon of each argument in the section Parameters of a numpy docstring."""
     section = re.search(r"^ *Parameters\n *-{3,}\n(.*?)(?=^ *\w+\n *-{3,}$|\Z)", doc, re.MULTILINE | re.DOTALL)
     out = {}
     for names, kind in re.findall(r"^ *([\w, ]+?) : (.+)$", section[1] if section else "", re.MULTILINE):
@@ -284,7 +284,7 @@ def _wanted(argument: Argument, documented: dict[str, str]) -> str:
 
 
 def _misfit(annotation: str, value: object) -> tuple[str, object] | None:
-    """What of a value does not fit an annotation, and where in it it is; None where it fits, or might."""
+    """The part of a value that does not fit an annotation, and its place in it; None if all fits, or might fit."""
     alternatives = _split(annotation, "|")
     if any(_fits(one, value) for one in alternatives):
         return None

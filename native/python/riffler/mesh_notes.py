@@ -1,4 +1,4 @@
-"""What was mended in a mesh, or lost of it, in sentences: for the command line and for Blender."""
+"""Sentences on repairs of a mesh and lost material, for the command line and Blender."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The pen: what it is, how its arms move, and how they share a force.
+"""The pen: its description, kinematics and forces.
 
 >>> pen = riffler.pen.PenGeometry.load("riffler")
 >>> pen.forward([pen.home])  # one pose a row
@@ -80,7 +80,7 @@ _open_devices: weakref.WeakSet[PenDevice] = weakref.WeakSet()
 
 
 def names() -> dict[str, str]:
-    """Every pen that has a name: those that come with riffler, then the user's own.
+    """All pens with a name: those shipped with riffler, then the user's own.
 
     Returns
     -------
@@ -96,9 +96,9 @@ def names() -> dict[str, str]:
 
 
 def devices() -> list[DeviceInfo]:
-    """Every HID device of this computer, and every device that a maker's service reports.
+    """All HID devices of this computer, and all devices that a maker's service reports.
 
-    Devices of kinds that riffler knows are opened and asked what they are.
+    Opens devices of known kinds to read their description.
 
     Returns
     -------
@@ -113,7 +113,7 @@ def devices() -> list[DeviceInfo]:
 
 
 def kinds() -> dict[str, str]:
-    """What ``open`` takes for devices.
+    """The kinds of devices that ``open`` accepts.
 
     Returns
     -------
@@ -145,10 +145,10 @@ def unavailable() -> dict[str, str]:
 
 
 def real_time() -> ThreadPriority:
-    """What the system would grant the thread of a device that is opened now.
+    """The priority that the system would grant to the thread of a device opened now.
 
-    Devices and sessions ask for it by themselves: see ``PenDevice.priority`` and ``Session.priority``. Takes up to a
-    second where a service does not answer.
+    Devices and sessions request it themselves: see ``PenDevice.priority`` and ``Session.priority``. Takes up to a
+    second if a service does not answer.
 
     Returns
     -------
@@ -212,7 +212,7 @@ def open(
         ``riffler pen list``, its serial number or a part of its name), a path of ``devices``, or a journal
         (``.rjournal``), which is played from the first call of ``state`` on.
     speed : float, optional
-        Pucks: mm/s at full deflection. Journals: how many times as fast as recorded.
+        Pucks: mm/s at full deflection. Journals: factor on the recorded speed.
     bubble : float, optional
         Pucks: share of the deflection that counts as rest.
     exponent : float, optional
@@ -224,14 +224,14 @@ def open(
     signs : list of int, optional
         Pucks: six of -1, 0, 1.
     geometry : str, optional
-        Of "polhem": "woodenhaptics" or "polhem-1".
+        For "polhem": "woodenhaptics" or "polhem-1".
     gravity, friction : float, optional
-        Of Riffler's pen and the simulated one: shares (0 to 1) of the arms' weight and friction that the motors make up
-        for while force is let through. If not given, 1 and 0.5 for a pen that was identified, and 0 for another.
+        For Riffler's pen and the simulated one: shares (0 to 1) of the arms' weight and friction that the motors
+        compensate while force passes the gate. Default: 1 and 0.5 for an identified pen, 0 for others.
     seed : int, optional
-        Of the simulated pen: its true motors, friction and weights are drawn around the described ones.
+        For the simulated pen: its true motors, friction and weights deviate randomly from the described ones.
     real_time : bool, optional
-        Of the simulated pen: False, and its clock runs as fast as the machine computes, for tests.
+        For the simulated pen: False runs its clock as fast as the machine computes, for tests.
 
     Returns
     -------
@@ -240,7 +240,7 @@ def open(
     Raises
     ------
     PenError
-        With the exact reason why the device does not open, and what to do.
+        With the reason why the device does not open, and the remedy.
 
     Examples
     --------
@@ -280,6 +280,6 @@ def open(
 
 @atexit.register
 def _stop_all() -> None:
-    """A device that is still open pushes no more when the process ends."""
+    """Ends the force of open devices when the process ends."""
     for device in list(_open_devices):
         device.stop()

@@ -31,25 +31,25 @@ class DeviceInfo(DictResult):
     Attributes
     ----------
     path : str
-        What ``riffler.pen.open`` takes.
+        Argument of ``riffler.pen.open``.
     name, maker, serial : str
         As the device reports them.
     id : str
-        vendor:product, hexadecimal; empty for devices that are no HID devices.
+        vendor:product, hexadecimal; empty for devices other than HID.
     kind : str or None
-        Its kind in ``riffler.pen.kinds``; None: not for riffler.
+        Its kind in ``riffler.pen.kinds``; None if riffler does not support it.
     choice : str or None
-        What ``riffler.pen.open`` also takes, "kind:number", where there are several of a kind; otherwise None.
+        Another argument of ``riffler.pen.open``, "kind:number", if there are several of a kind; otherwise None.
     was_opened : bool
-        It was opened and asked what it is.
+        Whether it was opened and its description read.
     problem : str or None
-        Why it does not open, in a few words; None where it opens.
+        Why it does not open, in a few words; None if it opens.
     text : str or None
         Why it does not open, and what to do.
     capability : str or None
-        What it senses and pushes.
+        Its capability.
     about : str or None
-        What it reported about itself.
+        The device's own description.
     """
 
     old_keys: ClassVar[Mapping[str, str]] = {"tried": "was_opened"}
@@ -75,15 +75,15 @@ class CoordinateCapability(DictResult):
     Attributes
     ----------
     sensing : {"none", "position", "rate"}
-        What is sensed.
+        The sensed quantity.
     pushes : bool
-        It has a motor.
+        Whether it has a motor.
     low, high : float
-        Range: mm or rad, or a second of them.
+        Range: mm or rad, or mm/s or rad/s.
     resolution : float
         Smallest step of the sensor, likewise.
     peak, continuous : float
-        Largest force or torque for a moment and for long.
+        Largest force or torque, for a moment and continuous.
     """
 
     sensing: Literal["none", "position", "rate"]
@@ -114,7 +114,7 @@ class PenCapability(DictResult):
     text : str
         All of it as text.
     axes : dict
-        "x", "y", "z" and the turns "a", "b", "c", each a CoordinateCapability.
+        CoordinateCapability of "x", "y", "z" and of the rotations "a", "b", "c".
     """
 
     name: str
@@ -131,19 +131,19 @@ class PenHealth(DictResult):
     state : str
         Of the connection.
     problem : str or None
-        What is wrong with it.
+        The fault, or None.
     force_state : str
         off, homing, ready, ramp, active, degraded or tripped.
     cause : str or None
-        Why the force was taken away, and what to do.
+        Why the force was removed, and what to do.
     fault : int
         The device's own code, or 0.
     homed : bool
-        Whether the pose is sure.
+        Whether the pose is certain.
     force, torque : ndarray, shape (3,)
         As last sent to the device: N, N·mm.
     reports, superseded, lost, malformed : int
-        Reports that were read; those that a newer one replaced before a step used them; sent and not received; invalid.
+        Reports read; replaced by a newer one before a step used them; lost; invalid.
     timeouts : int
         Steps without a report.
     writes : int
@@ -177,14 +177,14 @@ class PenHealth(DictResult):
 
 @dataclass(frozen=True, eq=False)
 class PushResult(DictResult):
-    """What will be felt of a push.
+    """The part of a push that the hand will feel.
 
     Attributes
     ----------
     force, torque : ndarray, shape (3,)
-        What will be felt: N, N·mm.
+        Felt force and torque: N, N·mm.
     missing_force, missing_torque : ndarray, shape (3,)
-        What the device cannot give.
+        The part that the device cannot render.
     reason : str or None
         Why nothing is felt.
     """
@@ -205,9 +205,9 @@ class PenChannel(DictResult):
     name : str
         Arm and joint: "R1" … "L3".
     steps : float
-        Counts for one turn of the joint.
+        Counts per turn of the joint.
     ratio : float
-        Turns of the motor for one of the joint.
+        Turns of the motor per turn of the joint.
     sign : {-1, 1}
         Sign of count and command for a positive rotation of the joint.
     home : int
@@ -272,7 +272,7 @@ class PenLimits(DictResult):
 
 @dataclass(frozen=True)
 class GripDiagnosis(DictResult):
-    """Which counter of a pen is wrong.
+    """Diagnosis of a pen's counters: which one is wrong.
 
     Attributes
     ----------
@@ -300,7 +300,7 @@ class GripDiagnosis(DictResult):
 
 @dataclass(frozen=True)
 class ThreadPriority:
-    """What a thread was granted that asked the system for real-time priority.
+    """Real-time priority that the system granted to a thread.
 
     Attributes
     ----------
@@ -309,7 +309,7 @@ class ThreadPriority:
     by : str or None
         Who granted it: "system" or "rtkit".
     text : str
-        What was granted, or why nothing was.
+        The granted priority, or why none was granted.
     remedy : str
         How to have it granted; empty if there is nothing to do.
 

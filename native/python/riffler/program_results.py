@@ -26,14 +26,14 @@ __all__ = [
 
 @dataclass(frozen=True)
 class PolePassage(DictResult):
-    """Rows near the singular direction of a machine, where small turns of the tool are large turns of its axes.
+    """Rows near the singular direction of a machine, where small turns of the tool need large turns of its axes.
 
     Attributes
     ----------
     first_row, last_row : int
         Rows of the program.
     tool_degrees, rotary_degrees : float
-        How far the tool turns there, and the rotary axes.
+        Angles by which the tool and the rotary axes turn there.
     slowed : float
         Time of the slowest block, as a multiple of what its feed would take.
     """
@@ -47,14 +47,14 @@ class PolePassage(DictResult):
 
 @dataclass(frozen=True)
 class WriteReport(DictResult):
-    """What ``Program.write`` wrote.
+    """Report of ``Program.write``.
 
     Attributes
     ----------
     blocks : int
         Number of blocks.
     slowed_blocks : int
-        Blocks that take longer than their feed asks.
+        Blocks that take longer than at their feed.
     rewinds : list of int
         Rows at which the tool leaves the material because a limit makes an axis turn back.
     pole_passages : list of PolePassage
@@ -78,15 +78,15 @@ class MachineOption(DictResult):
     kind : str
         "number", "positive", "numbers", "range" (two that grow), "flag" (a bool), "word" or "path".
     count : int
-        How many numbers, at most.
+        Largest count of numbers.
     unit : str
         "mm", "deg", "mm/min", "deg/min" or "".
     words : list of str
         The values of a word.
     value : float, bool, str, list or None
-        The value without the option; None where there is none.
+        Default value; None if there is none.
     needed : bool
-        It must be given, for these other options.
+        Whether it is required; if so, for which other options.
     own : bool
         An option of this machine's file; the others are those of many machines.
     about : str
@@ -197,7 +197,7 @@ class JournalStock(DictResult):
     snapshot : str
         Name of the file with the stock; empty for a full block.
     mask : str
-        Name of the file with what is protected; empty where nothing is.
+        Name of the file with the protected region; empty if there is none.
     """
 
     lower: NDArray[np.float64]
@@ -210,7 +210,7 @@ class JournalStock(DictResult):
 
 @dataclass(frozen=True, eq=False)
 class KeyChange:
-    """What a press of a button did in an OrientSession.
+    """Effect of a button press in an OrientSession.
 
     Examples
     --------
@@ -232,7 +232,7 @@ class KeyChange:
 
 
 class Trip(NamedTuple):
-    """One event in which a session took the force away."""
+    """One event in which a session removed the force."""
 
     time: float  #: s since the start
     state: str  #: of the force, from then on

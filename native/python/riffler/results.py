@@ -73,7 +73,7 @@ class Orientation(DictResult):
 
 @dataclass(frozen=True)
 class LostReport(DictResult):
-    """What is no part of a volume's mesh, since it is thinner than the pitch."""
+    """Material that is not part of a volume's mesh because it is thinner than the pitch."""
 
     lost: float
     """mm³."""
@@ -82,12 +82,12 @@ class LostReport(DictResult):
     lost_pitch: float | None
     """A pitch that keeps it, mm."""
     lost_note: str
-    """A sentence where there is more than crumbs, otherwise empty."""
+    """A sentence if there is more than crumbs, otherwise empty."""
 
 
 @dataclass(frozen=True)
 class SurfaceReport(LostReport):
-    """What is no part of the mesh of `Volume.to_mesh_with_report`, and how large it is without a tolerance."""
+    """Report of `Volume.to_mesh_with_report`: material that is not in the mesh, and its size without a tolerance."""
 
     all_triangles: int
     """Triangles without a tolerance."""
@@ -95,7 +95,7 @@ class SurfaceReport(LostReport):
 
 @dataclass(frozen=True)
 class VolumeReport(LostReport):
-    """What was wrong with the mesh of `Volume.from_mesh_with_report`, and what rays miss or a mesh of it will lack."""
+    """Report of `Volume.from_mesh_with_report`: faults of the mesh, and material that rays or a later mesh miss."""
 
     triangles: int
     """All triangles of the mesh."""
@@ -110,7 +110,7 @@ class VolumeReport(LostReport):
     inconsistent_edges: int
     """Edges of two triangles that run it in the same direction."""
     openings: int
-    """Walks along which the surface ends."""
+    """Boundary loops, along which the surface ends."""
     turned: int
     """Triangles, turned to agree with their neighbours."""
     left_out: int
@@ -177,14 +177,14 @@ class HistoryStroke:
     tolerance: float
     """mm."""
     protect: Volume | None
-    """What it leaves unchanged; None: nothing."""
+    """Region that it leaves unchanged; None: none."""
     enabled: bool
     """Whether it is carved."""
 
 
 @dataclass(frozen=True)
 class HistoryStats:
-    """The work of a history's last edit, and what it holds: `History.stats`.
+    """The work of a history's last edit, and its size: `History.stats`.
 
     Examples
     --------
@@ -197,7 +197,7 @@ class HistoryStats:
     edits: int
     """Edits that succeeded so far."""
     tiles_restored: int
-    """Tiles that the last edit set back to an earlier version."""
+    """Tiles that the last edit restored to an earlier version."""
     strokes_run: int
     """Strokes that the last edit carved, the new one included."""
     tiles_run: int
@@ -215,7 +215,7 @@ class HistoryStats:
     stroke_bytes: int
     """Bytes of poses and of the lists of touched tiles."""
     stride: int
-    """Strokes of a tile from one version held to the next."""
+    """Strokes of a tile between two versions held."""
 
 
 @dataclass(frozen=True)
@@ -223,11 +223,11 @@ class PickCounters(DictResult):
     """The work of picking: `Mesher.counters`."""
 
     rays: int
-    """Rays that were picked along."""
+    """Picked rays."""
     bricks_visited: int
-    """Bricks that these passed."""
+    """Bricks that the rays passed."""
     bricks_prepared: int
-    """Bricks that had changed, and so were looked at first."""
+    """Bricks that had changed and so were prepared first."""
     triangles_tested: int
     """Triangles tested against rays."""
 
@@ -289,11 +289,11 @@ class Hits(NamedTuple):
 
 
 class Nearest(NamedTuple):
-    """What of part and fixtures is nearest to a tool: `Collider.nearest`."""
+    """The point of part and fixtures nearest to a tool: `Collider.nearest`."""
 
     distance: float
     """mm, negative where they overlap."""
     point: NDArray[np.float64]
     """(3,) mm, on part or fixture."""
     part: str
-    """What of the tool it is next to: "cutter", "shank" or "holder"; or "fixture"."""
+    """The nearest part of the tool: "cutter", "shank" or "holder"; or "fixture"."""

@@ -1,4 +1,4 @@
-"""Closed meshes from heights and outlines: what relief, emboss and masks from curves are made of. Lengths in mm."""
+"""Closed meshes from heights and outlines, for reliefs, embossing and masks from curves. Lengths in mm."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def slab(top: ArrayLike, bottom: ArrayLike, *, cells: ArrayLike | None = None) -
     top, bottom : array_like of shape (n, m, 3), mm
         The sheets, with at least two rows and columns.
     cells : array_like of shape (n - 1, m - 1), bool, or None
-        Which cells there are; each piece of them is closed by walls along its rim. Default: all.
+        Cells to include; walls along the rim close each piece. Default: all.
 
     Returns
     -------
@@ -77,13 +77,13 @@ def relief(heights: ArrayLike, size: ArrayLike, depth: float, *, sink: float = 0
     Parameters
     ----------
     heights : array_like of shape (n, m), from 0 to 1
-        Rows go along y as those of a picture do whose first row is the lowest, columns along x.
+        Rows go along y, like those of a picture whose first row is the lowest; columns go along x.
     size : array_like of shape (2,), mm
         Width along x and height along y.
     depth : float, mm
-        What a height of 1 is.
+        mm of a height of 1.
     sink : float, mm
-        How far the mesh reaches below the plane, so that it joins what lies there; 0 counts as 1e-6 of the depth.
+        mm by which the mesh extends below the plane to join the material there; 0 counts as 1e-6 of the depth.
 
     Returns
     -------
@@ -93,7 +93,7 @@ def relief(heights: ArrayLike, size: ArrayLike, depth: float, *, sink: float = 0
     Raises
     ------
     ValueError
-        Another shape, a size that is not positive, a value that is not finite.
+        For a wrong shape, a size that is not positive, or a value that is not finite.
 
     Examples
     --------

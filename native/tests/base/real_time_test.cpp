@@ -220,7 +220,7 @@ TEST(RealTime, WhateverIsWrongWithRtkitTheThreadGoesOnAndTheReportNamesIt) {
   const std::pair<Does, const char*> cases[] = {
       {Does::Refuses, "rtkit refuses it (org.freedesktop.DBus.Error.AccessDenied)"},
       {Does::IsNotInstalled, "rtkit is not installed"},
-      {Does::OnlyAgrees, "rtkit agrees and changes nothing"},
+      {Does::OnlyAgrees, "rtkit agreed, but the thread has no real-time priority"},
       {Does::SaysNonsense, "the message bus answers nonsense"},
       {Does::NamesNoNumber, "rtkit answers nonsense"},
       {Does::NamesHugeLevel, "rtkit answers nonsense"},

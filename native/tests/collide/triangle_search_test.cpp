@@ -177,7 +177,7 @@ TEST(TriangleSearch, OfTwoSidesThatAreEquallyNearInAHolderTakesFewCells) {
 }
 
 TEST(TriangleSearch, DepthsInHollowsAreTheLeastThoughTheToolGoesOnBehindTheirEnds) {
-  // A level disc that closes a hollow is no surface: bounds from it stopped searches up to 1e-4 mm above the least.
+  // A level disc that closes a hollow is not a surface: bounds from it stopped searches up to 1e-4 mm above the least.
   const Tool tool = cutters::profile({{{3, 0}, {}}, {{5, 2}, Vec2(5, 0)}, {{2.5, 10}, {}}}, 20);
   const tool::Outline outline(tool);
   const OutlineRuns runs(outline.edges());

@@ -1,4 +1,4 @@
-// Which state follows which: all of them, in all events, against a list of what is allowed.
+// The pen's state machine: every state with every set of events, compared with the list of allowed transitions.
 #include "device/firmware/pen_states.h"
 
 #include <gtest/gtest.h>

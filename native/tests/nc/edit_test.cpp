@@ -80,7 +80,7 @@ TEST(Edit, RetooledRenamesRowsAndTools) {
   EXPECT_EQ(t.tools.at(2).name(), "ball 6");
   EXPECT_EQ(t.tools.at(7).name(), "flat 4");
   EXPECT_EQ(error_of([&] { renumber_tools(p, {{1, 2}}); }), "tool 2 would be ball 6 and flat 4");
-  EXPECT_EQ(error_of([&] { renumber_tools(p, {{1, 0}}); }), "tool 1: 0 is no tool number");
+  EXPECT_EQ(error_of([&] { renumber_tools(p, {{1, 0}}); }), "tool 1: 0 is not a tool number");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-"""Parts as people have them: triangles that disagree, thin walls, borders that are no whole number of pitches."""
+"""Imperfect parts: triangles that disagree, thin walls, borders that are not a whole number of pitches."""
 
 import warnings
 

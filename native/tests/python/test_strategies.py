@@ -136,7 +136,7 @@ def test_swarf_without_a_wall_says_why():
 def test_swarf_refuses_a_tool_without_the_paths_ball():
     part = step()
     paths = plan.pencil(part, BALL)
-    with pytest.raises(ValueError, match='tip of a "flat" cutter is no ball'):
+    with pytest.raises(ValueError, match='tip of a "flat" cutter is not a ball'):
         plan.find("swarf", part, Tool.flat(6, 25), paths)
     with pytest.raises(ValueError, match="the paths are those of a ball of 6 mm, not of 4 mm"):
         plan.find("swarf", part, Tool.ball(4, 25), paths)
@@ -324,7 +324,7 @@ def test_a_ring_of_edges_is_one_curve_that_ends_where_it_begins(tmp_path):
         ("a.json", "[[[0, 0, 0], [1, 0]]]", "a.json: curve 0, point 1: three numbers expected"),
         ("a.json", "[", "a.json: .*line 1"),
         ("a.obj", "v 0 0 0\nv 1 0 0\nf 1 2 2\n", "a.obj: no polyline"),
-        ("a.obj", "v 0 0 0\nl 1 2\n", "a.obj: line 2: 2 is no vertex above it"),
+        ("a.obj", "v 0 0 0\nl 1 2\n", "a.obj: line 2: 2 is not a vertex above it"),
         ("a.obj", "v 0 0 0\nl 1\n", "a.obj: line 2: two vertices or more expected"),
     ],
 )

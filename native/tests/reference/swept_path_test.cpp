@@ -20,7 +20,7 @@ Vec3 point(std::mt19937_64& random) {
   return {px, py, pz};
 }
 
-/// Least of `samples` + 1 poses of every move: never less than the true distance.
+/// Smallest distance over `samples` + 1 poses of every move: never less than the true distance.
 double sampled(const CutterDistance& cutter, std::span<const Pose> poses, const Vec3& p, int samples) {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k + 1 < poses.size(); ++k) {
@@ -70,7 +70,7 @@ TEST(SweptPath, AnswersAlikeWhateverIsAsked) {
   }
 }
 
-/// Moves that are left out are far from every point near by, too.
+/// Moves that Near leaves out are far from every point within its reach too.
 TEST(SweptPath, ServesThePointsWithinReach) {
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> side(-1, 1);

@@ -15,7 +15,7 @@ class FakeRtkit {
     Grants,          // as rtkit does: it makes the thread SCHED_RR itself
     Refuses,         // with an error
     IsNotInstalled,  // the bus knows no such service
-    OnlyAgrees,      // and changes nothing
+    OnlyAgrees,      // but leaves the priority unchanged
     SaysNonsense,    // bytes that are no message
     NamesNoNumber,   // properties of another type
     NamesHugeLevel,  // beyond any that there is

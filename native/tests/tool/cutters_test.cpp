@@ -63,7 +63,7 @@ TEST(Cutters, EverySizeThatIsNoneIsRefusedByName) {
       for (const double bad : {kNaN, kInf, -kInf, -1.0, 0.0, 2.0}) {
         const CutterSize& size = shape.sizes[k];
         if (size.unit == SizeUnit::Flag || (bad == 0 && size.may_be_zero)) continue;
-        if (bad == 2 && size.unit == SizeUnit::Length) continue;  // 2 rad are no half angle, 2 mm may be a length
+        if (bad == 2 && size.unit == SizeUnit::Length) continue;  // 2 rad is not a half angle, 2 mm may be a length
         std::vector<double> sizes = initial_sizes(shape);
         sizes[k] = bad;
         EXPECT_EQ(test::error_of([&] { make_cutter(shape, sizes); }).find(size.name), 0U) << shape.name << bad;

@@ -29,7 +29,7 @@ TEST(MachineCheck, ReportsWhatTheWriterRefusesAndNothingElse) {
       const auto refused = refused_by_writer(program, how);
       const auto check = [&] { return machine_fault(program, 1000, {how.post, how.options}); };
       if (refused && refused->name() == "feed") {
-        EXPECT_THROW(check(), nc::RowError) << "what the program lacks is no fault of the machine";
+        EXPECT_THROW(check(), nc::RowError) << "what the program lacks is not a fault of the machine";
         continue;
       }
       const std::optional<Finding> fault = check();

@@ -1,11 +1,10 @@
-// Material of a stock or fixture, as far as a hand can feel it.
+// Properties of a stock's or fixture's material that a hand can feel.
 #pragma once
 
 #include <string>
 
 namespace riffler::haptics {
 
-/// Haptic properties of a material.
 struct Material {
   double stiffness = 1;            ///< of a surface, N per mm of depth and mm²; of a fixture, N per mm³ inside the tool
   double removal_constant = 0.05;  ///< N·s/mm³: force per volume removed per second

@@ -20,10 +20,10 @@ struct Damper {
 /// enter with zero length, so the pitch has no effect.
 double memory_for(double pitch);
 
-/// The removal law gives a force of a constant times the volume removed per second. Along one direction this is a
-/// damper proportional to the cut area: force = k · area · speed. The area is estimated as volume per travel, over the
-/// last `memory` mm of travel rather than over time. It is therefore right where the grid yields volume in portions (a
-/// wall recedes by whole rays), and at rest nothing is learnt or forgotten.
+/// The removal law gives a force proportional to the volume removed per second. Along one direction this is a damper
+/// proportional to the cut area: force = k · area · speed. The area is estimated as volume per travel, over the last
+/// `memory` mm of travel rather than over time. The estimate is therefore right where the grid yields volume in
+/// portions (a wall recedes by whole rays), and does not change at rest.
 class Resistance {
  public:
   /// `memory`: mm, positive. `damping`: N·s/mm, added while cutting.
@@ -39,8 +39,8 @@ class Resistance {
   Damper damper() const { return {arm_, area_.mean() + damping_ * engaged_.mean(), turning_.mean()}; }
 
  private:
-  /// Mean per mm over the last `memory` mm of travel. With less travel the mean covers just that, so a new cut is known
-  /// at once; but never less than a fiftieth of `memory`, in which a whole row of rays may arrive together.
+  /// Mean per mm over the last `memory` mm of travel. After less travel the mean covers that travel, so a new cut
+  /// counts at once, but at least a fiftieth of `memory`, because a whole row of rays may be cut together.
   struct PerWay {
     double sum = 0, way = 0;
 

@@ -1,4 +1,4 @@
-// Rational B-spline (NURBS) patches, as arrays describe them.
+// Rational B-spline (NURBS) patches, stored as arrays.
 #pragma once
 
 #include <cstddef>
@@ -12,8 +12,8 @@ inline constexpr int kMaxDegree = 15;
 /// Largest ratio of two weights of a patch.
 inline constexpr double kMaxWeightRatio = 1e12;
 
-/// One tensor-product patch, as exchange formats describe it. Its domain is [knots[degree], knots[count]] in each
-/// direction; knots need not be clamped. Trims will be closed loops of curves in (u, v) next to these members.
+/// One untrimmed tensor-product patch, as exchange formats describe it. Its domain is [knots[degree], knots[count]] in
+/// each direction; knots need not be clamped.
 struct Patch {
   std::size_t count_u = 0, count_v = 0;  // control points
   std::vector<Vec3> points;              // mm; point (i, j) has the index i * count_v + j

@@ -14,7 +14,7 @@ struct CcFrame {
 
 /// Tool axis in a CcFrame, rad. Inclination leans it from the normal towards the feed; tilt then leans it to the left,
 /// out of the plane of normal and feed. The source does not state the order of the two rotations; here axis = cos ω
-/// (sin λ x + cos λ z) + sin ω y, which is regular everywhere except at ω = ±π/2: the normal is no pole.
+/// (sin λ x + cos λ z) + sin ω y, which is regular everywhere except at ω = ±π/2: the normal is not a pole.
 struct Lean {
   double inclination = 0;  ///< λ
   double tilt = 0;         ///< ω

@@ -22,7 +22,7 @@ class CutterSupport {
   Vec2 point(const Vec2& d) const;
   /// Largest height of the cutter, mm. Shank and holder lie above it.
   double top() const { return top_; }
-  /// Radius (mm) of the ball at the tip, centred on the axis; 0 if the tip is no ball.
+  /// Radius (mm) of the ball at the tip, centred on the axis; 0 if the tip is not a ball.
   double ball_radius() const { return ball_radius_; }
 
  private:

@@ -98,7 +98,7 @@ class OrientLoop final : public PenLoop<OrientTick> {
   bool torque_;  // the device renders some
 
   // Used by the device's thread only.
-  std::uint32_t buttons_ = ~0u;  // of the last tick; what is held at the start is no press
+  std::uint32_t buttons_ = ~0u;  // of the last tick; a button held at the start is not a press
   double last_station_ = 0;
 
   std::mutex mutex_;  // of the scene; the device's thread only tries to lock it

@@ -15,8 +15,8 @@
 
 namespace riffler::session {
 
-/// The poses to pass to `carve` for a stroke. A row with the same pose as the row before is no move, since the tool has
-/// already cut there. Exception: a stroke of two or more rows that never moves becomes one move, and the tool cuts
+/// The poses to pass to `carve` for a stroke. A row with the same pose as the row before is not a move, since the tool
+/// has already cut there. Exception: a stroke of two or more rows that never moves becomes one move, and the tool cuts
 /// where it stands. A single row cuts nothing, as a single pose does in `carve`.
 std::vector<Pose> moves_of(const JournalStroke& stroke);
 /// Same for a stroke of a hand tool, which has a forward direction in each row.
@@ -36,7 +36,7 @@ struct Replayed {
 Replayed replay_all(const Journal& journal, const std::map<int, Tool>& tools, const std::filesystem::path& folder = {},
                     const Progress& progress = {});
 
-/// As replay_all, for the stock alone.
+/// The stock of replay_all.
 Volume replay(const Journal& journal, const std::map<int, Tool>& tools, const std::filesystem::path& folder = {},
               const Progress& progress = {});
 

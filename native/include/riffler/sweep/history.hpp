@@ -13,7 +13,7 @@
 
 namespace riffler::sweep {
 
-/// Work of the last edit, and what the history holds.
+/// Work done by the last edit, and size of the history.
 struct HistoryStats {
   std::uint64_t edits = 0;           ///< edits that succeeded so far
   std::uint64_t tiles_restored = 0;  ///< tiles that the last edit set back to an earlier version
@@ -25,16 +25,17 @@ struct HistoryStats {
   std::uint64_t versions = 0;        ///< tile versions held
   std::uint64_t version_bytes = 0;   ///< bytes of these versions
   std::uint64_t stroke_bytes = 0;    ///< bytes of poses and of the lists of touched tiles
-  std::uint64_t stride = 1;          ///< strokes of a tile from one version held to the next
+  std::uint64_t stride = 1;          ///< strokes of a tile between two versions held
 };
 
 /// A base volume and strokes that can be inserted, replaced, removed, moved and disabled at any time. `volume` is
 /// always bit-identical to carving the enabled strokes in order into the base. Each tile keeps its versions after the
 /// strokes that touch it. An edit sets the tiles that the edited stroke touches back to the version before it and
-/// carves only the later strokes that touch them, only there; it stops where a tile has its old content again.
+/// carves only the later strokes that touch them, and only in these tiles; it stops where a tile has its old content
+/// again.
 ///
 /// All edits throw std::invalid_argument for an id that is not in the history and for strokes that `carve` refuses or
-/// that have no poses; Cancelled. After an exception the history is unchanged.
+/// that have no poses, and Cancelled. After an exception the history is unchanged.
 class History {
  public:
   /// Bytes of tile versions, unless the constructor gets another limit.
@@ -50,7 +51,7 @@ class History {
   /// Adds a stroke at the end, or before another one.
   StrokeId add(HistoryStroke stroke, const Progress& progress = {});
   StrokeId insert(HistoryStroke stroke, StrokeId before, const Progress& progress = {});
-  /// Gives a stroke other content. It keeps its id, its place and whether it is enabled.
+  /// Replaces the content of a stroke. It keeps its id and its place, and stays enabled or disabled.
   void replace(StrokeId id, HistoryStroke stroke, const Progress& progress = {});
   void remove(StrokeId id, const Progress& progress = {});
   /// Moves a stroke to the place before another one, or to the end. Before itself: no change.

@@ -28,7 +28,7 @@ struct MachineChoice {
 struct VerifyOptions {
   double tolerance = 0.01;               ///< mm: as CarveOptions::tolerance; contact less deep than this is ignored
   double gouge_tolerance = 0.05;         ///< mm below the part's surface
-  std::optional<double> rest_tolerance;  ///< mm above the part's surface; by default rest material is no fault
+  std::optional<double> rest_tolerance;  ///< mm above the part's surface; by default rest material is not a fault
   double rapid_feed = 10'000;            ///< mm/min, for the duration of rapids
   /// The machine for limit checks; without one, limits are not checked. Each chunk of a program is checked by itself.
   std::optional<MachineChoice> machine = {};

@@ -143,7 +143,7 @@ def chart(
 
 @contextmanager
 def screen(console: Console) -> Iterator[Callable[[RenderableType], None] | None]:
-    """Yields what draws over the last picture; None where stdout is no terminal, or is for ``--json``."""
+    """Yields what draws over the last picture; None where stdout is not a terminal, or is for ``--json``."""
     if console.json_output or not sys.stdout.isatty():
         yield None
         return

@@ -1,4 +1,4 @@
-"""Say what a mesh is worth; exit status 1 unless it is a closed 2-manifold.
+"""Check that a mesh is a closed 2-manifold; exit status 1 if not.
 
 riffler mesh audit part.stl
 """
@@ -15,7 +15,7 @@ from .parser import Parser
 
 HELP = "check that a mesh is a closed 2-manifold"
 
-# Any of these, and the mesh is not one.
+# A count above 0 means that the mesh is not a closed 2-manifold.
 DEFECTS = ("open_edges", "nonmanifold_edges", "nonmanifold_vertices", "duplicates")
 
 
@@ -24,7 +24,7 @@ def add_arguments(parser: Parser) -> None:
 
 
 def repairs(mesh: Mesh) -> dict[str, int]:
-    """What would be turned or left out where the mesh is taken as a solid."""
+    """Numbers of triangles that riffler would turn or leave out to use the mesh as a solid."""
     return dataclasses.asdict(mesh.orient_with_report()[1])
 
 

@@ -9,7 +9,7 @@ from ..deprecated import Old, warn
 
 
 def _has(place: int, kind: type) -> Callable[[tuple], bool]:
-    """Whether the positional argument of that number is of a type."""
+    """Whether the positional argument with that number is of a type."""
     return lambda args: len(args) > place and isinstance(args[place], kind)
 
 

@@ -1,4 +1,4 @@
-"""Planning: parts looked at, strategies that find paths, tool orientations, cutter locations, plans as files."""
+"""Planning: analysis of parts, strategies that find paths, tool orientations, cutter locations, plan files."""
 
 from typing import TYPE_CHECKING
 

@@ -1,4 +1,4 @@
-"""What a part is worth before it is planned on."""
+"""Analysis of a part before planning."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from ..results import Audit
 
 @dataclass(frozen=True, eq=False)
 class PartReport(Audit):
-    """What `analyse` found: the counts of `Mesh.audit`, what was turned for it, and what follows."""
+    """Result of `analyse`: the counts of `Mesh.audit`, the repairs, and conclusions."""
 
     triangles: int
     """All triangles."""
@@ -40,7 +40,7 @@ class PartReport(Audit):
     one_sided: int
     """Pieces with one side only."""
     units: Literal["mm", "inch", "m", "micrometre"]
-    """What the size suggests."""
+    """Unit that the size suggests."""
     warnings: tuple[str, ...]
     """Sentences."""
 
@@ -90,7 +90,7 @@ def analyse(mesh: Mesh) -> PartReport:
 
 
 def _units_of(size: float) -> Literal["mm", "inch", "m", "micrometre"]:
-    """Parts that people mill are some 10 mm to 2 m long; what is outside that was probably drawn in another unit."""
+    """Milled parts are about 10 mm to 2 m long; a part outside that range was probably drawn in another unit."""
     if size < 0.5:
         return "m"
     if size < 8:

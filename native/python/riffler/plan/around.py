@@ -1,4 +1,4 @@
-"""What stands around a part, as plans take it: how fine a fixture's rays are, and a tool with room round its body."""
+"""Fixtures and margins of plans: the pitch of a fixture, and a tool with room around its body."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def fixture_pitch(mesh: Mesh) -> float:
 
 
 def with_room(tool: Tool, room: float) -> Tool:
-    """The tool with a larger shank and holder, so that these keep clear while the cutter touches what it cuts.
+    """The tool with a larger shank and holder, so that these keep clear while the cutter touches the part.
 
     Parameters
     ----------
@@ -45,7 +45,7 @@ def with_room(tool: Tool, room: float) -> Tool:
     Returns
     -------
     Tool
-        The same tool where it has neither, or for no room.
+        The same tool if it has neither, or if the room is 0.
 
     Examples
     --------

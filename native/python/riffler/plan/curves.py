@@ -1,4 +1,4 @@
-"""Curves from files, for strategies that follow some."""
+"""Curves from files, for strategies that follow curves."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def read_curves(path: str | os.PathLike[str]) -> list[NDArray[np.float64]]:
 
 
 class _WrongPlaceError(ValueError):
-    """What is wrong at which place of a file."""
+    """An error at a place of a file."""
 
 
 def _point(words, place: str) -> list[float]:
@@ -124,12 +124,12 @@ def _index(entry: str, count: int, place: str) -> int:
         index = 0
     index = index - 1 if index > 0 else count + index
     if not 0 <= index < count:
-        raise _WrongPlaceError(f"{place}: {entry} is no vertex above it")
+        raise _WrongPlaceError(f"{place}: {entry} is not a vertex above it")
     return index
 
 
 def _joined(pieces: list[list[int]]) -> list[list[int]]:
-    """Polylines that begin or end where exactly one other does are one, in the order of their first pieces."""
+    """Joins polylines that share an end with exactly one other, in the order of their first pieces."""
     at: dict[int, list[int]] = {}
     for k, piece in enumerate(pieces):
         for end in {piece[0], piece[-1]} if piece[0] != piece[-1] else ():

@@ -22,14 +22,14 @@ if TYPE_CHECKING:
 
 
 class Texts:
-    """A cache for ``dumps`` of plans that follow one another. Arrays of the plans must not change meanwhile.
+    """A cache for ``dumps`` of successive plans. Arrays of the plans must not change meanwhile.
 
-    Paths that the next plan has as well, the same objects with the same cutter locations, are not formatted again.
+    Paths that the next plan shares, the same objects with the same cutter locations, are not formatted again.
 
     Attributes
     ----------
     made : int
-        How many paths were formatted.
+        Number of formatted paths.
 
     Examples
     --------
@@ -69,7 +69,7 @@ def dumps(plan: Plan, *, texts: Texts | None = None) -> bytes:
     plan : Plan
         The plan.
     texts : Texts, optional
-        A cache, for plans that follow one another.
+        A cache, for successive plans.
 
     Returns
     -------
@@ -78,7 +78,7 @@ def dumps(plan: Plan, *, texts: Texts | None = None) -> bytes:
     Raises
     ------
     ValueError
-        Naming what is no plan.
+        Naming the fault, if it is not a plan.
 
     Examples
     --------
@@ -124,7 +124,7 @@ def _compact(value) -> str:
 
 @hinted("plan.save")
 def save(path: str | os.PathLike[str], plan: Plan) -> None:
-    """Writes a plan; the file is whole or not there.
+    """Writes a plan: the whole file or none.
 
     Parameters
     ----------
@@ -136,7 +136,7 @@ def save(path: str | os.PathLike[str], plan: Plan) -> None:
     Raises
     ------
     ValueError
-        Naming what is no plan.
+        Naming the fault, if it is not a plan.
     RuntimeError
         With the system's reason.
 
@@ -175,14 +175,14 @@ def _from_path(path, cl, number: int, *, off: bool, depth: float | None) -> dict
 
 @hinted("plan.loads")
 def loads(data: Buffer, *, name: str = "plan") -> Plan:
-    """The plan of the bytes that ``dumps`` made.
+    """A plan from the bytes of ``dumps``.
 
     Parameters
     ----------
     data : bytes
         The bytes.
     name : str
-        Of the file, for messages.
+        Name of the file, for messages.
 
     Returns
     -------

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import pi
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,7 +12,7 @@ from .. import _core
 from .._core import Tool
 from ..arguments import Progress, then
 from ..hints import hinted
-from .operations import Operation, operation_of
+from .operations import Operation, PlannedMoves, operation_of
 from .setups import Setup
 
 PATTERNS: tuple[str, ...] = tuple(_core.finish_patterns())
@@ -40,29 +39,29 @@ def finish(
 
     Rows are curves of the exact drop surface of cutter, shank and holder over part and fixtures; a bound, not samples,
     keeps the moves between their points. Rows lie as far apart as ``cusp`` allows on level faces, with further ones
-    between where the part is steep or bent, or a border runs. Rows end where the tool leaves the part: a wall
-    without a floor next to it is left to an outline.
+    between them where the part is steep or curved, or has a border. Rows end where the tool leaves the part: a wall
+    without a floor next to it needs an outline.
 
     Parameters
     ----------
     setup : Setup
-        Part, stock left so far, fixtures, axis.
+        Part, in-process stock, fixtures, axis.
     tool : Tool
         A cutter that does not narrow above its widest place: ball, flat, fillet, taper or a profile like them.
     pattern : str
         "parallel": rows in planes at ``angle``.
     cusp : float
-        mm, height of the ridges that may stay.
+        mm, largest height of the ridges between rows.
     tolerance : float
-        mm: cuts are at most so far below part + allowance, and rows so far above it between their points.
+        mm: largest depth of cuts below part + allowance, and largest height of rows above it between their points.
     allowance : float
         mm that stay on the part.
     angle : float
-        rad, of the rows about the axis.
+        rad, direction of the rows about the axis.
     slopes : tuple of two floats
-        rad from level, of the part's faces that are meant.
+        rad from level: slopes of the faces to finish.
     region : list of array_like, shape (k, 3), optional
-        Closed curves, seen along the axis; faces inside an odd number of them are meant. None: all.
+        Closed curves, seen along the axis; finishes faces inside an odd number of them. None: all faces.
     feed : float
         mm/min of cuts and links.
     plunge : float, optional
@@ -75,7 +74,7 @@ def finish(
     Returns
     -------
     Operation
-        Without poses, and with the reason, where nothing can be reached.
+        The operation; without poses, and with a reason, if the tool reaches nothing.
 
     Raises
     ------
@@ -111,7 +110,7 @@ def finish(
         progress=progress,
     )
 
-    def made(parts: dict[str, Any]) -> Operation:
-        return operation_of(parts, tool, setup.stock.pitch, spindle, tolerance)
+    def made(moves: PlannedMoves) -> Operation:
+        return operation_of(moves, tool, setup.stock.pitch, spindle, tolerance)
 
     return then(found, made)

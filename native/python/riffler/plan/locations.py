@@ -1,4 +1,4 @@
-"""Cutter locations: where the tool stands, lifted along its axis where it would gouge."""
+"""Cutter locations: poses of the tool along a path, lifted along its axis where it would gouge."""
 
 from __future__ import annotations
 
@@ -17,24 +17,24 @@ from .around import with_room
 
 
 class BlockedPoint(NamedTuple):
-    """A point of a path that no lift frees."""
+    """A point of a path that no lift makes free of collisions."""
 
     point: int  #: number of the path's point
-    reason: str  #: what the tool hits
+    reason: str  #: the obstacle
 
 
 class UnsafeMove(NamedTuple):
-    """A move from one row to the next that was not made free."""
+    """A move between two rows that could not be made free of collisions."""
 
     row: int  #: the row that the move starts at
-    clearance: float  #: mm: least clearance seen on it
-    bound: float  #: mm: nowhere on it is the clearance less
+    clearance: float  #: mm: smallest clearance found on it
+    bound: float  #: mm: lower bound of the clearance on it
     reason: str  #: what the tool may hit
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class LocationReport:
-    """What was done to a path: see `cutter_locations`.
+    """Changes of a path: see `cutter_locations`.
 
     Arrays have one entry for each row of ``cl``; clearances are negative inside.
 
@@ -47,19 +47,19 @@ class LocationReport:
     before, clearance : ndarray, shape (n,)
         Clearance before and after the lift, mm.
     pieces : list of str
-        "cutter", "shank", "holder" or "fixture": what collided, or is nearest.
+        "cutter", "shank", "holder" or "fixture": the colliding or nearest part.
     blocked : list of BlockedPoint
-        Points that no lift frees; they have no row.
+        Points that no lift makes free; they have no row.
     unsafe : list of UnsafeMove
-        Moves between two rows that were not made free.
+        Moves between two rows that could not be made free.
     min_clearance : float
-        Least clearance of all poses that were computed, mm.
+        Smallest clearance of all computed poses, mm.
     bound : float
-        Nowhere along the rows is the clearance less, mm.
+        Lower bound of the clearance along all rows, mm.
     evaluations : int
         Number of computed clearances.
     ok : bool
-        Nothing is blocked or unsafe.
+        Whether nothing is blocked or unsafe.
     """
 
     points: NDArray[np.int64]
@@ -108,7 +108,7 @@ def cutter_locations(
 ) -> tuple[NDArray[np.float64], LocationReport]:
     """Cutter locations along an oriented path, for ``Program.from_cl``.
 
-    The tool starts where its tip ball, or both its contacts, lie in the path. Where its clearance over part and
+    The tool starts where its tip ball, or both its contacts, are on the path. Where its clearance over part and
     fixtures is less than ``clearance``, it is lifted along its own axis, by the least distance. Between rows the tip
     moves on a line and the axis on the great circle; that motion is checked with a bound, not by samples, and where it
     gouges, rows are inserted and lifted. A closed path ends with its first row again.
@@ -137,13 +137,13 @@ def cutter_locations(
     cl : ndarray, shape (m, 6)
         Tip in mm and unit axis.
     report : LocationReport
-        What could not be freed within ``max_lift`` and ``max_inserted`` is listed here (``report.ok`` is False then),
-        and its points are not in ``cl``; it is never made to fit silently.
+        Points that are not free within ``max_lift`` and ``max_inserted`` are listed here (``report.ok`` is then False),
+        and are not in ``cl``; nothing is left out silently.
 
     Raises
     ------
     ValueError
-        For a path without axes and for sizes without meaning.
+        For a path without axes, and for invalid sizes.
 
     Examples
     --------
@@ -235,8 +235,8 @@ def kept_locations(
     """``cutter_locations`` of a path in ``Plan.depths``: its own poses, checked and not lifted.
 
     The cutter enters the part by up to ``depth`` mm there, and by ``tolerance`` more at a point and twice that between
-    two, since the path's chords are as far from the surface; shank and holder keep ``clearance`` from part and
-    fixtures. (That the cutter enters a fixture by less than ``depth`` is not seen here.)
+    two, because the path's chords are that far from the surface; shank and holder keep ``clearance`` from part and
+    fixtures. (A cutter that enters a fixture by less than ``depth`` is not detected here.)
 
     Parameters
     ----------
@@ -247,7 +247,7 @@ def kept_locations(
     collider : Collider
         Part and fixtures.
     depth : float
-        mm that the cutter enters the part by.
+        mm by which the cutter enters the part.
     clearance : float
         mm, for shank and holder.
     tolerance : float
@@ -296,7 +296,7 @@ def contact_locations(
         The cutter.
     feeds : array_like, shape (n, 3), optional
         Feed directions, of any length. Where axis and normal are parallel the place on the contact circle is free, and
-        lies ahead in this direction.
+        is ahead in this direction.
 
     Returns
     -------
@@ -319,18 +319,18 @@ def contact_locations(
 
 @dataclass(frozen=True, eq=False)
 class LiftReport(DictResult):
-    """What ``lift`` did, pose by pose.
+    """Result of ``lift`` for each pose.
 
     Attributes
     ----------
     lift : ndarray, shape (n,)
         mm along the tool's axis.
     free : ndarray of bool, shape (n,)
-        False where the pose is not free within ``max_lift``; it stays where it was.
+        False if the pose is not free within ``max_lift``; it is then unchanged.
     before, clearance : ndarray, shape (n,)
         Clearance before and after the lift, mm.
     points : ndarray, shape (n, 3)
-        Where the tool last collided, or is nearest, mm.
+        Point of the last collision, or the nearest point, mm.
     pieces : list of str
         "cutter", "shank", "holder" or "fixture", for each of ``points``.
     evaluations : ndarray of int, shape (n,)
@@ -358,7 +358,7 @@ def lift(
     max_evaluations: int = 200,
     progress: Progress = None,
 ) -> tuple[NDArray[np.float64], LiftReport]:
-    """The least lift along the tool's own axis at which each pose is free.
+    """Lifts each pose along the tool's own axis by the smallest distance at which it is free.
 
     At every lower height the clearance over part and fixtures is less than ``clearance``; where the lift ends it is
     ``clearance``, within ``tolerance``.
@@ -417,14 +417,14 @@ def drop(
     axis: ArrayLike = (0.0, 0.0, 1.0),
     progress: Progress = None,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """The tool comes down along ``axis`` until it first touches the part.
+    """Lowers the tool along ``axis`` until it first touches the part.
 
     Exact to rounding, except for hollow arcs, which are replaced by cones to within 1e-3 mm.
 
     Parameters
     ----------
     points : array_like, shape (n, 3)
-        Anywhere on the lines of the tips, mm.
+        Any points on the lines of the tips, mm.
     tool : Tool
         The cutter.
     part_mesh : Mesh
@@ -437,7 +437,7 @@ def drop(
     Returns
     -------
     heights : ndarray, shape (n,)
-        Tips along the axis, mm; NaN where the tool meets nothing.
+        Tips along the axis, mm; NaN if the tool meets nothing.
     contacts : ndarray, shape (n, 3)
         Points of the part, mm; NaN likewise.
 

@@ -1,4 +1,4 @@
-"""Plans: paths with the tool they are for."""
+"""Plans: paths and their tool."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from ..hints import hinted
 
 @dataclass(frozen=True, eq=False)
 class Plan:
-    """Paths with the tool they are for, and how they came about.
+    """Paths, their tool, and where they come from.
 
     Parameters
     ----------
@@ -23,7 +23,7 @@ class Plan:
     tool : Tool
         Cutter, shank and holder.
     cl : list, optional
-        For every path cutter locations, (n, 6), or None.
+        Cutter locations of every path, (n, 6), or None.
     part : dict, optional
         ``name`` and ``sha256``, as ``part_of`` makes it.
     tolerance : float, optional
@@ -31,10 +31,10 @@ class Plan:
     provenance : dict, optional
         Strings.
     off : frozenset of int
-        Numbers, from 0, of the paths that are not to be cut.
+        Numbers, from 0, of the paths that are switched off.
     depths : dict, optional
-        By number, from 0: paths whose poses (``poses_of``) are what is to be cut, as by engraving, and how far the
-        cutter enters the part there, mm. They are never lifted, nor oriented.
+        By number, from 0: depth in mm to which the cutter enters the part on paths whose poses (``poses_of``) are cut
+        unchanged, as in engraving. They are neither lifted nor oriented.
 
     Examples
     --------
@@ -60,7 +60,7 @@ class Plan:
 
     @property
     def deepest(self) -> float:
-        """mm by which the cutter enters the part at most, in the paths that are on."""
+        """Largest depth (mm) to which the cutter enters the part, of the paths that are on."""
         return max((depth for k, depth in self.depths.items() if k not in self.off), default=0.0)
 
     @property
@@ -71,7 +71,7 @@ class Plan:
 
 @hinted("plan.part_of")
 def part_of(mesh: Mesh, name: str) -> dict[str, str]:
-    """What a plan keeps of its part.
+    """Name and hash of a part, as stored in a plan.
 
     Parameters
     ----------

@@ -1,10 +1,9 @@
-"""Operations: what a tool does on a part in one set-up, with approaches, links and retracts."""
+"""Operations of a tool on a part in one set-up, with approaches, links and retracts."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +16,7 @@ RAPID_FEED = 10000.0  # mm/min, for times, as in riffler.verify
 
 @dataclass(frozen=True, eq=False)
 class Blocked:
-    """Where the tool does not cut, and why: see `OperationReport`.
+    """A place that the tool does not cut, with the reason: see `OperationReport`.
 
     Attributes
     ----------
@@ -26,7 +25,7 @@ class Blocked:
     place : ndarray, shape (3,)
         Tip of the tool at the first of these places, mm.
     length : float
-        mm of rows that are left out.
+        mm of omitted rows.
     """
 
     reason: str
@@ -36,7 +35,7 @@ class Blocked:
 
 @dataclass(frozen=True, eq=False)
 class OperationReport:
-    """What an operation does: see `Operation`.
+    """Times and lengths of an operation: see `Operation`.
 
     Attributes
     ----------
@@ -45,11 +44,11 @@ class OperationReport:
     cut_mm : float
         Length of the cuts.
     air_mm : float
-        Length of moves at feed that remove nothing of the stock, as its rays show it.
+        Length of moves at feed that remove no material from the rays of the stock.
     largest_engagement : float, optional
         Largest radial width of cut as a share of the diameter; None for operations that do not bound it.
     blocked : tuple of Blocked
-        What could not be reached.
+        Places that could not be reached.
     stats : dict
         Counts: direct links, retracts, points of the drop surface; rows, and those added between rows of equal spacing;
         levels, rings in them, helices.
@@ -72,19 +71,19 @@ class Operation:
     poses : ndarray, shape (n, 6)
         Tip in mm and unit axis, at the ends of its moves.
     kind : ndarray of uint8, shape (n,)
-        Of the move to each pose: 0 rapid, 1 lead (plunge), 2 cut, 3 link at feed.
+        Kind of the move to each pose: 0 rapid, 1 lead (plunge), 2 cut, 3 link at feed.
     feed : ndarray, shape (n,)
         mm/min; 0 for rapids.
     tool : Tool
         Cutter, shank and holder.
     report : OperationReport
-        Times, lengths, what could not be reached.
+        Times, lengths, and unreached places.
     reason : str
         Why it has no poses; empty if it has some.
     spindle : float
         rev/min.
     tolerance : float
-        mm that cuts may enter part + allowance.
+        mm by which cuts may enter part + allowance.
     """
 
     poses: NDArray[np.float64]
@@ -98,6 +97,22 @@ class Operation:
 
     def __len__(self) -> int:
         return len(self.poses)
+
+
+@dataclass(frozen=True, eq=False)
+class PlannedMoves:
+    """Moves of an operation, before its report: `poses`, `kind` and `feed` as in `Operation`, the volumes
+    `removed` (n - 1,) mm³ by the moves, `blocked`, `reason` and `stats`, and the largest width of cut as a share of the diameter if that is
+    bounded."""
+
+    poses: NDArray[np.float64]
+    kind: NDArray[np.uint8]
+    feed: NDArray[np.float64]
+    removed: NDArray[np.float64]
+    blocked: tuple[Blocked, ...]
+    reason: str
+    stats: Mapping[str, int]
+    engagement: float | None = None
 
 
 def lengths_of(poses: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -133,9 +148,8 @@ def report_of(
     )
 
 
-def operation_of(parts: dict[str, Any], tool: Tool, pitch: float, spindle: float, tolerance: float) -> Operation:
+def operation_of(moves: PlannedMoves, tool: Tool, pitch: float, spindle: float, tolerance: float) -> Operation:
     """An operation from what the core has planned on a stock with rays ``pitch`` mm apart."""
-    blocked = tuple(Blocked(*one) for one in parts["blocked"])
-    arrays = parts["poses"], parts["kind"], parts["feed"]
-    report = report_of(*arrays, parts["removed"], pitch, blocked, parts["counts"], parts["engagement"])
-    return Operation(*arrays, tool, report, parts["reason"], float(spindle), float(tolerance))
+    arrays = moves.poses, moves.kind, moves.feed
+    report = report_of(*arrays, moves.removed, pitch, moves.blocked, moves.stats, moves.engagement)
+    return Operation(*arrays, tool, report, moves.reason, float(spindle), float(tolerance))

@@ -1,4 +1,4 @@
-"""Free orientations: which tool axes meet nothing, at a point as a map and along a path."""
+"""Free orientations: collision-free tool axes, as a map at a point and along a path."""
 
 from __future__ import annotations
 
@@ -40,17 +40,17 @@ class FreeOrientations:
     tilts : ndarray, shape (m,)
         rad.
     clearance : ndarray, shape (n, m)
-        mm, negative inside; NaN where nothing was computed.
+        mm, negative inside; NaN if not computed.
     state : ndarray of uint8, shape (n, m)
         FREE, BLOCKED, BEYOND the machine's cone, or UNREACHABLE for the cutter.
     pieces : ndarray of str, shape (n, m)
-        What is nearest or deepest.
+        The nearest or deepest part.
     axes : ndarray, shape (n, m, 3)
         Unit axes of the tool.
     suggestion : ndarray, shape (3,), or None
         The free axis with the smallest angle to the frame's z.
     reason : str
-        Without a suggestion: what collides, and by how much at least.
+        Without a suggestion: what collides, and the smallest depth.
     """
 
     index: int
@@ -158,7 +158,7 @@ def free_orientations(
     Raises
     ------
     ValueError
-        Naming the point that the path does not have, and sizes without meaning.
+        Naming a point that the path does not have, or an invalid size.
 
     Examples
     --------
@@ -188,7 +188,7 @@ def free_orientations(
 
 @dataclass(frozen=True, eq=False)
 class TiltReport(DictResult):
-    """What ``min_tilt`` found.
+    """Result of ``min_tilt``.
 
     Attributes
     ----------
@@ -199,9 +199,9 @@ class TiltReport(DictResult):
     cost : float
         The sum that is least, rad².
     point : int
-        Where nothing is found: the point without a free axis.
+        Without a result: the point without a free axis.
     reason : str
-        Why: no orientation is free there, or none that those before it lead to.
+        Why: no orientation is free there, or none that can be reached from those before it.
     """
 
     found: bool
@@ -289,15 +289,15 @@ def min_tilt(
 def draw_map(orientations: FreeOrientations, *, axes: Axes | None = None) -> Axes:
     """Draws the map with matplotlib, which must be installed.
 
-    Clearance as colour, the border of the free region as a line, what was not computed hatched, a ring at the
-    suggestion. Angles in degrees.
+    Clearance is the colour, the border of the free region a line; orientations that were not computed are hatched, and
+    a ring marks the suggestion. Angles are in degrees.
 
     Parameters
     ----------
     orientations : FreeOrientations
         The map of one point: see `free_orientations`.
     axes : matplotlib.axes.Axes, optional
-        Where to draw; None: into a new figure.
+        Axes to draw into; None: a new figure.
 
     Returns
     -------
@@ -305,10 +305,11 @@ def draw_map(orientations: FreeOrientations, *, axes: Axes | None = None) -> Axe
 
     Examples
     --------
-    ::
-
-        axes = riffler.plan.draw_map(riffler.plan.free_orientations(path, tool, collider, index=0))
-        axes.figure.savefig("map.png")
+    >>> part = riffler.shape.relief([[1, 1], [0, 0], [1, 1]], size=(30, 20), depth=10, sink=5)
+    >>> tool = riffler.Tool.ball(diameter=4, length=20)
+    >>> valley = riffler.plan.pencil(part, tool)[0]
+    >>> axes = riffler.plan.draw_map(riffler.plan.free_orientations(valley, tool, riffler.Collider(part), index=0))
+    >>> axes.figure.savefig("map.png")
     """
     from matplotlib import colors, pyplot
 

@@ -1,4 +1,4 @@
-"""A plan from the data of its file, with the place of what is wrong."""
+"""Makes a plan from the data of its file, with the place of errors."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ RULES = ("", "linear", "slerp", "smooth")
 
 
 class WrongPlaceError(ValueError):
-    """What a place in the file should have been."""
+    """An error at a place in the file, with what was expected."""
 
 
 def _get(table: Any, key: str, place: str) -> Any:

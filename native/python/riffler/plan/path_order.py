@@ -15,15 +15,15 @@ from ..hints import hinted
 def order_paths(paths: Sequence[PencilPath], *, start: ArrayLike | None = None) -> list[tuple[int, bool]]:
     """An order of the paths, and which are reversed, so that the moves between them are short.
 
-    From ``start`` always to the nearest end, then exchanges of two moves as long as they shorten the travel. The same
-    input gives the same order. A loop begins and ends at its first point.
+    Goes from ``start`` to the nearest end each time, then exchanges two moves as long as that shortens the travel. The
+    same input gives the same order. A loop begins and ends at its first point.
 
     Parameters
     ----------
     paths : list of PencilPath
         The paths.
     start : array_like, shape (3,), optional
-        Where the tool comes from, mm; None: the first path's first point.
+        Start of the tool, mm; None: the first path's first point.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Plans from recorded strokes: the paths that a hand has found."""
+"""Plans from recorded strokes."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from .thinning import StandsStillError, Thinned, between, thin
 
 CUTS = ("remove", "beside")  # modes of strokes that a machine can make
 ANGLE = math.radians(2)
-LARGEST = 0.5  # rad: a larger angle between recorded and planned axes is no bound to speak of
+LARGEST = 0.5  # rad: a larger angle between recorded and planned axes gives no useful bound
 OPPOSITE = math.pi - 1e-6  # rad: as in PencilPath.orient
 ALONG = 0.05  # sine of the angle between axis and feed below which a ball plunges
 
@@ -45,11 +45,11 @@ class StrokePath:
     path : PencilPath
         With axes: through keys, or of a tool without a ball tip the recorded poses.
     error : float
-        mm: the recorded ball's centre, or tip, is nowhere further from the path.
+        mm: largest distance of the recorded ball's centre, or tip, from the path.
     turn : float
-        rad: the recorded axis is nowhere further from the path's.
+        rad: largest angle between the recorded axis and the path's.
     poses : int
-        How many poses were recorded.
+        Number of recorded poses.
     turns : bool
         The path's axes follow its keys; False for a tool without a ball tip.
     """
@@ -74,7 +74,7 @@ class Recorded:
     paths : list of StrokePath
         The bounds of each path.
     notes : list of str
-        What else the user should know, as sentences.
+        Further notes for the user, as sentences.
     """
 
     plan: Plan
@@ -118,7 +118,7 @@ def path_of_stroke(
     angle : float
         rad: largest angle between their axes, at most 0.5.
     name : str
-        What errors call the poses.
+        Name of the poses in errors.
 
     Returns
     -------
@@ -127,7 +127,7 @@ def path_of_stroke(
     Raises
     ------
     ValueError
-        Naming the row: fewer than two poses, not finite, no unit axis, axes that are opposite to those before; and for
+        Naming the row: fewer than two poses, not finite, not a unit axis, an axis opposite to the one before; and for
         a motion that stays in one place.
 
     Examples
@@ -166,8 +166,8 @@ def from_recording(
 ) -> Recorded:
     """A plan of a recording's strokes: a path for each, with keys where the axis bends, to be edited as any other.
 
-    What is not recorded as a stroke, with the button up, is no part of it. Strokes that do not remove are left out, as
-    no machine can make them, and so are those that stay in one place; ``notes`` counts them.
+    Motion with the button up is not recorded as a stroke and not part of the plan. Strokes that do not remove are left
+    out, as no machine can make them, and so are those that stay in one place; ``notes`` counts them.
 
     Parameters
     ----------
@@ -308,7 +308,7 @@ def _notes(left_out: dict[str, int], modes: list[str], paths: list[StrokePath], 
         notes.append(f"{_counted(count)} made next to protected material: the paths do not know that it was protected")
     if not paths[0].turns:
         notes.append(
-            f"the tip of {tool.name} is no ball: its paths keep the recorded poses, and keys do not turn the tool"
+            f"the tip of {tool.name} is not a ball: its paths keep the recorded poses, and keys do not turn the tool"
         )
     return notes
 

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from math import radians
-from typing import Any
 
 from .. import _core
 from .._core import Tool
 from ..arguments import Progress, then
 from ..hints import hinted
-from .operations import Operation, operation_of
+from .operations import Operation, PlannedMoves, operation_of
 from .setups import Setup
 
 
@@ -99,7 +98,7 @@ def rough(
         progress=progress,
     )
 
-    def made(parts: dict[str, Any]) -> Operation:
-        return operation_of(parts, tool, setup.stock.pitch, spindle, tolerance)
+    def made(moves: PlannedMoves) -> Operation:
+        return operation_of(moves, tool, setup.stock.pitch, spindle, tolerance)
 
     return then(found, made)

@@ -1,4 +1,4 @@
-"""Set-ups: part, stock, fixtures and the tool's axis, on which operations are planned one after the other."""
+"""Set-ups: part, stock, fixtures and tool axis, for planning one operation after the other."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ ROUNDING = 1e-3  # mm that verification may find beyond the tolerance of an oper
 
 
 class Setup:
-    """A part in its stock on the machine: what operations are planned on.
+    """A part in its stock on the machine, for planning operations.
 
     Parameters
     ----------
@@ -30,7 +30,7 @@ class Setup:
         The material at the beginning, in the part's frame; its rays run along the axis, or it is "xyz". It is not
         changed.
     fixtures : list of Volume or Mesh
-        What the tool must stay clear of.
+        Meshes that the tool must stay clear of.
     axis : array_like, shape (3,)
         Unit vector from tip to spindle.
     clearance : float
@@ -38,12 +38,12 @@ class Setup:
     machine : str
         One of ``riffler.machines()``. A machine of three axes needs the axis (0, 0, 1).
     origin : array_like, shape (3,)
-        Where the program's zero lies, mm.
+        Zero of the program, mm.
 
     Raises
     ------
     ValueError
-        Naming what does not fit: a stock smaller than the part or in another place, an axis that the machine lacks.
+        Naming the misfit: a stock smaller than the part or in another place, an axis that the machine lacks.
 
     Examples
     --------
@@ -85,7 +85,7 @@ class Setup:
 
     @property
     def stock(self) -> Volume:
-        """What is left of the stock after the operations that were applied.
+        """The stock after the applied operations.
 
         Examples
         --------
@@ -102,7 +102,7 @@ class Setup:
         return list(self._obstacles)
 
     def apply(self, op: Operation, progress: Progress = None) -> None:
-        """Cuts the in-process stock by an operation: the next one plans on what it leaves.
+        """Cuts the in-process stock by an operation; the next one is planned on the result.
 
         Parameters
         ----------
@@ -181,8 +181,8 @@ def _check_stock(part: Mesh, stock: Volume, axis: NDArray[np.float64]) -> None:
 def program(setup: Setup, operations: Iterable[Operation], *, progress: Progress = None) -> Program:
     """One program of several operations, with tool changes between them on the clearance plane.
 
-    The program is simulated on the stock before its first operation. What it must not do is an error, and no program
-    comes of it: a rapid that meets material, shank or holder in stock, the tool in a fixture, a gouge beyond the
+    The program is simulated on the stock before its first operation. A fault is an error, and no program
+    is returned: a rapid that meets material, shank or holder in stock, the tool in a fixture, a gouge beyond the
     tolerance of the operations.
 
     Parameters
@@ -249,7 +249,7 @@ def program(setup: Setup, operations: Iterable[Operation], *, progress: Progress
 
 
 def _number(tool: Tool, tools: dict[int, Tool]) -> int:
-    """The number of a tool in the program; tools that are alike have one."""
+    """The number of a tool in the program; equal tools share a number."""
     form = tool.to_dict()
     for number, known in tools.items():
         if known.to_dict() == form:

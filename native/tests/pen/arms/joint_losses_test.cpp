@@ -102,7 +102,7 @@ TEST(JointLosses, OfASteadyTurnAreItsFrictionTimesItsAngle) {
   const double turn = kTwoPi * c.ratio / c.steps, seen = 1000 * (rate - 1) * turn;
   EXPECT_NEAR(sum, 0.75 * (c.coulomb * seen + c.viscous * (rate - 1) * turn / 1e-3 * seen), 1e-9);
   losses.clear();
-  EXPECT_EQ(losses.add({}, 2), 0) << "a gap is no motion";
+  EXPECT_EQ(losses.add({}, 2), 0) << "a gap is not motion";
 }
 
 /// The damping along n with everything else free, by minimising over joint rates that lead the pivot along n.

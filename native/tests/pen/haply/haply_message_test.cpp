@@ -142,7 +142,7 @@ TEST(HaplyMessage, TheVersionIsThatOfAnInverseService) {
   EXPECT_EQ(version.major, 3);
   EXPECT_EQ(version.minor, 12);
   using test::error_of;
-  EXPECT_EQ(error_of([] { read_haply_version("<html>"); }), "its version is no JSON");
+  EXPECT_EQ(error_of([] { read_haply_version("<html>"); }), "its version is not JSON");
   EXPECT_EQ(error_of([] { read_haply_version(R"({"version":"1"})"); }),
             "it does not call itself haply-inverse-service");
   for (const char* number : {"", "3", "3.", "x.1", "3,1"})
@@ -150,7 +150,7 @@ TEST(HaplyMessage, TheVersionIsThatOfAnInverseService) {
                 read_haply_version(std::string(R"({"project_name":"haply-inverse-service","project_version":")") +
                                    number + "\"}");
               }),
-              "its version is no number")
+              "its version is not a number")
         << number;
 }
 

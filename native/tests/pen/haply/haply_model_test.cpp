@@ -148,7 +148,7 @@ TEST(HaplyModel, TurningIsTheRateOfTheAxisEvenIfTheGripReportsInSteps) {
     if (k >= 500) mean += desk.model.sample(0).turning / 500.0;
   }
   EXPECT_LT(glm::length(mean - Vec3(3, 0, 0)), 0.05);
-  EXPECT_LT(most, 6) << "a step of 30 mrad in a millisecond is no speed of 30 rad/s";
+  EXPECT_LT(most, 6) << "a step of 30 mrad in a millisecond is not a speed of 30 rad/s";
 }
 
 TEST(HaplyModel, PushesTheForceOnlyAndKeepsItsDirectionAtTheLimit) {

@@ -87,7 +87,7 @@ TEST(Polhem, HomingPresetsTheCountersAndWaitsUntilTheyShowIt) {
   arm.model->take(polhem_report({0, 1, 6000, 0, 0, 0, 0}), 2e-3);
   const PenSample sample = arm.model->sample(0);
   EXPECT_TRUE(sample.homed);
-  EXPECT_EQ(sample.velocity, Vec3(0)) << "a preset is no motion";
+  EXPECT_EQ(sample.velocity, Vec3(0)) << "a preset is not motion";
   arm.model->push({}, 0, arm.out);
   EXPECT_EQ(field(arm.out, 3), 0);
 }

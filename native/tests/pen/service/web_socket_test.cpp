@@ -187,13 +187,13 @@ TEST(WebSocket, WhatIsNoWebSocketIsRefusedWithTheReason) {
   EXPECT_EQ(answer(""), "no answer: it closes the connection");
   EXPECT_EQ(answer("SSH-2.0-OpenSSH_9.2\r\n\r\n"),
             "contradicts itself: its answer is not HTTP: the status line is not that of HTTP/1.1");
-  EXPECT_EQ(answer(std::string(20'000, 'x')), "contradicts itself: its answer is no head of HTTP");
+  EXPECT_EQ(answer(std::string(20'000, 'x')), "contradicts itself: its answer is not an HTTP head");
   EXPECT_EQ(answer("HTTP/1.1 404 Not Found\r\n\r\n"), "contradicts itself: it opens no WebSocket: status 404");
   EXPECT_EQ(answer(head + "Upgrade: h2c\r\nConnection: Upgrade\r\n\r\n"),
-            "contradicts itself: it upgrades the connection to something else than a WebSocket");
+            "contradicts itself: it upgrades the connection to something other than a WebSocket");
   EXPECT_EQ(answer(head + up + "Sec-WebSocket-Accept: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n"),
-            "contradicts itself: it answers with another key");
-  EXPECT_EQ(answer(head + up + "\r\n"), "contradicts itself: it answers with another key");
+            "contradicts itself: it answers with a wrong key");
+  EXPECT_EQ(answer(head + up + "\r\n"), "contradicts itself: it answers with a wrong key");
   LoopbackServer extended([](Peer& peer) {
     std::string text = test::upgrade_answer(peer.read_until("\r\n\r\n"));
     peer.send(text.insert(text.size() - 2, "Sec-WebSocket-Extensions: permessage-deflate\r\n"));

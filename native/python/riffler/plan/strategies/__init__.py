@@ -1,4 +1,4 @@
-"""The table of strategies. A module here lists its own in STRATEGIES; nothing else has a list of them."""
+"""The table of strategies. A module here lists its own in STRATEGIES; there is no other list."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ STRATEGIES: dict[str, Strategy] = {strategy.id: strategy for strategy in _found(
 
 
 def of(name: str) -> Strategy:
-    """The strategy of an id. ValueError where there is none."""
+    """The strategy with an id. ValueError if there is none."""
     if name not in STRATEGIES:
         raise ValueError(f"strategy must be one of {', '.join(STRATEGIES)}, not {name!r}")
     return STRATEGIES[name]
@@ -43,7 +43,7 @@ def find(
     progress: Progress = None,
     **options: Any,
 ) -> Found:
-    """Plans by the strategy of that id, as ``riffler plan`` and Blender do.
+    """Plans with the strategy of that id, as ``riffler plan`` and Blender do.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ def find(
     progress : callable, optional
         Called with the finished share; returning False cancels.
     options : keyword arguments
-        The strategy's parameters; its default where one is not given, or None.
+        The strategy's parameters; a missing one, or None, gets its default.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Engraving: curves laid on a part and cut to a depth, the tool's axis following the surface."""
+"""Engraving: curves projected onto a part and cut to a depth, with the tool's axis following the surface."""
 
 from __future__ import annotations
 
@@ -50,10 +50,10 @@ def engrave(
     reach: float = 10.0,
     progress: Progress = None,
 ) -> list[Engraved]:
-    """Lays curves on a part and cuts them ``depth`` mm deep, the tool's axis following the surface.
+    """Projects curves onto a part and cuts them ``depth`` mm deep; the tool's axis follows the surface.
 
-    Each curve is laid on the part by nearest points and divided until its chords stay within ``tolerance`` of the
-    surface and the axis turns by less than ``turn`` from one point to the next. The cutter touches the plane that lies
+    Each curve is projected onto the part by nearest points and divided until its chords stay within ``tolerance`` of
+    the surface and the axis turns by less than ``turn`` from one point to the next. The cutter touches the plane
     ``depth`` below the surface.
 
     Parameters

@@ -1,4 +1,4 @@
-"""Pencil cuts: where a ball touches a part at two places at once."""
+"""Pencil cuts: paths of a ball that touches a part at two places at once."""
 
 from __future__ import annotations
 
@@ -40,19 +40,19 @@ class PencilPaths(list[PencilPath]):
     Attributes
     ----------
     ends : list of tuple
-        For each path what it starts and ends at: "part", "corner", "faded", "loop", "cut", "joined" where another path
+        Start and end of each path: "part", "corner", "faded", "loop", "cut", "joined" if another path
         continues or, for passes parallel to a valley, "pass".
     rest_area : float
         mm² that the tool's ball cannot reach.
     rest_areas : ndarray, shape (k,)
         The same for each triangle of the part.
     reference_area, reference_areas : float, ndarray of shape (k,)
-        The same for the ball of ``reference_tool`` (or of ``overthickness``): what there is to be machined. Without one
+        The same for the ball of ``reference_tool`` (or of ``overthickness``): the area to be machined. Without one
         those of the tool.
     stats : PencilStats
         Counters.
     reason : str
-        Why there are no paths; empty where there are some.
+        Why there are no paths; empty if there are some.
     """
 
     def __init__(

@@ -1,4 +1,4 @@
-"""What a strategy is. Command line and Blender read its parameters from here."""
+"""Base class of strategies. The command line and Blender read their parameters from it."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ class Parameter:
     key : str
         Its name as an argument.
     label, help : str
-        For people.
+        Label for users.
     default : float, int, str or None
-        None where leaving it out means something, which ``help`` says; a panel shows 0 then.
+        None if omitting it has a meaning, which ``help`` states; a panel then shows 0.
     unit : str
         "mm", "rad" (degrees on the command line and in panels), or "" for a whole number.
     low, high : float
@@ -49,16 +49,16 @@ class Parameter:
 
 @dataclass(frozen=True)
 class Found:
-    """What a strategy has found: see `find`.
+    """Result of a strategy: see `find`.
 
     Attributes
     ----------
     plan : Plan
         The paths.
     reason : str
-        Why it has no paths; empty where it has some.
+        Why it has no paths; empty if it has some.
     notes : list of str
-        What else the user should know, as sentences.
+        Further notes for the user, as sentences.
     """
 
     plan: Plan
@@ -67,7 +67,7 @@ class Found:
 
 
 class Strategy(ABC):
-    """How paths come about: see `find`.
+    """A method of finding paths: see `find`.
 
     A module of this package defines one and lists it in STRATEGIES; ``riffler plan``, the panel of the Blender
     extension and ``riffler.plan.find`` read the table of them all (strategies/__init__.py).
@@ -76,12 +76,12 @@ class Strategy(ABC):
     id: ClassVar[str] = ""  # its name in commands and scripts
     place: ClassVar[int] = 0  # in lists: the smallest first
     label: ClassVar[str] = ""
-    action: ClassVar[str] = ""  # what its button says
+    action: ClassVar[str] = ""  # text of its button
     description: ClassVar[str] = ""
     summary: ClassVar[str] = ""  # of the command, a verb in front
-    nothing: ClassVar[str] = "path"  # what there is none of, where nothing was found
+    nothing: ClassVar[str] = "path"  # noun for messages such as "no path found"
     needs: ClassVar[str] = "part"  # in addition to part and tool: "curves", "paths" of a plan, or "part" for nothing
-    missing: ClassVar[str] = ""  # what to do in Blender where curves or paths are missing
+    missing: ClassVar[str] = ""  # what to do in Blender if curves or paths are missing
     parameters: ClassVar[tuple[Parameter, ...]] = ()
 
     @abstractmethod
@@ -111,11 +111,19 @@ class Strategy(ABC):
         Raises
         ------
         ValueError
-            Naming what is wrong. See `find`.
+            Naming the faulty argument. See `find`.
+
+        Examples
+        --------
+        >>> part = riffler.shape.relief([[1, 1], [0, 0], [1, 1]], size=(30, 20), depth=10, sink=5)
+        >>> pencil = riffler.plan.STRATEGIES["pencil"]
+        >>> found = pencil.run(part, riffler.Tool.ball(diameter=4, length=20), [], pencil.options({}))
+        >>> len(found.plan.paths)
+        1
         """
 
     def check(self, tool: Tool, given: Sequence[Any]) -> None:  # noqa: B027
-        """Refuses a tool that the strategy cannot use: known at once, before a long run. See `find`.
+        """Raises ValueError for a tool that the strategy cannot use, at once instead of in a long run. See `find`.
 
         Parameters
         ----------
@@ -123,10 +131,14 @@ class Strategy(ABC):
             The cutter.
         given : list
             As for ``run``.
+
+        Examples
+        --------
+        >>> riffler.plan.STRATEGIES["engrave"].check(riffler.Tool.ball(diameter=1, length=10), [])
         """
 
     def options(self, given: Mapping[str, Any]) -> dict[str, Any]:
-        """All parameters with their defaults, without those that are None.
+        """The given parameters and the defaults of the others, without those that are None.
 
         Parameters
         ----------
@@ -140,7 +152,7 @@ class Strategy(ABC):
         Raises
         ------
         ValueError
-            For unknown ones and for words that are none of the choices.
+            For unknown parameters, and for words that are not among the choices.
 
         Examples
         --------

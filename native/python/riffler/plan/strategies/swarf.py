@@ -26,9 +26,9 @@ class Swarf:
     path : PencilPath
         With the axes.
     height : ndarray, shape (n,)
-        mm along the axis up to which there is wall.
+        mm: height of the wall along the axis.
     error : ndarray, shape (n,)
-        mm: largest distance between wall and flank up to there; inf where nothing stands.
+        mm: largest distance between wall and flank up to that height; inf if there is no wall.
     fits : list of tuple
         Runs (first, last) of points where ``error`` is within the tolerance.
     """
@@ -63,9 +63,9 @@ def swarf(
     part_mesh : Mesh
         The part.
     side : {0, 1}
-        Which of the path's contacts is the wall's.
+        Number of the path's contact that is on the wall.
     height : float, optional
-        mm of the wall, from the ball's centre; None: as far as wall and flank go.
+        mm of the wall, from the ball's centre; None: up to the end of wall or flank.
     tolerance : float
         mm.
     progress : callable, optional
