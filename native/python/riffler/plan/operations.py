@@ -101,9 +101,9 @@ class Operation:
 
 @dataclass(frozen=True, eq=False)
 class PlannedMoves:
-    """Moves of an operation, before its report: `poses`, `kind` and `feed` as in `Operation`, the volumes
-    `removed` (n - 1,) mm³ by the moves, `blocked`, `reason` and `stats`, and the largest width of cut as a share of the diameter if that is
-    bounded."""
+    """Moves of an operation, before its report: `poses`, `kind` and `feed` as in `Operation`, the volumes `removed`
+    (n - 1,) mm³ by the moves, `blocked`, `reason` and `stats`, and the largest width of cut as a share of the diameter
+    if that is bounded."""
 
     poses: NDArray[np.float64]
     kind: NDArray[np.uint8]
