@@ -90,6 +90,8 @@ class RIFFLER_PT_stock(Sidebar, bpy.types.Panel):
         layout.prop(settings, "directions")
         if settings.source == "BLOCK":
             layout.prop(settings, "origin")
+        if settings.source == "OBJECT":
+            layout.prop(settings, "rounded")
         if size and min(size) > 0:
             rays = estimate.ray_count(size, units.clean(settings.pitch), settings.directions)
             about = units.format_bytes(rays * estimate.BYTES_PER_RAY)
