@@ -230,7 +230,7 @@ class RIFFLER_OT_make_sculpt(TakesDrag, bpy.types.Operator):
         name="Round Facets",
         default=False,
         options={"SKIP_SAVE"},
-        description="Make the facets of an object round; its edges of more than 30° stay sharp",
+        description="Make the facets of an object round; its edges of more than 32° stay sharp",
     )
 
     @classmethod

@@ -54,7 +54,7 @@ class StockSettings:
     rounded: BoolProperty(
         name="Round Facets",
         default=False,
-        description="Make the facets of an object round; its edges of more than 30° stay sharp",
+        description="Make the facets of an object round; its edges of more than 32° stay sharp",
     )
 
 

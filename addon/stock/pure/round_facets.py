@@ -11,7 +11,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-SHARP = np.radians(30)  # edges between facets that differ by more stay sharp
+# Edges between facets that differ by more stay sharp: Blender's torus has 30°, the corner of a chamfered block 35°.
+SHARP = np.radians(32)
+LEVEL = np.radians(0.5)  # triangles that differ by less are of one facet
+SMALL = 1 / 4  # of its largest neighbour: a smaller facet has no say about the normal, so a bevel begins at a flat face
 MOST = 1_000_000  # triangles of the result; a mesh of more than a quarter stays unchanged
 FINEST = 32  # pieces of an edge
 
@@ -34,7 +37,7 @@ def rounded(vertices: np.ndarray, triangles: np.ndarray, deviation: float) -> tu
     if len(tri) == 0 or 4 * len(tri) > MOST:
         return co, tri.astype(np.int32)
     faces, edges = _normals(co, tri), _edges(tri)
-    smooth = _smooth(faces, edges)
+    smooth = _bends_less(SHARP, faces, edges)
     handles = _handles(co, tri, edges, smooth, _corner_normals(co, tri, faces, edges, smooth))
     pieces = _pieces(co, edges.ends, handles, len(tri), deviation)
     return _divided(co, tri, edges, handles, pieces)
@@ -72,10 +75,18 @@ def _edges(tri):
     return _Edges(of.reshape(-1, 3), ends, sides)
 
 
-def _smooth(faces, edges):
-    """Whether each edge bends by no more than SHARP."""
+def _bends_less(angle, faces, edges):
+    """Whether each edge has two faces, and bends by no more than `angle`."""
     own, other = (faces[edges.sides[:, k] // 3] for k in range(2))
-    return (edges.sides[:, 0] >= 0) & (np.einsum("ec,ec->e", own, other) >= np.cos(SHARP))
+    return (edges.sides[:, 0] >= 0) & (np.einsum("ec,ec->e", own, other) >= np.cos(angle))
+
+
+def _sizes(co, tri, faces, edges):
+    """(F,): the area of the facet that each triangle belongs to."""
+    level = edges.sides[_bends_less(LEVEL, faces, edges)] // 3
+    a, b, c = (co[tri[:, k]] for k in range(3))
+    facet = _groups(len(tri), level)
+    return np.bincount(facet, np.linalg.norm(np.cross(b - a, c - a), axis=1), len(tri))[facet]
 
 
 def _next(corners):
@@ -84,13 +95,16 @@ def _next(corners):
 
 def _corner_normals(co, tri, faces, edges, smooth):
     """(3F, 3): at each corner of a triangle, the mean normal of the triangles around it as far as the next sharp edges,
-    weighted by their angles."""
+    weighted by their angles; of facets that are not SMALL."""
     a, b = edges.sides[smooth].T
     pairs = np.concatenate([np.column_stack([a, _next(b)]), np.column_stack([_next(a), b])])
     group = _groups(3 * len(tri), pairs)
     along, back = (_unit(co[np.roll(tri, -k, axis=1)] - co[tri]) for k in (1, 2))
     angles = np.arccos(np.clip(np.einsum("fkc,fkc->fk", along, back), -1, 1)).ravel()
-    own = np.repeat(faces, 3, axis=0)
+    own, size = np.repeat(faces, 3, axis=0), np.repeat(_sizes(co, tri, faces, edges), 3)
+    largest = np.zeros(len(own))
+    np.maximum.at(largest, group, size)
+    angles *= size >= SMALL * largest[group]
     total = np.column_stack([np.bincount(group, angles * own[:, k], len(own)) for k in range(3)])
     mean = _unit(total)[group]
     return np.where(mean.any(axis=1, keepdims=True), mean, own)

@@ -1,5 +1,7 @@
 """Coarse meshes made round."""
 
+import itertools
+
 import numpy as np
 import pytest
 import riffler
@@ -77,6 +79,65 @@ def test_a_cube_stays_as_it_is():
     new, made = round_facets.rounded(mesh.vertices, mesh.triangles, 1e-3)
     assert closed(new, made).volume == pytest.approx(mesh.volume) and len(made) == len(mesh.triangles)
     assert np.array_equal(np.unique(new, axis=0), np.unique(np.asarray(mesh.vertices), axis=0))
+
+
+def bevelled(segments=4, half=10.0, width=2.5):
+    """A square bar with rounded edges, as the modifier Bevel makes it, and its exact volume."""
+    turn = np.radians(90) * np.arange(segments + 1) / segments
+    quarter = np.column_stack([np.cos(turn), np.sin(turn)]) * width + (half - width)
+    rim = np.concatenate([quarter @ np.array([[c, s], [-s, c]]) for c, s in ((1, 0), (0, 1), (-1, 0), (0, -1))])
+    n = len(rim)
+    co = np.concatenate([np.column_stack([rim, 0 * rim[:, 0] + z]) for z in (-half, half)] + [[-half * UP, half * UP]])
+    tri = []
+    for a in range(n):
+        b = (a + 1) % n
+        tri += [(a, b, n + b), (a, n + b, n + a), (2 * n, b, a), (2 * n + 1, n + a, n + b)]
+    return co, np.array(tri), 2 * half * (4 * half**2 - (4 - np.pi) * width**2)
+
+
+def test_flat_faces_beside_round_edges_stay_flat():
+    co, tri, exact = bevelled()
+    new, made = round_facets.rounded(co, tri, 1e-3)
+    assert np.abs(new).max() < 10 + 1e-9
+    assert closed(co, tri).volume < exact * (1 - 6e-4)
+    assert closed(new, made).volume == pytest.approx(exact, rel=1e-4)
+
+
+def chamfered(half=10.0, inner=6.0):
+    """A cube with all edges cut off at 45°, which leaves a triangle of 35° to them at each corner."""
+    signs, polygons = (-1, 1), []
+    at = lambda axis, sign: np.roll([half * sign[0], inner * sign[1], inner * sign[2]], axis)  # noqa: E731
+    for k in range(3):
+        for a in signs:
+            polygons.append([at(k, (a, b, c)) for b, c in ((-1, -1), (-1, 1), (1, 1), (1, -1))])
+            for b in signs:  # between the faces of axis k and of the next one
+                ends = [(at(k, (a, b, c)), at(k + 1, (b, c, a))) for c in signs]
+                polygons.append([ends[0][0], ends[0][1], ends[1][1], ends[1][0]])
+    for a in signs:
+        for b in signs:
+            polygons += [[at(0, (a, b, c)), at(1, (b, c, a)), at(2, (c, a, b))] for c in signs]
+    triangles = [(p[0], *pair) for p in polygons for pair in itertools.pairwise(p[1:])]
+    co = np.array([t if np.linalg.det(t) > 0 else t[::-1] for t in triangles]).reshape(-1, 3)
+    return co, np.arange(len(co)).reshape(-1, 3)
+
+
+def test_chamfers_stay_flat():
+    co, tri = chamfered()
+    new, made = round_facets.rounded(co, tri, 1e-3)
+    assert closed(new, made).volume == pytest.approx(6421 + 1 / 3) and np.abs(new).max() == 10
+
+
+def test_a_ring_whose_facets_differ_by_thirty_degrees_is_round():
+    turn, around = 2 * np.pi * np.arange(48) / 48, 2 * np.pi * np.arange(12) / 12
+    out = 20 + 6 * np.cos(around)
+    co = np.stack([np.outer(np.cos(turn), out), np.outer(np.sin(turn), out), np.outer(turn**0, 6 * np.sin(around))], -1)
+    at = np.arange(48 * 12).reshape(48, 12)
+    a, b = at.ravel(), np.roll(at, -1, 0).ravel()
+    c, d = np.roll(at, (-1, -1), (0, 1)).ravel(), np.roll(at, -1, 1).ravel()
+    tri, exact = np.concatenate([np.column_stack([a, b, c]), np.column_stack([a, c, d])]), 2 * np.pi**2 * 20 * 36
+    new, made = round_facets.rounded(co.reshape(-1, 3), tri, 1e-2)
+    assert closed(co.reshape(-1, 3), tri).volume < 0.96 * exact
+    assert closed(new, made).volume == pytest.approx(exact, rel=5e-3)
 
 
 def test_the_same_comes_out_in_any_units_and_as_fine_as_was_asked():
