@@ -179,18 +179,19 @@ def carved(screen, *places, **modifiers):
 
 
 def bear(screen):
-    """A bear's head: a flat cutter bevels the edges, a ball carves eyes, snout and mouth, all with Mirror on."""
+    """A bear's head: a flat cutter bevels the edges, a ball carves eyes, snout and mouth, all with Mirror on. Strokes
+    along an edge run a little beside it: exactly on it, a pixel decides which face the cutter leans on."""
     view, shown, h = screen.area.spaces.active.region_3d, bpy.context.window_manager.riffler, 50.0
-    whole = volume()
+    whole, aside = volume(), 1.5
     shown.sculpt.mirror, shown.tool.kind = {"X"}, "flat"
     yield from sized(screen, 28, 6)
     for turn, y in ((45, -h), (135, h)):
         yield from seen(screen, 90, turn)
-        yield from carved(screen, (h, y, -h + 3), (h, y, h - 3))
+        yield from carved(screen, (h - aside, y, -h + 3), (h - aside, y, h - 3))
     for turn, a, b in (
-        (0, (0, -h, h), (h - 8, -h, h)),
-        (90, (h, -h, h), (h, h, h)),
-        (180, (0, h, h), (h - 8, h, h)),
+        (0, (0, -h, h - aside), (h - 8, -h, h - aside)),
+        (90, (h, -h, h - aside), (h, h, h - aside)),
+        (180, (0, h, h - aside), (h - 8, h, h - aside)),
     ):
         yield from seen(screen, 45, turn)
         yield from carved(screen, a, b)
