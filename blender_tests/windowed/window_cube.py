@@ -180,7 +180,7 @@ def carved(screen, *places, **modifiers):
 
 def bear(screen):
     """A bear's head: a flat cutter bevels the edges, a ball carves eyes, snout and mouth, all with Mirror on. Strokes
-    along an edge run a little beside it: exactly on it, a pixel decides which face the cutter leans on."""
+    along an edge keep 1.5 mm away from it: exactly on it, a pixel decides which face the cutter leans on."""
     view, shown, h = screen.area.spaces.active.region_3d, bpy.context.window_manager.riffler, 50.0
     whole, aside = volume(), 1.5
     shown.sculpt.mirror, shown.tool.kind = {"X"}, "flat"
