@@ -7,7 +7,7 @@ import time
 
 import bpy
 import numpy as np
-from bpy.props import EnumProperty, FloatProperty, StringProperty
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, StringProperty
 
 from ..blender import meshes, object_surfaces, operator_parts, refusals
 from ..common import fitting, units
@@ -226,6 +226,12 @@ class RIFFLER_OT_make_sculpt(TakesDrag, bpy.types.Operator):
         options={"SKIP_SAVE"},
         description="Diameter of the cutter; 0: chosen from the size",
     )
+    rounded: BoolProperty(
+        name="Round Facets",
+        default=False,
+        options={"SKIP_SAVE"},
+        description="Make the facets of an object round; its edges of more than 32° stay sharp",
+    )
 
     @classmethod
     def poll(cls, context):
@@ -253,6 +259,7 @@ class RIFFLER_OT_make_sculpt(TakesDrag, bpy.types.Operator):
         column = layout.column(align=True)
         column.prop(self, "pitch")
         column.prop(self, "diameter")
+        layout.prop(self, "rounded")
 
     def execute(self, context):
         kept = fit.Kept(context)
@@ -265,7 +272,8 @@ class RIFFLER_OT_make_sculpt(TakesDrag, bpy.types.Operator):
                 fit.take_unit(context, self.side / _units(source))
             fit.take_cutter(context, units.clean(self.diameter))
             pitch = units.clean(self.pitch)
-            bpy.ops.riffler.new_stock("EXEC_DEFAULT", True, source="OBJECT", pitch=pitch, directions="xyz")
+            material = {"source": "OBJECT", "pitch": pitch, "directions": "xyz", "rounded": self.rounded}
+            bpy.ops.riffler.new_stock("EXEC_DEFAULT", True, **material)
         except operator_parts.ERRORS as error:
             kept.restore()
             for ob in context.view_layer.objects:

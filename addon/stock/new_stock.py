@@ -15,8 +15,9 @@ from ..common.contents import Content
 from ..common.job import DoneJob, TaskJob
 from ..sculpt import live_registry, sculpt_store, sculpt_work, sculpts
 from . import cut_paths, properties
-from .pure import estimate
+from .pure import estimate, round_facets
 
+FACET = 0.02  # pitches: largest distance of new facets from the round surface, which no light shows
 NO_SOURCE = "select the object to make material of: a mesh, curve, text, surface or metaball"
 
 
@@ -127,6 +128,8 @@ class RIFFLER_OT_new_stock(properties.StockSettings, LongWork, bpy.types.Operato
         if not size.all():
             raise ValueError(f"{source.name} is flat, so it has no volume: give it thickness, by the modifier Solidify")
         estimate.check_surface(source.name, size, mesh.area, pitch)
+        if self.rounded:
+            mesh = riffler.Mesh(*round_facets.rounded(mesh.vertices, mesh.triangles, FACET * pitch))
         new = _New(f"{source.name} Stock", frame, sculpts.key_of(source))
         return new, TaskJob(riffler.submit(riffler.Volume.from_mesh_with_report, mesh, pitch, self.directions))
 
@@ -151,6 +154,8 @@ class RIFFLER_OT_new_stock(properties.StockSettings, LongWork, bpy.types.Operato
         if self.source == "BLOCK":
             layout.prop(self, "size", text="Size (mm)")
             layout.prop(self, "origin")
+        if self.source == "OBJECT":
+            layout.prop(self, "rounded")
         layout.prop(self, "pitch", text="Pitch (mm)")
         layout.prop(self, "directions")
 

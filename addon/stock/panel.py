@@ -4,12 +4,15 @@ touched."""
 import bpy
 
 from ..blender import object_surfaces, refusals, scene_units
-from ..blender.panel_parts import Sidebar, at_work, give, lines
+from ..blender.panel_parts import Sidebar, at_work, give, lines, wrapped
 from ..common import fitting, units
 from ..sculpt import first_stroke, live_registry, mesh_edits, sculpts
 from ..translations import CONTEXT, local
 from . import clay, cut, detail, export, millimetres, new_stock, properties
 from .pure import estimate
+
+FLAT = "The object is scaled to nothing: use Object > Clear > Scale."
+SCALED = "The object is scaled or mirrored: its millimetres are not the scene's."
 
 
 class RIFFLER_PT_sculpt(Sidebar, bpy.types.Panel):
@@ -21,7 +24,7 @@ class RIFFLER_PT_sculpt(Sidebar, bpy.types.Panel):
         layout = self.layout
         ob = sculpts.active(context)
         if ob is None:
-            lines(layout, "No sculpt is active.", "Make one below, or use Add > Mesh.", icon="INFO")
+            lines(layout, *wrapped(context, "No sculpt is active. Make one below."), icon="INFO")
             if object_surfaces.source_object(context) is not None:
                 layout.operator(
                     first_stroke.RIFFLER_OT_make_sculpt.bl_idname, text="Make Sculpt", icon="SCULPTMODE_HLT"
@@ -56,17 +59,21 @@ class RIFFLER_PT_sculpt(Sidebar, bpy.types.Panel):
             return  # its mesh is hidden, and the session continues from the volume
         stale = sculpts.shown_mm_per_unit(mesh) != scene_units.mm_per_unit(context.scene)
         edited = mesh_edits.noticed(ob)
+        told = ""
         if stale:
-            lines(layout, "The scene's units have changed;", "the mesh shows another size.", icon="ERROR")
+            told = "The scene's units have changed; the mesh shows another size."
         elif edited:
-            lines(layout, "The mesh was edited in Blender's", "own modes. Apply or discard the edits:", icon="ERROR")
+            told = "The mesh was edited in Blender's own modes. Apply or discard the edits:"
+        if told:
+            lines(layout, *wrapped(context, told), icon="ERROR")
+        if edited and not stale:
             layout.operator(clay.RIFFLER_OT_take_edits.bl_idname, icon="CHECKMARK")
-        if stale or edited:
+        if told:
             layout.operator(new_stock.RIFFLER_OT_rebuild.bl_idname, icon="FILE_REFRESH")
         if refusals.flat(ob):
-            lines(layout, "The object is scaled to nothing:", "use Object > Clear > Scale.", icon="ERROR")
+            lines(layout, *wrapped(context, FLAT), icon="ERROR")
         elif refusals.scaled(ob):
-            lines(layout, "The object is scaled or mirrored: its", "millimetres are not the scene's.", icon="ERROR")
+            lines(layout, *wrapped(context, SCALED), icon="ERROR")
 
 
 class RIFFLER_PT_stock(Sidebar, bpy.types.Panel):
@@ -90,6 +97,8 @@ class RIFFLER_PT_stock(Sidebar, bpy.types.Panel):
         layout.prop(settings, "directions")
         if settings.source == "BLOCK":
             layout.prop(settings, "origin")
+        if settings.source == "OBJECT":
+            layout.prop(settings, "rounded")
         if size and min(size) > 0:
             rays = estimate.ray_count(size, units.clean(settings.pitch), settings.directions)
             about = units.format_bytes(rays * estimate.BYTES_PER_RAY)

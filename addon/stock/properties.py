@@ -51,6 +51,11 @@ class StockSettings:
     directions: EnumProperty(
         name="Rays", items=DIRECTIONS, default="xyz", description="Directions of the rays that measure the material"
     )
+    rounded: BoolProperty(
+        name="Round Facets",
+        default=False,
+        description="Make the facets of an object round; its edges of more than 32° stay sharp",
+    )
 
 
 class RifflerStock(StockSettings, bpy.types.PropertyGroup):

@@ -234,6 +234,17 @@ def test_menus_are_drawn_into_blenders():
     assert len(drawn) == 4 and any("VIEW3D_MT_mesh_add" in line for line in drawn), drawn
 
 
+def test_the_tab_begins_with_what_an_artist_needs_and_machining_comes_last():
+    panels = [cls for m in common.part("registration").modules() for cls in m.CLASSES]
+    ours = [cls for cls in panels if getattr(cls, "bl_category", "") == "Riffler" and not hasattr(cls, "bl_parent_id")]
+    places = {cls.bl_idname.removeprefix("RIFFLER_PT_"): getattr(cls, "bl_order", 0) for cls in ours}
+    assert len(set(places.values())) == len(places), places
+    order = sorted(places, key=places.get)
+    # what was interrupted is above all, while there is something to show
+    assert order[:6] == ["recover", "sculpt", "sculpt_tool", "tool", "clay", "stock"], order
+    assert order[-2:] == ["cut", "export"], order
+
+
 def shown():
     """(where, property) of everything that a user can set, and (where, None) of operators."""
     for module in common.part("registration").modules():

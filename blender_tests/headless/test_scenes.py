@@ -125,15 +125,31 @@ def test_the_panel_says_what_a_scale_means():
     panel = common.part("stock.panel").RIFFLER_PT_sculpt
     for scale, expected in (
         ((1, 1, 1), []),
-        ((1, 1, 0), ["The object is scaled to nothing:", "use Object > Clear > Scale."]),
-        ((1, 2, 1), ["The object is scaled or mirrored: its", "millimetres are not the scene's."]),
+        ((1, 1, 0), ["The object is scaled to nothing: use Object > Clear > Scale."]),
+        ((1, 2, 1), ["The object is scaled or mirrored: its millimetres are not the scene's."]),
     ):
         ob.scale = scale
         bpy.context.view_layer.update()
-        shown = []
-        column = SimpleNamespace(label=lambda text, icon, shown=shown: shown.append(text))
-        panel._warnings(None, SimpleNamespace(column=lambda align, column=column: column), bpy.context, ob)
-        assert shown == expected, (scale, shown)
+        shown = told(lambda layout, context: panel._warnings(None, layout, context, ob))
+        assert [" ".join(shown)] == (expected or [""]), (scale, shown)
+
+
+def told(draw):
+    """The lines of a sidebar of Blender's own width, which would cut off longer ones in their middle."""
+    shown = []
+    column = SimpleNamespace(label=lambda text, icon: shown.append(text))
+    layout = SimpleNamespace(column=lambda align: column, operator=lambda *_, **more: None)
+    preferences = SimpleNamespace(system=SimpleNamespace(ui_scale=1.0))  # 0 without a window
+    region = SimpleNamespace(width=220)
+    draw(layout, SimpleNamespace(region=region, preferences=preferences, scene=bpy.context.scene, object=None))
+    assert all(len(line) <= 26 for line in shown), shown
+    return shown
+
+
+def test_the_sidebar_is_wide_enough_for_what_the_panel_says_without_a_sculpt():
+    panel = common.part("stock.panel").RIFFLER_PT_sculpt
+    shown = told(lambda layout, context: panel.draw(SimpleNamespace(layout=layout), context))
+    assert " ".join(shown) == "No sculpt is active. Make one below."
 
 
 def test_the_cursor_over_a_live_sculpt_that_is_scaled_to_nothing_is_quiet():

@@ -168,6 +168,7 @@ def seen(screen, tilt, turn):
     view = screen.area.spaces.active.region_3d
     view.view_perspective = "ORTHO"
     view.view_rotation = Euler(np.radians((tilt, 0, turn))).to_quaternion()
+    view.update()  # its matrix, from which places become pixels, is otherwise that of the last drawing
     yield 0.4
 
 
@@ -178,18 +179,19 @@ def carved(screen, *places, **modifiers):
 
 
 def bear(screen):
-    """A bear's head: a flat cutter bevels the edges, a ball carves eyes, snout and mouth, all with Mirror on."""
+    """A bear's head: a flat cutter bevels the edges, a ball carves eyes, snout and mouth, all with Mirror on. Strokes
+    along an edge keep 1.5 mm away from it: exactly on it, a pixel decides which face the cutter leans on."""
     view, shown, h = screen.area.spaces.active.region_3d, bpy.context.window_manager.riffler, 50.0
-    whole = volume()
+    whole, aside = volume(), 1.5
     shown.sculpt.mirror, shown.tool.kind = {"X"}, "flat"
     yield from sized(screen, 28, 6)
     for turn, y in ((45, -h), (135, h)):
         yield from seen(screen, 90, turn)
-        yield from carved(screen, (h, y, -h + 1), (h, y, h - 1))
+        yield from carved(screen, (h - aside, y, -h + 3), (h - aside, y, h - 3))
     for turn, a, b in (
-        (0, (0, -h, h), (h - 8, -h, h)),
-        (90, (h, -h, h), (h, h, h)),
-        (180, (0, h, h), (h - 8, h, h)),
+        (0, (0, -h, h - aside), (h - 8, -h, h - aside)),
+        (90, (h, -h, h - aside), (h, h, h - aside)),
+        (180, (0, h, h - aside), (h - 8, h, h - aside)),
     ):
         yield from seen(screen, 45, turn)
         yield from carved(screen, a, b)
@@ -213,8 +215,10 @@ def bear(screen):
     yield from seen(screen, 74, 24)
     view.view_perspective, view.view_distance = "PERSP", view.view_distance * 0.75
     screen.area.spaces.active.shading.show_cavity = True
+    # At rest: Cavity leaves out the borders of objects, so it draws faint lines between the chunks of a live sculpt.
+    stroke.tool(screen, "builtin.select_box")
+    yield lambda: not common.part("sculpt.live_sculpt").lives
+    bpy.data.objects["Cube Stock"].select_set(False)
     screen.move(screen.region().x + 60, screen.area.y + screen.area.height + 40)  # off the view: no cursor, no planes
     yield 1.0
     yield from lessons.picture(screen, "cube-3", lessons.view_box(screen))
-    common.part("sculpt.live_registry").end_all()
-    yield 0.5

@@ -1,9 +1,10 @@
-"""Stock of too few rays and of invalid sizes, by the panel's button. Then work whose file is chosen first: the selector
-opens, the work runs in the background, Esc leaves no file."""
+"""Stock of too few rays, of facets and of invalid sizes, by the panel's button. Then work whose file is chosen first:
+the selector opens, the work runs in the background, Esc leaves no file."""
 
 from pathlib import Path
 
 import bpy
+import numpy as np
 
 from support import common, harness
 
@@ -47,6 +48,7 @@ def steps(screen):
     with screen.override():
         bpy.ops.riffler.millimetres()
     yield from of_few_rays(screen)
+    yield from of_facets(screen)
     yield from of_odd_sizes(screen)
     yield from without_a_name(screen)
     with screen.override():
@@ -95,6 +97,25 @@ def of_few_rays(screen):
     assert abs(bpy.context.scene.unit_settings.scale_length - 0.001) < 1e-9
     bpy.context.scene.riffler.tool.take(before)
     bpy.data.objects.remove(bpy.data.objects["Suzanne"])
+
+
+def of_facets(screen):
+    """Blender's own sphere, with Round Facets in the panel: the button makes a ball of it."""
+    stock = bpy.context.scene.riffler.stock
+    stock.source, stock.pitch, stock.rounded = "OBJECT", 0.5, True
+    with screen.override():
+        bpy.ops.mesh.primitive_uv_sphere_add("EXEC_DEFAULT", True, radius=20)
+        bpy.ops.ed.undo_push(message="Sphere")
+    screen.to_view()
+    yield 0.5
+    yield from lessons.press(screen, "riffler.new_stock")
+    yield lambda: "Sphere Stock" in bpy.data.objects and not running()
+    off = np.linalg.norm(common.coordinates(bpy.data.objects["Sphere Stock"].data), axis=1) - 20
+    assert np.abs(off).max() < 0.02, np.abs(off).max()
+    screen.shot("facets")
+    bpy.data.objects.remove(bpy.data.objects["Sphere Stock"])
+    bpy.data.objects.remove(bpy.data.objects["Sphere"])
+    stock.rounded = False
 
 
 NONSENSE = (

@@ -21,8 +21,11 @@ from .view_rays import ViewRays, cross
 
 NUMBERS = len(Sample._fields)
 AROUND = 0.25  # share of the tool's width: the surface's normal is the mean within this distance
-TURN = 2 * np.pi * np.arange(16) / 8
-SPOKES, RINGS = np.stack([np.cos(TURN), np.sin(TURN)], axis=1), np.repeat([1.0, 0.5], 8)  # eight in each of two rings
+# Two rings. A spoke along an edge counts for either of its faces, as a pixel decides: of eight in each ring four did,
+# and the normal jumped by 33°. With odd numbers at most one in a ring can; turned by an eighth, none at an axis.
+OUTER, INNER = 9, 7
+TURN = 2 * np.pi * np.concatenate([(np.arange(n) + 0.125) / n for n in (OUTER, INNER)])
+SPOKES, RINGS = np.stack([np.cos(TURN), np.sin(TURN)], axis=1), np.repeat([1.0, 0.5], (OUTER, INNER))
 
 
 @dataclass(frozen=True)

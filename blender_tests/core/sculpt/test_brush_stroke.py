@@ -52,6 +52,22 @@ def groove(length, depth, radius=3.0):
     return length * segment + np.pi * depth**2 * (3 * radius - depth) / 3
 
 
+@pytest.mark.parametrize("along, side", [((0, 1, 0), (20, 0, 0)), ((1, 0, 0), (0, 15, 0))])
+def test_the_cutter_does_not_tip_over_where_the_pointer_crosses_an_edge(run, along, side):
+    """The edge between the top and a side: the axis at either pixel next to it is about the mean of both faces, and
+    jumps by less than it turns within the width of the cutter."""
+    towards, edge = np.array(side) / np.linalg.norm(side) + (0, 0, 1), np.array(side, float)
+    view = np.diag([1.0, 1, 1, 1])
+    view[:3, :3] = np.array([along, np.cross(towards, along), -towards]) / ([1], [np.sqrt(2)], [np.sqrt(2)])
+    view[:3, :3] *= np.array([[2 / (SIZE[0] * PIXEL)], [2 / (SIZE[1] * PIXEL)], [0.01]])
+    view[:3, 3] = -view[:3, :3] @ edge
+    tool = {"kind": "flat", "diameter": 24.0, "length": 30.0}
+    made = brush_stroke.BrushStroke(run, tool, ViewRays(view, SIZE), brush_stroke.Choice(depth=1.0))
+    axes = [made.hover(0.5 * SIZE[0], 0.5 * SIZE[1] + y)[0][3:] for y in (-0.7, 0.7)]
+    assert np.degrees(np.arccos(axes[0] @ axes[1])) < 22, axes
+    assert min(a @ towards / np.sqrt(2) for a in axes) > np.cos(np.radians(12))
+
+
 @pytest.mark.parametrize("axis", ["NORMAL", "VIEW", "UP"])
 def test_a_straight_drag_is_a_groove(run, axis):
     before = run.volume.volume

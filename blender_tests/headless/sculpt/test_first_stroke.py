@@ -63,6 +63,15 @@ def test_a_tiny_and_a_huge_object_are_as_easy_to_sculpt_as_any():
         assert 0.08 <= bpy.context.scene.riffler.sculpt.depth / tool.diameter <= 0.5
 
 
+def test_what_becomes_a_sculpt_is_made_round_where_that_is_asked():
+    for rounded in (False, True):
+        bpy.ops.wm.read_homefile()
+        bpy.ops.mesh.primitive_uv_sphere_add()
+        assert bpy.ops.riffler.make_sculpt(rounded=rounded) == {"FINISHED"}
+        side = np.cbrt(volume(bpy.context.object).volume / (np.pi / 6))
+        assert (abs(side - 100) < 0.05) == rounded and (side < 99.5) != rounded, side
+
+
 def test_a_size_that_somebody_says_is_taken_and_pitch_and_cutter_follow():
     common.select(bpy.data.objects["Cube"])
     bpy.ops.riffler.make_sculpt(side=8.0)

@@ -148,6 +148,22 @@ def of_mesh():
     return bpy.ops.riffler.new_stock("EXEC_DEFAULT", True, source="OBJECT", pitch=0.5, directions="z")
 
 
+def test_the_facets_of_an_object_become_round_where_that_is_asked():
+    """Blender's own sphere and cylinder of 40 mm: facets 0.2 mm deep, and the bar's sharp rim."""
+    common.scale(1)
+    off = {}
+    for rounded in (False, True):
+        bpy.ops.mesh.primitive_uv_sphere_add(radius=20)
+        assert bpy.ops.riffler.new_stock(source="OBJECT", pitch=0.5, rounded=rounded) == {"FINISHED"}
+        at = np.linalg.norm(common.coordinates(bpy.context.object.data), axis=1)
+        bpy.ops.mesh.primitive_cylinder_add(radius=20, depth=40, location=(60, 0, 0))
+        assert bpy.ops.riffler.new_stock(source="OBJECT", pitch=0.5, rounded=rounded) == {"FINISHED"}
+        off[rounded] = np.abs(at - 20).max(), common.content(bpy.context.object).volume.volume / (16e3 * np.pi) - 1
+        assert np.ptp(common.coordinates(bpy.context.object.data)[:, 2]) < 40 + 1e-4
+    assert off[False][0] > 0.15 and off[False][1] < -5e-3, off
+    assert off[True][0] < 0.02 and abs(off[True][1]) < 1e-3, off
+
+
 def test_a_mesh_whose_work_is_cancelled_or_fails_leaves_nothing_behind():
     common.scale(1)
     bpy.ops.mesh.primitive_cube_add(size=10)

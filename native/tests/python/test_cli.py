@@ -356,6 +356,7 @@ BAD_CARVES = {
     "stock: two sizes": ({"--stock": "10x20"}, "--stock 10x20"),
     "stock: zero": ({"--stock": "10x20x0"}, "--stock 10x20x0"),
     "stock: negative": ({"--stock": "10x20x-5"}, "--stock 10x20x-5: size must be positive, not -5"),
+    "stock: negative at first": ({"--stock": "-5x20x10"}, "--stock -5x20x10: size must be positive, not -5"),
     "stock: far too large": ({"--stock": "2e9x20x10", "--pitch": "1e6"}, "give its size in millimetres"),
     "stock: words": ({"--stock": "axbxc"}, "--stock axbxc"),
     "stock: sphere": ({"--stock": "sphere:10:20"}, "--stock sphere:10:20"),

@@ -11,7 +11,7 @@ from functools import partial
 from typing import Any, NoReturn
 
 EPILOG = "lengths in mm, angles on the command line in degrees; exit status 0, 1 (a check failed) or 2 (bad input)"
-LISTS = ("--origin", "--axis")
+SIGNED = ("--origin", "--axis", "--stock")  # options whose value may begin with a minus
 
 
 class UsageError(ValueError):
@@ -140,10 +140,10 @@ class Parser(argparse.ArgumentParser):
 
 
 def joined(words: Iterable[str]) -> list[str]:
-    """``--origin -5,0,0`` as ``--origin=-5,0,0``: argparse takes a list that begins with a minus for an option."""
+    """``--origin -5,0,0`` as ``--origin=-5,0,0``: argparse takes a value that begins with a minus for an option."""
     out: list[str] = []
     for word in words:
-        if out and out[-1] in LISTS and word[:1] == "-" and word[1:2] in "0123456789.":
+        if out and out[-1] in SIGNED and word[:1] == "-" and word[1:2] in "0123456789.":
             out[-1] += "=" + word
         else:
             out.append(word)
