@@ -17,7 +17,7 @@ import typing
 _Found = typing.TypeVar('_Found')
 _Made = typing.TypeVar('_Made')
 import typing_extensions
-__all__: list[str] = ['AtomicFileWriter', 'Cancelled', 'Collider', 'Contact', 'Cut', 'Finding', 'FormatError', 'FrozenSurface', 'History', 'Journal', 'JournalStroke', 'JournalWriter', 'Material', 'Mesh', 'Mesher', 'NotATask', 'Note', 'OrientFrame', 'OrientSession', 'PenDevice', 'PenError', 'PenGeometry', 'PenState', 'PencilPath', 'Pointer', 'Program', 'ProgramStream', 'Session', 'SessionFrame', 'SimulatedPen', 'SlabWorker', 'Smoothed', 'Snapshot', 'Surface', 'Task', 'Tool', 'ToolShape', 'ToolSize', 'Verification', 'VerifyPlan', 'VerifyReport', 'Volume', 'clear_drafts', 'contact_locations', 'cutter_locations', 'draft_prefix', 'drop', 'engrave', 'finish', 'finish_patterns', 'lift', 'machine_options', 'machine_texts', 'machines', 'min_tilt', 'orientation_maps', 'pencil', 'read_file', 'replace_file', 'replaceable', 'require_revolved', 'set_threads', 'stepover_of_scallop', 'swarf', 'then', 'threads', 'tip_ball_radius', 'verify']
+__all__: list[str] = ['AtomicFileWriter', 'Cancelled', 'Collider', 'Contact', 'Cut', 'Finding', 'FormatError', 'FrozenSurface', 'History', 'Journal', 'JournalStroke', 'JournalWriter', 'Material', 'Mesh', 'Mesher', 'NotATask', 'Note', 'OrientFrame', 'OrientSession', 'PenDevice', 'PenError', 'PenGeometry', 'PenState', 'PencilPath', 'Pointer', 'Program', 'ProgramStream', 'Session', 'SessionFrame', 'SimulatedPen', 'SlabWorker', 'Smoothed', 'Snapshot', 'Surface', 'Task', 'Tool', 'ToolShape', 'ToolSize', 'Verification', 'VerifyPlan', 'VerifyReport', 'Volume', 'clear_drafts', 'contact_locations', 'cutter_locations', 'draft_prefix', 'drop', 'engrave', 'finish', 'finish_patterns', 'lift', 'machine_options', 'machine_texts', 'machines', 'min_tilt', 'orientation_maps', 'pencil', 'read_file', 'replace_file', 'replaceable', 'require_revolved', 'rough', 'set_threads', 'stepover_of_scallop', 'swarf', 'then', 'threads', 'tip_ball_radius', 'verify']
 class FormatError(ValueError):
     """
     A file with invalid content. Names the file, the line or byte, and what was expected.
@@ -1580,10 +1580,8 @@ class Volume:
         Raises
         ------
         ValueError
-            Names argument and row: a shape, an axis that is no unit vector, opposite axes, for a hand tool a forward direction
-            that is not square to the axis and a half turn; or the protected volume's grid is another.
-            Names argument and row: a wrong shape, an axis that is not a unit vector, opposite axes; or the protected volume's grid is
-            another.
+            Names argument and row: a wrong shape, an axis that is not a unit vector, opposite axes, for a hand tool a forward
+            direction that is not square to the axis and a half turn; or the protected volume's grid is another.
         Cancelled
             ``progress`` returned False; the volume is unchanged.
 
@@ -6408,7 +6406,7 @@ def engrave(part: Mesh, curves: collections.abc.Iterable[numpy.typing.ArrayLike]
     """
     For riffler.plan.engrave.
     """
-def finish(part: Mesh, fixtures: collections.abc.Sequence[Mesh], stock: Volume, tool: Tool, *, axis: numpy.typing.ArrayLike, clearance: typing.SupportsFloat, pattern: str, cusp: typing.SupportsFloat, tolerance: typing.SupportsFloat, allowance: typing.SupportsFloat, angle: typing.SupportsFloat, min_slope: typing.SupportsFloat, max_slope: typing.SupportsFloat, region: collections.abc.Iterable[numpy.typing.ArrayLike], feed: typing.SupportsFloat, plunge: typing.SupportsFloat, progress: collections.abc.Callable[[float], bool | None] | None) -> riffler.plan.operations.FinishedMoves:
+def finish(part: Mesh, fixtures: collections.abc.Sequence[Mesh], stock: Volume, tool: Tool, *, axis: numpy.typing.ArrayLike, clearance: typing.SupportsFloat, pattern: str, cusp: typing.SupportsFloat, tolerance: typing.SupportsFloat, allowance: typing.SupportsFloat, angle: typing.SupportsFloat, min_slope: typing.SupportsFloat, max_slope: typing.SupportsFloat, region: collections.abc.Iterable[numpy.typing.ArrayLike], feed: typing.SupportsFloat, plunge: typing.SupportsFloat, progress: collections.abc.Callable[[float], bool | None] | None) -> riffler.plan.operations.PlannedMoves:
     """
     For riffler.plan.finish.
     """
@@ -6505,6 +6503,10 @@ def replaceable(path: os.PathLike | str | bytes) -> pathlib.Path:
 def require_revolved(tool: Tool, who: str) -> None:
     """
     ValueError for a hand tool, which ``who`` cannot use.
+    """
+def rough(part: Mesh, fixtures: collections.abc.Sequence[Mesh], stock: Volume, tool: Tool, *, axis: numpy.typing.ArrayLike, clearance: typing.SupportsFloat, stepdown: typing.SupportsFloat, engagement: typing.SupportsFloat, allowance: typing.SupportsFloat, tolerance: typing.SupportsFloat, slope: typing.SupportsFloat, climb: bool, feed: typing.SupportsFloat, plunge: typing.SupportsFloat, progress: collections.abc.Callable[[float], bool | None] | None) -> riffler.plan.operations.PlannedMoves:
+    """
+    For riffler.plan.rough.
     """
 def set_threads(n: typing.SupportsInt | None) -> None:
     """
