@@ -108,6 +108,7 @@ void bind_operations(py::module_& m) {
          double tolerance, double allowance, double angle, double min_slope, double max_slope, const ArraysLike& region,
          double feed, double plunge, const ProgressLike& progress) {
         tool.require_revolved("plan.finish");
+        tool.require_revolved("plan.finish");
         plan::FinishOptions options;
         options.pattern = pattern, options.cusp = cusp, options.tolerance = tolerance;
         options.allowance = allowance, options.angle = angle, options.min_slope = min_slope;
@@ -127,6 +128,7 @@ void bind_operations(py::module_& m) {
          const Tool& tool, const ArrayLike& axis, double clearance, double stepdown, double engagement,
          double allowance, double tolerance, double slope, bool climb, double feed, double plunge,
          const ProgressLike& progress) {
+        tool.require_revolved("plan.rough");
         const plan::RoughOptions options{stepdown, engagement, allowance, tolerance, slope, climb, feed, plunge};
         return operation(part, fixtures, stock, tool, axis, clearance, progress,
                          [=](const plan::SetupScene& scene, const Progress& listener) {

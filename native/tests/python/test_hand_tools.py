@@ -323,6 +323,7 @@ REFUSING = {
     "plan.min_tilt": lambda: riffler.plan.min_tilt(VALLEY, CHISEL, COLLIDER),
     "plan.path_of_stroke": lambda: riffler.plan.path_of_stroke(UPRIGHT, CHISEL),
     "plan.finish": lambda: riffler.plan.finish(riffler.plan.Setup(PART, block("z")), CHISEL, feed=600, spindle=9000),
+    "plan.rough": lambda: riffler.plan.rough(riffler.plan.Setup(PART, block("z")), CHISEL),
     "with_shank": lambda: CHISEL.with_shank([(20, 3, 40, 3)]),
 }
 
