@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "geom/hypot.hpp"
 #include "riffler/base/check.hpp"
 
 namespace riffler::tool {
@@ -81,7 +82,7 @@ double Tool::diameter() const {
   if (profile_) return 2 * profile_->max_radius();
   double radius = 0;
   for (const Hull& hull : *hulls_)
-    for (const Vec3& p : hull.vertices) radius = std::max(radius, std::hypot(p.x, p.y));
+    for (const Vec3& p : hull.vertices) radius = std::max(radius, geom::hypot(p.x, p.y));
   return 2 * radius;
 }
 

@@ -42,9 +42,9 @@ StockTops::StockTops(const PlaceGrid& grid, Field tops, const CutterProfile& pro
   }
 }
 
-double StockTops::highest(const Vec2& p, bool rim) const {
+double StockTops::highest(const Vec2& p) const {
   double out = -kInfinity;
-  each_within(*grid_, p, radius_ + (rim ? 2 : -kCellRadius) * grid_->spacing,
+  each_within(*grid_, p, radius_ + 2 * kCellRadius * grid_->spacing,
               [&](std::size_t k, const Vec2&) { out = std::max(out, tops_[k]); });
   return out;
 }

@@ -19,8 +19,8 @@ class StockTops {
 
   double top(std::size_t place) const { return tops_[place]; }
   const Field& tops() const { return tops_; }
-  /// The highest one under the cutter at `p`, and where its rim may be with `rim`.
-  double highest(const Vec2& p, bool rim) const;
+  /// The highest one of all cells that the cutter at `p` may touch.
+  double highest(const Vec2& p) const;
   /// Takes off what the cutter removes with its tip at `tip`.
   void cut(const Vec3& tip);
 

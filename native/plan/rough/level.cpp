@@ -87,8 +87,7 @@ class Level {
       run.tips.emplace_back(p, z), run.kinds.push_back(MoveKind::Lead);
       layer_.place(p), tops_.cut({p, z});
     };
-    const double top =
-        std::max(z_, std::max(tops_.highest(middle, true), tops_.highest(middle + Vec2(radius, 0), true)));
+    const double top = std::max(z_, std::max(tops_.highest(middle), tops_.highest(middle + Vec2(radius, 0))));
     run.top = top;
     const double down = std::max(1e-3, radius * kHelixStep * std::tan(scene_.slope));
     const int steps = radius > 0 ? static_cast<int>(std::ceil((top - z_) / down)) : 1;
@@ -163,7 +162,7 @@ class Level {
   void cut(const Pass& pass) {
     const std::vector<Vec2> points = simplified({pass.path, false}, scene_.tolerance).points;
     if (points.size() < 2) return;
-    LevelRun run{{Vec3(points[0], z_)}, {MoveKind::Lead}, tops_.highest(points[0], false)};
+    LevelRun run{{Vec3(points[0], z_)}, {MoveKind::Lead}, tops_.highest(points[0])};
     const bool linked = !out_.runs.empty() && clear(Vec2(out_.runs.back().tips.back()), points[0]);
     layer_.place(points[0]);
     for (std::size_t k = 1; k < points.size(); ++k) move(points[k - 1], points[k], run);
