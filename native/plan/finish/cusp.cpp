@@ -37,7 +37,7 @@ double CutterProfile::ridge(double across, double up) const {
   // The higher cutter stands to the right. The ridge's top lies where both lower sides have one height.
   if (across > 2 * radius_) return kInfinity;
   const auto above = [&](double x) { return height(x) - up - height(std::abs(x - across)); };
-  double low = std::max(0.0, across - radius_), high = std::min(radius_, across);
+  double low = std::max(0.0, across - radius_), high = radius_;
   Vec2 top;
   if (above(high) < 0) {
     top = {high, up + height(std::abs(high - across))};  // on the lower cutter's flank

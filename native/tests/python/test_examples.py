@@ -49,6 +49,17 @@ def mesh_to_volume_to_stl(out):
     assert edges == 0 and riffler.Mesh.read("ring.stl").volume == pytest.approx(left, abs=0.1)
 
 
+def rough_and_finish(out):
+    """A spherical cap on a plate. The ball leaves the fillet of its own radius at the cap's foot, and cusps."""
+    cap = np.pi * 8**2 * (3 * 18 - 8) / 3
+    part, foot, turn = 60 * 44 * 6 + cap, np.sqrt(18**2 - 10**2), np.arccos(10 / 18)
+    fillet = 3**2 * (np.tan(turn / 2) - turn / 2) * 2 * np.pi * (foot + 1)
+    rough, finished = (numbers(rf"{name}: .* ([\d.]+) mm³ left", out)[0] for name in ("roughing", "finishing"))
+    assert 0.8 * fillet < finished - part < 1.2 * fillet + 0.02 * 60 * 44
+    assert part + 0.3 * 60 * 44 < rough < part + (0.3 + 3) * 60 * 44 + 3 * cap
+    assert 0.2 < numbers(r"widest cut ([\d.]+)", out)[0] <= 0.4
+
+
 def verify_program(out):
     """The gouge is the slip of 0.4 mm; the rapid sweeps what the two last rows have left of its track."""
     assert "NOT passed" in out
