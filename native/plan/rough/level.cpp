@@ -181,7 +181,7 @@ class Level {
       const bool wide = since_wide_ < 2 * grid_.spacing;
       all_ += glm::length(here - before), wide_ += wide ? glm::length(here - before) : 0;
       if (!wide) out_.widest = std::max(out_.widest, width);
-      tops_.cut({here, z_});
+      if (k % 2 == 0 || k == steps) tops_.cut({here, z_});
       const MoveKind kind = wide ? MoveKind::Lead : MoveKind::Cut;
       if (k > 1 && kind == run.kinds.back())
         run.tips.back() = Vec3(here, z_);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -22,6 +23,7 @@ constexpr double kMostPlaces = 4e6;
 constexpr double kRampDiameters = 1.5;  // length of a ramp from one ring to the next
 constexpr double kHelix = 0.45;         // radius of a helix in diameters
 constexpr double kLeastLayer = 0.02;    // of the stepdown: thinner material stays
+constexpr double kLevel = 1e-6;         // mm by which places of a level face may differ
 
 void check(const RoughOptions& o, const Tool& tool) {
   base::require_length(o.stepdown, "stepdown");
@@ -88,6 +90,29 @@ double radius_at(const CutterProfile& profile, double height) {
     (profile.height(middle) <= height ? low : high) = middle;
   }
   return low;
+}
+
+/// Heights of the levels, descending: one every stepdown from the bottom, so that they are the same for what is left of
+/// a stock, and one on each level face of part and allowance that is as large as the cutter.
+std::vector<double> level_heights(const PlaceGrid& grid, Field drop, double top, double bottom, double stepdown,
+                                  double radius) {
+  std::vector<double> out;
+  for (int k = 0; bottom + k * stepdown < top - kLeastLayer * stepdown; ++k) out.push_back(bottom + k * stepdown);
+  std::sort(drop.begin(), drop.end());
+  const auto enough = static_cast<std::size_t>(kPi * radius * radius / (grid.spacing * grid.spacing));
+  for (std::size_t k = 0; k + enough < drop.size();) {
+    const double z = drop[k + enough];
+    if (z > bottom && z < top && z - drop[k] <= kLevel) {
+      while (k < drop.size() && drop[k] <= z + kLevel) ++k;
+      out.push_back(drop[k - 1]);
+    } else {
+      ++k;
+    }
+  }
+  std::sort(out.begin(), out.end(), std::greater<>());
+  const auto near = [&](double a, double b) { return a - b < kLeastLayer * stepdown; };
+  out.erase(std::unique(out.begin(), out.end(), near), out.end());
+  return out;
 }
 
 /// Writes the levels' moves. Where the drop surface rises above a move, the tool goes over it.
@@ -168,10 +193,8 @@ RoughResult rough(const SetupScene& scene, const Tool& tool, const RoughOptions&
   Writer writer(out, in, exact, options);
   const Progress levels = base::part(progress, 0.5, 1);
   double cut = 0;
-  for (double z = top; z > bottom;) {
+  for (const double z : level_heights(grid, drop, top, bottom, options.stepdown, profile.radius())) {
     base::report(levels, (top - z) / (top - bottom));
-    z = std::max(bottom, z - options.stepdown);
-    if (z - bottom < 1e-6 * options.stepdown) z = bottom;
     LevelRuns runs = level_runs(level, z, kLeastLayer * options.stepdown, tops);
     if (runs.runs.empty()) continue;
     ++out.levels, out.rings += runs.rings, out.helices += runs.helices;

@@ -214,6 +214,15 @@ def test_a_part_as_high_as_its_stock_leaves_nothing_to_do():
     assert len(op) == 0 and "reaches no material" in op.reason
 
 
+def test_level_faces_are_cut_to_the_allowance():
+    plate = riffler.Volume.block((0, 0, 0), (*STOCK[:2], 7.3), pitch=0.1, directions="xyz").to_mesh()
+    setup = plan.Setup(plate, stock())
+    op = plan.rough(setup, riffler.Tool.flat(diameter=8, length=25), stepdown=2, allowance=0.2, tolerance=0.04)
+    setup.apply(op)
+    assert setup.stock.volume == pytest.approx(STOCK[0] * STOCK[1] * (7.3 + 0.2 + 0.02), rel=1e-3)
+    assert op.report.stats["levels"] == 3  # at 10, 8 and 7.52
+
+
 def test_it_can_be_cancelled():
     setup = plan.Setup(relief(), stock())
     with pytest.raises(riffler.Cancelled):
