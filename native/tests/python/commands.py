@@ -19,7 +19,7 @@ ENVIRONMENT = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, PATHS))}
 def riffle(*words: object, cwd: Path, **more: str) -> subprocess.CompletedProcess:
     """Runs a command; `more` are environment variables."""
     command, env = [*RIFFLER, *map(str, words)], ENVIRONMENT | more
-    return subprocess.run(command, cwd=cwd, env=env, capture_output=True, text=True, timeout=120, check=False)
+    return subprocess.run(command, cwd=cwd, env=env, capture_output=True, text=True, timeout=300, check=False)
 
 
 def result(*words: object, cwd: Path, status: int = 0) -> dict:

@@ -256,7 +256,7 @@ def test_a_plan_has_one_tool():
     with pytest.raises(ValueError, match="no stroke of tool 3"):
         plan.from_recording(journal, tool=3)
     found = plan.from_recording(journal, tool=2)
-    assert found.plan.depths == {0: 0.0} and any("no ball" in note for note in found.notes)
+    assert found.plan.depths == {0: 0.0} and any("not a ball" in note for note in found.notes)
     assert plan.loads(plan.dumps(found.plan)).depths == {0: 0.0}
 
 

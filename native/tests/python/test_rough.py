@@ -146,7 +146,7 @@ def test_other_cutters_and_conventional(kind):
         else riffler.Tool.fillet(diameter=8, corner_radius=1, length=25)
     )
     setup = plan.Setup(pocketed(), stock())
-    op = plan.rough(setup, tool, stepdown=2, engagement=0.3, climb=False)
+    op = plan.rough(setup, tool, stepdown=4, engagement=0.3, climb=False)
     assert len(plan.program(setup, [op])) > 300 and op.report.largest_engagement <= 0.3 + 1e-9
 
 
