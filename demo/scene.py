@@ -204,6 +204,7 @@ def main() -> None:
     scene.render.resolution_percentage = options.percent
 
     options.blend.parent.mkdir(parents=True, exist_ok=True)
+    bpy.context.preferences.filepaths.save_version = 0  # no riffler.blend1 of an earlier run
     bpy.ops.wm.save_as_mainfile(filepath=str(options.blend.resolve()), compress=True)
     scene.render.filepath = str(options.picture.resolve())
     bpy.ops.render.render(write_still=True)
