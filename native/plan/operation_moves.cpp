@@ -47,8 +47,21 @@ TurnedScene turned(const SetupScene& scene, double angle) {
   out.frame = operation_frame(scene.axis, angle);
   out.part = turned(scene.part, out.frame);
   for (const Mesh& one : scene.fixtures) validate(one), out.fixtures.push_back(turned(one, out.frame));
-  out.stock = turned(marching::to_mesh(scene.stock), out.frame);
   out.plane = top_of(scene, out) + scene.clearance;
+  return out;
+}
+
+Mesh turned_stock(const SetupScene& scene, const Mat3& frame) {
+  return turned(marching::to_mesh(scene.stock), frame);
+}
+
+Mesh joined(const Mesh& part, const std::vector<Mesh>& fixtures) {
+  Mesh out = part;
+  for (const Mesh& one : fixtures) {
+    const int base = static_cast<int>(out.vertices.size());
+    out.vertices.insert(out.vertices.end(), one.vertices.begin(), one.vertices.end());
+    for (const Vec3i& t : one.triangles) out.triangles.push_back(t + Vec3i(base));
+  }
   return out;
 }
 

@@ -19,12 +19,17 @@ struct TurnedScene {
   Mat3 frame;
   Mesh part;
   std::vector<Mesh> fixtures;
-  Mesh stock;    ///< its surface
   double plane;  ///< z of the clearance plane: above part, fixtures and the stock's box
 };
 
 /// Throws std::invalid_argument for a part without triangles, a bad mesh, or a clearance that is not positive.
 TurnedScene turned(const SetupScene& scene, double angle);
+
+/// The surface of the set-up's stock in a frame.
+Mesh turned_stock(const SetupScene& scene, const Mat3& frame);
+
+/// The triangles of the part, followed by those of the fixtures, as one mesh.
+Mesh joined(const Mesh& part, const std::vector<Mesh>& fixtures);
 
 /// Throws std::invalid_argument, which names what needs it, for a cutter that narrows above its widest place.
 void require_upright_cutter(const Tool& tool, const char* work);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sweep/near_box.hpp"
+
 namespace riffler::sweep {
 
 namespace {
@@ -12,22 +14,6 @@ constexpr double kWidestPart = 0.25;
 /// Share of the tolerance. If the surface is no steeper against the ray than 2, the error along the ray is √5 times
 /// that.
 constexpr double kErrorShare = 0.4;
-
-/// The times at which a ball of `reach` about the tip meets the box. At 90 km, a micron is beyond double precision.
-Interval near_box(double reach, const Motion& motion, const Box3& box) {
-  Interval times{0, 1};
-  const Vec3 from = motion.from().tip, way = motion.to().tip - from;
-  for (int i = 0; i < 3; ++i) {
-    const double low = box.lower[i] - reach - from[i], high = box.upper[i] + reach - from[i];
-    if (way[i] == 0) {
-      if (low > 0 || high < 0) return {};
-      continue;
-    }
-    const double a = low / way[i], b = high / way[i];
-    times = times.cut({std::min(a, b), std::max(a, b)});
-  }
-  return times;
-}
 
 /// A vector without its share along the axis of the motion's turn; unchanged if there is none.
 Vec3 across_turn(const RolledMotion& motion, const Vec3& v) {

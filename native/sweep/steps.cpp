@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "geom/hypot.hpp"
+#include "sweep/near_box.hpp"
 
 namespace riffler::sweep {
 
@@ -64,24 +65,6 @@ double lever_of(const ConvexGroup& group) {
   return lever;
 }
 
-/// The times at which the tip is within the group's reach of the box. The rest of the move is skipped: at 90 km, a
-/// micron is beyond double precision, and for a tool that only passes by, the rotation would be divided needlessly.
-Interval near_box(const ConvexGroup& group, const Motion& motion, const Box3& box) {
-  const double reach = 1.01 * lever_of(group);
-  Interval times{0, 1};
-  const Vec3 from = motion.from().tip, way = motion.to().tip - from;
-  for (int i = 0; i < 3; ++i) {
-    const double low = box.lower[i] - reach - from[i], high = box.upper[i] + reach - from[i];
-    if (way[i] == 0) {
-      if (low > 0 || high < 0) return {};
-      continue;
-    }
-    const double a = low / way[i], b = high / way[i];
-    times = times.cut({std::min(a, b), std::max(a, b)});
-  }
-  return times;
-}
-
 /// Fraction of the tolerance by which chords may deviate from the path of a ball's centre. If the surface is no steeper
 /// against the ray than 2, the error along the ray is √5 times that.
 constexpr double kChordShare = 0.4;
@@ -105,7 +88,7 @@ void ball_chords(const ConvexGroup& group, const Motion& motion, double t0, doub
 
 void turning_parts(const ConvexGroup& whole, const Motion& motion, std::uint32_t move, const Box3& box,
                    double tolerance, const std::function<void(Step&&)>& sink) {
-  const Interval times = near_box(whole, motion, box);
+  const Interval times = near_box(1.01 * lever_of(whole), motion, box);
   if (times.empty()) return;
   double radius = 0;
   for (const tool::Piece& p : whole.all()) radius = std::max(radius, max_radius(p));
@@ -151,7 +134,7 @@ void for_each_step(std::span<const ConvexGroup> cutter, const Motion& motion, st
     Pose from = motion.from(), to = motion.to();
     const ConvexGroup group = reachable(whole.all(), whole.thinnest, from, to, box);
     if (group.count == 0) continue;
-    const Interval times = near_box(group, motion, box);
+    const Interval times = near_box(1.01 * lever_of(group), motion, box);
     if (times.empty()) continue;
     if (times.near > 0) from = motion.at(times.near);
     if (times.far < 1) to = motion.at(times.far);

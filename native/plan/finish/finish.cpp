@@ -138,7 +138,7 @@ FinishResult finish(const SetupScene& scene, const Tool& tool, const FinishOptio
   const double longest = std::max(kDirectSpacings * rows.spacing, profile.radius());
   const auto links = direct_links(pieces, surface, longest, base::part(progress, 0.8, 0.9));
   std::optional<DropCutter> stock;
-  if (!turned_scene.stock.empty()) stock.emplace(turned_scene.stock, tool);
+  if (const Mesh left = turned_stock(scene, frame); !left.empty()) stock.emplace(left, tool);
   MoveWriter writer(out, frame, options.feed, options.plunge);
   write(pieces, links, stock, scene.stock.frame().pitch, turned_scene.plane, writer, out);
   out.drops = surface.drops();

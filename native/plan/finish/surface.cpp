@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "geom/hypot.hpp"
+#include "plan/operation_moves.hpp"
 #include "riffler/base/parallel.hpp"
 
 namespace riffler::plan {
@@ -16,16 +17,6 @@ constexpr double kRolling = 0.5;      // rad between a face's normal and the too
 constexpr double kSlopeSlack = 1e-6;  // rad
 constexpr std::size_t kMaxPoints = 20'000'000;
 constexpr const char* kBlocked[] = {"", "the shank meets the part", "the holder meets the part"};
-
-Mesh joined(const Mesh& part, const std::vector<Mesh>& fixtures) {
-  Mesh out = part;
-  for (const Mesh& one : fixtures) {
-    const int base = static_cast<int>(out.vertices.size());
-    for (const Vec3& v : one.vertices) out.vertices.push_back(v);
-    for (const Vec3i& t : one.triangles) out.triangles.push_back(t + Vec3i(base));
-  }
-  return out;
-}
 
 double ball_at_tip(const Tool& tool) {
   const auto* round = std::get_if<tool::Round>(&tool.cutter().front());

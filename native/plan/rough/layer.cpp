@@ -85,8 +85,7 @@ double Layer::move(const Vec2& from, const Vec2& to) {
     if (glm::dot(off, off) <= whole * whole) material_[k] = 0;
     if (!middles_[k]) return;
     middles_[k] = 0;
-    const double at = glm::dot(across, off);
-    now.near = std::min(now.near, at), now.far = std::max(now.far, at);
+    now.include(glm::dot(across, off));
   });
   if (now.near > now.far) return 0;
   Interval all;

@@ -30,11 +30,12 @@ class Level {
   LevelRuns run() {
     const Field near = distance_to(grid_, layer_.material());
     PlaceSet cleared(grid_.size()), wanted(grid_.size());
+    bool any = false;
     for (std::size_t k = 0; k < in_.size(); ++k) {
       cleared[k] = in_[k] && near[k] > reach_, wanted[k] = in_[k] && near[k] <= reach_;
-      any_ = any_ || wanted[k];
+      any = any || wanted[k];
     }
-    if (!any_) return {};
+    if (!any) return {};
     Field lengths = path_lengths(grid_, in_, cleared);
     while (enter(lengths, wanted, cleared)) lengths = path_lengths(grid_, in_, cleared);
     double most = 0;
@@ -98,7 +99,7 @@ class Level {
     }
     if (radius > 0) to(middle, z_);
     ++out_.helices;
-    add(std::move(run), false);
+    out_.runs.push_back(std::move(run));
   }
 
   /// Curves around the places that are in reach, on their side.
@@ -163,10 +164,10 @@ class Level {
     const std::vector<Vec2> points = simplified({pass.path, false}, scene_.tolerance).points;
     if (points.size() < 2) return;
     LevelRun run{{Vec3(points[0], z_)}, {MoveKind::Lead}, tops_.highest(points[0])};
-    const bool linked = !out_.runs.empty() && clear(Vec2(out_.runs.back().tips.back()), points[0]);
+    run.linked = !out_.runs.empty() && clear(Vec2(out_.runs.back().tips.back()), points[0]);
     layer_.place(points[0]);
     for (std::size_t k = 1; k < points.size(); ++k) move(points[k - 1], points[k], run);
-    add(std::move(run), linked);
+    out_.runs.push_back(std::move(run));
   }
 
   /// Moves the cutter along a line, which is divided where the width of cut goes beyond what is asked for, and back.
@@ -190,12 +191,6 @@ class Level {
     }
   }
 
-  void add(LevelRun&& run, bool linked) {
-    std::vector<Vec3> link;
-    if (linked) link = {run.tips.front()};
-    if (!out_.runs.empty()) out_.links.push_back(std::move(link));
-    out_.runs.push_back(std::move(run));
-  }
   /// Whether the cutter goes straight from one place to the other without cutting.
   bool clear(const Vec2& from, const Vec2& to) const {
     const double length = glm::length(to - from);
@@ -217,7 +212,6 @@ class Level {
   double reach_;
   Layer layer_;
   LevelRuns out_;
-  bool any_ = false;
   double since_wide_ = kInfinity;  // mm since the last move that cut wider than asked for
   double wide_ = 0, all_ = 0;      // mm: length of moves that cut wider than asked for, and of all
 };

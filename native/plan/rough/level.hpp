@@ -31,14 +31,13 @@ struct LevelScene {
 struct LevelRun {
   std::vector<Vec3> tips;
   std::vector<MoveKind> kinds;
-  double top = 0;  ///< of the stock under the first one, mm
+  double top = 0;       ///< of the stock under the first one, mm
+  bool linked = false;  ///< whether a straight line at this height leads from the last tip of the run before
 };
 
 /// The runs of one level, in their order.
 struct LevelRuns {
   std::vector<LevelRun> runs;
-  std::vector<std::vector<Vec3>>
-      links;          ///< from a run's end to the next one's start, through what is cleared; or empty
   double widest = 0;  ///< width of the cuts, mm
   std::size_t rings = 0, helices = 0, plunges = 0;
   Vec3 plunge{0};  ///< where the first one is

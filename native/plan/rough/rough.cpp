@@ -42,16 +42,6 @@ void check(const RoughOptions& o, const Tool& tool) {
   require_upright_cutter(tool, "roughing");
 }
 
-Mesh joined(const Mesh& part, const std::vector<Mesh>& fixtures) {
-  Mesh out = part;
-  for (const Mesh& one : fixtures) {
-    const int base = static_cast<int>(out.vertices.size());
-    out.vertices.insert(out.vertices.end(), one.vertices.begin(), one.vertices.end());
-    for (const Vec3i& t : one.triangles) out.triangles.push_back(t + Vec3i(base));
-  }
-  return out;
-}
-
 /// Places over the stock, and all around it as far as the cutter reaches.
 PlaceGrid grid_over(const Box3& stock, double radius, double spacing) {
   PlaceGrid grid;
@@ -122,14 +112,13 @@ class Writer {
       : out_(out), part_(part), plane_(scene.plane), moves_(out, scene.frame, options.feed, options.plunge) {}
 
   void write(const LevelRuns& level) {
-    for (std::size_t k = 0; k < level.runs.size(); ++k) {
-      const LevelRun& run = level.runs[k];
-      if (k == 0 || level.links[k - 1].empty()) {
+    for (const LevelRun& run : level.runs) {
+      if (!run.linked) {
         if (!out_.poses.empty()) moves_.retract(plane_), ++out_.retracts;
         moves_.approach(run.tips.front(), plane_, std::max(run.top, run.tips.front().z) + kAbove);
       } else {
         ++out_.direct;
-        for (const Vec3& tip : level.links[k - 1]) over(tip, MoveKind::Link);
+        over(run.tips.front(), MoveKind::Link);
       }
       for (std::size_t i = 1; i < run.tips.size(); ++i) over(run.tips[i], run.kinds[i]);
     }
@@ -160,20 +149,21 @@ RoughResult rough(const SetupScene& scene, const Tool& tool, const RoughOptions&
   check(options, tool);
   const TurnedScene in = turned(scene, 0);
   RoughResult out;
-  if (in.stock.empty()) {
+  const Mesh left = turned_stock(scene, in.frame);
+  if (left.empty()) {
     out.reason = "nothing is left of the stock";
     base::report(progress, 1);
     return out;
   }
   const CutterProfile profile(tool);
   const double widest = options.engagement * tool.diameter(), spacing = std::max(widest / 12, tool.diameter() / 40);
-  const Box3 stock = mesh::bounds(in.stock);
+  const Box3 stock = mesh::bounds(left);
   const PlaceGrid grid = grid_over(stock, profile.radius(), spacing);
   const Mesh part = joined(in.part, in.fixtures);
   const DropCutter exact(part, tool, {0, 0, 1}, options.allowance),
       wide(part, tool, {0, 0, 1}, options.allowance + 0.5 * options.tolerance);
   const Field drop = heights(grid, wide, base::part(progress, 0, 0.3));
-  const DropCutter pin(in.stock, cutters::flat(2 * kCellRadius * grid.spacing, 2 * tool.length()));
+  const DropCutter pin(left, cutters::flat(2 * kCellRadius * grid.spacing, 2 * tool.length()));
   StockTops tops(grid, heights(grid, pin, base::part(progress, 0.3, 0.5)), profile);
   out.drops = 2 * grid.size();
   const double top = *std::max_element(tops.tops().begin(), tops.tops().end()),
