@@ -68,9 +68,9 @@ class RIFFLER_OT_machining_stock(properties.StockShape, bpy.types.Operator):
         pitch = scene_units.clean(self.pitch) or fitting.pitch(fitting.longest(size), RAYS)
         estimate.check_block(size, pitch)
         if self.shape == "BOX":
-            return riffler.Volume.block(grown_low, grown_high, pitch, "z")
+            return riffler.Volume.block(grown_low, grown_high, pitch, "xyz")
         centre = 0.5 * (grown_low + grown_high)
-        return riffler.Volume.cylinder(centre, radius, size[2], pitch, "z")
+        return riffler.Volume.cylinder(centre, radius, size[2], pitch, "xyz")
 
     def draw(self, context):
         operator_parts.draw_fields(self, tuple(properties.StockShape.__annotations__))

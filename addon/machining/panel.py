@@ -29,14 +29,14 @@ class RIFFLER_UL_operations(bpy.types.UIList):
         row = layout.row(align=True)
         row.prop(item, "on", text="")
         state = state_of(item, index, self._glances)
-        split = row.split(factor=0.7)
+        split = row.split(factor=0.67)
         split.active = item.on
         name = split.row(align=True)
         name.label(text="", icon=ICONS[state] if item.on else "REMOVE")
         name.prop(item, "name", text="", emboss=False)
         end = split.row()
         end.alignment = "RIGHT"
-        shown = calculate.clock(item.seconds) if state == "DONE" else KINDS[item.kind].label
+        shown = calculate.clock(item.seconds).split()[0] if state == "DONE" else KINDS[item.kind].label
         end.label(text=shown, translate=state != "DONE")
 
 
@@ -92,9 +92,8 @@ class RIFFLER_PT_job(Tab, bpy.types.Panel):
         layout.operator(calculate.RIFFLER_OT_machining_calculate.bl_idname, icon="PLAY")
         if settings.problem:
             lines(layout, *wrapped(context, f"{settings.problem}."), icon="ERROR")
-        row = layout.row(align=True)
-        row.prop(settings, "draw_moves", toggle=True)
-        row.operator(make_stock.RIFFLER_OT_machining_left.bl_idname, icon="MESH_CUBE")
+        layout.prop(settings, "draw_moves", toggle=True)
+        layout.operator(make_stock.RIFFLER_OT_machining_left.bl_idname, icon="MESH_CUBE")
 
     def _stock(self, layout, context, settings):
         column = layout.column(align=True)
