@@ -37,6 +37,8 @@ TOPICS = {
               "plan_assembly", "plan_find", "plan_from_strokes", "plan_show", "plan_switch", "plan_delete_paths"],
     "Orientations": ["plan_to_timeline", "plan_key", "plan_key_delete", "plan_key_jump", "plan_least_tilt",
                      "plan_check", "plan_point", "plan_point_key", "plan_turn", "plan_pen", "plan_pointer"],
+    "Jobs": ["machining_stock", "machining_add", "machining_remove", "machining_move", "machining_tool",
+             "machining_calculate", "machining_left", "machining_nc"],
     "Programs and verification": ["plan_resolve", "plan_nc", "machine_option", "machine_option_add", "simulate",
                                   "simulate_stop", "verify", "verify_clear",
                                   "finding_go"],
@@ -47,6 +49,7 @@ GROUPS = {
     "tool": ("", "The cutter of operators that are not given one."),
     "sculpt": ("", "How strokes are made, and what keeps tools out."),
     "plan": ("plan_find", "What the tab *Riffler Plan* plans on, and with what."),
+    "machining": ("machining_stock", "What the panel *Job* machines the part with, and the operations in their order."),
     "verify": ("verify", "The stock that is simulated and verified, and what was found."),
 }
 OF_WINDOWS = {"rna_type", "check_existing", "filter_glob"}  # nothing that a script would set
