@@ -37,11 +37,11 @@ TOPICS = {
               "plan_assembly", "plan_find", "plan_from_strokes", "plan_show", "plan_switch", "plan_delete_paths"],
     "Orientations": ["plan_to_timeline", "plan_key", "plan_key_delete", "plan_key_jump", "plan_least_tilt",
                      "plan_check", "plan_point", "plan_point_key", "plan_turn", "plan_pen", "plan_pointer"],
-    "Jobs": ["machining_stock", "machining_add", "machining_remove", "machining_move", "machining_tool",
-             "machining_calculate", "machining_left", "machining_nc"],
     "Programs and verification": ["plan_resolve", "plan_nc", "machine_option", "machine_option_add", "simulate",
                                   "simulate_stop", "verify", "verify_clear",
                                   "finding_go"],
+    "Jobs": ["machining_stock", "machining_add", "machining_remove", "machining_move", "machining_tool",
+             "machining_calculate", "machining_left", "machining_zero", "machining_nc"],
 }  # fmt: skip
 # Groups of bpy.context.scene.riffler that operators use in addition to their arguments, and the operator whose settings
 # a group has, too: those only fill in its button. The other groups have nothing else.

@@ -126,12 +126,9 @@ def verified(screen):
 
 
 def to_code(screen):
-    scene = bpy.context.scene
-    stock = scene.riffler.machining.stock
-    top = max((stock.matrix_world @ gizmo.Vector(corner)).z for corner in stock.bound_box)
-    scene.riffler.machining.zero = (0, 0, top)
     path = common.out("figure.ngc")
     with screen.override():
+        assert bpy.ops.riffler.machining_zero(place="TOP") == {"FINISHED"}
         assert bpy.ops.riffler.machining_nc(filepath=path, post="3-axis") == {"FINISHED"}
     read = riffler.Program.read(path, machine="3-axis")
     assert read.poses[~read.rapid][:, 2].min() > -SIZE and read.poses[:, 2].max() > 4.9

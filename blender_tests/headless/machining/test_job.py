@@ -141,7 +141,11 @@ def test_undo():
 def test_the_nc_code_has_its_zero_and_is_simulated_and_verified():
     job()
     calculate()
-    settings().zero = (30, 20, 24)
+    bpy.ops.riffler.machining_zero(place="TOP")
+    assert np.allclose(settings().zero, (30, 20, 25), atol=1e-5)  # 1 mm above the step
+    bpy.context.scene.cursor.location = (30, 20, 24)
+    bpy.ops.riffler.machining_zero(place="CURSOR")
+    assert np.allclose(settings().zero, (30, 20, 24))
     path = common.out("job-zero.ngc")
     bpy.ops.riffler.machining_nc("EXEC_DEFAULT", filepath=path, post="3-axis")
     read = riffler.Program.read(path, machine="3-axis")
