@@ -71,6 +71,7 @@ class RIFFLER_MT_machining_tools(bpy.types.Menu):
 class RIFFLER_PT_job(Tab, bpy.types.Panel):
     bl_idname = "RIFFLER_PT_job"
     bl_label = "Job (mm)"
+    bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context):
         layout, settings = self.layout, context.scene.riffler.machining
