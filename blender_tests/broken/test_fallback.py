@@ -44,11 +44,11 @@ def check(source, *words):
     disable()
 
 
-def test_a_library_that_is_too_old():
+def test_a_library_that_is_too_old_is_reported():
     check('raise ImportError("/lib/libc.so.6: version `GLIBC_2.38\' not found")', "GLIBC_2.38", "C library is older")
 
 
-def test_a_broken_binary():
+def test_a_broken_binary_is_reported():
     check("raise OSError('invalid ELF header')", "OSError: invalid ELF header")
 
 
@@ -58,7 +58,7 @@ def _of_the_system():
     return ["sudo apt install python3-numpy", "Then restart Blender"] if debian else []
 
 
-def test_numpy_is_missing():
+def test_a_missing_numpy_is_reported():
     """The core and most of the add-on need it; the panel does not."""
     kept = {name: sys.modules.pop(name) for name in list(sys.modules) if name.partition(".")[0] == "numpy"}
     sys.modules["numpy"] = None
@@ -69,11 +69,11 @@ def test_numpy_is_missing():
         sys.modules.update(kept)
 
 
-def test_another_package_of_that_name():
+def test_another_package_of_that_name_is_reported():
     check("x = 1", "lacks Tool", "Another package named riffler")
 
 
-def test_a_core_of_another_version():
+def test_a_core_of_another_version_is_reported():
     check(
         "__version__ = '9'",
         "riffler 9 is in use, this add-on is",
@@ -81,11 +81,11 @@ def test_a_core_of_another_version():
     )
 
 
-def test_a_missing_package():
+def test_a_missing_package_is_reported():
     check("raise ModuleNotFoundError(\"No module named 'riffler._core'\")", "riffler._core")
 
 
-def test_mended_without_a_restart():
+def test_the_add_on_works_once_mended_without_a_restart():
     enable_with("raise ImportError('not yet')")
     disable()
     for name in [n for n in sys.modules if n.startswith("riffler_addon")]:

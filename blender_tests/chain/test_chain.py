@@ -10,7 +10,7 @@ from support import common, plans
 from support.keyframed_plan import close, indices, insert, pair, paths, remove, seen, state
 
 
-def test_the_file_goes_on():
+def test_each_blender_continues_the_file_of_the_one_before():
     folder = Path(common.JOB["chain"])
     files = sorted(folder.glob("*.blend"))
     path = folder / f"{len(files)}.blend"
@@ -41,7 +41,7 @@ def test_the_file_goes_on():
     bpy.ops.wm.save_as_mainfile(filepath=str(path))
 
 
-def test_the_timeline_goes_on():
+def test_each_blender_continues_the_timeline_of_the_one_before():
     """A separate file: the next Blender has the keys and the animation that the last one wrote."""
     folder = Path(common.JOB["chain"]) / "timeline"
     folder.mkdir(exist_ok=True)

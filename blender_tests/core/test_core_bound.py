@@ -28,7 +28,7 @@ def marked():
                 yield path.name, node.name, ast.get_source_segment(text, node)
 
 
-def test_no_test_is_marked_that_uses_what_differs_between_versions():
+def test_no_marked_test_uses_features_that_differ_between_versions():
     found = list(marked())
     assert len(found) > 20
     assert all(name.startswith("test_") for _, name, _ in found)
@@ -64,7 +64,7 @@ def jobs(monkeypatch, capsys, versions, **more):
     return out, capsys.readouterr().out
 
 
-def test_the_middle_ones_leave_them_out_and_say_how_many_and_where_they_run(monkeypatch, capsys):
+def test_middle_versions_skip_marked_tests_and_report_where_they_run(monkeypatch, capsys):
     found, said = jobs(monkeypatch, capsys, ["3.4", "4.2", "4.5", "5.0"])
     assert found == [
         ("bpy 3.4", "legacy", False),
@@ -78,12 +78,12 @@ def test_the_middle_ones_leave_them_out_and_say_how_many_and_where_they_run(monk
 
 
 @pytest.mark.parametrize("more", [{"blender": "4.5"}, {"mode": "extension"}])
-def test_a_blender_that_is_named_runs_everything(monkeypatch, capsys, more):
+def test_a_named_blender_runs_everything(monkeypatch, capsys, more):
     found, said = jobs(monkeypatch, capsys, ["3.4", "4.2", "4.5", "5.0"], **more)
     assert found and not any(left for *_, left in found) and "left out" not in said
 
 
-def test_where_there_are_one_or_two_they_run_everything(monkeypatch, capsys):
+def test_one_or_two_blenders_run_everything(monkeypatch, capsys):
     for versions in (["4.5"], ["4.2", "4.5"]):
         found, _ = jobs(monkeypatch, capsys, versions)
         assert found and not any(left for *_, left in found)

@@ -27,6 +27,6 @@ def unnamed(path):
                 yield path.relative_to(ADDON).as_posix(), ast.unparse(node.args[1]).strip("'")
 
 
-def test_a_field_without_its_name_is_one_that_says_otherwise_what_it_is():
+def test_a_field_without_its_name_is_explained_otherwise():
     found = {field for path in ADDON.rglob("*panel*.py") for field in unnamed(path)}
     assert found == set(SAID_OTHERWISE)

@@ -57,7 +57,7 @@ def test_the_legacy_zip_takes_the_wheel_of_its_python_wherever_it_stands(tmp_pat
     assert [p.name.endswith("-legacy.zip") for p in without] == [False]
 
 
-def test_what_does_not_fit_is_named(tmp_path):
+def test_wheels_that_do_not_fit_are_named(tmp_path):
     with pytest.raises(ValueError, match="same Python"):
         package.build([wheel(tmp_path), wheel(tmp_path, "cp311-cp311-linux_x86_64")], tmp_path / "dist")
     with pytest.raises(ValueError, match=r"9\.9\.9"):

@@ -41,38 +41,38 @@ def test_luminance_is_the_mean_of_a_cell_whatever_the_size():
 
 
 @pytest.mark.parametrize("change", [{}, {"shift": 2}, {"noise": 0.002}])
-def test_what_looks_alike_passes(change):
+def test_similar_pictures_pass(change):
     assert complaints(window(**change)) == []
 
 
 @pytest.mark.parametrize(
     ("change", "kind"), [({"panel": False}, "PROPERTIES"), ({"view": False}, "VIEW_3D"), ({"away": 250}, "VIEW_3D")]
 )
-def test_what_is_missing_or_elsewhere_is_said_with_its_area(change, kind):
+def test_missing_or_moved_parts_are_reported_with_their_area(change, kind):
     found = complaints(window(**change))
     assert len(found) == 1 and found[0].startswith(kind)
     assert complaints(window(**change), vary=[kind]) == []
     assert complaints(window(**change), vary=[VIEW, PANEL]) == []
 
 
-def test_an_empty_picture_is_not_taken_for_the_window():
+def test_an_empty_picture_fails():
     assert len(complaints(np.zeros((950, 1400)))) == 2
 
 
-def test_what_lies_on_top_is_judged_by_itself():
+def test_an_area_on_top_is_judged_separately():
     areas = [("VIEW_3D", (0.0, 0.0, 1.0, 1.0)), ("SIDEBAR", PANEL)]
     found, kept = pictures.grids(window(panel=False)), pictures.grids(window())
     assert [c.split(":")[0] for c in pictures.judge(found, kept, areas)] == ["SIDEBAR"]
     assert [c.split(":")[0] for c in pictures.judge(found, kept, areas[:1])] == ["VIEW_3D"]
 
 
-def test_what_belongs_to_no_area_may_say_anything():
+def test_parts_outside_all_areas_are_not_compared():
     image = window()
     image[:47, :1100] = 1.0  # the bar of menus
     assert complaints(image) == []
 
 
-def test_text_keeps_what_a_grid_says():
+def test_a_grid_survives_as_text():
     found = pictures.grids(window(noise=0.05))
     for grid in found.values():
         assert np.abs(pictures.from_text(pictures.to_text(grid)) - grid).max() <= 0.5 / 255

@@ -36,14 +36,14 @@ def test_every_module_of_the_list_says_what_it_registers():
         assert "CLASSES" in top_level(path_of(name)), name
 
 
-def test_no_module_that_has_something_to_register_is_left_out():
+def test_every_module_with_something_to_register_is_listed():
     own = {path_of(name) for name in LISTED} | {ADDON / "registration.py"}
     for path in sorted(ADDON.rglob("*.py")):
         if path not in own and "_vendor" not in path.parts:
             assert not top_level(path) & {"CLASSES", "attach", "detach"}, path
 
 
-def test_what_fails_to_be_attached_is_detached(monkeypatch):
+def test_a_module_that_fails_to_attach_is_detached(monkeypatch):
     log = []
 
     def attach():
@@ -59,7 +59,7 @@ def test_what_fails_to_be_attached_is_detached(monkeypatch):
     assert log == ["half of it", "taken back"]
 
 
-def test_what_was_attached_is_detached_even_where_something_else_fails(monkeypatch):
+def test_attached_modules_are_detached_even_if_another_one_fails(monkeypatch):
     log = []
 
     def fails():

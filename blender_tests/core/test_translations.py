@@ -184,7 +184,7 @@ def found():
     return said
 
 
-def test_what_is_looked_for_is_found():
+def test_every_kind_of_fixed_text_is_found():
     example = """
 class RIFFLER_OT_a(Mixin, bpy.types.Operator):
     '''The tooltip

@@ -54,18 +54,18 @@ def questions(source):
         "x = 'stl_export' in dir(bpy.ops.wm)",
     ],
 )
-def test_every_way_to_ask_is_noticed(source):
+def test_every_form_of_version_check_is_detected(source):
     assert len(questions(source)) == 1
 
 
 @pytest.mark.parametrize(
     "source", ["bpy.app.version_string", "hasattr(module, 'attach')", "getattr(bpy.app.handlers, x)"]
 )
-def test_what_asks_nothing_is_let_through(source):
+def test_code_without_version_checks_passes(source):
     assert questions(source) == []
 
 
-def test_only_one_module_asks_which_blender_this_is():
+def test_only_one_module_checks_the_version_of_blender():
     files = sorted(ADDON.rglob("*.py"))
     found = {p: questions(p.read_text(encoding="utf-8")) for p in files if "_vendor" not in p.parts}
     assert found.pop(PLACE), "the module itself asks nothing: is it still the one?"

@@ -35,7 +35,7 @@ def calls():
                 yield page, ast.unparse(node), node.func.attr, node.keywords
 
 
-def test_operators_of_the_examples_take_what_they_are_given():
+def test_operators_accept_the_arguments_of_the_examples():
     found = list(calls())
     assert len(found) > 12
     for page, text, name, given in found:
@@ -49,7 +49,7 @@ def test_operators_of_the_examples_take_what_they_are_given():
                 assert keyword.value.value in field.enum_items, f"{where}: {keyword.arg}"
 
 
-def test_a_call_that_is_not_there_is_found():
+def test_a_missing_call_is_detected():
     assert "gone_to_lunch" not in dir(bpy.ops.riffler)
 
 

@@ -34,7 +34,7 @@ def test_arrows_are_as_long_as_force_and_torque_and_red_beyond_their_limits():
         assert np.hypot(around[:, 0], around[:, 1]).max() < module.LENGTH * pixel  # about z, next to the other
 
 
-def test_gauges_tell_force_and_torque_and_mark_both_limits():
+def test_gauges_show_force_and_torque_and_mark_both_limits():
     module = force()
     for size, moment in ((0, 0), (1.25, 10), (4, 30)):
         first, second = module.gauges(shown(size, moment))

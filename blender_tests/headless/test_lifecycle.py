@@ -67,7 +67,7 @@ def test_three_cycles_leave_nothing():
             assert watch.left() == first and set(dir(bpy.ops.riffler)) == operators()
 
 
-def test_whatever_is_left_behind_is_noticed():
+def test_everything_left_behind_is_detected():
     """One of each kind, as a careless module of the add-on would leave it."""
 
     def callback(*_):
@@ -130,7 +130,7 @@ def fails_to(call):
         assert "in the middle" in str(error), error
 
 
-def test_what_fails_in_the_middle_of_being_registered_leaves_nothing():
+def test_a_failed_registration_leaves_nothing():
     disable()
     with leak_check.Watch(common.MODULE) as watch:
         for name, at in (("register_tool", 3), ("register_class", 50)):
@@ -144,7 +144,7 @@ def test_what_fails_in_the_middle_of_being_registered_leaves_nothing():
     test_everything_is_registered()
 
 
-def test_what_fails_in_the_middle_of_being_unregistered_leaves_nothing_else():
+def test_a_failed_unregistration_leaves_only_its_own_rest():
     common.stock()
     live = common.part("sculpt.live_registry")
     run = live.begin(bpy.context, bpy.context.object)
@@ -160,7 +160,7 @@ def test_what_fails_in_the_middle_of_being_unregistered_leaves_nothing_else():
     test_everything_is_registered()
 
 
-def test_what_is_not_there_is_taken_back_without_a_word():
+def test_detaching_what_was_never_attached_is_silent():
     """As after an attach() that failed at once."""
     disable()
     for module in common.part("registration").modules():
@@ -170,7 +170,7 @@ def test_what_is_not_there_is_taken_back_without_a_word():
     test_everything_is_registered()
 
 
-def test_what_is_reloaded_is_other_code():
+def test_a_reload_replaces_all_modules():
     """After an update, and for Reload Scripts, Blender runs the add-on's __init__ again: all other modules must be
     reloaded, too."""
     disable()
@@ -211,7 +211,7 @@ def test_an_update_that_finds_the_old_core_at_work_says_so():
     test_everything_is_registered()
 
 
-def test_it_is_installed_over_itself():
+def test_the_add_on_is_installed_over_itself():
     """Like an update while the core is in use: overwriting its file makes Blender crash in the next call."""
     from support import harness
 

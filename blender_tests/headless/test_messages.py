@@ -105,7 +105,7 @@ def test_no_button_is_grey_without_saying_why():
         assert not wrong, (state.__name__, wrong)
 
 
-def test_work_at_another_sculpt_is_parked_not_lost():
+def test_starting_on_another_sculpt_parks_the_work_on_the_first():
     """A session on one sculpt, and another sculpt is cut: the first keeps its carvings."""
     from support import sculpting
 
@@ -154,7 +154,7 @@ def from_object(**more):
     return bpy.ops.riffler.new_stock(source="OBJECT", **{"pitch": 0.5, "directions": "z", **more})
 
 
-def test_objects_without_volume():
+def test_objects_without_volume_are_refused():
     common.scale(1)
     bpy.ops.mesh.primitive_plane_add(size=20)
     refused(from_object, "Plane is flat", "Solidify")
@@ -175,7 +175,7 @@ def opened(ob):
     made.free()
 
 
-def test_an_open_object_is_closed_and_that_is_said():
+def test_an_open_object_is_closed_with_a_note():
     common.scale(1)
     opened(cube())
     assert "is not closed: 4 open edges" in common.printed(from_object)
@@ -196,7 +196,7 @@ def test_metres_taken_for_millimetres_are_refused_at_once():
     assert from_object() == {"FINISHED"}
 
 
-def test_a_sculpt_that_is_scaled_or_sheared_says_what_that_means():
+def test_the_panel_explains_a_scaled_or_sheared_sculpt():
     common.scale(1)
     ob = common.stock()
     distorted = common.part("blender.refusals").scaled
@@ -216,7 +216,7 @@ def test_a_sculpt_that_is_scaled_or_sheared_says_what_that_means():
     assert "Parent > Clear and Keep Transformation" in distorted(ob)
 
 
-def test_a_part_that_is_sheared_or_gone():
+def test_a_sheared_or_missing_part_is_reported():
     common.scale(1)
     part = plans.part_object()
     settings = bpy.context.scene.riffler.plan
@@ -236,7 +236,7 @@ def test_a_part_that_is_sheared_or_gone():
     assert "select one and use Set Part" in refusals()["plan_find"]
 
 
-def test_files_that_are_missing():
+def test_missing_files_are_reported():
     common.scale(1)
     ob = common.stock()
     before = bpy.context.scene.riffler.plan.tool
@@ -271,7 +271,7 @@ def writes_only_where_it_may(name, call):
     path.unlink()
 
 
-def test_folders_that_are_missing_or_may_not_be_written():
+def test_missing_or_read_only_folders_are_reported():
     common.scale(1)
     ob = common.stock()
     line = common.curve("Line", [(10, 15, 20), (30, 15, 20)], mm_per_unit=1)

@@ -18,7 +18,7 @@ def tool():
     return importlib.import_module("operators")
 
 
-def test_the_page_is_what_is_registered():
+def test_the_page_lists_the_registered_operators():
     made, kept = tool().page(), tool().PAGE.read_text()
     lines = difflib.unified_diff(kept.splitlines(), made.splitlines(), "checked in", "registered", n=0, lineterm="")
     assert made == kept, "docs/operators.md is of another add-on: `make operators`\n" + "\n".join(list(lines)[:20])
@@ -31,7 +31,7 @@ class RIFFLER_OT_test_forgotten(bpy.types.Operator):
     bl_label = "Forgotten"
 
 
-def test_an_operator_that_is_forgotten_is_named():
+def test_a_forgotten_operator_is_named():
     operators = tool()
     bpy.utils.register_class(RIFFLER_OT_test_forgotten)
     try:

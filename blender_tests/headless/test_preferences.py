@@ -55,13 +55,13 @@ def test_every_kind_of_device_can_be_chosen_and_is_described_in_german():
     assert all(item.description in german for item in choices.values())
 
 
-def test_limits_come_as_they_are_in_the_core():
+def test_limits_have_the_defaults_of_the_core():
     """The defaults of the native core (native/include/riffler/haptics/limits.hpp): 5 N, 300 N·mm, 2 W."""
     given = common.part("blender.preferences_access").limits()
     assert np.allclose([given["max_force"], given["max_torque"], given["max_power"]], (5, 300, 2000))
 
 
-def test_no_session_lets_more_force_through_than_was_allowed():
+def test_no_session_passes_more_force_than_allowed():
     """From its journal, which has every step: 0.2 N instead of the default 5."""
     common.scale(1)
     ob = common.stock(size=(60, 60, 20), pitch=0.5, directions="z")
@@ -94,7 +94,7 @@ def test_the_device_is_the_one_of_the_preferences_unless_the_scene_has_another()
         assert bpy.ops.riffler.pen_sculpt(seconds=0.1, device="simulated", gap=500.0) == {"CANCELLED"}
 
 
-def test_threads():
+def test_the_number_of_threads_follows_the_preference():
     automatic = riffler.threads()
     with preferred(threads=3):
         assert riffler.threads() == 3
@@ -151,7 +151,7 @@ def left_in(place):
         return journal.folder
 
 
-def test_a_folder_that_is_gone_is_named_and_work_goes_on():
+def test_a_missing_folder_is_named_and_work_continues():
     from support import sculpting
 
     gone = str(Path(common.out("")) / "gone")
@@ -179,7 +179,7 @@ def test_tools_of_both_folders_are_offered():
         assert "Everybody's" in [e.name for e in common.part("plan.tool_libraries").files()[0]]
 
 
-def test_a_folder_beside_the_file_becomes_one_for_all_files():
+def test_a_folder_relative_to_the_file_becomes_absolute():
     bpy.ops.wm.save_as_mainfile(filepath=common.out("beside.blend"))
     with preferred(tools="//") as found:
         assert Path(found.tools) == Path(common.out("beside.blend")).parent
@@ -276,7 +276,7 @@ def groups():
     }
 
 
-def test_whatever_a_person_can_press_or_set_has_a_tooltip_in_one_line():
+def test_every_button_and_setting_has_a_tooltip_in_one_line():
     seen = list(shown())
     assert len(seen) > 150 and len(groups()) >= 9
     bad = [(where, p.identifier if p else "itself") for where, p, rna in seen if not (p or rna).description]
@@ -306,7 +306,7 @@ def test_every_text_of_the_translations_is_one_of_the_addons():
         assert all(said.strip() for said in texts.values()), language
 
 
-def test_all_that_is_shown_is_looked_up_in_the_addons_own_words():
+def test_every_shown_text_is_looked_up_in_the_addons_own_words():
     own = common.part("translations").CONTEXT
     for cls in (c for m in common.part("registration").modules() for c in m.CLASSES if hasattr(c, "bl_label")):
         assert cls.bl_translation_context == own, cls

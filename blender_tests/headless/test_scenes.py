@@ -99,7 +99,7 @@ def test_a_mesh_of_another_file_is_not_coloured():
 
 
 # ------------------------------------------------------------------ objects
-def test_a_sculpt_that_is_scaled_to_nothing_says_what_helps():
+def test_a_sculpt_scaled_to_zero_is_reported_with_the_remedy():
     ob = bpy.data.objects[sculpting.sculpt()]
     common.curve("Line", [(-15, 0, 8), (15, 0, 8)], mm_per_unit=1.0)
     before = common.content(ob).volume.to_bytes()
@@ -120,7 +120,7 @@ def test_a_sculpt_that_is_scaled_to_nothing_says_what_helps():
     assert common.content(ob).volume.to_bytes() == before and not live().lives
 
 
-def test_the_panel_says_what_a_scale_means():
+def test_the_panel_explains_a_scale():
     ob = bpy.data.objects[sculpting.sculpt()]
     panel = common.part("stock.panel").RIFFLER_PT_sculpt
     for scale, expected in (
@@ -152,7 +152,7 @@ def test_the_sidebar_is_wide_enough_for_what_the_panel_says_without_a_sculpt():
     assert " ".join(shown) == "No sculpt is active. Make one below."
 
 
-def test_the_cursor_over_a_live_sculpt_that_is_scaled_to_nothing_is_quiet():
+def test_the_cursor_over_a_live_sculpt_scaled_to_zero_raises_no_error():
     name = sculpting.sculpt()
     run = sculpting.work(name)
     pointer, tool = common.part("sculpt.pointer"), bpy.context.scene.riffler.tool.dictionary()
@@ -192,7 +192,7 @@ def test_a_plane_that_is_flat_crops_and_one_that_is_a_line_is_refused():
     common.refused(call, "Plane is scaled to nothing")
 
 
-def test_shape_keys_go_with_the_vertices_that_they_were_of():
+def test_shape_keys_disappear_with_their_vertices():
     ob = bpy.data.objects[sculpting.sculpt()]
     common.curve("Line", [(-15, 0, 18), (15, 0, 18)], mm_per_unit=1.0)
     common.select(ob)
@@ -281,7 +281,7 @@ def test_pieces_are_not_lost_where_one_of_them_cannot_be_made():
     assert bpy.ops.riffler.split() == {"FINISHED"} and len(bpy.data.objects) == count[0] + 2
 
 
-def test_a_linked_duplicate_of_what_is_left_is_kept():
+def test_a_linked_duplicate_of_the_remaining_material_is_kept():
     programs.resolved()
     programs.stock()
     bpy.ops.riffler.verify(source="PLAN", coloured="LEFT")
@@ -293,7 +293,7 @@ def test_a_linked_duplicate_of_what_is_left_is_kept():
 
 
 # ------------------------------------------------------------------ many objects
-def test_plans_are_looked_for_once_among_many_objects():
+def test_plans_are_searched_once_among_many_objects():
     ob = plans.on_timeline()
     store = common.part("plan.plan_store")
     for _ in range(200):

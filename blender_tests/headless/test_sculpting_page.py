@@ -52,7 +52,7 @@ def test_settings_have_the_names_and_defaults_of_the_tables():
     assert {label for label, _ in strokes} == set(groups["sculpt"])
 
 
-def test_buttons_are_called_as_they_are_there():
+def test_buttons_on_the_page_have_their_labels():
     """Bold in the first cell of a line: a button, or a tool. Fixed texts of the add-on have their German, except those
     followed by a number."""
     addon = Path(common.part("registration").__file__).parent

@@ -82,7 +82,7 @@ def test_fields_of_the_panels_are_the_scenes_but_make_no_undo_steps():
     assert scene.tool.kind == "taper" == shown.tool.kind
 
 
-def test_undo_takes_back_strokes_and_leaves_the_brush_as_it_is():
+def test_undo_undoes_strokes_and_leaves_the_brush():
     common.scale(1)
     name = common.stock(pitch=0.5).name
     common.push("stock")
@@ -132,7 +132,7 @@ def test_a_stroke_from_a_script_is_the_groove_of_the_formula_in_any_scene():
         assert abs(removed / groove(20, 0.8) - 1) < 0.01, (unit, removed)
 
 
-def test_material_is_put_on_within_the_stocks_box():
+def test_material_is_added_within_the_stocks_box():
     common.scale(1)
     ob = common.stock(pitch=0.25, directions="xyz")
     settings(depth=2.0)
@@ -143,7 +143,7 @@ def test_material_is_put_on_within_the_stocks_box():
     assert hollow < volume_of(ob).volume < 24000
 
 
-def test_material_that_the_box_cuts_off_is_said_at_once():
+def test_material_that_the_box_cuts_off_is_reported_at_once():
     common.scale(1)
     ob = common.stock(size=(40, 30, 20), pitch=0.5, directions="xyz")
     settings(depth=1.0)
@@ -191,7 +191,7 @@ def test_every_copy_of_a_stroke_is_made():
         ob = common.stock(size=(40, 40, 20), pitch=0.25, directions="xyz")
 
 
-def test_a_mask_keeps_what_it_covers():
+def test_a_mask_protects_the_material_that_it_covers():
     common.scale(1)
     ob = common.stock(pitch=0.25, directions="xyz")
     settings(depth=2.0)
@@ -266,7 +266,7 @@ def test_no_tool_passes_through_a_fixture_on_its_way_up_nor_do_copies_by_symmetr
     assert heights[0] < 20.01 and heights[1] > 21.9, heights
 
 
-def test_a_stroke_goes_around_what_no_lift_frees_it_from():
+def test_a_stroke_goes_around_an_obstacle_that_no_lift_clears():
     common.scale(1)
     ob = common.stock(pitch=0.5, directions="z")
     clamps = clamp(ob, (20, 15, 20), size=8)
@@ -315,7 +315,7 @@ def test_handles_of_a_mirrored_sculpt_are_as_large_as_of_any():
         assert abs(place(ob)[1] - expected) < 1e-6, scale
 
 
-def test_undo_takes_a_stroke_back():
+def test_undo_undoes_a_stroke():
     common.scale(1)
     name = common.stock(pitch=0.5).name
     common.push("stock")
@@ -332,7 +332,7 @@ def test_undo_takes_a_stroke_back():
     assert volume_of(bpy.data.objects[name]).volume == shown[2]
 
 
-def test_what_cannot_be_stroked_is_refused_and_nothing_changes():
+def test_objects_that_cannot_be_stroked_are_refused_and_nothing_changes():
     common.scale(1)
     ob = common.stock()
     before = volume_of(ob).volume

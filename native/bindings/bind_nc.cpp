@@ -56,7 +56,7 @@ void bind_nc_types(py::module_& m) {
           "\"machine position\", "
           "\"rapid\", \"motion\", \"start\", \"tool length\", \"cutter compensation\", \"user code\" or \"end\".")
       .def_readonly("line", &nc::Note::line, "Line of the source, from 1.")
-      .def_readonly("message", &nc::Note::message)
+      .def_readonly("message", &nc::Note::message, "A sentence on what the reader assumed or skipped.")
       .def("__repr__", [](const nc::Note& n) {
         return "<riffler.Note: line " + std::to_string(n.line) + ", " + n.kind + ": " + n.message + ">";
       });

@@ -37,7 +37,9 @@ tip, in the part's.)");
           "(n,) 1 in strokes, otherwise 0.")
       .def_property_readonly(
           "strokes", [](const F& f) { return f.frame.strokes; }, "Number of strokes begun since the start.")
-      .def_property_readonly("in_stroke", [](const F& f) { return f.frame.in_stroke; });
+      .def_property_readonly(
+          "in_stroke", [](const F& f) { return f.frame.in_stroke; },
+          "Whether a stroke was in progress when the loop handed over the frame's tiles.");
   bind_ticks(c, {"(n, 6): force (N) and torque (N·mm) of the material on the tool, before limits.",
                  "(n,) mm: largest depth of the tool in what it must not enter.",
                  "Why the tool does not cut although the hand asks for it, or None."});

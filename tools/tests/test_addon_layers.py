@@ -69,6 +69,6 @@ def test_a_feature_uses_what_is_before_it_only(addon):
         ("other/thing.py", "x = 1", "addon/other is not a section"),
     ],
 )
-def test_what_breaks_a_layer_is_named(addon, file, text, said):
+def test_imports_that_break_a_layer_are_named(addon, file, text, said):
     found = problems(addon(**{file: text}))
     assert len(found) == 1 and said in found[0], found

@@ -61,11 +61,11 @@ def test_batches_are_of_one_folder_and_of_like_length(checkouts):
     assert lengths == {"a_0.cpp": 3, "a_3.cpp": 2, "b_0.cpp": 1}
 
 
-def test_they_have_no_path_of_the_checkout(checkouts):
+def test_batches_contain_no_path_of_the_checkout(checkouts):
     (one, other), _ = checkouts
     assert texts(one) == texts(other)
 
 
-def test_without_batches_all_stays_as_it_was(tmp_path):
+def test_without_batches_nothing_changes(tmp_path):
     left = configured(tmp_path, on="OFF")
     assert len(left) == 9 and not (tmp_path / "build" / "batches").exists()

@@ -21,7 +21,7 @@ def test_without_a_selection_a_table_stays():
     assert select("a/b", TABLE, "") == TABLE.replace("| |", "|  |")
 
 
-def test_rows_columns_and_note():
+def test_rows_columns_and_note_are_copied():
     chosen = select("a/b", TABLE, ' rows="^. box" columns="part; time" note="no"')
     assert chosen == "| part | time |\n|---|---|\n| box | 1 ms |\n| box | 9 ms |\n"
 

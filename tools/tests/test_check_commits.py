@@ -28,7 +28,7 @@ def test_an_area_and_an_order_with_a_body_pass(subject):
         ("tools: Count words\nwithout an empty line", "body"),
     ],
 )
-def test_a_fault_is_called_by_its_name(message, words):
+def test_each_fault_is_named(message, words):
     assert [fault for fault in faults(message) if words in fault], list(faults(message))
 
 

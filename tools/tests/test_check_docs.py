@@ -25,7 +25,7 @@ int b() {
         (None, ["a.md:4: code.cpp: no such file"]),
     ],
 )
-def test_what_is_quoted_stands_in_the_file(tmp_path, monkeypatch, code, problems):
+def test_quotes_occur_in_their_file(tmp_path, monkeypatch, code, problems):
     monkeypatch.setattr(check_docs, "ROOT", tmp_path)
     (tmp_path / "a.md").write_text(DOCUMENT)
     if code is not None:

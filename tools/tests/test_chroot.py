@@ -25,7 +25,7 @@ def put(place):
     return {p.name: p for p in (place.project / "src").iterdir()}
 
 
-def test_what_is_the_same_keeps_its_time_and_what_changed_is_newer(place):
+def test_unchanged_files_keep_their_time_and_changed_ones_get_a_newer_one(place):
     before = {name: path.stat().st_mtime_ns for name, path in put(place).items()}
     source = chroot.ROOT / "src" / "b.py"
     source.write_text("changed")
@@ -35,7 +35,7 @@ def test_what_is_the_same_keeps_its_time_and_what_changed_is_newer(place):
     assert after["b.py"].read_text() == "changed" and after["b.py"].stat().st_mtime_ns > before["b.py"]
 
 
-def test_what_is_gone_here_goes_there_and_what_was_built_there_stays(place):
+def test_deleted_files_are_deleted_in_the_chroot_and_built_ones_stay(place):
     (put(place)["a.py"].parent / "built.o").write_text("object")
     (chroot.ROOT / "src" / "a.py").unlink()
     assert put(place).keys() == {"b.py", "built.o"}
@@ -55,7 +55,7 @@ def test_a_folder_with_a_mount_inside_is_not_deleted(place, monkeypatch):
     assert not place.root.exists()
 
 
-def test_a_command_in_there_sees_the_variables_it_is_given_only(place, monkeypatch):
+def test_a_command_in_the_chroot_sees_only_the_given_variables(place, monkeypatch):
     monkeypatch.setattr(chroot, "isolation", lambda network: [])
     monkeypatch.setenv("SECRET", "x")
     monkeypatch.setenv("https_proxy", "http://proxy:1")

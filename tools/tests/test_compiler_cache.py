@@ -30,7 +30,7 @@ def test_the_folder_is_the_users_unless_the_user_chose_one(fresh, tmp_path):
 
 
 @HAS_CCACHE
-def test_the_size_is_ours_in_our_folder_and_the_users_in_the_users(fresh, tmp_path):
+def test_our_folder_has_our_size_and_the_users_folder_the_users(fresh, tmp_path):
     fresh.setenv("XDG_CACHE_HOME", str(tmp_path))
     fresh.delenv("CCACHE_DIR", raising=False)
     assert compiler_cache.environment()["CCACHE_MAXSIZE"] == compiler_cache.SIZE
@@ -38,7 +38,7 @@ def test_the_size_is_ours_in_our_folder_and_the_users_in_the_users(fresh, tmp_pa
     assert "CCACHE_MAXSIZE" not in compiler_cache.environment()
 
 
-def test_a_folder_that_cannot_be_made_is_done_without_and_named(fresh, tmp_path):
+def test_a_folder_that_cannot_be_created_is_not_used_and_named(fresh, tmp_path):
     (tmp_path / "file").touch()
     fresh.setenv("CCACHE_DIR", str(tmp_path / "file" / "cache"))
     if not HAS_CCACHE.args[0]:
@@ -49,7 +49,7 @@ def test_a_folder_that_cannot_be_made_is_done_without_and_named(fresh, tmp_path)
 
 
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="this system has no /dev/full")
-def test_a_full_disk_is_done_without(fresh, tmp_path):
+def test_a_full_disk_switches_the_cache_off(fresh, tmp_path):
     class Full:
         def __init__(self, dir):
             self.file = open("/dev/full", "wb", buffering=0)  # noqa: SIM115 (closed below)

@@ -119,7 +119,7 @@ def test_a_checkout_that_replaces_a_file_changes_no_other(checkouts):
 
 
 @pytest.mark.parametrize("harm", ["changed", "gone", "list"])
-def test_an_entry_that_is_not_whole_is_dropped_and_made_again(checkouts, tmp_path, harm):
+def test_an_incomplete_entry_is_replaced(checkouts, tmp_path, harm):
     """A file that root has written into, and a removal that was interrupted."""
     checkouts.environment("first")
     (kept,) = entries(tmp_path)
@@ -147,7 +147,7 @@ def test_across_file_systems_the_files_are_copied(checkouts, monkeypatch):
     assert not (first / PACKAGE).samefile(second / PACKAGE)
 
 
-def test_a_full_disk_is_done_without_and_named(checkouts, monkeypatch, tmp_path, capsys):
+def test_a_full_disk_switches_the_cache_off_and_is_named(checkouts, monkeypatch, tmp_path, capsys):
     def full(source, target):
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
@@ -159,7 +159,7 @@ def test_a_full_disk_is_done_without_and_named(checkouts, monkeypatch, tmp_path,
         assert ".envs/thing is not shared" in (said := capsys.readouterr().out) and "No space left on device" in said
 
 
-def test_an_entry_that_cannot_be_linked_is_done_without(checkouts, monkeypatch, capsys):
+def test_an_entry_that_cannot_be_linked_is_not_used(checkouts, monkeypatch, capsys):
     checkouts.environment("first")
 
     def refused(source, target):
@@ -171,7 +171,7 @@ def test_an_entry_that_cannot_be_linked_is_done_without(checkouts, monkeypatch, 
     assert "Permission denied; installing with pip" in capsys.readouterr().out
 
 
-def test_a_folder_that_cannot_be_made_is_done_without_and_named(checkouts, monkeypatch, tmp_path, capsys):
+def test_a_folder_that_cannot_be_created_is_not_used_and_named(checkouts, monkeypatch, tmp_path, capsys):
     (tmp_path / "file").write_text("")
     monkeypatch.setenv("RIFFLER_ENVIRONMENTS", str(tmp_path / "file" / "below"))
     assert output(checkouts.environment("first"))[0] == "7"
@@ -179,7 +179,7 @@ def test_a_folder_that_cannot_be_made_is_done_without_and_named(checkouts, monke
     assert "environment cache: none, " in said and "RIFFLER_ENVIRONMENTS chooses another folder" in said
 
 
-def test_a_folder_that_cannot_be_written_serves_all_the_same(checkouts, monkeypatch):
+def test_a_read_only_folder_is_still_read(checkouts, monkeypatch):
     checkouts.environment("first")
 
     def read_only(*arguments, **more):
@@ -190,7 +190,7 @@ def test_a_folder_that_cannot_be_written_serves_all_the_same(checkouts, monkeypa
     assert checkouts.installed == 1
 
 
-def test_entries_and_parts_without_use_for_a_month_go(checkouts, tmp_path):
+def test_entries_and_parts_unused_for_a_month_are_removed(checkouts, tmp_path):
     checkouts.environment("first")
     (kept,) = entries(tmp_path)
     for name in ("old", "old.part-1", "young"):
@@ -224,7 +224,7 @@ def test_two_checkouts_at_once_leave_one_entry(checkouts, tmp_path, monkeypatch)
         ("", None),
     ],
 )
-def test_programs_are_told_from_others(tmp_path, header, rest):
+def test_scripts_of_an_environment_are_distinguished_from_other_programs(tmp_path, header, rest):
     program = tmp_path / "program"
     program.write_text(header + (rest or ""))
     assert environment_cache._body(program) == (None if rest is None else rest.encode())

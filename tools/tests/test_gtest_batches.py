@@ -45,14 +45,14 @@ def test_every_test_runs_once_in_batches_that_are_full():
     ]
 
 
-def test_those_that_pass_give_their_times_and_those_left_out_do_not_run(tmp_path):
+def test_passing_tests_report_their_times_and_excluded_ones_do_not_run(tmp_path):
     kinds = [f"Passes/{k}" for k in range(30)] + ["FailsButIsLeftOut"]
     times = gtest_batches.run_tests(program(tmp_path, *kinds), "LeftOut|Nothing")
     assert sorted(name for _, name in times) == sorted(f"Few.Passes/{k}" for k in range(30))
     assert {seconds for seconds, _ in times} == {0.5}
 
 
-def test_what_fails_is_named_and_what_it_printed_is_shown(tmp_path, capfd):
+def test_failing_tests_are_named_and_their_output_is_shown(tmp_path, capfd):
     with pytest.raises(StepError, match=r"^1 of 2 tests failed: Few\.Fails$"):
         gtest_batches.run_tests(program(tmp_path, "Passes", "Fails"))
     assert "[ RUN ] Few.Fails" in capfd.readouterr().out
@@ -64,13 +64,13 @@ def test_a_batch_without_results_has_failed(tmp_path, kind):
         gtest_batches.run_tests(program(tmp_path, "Passes", kind))
 
 
-def test_one_that_hangs_is_stopped(tmp_path, monkeypatch, capfd):
+def test_a_hanging_test_is_stopped(tmp_path, monkeypatch, capfd):
     monkeypatch.setattr(gtest_batches, "LIMIT", 0.5)
     with pytest.raises(StepError, match=r"Few\.Hangs"):
         gtest_batches.run_tests(program(tmp_path, "Hangs"))
     assert "stopped after 0.5 s" in capfd.readouterr().out
 
 
-def test_a_program_without_tests_is_no_success(tmp_path):
+def test_a_program_without_tests_fails(tmp_path):
     with pytest.raises(StepError, match="has no tests"):
         gtest_batches.run_tests(program(tmp_path, "LeftOut"), "LeftOut")

@@ -128,7 +128,7 @@ def test_the_document_has_every_public_header():
     ],
     ids=["C++14", "C++98", "C++17", "GCC 9", "Clang 7"],
 )
-def test_what_is_too_old_is_named_in_one_sentence(prefix, tmp_path, before, sentence):
+def test_a_standard_or_version_that_is_too_old_is_named_in_one_sentence(prefix, tmp_path, before, sentence):
     (tmp_path / "CMakeLists.txt").write_text(LIST.format(before=before))
     done = call(CMAKE, "-S", tmp_path, "-B", tmp_path / "build", "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={prefix}")
     assert done.returncode != 0
@@ -136,7 +136,7 @@ def test_what_is_too_old_is_named_in_one_sentence(prefix, tmp_path, before, sent
 
 
 @pytest.mark.parametrize("before", ["", "set(CMAKE_CXX_STANDARD 20)", "set(CMAKE_CXX_STANDARD 23)"])
-def test_a_standard_that_is_new_enough_will_do(prefix, tmp_path, before):
+def test_a_newer_standard_is_accepted(prefix, tmp_path, before):
     (tmp_path / "CMakeLists.txt").write_text(LIST.format(before=before))
     done = call(CMAKE, "-S", tmp_path, "-B", tmp_path / "build", "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={prefix}")
     assert done.returncode == 0, done.stderr
@@ -150,7 +150,7 @@ def test_another_minor_version_is_another_interface(prefix, tmp_path, version, f
     assert (done.returncode == 0) == fits, done.stderr
 
 
-def test_the_core_is_configured_without_what_only_developers_have(tmp_path):
+def test_the_core_is_configured_without_tools_of_developers(tmp_path):
     """The preset of docs/cpp.md: no Python, no tests."""
     done = call(CMAKE, "-S", ROOT, "--preset", "core", "-B", tmp_path / "build")
     assert done.returncode == 0, done.stderr

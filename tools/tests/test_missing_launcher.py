@@ -30,7 +30,7 @@ def project(tmp_path):
     return tmp_path
 
 
-def test_a_launcher_that_has_gone_is_dropped_and_named(project):
+def test_a_missing_launcher_is_dropped_and_named(project):
     launcher = project / "cache"
     launcher.write_text('#!/bin/sh\nexec "$@"\n')
     launcher.chmod(0o755)
@@ -42,5 +42,5 @@ def test_a_launcher_that_has_gone_is_dropped_and_named(project):
     subprocess.run(["cmake", "--build", project / "build"], capture_output=True, check=True)
 
 
-def test_without_a_launcher_nothing_is_said(project):
+def test_without_a_launcher_nothing_is_reported(project):
     assert "compiler cache" not in configured(project)

@@ -43,7 +43,7 @@ def rows(done):
     return [line.split()[:2] for line in table.splitlines() if line]
 
 
-def test_all_run_to_the_end_and_one_that_fails_fails_the_whole(tmp_path):
+def test_all_suites_run_to_the_end_and_one_failure_fails_the_run(tmp_path):
     done = suites(tmp_path)
     assert done.returncode == 1
     assert rows(done)[:4] == [["fine", "passed"], ["broken", "FAILED"], ["crashed", "FAILED"], ["later", "passed"]]
@@ -60,21 +60,21 @@ def test_all_run_to_the_end_and_one_that_fails_fails_the_whole(tmp_path):
     assert "tests: running: " in done.stdout
 
 
-def test_named_ones_run_and_pass(tmp_path):
+def test_named_suites_run_and_pass(tmp_path):
     done = suites(tmp_path, "fine", "unasked", "fine")
     assert done.returncode == 0, done.stdout + done.stderr
     assert rows(done)[:2] == [["fine", "passed"], ["unasked", "passed"]]
 
 
 @pytest.mark.parametrize("name, code", [("fine", 0), ("broken", 1)])
-def test_one_alone_prints_as_it_goes(tmp_path, name, code):
+def test_a_single_suite_prints_while_it_runs(tmp_path, name, code):
     done = suites(tmp_path, name)
     assert done.returncode == code
     assert not (tmp_path / "logs").exists()
     assert rows(done)[0] == [name, "FAILED" if code else "passed"]
 
 
-def test_an_unknown_one_is_named(tmp_path):
+def test_an_unknown_suite_is_named(tmp_path):
     done = suites(tmp_path, "fine", "fin")
     assert done.returncode == 1 and "unknown suite 'fin'" in done.stderr and "fine, it printed" not in done.stdout
 

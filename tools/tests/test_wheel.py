@@ -12,7 +12,7 @@ from shell import PYTHON, ROOT, VENV, tool_environment
 
 
 @pytest.mark.parametrize("distribution", [wheel.RIFFLER, wheel.BENCH], ids=lambda it: it.name)
-def test_the_sources_of_the_wheel_configure_where_nothing_else_lies(distribution, tmp_path):
+def test_the_sources_of_the_wheel_configure_on_their_own(distribution, tmp_path):
     copy = tmp_path / "copy"
     for path in wheel.sources(distribution):
         target = copy / path.relative_to(ROOT)
@@ -24,7 +24,7 @@ def test_the_sources_of_the_wheel_configure_where_nothing_else_lies(distribution
     assert done.returncode == 0, done.stderr
 
 
-def test_both_distributions_are_of_the_version_of_the_build():
+def test_both_distributions_have_the_version_of_the_build():
     """riffler-bench reads the objects of the riffler of its version (riffler_bench/__init__.py)."""
     build = re.search(r"project\(riffler VERSION ([\d.]+)", (ROOT / "CMakeLists.txt").read_text())[1]
     for distribution in (wheel.RIFFLER, wheel.BENCH):

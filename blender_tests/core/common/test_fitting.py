@@ -38,7 +38,7 @@ def test_a_depth_suits_its_cutter():
 
 
 @pytest.mark.parametrize("side", [0, -1, math.nan, math.inf])
-def test_what_is_no_size_is_refused(side):
+def test_invalid_sizes_are_refused(side):
     for call in (fitting.unit, fitting.pitch):
         with pytest.raises(ValueError, match="size"):
             call(side)

@@ -18,7 +18,7 @@ def polygon(radius):
 
 
 @pytest.mark.parametrize("way", [(0, 0, 10), (10, 0, 0), (3, -7, 2), (0, 1e-3, 0)])
-def test_an_arrow_is_closed_and_points_where_it_is_told(way):
+def test_an_arrow_is_closed_and_points_in_its_direction(way):
     start, width = np.array([5.0, -2, 1]), 0.4
     triangles = glyphs.arrow(start, start + way, width)
     audit = audited(triangles) if np.linalg.norm(way) > 0.1 else None
@@ -33,7 +33,7 @@ def test_an_arrow_is_closed_and_points_where_it_is_told(way):
         assert audit.volume == pytest.approx(expected, rel=1e-6)
 
 
-def test_a_short_arrow_is_a_smaller_head_and_none_is_nothing():
+def test_a_short_arrow_has_a_smaller_head_and_an_empty_one_nothing():
     tiny = glyphs.arrow((0, 0, 0), (0, 0, 0.01), 1.0)
     assert np.abs(tiny[..., :2]).max() < 0.01
     assert glyphs.arrow((1, 2, 3), (1, 2, 3), 1.0).shape == (0, 3, 3)
@@ -57,7 +57,7 @@ def test_a_bent_arrow_turns_as_the_right_hand_does(angle):
         assert audited(triangles).open_edges == 2 * glyphs.SIDES
 
 
-def test_a_ring_is_square_to_its_axis():
+def test_a_ring_is_perpendicular_to_its_axis():
     points = glyphs.ring((1, 2, 3), (0, 0, 2), 4.0)
     assert np.allclose(points[:, 2], 3) and np.allclose(np.linalg.norm(points[:, :2] - (1, 2), axis=1), 4)
 
@@ -67,7 +67,7 @@ def area(triangles):
     return 0.5 * (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
 
 
-def test_a_line_is_as_wide_as_it_is_told_and_broken_where_there_is_no_place():
+def test_a_line_has_its_width_and_breaks_at_missing_points():
     line = np.array([(0, 0), (10, 0), (10, 10)])
     assert area(glyphs.ribbon(line, 2.0)).sum() == pytest.approx(2 * 12 * 2)  # a half width longer at every end
     assert (area(glyphs.ribbon(line, 2.0)) > 0).all() and (area(glyphs.box(1, 2, 3, 4)) == 6).all()
@@ -102,7 +102,7 @@ def test_scales_have_round_numbers(low, high, most, expected):
     assert scale.ticks(low, high, most) == expected
 
 
-def test_scales_never_have_more_than_was_asked():
+def test_scales_never_have_more_marks_than_requested():
     rng = np.random.default_rng(2)
     for _ in range(2000):
         low = rng.normal() * 10 ** rng.uniform(-6, 6)
@@ -113,7 +113,7 @@ def test_scales_never_have_more_than_was_asked():
         assert len(marks) <= most and all(low - slack <= m <= high + slack for m in marks)
 
 
-def test_ends_of_scales():
+def test_scales_end_at_round_numbers_and_refuse_bad_ranges():
     assert [scale.ceiling(x) for x in (0.0011, 1.0, 2.0, 2.1, 7, 13)] == [0.002, 1, 2, 5, 10, 20]
     assert [scale.share(x, 2, 4) for x in (1, 2, 3, 4, 9)] == [0, 0, 0.5, 1, 1]
     for bad in ((1, 1), (0, float("inf")), (float("nan"), 2)):

@@ -90,7 +90,7 @@ def test_a_slow_move_is_not_held_up_by_the_guess():
         assert clock.now - begin <= 4.0
 
 
-def test_cancel_restores():
+def test_cancel_restores_the_volume():
     volume = Volume(Clock())
     volume.log = ["before"]
     j = job(volume, cut(0, 100))
@@ -133,7 +133,7 @@ def test_the_picture_never_takes_more_than_its_share():
     assert 0.15 < shown / clock.now < 0.27
 
 
-def test_run_through_tells_how_far_it_is_and_ends_where_the_slices_end():
+def test_run_through_reports_progress_and_gives_the_same_result_as_slices():
     shares, volume = [], Volume(Clock(), cost=0.1)
     j = job(volume, cut(0, 200))
     run_through(j, shares.append)
@@ -141,7 +141,7 @@ def test_run_through_tells_how_far_it_is_and_ends_where_the_slices_end():
     assert len(shares) > 3 and shares == sorted(shares) and shares[0] > 0 and shares[-1] < 1
 
 
-def test_what_was_made_at_once_needs_no_step():
+def test_work_finished_at_once_needs_no_step():
     shares, j = [], DoneJob("made")
     run_through(j, shares.append)
     assert j.result == "made" and shares == [] and j.fraction == 1
@@ -189,14 +189,14 @@ def test_a_task_is_waited_for_no_longer_than_the_budget():
     assert j.step(10.0) and clock.now < 1.01 and j.result == "paths"
 
 
-def test_a_task_runs_through_and_is_heard():
+def test_run_through_waits_for_a_task_and_reports_its_progress():
     shares = []
     _, j = task_job(1.1, "paths", "Searching")
     run_through(j, shares.append)
     assert j.result == "paths" and shares == pytest.approx([0.25 / 1.1, 0.5 / 1.1, 0.75 / 1.1, 1.0 / 1.1])
 
 
-def test_what_a_task_raised_is_raised_by_the_step_that_sees_it():
+def test_the_next_step_raises_the_error_of_a_task():
     _, j = task_job(0.1, ValueError("tool: none"))
     with pytest.raises(ValueError, match="tool: none"):
         run_through(j)
@@ -276,7 +276,7 @@ def test_a_call_on_a_thread_is_a_task():
         run_through(TaskJob(ThreadTask(fails)))
 
 
-def test_work_in_pieces_goes_on_where_it_was_and_gets_what_its_task_has_made():
+def test_work_in_pieces_continues_with_the_result_of_its_task():
     done, clock = [], Clock()
 
     def pieces():

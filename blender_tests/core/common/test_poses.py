@@ -22,7 +22,7 @@ def test_tilt_turns_about_the_tangent():
     assert np.allclose(axes, expected, atol=1e-12)
 
 
-def test_a_ramp_leans_with_the_path_and_stays_square_to_it():
+def test_a_tool_on_a_ramp_stays_perpendicular_to_the_path():
     p = np.array([(0, 0, 0), (1, 0, -1.0), (2, 0, -2)])
     axes = poses.tilted_axes(p, np.zeros(3))
     assert np.allclose(axes, np.array([1, 0, 1]) / np.sqrt(2))
@@ -31,7 +31,7 @@ def test_a_ramp_leans_with_the_path_and_stays_square_to_it():
 @pytest.mark.parametrize(
     "p", [[(0, 0, 0), (0, 0, -5)], [(0, 0, 0), (0, 0, -5), (3, 0, -5)], [(0, 0, 0), (3, 0, 0), (3, 0, -5)]]
 )
-def test_an_upright_path_has_unit_axes_square_to_it(p):
+def test_an_upright_path_has_unit_axes_perpendicular_to_it(p):
     p = np.array(p, float)
     axes = poses.tilted_axes(p, np.zeros(len(p)))
     assert np.allclose(np.linalg.norm(axes, axis=1), 1)

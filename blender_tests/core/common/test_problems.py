@@ -15,7 +15,7 @@ def test_an_error_of_the_system_names_the_file_and_what_helps(code):
     assert text.startswith("/a/b.stl: ") and "choose" in text and "Errno" not in text
 
 
-def test_other_errors_are_said_as_they_are_and_never_empty():
+def test_other_errors_are_shown_unchanged_and_never_empty():
     assert problems.said(ValueError("pitch: 3")) == "pitch: 3"
     for nothing in (MemoryError(), MemoryError("std::bad_alloc")):
         assert "not enough memory" in problems.said(nothing)
@@ -25,7 +25,7 @@ def test_other_errors_are_said_as_they_are_and_never_empty():
     assert problems.said(FileNotFoundError("there is no folder /x")) == "there is no folder /x"
 
 
-def test_a_message_begins_large_and_names_stay_as_they_are():
+def test_a_message_begins_with_a_capital_and_names_stay_unchanged():
     large = problems.capitalised
     assert large("the mesh has no volume") == "The mesh has no volume"
     assert large("stroke: there are no rows") == "Stroke: there are no rows"
@@ -34,7 +34,7 @@ def test_a_message_begins_large_and_names_stay_as_they_are():
     assert large("cube is flat", ["torus", "cube"]) == "cube is flat"
 
 
-def test_a_file_that_can_be_written_is_let_through(tmp_path):
+def test_a_writable_file_is_accepted(tmp_path):
     problems.check_target(tmp_path / "new.stl")
     (tmp_path / "old.stl").write_text("old")
     problems.check_target(tmp_path / "old.stl")
@@ -78,7 +78,7 @@ def test_a_surface_is_refused_by_its_triangles_not_by_its_box():
     estimate.check_surface("No number", cube, float("nan"), 0.5)  # the volume refuses it with its own message
 
 
-def test_boxes_have_the_triangles_that_are_foretold():
+def test_boxes_have_the_predicted_number_of_triangles():
     """Two for each square of the pitch on six sides: 20 × 20 × 20 mm at 0.5 mm has 19 200 (counted in Blender)."""
     assert 2 * estimate.box_area((20, 20, 20)) / 0.5**2 == 19_200
 

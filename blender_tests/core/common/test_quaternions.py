@@ -72,7 +72,7 @@ def test_signs_are_aligned_and_orientations_stay():
     assert len(quaternions.aligned(np.empty((0, 4)))) == 0
 
 
-def test_angles_are_exact_where_a_cosine_sees_nothing():
+def test_angles_too_small_for_a_cosine_are_exact():
     a = np.array([0.0, 0, 1])
     for small in (1e-9, 1e-12):
         assert quaternions.angle(a, np.array([np.sin(small), 0, np.cos(small)])) == pytest.approx(small, rel=1e-6)

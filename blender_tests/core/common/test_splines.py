@@ -83,7 +83,7 @@ def test_cyclic_splines_end_where_they_begin():
         assert np.array_equal(line[0], line[-1])
 
 
-def test_points_that_fall_together_are_one():
+def test_coinciding_points_are_merged():
     line, tilt = splines.evaluate(
         Spline("POLY", [(0, 0, 0), (0, 0, 0), (1, 0, 0), (1, 0, 0)], tilt=np.arange(4.0)), 0.01
     )
@@ -109,6 +109,6 @@ def test_refine_keeps_the_polyline_and_its_corners():
         (Spline("CARDINAL", [(0, 0, 0), (1, 0, 0)]), 0.01, "CARDINAL"),
     ],
 )
-def test_what_makes_no_sense_is_refused(spline, tolerance, word):
+def test_bad_splines_and_tolerances_are_refused(spline, tolerance, word):
     with pytest.raises(ValueError, match=word):
         splines.evaluate(spline, tolerance)

@@ -46,7 +46,7 @@ class Mouse:
 
 
 @pytest.mark.parametrize("masked", [False, True])
-def test_the_rows_of_a_run_and_its_journal_tell_the_same_and_states_are_known_after_a_crash(tmp_path, masked):
+def test_the_rows_of_a_run_agree_with_its_journal_and_states_survive_a_crash(tmp_path, masked):
     box = ((0, 0, 0), (30, 30, 10), 0.5, "z")
     volume, mask = riffler.Volume.block(*box), riffler.Volume.empty(*box)
     mask.carve(BALL, np.array([[10.0, 10, 8, 0, 0, 1], [20, 20, 8, 0, 0, 1]]), mode="add")
@@ -89,7 +89,7 @@ def test_the_rows_of_a_run_and_its_journal_tell_the_same_and_states_are_known_af
     assert not kept.folder.exists()
 
 
-def test_the_thread_of_a_device_without_motors_is_not_told():
+def test_the_priority_of_a_thread_without_motors_is_not_reported():
     run = pen_run.PenRun(riffler.pen.Pointer("mouse"), BALL, {})
     assert run.thread == "", "no session yet"
     run.prepare(riffler.Volume.block((0, 0, 0), (10, 10, 10), 1.0))

@@ -25,7 +25,7 @@ def poses(heights):
     return out
 
 
-def test_only_poses_that_are_new_are_looked_at():
+def test_only_new_poses_are_checked():
     collider, known = Collider(), {}
     way = poses(np.linspace(-1, 1, 200))
     job = collisions.ClearanceJob(collider, None, way, known)
@@ -38,7 +38,7 @@ def test_only_poses_that_are_new_are_looked_at():
     assert collisions.ClearanceJob(collider, None, way, known).step(0.0) and collider.asked == 210
 
 
-def test_a_pose_that_comes_twice_is_looked_at_once():
+def test_a_repeated_pose_is_checked_once():
     collider = Collider()
     job = collisions.ClearanceJob(collider, None, np.vstack([poses([1.0, 2.0])] * 3), {})
     assert job.step() and collider.asked == 2 and job.clearances.tolist() == [1, 2] * 3
@@ -46,7 +46,7 @@ def test_a_pose_that_comes_twice_is_looked_at_once():
     assert nothing.fraction == 1 and nothing.step() and len(nothing.clearances) == 0
 
 
-def test_what_lies_together_is_a_run_of_whole_frames():
+def test_adjacent_collisions_form_a_run_of_whole_frames():
     frames = np.array([1, 1.5, 2.2, 3, 4, 5.1, 6, 7])
     below = np.array([0, -1, -1, 0, 0, -1, 0, -1.0])
     assert collisions.runs(frames, below, -0.5) == [(1, 3), (5, 6), (7, 7)]
@@ -66,7 +66,7 @@ def test_runs_of_several_are_one_list_in_order():
 
 
 @pytest.mark.parametrize("most", [1, 2, 5, 64])
-def test_too_many_runs_are_merged_over_the_least_gaps(most):
+def test_too_many_runs_are_merged_over_the_smallest_gaps(most):
     rng = np.random.default_rng(4)
     edges = np.cumsum(rng.integers(1, 50, 400))
     found = [(int(a), int(b)) for a, b in edges.reshape(-1, 2)]
@@ -79,7 +79,7 @@ def test_too_many_runs_are_merged_over_the_least_gaps(most):
     assert collisions.merged(found[:most], most) == found[:most]
 
 
-def test_marks_are_told_from_other_people_s():
+def test_marks_are_distinguished_from_the_users_markers():
     for run in ((3, 3), (112, 130), (-5, 0)):
         assert collisions.is_label(collisions.label(run))
     assert collisions.label((112, 130)) == "collides 112–130"

@@ -78,7 +78,7 @@ def test_paths_without_length_have_places_too():
 
 
 @pytest.mark.parametrize("rate", [0.3, 1.0, 2.4, 17.0])
-def test_a_point_s_keyframe_is_its_own_and_whole_where_it_can_be(rate):
+def test_every_point_has_its_own_keyframe_whole_if_possible(rate):
     rng = np.random.default_rng(3)
     layout = key_orientations.Layout([line(*np.cumsum(rng.uniform(0.01, 2, 60))), circle(50)], rate)
     for track in layout.tracks:
@@ -90,7 +90,7 @@ def test_a_point_s_keyframe_is_its_own_and_whole_where_it_can_be(rate):
         assert track.frame_of(0) == track.first
 
 
-def test_what_keyframes_say():
+def test_keyframes_become_keys_of_their_points():
     layout = key_orientations.Layout([line(0, 10), circle(12)], 1.0)
     ring = layout.tracks[1]
     frames = np.array([1, 15, ring.first, ring.frames[3] + 0.2])
@@ -101,7 +101,7 @@ def test_what_keyframes_say():
     assert reading.problems == ["key at frame 15 outside every path: ignored"]
 
 
-def test_signs_lengths_and_twists_say_nothing():
+def test_signs_lengths_and_twists_do_not_matter():
     layout = key_orientations.Layout([line(0, 10)], 1.0)
     q = quats((1, 2, 3))
     twist = quaternions.multiply(q, np.array([[np.cos(0.7), 0, 0, np.sin(0.7)]]))  # about the tool's own axis
@@ -114,7 +114,7 @@ def test_signs_lengths_and_twists_say_nothing():
 
 
 @pytest.mark.parametrize("order", [(0, 1), (1, 0)])
-def test_of_two_keys_at_a_point_the_nearer_counts(order):
+def test_the_nearer_of_two_keys_at_a_point_counts(order):
     layout = key_orientations.Layout([line(0, 10, 20)], 1.0)
     frames, q = np.array([10.0, 11.5]), quats(X, Y)
     reading = key_orientations.read(layout, frames[list(order)], q[list(order)])
@@ -132,7 +132,7 @@ def unit(*v):
     return np.array(v) / np.linalg.norm(v)
 
 
-def test_changes_are_told_apart():
+def test_changes_are_distinguished():
     before = {0: unit(0, 0, 1), 5: unit(1, 0, 1), 9: unit(0, 1, 1)}
     assert not key_orientations.change(before, {k: a + 3e-8 * np.eye(3)[0] for k, a in before.items()})
     added = key_orientations.change(before, {**before, 3: unit(1, 1, 1)})
@@ -168,7 +168,7 @@ def test_written_keys_are_read_back_over_antipodal_and_upside_down_axes():
         assert list(found) == list(path) and not key_orientations.change(path, found)
 
 
-def test_keys_that_nobody_has_turned_stay_as_somebody_set_them():
+def test_unturned_keys_stay_as_the_user_set_them():
     layout = key_orientations.Layout([line(*np.linspace(0, 20, 41))], 1.0)
     twist = quaternions.multiply(quats((1, 1, 1)), np.array([[np.cos(0.7), 0, 0, np.sin(0.7)]]))[0]
     frames, table = np.array([1.0, 8.1]), np.array([[1.0, 0, 0, 0], twist])
@@ -219,7 +219,7 @@ def test_a_divided_path_has_its_keys_where_they_were():
     assert list(fine.keys.values()) == [X, Y, Z]
 
 
-def test_axes_from_elsewhere_become_keys_and_no_axes_stay_none():
+def test_given_axes_become_keys_and_paths_without_axes_get_none():
     path = Divided([0, 4, 10], [X, Y, Z])
     fine = key_orientations.divided(path, 1.0)
     assert fine.interpolation == "slerp" and list(fine.keys) == [0, 4, 10]
@@ -227,7 +227,7 @@ def test_axes_from_elsewhere_become_keys_and_no_axes_stay_none():
     assert key_orientations.divided(path, 0.1) is path
 
 
-def test_a_layout_that_follows_another_lays_out_what_is_another_path_or_elsewhere():
+def test_a_following_layout_lays_out_only_changed_or_moved_paths():
     first, second, third = line(0, 10), line(0, 20), line(0, 5)
     before = key_orientations.Layout([first, second, third], 1.0)
     same = line(0, 20)  # of the same length, and another object
@@ -246,7 +246,7 @@ def test_a_layout_that_follows_another_lays_out_what_is_another_path_or_elsewher
         assert all(np.array_equal(a.frames, b.frames) for a, b in zip(layout.tracks, fresh.tracks, strict=True))
 
 
-def test_keyframes_in_the_place_of_others_leave_what_does_not_count():
+def test_replacing_keyframes_keeps_those_outside_the_paths():
     layout = key_orientations.Layout([line(0, 10), line(0, 10)], 1.0)
     up, east = np.array([0.0, 0, 1]), unit(1, 0, 1)
     frames, table = np.array([3.0, 14.0]), quats(up, east)  # on the first path, and between the two

@@ -22,7 +22,7 @@ def said(**more):
     return [(e["kind"], e["point"], e["name"]) for e in found]
 
 
-def test_what_was_put_between_belongs_to_the_point_before():
+def test_inserted_rows_belong_to_the_point_before():
     assert said() == [("inserted", 2, "Path 2, 1 row inserted between its points")]
 
 
@@ -33,7 +33,7 @@ def test_neighbouring_points_with_one_reason_are_one_line():
     assert lines[0][2] == "Path 2, 2 points from 3 on: the holder" and lines[2][2] == "Path 2, point 8: the part"
 
 
-def test_a_run_of_lifted_rows_is_at_its_highest():
+def test_a_run_of_lifted_rows_is_listed_at_its_highest_row():
     pieces = ["cutter", "shank", "holder", "cutter", "cutter", "cutter", "cutter"]
     lines = said(lift=np.array([0.1, 0.2, 0.5, 0, 0, 0.25, 0]), pieces=pieces)
     assert lines[0] == ("lifted", 2, "Path 2, 3 rows lifted by up to 0.5 mm, off the holder")
@@ -50,7 +50,7 @@ def test_a_lift_by_more_than_the_tolerance_leaves_material():
     assert location_messages.left([some, report()], 0.5) == "" == location_messages.left([], 0.01)
 
 
-def test_ways_that_are_not_free_come_before_what_was_lifted():
+def test_blocked_moves_are_listed_before_lifted_rows():
     lines = said(unsafe=[(3, -0.2, 0.1, "no row frees it")], lift=np.array([1.0, 0, 0, 0, 0, 0, 0]))
     assert [line[0] for line in lines] == ["unsafe", "lifted", "inserted"]
     assert lines[0][1:] == (2, "Path 2, after point 2: no row frees it (-0.2 mm)")

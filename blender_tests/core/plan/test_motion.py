@@ -49,7 +49,7 @@ def test_lifted_inserted_and_missing_rows_are_at_their_time(closed):
     assert track.frames[6] < found.frames[5] < track.frames[7]
 
 
-def test_rows_beside_a_long_lift_have_keys_of_their_own():
+def test_rows_next_to_a_long_lift_have_their_own_keys():
     track = key_orientations.Track(np.c_[np.arange(3.0), np.zeros((3, 2))], False, 1, 2.0)
     start = np.hstack([np.c_[np.arange(3.0), np.zeros((3, 2))], np.tile([0.0, 0, 1], (3, 1))])
     high = np.c_[1 + np.linspace(0.1, 0.9, 9), np.zeros(9), np.full(9, 500.0), np.tile([0.0, 0, 1], (9, 1))]
@@ -68,14 +68,14 @@ def test_rows_without_room_are_thinned_and_the_last_one_stays():
     assert np.array_equal(alone.poses, poses[:2])  # a path needs both its ends
 
 
-def test_a_constant_axis_is_told_apart_by_place():
+def test_rows_with_a_constant_axis_are_distinguished_by_place():
     track = key_orientations.Track(np.c_[np.arange(50.0), np.zeros((50, 2))], False, 1, 2.0)
     start = np.hstack([np.c_[np.arange(50.0), np.zeros((50, 2))], np.tile([0.0, 0, 1], (50, 1))])
     rows = start[[0, 10, 11, 40, 49]] + [0, 0, 7, 0, 0, 0]
     assert np.array_equal(motion.along(track, start, np.arange(50), rows).frames, track.frames[[0, 10, 11, 40, 49]])
 
 
-def test_rows_that_fit_nowhere_go_by_the_tip_s_way():
+def test_rows_that_fit_no_point_are_spaced_by_the_tip_s_travel():
     track, start, points = located()
     other = np.array([(0, 0, 50, 0, 0, 1), (1, 0, 50, 0, 0, 1), (4, 0, 50, 0, 0, 1.0)])
     found = motion.along(track, start, points, other)
@@ -95,7 +95,7 @@ def test_no_turn_is_larger_than_a_step_and_no_row_is_lost():
     assert len(motion.fine(slow)) == 3 and len(motion.fine(motion.Motion(slow.frames[:1], slow.poses[:1]))) == 1
 
 
-def test_rows_that_single_precision_does_not_part_become_the_last_of_them():
+def test_rows_equal_in_single_precision_merge_into_the_last():
     frames = np.array([1e6, 1e6 + 0.01, 1e6 + 0.02, 1e6 + 1])
     poses = np.hstack([np.arange(12.0).reshape(4, 3), np.tile([0.0, 0, 1], (4, 1))])
     found = motion.distinct(motion.Motion(frames, poses))

@@ -78,7 +78,7 @@ IN_HOLDER = 3 * FLANK / (1 + FLANK / 15)
 UPRIGHT, BESIDE = np.array([(0.0, 0, 0, 0, 0, 1), (10, 0, 0, 0, 0, 1)])
 
 
-def test_the_cutter_may_touch_and_what_is_nearest_beside_it_is_said():
+def test_the_cutter_may_touch_and_the_nearest_other_obstacle_is_named():
     near = surroundings.Making(floor(), "Plate").result()
     state = near.state(TOOL, UPRIGHT)
     assert state.free and state.piece == "shank" and state.distance == pytest.approx(25, abs=1e-6)
@@ -87,7 +87,7 @@ def test_the_cutter_may_touch_and_what_is_nearest_beside_it_is_said():
     assert bare.free and str(bare) == "Free"
 
 
-def test_shank_and_holder_alone_are_where_they_are():
+def test_shank_and_holder_alone_keep_their_place():
     body, lift = surroundings.above(TOOL)
     assert lift == 25
     wall = riffler.Collider(box((20, -50, -10), (30, 50, 100)))
@@ -99,14 +99,14 @@ def test_shank_and_holder_alone_are_where_they_are():
     assert surroundings.above(riffler.Tool.ball(6, 25)) == (None, 0.0)
 
 
-def test_what_hits_what_and_by_how_much():
+def test_a_state_names_what_hits_what_and_by_how_much():
     wall = box((13, -50, -10), (60, 50, 100))
     state = surroundings.Making(wall, "Wall").result().state(TOOL, UPRIGHT)
     assert not state.free and (state.piece, state.other) == ("holder", "Wall")
     assert state.distance == pytest.approx(-IN_HOLDER, abs=1e-6) and str(state) == "Holder hits Wall by 2.8 mm"
 
 
-def test_fixtures_are_named_and_room_is_wanted_of_them():
+def test_fixtures_are_named_and_need_clearance():
     fixtures = [("Vise", box((23, -10, 0), (40, 10, 80))), ("Clamp", box((-80, -10, 0), (-60, 10, 80)))]
     near = surroundings.Making(floor(), "Plate", fixtures).result()
     state = near.state(TOOL, UPRIGHT)
@@ -119,7 +119,7 @@ def test_fixtures_are_named_and_room_is_wanted_of_them():
     assert clear == pytest.approx([0, -IN_HOLDER], abs=0.1)
 
 
-def test_surroundings_are_made_while_others_work_and_errors_are_raised_by_the_result():
+def test_surroundings_are_built_on_a_thread_and_errors_are_raised_by_the_result():
     fixtures = [("Vise", box((23, -10, 0), (40, 10, 80)))]
     making = surroundings.Making(floor(), "Plate", fixtures)
     asked = 0
@@ -135,7 +135,7 @@ def test_surroundings_are_made_while_others_work_and_errors_are_raised_by_the_re
         surroundings.Making(floor(), "Plate", [("Sheet", flat)])
 
 
-def test_a_guarded_tool_has_more_of_what_it_has():
+def test_a_guarded_tool_has_a_larger_shank_and_holder():
     straight = riffler.Tool.ball(6, 25).with_holder([(40, 14, 70, 14)])
     wide = riffler.plan.with_room(straight, 2.0)
     assert max(r for _, _, _, r in wide.holder) == pytest.approx(16) and wide.diameter == straight.diameter

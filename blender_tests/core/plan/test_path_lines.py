@@ -47,14 +47,14 @@ def test_rows_between_points_are_lifted_as_their_neighbours_are():
 
 
 @pytest.mark.parametrize("state", ["keyed", "unplanned", "blocked", "off"])
-def test_what_is_not_cut_is_one_line_along_the_centres(state):
+def test_uncut_paths_are_one_line_along_the_centres(state):
     found = path_lines.of_path(path(), None if state != "off" else rows_of(path()), state)
     assert list(found) == [state] and len(found[state]) == 10
     loop = path_lines.of_path(path(closed=True), None, state)[state]
     assert len(loop) == 11 and np.array_equal(loop[-1, 1], loop[0, 0])
 
 
-def test_stretches_that_collide_are_lines_of_their_own():
+def test_colliding_stretches_are_separate_lines():
     hits = path_lines.hits(np.arange(1.0, 12.0), [(3, 5), (9, 9)])
     assert hits.tolist() == [False, False, True, True, True, False, False, False, True, False, False]
     found = path_lines.of_path(path(), None, "keyed", hits)
@@ -68,7 +68,7 @@ def test_stretches_that_collide_are_lines_of_their_own():
     assert list(path_lines.of_path(path(), None, "blocked", hits)) == ["blocked"]
 
 
-def test_ways_between_cuts_are_lead_ins_rapids_and_retracts():
+def test_moves_between_cuts_are_lead_ins_rapids_and_retracts():
     tool = riffler.Tool.ball(6, 30)
     cuts = [rows_of(path(lean=0.0)), rows_of(path(lean=0.0)) + np.array([40, 0, 0, 0, 0, 0])]
     program = riffler.Program.from_cl(cuts, tools=[tool], feed=600, safe_height=50)
@@ -83,7 +83,7 @@ def test_ways_between_cuts_are_lead_ins_rapids_and_retracts():
         program_timeline.begins(program.poses, [cuts[0], cuts[1] + 1])
 
 
-def test_names_on_the_timeline_are_known_again():
+def test_names_on_the_timeline_are_recognised():
     said = [path_names.name(2, 12.44), path_names.name(0, 5.0, True), path_names.name(1, 1e3, False, "Plan ▸ 2")]
     assert said == ["▸ Path 3, 12.4 mm", "▸ Path 1, 5 mm off", "Plan ▸ 2 ▸ Path 2, 1000 mm"]
     assert all(map(path_names.is_name, said))

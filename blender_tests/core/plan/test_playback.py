@@ -41,7 +41,7 @@ def test_a_baked_program_plays_as_it_cuts():
     assert str(found) == "Plays within 0.0001 mm and 0.001° of the program"
 
 
-def test_the_way_between_rows_is_the_great_circle():
+def test_the_axis_moves_on_the_great_circle_between_rows():
     """The reference for the animation is independent code."""
     way = program()
     for k in range(len(way) - 1):
@@ -71,7 +71,7 @@ def test_keys_far_apart_are_reported_with_the_place():
     )
 
 
-def test_a_sign_that_jumps_is_seen():
+def test_a_jumping_sign_is_detected():
     way = program()
     frames, tips, quats, _ = motion.joined([motion.played(way)])
     quats[len(quats) // 2 :] *= -1
@@ -81,7 +81,7 @@ def test_a_sign_that_jumps_is_seen():
     assert frames[k - 1] - 1 <= found.axis_frame <= frames[k] + 1
 
 
-def test_a_tip_that_is_off_is_seen_where_it_is():
+def test_a_displaced_tip_is_detected_with_its_place():
     way = program()
     frames, tips, quats, _ = motion.joined([motion.played(way)])
     k = int(np.abs(frames - way.frames[20]).argmin())
@@ -98,14 +98,14 @@ def test_rows_that_cannot_be_told_apart_are_not_hidden():
     assert playback.compare(late, baked(late)).tip > 0.5
 
 
-def test_no_quaternion_at_all_counts_as_the_opposite():
+def test_a_zero_quaternion_counts_as_the_opposite_axis():
     way = program()
     play = baked(way)
     found = playback.compare(way, lambda frames: (play(frames)[0], 0 * play(frames)[1]))
     assert found.axis == np.pi and found.tip < 2e-4
 
 
-def test_nothing_and_a_single_pose_are_compared():
+def test_empty_programs_and_single_poses_are_compared():
     assert playback.compare(motion.Motion(np.empty(0), np.empty((0, 6))), None) == playback.Difference()
     one = motion.Motion(np.array([3.0]), np.array([[1.0, 2, 3, 0, 0, 1]]))
     play = player(one.frames, one.poses[:, :3] + [1, 0, 0], np.array([[1.0, 0, 0, 0]]))
@@ -113,6 +113,6 @@ def test_nothing_and_a_single_pose_are_compared():
     assert found.tip == pytest.approx(1) and found.tip_frame == 3 and found.axis == 0
 
 
-def test_the_worse_of_two_has_the_larger_of_each():
+def test_the_worse_of_two_results_takes_the_larger_of_each_error():
     a, b = playback.Difference(1.0, 5, 0.1, 6, 10), playback.Difference(0.5, 7, 0.2, 8, 20)
     assert a.worse(b) == b.worse(a) == playback.Difference(1.0, 5, 0.2, 8, 30)

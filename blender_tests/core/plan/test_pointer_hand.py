@@ -35,7 +35,7 @@ def pose(hand):
     return hand.device.state().pose
 
 
-def test_the_view_is_as_it_is_described():
+def test_the_view_matches_its_description():
     assert np.allclose(view().project([(30, 3, 3), (40, 13, 3)]), [at(30, 3), at(40, 13)])
     right, up, back = view().basis()
     assert np.allclose([right, up, back], np.eye(3))

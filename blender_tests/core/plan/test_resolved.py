@@ -37,7 +37,7 @@ def test_only_the_same_path_with_the_same_keys_and_surroundings_is_found():
         assert kept.get(number, other, wanted, mark) is None
 
 
-def test_what_is_no_program_is_not_kept_and_the_oldest_goes():
+def test_only_programs_are_kept_and_the_oldest_is_dropped():
     kept = Resolved(count=2, nbytes=1000)
     for rows, mark in ((None, "mark"), (np.empty((0, 6)), "mark"), (np.ones((4, 6)), None)):
         kept.put(0, Path(LINE, {0: UP}), rows, mark)

@@ -59,7 +59,7 @@ def test_an_open_valley_is_keyed_at_its_ends_in_the_middle_between_the_walls():
     assert np.allclose(answer.path.axes, (0, -math.sqrt(0.5), math.sqrt(0.5)), atol=1e-9)
 
 
-def test_a_roof_over_the_middle_takes_further_keys_and_the_way_is_free_by_distance():
+def test_a_roof_over_the_middle_takes_further_keys_and_the_path_is_free():
     """A beam across the valley, from 22 to 38 in x: compared with the distance from axis to beam."""
     beam = ((22, -40, 12), (38, -8, 16))
     collider = solid(FLOOR, WALL, beam)
@@ -91,7 +91,7 @@ def test_the_machine_s_cone_is_kept():
     assert none.path is None and none.reason
 
 
-def test_first_keys():
+def test_first_keys_are_in_the_middle_at_the_ends_or_both():
     path = valley(61, 60)
     assert (
         tilt_search.begun(path, 1) == [30]
@@ -119,7 +119,7 @@ def test_first_keys():
         ([0, 5, 9], [5], [0, 5, 9]),
     ],
 )
-def test_further_keys(points, blocked, wanted):
+def test_further_keys_divide_the_blocked_stretches(points, blocked, wanted):
     assert tilt_search.further(points, blocked) == wanted
 
 
@@ -137,7 +137,7 @@ class Slow:
         self.cancelled = True
 
 
-def test_answers_are_in_the_order_of_the_paths_whichever_comes_first():
+def test_results_keep_the_order_of_the_paths():
     searches = [Slow(k, (7 * k) % 11) for k in range(30)]
     job = tilt_search.SearchesJob(searches, sleep=lambda s: None)
     shares = []
@@ -147,7 +147,7 @@ def test_answers_are_in_the_order_of_the_paths_whichever_comes_first():
     assert job.answers == list(range(30)) and shares == sorted(shares) and job.fraction == 1
 
 
-def test_whatever_runs_is_cancelled():
+def test_all_running_searches_are_cancelled():
     searches = [Slow(k, 5) for k in range(20)]
     job = tilt_search.SearchesJob(searches, sleep=lambda s: None)
     job.step(0.0)

@@ -45,7 +45,7 @@ def test_toml_has_one_tool_or_a_table_of_them(tmp_path):
     assert tools(read(tmp_path, two + more, "b.toml")) == [BALL, FLAT]
 
 
-def test_what_riffler_writes_is_read(tmp_path):
+def test_tools_that_riffler_writes_are_read(tmp_path):
     tool = riffler.Tool.from_dict(LONG)
     path = tool_library.write(tmp_path / "new" / "folder", tool.to_dict())
     assert path.name == "Long.json" and os.listdir(path.parent) == ["Long.json"]
@@ -90,18 +90,18 @@ def test_a_tool_without_a_name_has_its_files(tmp_path):
         ("a.toml", "tools = 3", r"^a\.toml, line 1: a tool, a table"),
     ],
 )
-def test_what_is_wrong_with_a_file_is_named_with_its_line(tmp_path, name, text, message):
+def test_faults_of_a_file_are_named_with_their_line(tmp_path, name, text, message):
     with pytest.raises(ValueError, match=message):
         read(tmp_path, text, name)
 
 
-def test_bytes_that_are_no_text_are_named(tmp_path):
+def test_a_file_that_is_not_text_is_named(tmp_path):
     (tmp_path / "a.json").write_bytes(b'{"name": "\xff"}')
     with pytest.raises(ValueError, match=r"^a\.json: byte 10 is not UTF-8$"):
         tool_library.read(tmp_path / "a.json", riffler.Tool.from_dict)
 
 
-def test_a_file_that_is_not_there_is_named(tmp_path):
+def test_a_missing_file_is_named(tmp_path):
     with pytest.raises(ValueError, match=r"^gone\.json: cannot be opened: No such file or directory: choose"):
         tool_library.read(tmp_path / "gone.json", riffler.Tool.from_dict)
 
@@ -119,12 +119,12 @@ def test_a_bad_file_does_not_spoil_the_others(tmp_path):
     assert entries == [] and problems == [f"{tmp_path / 'gone'}: No such file or directory"]
 
 
-def test_a_name_that_is_not_there_says_which_are(tmp_path):
+def test_the_error_of_an_unknown_name_lists_the_known_ones(tmp_path):
     with pytest.raises(ValueError, match=r"^tools\.json: there is no tool 'X', only Six, Long$"):
         tool_library.find(read(tmp_path, [BALL, LONG]), "X")
 
 
-def test_a_file_is_written_over_only_for_the_same_tool(tmp_path):
+def test_a_file_is_overwritten_only_for_the_same_tool(tmp_path):
     path = tool_library.write(tmp_path, BALL)
     tool_library.write(tmp_path, {**BALL, "length": 40.0})
     assert json.loads(path.read_text())["length"] == 40.0
@@ -153,7 +153,7 @@ def test_a_folder_that_cannot_be_written_is_named(tmp_path):
         assert str(caught.value).startswith(str(folder))
 
 
-def test_a_disk_that_is_full_leaves_the_file_before(tmp_path, monkeypatch):
+def test_a_full_disk_leaves_the_old_file(tmp_path, monkeypatch):
     path = tool_library.write(tmp_path, BALL)
 
     def full(*_):

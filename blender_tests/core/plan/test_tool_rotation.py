@@ -73,7 +73,7 @@ def test_a_dial_counts_turns_and_goes_slowly():
     assert dial.turned == pytest.approx(13.05, abs=1e-9)
 
 
-def test_a_dial_that_is_seen_from_the_side_goes_with_the_pointer_along_it():
+def test_a_dial_seen_from_the_side_follows_the_pointer_along_it():
     eye = np.array([0.0, -1e6, 0])  # so far that rays are parallel
     dial = tool_rotation.Dial((0, 0, 0), (0, 0, 1), 20.0, ray_to((0, -20, 0), eye))
     dial.move(ray_to((5, -20, 0), eye))  # its near side goes to +x for a positive angle
@@ -100,7 +100,7 @@ def test_a_ball_is_held_on_the_side_that_the_axis_is_on():
     assert np.allclose(ball.move(ray_to(10 * goal, (1, -90, 2))), goal, atol=1e-9)
 
 
-def test_typed_numbers_are_how_far_it_is_turned():
+def test_typed_numbers_set_the_angle_of_the_turn():
     path = valley(5, 20)
     made = tool_rotation.Turn(path, 2, path.axis(2, 0.1, 0.2), tool_rotation.TILT, ray_to((0, 0, 0)), 20.0)
     for character in "12.5":

@@ -33,7 +33,7 @@ def carved(parts, row):
     return volume.to_bytes()
 
 
-def test_scrubbing_is_carving_the_prefix_by_bytes():
+def test_scrubbing_gives_the_bytes_of_carving_the_prefix():
     rng = np.random.default_rng(5)
     parts = runs(rng)
     prefix = ProgramPrefix(block(), parts)
@@ -75,6 +75,6 @@ def test_a_budget_ends_a_step_between_two_rows():
     assert np.array_equal(prefix.pose(239)[1], parts[1][1][-1])
 
 
-def test_nothing_to_simulate_is_said():
+def test_nothing_to_simulate_is_reported():
     with pytest.raises(ValueError, match="nothing to simulate"):
         ProgramPrefix(block(), [])

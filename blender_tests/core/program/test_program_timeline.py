@@ -12,7 +12,7 @@ def rows(*tips, axis=UP):
     return np.array([[*tip, *axis] for tip in tips], float)
 
 
-def test_rows_are_where_their_feed_brings_them():
+def test_rows_are_at_the_times_that_their_feeds_give():
     poses = rows((0, 0, 10), (0, 0, 0), (30, 0, 0), (30, 0, 0), (30, 0, 100))
     poses[3, 3:] = (1, 0, 0)
     feed = np.array([0.0, 600, 600, 600, 0])
@@ -45,7 +45,7 @@ def test_a_plan_s_rows_are_at_the_frames_of_its_paths():
         program_timeline.of_paths(poses, [(first, np.arange(3)), (second + 1, np.arange(2))])
 
 
-def test_rows_find_their_lines_among_those_put_between():
+def test_rows_find_their_lines_among_inserted_lines():
     poses = rows((0, 0, 0), (10, 0, 0), (0, 0, 0), (10, 0, 0))
     read = rows((0, 0, 0), (3, 0, 0), (7, 0, 0), (10, 0, 1e-5), (4, 0, 0), (0, 0, 0), (10, 0, 0))
     numbers = np.array([11, 12, 13, 14, 15, 16, 17])

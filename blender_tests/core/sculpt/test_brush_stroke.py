@@ -79,7 +79,7 @@ def test_a_straight_drag_is_a_groove(run, axis):
 
 
 @pytest.mark.parametrize("axis", ["NORMAL", "VIEW", "UP"])
-def test_what_is_put_on_is_the_same_bead_the_other_way_up(run, axis):
+def test_an_added_bead_is_the_groove_turned_upside_down(run, axis):
     before = run.volume.volume
     made = stroke(run, (-10, 0), (10, 0), depth=0.8, axis=axis, mode="add")
     assert run.volume.volume - before == pytest.approx(groove(20, 0.8), rel=0.01)
@@ -98,7 +98,7 @@ def test_what_is_put_on_is_the_same_bead_the_other_way_up(run, axis):
         ({"kind": "taper", "diameter": 6.0, "tip_radius": 1.0, "half_angle": 0.5, "length": 30.0}, TAPER),
     ],
 )
-def test_what_puts_material_on_is_no_longer_than_its_end(tool, height):
+def test_the_tool_that_adds_material_is_no_longer_than_its_end(tool, height):
     given = riffler.Tool.from_dict(tool)
     short = brushes.of("add").cutter(given, 0.8)
     assert short.length == pytest.approx(height, abs=0.01) and short.diameter == 6
@@ -111,7 +111,7 @@ def test_what_puts_material_on_is_no_longer_than_its_end(tool, height):
     assert np.allclose(width(short), width(given), atol=2e-3)
 
 
-def test_the_tool_follows_the_surface_as_it_was_unless_it_is_to_accumulate(run):
+def test_the_tool_follows_the_original_surface_unless_it_accumulates(run):
     places = [(x, 0) for x in (0, 0.5, 0, 0.5, 0, 0.5, 0)]
     once = stroke(run, *places, depth=0.3)
     assert once.pose[2] == pytest.approx(-0.3, abs=1e-6) and once.looks == []
@@ -149,14 +149,14 @@ def test_a_text_repeats_a_stroke_to_the_byte(accumulate):
     assert volumes[0] == volumes[1]
 
 
-def test_pieces_of_one_stroke_say_that_they_go_on(run):
+def test_pieces_of_one_stroke_are_marked_as_continued(run):
     stroke(run, (-5, 0), (0, 0), (5, 0))
     assert [entry[1] for entry in run.log] == [True, False, False]
     run.log.clear()
     assert stroke(run, (-100, 0), (-90, 0)).moves == 0 and run.log == []
 
 
-def test_what_keeps_out_is_asked_for_every_pose(run):
+def test_keep_out_is_called_for_every_pose(run):
     def lifted(poses, dt):
         poses = poses.copy()
         poses[:, 2] = np.maximum(poses[:, 2], -0.1)
@@ -201,7 +201,7 @@ def test_hovering_shows_what_a_click_would_do_and_carves_nothing(run):
         (lambda d: d.update(view=3), "JSON"),
     ],
 )
-def test_what_is_no_stroke_is_refused(change, words):
+def test_bad_strokes_are_refused(change, words):
     data = json.loads(
         json.dumps({"view": {"matrix": np.eye(4).ravel().tolist(), "size": [9, 9]}, "rows": [[1, 2], [3, 4]]})
     )

@@ -56,7 +56,7 @@ def test_a_brush_has_all_that_lists_show(brush):
 
 
 @EVERY
-def test_what_a_brush_does_is_what_its_journal_replays(tmp_path, brush):
+def test_a_journal_replays_exactly_what_a_brush_does(tmp_path, brush):
     sculpt = Sculpt()
     before = sculpt.bytes()
     start = Content(sculpt.volume.copy(), [], sculpt.mask.copy())
@@ -92,7 +92,7 @@ def test_a_module_in_the_folder_is_all_that_a_brush_needs(tmp_path, monkeypatch)
     assert importlib.import_module("addon.sculpt.brushes.carve").BRUSHES[0] is brushes.of("remove")
 
 
-def test_what_has_no_journal_name_is_not_told_again(tmp_path):
+def test_a_brush_without_a_journal_name_makes_the_journal_incomplete(tmp_path):
     journal = LiveJournal(tmp_path, Content(riffler.Volume.block(*BOX)), "t0")
     journal.carved(BALL.to_dict(), POSES, "", "t1")
     assert not journal.whole

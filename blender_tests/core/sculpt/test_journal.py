@@ -52,7 +52,7 @@ class Work:
         self.states[token] = self.volume.to_bytes()
 
 
-def test_every_state_is_told_again(tmp_path):
+def test_every_state_is_replayed(tmp_path):
     work = Work(tmp_path)
     work.stroke("a", lane(10, 5, 20, 35))
     work.stroke("b", lane(14, 5, 35), "mask")
@@ -69,13 +69,13 @@ def test_every_state_is_told_again(tmp_path):
     assert [work.journal.state(token).shaped for token in ("c", "s", "d")] == [False, True, True]
 
 
-def test_what_other_means_had_shaped_before_is_told_again(tmp_path):
+def test_a_replay_knows_that_a_sculpt_was_shaped_by_other_means(tmp_path):
     work = Work(tmp_path, shaped=True)
     work.stroke("a", lane(10, 5, 20, 35))
     assert work.journal.state("a").shaped and len(work.journal.state("a").cuts) == 1
 
 
-def test_going_back_and_on_is_written(tmp_path):
+def test_undo_and_redo_are_written(tmp_path):
     work = Work(tmp_path)
     for k, token in enumerate("abc"):
         work.stroke(token, lane(5 + 5 * k, 5, 35))
@@ -95,7 +95,7 @@ def test_going_back_and_on_is_written(tmp_path):
     assert journal.replay(work.journal.folder).volume.to_bytes() == work.states["d"]
 
 
-def test_what_a_dead_process_leaves_is_found_and_what_a_living_one_has_is_not(tmp_path):
+def test_journals_of_dead_processes_are_found_and_those_of_living_ones_are_not(tmp_path):
     work = Work(tmp_path, about={"name": "Figure"})
     work.stroke("a", lane(10, 5, 35))
     assert journal.crashed(tmp_path) == [] and not journal.Lock(work.journal.folder).held
@@ -122,7 +122,7 @@ def test_cuts_that_were_there_before_stay_and_pieces_are_put_together(tmp_path):
     assert [c.moves for c in cuts[1:]] == [3, 2, 1]
 
 
-def test_strokes_that_no_journal_can_tell_are_not_passed_over(tmp_path):
+def test_strokes_that_no_journal_can_hold_make_it_incomplete(tmp_path):
     work = Work(tmp_path)
     work.journal.carved(BALL.to_dict(), lane(5, 1, 2), "melt", "a")
     work.journal.finish("a")
@@ -150,7 +150,7 @@ def test_a_journal_that_cannot_begin_leaves_nothing(tmp_path):
     assert not list(tmp_path.iterdir())
 
 
-def test_rows_that_stand_are_no_moves():
+def test_rows_without_motion_are_no_moves():
     a, b = row(1), row(2)
     poses, dt = moving(np.array([a, a, b, b, b, a]), np.arange(5.0))
     assert poses.tolist() == [a, b, a] and dt.tolist() == [1, 4]
@@ -177,7 +177,7 @@ def test_small_sculpts_are_packed_at_once_and_large_ones_at_rest():
     assert not large.at_once and not large.due(30.9) and large.due(31.0)
 
 
-def test_where_there_is_no_flock_the_same_is_asked_of_windows(tmp_path, monkeypatch):
+def test_windows_locks_journals_without_flock(tmp_path, monkeypatch):
     """That it can be imported there, and which function it calls; Windows' behaviour is not tested here."""
     calls, taken = [], []
 

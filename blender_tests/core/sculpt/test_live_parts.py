@@ -23,7 +23,7 @@ def test_blocks_are_as_fine_as_they_may_be():
     assert len(Blocks((16, 16, 16))) == 96
 
 
-def test_stages_tell_the_median_look_and_count():
+def test_stages_report_median_redraw_and_count():
     now = [0.0]
     stages = Stages(keep=3, clock=lambda: now[0])
     for milliseconds in (100, 5, 1, 3):
@@ -43,7 +43,7 @@ def test_stages_tell_the_median_look_and_count():
     assert Stages().milliseconds() == dict.fromkeys(("cut", "mesh", "transfer", "draw"), 0.0)
 
 
-def test_stages_tell_how_long_the_hand_waits():
+def test_stages_report_how_long_the_hand_waits():
     stages = Stages(keep=3)
     assert stages.lag() == (0.0, 0.0)
     for seconds in (9.0, 0.02, 0.08, 0.03):
@@ -60,7 +60,7 @@ def test_snapshots_that_undo_may_ask_for_are_kept():
     assert (kept.get("a0"), kept.get("a2"), kept.get("b0")) == (0, 2, "b")
 
 
-def test_what_is_shown_now_is_never_dropped():
+def test_the_shown_state_is_never_dropped():
     kept = Snapshots(most=2)
     kept.put("other", "sculpt")
     kept.hold({"other"})

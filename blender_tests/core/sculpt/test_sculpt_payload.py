@@ -24,7 +24,7 @@ def test_round_trip_to_the_bit():
     assert sculpt_payload.decode(sculpt_payload.encode(b"", []))[1] == []
 
 
-def test_masks_and_what_was_put_on_come_back_and_older_blocks_stay_readable():
+def test_masks_and_added_material_read_back_and_older_blocks_stay_readable():
     put = [*CUTS, Cut({"kind": "ball"}, POSES, 0.01, "add")]
     volume, cuts, mask, _ = sculpt_payload.decode(sculpt_payload.encode(b"volume", put, b"mask"))
     assert (volume, mask) == (b"volume", b"mask")
@@ -33,7 +33,7 @@ def test_masks_and_what_was_put_on_come_back_and_older_blocks_stay_readable():
     assert (sculpt_payload.encode(b"volume", CUTS)[8], sculpt_payload.encode(b"volume", put)[8]) == (1, 2)
 
 
-def test_what_cuts_do_not_tell_comes_back_and_older_blocks_have_none():
+def test_masked_and_shaped_flags_read_back_and_older_blocks_have_none():
     beside = [CUTS[0], Cut({"kind": "ball"}, POSES, masked=True)]
     _, cuts, _, shaped = sculpt_payload.decode(sculpt_payload.encode(b"v", beside, shaped=True))
     assert [c.masked for c in cuts] == [False, True] and shaped
@@ -151,7 +151,7 @@ def test_a_blender_on_the_systems_python_names_the_one_package(distribution, wor
     assert "blender.org" in diagnosis.mend(ModuleNotFoundError("No module named 'numpy'"), own, [])[0]
 
 
-def test_the_distribution_is_read_where_it_is_said(monkeypatch):
+def test_the_distribution_is_read_from_the_os_release(monkeypatch):
     read = {"ID": "ubuntu", "ID_LIKE": "debian x"}
     monkeypatch.setattr(diagnosis.platform, "freedesktop_os_release", lambda: read)
     assert diagnosis.distribution() == ["ubuntu", "debian", "x"]

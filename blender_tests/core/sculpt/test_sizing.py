@@ -20,7 +20,7 @@ def test_fine_goes_a_tenth_of_the_way_and_round_numbers_are_round():
     assert drag.to((440, 300), rounded=True) == 0.5, "never nothing"
 
 
-def test_digits_are_taken_and_taken_back():
+def test_typed_digits_are_applied_and_deleted():
     drag = sizing.Drag(3.0, 20.0, (500, 300))
     assert [drag.typed(key) for key in "12.5"] == [1, 12, 12, 12.5]
     assert drag.typed(".") == 12.5 and drag.text == "12.5"

@@ -63,7 +63,7 @@ def test_the_cutters_deepest_point_lies_the_depth_below_the_surface(tool):
         assert support(profile, axis, -normal) @ -normal == pytest.approx(lowest, abs=1e-3 * tool.diameter)
 
 
-def test_a_click_makes_a_dent_as_deep_as_was_asked():
+def test_a_click_makes_a_dent_of_the_requested_depth():
     pieces = stroke(maker(depth=0.8), Sample(3, 4))
     assert [p.new for p in pieces] == [True]
     assert np.allclose(pieces[0].poses[:, :3], [(0.3, 0.4, 0), (0.3, 0.4, -0.8)])
@@ -124,7 +124,7 @@ def test_the_clock_gives_the_feed_where_events_have_times():
     assert sum(p.dt.sum() for p in pieces if not p.new) == pytest.approx(0.5)
 
 
-def test_off_the_surface_a_stroke_ends_and_begins_anew_behind_the_gap():
+def test_off_the_surface_a_stroke_ends_and_begins_again_behind_the_gap():
     def two(x, y):
         return plane(x, y) if abs(x) > 20 else None
 
@@ -155,7 +155,7 @@ def test_a_fast_hand_follows_the_surface_as_a_slow_one_does():
     assert ends[0] == pytest.approx(ends[1], abs=0.02)
 
 
-def test_on_a_string_the_tool_lags_and_comes_home_in_the_end():
+def test_on_a_string_the_tool_lags_and_arrives_at_the_end():
     make = maker(string=20.0)
     along = make.add(Sample(0, 0)) + make.add(Sample(15, 0))
     assert len(along) == 1  # the string is slack
@@ -188,7 +188,7 @@ def test_the_tool_is_some_pixels_behind_and_comes_to_where_the_hand_let_go():
 
 
 @pytest.mark.parametrize("degrees", [20, 90, 150])
-def test_a_corner_is_kept_but_for_a_few_pixels(degrees):
+def test_a_corner_is_kept_except_for_a_few_pixels(degrees):
     turn = np.radians(degrees)
     legs = [np.array([1.0, 0]), np.array([np.cos(turn), np.sin(turn)])]
     told = [legs[0] * k for k in range(-60, 0, 3)] + [legs[1] * k for k in range(0, 61, 3)]

@@ -8,7 +8,7 @@ from riffler import shape
 from addon.stock.pure import relief_heights
 
 
-def test_light_is_weighed_as_the_eye_does_and_what_is_transparent_is_dark():
+def test_brightness_is_weighted_as_by_the_eye_and_transparent_pixels_are_dark():
     pixels = np.array([[[1, 0, 0, 1], [0, 1, 0, 1], [0, 0, 1, 1], [1, 1, 1, 1], [1, 1, 1, 0], [2, 2, 2, 1]]], float)
     assert relief_heights.luminance(pixels)[0] == pytest.approx([0.2126, 0.7152, 0.0722, 1, 0, 1])
     assert relief_heights.luminance(np.array([[[0.5, 0.5]]])) == pytest.approx(0.25)
@@ -62,7 +62,7 @@ def test_edges_and_gaps_of_the_surface_are_no_part_of_it():
     assert shape.slab(top, bottom, cells=cells).audit().open_edges == 0
 
 
-def test_an_embossed_ball_is_as_high_as_was_asked():
+def test_an_embossed_ball_has_the_requested_height():
     volume = riffler.Volume.block((0, 0, 0), (30, 30, 10), 0.25, "xyz")
     surface = riffler.Mesher(volume).freeze()
     x, y = np.meshgrid(np.linspace(5, 25, 161), np.linspace(5, 25, 161), indexing="ij")

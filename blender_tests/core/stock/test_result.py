@@ -23,7 +23,7 @@ def part():
     return volume.to_mesh()
 
 
-def test_what_is_written_comes_back_to_the_bit(tmp_path):
+def test_a_written_mesh_reads_back_to_the_bit(tmp_path):
     pytest.importorskip("lib3mf", reason="lib3mf is not installed here")
     mesh = part()
     path = tmp_path / "größe & more.3mf"
@@ -42,7 +42,7 @@ def test_the_zip_is_made_at_the_quick_level(tmp_path):
     assert sizes[6] < 0.95 * sizes[1] and abs(size - sizes[1]) < 0.01 * sizes[1], (size, sizes)
 
 
-def test_the_file_is_what_the_specification_asks(tmp_path):
+def test_the_file_follows_the_specification(tmp_path):
     from xml.etree import ElementTree
 
     mesh = part()
@@ -65,7 +65,7 @@ def test_the_file_is_what_the_specification_asks(tmp_path):
     assert path.read_bytes() == first
 
 
-def test_what_cannot_be_written_leaves_the_file_that_was_there(tmp_path):
+def test_a_failed_write_leaves_the_old_file(tmp_path):
     path = tmp_path / "a.3mf"
     path.write_text("before")
     mesh = part()
@@ -78,7 +78,7 @@ def test_what_cannot_be_written_leaves_the_file_that_was_there(tmp_path):
         write(tmp_path / "none" / "a.3mf", mesh.vertices, mesh.triangles)
 
 
-def test_colours_tell_too_much_from_too_little_and_from_nothing():
+def test_colours_distinguish_too_much_too_little_and_neither():
     c = colours.of_distance([0.0, 0.1, 1.0, -0.1, -5, np.nan], 0.1)
     assert c.dtype == np.float32 and np.allclose(c[0], 1) and np.allclose(c[:, 3], 1)
     assert np.array_equal(c[1], c[2]) and np.array_equal(c[3], c[4])
@@ -88,7 +88,7 @@ def test_colours_tell_too_much_from_too_little_and_from_nothing():
     assert bar[0][1][0] > bar[0][1][2]
 
 
-def test_tasks_in_a_row_hand_on_what_they_made():
+def test_tasks_in_a_row_pass_on_their_results():
     volume = riffler.Volume.block((0, 0, 0), (20, 15, 10), 0.5, "xyz")
     shares = []
     job = ChainJob(

@@ -74,7 +74,7 @@ def test_a_cylinder_keeps_its_sharp_rims_and_flat_caps_and_its_rims_are_circles(
     assert np.abs(out[caps & (out > 0.99)] - 1).max() < 1e-5
 
 
-def test_a_cube_stays_as_it_is():
+def test_a_cube_stays_unchanged():
     mesh = riffler.Volume.block((0, 0, 0), (2, 3, 4), 1, "xyz").to_mesh(tolerance=0.01)
     new, made = round_facets.rounded(mesh.vertices, mesh.triangles, 1e-3)
     assert closed(new, made).volume == pytest.approx(mesh.volume) and len(made) == len(mesh.triangles)
@@ -95,7 +95,7 @@ def bevelled(segments=4, half=10.0, width=2.5):
     return co, np.array(tri), 2 * half * (4 * half**2 - (4 - np.pi) * width**2)
 
 
-def test_flat_faces_beside_round_edges_stay_flat():
+def test_flat_faces_next_to_round_edges_stay_flat():
     co, tri, exact = bevelled()
     new, made = round_facets.rounded(co, tri, 1e-3)
     assert np.abs(new).max() < 10 + 1e-9
@@ -140,14 +140,14 @@ def test_a_ring_whose_facets_differ_by_thirty_degrees_is_round():
     assert closed(new, made).volume == pytest.approx(exact, rel=5e-3)
 
 
-def test_the_same_comes_out_in_any_units_and_as_fine_as_was_asked():
+def test_the_result_is_the_same_in_any_units_and_as_fine_as_requested():
     co, tri = sphere(12, 8)
     counts = [len(round_facets.rounded(size * co, tri, size * 1e-3)[1]) for size in (1e-3, 1, 1e3)]
     assert len(set(counts)) == 1 and counts[0] > 4 * len(tri)
     assert len(round_facets.rounded(co, tri, 1e-9)[1]) == round_facets.FINEST**2 * len(tri)
 
 
-def test_vertices_apart_at_one_place_are_one():
+def test_separate_vertices_at_one_place_are_merged():
     co, tri = sphere()
     apart, alone = co[tri].reshape(-1, 3), np.arange(tri.size).reshape(-1, 3)
     a, b = round_facets.rounded(co, tri, 1e-3), round_facets.rounded(apart, alone, 1e-3)

@@ -34,7 +34,7 @@ def distance(points, polyline):
     return np.linalg.norm(points[:, None] - near, axis=2).min(axis=1).max()
 
 
-def test_nurbs_of_every_kind():
+def test_nurbs_of_every_kind_agree_with_blenders():
     for cyclic in (False, True):
         for endpoint in (False, True):
             for bezier in (False, True):
@@ -57,7 +57,7 @@ def test_nurbs_of_every_kind():
                     assert distance(line, closed) < 0.2, (what, distance(line, closed))
 
 
-def test_bezier():
+def test_bezier_splines_agree_with_blenders():
     for cyclic in (False, True):
         data = bpy.data.curves.new("B", "CURVE")
         data.dimensions = "3D"

@@ -12,7 +12,7 @@ def progress():
     return bpy.context.window_manager.riffler
 
 
-def test_no_operator_takes_the_shell_s_own_functions_for_others():
+def test_no_operator_overrides_functions_of_the_shell_by_accident():
     """Without a window the shell's functions are not called, so that no other test would detect it."""
     shell = common.part("blender.long_work").LongWork
     own = {name for name, value in vars(shell).items() if name.startswith("_") and callable(value)} - set(vars(object))
@@ -53,7 +53,7 @@ def test_errors_of_the_beginning_and_of_the_task_are_reported():
         assert stage.log == [] and "made" not in bpy.context.scene
 
 
-def test_what_has_to_wait_says_for_what():
+def test_waiting_work_names_what_it_waits_for():
     common.stock()
     curve = common.curve("Line", [(10, 15, 20), (30, 15, 20)]).name
     with operator_task.Stage():
@@ -68,7 +68,7 @@ def test_what_has_to_wait_says_for_what():
         assert bpy.ops.riffler.cut_curve.poll() and bpy.ops.riffler.test_work.poll()
 
 
-def test_part_and_fixtures_are_made_while_the_window_goes_on():
+def test_part_and_fixtures_are_built_while_the_window_stays_responsive():
     """Nothing waits for surroundings that are being built: they are polled until they are ready."""
     programs.plan()
     surroundings = common.part("plan.obstacles")

@@ -269,7 +269,7 @@ def wanted(name, state):
     return True, {MODIFIED[state]}
 
 
-def test_every_operator_of_sculpts_says_the_same_of_a_state_and_its_remedy_helps():
+def test_every_sculpt_operator_reports_a_state_alike_and_the_remedy_helps():
     path = scene_file()
     wrong = []
     for (name, call), state in product(OF_SCULPTS.items(), STATES):
@@ -291,7 +291,7 @@ def test_every_operator_of_sculpts_says_the_same_of_a_state_and_its_remedy_helps
     assert not wrong, "\n".join(wrong)
 
 
-def test_a_hidden_sculpt_is_worked_with_as_any_other():
+def test_a_hidden_sculpt_works_like_any_other():
     path = scene_file()
     for name, call in OF_SCULPTS.items():
         prepared(path, hidden)
@@ -322,7 +322,7 @@ def test_stock_and_parts_are_made_of_objects_in_any_state_or_name_it():
             assert done and not sentences(said), case
 
 
-def test_what_a_sculpt_is_cut_by_is_named_where_it_is_disabled():
+def test_a_disabled_object_that_should_cut_a_sculpt_is_named():
     path = scene_file()
     calls = {"Line": CHANGE["cut_curve"], "Solid": lambda: bpy.ops.riffler.mask_form(form="Solid")}
     for name, call in calls.items():

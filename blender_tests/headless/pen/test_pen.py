@@ -97,7 +97,7 @@ def test_each_stroke_is_an_undo_step_and_a_walk_back_and_on_has_the_volumes_to_t
     nothing_is_left()
 
 
-def test_an_undo_in_the_middle_of_a_stroke_takes_that_stroke_back_and_the_hand_goes_on():
+def test_an_undo_during_a_stroke_undoes_that_stroke_and_the_session_continues():
     sculpt()
     hand = Hand(bpy.data.objects[NAME])
     first = hand.stroke(10)
@@ -144,7 +144,7 @@ def test_an_undo_to_before_the_session_ends_it_and_to_an_older_stroke_of_the_poi
     nothing_is_left()
 
 
-def test_what_is_masked_stays_to_the_byte_and_the_journal_tells_the_same():
+def test_masked_material_stays_to_the_byte_also_in_the_journal():
     for directions in ("z", "xyz"):
         ob = sculpt(directions)
         run = live().begin(bpy.context, ob)
@@ -174,7 +174,7 @@ def test_what_is_masked_stays_to_the_byte_and_the_journal_tells_the_same():
         bpy.data.objects.remove(ob)
 
 
-def test_material_is_put_on_stroke_by_stroke_undone_and_told_by_the_journal():
+def test_material_is_added_stroke_by_stroke_undone_and_replayed_by_the_journal():
     core = common.part("sculpt.pure.journal")
     for directions in ("z", "xyz"):
         ob = lowered(directions)
@@ -213,7 +213,7 @@ def test_material_is_put_on_stroke_by_stroke_undone_and_told_by_the_journal():
         bpy.data.objects.remove(bpy.data.objects[NAME])
 
 
-def test_what_is_masked_gets_no_material_put_on():
+def test_no_material_is_added_under_a_mask():
     ob = lowered("xyz")
     run = live().of(ob)
     run.begin_stroke()
@@ -234,7 +234,7 @@ def test_what_is_masked_gets_no_material_put_on():
 
 
 @common.core_bound
-def test_a_session_does_what_the_tool_at_hand_does():
+def test_a_session_takes_the_mode_of_the_active_tool():
     operators = common.part("pen.operators")
     at_hand = operators._active_tool
     try:
@@ -276,7 +276,7 @@ def test_a_session_does_what_the_tool_at_hand_does():
     nothing_is_left()
 
 
-def test_putting_on_where_the_box_is_full_says_so():
+def test_adding_material_where_the_box_is_full_is_reported():
     ob = sculpt()
     before = now()
     heard = []
@@ -333,7 +333,7 @@ def test_there_is_one_journal_and_a_recovery_knows_its_states():
     nothing_is_left()
 
 
-def test_a_state_that_memory_has_no_more_is_told_by_the_sessions_journal():
+def test_a_state_dropped_from_memory_is_restored_from_the_sessions_journal():
     sculpt()
     hand = Hand(bpy.data.objects[NAME])
     states = [hand.stroke(y) for y in (10, 30, 50)]

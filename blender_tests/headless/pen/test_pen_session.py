@@ -65,7 +65,7 @@ def test_a_recording_is_a_device_and_ends_by_itself():
     nothing_is_left()
 
 
-def test_what_is_shown_follows_and_somebody_who_removes_it_spoils_nothing():
+def test_the_shown_chunks_follow_and_may_be_removed():
     ob = sculpt()
     hand = Hand(ob)
     assert common.part("sculpt.chunks").is_hidden(ob) and bpy.context.object == ob
@@ -90,7 +90,7 @@ def test_what_is_shown_follows_and_somebody_who_removes_it_spoils_nothing():
     nothing_is_left()
 
 
-def test_the_force_on_the_tool_is_against_its_way_and_the_materials():
+def test_the_force_on_the_tool_is_the_materials_and_against_its_motion():
     """Removal force: the constant times the volume removed per second, against the motion (docs/methods.md)."""
     sculpt()
     hand, pushes = Hand(bpy.data.objects[NAME]), []
@@ -157,7 +157,7 @@ def test_a_sculpt_that_is_removed_ends_it_and_an_undo_brings_both_back_but_the_s
     matches_its_volume(NAME)
 
 
-def test_a_sculpt_that_is_changed_meanwhile_keeps_that():
+def test_a_sculpt_that_is_changed_meanwhile_keeps_the_change():
     ob = sculpt()
     hand = Hand(ob)
     hand.stroke(10)
@@ -169,7 +169,7 @@ def test_a_sculpt_that_is_changed_meanwhile_keeps_that():
     nothing_is_left()
 
 
-def test_a_device_that_fails_ends_it_and_what_was_made_stays():
+def test_a_failing_device_ends_the_session_and_finished_strokes_stay():
     sculpt()
     hand = Hand(bpy.data.objects[NAME])
     first = hand.stroke(10)
@@ -188,7 +188,7 @@ def test_a_device_that_fails_ends_it_and_what_was_made_stays():
     nothing_is_left()
 
 
-def test_nothing_else_takes_the_sculpt_meanwhile_and_disabling_the_addon_ends_it():
+def test_no_other_work_takes_the_sculpt_meanwhile_and_disabling_the_addon_ends_the_session():
     ob = sculpt()
     name = ob.name
     hand = Hand(ob)
@@ -259,7 +259,7 @@ def test_a_pen_that_has_lost_counts_gives_force_again_once_it_is_homed_and_its_t
     nothing_is_left()
 
 
-def test_what_has_no_home_is_not_homed_and_buttons_of_a_session_need_one():
+def test_devices_without_a_home_are_not_homed_and_session_buttons_need_a_session():
     hand = Hand(sculpt())
     common.refused(bpy.ops.riffler.pen_home, "mouse has nothing to home")
     assert sessions().running is hand.session

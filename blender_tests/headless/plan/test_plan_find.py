@@ -63,7 +63,7 @@ def test_the_path_of_a_step_has_its_closed_form():
         assert (ob.riffler.plan.part, ob.riffler.plan.paths) == (find_on, 1) and abs(ob.riffler.plan.length - 60) < 0.01
 
 
-def test_the_part_is_taken_as_it_lies():
+def test_the_part_is_used_in_its_place():
     part = step()
     part.location, part.rotation_euler, part.scale = (5, 6, 7), (0, 0, np.pi / 2), (0.5, 1, 1)
     bpy.context.view_layer.update()
@@ -82,7 +82,7 @@ def test_the_plan_remembers_tool_tolerance_and_part():
     assert store().plan(find(tool=common.BALL)).paths[0].radius == RADIUS
 
 
-def test_passes_lie_beside_the_valley():
+def test_passes_lie_on_both_sides_of_the_valley():
     step()
     ob = find(passes=2, stepover=0.5)
     assert len(store().plan(ob).paths) == 3 == len(curves(ob))
@@ -108,7 +108,7 @@ def test_without_a_part_it_says_what_to_do():
     common.refused(bpy.ops.riffler.plan_find, "There is no part")
 
 
-def test_a_changed_part_is_noticed_and_the_same_again_is_none():
+def test_a_changed_part_is_detected_and_an_equal_one_is_not():
     part = step()
     ob = find()
     assert judge(ob).part == ""
@@ -223,7 +223,7 @@ def redraw(ob):
     assert bpy.ops.riffler.plan_show() == {"FINISHED"}
 
 
-def test_copies_of_paths_curves_are_a_persons():
+def test_copies_of_path_curves_belong_to_the_user():
     """By any method of copying; also if the original curve was deleted since."""
     step()
     ob = find(passes=2, stepover=0.5)
@@ -248,7 +248,7 @@ def test_copies_of_paths_curves_are_a_persons():
     assert not [d for d in bpy.data.curves if not d.users], "what was drawn is gone with its points"
 
 
-def test_what_was_renamed_or_is_in_use_is_a_persons():
+def test_renamed_or_used_curves_belong_to_the_user():
     step()
     ob = find(passes=4, stepover=0.5)
     named, bound, parent, cut, other, thick, *_ = curves(ob)
@@ -271,7 +271,7 @@ def test_what_was_renamed_or_is_in_use_is_a_persons():
     assert kept <= names() and len(names()) == 13, "curves drawn the second time did not belong to the user"
 
 
-def test_a_copy_of_the_plan_alone_takes_no_curves_away():
+def test_a_copy_of_the_plan_alone_removes_no_curves():
     step()
     ob = find()
     common.select(ob)
@@ -285,7 +285,7 @@ def test_a_copy_of_the_plan_alone_takes_no_curves_away():
     assert len(names()) == 2
 
 
-def test_what_is_copied_with_its_plan_is_the_copys():
+def test_curves_copied_with_their_plan_belong_to_the_copy():
     step()
     ob = find()
     common.select(ob)
@@ -296,7 +296,7 @@ def test_what_is_copied_with_its_plan_is_the_copys():
     assert len(names()) == 2 and len(curves(twin)) == len(curves(ob)) == 1, "nothing is left of what was copied"
 
 
-def test_what_is_done_for_a_panel_is_done_once():
+def test_work_for_a_panel_is_done_once():
     """A part is read again only if it was changed; other objects cost nothing."""
     part, watch = step(), common.part("plan.operators.watch")
     ob = find()
@@ -323,7 +323,7 @@ def test_what_is_done_for_a_panel_is_done_once():
     assert known() is None, "it is gone: something else than it was"
 
 
-def test_a_sculpt_that_is_being_worked_at_is_a_part_as_it_is_now():
+def test_a_live_sculpt_is_a_part_in_its_present_state():
     common.scale(1)
     part = common.stock(size=(40, 30, 20), pitch=0.5, directions="xyz")
     live = common.part("sculpt.live_registry")
@@ -341,7 +341,7 @@ def test_a_sculpt_that_is_being_worked_at_is_a_part_as_it_is_now():
     assert judge(store().active(bpy.context)).part == ""
 
 
-def test_save_and_reopen():
+def test_a_file_keeps_everything_when_saved_and_reopened():
     step()
     ob = find()
     name, key = ob.name, store().identity(ob)
@@ -356,7 +356,7 @@ def test_save_and_reopen():
     assert store().identity(ob) == key, "the same part, the same plan: the same bytes"
 
 
-def test_what_runs_keeps_a_search_waiting():
+def test_running_work_blocks_a_search():
     step()
     bpy.context.window_manager.riffler.running = "Cutting"
     common.refused(bpy.ops.riffler.plan_find, "Cutting: Esc cancels")

@@ -53,7 +53,7 @@ def shift(ob, z):
 
 
 @common.core_bound
-def test_a_part_that_was_moved_since_is_said_and_makes_no_code():
+def test_a_part_that_was_moved_since_is_reported_and_blocks_nc_code():
     ob = found_on_the_step()
     take(plans.TOOL)
     part = ob.riffler.plan.part
@@ -72,7 +72,7 @@ def test_a_part_that_was_moved_since_is_said_and_makes_no_code():
     assert "Warning" not in said(bpy.ops.riffler.plan_resolve) and "Warning" not in write()
 
 
-def test_a_part_that_nobody_knows_the_surface_of_may_lie_anywhere():
+def test_a_part_of_unknown_surface_may_lie_anywhere():
     """Its code identifies it."""
     ob = programs.plan()
     shift(ob.riffler.plan.part, -0.5)
@@ -120,7 +120,7 @@ def test_a_plan_whose_own_part_is_there_is_found_again_without_the_scene_s():
     common.refused(lambda: bpy.ops.riffler.plan_find(replace=ob.name), "There is no part")
 
 
-def test_what_is_verified_is_the_code_that_is_written():
+def test_the_verified_code_is_the_written_code():
     """Its lines are those of the file: both are written with the plan's tolerance."""
     ob = programs.plan(programs.valley(programs.LEANING, (0, -0.2, 1), programs.LEANING))
     common.part("plan.plan_store").write(ob, replace(programs.content(ob), tolerance=0.2))
@@ -160,7 +160,7 @@ def test_paths_that_are_found_again_leave_nothing_of_the_old_ones():
     assert len(state(ob).motions) == 3 and not state(ob).problems
 
 
-def test_what_was_found_on_a_path_goes_with_a_key_that_changes():
+def test_changing_a_key_drops_the_results_of_its_path():
     ob = programs.plan(programs.valley(programs.INTO), programs.valley(programs.INTO))
     paths = lambda: {e["path"] for e in programs.listed(ob.riffler.plan.findings)}  # noqa: E731
     bpy.ops.riffler.plan_resolve(max_lift=0.01)
@@ -188,7 +188,7 @@ def test_how_many_paths_are_resolved_is_kept_for_the_panel():
 
 
 @common.core_bound
-def test_a_holder_that_was_changed_after_the_search_is_said():
+def test_a_holder_that_was_changed_after_the_search_is_reported():
     ob = programs.resolved()
     take(plans.TOOL)
     for text in (said(bpy.ops.riffler.plan_resolve), said(bpy.ops.riffler.plan_check), write()):
@@ -224,7 +224,7 @@ def test_shank_and_holder_are_exchanged_and_the_keys_stay():
     assert "Use This Tool" not in said(bpy.ops.riffler.plan_resolve)
 
 
-def test_another_cutter_is_no_other_holder():
+def test_changing_the_cutter_does_not_change_the_holder():
     ob = programs.plan(timeline=False)
     before = common.part("plan.plan_store").identity(ob)
     take(riffler.Tool.ball(4, 25))

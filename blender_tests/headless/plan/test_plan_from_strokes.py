@@ -126,7 +126,7 @@ def come(hand, y):
     hand.look(there)
 
 
-def test_strokes_of_a_device_are_planned_and_air_is_not():
+def test_strokes_of_a_device_are_planned_and_motion_in_air_is_not():
     ob = sculpt("xyz")
     hand = Hand(ob)
     for y in (20, 40):
@@ -140,7 +140,7 @@ def test_strokes_of_a_device_are_planned_and_air_is_not():
         assert np.abs(path.centres[:, 1] - y).max() < 0.1, path.centres.tolist()
 
 
-def test_what_cannot_be_planned_is_said():
+def test_strokes_that_cannot_be_planned_are_reported():
     sculpt("xyz")
     common.refused(lambda: bpy.ops.riffler.plan_from_strokes(), "no cuts yet")
     bpy.context.view_layer.objects.active = None

@@ -70,7 +70,7 @@ def test_an_operator_s_key_is_one_step():
     assert indices(bpy.data.objects[name])[0] == [0, 72, 144]
 
 
-def test_the_operators_say_what_is_missing():
+def test_the_operators_name_what_is_missing():
     bpy.context.view_layer.objects.active = None
     for call in ("plan_to_timeline", "plan_key", "plan_key_delete", "plan_key_jump", "plan_check"):
         assert not getattr(bpy.ops.riffler, call).poll()
@@ -83,7 +83,7 @@ def test_the_operators_say_what_is_missing():
     assert "Riffler Tool" not in bpy.data.objects
 
 
-def test_a_tool_that_somebody_turns_is_not_held():
+def test_a_tool_that_the_user_turns_is_not_held():
     ob = plans.on_timeline()
     tool, _ = pair(ob)
     hold = tool.constraints[common.part("plan.timeline").TURN]
@@ -106,7 +106,7 @@ def test_a_tool_that_somebody_turns_is_not_held():
     assert hold.influence == 1 and close(seen(ob, 74)[1], paths(ob)[0].axes[73])
 
 
-def test_turning_begins_with_what_is_seen():
+def test_turning_begins_with_the_displayed_axis():
     """Between keys, on a key, and on a path that has none; the test calls what a window's timer would call."""
     ob = plans.on_timeline(chosen=[*plans.paths()[:1], plans.ring()])
     tool, _ = pair(ob)
@@ -138,7 +138,7 @@ def markers():
     return sorted((m.frame, m.name) for m in bpy.context.scene.timeline_markers if "▸ " not in m.name)
 
 
-def test_colliding_frames_are_marked_and_looked_at_again_where_keys_change():
+def test_colliding_frames_are_marked_and_checked_again_where_keys_change():
     part = plans.part_object()
     ob = plans.on_timeline(chosen=plans.paths()[:1])
     bpy.context.scene.timeline_markers.new("mine", frame=5)
@@ -163,7 +163,7 @@ def test_colliding_frames_are_marked_and_looked_at_again_where_keys_change():
     assert state(ob).colliding == [] and markers() == [(5, "mine")] and state(ob).looks == looks
 
 
-def test_marks_of_one_plan_stay_where_another_is_looked_at():
+def test_marks_of_one_plan_stay_while_another_is_checked():
     part = plans.part_object()
     first, second = (plans.on_timeline(chosen=plans.paths()[:1]) for _ in range(2))
     bpy.context.scene.riffler.plan.part = part
@@ -183,7 +183,7 @@ def test_marks_of_one_plan_stay_where_another_is_looked_at():
     assert markers() == []
 
 
-def test_only_paths_whose_keys_changed_are_looked_at():
+def test_only_paths_whose_keys_changed_are_checked():
     part = plans.part_object()
     ob = plans.on_timeline()
     bpy.context.scene.riffler.plan.part = part
@@ -209,7 +209,7 @@ def fixture(xs, ys, zs):
     return vise
 
 
-def test_fixtures_count():
+def test_fixtures_are_checked_for_collisions():
     part = plans.part_object()
     ob = plans.on_timeline(chosen=[plans.paths()[0].orient({0: (0, -0.6, 0.8)})])
     fixture((20, 40), (0, 10), (8, 40))
@@ -227,7 +227,7 @@ def looked_again():
         time.sleep(0.01)
 
 
-def test_marks_are_of_before_once_a_fixture_has_moved_until_it_is_looked_at_again():
+def test_marks_are_outdated_once_a_fixture_has_moved_until_the_next_check():
     part = plans.part_object()
     ob = plans.on_timeline(chosen=[plans.paths()[0].orient({0: (0, -0.6, 0.8)})])
     outdated = common.part("plan.collision_marks").outdated
@@ -253,7 +253,7 @@ def test_marks_are_of_before_once_a_fixture_has_moved_until_it_is_looked_at_agai
     assert not outdated(ob) and state(ob).looks == looks and common.part("plan.obstacles").made == made + 1
 
 
-def test_marks_of_a_file_that_is_opened_or_of_a_plan_that_is_renamed_are_looked_at_again():
+def test_marks_of_an_opened_file_or_a_renamed_plan_are_checked_again():
     part = plans.part_object()
     ob = plans.on_timeline(chosen=[plans.paths()[0].orient({0: (0, -0.6, 0.8)})])
     outdated = common.part("plan.collision_marks").outdated

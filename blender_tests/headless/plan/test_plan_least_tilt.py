@@ -90,7 +90,7 @@ def test_a_path_on_which_nothing_is_free_is_named_and_listed():
     assert [len(k) for k in indices(ob)] == [2, 2, 2] and not [e for e in ob.riffler.plan.findings if e.path == 2]
 
 
-def test_which_paths():
+def test_least_tilt_takes_the_selected_or_all_paths():
     ob = laid(4)
     curve = common.part("plan.path_curves")
     bpy.ops.riffler.plan_show()
@@ -129,7 +129,7 @@ def test_keyframes_of_other_paths_and_strays_stay():
     assert close(paths(ob)[0].axes[0], np.array((0, -0.5, 1)) / math.sqrt(1.25))
 
 
-def test_a_search_that_is_cancelled_in_its_midst_leaves_all_as_it_was():
+def test_a_search_that_is_cancelled_halfway_changes_nothing():
     """With the report of a native task, after two paths have their keys already."""
     ob = laid(4)
     made, before = store().identity(ob), counts(ob)
@@ -151,7 +151,7 @@ def test_a_search_that_is_cancelled_in_its_midst_leaves_all_as_it_was():
     assert (counts(ob) - before)[1:].tolist() == [0, 0, 0] and not state(ob).problems
 
 
-def test_it_says_what_is_missing():
+def test_least_tilt_names_what_is_missing():
     ob = laid(2)
     bpy.context.scene.riffler.plan.part = None
     common.refused(bpy.ops.riffler.plan_least_tilt, "There is no part")
@@ -159,7 +159,7 @@ def test_it_says_what_is_missing():
     common.refused(bpy.ops.riffler.plan_least_tilt, "not on the timeline")
 
 
-def test_one_key_costs_what_its_own_path_costs():
+def test_setting_one_key_costs_only_the_work_of_its_path():
     ob = laid(4)
     bpy.ops.riffler.plan_least_tilt()
     before = counts(ob)

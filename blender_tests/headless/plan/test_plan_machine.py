@@ -30,7 +30,7 @@ def test_every_option_of_every_machine_is_a_field_with_its_unit():
         assert machines().given(machine) == {}, "no option is passed on before the user sets it"
 
 
-def test_a_pivot_that_nobody_gave_is_asked_for():
+def test_a_missing_pivot_is_requested():
     ob = programs.resolved()
     settings = bpy.context.scene.riffler.plan
     settings.post = "linuxcnc-xyzac"
@@ -63,7 +63,7 @@ def test_the_scene_s_zero_counts_once_it_is_given():
     assert write("zero.ngc").exists()
 
 
-def test_fields_keep_the_numbers_that_were_meant():
+def test_fields_keep_the_entered_numbers():
     own = machines().of("linuxcnc-xyzac")
     own.rot_point, own.limits_a, own.max_rotary = (0.1, 0, -40.05), (-60, 60), 2000
     own.coolant, own.arcs, own.line_numbers = "flood", True, 10

@@ -47,7 +47,7 @@ def test_a_part_of_four_metres_is_asked_about():
     assert np.allclose(size, 4 * 25.4, rtol=1e-6)
 
 
-def test_a_part_that_is_so_large_is_not_asked_about_again():
+def test_an_accepted_large_part_is_not_asked_about_again():
     common.scale(1000.0)
     bpy.context.scene.riffler.plan.take({"kind": "ball", "diameter": 6, "length": 30})
     fit, scene = common.part("plan.fit_check"), bpy.context.scene
@@ -74,7 +74,7 @@ def test_a_part_that_is_smaller_than_the_tool_is_asked_about():
     assert common.part("plan.fit_check").size_question(bpy.context.scene) == ""
 
 
-def test_the_search_of_a_person_waits_for_the_answer():
+def test_a_search_waits_for_the_users_answer():
     common.scale(1000.0)
     bpy.context.scene.riffler.plan.take({"kind": "ball", "diameter": 6, "length": 30})
     cube(4)

@@ -175,7 +175,7 @@ def test_a_closed_path_and_one_of_another_unit_are_drawn_whole():
     assert kind == "unplanned" and np.array_equal(pieces[-1, 1], pieces[0, 0])
 
 
-def test_find_again_switches_everything_on():
+def test_finding_again_switches_everything_on():
     ob = programs.plan(programs.valley(programs.LEANING), timeline=False)
     ob.riffler.plan.rows[0].on = False
     bpy.context.scene.riffler.plan.take(plans.TOOL.to_dict())
@@ -183,7 +183,7 @@ def test_find_again_switches_everything_on():
     assert programs.content(ob).off == set() and rows(ob) == [("Path 1", "unplanned", True)]
 
 
-def test_two_plans_say_whose_path_it_is():
+def test_paths_of_two_plans_name_their_plan():
     first = programs.plan(programs.valley(programs.LEANING))
     second = store().new(bpy.context, riffler.plan.Plan([programs.valley(programs.LEANING)], plans.TOOL))
     bpy.ops.riffler.plan_to_timeline(first=500)

@@ -153,7 +153,7 @@ def test_undo_takes_a_key_back_and_the_session_goes_on():
     ended(ob)
 
 
-def test_a_plan_that_is_removed_ends_the_session_with_a_sentence():
+def test_removing_the_plan_ends_the_session_with_a_message():
     ob = scene()
     hand = Tablet(ob)
     bpy.data.objects.remove(ob)

@@ -70,7 +70,7 @@ def test_a_mirrored_part_has_its_normals_outside():
     assert common.part("blender.object_surfaces").in_world(bpy.context, ob).volume > 0
 
 
-def test_a_sheared_part_is_refused_with_what_makes_it_square():
+def test_a_sheared_part_is_refused_with_the_remedy():
     common.scale(1)
     above = cube("Above")
     above.scale = (1, 3, 1)
@@ -120,7 +120,7 @@ def test_a_hidden_part_is_read_and_a_disabled_one_refused():
     common.refused(bpy.ops.riffler.plan_find, "Part: no pencil cut")
 
 
-def test_a_part_in_the_wrong_unit_is_said():
+def test_a_part_in_the_wrong_unit_is_reported():
     ob = cube(size=20)
     for unit, level, words in (
         (1, "INFO", "20 × 20 × 20 mm, 12 triangles"),
@@ -371,7 +371,7 @@ def test_a_plan_is_kept_through_undo_save_and_copies():
     assert store.plan(bpy.data.objects[copied]).part == {"name": "three"}
 
 
-def test_what_is_read_again_is_what_was_written_to_the_bit():
+def test_a_stored_plan_reads_back_to_the_bit():
     store = common.part("plan.plan_store")
     plan = a_plan()
     ob = store.new(bpy.context, plan)
@@ -392,7 +392,7 @@ def test_a_damaged_plan_is_named():
     common.refused(bpy.ops.riffler.plan_show, ob.name, "units")
 
 
-def test_which_plan_is_active():
+def test_the_active_plan_is_found():
     store = common.part("plan.plan_store")
     assert store.active(bpy.context) is None
     a = store.new(bpy.context, a_plan())

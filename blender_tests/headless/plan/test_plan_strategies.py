@@ -80,7 +80,7 @@ def test_a_curve_on_the_part_is_engraved_as_the_function_does():
         assert ob.riffler.plan.part == settings().part
 
 
-def test_a_curve_is_taken_as_it_lies_and_round_ones_are_closed():
+def test_a_curve_is_used_in_its_place_and_cyclic_ones_are_closed():
     ring = 6 * np.array([(1, 0, 0), (0, 1, 0), (-1, 0, 0), (0, -1, 0)])
     curve = scene(points=ring, cyclic=True)
     curve.matrix_world = Matrix.Translation((30, 10, 8))
@@ -195,11 +195,11 @@ def test_engraving_is_one_undo_step_and_finding_again_replaces_it():
     assert store().plan(ob).depths == {0: 0.1} and len(store().in_scene(bpy.context.scene)) == 1
 
 
-def test_what_is_missing_or_wrong_is_said_with_the_next_step():
+def test_missing_or_wrong_input_is_reported_with_the_next_step():
     curve = scene()
     call = lambda **more: bpy.ops.riffler.plan_find(strategy="ENGRAVE", **more)  # noqa: E731
     bpy.ops.object.select_all(action="DESELECT")
-    common.refused(call, "No curve is selected: select the curves that are to be engraved")
+    common.refused(call, "No curve is selected: select the curves to engrave")
     common.select(curve)
     common.refused(lambda: call(engrave_reach=0.001, engrave_depth=0.3) if _raise(curve) else None, "more than reach")
     curve.modifiers.new("Array", "ARRAY")

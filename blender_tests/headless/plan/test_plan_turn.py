@@ -45,7 +45,7 @@ def test_the_angles_of_a_turn_are_the_key_s_own():
     assert np.array_equal(paths(ob)[0].keys[72], exact) and 99 in indices(ob)[0]
 
 
-def test_neighbours_are_oriented_anew():
+def test_neighbours_are_oriented_again():
     ob = plans.on_timeline()
     before = paths(ob)[0].axes.copy()
     bpy.context.scene.frame_set(73)
@@ -72,7 +72,7 @@ def test_a_turn_is_one_step_of_undo():
     assert indices(ob)[0] == [0, 72, 144] and np.array_equal(paths(ob)[0].keys[72], exact)
 
 
-def test_what_cannot_be_turned_is_said_and_nothing_changes():
+def test_keys_that_cannot_be_turned_are_reported_and_nothing_changes():
     bpy.context.view_layer.objects.active = None
     for call in ("plan_turn", "plan_point", "plan_point_key"):
         assert not getattr(bpy.ops.riffler, call).poll()
@@ -91,7 +91,7 @@ def test_what_cannot_be_turned_is_said_and_nothing_changes():
     assert indices(ob) == keys and len(curves(pair(ob)[0])[0].keyframe_points) == 5
 
 
-def test_points_are_gone_to_and_free_keys_set_there():
+def test_jumping_to_a_point_and_setting_a_free_key_work():
     part = plans.part_object()
     ob = plans.on_timeline()
     scene = bpy.context.scene
@@ -155,7 +155,7 @@ def test_collisions_are_named_with_their_depth():
     assert not wanted.free and "Shank is only 9 mm from Step" in str(wanted)
 
 
-def test_surroundings_are_made_once_and_again_where_something_moved():
+def test_surroundings_are_built_once_and_again_after_something_moved():
     part = plans.part_object()
     ob = plans.on_timeline(chosen=plans.paths()[:1])
     bpy.context.scene.riffler.plan.part = part
@@ -177,7 +177,7 @@ def test_surroundings_are_made_once_and_again_where_something_moved():
     assert surroundings.now(bpy.context, ob).collider is not None and surroundings.made == made + 3
 
 
-def test_a_fixture_that_comes_or_goes_makes_what_is_known_old():
+def test_adding_or_removing_a_fixture_outdates_the_results():
     """As + does to an existing collection: no known object reports a change."""
     ob = plans.on_timeline(chosen=plans.paths()[:1])
     settings, surroundings = bpy.context.scene.riffler.plan, common.part("plan.obstacles")
@@ -199,7 +199,7 @@ def test_a_fixture_that_comes_or_goes_makes_what_is_known_old():
     assert surroundings.known(ob) is None and surroundings.version(ob) != version
 
 
-def test_a_map_is_made_when_somebody_looks_and_again_only_where_the_point_is_another():
+def test_a_map_is_made_when_shown_and_again_only_for_another_point():
     part = plans.part_object()
     ob = plans.on_timeline(chosen=plans.paths()[:1])
     scene = bpy.context.scene
@@ -242,7 +242,7 @@ def looked(ob):
     return known
 
 
-def test_a_part_that_is_gone_is_said_instead_of_a_map_until_it_is_there():
+def test_a_missing_part_is_reported_instead_of_a_map():
     part = plans.part_object()
     ob = plans.on_timeline(chosen=plans.paths()[:1])
     bpy.context.scene.riffler.plan.part = part
@@ -259,7 +259,7 @@ def test_a_part_that_is_gone_is_said_instead_of_a_map_until_it_is_there():
     assert known.map is not None and not known.old and known.free
 
 
-def test_what_undo_brings_back_as_it_was_makes_no_other_map():
+def test_an_undo_to_the_same_state_makes_no_new_map():
     part = plans.part_object()
     ob = plans.on_timeline(chosen=plans.paths()[:1])
     name = ob.name
@@ -279,7 +279,7 @@ def test_what_undo_brings_back_as_it_was_makes_no_other_map():
     )
 
 
-def test_a_map_that_was_asked_for_before_an_undo_is_made_after_it():
+def test_a_map_requested_before_an_undo_is_made_after_it():
     """The plan's object is then another one in memory."""
     ob = plans.on_timeline()
     bpy.context.scene.riffler.plan.part = plans.part_object()
@@ -295,7 +295,7 @@ def test_a_map_that_was_asked_for_before_an_undo_is_made_after_it():
     assert looking._known.map is not None and looking._known.free
 
 
-def test_the_contact_that_is_pointed_at_is_the_one_seen_nearest():
+def test_pointing_selects_the_nearest_visible_contact():
     """Compared with every contact of all paths, projected one by one."""
     drawn, sight = common.part("plan.path_view"), common.part("sculpt.pure.view_rays")
     plan = riffler.plan.Plan([p.divided(0.5) for p in plans.paths()], plans.TOOL)
@@ -337,7 +337,7 @@ def line(y, z, n=200):
     return riffler.plan.PencilPath(3.0, centres, contacts, np.tile((0, 0, 1.0), (n, 2, 1)), closed=False)
 
 
-def test_a_contact_that_is_hidden_is_not_pointed_at():
+def test_hidden_contacts_cannot_be_selected():
     drawn, view = common.part("plan.path_view"), from_above(3.0)
     plan = riffler.plan.Plan([line(20, 0), line(20.5, 30)], plans.TOOL)
     at, asked = view.project([(30, 17.1, 0)])[0], []
@@ -358,7 +358,7 @@ def test_a_contact_that_is_hidden_is_not_pointed_at():
     assert drawn.nearest(plan, view, at, hidden=below) is None and len(asked) <= drawn.ASKED
 
 
-def test_what_is_seen_hides_and_nothing_else():
+def test_only_visible_objects_hide_contacts():
     common.scale(1.0)
     part = plans.part_object()
     ob = plans.on_timeline(chosen=plans.paths()[:1])
@@ -388,7 +388,7 @@ def test_what_is_seen_hides_and_nothing_else():
     assert not hidden(seen) and not hidden(below)
 
 
-def test_what_is_drawn_of_a_path():
+def test_a_path_is_drawn_with_contacts_and_keys():
     drawn = common.part("plan.path_view")
     valley, loop = plans.paths()
     n = len(loop)

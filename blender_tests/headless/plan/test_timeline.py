@@ -48,7 +48,7 @@ def test_a_scene_that_begins_later_plays_the_paths():
     assert (scene.frame_start, scene.frame_end) == (1, tracks(ob)[1].last)
 
 
-def test_going_somewhere_goes_there_where_time_is_stretched():
+def test_jumping_works_with_stretched_time():
     scene = bpy.context.scene
     for old, new in ((100, 200), (100, 300), (250, 100), (100, 100)):
         bpy.ops.wm.read_homefile()
@@ -183,7 +183,7 @@ def test_a_key_is_moved():
     assert close(seen(ob, 145)[1], (0.6, 0, 0.8)) and close(seen(ob, 100)[1], (0.6, 0, 0.8))
 
 
-def test_a_key_goes_from_one_path_to_the_other():
+def test_a_key_moves_from_one_path_to_the_other():
     ob = plans.on_timeline()
     for curve in curves(pair(ob)[0]):
         next(p for p in curve.keyframe_points if p.co[0] == 145).co[0] = 170
@@ -225,7 +225,7 @@ def insert_first(tool, frame, axis):
     update()
 
 
-def test_sub_frames_signs_lengths_and_easing_say_nothing():
+def test_sub_frames_signs_lengths_and_easing_do_not_matter():
     ob = plans.on_timeline()
     tool = pair(ob)[0]
     insert(tool, 30.4, (0, -0.3, 1), sign=-0.4)
@@ -254,7 +254,7 @@ def test_the_seam_of_a_loop_is_its_first_point():
     assert close(seen(ob, last)[1], (0, 0, 1)) and close(seen(ob, 155)[1], (0, 0, 1))
 
 
-def test_keys_that_cannot_be_are_told_and_change_nothing():
+def test_keys_outside_every_path_are_reported_and_change_nothing():
     ob = plans.on_timeline()
     tool, before = pair(ob)[0], paths(ob)
     insert(tool, 150, (0, 0, 1))

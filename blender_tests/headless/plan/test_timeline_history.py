@@ -8,7 +8,7 @@ from support import common, plans, programs
 from support.keyframed_plan import close, curves, indices, insert, pair, paths, remove, seen, state, tracks, update
 
 
-def test_a_key_and_what_it_did_are_one_step_of_undo():
+def test_a_key_and_its_consequences_are_one_step_of_undo():
     ob = plans.on_timeline()
     name = ob.name
     common.push("timeline")
@@ -40,7 +40,7 @@ def test_a_key_and_what_it_did_are_one_step_of_undo():
         check(both, 2)
 
 
-def test_undo_where_the_consequence_came_after_the_step():
+def test_undo_works_if_the_consequence_came_after_the_step():
     """As in a window: Blender's step is made when the key is set, the plan is updated a moment later."""
     ob = plans.on_timeline()
     name, replan = ob.name, common.part("plan.replan")
@@ -100,7 +100,7 @@ def with_held(replan, action):
         replan._soon = soon
 
 
-def test_save_and_reopen():
+def test_a_file_keeps_everything_when_saved_and_reopened():
     ob = plans.on_timeline()
     insert(pair(ob)[0], 73, (0, -0.3, 1))
     name, axes, where = ob.name, [p.axes for p in paths(ob)], seen(ob, 60.5)
@@ -180,7 +180,7 @@ def test_two_plans_do_not_mix():
     assert indices(a)[0] == [0, 29, 144] and indices(b)[0] == [0, 72, 144]
 
 
-def test_a_copy_of_the_tool_is_nobody_s_and_a_deleted_tool_is_made_again():
+def test_a_copy_of_the_tool_has_no_plan_and_a_deleted_tool_is_made_again():
     ob = plans.on_timeline()
     tool, ghost = pair(ob)
     copy = tool.copy()
@@ -199,7 +199,7 @@ def test_a_copy_of_the_tool_is_nobody_s_and_a_deleted_tool_is_made_again():
     assert pair(ob)[1] == ghost and close(seen(ob, 73)[1], np.array((0, -0.3, 1)) / np.sqrt(1.09))
 
 
-def test_a_tool_that_is_deleted_or_scaled_is_said_and_a_plan_that_is_deleted_is_on_no_timeline():
+def test_a_deleted_or_scaled_tool_is_reported_and_a_deleted_plan_leaves_the_timeline():
     ob = plans.on_timeline()
     tool = pair(ob)[0]
 
@@ -260,7 +260,7 @@ def test_a_copy_of_a_plan_leaves_the_original_s_animation_alone():
         assert close(seen(copy, 73)[1], np.array((0, -0.3, 1)) / np.sqrt(1.09)) and close(seen(ob, 73)[1], before)
 
 
-def test_other_paths_are_not_given_keys_that_were_not_meant_for_them():
+def test_keys_stay_with_the_paths_that_they_were_set_for():
     ob = plans.on_timeline()
     store = common.part("plan.plan_store")
     other = plans.ring(radius=30)

@@ -82,7 +82,7 @@ def test_linuxcnc_accepts_it():
     assert np.abs(np.abs(feeds[:, 3]).max() - wanted.max()) < 1e-3
 
 
-def test_what_collides_is_lifted_and_listed():
+def test_colliding_rows_are_lifted_and_listed():
     """A tool that stands upright on the step's floor is free; leaning into the wall it is not, and is lifted."""
     ob = programs.resolved(programs.valley(programs.LEANING, programs.INTO, programs.LEANING))
     plan = programs.content(ob)
@@ -152,7 +152,7 @@ def test_blocked_paths_stay_unresolved_and_name_their_points():
 
 
 @common.core_bound
-def test_clearance_is_kept_beside_shank_and_holder_and_lifts_no_cut():
+def test_clearance_is_kept_around_shank_and_holder_and_lifts_no_cut():
     """The valley's finish is the same with 0.3 mm of it; where the shank is too near for 15 mm the tool is lifted, and
     a report says so."""
     settings = bpy.context.scene.riffler.plan
@@ -175,7 +175,7 @@ def test_clearance_is_kept_beside_shank_and_holder_and_lifts_no_cut():
 
 
 @common.core_bound
-def test_a_cutter_nearer_to_a_fixture_than_the_clearance_is_said():
+def test_a_cutter_nearer_to_a_fixture_than_the_clearance_is_reported():
     ob = programs.plan(programs.valley(programs.LEANING), timeline=False)
     settings = bpy.context.scene.riffler.plan
     settings.fixtures = bpy.data.collections.new("Fixtures")
@@ -206,7 +206,7 @@ def clamped(location, scale):
 
 
 @common.core_bound
-def test_a_clamp_that_the_holder_would_meet_on_the_way_in_is_gone_round():
+def test_links_go_round_a_clamp_that_the_holder_would_meet():
     ob, _ = clamped((30, -66.5, 75), (140, 17, 30))
     (rows,) = programs.content(ob).cl
     near = common.part("plan.obstacles").take(bpy.context, ob).result()
@@ -227,7 +227,7 @@ def test_a_clamp_that_the_holder_would_meet_on_the_way_in_is_gone_round():
 
 
 @common.core_bound
-def test_how_a_tool_gets_into_its_cuts_is_said_in_the_panel():
+def test_the_panel_describes_how_the_tool_approaches_its_cuts():
     ob, settings = clamped((30, -300, 5), (10, 10, 10))
     (rows,) = programs.content(ob).cl
 
@@ -247,7 +247,7 @@ def test_how_a_tool_gets_into_its_cuts_is_said_in_the_panel():
 
 
 @common.core_bound
-def test_what_cannot_be_linked_is_refused_with_its_place_until_the_fixture_is_moved():
+def test_links_that_collide_are_refused_with_the_place_until_the_fixture_is_moved():
     _, settings = clamped((30, 20, 100), (200, 200, 10))
     path = common.out("roofed.ngc")
     Path(path).unlink(missing_ok=True)
@@ -261,7 +261,7 @@ def test_what_cannot_be_linked_is_refused_with_its_place_until_the_fixture_is_mo
     write("roofed.ngc")
 
 
-def test_a_key_that_was_refused_is_said_with_the_code():
+def test_a_refused_key_is_reported_with_the_code():
     """It is on the timeline, and the program has the previous orientation."""
     ob = programs.resolved()
     bpy.context.scene.riffler.plan.take(plans.TOOL.to_dict())
@@ -274,7 +274,7 @@ def test_a_key_that_was_refused_is_said_with_the_code():
         assert "Warning" in said and "it stays as it was" in said, said
 
 
-def test_paths_without_keys_are_not_cut_and_that_is_said():
+def test_paths_without_keys_are_reported_and_not_cut():
     """The second of three has none, the third is blocked until its keys are deleted."""
     ob = programs.plan(programs.valley(programs.LEANING), plans.ring(), programs.valley(programs.INTO))
     bpy.ops.riffler.plan_resolve(max_lift=0.01)
@@ -328,14 +328,14 @@ def test_resolving_is_one_step_of_undo():
     assert not any(rows is not None for rows in programs.content(bpy.data.objects[name]).cl)
 
 
-def test_the_plan_s_locations_are_what_plays():
+def test_the_plan_s_locations_are_played():
     ob = programs.resolved()
     state = common.part("plan.plan_states").state(ob)
     assert np.array_equal(state.motions[0].motion.poses, programs.content(ob).cl[0])
     assert state.difference.small and not state.problems
 
 
-def test_rows_that_were_inserted_beside_a_lift_play_too():
+def test_inserted_rows_next_to_a_lift_are_played_too():
     """Blender from 4.x on merges two keys that are a hundredth of a frame apart."""
     ob = programs.resolved(programs.valley(programs.LEANING, (0, -0.2, 1), (0, 0.5, 0.8), programs.LEANING))
     found = common.part("plan.plan_states").state(ob)
@@ -356,7 +356,7 @@ def test_options_reach_the_machine():
     assert max(np.linalg.norm(read.poses - row, axis=1).min() for row in rows) < 2e-4
 
 
-def test_what_is_missing_is_said():
+def test_missing_input_is_reported():
     bpy.context.view_layer.objects.active = None
     for name in ("plan_resolve", "plan_nc"):
         assert not getattr(bpy.ops.riffler, name).poll()

@@ -67,7 +67,7 @@ def test_scrubbing_back_and_forth_equals_carving_the_prefix_by_bytes():
     assert common.part("plan.plan_store").is_plan(ob)
 
 
-def test_the_stock_is_cut_where_the_tool_is_seen():
+def test_the_stock_is_cut_where_the_tool_is_shown():
     """At a frame, the rows that the tool has passed are cut, and those ahead of it are not."""
     programs.resolved()
     programs.stock()
@@ -139,7 +139,7 @@ def test_a_sculpt_s_own_cuts_begin_with_the_full_block():
     assert common.same(common.shape(common.content(ob).volume), common.shape(left))
 
 
-def test_other_work_waits_until_it_is_over():
+def test_other_work_waits_until_the_simulation_ends():
     programs.resolved()
     stock = programs.stock()
     bpy.ops.riffler.simulate(source="PLAN")
@@ -151,7 +151,7 @@ def test_other_work_waits_until_it_is_over():
     assert bpy.ops.riffler.plan_resolve.poll()
 
 
-def test_saving_and_undo_end_it():
+def test_saving_and_undo_end_the_simulation():
     programs.resolved()
     stock = programs.stock()
     name = stock.name
@@ -173,7 +173,7 @@ def test_saving_and_undo_end_it():
     bpy.context.scene.frame_set(5)
 
 
-def test_a_plan_that_changes_ends_it():
+def test_a_changed_plan_ends_the_simulation():
     """The tool plays the new keys: the old program is not shown at the same time."""
     ob, replan = programs.resolved(), common.part("plan.replan")
     stock = programs.stock()
@@ -200,7 +200,7 @@ def test_a_plan_that_changes_ends_it():
         replan._soon = soon
 
 
-def test_what_is_missing_is_said():
+def test_missing_input_is_reported():
     bpy.context.view_layer.objects.active = None
     common.refused(bpy.ops.riffler.simulate, "There is no stock")
     programs.stock()

@@ -144,7 +144,7 @@ def test_the_same_is_found_wherever_the_stock_stands():
     assert abs(first[0]["row"] - second[0]["row"]) <= 2
 
 
-def test_what_is_left_is_shown_with_its_distances():
+def test_the_remaining_material_is_shown_with_its_distances():
     """Where the pencil cut was, the ball's surface; elsewhere half a millimetre over the part."""
     stock = prepared()
     bpy.ops.riffler.verify(source="PLAN", coloured="LEFT")
@@ -166,7 +166,7 @@ def test_what_is_left_is_shown_with_its_distances():
     assert "Stock Left" not in bpy.data.objects and not stock.hide_get() and not part.hide_get()
 
 
-def test_what_is_left_is_coloured_by_the_lines_and_tools_that_cut_it():
+def test_the_remaining_material_is_coloured_by_the_lines_and_tools_that_cut_it():
     stock = prepared()
     path, _ = nc()
     bpy.ops.riffler.verify(source="FILE", filepath=path, coloured="LINE")
@@ -306,7 +306,7 @@ def test_findings_begin_with_what_differs():
     assert "lift the path" in found["name"], "the whole sentence is under the list"
 
 
-def test_a_holder_that_is_described_is_not_asked_for():
+def test_a_described_holder_is_not_requested_again():
     """Material is where the spindle would be: earlier findings asked for the shank and the holder."""
     programs.resolved()
     bpy.context.scene.riffler.plan.take(plans.TOOL.to_dict())
@@ -328,7 +328,7 @@ def test_a_holder_that_is_described_is_not_asked_for():
     assert all(name.startswith("the holder of tool 1 ends 70.0 mm above the tip") for name in unknown), unknown[0]
 
 
-def test_one_step_of_undo():
+def test_a_verification_is_one_step_of_undo():
     prepared()
     path, _ = nc(slip=60)
     common.push("before")
@@ -339,7 +339,7 @@ def test_one_step_of_undo():
     assert not bpy.data.objects["Stock"].hide_get()
 
 
-def test_what_is_missing_is_said():
+def test_missing_input_is_reported():
     common.refused(bpy.ops.riffler.finding_go, "There are no findings")
     common.refused(bpy.ops.riffler.verify_clear, "Nothing was verified")
     bpy.context.view_layer.objects.active = None
@@ -364,7 +364,7 @@ def test_the_legend_is_of_the_mesh_that_is_coloured():
     assert np.allclose([bar.colours[k][1] for k in (0, 8, 16)], of[:, :3])
 
 
-def test_an_edited_text_is_kept_where_it_is_verified_again():
+def test_an_edited_text_is_kept_when_it_is_verified_again():
     prepared()
     path, _ = nc(slip=60)
     other, _ = nc(name="other.ngc")

@@ -63,7 +63,7 @@ def test_a_tiny_and_a_huge_object_are_as_easy_to_sculpt_as_any():
         assert 0.08 <= bpy.context.scene.riffler.sculpt.depth / tool.diameter <= 0.5
 
 
-def test_what_becomes_a_sculpt_is_made_round_where_that_is_asked():
+def test_an_object_is_made_round_on_request_when_it_becomes_a_sculpt():
     for rounded in (False, True):
         bpy.ops.wm.read_homefile()
         bpy.ops.mesh.primitive_uv_sphere_add()
@@ -72,7 +72,7 @@ def test_what_becomes_a_sculpt_is_made_round_where_that_is_asked():
         assert (abs(side - 100) < 0.05) == rounded and (side < 99.5) != rounded, side
 
 
-def test_a_size_that_somebody_says_is_taken_and_pitch_and_cutter_follow():
+def test_a_given_size_is_used_and_pitch_and_cutter_follow():
     common.select(bpy.data.objects["Cube"])
     bpy.ops.riffler.make_sculpt(side=8.0)
     p, tool = bpy.context.object.data.riffler, bpy.context.scene.riffler.tool
@@ -80,7 +80,7 @@ def test_a_size_that_somebody_says_is_taken_and_pitch_and_cutter_follow():
     assert np.isclose(tool.diameter, 0.8) and np.isclose(tool.length, 4)
 
 
-def test_beside_other_sculpts_the_scenes_units_stay_theirs():
+def test_other_sculpts_keep_the_scenes_units():
     common.scale(1)
     common.stock()
     bpy.ops.mesh.primitive_cube_add(size=2000, location=(3000, 0, 0))
@@ -90,7 +90,7 @@ def test_beside_other_sculpts_the_scenes_units_stay_theirs():
     assert np.isclose(p.pitch, 10) and np.isclose(bpy.context.scene.riffler.tool.diameter, 200)
 
 
-def test_beside_a_plan_the_scenes_unit_stays_the_plans():
+def test_a_plan_keeps_the_scenes_unit():
     common.scale(1)
     fit, plan_store = common.part("sculpt.fit"), common.part("plan.plan_store")
     bpy.ops.mesh.primitive_cube_add(size=2)
@@ -119,7 +119,7 @@ def test_undo_takes_back_the_stroke_then_the_sculpt_with_the_units():
     assert np.isclose(bpy.context.scene.riffler.tool.diameter, 10)  # the cutter is a brush's setting, and stays
 
 
-def test_what_cannot_become_a_sculpt_is_refused_and_all_stays_as_it_was():
+def test_objects_that_cannot_become_a_sculpt_are_refused_and_nothing_changes():
     bpy.ops.mesh.primitive_plane_add()
     before = state()
     common.refused(lambda: bpy.ops.riffler.make_sculpt(), "Plane", "flat", "Solidify")
@@ -138,7 +138,7 @@ def test_what_cannot_become_a_sculpt_is_refused_and_all_stays_as_it_was():
     common.refused(lambda: bpy.ops.riffler.make_sculpt(), "a sculpt already")
 
 
-def test_whatever_is_under_the_pointer_gets_the_drag_where_the_stroke_does_not():
+def test_a_drag_that_is_no_stroke_goes_to_the_object_under_the_pointer():
     """Each key of a tool that makes strokes is followed by one that captures the drag, or Blender would move the
     object."""
     for tool in common.part("sculpt.tools").TOOLS:
@@ -148,7 +148,7 @@ def test_whatever_is_under_the_pointer_gets_the_drag_where_the_stroke_does_not()
                 assert items[k + 1] == ("riffler.stroke_elsewhere", event)
 
 
-def test_an_instance_is_told_from_an_object_that_can_be_sculpted():
+def test_an_instance_is_distinguished_from_an_object_that_can_be_sculpted():
     begin, cube = common.part("sculpt.first_stroke"), bpy.data.objects["Cube"]
     assert begin.unfit(bpy.context, cube) == ""
     home = bpy.data.collections.new("Home")

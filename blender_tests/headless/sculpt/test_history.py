@@ -108,7 +108,7 @@ def test_the_end_needs_no_step_of_its_own():
     whole(name)
 
 
-def test_a_copy_that_is_made_meanwhile_has_what_is_shown():
+def test_a_copy_made_meanwhile_has_the_shown_state():
     name = sculpt()
     first = stroke(name, 1)
     ob = bpy.data.objects[name]
@@ -155,7 +155,7 @@ def test_a_linked_copy_shows_the_result_after_the_end():
     assert current(name) == third
 
 
-def test_renamed_meanwhile():
+def test_a_sculpt_may_be_renamed_meanwhile():
     name = sculpt()
     first = stroke(name, 1)
     bpy.data.objects[name].name = "Renamed"
@@ -174,7 +174,7 @@ def test_renamed_meanwhile():
     nothing_is_left()
 
 
-def test_deleted_meanwhile_and_brought_back():
+def test_a_sculpt_deleted_meanwhile_is_restored_by_undo():
     name = sculpt()
     first = stroke(name, 1)
     bpy.data.objects.remove(bpy.data.objects[name])
@@ -191,7 +191,7 @@ def test_deleted_meanwhile_and_brought_back():
     matches_its_volume(name)
 
 
-def test_changed_by_other_means_meanwhile():
+def test_a_sculpt_may_be_changed_by_other_means_meanwhile():
     name = sculpt()
     stroke(name, 1)
     sculpts, cache = common.part("sculpt.sculpts"), common.part("common.contents")
@@ -224,7 +224,7 @@ def test_a_linked_sculpt_is_refused():
     nothing_is_left()
 
 
-def test_a_state_that_memory_lost_is_told_again_from_the_journal():
+def test_a_state_that_memory_lost_is_replayed_from_the_journal():
     name = sculpt()
     large(work(name))
     states = [current(name)]
@@ -248,7 +248,7 @@ def test_a_state_that_memory_lost_is_told_again_from_the_journal():
     nothing_is_left()
 
 
-def test_whatever_the_limits_of_undo():
+def test_strokes_work_with_any_limits_of_undo():
     edit = bpy.context.preferences.edit
     before = edit.undo_steps, edit.undo_memory_limit, edit.use_global_undo
     try:
@@ -294,7 +294,7 @@ def test_a_render_shows_the_last_stroke():
     matches_its_volume(name)
 
 
-def test_a_stroke_of_a_sculpt_that_is_gone_is_refused():
+def test_a_stroke_of_a_removed_sculpt_is_refused():
     name = sculpt()
     run = work(name)
     bpy.data.objects.remove(bpy.data.objects[name])
@@ -308,7 +308,7 @@ def test_a_stroke_of_a_sculpt_that_is_gone_is_refused():
     nothing_is_left()
 
 
-def test_a_stroke_that_does_nothing_leaves_nothing_that_an_undo_would_fall_over():
+def test_a_stroke_that_does_nothing_does_not_break_undo():
     """Earlier, chunks that no undo step had made Blender crash in the next undo."""
     name = sculpt()
     common.push("before")

@@ -176,7 +176,7 @@ def test_the_panel_has_the_facts_of_the_last_stroke():
     assert np.allclose(of_the_mesh(), kept, rtol=1e-6, atol=0), "of which Blender keeps single floats"
 
 
-def test_live_work_takes_the_place_of_what_is_damaged_in_the_file():
+def test_live_work_replaces_damaged_data_of_the_file():
     name = sculpt()
     last = stroke(name, 1)
     image = bpy.data.objects[name].data.riffler.store
@@ -218,7 +218,7 @@ def test_edit_mode_has_the_strokes_and_keeps_them():
         bpy.data.objects.remove(ob)
 
 
-def test_what_cannot_be_filled_is_not_packed_either():
+def test_chunks_that_cannot_be_filled_are_not_packed():
     name = sculpt()
     run, ob = work(name), bpy.data.objects[name]
     stroke(name, 1)
@@ -230,7 +230,7 @@ def test_what_cannot_be_filled_is_not_packed_either():
     run.end()
 
 
-def test_linked_duplicates_go_on_with_each_other_s_strokes():
+def test_linked_duplicates_share_their_strokes():
     name = sculpt()
     ob = bpy.data.objects[name]
     other = bpy.data.objects.new("Other", ob.data)
@@ -347,7 +347,7 @@ def test_undo_after_the_end_brings_the_work_back():
     nothing_is_left()
 
 
-def test_strokes_before_and_after_room_was_made_are_undone_and_told_again_to_the_byte():
+def test_strokes_before_and_after_growing_the_box_are_undone_and_replayed_to_the_byte():
     name = sculpt()
 
     def now():
@@ -371,7 +371,7 @@ def test_strokes_before_and_after_room_was_made_are_undone_and_told_again_to_the
     matches_its_volume(name)
 
 
-def test_two_sculpts_are_worked_at_and_undone_in_turn():
+def test_two_sculpts_are_sculpted_and_undone_in_turn():
     a, b = sculpt("A"), sculpt("B")
     done = []
     for k in range(6):
@@ -404,7 +404,7 @@ def test_a_saved_file_has_the_last_stroke_and_opens_without_chunks():
     nothing_is_left()
 
 
-def test_a_file_that_cannot_be_opened_takes_no_work_with_it():
+def test_a_file_that_cannot_be_opened_loses_no_work():
     name = sculpt()
     stroke(name, 2)
     last = stroke(name, 3)
@@ -447,7 +447,7 @@ def test_outlines_are_there_again_whatever_ends_the_work():
     assert outlines() == before
 
 
-def test_chunks_that_a_person_deletes_end_the_work_and_the_sculpt_is_seen():
+def test_deleting_chunks_ends_the_work_and_shows_the_sculpt():
     name = sculpt()
     last = stroke(name, 1)
     before = outlines()
@@ -462,7 +462,7 @@ def test_chunks_that_a_person_deletes_end_the_work_and_the_sculpt_is_seen():
     assert all(now or not was for now, was in zip(outlines(), before, strict=True))
 
 
-def test_where_a_sculpt_was_hidden_it_stays_hidden():
+def test_a_hidden_sculpt_stays_hidden():
     name = sculpt()
     ob, scene = bpy.data.objects[name], bpy.context.scene
     other = scene.view_layers.new("Other")
@@ -475,7 +475,7 @@ def test_where_a_sculpt_was_hidden_it_stays_hidden():
     scene.view_layers.remove(scene.view_layers["Other"])
 
 
-def test_a_copy_of_what_is_shown_is_a_persons():
+def test_a_copy_of_a_chunk_belongs_to_the_user():
     """In the collection or outside it, with a mesh of its own or without one. The display objects themselves are
     removed, wherever they were moved."""
     name = sculpt(directions="z")
@@ -507,7 +507,7 @@ def test_a_copy_of_what_is_shown_is_a_persons():
     matches_its_volume(name)
 
 
-def test_a_whole_copy_of_the_scene_leaves_no_pictures():
+def test_a_full_copy_of_the_scene_leaves_no_chunks():
     name = sculpt(directions="z")
     stroke(name, 1)
     bpy.ops.scene.new(type="FULL_COPY")
@@ -516,7 +516,7 @@ def test_a_whole_copy_of_the_scene_leaves_no_pictures():
     assert not [ob.name for ob in bpy.data.objects if ob.name.startswith("Riffler Chunk")]
 
 
-def test_what_needs_the_sculpt_gets_what_is_shown():
+def test_operators_on_the_sculpt_get_the_shown_state():
     name = sculpt()
     last = stroke(name, 3)
     path = common.out("live.stl")
@@ -556,7 +556,7 @@ def test_symmetry_cuts_copies_and_keeps_them_as_cuts():
     live().end_all()
 
 
-def test_smoothing_takes_the_roughness_keeps_what_is_masked_and_is_undone():
+def test_smoothing_removes_roughness_keeps_masked_material_and_is_undone():
     name = sculpt()
     for k in range(6):
         stroke(name, 2 * k)
@@ -631,7 +631,7 @@ def covered(name_or_mesh):
     return masked / total
 
 
-def test_what_is_protected_is_seen_while_it_is_painted_and_afterwards():
+def test_protected_material_is_shown_while_painting_and_afterwards():
     name = sculpt(size=(40, 30, 20))
     run = work(name)
     assert covered(name) == 0

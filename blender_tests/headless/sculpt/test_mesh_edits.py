@@ -28,7 +28,7 @@ def pull(ob, centre, by=3.0, radius=8.0):
     ob.data.update()
 
 
-def test_every_local_pull_is_seen():
+def test_every_local_edit_is_detected():
     ob, sculpts = ball(), common.part("sculpt.sculpts")
     whole, missed = common.coordinates(ob.data), 0
     assert not sculpts.changed(ob.data)
@@ -50,7 +50,7 @@ def local_pull():
     return ob
 
 
-def test_whatever_changes_the_sculpt_asks_first_what_becomes_of_the_edits():
+def test_every_change_of_the_sculpt_asks_first_what_becomes_of_the_edits():
     """Nothing is discarded, and either remedy in the message works."""
     from support import sculpting
 
@@ -87,7 +87,7 @@ def test_the_panel_notices_every_edit():
     assert edits.noticed(ob) and not common.part("sculpt.sculpts").edited(ob.data)
 
 
-def test_the_answer_to_the_question_goes_on_with_the_stroke():
+def test_the_stroke_continues_after_the_answer():
     for choice in ("TAKE", "DROP"):
         ob = local_pull()
         common.push("pull")
@@ -104,7 +104,7 @@ STROKE = (
 )
 
 
-def test_what_is_made_of_the_volume_says_that_the_edits_are_not_in_it():
+def test_results_of_the_volume_report_that_they_lack_the_edits():
     ob = local_pull()
     path = common.out("edited.stl")
     assert LEFT_OUT in common.printed(lambda: bpy.ops.riffler.export_stl(filepath=path))
@@ -124,7 +124,7 @@ def test_what_is_made_of_the_volume_says_that_the_edits_are_not_in_it():
             common.select(ob)
 
 
-def test_stock_from_an_edited_sculpt_is_what_is_seen():
+def test_stock_from_an_edited_sculpt_is_the_shown_mesh():
     ob = local_pull()
     before = common.content(ob).volume.volume
     assert "edits" not in common.printed(
@@ -163,7 +163,7 @@ def masked_block():
     return ob
 
 
-def test_take_edits_keeps_the_mask_and_says_which_cuts_are_gone():
+def test_take_edits_keeps_the_mask_and_names_the_lost_cuts():
     ob = masked_block()
     before = common.content(ob)
     co = common.coordinates(ob.data)

@@ -19,7 +19,7 @@ def images():
     return [i for i in bpy.data.images if common.part("blender.packed_images").IDENTITY in i]
 
 
-def test_save_and_reopen():
+def test_a_file_keeps_everything_when_saved_and_reopened():
     ob = cut_stock()
     name, key = ob.name, common.part("sculpt.sculpt_store").identity(ob.data)
     shape, co = common.shape(common.content(ob).volume), common.coordinates(ob.data)
@@ -158,7 +158,7 @@ def test_material_slots_stay():
     assert ob.data.materials[0].name == "Wax"
 
 
-def test_stock_and_undo_before_it():
+def test_undo_before_the_first_stock_removes_it():
     common.scale(1)
     common.push("empty")
     bpy.ops.riffler.new_stock("EXEC_DEFAULT", True, size=(10, 10, 10), pitch=0.5)

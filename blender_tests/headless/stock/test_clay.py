@@ -44,7 +44,7 @@ def matches(ob):
     assert np.array_equal(common.coordinates(ob.data), np.asarray(mesh.vertices, np.float32))
 
 
-def test_pitch_there_and_back_keeps_the_shape():
+def test_changing_the_pitch_back_and_forth_keeps_the_shape():
     ob = sculpt()
     bpy.ops.riffler.cut_curve(
         curve=common.curve("C", [(-5, 15, 18), (45, 15, 18)], mm_per_unit=1.0).name, tool=common.BALL
@@ -74,7 +74,7 @@ def stays(before, after):
         assert np.array_equal(before.normals(direction), after.normals(direction))
 
 
-def test_room_made_five_times_moves_no_vertex_of_a_groove():
+def test_growing_the_box_five_times_moves_no_vertex_of_a_groove():
     ob = sculpt(pitch=0.25)
     path = common.curve("C", [(5, 8, 18), (20, 17, 17), (35, 15, 18)], mm_per_unit=1.0)
     common.select(ob)
@@ -92,7 +92,7 @@ def test_room_made_five_times_moves_no_vertex_of_a_groove():
     assert len(groove) > 1000 and all(tuple(v) in there for v in groove.tolist())
 
 
-def test_room_around_a_box_of_no_whole_pitches_keeps_rays_and_symmetry_and_can_be_undone():
+def test_growing_a_box_of_fractional_pitches_keeps_rays_and_symmetry_and_can_be_undone():
     ob = sculpt(pitch=0.4, size=(20.1, 10.2, 5.18))  # 50, 26 and 13 rays, of cells that are wider or narrower
     name, first, middle = ob.name, volume(ob), common.part("sculpt.sculpts").middle
     place = middle(ob.data, first)
@@ -112,7 +112,7 @@ def test_room_around_a_box_of_no_whole_pitches_keeps_rays_and_symmetry_and_can_b
     assert volume(bpy.data.objects[name]).to_bytes() == grown.to_bytes()
 
 
-def test_a_pitch_at_which_nothing_would_be_left_is_refused():
+def test_a_pitch_that_would_lose_all_material_is_refused():
     ob = sculpt()
     pillar = riffler.Volume.block((3, 3, 0), (4, 4, 1), 0.25, "xyz").resample(0.25, None, (0, 0, 0), (40, 30, 20))
     common.part("sculpt.sculpts").commit(ob.data, common.part("common.contents").Content(pillar), 1.0)
@@ -124,7 +124,7 @@ def test_a_pitch_at_which_nothing_would_be_left_is_refused():
     assert volume(ob).to_bytes() == before and len(ob.data.polygons)
 
 
-def test_room_is_made_on_every_side_and_material_can_be_put_there():
+def test_the_box_grows_on_every_side_and_takes_added_material():
     ob = sculpt()
     ring = circle("Ring", (20, 15, 100), 8)
     path = common.curve("C", [(-5, 15, 15), (45, 15, 15)], mm_per_unit=1.0)
@@ -149,7 +149,7 @@ def test_room_is_made_on_every_side_and_material_can_be_put_there():
     assert close(volume(ob).volume - after.volume.volume, (20 * 6 + np.pi * 9) * 2, 0.05)
 
 
-def test_crop_by_the_plane_of_an_object_and_by_numbers():
+def test_crop_takes_the_plane_of_an_object_or_numbers():
     ob = sculpt()
     ob.matrix_world = Matrix.Translation((5, 0, 0)) @ Matrix.Rotation(0.5, 4, "Z")
     bpy.context.view_layer.update()
@@ -238,7 +238,7 @@ def test_a_mask_from_a_curve_protects_what_lies_under_it():
     matches(ob)
 
 
-def test_masks_are_added_taken_away_turned_round_and_cleared():
+def test_masks_are_added_subtracted_inverted_and_cleared():
     ob = sculpt()
     a, b = circle("A", (12, 15, 0), 6), circle("B", (28, 15, 0), 6)
     common.select(ob)
@@ -268,7 +268,7 @@ def test_masks_are_added_taken_away_turned_round_and_cleared():
     assert close(mask(), 0.5 * 4 / 3 * np.pi * 8**3, 0.03)
 
 
-def test_a_picture_is_raised_and_engraved_to_the_depth_that_was_asked():
+def test_a_picture_is_raised_and_engraved_to_the_requested_depth():
     ob = sculpt()
     image = bpy.data.images.new("Picture", 40, 20, float_buffer=True)
     pixels = np.zeros((20, 40, 4), np.float32)
@@ -303,7 +303,7 @@ def test_a_picture_is_raised_and_engraved_to_the_depth_that_was_asked():
     )
 
 
-def test_a_picture_that_is_cut_off_by_the_box_says_what_gives_it_room():
+def test_a_picture_that_the_box_cuts_off_is_reported_with_the_remedy():
     ob = sculpt()
     image = bpy.data.images.new("White", 8, 8, float_buffer=True)
     image.pixels.foreach_set(np.ones(256, np.float32))
@@ -323,7 +323,7 @@ def test_a_picture_that_is_cut_off_by_the_box_says_what_gives_it_room():
     assert said(depth=2.0) == (False, False)
 
 
-def test_every_operator_says_what_is_missing():
+def test_every_operator_names_what_is_missing():
     for ob in list(bpy.context.selected_objects):
         ob.select_set(False)
     bpy.context.view_layer.objects.active = None

@@ -25,7 +25,7 @@ def test_a_straight_slot_has_the_volume_of_the_formula_in_any_scene():
         assert abs(removed / slot(20, 6, 2) - 1) < 0.005, (unit, removed)
 
 
-def test_the_curve_is_taken_where_it_stands():
+def test_the_curve_is_used_in_its_place():
     common.scale(1)
     ob = common.stock(pitch=0.25)
     ob.matrix_world = [[0, -1, 0, 7], [1, 0, 0, -3], [0, 0, 1, 2], [0, 0, 0, 1]]
@@ -110,7 +110,7 @@ def test_the_mesh_shows_the_cut():
     assert np.allclose(ob.dimensions, (40, 30, 20), atol=1e-4)
 
 
-def test_one_undo_step_takes_back_mesh_and_volume_together():
+def test_one_undo_step_undoes_mesh_and_volume_together():
     common.scale(1)
     name = common.stock().name
     c = common.curve("Line", [(10, 15, 20), (30, 15, 20)], mm_per_unit=1).name
@@ -185,7 +185,7 @@ def test_a_cut_into_air_warns_and_counts():
     assert common.content(ob).volume.volume == 24000 and ob.data.riffler.cuts == 1
 
 
-def test_all_of_it_can_go():
+def test_all_material_can_be_cut_away():
     common.scale(1)
     ob = common.stock(size=(4, 4, 4))
     c = common.curve("Line", [(-4, 2, 0), (8, 2, 0)], mm_per_unit=1)

@@ -26,7 +26,7 @@ def all_triangles(name):
     return len(live().content(bpy.data.objects[name]).volume.to_mesh().triangles)
 
 
-def test_strokes_send_a_tenth_and_one_click_shows_all_and_undo_takes_it_back():
+def test_strokes_show_a_tenth_of_the_triangles_one_click_shows_all_and_undo_reverts_it():
     needs_normals()
     name = sculpt()
     mesh = bpy.data.objects[name].data
@@ -62,7 +62,7 @@ def test_strokes_send_a_tenth_and_one_click_shows_all_and_undo_takes_it_back():
     assert abs(mesh.riffler.shown_within - 0.05) < 1e-6  # a tenth of the pitch
 
 
-def test_the_choice_is_saved_and_a_file_opens_with_what_it_shows():
+def test_the_choice_is_saved_and_a_file_opens_as_it_was_shown():
     needs_normals()
     sizes = {}
     for detail in ("NEEDED", "ALL"):

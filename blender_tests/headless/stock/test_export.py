@@ -19,7 +19,7 @@ def cut_stock(unit, directions="z"):
     return ob
 
 
-def test_a_surface_is_written_as_what_its_operator_says_and_nothing_without_a_name():
+def test_a_surface_is_written_in_the_operators_format_and_not_without_a_name():
     common.scale(1)
     common.stock()
     for name, suffix in (("export_stl", ".stl"), ("export_3mf", ".3mf")):
@@ -125,7 +125,7 @@ def test_triangles_are_where_the_shape_needs_them_or_all():
     assert np.abs(few.deviation(full)).max() < 1e-4 and np.abs(full.deviation(few)).max() < 0.1 * pitch + 1e-4
 
 
-def test_a_changed_scene_scale_changes_what_is_exported_and_is_said():
+def test_a_changed_scene_scale_changes_the_export_and_is_reported():
     ob = cut_stock(1000.0)
     common.scale(1)
     path = common.out("shrunk.stl")
@@ -142,7 +142,7 @@ def test_a_path_that_cannot_be_written_is_named():
     common.refused(lambda: bpy.ops.riffler.export_stl(filepath="/nowhere/at/all.stl"), "all.stl")
 
 
-def test_a_sculpt_of_which_nothing_is_left_is_no_file():
+def test_an_empty_sculpt_is_not_exported():
     common.scale(1)
     common.stock(size=(10, 10, 10))
     c = common.curve("Line", [(-5, 5, -1), (15, 5, -1)], mm_per_unit=1)
@@ -164,7 +164,7 @@ def numbers(path, letter):
     return [float(m) for m in re.findall(rf"{letter}(-?[\d.]+)", text)]
 
 
-def test_nc_of_the_cuts():
+def test_nc_code_holds_the_cuts():
     for post in ("3-axis", "tcp"):
         bpy.ops.wm.read_homefile()
         cut_stock(1.0)
@@ -176,7 +176,7 @@ def test_nc_of_the_cuts():
         assert 450.0 in numbers(path, "F") and 9000.0 in numbers(path, "S")
 
 
-def test_nc_needs_cuts_and_upright_tools_for_three_axes():
+def test_nc_code_needs_cuts_and_upright_tools_for_three_axes():
     common.scale(1)
     common.stock()
     path = Path(common.out("none.ngc"))
@@ -225,7 +225,7 @@ def test_a_recording_is_cut_with_another_tool():
         assert [cut.tool["kind"] for cut in common.content(again).cuts] == ["flat"]
 
 
-def test_what_is_no_recording_is_named():
+def test_files_that_are_no_recordings_are_named():
     common.scale(1)
     ob = common.stock()
     path = Path(common.out("bad.rjournal"))
@@ -246,7 +246,7 @@ def written():
     return said
 
 
-def test_code_of_cuts_beside_a_mask_says_that_it_cuts_what_was_protected():
+def test_code_of_masked_cuts_warns_that_it_cuts_protected_material():
     from support import sculpting
 
     ob = cut_stock(1.0, "xyz")
@@ -271,7 +271,7 @@ def test_code_of_cuts_beside_a_mask_says_that_it_cuts_what_was_protected():
     assert [cut.masked for cut in common.content(ob).cuts] == [False, True, True]
 
 
-def test_code_of_a_sculpt_that_was_shaped_otherwise_says_what_is_not_in_it():
+def test_code_of_a_sculpt_shaped_by_other_means_names_what_it_lacks():
     from support import sculpting
 
     name = sculpting.sculpt(size=(60, 60, 20))

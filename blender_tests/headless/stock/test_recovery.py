@@ -144,7 +144,7 @@ def test_killed_in_mid_stroke_without_a_file_and_recovered_as_a_new_object():
         is_whole("Stock", said)
 
 
-def test_what_was_recovered_and_is_in_no_file_is_offered_again():
+def test_unsaved_recovered_work_is_offered_again():
     with fresh() as root:
         cut_off()
         common.scale(1)
@@ -193,7 +193,7 @@ def test_killed_in_mid_stroke_and_recovered_into_the_sculpt_of_the_file():
 
 
 @common.core_bound
-def test_killed_in_mid_stroke_of_the_other_modes():
+def test_killed_in_mid_stroke_of_the_other_modes_and_recovered():
     for mode in ("add", "soften", "mask"):
         with fresh():
             said = killed(rows=100, mode=mode)
@@ -209,7 +209,7 @@ def test_killed_in_mid_stroke_of_the_other_modes():
             bpy.ops.wm.save_as_mainfile(filepath=common.out("recovered_mode.blend"))
 
 
-def test_a_journal_whose_stock_was_never_written_goes_on_from_the_file():
+def test_a_journal_without_its_stock_continues_from_the_file():
     path = common.out("no_stock.blend")
     with fresh():
         said = killed(path)
@@ -230,7 +230,7 @@ def test_ended_work_leaves_no_journal():
 
 
 @common.core_bound
-def test_two_blenders_at_once():
+def test_a_journal_in_use_is_not_recovered_by_another_blender():
     """Another Blender cannot recover a journal in use."""
     with fresh() as root, another_blender("rest") as (child, messages):
         for message in messages:
@@ -282,7 +282,7 @@ def test_damaged_and_newer_journals_are_named_and_kept():
         assert len(list(root.iterdir())) == 1
 
 
-def test_a_journal_is_discarded_only_when_it_is_asked_for():
+def test_a_journal_is_discarded_only_on_request():
     with fresh() as root:
         cut_off()
         keeping().crashed(look=True)
@@ -378,7 +378,7 @@ def test_an_autosave_that_was_opened_takes_the_strokes_of_the_journal():
         matches_its_volume(name)
 
 
-def test_a_sculpt_that_has_gone_on_since_is_left_alone():
+def test_a_sculpt_that_was_changed_since_is_left_unchanged():
     with fresh() as root:
         name = sculpt()
         worked = stroke(name, 1)
@@ -471,7 +471,7 @@ def test_the_next_work_at_the_same_sculpt_needs_no_older_journal():
         assert not list(root.iterdir())
 
 
-def test_copies_by_symmetry_and_standing_rows_are_told_again_to_the_byte():
+def test_copies_by_symmetry_and_standing_rows_are_replayed_to_the_byte():
     name = sculpt()
     run = work(name)
     run.maps = common.part("sculpt.pure.symmetry").maps("XY")

@@ -24,7 +24,7 @@ def values(mesh, name, field="value", width=1):
     return out.reshape(-1, width) if width > 1 else out
 
 
-def test_a_mesh_is_made_with_the_error_that_is_said():
+def test_a_mesh_has_the_reported_error():
     ob = sculpt()
     exact = common.content(ob).volume.to_mesh()
     assert bpy.ops.riffler.to_mesh(tolerance=0.02, iterations=3, smooth_tolerance=0.01) == {"FINISHED"}
@@ -133,14 +133,14 @@ def shadings():
     return [space.shading.color_type for _, _, space in common.part("blender.views").views()]
 
 
-def test_colours_of_a_surface_that_was_cut_are_gone_with_legend_and_shading():
+def test_cutting_a_coloured_surface_removes_colours_legend_and_shading():
     ob, before = coloured()
     bpy.ops.riffler.crop(point=(30, 0, 0), normal=(1, 0, 0))
     assert "riffler_deviation_scale" not in ob.data and shadings() == before
     assert common.part("stock.deviation_legend").mesh_of(bpy.context) is None
 
 
-def test_undo_gives_the_views_back_and_redo_colours_them_again():
+def test_undo_restores_the_views_and_redo_colours_them_again():
     ob, before = coloured()
     name = ob.name
     bpy.ops.ed.undo()
@@ -151,7 +151,7 @@ def test_undo_gives_the_views_back_and_redo_colours_them_again():
     assert shadings() == before
 
 
-def test_views_stay_coloured_while_another_mesh_is():
+def test_views_stay_coloured_while_another_mesh_is_coloured():
     ob, before = coloured()
     assert bpy.ops.riffler.to_mesh(tolerance=0.0, hide_sculpt=False) == {"FINISHED"}
     other = bpy.context.object

@@ -56,7 +56,7 @@ def test_sizes_are_in_the_scenes_units():
     assert np.allclose(common.content(bpy.context.object).volume.upper, 10)
 
 
-def test_undo_takes_it_away_and_redo_brings_it_back():
+def test_undo_removes_the_solid_and_redo_restores_it():
     common.scale(1)
     bpy.ops.ed.undo_push(message="before")
     bpy.ops.riffler.add_solid("EXEC_DEFAULT", True, shape="SPHERE", radius=10)
@@ -67,7 +67,7 @@ def test_undo_takes_it_away_and_redo_brings_it_back():
     assert common.content(bpy.data.objects["Sphere"]).volume.to_bytes() == bytes_before
 
 
-def test_what_cannot_be_is_refused_with_a_remedy_and_leaves_nothing():
+def test_impossible_solids_are_refused_with_a_remedy_and_leave_nothing():
     common.scale(1)
     meshes, objects = len(bpy.data.meshes), len(bpy.data.objects)
     add = bpy.ops.riffler.add_solid

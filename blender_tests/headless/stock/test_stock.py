@@ -29,7 +29,7 @@ def test_the_mesh_is_closed_and_encloses_the_block():
         assert not ob.data.validate()
 
 
-def test_origins():
+def test_a_stock_stands_at_the_chosen_origin():
     common.scale(1)
     for origin, lower in (("CORNER", (0, 0, 0)), ("TOP", (-20, -15, -20)), ("CENTRE", (-20, -15, -10))):
         ob = common.stock(origin=origin)
@@ -75,7 +75,7 @@ def test_a_mirrored_object_is_material_too():
     assert abs(common.content(bpy.context.object).volume.volume - 1000) < 1e-6
 
 
-def test_of_a_sculpt_the_stock_is_what_is_seen():
+def test_stock_of_a_sculpt_is_the_shown_mesh():
     """Its volume itself if it is unscaled; mirrored, larger or with a modifier, its surface."""
     common.scale(1)
     for scale, modifier, exact in (((1, 1, 1), "", True), ((-1, 1, 1), "", False), ((2, 2, 2), "", False),
@@ -148,7 +148,7 @@ def of_mesh():
     return bpy.ops.riffler.new_stock("EXEC_DEFAULT", True, source="OBJECT", pitch=0.5, directions="z")
 
 
-def test_the_facets_of_an_object_become_round_where_that_is_asked():
+def test_the_facets_of_an_object_become_round_on_request():
     """Blender's own sphere and cylinder of 40 mm: facets 0.2 mm deep, and the bar's sharp rim."""
     common.scale(1)
     off = {}
@@ -195,7 +195,7 @@ def test_stock_of_a_mesh_is_one_undo_step():
     assert bpy.data.objects[name].hide_get() and bpy.context.object.name == f"{name} Stock"
 
 
-def test_a_linked_mesh_is_hidden_itself_and_not_one_that_is_called_as_it_is():
+def test_a_linked_mesh_is_hidden_and_not_another_one_of_the_same_name():
     common.scale(1)
     bpy.ops.mesh.primitive_cube_add(size=10)
     own = bpy.context.object
@@ -213,7 +213,7 @@ def test_a_linked_mesh_is_hidden_itself_and_not_one_that_is_called_as_it_is():
     assert bpy.ops.riffler.plan_part() == {"FINISHED"} and bpy.context.scene.riffler.plan.part == linked
 
 
-def test_fit_pitch():
+def test_fit_pitch_suits_the_size_of_the_stock():
     stock = bpy.context.scene.riffler.stock
     stock.size = (100, 60, 30)
     bpy.ops.riffler.fit_pitch()
@@ -246,7 +246,7 @@ def test_every_preset_makes_a_tool():
     assert riffler.Tool.from_dict(tool.dictionary()).diameter == 5.5
 
 
-def test_a_lump_of_a_few_rays_is_warned_of():
+def test_a_warning_names_a_lump_of_few_rays():
     """Suzanne in a scene in millimetres, at the panel's default pitch."""
     common.scale(1)
     bpy.ops.mesh.primitive_monkey_add(size=2)

@@ -2989,7 +2989,9 @@ class Note:
         """
     @property
     def message(self) -> str:
-        ...
+        """
+        A sentence on what the reader assumed or skipped.
+        """
 class ProgramStream:
     """
     An iterator over programs: see `Program.stream`.
@@ -5376,7 +5378,9 @@ class SessionFrame:
         """
     @property
     def in_stroke(self) -> bool:
-        ...
+        """
+        Whether a stroke was in progress when the loop handed over the frame's tiles.
+        """
     @property
     def missed(self) -> numpy.typing.NDArray[numpy.float64]:
         """

@@ -1,4 +1,4 @@
-"""Types of arguments that many calls take, and how results that may be tasks are made."""
+"""Types of arguments that many calls take, and `then`, which converts results that may be tasks."""
 
 from __future__ import annotations
 

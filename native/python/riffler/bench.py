@@ -1,4 +1,4 @@
-"""Old name of the package riffler_bench, which the distribution riffler-bench has."""
+"""Old name of the package riffler_bench, which the distribution riffler-bench contains."""
 
 import sys
 import warnings
@@ -9,7 +9,7 @@ except ModuleNotFoundError as error:
     if error.name != "riffler_bench":
         raise
     raise ModuleNotFoundError(
-        "riffler.bench is riffler_bench now, a package of its own: in a checkout, pip install ./bench", name=__name__
+        "riffler.bench is now the package riffler_bench; in a checkout, pip install ./bench installs it", name=__name__
     ) from None
 
 warnings.warn("riffler.bench is riffler_bench now", DeprecationWarning, stacklevel=2)

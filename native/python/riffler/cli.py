@@ -1,7 +1,7 @@
 """The command line: ``riffler``, or ``python -m riffler``.
 
-Exit status: 0, or 1 where a check failed, or 2 for bad input, or 130 after Ctrl-C. An error is one line on stderr, or,
-with ``--json``, ``{"error": …}`` on stdout; nothing is written then.
+Exit status: 0; 1 if a check failed; 2 for bad input; 130 after Ctrl-C. After an error no file is written; the error is
+one line on stderr or, with ``--json``, ``{"error": …}`` on stdout.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ def main(argv: list[str] | None = None) -> int:
 
 
 def dispatch(words: list[str], console: Console) -> int:
-    """Finds the verb and runs it; an old name is answered on stderr with the new one."""
+    """Finds the verb and runs it. For an old name, a note on stderr gives the new one."""
     if words[:1] == ["--version"]:
         console.result({"riffler": __version__}, f"riffler {__version__}", [])
         return 0

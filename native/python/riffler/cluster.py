@@ -34,12 +34,14 @@ if TYPE_CHECKING:
 
 __all__ = ["verify"]
 
-MOVES = 1 << 18  # of a task, about: 60 MB on the worker; a slab with more of them is run piece by piece
-PER_THREAD = 2  # slabs in the cluster: one that runs and one that waits
-AHEAD = 8  # times as many slabs may be done while one before them is not: what they took is kept in memory
-PATIENCE = 5.0  # s: for the scheduler, and for a first worker
-WITHOUT_WORKERS = 60.0  # s: workers that die may be started again
-RETRIES = 2  # of a slab whose worker fails; a worker that dies is Dask's own to deal with
+MOVES = 1 << 18  # per task, about: 60 MB on the worker; a slab with more moves runs in several tasks
+PER_THREAD = 2  # slabs in the cluster for each thread of a worker: one runs and one waits
+# A slab may start this many times the cluster's number of slabs ahead of the first unfinished one. The results in
+# between stay in memory.
+AHEAD = 8
+PATIENCE = 5.0  # s: longest wait for the scheduler, and for a first worker
+WITHOUT_WORKERS = 60.0  # s: longest wait for a new worker after the last one has died
+RETRIES = 2  # of a task that fails; Dask itself moves the tasks of a worker that dies
 # A function of the standard library, so that a worker without riffler can report this.
 VERSION_OF = "__import__('riffler').__version__"
 
@@ -69,43 +71,43 @@ def verify(
     Parameters
     ----------
     program : Program, or an iterable of Programs
-        As of `riffler.verify`.
+        As for `riffler.verify`.
     stock_volume : Volume
-        As of `riffler.verify`.
+        As for `riffler.verify`.
     part_mesh : Mesh or None
-        As of `riffler.verify`.
+        As for `riffler.verify`.
     fixtures : list of Volume or Mesh
-        As of `riffler.verify`.
+        As for `riffler.verify`.
     scheduler : str or distributed.Client
         The address of a Dask scheduler, such as "tcp://host:8786", or a client of one.
     tools : dict of int to Tool, or None
-        As of `riffler.verify`.
+        As for `riffler.verify`.
     tolerance, gouge_tolerance : float, mm
-        As of `riffler.verify`.
+        As for `riffler.verify`.
     rest_tolerance : float, mm, or None
-        As of `riffler.verify`.
+        As for `riffler.verify`.
     rapid_feed : float, mm/min
-        As of `riffler.verify`.
+        As for `riffler.verify`.
     machine : str or None
-        As of `riffler.verify`.
+        As for `riffler.verify`.
     machine_options : dict or None
-        As of `riffler.verify`.
+        As for `riffler.verify`.
     progress : callable or None
         Called with the finished share; returning False cancels.
 
     Returns
     -------
     VerifyReport
-        The same bytes as of `riffler.verify`.
+        The same bytes as from `riffler.verify`.
 
     Raises
     ------
     ConnectionError
         If there is no scheduler or no worker.
     RuntimeError
-        Naming the worker that has another version of riffler, or none.
+        If a worker has another version of riffler, or none; names the worker.
     ValueError
-        As `riffler.verify`, and if the package distributed is missing.
+        As for `riffler.verify`, and if the package distributed is missing.
     Cancelled
         ``progress`` returned False.
 
@@ -139,7 +141,8 @@ def verify(
 
 
 def sort_moves(program: Program | Iterable[Program], plan: VerifyPlan, spool: Spool, told: _Told) -> None:
-    """All chunks into the spool. Their number is unknown, so progress rises by half of what is left with each."""
+    """Puts the moves of all chunks into the spool. The number of chunks is unknown: each adds half of the remaining
+    progress."""
     if not isinstance(program, Program) and not isinstance(program, Iterable):
         raise ValueError("program must be a Program or an iterable of Programs")
     begin, end = 0.05, 0.15
@@ -153,7 +156,7 @@ def sort_moves(program: Program | Iterable[Program], plan: VerifyPlan, spool: Sp
 
 
 class _Told:
-    """The caller's progress: its share never falls."""
+    """Reports progress to the caller; the share never falls."""
 
     def __init__(self, progress: Callable[[float], object] | None) -> None:
         self.progress, self.most = progress, 0.0
@@ -181,12 +184,12 @@ def library() -> Any:
 
 @contextmanager
 def _client(scheduler: str | Client) -> Iterator[Client]:
-    """A client; a given one stays open."""
+    """Yields a client of the scheduler. A client that the caller gave stays open."""
     distributed = library()
     if isinstance(scheduler, distributed.Client):
         client: Client = scheduler  # pyright: ignore[reportAssignmentType]
         if client.asynchronous:
-            raise ValueError("scheduler: an asynchronous Client; give one that waits, or an address")
+            raise ValueError("scheduler: the Client is asynchronous; give a synchronous one, or an address")
         yield client
         return
     if not isinstance(scheduler, str):
@@ -200,13 +203,13 @@ def _client(scheduler: str | Client) -> Iterator[Client]:
 
 
 def address_of(client: Client) -> str:
-    """Address of its scheduler."""
+    """Address of the client's scheduler."""
     return str(client.scheduler.address)  # pyright: ignore[reportOptionalMemberAccess]
 
 
 def check_versions(client: Client) -> None:
-    """RuntimeError naming the first machine without this version of riffler: the scheduler takes tasks apart and needs
-    it too. ConnectionError where there is no worker."""
+    """Raises RuntimeError naming the first machine without this version of riffler; the scheduler needs it too, to
+    unpack tasks. Raises ConnectionError if there is no worker."""
     address = address_of(client)
     try:
         client.wait_for_workers(1, timeout=PATIENCE)
@@ -244,11 +247,11 @@ class Context:
 
 def simulate(context: Context, task: bytes, moves: list[bytes]) -> bytes:
     """Runs one slab, or some of its moves, on a worker."""
-    if context.worker is None:  # it came later than `check_versions`
+    if context.worker is None:  # the worker joined after `check_versions`
         from distributed import get_worker
 
         raise RuntimeError(
-            f"{get_worker().address} has riffler {__version__}, the job is of {context.version}: install the same "
+            f"{get_worker().address} has riffler {__version__}, the job needs {context.version}: install the same "
             "version there"
         )
     return context.worker.run(task, moves)
@@ -261,12 +264,12 @@ class Spool:
     """Packets of moves, slab by slab, in a temporary file that disappears with the process."""
 
     def __init__(self) -> None:
-        import tempfile  # brings hashlib, and that OpenSSL: 3 MB that only clusters need
+        import tempfile  # imports hashlib and with it OpenSSL: 3 MB that only clusters need
 
         self.file = tempfile.TemporaryFile(prefix="riffler-")  # noqa: SIM115
         self.size = 0
         self.total = 0  # moves
-        self.places: dict[int, array[int]] = {}  # of a slab: offset, length and moves of each packet
+        self.places: dict[int, array[int]] = {}  # for each slab: offset, length and moves of each packet
 
     def __enter__(self) -> Spool:
         return self
@@ -285,7 +288,7 @@ class Spool:
         return sorted(self.places)
 
     def pieces(self, slab: int) -> Iterator[tuple[list[bytes], int, bool]]:
-        """Packets of about MOVES moves at a time, how many moves they are, and whether they are the last ones."""
+        """Yields packets with about MOVES moves, their number of moves, and whether they are the slab's last ones."""
         places, packets, moves = self.places[slab], [], 0
         for k in range(0, len(places), 3):
             self.file.seek(places[k])
@@ -365,7 +368,7 @@ class Slabs:
                 self.progress(self.finished / self.spool.total)
 
     def look(self) -> None:
-        """Number of threads at present. ConnectionError if scheduler or workers are lost for good."""
+        """Updates the number of worker threads. Raises ConnectionError if the scheduler or all workers are lost."""
         now = time.monotonic()
         if now - self.looked < 1:
             return
@@ -423,18 +426,18 @@ class Slabs:
             return future.result()
         except distributed.KilledWorker as error:
             raise RuntimeError(
-                f"slab {slab.number}: one worker after the other dies of it, {error.last_worker.address} as the last; "
-                "their logs say why (memory?)"
+                f"slab {slab.number}: every worker that ran it died, the last one at {error.last_worker.address}; "
+                "their logs give the reason (out of memory?)"
             ) from error
         except distributed.CancelledError as error:
-            raise ConnectionError(f"{address_of(self.client)}: the scheduler has given the work up") from error
+            raise ConnectionError(f"{address_of(self.client)}: the scheduler has cancelled the work") from error
         except FormatError as error:
             raise RuntimeError(f"slab {slab.number}: damaged in transit ({error})") from error
 
 
 @contextmanager
 def _large_tasks() -> Iterator[None]:
-    """Silences Dask's warning about large tasks. Slabs are in their tasks, because a worker's data are lost with it."""
+    """Silences Dask's warning about large tasks. Tasks carry their slabs: data kept on a worker are lost if it dies."""
     from dask import config
 
     with config.set({"distributed.admin.large-graph-warning-threshold": "1 TB"}):

@@ -1,8 +1,8 @@
 """Old names keep working; each warns once and names its replacement.
 
 The tables of old names are in `riffler.old`, one module per topic. Old attributes, methods and names of modules get a
-descriptor or a module's ``__getattr__``. Old keywords and positional arguments are translated where a call does not
-fit, by `riffler.hints`; calls in today's form pay nothing.
+descriptor or a module's ``__getattr__``. If a call does not fit, `riffler.hints` translates its old keywords and
+positional arguments; calls in today's form cost nothing extra.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ Arguments = tuple[tuple, dict]
 
 
 def warn(old: str, new: str) -> None:
-    """A DeprecationWarning at the line outside of riffler that uses ``old``, once for each old name."""
+    """Issues a DeprecationWarning at the line outside of riffler that uses ``old``, once for each old name."""
     if old in _warned:
         return
     warnings.warn(f"riffler: {old} is deprecated, use {new}", DeprecationWarning, stacklevel=_depth())
@@ -28,7 +28,7 @@ def warn(old: str, new: str) -> None:
 
 
 def forget() -> None:
-    """Every old name warns again: for tests."""
+    """Makes every old name warn again, for tests."""
     _warned.clear()
 
 
@@ -44,7 +44,7 @@ def _depth() -> int:
 class Old:
     """The old names of one topic. Callables are named as users write them, without ``riffler.``: ``Volume.carve``."""
 
-    #: module ("" is riffler itself): old name → new name, or what to use now and the name of what the old one gives
+    #: module ("" is riffler itself): old name → new name, or a pair: name to recommend, name that the old one gives
     modules: dict[str, dict[str, str | tuple[str, str]]] = field(default_factory=dict)
     #: class: old attribute or method → new one of the same kind, or "name()": a method in place of an attribute
     attributes: dict[str, dict[str, str]] = field(default_factory=dict)
@@ -52,15 +52,15 @@ class Old:
     keywords: dict[str, dict[str, str]] = field(default_factory=dict)
     #: callable: today's names of all arguments that were positional, in their order, without ``self``
     positional: dict[str, tuple[str, ...]] = field(default_factory=dict)
-    #: callable: today's names of the arguments in an order that is another today, and whether a call uses that order,
-    #: by its positional arguments (without ``self``)
+    #: callable: today's names of the arguments in their old order, and a function that tells from the positional
+    #: arguments (without ``self``) whether a call uses that order
     reordered: dict[str, tuple[tuple[str, ...], Callable[[tuple], bool]]] = field(default_factory=dict)
     #: callable: removed keyword → function (call, args, kwargs) that makes the call in today's form and returns
     #: the old call's result; it issues the warning itself
     adapted: dict[str, dict[str, Callable[[Callable, tuple, dict], object]]] = field(default_factory=dict)
 
     def merged(self, other: Old) -> Old:
-        """The merged tables."""
+        """The tables of both."""
 
         def both(a: dict, b: dict) -> dict:
             return a | {k: a[k] | v if k in a and isinstance(v, dict) else v for k, v in b.items()}
@@ -69,7 +69,7 @@ class Old:
 
 
 class OldAttribute:
-    """In a class: the old name of an attribute or a method."""
+    """Descriptor in a class for the old name of an attribute or a method."""
 
     def __init__(self, owner: str, old: str, new: str) -> None:
         self.owner, self.old, self.new = owner, old, new
@@ -110,7 +110,7 @@ def module_getattr(module: str, names: Mapping[str, str | tuple[str, str]]) -> C
 class DictResult:
     """Base of results that used to be dicts: they can still be read as one.
 
-    ``old_keys`` names the keys whose attribute is called otherwise; every other key is the attribute's name.
+    ``old_keys`` names the keys that differ from the attribute's name.
     """
 
     old_keys: ClassVar[Mapping[str, str]] = {}

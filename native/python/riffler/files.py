@@ -35,17 +35,17 @@ def writing(path: str | os.PathLike[str]) -> Iterator[IO[bytes]]:
 
 
 def write(path: str | os.PathLike[str], data: bytes) -> None:
-    """The same for given bytes."""
+    """Writes the bytes as the file ``path``, whole or not at all."""
     with writing(path) as stream:
         stream.write(data)
 
 
 @contextmanager
 def drafting(path: str | os.PathLike[str], done: Callable[[], None] = lambda: None) -> Iterator[Path]:
-    """A path to write to, with the same name in a folder of its own, whose file replaces ``path`` at the end:
-    for writers that need a path. ``done`` is called after that, before Ctrl-C has effect again.
+    """Yields a path to write to, for writers that need one: the same name in a temporary folder. The file there
+    replaces ``path`` at the end; then ``done`` is called, while Ctrl-C is still ignored.
 
-    The folder is locked: one that a killed process left goes with the next draft.
+    The folder is locked, so that the next draft can remove the folder of a killed process.
     """
     try:
         target = Path(_core.replaceable(path))

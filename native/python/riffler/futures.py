@@ -1,4 +1,4 @@
-"""Long calls on a thread of their own: `submit` starts one and returns its `Future`."""
+"""Long calls on separate threads: `submit` starts one and returns its `Future`."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ log = logging.getLogger("riffler")
 
 
 def submit(function: Callable[P, R], /, *args: P.args, **kwargs: P.kwargs) -> Future[R]:
-    """Starts a long call on a thread of its own.
+    """Starts a long call on a separate thread.
 
     Most long calls of riffler run on a native thread without Python: they copy their arguments at once, volumes
-    by a snapshot, and wrong arguments raise here. Others (`Volume.carve`, `verify` of an iterable, your
-    own functions) run on a Python thread; their ``progress``, if any, cancels them.
+    by a snapshot, and wrong arguments raise an error here. Others (`Volume.carve`, `verify` of an iterable, your
+    own functions) run on a Python thread; they can be cancelled if they have a ``progress``.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ def submit(function: Callable[P, R], /, *args: P.args, **kwargs: P.kwargs) -> Fu
 
 
 def runs_as_task(function: Callable[P, R]) -> Callable[P, R]:
-    """Marks a Python function that passes its ``progress`` to one native call and converts by `_core.then`."""
+    """Marks a Python function that passes its ``progress`` to one native call and converts with `_core.then`."""
     function.__riffler_task__ = True  # pyright: ignore[reportFunctionMemberAccess]
     return function
 
@@ -79,8 +79,8 @@ def _can_be_a_task(call: Callable) -> bool:
 class Future(Generic[R]):
     """A running or finished call; its interface is that of ``concurrent.futures.Future``, with `progress`.
 
-    A future that the program no longer holds is cancelled and waited for, unless it has callbacks; so are all when
-    Python ends.
+    A future that the program no longer refers to is cancelled and waited for, unless it has callbacks. When Python
+    ends, all futures are cancelled and waited for.
 
     Examples
     --------
@@ -151,7 +151,7 @@ class Future(Generic[R]):
             raise TimeoutError(f"the call has not ended after {timeout:g} s ({self.progress():.0%})")
 
     def done(self) -> bool:
-        """Whether the call has ended, by itself, by an error or cancelled.
+        """Whether the call has ended: with a result, with an error, or cancelled.
 
         Examples
         --------
@@ -214,7 +214,7 @@ class Future(Generic[R]):
         return self._task.share
 
     def add_done_callback(self, callback: Callable[[Future[R]], object]) -> None:
-        """Calls ``callback(future)`` after the end of the call: on a thread of its own, or at once if it has ended.
+        """Calls ``callback(future)`` after the end of the call: on a separate thread, or at once if it has ended.
 
         Exceptions of callbacks are logged.
 
@@ -262,7 +262,7 @@ class Future(Generic[R]):
         return f"<riffler.Future: {'done' if self.done() else f'{self.progress():.0%}'}>"
 
 
-# --- what a future waits for ------------------------------------------------------------------------------------------
+# --- calls that futures wait for --------------------------------------------------------------------------------------
 
 
 class _Running(Protocol):

@@ -1,9 +1,9 @@
-"""Handles calls with wrong arguments: translates old forms; for all others raises one TypeError that says what
-would fit.
+"""Handles calls with wrong arguments: translates old forms, and raises a TypeError that names the right arguments for
+all others.
 
-Functions of the extension module call this from native/bindings/hints.cpp, functions in Python by
-`hinted`, both only after a call has failed, so that correct calls cost nothing. What an argument must be is read from
-the function's docstring (its section Parameters), or else from its annotation.
+Functions of the extension module use this through native/bindings/hints.cpp, functions in Python through `hinted`; both
+only after a call has failed, so that correct calls cost nothing. The section Parameters of the function's docstring
+says what an argument must be, or else its annotation does.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ class Argument:
 
 
 def answer_native(name: str, function: Callable, args: tuple, kwargs: dict) -> object:
-    """For native/bindings/hints.cpp: the call that pybind11 refused, made in today's form, or a TypeError."""
+    """Makes a call that pybind11 refused in today's form, or raises TypeError. native/bindings/hints.cpp calls this."""
     return _answer(name, function, _native_arguments(function.__doc__ or ""), args, kwargs)
 
 
@@ -58,7 +58,7 @@ def hinted(name: str) -> Callable[[Callable[P, R]], Callable[P, R]]:
             try:
                 return function(*args, **kwargs)
             except TypeError as error:
-                # Raised in the call itself, and not in a line of the function.
+                # Only errors of the call itself are handled, not those of a line in the function.
                 if error.__traceback__ is None or error.__traceback__.tb_next is not None:
                     raise
             return _answer(name, function, _python_arguments(function), args, kwargs)  # pyright: ignore
@@ -96,7 +96,7 @@ def _native_arguments(doc: str) -> list[Argument] | None:
 
 
 def _split(text: str, separator: str, stop: str = "") -> list[str]:
-    """The pieces between separators that are in no bracket and no quotes, up to ``stop``."""
+    """The pieces of a text between separators outside brackets and quotes, up to ``stop``."""
     pieces, depth, quote, begin = [], 0, "", 0
     for k, c in enumerate(text):
         if quote:
@@ -134,7 +134,7 @@ def _shown(name: str) -> str:
 
 
 def _translated(name: str, arguments: list[Argument], args: tuple, kwargs: dict) -> tuple[tuple, dict] | None:
-    """The call in today's form, with a warning, or None if the call has no old parts."""
+    """The arguments in today's form, with a warning, or None if the call has no old parts."""
     tables, found = old.ALL, False
     first = int(bool(arguments) and arguments[0].name == "self")
     if name in tables.reordered and tables.reordered[name][1](args[first:]):
@@ -159,7 +159,7 @@ def _translated(name: str, arguments: list[Argument], args: tuple, kwargs: dict)
 
 
 def _in_todays_order(name: str, order: tuple[str, ...], args: tuple, kwargs: dict) -> tuple[tuple, dict]:
-    """The arguments of a call in the old order, by keyword."""
+    """The arguments of a call in the old order, as keywords."""
     warn(f"{_shown(name)}({', '.join(order)})", "the order of today's signature, or keywords")
     return (), dict(zip(order, args, strict=False)) | kwargs
 
@@ -168,7 +168,7 @@ def _in_todays_order(name: str, order: tuple[str, ...], args: tuple, kwargs: dic
 
 
 def _explain(name: str, doc: str, arguments: list[Argument] | None, args: tuple, kwargs: dict) -> str:
-    """The fault of a call, and what would fit."""
+    """A message that names the fault of a call and the right arguments."""
     shown = _shown(name)
     if arguments is None:
         signatures = re.findall(r"^\d+\. \w+(\(.*)$", doc, re.MULTILINE)

@@ -11,8 +11,8 @@ Pens of your own are ``.toml`` files, given by path or found in the folders of `
         state = device.state()
         device.push([0.0, 0.0, 1.0])
 
-Without hardware there is ``riffler.pen.open("simulated")``: the same firmware and driver, arms and hand simulated.
-Tablet and mouse are a ``Pointer``, which gets their events.
+Without hardware, use ``riffler.pen.open("simulated")``: the same firmware and driver, with simulated arms and hand.
+For a tablet or a mouse, a ``Pointer`` makes a device from its events.
 """
 
 from __future__ import annotations
@@ -220,9 +220,9 @@ def open(
     turn_rate : float, optional
         Pucks: rad/s at full deflection.
     hold_orientation : bool, optional
-        Pucks: turns are ignored.
+        Pucks: True ignores turns.
     signs : list of int, optional
-        Pucks: six of -1, 0, 1.
+        Pucks: factor of each of the six coordinates: -1, 0 or 1.
     geometry : str, optional
         For "polhem": "woodenhaptics" or "polhem-1".
     gravity, friction : float, optional
@@ -240,7 +240,7 @@ def open(
     Raises
     ------
     PenError
-        With the reason why the device does not open, and the remedy.
+        If the device does not open; with the reason and the remedy.
 
     Examples
     --------

@@ -37,17 +37,17 @@ class DeviceInfo(DictResult):
     id : str
         vendor:product, hexadecimal; empty for devices other than HID.
     kind : str or None
-        Its kind in ``riffler.pen.kinds``; None if riffler does not support it.
+        Kind of the device in ``riffler.pen.kinds``; None if riffler does not support it.
     choice : str or None
         Another argument of ``riffler.pen.open``, "kind:number", if there are several of a kind; otherwise None.
     was_opened : bool
-        Whether it was opened and its description read.
+        Whether the device was opened and its description read.
     problem : str or None
-        Why it does not open, in a few words; None if it opens.
+        Why the device does not open, in a few words; None if it opens.
     text : str or None
-        Why it does not open, and what to do.
+        Why the device does not open, and what to do.
     capability : str or None
-        Its capability.
+        What the device senses and pushes.
     about : str or None
         The device's own description.
     """
@@ -77,13 +77,13 @@ class CoordinateCapability(DictResult):
     sensing : {"none", "position", "rate"}
         The sensed quantity.
     pushes : bool
-        Whether it has a motor.
+        Whether the coordinate has a motor.
     low, high : float
         Range: mm or rad, or mm/s or rad/s.
     resolution : float
-        Smallest step of the sensor, likewise.
+        Smallest step of the sensor, in the same units.
     peak, continuous : float
-        Largest force or torque, for a moment and continuous.
+        Largest force or torque for a short time, and in continuous use.
     """
 
     sensing: Literal["none", "position", "rate"]
@@ -110,9 +110,9 @@ class PenCapability(DictResult):
     Attributes
     ----------
     name : str
-        The pen.
+        Name of the pen.
     text : str
-        All of it as text.
+        The capability as text.
     axes : dict
         CoordinateCapability of "x", "y", "z" and of the rotations "a", "b", "c".
     """
@@ -129,7 +129,7 @@ class PenHealth(DictResult):
     Attributes
     ----------
     state : str
-        Of the connection.
+        State of the connection.
     problem : str or None
         The fault, or None.
     force_state : str
@@ -141,9 +141,9 @@ class PenHealth(DictResult):
     homed : bool
         Whether the pose is certain.
     force, torque : ndarray, shape (3,)
-        As last sent to the device: N, N·mm.
+        Force and torque last sent to the device: N, N·mm.
     reports, superseded, lost, malformed : int
-        Reports read; replaced by a newer one before a step used them; lost; invalid.
+        Reports that were read; replaced by a newer one before a step used them; lost; invalid.
     timeouts : int
         Steps without a report.
     writes : int
@@ -186,7 +186,7 @@ class PushResult(DictResult):
     missing_force, missing_torque : ndarray, shape (3,)
         The part that the device cannot render.
     reason : str or None
-        Why nothing is felt.
+        Why the hand feels nothing.
     """
 
     force: NDArray[np.float64]
@@ -215,17 +215,17 @@ class PenChannel(DictResult):
     low, high : float
         Range of the joint, rad.
     torque_constant : float
-        N·mm/A.
+        Torque of the motor per current, N·mm/A.
     peak_current, continuous_current : float
-        A.
+        Largest current for a short time, and in continuous use, A.
     coulomb, viscous : float
         Friction at the motor, N·mm and N·mm·s/rad.
     gravity : float
-        N·mm at the joint while its link is horizontal.
+        Torque of the weight at the joint while its link is horizontal, N·mm.
     inertia : float
-        kg·mm² at the joint.
+        Moment of inertia at the joint, kg·mm².
     resistance : float
-        Ω of the winding.
+        Resistance of the winding, Ω.
     """
 
     name: str
@@ -256,9 +256,9 @@ class PenLimits(DictResult):
     elbow : tuple of float
         Range of the elbows, rad.
     force, torque : float
-        N, N·mm.
+        Largest force and torque: N, N·mm.
     speed, turn_rate : float
-        mm/s, rad/s.
+        Largest speeds: mm/s, rad/s.
     """
 
     lower: NDArray[np.float64]
@@ -283,9 +283,9 @@ class GripDiagnosis(DictResult):
     channel : int or None
         The wrong channel, for "channel".
     counts : float or None
-        Its excess counts.
+        Counts that the channel reads too many.
     left : float or None
-        mm, root mean square: stretch of the grip that this does not explain.
+        Stretch of the grip that these counts do not explain: mm, root mean square.
     """
 
     fault: Literal["none", "channel", "several", "unclear"]
@@ -305,13 +305,13 @@ class ThreadPriority:
     Attributes
     ----------
     level : int
-        1 to 99: it runs before all normal threads; 0: a normal thread.
+        1 to 99: the thread runs before all normal threads; 0: a normal thread.
     by : str or None
-        Who granted it: "system" or "rtkit".
+        What granted the priority: "system" or "rtkit".
     text : str
         The granted priority, or why none was granted.
     remedy : str
-        How to have it granted; empty if there is nothing to do.
+        How to get the priority; empty if there is nothing to do.
 
     Examples
     --------

@@ -35,7 +35,7 @@ class PolePassage(DictResult):
     tool_degrees, rotary_degrees : float
         Angles by which the tool and the rotary axes turn there.
     slowed : float
-        Time of the slowest block, as a multiple of what its feed would take.
+        Time of the slowest block, as a multiple of its time at the programmed feed.
     """
 
     first_row: int
@@ -74,9 +74,9 @@ class MachineOption(DictResult):
     Attributes
     ----------
     name : str
-        Its key in ``options``.
+        Key of the option in ``options``.
     kind : str
-        "number", "positive", "numbers", "range" (two that grow), "flag" (a bool), "word" or "path".
+        "number", "positive", "numbers", "range" (two ascending numbers), "flag" (a bool), "word" or "path".
     count : int
         Largest count of numbers.
     unit : str
@@ -86,11 +86,11 @@ class MachineOption(DictResult):
     value : float, bool, str, list or None
         Default value; None if there is none.
     needed : bool
-        Whether it is required; if so, for which other options.
+        Whether the option is required.
     own : bool
-        An option of this machine's file; the others are those of many machines.
+        Whether the option comes from this machine's file; the others belong to many machines.
     about : str
-        One sentence.
+        Description in one sentence.
     """
 
     name: str
@@ -140,13 +140,13 @@ class VerifyStats(DictResult):
     moves : int
         (move, slab) pairs that were cut.
     slabs, slabs_kept : int
-        Slabs of the stock that were simulated, and those whose results of the run before were taken.
+        Slabs of the stock that were simulated, and those whose results were kept from the run before.
     snapshots_used : int
         Snapshots from which slabs started.
     probes, probed_moves, bisections : int
         Batches tried with shank and holder or on a fixture, moves in them, and bisections of such batches.
     skipped : int
-        (move, slab) pairs that boxes alone keep apart.
+        (move, slab) pairs whose boxes do not overlap.
     """
 
     moves: int
@@ -168,9 +168,9 @@ class NearestContact(DictResult):
     index : int
         Number of the path's point.
     side : {0, 1}
-        Which of its two contacts.
+        Number of the contact at that point.
     distance : float
-        mm.
+        Distance of the contact from the point or ray, mm.
     point, normal : ndarray, shape (3,)
         The contact, mm, and the part's unit normal there.
     """
@@ -189,9 +189,9 @@ class JournalStock(DictResult):
     Attributes
     ----------
     lower, upper : ndarray, shape (3,)
-        Corners of its box, mm.
+        Corners of the stock's box, mm.
     pitch : float
-        mm.
+        Distance between rays, mm.
     directions : str
         "z" or "xyz".
     snapshot : str
@@ -220,13 +220,13 @@ class KeyChange:
     """
 
     time: float
-    """s since the start."""
+    """Time since the start, s."""
     point: int
     """Point of the path, from 0."""
     axis: NDArray[np.float64]
-    """(3,): of the key that was set or deleted."""
+    """(3,): axis of the key that was set or deleted."""
     deleted: bool
-    """Whether it was deleted."""
+    """Whether the key was deleted."""
     refused: str | None
     """Why nothing was changed, or None."""
 
@@ -235,6 +235,6 @@ class Trip(NamedTuple):
     """One event in which a session removed the force."""
 
     time: float  #: s since the start
-    state: str  #: of the force, from then on
-    sentence: str  #: why, and what to do
-    value: float  #: what was measured
+    state: str  #: state of the force from then on
+    sentence: str  #: the reason and the remedy
+    value: float  #: the measured value

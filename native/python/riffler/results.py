@@ -1,6 +1,6 @@
 """Results of several values: frozen dataclasses with typed attributes, and named tuples.
 
-Those that were dicts can still be read as one, with a DeprecationWarning (`riffler.deprecated.DictResult`).
+Results that were dicts can still be read as dicts, with a DeprecationWarning (`riffler.deprecated.DictResult`).
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ Corner = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Audit(DictResult):
-    """Defects of a mesh, counted by `Mesh.audit`; 0 for a closed two-manifold, but for the last two."""
+    """Defects of a mesh, counted by `Mesh.audit`; all but the last two are 0 for a closed two-manifold."""
 
     open_edges: int
     """Edges of one triangle."""
@@ -54,12 +54,12 @@ class Audit(DictResult):
     components: int
     """Pieces connected across edges."""
     volume: float
-    """mm³, signed."""
+    """Signed volume, mm³."""
 
 
 @dataclass(frozen=True)
 class Orientation(DictResult):
-    """What `Mesh.orient_with_report` changed."""
+    """Changes that `Mesh.orient_with_report` has made."""
 
     turned: int
     """Triangles that were turned."""
@@ -76,18 +76,18 @@ class LostReport(DictResult):
     """Material that is not part of a volume's mesh because it is thinner than the pitch."""
 
     lost: float
-    """mm³."""
+    """Volume of the material, mm³."""
     lost_box: tuple[Corner, Corner] | None
-    """Where it is, mm: lower and upper corner."""
+    """Box of the material, mm: lower and upper corner."""
     lost_pitch: float | None
-    """A pitch that keeps it, mm."""
+    """A pitch that keeps the material, mm."""
     lost_note: str
-    """A sentence if there is more than crumbs, otherwise empty."""
+    """A sentence if more than crumbs are lost, otherwise empty."""
 
 
 @dataclass(frozen=True)
 class SurfaceReport(LostReport):
-    """Report of `Volume.to_mesh_with_report`: material that is not in the mesh, and its size without a tolerance."""
+    """Report of `Volume.to_mesh_with_report`: material that the mesh lacks, and the mesh's size without a tolerance."""
 
     all_triangles: int
     """Triangles without a tolerance."""
@@ -112,7 +112,7 @@ class VolumeReport(LostReport):
     openings: int
     """Boundary loops, along which the surface ends."""
     turned: int
-    """Triangles, turned to agree with their neighbours."""
+    """Triangles that were turned to agree with their neighbours."""
     left_out: int
     """Repeated triangles that tear the surface open."""
     one_sided: int
@@ -142,7 +142,7 @@ class VolumeCounters(DictResult):
     rays_tested: int
     """(ray, step) pairs intersected with a swept piece."""
     hits: int
-    """(ray, pose) intersections made for them."""
+    """(ray, pose) intersections computed for these pairs."""
     rays_changed: int
     """Tested rays that lost material."""
     tiles_meshed: int
@@ -167,19 +167,19 @@ class HistoryStroke:
     """
 
     id: int
-    """Its id."""
+    """Id of the stroke."""
     tool: Tool
-    """Its cutter is swept."""
+    """The tool whose cutter is swept."""
     poses: NDArray[np.float64]
-    """(n, 6): tip in mm, unit axis; (n, 9) of a hand tool, with its forward direction."""
+    """(n, 6): tip in mm, unit axis; (n, 9) for a hand tool, with its forward direction."""
     mode: str
     """"remove" or "add"."""
     tolerance: float
-    """mm."""
+    """Largest error of carving, mm."""
     protect: Volume | None
-    """Region that it leaves unchanged; None: none."""
+    """Region that the stroke leaves unchanged; None if there is none."""
     enabled: bool
-    """Whether it is carved."""
+    """Whether the stroke is carved."""
 
 
 @dataclass(frozen=True)
@@ -201,21 +201,21 @@ class HistoryStats:
     strokes_run: int
     """Strokes that the last edit carved, the new one included."""
     tiles_run: int
-    """(stroke, tile) pairs that it carved."""
+    """(stroke, tile) pairs that the last edit carved."""
     moves_run: int
-    """(move, block of 4 × 4 tiles) pairs that it carved."""
+    """(move, block of 4 × 4 tiles) pairs that the last edit carved."""
     tiles_changed: int
-    """Tiles of the volume that it replaced."""
+    """Tiles of the volume that the last edit replaced."""
     strokes: int
     """Strokes in the history, disabled ones included."""
     versions: int
-    """Versions of tiles that it holds."""
+    """Versions of tiles that the history holds."""
     version_bytes: int
     """Bytes of these versions."""
     stroke_bytes: int
     """Bytes of poses and of the lists of touched tiles."""
     stride: int
-    """Strokes of a tile between two versions held."""
+    """Strokes on a tile between two versions that the history holds."""
 
 
 @dataclass(frozen=True)
@@ -241,11 +241,11 @@ class Patch:
     triangles: NDArray[np.int32]
     """(k, 3): indices of vertices."""
     edges: NDArray[np.int32] | None = None
-    """(e, 2): indices of vertices, each edge once. None unless asked for."""
+    """(e, 2): indices of vertices, each edge once. None unless requested."""
     corner_edges: NDArray[np.int32] | None = None
-    """(k, 3): of each triangle's corners the edge to the next one. None unless asked for."""
+    """(k, 3): for each corner of each triangle, the edge to the next corner. None unless requested."""
     normals: NDArray[np.float32] | None = None
-    """(3 k, 3): unit normals of the triangles' corners. None unless asked for."""
+    """(3 k, 3): unit normals of the triangles' corners. None unless requested."""
 
     def _as_tuple(self) -> tuple[NDArray, ...]:
         warn("Patch as a tuple", "its attributes: vertices, triangles, edges, corner_edges, normals")
@@ -270,7 +270,7 @@ class Hit(NamedTuple):
     point: NDArray[np.float64]
     """(3,) mm."""
     normal: NDArray[np.float64]
-    """(3,): of the triangle, unit, out of the material: along the ray where this comes from inside."""
+    """(3,): unit normal of the triangle, out of the material, so along a ray that comes from inside."""
     brick: int
     """Number of the brick."""
 
@@ -283,7 +283,7 @@ class Hits(NamedTuple):
     point: NDArray[np.float64]
     """(n, 3) mm; NaN where nothing is hit."""
     normal: NDArray[np.float64]
-    """(n, 3): of the triangle, unit, out of the material; NaN where nothing is hit."""
+    """(n, 3): unit normal of the triangle, out of the material; NaN where nothing is hit."""
     brick: NDArray[np.int64]
     """(n,): number of the brick; -1 where nothing is hit."""
 
@@ -292,7 +292,7 @@ class Nearest(NamedTuple):
     """The point of part and fixtures nearest to a tool: `Collider.nearest`."""
 
     distance: float
-    """mm, negative where they overlap."""
+    """mm; negative if they overlap."""
     point: NDArray[np.float64]
     """(3,) mm, on part or fixture."""
     part: str

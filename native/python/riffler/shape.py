@@ -72,7 +72,7 @@ def slab(top: ArrayLike, bottom: ArrayLike, *, cells: ArrayLike | None = None) -
 
 @hinted("shape.relief")
 def relief(heights: ArrayLike, size: ArrayLike, depth: float, *, sink: float = 0.0) -> Mesh:
-    """A closed mesh of heights on the plane z = 0, its lower left corner in the origin.
+    """A closed mesh of heights on the plane z = 0, with its lower left corner at the origin.
 
     Parameters
     ----------
@@ -81,7 +81,7 @@ def relief(heights: ArrayLike, size: ArrayLike, depth: float, *, sink: float = 0
     size : array_like of shape (2,), mm
         Width along x and height along y.
     depth : float, mm
-        mm of a height of 1.
+        Height of the value 1.
     sink : float, mm
         mm by which the mesh extends below the plane to join the material there; 0 counts as 1e-6 of the depth.
 
@@ -123,9 +123,9 @@ def extrude(outlines: ArrayLike | Sequence[ArrayLike], direction: ArrayLike) -> 
     Parameters
     ----------
     outlines : array_like of shape (n, 3), mm, or a list of such
-        Corners. For several that lie inside one another the turn decides: one with the opposite turn is a hole.
+        Corners of the outlines. An outline inside another one is a hole if it turns in the opposite direction.
     direction : array_like of shape (3,), mm
-        Of any length but 0.
+        Direction and length of the sweep; the length must not be 0.
 
     Returns
     -------
@@ -174,7 +174,7 @@ def _sheet(given: ArrayLike, name: str) -> NDArray[np.float64]:
 
 
 def _walls(number: NDArray, cells: NDArray, count: int) -> NDArray:
-    """Triangles along every side of a cell that no other cell has: from the top sheet down to the bottom one."""
+    """Triangles from the top sheet down to the bottom one, along every side of a cell that no other cell shares."""
     padded = np.pad(cells, 1)
     walls = []
     # (difference to the neighbour, first and last corner of that side in the cell's own turn)

@@ -41,7 +41,7 @@ for _function in (
 
 
 def _task_of(old: str, call: Callable, name: str) -> Callable[..., Task]:
-    """The function that makes the call as a Task: the class in the place of a progress callback asks for that."""
+    """A function that makes the call as a Task, by passing the class Task in place of a progress callback."""
 
     def start(*args, **kwargs) -> Task:
         warn(f"tasks.{old}", f"riffler.submit(riffler.{name}, …)")

@@ -1,7 +1,7 @@
 """Reads 3MF files with the 3MF Consortium's lib3mf. ``Mesh.read`` and ``Mesh.write`` come here for ``.3mf``.
 
-lib3mf keeps coordinates in float32. Its calls for whole arrays are taken from its C interface with numpy's storage: its
-Python classes would make an object of every vertex.
+lib3mf keeps coordinates in float32. Its C interface fills whole arrays in numpy's storage; its Python classes would
+make an object of every vertex.
 """
 
 from __future__ import annotations
@@ -28,12 +28,12 @@ UNITS = {"MicroMeter": 0.001, "MilliMeter": 1.0, "CentiMeter": 10.0, "Inch": 25.
 DEEPEST = 64  # components within components
 MOST_PLACED = 10_000  # meshes and components: lib3mf takes some 0.3 ms for each
 MOST_BYTES = 1 << 32  # unpacked
-MOST_TRIANGLES = 50_000_000  # of all copies together: what a file of some kilobytes may ask for has no other bound
+MOST_TRIANGLES = 50_000_000  # of all copies together; without a bound, some kilobytes could ask for any number
 LARGEST = 1e30
 
 
 def library() -> Any:
-    """lib3mf, or ValueError where its package is missing."""
+    """The module lib3mf, or ValueError if its package is missing."""
     try:
         import lib3mf
     except ImportError as error:
@@ -42,8 +42,8 @@ def library() -> Any:
 
 
 class LocaleKeeper:
-    """Keeps the process's locale. lib3mf leaves the whole process in the locale "C" when it reads and writes, in which
-    text in other languages would be misread. The first of several threads stores the locale, the last one restores it.
+    """Keeps the process's locale. lib3mf sets the locale of the whole process to "C" when it reads and writes; text in
+    other languages would then be misread. The first of several threads stores the locale, the last one restores it.
     """
 
     def __init__(self) -> None:
@@ -66,9 +66,9 @@ LOCALE = LocaleKeeper()
 
 
 def read(path: str) -> tuple[np.ndarray, np.ndarray]:
-    """Vertices (n, 3) in mm and triangles (k, 3) of everything that the file says to build, in one.
+    """Vertices (n, 3) in mm and triangles (k, 3) of everything in the file's build, as one mesh.
 
-    Items and components stand where their transforms put them; those that are support are left out.
+    Applies the transforms of items and components; leaves out those that are support.
     """
     lib, name = library(), Path(path).name
     data = files.read(path)
@@ -78,10 +78,10 @@ def read(path: str) -> tuple[np.ndarray, np.ndarray]:
         reader = model.QueryReader("3mf")
         with LOCALE:
             reader.ReadFromBuffer((ctypes.c_uint8 * len(data)).from_buffer_copy(data) if data else [])
-        # lib3mf skips what it does not know: a misspelt triangle would be missing, a misspelt unit be mm.
-        # What stands in a namespace of its own, as slicers' additions do, is no reason to warn.
+        # lib3mf skips unknown elements: a misspelt triangle would be missing, a misspelt unit would be mm. It does not
+        # warn of elements in other namespaces, such as slicers' additions.
         if reader.GetWarningCount():
-            raise FormatError(f"{name}: {reader.GetWarning(0)[1]} Expected what 3MF's core specification has")
+            raise FormatError(f"{name}: {reader.GetWarning(0)[1]} Expected elements of 3MF's core specification")
         pieces = list(Build(lib, model, name).pieces())
         scale = UNITS[model.GetUnit().name]
     except lib.ELib3MFException as error:
@@ -105,7 +105,7 @@ ATTRIBUTE = re.compile(rb"""(?:^|[\s:])(id|objectid|path)\s*=\s*(?:"([^"]*)"|'([
 def check_copies(data: bytes, name: str) -> None:
     """FormatError for a package that asks for more copies than can be made.
 
-    lib3mf follows a component while it reads, once for each placement: it must not be given such a file.
+    lib3mf follows a component while it reads, once for each placement, so it must not read such a file.
     """
     count = copies(tags(data, name), name)
     if count > MOST_PLACED:
@@ -116,7 +116,7 @@ Key = tuple[str, bytes]  # a part of the package and an object's number in it
 
 
 def tags(data: bytes, name: str) -> tuple[dict[Key, list[Key]], list[Key]]:
-    """What every object consists of, and what is to be built."""
+    """The components of every object, and the items to build."""
     objects: dict[Key, list[Key]] = {}
     build: list[Key] = []
     try:
@@ -143,7 +143,7 @@ def tags(data: bytes, name: str) -> tuple[dict[Key, list[Key]], list[Key]]:
 
 
 def copies(found: tuple[dict[Key, list[Key]], list[Key]], name: str) -> int:
-    """Meshes and components that are placed when all is built."""
+    """Number of meshes and components that the build places."""
     objects, build = found
     count: dict[Key, int] = {}
 
@@ -167,8 +167,7 @@ def copies(found: tuple[dict[Key, list[Key]], list[Key]], name: str) -> int:
 
 
 class Build:
-    """What a file says to build. A mesh is read once, however often it is placed, and copies are counted before they
-    are made."""
+    """The build of a file. Reads each mesh once, however often it is placed, and counts copies before making them."""
 
     def __init__(self, lib: Any, model: Any, name: str) -> None:
         self.lib, self.model, self.name = lib, model, name
@@ -176,7 +175,7 @@ class Build:
         self._placed = self._triangles = 0
 
     def pieces(self) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-        """Vertices and triangles of every mesh that is to be built, placed, in the file's unit."""
+        """Yields vertices and triangles of every mesh to build, placed, in the file's unit."""
         iterator = self.model.GetBuildItems()
         while iterator.MoveNext():
             item = iterator.GetCurrent()
@@ -214,7 +213,7 @@ class Build:
 
 
 def matrix(transform: Any) -> np.ndarray:
-    """(4, 3): a row times it, with a 1 behind, is what 3MF means."""
+    """(4, 3) matrix of a transform, by which 3MF multiplies the row (x, y, z, 1)."""
     return np.array([list(row) for row in transform.Fields], float)
 
 
@@ -233,10 +232,10 @@ def geometry(lib: Any, mesh: Any) -> tuple[np.ndarray, np.ndarray]:
 
 
 def write(path: str, vertices: np.ndarray, triangles: np.ndarray) -> None:
-    """One object, one build item, in mm; whole or not at all."""
+    """Writes one object with one build item, in mm; the whole file or none."""
     threemf_writer.write(path, vertices, triangles)
 
 
 def said(error: Exception) -> str:
-    """What went wrong, without the number that lib3mf puts around it."""
+    """The message of an error, or the name of its type if the message is empty."""
     return str(error).strip() or type(error).__name__

@@ -34,8 +34,8 @@ EMPTY = """<?xml version="1.0" encoding="UTF-8"?>
 <model unit="millimeter" xml:lang="en-US" xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02">
 <metadata name="Application">Riffler</metadata><resources/><build/></model>
 """
-ROWS = 50_000  # of text at a time: what is written needs no second copy of the mesh
-FAST = 1  # of zlib: a third more bytes than the usual level in a quarter of its time
+ROWS = 50_000  # rows of text at a time, so that writing needs no second copy of the mesh
+FAST = 1  # level of zlib: a third more bytes than the usual level, in a quarter of its time
 EPOCH = (1980, 1, 1, 0, 0, 0)  # the same mesh gives the same bytes
 
 
@@ -47,7 +47,7 @@ def write(path, vertices, triangles, name: str = "part") -> None:
 
 
 def count(vertices, triangles) -> int:
-    """How many `pieces` there are."""
+    """Number of steps of `pieces`."""
     return -(-len(vertices) // ROWS) - (-len(triangles) // ROWS)
 
 
@@ -56,7 +56,7 @@ def pieces(path, vertices, triangles, name: str = "part") -> Iterator[None]:
     `triangles` (k, 3). Nine digits give each float32 back. ValueError for a mesh without triangles and for a vertex
     that no float32 holds."""
     if len(triangles) == 0:
-        raise ValueError("the mesh has no triangles; a 3MF file holds one at least")
+        raise ValueError("the mesh has no triangles; a 3MF file needs at least one")
     yield from _write(path, _model(*_checked(vertices, triangles), name))
 
 
@@ -87,7 +87,7 @@ def _open(archive, name):
 
 
 def _model(vertices, triangles, name) -> Iterator[str]:
-    """In `count` texts and a few short ones."""
+    """Yields the model's XML in `count` texts and a few short ones."""
     yield MODEL.format(name=quoteattr(name)) + "<vertices>\n"
     yield from _rows('<vertex x="%.9g" y="%.9g" z="%.9g"/>\n', vertices)
     yield "</vertices>\n<triangles>\n"

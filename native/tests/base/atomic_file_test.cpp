@@ -62,7 +62,7 @@ TEST_F(AtomicFile, ANewFileHasThePermissionsThatTheSystemGivesNewFiles) {
   EXPECT_EQ(text(folder / "a"), "new");
 }
 
-TEST_F(AtomicFile, AFileThatIsThereKeepsItsPermissionsAndItsOwner) {
+TEST_F(AtomicFile, AnExistingFileKeepsItsPermissionsAndItsOwner) {
   for (const mode_t kept : {0600U, 0644U, 0664U, 0400U}) {
     write_file(folder / "a", "old");
     chmod((folder / "a").c_str(), kept);
@@ -79,7 +79,7 @@ TEST_F(AtomicFile, AFileThatIsThereKeepsItsPermissionsAndItsOwner) {
   EXPECT_EQ(status.st_gid, 2345U);
 }
 
-TEST_F(AtomicFile, TheProcesssMaskIsNeverTouched) {
+TEST_F(AtomicFile, TheProcesssUmaskIsNeverChanged) {
   const mode_t before = umask(077);
   std::vector<std::thread> threads;
   for (int k = 0; k < 4; ++k)
@@ -110,7 +110,7 @@ TEST_F(AtomicFile, LinksAreFollowed) {
   EXPECT_NE(refusal(folder / "loop").find("link"), std::string::npos);
 }
 
-TEST_F(AtomicFile, WhatIsNoRegularFileIsRefusedAndStays) {
+TEST_F(AtomicFile, OtherThanRegularFilesAreRefusedAndStay) {
   ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
   fs::create_symlink("/dev/null", folder / "null");
   fs::create_directory(folder / "folder");
@@ -123,7 +123,7 @@ TEST_F(AtomicFile, WhatIsNoRegularFileIsRefusedAndStays) {
   EXPECT_THROW(read_file("/dev/zero"), FormatError) << "it has no end";
 }
 
-TEST_F(AtomicFile, NothingIsLeftWhereItIsNotCommitted) {
+TEST_F(AtomicFile, WithoutACommitNothingIsLeft) {
   write_file(folder / "a", "old");
   {
     AtomicFileWriter writer(folder / "a");
@@ -140,7 +140,7 @@ TEST_F(AtomicFile, NothingIsLeftWhereItIsNotCommitted) {
   EXPECT_NE(refusal(folder / "none" / "a"), "");
 }
 
-TEST_F(AtomicFile, DraftsOfKilledProcessesGoAndThoseOfOthersStay) {
+TEST_F(AtomicFile, DraftsOfKilledProcessesAreRemovedAndThoseOfOthersStay) {
   const fs::path target = folder / "a", left = draft_prefix(target).string() + "left",
                  held = draft_prefix(target).string() + "held";
   write_file(left, "half"), write_file(held, "half");
@@ -155,7 +155,7 @@ TEST_F(AtomicFile, DraftsOfKilledProcessesGoAndThoseOfOthersStay) {
   EXPECT_EQ(entries(), 2U);
 }
 
-TEST_F(AtomicFile, ADraftTakesAPlaceAsAFileWouldHave) {
+TEST_F(AtomicFile, ADraftIsAcceptedWhereAFileWouldBe) {
   write_file(folder / "a", "old");
   chmod((folder / "a").c_str(), 0600);
   fs::create_symlink("a", folder / "link");

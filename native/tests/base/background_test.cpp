@@ -23,7 +23,7 @@ void run_for_ever(const Progress& progress) {
   }
 }
 
-TEST(Background, WhatTheWorkWroteIsThereOnceItIsDone) {
+TEST(Background, WritesOfTheWorkAreVisibleOnceItIsDone) {
   std::vector<int> out;
   const std::thread::id here = std::this_thread::get_id();
   std::thread::id there = here;
@@ -42,7 +42,7 @@ TEST(Background, WhatTheWorkWroteIsThereOnceItIsDone) {
   EXPECT_TRUE(work.wait(milliseconds(0)));
 }
 
-TEST(Background, ThrowsWhatTheWorkThrewAsOftenAsAsked) {
+TEST(Background, ThrowsTheErrorOfTheWorkAtEveryRequest) {
   const Background work([](const Progress&) { throw std::invalid_argument("row 7"); });
   work.wait();
   for (int i = 0; i < 2; ++i) {
@@ -74,7 +74,7 @@ TEST(Background, CancellingOneThatHasEndedChangesNothing) {
   EXPECT_EQ(work.share(), 1);
 }
 
-TEST(Background, TheShareNeverGoesBackAndSaysOneOnlyAtTheEnd) {
+TEST(Background, TheShareNeverFallsAndIsOneOnlyAtTheEnd) {
   std::atomic<int> step{0};
   const auto await = [&step](int k) {
     while (step < k) std::this_thread::yield();
@@ -97,14 +97,14 @@ TEST(Background, TheShareNeverGoesBackAndSaysOneOnlyAtTheEnd) {
   EXPECT_EQ(work.share(), 1);
 }
 
-TEST(Background, WhatTheWorkHoldsIsFreedWhenItEnds) {
+TEST(Background, ObjectsOfTheWorkAreFreedWhenItEnds) {
   const auto held = std::make_shared<int>(1);
   const Background work([held](const Progress&) {});
   work.wait();
   EXPECT_EQ(held.use_count(), 1);
 }
 
-TEST(Background, AThousandStartedAndDroppedOrCancelledAtAnyTime) {
+TEST(Background, AThousandTasksMayBeDroppedOrCancelledAtAnyTime) {
   std::atomic<int> ended{0};
   struct Count {
     std::atomic<int>& ended;

@@ -12,7 +12,7 @@
 namespace riffler::base::block_pool_test {
 namespace {
 
-TEST(BlockPool, GivesFreedBlocksAgainAndCountsWhatTheSystemGave) {
+TEST(BlockPool, ReusesFreedBlocksAndCountsThoseOfTheSystem) {
   void* first = allocate_block(9999);
   free_block(first, 9999);
   const std::uint64_t before = blocks_from_system();
@@ -24,7 +24,7 @@ TEST(BlockPool, GivesFreedBlocksAgainAndCountsWhatTheSystemGave) {
   EXPECT_EQ(blocks_from_system(), before);
 }
 
-TEST(BlockPool, EveryByteOfABlockOfAnySizeIsItsOwn) {
+TEST(BlockPool, BlocksOfAnySizeDoNotOverlap) {
   struct Block {
     unsigned char* at;
     std::size_t bytes;
@@ -79,7 +79,7 @@ std::size_t ready() {
   return sum;
 }
 
-TEST(BlockPool, KeepsNoMoreReadyThanItsShare) {
+TEST(BlockPool, KeepsNoMoreFreeBlocksThanItsShare) {
   {
     BlockReserve reserve;
     reserve.fill(1 << 17, 100'000);  // of all sizes: would be 60 GB
@@ -92,7 +92,7 @@ TEST(BlockPool, KeepsNoMoreReadyThanItsShare) {
 }
 
 /// Otherwise what a program freed long ago decides whether a step of the pen asks the system.
-TEST(BlockPool, BlocksThatNobodyAsksForMakeRoom) {
+TEST(BlockPool, UnusedFreeBlocksMakeRoomForOthers) {
   {
     const BlockReserve empties;
   }

@@ -14,7 +14,7 @@ DbusCall call() {
   return {"a.b", "/a", "a.b.C", "Make", "tu", body.bytes()};
 }
 
-TEST(DbusMessage, EncodesAsTheSpecificationHasIt) {
+TEST(DbusMessage, EncodesAsTheSpecificationStates) {
   // Hello, as every client of a bus sends it first; by hand from the specification's rules.
   const std::string text(
       "l\1\0\1\0\0\0\0\1\0\0\0\x6d\0\0\0"
@@ -43,7 +43,7 @@ TEST(DbusMessage, DecodesWhatItEncodes) {
   EXPECT_TRUE(in.failed());
 }
 
-TEST(DbusMessage, RefusesEveryPieceOfAMessage) {
+TEST(DbusMessage, RefusesEveryTruncatedMessage) {
   const std::vector<std::uint8_t> bytes = encode(call(), 7);
   for (std::size_t n = 0; n < bytes.size(); ++n) EXPECT_FALSE(decode(std::span(bytes).first(n))) << n;
   std::vector<std::uint8_t> longer = bytes;

@@ -36,7 +36,7 @@ TEST(NearestWord, IsTheNearestAndTheFirstOfEqualOnes) {
   EXPECT_EQ(hint("limitsa"), "; did you mean limits_a?");
 }
 
-TEST(NearestWord, IsNoneForNothingLikeIt) {
+TEST(NearestWord, IsNoneIfNoWordIsSimilar) {
   EXPECT_EQ(hint(""), "");
   EXPECT_EQ(hint("nonsense"), "");
   EXPECT_EQ(hint(std::string(1'000'000, 'x')), "");

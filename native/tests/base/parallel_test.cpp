@@ -33,7 +33,7 @@ TEST(Parallel, ACallWithinACallStaysOnItsThread) {
   unsetenv("RIFFLER_THREADS");
 }
 
-TEST(Parallel, TheLastShareToldIsOneEvenWhereHelpersFinishTheWork) {
+TEST(Parallel, TheLastReportedShareIsOneEvenIfHelpersFinishTheWork) {
   setenv("RIFFLER_THREADS", "2", 1);
   constexpr int kChunks = 64;
   for (const bool cancel : {false, true}) {
@@ -60,7 +60,7 @@ TEST(Parallel, TheLastShareToldIsOneEvenWhereHelpersFinishTheWork) {
   unsetenv("RIFFLER_THREADS");
 }
 
-TEST(Parallel, ALongBodyHearsThatItsCallIsNotWantedAnyMore) {
+TEST(Parallel, ALongBodySeesThatItsCallIsCancelled) {
   setenv("RIFFLER_THREADS", "2", 1);
   still_wanted();  // outside of any call
   const auto for_ever = [](std::size_t, std::size_t) {

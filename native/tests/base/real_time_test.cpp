@@ -113,7 +113,7 @@ TEST(RealTime, IsGrantedToRootWithItsGuardAndEndsWithTheScope) {
   EXPECT_EQ(after.rlim_max, before.rlim_max);
 }
 
-TEST(RealTime, AThreadThatRunsOnBecomesNormalAndEverythingElseLives) {
+TEST(RealTime, AThreadThatNeverWaitsBecomesNormalAndOthersRun) {
   if (!system_grants()) GTEST_SKIP() << "this user may not have real-time priority";
   PriorityReport report;
   double took = 0;
@@ -165,7 +165,7 @@ TEST(RealTime, TwoThreadsAreGuardedEachForItself) {
   EXPECT_TRUE(waits.get().real_time());
 }
 
-TEST(RealTime, RefusedInAProcessWithoutTheRightItSaysWhyAndHow) {
+TEST(RealTime, ARefusalNamesTheReasonAndTheRemedy) {
   // A process of its own, as a user would have it: neither the right nor a limit above 0.
   EXPECT_EQ(in_a_child([] {
               const rlimit none{0, 0};
@@ -191,7 +191,7 @@ TEST(RealTime, ALimitBelowTheUsualLevelIsUsed) {
       in_a_child([] { return limit_levels(5) && give_up_rights() && probe_real_time({.bus = kNoBus}).level == 5; }), 0);
 }
 
-TEST(RealTime, IsNotAskedForWhereTheUserSwitchesItOff) {
+TEST(RealTime, IsNotRequestedIfTheUserSwitchesItOff) {
   EXPECT_EQ(in_a_child([] {
               setenv("RIFFLER_REAL_TIME", "0", 1);
               const ThreadPriority got = probe_real_time();
@@ -215,7 +215,7 @@ TEST(RealTime, RtkitGrantsWhatTheSystemRefuses) {
             0);
 }
 
-TEST(RealTime, WhateverIsWrongWithRtkitTheThreadGoesOnAndTheReportNamesIt) {
+TEST(RealTime, AnyFaultOfRtkitIsReportedAndTheThreadContinues) {
   if (!system_grants()) GTEST_SKIP() << "this user may not have real-time priority: nothing can be refused";
   const std::pair<Does, const char*> cases[] = {
       {Does::Refuses, "rtkit refuses it (org.freedesktop.DBus.Error.AccessDenied)"},

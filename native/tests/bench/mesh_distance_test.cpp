@@ -19,7 +19,7 @@ double by_every_triangle(const Vec3& p, const Mesh& mesh) {
   return std::sqrt(least);
 }
 
-TEST(MeshDistance, IsThatOfTheNearestTriangle) {
+TEST(MeshDistance, IsThatToTheNearestTriangle) {
   stress::Random random(5);
   for (const double thin : {1.0, 1e-3, 40.0}) {  // large flat triangles next to short ones, and slivers
     Mesh mesh = mesh::sphere_mesh(1, 3);
@@ -41,7 +41,7 @@ TEST(MeshDistance, IsThatOfTheNearestTriangle) {
   }
 }
 
-TEST(MeshDistance, OfATriangleIsThatOfItsPlaneItsSidesAndItsCorners) {
+TEST(MeshDistance, ToATriangleIsThatToItsPlaneSidesOrCorners) {
   const Vec3 a{0, 0, 0}, b{4, 0, 0}, c{0, 3, 0};
   EXPECT_DOUBLE_EQ(bench::squared_distance({1, 1, 2}, a, b, c), 4);
   EXPECT_DOUBLE_EQ(bench::squared_distance({2, -1, 0}, a, b, c), 1);

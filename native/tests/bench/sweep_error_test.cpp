@@ -39,14 +39,14 @@ TEST(SweepErrors, AreWithinTheToleranceOfACarveAndNotZero) {
   EXPECT_GT(largest(errors), 0.0);
 }
 
-TEST(SweepErrors, SeeACutterThatIsTooSmall) {
+TEST(SweepErrors, ShowACutterThatIsTooSmall) {
   const Tool ball = cutters::ball(6, 30), small = cutters::ball(5.98, 30);
   const bench::SweepErrors errors = bench::sweep_errors(carved(small, 0.001), ball, kTurning, 0.001, 200, 1);
   EXPECT_GT(largest(errors), 0.007);  // the search ends at 8 tolerances
   EXPECT_GT(errors.wrong, 0u);        // the middles of what was left standing, 0.01 mm thick
 }
 
-TEST(SweepErrors, SeeAMoveThatIsMissing) {
+TEST(SweepErrors, ShowAMissingMove) {
   const Tool flat = cutters::flat(6, 30);
   Volume volume = Volume::block({{{0, 0, 0}, {28, 20, 14}}, 0.5, "z"});
   sweep::carve(volume, flat, std::span(kTurning).first(2));

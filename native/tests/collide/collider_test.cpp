@@ -102,7 +102,7 @@ TEST(Collider, NearestIsOnThePartAndNoOtherPointIsNearer) {
   }
 }
 
-TEST(Collider, KeepsADistanceExactlyWhereTheLeastOneDoesAndLooksNoDeeper) {
+TEST(Collider, KeepsADistanceExactlyIfTheSmallestOneDoesAndSearchesNoDeeper) {
   // A holder deep in a block of long triangles, next to the block, and everywhere between.
   Mesh part;
   for (int k = 0; k <= 40; ++k)
@@ -125,7 +125,7 @@ TEST(Collider, KeepsADistanceExactlyWhereTheLeastOneDoesAndLooksNoDeeper) {
   EXPECT_LT(kept, test::cases(380));
 }
 
-TEST(Collider, BoundOfWhatABudgetMissedIsNeverViolated) {
+TEST(Collider, TheBoundAfterAnExhaustedBudgetIsNeverViolated) {
   const Collider collider(wavy(120, 60));
   const Assembly assembly(held(cutters::ball(6, 20)));
   Random random(5);
@@ -280,7 +280,7 @@ Volume block(const Vec3& lower, const Vec3& upper, double pitch, const char* dir
   return Volume::block({{lower, upper}, pitch, directions});
 }
 
-TEST(Collider, FixturesCountWithTheirInside) {
+TEST(Collider, FixturesCollideWithTheirInsideToo) {
   const Mesh part = box({-5, -5, -5}, {5, 5, 0});
   const Collider collider(part, {block({20, 0, 0}, {30, 10, 10}, 1), block({100, 100, 100}, {400, 400, 400}, 10, "z")});
   const Assembly assembly(cutters::ball(6, 30));
@@ -298,7 +298,7 @@ TEST(Collider, FixturesCountWithTheirInside) {
   EXPECT_TRUE(none.points.empty());
 }
 
-TEST(Collider, EachFixtureMayHaveAStiffnessOfItsOwn) {
+TEST(Collider, EachFixtureMayHaveItsOwnStiffness) {
   const Mesh part = box({-500, 0, 0}, {-490, 1, 1});
   const auto two = [] {
     return std::vector<Volume>{block({0, 0, 0}, {20, 20, 10}, 0.5, "z"), block({100, 0, 0}, {120, 20, 10}, 0.5, "z")};
@@ -361,7 +361,7 @@ TEST(Collider, DegenerateTrianglesAndCoincidentWallsGiveFiniteResults) {
   }
 }
 
-TEST(Collider, AFlatTopUnderAFlatToolDoesNotExplode) {
+TEST(Collider, AFlatTopUnderAFlatToolGivesABoundedForce) {
   Mesh flat;
   const int n = 200;
   for (int i = 0; i <= n; ++i)
@@ -444,7 +444,7 @@ TEST(Collider, NeedlesAreSampledByTheirAreaNotByTheirLength) {
   EXPECT_LT(Collider(needles).points(), 1'000'000U);
 }
 
-TEST(Collider, RefusesWhatMakesNoSense) {
+TEST(Collider, RefusesInvalidInput) {
   const Mesh part = box({0, 0, 0}, {1, 1, 1});
   EXPECT_THROW(Collider(Mesh{}), std::invalid_argument);
   EXPECT_THROW(Collider(part, {}, {.spacing = -1}), std::invalid_argument);

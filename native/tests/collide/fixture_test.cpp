@@ -223,7 +223,7 @@ TEST(Fixture, StiffnessIsTwiceTheDerivativeWhereForceAndNormalAgreeAndNowhereLes
   }
 }
 
-TEST(Fixture, WhatIsLookedAtGoesWithTheSurfaceInTheToolNotWithTheDexels) {
+TEST(Fixture, WorkGoesWithTheSurfaceInTheToolNotWithTheDexels) {
   const Assembly assembly(cutters::ball(6, 20).with_holder({{20, 15, 40, 15}}));
   std::vector<std::size_t> boxes;
   for (const double pitch : {0.4, 0.1, 0.05}) {

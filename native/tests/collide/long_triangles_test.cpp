@@ -65,7 +65,7 @@ TEST(LongTriangles, ABallAlongABoreTakesFewSteps) {
   }
 }
 
-TEST(LongTriangles, AToolOutOfReachLooksAtOneGroup) {
+TEST(LongTriangles, AToolOutOfReachVisitsOneGroup) {
   Random random(2);
   for (const ContactScene scene :
        {ContactScene::Bore, ContactScene::Prism, ContactScene::Needles, ContactScene::Sheet}) {

@@ -185,7 +185,7 @@ TEST(StockContact, StiffnessIsTheDerivativeOfTheForceOfASmoothCutter) {
   }
 }
 
-TEST(StockContact, FarAwayEmptyAndBadPosesAreNoTrouble) {
+TEST(StockContact, FarAwayPosesEmptyStockAndBadPosesGiveFiniteResults) {
   const StockContact touch(cutters::ball(6, 20).with_shank({{20, 3, 40, 3}}));
   const Volume stock = Volume::block({kBox, 0.2, "xyz"}), empty(Volume({kBox, 0.2, "xyz"}));
   for (const Vec3& tip : {Vec3(12, 10, 10.001), Vec3(1e6, 0, 0), Vec3(12, 10, -60), Vec3(-1e9, 1e9, 0)})
@@ -200,7 +200,7 @@ TEST(StockContact, FarAwayEmptyAndBadPosesAreNoTrouble) {
   EXPECT_THROW(look(touch, stock, {{0, 0, 0}, {0, 0, 2}}), std::invalid_argument);
 }
 
-TEST(StockContact, AsksForNoMemory) {
+TEST(StockContact, AllocatesNothing) {
   const Volume stock = Volume::block({kBox, 0.2, "xyz"});
   const StockContact touch(cutters::ball(6, 20));
   Contact contact;

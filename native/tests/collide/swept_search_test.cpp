@@ -18,7 +18,7 @@ using stress::Random;
 
 const Vec3 kUp(0, 0, 1);
 
-TEST(SweptSearch, OfNoMotionIsTheClearance) {
+TEST(SweptSearch, WithoutMotionIsTheClearance) {
   const Collider collider(mesh::box_mesh({-20, -20, -5}, {20, 20, 0}));
   const Assembly ball(cutters::ball(6, 20));
   const Motion still({{0, 0, 1}, kUp}, {{0, 0, 1}, kUp});
@@ -41,7 +41,7 @@ TEST(SweptSearch, FindsAPostThatEndPosesStepOver) {
   EXPECT_EQ(collider.sweep(ball, beside, 0.1 - 1e-9, 0).answer, Answer::Unknown);
 }
 
-TEST(SweptSearch, LooksAtAHolderThatTurnsWhileTheTipStands) {
+TEST(SweptSearch, SearchesAHolderThatTurnsWhileTheTipStands) {
   const Tool tool = cutters::ball(6, 20).with_holder({{40, 5, 60, 5}});
   const Collider collider(mesh::box_mesh({30, -2, 30}, {40, 2, 45}));
   const Motion turn({{0, 0, 0}, {0, 0, 1}}, {{0, 0, 0}, {1, 0, 0}});
@@ -49,7 +49,7 @@ TEST(SweptSearch, LooksAtAHolderThatTurnsWhileTheTipStands) {
   EXPECT_EQ(collider.sweep(Assembly(cutters::ball(6, 20)), turn, 0, 100000).answer, Answer::Clear);
 }
 
-TEST(SweptSearch, SlidesAlongAPlaneAndACornerInAFewLooks) {
+TEST(SweptSearch, SlidesAlongAPlaneAndACornerInAFewSteps) {
   // Looks at poses alone would need one every two tolerances: 2 500 for 50 mm.
   const Collider corner(both(mesh::box_mesh({-60, -30, -5}, {60, 30, 0}), mesh::box_mesh({-60, 3, -5}, {60, 30, 30})));
   const Assembly ball(cutters::ball(6, 20));
@@ -62,7 +62,7 @@ TEST(SweptSearch, SlidesAlongAPlaneAndACornerInAFewLooks) {
   EXPECT_EQ(turned.answer, Answer::Clear);
 }
 
-TEST(SweptSearch, EndsOnTrianglesThatAreAllOnePoint) {
+TEST(SweptSearch, EndsOnTrianglesThatAreSinglePoints) {
   // Their spheres have no size, which the drift exceeds in any stretch.
   Mesh points = mesh::box_mesh({-30, -30, -20}, {30, 30, -10});
   for (const Vec3& p : {Vec3(0, 3.2, 1), Vec3(0, 3.005, 3), Vec3(5, 0, -9)}) {
@@ -83,7 +83,7 @@ TEST(SweptSearch, EndsOnTrianglesThatAreAllOnePoint) {
   EXPECT_LT(sweep(0, 0).evaluations, 10000U);
 }
 
-TEST(SweptSearch, OfALongRapidPastASmallPartTakesFewLooks) {
+TEST(SweptSearch, TakesFewStepsForALongRapidPastASmallPart) {
   const Collider collider(mesh::sphere_mesh(10, 5));
   const Assembly tool(cutters::ball(6, 20).with_holder({{40, 20, 80, 20}}));
   const Swept swept = collider.sweep(tool, Motion({{-2000, 0, 10.5}, kUp}, {{2000, 0, 10.5}, kUp}), 0.4, 100000);
@@ -118,7 +118,7 @@ Mesh cone_of_needles(int count) {
   return cone;
 }
 
-TEST(SweptSearch, DividesNeedlesThatGoOnPastAHollowOfTheTool) {
+TEST(SweptSearch, DividesNeedlesThatExtendPastAHollowOfTheTool) {
   // The tool slides up a needle on its ball and its holder's edge. A plane at the ball bounds nothing where the needle
   // passes the neck, so that shorter intervals alone do not help.
   const Tool tool = cutters::ball(6, 22).with_shank({{22, 3, 34, 3}, {34, 3, 42, 8}}).with_holder({{42, 13, 70, 16}});
@@ -145,7 +145,7 @@ TEST(SweptSearch, DividesNeedlesThatGoOnPastAHollowOfTheTool) {
   }
 }
 
-TEST(SweptSearch, IsNeverClearWhereAPoseOfTheMotionIsNearer) {
+TEST(SweptSearch, IsNeverClearIfAPoseOfTheMotionIsNearer) {
   std::uint64_t seed = 700;
   int clear = 0, gouges = 0;
   for (const Tool& tool : contact_tools()) {
@@ -181,7 +181,7 @@ TEST(SweptSearch, IsNeverClearWhereAPoseOfTheMotionIsNearer) {
   EXPECT_GT(clear, 100);
 }
 
-TEST(SweptSearch, BoundsOfTrianglesInAStretchAreNeverAboveAnyOfItsPoses) {
+TEST(SweptSearch, BoundsOfTrianglesInAnIntervalAreNeverAboveAnyOfItsPoses) {
   std::uint64_t seed = 800;
   for (const Tool& tool : contact_tools()) {
     SCOPED_TRACE(tool.name());

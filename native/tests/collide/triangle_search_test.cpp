@@ -95,7 +95,7 @@ void search_all(TriangleSearch& search, const Corners& t) {
   search.search(t, -std::numeric_limits<double>::infinity(), none);
 }
 
-TEST(TriangleSearch, FindsWhatIsLeastAndWhereForEveryTool) {
+TEST(TriangleSearch, FindsTheSmallestDistanceAndItsPlaceForEveryTool) {
   std::uint64_t seed = 1;
   for (const Tool& tool : contact_tools()) {
     SCOPED_TRACE(tool.name());
@@ -119,7 +119,7 @@ TEST(TriangleSearch, FindsWhatIsLeastAndWhereForEveryTool) {
   }
 }
 
-TEST(TriangleSearch, BoundsFromOneLookAreNeverAboveTheLeast) {
+TEST(TriangleSearch, BoundsFromOneEvaluationAreNeverAboveTheMinimum) {
   std::uint64_t seed = 100;
   for (const Tool& tool : contact_tools()) {
     SCOPED_TRACE(tool.name());
@@ -159,7 +159,7 @@ Corners triangle_through(const tool::Outline& outline, Random& random) {
   return {p + 9.0 * u, p + 9.0 * v, p - 9.0 * u - 9.0 * v};
 }
 
-TEST(TriangleSearch, OfTwoSidesThatAreEquallyNearInAHolderTakesFewCells) {
+TEST(TriangleSearch, TakesFewCellsForTwoEquallyNearSidesOfAHolder) {
   // Where the top and the side of a holder are equally near, a plane of the nearer side alone left 50 000 cells open.
   const tool::Outline outline(cutters::ball(6, 22).with_holder({{42, 13, 70, 16}}));
   const OutlineRuns runs(outline.edges());
@@ -176,7 +176,7 @@ TEST(TriangleSearch, OfTwoSidesThatAreEquallyNearInAHolderTakesFewCells) {
   }
 }
 
-TEST(TriangleSearch, DepthsInHollowsAreTheLeastThoughTheToolGoesOnBehindTheirEnds) {
+TEST(TriangleSearch, DepthsInHollowsAreMinimalThoughTheToolExtendsBehindTheirEnds) {
   // A level disc that closes a hollow is not a surface: bounds from it stopped searches up to 1e-4 mm above the least.
   const Tool tool = cutters::profile({{{3, 0}, {}}, {{5, 2}, Vec2(5, 0)}, {{2.5, 10}, {}}}, 20);
   const tool::Outline outline(tool);
@@ -210,7 +210,7 @@ TEST(TriangleSearch, StopsAtTheDeadlineWithABoundThatHolds) {
   }
 }
 
-TEST(OutlineRuns, AndOutlineAndLanesDistancesAtTheTipOfABallAreRoundingSmallOnItsSurface) {
+TEST(OutlineRuns, OutlineAndLanesAgreeToRoundingAtTheTipOfABall) {
   // There heights on the circle differ by less than rounding: judged by them, the foot was the tip, as far off as ρ.
   for (const Tool& tool : {cutters::taper(0.5, 0.2, 8, 40, true), cutters::taper(1, 0.4, 8, 40, true),
                            cutters::ball(6, 30), cutters::ball(0.7, 30), cutters::taper(0.2, 0.2, 2, 8, true)}) {
@@ -278,7 +278,7 @@ struct Group {
   }
 };
 
-TEST(OutlineLanes, BoundsOfTrianglesAreNeverAboveTheLeast) {
+TEST(OutlineLanes, BoundsOfTrianglesAreNeverAboveTheMinimum) {
   std::uint64_t seed = 500;
   for (const Tool& tool : contact_tools()) {
     SCOPED_TRACE(tool.name());

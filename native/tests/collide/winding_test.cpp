@@ -18,7 +18,7 @@ Mesh open_above(Mesh mesh, double z) {
   return mesh;
 }
 
-TEST(Winding, IsOneInsideOfAClosedSurfaceAndZeroOutside) {
+TEST(Winding, IsOneInsideAClosedSurfaceAndZeroOutside) {
   const Surface sphere(mesh::sphere_mesh(10, 4)), box(mesh::box_mesh({0, 0, 0}, {1, 2, 3}));
   EXPECT_NEAR(WindingNumber(sphere)({1, 2, 3}), 1, 1e-2);
   EXPECT_NEAR(WindingNumber(sphere)({9, 9, 9}), 0, 1e-2);

@@ -18,7 +18,7 @@ TEST(PenCurrents, WithinTheLimitsNothingChanges) {
   EXPECT_EQ(currents, before);
 }
 
-TEST(PenCurrents, TheOneThatExceedsItsLimitMostScalesAll) {
+TEST(PenCurrents, TheCurrentThatExceedsItsLimitMostScalesAll) {
   const Limits limits = {1000, 1000, 1000, 100, 1000, 1000};
   Currents currents = {2000, -1000, 500, 400, 0, 4};
   EXPECT_TRUE(riffler_pen_limit_currents(currents.data(), limits.data()));
@@ -107,7 +107,7 @@ TEST(PenCurrents, HeatFollowsTheSquareOfTheCurrentWithTheWindingsTime) {
   }
 }
 
-TEST(PenCurrents, HeatIsThatOfTheGreaterOfMeasuredAndToldCurrent) {
+TEST(PenCurrents, HeatIsThatOfTheGreaterOfMeasuredAndCommandedCurrent) {
   riffler_pen_config config = reference();
   config.limits.thermal_ms = 1000;
   config.mismatch_ma = 1000;

@@ -126,7 +126,7 @@ TEST(PenDescriptor, HasTheCodecsFieldsAtTheCodecsOffsets) {
   EXPECT_EQ(next, descriptor.items.size()) << "fields that no report has";
 }
 
-TEST(PenDescriptor, TheParserSeesWhatIsWrong) {
+TEST(PenDescriptor, TheParserDetectsErrors) {
   const std::vector<std::uint8_t> good(riffler_pen_descriptor, riffler_pen_descriptor + riffler_pen_descriptor_size);
   for (std::size_t size = 1; size < good.size(); ++size)
     EXPECT_ANY_THROW(parse(good.data(), size)) << "cut after " << size << " bytes";

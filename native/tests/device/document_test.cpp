@@ -133,7 +133,7 @@ TEST(PenDocument, HasEveryTransition) {
     }
 }
 
-TEST(PenDocument, HasTheNumbersThatUsbTells) {
+TEST(PenDocument, HasTheNumbersThatUsbReports) {
   const std::string text = text_of("docs/device.md");
   EXPECT_NE(text.find("`riffler_pen_descriptor`, " + std::to_string(riffler_pen_descriptor_size) + " bytes"),
             std::string::npos);
@@ -147,7 +147,7 @@ std::string hex4(int number) {
   return text;
 }
 
-TEST(PenUdevRule, IsForThePenAndLetsInWhoeverSitsThere) {
+TEST(PenUdevRule, IsForThePenAndGrantsAccessToTheSeatedUser) {
   std::filesystem::path rule;
   for (const auto& entry : std::filesystem::directory_iterator(test::checkout() / "device/udev")) {
     EXPECT_TRUE(rule.empty()) << "one file";

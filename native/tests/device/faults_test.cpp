@@ -147,7 +147,7 @@ void inject(const Injection& injection, Pen& pen) {
   }
 }
 
-TEST(PenFaults, EachTakesForceAwayInTheStepThatSeesIt) {
+TEST(PenFaults, EachRemovesForceInTheStepThatDetectsIt) {
   for (const Injection& injection : injections()) {
     SCOPED_TRACE(injection.name);
     Pen pen;
@@ -168,7 +168,7 @@ TEST(PenFaults, EachTakesForceAwayInTheStepThatSeesIt) {
   }
 }
 
-TEST(PenFaults, EachIsThereInTheRampToo) {
+TEST(PenFaults, EachIsDetectedInTheRampToo) {
   for (const Injection& injection : injections()) {
     if (injection.fault == RIFFLER_PEN_STALL || injection.fault == RIFFLER_PEN_DRIVE_MISMATCH)
       continue;  // need current
@@ -251,7 +251,7 @@ struct LeaningHand {
 };
 
 /// Without a tremor, for a minute: force breathes by what friction hides, and no more.
-TEST(PenFaults, AHandThatHoldsStillUnderForceIsNoStall) {
+TEST(PenFaults, AHandThatHoldsStillUnderForceIsNotAStall) {
   const Currents lean = {450, -480, 100, 0, 450, -400};
   for (const double friction : {0.0, 20.0, 100.0, 150.0}) {
     SCOPED_TRACE(friction);
@@ -274,7 +274,7 @@ TEST(PenFaults, AHandThatHoldsStillUnderForceIsNoStall) {
   }
 }
 
-TEST(PenFaults, DeadEncodersUnderForceEndItSlowlyAndAreAStall) {
+TEST(PenFaults, DeadEncodersUnderForceFadeItAndAreAStall) {
   const Currents hard = {450, -480, 100, 0, 450, -400};
   Pen pen;
   pen.activate(hard);
@@ -297,7 +297,7 @@ TEST(PenFaults, DeadEncodersUnderForceEndItSlowlyAndAreAStall) {
 }
 
 /// The force comes back as slowly as it went, from wherever a count was seen.
-TEST(PenFaults, AnAnswerInTheMiddleOfTheEasingBringsTheForceBack) {
+TEST(PenFaults, AReportDuringTheDecayRestoresTheForce) {
   const Currents hard = {0, 0, 0, 0, 480, 0};
   Pen pen;
   pen.activate(hard);
@@ -331,7 +331,7 @@ TEST(PenFaults, TheFirstCauseIsKeptWhenOthersFollow) {
   EXPECT_EQ(pen.state(), RIFFLER_PEN_IDLE);
 }
 
-TEST(PenFaults, OfSeveralInOneStepTheLowestNumberIsTold) {
+TEST(PenFaults, TheLowestNumberOfSeveralInOneStepIsReported) {
   Pen pen;
   pen.activate(kCommand);
   pen.sensors.driver_faults = 1;
@@ -368,7 +368,7 @@ TEST(PenFaults, ATemperatureSensorThatReadsTheImpossibleIsBroken) {
   }
 }
 
-TEST(PenFaults, AJumpIsWhatTheArmCannotDoInTheTime) {
+TEST(PenFaults, AMotionFasterThanTheArmIsAJump) {
   for (const std::uint32_t tick : {125U, 1000U, 4000U}) {
     const auto most = static_cast<std::int32_t>(400'000ULL * tick / 1'000'000 + 8);
     for (const int sign : {1, -1}) {
@@ -386,7 +386,7 @@ TEST(PenFaults, AJumpIsWhatTheArmCannotDoInTheTime) {
   }
 }
 
-TEST(PenFaults, AHandThatHoldsStillIsNoStall) {
+TEST(PenFaults, AHandThatHoldsStillIsNotAStall) {
   Pen pen;
   pen.activate();
   const Currents hard = {0, 0, 0, 0, 1200, 0}, soft = {0, 0, 0, 0, 399, 0};
@@ -400,7 +400,7 @@ TEST(PenFaults, AHandThatHoldsStillIsNoStall) {
   EXPECT_EQ(pen.state(), RIFFLER_PEN_ACTIVE);
 }
 
-TEST(PenFaults, BrakedWindingsMayCarryCurrentOfTheirOwn) {
+TEST(PenFaults, BrakedWindingsMayCarryInducedCurrent) {
   Pen pen;
   pen.activate(kCommand);
   for (int k = 0; k < 20; ++k) pen.step();
@@ -413,7 +413,7 @@ TEST(PenFaults, BrakedWindingsMayCarryCurrentOfTheirOwn) {
   EXPECT_EQ(pen.state(), RIFFLER_PEN_IDLE);
 }
 
-TEST(PenFaults, CurrentThatNobodyAskedForIsAFaultAtRestToo) {
+TEST(PenFaults, UncommandedCurrentIsAFaultAtRestToo) {
   Pen pen;
   pen.step();
   pen.step();
@@ -426,7 +426,7 @@ TEST(PenFaults, CurrentThatNobodyAskedForIsAFaultAtRestToo) {
   EXPECT_EQ(pen.pen.fault_joint, 5);
 }
 
-TEST(PenFaults, ADamagedStateIsLeftByARestartOnly) {
+TEST(PenFaults, OnlyARestartLeavesADamagedState) {
   Pen pen;
   pen.activate(kCommand);
   pen.pen.state = static_cast<riffler_pen_state>(7);

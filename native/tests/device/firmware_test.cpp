@@ -35,7 +35,7 @@ TEST(PenFirmware, WaitsForItsSensorsThenForAReportThatDisables) {
   EXPECT_EQ(pen.currents(), Currents{}) << "the ramp begins at nothing";
 }
 
-TEST(PenFirmware, ReadyIsNotAskedAgain) {
+TEST(PenFirmware, ReadySensorsAreCheckedOnlyOnce) {
   Pen pen;
   pen.activate();
   pen.sensors.ready = 0;
@@ -64,7 +64,7 @@ TEST(PenFirmware, TheRampTakesItsTimeAndForceNeverFalls) {
   EXPECT_EQ(pen.currents(), kCommand);
 }
 
-TEST(PenFirmware, TheRampIsOnTheLimitedCommandNotOnWhatIsAskedFor) {
+TEST(PenFirmware, TheRampScalesTheLimitedCommand) {
   Pen pen;
   pen.step();
   pen.turn(false);
@@ -72,7 +72,7 @@ TEST(PenFirmware, TheRampIsOnTheLimitedCommandNotOnWhatIsAskedFor) {
   EXPECT_EQ(pen.currents()[0], 750) << "half of the peak after half of the ramp";
 }
 
-TEST(PenFirmware, ADisableTakesForceAwayAtOnceFromRampAndFromActive) {
+TEST(PenFirmware, ADisableRemovesForceAtOnceFromRampAndFromActive) {
   Pen pen;
   pen.step();
   pen.turn(false);
@@ -150,7 +150,7 @@ TEST(PenFirmware, AReportFromTimeToTimeIsEnough) {
   }
 }
 
-TEST(PenFirmware, SequenceAndTimesWrapWithoutATrace) {
+TEST(PenFirmware, SequenceAndTimesWrapWithoutEffect) {
   Pen pen;
   pen.sequence = 0xFF00;
   pen.pen.sequence = 0xFF00;
@@ -174,7 +174,7 @@ TEST(PenFirmware, SequenceAndTimesWrapWithoutATrace) {
   EXPECT_LT(pen.sensors.counters[0], 0);
 }
 
-TEST(PenFirmware, TellsTheHostWhatItDoes) {
+TEST(PenFirmware, ReportsItsStateToTheHost) {
   Pen pen;
   pen.activate(kCommand);
   pen.sensors.buttons = 0x0102;

@@ -68,7 +68,7 @@ riffler_pen_input read(const Bytes& bytes) {
   return report;
 }
 
-TEST(PenLoop, FromBootToForceOverTheBoard) {
+TEST(PenLoop, GoesFromBootToForceOverTheBoard) {
   FakeBoard board;
   const riffler_pen_config config = reference();
   const riffler_pen_board interface = board.interface();

@@ -24,7 +24,7 @@ void expect_round_trips(T (*make)(stress::Random&), std::uint64_t seed) {
   }
 }
 
-TEST(PenProtocol, EveryReportWithinItsBoundsComesBackAsItWas) {
+TEST(PenProtocol, EveryReportWithinItsBoundsRoundTrips) {
   expect_round_trips<riffler_pen_input>(random_input, 1);
   expect_round_trips<riffler_pen_output>(random_output, 2);
   expect_round_trips<riffler_pen_identity>(random_identity, 3);

@@ -10,7 +10,7 @@ namespace {
 
 constexpr unsigned kAllEvents = 1U << RIFFLER_PEN_EVENTS;
 
-TEST(PenStates, EveryStateInEveryEvent) {
+TEST(PenStates, EveryStateHandlesEveryEvent) {
   for (int state = 0; state < RIFFLER_PEN_STATES; ++state)
     for (unsigned events = 0; events < kAllEvents; ++events) {
       const bool ready = events & RIFFLER_PEN_ON_READY, disable = events & RIFFLER_PEN_ON_DISABLE,

@@ -45,7 +45,7 @@ std::vector<Span> combine(Boolean op, const Spans& a, const Spans& b) {
   return rays_of(result(op, one_ray(a, 0.1), one_ray(b, 0.2)));
 }
 
-TEST(Boolean, EmptyOperandsLeaveOrGiveTheOther) {
+TEST(Boolean, AnEmptyOperandGivesTheOtherOrNothing) {
   const Spans some{{1, 2}, {3, 4}};
   EXPECT_EQ(combine(Boolean::Subtract, {}, some), Spans{});
   EXPECT_EQ(combine(Boolean::Subtract, some, {}), some);
@@ -62,7 +62,7 @@ TEST(Boolean, TouchingSpansJoinAndLeaveNothingBetween) {
   EXPECT_EQ(combine(Boolean::Subtract, {{1, 2}}, {{2, 3}}), (Spans{{1, 2}}));
 }
 
-TEST(Boolean, EqualEndsAndNestedSpans) {
+TEST(Boolean, EqualEndsAndNestedSpansCombineExactly) {
   EXPECT_EQ(combine(Boolean::Subtract, {{1, 5}}, {{1, 3}}), (Spans{{3, 5}}));
   EXPECT_EQ(combine(Boolean::Subtract, {{1, 5}}, {{3, 5}}), (Spans{{1, 3}}));
   EXPECT_EQ(combine(Boolean::Subtract, {{1, 5}}, {{1, 5}}), Spans{});
@@ -82,7 +82,7 @@ TEST(Boolean, SliversAndGapsBelowABillionthOfThePitchVanish) {
   EXPECT_EQ(combine(Boolean::Intersect, {{1, 2}}, {{2 - thin, 3}}), Spans{});
 }
 
-TEST(Boolean, EndsThatComeFromTheOtherCarryItsNormals) {
+TEST(Boolean, EndsOfTheOtherOperandKeepItsNormals) {
   const auto normals = [](Boolean op, const Spans& a, const Spans& b) {
     const Volume v = result(op, one_ray(a, 0.1, "xyz"), one_ray(b, 0.2, "xyz"));
     const auto n = v.grid(Axis::Z)->ray_normals(0, 0);
@@ -102,7 +102,7 @@ TEST(Boolean, EndsThatComeFromTheOtherCarryItsNormals) {
   EXPECT_LT(glm::length(cut[1].near.unpack() + b.far.unpack()), 1e-12);
 }
 
-TEST(Boolean, TurnsEveryNormalRoundExactly) {
+TEST(Boolean, SubtractionReversesNormalsExactly) {
   std::mt19937 random(5);
   std::vector<Vec3> all{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
   for (int k = 0; k < 1000; ++k) {
@@ -203,7 +203,7 @@ TEST(Boolean, LeavesUnchangedTilesSharedAndCountsTheRest) {
   EXPECT_EQ(a.grids()[0].shared_tile(5), before.grids()[0].shared_tile(5)) << "a full tile is taken over, not copied";
 }
 
-TEST(Boolean, TellsABorderTileFromAnInnerOneThatHoldsTheSame) {
+TEST(Boolean, DistinguishesABorderTileFromAnEqualInnerOne) {
   // 40 rays along v: the second tile has 8 columns. Its full tile, standing at the first place, covers 8 of 32 columns.
   const Frame frame{{{0, 0, 0}, {32, 40, 10}}, 1, "z"};
   const Volume box = Volume::block(frame);

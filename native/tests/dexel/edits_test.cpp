@@ -65,7 +65,7 @@ TEST(Clip, CutsEveryRayWhereThePlaneCrossesIt) {
     }
 }
 
-TEST(Clip, TheNewFaceLooksOutAlongTheNormal) {
+TEST(Clip, TheNewFaceHasThePlanesNormal) {
   Volume volume = Volume::block({{{0, 0, 0}, {20, 20, 20}}, 0.5, "xyz"});
   const Vec3 n = glm::normalize(Vec3(1, 2, 3));
   clip(volume, {10, 10, 10}, n);
@@ -83,7 +83,7 @@ TEST(Clip, TheNewFaceLooksOutAlongTheNormal) {
   EXPECT_NEAR(volume.volume(), 4000, 1e-6);  // through the centre: a half, by symmetry
 }
 
-TEST(Clip, LeavesWhatLiesBehindAndTakesWhatLiesBefore) {
+TEST(Clip, KeepsMaterialBehindThePlaneAndRemovesTheRest) {
   const Volume before = test::random_volume(test::lattice_frame("xyz"), 4);
   Volume volume = before;
   clip(volume, {0, 0, 30}, {0, 0, 2});
@@ -94,7 +94,7 @@ TEST(Clip, LeavesWhatLiesBehindAndTakesWhatLiesBefore) {
   EXPECT_THROW(clip(volume, {0, 0, NAN}, {0, 0, 1}), std::invalid_argument);
 }
 
-TEST(Contains, AsksTheRayOfTheCell) {
+TEST(Contains, UsesTheRayOfTheCell) {
   const Volume volume = test::random_volume(test::lattice_frame("z"), 9);
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> place(-1, 25);
@@ -115,7 +115,7 @@ TEST(Contains, AsksTheRayOfTheCell) {
   EXPECT_FALSE(contains(volume, std::array{Vec3(NAN, 1, 1)})[0]);
 }
 
-TEST(Contains, OfThreeDirectionsTwoDecide) {
+TEST(Contains, TwoOfThreeDirectionsDecide) {
   Volume volume = Volume::block({{{0, 0, 0}, {20, 20, 20}}, 0.5, "xyz"});
   sweep::CarveOptions options;
   sweep::carve(volume, cutters::ball(12, 40), std::vector<Pose>(2, Pose{{10, 10, 4}, {0, 0, 1}}));
@@ -212,7 +212,7 @@ TEST(Parts, OfATriDexelVolumeAreTheSamePiecesInAllDirections) {
   EXPECT_TRUE(test::same_rays(parts(volume, 1e9)[0], volume));
 }
 
-TEST(Parts, OfNothingAreNoneAndOfOnePieceItself) {
+TEST(Parts, OfAnEmptyVolumeAreNoneAndOfOnePieceItself) {
   const Frame frame = test::lattice_frame("xyz");
   EXPECT_TRUE(parts(Volume(frame)).empty());
   const Volume block = Volume::block(frame);

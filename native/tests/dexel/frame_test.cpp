@@ -23,7 +23,7 @@ std::string said(const Vec3& size, double pitch, const Vec3& lower = Vec3(0.0)) 
   return text;
 }
 
-TEST(Frame, ThatMakesNoSenseIsRefusedEverywhere) {
+TEST(Frame, InvalidOnesAreRefusedEverywhere) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const Vec3 block{100, 60, 30};
   EXPECT_EQ(said(block, 0), "pitch must be a positive length in mm, not 0");
@@ -42,7 +42,7 @@ TEST(Frame, ThatMakesNoSenseIsRefusedEverywhere) {
   EXPECT_NE(said(block, 1e-5, Vec3(1e12)).find("rays would coincide"), std::string::npos);
 }
 
-TEST(Frame, AtItsLimitsIsTaken) {
+TEST(Frame, AtItsLimitsIsAccepted) {
   EXPECT_EQ(said({100, 60, 30}, 100), "");
   EXPECT_NE(said({100, 60, 30}, std::nextafter(100, 101)), "");
   EXPECT_EQ(said({1e7, 1, 1}, 1e5), "");

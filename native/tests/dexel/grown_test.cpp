@@ -18,7 +18,7 @@ Box3 with_room(const Volume& volume, const Vec3& below, const Vec3& above) {
   return {volume.frame().box.lower - below * h, volume.frame().box.upper + above * h};
 }
 
-TEST(Grown, EveryRayHasWhatItHadAndTheOthersNothing) {
+TEST(Grown, OldRaysKeepTheirSpansAndNewOnesAreEmpty) {
   for (const char* directions : {"x", "y", "z", "xyz"})
     for (const Vec3 below : {Vec3(0, 0, 0), Vec3(1, 5, 31), Vec3(32, 33, 0), Vec3(64, 32, 96)}) {
       const Volume before = test::random_volume(test::lattice_frame(directions), 5);
@@ -54,7 +54,7 @@ TEST(Grown, WholeTilesChangeHands) {
     }
 }
 
-TEST(Grown, NeverSmallerAndNothingToDoIsTheSameTiles) {
+TEST(Grown, IsNeverSmallerAndSharesTilesIfNothingChanges) {
   const Volume before = Volume::block({{{0, 0, 0}, {10.3, 10.5, 0.4}}, 1, "xyz"});
   const Volume same = grown(before, {{2, 2, 0.1}, {3, 10.5, 0.2}});
   EXPECT_EQ(same.frame(), before.frame());
@@ -65,7 +65,7 @@ TEST(Grown, NeverSmallerAndNothingToDoIsTheSameTiles) {
   EXPECT_EQ(taller.frame().box.upper.x, 10.3);
 }
 
-TEST(Grown, RefusesWhatIsNoBoxOrTooLarge) {
+TEST(Grown, RefusesInvalidAndTooLargeBoxes) {
   const Volume block = Volume::block({{{0, 0, 0}, {10, 10, 10}}, 1, "xyz"});
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const Box3& wanted : {Box3{{nan, 0, 0}, {1, 1, 1}}, Box3{{0, 0, 0}, {1, kInfinity, 1}}, Box3{},

@@ -76,7 +76,7 @@ TEST(Quadrics, RaysInTheSideAreInOrOutAndNothingBetween) {
     }
 }
 
-TEST(Quadrics, RefuseNonsense) {
+TEST(Quadrics, RefuseInvalidInput) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const double bad : {0.0, -1.0, nan, kInfinity}) {
     EXPECT_THROW(bounds(Sphere{{0, 0, 0}, bad}), std::invalid_argument);

@@ -23,7 +23,7 @@ TEST(Hypot, IsExactWhereTheHypotenuseIsANumber) {
     }
 }
 
-TEST(Hypot, OfNothingZeroInfinityAndNoNumber) {
+TEST(Hypot, HandlesZeroInfinityAndNan) {
   EXPECT_EQ(hypot(0, 0), 0);
   EXPECT_FALSE(std::signbit(hypot(-0.0, -0.0)));
   EXPECT_EQ(hypot(0, -7.25), 7.25);

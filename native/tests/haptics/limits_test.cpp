@@ -43,7 +43,7 @@ TEST(HapticLimits, KeepTheDirectionInAllSixCoordinates) {
   }
 }
 
-TEST(HapticLimits, LeaveAloneWhatIsWithinThem) {
+TEST(HapticLimits, KeepWrenchesWithinThem) {
   const Wrench wanted{{1, 2, 3}, {10, 20, 30}};
   LimitReport report;
   const Twist grip{{1, 2, 3}, {0.1, 0, 0}};
@@ -77,7 +77,7 @@ TEST(HapticLimits, ChangeByNoMoreThanTheRatesOrShrink) {
   }
 }
 
-TEST(HapticLimits, ReachASteadyWrenchByAStraightLine) {
+TEST(HapticLimits, ReachASteadyWrenchOnAStraightLine) {
   const LimitSettings s;
   const Wrench wanted{{0, 0, 5}, {100, 0, 0}};
   Wrench w;
@@ -106,7 +106,7 @@ TEST(HapticLimits, SpeedScalesDownInAStraightLineToNothing) {
   EXPECT_EQ(limited(s, {}, {{5, 0, 0}, {}}, {{5, 0, 0}, {}}, {{0, 2000, 0}, {}}, 1e-3), Wrench{});
 }
 
-TEST(HapticLimits, OfZeroLetNothingThroughAndMakeNoNan) {
+TEST(HapticLimits, OfZeroGiveZeroAndNoNan) {
   const Wrench wanted{{1, 2, 3}, {4, 5, 6}};
   for (int field = 0; field < 4; ++field) {
     LimitSettings s;
@@ -120,7 +120,7 @@ TEST(HapticLimits, OfZeroLetNothingThroughAndMakeNoNan) {
   }
 }
 
-TEST(HapticLimits, NeverHideWhatIsNotANumber) {
+TEST(HapticLimits, PassOnNanAndInfinity) {
   for (const double bad : {double(NAN), double(INFINITY), -double(INFINITY)})
     for (int k = 0; k < kCoordinates; ++k) {
       Wrench wanted{{1, 0, 0}, {0, 1, 0}};
@@ -129,7 +129,7 @@ TEST(HapticLimits, NeverHideWhatIsNotANumber) {
     }
 }
 
-TEST(HapticLimits, SayWhatTheDeviceCannotPush) {
+TEST(HapticLimits, ReportTheRestThatTheDeviceCannotPush) {
   // A pen with its grip along (0, 0.6, 0.8): no torque about it.
   Capability pen;
   pen.push[5] = false;

@@ -40,7 +40,7 @@ TEST(Passivity, AccountIsTheSumOfWrenchTimesDisplacement) {
   EXPECT_NEAR(passivity.energy(), s.reserve + static_cast<double>(sum), 1e-9);
 }
 
-TEST(Passivity, TheWorstHandWithinTheBoundsNeverMakesADebt) {
+TEST(Passivity, TheWorstHandWithinTheBoundsNeverCausesADebt) {
   // The hand knows the wrench that is held and goes with it as far as its acceleration lets it, in every coordinate.
   stress::Random random(2);
   for (int session = 0; session < 20; ++session) {
@@ -121,7 +121,7 @@ TEST(Passivity, QuantisationHidesNoMoreThanItsStepTimesTheChangeOfForce) {
   }
 }
 
-TEST(Passivity, WallsWithinThePassiveBoundAreLeftAlone) {
+TEST(Passivity, WallsWithinThePassiveBoundStayUnchanged) {
   // The device's own damping, credited, is what makes them passive: (2.13) is when the account never falls.
   PassivitySettings settings = strict({9e4, 0});
   settings.device_damping = {2e-3, 0};
@@ -136,7 +136,7 @@ TEST(Passivity, WallsWithinThePassiveBoundAreLeftAlone) {
   }
 }
 
-TEST(Passivity, DefaultsLeaveACouplingOnAnOrdinaryDeviceAlone) {
+TEST(Passivity, DefaultsDoNotChangeACouplingOnAnOrdinaryDevice) {
   // Damping, friction and encoder as docs/stability.md takes them for the pen; half of them credited.
   const CouplingSettings coupling;
   PassivitySettings settings;
@@ -171,7 +171,7 @@ TEST(Passivity, CreditsTheDeviceNoMoreThanItTakesAndNotMuchLess) {
   }
 }
 
-TEST(Passivity, CoordinatesOfAPassiveObjectMayGiveForEverWhatOthersTake) {
+TEST(Passivity, CoordinatesOfAPassiveObjectMayGiveForEverTheEnergyThatOthersTake) {
   // A spring whose principal axes are not the coordinates, and a damper, on an elliptic path.
   PassivitySettings settings = strict({1e5, 1e3});
   settings.reserve = 5;  // the path begins on the stretched spring
@@ -271,7 +271,7 @@ TEST(Passivity, DampsOnlyWhatTheDevicePushesAndWhereTheDirectionIsSure) {
   for (int k = 0; k < kCoordinates; ++k) EXPECT_LE(std::abs(w[k]), s.max_damping[k] * 300 + 1e-12);
 }
 
-TEST(Passivity, SurvivesTicksOfNoTimeAndNumbersThatAreNone) {
+TEST(Passivity, SurvivesTicksOfNoTimeAndNan) {
   Passivity passivity{PassivitySettings{}};
   passivity.observe({}, {{0.1, 0, 0}, {}}, 0);
   passivity.observe({{NAN, 0, 0}, {}}, {}, 1e-3);
@@ -294,7 +294,7 @@ TEST(Passivity, SettingsNameTheFieldThatIsWrong) {
   EXPECT_EQ(message([](auto& s) { s.storage = 0.5; }), "storage must be at least reserve");
 }
 
-TEST(PassiveBound, IsTheLesserOfSamplingAndQuantisation) {
+TEST(PassiveBound, IsTheSmallerOfTheBoundsOfSamplingAndQuantisation) {
   const PassiveStiffness k = passive_stiffness({1e-3, 2e-3, 0.2, 0.02});
   EXPECT_DOUBLE_EQ(k.sampling, 4);
   EXPECT_DOUBLE_EQ(k.quantisation, 20);
@@ -307,7 +307,7 @@ TEST(PassiveBound, IsTheLesserOfSamplingAndQuantisation) {
   EXPECT_EQ(test::error_of([] { passive_stiffness({1e-3, 1, -1, 1}); }), "friction must not be negative");
 }
 
-TEST(Passivity, WhatTheDeviceTookByItselfIsCreditedUpToWhatObjectsStore) {
+TEST(Passivity, LossesOfTheDeviceAreCreditedUpToTheStoredEnergy) {
   PassivitySettings settings;
   settings.device_damping = settings.device_friction = {0, 0};
   Passivity passivity(settings);

@@ -56,7 +56,7 @@ TEST(Safety, RampsMonotonouslyFromNothingToEverything) {
   EXPECT_EQ(last, 3);
 }
 
-TEST(Safety, LetsNothingThroughWithoutChecksInTheSameTick) {
+TEST(Safety, PassesNothingWithoutChecksInTheSameTick) {
   Running r;
   EXPECT_EQ(r.safety.release(kPush).wrench(), Wrench{}) << "the permission of the last tick was used";
   r.safety.observe(good());
@@ -68,7 +68,7 @@ TEST(Safety, LetsNothingThroughWithoutChecksInTheSameTick) {
   EXPECT_EQ(SafeWrench{}.wrench(), Wrench{});
 }
 
-TEST(Safety, LetsNothingThroughBeforeItIsOnHomedAndHeld) {
+TEST(Safety, PassesNothingBeforeItIsOnHomedAndHeld) {
   Safety safety{SafetySettings{}};
   const auto force = [&](const Observation& o) {
     safety.observe(o);
@@ -115,7 +115,7 @@ std::vector<Fault> faults() {
           {Cause::Stale, [](Observation& o) { o.age = 0.021; }, 0.021}};
 }
 
-TEST(Safety, WhatPassesTellsHowFarTheGateIsOpen) {
+TEST(Safety, TheOutputStatesHowFarTheGateIsOpen) {
   Running r;
   r.safety.observe(good());
   const SafeWrench nothing = r.safety.release({});
@@ -139,7 +139,7 @@ TEST(Safety, WhatPassesTellsHowFarTheGateIsOpen) {
   EXPECT_FALSE(SafeWrench().open());
 }
 
-TEST(Safety, AnInterruptionBeginsTheRampAnewAndKeepsTrips) {
+TEST(Safety, AnInterruptionRestartsTheRampAndKeepsTrips) {
   Running r;
   r.safety.interrupt();
   Observation there = good();
@@ -174,7 +174,7 @@ TEST(Safety, EveryFaultTripsWithinTheTickAndIsRecorded) {
   }
 }
 
-TEST(Safety, ComesBackThroughTheRampAfterAFaultThatHeals) {
+TEST(Safety, ReturnsThroughTheRampAfterAFaultThatHeals) {
   for (const Fault& fault : faults()) {
     Running r;
     Observation o = good();
@@ -201,7 +201,7 @@ TEST(Safety, ComesBackThroughTheRampAfterAFaultThatHeals) {
   }
 }
 
-TEST(Safety, AGraverFaultReplacesOneThatHeals) {
+TEST(Safety, AMoreSevereFaultReplacesOneThatHeals) {
   Running r;
   Observation o = good();
   o.twist.linear = {2000, 0, 0};
@@ -276,7 +276,7 @@ TEST(Safety, LateTicksFadeTheForceAndTripAtTheEnd) {
   }
 }
 
-TEST(Safety, NoTimeIsNoFaultAndNoProgress) {
+TEST(Safety, ATickOfNoTimeIsNoFaultAndNoProgress) {
   Safety safety{SafetySettings{}};
   safety.switch_on();
   Observation o = good();
@@ -366,7 +366,7 @@ TEST(Safety, AMoveThatTheSpeedExplainsIsNoJump) {
   }
 }
 
-TEST(Safety, ADeviceThatComesHomeInABadStateGetsNoForce) {
+TEST(Safety, ADeviceThatIsHomedInABadStateGetsNoForce) {
   for (const Fault& fault : faults()) {
     if (fault.cause == Cause::NotHomed || fault.cause == Cause::Jump) continue;  // what homing is for
     Safety safety{SafetySettings{}};
@@ -381,7 +381,7 @@ TEST(Safety, ADeviceThatComesHomeInABadStateGetsNoForce) {
   }
 }
 
-TEST(Safety, WhateverHappensForceMeansThatEveryCheckPassed) {
+TEST(Safety, ForceAlwaysMeansThatEveryCheckPassed) {
   stress::Random random(1);
   const SafetySettings s;
   SafetySettings quick = s;

@@ -223,7 +223,7 @@ TEST(SculptStep, APlungedBallIsFeltAsItsClosedFormAtAnyPitch) {
   }
 }
 
-TEST(SculptStep, WhateverResistsTheCouplingsEnergyFallsInEveryStep) {
+TEST(SculptStep, TheCouplingsEnergyFallsInEveryStepUnderAnyResistance) {
   // With the grip where it is at the step's end: what drives the tool can only lose by the tool's own motion.
   stress::Random random(5);
   const Tool ball = cutters::ball(6, 30);
@@ -364,7 +364,7 @@ TEST(SculptStep, AQueryThatRunsOutOfTimeLeavesTheToolAndTheHandIsPulledBack) {
 }
 
 /// The cuts of a large ball are far over the budget; the time that they leave to queries is none.
-TEST(SculptStep, AToolThatIsHeldAfterASlowCutIsNotHeldForEver) {
+TEST(SculptStep, AToolThatIsHeldAfterASlowCutIsReleased) {
   const Tool ball = cutters::ball(30, 60);
   Volume volume = block(0.1, "xyz");
   sweep::MoveCarver carver(volume, ball, {});
@@ -383,7 +383,7 @@ TEST(SculptStep, AToolThatIsHeldAfterASlowCutIsNotHeldForEver) {
   EXPECT_LT(longest, 100) << "of 200 steps";
 }
 
-TEST(SculptStep, AsksForNoMemoryOnceItIsWarm) {
+TEST(SculptStep, AllocatesNothingOnceItIsWarm) {
   const Tool tool = cutters::ball(6, 20).with_holder({{24, 12, 40, 12}});
   Volume volume = block(0.2);
   std::vector<Volume> fixtures;
@@ -434,7 +434,7 @@ TEST(SculptStep, NothingMovesWithoutTimeOrNumbers) {
   }
 }
 
-TEST(SculptStep, WhatTheToolIsPlacedInGoesUnfelt) {
+TEST(SculptStep, MaterialAroundAPlacedToolIsRemovedUnfelt) {
   Volume volume = block(0.2);
   const Tool ball = cutters::ball(6, 30);
   sweep::MoveCarver carver(volume, ball, {});
@@ -457,7 +457,7 @@ TEST(SculptStep, SettingsNameTheFieldThatIsWrong) {
   EXPECT_NE(message([](auto& s) { s.parts = 0; }).find("parts must be a number between"), std::string::npos);
 }
 
-TEST(SculptStep, GivesNoEnergyToAnyHandOnceTheControllerStandsBehindIt) {
+TEST(SculptStep, GivesNoEnergyToAnyHandWithThePassivityController) {
   // A grip without damping that the hand shakes, over stock and part.
   for (const double constant : {1e-3, 1.0}) {
     Volume volume = block(0.4);

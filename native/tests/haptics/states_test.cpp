@@ -40,7 +40,7 @@ TEST(States, ForceIsReachedThroughTheRampAlone) {
     }
 }
 
-TEST(States, EveryCauseHasASentenceOfItsOwn) {
+TEST(States, EveryCauseHasItsOwnSentence) {
   std::set<std::string> sentences, names;
   for (std::size_t k = 0; k < kCauses; ++k) {
     const std::string text = sentence(static_cast<Cause>(k));
@@ -54,7 +54,7 @@ TEST(States, EveryCauseHasASentenceOfItsOwn) {
   EXPECT_EQ(names.size(), kForceStates + kForceEvents);
 }
 
-TEST(States, WhereThePoseIsInDoubtTheForceDoesNotComeBackByItself) {
+TEST(States, TheForceDoesNotReturnByItselfWhileThePoseIsInDoubt) {
   for (const Cause c : {Cause::NotFinite, Cause::DeviceFault, Cause::NotHomed, Cause::Redundancy, Cause::Jump,
                         Cause::BadWrench, Cause::Excess})
     EXPECT_FALSE(heals(c)) << sentence(c);

@@ -139,7 +139,7 @@ TEST(HapticTick, AMassWithoutAnyDampingGetsNoMoreThanTheReserve) {
   }
 }
 
-TEST(HapticTick, FarFromTheOriginItIsAsNearIt) {
+TEST(HapticTick, IsTheSameFarFromTheOrigin) {
   const Vec3 offset(1e5, -1e5, 1e5);
   Loop near, far(offset);
   for (int k = 0; k < 3000; ++k) {

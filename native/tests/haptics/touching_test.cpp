@@ -142,7 +142,7 @@ TEST(Touching, AToolThatBeginsInTheStockPassesUntilItIsOut) {
   EXPECT_LT(last, 0.01);
 }
 
-TEST(Touching, WithObstaclesBothHold) {
+TEST(Touching, StockAndObstaclesHoldTheToolTogether) {
   Mesh plate;
   plate.vertices = {{-50, -50, 1}, {90, -50, 1}, {90, 80, 1}, {-50, 80, 1}};
   plate.triangles = {{0, 1, 2}, {0, 2, 3}};
@@ -155,7 +155,7 @@ TEST(Touching, WithObstaclesBothHold) {
   EXPECT_FALSE(r.touching);
 }
 
-TEST(Touching, GivesNoEnergyToAnyHandOnceTheControllerStandsBehindIt) {
+TEST(Touching, GivesNoEnergyToAnyHandWithThePassivityController) {
   // As without touching: a light grip without damping that the hand shakes; the button is held now and then.
   for (const char* directions : {"z", "xyz"}) {
     SculptSettings settings;
@@ -188,7 +188,7 @@ TEST(Touching, GivesNoEnergyToAnyHandOnceTheControllerStandsBehindIt) {
   }
 }
 
-TEST(Touching, AsksForNoMemoryWhileItTouches) {
+TEST(Touching, AllocatesNothingWhileItTouches) {
   Bench bench(cutters::ball(6, 20), 0.2, "xyz");
   bench.place({{20, 15, 1}, kUp});
   std::uint64_t before = 0;

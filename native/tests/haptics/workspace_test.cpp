@@ -13,7 +13,7 @@ namespace {
 
 const Vec3 kUp(0, 0, 1);
 
-TEST(Workspace, ItsTargetNeverJumpsWhateverIsPressedOrSet) {
+TEST(Workspace, ItsTargetNeverJumpsForAnyButtonOrSetting) {
   stress::Random random(1);
   Workspace workspace;
   const Pose start{{10, 20, 30}, glm::normalize(Vec3(1, 2, 3))};
@@ -99,7 +99,7 @@ TEST(Workspace, ADeviceInThePartsFrameLeadsTheTip) {
   EXPECT_EQ(s.for_device(false).pivot, 40);
 }
 
-TEST(Workspace, TheHandsPowerIsTheTargets) {
+TEST(Workspace, TheHandsPowerEqualsTheTargets) {
   stress::Random random(2);
   for (int k = 0; k < 1000; ++k) {
     WorkspaceSettings s;
@@ -116,7 +116,7 @@ TEST(Workspace, TheHandsPowerIsTheTargets) {
   }
 }
 
-TEST(Workspace, TheClutchTakesTheForceAndTheDeadManIsAsked) {
+TEST(Workspace, TheClutchAndTheDeadManSwitchRemoveTheForce) {
   Workspace workspace;
   workspace.place({});
   workspace.target({}, 1);
@@ -131,7 +131,7 @@ TEST(Workspace, TheClutchTakesTheForceAndTheDeadManIsAsked) {
   EXPECT_TRUE(Workspace(s).dead_man(0));
 }
 
-TEST(Workspace, OppositeAxesAndGripsThatAreNoneAreNoTrouble) {
+TEST(Workspace, OppositeAxesAndInvalidGripsGiveFiniteTargets) {
   Workspace workspace;
   workspace.place({{1, 2, 3}, -kUp});
   EXPECT_LT(glm::length(workspace.target({{0, 0, 0}, kUp}, 0).axis + kUp), 1e-12);

@@ -10,7 +10,7 @@
 namespace riffler::haptics::wrench_extrapolator_test {
 namespace {
 
-TEST(WrenchExtrapolator, PassesOnWhatComesInTime) {
+TEST(WrenchExtrapolator, PassesOnWrenchesThatComeInTime) {
   WrenchExtrapolator held;
   for (int k = 0; k < 100; ++k) {
     const Wrench w{{std::sin(0.1 * k), 0, 1}, {0, 10, 0}};
@@ -21,7 +21,7 @@ TEST(WrenchExtrapolator, PassesOnWhatComesInTime) {
   }
 }
 
-TEST(WrenchExtrapolator, NeverJumpsWhicheverStepsAreMissing) {
+TEST(WrenchExtrapolator, NeverJumpsForAnyMissingSteps) {
   stress::Random random(3);
   const WrenchExtrapolatorSettings s;
   WrenchExtrapolator held;
@@ -42,7 +42,7 @@ TEST(WrenchExtrapolator, NeverJumpsWhicheverStepsAreMissing) {
   }
 }
 
-TEST(WrenchExtrapolator, GoesOnForAWhileAndIsGoneInTime) {
+TEST(WrenchExtrapolator, ContinuesForAWhileAndFadesInTime) {
   WrenchExtrapolator held;
   held.stepped({{0.99, 0, 0}, {}}, 1e-3);
   held.stepped({{1, 0, 0}, {}}, 1e-3);
@@ -58,7 +58,7 @@ TEST(WrenchExtrapolator, GoesOnForAWhileAndIsGoneInTime) {
   EXPECT_NEAR(ramp.missed(1e-3).force.x, 0.5, 0.05 * 0.5 + 0.005);
 }
 
-TEST(WrenchExtrapolator, TicksOfNoTimeAndWrenchesThatAreNoneChangeNothing) {
+TEST(WrenchExtrapolator, TicksOfNoTimeAndNanChangeNothing) {
   WrenchExtrapolator held;
   held.stepped({{1, 0, 0}, {}}, 1e-3);
   const Wrench before = held.missed(0);

@@ -185,7 +185,7 @@ class StockHidapi : public testing::Test {
   std::vector<Bytes> told;
 };
 
-TEST_F(StockHidapi, ListsWhatIsPluggedIn) {
+TEST_F(StockHidapi, ListsPluggedInDevices) {
   bus->plug(pen_spec());
   bus->plug(puck_spec(true));
   const std::vector<pen::HidInfo> found = pen::list_hid();
@@ -281,7 +281,7 @@ TEST_F(StockHidapi, StreamsAPolhemThatIsAskedForByName) {
   for (const Bytes& report : told) EXPECT_EQ(report, Bytes(65)) << "not homed: no current";
 }
 
-TEST_F(StockHidapi, ShortReportsAreLeftOut) {
+TEST_F(StockHidapi, ShortReportsAreSkipped) {
   const std::string path = bus->plug(pen_spec());
   const auto pen = pen::open_pen(path, patient());
   FarEnd far(*bus, path);
@@ -295,7 +295,7 @@ TEST_F(StockHidapi, ShortReportsAreLeftOut) {
   EXPECT_EQ(pen->status().counts.lost, 1U);
 }
 
-TEST_F(StockHidapi, APenThatIsPluggedOutAndInGoesOn) {
+TEST_F(StockHidapi, APenThatIsPluggedOutAndInContinues) {
   std::string path = bus->plug(pen_spec());
   const auto pen = pen::open_pen(path, patient());
   {
@@ -388,7 +388,7 @@ TEST_F(StockHidapi, ADeviceWithTheSameNumbersIsNotAPen) {
   EXPECT_EQ(pen::find_devices()[0].problem, pen::OpenProblem::None);
 }
 
-TEST_F(StockHidapi, PathsThatAreNoDevicesSaySo) {
+TEST_F(StockHidapi, PathsThatAreNoDevicesAreNamed) {
   std::string text;
   EXPECT_EQ(problem_of([] { pen::open_pen("/dev/hidraw77"); }, text), pen::OpenProblem::NoFile);
   EXPECT_NE(text.find("/dev/hidraw77: no such device"), std::string::npos) << text;
@@ -399,7 +399,7 @@ TEST_F(StockHidapi, PathsThatAreNoDevicesSaySo) {
 
 /// The Universal Receiver: an interface without reports, one with a multi-axis collection that sends nothing of a
 /// motion, and the puck's.
-TEST_F(StockHidapi, OfAReceiverTheInterfaceWithTheReportsIsOpened) {
+TEST_F(StockHidapi, TheInterfaceOfAReceiverWithTheReportsIsOpened) {
   VirtualSpec keyboard = puck_spec(true), buttons = puck_spec(true), puck = puck_spec(true);
   keyboard.product = buttons.product = puck.product = 0xC652;
   keyboard.descriptor = {0x05, 0x01, 0x09, 0x06, 0xA1, 0x01, 0xC0};
@@ -428,7 +428,7 @@ TEST_F(StockHidapi, OfAReceiverTheInterfaceWithTheReportsIsOpened) {
   EXPECT_EQ(pen::find_devices()[1].problem, pen::OpenProblem::WrongDescriptor) << "alone it is a puck that is wrong";
 }
 
-TEST_F(StockHidapi, FindsEveryDeviceAndSaysWhatItIs) {
+TEST_F(StockHidapi, FindsAndDescribesEveryDevice) {
   bus->plug(pen_spec());
   bus->plug(puck_spec(false));
   bus->plug(polhem_spec());

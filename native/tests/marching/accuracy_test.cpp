@@ -23,7 +23,7 @@ struct Errors {
   double mean() const { return sum / static_cast<double>(count); }
 };
 
-TEST(ToMeshAccuracy, OfASphere) {
+TEST(ToMeshAccuracy, OfASphereIsWithinTheBound) {
   const Vec3 centre{10.03, 9.96, 10.11};
   const double radius = 8;
   const Volume volume = solid_volume({{Vec3(0.0), Vec3(20.0)}, kPitch, "xyz"}, sphere(centre, radius));
@@ -38,7 +38,7 @@ TEST(ToMeshAccuracy, OfASphere) {
   EXPECT_NEAR(enclosed(mesh), exact, 1e-3 * exact);  // chords of flat triangles: h²/R² ≈ 1e-3
 }
 
-TEST(ToMeshAccuracy, OfTheEdgesOfBoxesTurnedAtRandom) {
+TEST(ToMeshAccuracy, OfTheEdgesOfBoxesTurnedAtRandomIsWithinTheBound) {
   Errors edges, corners, vertices;
   for (int seed = 0; seed < test::cases(30); ++seed) {
     Random random(static_cast<unsigned>(seed));

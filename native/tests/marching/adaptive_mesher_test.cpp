@@ -127,7 +127,7 @@ TEST(AdaptiveMesher, UpdatesOnlyNearAChange) {
   EXPECT_TRUE(mesher.update(volume).empty());
 }
 
-TEST(AdaptiveMesher, FollowsIntoEmptinessAndBack) {
+TEST(AdaptiveMesher, FollowsAVolumeThatBecomesEmptyAndBack) {
   const Volume block = Volume::block({{{0, 0, 0}, {20, 20, 20}}, 0.5, "xyz"});
   Mesher mesher(block, 0.05);
   const std::vector<std::size_t> all = mesher.patches();
@@ -155,7 +155,7 @@ TEST(AdaptiveMesher, WithoutAUsableToleranceHasTheFullMeshOrThrows) {
 
 /// Large triangles of flat ground are shaded flat next to a groove whose walls are too shallow for a sharp edge; the
 /// full mesh bends the light on a cell.
-TEST(AdaptiveMesher, ShadesFlatGroundFlatBesideShallowGrooves) {
+TEST(AdaptiveMesher, ShadesFlatGroundFlatNextToShallowGrooves) {
   Volume volume = Volume::block({{{-20, -20, -4}, {20, 20, 4}}, 0.25, "xyz"});
   for (int k = 0; k < 4; ++k) {
     std::vector<Pose> poses;

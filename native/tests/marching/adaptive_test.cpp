@@ -75,7 +75,7 @@ Volume grooved(double pitch, const char* directions) {
   return volume;
 }
 
-TEST(AdaptiveMesh, KeepsItsPromisesForAnyVolume) {
+TEST(AdaptiveMesh, IsClosedAndWithinToleranceForAnyVolume) {
   Random random(32);
   for (int scene = 0; scene < static_cast<int>(stress::MeshScene::kCount); ++scene)
     for (int n = 0; n < test::cases(30); ++n) {

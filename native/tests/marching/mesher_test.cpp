@@ -110,7 +110,7 @@ TEST(Mesher, FollowsGridsThatContradictEachOther) {
   }
 }
 
-TEST(Mesher, DoesNothingForNothing) {
+TEST(Mesher, UpdatesNothingIfNothingHasChanged) {
   Volume volume = Volume::block({{{0, 0, 0}, {20, 20, 20}}, 0.5, "xyz"});
   Mesher mesher(volume);
   EXPECT_TRUE(mesher.update(volume).empty());
@@ -123,7 +123,7 @@ TEST(Mesher, DoesNothingForNothing) {
   EXPECT_THROW(mesher.patch(100000), std::out_of_range);
 }
 
-TEST(Mesher, FollowsIntoEmptinessAndBack) {
+TEST(Mesher, FollowsAVolumeThatBecomesEmptyAndBack) {
   const Volume block = Volume::block({{{0, 0, 0}, {20, 20, 20}}, 0.5, "xyz"});
   Mesher mesher(block);
   const Volume nothing(block.frame());

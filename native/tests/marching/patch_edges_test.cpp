@@ -49,7 +49,7 @@ void expect_welded(const MeshPatch& patch, const std::string& what) {
   EXPECT_EQ(places.size(), patch.vertices.size()) << what;
 }
 
-TEST(Patch, OfSeveralBricksIsTheirPatchesWithoutSeams) {
+TEST(Patch, OfSeveralBricksJoinsTheirPatchesWithoutSeams) {
   for (const Scene& scene : test::scenes()) {
     const Mesher mesher(scene.volume);
     const std::vector<std::size_t> all = mesher.patches();
@@ -80,7 +80,7 @@ TEST(Patch, OfAllBricksIsTheMesh) {
   }
 }
 
-TEST(Patch, OfOneBrickIsThatBricks) {
+TEST(Patch, OfOneBrickIsThePatchOfThatBrick) {
   const Mesher mesher(test::scenes()[0].volume);
   for (const std::size_t n : mesher.patches()) {
     const MeshPatch one = mesher.patch(n), list = mesher.patch(std::vector{n});
@@ -91,13 +91,13 @@ TEST(Patch, OfOneBrickIsThatBricks) {
   EXPECT_TRUE(mesher.patch(std::vector<std::size_t>{}).vertices.empty());
 }
 
-TEST(Patch, RefusesBricksThatAreTwiceThereOrNotAtAll) {
+TEST(Patch, RefusesRepeatedAndMissingBricks) {
   const Mesher mesher(test::scenes()[0].volume);
   EXPECT_EQ(test::error_of([&] { mesher.patch(std::vector<std::size_t>{2, 1, 2}); }), "bricks: 2 is listed twice");
   EXPECT_THROW(mesher.patch(std::vector<std::size_t>{1, 100000}), std::out_of_range);
 }
 
-TEST(Mesher, SaysWhereItsBricksStand) {
+TEST(Mesher, ReportsThePlacesOfItsBricks) {
   const Mesher mesher(Volume::block({{{0, 0, 0}, {20, 10, 30}}, 0.25, "xyz"}));
   EXPECT_EQ(mesher.shape(), Vec3i(3, 2, 4));  // 82, 42 and 122 points
   for (const std::size_t n : mesher.patches()) {
@@ -111,7 +111,7 @@ TEST(Mesher, SaysWhereItsBricksStand) {
   }
 }
 
-TEST(PatchEdges, AreEachOnceAndWhereTheCornersSay) {
+TEST(PatchEdges, AreUniqueAndAgreeWithTheCorners) {
   for (const Scene& scene : test::scenes()) {
     const Mesher mesher(scene.volume);
     std::vector<MeshPatch> patches = singly(mesher, mesher.patches());
@@ -139,7 +139,7 @@ TEST(PatchEdges, AreEachOnceAndWhereTheCornersSay) {
   }
 }
 
-TEST(PatchEdges, OfNothingAreNone) {
+TEST(PatchEdges, OfNoTrianglesAreNone) {
   EXPECT_TRUE(edges_of({}).vertices.empty());
   EXPECT_TRUE(edges_of({}).of_corner.empty());
 }

@@ -210,7 +210,7 @@ TEST(Pick, TouchesVerticesAlongTheAxes) {
   }
 }
 
-TEST(Pick, FromAVertexIsThere) {
+TEST(Pick, FromAVertexHitsThatVertex) {
   for (const Scene& scene : test::scenes()) {
     Mesher mesher(scene.volume);
     Random random(4);
@@ -224,7 +224,7 @@ TEST(Pick, FromAVertexIsThere) {
   }
 }
 
-TEST(Pick, OfABlockIsWhatGeometrySays) {
+TEST(Pick, OnABlockAgreesWithGeometry) {
   Mesher mesher(Volume::block({{{0, 0, 0}, {20, 20, 20}}, 0.5, "xyz"}));
   PickStats stats;
   const Hit above = mesher.pick({7.3, 8.1, 30}, {0, 0, -2}, stats);
@@ -244,7 +244,7 @@ TEST(Pick, OfABlockIsWhatGeometrySays) {
   EXPECT_TRUE(mesher.pick({10, 10, 30}, {1e-300, -5e-324, -1}, stats));
 }
 
-TEST(Pick, RefusesWhatIsNoRay) {
+TEST(Pick, RefusesInvalidRays) {
   Mesher mesher(Volume::block({{{0, 0, 0}, {4, 4, 4}}, 0.5, "xyz"}));
   PickStats stats;
   const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -253,7 +253,7 @@ TEST(Pick, RefusesWhatIsNoRay) {
   EXPECT_EQ(test::error_of([&] { mesher.pick({0, 0, 0}, {0, 0, INFINITY}, stats); }), "direction: not finite or zero");
 }
 
-TEST(Pick, OfNothingIsNothing) {
+TEST(Pick, OnAnEmptyMeshFindsNothing) {
   const Volume nothing({{{0, 0, 0}, {20, 20, 20}}, 0.5, "xyz"});
   Mesher mesher(nothing);
   PickStats stats;
@@ -280,7 +280,7 @@ TEST(Pick, FollowsTheMesherToTheBit) {
   EXPECT_LT(stats.bricks_prepared, other.bricks_prepared / 2);
 }
 
-TEST(Pick, CostsWhatLiesOnTheWay) {
+TEST(Pick, CostsOnlyTheBricksAlongTheRay) {
   Volume volume = test::nicked_bar({0, 0, 0}, {80, 4, 3}, "xyz");  // 11 bricks
   Mesher mesher(volume);
   PickStats stats;
@@ -315,7 +315,7 @@ std::vector<Hit> answers(const FrozenSurface& surface, const std::vector<Ray>& r
   return out;
 }
 
-TEST(FrozenSurface, StaysWhatTheMesherWas) {
+TEST(FrozenSurface, KeepsTheStateOfTheMesher) {
   Volume volume = test::nicked_bar({0, 0, 0}, {40, 4, 3}, "xyz");
   Random random(21);
   std::vector<FrozenSurface> frozen;

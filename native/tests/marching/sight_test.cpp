@@ -7,7 +7,7 @@
 namespace riffler::marching::sight_test {
 namespace {
 
-TEST(Sight, KnowsTheSideOfAnEdgeWhereRoundingHidesIt) {
+TEST(Sight, KnowsTheSideOfAnEdgeDespiteRounding) {
   constexpr double e = 0x1p-52;
   const Vec3 a(1 + e, 1, 0), b(1 + 2 * e, 1 + e, 0);  // (1 + e)² − (1 + 2e) = e²
   EXPECT_EQ(twice_area(a, b), e * e);
@@ -25,7 +25,7 @@ TEST(Sight, KnowsTheSideOfAnEdgeWhereRoundingHidesIt) {
   }
 }
 
-TEST(Sight, SeesPointsBesideAndAlong) {
+TEST(Sight, GivesCoordinatesBesideAndAlong) {
   const Sight sight({1, 2, 3}, {0, -5, 0}, 10);
   EXPECT_EQ(sight.direction(), Vec3(0, -1, 0));
   EXPECT_EQ(sight.axis(), 1);

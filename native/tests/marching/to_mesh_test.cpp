@@ -47,7 +47,7 @@ TEST(ToMesh, HandlesSingleRaysAndIsolatedColumns) {
   expect_clean(volume, "columns");
 }
 
-TEST(ToMesh, GivesNothingForNothing) {
+TEST(ToMesh, IsEmptyForAnEmptyVolume) {
   for (const char* directions : {"z", "xyz"}) {
     const Mesh mesh = to_mesh(Volume(frame_at(Vec3(0.0), Vec3(10.0), 0.5, directions)));
     EXPECT_TRUE(mesh.vertices.empty());
@@ -62,7 +62,7 @@ void expect_box(const Box3& box, const Box3& expected, double tolerance) {
   }
 }
 
-TEST(ToMesh, KeepsABlocksBoxWhereverItsFacesLieBetweenRays) {
+TEST(ToMesh, KeepsABlocksBoxForAnyPlaceOfItsFacesBetweenRays) {
   for (const double h : {0.25, 0.3, 1.0 / 3, 0.7})
     for (double extra = -0.5; extra < 0.5; extra += 0.0625) {
       const Vec3 size{(8 + extra) * h, (5 - 0.7 * extra) * h, (11 + 0.4 * extra) * h};
@@ -86,7 +86,7 @@ TEST(ToMesh, KeepsTheFacesOfASheetThinnerThanThePitch) {
     }
 }
 
-TEST(ToMesh, StaysInTheBoxWhereFlanksOfARidgeWouldMeetAboveIt) {
+TEST(ToMesh, StaysInTheBoxIfFlanksOfARidgeWouldMeetAboveIt) {
   const Tool engraver = cutters::taper(0.1, glm::radians(30.0), 3.175, 12);
   for (const double h : {0.2, 0.25, 0.3, 0.4})
     for (const double turn : {0.0, 0.05, 0.3, 0.7}) {

@@ -45,7 +45,7 @@ TEST(Audit, ATurnedTriangleSpoilsThreeEdgesButNoVertex) {
   EXPECT_EQ(a.open_edges + a.nonmanifold_vertices, 0U);
 }
 
-TEST(Audit, AFinOnAnEdge) {
+TEST(Audit, AFinOnAnEdgeIsNonManifold) {
   Mesh mesh = kBox;
   mesh.vertices.emplace_back(-1, -1, 1);
   mesh.triangles.emplace_back(0, 4, 8);
@@ -56,7 +56,7 @@ TEST(Audit, AFinOnAnEdge) {
   EXPECT_EQ(a.components, 1U);
 }
 
-TEST(Audit, BoxesThatShareAnEdgeOrAVertex) {
+TEST(Audit, BoxesThatShareAnEdgeOrAVertexAreNonManifold) {
   // The second box's vertices 0 and 4 are the first one's 3 and 7: four triangles at the edge between them.
   Mesh edge = both(kBox, moved(kBox, {1, 2, 0}));
   for (Vec3i& t : edge.triangles)
@@ -78,7 +78,7 @@ TEST(Audit, BoxesThatShareAnEdgeOrAVertex) {
   EXPECT_FALSE(a.watertight());
 }
 
-TEST(Audit, DuplicatesAreCountedInWhateverOrder) {
+TEST(Audit, DuplicatesAreCountedInAnyOrder) {
   Mesh mesh = kBox;
   const Vec3i t = mesh.triangles[4];
   mesh.triangles.push_back(t);
@@ -88,7 +88,7 @@ TEST(Audit, DuplicatesAreCountedInWhateverOrder) {
   EXPECT_EQ(audit(mesh).nonmanifold_edges, 3U);
 }
 
-TEST(Audit, DegenerateTriangles) {
+TEST(Audit, DegenerateTrianglesAreCounted) {
   Mesh mesh = kBox;
   mesh.triangles.emplace_back(0, 0, 1);  // no edges, so no other defect
   Audit a = audit(mesh);

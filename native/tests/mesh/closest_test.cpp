@@ -70,7 +70,7 @@ TEST(Closest, GathersAllTrianglesThatAreNearAndFindsTheNearestThatRisesAboveAPla
   }
 }
 
-TEST(Closest, TellsThatNothingMeetsWhatMovesOnlyWhereNothingDoes) {
+TEST(Closest, ReportsAFreeMotionOnlyIfNothingMeetsIt) {
   std::mt19937 random(6);
   std::uniform_real_distribution<double> coordinate(-20, 20), share(0, 1);
   const auto point = [&] { return Vec3(coordinate(random), coordinate(random), coordinate(random)); };
@@ -94,7 +94,7 @@ TEST(Closest, TellsThatNothingMeetsWhatMovesOnlyWhereNothingDoes) {
   EXPECT_LT(clear, 1900);
 }
 
-TEST(Closest, TellsThatAWallBesideTheWayStaysAsFarAsItIs) {
+TEST(Closest, ReportsTheDistanceOfAWallBesideTheMotion) {
   Mesh wall;
   wall.vertices = {{-100, 1, -100}, {100, 1, -100}, {0, 1, 100}};
   wall.triangles = {{0, 1, 2}};
@@ -138,7 +138,7 @@ TEST(Closest, KeepsItsDigitsFarFromTheOrigin) {
   for (std::size_t i = 0; i < near.size(); ++i) EXPECT_NEAR(near[i], far[i], 2e-10);
 }
 
-TEST(Closest, TellsTheSideOfSharpEdgesAndCorners) {
+TEST(Closest, KnowsTheSideAtSharpEdgesAndCorners) {
   const Mesh box = box_mesh({0, 0, 0}, {1, 2, 3});
   std::mt19937 random(5);
   std::uniform_real_distribution<double> coordinate(-1, 4);

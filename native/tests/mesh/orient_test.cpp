@@ -34,7 +34,7 @@ Result orient(const Mesh& mesh) {
 
 const Mesh kCube = box({0, 0, 0}, {10, 10, 10});
 
-TEST(Orient, LeavesGoodMeshesAlone) {
+TEST(Orient, LeavesGoodMeshesUnchanged) {
   const Mesh inner = box({2, 2, 2}, {8, 8, 8}), apart = box({20, 0, 0}, {30, 10, 10});
   for (const Mesh& m : {kCube, unwelded(kCube), joined(kCube, apart), joined(kCube, flipped(inner)),
                         joined(flipped(inner), kCube), joined(kCube, inner), Mesh{}}) {
@@ -87,7 +87,7 @@ TEST(Orient, TurnsShellsOutwardsButNotCavities) {
   EXPECT_NEAR(volume(r.mesh), 2000, 1e-9);
 }
 
-TEST(Orient, KeepsRoomInEndlessMaterialWhereThatIsAsked) {
+TEST(Orient, KeepsHollowsInEndlessMaterialOnRequest) {
   Orientation found;
   const Mesh apart = box({20, 0, 0}, {30, 10, 10});
   EXPECT_FALSE(oriented(flipped(joined(kCube, apart)), found, Hollow::Kept));
@@ -106,7 +106,7 @@ TEST(Orient, MendsACavityWhoseTrianglesDisagree) {
   }
 }
 
-TEST(Orient, ManyCavitiesAtAnyPlace) {
+TEST(Orient, HandlesManyCavitiesAtAnyPlace) {
   std::mt19937 random(11);
   std::uniform_real_distribution<double> place(0.1, 0.6), size(0.1, 0.3);
   Mesh m = box({0, 0, 0}, {10, 10, 10});
@@ -124,7 +124,7 @@ TEST(Orient, ManyCavitiesAtAnyPlace) {
   EXPECT_NEAR(volume(r.mesh), expected + 1, 1e-9);
 }
 
-TEST(Orient, RepeatedTrianglesStandOnce) {
+TEST(Orient, KeepsRepeatedTrianglesOnce) {
   Mesh m = kCube;
   for (int k = 0; k < 199; ++k)
     m.triangles.push_back(k % 2 ? m.triangles[4] : Vec3i(m.triangles[4].y, m.triangles[4].z, m.triangles[4].x));
@@ -168,7 +168,7 @@ TEST(Orient, OpenPiecesStay) {
   EXPECT_EQ(r.mesh.triangles[5], turned(cup, {5}).triangles[5]);
 }
 
-TEST(Orient, SaysWhatHasOneSide) {
+TEST(Orient, ReportsPiecesWithOneSide) {
   Mesh strip;
   constexpr int kN = 24;
   for (int i = 0; i < kN; ++i)

@@ -26,7 +26,7 @@ Mesh tube(int n, bool other_diagonal) {
   return mesh;
 }
 
-TEST(SmoothNormals, FollowARoundSurfaceHoweverItsFacesAreCut) {
+TEST(SmoothNormals, FollowARoundSurfaceForAnyTriangulation) {
   for (const bool other : {false, true}) {
     const Mesh mesh = tube(24, other);
     const SmoothNormals normals(mesh, 0.6);
@@ -51,7 +51,7 @@ TEST(SmoothNormals, KeepFacesApartThatMeetAtAnEdge) {
   }
 }
 
-TEST(SmoothNormals, ATriangleWithoutAreaTakesThoseOfItsNeighbours) {
+TEST(SmoothNormals, OfATriangleWithoutAreaComeFromItsNeighbours) {
   Mesh mesh = tube(24, false);
   const int middle = static_cast<int>(mesh.vertices.size());
   mesh.vertices.push_back(0.5 * (mesh.vertices[0] + mesh.vertices[1]));

@@ -26,7 +26,7 @@ double roughness(const Mesh& mesh) {
   return std::sqrt(sum / static_cast<double>(mesh.vertices.size()));
 }
 
-TEST(Smooth, TakesRoughnessAwayAndKeepsTheSize) {
+TEST(Smooth, RemovesRoughnessAndKeepsTheSize) {
   const Mesh mesh = rough_sphere(0.05);
   const Mesh result = smooth(mesh, 20);
   EXPECT_LT(roughness(result), roughness(mesh) / 2);
@@ -130,7 +130,7 @@ TEST(Smooth, IsTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(one.vertices, four.vertices);
 }
 
-TEST(Smooth, OddInputs) {
+TEST(Smooth, SurvivesEmptyAndDegenerateMeshes) {
   EXPECT_TRUE(smooth({}, 3).empty());
   const Mesh mesh = rough_sphere(0.05);
   EXPECT_EQ(smooth(mesh, 0).vertices, mesh.vertices);

@@ -69,7 +69,7 @@ TEST(CutterPath, RapidsKeepOutOfTheStockForAnyAxis) {
   }
 }
 
-TEST(CutterPath, NamesWhatIsWrong) {
+TEST(CutterPath, NamesBadInput) {
   const Pose up{{0, 0, 0}, {0, 0, 1}};
   const auto error = [](const CutterPath& path, const Clearance& clearance) -> std::string {
     try {

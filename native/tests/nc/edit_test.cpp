@@ -23,7 +23,7 @@ Program two_cuts() {
   return p;
 }
 
-TEST(Edit, TrimmedKeepsTheRowsAndComesToTheFirstByARapid) {
+TEST(Edit, TrimmedKeepsTheRowsAndReachesTheFirstByARapid) {
   const Program p = two_cuts(), t = trimmed(p, 1, 5);
   ASSERT_EQ(t.size(), 4U);
   EXPECT_TRUE(t[0].rapid);
@@ -52,7 +52,7 @@ TEST(Edit, TransformedTurnsTipsAndAxes) {
   EXPECT_EQ(error_of([&] { transformed(p, Mat3(1.0), {0, NAN, 0}); }), what);
 }
 
-TEST(Edit, RetimedLeavesRapidsAlone) {
+TEST(Edit, RetimedLeavesRapidsUnchanged) {
   const Program p = two_cuts(), t = scale_feeds(p, 0.5);
   for (std::size_t row = 0; row < p.size(); ++row) EXPECT_EQ(t[row].feed, 0.5 * p[row].feed);
   EXPECT_TRUE(t[3].rapid);

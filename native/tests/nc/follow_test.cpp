@@ -39,7 +39,7 @@ double off(const Program& program, double b, double c) {
   return worst;
 }
 
-TEST(Follow, SwingsHaveTheirPosesOnTheWay) {
+TEST(Follow, SwingsHaveIntermediatePoses) {
   for (const char* code : {"G1", "G0"}) {
     const Program p = read_nc_text("G21 F100\nG1 X0 Y0 Z20 B45 C0\n" + std::string(code) + " C170", "head-table");
     ASSERT_EQ(p.size(), 2U) << "a block is one row";
@@ -52,7 +52,7 @@ TEST(Follow, SwingsHaveTheirPosesOnTheWay) {
   }
 }
 
-TEST(Follow, WhatKeepsToTheGreatCircleHasNone) {
+TEST(Follow, MovesOnTheGreatCircleHaveNoIntermediatePoses) {
   for (const char* block : {"C2", "B-45", "X5 Y6", "B50"})
     EXPECT_TRUE(read_nc_text(std::string("G21 F100\nG1 X0 Y0 Z20 B45 C0\n") + block, "head-table").via().empty())
         << block;
@@ -64,7 +64,7 @@ TEST(Follow, WhatKeepsToTheGreatCircleHasNone) {
   EXPECT_TRUE(read_nc_text("G21 G1 B45 C170 F100", "head-table").via().empty()) << "the start is unknown";
 }
 
-TEST(Follow, AnOptionMakesRowsOfThem) {
+TEST(Follow, AnOptionTurnsIntermediatePosesIntoRows) {
   const Program p = read_nc_text("G21 F100\nG1 X0 Y0 Z20 B45 C0\nG0 C170", "head-table", {{"axis_tolerance", 0.01}});
   EXPECT_GT(p.size(), 5U);
   EXPECT_TRUE(p.via().empty());

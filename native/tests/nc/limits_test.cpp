@@ -69,7 +69,7 @@ void check(const Program& p, const Machine& machine, const std::vector<Waypoint>
   EXPECT_EQ(rows, p.size());
 }
 
-TEST(Limits, AreAsGoodAsNoneWhereTheyAreNotMet) {
+TEST(Limits, HaveNoEffectIfTheyAreNotMet) {
   const Program p = program_from_paths(std::vector{round(25, 0.8, 40)}, {});
   const auto free = choose_joints(p, *tcp({}), kAxisTolerance, free_moves(p));
   const auto bound = choose_joints(p, *tcp(limits(-90, 90, -1000, 1000)), kAxisTolerance, free_moves(p));
@@ -115,7 +115,7 @@ TEST(Limits, MakeTheToolLeaveAsOftenAsTheyMustAndNoMore) {
   }
 }
 
-TEST(Limits, AreMetInTheMiddleOfAMoveWhereAPartOfATurnIsAllThereIs) {
+TEST(Limits, AreMetInTheMiddleOfAMoveWithinPartOfATurn) {
   // ±180°: each place is there once (twice on the seam), so the seam must be passed outside, wherever it lies.
   const Program p = program_from_paths(std::vector{round(25, 1.9, 11, 33)}, {});
   const auto machine = tcp(limits(0, 90, -180, 180));
@@ -127,7 +127,7 @@ TEST(Limits, AreMetInTheMiddleOfAMoveWhereAPartOfATurnIsAllThereIs) {
   EXPECT_EQ(inner, 2) << "the seam lies between rows";
 }
 
-TEST(Limits, ChangeTheBranchWhereTheTiltingAxisGoesOneWayOnly) {
+TEST(Limits, ChangeTheBranchIfTheTiltingAxisTurnsInOneDirectionOnly) {
   // A swing through the pole: A cannot turn below −5°, so C turns half round there.
   CutterPath path{{}, {600}, 8000, 1};
   for (int k = -10; k <= 10; ++k) path.poses.push_back({{1.0 * k, 0, 0}, tilted(3 * k, 77)});
@@ -178,7 +178,7 @@ int least_leavings(const std::vector<double>& tilt, const std::vector<double>& a
   return least < kNone ? least : -1;
 }
 
-TEST(Limits, MakeTheToolLeaveAsSeldomAsTheBestOfAllWays) {
+TEST(Limits, MakeTheToolLeaveAsSeldomAsTheBestOfAllSolutions) {
   std::mt19937 random(21);
   std::uniform_real_distribution<double> unit;
   int counts[4]{};
@@ -257,7 +257,7 @@ TEST(Limits, LeaveAsSeldomAsAllTurnsOfAWideRangeAllow) {
   EXPECT_EQ(rewinds(way), 0);
 }
 
-TEST(Limits, ThroughThePoleTheFreeAxisTurnsTheWayThatIsLeft) {
+TEST(Limits, ThroughThePoleTheFreeAxisTurnsInTheRemainingDirection) {
   // A cannot go below 0, so C turns half round at the pole: up from 100° would pass 180°, down does not.
   for (const double around : {10.0, 190.0}) {
     CutterPath path{{}, {600}, 8000, 1};
@@ -340,7 +340,7 @@ TEST(Rewinds, GoHigherWhereTheToolHangsBelowItsTip) {
   EXPECT_NEAR(highest[1] - highest[0], 50 * std::sin(10 * kDegree) + 3 * std::cos(10 * kDegree), 1e-4);
 }
 
-TEST(Rewinds, GoToTheSafeHeightThatIsAskedForAndRapidsTurnFreelyOnlyThere) {
+TEST(Rewinds, GoToTheGivenSafeHeightAndRapidsTurnFreelyOnlyThere) {
   const Program p = program_from_paths(std::vector{round(25, 2.2, 40), round(25, 0.1, 40)}, {});
   double clear = 0;  // of the program's own rapids
   for (const Pose& pose : p.poses()) clear = std::max(clear, pose.tip.z);

@@ -108,7 +108,7 @@ void forge(File& bytes) {
   }
 }
 
-TEST(ProgramFile, BringsEveryProgramBackToTheBit) {
+TEST(ProgramFile, RestoresEveryProgramToTheBit) {
   for (const int rows : {0, 1, 2, 300, 32768, 32769, 80'000}) {
     const Program p = sample(rows);
     const File bytes = to_bytes(p);
@@ -159,7 +159,7 @@ TEST(ProgramFile, AnyDamagedByteIsFound) {
     }
 }
 
-TEST(ProgramFile, CutOrLengthenedAnywhereItIsNoProgram) {
+TEST(ProgramFile, TruncatedOrLengthenedAnywhereIsNoProgram) {
   File bytes = to_bytes(sample(60));
   for (std::size_t size = 0; size < bytes.size(); ++size)
     EXPECT_NE(error_of({bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size)}), "") << size;
@@ -168,7 +168,7 @@ TEST(ProgramFile, CutOrLengthenedAnywhereItIsNoProgram) {
   EXPECT_EQ(error_of(bytes), "p.rprog, byte " + std::to_string(whole) + ": there is more after the file's end");
 }
 
-TEST(ProgramFile, NamesWhatIsWrongAndWhere) {
+TEST(ProgramFile, ErrorsNameTheFaultAndItsPlace) {
   const File good = to_bytes(sample(60));
   const auto changed = [&](std::size_t at, auto value) {
     File bytes = good;
@@ -219,7 +219,7 @@ TEST(ProgramFile, SurvivesThousandsOfForgedFiles) {
   EXPECT_GT(read, 10);  // notes and names may be anything
 }
 
-TEST(ProgramFile, IsWholeOrNotThere) {
+TEST(ProgramFile, IsWrittenWholeOrNotAtAll) {
   const auto folder = std::filesystem::temp_directory_path() / ("riffler_rprog_" + std::to_string(getpid()));
   std::filesystem::create_directory(folder);
   const Program p = sample(100);

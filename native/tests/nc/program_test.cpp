@@ -20,7 +20,7 @@ std::string error_of(const Program& program, const Move& move) {
   return "";
 }
 
-TEST(Program, RefusesWhatIsNotAMoveAndNamesTheRow) {
+TEST(Program, RefusesInvalidMovesAndNamesTheRow) {
   Program p;
   p.append({{{0, 0, 0}, {0, 0, 1}}, 100, 0, 1, 0, false});
   const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();

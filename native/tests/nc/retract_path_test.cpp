@@ -31,7 +31,7 @@ bool inside(const Box3& box, const Pose& pose, double length) {
   return false;
 }
 
-TEST(WayOut, BringsTheWholeToolOutAndUpWhateverItsTilt) {
+TEST(WayOut, LiftsTheWholeToolOutAtAnyTilt) {
   const Tool tool = cutters::ball(6, 80);
   const ToolEnvelope reach(&tool);
   for (double tilt = 0; tilt <= 180; tilt += 7.5)
@@ -50,7 +50,7 @@ TEST(WayOut, BringsTheWholeToolOutAndUpWhateverItsTilt) {
     }
 }
 
-TEST(WayOut, SaysHowFarATiltedToolHangsBelowItsTip) {
+TEST(WayOut, GivesHowFarATiltedToolHangsBelowItsTip) {
   const Tool tool = cutters::flat(10, 60);
   const ToolEnvelope reach(&tool);
   EXPECT_EQ(reach.below_tip(1), 0);
@@ -59,7 +59,7 @@ TEST(WayOut, SaysHowFarATiltedToolHangsBelowItsTip) {
   EXPECT_NEAR(reach.below_tip(-0.6), 0.6 * 60 + 0.8 * 5, 1e-12);
 }
 
-TEST(WayOut, SweptBoxHoldsTheWholeToolOnItsWay) {
+TEST(WayOut, SweptBoxHoldsTheWholeToolAlongThePath) {
   const Tool tool = cutters::ball(6, 25).with_holder({{25, 14, 60, 16}});
   const ToolEnvelope reach(&tool);
   EXPECT_EQ(reach.length, 60);

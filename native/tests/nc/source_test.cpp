@@ -21,7 +21,7 @@ class NcSourceFile : public testing::Test {
   std::filesystem::path path_;
 };
 
-TEST_F(NcSourceFile, GivesTheLinesOfAFileThatIsLargerThanItsWindowAsOfMemory) {
+TEST_F(NcSourceFile, GivesTheSameLinesAsMemoryForAFileLargerThanItsWindow) {
   std::mt19937 random(3);
   std::string text;
   for (int line = 0; line < 500; ++line)
@@ -59,7 +59,7 @@ TEST_F(NcSourceFile, RefusesALineThatDoesNotFit) {
   EXPECT_THROW(file.next(line), FormatError);
 }
 
-TEST(NcSource, RefusesWhatIsNoFile) {
+TEST(NcSource, RefusesPathsThatAreNotFiles) {
   EXPECT_THROW(NcSource(std::filesystem::path("/nowhere/at/all")), FormatError);
   EXPECT_THROW(NcSource(std::filesystem::temp_directory_path()), FormatError);
 }

@@ -101,7 +101,7 @@ TEST(SurfaceToMesh, JoinsPatchesThatShareAnEdgeInAnyDirection) {
   }
 }
 
-TEST(SurfaceToMesh, IsWithinToleranceOfRandomPatchesBothWays) {
+TEST(SurfaceToMesh, IsWithinToleranceOfRandomPatchesInBothDirections) {
   std::mt19937 random(7);
   for (const double weights : {1.0, 10.0, 1e3})
     for (int k = 0; k < 6; ++k) {

@@ -17,7 +17,7 @@ DeviceCapability three_motors() {
   return out;
 }
 
-TEST(Capability, TextSaysWhatTheHandWillNotFeel) {
+TEST(Capability, TextNamesWhatTheHandWillNotFeel) {
   EXPECT_EQ(capability_text(pen_capability(load_pen("riffler"))),
             "senses x y z a b c, pushes x y z a b; the hand does not feel: torque about the grip's axis");
   EXPECT_EQ(capability_text(three_motors()),
@@ -28,7 +28,7 @@ TEST(Capability, TextSaysWhatTheHandWillNotFeel) {
   EXPECT_FALSE(puck.has_force());
 }
 
-TEST(Capability, WhatIsPushedIsWhatTheArmsCanBear) {
+TEST(Capability, PushesOnlyWhatTheArmsCanBear) {
   stress::Random random(61);
   const DeviceCapability pen = pen_capability(load_pen("riffler")), three = three_motors();
   for (int k = 0; k < 1000; ++k) {

@@ -75,13 +75,13 @@ TEST(DriverLoop, AnswersEveryReportWithOneCommand) {
   EXPECT_NEAR(b.push.last_dt, 1e-3, 1e-9);
 }
 
-TEST(DriverLoop, TheFirstWordOfAConnectionIsNotToPush) {
+TEST(DriverLoop, TheFirstCommandOfAConnectionIsNotToPush) {
   Bench b;
   ASSERT_EQ(b.pen.device.written.size(), 1U);
   EXPECT_EQ(b.last_output().enable, 0);
 }
 
-TEST(DriverLoop, OfAQueueOnlyTheNewestReportIsSteppedOn) {
+TEST(DriverLoop, OnlyTheNewestReportOfAQueueIsUsedForAStep) {
   Script b;
   for (std::uint16_t k = 1; k <= 50; ++k) b.send(input(k));
   b.loop.tick();
@@ -92,7 +92,7 @@ TEST(DriverLoop, OfAQueueOnlyTheNewestReportIsSteppedOn) {
   EXPECT_EQ(b.counts().lost, 0U);
 }
 
-TEST(DriverLoop, ReportsThatOneReadMergesAreAllTaken) {
+TEST(DriverLoop, AllReportsOfAMergedReadAreUsed) {
   Script b;
   Report merged = input(1);
   for (std::uint16_t k = 2; k <= 5; ++k) {
@@ -106,7 +106,7 @@ TEST(DriverLoop, ReportsThatOneReadMergesAreAllTaken) {
   EXPECT_EQ(b.push.last.sequence, 5U);
 }
 
-TEST(DriverLoop, ShortAndForeignReportsAreCountedAndLeftOut) {
+TEST(DriverLoop, ShortAndForeignReportsAreCountedAndSkipped) {
   Script b;
   b.send(input(1));
   b.loop.tick();
@@ -139,7 +139,7 @@ TEST(DriverLoop, TheSequenceOfReportsWraps) {
   EXPECT_EQ(b.counts().lost + b.counts().old, 0U);
 }
 
-TEST(DriverLoop, LostAndRepeatedReportsAreTold) {
+TEST(DriverLoop, LostAndRepeatedReportsAreReported) {
   Script b;
   for (const int k : {65533, 65534, 65534, 2, 1, 3}) {
     b.send(input(static_cast<std::uint16_t>(k)));
@@ -174,7 +174,7 @@ TEST(DriverLoop, GarbageIsNoSignOfLife) {
   EXPECT_EQ(b.counts().reports, 0U);
 }
 
-TEST(DriverLoop, AReadErrorTakesTheForceAwayAndClosesTheDevice) {
+TEST(DriverLoop, AReadErrorRemovesTheForceAndClosesTheDevice) {
   Bench b;
   b.push.wrench.force = {0, 0, 1};
   b.run(3);
@@ -190,7 +190,7 @@ TEST(DriverLoop, AReadErrorTakesTheForceAwayAndClosesTheDevice) {
   EXPECT_EQ(b.pen.device.open, 0);
 }
 
-TEST(DriverLoop, AFailedReadOfADeviceThatStillListensSendsTheZero) {
+TEST(DriverLoop, AFailedReadSendsZeroForceToADeviceThatStillListens) {
   Bench b;
   b.push.wrench.force = {0, 0, 1};
   b.run(3);
@@ -215,7 +215,7 @@ TEST(DriverLoop, AFailedReadOfADeviceThatStillListensSendsTheZero) {
   EXPECT_EQ(b.last_output().enable, 0);
 }
 
-TEST(DriverLoop, AWriteErrorDoesTheSame) {
+TEST(DriverLoop, AWriteErrorRemovesTheForceAndClosesTheDevice) {
   Bench b;
   b.run(0.1);
   b.connector.there = false;
@@ -245,7 +245,7 @@ TEST(DriverLoop, LooksForALostDeviceEverLessOften) {
   }
 }
 
-TEST(DriverLoop, GoesOnWhereTheDeviceIsPluggedInAgain) {
+TEST(DriverLoop, ContinuesWhenTheDeviceIsPluggedInAgain) {
   Bench b;
   b.push.wrench.force = {0, 0, 1};
   b.run(3);
@@ -303,7 +303,7 @@ TEST(DriverLoop, StopTellsTheDeviceNotToPush) {
   EXPECT_EQ(b.pen.device.written.size(), written);
 }
 
-TEST(DriverLoop, AWrenchThatIsNoNumberIsNone) {
+TEST(DriverLoop, ANanWrenchIsZero) {
   Bench b;
   b.push.wrench.force = {0, 0, 1};
   b.run(3);
@@ -333,7 +333,7 @@ TEST(DriverLoop, TenThousandReportsThroughALateHost) {
   EXPECT_GT(counts.superseded, 1000U);
 }
 
-TEST(DriverLoop, AFloodDoesNotHoldUpTheStep) {
+TEST(DriverLoop, AFloodOfReportsDoesNotDelayTheStep) {
   Script b;
   for (int k = 1; k <= 10000; ++k) b.send(input(static_cast<std::uint16_t>(k)));
   b.loop.tick();

@@ -97,7 +97,7 @@ std::unique_ptr<DrivenPen> pen_on(const std::shared_ptr<Plug>& plug) {
                                      settings);
 }
 
-TEST(Driver, ReadsStepsAndWritesInAThreadOfItsOwn) {
+TEST(Driver, ReadsStepsAndWritesInItsOwnThread) {
   const auto plug = std::make_shared<Plug>();
   const auto pen = pen_on(plug);
   EXPECT_TRUE(eventually([&] { return pen->newest().sequence >= 20; }));
@@ -124,7 +124,7 @@ TEST(Driver, EveryCopyOfTheSampleIsWhole) {
   EXPECT_EQ(torn, 0);
 }
 
-TEST(Driver, AsksForRealTimeAndSaysWhatItGot) {
+TEST(Driver, RequestsRealTimeAndReportsTheGrantedPriority) {
   const auto plug = std::make_shared<Plug>();
   const auto pen = pen_on(plug);
   ASSERT_TRUE(eventually([&] { return pen->newest().sequence > 0; }));
@@ -134,7 +134,7 @@ TEST(Driver, AsksForRealTimeAndSaysWhatItGot) {
   EXPECT_EQ(pen->priority().by, could.by);
 }
 
-TEST(Driver, StaysNormalWhereItsClockDoesNotWait) {
+TEST(Driver, StaysNormalIfItsClockDoesNotWait) {
   const auto pen = SimulatedDevice::open({}, {}, {}, false);
   EXPECT_TRUE(eventually([&] { return pen->newest().sequence > 100; }));
   EXPECT_EQ(pen->priority().text, "normal: real time was not asked for");
@@ -172,7 +172,7 @@ struct Held {
   bool asks = true;
 };
 
-TEST(HeldPush, RampsUpAndEndsWithTheAsking) {
+TEST(HeldPush, RampsUpAndEndsWithTheRequests) {
   Held held;
   held.run(100);
   EXPECT_GT(held.force, 0.1);
@@ -187,7 +187,7 @@ TEST(HeldPush, RampsUpAndEndsWithTheAsking) {
   EXPECT_LT(held.force, 0.15) << "and ramps again";
 }
 
-TEST(HeldPush, AJumpTakesItAwayUntilItIsReset) {
+TEST(HeldPush, AJumpEndsItUntilAReset) {
   Held held;
   held.run(1000);
   held.sample.pose.tip.x += 50;
@@ -212,7 +212,7 @@ TEST(HeldPush, NothingPushesWithoutAHome) {
   EXPECT_EQ(held.force, 1);
 }
 
-TEST(HeldPush, AfterAnInterruptionItRampsAgainFromWhereverTheHandIs) {
+TEST(HeldPush, AfterAnInterruptionItRampsAgainFromTheHandsPlace) {
   Held held;
   held.run(1000);
   held.sample.pose.tip.x += 50;
@@ -272,7 +272,7 @@ TEST(Driver, WithAnotherStepPushIsRefusedAndWithNoneItPushesAgain) {
 
 /// Steps that take longer than a tick, a device that goes away and comes back, a driver that is stopped: the setter
 /// always comes back, and what it replaced is not called any more.
-TEST(Driver, AStepThatWasReplacedIsNotCalledWhateverHappensMeanwhile) {
+TEST(Driver, AReplacedStepIsNeverCalledAgain) {
   const auto plug = std::make_shared<Plug>();
   auto pen = pen_on(plug);
   std::vector<std::shared_ptr<WatchedStep>> steps;
@@ -314,7 +314,7 @@ TEST(Driver, FindsTheDeviceAgain) {
   EXPECT_EQ(pen->status().state, LinkState::Stopped);
 }
 
-TEST(Driver, TheLastWordIsNotToPush) {
+TEST(Driver, TheLastCommandIsNotToPush) {
   const auto plug = std::make_shared<Plug>();
   const auto pen = pen_on(plug);
   ASSERT_TRUE(eventually([&] { return plug->writes > 10; }));
@@ -323,7 +323,7 @@ TEST(Driver, TheLastWordIsNotToPush) {
   EXPECT_GT(plug->released, before);
 }
 
-TEST(Driver, ASystemCallThatDoesNotComeBackCannotHoldUpTheEnd) {
+TEST(Driver, ASystemCallThatHangsDoesNotBlockTheEnd) {
   const auto plug = std::make_shared<Plug>();
   auto driver =
       std::make_unique<Driver>(std::make_shared<ByteModel>(), std::make_shared<HeldPush>(),

@@ -85,7 +85,7 @@ TEST(PassivitySettings, OfThePenHoldInEveryPostureAndAreNotFarFromTheWorst) {
   EXPECT_LE(margin.angular, 0.5 * s.resolution.angular);
 }
 
-TEST(PassivitySettings, OfLossesOnlyWhatIsNotMadeUpForIsCredited) {
+TEST(PassivitySettings, OnlyUncompensatedLossesAreCredited) {
   const PenGeometry pen = load_pen("riffler");
   const haptics::PassivitySettings all = passivity_settings(pen), some = passivity_settings(pen, {1, 0.7});
   EXPECT_NEAR(some.device_damping.linear, 0.3 * all.device_damping.linear, 1e-15);
@@ -93,7 +93,7 @@ TEST(PassivitySettings, OfLossesOnlyWhatIsNotMadeUpForIsCredited) {
   EXPECT_EQ(some.resolution.linear, all.resolution.linear);
 }
 
-TEST(PassivitySettings, WhatIsNotSaidIsNothing) {
+TEST(PassivitySettings, MissingValuesAreZero) {
   PenGeometry pen = load_pen("riffler");
   pen.channels[2].viscous = pen.channels[4].coulomb = 0;
   EXPECT_EQ(passivity_settings(pen).device_damping.linear, 0) << "a motion that only this joint makes costs nothing";

@@ -101,7 +101,7 @@ TEST(PoseFollower, NeverMovesFasterThanItsPath) {
   EXPECT_LT(fastest, 1.4 * 1.875 * std::sqrt(450.0));
 }
 
-TEST(PoseFollower, AStopTakesTheForceAwayAtOnceAndForGood) {
+TEST(PoseFollower, AStopRemovesTheForceAtOnceAndForGood) {
   FollowerBench b(aside(), {}, lets_go());
   b.run(2);
   ASSERT_TRUE(b.pen->pushes());
@@ -129,7 +129,7 @@ TEST(PoseFollower, StopsWhenItsProgramIsSilent) {
 }
 
 /// A hand that drags the grip away, and a reversed motor, are not fought.
-TEST(PoseFollower, StopsWhereTheGripIsTooFarFromItsTarget) {
+TEST(PoseFollower, StopsIfTheGripIsTooFarFromItsTarget) {
   FollowerBench b(aside(), {}, [home = home()](double t) {
     HandWish wish{.pose = home};
     wish.pose.tip.x += 40 * std::max(0.0, t - 1);
@@ -177,7 +177,7 @@ TEST(PoseFollower, PushesWithTheExtraWrenchAlone) {
   EXPECT_NEAR(b.pose().tip.z - home().tip.z, 2, 0.8);
 }
 
-TEST(PoseFollower, RefusesPathsThatAreNone) {
+TEST(PoseFollower, RefusesInvalidPaths) {
   const PenGeometry pen = load_pen("riffler");
   const auto error = [&](std::vector<FollowerKey> keys, const FollowerSettings& settings = {}) {
     return test::error_of([&] { PoseFollower(pen, keys, settings); });

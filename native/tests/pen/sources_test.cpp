@@ -49,7 +49,7 @@ TEST(Playback, GoesAtThePaceOfTheRecording) {
   EXPECT_EQ(pen.status().state, LinkState::Stopped);
 }
 
-TEST(Playback, FasterAndWithStrokesThatOverlapInTime) {
+TEST(Playback, PlaysFasterAndTakesStrokesThatOverlapInTime) {
   auto strokes = two_strokes();
   strokes[1].times = {0, 1};  // of another clock
   double now = 0;
@@ -61,7 +61,7 @@ TEST(Playback, FasterAndWithStrokesThatOverlapInTime) {
   EXPECT_NEAR(pen.newest().velocity.y, 8, 1e-12);
 }
 
-TEST(Playback, ForceIsIgnoredAndTheAnswerSaysWhy) {
+TEST(Playback, ForceIsIgnoredWithTheReason) {
   PlaybackPen pen(two_strokes());
   const PushAnswer answer = pen.push({{1, 0, 0}, {}});
   EXPECT_EQ(answer.reason, NotPushed::NoMotors);
@@ -125,7 +125,7 @@ TEST(Pointer, TiltsAreHeldFromTheHorizon) {
   EXPECT_EQ(tilted_axis(frame, 0, 0), Vec3(0, 0, 1));
 }
 
-TEST(Pointer, AMouseStandsUprightAndEventsThatCannotBeAreLeftOut) {
+TEST(Pointer, AMouseStandsUprightAndImpossibleEventsAreSkipped) {
   PointerPen pen(PointerPen::Kind::Mouse);
   PointerEvent event;
   event.tilt_x = 1, event.pressure = 7, event.time = 2;
@@ -175,7 +175,7 @@ TEST(HidDescriptor, GivesTheSizesOfOthers) {
   EXPECT_TRUE(teensy.has_usage(0xFFAB, 0x0200));
 }
 
-TEST(HidDescriptor, WhatCannotBeNamesTheByte) {
+TEST(HidDescriptor, ErrorsNameTheByte) {
   EXPECT_EQ(error_of([] { parse_descriptor(test::Bytes{0x05, 0x01, 0x26, 0xFF}); }),
             "report descriptor, byte 2: ends within an item");
   EXPECT_NE(error_of([] { parse_descriptor(test::Bytes{0xC0}); }), "");
@@ -195,7 +195,7 @@ TEST(HidDescriptor, WhatCannotBeNamesTheByte) {
   }
 }
 
-TEST(HidList, ADeviceIsFoundAgainByWhatStays) {
+TEST(HidList, ADeviceIsFoundAgainByItsLastingNumbers) {
   HidInfo a = test::pen_info(), b = test::pen_info(), c = test::puck_info();
   a.serial = "1", b.serial = "2", b.path = "/dev/hidraw5";
   const HidAddress address = HidAddress::of(a);

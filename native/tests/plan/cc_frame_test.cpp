@@ -19,7 +19,7 @@ TEST(CcFrame, OfAFeedAlongTheNormalOrOfNoneIsStillAFrame) {
     for (const Vec3& feed : {Vec3(0), n, -3.0 * n, 1e-300 * n}) expect_frame(cc_frame(feed, n), n);
 }
 
-TEST(CcFrame, IsSquareHoweverLittleOfTheFeedIs) {
+TEST(CcFrame, IsOrthogonalForAnyFeedAcrossTheNormal) {
   const Vec3 n = glm::normalize(Vec3(1, 2, 3));
   expect_frame(cc_frame(1e5 * n + Vec3(1e-6, 0, 0), n), n);
   const CcFrame f = cc_frame({2, 0, 5}, {0, 0, 1});

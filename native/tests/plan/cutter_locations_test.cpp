@@ -60,7 +60,7 @@ TEST(CutterLocations, OfALoopEndWithItsFirstRow) {
   EXPECT_EQ(found.rows.back().pose.tip, found.rows.front().pose.tip);
 }
 
-TEST(CutterLocations, InsertWhereTheWayBetweenGouges) {
+TEST(CutterLocations, AreInsertedWhereTheMotionGouges) {
   // A post stands in the corner half way between two points of the path.
   Corner c = corner(3, 10, 2);
   c.part = both(c.part, mesh::box_mesh({2.5, -0.5, -1}, {3.5, 0.5, 2}));
@@ -85,7 +85,7 @@ TEST(CutterLocations, InsertWhereTheWayBetweenGouges) {
   EXPECT_LT(refused.unsafe[0].clearance, -0.2);
 }
 
-TEST(CutterLocations, LeaveOutWhatNoLiftFreesAndSayWhy) {
+TEST(CutterLocations, OmitPointsThatNoLiftFreesWithTheReason) {
   const Corner c = corner(3, 10, 3);
   const Mesh roof = both(c.part, mesh::box_mesh({-10, -20, 15}, {30, 20, 20}));
   const PencilPath path = oriented(c.path, {{0, kUp}}, Interpolation::Smooth);
@@ -100,7 +100,7 @@ TEST(CutterLocations, LeaveOutWhatNoLiftFreesAndSayWhy) {
   EXPECT_NE(found.blocked[1].reason.find("the cutter meets the part"), std::string::npos) << found.blocked[1].reason;
 }
 
-TEST(CutterLocations, RefuseAPathWithoutAxesAndSettingsWithoutMeaning) {
+TEST(CutterLocations, RefuseAPathWithoutAxesAndInvalidSettings) {
   const Corner c = corner(3, 10, 2);
   const collide::Collider collider(c.part);
   const collide::Assembly ball(cutters::ball(6, 30));
@@ -156,7 +156,7 @@ TEST(OrientationMap, ComputesNothingBeyondTheMachinesCone) {
   }
 }
 
-TEST(OrientationMap, SaysWhatIsInTheWayWhereNothingIsFree) {
+TEST(OrientationMap, NamesTheObstacleIfNothingIsFree) {
   const Corner c = corner(3, 10, 3);
   // A lid 5 mm above the floor, and a ball of 6 mm under it.
   const Mesh lid = both(c.part, mesh::box_mesh({-10, -20, 5}, {30, 20, 12}));
@@ -166,7 +166,7 @@ TEST(OrientationMap, SaysWhatIsInTheWayWhereNothingIsFree) {
   EXPECT_EQ(map.why_none().find("the cutter enters the part with every axis, at best by "), 0U) << map.why_none();
 }
 
-TEST(LeastTilt, LeansJustAsFarAsAWallAsks) {
+TEST(LeastTilt, LeansJustAsFarAsAWallRequires) {
   // A post next to the middle of the path: leaning away from it there, upright (as far as free) at the ends.
   const Corner c = corner(3, 4, 9);
   TiltRule rule;
@@ -190,7 +190,7 @@ TEST(LeastTilt, LeansJustAsFarAsAWallAsks) {
   EXPECT_LE(geom::angle_between(round.axes.front(), round.axes.back()), 0.7 + 1e-9);
 }
 
-TEST(LeastTilt, NamesTheFirstPointWithoutAWay) {
+TEST(LeastTilt, NamesTheFirstUnreachablePoint) {
   const Corner c = corner(3, 10, 5);
   TiltRule rule;
   rule.map = coarse();
@@ -201,7 +201,7 @@ TEST(LeastTilt, NamesTheFirstPointWithoutAWay) {
   EXPECT_NE(answer.reason.find("no orientation is free"), std::string::npos) << answer.reason;
 }
 
-TEST(CutterLocations, SillyTolerancesAreRefusedAndLongWaysCanBeStopped) {
+TEST(CutterLocations, AbsurdTolerancesAreRefusedAndLongMotionsCanBeCancelled) {
   const Corner c = corner(3, 30, 3);
   const PencilPath path = oriented(c.path, {{0, glm::normalize(Vec3(-0.6, 0, 1))}}, Interpolation::Smooth);
   LocationRule rule;

@@ -28,7 +28,7 @@ TEST(Drop, OnAFlatLandsOnIt) {
   }
 }
 
-TEST(Drop, BesideAnUprightWallLandsOnItsEdge) {
+TEST(Drop, NextToAnUprightWallLandsOnItsEdge) {
   const Mesh plate = mesh::box_mesh({-10, -10, 0}, {10, 10, 4});
   const DropCutter ball(plate, cutters::ball(6, 30)), flat(plate, cutters::flat(6, 30));
   EXPECT_NEAR(ball({12, 0, 0}).height, 4 - 3 + std::sqrt(9 - 4), 1e-12);
@@ -37,7 +37,7 @@ TEST(Drop, BesideAnUprightWallLandsOnItsEdge) {
   EXPECT_NEAR(ball({11, 12, 0}).height, 4 - 3 + std::sqrt(9 - 5), 1e-12) << "its corner";
 }
 
-TEST(Drop, HangsByTheHolderWhereThatComesFirst) {
+TEST(Drop, HangsByTheHolderIfThatTouchesFirst) {
   const Tool tool = cutters::ball(6, 20).with_holder({{20, 12, 60, 12}});
   const DropCutter drop(mesh::box_mesh({8, -10, 0}, {12, 10, 50}), tool);
   EXPECT_NEAR(drop({0, 0, 0}).height, 30, 1e-12);
@@ -101,7 +101,7 @@ TEST(Drop, AlongAnyAxisIsThatOfTheTurnedPart) {
   }
 }
 
-TEST(Drop, LooksOnlyAtWhatIsNearAndIsTheSameInBulk) {
+TEST(Drop, VisitsOnlyNearTrianglesAndIsTheSameInBulk) {
   const Mesh hills =
       mesh::sheet_mesh(200, 100, [](double x, double y) { return 2 * std::sin(0.5 * x) * std::cos(0.4 * y); });
   const DropCutter drop(hills, cutters::ball(6, 30));

@@ -76,7 +76,7 @@ TEST(Engrave, OnASphereChordsKeepTheToleranceAndTheAxisFollows) {
   }
 }
 
-TEST(Engrave, TheAxisLeansAsAsked) {
+TEST(Engrave, TheAxisLeansByTheGivenAngles) {
   const EngraveOptions options{.depth = 0.2, .inclination = 0.3, .tilt = -0.2};
   const auto found = engrave(box(50), {{{-20, 0, 50}, {20, 0, 50}}}, cutters::ball(6, 20), options);
   for (const Pose& pose : found[0].poses) {
@@ -86,7 +86,7 @@ TEST(Engrave, TheAxisLeansAsAsked) {
   }
 }
 
-TEST(Engrave, OverASharpEdgeTheAxisTurnsAtOnceAndTheCurveGoesOn) {
+TEST(Engrave, OverASharpEdgeTheAxisTurnsAtOnceAndTheCurveContinues) {
   const auto found = engrave(box(50), {{{20, 0, 50}, {49, 0, 50}, {50, 0, 49}, {50, 0, 20}}}, cutters::ball(2, 20));
   const Engraved& cut = found[0];
   ASSERT_LT(cut.poses.size(), 100u);

@@ -70,7 +70,7 @@ TEST(HalfSpaces, InThePlaneTwoWallsHoldThePoint) {
   EXPECT_EQ(found->active[0] + found->active[1], 1);
 }
 
-TEST(HalfSpaces, WallsThatLeaveNoRoomAreToldApartFromCoincidentOnes) {
+TEST(HalfSpaces, WallsThatLeaveNoRoomAreDistinguishedFromCoincidentOnes) {
   const std::vector<HalfSpace<Vec2>> shut{{{1, 0}, 0.1}, {{-1, 0}, 0}};
   EXPECT_FALSE(lowest(std::span<const HalfSpace<Vec2>>(shut), {0, 1}, 1, 1e-12));
   const std::vector<HalfSpace<Vec2>> twice{{{1, 0}, 0.1}, {{1, 0}, 0.1}, {{0, 1}, 0.2}};

@@ -15,7 +15,7 @@ namespace {
 
 const Vec3 kUp(0, 0, 1);
 
-TEST(OffsetToolColumns, EndWhereTheDistanceIsTheOneAsked) {
+TEST(OffsetToolColumns, EndAtTheGivenDistance) {
   stress::Random random(1);
   for (const Tool& cutter : named_cutters()) {
     const Tool tool = cutter.with_shank({{cutter.length(), 3, cutter.length() + 10, 5}})
@@ -104,7 +104,7 @@ TEST(Lift, StopsInTheFirstFreePlaceUnderARoof) {
   EXPECT_GT(stuck.height, 10);
 }
 
-TEST(Lift, IntoTheMaterialIsNoWayOut) {
+TEST(Lift, IntoTheMaterialFreesNothing) {
   // A cutter of 5 mm under a block 40 mm thick: above its lower face nothing of the surface is near.
   const collide::Collider collider(both(plate(20), mesh::box_mesh({-20, -20, 4}, {20, 20, 44})));
   const Lift l = lift(collider, collide::Assembly(cutters::flat(6, 5)), {{0, 0, -1}, kUp}, {});
@@ -134,7 +134,7 @@ TEST(Lift, InABowlThatIsOpenAboveIsFree) {
   EXPECT_EQ(l.height, 0);
 }
 
-TEST(Lift, SaysWhichPieceIsInTheWay) {
+TEST(Lift, NamesTheCollidingPiece) {
   const Mesh wall = mesh::box_mesh({10, -30, -10}, {20, 30, 25});
   const Tool tool = cutters::ball(6, 20).with_shank({{20, 3, 30, 3}}).with_holder({{30, 12, 60, 12}});
   const Lift l = lift(collide::Collider(both(plate(8), wall)), collide::Assembly(tool), {{0, 0, -7}, kUp}, {});
@@ -204,7 +204,7 @@ TEST(Lift, IsTheSameFarFromTheOriginAndFromTrianglesWithoutArea) {
   }
 }
 
-TEST(Lift, RefusesSettingsWithoutMeaning) {
+TEST(Lift, RefusesInvalidSettings) {
   const collide::Collider collider(plate(5));
   const collide::Assembly ball(cutters::ball(6, 30));
   EXPECT_THROW(lift(collider, ball, {}, {std::nan("")}), std::invalid_argument);

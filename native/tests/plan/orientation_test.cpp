@@ -92,7 +92,7 @@ TEST(Orientation, GoesRoundALoop) {
   }
 }
 
-TEST(Orientation, RefusesWhatHasNoMeaningAndNamesThePoint) {
+TEST(Orientation, RefusesInvalidKeysAndNamesThePoint) {
   const PencilPath p = line_path({0, 1, 2, 3});
   const auto text = [&](const OrientationKeys& keys, Interpolation rule = Interpolation::Slerp) {
     return error_of([&] { oriented(p, keys, rule); });
@@ -113,7 +113,7 @@ TEST(Orientation, RefusesWhatHasNoMeaningAndNamesThePoint) {
             "interpolation must be linear, slerp or smooth, not \"cubic\"");
 }
 
-TEST(Orientation, KeepsToTheMachinesConeOrSaysWhereItLeavesIt) {
+TEST(Orientation, KeepsToTheMachinesConeOrNamesThePointBeyondIt) {
   const PencilPath p = line_path({0, 1, 2, 3, 4});
   const OrientationKeys keys{{0, leaning(0)}, {4, leaning(1)}};
   EXPECT_NE(
@@ -180,7 +180,7 @@ double peak_to_slerp(const SmoothAxes& curve, const std::vector<double>& places,
   return peak / (geom::angle_between(axes[k], axes[k + 1]) / (n * h));
 }
 
-TEST(SmoothAxes, TurnsAtMostAsFastAsItsHeaderSays) {
+TEST(SmoothAxes, TurnsAtMostAsFastAsItsHeaderStates) {
   stress::Random random(5);
   std::vector<double> places;
   std::vector<Vec3> axes;

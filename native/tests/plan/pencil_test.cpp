@@ -55,7 +55,7 @@ void expect_rolls(const Mesh& part, const PencilPath& path, double facet) {
   }
 }
 
-TEST(Pencil, GroovesOfTwoPlanesGiveTheirLineHoweverTheyAreTurnedAndMeshed) {
+TEST(Pencil, GroovesOfTwoPlanesGiveTheirLineInAnyTurnAndMesh) {
   const double radius = 3;
   for (const double degrees : {60.0, 90.0, 120.0, 150.0, 170.0})
     for (const int times : {0, 2})
@@ -324,7 +324,7 @@ Mesh dovetail() {
   return both(both(wedge(1), wedge(-1)), mesh::box_mesh({0, -30, -20}, {40, 30, -10}));
 }
 
-TEST(Pencil, UndercutsCount) {
+TEST(Pencil, UndercutsAreFound) {
   const double radius = 3, y = 6 + 10 / std::sqrt(3.0) - radius * std::sqrt(3.0);
   for (const PartPlacement& place : kPlacements) {
     const Mesh part = place(dovetail());
@@ -429,7 +429,7 @@ TEST(Pencil, WrongCallsAreRefusedAndCancelledOnesStop) {
   EXPECT_EQ(last, 1);
 }
 
-TEST(Pencil, BallsOfManySizesComeToAnEnd) {
+TEST(Pencil, SearchesWithBallsOfManySizesEnd) {
   const Mesh part = groove(kPi / 2);
   for (const double radius : {1e-2, 0.3, 10.0, 1e3}) {
     const PencilResult result = pencil(part, radius, {.tolerance = 0.01});
@@ -439,7 +439,7 @@ TEST(Pencil, BallsOfManySizesComeToAnEnd) {
   }
 }
 
-TEST(Pencil, ABallThatCannotBeMeantForThePartIsRefused) {
+TEST(Pencil, AnAbsurdBallForThePartIsRefused) {
   const Mesh part = groove(1.5);
   EXPECT_THROW(pencil(part, 1e6, {.tolerance = 0.01}), std::invalid_argument);
   EXPECT_THROW(pencil(part, 5e5, {.tolerance = 0.01, .passes = 2}), std::invalid_argument);

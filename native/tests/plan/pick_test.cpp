@@ -30,7 +30,7 @@ TEST(Pick, NamesTheNearestContactItsSideAndNormal) {
   EXPECT_EQ(b.point, Vec3(4, 1, 1));
 }
 
-TEST(Pick, ByARayLooksForwardOnly) {
+TEST(Pick, ByARaySearchesForwardOnly) {
   const Picked a = nearest_contact(path(), {3.1, 0, 10}, {0, 0, -7});
   EXPECT_EQ(a.index, 3U);
   EXPECT_EQ(a.side, 0);

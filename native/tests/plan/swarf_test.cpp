@@ -141,7 +141,7 @@ TEST(Swarf, AWallThatBulgesIsNotCutByAStraightFlank) {
   }
 }
 
-TEST(Swarf, NothingStandsWhereTheWallEnds) {
+TEST(Swarf, NoPoseIsLeftWhereTheWallEnds) {
   const Mesh wall = sheet([](double u, double v) { return Vec3(30 * u, 0, 25 * v); }, 3, 2);
   const Swarf found = swarf(straight_path(3, 0, 60), wall, cutters::ball(6, 20));
   ASSERT_EQ(found.fits.size(), 1u);

@@ -46,7 +46,7 @@ def read(folder: Path, resources: str, build: str, **more: str) -> riffler.Mesh:
     return riffler.Mesh.read(package(folder / "part.3mf", model(resources, build, **more)))
 
 
-def test_a_mesh_comes_back_and_is_in_mm(tmp_path):
+def test_a_mesh_reads_back_in_mm(tmp_path):
     part = parts.organic(2_000)
     part.write(tmp_path / "part.3MF")
     back = riffler.Mesh.read(tmp_path / "part.3MF")
@@ -73,7 +73,7 @@ def test_a_file_without_a_unit_is_in_mm(tmp_path):
     assert read(tmp_path, box_object(1), '<item objectid="1"/>', unit="").volume == pytest.approx(6)
 
 
-def test_items_and_components_stand_where_their_transforms_put_them(tmp_path):
+def test_transforms_of_items_and_components_are_applied(tmp_path):
     # A quarter turn about z and a shift; 3MF multiplies rows, the shift stands last.
     turn, shift, mirror = "0 1 0 -1 0 0 0 0 1 10 20 30", "1 0 0 0 1 0 0 0 1 5 0 0", "-1 0 0 0 1 0 0 0 1 0 0 0"
     resources = box_object(1) + box_object(2, (1, 1, 1))
@@ -93,7 +93,7 @@ def test_items_and_components_stand_where_their_transforms_put_them(tmp_path):
     assert len(touching.vertices) == 8, "equal vertices are one"
 
 
-def test_what_supports_a_part_is_not_the_part(tmp_path):
+def test_support_is_left_out(tmp_path):
     resources = box_object(1) + box_object(2, (9, 9, 9), "support")
     mesh = read(tmp_path, resources, '<item objectid="1"/>')
     assert mesh.volume == pytest.approx(6)
@@ -101,7 +101,7 @@ def test_what_supports_a_part_is_not_the_part(tmp_path):
         read(tmp_path, box_object(1), "")
 
 
-def test_bad_files_are_named_with_what_was_expected(tmp_path):
+def test_errors_of_bad_files_name_what_was_expected(tmp_path):
     for content in (b"", b"PK", b"solid part\n" * 20, b"\x00" * 5000):
         (tmp_path / "bad.3mf").write_bytes(content)
         with pytest.raises(riffler.FormatError, match=r"bad\.3mf: expected a 3MF package with a model"):
@@ -123,7 +123,7 @@ def test_bad_files_are_named_with_what_was_expected(tmp_path):
     assert read(tmp_path, box_object(1), '<item objectid="1"/>', unit=own).volume == pytest.approx(6 * 25.4**3)
 
 
-def test_an_empty_mesh_and_a_folder_that_is_not_there(tmp_path):
+def test_an_empty_mesh_and_a_missing_folder_are_refused(tmp_path):
     riffler.Mesh([], []).write(tmp_path / "empty.3mf")
     with pytest.raises(riffler.FormatError, match=r"empty\.3mf: zero triangles"):
         riffler.Mesh.read(tmp_path / "empty.3mf")
@@ -173,7 +173,7 @@ def test_the_process_keeps_its_locale(tmp_path):
         locale.setlocale(locale.LC_ALL, found)
 
 
-def test_without_the_package_it_is_asked_for(tmp_path, monkeypatch):
+def test_the_error_without_lib3mf_asks_for_the_package(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "lib3mf", None)
     parts.organic(200).write(tmp_path / "x.3mf")  # writing needs no package
     with pytest.raises(ValueError, match=r"pip install riffler\[3mf\]"):
@@ -207,7 +207,7 @@ def levels(count: int, copies: int) -> str:
     ],
     ids=["levels", "components", "items"],
 )
-def test_copies_that_have_no_end_are_refused_before_they_are_made(tmp_path, resources, build, what):
+def test_endless_copies_are_refused_before_they_are_made(tmp_path, resources, build, what):
     """Files of 1 to 15 kB, packed, that took all time and memory there was."""
     with pytest.raises(riffler.FormatError, match=what):
         read(tmp_path, resources, build)

@@ -18,7 +18,7 @@ def same(a, b):
     return np.array_equal(a.vertices, b.vertices) and np.array_equal(a.triangles, b.triangles)
 
 
-def test_is_near_the_full_mesh_and_closed(volume):
+def test_an_adaptive_mesh_is_closed_and_near_the_full_mesh(volume):
     full = volume.to_mesh()
     mesh = volume.to_mesh(tolerance=0.02)
     audit = mesh.audit()
@@ -29,13 +29,13 @@ def test_is_near_the_full_mesh_and_closed(volume):
     assert {tuple(v) for v in mesh.vertices} <= {tuple(v) for v in full.vertices}
 
 
-def test_survives_a_binary_stl(volume, tmp_path):
+def test_an_adaptive_mesh_survives_a_binary_stl(volume, tmp_path):
     volume.to_mesh(tolerance=0.02).write(tmp_path / "part.stl")
     audit = riffler.Mesh.read(tmp_path / "part.stl").audit()
     assert audit.open_edges == audit.nonmanifold_edges == audit.duplicates == audit.degenerate == 0
 
 
-def test_without_a_tolerance_has_all_triangles(volume):
+def test_a_mesh_without_a_tolerance_has_all_triangles(volume):
     full = volume.to_mesh()
     for none in (None, 0, 1e-7):
         assert same(volume.to_mesh(tolerance=none), full)
@@ -48,12 +48,12 @@ def test_a_larger_tolerance_needs_no_more_triangles(volume):
 
 
 @pytest.mark.parametrize("bad", [-1e-9, float("nan"), float("inf")])
-def test_refuses_what_is_no_distance(volume, bad):
+def test_tolerances_that_are_no_distance_are_refused(volume, bad):
     with pytest.raises(ValueError, match="tolerance must be finite and not negative"):
         volume.to_mesh(tolerance=bad)
 
 
-def test_reports_what_is_lost_too(volume):
+def test_the_report_names_lost_material(volume):
     mesh, report = volume.to_mesh_with_report(tolerance=0.02)
     assert same(mesh, volume.to_mesh(tolerance=0.02))
     assert report.lost == 0

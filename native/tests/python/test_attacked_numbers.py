@@ -81,7 +81,7 @@ def located(**options):
 
 
 @pytest.mark.parametrize("name", CALLS)
-def test_numbers_that_cannot_be_meant_are_refused_by_name(name):
+def test_absurd_numbers_are_refused_by_name(name):
     call, numbers = CALLS[name]
     for number in numbers:
         start = time.monotonic()
@@ -120,7 +120,7 @@ def interrupted(script, seconds=30):
 @pytest.mark.parametrize(
     "call", ["riffler.Program.read(name, options=how)", "next(riffler.Program.stream(name, options=how))"]
 )
-def test_reading_nc_code_hears_a_ctrl_c(call, tmp_path):
+def test_ctrl_c_interrupts_reading_nc_code(call, tmp_path):
     path = tmp_path / "a.ngc"
     path.write_text("o1 repeat [999990]\no2 if [0]\n" + "G1 X1\n" * 20_000 + "o2 endif\no1 endrepeat\nM2\n")
     assert (
@@ -133,7 +133,7 @@ def test_reading_nc_code_hears_a_ctrl_c(call, tmp_path):
     )
 
 
-def test_reading_a_mesh_hears_a_ctrl_c(tmp_path):
+def test_ctrl_c_interrupts_reading_a_mesh(tmp_path):
     path = tmp_path / "a.obj"
     path.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\n" + "f 1 2 3\n" * 200_000)
     assert (

@@ -51,7 +51,7 @@ def at_once(count, work):
     return got
 
 
-def test_maps_of_a_report_are_made_once_whoever_asks():
+def test_maps_of_a_report_are_computed_once_for_all_callers():
     part = block().to_mesh()
     report = riffler.verify(PASSES, block("xyz", 0.4), part)
     maps = at_once(4, report.part_deviation)
@@ -296,13 +296,13 @@ def test_a_session_whose_volume_was_carved_elsewhere_stops_and_keeps_its_ticks()
         lambda: block().carve(BALL, [["a"] * 6] * 2),
     ],
 )
-def test_what_cannot_become_an_argument_is_a_value_error(call):
+def test_arguments_that_cannot_be_converted_are_value_errors(call):
     with pytest.raises((ValueError, TypeError)) as caught:
         call()
     assert "C++" not in str(caught.value)
 
 
-def test_messages_about_files_whose_names_are_not_utf8(tmp_path):
+def test_messages_name_files_whose_names_are_not_utf8(tmp_path):
     name = os.fsencode(tmp_path) + b"/caf\xe9"
     for end, read in ((b".stl", riffler.Mesh.read), (b".rvol", riffler.Volume.load), (b".ngc", riffler.Program.read)):
         path = name + end

@@ -68,7 +68,7 @@ def rows(folder: Path, job: str, section: str) -> list[dict]:
     return json.loads((folder / f"{job}.json").read_text())["sections"][section]["rows"]
 
 
-def test_every_job_leaves_its_figures(quick):
+def test_every_job_writes_its_figures(quick):
     for job in JOBS:
         data = json.loads((quick / f"{job}.json").read_text())
         assert data["quick"] and data["problems"] == [] and data["processor"] and data["cores"] >= 1
@@ -139,7 +139,7 @@ def test_pencil_curves_are_found_where_they_are_known_and_nowhere_else(quick):
         assert row["part"] != "sphere" or row["steps"] == 0
 
 
-def test_dropped_cutters_name_the_oracle_that_is_missing(quick):
+def test_the_drop_job_names_a_missing_oracle(quick):
     table = rows(quick, "drop", "points")
     assert {row["cutter"] for row in table} == {"cylindrical", "ball", "bull nose", "cone"}
     assert all(row["rate"] > 100 and "OpenCAMLib: left out" in row["note"] for row in table)
@@ -185,7 +185,7 @@ def test_distances_of_curves_are_those_of_every_point_from_every_segment():
     assert nothing.hausdorff is None and nothing.missed == pytest.approx(10)
 
 
-def test_the_baselines_find_what_they_can():
+def test_baselines_find_the_valleys_within_their_power():
     case = pen.case(valleys.groove(90), "fine", 1, upright=True)
     sharp, chains = baselines.Creases.of(case.mesh, valleys.R).sharper(30)
     assert chains == 1 and curves.compare(sharp, case.lines, 0.01, 0.02).hausdorff < 1e-9
@@ -210,7 +210,7 @@ def test_parts_made_in_code_are_closed_and_have_the_volume_of_their_shape():
         )
 
 
-def test_the_exact_part_is_what_it_is_described_as():
+def test_the_exact_part_matches_its_description():
     rng = np.random.default_rng(7)
     # Known places: faces, an edge and a corner of the block, the groove's bottom and its end, deep inside.
     mid = exact.centres()[100]
@@ -290,7 +290,7 @@ def test_paths_in_a_vise_are_free_of_gouges_between_their_rows(quick):
     assert all(0 < row[key] <= 1e-9 for row in touching for key in ("plane_mm", "ball_mm", "rod_mm", "contact_mm"))
 
 
-def test_a_tool_that_gouges_between_its_rows_is_seen():
+def test_a_tool_that_gouges_between_its_rows_is_detected():
     part = parts.sharp(800)
     tool, jaw = gouge.the_tool(), swept.Box(np.array([60.0, -10, 0]), np.array([70.0, 10, 20]))
     judge = swept.Judge(part, [jaw], tool, 70)
@@ -321,7 +321,7 @@ def test_code_is_read_written_and_true_between_its_blocks(quick):
 
 
 @pytest.mark.parametrize("post", nc.KINEMATICS)
-def test_the_judge_of_code_sees_blocks_that_are_wrong(tmp_path, post):
+def test_the_judge_of_code_detects_wrong_blocks(tmp_path, post):
     poses, file = nc_programs.paths(60)["smooth"], tmp_path / "p.ngc"
     program = riffler.Program.from_cl([poses], tools=[nc.TOOL], feed=800)
     options = nc.AS_ROWS if post == "tcp" else nc.TABLE | nc.AS_ROWS
@@ -342,7 +342,7 @@ def test_the_judge_of_code_sees_blocks_that_are_wrong(tmp_path, post):
         nc_judge.between(joints, poses, nc.KINEMATICS[other])
 
 
-def test_verification_is_measured_beside_its_error(quick):
+def test_verification_is_timed_together_with_its_error(quick):
     for program in ("three axes", "five axes"):
         coarse, fine = (row for row in rows(quick, "verify", "pitch") if row["program"] == program)
         assert coarse["pitch"] == 2 * fine["pitch"] and 0 < coarse["verify_bytes"] < fine["verify_bytes"]
@@ -363,7 +363,7 @@ def test_verification_is_measured_beside_its_error(quick):
     assert long["verify_bytes"] - short["verify_bytes"] < 60 * (long["rows"] - short["rows"]) + 4e6
 
 
-def test_what_a_ball_leaves_is_what_a_height_map_says():
+def test_material_left_by_a_ball_agrees_with_a_height_map():
     rng = np.random.default_rng(2)
     tips = np.column_stack([rng.uniform(-4, 34, (40, 2)), rng.uniform(-9, 1, 40)])
     tips[10:14, :2] = tips[10, :2]  # plunges and retracts
@@ -384,7 +384,7 @@ def test_what_a_ball_leaves_is_what_a_height_map_says():
     np.testing.assert_allclose(waves.left(turning, near)[deep], low[deep], atol=2e-6)
 
 
-def test_the_volume_over_what_a_ball_leaves_is_known():
+def test_the_volume_above_a_surface_cut_by_a_ball_is_known():
     groove = scenes.upright(np.array([[-9.0, 50.3, -3], [109.0, 50.3, -3]]))
     exact = waves.Exact.of(groove, 150)
     assert exact.removed == pytest.approx(np.pi * 9 / 2 * waves.SIZE, abs=4 * exact.uncertain)
@@ -438,11 +438,11 @@ def test_the_add_on_is_measured_in_blender(tmp_path):
     assert (out / "blender.png").stat().st_size > 10_000
 
 
-def test_without_a_blender_the_job_says_so(quick):
+def test_the_job_reports_a_missing_blender(quick):
     assert "none was named" in rows(quick, "blender", "stroke")[0]["where"]
 
 
-def test_haptic_work_does_not_follow_the_grid(quick):
+def test_haptic_work_does_not_grow_with_the_grid(quick):
     table = rows(quick, "haptic", "steps")
     small, large = (next(r for r in table if r["side"] == side and r["axis"] == "upright") for side in (1024, 1280))
     assert small["rays_tested"] == large["rays_tested"] >= small["rays_changed"] > 5_000
@@ -454,7 +454,7 @@ def test_haptic_scenes_touch_parts_of_long_triangles(quick):
     assert touching["bore"] == touching["box"] == 1
 
 
-def test_three_directions_are_measured_beside_one(quick):
+def test_three_directions_are_compared_with_one(quick):
     for row in rows(quick, "haptic", "directions"):
         assert row["ratio"] == pytest.approx(row["xyz_s"] / row["z_s"]) and 0 < row["xyz_s"] <= row["p99_s"]
         assert 1 < row["work"] < 10
@@ -480,7 +480,7 @@ def test_plots_are_drawn_from_the_figures(quick):
         assert data.startswith(b"\x89PNG") and len(data) > 10_000
 
 
-def test_without_matplotlib_it_says_so_and_measures(tmp_path):
+def test_jobs_run_without_matplotlib_and_report_it(tmp_path):
     (tmp_path / "matplotlib.py").write_text("raise ModuleNotFoundError('no matplotlib', name='matplotlib')\n")
     hidden = os.pathsep.join([str(tmp_path), ENVIRONMENT["PYTHONPATH"]])
     done = bench("threads", "--quick", "--out", "out", cwd=tmp_path, PYTHONPATH=hidden)
@@ -497,7 +497,7 @@ def test_without_matplotlib_it_says_so_and_measures(tmp_path):
         ("9.9", f"riffler-bench 9.9 needs riffler 9.9, not {riffler.__version__}: install both from the same source"),
     ],
 )
-def test_without_its_package_or_with_another_version_it_says_what_to_install(package, said, tmp_path):
+def test_the_command_names_a_package_that_is_missing_or_of_another_version(package, said, tmp_path):
     """`package`: the version of a riffler_bench that is found first; None: as if there were none."""
     (tmp_path / "riffler_bench").mkdir()
     begin = tmp_path / "riffler_bench" / "__init__.py"
@@ -544,7 +544,7 @@ def test_a_wrong_result_is_exit_status_1(tmp_path, monkeypatch, capsys):
     assert "**Failed:** the bytes differ" in (tmp_path / "wrong.md").read_text()
 
 
-def test_a_coarser_carve_is_seen_as_an_error():
+def test_a_coarser_carve_is_detected_as_an_error():
     cutter = scenes.cutters()[0]
     poses = cutter.path(turning=True)
     volume = riffler.Volume.block(*scenes.BLOCK, 1.0)
@@ -555,7 +555,7 @@ def test_a_coarser_carve_is_seen_as_an_error():
     assert errors.measured(volume, cutter.tool, poses, 1.0, 100)["max_mm"] <= 1.0
 
 
-def test_scenes_are_what_they_are_described_as():
+def test_scenes_match_their_descriptions():
     path = scenes.cutters()[0].path(turning=False)
     a = np.linspace(0, 1, 201)
     centres = np.stack([10 + 80 * a, 30 + 15 * np.sin(12 * a), 30 - 2 * a], 1)
@@ -576,7 +576,7 @@ def test_scenes_are_what_they_are_described_as():
         assert math.degrees(turned) == pytest.approx(motion.angle, abs=1e-9)
 
 
-def test_the_yardstick_is_timed_beside_the_work():
+def test_the_yardstick_is_timed_together_with_the_work():
     yardstick = measure.Yardstick(1.0, quick=True)
     loop = core.CapsuleLoop(1.0)
 
@@ -589,7 +589,7 @@ def test_the_yardstick_is_timed_beside_the_work():
     assert 4 < timing.ratio < 25  # ten; the machine is shared
 
 
-def test_force_of_a_groove_in_closed_form():
+def test_the_force_of_a_groove_has_its_closed_form():
     times, felt = force.stroke(riffler.Tool.ball(6, 30), 0.1, 200)
     steady = felt[times > 0.15]
     assert steady.mean() == pytest.approx(force.CONSTANT * force.SPEED * force.section("ball"), rel=2e-3)

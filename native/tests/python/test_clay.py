@@ -24,7 +24,7 @@ def clean(mesh):
 
 
 @pytest.mark.parametrize("directions", ["z", "xyz"])
-def test_material_is_put_on_where_the_cutter_sweeps_within_the_box(directions):
+def test_material_is_added_where_the_cutter_sweeps_within_the_box(directions):
     volume = slab(directions)
     before = volume.volume
     put = volume.carve(BALL, ALONG, mode="add", dt=0.1)
@@ -37,7 +37,7 @@ def test_material_is_put_on_where_the_cutter_sweeps_within_the_box(directions):
     assert clean(volume.to_mesh())
 
 
-def test_what_is_protected_stays_and_the_rest_goes():
+def test_protected_material_stays_and_the_rest_is_removed():
     volume = slab()
     keep = riffler.Volume.block(*BOX, 0.25, "xyz")
     keep.carve(riffler.Tool.flat(40, 30), np.array([[35.0, 10, 0, 0, 0, 1], [35, 10, 0, 0, 0, 1]]))
@@ -52,7 +52,7 @@ def test_what_is_protected_stays_and_the_rest_goes():
     assert clean(volume.to_mesh())
 
 
-def test_a_mask_is_painted_as_material_is_put_on():
+def test_a_mask_is_painted_as_material_is_added():
     mask = slab().subtract(slab())
     assert mask.volume == 0
     mask.carve(BALL, ALONG - [0, 0, 3, 0, 0, 0], mode="add")

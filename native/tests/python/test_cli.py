@@ -57,7 +57,7 @@ CARVE = ("volume", "carve", "--stock", "40x20x10", "--pitch", "0.5", "--program"
 # ---- each command
 
 
-def test_carve_writes_a_closed_mesh_of_what_is_left(folder):
+def test_carve_writes_a_closed_mesh_of_the_remaining_material(folder):
     data = result(*CARVE, "--tool", "flat:6", "--out", "part.stl", cwd=folder)
     # A flat cutter, 6 wide, 6 deep, through the whole length of 40.
     assert data["removed"] == pytest.approx(6 * 6 * 40, abs=1e-6)
@@ -75,7 +75,7 @@ def test_carve_writes_a_closed_mesh_of_what_is_left(folder):
 
 
 @pytest.mark.parametrize("name", ["part.obj", "part.ply", "part.rvol", "part.STL"])
-def test_carve_writes_every_form(folder, name):
+def test_carve_writes_every_file_format(folder, name):
     data = result(*CARVE, "--tool", "ball:6", "--out", name, cwd=folder)
     assert (folder / name).stat().st_size == data["bytes"]
     assert (data["triangles"] is None) == (name == "part.rvol")
@@ -129,12 +129,12 @@ def test_stock_may_be_round(folder, stock, volume, upper):
         ("corner", (0, 0, 0)),
     ],
 )
-def test_a_block_stands_where_it_is_wanted(folder, origin, lower):
+def test_a_block_stands_at_its_origin(folder, origin, lower):
     result(*CARVE, "--tool", "ball:1", "--origin", origin, "--out", "a.rvol", cwd=folder)
     assert riffler.Volume.load(folder / "a.rvol").lower.tolist() == list(lower)
 
 
-def test_a_tool_of_no_length_reaches_out_of_the_stock(folder):
+def test_a_tool_without_a_length_reaches_out_of_the_stock(folder):
     # 1 mm wide, 100 deep: a cutter of five diameters would leave a roof.
     (folder / "deep.ngc").write_text("G21 G90\nG0 X5 Y5 Z120\nG1 Z0 F100\nM2\n")
     data = result("volume", "carve", "--stock", "10x10x100", "--pitch", 0.1, "--directions", "z", "--tool", "flat:1",
@@ -144,7 +144,7 @@ def test_a_tool_of_no_length_reaches_out_of_the_stock(folder):
     assert counts.min() == 0 and set(spans.ravel()) == {0, 100}
 
 
-def test_tools_by_number_and_from_files(folder):
+def test_tools_are_given_by_number_and_from_files(folder):
     (folder / "two.ngc").write_text(
         "G21 G90 G94\nG0 Z20\nT3 M6\nG0 X-10 Y5 Z5\nG1 X50 F500\nG0 Z20\nT12 M6\nG0 X-10 Y15\nZ5\nG1 X50\nG0 Z20\nM2\n"
     )
@@ -165,7 +165,7 @@ def test_tools_by_number_and_from_files(folder):
         assert done.returncode == 2 and what in done.stderr
 
 
-def test_convert_and_mesh(folder):
+def test_a_mesh_becomes_a_volume_and_a_mesh_again(folder):
     data = result("volume", "from-mesh", "box.stl", "--pitch", 0.5, "--out", "box.rvol", cwd=folder)
     assert data["volume"] == pytest.approx(20 * 15 * 10)
     assert (data["lower"], data["upper"]) == ([0, 0, 0], [20, 15, 10])
@@ -197,7 +197,7 @@ def test_detail_is_a_tenth_of_the_pitch_a_length_or_all(folder):
 
 
 @pytest.mark.parametrize("detail", ["0", "-1", "nan", "fine"])
-def test_bad_detail_names_the_way_to_all_triangles(folder, detail):
+def test_bad_detail_names_the_option_for_all_triangles(folder, detail):
     done = riffle(*CARVE, "--tool", "ball:6", "--out", "none.stl", "--detail", detail, cwd=folder)
     assert done.returncode == 2 and "--detail" in done.stderr and "--detail all writes all triangles" in done.stderr
     assert not (folder / "none.stl").exists()
@@ -205,7 +205,7 @@ def test_bad_detail_names_the_way_to_all_triangles(folder, detail):
     assert done.returncode == 2 and "not both" in done.stderr
 
 
-def test_convert_tells_what_was_wrong_with_the_mesh(folder):
+def test_convert_reports_the_defects_of_the_mesh(folder):
     done = riffle("volume", "from-mesh", "box.stl", "--pitch", 0.5, "--out", "box.rvol", cwd=folder)
     assert not any(word in done.stdout for word in ("open", "inside out", "overlap", "edges", "triangles"))
     vertices, triangles = box_triangles((0, 0, 0), (10, 10, 10))
@@ -231,7 +231,7 @@ def test_audit_fails_a_mesh_that_is_not_closed(folder):
     assert done.returncode == 0 and "a closed 2-manifold" in done.stdout
 
 
-def test_doctor_tells_of_the_machine(folder):
+def test_doctor_describes_the_machine(folder):
     data = result("doctor", cwd=folder)
     assert data["riffler"] == riffler.__version__
     assert data["numpy"] == np.__version__

@@ -84,13 +84,13 @@ CASES = {
 
 
 @pytest.mark.parametrize("case", CASES)
-def test_bash_offers(folder, case):
+def test_bash_offers_the_right_words_and_files(folder, case):
     line, expected = CASES[case]
     assert bash(folder, line) == expected
 
 
 @pytest.mark.parametrize("case", CASES)
-def test_fish_offers(folder, case):
+def test_fish_offers_the_right_words_and_files(folder, case):
     line, expected = CASES[case]
     offered = fish(folder, line)
     assert offered - {"parts"} == expected - {"parts"}

@@ -96,12 +96,12 @@ def test_a_plan_becomes_code_with_the_balls_tip_on_its_paths(folder):
     assert "part: corner.stl" in (folder / "p.ngc").read_text()
 
 
-def test_a_plan_without_a_feed_is_cut_slowly_and_says_so(folder):
+def test_a_plan_without_a_feed_is_cut_slowly_with_a_note(folder):
     data = result("nc", "post", "plain.json", "--post", "linuxcnc-xyzac", *TABLE_WORDS, "--out", "p.ngc", cwd=folder)
     assert data["notes"][0].startswith("feed 500 mm/min") and data["minutes"] == pytest.approx(19 / 500)
 
 
-def test_axes_of_a_plan_and_of_the_command_line(folder):
+def test_axes_come_from_the_plan_or_the_command_line(folder):
     wanted = np.array([[3 - 3 * 0.6, y, 3 - 3 * 0.8, 0.6, 0, 0.8] for y in (0, 4, 9)])
     result("nc", "post", "leaning.json", "--feed", 700, "--post", "tcp", "--out", "a.ngc", cwd=folder)
     result("nc", "post", "plain.json", "--feed", 700, "--axis", "6,0,8", "--post", "tcp", "--out", "b.ngc", cwd=folder)
@@ -130,7 +130,7 @@ def test_a_part_lifts_the_tool_out_of_it(folder):
     free = result(
         "nc", "post", "plain.json", "--feed", 7, "--part", "corner.stl", "--post", "tcp", "--out", "a.ngc", cwd=folder
     )
-    assert any(note.startswith("free of corner.stl") for note in free["notes"])
+    assert any(note.startswith("all rows, approaches and retracts are free of corner.stl") for note in free["notes"])
     assert not any("lifted" in note for note in free["notes"])
     high = result(
         "nc", "post", "plain.json", "--feed", 7, "--part", "corner.stl", "--axis", "-1,0,4", "--post", "tcp", "--out",
@@ -142,7 +142,7 @@ def test_a_part_lifts_the_tool_out_of_it(folder):
     note = next(note for note in high["notes"] if "lifted" in note)
     path = riffler.plan.load(folder / "plain.json").paths[0].with_axes([[-0.242535625, 0, 0.9701425]] * 3)
     _, report = riffler.plan.cutter_locations(path, BALL, riffler.Collider(mesh), tolerance=0.01)
-    assert note.startswith(f"3 of 3 rows are lifted, by up to {report.lift.max():.3g} mm (path 0): the tool does not")
+    assert note.startswith(f"3 of 3 rows are lifted, by up to {report.lift.max():.3g} mm (path 0): the tool cannot")
     riffler.Mesh(mesh.vertices * 2, mesh.triangles).write(folder / "other.stl")
     done = riffle(
         "nc", "post", "plain.json", "--feed", 7, "--part", "other.stl", "--post", "tcp", "--out", "c.ngc", cwd=folder
@@ -157,14 +157,14 @@ PLAN = (
 )
 
 
-def test_what_is_written_beside_a_clamp_passes_the_verification(folder):
+def test_code_written_next_to_a_clamp_passes_the_verification(folder):
     """The holder would meet the clamp on the wall: what was not named is not seen, and said."""
     clamp = riffler.Volume.block((-20, -10, 30), (-5, 20, 38), pitch=0.5)
     clamp.to_mesh().write(folder / "clamp.stl")
     verify = ("nc", "verify", "a.ngc", "--stock", "corner.stl", "--pitch", 0.5, "--tool", "ball:6:30", *HOLDER)
     notes = result(*PLAN, cwd=folder)["notes"]
-    assert any(note.startswith("shank and holder were not looked at") for note in notes)
-    assert any(note.startswith("no fixtures were looked at") for note in notes)
+    assert any(note.startswith("shank and holder were not checked") for note in notes)
+    assert any(note.startswith("no fixtures were checked") for note in notes)
     done = riffle(*verify, "--fixture", "clamp.stl", "--json", cwd=folder)
     assert done.returncode == 1 and {entry["kind"] for entry in json.loads(done.stdout)["findings"]} == {"fixture"}
     clear = ("--fixture", "clamp.stl", *HOLDER)
@@ -173,13 +173,16 @@ def test_what_is_written_beside_a_clamp_passes_the_verification(folder):
         lifted = next(note for note in notes if "lifted" in note)
         by = re.match(r"3 of 3 rows are lifted, by up to ([\d.]+) mm \(path 0\)", lifted)
         assert float(by[1]) == pytest.approx(8 + room, abs=0.02)  # of a pitch of 0.5, a hundredth
-        assert any(note.startswith("free of corner.stl, clamp.stl along all rows") for note in notes)
-        assert not any("looked at" in note for note in notes)
+        assert any(
+            note.startswith("all rows, approaches and retracts are free of corner.stl, clamp.stl within")
+            for note in notes
+        )
+        assert not any("checked" in note for note in notes)
         done = riffle(*verify, "--fixture", "clamp.stl", "--json", cwd=folder)
         assert done.returncode == 0, done.stdout
 
 
-def test_paths_that_no_lift_frees_are_named_and_left_out_if_that_is_asked_for(folder):
+def test_paths_that_no_lift_frees_are_named_and_left_out_on_request(folder):
     along = np.array([0, 11, 0])
     far = plan.PencilPath(3.0, CORNER.centres + along, CORNER.contacts + along, CORNER.normals)
     mesh = riffler.Mesh.read(folder / "corner.stl")
@@ -189,8 +192,10 @@ def test_paths_that_no_lift_frees_are_named_and_left_out_if_that_is_asked_for(fo
     words = (*PLAN, "--fixture", "lid.rvol", "--safe-height", 150)
     done = riffle(*words, cwd=folder)
     assert done.returncode == 2 and not (folder / "a.ngc").exists()
-    assert "path 0: places that no lift frees, the first at 3.000, 0.000, 3.000; turn the tool by --axis" in done.stderr
-    assert done.stderr.strip().endswith("move the fixtures, or leave such paths out by --skip-blocked")
+    assert (
+        "path 0: places that no lift frees, the first at 3.000, 0.000, 3.000; turn the tool with --axis" in done.stderr
+    )
+    assert done.stderr.strip().endswith("move the fixtures, or leave such paths out with --skip-blocked")
     notes = result(*words, "--skip-blocked", cwd=folder)["notes"]
     assert "path 0: places that no lift frees, the first at 3.000, 0.000, 3.000: left out" in notes
     feeds = riffler.Program.read(folder / "a.ngc", machine="tcp")
@@ -232,11 +237,11 @@ def test_a_recording_becomes_a_program(folder):
     whole = (folder / "s.rjournal").read_bytes()
     (folder / "cut.rjournal").write_bytes(whole + whole[16:28])
     data = result("nc", "post", "cut.rjournal", "--feed", 500, "--post", "tcp", "--out", "s.ngc", cwd=folder)
-    assert data["notes"] == [f"the recording was cut at byte {len(whole)}: all whole strokes"]
+    assert data["notes"] == [f"the recording is cut off at byte {len(whole)}: all whole strokes"]
     assert set(re.findall(r"F(\S+)", (folder / "s.ngc").read_text())) == {"500"}
 
 
-def test_feed_spindle_and_tools_of_the_command_line_stand(folder):
+def test_feed_spindle_and_tools_of_the_command_line_replace_the_programs(folder):
     words = ("--feed", 321, "--spindle", 4500, "--tool", "1=taper:1:10:12:60")
     result("nc", "post", "p.rprog", *words, "--out", "q.rprog", cwd=folder)
     before, after = riffler.Program.load(folder / "p.rprog"), riffler.Program.load(folder / "q.rprog")
@@ -249,7 +254,7 @@ def test_feed_spindle_and_tools_of_the_command_line_stand(folder):
 
 
 @linuxcnc.needed
-def test_what_it_writes_is_read_by_linuxcnc(folder):
+def test_linuxcnc_reads_what_post_writes(folder):
     result(
         "nc", "post", "leaning.json", "--feed", 700, "--post", "linuxcnc-xyzac", *TABLE_WORDS, "--out", "p.ngc",
         cwd=folder,
@@ -260,7 +265,7 @@ def test_what_it_writes_is_read_by_linuxcnc(folder):
     assert nearest(at, wanted) < 1e-3
 
 
-def test_a_machine_of_ones_own_is_a_file(folder):
+def test_a_users_machine_is_a_file(folder):
     shipped = Path(__file__).parents[2] / "nc" / "machine" / "shipped" / "linuxcnc-xyzac.toml"
     (folder / "mine.toml").write_text(shipped.read_text())
     result("nc", "post", "p.rprog", "--post", "mine.toml", *TABLE_WORDS, "--out", "a.ngc", cwd=folder)
@@ -282,7 +287,7 @@ def test_machines_are_listed(folder):
     assert done.returncode == 0 and all(name in done.stdout for name in riffler.machines())
 
 
-def test_a_table_says_what_was_written(folder):
+def test_a_table_summarises_the_written_code(folder):
     done = riffle("nc", "post", "plain.json", "--feed", 700, "--post", "tcp", "--out", "a.ngc", cwd=folder)
     assert done.returncode == 0 and done.stderr == ""
     for word in ("a.ngc written", "rows", "blocks", "length", "time", "not checked for gouges"):
@@ -297,7 +302,7 @@ BAD = {
     "no file": (["nowhere.rprog", *POST, *OUT], "nowhere.rprog: No such file"),
     "no post": (["p.rprog", *OUT], "--post"),
     "unknown post": (["p.rprog", "--post", "lathe", *OUT], "lathe"),
-    "post for a .rprog": (["p.rprog", *POST, "--out", "b.rprog"], "leave --post"),
+    "post for a .rprog": (["p.rprog", *POST, "--out", "b.rprog"], "leave out --post"),
     "option": (["p.rprog", *POST, "--post-option", "speed=3", *OUT], "unknown option 'speed'; known: "),
     "misspelt option": (
         ["p.rprog", *POST, "--post-option", "max_rotry=3", *OUT],
@@ -307,18 +312,18 @@ BAD = {
         ["p.rprog", *POST, "--post-option", "max_rotary", *OUT],
         "--post-option max_rotary: KEY=VALUE",
     ),
-    "option twice": (["p.rprog", *POST, "--post-option", "a=1", "--post-option", "a=2", *OUT], "given before"),
+    "option twice": (["p.rprog", *POST, "--post-option", "a=1", "--post-option", "a=2", *OUT], "a is given twice"),
     "option, no number": (["p.rprog", *POST, "--post-option", "max_rotary=3x", *OUT], "--post-option max_rotary=3x"),
     "option, list": (["p.rprog", *POST, "--post-option", "rot_point=1,,2", *OUT], "--post-option rot_point=1,,2"),
     "tolerance": (["p.rprog", *POST, "--tolerance", "0", *OUT], "--tolerance"),
     "tolerance too fine": (["p.rprog", *POST, "--tolerance", "1e-7", *OUT], "tolerance"),
     "axis tolerance": (["p.rprog", *POST, "--axis-tolerance", "nan", *OUT], "--axis-tolerance"),
-    "no machine": (["p.ngc", *POST, *OUT], "--machine: say for which machine p.ngc was written"),
+    "no machine": (["p.ngc", *POST, *OUT], "--machine: name the machine that p.ngc was written for"),
     "machine": (["p.ngc", "--machine", "lathe", *POST, *OUT], "lathe"),
     "machine of a program": (["p.rprog", "--machine", "tcp", *POST, *OUT], "--machine: only for NC code"),
     "code": (["bad.ngc", "--machine", "tcp", *POST, *OUT], "bad.ngc, line 2"),
-    "nothing moves": (["empty.ngc", "--machine", "tcp", *POST, *OUT], "empty.ngc: nothing moves"),
-    "a plan without paths": (["none.json", "--feed", "5", *POST, *OUT], "none.json: nothing moves"),
+    "nothing moves": (["empty.ngc", "--machine", "tcp", *POST, *OUT], "empty.ngc: it has no moves"),
+    "a plan without paths": (["none.json", "--feed", "5", *POST, *OUT], "none.json: it has no moves"),
     "feed": (["plain.json", "--feed", "-5", *POST, *OUT], "--feed"),
     "no ball": (["flat.json", "--feed", "5", *POST, *OUT], "no ball of radius 3 mm"),
     "another ball": (["plain.json", "--feed", "5", "--tool", "ball:8", *POST, *OUT], "the plan is for ball 6"),
@@ -345,7 +350,7 @@ BAD = {
     "nothing to skip": (["plain.json", "--skip-blocked", *POST, *OUT], "--skip-blocked: only with --part"),
     "clearance of nothing": (
         ["plain.json", "--part", "corner.stl", "--clearance", "1", *POST, *OUT],
-        "--clearance: of shank and holder, which --shank and --holder describe",
+        "--clearance needs a shank or a holder, which --shank and --holder describe",
     ),
     "clearance": (
         ["plain.json", "--part", "corner.stl", "--holder", "30:9:60:9", "--clearance", "-1", *POST, *OUT],

@@ -33,7 +33,7 @@ def test_replay_writes_the_bytes_of_the_session(session):
     assert (data["strokes"], data["rows"], data["cut_at"], data["triangles"]) == (2, 8, None, None)
 
 
-def test_replay_meshes_and_takes_a_cut_journal_as_far_as_it_goes(session):
+def test_replay_writes_a_mesh_and_uses_the_whole_strokes_of_a_truncated_journal(session):
     (session / "b").mkdir()
     whole = (session / "a.rjournal").read_bytes()
     (session / "b" / "cut.rjournal").write_bytes(whole[:-1])
@@ -41,7 +41,7 @@ def test_replay_meshes_and_takes_a_cut_journal_as_far_as_it_goes(session):
     assert (data["strokes"], data["cut_at"]) == (3, len(whole) - 28), "up to the last stroke, which is not taken back"
     assert len(riffler.Mesh.read(session / "out.stl").triangles) == data["triangles"] < data["all_triangles"]
     assert (
-        "cut at byte"
+        "cut off at byte"
         in riffle("volume", "replay", "b/cut.rjournal", "--folder", ".", "--out", "o.rvol", cwd=session).stdout
     )
 
@@ -54,7 +54,7 @@ def test_replay_meshes_and_takes_a_cut_journal_as_far_as_it_goes(session):
         (("a.rjournal", "--folder", "nowhere"), "stock.rvol"),
     ],
 )
-def test_what_is_wrong_is_one_line(session, words, message):
+def test_errors_are_one_line(session, words, message):
     done = riffle("volume", "replay", *words, "--out", "out.rvol", cwd=session)
     assert done.returncode == 2 and message in done.stderr and len(done.stderr.splitlines()) == 1
     assert not (session / "out.rvol").exists()

@@ -86,7 +86,7 @@ def test_an_old_name_does_the_same_and_warns_once_on_stderr(folder, capsys, monk
     assert before[2] == warning + after[2] and "old name" not in after[2]
 
 
-def test_every_name_of_the_first_command_line_is_there():
+def test_every_name_of_the_first_command_line_still_works():
     first = {"carve", "convert", "mesh", "audit", "pencil", "post", "verify", "replay", "machines"}
     assert first == set(verbs.OLD) == set(OLD)
     alone = {("doctor",), ("bench",), ("pen", "list"), ("pen", "monitor"), ("pen", "calibrate"), ("pen", "simulate")}
@@ -152,7 +152,7 @@ def test_help_hints_and_completion_have_only_todays_names(capsys, monkeypatch, v
     assert new in flags and old not in flags
 
 
-def test_the_old_verb_mesh_still_refuses_what_is_no_volume(folder, capsys):
+def test_the_old_verb_mesh_still_refuses_files_that_are_no_volumes(folder, capsys):
     assert cli.main(["mesh", "box.stl", "--out", "a.stl"]) == 2
     assert "box.stl: .rvol expected" in capsys.readouterr().err
 
@@ -322,7 +322,7 @@ def test_decimation_stays_within_its_tolerance(folder):
     assert few["triangles"] <= 200
 
 
-def test_tools_are_listed_in_the_form_that_is_taken(folder):
+def test_tools_are_listed_in_the_form_that_the_option_accepts(folder):
     listed = result("nc", "tools", cwd=folder)["tools"]
     assert listed["fillet"]["form"] == "fillet:diameter:corner_radius[:length]"
     assert {"ball", "flat", "fillet", "taper", "cone-end"} <= set(listed)

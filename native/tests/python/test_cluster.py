@@ -103,7 +103,7 @@ def test_chunks_of_any_length_and_slabs_in_pieces_give_the_same_report(workers, 
     assert state(report) == state(alone)
 
 
-def test_a_worker_that_is_killed_costs_only_what_it_was_at(workers):
+def test_a_killed_worker_costs_only_its_current_slabs(workers):
     given = scene(True, 300)
     alone = riffler.verify(*given)
     before = set(workers.run(os.getpid).values())
@@ -153,7 +153,7 @@ def test_ctrl_c_leaves_nothing_on_the_cluster(workers):
     assert tasks_left(workers) == []
 
 
-def test_an_address_without_a_scheduler_is_said_in_seconds(monkeypatch):
+def test_an_address_without_a_scheduler_is_reported_within_seconds(monkeypatch):
     monkeypatch.setattr(cluster, "PATIENCE", 1.0)
     start = time.perf_counter()
     with pytest.raises(ConnectionError, match=r"answers at tcp://127\.0\.0\.1:9 \(start one: dask scheduler"):
@@ -285,7 +285,7 @@ def test_damaged_packets_are_refused_and_change_nothing():
     assert state(plan.finish()) == state(riffler.verify(*given))
 
 
-def test_the_command_says_the_same_with_a_scheduler(tmp_path, workers):
+def test_the_command_gives_the_same_report_with_a_scheduler(tmp_path, workers):
     code = ["G21 G90 G94", "T1 M6", "M3 S8000", "G0 X-10 Y10 Z25", "G1 Z17 F500", "X50", "X20 Y15", "G0 X5", "M30"]
     (tmp_path / "p.ngc").write_text("\n".join(code) + "\n")
     block = ["--stock", "40x30x20", "--pitch", "0.5", "--tool", "ball:6:30"]

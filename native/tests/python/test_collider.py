@@ -30,7 +30,7 @@ def pose(x, y, z, axis=(0, 0, 1)):
     return np.array([x, y, z, *axis], float)
 
 
-def test_clearance_is_signed_and_one_number_a_pose(part, tool):
+def test_clearance_is_one_signed_number_per_pose(part, tool):
     poses = np.array([pose(0, 0, z) for z in (-0.5, 0, 2)])
     assert np.allclose(riffler.Collider(part).clearance(tool, poses), [-0.5, 0, 2], atol=1e-9)
     assert riffler.Collider(part).clearance(tool, np.empty((0, 6))).shape == (0,)
@@ -55,7 +55,7 @@ def test_stiffness_scales_the_force_and_the_holder_has_its_own(part, tool):
     assert np.allclose(strong.force, 10 * weak.force)
 
 
-def test_nothing_touched_is_nothing(part, tool):
+def test_a_tool_that_touches_nothing_gets_no_force(part, tool):
     hit = riffler.Collider(part).query(tool, pose(0, 0, 1))
     assert hit.depth == 0 and not hit.force.any() and not hit.torque.any()
     assert hit.points.shape == (0, 3) and hit.parts == []
@@ -136,7 +136,7 @@ def test_threads_get_the_same_answers(part, tool):
     assert all(np.array_equal(f, expected) for f in found)
 
 
-def test_repr_says_what_it_is_made_of(part):
+def test_repr_describes_the_part(part):
     assert "12 triangles" in repr(riffler.Collider(part, spacing=0.5))
 
 

@@ -43,7 +43,7 @@ def test_the_core_s_own_limits_are_the_same():
     )
 
 
-def test_force_comes_in_over_half_a_second():
+def test_force_rises_over_half_a_second():
     """By the pushing side's clock: never more than the ramp has let through by then, and all of it in the end."""
     assert "Force comes in over half a second" in PAGE
     asked, rows = 1.0, []

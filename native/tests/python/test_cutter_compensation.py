@@ -47,7 +47,7 @@ def length(path):
 
 
 @linuxcnc.needed
-def test_contours_are_offset_as_linuxcnc_does_it(tmp_path):
+def test_contours_are_offset_as_in_linuxcnc(tmp_path):
     compared = 0
     for seed in range(60):
         rng = random.Random(seed)

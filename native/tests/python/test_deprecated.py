@@ -38,7 +38,7 @@ def test_an_old_name_warns_once_at_the_callers_line():
     assert str(warning.message) == "riffler: Volume.old is deprecated, use Volume.new"
 
 
-def test_an_old_attribute_and_an_old_method():
+def test_old_attributes_and_methods_warn_and_work():
     class Thing:
         size = 3
 
@@ -52,7 +52,7 @@ def test_an_old_attribute_and_an_old_method():
         assert Thing().extent == 3
 
 
-def test_an_old_name_of_a_module():
+def test_an_old_name_of_a_module_warns_and_works():
     getter = deprecated.module_getattr("riffler", {"Cutter": "Tool", "Stock": "plan.PencilPath"})
     with pytest.warns(DeprecationWarning, match="Cutter is deprecated, use Tool"):
         assert getter("Cutter") is riffler.Tool
@@ -62,20 +62,20 @@ def test_an_old_name_of_a_module():
         getter("Nothing")
 
 
-def test_an_old_keyword_of_a_native_function(tables):
+def test_an_old_keyword_of_a_native_function_warns_and_works(tables):
     tables(keywords={"Tool.ball": {"width": "diameter"}})
     with pytest.warns(DeprecationWarning, match=r"Tool.ball\(width=…\) is deprecated, use diameter=…"):
         assert riffler.Tool.ball(width=6, length=30) == riffler.Tool.ball(6, 30)
 
 
-def test_an_old_position_of_a_native_function(tables):
+def test_an_old_position_of_a_native_function_warns_and_works(tables):
     tables(positional={"Mesh.deviation": ("other", "signed")})
     box = riffler.Volume.block([0, 0, 0], [4, 4, 4], 1.0, "xyz").to_mesh()
     with pytest.warns(DeprecationWarning, match=r"Mesh.deviation: signed by position is deprecated, use signed=…"):
         assert (box.deviation(box, True) == 0).all()
 
 
-def test_old_forms_of_a_function_in_python(tables):
+def test_old_forms_of_a_python_function_warn_and_work(tables):
     order = (("tool", "poses"), lambda args: bool(args) and isinstance(args[0], riffler.Tool))
     tables(
         keywords={"lift": {"least": "minimum"}}, positional={"lift": ("poses", "tool", "minimum")},
@@ -95,7 +95,7 @@ def test_old_forms_of_a_function_in_python(tables):
         assert lift(ball, [1]) == ([1], ball, 0.0)
 
 
-def test_a_keyword_that_is_gone_is_adapted(tables):
+def test_a_removed_keyword_is_adapted(tables):
     def fill(call, args, kwargs):
         deprecated.warn("Tool.ball(report=…)", "nothing")
         kwargs.pop("report")["made"] = True
@@ -139,7 +139,7 @@ def _inside(name):
     return next(vars(m)[name] for m in (riffler.plan, riffler.pen, riffler._core) if name in vars(m))
 
 
-def test_every_old_name_leads_to_one_that_there_is():
+def test_every_old_name_leads_to_an_existing_one():
     def lookup(path):
         found = riffler
         for part in path.split("."):

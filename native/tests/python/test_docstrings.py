@@ -55,7 +55,7 @@ def has_example(value):
     return ">>> " in doc or "See `" in doc or "see `" in doc
 
 
-def test_the_allowance_is_what_is_missing():
+def test_the_list_of_missing_examples_is_exact():
     missing = sorted(name for name, value in NAMES.items() if not has_example(value))
     if os.environ.get("RIFFLER_UPDATE"):
         ALLOWANCE.write_text("".join(f"{name}\n" for name in missing))
@@ -65,7 +65,7 @@ def test_the_allowance_is_what_is_missing():
 
 
 @pytest.mark.parametrize("name", [name for name, value in NAMES.items() if ">>> " in doc_of(value)])
-def test_an_example_gives_what_it_says(name, tmp_path, monkeypatch):
+def test_an_example_gives_its_stated_result(name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     found = doctest.DocTestParser().get_doctest(
         doc_of(NAMES[name]), {"riffler": riffler, "np": np}, name, None, None

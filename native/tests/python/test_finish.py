@@ -202,7 +202,7 @@ def test_a_box_turned_by_ten_degrees_is_never_entered(tool, angle):
     assert left[flat & (x > 4) & (x < 26) & (y > 4) & (y < 26)].max() <= 0.1 + tolerance + 1e-3
 
 
-def test_walls_along_the_rows_are_finished_by_rows_beside_them():
+def test_walls_along_the_rows_are_finished_by_rows_next_to_them():
     part = boss_on_plate(0.0)
     op = plan.finish(setup_of(part), BALL, cusp=0.05, tolerance=0.01)
     # The wall of the boss at y = 15 + 4.5, in the middle of its length: rows pass at most cusp + tolerance outside.
@@ -242,7 +242,7 @@ def test_the_program_is_written_read_back_and_verified(tmp_path):
     assert report.findings == []
 
 
-def test_the_same_bytes_for_any_number_of_threads(monkeypatch):
+def test_any_number_of_threads_gives_the_same_bytes(monkeypatch):
     part, found = boss_on_plate(), []
     for threads in ("1", "2", "4"):
         monkeypatch.setenv("RIFFLER_THREADS", threads)
@@ -267,7 +267,7 @@ def test_slopes_and_regions_leave_the_rest_alone():
         plan.program(setup_of(part), [far])
 
 
-def test_flat_parts_and_single_triangles():
+def test_flat_parts_and_single_triangles_are_finished():
     flat = riffler.Mesh([(0, 0, 2), (20, 0, 2), (20, 20, 2), (0, 20, 2)], [(0, 1, 2), (0, 2, 3)])
     stock = riffler.Volume.block((0, 0, 0), (20, 20, 4), 0.5)
     op = plan.finish(plan.Setup(flat, stock), FLAT)

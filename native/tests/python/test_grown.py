@@ -58,7 +58,7 @@ def test_every_span_and_normal_stays_to_the_bit(directions, room):
     assert grown.grow(grown.lower, grown.upper).to_bytes() == grown.to_bytes()
 
 
-def test_boxes_of_any_size_keep_all_their_rays_and_hold_what_was_asked():
+def test_boxes_of_any_size_keep_their_rays_and_hold_the_requested_box():
     random = np.random.default_rng(7)
     for k in range(200):
         pitch = float(random.choice([0.1, 0.3, 0.25, 1 / 3, 7.7]))
@@ -91,7 +91,7 @@ def block_in(box, lower, upper, pitch, directions):
 
 
 @pytest.mark.parametrize("directions", ["z", "xyz"])
-def test_carving_on_is_as_in_a_box_that_was_large_from_the_start(directions):
+def test_carving_after_growing_equals_carving_in_a_large_box(directions):
     lower, upper = np.zeros(3), np.array((40.0, 30, 20))
     box = lower - ROOM, upper + ROOM
     grown, large = grooved(directions).grow(*box), block_in(box, lower, upper, 0.5, directions)
@@ -150,7 +150,7 @@ def test_threads_do_not_change_a_byte(monkeypatch):
     assert made[0] == made[1]
 
 
-def test_an_empty_one_grows_too():
+def test_an_empty_volume_grows_too():
     empty = riffler.Volume.empty((0, 0, 0), (4, 3, 2), 0.5, "xyz").grow(upper=(9, 9, 9))
     assert empty.volume == 0 and np.array_equal(empty.upper, (9, 9, 9)) and np.array_equal(empty.lower, (0, 0, 0))
 
@@ -165,7 +165,7 @@ def test_an_empty_one_grows_too():
         (((-1e300, 0, 0), None), "."),
     ],
 )
-def test_nonsense_is_refused_before_memory_is_made(box, words):
+def test_absurd_boxes_are_refused_before_memory_is_allocated(box, words):
     volume = grooved()
     before = volume.to_bytes()
     with pytest.raises(ValueError, match=words):
@@ -173,6 +173,6 @@ def test_nonsense_is_refused_before_memory_is_made(box, words):
     assert volume.to_bytes() == before
 
 
-def test_cancelled():
+def test_a_progress_of_false_cancels_the_call():
     with pytest.raises(riffler.Cancelled):
         grooved().grow((-3, -3, -3), progress=lambda share: False)

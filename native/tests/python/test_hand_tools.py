@@ -133,7 +133,7 @@ def test_carving_keeps_to_dense_poses(kind, moves):
     assert volume.volume < 4000
 
 
-def test_no_motion_takes_the_body():
+def test_a_standing_tool_removes_its_own_body():
     tool = T.convex([np.array(np.meshgrid([-2, 2], [-2, 2], [0, 2])).reshape(3, 8).T])
     for directions in ("z", "xyz"):
         volume = block(directions, 0.5)
@@ -329,7 +329,7 @@ REFUSING = {
 
 
 @pytest.mark.parametrize("who", REFUSING)
-def test_what_cannot_use_a_hand_tool_says_so(who):
+def test_calls_that_cannot_use_a_hand_tool_refuse_it(who):
     with pytest.raises(ValueError) as error:
         REFUSING[who]()
     message = str(error.value)

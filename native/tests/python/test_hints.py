@@ -28,7 +28,7 @@ def test_a_wrong_keyword_names_the_nearest_right_one():
     )
 
 
-def test_a_keyword_like_no_other_gets_the_signature():
+def test_an_unknown_keyword_without_a_similar_one_gets_the_signature():
     text = message(volume().carve, BALL, POSES, xyzzy=1)
     assert text.startswith("Volume.carve: there is no argument xyzzy; Volume.carve(tool, poses, ")
 
@@ -68,7 +68,7 @@ def test_an_item_of_a_list_is_named_by_its_number():
     assert "fixtures, number 1, must be" in text and text.endswith("; got Mesh")
 
 
-def test_a_mistake_in_a_callback_stays_what_it_is():
+def test_an_error_in_a_callback_is_passed_on_unchanged():
     def progress(share):
         return len(share)
 
@@ -102,7 +102,7 @@ def test_every_native_function_has_a_signature():
     assert missing == []
 
 
-def test_a_subclass_is_answered_alike():
+def test_calls_of_a_subclass_get_the_same_hints():
     class Part(riffler.Mesh):
         pass
 
@@ -126,7 +126,7 @@ def measured(tool: riffler.Tool, poses, *, tolerance: float = 0.01) -> float:
     return len(poses) / tolerance
 
 
-def test_functions_in_python_are_answered_alike():
+def test_functions_in_python_get_the_same_hints():
     assert measured(BALL, POSES) == 200
     assert message(measured, BALL, POSES, tolerence=1) == (
         "measured: there is no argument tolerence; did you mean tolerance?"
@@ -139,6 +139,6 @@ def test_functions_in_python_are_answered_alike():
     assert pickle.loads(pickle.dumps(measured)) is measured
 
 
-def test_a_type_error_within_a_function_in_python_stays_what_it_is():
+def test_a_type_error_within_a_python_function_is_passed_on_unchanged():
     with pytest.raises(TypeError, match="has no len"):
         measured(BALL, 3.0)

@@ -142,7 +142,7 @@ def test_edits_release_the_lock_and_allow_one_thread():
     assert history.ids == [1] and history.volume.to_bytes() == replayed(history)
 
 
-def test_the_memory_limit_costs_strokes_not_bytes():
+def test_a_lower_memory_limit_reruns_more_strokes_and_gives_the_same_bytes():
     few, many = riffler.History(block(), memory_limit=0), riffler.History(block())
     for history in (few, many):
         for k in range(20):
@@ -153,6 +153,6 @@ def test_the_memory_limit_costs_strokes_not_bytes():
     assert few.volume.to_bytes() == many.volume.to_bytes() == replayed(many)
 
 
-def test_every_call_has_its_contract():
+def test_every_edit_documents_that_it_can_be_cancelled():
     for name in ("add", "insert", "replace", "remove", "move", "enable"):
         assert "Cancelled" in inspect.getdoc(getattr(riffler.History, name))

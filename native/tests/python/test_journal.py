@@ -31,7 +31,7 @@ def journal():
     return j
 
 
-def test_file_keeps_everything_to_the_bit(journal, tmp_path):
+def test_a_file_keeps_everything_to_the_bit(journal, tmp_path):
     file = tmp_path / "a.rjournal"
     journal.save(file)
     j = riffler.Journal.load(file)
@@ -70,7 +70,7 @@ def test_forces_and_cuts_come_back_to_the_bit(tmp_path):
     assert cut.forces is None and cut.times is None and cut.removed.tobytes() == removed.tobytes()
 
 
-def test_strokes_are_taken_back_and_brought_back(journal, tmp_path):
+def test_strokes_are_undone_and_redone(journal, tmp_path):
     last = journal.strokes[2]
     journal.undo(2)
     assert [s.name for s in journal.strokes] == ["stroke 0"]
@@ -88,7 +88,7 @@ def test_strokes_are_taken_back_and_brought_back(journal, tmp_path):
     assert [s.name for s in riffler.Journal.load(tmp_path / "a.rjournal").strokes] == ["stroke 0", "stroke 1", "last"]
 
 
-def test_cut_file_gives_whole_strokes_and_says_where(journal, tmp_path):
+def test_a_truncated_file_gives_its_whole_strokes_and_the_place_of_the_cut(journal, tmp_path):
     file = tmp_path / "a.rjournal"
     journal.save(file)
     whole = file.read_bytes()
@@ -109,7 +109,7 @@ def test_cut_file_gives_whole_strokes_and_says_where(journal, tmp_path):
         riffler.Journal.load(file)
 
 
-def test_writer_goes_on_where_a_crash_cut(tmp_path):
+def test_a_writer_continues_where_a_crash_truncated_the_file(tmp_path):
     file = tmp_path / "a.rjournal"
     poses, times = stroke(30)
     with riffler.JournalWriter(file) as w:
@@ -139,7 +139,7 @@ def same(a, b):
     )
 
 
-def test_replay_gives_the_session_again(journal, tmp_path):
+def test_replay_reproduces_the_session(journal, tmp_path):
     session = riffler.Volume.block((0, 0, 0), (50, 40, 30), 0.5, directions="xyz")
     session.save(tmp_path / "stock.rvol")
     for s in journal.strokes:
@@ -158,7 +158,7 @@ def test_replay_gives_the_session_again(journal, tmp_path):
         journal.replay(tmp_path / "nowhere")
 
 
-def test_program_has_the_strokes_with_their_tools_and_feeds(journal):
+def test_a_program_has_the_strokes_with_their_tools_and_feeds(journal):
     p = journal.program(spindle=9000)
     assert p.tools == {1: BALL, 2: riffler.Tool.flat(4, 20)} and p.provenance == {"artist": "Ünal"}
     assert len(p) == sum(len(s) + 2 for s in journal.strokes)
@@ -198,7 +198,7 @@ def test_program_has_the_strokes_with_their_tools_and_feeds(journal):
         (lambda j: j.redo(), "no stroke to redo"),
     ],
 )
-def test_what_is_wrong_is_named_and_changes_nothing(journal, tmp_path, call, message):
+def test_errors_are_named_and_change_nothing(journal, tmp_path, call, message):
     journal.save(tmp_path / "before")
     with pytest.raises(ValueError, match=message):
         call(journal)

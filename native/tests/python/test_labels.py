@@ -74,10 +74,10 @@ def test_a_label_is_in_the_add_on(page, addon):
     assert not unknown, f"docs/{page}.md"
 
 
-def test_labels_are_found():
+def test_labels_in_a_document_are_found():
     assert {"New Stock", "Carve", "Export STL", "Mirror"} <= set(named("first-chip"))
     assert {"Resolve", "Write NC", "Find Pencil Cuts"} <= set(named("planning"))
 
 
-def test_a_label_that_nobody_has_is_found(addon):
+def test_a_label_that_the_add_on_lacks_is_reported(addon):
     assert "Gone to Lunch" not in addon

@@ -68,7 +68,7 @@ def enters(program, lower, upper):
     return False
 
 
-def test_a_plan_that_is_free_meets_a_clamp_on_its_way_in_and_is_led_round_it(tmp_path):
+def test_a_link_goes_round_a_clamp_that_the_straight_approach_would_hit(tmp_path):
     fixture = clamp()
     collider = riffler.Collider(PART, fixtures=[fixture])
     cl = located(collider)
@@ -99,7 +99,7 @@ def test_a_plan_that_is_free_meets_a_clamp_on_its_way_in_and_is_led_round_it(tmp
     assert {f.kind for f in riffler.verify(program, stock, part_mesh=PART, fixtures=[fixture]).findings} <= {"unknown"}
 
 
-def test_without_obstacles_links_are_what_they_were():
+def test_links_without_obstacles_are_unchanged():
     collider = riffler.Collider(PART)
     cl = located(collider)
     plain = riffler.Program.from_cl([cl, cl], tools=[TOOL], feed=800, occupied=PART.bounds)
@@ -107,7 +107,7 @@ def test_without_obstacles_links_are_what_they_were():
     assert np.array_equal(plain.poses, program.poses) and np.array_equal(plain.rapid, program.rapid)
 
 
-def test_the_same_for_any_number_of_threads():
+def test_links_are_the_same_for_any_number_of_threads():
     collider = riffler.Collider(PART, fixtures=[clamp()])
     cl, found = located(collider), []
     for threads in (1, 3):
@@ -122,7 +122,7 @@ def roof(lower=(-300, -300, 80), upper=(360, 340, 86)):
 
 
 @pytest.mark.parametrize("remedy", ["", "move the fixture", "tilt the tool", "stick out further"])
-def test_what_cannot_be_linked_is_refused_and_its_remedies_help(remedy):
+def test_paths_that_cannot_be_linked_are_refused_and_the_remedies_help(remedy):
     axis, tool, fixtures = LEANING, TOOL, [roof()]
     if remedy == "move the fixture":
         fixtures = [roof((400, -300, 80), (900, 340, 86))]
@@ -146,7 +146,7 @@ def test_what_cannot_be_linked_is_refused_and_its_remedies_help(remedy):
         riffler.Program.from_cl([np.array([[0, -300, 200, 0, 0, 1.0]] * 2), cl], **how)
 
 
-def test_a_cut_that_collides_itself_is_named():
+def test_a_colliding_cut_is_named():
     collider = riffler.Collider(PART)
     deep = located(collider) - [0, 0, 0.5, 0, 0, 0]
     said = r"^path 0, row 0: no approach is clear: the cut itself stands where the cutter meets the part, 0\.\d+ mm"
@@ -161,7 +161,7 @@ def test_a_cut_that_collides_itself_is_named():
         program.write("never.ngc", post="3-axis", collider=collider)
 
 
-def test_how_the_tool_leaves_is_the_callers_to_choose():
+def test_the_caller_chooses_how_the_tool_leaves():
     collider = riffler.Collider(PART)
     cl = located(collider)
     how = {"tools": [TOOL], "feed": 800, "collider": collider}
@@ -200,7 +200,7 @@ def test_wrong_options_are_named(wrong):
         riffler.Program.from_cl([located(collider)], tools=None, feed=800, collider=collider)
 
 
-def test_it_is_the_machines_own_motion_that_is_checked(tmp_path):
+def test_the_machines_own_motion_is_checked(tmp_path):
     """Two rapids above everything whose great circle goes over the top. A head that cannot lean back turns C by half a
     turn instead, and the holder goes round through a post at the side."""
     lean = np.radians(60)

@@ -120,7 +120,7 @@ def judged(file, axes, poses):
 
 @pytest.mark.parametrize("post", POSTS)
 @pytest.mark.parametrize("name", PATHS)
-def test_blocks_hold_the_poses_and_the_ways_between_them_the_tolerances(tmp_path, post, name):
+def test_blocks_reach_the_poses_and_moves_between_them_keep_the_tolerances(tmp_path, post, name):
     poses = path(name)
     worst, inner, moves = judged(written(tmp_path, poses, post), POSTS[post][2], poses)
     reach = np.abs(moves.joints[:, :3]).max() + 50  # what a printed angle's last digit moves
@@ -130,7 +130,7 @@ def test_blocks_hold_the_poses_and_the_ways_between_them_the_tolerances(tmp_path
 
 @pytest.mark.parametrize("feed", ["inverse-time", "per-minute"])
 @pytest.mark.parametrize("post", JOINTS)
-def test_every_block_takes_the_time_of_its_tips_way_or_of_its_turn(tmp_path, post, feed):
+def test_every_block_takes_the_time_of_its_tips_path_or_of_its_turn(tmp_path, post, feed):
     poses = path("smooth")
     file = written(tmp_path, poses, post, max_rotary=2000.0, feed=feed)
     assert ("G93" in file.read_text()) == (feed == "inverse-time")
@@ -144,7 +144,7 @@ def test_every_block_takes_the_time_of_its_tips_way_or_of_its_turn(tmp_path, pos
     np.testing.assert_allclose(moves.minutes[1:][fed], wanted[fed], atol=5e-7, rtol=2e-3)
 
 
-def test_mutations_do_not_pass(tmp_path):
+def test_mutated_code_does_not_pass(tmp_path):
     post, poses = "linuxcnc-xyzac", path("smooth")
     axes = POSTS[post][2]
     file = written(tmp_path, poses, post)
@@ -185,7 +185,7 @@ def test_iso_directions_turn_the_other_way(tmp_path, post):
     np.testing.assert_allclose(turned, 0, atol=PRINTED)
 
 
-def test_three_axis_programs_are_read_as_they_are(tmp_path):
+def test_three_axis_programs_are_read_unchanged(tmp_path):
     t = np.linspace(0, 1, 50)
     poses = np.column_stack([50 * t, 9 * np.sin(6 * t), -t, 0 * t, 0 * t, 1 + 0 * t])
     file = tmp_path / "p.ngc"

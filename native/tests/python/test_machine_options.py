@@ -47,7 +47,7 @@ def test_each_option_is_described_and_taken(machine, tmp_path):
 
 
 @pytest.mark.parametrize("machine", list(riffler.machines()))
-def test_values_are_those_that_count_where_none_is_given(machine, tmp_path):
+def test_listed_values_are_the_defaults(machine, tmp_path):
     listed = facts(machine)
     needed = {name: some(fact) for name, fact in listed.items() if fact.needed}
     values = {name: fact.value for name, fact in listed.items() if fact.value is not None}
@@ -56,7 +56,7 @@ def test_values_are_those_that_count_where_none_is_given(machine, tmp_path):
     assert (tmp_path / "a.nc").read_bytes() == (tmp_path / "b.nc").read_bytes()
 
 
-def test_what_must_be_given_depends_on_what_is_given():
+def test_required_options_depend_on_the_given_ones():
     assert facts("linuxcnc-xyzac")["rot_point"].needed
     assert not facts("linuxcnc-xyzac", {"tcp": True})["rot_point"].needed
     assert not facts("head-head")["pivot_length"].needed
@@ -68,7 +68,7 @@ def test_what_must_be_given_depends_on_what_is_given():
     assert facts("linuxcnc-xyzac")["rate_c"].unit == "deg/min" and facts("tcp")["rate_x"].unit == "mm/min"
 
 
-def test_a_machine_of_one_s_own_lists_its_own_options_first(tmp_path, monkeypatch):
+def test_a_users_machine_lists_its_own_options_first(tmp_path, monkeypatch):
     monkeypatch.setenv("RIFFLER_MACHINES", str(tmp_path))
     (tmp_path / "mill.toml").write_text(
         'description = "mill"\nwords = "joints"\n[options]\n'

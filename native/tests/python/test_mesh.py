@@ -45,7 +45,7 @@ def normals_and_areas(mesh):
     return cross, np.linalg.norm(cross, axis=1) / 2
 
 
-def test_measures_are_those_of_numpy():
+def test_measures_agree_with_numpy():
     mesh = torus()
     p = mesh.vertices[mesh.triangles]
     _, areas = normals_and_areas(mesh)
@@ -67,7 +67,7 @@ def test_arrays_are_views_that_cannot_be_written_and_outlive_the_mesh():
     assert vertices[7].tolist() == [1, 2, 3]
 
 
-def test_takes_lists_and_other_dtypes_and_copies_them():
+def test_a_mesh_takes_lists_and_other_dtypes_and_copies_them():
     given = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], np.float32)
     for dtype in (np.int8, np.uint16, np.int64, np.uint64):
         mesh = riffler.Mesh(given, np.array([[0, 1, 2]], dtype))
@@ -140,7 +140,7 @@ def test_an_empty_mesh_writes_a_valid_empty_stl(tmp_path):
         riffler.Mesh.read(tmp_path / "empty.stl")
 
 
-def test_files_that_cannot_be_read(tmp_path):
+def test_files_that_cannot_be_read_or_written_are_named(tmp_path):
     with pytest.raises(ValueError, match=r"ends in \.stl, \.obj or \.ply \(from Python also \.3mf\), not in '\.amf'"):
         riffler.Mesh.read(tmp_path / "part.amf")
     with pytest.raises(ValueError, match=r"ends in \.stl, \.obj or \.ply"):

@@ -17,7 +17,7 @@ def stroke(volume, x, y):
     volume.carve(riffler.Tool.ball(3, 20), np.array([[x, y, 11, *UP], [x + 1.5, y, 10.8, *UP]]))
 
 
-def test_follows_a_stroke_and_takes_it_back():
+def test_a_mesher_follows_a_stroke_and_its_undo():
     volume = carved()
     mesher = riffler.Mesher(volume)
     before = volume.snapshot()
@@ -34,7 +34,7 @@ def test_follows_a_stroke_and_takes_it_back():
     assert mesher.update(volume) == []
 
 
-def test_patches_are_the_mesh():
+def test_all_patches_together_are_the_mesh():
     volume = carved()
     mesher = riffler.Mesher(volume)
     patches = {n: mesher.patch(n) for n in mesher.patches()}
@@ -49,7 +49,7 @@ def test_patches_are_the_mesh():
     assert np.array_equal(corners[np.lexsort(corners.T)], expected[np.lexsort(expected.T)])
 
 
-def test_with_a_tolerance_it_follows_to_mesh_with_that_tolerance():
+def test_a_mesher_with_a_tolerance_agrees_with_to_mesh():
     volume = carved()
     mesher = riffler.Mesher(volume, tolerance=0.02)
     full = riffler.Mesher(volume)
@@ -76,7 +76,7 @@ def test_with_a_tolerance_it_follows_to_mesh_with_that_tolerance():
     assert mesher.pick([8, 7, 30], [0, 0, -1]).point.tolist() == full.pick([8, 7, 30], [0, 0, -1]).point.tolist()
 
 
-def test_a_tolerance_of_no_use_keeps_all_triangles_and_a_bad_one_is_an_error():
+def test_an_unusable_tolerance_keeps_all_triangles_and_a_bad_one_is_an_error():
     volume = carved()
     for tolerance in (None, 0, 1e-7):
         assert riffler.Mesher(volume, tolerance=tolerance).triangles == len(volume.to_mesh().triangles)
@@ -189,7 +189,7 @@ def test_edges_are_those_of_the_triangles(bricks):
     assert len(edges) == len(np.unique(np.sort(edges, axis=1), axis=0)) == len(np.unique(sides.reshape(-1, 2), axis=0))
 
 
-def test_picks_what_a_ray_meets_first():
+def test_pick_finds_the_first_triangle_that_a_ray_meets():
     volume = carved()
     mesher = riffler.Mesher(volume)
     distance, point, normal, brick = mesher.pick([8, 7, 20], [0, 0, -3])
@@ -206,7 +206,7 @@ def test_picks_what_a_ray_meets_first():
     assert mesher.pick([8, 7, 20], [0, 0, -1])[0] == pytest.approx(depth, abs=1e-3)
 
 
-def test_many_rays_at_once_are_what_they_are_one_by_one():
+def test_many_rays_at_once_give_the_same_hits_as_one_by_one():
     mesher = riffler.Mesher(carved())
     rng = np.random.default_rng(3)
     origins = rng.uniform(-10, 40, (500, 3))
@@ -227,7 +227,7 @@ def test_many_rays_at_once_are_what_they_are_one_by_one():
     assert [len(a) for a in mesher.pick(np.empty((0, 3)), np.empty((0, 3)))] == [0, 0, 0, 0]
 
 
-def test_a_frozen_surface_stays():
+def test_a_frozen_surface_does_not_change():
     volume = carved()
     mesher = riffler.Mesher(volume)
     frozen = mesher.freeze()
@@ -250,7 +250,7 @@ def test_a_frozen_surface_stays():
     assert set(dataclasses.astuple(frozen.take_counters())) == {0}
 
 
-def test_wrong_rays():
+def test_wrong_rays_are_refused():
     mesher = riffler.Mesher(carved())
     for surface in (mesher, mesher.freeze()):
         with pytest.raises(ValueError, match=r"^direction: zero"):
@@ -269,7 +269,7 @@ def test_wrong_rays():
             surface.pick([0, 0], [0, 0, 1])
 
 
-def test_wrong_bricks():
+def test_wrong_bricks_are_refused():
     mesher = riffler.Mesher(carved())
     with pytest.raises(ValueError, match=r"^bricks: 1 is listed twice"):
         mesher.patch([1, 0, 1])
@@ -279,7 +279,7 @@ def test_wrong_bricks():
         mesher.patch(-1)
 
 
-def test_wrong_calls():
+def test_wrong_calls_are_refused():
     mesher = riffler.Mesher(carved())
     with pytest.raises(ValueError, match="box, pitch and directions"):
         mesher.update(riffler.Volume.block([0, 0, 0], [30, 24, 12], 0.5, "xyz"))

@@ -117,12 +117,12 @@ def here(tmp_path, monkeypatch):
     riffler.deprecated.forget()
 
 
-def test_every_call_with_an_old_form_is_here():
+def test_every_call_with_an_old_form_is_tested():
     assert set(FORMS) == set(old.geometry.OLD.positional)
 
 
 @pytest.mark.parametrize("name", FORMS)
-def test_positions_of_before_warn_and_give_the_same(name):
+def test_old_positional_arguments_warn_and_give_the_same(name):
     before, now = FORMS[name]
     with warnings.catch_warnings():
         warnings.simplefilter("error", DeprecationWarning)
@@ -135,7 +135,7 @@ def test_positions_of_before_warn_and_give_the_same(name):
         assert bits(before()) == expected  # once
 
 
-def test_methods_that_were_renamed():
+def test_renamed_methods_warn_and_give_the_same():
     for call, expected, new in (
         (lambda: carved().grown(upper=(25, 20, 10)), lambda: carved().grow(upper=(25, 20, 10)), "Volume.grow"),
         (lambda: carved().resampled(1.0), lambda: carved().resample(1.0), "Volume.resample"),
@@ -151,7 +151,7 @@ def test_methods_that_were_renamed():
 
 
 @pytest.mark.filterwarnings("ignore:riffler. Mesh:DeprecationWarning")
-def test_reports_that_were_filled():
+def test_dicts_for_reports_are_still_filled():
     bad = riffler.Mesh(MESH.vertices, MESH.triangles[:, ::-1])
     report = {}
     assert bits(bad.oriented(report)) == bits(bad.orient())
@@ -163,7 +163,7 @@ def test_reports_that_were_filled():
     assert report == lost | {"all_triangles": len(carved().to_mesh().triangles)}
 
 
-def test_results_that_were_dicts_and_tuples():
+def test_results_can_still_be_read_as_dicts_and_tuples():
     audit = MESH.audit()
     with pytest.warns(DeprecationWarning, match=r'Audit\["open_edges"\] is deprecated, use Audit.open_edges'):
         assert audit["open_edges"] == 0

@@ -150,7 +150,7 @@ def test_an_old_form_gives_the_same_and_names_the_new_one(form):
     assert bits(found) == bits(new())
 
 
-def test_old_names_of_journals(tmp_path):
+def test_old_names_of_journals_warn_and_work(tmp_path):
     made = journal()
     with pytest.warns(DeprecationWarning, match=r"Journal.write is deprecated, use Journal.save"):
         made.write(tmp_path / "a.rjournal")
@@ -167,7 +167,7 @@ def test_old_names_of_journals(tmp_path):
     assert made.strokes[1].times.tolist() == [1, 2]
 
 
-def test_old_positions_of_programs_and_their_files(tmp_path):
+def test_old_positions_of_programs_and_their_files_warn_and_work(tmp_path):
     with pytest.warns(DeprecationWarning, match=r"Program.write: post by position is deprecated, use post=…"):
         PROGRAM.write(tmp_path / "a.ngc", "3-axis")
     with pytest.warns(DeprecationWarning, match=r"Program.read: machine by position is deprecated, use machine=…"):
@@ -206,7 +206,7 @@ def test_wrong_arguments_name_the_right_ones():
         plan.cutter_locations(UPRIGHT, BALL)
 
 
-def test_old_forms_of_pens():
+def test_old_forms_of_pens_warn_and_work():
     pointer = riffler.pen.Pointer("mouse")
     with pytest.warns(DeprecationWarning, match=r"Pointer.set_frame\(most_tilt=…\) is deprecated, use max_tilt=…"):
         pointer.set_frame(most_tilt=0.5)

@@ -40,7 +40,7 @@ def test_turned_triangles_are_turned_back():
     assert found.turned == 6 and found.lost == 0 and found.lost_note == ""
 
 
-def test_a_turned_part_is_the_same_to_all_that_takes_solids():
+def test_a_turned_part_gives_the_same_results_as_the_right_one():
     bad = box((0, 0, 0), (10, 10, 10), HALF)
     assert len(riffler.plan.pencil(bad, BALL)) == 0
     assert np.allclose(CUBE.deviation(box((2, 2, 2), (8, 8, 8), HALF), signed=True) > 0, True)
@@ -71,7 +71,7 @@ def test_boxes_are_exact_at_any_pitch(size, pitch):
             assert riffler.Volume.from_mesh(box(lower, upper), pitch, directions).volume == exact
 
 
-def test_removed_is_what_the_volume_loses():
+def test_removed_equals_the_loss_of_volume():
     for directions in ("x", "y", "z", "xyz"):
         v = riffler.Volume.block((0, 0, 0), (10.4, 10.49, 10.51), 1, directions)
         steps = [[-2, 1, 9.3], [12, 9, 8.1], [9.9, 10.2, 9], [10.2, 10.4, 3], [5, 5, 11], [10.4, 5, 10]]
@@ -83,7 +83,7 @@ def test_removed_is_what_the_volume_loses():
         assert (cut.removed[:2] > 0).all() and np.isfinite(cut.force).all()
 
 
-def test_force_counts_areas():
+def test_force_follows_the_removed_volume():
     # A face mill over all of a block: the force is that of the volume taken.
     mill = riffler.Tool.flat(60, 20)
     poses = np.array([[5, 5, 10, 0, 0, 1.0], [5, 5, 9, 0, 0, 1]])
@@ -94,7 +94,7 @@ def test_force_counts_areas():
     assert cut.torque[0, :2] == pytest.approx([cut.force[0, 2] * 0.245, -cut.force[0, 2] * 0.2], abs=0.6)
 
 
-def test_thin_material_is_told():
+def test_lost_thin_material_is_reported():
     plate = box((0, 0, 0), (50, 50, 0.3))
     tray = riffler.Volume.block((0, 0, 0), (50, 50, 10), 1, "xyz")
     mill = riffler.Tool.flat(200, 20)
@@ -121,7 +121,7 @@ def test_thin_material_is_told():
         riffler.Volume.from_mesh(wire, 1)
 
 
-def test_round_and_thick_parts_are_no_reason_for_a_word():
+def test_round_and_thick_parts_get_no_note():
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         a = np.linspace(0, np.pi, 40)
@@ -152,7 +152,7 @@ def write_parts(folder):
 CARVE = ("--pitch", 1, "--tool", "ball:4:30", "--program", "p.ngc", "--out", "out.stl")
 
 
-def test_commands_tell_what_is_lost(tmp_path):
+def test_commands_report_lost_material(tmp_path):
     write_parts(tmp_path)
     tray = ("--stock", "50x50x10", "--pitch", 1, "--tool", "flat:200:30", "--program", "down.ngc", "--out")
     done = riffle("volume", "carve", *tray, "out.stl", cwd=tmp_path)
@@ -168,7 +168,7 @@ def test_commands_tell_what_is_lost(tmp_path):
     assert done.returncode == 0 and "a pitch of 0.19 mm keeps it" in done.stderr
 
 
-def test_commands_tell_what_is_turned(tmp_path):
+def test_commands_report_turned_triangles(tmp_path):
     write_parts(tmp_path)
     done = riffle("volume", "carve", "--stock", "turned.stl", *CARVE, cwd=tmp_path)
     assert done.returncode == 0 and "turned.stl: 6 triangles faced opposite to those around" in done.stderr
@@ -181,7 +181,7 @@ def test_commands_tell_what_is_turned(tmp_path):
     assert done.returncode == 0 and "6 triangles" in done.stderr and " 0: " in done.stdout
 
 
-def test_a_stock_that_is_all_gone_is_told(tmp_path):
+def test_a_stock_without_any_material_left_is_reported(tmp_path):
     (tmp_path / "p.ngc").write_text("G21 G90 G94 F600\nG0 X-300 Y10 Z-1\nG1 X300\nM2\n")
     done = riffle(
         "volume", "carve", "--stock", "20x20x10", "--pitch", 1, "--tool", "flat:100:30", "--program", "p.ngc",

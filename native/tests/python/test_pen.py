@@ -51,7 +51,7 @@ def chains(counts):
     return np.array([[chain_end("R", row[[2, 0, 1]]), chain_end("L", row[[5, 3, 4]])] for row in angles])
 
 
-def test_pens_have_names_and_home(pen):
+def test_the_shipped_pen_has_its_name_home_and_channels(pen):
     assert "two arms" in riffler.pen.names()["riffler"]
     assert pen.name == "riffler" and pen.description == riffler.pen.names()["riffler"]
     assert pen.home.dtype == np.int32 and np.array_equal(pen.home, HOME)
@@ -59,7 +59,7 @@ def test_pens_have_names_and_home(pen):
     assert pen.grip_length == 30 and pen.limits.force > 0
 
 
-def test_forward_is_the_serial_chain(pen):
+def test_forward_agrees_with_the_serial_chain(pen):
     counts = random_counts(2000, 1)
     right, left = np.moveaxis(chains(counts), 1, 0)
     assert np.abs(pen.ends(counts)[:, 0] - right).max() < 1e-12 * 400
@@ -113,7 +113,7 @@ def test_efforts_do_the_work_of_the_wrench(pen):
         assert np.abs(work - given).max() < 2e-3 * np.abs(torques).max() * step
 
 
-def test_split_has_the_force_and_the_torque_square_to_the_grip(pen):
+def test_split_has_the_force_and_the_torque_perpendicular_to_the_grip(pen):
     rng = np.random.default_rng(4)
     wrenches, apart = rng.normal(size=(1000, 6)) * 10, rng.normal(size=(1000, 3)) * 20
     forces, missing = pen.split(wrenches, apart)
@@ -124,7 +124,7 @@ def test_split_has_the_force_and_the_torque_square_to_the_grip(pen):
     assert np.allclose(np.cross(missing, apart), 0, atol=1e-11)
 
 
-def test_motors_are_told_within_their_peaks(pen):
+def test_motor_commands_stay_within_the_peaks(pen):
     torques = np.array([[0, 180.0, 0, 0, 0, 0], [0, 5400, 0, 0, -540, 0]])
     currents, scale = pen.motor_currents(torques)
     assert currents.dtype == np.int16 and np.array_equal(scale, [1, 0.1])
@@ -133,7 +133,7 @@ def test_motors_are_told_within_their_peaks(pen):
     assert np.array_equal(steps, [[660, 0, 0, 0, 0, 0], [1980, 0, 0, -198, 0, 0]])
 
 
-def test_a_lost_count_is_noticed_and_found(pen):
+def test_a_lost_count_is_detected_and_located(pen):
     rng = np.random.default_rng(5)
     axes = np.column_stack([rng.normal(size=(200, 2)) * 0.4, np.ones(200)])
     axes /= np.linalg.norm(axes, axis=1)[:, None]
@@ -149,7 +149,7 @@ def test_a_lost_count_is_noticed_and_found(pen):
     assert noticed.shape == (1, 6) and noticed[0, 1] == pytest.approx(10.6, abs=0.1)
 
 
-def test_a_pen_is_homed_by_what_its_counters_read(pen):
+def test_homing_takes_the_readings_of_the_counters_as_home(pen):
     start = np.array([2**31 - 1, -(2**31), 5, 100, -7, 2**31 - 20])
     moved = np.array([30, -40, 50, 60, -70, 80])
     wrapped = ((start + moved + 2**31) % 2**32) - 2**31
@@ -161,7 +161,7 @@ def test_a_pen_is_homed_by_what_its_counters_read(pen):
         pen.homed([start, start])
 
 
-def test_capability_says_what_cannot_be_felt(pen):
+def test_capability_names_what_the_hand_cannot_feel(pen):
     capability = pen.capability()
     assert capability.text.endswith("the hand does not feel: torque about the grip's axis")
     assert [capability.axes[a].pushes for a in "xyzabc"] == [True] * 5 + [False]
@@ -177,12 +177,12 @@ def test_capability_says_what_cannot_be_felt(pen):
         ([[np.nan] * 6], "counts, row 0: not finite"),
     ],
 )
-def test_counts_are_checked(pen, counts, message):
+def test_bad_counts_are_refused(pen, counts, message):
     with pytest.raises(ValueError, match=message):
         pen.forward(counts)
 
 
-def test_other_arguments_are_checked(pen):
+def test_other_bad_arguments_are_refused(pen):
     with pytest.raises(ValueError, match="apart must have as many rows as wrenches: 2, not 1"):
         pen.split(np.zeros((2, 6)), np.ones((1, 3)))
     with pytest.raises(ValueError, match="at must have as many rows as counts: 1, not 2"):
@@ -195,7 +195,7 @@ def test_other_arguments_are_checked(pen):
     assert pen.forward(np.empty((0, 6))).shape == (0, 6)
 
 
-def test_a_pen_of_ones_own(tmp_path, monkeypatch):
+def test_a_users_pen_is_loaded_from_its_file(tmp_path, monkeypatch):
     (tmp_path / "mine.toml").write_text('description = "half a pen"\n[arms]\nshoulder = -3\n')
     monkeypatch.setenv("RIFFLER_PENS", str(tmp_path))
     assert riffler.pen.names()["mine"] == "half a pen"

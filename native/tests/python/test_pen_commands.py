@@ -71,7 +71,7 @@ def in_terminal(*words: object, keys: dict[float, bytes], cwd) -> tuple[str, int
 # ---- what is drawn
 
 
-def test_braille_dots_are_where_they_are_asked_for():
+def test_braille_dots_are_at_their_coordinates():
     canvas = Braille(2, 1)
     canvas.dot(0, 0)
     canvas.dot(3, 3)
@@ -104,7 +104,7 @@ def test_a_line_leaves_no_gap():
     assert all(any(c != "⠀" for c in row) for row in rows)
 
 
-def test_history_keeps_its_seconds_and_says_what_values_passed_through():
+def test_history_keeps_its_seconds_and_gives_the_range_of_values():
     history = History(10.0)
     for k in range(2001):
         history.add(0.01 * k, np.sin(0.01 * k), 5.0)
@@ -146,7 +146,7 @@ def test_charts_have_a_scale_and_a_constant_is_a_line_in_the_middle():
 # ---- monitor
 
 
-def test_monitor_shows_a_line_a_second_where_there_is_no_terminal(tmp_path):
+def test_monitor_prints_a_line_per_second_without_a_terminal(tmp_path):
     done = riffle("pen", "monitor", "simulated", "--seconds", "2.6", cwd=tmp_path)
     assert done.returncode == 0 and done.stderr == ""
     lines = [line for line in done.stdout.splitlines() if "buttons" in line]
@@ -207,13 +207,13 @@ def test_monitor_plays_a_recording(tmp_path):
 
 
 @pytest.mark.parametrize("part", ["monitor", "calibrate"])
-def test_what_is_not_there_is_told_with_what_is(part, tmp_path):
+def test_a_missing_device_is_reported_with_the_devices_present(part, tmp_path):
     words = ["--yes"] if part == "calibrate" else []
     done = riffle("pen", part, "simulatde", *words, cwd=tmp_path)
     assert done.returncode == 2 and "no device 'simulatde'" in done.stderr and "simulated" in done.stderr
     done = riffle("pen", part, "/dev/hidraw99", *words, cwd=tmp_path)
     assert done.returncode == 2 and "/dev/hidraw99: no such device" in done.stderr
-    assert '"simulated" needs none' in done.stderr
+    assert '"simulated" needs no hardware' in done.stderr
     done = riffle("pen", part, "gone.rjournal", *words, cwd=tmp_path)
     assert done.returncode == 2 and done.stderr.count("\n") == 1
 
@@ -228,7 +228,7 @@ def test_files_are_checked_before_a_device_is_opened(tmp_path):
 # ---- calibrate
 
 
-def test_a_pen_that_is_right_is_told_so_and_its_report_is_not_written_over(tmp_path):
+def test_calibrate_passes_a_right_pen_and_keeps_an_existing_report(tmp_path):
     words = "pen", "calibrate", "simulated", "--yes", "--seconds", "5", "--out", "a.toml"
     data = result(*words, cwd=tmp_path)
     assert data["fits"] and data["geometry"] == "riffler" and data["postures"] >= 20
@@ -242,7 +242,7 @@ def test_a_pen_that_is_right_is_told_so_and_its_report_is_not_written_over(tmp_p
     low, high = report["ranges"]["L1"]["seen"]
     assert report["ranges"]["L1"]["limits"] == [-0.6, 1.2] and -0.6 < low < high < 1.2
     done = riffle(*words, cwd=tmp_path)
-    assert done.returncode == 2 and "a.toml: is there already" in done.stderr and "--force" in done.stderr
+    assert done.returncode == 2 and "a.toml: already exists" in done.stderr and "--force" in done.stderr
 
 
 def test_lost_counts_are_found_and_named(tmp_path):
@@ -255,7 +255,7 @@ def test_lost_counts_are_found_and_named(tmp_path):
     assert tomllib.loads((tmp_path / "a.toml").read_text())["verdict"] == data["verdict"]
 
 
-def test_calibrate_says_what_is_wrong_with_its_words(tmp_path):
+def test_calibrate_names_wrong_arguments(tmp_path):
     def refused(*words: str) -> str:
         done = riffle("pen", "calibrate", *words, cwd=tmp_path)
         assert done.returncode == 2 and done.stdout == ""
@@ -269,7 +269,7 @@ def test_calibrate_says_what_is_wrong_with_its_words(tmp_path):
 
 
 @terminal
-def test_calibrate_leads_a_person_through_it(tmp_path):
+def test_calibrate_guides_the_user(tmp_path):
     """Enter where the pen is at home, and Enter where it has been everywhere."""
     keys = {3.0: b"\n", 9.0: b"\n"}
     out, status = in_terminal("pen", "calibrate", "simulated", "--seconds", "40", keys=keys, cwd=tmp_path)
@@ -394,7 +394,7 @@ def test_a_run_becomes_a_figure(tmp_path):
     assert data["plot"] == "a.png" and png[:8] == b"\x89PNG\r\n\x1a\n" and len(png) > 20000
 
 
-def test_simulate_says_what_is_wrong(tmp_path):
+def test_simulate_names_wrong_arguments(tmp_path):
     def refused(*words: str, **env: str) -> str:
         done = riffle("pen", "simulate", *words, cwd=tmp_path, **env)
         assert done.returncode == 2 and done.stdout == ""

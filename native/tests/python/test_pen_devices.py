@@ -89,7 +89,7 @@ def listed(done: subprocess.CompletedProcess) -> list[dict]:
     return json.loads(done.stdout)["devices"]
 
 
-def test_kinds_are_listed_where_nothing_is_plugged_in(tmp_path):
+def test_kinds_are_listed_while_nothing_is_plugged_in(tmp_path):
     done = riffle("pen", "list", "--json", cwd=tmp_path)
     assert done.returncode == 0 and done.stderr == ""
     assert set(json.loads(done.stdout)["kinds"]) == set(riffler.pen.kinds()) >= {"riffler-pen", "spacemouse", "polhem"}
@@ -108,7 +108,7 @@ def test_a_puck_is_listed_with_what_it_can_do(plugged):
 
 
 @virtual
-def test_of_several_pucks_one_is_chosen_by_number_or_name(plugged):
+def test_one_of_several_pucks_is_chosen_by_number_or_name(plugged):
     """As at a Universal Receiver: one interface for each puck, another without its reports."""
     devices = [
         (0x256F, 0xC652, "Universal Receiver", PUCK),
@@ -143,7 +143,7 @@ def test_of_several_pucks_one_is_chosen_by_number_or_name(plugged):
 
 
 @virtual
-def test_each_reason_is_told(plugged):
+def test_each_reason_is_reported(plugged):
     identity = (b"\x03RPen" + bytes([7, 0, 0, 1, 0]) + b"riffler".ljust(24, b"\0") + b"12".ljust(16, b"\0")).ljust(50)
     devices = [
         (0x1209, 0x0001, "Riffler pen", PUCK, identity[:50]),
@@ -195,7 +195,7 @@ def test_a_puck_is_monitored_without_force(plugged):
     assert "connected" in table and "force" not in table
 
 
-def test_what_is_not_there_does_not_open():
+def test_missing_devices_do_not_open():
     with pytest.raises(riffler.pen.PenError, match=r"/dev/hidraw99: no such device"):
         riffler.pen.open("/dev/hidraw99")
     with pytest.raises(riffler.pen.PenError, match=r"/dev/null: not a HID device"):
@@ -231,7 +231,7 @@ def test_a_recording_opens_as_a_device(tmp_path):
         riffler.pen.open(path)
 
 
-def test_a_simulated_pen_opens_moves_and_goes_where_its_hand_is_told():
+def test_a_simulated_pen_opens_moves_and_follows_its_hand():
     def wait(what) -> bool:
         end = time.monotonic() + 20
         while not what() and time.monotonic() < end:
@@ -257,7 +257,7 @@ def test_a_simulated_pen_opens_moves_and_goes_where_its_hand_is_told():
     assert device.health().state == "stopped"
 
 
-def test_a_pen_makes_up_for_its_weight_and_friction_where_it_is_told_to():
+def test_a_pen_compensates_weight_and_friction_on_request():
     for option in ("gravity", "friction"):
         with pytest.raises(ValueError, match=f"{option} must be a number between 0"):
             riffler.pen.open("simulated", **{option: 1.5})
@@ -298,7 +298,7 @@ def test_a_pointer_becomes_poses():
     assert tablet.push([0, 0, 1]).reason == "the device has no motors for all of it"
 
 
-def test_a_pointer_says_what_is_wrong_and_stays_as_it_was():
+def test_a_pointer_refuses_bad_input_and_stays_unchanged():
     with pytest.raises(ValueError, match="tablet, mouse"):
         riffler.pen.Pointer("finger")
     mouse = riffler.pen.Pointer("mouse")

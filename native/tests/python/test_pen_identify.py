@@ -180,7 +180,7 @@ def test_intervals_hold_the_truth(found):
     assert inside.mean() > 0.88  # 95 %, and what chance allows for in 66 values
 
 
-def test_intervals_are_no_wider_than_they_have_to_be(found):
+def test_intervals_are_no_wider_than_necessary(found):
     """An interval that holds everything says nothing."""
     for values, truth in found:
         for name in NAMES:
@@ -210,7 +210,7 @@ def test_sweeps_stay_where_the_arms_reach_and_keep_their_speed(geometry, rate):
         assert 1.875 * np.linalg.norm(path.poses[k + 1, :3] - path.poses[k, :3]) / time < 300.1
 
 
-def test_sweeps_are_those_that_tell_most_about_friction(geometry, monkeypatch):
+def test_the_most_informative_sweeps_are_chosen(geometry, monkeypatch):
     def mean():
         poses = sweeps(geometry, 40, FAST, 1).poses[1:-1]
         return np.mean([told(geometry, a, b, FAST) for a, b in itertools.pairwise(poses)])
@@ -220,7 +220,7 @@ def test_sweeps_are_those_that_tell_most_about_friction(geometry, monkeypatch):
     assert chosen > 2 * mean()
 
 
-def test_a_sweep_tells_nothing_where_a_joint_rests(geometry):
+def test_a_sweep_with_a_resting_joint_is_not_informative(geometry):
     home = home_of(geometry)
     lifted = home + np.array([0, 0, 20.0, 0, 0, 0])
     assert told(geometry, home, lifted, FAST) == 0, "joints 1 rest"
@@ -248,7 +248,7 @@ def test_axes_of_the_arms_are_those_of_the_shipped_pens_poses(geometry):
     np.testing.assert_allclose(base_axes(geometry), np.eye(3), atol=1e-6)
 
 
-def test_a_motor_the_wrong_way_round_is_found(geometry):
+def test_a_reversed_motor_is_found(geometry):
     with riffler.pen.open("simulated", seed=5, real_time=False) as device:
         begin(device, Keyboard(False))
         pushed = drive(device, wiggles(geometry), Keyboard(False), leads=False)
@@ -342,7 +342,7 @@ def test_the_command_writes_a_pen(tmp_path):
     written = [c.torque_constant for c in pen.channels]
     assert written == pytest.approx(data["identified"]["torque_constant"]["value"], rel=1e-4)
     again = riffle("pen", "identify", "simulated", "--yes", "--out", out, cwd=tmp_path)
-    assert again.returncode == 2 and "is there already" in again.stderr
+    assert again.returncode == 2 and "already exists" in again.stderr
 
 
 @pytest.mark.parametrize(
@@ -358,6 +358,6 @@ def test_the_command_writes_a_pen(tmp_path):
         (["simulated", "--yes", "--pens", "2", "--out", "x.toml"], "--out is for one pen"),
     ],
 )
-def test_what_cannot_be_is_refused(words, problem, tmp_path):
+def test_impossible_requests_are_refused(words, problem, tmp_path):
     done = riffle("pen", "identify", *words, cwd=tmp_path)
     assert done.returncode == 2 and problem in done.stderr

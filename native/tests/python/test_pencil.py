@@ -29,7 +29,7 @@ def step():
     return both(box([-20, 0, -5], [0, 40, 15]), box([-20, 0, -5], [30, 40, 0]))
 
 
-def test_a_wall_on_a_floor():
+def test_a_wall_on_a_floor_has_one_path():
     paths = riffler.plan.pencil(step(), BALL)
     assert len(paths) == 1 and paths.ends == [("part", "part")] and paths.reason == ""
     (p,) = paths
@@ -51,12 +51,12 @@ def test_the_inside_of_a_box_has_twelve_paths_that_meet():
     assert paths.rest_area == pytest.approx(9400 - 2 * (44 * 34 + 44 * 24 + 34 * 24), rel=0.02)
 
 
-def test_convex_parts_have_none_and_say_why():
+def test_convex_parts_have_no_path_and_a_reason():
     paths = riffler.plan.pencil(box([0, 0, 0], [50, 40, 30]), BALL)
     assert paths == [] and "reaches every point" in paths.reason and paths.stats.starts == 0
 
 
-def test_passes_lie_beside_the_valley():
+def test_passes_lie_on_both_sides_of_the_valley():
     paths = riffler.plan.pencil(step(), BALL, passes=3, stepover=0.5)
     assert [e[0] for e in paths.ends] == ["part", "pass", "pass", "pass", "pass"]
     offsets = sorted((p.centres[:, 0].mean() - RADIUS, p.centres[:, 2].mean() - RADIUS) for p in paths[1:])
@@ -98,7 +98,7 @@ def test_tools_without_a_ball_at_the_tip_are_refused(name, tool):
     assert len(riffler.plan.pencil(step(), **given)) == 1
 
 
-def test_links_are_short():
+def test_order_paths_makes_links_short():
     rng = np.random.default_rng(4)
     boxes = None
     for x in rng.permutation(12):
@@ -117,7 +117,7 @@ def test_links_are_short():
     assert riffler.plan.order_paths([]) == []
 
 
-def test_analysis():
+def test_analyse_reports_volume_units_and_defects():
     part = riffler.plan.analyse(box([0, 0, 0], [50, 40, 30]))
     assert part.closed and part.outward and part.units == "mm" and part.warnings == ()
     assert part.volume == pytest.approx(60000) and part.components == 1 and part.degenerate_share == 0
@@ -151,7 +151,7 @@ def test_progress_cancels():
         {"reference_tool": riffler.Tool.ball(5, 30)},
     ],
 )
-def test_wrong_calls(wrong):
+def test_wrong_calls_are_refused(wrong):
     with pytest.raises(ValueError, match=next(iter(wrong))):
         riffler.plan.pencil(step(), BALL, **wrong)
     with pytest.raises(ValueError, match="triangles"):

@@ -93,7 +93,7 @@ def test_a_divided_loop_goes_round_and_keeps_its_points():
         ({"normals": np.zeros((5, 2, 3))}, "normals, row 0: not a unit vector"),
     ],
 )
-def test_a_path_refuses_what_is_none(change, message):
+def test_a_path_refuses_bad_arrays(change, message):
     path = corner(5)
     given = {"radius": 3.0, "centres": path.centres, "contacts": path.contacts, "normals": path.normals} | change
     with pytest.raises(ValueError, match=message):
@@ -101,7 +101,7 @@ def test_a_path_refuses_what_is_none(change, message):
 
 
 @pytest.mark.parametrize("rule", ["linear", "slerp", "smooth"])
-def test_keys_hold_to_the_bit_and_any_axis_can_become_one(rule):
+def test_keys_are_kept_to_the_bit_and_any_axis_can_become_a_key(rule):
     path = corner().orient({2: leaning(0.2), 6: leaning(1.0)}, interpolation=rule)
     assert np.array_equal(path.axes[:3], [leaning(0.2)] * 3) and np.array_equal(path.axes[6:], [leaning(1.0)] * 3)
     assert np.allclose(np.linalg.norm(path.axes, axis=1), 1, atol=1e-15)
@@ -128,17 +128,17 @@ def test_keys_hold_to_the_bit_and_any_axis_can_become_one(rule):
         ([UP], {}, "must be a dict"),
     ],
 )
-def test_orienting_refuses_by_name(keys, more, message):
+def test_orient_names_what_it_refuses(keys, more, message):
     with pytest.raises(ValueError, match=message):
         corner().orient(keys, **more)
 
 
-def test_a_limit_projects_when_asked():
+def test_a_limit_projects_axes_on_request():
     path = corner().orient({0: UP, 8: leaning(1.0)}, interpolation="slerp", limit=(UP, 0.5), project=True)
     assert np.allclose(path.axes[4:], leaning(0.5), atol=1e-12) and np.allclose(path.axes[2], leaning(0.25), atol=1e-12)
 
 
-def test_frames_lean_and_axis():
+def test_frames_lean_and_axis_agree():
     path = corner()
     x, y, z = path.frames[4]
     assert np.allclose(x, [0, 1, 0]) and np.allclose(z, np.sqrt([0.5, 0, 0.5])) and np.allclose(y, np.cross(z, x))
@@ -149,7 +149,7 @@ def test_frames_lean_and_axis():
         path.axis(9, 0, 0)
 
 
-def test_the_nearest_contact_to_a_point_and_to_a_ray():
+def test_nearest_finds_the_contact_for_a_point_and_for_a_ray():
     path = corner()
     picked = path.nearest((3.2, 0.1, -1))
     assert picked.index == 4 and picked.side == 0 and np.array_equal(picked.normal, UP)
@@ -224,7 +224,7 @@ def test_drop_lands_where_opencamlib_does():
             assert (rho < d / 2 + 1e-9).all() and (up > rho / np.tan(0.6)).all()
 
 
-def test_drop_gives_nan_beside_the_part():
+def test_drop_gives_nan_next_to_the_part():
     heights, contacts = plan.drop([[15, 0, 0], [100, 0, 0]], riffler.Tool.ball(6, 30), mesh(FLOOR))
     assert heights[0] == 0 and np.isnan(heights[1]) and np.isnan(contacts[1]).all()
     sideways, _ = plan.drop([[0, 0, -2]], riffler.Tool.ball(6, 30), mesh(FLOOR), axis=(1, 0, 0))
@@ -272,7 +272,7 @@ def test_cutter_locations_are_the_same_for_any_number_of_threads(monkeypatch):
     assert results[0].tobytes() == results[1].tobytes()
 
 
-def test_what_cannot_be_freed_is_reported_and_left_out():
+def test_blocked_points_are_reported_and_left_out():
     lid = box((-10, -3, 5), (30, 20, 300))
     path = corner(5).orient({0: UP})
     cl, report = plan.cutter_locations(path, riffler.Tool.ball(6, 20), riffler.Collider(mesh(FLOOR, lid)), max_lift=5)
@@ -318,7 +318,7 @@ def test_no_free_orientation_is_an_answer_with_its_reason():
     assert path is None and report.point == 0 and "no orientation is free" in report.reason
 
 
-def test_least_tilt_leans_round_a_post():
+def test_min_tilt_leans_the_tool_round_a_post():
     collider = riffler.Collider(mesh(FLOOR, WALL, box((10, -1, 8), (40, 1, 40))))
     tool = riffler.Tool.ball(6, 30)
     grid = np.linspace(-1, 1, 11)
@@ -339,7 +339,7 @@ def test_least_tilt_leans_round_a_post():
         ({"tolerance": -1}, "tolerance must be finite"),
     ],
 )
-def test_maps_refuse_grids_without_meaning(more, message):
+def test_maps_refuse_meaningless_grids(more, message):
     with pytest.raises(ValueError, match=message):
         plan.free_orientations(corner(), riffler.Tool.ball(6, 20), riffler.Collider(mesh(FLOOR)), index=4, **more)
 
@@ -372,7 +372,7 @@ def some_plan():
     )
 
 
-def test_a_plan_comes_back_to_the_bit(tmp_path):
+def test_a_plan_reads_back_to_the_bit(tmp_path):
     before = some_plan()
     plan.save(tmp_path / "a.json", before)
     assert os.listdir(tmp_path) == ["a.json"]
@@ -415,7 +415,7 @@ def test_a_plan_comes_back_to_the_bit(tmp_path):
         (("paths", 0, "cl"), [[1, 2, 3]], r"paths\[0\].cl: the shape \(n, 6\)"),
     ],
 )
-def test_a_broken_plan_is_refused_by_its_place(tmp_path, where, value, message):
+def test_the_error_of_a_broken_plan_names_the_place(tmp_path, where, value, message):
     plan.save(tmp_path / "a.json", some_plan())
     data = json.loads((tmp_path / "a.json").read_text())
     *way, last = where
@@ -429,7 +429,7 @@ def test_a_broken_plan_is_refused_by_its_place(tmp_path, where, value, message):
 
 
 @pytest.mark.parametrize("text", [b"", b"{", b"[]", b'{"format": NaN}', b"\xff\xfe", b"[" * 100000])
-def test_what_is_no_plan_is_refused(tmp_path, text):
+def test_objects_that_are_no_plans_are_refused(tmp_path, text):
     (tmp_path / "a.json").write_bytes(text)
     with pytest.raises(riffler.FormatError, match=r"^a\.json: "):
         plan.load(tmp_path / "a.json")
@@ -445,7 +445,7 @@ def test_a_plan_is_the_same_as_bytes_and_as_a_file(tmp_path):
 
 
 @pytest.mark.parametrize(("data", "message"), [(b"{", "line 1"), (b"\xff\xfe", ""), (b"[]", "an object expected")])
-def test_bytes_that_are_no_plan_are_refused_by_their_name(data, message):
+def test_errors_of_bytes_that_are_no_plan_name_them(data, message):
     with pytest.raises(riffler.FormatError, match=f"^the plan in Block: .*{message}"):
         plan.loads(data, name="the plan in Block")
     with pytest.raises(riffler.FormatError, match=r"^plan: "):
@@ -459,7 +459,7 @@ def test_a_plan_has_a_line_for_each_path():
     assert plan.loads(plan.dumps(empty)).paths == [] and json.loads(plan.dumps(empty))["paths"] == []
 
 
-def test_of_plans_that_follow_one_another_only_other_paths_are_formatted():
+def test_successive_plans_format_only_changed_paths():
     texts, before = plan.Texts(), some_plan()
     assert plan.dumps(before, texts=texts) == plan.dumps(before) and texts.made == 2
     turned = before.paths[1].orient({0: before.paths[1].axis(0, 0.1, 0)})
@@ -471,7 +471,7 @@ def test_of_plans_that_follow_one_another_only_other_paths_are_formatted():
     assert plan.dumps(before, texts=texts) == plan.dumps(before) and texts.made == 6  # only the last is kept
 
 
-def test_paths_that_are_off_come_back_off():
+def test_paths_that_are_off_read_back_as_off():
     texts, before = plan.Texts(), some_plan()
     plan.dumps(before, texts=texts)
     after = replace(before, off=frozenset({1}))
@@ -482,7 +482,7 @@ def test_paths_that_are_off_come_back_off():
         plan.dumps(replace(before, off=frozenset({0, 2})))
 
 
-def test_a_plan_of_a_newer_version_says_so():
+def test_the_error_of_a_newer_plan_says_so():
     data = plan.dumps(some_plan()).replace(b'"version": 1', b'"version": 3')
     with pytest.raises(riffler.FormatError, match=r"^plan: version: 1 or 2 expected, not 3: a newer Riffler wrote it$"):
         plan.loads(data)

@@ -104,7 +104,7 @@ def test_columns_are_read_only_views(ball):
     assert np.isfinite(poses).all()
 
 
-def test_constructor_takes_columns_or_one_value():
+def test_the_constructor_takes_columns_or_one_value():
     cl = spiral(4)
     p = riffler.Program(
         cl, 100, rapid=[True, False, False, True], tool=[1, 1, 2, 2], line=5, spindle=-300, provenance={"a": "b"}
@@ -130,7 +130,7 @@ def test_constructor_takes_columns_or_one_value():
         ({"tools": {1: "ball"}}, "tools"),
     ],
 )
-def test_constructor_names_what_is_wrong(change, message):
+def test_the_constructor_names_bad_input(change, message):
     with pytest.raises((ValueError, TypeError), match=message):
         riffler.Program(**({"poses": spiral(3), "feed": 100} | change))
 
@@ -150,7 +150,7 @@ def test_constructor_names_what_is_wrong(change, message):
         ({"clearance": 0}, "clearance"),
     ],
 )
-def test_from_cl_names_what_is_wrong(change, message):
+def test_from_cl_names_bad_input(change, message):
     arguments = {"cl": [spiral(3)], "tools": [riffler.Tool.ball(6, 30)], "feed": 100} | change
     with pytest.raises(ValueError, match=message):
         riffler.Program.from_cl(arguments.pop("cl"), **arguments)
@@ -172,7 +172,7 @@ path = st.lists(st.tuples(tips, axes), min_size=2, max_size=8).map(lambda rows: 
 
 @FIXED
 @given(cl=path, axis_tolerance=st.sampled_from([0.00175, 2e-4]))
-def test_tcp_blocks_hold_the_poses_and_the_way_between_them(tmp_path_factory, cl, axis_tolerance):
+def test_tcp_blocks_keep_the_poses_and_the_moves_between_them(tmp_path_factory, cl, axis_tolerance):
     if any(np.linalg.norm(a + b) < 1e-3 for a, b in zip(cl[:-1, 3:], cl[1:, 3:], strict=True)):
         return
     cl = cl[np.r_[True, np.linalg.norm(np.diff(cl[:, :3], axis=0), axis=1) > 1e-2]]
@@ -348,7 +348,7 @@ def test_arcs_are_chords_within_the_tolerance(tmp_path):
     assert len(fine) > 3 * len(p)
 
 
-def test_mutations_of_the_code_do_not_pass(tmp_path, ball):
+def test_mutated_code_does_not_pass(tmp_path, ball):
     p = riffler.Program.from_cl([spiral(30, turns=0.4)], tools=[ball], feed=100)
     file = tmp_path / "p.ngc"
     p.write(file, options=AS_ROWS)

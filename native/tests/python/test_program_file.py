@@ -33,7 +33,7 @@ def assert_same(a, b):
     assert {n: t.to_dict() for n, t in a.tools.items()} == {n: t.to_dict() for n, t in b.tools.items()}
 
 
-def test_everything_comes_back_to_the_bit(tmp_path):
+def test_everything_reads_back_to_the_bit(tmp_path):
     for n in (0, 1, 100, 40_000):
         p = program(n)
         p.save(tmp_path / "p.rprog")
@@ -67,7 +67,7 @@ def test_a_recording_becomes_a_program_and_a_file(tmp_path):
     assert_same(p, riffler.Program.load(tmp_path / "s.rprog"))
 
 
-def test_cancelled_it_leaves_the_old_file(tmp_path):
+def test_a_cancelled_save_leaves_the_old_file(tmp_path):
     file = tmp_path / "p.rprog"
     program().save(file)
     old = file.read_bytes()
@@ -81,7 +81,7 @@ def test_cancelled_it_leaves_the_old_file(tmp_path):
     assert shares == sorted(shares) and shares[-1] == 1
 
 
-def test_other_files_are_told_apart(tmp_path):
+def test_other_files_are_recognised_and_refused(tmp_path):
     file = tmp_path / "p.rprog"
     file.write_text("G21\n")
     with pytest.raises(riffler.FormatError, match=r"^p\.rprog, byte 0: not a \.rprog file"):

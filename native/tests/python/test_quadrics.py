@@ -85,7 +85,7 @@ def ends(volume, direction):
 
 
 @pytest.mark.parametrize("solid", SOLIDS, ids=lambda s: f"{type(s).__name__}{tuple(s.centre)}{getattr(s, 'given', '')}")
-def test_every_end_lies_on_the_surface_and_no_ray_is_forgotten(solid):
+def test_every_ray_has_its_ends_on_the_surface(solid):
     pitch = 0.25
     volume = solid.volume(pitch)
     slack = 2 * SHIFT * pitch + 4 * np.spacing(abs(solid.centre).max() + 20)
@@ -172,7 +172,7 @@ def test_a_cylinders_rim_is_sharp():
     assert 5 * np.diff(angle).max() < 2 * 0.25  # mm between neighbours: nowhere is it cut off
 
 
-def test_it_is_as_a_mesh_of_many_facets_says():
+def test_quadrics_agree_with_meshes_of_many_facets():
     r, n = 5.0, 700  # 980 000 facets; their sagitta is below r (1 - cos(π / n)) · 2
     polar, turn = np.meshgrid(np.linspace(0, np.pi, n + 1)[1:-1], np.arange(n) * 2 * np.pi / n, indexing="ij")
     grid = r * np.stack([np.sin(polar) * np.cos(turn), np.sin(polar) * np.sin(turn), np.cos(polar)], axis=-1)
@@ -205,7 +205,7 @@ def test_threads_do_not_change_a_byte(monkeypatch):
     assert made[0] == made[1]
 
 
-def test_rays_that_touch_or_run_in_the_side():
+def test_rays_that_touch_the_side_or_run_in_it_give_valid_spans():
     """A radius of whole and half pitches: rays at r to the last bit, and a cylinder's side through rays along it."""
     for r in (2.0, 2.25):
         ball = riffler.Volume.sphere((0, 0, 0), r, 0.5, "xyz", lower=(-3, -3, -3), upper=(3, 3, 3))
@@ -222,7 +222,7 @@ def test_rays_that_touch_or_run_in_the_side():
 
 
 @pytest.mark.parametrize("directions", ["z", "xyz"])
-def test_a_ray_on_the_boxs_side_or_alone_beyond_it_stands_for_what_is_within(directions):
+def test_a_ray_on_the_boxs_side_or_just_beyond_it_counts_the_material_within(directions):
     """Across 10.5 pitches the last ray is on the side; across 0.2, through a plate, the only one is beyond it. The same
     as from_mesh."""
     lying = riffler.Volume.cylinder((0, 0, 0), 5, 10.5, 1, directions, axis=(1, 0, 0))
@@ -236,7 +236,7 @@ def test_a_ray_on_the_boxs_side_or_alone_beyond_it_stands_for_what_is_within(dir
     assert np.allclose(speck.intervals("z")[1], [[0.9, 1.1]], atol=1e-12)
 
 
-def test_what_the_box_cuts_off_looks_out_of_the_box():
+def test_normals_on_the_boxs_sides_point_out_of_the_box():
     half = riffler.Volume.sphere((0, 0, 0), 5, 0.25, "xyz", upper=(5, 5, 0))
     assert half.volume == pytest.approx(2 / 3 * np.pi * 125, rel=1e-3)
     _, spans = half.intervals("z")
@@ -267,13 +267,13 @@ def test_what_the_box_cuts_off_looks_out_of_the_box():
         (lambda: riffler.Volume.cylinder((0, 0, 0), 1, 1, 0.1, axis=(0, np.inf, 0)), "axis"),
     ],
 )
-def test_nonsense_is_refused_by_name(call, words):
+def test_absurd_arguments_are_refused_by_name(call, words):
     with pytest.raises(ValueError, match=words):
         call()
 
 
 @pytest.mark.parametrize("directions", ["z", "xyz"])
-def test_what_no_ray_meets_is_refused_and_the_remedy_works(directions):
+def test_shapes_that_no_ray_meets_are_refused_and_the_remedy_works(directions):
     box = {"lower": (-4, -4, -4), "upper": (4, 4, 4)}
     for make in (
         lambda pitch: riffler.Volume.sphere((0, 0, 0), 0.0123, pitch, directions, **box),
@@ -292,6 +292,6 @@ def test_an_axis_may_have_any_length():
         assert riffler.Volume.cylinder((0, 0, 0), 5, 9, 0.5, "xyz", axis=axis).to_bytes() == one
 
 
-def test_cancelled():
+def test_a_progress_of_false_cancels_the_call():
     with pytest.raises(riffler.Cancelled):
         riffler.Volume.sphere((0, 0, 0), 5, 0.05, "xyz", progress=lambda share: False)

@@ -20,7 +20,7 @@ def part(tmp_path):
     return file
 
 
-def test_a_stream_gives_what_reading_gives(part):
+def test_a_stream_gives_the_same_rows_as_reading(part):
     whole = riffler.Program.read(part)
     chunks = list(riffler.Program.stream(part, machine="tcp", rows=1000))
     assert all(len(chunk) <= 1000 for chunk in chunks)
@@ -32,7 +32,7 @@ def test_a_stream_gives_what_reading_gives(part):
     assert all(chunk.provenance == {"source": "part.ngc"} for chunk in chunks)
 
 
-def test_a_stream_says_what_is_wrong_when_it_gets_there(part):
+def test_a_stream_raises_an_error_when_it_reaches_it(part):
     part.write_text(part.read_text().replace("M2", "G1 X"))
     stream = riffler.Program.stream(part, rows=LINES)
     assert len(next(stream)) == LINES
@@ -60,7 +60,7 @@ def test_a_conversational_program_streams_too(tmp_path):
         riffler.Program.stream(file)
 
 
-def test_streams_run_beside_each_other(part):
+def test_streams_run_at_the_same_time(part):
     sums = []
 
     def read():
@@ -88,7 +88,7 @@ def test_an_apt_file_is_a_program_like_any_other(tmp_path):
     assert chunk.tools == program.tools and len(chunk) == 3
 
 
-def test_what_was_skipped_is_in_the_provenance(tmp_path):
+def test_skipped_blocks_are_in_the_provenance(tmp_path):
     file = tmp_path / "p.ngc"
     file.write_text("G21 G0 X1\nG187 P1\nG0 X2 U5\nG28\n")
     with pytest.raises(riffler.FormatError, match=r"line 2: unknown code G187: .*'unknown': 'skip'"):

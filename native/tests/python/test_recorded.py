@@ -119,7 +119,7 @@ def test_a_trembling_stroke_becomes_few_points_and_keys_within_both_bounds():
     assert len(finer.path.keys) > len(check(wave(600), tolerance=0.05, angle=0.1).path.keys)
 
 
-def test_the_judge_sees_a_bound_that_is_too_small():
+def test_the_judge_detects_a_bound_that_is_too_small():
     """The bounds are not loose by more than a half, so that the comparison can fail."""
     poses = wave(600)
     found = plan.path_of_stroke(poses, BALL, tolerance=0.05, angle=0.035)
@@ -153,7 +153,7 @@ def test_a_stroke_to_and_fro_keeps_its_reversals():
     assert np.allclose(found.path.centres[:, 0], [0, 9, 2, 5]) and found.error < 1e-9 and found.turn == 0
 
 
-def test_an_axis_that_turns_over_more_than_half_a_circle():
+def test_an_axis_that_turns_by_more_than_half_a_circle_gets_three_keys():
     t = np.linspace(0, 1.5 * np.pi, 400)
     found = check(np.column_stack([4 * t, 0 * t, 0 * t, np.sin(t), 0 * t, np.cos(t)]), tolerance=0.05)
     assert len(found.path.keys) >= 3
@@ -222,7 +222,7 @@ def recording(*strokes, tools=(BALL,)):
 STILL = [(0, 0, 0, 0, 0, 1)] * 4
 
 
-def test_several_strokes_are_several_paths_and_air_is_none():
+def test_each_stroke_becomes_a_path_and_motion_in_air_none():
     far = wave(200) + np.array([0, 10, 0, 0, 0, 0])
     journal = recording(
         (1, wave(200), "remove"),

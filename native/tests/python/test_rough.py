@@ -84,7 +84,7 @@ def roughed(request):
     return part, setup, op, Judge(op)
 
 
-def test_a_program_of_it_is_free_of_gouges_and_collisions(roughed):
+def test_a_roughing_program_is_free_of_gouges_and_collisions(roughed):
     _, setup, op, _ = roughed
     assert len(plan.program(setup, [op])) == len(op) > 500
     assert op.report.cut_mm > 200 and op.report.time_s > 60
@@ -117,7 +117,7 @@ def test_links_and_rapids_cut_nothing(roughed):
     assert judge.cut_by[LEAD] < 0.5 * whole, "leads do most of the work"
 
 
-def test_what_is_left_is_a_layer_high_where_the_tool_can_go(roughed):
+def test_remaining_material_is_at_most_a_layer_high_where_the_tool_reaches(roughed):
     part, _, _, judge = roughed
     gx, gy = np.meshgrid(judge.x[::4], judge.y[::4], indexing="ij")
     wide = riffler.Tool.flat(diameter=6 + 2 * 0.33, length=25)
@@ -129,7 +129,7 @@ def test_what_is_left_is_a_layer_high_where_the_tool_can_go(roughed):
     assert (left < STOCK[2] - 1).mean() > 0.2
 
 
-def test_what_is_cleared_is_not_cut_again(roughed):
+def test_cleared_regions_are_not_cut_again(roughed):
     _, setup, op, _ = roughed
     again = plan.Setup(setup.part, setup.stock)
     again.apply(op)
@@ -139,7 +139,7 @@ def test_what_is_cleared_is_not_cut_again(roughed):
 
 
 @pytest.mark.parametrize("kind", ["ball", "fillet"])
-def test_other_cutters_and_conventional(kind):
+def test_other_cutters_and_conventional_milling_work(kind):
     tool = (
         riffler.Tool.ball(diameter=6, length=25)
         if kind == "ball"
@@ -162,7 +162,7 @@ def test_climb_has_its_material_on_the_right():
     assert turning[True] < 0 < turning[False], "from outside inwards, the material on the right is clockwise"
 
 
-def test_the_same_bytes_for_any_number_of_threads(monkeypatch):
+def test_any_number_of_threads_gives_the_same_bytes(monkeypatch):
     setup, tool = plan.Setup(relief(), stock()), riffler.Tool.flat(diameter=6, length=25)
     found = []
     for threads in ("1", "3"):
@@ -171,7 +171,7 @@ def test_the_same_bytes_for_any_number_of_threads(monkeypatch):
     assert found[0] == found[1]
 
 
-def test_a_slot_too_narrow_for_a_helix_is_told():
+def test_a_slot_too_narrow_for_a_helix_is_reported():
     volume = riffler.Volume.block((0, 0, 0), STOCK, pitch=0.25, directions="xyz")
     volume.carve(riffler.Tool.flat(diameter=7, length=30), [(20, 15, 6, 0, 0, 1), (20.1, 15, 6, 0, 0, 1)])
     setup = plan.Setup(volume.to_mesh(), stock())
@@ -223,7 +223,7 @@ def test_level_faces_are_cut_to_the_allowance():
     assert op.report.stats["levels"] == 3  # at 10, 8 and 7.52
 
 
-def test_it_can_be_cancelled():
+def test_roughing_can_be_cancelled():
     setup = plan.Setup(relief(), stock())
     with pytest.raises(riffler.Cancelled):
         plan.rough(setup, riffler.Tool.flat(diameter=6, length=25), progress=lambda share: share < 0.4)

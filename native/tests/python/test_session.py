@@ -62,7 +62,7 @@ def test_the_simulated_pen_carves_and_the_replay_is_the_same_to_the_bit(tmp_path
     assert 0 < told <= stock().volume - volume.volume + 1e-6
 
 
-def test_a_session_says_how_the_system_runs_its_thread():
+def test_a_session_reports_the_priority_of_its_thread():
     could = riffler.pen.real_time()
     # In the device's thread, and in one of the session's own.
     for pen in (riffler.pen.open("simulated"), riffler.pen.Pointer("tablet")):
@@ -75,7 +75,7 @@ def test_a_session_says_how_the_system_runs_its_thread():
         pen.stop()
 
 
-def test_what_a_frame_tells_fits_together(tmp_path):
+def test_the_values_of_a_frame_agree(tmp_path):
     _, _, seen = carve_with_the_simulated_pen(tmp_path)
     times = np.concatenate([frame.times for frame in seen])
     assert (np.diff(times) > 0).all()
@@ -192,7 +192,7 @@ def test_a_killed_session_loses_less_than_a_second(tmp_path):
     assert volume.volume < stock().volume
 
 
-def test_the_volume_is_the_sessions_while_it_runs():
+def test_a_session_stops_if_its_volume_is_changed_elsewhere():
     volume = stock()
     with riffler.Session(volume, BALL) as session:
         volume.carve(BALL, [(0, 0, -1, 0, 0, 1), (5, 0, -1, 0, 0, 1)])
@@ -250,7 +250,7 @@ def test_bad_input_is_named(tmp_path):
     session.stop()
 
 
-def test_a_session_that_nobody_stops_ends_with_its_object():
+def test_a_session_ends_with_its_object():
     for _ in range(20):
         pen = riffler.pen.open("simulated")
         session = riffler.Session(stock(1), BALL, pen)
@@ -299,7 +299,7 @@ def same_inside(mask, volume, before):
 
 
 @pytest.mark.parametrize("directions", ["z", "xyz"])
-def test_what_is_protected_stays_to_the_bit_and_the_replay_too(tmp_path, directions):
+def test_protected_material_stays_to_the_bit_also_in_the_replay(tmp_path, directions):
     mask = riffler.Volume.empty((-30, -30, -20), (30, 30, 0), 0.5, directions)
     mask.carve(BALL, np.array([[-20.0, 0, -2, 0, 0, 1], [20, 1, -2, 0, 0, 1]]), mode="add")
     volume = stock(0.5, directions)
@@ -320,7 +320,7 @@ def test_what_is_protected_stays_to_the_bit_and_the_replay_too(tmp_path, directi
 
 @pytest.mark.parametrize("directions", ["z", "xyz"])
 @pytest.mark.parametrize("masked", [False, True])
-def test_what_is_put_on_is_not_felt_and_the_replay_is_the_same_to_the_bit(tmp_path, directions, masked):
+def test_added_material_is_not_felt_and_replays_to_the_bit(tmp_path, directions, masked):
     volume, mask = stock(0.5, directions), None
     volume.carve(riffler.Tool.flat(100, 40), np.array([[-60.0, 0, -4, 0, 0, 1], [60, 0, -4, 0, 0, 1]]))
     if masked:
@@ -344,7 +344,7 @@ def test_what_is_put_on_is_not_felt_and_the_replay_is_the_same_to_the_bit(tmp_pa
     assert put_on == pytest.approx(volume.volume - before.volume, rel=1e-6)
 
 
-def test_a_mode_that_no_session_has_is_named():
+def test_an_unknown_mode_is_named():
     with pytest.raises(ValueError, match=r'^mode must be "remove" or "add", not "smooth"$'):
         riffler.Session(stock(), BALL, mode="smooth")
 
@@ -402,6 +402,6 @@ def test_a_hand_that_turns_turns_the_tool_about_the_pivot(pivot):
         assert np.linalg.norm(after[:3] - before[:3]) > 0.5 * pivot * angle, "and the tip swings about it"
 
 
-def test_a_pivot_that_is_none_is_named():
+def test_a_bad_pivot_is_named():
     with pytest.raises(ValueError, match="pivot must be at most 1000 mm"):
         riffler.Session(stock(1.0), BALL, pivot=float("nan"))

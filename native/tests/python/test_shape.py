@@ -17,7 +17,7 @@ def sheets(n, m, height=2.0):
     return bottom + np.array([0, 0, height]), bottom
 
 
-def test_a_slab_is_closed_and_looks_out():
+def test_a_slab_is_closed_and_faces_outwards():
     mesh = shape.slab(*sheets(5, 7))
     assert clean(mesh) and mesh.volume == pytest.approx(4 * 6 * 2)
 
@@ -31,7 +31,7 @@ def test_a_slab_with_holes_has_walls_around_them():
         assert mesh.audit().open_edges == 0  # cells that touch in a corner share its edge
 
 
-def test_what_is_not_used_need_not_be_finite():
+def test_unused_points_need_not_be_finite():
     top, bottom = sheets(4, 4)
     top[0, 0] = bottom[0, 0] = np.nan
     cells = np.ones((3, 3), bool)
@@ -54,7 +54,7 @@ def test_a_relief_has_the_volume_under_its_heights():
     assert np.allclose(top[np.argmax(top[:, 2])], (2, 0, 1))
 
 
-def test_a_relief_is_embossed_to_the_height_that_was_asked():
+def test_a_relief_is_embossed_to_the_requested_height():
     heights = np.zeros((60, 60))
     heights[20:40, 20:40] = 1.0
     volume = riffler.Volume.block((0, 0, 0), (60, 60, 10), 0.5, "z")

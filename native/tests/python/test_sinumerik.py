@@ -32,7 +32,7 @@ def plate(tmp_path):
     return file
 
 
-def test_subprograms_lie_beside_the_file_or_in_a_folder(plate, tmp_path):
+def test_subprograms_are_found_next_to_the_file_or_in_a_folder(plate, tmp_path):
     program = riffler.Program.read(plate, machine="sinumerik")
     assert [note.kind for note in program.notes] == ["machine position"]
     ends = program.poses[1:][program.rapid[1:] & ~program.at_machine[1:], :3]

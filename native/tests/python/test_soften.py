@@ -38,7 +38,7 @@ def clean(mesh):
     return not any(n for name, n in dataclasses.asdict(audit).items() if name not in ("components", "volume"))
 
 
-def test_a_stroke_levels_what_is_rough_and_says_what_it_moved():
+def test_a_stroke_levels_roughness_and_reports_the_moved_volume():
     volume = bumpy()
     before, rough = volume.volume, lid(volume, 3)
     stroke = [[x, 10, 12] for x in np.linspace(12, 18, 13)]
@@ -50,7 +50,7 @@ def test_a_stroke_levels_what_is_rough_and_says_what_it_moved():
     assert clean(volume.to_mesh())
 
 
-def test_one_dab_is_one_of_a_stroke():
+def test_single_dabs_give_the_same_bytes_as_a_stroke():
     one, two = bumpy(), bumpy()
     for centre in [(14, 10, 12), (16, 10, 12)]:
         assert len(one.smooth(centre, 3)) == 1
@@ -69,7 +69,7 @@ def test_a_plane_costs_nothing_and_keeps_its_bytes():
     assert counters.moves == 1 and counters.rays_tested == counters.tiles_changed == 0
 
 
-def test_what_is_protected_stays():
+def test_protected_material_stays():
     volume = bumpy()
     mask = block()
     mask.carve(riffler.Tool.flat(30, 30), np.array([[0.0, -20, 0, 0, 0, 1], [0, 40, 0, 0, 0, 1]]))  # x > 15 is left
@@ -84,7 +84,7 @@ def test_what_is_protected_stays():
     assert volume.to_bytes() == itself
 
 
-def test_it_is_the_mesher_that_sees_few_bricks_change():
+def test_the_mesher_sees_few_bricks_change():
     volume = riffler.Volume.block((0, 0, 0), (60, 60, 30), 0.25, "xyz")
     mesher = riffler.Mesher(volume)
     volume.smooth((30, 0, 30), 4, strength=1.0)

@@ -46,7 +46,7 @@ def command(strategy, *words):
 # ---- the table
 
 
-def test_every_strategy_says_what_it_is():
+def test_every_strategy_describes_itself():
     assert {"pencil", "engrave", "swarf"} <= set(plan.STRATEGIES)
     for name, strategy in plan.STRATEGIES.items():
         assert name == strategy.id and strategy.label and strategy.action and strategy.description and strategy.summary
@@ -101,7 +101,7 @@ def test_the_functions_give_what_the_strategies_give(folder):
         ("engrave", [CURVE + 100], {}, "curve 0, point 0 is .* more than reach"),
     ],
 )
-def test_find_refuses_by_name(name, given, more, message):
+def test_find_names_what_it_refuses(name, given, more, message):
     with pytest.raises(ValueError, match=message):
         plan.find(name, step(), BALL, given, **more)
 
@@ -109,7 +109,7 @@ def test_find_refuses_by_name(name, given, more, message):
 # ---- swarf
 
 
-def test_swarf_keeps_what_the_flank_fits_and_says_so():
+def test_swarf_keeps_the_walls_that_the_flank_fits_with_a_note():
     part = step()
     (path,) = plan.pencil(part, BALL)
     path = path.divided(1)
@@ -150,7 +150,7 @@ def engraved(depth=0.3, tool=GRAVER):
 
 
 @pytest.mark.parametrize("tool", [GRAVER, Tool.cone_end(0.2, 0.5, 0.1, 4, 20), Tool.flat(1, 10)])
-def test_an_engraved_plan_comes_back_with_its_poses(tool):
+def test_an_engraved_plan_reads_back_with_its_poses(tool):
     made = engraved(tool=tool)
     data = plan.dumps(made)
     read = plan.loads(data)
@@ -169,7 +169,7 @@ def test_a_plan_without_depths_is_of_version_1():
     ("depths", "message"),
     [({1: 0.1}, "depths: there is no path 1"), ({0: -1.0}, r"depths\[0\] must be finite and not negative")],
 )
-def test_depths_without_meaning_are_refused(depths, message):
+def test_meaningless_depths_are_refused(depths, message):
     with pytest.raises(ValueError, match=message):
         plan.dumps(replace(engraved(), depths=depths))
     bare = plan.find("pencil", step(), BALL).plan
@@ -183,7 +183,7 @@ def test_a_plan_of_version_1_has_no_depths():
 
 
 @pytest.mark.parametrize(("text", "message"), [("-0.3", "not negative"), ('"deep"', "a number")])
-def test_a_broken_depth_is_refused_by_its_place(text, message):
+def test_the_error_of_a_broken_depth_names_the_place(text, message):
     data = plan.dumps(engraved()).replace(b'"depth": 0.3', f'"depth": {text}'.encode())
     with pytest.raises(riffler.FormatError, match=rf"paths\[0\]\.depth: {message}"):
         plan.loads(data)
@@ -328,7 +328,7 @@ def test_a_ring_of_edges_is_one_curve_that_ends_where_it_begins(tmp_path):
         ("a.obj", "v 0 0 0\nl 1\n", "a.obj: line 2: two vertices or more expected"),
     ],
 )
-def test_a_file_without_curves_is_refused_by_its_place(tmp_path, name, text, message):
+def test_the_error_of_a_file_without_curves_names_the_place(tmp_path, name, text, message):
     with pytest.raises(riffler.FormatError, match=message):
         plan.read_curves(write(tmp_path, name, text))
 

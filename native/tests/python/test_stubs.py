@@ -15,6 +15,6 @@ def check():
 
 
 @pytest.mark.skipif(importlib.util.find_spec("pybind11_stubgen") is None, reason="pybind11-stubgen is not installed")
-def test_the_types_that_are_shipped_are_those_of_the_built_module():
+def test_the_shipped_stub_matches_the_built_module():
     done = check()
     assert done.returncode == 0, done.stdout + done.stderr

@@ -179,7 +179,7 @@ def test_a_task_gives_what_the_call_gives(name):
 
 
 @pytest.mark.parametrize("name", CALLS)
-def test_the_plain_call_is_still_asked_about_its_progress(name):
+def test_the_plain_call_still_takes_a_progress_callback(name):
     call, args, kwargs = CALLS[name]
     shares = []
     call(*args, **kwargs, progress=shares.append)
@@ -188,7 +188,7 @@ def test_the_plain_call_is_still_asked_about_its_progress(name):
         call(*args, **kwargs, progress=lambda share: False)
 
 
-def test_both_ways_say_the_same_of_bad_arguments():
+def test_both_forms_report_bad_arguments_alike():
     nothing = riffler.Mesh([], [])
     flat = riffler.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
     bad = {
@@ -216,7 +216,7 @@ def test_both_ways_say_the_same_of_bad_arguments():
                 assert str(found.value) == str(expected.value)
 
 
-def test_an_error_is_raised_as_often_as_asked():
+def test_an_error_is_raised_at_every_request():
     task = riffler.submit(riffler.plan.pencil, riffler.Mesh([], []), BALL)
     for _ in range(2):
         with pytest.raises(ValueError, match="triangle"):
@@ -224,7 +224,7 @@ def test_an_error_is_raised_as_often_as_asked():
     assert task.done() and task.progress() < 1
 
 
-def test_a_progress_of_ones_own_is_called_on_a_python_thread():
+def test_a_given_progress_is_called_on_a_python_thread():
     shares = []
     future = riffler.submit(VOLUME.to_mesh, progress=shares.append)
     assert bits(future.result()) == bits(SURFACE) and shares and future.progress() == 1
@@ -253,7 +253,7 @@ def test_a_python_call_is_cancelled_by_its_progress():
     assert isinstance(future.exception(30), riffler.Cancelled) and future.cancelled() and not future.cancel()
 
 
-def test_a_result_that_is_not_there_in_time_is_a_timeout():
+def test_a_late_result_is_a_timeout():
     future = endless()
     for ask in (future.result, future.exception):
         with pytest.raises(TimeoutError, match=r"has not ended after 0.05 s"):
@@ -329,7 +329,7 @@ def test_a_volume_may_be_carved_while_a_task_reads_it():
     assert before != after
 
 
-def test_a_task_keeps_what_nobody_else_holds():
+def test_a_task_keeps_its_arguments_alive():
     path, collider, tool = valley(9), riffler.Collider(STEP), riffler.Tool.ball(6, 40)
     task = riffler.submit(riffler.plan.free_orientations, path, tool, collider, index=[0, 4], **GRID)
     del path, collider, tool
@@ -344,7 +344,7 @@ def test_arrays_may_be_written_once_the_task_is_made():
     assert bits(task.result()) == bits(plan.min_tilt(PATH, BALL, COLLIDER, **GRID))
 
 
-def test_tasks_run_beside_each_other_and_beside_plain_calls():
+def test_tasks_run_at_the_same_time_as_others_and_as_plain_calls():
     names = [*CALLS] * 2
     running = [started(name, *CALLS[name][1], **CALLS[name][2]) for name in names]
     for name, task in zip(names, running, strict=True):
@@ -352,7 +352,7 @@ def test_tasks_run_beside_each_other_and_beside_plain_calls():
         assert bits(task.result()) == bits(call(*args, **kwargs)), name
 
 
-def test_a_verification_in_use_says_so():
+def test_a_verification_in_use_refuses_calls():
     shared = verification()
     many = np.array([[20 + 19 * np.sin(k), 15 + 14 * np.cos(1.7 * k), 7] for k in range(200_000)])
     program = riffler.Program(np.column_stack([many, np.tile(UP, (len(many), 1))]), 600.0, spindle=1.0, tools={1: BALL})
@@ -380,7 +380,7 @@ def test_a_cancelled_task_raises_cancelled():
     assert task.done() and task.progress() < 1
 
 
-def test_the_share_grows_and_waiting_lets_python_go_on():
+def test_the_share_grows_and_waiting_does_not_block_python():
     task, raised = endless(), []
 
     def wait():
@@ -506,7 +506,7 @@ def test_set_threads_comes_before_the_environment(free_choice):
     assert riffler.threads() == len(os.sched_getaffinity(0))
 
 
-def test_a_number_of_threads_without_meaning_changes_nothing(free_choice):
+def test_a_meaningless_number_of_threads_changes_nothing(free_choice):
     riffler.set_threads(2)
     for bad in (0, -1, 257):
         with pytest.raises(ValueError, match=f"threads must be 1 to 256, not {bad}"):

@@ -37,7 +37,7 @@ def test_a_tool_survives_its_dict_json_and_pickle(name):
 
 
 @pytest.mark.parametrize(("name", "diameter", "length"), [("ball", 6, 30), ("fillet", 8, 30), ("cone end", 8, 40)])
-def test_sizes_are_those_asked_for(name, diameter, length):
+def test_tools_have_the_requested_sizes(name, diameter, length):
     assert TOOLS[name].diameter == pytest.approx(diameter, abs=1e-12)
     assert TOOLS[name].length == length
 
@@ -144,7 +144,7 @@ def test_plunged_tools_remove_their_own_volume(name, depth, volume):
         (lambda: riffler.Tool.from_dict({"kind": "ball", "diameter": "six", "length": 3}), "diameter"),
     ],
 )
-def test_what_does_not_fit_is_refused_by_name(make, word):
+def test_sizes_that_do_not_fit_are_refused_by_name(make, word):
     with pytest.raises(ValueError, match=word):
         make()
 

@@ -27,11 +27,11 @@ def test_the_page_has_messages():
 
 
 @pytest.mark.parametrize("message", ROWS)
-def test_a_quoted_message_is_still_said(message, texts):
+def test_every_quoted_message_still_exists(message, texts):
     words = [part for part in message.split("…") if re.search(r"\w", part)]
     pattern = re.compile(r"[^\n]{0,200}?(?:\n[^\n]{0,200}?){0,3}".join(map(re.escape, words)))
     assert any(pattern.search(text) for text in texts), f"no source says {message!r}"
 
 
-def test_a_message_that_nobody_says_is_found(texts):
+def test_an_outdated_message_is_detected(texts):
     assert not any("the sculpt has gone to lunch" in text for text in texts)

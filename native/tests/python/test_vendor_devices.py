@@ -44,7 +44,7 @@ def test_haplys_arms_are_listed(haply):
         assert service.forces == [], "a search commands nothing"
 
 
-def test_a_service_that_does_not_run_says_what_to_start(haply):
+def test_the_error_of_a_missing_service_names_what_to_start(haply):
     with inverse_service() as service:
         empty = json.loads(haply(service, "pen", "list", "--json").stdout)
         assert "is it plugged in and switched on?" in empty["unavailable"]["haply"]
@@ -145,7 +145,7 @@ def test_arms_behind_a_library_are_listed_and_monitored(stubs, tmp_path, kind, v
         ("touch", "RIFFLER_LIBHD", "install 3D Systems' OpenHaptics"),
     ],
 )
-def test_a_missing_library_says_which_to_install(tmp_path, kind, variable, remedy):
+def test_the_error_of_a_missing_library_names_the_one_to_install(tmp_path, kind, variable, remedy):
     missing = {variable: str(tmp_path / "missing.so")}
     unavailable = json.loads(riffle("pen", "list", "--json", cwd=tmp_path, **missing).stdout)["unavailable"]
     assert "not installed" in unavailable[kind] and "no such file" in unavailable[kind] and remedy in unavailable[kind]

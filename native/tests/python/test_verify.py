@@ -44,7 +44,7 @@ def random_program(seed, n, rapids=0.25):
 
 @pytest.mark.parametrize("cutter", CUTTERS)
 @pytest.mark.parametrize("seed", range(6))
-def test_three_axis_programs_are_cut_as_a_height_map_is(cutter, seed):
+def test_three_axis_programs_are_cut_like_a_height_map(cutter, seed):
     make, profile = CUTTERS[cutter]
     lower, upper, h = [0, 0, -10], [30, 20, 0], 0.5
     tips, rapid = random_program(seed, 60)
@@ -66,7 +66,7 @@ def test_three_axis_programs_are_cut_as_a_height_map_is(cutter, seed):
 
 
 @pytest.mark.parametrize("directions", ["z", "xyz"])
-def test_slabs_put_together_are_the_stock_carved_whole(directions):
+def test_slabs_together_equal_the_stock_carved_as_a_whole(directions):
     tool = riffler.Tool.fillet(6, 1, 30)
     rng = np.random.default_rng(5)
     axis = rng.normal(size=(80, 3)) * [0.3, 0.3, 0] + UP
@@ -104,7 +104,7 @@ def test_a_gouge_of_known_depth_is_found_on_its_lines(directions):
 
 
 @pytest.mark.parametrize("cutter", CUTTERS)
-def test_gouges_of_random_programs_are_as_deep_as_the_height_map_says(cutter):
+def test_gouges_of_random_programs_are_as_deep_as_on_the_height_map(cutter):
     make, profile = CUTTERS[cutter]
     lower, upper, h = [0, 0, -10], [30, 20, 0], 0.5
     tips, rapid = random_program(11, 60)
@@ -170,7 +170,7 @@ def test_old_attributes_of_a_report_give_what_the_methods_do():
         assert report.part_map is report.part_deviation()
 
 
-def test_the_part_map_says_what_covers_the_part():
+def test_the_part_map_measures_the_material_over_the_part():
     part = box_mesh([0, 0, -10], [30, 30, -5])
     stock = riffler.Volume.block([0, 0, -10], [30, 30, 0], 0.5)
     report = riffler.verify(program(path([[-20, 0, 9], [-20, 0, 10]]), riffler.Tool.ball(6, 30)), stock, part)
@@ -183,7 +183,7 @@ def test_the_part_map_says_what_covers_the_part():
     assert np.all(nothing.part_deviation() == -np.inf) and len(nothing.stock_deviation()[1]) == 0
 
 
-def test_a_stock_that_lacks_some_of_the_part_is_said_so_before_the_first_move():
+def test_a_stock_that_lacks_some_of_the_part_is_reported_before_the_first_move():
     part = box_mesh([0, 0, -10], [30, 30, 2])
     stock = riffler.Volume.block([0, 0, -10], [30, 30, 0], 0.5)
     moves = program(path([[-20, 0, 9], [-20, 0, 10]]), riffler.Tool.ball(6, 30))
@@ -198,7 +198,7 @@ def test_a_stock_that_lacks_some_of_the_part_is_said_so_before_the_first_move():
 # --- other checks --------------------------------------------------------------------------------------------------
 
 
-def test_a_feed_into_material_with_a_spindle_that_stands_is_found():
+def test_a_feed_into_material_with_a_standing_spindle_is_found():
     stock = riffler.Volume.block([0, 0, -10], [60, 40, 0], 0.5)
     poses = path([[-10, 20, 5], [-10, 20, -1], [20, 20, -1], [40, 20, -1]])
     report = riffler.verify(program(poses, held(), spindle=[0, 0, 0, 500]), stock)
@@ -215,7 +215,7 @@ def test_times_and_rates_follow_the_feed():
     assert report.rate[2] == pytest.approx(report.removed[2] / 6 * 60) and report.rate[0] == 0
 
 
-def test_rapids_before_the_first_tool_are_passed_over_and_said_so():
+def test_rapids_before_the_first_tool_are_skipped_and_reported():
     stock = riffler.Volume.block([0, 0, -10], [60, 40, 0], 0.5)
     poses = path([[0, 0, 50], [10, 10, 50], [10, 10, 5]])
     report = riffler.verify(program(poses, held(), rapid=[1, 1, 1], feed=0, tool=[0, 0, 1]), stock)

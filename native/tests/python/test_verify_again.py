@@ -10,7 +10,7 @@ import riffler
 from verify_reference import UP, busy_program, busy_scene, held, kinds, path, program, raster, state
 
 
-def test_chunks_of_any_length_and_a_kept_verification_say_the_same():
+def test_chunks_of_any_length_and_a_kept_verification_report_the_same():
     poses, rapid, tool, stock, part, fixtures = busy_scene()
     whole = busy_program(poses, rapid, tool)
     report = riffler.verify(whole, stock, part, fixtures)
@@ -74,7 +74,7 @@ def test_after_any_edit_the_report_is_that_of_a_fresh_run(seed):
     assert state(kept.run(edited)) == state(riffler.verify(edited, stock, part, fixtures))
 
 
-def test_an_edit_costs_what_it_touches():
+def test_the_cost_of_an_edit_follows_what_it_touches():
     tips = raster(100, 1, -2, step=0.25)
     tool = held()
     stock = riffler.Volume.block([0, 0, -20], [100, 100, 0], 0.25)

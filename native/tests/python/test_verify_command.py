@@ -49,7 +49,7 @@ def test_a_good_program_passes_and_a_bad_one_names_the_block(folder, capsys):
     assert "NOT passed" in said and "retract higher" in said and "fixtures: none were given" in said
 
 
-def test_what_was_passed_over_is_said_and_skipped_coordinates_never_pass(folder, capsys):
+def test_skipped_words_are_reported_and_skipped_coordinates_never_pass(folder, capsys):
     good = (folder / "good.ngc").read_text()
     skip = ["--machine", "3-axis", "--machine-option", "unknown=skip"]
     (folder / "odd.ngc").write_text(good.replace("G0 Z40", "G187 P1\nG0 Z40\nG60 X9"))
@@ -124,7 +124,7 @@ def test_parts_fixtures_and_holders_are_checked(folder, capsys):
     assert data["tools"]["1"]["holder"] == [[2.5, 20, 60, 20]]
 
 
-def test_what_is_left_and_its_map_are_written(folder, capsys):
+def test_the_remaining_material_and_its_map_are_written(folder, capsys):
     status, data = run(capsys, "good.ngc", *WORDS, "--part", "part.stl", "--out", "left.rvol", "--map", "map.ply")
     left = riffler.Volume.load("left.rvol")
     assert status == 0 and left.volume == pytest.approx(data["volume"])

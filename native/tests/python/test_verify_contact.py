@@ -66,7 +66,7 @@ def test_a_shank_wider_than_the_cutter_is_found():
     assert kinds(report) == ["shank"] and rows(report, "shank")[0] == np.argmax(tips[:, 0] > 25.135)
 
 
-def test_what_an_earlier_move_took_away_is_not_hit():
+def test_material_removed_by_an_earlier_move_is_not_hit():
     """A pocket that only the cutter's own passes make room in: the holder is as low as the stock's top all the time."""
     tool = riffler.Tool.flat(20, 5).with_holder([(5, 9, 60, 9)])
     stock = riffler.Volume.block([0, 0, -20], [60, 40, 0], 0.25)

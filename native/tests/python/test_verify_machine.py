@@ -31,7 +31,7 @@ def test_the_first_row_beyond_a_limit_is_a_finding_with_its_line():
     assert not any("no machine" in sentence for sentence in report.not_checked)
 
 
-def test_within_limits_it_passes_and_without_a_machine_nobody_looked():
+def test_programs_within_limits_pass_and_limits_without_a_machine_are_not_checked():
     program = leaning(12, 20)
     report = riffler.verify(program, stock(), machine="linuxcnc-xyzac", machine_options=TABLE)
     assert report.passed
@@ -41,7 +41,7 @@ def test_within_limits_it_passes_and_without_a_machine_nobody_looked():
     assert [f.kind for f in upright.findings] == ["machine"] and upright.findings[0].row == 0
 
 
-def test_chunks_and_edits_say_the_same():
+def test_chunks_and_edits_give_the_same_report():
     program = leaning(12, np.linspace(0, 55, 12))
     how = {"machine": "linuxcnc-xyzac", "machine_options": TABLE}
     chunks = [program.trimmed(0, 5), riffler.Program(program.poses[4:], 600, spindle=9000, line=program.line[4:],
@@ -91,7 +91,7 @@ def test_the_reader_names_the_line_at_which_an_axis_would_leave_its_limits(tmp_p
         riffler.Program.read(file, machine="linuxcnc-xyzac", options=TABLE)
 
 
-def test_a_swing_of_the_rotary_axes_is_the_machines(tmp_path):
+def test_the_swing_of_a_machines_rotary_axes_decides_what_is_hit(tmp_path):
     """A table that turns half way round takes the leaning holder round the side, where the clamp is, not over it."""
     file = tmp_path / "swing.ngc"
     tool = riffler.Tool.ball(4, 20).with_shank([(20, 2, 40, 2)]).with_holder([(40, 15, 90, 15)])

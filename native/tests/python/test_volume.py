@@ -77,7 +77,7 @@ def test_rays_stand_where_the_contract_says():
         ),
     ],
 )
-def test_a_box_or_pitch_that_makes_no_sense_is_refused_by_whatever_makes_a_volume(arguments, word):
+def test_every_constructor_of_volumes_refuses_absurd_boxes_and_pitches(arguments, word):
     lower, upper, pitch, *directions = arguments
     for make in (riffler.Volume.block, riffler.Volume.empty):
         with pytest.raises(ValueError, match=word):
@@ -146,7 +146,7 @@ def test_bad_poses_are_refused_and_change_nothing(poses, options, word):
     assert (v.revision, v.volume) == (revision, 1000)
 
 
-def test_axes_a_shade_off_unit_length_are_normalised():
+def test_axes_slightly_off_unit_length_are_normalised():
     v = riffler.Volume.block([0, 0, 0], [10, 10, 10], 0.5)
     v.carve(BALL, [[5, 5, 12, 0, 0, 1 + 5e-7], [5, 5, 5, 0, 0, 1 - 5e-7]])
     assert v.volume < 1000
@@ -168,7 +168,7 @@ def test_cancelling_leaves_the_volume_and_reports_shares():
     assert v.volume == pytest.approx(36000)
 
 
-def test_snapshots_bring_volume_and_revision_back_and_copies_are_independent():
+def test_snapshots_restore_volume_and_revision_and_copies_are_independent():
     v = riffler.Volume.block([0, 0, 0], [20, 20, 10], 0.5, "xyz")
     s, revision = v.snapshot(), v.revision
     other = copy.copy(v)
@@ -232,7 +232,7 @@ def test_any_carved_volume_makes_a_clean_stl(tmp_path_factory, rows, directions,
         assert abs(mesh.volume - v.volume) < 0.3 * mesh.area * v.pitch
 
 
-def test_from_mesh_refuses_what_has_no_volume():
+def test_from_mesh_refuses_meshes_without_volume():
     flat = riffler.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
     tilted = riffler.Mesh([[0, 0, 0], [1, 0, 0.3], [0, 1, 0.2]], [[0, 1, 2]])
     for mesh in (flat, tilted):
@@ -240,7 +240,7 @@ def test_from_mesh_refuses_what_has_no_volume():
             riffler.Volume.from_mesh(mesh, 0.1)
 
 
-def test_from_mesh_tells_what_was_wrong():
+def test_from_mesh_reports_the_defects():
     v = riffler.Volume.block([0, 0, 0], [4, 3, 2], 0.5, "xyz")
     mesh = v.to_mesh()
     _, report = riffler.Volume.from_mesh_with_report(mesh, 0.5, "xyz")
@@ -282,7 +282,7 @@ def test_from_mesh_refuses_bad_meshes_by_name():
             riffler.Volume.from_mesh(riffler.Mesh(vertices, triangles), 0.1)
 
 
-def test_a_volume_in_use_by_another_thread_says_so():
+def test_a_volume_in_use_by_another_thread_refuses_calls():
     v = riffler.Volume.block([0, 0, 0], [60, 60, 10], 0.1, "xyz")
     poses = np.array([[5 + 0.05 * k, 5 + 0.05 * k, 5, *UP] for k in range(900)])
     started, go_on, errors = threading.Event(), threading.Event(), []

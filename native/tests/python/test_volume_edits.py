@@ -21,7 +21,7 @@ def clean(mesh):
     return not any(getattr(audit, n) for n in names)
 
 
-def test_an_empty_volume_holds_what_is_put_on():
+def test_an_empty_volume_takes_added_material():
     volume = riffler.Volume.empty(*BOX, 0.5, "xyz")
     assert volume.volume == 0 and len(volume.to_mesh().triangles) == 0
     assert volume.add(riffler.Volume.block(*BOX, 0.5, "xyz")).volume == 40 * 30 * 20
@@ -42,7 +42,7 @@ def test_clip_cuts_in_place_and_returns_the_volume():
     assert volume.to_bytes() == before
 
 
-def test_parts_of_a_sawn_block():
+def test_a_sawn_block_has_two_parts():
     volume = riffler.Volume.block(*BOX, 0.5, "xyz")
     saw = riffler.Tool.flat(2, 60)
     volume.carve(saw, np.array([[15.0, -5, -1, 0, 0, 1], [15, 40, -1, 0, 0, 1]]))
@@ -70,7 +70,7 @@ def test_contains_agrees_with_the_closed_form():
 
 
 @pytest.mark.parametrize("pitch", [0.25, 0.4, 1.0])
-def test_finer_and_coarser_clay_keep_the_shape(pitch):
+def test_resampling_finer_and_coarser_keeps_the_shape(pitch):
     volume, exact = dented(0.5)
     again = volume.resample(pitch)
     assert (again.pitch, again.directions) == (pitch, "xyz")
@@ -81,7 +81,7 @@ def test_finer_and_coarser_clay_keep_the_shape(pitch):
     assert again.resample(0.5).volume == pytest.approx(volume.volume, rel=1e-3)
 
 
-def test_resampled_as_it_is_is_a_copy_and_may_have_another_box_or_directions():
+def test_resampling_copies_unchanged_or_takes_another_box_or_directions():
     volume, exact = dented(0.5)
     same = volume.resample(0.5)
     assert same.to_bytes() == volume.to_bytes() and same is not volume

@@ -62,7 +62,7 @@ def test_another_grid_is_refused():
     assert a.volume == before
 
 
-def test_cancelled_leaves_the_volume(tmp_path):
+def test_a_cancelled_call_leaves_the_volume(tmp_path):
     a, b = carved(1, "xyz"), carved(2, "xyz")
     before = a.copy()
     with pytest.raises(riffler.Cancelled):
@@ -75,7 +75,7 @@ def test_cancelled_leaves_the_volume(tmp_path):
 
 @pytest.mark.parametrize("seed", range(5))
 @pytest.mark.parametrize("directions", ["z", "xyz"])
-def test_carved_volumes_come_back(tmp_path, monkeypatch, seed, directions):
+def test_carved_volumes_read_back(tmp_path, monkeypatch, seed, directions):
     volume = carved(seed, directions)
     for d in volume.directions:
         counts, spans = volume.intervals(d)

@@ -101,7 +101,7 @@ def test_reading_from_a_pipe_does_not_wait(read, tmp_path):
         read(tmp_path / f"pipe{end}")
 
 
-def test_the_mask_of_the_process_stays_whoever_saves(tmp_path):
+def test_saving_on_any_thread_leaves_the_umask_of_the_process(tmp_path):
     pytest.importorskip("lib3mf")
     before, seen = os.umask(0o077), set()
     try:
@@ -157,7 +157,7 @@ def test_a_link_that_waits_for_a_draft_is_not_followed(tmp_path):
     assert victim.read_bytes() == b"mine"
 
 
-def test_a_killed_process_leaves_nothing_that_stays(tmp_path):
+def test_the_files_of_a_killed_process_are_removed_by_the_next_save(tmp_path):
     script = f"""
         import riffler
         volume = riffler.Volume.block([0, 0, 0], [40, 40, 20], 0.5)
@@ -180,7 +180,7 @@ def test_a_killed_process_leaves_nothing_that_stays(tmp_path):
         (riffler.Mesh.read if path.suffix == ".stl" else riffler.Volume.load)(path)
 
 
-def test_a_draft_folder_goes_after_an_error_and_one_that_was_left_with_the_next(tmp_path):
+def test_draft_folders_are_removed_after_an_error_and_by_the_next_draft(tmp_path):
     path = tmp_path / "table.csv"
     with pytest.raises(ZeroDivisionError), files.drafting(path) as draft:
         draft.write_text("half")
@@ -194,7 +194,7 @@ def test_a_draft_folder_goes_after_an_error_and_one_that_was_left_with_the_next(
         pass
 
 
-def test_a_stream_is_whole_or_not_there(tmp_path):
+def test_a_stream_writes_the_whole_file_or_none(tmp_path):
     path = tmp_path / "a"
     with pytest.raises(ZeroDivisionError), files.writing(path) as stream:
         stream.write(b"half")

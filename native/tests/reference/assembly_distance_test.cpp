@@ -53,7 +53,7 @@ TEST(AssemblyDistance, IsThatOfTheUnionInsideAndOutside) {
   }
 }
 
-TEST(AssemblyDistance, IsExactWhereItIsKnown) {
+TEST(AssemblyDistance, AgreesWithKnownDistances) {
   const AssemblyDistance distance(assembly());
   EXPECT_DOUBLE_EQ(distance.distance(0, -2), 2);
   EXPECT_DOUBLE_EQ(distance.distance(0, 2), -2);
@@ -71,7 +71,7 @@ TEST(AssemblyDistance, KnowsHollowArcs) {
   EXPECT_NEAR(distance.distance(4.5, 2.5), -(std::sqrt(2 * 2.5 * 2.5) - 3), 1e-12);
 }
 
-TEST(SurfaceDistance, BracketsWhatIsKnown) {
+TEST(SurfaceDistance, BracketsKnownDistances) {
   // A plane at height 0 and one at −1, and the tool's ball sunk by 0.25 into the upper one, tilted.
   std::vector<Corners> plane;
   for (const double z : {0.0, -1.0}) {
@@ -96,7 +96,7 @@ TEST(SurfaceDistance, BracketsWhatIsKnown) {
   }
 }
 
-TEST(SurfaceDistance, GoesToTheBottomOfADepth) {
+TEST(SurfaceDistance, FindsTheBottomOfADepth) {
   // A tool upright, wholly through a plane: the deepest point of it is in the middle of the shank.
   const std::vector<Corners> plane{{Vec3(-40, -40, 0), Vec3(90, -40, 0), Vec3(-40, 90, 0)}};
   const SurfaceBracket found =

@@ -117,7 +117,7 @@ TEST(SweptDistance, OfACylinderTravellingAcrossItsAxisIsThatOfASlot) {
 }
 
 /// Where samples in time would find nothing.
-TEST(SweptDistance, FindsWhatPassesInAMoment) {
+TEST(SweptDistance, FindsABriefApproach) {
   // A disc of 0.02 mm flies 4 m: it is at each point for five millionths of the time.
   const Tool tool = cutters::flat(6, 0.02);
   const SweptDistance swept(tool.profile(), Motion({{0, 0, -2000}, {0, 0, 1}}, {{0, 0, 2000}, {0, 0, 1}}));
@@ -142,7 +142,7 @@ std::vector<Tool> tools() {
 }
 
 /// No sample is below the lower bound, and some samples come near the upper one, which is a distance that was met.
-TEST(SweptDistance, BracketsWhatSamplesFind) {
+TEST(SweptDistance, BracketsTheDistanceOfSamples) {
   Random random(7);
   for (const Tool& tool : tools()) {
     const CutterDistance cutter(tool.profile());
@@ -168,7 +168,7 @@ TEST(SweptDistance, BracketsWhatSamplesFind) {
   }
 }
 
-TEST(SweptDistance, StopsWhereEnoughIsKnown) {
+TEST(SweptDistance, StopsOnceTheBracketSuffices) {
   const Tool tool = cutters::fillet(8, 1, 20);
   const SweptDistance swept(tool.profile(), Motion({{0, 0, 0}, {0, 0, 1}}, {{9, 2, 1}, unit(1, 0.2, 0.3)}));
   Random random(8);

@@ -35,7 +35,7 @@ double sampled(const CutterDistance& cutter, std::span<const Pose> poses, const 
   return least;
 }
 
-TEST(SweptPath, FindsTheLeastThatSamplingFinds) {
+TEST(SweptPath, FindsTheMinimumThatSamplingFinds) {
   std::mt19937_64 random(3);
   constexpr int kSamples = 4096;
   for (const bench::NamedCutter& tool : bench::named_cutters()) {
@@ -50,7 +50,7 @@ TEST(SweptPath, FindsTheLeastThatSamplingFinds) {
   }
 }
 
-TEST(SweptPath, AnswersAlikeWhateverIsAsked) {
+TEST(SweptPath, AnswersAllQueriesAlike) {
   std::mt19937_64 random(4);
   for (const bench::NamedCutter& tool : bench::named_cutters()) {
     const SweptPath path(tool.tool.profile(), kTurning);
@@ -85,7 +85,7 @@ TEST(SweptPath, ServesThePointsWithinReach) {
   }
 }
 
-TEST(SweptPath, LeavesOutOnlyWhatIsFar) {
+TEST(SweptPath, SkipsOnlyFarPoints) {
   std::mt19937_64 random(6);
   for (const bench::NamedCutter& tool : bench::named_cutters()) {
     const SweptDistance swept(tool.tool.profile(), Motion(kTurning[0], kTurning[2]));

@@ -38,7 +38,7 @@ TEST(Scenes, AreAllListed) {
   EXPECT_EQ(listed, there);
 }
 
-TEST(Scenes, HashesTellOneBit) {
+TEST(Scenes, HashesDifferForOneBit) {
   const dexel::Frame frame{{{0, 0, 0}, {4, 4, 4}}, 1, "xyz"};
   const Volume block = Volume::block(frame);
   EXPECT_EQ(hash(block), hash(Volume::block(frame)));

@@ -23,7 +23,7 @@ JournalStroke stroke(int rows, double x) {
   return out;
 }
 
-TEST(JournalDisk, FullInAnyByteOfARecordLeavesAllRecordsBefore) {
+TEST(JournalDisk, FullAtAnyByteOfARecordKeepsAllEarlierRecords) {
   const TemporaryFile file("disk.rjournal");
   JournalWriter writer(file.path);
   writer.add_tool(1, "{}");
@@ -48,7 +48,7 @@ TEST(JournalDisk, FullInAnyByteOfARecordLeavesAllRecordsBefore) {
   EXPECT_EQ(j.strokes()[1].poses[0].tip.x, 3);
 }
 
-TEST(JournalDisk, WriterGoesOnWhereThereIsRoomAgain) {
+TEST(JournalDisk, WriterContinuesOnceThereIsRoomAgain) {
   // A record may be refused, a shorter one taken after it.
   const TemporaryFile file("room.rjournal");
   JournalWriter writer(file.path, JournalWriter::Keep::Rules);
@@ -75,7 +75,7 @@ TEST(JournalDisk, WriterGoesOnWhereThereIsRoomAgain) {
   EXPECT_EQ(read_journal(file.path).strokes().back().poses.size(), 100U);
 }
 
-TEST(JournalDisk, FullForTheHeaderLeavesAFileThatCanBegin) {
+TEST(JournalDisk, FullAtTheHeaderLeavesAUsableFile) {
   const TemporaryFile file("header.rjournal");
   for (const unsigned size : {0, 8, 15}) {
     const FileLimit full(size);

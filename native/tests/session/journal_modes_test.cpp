@@ -135,7 +135,7 @@ TEST(JournalModes, OfDabsAreReplayedToTheByte) {
   EXPECT_EQ(error_of([&] { j.add_stroke(wrong); }), "strength must be from 0 to 1");
 }
 
-TEST(JournalModes, GoOnFromAStockThatHasAMask) {
+TEST(JournalModes, ContinueFromAStockThatHasAMask) {
   std::mt19937 random(22);
   const TemporaryFile stock("stock.rvol"), mask("mask.rvol");
   Clay clay;
@@ -157,7 +157,7 @@ TEST(JournalModes, GoOnFromAStockThatHasAMask) {
             "the mask's snapshot must be a file's name, not \"../" + names[1] + "\"");
 }
 
-TEST(JournalModes, OfRemovalAloneHaveTheBytesThatTheyAlwaysHad) {
+TEST(JournalModes, OfRemovalAloneKeepTheirOldBytes) {
   std::mt19937 random(23);
   Journal j = journal();
   j.add_stroke(stroke(StrokeMode::Remove, 1, wander(random, 5)));
@@ -195,7 +195,7 @@ TEST(JournalModes, OfANewerRifflerAreNamed) {
   EXPECT_EQ(out.strokes()[0].mode, StrokeMode::Add);
 }
 
-TEST(JournalModes, LeaveToMachinesWhatTheyCanMake) {
+TEST(JournalModes, GiveMachinesOnlyStrokesThatTheyCanMake) {
   std::mt19937 random(25);
   Journal all = journal(), removal = journal();
   for (const StrokeMode mode : kModes) {

@@ -73,7 +73,7 @@ JournalStream::Options ring(std::size_t rows) {
   return options;
 }
 
-TEST(JournalStream, WritesStrokesAsTheyWerePutWheneverTheKeeperLooks) {
+TEST(JournalStream, WritesStrokesUnchangedAtAnyPaceOfTheKeeper) {
   std::mt19937 random(3);
   for (int round = 0; round < 20; ++round) {
     Session s("random", ring(64));
@@ -130,7 +130,7 @@ TEST(JournalStream, BeginsAStrokeWhereTheToolLastStood) {
   EXPECT_EQ(j.strokes()[0].times, (std::vector{0.4, 0.5, 0.6})) << "in the middle a standing tool has a force";
 }
 
-TEST(JournalStream, SaysWhenThereIsNoRoomAndAlwaysTakesAnEnd) {
+TEST(JournalStream, ReportsMissingRoomAndAlwaysTakesAnEnd) {
   Session s("room", ring(8));
   EXPECT_FALSE(s.stream.put(row(0))) << "no stroke";
   EXPECT_TRUE(s.stream.room(7));
@@ -149,7 +149,7 @@ TEST(JournalStream, SaysWhenThereIsNoRoomAndAlwaysTakesAnEnd) {
   expect_rows(s.read().strokes()[0], 0, 7);
 }
 
-TEST(JournalStream, SaysWhenWhatWasThereIsInTheFile) {
+TEST(JournalStream, ReportsWhenEarlierRowsAreInTheFile) {
   Session s("written");
   EXPECT_TRUE(s.stream.written(0)) << "nothing was put";
   ASSERT_TRUE(s.stream.begin(1, 0.01, row(0)));
@@ -218,7 +218,7 @@ TEST(JournalStream, TriesAFullDiskOnceASecond) {
   expect_rows(s.read().strokes()[0], 0, 2);
 }
 
-TEST(JournalStream, SaysWhatIsWrongAndCanBeStoppedAndStartedAgain) {
+TEST(JournalStream, ReportsErrorsAndCanBeStoppedAndStartedAgain) {
   JournalStream::Options options;
   options.drain = options.retry = 1e-3;
   Session s("again", options);
@@ -239,7 +239,7 @@ TEST(JournalStream, SaysWhatIsWrongAndCanBeStoppedAndStartedAgain) {
   EXPECT_EQ(s.stream.waiting(), 1U);
 }
 
-TEST(JournalStream, CountsWhatNoJournalCanHoldAndEndsTheStrokeThere) {
+TEST(JournalStream, CountsRowsThatNoJournalCanHoldAndEndsTheStrokeThere) {
   Session s("refused");
   const auto stroke = [&](int tool, int first, int bad) {
     ASSERT_TRUE(s.stream.begin(tool, 0.01, row(first)));
@@ -283,7 +283,7 @@ TEST(JournalStream, LendsItsWriterBetweenStrokes) {
   expect_rows(j.strokes()[1], 20, 2);
 }
 
-TEST(JournalStream, RefusesOptionsThatAreNone) {
+TEST(JournalStream, RefusesInvalidOptions) {
   const TemporaryFile file("options.rjournal");
   JournalWriter writer(file.path);
   const auto refused = [&](double drain, double sync, double retry, std::size_t rows) {
@@ -295,7 +295,7 @@ TEST(JournalStream, RefusesOptionsThatAreNone) {
   EXPECT_EQ(refused(1, 1, -1, 8), "retry must be positive, in s");
 }
 
-TEST(JournalStream, LoopKeeperAndUndoRunBesideEachOther) {
+TEST(JournalStream, LoopKeeperAndUndoRunAtTheSameTime) {
   JournalStream::Options options = ring(256);
   options.drain = 1e-3, options.sync = 2e-3;
   Session s("threads", options);

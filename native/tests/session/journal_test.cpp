@@ -108,7 +108,7 @@ void expect_same(const Journal& a, const Journal& b) {
   for (std::size_t k = 0; k < a.strokes().size(); ++k) expect_same(a.strokes()[k], b.strokes()[k]);
 }
 
-TEST(Journal, ComesBackToTheBit) {
+TEST(Journal, RoundTripsToTheBit) {
   const Journal j = sample();
   const Journal k = parse_journal(to_bytes(j), "j");
   expect_same(j, k);
@@ -169,7 +169,7 @@ TEST(Journal, IsSmallerThanItsDoubles) {
   EXPECT_LT(to_bytes(j).size(), 5000U * 7 * 8 / 2);
 }
 
-TEST(Journal, CutAnywhereGivesAllWholeRecords) {
+TEST(Journal, TruncatedAnywhereGivesAllWholeRecords) {
   const Journal whole = sample();
   const auto bytes = to_bytes(whole);
   std::size_t before = 0;
@@ -188,7 +188,7 @@ TEST(Journal, CutAnywhereGivesAllWholeRecords) {
     EXPECT_THROW(parse_journal(std::span(bytes).first(size), "j"), FormatError);
 }
 
-TEST(Journal, TailOfZerosIsACutTail) {
+TEST(Journal, TailOfZerosIsATruncatedTail) {
   auto bytes = to_bytes(sample());
   const std::size_t size = bytes.size();
   bytes.resize(size + 4096, 0);
@@ -267,7 +267,7 @@ TEST(Journal, RefusesOtherFilesAndVersions) {
   EXPECT_THROW(read_journal("/nowhere/at/all.rjournal"), FormatError);
 }
 
-TEST(Journal, NamesWhatIsWrongAndStaysAsItWas) {
+TEST(Journal, NamesBadInputAndStaysUnchanged) {
   Journal j = sample();
   const auto before = to_bytes(j);
   const auto with = [](auto change) {
@@ -314,7 +314,7 @@ TEST(Journal, NamesWhatIsWrongAndStaysAsItWas) {
   EXPECT_EQ(to_bytes(j), before);
 }
 
-TEST(JournalWriter, AppendsAndGoesOnAfterACrash) {
+TEST(JournalWriter, AppendsAndContinuesAfterACrash) {
   const TemporaryFile file("append.rjournal");
   const JournalStroke s = wavy(100);
   {
@@ -361,7 +361,7 @@ TEST(JournalWriter, BelongsToOneAtATimeAndEndsWithClose) {
   EXPECT_THROW(JournalWriter nowhere("/nowhere/at/all.rjournal"), std::runtime_error);
 }
 
-TEST(JournalWriter, LeavesAlienFilesAlone) {
+TEST(JournalWriter, LeavesForeignFilesUnchanged) {
   const TemporaryFile file("alien.rjournal");
   base::write_file(file.path, std::string_view("my poems, not a journal"));
   EXPECT_THROW(JournalWriter writer(file.path), FormatError);
@@ -436,7 +436,7 @@ TEST(JournalProgram, TakesFeedsFromTimes) {
   EXPECT_EQ(to_program(j, {}, {250.0, 0, {}}).feed()[1], 250);
 }
 
-TEST(JournalProgram, AsksForAFeedWhereThereIsNone) {
+TEST(JournalProgram, NeedsAFeedIfThereAreNoTimes) {
   Journal j;
   j.add_tool(1, kBall);
   j.add_stroke({1, 0.01, "", {{{0, 0, 0}, {0, 0, 1}}, {{0, 0, 0}, {0, 0, 1}}}, {0, 1}});

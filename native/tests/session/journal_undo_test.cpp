@@ -35,7 +35,7 @@ Journal five() {
   return j;
 }
 
-TEST(JournalUndo, TakesBackTheLastStrokesAndBringsThemBackInOrder) {
+TEST(JournalUndo, UndoesAndRedoesTheLastStrokesInOrder) {
   Journal j = five();
   j.undo(2);
   EXPECT_EQ(numbers(j.strokes()), (std::vector{0, 1, 2}));
@@ -61,7 +61,7 @@ TEST(JournalUndo, EndsTheStroke) {
   EXPECT_EQ(j.strokes()[4].poses.size(), 2U);
 }
 
-TEST(JournalUndo, IsInTheFileAndCanBeBroughtBackFromIt) {
+TEST(JournalUndo, IsInTheFileAndCanBeRedoneFromIt) {
   Journal j = five();
   j.undo(3);
   Journal k = parse_journal(to_bytes(j), "j");
@@ -71,7 +71,7 @@ TEST(JournalUndo, IsInTheFileAndCanBeBroughtBackFromIt) {
   EXPECT_EQ(numbers(k.strokes()), (std::vector{0, 1, 2, 3}));
 }
 
-TEST(JournalUndo, OfStrokesThatAreNotThereIsAFormatError) {
+TEST(JournalUndo, OfMissingStrokesIsAFormatError) {
   const Bytes whole = to_bytes(five());
   for (const auto& record : {journal_format::undo_record, journal_format::redo_record})
     for (const std::size_t n : {std::size_t{0}, std::size_t{6}, ~std::size_t{0}}) {
@@ -87,7 +87,7 @@ TEST(JournalUndo, OfStrokesThatAreNotThereIsAFormatError) {
     }
 }
 
-TEST(JournalUndo, WriterDoesWhatTheJournalDoesWhateverItKeeps) {
+TEST(JournalUndo, WriterAgreesWithTheJournalWhicheverRowsItKeeps) {
   // Random histories, against a list and a stack of what was taken back.
   std::mt19937 random(5);
   for (int round = 0; round < 20; ++round) {

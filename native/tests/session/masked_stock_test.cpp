@@ -121,7 +121,7 @@ Journal journal(const char* directions, sweep::CarveMode mode, Masked masks = Ma
   return j;
 }
 
-TEST(MaskedStock, WhatLiesInTheMaskStaysAsItIsToTheBitAndTheRestIsAsACarveBesideItLeavesIt) {
+TEST(MaskedStock, MaskedMaterialStaysToTheBitAndTheRestEqualsAPlainCarve) {
   for_each_kind([](const char* directions, sweep::CarveMode mode) {
     std::mt19937 random(11);
     Bench bench(directions, mode);
@@ -137,7 +137,7 @@ TEST(MaskedStock, WhatLiesInTheMaskStaysAsItIsToTheBitAndTheRestIsAsACarveBeside
   });
 }
 
-TEST(MaskedStock, WhatIsShownDoesNotDependOnHowOftenSomebodyLooks) {
+TEST(MaskedStock, TheShownStateDoesNotDependOnTheNumberOfQueries) {
   for_each_kind([](const char* directions, sweep::CarveMode mode) {
     std::mt19937 random(12);
     Bench often(directions, mode), seldom(directions, mode);
@@ -150,7 +150,7 @@ TEST(MaskedStock, WhatIsShownDoesNotDependOnHowOftenSomebodyLooks) {
   });
 }
 
-TEST(MaskedStock, AReplayOfItsStrokesHasTheSameBytesHoweverManyCount) {
+TEST(MaskedStock, AReplayOfAnyNumberOfStrokesHasTheSameBytes) {
   for_each_kind([](const char* directions, sweep::CarveMode mode) {
     std::mt19937 random(13);
     Bench bench(directions, mode);
@@ -170,7 +170,7 @@ TEST(MaskedStock, AReplayOfItsStrokesHasTheSameBytesHoweverManyCount) {
   });
 }
 
-TEST(MaskedStock, WithoutAMaskTheReplayOfWhatWasPutOnHasTheSameBytesToo) {
+TEST(MaskedStock, WithoutAMaskTheReplayOfAddedMaterialHasTheSameBytesToo) {
   for (const char* directions : {"z", "xyz"}) {
     std::mt19937 random(15);
     Bench bench(directions, sweep::CarveMode::Add, Masked::No);
@@ -187,7 +187,7 @@ TEST(MaskedStock, WithoutAMaskTheReplayOfWhatWasPutOnHasTheSameBytesToo) {
 }
 
 /// Why such strokes have a kind of their own: a carve that adds starts over, and what is thinner than 1e-9 h is lost.
-TEST(MaskedStock, AStrokeThatGoesDeeperByNextToNothingIsInTheReplay) {
+TEST(MaskedStock, AStrokeThatGoesDeeperByATinyAmountIsInTheReplay) {
   for (const char* directions : {"z", "xyz"}) {
     std::mt19937 random(17);
     Bench bench(directions, sweep::CarveMode::Add, Masked::No);
@@ -205,7 +205,7 @@ TEST(MaskedStock, AStrokeThatGoesDeeperByNextToNothingIsInTheReplay) {
   }
 }
 
-TEST(MaskedStock, RunsOfStrokesOfTheTwoModesBeginWithTheWholeThatTheLastOneLeft) {
+TEST(MaskedStock, RunsOfStrokesOfTheTwoModesBeginWithTheResultOfTheLastOne) {
   for (const char* directions : {"z", "xyz"}) {
     std::mt19937 random(16);
     Journal j = journal(directions, sweep::CarveMode::Add);
@@ -223,7 +223,7 @@ TEST(MaskedStock, RunsOfStrokesOfTheTwoModesBeginWithTheWholeThatTheLastOneLeft)
   }
 }
 
-TEST(MaskedStock, StrokesOfOtherKindsBeginWithTheWhole) {
+TEST(MaskedStock, StrokesOfOtherKindsBeginWithTheWholeVolume) {
   std::mt19937 random(14);
   for (const sweep::CarveMode mode : {sweep::CarveMode::Remove, sweep::CarveMode::Add}) {
     Bench bench("xyz", mode);

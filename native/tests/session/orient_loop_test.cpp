@@ -157,7 +157,7 @@ TEST(OrientLoop, EachPressIsReportedOnceWithThePlaceAndAxisThatTheUserSees) {
 
 /// Whatever goes wrong: the force is gone within the time that the sculpting loop has for it, no press counts, and the
 /// tool stands where it was.
-TEST(OrientLoop, EveryFaultTakesTheForceAndLeavesTheTool) {
+TEST(OrientLoop, EveryFaultRemovesTheForceAndLeavesTheTool) {
   const std::vector<std::pair<const char*, std::function<void(OrientBench&)>>> faults{
       {"unplugged", [](OrientBench& b) { b.pen->unplug(); }},
       {"processor stands", [](OrientBench& b) { b.pen->halt(150'000); }},

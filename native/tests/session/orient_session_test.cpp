@@ -82,7 +82,7 @@ TEST(OrientSession, ButtonsSetReplaceAndDeleteKeysAndThePathFollows) {
   EXPECT_FALSE(bench.session->running());
 }
 
-TEST(OrientSession, BeginsWithThePathsKeysAndTakesOthers) {
+TEST(OrientSession, BeginsWithThePathsKeysAndAcceptsOthers) {
   plan::PencilPath path =
       plan::oriented(edge_path(), {{0, leaning(0.5)}, {36, leaning(0.7)}}, plan::Interpolation::Slerp);
   TabletBench bench({}, path);

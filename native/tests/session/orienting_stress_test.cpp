@@ -29,7 +29,7 @@ void print(double seconds, stress::OrientingRun& run) {
               run.deepest, run.set, run.deleted);
 }
 
-TEST(Orienting, TheLastMinuteIsAsTheFirst) {
+TEST(Orienting, TheLastMinuteIsLikeTheFirst) {
   const double seconds = test::kSanitized ? 20 : std::getenv("RIFFLER_LONG") ? 600 : 60;
   stress::OrientingRun run = stress::orienting_run(
       {.seconds = seconds, .warm = std::min(30.0, seconds / 2), .allocations = &test::allocations});

@@ -60,7 +60,7 @@ TEST(PathGuide, ASlidingToolFindsTheNearestPlaceAndStopsAtTheEnds) {
 }
 
 /// Beside a search through the whole path, in double precision and dense.
-TEST(PathGuide, FollowsAHandRoundAClosedPathAsASearchOfTheWholeFindsIt) {
+TEST(PathGuide, FollowsAHandRoundAClosedPathLikeAFullSearch) {
   const plan::PencilPath path = ring(180);
   PathGuide guide(path, kBall, 0, {0, 0, 1}, true);
   double worst = 0, turns = 0, before = 0;
@@ -113,7 +113,7 @@ TEST(PathGuide, KeepsItsAxisWhereTheCutterCannotTouch) {
   EXPECT_NEAR(glm::length(down.axis), 1, 1e-12);
 }
 
-TEST(PathGuide, OneOfOnePointAndOneOfTwoEqualPointsStandStill) {
+TEST(PathGuide, GuidesOfOnePointOrTwoEqualPointsStandStill) {
   plan::PencilPath one = edge_path();
   one.centres.resize(1), one.contacts.resize(1), one.normals.resize(1);
   PathGuide guide(one, kBall, 0, leaning(0), true);

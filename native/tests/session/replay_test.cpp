@@ -50,7 +50,7 @@ std::vector<Pose> wander(std::mt19937& random, int rows) {
   return out;
 }
 
-TEST(Replay, LeavesTheBytesThatMovesOneByOneLeft) {
+TEST(Replay, GivesTheBytesOfSingleMoves) {
   for (const char* directions : {"z", "xyz"}) {
     const TemporaryFile file("replay.rjournal");
     Volume session = Volume::block({kBox, 0.4, directions});
@@ -90,7 +90,7 @@ TEST(Replay, LeavesTheBytesThatMovesOneByOneLeft) {
   }
 }
 
-TEST(Replay, LeavesTheBytesThatAHandLeftThroughTheHapticStep) {
+TEST(Replay, GivesTheBytesOfTheHapticStep) {
   // A hand that rests for half a second, presses, slides and rests again: the spring comes to rest by ever smaller
   // displacements.
   Volume session = Volume::block({kBox, 0.4, "xyz"});
@@ -144,7 +144,7 @@ TEST(Replay, TakesRowsThatStandForNoMoves) {
   EXPECT_TRUE(test::same_rays(left({p, p, q, q, p, p}), carved({p, q, p})));
 }
 
-TEST(Replay, SeesOnlyWhatCounts) {
+TEST(Replay, UsesOnlyStrokesThatCount) {
   std::mt19937 random(9);
   Journal all = journal(), fewer = journal();
   for (int k = 0; k < 4; ++k) {
@@ -196,7 +196,7 @@ TEST(Replay, NamesTheStrokeThatIsWrong) {
   EXPECT_EQ(error_of([&] { replay(j, kTools); }).substr(0, 25), "stroke 1: poses, row 1: t");
 }
 
-TEST(Replay, TellsHowFarItIsAndStops) {
+TEST(Replay, ReportsProgressAndStops) {
   Journal j = journal();
   std::mt19937 random(12);
   for (int k = 0; k < 6; ++k) j.add_stroke({1, 0.01, "", wander(random, 30)});

@@ -76,7 +76,7 @@ std::unique_ptr<JournalSink> sink_to(const std::filesystem::path& path, const Vo
   return std::make_unique<JournalSink>(std::move(writer), 1, 0.01, options);
 }
 
-TEST(SculptFault, EachTakesTheForceAndLeavesAJournalThatReplaysWhatWasCut) {
+TEST(SculptFault, EachRemovesTheForceAndLeavesAJournalThatReplaysTheCuts) {
   const double after = test::kSanitized ? 3 : 6;  // s
   for (const Fault& fault : faults()) {
     SCOPED_TRACE(fault.name);

@@ -30,7 +30,7 @@ using test::sculpting_hand;
 
 const Tool kBall = cutters::ball(6, 30);
 
-TEST(SculptLoop, CutsWhileTheButtonIsHeldAndWhatItToldTheSinkGivesTheSameBytes) {
+TEST(SculptLoop, CutsWhileTheButtonIsHeldAndTheSinksRowsGiveTheSameBytes) {
   for (const char* directions : {"z", "xyz"}) {
     const Volume stock = test::sculpt_stock(0.5, directions);
     RememberingSink sink;
@@ -100,7 +100,7 @@ TEST(SculptLoop, AForceThatTheButtonOrTheSessionEndsFallsWithoutAJump) {
   }
 }
 
-TEST(SculptLoop, GivesTheSameBytesFromRunToRunWhoeverLooks) {
+TEST(SculptLoop, GivesTheSameBytesFromRunToRunWithAnyObserver) {
   const Volume stock = test::sculpt_stock();
   const auto result = [&](int frames) {
     SculptBench bench(sculpting_hand(), stock, kBall);
@@ -157,7 +157,7 @@ TEST(SculptLoop, TheHandFeelsTheCutAndNothingInTheAir) {
   EXPECT_GE(worst, 0);
 }
 
-TEST(SculptLoop, WithoutRoomInTheJournalNothingIsCutAndTheReasonIsTold) {
+TEST(SculptLoop, WithoutRoomInTheJournalNothingIsCutAndTheReasonIsReported) {
   RememberingSink sink;
   SculptBench bench(sculpting_hand(), test::sculpt_stock(), kBall, {}, &sink);
   bench.run(2);
@@ -173,7 +173,7 @@ TEST(SculptLoop, WithoutRoomInTheJournalNothingIsCutAndTheReasonIsTold) {
   EXPECT_GT(removed, 10);
 }
 
-TEST(SculptLoop, AfterATripTheToolGoesOnFromWhereItWasAndCutsNoWayBetween) {
+TEST(SculptLoop, AfterATripTheToolContinuesFromItsPlaceAndCutsNothingBetween) {
   RememberingSink sink;
   const Volume stock = test::sculpt_stock();
   SculptBench bench(sculpting_hand(), stock, kBall, {}, &sink);
@@ -243,7 +243,7 @@ TEST(SculptLoop, TheHandFeelsTheSameStiffnessAtEveryScale) {
   }
 }
 
-TEST(SculptLoop, UndoIsRefusedInAStrokeAndOtherwiseToldToTheSink) {
+TEST(SculptLoop, UndoIsRefusedInAStrokeAndOtherwisePassedToTheSink) {
   RememberingSink sink;
   const Volume stock = test::sculpt_stock();
   SculptBench bench(sculpting_hand(), stock, kBall, {}, &sink);
@@ -262,7 +262,7 @@ TEST(SculptLoop, UndoIsRefusedInAStrokeAndOtherwiseToldToTheSink) {
   EXPECT_TRUE(test::same_spans(shown, test::carved_again(stock, kBall, {sink.strokes[1]})));
 }
 
-TEST(SculptLoop, AConnectionInAStrokeBeginsAnotherWhereTheHandIsThen) {
+TEST(SculptLoop, ANewConnectionInAStrokeBeginsAnotherStrokeAtTheHand) {
   const Volume stock = test::sculpt_stock(0.5);
   for (const std::optional<Pose> start : {std::optional<Pose>(), std::optional(Pose{{-20, 0, -1}, {0, 0, 1}})}) {
     RememberingSink sink;
@@ -285,7 +285,7 @@ TEST(SculptLoop, AConnectionInAStrokeBeginsAnotherWhereTheHandIsThen) {
   }
 }
 
-TEST(SculptLoop, AsksForNoMemoryOnceItIsWarm) {
+TEST(SculptLoop, AllocatesNothingOnceItIsWarm) {
   const Volume stock = test::sculpt_stock();
   SculptLoop loop({}, stock, kBall, nullptr, pen_capability(pen::load_pen("riffler")), Pose{{0, 0, 1}, {0, 0, 1}});
   Volume shown = stock;
@@ -314,7 +314,7 @@ TEST(SculptLoop, AsksForNoMemoryOnceItIsWarm) {
   EXPECT_EQ(count, 0U);
 }
 
-TEST(SculptLoop, StepsThatCannotBeMadeAreHeldOverWithoutAJump) {
+TEST(SculptLoop, MissedStepsHoldTheForceWithoutAJump) {
   // Somebody holds the lock: as undo does, for much longer than it would.
   const Volume stock = test::sculpt_stock();
   SculptLoop loop({}, stock, kBall, nullptr, pen_capability(pen::load_pen("riffler")), Pose{{0, 0, 1}, {0, 0, 1}});
@@ -421,7 +421,7 @@ TEST(SculptLoop, BadSettingsAreNamed) {
   EXPECT_NE(test::error_of([&] { make(s); }).find("scale"), std::string::npos);
 }
 
-TEST(SculptLoop, SamplesOfAnyKindLeaveItAlive) {
+TEST(SculptLoop, SurvivesSamplesOfAnyKind) {
   const double inf = std::numeric_limits<double>::infinity(), nan = std::nan("");
   const Volume stock = test::sculpt_stock(1);
   SculptLoop loop({}, stock, kBall, nullptr, pen_capability(pen::load_pen("riffler")), Pose{{0, 0, 1}, {0, 0, 1}});

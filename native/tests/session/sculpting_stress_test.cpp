@@ -24,7 +24,7 @@ void print(const char* what, stress::SculptingRun& run) {
               at(0.999), run.resident[1], run.resident.back());
 }
 
-TEST(Sculpting, TheLastMinuteIsAsTheFirst) {
+TEST(Sculpting, TheLastMinuteIsLikeTheFirst) {
   const double seconds = test::kSanitized ? 20 : std::getenv("RIFFLER_LONG") ? 600 : 60;
   stress::SculptingRun run = stress::sculpting_run(
       {.seconds = seconds, .warm = std::min(30.0, seconds / 2), .allocations = &test::allocations});

@@ -78,7 +78,7 @@ struct MouseBench {
   std::unique_ptr<Session> session;
 };
 
-TEST(Session, AMouseSculptsAndWhatIsShownAtTheEndIsWhatWasCut) {
+TEST(Session, AMouseSculptsAndTheShownVolumeIsTheCutOne) {
   const auto sink = std::make_shared<RememberingSink>();
   MouseBench bench({}, sink);
   bench.session->start();
@@ -92,7 +92,7 @@ TEST(Session, AMouseSculptsAndWhatIsShownAtTheEndIsWhatWasCut) {
                                                                {.tolerance = 0.01, .removal_constant = 1e-4})));
 }
 
-TEST(Session, UndoAndRedoGoStrokeByStrokeAndTellTheTiles) {
+TEST(Session, UndoAndRedoGoStrokeByStrokeAndReportTheTiles) {
   const auto sink = std::make_shared<RememberingSink>();
   MouseBench bench({}, sink);
   bench.session->start();
@@ -135,7 +135,7 @@ Volume half_a_stock() {
   return out;
 }
 
-TEST(Session, ThatPutsOnAddsToTheVolumeStrokeByStrokeAndIsUndone) {
+TEST(Session, ThatAddsMaterialDoesSoStrokeByStrokeAndIsUndone) {
   const auto sink = std::make_shared<RememberingSink>();
   SessionSettings settings;
   settings.mode = sweep::CarveMode::Add;
@@ -168,7 +168,7 @@ TEST(Session, ThatPutsOnAddsToTheVolumeStrokeByStrokeAndIsUndone) {
   EXPECT_NEAR(put_on, again.volume() - bench.stock.volume(), 1e-6 * again.volume());
 }
 
-TEST(Session, WhatIsPutOnIsNotFelt) {
+TEST(Session, AddedMaterialIsNotFelt) {
   for (const sweep::CarveMode mode : {sweep::CarveMode::Remove, sweep::CarveMode::Add}) {
     SessionSettings settings;
     settings.mode = mode, settings.loop.sculpt.damping = 0.01;
@@ -189,7 +189,7 @@ TEST(Session, WhatIsPutOnIsNotFelt) {
   }
 }
 
-TEST(Session, ThatPutsOnKeepsTheToolOutOfObstacles) {
+TEST(Session, ThatAddsMaterialKeepsTheToolOutOfObstacles) {
   const auto plate =
       std::make_shared<collide::Collider>(test::box_mesh({-200, -200, -11}, {200, 200, -1}), std::vector<Volume>{},
                                           collide::Collider::Settings{.spacing = 0.3, .stiffness = 1e3});
@@ -207,7 +207,7 @@ TEST(Session, ThatPutsOnKeepsTheToolOutOfObstacles) {
   EXPECT_GT(changed, 50);
 }
 
-TEST(Session, AMesherThatFollowsTheFramesHasTheMeshOfTheWhole) {
+TEST(Session, AMesherThatFollowsTheFramesHasTheMeshOfTheVolume) {
   MouseBench bench;
   marching::Mesher mesher(bench.shown);
   bench.session->start();
@@ -270,7 +270,7 @@ TEST(Session, TheSimulatedPenSculptsInItsOwnThread) {
   EXPECT_GT(found.fell, 5) << "ticks in which the force falls before the session ends";
 }
 
-TEST(Session, ARecordingIsPlayedWhereItWas) {
+TEST(Session, ARecordingIsPlayedInItsPlace) {
   std::vector<Pose> poses;
   std::vector<double> times;
   for (int k = 0; k <= 100; ++k) poses.push_back({{-20 + 0.4 * k, 0, -1}, {0, 0, 1}}), times.push_back(5e-3 * k);
@@ -289,7 +289,7 @@ TEST(Session, ARecordingIsPlayedWhereItWas) {
   EXPECT_NEAR(stock.volume() - shown.volume(), 40 * across + caps, 0.03 * (40 * across + caps));
 }
 
-TEST(Session, WhoChangesTheVolumeMeanwhileIsTold) {
+TEST(Session, AChangeOfTheVolumeMeanwhileIsReported) {
   MouseBench bench;
   bench.session->start();
   bench.shown.touch();

@@ -17,7 +17,7 @@ Volume block(const char* directions = "xyz") {
   return Volume::block({{{0, 0, 0}, {60, 60, 20}}, 1, directions});
 }
 
-TEST(TileExchange, HandsOverNothingBeforeItIsAsked) {
+TEST(TileExchange, PassesNothingOnBeforeARequest) {
   Volume cut = block(), shown = cut;
   TileExchange exchange(cut);
   std::vector<TileExchange::Place> places;
@@ -35,7 +35,7 @@ TEST(TileExchange, HandsOverNothingBeforeItIsAsked) {
   EXPECT_FALSE(exchange.take(shown, places, mark));
 }
 
-TEST(TileExchange, GathersUntilItIsAskedAndTellsEachTileOnce) {
+TEST(TileExchange, GathersUntilARequestAndGivesEachTileOnce) {
   Volume cut = block(), shown = cut;
   TileExchange exchange(cut);
   sweep::MoveCarver carver(cut, cutters::ball(10, 30), {});
@@ -93,7 +93,7 @@ TEST(TileExchange, TwoThreadsNeverSeeHalfOfACut) {
   EXPECT_TRUE(test::same_spans(shown, cut));
 }
 
-TEST(Ring, KeepsOrderRefusesWhatItHasNoRoomForAndGoesRound) {
+TEST(Ring, KeepsOrderRefusesEntriesWithoutRoomAndWraps) {
   base::Ring<int> ring(3);
   int value = 0;
   EXPECT_FALSE(ring.take(value));

@@ -63,7 +63,7 @@ TEST(IdentifiedDamping, TheFileOfAnIdentifiedPenHasDampingInEveryPosture) {
   EXPECT_GT(found.friction, 0.005);
 }
 
-TEST(IdentifiedDamping, WhereNoViscousFrictionIsCertainThereIsNone) {
+TEST(IdentifiedDamping, UncertainViscousFrictionGivesNoDamping) {
   pen::PenGeometry pen = identified();
   for (std::size_t k = 0; k < pen::kPenChannels; ++k) pen.uncertainty->viscous[k] = 10 * pen.channels[k].viscous;
   const IdentifiedDamping found = identified_damping(pen, 50);
@@ -72,7 +72,7 @@ TEST(IdentifiedDamping, WhereNoViscousFrictionIsCertainThereIsNone) {
   EXPECT_GT(found.friction, 0);
 }
 
-TEST(IdentifiedDamping, RefusesPensOfWhichItKnowsNothing) {
+TEST(IdentifiedDamping, RefusesUnknownPens) {
   EXPECT_NE(test::error_of([] { identified_damping(pen::load_pen("riffler")); }).find("riffler pen identify"),
             std::string::npos);
   pen::PenGeometry pen = identified();

@@ -39,7 +39,7 @@ TEST(MeshStress, DrawsTheSameVolumeAgain) {
   EXPECT_NE(to_bytes(mesh_volume(7, 0)), to_bytes(mesh_volume(8, 0)));
 }
 
-TEST(MeshStress, FindsTheLeastThatFails) {
+TEST(MeshStress, FindsTheSmallestFailingVolume) {
   const Volume volume = mesh_volume(3, 0);
   const dexel::Grid& grid = volume.grids().back();
   int i = 0, j = 0;
@@ -70,7 +70,7 @@ FloatAudit audit_of(const std::function<void(Mesh&)>& harm) {
   return float_audit(mesh);
 }
 
-TEST(FloatAudit, SeesEveryDefect) {
+TEST(FloatAudit, FindsEveryDefect) {
   EXPECT_TRUE(audit_of([](Mesh&) {}).clean());
   EXPECT_EQ(audit_of([](Mesh& m) { m.triangles.pop_back(); }).open, 3u);
   EXPECT_GT(audit_of([](Mesh& m) { m.triangles.push_back(m.triangles.back()); }).repeated, 0u);

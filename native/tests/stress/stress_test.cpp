@@ -56,7 +56,7 @@ Comparison compared(const Move& move, const Volume& after) {
   return compare_with_reference(random, stage(), move, Volume::block(stage().frame), after, 400);
 }
 
-TEST(StressChecks, TheReferenceAgreesWithWhatWasCut) {
+TEST(StressChecks, TheReferenceAgreesWithTheCut) {
   for (const Move& move : {kTurning, kStraight}) {
     const Comparison c = compared(move, carved(move));
     EXPECT_EQ(c.problem, "");

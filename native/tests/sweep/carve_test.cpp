@@ -161,7 +161,7 @@ TEST(Carve, RemovedSumsToTheLossOfVolume) {
 }
 
 /// B200 of the benchmark jobs: the volume that is left when a ball end mill that reaches out of the block has passed.
-TEST(Carve, LeavesTheKnownVolumeOnTheRampingJob) {
+TEST(Carve, TheRampingJobLeavesTheKnownVolume) {
   Volume volume = Volume::block({{{0, 0, 0}, {100, 60, 30}}, 0.25, "z"});
   std::vector<Pose> poses;
   for (int k = 0; k <= 200; ++k) {
@@ -200,7 +200,7 @@ TEST(Carve, GivesTheSameBytesForAnyNumberOfThreads) {
   }
 }
 
-TEST(Carve, GivesTheSameBytesWhateverTheSignOfZero) {
+TEST(Carve, GivesTheSameBytesForBothSignsOfZero) {
   for (const Vec3& axis : {Vec3(0, 0, 1), unit(0.3, 0, 1), unit(0, -0.2, 1)}) {
     std::vector<Volume> volumes;
     for (const double zero : {0.0, -0.0}) {
@@ -271,7 +271,7 @@ TEST(Carve, ForceActsAgainstThePlungeAndTorqueAboutTheTip) {
   return places[1];
 }
 
-TEST(Carve, ForceIsOfTheRaysThatAreCutAlone) {
+TEST(Carve, ForceComesOnlyFromRaysThatAreCut) {
   // As a time, this takes one coordinate of the tool beyond all numbers, and none of the others.
   const double never = 8e307;
   const std::vector<Pose> poses{{{3, 7, 6}, glm::normalize(Vec3(0.1, 0.2, 1))},
@@ -320,7 +320,7 @@ TEST(Carve, BadInputNamesTheRowAndChangesNothing) {
   EXPECT_EQ(volume.volume(), 4000);
 }
 
-TEST(Carve, CancellingLeavesTheVolumeAsItWas) {
+TEST(Carve, CancellingLeavesTheVolumeUnchanged) {
   Volume volume = Volume::block({{{0, 0, 0}, {20, 20, 10}}, 0.5, "xyz"});
   const auto revision = volume.revision();
   CarveOptions options;
@@ -352,7 +352,7 @@ TEST(Carve, KeepsItsAccuracyFarFromTheOrigin) {
     }
 }
 
-TEST(Carve, NormalsOfNewSurfacesLookIntoTheTool) {
+TEST(Carve, NormalsOfNewSurfacesPointIntoTheTool) {
   Volume volume = Volume::block({{{0, 0, 0}, {20, 20, 12}}, 0.5, "xyz"});
   const Vec3 axis = unit(0.2, 0.3, 1);
   const Pose pose{{10, 10, 4}, axis};
@@ -378,7 +378,7 @@ TEST(Carve, NormalsOfNewSurfacesLookIntoTheTool) {
 }
 
 /// One move took minutes and gigabytes, or never ended, with these.
-TEST(Carve, TolerancesAndTimesThatAskForWorkWithoutEndAreRefused) {
+TEST(Carve, TolerancesAndTimesThatNeedEndlessWorkAreRefused) {
   const std::vector<Pose> turning{{{5, 5, 3}, {0, 0, 1}}, {{15, 5, 3}, glm::normalize(Vec3(1, 0, 1))}};
   for (const double tolerance : {1e-9, 1e-12, 1e-16, 1e-22, 5e-324}) {
     Volume volume = Volume::block({{{0, 0, 0}, {20, 10, 5}}, 0.5, "z"});

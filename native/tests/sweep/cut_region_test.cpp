@@ -85,7 +85,7 @@ void expect_right(CarveMode mode, const Tool& tool, bool protecting, const char*
   }
 }
 
-TEST(CutRegion, HoldsAtEveryPointWhatWasThereWhatIsProtectedAndWhereTheToolWent) {
+TEST(CutRegion, HoldsAtEveryPointTheOldTheProtectedAndTheSweptMaterial) {
   for (const Tool& tool : {cutters::ball(7, 30), cutters::flat(6, 30), cutters::fillet(8, 1, 30)})
     for (const char* directions : {"z", "xyz"}) {
       expect_right(CarveMode::Add, tool, false, directions);
@@ -94,7 +94,7 @@ TEST(CutRegion, HoldsAtEveryPointWhatWasThereWhatIsProtectedAndWhereTheToolWent)
     }
 }
 
-TEST(CutRegion, IsTheUnionWithWhatTheToolTakesFromAFullBlock) {
+TEST(CutRegion, IsTheUnionWithTheCutOfAFullBlock) {
   for (const char* directions : {"z", "x", "xyz"}) {
     const dexel::Frame frame = test::lattice_frame(directions);
     Volume swept = Volume::block(frame), rest = swept;
@@ -115,7 +115,7 @@ TEST(CutRegion, IsTheUnionWithWhatTheToolTakesFromAFullBlock) {
   }
 }
 
-TEST(CutRegion, GivesTheBitsOfCarvingAWholeVolumeOfWhatMayBeCut) {
+TEST(CutRegion, GivesTheBitsOfCarvingTheUnprotectedVolume) {
   const dexel::Frame frame{
       {{0, 0, 0}, {60, 50, 24}}, 0.3, "xyz"};  // 7 × 6 tiles seen from above, of which the path passes some
   std::vector<Pose> poses = path();
@@ -144,7 +144,7 @@ TEST(CutRegion, GivesTheBitsOfCarvingAWholeVolumeOfWhatMayBeCut) {
     }
 }
 
-TEST(CutRegion, NewWallsLookOutOfTheMaterial) {
+TEST(CutRegion, NewWallsFaceOutOfTheMaterial) {
   Volume volume(test::lattice_frame("xyz", 0.4));
   CarveOptions options;
   options.mode = CarveMode::Add;
@@ -168,7 +168,7 @@ TEST(CutRegion, NewWallsLookOutOfTheMaterial) {
   EXPECT_GT(round, 500U);
 }
 
-TEST(CutRegion, SaysOfEachMoveWhatItPutOnOrTook) {
+TEST(CutRegion, ReportsTheVolumeThatEachMoveAddsOrRemoves) {
   for (const char* directions : {"z", "xyz", "y"})
     for (const CarveMode mode : {CarveMode::Add, CarveMode::Remove}) {
       const dexel::Frame frame = test::lattice_frame(directions);
@@ -185,7 +185,7 @@ TEST(CutRegion, SaysOfEachMoveWhatItPutOnOrTook) {
     }
 }
 
-TEST(CutRegion, WhatIsProtectedStaysBitForBitAndUntouchedTilesStayShared) {
+TEST(CutRegion, ProtectedMaterialStaysBitForBitAndUntouchedTilesStayShared) {
   const dexel::Frame frame{{{0, 0, 0}, {80, 60, 20}}, 0.5, "xyz"};
   const Volume before = Volume::block(frame);
   Volume kept(frame);
@@ -211,7 +211,7 @@ TEST(CutRegion, WhatIsProtectedStaysBitForBitAndUntouchedTilesStayShared) {
   EXPECT_LE(touched, 16U);  // of 64: those that the tool's footprint meets
 }
 
-TEST(CutRegion, LeavesEverythingAsItWasWhereNothingChanges) {
+TEST(CutRegion, SharesAllTilesIfNothingChanges) {
   const dexel::Frame frame{{{0, 0, 0}, {40, 40, 12}}, 0.5, "xyz"};
   Volume full = Volume::block(frame), empty(frame);
   const Volume all = full;
@@ -227,7 +227,7 @@ TEST(CutRegion, LeavesEverythingAsItWasWhereNothingChanges) {
   EXPECT_TRUE(test::same_rays(full, all));
 }
 
-TEST(CutRegion, PuttingOnAndTakingTheSameAgainLeavesTheRest) {
+TEST(CutRegion, AddingAndRemovingTheSameLeavesTheRest) {
   Volume volume = Volume::block({{{0, 0, 0}, {24, 24, 24}}, 0.5, "xyz"});
   CarveOptions add;
   add.mode = CarveMode::Add;
@@ -263,7 +263,7 @@ TEST(CutRegion, GivesTheSameBytesForAnyNumberOfThreadsFarFromTheOrigin) {
   EXPECT_TRUE(test::same_rays(volumes[0], volumes[2]));
 }
 
-TEST(CutRegion, NamesAnotherGridAndStopsWithoutATraceWhenCancelled) {
+TEST(CutRegion, NamesAnotherGridAndChangesNothingWhenCancelled) {
   const dexel::Frame frame = test::lattice_frame("xyz");
   Volume volume = test::random_volume(frame, 1);
   const Volume before = volume, coarse = Volume::block(test::lattice_frame("xyz", 1));

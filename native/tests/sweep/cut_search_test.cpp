@@ -144,14 +144,14 @@ TEST(CutSearch, FindsTheMoveThatLastChangedEachRay) {
   }
 }
 
-TEST(CutSearch, OfRepeatedMovesTheFirstMadeTheSurface) {
+TEST(CutSearch, TheFirstOfRepeatedMovesMadeTheSurface) {
   const Pose a{{0, 0, 0}, {0, 0, 1}}, b{{20, 0, 0}, {0, 0, 1}};
   const CutSearch search({cutters::ball(6, 30)}, {{a, b, 0, 7}, {b, a, 0, 8}, {a, a, 0, 9}}, 0.05);
   EXPECT_EQ(search.find(std::vector<Vec3>{{10, 0, 0}, {-3, 0, 3}, {10, 0, -0.04}, {10, 0, -0.06}, {10, 3, 10}}),
             (std::vector<std::int32_t>{7, 7, 7, -1, 7}));
 }
 
-TEST(CutSearch, NothingMovedMadeNothingAndWhatIsWrongIsNamed) {
+TEST(CutSearch, NoMovesMadeNoSurfaceAndBadInputIsNamed) {
   const Pose a{{0, 0, 0}, {0, 0, 1}};
   EXPECT_EQ(CutSearch({}, {}, 0.05).find(std::vector<Vec3>{{0, 0, 0}}), std::vector<std::int32_t>{-1});
   EXPECT_TRUE(CutSearch({}, {}, 0.05).find({}).empty());

@@ -118,7 +118,7 @@ TEST(History, RunsOnlyStrokesThatTouchTheTilesOfTheEditedOne) {
   EXPECT_TRUE(is(h, {across, groove({82, 20, 17}, {82, 21, 17}), right, right, right, right, right}));
 }
 
-TEST(History, StopsWhereALaterStrokeTakesAllAway) {
+TEST(History, StopsAtALaterStrokeThatRemovesEverything) {
   const HistoryStroke wide{cutters::flat(40, 40), {{{-30, 37, 10}, kUp}, {{130, 37, 10}, kUp}}};
   const HistoryStroke fine = groove({20, 37, 18}, {60, 37, 18}, 4), late = groove({-5, 37, 8}, {105, 37, 8});
   History h(block());
@@ -145,7 +145,7 @@ TEST(History, StrokesOffTheBlockAndSinglePosesChangeNothing) {
   EXPECT_TRUE(is(h, {inside}));
 }
 
-TEST(History, TheSameStrokeTwiceAndMovesOntoItself) {
+TEST(History, TheSameStrokeTwiceAndAMoveToItsOwnPlaceChangeNothing) {
   const HistoryStroke s = groove({10, 10, 15}, {60, 50, 13});
   History h(block());
   const StrokeId a = h.add(s), b = h.add(s);
@@ -159,7 +159,7 @@ TEST(History, TheSameStrokeTwiceAndMovesOntoItself) {
   EXPECT_TRUE(is(h, {s}));
 }
 
-TEST(History, StrokesThatTouchAtAFaceOrOnTheBorderOfTiles) {
+TEST(History, StrokesThatTouchAtAFaceOrABorderOfTilesAreExact) {
   // Walls on rays, on the tiles' border at 16 mm, and flush with each other; added material meets what was removed.
   const Tool flat = cutters::flat(8, 40);
   const auto pocket = [&](double x, double z) { return HistoryStroke{flat, {{{x, 12, z}, kUp}, {{x, 40, z}, kUp}}}; };

@@ -78,7 +78,7 @@ int wrong_points(const Volume& volume, const reference::HullPath& path, double t
   return wrong;
 }
 
-TEST(Hull, KeepsToTheDenseReference) {
+TEST(Hull, AgreesWithTheDenseReference) {
   Random random(135);
   constexpr double kTolerance = 0.02;
   for (int k = 0; k < 48; ++k) {
@@ -137,7 +137,7 @@ TEST(Hull, StraightMovesAreExactForAnyTolerance) {
   EXPECT_NEAR(volume.volume(), 4000 - 126, 1e-9);
 }
 
-TEST(Hull, ZeroMotionTakesTheBody) {
+TEST(Hull, ZeroMotionRemovesTheBody) {
   for (const char* directions : {"z", "xyz"}) {
     Volume volume = Volume::block({{{0, 0, 0}, {20, 20, 10}}, 0.5, directions});
     const std::vector<RolledPose> poses{{{10, 10, 5}}, {{10, 10, 5}}};

@@ -86,7 +86,7 @@ TEST(Kernels, GiveTheSameBitsOnEveryInstructionSet) {
       }
 }
 
-TEST(Kernels, RefuseAnInstructionSetThatIsNotThere) {
+TEST(Kernels, RefuseAMissingInstructionSet) {
   EXPECT_THROW(use_instruction_set("AVX1024"), std::invalid_argument);
 }
 

@@ -26,7 +26,7 @@ Pose on_spiral(int k, double lean) {
 
 const Box3 kBox{{0, 0, 0}, {60, 60, 20}};
 
-TEST(MoveCarver, LeavesAndSaysWhatCarveDoesOfEachMove) {
+TEST(MoveCarver, GivesTheVolumeAndResultOfCarveForEachMove) {
   for (const char* directions : {"z", "xyz"})
     for (const double lean : {0.0, 0.6})
       for (const Tool& tool : {cutters::ball(20, 40), cutters::fillet(12, 2, 40), cutters::flat(10, 30)}) {
@@ -45,7 +45,7 @@ TEST(MoveCarver, LeavesAndSaysWhatCarveDoesOfEachMove) {
       }
 }
 
-TEST(MoveCarver, DeferredLeavesTheSameBitsWheneverItPublishes) {
+TEST(MoveCarver, DeferredGivesTheSameBitsForAnyTimesOfPublishing) {
   for (const char* directions : {"z", "xyz"})
     for (const double lean : {0.0, 0.6})
       for (const Tool& tool : {cutters::ball(20, 40), cutters::fillet(12, 2, 40), cutters::flat(10, 30)}) {
@@ -71,7 +71,7 @@ TEST(MoveCarver, DeferredLeavesTheSameBitsWheneverItPublishes) {
       }
 }
 
-TEST(MoveCarver, ForgetsWhatIsNotPublished) {
+TEST(MoveCarver, DropsUnpublishedCuts) {
   Volume volume = Volume::block({kBox, 0.5, "xyz"});
   MoveCarver carver(volume, cutters::ball(20, 40), {.deferred = true});
   carver.move(on_spiral(0, 0), on_spiral(20, 0), 0.001);
@@ -92,7 +92,7 @@ TEST(MoveCarver, ForgetsWhatIsNotPublished) {
   EXPECT_TRUE(test::same_rays(volume, cut));
 }
 
-TEST(MoveCarver, PublishesInPartsWhatWasCutBeforeThem) {
+TEST(MoveCarver, PublishesEarlierCutsInParts) {
   for (const char* directions : {"z", "xyz"})
     for (const double lean : {0.0, 0.6}) {
       Volume at_once = Volume::block({kBox, 0.5, directions}), deferred = at_once, wanted = at_once;
@@ -124,7 +124,7 @@ TEST(MoveCarver, PublishesInPartsWhatWasCutBeforeThem) {
     }
 }
 
-TEST(MoveCarver, ForgetsAPublicationInParts) {
+TEST(MoveCarver, DropsAPublicationInParts) {
   Volume volume = Volume::block({kBox, 0.5, "xyz"});
   MoveCarver carver(volume, cutters::ball(20, 40), {.deferred = true});
   const Volume before = volume;
@@ -170,7 +170,7 @@ std::uint64_t allocations(Volume& volume, double lean, int moves, int warm, bool
   return count;
 }
 
-TEST(MoveCarver, AsksForNoMemoryOnceItIsWarm) {
+TEST(MoveCarver, AllocatesNothingOnceItIsWarm) {
   for (const bool deferred : {false, true})
     for (const char* directions : {"z", "xyz"})
       for (const double lean : {0.0, 0.6}) {

@@ -35,7 +35,7 @@ void expect_same(const PiecePool& pool, const Lists& lists, const Used& used) {
   }
 }
 
-TEST(PiecePool, HoldsWhatRandomRaysHoldThroughGrowthAndGaps) {
+TEST(PiecePool, KeepsRandomRaysThroughGrowthAndGaps) {
   stress::Random random(7);
   PiecePool pool;
   for (int tile = 0; tile < 3; ++tile) {
@@ -57,7 +57,7 @@ TEST(PiecePool, HoldsWhatRandomRaysHoldThroughGrowthAndGaps) {
 }
 
 /// A tile with sixteen spans in each ray: more than twenty times what is asked for at first.
-TEST(PiecePool, GrowsWithinBlocksThatAreReady) {
+TEST(PiecePool, GrowsWithinReservedBlocks) {
   stress::Random random(8);
   base::BlockReserve reserve;
   reserve.fill(1 << 15, 128);

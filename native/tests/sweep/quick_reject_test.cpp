@@ -36,7 +36,7 @@ TEST(QuickReject, ABallOverItsOwnCutTestsNoRay) {
   }
 }
 
-TEST(QuickReject, ABallBelowItsOwnCutTakesFromEveryRay) {
+TEST(QuickReject, ABallBelowItsOwnCutCutsEveryRay) {
   const Tool tool = cutters::ball(6, 30);
   Volume volume = Volume::block({{{0, 0, 0}, {20, 20, 8}}, 0.1, "z"});
   for (const double depth : {0.0, 1e-6, 2e-6}) {
@@ -45,7 +45,7 @@ TEST(QuickReject, ABallBelowItsOwnCutTakesFromEveryRay) {
   }
 }
 
-TEST(QuickReject, OfAShortStepMostRaysThatAreTestedAreCut) {
+TEST(QuickReject, MostTestedRaysOfAShortStepAreCut) {
   const Tool tool = cutters::ball(20, 60);
   Volume volume = Volume::block({{{0, 0, 0}, {60, 40, 30}}, 0.1, "z"});
   std::vector<Pose> poses{{{15, 20, 20}, {0, 0, 1}}};
@@ -59,7 +59,7 @@ TEST(QuickReject, OfAShortStepMostRaysThatAreTestedAreCut) {
 }
 
 /// A flat end that swings about its tip: lifted a little, it stays off the floor that it cut.
-TEST(QuickReject, AFlatEndThatTurnsAboveItsFloorTestsNoRayOfThat) {
+TEST(QuickReject, AFlatEndThatTurnsAboveItsFloorTestsNoRayOfTheFloor) {
   const Tool tool = cutters::flat(6, 30);
   const auto swing = [](double height) {
     return std::vector<Pose>{{{10, 10, height}, glm::normalize(Vec3(0.05, 0, 1))},
@@ -103,7 +103,7 @@ TEST(QuickReject, ARayWithManySpansRemembersTheGapThatTheToolIsIn) {
 }
 
 /// Both spans of a ray lie on one side of the tool.
-TEST(QuickReject, ASlotBesideTheToolDoesNotMakeItTestARay) {
+TEST(QuickReject, ASlotNextToTheToolCausesNoTestOfARay) {
   for (const double x : {2.0, 58.0}) {
     Volume volume = Volume::block({{{0, 0, 0}, {60, 20, 10}}, 0.2, "x"});
     const std::vector<Pose> step{{{x, -5, 6}, {0, 0, 1}}, {{x, 25, 6}, {0, 0, 1}}};

@@ -15,7 +15,7 @@
 namespace riffler::sweep::steps_test {
 namespace {
 
-TEST(ConvexGroups, NamedCuttersAreOne) {
+TEST(ConvexGroups, NamedCuttersAreOneGroup) {
   for (const Tool& tool :
        {cutters::ball(6, 30), cutters::ball(6, 3), cutters::flat(6, 30), cutters::fillet(8, 1, 30),
         cutters::taper(0.5, 0.2, 8, 40), cutters::taper(0.5, 0.2, 8, 40, true), cutters::cone_end(1.0, 1, 0.4, 8, 40)})
@@ -110,7 +110,7 @@ TEST(TurningBody, PlanesTouchTheGroupInEveryDirection) {
       }
 }
 
-TEST(HollowArcs, HaveNoConesThatAreRounding) {
+TEST(HollowArcs, HaveNoConesAsSmallAsRounding) {
   for (int k = 1; k <= 2000; ++k) {
     const double r = 0.37 * k;
     const Tool tool = corner_rounder(r);
@@ -161,7 +161,7 @@ TEST(Carve, ARayThroughTheLineOfAnApexKeepsItsRidge) {
         }
 }
 
-TEST(Carve, ATurnOnALongWayIsWorkOnlyWhereTheToolPasses) {
+TEST(Carve, ATurnOnALongMoveIsWorkOnlyWhereTheToolPasses) {
   // A million radii and half a turn, of which the tool spends a millionth near the block.
   const double r = 1.5e-3;
   const Vec3 middle(0.008, 0.006, 0.006), way(1500, 900, 600);

@@ -56,7 +56,7 @@ TEST(Cutters, OneSizeMeansTheSameInEveryShape) {
   EXPECT_EQ(find_cutter_shape("spoon"), nullptr);
 }
 
-TEST(Cutters, EverySizeThatIsNoneIsRefusedByName) {
+TEST(Cutters, EveryInvalidSizeIsRefusedByName) {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN(), kInf = std::numeric_limits<double>::infinity();
   for (const CutterShape& shape : cutter_shapes()) {
     for (std::size_t k = 0; k < shape.sizes.size(); ++k)

@@ -17,7 +17,7 @@ std::string error_of(const std::vector<Vec3>& points) {
   return "";
 }
 
-TEST(HandTools, HullsLeaveOutWhatIsNoCorner) {
+TEST(HandTools, HullsKeepOnlyTheirCorners) {
   std::vector<Vec3> points;
   for (int x = 0; x < 3; ++x)
     for (int y = 0; y < 3; ++y)
@@ -40,7 +40,7 @@ TEST(HandTools, BadBodiesAreNamed) {
   EXPECT_THROW(hand_tools::v_tool(0, 10, 0.5, 30), std::invalid_argument);
 }
 
-TEST(HandTools, NothingTakesThemForBodiesOfRevolution) {
+TEST(HandTools, CallsForBodiesOfRevolutionRefuseThem) {
   const Tool tool = hand_tools::v_tool(1, 10, 0.5, 60);
   EXPECT_FALSE(tool.revolved());
   EXPECT_EQ(tool.name(), "v_tool 10");

@@ -95,7 +95,7 @@ TEST(Outline, OfAnAssemblyIsThatOfTheUnionOfItsPieces) {
   }
 }
 
-TEST(Outline, SaysWhichPartIsNearest) {
+TEST(Outline, NamesTheNearestPart) {
   const Outline outline(cutters::ball(6, 20).with_shank({{20, 2, 30, 2}}).with_holder({{30, 10, 50, 14}}));
   EXPECT_EQ(outline.nearest(4, 10).part, Part::Cutter);
   EXPECT_EQ(outline.nearest(2.5, 19.9).part, Part::Cutter);
@@ -104,7 +104,7 @@ TEST(Outline, SaysWhichPartIsNearest) {
   EXPECT_EQ(outline.nearest(1, 60).part, Part::Holder);
 }
 
-TEST(Outline, OfAToolWithAGapComesBackToTheAxis) {
+TEST(Outline, OfAToolWithAGapReturnsToTheAxis) {
   const Outline outline(cutters::flat(6, 10).with_holder({{15, 10, 50, 10}}));
   EXPECT_NEAR(outline.nearest(0, 12).distance, 2, 1e-15);
   EXPECT_NEAR(outline.nearest(0, 13.5).distance, 1.5, 1e-15);
@@ -112,7 +112,7 @@ TEST(Outline, OfAToolWithAGapComesBackToTheAxis) {
   EXPECT_NEAR(outline.nearest(0, 9).distance, -1, 1e-15);
 }
 
-TEST(Outline, WithMarginsHasAllThatIsThatNearToTheHolderAndBesideTheShank) {
+TEST(Outline, WithMarginsContainsAllPointsThatNearToShankAndHolder) {
   const Tool tool = cutters::ball(6, 20).with_shank({{20, 2, 30, 5}}).with_holder({{30, 14, 40, 9}, {40, 9, 60, 16}});
   const Outline grown(tool.with_margins(0.5, 2));
   stress::Random random(8);

@@ -36,7 +36,7 @@ TEST(Profile, ArcsThatAreNearlyStraightCutAsALineDoes) {
       EXPECT_NEAR(sunk({{{1, 0}, {}}, flat_arc(radius, convex)}), line, 2 * 10 * (10 / (8 * radius)) + 1e-3) << radius;
 }
 
-TEST(Profile, CentresBeyondWhereArcsCanBeToldFromLinesAreRefused) {
+TEST(Profile, CentresTooFarToDistinguishArcsFromLinesAreRefused) {
   for (const double radius : {1e9, 1e12, 1e100, 1e155})
     EXPECT_NE(test::error_of([&] { cutters::profile({{{1, 0}, {}}, flat_arc(radius, false)}, 20); }).find("centre"),
               std::string::npos)

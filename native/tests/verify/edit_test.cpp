@@ -53,7 +53,7 @@ TEST(Edit, DeletingAppendingAndEmptyProgramsAreCovered) {
   EXPECT_EQ(edit.now, (Rows{3}));
 }
 
-TEST(Edit, MovesOfRowsAreHandedOnInStretches) {
+TEST(Edit, MovesOfRowsArePassedOnInIntervals) {
   std::vector<double> x(70'000);
   for (std::size_t k = 0; k < x.size(); ++k) x[k] = static_cast<double>(k);
   const RunRows rows = program(x);

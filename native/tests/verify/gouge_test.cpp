@@ -53,7 +53,7 @@ TEST(PartSurface, RaysThatEndOnAPlaneAreAsDeepAsItIs) {
   EXPECT_NEAR(worst.depth, 2.501, 1e-12);
 }
 
-TEST(PartSurface, OfNoLengthAndOnTheSurface) {
+TEST(PartSurface, SpansWithoutLengthHaveTheDepthOfTheirPoint) {
   const PartSurface surface(mesh::box_mesh(kLower, kUpper), 0.05);
   PartSurface::Deepest worst;
   surface.look_deeper({3, 3, 9}, {3, 3, 9}, worst);

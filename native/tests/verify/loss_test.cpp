@@ -24,12 +24,12 @@ TEST(Loss, PiecesOfARayAreFoundOneByOne) {
   EXPECT_EQ(loss({{0, 4}, {6, 8}}, {{6, 8}}), (Pieces{{0, 4}}));
 }
 
-TEST(Loss, WhatIsLeftMayReachOverSeveralSpans) {
+TEST(Loss, RemainingMaterialMayReachOverSeveralSpans) {
   // As with a part's spans against a stock's.
   EXPECT_EQ(loss({{0, 1}, {2, 3}, {5, 9}}, {{-1, 6}, {8, 20}}), (Pieces{{6, 8}}));
 }
 
-TEST(Loss, RandomRaysLoseWhatACountOfPointsSays) {
+TEST(Loss, RandomRaysLoseAsMuchAsACountOfPoints) {
   stress::Random random(7);
   for (int round = 0; round < 2000; ++round) {
     bool before[24], after[24];

@@ -19,7 +19,7 @@ std::optional<nc::RowError> refused_by_writer(const nc::Program& program, const 
   }
 }
 
-TEST(MachineCheck, ReportsWhatTheWriterRefusesAndNothingElse) {
+TEST(MachineCheck, ReportsExactlyTheRowsThatTheWriterRefuses) {
   const std::vector<nc::WriteOptions> machines = test::all_machines();
   test::RandomRows rows(23);
   int found = 0;
@@ -47,7 +47,7 @@ TEST(MachineCheck, ReportsWhatTheWriterRefusesAndNothingElse) {
   EXPECT_GT(found, 100);
 }
 
-TEST(MachineCheck, LooksAtTheProgramInTheMachinesFrame) {
+TEST(MachineCheck, ChecksTheProgramInTheMachinesFrame) {
   nc::Program p;
   for (int k = 0; k < 3; ++k) p.append({{{10.0 * k, 0, 0}, {0, 1, 0}}, k ? 500.0 : 0.0, 9000, 1, 0, k == 0});
   MachineChoice machine{"3-axis", {}};

@@ -31,7 +31,7 @@ nc::MachineMotion motion_of(const nc::Program& p, const char* post = "3-axis") {
   return report.motion;
 }
 
-TEST(MotionCheck, LooksOnlyAtWhatComesNear) {
+TEST(MotionCheck, VisitsOnlyNearMoves) {
   const collide::Collider collider(box_mesh({0, 0, 0}, {40, 40, 20}));
   std::vector<Vec3> far;
   for (int k = 0; k < 500; ++k) far.emplace_back(k, 100, 5);
@@ -47,7 +47,7 @@ TEST(MotionCheck, LooksOnlyAtWhatComesNear) {
   EXPECT_EQ(swept, 1U);
 }
 
-TEST(MotionCheck, NamesTheRowWhatIsMetHowDeepAndWhere) {
+TEST(MotionCheck, NamesTheRowTheObstacleTheDepthAndThePlace) {
   const collide::Collider collider(box_mesh({0, 0, 0}, {40, 40, 20}));
   const auto error = [&](const std::vector<Vec3>& tips) {
     const nc::Program p = through(tips);
@@ -82,7 +82,7 @@ TEST(MotionCheck, IsDoneBeforeAFileIsWritten) {
   EXPECT_FALSE(std::filesystem::exists(path));
 }
 
-TEST(MotionCheck, RunsOnTheStockAsItThenIs) {
+TEST(MotionCheck, RunsOnTheStockOfThatMoment) {
   const Volume stock = Volume::block({{{0, 0, 0}, {40, 40, 20}}, 0.5, "z"});
   // A slot in two passes: the second one's rapid goes where the first has cut.
   nc::Program p;

@@ -35,7 +35,7 @@ TEST(Rod, ASweptBoxHoldsEveryPointOfTheMotion) {
   }
 }
 
-TEST(Rod, WhatStaysAboveEverythingHasNoBox) {
+TEST(Rod, AMotionAboveEverythingHasNoBox) {
   const Rod holder{20, 60, 20};
   EXPECT_TRUE(holder.swept({{0, 0, -5}, {0, 0, 1}}, {{9, 0, -5}, {0, 0, 1}}, -10).empty());
   const Vec3 tilted = glm::normalize(Vec3(1, 0, 1));

@@ -44,7 +44,7 @@ TEST(SlabState, RewindingForgetsWhatCameAfterTheSnapshot) {
   EXPECT_TRUE(state.report.removed.empty() && state.report.events.empty());
 }
 
-TEST(SlabState, RowsBehindAnEditAreNumberedAnew) {
+TEST(SlabState, RowsBehindAnEditAreRenumbered) {
   SlabState state = started();
   for (const std::int64_t row : {10, 20}) state.save(row, {}), state.report.removed.emplace_back(row, 1.0);
   state.renumber(15, -3);

@@ -27,7 +27,7 @@ bool same(const dexel::Tile& a, const dexel::Tile& b) {
   return a.offset == b.offset && a.spans == b.spans && a.normals == b.normals && a.reach == b.reach;
 }
 
-TEST(SlabPackets, TilesArriveAsTheyWere) {
+TEST(SlabPackets, TilesArriveUnchanged) {
   for (const char* directions : {"x", "z", "xyz"}) {
     const Volume volume = cut_block(directions);
     for (const Slab& slab : slabs_of(volume)) {
@@ -46,7 +46,7 @@ TEST(SlabPackets, TilesArriveAsTheyWere) {
   }
 }
 
-TEST(SlabPackets, ResultsArriveAsTheyWereAndUnchangedTilesAreNull) {
+TEST(SlabPackets, ResultsArriveUnchangedAndUnchangedTilesAreNull) {
   const Volume volume = cut_block("z");
   const Slab slab = slabs_of(volume).front();
   SlabResult sent{tiles_of(volume.grids()[0], slab), {}, {}};
@@ -95,7 +95,7 @@ TEST(SlabPackets, MovesArriveBitForBitAndSharedPosesTravelOnce) {
   EXPECT_LT(whole.size(), all.size() * sizeof(Pose));
 }
 
-TEST(SlabPackets, ContextsArriveAsTheyWere) {
+TEST(SlabPackets, ContextsArriveUnchanged) {
   const Mesh mesh{{{0, 0, 0}, {1e5, 0, 0}, {0, 1, 0.1}}, {{0, 1, 2}}};
   const Tool tool = cutters::fillet(8, 1, 30).with_shank({{30, 3, 40, 3}}).with_holder({{40, 10, 60, 12}});
   const SlabContext sent{{{{{0, 0, -10}, {20, 14, 0}}, 0.2, "xyz"}, {{{1, 2, 3}, {4, 5, 6}}, 0.5, "z"}},
@@ -117,7 +117,7 @@ TEST(SlabPackets, ContextsArriveAsTheyWere) {
   EXPECT_EQ(came.part->triangles, mesh.triangles);
 }
 
-TEST(SlabPackets, EveryCutAndEveryChangedBitIsNoticed) {
+TEST(SlabPackets, EveryTruncationAndEveryChangedBitIsDetected) {
   const Volume volume = cut_block("xyz");
   const Slab slab = slabs_of(volume).front();
   const Bytes good = to_packet(SlabTask{-1, slab, true, 0, tiles_of(volume.grids()[0], slab), {}});
@@ -132,7 +132,7 @@ TEST(SlabPackets, EveryCutAndEveryChangedBitIsNoticed) {
 }
 
 /// With a checksum that fits, as no accident makes it: still an error, or a task, but no crash.
-TEST(SlabPackets, DamageUnderARightChecksumIsNoCrash) {
+TEST(SlabPackets, DamageUnderARightChecksumDoesNotCrash) {
   const Volume volume = cut_block("xyz");
   const Slab slab = slabs_of(volume).front();
   const Bytes good = to_packet(SlabTask{-1, slab, true, 0, tiles_of(volume.grids()[0], slab), {}});

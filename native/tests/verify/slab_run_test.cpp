@@ -118,7 +118,7 @@ class Threads {
   ~Threads() { base::set_thread_count(std::nullopt); }
 };
 
-TEST(SlabRun, HasOneReportWhoeverFeedsItOnAnyNumberOfThreads) {
+TEST(SlabRun, HasOneReportForAnySourceAndAnyNumberOfThreads) {
   const nc::Program program = mixed(220, 3);
   const VerifyReport whole = fed({program});
   std::set<Kind> kinds;
@@ -141,7 +141,7 @@ void drop_machine(VerifyReport& report) {
   std::erase_if(report.findings, [](const Finding& f) { return f.kind == Kind::Machine; });
 }
 
-TEST(SlabRun, HasOneReportHoweverTheProgramIsSplit) {
+TEST(SlabRun, HasOneReportForAnySplitOfTheProgram) {
   const nc::Program program = mixed(150, 4);
   VerifyReport whole = fed({program});
   drop_machine(whole);
@@ -189,7 +189,7 @@ TEST(Verification, AfterEditsReportsWhatAFreshRunReports) {
   EXPECT_EQ(verification.run(edits.back()).stats.moves, 0U) << "nothing differs";
 }
 
-TEST(Verification, AfterAnErrorIsAsItWasBefore) {
+TEST(Verification, AfterAnErrorIsUnchanged) {
   const nc::Program good = mixed(60, 8);
   nc::Program bad = good;
   bad.append({{{1, 1, 1}, kUp}, 100, 8000, 9, 61});
@@ -203,7 +203,7 @@ TEST(Verification, AfterAnErrorIsAsItWasBefore) {
   expect_same(again, fed({good}));
 }
 
-TEST(SlabRun, OfNothingLeavesTheStockAndSaysWhatTheReaderPassedOver) {
+TEST(SlabRun, OfAnEmptyProgramLeavesTheStockAndReportsSkippedBlocks) {
   nc::Program nothing;
   nothing.notes = {{"coordinates", 2, "coordinates were passed over"}};
   for (const VerifyReport& report : {fed({}), fed({nothing}), by_packets({nothing})}) {
@@ -215,7 +215,7 @@ TEST(SlabRun, OfNothingLeavesTheStockAndSaysWhatTheReaderPassedOver) {
   EXPECT_TRUE(fed({nothing}).uncertain) << "rows may be missing";
 }
 
-TEST(SlabRun, RefusesAChunkThatBeginsElsewhereAndGoesOnAfterIt) {
+TEST(SlabRun, RefusesAChunkThatBeginsElsewhereAndContinues) {
   const std::vector<nc::Program> chunks = chunks_of(mixed(40, 10), 20);
   SlabRun run(arguments());
   run.feed(chunks[0]);

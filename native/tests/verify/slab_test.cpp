@@ -29,7 +29,7 @@ TEST(Slab, EveryTileIsInOneSlab) {
     }
 }
 
-TEST(Slab, PartsCarvedByThemselvesAreTheWholeCarvedAtOnce) {
+TEST(Slab, SlabsCarvedSeparatelyEqualTheWholeCarvedAtOnce) {
   const Tool tool = cutters::fillet(8, 1, 30);
   const Vec3 tilted = glm::normalize(Vec3(0.3, -0.2, 1));
   const std::vector<Pose> poses{

@@ -1,4 +1,4 @@
-"""What the commands' arguments mean: lengths, boxes, files; each says in one line what is wrong with it."""
+"""Parses the arguments of commands: lengths, boxes, files. An error names the argument and the fault in one line."""
 
 from __future__ import annotations
 
@@ -50,18 +50,20 @@ def whole(text: str, what: str) -> int:
 
 
 def add_pitch(parser: Parser, required: bool, more: str = "") -> None:
-    parser.add_argument("--pitch", metavar="MM", required=required, help="distance of the rays, mm" + more)
+    parser.add_argument("--pitch", metavar="MM", required=required, help="distance between rays, mm" + more)
 
 
 def add_directions(parser: Parser) -> None:
     parser.add_argument(
-        "--directions", choices=("z", "xyz"), help='rays along z, or along all three axes (default "xyz"): sharp edges'
+        "--directions", choices=("z", "xyz"), help='rays along z, or all three axes for sharp edges (default "xyz")'
     )
 
 
 def solid(text: str, origin: str) -> tuple[str, list[float], list[float]]:
-    """Kind, lower and upper corner of a block ``WxDxH``, ``sphere:D`` or ``cylinder:D:H``, which stands along z, at
-    ``origin``: ``x,y,z`` of its box's lower corner, or one of ORIGINS."""
+    """Kind, lower and upper corner of a block ``WxDxH``, ``sphere:D`` or ``cylinder:D:H`` (axis along z).
+
+    ``origin`` is ``x,y,z`` of the box's lower corner, or one of ORIGINS.
+    """
     kind, *numbers = text.lower().split(":") if ":" in text else ("block", *text.lower().split("x"))
     sizes = [length(number, f"--stock {text}: size") for number in numbers]
     if len(sizes) != SOLIDS.get(kind):
@@ -92,7 +94,7 @@ def input_file(text: str, suffixes: tuple[str, ...]) -> Path:
 
 
 def output_file(text: str, suffixes: tuple[str, ...], option: str = "--out") -> Path:
-    """Checked before the work begins, not after it."""
+    """Path of a file to write, checked before the work begins."""
     path = Path(text)
     if path.suffix.lower() not in suffixes:
         raise ValueError(f"{option} {path.name}: a name that ends with {' or '.join(suffixes)} expected")
@@ -111,19 +113,19 @@ def add_machine_option(parser: Parser) -> None:
         action="append",
         default=[],
         metavar="KEY=VALUE",
-        help="of it, or of reading: docs/reading-nc.md; may be repeated",
+        help="option of the machine or of reading, see docs/reading-nc.md; may be repeated",
     )
 
 
 def machine_options(texts: list[str], flag: str) -> dict[str, Any]:
-    """``key=value``: a number, a list of them as in 0,0,-40, pairs as in 1:6,2:10, true or false, or a word."""
+    """Options of ``KEY=VALUE`` texts. Values: numbers, lists (0,0,-40), pairs (1:6,2:10), true and false, words."""
     found: dict[str, Any] = {}
     for text in texts:
         key, equals, value = text.partition("=")
         if not (key and equals and value):
             raise ValueError(f"{flag} {text}: KEY=VALUE expected")
         if key in found:
-            raise ValueError(f"{flag} {text}: {key} was given before")
+            raise ValueError(f"{flag} {text}: {key} is given twice")
         found[key] = option_value(value, f"{flag} {text}")
     return found
 
@@ -135,7 +137,7 @@ def option_value(value: str, what: str) -> Any:
         pairs = [part.split(":") for part in value.split(",")]
         found = {int(number): finite(entry, f"{what}: an entry") for number, entry in pairs}
         if len(found) < len(pairs):
-            raise ValueError(f"{what}: a number stands there twice")
+            raise ValueError(f"{what}: a number occurs twice")
         return found
     if "," in value:
         return [finite(part, f"{what}: an entry") for part in value.split(",")]

@@ -4,7 +4,7 @@ riffler completion bash > ~/.local/share/bash-completion/completions/riffler
 riffler completion zsh > ~/.zfunc/_riffler                        where fpath has ~/.zfunc
 riffler completion fish > ~/.config/fish/completions/riffler.fish
 
-The script knows everything by itself: a press of Tab starts no Python. Print it again after an update.
+The script is self-contained: pressing Tab starts no Python. Print it again after an update of riffler.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ SHELLS = {
 
 @dataclass(frozen=True)
 class Value:
-    """What an option or a positional takes: its metavar and what is offered for it."""
+    """The value of an option or a positional argument: its metavar and the completions offered for it."""
 
     name: str
     offer: Offer
@@ -50,7 +50,7 @@ class Entry:
     path: str
     about: str
     options: tuple[Option, ...]
-    values: tuple[Value, ...]  # what stands alone
+    values: tuple[Value, ...]  # positional arguments
 
 
 def add_arguments(parser: Parser) -> None:
@@ -67,7 +67,7 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
 
 
 def entries() -> list[Entry]:
-    """Every verb with its options, as their parsers have them."""
+    """Every verb with its options, read from the verbs' parsers."""
     return [entry(verb) for verb in verbs.VERBS]
 
 

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 BASH = """\
 # bash completion of riffler, printed by: riffler completion bash
 
-_riffler_words() {  # the words that may stand here; what ends with ":" or "=" is not finished
+_riffler_words() {  # offers the words that may stand here; no space follows one that ends with ":"
     COMPREPLY=($(compgen -W "$1" -- "$current"))
     [[ ${#COMPREPLY[@]} == 1 && ${COMPREPLY[0]} == *: ]] && compopt -o nospace 2>/dev/null
 }
@@ -92,7 +92,7 @@ function __riffler_at  # whether the command line begins with these words, its o
     test (count $words) -ge (count $argv); and test "$words[1..$(count $argv)]" = "$argv"
 end
 
-function __riffler_is  # whether it consists of nothing else
+function __riffler_is  # whether the command line consists of exactly these words
     set -l words (commandline -opc)[2..-1]
     test "$words" = "$argv"
 end
@@ -150,7 +150,7 @@ def bash(entries: Sequence[Entry], groups: Mapping[str, str]) -> str:
 
 def _bash_offer(value: Value) -> str:
     words = f"_riffler_words '{' '.join(value.offer.words)}'; " if value.offer.words else ""
-    # [sS][tT][lL]: bash 3.2, which macOS has, cannot ignore capitals otherwise
+    # [sS][tT][lL]: bash 3.2, the version of macOS, cannot ignore case otherwise
     patterns = ["".join(f"[{c}{c.upper()}]" if c.isalpha() else c for c in s[1:]) for s in value.offer.suffixes]
     files = " ".join(f"'{pattern}'" for pattern in patterns)
     if value.name == "DIR":
@@ -184,7 +184,7 @@ def _zsh_described(choices: Mapping[str, str], indent: int) -> str:
 
 
 def _zsh_text(text: str) -> str:
-    """Without what quotes, groups and separates there."""
+    """The text without characters that quote, group or separate in zsh's specifications."""
     return re.sub(r"[\[\]:'\\]", " ", text)
 
 

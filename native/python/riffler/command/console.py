@@ -1,4 +1,4 @@
-"""What a command says: a table or JSON on stdout, progress bars and errors on stderr."""
+"""Output of commands: a table or JSON on stdout, progress bars and errors on stderr."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Rows = list[tuple[str, str]]
 
 
 class Console:
-    """Results go to stdout, everything else to stderr; with ``--json`` stdout is one JSON object, errors too."""
+    """Results go to stdout, everything else to stderr; with ``--json`` stdout gets one JSON object, result or error."""
 
     def __init__(self, json_output: bool) -> None:
         self.json_output = json_output
@@ -37,16 +37,16 @@ class Console:
             print(f"riffler: {line}", file=sys.stderr)
 
     def warning(self, message: str) -> None:
-        """Worth knowing, nothing wrong; on stderr, where ``--json`` leaves it too."""
+        """Prints a note that is not an error on stderr, also with ``--json``."""
         print(f"riffler: {message}", file=sys.stderr)
 
     def announce(self, message: str) -> None:
-        """Says what is about to happen, where progress is shown."""
+        """Prints what is about to happen, if progress is shown."""
         if self._shows_progress():
             print(f"riffler: {message}", file=sys.stderr)
 
     def result(self, data: Mapping[str, Any], title: str, rows: Rows) -> None:
-        """``data`` as JSON or ``rows`` as a table."""
+        """Prints ``data`` as JSON or ``rows`` as a table."""
         if self.json_output:
             self._print_json(data)
             return
@@ -64,7 +64,7 @@ class Console:
         Rich(file=sys.stdout, highlight=False).print(table)
 
     def table(self, title: str, heads: Iterable[str], rows: Iterable[Iterable[str]], notes: Iterable[str] = ()) -> None:
-        """A table of many columns; nothing with ``--json``."""
+        """Prints a table of many columns; nothing with ``--json``."""
         if self.json_output:
             return
         from rich import box
@@ -86,8 +86,8 @@ class Console:
 
     @contextmanager
     def step(self, name: str) -> Iterator[Callable[[float], None] | None]:
-        """Times a step of the work; yields the callable that its ``progress=`` wants, or None where no terminal
-        shows it or the terminal cannot redraw a line."""
+        """Times a step of the work. Yields a callable for its ``progress=``, or None if stderr is not a terminal that
+        can redraw a line."""
         start = time.perf_counter()
         if self._shows_progress():
             from rich.console import Console as Rich
@@ -103,9 +103,9 @@ class Console:
 
     @contextmanager
     def writing(self, out: Path) -> Iterator[Path]:
-        """Yields a path to write to; what is there becomes `out` at the end, or is removed after an error or Ctrl-C.
+        """Yields a path to write to. The file there becomes `out` at the end; an error or Ctrl-C removes it.
 
-        The library's writers leave no half file either, but a Ctrl-C that comes while they write shows only after it.
+        The library's writers leave no partial file either, but Python sees a Ctrl-C only after they have returned.
         """
 
         def written() -> None:
@@ -126,7 +126,7 @@ class Console:
 
 
 def number(value: float, unit: str = "") -> str:
-    """With thin spaces between thousands and three decimals at most: 177 055.254 mm³."""
+    """A number with thin spaces between thousands and at most three decimals: 177 055.254 mm³."""
     text = f"{value:,.3f}".rstrip("0").rstrip(".") if isinstance(value, float) else f"{value:,}"
     return text.replace(",", "\u2009") + (f" {unit}" if unit else "")
 

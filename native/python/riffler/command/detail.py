@@ -1,4 +1,4 @@
-"""How many triangles the mesh file of a volume gets: those that its shape needs within a tolerance, or all."""
+"""--detail: whether the mesh file of a volume gets all triangles, or only those that its shape needs."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ from .console import Console, number
 from .parser import Parser
 
 ALL = "all"
-SHARE = 0.1  # of the pitch: below the error that the rays' distance leaves on a curved surface
+SHARE = 0.1  # default tolerance over pitch: below the error that the pitch causes on a curved surface
 
 
 @dataclass(frozen=True)
 class Detail:
-    """What --detail says; `tolerance` in mm, None for the share of the pitch."""
+    """Value of --detail; `tolerance` in mm, None for the default share of the pitch."""
 
     tolerance: float | None = None
     all: bool = False
 
     def of(self, volume: Volume) -> float | None:
-        """mm; None for all triangles."""
+        """Tolerance in mm; None for all triangles."""
         if self.all:
             return None
         return SHARE * volume.pitch if self.tolerance is None else self.tolerance
@@ -49,14 +49,14 @@ class Written:
         return counted(self.triangles, self.all_triangles, self.tolerance)
 
 
-NOT_MESHED = {"triangles": None, "all_triangles": None, "mesh_tolerance": None}  # of a volume's file
+NOT_MESHED = {"triangles": None, "all_triangles": None, "mesh_tolerance": None}  # for files that are not meshes
 
 
 def add_detail(parser: Parser) -> None:
     parser.add_argument(
         "--detail",
         metavar="MM",
-        help="how far the mesh may be from that of all triangles, or: all (default: a tenth of the pitch)",
+        help="largest distance from the mesh of all triangles, or all for that mesh (default: a tenth of the pitch)",
     )
     parser.offer("detail", (ALL,))
 
@@ -80,7 +80,7 @@ def counted(triangles: int, all_triangles: int, tolerance: float | None) -> str:
 
 
 def announce(out: Path, triangles: int, report: SurfaceReport, tolerance: float | None, console: Console) -> None:
-    """To a person at the terminal, before the file is written."""
+    """Prints the number of triangles at the terminal, before the file is written."""
     said = counted(triangles, report.all_triangles, tolerance)
     if out.suffix.lower() == ".stl":
         said += f"; {size(triangles)}" + ("" if tolerance is None else f" instead of {size(report.all_triangles)}")

@@ -8,19 +8,19 @@ import numpy as np
 
 from .. import Mesh
 
-LEGEND = "blue is rest material, red is gouged, white as it should be; the property quality has the mm"
+LEGEND = "blue is rest material, red is gouged, white is right; the property quality has the distance in mm"
 REST, GOUGE = np.array([33, 102, 172]), np.array([178, 24, 43])
 
 
 def colours(distance: np.ndarray, scale: float) -> np.ndarray:
-    """(n, 3) uint8 of (n,) mm; full colours from ``scale`` mm on. Mirrored in signs but for the colour."""
+    """Colours (n, 3) uint8 for distances (n,) in mm; full colours from ``scale`` mm on. Both signs fade alike."""
     share = np.clip(np.abs(distance) / scale, 0, 1)[:, None]
     full = np.where(distance[:, None] > 0, REST, GOUGE)
     return np.rint(255 + share * (full - 255)).astype(np.uint8)
 
 
 def write_map(path: Path, mesh: Mesh, distance: np.ndarray, scale: float) -> None:
-    """Binary PLY with x, y, z, red, green, blue and quality (mm), as MeshLab and Blender read them."""
+    """Writes a binary PLY with x, y, z, red, green, blue and quality (mm), as MeshLab and Blender read them."""
     place = [("x", "<f4"), ("y", "<f4"), ("z", "<f4")]
     vertices = np.zeros(
         len(mesh.vertices), [*place, ("red", "u1"), ("green", "u1"), ("blue", "u1"), ("quality", "<f4")]

@@ -1,4 +1,4 @@
-"""Say what riffler found on this machine: versions, processor, memory, Blender, pens.
+"""Show what riffler finds on this machine: versions, processor, memory, Blender, pens.
 
 riffler doctor
 """
@@ -21,9 +21,9 @@ from .console import Console, number
 from .parser import Parser
 from .pen_list import as_json, describe
 
-HELP = "versions, instruction set, devices found and why one did not open"
+HELP = "show versions and devices, and why a device does not open"
 
-# The ones that matter for arithmetic, best first.
+# Instruction sets that matter for arithmetic, best first.
 INSTRUCTION_SETS = ("avx512f", "avx2", "avx", "sse4_2", "asimd")
 
 
@@ -39,7 +39,7 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
 
 
 def rows(data: dict[str, Any], found: list[pen.DeviceInfo]) -> list[tuple[str, str]]:
-    """A report as pairs for people: what it is, what was found."""
+    """A report as rows of a table: name and value."""
     devices = [(d.path, describe(d)) for d in found]
     memory = data["memory"]
     cpu = data["cpu"]
@@ -104,7 +104,7 @@ def gigabytes(count: int | None) -> str:
 
 
 def bpy_version() -> str | None:
-    """Whether ``import bpy`` would find Blender; it is not imported, which takes seconds."""
+    """Version of the bpy that ``import bpy`` would find, or None. Does not import it, which would take seconds."""
     try:
         if importlib.util.find_spec("bpy") is None:
             return None
@@ -117,7 +117,7 @@ def bpy_version() -> str | None:
 
 
 def read(path: Path) -> str:
-    """A system file's text; empty where there is none."""
+    """A system file's text; empty if it cannot be read."""
     try:
         return path.read_text(errors="replace")
     except OSError:

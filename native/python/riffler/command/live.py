@@ -1,4 +1,4 @@
-"""What commands draw while they run: a canvas of braille dots, a history of values, charts in the terminal."""
+"""Drawings in the terminal while a command runs: a canvas of braille dots, a history of values, charts."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
     from rich.text import Text
 
-FRAMES = 10  # drawn a second: more is not read, and terminals over a network do not keep up
+FRAMES = 10  # per second: faster changes cannot be read, and terminals over a network do not keep up
 # Bits of the eight dots of a braille character (Unicode 16, block 2800), of its two columns from the top down.
 DOTS = ((0x01, 0x02, 0x04, 0x40), (0x08, 0x10, 0x20, 0x80))
 COLOURS = ("cyan", "magenta", "yellow", "green", "red", "blue")
-SCALE = 9  # characters that the numbers next to a chart take
+SCALE = 9  # width of the numbers next to a chart, in characters
 
 
 class Braille:
@@ -40,12 +40,12 @@ class Braille:
             self.cells[row, x // 2] |= DOTS[x % 2][below]
 
     def column(self, x: int, low: int, high: int) -> None:
-        """The dots from low to high."""
+        """Sets the dots from low to high."""
         for y in range(max(low, 0), min(high, self.height - 1) + 1):
             self.dot(x, y)
 
     def line(self, x0: float, y0: float, x1: float, y1: float) -> None:
-        """A straight line, a dot for each step of its longer side."""
+        """Draws a straight line, a dot for each step of its longer side."""
         steps = max(1, round(max(abs(x1 - x0), abs(y1 - y0))))
         for k in range(steps + 1):
             t = k / steps
@@ -69,8 +69,8 @@ class History:
             self.rows.popleft()
 
     def bands(self, columns: int) -> np.ndarray:
-        """(columns, values, 2): what each value passed through in each column's share of the time, from least to most,
-        joined to the column before; NaN before the first row."""
+        """(columns, values, 2): minimum and maximum of each value in each column's share of the time, with the last
+        value of the column before included; NaN before the first row."""
         if not self.rows:
             return np.full((columns, 0, 2), np.nan)
         times = np.array([time for time, _ in self.rows])
@@ -91,7 +91,7 @@ class History:
 
 
 def span(low: float, high: float, least: float) -> tuple[float, float]:
-    """What a chart shows: at least `least`, and a little more than the values have."""
+    """Range that a chart shows: at least `least` long, and a little more than the values cover."""
     if not (np.isfinite(low) and np.isfinite(high)):
         return -least / 2, least / 2
     more = max(0.05 * (high - low), (least - (high - low)) / 2)
@@ -106,9 +106,9 @@ def short(value: float) -> str:
 def chart(
     title: str, names: Sequence[str], history: History, width: int, rows: int, *, least: float, zero: bool = False
 ) -> Text:
-    """Values of the last seconds as lines of different colours, `least` the smallest span that fills the chart.
+    """Values of the last seconds as lines of different colours. The chart spans at least `least`.
 
-    `width` is that of the whole chart in characters. With `zero`, zero is inside.
+    `width` is that of the whole chart in characters. With `zero`, the chart includes zero.
     """
     from rich.text import Text
 
@@ -143,7 +143,7 @@ def chart(
 
 @contextmanager
 def screen(console: Console) -> Iterator[Callable[[RenderableType], None] | None]:
-    """Yields what draws over the last picture; None where stdout is not a terminal, or is for ``--json``."""
+    """Yields a function that draws over the last picture; None if stdout is not a terminal or is for ``--json``."""
     if console.json_output or not sys.stdout.isatty():
         yield None
         return
@@ -161,7 +161,7 @@ def width_of_terminal() -> int:
 
 
 class Enter:
-    """Whether the user pressed Enter since this was made; a thread of its own waits for it."""
+    """Notices when the user presses Enter; a separate thread waits for it."""
 
     def __init__(self) -> None:
         self.pressed = threading.Event()
@@ -173,6 +173,6 @@ class Enter:
 
 
 def polyline(canvas: Braille, points: np.ndarray) -> None:
-    """Joined straight lines through (n, 2) points in dots."""
+    """Draws joined straight lines through (n, 2) points in dots."""
     for (x0, y0), (x1, y1) in pairwise(points):
         canvas.line(x0, y0, x1, y1)

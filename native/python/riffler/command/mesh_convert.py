@@ -20,7 +20,7 @@ UNITS = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "inch": 25.4}
 
 def add_arguments(parser: Parser) -> None:
     parser.add_input("mesh", ".stl, .obj, .ply or .3mf", MESHES)
-    parser.add_argument("--unit", choices=UNITS, default="mm", help="of the lengths in MESH (default mm)")
+    parser.add_argument("--unit", choices=UNITS, default="mm", help="unit of the lengths in MESH (default mm)")
     parser.add_file("--out", ".stl, .obj, .ply or .3mf", MESHES, required=True)
 
 

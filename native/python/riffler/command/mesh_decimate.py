@@ -1,4 +1,4 @@
-"""Leave out triangles of a mesh, as long as its surface moves no further than a tolerance, or down to a number.
+"""Remove triangles of a mesh while its surface stays within a tolerance, or down to a number of triangles.
 
 riffler mesh decimate part.stl --tolerance 0.01 --out small.stl
 riffler mesh decimate part.stl --triangles 20000 --out small.stl
@@ -14,19 +14,19 @@ from .console import Console, number, times
 from .parser import Parser
 from .shapes import write_mesh
 
-HELP = "leave out triangles within a tolerance"
+HELP = "remove triangles within a tolerance"
 
 
 def add_arguments(parser: Parser) -> None:
     parser.add_input("mesh", ".stl, .obj, .ply or .3mf", MESHES)
-    parser.add_argument("--tolerance", metavar="MM", help="how far the surface may move")
-    parser.add_argument("--triangles", metavar="N", help="how many should be left")
+    parser.add_argument("--tolerance", metavar="MM", help="largest distance that the surface may move")
+    parser.add_argument("--triangles", metavar="N", help="number of triangles to keep")
     parser.add_file("--out", ".stl, .obj, .ply or .3mf", MESHES, required=True)
 
 
 def run(arguments: argparse.Namespace, console: Console) -> int:
     if arguments.tolerance is None and arguments.triangles is None:
-        raise ValueError("--tolerance or --triangles expected: how far to go")
+        raise ValueError("--tolerance or --triangles expected")
     tolerance = None if arguments.tolerance is None else length(arguments.tolerance, "--tolerance")
     triangles = None if arguments.triangles is None else whole(arguments.triangles, "--triangles")
     path = input_file(arguments.mesh, MESHES)
@@ -49,7 +49,7 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
     }
     rows = [
         ("triangles", f"{number(data['triangles'])} of {number(data['triangles_before'])}"),
-        ("deviation", f"{moved:.3g} mm at most, measured at the vertices of both"),
+        ("deviation", f"{moved:.3g} mm at most, measured at the vertices of both meshes"),
         ("volume", f"{number(data['volume'], 'mm³')}, {number(data['volume_before'], 'mm³')} before"),
         ("file", number(data["bytes"], "bytes")),
         ("times", times(console.seconds)),

@@ -5,9 +5,9 @@ riffler nc post p.ngc --machine tcp --post linuxcnc-xyzac --post-option rot_poin
 riffler nc post session.rjournal --out session.rprog
 
 files:
-  .json      a plan, as riffler plan writes it: its cutter locations; or its paths, the ball's tip on them
-  .rjournal  a recording; without --feed as fast as the hand was
-  .rprog     a program to the bit; --out may be one, too
+  .json      a plan, as riffler plan writes it: its cutter locations, or else its paths with the ball's tip on them
+  .rjournal  a recording; without --feed at the speed of the hand
+  .rprog     a program, exact to the bit; --out may be one, too
   others     NC code, written for --machine
 """
 
@@ -46,10 +46,10 @@ from .surroundings import add_fixtures, add_rods, fixture, fixtures_alone, rods,
 HELP = "write NC code for a machine"
 AXIS_TOLERANCE = 0.00175  # rad
 LIFTED = 0.01  # mm that the tool may enter the part of a plan
-TOUCHED = 0.02  # mm, on approaches and retracts
-WRITTEN = 0.05  # mm, between the blocks of what is written
-OF_A_PART = ("fixture", "shank", "holder", "clearance", "skip_blocked")  # what goes with --part
-FEED = 500.0  # mm/min, slow: of a plan without another
+TOUCHED = 0.02  # mm, the same on approaches and retracts
+WRITTEN = 0.05  # mm, the same between the blocks of the NC code
+OF_A_PART = ("fixture", "shank", "holder", "clearance", "skip_blocked")  # options that need --part
+FEED = 500.0  # mm/min, the slow default for plans
 
 
 def add_arguments(parser: Parser) -> None:
@@ -57,24 +57,28 @@ def add_arguments(parser: Parser) -> None:
         flags=("--plan", "--journal"))  # fmt: skip
     parser.add_argument("--post", metavar="NAME", help="the machine; riffler nc machines lists them")
     parser.offer("post", machines())
-    about = "of the post; may be repeated"
+    about = "option of the post; may be repeated"
     option = parser.add_argument("--post-option", action="append", default=[], metavar="KEY=VALUE", help=about)
     parser.add_old_name("--option", option)
-    parser.add_argument("--tolerance", metavar="MM", default="0.01", help="of the tip between blocks (default 0.01)")
-    parser.add_argument("--axis-tolerance", metavar="DEG", help="of the tool's axis between blocks (default 0.1)")
-    parser.add_argument("--feed", metavar="F", help="mm/min at the tip (default of a plan 500)")
+    parser.add_argument(
+        "--tolerance", metavar="MM", default="0.01", help="largest error of the tip between blocks (default 0.01)"
+    )
+    parser.add_argument(
+        "--axis-tolerance", metavar="DEG", help="largest error of the tool's axis between blocks (default 0.1)"
+    )
+    parser.add_argument("--feed", metavar="F", help="mm/min at the tip (default for plans: 500)")
     parser.add_argument("--spindle", metavar="S", help="rev/min, negative counter-clockwise")
     tools.add_tools(parser, required=False)
     parser.add_argument("--safe-height", metavar="MM", help="z between cuts of a plan or a recording")
-    parser.add_argument("--axis", metavar="X,Y,Z", help="of the tool, on a plan's paths that say none (default 0,0,1)")
-    parser.add_file("--part", "of a plan: lift the tool along its axis where it would gouge", MESHES)
+    parser.add_argument("--axis", metavar="X,Y,Z", help="tool axis on a plan's paths without axes (default 0,0,1)")
+    parser.add_file("--part", "part of a plan: lift the tool along its axis where it would gouge the part", MESHES)
     add_fixtures(parser)
     add_rods(parser)
     parser.add_argument(
-        "--clearance", metavar="MM", help="of shank and holder from part and fixtures, with --part (default 0)"
+        "--clearance", metavar="MM", help="least distance of shank and holder from part and fixtures (default 0)"
     )
-    parser.add_argument("--skip-blocked", action="store_true", help="leave out paths that no lift frees, with --part")
-    add_machine(parser, "that NC code was written for")
+    parser.add_argument("--skip-blocked", action="store_true", help="with --part, leave out paths that no lift frees")
+    add_machine(parser, "machine that NC code was written for")
     parser.add_file("--out", "NC code (.ngc, .nc, …), or .rprog", CODE + PROGRAMS, required=True)
 
 
@@ -85,7 +89,7 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
     if not saved and post is None:
         raise ValueError("--post: a machine's name expected; riffler nc machines lists them")
     if saved and (arguments.post is not None or arguments.post_option):
-        raise ValueError(f"--out {out.name}: a .rprog file is for no machine, leave --post and --post-option out")
+        raise ValueError(f"--out {out.name}: a .rprog file is for no machine; leave out --post and --post-option")
     how = {
         "tolerance": length(arguments.tolerance, "--tolerance"),
         "axis_tolerance": AXIS_TOLERANCE
@@ -95,7 +99,7 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
     }
     program, notes, collider, depth = read(arguments, console)
     if not len(program):
-        raise ValueError(f"{Path(arguments.program).name}: nothing moves in it")
+        raise ValueError(f"{Path(arguments.program).name}: it has no moves")
     with console.step("write"), console.writing(out) as beside:
         how["collider"], how["contact_tolerance"] = collider, max(WRITTEN, depth)
         report = program.save(beside) if post is None else program.write(beside, post=post, **how)
@@ -105,7 +109,7 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
     return 0
 
 
-# ---- what is asked for
+# ---- arguments
 
 
 def vector(text: str, what: str) -> np.ndarray:
@@ -119,8 +123,8 @@ def vector(text: str, what: str) -> np.ndarray:
 
 
 def read(arguments: argparse.Namespace, console: Console) -> tuple[Program, list[str], Collider | None, float]:
-    """The program, what one should know about it, what its moves are checked against, and how far they may enter the
-    part since they are to, mm."""
+    """The program, notes on it, the collider that its moves are checked with, and the depth in mm to which the plan
+    lets them enter the part."""
     kind = Path(arguments.program).suffix.lower()
     path = input_file(arguments.program, (kind,))
     code = kind not in PLANS + JOURNALS + PROGRAMS
@@ -138,7 +142,7 @@ def read(arguments: argparse.Namespace, console: Console) -> tuple[Program, list
     if arguments.machine is not None:
         machine_name(arguments.machine, "--machine")
     if code and arguments.machine is None:
-        raise ValueError(f"--machine: say for which machine {path.name} was written")
+        raise ValueError(f"--machine: name the machine that {path.name} was written for")
     if not code and (arguments.machine is not None or arguments.machine_option):
         raise ValueError("--machine: only for NC code")
     notes: list[str] = []
@@ -159,7 +163,7 @@ def recorded(path: Path, arguments: argparse.Namespace) -> tuple[Program, list[s
     feed = None if arguments.feed is None else length(arguments.feed, "--feed")
     spindle = 0.0 if arguments.spindle is None else finite(arguments.spindle, "--spindle")
     journal = Journal.load(path)
-    notes = [] if journal.cut_at is None else [f"the recording was cut at byte {journal.cut_at}: all whole strokes"]
+    notes = [] if journal.cut_at is None else [f"the recording is cut off at byte {journal.cut_at}: all whole strokes"]
     return journal.program(feed=feed, spindle=spindle, safe_height=height(arguments)), notes
 
 
@@ -168,7 +172,7 @@ def height(arguments: argparse.Namespace) -> float | None:
 
 
 def changed(program: Program, arguments: argparse.Namespace) -> Program:
-    """With the feed, spindle and tools of the command line."""
+    """The program with the feed, spindle and tools of the command line."""
     if arguments.feed is None and arguments.spindle is None and not arguments.tool:
         return program
     rapid = np.asarray(program.rapid)
@@ -195,7 +199,7 @@ def from_plan(
     axis = vector(arguments.axis or "0,0,1", f"--axis {arguments.axis}")
     called, tool = tool_of(planned, arguments)
     tool = with_rods({called: tool}, rods(arguments))[called]
-    notes = [f"feed {FEED:g} mm/min: a plan has none of its own, --feed names one"] if arguments.feed is None else []
+    notes = [f"feed {FEED:g} mm/min: plans have no feed, --feed sets another"] if arguments.feed is None else []
     paths = [path if len(path.axes) else upright(path, axis) for path in planned.paths]
     turned = sum(len(path.axes) == 0 for k, path in enumerate(planned.paths) if k not in planned.off)
     if turned:
@@ -220,7 +224,7 @@ def from_plan(
 
 
 def chords(planned: plan.Plan) -> float:
-    """mm that paths whose poses are kept may be from the surface between their points."""
+    """Largest distance in mm between the surface and a path whose poses are kept, between the path's points."""
     return max(LIFTED, planned.tolerance or 0.0)
 
 
@@ -242,7 +246,7 @@ def tool_of(planned: plan.Plan, arguments: argparse.Namespace) -> tuple[int, Too
 
 
 def tip_radius(tool: Tool) -> float | None:
-    """Radius of the ball at the tip, mm, or None where the tip is none."""
+    """Radius of the ball at the tip, mm, or None if the tip is not a ball."""
     try:
         return _core.tip_ball_radius(tool, "tool")
     except ValueError:
@@ -254,12 +258,12 @@ def upright(path, axis: np.ndarray):
 
 
 def start(planned: plan.Plan, number: int, path, tool: Tool) -> np.ndarray:
-    """(n, 6): where the tool stands along a path before anything is looked at."""
+    """(n, 6): poses of the tool along a path, before any check."""
     return plan.poses_of(path) if number in planned.depths else tips(path, tool)
 
 
 def tips(path, tool: Tool) -> np.ndarray:
-    """(n, 6): the tip where the ball's centres are those of the path; a loop ends with its first row again."""
+    """(n, 6): poses that put the ball's centre on the path; a loop ends by repeating its first row."""
     radius = tip_radius(tool)
     if radius is None or abs(radius - path.radius) > 1e-9:
         raise ValueError(
@@ -272,7 +276,7 @@ def tips(path, tool: Tool) -> np.ndarray:
 def lifted(
     planned: plan.Plan, paths: list, tool: Tool, arguments: argparse.Namespace, console: Console, notes: list[str]
 ) -> tuple[list[np.ndarray], Collider]:
-    """The rows of every path, lifted, and what they were held against."""
+    """The rows of every path, lifted where necessary, and the collider that they were checked with."""
     part = input_file(arguments.part, MESHES)
     fixtures = [fixture(name, console) for name in arguments.fixture]
     guarded = with_room(tool, arguments)
@@ -280,7 +284,7 @@ def lifted(
         mesh = read_part(part, console, hollow=True)
         wanted = planned.part.get("sha256")
         if wanted and plan.part_of(mesh, part.name)["sha256"] != wanted:
-            raise ValueError(f"{part.name}: the plan is for another part, {planned.part.get('name', 'of no name')}")
+            raise ValueError(f"{part.name}: the plan is for another part, {planned.part.get('name', 'without a name')}")
         collider, found, raised, blocked = Collider(mesh, fixtures=fixtures), [], {}, {}
         alone = fixtures_alone(fixtures) if planned.deepest else None
         for k in sorted({*range(len(paths))} - planned.off):
@@ -304,28 +308,28 @@ def lifted(
         said = f"{listed(blocked, len(paths))}: places that no lift frees, the first at {next(iter(blocked.values()))}"
         if not arguments.skip_blocked:
             move = ", move the fixtures" if fixtures else ""
-            turn = "give it another depth or tilt" if planned.depths else "turn the tool by --axis"
-            raise ValueError(f"{said}; {turn}{move}, or leave such paths out by --skip-blocked")
+            turn = "give it another depth or tilt" if planned.depths else "turn the tool with --axis"
+            raise ValueError(f"{said}; {turn}{move}, or leave such paths out with --skip-blocked")
         notes.append(f"{said}: left out")
     if raised:
         lifts = np.concatenate(list(raised.values()))
         notes.append(
             f"{len(lifts)} of {sum(map(len, found))} rows are lifted, by up to {lifts.max():.3g} mm "
-            f"({listed(raised, len(paths))}): the tool does not come down to the path there; other axes may let it"
+            f"({listed(raised, len(paths))}): the tool cannot reach the path there; other axes may allow it"
         )
     names = ", ".join([part.name, *(Path(name).name for name in arguments.fixture)])
-    notes.append(f"free of {names} along all rows within {LIFTED:g} mm, approaches and retracts included")
+    notes.append(f"all rows, approaches and retracts are free of {names} within {LIFTED:g} mm")
     if planned.deepest:
-        notes.append(f"the cutter enters {part.name} by up to {planned.deepest:g} mm, as the plan says")
+        notes.append(f"the cutter enters {part.name} by up to {planned.deepest:g} mm, as planned")
     if not (tool.shank or tool.holder):
-        notes.append("shank and holder were not looked at: --shank and --holder describe them")
+        notes.append("shank and holder were not checked: --shank and --holder describe them")
     if not fixtures:
-        notes.append("no fixtures were looked at: --fixture names them")
+        notes.append("no fixtures were checked: --fixture names them")
     return found, collider
 
 
 def first_blocked(path, rows: np.ndarray, report: plan.LocationReport) -> str:
-    """Where on a path: of points that have no row the ball's centre, between rows the tip."""
+    """The first blocked place of a path: the ball's centre at a point without a row, or the tip between two rows."""
     return placed(path.centres[report.blocked[0][0]] if report.blocked else rows[report.unsafe[0][0], :3])
 
 
@@ -339,7 +343,7 @@ def placed(point: np.ndarray) -> str:
 
 
 def listed(numbers: Collection[int], of: int) -> str:
-    """Paths by their numbers, or how many of all."""
+    """Paths by number, or only their count if there are more than five."""
     if len(numbers) > 5:
         return f"{len(numbers)} of {of} paths"
     return f"path{'s' if len(numbers) > 1 else ''} {', '.join(map(str, numbers))}"
@@ -353,7 +357,7 @@ def with_room(tool: Tool, arguments: argparse.Namespace) -> Tool:
     if room < 0:
         raise ValueError(f"--clearance {arguments.clearance}: must not be negative")
     if not (tool.shank or tool.holder):
-        raise ValueError("--clearance: of shank and holder, which --shank and --holder describe")
+        raise ValueError("--clearance needs a shank or a holder, which --shank and --holder describe")
     return plan.with_room(tool, room)
 
 
@@ -361,7 +365,7 @@ def with_room(tool: Tool, arguments: argparse.Namespace) -> Tool:
 
 
 def summary(program: Program, report: WriteReport | None) -> dict[str, Any]:
-    """``report``: of the NC code, where some was written."""
+    """Figures of the program, and of its NC code if ``report`` is given."""
     way = np.linalg.norm(np.diff(program.poses[:, :3], axis=0), axis=1)
     rapid, feed = np.asarray(program.rapid)[1:], np.asarray(program.feed)[1:]
     cutting = ~rapid & (feed > 0)
@@ -380,7 +384,7 @@ def rows(data: dict[str, Any]) -> list[tuple[str, str]]:
     if "blocks" in data:
         shown.append(("blocks", f"{number(data['blocks'])}, {number(data['subdivisions'])} more than rows"))
         if data["slowed_blocks"]:
-            shown.append(("slowed", f"{number(data['slowed_blocks'])} blocks, to what an axis can turn"))
+            shown.append(("slowed", f"{number(data['slowed_blocks'])} blocks, to the largest speed of an axis"))
         if data["rewinds"]:
             shown.append(("rewinds", f"{number(len(data['rewinds']))}: the tool leaves the part and turns axes back"))
         if data["pole_passages"]:

@@ -2,8 +2,8 @@
 
 riffler nc tools
 
-The length may be left out: the default reaches out of the stock. N=… before the form is the tool that the
-program calls N, as in 3=fillet:10:1.5:40. A file has the form of Tool.to_dict, with angles in rad.
+The length may be left out: the default reaches out of the stock. N= before the form gives the tool's number in
+the program, as in 3=fillet:10:1.5:40. A file has the form of Tool.to_dict, with angles in rad.
 """
 
 from __future__ import annotations

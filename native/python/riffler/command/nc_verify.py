@@ -1,4 +1,4 @@
-"""Run an NC program on its stock and say what goes wrong: rapids in material, holder and fixtures that are hit, gouges.
+"""Simulate an NC program on its stock and report rapids in material, collisions of holder and fixtures, and gouges.
 
 riffler nc verify part.ngc --stock 100x60x30 --pitch 0.25 --tool ball:6:30 --holder 30:20:60:20 --part part.stl
 
@@ -41,18 +41,26 @@ def add_arguments(parser: Parser) -> None:
     add_stock(parser)
     tools.add_tools(parser)
     add_rods(parser)
-    add_machine(parser, 'what the program\'s axes mean (default "tcp": tip and axis); its limits are checked')
-    parser.add_file("--part", "what it should become: .stl, .obj, .ply or .3mf", MESHES)
+    add_machine(parser, 'machine of the program, whose limits are checked (default "tcp": tip and axis)')
+    parser.add_file("--part", "the finished part: .stl, .obj, .ply or .3mf", MESHES)
     add_fixtures(parser)
-    parser.add_argument("--tolerance", default="0.01", metavar="MM", help="of cutting and of contact (default 0.01)")
-    parser.add_argument("--gouge", default="0.05", metavar="MM", help="depth of a gouge in the part (default 0.05)")
-    parser.add_argument("--rest", metavar="MM", help="height of rest material that is a finding (default: none is)")
-    parser.add_argument("--rapid-feed", default="10000", metavar="MM/MIN", help="for the time (default 10000)")
-    parser.add_argument("--scheduler", metavar="ADDRESS", help="run it on a Dask cluster: tcp://host:8786")
-    parser.add_file("--out", "what is left: .stl, .obj, .ply, .3mf or .rvol", MESHES + VOLUMES)
+    parser.add_argument(
+        "--tolerance", default="0.01", metavar="MM", help="largest error of cutting and of contact (default 0.01)"
+    )
+    parser.add_argument(
+        "--gouge", default="0.05", metavar="MM", help="depth in the part that counts as a gouge (default 0.05)"
+    )
+    parser.add_argument(
+        "--rest", metavar="MM", help="height of rest material that counts as a finding (default: no height)"
+    )
+    parser.add_argument(
+        "--rapid-feed", default="10000", metavar="MM/MIN", help="speed of rapids for the time (default 10000)"
+    )
+    parser.add_argument("--scheduler", metavar="ADDRESS", help="Dask scheduler to run on: tcp://host:8786")
+    parser.add_file("--out", "the material that is left: .stl, .obj, .ply, .3mf or .rvol", MESHES + VOLUMES)
     add_detail(parser)
-    parser.add_file("--map", f".ply of what is left, coloured: {LEGEND}", MAPS)
-    parser.add_argument("--map-scale", default="0.5", metavar="MM", help="distance of the full colours (default 0.5)")
+    parser.add_file("--map", f".ply of the material that is left, coloured: {LEGEND}", MAPS)
+    parser.add_argument("--map-scale", default="0.5", metavar="MM", help="distance for full colours (default 0.5)")
 
 
 def run(arguments: argparse.Namespace, console: Console) -> int:

@@ -1,4 +1,4 @@
-"""The argument parser of a verb: inputs that may stand alone or after their name, and unknown options answered with the
+"""The argument parser of a verb. Inputs may stand alone or after their name; the error for an unknown option names the
 nearest known one."""
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ class UsageError(ValueError):
 
 @dataclass(frozen=True)
 class Offer:
-    """What shell completion offers for a value: files with one of these suffixes, folders, and words."""
+    """Completions that a shell offers for a value: files with one of these suffixes, folders, and words."""
 
     suffixes: tuple[str, ...] = ()
     words: tuple[str, ...] = ()
@@ -32,7 +32,7 @@ class Once(argparse.Action):
     def __call__(self, parser: argparse.ArgumentParser, namespace: argparse.Namespace, values: Any,
                  option_string: str | None = None) -> None:  # fmt: skip
         if values is None:
-            return  # a positional that is not there
+            return  # the positional argument is absent
         before = getattr(namespace, self.dest, None)
         if before is not None:
             parser.error(f"one {self.dest} expected, not both {before} and {values}")
@@ -40,8 +40,7 @@ class Once(argparse.Action):
 
 
 class Renamed(argparse.Action):
-    """An option by its old name: does what the option of today's name does, and the parser keeps both names for a
-    note."""
+    """The old name of an option: does the same as the new name, and the parser remembers both names for a note."""
 
     def __init__(self, option_strings: Sequence[str], dest: str, today: argparse.Action, **more: Any) -> None:
         super().__init__(option_strings, dest, **more)
@@ -63,14 +62,14 @@ class Parser(argparse.ArgumentParser):
             prog=prog, description=description, epilog=EPILOG, allow_abbrev=False,
             formatter_class=partial(argparse.RawDescriptionHelpFormatter, max_help_position=28),
         )  # fmt: skip
-        self.inputs: dict[str, bool] = {}  # by name: whether it must be given
-        self.offers: dict[str, Offer] = {}  # by the argument's dest
-        self.renamed: dict[str, str] = {}  # old names that the command line used: today's
+        self.inputs: dict[str, bool] = {}  # name: whether it is required
+        self.offers: dict[str, Offer] = {}  # the argument's dest: what to offer
+        self.renamed: dict[str, str] = {}  # old names on the command line: new names
 
     def add_input(self, name: str, help: str, suffixes: Iterable[str] = (), *, flags: Sequence[str] = (),
                   required: bool = True, words: Iterable[str] = ()) -> None:  # fmt: skip
-        """A file or device that may stand alone, ``part.ngc``, or after its name, ``--program part.ngc``; ``flags`` are
-        further names."""
+        """Adds a file or device that may stand alone, ``part.ngc``, or after its name, ``--program part.ngc``.
+        ``flags`` are further names."""
         named = [f"--{name}", *flags]
         about = f"{help} (or after {', '.join(named)})"
         self.add_argument(name, nargs="?", metavar=name.upper(), action=Once, help=about)
@@ -79,23 +78,23 @@ class Parser(argparse.ArgumentParser):
         self.offers[name] = Offer(tuple(suffixes), tuple(words))
 
     def add_file(self, flag: str, help: str, suffixes: Iterable[str] = (), **more: Any) -> None:
-        """An option whose value is a file with one of the suffixes."""
+        """Adds an option whose value is a file with one of the suffixes."""
         action = self.add_argument(flag, metavar="FILE", help=help, **more)
         self.offers[action.dest] = Offer(tuple(suffixes))
 
     def add_old_name(self, old: str, today: argparse.Action) -> None:
-        """The old name of an option with a value: it still works, and neither the help nor completion shows it."""
+        """Adds the old name of an option with a value. It still works; neither help nor completion shows it."""
         self.add_argument(
             old, dest=today.dest, action=Renamed, today=today, metavar=today.metavar, default=argparse.SUPPRESS,
             help=argparse.SUPPRESS,
         )  # fmt: skip
 
     def offer(self, dest: str, words: Iterable[str] = (), suffixes: Iterable[str] = ()) -> None:
-        """What shell completion offers for the argument."""
+        """Sets what shell completion offers for the argument."""
         self.offers[dest] = Offer(tuple(suffixes), tuple(words))
 
     def parse(self, words: Sequence[str]) -> argparse.Namespace:
-        """The arguments; UsageError for what is unknown, missing or there twice."""
+        """The arguments; UsageError for an unknown, missing or repeated argument."""
         options = words[: words.index("--")] if "--" in words else words
         for word in options:
             flag = word.partition("=")[0]
@@ -112,21 +111,21 @@ class Parser(argparse.ArgumentParser):
         return arguments
 
     def refuse(self, flag: str) -> NoReturn:
-        """UsageError for an unknown option."""
+        """Raises UsageError for an unknown option."""
         near = nearest(flag, self._option_string_actions)
         action = self._option_string_actions.get(near or "")
         near = action.new if isinstance(action, Renamed) else near
         self.error(f"no option {flag}{f'; did you mean {near}?' if near else ''}")
 
     def _check_value(self, action: argparse.Action, value: Any) -> None:
-        """Says which word is meant where a choice is none; called by argparse."""
+        """Raises UsageError with the nearest choice if a value is not a choice; called by argparse."""
         if action.choices is not None and value not in action.choices:
             known = list(map(str, action.choices))
             name = action.option_strings[0] if action.option_strings else str(action.metavar)
             self.error(f"{name} {value}: {' or '.join(known)} expected{hint(value, known)}")
 
     def shorten_usage(self) -> None:
-        """Only what has to be given, and ``[options]`` for the rest: it fits a line."""
+        """Reduces the usage to one line: required arguments, and ``[options]`` for the rest."""
         needed = [name.upper() if must else f"[{name.upper()}]" for name, must in self.inputs.items()]
         for action in self._actions:
             if not action.option_strings and action.dest not in self.inputs:
@@ -151,11 +150,11 @@ def joined(words: Iterable[str]) -> list[str]:
 
 
 def hint(word: str, known: Iterable[str]) -> str:
-    """``; did you mean …?`` with the nearest known word; empty where none is like it."""
+    """``; did you mean …?`` with the nearest known word; empty if none is similar."""
     near = nearest(word, known)
     return f"; did you mean {near}?" if near else ""
 
 
 def nearest(word: str, known: Iterable[str]) -> str | None:
-    """The known word that is most like it, or None where none is."""
+    """The most similar known word, or None if none is similar."""
     return next(iter(difflib.get_close_matches(word, sorted(known), 1, 0.6)), None)

@@ -1,13 +1,13 @@
-"""Home a pen, and find out step by step whether its counters, its file and its limits are right.
+"""Home a pen and check its counters, its file and its limits, step by step.
 
 riffler pen calibrate --out pen-check.toml
 riffler pen calibrate simulated --yes
-riffler pen calibrate simulated --yes --lose L1=60     what a fault looks like
-riffler pen calibrate spacemouse                       how large its bubble has to be
+riffler pen calibrate simulated --yes --lose L1=60     shows what a fault looks like
+riffler pen calibrate spacemouse                       finds how large the puck's bubble must be
 
-A pen is put into its home posture and then moved to wherever it reaches. Its arms measure one number more than a grip
-has: the distance of their ends, which has to be the grip's length everywhere. Exit status 1 where it is not. Nothing is
-pushed.
+Put the pen into its home posture, then move it everywhere it reaches. The arms measure one number more than a pose
+needs: the distance between their ends, which must equal the grip's length in every posture. Exit status 1 if it does
+not. The motors do not push.
 """
 
 from __future__ import annotations
@@ -33,28 +33,28 @@ from .pen_diagnosis import Joint, Postures, Verdict, bubble_of, joints, judge
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
-HELP = "home a pen, find lost counts and wrong signs; noise of a puck"
+HELP = "home a pen and check its counters; measure the noise of a puck"
 
 ENOUGH = 0.3  # share of its range that a joint should have moved
-FEWEST = 20  # postures, of a judgement
-REST = 5.0  # s that a puck is left alone
+FEWEST = 20  # postures that a verdict needs
+REST = 5.0  # s during which nothing touches a puck
 
 
 def add_arguments(parser: Parser) -> None:
     add_device(parser)
     parser.add_argument("--yes", action="store_true", help="ask nothing: the pen stands in its home posture now")
-    parser.add_argument("--seconds", default="20", metavar="N", help="of moving, at most (default 20)")
-    parser.add_file("--out", ".toml for what was measured and what to change", (".toml",))
-    parser.add_argument("--force", action="store_true", help="--out may take the place of a file")
+    parser.add_argument("--seconds", default="20", metavar="N", help="longest time of moving (default 20)")
+    parser.add_file("--out", ".toml for the measurements and the changes that the pen's file needs", (".toml",))
+    parser.add_argument("--force", action="store_true", help="let --out replace a file")
     parser.add_argument(
-        "--lose", action="append", default=[], metavar="JOINT=N", help='for "simulated": counts that it loses, L1=60'
+        "--lose", action="append", default=[], metavar="JOINT=N", help='for "simulated": lost counts of a joint, L1=60'
     )
 
 
 def run(arguments: argparse.Namespace, console: Console) -> int:
     out = None if arguments.out is None else output_file(arguments.out, (".toml",))
     if out is not None and out.exists() and not arguments.force:
-        raise ValueError(f"--out {out.name}: is there already; take another name, or --force")
+        raise ValueError(f"--out {out.name}: already exists; use another name, or --force")
     seconds = length(arguments.seconds, "--seconds")
     if not arguments.yes and (console.json_output or not sys.stdin.isatty()):
         raise ValueError("pen calibrate asks questions: run it in a terminal and without --json, or with --yes")
@@ -81,7 +81,7 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
 def losses_of(texts: list[str], device: pen.PenDevice) -> dict[int, int]:
     """``L1=60`` as channel and counts."""
     if texts and not isinstance(device, pen.SimulatedPen):
-        raise ValueError('--lose is for "simulated": other pens lose counts by themselves')
+        raise ValueError('--lose is only for "simulated"')
     names = [c.name for c in geometry_of(device).channels] if texts else []
     found: dict[int, int] = {}
     for text in texts:
@@ -111,7 +111,7 @@ def calibrate_pen(
     home = geometry.forward([geometry.home])[0]
     simulated = isinstance(device, pen.SimulatedPen)
     if isinstance(device, pen.SimulatedPen):
-        device.aim(home)  # its own hand brings it there
+        device.aim(home)  # the simulated hand moves it there
     if not yes:
         say_home(geometry)
         input("Hold it like this and press Enter. ")
@@ -180,12 +180,12 @@ def rows_of(verdict: Verdict, seen: list[Joint], beyond: list[str], data: dict[s
         rows.append((joint.name, f"{low:6.1f}° … {high:5.1f}° of ({limits}){shown}"
                                  + (f"; {note}" if note else "")))  # fmt: skip
     if beyond:
-        rows.append(("limits", f"{', '.join(beyond)} went where the file says that they cannot: measure low and high"))
+        rows.append(("limits", f"{', '.join(beyond)} moved beyond the limits in the file: measure low and high"))
     return rows
 
 
 def still(device: pen.PenDevice, seconds: float = 5.0) -> None:
-    """Until the grip stands still."""
+    """Waits until the grip stands still."""
     end = time.monotonic() + seconds
     time.sleep(0.3)
     while np.linalg.norm(device.state().velocity) > 3 and time.monotonic() < end:
@@ -196,7 +196,7 @@ def move(
     device: pen.PenDevice, postures: Postures, seconds: float, yes: bool, console: Console,
     hand: Iterator[np.ndarray] | None,
 ) -> None:  # fmt: skip
-    """Collects postures until the time is over or the user presses Enter; `hand` says where a simulated one goes."""
+    """Collects postures until the time is over or the user presses Enter; `hand` gives poses for a simulated one."""
     ended = None if yes else Enter()
     start = time.monotonic()
     shown = turned = -math.inf
@@ -221,8 +221,8 @@ def move(
 
 
 def tour(geometry: pen.PenGeometry, home: np.ndarray) -> Iterator[np.ndarray]:
-    """Poses all over the box that the pen is used in, leaning to all sides, for ever; in the shipped pen's frame, which
-    is that of its arms. Always the same ones."""
+    """Endless poses all over the pen's working box, leaning to all sides, in the frame of the shipped pen's arms. The
+    sequence is always the same."""
     random = np.random.default_rng(8)
     lower, upper = np.array(geometry.limits.lower), np.array(geometry.limits.upper)
     while True:
@@ -237,7 +237,7 @@ def progress(postures: Postures, stretch: float, left: float, yes: bool) -> Rend
 
     tolerance = postures.geometry.grip_tolerance
     most = max((abs(s) for s in postures.stretch), default=0.0)
-    out = Text("Move the pen to wherever it reaches, and lean it to all sides.\n", style="bold")
+    out = Text("Move the pen everywhere it reaches, and lean it to all sides.\n", style="bold")
     out.append(f"stretch {stretch:+7.3f} mm, at most {most:.3f} mm, {tolerance:g} mm allowed\n",
                style="not bold red" if most > tolerance else "not bold green")  # fmt: skip
     for joint, low, high in zip(postures.geometry.channels, postures.low, postures.high, strict=True):
@@ -248,7 +248,7 @@ def progress(postures: Postures, stretch: float, left: float, yes: bool) -> Rend
 
 
 def bar(low: float, high: float, first: float, last: float, width: int = 40) -> str:
-    """The part of the range from first to last that was covered."""
+    """A bar for the range from first to last, filled where the joint has been."""
     if not low <= high:
         return "·" * width
     a, b = ((v - first) / (last - first) * width for v in (low, high))
@@ -256,12 +256,12 @@ def bar(low: float, high: float, first: float, last: float, width: int = 40) -> 
 
 
 def say_home(geometry: pen.PenGeometry) -> None:
-    """The home posture as a drawing from the side, and in words."""
+    """Prints the home posture as a drawing from the side, and in words."""
     x, y, z, *_ = geometry.forward([geometry.home])[0]
     print(f"Home posture of {geometry.name}, from the side, hand on the right:\n")
     print("\n".join(side_view(geometry)))
     print(
-        f"\nThe grip's middle stands {x:.1f} mm before the shoulders, {-z:.1f} mm below them, {y:.1f} mm to the side."
+        f"\nThe grip's middle is {x:.1f} mm in front of the shoulders, {-z:.1f} mm below them, {y:.1f} mm to the side."
     )
     for channel, angle in zip(geometry.channels, np.degrees(home_angles(geometry)), strict=True):
         print(f"  {channel.name} {angle:7.2f}°  {MEANING[channel.name[1]]}")
@@ -279,9 +279,9 @@ def home_angles(geometry: pen.PenGeometry) -> list[float]:
 
 
 def side_view(geometry: pen.PenGeometry, columns: int = 36, rows: int = 16) -> list[str]:
-    """Both arms in their own planes: shoulder, elbow, end; and the grip between the ends.
+    """Draws both arms, each in its own plane (shoulder, elbow, end), and the grip between the ends.
 
-    The derivative of an end by θ2 is the upper arm, turned by a right angle (2.7): so it says where the elbow is.
+    The derivative of an end by θ2 is the upper arm turned by a right angle (2.7), so it gives the place of the elbow.
     """
     ends, slopes = geometry.ends([geometry.home])[0], geometry.jacobian([geometry.home])[0]
     arms = []
@@ -335,18 +335,18 @@ def calibrate_puck(
         ("bubble", f'{bubble:g}: riffler.pen.open("{device.kind}", bubble={bubble:g})'),
     ]
     if not right:
-        rows.append(("verdict", "it was touched, or its zero has drifted: plug it in again without touching it"))
+        rows.append(("verdict", "the puck was touched, or its zero has drifted: plug it in again without touching it"))
     return data, rows, f"{device.kind}: {'at rest' if right else 'NOT at rest'}", right
 
 
-# ---- what is written
+# ---- the report
 
 
 def toml(data: dict[str, Any]) -> str:
-    """A report for people and programs. What differs from the pen's file stands under [channels]."""
+    """The report as TOML, for people and programs. [channels] has the values that belong in the pen's file."""
     lines = [f"# riffler pen calibrate, {datetime.now().astimezone().isoformat(timespec='seconds')}"]
     if "channels" in data:
-        lines.append("# [channels] has the keys of the pen's own file as they explain what was measured; rad and mm.")
+        lines.append("# [channels] has the pen file's keys, with the values that explain the measurements; rad and mm.")
     tables: list[tuple[str, dict[str, Any]]] = []
     for key, value in data.items():
         if isinstance(value, dict) and all(isinstance(v, dict) for v in value.values()):
@@ -364,7 +364,7 @@ def value_text(value: Any) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):
-        # TOML's basic strings escape as JSON's do, but for U+007F.
+        # TOML's basic strings have the same escapes as JSON's, except for U+007F.
         import json
 
         return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")

@@ -1,4 +1,4 @@
-"""What the simulated hand carves, and where it goes."""
+"""The block that the simulated hand carves, and the path of the hand."""
 
 from __future__ import annotations
 
@@ -8,28 +8,28 @@ from .. import Collider, Volume
 
 STROKE = 3.0  # s
 SIZE = np.array([50.0, 40.0, 16.0])  # mm, of the block
-TABLE = 6.0  # mm below the block's top: what the tool stays out of
+TABLE = 6.0  # mm from the block's top down to the table, which the tool must not enter
 TOOL = 8.0  # mm, diameter of the ball
 REMOVAL = 0.004  # N·s/mm³: soft enough for the hand to keep its pace
 ABOVE = 6.0  # mm over the block's top, between strokes
 
 
 def block_at(home: np.ndarray, pitch: float) -> Volume:
-    """Its top's middle is where the pen is at home."""
+    """The block; the middle of its top is the pen's home."""
     lower = home[:3] - SIZE * [0.5, 0.5, 1.0]
     return Volume.block(lower, lower + SIZE, pitch)
 
 
 def table_at(home: np.ndarray) -> Collider:
-    """In the block, larger than it to all sides: passes that are deeper than it press the tool on it."""
+    """The table in the block, wider than it on all sides. Passes deeper than the table press the tool on it."""
     lower = home[:3] - SIZE * [0.7, 0.7, 1.5]
     upper = np.append(home[:2] + 0.7 * SIZE[:2], home[2] - TABLE)
     return Collider(Volume.block(lower, upper, 1.0).to_mesh())
 
 
 def hand_at(home: np.ndarray, seconds: float) -> tuple[np.ndarray, int]:
-    """Where the hand goes, and which buttons it holds: passes over the block side by side, each deeper, with button 1
-    held while the tool is down."""
+    """Pose of the hand and the buttons that it holds. The hand makes passes over the block side by side, each deeper,
+    and holds button 1 while the tool is down."""
     number, phase = divmod(seconds / STROKE, 1)
     side = -1 if number % 2 else 1
     along = side * 18 * np.cos(np.pi * np.clip((phase - 0.15) / 0.7, 0, 1))

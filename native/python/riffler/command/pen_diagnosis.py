@@ -1,4 +1,4 @@
-"""What the counts of a pen's stroke say about its homing, its encoders and its geometry's file."""
+"""Judges a pen's homing, encoders and geometry file by the counts of a stroke."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ import numpy as np
 
 from .. import pen
 
-STRAY = 0.02  # rad that some joint turns between two postures that are kept: closer ones say nothing new
+STRAY = 0.02  # rad that some joint turns between two kept postures: closer ones add no information
 CHANNELS = 6
-TOLD = 64  # postures that the diagnosis keeps, the last ones: it is given some from all over the stroke
+TOLD = 64  # postures, from all over the stroke, for the diagnosis, which would keep only the last 64
 
 
 class Postures:
-    """Counts, kept where some joint has turned since the last that were."""
+    """Postures of a stroke as counts: each in which some joint has turned since the last kept one."""
 
     def __init__(self, geometry: pen.PenGeometry) -> None:
         self.geometry = geometry
@@ -40,17 +40,17 @@ class Postures:
 
 @dataclass(frozen=True)
 class Joint:
-    """What one joint did, in rad."""
+    """Motion of one joint, in rad."""
 
     name: str
     low: float
     high: float
     limits: tuple[float, float]
-    noticed: float  # counts of this encoder alone from which on a loss would have shown; 0 where the grip does not fit
+    noticed: float  # smallest loss of counts of this encoder alone that would have shown; 0 if the grip does not fit
 
     @property
     def share(self) -> float:
-        """The share of the range between its limits that it covered."""
+        """Share of the joint's range that its motion covered."""
         return (self.high - self.low) / (self.limits[1] - self.limits[0])
 
     @property
@@ -60,8 +60,8 @@ class Joint:
 
 @dataclass(frozen=True)
 class Verdict:
-    """Whether the grip's length comes out in all postures; if not, the one change that explains them, and home and
-    sign of the geometry's file with it."""
+    """Whether all postures give the grip's length. If not: the one change that explains them, with the home and sign
+    that the geometry's file then needs."""
 
     fits: bool
     text: str
@@ -70,7 +70,7 @@ class Verdict:
     rms_after: float  # with the change
     home: list[int]
     sign: list[int]
-    channels: tuple[str, ...] = ()  # the joints that it is about
+    channels: tuple[str, ...] = ()  # the joints at fault
 
 
 def angles_of(geometry: pen.PenGeometry, counts: np.ndarray) -> np.ndarray:
@@ -88,7 +88,7 @@ def joints(postures: Postures) -> list[Joint]:
 
 
 def judge(geometry: pen.PenGeometry, counts: np.ndarray) -> Verdict:
-    """The simplest explanation: nothing is wrong, one counter is off, has the wrong sign, or two are exchanged."""
+    """The simplest explanation: no fault, one counter off or of the wrong sign, or two counters exchanged."""
     names = [c.name for c in geometry.channels]
     home, sign = [c.home for c in geometry.channels], [c.sign for c in geometry.channels]
     stretch = geometry.stretch(counts)
@@ -98,15 +98,15 @@ def judge(geometry: pen.PenGeometry, counts: np.ndarray) -> Verdict:
         return Verdict(fits, text, rms, most, after, home, sign, channels)
 
     if most <= geometry.grip_tolerance:
-        return verdict("the grip's length comes out in every posture", fits=True)
+        return verdict("every posture gives the grip's length", fits=True)
     found = geometry.diagnose(counts[np.unique(np.linspace(0, len(counts) - 1, TOLD).round().astype(int))])
     if found.channel is not None and found.counts is not None and found.left is not None:
         k, off = found.channel, round(found.counts)
         home[k] -= off
         return verdict(
-            f"{names[k]} reads {abs(off)} counts too {'many' if off > 0 else 'few'}: home again. If it comes back, its "
-            f"encoder loses counts (cable, dirt, speed); if it is the same again, the file's home of {names[k]} is "
-            f"{home[k]}, not {home[k] + off}",
+            f"{names[k]} reads {abs(off)} counts too {'many' if off > 0 else 'few'}: home again. If another error "
+            f"follows, its encoder loses counts (cable, dirt, speed); if the same error follows, the file's home of "
+            f"{names[k]} must be {home[k]}, not {home[k] + off}",
             found.left,
             channels=(names[k],),
         )
@@ -117,13 +117,13 @@ def judge(geometry: pen.PenGeometry, counts: np.ndarray) -> Verdict:
     after, change = min(_wirings(geometry, counts, home), key=lambda found: found[0])
     if after > geometry.grip_tolerance / 2:
         return verdict(
-            "no single counter explains it: was the pen in its home posture? If it was, the file's lengths, gears or "
-            "encoder lines are another pen's"
+            "no single counter explains the error: was the pen in its home posture? If it was, the lengths, gears or "
+            "encoder lines in the file belong to another pen"
         )
     if len(change) == 1:
         (k,) = change
         sign[k], home[k] = -sign[k], -home[k]
-        text = f"{names[k]} counts in the wrong direction: turn its sign in the file"
+        text = f"{names[k]} counts in the wrong direction: change its sign in the file"
         return verdict(text, after, channels=(names[k],))
     a, b = change
     return verdict(
@@ -134,9 +134,9 @@ def judge(geometry: pen.PenGeometry, counts: np.ndarray) -> Verdict:
 
 
 def _wirings(geometry: pen.PenGeometry, counts: np.ndarray, home: list[int]) -> list[tuple[float, tuple[int, ...]]]:
-    """What each wrong sign, and each pair of exchanged plugs, would leave of the stretch: mm, and the channels.
+    """For each wrong sign and each pair of exchanged plugs: stretch after its correction, mm, and the channels.
 
-    Both leave the home posture unchanged, so they turn the counter's change since then.
+    Neither fault changes the home posture, so the correction changes only the counts since homing.
     """
     gone = counts - np.array(home)
     out: list[tuple[float, tuple[int, ...]]] = []
@@ -156,7 +156,7 @@ def _rms(values: np.ndarray) -> float:
 
 
 def bubble_of(shares: np.ndarray) -> float:
-    """The bubble for an untouched puck: half as much again as its noise, and one step of its sensor (1/350),
+    """The bubble of a puck, from its noise when untouched: 1.5 times the noise plus one step of its sensor (1/350),
     rounded up to a hundredth. `shares` are lengths of deflections, as shares of the full one."""
     most = float(np.max(shares, initial=0.0))
     return min(0.99, float(np.ceil(100 * (1.5 * most + 1 / 350)) / 100))

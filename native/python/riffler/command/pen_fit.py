@@ -7,14 +7,14 @@ A joint in motion obeys, with every torque divided by its gear ratio so that it 
 K, c, v are the motor's torque constant, Coulomb and viscous friction; g is the moment of the weight, w is sin θ2 or
 cos θ3, I the joint's inertia, m and j the grip's mass and inertia, r its middle, a the vector between its ends, f the
 force of a hung weight, λ the unknown tension in the grip and s the gradient of the grip's length. Projecting on the
-five directions square to s removes λ. What remains is linear in 30 unknowns; f is the only known right side, so the
-hung weight alone sets the scale of all of them.
+five directions perpendicular to s removes λ. The remaining equations are linear in 30 unknowns; f is the only known
+term, so the hung weight alone sets the scale of all unknowns.
 
-Counts and currents pass the same low-pass filter, whose derivatives give speeds and accelerations. That does not bias
-what is linear in them. Products are not: the mean of λ s over the filter's length is not the mean of λ times that of s,
-and dry friction, which turns λ with the speed, made that difference look like 2 % of the viscous friction. So a narrow
-filter stands before all products and the projection, and the rest of the filter behind them. The currents that a report
-states act from three quarters of a period before its counts to a quarter after them; a shift of half a millisecond
+Counts and currents pass the same low-pass filter, whose derivatives give speeds and accelerations. The filter does not
+bias linear terms, but it biases products: the mean of λ s over the filter's length is not the mean of λ times that of
+s. Dry friction, which reverses λ with the speed, made that difference look like 2 % of the viscous friction. So a
+narrow filter comes before all products and the projection, and the rest of the filter after them. The currents in a
+report act from three quarters of a period before its counts to a quarter after them; a shift of half a millisecond
 would look like a tenth of the viscous friction.
 """
 
@@ -32,20 +32,21 @@ LOCAL_GRAVITY = 0.0015  # relative standard uncertainty: 9.78 m/s² at the equat
 JOINTS = ("R1", "R2", "R3", "L1", "L2", "L3")  # in the order of PenGeometry.joints
 UNKNOWNS = 30  # K, c, v of six channels, g of four joints, I of six, m and j
 WIDTH = 0.013  # s: standard deviation of the low-pass filter
-NARROW = 0.003  # s: of its first part, which all products of two filtered values stand behind
-REACH = 3  # times WIDTH, to each side
+NARROW = 0.003  # s: of its first part, which comes before all products of two filtered values
+REACH = 3  # half length of the filter, in units of WIDTH
 EVERY = 10  # samples between two rows of the fit
-# Periods by which the mean time of a stated current is before the counts of its report, with its standard uncertainty:
+# Periods by which the mean time of a reported current precedes the counts of its report, and the standard uncertainty:
 # the pen takes a host's command in its first turn after a frame (docs/device.md), and an amplifier takes some time.
 LEAD, LEAD_ERROR = 0.25, 0.1
-QUIETEST = 0.5  # times the median residual of its kind: no sweep counts for more than that makes it
+QUIETEST = 0.5  # times the median residual of its kind: a sweep with less noise gets the weight of this noise
 STUCK = 2.0  # times the median residual of its kind: beyond it a joint stuck in a sweep, which is left out
 MODEL_ERROR = 0.001  # relative standard uncertainty: noise of counts and currents in the unknowns' own columns
-# rad/s of every joint. Below it a joint sticks and slips while its filtered speed looks steady: friction is then less
-# than the dry one, which looks like viscous friction, in all sweeps alike. With 0.06, that of L2 was up to 15 % off.
-# What is left of it there is little compared with the weight, which would lose half of its rows.
+# Lowest usable speed of every joint, rad/s. Slower joints stick and slip while their filtered speed looks steady: their
+# friction is then less than dry friction, which looks like viscous friction in all sweeps. At 0.06 rad/s, the viscous
+# friction of L2 was up to 15 % off. Sweeps with the weight use 0.06 all the same: the error is small compared with the
+# weight, and 0.1 would drop half of their rows.
 SLOWEST, SLOWEST_LOADED = 0.1, 0.06
-FEWEST = 20  # sweeps from which the scatter of the result can be judged
+FEWEST = 20  # sweeps that are needed to judge the scatter of the result
 NORMAL = 1.96  # standard uncertainties to each side of a 95 % interval
 NAMES = ("torque_constant", "coulomb", "viscous", "gravity")
 
@@ -66,7 +67,7 @@ class Sweep:
 
 @dataclass(frozen=True)
 class HungWeight:
-    """What hangs on the grip, with standard uncertainties."""
+    """The weight that hangs on the grip, with standard uncertainties."""
 
     mass: float  # kg
     mass_error: float
@@ -75,7 +76,7 @@ class HungWeight:
 
     @property
     def force(self) -> float:
-        """N."""
+        """Force of the weight, N."""
         return self.mass * GRAVITY
 
     @property
@@ -145,7 +146,7 @@ def _fitted(
     kinds, loaded_kinds = np.array([kind for kind, *_ in parts]), {s.kind for s in loaded}
     shares, left = np.ones(len(parts)), [b for *_, b in parts]
     normal, side, unknowns = solved(shares, squares, sides)
-    for _ in range(6):  # the noise, of each free sweep or of all loaded ones, and with it their weight in the sum
+    for _ in range(6):  # each sweep's noise sets its weight in the sum; loaded sweeps share one noise
         left = [b - a @ (scale * unknowns) for _, a, b in parts]
         noise = np.array([np.sqrt(np.mean(part**2)) for part in left])
         for kind in set(kinds):
@@ -160,7 +161,7 @@ def _fitted(
     rows = sum(len(b) for *_, b in parts)
     if not scatter:
         return unknowns * scale, np.zeros(UNKNOWNS), rows, residual
-    # Residuals within a sweep are alike, so sweeps are what the scatter is judged by.
+    # Residuals within a sweep are correlated, so the scatter is judged between sweeps.
     used = shares > 0
     n = int(used.sum())
     without = np.array(
@@ -200,14 +201,14 @@ def low_pass(period: float, width: float) -> tuple[np.ndarray, np.ndarray, np.nd
 
 
 def filtered(samples: np.ndarray, kernel: np.ndarray) -> np.ndarray:
-    """The weighted sums over the first axis of (n, …) samples; a kernel's length less one shorter."""
+    """The weighted sums over the first axis of (n, …) samples; shorter than these by the kernel's length minus one."""
     flat = samples.reshape(len(samples), -1)
     out = np.stack([np.convolve(column, kernel[::-1], "valid") for column in flat.T], axis=1)
     return out.reshape(len(out), *samples.shape[1:])
 
 
 def _usable(angles: np.ndarray, period: float, slowest: float) -> np.ndarray:
-    """Samples of (n, 6) angles around which, for a filter's length, every joint turns on in its direction."""
+    """Indices of (n, 6) angles around which, for a filter's length, every joint keeps turning in one direction."""
     _, slope, _ = low_pass(period, WIDTH)
     half = len(slope) // 2
     if len(angles) <= 4 * half + 1:
@@ -222,8 +223,8 @@ def _usable(angles: np.ndarray, period: float, slowest: float) -> np.ndarray:
 def rows_of(
     geometry: pen.PenGeometry, sweep: Sweep, force: float, hook: float, lead: float = LEAD
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Equations of a sweep, (n, 30) and (n,); ``force``: N of the hung weight, ``hook``: mm from the grip's middle
-    towards the tool's tip at which it hangs."""
+    """Equations of a sweep, (n, 30) and (n,). ``force``: of the hung weight, N; ``hook``: its distance from the grip's
+    middle towards the tool's tip, mm."""
     centre = _usable(geometry.joints(sweep.counts), sweep.period, SLOWEST_LOADED if force else SLOWEST)
     if not len(centre):
         return np.zeros((0, UNKNOWNS)), np.zeros(0)
@@ -256,7 +257,7 @@ def _equations(
     length = np.linalg.norm(along, axis=1)[:, None]
     of_middle, of_apart = speeding.mean(axis=1), speeding[:, 1] - speeding[:, 0]
     towards_tip = (1.0 if geometry.tip == "L" else -1.0) * hook / length
-    # A weight on a thread follows vertical motion. It swings otherwise, which the mean of a sweep leaves out.
+    # A weight on a thread follows vertical motion only. Its swinging averages out over a sweep.
     rising = of_middle[:, 2] + (towards_tip * of_apart)[:, 2]
     down = -force * (1 + 1e-3 * rising / GRAVITY)
     lever = middle[:, 2] + towards_tip * apart[:, 2]
@@ -287,7 +288,7 @@ def _equations(
 
 
 def square_to(vectors: np.ndarray) -> np.ndarray:
-    """(n, 6, 5): orthonormal columns square to each of (n, 6) vectors, by Householder's reflection."""
+    """(n, 6, 5): orthonormal columns perpendicular to each of (n, 6) vectors, by Householder's reflection."""
     mirror = vectors / np.linalg.norm(vectors, axis=1)[:, None]
     mirror[:, 0] += np.where(mirror[:, 0] < 0, -1.0, 1.0)
     mirror /= np.linalg.norm(mirror, axis=1)[:, None]

@@ -1,12 +1,12 @@
 """Identify a pen: torque constants, weight, friction and directions of its motors, each with its uncertainty.
 
 riffler pen identify --mass 40 --out mine.toml
-riffler pen identify simulated --yes --seed 1          a simulated pen whose true numbers are not those of its file
+riffler pen identify simulated --yes --seed 1          a simulated pen whose true values differ from its file
 riffler pen identify simulated --yes --pens 100        a hundred of them: how often the stated intervals are right
 
-The motors move the pen by themselves: slowly without a weight, faster, and slowly again with a known weight hung on the
-grip. Before each motion the command asks; Enter or Ctrl-C stops it. It writes the pen's own .toml with the new values
-and their standard uncertainties.
+The motors move the pen: slowly without a weight, then faster, then slowly with a known weight hung on the grip. The
+command asks before each motion; Enter or Ctrl-C stops a motion. The command writes the pen's own .toml with the new
+values and their standard uncertainties.
 """
 
 from __future__ import annotations
@@ -47,10 +47,10 @@ from .pen_sweeps import (
     wiggles,
 )
 
-HELP = "torque constants, weight and friction of a pen, by a known weight"
+HELP = "measure motors, weight and friction of a pen with a known weight"
 
 SLOW_SWEEPS, FAST_SWEEPS = 24, 160
-# Sweeps, rad/s of the fastest joint, and seeds of paths of the slow, the fast and the loaded motion.
+# For the slow, the fast and the loaded motion: number of sweeps, rad/s of the fastest joint, and seeds of paths.
 MOTIONS = ((SLOW_SWEEPS, SLOW, (1, 11, 21)), (FAST_SWEEPS, FAST, (2, 12, 22)), (SLOW_SWEEPS, SLOW, (3, 13, 23)))
 UNITS = {
     "torque_constant": "N·mm/A",
@@ -59,27 +59,27 @@ UNITS = {
     "gravity": "N·mm",
 }
 BARS = {"torque_constant": 0.02, "coulomb": 0.05, "viscous": 0.05, "gravity": 0.05}  # relative
-GRAMS = 40.0  # of the simulated weight
-HOOK_ERROR = 0.1  # mm: standard uncertainty of where the weight hangs, with a loop on the arm's joint
+GRAMS = 40.0  # mass of the simulated weight
+HOOK_ERROR = 0.1  # mm: standard uncertainty of the place where the weight hangs, with a loop on the arm's joint
 
 
 def add_arguments(parser: Parser) -> None:
     add_device(parser)
-    parser.add_argument("--mass", metavar="G", help="of the weight, g; it is asked for if not given")
+    parser.add_argument("--mass", metavar="G", help="mass of the weight, g (default: the command asks)")
     parser.add_argument("--scale", default="0.1", metavar="G", help="step of the scale, g (default 0.1)")
-    parser.add_argument("--hook", metavar="MM", help="from the grip's middle to where the weight hangs, towards the "
+    parser.add_argument("--hook", metavar="MM", help="distance of the weight from the grip's middle towards the "
                         "tool's tip (default: the end of the arm)")  # fmt: skip
-    parser.add_argument("--yes", action="store_true", help="ask nothing: the simulated pen only")
-    parser.add_file("--out", ".toml: the pen's file with what was identified", (".toml",))
-    parser.add_argument("--force", action="store_true", help="--out may take the place of a file")
-    parser.add_argument("--seed", metavar="N", help='for "simulated": true values drawn at random around the file\'s')
+    parser.add_argument("--yes", action="store_true", help="ask nothing; for the simulated pen only")
+    parser.add_file("--out", ".toml: the pen's file with the identified values", (".toml",))
+    parser.add_argument("--force", action="store_true", help="let --out replace a file")
+    parser.add_argument("--seed", metavar="N", help='for "simulated": draw true values at random around the file\'s')
     parser.add_argument("--pens", metavar="N", help='for "simulated": N random pens, from --seed on')
 
 
 def run(arguments: argparse.Namespace, console: Console) -> int:
     out = None if arguments.out is None else output_file(arguments.out, (".toml",))
     if out is not None and out.exists() and not arguments.force:
-        raise ValueError(f"--out {out.name}: is there already; take another name, or --force")
+        raise ValueError(f"--out {out.name}: already exists; use another name, or --force")
     simulated = arguments.device == "simulated"
     for option in ("seed", "pens"):
         if getattr(arguments, option) is not None and not simulated:
@@ -132,7 +132,8 @@ def ask_mass(given: str | None, keyboard: Keyboard) -> float:
 
 
 def check_weight(geometry: pen.PenGeometry, weight: HungWeight, path: Path) -> None:
-    """A weight that the motors can carry for long, that is well above friction, and that is known well enough."""
+    """Raises ValueError for a weight that the motors cannot carry for long, that friction hides, or whose mass is not
+    known well enough."""
     grams = f"--mass {1e3 * weight.mass:g}"
     amperes = holding_currents(geometry, path.poses, weight)
     peak = np.array([c.peak_current for c in geometry.channels])
@@ -141,18 +142,18 @@ def check_weight(geometry: pen.PenGeometry, weight: HungWeight, path: Path) -> N
                float((np.sqrt((amperes**2).mean(axis=0)) / (0.95 * lasting)).max()))  # fmt: skip
     if used > 1:
         raise ValueError(f"{grams}: too heavy for this pen's motors, which would need {used:.1f} times the current "
-                         "that they may have for long; take a lighter weight")  # fmt: skip
+                         "that they may have for long; use a lighter weight")  # fmt: skip
     dry = max(c.coulomb * c.ratio for c in geometry.channels)
     reach = float(np.linalg.norm(geometry.jacobian([geometry.home])[0][:, 2], axis=1).min())
     least = 4 * dry / (reach * GRAVITY)
     if weight.mass < least:
-        raise ValueError(f"{grams}: friction hides the weight; take at least {np.ceil(1e3 * least):.0f} g")
+        raise ValueError(f"{grams}: friction hides the weight; use at least {np.ceil(1e3 * least):.0f} g")
     if weight.mass_error > 0.005 * weight.mass:
-        raise ValueError(f"{grams}, --scale: the mass has to be known to within half a percent; take a finer scale")
+        raise ValueError(f"{grams}, --scale: the mass must be known to within half a percent; use a finer scale")
 
 
 def holding_currents(geometry: pen.PenGeometry, poses: np.ndarray, weight: HungWeight) -> np.ndarray:
-    """(n, 6) A that hold arms and weight at rest, by the pen's file."""
+    """Currents (n, 6) in A that hold arms and weight at rest, according to the pen's file."""
     joints, _ = geometry.inverse(poses)
     counts = geometry.counts(joints)
     up = weight.force * base_axes(geometry)[:, 2]
@@ -174,7 +175,7 @@ def holding_currents(geometry: pen.PenGeometry, poses: np.ndarray, weight: HungW
 def identified(
     device: pen.PenDevice, weight: HungWeight, keyboard: Keyboard, seed: int | None, console: Console | None
 ) -> Identified:
-    """All motions, and the fit to them; progress is drawn on the console."""
+    """Makes all motions and fits the values to them; draws progress on the console."""
     geometry = geometry_of(device)
     if not any(axis.pushes for axis in geometry.capability().axes.values()):
         raise ValueError(f"{device.kind} has no motors")
@@ -182,8 +183,8 @@ def identified(
     slow, fast, loaded = (Motion(geometry, number, rate, seeds) for number, rate, seeds in MOTIONS)
     say = (lambda text: None) if not keyboard.asks else print
 
-    say(f"\nFirst the directions, in {wiggles(geometry).seconds:.0f} s: hold the grip loosely, and let it be pushed by "
-        "up to 0.8 N.")  # fmt: skip
+    say(f"\nFirst the directions, in {wiggles(geometry).seconds:.0f} s: hold the grip loosely, and let the motors push "
+        "it with up to 0.8 N.")  # fmt: skip
     agree(keyboard)
     pushed = drive(device, wiggles(geometry), keyboard, leads=False)
     wrong = reversed_motors(geometry, pushed.counts, pushed.currents)
@@ -193,7 +194,7 @@ def identified(
 
     free: list[Sweep] = []
     for motion, kind, how in ((slow, "slow", "slowly"), (fast, "fast", f"at up to {FAST:g} rad/s, 300 mm/s")):
-        say(f"\nNow the pen moves by itself, {how}, for {motion.seconds:.0f} s. Clear the room around its arms.")
+        say(f"\nNow the pen moves by itself, {how}, for {motion.seconds:.0f} s. Clear the space around its arms.")
         free += swept(device, motion, kind, keyboard, None, console)
     say(
         f"\nHang {1e3 * weight.mass:g} g by a thread on the grip, {weight.hook:g} mm from its middle towards the "
@@ -224,13 +225,13 @@ def begin(device: pen.PenDevice, keyboard: Keyboard) -> None:
 
 
 def agree(keyboard: Keyboard) -> None:
-    answer = keyboard.ask("Enter stops it while it moves. May it move? Type yes: ")
+    answer = keyboard.ask("Enter stops the pen while it moves. May it move? Type yes: ")
     if keyboard.asks and answer.lower() not in ("y", "yes"):
         raise MotionStoppedError("not agreed; nothing moved")
 
 
 class Motion:
-    """A motion on the first of several paths; another one where the pen sticks on it."""
+    """A motion on the first of several paths, or on the next one if the pen sticks."""
 
     def __init__(self, geometry: pen.PenGeometry, number: int, rate: float, seeds: Sequence[int]) -> None:
         self._path = lambda seed: sweeps(geometry, number, rate, seed)
@@ -250,7 +251,7 @@ def swept(
     device: pen.PenDevice, motion: Motion, kind: str, keyboard: Keyboard, weight: HungWeight | None,
     console: Console | None,
 ) -> list[Sweep]:  # fmt: skip
-    """One motion with its question. One that stops itself is made again on another path."""
+    """Asks, then makes one motion. If the motion stops itself, makes it again on another path."""
     why: MotionTrippedError | None = None
     for path in motion.paths():
         if why is not None and keyboard.asks:
@@ -280,14 +281,14 @@ def swept_once(
 
 
 def hang(device: pen.SimulatedPen, weight: HungWeight, seed: int | None) -> None:
-    """Hangs the simulated weight, which is off what the scale and the ruler say as their uncertainties allow."""
+    """Hangs the simulated weight; its mass and place deviate from the measured ones by their uncertainties."""
     off = np.random.default_rng(seed).normal(size=2) if seed is not None else np.zeros(2)
     device.hang(weight.mass * (1 + off[0] * weight.relative_error), weight.hook + off[1] * weight.hook_error)
     time.sleep(0.05)
 
 
 def check_encoders(geometry: pen.PenGeometry, recorded: list[Sweep]) -> None:
-    """A reversed encoder, or lost counts, make the grip's length wrong."""
+    """Raises MotionStoppedError if a reversed encoder or lost counts make the grip's length wrong."""
     postures = Postures(geometry)
     for sweep in recorded:
         for counts in sweep.counts[::50]:
@@ -340,7 +341,7 @@ def truth_of(geometry: pen.PenGeometry, name: str) -> np.ndarray:
 
 
 def real(truth: pen.PenGeometry, name: str) -> np.ndarray:
-    """Channels that have such a value: joints 1 have no moment of weight."""
+    """Which channels have the value: joints 1 have no moment of weight."""
     return np.array([name != "gravity" or c.name[1] != "1" for c in truth.channels])
 
 
@@ -349,11 +350,11 @@ def covered(found: Identified, truth: pen.PenGeometry) -> dict[str, np.ndarray]:
 
 
 def rewritten(text: str, found: Identified) -> str:
-    """The pen's file with the identified values, and their standard uncertainties in a table of their own."""
+    """The pen's file with the identified values, and their standard uncertainties in a separate table."""
     before = tomllib.loads(text)
     text = without_table(text, "uncertainty")
     lists = {name: (found.values[name], f"{UNITS[name]}, identified") for name in NAMES}
-    if "converter" in before:  # its steps are of current: those per N·mm follow the torque constant
+    if "converter" in before:  # one step is a current, so the steps per N·mm depend on the torque constant
         stronger = found.values["torque_constant"] / np.array(before["channels"]["torque_constant"])
         lists["slope"] = np.array(before["converter"]["slope"]) / stronger, "steps per N·mm at the motor"
     for name, (values, comment) in lists.items():
@@ -361,7 +362,7 @@ def rewritten(text: str, found: Identified) -> str:
             rf"^({name}\s*=\s*)\[[^\]]*\].*$", rf"\g<1>{numbers(values, 5)}   # {comment}", text, flags=re.M
         )
         if count != 1:
-            raise ValueError(f"the pen's file has no list {name} in one place")
+            raise ValueError(f"the pen's file must have the list {name} exactly once")
     lines = [f"{name} = {numbers(found.uncertainty[name], 3)}   # {UNITS[name]}" for name in NAMES]
     return "\n".join(
         [text.rstrip("\n"), "", "[uncertainty]   # standard uncertainties, by riffler pen identify", *lines, ""]

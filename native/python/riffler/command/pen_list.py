@@ -1,9 +1,9 @@
-"""Say which devices are plugged in, what each can do, and exactly why one does not open.
+"""List the devices that are plugged in, what each can do, and exactly why a device does not open.
 
 riffler pen list
 
-The Polhem protocol's devices have numbers that any board may have, so they are listed and not tried; riffler.pen.open
-takes their kind.
+Devices with the Polhem protocol have USB numbers that any board may have, so the command does not open them; to use
+one, give its kind to riffler.pen.open.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from .. import pen
 from .console import Console
 from .parser import Parser
 
-HELP = "the devices that are plugged in, and why one does not open"
+HELP = "list plugged-in devices, and why a device does not open"
 
 
 def add_arguments(parser: Parser) -> None:
@@ -28,7 +28,7 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
     rows = [(device.path, chosen_by(device) + describe(device)) for device in found]
     known = ", ".join(kind for kind in pen.kinds() if kind != "simulated")
     unavailable = pen.unavailable()
-    rows = rows or [("none", f'no device of the kinds {known}; "simulated" needs none')]
+    rows = rows or [("none", f'no device of the kinds {known}; "simulated" needs no hardware')]
     console.result(
         {"devices": [as_json(device) for device in found], "kinds": pen.kinds(), "unavailable": unavailable},
         "pens",
@@ -38,17 +38,17 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
 
 
 def as_json(device: pen.DeviceInfo) -> dict[str, Any]:
-    """For --json, where `tried` says whether the device was opened and asked what it is."""
+    """A device for --json, where `tried` tells whether the device was opened and its description read."""
     return {"tried" if key == "was_opened" else key: value for key, value in asdict(device).items()}
 
 
 def chosen_by(device: pen.DeviceInfo) -> str:
-    """What chooses it among several of its kind."""
+    """The argument that chooses a device among several of its kind."""
     return f'"{device.choice}", ' if device.choice else ""
 
 
 def describe(device: pen.DeviceInfo) -> str:
-    """One device in one line."""
+    """Describes a device in one line."""
     name = " ".join(filter(None, (device.name, device.id)))
     if device.problem:
         return f"{name}: {device.problem}: {device.text}"

@@ -1,11 +1,11 @@
-"""Show what a device says, as it says it: where the hand is, what pushes it, how the link does.
+"""Show live what a device reports: the pose of the hand, the force on it, and the state of the link.
 
 riffler pen monitor                        the first device that opens
 riffler pen monitor simulated --seconds 10
 riffler pen monitor --csv pen.csv          a row for each report
 
-Ctrl-C ends it. No force is commanded, and at the end the device gets zero force. Without a terminal there is a line
-a second.
+Ctrl-C ends it. The command sends no force, and sets zero force at the end. Without a terminal it prints a line per
+second.
 """
 
 from __future__ import annotations
@@ -32,12 +32,12 @@ from .parser import Parser
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
-HELP = "what a device says, live"
+HELP = "show live what a device reports"
 
 LINK = ("reports", "superseded", "lost", "malformed", "timeouts", "writes", "read_errors", "write_errors", "silences")
-# "late" is what people ask for: ticks in which no report came in time.
+# Shown as "late": ticks in which no report came in time.
 LATE = "timeouts"
-POLL = 1e-3  # s: pens send a report in each millisecond
+POLL = 1e-3  # s: pens send a report every millisecond
 SHOWN = 10  # s that the charts show
 COLUMNS = (
     *("time_s", "sequence", "x_mm", "y_mm", "z_mm", "axis_x", "axis_y", "axis_z", "spin_rad"),
@@ -49,7 +49,7 @@ COLUMNS = (
 def add_arguments(parser: Parser) -> None:
     add_device(parser)
     parser.add_argument("--seconds", metavar="N", help="how long (default: until Ctrl-C)")
-    parser.add_file("--csv", "a row for each report, with the force that the motors had", (".csv",))
+    parser.add_file("--csv", "a row for each report, with the force of the motors", (".csv",))
 
 
 def run(arguments: argparse.Namespace, console: Console) -> int:
@@ -66,10 +66,10 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
 
 
 def follow(watch: Watch, seconds: float, draw: Callable[[Any], None] | None, plain: bool) -> None:
-    """Until the time is over, or Ctrl-C, which is how one ends it and no error."""
+    """Polls the device and draws until the time is over or until Ctrl-C, which is not an error."""
     period = 1.0 if plain else 1 / FRAMES
     start = time.monotonic()
-    shown = start - period + 0.2  # not before the first reports are there
+    shown = start - period + 0.2  # not before the first reports have arrived
     try:
         while (now := time.monotonic()) - start < seconds:
             watch.poll(now)
@@ -82,12 +82,12 @@ def follow(watch: Watch, seconds: float, draw: Callable[[Any], None] | None, pla
         pass
     watch.look(time.monotonic())
     if draw is not None and not plain:
-        draw(watch.picture(width_of_terminal()))  # what stays in the terminal has every report
+        draw(watch.picture(width_of_terminal()))  # the picture that stays in the terminal includes every report
 
 
 @contextmanager
 def rows_to(path: Path | None, console: Console) -> Iterator[Callable[[list[Any]], None] | None]:
-    """Yields what writes a row into the file; the file is there once everything went well."""
+    """Yields a function that writes a row into the file. The file appears only if no error occurs."""
     if path is None:
         yield None
         return
@@ -98,7 +98,7 @@ def rows_to(path: Path | None, console: Console) -> Iterator[Callable[[list[Any]
 
 
 class Watch:
-    """What was seen of a device."""
+    """Everything observed of a device: samples, extremes, state of the link."""
 
     def __init__(self, device: pen.PenDevice, write: Callable[[list[Any]], None] | None = None) -> None:
         self.device, self.write = device, write
@@ -116,7 +116,7 @@ class Watch:
         self.look(self.start)
 
     def poll(self, now: float) -> None:
-        """Takes the newest sample, if it is a new one."""
+        """Takes the newest sample if it was not taken before."""
         state = self.device.state()
         if state.sequence == self.sequence and state.age_s > 0 and self.sequence:
             return
@@ -149,7 +149,7 @@ class Watch:
             self.history["force"].add(now, *state.applied[0])
 
     def look(self, now: float) -> None:
-        """At the link: some of it costs more than a sample."""
+        """Reads the state of the link, which costs more than a sample."""
         self.health = self.device.health()
         self.links.append((now, self.health))
         while len(self.links) > 2 and self.links[1][0] < now - 1:
@@ -159,7 +159,7 @@ class Watch:
             self.causes.append(cause)
 
     def rates(self) -> dict[str, float]:
-        """Counts a second, over the last one."""
+        """Counts per second, over the last second."""
         (before, first), (now, last) = self.links[0], self.links[-1]
         passed = now - before
         return {key: (getattr(last, key) - getattr(first, key)) / passed if passed > 0 else 0.0 for key in LINK}
@@ -178,7 +178,7 @@ class Watch:
         )
 
     def states(self) -> str:
-        """State of the link, and of the force where there can be one."""
+        """State of the link, and of the force if the device has motors."""
         return self.health.state + (f", force {self.health.force_state}" if self.pushes else "")
 
     def picture(self, width: int) -> RenderableType:
@@ -229,7 +229,7 @@ class Watch:
         return rows
 
     def trouble(self) -> str:
-        """What is wrong, and what to do."""
+        """The fault and its remedy; empty if there is no fault."""
         state, health = self.state, self.health
         if health.problem:
             return health.problem
@@ -294,5 +294,5 @@ def rounded(values: Any) -> list[str]:
 
 
 def buttons(bits: int) -> str:
-    """The numbers of those that are held."""
+    """The numbers of the buttons that are held."""
     return " ".join(str(k + 1) for k in range(32) if bits >> k & 1) or "none"

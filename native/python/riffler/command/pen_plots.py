@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def draw(log: Log, what: str) -> Figure:
-    """Position, force, energy, removed volume against time; the processor's time of a step as a distribution."""
+    """Plots position, force, energy and removed volume against time, and the distribution of the steps' durations."""
     import matplotlib
 
     with matplotlib.rc_context(STYLE):
@@ -56,13 +56,13 @@ def fill(panels: np.ndarray, log: Log) -> None:
 
 
 def steps(axis: Axes, spent: np.ndarray) -> None:
-    """How many steps took at least so long: the tail is what a haptic loop is judged by."""
+    """Plots the share of steps that took longer than a time: its tail is the measure of a haptic loop."""
     spent = np.sort(spent[spent > 0])
     if len(spent):
         axis.plot(spent, 100 * (1 - np.arange(len(spent)) / len(spent)), color=COLOURS[4])
     logarithmic(axis.xaxis, sub=len(spent) > 0 and spent[-1] < 100 * spent[0])  # the axis is short
     logarithmic(axis.yaxis)
-    axis.set(xlabel="processor's time of a step  µs", ylabel="of the steps took longer  %")
+    axis.set(xlabel="processor time per step  µs", ylabel="steps that took longer  %")
 
 
 class Window:
@@ -72,8 +72,8 @@ class Window:
         import matplotlib.pyplot as plt
 
         if plt.get_backend().lower() in ("agg", "pdf", "svg", "ps", "cairo", "template"):
-            raise ValueError(f"--window: matplotlib has no window here ({plt.get_backend()}): "
-                             "install PyQt or tkinter, or take --plot FILE.png")  # fmt: skip
+            raise ValueError(f"--window: matplotlib cannot open a window here ({plt.get_backend()}): "
+                             "install PyQt or tkinter, or use --plot FILE.png")  # fmt: skip
         self.plt = plt
         plt.ion()
         with plt.rc_context(STYLE):
@@ -81,7 +81,7 @@ class Window:
         self.next = 0.0
 
     def show(self, log: Log) -> bool:
-        """False once the window is closed."""
+        """Draws the log if it is time; returns False once the window is closed."""
         if not self.plt.fignum_exists(self.figure.number):
             return False
         began = time.monotonic()
@@ -92,7 +92,7 @@ class Window:
                 fill(self.panels, log)
             self.figure.tight_layout()
             self.figure.canvas.draw()
-            # The rest of the time is the pen's.
+            # Leaves at least two thirds of the time to the pen.
             self.next = time.monotonic() + max(0.3, 2 * (time.monotonic() - began))
         self.figure.canvas.flush_events()
         return True

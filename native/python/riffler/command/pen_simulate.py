@@ -2,11 +2,11 @@
 
 riffler pen simulate                        live in the terminal
 riffler pen simulate --seconds 20 --plot run.png --out block.stl
-riffler pen simulate --window               a window instead, with matplotlib
+riffler pen simulate --window               in a window, with matplotlib
 
-A simulated hand makes passes over a block, each deeper than the last, until the tool comes to a table that it stays out
-of. Shown are where the tool is, what pushes the hand, the account of energy (what may go to the hand: below zero it
-would be driven), what was cut, and the processor's time of a step.
+A simulated hand makes passes over a block, each deeper than the last, until the tool reaches a table that it must not
+enter. The command shows the tool's position, the force on the hand, the energy that may go to the hand (below zero the
+pen would drive the hand), the removed volume, and the processor time per step.
 """
 
 from __future__ import annotations
@@ -35,19 +35,19 @@ from .shapes import write_left
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
-HELP = "carve with the simulated pen, and see it"
+HELP = "carve with the simulated pen and watch it"
 SHOWN = 10  # s that the charts show
 
 
 def add_arguments(parser: Parser) -> None:
     parser.add_argument("--seconds", default="20", metavar="N", help="how long (default 20)")
-    parser.add_argument("--stiffness", default="1", metavar="N/MM", help="between hand and tool (default 1)")
-    parser.add_argument("--pitch", default="0.5", metavar="MM", help="of the block (default 0.5)")
+    parser.add_argument("--stiffness", default="1", metavar="N/MM", help="stiffness between hand and tool (default 1)")
+    parser.add_argument("--pitch", default="0.5", metavar="MM", help="pitch of the block (default 0.5)")
     parser.add_file("--plot", "a .png of the whole run; needs matplotlib", (".png",))
     parser.add_argument("--window", action="store_true", help="plots in a window while it runs; needs matplotlib")
-    parser.add_file("--journal", "a new .rjournal of the strokes; riffler nc post takes it", JOURNALS)
+    parser.add_file("--journal", "a new .rjournal of the strokes, for riffler nc post", JOURNALS)
     add_detail(parser)
-    parser.add_file("--out", "what is left: .stl, .obj, .ply, .3mf or .rvol", MESHES + VOLUMES)
+    parser.add_file("--out", "the material that is left: .stl, .obj, .ply, .3mf or .rvol", MESHES + VOLUMES)
 
 
 def run(arguments: argparse.Namespace, console: Console) -> int:
@@ -111,7 +111,7 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
 
 
 def trips(session: Session) -> dict[str, int]:
-    """How often the force was taken away, by its reason; letting go of the button is none."""
+    """How often the force was switched off, by reason; releasing the button does not count."""
     found: dict[str, int] = {}
     for _, _, why, _ in session.trips:
         if "dead-man" not in why:
@@ -120,18 +120,18 @@ def trips(session: Session) -> dict[str, int]:
 
 
 def homed(device: pen.PenDevice) -> np.ndarray:
-    """The home pose, once the pen is there."""
+    """Waits until the pen is homed; returns its home pose."""
     end = time.monotonic() + 5
     while not device.state().homed:
         if time.monotonic() > end:
-            raise pen.PenError(f"the simulated pen does not come up: {device.health().problem or 'no report'}")
+            raise pen.PenError(f"the simulated pen does not start: {device.health().problem or 'no report'}")
         time.sleep(0.01)
     geometry = geometry_of(device)
     return geometry.forward([geometry.home])[0]
 
 
 def come_to(device: pen.SimulatedPen, pose: np.ndarray) -> None:
-    """The hand goes there; for two seconds at most."""
+    """Moves the hand to a pose; waits at most two seconds."""
     device.aim(pose)
     end = time.monotonic() + 2
     while np.linalg.norm(device.state().pose[:3] - pose[:3]) > 0.3 and time.monotonic() < end:
@@ -141,9 +141,9 @@ def come_to(device: pen.SimulatedPen, pose: np.ndarray) -> None:
 def carve(
     device: pen.SimulatedPen, home: np.ndarray, session: Session, log: Log, seconds: float, live: Any, window: Any
 ) -> None:
-    """Moves the hand, and shows what happens, until the time is over; Ctrl-C ends it sooner.
+    """Moves the hand and shows the run until the time is over; Ctrl-C ends it sooner.
 
-    The last picture has all frames: it stays in the terminal, and a busy machine may have had no time for another.
+    The last picture includes all frames: it stays in the terminal, and on a busy machine it may be the only one.
     """
     start = time.monotonic()
     shown = -np.inf
@@ -157,7 +157,7 @@ def carve(
             while (now := time.monotonic()) - start < seconds:
                 log.add(session.frame())
                 if log.state == "tripped" and not device.state().fault:
-                    session.reset()  # what a person does who has seen what it was
+                    session.reset()  # as a person does after seeing the reason
                 if show is not None and now - shown > 1 / FRAMES:
                     shown = now
                     if not show(log):
@@ -170,7 +170,7 @@ def carve(
 
 
 class Hand:
-    """Moves the simulated hand in a thread of its own: drawing takes longer than a hand stands still."""
+    """Moves the simulated hand in a separate thread, so that slow drawing does not stop the hand."""
 
     def __init__(self, device: pen.SimulatedPen, home: np.ndarray) -> None:
         self.device, self.home = device, home
@@ -201,7 +201,7 @@ class Log:
         self.parts: dict[str, list[np.ndarray]] = {name: [] for name in self.COLUMNS}
         self.begin = self.now = time.monotonic()
         self.state, self.strokes, self.dropped_ticks = "off", 0, 0
-        self.why: str | None = None  # there is no force, or nothing is cut, now
+        self.why: str | None = None  # reason if there is no force, or no cutting, now
         self.trips: dict[str, int] = {}
         self.removed = 0.0
         self.first: np.ndarray | None = None
@@ -219,7 +219,7 @@ class Log:
         self.removed += float(frame.removed.sum())
         if self.first is None:
             self.first = poses[0, :3]
-        # A chart has some 200 columns for its ten seconds: each fifth step is more than it shows.
+        # A chart has some 200 columns for its ten seconds: every fifth step is more than it can show.
         for k in range(0, len(frame), 5):
             at = float(frame.times[k])
             self.charts["position"].add(at, *(poses[k, :3] - self.first))
@@ -293,10 +293,10 @@ def need_matplotlib() -> None:
 
 
 def open_window() -> Any:
-    """A window, or ValueError where there is no display for one."""
+    """A window, or ValueError if there is no display for one."""
     if sys.platform.startswith("linux") and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
         raise ValueError("--window needs a display, and there is none (DISPLAY and WAYLAND_DISPLAY are not set); "
-                         "take --plot FILE.png, or neither for plots in the terminal")  # fmt: skip
+                         "use --plot FILE.png, or neither for plots in the terminal")  # fmt: skip
     from .pen_plots import Window
 
     return Window()

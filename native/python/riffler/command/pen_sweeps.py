@@ -1,7 +1,7 @@
-"""The motions of `riffler pen identify`: paths of the grip, driving them, and what is recorded.
+"""The motions of `riffler pen identify`: paths of the grip, moving along them, and the records.
 
-The grip is led by a weak spring (0.3 N/mm) that moves along the path; every force passes the limits and the safety gate
-of all forces. The gate's dead-man switch is this program: it has to report itself several times a second.
+A weak spring (0.3 N/mm) moves along the path and leads the grip; every force passes the limits and the safety gate of
+all forces. This program is the gate's dead-man switch: it must report itself several times a second.
 """
 
 from __future__ import annotations
@@ -20,21 +20,21 @@ from .. import pen
 from .._core import _PoseFollower
 from .pen_fit import JOINTS, SLOWEST, HungWeight, Sweep
 
-LEAN = 0.35  # of the grip from home, standard deviation along two axes
-MARGIN = 0.15  # share of the workspace's box that paths keep off each side
-PEAK = 1.875  # peak speed of a quintic, in terms of its mean
+LEAN = 0.35  # of the grip's axis from home, standard deviation along two axes
+MARGIN = 0.15  # share of the workspace's box that paths avoid at each side
+PEAK = 1.875  # peak speed of a quintic, relative to its mean
 SLOW, FAST = 0.35, 2.0  # rad/s of the fastest joint
 TOP_SPEED = 300.0  # mm/s of the grip
-SHORTEST = 0.4  # rad that some joint turns in a sweep
-# rad of joint 2 minus joint 3, which is 0 at a right angle. The dry friction of an arm that is nearly straight holds
-# the grip against the spring, until it comes loose faster than is safe.
+SHORTEST = 0.4  # rad: some joint turns at least this far in a sweep
+# Largest angle of joint 2 minus joint 3, rad; 0 at a right angle. The dry friction of a nearly straight arm holds the
+# grip against the spring until the grip comes loose faster than is safe.
 ELBOW = 0.5
-CANDIDATES = 12  # postures to which the next sweep may lead: it takes the one that tells most
+CANDIDATES = 12  # random postures for the end of the next sweep, which takes the most informative one
 LATEST = 0.8  # s after which the simulated hand must not let go: the grip would be off the path, and snap back
-TRIES = 20  # of a motion of the simulated pen on a machine so busy that its hand is late
-HOLD = 1.5  # s that the grip is held at the start, and the hand lets go
-WIGGLE = 1.2  # s of a push to and fro
-PUSH, TWIST = 0.8, 12.0  # N, N·mm of these
+TRIES = 20  # attempts at a motion of the simulated pen, whose hand is late on a busy machine
+HOLD = 1.5  # s at the start in which the motors hold the grip and the hand lets go
+WIGGLE = 1.2  # s of a push back and forth
+PUSH, TWIST = 0.8, 12.0  # N, N·mm: force and torque of such a push
 
 
 class MotionStoppedError(RuntimeError):
@@ -46,7 +46,7 @@ class MotionTrippedError(MotionStoppedError):
 
 
 class _LateHandError(RuntimeError):
-    """The simulated hand let go too late: this program did not get the processor."""
+    """The simulated hand let go too late, because this program did not get the processor in time."""
 
 
 @dataclass(frozen=True)
@@ -71,13 +71,13 @@ def sweeps(geometry: pen.PenGeometry, number: int, rate: float, seed: int) -> Pa
     """Home, ``number`` postures all over the middle of the workspace, and home again; the fastest joint at ``rate``.
 
     In every sweep the joints turn at different speeds, so that no two columns of the fit are alike. The next posture is
-    the one of several random ones whose sweep tells most.
+    the one of several random ones whose sweep is most informative.
     """
     random = np.random.default_rng(seed)
     home = home_of(geometry)
     lower, upper = np.array(geometry.limits.lower), np.array(geometry.limits.upper)
     lower, upper = lower + MARGIN * (upper - lower), upper - MARGIN * (upper - lower)
-    # The box is in the arms' frame, which need not be that of poses: offsets are from home, in both.
+    # The box is in the arms' frame, which may differ from that of poses: offsets from home connect the two.
     middle = geometry.ends([geometry.home])[0].mean(axis=0)
     turn = base_axes(geometry)
     poses = [home]
@@ -104,7 +104,7 @@ def sweeps(geometry: pen.PenGeometry, number: int, rate: float, seed: int) -> Pa
 
 
 def base_axes(geometry: pen.PenGeometry) -> np.ndarray:
-    """(3, 3): the axes of the arms' frame as columns in the frame of poses, by the motion of the pivot."""
+    """(3, 3): the axes of the arms' frame as columns in the frame of poses, from the motion of the pivot."""
     counts = np.array([geometry.home] * 4)
     counts[1:] += (np.eye(6)[[0, 1, 2]] * 2000).astype(counts.dtype)
     ours, its = geometry.ends(counts).mean(axis=1), geometry.forward(counts)[:, :3]
@@ -114,20 +114,20 @@ def base_axes(geometry: pen.PenGeometry) -> np.ndarray:
 
 
 def farthest(geometry: pen.PenGeometry, a: np.ndarray, b: np.ndarray) -> float:
-    """rad that the joint turns that turns furthest."""
+    """Largest turn of a joint between two poses, rad."""
     joints, _ = geometry.inverse([a, b])
     return float(np.abs(joints[1] - joints[0]).max())
 
 
 def duration(geometry: pen.PenGeometry, a: np.ndarray, b: np.ndarray, rate: float) -> float:
-    """s of a sweep from a to b whose fastest joint turns at ``rate``."""
+    """Duration in s of a sweep from a to b whose fastest joint turns at ``rate``."""
     slow = PEAK * farthest(geometry, a, b) / rate
     return max(slow, PEAK * float(np.linalg.norm(b[:3] - a[:3])) / TOP_SPEED, 0.3)
 
 
 def told(geometry: pen.PenGeometry, a: np.ndarray, b: np.ndarray, rate: float) -> float:
-    """How much a sweep from a to b tells about friction: the mean square of the slowest joint's speed, rad²/s², over
-    the time in which no joint is too slow for the fit."""
+    """How informative a sweep from a to b is about friction: the mean square of the slowest joint's speed, rad²/s²,
+    over the time in which no joint is too slow for the fit."""
     u = np.linspace(0, 1, 41)
     between = a + (u**3 * (10 + u * (6 * u - 15)))[:, None] * (b - a)
     between[:, 3:] /= np.linalg.norm(between[:, 3:], axis=1)[:, None]
@@ -137,7 +137,7 @@ def told(geometry: pen.PenGeometry, a: np.ndarray, b: np.ndarray, rate: float) -
 
 
 def reaches(geometry: pen.PenGeometry, a: np.ndarray, b: np.ndarray) -> bool:
-    """Whether both arms reach all poses from a to b, and neither is near to stretched or folded between."""
+    """Whether both arms reach all poses from a to b, and neither comes near to stretched or folded."""
     between = a + np.linspace(0, 1, 15)[:, None] * (b - a)
     between[:, 3:] /= np.linalg.norm(between[:, 3:], axis=1)[:, None]
     joints, found = geometry.inverse(between)
@@ -148,9 +148,9 @@ def reaches(geometry: pen.PenGeometry, a: np.ndarray, b: np.ndarray) -> bool:
 
 
 def wiggles(geometry: pen.PenGeometry) -> Path:
-    """Pushes to and fro along the three axes of the arms' frame and turns about two, with the grip at home, held."""
+    """Pushes back and forth along the three axes of the arms' frame and twists about two; the hand holds the grip."""
     home, turn = home_of(geometry), base_axes(geometry)
-    across = np.linalg.svd(home[None, 3:])[2][1:]  # square to the grip
+    across = np.linalg.svd(home[None, 3:])[2][1:]  # perpendicular to the grip
     wrenches = [np.concatenate([PUSH * axis, np.zeros(3)]) for axis in turn.T]
     wrenches += [np.concatenate([np.zeros(3), TWIST * axis]) for axis in across]
     times, rows = [0.0, 1.0], [np.zeros(6), np.zeros(6)]
@@ -175,7 +175,7 @@ class Keyboard:
             self.lines.put(line.strip())
 
     def ask(self, text: str, waiting: Callable[[], None] = lambda: None) -> str:
-        """The answer; ``waiting`` is called meanwhile. Nothing is asked with --yes."""
+        """Asks a question and returns the answer; calls ``waiting`` meanwhile. With --yes, asks nothing."""
         if not self.asks:
             return ""
         self.forget()
@@ -197,13 +197,13 @@ class Keyboard:
 
 @dataclass(frozen=True)
 class Record:
-    """What was recorded on a path."""
+    """Record of a motion along a path."""
 
     sequence: np.ndarray  # (n,) numbers of the reports
     times: np.ndarray  # (n,) s on the path
     counts: np.ndarray  # (n, 6)
     currents: np.ndarray  # (n, 6) A
-    free_from: float = 0.0  # s on the path from which on no hand holds the grip
+    free_from: float = 0.0  # s on the path after which no hand holds the grip
 
 
 def drive(
@@ -215,7 +215,7 @@ def drive(
     weight: HungWeight | None = None,
     shown: Callable[[float], None] = lambda _: None,
 ) -> Record:
-    """Moves along the path. MotionStoppedError if it did not end."""
+    """Moves along the path. MotionStoppedError if the motion did not reach the end."""
     for _ in range(TRIES):
         try:
             return _drive(device, path, keyboard, leads, weight, shown)
@@ -246,7 +246,7 @@ def _drive(
 
 
 def wait_for_no_fault(device: pen.PenDevice) -> None:
-    """A device that has stopped by itself clears its fault once nothing is pushed."""
+    """Waits until a device that has stopped by itself clears its fault, which it does once no force is sent."""
     end = time.monotonic() + 2
     while device.state().fault:
         if time.monotonic() > end:
@@ -258,7 +258,7 @@ def watch(
     device: pen.PenDevice, follower: _PoseFollower, path: Path, keyboard: Keyboard, leads: bool,
     shown: Callable[[float], None],
 ) -> float:  # fmt: skip
-    """Waits for the end of the path; `free_from` of its record. The simulated hand lets go when the path begins."""
+    """Waits for the end of the path; returns `free_from` of its record. The simulated hand lets go at the beginning."""
     simulated = device if leads and isinstance(device, pen.SimulatedPen) else None
     begun, free_from = time.monotonic(), 0.0
     while (state := follower.state) != "holding":
@@ -292,7 +292,7 @@ def take_hold(device: pen.PenDevice, keyboard: Keyboard, follower: _PoseFollower
     if isinstance(device, pen.SimulatedPen):
         device.aim(home_of(device.truth))
         time.sleep(0.05)
-    keyboard.ask("It holds itself. Take the grip in your hand; Enter switches the motors off. ", follower.alive)
+    keyboard.ask("The motors hold the grip. Take it in your hand; Enter switches them off. ", follower.alive)
 
 
 def cut(path: Path, record: Record, kind: str) -> list[Sweep]:
@@ -311,8 +311,8 @@ def cut(path: Path, record: Record, kind: str) -> list[Sweep]:
 def reversed_motors(geometry: pen.PenGeometry, counts: np.ndarray, currents: np.ndarray) -> list[str]:
     """Joints whose motor turns against its encoder, by the record of `wiggles`.
 
-    A held grip moves where it is pushed, by a distance that only the hand knows. The result is the combination of
-    reversed motors that explains the motion best.
+    A held grip moves in the direction of the push, by a distance that depends on the hand. The result is the
+    combination of reversed motors that explains the motion best.
     """
     home = np.array([geometry.home])
     jacobian, ends = geometry.jacobian(home)[0], geometry.ends(home)[0]
@@ -336,7 +336,7 @@ def reversed_motors(geometry: pen.PenGeometry, counts: np.ndarray, currents: np.
     shares, motion = shares - shares.mean(axis=0), motion - motion.mean(axis=0)
     if np.abs(motion[:, 0]).max() < 0.1:
         raise MotionStoppedError(
-            "the grip did not move when it was pushed: are the motors connected, and is it held too firmly?"
+            "the grip did not move when it was pushed: are the motors connected? Is the grip held too firmly?"
         )
 
     def agreement(signs: Sequence[float]) -> float:

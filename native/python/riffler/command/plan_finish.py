@@ -3,8 +3,8 @@
 riffler plan finish part.stl --tool ball:6 --cusp 0.02 --out part.ngc
 riffler plan finish part.stl --tool 2=flat:8 --stock 100x80x30 --pitch 0.25 --slopes 0,5 --out flats.ngc
 
-Without --stock it is the part's box with the allowance on top. The program is simulated on the stock before it is
-written: rapids in material, collisions of shank and holder, and gouges are errors with the place.
+The default stock is the part's box with the allowance on top. The program is simulated on the stock before it is
+written: rapids in material, collisions of shank and holder, and gouges are errors that name the place.
 """
 
 from __future__ import annotations
@@ -24,16 +24,20 @@ HELP = "finish a part in rows, as NC code"
 
 def add_arguments(parser: Parser) -> None:
     add_tool(parser)
-    parser.add_argument("--pattern", choices=plan.PATTERNS, default="parallel", help="of the rows (default parallel)")
+    parser.add_argument(
+        "--pattern", choices=plan.PATTERNS, default="parallel", help="pattern of the rows (default parallel)"
+    )
     add_lengths(
         parser,
-        ("--cusp", "0.01", "height of ridges that may stay"),
-        ("--tolerance", "0.005", "of the rows, above and below part and allowance"),
-        ("--allowance", "0", "that stays on the part"),
+        ("--cusp", "0.01", "largest height of ridges between rows"),
+        ("--tolerance", "0.005", "largest error of the rows, above and below part and allowance"),
+        ("--allowance", "0", "material to leave on the part"),
     )
-    parser.add_argument("--angle", metavar="DEG", default="0", help="of the rows (default 0)")
-    parser.add_argument("--slopes", metavar="DEG,DEG", default="0,90", help="of the faces that are meant, from level")
-    parser.add_file("--region", "closed curves, seen from above: only faces inside", plan.curves.FORMATS)
+    parser.add_argument("--angle", metavar="DEG", default="0", help="angle of the rows (default 0)")
+    parser.add_argument(
+        "--slopes", metavar="DEG,DEG", default="0,90", help="slopes of faces to finish, from level (default 0,90)"
+    )
+    parser.add_file("--region", "closed curves; only faces inside them are finished", plan.curves.FORMATS)
     add_scene(parser, "1000")
 
 
@@ -67,4 +71,4 @@ def options_of(arguments: argparse.Namespace) -> dict[str, Any]:
 
 def rows(data: dict[str, Any]) -> list[tuple[str, str]]:
     stats = data["stats"]
-    return [("rows", f"{number(stats['rows'])}, {number(stats['added'])} more where it is steep")]
+    return [("rows", f"{number(stats['rows'])}, {number(stats['added'])} more on steep faces")]

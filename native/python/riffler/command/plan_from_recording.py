@@ -1,5 +1,5 @@
-"""Plan what a hand has carved: a path for each recorded stroke, with keys where its axis bends. They are written as a
-plan, to be edited as any other.
+"""Plan the recorded strokes of a hand: a path for each stroke, with keys where its axis bends. The plan can be edited
+as any other.
 
 riffler plan from-recording session.rjournal --tolerance 0.02 --out plan.json
 """
@@ -21,7 +21,12 @@ HELP = "plan the strokes of a recording"
 def add_arguments(parser: Parser) -> None:
     parser.add_input("journal", ".rjournal", JOURNALS)
     parser.add_argument("--tool-number", metavar="N", help="plan the strokes of this tool, if there are several")
-    parser.add_argument("--tolerance", metavar="MM", default="0.01", help="of the ball's centre, or tip (default 0.01)")
+    parser.add_argument(
+        "--tolerance",
+        metavar="MM",
+        default="0.01",
+        help="largest error of the ball's centre, or of the tip (default 0.01)",
+    )
     parser.add_argument(
         "--angle",
         metavar="DEG",

@@ -1,4 +1,4 @@
-"""What commands that plan one operation share: part, tool, stock and fixtures, the check, and the program."""
+"""Shared by commands that plan one operation: part, tool, stock and fixtures, the check, and the program."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from .shapes import read_part
 from .stock import stock as read_stock
 from .surroundings import add_fixtures, add_rods, fixture, rods, with_rods
 
-RAYS = 400  # along the longest side of a stock without another pitch
+RAYS = 400  # along the longest side of a stock of default pitch
 
 
 def add_tool(parser: Parser) -> None:
@@ -27,21 +27,21 @@ def add_tool(parser: Parser) -> None:
 
 
 def add_lengths(parser: Parser, *lengths: tuple[str, str, str]) -> None:
-    """Options of lengths: flag, default, and what it is."""
+    """Adds options of lengths: flag, default and help."""
     for flag, default, about in lengths:
         parser.add_argument(flag, metavar="MM", default=default, help=f"{about} (default {default})")
 
 
 def add_scene(parser: Parser, feed: str) -> None:
-    """Feeds, stock, fixtures, machine and the program's file."""
-    add_lengths(parser, ("--clearance", "5", "of rapids across, above everything"))
+    """Adds options for feeds, stock, fixtures, machine and the program's file."""
+    add_lengths(parser, ("--clearance", "5", "height of rapids above everything"))
     parser.add_argument("--feed", metavar="F", default=feed, help=f"mm/min of cuts (default {feed})")
     parser.add_argument("--plunge", metavar="F", help="mm/min of plunges (default a third of the feed)")
     parser.add_argument("--spindle", metavar="S", default="12000", help="rev/min (default 12000)")
     parser.add_argument("--stock", metavar="STOCK", help="WxDxH, a mesh or a .rvol file (default the part's box)")
-    parser.add_argument("--pitch", metavar="MM", help="distance of the stock's rays")
+    parser.add_argument("--pitch", metavar="MM", help="distance between the stock's rays")
     parser.add_argument("--origin", metavar="X,Y,Z", help="lower corner of a stock of given sizes")
-    parser.add_argument("--zero", metavar="X,Y,Z", help="where the program's zero lies (default 0,0,0)")
+    parser.add_argument("--zero", metavar="X,Y,Z", help="zero point of the program (default 0,0,0)")
     add_fixtures(parser)
     add_rods(parser)
     parser.add_argument("--post", metavar="NAME", default="3-axis", help="the machine (default 3-axis)")
@@ -64,8 +64,8 @@ def run_operation(
     counts: Callable[[dict[str, Any]], list[tuple[str, str]]],
     allowance: float,
 ) -> int:
-    """Reads the scene, plans with ``planned(setup, tool, progress)``, checks and writes. ``counts``: rows of the result
-    from its data."""
+    """Reads the scene, plans with ``planned(setup, tool, progress)``, checks and writes. ``counts`` makes rows of the
+    result's table from its data."""
     path, out = input_file(arguments.part, MESHES), output_file(arguments.out, CODE + PROGRAMS)
     post = machine_name(arguments.post, "--post")
     asked = tools.parse(arguments.tool)

@@ -3,9 +3,9 @@
 riffler plan rough part.stl --tool flat:8 --stepdown 2 --out rough.ngc
 riffler plan rough part.stl --tool 2=flat:6 --stock 100x80x30 --pitch 0.5 --engagement 0.2 --out rough.ngc
 
-No cut is wider than --engagement asks, as a share of the cutter's diameter. Without --stock it is the part's box with
-the allowance on top. The program is simulated on the stock before it is written: rapids in material, collisions of
-shank and holder, and gouges are errors with the place.
+No cut is wider than --engagement, a share of the cutter's diameter. The default stock is the part's box with the
+allowance on top. The program is simulated on the stock before it is written: rapids in material, collisions of shank
+and holder, and gouges are errors that name the place.
 """
 
 from __future__ import annotations
@@ -28,12 +28,12 @@ def add_arguments(parser: Parser) -> None:
     add_lengths(
         parser,
         ("--stepdown", "2", "height of a layer"),
-        ("--allowance", "0.3", "that stays on the part"),
-        ("--tolerance", "0.05", "of curves"),
+        ("--allowance", "0.3", "material to leave on the part"),
+        ("--tolerance", "0.05", "largest error of curves"),
     )
     parser.add_argument("--engagement", metavar="SHARE", default="0.4", help="widest cut in diameters (default 0.4)")
-    parser.add_argument("--slope", metavar="DEG", default="3", help="of helices (default 3)")
-    parser.add_argument("--conventional", action="store_true", help="material to the left of the motion")
+    parser.add_argument("--slope", metavar="DEG", default="3", help="slope of helices (default 3)")
+    parser.add_argument("--conventional", action="store_true", help="mill with the material to the left of the motion")
     add_scene(parser, "1200")
 
 

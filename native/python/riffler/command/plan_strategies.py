@@ -1,4 +1,4 @@
-"""Paths of a plan by a strategy: a verb for each strategy of riffler.plan."""
+"""A verb for each strategy of riffler.plan, which writes the strategy's paths as a plan."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ from .console import Console, number, times
 from .parser import Parser
 from .shapes import read_part
 
-GIVEN = {  # what a strategy needs in addition to part and tool: the help of its option, and the files it may be
+GIVEN = {  # further input of a strategy, in addition to part and tool: help, file suffixes and names of its option
     "curves": (
-        "the curves, as they lie on the part: polylines of .obj, points of .txt, .xyz, .csv or .json",
+        "curves on the part: polylines of .obj, points of .txt, .xyz, .csv or .json",
         curves.FORMATS,
         ("--curves",),
     ),
-    "paths": ("the plan whose paths it starts from; those that are off are left out", PLANS, ("--plan", "--paths")),
+    "paths": ("plan with the paths to start from; paths that are off are left out", PLANS, ("--plan", "--paths")),
 }
 
 
 class StrategyCommand:
-    """The command of one strategy, in the form of a command's module."""
+    """The command of one strategy, with the same members as a command's module."""
 
     def __init__(self, strategy: plan.Strategy) -> None:
         self.strategy = strategy
@@ -34,7 +34,7 @@ class StrategyCommand:
         self.HELP = strategy.summary
         more = f" --{strategy.needs} FILE" if strategy.needs in GIVEN else ""
         self.__doc__ = (
-            f"{strategy.description}. They are written as a plan.\n\n"
+            f"{strategy.description}. Writes the paths as a plan.\n\n"
             f"riffler plan {strategy.id} part.stl --tool ball:6{more} --out plan.json"
         )
 
@@ -82,7 +82,7 @@ class StrategyCommand:
 
 def add_option(parser: Parser, parameter: plan.Parameter) -> None:
     flag, about = f"--{parameter.key.replace('_', '-')}", parameter.help[:1].lower() + parameter.help[1:]
-    about = about.replace("; 0: ", "; by default ")  # a panel shows 0 where it is left out
+    about = about.replace("; 0: ", "; by default ")  # a panel shows 0 for a value that is left out
     if parameter.choices:
         words = [value for value, _, _ in parameter.choices]
         meanings = "; ".join(f"{value}: {help[:1].lower()}{help[1:]}" for value, _, help in parameter.choices)
@@ -102,7 +102,7 @@ def shown(value: float, unit: str) -> float:
 
 
 def value_of(parameter: plan.Parameter, text: str | None) -> Any:
-    """What an option says, or the parameter's default."""
+    """The value of an option, or the parameter's default."""
     if text is None or parameter.choices:
         return parameter.default if text is None else text
     flag = f"--{parameter.key.replace('_', '-')}"

@@ -1,4 +1,4 @@
-"""What plots share: colours, the style, logarithmic axes. Needs matplotlib."""
+"""Shared by all plots: colours, style, logarithmic axes. Needs matplotlib."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ STYLE = {
 
 
 def logarithmic(axis: XAxis | YAxis, sub: bool = False) -> None:
-    """A log scale with plain numbers, at 2 and 5 too where `sub`."""
+    """Sets a log scale with plain numbers; with `sub`, ticks at 2 and 5 too."""
     axis.axes.set(**{f"{axis.axis_name}scale": "log"})  # pyright: ignore[reportAttributeAccessIssue]
     axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     if sub:

@@ -15,7 +15,7 @@ def add_program(parser: Parser) -> None:
     parser.add_input("program", "NC program, RS-274, or .rprog", CODE + PROGRAMS)
 
 
-def add_machine(parser: Parser, about: str = 'what the program\'s axes mean (default "tcp": tip and axis)') -> None:
+def add_machine(parser: Parser, about: str = 'machine of the program (default "tcp": tip and axis)') -> None:
     parser.add_argument("--machine", metavar="NAME", help=about)
     parser.offer("machine", machines())
     add_machine_option(parser)

@@ -1,4 +1,4 @@
-"""Between files, meshes and volumes: what several commands do."""
+"""Conversions between files, meshes and volumes that several commands share."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def from_mesh(
     console: Console,
     step: str,
 ) -> tuple[Volume, VolumeReport]:
-    """The volume of a mesh file, and what was mended and lost, which is printed. ``pitch`` may follow from the mesh."""
+    """The volume of a mesh file and its report; prints repairs and losses. ``pitch`` may be a function of the mesh."""
     with console.step("read"):
         mesh = Mesh.read(path)
     spacing = pitch(mesh) if callable(pitch) else pitch
@@ -34,7 +34,8 @@ def from_mesh(
 
 
 def read_part(path: Path, console: Console, hollow: bool = False) -> Mesh:
-    """A mesh file, unchanged: plans know a part by its checksum. Prints what is turned where it is taken as a solid."""
+    """The mesh of a file, unchanged, because plans identify a part by its checksum. Prints what riffler turns to use
+    the mesh as a solid."""
     mesh = Mesh.read(path)
     _, report = mesh.orient_with_report(hollow=hollow)
     tell(path.name, report, console)
@@ -42,8 +43,8 @@ def read_part(path: Path, console: Console, hollow: bool = False) -> Mesh:
 
 
 def to_mesh(volume: Volume, console: Console, out: Path, detail: Detail) -> tuple[Mesh, Written]:
-    """The mesh of a volume that is to be written to ``out``; prints on stderr what is too thin for it. ValueError where
-    that is everything."""
+    """The mesh of a volume for the file ``out``. Prints on stderr which material is too thin for a mesh; ValueError if
+    all material is."""
     tolerance = detail.of(volume)
     with console.step("mesh") as progress:
         mesh, report = volume.to_mesh_with_report(tolerance=tolerance, progress=progress)
@@ -79,7 +80,7 @@ def rays(volume: Volume) -> int:
 
 
 def write_left(volume: Volume, path: Path, console: Console, detail: Detail) -> Written | None:
-    """What is left, as a volume or as its mesh, by the file's suffix; None for a volume."""
+    """Writes the material that is left as a volume or as its mesh, by the file's suffix. Returns None for a volume."""
     if path.suffix.lower() in VOLUMES:
         write_volume(volume, path, console)
         return None

@@ -14,7 +14,7 @@ from .shapes import from_mesh
 
 
 def add_stock(parser: Parser) -> None:
-    """What `stock` reads."""
+    """Adds the options that `stock` reads."""
     parser.add_argument(
         "--stock",
         required=True,
@@ -22,12 +22,12 @@ def add_stock(parser: Parser) -> None:
         help="WxDxH, sphere:D, cylinder:D:H (along z), or a .stl, .obj, .ply, .3mf or .rvol file",
     )
     parser.offer("stock", ("sphere:", "cylinder:"), MESHES + VOLUMES)
-    add_pitch(parser, required=False, more=" (a .rvol file brings its own)")
+    add_pitch(parser, required=False, more=" (a .rvol file has its own)")
     add_directions(parser)
     parser.add_argument(
         "--origin",
         metavar="X,Y,Z",
-        help=f"lower corner of the box of what has sizes (default 0,0,0), or one of {', '.join(ORIGINS)}",
+        help=f"lower corner of a stock of given sizes (default 0,0,0), or one of {', '.join(ORIGINS)}",
     )
     parser.offer("origin", ORIGINS)
 

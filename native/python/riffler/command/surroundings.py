@@ -1,4 +1,4 @@
-"""What the command line says of shank, holder and fixtures."""
+"""Shank, holder and fixtures on the command line."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ def add_rods(parser: Parser) -> None:
 
 
 def add_fixtures(parser: Parser) -> None:
-    about = "a mesh or .rvol file; may be repeated"
+    about = "fixture, a mesh or .rvol file; may be repeated"
     parser.add_file("--fixture", about, MESHES + VOLUMES, action="append", default=[])
 
 
 def rods(arguments: argparse.Namespace) -> list[tuple]:
-    """What, of which tool (None: of all), and its truncated cones, of every ``--shank`` and ``--holder``."""
+    """Every ``--shank`` and ``--holder``: which of the two, the tool's number (None: all), and its truncated cones."""
     return [(what, *cones(text, what)) for what in RODS for text in getattr(arguments, what)]
 
 
@@ -56,14 +56,14 @@ def with_rods(by_number: dict[int, Tool], wanted: list[tuple]) -> dict[int, Tool
 
 
 def fixtures_alone(fixtures: list[Volume]) -> Collider | None:
-    """What a tool meets that is to enter the part but no fixture; None without fixtures."""
+    """A collider of the fixtures alone, for tools that may enter the part; None without fixtures."""
     far = Mesh([(1e6, 0, 0), (1e6 + 1, 0, 0), (1e6, 1, 0)], [(0, 1, 2)])  # a part that no machine reaches
     return Collider(far, fixtures=fixtures) if fixtures else None
 
 
 def fixture(name: str, console: Console, pitch: float | None = None) -> Volume:
-    """A fixture's volume; that of a mesh has upright rays, at the stock's pitch as `verify` makes it, or at one that
-    follows from its size."""
+    """A fixture's volume. A mesh gets rays along z, at the stock's pitch as in `verify`, or at a pitch that follows
+    from its size."""
     path = input_file(name, MESHES + VOLUMES)
     if path.suffix.lower() in VOLUMES:
         return Volume.load(path)

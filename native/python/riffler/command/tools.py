@@ -36,7 +36,7 @@ def add_tool(parser: Parser, about: str, **more: Any) -> None:
 
 
 def add_tools(parser: Parser, required: bool = True) -> None:
-    """A tool for each number that a program calls."""
+    """Adds the option for a tool of each number that a program calls."""
     about = "as in ball:6, or 2=flat:10:30 for the tool called 2; may be repeated"
     add_tool(parser, about, required=required, action="append", default=None if required else [])
 
@@ -47,7 +47,7 @@ class ToolArgument:
 
     text: str
     number: int | None
-    make: Callable[[float], Tool]  # from the length that a tool of unnamed length gets
+    make: Callable[[float], Tool]  # argument: length of a tool that is given without one
 
 
 def parse(text: str) -> ToolArgument:
@@ -86,7 +86,7 @@ def _maker(form: str, text: str) -> Callable[[float], Tool]:
         except ValueError as error:
             raise ValueError(f"--tool {text}: {error}") from None
 
-    make(1e3 * max(1.0, abs(entry["diameter"])))  # what is wrong with its sizes shows before any work
+    make(1e3 * max(1.0, abs(entry["diameter"])))  # reports wrong sizes before any work
     return make
 
 
@@ -104,7 +104,7 @@ def _read(path: Path) -> dict[str, Any]:
 def assign(arguments: Iterable[ToolArgument], called: Iterable[int], reach: float) -> dict[int, Tool]:
     """The tool of each number that the program calls.
 
-    0 stands for moves before any call: they have the only tool if the program never calls one, else none at all.
+    0 stands for moves before any call: they get the only tool if the program never calls one, otherwise no tool.
     """
     arguments, numbers = list(arguments), {int(n) for n in called}
     if len(numbers) > 1:

@@ -1,4 +1,4 @@
-"""The table of verbs: their groups, the module of each, and what they were called before there were groups."""
+"""The table of verbs: their groups, their modules, and their old names from before there were groups."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ from .parser import EPILOG, Parser, UsageError, nearest
 
 GROUPS = {
     "mesh": "triangle meshes: files of .stl, .obj, .ply and .3mf",
-    "volume": "dexel volumes: stock, carving, and what is left",
-    "plan": "paths on a part by a strategy, or of a recording, as a plan",
-    "nc": "programs of machines: write, check, list",
+    "volume": "dexel volumes: make stock, carve it, mesh it",
+    "plan": "tool paths on a part, by a strategy, an operation or a recording",
+    "nc": "NC programs: write and check them; list machines and tools",
     "pen": "pens and other devices",
 }
 HELP = ("-h", "--help")
 
 
 class Command(Protocol):
-    """What the module of a verb has."""
+    """Members of a verb's module."""
 
     HELP: str  # one line
     __doc__: str | None
@@ -58,7 +58,7 @@ class Verb:
         return parser
 
     def run(self, words: list[str], console: Console) -> int:
-        """Exit status of the verb with the words after its name; old names of options are answered on stderr."""
+        """Runs the verb with the words after its name; returns its exit status. Notes old option names on stderr."""
         parser = self.parser()
         arguments = parser.parse(words)
         for old, new in parser.renamed.items():
@@ -112,8 +112,8 @@ def of(group: str) -> dict[str, Verb]:
 
 @dataclass(frozen=True)
 class Found:
-    """The verb of a command line, the words after it, and its old name where it was called by that. Without a verb,
-    ``help`` is what was asked for instead."""
+    """The verb of a command line, the words after it, and its old name if the command line used that. Without a verb,
+    ``help`` is the requested help text."""
 
     verb: Verb | None
     rest: list[str]
@@ -122,7 +122,7 @@ class Found:
 
 
 def find(words: list[str]) -> Found:
-    """Takes the verb off a command line. UsageError names the nearest verb for an unknown one."""
+    """Splits the verb from a command line. UsageError names the nearest verb for an unknown one."""
     if words[:1] == ["help"]:
         words = [*words[1:], "--help"]
     if not words:
@@ -146,15 +146,15 @@ def find(words: list[str]) -> Found:
 
 
 def _is_old_mesh(rest: list[str]) -> bool:
-    """Whether what follows ``mesh`` is ``riffler mesh part.rvol --out part.stl`` as it was before there were groups: no
-    verb comes first, but a file or an option."""
+    """Whether the words after ``mesh`` have the old form, ``riffler mesh part.rvol --out part.stl``: a file or an
+    option comes first, not a verb."""
     if not rest or rest[0] in of("mesh") or rest[0] in HELP:
         return False
     return rest[0].startswith("-") or rest[0].lower().endswith(MESHES + VOLUMES) or "." in rest[0]
 
 
 def _refuse(word: str, group: str) -> NoReturn:
-    """UsageError for an unknown verb, with the nearest one of the group, else of all."""
+    """Raises UsageError for an unknown verb, with the nearest one of the group, or else of all."""
     where = f"riffler {group}".strip()
     if word.startswith("-"):
         raise UsageError(
@@ -182,7 +182,7 @@ def overview() -> str:
     for group, about in GROUPS.items():
         lines += [f"  {group:<12}{about}", f"  {'':<12}{', '.join(of(group))}"]
     lines += [f"  {name:<12}{verb.load().HELP}" for name, verb in ALONE.items()]
-    lines += ["", "riffler GROUP --help and riffler GROUP VERB --help tell more.", *_epilog()]
+    lines += ["", "riffler GROUP --help and riffler GROUP VERB --help show more.", *_epilog()]
     return "\n".join(lines)
 
 

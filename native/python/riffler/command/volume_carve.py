@@ -1,4 +1,4 @@
-"""Carve stock with an NC program and write what is left.
+"""Carve stock with an NC program and write the material that is left.
 
 riffler volume carve part.ngc --stock 100x60x30 --pitch 0.25 --tool ball:6 --out part.stl
 """
@@ -21,7 +21,7 @@ from .shapes import rays, write_left
 from .stock import add_stock, stock
 
 HELP = "carve stock with an NC program"
-AWAY = -1  # the number of no tool: of a move that begins or ends at a position of the machine
+AWAY = -1  # tool number of moves that begin or end at a position of the machine: no tool has it
 
 
 def add_arguments(parser: Parser) -> None:
@@ -29,9 +29,13 @@ def add_arguments(parser: Parser) -> None:
     add_stock(parser)
     tools.add_tools(parser)
     add_machine(parser)
-    parser.add_argument("--tolerance", default="0.01", metavar="MM", help="of moves that turn the tool (default 0.01)")
+    parser.add_argument(
+        "--tolerance", default="0.01", metavar="MM", help="largest error of moves that turn the tool (default 0.01)"
+    )
     add_detail(parser)
-    parser.add_file("--out", "what is left: .stl, .obj, .ply, .3mf or .rvol", MESHES + VOLUMES, required=True)
+    parser.add_file(
+        "--out", "the material that is left: .stl, .obj, .ply, .3mf or .rvol", MESHES + VOLUMES, required=True
+    )
 
 
 def run(arguments: argparse.Namespace, console: Console) -> int:
@@ -48,7 +52,7 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
         rapid = np.asarray(program.rapid)[1:]
     if len(poses) < 2:
         raise ValueError(f"{Path(arguments.program).name}: no moves to carve")
-    # A cutter whose length is not named is long enough to reach out of the stock wherever it is.
+    # A cutter that is given without a length gets one that always reaches out of the stock.
     volume = stock(arguments, console)
     reach = float(np.linalg.norm(volume.upper - volume.lower))
     by_number = tools.assign(wanted, called[1:][called[1:] != AWAY], reach)
@@ -80,7 +84,7 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
 
 
 def called_in_part(program: Program) -> np.ndarray:
-    """(n,) the rows' tool numbers; AWAY where the motion there begins or ends at a position of the machine."""
+    """(n,) tool numbers of the rows; AWAY if the move to a row begins or ends at a position of the machine."""
     away = np.asarray(program.at_machine)
     return np.where(np.append(False, away[1:] | away[:-1]), AWAY, program.tool)
 
@@ -93,7 +97,7 @@ def carve(
     tolerance: float,
     console: Console,
 ) -> np.ndarray:
-    """What each move took away, mm³. Every run of moves of one tool is one call.
+    """Carves all moves; returns the volume that each removed, mm³. Every run of moves with one tool is one call.
 
     The first move after a tool change starts where the last one ended, as on a machine that changes tools in place.
     """

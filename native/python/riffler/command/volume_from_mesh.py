@@ -54,7 +54,7 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
 
 
 def defects(report: VolumeReport) -> Rows:
-    """What was wrong with the mesh and what was made of it, in words."""
+    """The defects of a mesh and the treatment of each, as rows of a table."""
 
     def count(name: str, one: str, many: str = "") -> str:
         n = int(getattr(report, name))
@@ -71,7 +71,7 @@ def defects(report: VolumeReport) -> Rows:
     if report.openings:
         text = f"{count('openings', 'opening')}, {count('open_edges', 'open edge')}"
         if report.doubtful_rays:
-            text += f"; {share('doubtful_rays')} of the rays end in one, where a closed part would have its surface"
+            text += f"; {share('doubtful_rays')} of the rays end in an opening instead of at the part's surface"
         rows.append(("open", text))
     elif report.open_edges:
         rows.append(("open", f"{count('open_edges', 'open edge')} that cancel: the volume is not in doubt"))

@@ -1,4 +1,4 @@
-"""Carve the stock of a recorded session again, and write what the session left of it, to the bit.
+"""Carve the stock of a recorded session again, and write the same result to the bit.
 
 riffler volume replay session.rjournal --out session.rvol
 """
@@ -15,12 +15,12 @@ from .detail import NOT_MESHED, Written, add_detail, detail_of
 from .parser import Parser
 from .shapes import rays, write_left
 
-HELP = "carve what a session carved"
+HELP = "carve the strokes of a recorded session again"
 
 
 def add_arguments(parser: Parser) -> None:
     parser.add_input("journal", ".rjournal", JOURNALS)
-    parser.add_argument("--folder", metavar="DIR", help="of the stock's snapshot (default: where the journal is)")
+    parser.add_argument("--folder", metavar="DIR", help="folder of the stock's snapshot (default: the journal's)")
     add_detail(parser)
     parser.add_file("--out", ".stl, .obj, .ply, .3mf or .rvol", MESHES + VOLUMES, required=True)
 
@@ -59,7 +59,7 @@ def table(data: dict, written: Written | None) -> list[tuple[str, str]]:
         ("left", number(data["volume"], "mm³")),
     ]
     if data["cut_at"] is not None:
-        rows.insert(1, ("", f"the recording was cut at byte {data['cut_at']}: all whole strokes"))
+        rows.insert(1, ("", f"the recording is cut off at byte {data['cut_at']}: all whole strokes"))
     if written is not None:
         rows.append(("triangles", str(written)))
     return [*rows, ("file", number(data["bytes"], "bytes")), ("times", times(data["seconds"]))]

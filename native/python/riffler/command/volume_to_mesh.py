@@ -21,7 +21,7 @@ def add_arguments(parser: Parser) -> None:
     parser.add_input("volume", ".rvol", VOLUMES)
     parser.add_file("--out", ".stl, .obj, .ply or .3mf", MESHES, required=True)
     add_detail(parser)
-    about = "as few triangles as keep the surface within this of that of all triangles: slower than --detail"
+    about = "fewest triangles within this distance of the full mesh; slower than --detail"
     tolerance = parser.add_argument("--tolerance", metavar="MM", action=Once, help=about)
     parser.add_old_name("--decimate", tolerance)
 

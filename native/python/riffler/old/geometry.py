@@ -9,7 +9,7 @@ from ..deprecated import Old, warn
 
 
 def _filling(name: str) -> Callable[[Callable, tuple, dict], object]:
-    """A call with ``report={}`` is made by the function that returns the report."""
+    """Makes a call with ``report={}`` through the function that returns the report."""
 
     def call(function: Callable, args: tuple, kwargs: dict) -> object:
         from .. import _core

@@ -14,7 +14,7 @@ def _has(place: int, kind: type) -> Callable[[tuple], bool]:
 
 
 def _replay_with_mask(call: Callable, args: tuple, kwargs: dict) -> object:
-    """``Journal.replay(…, with_mask=…)`` returned two things or one."""
+    """Makes a call of ``Journal.replay(…, with_mask=…)``, which returned volume and mask, or the volume alone."""
     warn("Journal.replay(with_mask=…)", "Journal.replay_with_mask")
     return Journal.replay_with_mask(*args, **kwargs) if kwargs.pop("with_mask") else call(*args, **kwargs)
 

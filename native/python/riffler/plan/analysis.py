@@ -20,9 +20,9 @@ class PartReport(Audit):
     """Result of `analyse`: the counts of `Mesh.audit`, the repairs, and conclusions."""
 
     triangles: int
-    """All triangles."""
+    """Number of triangles."""
     area: float
-    """mm²."""
+    """Area of the surface, mm²."""
     bounds: NDArray[np.float64]
     """(2, 3): lower and upper corner, mm."""
     closed: bool
@@ -30,7 +30,7 @@ class PartReport(Audit):
     degenerate_share: float
     """Share of the triangles that have no area."""
     outward: bool | None
-    """Whether normals point out of the material; None for open parts, where the volume's sign says nothing."""
+    """Whether normals point out of the material; None for open parts, for which the volume's sign means nothing."""
     turned: int
     """Triangles that were turned."""
     turned_shells: int
@@ -42,12 +42,12 @@ class PartReport(Audit):
     units: Literal["mm", "inch", "m", "micrometre"]
     """Unit that the size suggests."""
     warnings: tuple[str, ...]
-    """Sentences."""
+    """Sentences on problems of the part."""
 
 
 @hinted("plan.analyse")
 def analyse(mesh: Mesh) -> PartReport:
-    """A report on a part, as plans take it: after ``mesh.orient(hollow=True)``.
+    """Analyses a part as plans use it, that is, after ``mesh.orient(hollow=True)``.
 
     Parameters
     ----------

@@ -6,8 +6,8 @@ import numpy as np
 
 from .._core import Mesh, Tool
 
-PITCH = 0.5  # mm; fixtures are only to be stayed clear of
-FINEST = 500  # rays along a fixture's largest side at most
+PITCH = 0.5  # mm; coarse, because tools only have to stay clear of fixtures
+FINEST = 500  # largest number of rays along a fixture's longest side
 
 
 def fixture_pitch(mesh: Mesh) -> float:
@@ -21,7 +21,7 @@ def fixture_pitch(mesh: Mesh) -> float:
     Returns
     -------
     float
-        mm.
+        The pitch, mm.
 
     Examples
     --------
@@ -40,7 +40,7 @@ def with_room(tool: Tool, room: float) -> Tool:
     tool : Tool
         Cutter, with shank and holder or without.
     room : float
-        mm.
+        Distance to keep, mm.
 
     Returns
     -------

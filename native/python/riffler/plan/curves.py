@@ -29,7 +29,7 @@ def read_curves(path: str | os.PathLike[str]) -> list[NDArray[np.float64]]:
     Returns
     -------
     list of ndarray, shape (n, 3)
-        mm.
+        Points of each curve, mm.
 
     Raises
     ------
@@ -137,7 +137,7 @@ def _joined(pieces: list[list[int]]) -> list[list[int]]:
     left = [True] * len(pieces)
 
     def grown(line: list[int]) -> list[int]:
-        """The same list, with all that follows its last vertex."""
+        """Appends the pieces that follow the line's last vertex; returns the same list."""
         while len(at.get(line[-1], ())) == 2:
             following = next((k for k in at[line[-1]] if left[k]), None)
             if following is None:

@@ -41,7 +41,7 @@ class Texts:
 
     def __init__(self) -> None:
         self.made = 0
-        # Has the objects, so that their ids stay theirs.
+        # Keeps the objects alive, so that no other object gets their ids.
         self._kept: dict[tuple[int, int, bool, float | None], tuple[Any, Any, bytes]] = {}
 
     def _of(
@@ -118,7 +118,7 @@ def _check_depths(plan: Plan) -> None:
 
 
 def _compact(value) -> str:
-    """On one line: indented, Python's encoder is two to four times as slow, and makes twice the bytes."""
+    """JSON on one line: with indentation Python's encoder is two to four times as slow and writes twice the bytes."""
     return json.dumps(value, allow_nan=False, ensure_ascii=False)
 
 

@@ -38,9 +38,9 @@ def finish(
     """Finishes the part with rows on its offset surface.
 
     Rows are curves of the exact drop surface of cutter, shank and holder over part and fixtures; a bound, not samples,
-    keeps the moves between their points. Rows lie as far apart as ``cusp`` allows on level faces, with further ones
-    between them where the part is steep or curved, or has a border. Rows end where the tool leaves the part: a wall
-    without a floor next to it needs an outline.
+    limits the error of the moves between their points. Rows lie as far apart as ``cusp`` allows on level faces, with
+    further ones between them where the part is steep or curved, or has a border. Rows end where the tool leaves the
+    part: a wall without a floor next to it needs an outline.
 
     Parameters
     ----------

@@ -43,7 +43,7 @@ class LocationReport:
     points : ndarray, shape (n,)
         Number of the path's point; -1 for a row that was inserted.
     lift : ndarray, shape (n,)
-        mm along the tool's axis.
+        Distance of the lift along the tool's axis, mm.
     before, clearance : ndarray, shape (n,)
         Clearance before and after the lift, mm.
     pieces : list of str
@@ -76,7 +76,7 @@ class LocationReport:
 
     @property
     def depth_before(self) -> NDArray[np.float64]:
-        """(n,) mm by which the tool entered part or fixtures before the lift."""
+        """(n,) depth to which the tool entered part or fixtures before the lift, mm."""
         return np.maximum(0.0, -self.before)
 
     @property
@@ -108,10 +108,10 @@ def cutter_locations(
 ) -> tuple[NDArray[np.float64], LocationReport]:
     """Cutter locations along an oriented path, for ``Program.from_cl``.
 
-    The tool starts where its tip ball, or both its contacts, are on the path. Where its clearance over part and
-    fixtures is less than ``clearance``, it is lifted along its own axis, by the least distance. Between rows the tip
-    moves on a line and the axis on the great circle; that motion is checked with a bound, not by samples, and where it
-    gouges, rows are inserted and lifted. A closed path ends with its first row again.
+    The tool starts with its tip ball, or both its contacts, on the path. Where its clearance from part and fixtures is
+    less than ``clearance``, it is lifted along its own axis by the smallest sufficient distance. Between rows the tip
+    moves on a line and the axis on the great circle; a bound, not samples, checks that motion, and rows are inserted
+    and lifted where it gouges. A closed path ends by repeating its first row.
 
     Parameters
     ----------
@@ -126,7 +126,7 @@ def cutter_locations(
     tolerance : float
         mm by which the clearance may be less than ``clearance``: finishing cuts touch the part everywhere.
     max_lift : float
-        mm.
+        Largest distance of a lift, mm.
     max_inserted : int
         Largest number of rows inserted between two points.
     progress : callable, optional
@@ -179,7 +179,7 @@ def path_of_poses(poses: ArrayLike, contacts: ArrayLike, normals: ArrayLike, *, 
     contacts, normals : array_like, shape (n, 3)
         Points of the part, mm, and its unit normals there.
     height : float
-        mm.
+        Distance of the centres from the tips, mm.
 
     Returns
     -------
@@ -204,7 +204,7 @@ def poses_of(path: PencilPath) -> NDArray[np.float64]:
     Parameters
     ----------
     path : PencilPath
-        Oriented.
+        An oriented path.
 
     Returns
     -------
@@ -234,14 +234,14 @@ def kept_locations(
 ) -> tuple[NDArray[np.float64], LocationReport]:
     """``cutter_locations`` of a path in ``Plan.depths``: its own poses, checked and not lifted.
 
-    The cutter enters the part by up to ``depth`` mm there, and by ``tolerance`` more at a point and twice that between
-    two, because the path's chords are that far from the surface; shank and holder keep ``clearance`` from part and
-    fixtures. (A cutter that enters a fixture by less than ``depth`` is not detected here.)
+    The cutter enters the part by up to ``depth`` mm there, by ``tolerance`` more at a point, and by twice that more
+    between two points, because the path's chords are that far from the surface. Shank and holder keep ``clearance``
+    from part and fixtures. (A cutter that enters a fixture by less than ``depth`` is not detected here.)
 
     Parameters
     ----------
     path : PencilPath
-        As ``path_of_poses`` makes it.
+        A path that ``path_of_poses`` has made.
     tool : Tool
         Cutter, shank and holder.
     collider : Collider
@@ -249,9 +249,9 @@ def kept_locations(
     depth : float
         mm by which the cutter enters the part.
     clearance : float
-        mm, for shank and holder.
+        Distance of shank and holder from part and fixtures, mm.
     tolerance : float
-        mm.
+        Largest distance of the path's chords from the surface, mm.
     progress : callable, optional
         Called with the finished share; returning False cancels.
 
@@ -284,7 +284,7 @@ def contact_locations(
 ) -> NDArray[np.float64]:
     """Poses at which the cutter touches tangent planes from outside.
 
-    Works for any profile, by its furthest point against the normal; a hollow arc touches with its ends.
+    Works for any profile: its furthest point against the normal touches the plane; a hollow arc touches with its ends.
 
     Parameters
     ----------
@@ -295,8 +295,8 @@ def contact_locations(
     tool : Tool
         The cutter.
     feeds : array_like, shape (n, 3), optional
-        Feed directions, of any length. Where axis and normal are parallel the place on the contact circle is free, and
-        is ahead in this direction.
+        Feed directions, of any length. Where axis and normal are parallel, every place on the contact circle is
+        possible; the result has the place ahead in this direction.
 
     Returns
     -------
@@ -324,7 +324,7 @@ class LiftReport(DictResult):
     Attributes
     ----------
     lift : ndarray, shape (n,)
-        mm along the tool's axis.
+        Distance of the lift along the tool's axis, mm.
     free : ndarray of bool, shape (n,)
         False if the pose is not free within ``max_lift``; it is then unchanged.
     before, clearance : ndarray, shape (n,)
@@ -360,7 +360,7 @@ def lift(
 ) -> tuple[NDArray[np.float64], LiftReport]:
     """Lifts each pose along the tool's own axis by the smallest distance at which it is free.
 
-    At every lower height the clearance over part and fixtures is less than ``clearance``; where the lift ends it is
+    At every lower height the clearance from part and fixtures is less than ``clearance``; where the lift ends it is
     ``clearance``, within ``tolerance``.
 
     Parameters
@@ -372,7 +372,7 @@ def lift(
     collider : Collider
         Part and fixtures.
     clearance, tolerance, max_lift : float
-        mm.
+        Distance to keep, its largest error, and the largest distance of a lift, mm.
     max_evaluations : int
         Largest number of clearances computed for a pose.
     progress : callable, optional
@@ -424,7 +424,7 @@ def drop(
     Parameters
     ----------
     points : array_like, shape (n, 3)
-        Any points on the lines of the tips, mm.
+        Points through which the tips move along ``axis``, mm.
     tool : Tool
         The cutter.
     part_mesh : Mesh

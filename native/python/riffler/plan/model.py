@@ -25,16 +25,16 @@ class Plan:
     cl : list, optional
         Cutter locations of every path, (n, 6), or None.
     part : dict, optional
-        ``name`` and ``sha256``, as ``part_of`` makes it.
+        ``name`` and ``sha256``, as returned by ``part_of``.
     tolerance : float, optional
-        mm.
+        Tolerance of the paths, mm.
     provenance : dict, optional
-        Strings.
+        Notes on the origin of the plan: names and texts.
     off : frozenset of int
         Numbers, from 0, of the paths that are switched off.
     depths : dict, optional
-        By number, from 0: depth in mm to which the cutter enters the part on paths whose poses (``poses_of``) are cut
-        unchanged, as in engraving. They are neither lifted nor oriented.
+        By number of the path, from 0: depth in mm to which the cutter enters the part. The poses of these paths
+        (``poses_of``) are cut unchanged, as in engraving: they are neither lifted nor oriented.
 
     Examples
     --------
@@ -60,7 +60,7 @@ class Plan:
 
     @property
     def deepest(self) -> float:
-        """Largest depth (mm) to which the cutter enters the part, of the paths that are on."""
+        """Largest depth (mm) to which the cutter enters the part on paths that are on."""
         return max((depth for k, depth in self.depths.items() if k not in self.off), default=0.0)
 
     @property
@@ -78,7 +78,7 @@ def part_of(mesh: Mesh, name: str) -> dict[str, str]:
     mesh : Mesh
         The part.
     name : str
-        Its name.
+        The part's name.
 
     Returns
     -------
@@ -91,7 +91,7 @@ def part_of(mesh: Mesh, name: str) -> dict[str, str]:
     >>> riffler.plan.part_of(part, "plate")["name"]
     'plate'
     """
-    import hashlib  # brings OpenSSL: 3 MB that only plan files need
+    import hashlib  # imports OpenSSL: 3 MB that only plan files need
 
     digest = hashlib.sha256()
     digest.update(np.ascontiguousarray(mesh.vertices, dtype="<f8").tobytes())

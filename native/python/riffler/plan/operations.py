@@ -21,11 +21,11 @@ class Blocked:
     Attributes
     ----------
     reason : str
-        As "the holder meets the part".
+        Such as "the holder meets the part".
     place : ndarray, shape (3,)
         Tip of the tool at the first of these places, mm.
     length : float
-        mm of omitted rows.
+        Length of the omitted rows, mm.
     """
 
     reason: str
@@ -42,9 +42,9 @@ class OperationReport:
     time_s : float
         Seconds at the programmed feeds, rapids at 10 m/min.
     cut_mm : float
-        Length of the cuts.
+        Length of the cuts, mm.
     air_mm : float
-        Length of moves at feed that remove no material from the rays of the stock.
+        Length of moves at feed that remove no material from the rays of the stock, mm.
     largest_engagement : float, optional
         Largest radial width of cut as a share of the diameter; None for operations that do not bound it.
     blocked : tuple of Blocked
@@ -69,7 +69,7 @@ class Operation:
     Attributes
     ----------
     poses : ndarray, shape (n, 6)
-        Tip in mm and unit axis, at the ends of its moves.
+        Tip in mm and unit axis, at the ends of the moves.
     kind : ndarray of uint8, shape (n,)
         Kind of the move to each pose: 0 rapid, 1 lead (plunge), 2 cut, 3 link at feed.
     feed : ndarray, shape (n,)
@@ -79,7 +79,7 @@ class Operation:
     report : OperationReport
         Times, lengths, and unreached places.
     reason : str
-        Why it has no poses; empty if it has some.
+        Why the operation has no poses; empty if it has some.
     spindle : float
         rev/min.
     tolerance : float
@@ -116,7 +116,7 @@ class PlannedMoves:
 
 
 def lengths_of(poses: NDArray[np.float64]) -> NDArray[np.float64]:
-    """mm of the move to each pose; 0 for the first."""
+    """Length of the move to each pose, mm; 0 for the first."""
     return np.linalg.norm(np.diff(poses[:, :3], axis=0, prepend=poses[:1, :3]), axis=1)
 
 
@@ -130,8 +130,8 @@ def report_of(
     stats: Mapping[str, int],
     engagement: float | None = None,
 ) -> OperationReport:
-    """The report of an operation whose move to pose k + 1 removes ``removed[k]`` mm³ of a stock with rays ``pitch`` mm
-    apart: moves that fit between two rays are in air only in a longer run of such moves."""
+    """The report of an operation on a stock with rays ``pitch`` mm apart. ``removed[k]``: mm³ that the move to pose
+    k + 1 removes. Moves that fit between two rays count as air only in a longer run of such moves."""
     if not len(poses):
         return OperationReport(blocked=blocked, stats=stats, largest_engagement=engagement)
     length, rapid = lengths_of(poses), kind == RAPID
@@ -149,7 +149,7 @@ def report_of(
 
 
 def operation_of(moves: PlannedMoves, tool: Tool, pitch: float, spindle: float, tolerance: float) -> Operation:
-    """An operation from what the core has planned on a stock with rays ``pitch`` mm apart."""
+    """An operation from the moves that the core has planned on a stock with rays ``pitch`` mm apart."""
     arrays = moves.poses, moves.kind, moves.feed
     report = report_of(*arrays, moves.removed, pitch, moves.blocked, moves.stats, moves.engagement)
     return Operation(*arrays, tool, report, moves.reason, float(spindle), float(tolerance))

@@ -36,11 +36,11 @@ class FreeOrientations:
     index : int
         Number of the path's point.
     inclinations : ndarray, shape (n,)
-        rad.
+        Inclinations of the grid, rad.
     tilts : ndarray, shape (m,)
-        rad.
+        Tilts of the grid, rad.
     clearance : ndarray, shape (n, m)
-        mm, negative inside; NaN if not computed.
+        Clearance, mm; negative inside, NaN if not computed.
     state : ndarray of uint8, shape (n, m)
         FREE, BLOCKED, BEYOND the machine's cone, or UNREACHABLE for the cutter.
     pieces : ndarray of str, shape (n, m)
@@ -74,7 +74,7 @@ class FreeOrientations:
 
 @dataclass(frozen=True, eq=False)
 class MapValues:
-    """What the core computes of one point: the fields of `FreeOrientations`, not yet in the grid's shape."""
+    """Results of the core for one point: the fields of `FreeOrientations` as flat arrays."""
 
     axes: NDArray[np.float64]
     clearance: NDArray[np.float64]
@@ -129,8 +129,8 @@ def free_orientations(
 ) -> FreeOrientations | list[FreeOrientations]:
     """The free orientations at one point of a path, or at several.
 
-    The tool stands on the path with every axis of the grid ``inclinations`` × ``tilts`` about the path's frame there,
-    and is free where its clearance over part and fixtures is at least ``clearance`` - ``tolerance``.
+    Puts the tool on the path with every axis of the grid ``inclinations`` × ``tilts`` in the path's frame there. An
+    axis is free if the tool's clearance from part and fixtures is at least ``clearance`` - ``tolerance``.
 
     Parameters
     ----------
@@ -145,7 +145,7 @@ def free_orientations(
     inclinations, tilts : array_like, optional
         rad, ascending; None: 21 each within 75 degrees.
     clearance, tolerance : float
-        mm.
+        Distance to keep, and by how much it may be smaller, mm.
     limit : tuple of axis and angle, optional
         The cone in which the machine keeps the tool: unit axis, half angle in rad. Nothing is computed beyond it.
     progress : callable, optional
@@ -195,13 +195,13 @@ class TiltReport(DictResult):
     found : bool
         Whether there is a free axis at every point, within the largest change.
     angles : ndarray, shape (n,)
-        rad between each axis and the frame's z.
+        Angle between each axis and the frame's z, rad.
     cost : float
-        The sum that is least, rad².
+        The sum that was minimised, rad².
     point : int
         Without a result: the point without a free axis.
     reason : str
-        Why: no orientation is free there, or none that can be reached from those before it.
+        Why there is no result: no axis is free at the point, or none that the axes before it can reach.
     """
 
     found: bool
@@ -228,10 +228,10 @@ def min_tilt(
 ) -> tuple[PencilPath | None, TiltReport]:
     """The free orientations along a path with the smallest tilt.
 
-    One free axis is chosen from each map of ``free_orientations``, so that the sum of the squared angles to the frame's
-    z, plus ``smoothness`` times that of the squared changes between neighbours, is least: over the grid, by dynamic
-    programming; on a closed path for the first point's axis. What happens between points is for ``cutter_locations``
-    to check.
+    Chooses one free axis from each map of ``free_orientations``. The choice minimises the sum of the squared angles to
+    the frame's z, plus ``smoothness`` times the sum of the squared changes between neighbours: over the grid, by
+    dynamic programming; on a closed path, for the given axis of the first point. ``cutter_locations`` checks the motion
+    between points.
 
     Parameters
     ----------
@@ -244,7 +244,7 @@ def min_tilt(
     inclinations, tilts : array_like, optional
         rad, ascending; None: 21 each within 75 degrees.
     clearance, tolerance : float
-        mm.
+        Distance to keep, and by how much it may be smaller, mm.
     limit : tuple of axis and angle, optional
         The cone in which the machine keeps the tool: unit axis, half angle in rad.
     max_change : float, optional
@@ -257,7 +257,7 @@ def min_tilt(
     Returns
     -------
     path : PencilPath or None
-        Oriented; None where nothing is found.
+        The oriented path; None if there is no result.
     report : TiltReport
 
     Examples
@@ -289,7 +289,7 @@ def min_tilt(
 def draw_map(orientations: FreeOrientations, *, axes: Axes | None = None) -> Axes:
     """Draws the map with matplotlib, which must be installed.
 
-    Clearance is the colour, the border of the free region a line; orientations that were not computed are hatched, and
+    Colours show the clearance, and a line the border of the free region. Orientations that were not computed are grey;
     a ring marks the suggestion. Angles are in degrees.
 
     Parameters

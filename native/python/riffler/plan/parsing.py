@@ -11,7 +11,7 @@ from .. import _core
 from .model import Plan
 
 FORMAT, VERSION = "riffler-plan", 2
-PLAIN = 1  # the version of a plan without depths, which older readers read
+PLAIN = 1  # version of plans without depths, which older readers understand
 RULES = ("", "linear", "slerp", "smooth")
 
 
@@ -37,7 +37,7 @@ def _number(value: Any, place: str) -> float:
 
 
 def _array(value: Any, shape: tuple[int, ...], place: str) -> np.ndarray:
-    """``shape``: -1 for any number of rows."""
+    """The value as an array of that shape; -1 stands for any number of rows."""
     wanted = ", ".join("n" if size < 0 else str(size) for size in shape)
     if not isinstance(value, list):
         raise WrongPlaceError(f"{place}: an array ({wanted}) expected")
@@ -86,7 +86,7 @@ def to_plan(data: Any) -> Plan:
 
 
 def _to_path(entry: Any, place: str, depths: bool) -> tuple[Any, np.ndarray | None, bool, float | None]:
-    """The path, its cutter locations, whether it is off, and its depth. `depths`: of a version that has them."""
+    """The path, its cutter locations, whether it is off, and its depth. `depths`: whether the version has depths."""
     centres = _array(_get(entry, "centres", place), (-1, 3), f"{place}.centres")
     n = len(centres)
     closed = _get(entry, "closed", place)
@@ -116,7 +116,7 @@ def _to_path(entry: Any, place: str, depths: bool) -> tuple[Any, np.ndarray | No
 def _depth(entry: dict, path, place: str) -> float:
     depth = _number(entry["depth"], f"{place}.depth")
     if depth < 0 or not len(path.axes):
-        raise WrongPlaceError(f"{place}.depth: {'not negative' if depth < 0 else 'axes beside it'} expected")
+        raise WrongPlaceError(f"{place}.depth: {'not negative' if depth < 0 else 'axes of the same path'} expected")
     return depth
 
 

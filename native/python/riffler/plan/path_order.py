@@ -15,8 +15,8 @@ from ..hints import hinted
 def order_paths(paths: Sequence[PencilPath], *, start: ArrayLike | None = None) -> list[tuple[int, bool]]:
     """An order of the paths, and which are reversed, so that the moves between them are short.
 
-    Goes from ``start`` to the nearest end each time, then exchanges two moves as long as that shortens the travel. The
-    same input gives the same order. A loop begins and ends at its first point.
+    Goes from ``start`` to the nearest end, and on to the nearest end each time; then exchanges two moves as long as
+    that shortens the travel. The same input gives the same order. A loop begins and ends at its first point.
 
     Parameters
     ----------
@@ -59,7 +59,7 @@ def order_paths(paths: Sequence[PencilPath], *, start: ArrayLike | None = None) 
 def _exchanged(
     order: list[tuple[int, bool]], ends: NDArray[np.float64], start: NDArray[np.float64] | None, rounds: int = 20
 ) -> list[tuple[int, bool]]:
-    """2-opt (Croes, Operations Research 6 (1958) 791): turns stretches of the order round while that shortens it."""
+    """2-opt (Croes, Operations Research 6 (1958) 791): reverses runs of the order while that shortens the travel."""
     index = np.array([i for i, _ in order])
     turned = np.array([int(t) for _, t in order])
     n = len(index)

@@ -43,7 +43,7 @@ class StrokePath:
     Attributes
     ----------
     path : PencilPath
-        With axes: through keys, or of a tool without a ball tip the recorded poses.
+        The path with axes: interpolated between keys, or the recorded ones for a tool without a ball tip.
     error : float
         mm: largest distance of the recorded ball's centre, or tip, from the path.
     turn : float
@@ -51,7 +51,7 @@ class StrokePath:
     poses : int
         Number of recorded poses.
     turns : bool
-        The path's axes follow its keys; False for a tool without a ball tip.
+        Whether the path's axes follow its keys; False for a tool without a ball tip.
     """
 
     path: PencilPath
@@ -72,7 +72,7 @@ class Recorded:
     strokes : list of int
         For each path the number of its stroke, from 0.
     paths : list of StrokePath
-        The bounds of each path.
+        The paths with their bounds.
     notes : list of str
         Further notes for the user, as sentences.
     """
@@ -84,12 +84,12 @@ class Recorded:
 
     @property
     def error(self) -> float:
-        """mm: the largest of all paths."""
+        """Largest error of all paths, mm."""
         return max(path.error for path in self.paths)
 
     @property
     def turn(self) -> float:
-        """rad: the largest of all paths."""
+        """Largest turn of all paths, rad."""
         return max(path.turn for path in self.paths)
 
 
@@ -164,17 +164,17 @@ def from_recording(
     name: str = "recording",
     progress: Progress = None,
 ) -> Recorded:
-    """A plan of a recording's strokes: a path for each, with keys where the axis bends, to be edited as any other.
+    """A plan of a recording's strokes: a path for each, with keys where the axis bends. It can be edited as any other.
 
     Motion with the button up is not recorded as a stroke and not part of the plan. Strokes that do not remove are left
-    out, as no machine can make them, and so are those that stay in one place; ``notes`` counts them.
+    out because no machine can make them, and so are strokes that stay in one place; ``notes`` counts both.
 
     Parameters
     ----------
     journal : Journal
         The recording.
     tool : int, optional
-        Number of the tool whose strokes count: a plan has one. None: the only one that has strokes.
+        Number of the tool whose strokes are planned, since a plan has one tool. None: the only tool with strokes.
     tolerance, angle : float
         mm and rad, as in ``path_of_stroke``.
     name : str
@@ -191,7 +191,7 @@ def from_recording(
     NoPathError
         If no stroke makes a path.
     ValueError
-        For several tools without ``tool``, and as ``path_of_stroke``.
+        For several tools without ``tool``, and as for ``path_of_stroke``.
 
     Examples
     --------
@@ -250,14 +250,14 @@ def _checked(poses: ArrayLike, name: str) -> NDArray[np.float64]:
     rows[:, 3:] /= lengths[:, None]
     if bad := np.flatnonzero(between(rows[:-1, 3:], rows[1:, 3:]) > OPPOSITE).tolist():
         raise ValueError(
-            f"{name}, row {bad[0] + 1}: the axis is opposite to that of the row before, so that it is not known "
-            "how it turned: divide the stroke there"
+            f"{name}, row {bad[0] + 1}: the axis is opposite to that of the row before, so the direction of the turn "
+            "is unknown: divide the stroke there"
         )
     return rows
 
 
 def _ball_radius(tool: Tool) -> float | None:
-    """mm; None for a tool without a ball tip."""
+    """Radius of the ball at the tip, mm; None for a tool without a ball tip."""
     try:
         return _core.tip_ball_radius(tool, "tool")
     except ValueError:
@@ -292,8 +292,8 @@ def _pose_path(thinned: Thinned, tool: Tool) -> PencilPath:
 
 
 def _normals(points: NDArray[np.float64], axes: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Unit normals of the surface that a ball leaves: square to the feed, on the axis's side. Where the tool plunges
-    along its axis, the axis."""
+    """Unit normals of the surface that a ball leaves: perpendicular to the feed, on the axis's side. The axis itself
+    where the tool plunges along it."""
     feeds = np.vstack([points[1:2] - points[:1], points[2:] - points[:-2], points[-1:] - points[-2:-1]])
     lengths = np.linalg.norm(feeds, axis=1, keepdims=True)
     feeds = np.divide(feeds, lengths, out=np.zeros_like(feeds), where=lengths > 0)

@@ -30,9 +30,9 @@ def rough(
 ) -> Operation:
     """Clears the set-up's stock in layers, as far as the whole tool can go without meeting part or fixtures.
 
-    A layer is cleared from where it is open, or from a helix, outwards: a ring is a step further along the cleared
-    places than the one before, so that no cut is wider than ``engagement`` asks, corners included. A pass along the
-    borders of what can be reached ends the layer. What an earlier operation has cleared is not cut again.
+    Each layer is cleared outwards, from its open side or from a helix. Each ring goes one step further than the one
+    before, so that no cut is wider than ``engagement``, corners included. A pass along the border of the reachable
+    region ends the layer. Regions that an earlier operation has cleared are not cut again.
 
     Parameters
     ----------
@@ -48,9 +48,9 @@ def rough(
     allowance : float
         mm that stay on the part.
     tolerance : float
-        mm, of curves. Up to half of it stays in addition to ``allowance``.
+        Largest error of curves, mm. Up to half of it stays in addition to ``allowance``.
     slope : float
-        rad, of helices.
+        Slope of helices, rad.
     climb : bool
         Whether material lies to the right of the motion, as it should for a spindle that turns clockwise.
     feed : float
@@ -65,7 +65,7 @@ def rough(
     Returns
     -------
     Operation
-        Without poses, and with the reason, where nothing can be reached.
+        The operation; without poses, and with a reason, if the tool reaches nothing.
 
     Raises
     ------

@@ -27,14 +27,13 @@ class Setup:
     part : Mesh
         The part.
     stock : Volume
-        The material at the beginning, in the part's frame; its rays run along the axis, or it is "xyz". It is not
-        changed.
+        The material at the beginning, in the part's frame; its directions are the axis or "xyz". It is not changed.
     fixtures : list of Volume or Mesh
-        Meshes that the tool must stay clear of.
+        Bodies that the tool must stay clear of.
     axis : array_like, shape (3,)
         Unit vector from tip to spindle.
     clearance : float
-        mm above part, stock and fixtures along the axis: rapids across happen there.
+        mm above part, stock and fixtures along the axis: height of the rapids across.
     machine : str
         One of ``riffler.machines()``. A machine of three axes needs the axis (0, 0, 1).
     origin : array_like, shape (3,)
@@ -102,7 +101,7 @@ class Setup:
         return list(self._obstacles)
 
     def apply(self, op: Operation, progress: Progress = None) -> None:
-        """Cuts the in-process stock by an operation; the next one is planned on the result.
+        """Carves the stock with an operation; the next operation is planned on the result.
 
         Parameters
         ----------
@@ -126,7 +125,7 @@ class Setup:
         self._stock = after
 
     def stock_before(self, op: Operation) -> Volume:
-        """The stock that an operation begins with: as it was when ``op`` was applied, else the present one.
+        """The stock before an operation: the stock when ``op`` was applied, or the present one if it was not.
 
         Parameters
         ----------

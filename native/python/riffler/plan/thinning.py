@@ -1,4 +1,4 @@
-"""A motion with fewer points and keys: within a tolerance of its places, and within an angle of its axes.
+"""Thins a motion to fewer points and keys, within a tolerance of its places and within an angle of its axes.
 
 The recorded motion is compared with the thinned one place by place, in order. Each recorded row has a station on the
 thinned line, a polyline through some of the rows' points, and the axis there turns along great circles from key to key
@@ -16,12 +16,12 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-# The tolerance is divided among: the distance of the points from the line; the shift along the line, by which a tool
-# that turns in one place gets room to turn; the arc between two rows of a point that is above the tip.
+# The tolerance is divided among: the distance of the points from the line; the shift along the line, which gives a tool
+# that turns in one place room to turn; the arc that a point above the tip makes between two rows.
 APART, SHIFT, ARC = 0.65, 0.25, 0.05
 STEP = 0.05  # rad: a turn between two rows is divided into steps of this size
-WIDE = 3.0  # rad: keys further apart get one between them, as opposite axes have no great circle of their own
-BLOCK = 512  # rows looked at together for the next turn
+WIDE = 3.0  # rad: keys further apart get one between them, because opposite axes have no unique great circle
+BLOCK = 512  # rows searched together for the next turn
 
 
 class StandsStillError(ValueError):
@@ -30,7 +30,8 @@ class StandsStillError(ValueError):
 
 @dataclass(frozen=True, eq=False)
 class Thinned:
-    """``keys``: rows of ``points`` whose axes are the motion's. ``error``, ``turn``: bounds, mm and rad."""
+    """A thinned motion. ``keys``: rows of ``points`` whose axes are the recorded ones. ``error``, ``turn``: bounds, mm
+    and rad."""
 
     points: Array  # (m, 3)
     axes: Array  # (m, 3)
@@ -40,8 +41,9 @@ class Thinned:
 
 
 def thin(tips: Array, axes: Array, above: float, tolerance: float, angle: float) -> Thinned:
-    """The motion of the point ``above`` mm above the tip, on the axis. Between two rows the tip moves straight and the
-    axis on the great circle. StandsStillError for a point that stays within ``tolerance`` of where it begins."""
+    """Thins the motion of the point ``above`` mm above the tip, on the axis. Between two rows the tip moves straight
+    and the axis on the great circle. StandsStillError for a point that stays within ``tolerance`` of its first place.
+    """
     tips, axes, arcs = _refined(tips, axes, above, ARC * tolerance, min(STEP, angle / 2))
     points = tips + above * axes
     if np.linalg.norm(points - points[0], axis=1).max() <= tolerance:
@@ -66,7 +68,7 @@ def between(a: Array, b: Array) -> Array:
 
 
 def slerp(a: Array, b: Array, share: Array) -> Array:
-    """On the great circle from ``a`` to ``b``, row by row."""
+    """Unit vectors at ``share`` of the great circle from ``a`` to ``b``, row by row."""
     turn = between(a, b)[..., None]
     share = np.asarray(share)[..., None]
     sine = np.sin(turn)
@@ -79,8 +81,8 @@ def slerp(a: Array, b: Array, share: Array) -> Array:
 
 
 def _refined(tips: Array, axes: Array, above: float, arc: float, step: float) -> tuple[Array, Array, Array]:
-    """The rows without repeated ones, each turn divided; with the distance between arc and chord of the point ``above``
-    the tip for each move."""
+    """The rows without repeated ones and with each turn divided; for each move, the distance between arc and chord of
+    the point ``above`` the tip."""
     moves = np.any(np.diff(tips, axis=0) != 0, axis=1) | np.any(np.diff(axes, axis=0) != 0, axis=1)
     keep = np.concatenate([[True], moves])
     tips, axes = tips[keep], axes[keep]
@@ -100,7 +102,7 @@ def _refined(tips: Array, axes: Array, above: float, arc: float, step: float) ->
 
 
 def _line(points: Array, tolerance: float) -> tuple[list[int], Array]:
-    """Rows of the corners of a line that all points are near to, and for each row its station on that line: the foot of
+    """Rows of the corners of a line that passes near all points, and for each row its station on that line: the foot of
     its point, but never behind that of a row before it (after Douglas and Peucker 1973)."""
     corners, feet = [0], np.zeros(len(points))
     todo = [(0, len(points) - 1)]
@@ -124,8 +126,8 @@ def _line(points: Array, tolerance: float) -> tuple[list[int], Array]:
 
 
 def _shifted(stations: Array, axes: Array, most: float, tolerance: float, angle: float) -> Array:
-    """Stations shifted by ``most`` mm at most, so that there is a distance between two rows of which the tool turns:
-    the largest distance for each rad that this allows. First and last station stay."""
+    """Stations shifted by at most ``most`` mm, so that rows between which the tool turns are apart: by as many mm for
+    each rad as this allows. First and last station stay."""
     turned = _turned(axes, angle / 4)
     steps, way = np.diff(turned, prepend=turned[0]), np.diff(stations, prepend=stations[0])
     room = tolerance / angle  # mm for each rad
@@ -140,7 +142,7 @@ def _shifted(stations: Array, axes: Array, most: float, tolerance: float, angle:
 
 
 def _turned(axes: Array, least: float) -> Array:
-    """rad that the axis has turned up to each row. Trembling by less than ``least`` does not count."""
+    """Angle that the axis has turned up to each row, rad. A tremor of less than ``least`` does not count."""
     out, at, limit = np.zeros(len(axes)), 0, 2 * math.sin(least / 2)
     while at + 1 < len(axes):
         for begin in range(at + 1, len(axes), BLOCK):
@@ -168,7 +170,7 @@ def _with_corners(shifted: Array, points: Array, axes: Array, arcs: Array, at: A
     moves = np.concatenate([arcs, arcs[-1:], arcs[left]])[order][:-1]
     is_corner = np.concatenate([np.zeros(len(shifted), bool), np.ones(len(new), bool)])
     is_corner[np.searchsorted(shifted, at[exact][:-1])] = True
-    is_corner[len(shifted) - 1] = True  # the key of the end, not the first row that has arrived there
+    is_corner[len(shifted) - 1] = True  # the last row, not the first one at the end of the line
     return (
         stations[order],
         np.vstack([points, more_points])[order],
@@ -179,8 +181,8 @@ def _with_corners(shifted: Array, points: Array, axes: Array, arcs: Array, at: A
 
 
 def _keys(knots: Array, axes: Array, is_corner: Array, angle: float, near: float) -> tuple[list[int], float]:
-    """Rows whose axes are keys, with the bound of the angle. A key is set where the axis is furthest from that between
-    its neighbours, or at a corner of the line within ``near`` mm of that place."""
+    """Rows whose axes are keys, and the bound of the angle. A key is set where the axis is furthest from the axis that
+    its neighbours give, or at a corner of the line within ``near`` mm of that place."""
     last = len(knots) - 1
     todo, keys, worst_bound = [(0, last)], {0, last}, 0.0
     corners = np.flatnonzero(is_corner)
@@ -198,7 +200,7 @@ def _keys(knots: Array, axes: Array, is_corner: Array, angle: float, near: float
             worst = first + k + int(off[k + 1] > off[k])
             if not knots[first] < knots[worst] < knots[end]:
                 worst = first + _inside(knots[first : end + 1], off)
-                if worst == first:  # every row further off is where a key is
+                if worst == first:  # every row further off is at the station of a key
                     worst_bound = max(worst_bound, float(bounds[k]))
                     continue
             worst = _snapped(worst, first, end, knots, corners, near)
@@ -208,7 +210,7 @@ def _keys(knots: Array, axes: Array, is_corner: Array, angle: float, near: float
 
 
 def _off(knots: Array, axes: Array, first: int, end: int) -> tuple[Array, Array]:
-    """Angles between the motion's axes and those between two keys, and a bound of them for each interval.
+    """Angles between the motion's axes and the axes that two keys give, and a bound of them for each interval.
 
     The distance of two points on great circles, each at a constant speed, is at most the larger one at both ends over
     cos(ω/2), where ω is the larger turn over the cosine of half the distance (Rauch's comparison on the unit sphere).
@@ -240,7 +242,7 @@ def _snapped(worst: int, first: int, end: int, knots: Array, corners: NDArray[np
 
 
 def _interpolated(places: Array, keys: Array, at: Array) -> Array:
-    """Axes at stations, between keys at other stations."""
+    """Axes at the stations ``at``, interpolated between keys at the stations ``places``."""
     k = np.clip(np.searchsorted(places, at, side="right") - 1, 0, len(places) - 2)
     length = places[k + 1] - places[k]
     share = np.where(length > 0, (at - places[k]) / np.where(length > 0, length, 1.0), 0.0)

@@ -59,7 +59,7 @@ void repair(Bytes& bytes) {
   }
 }
 
-TEST(Planes, ComeBackWhateverTheNumbers) {
+TEST(Planes, OfAnyNumbersRoundTrip) {
   std::mt19937_64 random(7);
   const std::vector<std::function<std::uint64_t(std::size_t)>> columns{
       [](std::size_t) { return 0; },
@@ -87,7 +87,7 @@ TEST(Planes, ComeBackWhateverTheNumbers) {
     }
 }
 
-TEST(File, BringsEveryVolumeBack) {
+TEST(File, RestoresEveryVolume) {
   std::vector<Volume> volumes{Volume(lattice_frame("z")), Volume::block(lattice_frame("xyz")),
                               Volume::block({{{-3, 1e3, 0.1}, {-2.5, 1e3 + 7, 9}}, 0.3, "y"}),
                               wavy_volume({{{0, 0, 0}, {50, 30, 20}}, 0.4, "xyz"})};
@@ -138,7 +138,7 @@ TEST(File, IsTheSameForAnyNumberOfThreads) {
   old.empty() ? unsetenv("RIFFLER_THREADS") : setenv("RIFFLER_THREADS", old.c_str(), 1);
 }
 
-TEST(File, NamesWhatIsWrongAndWhere) {
+TEST(File, ErrorsNameTheFaultAndItsPlace) {
   const Bytes good = to_bytes(random_volume(lattice_frame("xyz"), 2));
   const auto has = [](const std::string& text, const char* part) {
     return text.find("part.rvol") == 0 && text.find(part) != std::string::npos;
@@ -267,7 +267,7 @@ TEST(File, SurvivesThousandsOfDamagedFiles) {
   EXPECT_LT(peak_megabytes() - before, 400);  // the address sanitizer keeps 256 of what was freed
 }
 
-TEST(File, IsWholeOrNotThere) {
+TEST(File, IsWrittenWholeOrNotAtAll) {
   const std::filesystem::path folder = std::filesystem::temp_directory_path() / "riffler_file_test";
   std::filesystem::create_directories(folder);
   const std::filesystem::path path = folder / "a.rvol";

@@ -286,7 +286,7 @@ TEST(FromOpenMesh, NormalsInTheOpeningPointOut) {
   EXPECT_GT(openings, 300);
 }
 
-TEST(FromOpenMesh, ColumnsAlongVerticalBoundaries) {
+TEST(FromOpenMesh, ColumnsAlongVerticalBoundariesAreExact) {
   // A box without one wall: boundary edges stand exactly on rays, and a hair off them.
   for (const double beside : {0.0, 5e-8, 1e-6, 1e-3, -1e-7}) {
     Mesh mesh = box({beside, 0, 0}, {10 + beside, 8, 6});

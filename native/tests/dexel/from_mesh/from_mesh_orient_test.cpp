@@ -31,7 +31,7 @@ Mesh turned(Mesh m, const std::vector<int>& rows) {
 
 const Mesh kCube = box({0, 0, 0}, {10, 10, 10});
 
-TEST(FromTurnedMesh, IsTheSolidThatWasMeant) {
+TEST(FromTurnedMesh, IsTheIntendedSolid) {
   for (const std::vector<int>& rows : {std::vector<int>{0, 2, 4, 6, 8, 10}, {0, 1, 2, 3, 4, 5}, {7}})
     for (const Mesh& m : {turned(kCube, rows), unwelded(turned(kCube, rows))}) {
       const Result r = made(m);

@@ -20,7 +20,7 @@ MeshReport report_of(const Mesh& mesh, double pitch = 0.25) {
   return report;
 }
 
-TEST(MeshReport, HasNothingToTellOfGoodParts) {
+TEST(MeshReport, IsEmptyForGoodParts) {
   const Mesh a = box({0, 0, 0}, {4, 4, 4}), inner = box({1, 1, 1}, {3, 3, 3});
   for (const Mesh& mesh : {a, unwelded(a), sphere({0, 0, 0}, 5, 20), joined(a, flipped(inner)),
                            joined(a, moved(a, Mat3(1), Vec3(6, 0, 0))), joined(a, box({4, 0, 0}, {8, 4, 4}))}) {
@@ -30,7 +30,7 @@ TEST(MeshReport, HasNothingToTellOfGoodParts) {
   }
 }
 
-TEST(MeshReport, LeavesTheVolumeAsItIs) {
+TEST(MeshReport, LeavesTheVolumeUnchanged) {
   const Mesh mesh = joined(open_box({0, 0, 0}, {10, 8, 6}), flipped(sphere({12, 3, 3}, 4, 12)));
   const Frame frame = frame_of(mesh, 60, "xyz", 1);
   MeshReport report;
@@ -58,7 +58,7 @@ TEST(MeshReport, CountsOpenings) {
   EXPECT_EQ(report.openings, 2);
 }
 
-TEST(MeshReport, TellsWhatFacesInwards) {
+TEST(MeshReport, NamesShellsThatFaceInwards) {
   const Mesh a = box({0, 0, 0}, {4, 4, 4}), b = box({6, 0, 0}, {9, 4, 4}), inner = box({1, 1, 1}, {3, 3, 3});
   MeshReport report = report_of(flipped(a));
   EXPECT_EQ(report.flipped_shells, 1);
@@ -138,7 +138,7 @@ Mesh klein_bottle(int n, int m) {
   return mesh;
 }
 
-TEST(FromBadMesh, OfOneSideOnlyFollowsItsWindingNumber) {
+TEST(FromBadMesh, WithOneSideOnlyFollowsItsWindingNumber) {
   for (const Mesh& mesh : {band(1, 60, 6), band(3, 90, 6), klein_bottle(60, 40)}) {
     const Frame frame = frame_of(mesh, 50, "xyz", 2);
     MeshReport report;
@@ -155,7 +155,7 @@ TEST(FromBadMesh, OfOneSideOnlyFollowsItsWindingNumber) {
   }
 }
 
-TEST(FromBadMesh, ErrorsSayWhatIsWrong) {
+TEST(FromBadMesh, ErrorsNameTheFault) {
   const Frame frame{{Vec3(-1), Vec3(11)}, 0.5, "xyz"};
   const auto message = [&](const Mesh& mesh) -> std::string {
     try {

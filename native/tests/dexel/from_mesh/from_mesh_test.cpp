@@ -216,7 +216,7 @@ TEST(FromMesh, SameBytesForAnyNumberOfThreadsAndInstructionSet) {
   expect_same_everywhere(twice, Frame{{Vec3(-1.5), Vec3(9.5)}, 1, "xyz"});
 }
 
-TEST(FromMesh, BoxSmallerOrElsewhere) {
+TEST(FromMesh, TheBoxMayBeSmallerOrElsewhere) {
   const Mesh ball = sphere({0, 0, 0}, 10, 60);
   const Volume whole = from_mesh(ball, {{Vec3(-12), Vec3(12)}, 0.5, "z"});
   const Volume clipped = from_mesh(ball, {{Vec3(-4, 0, -3), Vec3(3, 12, 5)}, 0.5, "z"});

@@ -71,7 +71,7 @@ std::size_t other_tiles(const Volume& a, const Volume& b) {
   return n;
 }
 
-TEST(Soften, LeavesPlanesOfAnyTiltAsTheyAreAlsoFarFromTheOrigin) {
+TEST(Soften, LeavesPlanesOfAnyTiltUnchangedAlsoFarFromTheOrigin) {
   std::mt19937 random(5);
   std::normal_distribution<double> d;
   for (const Vec3& origin : {Vec3(0), Vec3(1e5, -1e5, 1e5)})
@@ -245,7 +245,7 @@ TEST(Soften, WearsOffTheRimOfAThinWallAndLeavesNoCrumbs) {
   }
 }
 
-TEST(Soften, StandsAnyPlaceAndSizeOfTheBrush) {
+TEST(Soften, AcceptsAnyPlaceAndSizeOfTheBrush) {
   const Frame frame{{{0, 0, 0}, {20, 17, 9}}, 0.5, "xyz"};
   const Volume block = Volume::block(frame);
   Volume empty(frame);
@@ -303,7 +303,7 @@ TEST(Soften, ChangesTilesUnderTheBrushOnlyHoweverLargeTheVolume) {
   EXPECT_EQ(of[0].tiles_changed, of[1].tiles_changed);
 }
 
-TEST(Soften, KeepsWhatIsProtectedToTheBit) {
+TEST(Soften, KeepsProtectedMaterialToTheBit) {
   const Frame frame{{Vec3(0), Vec3(20)}, 0.5, "xyz"};
   const Volume kept = test::convex(frame, {HalfSpace::at({10, 0, 0}, {1, 0, 0.1})});
   for (const bool random : {false, true}) {
@@ -326,7 +326,7 @@ TEST(Soften, KeepsWhatIsProtectedToTheBit) {
   }
 }
 
-TEST(Soften, LeavesRandomVolumesSound) {
+TEST(Soften, LeavesRandomVolumesValid) {
   std::mt19937 random(17);
   std::uniform_real_distribution<double> place(-2, 26), size(0.2, 5), share(0, 1);
   for (unsigned seed = 0; seed < 12; ++seed) {
@@ -354,7 +354,7 @@ TEST(Soften, GivesTheSameBytesForAnyNumberOfThreads) {
   EXPECT_TRUE(test::same_rays(volumes[0], volumes[2]));
 }
 
-TEST(Soften, StopsWithoutATraceWhenCancelled) {
+TEST(Soften, ChangesNothingWhenCancelled) {
   const Volume before = Volume::block(test::lattice_frame("xyz"));
   for (const int calls : {0, 1, 3, 7}) {
     Volume volume = before;
@@ -371,7 +371,7 @@ TEST(Soften, StopsWithoutATraceWhenCancelled) {
   }
 }
 
-TEST(Soften, NamesWhatIsWrong) {
+TEST(Soften, NamesBadInput) {
   Volume volume = Volume::block(test::lattice_frame("xyz")), one = Volume::block(test::lattice_frame("z"));
   const Volume coarse = Volume::block(test::lattice_frame("xyz", 1));
   const auto error = [](Volume& v, const std::vector<Vec3>& centres, double radius, double strength,

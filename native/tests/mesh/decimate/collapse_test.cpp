@@ -58,7 +58,7 @@ void expect_same(const HalfEdgeMesh& mesh, const HalfEdgeMesh& reference) {
   }
 }
 
-TEST(Collapse, LeavesWhatThatOfOpenMeshLeavesInsideAndAtBorders) {
+TEST(Collapse, AgreesWithOpenMeshInsideAndAtBorders) {
   std::mt19937 random(7);
   int inside = 0, to_border = 0, along[2] = {0, 0};
   for (const int missing : {0, 3, 40, 90, 150})

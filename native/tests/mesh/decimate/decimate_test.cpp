@@ -168,7 +168,7 @@ TEST(Decimate, ReachesACount) {
   }
 }
 
-TEST(Decimate, WhicheverLimitComesFirst) {
+TEST(Decimate, StopsAtTheFirstLimit) {
   const Mesh mesh = sphere_mesh(10, 4);
   EXPECT_EQ(decimate(mesh, {1500, 0.5}).triangles.size(), 1500U);
   const Mesh result = decimate(mesh, {4, 0.1});
@@ -279,7 +279,7 @@ TEST(Decimate, NonManifoldInputIsNotMadeWorse) {
   EXPECT_DOUBLE_EQ(after.volume, 128);
 }
 
-TEST(Decimate, OddInputs) {
+TEST(Decimate, SurvivesEmptyAndDegenerateMeshes) {
   EXPECT_TRUE(decimate({}, {10, {}}).empty());
   Mesh mesh = box_mesh({0, 0, 0}, {1, 1, 1});
   EXPECT_EQ(decimate(mesh, {12, {}}).triangles, mesh.triangles);
@@ -319,7 +319,7 @@ TEST(Decimate, ProgressNeverGoesBack) {
 }
 
 /// Bounds on the proof's pieces, where a depth of halving is none: these took minutes and gigabytes.
-TEST(Decimate, AToleranceOfNearlyNothingEndsSoon) {
+TEST(Decimate, AToleranceNearZeroEndsSoon) {
   const auto start = std::chrono::steady_clock::now();
   const Mesh block = subdivided(box_mesh({0.1, 0.2, 0.3}, {20.4, 14.7, 10.9}), 3);
   int told = 0;

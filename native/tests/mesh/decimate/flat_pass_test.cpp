@@ -36,7 +36,7 @@ Mesh flat_sheet(int n) {
   return sheet_mesh(n, 10, [](double, double) { return 0.0; });
 }
 
-TEST(FlatPass, LeavesMeshesWithoutPlanesAsTheyAre) {
+TEST(FlatPass, LeavesMeshesWithoutPlanesUnchanged) {
   Mesh lone;
   lone.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   lone.triangles = {{0, 1, 2}};
@@ -50,7 +50,7 @@ TEST(FlatPass, LeavesMeshesWithoutPlanesAsTheyAre) {
   }
 }
 
-TEST(FlatPass, OddTrianglesStayAsTheyAre) {
+TEST(FlatPass, LeavesDegenerateTrianglesUnchanged) {
   Mesh mesh = flat_sheet(6);
   const std::size_t vertices = mesh.vertices.size();
   mesh.vertices.emplace_back(100, 0, 0);         // without triangles: goes
@@ -106,7 +106,7 @@ TEST(FlatPass, APlateWithoutThicknessStaysTwoManifold) {
 }
 
 /// Boxes turned at random, rough by about the slack: nothing moves farther than the pass says.
-TEST(FlatPass, RoughPlanesMoveByNoMoreThanItSays) {
+TEST(FlatPass, RoughPlanesMoveByNoMoreThanTheReportedDistance) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> part(-1, 1);
   std::size_t gone = 0;

@@ -17,7 +17,7 @@ std::vector<Corners> needles(int n) {
   return fan;
 }
 
-TEST(NearSurface, DegeneratePlaces) {
+TEST(NearSurface, HandlesDegeneratePlaces) {
   const NearSurface surface(needles(3), 0.01);
   const Vec3 p(5, 1, 0);
   EXPECT_TRUE(surface.holds({p, p, p}, 10));

@@ -173,7 +173,7 @@ TEST(Stl, BadAsciiNamesTheLine) {
             "part, line 1: the file ends where 'facet' or 'endsolid' was expected");
 }
 
-TEST(Stl, WritesTheBytesThatTheFormatAsksFor) {
+TEST(Stl, WritesTheBytesOfTheFormat) {
   const Bytes bytes = to_stl(box_mesh({0, 0, 0}, {1, 2, 3}));
   ASSERT_EQ(bytes.size(), 84U + 12 * 50);
   EXPECT_NE(std::memcmp(bytes.data(), "solid", 5), 0);
@@ -338,7 +338,7 @@ TEST(Ply, RoundTripKeepsEveryBit) {
   }
 }
 
-TEST(MeshFiles, AreToldApartByTheirNames) {
+TEST(MeshFiles, AreDistinguishedByTheirNames) {
   const std::filesystem::path folder =
       std::filesystem::temp_directory_path() / ("riffler_files_" + std::to_string(::getpid()));
   std::filesystem::create_directory(folder);
@@ -356,7 +356,7 @@ TEST(MeshFiles, AreToldApartByTheirNames) {
   std::filesystem::remove_all(folder);
 }
 
-TEST(MeshFiles, CancelledAreAsTheyWere) {
+TEST(MeshFiles, CancelledWritesLeaveTheOldFiles) {
   const std::filesystem::path folder =
       std::filesystem::temp_directory_path() / ("riffler_cancelled_" + std::to_string(::getpid()));
   std::filesystem::create_directory(folder);
@@ -409,7 +409,7 @@ TEST(Ply, AHeaderOfManyElementsIsRefused) {
   EXPECT_NE(error_of(from_ply, bytes_of(header + "end_header\n")).find("more than 1000 elements"), std::string::npos);
 }
 
-TEST(MeshFiles, ReadingIsHeardOfAndCanBeStopped) {
+TEST(MeshFiles, ReadingReportsProgressAndCanBeStopped) {
   const Mesh sphere = subdivided(box_mesh({0, 0, 0}, {1, 1, 1}), 6);
   const Bytes obj = to_obj(sphere), ply = to_ply(sphere);
   for (int most = 1; most < 4; ++most) {

@@ -59,7 +59,7 @@ MachineDescription describe(const std::string& toml, Options options = {}) {
   return out;
 }
 
-TEST(Description, SaysHowToRetractWhichCoolantAndWhatMustBeGiven) {
+TEST(Description, HasRetractsCoolantAndRequiredOptions) {
   const std::string more = "retract = [\"G91 G28 Z0\", \"G90\"]\ncoolant = \"mist\"\n" + std::string(kMill);
   const MachineDescription own = describe(more);
   EXPECT_EQ(own.control.retract, (std::vector<std::string>{"G91 G28 Z0", "G90"}));
@@ -85,7 +85,7 @@ TEST(Description, SaysHowToRetractWhichCoolantAndWhatMustBeGiven) {
   std::filesystem::remove(file);
 }
 
-TEST(Description, SaysWhatItsFileAndOptionsSay) {
+TEST(Description, AgreesWithItsFileAndOptions) {
   const MachineDescription own = describe(kMill);
   ASSERT_EQ(own.rotary.size(), 2U);
   EXPECT_FALSE(own.tip_words);
@@ -180,7 +180,7 @@ TEST(Description, AnyDamageIsAMachineOrAnError) {
   EXPECT_GT(machines, 10);
 }
 
-TEST(Description, AsksForWhatJointsNeed) {
+TEST(Description, RequiresTheValuesThatJointsNeed) {
   OptionReader reader({{"tcp", false}}, "post head-head");
   try {
     make_machine("head-head", reader);
@@ -238,7 +238,7 @@ TEST(Languages, EachHasItsOwnFileExtension) {
   EXPECT_EQ(file_extension("fanuc"), "");
 }
 
-TEST(Description, MayNotGiveEverybodysOptionsAnotherMeaning) {
+TEST(Description, MayNotRedefineCommonOptions) {
   for (const std::string& name : std::vector<std::string>{"limits_a", "arcs", "safe_height", "feed"}) {
     std::string file = kMill;
     file.replace(file.find("raised = 5"), 6, name);

@@ -44,7 +44,7 @@ Joints somewhere(stress::Random& random, std::size_t tilt) {
   return j;
 }
 
-TEST(LinuxCncMachines, StandWhereItsKinematicsPutThem) {
+TEST(LinuxCncMachines, AgreeWithTheKinematicsOfLinuxCnc) {
   stress::Random random(1);
   for (int n = 0; n < 500; ++n) {
     const Vec3 p(random.uniform(-50, 50), random.uniform(-50, 50), random.uniform(-50, 50));
@@ -96,7 +96,7 @@ TEST(Machine, RefusesAPoleThatItsOtherAxisCannotBringTheToolTo) {
     EXPECT_THROW(machine.joints({{1, 2, 3}, glm::normalize(Vec3(off, 0, -1))}, 0, {}, 1e-6), std::invalid_argument);
 }
 
-TEST(Machine, TakesLimitsInwardsToWhatCanBePrinted) {
+TEST(Machine, RoundsLimitsInwardsToPrintableValues) {
   MachineDescription description{"m", {{'C', {0, 0, 1}}, {'A', {1, 0, 0}}}, {}, false, {}};
   description.ranges[3] = {-20.12345678, 90.1}, description.ranges[0] = {-1.0 / 3, 2.0 / 3};
   const Machine machine(description);
@@ -152,7 +152,7 @@ TEST(Machine, KeepsTheFreeAxisAtThePoleAndItsDigitsNearIt) {
   }
 }
 
-TEST(Machine, RefusesWhatIsNoMachine) {
+TEST(Machine, RefusesInvalidMachines) {
   const RotaryAxis a{'A', {1, 0, 0}}, b{'B', {0, 1, 0}}, c{'C', {0, 0, 1}};
   const auto machine = [](std::vector<RotaryAxis> rotary, AxisRange range = {}) {
     MachineDescription d{"m", std::move(rotary), {}, true, {}};

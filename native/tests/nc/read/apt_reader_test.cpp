@@ -114,7 +114,7 @@ TEST(AptReader, ReadsCreosCommentsAndCirclesWithoutARadius) {
   EXPECT_EQ(left.notes[0].kind, "cutter compensation");
 }
 
-TEST(AptReader, RefusesWhatItDoesNotUnderstand) {
+TEST(AptReader, RefusesUnknownStatements) {
   const std::pair<const char*, const char*> cases[] = {
       {"GOTO/1,2", "GOTO takes 3 to 6 numbers, not 2 [GOTO/1,2]"},
       {"GOTO/1,2,3,4", "GOTO takes 3 or 6 numbers [GOTO/1,2,3,4]"},

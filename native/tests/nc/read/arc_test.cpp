@@ -13,7 +13,7 @@ Vec2 on(double r, double angle) {
   return {r * std::cos(angle), r * std::sin(angle)};
 }
 
-TEST(Arc, GoesTheWayItIsToldThroughAnyAngle) {
+TEST(Arc, TurnsInTheGivenDirectionThroughAnyAngle) {
   const Vec2 centre(3, -4);
   for (const double start : {-3.0, 0.0, 0.7, kPi})
     for (const double sweep : {1e-3, 0.5, kPi / 2, kPi - 1e-6, kPi + 1e-6, 5.0, 2 * kPi - 1e-3})

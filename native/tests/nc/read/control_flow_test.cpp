@@ -24,7 +24,7 @@ std::vector<double> xs(const std::string& text) {
 }
 using Xs = std::vector<double>;
 
-TEST(NcControlFlow, TakesTheBranchThatHolds) {
+TEST(NcControlFlow, TakesTheBranchWhoseConditionHolds) {
   const std::string text = "o1 if [#1 EQ 1]\nX1\no1 elseif [#1 EQ 2]\nX2\no1 else\nX3\no1 endif\nX9";
   EXPECT_EQ(xs("#1=1\n" + text), (Xs{1, 9}));
   EXPECT_EQ(xs("#1=2\n" + text), (Xs{2, 9}));
@@ -67,7 +67,7 @@ TEST(NcControlFlow, CallsSubprogramsAfterTheEnd) {
             "subroutines [M98 P12]");
 }
 
-TEST(NcControlFlow, FindsSubroutinesInFilesBesideTheProgramAndInTheirFolder) {
+TEST(NcControlFlow, FindsSubroutinesInFilesNextToTheProgramAndInTheirFolder) {
   namespace fs = std::filesystem;
   const fs::path folder = fs::temp_directory_path() / ("riffler_subs_" + std::to_string(getpid()));
   fs::create_directories(folder / "subs");
@@ -90,7 +90,7 @@ TEST(NcControlFlow, FindsSubroutinesInFilesBesideTheProgramAndInTheirFolder) {
   fs::remove_all(folder);
 }
 
-TEST(NcControlFlow, RefusesWhatDoesNotEnd) {
+TEST(NcControlFlow, RefusesEndlessLoops) {
   const std::pair<const char*, const char*> cases[] = {
       {"o1 while [1]\no1 endwhile",
        "line 2: an endless loop? More turns of loops and calls than option max_turns allows"},
@@ -128,7 +128,7 @@ TEST(NcControlFlow, RestoresModesThatASubroutineChanged) {
   EXPECT_EQ(xs("M70\nG91 X5\nX5\nM72\nX5\nM71"), (Xs{5, 10, 5}));
 }
 
-TEST(NcControlFlow, LinesThatEveryTurnPassesOverAreCountedToo) {
+TEST(NcControlFlow, LinesThatEveryIterationSkipsAreCountedToo) {
   std::string text = "o1 repeat [999990]\no2 if [0]\n";
   for (int k = 0; k < 20'000; ++k) text += "G1 X1\n";
   text += "o2 endif\no1 endrepeat\nM2\n";
@@ -138,7 +138,7 @@ TEST(NcControlFlow, LinesThatEveryTurnPassesOverAreCountedToo) {
   EXPECT_EQ(asked, 3);
 }
 
-TEST(NcControlFlow, ALongProgramWithoutLoopsHasNoSuchBound) {
+TEST(NcControlFlow, ALongProgramWithoutLoopsHasNoBound) {
   std::string text = "G1 F100\n";
   for (int k = 0; k < 20'000; ++k) text += "X1\n";
   double last = 0;

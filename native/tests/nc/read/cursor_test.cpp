@@ -34,7 +34,7 @@ TEST(NcCursor, ReadsNumbersToTheLastBit) {
   EXPECT_EQ(number("-.5"), -0.5);
 }
 
-TEST(NcCursor, PassesOverBlanksAndComments) {
+TEST(NcCursor, SkipsBlanksAndComments) {
   const std::string text = " \t(one) g (two)(three)\t1 ; rest (";
   const NcPlace place{"p", 1, text};
   NcCursor cursor(text, place);
@@ -52,7 +52,7 @@ TEST(NcCursor, NamesAreLowerCaseWithoutBlanks) {
   EXPECT_EQ(cursor.peek(), '=');
 }
 
-TEST(NcPlace, SaysFileLineAndTheBeginOfTheBlock) {
+TEST(NcPlace, NamesFileLineAndTheBeginningOfTheBlock) {
   const std::string text = "\tG1 \x01 " + std::string(100, 'x');
   try {
     NcPlace{"part.ngc", 12, text}.fail("what it is");

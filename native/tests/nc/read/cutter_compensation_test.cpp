@@ -62,7 +62,7 @@ constexpr const char* kStart = "G0 X-5 Y0 Z0\nG41 D1\n";
 
 // --- Degenerate limits ---
 
-TEST(CutterCompensation, WithoutMotionInThePlaneGoesBesideTheSamePoint) {
+TEST(CutterCompensation, WithoutMotionInThePlaneStaysBesideTheSamePoint) {
   expect_tips(read(std::string(kStart) + "G1 X0\nZ-1\nX0 Y0\nX10\nG40\nG1 X15"),
               {{-5, 0, 0}, {0, 1, 0}, {0, 1, -1}, {0, 1, -1}, {10, 1, -1}, {15, 0, -1}});
   // Before the first move in the plane there is no side to be on.
@@ -223,7 +223,7 @@ TEST(CutterCompensation, OfDiameterZeroIsTheProgrammedPath) {
   EXPECT_EQ(tips(p), tips(read(plain)));
 }
 
-TEST(CutterCompensation, OptionsThatMakeNoSenseAreRefused) {
+TEST(CutterCompensation, InvalidOptionsAreRefused) {
   const auto said = [](OptionValue value) {
     try {
       read_nc_text("G0 X0", "3-axis", with(kOffset, "tool_diameters", std::move(value)));
@@ -241,7 +241,7 @@ TEST(CutterCompensation, OptionsThatMakeNoSenseAreRefused) {
 
 // --- What is refused ---
 
-TEST(CutterCompensation, RefusesWhatTheToolDoesNotFitInto) {
+TEST(CutterCompensation, RefusesContoursThatTheToolDoesNotFitInto) {
   const std::string start(kStart),
       fits =
           ": give a smaller diameter, or, where the points are those of the tool's centre, "
@@ -264,7 +264,7 @@ TEST(CutterCompensation, RefusesWhatTheToolDoesNotFitInto) {
             "no error");
 }
 
-TEST(CutterCompensation, RefusesWhatLinuxCncRefusesAndSaysHowToGoOn) {
+TEST(CutterCompensation, RefusesWhatLinuxCncRefusesAndNamesTheRemedy) {
   const std::string start = std::string(kStart) + "G1 X0\n";
   const std::pair<const char*, const char*> cases[] = {
       {"G18", "another plane"},
@@ -304,7 +304,7 @@ TEST(CutterCompensation, RefusesWhatLinuxCncRefusesAndSaysHowToGoOn) {
             std::string("line 3: rotary axes turn in cutter compensation (A): G40 and a straight").substr(0, 60));
 }
 
-TEST(CutterCompensation, LeavesForTheProgrammedPathAfterG40) {
+TEST(CutterCompensation, ReturnsToTheProgrammedPathAfterG40) {
   expect_tips(read(std::string(kStart) + "G1 X0\nX10\nG40 X15 Y5\nG1 X20"),
               {{-5, 0, 0}, {0, 1, 0}, {10, 1, 0}, {15, 5, 0}, {20, 5, 0}});
   const Program up = read(std::string(kStart) + "G1 X0\nX10\nG40\nG0 Z5");

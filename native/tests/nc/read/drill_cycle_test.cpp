@@ -66,7 +66,7 @@ TEST(DrillCycle, IsRefusedWithoutItsWords) {
   EXPECT_EQ(nc_error("G0 X1\nG81 X1 R1 Z-1"), "line 2: a feed move without F [G81 X1 R1 Z-1]");
 }
 
-TEST(NcDrillCycle, MovesAreCountedBeforeThereAreGigabytesOfThem) {
+TEST(NcDrillCycle, TooManyMovesAreRefusedBeforeTheyAreMade) {
   EXPECT_NE(test::nc_error("G91 F100\nG81 X1 Z-1 R1 L99999999").find("too many moves"), std::string::npos);
 }
 

@@ -67,7 +67,7 @@ TEST(NcExpression, ReadsParametersOfEveryForm) {
   EXPECT_NEAR(p.poses()[1].tip.z, 2 * 25.4, 1e-12);
 }
 
-TEST(NcExpression, RefusesWhatHasNoValue) {
+TEST(NcExpression, RefusesExpressionsWithoutAValue) {
   const std::pair<const char*, const char*> cases[] = {
       {"[1/0]", "division by zero"},
       {"[1 MOD 0]", "division by zero"},

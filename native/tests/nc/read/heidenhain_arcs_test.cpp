@@ -68,7 +68,7 @@ TEST(HeidenhainArcs, CirclesAboutTheirCentreInEveryPlane) {
   }
 }
 
-TEST(HeidenhainArcs, ByRadius) {
+TEST(HeidenhainArcs, AreReadByRadius) {
   for (const auto& [block, sweep] : std::vector<std::pair<std::string, double>>{{"CR X0 Y10 R+10 DR+", 0.5},
                                                                                 {"CR X0 Y10 R-10 DR-", -1.5},
                                                                                 {"CR IX-20 R10 DR+", 1},
@@ -101,14 +101,14 @@ TEST(HeidenhainArcs, HelicesMayTurnSeveralTimes) {
             "line 4: IPA and DR have different signs [CP IPA+90 DR- F100]");
 }
 
-TEST(HeidenhainArcs, PolarLines) {
+TEST(HeidenhainArcs, PolarLinesAreRead) {
   const Program p = read("CC X+50 Y+50\nL X50 Y50 Z0 FMAX\nLP PR+30 PA+0 FMAX\nLP IPA+90 F100\nLP IPR-10 Z2\nLP PA180");
   const std::vector<Vec3> wanted{{50, 50, 0}, {80, 50, 0}, {50, 80, 0}, {50, 70, 2}, {30, 50, 2}};
   ASSERT_EQ(p.size(), wanted.size());
   for (std::size_t k = 0; k < wanted.size(); ++k) EXPECT_LT(glm::length(p.poses()[k].tip - wanted[k]), 1e-12) << k;
 }
 
-TEST(HeidenhainArcs, TangentCircles) {
+TEST(HeidenhainArcs, TangentCirclesAreRead) {
   const Program p = read("L X0 Y0 Z0 FMAX\nL X10 F100\nCT X20 Y10\nCT X10 Y20");
   expect_circle(p, 2, {10, 10, 0}, 10, 0, 1, "one circle of both");
   EXPECT_NEAR(turned(p, 2, {10, 10, 0}, 0, 1), kPi, 1e-9);
@@ -145,7 +145,7 @@ TEST(HeidenhainArcs, CornersAreRoundedAndChamfered) {
     EXPECT_NE(error("L X0 Y0 Z0 FMAX\n" + blocks), "no error") << blocks;
 }
 
-TEST(HeidenhainArcs, InTiltedPlanes) {
+TEST(HeidenhainArcs, AreReadInTiltedPlanes) {
   const Program p =
       read("PLANE SPATIAL SPA+90 SPB+0 SPC+0 TURN FMAX\nL X10 Y0 Z5 FMAX\nCC X0 Y0\nCP IPA+360 IZ-2 DR+ F100");
   // The plane's y is the part's z, its z the part's −y.
@@ -155,7 +155,7 @@ TEST(HeidenhainArcs, InTiltedPlanes) {
   EXPECT_LT(glm::length(p.poses().back().axis - Vec3(0, -1, 0)), 1e-12);
 }
 
-TEST(HeidenhainArcs, RefusesWhatIsNoArc) {
+TEST(HeidenhainArcs, InvalidOnesAreRefused) {
   EXPECT_EQ(error("L X1 Y0 Z0 FMAX\nC X0 Y1 DR+ F9"), "line 3: C without a centre: CC before it [C X0 Y1 DR+ F9]");
   EXPECT_EQ(error("L X1 Y0 Z0 FMAX\nCC X0 Y0\nC X0 Y1 F9"),
             "line 4: an arc without its sense, DR+ or DR- [C X0 Y1 F9]");

@@ -34,7 +34,7 @@ void expect_tips(const std::vector<Vec3>& is, const std::vector<Vec3>& wanted) {
   for (std::size_t k = 0; k < is.size(); ++k) EXPECT_LT(glm::length(is[k] - wanted[k]), 1e-9) << k;
 }
 
-TEST(HeidenhainCompensation, BeginsAndEndsSquareToTheContour) {
+TEST(HeidenhainCompensation, BeginsAndEndsPerpendicularToTheContour) {
   expect_tips(tips("L X0 Y0 RL F AUTO\nL X10\nL Z-1\nL Y10\nL X5\nL X0 Y20 R0\nL X-5"),
               {{0, 1, 0}, {9, 1, 0}, {9, 1, -1}, {9, 9, -1}, {5, 9, -1}, {0, 20, -1}, {-5, 20, -1}});
   expect_tips(tips("L X0 Y0 RR F100\nL X10\nL X20 R0"), {{0, -1, 0}, {10, -1, 0}, {20, 0, 0}});
@@ -79,7 +79,7 @@ TEST(HeidenhainCompensation, TakesTheRadiusOfTheOptionOrTheProgramAndDr) {
             "{'tool_diameters': {9: 6}} [L X0 Y0 RL F100]");
 }
 
-TEST(HeidenhainCompensation, RefusesWhatWouldMoveTheContourOrDoesNotFit) {
+TEST(HeidenhainCompensation, RefusesShiftedContoursAndToolsThatDoNotFit) {
   const std::string on = "L X0 Y0 RL F100\nL X10\n", remedy = " in radius compensation: a line with R0 before it [";
   const std::pair<const char*, const char*> cases[] = {
       {"TOOL CALL 1 Z", "TOOL CALL"},

@@ -107,7 +107,7 @@ TEST(HeidenhainCycle, BoresAndKeepsOffTheWall) {
   EXPECT_EQ(old.spindle(), (std::vector<double>{1000, 1000, -1000}));
 }
 
-TEST(HeidenhainCycle, IsCalledWhereThePositionsSay) {
+TEST(HeidenhainCycle, IsCalledAtItsPositions) {
   const Program p =
       read("CYCL DEF 200 D" + kHole +
            "Q202=20 ~\n Q206= AUTO\nL X10 FMAX M99\nL X20 FMAX\nL X30 FMAX M89\nL Y5 FMAX\nCC X0 Y0\nLP PR+40 PA+0 "
@@ -148,7 +148,7 @@ TEST(HeidenhainCycle, BoresByAHelix) {
   EXPECT_EQ(error(bore).substr(0, 48), "line 13: cycle 208 (bore milling) needs the tool");
 }
 
-TEST(HeidenhainCycle, RefusesWhatDoesNotFit) {
+TEST(HeidenhainCycle, RefusesInvalidValues) {
   const std::pair<std::string, std::string> cases[] = {
       {"CYCL DEF 200 D" + kHole + "Q202=0\nCYCL CALL", "Q202, the depth of a peck, must be positive"},
       {"CYCL DEF 200 D" + kHole + "Q202=1 ~\n Q201=5\nCYCL CALL", "Q201, the depth of cycle 200, must be negative"},

@@ -126,7 +126,7 @@ TEST(HeidenhainReader, ReadsBackWhatThePostWrites) {
       }
 }
 
-TEST(HeidenhainReader, KnowsForWhichMachineTheCodeIs) {
+TEST(HeidenhainReader, RecognisesTheMachineOfTheCode) {
   Program p;
   p.append({{{0, 0, 5}, {0, 0.6, 0.8}}, 0, 0, 1, 0, true});
   const std::string text = to_nc(p, {"heidenhain-bc", 0.01, 0.00175, {}});
@@ -186,7 +186,7 @@ TEST(HeidenhainReader, CalculatesWithParameters) {
   EXPECT_EQ(error("FN 17: SYSWRITE ID50 NR1 IDX1 = +0").substr(0, 24), "line 2: FN 17 is not rea");
 }
 
-TEST(HeidenhainReader, DatumShiftsAndRotationsMoveWhatFollows) {
+TEST(HeidenhainReader, DatumShiftsAndRotationsMoveTheFollowingBlocks) {
   const Program p = read(
       "L X1 Y0 Z0 FMAX\nCYCL DEF 7.0 DATUM SHIFT\nCYCL DEF 7.1 X+10\nCYCL DEF 7.2 IY+5\nL X1 Y0 FMAX\nL IX+1 FMAX\n"
       "CYCL DEF 10.0 ROTATION\nCYCL DEF 10.1 ROT+90\nL X1 Y0 FMAX\nCYCL DEF 10.0 ROTATION\nCYCL DEF 10.1 ROT 0\n"
@@ -214,7 +214,7 @@ Vec3 turned_by(const Vec3& v, double a, double b, double c) {
   return {std::cos(c * k) * p.x - std::sin(c * k) * p.y, std::sin(c * k) * p.x + std::cos(c * k) * p.y, p.z};
 }
 
-TEST(HeidenhainReader, TiltedPlanesLieWhereTheirAnglesSay) {
+TEST(HeidenhainReader, TiltedPlanesFollowTheirAngles) {
   struct Case {
     const char* plane;
     double a, b, c;
@@ -338,7 +338,7 @@ TEST(HeidenhainReader, PositionsOfTheMachineKeepThePose) {
   EXPECT_EQ(kinds(read("L X0 F100")), (std::vector<std::string>{"start"}));
 }
 
-TEST(HeidenhainReader, PassesOverWhatMovesNothing) {
+TEST(HeidenhainReader, SkipsBlocksThatMoveNothing) {
   const std::string plain = "L X0 Y0 Z5 FMAX\nL X10 F100";
   for (const std::string quiet : {"M8",
                                   "M25\nM55 M57",
@@ -377,7 +377,7 @@ TEST(HeidenhainReader, PassesOverWhatMovesNothing) {
   EXPECT_EQ(skipped.provenance.back().second, "line 2: CYCL DEF 301; line 4: OWNWORD");
 }
 
-TEST(HeidenhainReader, RefusesWhatItDoesNotRead) {
+TEST(HeidenhainReader, RefusesUnknownBlocks) {
   const std::pair<std::string, std::string> cases[] = {
       {"L X1", "line 2: a feed move without F [L X1]"},
       {"L X1 X2 FMAX", "line 2: word X twice [L X1 X2 FMAX]"},

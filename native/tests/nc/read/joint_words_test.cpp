@@ -79,7 +79,7 @@ TEST(JointWords, KeepTheTipOnItsLineBetweenBlocks) {
   }
 }
 
-TEST(JointWords, ThatTurnSayHowLongTheyTake) {
+TEST(JointWords, ThatTurnStateTheirTime) {
   const Program p = swaying(30);
   const auto blocks = test::block_ends(to_nc(p, to_xyzac()));
   int inverse = 0;
@@ -99,7 +99,7 @@ TEST(JointWords, ThatTurnSayHowLongTheyTake) {
   EXPECT_GT(inverse, 20);
 }
 
-TEST(JointWords, TurnNoFasterThanAsked) {
+TEST(JointWords, TurnNoFasterThanTheFeedAllows) {
   const auto blocks = test::block_ends(to_nc(swaying(30), to_xyzac({{"max_rotary", 90.0}})));
   double fastest = 0;
   for (std::size_t k = 1; k < blocks.size(); ++k) {
@@ -191,14 +191,14 @@ TEST(JointWords, AreReadUpToTheLineThatLeavesALimit) {
   }
 }
 
-TEST(JointWords, ComeFromNowhereInTheirFirstRapid) {
+TEST(JointWords, TheFirstRapidIsOneRowAtItsEnd) {
   const Program p = swaying(5);
   const std::string text = to_nc(p, to_xyzac({{"safe_start", false}}));
   const Program back = parse_nc(text, "p.ngc", {"linuxcnc-xyzac", kTable});
   EXPECT_LT(glm::length(back.poses()[0].tip - p.poses()[0].tip), 1e-4) << "one row, where it ends";
 }
 
-TEST(JointWords, AskForThePivotOfATable) {
+TEST(JointWords, NeedThePivotOfATable) {
   for (const char* name : {"linuxcnc-xyzac", "linuxcnc-xyzbc", "head-table"}) {
     Options options;
     if (name == std::string("head-table")) options = {{"tcp", false}, {"pivot_length", 200.0}};
@@ -220,14 +220,14 @@ TEST(JointWords, AskForThePivotOfATable) {
   }
 }
 
-TEST(JointWords, SayInTheHeaderWhatTheyAre) {
+TEST(JointWords, AreDescribedInTheHeader) {
   const std::string joints = to_nc(swaying(2), to_xyzac()), tip = to_nc(swaying(2), to_xyzac({{"tcp", true}}));
   EXPECT_NE(joints.find("kinematics off [M429]"), std::string::npos);
   EXPECT_NE(tip.find("kinematics on [M428]"), std::string::npos);
   EXPECT_EQ(tip.find("G93"), std::string::npos);
 }
 
-TEST(JointWords, RefuseOptionsThatAreWrong) {
+TEST(JointWords, RefuseWrongOptions) {
   const auto message = [](Options options) {
     try {
       to_nc(swaying(2), to_xyzac(std::move(options)));
@@ -265,7 +265,7 @@ TEST(TipWords, ATurnInPlaceIsNotFasterThanItsAxis) {
   EXPECT_GT(turns, 15);
 }
 
-TEST(JointWords, TheWayOfANewToolIsNotTimed) {
+TEST(JointWords, TheMotionOfANewToolIsNotTimed) {
   // Rows of feed throughout, the tool changed between two of them: where the machine was for it is not known.
   Program p;
   for (int k = 0; k < 10; ++k)

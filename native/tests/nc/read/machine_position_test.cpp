@@ -61,7 +61,7 @@ const std::string kFramed =
     "G28 G91 Z0\nG90\nT1 M6\nS5000 M3\nG54\nG0 X10 Y20\nG43 Z15 H1\nG1 Z-1 F300\nX30\nG0 Z15\nG28 G91 Z0\nG28 X0 Y0\n"
     "M30\n";
 
-TEST(MachinePositions, AreNoPlacesOfThePart) {
+TEST(MachinePositions, AreNotPositionsOnThePart) {
   // The first move whose place is known is the first row; what follows it goes nowhere in the part.
   EXPECT_EQ(rows(kFramed), (std::vector<Row>{{{10, 20, 15}, false},
                                              {{10, 20, -1}, false},
@@ -76,7 +76,7 @@ TEST(MachinePositions, AreNoPlacesOfThePart) {
     EXPECT_EQ(rows("G0 X1 Y2 Z3\n" + std::string(home)).back(), (Row{{1, 2, 3}, true})) << home;
 }
 
-TEST(MachinePositions, EndWhereEveryAxisHasACoordinateAgain) {
+TEST(MachinePositions, EndOnceEveryAxisHasACoordinateAgain) {
   const std::string there = "G0 X1 Y2 Z3\nG53 G0 Z0\n";
   EXPECT_EQ(rows(there + "X5\nY6\nZ7\nX8"), (std::vector<Row>{{{1, 2, 3}, false},
                                                               {{1, 2, 3}, true},
@@ -89,7 +89,7 @@ TEST(MachinePositions, EndWhereEveryAxisHasACoordinateAgain) {
   EXPECT_EQ(rows("G0 X1 Y2 Z3\nG28 Z9")[1], (Row{{1, 2, 9}, false}));
 }
 
-TEST(MachinePositions, AreKnownWhereOptionsSayWhereTheyAre) {
+TEST(MachinePositions, AreKnownIfOptionsGiveThem) {
   const Options offsets{{"g54", Numbers{100, 50, -200}}};
   EXPECT_EQ(rows("G0 X0 Y0 Z0\nG53 G0 X110 Z-150", offsets)[1], (Row{{10, 0, 50}, false}));
   EXPECT_TRUE(rows("G0 X0 Y0 Z0\nG28", offsets)[1].away) << "the home's place is unknown";
@@ -112,7 +112,7 @@ TEST(MachinePositions, OfRotaryAxesAreThoseOfThePart) {
   EXPECT_EQ(kinds(text, kTable, "linuxcnc-xyzbc"), (Kinds{"machine position", "machine position"}));
 }
 
-TEST(MachinePositions, AreNoStartOfACut) {
+TEST(MachinePositions, CutsFromThemAreNotedAndArcsRefused) {
   const std::string there = "G0 X1 Y2 Z3\nG53 G0 Z0\n";
   const Kinds uncut{"machine position", "coordinates"};
   EXPECT_EQ(kinds(there + "G1 X5 F100"), uncut);
@@ -130,7 +130,7 @@ TEST(MachinePositions, AreNoStartOfACut) {
   EXPECT_EQ(kinds(there + "G92 Z0\nG0 Z5"), uncut);
 }
 
-TEST(MachinePositions, AreWhereAProgramComesFrom) {
+TEST(MachinePositions, MayBeTheStartOfAProgram) {
   // Zero on the table: where Z has not been named nothing is known of it.
   EXPECT_EQ(rows("G0 X1 Y2\nZ9\nX5"), (std::vector<Row>{{{1, 2, 0}, true}, {{1, 2, 9}, false}, {{5, 2, 9}, false}}));
   EXPECT_EQ(rows("G0 Z9\nX1 Y2\nX5"), (std::vector<Row>{{{0, 0, 9}, true}, {{1, 2, 9}, false}, {{5, 2, 9}, false}}));
@@ -202,7 +202,7 @@ TEST(MachinePositions, AreWrittenAsSafeHeightByEveryPost) {
   }
 }
 
-TEST(WorkOffsets, WhoseDistanceIsNotKnownAreNoted) {
+TEST(WorkOffsets, OfUnknownDistanceAreNoted) {
   const std::string two = "G54 G0 X1 Y1 Z1\nG55 X2\nG54 X3\nG55 X4";
   EXPECT_EQ(kinds(two), Kinds{"work offset"});
   EXPECT_EQ(rows(two, {{"g54", Numbers{0, 0, 0}}, {"g55", Numbers{100, 0, 5}}})[1], (Row{{102, 1, 1}, false}));
@@ -243,7 +243,7 @@ TEST(Assumptions, OfUnitsAndOfTheStartAreNoted) {
   EXPECT_EQ(said("G21 G0 Z5\nX0 Y0\nG1 Z-1 F100"), Kinds{});
 }
 
-TEST(Assumptions, ArcsMayMissByAsMuchAsIsAskedFor) {
+TEST(Assumptions, ArcsMayMissByTheGivenTolerance) {
   const std::string arc = "G21 G0 X0 Y0\nG2 X2.02 I1 F1";
   const std::string said = nc_error(arc);
   EXPECT_NE(said.find("misses its circle by 0.0200 mm: option arc_tolerance allows more"), said.npos) << said;

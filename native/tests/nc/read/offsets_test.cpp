@@ -27,12 +27,12 @@ std::vector<Vec3> tips(const std::string& text, Options options = {}) {
 }
 using Tips = std::vector<Vec3>;
 
-TEST(NcOffsets, ThatHoldFromTheFirstMoveSayNothing) {
+TEST(NcOffsets, ThatHoldFromTheFirstMoveAreNotNoted) {
   for (const char* before : {"G55", "G10 L2 P1 X100 Y20 R30", "G92 X7 Z3", "G52 Y5", "G43.1 Z120", "G59.3"})
     EXPECT_EQ(tips(std::string(before) + "\nG0 X1 Y2 Z3\nX4"), (Tips{{1, 2, 3}, {4, 2, 3}})) << before;
 }
 
-TEST(NcOffsets, ThatChangeLaterMoveWhatComesAfter) {
+TEST(NcOffsets, ThatChangeLaterMoveTheFollowingBlocks) {
   EXPECT_EQ(tips("G10 L2 P2 X100\nG0 X1\nG55 X1\nG54 X1"), (Tips{{1, 0, 0}, {101, 0, 0}, {1, 0, 0}}));
   EXPECT_EQ(tips("G0 X1\nG92 X0\nX2\nG92.2\nX2\nG92.3\nX2\nG92.1\nG92.3\nX2"),
             (Tips{{1, 0, 0}, {3, 0, 0}, {2, 0, 0}, {3, 0, 0}, {2, 0, 0}}));
@@ -76,7 +76,7 @@ TEST(NcOffsets, OfTheToolLengthMoveTheTipByTheirDifference) {
   EXPECT_EQ(read_nc_text("G21 G43 H1\nG0 Z1\nG49\nM2").provenance.size(), 1U);
 }
 
-TEST(NcOffsets, AreRefusedWhereTheyMakeNoSense) {
+TEST(NcOffsets, AreRefusedIfInvalid) {
   const std::pair<const char*, const char*> cases[] = {
       {"G92", "G92 without axis words"},
       {"G52", "G52 without axis words"},

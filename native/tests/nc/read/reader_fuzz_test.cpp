@@ -231,7 +231,7 @@ TEST(ReaderFuzz, SurvivesBytesOfAnyKind) {
   }
 }
 
-TEST(ReaderFuzz, SurvivesWhatIsDeep) {
+TEST(ReaderFuzz, SurvivesDeepNesting) {
   const auto many = [](const std::string& what, int count) {
     std::string out;
     for (int k = 0; k < count; ++k) out += what;

@@ -42,7 +42,7 @@ std::string shown(const std::string& text, std::size_t number) {
   return line;
 }
 
-TEST(Reader, RefusesWhatItDoesNotUnderstandAndNamesFileAndLine) {
+TEST(Reader, RefusesUnknownBlocksAndNamesFileAndLine) {
   const std::pair<const char*, const char*> cases[] = {
       {"G1 X NaN F1", "expected a number after X"},
       {"G1 X1 FNAN", "expected a number after F"},
@@ -152,7 +152,7 @@ TEST(Reader, RefusesUnknownMachinesAndOptions) {
   EXPECT_NE(error("tcp", {{"chord_tolerance", std::string("small")}}), "");
 }
 
-TEST(Reader, ReadsWhatOthersWrite) {
+TEST(Reader, ReadsCodeOfOtherPrograms) {
   const Program p = read(
       "%\r\no1234 (NAME \xC3\xA9)\r\nn10 g90g21g17g40g49g80g54 g94\r\n\r\nN20 T3 M6 ; tool\r\n"
       "s 1000 m3 m8\r\ng0x1.y+.5z-2\r\n  G01 X 10 (mid) Y 20 F 300.5\r\nY21\r\nG91 X1\r\nG90 G00 Z5.0\r\nM5 M9\r\n"
@@ -184,12 +184,12 @@ TEST(Reader, ReadsTheFilesOfOtherSystems) {
   EXPECT_TRUE(p.at_machine().back());
 }
 
-TEST(Reader, PassesOverBlocksThatAreDeletedUnlessToldNotTo) {
+TEST(Reader, SkipsDeletedBlocksUnlessAnOptionReadsThem) {
   EXPECT_EQ(read("G0 X1\n/X2\n /N5 X3 nonsense").size(), 1U);
   EXPECT_EQ(read("G0 X1\n/X2\n/N5 X3", "tcp", {{"block_delete", false}}).size(), 3U);
 }
 
-TEST(Reader, SkipsUnknownWordsWhereItIsToldToAndListsThem) {
+TEST(Reader, SkipsAndListsUnknownWordsOnRequest) {
   const Program p = read("G0 X1 U7\nG1 X2 F10\nG187 P1 E0.1\nG60 X9\nG60 G1 X3\nM97 P5\nX4", "tcp",
                          {{"unknown", std::string("skip")}});
   ASSERT_EQ(p.size(), 4U);
@@ -277,7 +277,7 @@ TEST(Reader, SplinesFollowTheirPolynomials) {
   check(5, {9, 5}, (Vec2(9, 5) + 2.0 * control) / 3.0, (Vec2(12, 3) + 2.0 * control) / 3.0, {12, 3});
 }
 
-TEST(Reader, ArcsOfSeveralTurns) {
+TEST(Reader, ArcsMayTurnSeveralTimes) {
   const Program p = read("G0 X10\nG3 X-10 I-10 Z4 P3 F100");
   double way = 0;
   for (std::size_t k = 1; k < p.size(); ++k) way += glm::length(p.poses()[k].tip - p.poses()[k - 1].tip);
@@ -291,7 +291,7 @@ TEST(Reader, TakesFeedPerTurnFromTheSpindle) {
             "p.ngc, line 1: a feed per revolution (G95) without a spindle speed S [G95 F0.1 G1 X1]");
 }
 
-TEST(Reader, ReadsNothingFromNothing) {
+TEST(Reader, ReadsAnEmptyFileAsAnEmptyProgram) {
   for (const char* text : {"", "\n\n", "%\n%\n", "(only a comment)", "; \xFF\n", "M30"})
     EXPECT_TRUE(read(text).empty());
 }
@@ -304,7 +304,7 @@ TEST(Reader, TurnsRotaryWordsIntoTheAxis) {
     EXPECT_LT(glm::length(p.poses()[k].axis - test::axis_of(ac[k].first, ac[k].second)), 1e-15);
 }
 
-TEST(Reader, TakesFeedUnderInverseTimeFromTheTipsWay) {
+TEST(Reader, TakesFeedUnderInverseTimeFromTheTipsPath) {
   const Program p = read("G93 G1 X3 Y4 F2\nX13 F0.5\nA10 F3\nG0 X0\nG2 X10 I5 Z4 F10\nG94 G1 X0 F77");
   EXPECT_DOUBLE_EQ(p.feed()[0], 10);
   EXPECT_DOUBLE_EQ(p.feed()[1], 5);
@@ -361,7 +361,7 @@ TEST(Reader, ArcsFollowTheirCircleInEveryPlane) {
   }
 }
 
-TEST(Reader, HelicesAndFullCircles) {
+TEST(Reader, HelicesAndFullCirclesAreRead) {
   const Program full = read("G0 X10\nG3 I-10 F100");
   EXPECT_EQ(full.line().back(), 2);
   double area = 0;
@@ -384,7 +384,7 @@ TEST(Reader, HelicesAndFullCircles) {
   EXPECT_LT(read("G2 I5 F1", "tcp", {{"chord_tolerance", 1.0}}).size(), 10U);
 }
 
-TEST(Reader, OneRowPerBlockUnlessTheAxisIsToBeFollowed) {
+TEST(Reader, MakesOneRowPerBlockUnlessItFollowsTheAxis) {
   const std::string text = "G1 A30 F10\nX100 C360 F100\nG0 C0";
   EXPECT_EQ(read(text).size(), 3U);
   const Program p = read(text, "tcp", {{"axis_tolerance", 0.001}});

@@ -31,7 +31,7 @@ void expect_same_moves(const Program& a, const Program& b, const std::string& wh
   }
 }
 
-TEST(RealPrograms, FormsThatMoveNothingAreTaken) {
+TEST(RealPrograms, FormsThatMoveNothingAreAccepted) {
   const std::string moves = "G21 G0 X0 Y0 Z5\nG1 X10 F100\n";
   const Program plain = read_nc_text(moves);
   const std::string headers[] = {"G0 G17 G40 G49 G80 G90",
@@ -66,7 +66,7 @@ TEST(RealPrograms, FormsThatMoveNothingAreTaken) {
   expect_same_moves(read_nc_text("G0 X0 Y0 Z5 H1 D2\nG1 X10 F100 D2"), plain, "H and D");
 }
 
-TEST(RealPrograms, WhatFollowsTheEndIsNotReadAndNoted) {
+TEST(RealPrograms, TextAfterTheEndIsNotReadAndNoted) {
   const Program p = read_nc_text("G21 G0 X1\nM30\n(a comment)\nM30\nG0 X2\n%\nnonsense");
   EXPECT_EQ(p.size(), 1U);
   ASSERT_EQ(p.notes.size(), 1U);
@@ -97,7 +97,7 @@ TEST(RealPrograms, CoordinatesThatWereSkippedAreNotedAsSuch) {
   EXPECT_EQ(p.notes[0].line, 2);
 }
 
-TEST(RealPrograms, ThePathOfTheCentreIsReadUnderCompensationWhereItIsAskedFor) {
+TEST(RealPrograms, ThePathOfTheCentreIsReadUnderCompensationOnRequest) {
   const std::string text = "G21 G0 X0 Y0 Z0\nG1 G41 D1 X10 F100\nG40 Y5";
   EXPECT_NE(nc_error(text).find("{'cutter_compensation': 'ignore'}"), std::string::npos);
   const Program p = read_nc_text(text, "tcp", {{"cutter_compensation", std::string("ignore")}});
@@ -105,7 +105,7 @@ TEST(RealPrograms, ThePathOfTheCentreIsReadUnderCompensationWhereItIsAskedFor) {
   EXPECT_EQ(kinds(p), std::vector<std::string>{"cutter compensation"});
 }
 
-TEST(RealPrograms, WhatWouldMoveAllThatFollowsIsNeverSkipped) {
+TEST(RealPrograms, WordsThatMoveTheFollowingBlocksAreNeverSkipped) {
   for (const char* code : {"G68 X0 Y0 R30", "G68.2 X0 Y0 Z0 I0 J30 K0", "G53.1", "G16", "G12.1", "G51 X2", "G51.1 X0",
                            "G54.1 P3", "G154 P3"}) {
     for (const Options& options : {Options{}, kSkip}) {
@@ -121,7 +121,7 @@ TEST(RealPrograms, CommentsMayHoldBrackets) {
   EXPECT_EQ(nc_error("G0 X1 (a (b)"), "line 1: unclosed comment [G0 X1 (a (b)]");
 }
 
-TEST(RealPrograms, AMotionBesideAHomeHoldsAfterIt) {
+TEST(RealPrograms, AMotionInTheBlockOfAHomeHoldsAfterIt) {
   const Program p = read_nc_text("G21 G0 X1 Y2 Z3\nG0 G91 G28 Z0\nG90 X5\nZ4");
   EXPECT_TRUE(p.at_machine()[2]);
   EXPECT_EQ(p.poses().back().tip, Vec3(5, 2, 4));

@@ -43,7 +43,7 @@ void expect_circle(const Program& p, const Vec2& centre, double radius, double s
   EXPECT_NEAR(turn, sweep, 1e-6);
 }
 
-TEST(SinumerikArcs, AreGivenInAllTheirForms) {
+TEST(SinumerikArcs, AreReadInAllForms) {
   expect_circle(from_ten("G3 X0 Y10 I-10 J0"), {0, 0}, 10, kPi / 2);
   expect_circle(from_ten("G2 X0 Y10 I=AC(0) J=AC(0)"), {0, 0}, 10, -1.5 * kPi);
   expect_circle(from_ten("G3 X0 Y10 CR=10"), {0, 0}, 10, kPi / 2);
@@ -74,7 +74,7 @@ TEST(SinumerikArcs, LieInTheirPlaneAndFrame) {
   for (const Pose& p : space.poses()) EXPECT_NEAR(glm::length(p.tip), 10, 1e-6) << "a circle on the sphere";
 }
 
-TEST(SinumerikArcs, SayWhatIsWrong) {
+TEST(SinumerikArcs, ErrorsNameTheFault) {
   EXPECT_EQ(error("G0 X10 Y0 Z0\nG3 X0 Y10 F9").substr(0, 58),
             "line 2: an arc without a centre (I, J, K), CR or AR [G3 X0");
   EXPECT_EQ(error("G0 X10 Y0 Z0\nG3 X0 Y12 I-10 F9").substr(0, 45), "line 2: the arc's end misses its circle by 2.");
@@ -155,7 +155,7 @@ TEST(SinumerikCycles, AreCalledAfterEachMove) {
   EXPECT_EQ(bottoms("HOLES2(5,0,10,90,30,2)"), (std::vector<std::array<double, 2>>{{5, 10}, {0, 8.660254}}));
 }
 
-TEST(SinumerikCycles, SayWhatIsWrong) {
+TEST(SinumerikCycles, ErrorsNameTheFault) {
   const std::string start = "G0 X0 Y0 Z50 F9\n";
   EXPECT_EQ(error(start + "CYCLE81(20,0,2)").substr(0, 52), "line 2: CYCLE81: neither DP nor DPR, its depth, is g");
   EXPECT_EQ(error(start + "CYCLE81(20,0,2,-5,7)").substr(0, 48), "line 2: CYCLE81: DP and DPR name different depth");

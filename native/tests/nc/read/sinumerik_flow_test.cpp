@@ -117,7 +117,7 @@ TEST(SinumerikFlow, CallsSubprograms) {
             "line 1: a subprogram with parameters: read");
 }
 
-TEST(SinumerikFlow, FindsSubprogramsBesideTheFile) {
+TEST(SinumerikFlow, FindsSubprogramsNextToTheFile) {
   const auto folder = std::filesystem::temp_directory_path() / "riffler_sinumerik_flow";
   std::filesystem::create_directories(folder);
   std::ofstream(folder / "part.mpf") << "G0 X0 Y0 Z0\nstep(5)\nX9\nM30\n";

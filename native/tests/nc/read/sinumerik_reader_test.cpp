@@ -127,7 +127,7 @@ TEST(SinumerikReader, MarksPositionsOfTheMachine) {
   EXPECT_EQ(turned.at_machine(), (std::vector<std::uint8_t>{0, 1, 1, 0}));
 }
 
-TEST(SinumerikReader, NotesWhatIsNotKnownOfWorkOffsets) {
+TEST(SinumerikReader, NotesUnknownWorkOffsets) {
   const Program p = read("G54 G0 X0 Y0 Z9\nG55 X1\nG505 X2\nG54 X3");
   ASSERT_EQ(kinds(p), (std::vector<std::string>{"work offset", "work offset"}));
   EXPECT_TRUE(p.notes[0].message.starts_with("G55: how far it is from G54 is not in the program"));
@@ -167,7 +167,7 @@ TEST(SinumerikReader, KeepsTheTipUnderTransformation) {
             "line 1: unknown letter W: second linear axes are n");
 }
 
-TEST(SinumerikReader, TurnsTheAxisAlongAGreatCircleWhereItIsTold) {
+TEST(SinumerikReader, TurnsTheAxisAlongAGreatCircleOnCommand) {
   const std::string start = "G0 X0 Y0 Z0\nTRAORI\nG1 A45 C0 F100\n";
   EXPECT_EQ(read(start + "ORIVECT\nC90").via().size(), 0U);
   EXPECT_EQ(read(start + "ORIAXES\nC90").via().size(), 1U);
@@ -211,7 +211,7 @@ TEST(SinumerikReader, SwivelsThePlane) {
   EXPECT_EQ(error("G0 X0 Y0 Z0\nCYCLE800(0,\"T\",0,57,0,0,0,45,0,0,0,0,0,1)", kMetric, "sinumerik-bc"), "no error");
 }
 
-TEST(SinumerikReader, RefusesByNameAndSkipsOnlyWhatMovesNothing) {
+TEST(SinumerikReader, NamesWhatItRefusesAndSkipsOnlyWhatMovesNothing) {
   const Options skip{{"unknown", std::string("skip")}, {"units", std::string("mm")}};
   EXPECT_EQ(error("G41 X1"),
             "line 1: cutter radius compensation (G41) is not read: have the CAM system write the path of the tool's "
@@ -251,7 +251,7 @@ TEST(SinumerikReader, NamesTheMachinesThatReadIt) {
   EXPECT_THROW(read("G0 X1", {{"tcp", false}}), std::invalid_argument);
 }
 
-TEST(SinumerikReader, ReadsWhatIsWritten) {
+TEST(SinumerikReader, ReadsBackWrittenCode) {
   for (const bool arcs : {false, true}) {
     Program program;
     for (int k = 0; k <= 40; ++k) {

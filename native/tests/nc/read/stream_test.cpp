@@ -58,7 +58,7 @@ TEST_F(NcStreamFile, GivesAptRowsToo) {
   for (const std::size_t rows : {2, 10, 50, 51}) expect_as_read({"apt", {}}, rows);
 }
 
-TEST_F(NcStreamFile, SaysWhatIsWrongWhenItGetsThere) {
+TEST_F(NcStreamFile, ReportsAnErrorWhenItReachesIt) {
   write("G0 X1 Y0 Z0\nX2\nX3\nX\n");
   NcStream stream(path_, {}, 3);
   Program chunk;

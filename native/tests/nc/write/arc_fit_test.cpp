@@ -201,7 +201,7 @@ TEST(ArcFit, HelicesRiseWithTheAngle) {
   }
 }
 
-TEST(ArcFit, AHelixThatDoesNotRiseEvenlyIsNone) {
+TEST(ArcFit, ACurveThatDoesNotRiseEvenlyIsNotAHelix) {
   Points points;
   add_arc(points, {0, 0}, 12, 0, 2, 200);
   for (std::size_t k = 0; k < points.size(); ++k) points[k].z = 1e-4 * std::pow(static_cast<double>(k), 2);
@@ -220,7 +220,7 @@ TEST(ArcFit, StraightRunsAreOneLine) {
   }
 }
 
-TEST(ArcFit, PolygonsAreNoCircles) {
+TEST(ArcFit, PolygonsAreNotCircles) {
   Points points;
   add_arc(points, {0, 0}, 10, 0, 2 * kPi, 6);
   const auto pieces = fit_arcs(points, 0.01);
@@ -228,7 +228,7 @@ TEST(ArcFit, PolygonsAreNoCircles) {
   EXPECT_EQ(arcs(pieces), 0U);
 }
 
-TEST(ArcFit, WhatGoesBackIsNotSmoothedAway) {
+TEST(ArcFit, ReversalsAreNotSmoothedAway) {
   // There and back along a line, along an arc, and by less than the tolerance.
   Points there{{0, 0, 0}};
   add_line(there, {10, 0, 0}, 20);
@@ -315,7 +315,7 @@ Points random_run(stress::Random& random) {
   return placed(points, random.one_of(axes), random.one_in(4) ? Vec3(1e5, -9e4, 1e5) : Vec3(0));
 }
 
-TEST(ArcFit, RandomRunsStayWithinTheToleranceBothWays) {
+TEST(ArcFit, RandomRunsStayWithinTheToleranceInBothDirections) {
   stress::Random random(71);
   std::size_t found = 0;
   for (int round = 0; round < test::cases(400); ++round) {

@@ -45,7 +45,7 @@ std::vector<std::string> lines(const std::string& text) {
   return out;
 }
 
-TEST(Rs274Post, NumbersLinesWhereItIsAsked) {
+TEST(Rs274Post, NumbersLinesOnRequest) {
   int expected = 0;
   for (const std::string& line : lines(text_of(two_tools(), "tcp", {{"line_numbers", 5.0}}))) {
     if (line[0] == '(') continue;
@@ -57,7 +57,7 @@ TEST(Rs274Post, NumbersLinesWhereItIsAsked) {
   for (std::size_t row = 0; row < a.size(); ++row) EXPECT_EQ(a.poses()[row].tip, b.poses()[row].tip);
 }
 
-TEST(Rs274Post, SwitchesCoolantAndRetractsWhereItIsAsked) {
+TEST(Rs274Post, SwitchesCoolantAndRetractsOnRequest) {
   const std::string text = text_of(two_tools(), "tcp", {{"coolant", std::string("flood")}, {"retract", -2.5}});
   std::size_t retracts = 0;
   for (const std::string& line : lines(text)) retracts += line == "G53 G0 Z-2.5";
@@ -220,7 +220,7 @@ TEST(HeidenhainPost, HoldsEveryPoseByAnglesAndByVectors) {
   }
 }
 
-TEST(AptPost, RefusesWhatNoCodeCanHold) {
+TEST(AptPost, RefusesRowsThatNoCodeCanHold) {
   Program far;
   far.append({{{0, 1e15, 0}, {0, 0, 1}}, 1});
   for (const Options& options : {Options{}, Options{{"vectors", true}}})
@@ -228,7 +228,7 @@ TEST(AptPost, RefusesWhatNoCodeCanHold) {
               "poses, row 0: Y is out of range");
 }
 
-TEST(AptPost, SaysEveryRowAsItIs) {
+TEST(AptPost, WritesEveryRowUnchanged) {
   const Program p = two_tools();
   const auto all = lines(text_of(p, "apt"));
   EXPECT_EQ(all.front(), "PARTNO RIFFLER");

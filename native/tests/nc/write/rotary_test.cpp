@@ -77,7 +77,7 @@ TEST(TcpMachine, BothBranchesHoldThePoseAndKeepNearTheJointsBefore) {
   }
 }
 
-TEST(ChooseJoints, TurnsOnAndOnWithoutAJump) {
+TEST(ChooseJoints, TurnsManyTimesWithoutAJump) {
   std::vector<Vec3> axes;
   for (int k = 0; k <= 300; ++k) axes.push_back(tilted(20, 10.0 * k));
   const auto joints = choose(feeds(axes), *tcp(), kAxisTolerance);
@@ -319,7 +319,7 @@ TEST(Subdivider, DoesNotTakeWholeTurnsForRest) {
   EXPECT_LT(worst, 0.01);
 }
 
-TEST(Subdivider, RefusesWhatTheAxesCannotFollowInsteadOfJumping) {
+TEST(Subdivider, RefusesMovesThatTheAxesCannotFollow) {
   const auto machine = tcp();
   const Pose a{{0, 0, 0}, tilted(30, 0)}, b{{1, 0, 0}, tilted(30, 60)};
   const Joints from = machine->joints(a, 0, {}, 1e-6), to = machine->joints(b, 1, from, 1e-6);

@@ -43,7 +43,7 @@ Said said_by_writer(const Program& program, const WriteOptions& how) {
   }
 }
 
-TEST(RowCheck, FindsWhatTheWriterRefusesAndNothingElse) {
+TEST(RowCheck, FindsExactlyTheRowsThatTheWriterRefuses) {
   const std::vector<WriteOptions> machines = test::all_machines();
   std::map<std::string, int> faults;
   int accepted = 0, refused = 0;
@@ -87,7 +87,7 @@ TEST(RowCheck, OfThreeAxesNamesTheFirstRowThatLeans) {
 }
 
 /// The table swings the tip from 38 mm over 50 mm to 38 mm along X.
-TEST(RowCheck, LooksAtTheWayBetweenRowsToo) {
+TEST(RowCheck, ChecksTheMotionBetweenRowsToo) {
   Program p;
   for (const double around : {50.0, 130.0}) p.append({{{50, 0, 0}, tilted(10, around)}, 500, 9000, 1});
   const auto fault = [&](double limit) {
@@ -113,7 +113,7 @@ class Recorded final : public BlockSink {
   std::vector<std::string> events;
 };
 
-TEST(RowCheck, HandsOnTheBlocksBeforeTheFault) {
+TEST(RowCheck, PassesOnTheBlocksBeforeTheFault) {
   Program p;
   for (int k = 0; k < 4; ++k)
     p.append({{{10.0 * k, 0, 0}, tilted(k < 3 ? 0 : 10, 0)}, k ? 500.0 : 0.0, 9000, 1, 0, k == 0});
@@ -131,7 +131,7 @@ TEST(RowCheck, HandsOnTheBlocksBeforeTheFault) {
   EXPECT_EQ(report.blocks, 0U) << "counted by the post";
 }
 
-TEST(RowCheck, CanBeAskedAgainAndOfNothing) {
+TEST(RowCheck, CanBeRepeatedAndTakesAnEmptyProgram) {
   const RowCheck check(on_machine("tcp", {{"limits_a", std::vector<double>{-5, 5}}}));
   EXPECT_FALSE(check.first_fault(Program()).has_value());
   Program p;

@@ -108,7 +108,7 @@ TEST(Writer, KeepsRowsThatDoNotMove) {
   }
 }
 
-TEST(Writer, WritesWhatControlsExpectAroundTheMoves) {
+TEST(Writer, WritesTheBeginningAndEndThatControlsExpect) {
   Program p = program_from_paths(swaying(3), {});
   p.provenance = {{"part", "shoe (left) \xC3\xA9.stl"}, {"LOGOPEN,x", "y"}};
   p.tools.emplace(1,
@@ -135,7 +135,7 @@ TEST(Writer, PrintsAtLeastFiveDecimalsAndSixForAngles) {
   EXPECT_EQ(text.find("-0.00000 "), std::string::npos);
 }
 
-TEST(Writer, SaysModalWordsOnce) {
+TEST(Writer, WritesModalWordsOnce) {
   const std::string text = to_nc(upright(50));
   const auto count = [&](const std::string& word) {
     std::size_t n = 0;
@@ -148,7 +148,7 @@ TEST(Writer, SaysModalWordsOnce) {
   EXPECT_EQ(count(" C0"), 1U);
 }
 
-TEST(Writer, TakesTheFeedOfTheNextMoveWhereTheTipStandsStill) {
+TEST(Writer, TakesTheFeedOfTheNextMoveIfTheTipStandsStill) {
   Program p;
   p.append({{{0, 0, 0}, {0, 0, 1}}, 0, 0, 1, 0, true});
   p.append({{{0, 0, 0}, {0, 0.6, 0.8}}, 0, 0, 1, 0, false});
@@ -157,7 +157,7 @@ TEST(Writer, TakesTheFeedOfTheNextMoveWhereTheTipStandsStill) {
   for (const auto& block : block_ends(to_nc(p))) EXPECT_TRUE(block.rapid || block.at.at('F') == 250);
 }
 
-TEST(Writer, WritesTheSmallestFeedAsMoreThanNothing) {
+TEST(Writer, WritesTheSmallestFeedAsMoreThanZero) {
   Program p;
   p.append({{{0, 0, 0}, {0, 0, 1}}, 1e-9, 0, 1, 0, false});
   EXPECT_GT(parse_nc(to_nc(p, {.options = {{"safe_start", false}}}), "p.ngc").feed()[0], 0);
@@ -172,7 +172,7 @@ std::string error_of(const Program& p, const WriteOptions& options) {
   return "";
 }
 
-TEST(Writer, NamesWhatIsWrong) {
+TEST(Writer, NamesBadInput) {
   const Program p = upright(3);
   EXPECT_EQ(error_of(p, {}), "");
   WriteOptions options;
@@ -209,7 +209,7 @@ TEST(Writer, NamesWhatIsWrong) {
             std::string::npos);
 }
 
-TEST(Writer, LeavesTheOldFileWhereItCannotWrite) {
+TEST(Writer, AFailedWriteLeavesTheOldFile) {
   const auto path = std::filesystem::temp_directory_path() / "riffler_writer_test.ngc";
   write_nc(upright(3), path);
   const std::string before = slurp(path);
@@ -228,7 +228,7 @@ TEST(Writer, WritesAnEmptyProgram) {
   EXPECT_TRUE(parse_nc(to_nc(Program()), "p.ngc").empty());
 }
 
-TEST(Writer, MutationsOfItsTextDoNotPass) {
+TEST(Writer, MutatedTextDoesNotPass) {
   const Program p = program_from_paths(swaying(20), {});
   const std::string text = to_nc(p);
   const Program same = parse_nc(text, "p.ngc");

@@ -118,7 +118,7 @@ TEST(PenArm, InverseKeepsItsDigitsWhereTheArmIsNearlyStraightOrFolded) {
       }
 }
 
-TEST(PenArm, InverseSaysWhyThereIsNone) {
+TEST(PenArm, InverseNamesTheReasonIfThereIsNone) {
   const auto reach = [](const ArmLinks& links, const Vec3& from_shoulder) {
     return arm_angles(links, from_shoulder + Vec3(0, links.shoulder, 0)).reach;
   };

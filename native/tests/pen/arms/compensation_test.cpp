@@ -24,14 +24,14 @@ int greatest(const SimulatedBench& b) {
   return b.pen->drive().power ? most : 0;
 }
 
-TEST(Compensation, SharesOutsideOfNothingAndAllAreRefusedByName) {
+TEST(Compensation, SharesOutsideZeroToOneAreRefusedByName) {
   EXPECT_EQ(test::error_of([] { Compensation{1.5, 0}.validate(); }),
             "gravity must be a number between 0.000000 and 1.000000");
   EXPECT_EQ(test::error_of([] { Compensation{0, -0.1}.validate(); }),
             "friction must be a number between 0.000000 and 1.000000");
 }
 
-TEST(Compensation, TheWrenchHasWhatItLeavesOfThePeaksInItsOwnDirection) {
+TEST(Compensation, TheWrenchGetsTheRestOfThePeaksInItsDirection) {
   const PenGeometry pen = load_pen("riffler");
   stress::Random random(7);
   int cut = 0;
@@ -55,7 +55,7 @@ TEST(Compensation, TheWrenchHasWhatItLeavesOfThePeaksInItsOwnDirection) {
   EXPECT_GT(cut, 1000);
 }
 
-TEST(Compensation, WhatIsBeyondThePeaksIsLessByOneFactor) {
+TEST(Compensation, CommandsBeyondThePeaksAreScaledByOneFactor) {
   PenGeometry pen = load_pen("riffler");
   pen.channels[0].gravity = 1e5;
   const JointAngles angles{Vec3(0.1, 0.5, 0.2), Vec3(0.1, 0.5, 0.2)};
@@ -67,7 +67,7 @@ TEST(Compensation, WhatIsBeyondThePeaksIsLessByOneFactor) {
   }
 }
 
-TEST(Compensation, OfAPenThatWasIdentifiedIsOnUnlessItIsGivenAndLeavesWhatIsNotCertain) {
+TEST(Compensation, OfAnIdentifiedPenIsOnByDefaultAndOmitsUncertainValues) {
   PenGeometry pen = load_pen("riffler");
   EXPECT_EQ(CompensationShares().of(pen).gravity, 0);
   EXPECT_EQ(CompensationShares().of(pen).friction, 0);
@@ -95,7 +95,7 @@ double sag(double gravity, bool holds = true) {
   return home.tip.z - b.pen->arms().posture().pose.tip.z;
 }
 
-TEST(Compensation, APenThatIsLetGoStaysWhereItIs) {
+TEST(Compensation, AReleasedPenStaysInPlace) {
   EXPECT_GT(sag(0), 20);
   EXPECT_GT(sag(0.5), 0.5);
   EXPECT_LT(sag(0.5), sag(0));
@@ -144,7 +144,7 @@ TEST(Compensation, TheHandFeelsLessFrictionByTheShare) {
 
 /// Random hands, loose and firm, that tremble and let go; with jitter on the cable. The motors' account never passes
 /// what friction took.
-TEST(Compensation, OfFrictionNeverGivesWhatFrictionDidNotTake) {
+TEST(Compensation, OfFrictionNeverGivesMoreThanFrictionTook) {
   for (unsigned seed = 1; seed <= (test::kSanitized ? 2 : 6); ++seed) {
     SimulatedPenSettings settings;
     settings.cable.jitter_us = 1000;
@@ -171,7 +171,7 @@ TEST(Compensation, OfFrictionNeverGivesWhatFrictionDidNotTake) {
   }
 }
 
-TEST(Compensation, WhatWasAppliedIsTheWrenchAlone) {
+TEST(Compensation, TheAppliedWrenchExcludesTheCompensation) {
   SimulatedBench b({}, nullptr, {}, {1, 0.5});
   b.run(2);
   EXPECT_GT(greatest(b), 100);

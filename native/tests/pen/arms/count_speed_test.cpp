@@ -29,7 +29,7 @@ TEST(CountSpeed, SteadyMotionIsAveragedOverTheWholeWindow) {
   }
 }
 
-TEST(CountSpeed, ATremblingCountIsNoMotionToSpeakOf) {
+TEST(CountSpeed, ATremblingCountGivesNearlyNoSpeed) {
   CountSpeed estimate(load_pen("riffler"));
   double most = 0;
   for (int k = 0; k < 200; ++k) {
@@ -60,7 +60,7 @@ TEST(CountSpeed, AcceleratedMotionIsFollowed) {
   EXPECT_LT(worst, 500) << "2 % of the full speed; a plain difference would be off by 1000";
 }
 
-TEST(CountSpeed, CountersThatWrapAndTimesThatJumpBackDoNotShow) {
+TEST(CountSpeed, WrappingCountersAndTimesThatJumpBackHaveNoEffect) {
   const std::int32_t most = std::numeric_limits<std::int32_t>::max();
   CountSpeed plain(load_pen("riffler")), wrapping(load_pen("riffler"));
   for (int k = 0; k < 50; ++k) {

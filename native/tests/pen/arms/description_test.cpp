@@ -84,7 +84,7 @@ TEST(PenGeometry, TurnIsARotationWhereAxesAreNearlySquare) {
   EXPECT_LT(glm::distance(glm::transpose(pen.turn) * pen.turn * Vec3(1, 2, 3), Vec3(1, 2, 3)), 1e-14);
 }
 
-TEST(PenGeometry, SaysWhichKeyIsMissing) {
+TEST(PenGeometry, NamesAMissingKey) {
   EXPECT_EQ(error("x = 1\n"), "pen.toml, line 1: unknown key x");
   EXPECT_EQ(error(""), "pen.toml, line 1: description is missing");
   std::string some = "description = \"x\"\n";
@@ -107,7 +107,7 @@ TEST(PenGeometry, SaysWhichKeyIsMissing) {
   expect_at("[limits]", "force = 6.0", "", "force is missing");
 }
 
-TEST(PenGeometry, SaysWhatTypeIsExpected) {
+TEST(PenGeometry, NamesTheExpectedType) {
   expect("shoulder = 80.0", "shoulder = \"80\"", "shoulder must be a finite number");
   expect("upper = { R = 150.0, L = 180.0 }", "upper = 150.0", "upper must be a table");
   expect("tip = \"L\"", "tip = 1", "tip must be a text");
@@ -124,7 +124,7 @@ TEST(PenGeometry, SaysWhatTypeIsExpected) {
   expect("description = \"Pen", "description = [] #", "description must be a text");
 }
 
-TEST(PenGeometry, RefusesValuesThatCannotBe) {
+TEST(PenGeometry, RefusesImpossibleValues) {
   expect("shoulder = 80.0", "shoulder = -80.0", "shoulder must be positive, at most 10000");
   expect("shoulder = 80.0", "shoulder = 8e4", "shoulder must be positive, at most 10000");
   expect("upper = { R = 150.0", "upper = { R = -150.0", "R must be positive, at most 10000");
@@ -233,7 +233,7 @@ TEST(Pens, AreFoundByNameAndByPath) {
   std::filesystem::remove_all(folder);
 }
 
-TEST(PenDescription, UncertaintiesAreThereForAPenThatWasIdentified) {
+TEST(PenDescription, AnIdentifiedPenHasUncertainties) {
   EXPECT_FALSE(describe_pen(shipped(), "pen.toml", "pen").uncertainty);
   const std::string table =
       "[uncertainty]\ntorque_constant = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6]\ncoulomb = [1, 1, 1, 1, 1, 1]\n"

@@ -106,7 +106,7 @@ TEST(JointLosses, OfASteadyTurnAreItsFrictionTimesItsAngle) {
 }
 
 /// The damping along n with everything else free, by minimising over joint rates that lead the pivot along n.
-TEST(PivotDamping, IsThatOfTheMotionThatCostsLeast) {
+TEST(PivotDamping, IsThatOfTheMotionWithTheLeastLoss) {
   const PenGeometry pen = identified(test::turned_pen(), 0.05);
   const PenKinematics kinematics(pen);
   stress::Random random(3);

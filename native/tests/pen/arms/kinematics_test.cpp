@@ -30,7 +30,7 @@ void for_reached(int poses, const PenKinematics& pen, const std::function<void(c
   EXPECT_GT(reached, poses / 4);
 }
 
-TEST(PenKinematics, HomeIsWhereTheSourceHasIt) {
+TEST(PenKinematics, HomeAgreesWithTheSource) {
   const PenKinematics pen(load_pen("riffler"));
   const PenPosture home = pen.posture(EncoderCounts{0, 0, -5133, 0, 0, 5133});
   // Exactly at arcsin(L0 / L2), whose count the source has as 5133 and is 5130.96, the ends would be at y = 0.
@@ -51,7 +51,7 @@ TEST(PenKinematics, AnglesAreCountsByStepsOfTheirJoint) {
   EXPECT_LT(glm::distance(angles[1], Vec3(-kPi / 5, -2 * kPi, -kPi / 2)), 1e-14);
 }
 
-TEST(PenKinematics, PosesComeBackFromTheirAngles) {
+TEST(PenKinematics, PosesAreRestoredFromTheirAngles) {
   const PenKinematics pen(test::turned_pen());
   for_reached(20000, pen, [&](const Pose& pose, const PenInverse& inverse) {
     const PenPosture posture = pen.posture(inverse.angles);
@@ -61,7 +61,7 @@ TEST(PenKinematics, PosesComeBackFromTheirAngles) {
   });
 }
 
-TEST(PenKinematics, PosesComeBackFromTheirCountsToHalfACount) {
+TEST(PenKinematics, PosesAreRestoredFromTheirCountsToHalfACount) {
   const PenKinematics pen(load_pen("riffler"));
   double furthest = 0;
   for_reached(20000, pen, [&](const Pose& pose, const PenInverse& inverse) {
@@ -76,7 +76,7 @@ TEST(PenKinematics, PosesComeBackFromTheirCountsToHalfACount) {
   EXPECT_GT(furthest, 0.005);
 }
 
-TEST(PenKinematics, InverseSaysWhichArmCannotAndWhy) {
+TEST(PenKinematics, InverseNamesTheArmThatCannotReachAndTheReason) {
   const PenKinematics pen(load_pen("riffler"));
   const Pose home = pen.posture(pen.home_angles()).pose;
   EXPECT_TRUE(pen.inverse(home).reached());
@@ -108,7 +108,7 @@ TEST(PenKinematics, SpeedIsTheDerivativeOfThePose) {
   });
 }
 
-TEST(PenKinematics, AnyStartOfTheCountersIsAsGoodAsThePresets) {
+TEST(PenKinematics, AnyStartOfTheCountersGivesTheSamePoses) {
   PenKinematics preset(load_pen("riffler")), homed(load_pen("riffler"));
   constexpr std::int32_t kMax = std::numeric_limits<std::int32_t>::max(), kMin = -kMax - 1;
   const EncoderCounts starts{kMax, kMin, kMax - 10, kMin + 10, 0, 123456789};
@@ -148,7 +148,7 @@ TEST(PenKinematics, SignsOfCountersTurnTheirJoints) {
   EXPECT_EQ(plain.angles(counts), mirrored.angles(other));
 }
 
-TEST(PenKinematics, EndsThatCoincideHaveNoDirectionAndNothingIsNotFinite) {
+TEST(PenKinematics, CoincidingEndsHaveNoDirectionAndAllValuesAreFinite) {
   PenGeometry geometry = load_pen("riffler");
   geometry.arms[1] = geometry.arms[0];
   const PenKinematics pen(geometry);
@@ -160,7 +160,7 @@ TEST(PenKinematics, EndsThatCoincideHaveNoDirectionAndNothingIsNotFinite) {
   EXPECT_TRUE(finite(speed.twist));
 }
 
-TEST(PenKinematics, WhatAHapticStepCallsThrowsNothingAndKeepsNoMemory) {
+TEST(PenKinematics, CallsOfAHapticStepThrowNothingAndAllocateNothing) {
   static_assert(noexcept(std::declval<const PenKinematics&>().posture(std::declval<const EncoderCounts&>())));
   static_assert(noexcept(std::declval<const PenKinematics&>().inverse(std::declval<const Pose&>())));
   static_assert(std::is_trivially_copyable_v<PenPosture> && std::is_trivially_copyable_v<PenInverse>);

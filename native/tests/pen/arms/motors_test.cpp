@@ -61,7 +61,7 @@ TEST(PenMotors, BeyondAPeakAllAreScaledAndTheWrenchKeepsItsDirection) {
   EXPECT_LT(glm::distance(felt.torque, commands.scale * (wrench.torque - missing)), 0.1);
 }
 
-TEST(PenMotors, TorquesThatAreNoNumbersPushNothing) {
+TEST(PenMotors, NanTorquesPushNothing) {
   const PenGeometry pen = load_pen("riffler");
   for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     MotorTorques torques{90, 90, 90, 90, 90, 90};
@@ -104,7 +104,7 @@ TEST(PenMotors, WeightIsThatOfAnyMassesOnTheLinks) {
   }
 }
 
-TEST(PenMotors, FrictionIsMadeUpForAlongTheMotionAndNotAtRest) {
+TEST(PenMotors, FrictionIsCompensatedAlongTheMotionAndNotAtRest) {
   const PenGeometry pen = load_pen("riffler");
   for (const double torque : friction_torques(pen, {})) EXPECT_EQ(torque, 0);
   const MotorTorques forward = friction_torques(pen, {Vec3(2), Vec3(-2)});

@@ -85,7 +85,7 @@ TEST(GripCheck, SwappedPlugsDoNotFit) {
   EXPECT_LT(joints, all / 50) << "joints 2 and 3 of R: where both have the same count it cannot show";
 }
 
-TEST(GripCheck, NumbersThatAreNotAreNotAFit) {
+TEST(GripCheck, NanIsNotAFit) {
   const PenKinematics pen(load_pen("riffler"));
   PenPosture posture = pen.posture(pen.home_angles());
   posture.length = std::numeric_limits<double>::quiet_NaN();
@@ -118,7 +118,7 @@ TEST(GripDiagnosis, FindsTheChannelThatLostCountsAndHowMany) {
     }
 }
 
-TEST(GripDiagnosis, TellsABadHomingFromALostCount) {
+TEST(GripDiagnosis, DistinguishesABadHomingFromALostCount) {
   const PenKinematics pen(load_pen("riffler"));
   const auto right = postures(pen, 60, 34);
   stress::Random random(35);
@@ -134,7 +134,7 @@ TEST(GripDiagnosis, TellsABadHomingFromALostCount) {
   EXPECT_GE(several, kRounds - 2) << "all joints up to 300 counts (2.3°) off";
 }
 
-TEST(GripDiagnosis, AsksForMovementWhereThePenStoodStill) {
+TEST(GripDiagnosis, IsUnclearIfThePenStoodStill) {
   const PenKinematics pen(load_pen("riffler"));
   EncoderCounts counts = pen.counts(pen.home_angles());
   counts[1] += 50;

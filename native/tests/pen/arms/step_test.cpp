@@ -11,7 +11,7 @@
 namespace riffler::pen::step_test {
 namespace {
 
-TEST(PenStep, AsksForNoMemory) {
+TEST(PenStep, AllocatesNothing) {
   const PenKinematics pen(load_pen("riffler"));
   const PenGeometry& geometry = pen.geometry();
   CountSpeed speed(geometry);

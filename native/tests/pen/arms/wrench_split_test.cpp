@@ -41,7 +41,7 @@ TEST(WrenchSplit, SumAndMomentAreExactForAMillionWrenches) {
   EXPECT_LE(worst_squeeze, 8 * kEps) << "the least forces do not squeeze the grip";
 }
 
-TEST(WrenchSplit, OfArmForcesGivesThemBackButForTheirTension) {
+TEST(WrenchSplit, OfArmForcesGivesThemBackExceptForTheirTension) {
   stress::Random random(22);
   for (int k = 0; k < 10000; ++k) {
     const Vec3 apart = 30.0 * random.direction();
@@ -54,7 +54,7 @@ TEST(WrenchSplit, OfArmForcesGivesThemBackButForTheirTension) {
   }
 }
 
-TEST(WrenchSplit, TorqueAlongTheGripIsMissingWhole) {
+TEST(WrenchSplit, AllTorqueAlongTheGripIsMissing) {
   const WrenchSplit split = split_wrench({{0, 0, 0}, {0, 0, 50}}, {0, 0, -30});
   EXPECT_EQ(split.missing, Vec3(0, 0, 50));
   EXPECT_EQ(split.forces[0], Vec3(0));
@@ -109,7 +109,7 @@ TEST(WrenchSplit, EffortDoesTheWorkOfTheWrenchAtItsPoint) {
   EXPECT_GT(reached, 1000);
 }
 
-TEST(WrenchSplit, WhatTheHandFeelsOfTheEffortIsWhatWasAskedForLessWhatIsMissing) {
+TEST(WrenchSplit, TheFeltWrenchIsTheRequestedOneLessTheMissingPart) {
   stress::Random random(47);
   int round = 0;
   while (round < 2000) {

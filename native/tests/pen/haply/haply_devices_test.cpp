@@ -91,7 +91,7 @@ TEST_F(Haply, CommandsAreSentAThousandTimesASecondAtMost) {
   EXPECT_GT(sent, 100 * seconds);
 }
 
-TEST_F(Haply, TheForceEndsWithTheAsking) {
+TEST_F(Haply, TheForceEndsWithTheRequests) {
   const auto pen = open_pen("haply");
   ASSERT_TRUE(pushes(*pen));
   std::this_thread::sleep_for(100ms);
@@ -99,7 +99,7 @@ TEST_F(Haply, TheForceEndsWithTheAsking) {
   EXPECT_EQ(pen->status().state, LinkState::Connected);
 }
 
-TEST_F(Haply, ServicesBefore35GetTheirFormOfAForce) {
+TEST_F(Haply, ServicesBefore35GetTheOlderFormOfAForce) {
   service.with([](State& s) { s.version = "3.1.1.0"; });
   const auto pen = open_pen("haply");
   EXPECT_TRUE(pushes(*pen));
@@ -154,7 +154,7 @@ TEST_F(Haply, LostAnswersAndJitterDoNotEndTheConnection) {
   EXPECT_TRUE(pushes(*pen));
 }
 
-TEST_F(Haply, StaleAnswersTakeTheForceAway) {
+TEST_F(Haply, StaleAnswersRemoveTheForce) {
   const auto pen = open_pen("haply");
   ASSERT_TRUE(pushes(*pen));
   service.with([](State& s) { s.delay = 60ms; });
@@ -200,7 +200,7 @@ TEST_F(Haply, AnArmThatIsPulledOutOrPoweredOffGetsNoForce) {
   EXPECT_TRUE(pushes(*pen));
 }
 
-TEST_F(Haply, NonsenseIsNoSignOfLife) {
+TEST_F(Haply, InvalidMessagesAreNoSignOfLife) {
   const auto pen = open_pen("haply");
   for (const char* text :
        {"{}", "][", "{\"inverse3\":[{\"device_id\":\"049D\",\"state\":{\"cursor_position\":{}}}]}"}) {
@@ -214,7 +214,7 @@ TEST_F(Haply, NonsenseIsNoSignOfLife) {
   EXPECT_GT(pen->status().counts.malformed, 0U);
 }
 
-TEST_F(Haply, AJumpOfTheArmTakesTheForceAwayUntilItIsReset) {
+TEST_F(Haply, AJumpOfTheArmRemovesTheForceUntilAReset) {
   const auto pen = open_pen("haply");
   ASSERT_TRUE(pushes(*pen));
   service.with([](State& s) { s.arms[0].position[0] += 0.05; });
@@ -231,7 +231,7 @@ TEST_F(Haply, TheForceNeverExceedsTheLimit) {
   EXPECT_LE(service.with([](State& s) { return s.most_force; }), 5);
 }
 
-TEST_F(Haply, WhatIsNoServiceOrOfAnotherVersionIsNamed) {
+TEST_F(Haply, OtherServersAndOtherVersionsAreNamed) {
   const auto text = [&](const std::function<void(State&)>& change) {
     service.with([&](State& s) {
       s = State{};
@@ -253,7 +253,7 @@ TEST_F(Haply, WhatIsNoServiceOrOfAnotherVersionIsNamed) {
   EXPECT_FALSE(find_haply()[0].is_there);
 }
 
-TEST_F(Haply, AClosedPortSaysWhatToStart) {
+TEST_F(Haply, TheErrorOfAClosedPortNamesWhatToStart) {
   service.stop();
   const std::vector<FoundDevice> found = find_haply();
   ASSERT_EQ(found.size(), 1U);
@@ -268,7 +268,7 @@ TEST_F(Haply, AClosedPortSaysWhatToStart) {
   }
 }
 
-TEST_F(Haply, ItIsListedAmongTheDevicesOrAmongWhatIsMissing) {
+TEST_F(Haply, IsListedAmongTheDevicesOrTheMissingOnes) {
   const auto has = [](const std::vector<FoundDevice>& all, const char* path) {
     for (const FoundDevice& found : all)
       if (found.path == path) return std::string(found.family->kind);

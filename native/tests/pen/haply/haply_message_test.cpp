@@ -120,7 +120,7 @@ TEST(HaplyMessage, DamagedMessagesNeverGiveImpossibleValues) {
   EXPECT_GT(accepted, 5'000);
 }
 
-TEST(HaplyMessage, ForcesAreWrittenAsTheVersionHasThem) {
+TEST(HaplyMessage, ForcesAreWrittenInTheFormOfTheVersion) {
   std::array<std::uint8_t, kLongestHaplyCommand> bytes{};
   const auto text = [&](const Vec3& force, const HaplyVersion& version, const std::string& id = "049D") {
     return std::string(bytes.begin(),

@@ -99,7 +99,7 @@ TEST_F(ArmProgram, TheForceEndsAndTheArmIsClosedWhenRifflerIsKilled) {
   EXPECT_TRUE(soon([&] { return !arm().open; }));
 }
 
-TEST_F(ArmProgram, ALibraryThatCrashesIsOneArmThatIsGone) {
+TEST_F(ArmProgram, ALibraryThatCrashesDisconnectsOneArm) {
   {
     ArmProcess process(library, "");
     ASSERT_TRUE(pushes(process, 1));
@@ -161,7 +161,7 @@ TEST_F(ArmProgram, NeedsNoPermissionToExecute) {
   std::filesystem::remove(copy);
 }
 
-TEST_F(ArmProgram, AMissingOrSenselessProgramIsNamedWithTheRemedy) {
+TEST_F(ArmProgram, AMissingOrBrokenProgramIsNamedWithTheRemedy) {
   ::setenv("RIFFLER_ARM_PROGRAM", "/nowhere/riffler-arm", 1);
   EXPECT_EQ(
       open_problem([&] { ArmProcess(library, ""); }),

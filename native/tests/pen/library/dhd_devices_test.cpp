@@ -104,7 +104,7 @@ TEST_F(ForceDimension, ReadsAThousandTimesASecondAtMost) {
   EXPECT_EQ(pen->status().counts.malformed, 0U);
 }
 
-TEST_F(ForceDimension, TheForceEndsWithTheAskingAndNeverExceedsTheLimits) {
+TEST_F(ForceDimension, TheForceEndsWithTheRequestsAndNeverExceedsTheLimits) {
   const auto pen = open_pen("force-dimension");
   ASSERT_TRUE(push_until(*pen, [&] { return arm().force[2] > 7.99; }, {{0, 0, 19}, {0, 0, 1100}}));
   for (int k = 0; k < 100; ++k) {
@@ -158,7 +158,7 @@ TEST_F(ForceDimension, NoForceWithoutPowerCalibrationOrItsButtonAndThenTheRamp) 
   EXPECT_TRUE(pushes(*pen));
 }
 
-TEST_F(ForceDimension, AJumpTripsAndReadingsThatCannotBeAreNoSignOfLife) {
+TEST_F(ForceDimension, AJumpTripsAndImpossibleReadingsAreNoSignOfLife) {
   const auto pen = open_pen("force-dimension");
   ASSERT_TRUE(pushes(*pen));
   arm().position[0] = 0.2;
@@ -192,7 +192,7 @@ TEST_F(ForceDimension, ASearchListsTheArmsAndEnablesNoForce) {
   EXPECT_TRUE(pushes(*pen)) << "the search has not closed it";
 }
 
-TEST_F(ForceDimension, WhatDoesNotOpenSaysWhy) {
+TEST_F(ForceDimension, AnArmThatDoesNotOpenReportsTheReason) {
   EXPECT_EQ(open_problem([] { open_pen("force-dimension:7"); }),
             "not there: no arm with the serial number 7 is plugged in");
   arm().plugged = false;
@@ -204,7 +204,7 @@ TEST_F(ForceDimension, WhatDoesNotOpenSaysWhy) {
   EXPECT_FALSE(find_force_dimension()[0].is_there);
 }
 
-TEST_F(ForceDimension, AMissingOrWrongLibrarySaysWhichFileToInstall) {
+TEST_F(ForceDimension, TheErrorOfAMissingOrWrongLibraryNamesTheFileToInstall) {
   const auto text = [](const char* path) {
     ::setenv("RIFFLER_LIBDHD", path, 1);
     return open_problem([] { open_pen("force-dimension"); });

@@ -62,7 +62,7 @@ TEST_F(Touch, ReadsInRifflersAxesAndPushesInTheLibrarys) {
   EXPECT_EQ(stub->outside, 0) << "values are read and set within frames";
 }
 
-TEST_F(Touch, DeclaresWhatTheLibrarySaysOfIt) {
+TEST_F(Touch, DeclaresTheValuesOfTheLibrary) {
   const auto pen = open_pen("touch");
   const DeviceCapability& arm = pen->capability();
   EXPECT_EQ(arm.name, "Touch");
@@ -79,7 +79,7 @@ TEST_F(Touch, DeclaresWhatTheLibrarySaysOfIt) {
   }
 }
 
-TEST_F(Touch, WhatTheLibraryCannotSayIsTheWeakestArm) {
+TEST_F(Touch, MissingValuesAreThoseOfTheWeakestArm) {
   stub->max_force = 0, stub->continuous = NAN;
   EXPECT_EQ(open_pen("touch")->capability()[Coordinate::X].peak, 3);
 }
@@ -92,7 +92,7 @@ TEST_F(Touch, TheNameOfAnArmIsPassedOn) {
 }
 
 /// The library's thread lets a command go after 20 ms, even if the driver stands still.
-TEST_F(Touch, AHostThatStandsStillPushesNoMore) {
+TEST_F(Touch, AHostThatHangsPushesNoMore) {
   const auto pen = open_pen("touch");
   ASSERT_TRUE(pushes(*pen));
   class Stuck final : public PenStep {
@@ -107,7 +107,7 @@ TEST_F(Touch, AHostThatStandsStillPushesNoMore) {
   late.join();
 }
 
-TEST_F(Touch, AThreadOfTheLibraryThatStandsStillEndsTheConnection) {
+TEST_F(Touch, AThreadOfTheLibraryThatHangsEndsTheConnection) {
   const auto pen = open_pen("touch");
   ASSERT_TRUE(pushes(*pen));
   stub->stalled = true;
@@ -140,7 +140,7 @@ TEST_F(Touch, ErrorsOfForceTripUntilTheyAreReset) {
   EXPECT_TRUE(pushes(*pen));
 }
 
-TEST_F(Touch, NoForceBeforeTheCalibrationWhichIsDoneWhereTheLibraryCan) {
+TEST_F(Touch, NoForceBeforeTheCalibrationWhichTheLibraryDoesIfItCan) {
   stub->calibration = 0x5002;  // needs the user
   const auto pen = open_pen("touch");
   EXPECT_TRUE(push_until(*pen, [&] { return answer.reason == NotPushed::NotHomed && stub->frames > 200; }));
@@ -177,7 +177,7 @@ TEST_F(Touch, AnArmIsOpenOnceAndTwoAtTheSameTime) {
   EXPECT_TRUE(pushes(*pen));
 }
 
-TEST_F(Touch, ASearchEnablesNoForceAndWhatIsMissingIsNamed) {
+TEST_F(Touch, ASearchEnablesNoForceAndNamesMissingLibraries) {
   std::vector<FoundDevice> found = find_touch();
   EXPECT_EQ(found[0].serial, "70001");
   EXPECT_EQ(found[0].problem, OpenProblem::None);

@@ -59,7 +59,7 @@ TEST(Polhem, ItsJacobianIsThatOfFiniteDifferences) {
     }
 }
 
-TEST(Polhem, StandsWhereItsArmsDo) {
+TEST(Polhem, HasThePoseOfItsArms) {
   const PolhemGeometry& g = *polhem_geometry("woodenhaptics");
   // Upper arm upright, fore arm level: a reach of the fore arm at the height of the shoulder and the upper arm.
   const PolhemPosture posture = polhem_posture(g, {0, 0, kPi / 2});
@@ -112,7 +112,7 @@ TEST(Polhem, MotorsBalanceTheForceByVirtualWork) {
   }
 }
 
-TEST(Polhem, AForceThatIsTooGreatKeepsItsDirection) {
+TEST(Polhem, ATooLargeForceKeepsItsDirection) {
   Arm3 arm;
   arm.home_at(300, -1500, 5000);
   const Vec3 force(0.4, -0.3, 0.5);
@@ -148,7 +148,7 @@ TEST(Polhem, TheButtonHidesInACounter) {
   EXPECT_EQ(arm.model->sample(0).buttons, 0U);
 }
 
-TEST(Polhem, MergedAndShortReports) {
+TEST(Polhem, MergedAndShortReportsAreHandled) {
   Arm3 arm;
   Bytes two = polhem_report({1, 0, 0, 0, 0, 0, 0}), more = polhem_report({2, 0, 0, 0, 0, 0, 0});
   two.insert(two.end(), more.begin(), more.end());

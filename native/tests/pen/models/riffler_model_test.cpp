@@ -38,7 +38,7 @@ struct Bench {
   }
 };
 
-TEST(RifflerModel, SaysWhyAPenDoesNotOpen) {
+TEST(RifflerModel, NamesTheReasonIfAPenDoesNotOpen) {
   std::string text;
   {
     Bench b;
@@ -232,7 +232,7 @@ TEST(RifflerModel, TheMotorsBalanceTheForceByVirtualWork) {
     }
 }
 
-TEST(RifflerModel, AFaultOfThePenIsTold) {
+TEST(RifflerModel, AFaultOfThePenIsReported) {
   Driven d;
   d.push.wrench.force = {0, 0, 1};
   d.run(3);
@@ -248,7 +248,7 @@ TEST(RifflerModel, AFaultOfThePenIsTold) {
   EXPECT_TRUE(d.pen.pushes()) << "by way of the ramp";
 }
 
-TEST(RifflerModel, CommandsAreTakenAfterAnotherHostsNumbers) {
+TEST(RifflerModel, CommandsAreAcceptedAfterAnotherHostsNumbers) {
   for (const int number : {1, 20000, 40000, 65535}) {
     Driven d;
     // Another host was heard a moment ago.

@@ -63,7 +63,7 @@ TEST(SpaceMouse, AxesAreRightAwayAndUp) {
   EXPECT_LT(glm::length(puck.after(0).velocity - 100 / std::sqrt(3) * Vec3(1, -1, -1)), 1e-9);
 }
 
-TEST(SpaceMouse, MergedReportsAreTakenApart) {
+TEST(SpaceMouse, MergedReportsAreSplit) {
   Puck puck(false, straight());
   Bytes both = puck_report(1, {350, 0, 0});
   const Bytes rotation = puck_report(2, {350, 0, 0});
@@ -101,7 +101,7 @@ TEST(SpaceMouse, AnyBytesLeaveFiniteSpeeds) {
   }
 }
 
-TEST(SpaceMouse, APuckThatGoesAwayStandsStill) {
+TEST(SpaceMouse, AnUnpluggedPuckStandsStill) {
   Puck puck(true, straight());
   puck.take(puck_report(1, {350, 0, 0, 0, 0, 0}));
   const Vec3 there = puck.after(0.1).pose.tip;
@@ -115,7 +115,7 @@ TEST(SpaceMouse, OverflowOfTheDeflectionIsFullDeflection) {
   EXPECT_NEAR(glm::length(puck.after(0).velocity), 100, 1e-9);
 }
 
-TEST(SpaceMouse, EachFamilyIsClaimedAndSensesSixRates) {
+TEST(SpaceMouse, EachFamilyIsRecognisedAndSensesSixRates) {
   for (const auto& [vendor, product] :
        {std::pair{0x046D, 0xC626}, {0x046D, 0xC62B}, {0x256F, 0xC62E}, {0x256F, 0xC635}, {0x256F, 0xC652}}) {
     const HidInfo info = puck_info(static_cast<std::uint16_t>(vendor), static_cast<std::uint16_t>(product));

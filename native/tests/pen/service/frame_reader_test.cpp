@@ -40,7 +40,7 @@ std::string events(const std::string& bytes, std::size_t piece = 1'000'000, std:
   }
 }
 
-TEST(FrameReader, MessagesOfAllLengths) {
+TEST(FrameReader, ReadsMessagesOfAllLengths) {
   for (const std::size_t n : {0U, 1U, 125U, 126U, 127U, 65535U, 65536U, 70'000U}) {
     const std::string frame = server_frame(std::string(n, 'x')) + server_frame("end");
     const std::string expected = "[" + (n > 40 ? std::to_string(n) : std::string(n, 'x')) + "][end]";
@@ -63,7 +63,7 @@ TEST(FrameReader, NothingFollowsAClose) {
   EXPECT_EQ(events(server_frame("a") + server_frame("", 0x88) + server_frame("b")), "[a]C");
 }
 
-TEST(FrameReader, WhatAServerMayNotSendIsBad) {
+TEST(FrameReader, FramesThatAServerMayNotSendAreBad) {
   EXPECT_EQ(events(server_frame("a", 0xC1)), "!") << "a reserved bit";
   EXPECT_EQ(events(server_frame("a", 0x82)), "!") << "binary";
   EXPECT_EQ(events(server_frame("a", 0x83)), "!") << "a reserved kind";
@@ -86,7 +86,7 @@ TEST(FrameReader, MessagesAreBounded) {
   EXPECT_EQ(events(std::string("\x81\x7F\x00\x00\x00\x01\x00\x00\x00\x00", 10)), "!") << "4 GB, refused by its head";
 }
 
-TEST(FrameReader, AnyBytesInAnyPieces) {
+TEST(FrameReader, SurvivesAnyBytesInAnyPieces) {
   stress::Random random(8);
   for (int k = 0; k < 20'000; ++k) {
     std::string bytes;

@@ -15,13 +15,13 @@ bool good(std::string_view text) {
   return json.done();
 }
 
-TEST(JsonReader, ReadsWhatIsJson) {
+TEST(JsonReader, ReadsValidJson) {
   for (const char* text : {"0", "-0", "12.5e-3", "1E+2", "true", "false", "null", "\"\"", R"("a\"\\\/\b\f\n\r\tä")",
                            "[]", "{}", " [ 1 , 2 ] ", R"({"a":{"b":[1,{"c":null}]},"d":"e"})", "\t\r\n1\n", "\"ä\""})
     EXPECT_TRUE(good(text)) << text;
 }
 
-TEST(JsonReader, RefusesWhatIsNot) {
+TEST(JsonReader, RefusesInvalidJson) {
   for (const char* text : {"",
                            " ",
                            "01",
@@ -97,7 +97,7 @@ TEST(JsonReader, GivesTheValues) {
   EXPECT_EQ(sum, 6);
 }
 
-TEST(JsonReader, AValueOfAnotherKindIsAnErrorThatStays) {
+TEST(JsonReader, AValueOfAnotherKindIsALastingError) {
   JsonReader json(R"({"x":"1","y":2})");
   std::string_view key;
   double x = 7;
@@ -111,7 +111,7 @@ TEST(JsonReader, AValueOfAnotherKindIsAnErrorThatStays) {
 }
 
 /// What ends anywhere, and any bytes, are read to an answer without reading beyond the end.
-TEST(JsonReader, EveryPieceAndAnyBytes) {
+TEST(JsonReader, SurvivesEveryPrefixAndAnyBytes) {
   const std::string text = R"({"a":[1.5e3,-2,"b\n\u00e4"],"c":{"d":true,"e":null}})";
   for (std::size_t n = 0; n < text.size(); ++n) EXPECT_FALSE(good(std::string(text, 0, n))) << n;
   stress::Random random(4);

@@ -119,7 +119,7 @@ TEST(WebSocket, TheFirstMessageMayComeWithTheAnswer) {
   EXPECT_EQ(text_of(socket), "second");
 }
 
-TEST(WebSocket, AnswersPingsAndTellsThatItCloses) {
+TEST(WebSocket, AnswersPingsAndReportsThatItCloses) {
   std::atomic<int> pongs{0}, closes{0};
   {
     LoopbackServer server(opening([&](Peer& peer, test::ClientFrames& frames) {
@@ -175,7 +175,7 @@ TEST(WebSocket, AServerThatDoesNotReadIsGoneInTime) {
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::milliseconds(1500));
 }
 
-TEST(WebSocket, WhatIsNoWebSocketIsRefusedWithTheReason) {
+TEST(WebSocket, OtherServersAreRefusedWithTheReason) {
   const auto answer = [](const std::string& text) {
     LoopbackServer server([&](Peer& peer) {
       peer.read_until("\r\n\r\n");
@@ -202,7 +202,7 @@ TEST(WebSocket, WhatIsNoWebSocketIsRefusedWithTheReason) {
             "contradicts itself: it uses sec-websocket-extensions, which was not asked for");
 }
 
-TEST(WebSocket, AMuteServerAndAClosedPortAreToldApart) {
+TEST(WebSocket, AMuteServerAndAClosedPortAreDistinguished) {
   LoopbackServer mute([](Peer& peer) {
     while (peer.alive) peer.read();
   });

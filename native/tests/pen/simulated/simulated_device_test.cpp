@@ -37,7 +37,7 @@ TEST(SimulatedDevice, OpensByItsKindHomedAndMovesByItself) {
   EXPECT_EQ(pen->status().state, LinkState::Stopped);
 }
 
-TEST(SimulatedDevice, TheHandGoesWhereItIsToldAndBackToItsCurve) {
+TEST(SimulatedDevice, TheHandGoesToItsTargetAndBackToItsCurve) {
   const auto pen = SimulatedDevice::open();
   ASSERT_TRUE(comes_true([&] { return pen->newest().homed; }));
   HandWish wish{.pose = pen->newest().pose, .spin = 0.3, .buttons = 2};
@@ -97,7 +97,7 @@ TEST(SimulatedDevice, LosesCountsAndTheGripShowsIt) {
   EXPECT_EQ(test::error_of([&] { pen->lose(6, 1); }), "channel must be 0 to 5, not 6");
 }
 
-TEST(SimulatedDevice, UnpluggedItIsGoneAndPluggedInItComesBack) {
+TEST(SimulatedDevice, UnpluggedItDisappearsAndPluggedInItReturns) {
   const auto pen = SimulatedDevice::open();
   ASSERT_TRUE(comes_true([&] { return pen->newest().homed; }));
   for (int round = 0; round < 2; ++round) {
@@ -112,7 +112,7 @@ TEST(SimulatedDevice, UnpluggedItIsGoneAndPluggedInItComesBack) {
   }
 }
 
-TEST(SimulatedDevice, WishesThatCannotBeAreRefused) {
+TEST(SimulatedDevice, ImpossibleCommandsAreRefused) {
   const auto pen = SimulatedDevice::open();
   const auto refused = [&](const HandWish& wish) { return test::error_of([&] { pen->aim(wish); }); };
   const double nan = std::numeric_limits<double>::quiet_NaN();

@@ -111,7 +111,7 @@ TEST(SimulatedDynamics, EnergyOfAFallingPenIsKeptToSecondOrderOfTheStep) {
   EXPECT_LT(worst_balance(1.25e-4), 0.05);  // N·mm, of some hundred that come and go
 }
 
-TEST(SimulatedDynamics, EverythingThatAHandAndMotorsGiveIsKeptOrLost) {
+TEST(SimulatedDynamics, EnergyOfHandAndMotorsIsStoredOrDissipated) {
   PenDynamics pen(load_pen("riffler"));
   const double start = balance(pen.energy());
   double worst = 0;
@@ -185,7 +185,7 @@ TEST(SimulatedDynamics, AHeavyGripOnASpringFollowsTheClosedForm) {
   EXPECT_LT(worst, 2e-3 * kWay);
 }
 
-TEST(SimulatedDynamics, AnUnreachableGripIsRefusedAndStopsEndTheWay) {
+TEST(SimulatedDynamics, AnUnreachableGripIsRefusedAndStopsEndTheMotion) {
   PenGeometry geometry = load_pen("riffler");
   geometry.grip_length = 500;
   EXPECT_THROW(PenDynamics{geometry}, std::invalid_argument);

@@ -29,7 +29,7 @@ struct BoardFault {
 
 class SimulatedBoardFault : public ::testing::TestWithParam<BoardFault> {};
 
-TEST_P(SimulatedBoardFault, TakesTheForceAwayAndItComesBackByTheRamp) {
+TEST_P(SimulatedBoardFault, RemovesTheForceWhichReturnsThroughTheRamp) {
   const BoardFault& param = GetParam();
   Trial t;
   t.start();

@@ -81,7 +81,7 @@ TEST(SimulatedHand, FollowsAtItsHasteAndTrembles) {
   EXPECT_LT(most, 1.5);
 }
 
-TEST(SimulatedHand, SettingsThatCannotBeAreRefusedByName) {
+TEST(SimulatedHand, ImpossibleSettingsAreRefusedByName) {
   const auto refused = [](const HandSettings& settings) { return test::error_of([&] { settings.validate(); }); };
   EXPECT_EQ(refused({}), "");
   EXPECT_EQ(refused({.mass = -1}), "mass must be a number between 0.000000 and 100.000000");

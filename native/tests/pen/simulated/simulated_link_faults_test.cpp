@@ -94,7 +94,7 @@ TEST(SimulatedFault, AFirmwareThatIsLateWhileItPushesFindsItItself) {
 /// --- The cable. --------------------------------------------------------------------------------------------------
 /// ///
 
-TEST(SimulatedFault, AllReportsLostOnTheWayToTheHost) {
+TEST(SimulatedFault, AllReportsToTheHostAreLost) {
   Trial t;
   t.start();
   t.bench.pen->cable().set({.lost = 1});
@@ -106,7 +106,7 @@ TEST(SimulatedFault, AllReportsLostOnTheWayToTheHost) {
   t.comes_back();
 }
 
-TEST(SimulatedFault, AllReportsLostOnTheWayToThePen) {
+TEST(SimulatedFault, AllReportsToThePenAreLost) {
   Trial t;
   t.start();
   t.bench.pen->cable().set({.lost_out = 1});

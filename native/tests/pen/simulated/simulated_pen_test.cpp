@@ -67,7 +67,7 @@ TEST(SimulatedPen, TheSameSeedGivesTheSameBytesAndAnotherDoesNot) {
   EXPECT_NE(first, play(6));
 }
 
-TEST(SimulatedPen, WhatTheHostReadsIsTheGripToWithinACount) {
+TEST(SimulatedPen, TheHostReadsTheGripToWithinACount) {
   const Pose home = SimulatedPen(SimulatedPenSettings()).arms().posture().pose;
   SimulatedPenSettings settings;
   settings.cable.latency_us = 0;
@@ -234,7 +234,7 @@ TEST(SimulatedPen, GravityCompensationInTheHostHoldsThePenStill) {
   EXPECT_LT(b.pen->arms().posture().pose.tip.z, start.z - 10);
 }
 
-TEST(SimulatedPen, SettingsThatCannotBeAreRefusedByName) {
+TEST(SimulatedPen, ImpossibleSettingsAreRefusedByName) {
   const auto refused = [](auto&& change) {
     SimulatedPenSettings settings;
     change(settings);

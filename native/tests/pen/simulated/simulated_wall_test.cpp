@@ -100,7 +100,7 @@ Touch touch(const Wall& wall) {
 }
 
 /// No more than the reserve and, where the cable's delay exceeds the known latency, what is still on it.
-TEST(SimulatedPenWall, MotorsNeverGiveMoreThanTheyTookWithTheControllerOnWhatTheyWereTold) {
+TEST(SimulatedPenWall, MotorsNeverGiveMoreThanTheyTookWithTheControllerOnTheirCommands) {
   for (const double stiffness : {1.0, 3.0, 10.0, 30.0}) {
     if (test::kSanitized && stiffness < 30) continue;
     const Touch prompt = touch({stiffness, true, 0, true}), late = touch({stiffness, true, 1500, true});
@@ -126,18 +126,18 @@ TEST(SimulatedPenWall, IdentifiedFrictionMakesHardWallsHarderAndGivesTheHandNoth
 
 /// What is on the cable is not in the account yet. A controller that does not know of it runs into debts, and while
 /// they are paid hard walls are not there.
-TEST(SimulatedPenWall, AControllerThatIsNotToldOfTheLatencyRunsIntoDebt) {
+TEST(SimulatedPenWall, AControllerThatDoesNotKnowTheLatencyRunsIntoDebt) {
   const Touch touched = touch({30, true, 0, true, 0});
   EXPECT_LT(touched.account, -0.3);
   EXPECT_GT(touched.deepest, 3);
 }
 
-TEST(SimulatedPenWall, WithoutTheControllerAStiffWallGivesMuch) {
+TEST(SimulatedPenWall, WithoutTheControllerAStiffWallGivesMuchEnergy) {
   for (const double stiffness : {10.0, 30.0}) EXPECT_GT(touch({stiffness, false, 0, false}).gained, 100);
 }
 
 /// The controller leaves a wall unchanged that the pen bears by itself.
-TEST(SimulatedPenWall, ASoftWallIsLeftAlone) {
+TEST(SimulatedPenWall, ASoftWallStaysUnchanged) {
   const Touch with = touch({1, true, 0, true}), without = touch({1, false, 0, true});
   EXPECT_EQ(with.gained, without.gained);
   EXPECT_EQ(with.deepest, without.deepest);
@@ -146,7 +146,7 @@ TEST(SimulatedPenWall, ASoftWallIsLeftAlone) {
 
 /// Why samples carry what was applied: with what the host asked for, which the motors have a frame later, the account
 /// stays above zero while the motors give hundreds of times the reserve.
-TEST(SimulatedPenWall, AnAccountOfWhatWasAskedForIsDeceivedByTheCable) {
+TEST(SimulatedPenWall, AnAccountOfRequestedForcesIsWrongWithACable) {
   const Touch touched = touch({30, true, 0, false});
   EXPECT_GT(touched.account, 0);
   EXPECT_GT(touched.gained, 100);

@@ -52,7 +52,7 @@ TEST(SimulatedWeight, SwingsLikeAPendulum) {
   EXPECT_NEAR(period, kTwoPi * std::sqrt(61e-3 / kStandardGravity), 0.005);
 }
 
-TEST(SimulatedWeight, RefusesWhatCannotHang) {
+TEST(SimulatedWeight, RefusesImpossibleWeights) {
   SimulatedWeight weight;
   EXPECT_NE(test::error_of([&] { weight.hang(-1, 0); }).find("mass"), std::string::npos);
   EXPECT_NE(test::error_of([&] { weight.hang(1, std::numeric_limits<double>::infinity()); }).find("hook"),

@@ -29,7 +29,7 @@ struct Machine {
   }
 };
 
-TEST(StallTolerantClock, OfAMachineThatKeepsUpIsTheSystems) {
+TEST(StallTolerantClock, IsTheSystemsClockOnAMachineThatKeepsUp) {
   Machine machine;
   const auto clock = machine.clock();
   for (int k = 0; k < 1000; ++k) {
@@ -52,7 +52,7 @@ TEST(StallTolerantClock, StandsStillWhileTheMachineDoes) {
   EXPECT_NEAR(clock->last(), start + 2 * kMax + 2e-3, 1e-9);
 }
 
-TEST(StallTolerantClock, NeverFallsWhateverItIsAsked) {
+TEST(StallTolerantClock, NeverRunsBackwards) {
   Machine machine;
   const auto clock = machine.clock();
   const double start = clock->now();

@@ -33,7 +33,7 @@ TEST(CutterProfile, RidgesOfAFlatAreTheStepsOfItsCorner) {
   EXPECT_EQ(flat.ridge(0, 3), 0);
 }
 
-TEST(CutterProfile, SpacingLeavesTheCuspThatIsAsked) {
+TEST(CutterProfile, SpacingLeavesTheGivenCusp) {
   for (const double cusp : {0.001, 0.01, 0.1}) {
     const CutterProfile ball(cutters::ball(6, 30));
     EXPECT_NEAR(ball.spacing(cusp), 2 * std::sqrt(9 - (3 - cusp) * (3 - cusp)), 1e-3 * ball.spacing(cusp));

@@ -33,7 +33,7 @@ TEST(PlaceGrid, DistancesAreThoseOfTheNearestPlace) {
   }
 }
 
-TEST(PlaceGrid, PathsAreAsLongAsTheyAreRoundACorner) {
+TEST(PlaceGrid, PathsRoundACornerHaveTheirLength) {
   PlaceSet in(kGrid.size(), 1), from(kGrid.size(), 0);
   const Vec2 start = kGrid.place(kGrid.index(10, 10)), corner = kGrid.place(kGrid.index(30, 20));
   from[kGrid.index(10, 10)] = 1;
@@ -48,7 +48,7 @@ TEST(PlaceGrid, PathsAreAsLongAsTheyAreRoundACorner) {
   EXPECT_EQ(path_lengths(kGrid, in, from)[behind], kInfinity);
 }
 
-TEST(PlaceGrid, SliversGoAndWhatBordersOnThickerThingsStays) {
+TEST(PlaceGrid, SliversAreRemovedAndBordersOfThickerRegionsStay) {
   PlaceSet set(kGrid.size(), 0);
   for (int column = 5; column < 55; ++column) set[kGrid.index(column, 5)] = 1;
   for (int column = 5; column < 25; ++column)
@@ -68,7 +68,7 @@ double area_left(const Curve& curve) {
   return 0.5 * twice;
 }
 
-TEST(Contours, OfADiscIsACircleWithLessOnItsLeft) {
+TEST(Contours, OfADiscAreACircleWithSmallerValuesOnTheLeft) {
   const Vec2 middle = kGrid.place(kGrid.index(30, 23));
   Field field(kGrid.size());
   for (std::size_t k = 0; k < field.size(); ++k) field[k] = glm::length(kGrid.place(k) - middle);

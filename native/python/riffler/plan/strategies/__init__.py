@@ -1,4 +1,4 @@
-"""The table of strategies. A module here lists its own in STRATEGIES; there is no other list."""
+"""The table of strategies. Each module of this package lists its strategies in STRATEGIES; there is no other list."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def find(
     progress: Progress = None,
     **options: Any,
 ) -> Found:
-    """Plans with the strategy of that id, as ``riffler plan`` and Blender do.
+    """Plans with one of the strategies, as ``riffler plan`` and Blender do.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ def find(
     tool : Tool
         The cutter, with shank and holder.
     given : list, optional
-        The curves, (n, 3) arrays in mm, or the paths that the strategy starts from, where it needs some.
+        The curves, (n, 3) arrays in mm, or the paths that the strategy starts from, if it needs any.
     name : str
         The part's name, for the plan.
     progress : callable, optional

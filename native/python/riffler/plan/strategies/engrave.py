@@ -69,13 +69,13 @@ def engrave(
     inclination, tilt : float
         rad by which the axis leans forward, along the curve, and to the left, from the surface's normal.
     tolerance : float
-        mm.
+        Largest distance of the path's chords from the surface, mm.
     turn : float
-        rad.
+        Largest turn of the axis between two points, rad.
     crease : float
-        rad; faces that meet at less are facets of one round surface, over which normals vary smoothly.
+        rad; faces that meet at a smaller angle are facets of one round surface, over which normals vary smoothly.
     reach : float
-        mm.
+        Largest distance of a curve from the part, mm.
     progress : callable, optional
         Called with the finished share; returning False cancels.
 
@@ -113,20 +113,20 @@ def engrave(
     return [Engraved(*arrays) for arrays in found]
 
 
-ABOVE = 0.1  # of the cutter's diameter: so far above the surface the paths are shown
+ABOVE = 0.1  # height above the surface at which paths are shown, in cutter diameters
 
 
 class Engrave(Strategy):
     id, place, label, action = "engrave", 20, "Engrave Curves", "Engrave Curves"
-    description = "Curves laid on the part and cut to a depth, the tool's axis following the surface"
+    description = "Curves laid on the part and cut to a depth, with the tool's axis following the surface"
     summary = "cut curves into the part"
     needs = "curves"
-    missing = "No curve is selected: select the curves that are to be engraved, as they lie on the part"
+    missing = "No curve is selected: select the curves to engrave on the part"
     parameters = (
         Parameter(
             "depth",
             "Depth",
-            "Below the surface, in mm; negative: the cutter stays above it",
+            "Depth below the surface, in mm; negative: the cutter stays above it",
             0.3,
             low=-1e3,
             high=1e3,
@@ -144,13 +144,17 @@ class Engrave(Strategy):
         Parameter(
             "tolerance",
             "Tolerance",
-            "The path stays so near to the surface between its points, in mm",
+            "Largest distance between path and surface, in mm",
             0.01,
             low=1e-4,
             high=10.0,
         ),
         Parameter(
-            "reach", "Reach", "Curves that are further from the part than this are refused, in mm", 10.0, low=1e-3
+            "reach",
+            "Reach",
+            "Largest distance of a curve from the part, in mm; further ones are refused",
+            10.0,
+            low=1e-3,
         ),
     )
 

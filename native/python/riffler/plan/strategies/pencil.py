@@ -20,8 +20,9 @@ from .strategy import Found, Parameter, Strategy
 
 @dataclass(frozen=True)
 class PencilStats(DictResult):
-    """Counters of ``pencil``: balls laid into the part, and those that it ``entered``; ``starts`` of paths, and those
-    that were ``stuck`` or mere ``faceting``; ``edges``; ``traces`` with their ``steps``; paths that were ``cut``."""
+    """Counters of ``pencil``: ``balls`` laid into the part, and those that ``entered`` it; ``starts`` of paths, and
+    those that were ``stuck`` or mere ``faceting``; ``edges``; ``traces`` with their ``steps``; paths that were ``cut``.
+    """
 
     balls: int
     entered: int
@@ -43,12 +44,12 @@ class PencilPaths(list[PencilPath]):
         Start and end of each path: "part", "corner", "faded", "loop", "cut", "joined" if another path
         continues or, for passes parallel to a valley, "pass".
     rest_area : float
-        mm² that the tool's ball cannot reach.
+        Area that the tool's ball cannot reach, mm².
     rest_areas : ndarray, shape (k,)
         The same for each triangle of the part.
     reference_area, reference_areas : float, ndarray of shape (k,)
-        The same for the ball of ``reference_tool`` (or of ``overthickness``): the area to be machined. Without one
-        those of the tool.
+        The same for the ball of ``reference_tool`` (or of ``overthickness``): the area to be machined. Without
+        either, the areas of the tool's ball.
     stats : PencilStats
         Counters.
     reason : str
@@ -100,12 +101,12 @@ def pencil(
     tool : Tool
         A tool whose tip is a ball.
     tolerance : float
-        mm to which the curves are traced. A valley counts where the ball's gap to its bottom exceeds it.
+        Largest error of the curves, mm. A valley counts where the ball's gap to its bottom is larger.
     passes : int
         Above 1, each valley is followed by passes - 1 curves on either side; there both contacts are the one point that
         the ball touches.
     bitangency_angle : float, optional
-        rad; a valley then counts where the directions to both contacts differ by at least that.
+        rad; a valley then counts only where the directions to both contacts differ by at least this angle.
     minimum_length : float
         mm; shorter paths are dropped.
     stepover : float, optional
@@ -113,11 +114,11 @@ def pencil(
     scallop : float, optional
         mm, instead of ``stepover``: height of the ridges that passes leave on a plane; None: the tolerance.
     overthickness : float
-        mm; adds what a ball whose radius is larger by that much leaves behind: its valleys, with the tool's ball laid
-        into them, where that has none of its own, as in blends of its own radius or a larger one.
+        mm by which the radius of a second ball is larger. Adds paths in the valleys of that ball, with the tool's ball
+        laid into them, where the tool's ball has no valley, as in blends of its own radius or a larger one.
     reference_tool : Tool, optional
-        A larger tool that has been there before; does the same for what its ball could not reach: rest machining,
-        corners included.
+        A larger tool that has cut the part before. Adds paths in the same manner where its ball could not reach: rest
+        machining, corners included.
     progress : callable, optional
         Called with the finished share; returning False cancels.
 
@@ -128,8 +129,8 @@ def pencil(
     Raises
     ------
     ValueError
-        For an empty mesh, for sizes that are not positive and finite, and for a tool or reference tool whose tip is no
-        ball.
+        For an empty mesh, for sizes that are not positive and finite, and for a tool or reference tool whose tip is
+        not a ball.
 
     Examples
     --------
@@ -175,7 +176,7 @@ class Pencil(Strategy):
         Parameter(
             "tolerance",
             "Tolerance",
-            "Largest error of the paths, in mm; a valley that is no deeper below the ball is taken for a faceted one",
+            "Largest error of the paths, in mm; a valley that is no deeper below the ball counts as faceting",
             0.01,
             low=1e-4,
             high=10.0,
@@ -184,13 +185,18 @@ class Pencil(Strategy):
         Parameter(
             "passes",
             "Passes",
-            "1: along each valley only; each one more adds a path on either side of it",
+            "1: one path along each valley; each further pass adds a path on either side of it",
             1,
             "",
             low=1,
             high=100,
         ),
-        Parameter("stepover", "Stepover", "Between two passes, in mm; 0: what leaves ridges of the tolerance", None),
+        Parameter(
+            "stepover",
+            "Stepover",
+            "Distance between two passes, in mm; 0: leaves ridges as high as the tolerance",
+            None,
+        ),
     )
 
     def check(self, tool: Tool, given: Sequence[Any]) -> None:

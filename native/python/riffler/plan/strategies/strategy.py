@@ -19,17 +19,17 @@ class Parameter:
     Parameters
     ----------
     key : str
-        Its name as an argument.
+        Name of the argument.
     label, help : str
-        Label for users.
+        Label and description for users.
     default : float, int, str or None
         None if omitting it has a meaning, which ``help`` states; a panel then shows 0.
     unit : str
         "mm", "rad" (degrees on the command line and in panels), or "" for a whole number.
     low, high : float
-        Range of a field; with ``low`` from 0 on a value that is given must be positive.
+        Range of the field. If ``low`` is 0 or more, a given value must be positive.
     choices : tuple
-        (value, label, help) of each, for a word.
+        (value, label, help) of each choice, if the value is a word.
 
     Examples
     --------
@@ -56,7 +56,7 @@ class Found:
     plan : Plan
         The paths.
     reason : str
-        Why it has no paths; empty if it has some.
+        Why the plan has no paths; empty if it has some.
     notes : list of str
         Further notes for the user, as sentences.
     """
@@ -70,15 +70,15 @@ class Strategy(ABC):
     """A method of finding paths: see `find`.
 
     A module of this package defines one and lists it in STRATEGIES; ``riffler plan``, the panel of the Blender
-    extension and ``riffler.plan.find`` read the table of them all (strategies/__init__.py).
+    extension and ``riffler.plan.find`` read the table of all strategies (strategies/__init__.py).
     """
 
     id: ClassVar[str] = ""  # its name in commands and scripts
-    place: ClassVar[int] = 0  # in lists: the smallest first
+    place: ClassVar[int] = 0  # position in lists: the smallest first
     label: ClassVar[str] = ""
     action: ClassVar[str] = ""  # text of its button
     description: ClassVar[str] = ""
-    summary: ClassVar[str] = ""  # of the command, a verb in front
+    summary: ClassVar[str] = ""  # help of the command; begins with a verb
     nothing: ClassVar[str] = "path"  # noun for messages such as "no path found"
     needs: ClassVar[str] = "part"  # in addition to part and tool: "curves", "paths" of a plan, or "part" for nothing
     missing: ClassVar[str] = ""  # what to do in Blender if curves or paths are missing
@@ -104,7 +104,7 @@ class Strategy(ABC):
         given : list
             The curves, (n, 3) arrays in mm, or the paths.
         options : dict
-            Every parameter but those that are None.
+            Every parameter except those that are None.
         progress : callable, optional
             Called with the finished share; returning False cancels.
 

@@ -24,7 +24,7 @@ class Swarf:
     Attributes
     ----------
     path : PencilPath
-        With the axes.
+        The path with the axes.
     height : ndarray, shape (n,)
         mm: height of the wall along the axis.
     error : ndarray, shape (n,)
@@ -52,22 +52,22 @@ def swarf(
 ) -> Swarf:
     """Axes along which the tool's flank cuts the wall above a pencil path, where the wall is ruled.
 
-    Whether the tool gouges the floor or the rest of the part is for ``cutter_locations`` to check.
+    ``cutter_locations`` checks whether the tool gouges the floor or the rest of the part.
 
     Parameters
     ----------
     path : PencilPath
         A path of ``pencil``.
     tool : Tool
-        Its end must be a ball of the path's radius, with a cylinder or a cone above it.
+        A tool whose end is a ball of the path's radius, with a cylinder or a cone above it.
     part_mesh : Mesh
         The part.
     side : {0, 1}
         Number of the path's contact that is on the wall.
     height : float, optional
-        mm of the wall, from the ball's centre; None: up to the end of wall or flank.
+        Height of the wall to cut, mm from the ball's centre; None: up to the end of wall or flank.
     tolerance : float
-        mm.
+        Largest distance between wall and flank, mm.
     progress : callable, optional
         Called with the finished share; returning False cancels.
 
@@ -95,7 +95,7 @@ SIDES = (
     (
         "better",
         "Better One",
-        "The wall that the flank fits along the greater length; of two alike the one where the tool is more upright",
+        "The wall that the flank fits along the greater length; if both are alike, the one with the more upright tool",
     ),
     ("first", "First", "The wall that the first contact of each path lies on"),
     ("second", "Second", "The wall that the second contact of each path lies on"),
@@ -114,13 +114,13 @@ class SwarfCuts(Strategy):
         Parameter(
             "height",
             "Height",
-            "How much of the wall, in mm from the ball's centre; 0: as far as wall and flank go",
+            "Height of the wall to cut, in mm from the ball's centre; 0: as far as wall and flank reach",
             None,
         ),
         Parameter(
             "tolerance",
             "Tolerance",
-            "The flank may be so far from the wall, in mm; where it is further, nothing is cut",
+            "Largest distance between flank and wall, in mm; where it is larger, nothing is cut",
             0.05,
             low=1e-4,
             high=10.0,
