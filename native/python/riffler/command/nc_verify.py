@@ -54,9 +54,9 @@ def add_arguments(parser: Parser) -> None:
         "--rest", metavar="MM", help="height of rest material that counts as a finding (default: no height)"
     )
     parser.add_argument(
-        "--rapid-feed", default="10000", metavar="MM/MIN", help="for the machining time (default 10000)"
+        "--rapid-feed", default="10000", metavar="MM/MIN", help="speed of rapids for the time (default 10000)"
     )
-    parser.add_argument("--scheduler", metavar="ADDRESS", help="run it on a Dask cluster: tcp://host:8786")
+    parser.add_argument("--scheduler", metavar="ADDRESS", help="Dask scheduler to run on: tcp://host:8786")
     parser.add_file("--out", "the material that is left: .stl, .obj, .ply, .3mf or .rvol", MESHES + VOLUMES)
     add_detail(parser)
     parser.add_file("--map", f".ply of the material that is left, coloured: {LEGEND}", MAPS)

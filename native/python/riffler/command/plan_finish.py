@@ -24,7 +24,9 @@ HELP = "finish a part in rows, as NC code"
 
 def add_arguments(parser: Parser) -> None:
     add_tool(parser)
-    parser.add_argument("--pattern", choices=plan.PATTERNS, default="parallel", help="of rows (default parallel)")
+    parser.add_argument(
+        "--pattern", choices=plan.PATTERNS, default="parallel", help="pattern of the rows (default parallel)"
+    )
     add_lengths(
         parser,
         ("--cusp", "0.01", "largest height of ridges between rows"),
@@ -32,8 +34,10 @@ def add_arguments(parser: Parser) -> None:
         ("--allowance", "0", "material to leave on the part"),
     )
     parser.add_argument("--angle", metavar="DEG", default="0", help="angle of the rows (default 0)")
-    parser.add_argument("--slopes", metavar="DEG,DEG", default="0,90", help="slopes of the faces to finish, from level")
-    parser.add_file("--region", "closed curves: finish only the faces inside, from above", plan.curves.FORMATS)
+    parser.add_argument(
+        "--slopes", metavar="DEG,DEG", default="0,90", help="slopes of faces to finish, from level (default 0,90)"
+    )
+    parser.add_file("--region", "closed curves; only faces inside them are finished", plan.curves.FORMATS)
     add_scene(parser, "1000")
 
 

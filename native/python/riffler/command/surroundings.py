@@ -25,7 +25,7 @@ def add_rods(parser: Parser) -> None:
 
 
 def add_fixtures(parser: Parser) -> None:
-    about = "a mesh or .rvol file; may be repeated"
+    about = "fixture, a mesh or .rvol file; may be repeated"
     parser.add_file("--fixture", about, MESHES + VOLUMES, action="append", default=[])
 
 

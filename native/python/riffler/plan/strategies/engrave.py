@@ -118,7 +118,7 @@ ABOVE = 0.1  # height above the surface at which paths are shown, in cutter diam
 
 class Engrave(Strategy):
     id, place, label, action = "engrave", 20, "Engrave Curves", "Engrave Curves"
-    description = "Curves laid on the part and cut to a depth, the tool's axis following the surface"
+    description = "Curves laid on the part and cut to a depth, with the tool's axis following the surface"
     summary = "cut curves into the part"
     needs = "curves"
     missing = "No curve is selected: select the curves to engrave on the part"

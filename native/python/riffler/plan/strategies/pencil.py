@@ -192,7 +192,10 @@ class Pencil(Strategy):
             high=100,
         ),
         Parameter(
-            "stepover", "Stepover", "Distance between two passes, in mm; 0: leaves ridges as high as the tolerance", None
+            "stepover",
+            "Stepover",
+            "Distance between two passes, in mm; 0: leaves ridges as high as the tolerance",
+            None,
         ),
     )
 
