@@ -7,6 +7,7 @@ import bpy
 from bpy.props import PointerProperty, StringProperty
 
 from .blender.long_work import WorkProgress
+from .machining.properties import RifflerMachining, RifflerOperation
 from .pen.properties import PenProgress, RifflerPen
 from .plan.cutter_properties import RifflerCutter
 from .plan.machines import GROUPS, RifflerMachines
@@ -42,6 +43,7 @@ class RifflerScene(bpy.types.PropertyGroup):
     result: PointerProperty(type=RifflerResult)
     plan: PointerProperty(type=RifflerPlan)
     sculpt: PointerProperty(type=RifflerSculpt)
+    machining: PointerProperty(type=RifflerMachining)
     verify: PointerProperty(type=RifflerVerify)
     machines: PointerProperty(type=RifflerMachines)
 
@@ -78,6 +80,8 @@ CLASSES = (
     RifflerPathRow,
     RifflerPlan,
     RifflerSculpt,
+    RifflerOperation,
+    RifflerMachining,
     RifflerVerify,
     RifflerScene,
     RifflerMesh,

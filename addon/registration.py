@@ -102,7 +102,8 @@ SECTIONS = (
             "orientation_gizmo",
         ),
     ),
-    Section("program", ("line_view", "simulation", "plan_nc", "verify", "panel")),
+    Section("machining", ("job_store", "moves_view", "make_stock", "edit_operations", "calculate", "panel")),
+    Section("program", ("line_view", "simulation", "plan_nc", "job_nc", "verify", "panel")),
     # Running work is cancelled while its class is still registered. The toolbar's buttons call registered operators.
     Section("", ("blender.long_work", "toolbar", "menus", "keymaps", "translations")),
 )

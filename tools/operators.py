@@ -40,6 +40,8 @@ TOPICS = {
     "Programs and verification": ["plan_resolve", "plan_nc", "machine_option", "machine_option_add", "simulate",
                                   "simulate_stop", "verify", "verify_clear",
                                   "finding_go"],
+    "Jobs": ["machining_stock", "machining_add", "machining_remove", "machining_move", "machining_tool",
+             "machining_calculate", "machining_left", "machining_zero", "machining_nc"],
 }  # fmt: skip
 # Groups of bpy.context.scene.riffler that operators use in addition to their arguments, and the operator whose settings
 # a group has, too: those only fill in its button. The other groups have nothing else.
@@ -47,6 +49,7 @@ GROUPS = {
     "tool": ("", "The cutter of operators that are not given one."),
     "sculpt": ("", "How strokes are made, and what keeps tools out."),
     "plan": ("plan_find", "What the tab *Riffler Plan* plans on, and with what."),
+    "machining": ("machining_stock", "What the panel *Job* machines the part with, and the operations in their order."),
     "verify": ("verify", "The stock that is simulated and verified, and what was found."),
 }
 OF_WINDOWS = {"rna_type", "check_existing", "filter_glob"}  # nothing that a script would set

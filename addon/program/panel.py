@@ -110,6 +110,8 @@ class RIFFLER_PT_verify(Tab, bpy.types.Panel):
             column = layout.column(align=True)
             column.use_property_split = True
             column.use_property_decorate = False
+        if settings.source == "JOB":
+            return
         column.prop(settings, "stock")
         if settings.stock is None:
             ob = programs.stock_object(context)

@@ -12,6 +12,7 @@ import riffler
 
 from ..blender import refusals, scene_units
 from ..common import json_object, problems, units
+from ..machining import inputs, job_program
 from ..plan import fit_check, obstacles, plan_states, plan_store, replan, timeline
 from ..plan.pure import machine_fields
 from ..sculpt import live_registry, sculpts
@@ -155,11 +156,12 @@ class Setup:
     plan: str = ""
     notes: tuple = ()  # sentences on what the program leaves out
     deepest: float = 0.0  # mm below the part's surface that are meant to be cut
+    to_zero: np.ndarray = field(default_factory=lambda: np.eye(4))  # the scene's mm → the program's on the machine
 
     @property
     def to_machine(self):
         """(4, 4) from the stock's frame to the program's frame on the machine."""
-        return np.eye(4) if self.in_machine else self.to_world
+        return np.eye(4) if self.in_machine else self.to_zero @ self.to_world
 
     @property
     def runs(self):
@@ -183,13 +185,13 @@ def no_stock(context):
 def take(context, wanted):
     """The Setup for `wanted` (properties.ProgramSettings). ValueError, OSError if there is none."""
     live_registry.end_all()
-    ob = stock_object(context)
+    ob = inputs.stock_of(context.scene) if wanted.source == "JOB" else stock_object(context)
     if ob is None:
-        raise ValueError(no_stock(context))
+        raise ValueError(inputs.NO_STOCK if wanted.source == "JOB" else no_stock(context))
     if wanted.source == "CUTS":
         return _noted(_cuts(context, ob), ob)
     content = live_registry.content(ob)
-    found = _plan(context) if wanted.source == "PLAN" else _file(context, wanted)
+    found = {"PLAN": _plan, "FILE": _file, "JOB": _job}[wanted.source](context, wanted)
     in_stock = wanted.source == "FILE" and wanted.frame == "STOCK"
     to_world = sculpts.rigid_to_world(context, ob)
     if not in_stock:
@@ -221,7 +223,14 @@ def _cuts(context, ob):
     return out
 
 
-def _plan(context):
+def _job(context, wanted):
+    program, given = job_program.of_scene(context)
+    settings, scene = context.scene.riffler.plan, context.scene
+    more = {"machine": settings.post, "options": options(scene, settings.post), "to_zero": job_program.to_zero(scene)}
+    return _new(f"{given.names[0]}'s job", program, _timed(scene, program), **more)
+
+
+def _plan(context, wanted):
     ob = plan_store.active(context)
     if ob is None:
         raise ValueError("There is no plan: select one, or find paths on a part")

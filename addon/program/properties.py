@@ -11,6 +11,7 @@ SOURCES = (
     ("PLAN", "Plan", "The resolved paths of the active plan"),
     ("FILE", "NC File", "A program in a file"),
     ("CUTS", "Cuts", "The cuts made on the stock by strokes and curves, from its full block"),
+    ("JOB", "Job", "The calculated operations of the job, on the job's stock"),
 )
 FRAMES = (
     ("WORLD", "Scene", "The program's zero is the scene's, as in the NC code of a plan"),

@@ -14,6 +14,7 @@ import riffler
 from ..blender import handlers, operator_parts
 from ..common import tool_solid, units
 from ..common.problems import said
+from ..machining import inputs
 from ..plan import plan_states, plan_store, replan, timeline
 from ..sculpt import chunks, sculpts, surfaces, undo_states
 from . import programs, properties
@@ -189,7 +190,7 @@ def program_poll(cls, context):
     """True if a program can run on a stock."""
     if not operator_parts.object_mode(cls, context):
         return False
-    if programs.stock_object(context) is None:
+    if programs.stock_object(context) is None and inputs.stock_of(context.scene) is None:
         return operator_parts.deny(cls, programs.no_stock(context))
     return True
 

@@ -1,4 +1,4 @@
-// Two minutes of planning by feel with the simulated pen, or ten where RIFFLER_LONG is set (`make soak`): energy is
+// A minute of planning by feel with the simulated pen, or ten where RIFFLER_LONG is set (`make soak`): energy is
 // never given, memory stays what it is, and no step allocates.
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ void print(double seconds, stress::OrientingRun& run) {
 }
 
 TEST(Orienting, TheLastMinuteIsLikeTheFirst) {
-  const double seconds = test::kSanitized ? 20 : std::getenv("RIFFLER_LONG") ? 600 : 120;
+  const double seconds = test::kSanitized ? 20 : std::getenv("RIFFLER_LONG") ? 600 : 60;
   stress::OrientingRun run = stress::orienting_run(
       {.seconds = seconds, .warm = std::min(30.0, seconds / 2), .allocations = &test::allocations});
   print(seconds, run);

@@ -1,4 +1,4 @@
-// Two minutes of sculpting with the simulated pen, or ten where RIFFLER_LONG is set (`make stress`): nothing grows,
+// A minute of sculpting with the simulated pen, or ten where RIFFLER_LONG is set (`make stress`): nothing grows,
 // nothing is asked of the system, no energy is made.
 #include "stress/sculpting_run.hpp"
 
@@ -25,7 +25,7 @@ void print(const char* what, stress::SculptingRun& run) {
 }
 
 TEST(Sculpting, TheLastMinuteIsLikeTheFirst) {
-  const double seconds = test::kSanitized ? 20 : std::getenv("RIFFLER_LONG") ? 600 : 120;
+  const double seconds = test::kSanitized ? 20 : std::getenv("RIFFLER_LONG") ? 600 : 60;
   stress::SculptingRun run = stress::sculpting_run(
       {.seconds = seconds, .warm = std::min(30.0, seconds / 2), .allocations = &test::allocations});
   print((std::to_string(std::lround(seconds)) + " s of sculpting").c_str(), run);
@@ -48,12 +48,12 @@ TEST(Sculpting, TheLastMinuteIsLikeTheFirst) {
 }
 
 TEST(Sculpting, ThreeDirectionsAStiffCouplingAndALateCableMakeNoEnergyEither) {
-  stress::SculptingRun run = stress::sculpting_run({.seconds = 40,
+  stress::SculptingRun run = stress::sculpting_run({.seconds = 20,
                                                     .pitch = 0.5,
                                                     .directions = "xyz",
                                                     .stiffness = 10,
                                                     .jitter_us = 1500,
-                                                    .warm = 20,
+                                                    .warm = 10,
                                                     .allocations = &test::allocations});
   print("three directions, 10 N/mm, cable with jitter", run);
   EXPECT_EQ(run.allocations, 0);
@@ -73,7 +73,7 @@ TEST(Sculpting, AStiffCouplingOnALateCableLeavesNoDebtWhileTheMotorsLetTheForceF
 }
 
 TEST(Sculpting, AHandThatTouchesWhatItCarvesGetsNoEnergy) {
-  const double seconds = test::kSanitized ? 8 : std::getenv("RIFFLER_LONG") ? 600 : 30;
+  const double seconds = test::kSanitized ? 8 : std::getenv("RIFFLER_LONG") ? 600 : 15;
   for (const char* directions : {"z", "xyz"}) {
     stress::SculptingRun run = stress::sculpting_run({.seconds = seconds,
                                                       .pitch = 0.2,

@@ -1,0 +1,122 @@
+"""What a job is calculated from: part, stock, fixtures and axis, in the stock's frame, and its operations."""
+
+import hashlib
+import json
+from dataclasses import dataclass
+
+import numpy as np
+import riffler
+
+from ..blender import meshes, object_surfaces, scene_units
+from ..plan import obstacles
+from ..sculpt import live_registry, sculpt_store, sculpts
+from .pure.job_run import Wanted, keys_of
+
+NO_STOCK = "There is no stock: use Make Stock, or choose a sculpt that the part lies in"
+
+
+@dataclass(frozen=True)
+class Inputs:
+    """`to_world`: (4, 4) from the stock's frame to the scene, both in mm; `keys`: one for each operation."""
+
+    part: riffler.Mesh
+    stock: riffler.Volume
+    fixtures: list
+    axis: np.ndarray
+    clearance: float
+    to_world: np.ndarray
+    wanted: list[Wanted]
+    keys: list[str]
+    names: tuple[str, ...]  # of the objects that it was taken from
+
+    def setup(self):
+        """A riffler.plan.Setup with the whole stock. ValueError for inputs that do not fit together."""
+        # Which axes a machine has is checked when the program is written: its frame is another one.
+        return riffler.plan.Setup(
+            self.part, self.stock, self.fixtures, axis=self.axis, clearance=self.clearance, machine="tcp"
+        )
+
+
+def stock_of(scene):
+    """The job's stock, while it is in the scene, or None."""
+    ob = scene.riffler.machining.stock
+    return ob if sculpts.is_sculpt(ob) and scene.objects.get(ob.name) == ob else None
+
+
+def world_axis(scene):
+    """(3,) unit vector from tip to spindle, in the scene."""
+    ob = scene.riffler.machining.upright
+    if ob is None:
+        return np.array([0.0, 0.0, 1.0])
+    axis = meshes.matrix(ob.matrix_world)[:3, 2]
+    size = np.linalg.norm(axis)
+    if not size > 0:
+        raise ValueError(f"{ob.name} has no z axis, since its scale is 0: choose another object for the axis")
+    return axis / size
+
+
+def unfit(scene):
+    """Why the job cannot be calculated, or ""; cheap enough for a panel."""
+    if why := object_surfaces.unfit(scene.riffler.plan.part, scene):
+        return why
+    ob = stock_of(scene)
+    if ob is None:
+        return NO_STOCK
+    if ob == scene.riffler.plan.part:
+        return f"{ob.name} is both part and stock: choose another stock"
+    if not scene.riffler.machining.rows:
+        return "The job has no operations: add one"
+    return ""
+
+
+def take(context):
+    """The Inputs of the scene's job. ValueError, with the remedy, if they are incomplete."""
+    scene = context.scene
+    if why := unfit(scene):
+        raise ValueError(why)
+    live_registry.end_all()  # the mesh of a live sculpt is not up to date
+    settings, ob, part = scene.riffler.machining, stock_of(scene), scene.riffler.plan.part
+    rows = settings.switched_on()
+    if not rows:
+        raise ValueError("Every operation is off: switch one on")
+    held = obstacles.fixture_objects(scene.riffler.plan, part)
+    to_world = sculpts.rigid_to_world(context, ob)
+    to_stock = np.linalg.inv(to_world)
+    part, *fixtures = [_placed(object_surfaces.in_world(context, one), to_stock) for one in (part, *held)]
+    axis = to_stock[:3, :3] @ world_axis(scene)
+    axis = np.where(np.abs(axis) < 1e-12, 0.0, axis) / np.linalg.norm(axis)
+    volume = live_registry.content(ob).volume.copy()
+    clearance = scene_units.clean(settings.clearance)
+    base = _base([part, *fixtures], sculpt_store.identity(ob.data), axis, clearance)
+    wanted = [row.wanted() for row in rows]
+    names = (scene.riffler.plan.part.name, ob.name)
+    return Inputs(part, volume, fixtures, axis, clearance, to_world, wanted, keys_of(base, wanted), names)
+
+
+def _placed(mesh, matrix):
+    return riffler.Mesh(*object_surfaces.placed(np.asarray(mesh.vertices), np.asarray(mesh.triangles), matrix))
+
+
+def _base(surfaces, stock, axis, clearance):
+    """What all operations depend on. Places count to a nanometre: a stock and a part that are moved together keep
+    their moves."""
+    prints = []
+    for mesh in surfaces:
+        corners = np.round(np.asarray(mesh.vertices) * 1e6).astype(np.int64)
+        prints.append(hashlib.blake2b(corners.tobytes() + np.asarray(mesh.triangles).tobytes()).hexdigest())
+    return json.dumps([prints, stock, [round(float(x), 9) for x in axis], clearance])
+
+
+def glances(scene):
+    """What a panel can compare of each operation's key, by the number of its row from 0: without the shapes of part
+    and fixtures."""
+    settings, ob = scene.riffler.machining, stock_of(scene)
+    part, held = scene.riffler.plan.part, scene.riffler.plan.fixtures
+    names = [part.name if part else "", ob.name if ob else "", held.name if held else ""]
+    places = [meshes.matrix(one.matrix_world).round(6).tolist() for one in (part, ob, settings.upright) if one]
+    stock = sculpt_store.identity(ob.data) if ob else ""
+    mm = scene_units.mm_per_unit(scene)
+    base = json.dumps([names, places, stock, scene_units.clean(settings.clearance), mm])
+    on = [k for k, row in enumerate(settings.rows) if row.on]
+    wanted = [Wanted("", row.kind, {"text": row.tool}, row.options()) for row in settings.switched_on()]
+    return dict(zip(on, keys_of(base, wanted), strict=True))

@@ -1,0 +1,64 @@
+"""The kinds of operations of a job. A new kind is one entry here, and its fields in machining/properties.py."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import riffler
+
+
+@dataclass(frozen=True)
+class OperationKind:
+    """`fields`: names of its settings in properties.RifflerOperation, which are arguments of `plan`."""
+
+    id: str
+    label: str
+    description: str
+    icon: str
+    number: int  # in .blend files: never changed
+    fields: tuple[str, ...]
+    plan: Callable[..., riffler.plan.Operation]
+
+
+def finish(setup, tool, *, pattern, slope_from, slope_to, **options):
+    return riffler.plan.finish(setup, tool, pattern, slopes=(slope_from, slope_to), **options)
+
+
+OPERATION_KINDS = (
+    OperationKind(
+        "ROUGH",
+        "Rough",
+        "Clear the stock in layers, with a bounded width of cut",
+        "ALIGN_JUSTIFY",
+        0,
+        ("stepdown", "engagement", "allowance", "tolerance", "feed", "spindle"),
+        riffler.plan.rough,
+    ),
+    OperationKind(
+        "FINISH",
+        "Finish",
+        "Cut the part's surface in rows, which leave ridges of a given height",
+        "SMOOTHCURVE",
+        1,
+        (
+            "pattern",
+            "cusp",
+            "angle",
+            "slope_from",
+            "slope_to",
+            "allowance",
+            "tolerance",
+            "feed",
+            "spindle",
+        ),
+        finish,
+    ),
+)
+KINDS: Mapping[str, OperationKind] = {kind.id: kind for kind in OPERATION_KINDS}
+# What a new operation of a kind begins with, where that differs from the field's default.
+FIRST: Mapping[str, Mapping[str, Any]] = {
+    "ROUGH": {"allowance": 0.3, "tolerance": 0.05, "feed": 1200.0},
+    "FINISH": {"allowance": 0.0, "tolerance": 0.005, "feed": 1000.0},
+}
