@@ -354,7 +354,7 @@ def test_the_command_writes_a_pen(tmp_path):
         (["simulated", "--yes", "--mass", "900"], "too heavy"),
         (["simulated", "--yes", "--mass", "3", "--scale", "0.01"], "friction hides the weight"),
         (["simulated", "--yes", "--mass", "-3"], "must be positive"),
-        (["simulated", "--yes", "--scale", "1"], "take a finer scale"),
+        (["simulated", "--yes", "--scale", "1"], "use a finer scale"),
         (["simulated", "--yes", "--pens", "2", "--out", "x.toml"], "--out is for one pen"),
     ],
 )
