@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-MOST = 128  # objects: undo costs 0.08 ms for each (docs/decisions.md, "A live sculpt is a hundred objects")
+MOST = 128  # objects: undo costs 0.08 ms for each (docs/decisions.md, decision 53)
 
 
 def within(shape: tuple[int, int, int], low, high, side: int = 32) -> list[int]:
