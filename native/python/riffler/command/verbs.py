@@ -97,6 +97,7 @@ VERBS = (
     Verb("pen", "calibrate", _module("pen_calibrate")),
     Verb("pen", "identify", _module("pen_identify")),
     Verb("pen", "simulate", _module("pen_simulate")),
+    Verb("", "job", _module("job")),
     Verb("", "doctor", _module("doctor")),
     Verb("", "bench", _module("bench")),
     Verb("", "completion", _module("completion")),
