@@ -6484,6 +6484,10 @@ def min_tilt(path: PencilPath, tool: Tool, collider: Collider, *, inclinations: 
     ...
 def orientation_maps(path: PencilPath, points: collections.abc.Sequence[typing.SupportsInt], tool: Tool, collider: Collider, *, inclinations: collections.abc.Sequence[typing.SupportsFloat], tilts: collections.abc.Sequence[typing.SupportsFloat], clearance: typing.SupportsFloat, tolerance: typing.SupportsFloat, limit: tuple[numpy.typing.ArrayLike, float] | None, progress: collections.abc.Callable[[float], bool | None] | None) -> list[riffler.plan.orientations.MapValues]:
     ...
+def outline(part: Mesh, fixtures: collections.abc.Sequence[Mesh], stock: Volume, tool: Tool, *, axis: numpy.typing.ArrayLike, clearance: typing.SupportsFloat, curves: collections.abc.Iterable[numpy.typing.ArrayLike], inside: bool, depth: typing.SupportsFloat, stepdown: typing.SupportsFloat, tabs: typing.SupportsInt, tab_height: typing.SupportsFloat, tab_width: typing.SupportsFloat, allowance: typing.SupportsFloat, tolerance: typing.SupportsFloat, slope: typing.SupportsFloat, climb: bool, feed: typing.SupportsFloat, plunge: typing.SupportsFloat, progress: collections.abc.Callable[[float], bool | None] | None) -> riffler.plan.operations.PlannedMoves:
+    """
+    For riffler.plan.outline.
+    """
 def pencil(part: Mesh, tool: Tool, *, tolerance: typing.SupportsFloat, bitangency_angle: typing.SupportsFloat | None, minimum_length: typing.SupportsFloat, passes: typing.SupportsInt, stepover: typing.SupportsFloat | None, overthickness: typing.SupportsFloat, progress: collections.abc.Callable[[float], bool | None] | None) -> riffler.plan.strategies.pencil.PencilPaths:
     """
     For riffler.plan.pencil.

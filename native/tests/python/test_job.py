@@ -292,7 +292,7 @@ def test_a_tool_table_of_linuxcnc(tmp_path):
     one, two, three, four = tool_files.read(path, "inch")
     assert one.sizes == {"diameter": pytest.approx(203.2), "kind": "flat"} and one.number == 1 and not one.problem
     assert two.sizes == {"diameter": pytest.approx(6.35), "kind": "ball"} and two.number == 12
-    assert three.problem and three.where == "tool.tbl, line 5" and four.sizes == {"kind": "drill"}
+    assert three.problem and three.where == "tool.tbl, line 5" and four.sizes == {"kind": "drill", "point": 118}
     assert tool_files.read(path)[0].sizes["diameter"] == 8
     for wrong, message in (("P1 D3", "line 1: a tool number expected"), ("T1 Dx", "line 1: Dx: a number expected"),
                            ("T1.5", "T1.5 is no tool number")):  # fmt: skip

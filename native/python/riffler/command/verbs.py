@@ -87,6 +87,8 @@ VERBS = (
     *(Verb("plan", name, partial(_strategy, name), "pencil" if name == "pencil" else "") for name in STRATEGIES),
     Verb("plan", "rough", _module("plan_rough")),
     Verb("plan", "finish", _module("plan_finish")),
+    Verb("plan", "outline", _module("plan_outline")),
+    Verb("plan", "drill", _module("plan_drill")),
     Verb("plan", "from-recording", _module("plan_from_recording")),
     Verb("nc", "post", _module("nc_post"), "post"),
     Verb("nc", "verify", _module("nc_verify"), "verify"),

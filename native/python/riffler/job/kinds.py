@@ -11,6 +11,8 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
+import numpy as np
+
 from .. import plan
 from .table import Table
 
@@ -40,7 +42,14 @@ def curves(table: Table, key: str) -> Any:
     return [Table(table.file, {key: curve}, table.path).rows(key, 3) for curve in value]
 
 
-ANY: Reader = Table.number
+def points(table: Table, key: str) -> Any:
+    """Points from a file, those of all its curves, or in place."""
+    if isinstance(table.data.get(key), str):
+        found = curves(table, key)
+        return np.concatenate(found)
+    return table.rows(key, 3)
+
+
 NOT_NEGATIVE: Reader = partial(Table.number, low=0)
 POSITIVE: Reader = partial(Table.number, above=0)
 ANGLE: Reader = Table.angle
@@ -55,6 +64,7 @@ class Kind:
     run: Callable[..., plan.Operation]
     options: Mapping[str, Reader]
     needed: Mapping[str, str]
+    feeds: tuple[str, ...] = ("feed", "plunge", "spindle")  # taken from the tool where the operation has none
 
     def read(self, table: Table) -> dict[str, Any]:
         for key, example in self.needed.items():
@@ -87,6 +97,41 @@ KINDS: dict[str, Kind] = {
             "angle": ANGLE,
             "slopes": _slopes,
             "region": curves,
+        },
+        {},
+    ),
+    "outline": Kind(
+        plan.outline,
+        {
+            "curves": curves,
+            "depth": POSITIVE,
+            "inside": FLAG,
+            "stepdown": POSITIVE,
+            "tabs": Table.whole,
+            "tab_height": NOT_NEGATIVE,
+            "tab_width": POSITIVE,
+            "allowance": NOT_NEGATIVE,
+            "tolerance": POSITIVE,
+            "slope": ANGLE,
+            "climb": FLAG,
+        },
+        {},
+    ),
+    "drill": Kind(
+        plan.drill,
+        {"points": points, "depth": POSITIVE, "peck": POSITIVE, "tolerance": POSITIVE},
+        {"points": "[[10, 20, 0]]", "depth": "5"},
+        ("feed", "spindle"),
+    ),
+    "pencil": Kind(
+        plan.pencil_operation,
+        {
+            "tolerance": POSITIVE,
+            "passes": partial(Table.whole, low=1),
+            "stepover": POSITIVE,
+            "scallop": POSITIVE,
+            "minimum_length": NOT_NEGATIVE,
+            "overthickness": NOT_NEGATIVE,
         },
         {},
     ),

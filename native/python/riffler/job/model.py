@@ -376,7 +376,7 @@ def _operations(table: Table, tools: Mapping[int, JobTool]) -> list[JobOperation
         name = sub.text("name") or f"{kind} with tool {number}"
         tool = tools[number]
         options = KINDS[kind].read(sub)
-        for key in ("feed", "plunge", "spindle"):
+        for key in KINDS[kind].feeds:
             value = sub.number(key) if key == "spindle" else sub.number(key, above=0)
             value = value if value is not None else getattr(tool, key)
             if value is not None:

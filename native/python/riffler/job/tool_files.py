@@ -78,6 +78,8 @@ def _of_table(name: str, data: bytes, scale: float) -> list[Preset]:
         sizes: dict[str, Any] = {"diameter": diameter} if diameter > 0 else {}
         if kind is not None:
             sizes["kind"] = kind
+        if kind == "drill":
+            sizes["point"] = POINT
         problem = "" if kind else "its comment does not tell the kind of cutter"
         out.append(Preset(int(tool), comment.strip(), where, sizes, problem=problem))
     return out
@@ -120,8 +122,9 @@ def _fusion_tool(entry: Mapping[str, Any], where: str) -> Preset:
 
     def size(key: str, of: Mapping[str, Any] = geometry, by: float = scale) -> float | None:
         value = of.get(key)
-        usable = isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value) and value > 0
-        return by * value if usable else None
+        if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value) or value <= 0:
+            return None
+        return by * value
 
     sizes: dict[str, Any] = {"kind": kind, "diameter": size("DC"), "length": size("LCF")}
     if kind == "fillet":
