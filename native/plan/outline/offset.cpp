@@ -83,6 +83,13 @@ class Offset {
       if (border_.distance(few[k], few[(k + 1) % few.size()], far_) < least_ - 0.25 * tolerance_) return out;
     return few;
   }
+  /// A place near `p` that is farther from the border than its neighbours.
+  Vec2 deepest_near(Vec2 p) const {
+    for (double step = 0.5 * grid_.spacing; step > tolerance_; step *= 0.5)
+      for (const Vec2 by : {Vec2(step, 0), Vec2(-step, 0), Vec2(0, step), Vec2(0, -step)})
+        while (distance_of(p + by) > distance_of(p)) p += by;
+    return p;
+  }
   /// Connected places outside of the set where no place is far enough from the border.
   std::vector<NarrowPlace> narrow_places() const {
     std::vector<NarrowPlace> out;
@@ -111,7 +118,7 @@ class Offset {
         visit(row + 1 < static_cast<std::size_t>(grid_.rows), k + n);
       }
       if (field_[most] >= aim_ || count < 3) continue;
-      here.place = grid_.place(most), here.width = 2 * field_[most];
+      here.place = deepest_near(grid_.place(most)), here.width = 2 * distance_of(here.place);
       out.push_back(here);
     }
     return out;

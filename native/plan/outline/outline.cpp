@@ -22,6 +22,7 @@ namespace {
 constexpr double kMostPlaces = 4e6;
 constexpr double kThin = 1e-6;      // mm: thinner layers are none
 constexpr double kShortest = 0.05;  // mm: pieces of a loop
+constexpr double kPin = 0.1;        // mm: looks for stock in openings
 constexpr int kArc = 8;             // moves of an arc
 
 void check(const OutlineOptions& o, const Tool& tool) {
@@ -366,9 +367,11 @@ OutlineResult outline(const SetupScene& scene, const Tool& tool, const OutlineOp
   base::report(progress, 0.05);
   OffsetLoops found = offset_loops(grid, set, border, distance, options.tolerance);
   base::report(progress, 0.4);
+  const DropCutter pin(left, cutters::flat(kPin, tool.length()));
   for (const NarrowPlace& one : found.narrow)
-    out.blocked.push_back({"an opening " + size_text(one.width) + " mm wide is narrower than the cutter",
-                           in.frame * Vec3(one.place, bottom), one.length});
+    if (const DropCutter::Landing there = pin(Vec3(one.place, 0)); there.touches && there.height > bottom)
+      out.blocked.push_back({"an opening " + size_text(one.width) + " mm wide is narrower than the cutter",
+                             in.frame * Vec3(one.place, bottom), one.length});
   put_in_order(found.loops);
   Cutter cutter(out, in, tool, options, border, left, scene.stock.frame().pitch);
   bool material = false;
