@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import importlib
+import textwrap
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
@@ -183,7 +184,10 @@ def overview() -> str:
         "",
     ]
     for group, about in GROUPS.items():
-        lines += [f"  {group:<12}{about}", f"  {'':<12}{', '.join(of(group))}"]
+        lines += [
+            f"  {group:<12}{about}",
+            *(f"  {'':<12}{line}" for line in textwrap.wrap(", ".join(of(group)), 66, break_on_hyphens=False)),
+        ]
     lines += [f"  {name:<12}{verb.load().HELP}" for name, verb in ALONE.items()]
     lines += ["", "riffler GROUP --help and riffler GROUP VERB --help tell more.", *_epilog()]
     return "\n".join(lines)
