@@ -8,6 +8,7 @@
 #include "bindings/task.hpp"
 #include "riffler/plan/cc_frame.hpp"
 #include "riffler/plan/finish.hpp"
+#include "riffler/plan/outline.hpp"
 #include "riffler/plan/rough.hpp"
 #include "riffler/sweep/carve.hpp"
 
@@ -46,10 +47,10 @@ PlannedMoves from_planned(Planned&& planned) {
                               "reason"_a = found.reason, "stats"_a = stats, "engagement"_a = planned.engagement));
 }
 
-std::vector<std::vector<Vec3>> to_region(const ArraysLike& arrays) {
+std::vector<std::vector<Vec3>> to_curves(const ArraysLike& arrays, const std::string& name) {
   std::vector<std::vector<Vec3>> curves;
   for (const py::handle curve : arrays)
-    curves.push_back(to_vec3s(py::cast<Doubles>(curve), ("region[" + std::to_string(curves.size()) + "]").c_str()));
+    curves.push_back(to_vec3s(py::cast<Doubles>(curve), (name + "[" + std::to_string(curves.size()) + "]").c_str()));
   return curves;
 }
 
@@ -73,6 +74,13 @@ Planned planned(plan::RoughResult&& found) {
            {"retracts", found.retracts},
            {"drops", found.drops}},
           found.engagement,
+          {}};
+}
+
+Planned planned(plan::OutlineResult&& found) {
+  return {std::move(found),
+          {{"loops", found.loops}, {"levels", found.levels}, {"tabs", found.tabs}, {"retracts", found.retracts}},
+          {},
           {}};
 }
 
@@ -108,11 +116,10 @@ void bind_operations(py::module_& m) {
          double tolerance, double allowance, double angle, double min_slope, double max_slope, const ArraysLike& region,
          double feed, double plunge, const ProgressLike& progress) {
         tool.require_revolved("plan.finish");
-        tool.require_revolved("plan.finish");
         plan::FinishOptions options;
         options.pattern = pattern, options.cusp = cusp, options.tolerance = tolerance;
         options.allowance = allowance, options.angle = angle, options.min_slope = min_slope;
-        options.max_slope = max_slope, options.region = to_region(region), options.feed = feed;
+        options.max_slope = max_slope, options.region = to_curves(region, "region"), options.feed = feed;
         options.plunge = plunge;
         return operation(part, fixtures, stock, tool, axis, clearance, progress,
                          [=](const plan::SetupScene& scene, const Progress& listener) {
@@ -138,6 +145,34 @@ void bind_operations(py::module_& m) {
       "part"_a.none(false), "fixtures"_a, "stock"_a, "tool"_a, py::kw_only(), "axis"_a, "clearance"_a, "stepdown"_a,
       "engagement"_a, "allowance"_a, "tolerance"_a, "slope"_a, "climb"_a, "feed"_a, "plunge"_a, "progress"_a,
       "For riffler.plan.rough.");
+  m.def(
+      "outline",
+      [](const std::shared_ptr<Mesh>& part, const std::vector<std::shared_ptr<Mesh>>& fixtures, SharedVolume& stock,
+         const Tool& tool, const ArrayLike& axis, double clearance, const ArraysLike& curves, bool inside, double depth,
+         double stepdown, std::size_t tabs, double tab_height, double tab_width, double allowance, double tolerance,
+         double slope, bool climb, double feed, double plunge, const ProgressLike& progress) {
+        tool.require_revolved("plan.outline");
+        const plan::OutlineOptions options{to_curves(curves, "curves"),
+                                           inside,
+                                           depth,
+                                           stepdown,
+                                           tabs,
+                                           tab_height,
+                                           tab_width,
+                                           allowance,
+                                           tolerance,
+                                           slope,
+                                           climb,
+                                           feed,
+                                           plunge};
+        return operation(part, fixtures, stock, tool, axis, clearance, progress,
+                         [=](const plan::SetupScene& scene, const Progress& listener) {
+                           return plan::outline(scene, tool, options, listener);
+                         });
+      },
+      "part"_a.none(false), "fixtures"_a, "stock"_a, "tool"_a, py::kw_only(), "axis"_a, "clearance"_a, "curves"_a,
+      "inside"_a, "depth"_a, "stepdown"_a, "tabs"_a, "tab_height"_a, "tab_width"_a, "allowance"_a, "tolerance"_a,
+      "slope"_a, "climb"_a, "feed"_a, "plunge"_a, "progress"_a, "For riffler.plan.outline.");
   m.def("finish_patterns", &plan::finish_patterns, "For riffler.plan.finish.");
 }
 

@@ -8,6 +8,9 @@
 
 namespace riffler::bindings {
 
+RIFFLER_TYPED(VolumeObject, "riffler._core.Volume")
+RIFFLER_TYPED(ProgramObject, "riffler._core.Program")
+
 namespace {
 
 using Via = std::shared_ptr<const std::vector<Pose>>;
@@ -253,6 +256,60 @@ Examples
 >>> program = riffler.Program([(x, 0, 5, 0, 0, 1) for x in range(2)], feed=600)
 >>> program.scale_feeds(0.5).feed
 array([300., 300.])
+)")
+      .def(
+          "scheduled",
+          [](const py::object& self, const VolumeObject& stock, std::optional<double> removal_rate,
+             std::optional<double> force, double lowest, std::optional<double> highest, double removal_constant,
+             const ToolsLike& tools, const ProgressLike& progress) {
+            return ProgramObject(py::module_::import("riffler.scheduling")
+                                     .attr("scheduled")(self, stock, removal_rate, force, lowest, highest,
+                                                        removal_constant, tools, progress));
+          },
+          py::arg("stock"), py::kw_only(), py::arg("removal_rate") = py::none(), py::arg("force") = py::none(),
+          py::arg("lowest") = 1.0, py::arg("highest") = py::none(), py::arg("removal_constant") = 0.05,
+          py::arg("tools") = py::none(), py::arg("progress") = py::none(),
+          R"(The program with feeds at which the simulated removal rate, or force, stays below a limit.
+
+The program runs on a copy of the stock, in steps of four pitches or a quarter of the cutter's radius. Where the feed that
+a step needs differs from the one before, the row is divided there; nothing else changes.
+
+Parameters
+----------
+stock : Volume
+    At the beginning of the program. Not changed.
+removal_rate : float, optional
+    mm³/min; this or ``force``, or both.
+force : float, optional
+    N, of removal: ``removal_constant`` times the removal rate.
+lowest : float
+    mm/min, the smallest feed.
+highest : float, optional
+    mm/min, to which feeds may rise; None: to the program's own.
+removal_constant : float
+    N·s/mm³, as for ``Volume.carve``.
+tools : dict, optional
+    Number to Tool; takes the place of the program's own.
+progress : callable, optional
+    Called with the finished share; returning False cancels.
+
+Returns
+-------
+Program
+
+Raises
+------
+ValueError
+    Naming the row and the place where the limit needs a feed below ``lowest``, a tool of unknown shape, or the argument.
+
+Examples
+--------
+>>> stock = riffler.Volume.block((0, 0, 0), (40, 20, 10), pitch=0.5)
+>>> cut = [(-5, 10, 8, 0, 0, 1), (45, 10, 8, 0, 0, 1)]
+>>> program = riffler.Program(cut, feed=1200, spindle=9000, tools={1: riffler.Tool.flat(diameter=6, length=20)})
+>>> slower = program.scheduled(stock, removal_rate=6000)
+>>> bool(slower.feed.min() < 600), float(slower.feed.max()), len(slower) > len(program)
+(True, 1200.0, True)
 )")
       .def_static(
           "joined",

@@ -3395,6 +3395,50 @@ class Program:
         >>> program.scale_feeds(0.5).feed
         array([300., 300.])
         """
+    def scheduled(self, stock: Volume, *, removal_rate: typing.SupportsFloat | None = None, force: typing.SupportsFloat | None = None, lowest: typing.SupportsFloat = 1.0, highest: typing.SupportsFloat | None = None, removal_constant: typing.SupportsFloat = 0.05, tools: collections.abc.Mapping[int, Tool] | None = None, progress: collections.abc.Callable[[float], bool | None] | None = None) -> Program:
+        """
+        The program with feeds at which the simulated removal rate, or force, stays below a limit.
+
+        The program runs on a copy of the stock, in steps of four pitches or a quarter of the cutter's radius. Where the feed that
+        a step needs differs from the one before, the row is divided there; nothing else changes.
+
+        Parameters
+        ----------
+        stock : Volume
+            At the beginning of the program. Not changed.
+        removal_rate : float, optional
+            mm³/min; this or ``force``, or both.
+        force : float, optional
+            N, of removal: ``removal_constant`` times the removal rate.
+        lowest : float
+            mm/min, the smallest feed.
+        highest : float, optional
+            mm/min, to which feeds may rise; None: to the program's own.
+        removal_constant : float
+            N·s/mm³, as for ``Volume.carve``.
+        tools : dict, optional
+            Number to Tool; takes the place of the program's own.
+        progress : callable, optional
+            Called with the finished share; returning False cancels.
+
+        Returns
+        -------
+        Program
+
+        Raises
+        ------
+        ValueError
+            Naming the row and the place where the limit needs a feed below ``lowest``, a tool of unknown shape, or the argument.
+
+        Examples
+        --------
+        >>> stock = riffler.Volume.block((0, 0, 0), (40, 20, 10), pitch=0.5)
+        >>> cut = [(-5, 10, 8, 0, 0, 1), (45, 10, 8, 0, 0, 1)]
+        >>> program = riffler.Program(cut, feed=1200, spindle=9000, tools={1: riffler.Tool.flat(diameter=6, length=20)})
+        >>> slower = program.scheduled(stock, removal_rate=6000)
+        >>> bool(slower.feed.min() < 600), float(slower.feed.max()), len(slower) > len(program)
+        (True, 1200.0, True)
+        """
     def to_bytes(self) -> bytes:
         """
         The bytes of the .rprog file.
@@ -6488,6 +6532,10 @@ def min_tilt(path: PencilPath, tool: Tool, collider: Collider, *, inclinations: 
     ...
 def orientation_maps(path: PencilPath, points: collections.abc.Sequence[typing.SupportsInt], tool: Tool, collider: Collider, *, inclinations: collections.abc.Sequence[typing.SupportsFloat], tilts: collections.abc.Sequence[typing.SupportsFloat], clearance: typing.SupportsFloat, tolerance: typing.SupportsFloat, limit: tuple[numpy.typing.ArrayLike, float] | None, progress: collections.abc.Callable[[float], bool | None] | None) -> list[riffler.plan.orientations.MapValues]:
     ...
+def outline(part: Mesh, fixtures: collections.abc.Sequence[Mesh], stock: Volume, tool: Tool, *, axis: numpy.typing.ArrayLike, clearance: typing.SupportsFloat, curves: collections.abc.Iterable[numpy.typing.ArrayLike], inside: bool, depth: typing.SupportsFloat, stepdown: typing.SupportsFloat, tabs: typing.SupportsInt, tab_height: typing.SupportsFloat, tab_width: typing.SupportsFloat, allowance: typing.SupportsFloat, tolerance: typing.SupportsFloat, slope: typing.SupportsFloat, climb: bool, feed: typing.SupportsFloat, plunge: typing.SupportsFloat, progress: collections.abc.Callable[[float], bool | None] | None) -> riffler.plan.operations.PlannedMoves:
+    """
+    For riffler.plan.outline.
+    """
 def pencil(part: Mesh, tool: Tool, *, tolerance: typing.SupportsFloat, bitangency_angle: typing.SupportsFloat | None, minimum_length: typing.SupportsFloat, passes: typing.SupportsInt, stepover: typing.SupportsFloat | None, overthickness: typing.SupportsFloat, progress: collections.abc.Callable[[float], bool | None] | None) -> riffler.plan.strategies.pencil.PencilPaths:
     """
     For riffler.plan.pencil.

@@ -224,7 +224,7 @@ WRONG = {
     "old verb, misspelt": (["convrt", "a.stl"], "did you mean riffler volume from-mesh?"),
     "nothing like it": (["xyzzy"], "riffler has no command 'xyzzy' (see riffler --help)"),
     "no verb": (["pen"], "a verb expected: list, monitor, calibrate, identify, simulate"),
-    "nothing": ([], "a command expected: mesh, volume, plan, nc, pen, doctor, bench, completion"),
+    "nothing": ([], "a command expected: mesh, volume, plan, nc, pen, job, doctor, bench, completion"),
     "option": (["nc", "verify", "slot.ngc", "--stok", "9x9x9"], "no option --stok; did you mean --stock?"),
     "option with =": (["mesh", "audit", "box.stl", "--jsn=1"], "no option --jsn; did you mean --json?"),
     "abbreviated": (["volume", "from-mesh", "box.stl", "--pit", "1"], "no option --pit; did you mean --pitch?"),

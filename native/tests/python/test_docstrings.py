@@ -11,7 +11,7 @@ import riffler
 
 # Names that have no example yet, one a line: the list may only shrink.
 ALLOWANCE = Path(__file__).with_name("without_example.txt")
-MODULES = ("", "plan", "pen", "cluster", "shape")
+MODULES = ("", "plan", "job", "pen", "cluster", "shape")
 # Classes whose objects are given and not made by users; what their attributes mean is in their docstrings.
 RESULTS = (riffler.deprecated.DictResult, tuple, Exception)
 

@@ -11,7 +11,7 @@ from functools import partial
 from typing import Any, NoReturn
 
 EPILOG = "lengths in mm, angles on the command line in degrees; exit status 0, 1 (a check failed) or 2 (bad input)"
-SIGNED = ("--origin", "--axis", "--stock")  # options whose value may begin with a minus
+SIGNED = ("--origin", "--axis", "--stock", "--at")  # options whose value may begin with a minus
 
 
 class UsageError(ValueError):

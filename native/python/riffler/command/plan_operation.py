@@ -135,12 +135,17 @@ def summary(op: plan.Operation) -> dict[str, Any]:
     }
 
 
+def _links(stats: dict[str, Any]) -> list[tuple[str, str]]:
+    if "direct" not in stats:
+        return []
+    return [("links", f"{number(stats['direct'])} at feed, {number(stats['retracts'])} over the clearance plane")]
+
+
 def rows(data: dict[str, Any]) -> list[tuple[str, str]]:
-    stats = data["stats"]
     return [
         ("points", number(data["poses"])),
         ("cut", f"{number(data['cut_mm'], 'mm')}, {number(data['air_mm'], 'mm')} at feed in air"),
-        ("links", f"{number(stats['direct'])} at feed, {number(stats['retracts'])} over the clearance plane"),
+        *_links(data["stats"]),
         ("time", number(data["time_s"] / 60, "min")),
         *(("blocked", f"{number(b['length'], 'mm')}: {b['reason']}") for b in data["blocked"]),
         ("file", number(data["bytes"], "bytes")),

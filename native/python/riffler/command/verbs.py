@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import importlib
+import textwrap
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
@@ -87,6 +88,8 @@ VERBS = (
     *(Verb("plan", name, partial(_strategy, name), "pencil" if name == "pencil" else "") for name in STRATEGIES),
     Verb("plan", "rough", _module("plan_rough")),
     Verb("plan", "finish", _module("plan_finish")),
+    Verb("plan", "outline", _module("plan_outline")),
+    Verb("plan", "drill", _module("plan_drill")),
     Verb("plan", "from-recording", _module("plan_from_recording")),
     Verb("nc", "post", _module("nc_post"), "post"),
     Verb("nc", "verify", _module("nc_verify"), "verify"),
@@ -97,6 +100,7 @@ VERBS = (
     Verb("pen", "calibrate", _module("pen_calibrate")),
     Verb("pen", "identify", _module("pen_identify")),
     Verb("pen", "simulate", _module("pen_simulate")),
+    Verb("", "job", _module("job")),
     Verb("", "doctor", _module("doctor")),
     Verb("", "bench", _module("bench")),
     Verb("", "completion", _module("completion")),
@@ -180,7 +184,10 @@ def overview() -> str:
         "",
     ]
     for group, about in GROUPS.items():
-        lines += [f"  {group:<12}{about}", f"  {'':<12}{', '.join(of(group))}"]
+        lines += [
+            f"  {group:<12}{about}",
+            *(f"  {'':<12}{line}" for line in textwrap.wrap(", ".join(of(group)), 66, break_on_hyphens=False)),
+        ]
     lines += [f"  {name:<12}{verb.load().HELP}" for name, verb in ALONE.items()]
     lines += ["", "riffler GROUP --help and riffler GROUP VERB --help show more.", *_epilog()]
     return "\n".join(lines)

@@ -8,6 +8,7 @@ from ..program_results import NearestContact
 from .analysis import PartReport, analyse
 from .around import fixture_pitch, with_room
 from .curves import read_curves
+from .drilling import drill
 from .file import Texts, dumps, load, loads, save
 from .finishing import PATTERNS, finish
 from .locations import (
@@ -26,7 +27,9 @@ from .locations import (
 from .model import Plan, part_of
 from .operations import Blocked, Operation, OperationReport
 from .orientations import FreeOrientations, TiltReport, draw_map, free_orientations, min_tilt
+from .outlining import outline
 from .path_order import order_paths
+from .penciling import pencil_operation
 from .recorded import NoPathError, Recorded, StrokePath, from_recording, path_of_stroke
 from .roughing import rough
 from .setups import Setup, program
@@ -67,6 +70,7 @@ __all__ = [
     "contact_locations",
     "cutter_locations",
     "draw_map",
+    "drill",
     "drop",
     "dumps",
     "engrave",
@@ -81,10 +85,12 @@ __all__ = [
     "loads",
     "min_tilt",
     "order_paths",
+    "outline",
     "part_of",
     "path_of_poses",
     "path_of_stroke",
     "pencil",
+    "pencil_operation",
     "poses_of",
     "program",
     "read_curves",

@@ -177,7 +177,13 @@ def _check_stock(part: Mesh, stock: Volume, axis: NDArray[np.float64]) -> None:
 
 
 @hinted("plan.program")
-def program(setup: Setup, operations: Iterable[Operation], *, progress: Progress = None) -> Program:
+def program(
+    setup: Setup,
+    operations: Iterable[Operation],
+    *,
+    numbers: Sequence[int] | None = None,
+    progress: Progress = None,
+) -> Program:
     """One program of several operations, with tool changes between them on the clearance plane.
 
     The program is simulated on the stock before its first operation. A fault is an error, and no program
@@ -190,6 +196,8 @@ def program(setup: Setup, operations: Iterable[Operation], *, progress: Progress
         The set-up of the operations.
     operations : list of Operation
         In the order in which they run. Those without poses are left out.
+    numbers : list of int, optional
+        The number of each operation's tool on the machine; by default tools are numbered from 1 as they come.
     progress : callable, optional
         Called with the finished share; returning False cancels.
 
@@ -218,11 +226,11 @@ def program(setup: Setup, operations: Iterable[Operation], *, progress: Progress
         reasons = "; ".join(op.reason for op in planned if op.reason)
         raise ValueError("operations: none has poses" + (f": {reasons}" if reasons else ""))
     tools: dict[int, Tool] = {}
-    numbers = [_number(op.tool, tools) for op in chosen]
+    called = _called(planned, numbers, tools)
     poses = np.concatenate([op.poses for op in chosen])
     rest = {
         "rapid": np.concatenate([op.kind == RAPID for op in chosen]),
-        "tool": np.concatenate([np.full(len(op), n) for op, n in zip(chosen, numbers, strict=True)]),
+        "tool": np.concatenate([np.full(len(op), n) for op, n in zip(chosen, called, strict=True)]),
         "spindle": np.concatenate([np.full(len(op), op.spindle) for op in chosen]),
         "tools": tools,
     }
@@ -245,6 +253,20 @@ def program(setup: Setup, operations: Iterable[Operation], *, progress: Progress
         at = ", ".join(f"{x:.3f}" for x in first.point)
         raise ValueError(f"operations[{planned.index(chosen[index])}], row {row}, at ({at}): {first.message}")
     return Program(poses - np.concatenate([setup.origin, np.zeros(3)]), feed, **rest)
+
+
+def _called(planned: Sequence[Operation], numbers: Sequence[int] | None, tools: dict[int, Tool]) -> list[int]:
+    """The tool numbers of the operations that have poses; enters their tools."""
+    if numbers is None:
+        return [_number(op.tool, tools) for op in planned if len(op)]
+    if len(numbers) != len(planned):
+        raise ValueError(f"numbers: {len(numbers)} for {len(planned)} operations; give one for each")
+    for k, (op, number) in enumerate(zip(planned, numbers, strict=True)):
+        if number < 1:
+            raise ValueError(f"numbers[{k}] must be a tool number from 1, not {number}")
+        if len(op) and tools.setdefault(number, op.tool).to_dict() != op.tool.to_dict():
+            raise ValueError(f"numbers[{k}]: tool {number} has another shape in an operation before")
+    return [number for op, number in zip(planned, numbers, strict=True) if len(op)]
 
 
 def _number(tool: Tool, tools: dict[int, Tool]) -> int:

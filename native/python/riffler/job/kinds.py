@@ -1,0 +1,138 @@
+"""The kinds of operations of a job file: the function of `riffler.plan` for each, and its options.
+
+Another operation is another entry in KINDS; there is no other list.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from .. import plan
+from .table import Table
+
+Reader = Callable[[Table, str], Any]
+
+
+def _text(table: Table, key: str, *, choices: tuple[str, ...] = ()) -> Any:
+    return table.text(key, choices)
+
+
+def _slopes(table: Table, key: str) -> Any:
+    degrees = table.vector(key, 2)
+    return None if degrees is None else tuple(math.radians(float(x)) for x in degrees)
+
+
+def curves(table: Table, key: str) -> Any:
+    """Curves from a file, or as lists of points in place."""
+    if isinstance(table.data.get(key), str):
+        path = table.file_name(key, plan.curves.FORMATS)
+        assert path is not None
+        return plan.read_curves(path)
+    if not table.has(key):
+        return None
+    value = table.data[key]
+    if not isinstance(value, list) or not all(isinstance(curve, list) for curve in value):
+        raise table.error(key, "a file of curves expected, or a list of curves, each a list of points [x, y, z]")
+    return [Table(table.file, {key: curve}, table.path).rows(key, 3) for curve in value]
+
+
+def points(table: Table, key: str) -> Any:
+    """Points from a file, those of all its curves, or in place."""
+    if isinstance(table.data.get(key), str):
+        found = curves(table, key)
+        return np.concatenate(found)
+    return table.rows(key, 3)
+
+
+NOT_NEGATIVE: Reader = partial(Table.number, low=0)
+POSITIVE: Reader = partial(Table.number, above=0)
+ANGLE: Reader = Table.angle
+FLAG: Reader = Table.flag
+
+
+@dataclass(frozen=True)
+class Kind:
+    """One kind. ``options``: for each keyword of the function how its key is read; a key that is not there leaves the
+    function's default. ``needed``: keys that must be there, with examples."""
+
+    run: Callable[..., plan.Operation]
+    options: Mapping[str, Reader]
+    needed: Mapping[str, str]
+    feeds: tuple[str, ...] = ("feed", "plunge", "spindle")  # taken from the tool where the operation has none
+
+    def read(self, table: Table) -> dict[str, Any]:
+        for key, example in self.needed.items():
+            if not table.has(key):
+                raise table.missing(key, example)
+        found = {key: read(table, key) for key, read in self.options.items()}
+        return {key: value for key, value in found.items() if value is not None}
+
+
+KINDS: dict[str, Kind] = {
+    "rough": Kind(
+        plan.rough,
+        {
+            "stepdown": POSITIVE,
+            "engagement": POSITIVE,
+            "allowance": NOT_NEGATIVE,
+            "tolerance": POSITIVE,
+            "slope": ANGLE,
+            "climb": FLAG,
+        },
+        {},
+    ),
+    "finish": Kind(
+        plan.finish,
+        {
+            "pattern": partial(_text, choices=plan.PATTERNS),
+            "cusp": POSITIVE,
+            "tolerance": POSITIVE,
+            "allowance": NOT_NEGATIVE,
+            "angle": ANGLE,
+            "slopes": _slopes,
+            "region": curves,
+        },
+        {},
+    ),
+    "outline": Kind(
+        plan.outline,
+        {
+            "curves": curves,
+            "depth": POSITIVE,
+            "inside": FLAG,
+            "stepdown": POSITIVE,
+            "tabs": Table.whole,
+            "tab_height": NOT_NEGATIVE,
+            "tab_width": POSITIVE,
+            "allowance": NOT_NEGATIVE,
+            "tolerance": POSITIVE,
+            "slope": ANGLE,
+            "climb": FLAG,
+        },
+        {},
+    ),
+    "drill": Kind(
+        plan.drill,
+        {"points": points, "depth": POSITIVE, "peck": POSITIVE, "tolerance": POSITIVE},
+        {"points": "[[10, 20, 0]]", "depth": "5"},
+        ("feed", "spindle"),
+    ),
+    "pencil": Kind(
+        plan.pencil_operation,
+        {
+            "tolerance": POSITIVE,
+            "passes": partial(Table.whole, low=1),
+            "stepover": POSITIVE,
+            "scallop": POSITIVE,
+            "minimum_length": NOT_NEGATIVE,
+            "overthickness": NOT_NEGATIVE,
+        },
+        {},
+    ),
+}

@@ -1,0 +1,131 @@
+"""Outlines: a part's silhouette, or closed curves, cut out at the cutter's radius."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import radians
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from .. import _core
+from .._core import Tool
+from ..arguments import Progress, then
+from ..hints import hinted
+from .operations import Operation, PlannedMoves, operation_of
+from .setups import Setup
+
+
+@hinted("plan.outline")
+def outline(
+    setup: Setup,
+    tool: Tool,
+    curves: Sequence[ArrayLike] | None = None,
+    depth: float | None = None,
+    *,
+    inside: bool = False,
+    stepdown: float = 2.0,
+    tabs: int = 0,
+    tab_height: float = 1.0,
+    tab_width: float = 4.0,
+    allowance: float = 0.0,
+    tolerance: float = 0.01,
+    slope: float = radians(3),
+    climb: bool = True,
+    feed: float = 1000.0,
+    plunge: float | None = None,
+    spindle: float = 12000.0,
+    progress: Progress = None,
+) -> Operation:
+    """Cuts along the part's silhouette, seen along the axis, or along closed curves, in layers.
+
+    The cutter's axis keeps its radius + ``allowance`` from the outline. Each layer begins with a ramp along the loop,
+    and the last ends with an arc away from the part. Loops in holes come before those around the part.
+
+    Parameters
+    ----------
+    setup : Setup
+        Part, in-process stock, fixtures, axis.
+    tool : Tool
+        A cutter that does not narrow above its widest place.
+    curves : list of array_like, shape (k, 3), optional
+        Closed curves, seen along the axis; what lies inside an odd number of them is the part. None: the silhouette.
+    depth : float, optional
+        mm of the tip below the highest point of part or curves; None: the underside of the stock.
+    inside : bool
+        Whether the tool runs within the curves, as for a pocket, and not around them.
+    stepdown : float
+        mm, height of a layer.
+    tabs : int
+        Bridges that stay along each loop; where fewer fit, these, and a place in ``report.blocked``.
+    tab_height, tab_width : float
+        mm: of a bridge, above the lowest layer and along the loop.
+    allowance : float
+        mm that stay on the part.
+    tolerance : float
+        mm by which more than the allowance may stay; never less.
+    slope : float
+        rad, of ramps.
+    climb : bool
+        Whether the part lies to the right of the motion, as it should for a spindle that turns clockwise.
+    feed : float
+        mm/min of cuts.
+    plunge : float, optional
+        mm/min of leads; by default a third of ``feed``.
+    spindle : float
+        rev/min; negative counter-clockwise.
+    progress : callable, optional
+        Called with the finished share; returning False cancels.
+
+    Returns
+    -------
+    Operation
+        Holes narrower than the cutter, and stretches that part, holder or fixtures keep it from, are left out and in
+        ``report.blocked``. Without poses, and with the reason, where nothing is left to cut.
+
+    Raises
+    ------
+    ValueError
+        Naming the argument.
+
+    Examples
+    --------
+    >>> part = riffler.Volume.cylinder((15, 15, 2), 10, 4, pitch=0.5, directions="xyz").to_mesh()
+    >>> setup = riffler.plan.Setup(part, riffler.Volume.block((0, 0, 0), (30, 30, 4), pitch=0.5))
+    >>> op = riffler.plan.outline(setup, riffler.Tool.flat(diameter=4, length=20), tabs=3)
+    >>> op.report.stats["loops"], op.report.stats["tabs"]
+    (1, 3)
+    """
+    if tabs < 0:
+        raise ValueError(f"tabs must not be negative, not {tabs}")
+    if depth is not None and not depth > 0:
+        raise ValueError(f"depth must be positive, not {depth}")
+    if inside and curves is None:
+        raise ValueError("inside: needs curves; the silhouette is cut from outside")
+    found = _core.outline(
+        setup.part,
+        setup.obstacles,
+        setup.stock,
+        tool,
+        axis=setup.axis,
+        clearance=setup.clearance,
+        curves=[] if curves is None else [np.asarray(curve, dtype=float) for curve in curves],
+        inside=inside,
+        depth=0.0 if depth is None else depth,
+        stepdown=stepdown,
+        tabs=tabs,
+        tab_height=tab_height,
+        tab_width=tab_width,
+        allowance=allowance,
+        tolerance=tolerance,
+        slope=slope,
+        climb=climb,
+        feed=feed,
+        plunge=feed / 3 if plunge is None else plunge,
+        progress=progress,
+    )
+
+    def made(moves: PlannedMoves) -> Operation:
+        return operation_of(moves, tool, setup.stock.pitch, spindle, tolerance)
+
+    return then(found, made)

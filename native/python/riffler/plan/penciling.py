@@ -1,0 +1,101 @@
+"""Pencil cuts as an operation of a set-up."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from .._core import Collider, Tool
+from ..arguments import Progress
+from ..hints import hinted
+from .locations import cutter_locations
+from .operations import CUT, Blocked, Operation
+from .path_order import order_paths
+from .setups import Setup
+from .strategies.pencil import pencil
+from .upright import ABOVE, Moves, joined, stock_tops
+
+
+@hinted("plan.pencil_operation")
+def pencil_operation(
+    setup: Setup,
+    tool: Tool,
+    *,
+    tolerance: float = 0.01,
+    feed: float = 800.0,
+    plunge: float | None = None,
+    spindle: float = 12000.0,
+    progress: Progress = None,
+    **options: Any,
+) -> Operation:
+    """The valleys of the set-up's part, cut along its axis.
+
+    Paths are those of `pencil`; cutter, shank and holder are lifted off part and fixtures where they would meet them,
+    by a bound over each move. What no lift frees is left out and in ``report.blocked``.
+
+    Parameters
+    ----------
+    setup : Setup
+        Part, in-process stock, fixtures, axis.
+    tool : Tool
+        A tool whose tip is a ball.
+    tolerance : float
+        mm to which the valleys are traced, and by which cuts may enter the part.
+    feed : float
+        mm/min of cuts.
+    plunge : float, optional
+        mm/min of leads; by default a third of ``feed``.
+    spindle : float
+        rev/min; negative counter-clockwise.
+    progress : callable, optional
+        Called with the finished share; returning False cancels.
+    options : keyword arguments
+        Further ones of `pencil`: ``passes``, ``bitangency_angle``, ``minimum_length``, ``stepover``, ``scallop``,
+        ``overthickness``, ``reference_tool``.
+
+    Returns
+    -------
+    Operation
+        Without poses, and with the reason, where the part has no valley for the ball.
+
+    Raises
+    ------
+    ValueError
+        Naming the argument.
+
+    Examples
+    --------
+    >>> part = riffler.shape.relief([[1, 1], [0, 0], [1, 1]], size=(30, 20), depth=10, sink=5)
+    >>> setup = riffler.plan.Setup(part, riffler.Volume.block(*part.bounds, pitch=0.5))
+    >>> op = riffler.plan.pencil_operation(setup, riffler.Tool.ball(diameter=4, length=20), tolerance=0.02)
+    >>> op.report.stats["paths"], op.report.cut_mm > 25
+    (1, True)
+    """
+    for name, value in (("feed", feed), ("plunge", plunge)):
+        if value is not None and not (np.isfinite(value) and value > 0):
+            raise ValueError(f"{name} must be positive and finite, not {value}")
+    found = pencil(setup.part, tool, tolerance=tolerance, progress=progress, **options)
+    moves = Moves(setup, feed, feed / 3 if plunge is None else plunge)
+    collider = Collider(joined([setup.part, *setup.obstacles])) if len(found) else None
+    blocked, cuts = [], []
+    for index, backwards in order_paths(found):
+        path = found[index]
+        assert collider is not None
+        cl, report = cutter_locations(path.orient({0: setup.axis}), tool, collider, tolerance=tolerance)
+        blocked += [Blocked(one.reason, path.centres[one.point], 0.0) for one in report.blocked]
+        blocked += [Blocked(one.reason, cl[one.row, :3], 0.0) for one in report.unsafe]
+        after = report.points  # a point that is blocked has no row: the path is cut there
+        gaps = [k + 1 for k in range(len(cl) - 1) if any(after[k] < one.point < after[k + 1] for one in report.blocked)]
+        ends = sorted({one.row + 1 for one in report.unsafe} | set(gaps))
+        pieces = [piece for piece in np.split(cl, ends) if len(piece) > 1]
+        cuts += [piece[::-1] for piece in pieces[::-1]] if backwards else pieces
+    tops = stock_tops(setup, tool, np.array([cut[0, :3] for cut in cuts]).reshape(-1, 3))
+    for cut, top in zip(cuts, tops, strict=True):
+        moves.approach(cut[0, :3], (top if np.isfinite(top) else -np.inf) + ABOVE)
+        for pose in cut[1:]:
+            moves.to(pose[:3], CUT)
+        moves.retract()
+    reason = found.reason or (blocked[0].reason if blocked else "there is no valley")
+    stats = {"paths": len(found), "pieces": len(cuts), "retracts": max(0, len(cuts) - 1)}
+    return moves.operation(tool, blocked, reason, stats, spindle, tolerance)

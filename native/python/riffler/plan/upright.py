@@ -1,0 +1,85 @@
+"""Operations along the axis of a set-up that need no search of their own: where rapids end, and moves in a list."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from copy import copy
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .._core import Mesh, Tool
+from ..arguments import Progress
+from .locations import drop
+from .operations import LEAD, RAPID, Blocked, Operation, PlannedMoves, operation_of
+from .setups import Setup
+
+ABOVE = 1.0  # mm over the stock at which a rapid down ends
+
+
+def joined(meshes: Sequence[Mesh]) -> Mesh:
+    """All triangles as one mesh."""
+    ends = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes)])
+    triangles = [np.asarray(mesh.triangles) + k for mesh, k in zip(meshes, ends[:-1], strict=True)]
+    return Mesh(np.concatenate([mesh.vertices for mesh in meshes]), np.concatenate(triangles))
+
+
+def plane_of(setup: Setup) -> float:
+    """The clearance plane: its height along the axis."""
+    box = np.array([setup.stock.lower, setup.stock.upper])
+    corners = np.array([[box[i, 0], box[j, 1], box[k, 2]] for i in (0, 1) for j in (0, 1) for k in (0, 1)])
+    points = np.concatenate([corners, *(mesh.vertices for mesh in (setup.part, *setup.obstacles))])
+    return float((points @ setup.axis).max()) + setup.clearance
+
+
+def stock_tops(setup: Setup, tool: Tool, points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Height along the axis at which the cutter meets the stock under each point; NaN where none is."""
+    stock = setup.stock.to_mesh()
+    if not len(stock.triangles) or not len(points):
+        return np.full(len(points), np.nan)
+    flat = Tool.flat(diameter=tool.diameter, length=tool.length)
+    heights, _ = drop(points, flat, stock, axis=setup.axis)
+    return heights + setup.stock.pitch
+
+
+class Moves:
+    """Tips of moves along the axis of a set-up, with their kinds and feeds."""
+
+    def __init__(self, setup: Setup, feed: float, plunge: float) -> None:
+        self.setup, self.feed, self.plunge = setup, feed, plunge
+        self.plane = plane_of(setup)
+        self.tips: list[NDArray[np.float64]] = []
+        self.kinds: list[int] = []
+
+    def to(self, tip: NDArray[np.float64], kind: int) -> None:
+        if not self.tips or not np.array_equal(tip, self.tips[-1]):
+            self.tips.append(tip)
+            self.kinds.append(kind)
+
+    def at(self, tip: NDArray[np.float64], height: float) -> NDArray[np.float64]:
+        """The place above or below a tip that has a height along the axis."""
+        return tip + (height - float(tip @ self.setup.axis)) * self.setup.axis
+
+    def approach(self, tip: NDArray[np.float64], height: float) -> None:
+        """Over the clearance plane and down to a height by rapids, then a lead to the tip."""
+        self.to(self.at(tip, self.plane), RAPID)
+        self.to(self.at(tip, min(self.plane, max(height, float(tip @ self.setup.axis) + ABOVE))), RAPID)
+        self.to(tip, LEAD)
+
+    def retract(self) -> None:
+        self.to(self.at(self.tips[-1], self.plane), RAPID)
+
+    def operation(
+        self, tool: Tool, blocked: Sequence[Blocked], reason: str, stats: Mapping[str, int], spindle: float,
+        tolerance: float, progress: Progress = None,
+    ) -> Operation:  # fmt: skip
+        """The operation, with what it removes of a copy of the set-up's stock."""
+        count = len(self.tips)
+        poses = np.hstack([np.array(self.tips).reshape(-1, 3), np.tile(self.setup.axis, (count, 1))])
+        kind = np.array(self.kinds, dtype=np.uint8)
+        feed = np.array([0.0, self.plunge, self.feed, self.feed])[kind] if count else np.zeros(0)
+        removed = np.zeros(0)
+        if count:
+            removed = copy(self.setup.stock).carve(tool, poses, progress=progress).removed
+        moves = PlannedMoves(poses, kind, feed, removed, tuple(blocked), "" if count else reason, stats)
+        return operation_of(moves, tool, self.setup.stock.pitch, spindle, tolerance)
