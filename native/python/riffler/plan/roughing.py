@@ -30,9 +30,11 @@ def rough(
 ) -> Operation:
     """Clears the set-up's stock in layers, as far as the whole tool can go without meeting part or fixtures.
 
-    A layer is cleared from where it is open, or from a helix, outwards: a ring is a step further along the cleared
-    places than the one before, so that no cut is wider than ``engagement`` asks, corners included. A pass along the
-    borders of what can be reached ends the layer. What an earlier operation has cleared is not cut again.
+    A layer is cleared from where it is open, or from a helix or a ramp to and fro, outwards: a ring is a step further
+    along the cleared places than the one before, so that no cut is wider than ``engagement`` asks, corners included. A
+    pass along the borders of what can be reached ends the layer. Passes are linked through what is cleared where that
+    is quicker than over the clearance plane. What an earlier operation has cleared is not cut again.
+    ``report.blocked`` names the areas that are too narrow for the tool, or for a ramp; they are left out.
 
     Parameters
     ----------
@@ -50,7 +52,7 @@ def rough(
     tolerance : float
         mm, of curves. Up to half of it stays in addition to ``allowance``.
     slope : float
-        rad, of helices.
+        rad, of helices and ramps, from 0.001.
     climb : bool
         Whether material lies to the right of the motion, as it should for a spindle that turns clockwise.
     feed : float
