@@ -70,6 +70,7 @@ Planned planned(plan::RoughResult&& found) {
           {{"levels", found.levels},
            {"rings", found.rings},
            {"helices", found.helices},
+           {"ramps", found.ramps},
            {"direct", found.direct},
            {"retracts", found.retracts},
            {"drops", found.drops}},

@@ -130,6 +130,14 @@ DropCutter::Landing DropCutter::operator()(const Vec3& p, Stats* stats) const {
   return core_->drop(p, stats);
 }
 
+bool DropCutter::stops_above(const Vec3& p, double height) const {
+  const Vec3 local = p * core_->turn_;
+  Core::Search search{*core_, {local.x, local.y}};
+  search.stop = {height, local, true};
+  if (search.bound(0) > height) search.descend(0, 0, 0);
+  return search.stop.tip > height;
+}
+
 std::vector<DropCutter::Landing> DropCutter::operator()(const std::vector<Vec3>& points,
                                                         const Progress& progress) const {
   std::vector<Landing> out(points.size());

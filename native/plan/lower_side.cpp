@@ -4,8 +4,16 @@
 #include <cmath>
 
 #include "geom/hypot.hpp"
+#include "geom/math.hpp"
 
 namespace riffler::plan {
+
+namespace {
+
+constexpr double kAngle = 1e-15, kLastStep = 1e-9;  // rad; Newton's next step would be the square of the last one
+constexpr double kSurely = 1e-9;                    // mm, far more than rounding
+
+}  // namespace
 
 LowerSide::LowerSide(const tool::Piece& piece) : bottom_(bottom(piece)), flat_(radius_at(piece, bottom_)), rim_(flat_) {
   if (const auto* f = std::get_if<tool::Frustum>(&piece)) {
@@ -47,24 +55,32 @@ double LowerSide::best_on_line(double d, double slope) const {
     const double half = std::sqrt(std::max(0.0, (arc_ - d) * (arc_ + d)));
     return std::min(most, half * slope / geom::hypot(1.0, slope));
   }
-  // A torus or barrel: the slope along the line increases, so bracketed Newton iteration finds where it equals `slope`.
-  // The bracket begins where the flat end stops: further in there is no arc.
-  double low = std::sqrt(std::max(0.0, (flat_ - d) * (flat_ + d))), high = most, u = 0.5 * (low + most);
-  for (int n = 0; n < 100 && high - low > 1e-15 * most; ++n) {
-    const double rho = geom::hypot(d, u), off = rho - centre_.x, down = std::sqrt((arc_ - off) * (arc_ + off));
-    if (!(down > 0)) {
-      high = u, u = 0.5 * (low + high);
+  // A torus or barrel: at angle φ of the arc the slope along the line is tan φ · u / ρ, which increases, so bracketed
+  // Newton iteration finds where it equals `slope`. The bracket begins where the flat end stops: there is no arc
+  // inside.
+  const double inner = std::max(flat_, d), shortest = std::sqrt(std::max(0.0, (inner - d) * (inner + d)));
+  if (slope == 0) return shortest;
+  const auto angle = [&](double rho) { return std::asin(std::clamp((rho - centre_.x) / arc_, -1.0, 1.0)); };
+  double low = angle(inner), high = angle(rim_);
+  double phi = shortest > 0 ? std::atan(slope * inner / shortest) : 0.5 * (low + high);
+  if (!(phi > low && phi < high)) phi = 0.5 * (low + high);
+  for (int n = 0; n < 100 && high - low > kAngle; ++n) {
+    const double s = std::sin(phi), c = std::cos(phi), rho = centre_.x + arc_ * s;
+    const double u = std::sqrt(std::max(0.0, (rho - d) * (rho + d))), off = s * u - slope * rho * c;
+    (off > 0 ? high : low) = phi;
+    if (off == 0) break;
+    const double grows = c * u + (u > 0 ? s * rho * arc_ * c / u : kInfinity) - slope * (arc_ * c * c - rho * s);
+    const double next = phi - off / grows;
+    if (!(next > low && next < high)) {
+      phi = 0.5 * (low + high);
       continue;
     }
-    const double grown = off / down * (u / rho) - slope;
-    (grown > 0 ? high : low) = u;
-    if (grown == 0) break;
-    const double bend =
-        arc_ * arc_ / (down * down * down) * (u / rho) * (u / rho) + off / down * (d / rho) * (d / rho) / rho;
-    const double next = u - grown / bend;
-    u = next > low && next < high ? next : 0.5 * (low + high);
+    const bool done = std::abs(next - phi) <= kLastStep;
+    phi = next;
+    if (done) break;
   }
-  return u;
+  const double rho = centre_.x + arc_ * std::sin(phi);
+  return std::min(most, std::sqrt(std::max(0.0, (rho - d) * (rho + d))));
 }
 
 void LowerSide::edge(const Vec3& a, const Vec3& b, Stop& stop) const {
@@ -75,6 +91,7 @@ void LowerSide::edge(const Vec3& a, const Vec3& b, Stop& stop) const {
   const double start = glm::dot(from, along), slope = (b.z - a.z) / length;
   const double d = std::abs(from.x * along.y - from.y * along.x);
   if (d > rim_) return;
+  if (stop.touches && std::max(a.z, b.z) - height(d) < stop.tip - kSurely) return;  // it stops the tool no earlier
   const double sign = slope < 0 ? -1 : 1;
   const auto look = [&](double u) {
     const double t = u - start;

@@ -31,6 +31,16 @@ double CutterProfile::height(double rho) const {
   return least;
 }
 
+double CutterProfile::radius_at(double height_above) const {
+  double low = 0, high = radius_;
+  if (height(high) <= height_above) return high;
+  for (int k = 0; k < kBisections; ++k) {
+    const double middle = 0.5 * (low + high);
+    (height(middle) <= height_above ? low : high) = middle;
+  }
+  return low;
+}
+
 double CutterProfile::ridge(double across, double up) const {
   across = std::abs(across), up = std::abs(up);
   if (across == 0) return 0;

@@ -16,6 +16,8 @@ class CutterProfile {
   double radius() const { return radius_; }
   /// Height (mm) of the lower side at radius `rho`; infinite beyond the cutter.
   double height(double rho) const;
+  /// Radius (mm) of the cutter at `height` above its tip: the largest one whose lower side is no higher.
+  double radius_at(double height) const;
 
   /// Height (mm) of the ridge between two rows of the cutter that are `across` apart horizontally and `up` vertically,
   /// measured from the common tangent of both; infinite where they leave a strip uncut.

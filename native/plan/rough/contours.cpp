@@ -13,29 +13,39 @@ namespace {
 /// 2 k + 1 along y.
 class Crossings {
  public:
-  Crossings(const PlaceGrid& grid, const Field& field, double value)
-      : grid_(grid), field_(field), value_(value), next_(2 * grid.size(), kNone), before_(2 * grid.size(), kNone) {
-    for (int row = 0; row + 1 < grid.rows; ++row)
-      for (int column = 0; column + 1 < grid.columns; ++column) add_cell(column, row);
+  Crossings(const PlaceGrid& grid, const Field& field, double value,
+            const std::optional<std::span<const std::size_t>>& cells)
+      : grid_(grid), field_(field), value_(value) {
+    if (cells)
+      for (const std::size_t k : *cells) add_cell(k);
+    else
+      for (int row = 0; row + 1 < grid.rows; ++row)
+        for (int column = 0; column + 1 < grid.columns; ++column) add_cell(grid.index(column, row));
+    std::sort(joins_.begin(), joins_.end());
+    for (const Join& join : joins_) ends_.push_back(join.second);
+    std::sort(ends_.begin(), ends_.end());
   }
 
   /// Calls visit(edges, closed) for each curve.
   template <class Visit>
   void each(const Visit& visit) {
+    std::vector<char> done(joins_.size(), 0);
     std::vector<std::size_t> edges;
-    const auto follow = [&](std::size_t first) {
+    const auto follow = [&](std::size_t join) {
       edges.clear();
-      std::size_t at = first;
-      while (at != kNone) {
-        edges.push_back(at);
-        const std::size_t next = std::exchange(next_[at], kNone);
-        at = next == first ? kNone : next;
+      const std::size_t first = joins_[join].first;
+      while (join < joins_.size() && !done[join]) {
+        done[join] = 1;
+        edges.push_back(joins_[join].first);
+        const std::size_t next = joins_[join].second;
+        join = find(next);
+        if (join == joins_.size() && next != first) edges.push_back(next);
       }
     };
-    for (std::size_t e = 0; e < next_.size(); ++e)
-      if (next_[e] != kNone && before_[e] == kNone) follow(e), visit(edges, false);
-    for (std::size_t e = 0; e < next_.size(); ++e)
-      if (next_[e] != kNone) follow(e), visit(edges, true);
+    for (std::size_t k = 0; k < joins_.size(); ++k)
+      if (!std::binary_search(ends_.begin(), ends_.end(), joins_[k].first)) follow(k), visit(edges, false);
+    for (std::size_t k = 0; k < joins_.size(); ++k)
+      if (!done[k]) follow(k), visit(edges, true);
   }
   /// Both ends of an edge, the one with less first.
   std::pair<std::size_t, std::size_t> ends(std::size_t edge) const {
@@ -44,14 +54,18 @@ class Crossings {
   }
 
  private:
-  static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+  using Join = std::pair<std::size_t, std::size_t>;
 
+  std::size_t find(std::size_t edge) const {
+    const auto at = std::lower_bound(joins_.begin(), joins_.end(), Join(edge, 0));
+    return static_cast<std::size_t>((at != joins_.end() && at->first == edge ? at : joins_.end()) - joins_.begin());
+  }
   bool less(std::size_t k) const { return field_[k] < value_; }
 
   /// Around a cell, counter-clockwise, a curve enters where the field stops being less, and leaves where it begins.
-  void add_cell(int column, int row) {
-    const std::array<std::size_t, 4> k{grid_.index(column, row), grid_.index(column + 1, row),
-                                       grid_.index(column + 1, row + 1), grid_.index(column, row + 1)};
+  void add_cell(std::size_t cell) {
+    const auto up = static_cast<std::size_t>(grid_.columns);
+    const std::array<std::size_t, 4> k{cell, cell + 1, cell + up + 1, cell + up};
     double sum = 0;
     for (const std::size_t place : k) {
       if (!std::isfinite(field_[place])) return;
@@ -72,12 +86,13 @@ class Crossings {
     const bool near = (sum / 4 < value_) == first_in;
     join(in[0], out[near ? 0 : 1]), join(in[1], out[near ? 1 : 0]);
   }
-  void join(std::size_t from, std::size_t to) { next_[from] = to, before_[to] = from; }
+  void join(std::size_t from, std::size_t to) { joins_.emplace_back(from, to); }
 
   const PlaceGrid& grid_;
   const Field& field_;
   double value_;
-  std::vector<std::size_t> next_, before_;
+  std::vector<Join> joins_;  // from one edge to the next, ascending
+  std::vector<std::size_t> ends_;
 };
 
 double distance_to_line(const Vec2& p, const Vec2& a, const Vec2& b) {
@@ -90,8 +105,9 @@ double distance_to_line(const Vec2& p, const Vec2& a, const Vec2& b) {
 }  // namespace
 
 std::vector<Curve> contours(const PlaceGrid& grid, const Field& field, double value,
-                            const std::function<Vec2(std::size_t, std::size_t)>& crossing) {
-  Crossings crossings(grid, field, value);
+                            const std::function<Vec2(std::size_t, std::size_t)>& crossing,
+                            const std::optional<std::span<const std::size_t>>& cells) {
+  Crossings crossings(grid, field, value, cells);
   std::vector<Curve> out;
   crossings.each([&](const std::vector<std::size_t>& edges, bool closed) {
     Curve& curve = out.emplace_back(Curve{{}, closed});

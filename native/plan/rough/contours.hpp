@@ -2,6 +2,8 @@
 #pragma once
 
 #include <functional>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "plan/rough/place_grid.hpp"
@@ -16,9 +18,10 @@ struct Curve {
 
 /// Curves between places with less than `value`, on their left, and the others: marching squares over cells whose four
 /// places are all finite. `crossing(a, b)` gives the point between two neighbouring places, less first; without it, it
-/// is interpolated.
+/// is interpolated. `cells`: the only ones to look at, each by its place of lower column and row; all without it.
 std::vector<Curve> contours(const PlaceGrid& grid, const Field& field, double value,
-                            const std::function<Vec2(std::size_t less, std::size_t more)>& crossing = {});
+                            const std::function<Vec2(std::size_t less, std::size_t more)>& crossing = {},
+                            const std::optional<std::span<const std::size_t>>& cells = {});
 
 /// The curve without points that are less than `tolerance` (mm) off the line between others.
 Curve simplified(const Curve& curve, double tolerance);

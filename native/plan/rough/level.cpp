@@ -5,138 +5,238 @@
 #include <utility>
 
 #include "geom/math.hpp"
+#include "plan/rough/clear_paths.hpp"
 #include "plan/rough/passes.hpp"
+#include "riffler/base/parallel.hpp"
 
 namespace riffler::plan {
 
 namespace {
 
-constexpr int kBisections = 12;
-constexpr double kHelixStep = kPi / 18;
+constexpr double kBorder = 0.25;                    // of the tolerance, to which borders are found
 constexpr double kSmaller = 0.8, kLeastStep = 0.4;  // steps of a ring that would cut too wide
-constexpr double kWideShare = 0.03;                 // of a ring that may
+constexpr double kWideShare = 0.05;                 // of a ring that may
+constexpr double kAcross = 0.1;                     // of a distance: path that is as quick as a rapid over it
+constexpr double kAround = 2;                       // spacings before and after a cut that is too wide
+constexpr double kCrumb = 2;                        // spacings: rings leave shorter cuts to the next one
+constexpr double kLastRings = 0.7;                  // radii between the rings that look for what is left
+constexpr double kRoomyHelix = 0.3, kLeastHelix = 0.1, kLeastRamp = 0.25;  // of the full helix, of the full ramp
+
+/// A short move, the width that it cuts, and whether it begins a line.
+struct Step {
+  Vec2 to;
+  double length, width;
+  bool begins;
+};
 
 class Level {
  public:
-  Level(const LevelScene& scene, double z, double least, StockTops& tops)
+  Level(const LevelScene& scene, double z, double least, double link)
       : scene_(scene),
         grid_(scene.grid),
         z_(z),
-        tops_(tops),
+        link_(link),
         in_(grid_.size()),
+        standing_(grid_.size()),
+        material_(grid_.size()),
         reach_(scene.radius - kCellRadius * grid_.spacing),
-        layer_(layer(least)) {}
+        layer_(layer(least)),
+        paths_(grid_, in_, standing_, layer_, scene.widest_radius),
+        step_(scene.step) {}
 
   LevelRuns run() {
-    const Field near = distance_to(grid_, layer_.material());
+    const Field near = distance_to(grid_, material_);
     PlaceSet cleared(grid_.size()), wanted(grid_.size());
     bool any = false;
     for (std::size_t k = 0; k < in_.size(); ++k) {
       cleared[k] = in_[k] && near[k] > reach_, wanted[k] = in_[k] && near[k] <= reach_;
       any = any || wanted[k];
     }
-    if (!any) return {};
-    Field lengths = path_lengths(grid_, in_, cleared);
-    while (enter(lengths, wanted, cleared)) lengths = path_lengths(grid_, in_, cleared);
+    if (!any) return std::move(out_);
+    lengths_ = path_lengths(grid_, in_, cleared);
+    enter_all(wanted);
+    sort_cells();
     double most = 0;
-    for (std::size_t k = 0; k < lengths.size(); ++k)
-      if (wanted[k]) most = std::max(most, lengths[k]);
-    for (double at = 0; at < most; ++out_.rings) at = cut_ring(lengths, at);
-    cut(passes_on(borders(near), scene_.step));
+    for (std::size_t k = 0; k < lengths_.size(); ++k)
+      if (wanted[k] && lengths_[k] < kInfinity) most = std::max(most, lengths_[k]);
+    for (double at = 0; at < most; ++out_.rings) base::still_wanted(), at = cut_ring(at);
+    cut(passes_on(borders(near), scene_.step, 0));
+    const double last = kLastRings * scene_.radius;
+    for (double at = std::min(scene_.step, 0.5 * most); at < most; at += last) cut(passes_on(ring(at), scene_.step, 0));
+    measure_rises();
     return std::move(out_);
   }
 
  private:
-  /// The cells with material that the cutter removes from some place; fills `in_`.
+  /// The cells with material that the cutter removes from some place; fills `in_`, `material_` and `standing_`.
   Layer layer(double least) {
     for (std::size_t k = 0; k < in_.size(); ++k) in_[k] = scene_.heights[k] <= z_;
     const Field far = distance_to(grid_, in_);
     PlaceSet whole(grid_.size()), touched(grid_.size());
     for (std::size_t k = 0; k < whole.size(); ++k) {
-      const bool there = tops_.top(k) > z_ + least;
+      const bool there = scene_.stock.top(k) > z_ + least;
       whole[k] = there && far[k] <= reach_, touched[k] = there && far[k] <= scene_.radius;
+      standing_[k] = scene_.stock.top(k) > z_ && !touched[k];
     }
-    return {grid_, without_slivers(grid_, whole, scene_.sliver), std::move(touched), scene_.radius};
+    find_holes(least, far);
+    material_ = without_slivers(grid_, whole, scene_.sliver);
+    return {grid_, material_, touched, scene_.radius};
   }
 
-  /// Enters the widest place of an area that no path leads to, by a helix, or straight down where it is too narrow.
-  bool enter(const Field& lengths, const PlaceSet& wanted, PlaceSet& cleared) {
+  /// Areas with stock and without part that the cutter reaches nothing of, but for those of a cell or two.
+  void find_holes(double least, const Field& far) {
+    PlaceSet open(grid_.size());
+    for (std::size_t k = 0; k < open.size(); ++k) open[k] = scene_.ground[k] <= z_ && scene_.stock.top(k) > z_ + least;
+    const auto up = static_cast<std::size_t>(grid_.columns);
+    std::vector<std::size_t> area;
+    for (std::size_t first = 0; first < open.size(); ++first) {
+      if (!open[first]) continue;
+      area.assign(1, first), open[first] = 0;
+      bool reached = false;
+      std::size_t middle = open.size();
+      for (std::size_t i = 0; i < area.size(); ++i) {
+        const std::size_t k = area[i], column = k % up;
+        reached = reached || far[k] <= scene_.radius;
+        std::size_t around = 0;
+        const auto look = [&](std::size_t next) {
+          around += scene_.ground[next] <= z_;
+          if (std::exchange(open[next], 0)) area.push_back(next);
+        };
+        if (column > 0) look(k - 1);
+        if (column + 1 < up) look(k + 1);
+        if (k >= up) look(k - up);
+        if (k + up < open.size()) look(k + up);
+        if (around == 4 && middle == open.size()) middle = k;
+      }
+      if (!reached && middle < open.size()) out_.holes.emplace_back(grid_.place(middle), z_);
+    }
+  }
+
+  /// Enters each area that no path leads to at its widest place; leaves out those that are too narrow.
+  void enter_all(PlaceSet& wanted) {
+    std::vector<std::size_t> closed;
+    for (std::size_t k = 0; k < wanted.size(); ++k)
+      if (wanted[k] && lengths_[k] == kInfinity) closed.push_back(k);
+    if (closed.empty()) return;
     PlaceSet out(grid_.size());
-    bool any = false;
-    for (std::size_t k = 0; k < out.size(); ++k) out[k] = !in_[k], any = any || (wanted[k] && lengths[k] == kInfinity);
-    if (!any) return false;
+    for (std::size_t k = 0; k < out.size(); ++k) out[k] = !in_[k];
     const Field room = distance_to(grid_, out);
-    std::size_t best = grid_.size();
-    for (std::size_t k = 0; k < out.size(); ++k)
-      if (wanted[k] && lengths[k] == kInfinity && (best == grid_.size() || room[k] > room[best])) best = k;
-    const Vec2 middle = grid_.place(best);
-    double radius = std::min(scene_.helix, room[best] - grid_.spacing);
-    if (!(radius > 0.1 * scene_.helix)) {
-      radius = 0;
-      if (++out_.plunges == 1) out_.plunge = Vec3(middle, z_);
+    std::stable_sort(closed.begin(), closed.end(), [&](std::size_t a, std::size_t b) { return room[a] > room[b]; });
+    for (const std::size_t best : closed) {
+      if (lengths_[best] < kInfinity || !wanted[best]) continue;
+      if (const std::optional<Entry> entry = entry_at(best, room[best])) {
+        enter(*entry, best);
+      } else {
+        out_.narrow.emplace_back(grid_.place(best), z_);
+        leave_out(best, wanted);
+      }
     }
-    helix(middle, radius);
-    for (std::size_t k = 0; k < cleared.size(); ++k)
-      if (in_[k] && glm::length(grid_.place(k) - middle) <= radius) cleared[k] = 1;
-    cleared[best] = 1;
-    return true;
   }
 
-  void helix(const Vec2& middle, double radius) {
+  std::optional<Entry> entry_at(std::size_t best, double room) const {
+    const double radius = std::min(scene_.helix, room - grid_.spacing);
+    const Entry helix{{grid_.place(best)}, radius};
+    if (radius >= kRoomyHelix * scene_.helix) return helix;
+    Entry ramp{ramp_from(grid_, in_, best, scene_.slot), 0};
+    if (length_of(ramp.path) >= kLeastRamp * scene_.slot) return ramp;
+    if (radius >= kLeastHelix * scene_.helix) return helix;
+    return {};
+  }
+
+  void enter(const Entry& entry, std::size_t best) {
     LevelRun run;
-    const auto to = [&](const Vec2& p, double z) {
-      run.tips.emplace_back(p, z), run.kinds.push_back(MoveKind::Lead);
-      layer_.place(p), tops_.cut({p, z});
-    };
-    const double top = std::max(z_, std::max(tops_.highest(middle), tops_.highest(middle + Vec2(radius, 0))));
-    run.top = top;
-    const double down = std::max(1e-3, radius * kHelixStep * std::tan(scene_.slope));
-    const int steps = radius > 0 ? static_cast<int>(std::ceil((top - z_) / down)) : 1;
-    const int round = radius > 0 ? static_cast<int>(std::round(2 * kPi / kHelixStep)) : 0;
-    for (int k = 0; k <= steps + round; ++k) {
-      const double angle = k * kHelixStep;
-      to(middle + radius * Vec2(std::cos(angle), std::sin(angle)), std::max(z_, top - (top - z_) * k / steps));
-    }
-    if (radius > 0) to(middle, z_);
-    ++out_.helices;
-    out_.runs.push_back(std::move(run));
+    run.tips = level_way(entry, z_);
+    run.kinds.assign(run.tips.size(), MoveKind::Lead);
+    run.entry = entry;
+    for (const Vec3& tip : run.tips) layer_.place(Vec2(tip));
+    out_.runs.push_back(std::move(run)), ++out_.entries;
+    std::vector<std::size_t> cleared{best};
+    if (entry.radius == 0)
+      for (const Vec2& p : entry.path) cleared.push_back(grid_.nearest(p));
+    const int around = static_cast<int>(entry.radius / grid_.spacing);
+    const auto columns = static_cast<std::size_t>(grid_.columns);
+    const int column = static_cast<int>(best % columns), row = static_cast<int>(best / columns);
+    for (int dy = -around; dy <= around; ++dy)
+      for (int dx = -around; dx <= around; ++dx) {
+        if (grid_.spacing * std::sqrt(static_cast<double>(dx * dx + dy * dy)) > entry.radius) continue;
+        if (column + dx < 0 || row + dy < 0 || column + dx >= grid_.columns || row + dy >= grid_.rows) continue;
+        cleared.push_back(grid_.index(column + dx, row + dy));
+      }
+    add_path_lengths(grid_, in_, cleared, lengths_);
   }
 
-  /// Curves around the places that are in reach, on their side.
+  /// Wants no place of the area around one any more.
+  void leave_out(std::size_t place, PlaceSet& wanted) const {
+    Field area(grid_.size(), kInfinity);
+    add_path_lengths(grid_, in_, {place}, area);
+    for (std::size_t k = 0; k < area.size(); ++k)
+      if (area[k] < kInfinity) wanted[k] = 0;
+  }
+
+  /// Curves around the places that paths lead to, on their side.
   std::vector<Curve> borders(const Field& near) const {
     Field side(grid_.size());
-    for (std::size_t k = 0; k < side.size(); ++k) side[k] = in_[k] ? -1 : 1;
+    for (std::size_t k = 0; k < side.size(); ++k) side[k] = in_[k] && lengths_[k] < kInfinity ? -1 : 1;
     return contours(grid_, side, 0, [&](std::size_t in, std::size_t out) {
       Vec2 a = grid_.place(in), b = grid_.place(out);
       if (near[in] > reach_ + 2 * grid_.spacing) return a;
-      for (int k = 0; k < kBisections; ++k) {
+      while (glm::length(b - a) > kBorder * scene_.tolerance) {
         const Vec2 middle = 0.5 * (a + b);
-        const DropCutter::Landing found = scene_.surface(Vec3(middle, 0));
-        (found.touches && found.height > z_ ? b : a) = middle;
+        (scene_.surface.stops_above(Vec3(middle, 0), z_) ? b : a) = middle;
       }
       return a;
     });
   }
 
+  /// Sorts the cells that rings may cross by the least length at their places.
+  void sort_cells() {
+    const auto up = static_cast<std::size_t>(grid_.columns);
+    for (int row = 0; row + 1 < grid_.rows; ++row)
+      for (int column = 0; column + 1 < grid_.columns; ++column) {
+        const std::size_t k = grid_.index(column, row);
+        const auto [low, high] = std::minmax({lengths_[k], lengths_[k + 1], lengths_[k + up], lengths_[k + up + 1]});
+        if (high > 0 && high < kInfinity) cells_.emplace_back(low, k);
+      }
+    std::sort(cells_.begin(), cells_.end());
+  }
+
+  /// The places at one length. Lengths of neighbours differ by no more than the spacing.
+  std::vector<Curve> ring(double length) const {
+    const auto at = [&](double x) {
+      return std::lower_bound(cells_.begin(), cells_.end(), std::pair<double, std::size_t>(x, 0));
+    };
+    std::vector<std::size_t> cells;
+    const auto last = at(length);
+    for (auto cell = at(length - 2.01 * grid_.spacing); cell != last; ++cell) cells.push_back(cell->second);
+    return contours(grid_, lengths_, length, {}, cells);
+  }
+
   /// Cuts a ring beyond the places as far as `at`, and returns how far it goes. Where the front is bent inwards, a full
-  /// step would cut wider than asked for: then the ring takes a smaller one.
-  double cut_ring(const Field& lengths, double at) {
-    const LevelRuns runs = out_;
-    const Layer layer = layer_;
-    const StockTops tops = tops_;
-    for (double step = scene_.step;; step *= kSmaller) {
+  /// step would cut wider than asked for: then the ring takes a smaller one, and the next one hardly more.
+  double cut_ring(double at) {
+    const Layer before = layer_;
+    const std::size_t runs = out_.runs.size();
+    const double widest = out_.widest, since = since_wide_;
+    for (step_ = std::min(scene_.step, step_ / kSmaller);; step_ *= kSmaller) {
       const double wide = wide_, all = all_;
-      cut(passes_on(contours(grid_, lengths, at + step), step));
-      if (wide_ - wide <= kWideShare * (all_ - all) || step * kSmaller < kLeastStep * scene_.step) return at + step;
-      out_ = runs, layer_ = layer, tops_ = tops, wide_ = wide, all_ = all;
+      cut(passes_on(ring(at + step_), step_, kCrumb * grid_.spacing));
+      if (wide_ - wide <= kWideShare * (all_ - all) || step_ * kSmaller < kLeastStep * scene_.step) return at + step_;
+      out_.runs.resize(runs), out_.widest = widest, since_wide_ = since;
+      layer_ = before, wide_ = wide, all_ = all;
+      paths_.forget();
     }
   }
 
-  std::vector<Pass> passes_on(const std::vector<Curve>& curves, double step) const {
+  PassScene pass_scene(double step, double least) const {
+    return {grid_, in_, scene_.climb ? 1.0 : -1.0, step, scene_.ramp, scene_.radius, least};
+  }
+
+  std::vector<Pass> passes_on(const std::vector<Curve>& curves, double step, double least) {
+    pass_step_ = step;
     std::vector<Pass> passes;
     for (Curve curve : curves) {
       if (!scene_.climb) std::reverse(curve.points.begin(), curve.points.end());
-      passes_along(curve, layer_, {grid_, in_, scene_.climb ? 1.0 : -1.0, step, scene_.ramp, scene_.radius}, passes);
+      passes_along(curve, layer_, pass_scene(step, least), passes);
     }
     return passes;
   }
@@ -145,81 +245,108 @@ class Level {
   void cut(const std::vector<Pass>& passes) {
     std::vector<char> done(passes.size(), 0);
     for (std::size_t left = passes.size(); left > 0; --left) {
-      std::size_t best = passes.size();
+      std::size_t best = passes.size(), start = 0;
+      double least = kInfinity;
       for (std::size_t k = 0; k < passes.size(); ++k) {
-        if (done[k] || (passes[k].after >= 0 && !done[static_cast<std::size_t>(passes[k].after)])) continue;
-        if (best == passes.size() || squared(passes[k]) < squared(passes[best])) best = k;
+        if (done[k]) continue;
+        for (std::size_t i = 0; i < (passes[k].round ? passes[k].path.size() : 1); ++i)
+          if (const double d = squared(passes[k].path[i]); d < least) least = d, best = k, start = i;
       }
       done[best] = 1;
-      cut(passes[best]);
+      const Pass& pass = passes[best];
+      cut_along(pass.round ? round_from(pass, start, pass_scene(pass_step_, 0)) : pass.path);
     }
   }
-  double squared(const Pass& pass) const {
+  double squared(const Vec2& p) const {
     if (out_.runs.empty()) return 0;
-    const Vec2 off = pass.path.front() - Vec2(out_.runs.back().tips.back());
+    const Vec2 off = p - Vec2(out_.runs.back().tips.back());
     return glm::dot(off, off);
   }
 
-  void cut(const Pass& pass) {
-    const std::vector<Vec2> points = simplified({pass.path, false}, scene_.tolerance).points;
+  void cut_along(const std::vector<Vec2>& path) {
+    std::size_t first = 0;  // what leads there removes nothing
+    while (first + 1 < path.size() && layer_.spares(path[first + 1], kSpared)) ++first;
+    if (first > 0) --first;
+    const std::vector<Vec2> rest(path.begin() + static_cast<std::ptrdiff_t>(first), path.end());
+    const std::vector<Vec2> points = simplified({rest, false}, scene_.tolerance).points;
     if (points.size() < 2) return;
-    LevelRun run{{Vec3(points[0], z_)}, {MoveKind::Lead}, tops_.highest(points[0])};
-    run.linked = !out_.runs.empty() && clear(Vec2(out_.runs.back().tips.back()), points[0]);
+    LevelRun run;
+    std::vector<Vec2> way;
+    const Vec2 last = out_.runs.empty() ? points[0] : Vec2(out_.runs.back().tips.back());
+    if (!out_.runs.empty()) way = paths_.between(last, points[0], link_ + kAcross * glm::length(points[0] - last));
+    run.linked = !way.empty();
+    if (!run.linked) way = paths_.from_above(points[0], scene_.radius);
+    if (way.empty()) way = {points[0]};
+    for (const Vec2& p : way) run.tips.emplace_back(p, z_), run.kinds.push_back(MoveKind::Link);
     layer_.place(points[0]);
-    for (std::size_t k = 1; k < points.size(); ++k) move(points[k - 1], points[k], run);
+    steps_.clear();
+    for (std::size_t k = 1; k < points.size(); ++k) move(points[k - 1], points[k]);
+    add_steps(run);
     out_.runs.push_back(std::move(run));
   }
 
-  /// Moves the cutter along a line, which is divided where the width of cut goes beyond what is asked for, and back.
-  void move(const Vec2& from, const Vec2& to, LevelRun& run) {
+  /// Moves the cutter along a line in short steps.
+  void move(const Vec2& from, const Vec2& to) {
     const int steps = 1 + static_cast<int>(glm::length(to - from) / (0.5 * grid_.spacing));
     for (int k = 1; k <= steps; ++k) {
       const Vec2 before = glm::mix(from, to, static_cast<double>(k - 1) / steps),
                  here = k == steps ? to : glm::mix(from, to, static_cast<double>(k) / steps);
-      const double width = layer_.move(before, here);
-      // In what follows at once, some cells have just lost their middles.
-      since_wide_ = width > scene_.widest * (1 + 1e-9) ? 0 : since_wide_ + glm::length(here - before);
-      const bool wide = since_wide_ < 2 * grid_.spacing;
-      all_ += glm::length(here - before), wide_ += wide ? glm::length(here - before) : 0;
-      if (!wide) out_.widest = std::max(out_.widest, width);
-      if (k % 2 == 0 || k == steps) tops_.cut({here, z_});
-      const MoveKind kind = wide ? MoveKind::Lead : MoveKind::Cut;
-      if (k > 1 && kind == run.kinds.back())
-        run.tips.back() = Vec3(here, z_);
-      else
-        run.tips.emplace_back(here, z_), run.kinds.push_back(kind);
+      steps_.push_back({here, glm::length(here - before), layer_.move(before, here), k == 1});
     }
   }
 
-  /// Whether the cutter goes straight from one place to the other without cutting.
-  bool clear(const Vec2& from, const Vec2& to) const {
-    const double length = glm::length(to - from);
-    const int steps = 1 + static_cast<int>(length / grid_.spacing);
-    for (int k = 0; k <= steps; ++k) {
-      const Vec2 p = glm::mix(from, to, static_cast<double>(k) / steps);
-      // A pass ends at the border of what it clears.
-      const bool leaves = k * length < 3 * grid_.spacing * steps;
-      if (!in_[grid_.nearest(p)] || (leaves ? layer_.touches(p) : !layer_.frees(p))) return false;
+  /// Appends the steps to a run. Those around a place where the width of cut goes beyond what is asked for are leads:
+  /// cells lose their middles a little before and after that.
+  void add_steps(LevelRun& run) {
+    std::vector<char> wide(steps_.size(), 0);
+    const auto spread = [&](std::size_t k, double& since) {
+      since = steps_[k].width > scene_.widest * (1 + 1e-9) ? 0 : since + steps_[k].length;
+      if (since < kAround * grid_.spacing) wide[k] = 1;
+    };
+    for (std::size_t k = 0; k < steps_.size(); ++k) spread(k, since_wide_);
+    double ahead = kInfinity;
+    for (std::size_t k = steps_.size(); k-- > 0;) spread(k, ahead);
+    for (std::size_t k = 0; k < steps_.size(); ++k) {
+      const Step& step = steps_[k];
+      all_ += step.length, wide_ += wide[k] ? step.length : 0;
+      if (!wide[k]) out_.widest = std::max(out_.widest, step.width);
+      const MoveKind kind = wide[k] ? MoveKind::Lead : MoveKind::Cut;
+      if (!step.begins && kind == run.kinds.back())
+        run.tips.back() = Vec3(step.to, z_);
+      else
+        run.tips.emplace_back(step.to, z_), run.kinds.push_back(kind);
     }
-    return true;
+  }
+
+  void measure_rises() {
+    for (LevelRun& run : out_.runs) {
+      base::still_wanted();
+      run.rises.assign(run.tips.size(), 0);
+      for (std::size_t k = 1; k < run.tips.size(); ++k)
+        run.rises[k] = scene_.floor.rise(run.tips[k - 1], run.tips[k], 0).above;
+    }
   }
 
   const LevelScene& scene_;
   const PlaceGrid& grid_;
-  double z_;
-  StockTops& tops_;
-  PlaceSet in_;
+  double z_, link_;
+  PlaceSet in_, standing_, material_;
   double reach_;
-  Layer layer_;
   LevelRuns out_;
+  Layer layer_;
+  ClearPaths paths_;
+  std::vector<Step> steps_;  // of the pass
+  double step_, pass_step_ = 0;
+  Field lengths_;
+  std::vector<std::pair<double, std::size_t>> cells_;
   double since_wide_ = kInfinity;  // mm since the last move that cut wider than asked for
   double wide_ = 0, all_ = 0;      // mm: length of moves that cut wider than asked for, and of all
 };
 
 }  // namespace
 
-LevelRuns level_runs(const LevelScene& scene, double z, double least, StockTops& tops) {
-  return Level(scene, z, least, tops).run();
+LevelRuns level_runs(const LevelScene& scene, double z, double least, double link) {
+  return Level(scene, z, least, link).run();
 }
 
 }  // namespace riffler::plan

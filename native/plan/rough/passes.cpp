@@ -52,35 +52,16 @@ double beside_after(double share) {
   return 0.5 + 0.5 * std::cos(kPi * std::clamp(share, 0.0, 1.0));
 }
 
-/// The whole of a closed curve.
-void add_round(const Curve& curve, const PassScene& scene, std::vector<Pass>& out) {
-  std::vector<Vec2> points = curve.points;
-  points.insert(points.end(), curve.points.begin(), curve.points.end());
-  const Track track(std::move(points), scene);
-  const std::size_t n = curve.points.size();
-  const double ramp = std::min(scene.ramp, 0.5 * track.at(n));
-  Pass pass;
-  for (std::size_t k = 0; k <= n + track.beyond(ramp); ++k)
-    if (k < track.size()) pass.path.push_back(track.beside(k, beside_after(track.at(k) / ramp)));
-  out.push_back(std::move(pass));
-}
-
-/// Points first … last of a track; `walled`: the cutter touches something at the first one already.
+/// All points of a track; `walled`: the cutter touches something at the first one already.
 void add_part(const Track& track, bool walled, const PassScene& scene, std::vector<Pass>& out) {
   Pass pass;
-  if (!walled || track.size() < 3) {
-    for (std::size_t k = 0; k < track.size(); ++k) pass.path.push_back(track.point(k));
-    out.push_back(std::move(pass));
-    return;
+  if (walled) {
+    const double ramp = std::min(scene.ramp, track.length());
+    for (std::size_t k = track.beyond(ramp); k > 0; --k)
+      pass.path.push_back(track.beside(k, beside_after((ramp - track.at(k)) / ramp)));
   }
-  const double ramp = std::min(scene.ramp, 0.5 * track.length());
-  const std::size_t begin = track.beyond(2 * ramp), full = track.beyond(ramp);
-  for (std::size_t k = begin + 1; k-- > 0;)
-    pass.path.push_back(track.beside(k, beside_after((track.at(begin) - track.at(k)) / ramp)));
+  for (std::size_t k = 0; k < track.size(); ++k) pass.path.push_back(track.point(k));
   out.push_back(std::move(pass));
-  Pass rest{{}, static_cast<int>(out.size()) - 1};
-  for (std::size_t k = full > 0 ? full - 1 : 0; k < track.size(); ++k) rest.path.push_back(track.point(k));
-  if (rest.path.size() > 1) out.push_back(std::move(rest));
 }
 
 }  // namespace
@@ -92,7 +73,10 @@ void passes_along(const Curve& curve, const Layer& layer, const PassScene& scene
   for (const Vec2& p : points) active.push_back(layer.touches(p));
   if (curve.closed) {
     const auto idle = std::find(active.begin(), active.end(), 0) - active.begin();
-    if (idle == static_cast<std::ptrdiff_t>(active.size())) return add_round(curve, scene, out);
+    if (idle == static_cast<std::ptrdiff_t>(active.size())) {
+      out.push_back({std::move(points), true});
+      return;
+    }
     std::rotate(points.begin(), points.begin() + idle, points.end());
     std::rotate(active.begin(), active.begin() + idle, active.end());
     points.push_back(points.front()), active.push_back(0);
@@ -109,13 +93,29 @@ void passes_along(const Curve& curve, const Layer& layer, const PassScene& scene
       if (active[i]) last = i;
     }
     std::size_t first = k;
-    for (double back = 0; first > 0 && !active[first - 1] && back < 0.5 * scene.radius; --first)
+    for (double back = 0; first > 0 && !active[first - 1] && back < 0.5 * scene.radius &&
+                          (first == k || !layer.spares(points[first], kSpared));
+         --first)
       back += glm::length(points[first] - points[first - 1]);
     const std::size_t end = std::min(last + 2, points.size());
     const auto at = [&](std::size_t i) { return points.begin() + static_cast<std::ptrdiff_t>(i); };
-    if (end - first > 1) add_part(Track({at(first), at(end)}, scene), active[first], scene, out);
+    double cuts = 0;
+    for (std::size_t i = k + 1; i <= last; ++i) cuts += glm::length(points[i] - points[i - 1]);
+    if (end - first > 1 && cuts >= scene.least) add_part(Track({at(first), at(end)}, scene), active[first], scene, out);
     k = last + 1;
   }
+}
+
+std::vector<Vec2> round_from(const Pass& pass, std::size_t start, const PassScene& scene) {
+  std::vector<Vec2> points;
+  const std::size_t n = pass.path.size();
+  for (std::size_t k = 0; k < 2 * n; ++k) points.push_back(pass.path[(start + k) % n]);
+  const Track track(std::move(points), scene);
+  const double ramp = std::min(scene.ramp, 0.5 * track.at(n));
+  std::vector<Vec2> out;
+  for (std::size_t k = 0; k <= n + track.beyond(ramp) && k < track.size(); ++k)
+    out.push_back(track.beside(k, beside_after(track.at(k) / ramp)));
+  return out;
 }
 
 }  // namespace riffler::plan

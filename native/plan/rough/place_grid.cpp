@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <queue>
 #include <utility>
 
@@ -80,38 +81,44 @@ PlaceSet without_slivers(const PlaceGrid& grid, const PlaceSet& set, double widt
 }
 
 Field path_lengths(const PlaceGrid& grid, const PlaceSet& in, const PlaceSet& from) {
-  using Entry = std::pair<double, std::size_t>;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> front;
   Field out(grid.size(), kInfinity);
-  PlaceSet done(grid.size(), 0);
+  std::vector<std::size_t> places;
   for (std::size_t k = 0; k < out.size(); ++k)
-    if (from[k] && in[k]) out[k] = 0, front.emplace(0.0, k);
+    if (from[k]) places.push_back(k);
+  add_path_lengths(grid, in, places, out);
+  return out;
+}
+
+void add_path_lengths(const PlaceGrid& grid, const PlaceSet& in, const std::vector<std::size_t>& from, Field& lengths) {
+  using Reached = std::pair<double, std::size_t>;
+  std::priority_queue<Reached, std::vector<Reached>, std::greater<>> front;
+  for (const std::size_t k : from)
+    if (in[k]) lengths[k] = 0, front.emplace(0.0, k);
   const auto at = [&](int column, int row) {
     if (column < 0 || row < 0 || column >= grid.columns || row >= grid.rows) return kInfinity;
     const std::size_t k = grid.index(column, row);
-    return in[k] ? out[k] : kInfinity;
+    return in[k] ? lengths[k] : kInfinity;
   };
-  const auto update = [&](int column, int row) {
+  const auto update = [&](int column, int row, double least) {
     if (column < 0 || row < 0 || column >= grid.columns || row >= grid.rows) return;
     const std::size_t k = grid.index(column, row);
-    if (!in[k] || done[k]) return;
+    if (!in[k] || lengths[k] <= least) return;
     double a = std::min(at(column - 1, row), at(column + 1, row)),
            b = std::min(at(column, row - 1), at(column, row + 1));
     if (a > b) std::swap(a, b);
     const double g = grid.spacing;
     const double value = b - a >= g ? a + g : 0.5 * (a + b + std::sqrt(2 * g * g - (b - a) * (b - a)));
-    if (value < out[k]) out[k] = value, front.emplace(value, k);
+    if (value < lengths[k]) lengths[k] = value, front.emplace(value, k);
   };
   while (!front.empty()) {
     const auto [value, k] = front.top();
     front.pop();
-    if (done[k]) continue;
-    done[k] = 1;
+    if (value > lengths[k]) continue;
     const int column = static_cast<int>(k % static_cast<std::size_t>(grid.columns)),
               row = static_cast<int>(k / static_cast<std::size_t>(grid.columns));
-    update(column - 1, row), update(column + 1, row), update(column, row - 1), update(column, row + 1);
+    update(column - 1, row, value), update(column + 1, row, value);
+    update(column, row - 1, value), update(column, row + 1, value);
   }
-  return out;
 }
 
 }  // namespace riffler::plan

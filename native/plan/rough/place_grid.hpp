@@ -41,4 +41,7 @@ PlaceSet without_slivers(const PlaceGrid& grid, const PlaceSet& set, double widt
 /// eikonal equation by fast marching, of first order (Sethian, PNAS 93 (1996) 1591).
 Field path_lengths(const PlaceGrid& grid, const PlaceSet& in, const PlaceSet& from);
 
+/// Puts such lengths from the places `from` into `lengths`, where these are infinite so far: areas that no path led to.
+void add_path_lengths(const PlaceGrid& grid, const PlaceSet& in, const std::vector<std::size_t>& from, Field& lengths);
+
 }  // namespace riffler::plan

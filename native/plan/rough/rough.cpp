@@ -20,10 +20,15 @@ namespace riffler::plan {
 namespace {
 
 constexpr double kMostPlaces = 4e6;
-constexpr double kRampDiameters = 1.5;  // length of a ramp from one ring to the next
-constexpr double kHelix = 0.45;         // radius of a helix in diameters
-constexpr double kLeastLayer = 0.02;    // of the stepdown: thinner material stays
-constexpr double kLevel = 1e-6;         // mm by which places of a level face may differ
+constexpr double kRampDiameters = 1.5;   // length of a ramp from one ring to the next
+constexpr double kSlotDiameters = 2;     // length of a ramp down into a slot
+constexpr double kRapid = 10'000;        // mm/min, to compare links with
+constexpr double kStops = 0.5 / 60;      // min, that a machine takes for the stops of a rapid up, across and down
+constexpr double kLeastSlope = 0.001;    // rad: below it, a helix is a program of its own
+constexpr std::size_t kChunk = 1 << 18;  // places whose drops are in memory at a time
+constexpr double kHelix = 0.45;          // radius of a helix in diameters
+constexpr double kLeastLayer = 0.02;     // of the stepdown: thinner material stays
+constexpr double kLevel = 1e-6;          // mm by which places of a level face may differ
 
 void check(const RoughOptions& o, const Tool& tool) {
   base::require_length(o.stepdown, "stepdown");
@@ -33,7 +38,8 @@ void check(const RoughOptions& o, const Tool& tool) {
   if (!(o.engagement >= 0.02 && o.engagement <= 1))
     throw std::invalid_argument("engagement must be a share of the diameter from 0.02 to 1, not " +
                                 std::to_string(o.engagement));
-  if (!(o.slope > 0 && o.slope <= kPi / 4)) throw std::invalid_argument("slope must be above 0 and at most π/4 rad");
+  if (!(o.slope >= kLeastSlope && o.slope <= kPi / 4))
+    throw std::invalid_argument("slope must be from 0.001 to π/4 rad, not " + std::to_string(o.slope));
   base::require_positive(o.feed, "feed", base::kPositiveAndFinite);
   base::require_positive(o.plunge, "plunge", base::kPositiveAndFinite);
   if (o.stepdown > tool.length())
@@ -60,26 +66,19 @@ PlaceGrid grid_over(const Box3& stock, double radius, double spacing) {
 
 /// Heights of a cutter that is let down over all places; −∞ where it touches nothing.
 Field heights(const PlaceGrid& grid, const DropCutter& drop, const Progress& progress) {
-  Field out(grid.size(), -kInfinity);
-  base::parallel_for(
-      out.size(), 1024,
-      [&](std::size_t begin, std::size_t end) {
-        for (std::size_t k = begin; k < end; ++k)
-          if (const DropCutter::Landing found = drop(Vec3(grid.place(k), 0)); found.touches) out[k] = found.height;
-      },
-      progress);
-  return out;
-}
-
-/// Radius of the cutter at a height above its tip.
-double radius_at(const CutterProfile& profile, double height) {
-  double low = 0, high = profile.radius();
-  if (profile.height(high) <= height) return high;
-  for (int k = 0; k < 48; ++k) {
-    const double middle = 0.5 * (low + high);
-    (profile.height(middle) <= height ? low : high) = middle;
+  Field out;
+  out.reserve(grid.size());
+  while (out.size() < grid.size()) {
+    const std::size_t begin = out.size(), end = std::min(begin + kChunk, grid.size());
+    std::vector<Vec3> places;
+    places.reserve(end - begin);
+    for (std::size_t k = begin; k < end; ++k) places.emplace_back(grid.place(k), 0);
+    const double share = static_cast<double>(begin) / static_cast<double>(grid.size()),
+                 next = static_cast<double>(end) / static_cast<double>(grid.size());
+    for (const DropCutter::Landing& found : drop(places, base::part(progress, share, next)))
+      out.push_back(found.touches ? found.height : -kInfinity);
   }
-  return low;
+  return out;
 }
 
 /// Heights of the levels, descending: one every stepdown from the bottom, so that they are the same for what is left of
@@ -108,19 +107,31 @@ std::vector<double> level_heights(const PlaceGrid& grid, Field drop, double top,
 /// Writes the levels' moves. Where the drop surface rises above a move, the tool goes over it.
 class Writer {
  public:
-  Writer(RoughResult& out, const TurnedScene& scene, const DropCutter& part, const RoughOptions& options)
-      : out_(out), part_(part), plane_(scene.plane), moves_(out, scene.frame, options.feed, options.plunge) {}
+  Writer(RoughResult& out, const TurnedScene& scene, const DropCutter& part, const RoughOptions& options,
+         StockTops&& stock)
+      : out_(out),
+        part_(part),
+        plane_(scene.plane),
+        slope_(options.slope),
+        stock_(std::move(stock)),
+        moves_(out, scene.frame, options.feed, options.plunge) {}
 
   void write(const LevelRuns& level) {
     for (const LevelRun& run : level.runs) {
-      if (!run.linked) {
-        if (!out_.poses.empty()) moves_.retract(plane_), ++out_.retracts;
-        moves_.approach(run.tips.front(), plane_, std::max(run.top, run.tips.front().z) + kAbove);
-      } else {
+      const Vec3& first = run.tips.front();
+      if (run.linked) {
         ++out_.direct;
-        over(run.tips.front(), MoveKind::Link);
+      } else {
+        if (!out_.poses.empty()) moves_.retract(plane_), ++out_.retracts;
+        if (run.entry)
+          enter(*run.entry, first.z);
+        else
+          moves_.approach(first, plane_, std::max(stock_.highest(Vec2(first)), first.z) + kAbove);
       }
-      for (std::size_t i = 1; i < run.tips.size(); ++i) over(run.tips[i], run.kinds[i]);
+      for (std::size_t k = 1; k < run.tips.size(); ++k) {
+        stock_.cut(run.tips[k - 1], run.tips[k]);
+        over(run.tips[k], run.kinds[k], run.rises[k]);
+      }
     }
   }
   void end() {
@@ -128,9 +139,24 @@ class Writer {
   }
 
  private:
-  void over(const Vec3& tip, MoveKind kind) {
-    const Vec3 from = moves_.last();
-    if (const double above = part_.rise(from, tip, 0).above; above > 0) {
+  void enter(const Entry& entry, double z) {
+    double top = z;
+    const std::vector<Vec3> low = level_way(entry, z);
+    for (const Vec3& tip : low) top = std::max(top, stock_.highest(Vec2(tip)));
+    const std::vector<Vec3> way = way_down(entry, top, z, slope_);
+    moves_.approach(way.front(), plane_, way.front().z + kAbove);
+    for (std::size_t k = 1; k < way.size(); ++k) {
+      stock_.cut(way[k - 1], way[k]);
+      over(way[k], MoveKind::Lead, part_.rise(way[k - 1], way[k], 0).above);
+    }
+    if (entry.radius > 0)
+      ++out_.helices;
+    else
+      ++out_.ramps;
+  }
+  void over(const Vec3& tip, MoveKind kind, double above) {
+    if (above > 0) {
+      const Vec3 from = moves_.last();
       const double up = above + 1e-9;
       moves_.to(from + Vec3(0, 0, up), MoveKind::Lead), moves_.to(tip + Vec3(0, 0, up), MoveKind::Lead);
     }
@@ -139,9 +165,23 @@ class Writer {
 
   RoughResult& out_;
   const DropCutter& part_;
-  double plane_;
+  double plane_, slope_;
+  StockTops stock_;
   MoveWriter moves_;
 };
+
+/// Names the areas that are left out; one that is below another is the same one.
+void add_blocked(const std::vector<LevelRuns>& levels, std::vector<Vec3> LevelRuns::* places, const char* reason,
+                 const Mat3& frame, double near, RoughResult& out) {
+  std::vector<Vec2> known;
+  for (const LevelRuns& level : levels)
+    for (const Vec3& p : level.*places) {
+      const auto same = [&](const Vec2& q) { return glm::length(q - Vec2(p)) < near; };
+      if (std::any_of(known.begin(), known.end(), same)) continue;
+      known.emplace_back(p);
+      out.blocked.push_back({reason, frame * p, 0});
+    }
+}
 
 }  // namespace
 
@@ -163,37 +203,54 @@ RoughResult rough(const SetupScene& scene, const Tool& tool, const RoughOptions&
   const DropCutter exact(part, tool, {0, 0, 1}, options.allowance),
       wide(part, tool, {0, 0, 1}, options.allowance + 0.5 * options.tolerance);
   const Field drop = heights(grid, wide, base::part(progress, 0, 0.3));
-  const DropCutter pin(left, cutters::flat(2 * kCellRadius * grid.spacing, 2 * tool.length()));
-  StockTops tops(grid, heights(grid, pin, base::part(progress, 0.3, 0.5)), profile);
-  out.drops = 2 * grid.size();
+  const Tool cell = cutters::flat(2 * kCellRadius * grid.spacing, 2 * tool.length());
+  const DropCutter pin(left, cell);
+  const StockTops tops(grid, heights(grid, pin, base::part(progress, 0.3, 0.4)), profile);
+  Field ground = heights(grid, DropCutter(part, cell), base::part(progress, 0.4, 0.5));
+  for (double& z : ground) z += options.allowance;
+  out.drops = 3 * grid.size();
   const double top = *std::max_element(tops.tops().begin(), tops.tops().end()),
                bottom = std::max(stock.lower.z, mesh::bounds(in.part).lower.z);
   const LevelScene level{grid,
                          drop,
+                         ground,
                          wide,
-                         radius_at(profile, options.stepdown),
+                         exact,
+                         tops,
+                         profile.radius_at(options.stepdown),
+                         profile.radius(),
                          std::max(widest - 2 * spacing, 0.5 * widest),
                          std::max(widest - spacing, 0.5 * widest),  // widths are measured in cells
                          kRampDiameters * tool.diameter(),
                          kHelix * tool.diameter(),
-                         options.slope,
+                         kSlotDiameters * tool.diameter(),
                          0.6 * scene.stock.frame().pitch + 2 * kCellRadius * grid.spacing + options.tolerance,
                          0.25 * options.tolerance,
                          options.climb};
-  Writer writer(out, in, exact, options);
-  const Progress levels = base::part(progress, 0.5, 1);
+  const std::vector<double> levels = level_heights(grid, drop, top, bottom, options.stepdown, profile.radius());
+  std::vector<LevelRuns> runs(levels.size());
+  base::parallel_for(
+      levels.size(), 1,
+      [&](std::size_t begin, std::size_t end) {
+        const base::SerialScope alone;
+        for (std::size_t k = begin; k < end; ++k) {
+          const double over = options.feed * (2 * (in.plane - levels[k]) / kRapid + kAbove / options.plunge + kStops);
+          runs[k] = level_runs(level, levels[k], kLeastLayer * options.stepdown, over);
+        }
+      },
+      base::part(progress, 0.5, 0.95));
+  Writer writer(out, in, exact, options, StockTops(tops));
   double cut = 0;
-  for (const double z : level_heights(grid, drop, top, bottom, options.stepdown, profile.radius())) {
-    base::report(levels, (top - z) / (top - bottom));
-    LevelRuns runs = level_runs(level, z, kLeastLayer * options.stepdown, tops);
-    if (runs.runs.empty()) continue;
-    ++out.levels, out.rings += runs.rings, out.helices += runs.helices;
-    cut = std::max(cut, runs.widest);
-    if (runs.plunges > 0)
-      out.blocked.push_back({"too narrow for a helix: the tool plunges", in.frame * runs.plunge, 0});
-    writer.write(runs);
+  for (const LevelRuns& one : runs) {
+    if (one.runs.empty()) continue;
+    ++out.levels, out.rings += one.rings;
+    cut = std::max(cut, one.widest);
+    writer.write(one);
   }
   writer.end();
+  add_blocked(runs, &LevelRuns::narrow, "too narrow for a helix or a ramp: left out", in.frame, tool.diameter(), out);
+  add_blocked(runs, &LevelRuns::holes, "narrower than the tool and allowance: left out", in.frame, tool.diameter(),
+              out);
   out.engagement = cut / tool.diameter();
   if (out.poses.empty()) out.reason = "the tool reaches no material above part and allowance";
   base::report(progress, 1);

@@ -84,6 +84,20 @@ TEST(Drop, TouchesAndDoesNotEnterAnyTriangle) {
   }
 }
 
+TEST(Drop, StopsAboveWhatIsLowerThanWhereItLands) {
+  const Mesh part = mesh::moved(mesh::sphere_mesh(7, 3), {1, -2, 3});
+  stress::Random random(6);
+  for (const Tool& tool : named_cutters()) {
+    const DropCutter drop(part, tool, {0, 0, 1}, 0.3);
+    for (int n = 0; n < 60; ++n) {
+      const Vec3 p(random.uniform(-12, 14), random.uniform(-14, 10), 0);
+      const DropCutter::Landing found = drop(p);
+      for (const double height : {-20.0, 3.0, found.height - 1e-9, found.height, 20.0})
+        ASSERT_EQ(drop.stops_above(p, height), found.touches && found.height > height) << tool.name() << ' ' << height;
+    }
+  }
+}
+
 TEST(Drop, AlongAnyAxisIsThatOfTheTurnedPart) {
   stress::Random random(6);
   const Mesh hills =

@@ -41,7 +41,9 @@ class DropCutter {
 
   /// Lowers the tool along the line through `p` (mm) parallel to the axis.
   Landing operator()(const Vec3& p, Stats* stats = nullptr) const;
-  /// As above for many points, in parallel.
+  /// Whether it comes to rest above `height` (mm) there. Quicker: only what reaches that high is looked at.
+  bool stops_above(const Vec3& p, double height) const;
+  /// As the first one for many points, in parallel.
   std::vector<Landing> operator()(const std::vector<Vec3>& points, const Progress& progress = {}) const;
 
   /// The height at which the landing's piece of the tool stops at the landing's triangle alone when it comes down

@@ -15,7 +15,7 @@ struct RoughOptions {
   double engagement = 0.4;  ///< largest width of cut as a share of the cutter's diameter
   double allowance = 0.3;   ///< mm that stay on the part
   double tolerance = 0.05;  ///< mm, of curves
-  double slope = 0.05;      ///< rad, of helices
+  double slope = 0.05;      ///< rad, of helices and ramps
   bool climb = true;        ///< whether material lies to the right of the motion
   double feed = 1000;       ///< mm/min of cuts and links
   double plunge = 300;      ///< mm/min of leads
@@ -24,9 +24,9 @@ struct RoughOptions {
 /// The operation, and counts.
 struct RoughResult : Operation {
   double engagement = 0;  ///< largest width of cut of cutting moves as a share of the diameter
-  /// Layers with material, rings in them, helices, links at feed, links over the clearance plane, and points of the
-  /// drop surface computed.
-  std::size_t levels = 0, rings = 0, helices = 0, direct = 0, retracts = 0, drops = 0;
+  /// Layers with material, rings in them, entries by a helix and by a ramp to and fro, links at feed, links over the
+  /// clearance plane, and points of the drop surface computed.
+  std::size_t levels = 0, rings = 0, helices = 0, ramps = 0, direct = 0, retracts = 0, drops = 0;
 };
 
 /// Plans one operation: clears the stock as it stands in layers, from above, wherever the whole tool does not meet part

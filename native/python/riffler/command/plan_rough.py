@@ -32,7 +32,7 @@ def add_arguments(parser: Parser) -> None:
         ("--tolerance", "0.05", "largest error of curves"),
     )
     parser.add_argument("--engagement", metavar="SHARE", default="0.4", help="widest cut in diameters (default 0.4)")
-    parser.add_argument("--slope", metavar="DEG", default="3", help="slope of helices (default 3)")
+    parser.add_argument("--slope", metavar="DEG", default="3", help="slope of helices and ramps (default 3)")
     parser.add_argument("--conventional", action="store_true", help="mill with the material to the left of the motion")
     add_scene(parser, "1200")
 
@@ -65,6 +65,6 @@ def rows(data: dict[str, Any]) -> list[tuple[str, str]]:
     stats = data["stats"]
     return [
         ("layers", f"{number(stats['levels'])} with {number(stats['rings'])} rings"),
-        ("entered", f"{number(stats['helices'])} times by a helix"),
+        ("entered", f"{number(stats['helices'])} times by a helix, {number(stats['ramps'])} by a ramp"),
         ("widest cut", f"{number(100 * data['largest_engagement'], '% of the diameter')}"),
     ]

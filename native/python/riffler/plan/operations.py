@@ -51,7 +51,7 @@ class OperationReport:
         Places that could not be reached.
     stats : dict
         Counts: direct links, retracts, points of the drop surface; rows, and those added between rows of equal spacing;
-        levels, rings in them, helices.
+        levels, rings in them, helices, ramps.
     """
 
     time_s: float = 0.0

@@ -30,9 +30,11 @@ def rough(
 ) -> Operation:
     """Clears the set-up's stock in layers, as far as the whole tool can go without meeting part or fixtures.
 
-    Each layer is cleared outwards, from its open side or from a helix. Each ring goes one step further than the one
-    before, so that no cut is wider than ``engagement``, corners included. A pass along the border of the reachable
-    region ends the layer. Regions that an earlier operation has cleared are not cut again.
+    Each layer is cleared outwards, from its open side, from a helix or from a ramp to and fro. Each ring goes one step
+    further than the one before, so that no cut is wider than ``engagement``, corners included. A pass along the border
+    of the reachable region ends the layer. The tool moves to the next pass through the cleared region where that is
+    quicker than over the clearance plane. Regions that an earlier operation has cleared are not cut again.
+    ``report.blocked`` names the regions that are too narrow for the tool, or for a ramp; they are left out.
 
     Parameters
     ----------
@@ -50,7 +52,7 @@ def rough(
     tolerance : float
         Largest error of curves, mm. Up to half of it stays in addition to ``allowance``.
     slope : float
-        Slope of helices, rad.
+        Slope of helices and ramps, rad, from 0.001.
     climb : bool
         Whether material lies to the right of the motion, as it should for a spindle that turns clockwise.
     feed : float

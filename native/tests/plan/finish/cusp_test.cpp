@@ -40,5 +40,14 @@ TEST(CutterProfile, SpacingLeavesTheGivenCusp) {
   }
 }
 
+TEST(CutterProfile, HasTheRadiusOfAHeight) {
+  const CutterProfile ball(cutters::ball(6, 30)), flat(cutters::flat(6, 30));
+  for (const double height : {0.0, 0.5, 2.0}) {
+    EXPECT_NEAR(ball.radius_at(height), std::sqrt(9 - (3 - height) * (3 - height)), 1e-6);
+    EXPECT_EQ(flat.radius_at(height), 3);
+  }
+  EXPECT_EQ(ball.radius_at(5), 3);
+}
+
 }  // namespace
 }  // namespace riffler::plan::cusp_test

@@ -94,6 +94,21 @@ TEST(Contours, EndAtTheBorderAndAtPlacesThatAreNotFinite) {
   }
 }
 
+TEST(Contours, OfTheCellsThatTheyCrossAreTheSame) {
+  Field field(kGrid.size());
+  for (std::size_t k = 0; k < field.size(); ++k)
+    field[k] = std::sin(1.3 * kGrid.place(k).x) + std::cos(0.9 * kGrid.place(k).y);
+  std::vector<std::size_t> cells;
+  for (int row = 0; row + 1 < kGrid.rows; ++row)
+    for (int column = 0; column + 1 < kGrid.columns; ++column) cells.push_back(kGrid.index(column, row));
+  std::shuffle(cells.begin(), cells.end(), std::mt19937(3));
+  const std::vector<Curve> all = contours(kGrid, field, 0.2), some = contours(kGrid, field, 0.2, {}, cells);
+  ASSERT_GT(all.size(), 5U);
+  ASSERT_EQ(all.size(), some.size());
+  for (std::size_t k = 0; k < all.size(); ++k) EXPECT_EQ(all[k].points, some[k].points);
+  EXPECT_TRUE(contours(kGrid, field, 0.2, {}, std::span<const std::size_t>{}).empty());
+}
+
 TEST(Contours, OfADiagonalPairOfPlacesNeverCross) {
   const PlaceGrid grid{{0, 0}, 1, 2, 2};
   for (const double middle : {-0.5, 0.5}) {
