@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "plan/rough/contours.hpp"
+#include "plan/contours.hpp"
 #include "plan/rough/layer.hpp"
 #include "riffler/plan/drop.hpp"
 #include "riffler/plan/operation.hpp"

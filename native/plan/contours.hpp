@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "plan/rough/place_grid.hpp"
+#include "plan/place_grid.hpp"
 
 namespace riffler::plan {
 
