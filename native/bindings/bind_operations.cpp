@@ -115,21 +115,23 @@ void bind_operations(py::module_& m) {
       [](const std::shared_ptr<Mesh>& part, const std::vector<std::shared_ptr<Mesh>>& fixtures, SharedVolume& stock,
          const Tool& tool, const ArrayLike& axis, double clearance, const std::string& pattern, double cusp,
          double tolerance, double allowance, double angle, double min_slope, double max_slope, const ArraysLike& region,
-         double feed, double plunge, const ProgressLike& progress) {
+         const std::vector<int>& faces, const std::optional<ArrayLike>& centre, bool climb, double feed, double plunge,
+         const ProgressLike& progress) {
         tool.require_revolved("plan.finish");
         plan::FinishOptions options;
         options.pattern = pattern, options.cusp = cusp, options.tolerance = tolerance;
         options.allowance = allowance, options.angle = angle, options.min_slope = min_slope;
-        options.max_slope = max_slope, options.region = to_curves(region, "region"), options.feed = feed;
-        options.plunge = plunge;
+        options.max_slope = max_slope, options.region = to_region(region), options.feed = feed;
+        options.plunge = plunge, options.faces = faces, options.climb = climb;
+        if (centre) options.centre = to_vec3(*centre, "centre");
         return operation(part, fixtures, stock, tool, axis, clearance, progress,
                          [=](const plan::SetupScene& scene, const Progress& listener) {
                            return plan::finish(scene, tool, options, listener);
                          });
       },
       "part"_a.none(false), "fixtures"_a, "stock"_a, "tool"_a, py::kw_only(), "axis"_a, "clearance"_a, "pattern"_a,
-      "cusp"_a, "tolerance"_a, "allowance"_a, "angle"_a, "min_slope"_a, "max_slope"_a, "region"_a, "feed"_a, "plunge"_a,
-      "progress"_a, "For riffler.plan.finish.");
+      "cusp"_a, "tolerance"_a, "allowance"_a, "angle"_a, "min_slope"_a, "max_slope"_a, "region"_a, "faces"_a,
+      "centre"_a, "climb"_a, "feed"_a, "plunge"_a, "progress"_a, "For riffler.plan.finish.");
   m.def(
       "rough",
       [](const std::shared_ptr<Mesh>& part, const std::vector<std::shared_ptr<Mesh>>& fixtures, SharedVolume& stock,

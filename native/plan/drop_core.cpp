@@ -83,12 +83,22 @@ struct DropCutter::Core::Search {
     return box.upper.z - least;
   }
 
+  /// Distance of `p` from the interval of three numbers.
+  static double apart(double a, double b, double c, double p) {
+    const auto [low, high] = std::minmax({a, b, c});
+    return std::max({low - p, p - high, 0.0});
+  }
+
   void leaf(std::size_t place) {
     const Vec3 shift(at, 0);
     for (std::size_t t = tree.first(tree.levels_, place); t < tree.first(tree.levels_, place + 1); ++t) {
       ++counts.triangles;
       const Triangle& tri = tree.triangles_[t];
+      const double x = apart(tri.a.x, tri.b.x, tri.c.x, at.x), y = apart(tri.a.y, tri.b.y, tri.c.y, at.y);
+      const double rho = geom::hypot(x, y), top = std::max({tri.a.z, tri.b.z, tri.c.z});
       for (std::size_t s = 0; s < tree.sides_.size(); ++s) {
+        const LowerSide& lower = tree.sides_[s].second;
+        if (rho > lower.rim() * (1 + 1e-12) || top - lower.height(std::min(rho, lower.rim())) < stop.tip) continue;
         const double before = stop.tip;
         tree.sides_[s].second.meet(tri.a - shift, tri.b - shift, tri.c - shift, stop);
         if (stop.touches && stop.tip != before) side = s, position = t;

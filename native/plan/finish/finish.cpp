@@ -36,6 +36,7 @@ void check(const FinishOptions& o, const Tool& tool) {
   base::require_tolerance_for(o.tolerance, tool.length() + tool.diameter());
   base::require_not_negative(o.allowance, "allowance", base::kFiniteAndNotNegative);
   base::require_angle(o.angle, "angle");
+  if (o.centre && !geom::finite(*o.centre)) throw std::invalid_argument("centre must be three finite numbers");
   if (!(o.min_slope >= 0 && o.min_slope <= o.max_slope && o.max_slope <= kPi / 2 + 1e-9))
     throw std::invalid_argument("slopes must be two angles in rad, 0 ≤ smaller ≤ larger ≤ π/2");
   base::require_positive(o.feed, "feed", base::kPositiveAndFinite);
@@ -87,6 +88,22 @@ std::vector<std::vector<Vec3>> direct_links(const std::vector<CutPiece>& pieces,
   return out;
 }
 
+/// The links between pieces that follow a wall downwards: straight, or level and down, if nothing stands between.
+std::vector<std::vector<Vec3>> straight_links(const std::vector<CutPiece>& pieces, const FinishSurface& surface,
+                                              double longest) {
+  std::vector<std::vector<Vec3>> out(pieces.size());
+  for (std::size_t k = 0; k + 1 < pieces.size(); ++k) {
+    const Vec3 from = pieces[k].tips.back(), to = pieces[k + 1].tips.front();
+    if (to.z > from.z || geom::hypot(to.x - from.x, to.y - from.y) > longest) continue;
+    const Vec3 over(to.x, to.y, from.z);  // first away from a wall that is bent outwards
+    if (surface.above(from, to) <= 0)
+      out[k] = {to};
+    else if (surface.above(from, over) <= 0 && surface.above(over, to) <= 0)
+      out[k] = {over, to};
+  }
+  return out;
+}
+
 void write(const std::vector<CutPiece>& pieces, const std::vector<std::vector<Vec3>>& links,
            const std::optional<DropCutter>& stock, double pitch, double plane, MoveWriter& writer, FinishResult& out) {
   for (std::size_t k = 0; k < pieces.size(); ++k) {
@@ -110,8 +127,9 @@ void write(const std::vector<CutPiece>& pieces, const std::vector<std::vector<Ve
 }
 
 std::string why_empty(const PatternRows& rows, const FinishOptions& options) {
+  if (!rows.reason.empty()) return rows.reason;
   if (!rows.blocked.empty()) return "nothing can be reached: " + rows.blocked.front().reason;
-  if (!options.region.empty()) return "no face that is meant lies within the region";
+  if (!options.region.empty() || !options.faces.empty()) return "no face that is meant lies within the region";
   return "no face of the part that the tool touches is as steep as slopes asks";
 }
 
@@ -125,7 +143,10 @@ FinishResult finish(const SetupScene& scene, const Tool& tool, const FinishOptio
   const Mesh& part = turned_scene.part;
   const FinishSurface surface(part, turned_scene.fixtures, tool, options, region_in(options.region, frame));
   const CutterProfile profile(tool);
-  PatternRows rows = pattern.rows({surface, profile, tool, options, mesh::bounds(part)}, base::part(progress, 0, 0.8));
+  std::optional<Vec2> centre;
+  if (options.centre) centre = Vec2(*options.centre * frame);
+  PatternRows rows =
+      pattern.rows({surface, profile, tool, options, mesh::bounds(part), centre}, base::part(progress, 0, 0.8));
   FinishResult out;
   out.blocked = rows.blocked, out.rows = rows.rows, out.added = rows.added;
   for (BlockedPlace& one : out.blocked) one.place = frame * one.place;
@@ -134,9 +155,12 @@ FinishResult finish(const SetupScene& scene, const Tool& tool, const FinishOptio
     base::report(progress, 1);
     return out;
   }
-  const std::vector<CutPiece> pieces = in_short_order(std::move(rows.pieces));
   const double longest = std::max(kDirectSpacings * rows.spacing, profile.radius());
-  const auto links = direct_links(pieces, surface, longest, base::part(progress, 0.8, 0.9));
+  const std::vector<CutPiece> pieces =
+      rows.descending ? descending(std::move(rows.pieces), longest) : in_short_order(std::move(rows.pieces));
+  const Progress linking = base::part(progress, 0.8, 0.9);
+  const auto links =
+      rows.descending ? straight_links(pieces, surface, longest) : direct_links(pieces, surface, longest, linking);
   std::optional<DropCutter> stock;
   if (const Mesh left = turned_stock(scene, frame); !left.empty()) stock.emplace(left, tool);
   MoveWriter writer(out, frame, options.feed, options.plunge);

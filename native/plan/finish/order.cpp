@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 #include "geom/math.hpp"
 
@@ -63,6 +64,59 @@ std::vector<CutPiece> in_short_order(std::vector<CutPiece> pieces) {
     left.remove(best);
     last = best;
   }
+  return out;
+}
+
+namespace {
+
+/// The tip of a piece that is nearest to a place, and its squared distance seen along the axis.
+std::pair<std::size_t, double> nearest_tip(const std::vector<Vec3>& tips, const Vec3& p) {
+  std::pair<std::size_t, double> out{0, kInfinity};
+  for (std::size_t k = 0; k < tips.size(); ++k)
+    if (const double d = squared(tips[k], p); d < out.second) out = {k, d};
+  return out;
+}
+
+void begin_at(std::vector<Vec3>& ring, std::size_t k) {
+  if (k == 0) return;
+  ring.pop_back();
+  std::rotate(ring.begin(), ring.begin() + static_cast<std::ptrdiff_t>(k % ring.size()), ring.end());
+  ring.push_back(ring.front());
+}
+
+/// Pieces of one wall, from its top downwards.
+struct Chain {
+  std::vector<CutPiece> pieces;
+  Box3 last;  // of the last one
+};
+
+}  // namespace
+
+std::vector<CutPiece> descending(std::vector<CutPiece> pieces, double near) {
+  std::stable_sort(pieces.begin(), pieces.end(), [](const CutPiece& a, const CutPiece& b) { return a.rank < b.rank; });
+  std::vector<Chain> chains;
+  for (CutPiece& piece : pieces) {
+    const Vec3 first = piece.tips.front();
+    Chain* best = nullptr;
+    double least = near * near;
+    for (Chain& chain : chains) {
+      const CutPiece& above = chain.pieces.back();
+      if (above.rank == piece.rank || first.x < chain.last.lower.x - near || first.x > chain.last.upper.x + near ||
+          first.y < chain.last.lower.y - near || first.y > chain.last.upper.y + near)
+        continue;
+      if (const double d = nearest_tip(above.tips, first).second; d < least) least = d, best = &chain;
+    }
+    if (!best) best = &chains.emplace_back();
+    if (piece.closed && !best->pieces.empty())
+      begin_at(piece.tips, nearest_tip(piece.tips, best->pieces.back().tips.back()).first);
+    best->last = {};
+    for (const Vec3& p : piece.tips) best->last.add(p);
+    best->pieces.push_back(std::move(piece));
+  }
+  std::vector<CutPiece> out;
+  out.reserve(pieces.size());
+  for (Chain& chain : chains)
+    for (CutPiece& piece : chain.pieces) out.push_back(std::move(piece));
   return out;
 }
 

@@ -12,4 +12,8 @@ namespace riffler::plan {
 /// near.
 std::vector<CutPiece> in_short_order(std::vector<CutPiece> pieces);
 
+/// Pieces from the top downwards, each with its direction kept: what lies below a piece, within `near` (mm) seen along
+/// the axis, follows it. Closed pieces begin where the one before ends.
+std::vector<CutPiece> descending(std::vector<CutPiece> pieces, double near);
+
 }  // namespace riffler::plan

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <string>
 
 #include "geom/hypot.hpp"
 #include "plan/operation_moves.hpp"
@@ -12,9 +13,10 @@ namespace riffler::plan {
 
 namespace {
 
-constexpr double kRows = 0.9;         // of the tolerance: the rest is for rounding, in the program's text too
-constexpr double kRolling = 0.5;      // rad between a face's normal and the tool's where the tool rolls over its edge
-constexpr double kSlopeSlack = 1e-6;  // rad
+constexpr double kRows = 0.9;           // of the tolerance: the rest is for rounding, in the program's text too
+constexpr double kRolling = 0.5;        // rad between a face's normal and the tool's where the tool rolls over its edge
+constexpr double kSlopeSlack = 1e-6;    // rad
+constexpr double kLevelContact = 1e-7;  // mm
 constexpr std::size_t kMaxPoints = 20'000'000;
 constexpr const char* kBlocked[] = {"", "the shank meets the part", "the holder meets the part"};
 
@@ -35,6 +37,16 @@ FinishSurface::FinishSurface(const Mesh& part, const std::vector<Mesh>& fixtures
       tolerance_(kRows * options.tolerance),
       low_(mesh::bounds(mesh_).lower.z - 1) {
   if (const double r = ball_at_tip(tool); r > 0) ball_ = r + options.allowance;
+  if (const auto* round = std::get_if<tool::Round>(&tool.cutter().front()); round && round->e >= 0) round_ = *round;
+  const auto* end = std::get_if<tool::Frustum>(&tool.cutter().front());
+  level_end_ = end ? end->r0 > 0 : round_ && round_->e > 0;
+  if (!options.faces.empty()) chosen_.assign(part_triangles_, 0);
+  for (const int face : options.faces) {
+    if (face < 0 || static_cast<std::size_t>(face) >= part_triangles_)
+      throw std::invalid_argument("region: triangle " + std::to_string(face) + " is none of the part's " +
+                                  std::to_string(part_triangles_));
+    chosen_[static_cast<std::size_t>(face)] = 1;
+  }
   for (const tool::ToolPiece& p : tool.assembly()) low_ -= std::max(0.0, tool::top(p.piece));
   normals_.reserve(part_triangles_);
   for (const Vec3i& t : part.triangles) {
@@ -105,6 +117,15 @@ std::vector<SurfacePoint> FinishSurface::follow(const Vec2& from, const Vec2& to
   return out;
 }
 
+std::vector<SurfacePoint> FinishSurface::follow(const std::vector<Vec2>& line) const {
+  std::vector<SurfacePoint> out;
+  for (std::size_t k = 1; k < line.size(); ++k) {
+    const std::vector<SurfacePoint> more = follow(line[k - 1], line[k]);
+    out.insert(out.end(), more.begin() + (out.empty() ? 0 : 1), more.end());
+  }
+  return out;
+}
+
 bool FinishSurface::in_region(const Vec3& p) const {
   if (region_.empty()) return true;
   bool in = false;
@@ -128,9 +149,43 @@ const char* FinishSurface::blocked(const SurfacePoint& p) const {
 }
 
 bool FinishSurface::wanted(const SurfacePoint& p) const {
-  if (!p.landing.touches || blocked(p) || !in_region(p.landing.point)) return false;
-  const Vec3& n = normals_[static_cast<std::size_t>(p.landing.triangle)];
-  return meant_slope(std::atan2(geom::hypot(n.x, n.y), n.z));
+  if (!p.landing.touches || blocked(p)) return false;
+  return wanted_face(p.landing.triangle, p.landing.point, rested_slope(p));
+}
+
+double FinishSurface::rested_slope(const SurfacePoint& p) const {
+  const bool level = level_end_ && std::abs(p.tip.z - options_.allowance - p.landing.point.z) <= kLevelContact;
+  return level ? 0.0 : face_slope(p.landing.triangle);
+}
+
+bool FinishSurface::wanted_face(int triangle, const Vec3& point, double slope) const {
+  return (chosen_.empty() || chosen_[static_cast<std::size_t>(triangle)]) && meant_slope(slope) && in_region(point);
+}
+
+double FinishSurface::face_slope(int triangle) const {
+  const Vec3& n = normals_[static_cast<std::size_t>(triangle)];
+  return std::atan2(geom::hypot(n.x, n.y), n.z);
+}
+
+double FinishSurface::touched_slope(const SurfacePoint& p) const {
+  if (!round_) return rested_slope(p);
+  const Vec3 off = p.landing.point - p.tip;
+  return std::atan2(std::max(0.0, geom::hypot(off.x, off.y) - round_->e), std::max(0.0, round_->zc - off.z));
+}
+
+double FinishSurface::steepest_meant() const {
+  double most = -1;
+  for (std::size_t k = 0; k < part_triangles_; ++k) {
+    if (!chosen_.empty() && !chosen_[k]) continue;
+    const double slope = face_slope(static_cast<int>(k));
+    if (meant_slope(slope)) most = std::max(most, slope);
+  }
+  return most;
+}
+
+double FinishSurface::above(const Vec3& from, const Vec3& to) const {
+  const double found = drop_.rise(from, to, tolerance_).above;
+  return found > tolerance_ ? found : 0;
 }
 
 /// Whether a ball rests on an edge, with its normal far from that of the face.

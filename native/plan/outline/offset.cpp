@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "plan/rough/contours.hpp"
+#include "plan/contours.hpp"
 #include "riffler/base/parallel.hpp"
 
 namespace riffler::plan {

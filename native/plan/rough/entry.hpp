@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "plan/rough/place_grid.hpp"
+#include "plan/place_grid.hpp"
 
 namespace riffler::plan {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "plan/finish/cusp.hpp"
-#include "plan/rough/place_grid.hpp"
+#include "plan/place_grid.hpp"
 #include "riffler/geom/interval.hpp"
 
 namespace riffler::plan {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "plan/rough/contours.hpp"
+#include "plan/contours.hpp"
 #include "plan/rough/entry.hpp"
 #include "plan/rough/layer.hpp"
 #include "riffler/plan/drop.hpp"

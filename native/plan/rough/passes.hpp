@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "plan/rough/contours.hpp"
+#include "plan/contours.hpp"
 #include "plan/rough/layer.hpp"
 
 namespace riffler::plan {

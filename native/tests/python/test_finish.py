@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 import riffler
+from finish_judge import boss_on_plate, heights, setup_of, solid_under, sphere_on_plate, z_map
 from riffler import plan
 
 RNG = 20261129
@@ -19,110 +20,6 @@ def terrain(size=14.0, n=13, height=2.5, seed=RNG):
         z += np.sin(2 * math.pi * k * (a * x[:, None] + b * x[None, :]) / size + c) / k
     z = 3 + (z - z.min()) / (z.max() - z.min()) * height
     return solid_under(x, z)
-
-
-def solid_under(x, z):
-    """A block with a roof of triangles over the grid ``x`` × ``x``."""
-    n = len(x)
-    gx, gy = np.meshgrid(x, x, indexing="ij")
-    top = np.stack([gx, gy, z], axis=-1).reshape(-1, 3)
-    bottom = top * [1, 1, 0]
-    i, j = (k.ravel() for k in np.meshgrid(np.arange(n - 1), np.arange(n - 1), indexing="ij"))
-    a, b, c, d = i * n + j, (i + 1) * n + j, (i + 1) * n + j + 1, i * n + j + 1
-    roof = np.concatenate([np.stack([a, b, c], 1), np.stack([a, c, d], 1)])
-    edge = np.concatenate([np.arange(n) * n, (n - 1) * n + np.arange(1, n), np.arange(n - 2, -1, -1) * n + n - 1,
-                           np.arange(n - 2, 0, -1)])  # fmt: skip
-    after = np.roll(edge, -1)
-    m = n * n
-    sides = np.concatenate([np.stack([edge, edge + m, after], 1), np.stack([after, edge + m, after + m], 1)])
-    return riffler.Mesh(np.concatenate([top, bottom]), np.concatenate([roof, roof[:, ::-1] + m, sides]))
-
-
-def boss_on_plate(degrees=10.0):
-    """A box turned by 10° on a plate: long triangles, upright walls."""
-    low = np.array([[0, 0], [30, 0], [30, 30], [0, 30]], float)
-    c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
-    high = (low - 15) * [0.4, 0.3] @ np.array([[c, s], [-s, c]]) + 15
-    vertices, triangles = [], []
-
-    def prism(outline, z0, z1):
-        k = len(vertices)
-        vertices.extend([*p, z0] for p in outline)
-        vertices.extend([*p, z1] for p in outline)
-        triangles.extend([[k, k + 2, k + 1], [k, k + 3, k + 2], [k + 4, k + 5, k + 6], [k + 4, k + 6, k + 7]])
-        for i in range(4):
-            j = (i + 1) % 4
-            triangles.extend([[k + i, k + j, k + j + 4], [k + i, k + j + 4, k + i + 4]])
-
-    prism(low, 0, 3)
-    prism(high, 3, 8)
-    return riffler.Mesh(vertices, triangles)
-
-
-def sphere_on_plate():
-    u, v = np.meshgrid(np.linspace(0, 2 * math.pi, 61)[:-1], np.linspace(0, math.pi / 2, 16), indexing="ij")
-    points = np.stack([8 * np.cos(u) * np.sin(v), 8 * np.sin(u) * np.sin(v), 8 * np.cos(v)], -1) + np.array([15, 15, 3])
-    n, m = points.shape[:2]
-    i, j = (k.ravel() for k in np.meshgrid(np.arange(n), np.arange(m - 1), indexing="ij"))
-    a, b = i * m + j, (i + 1) % n * m + j
-    dome = np.concatenate([np.stack([a, a + 1, b + 1], 1), np.stack([a, b + 1, b], 1)])
-    plate = riffler.Volume.block((0, 0, 0), (30, 30, 3), pitch=10, directions="xyz").to_mesh()
-    k = n * m
-    return riffler.Mesh(
-        np.concatenate([points.reshape(-1, 3), plate.vertices]), np.concatenate([dome, np.asarray(plate.triangles) + k])
-    )
-
-
-def heights(mesh, x, y):
-    """z-map of a mesh from above at the points (x, y), by barycentric coordinates; −∞ where there is nothing."""
-    out = np.full(x.shape, -np.inf)
-    tri = np.asarray(mesh.vertices)[np.asarray(mesh.triangles)]
-    for a, b, c in tri:
-        area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
-        if abs(area) < 1e-12:
-            continue
-        near = (x >= min(a[0], b[0], c[0]) - 1e-9) & (x <= max(a[0], b[0], c[0]) + 1e-9)
-        near &= (y >= min(a[1], b[1], c[1]) - 1e-9) & (y <= max(a[1], b[1], c[1]) + 1e-9)
-        if not near.any():
-            continue
-        px, py = x[near], y[near]
-        u = ((px - a[0]) * (c[1] - a[1]) - (py - a[1]) * (c[0] - a[0])) / area
-        v = ((b[0] - a[0]) * (py - a[1]) - (b[1] - a[1]) * (px - a[0])) / area
-        inside = (u >= -1e-9) & (v >= -1e-9) & (u + v <= 1 + 1e-9)
-        z = a[2] + u * (b[2] - a[2]) + v * (c[2] - a[2])
-        out[near] = np.where(inside, np.maximum(out[near], z), out[near])
-    return out
-
-
-def lower_side(tool, rho):
-    """Height over the tip of ball and flat cutters."""
-    r = tool.diameter / 2
-    if tool.kind == "flat":
-        return np.where(rho <= r, 0.0, np.inf)
-    return np.where(rho <= r, r - np.sqrt(np.maximum(r * r - rho * rho, 0)), np.inf)
-
-
-def z_map(op, x, y, step=0.05):
-    """What is left over the points after all moves at feed, by brute force: the cutter at dense places of each move."""
-    out = np.full(x.shape, np.inf)
-    r = op.tool.diameter / 2
-    for k in range(1, len(op)):
-        if op.kind[k] == 0:
-            continue
-        a, b = op.poses[k - 1, :3], op.poses[k, :3]
-        lo, hi = np.minimum(a, b) - r, np.maximum(a, b) + r
-        near = np.flatnonzero((x >= lo[0]) & (x <= hi[0]) & (y >= lo[1]) & (y <= hi[1]))
-        if not len(near):
-            continue
-        p = np.linspace(a, b, max(2, math.ceil(np.linalg.norm(b[:2] - a[:2]) / step) + 1))[:, :, None]
-        z = p[:, 2] + lower_side(op.tool, np.hypot(x[near] - p[:, 0], y[near] - p[:, 1]))
-        out[near] = np.minimum(out[near], z.min(axis=0))
-    return out
-
-
-def setup_of(part, pitch=0.4, top=1.0, **more):
-    lower, upper = part.bounds
-    return plan.Setup(part, riffler.Volume.block(lower, upper + np.array([0, 0, top]), pitch), **more)
 
 
 BALL = riffler.Tool.ball(diameter=6, length=40)

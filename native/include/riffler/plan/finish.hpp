@@ -1,6 +1,7 @@
 // Finishing in three axes: rows on a part's offset surface, with the links between them, as one operation.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,9 @@ struct FinishOptions {
   double angle = 0;                                      ///< rad, of the rows about the axis
   double min_slope = 0, max_slope = 1.5707963267948966;  ///< rad from level, of the faces that are meant
   std::vector<std::vector<Vec3>> region{};               ///< closed curves, seen along the axis; empty: all of the part
+  std::vector<int> faces{};                              ///< triangles of the part that are meant; empty: all
+  std::optional<Vec3> centre{};                          ///< of spiral and radial; none: the middle of the part's box
+  bool climb = true;                                     ///< waterline: the part lies to the right of the motion
   double feed = 1000;                                    ///< mm/min of cuts and links
   double plunge = 300;                                   ///< mm/min of leads
 };

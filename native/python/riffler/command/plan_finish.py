@@ -1,6 +1,7 @@
 """Finish a part from one side in rows, and write the program.
 
 riffler plan finish part.stl --tool ball:6 --cusp 0.02 --out part.ngc
+riffler plan finish part.stl --tool ball:6 --pattern waterline --slopes 30,90 --out walls.ngc
 riffler plan finish part.stl --tool 2=flat:8 --stock 100x80x30 --pitch 0.25 --slopes 0,5 --out flats.ngc
 
 The default stock is the part's box with the allowance on top. The program is simulated on the stock before it is
@@ -17,7 +18,7 @@ from .. import plan
 from .arguments import finite, input_file, length
 from .console import Console, number
 from .parser import Parser
-from .plan_operation import add_lengths, add_scene, add_tool, feeds_of, run_operation
+from .plan_operation import add_lengths, add_scene, add_tool, feeds_of, point, run_operation
 
 HELP = "finish a part in rows, as NC code"
 
@@ -36,6 +37,12 @@ def add_arguments(parser: Parser) -> None:
     parser.add_argument("--angle", metavar="DEG", default="0", help="angle of the rows (default 0)")
     parser.add_argument(
         "--slopes", metavar="DEG,DEG", default="0,90", help="slopes of faces to finish, from level (default 0,90)"
+    )
+    parser.add_argument(
+        "--centre", metavar="X,Y,Z", help="centre of a spiral or of rays (default the middle of the part's box)"
+    )
+    parser.add_argument(
+        "--conventional", action="store_true", help="waterlines with the part to the left of the motion, not climb"
     )
     parser.add_file("--region", "closed curves; only faces inside them are finished", plan.curves.FORMATS)
     add_scene(parser, "1000")
@@ -65,6 +72,8 @@ def options_of(arguments: argparse.Namespace) -> dict[str, Any]:
         "allowance": finite(arguments.allowance, "--allowance"),
         "angle": math.radians(finite(arguments.angle, "--angle")),
         "slopes": (slopes[0], min(slopes[1], math.pi / 2) if slopes[1] <= 90 else slopes[1]),
+        "centre": None if arguments.centre is None else point(arguments.centre, "--centre"),
+        "climb": not arguments.conventional,
         **feeds_of(arguments),
     }
 

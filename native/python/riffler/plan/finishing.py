@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from math import pi
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from .. import _core
 from .._core import Tool
@@ -29,7 +29,9 @@ def finish(
     allowance: float = 0.0,
     angle: float = 0.0,
     slopes: tuple[float, float] = (0.0, pi / 2),
-    region: Sequence[ArrayLike] | None = None,
+    region: Sequence[ArrayLike] | NDArray[np.generic] | None = None,
+    centre: ArrayLike | None = None,
+    climb: bool = True,
     feed: float = 1000.0,
     plunge: float | None = None,
     spindle: float = 12000.0,
@@ -49,7 +51,9 @@ def finish(
     tool : Tool
         A cutter that does not narrow above its widest place: ball, flat, fillet, taper or a profile like them.
     pattern : str
-        "parallel": rows in planes at ``angle``.
+        "parallel": rows in planes at ``angle``. "waterline": levels, for faces from 3° on. "scallop": rows at equal
+        distances on the surface, from the border of what is meant inwards; up to 74°. "spiral": turns about
+        ``centre``. "radial": rays from it.
     cusp : float
         mm, largest height of the ridges between rows.
     tolerance : float
@@ -60,8 +64,13 @@ def finish(
         rad, direction of the rows about the axis.
     slopes : tuple of two floats
         rad from level: slopes of the faces to finish.
-    region : list of array_like, shape (k, 3), optional
-        Closed curves, seen along the axis; finishes faces inside an odd number of them. None: all faces.
+    region : list of array_like, shape (k, 3), or array_like of int or bool, optional
+        Closed curves, seen along the axis: finishes faces inside an odd number of them. Or numbers of the part's
+        triangles, or a mark for each of them. None: all faces.
+    centre : array_like, shape (3,), optional
+        Of "spiral" and "radial", mm, seen along the axis; by default the middle of the part's box.
+    climb : bool
+        Whether "waterline" moves with the part on its right. Other patterns take the nearer end of each row first.
     feed : float
         mm/min of cuts and links.
     plunge : float, optional
@@ -90,6 +99,7 @@ def finish(
     (6, '', True)
     """
     low, high = (float(x) for x in slopes)
+    curves, faces = _region_of(region, len(setup.part.triangles))
     found = _core.finish(
         setup.part,
         setup.obstacles,
@@ -104,7 +114,10 @@ def finish(
         angle=angle,
         min_slope=low,
         max_slope=high,
-        region=[] if region is None else [np.asarray(curve, dtype=float) for curve in region],
+        region=curves,
+        faces=faces,
+        centre=centre,
+        climb=climb,
         feed=feed,
         plunge=feed / 3 if plunge is None else plunge,
         progress=progress,
@@ -114,3 +127,23 @@ def finish(
         return operation_of(moves, tool, setup.stock.pitch, spindle, tolerance)
 
     return then(found, made)
+
+
+def _region_of(
+    region: Sequence[ArrayLike] | NDArray[np.generic] | None, triangles: int
+) -> tuple[list[NDArray[np.float64]], list[int]]:
+    """Closed curves, and numbers of triangles: a region is one or the other."""
+    if region is None or not len(region):
+        return [], []
+    if np.ndim(region[0]):
+        return [np.asarray(curve, dtype=float) for curve in region], []
+    numbers = np.asarray(region)
+    if numbers.dtype == bool:
+        if numbers.size != triangles:
+            raise ValueError(f"region: {numbers.size} marks, and the part has {triangles} triangles")
+        numbers = np.flatnonzero(numbers)
+    if numbers.ndim != 1 or not np.issubdtype(numbers.dtype, np.integer):
+        raise ValueError("region must be closed curves (k, 3), numbers of triangles, or a mark for each of them")
+    if not numbers.size:
+        raise ValueError("region: no triangle is marked")
+    return [], numbers.tolist()

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "plan/rough/place_grid.hpp"
+#include "plan/place_grid.hpp"
 
 namespace riffler::plan {
 

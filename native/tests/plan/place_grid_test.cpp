@@ -1,5 +1,5 @@
 // Distances, paths and contours over a grid of places, compared with brute force and closed forms.
-#include "plan/rough/place_grid.hpp"
+#include "plan/place_grid.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <random>
 
 #include "geom/math.hpp"
-#include "plan/rough/contours.hpp"
+#include "plan/contours.hpp"
 
 namespace riffler::plan::place_grid_test {
 namespace {

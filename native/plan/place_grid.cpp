@@ -1,4 +1,4 @@
-#include "plan/rough/place_grid.hpp"
+#include "plan/place_grid.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "plan/rough/contours.hpp"
+#include "plan/contours.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,0 +1,221 @@
+#include "plan/finish/row_family.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "geom/hypot.hpp"
+#include "geom/math.hpp"
+#include "riffler/base/parallel.hpp"
+#include "riffler/tool/outline.hpp"
+
+namespace riffler::plan {
+
+namespace {
+
+/// A row and what is cut of it. Its pieces do not overlap along u.
+struct Row {
+  struct Piece {
+    std::vector<Vec3> tips;
+    std::vector<double> along;  // u of each
+  };
+  double v = 0;
+  std::vector<Piece> pieces;
+};
+
+/// The nearest place of a row to `p` among those whose u is within `window` of `u`; none if it is not cut there.
+std::optional<Vec3> nearest_on(const Row& row, const Vec3& p, double u, double window) {
+  std::optional<Vec3> best;
+  double least = kInfinity;
+  for (const auto& [tips, along] : row.pieces) {
+    if (along.back() < u - window || along.front() > u + window) continue;
+    auto k = static_cast<std::size_t>(std::lower_bound(along.begin(), along.end(), u - window) - along.begin());
+    if (k > 0) --k;
+    for (; k + 1 < tips.size() && along[k] <= u + window; ++k) {
+      const Vec3 way = tips[k + 1] - tips[k];
+      const double length2 = glm::dot(way, way);
+      const double s = length2 > 0 ? std::clamp(glm::dot(p - tips[k], way) / length2, 0.0, 1.0) : 0.0;
+      const Vec3 at = tips[k] + s * way;
+      if (const double d = geom::squared_length(p - at); d < least) least = d, best = at;
+    }
+  }
+  return best;
+}
+
+class Filler {
+ public:
+  Filler(const PatternScene& scene, const RowFamily& family)
+      : scene_(scene),
+        family_(family),
+        outline_(scene.tool),
+        cusp_(kCuspShare * scene.options.cusp),
+        spacing_(scene.profile.spacing(cusp_)),
+        finest_(std::max(scene.options.cusp, scene.options.tolerance)) {}
+
+  double spacing() const { return spacing_; }
+
+  Row row(double v, std::vector<BlockedPlace>& blocked) const {
+    Row out{v, {}};
+    add_pieces(out, family_.from, family_.to, blocked);
+    return out;
+  }
+
+  /// The rows that are missing between X and Y.
+  void fill(const Row& x, const Row& y, std::vector<Row>& out) const {
+    std::vector<int> all(static_cast<std::size_t>(std::ceil((family_.to - family_.from) / family_.step)) + 1);
+    for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i);
+    fill(x, y, all, out);
+  }
+
+ private:
+  double place(int sample) const { return family_.from + sample * family_.step; }
+
+  std::vector<Vec2> line(double a, double b, double v) const {
+    std::vector<Vec2> out{family_.at(a, v)};
+    if (family_.chord)
+      for (double u = a + family_.chord(a, v); u < b; u += family_.chord(u, v)) out.push_back(family_.at(u, v));
+    out.push_back(family_.at(b, v));
+    return out;
+  }
+
+  /// Adds what is cut of a row between `a` and `b`.
+  void add_pieces(Row& row, double a, double b, std::vector<BlockedPlace>& blocked) const {
+    const std::vector<SurfacePoint> points = scene_.surface.follow(line(a, b, row.v));
+    for (std::vector<Vec3>& tips : scene_.surface.meant_pieces(points, blocked)) {
+      Row::Piece& piece = row.pieces.emplace_back(Row::Piece{std::move(tips), {}});
+      double last = -kInfinity;
+      for (const Vec3& tip : piece.tips)
+        piece.along.push_back(last = std::max(last, std::clamp(family_.along(Vec2(tip), row.v), a, b)));
+    }
+  }
+
+  void fill(const Row& x, const Row& y, const std::vector<int>& samples, std::vector<Row>& out) const {
+    Row middle{0.5 * (x.v + y.v), {}};
+    std::vector<int> open;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      if (i % 64 == 0) base::still_wanted();
+      const double u = place(samples[i]), apart = family_.apart(std::min(u, family_.to), x.v, y.v);
+      if (apart > finest_ && stands(x, y, middle.v, u, apart)) open.push_back(samples[i]);
+    }
+    if (open.empty()) return;
+    std::vector<BlockedPlace> ignored;  // the first rows have reported them
+    std::vector<int> next;
+    for (std::size_t i = 0; i < open.size();) {
+      std::size_t end = i + 1;
+      while (end < open.size() && open[end] <= open[end - 1] + 2) ++end;
+      add_pieces(middle, std::max(family_.from, place(open[i] - 1)), std::min(family_.to, place(open[end - 1] + 1)),
+                 ignored);
+      for (int k = open[i] - 1; k <= open[end - 1] + 1; ++k)
+        if (next.empty() || next.back() < k) next.push_back(k);
+      i = end;
+    }
+    fill(x, middle, next, out);
+    if (!middle.pieces.empty()) out.push_back(middle);
+    fill(middle, y, next, out);
+  }
+
+  /// Whether what X and Y leave near u is higher than the cusp.
+  bool stands(const Row& x, const Row& y, double middle, double u, double apart) const {
+    if (apart > 1.5 * spacing_) return true;  // too far for one sample to tell
+    const SurfacePoint m = scene_.surface.at(family_.at(u, middle));
+    const bool meant = scene_.surface.meant(m);
+    const double samples = family_.step * family_.pace(u, middle);  // mm
+    const double window = (std::max(2 * samples, 2 * apart) + samples) * family_.step / samples;
+    const std::optional<Vec3> on_x = meant ? nearest_on(x, m.tip, u, window) : std::nullopt,
+                              on_y = meant ? nearest_on(y, m.tip, u, window) : std::nullopt;
+    if (meant) {
+      if (!on_x && !on_y) return true;
+      if ((!on_x || !on_y) && apart > 4 * finest_) return true;  // a border runs between
+      const double least = std::min(ridge_to(on_x, m.tip), ridge_to(on_y, m.tip));
+      if (least > cusp_ || standing(m, on_x, on_y) > cusp_) return true;
+    }
+    return walled(x, y, m, u, meant, window);
+  }
+
+  double ridge_to(const std::optional<Vec3>& row, const Vec3& p) const {
+    if (!row) return kInfinity;
+    return scene_.profile.ridge(2 * geom::hypot(p.x - row->x, p.y - row->y), 2 * (p.z - row->z));
+  }
+
+  /// How far M's contact stands off the cutter on the nearest places of both rows.
+  double standing(const SurfacePoint& m, const std::optional<Vec3>& on_x, const std::optional<Vec3>& on_y) const {
+    double least = kInfinity;
+    for (const std::optional<Vec3>& tip : {on_x, on_y}) {
+      if (!tip) continue;
+      const Vec3 off = m.landing.point - *tip;
+      least = std::min(least, outline_.nearest(geom::hypot(off.x, off.y), off.z).distance - scene_.options.allowance);
+    }
+    return least;
+  }
+
+  /// Whether a wall or slope between M and one of the rows is left: half way to it, half as high.
+  bool walled(const Row& x, const Row& y, const SurfacePoint& m, double u, bool meant, double window) const {
+    if (!m.landing.touches) return false;
+    for (const Row* side : {&x, &y}) {
+      const SurfacePoint s = scene_.surface.at(family_.at(u, side->v));
+      if (!s.landing.touches || !(meant || scene_.surface.meant(s))) continue;
+      const double across = geom::hypot(s.tip.x - m.tip.x, s.tip.y - m.tip.y), up = std::abs(s.tip.z - m.tip.z);
+      if (!scene_.surface.meant_slope(std::atan2(up, across))) continue;
+      if (scene_.profile.ridge(across, up) <= cusp_) continue;
+      const Vec3 p = 0.5 * (s.tip + m.tip);
+      if (std::min(ridge_to(nearest_on(x, p, u, window), p), ridge_to(nearest_on(y, p, u, window), p)) > cusp_)
+        return true;
+    }
+    return false;
+  }
+
+  const PatternScene& scene_;
+  const RowFamily& family_;
+  tool::Outline outline_;
+  double cusp_, spacing_, finest_;
+};
+
+}  // namespace
+
+PatternRows family_rows(const PatternScene& scene, const RowFamily& family, const Progress& progress) {
+  const Filler filler(scene, family);
+  const std::size_t n = family.first.size();
+  std::vector<Row> rows(n);
+  std::vector<std::vector<BlockedPlace>> blocked(n);
+  base::parallel_for(
+      n, 1,
+      [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) rows[k] = filler.row(family.first[k], blocked[k]);
+      },
+      base::part(progress, 0, 0.4));
+  std::vector<std::vector<Row>> between(n - 1);
+  base::parallel_for(
+      n - 1, 1,
+      [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) filler.fill(rows[k], rows[k + 1], between[k]);
+      },
+      base::part(progress, 0.4, 1));
+  PatternRows out;
+  out.spacing = filler.spacing();
+  const auto add = [&](const Row& row) {
+    for (const Row::Piece& piece : row.pieces) out.pieces.push_back({row.v, piece.tips});
+    return row.pieces.empty() ? std::size_t{0} : std::size_t{1};
+  };
+  for (std::size_t k = 0; k < n - (family.ring ? 1 : 0); ++k) {
+    out.rows += add(rows[k]);
+    if (k < between.size())
+      for (const Row& row : between[k]) out.added += add(row);
+    add_blocked(blocked[k], out.blocked);
+  }
+  return out;
+}
+
+Vec2 centre_of(const PatternScene& scene) {
+  return scene.centre ? *scene.centre : Vec2(0.5 * (scene.part.lower + scene.part.upper));
+}
+
+double farthest_from(const PatternScene& scene, const Vec2& centre) {
+  const auto side = [&](int axis) {
+    return std::max(std::abs(scene.part.lower[axis] - centre[axis]), std::abs(scene.part.upper[axis] - centre[axis])) +
+           scene.profile.radius() + scene.options.allowance;
+  };
+  return geom::hypot(side(0), side(1));
+}
+
+}  // namespace riffler::plan
