@@ -121,7 +121,7 @@ void bind_operations(py::module_& m) {
         plan::FinishOptions options;
         options.pattern = pattern, options.cusp = cusp, options.tolerance = tolerance;
         options.allowance = allowance, options.angle = angle, options.min_slope = min_slope;
-        options.max_slope = max_slope, options.region = to_region(region), options.feed = feed;
+        options.max_slope = max_slope, options.region = to_curves(region, "region"), options.feed = feed;
         options.plunge = plunge, options.faces = faces, options.climb = climb;
         if (centre) options.centre = to_vec3(*centre, "centre");
         return operation(part, fixtures, stock, tool, axis, clearance, progress,
