@@ -80,7 +80,8 @@ def _start(python: str, folder: Path, messages: Any) -> subprocess.Popen:
     # A group of its own: Ctrl-C reaches the caller, which ends the reader.
     try:
         return subprocess.Popen(
-            [python, "-s" if python != sys.executable else "-u", str(WORKER), str(folder), str(os.getpid())],
+            [python, str(WORKER), str(folder), str(os.getpid())],
+            env=_environment(python),
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=messages,
@@ -92,6 +93,12 @@ def _start(python: str, folder: Path, messages: Any) -> subprocess.Popen:
             f"{python}: cannot be started to read CAD files ({error.strerror}); {PYTHON} names a Python that has the "
             "package cadquery-ocp-novtk"
         ) from error
+
+
+def _environment(python: str) -> dict[str, str]:
+    """The caller's environment; for another Python without what leads to this one's packages."""
+    own = {"PYTHONPATH", "PYTHONHOME"} if python != sys.executable else set()
+    return {key: value for key, value in os.environ.items() if key not in own}
 
 
 def _end(process: subprocess.Popen) -> None:
