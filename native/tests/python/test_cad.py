@@ -267,7 +267,7 @@ def test_opencascade_stays_out_of_the_callers_process(files):
 def fake(folder: Path, body: str) -> Path:
     """A Python for the reader that runs other code: what the file would do to it."""
     program = folder / "python"
-    program.write_text(f"#!{sys.executable}\nimport sys, os, time, signal\nfolder = sys.argv[3]\n{body}\n")
+    program.write_text(f"#!{sys.executable}\nimport sys, os, time, signal\nfolder = sys.argv[2]\n{body}\n")
     program.chmod(0o755)
     return program
 

@@ -162,6 +162,7 @@ def _mesh(body: Body, deflection: float) -> None:
     parameters.MinSize = min(0.1 * deflection, 1e-3)
     parameters.InParallel = True
     parameters.ControlSurfaceDeflection = True
+    parameters.ForceFaceDeflection = True  # else gaps in the file make it coarser than was asked
     BRepMesh_IncrementalMesh(body.shape, parameters)
 
 
