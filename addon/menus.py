@@ -6,7 +6,7 @@ from .blender.panel_parts import give
 from .plan import properties as plan_properties
 from .plan.operators import find, from_strokes, least_tilt, setup
 from .sculpt import first_stroke, persistence
-from .stock import clay, cut, export, new_stock, protection, recover, result, solid
+from .stock import clay, cut, export, import_cad, new_stock, protection, recover, result, solid
 from .stock import properties as stock_properties
 
 
@@ -39,6 +39,7 @@ class RIFFLER_MT_object(bpy.types.Menu):
         give(layout.operator(result.RIFFLER_OT_to_mesh.bl_idname), settings.result, stock_properties.ResultSettings)
         layout.operator(result.RIFFLER_OT_show_deviation.bl_idname)
         layout.operator(result.RIFFLER_OT_hide_deviation.bl_idname)
+        layout.operator(import_cad.RIFFLER_OT_retessellate.bl_idname)
         layout.separator()
         layout.operator(setup.RIFFLER_OT_plan_part.bl_idname)
         layout.operator(setup.RIFFLER_OT_plan_fixtures_add.bl_idname)
@@ -84,10 +85,15 @@ def _export(self, context):
     give(op, context.scene.riffler.nc, stock_properties.NcSettings)
 
 
+def _import(self, context):
+    self.layout.operator(import_cad.RIFFLER_OT_import_cad.bl_idname, text="Riffler CAD (.step/.iges/.brep)")
+
+
 PLACES = (
     ("VIEW3D_MT_mesh_add", _add),
     ("VIEW3D_MT_object", _object),
     ("VIEW3D_MT_object_context_menu", _object),
+    ("TOPBAR_MT_file_import", _import),
     ("TOPBAR_MT_file_export", _export),
 )
 CLASSES = (RIFFLER_MT_object, RIFFLER_MT_add)

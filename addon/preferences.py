@@ -96,6 +96,13 @@ class RifflerPreferences(bpy.types.AddonPreferences):
     )
     tools: _folder("tools", "Tools", "Folder of tool files, for instance a shared one; empty: the folder below")
 
+    cad_python: StringProperty(
+        name="Python for CAD Files",
+        subtype="FILE_PATH",
+        description="Python with the package cadquery-ocp-novtk, to read STEP, IGES and BREP files; empty: search",
+        update=_made_absolute("cad_python"),
+    )
+
     def draw(self, context):
         layout = self.layout
         layout.use_property_split = True
@@ -121,6 +128,7 @@ class RifflerPreferences(bpy.types.AddonPreferences):
     def _machine(self, layout):
         column = layout.column()
         column.prop(self, "threads")
+        column.prop(self, "cad_python")
         for name in ("journals", "tools"):
             column.prop(self, name)
             row = column.split(factor=0.4)

@@ -62,6 +62,7 @@ SECTIONS = (
             "relief",
             "result",
             "export",
+            "import_cad",
             "detail",
             "millimetres",
             "recover",

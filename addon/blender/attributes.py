@@ -14,6 +14,7 @@ ERROR = "riffler_error"  # on a mesh made from a sculpt: mm, the largest distanc
 SCALE = "riffler_deviation_scale"
 # Face attributes: the program's row that cut the face, its line and its tool; −1: surface of the uncut stock.
 ROW, LINE, TOOL = "riffler_row", "riffler_line", "riffler_tool"
+FACE = "riffler_face"  # face attribute of an imported CAD file: the number of its exact face
 
 _undone = False  # True after an undo removed the last colours, which a redo may restore
 
@@ -35,6 +36,11 @@ def show_cuts(mesh, cuts, shown):
     _put(mesh, COLOUR, "FLOAT_COLOR", "color", corners, "CORNER")
     mesh.color_attributes.active_color = mesh.color_attributes[COLOUR]
     mesh[SCALE] = 0.0
+
+
+def set_exact_faces(mesh, numbers):
+    """Stores the number of the exact face, `numbers` (faces,), of each face."""
+    _put(mesh, FACE, "INT", "value", np.asarray(numbers, np.int32), "FACE")
 
 
 def hide_colours(mesh):

@@ -41,6 +41,11 @@ def folder(name):
     return path
 
 
+def cad_python():
+    """The path of the Python that reads CAD files, as chosen by the user, or ""."""
+    return getattr(preferences(), "cad_python", "")
+
+
 def target(name):
     """The folder to write to; our own need not exist yet. FileNotFoundError if the chosen one no longer exists."""
     return folder(name) or Path(versions.user_folder(name))

@@ -231,7 +231,7 @@ def test_the_keys_are_in_the_addons_configuration_and_take_none_of_blenders():
 
 def test_menus_are_drawn_into_blenders():
     drawn = leak_check.menus(common.MODULE)
-    assert len(drawn) == 4 and any("VIEW3D_MT_mesh_add" in line for line in drawn), drawn
+    assert len(drawn) == 5 and any("VIEW3D_MT_mesh_add" in line for line in drawn), drawn
 
 
 def test_the_tab_begins_with_what_an_artist_needs_and_machining_comes_last():

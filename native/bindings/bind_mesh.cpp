@@ -1,5 +1,7 @@
 // riffler.Mesh: its arrays, and its files.
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 
 #include "bindings/mesh_class.hpp"
@@ -89,8 +91,26 @@ bool is_3mf(const std::filesystem::path& path) {
   return mesh::equal_ignoring_case(path.extension().string(), ".3mf");
 }
 
-MeshPtr read(const std::filesystem::path& path, const ProgressLike& progress) {
+bool is_cad(const std::filesystem::path& path) {
+  const std::string extension = path.extension().string();
+  constexpr std::array names{".step", ".stp", ".iges", ".igs", ".brep"};
+  return std::any_of(names.begin(), names.end(),
+                     [&](const char* name) { return mesh::equal_ignoring_case(extension, name); });
+}
+
+/// `riffler.cad.read` runs OpenCASCADE in a process of its own.
+MeshPtr read_cad(const std::filesystem::path& path, double tolerance, const ProgressLike& progress) {
+  using namespace py::literals;
+  if (!progress.is_none()) to_progress(progress);  // refuses what is no callable, and requests for a task
+  const py::object part =
+      py::module_::import("riffler.cad").attr("read")(path, "tolerance"_a = tolerance, "progress"_a = progress);
+  return part.attr("mesh").cast<MeshPtr>();
+}
+
+MeshPtr read(const std::filesystem::path& path, double tolerance, const ProgressLike& progress) {
   if (is_3mf(path)) return read_3mf(path);
+  if (is_cad(path)) return read_cad(path, tolerance, progress);
+  if (!(tolerance > 0) || !std::isfinite(tolerance)) throw py::value_error("tolerance must be a positive number of mm");
   const Progress listener = to_progress(progress);
   const NoGil no_gil;
   return std::make_shared<Mesh>(mesh::read_mesh(path, listener));
@@ -146,15 +166,20 @@ Examples
 0.5
 )");
   mesh.def(py::init(&make), "vertices"_a, "triangles"_a);
-  mesh.def_static("read", &read, "path"_a, py::kw_only(), "progress"_a = py::none(),
-                  R"(Reads a .stl (binary or ASCII), .obj, .ply or .3mf file; equal vertices become one.
+  mesh.def_static(
+      "read", &read, "path"_a, py::kw_only(), "tolerance"_a = 0.01, "progress"_a = py::none(),
+      R"(Reads a .stl (binary or ASCII), .obj, .ply or .3mf file, in which equal vertices become one, or a CAD file.
 
-From a .3mf file reads all build items, in place, converted to mm; this needs the package lib3mf.
+From a .3mf file reads all build items, in place, converted to mm; this needs the package lib3mf. From a .step, .stp, .iges,
+.igs or .brep file reads all bodies, in place, converted to mm, healed and tessellated; this needs the extra riffler[cad].
+`riffler.cad.read` returns their faces, names and colours as well.
 
 Parameters
 ----------
 path : path_like, with one of these extensions
     The file.
+tolerance : float, mm
+    Chord error of a CAD file. Other files have triangles already, and it has no effect.
 progress : callable or None
     Called with the finished share of the part of the file at hand, of .stl and .3mf not after the beginning. Returning
     False cancels.
@@ -167,9 +192,9 @@ Mesh
 Raises
 ------
 FormatError
-    Names the byte or line of a bad file (of .3mf what was expected), among them files without a triangle.
+    Names the byte or line of a bad file (of .3mf and CAD files what was expected), among them files without a triangle.
 ValueError
-    Another extension.
+    Another extension, or an extra that is missing.
 Cancelled
     ``progress`` returned False.
 

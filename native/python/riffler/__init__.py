@@ -5,7 +5,7 @@ Lengths in mm, angles in rad, times in s, forces in N. The names below are the p
 
 from typing import TYPE_CHECKING
 
-from . import _core, cluster, deprecated, job, old, pen, plan, shape, tasks
+from . import _core, cad, cluster, deprecated, job, old, pen, plan, shape, tasks
 from ._core import (
     Cancelled,
     Collider,
@@ -124,6 +124,7 @@ __all__ = [
     "VolumeReport",
     "WriteReport",
     "__version__",
+    "cad",
     "cluster",
     "job",
     "machine_options",

@@ -98,16 +98,20 @@ class Mesh:
     0.5
     """
     @staticmethod
-    def read(path: os.PathLike | str | bytes, *, progress: collections.abc.Callable[[float], bool | None] | None = None) -> Mesh:
+    def read(path: os.PathLike | str | bytes, *, tolerance: typing.SupportsFloat = 0.01, progress: collections.abc.Callable[[float], bool | None] | None = None) -> Mesh:
         """
-        Reads a .stl (binary or ASCII), .obj, .ply or .3mf file; equal vertices become one.
+        Reads a .stl (binary or ASCII), .obj, .ply or .3mf file, in which equal vertices become one, or a CAD file.
 
-        From a .3mf file reads all build items, in place, converted to mm; this needs the package lib3mf.
+        From a .3mf file reads all build items, in place, converted to mm; this needs the package lib3mf. From a .step, .stp, .iges,
+        .igs or .brep file reads all bodies, in place, converted to mm, healed and tessellated; this needs the extra riffler[cad].
+        `riffler.cad.read` returns their faces, names and colours as well.
 
         Parameters
         ----------
         path : path_like, with one of these extensions
             The file.
+        tolerance : float, mm
+            Chord error of a CAD file. Other files have triangles already, and it has no effect.
         progress : callable or None
             Called with the finished share of the part of the file at hand, of .stl and .3mf not after the beginning. Returning
             False cancels.
@@ -120,9 +124,9 @@ class Mesh:
         Raises
         ------
         FormatError
-            Names the byte or line of a bad file (of .3mf what was expected), among them files without a triangle.
+            Names the byte or line of a bad file (of .3mf and CAD files what was expected), among them files without a triangle.
         ValueError
-            Another extension.
+            Another extension, or an extra that is missing.
         Cancelled
             ``progress`` returned False.
 

@@ -1,8 +1,13 @@
 """Every public function, method and class has a docstring with an example, and the example is right."""
 
 import doctest
+import functools
 import inspect
 import os
+import subprocess
+import sys
+import tempfile
+from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +16,7 @@ import riffler
 
 # Names that have no example yet, one a line: the list may only shrink.
 ALLOWANCE = Path(__file__).with_name("without_example.txt")
-MODULES = ("", "plan", "job", "pen", "cluster", "shape")
+MODULES = ("", "plan", "job", "pen", "cluster", "shape", "cad")
 # Classes whose objects are given and not made by users; what their attributes mean is in their docstrings.
 RESULTS = (riffler.deprecated.DictResult, tuple, Exception)
 
@@ -64,9 +69,22 @@ def test_the_list_of_missing_examples_is_exact():
     assert set(allowed) - set(missing) == set(), "these have an example now: RIFFLER_UPDATE=1 takes them off the list"
 
 
+@functools.cache
+def step_file():
+    """The assembly in inches of test_cad.py."""
+    if find_spec("OCP") is None:
+        pytest.skip("the package cadquery-ocp-novtk is not installed")
+    with tempfile.TemporaryDirectory() as folder:
+        program = Path(__file__).with_name("cad_files.py")
+        subprocess.run([sys.executable, str(program), folder], check=True, capture_output=True)
+        return Path(folder, "assembly.step").read_bytes()
+
+
 @pytest.mark.parametrize("name", [name for name, value in NAMES.items() if ">>> " in doc_of(value)])
 def test_an_example_gives_its_stated_result(name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
+    if 'cad.read("part.step"' in doc_of(NAMES[name]):
+        (tmp_path / "part.step").write_bytes(step_file())
     found = doctest.DocTestParser().get_doctest(
         doc_of(NAMES[name]), {"riffler": riffler, "np": np}, name, None, None
     )  # fmt: skip

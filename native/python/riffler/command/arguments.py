@@ -8,9 +8,12 @@ import re
 from pathlib import Path
 from typing import Any
 
+from ..cad import EXTENSIONS as CAD
 from .parser import Parser
 
-MESHES = (".stl", ".obj", ".ply", ".3mf")
+MESHES = (".stl", ".obj", ".ply", ".3mf")  # are read and written
+PARTS = MESHES + CAD  # are read
+A_PART = ".stl, .obj, .ply, .3mf, .step, .iges or .brep"
 VOLUMES = (".rvol",)
 PAIRS = re.compile(r"\d+:[-+.\deE]+(,\d+:[-+.\deE]+)*")
 ORIGINS = ("corner", "top-centre", "bottom-centre")
@@ -81,7 +84,7 @@ def solid(text: str, origin: str) -> tuple[str, list[float], list[float]]:
 
 
 def is_solid(text: str) -> bool:
-    return not text.lower().endswith(MESHES + VOLUMES) and not os.path.exists(text)
+    return not text.lower().endswith(PARTS + VOLUMES) and not os.path.exists(text)
 
 
 def input_file(text: str, suffixes: tuple[str, ...]) -> Path:

@@ -9,9 +9,10 @@ import argparse
 import dataclasses
 
 from .. import Mesh
-from .arguments import MESHES, input_file
+from .arguments import A_PART, PARTS, input_file
 from .console import Console, number
 from .parser import Parser
+from .shapes import read_mesh
 
 HELP = "check that a mesh is a closed 2-manifold"
 
@@ -20,7 +21,7 @@ DEFECTS = ("open_edges", "nonmanifold_edges", "nonmanifold_vertices", "duplicate
 
 
 def add_arguments(parser: Parser) -> None:
-    parser.add_input("mesh", ".stl, .obj, .ply or .3mf", MESHES)
+    parser.add_input("mesh", A_PART, PARTS)
 
 
 def repairs(mesh: Mesh) -> dict[str, int]:
@@ -29,8 +30,8 @@ def repairs(mesh: Mesh) -> dict[str, int]:
 
 
 def run(arguments: argparse.Namespace, console: Console) -> int:
-    path = input_file(arguments.mesh, MESHES)
-    mesh = Mesh.read(path)
+    path = input_file(arguments.mesh, PARTS)
+    mesh = read_mesh(path, console)
     audit = dataclasses.asdict(mesh.audit())
     closed = not any(audit[key] for key in DEFECTS)
     data = {

@@ -1,6 +1,7 @@
-"""Write a mesh in another format: equal vertices are welded, and nothing else changes.
+"""Write a mesh or a CAD file in another format: equal vertices are welded, and nothing else changes.
 
-riffler mesh convert part.obj --out part.stl
+riffler mesh convert part.obj part.stl
+riffler mesh convert part.step part.stl --tolerance 0.01
 riffler mesh convert part.stl --unit inch --out part.3mf
 """
 
@@ -8,29 +9,43 @@ from __future__ import annotations
 
 import argparse
 
-from .. import Mesh
-from .arguments import MESHES, input_file, output_file
+from .. import Mesh, cad
+from .arguments import A_PART, MESHES, PARTS, input_file, length, output_file
 from .console import Console, number, times
 from .parser import Parser
-from .shapes import write_mesh
+from .shapes import read_mesh, write_mesh
 
-HELP = "write a mesh in another format"
+HELP = "write a mesh or a CAD file in another format"
 UNITS = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "inch": 25.4}
 
 
 def add_arguments(parser: Parser) -> None:
-    parser.add_input("mesh", ".stl, .obj, .ply or .3mf", MESHES)
-    parser.add_argument("--unit", choices=UNITS, default="mm", help="unit of the lengths in MESH (default mm)")
-    parser.add_file("--out", ".stl, .obj, .ply or .3mf", MESHES, required=True)
+    parser.add_input("mesh", A_PART, PARTS)
+    parser.add_input("out", "the file to write: .stl, .obj, .ply or .3mf", MESHES)
+    parser.add_argument("--tolerance", metavar="MM", help="chord error of a CAD file (default 0.01)")
+    parser.add_argument(
+        "--unit", choices=UNITS, help="unit of the lengths in MESH (default mm; CAD files state their own)"
+    )
 
 
 def run(arguments: argparse.Namespace, console: Console) -> int:
-    path = input_file(arguments.mesh, MESHES)
+    path = input_file(arguments.mesh, PARTS)
     out = output_file(arguments.out, MESHES)
-    with console.step("read"):
-        mesh = Mesh.read(path)
-    if arguments.unit != "mm":
-        mesh = Mesh(UNITS[arguments.unit] * mesh.vertices, mesh.triangles)
+    if path.suffix.lower() in cad.EXTENSIONS:
+        if arguments.unit is not None:
+            raise ValueError(f"--unit is for meshes; {path.name} states its own")
+        chord = 0.01 if arguments.tolerance is None else length(arguments.tolerance, "--tolerance")
+        with console.step("read") as progress:
+            mesh = read_mesh(path, console, tolerance=chord, progress=progress)
+    else:
+        if arguments.tolerance is not None:
+            raise ValueError(
+                f"--tolerance is for CAD files; {path.name} has triangles: riffler mesh decimate leaves some out"
+            )
+        with console.step("read"):
+            mesh = Mesh.read(path)
+        if arguments.unit is not None:
+            mesh = Mesh(UNITS[arguments.unit] * mesh.vertices, mesh.triangles)
     triangles = write_mesh(mesh, out, console)
     lower, upper = mesh.bounds
     data = {

@@ -8,17 +8,16 @@ from __future__ import annotations
 
 import argparse
 
-from .. import Mesh
-from .arguments import MESHES, input_file, length, output_file, whole
+from .arguments import A_PART, MESHES, PARTS, input_file, length, output_file, whole
 from .console import Console, number, times
 from .parser import Parser
-from .shapes import write_mesh
+from .shapes import read_mesh, write_mesh
 
 HELP = "remove triangles within a tolerance"
 
 
 def add_arguments(parser: Parser) -> None:
-    parser.add_input("mesh", ".stl, .obj, .ply or .3mf", MESHES)
+    parser.add_input("mesh", A_PART, PARTS)
     parser.add_argument("--tolerance", metavar="MM", help="largest distance that the surface may move")
     parser.add_argument("--triangles", metavar="N", help="number of triangles to keep")
     parser.add_file("--out", ".stl, .obj, .ply or .3mf", MESHES, required=True)
@@ -29,10 +28,10 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
         raise ValueError("--tolerance or --triangles expected")
     tolerance = None if arguments.tolerance is None else length(arguments.tolerance, "--tolerance")
     triangles = None if arguments.triangles is None else whole(arguments.triangles, "--triangles")
-    path = input_file(arguments.mesh, MESHES)
+    path = input_file(arguments.mesh, PARTS)
     out = output_file(arguments.out, MESHES)
-    with console.step("read"):
-        mesh = Mesh.read(path)
+    with console.step("read") as progress:
+        mesh = read_mesh(path, console, progress=progress)
     with console.step("decimate") as progress:
         small = mesh.decimate(triangles=triangles, tolerance=tolerance, progress=progress)
     with console.step("measure"):

@@ -28,7 +28,7 @@ from . import tools
 from .arguments import (
     CODE,
     JOURNALS,
-    MESHES,
+    PARTS,
     PLANS,
     PROGRAMS,
     finite,
@@ -71,7 +71,7 @@ def add_arguments(parser: Parser) -> None:
     tools.add_tools(parser, required=False)
     parser.add_argument("--safe-height", metavar="MM", help="z between cuts of a plan or a recording")
     parser.add_argument("--axis", metavar="X,Y,Z", help="tool axis on a plan's paths without axes (default 0,0,1)")
-    parser.add_file("--part", "part of a plan: lift the tool along its axis where it would gouge the part", MESHES)
+    parser.add_file("--part", "part of a plan: lift the tool along its axis where it would gouge the part", PARTS)
     add_fixtures(parser)
     add_rods(parser)
     parser.add_argument(
@@ -277,7 +277,7 @@ def lifted(
     planned: plan.Plan, paths: list, tool: Tool, arguments: argparse.Namespace, console: Console, notes: list[str]
 ) -> tuple[list[np.ndarray], Collider]:
     """The rows of every path, lifted where necessary, and the collider that they were checked with."""
-    part = input_file(arguments.part, MESHES)
+    part = input_file(arguments.part, PARTS)
     fixtures = [fixture(name, console) for name in arguments.fixture]
     guarded = with_room(tool, arguments)
     with console.step("locate") as progress:

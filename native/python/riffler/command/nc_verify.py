@@ -15,7 +15,9 @@ import numpy as np
 from .. import Finding, VerifyReport, cluster, verify
 from . import tools
 from .arguments import (
+    A_PART,
     MESHES,
+    PARTS,
     VOLUMES,
     input_file,
     length,
@@ -42,7 +44,7 @@ def add_arguments(parser: Parser) -> None:
     tools.add_tools(parser)
     add_rods(parser)
     add_machine(parser, 'machine of the program, whose limits are checked (default "tcp": tip and axis)')
-    parser.add_file("--part", "the finished part: .stl, .obj, .ply or .3mf", MESHES)
+    parser.add_file("--part", f"the finished part: {A_PART}", PARTS)
     add_fixtures(parser)
     parser.add_argument(
         "--tolerance", default="0.01", metavar="MM", help="largest error of cutting and of contact (default 0.01)"
@@ -87,7 +89,7 @@ def run(arguments: argparse.Namespace, console: Console) -> int:
     reach = float(np.linalg.norm(volume.upper - volume.lower))
     by_number = with_rods(tools.assign(wanted, np.asarray(program.tool)[1:], reach), around)
     with console.step("read"):
-        part = None if arguments.part is None else read_part(input_file(arguments.part, MESHES), console)
+        part = None if arguments.part is None else read_part(input_file(arguments.part, PARTS), console)
     fixtures = [fixture(name, console, volume.pitch) for name in arguments.fixture]
     with console.step("verify") as progress:
         machine = {"machine": arguments.machine, "machine_options": how} if arguments.machine else {}

@@ -10,7 +10,7 @@ import numpy as np
 
 from .. import Mesh, Tool, Volume, plan
 from . import tools
-from .arguments import CODE, MESHES, PROGRAMS, finite, input_file, is_solid, length, output_file
+from .arguments import A_PART, CODE, PARTS, PROGRAMS, finite, input_file, is_solid, length, output_file
 from .console import Console, number, times
 from .parser import Parser
 from .programs import machine_name
@@ -22,7 +22,7 @@ RAYS = 400  # along the longest side of a stock of default pitch
 
 
 def add_tool(parser: Parser) -> None:
-    parser.add_input("part", "the part: .stl, .obj, .ply or .3mf", MESHES, flags=("--mesh",))
+    parser.add_input("part", f"the part: {A_PART}", PARTS, flags=("--mesh",))
     tools.add_tool(parser, "the cutter, as in ball:6 or 2=ball:6", required=True)
 
 
@@ -66,7 +66,7 @@ def run_operation(
 ) -> int:
     """Reads the scene, plans with ``planned(setup, tool, progress)``, checks and writes. ``counts`` makes rows of the
     result's table from its data."""
-    path, out = input_file(arguments.part, MESHES), output_file(arguments.out, CODE + PROGRAMS)
+    path, out = input_file(arguments.part, PARTS), output_file(arguments.out, CODE + PROGRAMS)
     post = machine_name(arguments.post, "--post")
     asked = tools.parse(arguments.tool)
     with console.step("read"):

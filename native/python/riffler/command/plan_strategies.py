@@ -10,7 +10,7 @@ from typing import Any
 from .. import plan
 from ..plan import curves
 from . import tools
-from .arguments import MESHES, PLANS, finite, input_file, length, output_file, whole
+from .arguments import A_PART, PARTS, PLANS, finite, input_file, length, output_file, whole
 from .console import Console, number, times
 from .parser import Parser
 from .shapes import read_part
@@ -40,7 +40,7 @@ class StrategyCommand:
 
     def add_arguments(self, parser: Parser) -> None:
         needs = self.strategy.needs
-        parser.add_input("part", "the part: .stl, .obj, .ply or .3mf", MESHES, flags=("--mesh",))
+        parser.add_input("part", f"the part: {A_PART}", PARTS, flags=("--mesh",))
         whose = "; by default the plan's" if needs == "paths" else ""
         tools.add_tool(parser, f"the cutter, as in ball:6, or a file{whose}", required=not whose)
         if needs in GIVEN:
@@ -55,7 +55,7 @@ class StrategyCommand:
         strategy = self.strategy
         options = {p.key: value_of(p, getattr(arguments, p.key)) for p in strategy.parameters}
         asked = None if arguments.tool is None else tools.parse(arguments.tool)
-        path = input_file(arguments.part, MESHES)
+        path = input_file(arguments.part, PARTS)
         source = (
             input_file(getattr(arguments, strategy.needs), GIVEN[strategy.needs][1])
             if strategy.needs in GIVEN

@@ -5,12 +5,24 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from .. import Mesh, Orientation, Volume, VolumeReport
+from .. import Mesh, Orientation, Volume, VolumeReport, cad
 from ..mesh_notes import notes_on
 from ..results import LostReport
 from .arguments import VOLUMES
 from .console import Console
 from .detail import Detail, Written, announce
+
+
+def read_mesh(
+    path: Path, console: Console, *, tolerance: float = 0.01, progress: Callable[[float], None] | None = None
+) -> Mesh:
+    """A mesh file, or a CAD file within a chord error of ``tolerance`` mm; prints what was mended and assumed of it."""
+    if path.suffix.lower() not in cad.EXTENSIONS:
+        return Mesh.read(path)
+    part = cad.read(path, tolerance=tolerance, progress=progress)
+    for note in part.report.notes:
+        console.warning(f"{path.name}: {note}")
+    return part.mesh
 
 
 def from_mesh(
@@ -21,8 +33,8 @@ def from_mesh(
     step: str,
 ) -> tuple[Volume, VolumeReport]:
     """The volume of a mesh file and its report; prints repairs and losses. ``pitch`` may be a function of the mesh."""
-    with console.step("read"):
-        mesh = Mesh.read(path)
+    with console.step("read") as progress:
+        mesh = read_mesh(path, console, progress=progress)
     spacing = pitch(mesh) if callable(pitch) else pitch
     with console.step(step) as progress:
         try:
@@ -36,7 +48,7 @@ def from_mesh(
 def read_part(path: Path, console: Console, hollow: bool = False) -> Mesh:
     """The mesh of a file, unchanged, because plans identify a part by its checksum. Prints what riffler turns to use
     the mesh as a solid."""
-    mesh = Mesh.read(path)
+    mesh = read_mesh(path, console)
     _, report = mesh.orient_with_report(hollow=hollow)
     tell(path.name, report, console)
     return mesh

@@ -7,7 +7,7 @@ import argparse
 import numpy as np
 
 from .. import Volume
-from .arguments import MESHES, ORIGINS, VOLUMES, add_directions, add_pitch, input_file, is_solid, length, solid
+from .arguments import ORIGINS, PARTS, VOLUMES, add_directions, add_pitch, input_file, is_solid, length, solid
 from .console import Console
 from .parser import Parser
 from .shapes import from_mesh
@@ -19,9 +19,9 @@ def add_stock(parser: Parser) -> None:
         "--stock",
         required=True,
         metavar="STOCK",
-        help="WxDxH, sphere:D, cylinder:D:H (along z), or a .stl, .obj, .ply, .3mf or .rvol file",
+        help="WxDxH, sphere:D, cylinder:D:H (along z), or a .stl, .obj, .ply, .3mf, .step, .iges, .brep or .rvol file",
     )
-    parser.offer("stock", ("sphere:", "cylinder:"), MESHES + VOLUMES)
+    parser.offer("stock", ("sphere:", "cylinder:"), PARTS + VOLUMES)
     add_pitch(parser, required=False, more=" (a .rvol file has its own)")
     add_directions(parser)
     parser.add_argument(
@@ -41,7 +41,7 @@ def stock(arguments: argparse.Namespace, console: Console) -> Volume:
             raise ValueError(f"--pitch is needed for a {kind}")
         with console.step("stock"):
             return _solid(kind, np.array(lower), np.array(upper), pitch, arguments.directions or "xyz")
-    path = input_file(arguments.stock, MESHES + VOLUMES)
+    path = input_file(arguments.stock, PARTS + VOLUMES)
     if arguments.origin is not None:
         raise ValueError(f"--origin is for stock of given sizes; {path.name} has its own place")
     if path.suffix.lower() in VOLUMES:

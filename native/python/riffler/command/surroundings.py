@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 
 from .. import Collider, Mesh, Tool, Volume, plan
-from .arguments import MESHES, VOLUMES, finite, input_file
+from .arguments import PARTS, VOLUMES, finite, input_file
 from .console import Console
 from .parser import Parser
 from .shapes import from_mesh
@@ -25,8 +25,8 @@ def add_rods(parser: Parser) -> None:
 
 
 def add_fixtures(parser: Parser) -> None:
-    about = "fixture, a mesh or .rvol file; may be repeated"
-    parser.add_file("--fixture", about, MESHES + VOLUMES, action="append", default=[])
+    about = "fixture, a mesh, CAD or .rvol file; may be repeated"
+    parser.add_file("--fixture", about, PARTS + VOLUMES, action="append", default=[])
 
 
 def rods(arguments: argparse.Namespace) -> list[tuple]:
@@ -64,7 +64,7 @@ def fixtures_alone(fixtures: list[Volume]) -> Collider | None:
 def fixture(name: str, console: Console, pitch: float | None = None) -> Volume:
     """A fixture's volume. A mesh gets rays along z, at the stock's pitch as in `verify`, or at a pitch that follows
     from its size."""
-    path = input_file(name, MESHES + VOLUMES)
+    path = input_file(name, PARTS + VOLUMES)
     if path.suffix.lower() in VOLUMES:
         return Volume.load(path)
     return from_mesh(path, plan.fixture_pitch if pitch is None else pitch, "z", console, "fixtures")[0]

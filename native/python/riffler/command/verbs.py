@@ -11,12 +11,12 @@ from functools import partial
 from typing import Any, NoReturn, Protocol
 
 from ..plan import STRATEGIES
-from .arguments import MESHES, VOLUMES
+from .arguments import MESHES, PARTS, VOLUMES
 from .console import Console
 from .parser import EPILOG, Parser, UsageError, nearest
 
 GROUPS = {
-    "mesh": "triangle meshes: files of .stl, .obj, .ply and .3mf",
+    "mesh": "triangle meshes: files of .stl, .obj, .ply and .3mf, and CAD files",
     "volume": "dexel volumes: make stock, carve it, mesh it",
     "plan": "tool paths on a part, by a strategy, an operation or a recording",
     "nc": "NC programs: write and check them; list machines and tools",
@@ -136,6 +136,8 @@ def find(words: list[str]) -> Found:
         return Found(None, [], help=overview())
     if first in ALONE:
         return Found(ALONE[first], rest)
+    if first == "convert" and _is_mesh_conversion(rest):
+        return Found(of("mesh")["convert"], rest)
     if first in OLD and (first not in GROUPS or _is_old_mesh(rest)):
         return Found(OLD[first], rest, first)
     if first not in GROUPS:
@@ -149,12 +151,19 @@ def find(words: list[str]) -> Found:
     return Found(of(first)[rest[0]], rest[1:])
 
 
+def _is_mesh_conversion(rest: list[str]) -> bool:
+    """Whether ``riffler convert part.step part.stl`` is meant, not the old ``riffler convert part.stl --out x.rvol``:
+    whether the last file is a mesh."""
+    files = [word for word in rest if word.lower().endswith(PARTS + VOLUMES)]
+    return len(files) > 1 and files[-1].lower().endswith(MESHES)
+
+
 def _is_old_mesh(rest: list[str]) -> bool:
     """Whether the words after ``mesh`` have the old form, ``riffler mesh part.rvol --out part.stl``: a file or an
     option comes first, not a verb."""
     if not rest or rest[0] in of("mesh") or rest[0] in HELP:
         return False
-    return rest[0].startswith("-") or rest[0].lower().endswith(MESHES + VOLUMES) or "." in rest[0]
+    return rest[0].startswith("-") or rest[0].lower().endswith(PARTS + VOLUMES) or "." in rest[0]
 
 
 def _refuse(word: str, group: str) -> NoReturn:

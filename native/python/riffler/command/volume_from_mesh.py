@@ -9,7 +9,7 @@ import argparse
 import dataclasses
 
 from .. import VolumeReport
-from .arguments import MESHES, VOLUMES, add_directions, add_pitch, input_file, length, output_file
+from .arguments import A_PART, PARTS, VOLUMES, add_directions, add_pitch, input_file, length, output_file
 from .console import Console, Rows, number, times
 from .parser import Parser
 from .shapes import from_mesh, rays, write_volume
@@ -18,7 +18,7 @@ HELP = "turn a mesh into a dexel volume"
 
 
 def add_arguments(parser: Parser) -> None:
-    parser.add_input("mesh", ".stl, .obj, .ply or .3mf", MESHES)
+    parser.add_input("mesh", A_PART, PARTS)
     add_pitch(parser, required=True)
     add_directions(parser)
     parser.add_file("--out", ".rvol", VOLUMES, required=True)
@@ -26,7 +26,7 @@ def add_arguments(parser: Parser) -> None:
 
 def run(arguments: argparse.Namespace, console: Console) -> int:
     pitch = length(arguments.pitch, "--pitch")
-    path = input_file(arguments.mesh, MESHES)
+    path = input_file(arguments.mesh, PARTS)
     out = output_file(arguments.out, VOLUMES)
     volume, report = from_mesh(path, pitch, arguments.directions or "xyz", console, "convert")
     write_volume(volume, out, console)

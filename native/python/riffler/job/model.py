@@ -18,6 +18,7 @@ from .kinds import KINDS, Kind
 from .table import JobError, JobFile, Table
 
 MESHES = (".stl", ".obj", ".ply", ".3mf")
+PARTS = MESHES + CAD
 VOLUMES = (".rvol",)
 CODE = (".ngc", ".nc", ".cnc", ".tap", ".gcode", ".mpf", ".h", ".i", ".apt", ".cls", ".txt")
 RAYS = 400  # along the longest side of a stock without another pitch
@@ -147,13 +148,13 @@ def _part(table: Table) -> tuple[Path, Mesh]:
     if isinstance(table.data.get("part"), dict):
         sub = table.sub("part")
         assert sub is not None
-        path, at, scale = sub.file_name("file", MESHES), sub.vector("move", 3), sub.number("scale", above=0)
+        path, at, scale = sub.file_name("file", PARTS), sub.vector("move", 3), sub.number("scale", above=0)
         if path is None:
             raise sub.missing("file", '"part.stl"')
         sub.done()
         where, place, scale = sub.where("file"), place if at is None else at, scale or 1.0
     else:
-        path, where, scale = table.file_name("part", MESHES), table.where("part"), 1.0
+        path, where, scale = table.file_name("part", PARTS), table.where("part"), 1.0
         if path is None:
             raise table.missing("part", '"part.stl"')
     mesh = _mesh(path, where)
@@ -183,7 +184,7 @@ def _stock(table: Table, part: Mesh) -> Volume:
     directions = sub.text("directions", ("z", "xyz")) or "z"
     asked = sub.number("pitch", above=0)
     if kind == "mesh":
-        path = _needed_file(sub, MESHES, '"blank.stl"')
+        path = _needed_file(sub, PARTS, '"blank.stl"')
         mesh = _mesh(path, sub.where("file"))
         sub.done()
         pitch = asked or float(np.ptp(np.array(mesh.bounds), axis=0).max()) / RAYS
@@ -227,7 +228,7 @@ def _fixtures(table: Table) -> tuple[list[Volume | Mesh], list[Path]]:
     out: list[Volume | Mesh] = []
     paths = []
     for sub in table.subs("fixture"):
-        path = _needed_file(sub, MESHES + VOLUMES, '"clamp.stl"')
+        path = _needed_file(sub, PARTS + VOLUMES, '"clamp.stl"')
         move = sub.vector("move", 3)
         volume = path.suffix.lower() in VOLUMES
         if volume and move is not None:

@@ -1,0 +1,149 @@
+"""Import of CAD files: STEP, IGES and BREP as a mesh object whose faces know the exact face that they are part of."""
+
+import os
+
+import bpy
+import numpy as np
+import riffler
+from bpy_extras.io_utils import ImportHelper
+from riffler import cad
+
+from ..blender import attributes, meshes, operator_parts, preferences_access, refusals, scene_units
+from ..blender.fields import length
+from ..blender.file_work import FileWork
+from ..blender.long_work import LongWork
+from ..common import problems, units
+from ..common.job import TaskJob
+from .pure import cad_python
+
+# Properties of an imported mesh: the file, the chord tolerance in mm, and the names of the exact faces.
+FILE, TOLERANCE, NAMES = "riffler_cad_file", "riffler_cad_tolerance", "riffler_cad_faces"
+_found = {}  # the Python that reads CAD files, by the one that the user chose: the search takes a second
+
+
+class ReadCad(LongWork):
+    """Mixin: reads a CAD file in another process, and fills a mesh."""
+
+    doing = "Reading CAD File"
+    tolerance: length("Tolerance", 0.01, "Largest distance of the triangles from the exact faces, in mm", 1e-4)
+
+    def read(self, path):
+        problems.check_source(path)
+        chosen = preferences_access.cad_python()
+        if chosen not in _found:
+            _found[chosen] = cad_python.find(chosen)
+        tolerance = units.clean(self.tolerance)
+        return TaskJob(riffler.submit(cad.read, path, tolerance=tolerance, python=_found[chosen]))
+
+    def fill(self, context, mesh, path, part):
+        """Replaces the mesh by the part, in scene units, and reports what was mended."""
+        meshes.fill(mesh, part.mesh.vertices / scene_units.mm_per_unit(context.scene), part.mesh.triangles)
+        attributes.set_exact_faces(mesh, part.face_of_triangle)
+        _paint(mesh, part)
+        mesh[FILE], mesh[TOLERANCE] = path, part.report.tolerance
+        mesh.pop(NAMES, None)
+        if any(face.name for face in part.faces):
+            mesh[NAMES] = [face.name for face in part.faces]
+        for note in part.report.notes:
+            self.report({"WARNING"}, f"{os.path.basename(path)}: {note}")
+        lower, upper = part.mesh.bounds
+        told = (units.counted(len(part.mesh.triangles), "triangle"), units.format_size(upper - lower))
+        self.report({"INFO"}, f"{os.path.basename(path)}: {', '.join(told)}")
+
+
+def _paint(mesh, part):
+    """A material for each colour of the file; none if it states none. Those of an earlier import are used again."""
+    colors = list(dict.fromkeys(face.color for face in part.faces if face.color is not None))
+    mesh.materials.clear()
+    if not colors:
+        return
+    for color in colors:
+        mesh.materials.append(_material(color))
+    plain = len(colors)
+    if any(face.color is None for face in part.faces):
+        mesh.materials.append(None)
+    slots = np.array([plain if face.color is None else colors.index(face.color) for face in part.faces], np.int32)
+    mesh.polygons.foreach_set("material_index", np.ascontiguousarray(slots[part.face_of_triangle]))
+
+
+def _material(color):
+    name = "CAD #" + "".join(f"{round(255 * x):02X}" for x in color)
+    made = bpy.data.materials.get(name)
+    if made is None:
+        made = bpy.data.materials.new(name)
+        linear = [x / 12.92 if x <= 0.04045 else ((x + 0.055) / 1.055) ** 2.4 for x in color]  # Blender's are linear
+        made.diffuse_color = (*linear, 1.0)
+    return made
+
+
+class RIFFLER_OT_import_cad(FileWork, ReadCad, bpy.types.Operator, ImportHelper):
+    """Import a STEP, IGES or BREP file as a mesh in millimetres; its faces have the numbers of the exact faces"""
+
+    bl_idname = "riffler.import_cad"
+    bl_label = "Import CAD File"
+    bl_options = {"REGISTER", "UNDO"}
+    helper = ImportHelper
+    cancelled = "Not imported: the scene is unchanged"
+
+    filename_ext = ".step"
+    filter_glob: bpy.props.StringProperty(default="*.step;*.stp;*.iges;*.igs;*.brep", options={"HIDDEN"})
+
+    @classmethod
+    def poll(cls, context):
+        return operator_parts.object_mode(cls, context) and not operator_parts.busy(cls, context)
+
+    def draw(self, context):
+        operator_parts.draw_fields(self, ("tolerance",))
+
+    def begin(self, context):
+        return self.read(bpy.path.abspath(self.filepath))
+
+    def finish(self, context, job):
+        path = bpy.path.abspath(self.filepath)
+        name = os.path.splitext(os.path.basename(path))[0]
+        mesh = bpy.data.meshes.new(name)
+        self.fill(context, mesh, path, job.result)
+        ob = bpy.data.objects.new(name, mesh)
+        context.collection.objects.link(ob)
+        for other in context.selected_objects:
+            other.select_set(False)
+        ob.select_set(True)
+        context.view_layer.objects.active = ob
+        return {"FINISHED"}
+
+
+class RIFFLER_OT_retessellate(ReadCad, bpy.types.Operator):
+    """Read the active object's CAD file again with another tolerance; place, name and modifiers stay"""
+
+    bl_idname = "riffler.retessellate"
+    bl_label = "Change CAD Tolerance"
+    bl_options = {"REGISTER", "UNDO"}
+    cancelled = "Not read: the mesh is unchanged"
+
+    @classmethod
+    def poll(cls, context):
+        ob = context.object
+        if ob is None or ob.type != "MESH" or FILE not in ob.data:
+            return operator_parts.deny(cls, "Select an object that was imported from a CAD file")
+        if why := refusals.linked(ob, ob.data):
+            return operator_parts.deny(cls, why)
+        return operator_parts.object_mode(cls, context) and not operator_parts.busy(cls, context)
+
+    def begin(self, context):
+        self._object = context.object.name
+        return self.read(context.object.data[FILE])
+
+    def lost(self, context):
+        ob = bpy.data.objects.get(self._object)
+        kept = ob is not None and ob.type == "MESH" and FILE in ob.data
+        return "" if kept else "Not read: the object was removed meanwhile"
+
+    def finish(self, context, job):
+        if why := self.lost(context):
+            raise ValueError(why)
+        mesh = bpy.data.objects[self._object].data
+        self.fill(context, mesh, mesh[FILE], job.result)
+        return {"FINISHED"}
+
+
+CLASSES = (RIFFLER_OT_import_cad, RIFFLER_OT_retessellate)

@@ -1,0 +1,85 @@
+"""Import of CAD files by another Python: units, attribute of the exact faces, colours, other tolerances, errors."""
+
+import os
+import subprocess
+from pathlib import Path
+
+import bpy
+import numpy as np
+
+from support import common
+
+ROOT = Path(__file__).parents[3]
+
+
+def reader():
+    """A Python that has the extra: that of the environment, or of `make setup`."""
+    for python in (os.environ.get("RIFFLER_CAD_PYTHON"), ROOT / ".venv" / "bin" / "python"):
+        if python and Path(python).exists():
+            found = subprocess.run([python, "-c", "import OCP"], capture_output=True, env=plain())
+            if found.returncode == 0:
+                return str(python)
+    raise common.Skip("no Python with cadquery-ocp-novtk: .venv has it after `make setup`")
+
+
+def plain():
+    return {key: value for key, value in os.environ.items() if not key.startswith("PYTHON")}
+
+
+def part(name):
+    """A file of native/tests/python/cad_files.py."""
+    folder = Path(common.out("cad"))
+    if not (folder / name).exists():
+        folder.mkdir(parents=True, exist_ok=True)
+        program = ROOT / "native" / "tests" / "python" / "cad_files.py"
+        subprocess.run([reader(), str(program), str(folder)], check=True, capture_output=True, env=plain())
+    return str(folder / name)
+
+
+def with_reader():
+    os.environ["RIFFLER_CAD_PYTHON"] = reader()
+
+
+def size(ob):
+    return np.array([v.co for v in ob.data.vertices]).max(0) - np.array([v.co for v in ob.data.vertices]).min(0)
+
+
+def test_an_assembly_comes_in_scene_units_with_faces_and_colours():
+    with_reader()
+    for mm in (1.0, 1000.0):
+        common.scale(mm)
+        assert bpy.ops.riffler.import_cad(filepath=part("assembly.step")) == {"FINISHED"}
+        ob = bpy.context.object
+        assert ob.name.startswith("assembly") and np.allclose(size(ob) * mm, (40, 20, 17), atol=1e-3)
+        faces = np.empty(len(ob.data.polygons), np.int32)
+        ob.data.attributes["riffler_face"].data.foreach_get("value", faces)
+        assert len(np.unique(faces)) == 12
+        (top,) = (n for n, name in enumerate(ob.data["riffler_cad_faces"]) if name == "datum A")
+        heights = [ob.data.vertices[v].co.z * mm for p in ob.data.polygons if faces[p.index] == top for v in p.vertices]
+        assert len(heights) == 6 and np.allclose(heights, 5, atol=1e-3)
+        named = {p.material_index for p in ob.data.polygons if faces[p.index] == top}
+        assert {ob.data.materials[k].name for k in named} == {"CAD #CC331A"}
+        assert len({p.material_index for p in ob.data.polygons}) == 3  # red, blue, none
+
+
+def test_the_tolerance_is_changed_afterwards():
+    with_reader()
+    common.scale(1)
+    bpy.ops.riffler.import_cad(filepath=part("torus.step"), tolerance=0.5)
+    ob = bpy.context.object
+    ob.location = (5, 0, 0)
+    coarse = len(ob.data.polygons)
+    assert bpy.ops.riffler.retessellate(tolerance=0.05) == {"FINISHED"}
+    assert len(ob.data.polygons) > 2 * coarse and tuple(ob.location) == (5, 0, 0)
+    assert ob.data["riffler_cad_tolerance"] == 0.05 or abs(ob.data["riffler_cad_tolerance"] - 0.05) < 1e-6
+    assert len(ob.data.attributes["riffler_face"].data) == len(ob.data.polygons)
+    bpy.data.objects.remove(ob)
+    assert not bpy.ops.riffler.retessellate.poll()
+
+
+def test_errors_change_nothing():
+    with_reader()
+    wire, before = part("wire.step"), len(bpy.data.objects)
+    common.refused(lambda: bpy.ops.riffler.import_cad(filepath=wire), "it has no faces")
+    common.refused(lambda: bpy.ops.riffler.import_cad(filepath=common.out("none.step")), "none.step")
+    assert len(bpy.data.objects) == before and not any(m.name.startswith("wire") for m in bpy.data.meshes)

@@ -1,0 +1,155 @@
+"""Reads STEP, IGES and BREP files: `read` checks the file and lets the reader's process do the work."""
+
+from __future__ import annotations
+
+import math
+import os
+import re
+import stat
+from pathlib import Path
+
+from .._core import FormatError
+from ..arguments import Progress
+from ..hints import hinted
+from . import process
+from .part import CadPart
+from .placing import assemble
+
+KINDS = {".step": "step", ".stp": "step", ".iges": "iges", ".igs": "iges", ".brep": "brep"}
+UNITS = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "inch": 25.4, "foot": 304.8, "micrometre": 0.001}
+TIMEOUT = 600.0  # s
+MOST_FACES = 1_000_000
+MOST_TRIANGLES = 50_000_000
+FACES = re.compile(rb"(?:ADVANCED_FACE|FACE_SURFACE)\s*\(")
+SCHEMA = re.compile(rb"FILE_SCHEMA\s*\(\s*\(\s*'([^']{0,200})'")
+HEAD = 65536  # bytes in which the header of a file is looked for
+
+
+@hinted("cad.read")
+def read(
+    path: str | os.PathLike[str],
+    *,
+    tolerance: float = 0.01,
+    unit: str | None = None,
+    timeout: float = TIMEOUT,
+    python: str | os.PathLike[str] | None = None,
+    progress: Progress = None,
+) -> CadPart:
+    """Reads a STEP, IGES or BREP file: all its bodies, in place, in mm, healed and tessellated.
+
+    OpenCASCADE (``pip install 'riffler[cad]'``) does it in a process of its own, which ends with the call: a file that
+    crashes it leaves the caller unchanged. Faces that are next to each other are joined; `CadPart.report` says what was
+    mended and assumed.
+
+    Parameters
+    ----------
+    path : path_like
+        A file with the extension .step, .stp, .iges, .igs or .brep.
+    tolerance : float, mm
+        Chord error: distance of the exact faces from their triangles. It is measured, not proven:
+        `CadReport.deviation`.
+    unit : str, optional
+        "mm", "cm", "m", "inch", "foot" or "micrometre": takes the numbers of the file in this unit, not in its own.
+    timeout : float, s
+        Longest time.
+    python : path_like, optional
+        A Python that has the package cadquery-ocp-novtk. By default that of the environment's RIFFLER_CAD_PYTHON, or
+        this one.
+    progress : callable or None
+        Called with the finished share several times a second; returning False cancels.
+
+    Returns
+    -------
+    CadPart
+        The mesh, and the face of each triangle.
+
+    Raises
+    ------
+    FormatError
+        The file has no faces, is damaged, or is not of the format that its extension says.
+    ValueError
+        A wrong argument, or the package is missing: the message has the command that installs it.
+    TimeoutError
+        It took longer than ``timeout``.
+    riffler.cad.CadReaderError
+        The reader's process crashed.
+    Cancelled
+        ``progress`` returned False.
+
+    Examples
+    --------
+    >>> part = riffler.cad.read("part.step", tolerance=0.01)
+    >>> part.mesh.audit().open_edges, part.report.closed, part.report.unit
+    (0, True, 'inch')
+    """
+    path = Path(path)
+    name = path.name
+    kind = KINDS.get(path.suffix.lower())
+    if kind is None:
+        raise ValueError(f"{name}: a name that ends with {', '.join(KINDS)} expected")
+    if not (isinstance(tolerance, int | float) and math.isfinite(tolerance) and tolerance > 0):
+        raise ValueError(f"tolerance must be a positive number of mm, not {tolerance!r}")
+    if unit is not None and unit not in UNITS:
+        raise ValueError(f"unit must be one of {', '.join(UNITS)}, not {unit!r}")
+    if not (isinstance(timeout, int | float) and timeout > 0):
+        raise ValueError(f"timeout must be a positive number of seconds, not {timeout!r}")
+    schema = _check(path, kind)
+    request = {
+        "path": str(path.resolve()),
+        "kind": kind,
+        "tolerance": float(tolerance),
+        "unit_mm": UNITS[unit] if unit else None,
+        "max_triangles": MOST_TRIANGLES,
+    }
+    timeout = min(float(timeout), 1e7)
+    answer, arrays = process.run(request, name, timeout, progress, process.interpreter(python))
+    return assemble(answer, arrays, name, schema, float(tolerance), unit)
+
+
+# --- before the reader: what can be seen of the file ------------------------------------------------------------------
+
+
+def _check(path: Path, kind: str) -> str:
+    """The schema that a STEP file states. FormatError for what is not such a file, or has too many faces."""
+    name = path.name
+    try:
+        status = path.stat()
+        if not stat.S_ISREG(status.st_mode):
+            raise FormatError(f"{name}: a file expected, not a folder or a device")
+        with open(path, "rb") as stream:
+            head = stream.read(HEAD)
+    except OSError as error:
+        raise FormatError(f"{name}: cannot be read: {error.strerror}") from error
+    if not head.strip(b"\0 \t\r\n"):
+        raise FormatError(f"{name}: the file is empty; export it again")
+    if kind == "step":
+        start = head.removeprefix(b"\xef\xbb\xbf").lstrip()
+        if start[:2] == b"PK":
+            raise FormatError(f"{name}: it is a packed archive; unpack it and read the .step file inside")
+        if not start[:13].upper().startswith(b"ISO-10303-21;"):
+            raise FormatError(f"{name}: expected a STEP file (ISO 10303-21), which begins with ISO-10303-21;")
+        _check_faces(path)
+        found = SCHEMA.search(head)
+        return found[1].decode("latin-1").split("{")[0].strip() if found else ""
+    if kind == "iges":
+        line = head.splitlines()[0] if head.splitlines() else b""
+        if len(line) < 73 or line[72:73].upper() not in (b"S", b"C", b"B"):
+            raise FormatError(f"{name}: expected an IGES file, whose lines have 80 characters with S in column 73")
+        return "IGES"
+    if b"DBRep_DrawableShape" not in head[:200] and b"CASCADE Topology" not in head[:400]:
+        raise FormatError(f"{name}: expected OpenCASCADE's BREP, which begins with DBRep_DrawableShape or its version")
+    return "BREP"
+
+
+def _check_faces(path: Path) -> None:
+    count, rest = 0, b""
+    with open(path, "rb") as stream:
+        while block := stream.read(1 << 22):
+            text = rest + block
+            count += len(FACES.findall(text))
+            rest = text[-32:] if FACES.search(text[-32:]) is None else b""
+            if count > MOST_FACES:
+                raise FormatError(
+                    f"{path.name}: more than {MOST_FACES:,} faces; export the bodies one at a time, without threads, "
+                    "lattices and knurls"
+                )

@@ -1,0 +1,90 @@
+"""``python …/riffler/cad/worker FOLDER PARENT``: reads FOLDER/request.json, writes FOLDER/result.json and arrays.npz.
+
+Lines of JSON on stdout report the stage of the work and its finished share. OpenCASCADE's own messages go to stderr.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import ctypes
+import importlib.util
+import json
+import os
+import signal
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import TextIO
+
+PACKAGE = "riffler_cad_worker"
+
+
+def main(folder: Path, parent: int) -> int:
+    request = json.loads((folder / "request.json").read_text(encoding="utf-8"))
+    end_with_parent(parent, request["cpu_seconds"])
+    report = reporter(own_stdout())
+    try:
+        report("import", 0.0)
+        result = package().run(request, folder, report)
+    except ImportError as error:
+        result = {"error": "missing", "message": str(error), "python": sys.executable}
+    except MemoryError:
+        result = {"error": "memory", "message": "out of memory"}
+    draft = folder / "result.part"
+    draft.write_text(json.dumps(result), encoding="utf-8")
+    draft.replace(folder / "result.json")
+    return 0
+
+
+def package():
+    """The package of this folder under a name of its own: the caller's riffler may not be importable here."""
+    folder = Path(__file__).resolve().parent
+    spec = importlib.util.spec_from_file_location(
+        PACKAGE, folder / "__init__.py", submodule_search_locations=[str(folder)]
+    )
+    assert spec is not None and spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[PACKAGE] = module
+    spec.loader.exec_module(module)
+    return importlib.import_module(f"{PACKAGE}.run")
+
+
+def own_stdout() -> TextIO:
+    """The stream of the reports. The descriptor 1, on which libraries print, becomes stderr."""
+    stream = os.fdopen(os.dup(1), "w", encoding="utf-8")
+    os.dup2(2, 1)
+    return stream
+
+
+def reporter(stream: TextIO) -> Callable[[str, float], None]:
+    def report(stage: str, share: float) -> None:
+        try:
+            stream.write(json.dumps({"stage": stage, "share": share}) + "\n")
+            stream.flush()
+        except OSError:
+            os._exit(3)  # the caller has gone
+
+    return report
+
+
+def end_with_parent(parent: int, cpu_seconds: int) -> None:
+    """Leaves no process behind when the caller is killed: on Linux at once, elsewhere after a limit of processor time.
+
+    OpenCASCADE keeps Python's lock for minutes, so a thread that watched the caller would not run. Where memory runs
+    out, the system ends this process and not the caller.
+    """
+    if sys.platform == "linux":
+        ctypes.CDLL(None).prctl(1, signal.SIGKILL, 0, 0, 0)  # PR_SET_PDEATHSIG
+        if os.getppid() != parent:
+            os._exit(3)
+        with contextlib.suppress(OSError):
+            Path("/proc/self/oom_score_adj").write_text("1000")
+    if sys.platform != "win32":
+        import resource
+
+        resource.setrlimit(resource.RLIMIT_CPU, (cpu_seconds, cpu_seconds + 5))
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+
+
+if __name__ == "__main__":
+    sys.exit(main(Path(sys.argv[1]), int(sys.argv[2])))
