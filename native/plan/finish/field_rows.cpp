@@ -188,7 +188,7 @@ class Fields {
         scene_.profile.ridge(2 * geom::hypot(p.tip.x - row->x, p.tip.y - row->y), 2 * (p.tip.z - row->z)) > cusp_)
       return true;
     const Vec3 off = p.landing.point - *row;
-    return outline_.nearest(geom::hypot(off.x, off.y), off.z).distance - scene_.options.allowance > cusp_;
+    return outline_.nearest(geom::hypot(off.x, off.y), off.z).distance - scene_.options.allowance > cusp_ + field_.lift;
   }
 
   /// Places near those of a band where too much stands; empty if there are none.

@@ -17,6 +17,7 @@ struct RowField {
   std::vector<double> first;       ///< values of the first rows, ascending
   double finest;                   ///< rows are not nearer to each other, in units of the field
   double least_slope, most_slope;  ///< rad: flatter and steeper faces are not meant
+  double lift;                     ///< mm by which rows lie outside of the drop surface
   const char* flat;                ///< what to say of those, or null
   /// The row of a value: all of it, or what is near the places of a set.
   std::function<std::vector<CutPiece>(double value, const PlaceSet* near, std::vector<BlockedPlace>& blocked)> row;

@@ -14,6 +14,8 @@ namespace riffler::plan {
 
 namespace {
 
+constexpr int kCreaseHalves = 4;
+
 /// A row and what is cut of it. Its pieces do not overlap along u.
 struct Row {
   struct Piece {
@@ -130,7 +132,35 @@ class Filler {
       const double least = std::min(ridge_to(on_x, m.tip), ridge_to(on_y, m.tip));
       if (least > cusp_ || standing(m, on_x, on_y) > cusp_) return true;
     }
-    return walled(x, y, m, u, meant, window);
+    return walled(x, y, m, u, meant, window) || creased(x, y, u, window);
+  }
+
+  /// Whether more stands on either side of the middle, or at a crease that the rows pass alongside.
+  bool creased(const Row& x, const Row& y, double u, double window) const {
+    const auto at = [&](double share) { return scene_.surface.at(family_.at(u, glm::mix(x.v, y.v, share))); };
+    const auto high = [&](const SurfacePoint& p) {
+      if (!scene_.surface.meant(p)) return false;
+      const std::optional<Vec3> on_x = nearest_on(x, p.tip, u, window), on_y = nearest_on(y, p.tip, u, window);
+      return (on_x || on_y) && standing(p, on_x, on_y) > cusp_;
+    };
+    SurfacePoint last = at(0);
+    for (const double share : {0.25, 0.5, 0.75, 1.0}) {
+      const SurfacePoint here = at(share);
+      if (high(here)) return true;
+      double low = share - 0.25, up = share;
+      SurfacePoint before = last;
+      for (int k = 0; k < kCreaseHalves && scene_.surface.creased(before, here); ++k) {
+        const double middle = 0.5 * (low + up);
+        const SurfacePoint p = at(middle);
+        if (high(p)) return true;
+        if (scene_.surface.creased(before, p))
+          up = middle;
+        else
+          low = middle, before = p;
+      }
+      last = here;
+    }
+    return false;
   }
 
   double ridge_to(const std::optional<Vec3>& row, const Vec3& p) const {

@@ -182,7 +182,7 @@ class Scallop {
   }
 
   PatternRows rows(const Progress& progress) const {
-    RowField field{grid_, values_, {}, kFinestRow, 0, kSteepestFace, nullptr, {}, {}};
+    RowField field{grid_, values_, {}, kFinestRow, 0, kSteepestFace, 0, nullptr, {}, {}};
     const double most = *std::max_element(values_.begin(), values_.end());
     for (double v = kFirstRow; v < most; v += 1) field.first.push_back(v);
     field.row = [this](double value, const PlaceSet* near, std::vector<BlockedPlace>& blocked) {

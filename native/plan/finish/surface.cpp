@@ -16,6 +16,7 @@ namespace {
 constexpr double kRows = 0.9;           // of the tolerance: the rest is for rounding, in the program's text too
 constexpr double kRolling = 0.5;        // rad between a face's normal and the tool's where the tool rolls over its edge
 constexpr double kSlopeSlack = 1e-6;    // rad
+constexpr double kCrease = 0.2;         // rad between faces
 constexpr double kLevelContact = 1e-7;  // mm
 constexpr std::size_t kMaxPoints = 20'000'000;
 constexpr const char* kBlocked[] = {"", "the shank meets the part", "the holder meets the part"};
@@ -39,7 +40,7 @@ FinishSurface::FinishSurface(const Mesh& part, const std::vector<Mesh>& fixtures
   if (const double r = ball_at_tip(tool); r > 0) ball_ = r + options.allowance;
   if (const auto* round = std::get_if<tool::Round>(&tool.cutter().front()); round && round->e >= 0) round_ = *round;
   const auto* end = std::get_if<tool::Frustum>(&tool.cutter().front());
-  level_end_ = end ? end->r0 > 0 : round_ && round_->e > 0;
+  level_end_ = end ? end->r0 : round_ ? round_->e : 0;
   if (!options.faces.empty()) chosen_.assign(part_triangles_, 0);
   for (const int face : options.faces) {
     if (face < 0 || static_cast<std::size_t>(face) >= part_triangles_)
@@ -154,12 +155,20 @@ bool FinishSurface::wanted(const SurfacePoint& p) const {
 }
 
 double FinishSurface::rested_slope(const SurfacePoint& p) const {
-  const bool level = level_end_ && std::abs(p.tip.z - options_.allowance - p.landing.point.z) <= kLevelContact;
+  const Vec3 off = p.landing.point - p.tip;  // at the rim it may rest on any slope
+  const bool level = geom::hypot(off.x, off.y) < level_end_ - kLevelContact &&
+                     std::abs(p.tip.z - options_.allowance - p.landing.point.z) <= kLevelContact;
   return level ? 0.0 : face_slope(p.landing.triangle);
 }
 
 bool FinishSurface::wanted_face(int triangle, const Vec3& point, double slope) const {
   return (chosen_.empty() || chosen_[static_cast<std::size_t>(triangle)]) && meant_slope(slope) && in_region(point);
+}
+
+bool FinishSurface::creased(const SurfacePoint& a, const SurfacePoint& b) const {
+  if (!a.landing.touches || !b.landing.touches || blocked(a) || blocked(b)) return false;
+  return glm::dot(normals_[static_cast<std::size_t>(a.landing.triangle)],
+                  normals_[static_cast<std::size_t>(b.landing.triangle)]) < std::cos(kCrease);
 }
 
 double FinishSurface::face_slope(int triangle) const {

@@ -45,6 +45,8 @@ class FinishSurface {
 
   /// Whether a face is meant that the cutter touches at a point, with this slope (rad) of what it touches.
   bool wanted_face(int triangle, const Vec3& point, double slope) const;
+  /// Whether the cutter touches faces of the part at two points that are turned against each other.
+  bool creased(const SurfacePoint& a, const SurfacePoint& b) const;
   /// Slope (rad from level) of a triangle of the part.
   double face_slope(int triangle) const;
   /// The slope of what a cutter with a round tip touches, an edge included; else that of the face.
@@ -79,9 +81,9 @@ class FinishSurface {
   DropCutter drop_;
   const FinishOptions options_;
   std::vector<std::vector<Vec2>> region_;
-  std::vector<char> chosen_;          // of the part's triangles; empty: all
-  std::optional<tool::Round> round_;  // the cutter's tip
-  bool level_end_ = false;
+  std::vector<char> chosen_;           // of the part's triangles; empty: all
+  std::optional<tool::Round> round_;   // the cutter's tip
+  double level_end_ = 0;               // radius of the cutter's level end, mm
   double tolerance_, low_, ball_ = 0;  // radius of the ball at the tip, with the allowance; 0: no ball
   mutable std::atomic<std::size_t> drops_ = 0;
 };

@@ -102,6 +102,7 @@ PatternRows waterline_rows(const PatternScene& scene, const Progress& progress) 
                        std::max(tolerance, kLeastSlope * scene.options.cusp),
                        kLeastSlope,
                        kPi,
+                       0.5 * tolerance,
                        scene.options.min_slope < kLeastSlope ? kFlat : nullptr,
                        row,
                        between};
