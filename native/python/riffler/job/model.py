@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._core import FormatError, Mesh, Tool, Volume, machine_options, machines
+from ..cad import EXTENSIONS as CAD
 from . import tool_files
 from .kinds import KINDS, Kind
 from .table import JobError, JobFile, Table
