@@ -12,6 +12,8 @@ SAID_OTHERWISE = {
     ("stock/panel.py", "size"): "a line above it",
     ("stock/panel.py", "recording"): "the source that is chosen above it",
     ("plan/paths_panel.py", "on"): "the path's name in the same row",
+    ("machining/panel.py", "on"): "the operation's name in the same row",
+    ("machining/panel.py", "name"): "it is a name",
     ("plan/panel.py", "part"): "a line above it",
     ("plan/panel.py", "fixtures"): "a line above it",
     ("sculpt/panel.py", "axis"): "the entry that is chosen",

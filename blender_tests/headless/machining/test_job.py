@@ -137,7 +137,6 @@ def test_undo():
     assert settings().rows[0].key == key and key in stored() and states()[0] == "DONE"
 
 
-@common.core_bound
 def test_the_nc_code_has_its_zero_and_is_simulated_and_verified():
     job()
     calculate()

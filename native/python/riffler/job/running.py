@@ -167,7 +167,8 @@ def _warnings(done: Done) -> list[str]:
     out = [] if len(op) else [f"{name}: it cuts nothing: {op.reason}"]
     for one in op.report.blocked:
         at = ", ".join(f"{x:.1f}" for x in one.place)
-        out.append(f"{name}: {one.reason}: {one.length:.1f} mm left out, the first at ({at})")
+        length = f": {one.length:.1f} mm left out" if one.length else ""  # areas that are left out have no length
+        out.append(f"{name}: {one.reason}{length}, the first at ({at})")
     return out
 
 
