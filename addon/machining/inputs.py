@@ -88,13 +88,23 @@ def take(context):
     volume = live_registry.content(ob).volume.copy()
     clearance = scene_units.clean(settings.clearance)
     base = _base([part, *fixtures], sculpt_store.identity(ob.data), axis, clearance)
-    wanted = [row.wanted() for row in rows]
+    wanted = [row.wanted(lambda collection: _origins(collection, scene, to_stock)) for row in rows]
+    for one in wanted:
+        if one.options.get("points") == []:
+            raise ValueError(f"{one.name}: there are no holes: choose a collection with an object at each of them")
     names = (scene.riffler.plan.part.name, ob.name)
     return Inputs(part, volume, fixtures, axis, clearance, to_world, wanted, keys_of(base, wanted), names)
 
 
 def _placed(mesh, matrix):
     return riffler.Mesh(*object_surfaces.placed(np.asarray(mesh.vertices), np.asarray(mesh.triangles), matrix))
+
+
+def _origins(collection, scene, matrix):
+    """Origins of a collection's objects in the order of their names, mm, under a map (4, 4) of the scene's mm."""
+    found = sorted(collection.all_objects, key=lambda ob: ob.name) if collection else []
+    places = [np.array(ob.matrix_world.translation) * scene_units.mm_per_unit(scene) for ob in found]
+    return [[round(float(x), 6) for x in matrix[:3, :3] @ place + matrix[:3, 3]] for place in places]
 
 
 def _base(surfaces, stock, axis, clearance):
@@ -118,5 +128,9 @@ def glances(scene):
     mm = scene_units.mm_per_unit(scene)
     base = json.dumps([names, places, stock, scene_units.clean(settings.clearance), mm])
     on = [k for k, row in enumerate(settings.rows) if row.on]
-    wanted = [Wanted("", row.kind, {"text": row.tool}, row.options()) for row in settings.switched_on()]
+    options = [row.options(lambda found: _origins(found, scene, np.eye(4))) for row in settings.switched_on()]
+    wanted = [
+        Wanted("", row.kind, {"text": row.tool}, given)
+        for row, given in zip(settings.switched_on(), options, strict=True)
+    ]
     return dict(zip(on, keys_of(base, wanted), strict=True))

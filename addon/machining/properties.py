@@ -65,6 +65,25 @@ class OperationSettings:
     angle: angle("Angle", 0.0, "Direction of the rows about the tool's axis", -2 * math.pi, 2 * math.pi)
     slope_from: angle("Slope from", 0.0, "Faces that are more level than this are left out", 0.0, math.pi / 2)
     slope_to: angle("Slope to", math.pi / 2, "Faces that are steeper than this are left out", 0.0, math.pi / 2)
+    depth: length("Depth", 0.0, "mm of the tip below the part's highest point; 0: down to the underside of the stock")
+    tabs: IntProperty(
+        name="Tabs", default=0, min=0, max=100, description="Bridges that stay along each loop and hold the part"
+    )
+    tab_height: length("Tab Height", 1.0, "mm of a bridge above the lowest layer")
+    points: PointerProperty(
+        name="Holes",
+        type=bpy.types.Collection,
+        description="Collection whose objects' origins are the mouths of the holes",
+    )
+    hole_depth: length("Depth of Holes", 10.0, "mm of the tip below the mouth of a hole", 1e-3)
+    peck: length("Peck", 0.0, "mm of a peck, after which the drill leaves the hole; 0: in one go")
+    passes: IntProperty(
+        name="Passes",
+        default=1,
+        min=1,
+        max=100,
+        description="1: one path along each valley; each further pass adds a path on either side of it",
+    )
     allowance: length("Allowance", 0.3, "mm of material that stay on the part")
     tolerance: length("Tolerance", 0.05, "Largest distance of the tool's path from the exact one, in mm", 1e-4)
     feed: length("Feed", 1200.0, "mm/min of cuts and links", 0.001, 1e6)
@@ -93,11 +112,13 @@ class RifflerOperation(OperationSettings, bpy.types.PropertyGroup):
     def take_tool(self, tool):
         self.tool = json.dumps(tool, ensure_ascii=False)
 
-    def options(self):
-        """The arguments of its kind's `plan`."""
+    def options(self, places=lambda collection: []):
+        """The arguments of its kind's `plan`. `places`: a function of a collection or None, its objects' origins."""
         out = {}
         for field in KINDS[self.kind].fields:
             value = getattr(self, field)
+            if field == "points":
+                value = places(value)
             out[field] = scene_units.clean(value) if isinstance(value, float) else value
         if "engagement" in out:
             out["engagement"] = scene_units.clean(out["engagement"] / 100)
@@ -106,9 +127,9 @@ class RifflerOperation(OperationSettings, bpy.types.PropertyGroup):
                 out[field] = min(out[field], math.pi / 2)
         return out
 
-    def wanted(self):
-        """The operation for planning. ValueError if its tool is invalid."""
-        return Wanted(self.name, self.kind, self.tool_dict(), self.options())
+    def wanted(self, places):
+        """The operation for planning. ValueError if its tool is invalid. `places`: as in `options`."""
+        return Wanted(self.name, self.kind, self.tool_dict(), self.options(places))
 
 
 class StockShape:

@@ -237,6 +237,47 @@ def test_an_operation_without_moves_says_why():
     assert finish.state == "EMPTY" and finish.said and settings().problem == ""
 
 
+@common.core_bound
+def test_holes_outlines_and_valleys():
+    """A plate with a hole: drilled, pencilled around its step, and cut out with tabs."""
+    job()
+    settings().rows.clear()
+    plan = bpy.context.scene.riffler.plan
+    holes = bpy.data.collections.new("Holes")
+    bpy.context.scene.collection.children.link(holes)
+    for k, at in enumerate([(10, 5, 8), (50, 5, 8)]):
+        ob = bpy.data.objects.new(f"Hole {k}", None)
+        ob.location = at
+        holes.objects.link(ob)
+    for kind, tool in (
+        ("DRILL", {**FLAT, "diameter": 3.0}),
+        ("PENCIL", BALL),
+        ("OUTLINE", {**FLAT, "length": 40.0}),
+    ):
+        plan.take(tool)
+        bpy.ops.riffler.machining_add(kind=kind)
+    drill, pencil, outline = settings().rows
+    assert "no holes" in refused(calculate)
+    drill.points, drill.hole_depth, drill.peck = holes, 4.0, 2.0
+    outline.stepdown, outline.tabs, outline.tab_height = 8.0, 2, 2.0
+    bpy.context.view_layer.update()
+    assert calculate() == {"FINISHED"}
+    # The step has no holes: both would enter it.
+    assert drill.state == "EMPTY" and "enter the part" in drill.said, drill.said
+    assert pencil.state == outline.state == "DONE" and settings().problem == "", settings().problem
+    valley = stored()[pencil.key]
+    cuts = valley.poses[valley.kind == 2]
+    assert np.allclose(cuts[:, 1:3], (17, 8), atol=0.05)  # 3 mm off the wall, on the plate
+    around = stored()[outline.key]
+    assert around.poses[around.kind == 2][:, 2].min() < 0.01
+    first = drill.key
+    bpy.data.objects["Hole 0"].location.x = 11
+    bpy.context.view_layer.update()
+    assert states() == ["OPEN", "OPEN", "OPEN"]
+    calculate()
+    assert drill.key != first
+
+
 def test_the_order_and_the_names_of_operations():
     job()
     bpy.ops.riffler.machining_add(kind="ROUGH")
