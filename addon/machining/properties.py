@@ -170,7 +170,7 @@ class RifflerMachining(StockShape, bpy.types.PropertyGroup):
     draw_moves: BoolProperty(
         name="Draw Moves", default=True, description="Draw the moves of the operations, coloured by their kind"
     )
-    store: PointerProperty(type=bpy.types.Image)
+    store: PointerProperty(type=bpy.types.Image, description="The calculated moves of the operations")
     problem: StringProperty(description="Why the operations must not run; empty if they may")
 
     def active(self):
