@@ -17,10 +17,10 @@ FLAT, BALL = "Flat 6 mm", "Ball 3 mm"
 
 
 def steps(screen):
+    lessons.only_open("RIFFLER_PT_sculpt", "RIFFLER_PT_plan_part", "RIFFLER_PT_job")
     yield from lessons.begin(screen, millimetres=False)
     head = made_head(screen)
     look(screen)
-    lessons.only_open("RIFFLER_PT_plan_part", "RIFFLER_PT_job")
     yield from lessons.cut.open_tab(screen, "RIFFLER_PT_job")
     yield from in_a_block(screen, head)
     yield from listed(screen)
