@@ -51,9 +51,9 @@ def finish(
     tool : Tool
         A cutter that does not narrow above its widest place: ball, flat, fillet, taper or a profile like them.
     pattern : str
-        "parallel": rows in planes at ``angle``. "waterline": levels, for faces from 3° on. "scallop": rows at equal
-        distances on the surface, from the border of what is meant inwards; up to 74°. "spiral": turns about
-        ``centre``. "radial": rays from it.
+        "parallel": rows in planes at ``angle``. "waterline": level curves, for faces steeper than 3°. "scallop": rows
+        at equal distances on the surface, inwards from the border of the selected faces; up to 74°. "spiral": turns
+        about ``centre``. "radial": rays from ``centre``.
     cusp : float
         mm, largest height of the ridges between rows.
     tolerance : float
@@ -65,12 +65,12 @@ def finish(
     slopes : tuple of two floats
         rad from level: slopes of the faces to finish.
     region : list of array_like, shape (k, 3), or array_like of int or bool, optional
-        Closed curves, seen along the axis: finishes faces inside an odd number of them. Or numbers of the part's
-        triangles, or a mark for each of them. None: all faces.
+        Closed curves, seen along the axis: finishes faces inside an odd number of them. Or indices of the part's
+        triangles to finish, or for each triangle whether to finish it. None: all faces.
     centre : array_like, shape (3,), optional
-        Of "spiral" and "radial", mm, seen along the axis; by default the middle of the part's box.
+        Centre of "spiral" and "radial", mm, seen along the axis; by default the middle of the part's box.
     climb : bool
-        Whether "waterline" moves with the part on its right. Other patterns take the nearer end of each row first.
+        Whether "waterline" moves with the part on the right. Other patterns begin each row at its nearer end.
     feed : float
         mm/min of cuts and links.
     plunge : float, optional
@@ -132,7 +132,7 @@ def finish(
 def _region_of(
     region: Sequence[ArrayLike] | NDArray[np.generic] | None, triangles: int
 ) -> tuple[list[NDArray[np.float64]], list[int]]:
-    """Closed curves, and numbers of triangles: a region is one or the other."""
+    """The closed curves and the indices of triangles of a region, which has one or the other."""
     if region is None or not len(region):
         return [], []
     if np.ndim(region[0]):

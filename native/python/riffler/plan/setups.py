@@ -197,7 +197,7 @@ def program(
     operations : list of Operation
         In the order in which they run. Those without poses are left out.
     numbers : list of int, optional
-        The number of each operation's tool on the machine; by default tools are numbered from 1 as they come.
+        The machine's number of each operation's tool; by default tools are numbered from 1 in order of use.
     progress : callable, optional
         Called with the finished share; returning False cancels.
 
@@ -256,7 +256,7 @@ def program(
 
 
 def _called(planned: Sequence[Operation], numbers: Sequence[int] | None, tools: dict[int, Tool]) -> list[int]:
-    """The tool numbers of the operations that have poses; enters their tools."""
+    """The tool numbers of the operations that have poses. Adds their tools to ``tools``."""
     if numbers is None:
         return [_number(op.tool, tools) for op in planned if len(op)]
     if len(numbers) != len(planned):
