@@ -1,4 +1,4 @@
-"""Patterns of finishing on synthetic and real parts, checked by finish_judge.py, which shares no code with plan.finish."""
+"""Patterns of finishing on synthetic and real parts, checked by finish_judge.py, which shares no code with the core."""
 
 import math
 import os
