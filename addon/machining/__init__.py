@@ -1,1 +1,1 @@
-"""The job: operations that machine the part out of a stock, one after the other."""
+"""Jobs: operations that machine a part from a stock, in order."""

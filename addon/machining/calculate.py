@@ -1,4 +1,4 @@
-"""Calculates the operations that have changed, on a thread of its own, and checks the program of all."""
+"""Calculates changed operations on a separate thread, and checks the program of all operations."""
 
 import bpy
 import riffler
@@ -45,7 +45,7 @@ class RIFFLER_OT_machining_calculate(LongWork, bpy.types.Operator):
         )
 
     def _known(self, scene):
-        """The stored operations; none if they are damaged, which calculates all again."""
+        """The stored operations by key; none if the data is damaged, so that all operations are calculated again."""
         try:
             return job_store.operations(scene)
         except ValueError:
@@ -80,7 +80,7 @@ class RIFFLER_OT_machining_calculate(LongWork, bpy.types.Operator):
         return {"FINISHED"}
 
     def _fill(self, row, k, found):
-        """Shows the result of operation number k in its row."""
+        """Writes the result of operation number k to its row."""
         row.key, row.said, row.seconds, row.cut = self._keys[k], "", 0.0, 0.0
         if k >= len(found.operations):
             first = k == len(found.operations)
@@ -90,12 +90,12 @@ class RIFFLER_OT_machining_calculate(LongWork, bpy.types.Operator):
         op = found.operations[k][1]
         row.state = "DONE" if len(op) else "EMPTY"
         row.said, row.seconds, row.cut = job_run.said(op), op.report.time_s, op.report.cut_mm
-        if found.program is None and found.problem.startswith(f"{row.name},"):  # “Rough, row 12, at (…)”
+        if found.program is None and found.problem.startswith(f"{row.name},"):  # such as “Rough, row 12, at (…)”
             row.state, row.said = "FAILED", found.problem
 
 
 def clock(seconds):
-    """ "1:02:03 h", "2:03 min"."""
+    """A time as text: "1:02:03 h" or "2:03 min"."""
     whole = round(seconds)
     hours, minutes = divmod(whole // 60, 60)
     return f"{hours}:{minutes:02}:{whole % 60:02} h" if hours else f"{minutes}:{whole % 60:02} min"

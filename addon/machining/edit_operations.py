@@ -1,4 +1,4 @@
-"""The list of a job's operations: add, remove, move, and their tools."""
+"""Edits the list of a job's operations: adds, removes and moves operations, and sets their tools."""
 
 import bpy
 import riffler

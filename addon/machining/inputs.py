@@ -1,4 +1,4 @@
-"""What a job is calculated from: part, stock, fixtures and axis, in the stock's frame, and its operations."""
+"""The inputs of a job: part, stock, fixtures and axis in the stock's frame, and the operations."""
 
 import hashlib
 import json
@@ -17,7 +17,8 @@ NO_STOCK = "There is no stock: use Make Stock, or choose a sculpt that the part 
 
 @dataclass(frozen=True)
 class Inputs:
-    """`to_world`: (4, 4) from the stock's frame to the scene, both in mm; `keys`: one for each operation."""
+    """The inputs of a job. `to_world`: (4, 4) from the stock's frame to the scene, both in mm; `keys`: one for each
+    operation."""
 
     part: riffler.Mesh
     stock: riffler.Volume
@@ -27,24 +28,24 @@ class Inputs:
     to_world: np.ndarray
     wanted: list[Wanted]
     keys: list[str]
-    names: tuple[str, ...]  # of the objects that it was taken from
+    names: tuple[str, ...]  # of the objects that the inputs come from
 
     def setup(self):
         """A riffler.plan.Setup with the whole stock. ValueError for inputs that do not fit together."""
-        # Which axes a machine has is checked when the program is written: its frame is another one.
+        # The machine's axes are checked when the program is written, because the machine has another frame.
         return riffler.plan.Setup(
             self.part, self.stock, self.fixtures, axis=self.axis, clearance=self.clearance, machine="tcp"
         )
 
 
 def stock_of(scene):
-    """The job's stock, while it is in the scene, or None."""
+    """The job's stock if it is in the scene, else None."""
     ob = scene.riffler.machining.stock
     return ob if sculpts.is_sculpt(ob) and scene.objects.get(ob.name) == ob else None
 
 
 def world_axis(scene):
-    """(3,) unit vector from tip to spindle, in the scene."""
+    """(3,) unit vector from tip to spindle, in the scene's frame."""
     ob = scene.riffler.machining.upright
     if ob is None:
         return np.array([0.0, 0.0, 1.0])
@@ -56,7 +57,7 @@ def world_axis(scene):
 
 
 def unfit(scene):
-    """Why the job cannot be calculated, or ""; cheap enough for a panel."""
+    """Why the job cannot be calculated, or "". Quick enough for a panel."""
     if why := object_surfaces.unfit(scene.riffler.plan.part, scene):
         return why
     ob = stock_of(scene)
@@ -101,15 +102,15 @@ def _placed(mesh, matrix):
 
 
 def _origins(collection, scene, matrix):
-    """Origins of a collection's objects in the order of their names, mm, under a map (4, 4) of the scene's mm."""
+    """Origins of a collection's objects, sorted by name, mm, mapped by `matrix` (4, 4) from the scene's mm."""
     found = sorted(collection.all_objects, key=lambda ob: ob.name) if collection else []
     places = [np.array(ob.matrix_world.translation) * scene_units.mm_per_unit(scene) for ob in found]
     return [[round(float(x), 6) for x in matrix[:3, :3] @ place + matrix[:3, 3]] for place in places]
 
 
 def _base(surfaces, stock, axis, clearance):
-    """What all operations depend on. Places count to a nanometre: a stock and a part that are moved together keep
-    their moves."""
+    """A text of everything on which all operations depend. Coordinates are rounded to a nanometre, so that a stock and
+    a part that are moved together keep their moves."""
     prints = []
     for mesh in surfaces:
         corners = np.round(np.asarray(mesh.vertices) * 1e6).astype(np.int64)
@@ -118,8 +119,8 @@ def _base(surfaces, stock, axis, clearance):
 
 
 def glances(scene):
-    """What a panel can compare of each operation's key, by the number of its row from 0: without the shapes of part
-    and fixtures."""
+    """A quick key for each operation, by the number of its row from 0, which a panel can compare: it leaves out the
+    shapes of part and fixtures."""
     settings, ob = scene.riffler.machining, stock_of(scene)
     part, held = scene.riffler.plan.part, scene.riffler.plan.fixtures
     names = [part.name if part else "", ob.name if ob else "", held.name if held else ""]

@@ -10,8 +10,8 @@ AGAIN = "use Calculate in the panel Job"
 
 
 def of_scene(context):
-    """(riffler.Program, Inputs) of the scene's job: its zero is the scene's, mm. ValueError if the job is not
-    calculated, or must not run."""
+    """(riffler.Program, Inputs) of the scene's job. The program is in the scene's frame, mm. ValueError if the job is
+    not calculated, or must not run."""
     given, known = inputs.take(context), job_store.operations(context.scene)
     missing = [one.name for one, key in zip(given.wanted, given.keys, strict=True) if key not in known]
     if missing:
@@ -28,7 +28,7 @@ def of_scene(context):
 
 
 def to_zero(scene):
-    """(4, 4): the scene's mm → mm from the program's zero."""
+    """(4, 4): maps the scene's mm to mm from the program's zero."""
     matrix = np.eye(4)
     matrix[:3, 3] = [-scene_units.clean(x) for x in scene.riffler.machining.zero]
     return matrix

@@ -1,4 +1,4 @@
-"""The calculated moves of a scene's job, in a packed image that the scene points to."""
+"""Stores the calculated moves of a scene's job in a packed image, to which the scene points."""
 
 import bpy
 
@@ -59,7 +59,7 @@ def program(key):
 
 
 def keep_program(key, made):
-    """`made` None: there is none."""
+    """Keeps the checked program whose last operation has this key. `made` None: forgets the program."""
     _programs.clear()
     if made is not None:
         _programs[key] = made

@@ -1,4 +1,4 @@
-"""Makes a stock around the part, and the stock that the job leaves, as sculpts."""
+"""Makes sculpts: a stock around the part, and the stock that the job leaves."""
 
 import bpy
 import numpy as np
@@ -12,7 +12,7 @@ from ..sculpt import live_registry, sculpt_work, sculpts
 from ..stock.pure import estimate
 from . import inputs, job_store, properties
 
-RAYS = 400  # along the longest side, where no pitch is given
+RAYS = 400  # number of rays along the longest side, if no pitch is given
 
 
 def _frame(scene):
@@ -20,7 +20,7 @@ def _frame(scene):
     ob = scene.riffler.machining.upright
     if ob is None:
         return np.eye(3)
-    inputs.world_axis(scene)  # ValueError if it has none
+    inputs.world_axis(scene)  # raises ValueError if the object has no axis
     return np.array(ob.matrix_world.to_quaternion().to_matrix())
 
 
@@ -48,7 +48,7 @@ class RIFFLER_OT_machining_stock(properties.StockShape, bpy.types.Operator):
             ob = sculpts.new_object(context, f"{scene.riffler.plan.part.name} Stock", Content(volume), frame)
         except operator_parts.ERRORS as error:
             return operator_parts.fail(self, error)
-        ob.display_type = "BOUNDS"  # so that the part in it is seen
+        ob.display_type = "BOUNDS"  # so that the part inside is visible
         ob.display_bounds_type = self.shape
         scene.riffler.machining.stock = ob
         sculpt_work.tell_made(self, ob)
@@ -115,7 +115,7 @@ class RIFFLER_OT_machining_left(bpy.types.Operator):
 
 
 def _scene(context, given):
-    """(4, 4) rows: the stock's frame in Blender units of the scene."""
+    """Rows of a (4, 4) matrix: from the stock's frame to the scene, with the offset in the scene's units."""
     matrix = given.to_world.copy()
     matrix[:3, 3] /= scene_units.mm_per_unit(context.scene)
     return matrix.tolist()

@@ -1,4 +1,4 @@
-"""The moves of the job's operations in the 3D view, coloured by their kind; those of the selected one are wider."""
+"""Draws the moves of the job's operations in the 3D view, coloured by kind, and wider for the selected operation."""
 
 import bpy
 

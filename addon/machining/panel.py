@@ -16,7 +16,7 @@ MEANS = {state: (said, means) for state, said, means in properties.STATES}
 
 
 def state_of(row, k, glances):
-    """What the row's state is now: a change of its settings, or of a row before it, needs a new calculation."""
+    """The present state of a row: "OPEN" if its settings, or an earlier row, have changed since the calculation."""
     return row.state if row.glance and row.glance == glances.get(k) else "OPEN"
 
 

@@ -1,4 +1,4 @@
-"""A job's stock, settings and operations."""
+"""Properties of a job: stock, settings and operations."""
 
 import json
 import math
@@ -48,7 +48,7 @@ STATES = (
 
 
 class OperationSettings:
-    """The settings of all kinds; a kind uses some of them."""
+    """The settings of all kinds of operations; each kind uses some of them."""
 
     stepdown: length("Step Down", 2.0, "Height of a layer, in mm", 1e-3)
     engagement: FloatProperty(
@@ -91,8 +91,8 @@ class OperationSettings:
 
 
 class RifflerOperation(OperationSettings, bpy.types.PropertyGroup):
-    """An operation of a job. `key`: what its stored moves were calculated from; `glance`: the part of it that a panel
-    can compare (`inputs.glances`)."""
+    """An operation of a job. `key`: identifies the inputs of its stored moves; `glance`: a quick key that a panel can
+    compare (`inputs.glances`)."""
 
     name: StringProperty(name="Name", description="Name of the operation")
     kind: EnumProperty(name="Kind", items=KIND_ITEMS, default="ROUGH", description="What the operation does")
@@ -106,14 +106,14 @@ class RifflerOperation(OperationSettings, bpy.types.PropertyGroup):
     said: StringProperty(description="What the operation does not do, or why it failed; empty: nothing")
 
     def tool_dict(self):
-        """ValueError if the text is invalid."""
+        """The tool as a dict. ValueError if the text is invalid."""
         return json_object.loads(self.tool, f"the tool of {self.name} (take another one)")
 
     def take_tool(self, tool):
         self.tool = json.dumps(tool, ensure_ascii=False)
 
     def options(self, places=lambda collection: []):
-        """The arguments of its kind's `plan`. `places`: a function of a collection or None, its objects' origins."""
+        """The arguments of the kind's `plan`. `places`: returns the origins of objects in a collection or None."""
         out = {}
         for field in KINDS[self.kind].fields:
             value = getattr(self, field)
@@ -133,7 +133,7 @@ class RifflerOperation(OperationSettings, bpy.types.PropertyGroup):
 
 
 class StockShape:
-    """A stock around the part: shared by the panel's settings and the operator."""
+    """Settings of a stock around the part, shared by the panel and the operator."""
 
     shape: EnumProperty(name="Shape", items=SHAPES, default="BOX", description="Shape of the stock")
     sides: length("Sides", 2.0, "mm of material around the part")

@@ -48,14 +48,14 @@ class RIFFLER_OT_machining_nc(GivenOptions, bpy.types.Operator, ExportHelper):
         self._take_settings(context)
         try:
             programs.options(context.scene, self.post, self.options)
-        except ValueError as error:  # before the user chooses a file in vain
+        except ValueError as error:  # refuse before the file browser opens
             return operator_parts.fail(self, error)
         if not self.filepath:
             self.filepath = f"{context.scene.riffler.plan.part.name}{self.filename_ext}"
         return ExportHelper.invoke(self, context, event)
 
     def _take_settings(self, context):
-        """The machine that was not given is the scene's."""
+        """Takes the scene's machine if no machine was given."""
         if not self.properties.is_property_set("post"):
             self.post = context.scene.riffler.plan.post
 
@@ -117,7 +117,7 @@ class RIFFLER_OT_machining_zero(bpy.types.Operator):
         return {"FINISHED"}
 
     def _place(self, scene):
-        """(3,) mm of the scene."""
+        """(3,) the zero in the scene's frame, mm."""
         if self.place == "CURSOR":
             return np.array(scene.cursor.location) * scene_units.mm_per_unit(scene)
         ob = inputs.stock_of(scene)

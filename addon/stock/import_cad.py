@@ -1,4 +1,4 @@
-"""Import of CAD files: STEP, IGES and BREP as a mesh object whose faces know the exact face that they are part of."""
+"""Imports CAD files (STEP, IGES, BREP) as a mesh object. An attribute has the exact face of each of its faces."""
 
 import os
 
@@ -18,11 +18,11 @@ from .pure import cad_python
 
 # Properties of an imported mesh: the file, the chord tolerance in mm, and the names of the exact faces.
 FILE, TOLERANCE, NAMES = "riffler_cad_file", "riffler_cad_tolerance", "riffler_cad_faces"
-_found = {}  # the Python that reads CAD files, by the one that the user chose: the search takes a second
+_found = {}  # Python that reads CAD files, by the user's choice; kept because the search takes a second
 
 
 class ReadCad(LongWork):
-    """Mixin: reads a CAD file in another process, and fills a mesh."""
+    """Mixin: reads a CAD file in another process and fills a mesh with the result."""
 
     doing = "Reading CAD File"
     tolerance: length("Tolerance", 0.01, "Largest distance of the triangles from the exact faces, in mm", 1e-4)
@@ -36,7 +36,7 @@ class ReadCad(LongWork):
         return TaskJob(riffler.submit(cad.read, path, tolerance=tolerance, python=_found[chosen]))
 
     def fill(self, context, mesh, path, part):
-        """Replaces the mesh by the part, in scene units, and reports what was mended."""
+        """Replaces the mesh's content with the part, in scene units, and reports what was mended."""
         meshes.fill(mesh, part.mesh.vertices / scene_units.mm_per_unit(context.scene), part.mesh.triangles)
         attributes.set_exact_faces(mesh, part.face_of_triangle)
         _paint(mesh, part)
@@ -52,7 +52,7 @@ class ReadCad(LongWork):
 
 
 def _paint(mesh, part):
-    """A material for each colour of the file; none if it states none. Those of an earlier import are used again."""
+    """Makes a material for each colour of the file, if it has any. Reuses materials of earlier imports."""
     colors = list(dict.fromkeys(face.color for face in part.faces if face.color is not None))
     mesh.materials.clear()
     if not colors:
@@ -71,7 +71,7 @@ def _material(color):
     made = bpy.data.materials.get(name)
     if made is None:
         made = bpy.data.materials.new(name)
-        linear = [x / 12.92 if x <= 0.04045 else ((x + 0.055) / 1.055) ** 2.4 for x in color]  # Blender's are linear
+        linear = [x / 12.92 if x <= 0.04045 else ((x + 0.055) / 1.055) ** 2.4 for x in color]  # as Blender has them
         made.diffuse_color = (*linear, 1.0)
     return made
 

@@ -1,5 +1,5 @@
-"""docs/mill-a-figure.md: a head in a block, roughed with a flat cutter and finished with a ball, simulated, verified
-and written for a three-axis router."""
+"""Follows docs/mill-a-figure.md: roughs a head in a block with a flat cutter, finishes it with a ball, simulates,
+verifies, and writes the program for a three-axis router."""
 
 from pathlib import Path
 
@@ -12,7 +12,7 @@ from support import common, harness
 HERE = Path(__file__)
 lessons = harness.load(HERE.with_name("lessons.py"))
 gizmo = harness.load(HERE.with_name("window_gizmo.py"))
-SIZE = 30.0  # mm, of the head's longest side
+SIZE = 30.0  # mm, longest side of the head
 FLAT, BALL = "Flat 6 mm", "Ball 3 mm"
 
 
@@ -31,7 +31,7 @@ def steps(screen):
 
 
 def made_head(screen):
-    """Blender's monkey, smoothed, face up, its back below the block's bottom."""
+    """Adds Blender's monkey, smoothed and face up, with its back below the block's bottom."""
     with screen.override():
         bpy.ops.mesh.primitive_monkey_add("INVOKE_DEFAULT", True)
         ob = bpy.context.object
@@ -51,7 +51,7 @@ def look(screen, direction=(0.6, -1.0, 1.1), distance=90.0):
 
 
 def in_a_block(screen, head):
-    """Set Part, then Make Stock with two millimetres around it."""
+    """Presses Set Part, then Make Stock with two millimetres around the part."""
     lessons.activate(head)
     yield from lessons.press(screen, "riffler.plan_part", share=0.785)
     assert bpy.context.scene.riffler.plan.part == head
@@ -66,7 +66,7 @@ def in_a_block(screen, head):
 
 
 def listed(screen):
-    """Two operations from the menu of the plus, each with a tool of the library."""
+    """Adds two operations as from the menu of the plus, each with a tool of the library."""
     settings = bpy.context.scene.riffler.machining
     for kind, name in (("ROUGH", FLAT), ("FINISH", BALL)):
         with screen.override():
@@ -91,7 +91,7 @@ def calculated(screen):
 
 
 def simulated(screen):
-    """In the middle of finishing: the layers of roughing, and the rows."""
+    """Simulates up to the middle of finishing, where both the layers of roughing and the rows are visible."""
     scene = bpy.context.scene
     scene.riffler.machining.draw_moves = False
     with screen.override():
@@ -113,7 +113,8 @@ def simulated(screen):
 
 
 def verified(screen):
-    """The remaining stock, coloured by its distance from the head: what a router cannot reach from above is left."""
+    """Verifies, and colours the remaining stock by its distance from the head: material that a router cannot reach from
+    above is left."""
     scene = bpy.context.scene
     scene.riffler.plan.post = "3-axis"
     with screen.override():

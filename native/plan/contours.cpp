@@ -9,8 +9,8 @@ namespace riffler::plan {
 
 namespace {
 
-/// The edges of the grid that a curve crosses, and for each the one that follows. Edge 2 k leads from place k along x,
-/// 2 k + 1 along y.
+/// The edges of the grid that curves cross, and for each the edge that follows. Edge 2 k leads from place k along x,
+/// edge 2 k + 1 along y.
 class Crossings {
  public:
   Crossings(const PlaceGrid& grid, const Field& field, double value,
@@ -47,7 +47,7 @@ class Crossings {
     for (std::size_t k = 0; k < joins_.size(); ++k)
       if (!done[k]) follow(k), visit(edges, true);
   }
-  /// Both ends of an edge, the one with less first.
+  /// Both ends of an edge; the end whose field is less than the value comes first.
   std::pair<std::size_t, std::size_t> ends(std::size_t edge) const {
     const std::size_t a = edge / 2, b = a + (edge % 2 ? static_cast<std::size_t>(grid_.columns) : 1);
     return less(a) ? std::pair(a, b) : std::pair(b, a);
@@ -62,7 +62,8 @@ class Crossings {
   }
   bool less(std::size_t k) const { return field_[k] < value_; }
 
-  /// Around a cell, counter-clockwise, a curve enters where the field stops being less, and leaves where it begins.
+  /// Going around a cell counter-clockwise, a curve enters where the field stops being less than the value, and leaves
+  /// where the field begins to be less.
   void add_cell(std::size_t cell) {
     const auto up = static_cast<std::size_t>(grid_.columns);
     const std::array<std::size_t, 4> k{cell, cell + 1, cell + up + 1, cell + up};
@@ -82,7 +83,7 @@ class Crossings {
     }
     if (ins == 0) return;
     if (ins == 1) return join(in[0], out[0]);
-    // Two curves: around the places that are not less if the middle is, else around the others.
+    // Two curves: around the two places that are not less if the cell's middle is less, else around the other two.
     const bool near = (sum / 4 < value_) == first_in;
     join(in[0], out[near ? 0 : 1]), join(in[1], out[near ? 1 : 0]);
   }
@@ -91,7 +92,7 @@ class Crossings {
   const PlaceGrid& grid_;
   const Field& field_;
   double value_;
-  std::vector<Join> joins_;  // from one edge to the next, ascending
+  std::vector<Join> joins_;  // pairs of an edge and the next one, ascending
   std::vector<std::size_t> ends_;
 };
 

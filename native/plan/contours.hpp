@@ -16,14 +16,15 @@ struct Curve {
   bool closed = false;
 };
 
-/// Curves between places with less than `value`, on their left, and the others: marching squares over cells whose four
-/// places are all finite. `crossing(a, b)` gives the point between two neighbouring places, less first; without it, it
-/// is interpolated. `cells`: the only ones to look at, each by its place of lower column and row; all without it.
+/// Curves that separate places with less than `value`, on the curves' left, from the others: marching squares over
+/// cells whose four places are all finite. `crossing(less, more)` returns the curve's point between two neighbouring
+/// places; without it, the point is interpolated. `cells`: the cells to search, each given by its place with the
+/// smallest column and row; none: all cells.
 std::vector<Curve> contours(const PlaceGrid& grid, const Field& field, double value,
                             const std::function<Vec2(std::size_t less, std::size_t more)>& crossing = {},
                             const std::optional<std::span<const std::size_t>>& cells = {});
 
-/// The curve without points that are less than `tolerance` (mm) off the line between others.
+/// The curve without points that are less than `tolerance` (mm) from the line between their neighbours.
 Curve simplified(const Curve& curve, double tolerance);
 
 }  // namespace riffler::plan

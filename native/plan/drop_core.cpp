@@ -83,7 +83,7 @@ struct DropCutter::Core::Search {
     return box.upper.z - least;
   }
 
-  /// Distance of `p` from the interval of three numbers.
+  /// Distance of `p` from the interval that contains a, b and c.
   static double apart(double a, double b, double c, double p) {
     const auto [low, high] = std::minmax({a, b, c});
     return std::max({low - p, p - high, 0.0});

@@ -11,7 +11,7 @@ namespace riffler::plan {
 namespace {
 
 constexpr double kAngle = 1e-15, kLastStep = 1e-9;  // rad; Newton's next step would be the square of the last one
-constexpr double kSurely = 1e-9;                    // mm, far more than rounding
+constexpr double kSurely = 1e-9;                    // mm, far larger than rounding errors
 
 }  // namespace
 
@@ -91,7 +91,7 @@ void LowerSide::edge(const Vec3& a, const Vec3& b, Stop& stop) const {
   const double start = glm::dot(from, along), slope = (b.z - a.z) / length;
   const double d = std::abs(from.x * along.y - from.y * along.x);
   if (d > rim_) return;
-  if (stop.touches && std::max(a.z, b.z) - height(d) < stop.tip - kSurely) return;  // it stops the tool no earlier
+  if (stop.touches && std::max(a.z, b.z) - height(d) < stop.tip - kSurely) return;  // it cannot stop the tool higher
   const double sign = slope < 0 ? -1 : 1;
   const auto look = [&](double u) {
     const double t = u - start;

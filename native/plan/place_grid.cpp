@@ -13,7 +13,7 @@ namespace riffler::plan {
 
 namespace {
 
-/// Lower envelope of the parabolas (x − k)² + f(k) of one line: its values replace f.
+/// Lower envelope of the parabolas (x − k)² + f(k) along one row or column; its values replace f.
 struct Parabolas {
   std::vector<int> at;
   std::vector<double> from, out;

@@ -8,11 +8,11 @@
 
 namespace riffler::plan {
 
-/// Coordinates are those of the rows' frame, mm.
+/// A square grid of places. Coordinates in the rows' frame, mm.
 struct PlaceGrid {
   Vec2 lower{0};
   double spacing = 1;
-  int columns = 0, rows = 0;  ///< along x and y
+  int columns = 0, rows = 0;  ///< number of places along x and y
 
   std::size_t size() const { return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows); }
   std::size_t index(int column, int row) const {
@@ -26,22 +26,23 @@ struct PlaceGrid {
   std::size_t nearest(const Vec2& p) const;
 };
 
-/// A number for each place, and a set of places.
+/// A number for each place.
 using Field = std::vector<double>;
+/// A set of places: not 0 for its members.
 using PlaceSet = std::vector<char>;
 
-/// Distance (mm) of each place from the nearest one of a set; infinite if that is empty. Exact: parabolas of rows, then
-/// of columns (Felzenszwalb and Huttenlocher, Theory of Computing 8 (2012) 415).
+/// Distance (mm) of each place from the nearest place of a set; infinite if the set is empty. Exact: lower envelopes of
+/// parabolas along rows, then along columns (Felzenszwalb and Huttenlocher, Theory of Computing 8 (2012) 415).
 Field distance_to(const PlaceGrid& grid, const PlaceSet& set);
 
-/// A set without what is thinner than `width` (mm), unless it borders on something thicker.
+/// The set without parts thinner than `width` (mm), unless they border on thicker parts.
 PlaceSet without_slivers(const PlaceGrid& grid, const PlaceSet& set, double width);
 
-/// Length of the shortest path within `in` from one of the places `from` to each place; infinite where none leads. The
-/// eikonal equation by fast marching, of first order (Sethian, PNAS 93 (1996) 1591).
+/// Length (mm) of the shortest path within `in` from one of the places `from` to each place; infinite if there is no
+/// path. Solves the eikonal equation by fast marching of first order (Sethian, PNAS 93 (1996) 1591).
 Field path_lengths(const PlaceGrid& grid, const PlaceSet& in, const PlaceSet& from);
 
-/// Puts such lengths from the places `from` into `lengths`, where these are infinite so far: areas that no path led to.
+/// Adds the lengths of paths from the places `from` to `lengths`, in areas where these are still infinite.
 void add_path_lengths(const PlaceGrid& grid, const PlaceSet& in, const std::vector<std::size_t>& from, Field& lengths);
 
 }  // namespace riffler::plan

@@ -1,1 +1,1 @@
-"""What needs no Blender."""
+"""Modules that need no Blender."""

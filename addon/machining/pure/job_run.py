@@ -1,4 +1,4 @@
-"""A job's operations, planned one after the other on what the one before has left."""
+"""Plans a job's operations in order, each on the stock that the previous one leaves."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from riffler.plan import Operation
 from ...common import units
 from .operation_kinds import KINDS
 
-APPLIED = 0.1  # of an operation's share of the progress: cutting the in-process stock
-CHECKED = 0.1  # of the progress of all: simulating the whole program
+APPLIED = 0.1  # share of an operation's progress for cutting the in-process stock
+CHECKED = 0.1  # share of the whole progress for simulating the program
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class Wanted:
 
 
 def keys_of(base: str, wanted: Sequence[Wanted]) -> list[str]:
-    """A key for each operation, which depends on `base` and on all operations up to it: equal keys, equal results."""
+    """A key for each operation, from `base` and all operations up to this one. Equal keys mean equal results."""
     out = []
     for one in wanted:
         text = json.dumps([base, one.kind, one.tool, one.options], sort_keys=True)
@@ -44,8 +44,8 @@ def keys_of(base: str, wanted: Sequence[Wanted]) -> list[str]:
 
 @dataclass(frozen=True)
 class JobResult:
-    """What `calculate` found: operations with their keys, in order; `problem`: why those after them are missing, or why
-    they may not run; `program`: all of them, in the set-up's frame, if they may run."""
+    """The result of `calculate`. `operations`: keys and operations, in order; `problem`: why further operations are
+    missing, or why the program must not run; `program`: the whole program in the set-up's frame, if it may run."""
 
     operations: tuple[tuple[str, Operation], ...]
     problem: str = ""
@@ -59,8 +59,8 @@ def calculate(
     known: Mapping[str, Operation],
     progress: Callable[[float], bool],
 ) -> JobResult:
-    """Plans those operations whose keys are not `known`, each on the stock that the ones before have left, and
-    simulates the program of all."""
+    """Plans the operations whose keys are not in `known`, each on the stock that the previous ones leave, and simulates
+    the program of all operations."""
     done: list[tuple[str, Operation]] = []
     share = (1 - CHECKED) / max(1, len(wanted))
     for k, (one, key) in enumerate(zip(wanted, keys, strict=True)):
@@ -88,7 +88,7 @@ def checked(
     operations: Sequence[Operation],
     progress: Callable[[float], bool] | None = None,
 ) -> riffler.Program:
-    """The program of applied operations, simulated on the stock. ValueError, which names the operation, for a fault."""
+    """The program of applied operations, simulated on the stock. ValueError naming the operation if it must not run."""
     try:
         return riffler.plan.program(setup, operations, progress=progress)
     except ValueError as error:
@@ -99,7 +99,7 @@ def checked(
 
 
 def said(op: Operation) -> str:
-    """A sentence on what an operation does not do, or ""."""
+    """A sentence on what an operation leaves undone, or ""."""
     if not len(op):
         return op.reason
     if not op.report.blocked:

@@ -11,7 +11,7 @@ import riffler
 
 @dataclass(frozen=True)
 class OperationKind:
-    """`fields`: names of its settings in properties.RifflerOperation, which are arguments of `plan`."""
+    """A kind of operation. `fields`: its settings in properties.RifflerOperation, which are arguments of `plan`."""
 
     id: str
     label: str
@@ -92,7 +92,7 @@ OPERATION_KINDS = (
     ),
 )
 KINDS: Mapping[str, OperationKind] = {kind.id: kind for kind in OPERATION_KINDS}
-# What a new operation of a kind begins with, where that differs from the field's default.
+# Initial settings of a new operation of each kind, where they differ from the field's default.
 FIRST: Mapping[str, Mapping[str, Any]] = {
     "ROUGH": {"allowance": 0.3, "tolerance": 0.05, "feed": 1200.0},
     "FINISH": {"allowance": 0.0, "tolerance": 0.005, "feed": 1000.0},

@@ -1,4 +1,4 @@
-"""Moves of operations as pieces of lines for drawing, by their kind."""
+"""Turns the moves of operations into line segments for drawing, by kind of move."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from riffler.plan import Operation
 
 from ...common import poses
 
-KINDS = {"rapid": 0, "lead": 1, "cut": 2, "link": 3}  # of Operation.kind
+KINDS = {"rapid": 0, "lead": 1, "cut": 2, "link": 3}  # values of Operation.kind
 
 
 def pieces(op: Operation, to_view: np.ndarray) -> dict[str, np.ndarray]:
-    """Ends of the pieces (2 n, 3) of each kind of move, mapped by `to_view` (4, 4)."""
+    """For each kind of move, the ends (2 n, 3) of its line segments, mapped by `to_view` (4, 4)."""
     if len(op) < 2:
         return {name: np.empty((0, 3)) for name in KINDS}
     tips = poses.transform_points(to_view, op.poses[:, :3])

@@ -1,6 +1,6 @@
-"""Planned operations as bytes for the .blend, and back.
+"""Converts planned operations to bytes for the .blend, and back.
 
-A file of numpy's format npz: the arrays of every operation, and one JSON text with the rest.
+The bytes are a file in numpy's format npz: the arrays of every operation, and one JSON text with the other data.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ def encode(operations: Iterable[tuple[str, Operation]]) -> bytes:
 
 
 def decode(block: bytes) -> list[tuple[str, Operation]]:
-    """The operations with their keys. ValueError if the bytes are none."""
+    """The operations with their keys. ValueError if the bytes hold no operations."""
     try:
         with np.load(io.BytesIO(block), allow_pickle=False) as file:
             facts = json_object.loads(file["facts"].tobytes(), "the job")

@@ -1,4 +1,4 @@
-"""A job: operations that are calculated one after the other, kept in the file, simulated, verified and written."""
+"""Jobs: operations are calculated in order, stored in the file, simulated, verified and written."""
 
 import re
 from pathlib import Path
@@ -18,7 +18,7 @@ def settings():
 
 
 def job(mm_per_unit=1.0, **stock):
-    """A step to be roughed with a flat cutter and finished with a ball, coarsely; returns its rows."""
+    """Makes a job that roughs a step with a flat cutter and finishes it coarsely with a ball; returns its rows."""
     common.scale(mm_per_unit)
     plan = bpy.context.scene.riffler.plan
     plan.part = plans.part_object(mm_per_unit)
@@ -56,7 +56,7 @@ def refused(call, **more):
 
 
 def heights(volume, points):
-    """z of the topmost material over (n, 2) points: rays of a mesh, by numpy."""
+    """Height of the topmost material of a mesh at (n, 2) points, by rays in numpy."""
     mesh = volume.to_mesh()
     corners = np.asarray(mesh.vertices)[np.asarray(mesh.triangles)]
     out = np.full(len(points), -np.inf)
@@ -171,7 +171,7 @@ def test_a_changed_part_is_not_written():
     finish.on = False
     calculate()
     part = bpy.context.scene.riffler.plan.part
-    part.data.vertices[0].co.z -= 1.0  # no panel sees that
+    part.data.vertices[0].co.z -= 1.0  # a change that the panel does not detect
     part.data.update()
     bpy.context.view_layer.update()
     text = refused(bpy.ops.riffler.machining_nc, filepath=common.out("never.ngc"), post="3-axis")
@@ -239,7 +239,7 @@ def test_an_operation_without_moves_says_why():
 
 @common.core_bound
 def test_holes_outlines_and_valleys():
-    """A plate with a hole: drilled, pencilled around its step, and cut out with tabs."""
+    """Drills where a step has no holes, pencil cuts the step's valley, and cuts the step out with tabs."""
     job()
     settings().rows.clear()
     plan = bpy.context.scene.riffler.plan
@@ -262,7 +262,7 @@ def test_holes_outlines_and_valleys():
     outline.stepdown, outline.tabs, outline.tab_height = 8.0, 2, 2.0
     bpy.context.view_layer.update()
     assert calculate() == {"FINISHED"}
-    # The step has no holes: both would enter it.
+    # The step has no holes, so both drillings would enter it.
     assert drill.state == "EMPTY" and "enter the part" in drill.said, drill.said
     assert pencil.state == outline.state == "DONE" and settings().problem == "", settings().problem
     valley = stored()[pencil.key]

@@ -1,4 +1,4 @@
-"""Import of CAD files by another Python: units, attribute of the exact faces, colours, other tolerances, errors."""
+"""Importing CAD files with another Python: units, attribute of the exact faces, colours, other tolerances, errors."""
 
 import os
 import subprocess
@@ -13,7 +13,7 @@ ROOT = Path(__file__).parents[3]
 
 
 def reader():
-    """A Python that has the extra: that of the environment, or of `make setup`."""
+    """A Python that has the extra: the one in the environment variable, or that of `make setup`."""
     for python in (os.environ.get("RIFFLER_CAD_PYTHON"), ROOT / ".venv" / "bin" / "python"):
         if python and Path(python).exists():
             found = subprocess.run([python, "-c", "import OCP"], capture_output=True, env=plain())
@@ -27,7 +27,7 @@ def plain():
 
 
 def part(name):
-    """A file of native/tests/python/cad_files.py."""
+    """Path of a file that native/tests/python/cad_files.py writes."""
     folder = Path(common.out("cad"))
     if not (folder / name).exists():
         folder.mkdir(parents=True, exist_ok=True)

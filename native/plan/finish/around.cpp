@@ -1,4 +1,4 @@
-// Patterns about a centre: a spiral from it outwards, and rays from it.
+// Patterns about a centre: a spiral from the centre outwards, and rays from the centre.
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -13,8 +13,8 @@ namespace riffler::plan {
 
 namespace {
 
-constexpr double kSamplesInSpacing = 4;  // along a row, per spacing of rows
-constexpr double kBend = 0.02;           // of the spacing: how far chords may be off their curve
+constexpr double kSamplesInSpacing = 4;  // samples along a row in one spacing of the rows
+constexpr double kBend = 0.02;           // largest distance of chords from their curve, as a share of the spacing
 constexpr double kFirstRays = 16;
 constexpr double kMostTurns = 1e5;
 
@@ -40,7 +40,7 @@ PatternRows spiral_rows(const PatternScene& scene, const Progress& progress) {
   };
   family.along = [=](const Vec2& p, double v) {
     const double turn = std::atan2(p.y - centre.y, p.x - centre.x);
-    // Near the ends of a turn the radius tells which one.
+    // Near the ends of a turn, the radius decides which turn the point is on.
     const double r = geom::hypot(p.x - centre.x, p.y - centre.y), at = turn < 0 ? turn + whole : turn;
     double best = at;
     for (const double u : {at - whole, at + whole})

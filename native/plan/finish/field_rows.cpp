@@ -17,16 +17,16 @@ namespace {
 
 constexpr int kMostHalves = 10;
 constexpr int kBorderHalves = 6;
-constexpr int kNear = 2;  // places around one that stands too high
+constexpr int kNear = 2;  // radius, in places, of the neighbourhood of a place where too much material stays
 
-/// A point that is to be cut, at a place or where between two places a border runs.
+/// A point to be cut: at a place, or between two places where a border of the selected faces runs.
 struct Sample {
   SurfacePoint at;
   std::size_t place;
   double value;
 };
 
-/// What lies between two rows: samples, and edges to the next place along x (2 k) or y (2 k + 1).
+/// The samples and the grid's edges between two rows. Edge 2 k leads from place k along x, edge 2 k + 1 along y.
 struct Band {
   double low, high;
   std::vector<std::size_t> samples, edges;
@@ -121,12 +121,12 @@ class Fields {
     for (const std::vector<Sample>& some : found) samples_.insert(samples_.end(), some.begin(), some.end());
     if (field_.flat) add_flat(places);
   }
-  /// Whether an edge ends at a place of the grid.
+  /// Whether the grid has a place at the other end of an edge.
   bool leads_on(std::size_t edge) const {
     const auto columns = static_cast<std::size_t>(field_.grid.columns);
     return edge % 2 ? edge / 2 + columns < field_.grid.size() : (edge / 2 + 1) % columns != 0;
   }
-  /// The last point that is meant on an edge with one end that is not.
+  /// The last selected point on an edge from a selected place to one that is not selected.
   Sample border(std::size_t edge, const std::vector<SurfacePoint>& places) const {
     std::size_t in = edge / 2, out = other(edge);
     if (!meant_[in]) std::swap(in, out);
@@ -141,7 +141,7 @@ class Fields {
     return last;
   }
 
-  /// Says how much is less steep than this pattern finishes.
+  /// Reports the selected faces that are less steep than this pattern finishes.
   void add_flat(const std::vector<SurfacePoint>& places) {
     const double area = field_.grid.spacing * field_.grid.spacing;
     for (const SurfacePoint& p : places)
@@ -153,7 +153,7 @@ class Fields {
     std::vector<Band> out;
     const std::vector<double>& v = field_.first;
     if (v.empty()) return out;
-    // The last one reaches up to the largest value.
+    // The last band reaches up to the largest value.
     for (std::size_t k = 0; k < v.size(); ++k)
       out.push_back({v[k], k + 1 < v.size() ? v[k + 1] : std::max(v[k], *largest()), {}, {}});
     const auto each = [&](double low, double high, const auto& visit) {
@@ -179,8 +179,8 @@ class Fields {
     return std::max_element(field_.values.begin(), field_.values.end());
   }
 
-  /// Whether what the rows leave at a point is higher than the cusp; in the middle of two rows, also what is left
-  /// beyond it.
+  /// Whether the rows leave material higher than the cusp at a point. In the middle between two rows, the ridge at
+  /// twice the distance of the nearest row counts as well.
   bool stands(const SurfacePoint& p, bool middle) const {
     const std::optional<Vec3> row = index_.nearest(p.tip);
     if (!row) return true;
@@ -191,7 +191,7 @@ class Fields {
     return outline_.nearest(geom::hypot(off.x, off.y), off.z).distance - scene_.options.allowance > cusp_ + field_.lift;
   }
 
-  /// Places near those of a band where too much stands; empty if there are none.
+  /// The places near those of a band where too much material stays; empty if there are none.
   PlaceSet open_places(const Band& band) const {
     std::vector<std::size_t> open;
     for (const std::size_t i : band.samples)
@@ -216,7 +216,7 @@ class Fields {
     return near;
   }
 
-  /// Adds the rows in the middle of the bands where they are needed; the bands on both sides of them.
+  /// Adds rows in the middle of the bands where needed. Returns the bands on both sides of the new rows.
   std::vector<Band> halves(const std::vector<Band>& bands, const Progress& progress) {
     std::vector<PlaceSet> near(bands.size());
     base::parallel_for(

@@ -64,8 +64,7 @@ std::vector<std::vector<Vec2>> region_in(const std::vector<std::vector<Vec3>>& c
   return out;
 }
 
-/// The links between two pieces, one after the other: tips at feed, or none if the tool must go over the clearance
-/// plane.
+/// The links from each piece to the next: tips at feed, or none if the tool must move over the clearance plane.
 std::vector<std::vector<Vec3>> direct_links(const std::vector<CutPiece>& pieces, const FinishSurface& surface,
                                             double longest, const Progress& progress) {
   std::vector<std::vector<Vec3>> out(pieces.size());
@@ -88,14 +87,15 @@ std::vector<std::vector<Vec3>> direct_links(const std::vector<CutPiece>& pieces,
   return out;
 }
 
-/// The links between pieces that follow a wall downwards: straight, or level and down, if nothing stands between.
+/// The links between pieces that follow a wall downwards: straight, or level and then down, if nothing obstructs the
+/// tool.
 std::vector<std::vector<Vec3>> straight_links(const std::vector<CutPiece>& pieces, const FinishSurface& surface,
                                               double longest) {
   std::vector<std::vector<Vec3>> out(pieces.size());
   for (std::size_t k = 0; k + 1 < pieces.size(); ++k) {
     const Vec3 from = pieces[k].tips.back(), to = pieces[k + 1].tips.front();
     if (to.z > from.z || geom::hypot(to.x - from.x, to.y - from.y) > longest) continue;
-    const Vec3 over(to.x, to.y, from.z);  // first away from a wall that is bent outwards
+    const Vec3 over(to.x, to.y, from.z);  // moves away first from a wall that bulges outwards
     if (surface.above(from, to) <= 0)
       out[k] = {to};
     else if (surface.above(from, over) <= 0 && surface.above(over, to) <= 0)

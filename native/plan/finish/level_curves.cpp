@@ -14,11 +14,11 @@ namespace riffler::plan {
 
 namespace {
 
-constexpr double kPrecision = 1.0 / 32;  // of the tolerance, across a curve
-constexpr double kOff = 0.25;            // of the tolerance: middles of moves may be so far off
-constexpr double kClose = 4;             // of the tolerance: a height so near is that of the touched face
+constexpr double kPrecision = 1.0 / 32;  // error of points across a curve, as a share of the tolerance
+constexpr double kOff = 0.25;  // largest distance of a move's middle from the curve, as a share of the tolerance
+constexpr double kClose = 4;   // largest distance from the height of the face touched, in tolerances
 constexpr double kMostPlaces = 4e6;
-constexpr double kWallSlack = 0.0025;  // of the radius: a face 4° from upright is so much farther at its half height
+constexpr double kWallSlack = 0.0025;  // of the radius: how much farther a face 4° from upright is at its half height
 constexpr int kSteps = 64;
 
 double length(const Vec2& p) {
@@ -49,7 +49,7 @@ void add_blocked_move(const char* reason, const Vec3& tip, double mm, std::vecto
   blocked.push_back({reason, tip, mm});
 }
 
-/// Runs of neighbours that are kept, as first index and count; in a ring the last one may continue at the beginning.
+/// Runs of consecutive kept elements, as first index and count. In a ring the last run may continue at the beginning.
 std::vector<std::pair<std::size_t, std::size_t>> runs(const std::vector<char>& keep, bool ring) {
   std::vector<std::pair<std::size_t, std::size_t>> out;
   const std::size_t n = keep.size();
@@ -104,7 +104,7 @@ Vec2 LevelCurves::border(Vec2 low, Vec2 high, double z) const {
     if (gap <= precise) break;
     double share = 0.5;
     if (k % 3 != 2 && at_high > at_low) {
-      // A little beyond where the line between both meets z, so that the other end moves as well.
+      // A little beyond the point where the line between both ends meets z, so that the other end moves as well.
       share = (z - at_low) / (at_high - at_low) + (last_low ? 0.4 : -0.4) * precise / gap;
       share = std::clamp(share, 0.4 * precise / gap, 1 - 0.4 * precise / gap);
     }
@@ -119,7 +119,7 @@ Vec2 LevelCurves::border(Vec2 low, Vec2 high, double z) const {
   return low;
 }
 
-/// A point of the curve between two of its points, where the straight line between them does not do.
+/// A point of the curve between two of its points; none if the straight line between them is near enough.
 std::optional<Vec2> LevelCurves::between(const Vec2& a, const Vec2& b, double z) const {
   const double far = length(b - a), off = kOff * tolerance_;
   const Vec2 right = Vec2(b.y - a.y, a.x - b.x) / far, m = 0.5 * (a + b);
@@ -134,7 +134,7 @@ std::optional<Vec2> LevelCurves::between(const Vec2& a, const Vec2& b, double z)
     }
     before = p;
   }
-  // No other side in reach: the line leads through the open, or through the part.
+  // The curve is out of reach: the line leads through the air, or through the part.
   if (scene_.surface.above(Vec3(a, z), Vec3(b, z)) <= 0 || inside) return {};
   return m;
 }
@@ -156,7 +156,7 @@ void LevelCurves::refine(const Vec2& a, const Vec2& b, double z, std::vector<Vec
     if (out.size() % 64 == 0) base::still_wanted();
     const Vec3 from(here, z), to(next, z);
     if (const double up = scene_.surface.above(from, to); up > 0) {
-      // Over what stands between.
+      // Go over the material between both points.
       const double top = scene_.surface.over(from, to);
       out.push_back(from + Vec3(0, 0, top)), out.push_back(to + Vec3(0, 0, top));
     }
@@ -174,7 +174,8 @@ LevelCurves::Touch LevelCurves::touch(const Vec2& p, const Vec2& right, double z
     const double slope = scene_.surface.touched_slope(s);
     if (slope >= least_slope_ && scene_.surface.wanted_face(s.landing.triangle, s.landing.point, slope)) return {true};
   }
-  // A step of the surface, or a floor next to one: an upright wall, where the cutter has its full radius, or nothing.
+  // A step of the surface, or a floor next to a step: the cutter touches an upright wall with its full radius, or
+  // nothing.
   const SteepFaces::Found wall = walls_.nearest(Vec3(p, z + middle_), reach_ * (1 + kWallSlack) + 2 * tolerance_,
                                                 2 * tolerance_ + scene_.options.allowance);
   if (wall.triangle < 0) {
@@ -186,7 +187,7 @@ LevelCurves::Touch LevelCurves::touch(const Vec2& p, const Vec2& right, double z
   return {scene_.surface.wanted_face(wall.triangle, wall.point, scene_.surface.face_slope(wall.triangle))};
 }
 
-/// The curve's point on the line through `p` across it; `p` if there is none near.
+/// The curve's point near `p`, on the line through `p` across the curve; `p` itself if there is none.
 Vec2 LevelCurves::onto(const Vec2& p, const Vec2& right, double z) const {
   const double off = 2 * kOff * tolerance_;
   const bool inside = height(p) > z;
@@ -195,7 +196,7 @@ Vec2 LevelCurves::onto(const Vec2& p, const Vec2& right, double z) const {
   return inside ? border(q, p, z) : border(p, q, z);
 }
 
-/// Where between a point that is meant and one that is not the piece ends.
+/// The end of a piece, between a point on a selected face and one on another face.
 Vec3 LevelCurves::end_between(const Vec3& in, const Vec3& out) const {
   const Vec2 way = Vec2(out) - Vec2(in);
   const double far = length(way);

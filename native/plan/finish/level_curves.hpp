@@ -1,4 +1,4 @@
-// Curves of one height on the offset surface of a part: where a cutter at that height touches it.
+// Level curves on the offset surface of a part: the places where a cutter at one height touches the part.
 #pragma once
 
 #include <optional>
@@ -10,29 +10,30 @@
 
 namespace riffler::plan {
 
-/// A piece of such a curve, with the part to the right of the motion.
+/// A piece of a level curve, with the part to the right of the motion.
 struct LevelPiece {
   std::vector<Vec3> tips;  ///< a closed one ends where it begins
   bool closed = false;
 };
 
-/// Levels of the drop surface of part, fixtures and allowance, moved outwards by half the tolerance: curves lie
-/// between the surface without that, and the tolerance. A grid tells which curves there are; their points are found
-/// with the drop cutter, and what lies between two points is bounded by DropCutter::rise.
+/// Level curves of the drop surface of part, fixtures and allowance, moved outwards by half the tolerance. The curves
+/// therefore lie outside of the exact drop surface, by at most the tolerance. A grid of heights shows which curves
+/// there are, the drop cutter finds their points, and DropCutter::rise bounds the error between two points.
 class LevelCurves {
  public:
-  /// `spacing` (mm) of the grid's places. Faces less steep than `least_slope` (rad) are not meant. Throws
+  /// `spacing`: of the grid's places, mm. `least_slope`: faces that are less steep are left out, rad. Throws
   /// std::invalid_argument if there are too many places.
   LevelCurves(const PatternScene& scene, double spacing, double least_slope, const Progress& progress);
 
   const PlaceGrid& grid() const { return grid_; }
-  /// Heights of the surface at the places, mm; below the part where the tool touches nothing.
+  /// Heights of the surface at the grid's places, mm; below the part where the tool touches nothing.
   const Field& heights() const { return heights_; }
   double height(const Vec2& p) const;
-  /// Where between a place below `z` and one that is not the height is z: the lower side, within the precision.
+  /// The point between `low`, where the surface is below `z`, and `high` at which it reaches `z`. The result is on the
+  /// lower side, within the precision.
   Vec2 border(Vec2 low, Vec2 high, double z) const;
 
-  /// The pieces that touch faces which are meant, near the places of `near` if there is one.
+  /// The pieces of the curves at height `z` that touch selected faces; with `near`, only those near its places.
   std::vector<LevelPiece> at(double z, const PlaceSet* near, std::vector<BlockedPlace>& blocked) const;
 
  private:

@@ -11,9 +11,9 @@ namespace riffler::plan {
 
 namespace {
 
-constexpr std::size_t kLooks = 400;  // pieces on either side of the last one in rank
+constexpr std::size_t kLooks = 400;  // number of pieces examined on either side of the last one, by rank
 
-/// The unvisited pieces before and after each, as linked lists.
+/// Linked lists of unvisited pieces: the next one before and after each piece.
 class Remaining {
  public:
   explicit Remaining(std::size_t n) : next_(n + 2), before_(n + 2) {
@@ -69,7 +69,7 @@ std::vector<CutPiece> in_short_order(std::vector<CutPiece> pieces) {
 
 namespace {
 
-/// The tip of a piece that is nearest to a place, and its squared distance seen along the axis.
+/// Index of the tip nearest to `p`, and the squared distance between them seen along the axis.
 std::pair<std::size_t, double> nearest_tip(const std::vector<Vec3>& tips, const Vec3& p) {
   std::pair<std::size_t, double> out{0, kInfinity};
   for (std::size_t k = 0; k < tips.size(); ++k)
@@ -87,7 +87,7 @@ void begin_at(std::vector<Vec3>& ring, std::size_t k) {
 /// Pieces of one wall, from its top downwards.
 struct Chain {
   std::vector<CutPiece> pieces;
-  Box3 last;  // of the last one
+  Box3 last;  // box of the last piece
 };
 
 }  // namespace

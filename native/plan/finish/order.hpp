@@ -7,13 +7,12 @@
 
 namespace riffler::plan {
 
-/// The pieces in an order with short distances between them: from the end of one to the nearest end of another. Starts
-/// at the first piece; `pieces` are sorted by rank, and places whose y differs by no more than their rank count as
-/// near.
+/// Orders pieces so that the moves between them are short: starts with the piece of smallest rank, then takes the
+/// nearest end of another piece, among the unvisited pieces of nearest rank.
 std::vector<CutPiece> in_short_order(std::vector<CutPiece> pieces);
 
-/// Pieces from the top downwards, each with its direction kept: what lies below a piece, within `near` (mm) seen along
-/// the axis, follows it. Closed pieces begin where the one before ends.
+/// Orders pieces from the top downwards and keeps their directions. A piece is followed by the one below it, within
+/// `near` (mm) seen along the axis. Closed pieces begin near the end of the previous piece.
 std::vector<CutPiece> descending(std::vector<CutPiece> pieces, double near);
 
 }  // namespace riffler::plan

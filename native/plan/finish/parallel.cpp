@@ -1,5 +1,5 @@
-// Parallel rows: one every so often as the cusp allows on level faces, and between two of them further ones wherever
-// what they leave is higher.
+// Parallel rows: as far apart as the cusp allows on level faces, with further rows between two of them wherever these
+// leave higher ridges.
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -11,7 +11,7 @@ namespace riffler::plan {
 
 namespace {
 
-constexpr double kChecksInSpacing = 4;  // samples along a row, per spacing of rows
+constexpr double kChecksInSpacing = 4;  // samples along a row in one spacing of the rows
 constexpr double kMaxRows = 1e6;
 
 }  // namespace

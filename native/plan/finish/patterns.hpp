@@ -11,34 +11,34 @@
 
 namespace riffler::plan {
 
-/// The share of the cusp that rows leave where it is measured: what lies between two samples is a little higher.
+/// Share of the cusp that is allowed at samples, because ridges between two samples are a little higher.
 inline constexpr double kCuspShare = 0.9;
 
-/// What a pattern works with. The rows' frame has z along the tool's axis and x along the option `angle`.
+/// The data of a pattern. The rows' frame has z along the tool's axis and x along the option `angle`.
 struct PatternScene {
   const FinishSurface& surface;
   const CutterProfile& profile;
   const Tool& tool;
   const FinishOptions& options;
   Box3 part;                   ///< box of the part in the rows' frame, mm
-  std::optional<Vec2> centre;  ///< of patterns about one, in the rows' frame
+  std::optional<Vec2> centre;  ///< of spiral and radial patterns, in the rows' frame; none: the middle of `part`
 };
 
-/// One curve of tips to be cut, and the order in which it is to be cut: pieces with a smaller rank first.
+/// A curve of tips to be cut. Pieces with a smaller rank are cut first.
 struct CutPiece {
   double rank = 0;
   std::vector<Vec3> tips;
-  bool closed = false;  ///< ends where it begins, and may begin anywhere
+  bool closed = false;  ///< whether the piece ends where it begins; it may then begin anywhere
 };
 
-/// What a pattern has found.
+/// The result of a pattern.
 struct PatternRows {
   std::vector<CutPiece> pieces;
   std::vector<BlockedPlace> blocked;
   std::size_t rows = 0, added = 0;
-  double spacing = 0;       ///< mm, of rows on level faces
+  double spacing = 0;       ///< distance of rows on level faces, mm
   bool descending = false;  ///< pieces keep their direction and are cut from the top downwards; links are straight
-  std::string reason;       ///< why there are no pieces, if it is the pattern's own
+  std::string reason;       ///< why there are no pieces, if the pattern itself is the cause
 };
 
 /// A pattern: its name, and the function that finds its rows.
@@ -47,21 +47,21 @@ struct Pattern {
   PatternRows (*rows)(const PatternScene& scene, const Progress& progress);
 };
 
-/// Adds places to others; those with the same reason count as one.
+/// Adds the places `more` to `all`; places with the same reason count as one.
 void add_blocked(const std::vector<BlockedPlace>& more, std::vector<BlockedPlace>& all);
 
-/// The table.
+/// The table of patterns.
 const std::vector<Pattern>& patterns();
 
-/// Rows in planes at an angle, with more of them where the part is steep or the cutter reaches another face.
+/// Rows in planes at an angle, with further rows where the part is steep or the cutter touches another face.
 PatternRows parallel_rows(const PatternScene& scene, const Progress& progress);
-/// Turns from a centre outwards, with more of them as above.
+/// Turns from a centre outwards, with further turns as above.
 PatternRows spiral_rows(const PatternScene& scene, const Progress& progress);
-/// Rays from a centre, with more of them as above: the farther out the more.
+/// Rays from a centre, with further rays as above: more of them farther out.
 PatternRows radial_rows(const PatternScene& scene, const Progress& progress);
-/// Curves at equal distances from the border of what is meant, measured on the drop surface.
+/// Curves at equal distances from the border of the selected faces, measured on the drop surface.
 PatternRows scallop_rows(const PatternScene& scene, const Progress& progress);
-/// Levels of the drop surface, for steep faces.
+/// Level curves of the drop surface, for steep faces.
 PatternRows waterline_rows(const PatternScene& scene, const Progress& progress);
 
 }  // namespace riffler::plan

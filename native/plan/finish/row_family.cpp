@@ -16,17 +16,17 @@ namespace {
 
 constexpr int kCreaseHalves = 4;
 
-/// A row and what is cut of it. Its pieces do not overlap along u.
+/// A row, and the pieces of it that are cut. Pieces do not overlap along u.
 struct Row {
   struct Piece {
     std::vector<Vec3> tips;
-    std::vector<double> along;  // u of each
+    std::vector<double> along;  // u of each tip
   };
   double v = 0;
   std::vector<Piece> pieces;
 };
 
-/// The nearest place of a row to `p` among those whose u is within `window` of `u`; none if it is not cut there.
+/// The place of a row nearest to `p`, among places whose u is within `window` of `u`; none if the row is not cut there.
 std::optional<Vec3> nearest_on(const Row& row, const Vec3& p, double u, double window) {
   std::optional<Vec3> best;
   double least = kInfinity;
@@ -63,7 +63,7 @@ class Filler {
     return out;
   }
 
-  /// The rows that are missing between X and Y.
+  /// Adds the rows that are needed between X and Y.
   void fill(const Row& x, const Row& y, std::vector<Row>& out) const {
     std::vector<int> all(static_cast<std::size_t>(std::ceil((family_.to - family_.from) / family_.step)) + 1);
     for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i);
@@ -81,7 +81,7 @@ class Filler {
     return out;
   }
 
-  /// Adds what is cut of a row between `a` and `b`.
+  /// Adds the pieces of a row that are cut between u = `a` and u = `b`.
   void add_pieces(Row& row, double a, double b, std::vector<BlockedPlace>& blocked) const {
     const std::vector<SurfacePoint> points = scene_.surface.follow(line(a, b, row.v));
     for (std::vector<Vec3>& tips : scene_.surface.meant_pieces(points, blocked)) {
@@ -117,9 +117,9 @@ class Filler {
     fill(middle, y, next, out);
   }
 
-  /// Whether what X and Y leave near u is higher than the cusp.
+  /// Whether X and Y leave material higher than the cusp near u.
   bool stands(const Row& x, const Row& y, double middle, double u, double apart) const {
-    if (apart > 1.5 * spacing_) return true;  // too far for one sample to tell
+    if (apart > 1.5 * spacing_) return true;  // one sample is not enough
     const SurfacePoint m = scene_.surface.at(family_.at(u, middle));
     const bool meant = scene_.surface.meant(m);
     const double samples = family_.step * family_.pace(u, middle);  // mm
@@ -135,7 +135,7 @@ class Filler {
     return walled(x, y, m, u, meant, window) || creased(x, y, u, window);
   }
 
-  /// Whether more stands on either side of the middle, or at a crease that the rows pass alongside.
+  /// Whether more than the cusp stays on either side of the middle, or at a crease along which the rows run.
   bool creased(const Row& x, const Row& y, double u, double window) const {
     const auto at = [&](double share) { return scene_.surface.at(family_.at(u, glm::mix(x.v, y.v, share))); };
     const auto high = [&](const SurfacePoint& p) {
@@ -168,7 +168,7 @@ class Filler {
     return scene_.profile.ridge(2 * geom::hypot(p.x - row->x, p.y - row->y), 2 * (p.z - row->z));
   }
 
-  /// How far M's contact stands off the cutter on the nearest places of both rows.
+  /// Smallest distance of M's contact from the cutter at the nearest place of each row.
   double standing(const SurfacePoint& m, const std::optional<Vec3>& on_x, const std::optional<Vec3>& on_y) const {
     double least = kInfinity;
     for (const std::optional<Vec3>& tip : {on_x, on_y}) {
@@ -179,7 +179,7 @@ class Filler {
     return least;
   }
 
-  /// Whether a wall or slope between M and one of the rows is left: half way to it, half as high.
+  /// Whether the rows leave material on a wall or slope between M and one row: half way to the row, at half the height.
   bool walled(const Row& x, const Row& y, const SurfacePoint& m, double u, bool meant, double window) const {
     if (!m.landing.touches) return false;
     for (const Row* side : {&x, &y}) {

@@ -34,7 +34,7 @@ void RowIndex::add(const std::vector<Vec3>& tips) {
     const Vec3 &a = tips[k - 1], &b = tips[k];
     const auto number = static_cast<std::uint32_t>(from_.size());
     from_.push_back(a), to_.push_back(b);
-    // Steps of a tenth of a bin: what it passes between two of them is nearer to these than the rest of the window.
+    // Steps of a tenth of a bin: a piece between two steps is nearer to them than the rest of the window is wide.
     const int steps = 1 + static_cast<int>(geom::hypot(b.x - a.x, b.y - a.y) / (0.1 * size_));
     for (int i = 0; i <= steps; ++i) {
       const Vec3 p = glm::mix(a, b, static_cast<double>(i) / steps);

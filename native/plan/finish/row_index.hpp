@@ -1,4 +1,4 @@
-// Finds the place of finished rows that is nearest to a tip.
+// Finds the place on finished rows that is nearest to a tip.
 #pragma once
 
 #include <cstddef>
@@ -13,11 +13,11 @@ namespace riffler::plan {
 /// Straight pieces of rows in square bins, seen along the axis.
 class RowIndex {
  public:
-  /// `area`: of all rows, mm; `window`: how far away, seen along the axis, places count.
+  /// `area`: box around all rows. `window`: largest distance, seen along the axis, at which places are found. Both mm.
   RowIndex(const Box3& area, double window);
 
   void add(const std::vector<Vec3>& tips);
-  /// The nearest place of a row; none within the window.
+  /// The nearest place on a row; none if no row is within the window.
   std::optional<Vec3> nearest(const Vec3& p) const;
 
  private:

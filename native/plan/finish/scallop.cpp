@@ -1,5 +1,5 @@
-// Scallop: rows at equal distances from the border of what is meant, inwards, measured on the drop surface in units of
-// the distance that leaves the cusp. So cusps are equal on slopes of any direction.
+// Scallop: rows at equal distances from the border of the selected faces, inwards. Distances are measured on the drop
+// surface, in units of the row distance that leaves the cusp, so that cusps are equal on slopes of any direction.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -21,15 +21,15 @@ namespace riffler::plan {
 
 namespace {
 
-constexpr double kFirstRow = 0.25;  // rows from the border to the first one: the border is known to half a place
+constexpr double kFirstRow = 0.25;  // distance from the border in rows: the border is known to half a place
 constexpr double kFinestRow = 1.0 / 128;
-constexpr double kSteepestFace = 1.3;  // rad: beyond, neighbouring places are too far apart on the surface
-constexpr double kLikeCurves = 0.05;   // of the grid's spacing: points of curves that do not matter
+constexpr double kSteepestFace = 1.3;  // rad: on steeper faces neighbouring places are too far apart on the surface
+constexpr double kLikeCurves = 0.05;   // tolerance for leaving out points of curves, as a share of the grid's spacing
 constexpr int kSlopes = 64;
 constexpr double kMostScallopPlaces = 2e6;
 constexpr const char* kSteeper = "scallop: faces steeper than 74° are left to waterline";
 
-/// How far apart rows may lie that leave the cusp, mm, by the slope between them.
+/// Distance of two rows that leave the cusp, mm, depending on the slope between them.
 class RowSteps {
  public:
   RowSteps(const CutterProfile& profile, double cusp) {
@@ -53,8 +53,8 @@ class RowSteps {
   std::array<double, kSlopes + 1> steps_{};
 };
 
-/// Distances over the places from their border, by fast marching over triangles of neighbouring places (Kimmel and
-/// Sethian, PNAS 95 (1998) 8431), of which only the sides' lengths are needed.
+/// Distance of each place from the border of the set of places, by fast marching over triangles of neighbouring places
+/// (Kimmel and Sethian, PNAS 95 (1998) 8431). The method needs only the lengths of the triangles' sides.
 class Distances {
  public:
   Distances(const PatternScene& scene, const PlaceGrid& grid, const std::vector<SurfacePoint>& places,
@@ -93,7 +93,7 @@ class Distances {
  private:
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
-  /// Neighbours counter-clockwise.
+  /// The i-th neighbour of a place, counter-clockwise.
   std::size_t neighbour(std::size_t k, int i) const {
     static constexpr std::array<std::pair<int, int>, 8> kAround{
         {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}}};
@@ -102,7 +102,7 @@ class Distances {
     const int column = static_cast<int>(k % columns) + x, row = static_cast<int>(k / columns) + y;
     return column < 0 || row < 0 || column >= grid_.columns || row >= grid_.rows ? kNone : grid_.index(column, row);
   }
-  /// Whether the surface leads from one place to the other without a step.
+  /// Whether both places are inside and the surface between them has no step.
   bool joined(std::size_t a, std::size_t b) const {
     return b != kNone && inside_[a] && inside_[b] &&
            std::abs(places_[a].tip.z - places_[b].tip.z) <= 3 * std::tan(kSteepestFace) * grid_.spacing;
@@ -112,8 +112,8 @@ class Distances {
       if (!joined(k, neighbour(k, i))) return true;
     return false;
   }
-  /// Length of the side between two places. For a ball the cusp goes with the distance of the tips times that of the
-  /// contacts, wherever the surface is bent.
+  /// Length of the side between two places, in rows. For a ball on a curved surface the cusp grows with the distance of
+  /// the tips times the distance of the contacts.
   double side(std::size_t a, std::size_t b) const {
     const Vec3 off = places_[a].tip - places_[b].tip;
     const double tips = glm::length(off), across = geom::hypot(off.x, off.y);
@@ -148,7 +148,7 @@ class Distances {
       front_;
 };
 
-/// Stretches of a curve near the places of a set, or all of it; a closed curve ends where it begins.
+/// The stretches of a curve near the places of a set, or the whole curve; a closed curve ends where it begins.
 std::vector<std::vector<Vec2>> stretches(const Curve& curve, const PlaceGrid& grid, const PlaceSet* near) {
   std::vector<Vec2> points = simplified(curve, kLikeCurves * grid.spacing).points;
   if (near) points = curve.points;
@@ -223,7 +223,7 @@ class Scallop {
     out.columns = static_cast<int>(std::ceil(size.x)) + 1, out.rows = static_cast<int>(std::ceil(size.y)) + 1;
     return out;
   }
-  /// A place next to which the surface has a step.
+  /// A place next to a step of the surface.
   Vec3 steep_place() const {
     for (std::size_t k = 0; k + 1 < places_.size(); ++k)
       if (inside_[k] != inside_[k + 1]) return places_[inside_[k] ? k : k + 1].tip;

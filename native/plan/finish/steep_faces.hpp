@@ -1,4 +1,4 @@
-// Finds the nearest one of a part's steep faces at one height.
+// Finds the steep face of a part that is nearest to a point, at the point's height.
 #pragma once
 
 #include <cstddef>
@@ -8,20 +8,20 @@
 
 namespace riffler::plan {
 
-/// The triangles of a mesh that are at least `kSteep` from level, in a tree.
+/// The triangles of a mesh with a slope of at least `kSteep`, in a tree.
 class SteepFaces {
  public:
-  static constexpr double kSteep = 1.25;  ///< rad
+  static constexpr double kSteep = 1.25;  ///< slope from level, rad
 
   struct Found {
-    int triangle = -1;  ///< of the mesh; −1: none
-    Vec3 point{0};      ///< of it
+    int triangle = -1;  ///< index in the mesh; −1: none
+    Vec3 point{0};      ///< nearest point of the triangle
   };
 
   explicit SteepFaces(const Mesh& mesh);
 
-  /// The face whose section at the height of `p` is nearest to `p`, if it is within `reach` (mm). A face that ends less
-  /// than `slack` (mm) above or below counts with its end.
+  /// Finds the face whose section at the height of `p` is nearest to `p`, within `reach` (mm). A face that ends at most
+  /// `slack` (mm) above or below `p` counts with the section at its end.
   Found nearest(const Vec3& p, double reach, double slack) const;
 
  private:

@@ -13,7 +13,7 @@ namespace riffler::plan {
 
 namespace {
 
-constexpr double kRows = 0.9;           // of the tolerance: the rest is for rounding, in the program's text too
+constexpr double kRows = 0.9;  // share of the tolerance for rows; the rest is for rounding, also in the program's text
 constexpr double kRolling = 0.5;        // rad between a face's normal and the tool's where the tool rolls over its edge
 constexpr double kSlopeSlack = 1e-6;    // rad
 constexpr double kCrease = 0.2;         // rad between faces
@@ -64,7 +64,8 @@ SurfacePoint FinishSurface::at(const Vec2& p) const {
   return out;
 }
 
-/// The share at which to divide a piece of a row; none if it is settled, and then what lies between is in `out`.
+/// The share at which to divide a piece of a row; none if the piece is within the tolerance. Points that it needs
+/// between its ends are then added to `out`.
 std::optional<double> FinishSurface::split(const SurfacePoint& a, const SurfacePoint& b,
                                            std::vector<SurfacePoint>& out) const {
   const double length = geom::hypot(b.tip.x - a.tip.x, b.tip.y - a.tip.y);
@@ -87,7 +88,7 @@ std::optional<double> FinishSurface::split(const SurfacePoint& a, const SurfaceP
     return {};
   }
   if (fine) return {};
-  // Below the move: the surface is nowhere lower than what each end's triangle alone leaves, which is concave.
+  // Below the move: the surface is nowhere lower than the concave surface of each end's triangle alone.
   const double at_b = b.tip.z - drop_.height_on(a.landing, b.tip), at_a = a.tip.z - drop_.height_on(b.landing, a.tip);
   const bool far_b = !std::isfinite(at_b), far_a = !std::isfinite(at_a);
   if (far_a && far_b) return 0.5;
@@ -155,7 +156,7 @@ bool FinishSurface::wanted(const SurfacePoint& p) const {
 }
 
 double FinishSurface::rested_slope(const SurfacePoint& p) const {
-  const Vec3 off = p.landing.point - p.tip;  // at the rim it may rest on any slope
+  const Vec3 off = p.landing.point - p.tip;  // at the rim the cutter may rest on any slope
   const bool level = geom::hypot(off.x, off.y) < level_end_ - kLevelContact &&
                      std::abs(p.tip.z - options_.allowance - p.landing.point.z) <= kLevelContact;
   return level ? 0.0 : face_slope(p.landing.triangle);
@@ -197,17 +198,17 @@ double FinishSurface::above(const Vec3& from, const Vec3& to) const {
   return found > tolerance_ ? found : 0;
 }
 
-/// Whether a ball rests on an edge, with its normal far from that of the face.
+/// Whether a ball rests on an edge: its normal there is far from the face's normal.
 bool FinishSurface::rolls(const SurfacePoint& p) const {
   if (!(ball_ > 0) || !p.landing.touches || blocked(p)) return false;
   const Vec3 towards = p.tip + Vec3(0, 0, ball_ - options_.allowance) - p.landing.point;
   const double size = glm::length(towards);
-  if (size > ball_ * (1 + 1e-6) + 2 * tolerance_) return false;  // higher up on the cutter
+  if (size > ball_ * (1 + 1e-6) + 2 * tolerance_) return false;  // the contact is above the ball
   return size > 0 &&
          glm::dot(towards / size, normals_[static_cast<std::size_t>(p.landing.triangle)]) < std::cos(kRolling);
 }
 
-/// Where between a wanted point and one that is not the row ends, within the tolerance.
+/// The row's end between a selected point `in` and another point `out`, within the tolerance.
 Vec3 FinishSurface::border(const SurfacePoint& in, const SurfacePoint& out) const {
   double low = 0, high = 1;
   const double length = glm::length(out.tip - in.tip);
@@ -223,7 +224,7 @@ std::vector<std::vector<Vec3>> FinishSurface::meant_pieces(const std::vector<Sur
   const std::size_t n = points.size();
   std::vector<char> keep(n), rolling(n);
   for (std::size_t k = 0; k < n; ++k) keep[k] = wanted(points[k]), rolling[k] = rolls(points[k]);
-  // Runs that roll over an edge stay only between faces that are meant.
+  // Keep a run that rolls over an edge only if it is between selected faces.
   for (std::size_t k = 0; k < n;) {
     if (!rolling[k]) {
       ++k;

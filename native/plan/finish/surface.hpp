@@ -1,4 +1,5 @@
-// The offset surface that finishing rows lie on, and which places of it are meant.
+// The offset surface on which finishing rows lie, and the selection of its places. A face of the part is selected if
+// the options `slopes`, `region` and `faces` all include it.
 #pragma once
 
 #include <atomic>
@@ -14,10 +15,10 @@ namespace riffler::plan {
 struct SurfacePoint {
   Vec3 tip{0};  ///< z is meaningless where nothing is touched
   DropCutter::Landing landing;
-  bool gap = false;  ///< the row does not lead here from the point before
+  bool gap = false;  ///< whether the row does not lead here from the point before
 };
 
-/// Curves of the drop surface over straight lines.
+/// Computes curves of the drop surface over straight lines.
 class FinishSurface {
  public:
   /// `part` and `fixtures` in the rows' frame.
@@ -25,38 +26,40 @@ class FinishSurface {
                 std::vector<std::vector<Vec2>> region);
 
   SurfacePoint at(const Vec2& p) const;
-  /// The points over the line from `from` to `to`: straight moves between them are at most `tolerance` below the drop
-  /// surface, and where it is continuous not further above it. Over a step they rise or sink upright, at most half the
-  /// tolerance off it.
+  /// The points over the line from `from` to `to`. Straight moves between the points are at most `tolerance` below the
+  /// drop surface, and where it is continuous at most `tolerance` above it. At a step they rise or sink upright, at
+  /// most half the tolerance away from the step.
   std::vector<SurfacePoint> follow(const Vec2& from, const Vec2& to) const;
-  /// The same over a line of several points.
+  /// The same for a line through several points.
   std::vector<SurfacePoint> follow(const std::vector<Vec2>& line) const;
-  /// The parts of such a curve where the cutter touches faces that are meant; adds what is blocked.
+  /// The parts of such a curve where the cutter touches selected faces. Adds places that the tool cannot reach to
+  /// `blocked`.
   std::vector<std::vector<Vec3>> meant_pieces(const std::vector<SurfacePoint>& points,
                                               std::vector<BlockedPlace>& blocked) const;
-  /// Whether the cutter touches a face that is meant there, not an edge that it rolls over.
+  /// Whether the cutter touches a selected face at a point, and not an edge that it rolls over.
   bool meant(const SurfacePoint& p) const { return wanted(p) && !rolls(p); }
-  /// Whether a row may pass there: the cutter touches a face that is meant, or an edge.
+  /// Whether a row may pass a point: the cutter touches a selected face, or an edge.
   bool passes(const SurfacePoint& p) const { return wanted(p) || rolls(p); }
   /// The reason why the tool cannot cut at a point that it touches, or null.
   const char* blocked(const SurfacePoint& p) const;
-  /// Whether faces as steep as this (rad) are meant.
+  /// Whether the options select faces of this slope (rad).
   bool meant_slope(double slope) const;
 
-  /// Whether a face is meant that the cutter touches at a point, with this slope (rad) of what it touches.
+  /// Whether a face is selected that the cutter touches at `point`. `slope`: of the surface touched, rad.
   bool wanted_face(int triangle, const Vec3& point, double slope) const;
-  /// Whether the cutter touches faces of the part at two points that are turned against each other.
+  /// Whether there is a crease between the faces of the part that the cutter touches at two points.
   bool creased(const SurfacePoint& a, const SurfacePoint& b) const;
   /// Slope (rad from level) of a triangle of the part.
   double face_slope(int triangle) const;
-  /// The slope of what a cutter with a round tip touches, an edge included; else that of the face.
+  /// Slope (rad) of the tangent plane where a cutter with a round tip touches face or edge; for other cutters the slope
+  /// of the face.
   double touched_slope(const SurfacePoint& p) const;
-  /// The steepest slope of the part's faces that are chosen and meant; negative if there are none.
+  /// The steepest slope (rad) of the part's faces that `faces` and `slopes` select; negative if there are none.
   double steepest_meant() const;
 
-  /// How far the drop surface rises above a straight move, mm, if that is more than the tolerance; else 0.
+  /// Largest height (mm) of the drop surface above a straight move, if it is more than the tolerance; else 0.
   double above(const Vec3& from, const Vec3& to) const;
-  /// The same for any height.
+  /// The same without the tolerance.
   double over(const Vec3& from, const Vec3& to) const { return drop_.rise(from, to, 0).above; }
 
   /// Part and fixtures in the rows' frame.
@@ -68,8 +71,8 @@ class FinishSurface {
  private:
   std::optional<double> split(const SurfacePoint& a, const SurfacePoint& b, std::vector<SurfacePoint>& out) const;
   bool wanted(const SurfacePoint& p) const;
-  /// The slope of the face that it rests on. A level end may rest on the edge of a level face: that is a wall's as
-  /// well.
+  /// Slope (rad) of the face on which the cutter rests. A cutter with a level end may rest on an edge that a level face
+  /// shares with a wall, even if the triangle found is the wall's.
   double rested_slope(const SurfacePoint& p) const;
   bool rolls(const SurfacePoint& p) const;
   bool in_region(const Vec3& p) const;
@@ -81,7 +84,7 @@ class FinishSurface {
   DropCutter drop_;
   const FinishOptions options_;
   std::vector<std::vector<Vec2>> region_;
-  std::vector<char> chosen_;           // of the part's triangles; empty: all
+  std::vector<char> chosen_;           // which triangles of the part `faces` selects; empty: all
   std::optional<tool::Round> round_;   // the cutter's tip
   double level_end_ = 0;               // radius of the cutter's level end, mm
   double tolerance_, low_, ball_ = 0;  // radius of the ball at the tip, with the allowance; 0: no ball

@@ -1,5 +1,5 @@
-// Waterline: levels of the drop surface. They lie as far apart as rows on a level face, and nearer wherever what two of
-// them leave is higher than the cusp. Level faces have none, so faces that are almost level are left out.
+// Waterline: level curves of the drop surface. Levels are as far apart as rows on a level face, and nearer wherever two
+// levels leave ridges higher than the cusp. Level curves cannot finish level faces, so almost level faces are left out.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -16,17 +16,18 @@ namespace riffler::plan {
 
 namespace {
 
-constexpr double kLeastSlope = kPi / 60;  // rad: a level on flatter faces is no more than a place on them
-constexpr double kLevel = 1e-6;           // mm by which places of a level face may differ
-constexpr double kOver = 0.05;            // of the tolerance: a level over a level face
+constexpr double kLeastSlope = kPi / 60;  // rad: flatter faces are left to other patterns
+constexpr double kLevel = 1e-6;           // largest difference in height between places of a level face, mm
+constexpr double kOver = 0.05;            // height of a level above a level face, in tolerances
 constexpr const char* kFlat = "waterline: faces flatter than 3° are left to another pattern";
 
-/// Places that are near enough to tell one curve from another.
+/// Spacing of a grid that is fine enough to tell one curve from another, mm.
 double grid_spacing(const PatternScene& scene) {
   return std::min(0.5 * scene.profile.spacing(kCuspShare * scene.options.cusp), 0.25 * scene.profile.radius());
 }
 
-/// The lowest height at which there are curves, and the heights of level faces as large as the cutter.
+/// Heights at which a level must lie: the lowest with curves, the highest, and those of level faces at least as large
+/// as the cutter.
 std::vector<double> special_levels(const PatternScene& scene, const LevelCurves& curves, double over) {
   Field sorted = curves.heights();
   std::sort(sorted.begin(), sorted.end());

@@ -37,7 +37,7 @@ double distance_between(const SetBorder::Segment& s, const SetBorder::Segment& t
                    glm::length(nearest_on(t, s.from) - s.from), glm::length(nearest_on(t, s.to) - s.to)});
 }
 
-/// Calls visit(k) for the places of the grid in a row where the triangle is.
+/// Calls visit(k) for each place of the grid that the triangle covers.
 template <class Visit>
 void fill(const PlaceGrid& grid, const std::array<Vec2, 3>& t, const Visit& visit) {
   const auto [low, high] = std::minmax({t[0].y, t[1].y, t[2].y});
@@ -117,7 +117,7 @@ double SetBorder::distance(const Vec2& a, const Vec2& b, double far) const {
 }
 
 std::vector<SetBorder::Segment> silhouette_segments(const Mesh& mesh) {
-  // Vertices that lie at one place of the plane and at one height are one.
+  // Vertices with equal coordinates count as one.
   std::vector<std::size_t> order(mesh.vertices.size()), same(mesh.vertices.size());
   for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
   const auto key = [&](std::size_t k) {
@@ -129,7 +129,7 @@ std::vector<SetBorder::Segment> silhouette_segments(const Mesh& mesh) {
     same[order[k]] = k > 0 && key(order[k]) == key(order[k - 1]) ? same[order[k - 1]] : order[k];
   struct Edge {
     std::size_t from, to;
-    int side;  // of the triangle; 0: seen from its side
+    int side;  // side of the edge on which the triangle is seen: 1 or −1; 0: the triangle is seen edge-on
     bool operator<(const Edge& other) const { return std::pair(from, to) < std::pair(other.from, other.to); }
   };
   std::vector<Edge> edges;

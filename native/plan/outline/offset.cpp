@@ -48,12 +48,12 @@ class Offset {
     for (int k = 0; k < kHalvings && low != high; ++k) {
       const Vec2 middle = 0.5 * (low + high);
       if (middle == low || middle == high) break;
-      // A place of the set that lies deep in it is nearer to the set than to any segment.
+      // A place deep inside the set may be far from every segment, but it is still inside the set.
       (distance_of(middle) < aim_ ? low : high) = middle;
     }
     return high;
   }
-  /// The point moved away from, or to, the nearest point of the border until it has the distance that is aimed at.
+  /// Moves the point away from the nearest point of the border, or towards it, until it is at the intended distance.
   Vec2 onto(Vec2 p) const {
     for (int k = 0; k < kMoves; ++k) {
       Vec2 q;
@@ -83,14 +83,14 @@ class Offset {
       if (border_.distance(few[k], few[(k + 1) % few.size()], far_) < least_ - 0.25 * tolerance_) return out;
     return few;
   }
-  /// A place near `p` that is farther from the border than its neighbours.
+  /// A place near `p` whose distance from the border is a local maximum.
   Vec2 deepest_near(Vec2 p) const {
     for (double step = 0.5 * grid_.spacing; step > tolerance_; step *= 0.5)
       for (const Vec2 by : {Vec2(step, 0), Vec2(-step, 0), Vec2(0, step), Vec2(0, -step)})
         while (distance_of(p + by) > distance_of(p)) p += by;
     return p;
   }
-  /// Connected places outside of the set where no place is far enough from the border.
+  /// Connected areas outside of the set in which no place is far enough from the border.
   std::vector<NarrowPlace> narrow_places() const {
     std::vector<NarrowPlace> out;
     PlaceSet seen(grid_.size(), 0);

@@ -20,10 +20,10 @@ namespace riffler::plan {
 namespace {
 
 constexpr double kMostPlaces = 4e6;
-constexpr double kThin = 1e-6;      // mm: thinner layers are none
-constexpr double kShortest = 0.05;  // mm: pieces of a loop
-constexpr double kPin = 0.1;        // mm: looks for stock in openings
-constexpr int kArc = 8;             // moves of an arc
+constexpr double kThin = 1e-6;      // mm: thinner layers are not cut
+constexpr double kShortest = 0.05;  // mm: smallest piece of a loop
+constexpr double kPin = 0.1;        // mm, diameter of a pin that probes for stock in openings
+constexpr int kArc = 8;             // number of moves in an arc
 
 void check(const OutlineOptions& o, const Tool& tool) {
   base::require_not_negative(o.depth, "depth", base::kFiniteAndNotNegative);
@@ -39,11 +39,11 @@ void check(const OutlineOptions& o, const Tool& tool) {
   require_upright_cutter(tool, "an outline");
 }
 
-/// What the loops keep away from.
+/// The shape from which the loops keep their distance.
 struct Shape {
   std::vector<std::vector<Vec2>> curves;
   std::vector<SetBorder::Segment> segments;
-  double top = 0;  ///< highest point, z of the frame
+  double top = 0;  ///< height of the highest point, z of the frame, mm
 };
 
 Shape shape_of(const TurnedScene& in, const OutlineOptions& options) {
@@ -68,7 +68,7 @@ Shape shape_of(const TurnedScene& in, const OutlineOptions& options) {
   return out;
 }
 
-/// The loops' grid, fine enough for the tool and the border.
+/// A grid for the loops, fine enough for the tool and the border.
 PlaceGrid grid_around(const SetBorder& border, double distance) {
   const double room = 2 * distance;
   const Vec2 size = border.upper() - border.lower() + Vec2(2 * room);
@@ -86,7 +86,7 @@ double area(const std::vector<Vec2>& loop) {
   return 0.5 * out;
 }
 
-/// A loop by its length, from its first point on.
+/// A loop whose points are found by their distance along it from its first point.
 class Loop {
  public:
   explicit Loop(std::vector<Vec2> points) : points_(std::move(points)), at_{0} {
@@ -109,7 +109,7 @@ class Loop {
   std::vector<double> at_;
 };
 
-/// Where tabs stand: from and to along the loop, for the cutter's axis.
+/// Ranges along the loop, from and to, of the cutter's axis.
 using Ranges = std::vector<std::pair<double, double>>;
 
 class Cutter {
@@ -127,7 +127,7 @@ class Cutter {
         stock_(stock, cutters::flat(tool.diameter(), tool.length())),
         moves_(out, in.frame, options.feed, options.plunge) {}
 
-  /// Cuts one loop in layers down to `bottom`; whether there was material.
+  /// Cuts one loop in layers down to `bottom`. Returns whether there was material to cut.
   bool cut(const Loop& loop, double bottom) {
     const double top = top_over(loop, bottom);
     if (top - bottom < kThin) return false;
@@ -152,7 +152,7 @@ class Cutter {
   }
 
  private:
-  /// The highest place of the stock that the cutter meets along it.
+  /// The highest place of the stock that the cutter meets along the loop; `bottom` if there is none.
   double top_over(const Loop& loop, double bottom) const {
     double top = bottom;
     const double step = std::max(0.5 * pitch_, loop.length() / 20000);
@@ -161,7 +161,7 @@ class Cutter {
         top = std::max(top, found.height + pitch_);
     return top - bottom <= pitch_ + kThin ? bottom : top;
   }
-  /// Equal distances between the tabs; fewer than asked for where the loop is too short.
+  /// Ranges of the tabs, at equal distances; fewer than requested if the loop is too short.
   Ranges tabs_on(const Loop& loop) {
     const double wide = options_.tab_width + 2 * radius_;
     const auto fit = static_cast<std::size_t>(loop.length() / (wide + options_.tab_width));
@@ -177,7 +177,7 @@ class Cutter {
     }
     return out;
   }
-  /// The stretches of the loop on which nothing stands in the tool's path down to `bottom`; the others are blocked.
+  /// The stretches of the loop where nothing obstructs the tool down to `bottom`. Adds the others to `blocked`.
   Ranges free_on(const Loop& loop, double bottom) {
     const double step = std::min(0.25 * radius_, 1.0);
     const auto count = static_cast<std::size_t>(std::ceil(loop.length() / step));
@@ -190,7 +190,7 @@ class Cutter {
     const double share = loop.length() / static_cast<double>(count);
     Ranges out;
     if (std::all_of(clear.begin(), clear.end(), [](char c) { return c != 0; })) return {{0, loop.length()}};
-    std::size_t start = 0;  // of the first run of blocked pieces
+    std::size_t start = 0;  // index of the first piece of a run of blocked pieces
     while (start < count && (clear[start] || !clear[(start + count - 1) % count])) ++start;
     start %= count;
     for (std::size_t k = 0; k < count;) {
@@ -238,7 +238,7 @@ class Cutter {
       if (at > from && at < to) return tab;
     return z;
   }
-  /// Places between `from` and `to` at which the height or the direction changes.
+  /// Distances between `from` and `to` along the loop at which height or direction changes.
   std::vector<double> stops(const Loop& loop, double from, double to, const Ranges& tabs) const {
     std::vector<double> out{to};
     for (double lap = std::floor(from / loop.length()) * loop.length(); lap < to; lap += loop.length()) {
@@ -250,7 +250,7 @@ class Cutter {
     out.erase(std::unique(out.begin(), out.end(), [](double a, double b) { return b - a < 1e-9; }), out.end());
     return out;
   }
-  /// Along the loop at `z`, and over tabs.
+  /// Moves along the loop at `z`, and over the tabs.
   void along(const Loop& loop, double from, double to, double z, double bottom, const Ranges& tabs) {
     for (const double s : stops(loop, from, to, tabs)) {
       const Vec3 here = moves_.last();
@@ -262,7 +262,7 @@ class Cutter {
       from = s;
     }
   }
-  /// A layer of a whole loop: down a ramp along it, and round.
+  /// Cuts a layer of a whole loop: down a ramp along the loop, then once round.
   void around(const Loop& loop, double before, double z, bool first, double bottom, const Ranges& tabs) {
     if (first) {
       if (!out_.poses.empty()) ++out_.retracts;
@@ -282,14 +282,14 @@ class Cutter {
     along(loop, s, s + loop.length(), z, bottom, tabs);
     start_ = std::fmod(s, loop.length());
   }
-  /// A layer of an open stretch: down at its beginning.
+  /// Cuts a layer of an open stretch; the cutter moves down at its beginning.
   void stretch(const Loop& loop, double from, double to, double z, double top, double bottom, const Ranges& tabs) {
     if (!out_.poses.empty()) ++out_.retracts;
     moves_.approach(Vec3(loop.point(from), z), in_.plane, top + kAbove);
     along(loop, from, to, z, bottom, tabs);
     leave();
   }
-  /// A quarter of a circle away from the part, where there is room for one.
+  /// Leaves the part on a quarter circle, if there is room for one.
   void arc_away(const Loop& loop, double bottom) {
     const Vec3 here = moves_.last();
     const Vec2 p(here), way = p - loop.point(start_ + loop.length() - std::min(0.1 * radius_, 0.1 * loop.length()));
@@ -321,7 +321,8 @@ class Cutter {
   MoveWriter moves_;
 };
 
-/// Loops in holes before those around the part, which it may come loose with; in each group the nearest one next.
+/// Orders loops: those in holes first, because the loops around the part may cut it loose. In each group the nearest
+/// loop is next.
 void put_in_order(std::vector<std::vector<Vec2>>& loops) {
   const auto around =
       std::stable_partition(loops.begin(), loops.end(), [](const auto& loop) { return area(loop) < 0; });

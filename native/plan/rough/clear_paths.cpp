@@ -10,7 +10,7 @@ namespace riffler::plan {
 
 namespace {
 
-constexpr double kLeaving = 3, kJoining = 5;  // spacings around a path's ends
+constexpr double kLeaving = 3, kJoining = 5;  // spacings around a path's ends within which it may touch cells
 
 }  // namespace
 
@@ -31,7 +31,7 @@ bool ClearPaths::free(std::size_t place) {
   return known_[place] != 0;
 }
 
-/// Whether the cutter may pass at p on a path between two ends.
+/// Whether the cutter may be at `p` on a path from `from` to `to`.
 bool ClearPaths::open(const Vec2& p, const Vec2& from, const Vec2& to) {
   if (!(*in_)[grid_->nearest(p)]) return false;
   const auto within = [&](const Vec2& end, double spacings) {
@@ -87,7 +87,7 @@ std::vector<Vec2> ClearPaths::search(const Vec2& from, const Vec2& aim, bool aim
   return {};
 }
 
-/// Appends the corners after `first` that are needed up to `last`.
+/// Appends the corners that the path needs after place `first`, up to place `last`.
 void ClearPaths::pull(const std::vector<Vec2>& way, std::size_t first, std::size_t last, std::vector<Vec2>& out) {
   if (last == first + 1 || straight(way[first], way[last], way.front(), way.back())) {
     out.push_back(way[last]);

@@ -1,4 +1,4 @@
-// Paths for a cutter through what is cleared of one layer.
+// Paths for a cutter through the cleared area of one layer.
 #pragma once
 
 #include <cstdint>
@@ -9,26 +9,29 @@
 
 namespace riffler::plan {
 
-/// Finds paths on which the cutter stays at places where it may be and meets no cell with material: near a path's ends,
-/// where passes stop and begin next to material, it may touch cells but removes no middle of one. References are kept.
+/// Finds paths along which the cutter stays at permitted places and meets no cell with material. Near a path's ends,
+/// where passes stop and begin next to material, it may touch cells, but removes the middle of none. Keeps references
+/// to its arguments.
 class ClearPaths {
  public:
-  /// `in`: places where the cutter may be; `standing`: cells that it never removes.
+  /// `in`: places where the cutter may be; `standing`: cells that the cutter never removes; `radius`: of the cutter,
+  /// mm.
   ClearPaths(const PlaceGrid& grid, const PlaceSet& in, const PlaceSet& standing, const Layer& layer, double radius);
 
-  /// The corners of a path, both ends included; empty if there is none of at most `most` mm.
+  /// The corners of a path, including both ends; empty if there is no path of at most `most` mm.
   std::vector<Vec2> between(const Vec2& from, const Vec2& to, double most);
-  /// A path to `to` from the nearest place around which nothing stands, so that a rapid may come down there; empty if
-  /// there is none within `most` mm.
+  /// A path to `to` from the nearest place with no material around it, so that a rapid may come down there; empty if
+  /// there is no such place within `most` mm.
   std::vector<Vec2> from_above(const Vec2& to, double most);
-  /// Call it when material has come back.
+  /// Must be called after material has been put back.
   void forget() { known_.assign(known_.size(), 0); }
 
  private:
   bool free(std::size_t place);
   bool open(const Vec2& p, const Vec2& from, const Vec2& to);
   bool straight(const Vec2& a, const Vec2& b, const Vec2& from, const Vec2& to);
-  /// Places from `from` to the first one that is `found`, nearest to `aim` first; empty if there is none.
+  /// Places from `from` to the first place for which `found` returns true; empty if there is none. If `aimed`, searches
+  /// towards `aim`.
   std::vector<Vec2> search(const Vec2& from, const Vec2& aim, bool aimed, double most,
                            const std::function<bool(std::size_t)>& found);
   void pull(const std::vector<Vec2>& way, std::size_t first, std::size_t last, std::vector<Vec2>& out);
@@ -38,7 +41,7 @@ class ClearPaths {
   PlaceBits standing_;
   const Layer* layer_;
   double radius_;
-  std::vector<char> known_;  // places that are free
+  std::vector<char> known_;  // places that are known to be free
   std::vector<double> lengths_;
   std::vector<std::uint32_t> round_, before_;
   std::uint32_t rounds_ = 0;

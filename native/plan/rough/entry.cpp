@@ -11,7 +11,7 @@ namespace riffler::plan {
 
 namespace {
 
-constexpr double kHelixTurn = kPi / 18;  // between two points of a helix
+constexpr double kHelixTurn = kPi / 18;  // angle between two points of a helix, rad
 
 Vec2 on_helix(const Entry& entry, int k) {
   return entry.path.front() + entry.radius * Vec2(std::cos(k * kHelixTurn), std::sin(k * kHelixTurn));
@@ -26,7 +26,7 @@ double length_of(const std::vector<Vec2>& path) {
 }
 
 std::vector<Vec3> way_down(const Entry& entry, double top, double z, double slope) {
-  std::vector<Vec3> out;  // upwards
+  std::vector<Vec3> out;  // in upward order; reversed at the end
   const double rate = std::tan(slope);
   if (entry.radius > 0) {
     const double up = 2 * entry.radius * std::sin(0.5 * kHelixTurn) * rate;
@@ -64,7 +64,7 @@ std::vector<Vec3> level_way(const Entry& entry, double z) {
 }
 
 std::vector<Vec2> ramp_from(const PlaceGrid& grid, const PlaceSet& in, std::size_t start, double length) {
-  // Dijkstra's search over eight neighbours, within a window that holds all that is near enough.
+  // Dijkstra's search over eight neighbours, within a window that contains every place near enough.
   const auto columns = static_cast<std::size_t>(grid.columns);
   const int reach = static_cast<int>(length / grid.spacing) + 1, side = 2 * reach + 1;
   const int column0 = static_cast<int>(start % columns) - reach, row0 = static_cast<int>(start / columns) - reach;

@@ -57,7 +57,7 @@ double StockTops::highest(const Vec2& p) const {
 
 void StockTops::cut(const Vec3& from, const Vec3& to) {
   const double z = std::max(from.z, to.z);
-  // A long slanted line has a large box: cut it in pieces.
+  // A long slanted line has a large box: divide it into pieces.
   const int pieces = 1 + static_cast<int>(glm::length(Vec2(to) - Vec2(from)) / (2 * radius_));
   for (int piece = 0; piece < pieces; ++piece)
     each_along(*grid_, Vec2(glm::mix(from, to, static_cast<double>(piece) / pieces)),
@@ -107,7 +107,7 @@ bool Layer::touches(const Vec2& p) const {
 }
 
 bool Layer::frees(const Vec2& p) const {
-  // Between two such places that are a diagonal apart, the cutter is free of every cell, too.
+  // With this radius the cutter is free of every cell also between two such places that are a diagonal apart.
   const double cell = kCellRadius * grid_->spacing, wide = radius_ + cell;
   return frees(p, std::sqrt(wide * wide + cell * cell));
 }

@@ -1,4 +1,4 @@
-// The material of one layer of roughing, and how wide a moving cutter cuts into it.
+// The material of one layer of roughing, and the width of cut of a cutter that moves through it.
 #pragma once
 
 #include <array>
@@ -13,13 +13,13 @@
 
 namespace riffler::plan {
 
-/// Half the diagonal of a cell, as a share of the spacing, and a little.
+/// Half the diagonal of a cell as a share of the spacing, rounded up.
 constexpr double kCellRadius = 0.7072;
 
-/// Spacings between the cutter and the next middle of a cell with material, where a pass begins.
+/// Distance, in spacings, between the cutter at the start of a pass and the nearest middle of a cell with material.
 constexpr double kSpared = 0.75;
 
-/// Heights of the stock over the cells around the places of a grid. No cell holds more than its height tells.
+/// Heights of the stock in the cells around the places of a grid. No material of a cell is above its height.
 class StockTops {
  public:
   /// `tops`: mm; −∞ where there is no stock.
@@ -27,28 +27,28 @@ class StockTops {
 
   double top(std::size_t place) const { return tops_[place]; }
   const Field& tops() const { return tops_; }
-  /// The highest one of all cells that the cutter at `p` may touch.
+  /// Greatest height of all cells that the cutter at `p` may touch, mm.
   double highest(const Vec2& p) const;
-  /// Takes off what the cutter removes on a straight move of its tip, as if all of that were as high as its higher end.
+  /// Removes what the cutter cuts on a straight move of its tip. The whole move counts as being at its higher end.
   void cut(const Vec3& from, const Vec3& to);
 
  private:
-  static constexpr int kSteps = 4;  // distances from the axis, in a spacing
+  static constexpr int kSteps = 4;  // number of distances from the axis in a spacing
 
   const PlaceGrid* grid_;
   Field tops_;
-  std::vector<double> heights_;  // of the cutter's lower side, at most, over a cell at each distance
+  std::vector<double> heights_;  // upper bound of the cutter's lower side over a cell, at each distance
   double radius_;
 };
 
-/// A set of places as one bit each, so that a disc is a few words in each row.
+/// A set of places with one bit for each place: a disc is a few words in each row.
 class PlaceBits {
  public:
   PlaceBits(const PlaceGrid& grid, const PlaceSet& set);
 
   /// Whether some place of the set is within `radius` of p.
   bool any_within(const Vec2& p, double radius) const;
-  /// Takes those places out of the set, and calls visit(offset from p) for each.
+  /// Removes the places within `radius` of p from the set, and calls visit(offset from p) for each.
   template <class Visit>
   void take_within(const Vec2& p, double radius, const Visit& visit) {
     const auto [first, last] = rows_within(p, radius);
@@ -97,35 +97,36 @@ class PlaceBits {
   std::vector<std::uint64_t> words_;
 };
 
-/// Cells of a layer that have material, which the cutter removes within a radius. A cell has material until all of it
-/// is removed.
+/// The cells of a layer that have material. The cutter is a disc. A cell has material until the whole cell is removed.
 class Layer {
  public:
-  /// `material`: cells that the cutter can remove as a whole; `touched`: these, and those whose middle it can remove.
+  /// `material`: cells that the cutter can remove completely; `touched`: these, and cells whose middle it can remove;
+  /// `radius`: of the cutter, mm.
   Layer(const PlaceGrid& grid, const PlaceSet& material, const PlaceSet& touched, double radius);
 
-  /// Whether a cell still has material that the cutter can remove as a whole.
+  /// Whether a cell that the cutter can remove completely still has material.
   bool material(std::size_t place) const { return material_.has(place); }
-  /// Whether the cutter at `p` removes the last of some cell.
+  /// Whether the cutter at `p` removes the last material of some cell.
   bool touches(const Vec2& p) const;
-  /// Whether the cutter at `p`, and a spacing around it, is free of every cell.
+  /// Whether the cutter at `p` touches no cell with material. Also true between two such places a diagonal apart.
   bool frees(const Vec2& p) const;
-  /// Whether no middle of a cell with material is within `radius` of p.
+  /// Whether no cell with material has its middle within `radius` (mm) of `p`.
   bool frees(const Vec2& p, double radius) const;
-  /// Whether the cutter at `p` leaves `more` spacings around it to the next middle of a cell with material: it may
-  /// shave the sides of some.
+  /// Whether the cutter at `p` is more than `more` spacings from the middle of every cell with material. It may cut the
+  /// sides of some cells.
   bool spares(const Vec2& p, double more) const;
-  /// Moves the cutter by at most half a cell and removes what it touches; the width across the motion, mm, of what it
-  /// has removed in the last moves: in a single one only some cells along its rim lose their middles.
+  /// Moves the cutter by at most half a cell and removes the material that it touches. Returns the width of cut across
+  /// the motion, mm. The width is that of the last few moves, because in one move only some cells at the rim lose their
+  /// middles.
   double move(const Vec2& from, const Vec2& to);
-  /// Removes what the cutter touches where it stands.
+  /// Removes the material that the cutter touches at `p`.
   void place(const Vec2& p);
 
  private:
   const PlaceGrid* grid_;
-  PlaceBits material_, middles_;  // the latter until their middles are removed: widths are measured between those
+  PlaceBits material_, middles_;  // `middles_`: cells whose middle is not removed yet, for measuring widths
   double radius_;
-  std::array<Interval, 4> widths_;  // of the last moves
+  std::array<Interval, 4> widths_;  // cut by the last moves
   std::size_t moves_ = 0;
 };
 

@@ -13,16 +13,16 @@ namespace riffler::plan {
 
 namespace {
 
-constexpr double kBorder = 0.25;                    // of the tolerance, to which borders are found
-constexpr double kSmaller = 0.8, kLeastStep = 0.4;  // steps of a ring that would cut too wide
-constexpr double kWideShare = 0.05;                 // of a ring that may
-constexpr double kAcross = 0.1;                     // of a distance: path that is as quick as a rapid over it
-constexpr double kAround = 2;                       // spacings before and after a cut that is too wide
-constexpr double kCrumb = 2;                        // spacings: rings leave shorter cuts to the next one
-constexpr double kLastRings = 0.7;                  // radii between the rings that look for what is left
-constexpr double kRoomyHelix = 0.3, kLeastHelix = 0.1, kLeastRamp = 0.25;  // of the full helix, of the full ramp
+constexpr double kBorder = 0.25;                    // precision of borders, in tolerances
+constexpr double kSmaller = 0.8, kLeastStep = 0.4;  // factor and lower limit of steps that would cut too wide
+constexpr double kWideShare = 0.05;                 // largest share of a ring that may cut too wide
+constexpr double kAcross = 0.1;                     // mm of path that take as long as 1 mm of a rapid
+constexpr double kAround = 2;                       // spacings before and after a cut that is too wide: also leads
+constexpr double kCrumb = 2;                        // spacings: a ring leaves shorter cuts to the next ring
+constexpr double kLastRings = 0.7;                  // radii between the rings that search for remaining material
+constexpr double kRoomyHelix = 0.3, kLeastHelix = 0.1, kLeastRamp = 0.25;  // shares of full helix and ramp
 
-/// A short move, the width that it cuts, and whether it begins a line.
+/// A short move, the width of its cut, and whether it begins a line.
 struct Step {
   Vec2 to;
   double length, width;
@@ -68,7 +68,7 @@ class Level {
   }
 
  private:
-  /// The cells with material that the cutter removes from some place; fills `in_`, `material_` and `standing_`.
+  /// The cells with material that the cutter can remove from some place. Fills `in_`, `material_` and `standing_`.
   Layer layer(double least) {
     for (std::size_t k = 0; k < in_.size(); ++k) in_[k] = scene_.heights[k] <= z_;
     const Field far = distance_to(grid_, in_);
@@ -83,7 +83,7 @@ class Level {
     return {grid_, material_, touched, scene_.radius};
   }
 
-  /// Areas with stock and without part that the cutter reaches nothing of, but for those of a cell or two.
+  /// Finds areas with stock and without part of which the cutter reaches nothing. Areas of a cell or two are ignored.
   void find_holes(double least, const Field& far) {
     PlaceSet open(grid_.size());
     for (std::size_t k = 0; k < open.size(); ++k) open[k] = scene_.ground[k] <= z_ && scene_.stock.top(k) > z_ + least;
@@ -112,7 +112,7 @@ class Level {
     }
   }
 
-  /// Enters each area that no path leads to at its widest place; leaves out those that are too narrow.
+  /// Makes an entry at the widest place of each area to which no path leads. Leaves out areas that are too narrow.
   void enter_all(PlaceSet& wanted) {
     std::vector<std::size_t> closed;
     for (std::size_t k = 0; k < wanted.size(); ++k)
@@ -165,7 +165,7 @@ class Level {
     add_path_lengths(grid_, in_, cleared, lengths_);
   }
 
-  /// Wants no place of the area around one any more.
+  /// Removes the whole area around a place from `wanted`.
   void leave_out(std::size_t place, PlaceSet& wanted) const {
     Field area(grid_.size(), kInfinity);
     add_path_lengths(grid_, in_, {place}, area);
@@ -173,7 +173,7 @@ class Level {
       if (area[k] < kInfinity) wanted[k] = 0;
   }
 
-  /// Curves around the places that paths lead to, on their side.
+  /// Curves around the places to which paths lead, on the inner side of their border.
   std::vector<Curve> borders(const Field& near) const {
     Field side(grid_.size());
     for (std::size_t k = 0; k < side.size(); ++k) side[k] = in_[k] && lengths_[k] < kInfinity ? -1 : 1;
@@ -188,7 +188,7 @@ class Level {
     });
   }
 
-  /// Sorts the cells that rings may cross by the least length at their places.
+  /// Sorts the cells that rings may cross by the smallest path length at their corners.
   void sort_cells() {
     const auto up = static_cast<std::size_t>(grid_.columns);
     for (int row = 0; row + 1 < grid_.rows; ++row)
@@ -200,7 +200,7 @@ class Level {
     std::sort(cells_.begin(), cells_.end());
   }
 
-  /// The places at one length. Lengths of neighbours differ by no more than the spacing.
+  /// Curves of one path length. Lengths of neighbouring places differ by at most the spacing.
   std::vector<Curve> ring(double length) const {
     const auto at = [&](double x) {
       return std::lower_bound(cells_.begin(), cells_.end(), std::pair<double, std::size_t>(x, 0));
@@ -211,8 +211,8 @@ class Level {
     return contours(grid_, lengths_, length, {}, cells);
   }
 
-  /// Cuts a ring beyond the places as far as `at`, and returns how far it goes. Where the front is bent inwards, a full
-  /// step would cut wider than asked for: then the ring takes a smaller one, and the next one hardly more.
+  /// Cuts the ring beyond path length `at`, and returns the ring's path length. Where the front is concave, a full step
+  /// would cut too wide: then this ring takes a smaller step, and the next ring a step that is hardly larger.
   double cut_ring(double at) {
     const Layer before = layer_;
     const std::size_t runs = out_.runs.size();
@@ -241,7 +241,7 @@ class Level {
     return passes;
   }
 
-  /// The nearest pass next.
+  /// Cuts the passes; the nearest pass is always next.
   void cut(const std::vector<Pass>& passes) {
     std::vector<char> done(passes.size(), 0);
     for (std::size_t left = passes.size(); left > 0; --left) {
@@ -264,7 +264,7 @@ class Level {
   }
 
   void cut_along(const std::vector<Vec2>& path) {
-    std::size_t first = 0;  // what leads there removes nothing
+    std::size_t first = 0;  // the path up to here removes nothing
     while (first + 1 < path.size() && layer_.spares(path[first + 1], kSpared)) ++first;
     if (first > 0) --first;
     const std::vector<Vec2> rest(path.begin() + static_cast<std::ptrdiff_t>(first), path.end());
@@ -295,8 +295,8 @@ class Level {
     }
   }
 
-  /// Appends the steps to a run. Those around a place where the width of cut goes beyond what is asked for are leads:
-  /// cells lose their middles a little before and after that.
+  /// Appends the steps to a run. Steps near a place where the cut is too wide become leads, because cells lose their
+  /// middles a little before and after that place.
   void add_steps(LevelRun& run) {
     std::vector<char> wide(steps_.size(), 0);
     const auto spread = [&](std::size_t k, double& since) {
@@ -335,12 +335,12 @@ class Level {
   LevelRuns out_;
   Layer layer_;
   ClearPaths paths_;
-  std::vector<Step> steps_;  // of the pass
+  std::vector<Step> steps_;  // steps of the present pass
   double step_, pass_step_ = 0;
   Field lengths_;
   std::vector<std::pair<double, std::size_t>> cells_;
-  double since_wide_ = kInfinity;  // mm since the last move that cut wider than asked for
-  double wide_ = 0, all_ = 0;      // mm: length of moves that cut wider than asked for, and of all
+  double since_wide_ = kInfinity;  // mm since the last move that cut too wide
+  double wide_ = 0, all_ = 0;      // mm: length of the moves that cut too wide, and of all moves
 };
 
 }  // namespace

@@ -10,9 +10,9 @@ namespace riffler::plan {
 
 namespace {
 
-constexpr double kMore = 1.5;  // spacings: cells are cleared as far as that
+constexpr double kMore = 1.5;  // spacings added to the step, so that a ramp begins in cleared cells
 
-/// The points of a curve one after the other, and the length up to each.
+/// The points of a curve in order, and the length of the curve up to each point.
 class Track {
  public:
   Track(std::vector<Vec2> points, const PassScene& scene) : points_(std::move(points)), scene_(scene) {
@@ -29,7 +29,8 @@ class Track {
     return std::min(points_.size() - 1,
                     static_cast<std::size_t>(std::lower_bound(at_.begin(), at_.end(), length) - at_.begin()));
   }
-  /// Point k, moved to the cleared side by a share of the step and a little, as far as the cutter may be there.
+  /// Point k, moved to the cleared side by a share of slightly more than the step, or less where the cutter must not
+  /// be.
   Vec2 beside(std::size_t k, double share) const {
     const Vec2 along = points_[std::min(k + 2, points_.size() - 1)] - points_[k < 2 ? 0 : k - 2];
     const double size = glm::length(along);
@@ -47,12 +48,12 @@ class Track {
   const PassScene& scene_;
 };
 
-/// How far off the curve a ramp is after a share of its length.
+/// Distance of a ramp from the curve after a share of its length: from 1 at the start to 0 at the end.
 double beside_after(double share) {
   return 0.5 + 0.5 * std::cos(kPi * std::clamp(share, 0.0, 1.0));
 }
 
-/// All points of a track; `walled`: the cutter touches something at the first one already.
+/// Adds a pass along all points of a track. `walled`: the cutter touches material at the first point already.
 void add_part(const Track& track, bool walled, const PassScene& scene, std::vector<Pass>& out) {
   Pass pass;
   if (walled) {

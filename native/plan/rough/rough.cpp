@@ -20,15 +20,15 @@ namespace riffler::plan {
 namespace {
 
 constexpr double kMostPlaces = 4e6;
-constexpr double kRampDiameters = 1.5;   // length of a ramp from one ring to the next
-constexpr double kSlotDiameters = 2;     // length of a ramp down into a slot
-constexpr double kRapid = 10'000;        // mm/min, to compare links with
-constexpr double kStops = 0.5 / 60;      // min, that a machine takes for the stops of a rapid up, across and down
-constexpr double kLeastSlope = 0.001;    // rad: below it, a helix is a program of its own
-constexpr std::size_t kChunk = 1 << 18;  // places whose drops are in memory at a time
-constexpr double kHelix = 0.45;          // radius of a helix in diameters
-constexpr double kLeastLayer = 0.02;     // of the stepdown: thinner material stays
-constexpr double kLevel = 1e-6;          // mm by which places of a level face may differ
+constexpr double kRampDiameters = 1.5;   // length of a ramp from one ring to the next, in diameters
+constexpr double kSlotDiameters = 2;     // length of a ramp down into a slot, in diameters
+constexpr double kRapid = 10'000;        // mm/min, of the rapids that links are compared with
+constexpr double kStops = 0.5 / 60;      // min: time of a machine's stops in rapids up, across and down
+constexpr double kLeastSlope = 0.001;    // rad: flatter helices would make the program too long
+constexpr std::size_t kChunk = 1 << 18;  // number of places whose drops are in memory at a time
+constexpr double kHelix = 0.45;          // radius of a helix, in diameters
+constexpr double kLeastLayer = 0.02;     // material that is less high stays, in stepdowns
+constexpr double kLevel = 1e-6;          // largest difference in height between places of a level face, mm
 
 void check(const RoughOptions& o, const Tool& tool) {
   base::require_length(o.stepdown, "stepdown");
@@ -48,7 +48,7 @@ void check(const RoughOptions& o, const Tool& tool) {
   require_upright_cutter(tool, "roughing");
 }
 
-/// Places over the stock, and all around it as far as the cutter reaches.
+/// A grid of places over the stock and around it, as far as the cutter reaches.
 PlaceGrid grid_over(const Box3& stock, double radius, double spacing) {
   PlaceGrid grid;
   grid.spacing = spacing;
@@ -64,7 +64,7 @@ PlaceGrid grid_over(const Box3& stock, double radius, double spacing) {
   return grid;
 }
 
-/// Heights of a cutter that is let down over all places; −∞ where it touches nothing.
+/// Heights of a cutter that is lowered at all places; −∞ where it touches nothing.
 Field heights(const PlaceGrid& grid, const DropCutter& drop, const Progress& progress) {
   Field out;
   out.reserve(grid.size());
@@ -81,8 +81,8 @@ Field heights(const PlaceGrid& grid, const DropCutter& drop, const Progress& pro
   return out;
 }
 
-/// Heights of the levels, descending: one every stepdown from the bottom, so that they are the same for what is left of
-/// a stock, and one on each level face of part and allowance that is as large as the cutter.
+/// Heights of the levels, descending: one every stepdown, counted from the bottom so that they stay the same when part
+/// of the stock is already removed, and one on each level face of part and allowance that is as large as the cutter.
 std::vector<double> level_heights(const PlaceGrid& grid, Field drop, double top, double bottom, double stepdown,
                                   double radius) {
   std::vector<double> out;
@@ -104,7 +104,7 @@ std::vector<double> level_heights(const PlaceGrid& grid, Field drop, double top,
   return out;
 }
 
-/// Writes the levels' moves. Where the drop surface rises above a move, the tool goes over it.
+/// Writes the moves of the levels. Where the drop surface rises above a move, the tool moves over it.
 class Writer {
  public:
   Writer(RoughResult& out, const TurnedScene& scene, const DropCutter& part, const RoughOptions& options,
@@ -170,7 +170,7 @@ class Writer {
   MoveWriter moves_;
 };
 
-/// Names the areas that are left out; one that is below another is the same one.
+/// Adds the areas that are left out to `blocked`. Areas below each other count as one.
 void add_blocked(const std::vector<LevelRuns>& levels, std::vector<Vec3> LevelRuns::* places, const char* reason,
                  const Mat3& frame, double near, RoughResult& out) {
   std::vector<Vec2> known;
@@ -220,7 +220,7 @@ RoughResult rough(const SetupScene& scene, const Tool& tool, const RoughOptions&
                          profile.radius_at(options.stepdown),
                          profile.radius(),
                          std::max(widest - 2 * spacing, 0.5 * widest),
-                         std::max(widest - spacing, 0.5 * widest),  // widths are measured in cells
+                         std::max(widest - spacing, 0.5 * widest),  // less a spacing: widths are measured in cells
                          kRampDiameters * tool.diameter(),
                          kHelix * tool.diameter(),
                          kSlotDiameters * tool.diameter(),

@@ -1,4 +1,4 @@
-"""Feeds of a program from the simulated removal: for `Program.scheduled`."""
+"""Computes the feeds of a program from its simulated removal, for `Program.scheduled`."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 from ._core import Cancelled, Program, Tool, Volume
 from .arguments import Progress
 
-PITCHES = 4.0  # a step of the simulation in pitches: rays lose their material in lumps
-RADII = 0.25  # and at least so many radii of the cutter
-JUMP = 1.15  # steps whose feeds differ by less stay one row
+PITCHES = 4.0  # smallest step of the simulation in pitches, because rays lose their material in lumps
+RADII = 0.25  # smallest step in radii of the cutter; the larger step counts
+JUMP = 1.15  # steps whose feeds differ by a smaller factor stay one row
 SLACK = 1e-9
 
 
@@ -42,7 +42,7 @@ def scheduled(
 
 
 def _limit(removal_rate: float | None, force: float | None, removal_constant: float) -> float:
-    """mm³/min."""
+    """Largest removal rate, mm³/min."""
     named = {"removal_rate": removal_rate, "force": force, "removal_constant": removal_constant}
     for name, value in named.items():
         if value is not None and not (isfinite(value) and value > 0):
@@ -55,8 +55,8 @@ def _limit(removal_rate: float | None, force: float | None, removal_constant: fl
 
 
 class _Split:
-    """A program's rows with those in between at which the simulation stops: ``row`` is the program's row that a step
-    belongs to, ``share`` of its move the end of the step."""
+    """The steps of the simulation: each move of a program is divided into steps. ``row``: the program's row of each
+    step; ``share``: the part of the row's move up to the end of the step."""
 
     def __init__(self, program: Program, pitch: float, tools: Mapping[int, Tool]) -> None:
         self.tools = tools
@@ -78,7 +78,7 @@ class _Split:
 
 
 def _between(a: NDArray[np.float64], b: NDArray[np.float64], share: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Poses on moves: tips on lines, axes on great circles at constant rate; the ends exactly."""
+    """Poses on the moves from ``a`` to ``b``: tips on lines, axes on great circles at constant rate; exact ends."""
     s = share[:, None]
     tip = a[:, :3] + s * (b[:, :3] - a[:, :3])
     angle = np.arctan2(np.linalg.norm(np.cross(a[:, 3:], b[:, 3:]), axis=1), (a[:, 3:] * b[:, 3:]).sum(axis=1))[:, None]
@@ -90,7 +90,7 @@ def _between(a: NDArray[np.float64], b: NDArray[np.float64], share: NDArray[np.f
 
 
 def _removed(program: Program, split: _Split, stock: Volume, progress: Progress) -> NDArray[np.float64]:
-    """mm³ by each step."""
+    """Volume that each step removes, mm³."""
     left, out = copy(stock), np.zeros(len(split.row))
     number = program.tool[split.row]
     lost = program.at_machine[split.row] | program.at_machine[np.maximum(split.row - 1, 0)]
@@ -131,7 +131,7 @@ def _rebuilt(
         )
     keep, feeds = _runs(split.row, feed)
     rows = split.row[keep]
-    new = {old_row: k for k, old_row in enumerate(rows)}  # the last of a row's pieces
+    new = {old_row: k for k, old_row in enumerate(rows)}  # the last step of each row
     return Program(
         split.poses[keep],
         feeds,
@@ -148,7 +148,7 @@ def _rebuilt(
 
 
 def _runs(row: NDArray[np.intp], feed: NDArray[np.float64]) -> tuple[NDArray[np.intp], NDArray[np.float64]]:
-    """The last steps of runs within one row whose feeds differ little, and the least feed of each run."""
+    """Joins steps of a row whose feeds differ little. Returns the last step and the smallest feed of each run."""
     keep: list[int] = []
     feeds: list[float] = []
     low = high = 0.0

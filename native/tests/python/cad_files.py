@@ -1,5 +1,5 @@
-"""Writes the CAD files of test_cad.py with OpenCASCADE: ``python cad_files.py FOLDER``. The tests' process itself never
-imports OpenCASCADE."""
+"""Writes the CAD files of test_cad.py with OpenCASCADE: ``python cad_files.py FOLDER``. It runs in a separate
+process, so that the tests' process never imports OpenCASCADE."""
 
 import sys
 from pathlib import Path
@@ -78,7 +78,7 @@ def broken_solid(shapes):
 
 
 def loose(shape):
-    """Its faces, each with edges of its own."""
+    """The shape's faces as separate faces, which share no edges."""
     return [BRepBuilderAPI_Copy(face).Shape() for face in faces(shape)]
 
 
@@ -97,7 +97,7 @@ def shift(x, y, z):
 
 
 def height(face):
-    """z of its centre of area."""
+    """Height of the face's centre of area."""
     found = GProp_GProps()
     BRepGProp.SurfaceProperties_s(face, found)
     return found.CentreOfMass().Z()
@@ -108,7 +108,7 @@ def named(label, name):
 
 
 def assembly(path, unit):
-    """A plate with two pins of one shape; the plate's top is red and named, and the pins are blue."""
+    """A plate with two equal pins. The plate's top is red and has a name; the pins are blue."""
     document = TDocStd_Document(TCollection_ExtendedString("BinXCAF"))
     shapes = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
     colors = XCAFDoc_DocumentTool.ColorTool_s(document.Main())

@@ -1,5 +1,5 @@
-"""Made parts for operations, and a judge of them that shares nothing with what it judges: a z-map in numpy of the
-cutter at dense places of each move, and surface samples that the cutter touches."""
+"""Parts for operations, and a judge of their results that shares no code with the planner: it uses a z-map in numpy,
+with the cutter at dense places of each move, and samples of the surface that the cutter can touch."""
 
 import math
 
@@ -9,7 +9,7 @@ from riffler import plan
 
 
 def solid_under(x, z):
-    """A block with a roof of triangles over the grid ``x`` × ``x``."""
+    """A block with a roof of triangles at the heights of the grid ``x`` × ``x``."""
     n = len(x)
     gx, gy = np.meshgrid(x, x, indexing="ij")
     top = np.stack([gx, gy, z], axis=-1).reshape(-1, 3)
@@ -26,7 +26,7 @@ def solid_under(x, z):
 
 
 def boss_on_plate(degrees=10.0):
-    """A box turned by 10° on a plate: long triangles, upright walls."""
+    """A box, turned by 10°, on a plate. It has long triangles and upright walls."""
     low = np.array([[0, 0], [30, 0], [30, 30], [0, 30]], float)
     c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
     high = (low - 15) * [0.4, 0.3] @ np.array([[c, s], [-s, c]]) + 15
@@ -61,7 +61,7 @@ def sphere_on_plate():
 
 
 def heights(mesh, x, y):
-    """z-map of a mesh from above at the points (x, y), by barycentric coordinates; −∞ where there is nothing."""
+    """Heights of a mesh, seen from above, at the points (x, y), by barycentric coordinates; −∞ outside of the mesh."""
     out = np.full(x.shape, -np.inf)
     tri = np.asarray(mesh.vertices)[np.asarray(mesh.triangles)]
     for a, b, c in tri:
@@ -82,14 +82,14 @@ def heights(mesh, x, y):
 
 
 def lower_side(tool, rho):
-    """Height over the tip of ball, flat and bull-nosed cutters."""
+    """Height of the lower side of ball, flat and bull-nosed cutters above the tip."""
     flat, rounding = corner(tool)
     beyond = np.maximum(rho - flat, 0)
     return np.where(beyond <= rounding, rounding - np.sqrt(np.maximum(rounding**2 - beyond**2, 0)), np.inf)
 
 
 def z_map(op, x, y, step=0.05):
-    """What is left over the points after all moves at feed, by brute force: the cutter at dense places of each move."""
+    """Height of the material at the points after all moves at feed, by brute force: the cutter at dense places."""
     out = np.full(x.shape, np.inf)
     r = op.tool.diameter / 2
     for k in range(1, len(op)):
@@ -115,7 +115,8 @@ def setup_of(part, pitch=0.4, top=1.0, **more):
 
 
 def revolved(profile, sides=48, centre=(15.0, 15.0)):
-    """A solid of revolution about the upright axis through ``centre``: (radius, height) from the axis to the axis."""
+    """A solid of revolution about the upright axis through ``centre``. Its profile (radius, height) begins and ends on
+    the axis."""
     profile = np.asarray(profile, float)
     turn = np.linspace(0, 2 * math.pi, sides + 1)[:-1]
     rings = [
@@ -163,7 +164,7 @@ PARTS = {"dome": dome, "cone": cone, "steps": steps, "torus": torus, "cube at 10
 
 
 def corner(tool):
-    """Radius of the flat bottom and of the rounding of a ball, flat or bull-nosed cutter."""
+    """Radius of the flat bottom, and of the rounding, of a ball, flat or bull-nosed cutter."""
     if tool.kind == "flat":
         return tool.diameter / 2, 0.0
     if tool.kind == "ball":
@@ -173,7 +174,7 @@ def corner(tool):
 
 
 def tips_touching(tool, points, normals, gap):
-    """Tips of the cutter when it touches surface points with their normals, `gap` mm off."""
+    """Tips of the cutter when it touches the surface at points with these normals, at a distance of `gap` mm."""
     flat, rounding = corner(tool)
     level = normals[:, :2] / np.maximum(np.linalg.norm(normals[:, :2], axis=1), 1e-12)[:, None]
     tips = points + normals * (rounding + gap)
@@ -183,7 +184,7 @@ def tips_touching(tool, points, normals, gap):
 
 
 def surface_samples(part, count, seed):
-    """Random points of the part's triangles by area, their normals and triangles."""
+    """Random points on the part, spread evenly by area, with their normals and triangles."""
     random = np.random.default_rng(seed)
     corners = np.asarray(part.vertices)[np.asarray(part.triangles)]
     cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -197,11 +198,11 @@ def surface_samples(part, count, seed):
 
 
 class Judge:
-    """What an operation leaves at random points of a part's surface.
+    """Checks what an operation leaves at random points of a part's surface.
 
-    ``reachable``: the cutter, a little larger, touches the point and nothing else of a cloud of surface points, with
-    its tip not below the part. ``standing`` and ``deep``: what is left higher than cusp + tolerance over part +
-    allowance, and what is cut deeper than tolerance below it, seen along the normals.
+    ``reachable``: whether a slightly larger cutter can touch the point without touching any other point of a cloud on
+    the surface, and with its tip not below the part. ``standing``: places where material higher than cusp + tolerance
+    stays on part + allowance. ``deep``: places that are cut deeper than the tolerance. Both measure along normals.
     """
 
     def __init__(self, part, tool, allowance, slopes, count=1500, seed=1, larger=0.05, within=None):
@@ -229,16 +230,16 @@ class Judge:
         return z_map(op, at[:, 0], at[:, 1]) - at[:, 2]
 
     def standing(self, op, cusp, tolerance):
-        """Places of reachable samples where more stands."""
+        """Reachable samples where more material stays than cusp and tolerance allow."""
         left = self._left(op, self.allowance + cusp + tolerance + 2e-3)
         return self.points[self.reachable & (left > 0)]
 
     def deep(self, op, tolerance):
-        """Places of all samples where the cut is deeper."""
+        """Samples, reachable or not, where the cut is deeper than the tolerance."""
         off = self.allowance - tolerance - 1e-3
         left = self._left(op, off)
         low = left < 0
         at = self.points[low] + off * self.normals[low]
-        # Next to an edge it lies just under another face, where it may be cut.
+        # Next to an edge the point lies just under another face, which may be cut there.
         low[low] = (heights(self.part, at[:, 0], at[:, 1]) + self.allowance - at[:, 2]) > tolerance + 1e-3
         return self.points[low]

@@ -1,6 +1,6 @@
-"""STEP, IGES and BREP files: volumes against closed forms, names, colours, units, damaged files, and the process.
+"""STEP, IGES and BREP files: volumes compared with closed forms, names, colours, units, damaged files, the process.
 
-OpenCASCADE writes the files (cad_files.py), in a process of its own.
+OpenCASCADE writes the files in a separate process (cad_files.py).
 """
 
 import json
@@ -59,7 +59,7 @@ def test_solids_are_closed_and_have_their_volume(files, name):
     assert part.mesh.audit().components == part.report.solids == 1
     assert part.report.volume == pytest.approx(volume, rel=1e-9)
     assert part.report.area == pytest.approx(area, rel=1e-9)
-    # A surface within the tolerance of the exact one encloses its volume but for tolerance times area.
+    # A surface within the tolerance of the exact one has the same volume, up to tolerance times area.
     assert abs(part.mesh.volume - volume) <= 0.01 * area
     assert part.report.deviation <= 0.01
 
@@ -70,7 +70,7 @@ def test_triangles_of_a_torus_are_within_the_tolerance_everywhere(files):
     weights = np.array([(i, j, 8 - i - j) for i in range(9) for j in range(9 - i)]) / 8
     points = np.einsum("wc,tcx->twx", weights, part.mesh.vertices[part.mesh.triangles]).reshape(-1, 3)
     distance = np.hypot(np.hypot(points[:, 0], points[:, 1]) - 20, points[:, 2]) - 8
-    assert abs(distance).max() <= 0.05 * 1.1  # 10 %: it is measured at middles, not proven
+    assert abs(distance).max() <= 0.05 * 1.1  # 10 % more, because the tolerance is measured at middles, not proven
     assert part.report.deviation <= 0.05
     finer = cad.read(files / "torus.step", tolerance=0.02)
     assert len(finer.mesh.triangles) > 1.5 * len(part.mesh.triangles)
@@ -163,7 +163,7 @@ def test_unit_can_be_set_where_the_file_states_a_wrong_one(files):
     assert "its numbers are taken in m, as asked; it states mm" in metres.report.notes
 
 
-# --- what is broken ---------------------------------------------------------------------------------------------------
+# --- broken files -----------------------------------------------------------------------------------------------------
 
 
 @needs_occ
@@ -265,7 +265,7 @@ def test_opencascade_stays_out_of_the_callers_process(files):
 
 
 def fake(folder: Path, body: str) -> Path:
-    """A Python for the reader that runs other code: what the file would do to it."""
+    """A substitute for the reader's Python that runs ``body``, to simulate what a file does to the reader."""
     program = folder / "python"
     program.write_text(f"#!{sys.executable}\nimport sys, os, time, signal\nfolder = sys.argv[2]\n{body}\n")
     program.chmod(0o755)
@@ -350,7 +350,7 @@ def test_progress_rises_to_the_end(files):
 
 
 def damaged(content: bytes, chance: random.Random) -> bytes:
-    """The file with some of its header or data overwritten, cut out, doubled, or swapped."""
+    """The file's content with random parts of its header or data overwritten, removed, doubled or swapped."""
     data = bytearray(content)
     for _ in range(chance.randint(1, 6)):
         at = chance.randrange(len(data)) if chance.random() < 0.5 else chance.randrange(min(len(data), 1500))
@@ -432,4 +432,4 @@ def test_convert_refuses_options_of_the_other_kind(tmp_path, monkeypatch, capsys
     assert cli.main(["mesh", "convert", "part.step", "out.stl", "--unit", "inch"]) == 2
     assert "--unit is for meshes; part.step states its own" in capsys.readouterr().err
     assert not (tmp_path / "out.stl").exists()
-    assert cli.main(["convert", "part.stl", "--pitch", "1", "--out", "part.rvol"]) == 0  # the old name
+    assert cli.main(["convert", "part.stl", "--pitch", "1", "--out", "part.rvol"]) == 0  # the old name of the verb

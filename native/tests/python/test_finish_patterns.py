@@ -1,4 +1,4 @@
-"""Patterns of finishing, on made and real parts, judged by finish_judge.py: it shares nothing with the planner."""
+"""Patterns of finishing on synthetic and real parts, checked by finish_judge.py, which shares no code with the core."""
 
 import math
 import os
@@ -31,7 +31,7 @@ def finished(part, tool, pattern, slopes, **more):
 
 
 def assert_kept(op, judge, least=60, cusp=CUSP, tolerance=TOLERANCE, share=0.0):
-    """The promise: nothing deeper, and nothing higher where the cutter reaches, but for a share of the samples."""
+    """Asserts that no sample is cut too deep, and at most ``share`` of the reachable samples are left too high."""
     assert judge.reachable.sum() >= least, "the judge has hardly a sample"
     deep, standing = judge.deep(op, tolerance), judge.standing(op, cusp, tolerance)
     assert len(deep) == 0, f"cut too deep at {deep[:3]}"
@@ -49,7 +49,7 @@ def test_waterline_cuts_steep_faces_to_the_cusp_and_no_deeper(name, tool):
     part, slopes = PARTS[name](), degrees(25, 90)
     op = finished(part, TOOLS[tool], "waterline", slopes)
     assert_kept(op, Judge(part, TOOLS[tool], 0.0, slopes))
-    program = plan.program(setup_of(part), [op])  # simulates it: rapids, shank and gouges
+    program = plan.program(setup_of(part), [op])  # simulates the operation: rapids, shank and gouges
     assert len(program) == len(op)
 
 
@@ -59,7 +59,7 @@ def test_waterline_cuts_steep_faces_to_the_cusp_and_no_deeper(name, tool):
 def test_other_patterns_cut_to_the_cusp_and_no_deeper(name, pattern, tool):
     part, slopes = PARTS[name](), degrees(0, 65)
     op = finished(part, TOOLS[tool], pattern, slopes)
-    # Turns and rays are judged at places along them: a crease between two places may stay higher.
+    # Turns and rays are checked at places along them, so a crease between two places may stay higher.
     assert_kept(op, Judge(part, TOOLS[tool], 0.0, slopes), share=0.0 if pattern == "scallop" else SELDOM)
     assert len(plan.program(setup_of(part), [op])) == len(op)
 
@@ -85,7 +85,7 @@ def test_the_allowance_stays_on_walls_and_on_tops(pattern):
 
 
 def test_waterline_leaves_no_step_where_the_part_has_none():
-    """Between neighbouring samples of a cone's wall, what is left differs by no more than cusp and tolerance."""
+    """The height left at neighbouring samples of a cone's wall differs by at most cusp and tolerance."""
     part = cone()
     op = finished(part, BALL, "waterline", degrees(30, 90), cusp=0.02, tolerance=0.005)
     turn = 2 * math.pi * (np.arange(48) + 0.5) / 48
@@ -189,7 +189,7 @@ def test_spiral_is_one_curve_and_radial_rows_meet_at_the_centre():
         plan.finish(setup, BALL, "radial", centre=(math.nan, 0, 0))
 
 
-# ---- what is meant
+# ---- selected faces
 
 
 @pytest.mark.parametrize("pattern", plan.PATTERNS)
@@ -220,7 +220,7 @@ def test_curves_and_triangles_choose_what_is_finished(pattern):
     assert op.poses.tobytes() == again.poses.tobytes()
     cuts = op.poses[op.kind == 2]
     assert len(cuts)
-    # A ball on the edge of the top at most.
+    # At most, the ball rolls over the edge of the top.
     assert cuts[:, 2].min() >= (3 if pattern == "waterline" else 5) - 1e-6
     assert_kept(op, Judge(part, BALL, 0.0, slopes, count=6000, within=lambda _, triangles: chosen[triangles]), least=20)
 
@@ -280,9 +280,9 @@ def test_real_models_are_cut_to_the_cusp_and_no_deeper(name, pattern, slopes):
     part = riffler.Mesh((np.asarray(part.vertices) - lower) * (40 / (upper - lower).max()), part.triangles)
     op = finished(part, BALL, pattern, degrees(*slopes), cusp=0.2, tolerance=0.05)
     judge = Judge(part, BALL, 0.0, degrees(*slopes), count=3000)
-    if name == "suzanne":  # an open model, seen from above: what lies under something is not the judge's either
+    if name == "suzanne":  # an open model: from above, the judge cannot see covered samples either
         judge.points, judge.normals, judge.reachable = (
             x[judge.reachable] for x in (judge.points, judge.normals, judge.reachable)
         )
-    # Levels leave 0.5 % of the samples on upright walls of ktoolcor higher, which is a fault of theirs.
+    # A known fault: levels leave 0.5 % of the samples on upright walls of ktoolcor too high.
     assert_kept(op, judge, least=15, cusp=0.2, tolerance=0.05, share=SELDOM if pattern == "waterline" else 0.0)

@@ -1,4 +1,4 @@
-"""Jobs: the file and its errors, tool tables, and what comes of a job, judged by a height map in numpy."""
+"""Jobs: the job file and its errors, tool tables, and the results of a job, checked with a height map in numpy."""
 
 import json
 import math
@@ -71,7 +71,7 @@ def changed(folder, *changes):
 
 
 def heights_after(program, size, top, cell=0.2):
-    """Heights that the moves at feed of upright flat and ball cutters leave, by brute force."""
+    """Heights of the material after all moves at feed of upright flat and ball cutters, by brute force."""
     x, y = np.meshgrid(np.arange(cell / 2, size[0], cell), np.arange(cell / 2, size[1], cell), indexing="ij")
     z = np.full(x.shape, float(top))
     for k in range(1, len(program)):
@@ -89,7 +89,7 @@ def heights_after(program, size, top, cell=0.2):
 
 
 def surface(x, y):
-    """The top of the part by rays along z."""
+    """Heights of the part's top, by rays along z."""
     part = riffler.shape.relief([[0.3, 1.0], [0.6, 0.3]], size=(20, 20), depth=10)
     corners = part.vertices[part.triangles]
     out = np.full(x.shape, -np.inf)
@@ -124,7 +124,7 @@ def test_a_job_writes_a_program_that_makes_the_part(folder):
     x, y, z = heights_after(program, (20, 20), 11)
     part = surface(x, y)
     over = z - part
-    # A cell's middle is not where the ball touches: steep faces rise within a cell.
+    # The ball does not touch at a cell's middle: steep faces rise within a cell.
     assert over.min() > -0.02
     flat = (x > 4) & (x < 16) & (y > 4) & (y < 16)
     assert np.quantile(over[flat], 0.9) < 0.2
@@ -372,7 +372,7 @@ def test_the_example_runs(tmp_path):
     assert done.returncode == 0, done.stderr
     data = json.loads(done.stdout)
     assert all(op["poses"] for op in data["operations"])
-    # The holes, which are drilled later.
+    # The warnings are about the holes, which are drilled later.
     assert all("narrower than the tool and allowance" in text for text in data["warnings"])
     part = riffler.Mesh.read(folder / "plate.stl")
     assert part.volume < data["left"] < data["stock"]["upper"][2] * 78 * 48

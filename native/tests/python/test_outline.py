@@ -1,4 +1,5 @@
-"""Outlines, drilling and pencil operations, judged in numpy: height maps that all moves cut, distances to shapes."""
+"""Outlines, drilling and pencil operations, checked in numpy with height maps that all moves cut, and with distances
+from shapes."""
 
 import math
 
@@ -16,7 +17,7 @@ CENTRES, ROUND, HOLE, SMALL = ((14.0, 17.0), (30.0, 17.0)), 9.0, 5.0, 1.5
 
 
 def slot_shape(x, y):
-    """Signed distance of a stadium with a hole of Ø10 and one of Ø3: negative inside the part."""
+    """Signed distance from a stadium with holes of Ø10 and Ø3; negative inside the part."""
     (x0, y0), (x1, _) = CENTRES
     outer = np.hypot(x - np.clip(x, x0, x1), y - y0) - ROUND
     return np.maximum.reduce([outer, HOLE - np.hypot(x - x0, y - y0), SMALL - np.hypot(x - x1, y - y0)])
@@ -36,7 +37,7 @@ def outer_curve():
 
 
 def plate(z=4.0):
-    """The stadium as a mesh of triangles: walls, and lids of strips between curves that are cut at common x."""
+    """The stadium as a mesh: walls, and lids made of strips between curves that are divided at common values of x."""
     volume = riffler.Volume.block((0, 0, 0), (*SIZE[:2], z), pitch=0.2, directions="xyz")
     keep = riffler.Volume.block((0, 0, 0), (*SIZE[:2], z), pitch=0.2, directions="xyz")
     tool = riffler.Tool.flat(diameter=2 * ROUND, length=30)
@@ -57,7 +58,7 @@ PLATE = plate()
 
 
 def swept(op, radius, kinds, step=0.05):
-    """Places of the tip, dense, of the moves of some kinds."""
+    """Dense places of the tip on the moves of the given kinds."""
     out = []
     for k in range(1, len(op)):
         if op.kind[k] in kinds:
@@ -84,7 +85,7 @@ def test_a_silhouette_is_cut_out_and_nothing_deeper(climb, allowance):
     assert len(plan.program(setup, [op])) == len(op)
     tips = swept(op, 2, (LEAD, CUT))
     gap = slot_shape(tips[:, 0], tips[:, 1]) - 2
-    assert gap[tips[:, 2] < 4].min() > allowance - 0.02  # the mesh of the part is within 0.01 of the shape
+    assert gap[tips[:, 2] < 4].min() > allowance - 0.02  # the part's mesh is within 0.01 mm of the shape
     cuts = swept(op, 2, (CUT,))
     assert np.quantile(slot_shape(cuts[:, 0], cuts[:, 1]) - 2, 0.99) < allowance + 0.04
     x, y, height = map_after(op, 2)
@@ -93,7 +94,7 @@ def test_a_silhouette_is_cut_out_and_nothing_deeper(climb, allowance):
         (shape > allowance + 0.2) & (shape < 3.5 + allowance) & (np.hypot(x - CENTRES[1][0], y - CENTRES[1][1]) > 3)
     )
     assert height[beside].max() <= 1e-6 and height[shape < allowance - 0.1].min() == SIZE[2]
-    # One loop around, and one in the hole of Ø10; the hole of Ø3 is narrower than the cutter.
+    # One loop around the part and one in the hole of Ø10; the hole of Ø3 is narrower than the cutter.
     assert op.report.stats["loops"] == 2 and len(op.report.blocked) == 1
     assert "narrower than the cutter" in op.report.blocked[0].reason
     assert np.allclose(op.report.blocked[0].place[:2], CENTRES[1], atol=0.7)
@@ -113,7 +114,7 @@ def test_climb_has_the_part_on_the_right():
 
 def test_layers_are_as_high_as_asked_and_ramps_as_steep():
     op = plan.outline(plan.Setup(PLATE, stock()), FLAT, stepdown=2.5, slope=math.radians(4))
-    assert op.report.stats["levels"] == 2 * 3  # 6 mm and a ray's distance in layers of 2.5 at most
+    assert op.report.stats["levels"] == 2 * 3  # 6 mm and one ray's distance, in layers of at most 2.5 mm
     way = np.diff(op.poses[:, :3], axis=0)
     leads = (op.kind[1:] == LEAD) & (op.kind[:-1] != RAPID) & (np.linalg.norm(way[:, :2], axis=1) > 1e-6)
     steep = -way[leads, 2] / np.linalg.norm(way[leads, :2], axis=1)
@@ -127,7 +128,7 @@ def test_tabs_stay_with_their_height_and_width():
     ways = np.linalg.norm(np.diff(edge, axis=0), axis=1)
     at = np.linspace(0, ways.sum(), 2000)
     line = np.column_stack([np.interp(at, np.r_[0, np.cumsum(ways)], edge[:, k]) for k in (0, 1)])
-    # A point 2 mm outside of the edge: the middle of the groove.
+    # Points 2 mm outside of the edge, in the middle of the groove.
     normal = np.column_stack(
         [line[:, 0] - np.clip(line[:, 0], CENTRES[0][0], CENTRES[1][0]), line[:, 1] - CENTRES[0][1]]
     )
@@ -138,7 +139,7 @@ def test_tabs_stay_with_their_height_and_width():
     runs = int((np.diff(standing.astype(int)) == 1).sum() + (standing[0] and not standing[-1]))
     assert runs == 3
     share = standing.mean() * ways.sum()
-    assert 3 * 5 * 0.7 < share < 3 * 5 * 1.6  # the groove's middle is longer, the cutter round
+    assert 3 * 5 * 0.7 < share < 3 * 5 * 1.6  # the groove's middle is longer, and the cutter is round
     assert op.report.stats["tabs"] == 3 + 1, "the loop in the hole has room for one"
     assert any("only 1 of 3 tabs fit" in one.reason for one in op.report.blocked)
 

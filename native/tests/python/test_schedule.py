@@ -1,4 +1,4 @@
-"""Feeds from the simulated removal, judged by a height map in numpy that each move cuts."""
+"""Feeds from the simulated removal, checked with a height map in numpy that each move cuts."""
 
 import math
 
@@ -13,7 +13,7 @@ BALL = riffler.Tool.ball(diameter=6, length=30)
 
 
 def steps():
-    """Steps of 1, 4 and 2 mm over the floor at z = 6."""
+    """A stock with steps of 1, 4 and 2 mm above the floor at z = 6."""
     volume = riffler.Volume.block((0, 0, 0), (*SIZE, 10), pitch=0.25)
     wide = riffler.Tool.flat(diameter=24, length=40)
     volume.carve(wide, [(8, y, 7, 0, 0, 1) for y in (-20, 44)])
@@ -27,7 +27,7 @@ def heights():
 
 
 def judged(program, window=2.0):
-    """(row, mm³/min) over windows of each move at feed, of upright flat and ball cutters."""
+    """(row, removal rate in mm³/min) for windows of each move at feed, for upright flat and ball cutters."""
     x, y, z = heights()
     out = []
     for k in range(1, len(program)):

@@ -22,7 +22,7 @@ class DropCutter {
     double height = 0;     ///< height of the tip along the axis, mm
     Vec3 point{0};         ///< contact point on the part, mm
     tool::Part part = tool::Part::Cutter;
-    int triangle = -1;                    ///< of the mesh, that it rests on
+    int triangle = -1;                    ///< index of the mesh's triangle on which the tool rests
     std::size_t piece = 0, position = 0;  ///< for `height_on`: the tool's piece and the triangle's position in the tree
   };
   /// How far the drop surface rises above a straight move.
@@ -41,9 +41,10 @@ class DropCutter {
 
   /// Lowers the tool along the line through `p` (mm) parallel to the axis.
   Landing operator()(const Vec3& p, Stats* stats = nullptr) const;
-  /// Whether it comes to rest above `height` (mm) there. Quicker: only what reaches that high is looked at.
+  /// Whether the tool comes to rest above `height` (mm) there. Quicker, because it examines only triangles that reach
+  /// that high.
   bool stops_above(const Vec3& p, double height) const;
-  /// As the first one for many points, in parallel.
+  /// Lowers the tool at many points, in parallel.
   std::vector<Landing> operator()(const std::vector<Vec3>& points, const Progress& progress = {}) const;
 
   /// The height at which the landing's piece of the tool stops at the landing's triangle alone when it comes down

@@ -14,23 +14,23 @@ namespace riffler::plan {
 /// Options of finish.
 struct FinishOptions {
   std::string pattern = "parallel";                      ///< one of `finish_patterns`
-  double cusp = 0.01;                                    ///< mm, largest height of what stays between rows
-  double tolerance = 0.005;                              ///< mm, of the rows: above and below the offset surface
-  double allowance = 0;                                  ///< mm that stay on the part
-  double angle = 0;                                      ///< rad, of the rows about the axis
-  double min_slope = 0, max_slope = 1.5707963267948966;  ///< rad from level, of the faces that are meant
-  std::vector<std::vector<Vec3>> region{};               ///< closed curves, seen along the axis; empty: all of the part
-  std::vector<int> faces{};                              ///< triangles of the part that are meant; empty: all
-  std::optional<Vec3> centre{};                          ///< of spiral and radial; none: the middle of the part's box
-  bool climb = true;                                     ///< waterline: the part lies to the right of the motion
-  double feed = 1000;                                    ///< mm/min of cuts and links
-  double plunge = 300;                                   ///< mm/min of leads
+  double cusp = 0.01;                                    ///< largest height of the ridges between rows, mm
+  double tolerance = 0.005;                              ///< largest distance of rows from the offset surface, mm
+  double allowance = 0;                                  ///< thickness of the material that stays on the part, mm
+  double angle = 0;                                      ///< direction of the rows about the axis, rad
+  double min_slope = 0, max_slope = 1.5707963267948966;  ///< slopes of the faces to finish, rad from level
+  std::vector<std::vector<Vec3>> region{};  ///< closed curves around faces, seen along the axis; empty: all
+  std::vector<int> faces{};                 ///< indices of the part's triangles to finish; empty: all
+  std::optional<Vec3> centre{};             ///< of spiral and radial, mm; none: middle of the part's box
+  bool climb = true;                        ///< waterline: whether the part lies to the motion's right
+  double feed = 1000;                       ///< feed of cuts and links, mm/min
+  double plunge = 300;                      ///< feed of leads, mm/min
 };
 
 /// The operation, and counts.
 struct FinishResult : Operation {
-  /// Rows cut, rows added between those of equal spacing, links at feed, links over the clearance plane, and points of
-  /// the offset surface computed.
+  /// Numbers of rows cut, rows added between those of equal spacing, links at feed, links over the clearance plane, and
+  /// computed points of the offset surface.
   std::size_t rows = 0, added = 0, direct = 0, retracts = 0, drops = 0;
 };
 
@@ -39,8 +39,8 @@ std::vector<std::string> finish_patterns();
 
 /// Plans one operation. Rows are curves of the exact drop surface of the whole tool over part and fixtures: no point of
 /// a cut or link is more than `tolerance` below it, by a bound (DropCutter::rise). Rows end where the tool leaves the
-/// part: a wall without a floor next to it is left to an outline. Throws std::invalid_argument naming the option, and
-/// for a cutter that stands on its side or has an undercut as its widest place.
+/// part: a wall without a floor next to it needs an outline instead. Throws std::invalid_argument naming the option,
+/// and for a cutter that stands on its side or has an undercut as its widest place.
 FinishResult finish(const SetupScene& scene, const Tool& tool, const FinishOptions& options,
                     const Progress& progress = {});
 

@@ -1,6 +1,6 @@
-"""CAD files: STEP, IGES and BREP, read with OpenCASCADE in a process of its own (``pip install 'riffler[cad]'``).
+"""CAD files: reads STEP, IGES and BREP with OpenCASCADE in a separate process (``pip install 'riffler[cad]'``).
 
-`Mesh.read` reads them, too; `read` returns the faces, names and colours as well, and a report.
+`Mesh.read` reads them as well; `read` also returns faces, names and colours, and a report.
 """
 
 from .part import CadBody, CadFace, CadPart, CadReport

@@ -1,4 +1,4 @@
-"""What `riffler.cad.read` returns: a mesh whose triangles know the exact face that they are part of."""
+"""The result of `riffler.cad.read`: a mesh, and for each of its triangles the exact face that it belongs to."""
 
 from __future__ import annotations
 
@@ -16,74 +16,74 @@ Color = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class CadFace:
-    """A face of a CAD file, placed: one of `CadPart.faces`; see `riffler.cad.read`."""
+    """A face of a CAD file in its place in the assembly: one of `CadPart.faces`; see `riffler.cad.read`."""
 
     name: str
-    """As the file has it; often empty."""
+    """Name in the file; often empty."""
     color: Color | None
-    """Red, green, blue in [0, 1] (sRGB): of the face, else of its body; None: the file states none."""
+    """Red, green, blue in [0, 1] (sRGB) of the face, or else of its body; None if the file has no colour."""
     kind: str
-    """Its surface: "plane", "cylinder", "cone", "sphere", "torus", "bspline", "bezier", "revolution", "extrusion",
+    """Kind of surface: "plane", "cylinder", "cone", "sphere", "torus", "bspline", "bezier", "revolution", "extrusion",
     "offset" or "other"; "mesh" for triangles without a surface."""
     area: float
-    """mm², of the exact face."""
+    """Area of the exact face, mm²."""
     body: int
     """Index of its body in `CadPart.bodies`."""
 
 
 @dataclass(frozen=True)
 class CadBody:
-    """A solid or a sheet of a CAD file, placed: one of `CadPart.bodies`; see `riffler.cad.read`."""
+    """A solid or sheet of a CAD file in its place in the assembly: one of `CadPart.bodies`; see `riffler.cad.read`."""
 
     name: str
     """Names from the outermost assembly to the part, with "/" between them."""
     color: Color | None
-    """Red, green, blue in [0, 1] (sRGB); None: the file states none."""
+    """Red, green, blue in [0, 1] (sRGB); None if the file has no colour."""
     solid: bool
-    """Whether it encloses material; otherwise it is a sheet of faces."""
+    """Whether the body encloses material; otherwise it is a sheet of faces."""
     volume: float
-    """mm³, of the exact solid (OpenCASCADE's integral); 0 for a sheet."""
+    """Volume of the exact solid (OpenCASCADE's integral), mm³; 0 for a sheet."""
     area: float
-    """mm², of the exact faces."""
+    """Area of the exact faces, mm²."""
     open_edges: int
-    """Edges where the surface of its triangles ends; 0: closed."""
+    """Number of edges where the body's triangles end; 0 if its mesh is closed."""
 
 
 @dataclass(frozen=True)
 class CadReport:
-    """How a CAD file was read: `CadPart.report`; see `riffler.cad.read`."""
+    """A report on how a CAD file was read: `CadPart.report`; see `riffler.cad.read`."""
 
     schema: str
-    """The schema that a STEP file states, "IGES" or "BREP"."""
+    """Schema that a STEP file states; otherwise "IGES" or "BREP"."""
     unit: str
-    """The unit of the file's lengths, such as "inch"; they are converted to mm."""
+    """Unit of the file's lengths, such as "inch". All results are converted to mm."""
     tolerance: float
-    """mm: the chord error that was asked for."""
+    """Requested chord error, mm."""
     deviation: float
-    """mm: the largest distance of the exact surface from its triangle that was found at the middles of triangles and of
-    their sides. It is measured, not proven."""
+    """Largest measured distance between the exact surface and its triangles, mm: measured at the middles of triangles
+    and of their sides, not proven."""
     solids: int
-    """Solids, each copy counted."""
+    """Number of solids; each copy counts."""
     sheets: int
-    """Faces or groups of faces that enclose no solid."""
+    """Number of faces or groups of faces that enclose no solid."""
     fixed: int
-    """Faces that healing changed."""
+    """Number of faces that healing changed."""
     sewn: int
-    """Edges at which faces were joined."""
+    """Number of edges at which faces were joined."""
     invalid: int
-    """Faces that OpenCASCADE still calls invalid after healing."""
+    """Number of faces that OpenCASCADE still reports as invalid after healing."""
     left_out: int
-    """Faces that could not be tessellated."""
+    """Number of faces that could not be tessellated."""
     volume: float
-    """mm³: the exact volume of all solids."""
+    """Exact volume of all solids, mm³."""
     area: float
-    """mm²: the exact area of all faces."""
+    """Exact area of all faces, mm²."""
     closed: bool
-    """Whether all bodies are solids and their meshes closed."""
+    """Whether all bodies are solids and all their meshes are closed."""
     notes: tuple[str, ...]
-    """Sentences on everything that was assumed, mended or left out."""
+    """Sentences on everything that the reader assumed, mended or left out."""
     seconds: dict[str, float]
-    """s: time of each step."""
+    """Time of each step, s."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,18 +98,18 @@ class CadPart:
     """
 
     mesh: Mesh
-    """All bodies, placed, mm. Faces of a body share vertices where they meet; bodies share none."""
+    """All bodies in their places, mm. Faces of a body share vertices where they meet; different bodies share none."""
     face_of_triangle: NDArray[np.int32]
-    """(k,): of each triangle of the mesh, the index of its face in ``faces``."""
+    """(k,): for each triangle of the mesh the index of its face in ``faces``."""
     faces: tuple[CadFace, ...]
     """The faces, in the order of their triangles."""
     bodies: tuple[CadBody, ...]
     """The solids and sheets, in the order of their triangles."""
     report: CadReport
-    """How it was read."""
+    """Report on how the file was read."""
 
     def find(self, name: str) -> NDArray[np.int64]:
-        """Indices of the faces with a name. Upper and lower case differ; ``*``, ``?`` and ``[…]`` match as in paths.
+        """Finds faces by name. Upper and lower case differ; ``*``, ``?`` and ``[…]`` match as in paths of files.
 
         Parameters
         ----------
@@ -119,7 +119,7 @@ class CadPart:
         Returns
         -------
         ndarray of shape (n,)
-            Ascending; empty if there are none.
+            Indices of the faces, ascending; empty if there are none.
 
         Examples
         --------
@@ -130,7 +130,7 @@ class CadPart:
         return np.array([n for n, face in enumerate(self.faces) if fnmatchcase(face.name, name)], np.int64)
 
     def triangles_of(self, faces: int | Iterable[int]) -> NDArray[np.int64]:
-        """Indices of the triangles of one or more faces.
+        """Finds the triangles of one or more faces.
 
         Parameters
         ----------
@@ -140,7 +140,7 @@ class CadPart:
         Returns
         -------
         ndarray of shape (n,)
-            Ascending.
+            Indices of the triangles, ascending.
 
         Raises
         ------
@@ -172,7 +172,7 @@ class CadPart:
         Returns
         -------
         Mesh
-            Open where the faces end.
+            The mesh; it is open where the faces end.
 
         Raises
         ------
@@ -189,18 +189,18 @@ class CadPart:
         return Mesh(self.mesh.vertices[used], inverse.reshape(-1, 3).astype(np.int32))
 
     def outline(self, faces: int | Iterable[int]) -> list[NDArray[np.float64]]:
-        """The closed curves around one or more faces: their common border, holes included. `plan.finish` takes them as
-        its ``region``.
+        """Returns the closed curves around one or more faces: their common border, including holes. `plan.finish`
+        accepts the curves as its ``region``.
 
         Parameters
         ----------
         faces : int or iterable of int
-            Indices in ``faces``; edges between two of them are inside, not on the border.
+            Indices in ``faces``; an edge between two of them is not on the border.
 
         Returns
         -------
         list of ndarray of shape (n, 3), mm
-            Each curve without its first point repeated at the end. The faces are on its left, seen from outside.
+            The curves; none repeats its first point at the end. The faces are on their left, seen from outside.
             Empty for faces without a border, such as a whole sphere.
 
         Raises

@@ -1,4 +1,4 @@
-"""Puts the parts that the reader returned in their places, and reports how the file was read."""
+"""Puts the parts that the reader returned in their places in the assembly, and makes the report."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ UNUSUAL = 0.1, 20_000.0  # mm: a part smaller or larger than these may have the 
 def assemble(
     answer: dict[str, Any], arrays: dict[str, np.ndarray], name: str, schema: str, tolerance: float, unit: str | None
 ) -> CadPart:
-    """The part, of the reader's answer: every prototype in each of its places."""
+    """Makes the part from the reader's answer: a copy of every prototype in each of its places."""
     points, triangles, numbers = [], [], []
     faces: list[CadFace] = []
     bodies: list[CadBody] = []
@@ -26,7 +26,7 @@ def assemble(
         prototype = answer["prototypes"][k]
         matrix = np.array(instance["matrix"], float)
         rows = arrays[f"triangles{k}"]
-        if np.linalg.det(matrix[:, :3]) < 0:  # mirrored: the corners' order is reversed
+        if np.linalg.det(matrix[:, :3]) < 0:  # mirrored: reverse the order of the corners
             rows = rows[:, ::-1]
         points.append(arrays[f"points{k}"] @ matrix[:, :3].T + matrix[:, 3])
         triangles.append(rows + start)

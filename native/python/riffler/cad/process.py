@@ -1,4 +1,4 @@
-"""Runs the reader (``worker``) in a process of its own: a crash or a hang there leaves the caller unchanged."""
+"""Runs the reader (``worker``) in a separate process, so that a crash or hang of the reader cannot harm the caller."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ import numpy as np
 from .._core import Cancelled, FormatError
 
 WORKER = Path(__file__).resolve().parent / "worker"
-PYTHON = "RIFFLER_CAD_PYTHON"  # the environment's variable with the path of a Python that has the extra
+PYTHON = "RIFFLER_CAD_PYTHON"  # environment variable: path of a Python with the extra installed
 INSTALL = "pip install 'riffler[cad]'"
-TICK = 0.05  # s between two looks at the caller's progress callback
-CLOSING = 2000  # characters of the reader's last messages that an error shows at most
+TICK = 0.05  # s between two calls of the caller's progress callback
+CLOSING = 2000  # largest number of characters of the reader's last messages in an error
 
 Listener = Callable[[float], bool | None]
 
@@ -40,14 +40,14 @@ class CadReaderError(RuntimeError):
 
 
 def interpreter(python: str | os.PathLike[str] | None) -> str:
-    """The Python that runs the reader: the argument, the environment's RIFFLER_CAD_PYTHON, or this one."""
+    """The Python that runs the reader: the argument, else the variable RIFFLER_CAD_PYTHON, else the caller's own."""
     return os.fspath(python) if python is not None else os.environ.get(PYTHON) or sys.executable
 
 
 def run(
     request: dict[str, Any], name: str, timeout: float, progress: Listener | None, python: str
 ) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
-    """The reader's answer and its arrays. Errors are those of `riffler.cad.read`."""
+    """Returns the reader's answer and its arrays. Raises the errors of `riffler.cad.read`."""
     with _folder() as folder:
         request = request | {"cpu_seconds": _cpu_limit(timeout)}
         (folder / "request.json").write_text(json.dumps(request), encoding="utf-8")
@@ -77,7 +77,7 @@ def _cpu_limit(timeout: float) -> int:
 
 
 def _start(python: str, folder: Path, messages: Any) -> subprocess.Popen:
-    # A group of its own: Ctrl-C reaches the caller, which ends the reader.
+    # A separate process group, so that Ctrl-C reaches only the caller, which then ends the reader.
     try:
         return subprocess.Popen(
             [python, str(WORKER), str(folder), str(os.getpid())],
@@ -96,7 +96,7 @@ def _start(python: str, folder: Path, messages: Any) -> subprocess.Popen:
 
 
 def _environment(python: str) -> dict[str, str]:
-    """The caller's environment; for another Python without what leads to this one's packages."""
+    """The caller's environment. For another Python, without the variables that lead to the caller's packages."""
     own = {"PYTHONPATH", "PYTHONHOME"} if python != sys.executable else set()
     return {key: value for key, value in os.environ.items() if key not in own}
 
@@ -110,7 +110,8 @@ def _end(process: subprocess.Popen) -> None:
 
 
 def _follow(process: subprocess.Popen, name: str, timeout: float, progress: Listener | None) -> str:
-    """Passes the reader's progress on until it ends; returns its last stage. Cancelled, TimeoutError."""
+    """Passes the reader's progress to ``progress`` until the reader ends, and returns its last stage. Raises Cancelled
+    and TimeoutError."""
     assert process.stdout is not None
     stream = process.stdout.fileno()
     os.set_blocking(stream, False)

@@ -1,4 +1,4 @@
-"""Reads STEP, IGES and BREP files: `read` checks the file and lets the reader's process do the work."""
+"""Reads STEP, IGES and BREP files: `read` checks the file and then runs the reader in its own process."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ MOST_FACES = 1_000_000
 MOST_TRIANGLES = 50_000_000
 FACES = re.compile(rb"(?:ADVANCED_FACE|FACE_SURFACE)\s*\(")
 SCHEMA = re.compile(rb"FILE_SCHEMA\s*\(\s*\(\s*'([^']{0,200})'")
-HEAD = 65536  # bytes in which the header of a file is looked for
+HEAD = 65536  # bytes at the start of a file that are searched for its header
 
 
 @hinted("cad.read")
@@ -35,26 +35,26 @@ def read(
     python: str | os.PathLike[str] | None = None,
     progress: Progress = None,
 ) -> CadPart:
-    """Reads a STEP, IGES or BREP file: all its bodies, in place, in mm, healed and tessellated.
+    """Reads a STEP, IGES or BREP file: heals and tessellates all its bodies, in their places and in mm.
 
-    OpenCASCADE (``pip install 'riffler[cad]'``) does it in a process of its own, which ends with the call: a file that
-    crashes it leaves the caller unchanged. Faces that are next to each other are joined; `CadPart.report` says what was
-    mended and assumed.
+    OpenCASCADE (``pip install 'riffler[cad]'``) runs in a separate process, which ends with the call; a file that
+    crashes it does no harm to the caller. Adjacent faces are joined. `CadPart.report` lists repairs and assumptions.
 
     Parameters
     ----------
     path : path_like
         A file with the extension .step, .stp, .iges, .igs or .brep.
     tolerance : float, mm
-        Chord error: distance of the exact faces from their triangles. It is measured, not proven:
-        `CadReport.deviation`.
+        Chord error: largest distance of the exact faces from their triangles. `CadReport.deviation` is the measured
+        distance; it is not proven.
     unit : str, optional
-        "mm", "cm", "m", "inch", "foot" or "micrometre": takes the numbers of the file in this unit, not in its own.
+        Unit of the file's numbers, instead of the unit that the file states: "mm", "cm", "m", "inch", "foot" or
+        "micrometre".
     timeout : float, s
-        Longest time.
+        Longest time that reading may take.
     python : path_like, optional
-        A Python that has the package cadquery-ocp-novtk. By default that of the environment's RIFFLER_CAD_PYTHON, or
-        this one.
+        A Python that has the package cadquery-ocp-novtk. By default the one in the environment variable
+        RIFFLER_CAD_PYTHON, or else the Python that makes the call.
     progress : callable or None
         Called with the finished share several times a second; returning False cancels.
 
@@ -66,11 +66,11 @@ def read(
     Raises
     ------
     FormatError
-        The file has no faces, is damaged, or is not of the format that its extension says.
+        The file has no faces, is damaged, or does not have the format of its extension.
     ValueError
-        A wrong argument, or the package is missing: the message has the command that installs it.
+        An argument is wrong, or the package is missing; the message then has the command that installs it.
     TimeoutError
-        It took longer than ``timeout``.
+        Reading took longer than ``timeout``.
     riffler.cad.CadReaderError
         The reader's process crashed.
     Cancelled
@@ -106,11 +106,12 @@ def read(
     return assemble(answer, arrays, name, schema, float(tolerance), unit)
 
 
-# --- before the reader: what can be seen of the file ------------------------------------------------------------------
+# --- checks of the file before the reader starts ----------------------------------------------------------------------
 
 
 def _check(path: Path, kind: str) -> str:
-    """The schema that a STEP file states. FormatError for what is not such a file, or has too many faces."""
+    """Checks a file and returns the schema that a STEP file states, or the format's name. FormatError if the file is
+    not of this kind, or has too many faces."""
     name = path.name
     try:
         status = path.stat()

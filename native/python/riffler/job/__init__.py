@@ -1,4 +1,4 @@
-"""Jobs: part, stock, machine, tools and operations in one TOML file, computed into a program and a set-up sheet."""
+"""Jobs: make a program and a set-up sheet from one TOML file with part, stock, machine, tools and operations."""
 
 from .model import Job, read
 from .running import Result, run

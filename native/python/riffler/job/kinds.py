@@ -1,6 +1,6 @@
-"""The kinds of operations of a job file: the function of `riffler.plan` for each, and its options.
+"""The kinds of operations in a job file. For each kind: the function of `riffler.plan` that plans it, and its options.
 
-Another operation is another entry in KINDS; there is no other list.
+A new kind is a new entry in KINDS; there is no other list.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ def _slopes(table: Table, key: str) -> Any:
 
 
 def curves(table: Table, key: str) -> Any:
-    """Curves from a file, or as lists of points in place."""
+    """Curves, from a file or from lists of points in the job file itself."""
     if isinstance(table.data.get(key), str):
         path = table.file_name(key, plan.curves.FORMATS)
         assert path is not None
@@ -43,7 +43,7 @@ def curves(table: Table, key: str) -> Any:
 
 
 def points(table: Table, key: str) -> Any:
-    """Points from a file, those of all its curves, or in place."""
+    """Points, from all curves of a file or from a list in the job file itself."""
     if isinstance(table.data.get(key), str):
         found = curves(table, key)
         return np.concatenate(found)
@@ -58,13 +58,13 @@ FLAG: Reader = Table.flag
 
 @dataclass(frozen=True)
 class Kind:
-    """One kind. ``options``: for each keyword of the function how its key is read; a key that is not there leaves the
-    function's default. ``needed``: keys that must be there, with examples."""
+    """One kind. ``options``: how to read the key of each keyword of the function; without the key, the function's
+    default applies. ``needed``: required keys, with an example value each."""
 
     run: Callable[..., plan.Operation]
     options: Mapping[str, Reader]
     needed: Mapping[str, str]
-    feeds: tuple[str, ...] = ("feed", "plunge", "spindle")  # taken from the tool where the operation has none
+    feeds: tuple[str, ...] = ("feed", "plunge", "spindle")  # from the tool, if the operation does not set them
 
     def read(self, table: Table) -> dict[str, Any]:
         for key, example in self.needed.items():

@@ -1,4 +1,4 @@
-"""Lines of the tables and keys of a TOML text, which `tomllib` does not tell."""
+"""Finds the line numbers of tables and keys in a TOML text, which `tomllib` does not report."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ _KEY = re.compile(rf"\s*({_NAME})\s*=")
 
 
 def lines_of(text: str) -> dict[Path, int]:
-    """The line, from 1, of each table and each key by its path, as in ("tool", 0, "diameter"). Keys of tables that
-    stand within a line have no line of their own."""
+    """The line number, from 1, of each table and each key by its path, such as ("tool", 0, "diameter"). Keys of inline
+    tables have no line of their own."""
     out: dict[Path, int] = {}
     counts: dict[Path, int] = {}
     table: Path = ()
@@ -44,7 +44,7 @@ def _words(name: str) -> list[str]:
 
 
 def _within(words: list[str], counts: dict[Path, int]) -> Path:
-    """The path of a header's tables: that of an array's last table for each array."""
+    """The path of the tables that a header names; for an array of tables it is the path of the last table so far."""
     path: Path = ()
     for word in words:
         path = (*path, word)
@@ -54,7 +54,7 @@ def _within(words: list[str], counts: dict[Path, int]) -> Path:
 
 
 class _State:
-    """Whether a line begins inside of an array or of a text of several lines."""
+    """Tracks whether a line begins inside an array or inside a text of several lines."""
 
     def __init__(self) -> None:
         self.depth = 0

@@ -1,4 +1,4 @@
-"""A job: what a job file says, checked and made into the objects of Riffler."""
+"""Reads a job file, checks it, and makes the job: objects of Riffler."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ MESHES = (".stl", ".obj", ".ply", ".3mf")
 PARTS = MESHES + CAD
 VOLUMES = (".rvol",)
 CODE = (".ngc", ".nc", ".cnc", ".tap", ".gcode", ".mpf", ".h", ".i", ".apt", ".cls", ".txt")
-RAYS = 400  # along the longest side of a stock without another pitch
+RAYS = 400  # number of rays along the longest side of a stock, if the file sets no pitch
 ZEROS = ("corner", "bottom-centre", "top-centre", "top-corner")
 
 
 @dataclass(frozen=True)
 class JobTool:
-    """A tool with its number and feeds; ``name`` for the sheet."""
+    """A tool with its number and feeds (mm/min; spindle in rev/min). ``name``: for the sheet."""
 
     number: int
     name: str
@@ -41,7 +41,7 @@ class JobTool:
 
 @dataclass(frozen=True)
 class JobOperation:
-    """One operation: its kind, its tool and the options of the planner. ``table`` is where it stands in the file."""
+    """One operation: its kind, its tool and the options of the planner. ``table``: its table in the file."""
 
     name: str
     kind: str
@@ -50,7 +50,7 @@ class JobOperation:
     table: Table = field(repr=False)
 
     def failed(self, error: ValueError) -> JobError:
-        """The planner's error with the line of the key that it names."""
+        """The planner's error as a JobError, with the line of the key that the message names."""
         message = str(error)
         key = message.split(maxsplit=1)[0].strip(":,").split("[")[0] if message else ""
         known = key in self.table.data
@@ -63,7 +63,7 @@ class JobOperation:
 
 @dataclass(frozen=True)
 class Job:
-    """A job that can be run: see `riffler.job.read`."""
+    """A job that is ready to run: see `riffler.job.read`."""
 
     path: Path
     name: str
@@ -81,17 +81,17 @@ class Job:
     operations: list[JobOperation]
     program: Path
     sheet: Path
-    left: Path | None  # the file of what is left
+    left: Path | None  # file for the stock that is left
     notes: list[str]
 
 
 def read(path: str | os.PathLike[str]) -> Job:
-    """Reads a job file and everything that it names.
+    """Reads a job file and all files that it names.
 
     Parameters
     ----------
     path : path_like
-        A TOML file: docs/jobs.md has its keys.
+        A TOML file; docs/jobs.md lists the keys.
 
     Returns
     -------
@@ -100,9 +100,9 @@ def read(path: str | os.PathLike[str]) -> Job:
     Raises
     ------
     JobError
-        Naming file, line, table and key, and the remedy.
+        The job file has an error. The message names file, line, table and key, and a remedy.
     FormatError
-        For a file that cannot be read.
+        A file cannot be read.
 
     Examples
     --------
@@ -345,7 +345,7 @@ def _tool(sub: Table, number: int, preset: tool_files.Preset | None, reach: floa
     return JobTool(number, name, tool, feeds["feed"], feeds["plunge"], spindle, flutes)
 
 
-# Sizes of each kind other than diameter and length, and whether they are angles.
+# For each kind of tool: its sizes other than diameter and length, and whether each is an angle.
 TOOL_KINDS: dict[str, dict[str, bool]] = {
     "ball": {},
     "flat": {},

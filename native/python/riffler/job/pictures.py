@@ -1,4 +1,4 @@
-"""Pictures for the set-up sheet: part and stock seen from one side, with paths. Needs matplotlib."""
+"""Draws pictures for the set-up sheet: part and stock from one viewpoint, with paths. Needs matplotlib."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ from .._core import Mesh, Volume
 
 INK = "#22262b"
 STEEL, CLAY, GLASS = (0.66, 0.72, 0.78), (0.80, 0.71, 0.60), (0.62, 0.68, 0.62)
-# Kinds of moves: rapid, lead, cut, link.
+# Colours of the kinds of moves: rapid, lead, cut, link.
 KINDS = ("#c8553d", "#d08c2a", "#2f6690", "#3f7d4f")
 NAMES = ("rapid", "lead", "cut", "link")
 PIXELS = 640
 LIGHT = np.array([-0.44, 0.53, 0.72])
-SEGMENTS = 60_000  # drawn of a path; more differ by less than a pixel
+SEGMENTS = 60_000  # largest number drawn of a path; more would differ by less than a pixel
 
 
 class View:
-    """Meshes seen from ``azimuth`` and ``elevation``, degrees, all on one scale: the box of all fills the picture."""
+    """A view of meshes from ``azimuth`` and ``elevation``, degrees, on one scale: the box of all meshes fills it."""
 
     def __init__(self, meshes: Sequence[Mesh], azimuth: float = -60.0, elevation: float = 38.0) -> None:
         a, e = np.radians([azimuth, elevation])
@@ -41,7 +41,7 @@ class View:
         self.shape = tuple(int(n) + 8 for n in np.ceil((high - low) / self.pixel))
 
     def depth(self, mesh: Mesh) -> NDArray[np.float64]:
-        """(columns, rows): how near to the viewer the mesh is in each pixel, -inf where it is not."""
+        """(columns, rows): coordinate of the mesh towards the viewer in each pixel, mm; -inf outside of the mesh."""
         out = np.full(self.shape, -np.inf)
         seen = mesh.vertices @ self.axes
         place = (seen[:, :2] - self.lower) / self.pixel
@@ -50,7 +50,7 @@ class View:
         size = np.ceil(corners.max(axis=1)).astype(int) - low + 1
         edge1, edge2 = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
         area = edge1[:, 0] * edge2[:, 1] - edge1[:, 1] * edge2[:, 0]
-        # Triangles of about one size are drawn at once, each over the pixels of its box.
+        # Draw triangles of similar size together, each over the pixels of its box.
         side = np.maximum(size[:, 0], size[:, 1])
         for level in range(int(np.ceil(np.log2(side.max(initial=1)))) + 1):
             width = 2**level
@@ -71,11 +71,11 @@ class View:
         np.maximum.at(out, tuple(pixel[inside].T), near[inside])
 
     def shaded(self, depth: NDArray[np.float64], colour: NDArray[np.float64] | tuple) -> NDArray[np.float64]:
-        """RGBA image with light from the upper left; clear where nothing is."""
+        """RGBA image with light from the upper left; transparent where there is nothing."""
         there = np.isfinite(depth)
         height = np.where(there, depth, np.nan)
         slopes = []
-        for axis in (0, 1):  # the smaller step of both sides keeps edges sharp
+        for axis in (0, 1):  # the smaller of the steps on both sides keeps edges sharp
             before = np.diff(height, axis=axis, prepend=np.nan)
             after = np.roll(before, -1, axis)
             take = np.abs(np.nan_to_num(after, nan=1e9)) < np.abs(np.nan_to_num(before, nan=1e9))
@@ -96,7 +96,7 @@ class View:
         return (np.asarray(points) @ self.axes)[:, :2]
 
     def at_vertices(self, mesh: Mesh, depth: NDArray[np.float64], values: NDArray[np.float64]) -> NDArray[np.float64]:
-        """The value of the nearest vertex that is seen, for each pixel of the mesh."""
+        """For each pixel of the mesh, the value of the nearest visible vertex."""
         seen = mesh.vertices @ self.axes
         pixel = np.clip(((seen[:, :2] - self.lower) / self.pixel).astype(int), 0, np.array(self.shape) - 1)
         near = seen[:, 2] > depth[tuple(pixel.T)] - 6 * self.pixel
@@ -140,7 +140,7 @@ def draw_setup(view: View, part: Mesh, stock: Mesh, fixtures: Sequence[Mesh], ze
 
 
 def draw_operation(view: View, left: Mesh, op: plan.Operation) -> str:
-    """What is left after an operation, with its path by kinds of moves."""
+    """The stock after an operation, with the operation's path coloured by kind of move, as PNG in base64."""
     figure, axes = _figure()
     view.show(axes, view.shaded(view.depth(left), STEEL))
     draw_path(view, axes, op)
@@ -165,7 +165,7 @@ def draw_path(view: View, axes: Axes, op: plan.Operation) -> None:
 
 
 def draw_deviation(view: View, mesh: Mesh, distance: NDArray[np.float64], scale: float) -> str:
-    """What is left, coloured by its distance from the part: blue rest, red gouges."""
+    """The remaining stock, coloured by its distance from the part: blue for rest material, red for gouges."""
     figure, axes = _figure()
     depth = view.depth(mesh)
     values = view.at_vertices(mesh, depth, np.nan_to_num(distance, posinf=scale, neginf=-scale))

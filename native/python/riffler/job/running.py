@@ -1,4 +1,4 @@
-"""Running a job: operations in order on the in-process stock, then the program, written and verified."""
+"""Runs a job: plans its operations in order on the in-process stock, then writes and verifies the program."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ Step = Callable[[str], AbstractContextManager[Progress]]
 
 @dataclass(frozen=True, eq=False)
 class Done:
-    """One operation that has been computed: ``left`` mm³ of stock after it, ``removed`` mm³ by it, ``seconds`` that
-    the computation took."""
+    """One computed operation. ``removed``: volume that it removes, mm³; ``left``: volume of the stock after it, mm³;
+    ``seconds``: time of the computation."""
 
     job: JobOperation
     operation: plan.Operation
@@ -34,24 +34,24 @@ class Done:
 
 @dataclass(frozen=True, eq=False)
 class Result:
-    """What a job has made: see `riffler.job.run`.
+    """The result of a job: see `riffler.job.run`.
 
     Attributes
     ----------
     setup : plan.Setup
-        The set-up; its stock is what is left.
+        The set-up, with the stock that is left.
     stock : Volume
-        The stock at the beginning.
+        The stock at the start of the job.
     operations : list of Done
-        In their order.
+        The computed operations, in order.
     program : Program
-        In the part's frame.
+        The whole program, in the part's frame.
     report : VerifyReport
-        Of the file that was written.
+        Verification of the written file.
     deviation : tuple of Mesh and ndarray
-        What is left, and the distance of its vertices from the part, mm.
+        The remaining stock, and the distance of its vertices from the part, mm.
     warnings : list of str
-        What is not as it was asked for: operations without cuts, places that could not be reached.
+        Departures from the job: operations without cuts, places that could not be reached.
     """
 
     setup: plan.Setup
@@ -74,7 +74,7 @@ def _silent(name: str) -> Iterator[Progress]:
 
 
 def setup_of(job: Job) -> plan.Setup:
-    """The set-up of a job. JobError where part, stock and machine do not fit."""
+    """The set-up of a job. JobError if part, stock and machine do not fit together."""
     try:
         return plan.Setup(
             job.part,
@@ -90,18 +90,20 @@ def setup_of(job: Job) -> plan.Setup:
 
 
 def run(job: Job, *, step: Step = _silent, write: bool = True) -> Result:
-    """Computes a job and writes its program: what is left after one operation is the stock of the next.
+    """Computes a job and writes its program. Each operation is planned on the stock that the previous one leaves.
 
-    The file is read again and verified on the stock before it takes its place; with a finding nothing is written.
+    The draft of the program is read again and verified on the stock. If the verification finds a fault, no file is
+    written.
 
     Parameters
     ----------
     job : Job
-        As ``read`` returns it.
+        The job, as returned by ``read``.
     step : callable, optional
-        ``with step("name") as progress:`` around each step; yields a callable for the finished share, or None.
+        Called with the name of each step; returns a context manager, in which the step runs. The manager yields a
+        callable that takes the finished share, or None.
     write : bool
-        Whether the job's files are written.
+        Whether to write the job's files.
 
     Returns
     -------
@@ -110,7 +112,7 @@ def run(job: Job, *, step: Step = _silent, write: bool = True) -> Result:
     Raises
     ------
     JobError
-        Naming the operation, with its line, that failed.
+        An operation or the verification failed. The message names the operation and its line in the file.
 
     Examples
     --------
@@ -167,7 +169,7 @@ def _warnings(done: Done) -> list[str]:
     out = [] if len(op) else [f"{name}: it cuts nothing: {op.reason}"]
     for one in op.report.blocked:
         at = ", ".join(f"{x:.1f}" for x in one.place)
-        length = f": {one.length:.1f} mm left out" if one.length else ""  # areas that are left out have no length
+        length = f": {one.length:.1f} mm left out" if one.length else ""  # left-out areas have no length
         out.append(f"{name}: {one.reason}{length}, the first at ({at})")
     return out
 
@@ -201,7 +203,7 @@ def _moved(program: Program, by: np.ndarray) -> Program:
 
 
 def _written(job: Job, setup: plan.Setup, program: Program, tolerance: float, draft: Path) -> VerifyReport:
-    """Writes the program to a draft, reads it as the machine would, and verifies what was read."""
+    """Writes the program to a draft, reads it as the machine would, and verifies the program that was read."""
     try:
         program.write(draft, post=job.machine, tolerance=0.1 * tolerance, options=job.machine_options or None)
         back = Program.read(draft, machine=job.machine, options=job.machine_options or None)

@@ -1,4 +1,4 @@
-"""The set-up sheet of a job: one HTML page that needs no other file."""
+"""Writes the set-up sheet of a job: one HTML page that needs no other files."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .._core import Mesh, Tool, __version__
 from .model import Job
 from .running import Done, Result
 
-SCALE = 0.5  # mm: colours show errors of the surface, not skirts of stock around the part
+SCALE = 0.5  # mm, largest range of the colours: they show errors of the surface, not the stock left around the part
 STYLE = """
 body { font: 15px/1.45 system-ui, sans-serif; color: #22262b; max-width: 62em; margin: 2em auto; padding: 0 1em; }
 h1 { margin-bottom: 0; } h2 { margin-top: 2em; border-bottom: 1px solid #ccc8bd; padding-bottom: .2em; }
@@ -31,21 +31,21 @@ gap: 1em; } .two > * { flex: 1 1 24em; } figure { margin: 0; } figcaption { colo
 
 
 def write_sheet(job: Job, result: Result, path: Path | None = None) -> Path:
-    """Writes the set-up sheet of a job that has run: one HTML page with pictures where matplotlib is installed.
+    """Writes the set-up sheet of a job that has run: one HTML page, with pictures if matplotlib is installed.
 
     Parameters
     ----------
     job : Job
         The job.
     result : Result
-        What ``run`` has returned.
+        The result that ``run`` returned.
     path : path_like, optional
-        The file; by default the job's.
+        The file to write; by default the job's ``sheet``.
 
     Returns
     -------
     Path
-        The file.
+        The written file.
 
     Examples
     --------
@@ -92,7 +92,7 @@ def page(job: Job, result: Result) -> str:
 
 
 def _pictures(job: Job, result: Result) -> dict[str, str]:
-    """Figures by name; none without matplotlib."""
+    """HTML figures by name; empty without matplotlib."""
     if importlib.util.find_spec("matplotlib") is None:
         return {}
     from . import pictures
@@ -162,7 +162,7 @@ def _tools(job: Job, result: Result) -> str:
 
 
 def shape(tool: Tool) -> str:
-    """As ``ball Ø6, with holder``."""
+    """A short text, such as ``ball Ø6, with holder``."""
     rods = [what for what in ("shank", "holder") if getattr(tool, what)]
     return f"{tool.kind} Ø{tool.diameter:g}{', with ' + ' and '.join(rods) if rods else ''}"
 

@@ -1,4 +1,4 @@
-"""Tables of a job file: values by key, and errors that name file, line, table and key."""
+"""Tables of a job file: reads values by key, with errors that name file, line, table and key."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from . import lines
 
 
 class JobError(ValueError):
-    """What is wrong with a job file: its line, table and key, and a remedy."""
+    """An error in a job file. The message names line, table and key, and a remedy."""
 
 
 class JobFile:
-    """A TOML file with the lines of its keys. JobError for text that is no TOML."""
+    """A TOML file with the line numbers of its keys. JobError if the text is not valid TOML."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -40,7 +40,7 @@ class JobFile:
 
 
 class Table:
-    """One table of a job file. Each method takes one key; `done` refuses those that none has taken."""
+    """One table of a job file. Each method reads one key; `done` raises an error for keys that no method has read."""
 
     def __init__(self, file: JobFile, data: Mapping[str, Any], path: lines.Path) -> None:
         self.file, self.data, self.path = file, data, path
@@ -48,7 +48,7 @@ class Table:
 
     @property
     def name(self) -> str:
-        """As ``[[tool]] 2``; counted from 1."""
+        """The table's name in messages, such as ``[[tool]] 2``, counted from 1."""
         words = [str(word) for word in self.path if isinstance(word, str)]
         if not words:
             return "the file"
@@ -56,7 +56,7 @@ class Table:
         return f"[[{'.'.join(words)}]] {index[-1] + 1}" if index else f"[{'.'.join(words)}]"
 
     def where(self, key: str = "") -> str:
-        """As ``job.toml, line 12, [stock] pitch``; the table's line where the key has none."""
+        """A place in messages, such as ``job.toml, line 12, [stock] pitch``; the table's line if the key has none."""
         path = (*self.path, key) if key else self.path
         while path and path not in self.file.lines:
             path = path[:-1]
@@ -75,7 +75,7 @@ class Table:
         return JobError(f"{self.where()}: {key} is missing; add a line such as {key} = {example}")
 
     def done(self) -> None:
-        """JobError for a key that is not known, with the nearest one that is."""
+        """JobError for an unknown key; the message names the nearest known key."""
         for key in self.data:
             if key not in self.known:
                 near = difflib.get_close_matches(key, self.known, 1, 0.6)
@@ -83,13 +83,13 @@ class Table:
                 raise self.error(key, f"unknown key; {hint}")
 
     def number(self, key: str, *, low: float = -math.inf, above: float | None = None) -> float | None:
-        """None if it is not there."""
+        """The key's number; None if the table does not have the key."""
         if not self.has(key):
             return None
         return self._number(key, self.data[key], key, low, above)
 
     def angle(self, key: str) -> float | None:
-        """rad, of degrees in the file."""
+        """The key's angle in rad; the file has degrees."""
         value = self.number(key)
         return None if value is None else math.radians(value)
 
@@ -122,7 +122,7 @@ class Table:
         return value
 
     def file_name(self, key: str, suffixes: Sequence[str], *, exists: bool = True) -> Path | None:
-        """A file's path, from the folder of the job file."""
+        """The path of a file; relative names start from the folder of the job file."""
         text = self.text(key)
         if text is None:
             return None
@@ -141,7 +141,7 @@ class Table:
         return self._vector(key, self.data[key], size)
 
     def rows(self, key: str, size: int) -> NDArray[np.float64] | None:
-        """A list of lists of ``size`` numbers."""
+        """The key's list of lists of ``size`` numbers, as an array."""
         if not self.has(key):
             return None
         value = self.data[key]

@@ -1,4 +1,4 @@
-"""Tool tables: LinuxCNC's tool.tbl, and tool libraries of Fusion (.json, .tools)."""
+"""Reads tool tables: LinuxCNC's tool.tbl, and tool libraries of Fusion (.json, .tools)."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .. import files
 
 FORMATS = (".tbl", ".json", ".tools")
 INCH = 25.4
-# Words in a comment of tool.tbl that tell the cutter.
+# Words in a comment of tool.tbl from which the kind of cutter is known.
 COMMENTS = (
     ("fillet", re.compile(r"\b(bull|corner|torus|toroid)", re.I)),
     ("ball", re.compile(r"\b(ball|kugel)", re.I)),
@@ -30,13 +30,13 @@ FUSION = {
     "bull nose end mill": "fillet",
     "drill": "drill",
 }
-POINT = 118.0  # degrees, of a drill that does not tell
+POINT = 118.0  # degrees: point angle of drills for which the file has none
 
 
 @dataclass(frozen=True)
 class Preset:
-    """A tool of a table. ``sizes``: the keys of a job's tool, lengths in mm and angles in degrees, with its kind where
-    the table has it; feeds in mm/min, ``spindle`` in rev/min; ``where`` it stands, for messages."""
+    """A tool of a table. ``sizes``: keys of a job's tool, lengths in mm and angles in degrees, with its kind if the
+    table has one. Feeds are in mm/min, ``spindle`` in rev/min. ``where``: place in the file, for messages."""
 
     number: int
     name: str
@@ -46,13 +46,13 @@ class Preset:
     plunge: float | None = None
     spindle: float | None = None
     flutes: int | None = None
-    problem: str = ""  # why there is no kind
+    problem: str = ""  # why the kind is unknown
 
 
 def read(path: Path, unit: str = "mm") -> list[Preset]:
-    """The tools of a table. ``unit``: that of a tool.tbl, "mm" or "inch", which tells none.
+    """Reads the tools of a table. ``unit``: "mm" or "inch", for a tool.tbl, because such files do not state it.
 
-    ValueError naming file and place for a file that is damaged or of another kind.
+    ValueError, which names file and place, if the file is damaged or of another kind.
     """
     data = files.read(path)
     if path.suffix.lower() == ".tbl":
@@ -152,7 +152,7 @@ def _fusion_tool(entry: Mapping[str, Any], where: str) -> Preset:
 
 
 def _holder(holder: Mapping[str, Any], below: float) -> list[list[float]]:
-    """Truncated cones of a holder from its segments, which lie one on the other."""
+    """Truncated cones of a holder, made from its segments, which are stacked from ``below`` (mm) upwards."""
     scale = INCH if str(holder.get("unit", "")).startswith("inch") else 1.0
     out: list[list[float]] = []
     for one in holder.get("segments") or []:

@@ -1,4 +1,4 @@
-"""Drilling: holes along the axis of a set-up."""
+"""Drills holes along the axis of a set-up."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .operations import CUT, RAPID, Blocked, Operation
 from .setups import Setup
 from .upright import ABOVE, Moves, stock_tops
 
-BACK = 0.5  # mm over the last peck at which a rapid back into the hole ends
+BACK = 0.5  # mm above the last peck: where a rapid back into the hole ends
 
 
 @hinted("plan.drill")
@@ -33,39 +33,41 @@ def drill(
 ) -> Operation:
     """Drills holes along the set-up's axis, in the order of the points.
 
-    A hole is left out, by name, where the drill would enter the part, where shank or holder meet the part, the tool a
-    fixture, or where no stock stands.
+    A hole is left out, and reported by name, if the drill would enter the part, if shank or holder would touch the
+    part, if the tool would touch a fixture, or if there is no stock.
 
     Parameters
     ----------
     setup : Setup
         Part, in-process stock, fixtures, axis.
     tool : Tool
-        A drill, or another cutter that may go down in full material.
+        A drill, or another cutter that can plunge into full material.
     points : array_like, shape (n, 3)
-        Mouths of the holes, mm.
+        Mouths (upper ends) of the holes, mm.
     depth : float or array_like, shape (n,)
-        mm of the tip below its point.
+        Depth of the tip below the mouth, mm.
     peck : float, optional
-        mm of a peck: the drill leaves the hole after each. None: in one go.
+        Depth of a peck, mm; the drill leaves the hole after each peck. None: each hole in one move.
     tolerance : float
-        mm by which the drill may enter the part: a hole of facets is narrower than the round one.
+        Depth to which the drill may enter the part, mm; more than 0, because a hole of flat facets is narrower than a
+        round hole.
     feed : float
-        mm/min.
+        Feed of the drill, mm/min.
     spindle : float
-        rev/min; negative counter-clockwise.
+        Speed, rev/min; negative: counter-clockwise.
     progress : callable, optional
         Called with the finished share; returning False cancels.
 
     Returns
     -------
     Operation
-        Holes that are left out are in ``report.blocked``. Without poses, and with the reason, if all are.
+        The operation. ``report.blocked`` lists the holes that are left out. If all are, it has no poses, and ``reason``
+        says why.
 
     Raises
     ------
     ValueError
-        Naming the argument and the point.
+        An argument or a point is wrong; the message names it.
 
     Examples
     --------
@@ -118,7 +120,7 @@ def drill(
 
 
 def _reasons(setup: Setup, tool: Tool, bottoms: np.ndarray, tolerance: float) -> list[str]:
-    """Why the tool must not stand at each tip; empty where it may."""
+    """For each tip, why the tool must not be there; empty if it may."""
     poses = np.hstack([bottoms, np.tile(setup.axis, (len(bottoms), 1))])
     out = [""] * len(bottoms)
     if not len(bottoms):

@@ -51,32 +51,32 @@ def finish(
     tool : Tool
         A cutter that does not narrow above its widest place: ball, flat, fillet, taper or a profile like them.
     pattern : str
-        "parallel": rows in planes at ``angle``. "waterline": levels, for faces from 3° on. "scallop": rows at equal
-        distances on the surface, from the border of what is meant inwards; up to 74°. "spiral": turns about
-        ``centre``. "radial": rays from it.
+        "parallel": rows in planes at ``angle``. "waterline": level curves, for faces steeper than 3°. "scallop": rows
+        at equal distances on the surface, inwards from the border of the selected faces; up to 74°. "spiral": turns
+        about ``centre``. "radial": rays from ``centre``.
     cusp : float
-        mm, largest height of the ridges between rows.
+        Largest height of the ridges between rows, mm.
     tolerance : float
-        mm: largest depth of cuts below part + allowance, and largest height of rows above it between their points.
+        Largest depth of cuts below part + allowance, and largest height of rows above it between their points, mm.
     allowance : float
-        mm that stay on the part.
+        Thickness of the material that stays on the part, mm.
     angle : float
-        rad, direction of the rows about the axis.
+        Direction of the rows about the axis, rad.
     slopes : tuple of two floats
-        rad from level: slopes of the faces to finish.
+        Smallest and largest slope of the faces to finish, rad from level.
     region : list of array_like, shape (k, 3), or array_like of int or bool, optional
-        Closed curves, seen along the axis: finishes faces inside an odd number of them. Or numbers of the part's
-        triangles, or a mark for each of them. None: all faces.
+        Closed curves, seen along the axis: finishes faces inside an odd number of them. Or indices of the part's
+        triangles to finish, or for each triangle whether to finish it. None: all faces.
     centre : array_like, shape (3,), optional
-        Of "spiral" and "radial", mm, seen along the axis; by default the middle of the part's box.
+        Centre of "spiral" and "radial", mm, seen along the axis; by default the middle of the part's box.
     climb : bool
-        Whether "waterline" moves with the part on its right. Other patterns take the nearer end of each row first.
+        Whether "waterline" moves with the part on the right. Other patterns begin each row at its nearer end.
     feed : float
-        mm/min of cuts and links.
+        Feed of cuts and links, mm/min.
     plunge : float, optional
-        mm/min of leads; by default a third of ``feed``.
+        Feed of leads, mm/min; by default a third of ``feed``.
     spindle : float
-        rev/min; negative counter-clockwise.
+        Speed, rev/min; negative: counter-clockwise.
     progress : callable, optional
         Called with the finished share; returning False cancels.
 
@@ -88,7 +88,7 @@ def finish(
     Raises
     ------
     ValueError
-        Naming the argument.
+        An argument is wrong; the message names it.
 
     Examples
     --------
@@ -132,7 +132,7 @@ def finish(
 def _region_of(
     region: Sequence[ArrayLike] | NDArray[np.generic] | None, triangles: int
 ) -> tuple[list[NDArray[np.float64]], list[int]]:
-    """Closed curves, and numbers of triangles: a region is one or the other."""
+    """The closed curves and the indices of triangles of a region, which has one or the other."""
     if region is None or not len(region):
         return [], []
     if np.ndim(region[0]):

@@ -21,7 +21,7 @@ class Blocked:
     Attributes
     ----------
     reason : str
-        Such as "the holder meets the part".
+        Why the places cannot be reached, such as "the holder meets the part".
     place : ndarray, shape (3,)
         Tip of the tool at the first of these places, mm.
     length : float
@@ -40,7 +40,7 @@ class OperationReport:
     Attributes
     ----------
     time_s : float
-        Seconds at the programmed feeds, rapids at 10 m/min.
+        Time at the programmed feeds, with rapids at 10 m/min, s.
     cut_mm : float
         Length of the cuts, mm.
     air_mm : float
@@ -50,7 +50,7 @@ class OperationReport:
     blocked : tuple of Blocked
         Places that could not be reached.
     stats : dict
-        Counts: direct links, retracts, points of the drop surface; rows, and those added between rows of equal spacing;
+        Counts: direct links, retracts, points of the drop surface; rows, and rows added between those of equal spacing;
         levels, rings in them, helices, ramps.
     """
 

@@ -1,4 +1,4 @@
-"""Outlines: a part's silhouette, or closed curves, cut out at the cutter's radius."""
+"""Outlines: cuts along a part's silhouette or closed curves, at the cutter's radius."""
 
 from __future__ import annotations
 
@@ -37,10 +37,10 @@ def outline(
     spindle: float = 12000.0,
     progress: Progress = None,
 ) -> Operation:
-    """Cuts along the part's silhouette, seen along the axis, or along closed curves, in layers.
+    """Cuts in layers along the part's silhouette, seen along the axis, or along closed curves.
 
-    The cutter's axis keeps its radius + ``allowance`` from the outline. Each layer begins with a ramp along the loop,
-    and the last ends with an arc away from the part. Loops in holes come before those around the part.
+    The cutter's axis keeps the cutter's radius + ``allowance`` from the outline. Each layer begins with a ramp along
+    the loop; the last layer ends with an arc away from the part. Loops in holes are cut before those around the part.
 
     Parameters
     ----------
@@ -49,44 +49,46 @@ def outline(
     tool : Tool
         A cutter that does not narrow above its widest place.
     curves : list of array_like, shape (k, 3), optional
-        Closed curves, seen along the axis; what lies inside an odd number of them is the part. None: the silhouette.
+        Closed curves, seen along the axis. The area inside an odd number of them counts as the part. None: the
+        silhouette.
     depth : float, optional
-        mm of the tip below the highest point of part or curves; None: the underside of the stock.
+        Depth of the tip below the highest point of part or curves, mm; None: down to the underside of the stock.
     inside : bool
-        Whether the tool runs within the curves, as for a pocket, and not around them.
+        Whether the tool moves within the curves, as for a pocket, instead of around them.
     stepdown : float
-        mm, height of a layer.
+        Height of a layer, mm.
     tabs : int
-        Bridges that stay along each loop; where fewer fit, these, and a place in ``report.blocked``.
+        Number of bridges that stay along each loop. If fewer fit, the operation leaves as many as fit, and reports it
+        in ``report.blocked``.
     tab_height, tab_width : float
-        mm: of a bridge, above the lowest layer and along the loop.
+        Height of a bridge above the lowest layer, and its length along the loop, mm.
     allowance : float
-        mm that stay on the part.
+        Thickness of the material that stays on the part, mm.
     tolerance : float
-        mm by which more than the allowance may stay; never less.
+        Thickness that may stay in addition to the allowance, mm. Never less than the allowance stays.
     slope : float
-        rad, of ramps.
+        Slope of ramps, rad.
     climb : bool
         Whether the part lies to the right of the motion, as it should for a spindle that turns clockwise.
     feed : float
-        mm/min of cuts.
+        Feed of cuts, mm/min.
     plunge : float, optional
-        mm/min of leads; by default a third of ``feed``.
+        Feed of leads, mm/min; by default a third of ``feed``.
     spindle : float
-        rev/min; negative counter-clockwise.
+        Speed, rev/min; negative: counter-clockwise.
     progress : callable, optional
         Called with the finished share; returning False cancels.
 
     Returns
     -------
     Operation
-        Holes narrower than the cutter, and stretches that part, holder or fixtures keep it from, are left out and in
-        ``report.blocked``. Without poses, and with the reason, where nothing is left to cut.
+        The operation. ``report.blocked`` lists what is left out: holes narrower than the cutter, and stretches where
+        part, holder or fixtures obstruct the tool. If there is nothing to cut, it has no poses but a ``reason``.
 
     Raises
     ------
     ValueError
-        Naming the argument.
+        An argument is wrong; the message names it.
 
     Examples
     --------

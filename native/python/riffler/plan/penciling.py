@@ -29,10 +29,11 @@ def pencil_operation(
     progress: Progress = None,
     **options: Any,
 ) -> Operation:
-    """The valleys of the set-up's part, cut along its axis.
+    """Cuts along the valleys of the set-up's part, with the tool along the set-up's axis.
 
-    Paths are those of `pencil`; cutter, shank and holder are lifted off part and fixtures where they would meet them,
-    by a bound over each move. What no lift frees is left out and in ``report.blocked``.
+    The paths are those of `pencil`. Where cutter, shank or holder would touch part or fixtures, the tool is lifted; a
+    bound over each move proves that it is then clear. ``report.blocked`` lists places that no lift frees; they are left
+    out.
 
     Parameters
     ----------
@@ -41,28 +42,28 @@ def pencil_operation(
     tool : Tool
         A tool whose tip is a ball.
     tolerance : float
-        mm to which the valleys are traced, and by which cuts may enter the part.
+        Largest error of the paths, and depth to which cuts may enter the part, mm.
     feed : float
-        mm/min of cuts.
+        Feed of cuts, mm/min.
     plunge : float, optional
-        mm/min of leads; by default a third of ``feed``.
+        Feed of leads, mm/min; by default a third of ``feed``.
     spindle : float
-        rev/min; negative counter-clockwise.
+        Speed, rev/min; negative: counter-clockwise.
     progress : callable, optional
         Called with the finished share; returning False cancels.
     options : keyword arguments
-        Further ones of `pencil`: ``passes``, ``bitangency_angle``, ``minimum_length``, ``stepover``, ``scallop``,
+        Further arguments of `pencil`: ``passes``, ``bitangency_angle``, ``minimum_length``, ``stepover``, ``scallop``,
         ``overthickness``, ``reference_tool``.
 
     Returns
     -------
     Operation
-        Without poses, and with the reason, where the part has no valley for the ball.
+        The operation. If the part has no valley for the ball, it has no poses, and ``reason`` says why.
 
     Raises
     ------
     ValueError
-        Naming the argument.
+        An argument is wrong; the message names it.
 
     Examples
     --------
@@ -85,7 +86,7 @@ def pencil_operation(
         cl, report = cutter_locations(path.orient({0: setup.axis}), tool, collider, tolerance=tolerance)
         blocked += [Blocked(one.reason, path.centres[one.point], 0.0) for one in report.blocked]
         blocked += [Blocked(one.reason, cl[one.row, :3], 0.0) for one in report.unsafe]
-        after = report.points  # a point that is blocked has no row: the path is cut there
+        after = report.points  # a blocked point has no row: divide the path there
         gaps = [k + 1 for k in range(len(cl) - 1) if any(after[k] < one.point < after[k + 1] for one in report.blocked)]
         ends = sorted({one.row + 1 for one in report.unsafe} | set(gaps))
         pieces = [piece for piece in np.split(cl, ends) if len(piece) > 1]

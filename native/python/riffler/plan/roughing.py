@@ -28,7 +28,7 @@ def rough(
     spindle: float = 12000.0,
     progress: Progress = None,
 ) -> Operation:
-    """Clears the set-up's stock in layers, as far as the whole tool can go without meeting part or fixtures.
+    """Clears the set-up's stock in layers, wherever the whole tool stays clear of part and fixtures.
 
     Each layer is cleared outwards, from its open side, from a helix or from a ramp to and fro. Each ring goes one step
     further than the one before, so that no cut is wider than ``engagement``, corners included. A pass along the border
@@ -43,12 +43,12 @@ def rough(
     tool : Tool
         A cutter that does not narrow above its widest place: flat, fillet, ball, taper or a profile like them.
     stepdown : float
-        mm, height of a layer.
+        Height of a layer, mm.
     engagement : float
-        Largest width of cut as a share of the cutter's diameter, from 0.02 to 1. Moves that cut wider, where a narrow
-        slot is entered, are leads, at ``plunge``.
+        Largest width of cut as a share of the cutter's diameter, from 0.02 to 1. Moves that cut wider, as where
+        the tool enters a narrow slot, are leads, at ``plunge``.
     allowance : float
-        mm that stay on the part.
+        Thickness of the material that stays on the part, mm.
     tolerance : float
         Largest error of curves, mm. Up to half of it stays in addition to ``allowance``.
     slope : float
@@ -56,11 +56,11 @@ def rough(
     climb : bool
         Whether material lies to the right of the motion, as it should for a spindle that turns clockwise.
     feed : float
-        mm/min of cuts and links.
+        Feed of cuts and links, mm/min.
     plunge : float, optional
-        mm/min of leads; by default a third of ``feed``.
+        Feed of leads, mm/min; by default a third of ``feed``.
     spindle : float
-        rev/min; negative counter-clockwise.
+        Speed, rev/min; negative: counter-clockwise.
     progress : callable, optional
         Called with the finished share; returning False cancels.
 
@@ -72,7 +72,7 @@ def rough(
     Raises
     ------
     ValueError
-        Naming the argument.
+        An argument is wrong; the message names it.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Set-ups: part, stock, fixtures and tool axis, for planning one operation after the other."""
+"""Set-ups: part, stock, fixtures and tool axis, for planning operations in order."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from ..hints import hinted
 from .operations import RAPID, Operation
 
 UPRIGHT = (0.0, 0.0, 1.0)
-ROUNDING = 1e-3  # mm that verification may find beyond the tolerance of an operation
+ROUNDING = 1e-3  # mm by which a verified gouge may exceed the operation's tolerance, for rounding
 
 
 class Setup:
@@ -27,13 +27,14 @@ class Setup:
     part : Mesh
         The part.
     stock : Volume
-        The material at the beginning, in the part's frame; its directions are the axis or "xyz". It is not changed.
+        The material before the first operation, in the part's frame; its rays run along the axis, or in all three
+        directions ("xyz"). It is not changed.
     fixtures : list of Volume or Mesh
         Bodies that the tool must stay clear of.
     axis : array_like, shape (3,)
         Unit vector from tip to spindle.
     clearance : float
-        mm above part, stock and fixtures along the axis: height of the rapids across.
+        Height of the rapids across, mm above part, stock and fixtures along the axis.
     machine : str
         One of ``riffler.machines()``. A machine of three axes needs the axis (0, 0, 1).
     origin : array_like, shape (3,)
@@ -106,7 +107,7 @@ class Setup:
         Parameters
         ----------
         op : Operation
-            An operation of this set-up. One without poses changes nothing.
+            An operation of this set-up. An operation without poses changes nothing.
         progress : callable, optional
             Called with the finished share; returning False cancels, and the stock is unchanged.
 
@@ -197,7 +198,7 @@ def program(
     operations : list of Operation
         In the order in which they run. Those without poses are left out.
     numbers : list of int, optional
-        The number of each operation's tool on the machine; by default tools are numbered from 1 as they come.
+        The machine's number of each operation's tool; by default tools are numbered from 1 in order of use.
     progress : callable, optional
         Called with the finished share; returning False cancels.
 
@@ -256,7 +257,7 @@ def program(
 
 
 def _called(planned: Sequence[Operation], numbers: Sequence[int] | None, tools: dict[int, Tool]) -> list[int]:
-    """The tool numbers of the operations that have poses; enters their tools."""
+    """The tool numbers of the operations that have poses. Adds their tools to ``tools``."""
     if numbers is None:
         return [_number(op.tool, tools) for op in planned if len(op)]
     if len(numbers) != len(planned):

@@ -1,4 +1,4 @@
-"""Operations along the axis of a set-up that need no search of their own: where rapids end, and moves in a list."""
+"""Helps to make operations along the axis of a set-up: finds where rapids must end, and collects the moves."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from .locations import drop
 from .operations import LEAD, RAPID, Blocked, Operation, PlannedMoves, operation_of
 from .setups import Setup
 
-ABOVE = 1.0  # mm over the stock at which a rapid down ends
+ABOVE = 1.0  # mm above the stock: where a rapid downwards ends
 
 
 def joined(meshes: Sequence[Mesh]) -> Mesh:
-    """All triangles as one mesh."""
+    """One mesh with the triangles of all meshes."""
     ends = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes)])
     triangles = [np.asarray(mesh.triangles) + k for mesh, k in zip(meshes, ends[:-1], strict=True)]
     return Mesh(np.concatenate([mesh.vertices for mesh in meshes]), np.concatenate(triangles))
 
 
 def plane_of(setup: Setup) -> float:
-    """The clearance plane: its height along the axis."""
+    """Height of the clearance plane along the axis, mm."""
     box = np.array([setup.stock.lower, setup.stock.upper])
     corners = np.array([[box[i, 0], box[j, 1], box[k, 2]] for i in (0, 1) for j in (0, 1) for k in (0, 1)])
     points = np.concatenate([corners, *(mesh.vertices for mesh in (setup.part, *setup.obstacles))])
@@ -33,7 +33,7 @@ def plane_of(setup: Setup) -> float:
 
 
 def stock_tops(setup: Setup, tool: Tool, points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Height along the axis at which the cutter meets the stock under each point; NaN where none is."""
+    """Height along the axis at which the cutter meets the stock at each point, mm; NaN if there is no stock."""
     stock = setup.stock.to_mesh()
     if not len(stock.triangles) or not len(points):
         return np.full(len(points), np.nan)
@@ -43,7 +43,7 @@ def stock_tops(setup: Setup, tool: Tool, points: NDArray[np.float64]) -> NDArray
 
 
 class Moves:
-    """Tips of moves along the axis of a set-up, with their kinds and feeds."""
+    """A list of moves with the tool along the axis of a set-up: tips, kinds and feeds."""
 
     def __init__(self, setup: Setup, feed: float, plunge: float) -> None:
         self.setup, self.feed, self.plunge = setup, feed, plunge
@@ -57,11 +57,11 @@ class Moves:
             self.kinds.append(kind)
 
     def at(self, tip: NDArray[np.float64], height: float) -> NDArray[np.float64]:
-        """The place above or below a tip that has a height along the axis."""
+        """The place above or below a tip at ``height`` along the axis."""
         return tip + (height - float(tip @ self.setup.axis)) * self.setup.axis
 
     def approach(self, tip: NDArray[np.float64], height: float) -> None:
-        """Over the clearance plane and down to a height by rapids, then a lead to the tip."""
+        """Adds rapids across the clearance plane and down to a height, then a lead to the tip."""
         self.to(self.at(tip, self.plane), RAPID)
         self.to(self.at(tip, min(self.plane, max(height, float(tip @ self.setup.axis) + ABOVE))), RAPID)
         self.to(tip, LEAD)
@@ -73,7 +73,7 @@ class Moves:
         self, tool: Tool, blocked: Sequence[Blocked], reason: str, stats: Mapping[str, int], spindle: float,
         tolerance: float, progress: Progress = None,
     ) -> Operation:  # fmt: skip
-        """The operation, with what it removes of a copy of the set-up's stock."""
+        """Makes the operation. Carves a copy of the set-up's stock to find what each move removes."""
         count = len(self.tips)
         poses = np.hstack([np.array(self.tips).reshape(-1, 3), np.tile(self.setup.axis, (count, 1))])
         kind = np.array(self.kinds, dtype=np.uint8)

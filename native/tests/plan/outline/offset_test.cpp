@@ -1,4 +1,4 @@
-// Loops at a distance from silhouettes and curves, judged by distances to shapes that are known.
+// Loops at a distance from silhouettes and curves, checked against distances from known shapes.
 #include "plan/outline/offset.hpp"
 
 #include <gtest/gtest.h>
@@ -42,7 +42,7 @@ double outside(const Vec2& p, double x0, double y0, double x1, double y1) {
   return dx > 0 && dy > 0 ? std::sqrt(dx * dx + dy * dy) : std::max(dx, dy);
 }
 
-/// Calls visit(p) for places on the loop, close together.
+/// Calls visit(p) for closely spaced points on the loop.
 template <class Visit>
 void each_place(const std::vector<Vec2>& loop, const Visit& visit) {
   for (std::size_t k = 0; k < loop.size(); ++k)
@@ -90,7 +90,7 @@ TEST(Offset, HasNothingInsideOfWhatIsNarrowerThanTheDisc) {
 }
 
 TEST(SetBorder, KnowsTheSilhouetteOfAnUnweldedAndOpenMesh) {
-  // Two triangles that make a square, with vertices of their own, and a smaller one over its middle.
+  // A square of two triangles that share no vertices, and a smaller triangle above its middle.
   Mesh mesh;
   mesh.vertices = {{0, 0, 0},  {10, 0, 0}, {10, 10, 0}, {0, 0, 0}, {10, 10, 0},
                    {0, 10, 0}, {4, 4, 5},  {6, 4, 5},   {5, 6, 5}};

@@ -1,4 +1,4 @@
-// Sets of places as bits, entries, and paths through what is cleared, compared with brute force.
+// Sets of places as bits, entries, and paths through the cleared area, compared with brute force.
 #include "plan/rough/layer.hpp"
 
 #include <gtest/gtest.h>
@@ -47,7 +47,7 @@ TEST(Layer, ACutAcrossMaterialIsAsWideAsTheCutterIsInIt) {
   for (std::size_t k = 0; k < all.size(); ++k) all[k] = kGrid.place(k).y > 10;
   Layer layer(kGrid, all, all, 2);
   double most = 0;
-  for (double x = 0; x < 20; x += 0.125) most = std::max(most, layer.move({x, 9}, {x + 0.125, 9}));  // 1 mm of it
+  for (double x = 0; x < 20; x += 0.125) most = std::max(most, layer.move({x, 9}, {x + 0.125, 9}));  // 1 mm of material
   EXPECT_NEAR(most, 1, 2 * kGrid.spacing);
   EXPECT_FALSE(layer.touches({10, 9}));
   EXPECT_TRUE(layer.touches({10, 10}));

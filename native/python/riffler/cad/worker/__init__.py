@@ -1,5 +1,5 @@
-"""The program that reads CAD files: it runs in a process of its own and alone imports OpenCASCADE (``OCP``).
+"""The program that reads CAD files. It runs in its own process; nothing else imports OpenCASCADE (``OCP``).
 
-It needs Python, numpy and OCP, but neither riffler nor its extension module: any Python that has the extra can run it,
-not only the caller's.
+It needs Python, numpy and OCP, but neither riffler nor its extension module. So any Python that has these packages can
+run it, not only the caller's.
 """

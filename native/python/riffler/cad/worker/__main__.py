@@ -1,6 +1,6 @@
 """``python …/riffler/cad/worker FOLDER PARENT``: reads FOLDER/request.json, writes FOLDER/result.json and arrays.npz.
 
-Lines of JSON on stdout report the stage of the work and its finished share. OpenCASCADE's own messages go to stderr.
+Lines of JSON on stdout report the stage and the finished share of the work. OpenCASCADE's own messages go to stderr.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ def main(folder: Path, parent: int) -> int:
 
 
 def package():
-    """The package of this folder under a name of its own: the caller's riffler may not be importable here."""
+    """Imports this folder's package under a separate name, because the caller's riffler may not be importable here."""
     folder = Path(__file__).resolve().parent
     spec = importlib.util.spec_from_file_location(
         PACKAGE, folder / "__init__.py", submodule_search_locations=[str(folder)]
@@ -50,7 +50,7 @@ def package():
 
 
 def own_stdout() -> TextIO:
-    """The stream of the reports. The descriptor 1, on which libraries print, becomes stderr."""
+    """Returns the original stdout, for reports. File descriptor 1, to which libraries print, becomes stderr."""
     stream = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)
     return stream
@@ -68,10 +68,10 @@ def reporter(stream: TextIO) -> Callable[[str, float], None]:
 
 
 def end_with_parent(parent: int, cpu_seconds: int) -> None:
-    """Leaves no process behind when the caller is killed: on Linux at once, elsewhere after a limit of processor time.
+    """Makes this process end when its caller is killed: on Linux at once, elsewhere after a limit of processor time.
 
-    OpenCASCADE keeps Python's lock for minutes, so a thread that watched the caller would not run. Where memory runs
-    out, the system ends this process and not the caller.
+    OpenCASCADE holds Python's lock for minutes, so a thread that watches the caller would not run. On Linux, if memory
+    runs out, the system ends this process and not the caller.
     """
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(1, signal.SIGKILL, 0, 0, 0)  # PR_SET_PDEATHSIG

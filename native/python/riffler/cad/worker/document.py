@@ -1,7 +1,7 @@
-"""What a file contains: its parts once each (prototypes), with the names and colours of their faces, and where each is
-placed (instances). Lengths are mm, as OpenCASCADE converts them."""
+"""The content of a file: each part once (prototype), with names and colours of its faces, and every place of each part
+(instance). Lengths are in mm, as OpenCASCADE converts them."""
 
-# OCP has no types that a checker could find.
+# Type checkers find no types for OCP.
 # pyright: reportAttributeAccessIssue=false, reportMissingImports=false
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS_Compound, TopoDS_Shape
 from OCP.XCAFDoc import XCAFDoc_ColorTool, XCAFDoc_ColorType, XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 
-# mm in the units that files name.
+# Units that files name, in mm.
 UNITS = {
     "millimetre": 1.0, "mm": 1.0, "centimetre": 10.0, "cm": 10.0, "metre": 1000.0, "m": 1000.0,
     "inch": 25.4, "in": 25.4, "foot": 304.8, "ft": 304.8, "mile": 1609344.0, "mi": 1609344.0,
@@ -37,43 +37,43 @@ PLAIN = {
     "mm": "mm", "millimetre": "mm", "centimetre": "cm", "metre": "m",
     "inch": "inch", "in": "inch", "foot": "foot", "ft": "foot",
 }  # fmt: skip
-DEEPEST = 200  # assemblies within assemblies
+DEEPEST = 200  # largest depth of assemblies within assemblies
 MOST_INSTANCES = 1_000_000
 COLORS = (XCAFDoc_ColorType.XCAFDoc_ColorSurf, XCAFDoc_ColorType.XCAFDoc_ColorGen)
 Color = tuple[float, float, float]
 
 
 class ContentError(Exception):
-    """The file's content is the reason that nothing can be read of it; says what was expected."""
+    """The file's content cannot be read. The message says what was expected."""
 
 
 @dataclass
 class Prototype:
-    """A part in coordinates of its own."""
+    """A part in its own coordinates."""
 
     name: str
     shape: Any
     color: Color | None = None
     parts: list[tuple[Any, str, Color | None]] = field(default_factory=list)
-    """Bodies and faces in it that have a name or a colour."""
+    """Bodies and faces of the part that have a name or a colour: shape, name, colour."""
 
 
 @dataclass(eq=False)
 class Instance:
-    """A part in its place."""
+    """A part in one of its places."""
 
     prototype: int
     place: Any
-    """A gp_Trsf."""
+    """Map from the part's coordinates to its place, a gp_Trsf."""
     parent: str
-    """Names of the assemblies around it, with "/" between them."""
+    """Names of the assemblies that contain the part, with "/" between them."""
     name: str
-    """The same with its own."""
+    """``parent`` followed by the part's own name."""
     color: Color | None
 
     @property
     def matrix(self) -> list[list[float]]:
-        """(3, 4): a column of a point with a 1 below it, multiplied by this, is the placed point."""
+        """(3, 4): maps a point, as a column with a 1 below it, to the placed point."""
         return [[self.place.Value(row, column) for column in range(1, 5)] for row in range(1, 4)]
 
 
@@ -111,8 +111,8 @@ def read_document(path: str, kind: str, progress: Callable[[float], None]) -> Do
 
 
 def _merge_sheets(found: Document) -> None:
-    """Makes one prototype of the parts of an assembly that have no solid and occur once: together, surfaces that a file
-    has one by one may enclose one."""
+    """Merges the parts of an assembly that have no solid and occur once into one prototype: surfaces that a file stores
+    one by one may enclose a solid together."""
     groups: dict[str, list[Instance]] = {}
     for instance in found.instances:
         shape = found.prototypes[instance.prototype].shape
@@ -209,7 +209,7 @@ def _read_brep(path: str, found: Document, progress: Callable[[float], None]) ->
 
 
 def _set_unit(found: Document, names: list[str], value: float | None = None) -> None:
-    """The unit of the file's lengths. OpenCASCADE has converted them, each representation by its own unit."""
+    """Notes the unit of the file's lengths. OpenCASCADE has converted the lengths already, each from its own unit."""
     if not names and value is None:
         found.notes.append(
             "it states no unit of length: its lengths are taken as mm; unit= of riffler.cad.read sets it"
@@ -280,7 +280,7 @@ def _prototype(label: Any, name: str) -> Prototype:
 
 
 def _name(label: Any) -> str:
-    if not label.IsAttribute(TDataStd_Name.GetID_s()):  # FindAttribute crashes where there is none
+    if not label.IsAttribute(TDataStd_Name.GetID_s()):  # FindAttribute crashes if there is no such attribute
         return ""
     attribute = TDataStd_Name()
     label.FindAttribute(TDataStd_Name.GetID_s(), attribute)
@@ -288,7 +288,7 @@ def _name(label: Any) -> str:
 
 
 def _color(label: Any) -> Color | None:
-    """As the file states it (sRGB); OpenCASCADE keeps it linear."""
+    """The colour that the file states (sRGB). OpenCASCADE stores colours as linear values."""
     color = Quantity_Color()
     for kind in COLORS:
         if XCAFDoc_ColorTool.GetColor_s(label, kind, color):

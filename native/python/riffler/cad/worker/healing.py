@@ -1,6 +1,6 @@
-"""Mends shapes: faces that OpenCASCADE calls invalid, and surfaces that are only next to each other, not joined."""
+"""Mends shapes: repairs faces that OpenCASCADE reports as invalid, and joins surfaces that only touch each other."""
 
-# OCP has no types that a checker could find.
+# Type checkers find no types for OCP.
 # pyright: reportAttributeAccessIssue=false, reportMissingImports=false
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ from OCP.TopoDS import TopoDS
 
 from .document import Color, Prototype
 
-LEAST_GAP, MOST_GAP = 1e-3, 0.02  # mm that sewing closes: the chord tolerance, between these
-RELATIVE_GAP = 1e-3  # of the part's size: the largest gap that sewing closes
+LEAST_GAP, MOST_GAP = 1e-3, 0.02  # limits of the gap that sewing closes, mm; between them it is the chord tolerance
+RELATIVE_GAP = 1e-3  # largest gap that sewing closes, as a share of the part's size
 
 
 @dataclass
 class Face:
-    """A face with what the file says of it."""
+    """A face with its name and colour in the file."""
 
     shape: Any
     name: str = ""
@@ -36,7 +36,7 @@ class Face:
 
 @dataclass
 class Body:
-    """A solid, or faces that enclose none."""
+    """A solid, or faces that do not enclose a solid."""
 
     shape: Any
     solid: bool
@@ -49,16 +49,16 @@ class Body:
 class Healed:
     bodies: list[Body]
     fixed: int = 0
-    """Faces that were changed."""
+    """Number of faces that were changed."""
     sewn: int = 0
-    """Edges of two faces that were joined."""
+    """Number of edges at which two faces were joined."""
     invalid: int = 0
-    """Faces that are invalid afterwards."""
+    """Number of faces that are still invalid."""
     notes: list[str] = field(default_factory=list)
 
 
 def shapes_of(shape: Any, kind: Any) -> list[Any]:
-    """Each shape of a kind once, in the file's order, oriented as it occurs first."""
+    """Each shape of a kind once, in the file's order, with the orientation of its first occurrence."""
     found = ShapeMap()
     TopExp.MapShapes_s(shape, kind, found)
     return [found.FindKey(k) for k in range(1, found.Extent() + 1)]
@@ -94,7 +94,7 @@ def heal(prototype: Prototype, tolerance: float) -> Healed:
 
 
 def _gap(shape: Any, tolerance: float) -> float:
-    """mm that sewing closes: the chord tolerance, within bounds, and small compared with the part."""
+    """Largest gap that sewing closes, mm: the chord tolerance, within limits, and small compared with the part."""
     box = Bnd_Box()
     BRepBndLib.Add_s(shape, box, False)
     size = 0.0 if box.IsVoid() else box.SquareExtent() ** 0.5
@@ -102,7 +102,7 @@ def _gap(shape: Any, tolerance: float) -> float:
 
 
 class _Attributes:
-    """Names and colours by shape, through the changes of healing."""
+    """Names and colours by shape; they follow the shapes through healing."""
 
     def __init__(self, prototype: Prototype) -> None:
         self.prototype = prototype
@@ -141,7 +141,7 @@ def _faces(shape: Any) -> list[Face]:
 
 
 def _loose_faces(shape: Any) -> list[Any]:
-    """Faces outside of solids."""
+    """Faces that do not belong to a solid."""
     inside = ShapeMap()
     for solid in shapes_of(shape, Kind.TopAbs_SOLID):
         TopExp.MapShapes_s(solid, Kind.TopAbs_FACE, inside)
@@ -149,7 +149,7 @@ def _loose_faces(shape: Any) -> list[Any]:
 
 
 def open_edges(shape: Any) -> int:
-    """Edges that one face alone has, seams and poles apart."""
+    """Number of edges that belong to one face only. Seams and poles do not count."""
     edges, uses = ShapeMap(), {}
     for face in shapes_of(shape, Kind.TopAbs_FACE):
         walk = TopExp_Explorer(face, Kind.TopAbs_EDGE)
@@ -161,7 +161,7 @@ def open_edges(shape: Any) -> int:
 
 
 def _mended(solid: Any, gap: float, named: _Attributes, healed: Healed) -> list[Body]:
-    """The solid, or what sewing makes of its faces where they are not joined all around."""
+    """The solid itself or, if its faces are not joined all around, the bodies that sewing makes of them."""
     if open_edges(solid) == 0:
         return [Body(solid, True, "", None, _faces(solid))]
     before = open_edges(solid)

@@ -1,4 +1,4 @@
-"""Reads one file: its document, healing, tessellation, and what the caller gets of it."""
+"""Reads one file: the document, healing, tessellation, and the answer for the caller."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Report = Callable[[str, float], None]
 
 
 def run(request: dict[str, Any], folder: Path, report: Report) -> dict[str, Any]:
-    """The answer as JSON; the arrays of all prototypes go to ``folder / "arrays.npz"``."""
+    """Returns the answer as data for JSON, and writes the arrays of all prototypes to ``folder / "arrays.npz"``."""
     try:
         return _run(request, folder, report)
     except ContentError as bad:
@@ -28,7 +28,7 @@ def _run(request: dict[str, Any], folder: Path, report: Report) -> dict[str, Any
     start = time.perf_counter()
     document = read_document(request["path"], request["kind"], lambda share: report("read", 0.3 * share))
     scale = request["unit_mm"] / document.unit_mm if request["unit_mm"] else 1.0
-    tolerance = request["tolerance"] / scale  # in the lengths that OpenCASCADE has
+    tolerance = request["tolerance"] / scale  # in OpenCASCADE's unit of length
     seconds = {"read": time.perf_counter() - start}
     arrays: dict[str, np.ndarray] = {}
     prototypes = []

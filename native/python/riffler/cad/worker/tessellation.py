@@ -1,6 +1,7 @@
-"""Triangles within the chord tolerance, with one vertex where faces meet: their edges have one polygon for all."""
+"""Tessellates bodies within the chord tolerance. Faces that meet share vertices, because an edge has one polygon that
+all its faces use."""
 
-# OCP has no types that a checker could find.
+# Type checkers find no types for OCP.
 # pyright: reportAttributeAccessIssue=false, reportMissingImports=false
 from __future__ import annotations
 
@@ -25,9 +26,9 @@ from OCP.TopoDS import TopoDS
 
 from .healing import Body, Healed
 
-ANGLE = 0.5  # rad between neighbouring chords: small arcs stay round
-ATTEMPTS = 4  # each with a smaller deflection
-SAMPLES = 8_000  # triangles of a body whose distance from the surface is measured
+ANGLE = 0.5  # largest angle between neighbouring chords, rad: keeps small arcs round
+ATTEMPTS = 4  # number of attempts, each with a smaller deflection
+SAMPLES = 8_000  # largest number of triangles of a body at which the deviation is measured
 
 
 @dataclass
@@ -90,7 +91,7 @@ def _body(body: Body, pieces: Pieces) -> dict[str, Any]:
 
 
 def _edge_gap(body: Body) -> float:
-    """mm: how far edges may lie from their faces, as the file or healing says."""
+    """Largest distance of edges from their faces, mm, as stated by the file or by healing."""
     edges = ShapeMap()
     TopExp.MapShapes_s(body.shape, TopAbs_ShapeEnum.TopAbs_EDGE, edges)
     return max(
@@ -125,8 +126,7 @@ def _finite(value: float) -> float:
 
 
 def body_mesh(body: Body, tolerance: float) -> Pieces:
-    """Tries finer deflections until the triangles are within the tolerance where it is measured, and the mesh of a
-    solid is closed."""
+    """Tries smaller deflections until the measured deviation is within the tolerance and a solid's mesh is closed."""
     best = None
     deflection, enough = tolerance, math.inf
     for _ in range(ATTEMPTS):
@@ -140,8 +140,8 @@ def body_mesh(body: Body, tolerance: float) -> Pieces:
             break
         finer = min(0.9 if whole else 0.5, max(0.25, 0.9 * tolerance / max(pieces.deviation, tolerance)))
         deflection *= finer
-        # A deviation that falls much less than the deflection does not come from it: the mesher misses something, or
-        # the file has gaps between edges and faces. Still finer meshes would only be large.
+        # If the deviation falls much less than the deflection, the deflection is not its cause: the mesher misses a
+        # feature, or the file has gaps between edges and faces. Even finer meshes would only be larger.
         enough = 0.5 * (1 + finer) * pieces.deviation
     assert best is not None
     return best
@@ -154,7 +154,7 @@ def _worth(pieces: Pieces, tolerance: float) -> tuple[int, int, float]:
 def _mesh(body: Body, deflection: float) -> None:
     location = TopLoc_Location()
     if any(BRep_Tool.Surface_s(face.shape, location) is None for face in body.faces):
-        return  # triangles only, as of AP242's tessellated solids
+        return  # the face has only triangles, as in AP242's tessellated solids
     BRepTools.Clean_s(body.shape, True)
     parameters = IMeshTools_Parameters()
     parameters.Deflection = parameters.DeflectionInterior = deflection
@@ -162,12 +162,12 @@ def _mesh(body: Body, deflection: float) -> None:
     parameters.MinSize = min(0.1 * deflection, 1e-3)
     parameters.InParallel = True
     parameters.ControlSurfaceDeflection = True
-    parameters.ForceFaceDeflection = True  # else gaps in the file make it coarser than was asked
+    parameters.ForceFaceDeflection = True  # otherwise gaps in the file make the mesh coarser than requested
     BRepMesh_IncrementalMesh(body.shape, parameters)
 
 
 class _Vertices:
-    """Numbers of the body's vertices: of its corners, inner points of its edges, and inner nodes of its faces."""
+    """Numbers the vertices of a body's mesh: corners of the body, inner points of edges, and inner nodes of faces."""
 
     def __init__(self, body: Body) -> None:
         self.corners, self.edges = ShapeMap(), ShapeMap()
@@ -176,7 +176,7 @@ class _Vertices:
         self.along: dict[int, list[int]] = {}
 
     def of_edge(self, edge: Any, count: int) -> list[int]:
-        """One number for each point of an edge's polygon, the same for all its faces."""
+        """Numbers of the points of an edge's polygon. They are the same for all faces at the edge."""
         number = self.edges.Add(edge)
         known = self.along.get(number)
         if known is not None and len(known) == count:
@@ -219,7 +219,7 @@ def _extract(body: Body) -> Pieces:
 
 
 def _face_triangles(face: Any, mesh: Any, location: Any, vertices: _Vertices) -> np.ndarray:
-    """(k, 3) numbers of vertices, counter-clockwise from outside; triangles at poles that have no area are left out."""
+    """(k, 3) numbers of vertices, counter-clockwise seen from outside. Leaves out triangles without area at poles."""
     place = location.Transformation()
     nodes: list[int] = [-1] * (mesh.NbNodes() + 1)
     walk = TopExp_Explorer(face, TopAbs_ShapeEnum.TopAbs_EDGE)
@@ -245,7 +245,7 @@ def _face_triangles(face: Any, mesh: Any, location: Any, vertices: _Vertices) ->
 
 
 def count_open(rows: np.ndarray) -> int:
-    """Edges that the triangles around them do not run in either direction equally often: where the surface ends."""
+    """Number of edges where the surface ends: triangles there do not use both directions of the edge equally often."""
     if not len(rows):
         return 0
     edges = np.concatenate([rows[:, [0, 1]], rows[:, [1, 2]], rows[:, [2, 0]]]).astype(np.int64)
@@ -256,7 +256,7 @@ def count_open(rows: np.ndarray) -> int:
 
 
 def _deviation(body: Body, pieces: Pieces) -> float:
-    """The largest distance, mm, of the surface from triangles, at middles of triangles and of their sides."""
+    """Largest distance of the surface from its triangles at middles of triangles and sides, in OpenCASCADE's unit."""
     total = 0
     for face in body.faces:
         mesh = BRep_Tool.Triangulation_s(face.shape, TopLoc_Location())
@@ -266,7 +266,7 @@ def _deviation(body: Body, pieces: Pieces) -> float:
 
 
 def _pole_nodes(face: Any, mesh: Any, location: Any) -> set[int]:
-    """Nodes in poles. One of their parameters is arbitrary, so means of parameters lie outside of the triangle."""
+    """Nodes at poles. One of their parameters is arbitrary, so mean parameters would lie outside of the triangle."""
     found: set[int] = set()
     walk = TopExp_Explorer(face, TopAbs_ShapeEnum.TopAbs_EDGE)
     while walk.More():
