@@ -19,6 +19,17 @@ BALL, FLAT = TOOLS["ball"], TOOLS["flat"]
 UPRIGHT = math.pi / 2
 CUSP, TOLERANCE = 0.08, 0.02
 SELDOM = 0.015
+BORDER = 0.035  # a bull's scallops begin inside a border (docs/limits.md)
+# Every cutter and part, and every pattern with two cutters, where RIFFLER_LONG is set; else those that differ most.
+LONG = bool(os.environ.get("RIFFLER_LONG"))
+WATERLINES = [("dome", "ball"), ("cone", "bull"), ("steps", "flat"), ("torus", "ball"), ("cube at 10°", "flat")]
+OTHERS = [
+    *(("dome", "scallop", "ball"), ("torus", "scallop", "ball"), ("cube at 10°", "scallop", "bull")),
+    *(("dome", "spiral", "bull"), ("steps", "spiral", "ball"), ("cone", "radial", "ball"), ("torus", "radial", "bull")),
+]
+if LONG:
+    WATERLINES = [(name, tool) for name in PARTS for tool in TOOLS]
+    OTHERS = [(name, p, tool) for name in PARTS for p in ("scallop", "spiral", "radial") for tool in ("ball", "bull")]
 
 
 def degrees(low, high):
@@ -43,24 +54,22 @@ def assert_kept(op, judge, least=60, cusp=CUSP, tolerance=TOLERANCE, share=0.0):
 # ---- the promise, for every pattern, cutter and part
 
 
-@pytest.mark.parametrize("tool", TOOLS)
-@pytest.mark.parametrize("name", PARTS)
+@pytest.mark.parametrize(("name", "tool"), WATERLINES)
 def test_waterline_cuts_steep_faces_to_the_cusp_and_no_deeper(name, tool):
     part, slopes = PARTS[name](), degrees(25, 90)
     op = finished(part, TOOLS[tool], "waterline", slopes)
-    assert_kept(op, Judge(part, TOOLS[tool], 0.0, slopes))
+    assert_kept(op, Judge(part, TOOLS[tool], 0.0, slopes), least=30)
     program = plan.program(setup_of(part), [op])  # simulates the operation: rapids, shank and gouges
     assert len(program) == len(op)
 
 
-@pytest.mark.parametrize("tool", ["ball", "bull"])
-@pytest.mark.parametrize("pattern", ["scallop", "spiral", "radial"])
-@pytest.mark.parametrize("name", PARTS)
+@pytest.mark.parametrize(("name", "pattern", "tool"), OTHERS)
 def test_other_patterns_cut_to_the_cusp_and_no_deeper(name, pattern, tool):
     part, slopes = PARTS[name](), degrees(0, 65)
     op = finished(part, TOOLS[tool], pattern, slopes)
     # Turns and rays are checked at places along them, so a crease between two places may stay higher.
-    assert_kept(op, Judge(part, TOOLS[tool], 0.0, slopes), share=0.0 if pattern == "scallop" else SELDOM)
+    share = SELDOM if pattern != "scallop" else BORDER if tool == "bull" else 0.0
+    assert_kept(op, Judge(part, TOOLS[tool], 0.0, slopes), share=share)
     assert len(plan.program(setup_of(part), [op])) == len(op)
 
 
