@@ -62,6 +62,7 @@ stress:  ## Carve MOVES random moves per cutter, edit histories EDITS times, mes
 	build/release/native/stress/riffler_contact_stress --poses $(or $(POSES),1000000) --seed $(or $(SEED),1)
 	RIFFLER_LONG=1 build/release/native/tests/riffler_tests --gtest_filter='Sculpting.*:LedAlongWalls.*'
 	RIFFLER_LONG=1 $(python) -m pytest -q native/tests/python/test_tasks.py -k many_tasks
+	RIFFLER_LONG=1 $(python) -m pytest -q native/tests/python/test_finish_patterns.py
 
 fuzz:  ## Fuzz every reader of files for SECONDS each, from SEED, under the sanitizers (TARGETS="rs274 ply" for some): build/fuzz
 	@$(ready) cpp-tests
