@@ -8,13 +8,10 @@ import re
 from pathlib import Path
 from typing import Any
 
-from ..cad import EXTENSIONS as CAD
+from ..formats import PARTS, VOLUMES
 from .parser import Parser
 
-MESHES = (".stl", ".obj", ".ply", ".3mf")  # are read and written
-PARTS = MESHES + CAD  # are read
 A_PART = ".stl, .obj, .ply, .3mf, .step, .iges or .brep"
-VOLUMES = (".rvol",)
 PAIRS = re.compile(r"\d+:[-+.\deE]+(,\d+:[-+.\deE]+)*")
 ORIGINS = ("corner", "top-centre", "bottom-centre")
 PROGRAMS = (".rprog",)

@@ -9,7 +9,8 @@ import argparse
 import dataclasses
 
 from .. import Mesh
-from .arguments import A_PART, PARTS, input_file
+from ..formats import PARTS
+from .arguments import A_PART, input_file
 from .console import Console, number
 from .parser import Parser
 from .shapes import read_mesh

@@ -10,7 +10,8 @@ from __future__ import annotations
 import argparse
 
 from .. import Mesh, cad
-from .arguments import A_PART, MESHES, PARTS, input_file, length, output_file
+from ..formats import MESHES, PARTS
+from .arguments import A_PART, input_file, length, output_file
 from .console import Console, number, times
 from .parser import Parser
 from .shapes import read_mesh, write_mesh

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import argparse
 
-from .arguments import A_PART, MESHES, PARTS, input_file, length, output_file, whole
+from ..formats import MESHES, PARTS
+from .arguments import A_PART, input_file, length, output_file, whole
 from .console import Console, number, times
 from .parser import Parser
 from .shapes import read_mesh, write_mesh

@@ -23,20 +23,10 @@ from typing import Any
 import numpy as np
 
 from .. import Collider, Journal, Program, Tool, _core, machines, plan
+from ..formats import PARTS
 from ..program_results import WriteReport
 from . import tools
-from .arguments import (
-    CODE,
-    JOURNALS,
-    PARTS,
-    PLANS,
-    PROGRAMS,
-    finite,
-    input_file,
-    length,
-    machine_options,
-    output_file,
-)
+from .arguments import CODE, JOURNALS, PLANS, PROGRAMS, finite, input_file, length, machine_options, output_file
 from .console import Console, number, times
 from .parser import Parser
 from .programs import add_machine, machine_name, read_program

@@ -13,17 +13,9 @@ from pathlib import Path
 import numpy as np
 
 from .. import Finding, VerifyReport, cluster, verify
+from ..formats import MESHES, PARTS, VOLUMES
 from . import tools
-from .arguments import (
-    A_PART,
-    MESHES,
-    PARTS,
-    VOLUMES,
-    input_file,
-    length,
-    machine_options,
-    output_file,
-)
+from .arguments import A_PART, input_file, length, machine_options, output_file
 from .console import Console, number, times
 from .detail import NOT_MESHED, add_detail, detail_of
 from .deviation_map import LEGEND, write_map

@@ -23,7 +23,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .. import Material, Session, SessionFrame, Tool, pen
-from .arguments import JOURNALS, MESHES, VOLUMES, length, output_file
+from ..formats import MESHES, VOLUMES
+from .arguments import JOURNALS, length, output_file
 from .console import Console, number
 from .detail import add_detail, detail_of
 from .devices import geometry_of

@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 
 from .. import Mesh, Tool, Volume, plan
+from ..formats import PARTS
 from . import tools
-from .arguments import A_PART, CODE, PARTS, PROGRAMS, finite, input_file, is_solid, length, output_file
+from .arguments import A_PART, CODE, PROGRAMS, finite, input_file, is_solid, length, output_file
 from .console import Console, number, times
 from .parser import Parser
 from .programs import machine_name

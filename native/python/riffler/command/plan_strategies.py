@@ -8,9 +8,10 @@ from pathlib import Path
 from typing import Any
 
 from .. import plan
+from ..formats import PARTS
 from ..plan import curves
 from . import tools
-from .arguments import A_PART, PARTS, PLANS, finite, input_file, length, output_file, whole
+from .arguments import A_PART, PLANS, finite, input_file, length, output_file, whole
 from .console import Console, number, times
 from .parser import Parser
 from .shapes import read_part

@@ -6,9 +6,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 from .. import Mesh, Orientation, Volume, VolumeReport, cad
+from ..formats import VOLUMES
 from ..mesh_notes import notes_on
 from ..results import LostReport
-from .arguments import VOLUMES
 from .console import Console
 from .detail import Detail, Written, announce
 

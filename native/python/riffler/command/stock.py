@@ -7,7 +7,8 @@ import argparse
 import numpy as np
 
 from .. import Volume
-from .arguments import ORIGINS, PARTS, VOLUMES, add_directions, add_pitch, input_file, is_solid, length, solid
+from ..formats import PARTS, VOLUMES
+from .arguments import ORIGINS, add_directions, add_pitch, input_file, is_solid, length, solid
 from .console import Console
 from .parser import Parser
 from .shapes import from_mesh

@@ -5,7 +5,8 @@ from __future__ import annotations
 import argparse
 
 from .. import Collider, Mesh, Tool, Volume, plan
-from .arguments import PARTS, VOLUMES, finite, input_file
+from ..formats import PARTS, VOLUMES
+from .arguments import finite, input_file
 from .console import Console
 from .parser import Parser
 from .shapes import from_mesh

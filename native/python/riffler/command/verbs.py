@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any, NoReturn, Protocol
 
+from ..formats import MESHES, PARTS, VOLUMES
 from ..plan import STRATEGIES
-from .arguments import MESHES, PARTS, VOLUMES
 from .console import Console
 from .parser import EPILOG, Parser, UsageError, nearest
 

@@ -11,8 +11,9 @@ from pathlib import Path
 import numpy as np
 
 from .. import Program, Tool, Volume
+from ..formats import MESHES, VOLUMES
 from . import tools
-from .arguments import MESHES, VOLUMES, length, machine_options, output_file
+from .arguments import length, machine_options, output_file
 from .console import Console, number, times
 from .detail import NOT_MESHED, Written, add_detail, detail_of
 from .parser import Parser

@@ -9,7 +9,8 @@ import argparse
 import dataclasses
 
 from .. import VolumeReport
-from .arguments import A_PART, PARTS, VOLUMES, add_directions, add_pitch, input_file, length, output_file
+from ..formats import PARTS, VOLUMES
+from .arguments import A_PART, add_directions, add_pitch, input_file, length, output_file
 from .console import Console, Rows, number, times
 from .parser import Parser
 from .shapes import from_mesh, rays, write_volume

@@ -9,7 +9,8 @@ import argparse
 from pathlib import Path
 
 from .. import Journal
-from .arguments import JOURNALS, MESHES, VOLUMES, input_file, output_file
+from ..formats import MESHES, VOLUMES
+from .arguments import JOURNALS, input_file, output_file
 from .console import Console, number, times
 from .detail import NOT_MESHED, Written, add_detail, detail_of
 from .parser import Parser

@@ -8,7 +8,8 @@ from __future__ import annotations
 import argparse
 
 from .. import Volume
-from .arguments import MESHES, VOLUMES, input_file, length, output_file
+from ..formats import MESHES, VOLUMES
+from .arguments import input_file, length, output_file
 from .console import Console, number, times
 from .detail import Detail, Written, add_detail, detail_of
 from .parser import Once, Parser

@@ -13,14 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._core import FormatError, Mesh, Tool, Volume, machine_options, machines
-from ..cad import EXTENSIONS as CAD
+from ..formats import MESHES, PARTS, VOLUMES
 from . import tool_files
 from .kinds import KINDS, Kind
 from .table import JobError, JobFile, Table
 
-MESHES = (".stl", ".obj", ".ply", ".3mf")
-PARTS = MESHES + CAD
-VOLUMES = (".rvol",)
 CODE = (".ngc", ".nc", ".cnc", ".tap", ".gcode", ".mpf", ".h", ".i", ".apt", ".cls", ".txt")
 RAYS = 400  # number of rays along the longest side of a stock, if the file sets no pitch
 ZEROS = ("corner", "bottom-centre", "top-centre", "top-corner")

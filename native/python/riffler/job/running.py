@@ -13,8 +13,9 @@ import numpy as np
 from .. import _core, files, plan
 from .._core import Mesh, Program, VerifyReport, Volume
 from ..arguments import Progress
+from ..formats import MESHES
 from ..plan.setups import ROUNDING
-from .model import MESHES, Job, JobOperation
+from .model import Job, JobOperation
 from .table import JobError
 
 Step = Callable[[str], AbstractContextManager[Progress]]
