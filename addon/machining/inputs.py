@@ -40,8 +40,7 @@ class Inputs:
 
 def stock_of(scene):
     """The job's stock if it is in the scene, else None."""
-    ob = scene.riffler.machining.stock
-    return ob if sculpts.is_sculpt(ob) and scene.objects.get(ob.name) == ob else None
+    return sculpts.in_scene(scene.riffler.machining.stock, scene)
 
 
 def world_axis(scene):

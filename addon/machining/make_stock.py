@@ -93,16 +93,16 @@ class RIFFLER_OT_machining_left(bpy.types.Operator):
         scene = context.scene
         try:
             given, known = inputs.take(context), job_store.operations(scene)
-            volume, count = given.stock, 0
+            setup, count = given.setup(), 0
             for key in given.keys:
                 op = known.get(key)
                 if op is None:
                     break
                 count += 1
-                if len(op):
-                    volume.carve(op.tool, op.poses)
+                setup.apply(op)
             if not count:
                 raise ValueError("the first operation has changed since it was calculated: use Calculate again")
+            volume = setup.stock
             ob = sculpts.new_object(
                 context, f"{given.names[0]} after {count}", Content(volume, shaped=True), Matrix(_scene(context, given))
             )

@@ -4,9 +4,7 @@ import bpy
 
 from ..blender.panel_parts import at_work, give, lines, wrapped
 from ..common import units
-from ..plan import tool_icons, tool_libraries
-from ..plan.panel import Tab
-from ..plan.pure import tool_library
+from ..plan.panel import Tab, draw_library
 from ..translations import local
 from . import calculate, edit_operations, inputs, make_stock, properties
 from .pure.operation_kinds import KINDS
@@ -57,10 +55,7 @@ class RIFFLER_MT_machining_tools(bpy.types.Menu):
 
     def draw(self, context):
         layout, take = self.layout, edit_operations.RIFFLER_OT_machining_tool.bl_idname
-        entries, problems = tool_libraries.files()
-        for entry in (*entries, *tool_library.shipped()):
-            op = layout.operator(take, text=entry.name, icon_value=tool_icons.icon(entry.tool), translate=False)
-            op.name, op.path = entry.name, str(entry.path or "")
+        problems = draw_library(layout, take)
         layout.separator()
         op = layout.operator(take, text="The Plan's Tool", icon="FORWARD")
         op.name = op.path = ""

@@ -19,6 +19,7 @@ from bpy.props import (
 from ..blender import scene_units
 from ..blender.fields import angle, length, stored_number
 from ..common import json_object
+from ..sculpt import sculpts
 from .pure.job_run import Wanted
 from .pure.operation_kinds import KINDS, OPERATION_KINDS
 
@@ -143,7 +144,7 @@ class StockShape:
 
 
 def _is_sculpt(_, ob):
-    return ob.type == "MESH" and ob.data.riffler.store is not None
+    return sculpts.is_sculpt(ob)
 
 
 class RifflerMachining(StockShape, bpy.types.PropertyGroup):

@@ -33,6 +33,16 @@ class OfPlan(Tab):
         return plan_object(context) is not None
 
 
+def draw_library(layout, take):
+    """Draws a button of the operator `take` for each tool of the library; returns a line for each file that cannot be
+    read."""
+    entries, problems = tool_libraries.files()
+    for entry in (*entries, *tool_library.shipped()):
+        op = layout.operator(take, text=entry.name, icon_value=tool_icons.icon(entry.tool), translate=False)
+        op.name, op.path = entry.name, str(entry.path or "")
+    return problems
+
+
 class RIFFLER_MT_plan_tools(bpy.types.Menu):
     bl_idname = "RIFFLER_MT_plan_tools"
     bl_label = "Tool Library"
@@ -40,10 +50,7 @@ class RIFFLER_MT_plan_tools(bpy.types.Menu):
     def draw(self, context):
         layout = self.layout
         take = setup.RIFFLER_OT_plan_tool.bl_idname
-        entries, problems = tool_libraries.files()
-        for entry in (*entries, *tool_library.shipped()):
-            op = layout.operator(take, text=entry.name, icon_value=tool_icons.icon(entry.tool), translate=False)
-            op.name, op.path = entry.name, str(entry.path or "")
+        problems = draw_library(layout, take)
         layout.separator()
         layout.operator(take, text="Cutter of the Tool Panel", icon="FORWARD").sculpting = True
         layout.operator(setup.RIFFLER_OT_plan_tool_open.bl_idname, text="Open File…", icon="FILEBROWSER")

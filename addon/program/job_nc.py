@@ -2,8 +2,7 @@
 
 import bpy
 import numpy as np
-from bpy.props import EnumProperty, StringProperty
-from bpy_extras.io_utils import ExportHelper
+from bpy.props import EnumProperty
 
 from ..blender import operator_parts, scene_units
 from ..blender.panel_parts import lines, wrapped
@@ -11,19 +10,17 @@ from ..common import problems, units
 from ..machining import inputs, job_program, job_store
 from ..plan.machines import MACHINES
 from ..plan.panel import Tab
-from ..plan.pure import machine_fields
 from ..sculpt import sculpts
 from . import programs
-from .properties import GivenOptions
+from .nc_file import WritesNc
 
 
-class RIFFLER_OT_machining_nc(GivenOptions, bpy.types.Operator, ExportHelper):
+class RIFFLER_OT_machining_nc(WritesNc, bpy.types.Operator):
     """Write the job's operations as one NC program; nothing is written that a simulation has found a fault in"""
 
     bl_idname = "riffler.machining_nc"
     bl_label = "Write Job"
 
-    filter_glob: StringProperty(default=machine_fields.file_filter("*.nc;*.tap"), options={"HIDDEN"})
     post: EnumProperty(
         name="Machine",
         items=MACHINES,
@@ -31,10 +28,6 @@ class RIFFLER_OT_machining_nc(GivenOptions, bpy.types.Operator, ExportHelper):
         options={"SKIP_SAVE"},
         description="Machine that the NC code is written for",
     )
-
-    @property
-    def filename_ext(self):
-        return machine_fields.extension(self.post)
 
     @classmethod
     def poll(cls, context):
@@ -44,15 +37,8 @@ class RIFFLER_OT_machining_nc(GivenOptions, bpy.types.Operator, ExportHelper):
             return operator_parts.deny(cls, "Nothing is calculated: use Calculate first")
         return not operator_parts.busy(cls, context, simulation=False)
 
-    def invoke(self, context, event):
-        self._take_settings(context)
-        try:
-            programs.options(context.scene, self.post, self.options)
-        except ValueError as error:  # refuse before the file browser opens
-            return operator_parts.fail(self, error)
-        if not self.filepath:
-            self.filepath = f"{context.scene.riffler.plan.part.name}{self.filename_ext}"
-        return ExportHelper.invoke(self, context, event)
+    def _stem(self, context):
+        return context.scene.riffler.plan.part.name
 
     def _take_settings(self, context):
         """Takes the scene's machine if no machine was given."""
@@ -74,11 +60,7 @@ class RIFFLER_OT_machining_nc(GivenOptions, bpy.types.Operator, ExportHelper):
             return operator_parts.fail(self, error)
         count = units.counted(len(given.wanted), "operation")
         done = f"{bpy.path.basename(path)}: {count}, {units.counted(written.blocks, 'block')}"
-        notes = []
-        if len(written.rewinds):
-            rows = ", ".join(str(int(r)) for r in np.atleast_1d(written.rewinds)[:4])
-            notes.append(f"The tool leaves the material to turn an axis back, at rows {rows}")
-        operator_parts.tell_all(self, done, notes)
+        operator_parts.tell_all(self, done, programs.rewound(written))
         return {"FINISHED"}
 
     def draw(self, context):

@@ -5,8 +5,7 @@ from dataclasses import replace
 import bpy
 import numpy as np
 import riffler
-from bpy.props import EnumProperty, FloatProperty, StringProperty
-from bpy_extras.io_utils import ExportHelper
+from bpy.props import EnumProperty, FloatProperty
 
 from ..blender import operator_parts, scene_units
 from ..common import problems, units
@@ -15,9 +14,9 @@ from ..plan import findings, fit_check, obstacles, plan_states, plan_store, repl
 from ..plan.current_pose import plan_object
 from ..plan.machines import MACHINES
 from ..plan.operators.plan_work import PlanWork, part_poll, plan_poll
-from ..plan.pure import location_messages, machine_fields
+from ..plan.pure import location_messages
 from . import programs
-from .properties import GivenOptions
+from .nc_file import WritesNc
 
 
 class RIFFLER_OT_plan_resolve(PlanWork, bpy.types.Operator):
@@ -134,13 +133,12 @@ class RIFFLER_OT_plan_resolve(PlanWork, bpy.types.Operator):
         operator_parts.tell_all(self, done, notes, blocked > 0 or left != "")
 
 
-class RIFFLER_OT_plan_nc(GivenOptions, bpy.types.Operator, ExportHelper):
+class RIFFLER_OT_plan_nc(WritesNc, bpy.types.Operator):
     """Write the plan's resolved paths as NC code in the scene's millimetres"""
 
     bl_idname = "riffler.plan_nc"
     bl_label = "Write NC"
 
-    filter_glob: StringProperty(default=machine_fields.file_filter("*.nc;*.tap"), options={"HIDDEN"})
     post: EnumProperty(
         name="Machine",
         items=MACHINES,
@@ -155,25 +153,14 @@ class RIFFLER_OT_plan_nc(GivenOptions, bpy.types.Operator, ExportHelper):
         name="Spindle", default=-1.0, min=-1.0, max=1e6, options={"SKIP_SAVE"}, description="rev/min; -1: the plan's"
     )
 
-    @property
-    def filename_ext(self):
-        return machine_fields.extension(self.post)
-
     @classmethod
     def poll(cls, context):
         if plan_object(context) is None:
             return operator_parts.deny(cls, "Select a plan first, or find paths on a part")
         return not operator_parts.busy(cls, context, simulation=False)
 
-    def invoke(self, context, event):
-        self._take_settings(context)
-        try:
-            programs.options(context.scene, self.post, self.options)
-        except ValueError as error:  # before the user chooses a file in vain
-            return operator_parts.fail(self, error)
-        if not self.filepath:
-            self.filepath = plan_object(context).name + self.filename_ext
-        return ExportHelper.invoke(self, context, event)
+    def _stem(self, context):
+        return plan_object(context).name
 
     def _take_settings(self, context):
         """Settings that were not given are the scene's."""
@@ -211,9 +198,7 @@ class RIFFLER_OT_plan_nc(GivenOptions, bpy.types.Operator, ExportHelper):
                 done = f"{done}. {difference}"
             else:
                 notes.append(str(difference))
-        if len(written.rewinds):
-            rows = ", ".join(str(int(r)) for r in np.atleast_1d(written.rewinds)[:4])
-            notes.append(f"The tool leaves the material to turn an axis back, at rows {rows}")
+        notes += programs.rewound(written)
         operator_parts.tell_all(self, done, notes)
 
     def draw(self, context):

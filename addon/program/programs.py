@@ -126,6 +126,14 @@ def write(program, plan, path, post, chosen, collider=None):
     return program.write(path, post=post, collider=collider, contact_tolerance=touch(plan), **how)
 
 
+def rewound(written):
+    """Notes on where a written program turns an axis back."""
+    if not len(written.rewinds):
+        return []
+    rows = ", ".join(str(int(r)) for r in np.atleast_1d(written.rewinds)[:4])
+    return [f"The tool leaves the material to turn an axis back, at rows {rows}"]
+
+
 def options(scene, machine, text=""):
     """A machine's options: from JSON, or the scene's settings for it. ValueError if the text is invalid, and if a
     required option is missing."""
@@ -172,9 +180,7 @@ class Setup:
 def stock_object(context):
     """The stock of the scene's settings, or the active sculpt, or None."""
     chosen = context.scene.riffler.verify.stock
-    if sculpts.is_sculpt(chosen) and context.scene.objects.get(chosen.name) == chosen:
-        return chosen
-    return sculpts.active(context)
+    return sculpts.in_scene(chosen, context.scene) or sculpts.active(context)
 
 
 def no_stock(context):

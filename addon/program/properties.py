@@ -6,6 +6,7 @@ from bpy.props import CollectionProperty, EnumProperty, IntProperty, PointerProp
 from ..blender.fields import length
 from ..plan.machines import MACHINES
 from ..plan.properties import RifflerFinding
+from ..sculpt import sculpts
 
 SOURCES = (
     ("PLAN", "Plan", "The resolved paths of the active plan"),
@@ -64,7 +65,7 @@ class VerifySettings(ProgramSettings):
 
 
 def _is_sculpt(_, ob):
-    return ob.type == "MESH" and ob.data.riffler.store is not None
+    return sculpts.is_sculpt(ob)
 
 
 class RifflerVerify(VerifySettings, bpy.types.PropertyGroup):

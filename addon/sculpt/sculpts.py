@@ -16,6 +16,11 @@ def is_sculpt(ob):
     return ob is not None and ob.type == "MESH" and ob.data.riffler.store is not None
 
 
+def in_scene(ob, scene):
+    """The object if it is a sculpt of the scene, otherwise None: a pointer keeps an object that was deleted."""
+    return ob if is_sculpt(ob) and scene.objects.get(ob.name) == ob else None
+
+
 def active(context):
     """The active object if it is a sculpt, otherwise None."""
     ob = context.object
