@@ -7,6 +7,16 @@ import riffler
 
 from ...pen.pure.device_run import DeviceRun
 
+STAY = 0.6  # points
+
+
+def point_at(station: float, last: int, points: int, closed: bool) -> int:
+    """The point of a path at a station (a point index with a fraction): `last` within STAY of it, otherwise the
+    nearest. A tool that rests half way between two points stays with one; frame and map would flicker between them."""
+    away = abs(station - last)
+    away = min(away, points - away) if closed else away
+    return last if away <= STAY else round(station) % points
+
 
 class OrientRun(DeviceRun):
     """An open device and its session on one path: `start`, `look` about thirty times a second, `halt`; finally `close`.
@@ -23,15 +33,11 @@ class OrientRun(DeviceRun):
         self.push = np.zeros((2, 3))  # N, N·mm about its tip: on the tool, the mean since the last poll
         self.state, self.force, self.torque, self.why = "off", 0.0, 0.0, ""  # the force on the hand
         self.touching: str | None = None  # part of the tool, or "fixture"
+        self.point = options.get("point", 0)  # of the path, see point_at
         self._points, self._closed = len(path), path.closed
 
     def start(self) -> None:
         self.session.start()
-
-    @property
-    def point(self) -> int:
-        """The nearest point of the path."""
-        return round(self.station) % self._points
 
     def look(self) -> tuple[riffler.KeyChange, ...]:
         """Updates what is shown, and returns what the buttons did."""
@@ -51,6 +57,7 @@ class OrientRun(DeviceRun):
         self.state, self.touching = frame.state, frame.touching
         if len(frame):
             self.pose, self.station = frame.tool, frame.station
+            self.point = point_at(self.station, self.point, self._points, self._closed)
             self.push = self.mean_push(frame)
         self.force, self.torque = float(np.linalg.norm(frame.force)), float(np.linalg.norm(frame.torque))
         if self.gone:
