@@ -8,7 +8,7 @@ Each (Blender, installation mode), and each script of a window, is one process w
 Installation modes: the zips that users get (extension from 4.2 on, legacy before), built here from the wheel, and the
 source folder. One Blender also tests from the source folder what depends on the installation mode, or everything if
 --blender or --mode names it. Tests whose time is spent in the core (common.core_bound) run in the oldest and the newest
-Blender, and in any that --blender or --mode names. Ends with the slowest tests and the numbers of passed, failed and
+Blender, and in any that --blender or --mode names. Ends with the costliest tests and the numbers of passed, failed and
 skipped tests, with reasons; exit code 1 if one failed.
 """
 
@@ -38,7 +38,7 @@ import package  # noqa: E402 (the zips are built by what builds them for users)
 
 # Processes, of a gigabyte each; windows and pens are idle for half of their time.
 AT_ONCE = min(3, 2 * (os.cpu_count() or 1))
-FIRST_DISPLAY = 90  # each window searches for a free one from its own number on: two at once would find the same
+FIRST_DISPLAY = int(os.environ.get("FD", "90"))
 FROM_SOURCE = (4, 5)  # the Blender that also tests the source folder
 # Tests that may depend on the add-on's folder and module name; the rest is the same code as in the extension, which the
 # same Blender tests completely.
@@ -54,7 +54,7 @@ def indented(message: str, last: int = 0) -> str:
 @dataclass
 class Tally:
     passed: int = 0
-    times: list[tuple[float, str]] = field(default_factory=list)
+    times: list[tuple[float, float, str]] = field(default_factory=list)  # processor time, wall time, name
     failed: list[tuple[str, str]] = field(default_factory=list)  # name and message
     skipped: list[str] = field(default_factory=list)
     left: list[str] = field(default_factory=list)  # tests that other Blenders run, by process
@@ -62,7 +62,7 @@ class Tally:
     def add(self, where: str, result: dict) -> None:
         name, outcome = f"{where}: {result['name']}", result["outcome"]
         note = ""
-        self.times.append((result["seconds"], name))
+        self.times.append((result.get("processor", result["seconds"]), result["seconds"], name))
         if outcome == "passed":
             self.passed += 1
         elif outcome == "skipped":
@@ -374,9 +374,12 @@ def validate(bench: Bench) -> None:
 
 
 def close(tally: Tally) -> int:
-    print(f"\nthe slowest of {len(tally.times)} tests, which took {sum(t for t, _ in tally.times):.0f} s together")
-    for seconds, name in sorted(tally.times, reverse=True)[:SLOWEST]:
-        print(f"  {seconds:7.2f} s  {name}")
+    worked, waited = (sum(times[k] for times in tally.times) for k in (0, 1))
+    print(
+        f"\nthe costliest of {len(tally.times)} tests, which took {worked:.0f} s of processor time and {waited:.0f} s"
+    )
+    for processor, seconds, name in sorted(tally.times, reverse=True)[:SLOWEST]:
+        print(f"  {processor:7.2f} s in {seconds:7.2f} s  {name}")
     print(f"\n{tally.passed} passed, {len(tally.failed)} failed, {len(tally.skipped)} skipped")
     for line in tally.left:
         print(f"  left out {line}")

@@ -22,7 +22,7 @@ sys.path[:0] = [*job["paths"], str(Path(__file__).resolve().parent.parent)]
 
 import bpy  # noqa: E402 (paths first)
 
-from support.report import say  # noqa: E402
+from support.report import processor_time, say  # noqa: E402
 
 
 class Skip(Exception):  # noqa: N818 (it is no error)
@@ -75,7 +75,7 @@ def load(path):
 
 def run_test(name, function):
     say(start=name)
-    begin = time.perf_counter()
+    begin, worked = time.perf_counter(), processor_time()
     outcome, message = "passed", ""
     try:
         bpy.ops.wm.read_homefile(use_empty=False)
@@ -84,7 +84,8 @@ def run_test(name, function):
         outcome, message = "skipped", str(reason)
     except Exception:
         outcome, message = "failed", traceback.format_exc()
-    say(name=name, outcome=outcome, seconds=time.perf_counter() - begin, message=message)
+    seconds, worked = time.perf_counter() - begin, processor_time() - worked
+    say(name=name, outcome=outcome, seconds=seconds, processor=worked, message=message)
     return outcome != "failed"
 
 

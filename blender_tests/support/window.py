@@ -49,7 +49,9 @@ def run(bench, application, mode: str, script: Path, display: int = 90) -> None:
         }
         screen = ["xvfb-run", "-a", "-n", str(display), "-s", f"-screen 0 {WIDTH}x{HEIGHT}x24"]
         real = "\nREAL_EVENTS = True\n" in script.read_text()
-        blender = [application.command[0], "--factory-startup", *([] if real else ["--enable-event-simulate"])]
+        # A script that cannot be loaded ends Blender, which otherwise waits for the time limit.
+        blender = [application.command[0], "--factory-startup", "--python-exit-code", "1"]
+        blender += [] if real else ["--enable-event-simulate"]
         command = [*screen, *blender, "-p", "0", "0", str(WIDTH), str(HEIGHT)]
         done = environments.execute(
             [*command, "--python", str(HERE / "windowed" / "driver.py")], variables, bench.timeout

@@ -15,7 +15,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 import bpy
 import pictures
 
-from support import common, harness, report
+from support import common, conditions, harness, report
 
 VERSION = "{}.{}".format(*bpy.app.version)
 PATIENCE = 300  # s for one condition; a software renderer on a busy machine is slow
@@ -176,7 +176,8 @@ class Play:
                     self.condition = None
                 elif time.perf_counter() - self.since > PATIENCE:
                     self.screen.shot("in-vain")
-                    raise AssertionError(f"waited {PATIENCE} s in vain at {where(self.generator)}")
+                    why = conditions.explain(self.condition)
+                    raise AssertionError(f"waited {PATIENCE} s in vain at {where(self.generator)} for\n{why}")
                 else:
                     return 0.05
             wanted = next(self.generator)
@@ -192,7 +193,7 @@ class Play:
 
     def end(self, outcome, message):
         seconds = time.perf_counter() - self.begin
-        report.say(name=self.name, outcome=outcome, seconds=seconds, message=message)
+        report.say(name=self.name, outcome=outcome, seconds=seconds, processor=report.processor_time(), message=message)
         sys.stdout.flush()
         os._exit(0 if outcome == "passed" else 1)
 

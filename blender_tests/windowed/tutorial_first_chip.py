@@ -29,7 +29,7 @@ def first_chip(screen):
     whole = lessons.volume(block).volume
     assert whole == 100 * 60 * 30
     y, depth, ball = 30.0, bpy.context.scene.riffler.sculpt.depth, 3.0
-    yield from lessons.brushed(screen, block, [(20, y, 30), (80, y, 30)], hold="first-chip-2", steps=12)
+    yield from lessons.brushed(screen, block, [(20, y, 30), (80, y, 30)], hold="first-chip-2", steps=12, together=4)
     # a groove of 60 mm with half a cap of the ball at either end; a pixel is 0.2 mm or so
     half = np.arccos((ball - depth) / ball)
     chip = 60 * ball**2 * (half - np.sin(half) * np.cos(half)) + np.pi * depth**2 * (3 * ball - depth) / 3

@@ -86,7 +86,7 @@ def smoothed(screen, ob):
     yield from lessons.tool(screen, "riffler.carve")
     yield from lessons.pie(screen, "riffler.smooth")
     before = lessons.volume(ob).copy()
-    yield from lessons.brushed(screen, ob, [(11, 0, 0), (20, 0, 0), (11, 0, 0)], hold="relief-3")
+    yield from lessons.brushed(screen, ob, [(11, 0, 0), (20, 0, 0), (11, 0, 0)], hold="relief-3", together=3)
     after = lessons.volume(ob)
     changed = before.subtract(after).volume
     assert changed > 1, changed
@@ -115,8 +115,8 @@ def masked(screen, ob):
     sculpt.radius, sculpt.depth, sculpt.radial = 2.5, 1.0, 32
     yield from lessons.tool(screen, "riffler.smooth")  # the tool of the four that was used last
     yield from lessons.pie(screen, "riffler.carve")
-    yield from lessons.brushed(screen, ob, [(27.0, 0, -3), (27.2, 0, -3)])
-    yield from lessons.brushed(screen, ob, [(24.0, 2.4, -3), (24.2, 2.4, -3)])
+    yield from lessons.brushed(screen, ob, [(27.0, 0, -3), (27.2, 0, -3)], together=3)
+    yield from lessons.brushed(screen, ob, [(24.0, 2.4, -3), (24.2, 2.4, -3)], together=3)
     after = lessons.volume(ob)
     assert before.volume - after.volume > 50
     assert np.isclose(before.copy().intersect(mask).volume, after.copy().intersect(mask).volume, rtol=1e-12)

@@ -23,7 +23,7 @@ def cube():
 
 def drag(screen, *places):
     """Through places in the world, by the left button."""
-    yield from lessons.brushed(screen, cube(), places, steps=7)
+    yield from lessons.brushed(screen, cube(), places, steps=7, together=4)
     yield 0.4
 
 

@@ -67,7 +67,7 @@ def steps(screen):
         bpy.ops.riffler.millimetres()
         settings = bpy.context.scene.riffler
         stock = {k: getattr(settings.stock, k) for k in ("source", "origin", "directions")}
-        bpy.ops.riffler.new_stock("INVOKE_DEFAULT", True, size=(100, 60, 30), pitch=0.25, **stock)
+        bpy.ops.riffler.new_stock("INVOKE_DEFAULT", True, size=(100, 60, 30), pitch=0.5, **stock)
     assert bpy.data.objects["Stock"].dimensions[:] == (100, 60, 30)
     screen.to_view()
     yield 3.0

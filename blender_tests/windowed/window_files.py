@@ -10,8 +10,8 @@ from support import common, harness
 
 cut = harness.load(Path(__file__).with_name("window_cut.py"))
 lessons = harness.load(Path(__file__).with_name("lessons.py"))
-# two million triangles: work of visible duration
-STOCK = {"source": "BLOCK", "size": (100, 60, 30), "pitch": 0.15, "directions": "xyz"}
+# 0.7 million triangles: work of visible duration
+STOCK = {"source": "BLOCK", "size": (100, 60, 30), "pitch": 0.25, "directions": "xyz"}
 
 
 def running():

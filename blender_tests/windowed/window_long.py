@@ -138,7 +138,7 @@ def long_cut(screen):
     """A cut that is running and visible, of a new stock; returns the stock's state before it."""
     with screen.override():
         bpy.ops.riffler.millimetres()
-        how = {"source": "BLOCK", "size": (100, 60, 30), "pitch": 0.25, "directions": "xyz"}
+        how = {"source": "BLOCK", "size": (100, 60, 30), "pitch": 0.5, "directions": "xyz"}
         bpy.ops.riffler.new_stock("INVOKE_DEFAULT", True, **how)
     name, before = cut.spiral(6, 250_000, "Long"), cut.state()
     bpy.context.view_layer.objects.active = bpy.data.objects["Stock"]

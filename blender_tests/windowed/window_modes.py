@@ -50,7 +50,7 @@ def sculpt():
 
 def groove(screen, y, places=2, **more):
     """Along x; with one place, a click."""
-    yield from stroke.drag(screen, [(15, y, 20), (45, y, 20)][:places], **more)
+    yield from stroke.drag(screen, [(15, y, 20), (45, y, 20)][:places], together=4, **more)
 
 
 def in_mesh(y):

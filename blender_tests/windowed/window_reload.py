@@ -66,7 +66,7 @@ def stroke_held(screen):
     strokes.tool(screen, "riffler.carve")
     yield 0.5
     before = cut.state()
-    yield from strokes.drag(screen, [(15, 40, 20), (45, 40, 20)], release=False)
+    yield from strokes.drag(screen, [(15, 40, 20), (45, 40, 20)], together=4, release=False)
     assert common.part("sculpt.pointer").held is not None
     assert strokes.volume().volume < before[0]
     return before
@@ -113,7 +113,7 @@ def tool_of_another_workspace(screen):
     assert before.tools.from_space_view3d_mode("OBJECT").idname == "builtin.select_box"
     ob = bpy.data.objects["Stock"]
     ob.select_set(False)
-    yield from strokes.drag(screen, [(-2, -2, 20), (62, 62, 20)])
+    yield from strokes.drag(screen, [(-2, -2, 20), (62, 62, 20)], together=4)
     assert ob.select_get(), "Blender's tool does not select"
     enable()
     yield 1.0
@@ -122,7 +122,7 @@ def tool_of_another_workspace(screen):
 def scripts_reloaded(screen):
     """Reload Scripts during a session: the sculpt has its strokes, and the add-on continues."""
     strokes.tool(screen, "riffler.carve")
-    yield from strokes.drag(screen, [(15, 20, 20), (45, 20, 20)])
+    yield from strokes.drag(screen, [(15, 20, 20), (45, 20, 20)], together=4)
     assert strokes.run() is not None
     volume, before = strokes.volume().volume, common.part("sculpt.live_registry")
     with screen.override():
@@ -133,7 +133,7 @@ def scripts_reloaded(screen):
     assert carved[0] == volume
     whole(carved)
     strokes.tool(screen, "riffler.carve")
-    yield from strokes.drag(screen, [(15, 10, 20), (45, 10, 20)])
+    yield from strokes.drag(screen, [(15, 10, 20), (45, 10, 20)], together=4)
     assert strokes.volume().volume < volume
 
 
@@ -238,7 +238,7 @@ def steps(screen):
         # and it works
         whole_volume = cut.state()[0]
         strokes.tool(screen, "riffler.carve")
-        yield from strokes.drag(screen, [(15, 40, 20), (45, 40, 20)])
+        yield from strokes.drag(screen, [(15, 40, 20), (45, 40, 20)], together=4)
         assert strokes.volume().volume < whole_volume
         yield from tool_of_another_workspace(screen)
         yield from scripts_reloaded(screen)

@@ -41,16 +41,18 @@ def press(screen, x, y, value, kind="LEFTMOUSE", **modifiers):
     screen.window.event_simulate(kind, value, x=int(x), y=int(y), **modifiers)
 
 
-def drag(screen, places, release=True, **modifiers):
-    """Press at the first place, move through the others, one per update; places in mm on the stock."""
+def drag(screen, places, release=True, together=1, **modifiers):
+    """Press at the first place, move through the others; places in mm on the stock. `together`: moves between two
+    drawings of the window, each of which costs a software renderer 0.1 to 0.5 s."""
     way = [pixel(screen, p) for p in places]
     screen.move(*map(int, way[0]))
     yield 0.3
     press(screen, *way[0], "PRESS", **modifiers)
     yield 0.1
-    for a, b in itertools.pairwise(way):
-        for share in np.linspace(0, 1, 8)[1:]:
-            screen.move(*map(int, a + share * (b - a)))
+    moves = [a + share * (b - a) for a, b in itertools.pairwise(way) for share in np.linspace(0, 1, 8)[1:]]
+    for k, at in enumerate(moves, 1):
+        screen.move(*map(int, at))
+        if k % together == 0 or k == len(moves):
             yield 0.02
     if release:
         press(screen, *way[-1], "RELEASE", **modifiers)
@@ -61,6 +63,20 @@ def drag(screen, places, release=True, **modifiers):
 def tool(screen, name):
     with screen.override():
         assert bpy.ops.wm.tool_set_by_id(name=name) == {"FINISHED"}
+
+
+def at_rest(screen):
+    """While neither the mouse nor the sculpt moves, the view is not drawn."""
+    assert run() is not None
+    drawn = []
+    handler = bpy.types.SpaceView3D.draw_handler_add(lambda: drawn.append(1), (), "WINDOW", "POST_PIXEL")
+    screen.area.tag_redraw()
+    yield lambda: drawn
+    yield 0.5
+    before = len(drawn)
+    yield 2.0
+    bpy.types.SpaceView3D.draw_handler_remove(handler, "WINDOW")
+    assert len(drawn) == before, f"{len(drawn) - before} drawings in 2 s without a change"
 
 
 def handles(screen):
@@ -168,7 +184,8 @@ def steps(screen):
     cut_panel = harness.load(Path(__file__).with_name("window_pen.py"))
     cut_panel.only_open("RIFFLER_PT_sculpt", "RIFFLER_PT_tool", "RIFFLER_PT_sculpt_tool")
     yield from cut.open_tab(screen)
-    cut.stock(screen, 0.25)
+    pitch = 0.25 if harness.job["measure"] else 0.5
+    cut.stock(screen, pitch)
     with screen.override():
         bpy.ops.ed.undo_push(message="Stock")
     screen.area.spaces.active.region_3d.view_distance *= 0.8
@@ -199,7 +216,8 @@ def steps(screen):
     assert all(stages.values()), stages
     told = module("sculpt.panel").looks(run().stages)
     assert "draw " in told[2] and " tiles, " in told[3] and not told[3].startswith("0.0"), told
-    common.figure("stroke of 8 mm on 60×60×20 mm at 0.25 mm, a look, ms", {k: round(v, 2) for k, v in stages.items()})
+    name = f"stroke of 8 mm on 60×60×20 mm at {pitch} mm, a look, ms"
+    common.figure(name, {k: round(v, 2) for k, v in stages.items()})
 
     # more, so that the cursor has a surface
     yield from drag(screen, [(15, 40, 20), (30, 34, 20), (45, 42, 20)])
@@ -208,6 +226,7 @@ def steps(screen):
     screen.move(*map(int, pixel(screen, (24, 20, 18.5))))
     yield 1.0
     yield from screen.picture("stroke-2-cursor")
+    yield from at_rest(screen)
 
     # a cancelled drag leaves nothing
     before = volume().to_bytes()

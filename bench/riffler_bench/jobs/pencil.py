@@ -81,7 +81,8 @@ def curves(out: Report, settings: Settings, progress: Progress) -> None:
     if settings.quick:
         parts = [p for p in parts if p.name in ("90° groove", "175° groove", "blind hole", "T-slot", "pocket", "box")]
     few = slice(2, 5, 2) if settings.quick else slice(None)
-    rivals = {"creases": Rival(CREASES[few], "°"), "second difference": Rival(BENDS[few], " mm")}
+    spacing = 0.2 if settings.quick else 0.02
+    rivals = {"creases": Rival(CREASES[few], "°", spacing), "second difference": Rival(BENDS[few], " mm", spacing)}
     rows: dict[str, list[dict[str, Any]]] = {}
     for seed, part in enumerate(watched(parts, progress)):
         rows[part.name] = [judged(out, every, c, settings) for c in cases(part, seed, settings.quick)]
@@ -115,6 +116,7 @@ class Rival:
 
     tried: tuple[float, ...]
     unit: str
+    spacing: float  # of the compared places, mm
 
     def __post_init__(self) -> None:
         self.results: list[list[dict[str, Any]]] = [[] for _ in self.tried]
@@ -122,7 +124,7 @@ class Rival:
     def add(self, c: Case, find) -> None:
         for results, threshold in zip(self.results, self.tried, strict=True):
             segments, paths = find(threshold)
-            result = compare(segments, c.lines, c.limit + KIND, spacing=0.02)
+            result = compare(segments, c.lines, c.limit + KIND, self.spacing)
             results.append({"part": c.part.name, **figures(c, result), "count": paths})
 
     @property

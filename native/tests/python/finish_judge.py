@@ -213,32 +213,35 @@ class Judge:
         if within is not None:
             self.asked &= within(self.points, self.triangles)
         cloud = surface_samples(part, 60000, seed + 1)[0]
+        cloud = cloud[np.argsort(cloud[:, 0])]
         tips = tips_touching(tool, self.points, self.normals, allowance + larger)
         self.reachable = self.asked & (tips[:, 2] >= part.bounds[0][2] - 1e-9)
         flat, rounding = corner(tool)
         grown = rounding + allowance + 0.8 * larger
         for k in np.flatnonzero(self.reachable):
-            rho = np.hypot(cloud[:, 0] - tips[k, 0], cloud[:, 1] - tips[k, 1])
+            first, last = np.searchsorted(cloud[:, 0], tips[k, 0] + np.array([-1, 1]) * (flat + grown))
+            beside = cloud[first:last]
+            rho = np.hypot(beside[:, 0] - tips[k, 0], beside[:, 1] - tips[k, 1])
             near = rho < flat + grown
             beyond = np.maximum(rho[near] - flat, 0)
             low = tips[k, 2] + rounding - np.sqrt(np.maximum(grown**2 - beyond**2, 0))
-            if (cloud[near, 2] > low).any():
+            if (beside[near, 2] > low).any():
                 self.reachable[k] = False
 
-    def _left(self, op, off):
-        at = self.points + off * self.normals
+    def _left(self, op, off, which):
+        """Height of the material over points at a distance ``off`` from the samples ``which``, a mask."""
+        at = self.points[which] + off * self.normals[which]
         return z_map(op, at[:, 0], at[:, 1]) - at[:, 2]
 
     def standing(self, op, cusp, tolerance):
         """Reachable samples where more material stays than cusp and tolerance allow."""
-        left = self._left(op, self.allowance + cusp + tolerance + 2e-3)
-        return self.points[self.reachable & (left > 0)]
+        left = self._left(op, self.allowance + cusp + tolerance + 2e-3, self.reachable)
+        return self.points[self.reachable][left > 0]
 
     def deep(self, op, tolerance):
         """Samples, reachable or not, where the cut is deeper than the tolerance."""
         off = self.allowance - tolerance - 1e-3
-        left = self._left(op, off)
-        low = left < 0
+        low = self._left(op, off, np.ones(len(self.points), bool)) < 0
         at = self.points[low] + off * self.normals[low]
         # Next to an edge the point lies just under another face, which may be cut there.
         low[low] = (heights(self.part, at[:, 0], at[:, 1]) + self.allowance - at[:, 2]) > tolerance + 1e-3
