@@ -5,7 +5,7 @@ import itertools
 import bpy
 
 from .plan.orient_tool import PlanTool
-from .sculpt.tools import TOOLS
+from .sculpt.tools import GROUPS, TOOLS
 
 # Blender's default tool, with all its settings; Blender 3.4 crashes if one of these is missing.
 FIRST = {
@@ -25,12 +25,15 @@ _registered = []  # those of TOOLS and PlanTool that are registered
 
 
 def attach():
-    """Adds the four sculpting tools as one group of the toolbar, and the planning tool below: placed after a tool of
-    the group, it would join the group."""
+    """Adds the sculpting tools as two groups of the toolbar, and the planning tool below: placed after a tool of
+    a group, it would join the group."""
     _register(PlanTool, "builtin.measure", separator=True)
-    _register(TOOLS[0], "builtin.measure", separator=True, group=True)
-    for before, tool in itertools.pairwise(TOOLS):
-        _register(tool, before.bl_idname)
+    before = "builtin.measure"
+    for group in GROUPS:
+        _register(group[0], before, separator=before == "builtin.measure", group=True)
+        for last, tool in itertools.pairwise(group):
+            _register(tool, last.bl_idname)
+        before = group[-1].bl_idname
 
 
 def _register(tool, after, **more):

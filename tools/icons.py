@@ -101,6 +101,73 @@ def kept():
     return parts + band([(a, 20) for a in (128, 241)], [(a, FLOOR + 6) for a in (128, 241)], SAFE)
 
 
+def bump(x, height, width=84.0):
+    """A layer with a soft edge."""
+    p = max(0.0, 1 - abs(x - CENTRE) / width)
+    return height * p * p * (3 - 2 * p)
+
+
+def between(lower, upper, colour):
+    """What lies between two heights."""
+    x = np.linspace(14, 241, 60)
+    return band([(a, lower(a)) for a in x], [(a, upper(a)) for a in x], colour)
+
+
+def ring(height=FLOOR + 30, radius=92.0):
+    """The ring of a brush, seen from the side."""
+    angle = np.radians(np.linspace(0, 360, 41))
+    inner, outer = (
+        list(zip(CENTRE + r * np.cos(angle), height + 0.3 * r * np.sin(angle), strict=True))
+        for r in (radius, radius + 12)
+    )
+    return band(inner, outer, TOOL)
+
+
+def soft_bead():
+    """Stock, and a layer on it."""
+    base = FLOOR - 30
+    return surface(lambda x: base) + between(lambda x: base, lambda x: base + bump(x, 56), ON)
+
+
+def blown():
+    """A bulge, and what it has grown by."""
+
+    def dome_of(radius):
+        return lambda x: FLOOR - 50 + np.sqrt(max(radius**2 - (x - CENTRE) ** 2, 0.0))
+
+    return surface(dome_of(62)) + between(dome_of(62), dome_of(88), ON)
+
+
+def levelled(above, below):
+    """A rough surface: the peaks that go, the valleys that are filled."""
+
+    def rough(x):
+        return FLOOR + 34 * np.sin((x - CENTRE) / 19)
+
+    parts = surface(lambda x: min(rough(x), FLOOR) if above else rough(x))
+    if above:
+        parts += between(lambda x: FLOOR, lambda x: max(rough(x), FLOOR), AWAY)
+    if below:
+        parts += between(lambda x: min(rough(x), FLOOR), lambda x: FLOOR, ON)
+    return parts
+
+
+def pulled(height, lean=0.0):
+    """A tip pulled out of the stock."""
+    base = FLOOR - 40
+    p = np.linspace(0, 1, 20)
+    width = 78 * (1 - p) ** 2 + 9
+    left, right = (
+        list(zip(CENTRE + lean * p * p + side * width, base + (height + 40) * p, strict=True)) for side in (-1, 1)
+    )
+    return surface(lambda x: base) + band(left, right, ON)
+
+
+def ridge(height):
+    """A sharp ridge, or a furrow if the height is negative."""
+    return surface(lambda x: FLOOR + height * max(0.0, 1 - abs(x - CENTRE) / 70) ** 2)
+
+
 def plan():
     """A slim cutter that leans in a valley, and the ring that turns it."""
     low, slim = 30, [((np.array(t) - (CENTRE, 0)) * (0.62, 0.8) + (CENTRE, 0), c) for t, c in cutter(0)]

@@ -16,8 +16,8 @@ from shell import StepError
 
 # Page: title, and what is on it. Every public name of riffler stands on exactly one, which `write` checks.
 PAGES = {
-    "volumes": ("Volumes", ["Volume", "Cut", "Smoothed", "Snapshot", "VolumeReport", "SurfaceReport",
-                            "VolumeCounters", "History", "HistoryStroke", "HistoryStats"]),
+    "volumes": ("Volumes", ["Volume", "Cut", "Smoothed", "Brushed", "falloff", "Snapshot", "VolumeReport",
+                            "SurfaceReport", "VolumeCounters", "History", "HistoryStroke", "HistoryStats"]),
     "tools": ("Tools", ["Tool", "ToolShape", "ToolSize"]),
     "meshes": ("Meshes", ["Mesh", "Audit", "Orientation", "Mesher", "Patch", "Hit", "Hits", "FrozenSurface",
                           "Surface", "PickCounters", "shape", "cad"]),

@@ -71,7 +71,8 @@ class LiveSculpt:
         self.token = ""  # of the current state
         self._facts = None  # (token, facts of its state)
         self.maps, self.centre = symmetry.maps(), sculpts.middle(ob.data, self.volume)
-        self.strength = 0.5  # of smoothing brushes
+        self.strength, self.depth, self.falloff = 0.5, 0.5, "smooth"  # of brushes
+        self.pressure, self.step = 1.0, 0.0  # of the moves that are being applied: share of the depth; mm between dabs
         self.keep_out = None  # for symmetric copies, like BrushStroke's
         self.stroke = None  # StrokeRecord of the stroke in progress
         self.cut_off = False  # whether the box has clipped material that this stroke, or this session, added
@@ -181,7 +182,11 @@ class LiveSculpt:
         if self.stroke is None:
             self.begin_stroke()
         first, stroke = None, self.stroke
-        poses, dt = brush.moves(np.asarray(poses, float), dt, new)
+        poses = np.asarray(poses, float)
+        self.step = brush.step(self, tool, poses, new)
+        poses, dt = brush.moves(poses, dt, new)
+        if brush.whole:
+            self._restart()
         if not len(poses):
             return None
         with self.stages.of("cut"):
@@ -191,7 +196,8 @@ class LiveSculpt:
                     continue
                 cut = self._apply(brush, tool, copy, dt if k == 0 else None)
                 first = first or cut
-                self.persistence.carved(tool.to_dict(), copy, brush.journal, stroke.token, self.strength)
+                options = brush.options(self, tool)
+                self.persistence.carved(tool.to_dict(), copy, brush.journal, stroke.token, **options)
                 brush.record(stroke, k, tool, copy, new or k in stroke.apart)
                 stroke.apart.discard(k)
         self.stages.count(moves=max(len(poses) - 1, 0))
@@ -247,6 +253,12 @@ class LiveSculpt:
         if label:
             bpy.ops.ed.undo_push(message=label)
         return True
+
+    def _restart(self):
+        """Restores the stroke's beginning."""
+        begin = self.stroke.begin.copy()
+        self.volume, self.mask = begin.volume, begin.mask
+        self.persistence.cancelled()
 
     def cancel_stroke(self):
         stroke, self.stroke = self.stroke, None

@@ -9,6 +9,7 @@ from ..translations import CONTEXT
 from . import brushes, first_stroke, live_registry, sculpts
 
 AROUND = 4  # places of the pie reserved for brushes
+COLUMNS = 3  # of brushes with falloff in the sidebar
 
 
 def brush_of(context):
@@ -40,6 +41,9 @@ def draw_header(context, layout):
         layout.prop(stroke, "strength", slider=True)
     else:
         layout.prop(stroke, "depth", text="Depth (mm)")
+    if brush is not None and brush.falloff:
+        layout.prop(stroke, "falloff", text="")
+    elif brush is None or brush.second != "STRENGTH":
         layout.prop(stroke, "axis", text="")
     row = layout.row(align=True)
     row.label(icon="MOD_MIRROR")
@@ -75,6 +79,9 @@ class RIFFLER_PT_sculpt_tool(Sidebar, bpy.types.Panel):
             layout.prop(settings, "feed")
         layout.prop(settings, "string")
         layout.prop(settings, "strength")
+        brush = brush_of(context)
+        if brush is not None and brush.falloff:
+            layout.prop(settings, "falloff")
         layout.prop(settings, "accumulate")
         layout.prop(context.scene.riffler.sculpt, "fixtures")
         self._symmetry(layout, settings)
@@ -88,7 +95,14 @@ class RIFFLER_PT_sculpt_tool(Sidebar, bpy.types.Panel):
         active = brush_of(context)
         row = layout.row(align=True)
         for brush in brushes.with_tool():
-            choose(row, brush, depress=brush is active)
+            if not brush.falloff:
+                choose(row, brush, depress=brush is active)
+        if active is None or not active.falloff:
+            return
+        grid = layout.grid_flow(row_major=True, columns=COLUMNS, even_columns=True, align=True)
+        for brush in brushes.with_tool():
+            if brush.falloff:
+                choose(grid, brush, depress=brush is active)
 
     def _symmetry(self, layout, settings):
         row = layout.row(heading="Mirror", align=True)
@@ -130,7 +144,8 @@ class RIFFLER_MT_sculpt_pie(bpy.types.Menu):
 
     def draw(self, context):
         pie = self.layout.menu_pie()
-        around, more = brushes.with_tool()[:AROUND], brushes.with_tool()[AROUND:]
+        cutters = [brush for brush in brushes.with_tool() if not brush.falloff]  # the pie has no room for all
+        around, more = cutters[:AROUND], cutters[AROUND:]
         for brush in around:  # left, right, below, above
             choose(pie, brush)
         settings, tool = fields(context)

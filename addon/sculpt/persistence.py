@@ -92,10 +92,11 @@ class Persistence:
         _park(ended)
         return ended.folder
 
-    def carved(self, tool, poses, mode, token, strength):
+    def carved(self, tool, poses, mode, token, **options):
+        """`options`: Brush.options."""
         self._packing.stroke(time.monotonic())
         if self.journal is not None:
-            self.journal.carved(tool, poses, mode, token, strength)
+            self.journal.carved(tool, poses, mode, token, **options)
 
     def cancelled(self):
         if self.journal is not None:

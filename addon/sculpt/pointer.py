@@ -4,6 +4,7 @@ Blender draws cursors over the finished view, so following the pointer does not 
 """
 
 import numpy as np
+import riffler
 
 from ..blender import batches, meshes, object_surfaces, scene_units
 from ..common import fitting, glyphs, poses
@@ -14,6 +15,7 @@ from .pure.view_rays import ViewRays
 # colours of planes perpendicular to x, y and z, as for Blender's axes
 AXES = ((1.0, 0.25, 0.3), (0.45, 0.8, 0.1), (0.25, 0.55, 1.0))
 SHADOW = (0.0, 0.0, 0.0, 0.55)
+PROFILE, HEIGHT = 25, 0.5  # points on each side of a falloff's profile; its height in radii
 SHOWN = 1.5  # length of the tool drawn above its tip, in diameters: more would cover the view
 
 kept = batches.Batches()
@@ -71,6 +73,8 @@ def _on_surface(context, brush, run, tool, at):
     except ValueError:
         return None
     pixels_per_mm = view.pixels_per_unit(pose[:3])
+    if brush.falloff:
+        return falloff_lines(0.5 * cutter.diameter, settings.falloff.lower(), pose, view)
     return tool_lines(cutter, pose, place, normal, view)
 
 
@@ -90,6 +94,25 @@ def tool_lines(cutter, pose, place, normal, view):
     out.append((np.array([pose[:3], pose[:3] + SHOWN * cutter.diameter * axis]), False, False))
     if place is not None:
         out.append((glyphs.ring(place, normal, 0.12 * cutter.diameter, 24), True, False))
+    return [(view.project(points), closed, strong) for points, closed, strong in out]
+
+
+def falloff_lines(radius, falloff, pose, view):
+    """The same of a brush with falloff: its radius on the surface, where it has half its effect, and the falloff above
+    it, as high as half the radius."""
+    centre, normal = pose[:3], pose[3:]
+    out = [(glyphs.ring(centre, normal, radius), True, True)]
+    t = np.linspace(0, 1, PROFILE)
+    f = np.array([riffler.falloff(falloff, x) for x in t])
+    half = float(t[np.argmin(np.abs(f - 0.5))])
+    if 0.05 < half < 0.95:
+        out.append((glyphs.ring(centre, normal, half * radius), True, False))
+    across = np.cross(normal, view.basis().back)
+    size = float(np.linalg.norm(across))
+    if size > 0.05:  # seen along the normal, the profile is a line
+        place, height = np.concatenate([-t[::-1], t[1:]]), np.concatenate([f[::-1], f[1:]])
+        line = centre + radius * (place[:, None] * (across / size) + HEIGHT * height[:, None] * normal)
+        out.append((line, False, False))
     return [(view.project(points), closed, strong) for points, closed, strong in out]
 
 

@@ -18,6 +18,18 @@ PRESSURES = (
     ("DEPTH", "Depth", "More pressure makes the stroke deeper"),
     ("FEED", "Feed", "More pressure makes the tool's assumed speed higher, and so its force"),
 )
+# Named as those of Blender's brushes.
+FALLOFFS = (
+    ("SMOOTH", "Smooth", "Round at the centre and at the rim", "SMOOTHCURVE", 0),
+    ("SMOOTHER", "Smoother", "Rounder at the centre and at the rim", "SMOOTHCURVE", 1),
+    ("SPHERE", "Sphere", "A half sphere, steep at the rim", "SPHERECURVE", 2),
+    ("ROOT", "Root", "Pointed at the centre, steep at the rim", "ROOTCURVE", 3),
+    ("SHARP", "Sharp", "Pointed at the centre, flat at the rim", "SHARPCURVE", 4),
+    ("LINEAR", "Linear", "A cone", "LINCURVE", 5),
+    ("SHARPER", "Sharper", "More pointed at the centre, flatter at the rim", "SHARPCURVE", 6),
+    ("INVERSE_SQUARE", "Inverse Square", "Round at the centre, steep at the rim", "INVERSESQUARECURVE", 7),
+    ("CONSTANT", "Constant", "The same up to the rim", "NOCURVE", 8),
+)
 LETTERS = (("X", "X", ""), ("Y", "Y", ""), ("Z", "Z", ""))
 MIRRORS = tuple((x, x, f"Mirror in the middle of the stock, along its {x}", 1 << k) for k, x in enumerate("XYZ"))
 
@@ -73,7 +85,18 @@ class RifflerSculpt(bpy.types.PropertyGroup):
         name="Radial Axis", items=LETTERS, default="Z", description="Axis that the copies are turned about"
     )
     strength: FloatProperty(
-        name="Strength", subtype="FACTOR", default=0.5, min=0.0, max=1.0, description="Strength of the smoothing"
+        name="Strength",
+        subtype="FACTOR",
+        default=0.5,
+        min=0.0,
+        max=1.0,
+        description="Strength of smoothing, and of brushes that level, pull or pinch",
+    )
+    falloff: EnumProperty(
+        name="Falloff",
+        items=FALLOFFS,
+        default="SMOOTH",
+        description="How the effect of a brush fades from its centre to its radius",
     )
     accumulate: BoolProperty(
         name="Accumulate",
@@ -131,6 +154,8 @@ class RifflerSculpt(bpy.types.PropertyGroup):
             feed=units.clean(self.feed),
             string=units.clean(self.string),
             accumulate=self.accumulate,
+            strength=units.clean(self.strength),
+            falloff=self.falloff.lower(),
         )
 
     def maps(self):

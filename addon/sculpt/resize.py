@@ -14,7 +14,7 @@ from .pure import sizing
 FIELDS = (
     ("RADIUS", "Radius", "Radius of the cutter"),
     ("DEPTH", "Depth", "Depth of the stroke"),
-    ("STRENGTH", "Strength", "Strength of the smoothing"),
+    ("STRENGTH", "Strength", "Strength of smoothing, and of brushes that level, pull or pinch"),
 )
 SHORTER = 0.9  # ratio of sizes for one step
 FACTOR_PIXELS = 200.0  # pixels for the full strength

@@ -35,8 +35,8 @@ def content(mesh):
     found = _cache.get(key)
     if found is None:
         block, cuts, mask, shaped = sculpt_payload.decode(packed_images.read(mesh.riffler.store, "the sculpt"), key)
-        protected = riffler.Volume.from_bytes(mask, f"{mesh.name}, mask") if len(mask) else None
-        found = Content(riffler.Volume.from_bytes(block, mesh.name), cuts, protected, shaped)
+        protected = riffler.Volume.from_bytes(mask, name=f"{mesh.name}, mask") if len(mask) else None
+        found = Content(riffler.Volume.from_bytes(block, name=mesh.name), cuts, protected, shaped)
         _cache.put(key, found)
     return found
 

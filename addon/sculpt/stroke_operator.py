@@ -131,7 +131,7 @@ class RIFFLER_OT_stroke(sculpt_work.TakesTool, bpy.types.Operator):
         brush = brushes.of(mode)
         if why := brush.refusal(self._run.volume):
             raise ValueError(why)
-        self._run.maps, self._run.strength = settings.maps(), units.clean(settings.strength)
+        self._run.maps = settings.maps()
         tool, choice, keep_out = self.tool_dict(context), settings.choice(mode), None
         if settings.fixtures is not None and brush.clear:
             obstacle = fixtures.collider(context, settings.fixtures, self._run.to_mm, {ob.name})

@@ -75,3 +75,8 @@ def _tool(brush):
 
 
 TOOLS = tuple(map(_tool, brushes.with_tool()))
+# The tools of cutters, then those of brushes with falloff: groups of the toolbar.
+GROUPS = tuple(
+    tuple(tool for tool, brush in zip(TOOLS, brushes.with_tool(), strict=True) if brush.falloff is falloff)
+    for falloff in (False, True)
+)

@@ -17,6 +17,7 @@ SAID_OTHERWISE = {
     ("plan/panel.py", "part"): "a line above it",
     ("plan/panel.py", "fixtures"): "a line above it",
     ("sculpt/panel.py", "axis"): "the entry that is chosen",
+    ("sculpt/panel.py", "falloff"): "the entry that is chosen",
     ("sculpt/panel.py", "kind"): "the entry that is chosen",
 }
 

@@ -49,14 +49,17 @@ def settings(**chosen):
     return found
 
 
-def test_the_toolbar_has_the_tools_in_one_group_with_icons_that_are_there():
+def test_the_toolbar_has_the_tools_in_two_groups_with_icons_that_are_there():
     from bl_ui.space_toolsystem_toolbar import VIEW3D_PT_tools_active as toolbar
 
     groups = [g for g in toolbar._tools["OBJECT"] if isinstance(g, tuple) and g[0] is not None]
     ours = [g for g in groups if getattr(g[0], "idname", "").startswith("riffler.")]
-    assert [t.idname for t in ours[0]] == [t.bl_idname for t in tools()] and len(ours) == 1
+    assert [[t.idname for t in g] for g in ours] == [
+        [t.bl_idname for t in g] for g in common.part("sculpt.tools").GROUPS
+    ]
+    assert [t.idname for g in ours for t in g] == [t.bl_idname for t in tools()]
     (plan,) = [t for t in toolbar._tools["OBJECT"] if getattr(t, "idname", "") == "riffler.plan"]
-    for tool in (*ours[0], plan):
+    for tool in (*ours[0], *ours[1], plan):
         data = Path(tool.icon + ".dat").read_bytes()
         assert data[:4] == b"VCO\0" and len(data) > 500 and (len(data) - 8) % 18 == 0
         assert tool.draw_cursor and tool.draw_settings and tool.widget

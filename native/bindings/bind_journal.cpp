@@ -138,9 +138,13 @@ void bind_stroke(py::module_& m) {
           "name", [](const StrokeView& s) { return s.get().name; }, "Name for users.")
       .def_property_readonly(
           "mode", [](const StrokeView& s) { return stroke_mode_name(s.get().mode); },
-          R"("remove", "add", "mask", "unmask", "soften", "beside" or "build": see ``Journal.add_stroke``.)")
+          R"("remove", "add", "mask", "unmask", "soften", "beside", "build" or a brush: see ``Journal.add_stroke``.)")
       .def_property_readonly(
-          "strength", [](const StrokeView& s) { return s.get().strength; }, R"(0 to 1, for "soften".)")
+          "strength", [](const StrokeView& s) { return s.get().strength; }, R"(0 to 1, for "soften" and brushes.)")
+      .def_property_readonly(
+          "amount", [](const StrokeView& s) { return s.get().amount; }, "mm or rad, for brushes.")
+      .def_property_readonly(
+          "falloff", [](const StrokeView& s) { return falloff_name(s.get().falloff); }, "For brushes.")
       .def("__len__", [](const StrokeView& s) { return s.get().poses.size(); });
 }
 

@@ -1,5 +1,7 @@
 #include "bindings/journal_arguments.hpp"
 
+#include <iterator>
+
 namespace riffler::bindings {
 
 namespace {
@@ -30,7 +32,8 @@ std::vector<Wrench> to_forces(const OptionalArrayLike& forces, std::size_t rows)
   return out;
 }
 
-constexpr const char* kModes[session::kStrokeModes] = {"remove", "add", "mask", "unmask", "soften", "beside", "build"};
+constexpr const char* kModes[] = {"remove", "add", "mask", "unmask", "soften", "beside", "build"};
+static_assert(std::size(kModes) == session::kFirstBrush);
 
 }  // namespace
 
@@ -56,13 +59,20 @@ session::JournalStock to_stock(const ArrayLike& lower, const ArrayLike& upper, d
 }
 
 session::StrokeMode to_stroke_mode(const std::string& name) {
-  for (std::uint32_t k = 0; k < session::kStrokeModes; ++k)
-    if (name == kModes[k]) return static_cast<session::StrokeMode>(k);
-  throw py::value_error(R"(mode must be "remove", "add", "mask", "unmask", "soften", "beside" or "build")");
+  std::string all;
+  for (std::uint32_t k = 0; k < session::kStrokeModes; ++k) {
+    const auto mode = static_cast<session::StrokeMode>(k);
+    if (name == stroke_mode_name(mode)) return mode;
+    all += (k == 0                          ? "\""
+            : k + 1 < session::kStrokeModes ? "\", \""
+                                            : "\" or \"") +
+           std::string(stroke_mode_name(mode));
+  }
+  throw py::value_error("mode must be " + all + "\"");
 }
 
 const char* stroke_mode_name(session::StrokeMode mode) {
-  return kModes[static_cast<std::uint32_t>(mode)];
+  return session::is_brush(mode) ? brush_name(session::brush_of(mode)) : kModes[static_cast<std::uint32_t>(mode)];
 }
 
 py::object json() {

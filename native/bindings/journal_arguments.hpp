@@ -1,6 +1,7 @@
 // What the arguments of Journal and JournalWriter have in common.
 #pragma once
 
+#include "bindings/brush_names.hpp"
 #include "bindings/program_types.hpp"
 #include "riffler/session/journal.hpp"
 

@@ -89,17 +89,17 @@ Examples
           "add_stroke",
           [only_caller](T& self, int tool, const Doubles& poses, const OptionalArrayLike& times, double tolerance,
                         const std::string& name, const OptionalArrayLike& forces, const OptionalArrayLike& removed,
-                        const std::string& mode, double strength) {
+                        const std::string& mode, double strength, double amount, const std::string& falloff) {
             session::JournalStroke stroke = to_rows(poses, times, forces, removed);
             stroke.tool = tool, stroke.tolerance = tolerance, stroke.name = name, stroke.mode = to_stroke_mode(mode);
-            stroke.strength = strength;
+            stroke.strength = strength, stroke.amount = amount, stroke.falloff = to_falloff(falloff);
             [[maybe_unused]] const auto only = only_caller(self);
             check_roll(self.rules(), stroke);
             self.add_stroke(stroke);
           },
           py::arg("tool"), py::arg("poses"), py::kw_only(), py::arg("times") = py::none(), py::arg("tolerance") = 0.01,
           py::arg("name") = "", py::arg("forces") = py::none(), py::arg("removed") = py::none(),
-          py::arg("mode") = "remove", py::arg("strength") = 0.5,
+          py::arg("mode") = "remove", py::arg("strength") = 0.5, py::arg("amount") = 0.0, py::arg("falloff") = "smooth",
           R"(Records a stroke. Replay is exact to the bit for ``carve`` in mode "add" or with a mask only if each carve is one stroke.
 
 Parameters
@@ -118,12 +118,17 @@ forces : array_like, shape (n, 6), optional
     N and N·mm as sent to the device for the hand, about the grip.
 removed : array_like, shape (n,), optional
     mm³ by the move that ends at the row.
-mode : {"remove", "add", "mask", "unmask", "soften", "beside", "build"}
+mode : {"remove", "add", "mask", "unmask", "soften", "beside", "build", "clay", "inflate", …}
     What the tool does where it sweeps: "remove" and "add" material, but not where it is protected; "mask" and "unmask":
     protect it, or no longer; "soften": a smoothing dab at each row's tip, as wide as the tool; "beside": remove as a
-    Session does next to what is protected; "build": add as a Session does.
+    Session does next to what is protected; "build": add as a Session does. Any brush of ``Volume.brush``: its dabs at
+    the rows, as wide as the tool.
 strength : float
-    Of "soften", 0 to 1.
+    Of "soften" and brushes, 0 to 1.
+amount : float
+    Of brushes, mm or rad.
+falloff : str
+    Of brushes.
 
 Examples
 --------

@@ -1,5 +1,6 @@
 // The extension module riffler._core. Not public: the names that riffler exports are.
 #include "bindings/bindings.hpp"
+#include "bindings/brush_names.hpp"
 #include "bindings/history_class.hpp"
 #include "bindings/program_arguments.hpp"
 #include "bindings/session_frame.hpp"
@@ -21,6 +22,7 @@ PYBIND11_MODULE(_core, m) {
   bindings::bind_tool(m);
   bindings::bind_volume(m);
   bindings::bind_smooth_dabs(m);
+  bindings::bind_brush_dabs(m);
   bindings::bind_history(m);
   bindings::bind_mesher(m);
   bindings::bind_collide(m);

@@ -164,6 +164,13 @@ StrokeMode known_mode(std::uint32_t mode) {
   return static_cast<StrokeMode>(mode);
 }
 
+brush::Falloff known_falloff(std::uint32_t falloff) {
+  if (falloff >= brush::kFalloffs)
+    throw std::invalid_argument("a brush with falloff " + std::to_string(falloff) +
+                                ", unknown here: a newer Riffler wrote it");
+  return static_cast<brush::Falloff>(falloff);
+}
+
 Bytes record(Kind kind, const Bytes& payload) {
   if (payload.size() > 0xFFFFFFFF)
     throw std::invalid_argument("a record of 4 GB or more: extend a stroke piece by piece");
@@ -228,7 +235,8 @@ Bytes stroke_record(const JournalStroke& stroke) {
   base::put_text(out, stroke.name);
   put_rows(out, stroke.rows());
   if (!removes) base::put(out, static_cast<std::uint32_t>(stroke.mode));
-  if (stroke.mode == StrokeMode::Soften) base::put(out, stroke.strength);
+  if (stroke.mode == StrokeMode::Soften || is_brush(stroke.mode)) base::put(out, stroke.strength);
+  if (is_brush(stroke.mode)) base::put(out, stroke.amount), base::put(out, static_cast<std::uint32_t>(stroke.falloff));
   return record(removes ? kStroke : kClayStroke, out);
 }
 
@@ -310,7 +318,9 @@ void apply_record(const Record& record, Journal& journal) {
       stroke.name = from.text();
       take_rows(from, stroke);
       if (record.kind == kClayStroke) stroke.mode = known_mode(from.number<std::uint32_t>());
-      if (stroke.mode == StrokeMode::Soften) stroke.strength = from.number<double>();
+      if (stroke.mode == StrokeMode::Soften || is_brush(stroke.mode)) stroke.strength = from.number<double>();
+      if (is_brush(stroke.mode))
+        stroke.amount = from.number<double>(), stroke.falloff = known_falloff(from.number<std::uint32_t>());
       journal.add_stroke(std::move(stroke));
       break;
     }

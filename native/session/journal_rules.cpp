@@ -87,6 +87,7 @@ void JournalRules::add_stroke(const JournalStroke& stroke) {
     fail("tool " + std::to_string(stroke.tool) + " is not in the journal: add it first");
   base::require_tolerance(stroke.tolerance);
   if (!(stroke.strength >= 0 && stroke.strength <= 1)) fail("strength must be from 0 to 1");
+  if (!std::isfinite(stroke.amount)) fail("amount must be finite");
   if (stroke.poses.empty()) fail("a stroke needs at least one pose");
   const std::size_t rows = stroke.poses.size();
   check_length("times", stroke.times.size(), !stroke.times.empty(), rows);

@@ -3,6 +3,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "riffler/brush/brush_dabs.hpp"
 #include "riffler/dexel/file/file.hpp"
 #include "riffler/dexel/smooth/smooth_dabs.hpp"
 #include "riffler/sweep/carve.hpp"
@@ -46,6 +47,18 @@ void apply_dabs(const JournalStroke& stroke, const Tool& tool, Replayed& to, con
   options.protect = to.mask ? &*to.mask : nullptr;
   options.progress = progress;
   smooth_dabs(to.volume, centres, options);
+}
+
+void apply_brush(const JournalStroke& stroke, const Tool& tool, Replayed& to, const Progress& progress) {
+  brush::BrushOptions options;
+  options.kind = brush_of(stroke.mode);
+  options.radius = 0.5 * tool.diameter();
+  options.strength = stroke.strength;
+  options.amount = stroke.amount;
+  options.falloff = stroke.falloff;
+  options.protect = to.mask ? &*to.mask : nullptr;
+  options.progress = progress;
+  brush_dabs(to.volume, stroke.poses, options);
 }
 
 void carve_stroke(Volume& volume, const Tool& tool, const JournalStroke& stroke, const sweep::CarveOptions& options) {
@@ -93,6 +106,7 @@ void apply(const JournalStroke& stroke, const Tool& tool, Replayed& to, std::opt
   if (run && mode != run->cuttable.mode()) end_run(to, run);
   if (mode) return apply_in_run(stroke, *mode, tool, to, run, progress);
   if (stroke.mode == StrokeMode::Soften) return apply_dabs(stroke, tool, to, progress);
+  if (is_brush(stroke.mode)) return apply_brush(stroke, tool, to, progress);
   sweep::CarveOptions options;
   options.tolerance = stroke.tolerance;
   options.progress = progress;

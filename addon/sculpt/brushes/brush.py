@@ -39,6 +39,9 @@ class Brush(ABC):
     clear = False  # avoids fixtures
     chips = False  # the material resists, so there is a force
     session = False  # usable in a device's session
+    falloff = False  # has a falloff, which the cursor shows, instead of the cutter's shape
+    drags = False  # follows the pointer in the plane of the view, not on the surface
+    whole = False  # each move replaces the last ones: it is applied to the stroke's beginning
 
     done = "changed"  # "3 mm³ changed"
     no_stroke = "no stroke"  # reason why a session changed nothing
@@ -68,6 +71,14 @@ class Brush(ABC):
     def moves(self, poses, dt, new: bool):
         """The poses, (n, 6), that it applies, and the times between them; `new`: they do not continue the last ones."""
         return moving(poses, dt)
+
+    def step(self, sculpt, tool, poses, new: bool) -> float:
+        """Sculpt.step of moves, before `apply`, which has fewer poses."""
+        return 0.0
+
+    def options(self, sculpt, tool) -> dict:
+        """The settings that the journal keeps with a stroke."""
+        return {"strength": sculpt.strength}
 
     @abstractmethod
     def apply(self, sculpt, tool, poses, dt):

@@ -15,6 +15,7 @@ import riffler
 
 from ...common import json_object
 from .. import brushes
+from .pull_path import PullMaker
 from .reach import outline_of
 from .stroke_path import Hit, Sample, StrokeMaker, View, settings_for
 from .view_rays import ViewRays, cross
@@ -39,6 +40,8 @@ class Choice:
     feed: float = 50.0  # mm/s
     string: float = 0.0  # pixels
     accumulate: bool = False
+    strength: float = 0.5  # of brushes: 0 to 1
+    falloff: str = "smooth"  # of riffler.falloff
 
 
 class BrushStroke:
@@ -56,15 +59,18 @@ class BrushStroke:
         self._apart = False  # poses that were kept out separate the last move and the next
         self.pose: np.ndarray | None = None  # (6,) of the tool, mm
         self.force = self.torque = np.zeros(3)
+        self._pressed = choice.pressure == "DEPTH"
         self._surface = surface or run.freeze()
         self._maker = self._make_maker()
 
     def add(self, sample: Sample) -> bool:
         """True if something was carved."""
         self.samples.append(sample)
+        self._set()
         return self._carve(self._maker.add(sample))
 
     def end(self) -> bool:
+        self._set()
         return self._carve(self._maker.end())
 
     def look(self) -> None:
@@ -87,7 +93,13 @@ class BrushStroke:
         return json.dumps({"view": view, "rows": rows, "looks": self.looks})
 
     # ------------------------------------------------------------------ within
-    def _make_maker(self) -> StrokeMaker:
+    def _set(self) -> None:
+        """Gives the sculpt the settings of brushes."""
+        choice = self._choice
+        self._run.depth, self._run.strength, self._run.falloff = choice.depth, choice.strength, choice.falloff
+        self._run.pressure = self.samples[-1].pressure if self._pressed and self.samples else 1.0
+
+    def _make_maker(self) -> StrokeMaker | PullMaker:
         choice, view = self._choice, self._sight.basis()
         diameter, pitch = self.tool.diameter, self._run.volume.pitch
         axis, depth, more = self.brush.path(choice.axis, choice.depth, diameter, pitch)
@@ -105,7 +117,10 @@ class BrushStroke:
             string=choice.string,
             **more,
         )
-        outline = outline_of(self.tool)
+        if self.brush.drags:
+            return PullMaker(settings, self._pick, self._sight, self.brush.whole)
+        # A dab's centre is on the surface.
+        outline = np.zeros((1, 2)) if self.brush.falloff else outline_of(self.tool)
         return StrokeMaker(settings, outline, self._pick, view)
 
     def _pick(self, x: float, y: float) -> Hit | None:

@@ -112,8 +112,9 @@ class LiveJournal(StrokeJournal):
             self._saving.append(riffler.submit(riffler.Volume.save, content.mask, self.folder / MASK))
 
     # ------------------------------------------------------------------ strokes
-    def carved(self, tool: dict, poses: np.ndarray, mode: str, token: str, strength: float = 0.5) -> None:
-        """Records that the poses, each a move (poses.moving), were carved in one call, towards the state `token`."""
+    def carved(self, tool: dict, poses: np.ndarray, mode: str, token: str, strength: float = 0.5, **options) -> None:
+        """Records that the poses, each a move (poses.moving), were carved in one call, towards the state `token`;
+        `strength`, `options`: Brush.options."""
         if brushes.of_journal(mode) is None:
             self.whole = False
             return
@@ -122,7 +123,7 @@ class LiveJournal(StrokeJournal):
             self._tools[text] = len(self._tools) + 1
         number = self._tools.get(text)
         if len(poses) and self._write(
-            lambda: self._writer.add_stroke(number, poses, mode=mode, name=token, strength=strength)
+            lambda: self._writer.add_stroke(number, poses, mode=mode, name=token, strength=strength, **options)
         ):
             self._open += 1
 
@@ -236,7 +237,7 @@ def write_recording(folder: Path, path: Path, notes: dict[str, str]) -> None:
     for s in journal.strokes:
         out.add_stroke(
             s.tool, s.poses, times=s.times, tolerance=s.tolerance, name=s.name, forces=s.forces, removed=s.removed,
-            mode=s.mode,
+            mode=s.mode, strength=s.strength, amount=s.amount, falloff=s.falloff,
         )  # fmt: skip
     out.save(path)
 

@@ -26,7 +26,8 @@ class Sculpt:
         self.volume = riffler.Volume.block(*BOX)
         self.volume.carve(riffler.Tool.flat(8, 30), POSES + np.array([0, 4.0, 0, 0, 0, 0]))
         self.mask = riffler.Volume.block((0, 0, 0), (20, 30, 10), 0.5, "xyz").grow((0, 0, 0), (40, 30, 10))
-        self.strength = 0.7
+        self.strength, self.depth, self.falloff = 0.7, 0.4, "sharp"
+        self.pressure, self.step, self.cut_off = 1.0, 0.0, False
 
     def bytes(self):
         return self.volume.to_bytes(), self.mask.to_bytes()
@@ -63,9 +64,10 @@ def test_a_journal_replays_exactly_what_a_brush_does(tmp_path, brush):
     journal, stroke = LiveJournal(tmp_path, start, "t0"), StrokeRecord(start)
     tool = brush.cutter(BALL, 0.5)
     for new, poses in ((True, POSES), (False, POSES[-1:] + np.array([[0.0] * 6, [0, 9.0, 0, 0, 0, 0]]))):
+        sculpt.step = brush.step(sculpt, tool, poses, new)
         rows, dt = brush.moves(poses, np.full(len(poses) - 1, 0.1), new)
         brush.apply(sculpt, tool, rows, dt)
-        journal.carved(tool.to_dict(), rows, brush.journal, "t1", sculpt.strength)
+        journal.carved(tool.to_dict(), rows, brush.journal, "t1", **brush.options(sculpt, tool))
         brush.record(stroke, 0, tool, rows, new)
     journal.finish("t1")
     assert journal.whole and not journal.problem
@@ -78,6 +80,24 @@ def test_a_journal_replays_exactly_what_a_brush_does(tmp_path, brush):
     assert [(c.mode, c.tool, c.masked) for c in cuts] == [(c.mode, c.tool, c.masked) for c in made.cuts]
     assert all(np.array_equal(a.poses, b.poses) for a, b in zip(cuts, made.cuts, strict=True))
     assert len(cuts) == bool(brush.cuts)
+
+
+@pytest.mark.parametrize("falloff", ["smooth", "sharp", "sphere", "constant"])
+@pytest.mark.parametrize("step", [0.3, 1.0])
+def test_a_pass_of_clay_adds_its_depth_whatever_the_steps_are(falloff, step):
+    sculpt, clay = Sculpt(), brushes.of("clay")
+    sculpt.volume = riffler.Volume.block((0, 0, 0), (40, 30, 12), 0.25, "xyz")
+    sculpt.volume.carve(riffler.Tool.flat(90, 30), [(20, 15, 8, 0, 0, 1), (21, 15, 8, 0, 0, 1)])
+    sculpt.mask, sculpt.falloff = None, falloff
+    poses = np.array([[x, 15.0, 8.0, 0, 0, 1] for x in np.arange(6, 34 + step / 2, step)])
+    for k in range(0, len(poses) - 4, 4):  # as events come
+        piece = poses[k : k + 5]
+        sculpt.step = clay.step(sculpt, BALL, piece, False)
+        clay.apply(sculpt, BALL, clay.moves(piece, None, False)[0], None)
+    counts, spans = sculpt.volume.intervals("z")
+    heights = spans[np.cumsum(counts.ravel()) - 1, 1].reshape(counts.shape) - 8
+    assert heights[80, 60] == pytest.approx(sculpt.depth, rel=0.08)  # what rises leaves the centre
+    assert heights[:, :40].max() < 1e-9 and not sculpt.cut_off
 
 
 def test_a_module_in_the_folder_is_all_that_a_brush_needs(tmp_path, monkeypatch):

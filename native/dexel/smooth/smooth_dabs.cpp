@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "dexel/protected_tile.hpp"
 #include "dexel/smooth/moved_field.hpp"
 #include "dexel/smooth/recut.hpp"
 #include "dexel/smooth/relax.hpp"
@@ -55,22 +56,6 @@ std::vector<Touched> touched_tiles(const Volume& volume, const Vec3& centre, dou
   return out;
 }
 
-/// Length of the parts of one ray that only `a` contains.
-double length_without(std::span<const Span> a, std::span<const Span> b) {
-  double sum = 0;
-  auto other = b.begin();
-  for (const Span& s : a) {
-    double from = s.near;
-    while (other != b.end() && other->far <= from) ++other;
-    for (auto k = other; k != b.end() && k->near < s.far; ++k) {
-      sum += std::max(0.0, k->near - from);
-      from = std::max(from, k->far);
-    }
-    sum += std::max(0.0, s.far - from);
-  }
-  return sum;
-}
-
 class Dab {
  public:
   Dab(const Volume& volume, const Vec3& centre, const SmoothOptions& options, const Progress& progress)
@@ -96,7 +81,8 @@ class Dab {
     Recutter recutter(grid, field);
     t.after = recutter.run(t.tile, centre_, options_.radius + 3 * pitch_, t.stats);
     if (t.after == before) return;
-    if (options_.protect) t.after = without_protected(t, before);
+    if (options_.protect)
+      t.after = with_protected(grid, t.tile, before, t.after, options_.protect->grids()[t.grid].shared_tile(t.tile));
     if (t.after == before) return;
     for (int r = 0; r < kTileRays && &grid == &volume_.reference(); ++r) {
       t.removed += length_without(before->ray(r), t.after->ray(r));
@@ -105,19 +91,6 @@ class Dab {
   }
 
  private:
-  /// The new tile, with the old material inside the protected region.
-  TilePtr without_protected(const Touched& t, const TilePtr& before) const {
-    const Grid& grid = volume_.grids()[t.grid];
-    TileBuilder builder(true);
-    const auto op = [&](Boolean o, const TilePtr& a, const TilePtr& b) {
-      return apply(o, grid, t.tile, a, b, builder);
-    };
-    const TilePtr& kept = options_.protect->grids()[t.grid].shared_tile(t.tile);
-    const TilePtr lost = op(Boolean::Subtract, op(Boolean::Subtract, before, t.after), kept);
-    const TilePtr won = op(Boolean::Subtract, op(Boolean::Subtract, t.after, before), kept);
-    return op(Boolean::Add, op(Boolean::Subtract, before, lost), won);
-  }
-
   const Volume& volume_;
   const SmoothOptions& options_;
   double pitch_;

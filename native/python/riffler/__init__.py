@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from . import _core, cad, cluster, deprecated, job, old, pen, plan, shape, tasks
 from ._core import (
+    Brushed,
     Cancelled,
     Collider,
     Contact,
@@ -38,6 +39,7 @@ from ._core import (
     VerifyReport,
     Volume,
     __version__,
+    falloff,
     machine_options,
     machine_texts,
     machines,
@@ -73,6 +75,7 @@ from .results import (
 
 __all__ = [
     "Audit",
+    "Brushed",
     "Cancelled",
     "Collider",
     "Contact",
@@ -126,6 +129,7 @@ __all__ = [
     "__version__",
     "cad",
     "cluster",
+    "falloff",
     "job",
     "machine_options",
     "machine_texts",

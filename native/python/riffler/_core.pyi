@@ -17,7 +17,7 @@ import typing
 _Found = typing.TypeVar('_Found')
 _Made = typing.TypeVar('_Made')
 import typing_extensions
-__all__: list[str] = ['AtomicFileWriter', 'Cancelled', 'Collider', 'Contact', 'Cut', 'Finding', 'FormatError', 'FrozenSurface', 'History', 'Journal', 'JournalStroke', 'JournalWriter', 'Material', 'Mesh', 'Mesher', 'NotATask', 'Note', 'OrientFrame', 'OrientSession', 'PenDevice', 'PenError', 'PenGeometry', 'PenState', 'PencilPath', 'Pointer', 'Program', 'ProgramStream', 'Session', 'SessionFrame', 'SimulatedPen', 'SlabWorker', 'Smoothed', 'Snapshot', 'Surface', 'Task', 'Tool', 'ToolShape', 'ToolSize', 'Verification', 'VerifyPlan', 'VerifyReport', 'Volume', 'clear_drafts', 'contact_locations', 'cutter_locations', 'draft_prefix', 'drop', 'engrave', 'finish', 'finish_patterns', 'lift', 'machine_options', 'machine_texts', 'machines', 'min_tilt', 'orientation_maps', 'outline', 'pencil', 'read_file', 'replace_file', 'replaceable', 'require_revolved', 'rough', 'set_threads', 'stepover_of_scallop', 'swarf', 'then', 'threads', 'tip_ball_radius', 'verify']
+__all__: list[str] = ['AtomicFileWriter', 'Brushed', 'Cancelled', 'Collider', 'Contact', 'Cut', 'Finding', 'FormatError', 'FrozenSurface', 'History', 'Journal', 'JournalStroke', 'JournalWriter', 'Material', 'Mesh', 'Mesher', 'NotATask', 'Note', 'OrientFrame', 'OrientSession', 'PenDevice', 'PenError', 'PenGeometry', 'PenState', 'PencilPath', 'Pointer', 'Program', 'ProgramStream', 'Session', 'SessionFrame', 'SimulatedPen', 'SlabWorker', 'Smoothed', 'Snapshot', 'Surface', 'Task', 'Tool', 'ToolShape', 'ToolSize', 'Verification', 'VerifyPlan', 'VerifyReport', 'Volume', 'clear_drafts', 'contact_locations', 'cutter_locations', 'draft_prefix', 'drop', 'engrave', 'falloff', 'finish', 'finish_patterns', 'lift', 'machine_options', 'machine_texts', 'machines', 'min_tilt', 'orientation_maps', 'outline', 'pencil', 'read_file', 'replace_file', 'replaceable', 'require_revolved', 'rough', 'set_threads', 'stepover_of_scallop', 'swarf', 'then', 'threads', 'tip_ball_radius', 'verify']
 class FormatError(ValueError):
     """
     A file with invalid content. Names the file, the line or byte, and what was expected.
@@ -1552,6 +1552,68 @@ class Volume:
         >>> riffler.Volume.empty((0, 0, 0), (4, 3, 2), pitch=0.5).add(block).volume
         24.0
         """
+    def brush(self, kind: str, dabs: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], radius: typing.SupportsFloat, *, strength: typing.SupportsFloat = 1.0, amount: typing.SupportsFloat = 0.0, falloff: str = 'smooth', protect: Volume | None = None, progress: collections.abc.Callable[[float], bool | None] | None = None) -> Brushed:
+        """
+        Displaces the surface by dabs of a round brush with falloff; volumes with directions "xyz" only.
+
+        With f the falloff at a point times ``strength``, and the axis that of the dab:
+
+        ============ =========================================================================================
+        "clay"       adds a layer of f · amount along the axis where the surface faces it; a negative one digs
+        "inflate"    f · amount along the surface's own normal; a negative one deflates
+        "flatten"    f of the distance to the mean plane of the surface in the radius, raised by amount
+        "scrape"     as "flatten", only what stands above the plane
+        "fill"       as "flatten", only what lies below the plane
+        "grab"       f times the vector from the first dab's centre to the last one's, as one displacement
+        "snake_hook" f times the vector from each dab's centre to the next one's
+        "pinch"      f / 2 of the distance to the line through the centre along the axis
+        "crease"     as "pinch", and f² / strength · amount along the axis: negative for a furrow, positive for a ridge
+        "twist"      turns by f · amount, in rad, about that line
+        ============ =========================================================================================
+
+        Nothing changes, to the bit, farther than the radius from the centres; for "grab" and "snake_hook", from the line that
+        the centre moves on. Detail as fine as a pitch moves along where the displacement is along the surface's normal; a
+        displacement along the surface resamples it. Material never leaves the volume's box.
+
+        Parameters
+        ----------
+        kind : str
+            One of the names above.
+        dabs : array_like of shape (n, 6), mm
+            Centre of each dab and its unit axis, out of the material.
+        radius : float, mm
+            Radius of the brush.
+        strength : float, from 0 to 1
+            Factor of the displacement.
+        amount : float
+            Displacement at the centre, mm, or rad for "twist".
+        falloff : str
+            "smooth", "smoother", "sphere", "root", "sharp", "linear", "sharper", "inverse_square" or "constant": see
+            ``riffler.falloff``.
+        protect : Volume or None
+            Region that must not change, material and air; a volume with the same lower, upper, pitch and directions.
+        progress : callable or None
+            Called with the finished share; returning False cancels.
+
+        Returns
+        -------
+        Brushed
+            The volumes removed and added, and what was cut off.
+
+        Raises
+        ------
+        ValueError
+            The volume has one direction only; the protected volume's grid is another; names argument and row.
+        Cancelled
+            ``progress`` returned False; the volume is unchanged.
+
+        Examples
+        --------
+        >>> volume = riffler.Volume.sphere((0, 0, 0), 20, 0.5, "xyz", lower=(-23,) * 3, upper=(23,) * 3)
+        >>> made = volume.brush("clay", [(0, 0, 20, 0, 0, 1)], 8, amount=1)
+        >>> bool(made.added > 0), made.clipped
+        (True, False)
+        """
     def carve(self, tool: Tool, poses: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], *, tolerance: typing.SupportsFloat = 0.01, dt: numpy.typing.ArrayLike | None = None, removal_constant: typing.SupportsFloat = 0.05, mode: str = 'remove', protect: Volume | None = None, progress: collections.abc.Callable[[float], bool | None] | None = None) -> Cut:
         """
         Removes what the cutter sweeps along a path, or adds it. Shank and holder never cut.
@@ -2175,6 +2237,30 @@ class Smoothed:
     def removed(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         (n,) mm³ removed.
+        """
+class Brushed:
+    """
+    The effect of the dabs of a brush. See `Volume.brush`.
+    """
+    @property
+    def added(self) -> float:
+        """
+        mm³ added, summed over the dabs.
+        """
+    @property
+    def clipped(self) -> bool:
+        """
+        Whether material reached the volume's box and was cut off there; `Volume.grow` enlarges it.
+        """
+    @property
+    def lost(self) -> float:
+        """
+        mm³ of walls thinner than the pitch that a displacement sideways by more than a pitch dropped.
+        """
+    @property
+    def removed(self) -> float:
+        """
+        mm³ removed, summed over the dabs.
         """
 class History:
     """
@@ -4711,6 +4797,16 @@ class JournalStroke:
     def __len__(self) -> int:
         ...
     @property
+    def amount(self) -> float:
+        """
+        mm or rad, for brushes.
+        """
+    @property
+    def falloff(self) -> str:
+        """
+        For brushes.
+        """
+    @property
     def forces(self) -> numpy.typing.NDArray[numpy.float64] | None:
         """
         (n, 6) N, N·mm about the grip, as sent to the device for the hand; or None.
@@ -4718,7 +4814,7 @@ class JournalStroke:
     @property
     def mode(self) -> str:
         """
-        "remove", "add", "mask", "unmask", "soften", "beside" or "build": see ``Journal.add_stroke``.
+        "remove", "add", "mask", "unmask", "soften", "beside", "build" or a brush: see ``Journal.add_stroke``.
         """
     @property
     def name(self) -> str:
@@ -4738,7 +4834,7 @@ class JournalStroke:
     @property
     def strength(self) -> float:
         """
-        0 to 1, for "soften".
+        0 to 1, for "soften" and brushes.
         """
     @property
     def times(self) -> numpy.typing.NDArray[numpy.float64] | None:
@@ -4817,7 +4913,7 @@ class Journal:
         >>> journal.notes
         {'operator': 'Ada'}
         """
-    def add_stroke(self, tool: typing.SupportsInt, poses: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], *, times: numpy.typing.ArrayLike | None = None, tolerance: typing.SupportsFloat = 0.01, name: str = '', forces: numpy.typing.ArrayLike | None = None, removed: numpy.typing.ArrayLike | None = None, mode: str = 'remove', strength: typing.SupportsFloat = 0.5) -> None:
+    def add_stroke(self, tool: typing.SupportsInt, poses: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], *, times: numpy.typing.ArrayLike | None = None, tolerance: typing.SupportsFloat = 0.01, name: str = '', forces: numpy.typing.ArrayLike | None = None, removed: numpy.typing.ArrayLike | None = None, mode: str = 'remove', strength: typing.SupportsFloat = 0.5, amount: typing.SupportsFloat = 0.0, falloff: str = 'smooth') -> None:
         """
         Records a stroke. Replay is exact to the bit for ``carve`` in mode "add" or with a mask only if each carve is one stroke.
 
@@ -4837,12 +4933,17 @@ class Journal:
             N and N·mm as sent to the device for the hand, about the grip.
         removed : array_like, shape (n,), optional
             mm³ by the move that ends at the row.
-        mode : {"remove", "add", "mask", "unmask", "soften", "beside", "build"}
+        mode : {"remove", "add", "mask", "unmask", "soften", "beside", "build", "clay", "inflate", …}
             What the tool does where it sweeps: "remove" and "add" material, but not where it is protected; "mask" and "unmask":
             protect it, or no longer; "soften": a smoothing dab at each row's tip, as wide as the tool; "beside": remove as a
-            Session does next to what is protected; "build": add as a Session does.
+            Session does next to what is protected; "build": add as a Session does. Any brush of ``Volume.brush``: its dabs at
+            the rows, as wide as the tool.
         strength : float
-            Of "soften", 0 to 1.
+            Of "soften" and brushes, 0 to 1.
+        amount : float
+            Of brushes, mm or rad.
+        falloff : str
+            Of brushes.
 
         Examples
         --------
@@ -5141,7 +5242,7 @@ class JournalWriter:
         >>> journal.notes
         {'operator': 'Ada'}
         """
-    def add_stroke(self, tool: typing.SupportsInt, poses: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], *, times: numpy.typing.ArrayLike | None = None, tolerance: typing.SupportsFloat = 0.01, name: str = '', forces: numpy.typing.ArrayLike | None = None, removed: numpy.typing.ArrayLike | None = None, mode: str = 'remove', strength: typing.SupportsFloat = 0.5) -> None:
+    def add_stroke(self, tool: typing.SupportsInt, poses: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], *, times: numpy.typing.ArrayLike | None = None, tolerance: typing.SupportsFloat = 0.01, name: str = '', forces: numpy.typing.ArrayLike | None = None, removed: numpy.typing.ArrayLike | None = None, mode: str = 'remove', strength: typing.SupportsFloat = 0.5, amount: typing.SupportsFloat = 0.0, falloff: str = 'smooth') -> None:
         """
         Records a stroke. Replay is exact to the bit for ``carve`` in mode "add" or with a mask only if each carve is one stroke.
 
@@ -5161,12 +5262,17 @@ class JournalWriter:
             N and N·mm as sent to the device for the hand, about the grip.
         removed : array_like, shape (n,), optional
             mm³ by the move that ends at the row.
-        mode : {"remove", "add", "mask", "unmask", "soften", "beside", "build"}
+        mode : {"remove", "add", "mask", "unmask", "soften", "beside", "build", "clay", "inflate", …}
             What the tool does where it sweeps: "remove" and "add" material, but not where it is protected; "mask" and "unmask":
             protect it, or no longer; "soften": a smoothing dab at each row's tip, as wide as the tool; "beside": remove as a
-            Session does next to what is protected; "build": add as a Session does.
+            Session does next to what is protected; "build": add as a Session does. Any brush of ``Volume.brush``: its dabs at
+            the rows, as wide as the tool.
         strength : float
-            Of "soften", 0 to 1.
+            Of "soften" and brushes, 0 to 1.
+        amount : float
+            Of brushes, mm or rad.
+        falloff : str
+            Of brushes.
 
         Examples
         --------
@@ -6457,6 +6563,22 @@ def drop(tool: Tool, points: typing.Annotated[numpy.typing.ArrayLike, numpy.floa
 def engrave(part: Mesh, curves: collections.abc.Iterable[numpy.typing.ArrayLike], tool: Tool, *, depth: typing.SupportsFloat, inclination: typing.SupportsFloat, tilt: typing.SupportsFloat, tolerance: typing.SupportsFloat, turn: typing.SupportsFloat, crease: typing.SupportsFloat, reach: typing.SupportsFloat, progress: collections.abc.Callable[[float], bool | None] | None) -> list:
     """
     For riffler.plan.engrave.
+    """
+def falloff(name: str, t: typing.SupportsFloat) -> float:
+    """
+    The falloff of a brush: 1 at its centre, 0 at its radius and beyond.
+
+    Parameters
+    ----------
+    name : str
+        As in ``Volume.brush``.
+    t : float
+        Distance from the centre as a fraction of the radius.
+
+    Examples
+    --------
+    >>> riffler.falloff("smooth", 0.5), riffler.falloff("linear", 0.25)
+    (0.5, 0.75)
     """
 def finish(part: Mesh, fixtures: collections.abc.Sequence[Mesh], stock: Volume, tool: Tool, *, axis: numpy.typing.ArrayLike, clearance: typing.SupportsFloat, pattern: str, cusp: typing.SupportsFloat, tolerance: typing.SupportsFloat, allowance: typing.SupportsFloat, angle: typing.SupportsFloat, min_slope: typing.SupportsFloat, max_slope: typing.SupportsFloat, region: collections.abc.Iterable[numpy.typing.ArrayLike], faces: collections.abc.Sequence[typing.SupportsInt], centre: numpy.typing.ArrayLike | None, climb: bool, feed: typing.SupportsFloat, plunge: typing.SupportsFloat, progress: collections.abc.Callable[[float], bool | None] | None) -> riffler.plan.operations.PlannedMoves:
     """

@@ -29,6 +29,14 @@ def near(value, wanted, share):
     assert value == pytest.approx(wanted, rel=share), (value, wanted)
 
 
+def brushes(out):
+    """The falloff's integral over the disc: 0.3 of its area."""
+    near(numbers(r"one dab of clay: ([\d.]+) mm³", out)[0], 0.3 * np.pi * 49, 2e-3)
+    made, said = numbers(r"volume ([-+\d.]+) mm³, the brushes say ([-+\d.]+) mm³", out)
+    near(made, said, 1e-3)
+    assert "open edges 0, clipped False" in out
+
+
 def carve_and_force(out):
     """A circle's segment of 2 mm in a circle of 4 mm; force = constant × area × feed."""
     area = 16 * np.arccos(0.5) - 2 * np.sqrt(12)

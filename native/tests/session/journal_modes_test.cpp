@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "riffler/base/error.hpp"
+#include "riffler/brush/brush_dabs.hpp"
 #include "riffler/dexel/file/file.hpp"
 #include "riffler/dexel/smooth/smooth_dabs.hpp"
 #include "riffler/session/journal_file.hpp"
@@ -63,6 +64,14 @@ struct Clay {
     options.strength = strength;
     options.protect = mask ? &*mask : nullptr;
     smooth_dabs(volume, centres, options);
+  }
+
+  void brush_piece(const JournalStroke& stroke) {
+    brush::BrushOptions options;
+    options.kind = brush_of(stroke.mode), options.radius = stroke.tool == 1 ? 3 : 2.5;
+    options.strength = stroke.strength, options.amount = stroke.amount, options.falloff = stroke.falloff;
+    options.protect = mask ? &*mask : nullptr;
+    brush_dabs(volume, stroke.poses, options);
   }
 
   void carve_piece(StrokeMode mode, int tool, std::span<const Pose> poses) {
@@ -135,6 +144,34 @@ TEST(JournalModes, OfDabsAreReplayedToTheByte) {
   EXPECT_EQ(error_of([&] { j.add_stroke(wrong); }), "strength must be from 0 to 1");
 }
 
+TEST(JournalModes, OfBrushesAreReplayedToTheByte) {
+  std::mt19937 random(27);
+  Clay clay;
+  Journal j = journal();
+  const std::vector<Pose> grooves = wander(random, 40), kept = wander(random, 20);
+  clay.carve_piece(StrokeMode::Remove, 2, grooves), j.add_stroke(stroke(StrokeMode::Remove, 2, grooves));
+  clay.carve_piece(StrokeMode::Mask, 2, kept), j.add_stroke(stroke(StrokeMode::Mask, 2, kept));
+  int changed = 0;
+  for (std::uint32_t k = 0; k < brush::kKinds; ++k) {
+    JournalStroke dabs = stroke(static_cast<StrokeMode>(kFirstBrush + k), 1 + k % 2, wander(random, 3));
+    dabs.strength = 0.4 + 0.05 * k, dabs.amount = k % 2 ? 0.3 : -0.4;
+    dabs.falloff = static_cast<brush::Falloff>(k % brush::kFalloffs);
+    const double before = clay.volume.volume();
+    clay.brush_piece(dabs);
+    changed += clay.volume.volume() != before;
+    j.add_stroke(dabs);
+  }
+  EXPECT_GE(changed, 6) << "of the places, some are no surface's";
+  const Journal read = parse_journal(to_bytes(j), "j");
+  EXPECT_EQ(read.strokes()[3].strength, 0.45);
+  EXPECT_EQ(read.strokes()[3].amount, 0.3);
+  EXPECT_EQ(read.strokes()[3].falloff, brush::Falloff::Smoother);
+  EXPECT_EQ(to_bytes(replay_all(read, kTools).volume), to_bytes(clay.volume));
+  JournalStroke wrong = stroke(static_cast<StrokeMode>(kFirstBrush), 1, wander(random, 2));
+  wrong.amount = INFINITY;
+  EXPECT_EQ(error_of([&] { j.add_stroke(wrong); }), "amount must be finite");
+}
+
 TEST(JournalModes, ContinueFromAStockThatHasAMask) {
   std::mt19937 random(22);
   const TemporaryFile stock("stock.rvol"), mask("mask.rvol");
@@ -189,7 +226,7 @@ TEST(JournalModes, OfANewerRifflerAreNamed) {
   payload[payload.size() - 4] = kStrokeModes;
   Journal out = journal();
   EXPECT_EQ(error_of([&] { journal_format::apply_record({record->kind, payload, record->size}, out); }),
-            "a stroke of mode 7, unknown here: a newer Riffler wrote it");
+            "a stroke of mode " + std::to_string(kStrokeModes) + ", unknown here: a newer Riffler wrote it");
   payload[payload.size() - 4] = 1;
   journal_format::apply_record({record->kind, payload, record->size}, out);
   EXPECT_EQ(out.strokes()[0].mode, StrokeMode::Add);

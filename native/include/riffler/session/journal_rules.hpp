@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "riffler/brush/options.hpp"
 #include "riffler/geom/pose.hpp"
 #include "riffler/geom/vec.hpp"
 #include "riffler/haptics/wrench.hpp"
@@ -28,8 +29,19 @@ struct JournalStock {
 /// Soften: one smoothing dab at the tip of each row, as wide as the tool (dexel/smooth/smooth_dabs.hpp).
 /// Beside: removes as a session with a protected region does (session/masked_stock.hpp). Build: adds as a session does.
 /// Consecutive strokes of one of these modes share one start, so they leave no seams.
+/// The modes from kFirstBrush on: dabs at the rows, as wide as the tool, of the brush::Kind with the same place in its
+/// list (brush/options.hpp).
 enum class StrokeMode : std::uint32_t { Remove = 0, Add = 1, Mask = 2, Unmask = 3, Soften = 4, Beside = 5, Build = 6 };
-inline constexpr std::uint32_t kStrokeModes = 7;
+inline constexpr std::uint32_t kFirstBrush = 7;
+inline constexpr std::uint32_t kStrokeModes = kFirstBrush + brush::kKinds;
+
+inline bool is_brush(StrokeMode mode) {
+  return static_cast<std::uint32_t>(mode) >= kFirstBrush;
+}
+/// The brush of a mode for which is_brush().
+inline brush::Kind brush_of(StrokeMode mode) {
+  return static_cast<brush::Kind>(static_cast<std::uint32_t>(mode) - kFirstBrush);
+}
 
 /// Rows of a stroke. Each column is as long as `poses`, or empty if it was not recorded.
 struct JournalRows {
@@ -57,8 +69,10 @@ struct JournalStroke {
   std::vector<Wrench> forces{};
   std::vector<double> removed{};
   StrokeMode mode = StrokeMode::Remove;
-  double strength = 0.5;  ///< 0 … 1, for Soften
+  double strength = 0.5;  ///< 0 … 1, for Soften and brushes
   std::vector<Vec3> forward{};
+  double amount = 0;  ///< mm or rad, of brushes: brush::BrushOptions
+  brush::Falloff falloff = brush::Falloff::Smooth;
 
   JournalRows rows() const { return {poses, times, forces, removed, forward}; }
   /// Appends rows with the same columns.
