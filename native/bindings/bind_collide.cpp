@@ -80,28 +80,51 @@ collide::Collider::Settings settings_of(const std::optional<double>& spacing, do
   return settings;
 }
 
-auto made(const std::shared_ptr<Mesh>& part, const std::vector<SharedVolume*>& fixtures,
-          const std::optional<double>& spacing, double stiffness, double holder_stiffness,
-          const StiffnessLike& fixture_stiffness, const PushLike& fixture_push, const ProgressLike& progress) {
+RIFFLER_TYPED(PartLike, "riffler._core.Mesh | riffler._core.Surface")
+
+/// A mesh, or an exact surface.
+struct Part {
+  std::shared_ptr<Mesh> mesh;
+  std::shared_ptr<Surface> surface;
+
+  explicit Part(const PartLike& part) {
+    if (py::isinstance<Surface>(part))
+      surface = py::cast<std::shared_ptr<Surface>>(part);
+    else if (py::isinstance<Mesh>(part))
+      mesh = py::cast<std::shared_ptr<Mesh>>(part);
+    else
+      throw py::type_error("part must be a Mesh or a Surface, not " +
+                           py::str(py::type::of(part).attr("__name__")).cast<std::string>());
+  }
+  std::shared_ptr<collide::Collider> collider(const std::vector<Volume>& fixtures,
+                                              const collide::Collider::Settings& settings) const {
+    if (mesh) return std::make_shared<collide::Collider>(*mesh, fixtures, settings);
+    return std::make_shared<collide::Collider>(*surface, fixtures, settings);
+  }
+};
+
+auto made(const PartLike& part, const std::vector<SharedVolume*>& fixtures, const std::optional<double>& spacing,
+          double stiffness, double holder_stiffness, const StiffnessLike& fixture_stiffness,
+          const PushLike& fixture_push, const ProgressLike& progress) {
   std::vector<Volume> volumes;
   for (SharedVolume* v : fixtures) {
     if (!v) throw py::value_error("fixtures, volume " + std::to_string(volumes.size()) + ": None");
     volumes.push_back(Reading(*v).volume.snapshot());
   }
-  const auto work = [part, volumes = std::move(volumes),
+  const auto work = [part = Part(part), volumes = std::move(volumes),
                      settings = settings_of(spacing, stiffness, holder_stiffness, fixture_stiffness, fixture_push)](
                         const Progress& listener) {
     base::report(listener, 0);
-    auto collider = std::make_shared<collide::Collider>(*part, volumes, settings);
+    auto collider = part.collider(volumes, settings);
     base::report(listener, 1);
     return collider;
   };
   return long_call(progress, work, Identity());
 }
 
-ColliderPtr make(const std::shared_ptr<Mesh>& part, const std::vector<SharedVolume*>& fixtures,
-                 const std::optional<double>& spacing, double stiffness, double holder_stiffness,
-                 const StiffnessLike& fixture_stiffness, const PushLike& fixture_push) {
+ColliderPtr make(const PartLike& part, const std::vector<SharedVolume*>& fixtures, const std::optional<double>& spacing,
+                 double stiffness, double holder_stiffness, const StiffnessLike& fixture_stiffness,
+                 const PushLike& fixture_push) {
   return made(part, fixtures, spacing, stiffness, holder_stiffness, fixture_stiffness, fixture_push,
               ProgressLike(py::none()))
       .cast<ColliderPtr>();
@@ -214,8 +237,9 @@ Python's lock.
 
 Parameters
 ----------
-part : Mesh
-    The surface; an empty one is ignored.
+part : Mesh or Surface
+    The surface; an empty one is ignored. With an exact `Surface`, whose normals point out of the material, depth and
+    clearance are those of the exact surface, to 1e-6 mm, and the force has no facets.
 fixtures : list of Volume
     Each may have its own pitch; empty ones are ignored.
 spacing : float, mm, or None
@@ -242,10 +266,10 @@ Examples
 >>> collider.clearance(riffler.Tool.ball(6, 30), [[10, 10, 12, 0, 0, 1]]).round(3).tolist()
 [2.0]
 )")
-      .def(py::init(&make), py::arg("part").none(false), py::kw_only(), py::arg("fixtures") = py::list(),
+      .def(py::init(&make), py::arg("part"), py::kw_only(), py::arg("fixtures") = py::list(),
            py::arg("spacing") = py::none(), py::arg("stiffness") = 1.0, py::arg("holder_stiffness") = 10.0,
            py::arg("fixture_stiffness") = 10.0, py::arg("fixture_push") = "normal")
-      .def_static("made", &made, py::arg("part").none(false), py::kw_only(), py::arg("fixtures") = py::list(),
+      .def_static("made", &made, py::arg("part"), py::kw_only(), py::arg("fixtures") = py::list(),
                   py::arg("spacing") = py::none(), py::arg("stiffness") = 1.0, py::arg("holder_stiffness") = 10.0,
                   py::arg("fixture_stiffness") = 10.0, py::arg("fixture_push") = "normal",
                   py::arg("progress") = py::none(),
@@ -253,8 +277,9 @@ Examples
 
 Parameters
 ----------
-part : Mesh
-    The surface; an empty one is ignored.
+part : Mesh or Surface
+    The surface; an empty one is ignored. With an exact `Surface`, whose normals point out of the material, depth and
+    clearance are those of the exact surface, to 1e-6 mm, and the force has no facets.
 fixtures : list of Volume
     Each may have its own pitch; empty ones are ignored.
 spacing : float, mm, or None
