@@ -2,6 +2,7 @@
 #include <cmath>
 #include <memory>
 #include <mutex>
+#include <variant>
 
 #include "bindings/results.hpp"
 #include "bindings/shared_volume.hpp"
@@ -80,30 +81,10 @@ collide::Collider::Settings settings_of(const std::optional<double>& spacing, do
   return settings;
 }
 
-RIFFLER_TYPED(PartLike, "riffler._core.Mesh | riffler._core.Surface")
-
 /// A mesh, or an exact surface.
-struct Part {
-  std::shared_ptr<Mesh> mesh;
-  std::shared_ptr<Surface> surface;
+using PartPtr = std::variant<std::shared_ptr<Mesh>, std::shared_ptr<Surface>>;
 
-  explicit Part(const PartLike& part) {
-    if (py::isinstance<Surface>(part))
-      surface = py::cast<std::shared_ptr<Surface>>(part);
-    else if (py::isinstance<Mesh>(part))
-      mesh = py::cast<std::shared_ptr<Mesh>>(part);
-    else
-      throw py::type_error("part must be a Mesh or a Surface, not " +
-                           py::str(py::type::of(part).attr("__name__")).cast<std::string>());
-  }
-  std::shared_ptr<collide::Collider> collider(const std::vector<Volume>& fixtures,
-                                              const collide::Collider::Settings& settings) const {
-    if (mesh) return std::make_shared<collide::Collider>(*mesh, fixtures, settings);
-    return std::make_shared<collide::Collider>(*surface, fixtures, settings);
-  }
-};
-
-auto made(const PartLike& part, const std::vector<SharedVolume*>& fixtures, const std::optional<double>& spacing,
+auto made(const PartPtr& part, const std::vector<SharedVolume*>& fixtures, const std::optional<double>& spacing,
           double stiffness, double holder_stiffness, const StiffnessLike& fixture_stiffness,
           const PushLike& fixture_push, const ProgressLike& progress) {
   std::vector<Volume> volumes;
@@ -111,18 +92,19 @@ auto made(const PartLike& part, const std::vector<SharedVolume*>& fixtures, cons
     if (!v) throw py::value_error("fixtures, volume " + std::to_string(volumes.size()) + ": None");
     volumes.push_back(Reading(*v).volume.snapshot());
   }
-  const auto work = [part = Part(part), volumes = std::move(volumes),
+  const auto work = [part, volumes = std::move(volumes),
                      settings = settings_of(spacing, stiffness, holder_stiffness, fixture_stiffness, fixture_push)](
                         const Progress& listener) {
     base::report(listener, 0);
-    auto collider = part.collider(volumes, settings);
+    auto collider = std::visit(
+        [&](const auto& some) { return std::make_shared<collide::Collider>(*some, volumes, settings); }, part);
     base::report(listener, 1);
     return collider;
   };
   return long_call(progress, work, Identity());
 }
 
-ColliderPtr make(const PartLike& part, const std::vector<SharedVolume*>& fixtures, const std::optional<double>& spacing,
+ColliderPtr make(const PartPtr& part, const std::vector<SharedVolume*>& fixtures, const std::optional<double>& spacing,
                  double stiffness, double holder_stiffness, const StiffnessLike& fixture_stiffness,
                  const PushLike& fixture_push) {
   return made(part, fixtures, spacing, stiffness, holder_stiffness, fixture_stiffness, fixture_push,
@@ -266,10 +248,10 @@ Examples
 >>> collider.clearance(riffler.Tool.ball(6, 30), [[10, 10, 12, 0, 0, 1]]).round(3).tolist()
 [2.0]
 )")
-      .def(py::init(&make), py::arg("part"), py::kw_only(), py::arg("fixtures") = py::list(),
+      .def(py::init(&make), py::arg("part").none(false), py::kw_only(), py::arg("fixtures") = py::list(),
            py::arg("spacing") = py::none(), py::arg("stiffness") = 1.0, py::arg("holder_stiffness") = 10.0,
            py::arg("fixture_stiffness") = 10.0, py::arg("fixture_push") = "normal")
-      .def_static("made", &made, py::arg("part"), py::kw_only(), py::arg("fixtures") = py::list(),
+      .def_static("made", &made, py::arg("part").none(false), py::kw_only(), py::arg("fixtures") = py::list(),
                   py::arg("spacing") = py::none(), py::arg("stiffness") = 1.0, py::arg("holder_stiffness") = 10.0,
                   py::arg("fixture_stiffness") = 10.0, py::arg("fixture_push") = "normal",
                   py::arg("progress") = py::none(),

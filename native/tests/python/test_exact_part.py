@@ -68,7 +68,7 @@ def test_a_collider_has_the_exact_depth_and_refuses_others():
     assert collider.clearance(tool, [[10, 10, 1, 0, 0, 1], [21, 10, 0, 0, 0, 1]]) == pytest.approx(
         [1, np.hypot(3, 3) - 3], abs=1e-5
     )
-    with pytest.raises(TypeError, match="part must be a Mesh or a Surface, not int"):
+    with pytest.raises(TypeError, match="part must be a Mesh or Surface; got int 3"):
         riffler.Collider(3)
 
 
