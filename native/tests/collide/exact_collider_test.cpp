@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <random>
 
 #include "collide/tools.hpp"
@@ -14,6 +15,18 @@ namespace {
 namespace shapes = nurbs::shapes;
 
 constexpr double kExact = 1e-6;  // mm
+
+/// How many poses: a few in the check, more with RIFFLER_LONG.
+int count(int few, int many) {
+  return std::getenv("RIFFLER_LONG") ? many : few;
+}
+
+/// For tests that look at distances only.
+Collider::Settings few_points() {
+  Collider::Settings settings;
+  settings.spacing = 1;
+  return settings;
+}
 
 Vec3 direction(std::mt19937& random) {
   std::normal_distribution<double> share;
@@ -87,13 +100,13 @@ TEST(ExactCollider, SumsTheForceInClosedForm) {
 TEST(ExactCollider, AgreesWithFineTrianglesForEveryTool) {
   const Surface surface(
       {shapes::torus(20, 5), shapes::ball(6, 4, {0, 0, 3}), shapes::turned(shapes::line({30, -8}, {24, 12}))});
-  constexpr double kFine = 2e-3;
-  const Collider exact(surface), fine(surface.to_mesh(kFine));
+  constexpr double kFine = 5e-3;
+  const Collider exact(surface, {}, few_points()), fine(surface.to_mesh(kFine), {}, few_points());
   std::mt19937 random(8);
   std::uniform_real_distribution<double> share(-30, 30);
   for (const Tool& tool : contact_tools()) {
     const Assembly assembly(tool);
-    for (int k = 0; k < 4; ++k) {
+    for (int k = 0; k < count(2, 20); ++k) {
       const Pose pose{{share(random), share(random), 0.5 * share(random)}, direction(random)};
       const double a = exact.nearest(assembly, pose, 1e-4).distance, b = fine.nearest(assembly, pose, 1e-4).distance;
       EXPECT_NEAR(a, b, kFine + 2.2e-4) << tool.length() << " " << k;
@@ -125,7 +138,7 @@ TEST(ExactCollider, KeepsToTheBordersOfPatches) {
 /// Smallest distance of a surface from a segment, by the proven nearest points of ever closer places on it.
 double to_segment(const Surface& surface, const Vec3& from, const Vec3& to) {
   double low = 0, high = 1, least = 1e9;
-  for (int round = 0; round < 5; ++round) {
+  for (int round = 0; round < 4; ++round) {
     constexpr int kPlaces = 30;
     std::vector<Vec3> places;
     for (int k = 0; k <= kPlaces; ++k) places.push_back(from + (low + (high - low) * k / kPlaces) * (to - from));
@@ -154,9 +167,9 @@ TEST(ExactCollider, AgreesWithNearestPointsOnWavyPatches) {
       patch.trims = {{lower + 0.1 * size, lower + Vec2(0.9, 0.2) * size, lower + Vec2(0.6, 0.95) * size}};
     }
     const Surface surface({patch});
-    const Collider collider(surface);
+    const Collider collider(surface, {}, few_points());
     const Box3 box = surface.bounds();
-    for (int k = 0; k < 8; ++k) {
+    for (int k = 0; k < count(3, 30); ++k) {
       const Vec3 p = box.lower + Vec3(share(random), share(random), share(random)) * box.size();
       const Pose pose{p, direction(random)};
       const Vec3 centre = p + radius * pose.axis, top = p + length * pose.axis;
@@ -166,7 +179,7 @@ TEST(ExactCollider, AgreesWithNearestPointsOnWavyPatches) {
       ++checked;
     }
   }
-  EXPECT_GT(checked, 10);
+  EXPECT_GT(checked, 3);
 }
 
 TEST(ExactCollider, EndsWhereABallLiesInAGrooveOfItsRadius) {
