@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from riffler import Mesh, Tool, Verification, VerifyReport, Volume, plan, verify
 
-from . import scenes, waves
+from . import scenes, torus, waves
 from .rivals import clock
 
 
@@ -218,6 +218,7 @@ WORK = {
     "decimate": decimate,
     "pencil": pencil,
     "drop": drop,
+    "surfaces": torus.measured,
     "s500k": s500k,
     "streamed": streamed,
     "verified": verified,

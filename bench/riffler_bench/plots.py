@@ -14,7 +14,16 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from riffler.command.plot_style import COLOURS, INK, MARKS, STYLE, TARGET, logarithmic
 
-from . import contact_plots, gouge_plots, haptic_plots, latency_plots, nc_plots, pencil_plots, verify_plots
+from . import (
+    contact_plots,
+    gouge_plots,
+    haptic_plots,
+    latency_plots,
+    nc_plots,
+    pencil_plots,
+    surface_plots,
+    verify_plots,
+)
 from .plotting import Data, colours, column, pick, rows, target, title, values
 
 
@@ -348,6 +357,7 @@ PLOTS: dict[str, dict[str, Callable[[Data], Figure | None]]] = {
     "col": {"col": contact_plots.col, "col-budgets": contact_plots.budgets, "col-slide": contact_plots.slide},
     "gouge": {"gouge": gouge_plots.entries},
     "nc": {"nc": nc_plots.between},
+    "surfaces": {"surfaces": surface_plots.surfaces},
     "blender": {"blender": latency_plots.stages},
     "verify": {"verify": verify_plots.against_pitch},
     "pencil": {"pencil": pencil_plots.valleys, "pencil-tolerance": pencil_plots.tolerance},

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <memory>
 #include <mutex>
+#include <variant>
 
 #include "bindings/results.hpp"
 #include "bindings/shared_volume.hpp"
@@ -80,9 +81,12 @@ collide::Collider::Settings settings_of(const std::optional<double>& spacing, do
   return settings;
 }
 
-auto made(const std::shared_ptr<Mesh>& part, const std::vector<SharedVolume*>& fixtures,
-          const std::optional<double>& spacing, double stiffness, double holder_stiffness,
-          const StiffnessLike& fixture_stiffness, const PushLike& fixture_push, const ProgressLike& progress) {
+/// A mesh, or an exact surface.
+using PartPtr = std::variant<std::shared_ptr<Mesh>, std::shared_ptr<Surface>>;
+
+auto made(const PartPtr& part, const std::vector<SharedVolume*>& fixtures, const std::optional<double>& spacing,
+          double stiffness, double holder_stiffness, const StiffnessLike& fixture_stiffness,
+          const PushLike& fixture_push, const ProgressLike& progress) {
   std::vector<Volume> volumes;
   for (SharedVolume* v : fixtures) {
     if (!v) throw py::value_error("fixtures, volume " + std::to_string(volumes.size()) + ": None");
@@ -92,16 +96,17 @@ auto made(const std::shared_ptr<Mesh>& part, const std::vector<SharedVolume*>& f
                      settings = settings_of(spacing, stiffness, holder_stiffness, fixture_stiffness, fixture_push)](
                         const Progress& listener) {
     base::report(listener, 0);
-    auto collider = std::make_shared<collide::Collider>(*part, volumes, settings);
+    auto collider = std::visit(
+        [&](const auto& some) { return std::make_shared<collide::Collider>(*some, volumes, settings); }, part);
     base::report(listener, 1);
     return collider;
   };
   return long_call(progress, work, Identity());
 }
 
-ColliderPtr make(const std::shared_ptr<Mesh>& part, const std::vector<SharedVolume*>& fixtures,
-                 const std::optional<double>& spacing, double stiffness, double holder_stiffness,
-                 const StiffnessLike& fixture_stiffness, const PushLike& fixture_push) {
+ColliderPtr make(const PartPtr& part, const std::vector<SharedVolume*>& fixtures, const std::optional<double>& spacing,
+                 double stiffness, double holder_stiffness, const StiffnessLike& fixture_stiffness,
+                 const PushLike& fixture_push) {
   return made(part, fixtures, spacing, stiffness, holder_stiffness, fixture_stiffness, fixture_push,
               ProgressLike(py::none()))
       .cast<ColliderPtr>();
@@ -214,8 +219,9 @@ Python's lock.
 
 Parameters
 ----------
-part : Mesh
-    The surface; an empty one is ignored.
+part : Mesh or Surface
+    The surface; an empty one is ignored. With an exact `Surface`, whose normals point out of the material, depth and
+    clearance are those of the exact surface, to 1e-6 mm, and the force has no facets.
 fixtures : list of Volume
     Each may have its own pitch; empty ones are ignored.
 spacing : float, mm, or None
@@ -253,8 +259,9 @@ Examples
 
 Parameters
 ----------
-part : Mesh
-    The surface; an empty one is ignored.
+part : Mesh or Surface
+    The surface; an empty one is ignored. With an exact `Surface`, whose normals point out of the material, depth and
+    clearance are those of the exact surface, to 1e-6 mm, and the force has no facets.
 fixtures : list of Volume
     Each may have its own pitch; empty ones are ignored.
 spacing : float, mm, or None

@@ -1,5 +1,7 @@
 // riffler.Surface: exact surfaces of NURBS patches.
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <tuple>
@@ -37,8 +39,51 @@ std::vector<double> to_knots(const py::object& object, const char* name) {
   return {array.data(), array.data() + array.size()};
 }
 
+RIFFLER_TYPED(TrimsLike, "collections.abc.Sequence[numpy.typing.ArrayLike] | None")
+
+std::vector<std::vector<Vec2>> to_trims(const TrimsLike& object) {
+  std::vector<std::vector<Vec2>> loops;
+  if (object.is_none()) return loops;
+  if (!py::isinstance<py::sequence>(object))
+    throw py::value_error("trims must be a list of arrays of the shape (k, 2)");
+  for (const py::handle one : object) {
+    const std::string loop = "trims, loop " + std::to_string(loops.size());
+    const Doubles rows =
+        numbers(py::reinterpret_borrow<py::object>(one), 2, loop.c_str(), "numbers of the shape (k, 2)");
+    if (rows.shape(1) != 2) throw py::value_error(loop + " must be numbers of the shape (k, 2)");
+    loops.emplace_back();
+    for (py::ssize_t i = 0; i < rows.shape(0); ++i) loops.back().emplace_back(rows.at(i, 0), rows.at(i, 1));
+  }
+  return loops;
+}
+
+SurfacePtr read(const std::filesystem::path& path, double tolerance, const ProgressLike& progress) {
+  using namespace py::literals;
+  return py::module_::import("riffler.cad.surfaces")
+      .attr("read_surface")(path, "tolerance"_a = tolerance, "progress"_a = progress)
+      .cast<SurfacePtr>();
+}
+
+std::size_t to_patch(const Surface& surface, std::int64_t patch) {
+  if (patch < 0 || static_cast<std::size_t>(patch) >= surface.patches().size())
+    throw py::value_error("patch " + std::to_string(patch) + " does not exist; the surface has " +
+                          std::to_string(surface.patches().size()) + ", counted from 0");
+  return static_cast<std::size_t>(patch);
+}
+
+py::array_t<bool> inside(const Surface& surface, const Doubles& uv, std::int64_t patch) {
+  const std::size_t n = check_rows(uv, 2, "uv");
+  std::vector<Vec2> at;
+  for (std::size_t i = 0; i < n; ++i) at.emplace_back(uv.data()[2 * i], uv.data()[2 * i + 1]);
+  const std::vector<char> found = surface.inside(at, to_patch(surface, patch));
+  py::array_t<bool> out(static_cast<py::ssize_t>(n));
+  std::copy(found.begin(), found.end(), out.mutable_data());
+  return out;
+}
+
 SurfacePtr make_nurbs(const ArrayLike& points, const ArrayLike& weights, const ArrayLike& knots_u,
-                      const ArrayLike& knots_v, int degree_u, int degree_v) {
+                      const ArrayLike& knots_v, int degree_u, int degree_v, const TrimsLike& trims,
+                      const std::string& name) {
   const Doubles p = numbers(points, 3, "points", "numbers of the shape (nu, nv, 3), mm");
   if (p.shape(2) != 3)
     throw py::value_error("points must have the shape (nu, nv, 3), not " +
@@ -56,6 +101,7 @@ SurfacePtr make_nurbs(const ArrayLike& points, const ArrayLike& weights, const A
   patch.weights.assign(w.data(), w.data() + w.size());
   patch.knots_u = to_knots(knots_u, "knots_u"), patch.knots_v = to_knots(knots_v, "knots_v");
   patch.degree_u = degree_u, patch.degree_v = degree_v;
+  patch.trims = to_trims(trims), patch.name = name;
   std::vector<nurbs::Patch> patches;
   patches.push_back(std::move(patch));
   const NoGil release;
@@ -70,13 +116,6 @@ SurfacePtr joined(const std::vector<SurfacePtr>& surfaces) {
   }
   const NoGil release;
   return std::make_shared<Surface>(std::move(patches));
-}
-
-std::size_t to_patch(const Surface& surface, std::int64_t patch) {
-  if (patch < 0 || static_cast<std::size_t>(patch) >= surface.patches().size())
-    throw py::value_error("patch " + std::to_string(patch) + " does not exist; the surface has " +
-                          std::to_string(surface.patches().size()) + ", counted from 0");
-  return static_cast<std::size_t>(patch);
 }
 
 auto evaluate(const SurfacePtr& surface, const Doubles& uv, std::int64_t patch, const ProgressLike& progress) {
@@ -150,7 +189,7 @@ Examples
 )");
   surface.def(py::init(&joined), "surfaces"_a);
   surface.def_static("nurbs", &make_nurbs, "points"_a, "weights"_a, "knots_u"_a, "knots_v"_a, "degree_u"_a,
-                     "degree_v"_a,
+                     "degree_v"_a, py::kw_only(), "trims"_a = py::none(), "name"_a = "",
                      R"(A surface of one patch.
 
 Parameters
@@ -165,6 +204,11 @@ knots_v : array_like of nv + degree_v + 1 numbers
     Likewise.
 degree_u, degree_v : int, 1 to 15
     Degrees of the polynomials.
+trims : list of array_like of shape (k, 2), or None
+    Borders: closed polylines in (u, v) within the domain, the last point joined to the first. The patch is where an odd
+    number of them encloses a parameter. None: the whole domain. With borders, degree_u + degree_v may be at most 15.
+name : str
+    See ``names``.
 
 Returns
 -------
@@ -175,7 +219,7 @@ Raises
 ------
 ValueError
     Names argument and row: a wrong shape or number of knots, knots that decrease or tear the surface, a weight that is
-    not positive, a degree out of range, a number that is not finite.
+    not positive, a degree out of range, a number that is not finite, a border that leaves the domain or encloses nothing.
 
 Examples
 --------
@@ -185,6 +229,70 @@ Examples
 >>> points, normals, distance = quarter.closest([[6, 8, 4]])  # of a cylinder of radius 5
 >>> points.round(9).tolist(), distance.round(9).tolist()
 ([[3.0, 4.0, 4.0]], [5.0])
+)");
+  surface.def_static("read", &read, "path"_a, py::kw_only(), "tolerance"_a = 1e-4, "progress"_a = py::none(),
+                     R"(The exact faces of a STEP, IGES or BREP file: one patch for each face, in its place, in mm.
+
+OpenCASCADE (``pip install 'riffler[cad]'``) converts the faces to rational B-splines, in a process of its own, without
+approximating planes, quadrics and tori. Edges become borders. Normals point out of solids.
+
+Parameters
+----------
+path : path_like
+    A file with the extension .step, .stp, .iges, .igs or .brep.
+tolerance : float, mm
+    Of the borders: distance of their straight pieces from the edges, measured in their middles.
+progress : callable or None
+    Called with the finished share several times a second; returning False cancels.
+
+Returns
+-------
+Surface
+    Its ``names`` are those of the faces.
+
+Raises
+------
+FormatError
+    The file has no faces, is damaged, or has a face without an exact surface.
+ValueError
+    An argument is wrong, or the package is missing; the message then has the command that installs it.
+riffler.cad.CadReaderError
+    The reader's process crashed.
+Cancelled
+    ``progress`` returned False.
+
+Examples
+--------
+>>> part = riffler.Surface.read("part.step")
+>>> part.patch_count, part.names[5]
+(12, 'datum A')
+)");
+  surface.def("inside", &inside, "uv"_a, "patch"_a = 0,
+              R"(Whether parameters are inside the borders of a patch.
+
+Parameters
+----------
+uv : array_like of shape (n, 2)
+    Parameters, within the domain of the patch.
+patch : int
+    Which patch, counted from 0.
+
+Returns
+-------
+ndarray of shape (n,), bool
+    True everywhere for a patch without borders.
+
+Raises
+------
+ValueError
+    Names the row of parameters that are not in the domain, or a patch that does not exist.
+
+Examples
+--------
+>>> corner = riffler.Surface.nurbs([[[0, 0, 0], [0, 5, 0]], [[4, 0, 0], [4, 5, 0]]], [[1, 1], [1, 1]],
+...                                [0, 0, 1, 1], [0, 0, 1, 1], 1, 1, trims=[[[0, 0], [1, 0], [0, 1]]])
+>>> corner.inside([[0.2, 0.2], [0.9, 0.9]]).tolist()
+[True, False]
 )");
   surface.def("evaluate", &evaluate, "uv"_a, py::kw_only(), "patch"_a = 0, "progress"_a = py::none(),
               R"(Points and unit normals at parameters.
@@ -259,7 +367,8 @@ Examples
 
 Bounds of second derivatives prove it; vertices lie on the surface. Seams of closed patches, and patches that have an
 edge in common (the same curve with the same parameters), share vertices, and a pole is one vertex: what is closed stays
-closed.
+closed. With borders, only equal corners are one vertex, and triangles that meet may have gaps within the tolerance
+between them; `Mesh.read` makes closed meshes of CAD files.
 
 Parameters
 ----------
@@ -314,6 +423,14 @@ Examples
 )");
   surface.def_property_readonly(
       "patch_count", [](const Surface& self) { return self.patches().size(); }, "Number of patches.");
+  surface.def_property_readonly(
+      "names",
+      [](const Surface& self) {
+        std::vector<std::string> names;
+        for (const nurbs::Patch& patch : self.patches()) names.push_back(patch.name);
+        return names;
+      },
+      "Names of the patches, often empty.");
   surface.def_property_readonly(
       "bounds",
       [](const Surface& self) {

@@ -12,6 +12,7 @@
 #include "collide/nearest_search.hpp"
 #include "collide/swept_search.hpp"
 #include "collide/winding.hpp"
+#include "nurbs/exact_triangles.hpp"
 #include "riffler/marching/to_mesh.hpp"
 #include "riffler/mesh/decimate/decimate.hpp"
 #include "riffler/mesh/orient.hpp"
@@ -22,6 +23,10 @@ namespace {
 
 constexpr double kPieces = 32;  // length of the pieces of large triangles, in units of the chosen point spacing
 constexpr double kBoxes = 1.5;  // side of a fixture's boxes, in units of the part's point spacing
+// Of an exact part's size: largest distance of the tree's triangles from it, and of those for checks of motions.
+constexpr double kChord = 2e-4, kFineChord = 2e-5;
+constexpr double kCellChord = 0.05;  // largest distance of a triangle from the exact part, relative to its cell's size
+constexpr double kLongestCell = 0.05;  // of the part's size
 constexpr double kNone = -std::numeric_limits<double>::infinity();
 
 void check(const Collider::Settings& s, std::size_t fixtures) {
@@ -48,9 +53,15 @@ Mesh mesh_of(const Volume& volume, std::size_t index) {
   }
 }
 
+nurbs::Fineness fineness(const nurbs::Surface& surface, double chord) {
+  const double size = glm::length(surface.bounds().size());
+  return {chord * size, kLongestCell * size, kCellChord};
+}
+
 }  // namespace
 
 struct Collider::Data {
+  std::optional<nurbs::ExactTriangles> exact;
   Surface part;
   SamplePoints points;
   std::optional<Surface> pieces;  // of the part, where it has large triangles
@@ -63,13 +74,28 @@ struct Collider::Data {
   Box3 box;                      // box around all surfaces
   mutable std::once_flag asked;  // winding is computed on the first query for a side of the part
   mutable std::optional<WindingNumber> winding;
+  std::optional<nurbs::Surface> whole;  // the exact part, for the checks of motions
+  mutable std::once_flag moved;
+  mutable std::optional<nurbs::ExactTriangles> fine;
+  mutable std::optional<Surface> chords;  // of the exact part, short ones
 
+  Data(const nurbs::Surface& surface, const Settings& s)
+      : exact(nurbs::exact_triangles(surface.core(), fineness(surface, kChord))),
+        part(*exact),
+        points(part, s.spacing),
+        settings(s),
+        box(surface.bounds()),
+        whole(surface) {
+    longest = kPieces * chosen_spacing(part, 0);
+  }
   Data(const Mesh& mesh, const Settings& s)
       : part(mesh), points(part, s.spacing), settings(s), box(mesh::bounds(mesh)) {
     longest = kPieces * chosen_spacing(part, 0);
     if (is_longer(mesh, longest)) pieces.emplace(divided(mesh, longest));
   }
 
+  void add(const std::vector<Volume>& volumes);
+  std::vector<const Surface*> for_motions() const;
   NearestSearch::Found search(const Assembly& assembly, const ToolFrame& frame, bool all, Deadline deadline,
                               Counts& counts, double enough = kNone, double loose = 0, double below = -kNone) const;
 };
@@ -80,19 +106,30 @@ Collider::Collider(const Mesh& part, std::vector<Volume> fixtures, const Setting
   if (part.empty()) throw std::invalid_argument("part: a mesh without triangles");
   std::optional<Mesh> storage;
   data_ = std::make_unique<Data>(as_solid(part, storage, mesh::Hollow::Kept), settings);
-  data_->fixtures.reserve(fixtures.size());
-  for (std::size_t i = 0; i < fixtures.size(); ++i)
-    if (const Mesh m = mesh_of(fixtures[i], i); !m.empty()) {
-      data_->box.add(mesh::bounds(m));
-      data_->fixtures.emplace_back(fixtures[i], m, kBoxes * data_->points.spacing());
-      data_->stiffness.push_back(settings.stiffness_of_each.empty() ? settings.fixture_stiffness
-                                                                    : settings.stiffness_of_each[i]);
-    }
-  data_->surfaces.push_back(&data_->part);
-  for (const Fixture& f : data_->fixtures) data_->surfaces.push_back(&f.surface());
-  data_->searched = data_->surfaces;
-  if (data_->pieces) data_->searched.front() = &*data_->pieces;
+  data_->add(fixtures);
 }
+
+Collider::Collider(const nurbs::Surface& part, std::vector<Volume> fixtures, const Settings& settings) {
+  check(settings, fixtures.size());
+  data_ = std::make_unique<Data>(part, settings);
+  data_->add(fixtures);
+}
+
+void Collider::Data::add(const std::vector<Volume>& volumes) {
+  fixtures.reserve(volumes.size());
+  for (std::size_t i = 0; i < volumes.size(); ++i)
+    if (const Mesh m = mesh_of(volumes[i], i); !m.empty()) {
+      box.add(mesh::bounds(m));
+      fixtures.emplace_back(volumes[i], m, kBoxes * points.spacing());
+      stiffness.push_back(settings.stiffness_of_each.empty() ? settings.fixture_stiffness
+                                                             : settings.stiffness_of_each[i]);
+    }
+  surfaces.push_back(&part);
+  for (const Fixture& f : fixtures) surfaces.push_back(&f.surface());
+  searched = surfaces;
+  if (pieces) searched.front() = &*pieces;
+}
+
 Collider::~Collider() = default;
 Collider::Collider(Collider&&) noexcept = default;
 Collider& Collider::operator=(Collider&&) noexcept = default;
@@ -180,14 +217,33 @@ void Collider::query(const Assembly& assembly, const Pose& pose, std::optional<d
   out.touches.push_back(found.surface > 0 ? Touch::Fixture : static_cast<Touch>(assembly.part_at(found.least.point.z)));
   const Settings& s = data_->settings;
   Deadline deadline = until(1);
-  add_force(assembly, frame, data_->points, {s.stiffness, s.holder_stiffness}, s.coarse, s.spacing == 0, deadline, out,
+  const Stiffness stiffness{s.stiffness, s.holder_stiffness};
+  add_force(assembly, frame, data_->points, stiffness, s.coarse, s.spacing == 0 && !data_->exact, deadline, out,
             counts);
   for (std::size_t i = 0; i < data_->fixtures.size(); ++i)
     if (const Fixture& f = data_->fixtures[i]; f.near(assembly, frame, 0))
       f.add_force(assembly, frame, data_->stiffness[i], s.fixture_push == FixturePush::Centre, deadline, out, counts);
 }
 
+/// The surfaces, with short chords of an exact part.
+std::vector<const Surface*> Collider::Data::for_motions() const {
+  std::call_once(moved, [&] {
+    fine.emplace(nurbs::exact_triangles(whole->core(), fineness(*whole, kFineChord)));
+    chords.emplace(*fine);
+  });
+  std::vector<const Surface*> out = surfaces;
+  out.front() = &*chords;
+  return out;
+}
+
 Swept Collider::sweep(const Assembly& assembly, const Motion& motion, double wanted, std::size_t most) const {
+  if (data_->exact) {  // what chords keep, less their distance from the exact part, that one keeps as well
+    const std::vector<const Surface*> some = data_->for_motions();
+    const double chord = some.front()->max_chord();
+    Swept swept = SweptSearch(assembly, motion, wanted + chord, most)(some);
+    swept.clearance -= chord, swept.bound -= chord;
+    return swept;
+  }
   // From a piece far ahead of the tool a plane faces along the motion: for long motions whole triangles are better.
   const Drift drift(motion, 1, assembly.reach());
   const bool is_long = drift.most(assembly.reach()) > data_->longest;

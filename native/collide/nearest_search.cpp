@@ -48,26 +48,52 @@ void NearestSearch::look_closely(const Surface& surface, const SphereGroup& sphe
   triangle_bounds(assembly_.runs(), assembly_.lane_edges(), frame_, spheres, corners, nullptr, places.distance,
                   places.low);
   const double enough = triangles_.least().distance - slack_;
-  const auto is_open = [&](int k) { return spheres.radius[k] >= 0 && places.low[k] < enough; };
+  double chord = 0;  // of a triangle that is open
   bool open = false;
-  for (int k = 0; k < base::kLanes; ++k) open = open || is_open(k);
-  if (!open) return;
-  lowest_places(assembly_.runs(), assembly_.lane_edges(), frame_, corners, enough, 0.5 * slack_, places);
+  for (int k = 0; k < base::kLanes; ++k) {
+    const double by = surface.exact() ? surface.chord(first + static_cast<std::size_t>(k)) : 0;
+    if (spheres.radius[k] >= 0 && places.low[k] - by < enough) open = true, chord = std::max(chord, by);
+  }
+  if (open) find_lowest(surface, spheres, first, enough + chord, places, which);
+  if (surface.exact())
+    for (int k = 0; k < base::kLanes; ++k) places.low[k] -= surface.chord(first + static_cast<std::size_t>(k));
+}
+
+/// `enough`: of the triangles' own distances.
+void NearestSearch::find_lowest(const Surface& surface, const SphereGroup& spheres, std::size_t first, double enough,
+                                LanePlaces& places, std::size_t which) {
+  lowest_places(assembly_.runs(), assembly_.lane_edges(), frame_, &surface.corners(first), enough, 0.5 * slack_,
+                places);
   int lowest = -1;
   for (int k = 0; k < base::kLanes; ++k)
     if (spheres.radius[k] >= 0 && (lowest < 0 || places.distance[k] < places.distance[lowest])) lowest = k;
   const double before = triangles_.least().distance;
-  if (!(places.distance[lowest] < before)) return;
-  triangles_.visit(frame_.seen(Vec3(places.x[lowest], places.y[lowest], places.z[lowest])));
+  const std::size_t place = first + static_cast<std::size_t>(lowest);
+  const double chord = surface.exact() ? surface.chord(place) : 0;
+  if (!(places.distance[lowest] - chord < before)) return;
+  const Vec3 at = frame_.seen(Vec3(places.x[lowest], places.y[lowest], places.z[lowest]));
+  if (surface.exact())
+    triangles_.visit(in_tool(surface, place), at);
+  else
+    triangles_.visit(at);
   if (triangles_.least().distance < before) best_surface_ = which;
   limit_ = std::min(limit_, triangles_.least().distance);
+}
+
+ExactPiece NearestSearch::in_tool(const Surface& surface, std::size_t place) const {
+  const Corners& c = surface.corners(place);
+  const nurbs::ExactTriangle& e = surface.exact(place);
+  return {*surface.exact(), frame_, e, {frame_.to_tool(c.a), frame_.to_tool(c.b), frame_.to_tool(c.c)}};
 }
 
 void NearestSearch::test(const Surface& surface, const Entry& e, Deadline& deadline, Counts& counts) {
   const Corners& c = surface.corners(e.index);
   const Corners t{frame_.to_tool(c.a), frame_.to_tool(c.b), frame_.to_tool(c.c)};
   const double before = triangles_.least().distance;
-  if (e.kind == Entry::Triangle) {
+  if (surface.exact()) {
+    ++counts.triangles;
+    triangles_.search(in_tool(surface, e.index), e.low, deadline);
+  } else if (e.kind == Entry::Triangle) {
     ++counts.triangles;
     const double low = triangles_.bound(t);
     if (low < triangles_.least().distance - slack_) {
@@ -90,6 +116,7 @@ NearestSearch::Found NearestSearch::operator()(std::span<const Surface* const> s
     const SphereGroup& root = surfaces[s]->tree().group(0);
     for (int k = 0; k < base::kLanes; ++k)
       if (root.radius[k] >= 0) size = std::max(size, glm::length(root.sphere(k).centre) + root.radius[k]);
+    if (surfaces[s]->exact()) loose_ = std::max(loose_, TriangleSearch::kExact), triangles_.loose(loose_);
     heap_.push_back({-std::numeric_limits<double>::infinity(), 0, static_cast<std::uint16_t>(s), Entry::Group});
   }
   slack_ = std::max(TriangleSearch::slack(size), loose_);

@@ -53,6 +53,9 @@ class NearestSearch {
   void open(const Surface& surface, const Entry& e, Counts& counts);
   void look_closely(const Surface& surface, const SphereGroup& spheres, std::size_t first, LanePlaces& places,
                     std::size_t which);
+  void find_lowest(const Surface& surface, const SphereGroup& spheres, std::size_t first, double enough,
+                   LanePlaces& places, std::size_t which);
+  ExactPiece in_tool(const Surface& surface, std::size_t place) const;
   void test(const Surface& surface, const Entry& e, Deadline& deadline, Counts& counts);
 
   const Assembly& assembly_;

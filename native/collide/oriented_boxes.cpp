@@ -73,7 +73,8 @@ Box box_of(std::span<const Corners> triangles, const Axes& axes, const Vec3& nea
   return out;
 }
 
-OrientedBoxes boxes_of(const SphereTree& tree, std::size_t group, const std::vector<Corners>& corners) {
+OrientedBoxes boxes_of(const SphereTree& tree, std::size_t group, const std::vector<Corners>& corners,
+                       const std::vector<double>& chords) {
   const auto under = [&](std::size_t g) {
     return std::span<const Corners>(corners).subspan(tree.first_under(g), tree.under(g));
   };
@@ -98,20 +99,26 @@ OrientedBoxes boxes_of(const SphereTree& tree, std::size_t group, const std::vec
     const Vec3 centre = near + middle.x * axes[0] + middle.y * axes[1] + middle.z * axes[2];
     out.x[k] = centre.x, out.y[k] = centre.y, out.z[k] = centre.z;
     const double far = std::max({std::abs(centre.x), std::abs(centre.y), std::abs(centre.z), glm::length(half)});
-    for (int i = 0; i < 3; ++i) out.half[i][k] = half[i] + 4e-15 * far;  // rounding
+    double chord = 0;
+    if (!chords.empty()) {
+      const std::size_t child = tree.first_child(group) + static_cast<std::size_t>(k), low = tree.first_under(child);
+      for (std::size_t i = low; i < low + tree.under(child); ++i) chord = std::max(chord, chords[i]);
+    }
+    for (int i = 0; i < 3; ++i) out.half[i][k] = half[i] + chord + 4e-15 * far;  // rounding
   }
   return out;
 }
 
 }  // namespace
 
-std::vector<OrientedBoxes> oriented_boxes(const SphereTree& tree, const std::vector<Corners>& corners) {
+std::vector<OrientedBoxes> oriented_boxes(const SphereTree& tree, const std::vector<Corners>& corners,
+                                          const std::vector<double>& chords) {
   std::vector<OrientedBoxes> out;
   std::size_t above = 0;  // groups of the last level come last
   while (above < tree.groups() && !tree.holds_items(above)) ++above;
   out.resize(above);
   base::parallel_for(above, 16, [&](std::size_t from, std::size_t to) {
-    for (std::size_t g = from; g < to; ++g) out[g] = boxes_of(tree, g, corners);
+    for (std::size_t g = from; g < to; ++g) out[g] = boxes_of(tree, g, corners, chords);
   });
   return out;
 }

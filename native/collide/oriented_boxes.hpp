@@ -15,8 +15,10 @@ struct alignas(64) OrientedBoxes {
   Vec3 axis[3]{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 };
 
-/// One entry for each node above the leaves; `corners`: by place in the tree. The axes are the coordinate axes, or the
+/// One entry for each node above the leaves; `corners`: by place in the tree. `chords`: how far the
+/// surface may be from each triangle, mm; empty: 0. The axes are the coordinate axes, or the
 /// principal axes of the corners where those make the boxes smaller. The same for any number of threads.
-std::vector<OrientedBoxes> oriented_boxes(const SphereTree& tree, const std::vector<Corners>& corners);
+std::vector<OrientedBoxes> oriented_boxes(const SphereTree& tree, const std::vector<Corners>& corners,
+                                          const std::vector<double>& chords);
 
 }  // namespace riffler::collide

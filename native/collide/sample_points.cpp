@@ -13,8 +13,9 @@ namespace riffler::collide {
 
 namespace {
 
-constexpr double kSquare = 0.7;  // circumradius of a square with side 1
-constexpr double kTooMany = 3;   // points per square of the spacing
+constexpr double kSquare = 0.7;       // circumradius of a square with side 1
+constexpr double kLongestPart = 1.5;  // of an exact surface, in units of the spacing
+constexpr double kTooMany = 3;        // points per square of the spacing
 
 Vec3 area_of(const Corners& t) {
   return 0.5 * glm::cross(t.b - t.a, t.c - t.a);
@@ -29,10 +30,11 @@ double area_of(const Surface& surface) {
 }  // namespace
 
 double chosen_spacing(const Surface& surface, double spacing) {
-  constexpr double kChosen = 1e5, kMax = 5e7;
+  constexpr double kMax = 5e7;
+  const double points = surface.exact() ? 4e5 : 1e5;  // no facets are felt where the sum ripples little
   base::require_not_negative(spacing, "spacing", "must not be negative or not finite");
   const double area = area_of(surface);
-  if (spacing == 0) return area > 0 ? std::sqrt(area / kChosen) : 1;
+  if (spacing == 0) return area > 0 ? std::sqrt(area / points) : 1;
   if (area / (spacing * spacing) > kMax)
     throw std::invalid_argument("spacing: so small that the part would have more than 50 million points");
   return spacing;
@@ -117,9 +119,48 @@ void SamplePoints::gather(const Surface& surface, std::size_t group, double spac
   }
 }
 
+/// Points of an exact surface: the middles of parts of its triangles, in their parameters, with the area there.
+void SamplePoints::gather_exact(const Surface& surface, double spacing, std::vector<Piece>& out) {
+  struct Part {
+    Vec2 uv[3];
+    Vec3 p[3];
+  };
+  const nurbs::ExactTriangles& exact = *surface.exact();
+  std::vector<Part> open;
+  for (std::size_t i = 0; i < surface.size(); ++i) {
+    const nurbs::ExactTriangle& t = surface.exact(i);
+    const nurbs::ExactCell& cell = exact.cells[t.cell];
+    const Corners& c = surface.corners(i);
+    open.push_back({{t.uv[0], t.uv[1], t.uv[2]}, {c.a, c.b, c.c}});
+    while (!open.empty()) {
+      const Part part = open.back();
+      open.pop_back();
+      double longest = -1;
+      int side = 0;
+      for (int k = 0; k < 3; ++k)
+        if (const double length = glm::length(part.p[(k + 1) % 3] - part.p[k]); length > longest)
+          longest = length, side = k;
+      const Vec2 x = part.uv[1] - part.uv[0], y = part.uv[2] - part.uv[0];
+      const double share = 0.5 * (x.x * y.y - x.y * y.x);
+      if (longest > kLongestPart * spacing) {
+        const int next = (side + 1) % 3;
+        const Vec2 uv = 0.5 * (part.uv[side] + part.uv[next]);
+        const Vec3 p = exact.point(t.cell, uv);
+        open.push_back(part), open.back().uv[next] = uv, open.back().p[next] = p;
+        open.push_back(part), open.back().uv[side] = uv, open.back().p[side] = p;
+        continue;
+      }
+      const nurbs::Jet3 jet = nurbs::rational(
+          nurbs::jet_of(exact.nets.data() + cell.net, cell.degrees, (part.uv[0] + part.uv[1] + part.uv[2]) / 3.0));
+      const Vec3 area = share * glm::cross(jet.u, jet.v);
+      if (area != Vec3(0)) out.push_back({exact.origin + jet.s, area, glm::length(area)});
+    }
+  }
+}
+
 std::vector<SamplePoints::Piece> SamplePoints::pieces_of(const Surface& surface, double spacing) {
   std::vector<Piece> out;
-  gather(surface, 0, spacing, out);
+  surface.exact() ? gather_exact(surface, spacing, out) : gather(surface, 0, spacing, out);
   // Narrow triangles next to each other leave many more points than their area needs.
   const double needed = area_of(surface) / (spacing * spacing);
   if (static_cast<double>(out.size()) > kTooMany * needed + base::kLanes) out = merged(out, spacing);

@@ -21,8 +21,9 @@ class SamplePoints {
     void add(int k, const Vec3& a) { x[k] += a.x, y[k] += a.y, z[k] += a.z; }
     void measure();
   };
-  /// `spacing` 0 selects the square root of a hundred-thousandth of the area. Throws std::invalid_argument for a
-  /// spacing that is negative, not finite, or so small that it would need more than 50 million points.
+  /// `spacing` 0 selects the square root of a hundred-thousandth of the area, of an exact surface half of it. Throws
+  /// std::invalid_argument for a spacing that is negative, not finite, or so small that it would need more than 50
+  /// million points.
   SamplePoints(const Surface& surface, double spacing);
 
   double spacing() const { return spacing_; }
@@ -41,6 +42,7 @@ class SamplePoints {
   static std::vector<Piece> pieces_of(const Surface& surface, double spacing);
   static std::vector<Piece> merged(const std::vector<Piece>& pieces, double spacing);
   static SphereTree tree_over(const std::vector<Piece>& pieces);
+  static void gather_exact(const Surface& surface, double spacing, std::vector<Piece>& out);
   static void gather(const Surface& surface, std::size_t group, double spacing, std::vector<Piece>& out);
 
   double spacing_;

@@ -50,22 +50,58 @@ std::vector<Corners> Surface::corners_of(const Mesh& mesh) {
   return out;
 }
 
-Surface::Surface(const std::vector<Corners>& corners)
+Surface::Surface(const std::vector<Corners>& corners, const std::vector<double>& chords)
     : tree_({corners.size(),
              [&](std::size_t t) {
                Box3 box;
                box.add(corners[t].a), box.add(corners[t].b), box.add(corners[t].c);
                return box;
              },
-             [&](std::size_t t) { return round_triangle(corners[t].a, corners[t].b, corners[t].c); },
+             [&](std::size_t t) {
+               BoundingSphere sphere = round_triangle(corners[t].a, corners[t].b, corners[t].c);
+               if (!chords.empty()) sphere.radius += chords[t];
+               return sphere;
+             },
              [&](std::size_t t, const Vec3& p) {
                const Corners& c = corners[t];
-               return std::max({glm::length(c.a - p), glm::length(c.b - p), glm::length(c.c - p)});
+               return std::max({glm::length(c.a - p), glm::length(c.b - p), glm::length(c.c - p)}) +
+                      (chords.empty() ? 0 : chords[t]);
              }}) {
   corners_.reserve(corners.size() + base::kLanes);
   for (const std::uint32_t t : tree_.order()) corners_.push_back(corners[t]);
-  boxes_ = oriented_boxes(tree_, corners_);
+  if (!chords.empty()) {
+    chords_.reserve(corners.size() + base::kLanes);
+    for (const std::uint32_t t : tree_.order()) chords_.push_back(chords[t]);
+    max_chord_ = *std::max_element(chords.begin(), chords.end());
+  }
+  boxes_ = oriented_boxes(tree_, corners_, chords_);
   corners_.resize(corners.size() + base::kLanes, {Vec3(0), Vec3(0), Vec3(0)});
+  if (!chords.empty()) chords_.resize(chords.size() + base::kLanes, 0);
+}
+
+namespace {
+
+std::vector<Corners> corners_of(const nurbs::ExactTriangles& exact) {
+  std::vector<Corners> out(exact.triangles.size());
+  for (std::size_t t = 0; t < out.size(); ++t) {
+    const nurbs::ExactTriangle& e = exact.triangles[t];
+    out[t] = {exact.point(e.cell, e.uv[0]), exact.point(e.cell, e.uv[1]), exact.point(e.cell, e.uv[2])};
+  }
+  return out;
+}
+
+std::vector<double> chords_of(const nurbs::ExactTriangles& exact) {
+  constexpr double kRounding = 1e-12;  // mm: and of evaluation, relative to the size
+  std::vector<double> out;
+  for (const nurbs::ExactTriangle& e : exact.triangles)
+    out.push_back(exact.chord(e.cell, e.uv[0], e.uv[1], e.uv[2]) + kRounding);
+  return out;
+}
+
+}  // namespace
+
+Surface::Surface(const nurbs::ExactTriangles& exact) : Surface(collide::corners_of(exact), chords_of(exact)) {
+  exact_ = &exact;
 }
 
 }  // namespace riffler::collide

@@ -104,7 +104,7 @@ Vec3 least_place(const Quadratic& f, const Quadratic& g, const Vec3& middle, con
 
 TriangleSearch::Look TriangleSearch::look(const Vec3& p) {
   Look l = look_beside(p);
-  if (l.at.distance < least_.distance) least_ = {l.at.distance, p, l.at.part};
+  if (!on_chord_ && l.at.distance < least_.distance) least_ = {l.at.distance, p, l.at.part};
   return l;
 }
 

@@ -9,6 +9,9 @@
 #include "collide/deadline.hpp"
 #include "collide/drift.hpp"
 #include "collide/outline_runs.hpp"
+#include "collide/tool_frame.hpp"
+#include "nurbs/exact_triangles.hpp"
+#include "nurbs/excess.hpp"
 #include "riffler/base/block_pool.hpp"
 #include "riffler/geom/vec.hpp"
 
@@ -17,6 +20,14 @@ namespace riffler::collide {
 /// A triangle's corners in the tool's frame.
 struct Corners {
   Vec3 a, b, c;
+};
+
+/// A part of an exact surface, and the chord below it.
+struct ExactPiece {
+  const nurbs::ExactTriangles& surface;
+  const ToolFrame& frame;
+  const nurbs::ExactTriangle& triangle;
+  Corners chord;  // in the tool's frame
 };
 
 /// Largest distance of a triangle's points from a point.
@@ -52,6 +63,11 @@ class TriangleSearch {
   void visit(const Vec3& place) { look(place); }
   /// `low`: a known lower bound on the triangle. Stops at the deadline.
   void search(const Corners& t, double low, Deadline& deadline);
+  /// The exact surface above the place of a chord that is nearest to `place` (in the tool's frame).
+  void visit(const ExactPiece& piece, const Vec3& place);
+  /// The same for a part of an exact surface, to kExact: chords bound it from below, and become shorter.
+  void search(const ExactPiece& piece, double low, Deadline& deadline);
+  static constexpr double kExact = 5e-7;  // mm
   /// Allows a search to stop at the first place nearer than `distance` (mm).
   void enough(double distance) { enough_ = distance; }
   /// Starts with a minimum of `distance` (mm), at no place.
@@ -88,7 +104,19 @@ class TriangleSearch {
     bool operator<(const Cell& o) const { return low > o.low; }
   };
 
+  /// A triangle of parameters in a cell of an exact surface.
+  struct ExactCell {
+    Corners t;
+    Vec2 uv[3];
+    double low;
+    bool by_chord;  // the chord leaves the bound open, not the tool's shape
+    bool operator<(const ExactCell& o) const { return low > o.low; }
+  };
+
   Look look(const Vec3& p);
+  void bound(const ExactPiece& piece, ExactCell& cell, double near);
+  bool proven(const ExactPiece& piece, const ExactCell& cell, const Look& from, const Vec2& uv, double near);
+  bool halve(const ExactPiece& piece, const ExactCell& cell);
   Look look_beside(const Vec3& p);  // evaluates a place off the triangle
   bool in_sector(std::size_t run, const Corners& t, const Look& from) const;
   double lower(const Corners& t, const Look& from) const;
@@ -110,6 +138,9 @@ class TriangleSearch {
   base::BlockVector<OutlineRuns::RunAt> at_;  // from the last evaluation
   Least least_;
   base::BlockVector<Cell> heap_;
+  base::BlockVector<ExactCell> exact_heap_;
+  nurbs::Excess excess_;
+  bool on_chord_ = false;  // looks are not at points of the surface
   std::size_t cells_ = 0;
   double loose_ = 0;
   double left_ = std::numeric_limits<double>::infinity(), enough_ = -left_;

@@ -103,6 +103,28 @@ void check_weights(const Patch& patch) {
            row_of(patch, static_cast<std::size_t>(low - patch.weights.begin())) + "or the largest");
 }
 
+void check_trims(const Patch& patch) {
+  if (patch.trims.empty()) return;
+  if (patch.degree_u + patch.degree_v > kMaxDegree)
+    refuse("trims need degree_u + degree_v of at most " + std::to_string(kMaxDegree) + ", not " +
+           std::to_string(patch.degree_u + patch.degree_v) +
+           "; approximate the surface with more control points of a lower degree");
+  const Vec2 lower = patch.lower(), upper = patch.upper();
+  for (std::size_t i = 0; i < patch.trims.size(); ++i) {
+    const std::string loop = "trims, loop " + std::to_string(i);
+    if (patch.trims[i].size() < 3)
+      refuse(loop + " has " + std::to_string(patch.trims[i].size()) +
+             " points, but a closed curve needs at least 3; leave it out");
+    for (std::size_t k = 0; k < patch.trims[i].size(); ++k) {
+      const Vec2& p = patch.trims[i][k];
+      if (!(p.x >= lower.x && p.x <= upper.x && p.y >= lower.y && p.y <= upper.y))
+        refuse(loop + ", row " + std::to_string(k) + ": (" + in_figures(p.x) + ", " + in_figures(p.y) +
+               ") is not in the domain, u from " + in_figures(lower.x) + " to " + in_figures(upper.x) + " and v from " +
+               in_figures(lower.y) + " to " + in_figures(upper.y));
+    }
+  }
+}
+
 }  // namespace
 
 void check_patch(const Patch& patch) {
@@ -119,6 +141,7 @@ void check_patch(const Patch& patch) {
   }
   check_points(patch);
   check_weights(patch);
+  check_trims(patch);
 }
 
 }  // namespace riffler::nurbs

@@ -5,18 +5,22 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <stdexcept>
 
 #include "geom/median_tree.hpp"
 #include "nurbs/chord_bound.hpp"
 #include "nurbs/foot.hpp"
+#include "nurbs/trimmed_net.hpp"
 #include "riffler/base/parallel.hpp"
 
 namespace riffler::nurbs {
 
 namespace {
 
-constexpr double kFlat = 0.05;       // distance of a leaf from its plane, relative to its size
-constexpr int kMaxHalvings = 10;     // of a span, for leaves
+constexpr double kFlat = 0.05;    // distance of a leaf from its plane, relative to its size
+constexpr int kMaxHalvings = 10;  // of a span, until leaves bend little
+constexpr int kMaxCuts = 24;      // more halvings of it, until few edges of borders cross a leaf
+constexpr std::size_t kMaxEdges = 8;
 constexpr double kProven = 1e-9;     // mm
 constexpr double kRounding = 1e-13;  // relative
 
@@ -31,52 +35,67 @@ double squared_distance(const Vec3& p, const Box3& box) {
   return glm::dot(d, d);
 }
 
-/// Binomial coefficients up to those of degree 2 kMaxDegree.
-struct Binomials {
-  std::array<std::array<double, 2 * kMaxDegree + 1>, 2 * kMaxDegree + 1> rows{};
-
-  constexpr Binomials() {
-    for (std::size_t n = 0; n < rows.size(); ++n) {
-      rows[n][0] = 1;
-      for (std::size_t k = 1; k <= n; ++k) rows[n][k] = rows[n - 1][k - 1] + (k < n ? rows[n - 1][k] : 0);
-    }
-  }
-  constexpr double operator()(int n, int k) const {
-    return rows[static_cast<std::size_t>(n)][static_cast<std::size_t>(k)];
-  }
-};
-constexpr Binomials kBinomials;
-
-/// Divides a span until it bends little.
+/// Divides a span until it bends little, and until few borders cross a part of it.
 struct LeafMaker {
   std::size_t span;
   Degrees degrees;
+  const TrimmedSpan& trims;
   std::vector<BezierLeaf>& leaves;
   std::vector<Vec4>& nets;
 
-  void divide(const Vec4* net, const Vec2& lower, const Vec2& upper, int halvings) {
+  void divide(const Vec4* net, const Vec2& lower, const Vec2& upper, int halvings, const TrimRegion::Edges& above) {
+    const TrimRegion::Edges edges = trims.touching(above, lower, upper);
+    if (edges.empty() && !trims.holds(0.5 * (lower + upper))) return;
     const SecondDerivatives bound = second_derivatives(net, degrees);
     const Vec3 size = box_of(net, degrees).size();
-    if (halvings == 0 || !(bound.chord(1, 1) > kFlat * glm::length(size))) {
-      leaves.push_back({span, lower, upper, degrees, nets.size()});
-      nets.insert(nets.end(), net, net + degrees.size());
-      return;
-    }
-    const bool along_u = bound.uu >= bound.vv;
+    const bool flat = halvings <= kMaxCuts || !(bound.chord(1, 1) > kFlat * glm::length(size));
+    if (flat && (edges.size() <= kMaxEdges || halvings <= 0)) return add(net, lower, upper, edges);
+    const Vec2 sides = side_lengths(net, degrees);
+    const bool along_u = flat ? sides.x >= sides.y : bound.uu >= bound.vv;
     const Vec2 middle = 0.5 * (lower + upper);
     std::vector<Vec4> halves(2 * degrees.size());
     halve(net, degrees, along_u, halves.data(), halves.data() + degrees.size());
-    divide(halves.data(), lower, along_u ? Vec2(middle.x, upper.y) : Vec2(upper.x, middle.y), halvings - 1);
+    divide(halves.data(), lower, along_u ? Vec2(middle.x, upper.y) : Vec2(upper.x, middle.y), halvings - 1, edges);
     divide(halves.data() + degrees.size(), along_u ? Vec2(middle.x, lower.y) : Vec2(lower.x, middle.y), upper,
-           halvings - 1);
+           halvings - 1, edges);
+  }
+
+  void add(const Vec4* net, const Vec2& lower, const Vec2& upper, const TrimRegion::Edges& edges) {
+    const Trapezoid whole{lower.y, upper.y, {lower.x, lower.x}, {upper.x, upper.x}};
+    if (edges.empty()) {
+      leaves.push_back({span, whole, degrees, nets.size()});
+      nets.insert(nets.end(), net, net + degrees.size());
+      return;
+    }
+    std::vector<Trapezoid> pieces;
+    trims.append_pieces(edges, lower, upper, pieces);
+    const Vec2 size = upper - lower;
+    for (const Trapezoid& piece : pieces) {
+      const Degrees made = degrees_over(degrees, piece);
+      const auto u = [&](double x) { return lower.x + x * size.x; };
+      leaves.push_back({span,
+                        {lower.y + piece.low * size.y,
+                         lower.y + piece.high * size.y,
+                         {u(piece.left[0]), u(piece.left[1])},
+                         {u(piece.right[0]), u(piece.right[1])}},
+                        made,
+                        nets.size()});
+      nets.resize(nets.size() + made.size());
+      trimmed_net(net, degrees, piece, nets.data() + nets.size() - made.size());
+    }
   }
 };
 
 }  // namespace
 
-ClosestTree::ClosestTree(const std::vector<BezierSpan>& spans) {
-  for (std::size_t i = 0; i < spans.size(); ++i)
-    LeafMaker{i, spans[i].degrees, leaves_, nets_}.divide(spans[i].net.data(), Vec2(0), Vec2(1), kMaxHalvings);
+ClosestTree::ClosestTree(const std::vector<BezierSpan>& spans, const std::vector<TrimRegion>& regions) {
+  for (std::size_t i = 0; i < spans.size(); ++i) {
+    const TrimmedSpan trims(spans[i], regions[spans[i].patch]);
+    LeafMaker{i, spans[i].degrees, trims, leaves_, nets_}.divide(spans[i].net.data(), Vec2(0), Vec2(1),
+                                                                 kMaxHalvings + kMaxCuts, trims.all());
+  }
+  if (leaves_.empty())
+    throw std::invalid_argument("trims: nothing is inside of the borders; leave trims out for the whole domain");
   std::vector<Box3> boxes;
   std::vector<Vec3> centres;
   for (const BezierLeaf& leaf : leaves_) {
@@ -181,61 +200,17 @@ bool ClosestSearch::excluded(const Vec4* net, const Degrees& degrees) {
   return excess_.positive();
 }
 
+ClosestSearch::Form ClosestSearch::form() const {
+  return {goal() * goal()};
+}
+
 void ClosestSearch::set_excess(const Vec4* net, const Degrees& degrees) {
-  const Degrees twice{2 * degrees.u, 2 * degrees.v};
-  const double squared = goal() * goal();
-  excess_.degrees = twice;
-  excess_.g.assign(twice.size(), 0);
-  for (int i = 0; i <= degrees.u; ++i)
-    for (int k = 0; k <= degrees.u; ++k) {
-      const double share_u = kBinomials(degrees.u, i) * kBinomials(degrees.u, k) / kBinomials(twice.u, i + k);
-      for (int j = 0; j <= degrees.v; ++j)
-        for (int l = 0; l <= degrees.v; ++l) {
-          const Vec4 &a = net[degrees.at(i, j)], &b = net[degrees.at(k, l)];
-          const double share_v = kBinomials(degrees.v, j) * kBinomials(degrees.v, l) / kBinomials(twice.v, j + l);
-          excess_.g[twice.at(i + k, j + l)] +=
-              share_u * share_v * (a.x * b.x + a.y * b.y + a.z * b.z - squared * a.w * b.w);
-        }
-    }
-}
-
-bool ClosestSearch::Excess::positive() const {
-  return std::all_of(g.begin(), g.end(), [](double x) { return x >= 0; });
-}
-
-/// Largest second differences along u and v, times the share in which a coefficient exceeds the polynomial.
-Vec2 ClosestSearch::Excess::bend() const {
-  Vec2 most(0);
-  for (int i = 0; i <= degrees.u; ++i)
-    for (int j = 0; j <= degrees.v; ++j) {
-      if (i + 2 <= degrees.u) most.x = std::max(most.x, std::abs(at(i + 2, j) - 2 * at(i + 1, j) + at(i, j)));
-      if (j + 2 <= degrees.v) most.y = std::max(most.y, std::abs(at(i, j + 2) - 2 * at(i, j + 1) + at(i, j)));
-    }
-  return {most.x * degrees.u, most.y * degrees.v};
-}
-
-/// Whether the coefficients of its second derivatives show that G is convex.
-bool ClosestSearch::Excess::convex() const {
-  double uu = std::numeric_limits<double>::infinity(), vv = uu, uv = 0;
-  for (int i = 0; i <= degrees.u; ++i)
-    for (int j = 0; j <= degrees.v; ++j) {
-      if (i + 2 <= degrees.u) uu = std::min(uu, at(i + 2, j) - 2 * at(i + 1, j) + at(i, j));
-      if (j + 2 <= degrees.v) vv = std::min(vv, at(i, j + 2) - 2 * at(i, j + 1) + at(i, j));
-      if (i < degrees.u && j < degrees.v)
-        uv = std::max(uv, std::abs(at(i + 1, j + 1) - at(i + 1, j) - at(i, j + 1) + at(i, j)));
-    }
-  uu *= degrees.u * (degrees.u - 1), vv *= degrees.v * (degrees.v - 1), uv *= degrees.u * degrees.v;
-  return uu >= 0 && vv >= 0 && uu * vv >= uv * uv;
+  excess_.set(net, degrees, form());
 }
 
 /// Whether G is convex and its tangent plane at `at` is not negative in the unit square.
 bool ClosestSearch::excluded_by_convexity(const Vec4* net, const Degrees& degrees, const Vec2& at) const {
-  if (!excess_.convex()) return false;
-  const Jet4 h = jet_of(net, degrees, at);
-  const double squared = goal() * goal();
-  const auto product = [&](const Vec4& a, const Vec4& b) { return glm::dot(Vec3(a), Vec3(b)) - squared * a.w * b.w; };
-  const auto lowest = [](double slope, double t) { return std::min(-slope * t, slope * (1 - t)); };
-  return product(h.s, h.s) + lowest(2 * product(h.s, h.u), at.x) + lowest(2 * product(h.s, h.v), at.y) >= 0;
+  return excess_.convex() && Excess::tangent_is_positive(jet_of(net, degrees, at), at, form());
 }
 
 /// Sets `at` to the nearest point of the net that Newton's method finds, and keeps it if it is the nearest so far.

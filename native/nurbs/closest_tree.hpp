@@ -11,13 +11,15 @@
 #include <vector>
 
 #include "nurbs/bezier.hpp"
+#include "nurbs/excess.hpp"
+#include "nurbs/trimmed_span.hpp"
 
 namespace riffler::nurbs {
 
 /// A part of a span that bends little.
 struct BezierLeaf {
   std::size_t span = 0;
-  Vec2 lower{0}, upper{1};  // in the span's unit square
+  Trapezoid domain;  // in the span's unit square
   Degrees degrees;
   std::size_t net = 0;  // where its control points begin
 };
@@ -26,7 +28,8 @@ struct BezierLeaf {
 class ClosestTree {
  public:
   ClosestTree() = default;
-  explicit ClosestTree(const std::vector<BezierSpan>& spans);
+  /// `regions`: of the patches. Throws std::invalid_argument if they leave nothing.
+  ClosestTree(const std::vector<BezierSpan>& spans, const std::vector<TrimRegion>& regions);
 
   const BezierLeaf& leaf(std::size_t i) const { return leaves_[i]; }
 
@@ -60,19 +63,17 @@ class ClosestSearch {
   struct Cell {
     Vec2 lower, upper;  // in the leaf's unit square
   };
-  /// G of a net: coefficients of degrees (2 p, 2 q).
-  struct Excess {
-    Degrees degrees;
-    std::vector<double> g;
-
-    double at(int i, int j) const { return g[degrees.at(i, j)]; }
-    bool positive() const;
-    Vec2 bend() const;
-    bool convex() const;
+  /// |a - p|² - τ² in homogeneous coordinates about p.
+  struct Form {
+    double squared;
+    double operator()(const Vec4& a, const Vec4& b) const {
+      return a.x * b.x + a.y * b.y + a.z * b.z - squared * a.w * b.w;
+    }
   };
 
   void search_leaf(std::size_t leaf);
   bool excluded(const Vec4* net, const Degrees& degrees);
+  Form form() const;
   void set_excess(const Vec4* net, const Degrees& degrees);
   bool excluded_by_convexity(const Vec4* net, const Degrees& degrees, const Vec2& at) const;
   void improve(const Vec4* net, const Degrees& degrees, const Cell& cell, std::size_t leaf, Vec2& at);

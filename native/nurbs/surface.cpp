@@ -68,7 +68,8 @@ SurfaceCore::SurfaceCore(std::vector<Patch> given) : patches(checked(std::move(g
     breaks_u.push_back(breaks_of(patch.knots_u, patch.degree_u, patch.count_u));
     breaks_v.push_back(breaks_of(patch.knots_v, patch.degree_v, patch.count_v));
   }
-  tree = ClosestTree(spans);
+  for (const Patch& patch : patches) regions.emplace_back(patch.trims);
+  tree = ClosestTree(spans, regions);
 }
 
 const BezierSpan& SurfaceCore::span_at(std::size_t patch, const Vec2& uv) const {
@@ -86,8 +87,7 @@ Box3 Surface::bounds() const {
   return core_->box;
 }
 
-std::vector<SurfacePoint> Surface::evaluate(std::span<const Vec2> uv, std::size_t patch,
-                                            const Progress& progress) const {
+void Surface::check_parameters(std::span<const Vec2> uv, std::size_t patch) const {
   const std::size_t patches = core_->patches.size();
   if (patch >= patches)
     throw std::invalid_argument("patch " + std::to_string(patch) + " does not exist; the surface has " +
@@ -99,6 +99,18 @@ std::vector<SurfacePoint> Surface::evaluate(std::span<const Vec2> uv, std::size_
                                   base::in_figures(uv[i].y) + ") is not in the domain, u from " +
                                   base::in_figures(lower.x) + " to " + base::in_figures(upper.x) + " and v from " +
                                   base::in_figures(lower.y) + " to " + base::in_figures(upper.y));
+}
+
+std::vector<char> Surface::inside(std::span<const Vec2> uv, std::size_t patch) const {
+  check_parameters(uv, patch);
+  std::vector<char> found;
+  for (const Vec2& p : uv) found.push_back(core_->regions[patch].holds(p));
+  return found;
+}
+
+std::vector<SurfacePoint> Surface::evaluate(std::span<const Vec2> uv, std::size_t patch,
+                                            const Progress& progress) const {
+  check_parameters(uv, patch);
   std::vector<SurfacePoint> found(uv.size());
   base::parallel_for(
       uv.size(), 256,
@@ -128,7 +140,7 @@ std::vector<Foot> Surface::closest(std::span<const Vec3> points, const Progress&
           const LeafFoot foot = search(p, core_->scale);
           const BezierLeaf& leaf = core_->tree.leaf(foot.leaf);
           const BezierSpan& span = core_->spans[leaf.span];
-          const Vec2 at = leaf.lower + foot.uv * (leaf.upper - leaf.lower);
+          const Vec2 at = leaf.domain.at(foot.uv);
           found[i] = {core_->origin + foot.point, normal_of(span.net.data(), span.degrees, at), foot.distance,
                       span.patch, span.to_patch(at)};
         }

@@ -22,6 +22,7 @@ struct SurfaceCore {
   std::vector<BezierSpan> spans;
   std::vector<std::size_t> first_span;                  // of each patch
   std::vector<std::vector<double>> breaks_u, breaks_v;  // where the spans of each patch begin
+  std::vector<TrimRegion> regions;                      // of each patch
   ClosestTree tree;
 };
 

@@ -1,12 +1,15 @@
 // Surface::to_mesh: spans are divided in parallel, then edges collect the vertices of both their sides, then cells are
 // triangulated in parallel.
 #include <algorithm>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <unordered_map>
 #include <utility>
 
+#include "mesh/near_points.hpp"
 #include "nurbs/cell_polygon.hpp"
+#include "nurbs/exact_triangles.hpp"
 #include "nurbs/mesh_plan.hpp"
 #include "nurbs/shared_edges.hpp"
 #include "nurbs/surface_core.hpp"
@@ -225,6 +228,22 @@ class Tessellation {
   Mesh mesh_;
 };
 
+/// Triangles of the parameters inside of the borders. Equal corners are one vertex.
+Mesh trimmed_mesh(const SurfaceCore& core, double tolerance, const Progress& progress) {
+  const ExactTriangles all =
+      exact_triangles(core, {tolerance, std::numeric_limits<double>::infinity(), 1, kMaxTriangles}, progress);
+  Mesh mesh;
+  mesh.vertices.reserve(3 * all.triangles.size());
+  for (const ExactTriangle& t : all.triangles) {
+    const int first = static_cast<int>(mesh.vertices.size());
+    for (const Vec2& uv : t.uv) mesh.vertices.push_back(all.point(t.cell, uv));
+    mesh.triangles.emplace_back(first, first + 1, first + 2);
+  }
+  mesh = mesh::welded(mesh);
+  std::erase_if(mesh.triangles, [](const Vec3i& t) { return t.x == t.y || t.y == t.z || t.z == t.x; });  // at poles
+  return mesh;
+}
+
 }  // namespace
 
 Mesh Surface::to_mesh(double tolerance, const Progress& progress) const {
@@ -234,6 +253,8 @@ Mesh Surface::to_mesh(double tolerance, const Progress& progress) const {
                                 base::in_figures(base::kMinToleranceOfSize * core_->scale) + " mm, not " +
                                 base::in_figures(tolerance) +
                                 "; move the surface nearer to the origin, or give a larger tolerance");
+  if (std::any_of(core_->patches.begin(), core_->patches.end(), [](const Patch& p) { return !p.trims.empty(); }))
+    return trimmed_mesh(*core_, tolerance - 4 * kWeld * core_->scale, progress);
   // Rounding, and edges that are joined within kWeld, use up a twentieth of the tolerance at most.
   return Tessellation(*core_, tolerance - 4 * kWeld * core_->scale).run(progress);
 }

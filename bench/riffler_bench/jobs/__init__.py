@@ -19,6 +19,7 @@ from . import (
     random,
     s500k,
     stl,
+    surfaces,
     threads,
     verify,
 )  # fmt: skip
@@ -38,6 +39,7 @@ JOBS = {
     "col": col,
     "pencil": pencil,
     "drop": drop,
+    "surfaces": surfaces,
     "gouge": gouge,
     "nc": nc,
     "threads": threads,

@@ -398,7 +398,7 @@ class Surface:
     <riffler.Surface: 2 patches>
     """
     @staticmethod
-    def nurbs(points: numpy.typing.ArrayLike, weights: numpy.typing.ArrayLike, knots_u: numpy.typing.ArrayLike, knots_v: numpy.typing.ArrayLike, degree_u: typing.SupportsInt, degree_v: typing.SupportsInt) -> Surface:
+    def nurbs(points: numpy.typing.ArrayLike, weights: numpy.typing.ArrayLike, knots_u: numpy.typing.ArrayLike, knots_v: numpy.typing.ArrayLike, degree_u: typing.SupportsInt, degree_v: typing.SupportsInt, *, trims: collections.abc.Sequence[numpy.typing.ArrayLike] | None = None, name: str = '') -> Surface:
         """
         A surface of one patch.
 
@@ -414,6 +414,11 @@ class Surface:
             Likewise.
         degree_u, degree_v : int, 1 to 15
             Degrees of the polynomials.
+        trims : list of array_like of shape (k, 2), or None
+            Borders: closed polylines in (u, v) within the domain, the last point joined to the first. The patch is where an odd
+            number of them encloses a parameter. None: the whole domain. With borders, degree_u + degree_v may be at most 15.
+        name : str
+            See ``names``.
 
         Returns
         -------
@@ -424,7 +429,7 @@ class Surface:
         ------
         ValueError
             Names argument and row: a wrong shape or number of knots, knots that decrease or tear the surface, a weight that is
-            not positive, a degree out of range, a number that is not finite.
+            not positive, a degree out of range, a number that is not finite, a border that leaves the domain or encloses nothing.
 
         Examples
         --------
@@ -434,6 +439,45 @@ class Surface:
         >>> points, normals, distance = quarter.closest([[6, 8, 4]])  # of a cylinder of radius 5
         >>> points.round(9).tolist(), distance.round(9).tolist()
         ([[3.0, 4.0, 4.0]], [5.0])
+        """
+    @staticmethod
+    def read(path: os.PathLike | str | bytes, *, tolerance: typing.SupportsFloat = 0.0001, progress: collections.abc.Callable[[float], bool | None] | None = None) -> Surface:
+        """
+        The exact faces of a STEP, IGES or BREP file: one patch for each face, in its place, in mm.
+
+        OpenCASCADE (``pip install 'riffler[cad]'``) converts the faces to rational B-splines, in a process of its own, without
+        approximating planes, quadrics and tori. Edges become borders. Normals point out of solids.
+
+        Parameters
+        ----------
+        path : path_like
+            A file with the extension .step, .stp, .iges, .igs or .brep.
+        tolerance : float, mm
+            Of the borders: distance of their straight pieces from the edges, measured in their middles.
+        progress : callable or None
+            Called with the finished share several times a second; returning False cancels.
+
+        Returns
+        -------
+        Surface
+            Its ``names`` are those of the faces.
+
+        Raises
+        ------
+        FormatError
+            The file has no faces, is damaged, or has a face without an exact surface.
+        ValueError
+            An argument is wrong, or the package is missing; the message then has the command that installs it.
+        riffler.cad.CadReaderError
+            The reader's process crashed.
+        Cancelled
+            ``progress`` returned False.
+
+        Examples
+        --------
+        >>> part = riffler.Surface.read("part.step")
+        >>> part.patch_count, part.names[5]
+        (12, 'datum A')
         """
     def __copy__(self) -> Surface:
         ...
@@ -539,13 +583,42 @@ class Surface:
         >>> points.tolist(), normals.tolist()
         ([[2.0, 1.0, 0.0]], [[0.0, 0.0, 1.0]])
         """
+    def inside(self, uv: typing.Annotated[numpy.typing.ArrayLike, numpy.float64], patch: typing.SupportsInt = 0) -> numpy.typing.NDArray[numpy.bool]:
+        """
+        Whether parameters are inside the borders of a patch.
+
+        Parameters
+        ----------
+        uv : array_like of shape (n, 2)
+            Parameters, within the domain of the patch.
+        patch : int
+            Which patch, counted from 0.
+
+        Returns
+        -------
+        ndarray of shape (n,), bool
+            True everywhere for a patch without borders.
+
+        Raises
+        ------
+        ValueError
+            Names the row of parameters that are not in the domain, or a patch that does not exist.
+
+        Examples
+        --------
+        >>> corner = riffler.Surface.nurbs([[[0, 0, 0], [0, 5, 0]], [[4, 0, 0], [4, 5, 0]]], [[1, 1], [1, 1]],
+        ...                                [0, 0, 1, 1], [0, 0, 1, 1], 1, 1, trims=[[[0, 0], [1, 0], [0, 1]]])
+        >>> corner.inside([[0.2, 0.2], [0.9, 0.9]]).tolist()
+        [True, False]
+        """
     def to_mesh(self, tolerance: typing.SupportsFloat, *, progress: collections.abc.Callable[[float], bool | None] | None = None) -> Mesh:
         """
         A mesh that deviates from the surface by at most a tolerance, in both directions.
 
         Bounds of second derivatives prove it; vertices lie on the surface. Seams of closed patches, and patches that have an
         edge in common (the same curve with the same parameters), share vertices, and a pole is one vertex: what is closed stays
-        closed.
+        closed. With borders, only equal corners are one vertex, and triangles that meet may have gaps within the tolerance
+        between them; `Mesh.read` makes closed meshes of CAD files.
 
         Parameters
         ----------
@@ -577,6 +650,11 @@ class Surface:
     def bounds(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         (2, 3) float64, mm: lower and upper corner of the control points' box, which contains the surface.
+        """
+    @property
+    def names(self) -> list[str]:
+        """
+        Names of the patches, often empty.
         """
     @property
     def patch_count(self) -> int:
@@ -2903,8 +2981,9 @@ class Collider:
 
     Parameters
     ----------
-    part : Mesh
-        The surface; an empty one is ignored.
+    part : Mesh or Surface
+        The surface; an empty one is ignored. With an exact `Surface`, whose normals point out of the material, depth and
+        clearance are those of the exact surface, to 1e-6 mm, and the force has no facets.
     fixtures : list of Volume
         Each may have its own pitch; empty ones are ignored.
     spacing : float, mm, or None
@@ -2932,14 +3011,15 @@ class Collider:
     [2.0]
     """
     @staticmethod
-    def made(part: Mesh, *, fixtures: collections.abc.Sequence[Volume] = [], spacing: typing.SupportsFloat | None = None, stiffness: typing.SupportsFloat = 1.0, holder_stiffness: typing.SupportsFloat = 10.0, fixture_stiffness: float | Material | collections.abc.Sequence[float | Material] = 10.0, fixture_push: typing.Literal['normal', 'centre'] = 'normal', progress: collections.abc.Callable[[float], bool | None] | None = None) -> Collider:
+    def made(part: Mesh | Surface, *, fixtures: collections.abc.Sequence[Volume] = [], spacing: typing.SupportsFloat | None = None, stiffness: typing.SupportsFloat = 1.0, holder_stiffness: typing.SupportsFloat = 10.0, fixture_stiffness: float | Material | collections.abc.Sequence[float | Material] = 10.0, fixture_push: typing.Literal['normal', 'centre'] = 'normal', progress: collections.abc.Callable[[float], bool | None] | None = None) -> Collider:
         """
         The same as ``Collider(…)``, as a function with progress: what `riffler.submit` calls.
 
         Parameters
         ----------
-        part : Mesh
-            The surface; an empty one is ignored.
+        part : Mesh or Surface
+            The surface; an empty one is ignored. With an exact `Surface`, whose normals point out of the material, depth and
+            clearance are those of the exact surface, to 1e-6 mm, and the force has no facets.
         fixtures : list of Volume
             Each may have its own pitch; empty ones are ignored.
         spacing : float, mm, or None
@@ -2967,7 +3047,7 @@ class Collider:
         >>> riffler.submit(riffler.Collider, part, spacing=0.5).result().spacing
         0.5
         """
-    def __init__(self, part: Mesh, *, fixtures: collections.abc.Sequence[Volume] = [], spacing: typing.SupportsFloat | None = None, stiffness: typing.SupportsFloat = 1.0, holder_stiffness: typing.SupportsFloat = 10.0, fixture_stiffness: float | Material | collections.abc.Sequence[float | Material] = 10.0, fixture_push: typing.Literal['normal', 'centre'] = 'normal') -> None:
+    def __init__(self, part: Mesh | Surface, *, fixtures: collections.abc.Sequence[Volume] = [], spacing: typing.SupportsFloat | None = None, stiffness: typing.SupportsFloat = 1.0, holder_stiffness: typing.SupportsFloat = 10.0, fixture_stiffness: float | Material | collections.abc.Sequence[float | Material] = 10.0, fixture_push: typing.Literal['normal', 'centre'] = 'normal') -> None:
         ...
     def __repr__(self) -> str:
         ...

@@ -4,8 +4,16 @@ process, so that the tests' process never imports OpenCASCADE."""
 import sys
 from pathlib import Path
 
+import numpy as np
 from OCP.BRep import BRep_Builder
-from OCP.BRepBuilderAPI import BRepBuilderAPI_Copy, BRepBuilderAPI_MakeEdge, BRepBuilderAPI_Transform
+from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut
+from OCP.BRepBuilderAPI import (
+    BRepBuilderAPI_Copy,
+    BRepBuilderAPI_MakeEdge,
+    BRepBuilderAPI_MakeVertex,
+    BRepBuilderAPI_Transform,
+)
+from OCP.BRepExtrema import BRepExtrema_DistShapeShape
 from OCP.BRepFilletAPI import BRepFilletAPI_MakeFillet
 from OCP.BRepGProp import BRepGProp
 from OCP.BRepPrimAPI import (
@@ -16,7 +24,7 @@ from OCP.BRepPrimAPI import (
     BRepPrimAPI_MakeTorus,
 )
 from OCP.BRepTools import BRepTools
-from OCP.gp import gp_Pnt, gp_Trsf, gp_Vec
+from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt, gp_Trsf, gp_Vec
 from OCP.GProp import GProp_GProps
 from OCP.IGESControl import IGESControl_Writer
 from OCP.Interface import Interface_Static
@@ -138,7 +146,31 @@ def assembly(path, unit):
     writer.Write(str(path))
 
 
+def milled():
+    """A block with a slanted bore, a torus cut across its edge, a corner cut by a ball, and fillets."""
+    shape = BRepPrimAPI_MakeBox(40.0, 30.0, 20.0).Shape()
+    for tool in (
+        BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(20, 15, -1), gp_Dir(0.1, 0, 1)), 6.0, 40.0),
+        BRepPrimAPI_MakeTorus(gp_Ax2(gp_Pnt(0, 0, 20), gp_Dir(0, 0, 1)), 12.0, 4.0),
+        BRepPrimAPI_MakeSphere(gp_Pnt(40, 30, 20), 8.0),
+    ):
+        shape = BRepAlgoAPI_Cut(shape, tool.Shape()).Shape()
+    return shape
+
+
+def distances(shape, size, path):
+    """Points around a shape with their distances from its surface by OpenCASCADE's extrema: (n, 4)."""
+    surface, rows = compound(faces(shape)), []
+    for x, y, z in np.random.default_rng(6).uniform(-0.3, 1.3, (60, 3)) * size:
+        vertex = BRepBuilderAPI_MakeVertex(gp_Pnt(x, y, z)).Vertex()
+        rows.append([x, y, z, BRepExtrema_DistShapeShape(vertex, surface).Value()])
+    np.save(path, np.array(rows))
+
+
 def main(folder):
+    block = milled()
+    step(block, folder / "milled.step")
+    distances(block, (40, 30, 20), folder / "milled.npy")
     box = BRepPrimAPI_MakeBox(30, 20, 10).Shape()
     step(box, folder / "box.step")
     step(box, folder / "inch.stp", "INCH")

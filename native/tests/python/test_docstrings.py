@@ -83,7 +83,7 @@ def step_file():
 @pytest.mark.parametrize("name", [name for name, value in NAMES.items() if ">>> " in doc_of(value)])
 def test_an_example_gives_its_stated_result(name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    if 'cad.read("part.step"' in doc_of(NAMES[name]):
+    if 'read("part.step"' in doc_of(NAMES[name]):
         (tmp_path / "part.step").write_bytes(step_file())
     found = doctest.DocTestParser().get_doctest(
         doc_of(NAMES[name]), {"riffler": riffler, "np": np}, name, None, None

@@ -52,7 +52,7 @@ def test_a_wrong_type_names_the_argument_and_what_was_given():
         "Volume.carve: tolerance must be a number, mm; got str 'fine'"
     )
     assert message(volume().smooth, (1, 2, 3), None) == "Volume.smooth: radius must be a number, mm; got None"
-    assert message(riffler.Collider, None) == "Collider: part must be a Mesh; got None"
+    assert message(riffler.Collider, None) == "Collider: part must be a Mesh or Surface; got None"
 
 
 def test_a_missing_argument_and_one_given_twice_are_named():

@@ -46,20 +46,29 @@ class Surface {
   std::vector<SurfacePoint> evaluate(std::span<const Vec2> uv, std::size_t patch = 0,
                                      const Progress& progress = {}) const;
 
-  /// The nearest point of all patches to each of `points`. The distance is proven: no point of the surface is nearer
-  /// by more than 1e-9 mm, or 1e-13 of the largest coordinate of surface and points if that is more. Throws
-  /// std::invalid_argument naming a row that is not finite.
+  /// Whether parameters of one patch are inside of its borders. Throws as `evaluate`.
+  std::vector<char> inside(std::span<const Vec2> uv, std::size_t patch = 0) const;
+
+  /// The nearest point of all patches, inside of their borders, to each of `points`. The distance is proven: no point
+  /// of the surface is nearer by more than 1e-9 mm, or 1e-13 of the largest coordinate of surface and points if that is
+  /// more. Throws std::invalid_argument naming a row that is not finite.
   std::vector<Foot> closest(std::span<const Vec3> points, const Progress& progress = {}) const;
 
   /// Triangles that are within `tolerance` (mm) of the surface everywhere, and the surface within `tolerance` of them:
   /// proven from bounds on second derivatives. Vertices lie on the surface. Neighbouring spans, seams of closed patches
   /// and patches with an edge in common (the same curve to 1e-12 of the largest coordinate) share vertices, and poles
-  /// are one vertex, so what is closed stays closed. Counter-clockwise seen from the side of the normals. Throws
-  /// std::invalid_argument for a tolerance below 1e-8 mm or 1e-10 of the largest coordinate, and if more than 50
+  /// are one vertex, so what is closed stays closed. With borders, only equal corners are one vertex, and triangles
+  /// that meet may have gaps within the tolerance between them. Counter-clockwise seen from the side of the normals.
+  /// Throws std::invalid_argument for a tolerance below 1e-8 mm or 1e-10 of the largest coordinate, and if more than 50
   /// million triangles are necessary.
   Mesh to_mesh(double tolerance, const Progress& progress = {}) const;
 
+  /// For what builds on the patches' Bézier form.
+  const SurfaceCore& core() const { return *core_; }
+
  private:
+  void check_parameters(std::span<const Vec2> uv, std::size_t patch) const;
+
   std::shared_ptr<const SurfaceCore> core_;
 };
 

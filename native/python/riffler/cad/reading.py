@@ -7,6 +7,9 @@ import os
 import re
 import stat
 from pathlib import Path
+from typing import Any
+
+import numpy as np
 
 from .._core import FormatError
 from ..arguments import Progress
@@ -82,6 +85,24 @@ def read(
     >>> part.mesh.audit().open_edges, part.report.closed, part.report.unit
     (0, True, 'inch')
     """
+    answer, arrays, schema = answer_to(
+        path, tolerance, unit=unit, timeout=timeout, python=python, progress=progress, surfaces=False
+    )
+    return assemble(answer, arrays, Path(path).name, schema, float(tolerance), unit)
+
+
+def answer_to(
+    path: str | os.PathLike[str],
+    tolerance: float,
+    *,
+    unit: str | None = None,
+    timeout: float = TIMEOUT,
+    python: str | os.PathLike[str] | None = None,
+    progress: Progress = None,
+    surfaces: bool,
+) -> tuple[dict[str, Any], dict[str, np.ndarray], str]:
+    """The reader's answer, its arrays, and the schema that the file states. With ``surfaces``, they are those of the
+    exact faces instead of triangles."""
     path = Path(path)
     name = path.name
     kind = KINDS.get(path.suffix.lower())
@@ -100,10 +121,11 @@ def read(
         "tolerance": float(tolerance),
         "unit_mm": UNITS[unit] if unit else None,
         "max_triangles": MOST_TRIANGLES,
+        "surfaces": surfaces,
     }
     timeout = min(float(timeout), 1e7)
     answer, arrays = process.run(request, name, timeout, progress, process.interpreter(python))
-    return assemble(answer, arrays, name, schema, float(tolerance), unit)
+    return answer, arrays, schema
 
 
 # --- checks of the file before the reader starts ----------------------------------------------------------------------

@@ -11,6 +11,7 @@ import numpy as np
 
 from .document import ContentError, Prototype, read_document
 from .healing import heal
+from .surfaces import convert
 from .tessellation import tessellate
 
 Report = Callable[[str, float], None]
@@ -36,6 +37,9 @@ def _run(request: dict[str, Any], folder: Path, report: Report) -> dict[str, Any
     count = len(document.prototypes)
     for number, prototype in enumerate(document.prototypes):
         report("tessellate", 0.3 + 0.65 * number / count)
+        if request["surfaces"]:
+            prototypes.append(_surfaces(prototype, number, tolerance, scale, arrays))
+            continue
         answer = _answer(prototype, number, tolerance, scale, arrays, seconds)
         prototypes.append(answer)
         triangles += document.copies(number) * len(arrays[f"triangles{number}"])
@@ -61,6 +65,16 @@ def _run(request: dict[str, Any], folder: Path, report: Report) -> dict[str, Any
 
 def _scaled(matrix: list[list[float]], scale: float) -> list[list[float]]:
     return [[*row[:3], row[3] * scale] for row in matrix]
+
+
+def _surfaces(
+    prototype: Prototype, number: int, tolerance: float, scale: float, arrays: dict[str, np.ndarray]
+) -> dict[str, Any]:
+    healed = heal(prototype, max(tolerance, 1e-3))
+    patches, made = convert(healed, tolerance)
+    made["points"][:, :3] *= scale
+    arrays.update({f"{name}{number}": array for name, array in made.items()})
+    return {"patches": patches}
 
 
 def _answer(
