@@ -64,6 +64,8 @@ class FinishSurface {
 
   /// Part and fixtures in the rows' frame.
   const Mesh& mesh() const { return mesh_; }
+  /// Number of the mesh's triangles that are the part's: the first ones.
+  std::size_t part_triangles() const { return part_triangles_; }
   std::size_t drops() const { return drops_; }
   void count_drop() const { drops_.fetch_add(1, std::memory_order_relaxed); }
   double tolerance() const { return tolerance_; }
