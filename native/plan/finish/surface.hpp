@@ -89,6 +89,7 @@ class FinishSurface {
   std::vector<char> chosen_;           // which triangles of the part `faces` selects; empty: all
   std::optional<tool::Round> round_;   // the cutter's tip
   double level_end_ = 0;               // radius of the cutter's level end, mm
+  std::optional<double> flank_;        // half angle of a taper, rad
   double tolerance_, low_, ball_ = 0;  // radius of the ball at the tip, with the allowance; 0: no ball
   mutable std::atomic<std::size_t> drops_ = 0;
 };
