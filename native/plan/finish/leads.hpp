@@ -9,10 +9,10 @@
 
 namespace riffler::plan {
 
-/// Finds arcs that begin and end pieces tangentially. An arc of a level curve lies beside the curve, that of any other
+/// Finds arcs that begin and end pieces tangentially. An arc of a level curve lies next to the curve, that of any other
 /// piece above its end; if the former does not fit, the latter is tried. An arc fits if the whole tool stays clear of
 /// part and fixtures by a bound over its moves (FinishSurface::above), and if shank and holder stay clear of the stock
-/// there and on the way straight up. The stock is that before the operation.
+/// there and above it. The stock is that before the operation.
 class Leads {
  public:
   /// `radius`: of the arcs, mm; 0: no arcs. `level`: whether the pieces are level curves. Keeps a reference to

@@ -36,7 +36,7 @@ double grid_spacing(const PatternScene& scene) {
   return std::min(0.5 * scene.profile.spacing(kCuspShare * scene.options.cusp), 0.25 * scene.profile.radius());
 }
 
-/// Places beside the selected upright walls of the part where the cutter reaches below the wall's upper edge, and the
+/// Places next to the selected upright walls of the part where the cutter reaches below the wall's upper edge, and the
 /// grid is too coarse to show it: holes and slots that are only a little wider than the cutter.
 std::vector<Vec3> unseen_places(const PatternScene& scene, const LevelCurves& curves) {
   const Mesh& mesh = scene.surface.mesh();
