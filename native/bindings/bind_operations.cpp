@@ -60,6 +60,8 @@ Planned planned(plan::FinishResult&& found) {
            {"added", found.added},
            {"direct", found.direct},
            {"retracts", found.retracts},
+           {"arcs", found.arcs},
+           {"straight", found.straight},
            {"drops", found.drops}},
           {},
           {}};
@@ -80,7 +82,12 @@ Planned planned(plan::RoughResult&& found) {
 
 Planned planned(plan::OutlineResult&& found) {
   return {std::move(found),
-          {{"loops", found.loops}, {"levels", found.levels}, {"tabs", found.tabs}, {"retracts", found.retracts}},
+          {{"loops", found.loops},
+           {"levels", found.levels},
+           {"tabs", found.tabs},
+           {"retracts", found.retracts},
+           {"arcs", found.arcs},
+           {"straight", found.straight}},
           {},
           {}};
 }
@@ -116,13 +123,13 @@ void bind_operations(py::module_& m) {
          const Tool& tool, const ArrayLike& axis, double clearance, const std::string& pattern, double cusp,
          double tolerance, double allowance, double angle, double min_slope, double max_slope, const ArraysLike& region,
          const std::vector<int>& faces, const std::optional<ArrayLike>& centre, bool climb, double feed, double plunge,
-         const ProgressLike& progress) {
+         std::optional<double> lead, const ProgressLike& progress) {
         tool.require_revolved("plan.finish");
         plan::FinishOptions options;
         options.pattern = pattern, options.cusp = cusp, options.tolerance = tolerance;
         options.allowance = allowance, options.angle = angle, options.min_slope = min_slope;
         options.max_slope = max_slope, options.region = to_curves(region, "region"), options.feed = feed;
-        options.plunge = plunge, options.faces = faces, options.climb = climb;
+        options.plunge = plunge, options.faces = faces, options.climb = climb, options.lead = lead;
         if (centre) options.centre = to_vec3(*centre, "centre");
         return operation(part, fixtures, stock, tool, axis, clearance, progress,
                          [=](const plan::SetupScene& scene, const Progress& listener) {
@@ -131,7 +138,7 @@ void bind_operations(py::module_& m) {
       },
       "part"_a.none(false), "fixtures"_a, "stock"_a, "tool"_a, py::kw_only(), "axis"_a, "clearance"_a, "pattern"_a,
       "cusp"_a, "tolerance"_a, "allowance"_a, "angle"_a, "min_slope"_a, "max_slope"_a, "region"_a, "faces"_a,
-      "centre"_a, "climb"_a, "feed"_a, "plunge"_a, "progress"_a, "For riffler.plan.finish.");
+      "centre"_a, "climb"_a, "feed"_a, "plunge"_a, "lead"_a, "progress"_a, "For riffler.plan.finish.");
   m.def(
       "rough",
       [](const std::shared_ptr<Mesh>& part, const std::vector<std::shared_ptr<Mesh>>& fixtures, SharedVolume& stock,
@@ -153,7 +160,8 @@ void bind_operations(py::module_& m) {
       [](const std::shared_ptr<Mesh>& part, const std::vector<std::shared_ptr<Mesh>>& fixtures, SharedVolume& stock,
          const Tool& tool, const ArrayLike& axis, double clearance, const ArraysLike& curves, bool inside, double depth,
          double stepdown, std::size_t tabs, double tab_height, double tab_width, double allowance, double tolerance,
-         double slope, bool climb, double feed, double plunge, const ProgressLike& progress) {
+         double slope, bool climb, double feed, double plunge, std::optional<double> lead,
+         const ProgressLike& progress) {
         tool.require_revolved("plan.outline");
         const plan::OutlineOptions options{to_curves(curves, "curves"),
                                            inside,
@@ -167,7 +175,8 @@ void bind_operations(py::module_& m) {
                                            slope,
                                            climb,
                                            feed,
-                                           plunge};
+                                           plunge,
+                                           lead};
         return operation(part, fixtures, stock, tool, axis, clearance, progress,
                          [=](const plan::SetupScene& scene, const Progress& listener) {
                            return plan::outline(scene, tool, options, listener);
@@ -175,7 +184,7 @@ void bind_operations(py::module_& m) {
       },
       "part"_a.none(false), "fixtures"_a, "stock"_a, "tool"_a, py::kw_only(), "axis"_a, "clearance"_a, "curves"_a,
       "inside"_a, "depth"_a, "stepdown"_a, "tabs"_a, "tab_height"_a, "tab_width"_a, "allowance"_a, "tolerance"_a,
-      "slope"_a, "climb"_a, "feed"_a, "plunge"_a, "progress"_a, "For riffler.plan.outline.");
+      "slope"_a, "climb"_a, "feed"_a, "plunge"_a, "lead"_a, "progress"_a, "For riffler.plan.outline.");
   m.def("finish_patterns", &plan::finish_patterns, "For riffler.plan.finish.");
 }
 

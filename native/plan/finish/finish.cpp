@@ -8,6 +8,7 @@
 
 #include "geom/hypot.hpp"
 #include "geom/math.hpp"
+#include "plan/finish/leads.hpp"
 #include "plan/finish/order.hpp"
 #include "plan/finish/patterns.hpp"
 #include "plan/operation_moves.hpp"
@@ -19,6 +20,7 @@ namespace riffler::plan {
 
 namespace {
 
+constexpr double kLeadShare = 0.5;     // radius of arcs without the option, as a share of the cutter's
 constexpr double kDirectSpacings = 3;  // links at feed are at most so many spacings of rows long, or the tool's radius
 
 const Pattern& pattern_named(const std::string& name) {
@@ -41,6 +43,7 @@ void check(const FinishOptions& o, const Tool& tool) {
     throw std::invalid_argument("slopes must be two angles in rad, 0 ≤ smaller ≤ larger ≤ π/2");
   base::require_positive(o.feed, "feed", base::kPositiveAndFinite);
   base::require_positive(o.plunge, "plunge", base::kPositiveAndFinite);
+  if (o.lead) base::require_not_negative(*o.lead, "lead", base::kFiniteAndNotNegative);
   if (o.cusp >= 0.5 * tool.diameter()) throw std::invalid_argument("cusp must be less than the tool's radius");
   for (const tool::ProfileSegment& s : tool.profile().segments())
     if (s.centre && o.tolerance < 4 * tool::Profile::kConcaveTolerance && tool.kind() == "profile")
@@ -104,22 +107,30 @@ std::vector<std::vector<Vec3>> straight_links(const std::vector<CutPiece>& piece
   return out;
 }
 
-void write(const std::vector<CutPiece>& pieces, const std::vector<std::vector<Vec3>>& links,
+void write(const std::vector<CutPiece>& pieces, const std::vector<std::vector<Vec3>>& links, const Leads& leads,
            const std::optional<DropCutter>& stock, double pitch, double plane, MoveWriter& writer, FinishResult& out) {
+  const auto count = [&](const std::vector<Vec3>& arc) { ++(arc.empty() ? out.straight : out.arcs); };
   for (std::size_t k = 0; k < pieces.size(); ++k) {
-    const Vec3 first = pieces[k].tips.front();
     if (k == 0 || links[k - 1].empty()) {
+      std::vector<Vec3> arc = leads.in(pieces[k]);
+      count(arc);
+      arc.push_back(pieces[k].tips.front());
+      const Vec3 first = arc.front();
       double down = first.z + kAbove;
       if (stock)
         if (const DropCutter::Landing found = (*stock)(first); found.touches)
           down = std::max(down, found.height + pitch + kAbove);
       writer.approach(first, plane, down);
+      for (const Vec3& tip : arc) writer.to(tip, MoveKind::Lead);
     }
     for (std::size_t i = 1; i < pieces[k].tips.size(); ++i) writer.to(pieces[k].tips[i], MoveKind::Cut);
     if (!links[k].empty()) {
       ++out.direct;
       for (const Vec3& tip : links[k]) writer.to(tip, MoveKind::Link);
     } else {
+      const std::vector<Vec3> arc = leads.out(pieces[k]);
+      count(arc);
+      for (const Vec3& tip : arc) writer.to(tip, MoveKind::Lead);
       if (k + 1 < pieces.size()) ++out.retracts;
       writer.retract(plane);
     }
@@ -161,10 +172,12 @@ FinishResult finish(const SetupScene& scene, const Tool& tool, const FinishOptio
   const Progress linking = base::part(progress, 0.8, 0.9);
   const auto links =
       rows.descending ? straight_links(pieces, surface, longest) : direct_links(pieces, surface, longest, linking);
+  const Mesh left = turned_stock(scene, frame);
   std::optional<DropCutter> stock;
-  if (const Mesh left = turned_stock(scene, frame); !left.empty()) stock.emplace(left, tool);
+  if (!left.empty()) stock.emplace(left, tool);
+  const Leads leads(surface, tool, options.lead.value_or(kLeadShare * profile.radius()), rows.descending, left);
   MoveWriter writer(out, frame, options.feed, options.plunge);
-  write(pieces, links, stock, scene.stock.frame().pitch, turned_scene.plane, writer, out);
+  write(pieces, links, leads, stock, scene.stock.frame().pitch, turned_scene.plane, writer, out);
   out.drops = surface.drops();
   base::report(progress, 1);
   return out;

@@ -119,6 +119,15 @@ Vec2 LevelCurves::border(Vec2 low, Vec2 high, double z) const {
   return low;
 }
 
+bool LevelCurves::sees_below(const Vec2& p, double z) const {
+  const Vec2 at = (p - grid_.lower) / grid_.spacing;
+  const int column = std::clamp(static_cast<int>(at.x), 0, grid_.columns - 2),
+            row = std::clamp(static_cast<int>(at.y), 0, grid_.rows - 2);
+  for (int k = 0; k < 4; ++k)
+    if (heights_[grid_.index(column + (k & 1), row + k / 2)] <= z) return true;
+  return false;
+}
+
 /// A point of the curve between two of its points; none if the straight line between them is near enough.
 std::optional<Vec2> LevelCurves::between(const Vec2& a, const Vec2& b, double z) const {
   const double far = length(b - a), off = kOff * tolerance_;

@@ -29,6 +29,9 @@ class LevelCurves {
   /// Heights of the surface at the grid's places, mm; below the part where the tool touches nothing.
   const Field& heights() const { return heights_; }
   double height(const Vec2& p) const;
+  /// Whether some corner of the grid's cell around `p` is not above `z`: otherwise curves within the cell are not
+  /// found.
+  bool sees_below(const Vec2& p, double z) const;
   /// The point between `low`, where the surface is below `z`, and `high` at which it reaches `z`. The result is on the
   /// lower side, within the precision.
   Vec2 border(Vec2 low, Vec2 high, double z) const;

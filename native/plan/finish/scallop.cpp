@@ -185,6 +185,7 @@ class Scallop {
     RowField field{grid_, values_, {}, kFinestRow, 0, kSteepestFace, 0, nullptr, {}, {}};
     const double most = *std::max_element(values_.begin(), values_.end());
     for (double v = kFirstRow; v < most; v += 1) field.first.push_back(v);
+    if (field.first.empty() && most > 0) field.first.push_back(0.5 * most);
     field.row = [this](double value, const PlaceSet* near, std::vector<BlockedPlace>& blocked) {
       std::vector<CutPiece> out;
       for (const Curve& curve : contours(grid_, values_, value))

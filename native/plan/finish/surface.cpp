@@ -41,6 +41,9 @@ FinishSurface::FinishSurface(const Mesh& part, const std::vector<Mesh>& fixtures
   if (const auto* round = std::get_if<tool::Round>(&tool.cutter().front()); round && round->e >= 0) round_ = *round;
   const auto* end = std::get_if<tool::Frustum>(&tool.cutter().front());
   level_end_ = end ? end->r0 : round_ ? round_->e : 0;
+  if (tool.kind() == "taper")
+    for (const auto& [name, value] : tool.parameters())
+      if (name == "half_angle") flank_ = value;
   if (!options.faces.empty()) chosen_.assign(part_triangles_, 0);
   for (const int face : options.faces) {
     if (face < 0 || static_cast<std::size_t>(face) >= part_triangles_)
@@ -198,14 +201,22 @@ double FinishSurface::above(const Vec3& from, const Vec3& to) const {
   return found > tolerance_ ? found : 0;
 }
 
-/// Whether a ball rests on an edge: its normal there is far from the face's normal.
+/// Whether a ball, or the flank of a taper, rests on an edge: its normal there is far from the face's normal.
 bool FinishSurface::rolls(const SurfacePoint& p) const {
-  if (!(ball_ > 0) || !p.landing.touches || blocked(p)) return false;
+  if (!p.landing.touches || blocked(p)) return false;
+  const auto on_edge = [&](const Vec3& normal) {
+    return glm::dot(normal, normals_[static_cast<std::size_t>(p.landing.triangle)]) < std::cos(kRolling);
+  };
+  const Vec2 off = Vec2(p.tip) - Vec2(p.landing.point);
+  const double across = geom::hypot(off.x, off.y);
+  const auto flank_on_edge = [&] {
+    return flank_ && across > level_end_ && on_edge(Vec3(std::cos(*flank_) / across * off, std::sin(*flank_)));
+  };
+  if (!(ball_ > 0)) return flank_on_edge();
   const Vec3 towards = p.tip + Vec3(0, 0, ball_ - options_.allowance) - p.landing.point;
   const double size = glm::length(towards);
-  if (size > ball_ * (1 + 1e-6) + 2 * tolerance_) return false;  // the contact is above the ball
-  return size > 0 &&
-         glm::dot(towards / size, normals_[static_cast<std::size_t>(p.landing.triangle)]) < std::cos(kRolling);
+  if (size > ball_ * (1 + 1e-6) + 2 * tolerance_) return flank_on_edge();  // the contact is above the ball
+  return size > 0 && on_edge(towards / size);
 }
 
 /// The row's end between a selected point `in` and another point `out`, within the tolerance.

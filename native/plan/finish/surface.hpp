@@ -64,6 +64,8 @@ class FinishSurface {
 
   /// Part and fixtures in the rows' frame.
   const Mesh& mesh() const { return mesh_; }
+  /// Number of the mesh's triangles that are the part's: the first ones.
+  std::size_t part_triangles() const { return part_triangles_; }
   std::size_t drops() const { return drops_; }
   void count_drop() const { drops_.fetch_add(1, std::memory_order_relaxed); }
   double tolerance() const { return tolerance_; }
@@ -87,6 +89,7 @@ class FinishSurface {
   std::vector<char> chosen_;           // which triangles of the part `faces` selects; empty: all
   std::optional<tool::Round> round_;   // the cutter's tip
   double level_end_ = 0;               // radius of the cutter's level end, mm
+  std::optional<double> flank_;        // half angle of a taper, rad
   double tolerance_, low_, ball_ = 0;  // radius of the ball at the tip, with the allowance; 0: no ball
   mutable std::atomic<std::size_t> drops_ = 0;
 };

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "geom/math.hpp"
+#include "plan/lead_arc.hpp"
 #include "plan/operation_moves.hpp"
 #include "plan/outline/offset.hpp"
 #include "riffler/base/check.hpp"
@@ -23,7 +24,7 @@ constexpr double kMostPlaces = 4e6;
 constexpr double kThin = 1e-6;      // mm: thinner layers are not cut
 constexpr double kShortest = 0.05;  // mm: smallest piece of a loop
 constexpr double kPin = 0.1;        // mm, diameter of a pin that probes for stock in openings
-constexpr int kArc = 8;             // number of moves in an arc
+constexpr double kLeadShare = 0.5;  // radius of arcs without the option, as a share of the cutter's
 
 void check(const OutlineOptions& o, const Tool& tool) {
   base::require_not_negative(o.depth, "depth", base::kFiniteAndNotNegative);
@@ -35,6 +36,7 @@ void check(const OutlineOptions& o, const Tool& tool) {
   base::require_tolerance_for(o.tolerance, tool.length() + tool.diameter());
   base::require_positive(o.feed, "feed", base::kPositiveAndFinite);
   base::require_positive(o.plunge, "plunge", base::kPositiveAndFinite);
+  if (o.lead) base::require_not_negative(*o.lead, "lead", base::kFiniteAndNotNegative);
   if (!(o.slope > 0 && o.slope < kPi / 2)) throw std::invalid_argument("slope must be an angle in rad from 0 to π/2");
   require_upright_cutter(tool, "an outline");
 }
@@ -121,6 +123,7 @@ class Cutter {
         options_(options),
         border_(border),
         radius_(0.5 * tool.diameter()),
+        lead_(options.lead.value_or(kLeadShare * radius_)),
         pitch_(pitch),
         part_triangles_(in.part.triangles.size()),
         obstacles_(joined(in.part, in.fixtures), tool, {0, 0, 1}, options.allowance),
@@ -146,7 +149,11 @@ class Cutter {
         for (const auto& [from, to] : free) stretch(loop, from, to, z, top, bottom, tabs);
       before = z, ++out_.levels;
     }
-    if (whole) arc_away(loop, bottom), leave();
+    if (whole) {
+      const double back = std::min(0.1 * radius_, 0.1 * loop.length());
+      if (moves_.last().z <= bottom + kThin) arc_away(loop.point(start_ + loop.length() - back));
+      leave();
+    }
     ++out_.loops, out_.tabs += tabs.size();
     return true;
   }
@@ -285,29 +292,43 @@ class Cutter {
   /// Cuts a layer of an open stretch; the cutter moves down at its beginning.
   void stretch(const Loop& loop, double from, double to, double z, double top, double bottom, const Ranges& tabs) {
     if (!out_.poses.empty()) ++out_.retracts;
-    moves_.approach(Vec3(loop.point(from), z), in_.plane, top + kAbove);
+    const Vec3 begin(loop.point(from), height(from, z, bottom, tabs, loop.length()));
+    std::vector<Vec3> arc = arc_at(begin, loop.point(from + std::min(0.1 * radius_, 0.5 * (to - from))), false);
+    arc.push_back(begin);
+    double above = top;
+    if (const DropCutter::Landing found = stock_(arc.front()); found.touches)
+      above = std::max(above, found.height + pitch_);
+    moves_.approach(arc.front(), in_.plane, above + kAbove);
+    for (const Vec3& tip : arc) moves_.to(tip, MoveKind::Lead);
     along(loop, from, to, z, bottom, tabs);
+    arc_away(loop.point(to - std::min(0.1 * radius_, 0.5 * (to - from))));
     leave();
   }
-  /// Leaves the part on a quarter circle, if there is room for one.
-  void arc_away(const Loop& loop, double bottom) {
-    const Vec3 here = moves_.last();
-    const Vec2 p(here), way = p - loop.point(start_ + loop.length() - std::min(0.1 * radius_, 0.1 * loop.length()));
-    if (here.z > bottom + kThin || !(glm::length(way) > 0)) return;
-    const Vec2 along = glm::normalize(way), aside = (options_.climb ? 1.0 : -1.0) * Vec2(-along.y, along.x);
-    const double size = 0.5 * radius_;
-    std::vector<Vec2> arc{p};
-    for (int k = 1; k <= kArc; ++k) {
-      const double turn = 0.5 * kPi * k / kArc;
-      arc.push_back(p + size * ((1 - std::cos(turn)) * aside + std::sin(turn) * along));
+  /// A quarter circle that ends in `p`, from where the tool moves towards `next`; on the side away from the part, or
+  /// without points if there is no room. `reversed`: the tool moves on it, and to `p`, in the opposite direction.
+  std::vector<Vec3> arc_at(const Vec3& p, const Vec2& next, bool reversed) {
+    const Vec2 way = next - Vec2(p);
+    std::vector<Vec3> out;
+    if (lead_ > 0 && glm::length(way) > 0) {
+      const Vec2 along = glm::normalize(way), left(-along.y, along.x);
+      out = lead_arc(p, Vec3(along, 0), Vec3((options_.climb != reversed ? 1.0 : -1.0) * left, 0), lead_, 0.5 * kPi);
+      for (std::size_t k = 0; k < out.size(); ++k)
+        if (const Vec3& to = k + 1 < out.size() ? out[k + 1] : p; !clear(out[k], to)) {
+          out.clear();
+          break;
+        }
     }
-    for (int k = 1; k <= kArc; ++k) {
-      const auto at = static_cast<std::size_t>(k);
-      if (border_.distance(arc[at - 1], arc[at], 2 * radius_ + options_.allowance) < radius_ + options_.allowance ||
-          obstacles_.rise(Vec3(arc[at - 1], bottom), Vec3(arc[at], bottom), 0).above > 0)
-        return;
-    }
-    for (int k = 1; k <= kArc; ++k) moves_.to(Vec3(arc[static_cast<std::size_t>(k)], bottom), MoveKind::Lead);
+    ++(out.empty() ? out_.straight : out_.arcs);
+    return out;
+  }
+  bool clear(const Vec3& from, const Vec3& to) const {
+    return border_.distance(Vec2(from), Vec2(to), 2 * radius_ + options_.allowance) >= radius_ + options_.allowance &&
+           obstacles_.rise(from, to, 0).above <= 0;
+  }
+  /// Leaves the part on a quarter circle, if there is room for one. `before`: a place on the last move.
+  void arc_away(const Vec2& before) {
+    const std::vector<Vec3> arc = arc_at(moves_.last(), before, true);
+    for (auto tip = arc.rbegin(); tip != arc.rend(); ++tip) moves_.to(*tip, MoveKind::Lead);
   }
   void leave() { moves_.retract(in_.plane); }
 
@@ -315,7 +336,7 @@ class Cutter {
   const TurnedScene& in_;
   const OutlineOptions& options_;
   const SetBorder& border_;
-  double radius_, pitch_, start_ = 0;
+  double radius_, lead_, pitch_, start_ = 0;
   std::size_t part_triangles_;
   DropCutter obstacles_, stock_;
   MoveWriter moves_;

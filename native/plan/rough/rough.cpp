@@ -28,7 +28,7 @@ constexpr double kLeastSlope = 0.001;    // rad: flatter helices would make the 
 constexpr std::size_t kChunk = 1 << 18;  // number of places whose drops are in memory at a time
 constexpr double kHelix = 0.45;          // radius of a helix, in diameters
 constexpr double kLeastLayer = 0.02;     // material that is less high stays, in stepdowns
-constexpr double kLevel = 1e-6;          // largest difference in height between places of a level face, mm
+constexpr double kLevel = 0.1;           // largest difference in height within a level face, in tolerances
 
 void check(const RoughOptions& o, const Tool& tool) {
   base::require_length(o.stepdown, "stepdown");
@@ -81,22 +81,36 @@ Field heights(const PlaceGrid& grid, const DropCutter& drop, const Progress& pro
   return out;
 }
 
-/// Heights of the levels, descending: one every stepdown, counted from the bottom so that they stay the same when part
-/// of the stock is already removed, and one on each level face of part and allowance that is as large as the cutter.
-std::vector<double> level_heights(const PlaceGrid& grid, Field drop, double top, double bottom, double stepdown,
-                                  double radius) {
-  std::vector<double> out;
-  for (int k = 0; bottom + k * stepdown < top - kLeastLayer * stepdown; ++k) out.push_back(bottom + k * stepdown);
-  std::sort(drop.begin(), drop.end());
+/// The level faces of part and allowance that are at least as large as the cutter: lowest and highest height,
+/// ascending. Vertices are often single precision, so a level face may be a little tilted.
+std::vector<Interval> level_faces(const PlaceGrid& grid, Field ground, double slack, double radius) {
+  std::sort(ground.begin(), ground.end());
   const auto enough = static_cast<std::size_t>(kPi * radius * radius / (grid.spacing * grid.spacing));
-  for (std::size_t k = 0; k + enough < drop.size();) {
-    const double z = drop[k + enough];
-    if (z > bottom && z < top && z - drop[k] <= kLevel) {
-      while (k < drop.size() && drop[k] <= z + kLevel) ++k;
-      out.push_back(drop[k - 1]);
+  std::vector<Interval> out;
+  for (std::size_t k = 0; k + enough < ground.size();) {
+    const double low = ground[k], high = ground[k + enough];
+    if (std::isfinite(low) && high - low <= slack) {
+      while (k < ground.size() && ground[k] <= high + slack) ++k;
+      out.push_back({low, ground[k - 1]});
     } else {
       ++k;
     }
+  }
+  return out;
+}
+
+/// Heights of the levels, descending: one every stepdown, counted from the bottom so that they stay the same when part
+/// of the stock is already removed, and one where the cutter rests on each level face. `above`: height of the levels
+/// over ground, mm.
+std::vector<double> level_heights(Field drop, const std::vector<Interval>& faces, double above, double top,
+                                  double bottom, double stepdown, double slack) {
+  std::vector<double> out;
+  for (int k = 0; bottom + k * stepdown < top - kLeastLayer * stepdown; ++k) out.push_back(bottom + k * stepdown);
+  std::sort(drop.begin(), drop.end());
+  for (const Interval& face : faces) {
+    const auto end = std::upper_bound(drop.begin(), drop.end(), face.far + above + slack);
+    if (end == drop.begin() || *(end - 1) < face.near + above - slack) continue;  // too narrow for the cutter
+    if (const double z = *(end - 1); z > bottom && z < top) out.push_back(z);
   }
   std::sort(out.begin(), out.end(), std::greater<>());
   const auto near = [&](double a, double b) { return a - b < kLeastLayer * stepdown; };
@@ -227,7 +241,9 @@ RoughResult rough(const SetupScene& scene, const Tool& tool, const RoughOptions&
                          0.6 * scene.stock.frame().pitch + 2 * kCellRadius * grid.spacing + options.tolerance,
                          0.25 * options.tolerance,
                          options.climb};
-  const std::vector<double> levels = level_heights(grid, drop, top, bottom, options.stepdown, profile.radius());
+  const double slack = kLevel * options.tolerance;
+  const std::vector<double> levels = level_heights(drop, level_faces(grid, ground, slack, profile.radius()),
+                                                   0.5 * options.tolerance, top, bottom, options.stepdown, slack);
   std::vector<LevelRuns> runs(levels.size());
   base::parallel_for(
       levels.size(), 1,

@@ -81,28 +81,35 @@ def heights(mesh, x, y):
     return out
 
 
-def lower_side(tool, rho):
-    """Height of the lower side of ball, flat and bull-nosed cutters above the tip."""
-    flat, rounding = corner(tool)
+def lower_side(tool, rho, larger=0.0):
+    """Height of the lower side of ball, flat, bull-nosed and tapered cutters, `larger` mm thicker, above the tip of the
+    thin one; ∞ beyond their radius."""
+    flat, rounding, angle = corner(tool)
+    rounding, middle = rounding + larger, rounding
     beyond = np.maximum(rho - flat, 0)
-    return np.where(beyond <= rounding, rounding - np.sqrt(np.maximum(rounding**2 - beyond**2, 0)), np.inf)
+    low = middle - np.sqrt(np.maximum(rounding**2 - beyond**2, 0))
+    if angle:  # the cone begins where the rounding is as steep
+        cone = middle - rounding * math.sin(angle) + (beyond - rounding * math.cos(angle)) / math.tan(angle)
+        low = np.where(beyond <= rounding * math.cos(angle), low, cone)
+    return np.where(rho <= tool.diameter / 2 + larger, low, np.inf)
 
 
 def z_map(op, x, y, step=0.05):
     """Height of the material at the points after all moves at feed, by brute force: the cutter at dense places."""
-    out = np.full(x.shape, np.inf)
-    r = op.tool.diameter / 2
+    places = [np.zeros((0, 3))]
     for k in range(1, len(op)):
-        if op.kind[k] == 0:
-            continue
-        a, b = op.poses[k - 1, :3], op.poses[k, :3]
-        lo, hi = np.minimum(a, b) - r, np.maximum(a, b) + r
-        near = np.flatnonzero((x >= lo[0]) & (x <= hi[0]) & (y >= lo[1]) & (y <= hi[1]))
-        if not len(near):
-            continue
-        p = np.linspace(a, b, max(2, math.ceil(np.linalg.norm(b[:2] - a[:2]) / step) + 1))[:, :, None]
-        z = p[:, 2] + lower_side(op.tool, np.hypot(x[near] - p[:, 0], y[near] - p[:, 1]))
-        out[near] = np.minimum(out[near], z.min(axis=0))
+        if op.kind[k]:
+            a, b = op.poses[k - 1, :3], op.poses[k, :3]
+            places.append(np.linspace(a, b, max(2, math.ceil(np.linalg.norm(b[:2] - a[:2]) / step) + 1)))
+    out = np.full(x.shape, np.inf)
+    places, r = np.concatenate(places), op.tool.diameter / 2
+    for k in range(0, len(places), 64):
+        p = places[k : k + 64, :, None]
+        lo, hi = p.min(axis=(0, 2)) - r, p.max(axis=(0, 2)) + r
+        near = np.flatnonzero((x >= lo[0]) & (x <= hi[0]) & (y >= lo[1]) & (y <= hi[1]) & (out > lo[2] + r))
+        if len(near):
+            z = p[:, 2] + lower_side(op.tool, np.hypot(x[near] - p[:, 0], y[near] - p[:, 1]))
+            out[near] = np.minimum(out[near], z.min(axis=0))
     return out
 
 
@@ -164,18 +171,20 @@ PARTS = {"dome": dome, "cone": cone, "steps": steps, "torus": torus, "cube at 10
 
 
 def corner(tool):
-    """Radius of the flat bottom, and of the rounding, of a ball, flat or bull-nosed cutter."""
+    """Radius of the flat bottom and of the rounding, mm, and half angle of the cone above, rad, of a cutter."""
     if tool.kind == "flat":
-        return tool.diameter / 2, 0.0
+        return tool.diameter / 2, 0.0, 0.0
     if tool.kind == "ball":
-        return 0.0, tool.diameter / 2
-    round_off = tool.to_dict()["corner_radius"]
-    return tool.diameter / 2 - round_off, round_off
+        return 0.0, tool.diameter / 2, 0.0
+    sizes = tool.to_dict()
+    if tool.kind == "taper":
+        return 0.0, sizes["tip_radius"], sizes["half_angle"]
+    return tool.diameter / 2 - sizes["corner_radius"], sizes["corner_radius"], 0.0
 
 
 def tips_touching(tool, points, normals, gap):
-    """Tips of the cutter when it touches the surface at points with these normals, at a distance of `gap` mm."""
-    flat, rounding = corner(tool)
+    """Tips of the cutter when its end touches the surface at points with these normals, at a distance of `gap` mm."""
+    flat, rounding, _ = corner(tool)
     level = normals[:, :2] / np.maximum(np.linalg.norm(normals[:, :2], axis=1), 1e-12)[:, None]
     tips = points + normals * (rounding + gap)
     tips[:, :2] += level * np.where(np.linalg.norm(normals[:, :2], axis=1) > 1e-6, flat, 0.0)[:, None]
@@ -216,16 +225,16 @@ class Judge:
         cloud = cloud[np.argsort(cloud[:, 0])]
         tips = tips_touching(tool, self.points, self.normals, allowance + larger)
         self.reachable = self.asked & (tips[:, 2] >= part.bounds[0][2] - 1e-9)
-        flat, rounding = corner(tool)
-        grown = rounding + allowance + 0.8 * larger
+        # On steeper faces the flank of a tapered cutter cuts, at a place that this judge does not know.
+        self.reachable &= slope <= math.pi / 2 - corner(tool)[2] + 1e-6
+        grown = allowance + 0.8 * larger
         for k in np.flatnonzero(self.reachable):
-            first, last = np.searchsorted(cloud[:, 0], tips[k, 0] + np.array([-1, 1]) * (flat + grown))
-            beside = cloud[first:last]
-            rho = np.hypot(beside[:, 0] - tips[k, 0], beside[:, 1] - tips[k, 1])
-            near = rho < flat + grown
-            beyond = np.maximum(rho[near] - flat, 0)
-            low = tips[k, 2] + rounding - np.sqrt(np.maximum(grown**2 - beyond**2, 0))
-            if (beside[near, 2] > low).any():
+            reach = tool.diameter / 2 + grown
+            first, last = np.searchsorted(cloud[:, 0], tips[k, 0] + np.array([-reach, reach]))
+            close = cloud[first:last]
+            rho = np.hypot(close[:, 0] - tips[k, 0], close[:, 1] - tips[k, 1])
+            near = rho < reach
+            if (close[near, 2] > tips[k, 2] + lower_side(tool, rho[near], grown)).any():
                 self.reachable[k] = False
 
     def _left(self, op, off, which):

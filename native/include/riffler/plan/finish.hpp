@@ -25,13 +25,15 @@ struct FinishOptions {
   bool climb = true;                        ///< waterline: whether the part lies to the motion's right
   double feed = 1000;                       ///< feed of cuts and links, mm/min
   double plunge = 300;                      ///< feed of leads, mm/min
+  std::optional<double> lead{};  ///< radius of the arcs into cuts and out of them, mm; 0: none; none: a half of the
+                                 ///< cutter's radius
 };
 
 /// The operation, and counts.
 struct FinishResult : Operation {
-  /// Numbers of rows cut, rows added between those of equal spacing, links at feed, links over the clearance plane, and
-  /// computed points of the offset surface.
-  std::size_t rows = 0, added = 0, direct = 0, retracts = 0, drops = 0;
+  /// Numbers of rows cut, rows added between those of equal spacing, links at feed, links over the clearance plane,
+  /// leads that are arcs, leads that are straight because no arc fits, and computed points of the offset surface.
+  std::size_t rows = 0, added = 0, direct = 0, retracts = 0, arcs = 0, straight = 0, drops = 0;
 };
 
 /// The names of the patterns.

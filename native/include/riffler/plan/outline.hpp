@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "riffler/base/progress.hpp"
@@ -25,11 +26,14 @@ struct OutlineOptions {
   bool climb = true;        ///< whether the part lies to the right of the motion
   double feed = 1000;       ///< feed of cuts, mm/min
   double plunge = 300;      ///< feed of leads, mm/min
+  std::optional<double> lead{};  ///< radius of the arcs into cuts and out of them, mm; 0: none; none: a half of the
+                                 ///< cutter's radius
 };
 
-/// The operation, and counts of loops cut, layers in them, tabs that stay, and links over the clearance plane.
+/// The operation, and counts of loops cut, layers in them, tabs that stay, links over the clearance plane, leads that
+/// are arcs, and leads that are straight because no arc fits.
 struct OutlineResult : Operation {
-  std::size_t loops = 0, levels = 0, tabs = 0, retracts = 0;
+  std::size_t loops = 0, levels = 0, tabs = 0, retracts = 0, arcs = 0, straight = 0;
 };
 
 /// Plans one operation. The cutter's axis keeps the cutter's radius + allowance from silhouette or curves. The

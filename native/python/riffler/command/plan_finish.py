@@ -18,7 +18,7 @@ from .. import plan
 from .arguments import finite, input_file, length
 from .console import Console, number
 from .parser import Parser
-from .plan_operation import add_lengths, add_scene, add_tool, feeds_of, point, run_operation
+from .plan_operation import add_lead, add_lengths, add_scene, add_tool, feeds_of, lead_of, point, run_operation
 
 HELP = "finish a part in rows, as NC code"
 
@@ -45,6 +45,7 @@ def add_arguments(parser: Parser) -> None:
         "--conventional", action="store_true", help="waterlines with the part to the left of the motion, not climb"
     )
     parser.add_file("--region", "closed curves; only faces inside them are finished", plan.curves.FORMATS)
+    add_lead(parser)
     add_scene(parser, "1000")
 
 
@@ -74,6 +75,7 @@ def options_of(arguments: argparse.Namespace) -> dict[str, Any]:
         "slopes": (slopes[0], min(slopes[1], math.pi / 2) if slopes[1] <= 90 else slopes[1]),
         "centre": None if arguments.centre is None else point(arguments.centre, "--centre"),
         "climb": not arguments.conventional,
+        "lead": lead_of(arguments),
         **feeds_of(arguments),
     }
 

@@ -33,6 +33,16 @@ def add_lengths(parser: Parser, *lengths: tuple[str, str, str]) -> None:
         parser.add_argument(flag, metavar="MM", default=default, help=f"{about} (default {default})")
 
 
+def add_lead(parser: Parser) -> None:
+    parser.add_argument(
+        "--lead", metavar="MM", help="radius of arcs into cuts and out of them (default half the cutter's radius)"
+    )
+
+
+def lead_of(arguments: argparse.Namespace) -> float | None:
+    return None if arguments.lead is None else finite(arguments.lead, "--lead")
+
+
 def add_scene(parser: Parser, feed: str) -> None:
     """Adds options for feeds, stock, fixtures, machine and the program's file."""
     add_lengths(parser, ("--clearance", "5", "height of rapids above everything"))

@@ -17,7 +17,7 @@ from .. import plan
 from .arguments import finite, input_file, length, whole
 from .console import Console, number
 from .parser import Parser
-from .plan_operation import add_lengths, add_scene, add_tool, feeds_of, run_operation
+from .plan_operation import add_lead, add_lengths, add_scene, add_tool, feeds_of, lead_of, run_operation
 
 HELP = "cut a part out along its silhouette, as NC code"
 
@@ -38,6 +38,7 @@ def add_arguments(parser: Parser) -> None:
     )
     parser.add_argument("--slope", metavar="DEG", default="3", help="of ramps (default 3)")
     parser.add_argument("--conventional", action="store_true", help="part to the left of the motion")
+    add_lead(parser)
     add_scene(parser, "1000")
 
 
@@ -67,6 +68,7 @@ def options_of(arguments: argparse.Namespace) -> dict[str, Any]:
         "tolerance": length(arguments.tolerance, "--tolerance"),
         "slope": math.radians(finite(arguments.slope, "--slope")),
         "climb": not arguments.conventional,
+        "lead": lead_of(arguments),
         **feeds_of(arguments),
     }
 

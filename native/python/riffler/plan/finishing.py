@@ -34,6 +34,7 @@ def finish(
     climb: bool = True,
     feed: float = 1000.0,
     plunge: float | None = None,
+    lead: float | None = None,
     spindle: float = 12000.0,
     progress: Progress = None,
 ) -> Operation:
@@ -75,6 +76,9 @@ def finish(
         Feed of cuts and links, mm/min.
     plunge : float, optional
         Feed of leads, mm/min; by default a third of ``feed``.
+    lead : float, optional
+        Radius of the arcs on which the tool enters and leaves cuts, mm; 0: no arcs. By default half the cutter's
+        radius. ``report.stats`` counts ``arcs``, and leads that are ``straight`` because no arc fits.
     spindle : float
         Speed, rev/min; negative: counter-clockwise.
     progress : callable, optional
@@ -120,6 +124,7 @@ def finish(
         climb=climb,
         feed=feed,
         plunge=feed / 3 if plunge is None else plunge,
+        lead=lead,
         progress=progress,
     )
 
